@@ -9,7 +9,7 @@ use rilievo_engine::document::parts::{Inflation, OutlineSource, Part, PartKind};
 use rilievo_engine::document::{Document, DocumentReducer};
 use rilievo_engine::math::{Size, Vec2, vec2, vec3};
 use rilievo_engine::raster::Plane;
-use rilievo_engine::shape::{Combine, Form, Outline, Relief, Rim, Roundness, inflate::inflate, tube};
+use rilievo_engine::shape::{Combine, Form, Outline, OutlineRim, Relief, Roundness, inflate::inflate, tube};
 use rilievo_engine::shape::{SculptStroke, SculptTool, Touch};
 
 fn main() {
@@ -63,7 +63,7 @@ fn tube_from_nothing(bencher: Bencher) {
 #[divan::bench(sample_count = 20)]
 fn puff_dragged(bencher: Bencher) {
     let (outline, pool) = (creature(0.0), two_threads());
-    let (u, rim) = (inflate(&outline, None, None), Rim::silhouette(&outline));
+    let (u, rim) = (inflate(&outline, None, None), OutlineRim::silhouette(&outline));
     bencher.bench_local(|| pool.install(|| black_box(Form::of_squares(&outline, &u, &rim, ROUND))));
 }
 
@@ -71,7 +71,8 @@ fn puff_dragged(bencher: Bencher) {
 #[divan::bench(sample_count = 20)]
 fn profile_dragged(bencher: Bencher) {
     let (outline, pool) = (creature(0.0), two_threads());
-    let (u, h, rim) = (inflate(&outline, None, None), tube::tube(&outline, None, None), Rim::silhouette(&outline));
+    let (u, h, rim) =
+        (inflate(&outline, None, None), tube::tube(&outline, None, None), OutlineRim::silhouette(&outline));
     let frame = || Form::of_squares(&outline, &tube::blend(&u, &h, 0.4), &rim, ROUND);
     bencher.bench_local(|| pool.install(|| black_box(frame())));
 }
@@ -80,7 +81,7 @@ fn profile_dragged(bencher: Bencher) {
 #[divan::bench(sample_count = 10)]
 fn combined(bencher: Bencher) {
     let (outline, pool) = (creature(0.0), two_threads());
-    let (u, rim) = (inflate(&outline, None, None), Rim::silhouette(&outline));
+    let (u, rim) = (inflate(&outline, None, None), OutlineRim::silhouette(&outline));
     let form = Form::of_squares(&outline, &u, &rim, ROUND);
     let one = || {
         let mut relief = Relief::empty(Size::new(1220, 1220));

@@ -1,12 +1,16 @@
-//! No line of the sources is longer than 120 columns. rustfmt breaks code; comments, macros and texts it leaves alone.
+//! No line of the sources is longer than 120 columns, and no file longer than 350 lines. rustfmt breaks code; comments,
+//! macros and texts it leaves alone.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 const COLUMNS: usize = 120;
 
+/// A file is read in one sitting; one that grows longer is parted by its subjects.
+const LINES: usize = 350;
+
 /// Every file below a folder of the project whose name ends so.
-fn files(folder: &str, extension: &str) -> Vec<PathBuf> {
+pub fn files(folder: &str, extension: &str) -> Vec<PathBuf> {
     fn visit(folder: &Path, extension: &str, found: &mut Vec<PathBuf>) {
         for entry in fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();
@@ -37,6 +41,15 @@ fn no_line_of_code_or_comment_is_longer_than_120_columns() {
         let long = long_lines(&fs::read_to_string(&path).unwrap());
         assert!(long.is_empty(), "{}: longer than {COLUMNS} columns: lines {long:?}", path.display());
     }
+}
+
+#[test]
+fn no_file_is_as_long_as_350_lines() {
+    let folders = ["src", "tests", "benches", "examples", "fuzz/fuzz_targets", "brushes"];
+    let lines = |path: &PathBuf| fs::read_to_string(path).unwrap().lines().count();
+    let files = folders.iter().flat_map(|folder| files(folder, "rs")).map(|path| (lines(&path), path));
+    let long: Vec<(usize, PathBuf)> = files.filter(|(count, _)| *count >= LINES).collect();
+    assert!(long.is_empty(), "part these by their subjects: {long:#?}");
 }
 
 #[test]

@@ -16,6 +16,7 @@ mod interchange;
 mod kills;
 mod lines;
 mod maps;
+mod names;
 mod overwriting;
 mod recipe;
 mod view;

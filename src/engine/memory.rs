@@ -64,11 +64,11 @@ pub fn set_kept_ceiling(bytes: u64) {
 
 /// Leave to keep something that could be computed again, for as long as this lives.
 #[derive(Debug)]
-pub struct Kept {
+pub struct CacheReservation {
     bytes: u64,
 }
 
-impl Kept {
+impl CacheReservation {
     /// `None` where all that is kept would be more than the ceiling.
     pub fn try_new(bytes: u64) -> Option<Self> {
         let ceiling = CEILING.load(Ordering::Relaxed);
@@ -77,7 +77,7 @@ impl Kept {
     }
 }
 
-impl Drop for Kept {
+impl Drop for CacheReservation {
     fn drop(&mut self) {
         KEPT.fetch_sub(self.bytes, Ordering::Relaxed);
     }
@@ -128,12 +128,12 @@ mod tests {
     }
     #[test]
     fn what_is_kept_stays_below_the_ceiling_and_is_given_back() {
-        assert!(Kept::try_new(u64::MAX).is_none());
-        let kept = Kept::try_new(1000);
+        assert!(CacheReservation::try_new(u64::MAX).is_none());
+        let kept = CacheReservation::try_new(1000);
         assert!(kept.is_some() && KEPT.load(Ordering::Relaxed) >= 1000);
-        assert!(Kept::try_new((64 << 20) - 999).is_none());
+        assert!(CacheReservation::try_new((64 << 20) - 999).is_none());
         drop(kept);
-        assert!(Kept::try_new(1000).is_some());
+        assert!(CacheReservation::try_new(1000).is_some());
     }
     #[test]
     fn bytes_are_spoken() {

@@ -28,7 +28,8 @@ fn whole(root: &Path) -> Option<u64> {
     let read = |name: &str| fs::read_to_string(root.join(name)).ok();
     let memory = field(&read("proc/meminfo")?, "MemTotal:")? * 1024;
     let groups = read("proc/self/cgroup").unwrap_or_default();
-    let ceiling = |group: &Group| fs::read_to_string(group.folder.join(group.names[0])).ok()?.trim().parse().ok();
+    let ceiling =
+        |group: &ControlGroup| fs::read_to_string(group.folder.join(group.names[0])).ok()?.trim().parse().ok();
     Some(groups_around(root, &groups).iter().filter_map(ceiling).fold(memory, u64::min))
 }
 
@@ -48,7 +49,7 @@ fn field(text: &str, name: &str) -> Option<u64> {
 }
 
 /// A control group that tells of memory.
-struct Group {
+struct ControlGroup {
     folder: PathBuf,
     /// The files of its ceiling and of what is used.
     names: [&'static str; 2],
@@ -62,7 +63,7 @@ fn left_in_groups(root: &Path, groups: &str) -> Option<u64> {
 }
 
 /// The process's groups, of version 2 and 1, and all groups around them.
-fn groups_around(root: &Path, groups: &str) -> Vec<Group> {
+fn groups_around(root: &Path, groups: &str) -> Vec<ControlGroup> {
     let line = |is: &dyn Fn(&str) -> bool| {
         groups.lines().find_map(|line| {
             let (controllers, path) = line.split_once(':')?.1.split_once(':')?;
@@ -80,14 +81,14 @@ fn groups_around(root: &Path, groups: &str) -> Vec<Group> {
         let inner = top.join(path);
         // Within a container the path may be one of the world outside; its own group is then the top.
         let around = inner.ancestors().take_while(|folder| folder.starts_with(&top)).map(Path::to_owned);
-        around.map(|folder| Group { folder, names, cache }).collect::<Vec<_>>()
+        around.map(|folder| ControlGroup { folder, names, cache }).collect::<Vec<_>>()
     });
     all.collect()
 }
 
 /// What is left in one group; the files it holds in memory are given back when they are in the way.
-fn left_in_group(group: &Group) -> Option<u64> {
-    let Group { folder, names: [ceiling, used], cache } = group;
+fn left_in_group(group: &ControlGroup) -> Option<u64> {
+    let ControlGroup { folder, names: [ceiling, used], cache } = group;
     let read = |name: &str| fs::read_to_string(folder.join(name)).ok();
     let number = |name: &str| read(name)?.trim().parse::<u64>().ok();
     let cache = read("memory.stat").and_then(|stat| field(&stat, &format!("{cache} "))).unwrap_or(0);

@@ -33,19 +33,19 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
     let picture = if is_exr {
         light::decode(file, bytes, budget)
     } else {
-        decode_bitmap(file, bytes, budget, Kept::SixteenBits)
+        decode_bitmap(file, bytes, budget, KeptDepth::SixteenBits)
     }?;
     Ok(Picture { encoded: Some(Asset::from(bytes.to_vec())), ..picture })
 }
 
 /// What is kept of integers of 16 bits.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Kept {
+enum KeptDepth {
     Bytes,
     SixteenBits,
 }
 
-fn decode_bitmap(file: &Path, bytes: &[u8], budget: &Budget, kept: Kept) -> Result<Picture> {
+fn decode_bitmap(file: &Path, bytes: &[u8], budget: &Budget, kept: KeptDepth) -> Result<Picture> {
     let mut bitmap = bitmap::decode(file, bytes, budget)?;
     bitmap.image.apply_orientation(bitmap.orientation);
     let size = Size::new(bitmap.image.width(), bitmap.image.height());
@@ -55,7 +55,7 @@ fn decode_bitmap(file: &Path, bytes: &[u8], budget: &Budget, kept: Kept) -> Resu
             let profiled = bitmap.icc.as_deref().and_then(|icc| light_through_profile(&texels, icc));
             Picture::linear(size, profiled.unwrap_or(texels))
         }
-        image if kept == Kept::SixteenBits && is_sixteen_bits(image) => {
+        image if kept == KeptDepth::SixteenBits && is_sixteen_bits(image) => {
             // Beside what was decoded: texels of both kinds.
             let asked = image.as_bytes().len() as u64 + 12 * size.area() as u64;
             budget.room(file, &format!("a picture of {size} pixels of 16 bits a channel"), asked)?;

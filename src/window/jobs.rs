@@ -5,7 +5,7 @@ use crate::clipboard::{Clipboard, PastedContent};
 use crate::document::parts::drawing::DrawingLook;
 use crate::document::{Document, LayerId, Progress, SurfaceSource};
 use crate::file_purpose::FilePurpose;
-use crate::io::recipe::Preset;
+use crate::io::recipe::BrushPreset;
 use crate::io::replace::FileStamp;
 use crate::io::{maps, recovery};
 use crate::memory;
@@ -78,7 +78,7 @@ pub enum JobResult {
     /// What was copied here is to be pasted.
     PastedOwn,
     /// The user's own brushes, and the errors of unreadable ones.
-    Brushes(Vec<Preset>, Vec<String>),
+    Brushes(Vec<BrushPreset>, Vec<String>),
     /// Nothing to do, as after a cancelled job.
     Nothing,
     Failed(Error),

@@ -21,7 +21,7 @@ impl ExportingMaps {
 }
 
 /// How far a save came.
-enum Step {
+enum SaveStep {
     Saved(FileStamp),
     /// The user has to be told first what is lost.
     Loses,
@@ -31,26 +31,26 @@ enum Step {
 impl Saving {
     pub fn run(mut self, progress: &Progress) -> JobResult {
         match self.attempt(progress) {
-            Ok(Step::Saved(stamp)) => JobResult::Saved(Box::new(self), stamp),
-            Ok(Step::Loses) => JobResult::Loses(Box::new(self)),
-            Ok(Step::GivenUp) => JobResult::Nothing,
+            Ok(SaveStep::Saved(stamp)) => JobResult::Saved(Box::new(self), stamp),
+            Ok(SaveStep::Loses) => JobResult::Loses(Box::new(self)),
+            Ok(SaveStep::GivenUp) => JobResult::Nothing,
             Err(error) => refused(error, || Pending::Save(Box::new(self))),
         }
     }
-    fn attempt(&mut self, progress: &Progress) -> Result<Step> {
+    fn attempt(&mut self, progress: &Progress) -> Result<SaveStep> {
         // Before the work that it takes to make the bytes.
         check(&Disk, &self.file, &self.terms)?;
         let encoded = match self.encoded.take() {
             Some(encoded) => Some(encoded),
             None => encode(&self.document, &self.file, progress)?,
         };
-        let Some(encoded) = encoded else { return Ok(Step::GivenUp) };
+        let Some(encoded) = encoded else { return Ok(SaveStep::GivenUp) };
         let encoded = self.encoded.insert(encoded);
         if !self.knows_losses {
-            return Ok(Step::Loses);
+            return Ok(SaveStep::Loses);
         }
         let saved = encoded.save(&self.file, &self.terms, progress)?;
-        Ok(saved.map_or(Step::GivenUp, |saved| Step::Saved(saved.stamp)))
+        Ok(saved.map_or(SaveStep::GivenUp, |saved| SaveStep::Saved(saved.stamp)))
     }
 }
 

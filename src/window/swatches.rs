@@ -3,7 +3,7 @@
 
 use super::jobs;
 use crate::Error;
-use crate::io::recipe::Preset;
+use crate::io::recipe::BrushPreset;
 use crate::session::swatch;
 use eframe::egui::{self, ColorImage, TextureHandle, TextureId, TextureOptions};
 use std::collections::{HashMap, HashSet};
@@ -20,7 +20,7 @@ pub struct Swatches {
 }
 
 struct SwatchThread {
-    wanted: Sender<Preset>,
+    wanted: Sender<BrushPreset>,
     coming: Receiver<(String, ColorImage)>,
 }
 
@@ -29,7 +29,7 @@ const SIDE: u32 = 128;
 
 impl Swatches {
     /// The picture of a brush, once it is painted.
-    pub fn of(&mut self, ctx: &egui::Context, preset: &Preset) -> Option<TextureId> {
+    pub fn of(&mut self, ctx: &egui::Context, preset: &BrushPreset) -> Option<TextureId> {
         if self.thread.is_none() {
             let (thread, trouble) = SwatchThread::start(ctx.clone());
             // Without a thread there are no pictures, only names.
@@ -49,7 +49,7 @@ impl Swatches {
 
 impl SwatchThread {
     fn start(waker: egui::Context) -> (Self, Option<Error>) {
-        let ((wanted, orders), (sender, coming)) = (channel::<Preset>(), channel());
+        let ((wanted, orders), (sender, coming)) = (channel::<BrushPreset>(), channel());
         let work = move || {
             for preset in orders {
                 if let Some(image) = painted(&preset) {
@@ -65,7 +65,7 @@ impl SwatchThread {
     }
 }
 
-fn painted(preset: &Preset) -> Option<ColorImage> {
+fn painted(preset: &BrushPreset) -> Option<ColorImage> {
     let pixels = swatch::painted(preset, SIDE)?;
     Some(ColorImage::from_rgba_unmultiplied([SIDE as usize; 2], &pixels))
 }

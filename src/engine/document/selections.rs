@@ -3,7 +3,7 @@
 
 use super::{Content, DerivedMask, Document, Layer, LayerMask, Live, MaskKind, StrokeList};
 use crate::paint::{Selection, Stroke, StrokeSelection};
-use crate::raster::coverage::Combine;
+use crate::raster::coverage::SelectionMode;
 use crate::raster::{CoverageGrid, Plane};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -35,14 +35,14 @@ impl Document {
         Document { active_selection: selection.map(Arc::new), ..self.clone() }
     }
     /// With a new selection that meets the active one. One that replaces it, or meets none, stays as it was told.
-    pub fn with_combined(&self, new: Selection, how: Combine) -> Document {
+    pub fn with_combined(&self, new: Selection, how: SelectionMode) -> Document {
         let canvas = self.size.rect();
         let new = Selection { coverage: new.coverage.within(canvas), ..new };
         let all = || CoverageGrid::filled(canvas);
         let both = match (how, self.selected()) {
-            (Combine::Replace, _) | (Combine::Add | Combine::Intersect, None) => new,
+            (SelectionMode::Replace, _) | (SelectionMode::Add | SelectionMode::Intersect, None) => new,
             // Without a selection everything is.
-            (Combine::TakeAway, None) => Selection::new(all().combined(&new.coverage, |a, b| how.of(a, b))),
+            (SelectionMode::TakeAway, None) => Selection::new(all().combined(&new.coverage, |a, b| how.of(a, b))),
             (_, Some(old)) => Selection::new(old.combined(&new.coverage, |a, b| how.of(a, b))),
         };
         self.with_selection(Some(both))

@@ -161,7 +161,7 @@ impl PlacedImage {
     fn render_with(&self, scratch: &mut ImageScratch, texture: &Texture, scene: &Scene, area: Rect) -> Option<Tile> {
         let mut pixels = vec![[0u8; 4]; TILE_AREA];
         let ImageScratch { positions, patches, bilinear, antialias } = scratch;
-        let Placed { margin, texels_from_canvas } = self.placed(scene, area, texture.size(), positions);
+        let ImageLookup { margin, texels_from_canvas } = self.placed(scene, area, texture.size(), positions);
         let width = area.width();
         // Tiles begin at the canvas's corner, so an area does at its tile's.
         let first = |y: i32| (y - area.y0) as usize * TILE;
@@ -186,7 +186,7 @@ impl PlacedImage {
     }
     /// Where each pixel of an area is read of a texture of this size: `positions` in texels, of the area grown by the
     /// margin.
-    fn placed(&self, scene: &Scene, area: Rect, texture: Size, positions: &mut DeformedRect) -> Placed {
+    fn placed(&self, scene: &Scene, area: Rect, texture: Size, positions: &mut DeformedRect) -> ImageLookup {
         let texels_from_frame = self.placement.texels_from_canvas(scene.size, texture);
         let deformation = Deformation::new(scene.surface.as_deref(), scene.size, &self.bend);
         let deformation = deformation.about(BentFrame::origin(&self.frame));
@@ -201,12 +201,12 @@ impl PlacedImage {
         } else if texels_from_canvas != Affine2::IDENTITY {
             transform(texels_from_canvas, &mut positions.x, &mut positions.y);
         }
-        Placed { margin, texels_from_canvas }
+        ImageLookup { margin, texels_from_canvas }
     }
 }
 
 /// How P⁻¹(D(q)) of an area is read.
-struct Placed {
+struct ImageLookup {
     /// 1 where each pixel is averaged over its patch, 0 where the picture is read at its centre.
     margin: i32,
     texels_from_canvas: Affine2,

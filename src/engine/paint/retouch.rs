@@ -65,7 +65,7 @@ struct DabQueue {
     waiting: VecDeque<Dab>,
     before: Option<Dab>,
     /// Paint that was taken up.
-    held: pickup::Held,
+    held: pickup::PickedUpPaint,
 }
 
 /// A dab on a tile: which pixels, and how much of each.

@@ -55,7 +55,7 @@ impl Rim {
 }
 
 /// Rims by the flow of dabs, at even steps from 0 to 1.
-pub struct Rims([Rim; STEPS + 1]);
+pub struct RimTable([Rim; STEPS + 1]);
 
 const STEPS: usize = 10;
 /// Depths at which coverage is found, denser toward the rim, and places along a stroke that are added up.
@@ -66,9 +66,9 @@ const RISEN: [f32; 3] = [0.2, 0.5, 0.8];
 
 /// Cached rims: more than one painting uses.
 const KEPT: usize = 64;
-static MADE: Mutex<Vec<([u32; 4], Arc<Rims>)>> = Mutex::new(Vec::new());
+static MADE: Mutex<Vec<([u32; 4], Arc<RimTable>)>> = Mutex::new(Vec::new());
 
-impl Rims {
+impl RimTable {
     /// `None` where the dabs of a stroke do not end along one line: those that are scattered, of pictures, of other
     /// programs' profile (which then paint as they do there), and those that work on paint one by one.
     pub fn of(brush: &Brush) -> Option<Arc<Self>> {
@@ -141,7 +141,7 @@ mod tests {
     fn pixel(brush: &Brush, y: f32) -> (f32, f32) {
         let (radius, step) = (0.5 * brush.size, (brush.spacing * brush.size).max(0.1));
         let profile = RoundProfile::new(brush.hardness, brush.softness);
-        let rim = Rims::of(brush).unwrap().at(brush.flow);
+        let rim = RimTable::of(brush).unwrap().at(brush.flow);
         let dabs = || (0..).map(|i| -radius - 2.0 + step * i as f32).take_while(|x| *x < radius + 2.0);
         const SIDE: usize = 16;
         let place = |i: usize| (i as f32 + 0.5) / SIDE as f32 - 0.5;
@@ -196,7 +196,7 @@ mod tests {
     fn soft_and_faint_dabs_reach_whole_pixels() {
         for (hardness, flow) in [(0.0, 1.0), (0.5, 0.5), (0.95, 0.1)] {
             let brush = Brush { size: 40.0, hardness, flow, ..Brush::default() };
-            let rim = Rims::of(&brush).unwrap().at(flow);
+            let rim = RimTable::of(&brush).unwrap().at(flow);
             assert!((0..60).all(|i| rim.share(i as f32 * 0.02, 0.05) == 1.0), "{hardness} {flow}: {rim:?}");
         }
         assert_eq!((Rim::SOFT.share(0.99, 0.1), Rim::SOFT.share(f32::NAN, 0.0)), (1.0, 1.0));
@@ -204,17 +204,17 @@ mod tests {
     #[test]
     fn what_strays_or_comes_from_elsewhere_has_no_edge() {
         let plain = Brush::default();
-        assert!(Rims::of(&plain).is_some());
+        assert!(RimTable::of(&plain).is_some());
         let wet = crate::paint::BrushMode::Smudge { length: 0.5 };
         for brush in [
             Brush { scatter: 0.5, ..plain.clone() },
             Brush { falloff: Falloff::Peaked, ..plain.clone() },
             Brush { mode: wet, ..plain.clone() },
         ] {
-            assert!(Rims::of(&brush).is_none());
+            assert!(RimTable::of(&brush).is_none());
         }
         let bad = Brush { hardness: f32::NAN, spacing: f32::NAN, flow: f32::NAN, ..plain };
-        let rim = Rims::of(&bad).unwrap().at(f32::NAN);
+        let rim = RimTable::of(&bad).unwrap().at(f32::NAN);
         assert!(rim.edge.is_finite() && rim.width >= 0.0);
     }
 }

@@ -17,7 +17,7 @@ use super::scene::Scene;
 use super::selection::StrokeSelection;
 use super::stroke_tile::StrokeBlend;
 use crate::math::{Rect, Vec2, srgb::Color};
-use crate::memory::Kept;
+use crate::memory::CacheReservation;
 use crate::raster::{PlanarTile, Tile, TileAt};
 use crate::surface::Operator;
 use crate::surface::objects::CanvasPart;
@@ -42,7 +42,7 @@ pub struct Stroke {
 /// What was computed of a stroke on a canvas.
 #[derive(Default)]
 struct StrokeCache {
-    stroke_dabs: Option<(Arc<StrokeDabs>, Kept)>,
+    stroke_dabs: Option<(Arc<StrokeDabs>, CacheReservation)>,
     support: Option<Arc<TileReach>>,
     /// Bounds that were known before the dabs: active strokes know theirs.
     bounds: Option<(Scene, Rect)>,
@@ -147,7 +147,7 @@ impl StrokeCache {
         // Gives back what it held before it asks.
         self.stroke_dabs = None;
         self.support = Some(Arc::new(stroke_dabs.support()));
-        self.stroke_dabs = Kept::try_new(stroke_dabs.bytes()).map(|kept| (stroke_dabs.clone(), kept));
+        self.stroke_dabs = CacheReservation::try_new(stroke_dabs.bytes()).map(|kept| (stroke_dabs.clone(), kept));
     }
 }
 

@@ -73,7 +73,7 @@ pub fn blank(value: u8) -> Box<[u8; TILE_AREA]> {
 crate::named! {
     /// How a new selection meets the one there is.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
-    pub enum Combine {
+    pub enum SelectionMode {
         #[default]
         Replace = "replace",
         Add = "add",
@@ -82,16 +82,16 @@ crate::named! {
     }
 }
 
-impl Combine {
+impl SelectionMode {
     /// Of one pixel: the larger, what is left, the smaller. Adding or intersecting the same again changes nothing, and
     /// taking the same away leaves nothing, soft edges too.
     #[inline(always)]
     pub fn of(self, old: u8, new: u8) -> u8 {
         match self {
-            Combine::Replace => new,
-            Combine::Add => old.max(new),
-            Combine::TakeAway => old.saturating_sub(new),
-            Combine::Intersect => old.min(new),
+            SelectionMode::Replace => new,
+            SelectionMode::Add => old.max(new),
+            SelectionMode::TakeAway => old.saturating_sub(new),
+            SelectionMode::Intersect => old.min(new),
         }
     }
 }

@@ -99,7 +99,7 @@ impl Lattice {
     pub fn at(&self, q: Vec2) -> Displaced {
         let cell = q / CELL as f32;
         let first = cell.floor();
-        let (x, y) = (Cubic::at(cell.x - first.x), Cubic::at(cell.y - first.y));
+        let (x, y) = (NodeWeights::at(cell.x - first.x), NodeWeights::at(cell.y - first.y));
         let (i, j) = (first.x as i32, first.y as i32);
         let (mut by, mut right, mut down) = (Vec2::ZERO, Vec2::ZERO, Vec2::ZERO);
         for (k, row) in (j.saturating_sub(1)..).take(4).enumerate() {
@@ -136,7 +136,7 @@ impl Lattice {
     /// the tile shows itself. The same as [`Lattice::at`], along rows.
     pub fn on_tile(&self, at: TileAt) -> Option<TilePoints> {
         let nodes = self.around(at)?;
-        let phases: [Cubic; CELL] = std::array::from_fn(|k| Cubic::at((k as f32 + 0.5) / CELL as f32));
+        let phases: [NodeWeights; CELL] = std::array::from_fn(|k| NodeWeights::at((k as f32 + 0.5) / CELL as f32));
         // Turned about: of each weight those of all phases side by side.
         let value: [[f32; CELL]; 4] = std::array::from_fn(|i| std::array::from_fn(|k| phases[k].value[i]));
         let slope: [[f32; CELL]; 4] = std::array::from_fn(|i| std::array::from_fn(|k| phases[k].slope[i]));
@@ -223,12 +223,12 @@ fn held(u: Vec2) -> Vec2 {
 }
 
 /// The weights of four nodes at a share of the way from the second to the third, and their slopes, per px.
-struct Cubic {
+struct NodeWeights {
     value: [f32; 4],
     slope: [f32; 4],
 }
 
-impl Cubic {
+impl NodeWeights {
     fn at(t: f32) -> Self {
         let (t2, t3) = (t * t, t * t * t);
         let value = [

@@ -21,7 +21,7 @@ pub mod warp;
 
 pub use asset::Asset;
 pub use blend::{BlendMode, Mix, TileCoverage, TilePaint};
-pub use coverage::{Combine, CoverageGrid, CoverageTile};
+pub use coverage::{CoverageGrid, CoverageTile, SelectionMode};
 pub use grid::TileGrid;
 pub use lattice::Lattice;
 pub use picture::Picture;

@@ -15,7 +15,7 @@ mod window;
 pub use points::PointRow;
 use source::{GridSource, PixelSource, PlaneSource};
 pub use tile_map::{TileMap, TilePoints};
-use window::Window;
+use window::SourceWindow;
 
 use super::tile::{TILE, Tile, TileAt, transparent_f32};
 use super::{Plane, TileGrid};
@@ -192,8 +192,9 @@ impl<S: PixelSource> Warp<'_, S> {
             }
             return;
         }
-        let window = Window { rect: wanted, pixels: self.source.read(wanted), continues: self.source.continues() };
-        let (mut points, mut scratch) = (Box::<PointRow>::default(), Box::<rows::Scratch>::default());
+        let window =
+            SourceWindow { rect: wanted, pixels: self.source.read(wanted), continues: self.source.continues() };
+        let (mut points, mut scratch) = (Box::<PointRow>::default(), Box::<rows::WarpScratch>::default());
         let mut out = [[0.0; 4]; TILE];
         for y in block.y0..block.y1 {
             self.map.source_row(block.x0, y, block.width(), &mut points);

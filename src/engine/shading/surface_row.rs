@@ -26,11 +26,11 @@ pub struct SurfaceRow<'a> {
     /// Camera space: right, up, to the viewer.
     pub normal: [RowValues; 3],
     /// Where the surface is seen from near by.
-    near: Option<Box<NearView>>,
+    near: Option<Box<PerspectiveRow>>,
 }
 
 /// A row seen from a point: every pixel from a direction of its own.
-struct NearView {
+struct PerspectiveRow {
     /// v, camera space.
     view: [RowValues; 3],
     /// n in the frame of v.
@@ -55,7 +55,7 @@ impl<'a> SurfaceRow<'a> {
     /// The row of a tile that begins at canvas pixel (x0, y); `width` pixels of it lie on the canvas.
     pub fn new(surface: &'a Surface, features: &'a FeatureMap, x0: usize, y: usize, width: usize) -> Self {
         let normal = [[0.0; TILE], [0.0; TILE], [1.0; TILE]];
-        let near = (surface.eye() != Eye::Afar).then(|| Box::new(NearView { view: normal, normal }));
+        let near = (surface.eye() != Eye::Afar).then(|| Box::new(PerspectiveRow { view: normal, normal }));
         let mut surface_row = Self { surface, features, x0, y, width, normal, near };
         surface_row.move_to(y);
         surface_row

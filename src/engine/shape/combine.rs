@@ -109,13 +109,13 @@ impl Relief {
                 let fy = (rect.y0 - form.corner.1) as usize + row;
                 for x in rect.x0 as usize..rect.x1 as usize {
                     let fx = (x as i32 - form.corner.0) as usize;
-                    let above = Texel {
+                    let above = FormTexel {
                         height: form.height.at(fx, fy) + offset,
                         normal: form.normals.at(fx, fy),
                         coverage: form.coverage.at(fx, fy),
                         id,
                     };
-                    let beneath = Texel { height: heights[x], normal: normals[x], coverage: covers[x], id: ids[x] };
+                    let beneath = FormTexel { height: heights[x], normal: normals[x], coverage: covers[x], id: ids[x] };
                     if above.coverage > 0 {
                         let met = beneath.met_by(above, combine);
                         (heights[x], normals[x], covers[x], ids[x]) = (met.height, met.normal, met.coverage, met.id);
@@ -212,15 +212,15 @@ impl Relief {
 
 /// What stands at one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Texel {
+struct FormTexel {
     height: f32,
     normal: Vec3,
     coverage: u8,
     id: u32,
 }
 
-impl Texel {
-    fn met_by(self, above: Texel, combine: Combine) -> Texel {
+impl FormTexel {
+    fn met_by(self, above: FormTexel, combine: Combine) -> FormTexel {
         let both = 255 - (255 - u32::from(self.coverage)) * (255 - u32::from(above.coverage)) / 255;
         let coverage = both as u8;
         if self.coverage == 0 {
@@ -229,26 +229,26 @@ impl Texel {
         }
         match combine {
             // Where a part covers less than half of a pixel, what lies beneath is seen.
-            Combine::Over if above.coverage < 128 => Texel { coverage, ..self },
-            Combine::Over => Texel { coverage, ..above },
-            Combine::Join if above.coverage < 128 => Texel { coverage, ..self },
-            Combine::Join => Texel { coverage, ..above },
+            Combine::Over if above.coverage < 128 => FormTexel { coverage, ..self },
+            Combine::Over => FormTexel { coverage, ..above },
+            Combine::Join if above.coverage < 128 => FormTexel { coverage, ..self },
+            Combine::Join => FormTexel { coverage, ..above },
             Combine::Union { smooth } => {
                 let (height, share) = smooth_max(self.height, above.height, smooth);
                 let id = if share < 0.5 { above.id } else { self.id };
-                Texel { height, normal: between(self.normal, above.normal, share), coverage, id }
+                FormTexel { height, normal: between(self.normal, above.normal, share), coverage, id }
             }
             Combine::Add => self.sum(above, 1.0),
             Combine::Cut => self.sum(above, -1.0),
         }
     }
     /// Heights and slopes added, the part's taken `sign` times.
-    fn sum(self, above: Texel, sign: f32) -> Texel {
+    fn sum(self, above: FormTexel, sign: f32) -> FormTexel {
         let (a, b) = (self.normal, above.normal);
         // A wall that is added stays steep, but not so that nothing else is seen.
         let (az, bz) = (a.z.max(0.02), b.z.max(0.02));
         let normal = vec3(a.x * bz + sign * b.x * az, a.y * bz + sign * b.y * az, az * bz).normalize_or(Vec3::Z);
-        Texel { height: self.height + sign * above.height, normal, ..self }
+        FormTexel { height: self.height + sign * above.height, normal, ..self }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Forms: heights and normals of one part, as every algorithm of this floor gives them.
 //! Floor 3. How forms meet is `combine`'s.
 
-use super::{Outline, Rim};
+use super::{Outline, OutlineRim};
 use crate::math::{Affine2, Mat2, Rect, Size, Vec2, Vec3, vec2, vec3};
 use crate::raster::Plane;
 use rayon::prelude::*;
@@ -33,7 +33,7 @@ impl Form {
     /// With puff p and a constant k that flattens the rim, n ∝ (−p² ∂q/∂x, p² ∂q/∂y, 2 p √q + k): exact at the rim,
     /// where n_z = 0 for k = 0. k is such that the rim turns by `rim_deg` in the mean. The heights whose slopes these
     /// are: p√q − k/2 ln(1 + 2p√q / k).
-    pub fn of_squares(outline: &Outline, squares: &Plane<f32>, rim: &Rim, round: Roundness) -> Self {
+    pub fn of_squares(outline: &Outline, squares: &Plane<f32>, rim: &OutlineRim, round: Roundness) -> Self {
         let flat = flattening(outline, squares, rim, round);
         let (sin, cos) = round.rim_deg.to_radians().sin_cos();
         let (size, inside) = (outline.size(), outline.inside());
@@ -199,7 +199,7 @@ pub fn slope_within(plane: &Plane<f32>, covered: &impl Fn(i32, i32) -> bool, x: 
 }
 
 /// k of [`Form::of_squares`]: 0 for a silhouette, else what gives the mean slope of the rim its angle.
-fn flattening(outline: &Outline, squares: &Plane<f32>, rim: &Rim, round: Roundness) -> f32 {
+fn flattening(outline: &Outline, squares: &Plane<f32>, rim: &OutlineRim, round: Roundness) -> f32 {
     if round.rim_deg >= 90.0 {
         return 0.0;
     }

@@ -1,7 +1,7 @@
 //! Inflation: the pillow over an outline, z = √u with −∇²u = 4 inside and u = 0 at the rim.
 //! Floor 3. What is made of u (puff, rim, normals) is `form`'s; limbs that shall not be fat are `tube`'s.
 
-use super::{Outline, Rim};
+use super::{Outline, OutlineRim};
 use crate::math::Size;
 use crate::raster::Plane;
 
@@ -14,7 +14,7 @@ const MOST_UNKNOWNS: usize = 1 << 24;
 /// u, px², over the planes of an outline: 0 outside, −∇²u = 4 inside (SHAPE: inflation).
 ///
 /// A disc of radius R gives R² − r² and so half a sphere; a strip of half width w gives 2(w² − x²).
-/// * `joined`: as [`Rim::joined`] has it.
+/// * `joined`: as [`OutlineRim::joined`] has it.
 /// * `start`: the u of an outline that was nearly the same, of the same size.
 ///
 /// `≥ 0`, finite.
@@ -22,7 +22,7 @@ pub fn inflate(outline: &Outline, joined: Option<&Plane<bool>>, start: Option<&P
     if outline.size().area() > MOST_UNKNOWNS && joined.is_none() {
         return doubled(&inflate_halved(outline), outline);
     }
-    let rim = Rim::of(outline, joined);
+    let rim = OutlineRim::of(outline, joined);
     let inside = outline.inside();
     let source = inside.map(|i| if i { 4.0 } else { 0.0 });
     let u = rim.equation(|_, _| 0.0).solve(&source, start, GOAL);

@@ -4,7 +4,7 @@
 //! and spread over the form; across the ink nothing is passed on, so that the back is not drawn along by the front.
 
 use super::touches::{lifted, spread_within, with_normals};
-use super::{Form, Outline, Rim};
+use super::{Form, Outline, OutlineRim};
 use crate::math::{Range, Vec2, vec2};
 use crate::raster::Plane;
 
@@ -93,7 +93,7 @@ pub fn lined(form: &Form, outline: &Outline, ink: &Plane<u8>, lines: Lines) -> F
     let wanted = Plane::from_fn(size, |x, y| asked.at(x, y).map_or(Vec2::ZERO, |asked| asked - bar.at(x, y)));
     let cut = outline.without(&inked);
     let reach = if lines.reach > 0.0 { lines.reach } else { f32::INFINITY };
-    let delta = filled(spread_within(&Rim::joined(&cut, &inked), &held, &wanted, reach), &inked, inside);
+    let delta = filled(spread_within(&OutlineRim::joined(&cut, &inked), &held, &wanted, reach), &inked, inside);
     let normals = Plane::from_fn(size, |x, y| {
         let n = form.normals.at(x, y);
         if inside.at(x, y) { lifted(bar.at(x, y) + delta.at(x, y)) } else { n }

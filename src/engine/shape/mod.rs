@@ -30,7 +30,7 @@ pub use lines::{LineForm, Lines};
 pub use outline::Outline;
 pub use primitive::{Body, Primitive};
 pub use relief::Detail;
-pub use rim::Rim;
+pub use rim::OutlineRim;
 pub use sculpt::{SculptStroke, SculptTool, Sculpting};
 pub use sweep::Ball;
 pub use touches::{Touch, Touching};

@@ -19,8 +19,8 @@ impl RimDistance {
     pub fn of(outline: &Outline) -> Self {
         Self::silhouette_of(outline, None)
     }
-    /// As [`RimDistance::of`], of the rim that is not toward pixels of `joined` (as `Rim::joined` has it). Without any
-    /// other, no pixel is farther from it than the plane is long.
+    /// As [`RimDistance::of`], of the rim that is not toward pixels of `joined` (as `OutlineRim::joined` has it).
+    /// Without any other, no pixel is farther from it than the plane is long.
     pub fn silhouette_of(outline: &Outline, joined: Option<&Plane<bool>>) -> Self {
         let inside = outline.inside();
         let joined = joined.filter(|joined| joined.size() == outline.size());

@@ -112,21 +112,21 @@ impl Primitive {
         })
     }
     /// What one pixel shows: its centre, or the mean of what of it is covered.
-    fn texel(&self, turn: Mat3, corner: Vec2) -> Texel {
+    fn texel(&self, turn: Mat3, corner: Vec2) -> PrimitiveTexel {
         const SIDE: usize = 8;
         let middle = self.seen(turn, corner + 0.5);
         let ends = [vec2(0.0, 0.0), vec2(1.0, 0.0), vec2(0.0, 1.0), vec2(1.0, 1.0)];
         let hits = ends.iter().filter(|e| self.seen(turn, corner + **e).is_some()).count();
-        let texel = |(height, normal), coverage| Texel { height, normal, coverage };
+        let texel = |(height, normal), coverage| PrimitiveTexel { height, normal, coverage };
         match (middle, hits) {
             (Some(middle), 4) => texel(middle, 255),
-            (None, 0) => Texel::default(),
+            (None, 0) => PrimitiveTexel::default(),
             _ => {
                 let part = |i: usize| (i as f32 + 0.5) / SIDE as f32;
                 let at = |i: usize| self.seen(turn, corner + vec2(part(i % SIDE), part(i / SIDE)));
                 let seen: Vec<_> = (0..SIDE * SIDE).filter_map(at).collect();
                 if seen.is_empty() {
-                    return Texel::default();
+                    return PrimitiveTexel::default();
                 }
                 let coverage = (seen.len() * 255).div_ceil(SIDE * SIDE) as u8;
                 let mean = || {
@@ -140,13 +140,13 @@ impl Primitive {
 }
 
 #[derive(Clone, Copy)]
-struct Texel {
+struct PrimitiveTexel {
     height: f32,
     normal: Vec3,
     coverage: u8,
 }
 
-impl Default for Texel {
+impl Default for PrimitiveTexel {
     fn default() -> Self {
         Self { height: 0.0, normal: Vec3::Z, coverage: 0 }
     }

@@ -8,7 +8,7 @@ use crate::math::{Mat3, Size, Vec3, vec2, vec3};
 use crate::raster::Plane;
 
 /// One shading of the drawing.
-pub struct Profile {
+pub struct ShadedDrawing {
     /// Linear light, `[0, 1]`.
     pub grey: Plane<f32>,
     /// Unit, toward the light, camera space (y up).
@@ -34,7 +34,7 @@ const CLIPPED: (f32, f32) = (0.0016, 0.9984);
 ///
 /// With two shadings n is the nearest to the viewer of those that both allow (the third equation is n·z ≥ 0, held
 /// faintly). `None` where the planes differ in size or there are fewer than two or more than five.
-pub fn normals_from_profiles(profiles: &[Profile]) -> Option<ProfileNormals> {
+pub fn normals_from_profiles(profiles: &[ShadedDrawing]) -> Option<ProfileNormals> {
     let size = profiles.first()?.grey.size();
     let fits = (2..=MOST_PROFILES).contains(&profiles.len()) && profiles.iter().all(|p| p.grey.size() == size);
     if !fits {
@@ -49,12 +49,12 @@ pub fn normals_from_profiles(profiles: &[Profile]) -> Option<ProfileNormals> {
 }
 
 /// ρn and the residual at a pixel; zero where it is not told.
-fn solved(profiles: &[Profile], x: usize, y: usize) -> (Vec3, f32) {
-    let told = |p: &&Profile| {
+fn solved(profiles: &[ShadedDrawing], x: usize, y: usize) -> (Vec3, f32) {
+    let told = |p: &&ShadedDrawing| {
         let grey = p.grey.at(x, y);
         grey > CLIPPED.0 && grey < CLIPPED.1
     };
-    let used: Vec<&Profile> = profiles.iter().filter(told).collect();
+    let used: Vec<&ShadedDrawing> = profiles.iter().filter(told).collect();
     if used.len() < profiles.len().min(3) {
         return (Vec3::ZERO, 0.0);
     }
@@ -83,7 +83,7 @@ fn solved(profiles: &[Profile], x: usize, y: usize) -> (Vec3, f32) {
 /// nothing (all but two are clipped) the form goes on as beside it. `None` as of [`normals_from_profiles`].
 ///
 /// The planes of the shadings are those of the outline.
-pub fn formed(profiles: &[Profile], outline: &Outline) -> Option<Form> {
+pub fn formed(profiles: &[ShadedDrawing], outline: &Outline) -> Option<Form> {
     let (found, inside) = (normals_from_profiles(profiles)?, outline.inside());
     if found.normals.size() != inside.size() {
         return None;
@@ -112,7 +112,7 @@ pub fn formed(profiles: &[Profile], outline: &Outline) -> Option<Form> {
 }
 
 /// The size of all shadings; `None` where there are none.
-pub fn size_of(profiles: &[Profile]) -> Option<Size> {
+pub fn size_of(profiles: &[ShadedDrawing]) -> Option<Size> {
     profiles.first().map(|p| p.grey.size())
 }
 
@@ -132,8 +132,8 @@ mod tests {
     fn five_shadings_of_a_ball_give_its_normals_back_and_shadows_hardly_harm_them() {
         let ball = Primitive::new(Body::Sphere, vec2(60.0, 60.0), 55.0).form(1 << 16).unwrap();
         let shaded =
-            |light: Vec3| Profile { grey: ball.normals.map(|n| (0.8 * n.dot(light)).max(0.0).min(1.0)), light };
-        let profiles: Vec<Profile> = lights().into_iter().map(shaded).collect();
+            |light: Vec3| ShadedDrawing { grey: ball.normals.map(|n| (0.8 * n.dot(light)).max(0.0).min(1.0)), light };
+        let profiles: Vec<ShadedDrawing> = lights().into_iter().map(shaded).collect();
         let found = normals_from_profiles(&profiles).unwrap();
         let (mut clear, mut shadowed) = (Vec::new(), Vec::new());
         for (i, n) in ball.normals.values().iter().enumerate() {
@@ -153,9 +153,9 @@ mod tests {
     fn a_shading_that_contradicts_the_others_shows_in_the_residual() {
         let size = Size::new(4, 4);
         let n = vec3(0.3, 0.2, 0.9).normalize();
-        let mut profiles: Vec<Profile> = lights()
+        let mut profiles: Vec<ShadedDrawing> = lights()
             .into_iter()
-            .map(|light| Profile { grey: Plane::filled(size, 0.7 * n.dot(light)), light })
+            .map(|light| ShadedDrawing { grey: Plane::filled(size, 0.7 * n.dot(light)), light })
             .collect();
         profiles[0].grey.set(2, 2, 0.9);
         let found = normals_from_profiles(&profiles).unwrap();

@@ -10,7 +10,7 @@ use crate::raster::Plane;
 const STEPS: [(i32, i32); 4] = [(1, 0), (-1, 0), (0, 1), (0, -1)];
 
 /// An outline, and which pieces of its rim hold a field at 0.
-pub struct Rim<'a> {
+pub struct OutlineRim<'a> {
     outline: &'a Outline,
     /// Outside pixels toward which the rim is free.
     joined: Option<&'a Plane<bool>>,
@@ -21,7 +21,7 @@ pub struct Equation {
     solver: Solver,
 }
 
-impl<'a> Rim<'a> {
+impl<'a> OutlineRim<'a> {
     /// A silhouette all around: the field is 0 there.
     pub fn silhouette(outline: &'a Outline) -> Self {
         Self { outline, joined: None }

@@ -127,7 +127,7 @@ impl Sculpting {
                 self.first = SculptPlane::under(form, &self.layer, dab.0 - corner, 0.5 * stroke.size);
             }
             for (at, pressure) in &dabs[self.dabs.min(dabs.len())..] {
-                let dab = Dab { center: *at - corner, radius: 0.5 * stroke.size, stroke, pressure: *pressure };
+                let dab = SculptDab { center: *at - corner, radius: 0.5 * stroke.size, stroke, pressure: *pressure };
                 dab.press(form, &mut self.layer, self.first);
             }
             self.dabs = dabs.len();
@@ -175,14 +175,14 @@ fn pixels_of(form: &Form, center: Vec2, radius: f32) -> impl Iterator<Item = (Ve
     })
 }
 
-struct Dab<'a> {
+struct SculptDab<'a> {
     center: Vec2,
     radius: f32,
     stroke: &'a SculptStroke,
     pressure: f32,
 }
 
-impl Dab<'_> {
+impl SculptDab<'_> {
     /// Coverage at a distance from the middle: whole up to the hardness, then falling smoothly.
     fn coverage(&self, distance: f32) -> f32 {
         let hard = self.stroke.hardness.min(0.99);

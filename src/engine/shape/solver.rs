@@ -51,7 +51,7 @@ impl Solver {
         grid.fill(&mut residual, |y, out| left_over(grid.springs(y), grid.around(&v, y), grid.row(b, y), out));
         let goal = dots(w, b, b) * goal;
         let (mut direction, mut pulled, mut rz_before) = (buffer(), buffer(), 0.0);
-        let mut scratch = Scratch::default();
+        let mut scratch = SolverBuffers::default();
         for step in 0..MOST_STEPS {
             let left = dots(w, &residual, &residual);
             if left.is_nan() || left <= goal {
@@ -82,7 +82,7 @@ impl Solver {
     }
     /// The coarser grid's solution, itself begun on the one below, read between its blocks and corrected once.
     fn nested(&self, at: usize, b: &[f32]) -> Vec<f32> {
-        let mut scratch = Scratch::default();
+        let mut scratch = SolverBuffers::default();
         let grid = &self.levels[at];
         let Some(below) = self.levels.get(at + 1) else { return self.cycle(at, b, &mut scratch) };
         let mut rest = filled_or_unwind(below.w * below.h, 0.0);
@@ -97,7 +97,7 @@ impl Solver {
         v
     }
     /// One symmetric V-cycle: an approximate solution of A v = b on a level.
-    fn cycle(&self, at: usize, b: &[f32], scratch: &mut Scratch) -> Vec<f32> {
+    fn cycle(&self, at: usize, b: &[f32], scratch: &mut SolverBuffers) -> Vec<f32> {
         let grid = &self.levels[at];
         let (mut v, mut twin) = (scratch.take(b.len()), scratch.take(b.len()));
         grid.fill(&mut twin, |y, out| {
@@ -171,9 +171,9 @@ fn between_blocks(grid: &Level, below: &Level, coarse: &[f32], y: usize, out: &m
 
 /// Buffers that are used again, zero where no unknown is.
 #[derive(Default)]
-struct Scratch(Vec<Vec<f32>>);
+struct SolverBuffers(Vec<Vec<f32>>);
 
-impl Scratch {
+impl SolverBuffers {
     fn take(&mut self, len: usize) -> Vec<f32> {
         match self.0.iter().position(|buffer| buffer.len() == len) {
             Some(at) => self.0.swap_remove(at),

@@ -10,7 +10,7 @@ use crate::raster::Plane;
 const SILHOUETTE: Roundness = Roundness { puff: 1.0, rim_deg: 90.0 };
 
 fn pillow(outline: &Outline) -> Form {
-    Form::of_squares(outline, &inflate(outline, None, None), &Rim::silhouette(outline), SILHOUETTE)
+    Form::of_squares(outline, &inflate(outline, None, None), &OutlineRim::silhouette(outline), SILHOUETTE)
 }
 
 /// Canvas px of the centre of a pixel of a form.
@@ -69,7 +69,8 @@ fn an_ellipse_rises_to_its_apex_and_a_strip_to_root_two_or_as_a_tube_to_its_half
     };
     let fat = across(&pillow(&strip));
     assert!((fat / (2.0f32.sqrt() * w) - 1.0).abs() < 0.005, "{fat}");
-    let limb = across(&Form::of_squares(&strip, &tube(&strip, None, None), &Rim::silhouette(&strip), SILHOUETTE));
+    let limb =
+        across(&Form::of_squares(&strip, &tube(&strip, None, None), &OutlineRim::silhouette(&strip), SILHOUETTE));
     println!("strip of half width {w}: pillow {fat}, tube {limb}");
     assert!((limb / w - 1.0).abs() < 0.015, "{limb} and not {w}");
 }
@@ -117,7 +118,7 @@ fn turning_shifting_and_scaling_an_outline_does_so_to_its_normals() {
     let (still, turned) = (creature(300.0, 0.0, Vec2::ZERO), creature(300.0, turn, shift));
     let map = |p: Vec2| Vec2::from_angle(turn).rotate(p - 150.0) + 150.0 + shift;
     let (small, large) = (creature(256.0, 0.0, Vec2::ZERO), creature(1024.0, 0.0, Vec2::ZERO));
-    let tubes = |o: &Outline| Form::of_squares(o, &tube(o, None, None), &Rim::silhouette(o), SILHOUETTE);
+    let tubes = |o: &Outline| Form::of_squares(o, &tube(o, None, None), &OutlineRim::silhouette(o), SILHOUETTE);
     let by_turn = apart(&pillow(&still), &pillow(&turned), map, turn);
     let by_scale = apart(&pillow(&small), &pillow(&large), |p| p * 4.0, 0.0);
     let of_tubes = apart(&tubes(&still), &tubes(&turned), map, turn);
@@ -131,7 +132,7 @@ fn normals_are_the_slopes_of_heights() {
     let outline = creature(300.0, 0.2, Vec2::ZERO);
     let u = inflate(&outline, None, None);
     for round in [SILHOUETTE, Roundness { puff: 0.5, rim_deg: 90.0 }, Roundness { puff: 1.3, rim_deg: 40.0 }] {
-        let form = Form::of_squares(&outline, &u, &Rim::silhouette(&outline), round).tilted(vec2(5.0, -9.0));
+        let form = Form::of_squares(&outline, &u, &OutlineRim::silhouette(&outline), round).tilted(vec2(5.0, -9.0));
         let mut angles = Vec::new();
         let (mut curl, mut count) = (0.0f64, 0);
         for (x, y) in pixels(outline.size()).filter(|&(x, y)| u.at(x, y) > 400.0) {
@@ -159,7 +160,8 @@ fn normals_are_the_slopes_of_heights() {
 fn a_low_rim_turns_by_its_angle_in_the_mean() {
     let outline = Outline::of_path(&ellipse(vec2(70.0, 70.0), Vec2::splat(60.0), 0.0, 4000), 1 << 20).unwrap();
     let u = inflate(&outline, None, None);
-    let form = Form::of_squares(&outline, &u, &Rim::silhouette(&outline), Roundness { puff: 0.8, rim_deg: 35.0 });
+    let form =
+        Form::of_squares(&outline, &u, &OutlineRim::silhouette(&outline), Roundness { puff: 0.8, rim_deg: 35.0 });
     let at_rim = pixels(outline.size())
         .filter(|&(x, y)| outline.inside().at(x, y) && (place(&form, x, y) - 70.0).length() > 59.5);
     let (mean, _) = mean_and_p99(at_rim.map(|(x, y)| angle_deg(form.normals.at(x, y), Vec3::Z)).collect());
@@ -194,7 +196,12 @@ fn a_thousand_outlines_give_unit_normals_and_the_same_bytes_on_one_and_two_threa
         let Some(outline) = Outline::new((3, -2), &random_mask(seed)) else { continue };
         let form = || {
             let squares = tube::blend(&inflate(&outline, None, None), &tube(&outline, None, None), 0.4);
-            Form::of_squares(&outline, &squares, &Rim::silhouette(&outline), Roundness { puff: 0.8, rim_deg: 70.0 })
+            Form::of_squares(
+                &outline,
+                &squares,
+                &OutlineRim::silhouette(&outline),
+                Roundness { puff: 0.8, rim_deg: 70.0 },
+            )
         };
         let (a, b) = (one.install(form), two.install(form));
         assert_eq!(a, b, "mask {seed}");
@@ -254,7 +261,7 @@ fn thousands_of_holes_combs_and_specks_make_a_form_without_nan() {
         let outline = Outline::new((0, 0), &plane).unwrap_or_else(|| panic!("{name}"));
         for profile in [0.0, 1.0] {
             let squares = if profile == 0.0 { inflate(&outline, None, None) } else { tube(&outline, None, None) };
-            let form = Form::of_squares(&outline, &squares, &Rim::silhouette(&outline), SILHOUETTE);
+            let form = Form::of_squares(&outline, &squares, &OutlineRim::silhouette(&outline), SILHOUETTE);
             assert!(form.height.values().iter().all(|z| z.is_finite()), "{name}, {profile}");
             assert!(form.normals.values().iter().all(|n| (n.length() - 1.0).abs() < 1e-5), "{name}, {profile}");
             let mut relief = Relief::empty(size);

@@ -2,7 +2,7 @@
 //! Floor 3. They are soft constraints on δ = n̄ wanted − n̄ there is: ∇²δ = 0 between them and δ = 0 at the rim, or
 //! within a reach ρ of each −∇²δ + δ/ρ² = 0.
 
-use super::{Form, Outline, Rim};
+use super::{Form, Outline, OutlineRim};
 use crate::math::{Range, Vec2, Vec3, vec2, vec3};
 use crate::raster::Plane;
 use crate::surface::integrate::{Following, depth_from_normals};
@@ -87,7 +87,7 @@ impl Touching {
         let at = self.steps.iter().position(|(known, _)| *known == reach);
         let known = at.map(|at| self.steps.swap_remove(at).1).filter(|known| known.size() == held.size());
         let start = known.map(|known| known.updated(|x, y, d| if held.at(x, y) { wanted.at(x, y) } else { d }));
-        let step = spread_from(&Rim::silhouette(outline), (held, wanted), reach, start.as_ref(), ROUGH_GOAL);
+        let step = spread_from(&OutlineRim::silhouette(outline), (held, wanted), reach, start.as_ref(), ROUGH_GOAL);
         self.steps.push((reach, step.clone()));
         step
     }
@@ -145,17 +145,17 @@ fn disc(inside: &Plane<bool>, center: Vec2, radius: f32) -> impl Iterator<Item =
 
 /// δ over the outline: what is wanted where it is held, 0 at the rim, smooth between.
 pub fn spread(outline: &Outline, held: &Plane<bool>, wanted: &Plane<Vec2>, reach: f32) -> Plane<Vec2> {
-    spread_within(&Rim::silhouette(outline), held, wanted, reach)
+    spread_within(&OutlineRim::silhouette(outline), held, wanted, reach)
 }
 
 /// The same within a rim that is free in part.
-pub fn spread_within(rim: &Rim, held: &Plane<bool>, wanted: &Plane<Vec2>, reach: f32) -> Plane<Vec2> {
+pub fn spread_within(rim: &OutlineRim, held: &Plane<bool>, wanted: &Plane<Vec2>, reach: f32) -> Plane<Vec2> {
     spread_from(rim, (held, wanted), reach, None, GOAL)
 }
 
 /// The same begun at a field that is nearly right.
 fn spread_from(
-    rim: &Rim,
+    rim: &OutlineRim,
     (held, wanted): (&Plane<bool>, &Plane<Vec2>),
     reach: f32,
     start: Option<&Plane<Vec2>>,
@@ -213,7 +213,7 @@ mod tests {
         });
         let outline = Outline::new((0, 0), &disc).unwrap();
         let round = Roundness { puff: 0.7, rim_deg: 90.0 };
-        let form = Form::of_squares(&outline, &inflate(&outline, None, None), &Rim::silhouette(&outline), round);
+        let form = Form::of_squares(&outline, &inflate(&outline, None, None), &OutlineRim::silhouette(&outline), round);
         let touch = |i: usize| Touch {
             at: vec2(60.0 + 9.0 * i as f32, 80.0 + 5.0 * (i % 3) as f32),
             radius: 4.0,

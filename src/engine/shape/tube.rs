@@ -2,7 +2,7 @@
 //! Floor 3. A strip rises to its half width here, not to √2 of it as in `inflate`.
 
 use super::nearest::{RimDistance, lower_envelope};
-use super::{Outline, Rim};
+use super::{Outline, OutlineRim};
 use crate::math::Size;
 use crate::raster::Plane;
 use rayon::prelude::*;
@@ -20,7 +20,7 @@ const LEAST_SMOOTHING_PX: f32 = 0.5;
 /// ball's radius. `joined` and `start` as for `inflate`.
 pub fn tube(outline: &Outline, joined: Option<&Plane<bool>>, start: Option<&Plane<f32>>) -> Plane<f32> {
     let reach = RimDistance::silhouette_of(outline, joined).distance;
-    let rim = Rim::of(outline, joined);
+    let rim = OutlineRim::of(outline, joined);
     let raw = balls(outline, &reach);
     let inside = outline.inside();
     let screen = |x: usize, y: usize| {

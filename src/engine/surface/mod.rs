@@ -53,7 +53,7 @@ use crate::math::{Size, Vec2, Vec3, srgb::quantise, vec2, vec3};
 use crate::raster::{CoverageGrid, Plane};
 use cache::RecentCache;
 use contours::{ContourMaps, Found, SheetOf};
-use curvature::{Kappa, Rims};
+use curvature::{CurvatureRims, Kappa};
 use pyramid::MapPyramids;
 use rayon::prelude::*;
 use region::SurfaceRegion;
@@ -104,7 +104,7 @@ pub struct Surface {
     /// By blur.
     curvatures: RecentCache<u32, Curvature>,
     /// Where curvature is continued.
-    rims: RecentCache<(), Rims>,
+    rims: RecentCache<(), CurvatureRims>,
     /// By the scales that are weighed.
     kappas: RecentCache<Vec<[u32; 3]>, Kappa>,
     /// The surface that detail was combined onto, if any; what depends on depth alone is computed there.

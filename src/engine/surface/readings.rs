@@ -88,7 +88,7 @@ impl Surface {
     pub(in crate::surface) fn curvatures(&self) -> &RecentCache<u32, Curvature> {
         &self.curvatures
     }
-    pub(in crate::surface) fn rims_cell(&self) -> &RecentCache<(), Rims> {
+    pub(in crate::surface) fn rims_cell(&self) -> &RecentCache<(), CurvatureRims> {
         &self.rims
     }
     pub(in crate::surface) fn kappas(&self) -> &RecentCache<Vec<[u32; 3]>, Kappa> {

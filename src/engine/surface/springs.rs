@@ -13,7 +13,7 @@ mod rows;
 
 use crate::memory::filled_or_unwind;
 use graph::SpringGraph;
-pub use held::Held;
+pub use held::PinStiffness;
 use rayon::prelude::*;
 use rows::{GridRow, relaxed_row, residual_row, start_row};
 
@@ -138,19 +138,19 @@ impl SpringSolver {
     /// * `b`: adds up to 0 over every piece.
     /// * `v`: where to begin; a constant a piece stays free.
     pub fn solve(&self, b: &[f32], v: &mut [f32], effort: Effort, scratch: &mut SolveScratch) -> usize {
-        self.solve_held(&Held::default(), b, v, effort, scratch)
+        self.solve_held(&PinStiffness::default(), b, v, effort, scratch)
     }
     /// The same while there is a reason to: `go_on` is asked before each step, and the answer is of no use once it says
     /// no.
     pub fn solve_while(&self, b: &[f32], v: &mut [f32], effort: Effort, go_on: GoOn) -> usize {
-        self.steps(&Held::default(), b, v, effort, &mut SolveScratch::default(), go_on)
+        self.steps(&PinStiffness::default(), b, v, effort, &mut SolveScratch::default(), go_on)
     }
     /// The same with some unknowns held: (A + K) v = b, K the stiffness of what holds them.
     ///
     /// * `b`: adds up to 0 over every piece of which nothing is held.
     pub fn solve_held(
         &self,
-        held: &Held,
+        held: &PinStiffness,
         b: &[f32],
         v: &mut [f32],
         effort: Effort,
@@ -160,7 +160,7 @@ impl SpringSolver {
     }
     fn steps(
         &self,
-        held: &Held,
+        held: &PinStiffness,
         b: &[f32],
         v: &mut [f32],
         effort: Effort,
@@ -204,7 +204,7 @@ impl SpringSolver {
         bands.iter().sum()
     }
     /// `out` = b − A v; returns its length, squared.
-    fn residual(&self, held: &Held, v: &[f32], b: &[f32], out: &mut [f32]) -> f64 {
+    fn residual(&self, held: &PinStiffness, v: &[f32], b: &[f32], out: &mut [f32]) -> f64 {
         let w = self.grid.w;
         let bands = out.par_chunks_mut(w * BAND).enumerate().map(|(band, out)| {
             for (y, out) in (band * BAND..).zip(out.chunks_mut(w)) {
@@ -216,7 +216,7 @@ impl SpringSolver {
         bands.collect::<Vec<f64>>().iter().sum()
     }
     /// `direction` = z + turn · direction and `pulled` = A direction; returns the two's product.
-    fn turned(&self, held: &Held, z: &[f32], turn: f32, direction: &mut [f32], pulled: &mut [f32]) -> f64 {
+    fn turned(&self, held: &PinStiffness, z: &[f32], turn: f32, direction: &mut [f32], pulled: &mut [f32]) -> f64 {
         let w = self.grid.w;
         direction.par_chunks_mut(w * BAND).zip(z.par_chunks(w * BAND)).for_each(|(d, z)| rows::turn(z, turn, d));
         let direction = &*direction;
@@ -243,7 +243,7 @@ impl SpringSolver {
         bands.collect::<Vec<f64>>().iter().sum()
     }
     /// One symmetric V-cycle: `z[0]` becomes an approximate solution of A z = b.
-    fn cycle(&self, held: &Held, b: &[f32], [z, twin]: &mut [Vec<f32>; 2], levels: &mut [graph::GraphScratch]) {
+    fn cycle(&self, held: &PinStiffness, b: &[f32], [z, twin]: &mut [Vec<f32>; 2], levels: &mut [graph::GraphScratch]) {
         let w = self.grid.w;
         let rows_of = |out: &mut [f32], each: &(dyn Fn(usize, &mut [f32]) + Sync)| {
             out.par_chunks_mut(w * BAND).enumerate().for_each(|(band, out)| {

@@ -204,10 +204,10 @@ struct TiffLayout {
     map: Vec<u16>,
 }
 
-type Refusal = &'static str;
+type TiffRefusal = &'static str;
 
 impl TiffLayout {
-    fn image(&self, values: DecodingResult) -> Result<DynamicImage, Refusal> {
+    fn image(&self, values: DecodingResult) -> Result<DynamicImage, TiffRefusal> {
         use DecodingResult::{F16, F32, F64, U8, U16, U32, U64};
         match values {
             U8(v) if self.bits < 8 => self.picture(self.unpacked(&v)),
@@ -234,7 +234,7 @@ impl TiffLayout {
         };
         packed.chunks(stride).flat_map(|row| (0..in_row).map(move |i| value(row, i))).collect()
     }
-    fn picture<T: TiffSample>(&self, values: Vec<T>) -> Result<DynamicImage, Refusal> {
+    fn picture<T: TiffSample>(&self, values: Vec<T>) -> Result<DynamicImage, TiffRefusal> {
         let pixels = self.gathered(&values).ok_or("this TIFF holds fewer samples than it promises")?;
         drop(values);
         let channels = self.channels();

@@ -11,7 +11,7 @@ use crate::paint::{Brush, Tip};
 use crate::psd::channel::{ChannelLayout, decode_as};
 use crate::psd::cursor::ByteCursor;
 use crate::psd::descriptor::{self, DescriptorObject};
-use crate::psd::pattern::{self, Pattern};
+use crate::psd::pattern::{self, PatternResource};
 use crate::raster::Picture;
 use crate::{Error, Result};
 use std::path::Path;
@@ -62,7 +62,7 @@ struct AbrReader<'a> {
     /// The keys of the sampled tips, if the version has them.
     keys: Vec<(String, usize)>,
     /// The pictures of the brushes' textures.
-    patterns: Vec<Pattern>,
+    patterns: Vec<PatternResource>,
     damaged: usize,
 }
 

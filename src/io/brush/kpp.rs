@@ -20,13 +20,13 @@ const KEYWORD: &str = "preset";
 
 /// The settings of a preset.
 #[derive(Default)]
-struct Preset {
+struct KppPreset {
     name: String,
     engine: String,
     settings: BTreeMap<String, String>,
 }
 
-impl Preset {
+impl KppPreset {
     fn text(&self, name: &str) -> &str {
         self.settings.get(name).map_or("", String::as_str)
     }
@@ -104,10 +104,10 @@ fn preset_text(file: &Path, bytes: &[u8]) -> Result<String> {
     found.ok_or_else(|| Error::decode(file, "it is a PNG without a Krita preset"))
 }
 
-fn preset(file: &Path, text: &str) -> Result<Preset> {
+fn preset(file: &Path, text: &str) -> Result<KppPreset> {
     let broken = |e: &dyn std::fmt::Display| Error::decode(file, format!("the settings are damaged: {e}"));
     let mut reader = Reader::from_str(text);
-    let mut preset = Preset::default();
+    let mut preset = KppPreset::default();
     let mut param: Option<String> = None;
     loop {
         match reader.read_event().map_err(|e| broken(&e))? {
@@ -133,7 +133,7 @@ fn preset(file: &Path, text: &str) -> Result<Preset> {
     }
 }
 
-fn append(preset: &mut Preset, param: &Option<String>, text: &str) {
+fn append(preset: &mut KppPreset, param: &Option<String>, text: &str) {
     if let Some(value) = param.as_ref().and_then(|name| preset.settings.get_mut(name)) {
         value.push_str(text.trim());
     }
@@ -159,7 +159,7 @@ fn element<'a>(text: &'a str, name: &str) -> Option<BytesStart<'a>> {
 }
 
 /// Tip, size, hardness, spacing, turn.
-fn tip(preset: &Preset, brush: Brush, notes: &mut Vec<String>) -> Brush {
+fn tip(preset: &KppPreset, brush: Brush, notes: &mut Vec<String>) -> Brush {
     let definition = preset.text("brush_definition");
     let Some(outer) = element(definition, "Brush") else {
         notes.push("its tip is missing".to_owned());
@@ -202,7 +202,7 @@ fn tip(preset: &Preset, brush: Brush, notes: &mut Vec<String>) -> Brush {
 }
 
 /// Of a colour smudge preset: what is not its own colour was taken up.
-fn pickup(preset: &Preset) -> Pickup {
+fn pickup(preset: &KppPreset) -> Pickup {
     if preset.engine != "colorsmudge" {
         return Pickup::default();
     }
@@ -221,7 +221,7 @@ const OPTIONS: [(&str, Property); 6] = [
     ("Spacing", Property::Spacing),
 ];
 
-fn driven(preset: &Preset, brush: Brush, notes: &mut Vec<String>) -> Brush {
+fn driven(preset: &KppPreset, brush: Brush, notes: &mut Vec<String>) -> Brush {
     let mut brush = brush;
     let mut follow = |brush: &mut Brush, option: &str, property: Property| {
         if !preset.is(&format!("Pressure{option}")) || preset.text(&format!("{option}UseCurve")) == "false" {

@@ -13,12 +13,12 @@ pub fn is_vbr(bytes: &[u8]) -> bool {
 }
 
 /// The lines of a file, one after the other.
-struct Lines<'a> {
+struct VbrLines<'a> {
     file: &'a Path,
     lines: std::str::Lines<'a>,
 }
 
-impl<'a> Lines<'a> {
+impl<'a> VbrLines<'a> {
     fn next(&mut self, what: &str) -> Result<&'a str> {
         self.lines.next().map(str::trim).ok_or_else(|| Error::decode(self.file, format!("its {what} is missing")))
     }
@@ -31,7 +31,7 @@ impl<'a> Lines<'a> {
 
 pub fn read(file: &Path, bytes: &[u8]) -> Result<ImportedBrush> {
     let text = String::from_utf8_lossy(bytes);
-    let mut lines = Lines { file, lines: text.lines() };
+    let mut lines = VbrLines { file, lines: text.lines() };
     lines.next("first line")?;
     let version = lines.next("version")?;
     let is_later = match version {

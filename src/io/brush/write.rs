@@ -7,7 +7,7 @@ use crate::paint::PictureSource;
 use crate::pixels;
 use crate::raster::Asset;
 use crate::raster::picture::Texels;
-use crate::recipe::{Preset, write_preset};
+use crate::recipe::{BrushPreset, write_preset};
 use crate::replace::{Terms, check, replace};
 use crate::{Error, Result, exr};
 use std::path::{Path, PathBuf};
@@ -15,13 +15,13 @@ use std::path::{Path, PathBuf};
 /// A preset as files, not written yet.
 pub struct Encoded {
     /// With the names of its pictures.
-    pub preset: Preset,
+    pub preset: BrushPreset,
     /// The pictures first, so that a preset that is there is whole.
     files: Vec<(PathBuf, Asset)>,
 }
 
 /// A preset as it is written to `file`; its pictures become `STEM.png`, `STEM.2.png` … in the same folder.
-pub fn encode(file: &Path, preset: &Preset) -> Result<Encoded> {
+pub fn encode(file: &Path, preset: &BrushPreset) -> Result<Encoded> {
     let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let mut files: Vec<(PathBuf, Asset)> = Vec::new();
     let brush = preset.brush.with_pictures(|source| {
@@ -31,7 +31,7 @@ pub fn encode(file: &Path, preset: &Preset) -> Result<Encoded> {
         files.push((file.with_file_name(&name), bytes));
         Ok::<_, Error>(PictureSource::new(name, source.picture.clone(), source.adjust))
     })?;
-    let preset = Preset { brush, ..preset.clone() };
+    let preset = BrushPreset { brush, ..preset.clone() };
     let text = serde_json::to_string_pretty(&write_preset(&preset)).map_err(|e| Error::unsupported(file, e))? + "\n";
     files.push((file.into(), text.into_bytes().into()));
     Ok(Encoded { preset, files })
@@ -52,13 +52,13 @@ impl Encoded {
 }
 
 /// The pictures that a preset's file names, which lie beside it.
-pub fn pictures_beside(file: &Path, preset: &Preset) -> impl Iterator<Item = PathBuf> {
+pub fn pictures_beside(file: &Path, preset: &BrushPreset) -> impl Iterator<Item = PathBuf> {
     let names = preset.brush.pictures().map(|source| Path::new(&source.file));
     names.filter(|name| name.file_name() == Some(name.as_os_str())).map(|name| file.with_file_name(name))
 }
 
 /// Removes a preset's file and the pictures that it names. A missing file is no failure.
-pub fn remove(file: &Path, preset: &Preset) -> Result<()> {
+pub fn remove(file: &Path, preset: &BrushPreset) -> Result<()> {
     // The preset first: what is left then is named by nobody.
     for file in std::iter::once(file.to_owned()).chain(pictures_beside(file, preset)) {
         match std::fs::remove_file(&file) {

@@ -18,7 +18,7 @@ pub fn painted(file: &Path, bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Re
     if let Some(painted) = pixels::decode_tiles(bytes, x, y, budget) {
         return Ok(painted);
     }
-    let picture = super::decode_bitmap(file, bytes, budget, super::Kept::Bytes)?;
+    let picture = super::decode_bitmap(file, bytes, budget, super::KeptDepth::Bytes)?;
     Ok(Painted { size: picture.size, tiles: super::to_tiles(&picture, x, y) })
 }
 

@@ -4,7 +4,7 @@
 use super::colours::Colours;
 use super::cursor::ByteCursor;
 use super::descriptor::{self, DescriptorObject};
-use super::outline::Outline;
+use super::outline::VectorPaths;
 use super::{LayerRecord, RecordSection, fill, marks};
 use crate::math::Rect;
 use crate::math::srgb::Color;
@@ -17,7 +17,7 @@ const ADJUSTMENTS: [[u8; 4]; 17] = [
 
 /// The ground of an artboard, which also cuts off what lies beyond it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ground {
+pub struct ArtboardBackground {
     pub rect: Rect,
     /// `None`: transparent.
     pub colour: Option<Color>,
@@ -60,7 +60,7 @@ pub fn take(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor, colour
         b"iOpa" => record.fill_opacity = data.u8().unwrap_or(255),
         b"SoCo" | b"GdFl" | b"PtFl" => record.fill = fill::read(key, data, colours),
         b"vmsk" | b"vsms" => {
-            record.outline = Outline::read(data);
+            record.outline = VectorPaths::read(data);
             if record.outline.is_none() {
                 record.leave_out("its vector mask is not understood");
             }
@@ -128,7 +128,7 @@ fn blending(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor) {
 }
 
 /// An artboard's rectangle and colour.
-fn ground(mut data: ByteCursor, colours: &Colours) -> Option<Ground> {
+fn ground(mut data: ByteCursor, colours: &Colours) -> Option<ArtboardBackground> {
     let board = descriptor::read(&mut data)?;
     let rect = board.object("artboardRect")?;
     // Within what a canvas can be, so that sums of them stay numbers.
@@ -140,5 +140,5 @@ fn ground(mut data: ByteCursor, colours: &Colours) -> Option<Ground> {
         Some(4) => board.object("Clr ").and_then(|colour| fill::colour(colour, colours)),
         _ => None,
     };
-    Some(Ground { rect, colour })
+    Some(ArtboardBackground { rect, colour })
 }

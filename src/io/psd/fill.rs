@@ -11,7 +11,7 @@ use crate::surface::Operator;
 
 /// What a fill layer is filled with.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Fill {
+pub enum LayerFill {
     Solid(Color),
     Gradient(GradientFill),
     Pattern(PatternFill),
@@ -20,7 +20,7 @@ pub enum Fill {
 /// A gradient and how it lies on what it fills.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GradientFill {
-    way: Way,
+    way: GradientStyle,
     /// Counter-clockwise, as seen.
     degrees: f32,
     /// Of the length that just fills; 1 is that length.
@@ -34,7 +34,7 @@ pub struct GradientFill {
 
 /// How a gradient runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Way {
+enum GradientStyle {
     Linear,
     Radial,
     Angle,
@@ -56,15 +56,15 @@ const BETWEEN: usize = 8;
 const MOST_STOPS: usize = 1000;
 
 /// Reads the block of a fill; `None` where it holds what is not understood.
-pub fn read(key: [u8; 4], mut data: ByteCursor, colours: &Colours) -> Option<Fill> {
+pub fn read(key: [u8; 4], mut data: ByteCursor, colours: &Colours) -> Option<LayerFill> {
     let said = descriptor::read(&mut data)?;
     Some(match &key {
-        b"SoCo" => Fill::Solid(colour(said.object("Clr ")?, colours)?),
-        b"GdFl" => Fill::Gradient(gradient(&said, colours)?),
+        b"SoCo" => LayerFill::Solid(colour(said.object("Clr ")?, colours)?),
+        b"GdFl" => LayerFill::Gradient(gradient(&said, colours)?),
         _ => {
             let phase = said.object("phase");
             let along = |name: &str| phase.and_then(|phase| phase.number(name)).unwrap_or(0.0);
-            Fill::Pattern(PatternFill {
+            LayerFill::Pattern(PatternFill {
                 id: said.object("Ptrn")?.text("Idnt")?.to_owned(),
                 scale: share(&said, "Scl ", 1.0).max(0.01).min(100.0),
                 phase: vec2(along("Hrzn"), along("Vrtc")),
@@ -118,11 +118,11 @@ fn of_hue(h: f32, s: f32, v: f32) -> [f32; 3] {
 
 fn gradient(said: &DescriptorObject, colours: &Colours) -> Option<GradientFill> {
     let way = match said.word("Type")? {
-        b"Rdl " => Way::Radial,
-        b"Angl" => Way::Angle,
-        b"Rflc" => Way::Reflected,
-        b"Dmnd" => Way::Diamond,
-        _ => Way::Linear,
+        b"Rdl " => GradientStyle::Radial,
+        b"Angl" => GradientStyle::Angle,
+        b"Rflc" => GradientStyle::Reflected,
+        b"Dmnd" => GradientStyle::Diamond,
+        _ => GradientStyle::Linear,
     };
     let offset = said.object("Ofst");
     let along = |name: &str| offset.map_or(0.0, |offset| share(offset, name, 0.0));
@@ -201,7 +201,7 @@ fn at<const N: usize>(marks: &[Mark<[f32; N]>], t: f32) -> Option<[f32; N]> {
 impl GradientFill {
     /// As a gradient of this program, on the rectangle that it fills; `None` where it is not straight.
     pub fn live(&self, rect: Rect) -> Option<Gradient> {
-        if self.way != Way::Linear {
+        if self.way != GradientStyle::Linear {
             return None;
         }
         let (middle, half) = self.line(rect);
@@ -246,11 +246,11 @@ impl GradientFill {
         let from = at - middle;
         let (u, v) = (from.dot(along) / reach, from.dot(vec2(-along.y, along.x)) / reach);
         match self.way {
-            Way::Linear => (u + 1.0) / 2.0,
-            Way::Reflected => u.abs(),
-            Way::Radial => from.length() / reach,
-            Way::Diamond => u.abs() + v.abs(),
-            Way::Angle => (-v.atan2(u) / std::f32::consts::TAU).rem_euclid(1.0),
+            GradientStyle::Linear => (u + 1.0) / 2.0,
+            GradientStyle::Reflected => u.abs(),
+            GradientStyle::Radial => from.length() / reach,
+            GradientStyle::Diamond => u.abs() + v.abs(),
+            GradientStyle::Angle => (-v.atan2(u) / std::f32::consts::TAU).rem_euclid(1.0),
         }
     }
     fn at(&self, t: f32) -> [u8; 4] {

@@ -1,8 +1,8 @@
 //! What a record's layer holds: pixels, or the fill that they show.
 //! Floor 5.
 
-use super::fill::{Fill, GradientFill};
-use super::pattern::Pattern;
+use super::fill::{GradientFill, LayerFill};
+use super::pattern::PatternResource;
 use super::{LayerRecord, RecordMask};
 use crate::document::{Content, Live, PixelLayer};
 use crate::math::srgb::Color;
@@ -13,7 +13,7 @@ use crate::raster::TileGrid;
 const SAME: u8 = 3;
 
 /// The content of a layer. What its fill's pixels tell of its shape goes into its mask.
-pub fn content(record: &mut LayerRecord, size: Size, patterns: &[Pattern]) -> Content {
+pub fn content(record: &mut LayerRecord, size: Size, patterns: &[PatternResource]) -> Content {
     match record.fill.take() {
         None => {
             if record.stroked && record.rgba.is_empty() {
@@ -27,7 +27,7 @@ pub fn content(record: &mut LayerRecord, size: Size, patterns: &[Pattern]) -> Co
 }
 
 /// A fill whose pixels the file does not hold.
-fn drawn(record: &mut LayerRecord, fill: Fill, size: Size, patterns: &[Pattern]) -> Content {
+fn drawn(record: &mut LayerRecord, fill: LayerFill, size: Size, patterns: &[PatternResource]) -> Content {
     if record.stroked {
         record.leave_out("the line around its shape is left out");
     }
@@ -35,8 +35,8 @@ fn drawn(record: &mut LayerRecord, fill: Fill, size: Size, patterns: &[Pattern])
         return pixels(Vec::new(), Rect::EMPTY);
     }
     match fill {
-        Fill::Solid(colour) => Content::Fill(colour),
-        Fill::Gradient(gradient) => {
+        LayerFill::Solid(colour) => Content::Fill(colour),
+        LayerFill::Gradient(gradient) => {
             let rect = filled_rect(record, &gradient, size);
             if let Some(live) = gradient.live(rect) {
                 return Content::Gradient(Live::new(live));
@@ -44,7 +44,7 @@ fn drawn(record: &mut LayerRecord, fill: Fill, size: Size, patterns: &[Pattern])
             record.tell("its gradient became pixels");
             pixels(gradient.pixels(size, rect), size.rect())
         }
-        Fill::Pattern(fill) => match patterns.iter().find_map(|pattern| pattern.pixels(&fill, size)) {
+        LayerFill::Pattern(fill) => match patterns.iter().find_map(|pattern| pattern.pixels(&fill, size)) {
             Some(drawn) => {
                 record.tell("its pattern became pixels");
                 pixels(drawn, size.rect())
@@ -58,11 +58,11 @@ fn drawn(record: &mut LayerRecord, fill: Fill, size: Size, patterns: &[Pattern])
 }
 
 /// A fill beside its pixels, which show its shape: they are believed where they are of other colours.
-fn shown(record: &mut LayerRecord, fill: Fill, size: Size) -> Content {
+fn shown(record: &mut LayerRecord, fill: LayerFill, size: Size) -> Content {
     let is_plain = !record.stroked && !record.unfilled;
     let live = match fill {
-        Fill::Solid(colour) if is_plain && is_of(record, |_| Some(colour)) => Some(Content::Fill(colour)),
-        Fill::Gradient(gradient) if is_plain => straight(record, &gradient, size),
+        LayerFill::Solid(colour) if is_plain && is_of(record, |_| Some(colour)) => Some(Content::Fill(colour)),
+        LayerFill::Gradient(gradient) if is_plain => straight(record, &gradient, size),
         _ => None,
     };
     let Some(live) = live else {

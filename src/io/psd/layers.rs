@@ -5,7 +5,7 @@ use super::blocks::{self, block};
 use super::channel;
 use super::colours::Colours;
 use super::cursor::ByteCursor;
-use super::fill::Fill;
+use super::fill::LayerFill;
 use super::header::PsdHeader;
 use super::masks::{MaskData, Softness};
 use super::{LayerRecord, RecordMask};
@@ -195,7 +195,7 @@ impl<'a> RecordReader<'a> {
     /// What will be drawn on the whole canvas, however small it is in the file.
     fn spend_for_canvas(&mut self, record: &LayerRecord) -> Result<()> {
         let area = self.header.size.area() as u64;
-        if record.rgba.is_empty() && matches!(record.fill, Some(Fill::Gradient(_) | Fill::Pattern(_))) {
+        if record.rgba.is_empty() && matches!(record.fill, Some(LayerFill::Gradient(_) | LayerFill::Pattern(_))) {
             self.spend(area)?;
         }
         if record.ground.is_some() || (record.fill.is_some() && !record.rgba.is_empty()) {

@@ -8,7 +8,7 @@ use crate::raster::{Plane, blur};
 
 /// A mask's place and what its flags say; its values are a channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placed {
+pub struct MaskRecord {
     pub rect: Rect,
     pub outside: u8,
     pub disabled: bool,
@@ -29,9 +29,9 @@ pub struct Softness {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MaskData {
     /// Channel −2: the painted mask, or the painted and the vector mask together.
-    pub shown: Placed,
+    pub shown: MaskRecord,
     /// Channel −3: the painted mask, where −2 is both.
-    pub painted: Option<Placed>,
+    pub painted: Option<MaskRecord>,
     /// Of the painted mask and of the vector mask.
     pub softness: [Softness; 2],
 }
@@ -50,7 +50,7 @@ impl MaskData {
         // Rectangle, outside and flags of the painted mask take 18 bytes.
         let painted = if data.rest().len() >= 18 {
             let (flags, outside) = (data.u8()?, data.u8()?);
-            Some(Placed::new(data.rect()?, outside, flags))
+            Some(MaskRecord::new(data.rect()?, outside, flags))
         } else {
             None
         };
@@ -67,11 +67,11 @@ impl MaskData {
                 }
             }
         }
-        Some(Self { shown: Placed::new(rect, outside, flags), painted, softness })
+        Some(Self { shown: MaskRecord::new(rect, outside, flags), painted, softness })
     }
 }
 
-impl Placed {
+impl MaskRecord {
     fn new(rect: Rect, outside: u8, flags: u8) -> Self {
         let [disabled, inverted, is_drawn] = [2, 4, 8].map(|bit| flags & bit != 0);
         Self { rect, outside, disabled, inverted, is_drawn }

@@ -51,9 +51,9 @@ pub use tree::read;
 
 use crate::document::{Document, LayerLabel};
 use crate::math::Rect;
-use blocks::Ground;
-use fill::Fill;
-use outline::Outline;
+use blocks::ArtboardBackground;
+use fill::LayerFill;
+use outline::VectorPaths;
 
 /// The signature of a file.
 pub const MAGIC: [u8; 4] = *b"8BPS";
@@ -86,10 +86,10 @@ pub struct LayerRecord {
     pub label: LayerLabel,
     pub section: RecordSection,
     pub mask: Option<RecordMask>,
-    pub outline: Option<Outline>,
-    pub fill: Option<Fill>,
+    pub outline: Option<VectorPaths>,
+    pub fill: Option<LayerFill>,
     /// It is an artboard.
-    pub ground: Option<Ground>,
+    pub ground: Option<ArtboardBackground>,
     /// Whether any of its effects is switched on, where it has some.
     pub effects: Option<bool>,
     /// It is a shape, whose pixels show its vector mask.

@@ -10,8 +10,8 @@ type Knot = [[f32; 2]; 3];
 
 /// Paths, as they stand in the file.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Outline {
-    shapes: Vec<Shape>,
+pub struct VectorPaths {
+    shapes: Vec<FilledPaths>,
     inverted: bool,
     /// It begins with all of the canvas.
     begins_full: bool,
@@ -20,21 +20,21 @@ pub struct Outline {
 
 /// Paths that are filled together.
 #[derive(Clone, Debug, PartialEq)]
-struct Shape {
-    way: Way,
+struct FilledPaths {
+    way: PathOperation,
     paths: Vec<Vec<Knot>>,
 }
 
 /// How a shape meets those before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Way {
+enum PathOperation {
     Exclude,
     Add,
     Subtract,
     Intersect,
 }
 
-impl Outline {
+impl VectorPaths {
     /// Reads the block of a vector mask; `None` where it is cut short.
     pub fn read(mut data: ByteCursor) -> Option<Self> {
         data.u32()?;
@@ -52,16 +52,18 @@ impl Outline {
             0 | 3 => {
                 record.u16()?;
                 let way = match record.i16()? {
-                    0 => Some(Way::Exclude),
-                    1 => Some(Way::Add),
-                    2 => Some(Way::Subtract),
-                    3 => Some(Way::Intersect),
+                    0 => Some(PathOperation::Exclude),
+                    1 => Some(PathOperation::Add),
+                    2 => Some(PathOperation::Subtract),
+                    3 => Some(PathOperation::Intersect),
                     // Belongs to the shape before.
                     _ => None,
                 };
                 match (way, self.shapes.last_mut()) {
                     (None, Some(shape)) => shape.paths.push(Vec::new()),
-                    (way, _) => self.shapes.push(Shape { way: way.unwrap_or(Way::Add), paths: vec![Vec::new()] }),
+                    (way, _) => self
+                        .shapes
+                        .push(FilledPaths { way: way.unwrap_or(PathOperation::Add), paths: vec![Vec::new()] }),
                 }
             }
             1 | 2 | 4 | 5 => {
@@ -95,7 +97,7 @@ impl Outline {
     }
 }
 
-impl Shape {
+impl FilledPaths {
     /// `None` where nothing is covered.
     fn drawn(&self, size: Size) -> Option<Mask> {
         let path = self.path(size)?;
@@ -120,14 +122,14 @@ impl Shape {
     }
 }
 
-impl Way {
+impl PathOperation {
     fn meet(self, before: u8, shape: u8) -> u8 {
         let product = |a: u8, b: u8| ((u32::from(a) * u32::from(b) + 127) / 255) as u8;
         match self {
-            Way::Add => 255 - product(255 - before, 255 - shape),
-            Way::Subtract => product(before, 255 - shape),
-            Way::Intersect => product(before, shape),
-            Way::Exclude => product(before, 255 - shape).saturating_add(product(255 - before, shape)),
+            PathOperation::Add => 255 - product(255 - before, 255 - shape),
+            PathOperation::Subtract => product(before, 255 - shape),
+            PathOperation::Intersect => product(before, shape),
+            PathOperation::Exclude => product(before, 255 - shape).saturating_add(product(255 - before, shape)),
         }
     }
 }
@@ -149,7 +151,7 @@ mod tests {
     }
     fn drawn(flags: u32, records: &[Vec<u8>]) -> Vec<u8> {
         let bytes = [3u32.to_be_bytes().to_vec(), flags.to_be_bytes().to_vec(), records.concat()].concat();
-        Outline::read(ByteCursor::new(&bytes)).unwrap().coverage(Size::new(4, 1))
+        VectorPaths::read(ByteCursor::new(&bytes)).unwrap().coverage(Size::new(4, 1))
     }
 
     #[test]
@@ -176,7 +178,7 @@ mod tests {
     fn knots_without_a_path_and_paths_without_knots_are_borne() {
         let knot = rectangle(1, [0.0, 0.0, 1.0, 1.0])[26..52].to_vec();
         let bytes = [vec![0; 8], knot].concat();
-        assert_eq!(Outline::read(ByteCursor::new(&bytes)), None);
+        assert_eq!(VectorPaths::read(ByteCursor::new(&bytes)), None);
         assert_eq!(drawn(0, &[rectangle(1, [-120.0, -120.0, 120.0, 120.0])[..26].to_vec()]), [0; 4]);
         assert_eq!(drawn(0, &[rectangle(1, [-120.0, -120.0, 120.0, 120.0])]), [255; 4]);
     }

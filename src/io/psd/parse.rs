@@ -7,7 +7,7 @@ use super::cursor::ByteCursor;
 use super::header::{PsdHeader, header, resource};
 use super::layers::RecordReader;
 use super::merged::{Merged, merged};
-use super::pattern::{self, Pattern};
+use super::pattern::{self, PatternResource};
 use super::{ICC_PROFILE, LayerRecord, OURS, marks};
 use crate::document::Guides;
 use crate::{Budget, picture};
@@ -26,7 +26,7 @@ pub struct ParsedPsd<'a> {
     pub records: Vec<LayerRecord>,
     /// The picture that the file holds of all its layers; absent where it is damaged.
     pub merged: Option<Merged>,
-    pub patterns: Vec<Pattern>,
+    pub patterns: Vec<PatternResource>,
     /// And how many were left out.
     pub guides: (Guides, usize),
     /// What could not be read.

@@ -12,7 +12,7 @@ use crate::math::Size;
 
 /// A picture that repeats.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Pattern {
+pub struct PatternResource {
     id: String,
     size: Size,
     /// Straight sRGB.
@@ -26,7 +26,7 @@ const MOST_CHANNELS: u32 = 32;
 pub fn read<'a>(
     blocks: impl Iterator<Item = ([u8; 4], ByteCursor<'a>)>,
     layers: &mut RecordReader,
-) -> Result<Vec<Pattern>> {
+) -> Result<Vec<PatternResource>> {
     let mut patterns = Vec::new();
     for (key, data) in blocks {
         if matches!(&key, b"Patt" | b"Pat2" | b"Pat3") {
@@ -37,7 +37,7 @@ pub fn read<'a>(
 }
 
 /// The patterns of one block. `spend`: asked for each one's pixels; beyond what may be held together, it refuses.
-pub fn of_block(mut data: ByteCursor, mut spend: impl FnMut(u64) -> Result<()>) -> Result<Vec<Pattern>> {
+pub fn of_block(mut data: ByteCursor, mut spend: impl FnMut(u64) -> Result<()>) -> Result<Vec<PatternResource>> {
     let mut patterns = Vec::new();
     // Each is filled up to four bytes.
     while let Some(one) = data.section(false).filter(|one| !one.rest().is_empty()) {
@@ -48,10 +48,10 @@ pub fn of_block(mut data: ByteCursor, mut spend: impl FnMut(u64) -> Result<()>) 
     Ok(patterns)
 }
 
-fn pattern(data: ByteCursor, spend: &mut impl FnMut(u64) -> Result<()>) -> Result<Option<Pattern>> {
+fn pattern(data: ByteCursor, spend: &mut impl FnMut(u64) -> Result<()>) -> Result<Option<PatternResource>> {
     let Some((id, mode, size, body)) = head(data) else { return Ok(None) };
     spend(size.area() as u64)?;
-    Ok(rgba(body, mode, size).map(|rgba| Pattern { id, size, rgba }))
+    Ok(rgba(body, mode, size).map(|rgba| PatternResource { id, size, rgba }))
 }
 
 /// Its name, what its colours are, its size, and what follows.
@@ -121,7 +121,7 @@ fn channel_of(list: &mut ByteCursor, mode: Mode, size: Size) -> Option<Option<Ve
     })
 }
 
-impl Pattern {
+impl PatternResource {
     #[cfg(test)]
     pub fn grey(id: &str, size: Size, values: &[u8]) -> Self {
         Self { id: id.into(), size, rgba: values.iter().flat_map(|v| [*v, *v, *v, 255]).collect() }

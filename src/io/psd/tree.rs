@@ -1,11 +1,11 @@
 //! Builds a document from a Photoshop file's records: ours as it was written, others as far as both programs agree.
 //! Floor 5. Parsing is in `parse`.
 
-use super::blocks::Ground;
+use super::blocks::ArtboardBackground;
 use super::colours::Mode;
 use super::judge::judged;
 use super::parse::{ParsedPsd, parse};
-use super::pattern::Pattern;
+use super::pattern::PatternResource;
 use super::{LayerRecord, PASS_THROUGH, RecordMask, RecordSection, filled, marks, signature};
 use crate::Budget;
 use crate::document::{Content, Document, Group, Guides, Layer, LayerLock, LayerMask, MaskKind};
@@ -132,7 +132,7 @@ struct TreeBuilder<'a> {
     size: Size,
     /// The greatest depth of groups.
     deepest: usize,
-    patterns: &'a [Pattern],
+    patterns: &'a [PatternResource],
     open: Vec<Vec<Arc<Layer>>>,
     /// Something was left out.
     is_less: bool,
@@ -167,7 +167,7 @@ impl TreeBuilder<'_> {
         }
     }
     /// An artboard's ground lies beneath its layers, and what lies beyond it is cut off.
-    fn lay_ground(&self, record: &mut LayerRecord, ground: Ground, layers: &mut Vec<Arc<Layer>>) {
+    fn lay_ground(&self, record: &mut LayerRecord, ground: ArtboardBackground, layers: &mut Vec<Arc<Layer>>) {
         let rect = ground.rect.intersect(self.size.rect());
         let values = vec![255; rect.width() * rect.height()];
         let board = RecordMask { rect, outside: 0, values, disabled: false };

@@ -44,7 +44,7 @@ pub mod transforms;
 pub mod value;
 
 pub use presets::{
-    Preset, PresetGroup, load_preset, preset, preset_brush, preset_names, presets, read_brush, write_preset,
+    BrushPreset, PresetGroup, load_preset, preset, preset_brush, preset_names, presets, read_brush, write_preset,
     written_brush,
 };
 pub use samples::parse;

@@ -17,7 +17,7 @@ use std::path::Path;
 
 /// A brush that can be chosen by name.
 #[derive(Clone)]
-pub struct Preset {
+pub struct BrushPreset {
     /// Its key in recipes: lower-case letters and hyphens.
     pub key: String,
     /// Its name in the window.
@@ -58,13 +58,13 @@ pub fn preset_names() -> impl Iterator<Item = &'static str> {
 }
 
 /// Every brush that comes with the program, in the order of the list.
-pub fn presets() -> impl Iterator<Item = Preset> {
+pub fn presets() -> impl Iterator<Item = BrushPreset> {
     preset_names().filter_map(preset)
 }
 
 /// A brush that comes with the program, as a hand takes it: its marks stay near the pen. A recipe that names it says so
 /// itself ([`Brush::reach`]), so that older ones paint as they did.
-pub fn preset(key: &str) -> Option<Preset> {
+pub fn preset(key: &str) -> Option<BrushPreset> {
     let (_, text) = BRUSHES.iter().find(|(known, _)| *known == key)?;
     let mut preset = built_in(key, text).ok()?;
     preset.brush.reach = Brush::NEAR;
@@ -87,7 +87,7 @@ pub(super) fn named(key: &JsonNode) -> Result<(Brush, Operator)> {
     Ok((preset.brush, preset.operator))
 }
 
-fn built_in(key: &str, text: &str) -> Result<Preset> {
+fn built_in(key: &str, text: &str) -> Result<BrushPreset> {
     let mut none = |node: &JsonNode| Err(node.refused("is a file; the brushes of the program have none"));
     read(Path::new("brushes"), key, text.as_bytes(), &Budget::default(), &mut none)
 }
@@ -114,7 +114,7 @@ pub fn written_brush(brush: &Brush) -> Value {
 }
 
 /// A preset in a file of its own; its pictures lie beside it.
-pub fn load_preset(file: &Path, budget: &Budget) -> Result<Preset> {
+pub fn load_preset(file: &Path, budget: &Budget) -> Result<BrushPreset> {
     let text = files::read_file(file, budget.json_bytes)?;
     let folder = RecipeFolder::beside(file);
     let source = RecipeSource { file, files: &folder as &dyn Files, budget, onto: None };
@@ -131,7 +131,7 @@ fn read(
     text: &[u8],
     budget: &Budget,
     picture: &mut dyn FnMut(&JsonNode) -> Result<PictureSource>,
-) -> Result<Preset> {
+) -> Result<BrushPreset> {
     let value = json::parse(file, text, budget)?;
     let mut root = JsonNode::root(file, &value).fields()?;
     let mut text = |name| root.get(name).map_or(Ok(String::new()), |node| node.text().map(str::to_owned));
@@ -145,11 +145,11 @@ fn read(
     tips::read(&mut fields, &mut brush, picture)?;
     fields.finish()?;
     root.finish()?;
-    Ok(Preset { key: key.to_owned(), name, group, about, color, brush, operator })
+    Ok(BrushPreset { key: key.to_owned(), name, group, about, color, brush, operator })
 }
 
 /// A preset as [`load_preset`] reads it back. Its pictures are named, not written.
-pub fn write_preset(preset: &Preset) -> Value {
+pub fn write_preset(preset: &BrushPreset) -> Value {
     let mut out = JsonObject::default();
     out.set("name", preset.name.as_str().into());
     out.word("group", &PresetGroup::ALL, preset.group, PresetGroup::Imported);

@@ -11,7 +11,7 @@ use crate::paint::{Brush, PictureSource, Tip};
 use serde_json::{Value, json};
 
 /// Reads the picture that a field names.
-pub type ReadPicture<'a> = dyn FnMut(&JsonNode) -> Result<PictureSource> + 'a;
+pub type PictureReader<'a> = dyn FnMut(&JsonNode) -> Result<PictureSource> + 'a;
 
 /// The kinds of tips that are made, not drawn.
 #[derive(Clone, Copy, PartialEq)]
@@ -36,7 +36,7 @@ const KINDS: [(TipKind, &str); 7] = [
 ];
 
 /// The fields `tip` and `grain`; where they are absent the brush keeps what it has.
-pub fn read(fields: &mut Fields, brush: &mut Brush, picture: &mut ReadPicture) -> Result<()> {
+pub fn read(fields: &mut Fields, brush: &mut Brush, picture: &mut PictureReader) -> Result<()> {
     if let Some(node) = fields.get("tip") {
         brush.tip = tip(&node, picture)?;
     }
@@ -48,7 +48,7 @@ pub fn read(fields: &mut Fields, brush: &mut Brush, picture: &mut ReadPicture) -
 
 /// `{ "file": "leaf.png" }`, `{ "kind": "ellipse", "ratio": 0.5 }`, `{ "kind": "hose", "files": […], "ranks": […] }`
 /// and so on.
-fn tip(node: &JsonNode, picture: &mut ReadPicture) -> Result<Tip> {
+fn tip(node: &JsonNode, picture: &mut PictureReader) -> Result<Tip> {
     let mut fields = node.fields()?;
     let kind = match fields.get("kind") {
         Some(kind) => kind.one_of(&KINDS)?,
@@ -81,7 +81,7 @@ fn whole(fields: &mut Fields, name: &'static str, default: u32, range: std::ops:
     fields.get(name).map_or(Ok(default), |node| node.whole(range))
 }
 
-fn hose(fields: &mut Fields, picture: &mut ReadPicture) -> Result<Hose> {
+fn hose(fields: &mut Fields, picture: &mut PictureReader) -> Result<Hose> {
     let files = fields.required("files")?;
     let pictures = files.list(Hose::MOST_PICTURES)?.iter().map(picture).collect::<Result<Vec<_>>>()?;
     if pictures.is_empty() {
@@ -103,7 +103,7 @@ fn rank(node: &JsonNode) -> Result<HoseRank> {
 }
 
 /// `{ "kind": "paper", "size": 6, … }` or `{ "file": "canvas.png", "size": 200, … }`.
-fn grain(node: &JsonNode, picture: &mut ReadPicture) -> Result<BrushGrain> {
+fn grain(node: &JsonNode, picture: &mut PictureReader) -> Result<BrushGrain> {
     let plain = BrushGrain::default();
     let mut fields = node.fields()?;
     let seed = whole(&mut fields, "seed", 0, 0..=u32::MAX)?;

@@ -4,7 +4,7 @@
 use super::force::Force;
 use super::{LimitArgs, told};
 use crate::io::export::{ExportOptions, OutputFile};
-use crate::io::recipe::{Preset, preset};
+use crate::io::recipe::{BrushPreset, preset};
 use crate::io::{Terms, brush, picture};
 use crate::math::Size;
 use crate::raster::{Picture, TileGrid};
@@ -51,7 +51,7 @@ pub fn run(args: &BrushArgs) -> Result<()> {
         for (i, (preset, notes)) in brushes.into_iter().enumerate() {
             notes.iter().for_each(|note| told::say(&format!("{}: {note}", preset.name)));
             let to = if count == 1 { args.to.clone() } else { numbered(&args.to, i + 1) };
-            made.push(Made::of(&to, &preset, args.side, &terms)?);
+            made.push(ConvertedBrush::of(&to, &preset, args.side, &terms)?);
         }
         // All may be written, or none is.
         made.into_iter().try_for_each(|made| made.write(&terms))
@@ -66,30 +66,30 @@ fn numbered(file: &Path, number: usize) -> PathBuf {
 }
 
 /// What a brush became, not written yet.
-enum Made {
+enum ConvertedBrush {
     Preset(Box<brush::Encoded>),
     Picture(OutputFile, TileGrid, Size),
 }
 
-impl Made {
+impl ConvertedBrush {
     /// Fails where it may not be written.
-    fn of(to: &Path, preset: &Preset, side: u32, terms: &Terms) -> Result<Self> {
+    fn of(to: &Path, preset: &BrushPreset, side: u32, terms: &Terms) -> Result<Self> {
         let extension = to.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         if extension == "json" {
             let encoded = brush::encode(to, preset)?;
             encoded.check(terms)?;
-            return Ok(Made::Preset(encoded.into()));
+            return Ok(ConvertedBrush::Preset(encoded.into()));
         }
         let target = OutputFile::new(to, terms.clone())?;
         let none = || Error::unsupported(to, "the brush cannot be shown");
         let (pixels, size) = (swatch::painted(preset, side).ok_or_else(none)?, Size::new(side, side));
         let picture = Picture::srgb8(size, pixels.as_chunks().0.to_vec()).ok_or_else(none)?;
-        Ok(Made::Picture(target, picture::to_tiles(&picture, 0, 0), size))
+        Ok(ConvertedBrush::Picture(target, picture::to_tiles(&picture, 0, 0), size))
     }
     fn write(self, terms: &Terms) -> Result<()> {
         match self {
-            Made::Preset(encoded) => encoded.write(terms),
-            Made::Picture(target, tiles, size) => target.write(&tiles, size, &ExportOptions::default()),
+            ConvertedBrush::Preset(encoded) => encoded.write(terms),
+            ConvertedBrush::Picture(target, tiles, size) => target.write(&tiles, size, &ExportOptions::default()),
         }
     }
 }

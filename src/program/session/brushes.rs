@@ -3,7 +3,7 @@
 
 use super::Session;
 use crate::io::brush::{self, ImportedBrush, plain};
-use crate::io::recipe::{Preset, PresetGroup, load_preset};
+use crate::io::recipe::{BrushPreset, PresetGroup, load_preset};
 use crate::io::{Budget, Overwrite, Terms, files::read_file, picture};
 use crate::math::srgb::Color;
 use crate::paint::{Adjust, Brush, PictureSource, Tip};
@@ -16,7 +16,7 @@ pub const EXTENSIONS: [&str; 12] =
     ["gbr", "gih", "myb", "abr", "json", "png", "jpg", "jpeg", "webp", "tif", "tiff", "bmp"];
 
 /// Reads the brushes of a file: another program's, a preset's own, or a picture as a tip. At least one.
-pub fn read(file: &Path, budget: &Budget) -> Result<Vec<(Preset, Vec<String>)>> {
+pub fn read(file: &Path, budget: &Budget) -> Result<Vec<(BrushPreset, Vec<String>)>> {
     let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     if extension == "json" {
         return load_preset(file, budget).map(|preset| vec![(preset, Vec::new())]);
@@ -30,12 +30,12 @@ pub fn read(file: &Path, budget: &Budget) -> Result<Vec<(Preset, Vec<String>)>> 
 }
 
 /// An imported brush as a preset, with notes on what could not be imported.
-fn preset_of(file: &Path, imported: ImportedBrush) -> (Preset, Vec<String>) {
+fn preset_of(file: &Path, imported: ImportedBrush) -> (BrushPreset, Vec<String>) {
     let ImportedBrush { name, brush, notes } = imported;
     let about = format!("From {}.", file.file_name().unwrap_or_default().to_string_lossy());
     let key = Some(plain(&name)).filter(|key| !key.is_empty()).unwrap_or_else(|| "brush".into());
     let color = Color { r: 0xf4, g: 0xee, b: 0xe0, a: 255 };
-    (Preset { key, name, group: PresetGroup::Imported, about, color, brush, operator: Operator::None }, notes)
+    (BrushPreset { key, name, group: PresetGroup::Imported, about, color, brush, operator: Operator::None }, notes)
 }
 
 /// Adds the brushes of a file to the list, and selects the first.
@@ -59,13 +59,13 @@ pub fn keep(session: &mut Session, name: &str) -> Result<()> {
     let name = if name.is_empty() { "My brush".to_owned() } else { name };
     let key = Some(plain(&name)).filter(|key| !key.is_empty()).unwrap_or_else(|| "brush".into());
     let (brush, color, operator) = (session.brush.clone(), session.color, session.operator);
-    let preset = Preset { key, name, group: PresetGroup::Imported, about: String::new(), color, brush, operator };
+    let preset = BrushPreset { key, name, group: PresetGroup::Imported, about: String::new(), color, brush, operator };
     session.preset = add(session, preset)?;
     Ok(())
 }
 
 /// Adds a brush to the list and the folder; returns its key.
-fn add(session: &mut Session, mut preset: Preset) -> Result<String> {
+fn add(session: &mut Session, mut preset: BrushPreset) -> Result<String> {
     preset.key = free_key(session, &preset.key);
     preset.group = PresetGroup::Imported;
     if let Some(folder) = &session.brush_folder {
@@ -82,7 +82,7 @@ fn add(session: &mut Session, mut preset: Preset) -> Result<String> {
 
 /// Removes one of the user's own brushes from the list and the folder, with its pictures.
 pub fn remove(session: &mut Session, key: &str) -> Result<()> {
-    let is_it = |preset: &Preset| preset.key == key && preset.group == PresetGroup::Imported;
+    let is_it = |preset: &BrushPreset| preset.key == key && preset.group == PresetGroup::Imported;
     let Some(at) = session.presets.iter().position(is_it) else { return Ok(()) };
     if let Some(folder) = &session.brush_folder {
         brush::remove(&file_of(folder, key), &session.presets[at])?;
@@ -96,7 +96,7 @@ fn file_of(folder: &Path, key: &str) -> PathBuf {
 }
 
 /// The user's own brushes as they lie in a folder, by name, and a sentence for each that cannot be read.
-pub fn kept(folder: &Path) -> (Vec<Preset>, Vec<String>) {
+pub fn kept(folder: &Path) -> (Vec<BrushPreset>, Vec<String>) {
     // A folder that is not there yet holds none.
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
     let mut files: Vec<PathBuf> = entries.filter(|file| file.extension().is_some_and(|e| e == "json")).collect();
@@ -104,7 +104,7 @@ pub fn kept(folder: &Path) -> (Vec<Preset>, Vec<String>) {
     let (mut presets, mut notes) = (Vec::new(), Vec::new());
     for file in files {
         match load_preset(&file, &Budget::of_this_machine()) {
-            Ok(preset) => presets.push(Preset { group: PresetGroup::Imported, ..preset }),
+            Ok(preset) => presets.push(BrushPreset { group: PresetGroup::Imported, ..preset }),
             Err(error) => notes.push(error.to_string()),
         }
     }
@@ -112,7 +112,7 @@ pub fn kept(folder: &Path) -> (Vec<Preset>, Vec<String>) {
 }
 
 /// Adds the brushes of the folder to the list, each under the name of its file.
-pub fn adopt(session: &mut Session, presets: Vec<Preset>) {
+pub fn adopt(session: &mut Session, presets: Vec<BrushPreset>) {
     for preset in presets {
         if !session.presets.iter().any(|known| known.key == preset.key) {
             session.presets.push(preset);
@@ -124,7 +124,7 @@ pub fn adopt(session: &mut Session, presets: Vec<Preset>) {
 }
 
 /// A picture as a brush that stamps it.
-fn picture_tip(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Preset> {
+fn picture_tip(file: &Path, bytes: &[u8], budget: &Budget) -> Result<BrushPreset> {
     let picture = picture::decode(file, bytes, budget)?;
     let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let tip = PictureSource::new(format!("{}.png", plain(&stem)), picture, Adjust::default());
@@ -152,7 +152,7 @@ fn free_key(session: &Session, key: &str) -> String {
 }
 
 /// Whether a brush matches a search: every word is in its name, its group or its description.
-pub fn is_found(preset: &Preset, search: &str) -> bool {
+pub fn is_found(preset: &BrushPreset, search: &str) -> bool {
     let text = format!("{} {} {}", preset.name, preset.group.name(), preset.about).to_lowercase();
     search.to_lowercase().split_whitespace().all(|word| text.contains(word))
 }
@@ -207,7 +207,7 @@ mod tests {
         Action::File(FileAction::KeepBrush { name: " Wide pen ".into() }).apply(&mut session).unwrap();
         assert_eq!(session.preset, "wide-pen");
         let (presets, notes) = kept(&own);
-        let told = |preset: &Preset| (preset.key.clone(), preset.brush.spacing, preset.brush.pictures().count());
+        let told = |preset: &BrushPreset| (preset.key.clone(), preset.brush.spacing, preset.brush.pictures().count());
         let told: Vec<_> = presets.iter().map(told).collect();
         assert_eq!((told, notes), (vec![("pen".into(), 0.4, 1), ("wide-pen".into(), 0.7, 1)], Vec::new()));
         for name in ["pen", "wide-pen", "ink", "nobody"] {
@@ -229,7 +229,7 @@ mod tests {
         assert!(presets.is_empty() && notes.len() == 1 && notes[0].contains("broken.json"), "{notes:?}");
         let ink = session.presets.iter().find(|preset| preset.key == "ink").cloned().unwrap();
         let known = session.presets.len();
-        adopt(&mut session, vec![ink.clone(), Preset { key: "my-ink".into(), ..ink }]);
+        adopt(&mut session, vec![ink.clone(), BrushPreset { key: "my-ink".into(), ..ink }]);
         assert_eq!((session.presets.len(), session.notes.len()), (known + 1, 1));
     }
     #[test]

@@ -29,7 +29,7 @@ pub use view::CanvasView;
 use crate::Result;
 use crate::document::{Document, Layer};
 use crate::io::fs::Disk;
-use crate::io::recipe::{Preset, presets};
+use crate::io::recipe::{BrushPreset, presets};
 use crate::io::replace::is_same_file;
 use crate::io::{Overwrite, Terms};
 use crate::math::{Rect, Vec2, srgb::Color};
@@ -37,7 +37,7 @@ use crate::paint::{Brush, Fill, LiquifySettings};
 use crate::surface::Operator;
 use crate::surface::operator::UnwrapSettings;
 use crate::tools::SelectSettings;
-use crate::tools::frame::Carried;
+use crate::tools::frame::TransformTarget;
 use crate::tools::settings::CropAspect;
 use crate::tools::snap::{SnapLines, ViewAids};
 use crate::tools::symmetry::SymmetryAxes;
@@ -56,7 +56,7 @@ pub struct Session {
     pub current: usize,
     pub tool: ToolKind,
     /// The available brushes: the program's own, then imported ones; each key is unique.
-    pub presets: Vec<Preset>,
+    pub presets: Vec<BrushPreset>,
     /// The key of the current brush among them.
     pub preset: String,
     pub brush: Brush,
@@ -71,7 +71,7 @@ pub struct Session {
     /// Where its axes stand.
     pub axes: SymmetryAxes,
     /// What the transform tool takes along.
-    pub carried: Carried,
+    pub carried: TransformTarget,
     /// The settings of the fill tool.
     pub fill: Fill,
     /// The settings of the selection tools.
@@ -119,7 +119,7 @@ pub struct Session {
 impl Default for Session {
     fn default() -> Self {
         let preset = "soft-round";
-        let presets: Vec<Preset> = presets().collect();
+        let presets: Vec<BrushPreset> = presets().collect();
         let brush = presets.iter().find(|known| known.key == preset).map(|known| known.brush.clone());
         Self {
             open_documents: Vec::new(),
@@ -134,7 +134,7 @@ impl Default for Session {
             operator: Operator::None,
             symmetry: Symmetry::None,
             axes: SymmetryAxes::default(),
-            carried: Carried::default(),
+            carried: TransformTarget::default(),
             fill: Fill::default(),
             select: SelectSettings::default(),
             aids: ViewAids::default(),

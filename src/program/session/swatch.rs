@@ -4,7 +4,7 @@
 mod retouched;
 
 use crate::document::{Content, Document, Layer, Live, Progress, StrokeList, flatten};
-use crate::io::recipe::Preset;
+use crate::io::recipe::BrushPreset;
 use crate::math::{Size, Vec2, srgb::Color, vec2, vec3};
 use crate::paint::grain::BrushGrain;
 use crate::paint::{Brush, Gradient, GradientStop, ImageFilter, Input, Sample, Stroke};
@@ -21,7 +21,7 @@ const SIZES: [f32; 2] = [0.022, 0.3];
 const RADIUS: f32 = 0.43;
 
 /// A preset's picture, straight RGBA bytes, `side` px square. `None` where `side` is 0 or far too large.
-pub fn painted(preset: &Preset, side: u32) -> Option<Vec<u8>> {
+pub fn painted(preset: &BrushPreset, side: u32) -> Option<Vec<u8>> {
     if !(1..=4096).contains(&side) {
         return None;
     }
@@ -31,10 +31,10 @@ pub fn painted(preset: &Preset, side: u32) -> Option<Vec<u8>> {
 }
 
 /// The same on another surface, as large as that is.
-pub fn painted_on(preset: &Preset, surface: Arc<Surface>) -> Option<Vec<u8>> {
+pub fn painted_on(preset: &BrushPreset, surface: Arc<Surface>) -> Option<Vec<u8>> {
     let size = surface.size();
     let side = size.width.min(size.height) as f32;
-    let Preset { operator, brush, .. } = preset;
+    let BrushPreset { operator, brush, .. } = preset;
     let background = if is_dark(preset.color) || brush.blend == BlendMode::Multiply { PLASTER } else { SLATE };
     if brush.needs_paint() {
         let drawn = retouched::drawn(preset, surface, side / NATURAL_SIDE, SLATE)?;
@@ -80,7 +80,7 @@ fn clay(background: Color, size: Size) -> Gradient {
 const GROOVES: f32 = 0.055;
 
 /// An eraser shows the background again.
-fn shown(preset: &Preset, background: Color) -> Color {
+fn shown(preset: &BrushPreset, background: Color) -> Color {
     if preset.brush.erases { background } else { preset.color }
 }
 

@@ -1,7 +1,7 @@
 //! What tools are told when the pen comes down.
 //! Floor 5.
 
-use super::frame::{Carried, KeptFrame};
+use super::frame::{KeptFrame, TransformTarget};
 use super::settings::{BrushTarget, CropAspect, SelectSettings, ShapeSettings};
 use super::snap::{SnapTargets, ViewAids};
 use super::symmetry::{Symmetry, SymmetryAxes};
@@ -49,7 +49,7 @@ pub struct ToolContext<'a> {
     /// What the transform tool keeps of the chosen layers.
     pub frame: &'a KeptFrame,
     /// What it takes along.
-    pub carried: Carried,
+    pub carried: TransformTarget,
     /// The strokes of the selected layer that are chosen.
     pub strokes: &'a [usize],
     /// The points of the selected layer's mesh that are chosen.
@@ -88,7 +88,7 @@ impl<'a> ToolContext<'a> {
             crop: None,
             crop_aspect: CropAspect::Free,
             frame: KeptFrame::nothing(),
-            carried: Carried::Paint,
+            carried: TransformTarget::Paint,
             strokes: &[],
             mesh_points: &[],
             axes: SymmetryAxes::default(),
@@ -195,7 +195,7 @@ impl KeptContext {
             crop: None,
             crop_aspect: CropAspect::Free,
             frame: KeptFrame::nothing(),
-            carried: Carried::Paint,
+            carried: TransformTarget::Paint,
             strokes: &self.strokes,
             mesh_points: &[],
             snap: &self.snap,

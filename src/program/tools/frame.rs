@@ -27,7 +27,7 @@ pub struct TransformFrame {
 rilievo_engine::named! {
     /// What the transform tool takes along, where there is a shape.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-    pub enum Carried {
+    pub enum TransformTarget {
         /// The chosen layers alone: they slide over the shape, which stays.
         #[default]
         Paint = "paint" => "slide paint over the shape",
@@ -45,9 +45,9 @@ pub enum Framed<'a> {
 
 impl<'a> Framed<'a> {
     /// The shape, if that is to be taken along and there is one; else the chosen layers.
-    pub fn new(carried: Carried, document: &Document, chosen: &'a [LayerId]) -> Self {
+    pub fn new(carried: TransformTarget, document: &Document, chosen: &'a [LayerId]) -> Self {
         match carried {
-            Carried::Shape if document.surface.is_some() => Framed::Shape,
+            TransformTarget::Shape if document.surface.is_some() => Framed::Shape,
             _ => Framed::Layers(chosen),
         }
     }

@@ -17,8 +17,8 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let held = layer.and_then(|layer| held(context.document, layer, pen.place(), pen.keys.shift));
     let Some((layer, held)) = layer.zip(held) else { return (None, Outcome::Idle) };
     let stroke = match held {
-        Held::Stroke(index) => Some(index),
-        Held::Layer => None,
+        MoveTarget::Stroke(index) => Some(index),
+        MoveTarget::Layer => None,
     };
     (Some(Box::new(MoveGesture::begin(context, vec![layer.id], stroke, pen))), Outcome::Idle)
 }
@@ -35,7 +35,7 @@ fn press_several(context: &ToolContext, layers: &[LayerId], pen: PenSample) -> G
 
 /// What the tool takes hold of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Held {
+pub enum MoveTarget {
     /// One stroke of the layer.
     Stroke(usize),
     Layer,
@@ -43,7 +43,7 @@ pub enum Held {
 
 /// What a press at a canvas point would hold: the topmost stroke there, or the whole layer; nothing of a locked one.
 /// `whole`: the layer in any case.
-pub fn held(document: &Document, layer: &Layer, at: Vec2, whole: bool) -> Option<Held> {
+pub fn held(document: &Document, layer: &Layer, at: Vec2, whole: bool) -> Option<MoveTarget> {
     if layer.lock == LayerLock::All {
         return None;
     }
@@ -54,7 +54,7 @@ pub fn held(document: &Document, layer: &Layer, at: Vec2, whole: bool) -> Option
         }
         _ => None,
     };
-    Some(stroke.map_or(Held::Layer, Held::Stroke))
+    Some(stroke.map_or(MoveTarget::Layer, MoveTarget::Stroke))
 }
 
 struct MoveGesture {
@@ -186,8 +186,8 @@ mod tests {
         let document = Document { layers, ..Document::empty(Size::new(80, 40)) };
         let layer = &document.layers[0];
         let at = |x: f32, whole| held(&document, layer, vec2(x, 20.0), whole);
-        assert_eq!([at(10.0, false), at(60.0, false)], [Some(Held::Stroke(0)), Some(Held::Stroke(1))]);
-        assert_eq!([at(35.0, false), at(60.0, true)], [Some(Held::Layer); 2]);
+        assert_eq!([at(10.0, false), at(60.0, false)], [Some(MoveTarget::Stroke(0)), Some(MoveTarget::Stroke(1))]);
+        assert_eq!([at(35.0, false), at(60.0, true)], [Some(MoveTarget::Layer); 2]);
         let locked = Layer { lock: LayerLock::All, ..Layer::clone(layer) };
         assert_eq!(held(&document, &locked, vec2(10.0, 20.0), false), None);
     }

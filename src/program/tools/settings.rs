@@ -5,7 +5,7 @@ use super::pen::ModifierKeys;
 use crate::math::range::held;
 use crate::math::{Range, Rect, Size, Vec2, Vec3, vec3};
 use crate::paint::Fill;
-use crate::raster::coverage::Combine;
+use crate::raster::coverage::SelectionMode;
 use crate::shape::{SculptStroke, SculptTool, Touch};
 use crate::surface::region::{RegionKind, SurfaceRegion};
 
@@ -32,7 +32,7 @@ pub enum StrokePurpose {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SelectSettings {
     /// How a new selection meets the one there is, where no key says otherwise.
-    pub combine: Combine,
+    pub combine: SelectionMode,
     /// The wand: its region is that of a fill.
     pub wand: Fill,
     /// The wand takes only what is joined to the pixel.
@@ -44,7 +44,7 @@ pub struct SelectSettings {
 impl Default for SelectSettings {
     fn default() -> Self {
         Self {
-            combine: Combine::Replace,
+            combine: SelectionMode::Replace,
             wand: Fill { grow_px: 0.0, ..Fill::default() },
             joined: true,
             region: SurfaceRegion::new(RegionKind::Direction, Vec2::ZERO),
@@ -61,11 +61,11 @@ impl SelectSettings {
         Self { region: SurfaceRegion { kind, tolerance: kind.tolerance(), ..self.region }, ..self }
     }
     /// How a selection meets the one there is: Shift adds, Alt takes away, both intersect.
-    pub fn how(&self, keys: ModifierKeys) -> Combine {
+    pub fn how(&self, keys: ModifierKeys) -> SelectionMode {
         match (keys.shift, keys.alt) {
-            (true, true) => Combine::Intersect,
-            (true, false) => Combine::Add,
-            (false, true) => Combine::TakeAway,
+            (true, true) => SelectionMode::Intersect,
+            (true, false) => SelectionMode::Add,
+            (false, true) => SelectionMode::TakeAway,
             (false, false) => self.combine,
         }
     }

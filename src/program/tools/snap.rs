@@ -18,7 +18,7 @@ pub struct ViewAids {
     pub locked: bool,
     /// The grid is shown.
     pub grid_shown: bool,
-    pub grid: Grid,
+    pub grid: CanvasGrid,
     /// Whether anything snaps at all.
     pub snaps: bool,
     pub to_guides: bool,
@@ -35,7 +35,7 @@ pub struct ViewAids {
 
 /// Level and upright lines at equal distances.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Grid {
+pub struct CanvasGrid {
     /// From one line to the next, px.
     pub spacing: f32,
     /// Parts of each square.
@@ -44,7 +44,7 @@ pub struct Grid {
     pub offset: Vec2,
 }
 
-impl Grid {
+impl CanvasGrid {
     pub const SPACING: Range = 2.0..=10_000.0;
     pub const SUBDIVISIONS: std::ops::RangeInclusive<u32> = 1..=16;
 
@@ -74,7 +74,7 @@ impl Default for ViewAids {
             guides: true,
             locked: false,
             grid_shown: false,
-            grid: Grid { spacing: 64.0, subdivisions: 2, offset: Vec2::ZERO },
+            grid: CanvasGrid { spacing: 64.0, subdivisions: 2, offset: Vec2::ZERO },
             snaps: true,
             to_guides: true,
             to_grid: true,
@@ -91,7 +91,7 @@ impl Default for ViewAids {
 pub struct SnapTargets {
     /// Upright lines by their x, then level ones by their y.
     lines: [Vec<f32>; 2],
-    grid: Option<Grid>,
+    grid: Option<CanvasGrid>,
     radius_px: f32,
 }
 
@@ -245,7 +245,7 @@ mod tests {
         assert_eq!(near(&layers, 143.0, 59.0), vec2(140.0, 61.0));
         let grid = only(|aids| {
             (aids.to_grid, aids.grid_shown) = (true, true);
-            aids.grid = Grid { spacing: 30.0, subdivisions: 2, offset: vec2(1.0, 0.0) };
+            aids.grid = CanvasGrid { spacing: 30.0, subdivisions: 2, offset: vec2(1.0, 0.0) };
         });
         assert_eq!(near(&grid, 48.0, -13.0), vec2(46.0, -15.0));
         assert_eq!(near(&to(ViewAids { snaps: false, ..ViewAids::default() }), 41.0, 33.0), vec2(41.0, 33.0));

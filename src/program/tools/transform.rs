@@ -18,7 +18,7 @@ use crate::document::{Document, Layer, LayerId, LayerLock};
 use crate::math::{PlaneMap, Vec2};
 use gesture::{HeldLayer, TransformGesture};
 use pivot::PivotGesture;
-use placed::{FrameMap, Placed, said};
+use placed::{FrameMap, LayerPlacement, said};
 
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let document = context.document;
@@ -48,8 +48,9 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     if of_shape && pen.keys.ctrl && matches!(handle, FrameHandle::Corner(_)) {
         return (None, Outcome::Refused("A shape has no perspective: its depth would not fit. Drag its sides."));
     }
-    let held =
-        |layer: &&Layer| Some(HeldLayer { id: layer.id, own: Placed::of(layer), map: document.map_of(layer.id)? });
+    let held = |layer: &&Layer| {
+        Some(HeldLayer { id: layer.id, own: LayerPlacement::of(layer), map: document.map_of(layer.id)? })
+    };
     let layers = layers.iter().filter_map(held).collect();
     let (document, snap) = (document.clone(), context.snap.clone());
     let (from, lines) = (pen.place(), SnapLines::default());
@@ -87,7 +88,7 @@ pub fn about_shape(document: &Document, map: PlaneMap) -> Option<[f64; 6]> {
 
 /// A layer with what it shows taken along by a map of the canvas; `None` where that cannot be said.
 pub fn mapped(document: &Document, layer: LayerId, on_canvas: PlaneMap) -> Option<Document> {
-    let (own, whole) = (Placed::of(document.layer(layer)?), document.map_of(layer)?);
+    let (own, whole) = (LayerPlacement::of(document.layer(layer)?), document.map_of(layer)?);
     let next = own.then(&whole, &FrameMap::OnCanvas(on_canvas), document.size)?;
     document.with_layer(layer, |layer| next.put(layer))
 }

@@ -4,7 +4,7 @@
 use crate::document::Mesh;
 use crate::math::Vec2;
 use crate::session::Session;
-use crate::tools::frame::Carried;
+use crate::tools::frame::TransformTarget;
 use crate::tools::transform::mesh;
 use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, vec2};
 
@@ -15,7 +15,7 @@ const HANDLE_PT: f32 = 9.0;
 pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2) {
     let Some(tab) = session.active() else { return };
     let chosen = tab.outermost_chosen();
-    if session.carried == Carried::Paint
+    if session.carried == TransformTarget::Paint
         && let [one] = chosen[..]
         && let Some((mesh, points)) = tab.shown().layer(one).and_then(|layer| mesh::points_of(tab.shown(), layer))
     {

@@ -2,7 +2,7 @@
 //! Floor 7.
 
 use super::row::{LINE, MenuCommand, always, ctrl, ctrl_shift, has_document, row};
-use crate::raster::coverage::Combine;
+use crate::raster::coverage::SelectionMode;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::{EdgeChange, SelectionAction};
 use crate::session::{Action, LayerPath, Session};
@@ -56,11 +56,11 @@ pub const COMMANDS: &[MenuCommand] = &[
         "Selects where the layer is opaque; Ctrl-click on its thumbnail does the same",
         has_document,
         |session, requests| {
-            of_layer(session, requests, |layer| SelectionAction::Layer { layer, how: Combine::Replace })
+            of_layer(session, requests, |layer| SelectionAction::Layer { layer, how: SelectionMode::Replace })
         },
     ),
     row("Select mask", &[], "Selects what the layer's mask shows", has_document, |session, requests| {
-        of_layer(session, requests, |layer| SelectionAction::Mask { layer, how: Combine::Replace })
+        of_layer(session, requests, |layer| SelectionAction::Mask { layer, how: SelectionMode::Replace })
     }),
     row(
         "Mask from selection",

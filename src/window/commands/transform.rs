@@ -7,7 +7,7 @@ use crate::requests::UiRequests;
 use crate::session::actions::{LayerAction, PartAction};
 use crate::session::{Action, LayerPaths, Property, Session};
 use crate::tools::ToolKind;
-use crate::tools::frame::Carried;
+use crate::tools::frame::TransformTarget;
 use crate::tools::transform;
 use eframe::egui::Key;
 
@@ -99,7 +99,7 @@ fn turn(session: &Session, requests: &mut UiRequests, degrees: f32) {
 
 /// The shape mapped about its middle, while the transform tool takes it along.
 fn shape_by(session: &Session, map: Option<PlaneMap>) -> Option<Action> {
-    let takes_shape = session.tool == ToolKind::Transform && session.carried == Carried::Shape;
+    let takes_shape = session.tool == ToolKind::Transform && session.carried == TransformTarget::Shape;
     let tab = session.active().filter(|_| takes_shape)?;
     let by = transform::about_shape(tab.document(), map?)?;
     Some(Action::Part(PartAction::TakeAlong { by, done: true }))

@@ -26,14 +26,14 @@ pub fn asked(ask: &WindowRequest, size: Size) -> Dialog {
 }
 
 /// Two sides, which may keep their aspect.
-struct Sides {
+struct CanvasSides {
     from: Size,
     width: u32,
     height: u32,
     keeps_aspect: bool,
 }
 
-impl Sides {
+impl CanvasSides {
     fn of(from: Size, keeps_aspect: bool) -> Self {
         Self { from, width: from.width, height: from.height, keeps_aspect }
     }
@@ -82,7 +82,7 @@ fn about(from: Size, to: Size) -> String {
 
 /// Borders that move.
 pub struct CanvasSizeDialog {
-    sides: Sides,
+    sides: CanvasSides,
     anchor: CanvasAnchor,
 }
 
@@ -101,7 +101,7 @@ const ANCHORS: [(CanvasAnchor, &str); 9] = [
 
 impl CanvasSizeDialog {
     pub fn of(size: Size) -> Self {
-        Self { sides: Sides::of(size, false), anchor: CanvasAnchor::Center }
+        Self { sides: CanvasSides::of(size, false), anchor: CanvasAnchor::Center }
     }
     pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
         ui.set_width(360.0);
@@ -131,13 +131,13 @@ impl CanvasSizeDialog {
 
 /// A picture that becomes larger or smaller.
 pub struct ImageSizeDialog {
-    sides: Sides,
+    sides: CanvasSides,
     filter: Resampling,
 }
 
 impl ImageSizeDialog {
     pub fn of(size: Size) -> Self {
-        Self { sides: Sides::of(size, true), filter: Resampling::Sharp }
+        Self { sides: CanvasSides::of(size, true), filter: Resampling::Sharp }
     }
     pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
         ui.set_width(360.0);

@@ -5,7 +5,7 @@ use super::{DialogAnswer, close};
 use crate::requests::UiRequests;
 use crate::session::actions::GuideAction;
 use crate::session::{Action, Session};
-use crate::tools::snap::{Grid, ViewAids};
+use crate::tools::snap::{CanvasGrid, ViewAids};
 use crate::widgets::check;
 use eframe::egui::{DragValue, Ui};
 
@@ -38,18 +38,19 @@ const CHOICES: [(&str, &str, Choice); 6] = [
     ("To layers", "The edges and middles of what other layers hold", |aids| &mut aids.to_layers),
 ];
 
-fn grid(ui: &mut Ui, grid: &mut Grid) {
+fn grid(ui: &mut Ui, grid: &mut CanvasGrid) {
     let mut number = |label: &str, value: &mut f32, range: std::ops::RangeInclusive<f32>| {
         ui.horizontal(|ui| {
             let label = ui.label(label);
             ui.add(DragValue::new(value).range(range).speed(0.5).suffix(" px")).labelled_by(label.id);
         });
     };
-    number("Spacing", &mut grid.spacing, Grid::SPACING);
+    number("Spacing", &mut grid.spacing, CanvasGrid::SPACING);
     number("Offset x", &mut grid.offset.x, crate::math::COORDINATE);
     number("Offset y", &mut grid.offset.y, crate::math::COORDINATE);
     ui.horizontal(|ui| {
         let label = ui.label("Subdivisions");
-        ui.add(DragValue::new(&mut grid.subdivisions).range(Grid::SUBDIVISIONS).speed(0.05)).labelled_by(label.id);
+        ui.add(DragValue::new(&mut grid.subdivisions).range(CanvasGrid::SUBDIVISIONS).speed(0.05))
+            .labelled_by(label.id);
     });
 }

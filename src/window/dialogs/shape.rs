@@ -2,11 +2,11 @@
 //! Floor 7. What becomes of it is `session::actions::parts::first`'s.
 
 use super::{DialogAnswer, answers};
-use crate::document::parts::drawing::{DrawingLook, Ground};
+use crate::document::parts::drawing::{DrawingLook, FigureBackground};
 use crate::document::{Document, Inflation, LayerId};
 use crate::panels::shape::presets;
 use crate::requests::UiRequests;
-use crate::session::actions::parts::{PartAction, Preset};
+use crate::session::actions::parts::{InflationPreset, PartAction};
 use crate::session::{Action, LayerPath, OpenDocument, Session, drawing};
 use eframe::egui::Ui;
 
@@ -50,7 +50,9 @@ impl ShapeDialog {
     pub fn of(tab: &OpenDocument, found: Option<(LayerId, DrawingLook)>) -> Self {
         match found {
             Some((id, look)) => Self::new(tab, Some(id), look),
-            None => Self::new(tab, None, DrawingLook { ground: Ground::Empty, colors: 0, flat_share: 0.0 }),
+            None => {
+                Self::new(tab, None, DrawingLook { background: FigureBackground::Empty, colors: 0, flat_share: 0.0 })
+            }
         }
     }
     fn new(tab: &OpenDocument, layer: Option<LayerId>, look: DrawingLook) -> Self {
@@ -79,8 +81,8 @@ impl ShapeDialog {
         };
         ui.add_enabled_ui(self.look.colors > 1, |ui| ui.radio_value(&mut self.flats, true, text));
         self.preset = presets(ui, self.preset).unwrap_or(self.preset);
-        if matches!(self.look.ground, Ground::Flat(_)) {
-            ui.weak("Its one-coloured ground becomes a layer of its own, beneath.");
+        if matches!(self.look.background, FigureBackground::Flat(_)) {
+            ui.weak("Its one-coloured background becomes a layer of its own, beneath.");
         }
         let no = if self.is_first { "Only paint" } else { "Cancel" };
         match answers(ui, "Give it a shape", no, true) {
@@ -94,10 +96,10 @@ impl ShapeDialog {
     }
     /// Why there is nothing to give a shape to.
     fn refusal(&self) -> Option<&'static str> {
-        match self.look.ground {
-            Ground::Transparent | Ground::Flat(_) if self.layer.is_some() => None,
-            Ground::Painted => Some(
-                "No layer has an outline: this one is opaque all over, and its ground has many colours. Select the \
+        match self.look.background {
+            FigureBackground::Transparent | FigureBackground::Flat(_) if self.layer.is_some() => None,
+            FigureBackground::Painted => Some(
+                "No layer has an outline: this one is opaque all over, and its background has many colours. Select the \
                  figure (W or L), then Layer, New part, Inflate selection.",
             ),
             _ => Some(
@@ -109,7 +111,7 @@ impl ShapeDialog {
     fn ask(&self, tab: usize, document: &Document, requests: &mut UiRequests) {
         let Some(layer) = self.layer.and_then(|layer| LayerPath::of(document, layer)) else { return };
         requests.act(Action::File(crate::session::actions::FileAction::Tab { index: tab }));
-        let (preset, flats) = (Preset(self.preset), self.flats);
+        let (preset, flats) = (InflationPreset(self.preset), self.flats);
         requests.act(Action::Part(PartAction::Shape { layer, preset, flats }));
     }
 }

@@ -3,7 +3,7 @@
 
 use super::{brush, colors};
 use crate::file_purpose::FilePurpose;
-use crate::io::recipe::{Preset, PresetGroup};
+use crate::io::recipe::{BrushPreset, PresetGroup};
 use crate::paint::Property;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::hand::SIZES;
@@ -40,7 +40,7 @@ fn presets(ui: &mut Ui, session: &Session, swatches: &mut Swatches, requests: &m
     }
     for (group, name) in PresetGroup::ALL {
         let presets = session.presets.iter().filter(|preset| preset.group == group && is_found(preset, &search));
-        let presets: Vec<&Preset> = presets.collect();
+        let presets: Vec<&BrushPreset> = presets.collect();
         if presets.is_empty() {
             continue;
         }
@@ -61,7 +61,7 @@ fn presets(ui: &mut Ui, session: &Session, swatches: &mut Swatches, requests: &m
 }
 
 /// A right click on a brush of the user's own.
-fn remove(response: &Response, known: &Preset, requests: &mut UiRequests) {
+fn remove(response: &Response, known: &BrushPreset, requests: &mut UiRequests) {
     response.context_menu(|ui| {
         if ui.button("Remove brush").clicked() {
             requests.act(Action::File(FileAction::RemoveBrush { name: known.key.clone() }));
@@ -110,7 +110,7 @@ const CELL_PT: eframe::egui::Vec2 = vec2(58.0, 74.0);
 const SWATCH_PT: f32 = 44.0;
 
 /// One preset.
-fn preset(ui: &mut Ui, preset: &Preset, is_on: bool, swatches: &mut Swatches) -> Response {
+fn preset(ui: &mut Ui, preset: &BrushPreset, is_on: bool, swatches: &mut Swatches) -> Response {
     let (rect, response) = ui.allocate_exact_size(CELL_PT, Sense::click());
     let label = &preset.name;
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_on, format!("Brush {label}")));

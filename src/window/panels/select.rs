@@ -4,7 +4,7 @@
 use super::fill::BOUNDS;
 use crate::paint::Fill;
 use crate::paint::fill::{FARTHEST_GROWTH_PX, WIDEST_GAP_PX};
-use crate::raster::coverage::Combine;
+use crate::raster::coverage::SelectionMode;
 use crate::requests::UiRequests;
 use crate::session::actions::SelectionAction;
 use crate::session::{Action, Session};
@@ -14,11 +14,11 @@ use crate::widgets::{NumberField, check, choice};
 use eframe::egui::{Button, Ui};
 
 /// How a new selection meets the last, with labels and hints.
-const WAYS: [(Combine, &str, &str); 4] = [
-    (Combine::Replace, "New", "A new selection takes the place of the last"),
-    (Combine::Add, "Add", "A new selection is added to the last (Shift)"),
-    (Combine::TakeAway, "Take away", "A new selection is taken away from the last (Alt)"),
-    (Combine::Intersect, "Intersect", "Only what is in both stays selected (Shift with Alt)"),
+const WAYS: [(SelectionMode, &str, &str); 4] = [
+    (SelectionMode::Replace, "New", "A new selection takes the place of the last"),
+    (SelectionMode::Add, "Add", "A new selection is added to the last (Shift)"),
+    (SelectionMode::TakeAway, "Take away", "A new selection is taken away from the last (Alt)"),
+    (SelectionMode::Intersect, "Intersect", "Only what is in both stays selected (Shift with Alt)"),
 ];
 
 /// The kinds of region, with their labels.

@@ -8,7 +8,7 @@ use crate::raster::Resampling;
 use crate::requests::UiRequests;
 use crate::session::actions::{HandAction, LayerAction, PartAction};
 use crate::session::{Action, Property, Session};
-use crate::tools::frame::Carried;
+use crate::tools::frame::TransformTarget;
 use crate::tools::transform::{FrameNumbers, PIVOTS};
 use crate::widgets::{choice, named};
 use eframe::egui::{Button, DragValue, Ui};
@@ -17,7 +17,7 @@ use std::ops::RangeInclusive;
 /// The upper row: commands, sampling, pivot.
 pub fn ways(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     if session.shown().is_some_and(|document| document.surface.is_some())
-        && let Some(carried) = choice(ui, "What is transformed", session.carried, &Carried::LABELS)
+        && let Some(carried) = choice(ui, "What is transformed", session.carried, &TransformTarget::LABELS)
     {
         requests.act(Action::Hand(HandAction::Carried { carried }));
     }
@@ -82,7 +82,7 @@ fn meshes(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
 /// The lower row: the frame in numbers; sides and angles change about the pivot.
 pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let Some(tab) = session.active() else { return };
-    let of_shape = session.carried == Carried::Shape && tab.document().surface.is_some();
+    let of_shape = session.carried == TransformTarget::Shape && tab.document().surface.is_some();
     let locked = |id| tab.document().layer(id).is_none_or(|layer| layer.lock == LayerLock::All);
     let chosen = tab.outermost_chosen();
     if chosen.is_empty() && !of_shape {

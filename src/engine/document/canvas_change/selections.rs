@@ -17,11 +17,11 @@ use std::sync::Arc;
 pub struct CarriedSelections<'c> {
     change: &'c CanvasChange,
     /// By the addresses of the old ones.
-    known: RefCell<HashMap<*const Selection, Carried>>,
+    known: RefCell<HashMap<*const Selection, CarriedSelection>>,
 }
 
 /// A selection with what became of it: the old one is kept so that no other takes its address.
-type Carried = (Arc<Selection>, Arc<Selection>);
+type CarriedSelection = (Arc<Selection>, Arc<Selection>);
 
 impl<'c> CarriedSelections<'c> {
     pub fn new(change: &'c CanvasChange) -> Self {

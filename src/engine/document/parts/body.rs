@@ -5,13 +5,13 @@ use super::{Inflation, PartMaps, ProfilePicture};
 use crate::math::srgb::decode;
 use crate::math::{Affine2, Rect, Vec3};
 use crate::raster::Plane;
-use crate::shape::profiles::{self, Profile};
-use crate::shape::{Form, Outline, Rim, Roundness, inflate, tube};
+use crate::shape::profiles::{self, ShadedDrawing};
+use crate::shape::{Form, Outline, OutlineRim, Roundness, inflate, tube};
 use crate::surface::Surface;
 use std::sync::Arc;
 
 /// What takes long to make: an outline with the fields that were solved over it.
-pub struct Body {
+pub struct SolvedOutline {
     /// Through the part's matrix but for its whole px.
     pub outline: Arc<Outline>,
     /// Where its rim is free, since a part in front begins there.
@@ -21,7 +21,12 @@ pub struct Body {
 }
 
 /// The fields that a profile needs over an outline; those that are known stay.
-pub fn inflated(outline: Arc<Outline>, joined: Option<Arc<Plane<bool>>>, known: Option<&Body>, profile: f32) -> Body {
+pub fn inflated(
+    outline: Arc<Outline>,
+    joined: Option<Arc<Plane<bool>>>,
+    known: Option<&SolvedOutline>,
+    profile: f32,
+) -> SolvedOutline {
     let free = joined.as_deref();
     let pillow = known.and_then(|body| body.pillow.clone());
     let tube = known.and_then(|body| body.tube.clone());
@@ -29,7 +34,7 @@ pub fn inflated(outline: Arc<Outline>, joined: Option<Arc<Plane<bool>>>, known: 
     let needs_tube = profile > 0.0 && tube.is_none();
     let pillow = if needs_pillow { Some(Arc::new(inflate::inflate(&outline, free, None))) } else { pillow };
     let tube = if needs_tube { Some(Arc::new(tube::tube(&outline, free, None))) } else { tube };
-    Body { outline, joined, pillow, tube }
+    SolvedOutline { outline, joined, pillow, tube }
 }
 
 /// How far a part goes on beneath the edge of one in front of it.
@@ -98,8 +103,8 @@ pub fn joined(own: &Outline, met: &[StandingOutline]) -> Option<Plane<bool>> {
     free.values().contains(&true).then_some(free)
 }
 
-pub fn formed(body: &Body, inflation: Inflation) -> Form {
-    let rim = Rim::of(&body.outline, body.joined.as_deref());
+pub fn formed(body: &SolvedOutline, inflation: Inflation) -> Form {
+    let rim = OutlineRim::of(&body.outline, body.joined.as_deref());
     let round = Roundness { puff: inflation.puff, rim_deg: inflation.rim_deg };
     let form = |squares: &Plane<f32>| Form::of_squares(&body.outline, squares, &rim, round);
     match (&body.pillow, &body.tube) {
@@ -150,8 +155,8 @@ pub fn of_profiles(shadings: &[ProfilePicture], outline: &Outline, still: Affine
             let byte = shading.picture.coverage.get(x as i32 + x0, y as i32 + y0).unwrap_or(0);
             decode(f32::from(byte) / 255.0)
         });
-        Profile { grey, light: shading.light.normalize_or(Vec3::Z) }
+        ShadedDrawing { grey, light: shading.light.normalize_or(Vec3::Z) }
     };
-    let all: Vec<Profile> = shadings.iter().map(profile).collect();
+    let all: Vec<ShadedDrawing> = shadings.iter().map(profile).collect();
     profiles::formed(&all, outline)?.through(still, most_px)
 }

@@ -1,7 +1,7 @@
 //! The surface of a document from its parts and its maps; what of a part did not change is not made again.
 //! Floor 4.
 
-use super::body::{self, Body, StandingOutline, formed, inflated, joined, of_surface};
+use super::body::{self, SolvedOutline, StandingOutline, formed, inflated, joined, of_surface};
 use super::outlines::OutlineKey;
 use super::unchanged::{apart, same_inks, same_kind, same_list, same_shape};
 use super::upon::{Came, changed, lined};
@@ -9,7 +9,7 @@ use super::{Part, PartKind, Parts};
 use crate::document::{Document, Progress};
 use crate::math::{Affine2, Size};
 use crate::raster::Plane;
-use crate::shape::{Form, Outline, Relief, Rim, Roundness, bevel, sweep};
+use crate::shape::{Form, Outline, OutlineRim, Relief, Roundness, bevel, sweep};
 use crate::surface::{KnownNearest, Surface};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -42,7 +42,7 @@ struct MadePart {
     source: Option<OutlineKey>,
     /// What in front of it its rim may be free at.
     met: Vec<StandingOutline>,
-    body: Arc<Body>,
+    body: Arc<SolvedOutline>,
     /// What it was made through; not of one so large that copies would be too many.
     stages: Option<Stages>,
     /// How far the last that lies on it came.
@@ -257,7 +257,7 @@ impl Document {
         Some(of_it)
     }
     /// A form with what one more part that lies on it does to it.
-    fn with_upon(&self, form: &Form, body: &Body, other: &Part, still: Affine2, came: &mut Came) -> Form {
+    fn with_upon(&self, form: &Form, body: &SolvedOutline, other: &Part, still: Affine2, came: &mut Came) -> Form {
         let PartKind::Lines { lines, .. } = &other.kind else {
             return changed(form, &body.outline, other, still, came);
         };
@@ -282,10 +282,10 @@ impl Document {
         (own, source): (Option<Arc<Outline>>, Option<&OutlineKey>),
         joined: Option<Arc<Plane<bool>>>,
         still: Affine2,
-        known: Option<Arc<Body>>,
-    ) -> Option<(Arc<Body>, Form)> {
+        known: Option<Arc<SolvedOutline>>,
+    ) -> Option<(Arc<SolvedOutline>, Form)> {
         let most_px = self.most_px();
-        let bare = |outline: Arc<Outline>| Body { outline, joined: None, pillow: None, tube: None };
+        let bare = |outline: Arc<Outline>| SolvedOutline { outline, joined: None, pillow: None, tube: None };
         let silhouette = |puff: f32| Roundness { puff, rim_deg: 90.0 };
         let (body, form) = match &part.kind {
             PartKind::Inflate { inflation, .. } => {
@@ -302,7 +302,7 @@ impl Document {
                 let outline = own?;
                 let axis = axis.map(|axis| axis.map(|p| still.transform_point2(p)));
                 let squares = sweep::turned(&outline, axis);
-                let form = Form::of_squares(&outline, &squares, &Rim::silhouette(&outline), silhouette(*puff));
+                let form = Form::of_squares(&outline, &squares, &OutlineRim::silhouette(&outline), silhouette(*puff));
                 (bare(outline), form)
             }
             PartKind::Sweep { balls, puff } => {
@@ -310,7 +310,7 @@ impl Document {
                 let through =
                     balls.iter().map(|b| sweep::Ball { at: still.transform_point2(b.at), radius: b.radius * length });
                 let (outline, squares) = sweep::swept(&through.collect::<Vec<_>>(), most_px)?;
-                let form = Form::of_squares(&outline, &squares, &Rim::silhouette(&outline), silhouette(*puff));
+                let form = Form::of_squares(&outline, &squares, &OutlineRim::silhouette(&outline), silhouette(*puff));
                 (bare(Arc::new(outline)), form)
             }
             PartKind::Primitive(body) => {

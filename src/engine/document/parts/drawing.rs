@@ -1,4 +1,4 @@
-//! What a drawing is before it has a shape: whether its ground is transparent or of one colour, and whether it is of
+//! What a drawing is before it has a shape: whether its background is transparent or of one colour, and whether it is of
 //! flat colours. Floor 4. What parts are made of it is `flats`'.
 
 use super::flats::colors_of;
@@ -10,7 +10,7 @@ use crate::raster::{Plane, TileGrid};
 
 /// What lies around the figure.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Ground {
+pub enum FigureBackground {
     /// Nothing: the alpha is the outline.
     Transparent,
     /// One opaque colour, along the whole border.
@@ -24,16 +24,16 @@ pub enum Ground {
 /// A drawing as it was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DrawingLook {
-    pub ground: Ground,
+    pub background: FigureBackground,
     /// Flat colours of the figure that are large enough to be parts.
     pub colors: usize,
     /// The share of the figure that has one of them, `[0, 1]`.
     pub flat_share: f32,
 }
 
-/// A pixel less opaque than this is ground.
+/// A pixel less opaque than this is background.
 const OPAQUE: u8 = 128;
-/// Of the border that must have the colour of a flat ground.
+/// Of the border that must have the colour of a flat background.
 const LEAST_BORDER: f32 = 0.9;
 /// Of the picture that must be transparent, so that what is left is a figure; and that must be figure.
 const LEAST_SHARE: f32 = 0.004;
@@ -47,25 +47,25 @@ impl DrawingLook {
         let opaque = count(rect, |x, y| tiles.pixel(x, y)[3] >= OPAQUE);
         let all = canvas.area().max(1) as f32;
         if opaque as f32 / all < LEAST_SHARE {
-            return Self { ground: Ground::Empty, colors: 0, flat_share: 0.0 };
+            return Self { background: FigureBackground::Empty, colors: 0, flat_share: 0.0 };
         }
         let is_cut_out = 1.0 - opaque as f32 / all >= LEAST_SHARE;
-        let ground = match flat_ground(tiles, canvas) {
-            _ if is_cut_out => Ground::Transparent,
-            Some(color) => Ground::Flat(color),
-            None => Ground::Painted,
+        let background = match flat_ground(tiles, canvas) {
+            _ if is_cut_out => FigureBackground::Transparent,
+            Some(color) => FigureBackground::Flat(color),
+            None => FigureBackground::Painted,
         };
         // A photograph has as many colours as pixels; none of them will be a part.
-        if ground == Ground::Painted {
-            return Self { ground, colors: 0, flat_share: 0.0 };
+        if background == FigureBackground::Painted {
+            return Self { background, colors: 0, flat_share: 0.0 };
         }
-        let figure = match ground {
-            Ground::Flat(color) => without_ground(tiles, canvas, color),
+        let figure = match background {
+            FigureBackground::Flat(color) => without_background(tiles, canvas, color),
             _ => tiles.clone(),
         };
         let of_figure = count(rect, |x, y| figure.pixel(x, y)[3] >= OPAQUE);
         if of_figure as f32 / all < LEAST_SHARE {
-            return Self { ground: Ground::Empty, colors: 0, flat_share: 0.0 };
+            return Self { background: FigureBackground::Empty, colors: 0, flat_share: 0.0 };
         }
         let colors = colors_of(&figure, figure.bounds());
         let known: Vec<[u8; 4]> = colors.iter().map(|color| bytes_of(*color)).collect();
@@ -73,11 +73,11 @@ impl DrawingLook {
             let pixel = figure.pixel(x, y);
             pixel[3] == 255 && known.iter().any(|color| is_near(pixel, *color))
         });
-        Self { ground, colors: colors.len(), flat_share: flat as f32 / of_figure.max(1) as f32 }
+        Self { background, colors: colors.len(), flat_share: flat as f32 / of_figure.max(1) as f32 }
     }
     /// Whether it can be given a shape as it is.
     pub fn has_outline(&self) -> bool {
-        matches!(self.ground, Ground::Transparent | Ground::Flat(_))
+        matches!(self.background, FigureBackground::Transparent | FigureBackground::Flat(_))
     }
     /// Whether its colours are worth a part each.
     pub fn is_of_flats(&self) -> bool {
@@ -102,7 +102,7 @@ fn flat_ground(tiles: &TileGrid, canvas: Size) -> Option<Color> {
         .map(|(x, y)| tiles.pixel(x, y))
         .collect();
     let like = |color: [u8; 4]| border.iter().filter(|pixel| is_near(**pixel, color)).count();
-    // Of a ground with noise any of its pixels will do; some are tried, all along the border.
+    // Of a background with noise any of its pixels will do; some are tried, all along the border.
     let tried = (0..16).map(|i| border[i * border.len() / 16]).filter(|pixel| pixel[3] == 255);
     let best = tried.max_by_key(|color| like(*color))?;
     let is_most = like(best) as f32 >= LEAST_BORDER * border.len() as f32;
@@ -110,10 +110,10 @@ fn flat_ground(tiles: &TileGrid, canvas: Size) -> Option<Color> {
     is_most.then_some(Color { r, g, b, a })
 }
 
-/// A picture without its flat ground, as far as that is joined to the border. Over the ground's colour it is what it
-/// was: pixels at its edge lose just the share that the ground has of them.
-pub fn without_ground(tiles: &TileGrid, canvas: Size, ground: Color) -> TileGrid {
-    let color = bytes_of(ground);
+/// A picture without its flat background, as far as that is joined to the border. Over the background's colour it is what it
+/// was: pixels at its edge lose just the share that the background has of them.
+pub fn without_background(tiles: &TileGrid, canvas: Size, background: Color) -> TileGrid {
+    let color = bytes_of(background);
     let open = joined_to_border(&Plane::from_fn(canvas, |x, y| is_near(tiles.pixel(x as i32, y as i32), color)));
     let pixel = |x: usize, y: usize| {
         let (x, y) = (x as i32, y as i32);
@@ -171,17 +171,17 @@ mod tests {
 
     const CANVAS: Size = Size { width: 60, height: 50 };
 
-    /// A disc with a soft edge and a hole of the ground's colour, on a ground.
-    fn drawn(ground: [u8; 4], disc: [f32; 3]) -> TileGrid {
+    /// A disc with a soft edge and a hole of the background's colour, on a background.
+    fn drawn(background: [u8; 4], disc: [f32; 3]) -> TileGrid {
         let pixel = |i: usize| {
             let (x, y) = ((i % 60) as f32 + 0.5, (i / 60) as f32 + 0.5);
             let away = ((x - 30.0).powi(2) + (y - 25.0).powi(2)).sqrt();
             let share = (18.5 - away).max(0.0).min(1.0);
             if away < 4.0 {
-                return [ground[0], ground[1], ground[2], 255];
+                return [background[0], background[1], background[2], 255];
             }
-            let mixed = |c: usize| (disc[c] * share + f32::from(ground[c]) * (1.0 - share)).round() as u8;
-            match ground[3] {
+            let mixed = |c: usize| (disc[c] * share + f32::from(background[c]) * (1.0 - share)).round() as u8;
+            match background[3] {
                 0 => [disc[0] as u8, disc[1] as u8, disc[2] as u8, (255.0 * share).round() as u8],
                 _ => [mixed(0), mixed(1), mixed(2), 255],
             }
@@ -192,24 +192,24 @@ mod tests {
     #[test]
     fn a_ground_is_told_from_the_figure_by_alpha_or_by_its_one_colour() {
         let cut_out = DrawingLook::of(&drawn([255, 255, 255, 0], [200.0, 60.0, 20.0]), CANVAS);
-        assert_eq!((cut_out.ground, cut_out.is_of_flats()), (Ground::Transparent, true));
+        assert_eq!((cut_out.background, cut_out.is_of_flats()), (FigureBackground::Transparent, true));
         let white = Color { r: 255, g: 255, b: 255, a: 255 };
         let on_white = DrawingLook::of(&drawn([255; 4], [200.0, 60.0, 20.0]), CANVAS);
-        assert_eq!((on_white.ground, on_white.has_outline()), (Ground::Flat(white), true));
-        assert_eq!(on_white.colors, 2, "the hole is no ground: it is not joined to the border");
+        assert_eq!((on_white.background, on_white.has_outline()), (FigureBackground::Flat(white), true));
+        assert_eq!(on_white.colors, 2, "the hole is no background: it is not joined to the border");
         let noise = |i: u32| crate::math::hash::unit(5, i, 3).mul_add(255.0, 0.0) as u8;
         let photo: Vec<u8> = (0..3000u32).flat_map(|i| [noise(i), noise(i + 9000), noise(i + 20_000), 255]).collect();
         let photo = DrawingLook::of(&TileGrid::from_straight_rgba(&photo, 60, 50, 0, 0), CANVAS);
-        assert_eq!((photo.ground, photo.is_of_flats()), (Ground::Painted, false));
-        assert_eq!(DrawingLook::of(&TileGrid::default(), CANVAS).ground, Ground::Empty);
+        assert_eq!((photo.background, photo.is_of_flats()), (FigureBackground::Painted, false));
+        assert_eq!(DrawingLook::of(&TileGrid::default(), CANVAS).background, FigureBackground::Empty);
         let paper = TileGrid::from_straight_rgba(&[255; 12_000], 60, 50, 0, 0);
-        assert_eq!(DrawingLook::of(&paper, CANVAS).ground, Ground::Empty, "paper alone is no figure");
+        assert_eq!(DrawingLook::of(&paper, CANVAS).background, FigureBackground::Empty, "paper alone is no figure");
     }
     #[test]
     fn a_drawing_without_its_ground_over_that_ground_is_what_it_was() {
-        let ground = Color { r: 240, g: 235, b: 220, a: 255 };
+        let background = Color { r: 240, g: 235, b: 220, a: 255 };
         let drawn = drawn([240, 235, 220, 255], [30.0, 60.0, 120.0]);
-        let bare = without_ground(&drawn, CANVAS, ground);
+        let bare = without_background(&drawn, CANVAS, background);
         assert_eq!(bare.pixel(2, 2), [0; 4]);
         assert_eq!(bare.pixel(30, 25), [240, 235, 220, 255], "the hole stays");
         let mut soft = 0;

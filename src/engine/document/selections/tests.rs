@@ -52,13 +52,13 @@ fn selections_meet_by_every_rule() {
     let old = Document::empty(SIZE).with_selection(Some(square(40, 80)));
     let covered = |how| old.with_combined(square(60, 120), how).selected().map(CoverageGrid::covered);
     let columns = |x0, x1| Some(Rect::new(x0, 20, x1, 90));
-    assert_eq!(covered(Combine::Replace), columns(60, 120));
-    assert_eq!(covered(Combine::Add), columns(40, 120));
-    assert_eq!(covered(Combine::TakeAway), columns(40, 60));
-    assert_eq!(covered(Combine::Intersect), columns(60, 80));
-    let none = Document::empty(SIZE).with_combined(square(60, 120), Combine::TakeAway);
+    assert_eq!(covered(SelectionMode::Replace), columns(60, 120));
+    assert_eq!(covered(SelectionMode::Add), columns(40, 120));
+    assert_eq!(covered(SelectionMode::TakeAway), columns(40, 60));
+    assert_eq!(covered(SelectionMode::Intersect), columns(60, 80));
+    let none = Document::empty(SIZE).with_combined(square(60, 120), SelectionMode::TakeAway);
     assert_eq!(none.selected().map(CoverageGrid::area_px), Some(200.0 * 130.0 - 60.0 * 70.0));
-    assert!(old.with_combined(square(40, 80), Combine::TakeAway).selected().is_none(), "nothing is none");
+    assert!(old.with_combined(square(40, 80), SelectionMode::TakeAway).selected().is_none(), "nothing is none");
 }
 #[test]
 fn what_was_selected_by_the_surface_is_found_anew_when_the_surface_changes() {

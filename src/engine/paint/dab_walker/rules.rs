@@ -7,7 +7,7 @@ use crate::math::{Mat2, Rect, Vec2, hash, srgb::Color, vec2};
 use crate::paint::brush::{Brush, Tip};
 use crate::paint::dynamics::{DabInputs, FAR_DIAMETERS, FAST_LENGTHS_PER_SEC, Input, Property, pace_of, turns_of};
 use crate::paint::habits::{Bearing, Measure, Spread};
-use crate::paint::rim::{Rim, Rims};
+use crate::paint::rim::{Rim, RimTable};
 use crate::paint::scene::Scene;
 use crate::paint::tint;
 use crate::surface::{Curvature, Operator, Surface};
@@ -48,7 +48,7 @@ pub(super) struct DabRules {
     /// Where ways are measured on it, and a of MATH 8.
     measured: Option<(Arc<Surface>, f32)>,
     varies_in_color: bool,
-    rims: Option<Arc<Rims>>,
+    rims: Option<Arc<RimTable>>,
 }
 
 /// What the walk knows where a dab is due.
@@ -106,7 +106,7 @@ impl DabRules {
             reads_surface: [Input::Slope, Input::Curvature, Input::Depth].into_iter().any(follows),
             measured: measured.map(|surface| (surface, amount)),
             varies_in_color: tint::varies(brush),
-            rims: Rims::of(brush),
+            rims: RimTable::of(brush),
         }
     }
     /// How long a px of a way is on the surface, where it is measured there: |S d| of MATH 8, between pixels; 1 off it.

@@ -1,7 +1,7 @@
 //! A placed picture without rounding to bytes: from 16 bits or floats where its file has them, light that is brighter
 //! than white as it is. Floor 3. Twin of `PlacedImage::render_tile`, for pictures that are written once.
 
-use super::{PictureSource, Placed, PlacedImage};
+use super::{ImageLookup, PictureSource, PlacedImage};
 use crate::paint::patches::Patches;
 use crate::paint::scene::Scene;
 use crate::raster::sampler::{Antialias, deep_bilinear_row};
@@ -33,7 +33,7 @@ impl PlacedImage {
         }
         let (texture, width) = (self.source.deep_texture(), area.width());
         let mut positions = DeformedRect::default();
-        let Placed { margin, texels_from_canvas } = self.placed(scene, area, texture.size(), &mut positions);
+        let ImageLookup { margin, texels_from_canvas } = self.placed(scene, area, texture.size(), &mut positions);
         let (mut pixels, mut patches, mut antialias) = (transparent_f32(), Patches::default(), Antialias::default());
         for y in scene.rows(area) {
             let row = (y - area.y0) as usize;

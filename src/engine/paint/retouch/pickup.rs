@@ -21,7 +21,7 @@ const SOFT: f32 = 0.4;
 const LOOKS: f32 = 1024.0;
 
 /// What a brush holds of the paint that it took up; `None` before its first dab.
-pub(super) type Held = Option<[f32; 4]>;
+pub(super) type PickedUpPaint = Option<[f32; 4]>;
 
 /// The colour that a dab paints, premultiplied: less than opaque where it has taken up less than paint. What is held
 /// changes.
@@ -32,7 +32,7 @@ pub(super) fn mixed(
     brush: &Brush,
     own: Color,
     dab: &Dab,
-    held: &mut Held,
+    held: &mut PickedUpPaint,
     retouched: &RetouchPixels,
     scene: &Scene,
 ) -> [f32; 4] {

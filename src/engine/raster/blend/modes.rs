@@ -45,7 +45,7 @@ macro_rules! blend_modes {
 pub(super) use blend_modes;
 
 /// A row of the table.
-struct Row {
+struct ModeRow {
     name: &'static str,
     label: &'static str,
     openraster: &'static str,
@@ -85,9 +85,9 @@ macro_rules! declare {
             /// Every mode with its name in the window.
             pub const LABELS: [(BlendMode, &'static str); Self::COUNT] = [$((BlendMode::$mode, $label)),+];
 
-            const fn row(self) -> Row {
+            const fn row(self) -> ModeRow {
                 match self {
-                    $(BlendMode::$mode => Row {
+                    $(BlendMode::$mode => ModeRow {
                         name: $name,
                         label: $label,
                         openraster: $ora,
@@ -145,7 +145,7 @@ impl BlendMode {
     pub fn is_said_by_photoshop(self) -> bool {
         !matches!(self, BlendMode::Plus | BlendMode::Dissolve)
     }
-    fn find(is: impl Fn(&Row) -> bool) -> Option<Self> {
+    fn find(is: impl Fn(&ModeRow) -> bool) -> Option<Self> {
         Self::ALL.into_iter().map(|(mode, _)| mode).find(|mode| is(&mode.row()))
     }
 }

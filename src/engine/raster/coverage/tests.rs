@@ -18,7 +18,7 @@ proptest! {
     #[test]
     fn each_way_of_combining_is_the_rule_of_a_pixel_everywhere(a: u32, b: u32) {
         let (a, b) = (blots(a), blots(b));
-        for (how, name) in Combine::ALL {
+        for (how, name) in SelectionMode::ALL {
             let both = a.combined(&b, |x, y| how.of(x, y));
             for (x, y) in (-40..180).step_by(7).flat_map(|x| (0..160).step_by(5).map(move |y| (x, y))) {
                 prop_assert_eq!(both.at(x, y), how.of(a.at(x, y), b.at(x, y)), "{} at {}, {}", name, x, y);

@@ -1,45 +1,45 @@
-//! Pixels of a warp side by side: to the bit as [`Window::sample`] finds them one by one. Floor 1.
+//! Pixels of a warp side by side: to the bit as [`SourceWindow::sample`] finds them one by one. Floor 1.
 //!
 //! Weights of a row of pixels are found one tap after another (`weights`); then each pixel adds up what it reads, in
 //! the order of the taps.
 
 use super::Resampling;
 use super::points::PointRow;
-use super::weights::{PatchRow, Row, SideKind, cubic_weights, extents, sides, steps, turned_about, weigh};
-use super::window::{MOST_READ_ALONG, Window};
+use super::weights::{SideKind, TileRow, WarpPatchRow, cubic_weights, extents, sides, steps, turned_about, weigh};
+use super::window::{MOST_READ_ALONG, SourceWindow};
 use crate::raster::TILE;
 
 /// Taps along each axis that are weighed side by side; patches that take more are read pixel by pixel.
 const MOST_TAPS: usize = 8;
 
 /// What a row of pixels needs on the way.
-pub(super) struct Scratch {
+pub(super) struct WarpScratch {
     sides: [SideRow; 2],
-    patches: PatchRow,
+    patches: WarpPatchRow,
     /// Of each tap, row by row of the source, those of all pixels.
-    weights: Vec<Row>,
+    weights: Vec<TileRow>,
     /// Along both axes.
-    cubic: [[Row; 4]; 2],
+    cubic: [[TileRow; 4]; 2],
 }
 
-impl Default for Scratch {
+impl Default for WarpScratch {
     fn default() -> Self {
         Self {
             sides: std::array::from_fn(|_| SideRow::default()),
-            patches: PatchRow::default(),
+            patches: WarpPatchRow::default(),
             weights: vec![[0.0; TILE]; MOST_TAPS * MOST_TAPS],
             cubic: [[[0.0; TILE]; 4]; 2],
         }
     }
 }
 
-/// One side of the piece of the source that each pixel shows, as `Axis` is of one.
+/// One side of the piece of the source that each pixel shows, as `PatchSide` is of one.
 struct SideRow {
-    x: Row,
-    y: Row,
-    reach: Row,
+    x: TileRow,
+    y: TileRow,
+    reach: TileRow,
     /// Below 1 where the side reduces.
-    tent: Row,
+    tent: TileRow,
 }
 
 impl Default for SideRow {
@@ -65,9 +65,9 @@ impl SideRow {
     }
 }
 
-impl Window {
+impl SourceWindow {
     /// What the first pixels of a row show, nothing where no point shows.
-    pub fn row(&self, points: &PointRow, filter: Resampling, scratch: &mut Scratch, out: &mut [[f32; 4]]) {
+    pub fn row(&self, points: &PointRow, filter: Resampling, scratch: &mut WarpScratch, out: &mut [[f32; 4]]) {
         let n = out.len();
         let shown = || points.shows[..n].iter().copied().enumerate().filter(|(_, shows)| *shows).map(|(k, _)| k);
         out.fill([0.0; 4]);
@@ -75,7 +75,7 @@ impl Window {
             shown().for_each(|k| out[k] = self.pixel(points.x[k].floor() as i32, points.y[k].floor() as i32));
             return;
         }
-        let Scratch { sides: [right, down], .. } = scratch;
+        let WarpScratch { sides: [right, down], .. } = scratch;
         let [a, b, c, d] = &points.jacobian;
         right.fill(&a[..n], &b[..n]);
         down.fill(&c[..n], &d[..n]);
@@ -97,8 +97,8 @@ impl Window {
             };
         }
     }
-    /// As [`Window::cubic`], with the weights known.
-    fn under_cubic(&self, points: &PointRow, k: usize, weights: &[[Row; 4]; 2]) -> [f32; 4] {
+    /// As [`SourceWindow::cubic`], with the weights known.
+    fn under_cubic(&self, points: &PointRow, k: usize, weights: &[[TileRow; 4]; 2]) -> [f32; 4] {
         let (x, y) = ((points.x[k] - 0.5).floor() as i32 - 1, (points.y[k] - 0.5).floor() as i32 - 1);
         let mut sum = [0.0; 4];
         if let Some(first) = self.place_within(x, y, [4, 4]) {
@@ -123,8 +123,15 @@ impl Window {
         }
         sum
     }
-    /// As [`Window::reduced`], with the weights known, where they are.
-    fn patch(&self, points: &PointRow, k: usize, filter: Resampling, scratch: &Scratch, known: [usize; 2]) -> [f32; 4] {
+    /// As [`SourceWindow::reduced`], with the weights known, where they are.
+    fn patch(
+        &self,
+        points: &PointRow,
+        k: usize,
+        filter: Resampling,
+        scratch: &WarpScratch,
+        known: [usize; 2],
+    ) -> [f32; 4] {
         let patches = &scratch.patches;
         let taps = patches.taps(k);
         let is_plain = patches.determinant[k].abs() > 1e-3 && patches.reach[k] < 2.0 * MOST_READ_ALONG;
@@ -172,7 +179,7 @@ impl Window {
     }
 }
 
-impl PatchRow {
+impl WarpPatchRow {
     /// How many taps a pixel takes along each axis, if they are few.
     fn taps(&self, k: usize) -> Option<[usize; 2]> {
         let count = |i: usize| self.high[i][k] - self.low[i][k] + 1.0;
@@ -184,7 +191,7 @@ impl PatchRow {
     }
 }
 
-impl Scratch {
+impl WarpScratch {
     /// Finds the taps of a row of pixels and weighs them; how many there are along each axis at most.
     fn patches_of(&mut self, points: &PointRow, n: usize, filter: Resampling) -> [usize; 2] {
         let Self { sides: [right, down], patches, weights, .. } = self;

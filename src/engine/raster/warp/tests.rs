@@ -147,8 +147,8 @@ fn rows_of_pixels_are_to_the_bit_what_each_is_alone() {
         for continues in [false, true] {
             let source = GridSource { grid: &grid, bounds: Rect::new(0, 0, 200, 256), continues };
             let wanted = source.held(map.source_rect(rect));
-            let window = window::Window { rect: wanted, pixels: source.read(wanted), continues };
-            let (mut points, mut scratch) = (PointRow::default(), rows::Scratch::default());
+            let window = window::SourceWindow { rect: wanted, pixels: source.read(wanted), continues };
+            let (mut points, mut scratch) = (PointRow::default(), rows::WarpScratch::default());
             for y in rect.y0..rect.y1 {
                 // Rows that do not fill a tile, too.
                 let mut row = [[9.0; 4]; 61];

@@ -83,7 +83,7 @@ impl PixelMap for TileMap {
         None
     }
     fn source_rect(&self, canvas: Rect) -> Rect {
-        let mut extent = Extent { low: [f32::INFINITY; 2], high: [f32::NEG_INFINITY; 2], reach: 1.0 };
+        let mut extent = PointBounds { low: [f32::INFINITY; 2], high: [f32::NEG_INFINITY; 2], reach: 1.0 };
         let area = canvas.intersect(self.rect);
         for y in area.y0..area.y1 {
             let row = self.place(area.x0, y)..self.place(area.x0, y) + area.width();
@@ -92,7 +92,7 @@ impl PixelMap for TileMap {
             let jacobian = [&a[row.clone()], &b[row.clone()], &c[row.clone()], &d[row.clone()]];
             widen(&mut extent, &p.x[row.clone()], &p.y[row], jacobian);
         }
-        let Extent { low, high, reach } = extent;
+        let PointBounds { low, high, reach } = extent;
         if low[0] > high[0] {
             return Rect::EMPTY;
         }
@@ -103,7 +103,7 @@ impl PixelMap for TileMap {
 }
 
 /// What points reach, and how far their pieces of the source reach around them.
-struct Extent {
+struct PointBounds {
     low: [f32; 2],
     high: [f32; 2],
     reach: f32,
@@ -113,7 +113,7 @@ struct Extent {
 const LANES: usize = 8;
 
 crate::widest! {
-    fn widen(extent: &mut Extent, x: &[f32], y: &[f32], jacobian: [&[f32]; 4]) {
+    fn widen(extent: &mut PointBounds, x: &[f32], y: &[f32], jacobian: [&[f32]; 4]) {
         let n = x.len();
         let (y, [a, b, c, d]) = (&y[..n], jacobian.map(|row| &row[..n]));
         let (mut low, mut high, mut reach) =

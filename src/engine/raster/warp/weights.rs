@@ -7,7 +7,7 @@ use crate::math::fast::{max, min};
 use crate::raster::TILE;
 
 /// A number of each pixel.
-pub type Row = [f32; TILE];
+pub type TileRow = [f32; TILE];
 
 /// How a side weighs what lies along it.
 #[derive(Clone, Copy, PartialEq)]
@@ -18,18 +18,18 @@ pub enum SideKind {
 }
 
 /// The pieces of the source that pixels show, and the taps in them.
-pub struct PatchRow {
+pub struct WarpPatchRow {
     /// What takes a step of the source to parts of the two sides, column by column.
-    pub to_sides: [Row; 4],
-    pub determinant: Row,
+    pub to_sides: [TileRow; 4],
+    pub determinant: TileRow,
     /// The first tap and the last one, columns and rows.
-    pub low: [Row; 2],
-    pub high: [Row; 2],
+    pub low: [TileRow; 2],
+    pub high: [TileRow; 2],
     /// Of the two, the farther reach.
-    pub reach: Row,
+    pub reach: TileRow,
 }
 
-impl Default for PatchRow {
+impl Default for WarpPatchRow {
     fn default() -> Self {
         let row = [0.0; TILE];
         Self { to_sides: [row; 4], determinant: row, low: [row; 2], high: [row; 2], reach: row }
@@ -99,10 +99,10 @@ crate::widest! {
         }
     }
     /// The inverses of two sides.
-    pub fn turned_about(sides: [&[f32]; 4], out: &mut PatchRow) {
+    pub fn turned_about(sides: [&[f32]; 4], out: &mut WarpPatchRow) {
         let n = sides[0].len();
         let [a, b, c, d] = sides.map(|row| &row[..n]);
-        let PatchRow { to_sides: [p, q, r, s], determinant, .. } = out;
+        let WarpPatchRow { to_sides: [p, q, r, s], determinant, .. } = out;
         let (p, q, r, s, determinant) =
             (&mut p[..n], &mut q[..n], &mut r[..n], &mut s[..n], &mut determinant[..n]);
         for k in 0..n {
@@ -133,7 +133,7 @@ crate::widest! {
         }
     }
     /// How far a tap lies from each point, in parts of the two sides.
-    pub fn steps(patches: &PatchRow, points: [&[f32]; 2], step: [f32; 2], out: (&mut [f32], &mut [f32])) {
+    pub fn steps(patches: &WarpPatchRow, points: [&[f32]; 2], step: [f32; 2], out: (&mut [f32], &mut [f32])) {
         let n = points[0].len();
         let [px, py] = points.map(|row| &row[..n]);
         let [p, q, r, s] = &patches.to_sides;
@@ -163,7 +163,7 @@ crate::widest! {
         }
     }
     /// The weights of the four pixels around each point along one axis.
-    pub fn cubic_weights(p: &[f32], filter: Resampling, out: &mut [Row; 4]) {
+    pub fn cubic_weights(p: &[f32], filter: Resampling, out: &mut [TileRow; 4]) {
         let n = p.len();
         let cubic = Cubic::of(filter);
         let [a, b, c, d] = out;

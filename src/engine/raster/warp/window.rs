@@ -11,17 +11,17 @@ pub(super) const WIDEST_PX: f32 = 512.0;
 pub(super) const LONGEST_KEPT_PX: f32 = 1.0 + 1e-3;
 
 /// A part of the source.
-pub(super) struct Window {
+pub(super) struct SourceWindow {
     pub rect: Rect,
     pub pixels: Vec<[f32; 4]>,
     /// Whether the border goes on beyond the rectangle; else there is nothing.
     pub continues: bool,
 }
 
-impl Window {
-    /// The mean of the source about a point: what [`Window::rows`](super::rows) find side by side, pixel by pixel.
+impl SourceWindow {
+    /// The mean of the source about a point: what [`SourceWindow::rows`](super::rows) find side by side, pixel by pixel.
     pub fn sample(&self, p: Vec2, jacobian: Mat2, filter: Resampling) -> [f32; 4] {
-        let (right, down) = (Axis::of(jacobian.x_axis, filter), Axis::of(jacobian.y_axis, filter));
+        let (right, down) = (PatchSide::of(jacobian.x_axis, filter), PatchSide::of(jacobian.y_axis, filter));
         match filter {
             Resampling::Nearest => self.pixel(p.x.floor() as i32, p.y.floor() as i32),
             _ if !right.reduces && !down.reduces => self.cubic(p, filter),
@@ -53,7 +53,7 @@ impl Window {
         sum
     }
     /// The pixels under a parallelogram, weighed along its two sides.
-    pub fn reduced(&self, p: Vec2, axes: [Axis; 2]) -> [f32; 4] {
+    pub fn reduced(&self, p: Vec2, axes: [PatchSide; 2]) -> [f32; 4] {
         let sides = Mat2::from_cols(axes[0].side, axes[1].side);
         let determinant = sides.determinant();
         // Two sides along one line: as a square of the longer one's length.
@@ -84,7 +84,7 @@ impl Window {
 
 /// One side of the piece of the source that a pixel shows, and how it is weighed along it.
 #[derive(Clone, Copy)]
-pub(super) struct Axis {
+pub(super) struct PatchSide {
     /// Source px; at least one long.
     pub side: Vec2,
     pub reduces: bool,
@@ -95,7 +95,7 @@ pub(super) struct Axis {
     tent: f32,
 }
 
-impl Axis {
+impl PatchSide {
     pub fn of(side: Vec2, filter: Resampling) -> Self {
         let length = side.length().min(WIDEST_PX);
         let direction = side.normalize_or(Vec2::X);

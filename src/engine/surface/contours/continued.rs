@@ -2,8 +2,8 @@
 //! Floor 2.
 
 use super::ContourPixel;
-use super::line::{CONTINUED_WEIGHTS, NEAREST_WEIGHTS, PlaneFit, bits};
-use super::window::{Window, steps_of};
+use super::line::{CONTINUED_WEIGHTS, LeastSquaresPlane, NEAREST_WEIGHTS, bits};
+use super::window::{PixelWindow, steps_of};
 use crate::math::{Vec2, vec2};
 
 /// Slopes are drawn toward 0 by this weight: few pixels, or a row of them, tell none.
@@ -16,17 +16,17 @@ const RIM_NBAR: f32 = 0.999;
 /// What a population reads at a pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct Continued {
-    nbar: [PlaneFit; 2],
-    depth: PlaneFit,
+    nbar: [LeastSquaresPlane; 2],
+    depth: LeastSquaresPlane,
 }
 
 impl Continued {
     /// From the pixels of a window; `None` without any.
-    pub fn from(window: &Window, members: u64) -> Option<Self> {
+    pub fn from(window: &PixelWindow, members: u64) -> Option<Self> {
         let fit = |value: &dyn Fn(u32) -> f32| {
             let ridge = if members.count_ones() < LEAST_FOR_A_PLANE { f32::MAX } else { RIDGE };
             let weight_and_value = |i: u32| (CONTINUED_WEIGHTS.at(i), value(i));
-            PlaneFit::weighted(bits(members), ridge, weight_and_value)
+            LeastSquaresPlane::weighted(bits(members), ridge, weight_and_value)
         };
         let nbar = |axis: usize| fit(&|i| window.nbar(i)[axis]);
         Some(Self { nbar: [nbar(0)?, nbar(1)?], depth: fit(&|i| window.depth(i))? })
@@ -48,7 +48,7 @@ impl Continued {
 /// sees, px.
 pub fn plane_of(pixel: &ContourPixel, map: impl Fn(usize, usize) -> f32, from_center: Vec2) -> f32 {
     let ridge = if pixel.others.count_ones() < LEAST_FOR_A_PLANE { f32::MAX } else { RIDGE };
-    let fitted = PlaneFit::weighted(bits(pixel.others), ridge, |i| {
+    let fitted = LeastSquaresPlane::weighted(bits(pixel.others), ridge, |i| {
         let (dx, dy) = steps_of(i);
         (CONTINUED_WEIGHTS.at(i), map((pixel.x + dx) as usize, (pixel.y + dy) as usize))
     });

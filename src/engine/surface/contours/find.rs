@@ -4,7 +4,7 @@
 use super::continued::{Continued, nz_of};
 use super::line::ContourLine;
 use super::maps::ContourMaps;
-use super::window::{ALL, BESIDE, Beside, CENTER, Window};
+use super::window::{ALL, BESIDE, Beside, CENTER, PixelWindow};
 use super::{ContourPixel, Contours};
 use crate::math::Vec2;
 use crate::raster::{Plane, TILE};
@@ -123,7 +123,7 @@ impl Shared {
 impl Examined {
     fn at(maps: &ContourMaps, is_soft: bool, x: i32, y: i32) -> Self {
         let coverage = maps.coverage.at(x as usize, y as usize);
-        let window = Window::around(maps, x, y);
+        let window = PixelWindow::around(maps, x, y);
         if coverage == 0 {
             return if is_soft { Self::default() } else { Self::outside(&window, (x, y)) };
         }
@@ -144,7 +144,7 @@ impl Examined {
         Self { contour, amended: unmixed(&window, across) }
     }
     /// A pixel without surface beside one.
-    fn outside(window: &Window, (x, y): (i32, i32)) -> Self {
+    fn outside(window: &PixelWindow, (x, y): (i32, i32)) -> Self {
         let seeds = BESIDE.map(|beside| 1u64 << beside.bit & window.covered);
         let pieces = seeds.map(|seed| window.pieces(seed, 0).0);
         let Some(&other) = pieces.iter().max_by_key(|piece| piece.count_ones()) else { return Self::default() };
@@ -155,7 +155,7 @@ impl Examined {
         Self { contour: contour_pixel(shared(window, across), (x, y), other), amended: None }
     }
     /// A pixel that continues none of its neighbours, at a depth between theirs: a renderer mixed both sides in it.
-    fn between(window: &Window, (x, y): (i32, i32)) -> Option<Self> {
+    fn between(window: &PixelWindow, (x, y): (i32, i32)) -> Option<Self> {
         let mut beside: Vec<u32> =
             BESIDE.iter().map(|beside| beside.bit).filter(|&i| window.covered >> i & 1 == 1).collect();
         beside.sort_by(|&a, &b| window.depth(a).total_cmp(&window.depth(b)));
@@ -180,7 +180,7 @@ impl Examined {
 }
 
 /// The piece that a covered pixel belongs to, and the largest that ends beside it.
-fn across(window: &Window, linked: u8, is_soft: bool) -> Option<Across> {
+fn across(window: &PixelWindow, linked: u8, is_soft: bool) -> Option<Across> {
     let center = 1u64 << CENTER;
     let mut found: Option<(u32, Across)> = None;
     for Beside { link, bit: i, .. } in BESIDE {
@@ -214,7 +214,7 @@ fn contour_pixel(shared: Option<Shared>, (x, y): (i32, i32), others: u64) -> Opt
 }
 
 /// How the middle pixel is shared; `None` where no single edge passes.
-fn shared(window: &Window, across: Across) -> Option<Shared> {
+fn shared(window: &PixelWindow, across: Across) -> Option<Shared> {
     if across.is_crease {
         let guess = ContourLine::of_mask(across.own, window.inside)?;
         let line = ContourLine::of_depths(window, across.own, across.other).unwrap_or(guess);
@@ -227,7 +227,7 @@ fn shared(window: &Window, across: Across) -> Option<Shared> {
 }
 
 /// The middle pixel's own reading, where its normal is mixed of both sides'.
-fn unmixed(window: &Window, Across { own, other, is_crease, .. }: Across) -> Option<AmendedReading> {
+fn unmixed(window: &PixelWindow, Across { own, other, is_crease, .. }: Across) -> Option<AmendedReading> {
     let rest = own & !(1 << CENTER);
     // Where the surface goes on, what lies between is its own shape.
     if is_crease || other == 0 || rest.count_ones() < 4 {
@@ -247,7 +247,7 @@ fn unmixed(window: &Window, Across { own, other, is_crease, .. }: Across) -> Opt
     is_mixed.then(|| continued(window, rest)).flatten()
 }
 
-fn continued(window: &Window, members: u64) -> Option<AmendedReading> {
+fn continued(window: &PixelWindow, members: u64) -> Option<AmendedReading> {
     let continued = Continued::from(window, members)?;
     let nbar = continued.nbar(Vec2::ZERO);
     Some(AmendedReading { nbar, nz: nz_of(nbar), depth: continued.depth(Vec2::ZERO) })

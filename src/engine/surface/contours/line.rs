@@ -2,7 +2,7 @@
 //! side (MATH 10).
 //! Floor 2. Pure functions of a window; which pixels are looked at is `find`'s.
 
-use super::window::{SIDE, Window, offset_of};
+use super::window::{PixelWindow, SIDE, offset_of};
 use crate::math::{Vec2, vec2};
 use std::sync::LazyLock;
 
@@ -105,8 +105,8 @@ impl ContourLine {
     /// interpolated normals that never reach the rim.
     ///
     /// * `guess`: the mask's own line.
-    pub fn of_normals(window: &Window, near: u64, known: u64, guess: ContourLine) -> Option<Self> {
-        let fitted = PlaneFit::weighted(bits(near), 1e-9, |i| {
+    pub fn of_normals(window: &PixelWindow, near: u64, known: u64, guess: ContourLine) -> Option<Self> {
+        let fitted = LeastSquaresPlane::weighted(bits(near), 1e-9, |i| {
             let nz2 = window.nz_squared(i);
             (NORMALS_WEIGHTS.at(i) * (-nz2 / RIM_NZ_SQUARED).exp(), nz2)
         })?;
@@ -126,11 +126,11 @@ impl ContourLine {
     /// deep. `None` where it contradicts which pixels show which: coarse depth does not tell.
     ///
     /// * `own`, `other`: bits of the window; the nearer side of the line is `own`.
-    pub fn of_depths(window: &Window, own: u64, other: u64) -> Option<Self> {
+    pub fn of_depths(window: &PixelWindow, own: u64, other: u64) -> Option<Self> {
         let fit = |members: u64| {
             let is_plane = members.count_ones() >= LEAST_FOR_A_LINE;
             let depth = |i: u32| (CONTINUED_WEIGHTS.at(i), window.depth(i));
-            is_plane.then(|| PlaneFit::weighted(bits(members), 1e-9, depth)).flatten()
+            is_plane.then(|| LeastSquaresPlane::weighted(bits(members), 1e-9, depth)).flatten()
         };
         let (own_fit, other_fit) = (fit(own)?, fit(other)?);
         let (here, slope) = (own_fit.here - other_fit.here, own_fit.slope - other_fit.slope);
@@ -160,14 +160,14 @@ impl ContourLine {
 
 /// A plane v(x, y) fitted to a window's values by weighted least squares.
 #[derive(Clone, Copy, Debug)]
-pub struct PlaneFit {
+pub struct LeastSquaresPlane {
     /// At the middle pixel's centre.
     pub here: f32,
     /// Per px, image axes.
     pub slope: Vec2,
 }
 
-impl PlaneFit {
+impl LeastSquaresPlane {
     /// `ridge`: added to both slopes' weights, so that few pixels tell a flat plane. `None` without any weight.
     pub fn weighted(
         members: impl Iterator<Item = u32>,
@@ -217,9 +217,9 @@ fn normal_quantile(p: f32) -> f32 {
 }
 
 /// A Gaussian over the window's pixels.
-pub struct Gaussian(LazyLock<[f32; (SIDE * SIDE) as usize]>);
+pub struct WindowGaussian(LazyLock<[f32; (SIDE * SIDE) as usize]>);
 
-impl Gaussian {
+impl WindowGaussian {
     /// The weight of a pixel of the window.
     #[inline(always)]
     pub fn at(&self, i: u32) -> f32 {
@@ -231,12 +231,12 @@ fn gaussian(sigma: f32) -> [f32; (SIDE * SIDE) as usize] {
     std::array::from_fn(|i| (-offset_of(i as u32).length_squared() / (2.0 * sigma * sigma)).exp())
 }
 
-static MASK_WEIGHTS: Gaussian = Gaussian(LazyLock::new(|| gaussian(MASK_SIGMA)));
-static NORMALS_WEIGHTS: Gaussian = Gaussian(LazyLock::new(|| gaussian(NORMALS_SIGMA)));
+static MASK_WEIGHTS: WindowGaussian = WindowGaussian(LazyLock::new(|| gaussian(MASK_SIGMA)));
+static NORMALS_WEIGHTS: WindowGaussian = WindowGaussian(LazyLock::new(|| gaussian(NORMALS_SIGMA)));
 /// For maps that are continued as planes.
-pub static CONTINUED_WEIGHTS: Gaussian = Gaussian(LazyLock::new(|| gaussian(2.0)));
+pub static CONTINUED_WEIGHTS: WindowGaussian = WindowGaussian(LazyLock::new(|| gaussian(2.0)));
 /// For what is carried over from the nearest pixels.
-pub static NEAREST_WEIGHTS: Gaussian = Gaussian(LazyLock::new(|| gaussian(1.0)));
+pub static NEAREST_WEIGHTS: WindowGaussian = WindowGaussian(LazyLock::new(|| gaussian(1.0)));
 
 #[cfg(test)]
 mod tests {
@@ -293,10 +293,10 @@ mod tests {
     #[test]
     fn a_plane_is_fitted_exactly() {
         let value = |i: u32| (1.0, 3.0 + vec2(0.5, -0.25).dot(offset_of(i)));
-        let fit = PlaneFit::weighted(bits(0b1011 << 14), 0.0, value);
+        let fit = LeastSquaresPlane::weighted(bits(0b1011 << 14), 0.0, value);
         assert!(fit.is_some_and(|fit| fit.slope.y == 0.0), "one row tells nothing about y: {fit:?}");
-        let fit = PlaneFit::weighted(bits(ALL & !0xfff), 0.0, value).unwrap();
+        let fit = LeastSquaresPlane::weighted(bits(ALL & !0xfff), 0.0, value).unwrap();
         assert!((fit.here - 3.0).abs() < 1e-5 && (fit.slope - vec2(0.5, -0.25)).length() < 1e-5, "{fit:?}");
-        assert!(PlaneFit::weighted(bits(0), 1.0, value).is_none());
+        assert!(LeastSquaresPlane::weighted(bits(0), 1.0, value).is_none());
     }
 }

@@ -25,7 +25,7 @@ pub(super) use continued::mean_of;
 pub(super) use find::{Found, find};
 pub(super) use line::bits;
 pub(super) use maps::ContourMaps;
-pub(super) use window::{BESIDE, Window};
+pub(super) use window::{BESIDE, PixelWindow};
 
 /// A pixel that two populations see.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,7 +8,7 @@
 
 use super::continued::{Continued, nz_of};
 use super::line::bits;
-use super::window::{Window, steps_of};
+use super::window::{PixelWindow, steps_of};
 use super::{ContourPixel, Contours};
 use crate::math::{Rect, Size, vec2};
 use crate::raster::{Plane, TILE, TileAt};
@@ -196,7 +196,7 @@ impl Surface {
                 |(row, ((nx, ny, nz, depth, coverage, links), pixels))| {
                     let pixels = &contours.pixels[pixels.start as usize..pixels.end as usize];
                     for (i, pixel) in pixels.iter().enumerate() {
-                        let window = Window::around(read, pixel.x, pixel.y);
+                        let window = PixelWindow::around(read, pixel.x, pixel.y);
                         let Some(continued) = Continued::from(&window, pixel.others) else { continue };
                         let (x, y) = place_of(i);
                         for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {

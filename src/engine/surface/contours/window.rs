@@ -45,7 +45,7 @@ pub fn steps_of(i: u32) -> (i32, i32) {
 }
 
 /// What surrounds a pixel.
-pub struct Window<'m> {
+pub struct PixelWindow<'m> {
     maps: &'m ContourMaps<'m>,
     x: i32,
     y: i32,
@@ -57,7 +57,7 @@ pub struct Window<'m> {
     downward: u64,
 }
 
-impl<'m> Window<'m> {
+impl<'m> PixelWindow<'m> {
     pub fn around(maps: &'m ContourMaps, x: i32, y: i32) -> Self {
         let mut window = Self { maps, x, y, inside: 0, covered: 0, rightward: 0, downward: 0 };
         let size = maps.size;

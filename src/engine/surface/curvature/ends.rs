@@ -4,7 +4,7 @@
 //! Floor 2.
 
 use super::tile_rect::TileRect;
-use super::{Rims, slope, tensor};
+use super::{CurvatureRims, slope, tensor};
 use crate::surface::{Surface, links};
 use std::ops::Range;
 
@@ -26,7 +26,7 @@ pub(super) struct EndBlur<'s> {
     /// How far an end is felt, px.
     reach: usize,
     /// The ends' pixels, row by row.
-    rims: &'s Rims,
+    rims: &'s CurvatureRims,
 }
 
 /// A part of the canvas: the normals that flow in it, and over which sides. A thread uses one from tile to tile.
@@ -50,7 +50,7 @@ pub(super) struct FlowRegion {
 
 impl<'s> EndBlur<'s> {
     /// `None` where there is nothing to do.
-    pub fn new(surface: &'s Surface, rims: &'s Rims, blur_px: f32) -> Option<Self> {
+    pub fn new(surface: &'s Surface, rims: &'s CurvatureRims, blur_px: f32) -> Option<Self> {
         let steps = (blur_px * blur_px / (2.0 * FLOW)).round() as usize;
         let is_wanted = steps > 0 && blur_px <= WIDEST_PX && !rims.is_empty();
         is_wanted.then(|| Self { surface, blur_px, steps, reach: (TO * blur_px).ceil() as usize + 1, rims })
@@ -87,7 +87,7 @@ impl<'s> EndBlur<'s> {
 
 impl FlowRegion {
     /// What lies in a rectangle, from column and row to column and row.
-    fn read(&mut self, surface: &Surface, rims: &Rims, [x0, y0, x1, y1]: [usize; 4]) {
+    fn read(&mut self, surface: &Surface, rims: &CurvatureRims, [x0, y0, x1, y1]: [usize; 4]) {
         (self.x0, self.y0, self.width, self.height) = (x0, y0, x1 - x0, y1 - y0);
         for (to, plane) in self.normal.iter_mut().zip(surface.normal_planes()) {
             to.clear();
@@ -128,7 +128,7 @@ impl FlowRegion {
             for _ in 0..steps {
                 for (y, span) in spans.iter().enumerate().filter(|(_, span)| !span.is_empty()) {
                     let up = if y > 0 { &down[row(y - 1)] } else { &nothing[..] };
-                    let sides = Sides { right: &right[row(y)], up, down: &down[row(y)] };
+                    let sides = SideFlows { right: &right[row(y)], up, down: &down[row(y)] };
                     let rows = [y.saturating_sub(1), y, (y + 1).min(last)].map(|y| &channel[row(y)]);
                     flow_row(rows, sides, span.clone(), &mut next[row(y)]);
                 }
@@ -160,14 +160,14 @@ impl FlowRegion {
 
 /// What flows over the sides of a row's pixels.
 #[derive(Clone, Copy)]
-struct Sides<'r> {
+struct SideFlows<'r> {
     right: &'r [f32],
     up: &'r [f32],
     down: &'r [f32],
 }
 
 /// One step of some columns of a row: each pixel moves toward its linked neighbours.
-fn flow_row(rows: [&[f32]; 3], sides: Sides, span: Range<usize>, out: &mut [f32]) {
+fn flow_row(rows: [&[f32]; 3], sides: SideFlows, span: Range<usize>, out: &mut [f32]) {
     let (n, [above, here, below]) = (out.len(), rows);
     let mut at_border = |x: usize| {
         let toward = |flow: f32, value: f32| flow * (value - here[x]);

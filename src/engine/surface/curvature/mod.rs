@@ -12,7 +12,7 @@ mod tiles;
 mod reference;
 
 pub use kappa::{Kappa, KappaScale};
-pub use rims::Rims;
+pub use rims::CurvatureRims;
 
 use super::Surface;
 use super::contours::SheetOf;

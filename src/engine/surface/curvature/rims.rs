@@ -3,7 +3,7 @@
 
 use crate::raster::Plane;
 use crate::surface::Surface;
-use crate::surface::contours::{BESIDE, Window, bits, mean_of};
+use crate::surface::contours::{BESIDE, PixelWindow, bits, mean_of};
 use crate::surface::kept::KeptBytes;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -11,11 +11,11 @@ use std::sync::Arc;
 
 /// The pixels at which a neighbour is missing, and which pixels of the window around them their curvature is continued
 /// from. Differences there are one-sided: noisy, and of a normal that is seen edge-on.
-pub struct Rims {
+pub struct CurvatureRims {
     pixels: Vec<RimPixel>,
 }
 
-impl KeptBytes for Rims {
+impl KeptBytes for CurvatureRims {
     fn kept_bytes(&self) -> u64 {
         size_of_val(&self.pixels[..]) as u64
     }
@@ -30,12 +30,12 @@ struct RimPixel {
 
 impl Surface {
     /// Cached.
-    pub(super) fn rims(&self) -> Arc<Rims> {
-        self.rims_cell().get_or_compute((), 1, |_| Rims::of(self))
+    pub(super) fn rims(&self) -> Arc<CurvatureRims> {
+        self.rims_cell().get_or_compute((), 1, |_| CurvatureRims::of(self))
     }
 }
 
-impl Rims {
+impl CurvatureRims {
     fn of(surface: &Surface) -> Self {
         let rows: Vec<Vec<RimPixel>> = (0..surface.size().height as i32)
             .into_par_iter()
@@ -136,7 +136,7 @@ pub(super) fn members(surface: &Surface, x: i32, y: i32) -> Option<u64> {
         return None;
     }
     surface.with_contour_maps(None, |maps| {
-        let window = Window::around(maps, x, y);
+        let window = PixelWindow::around(maps, x, y);
         let piece = window.piece_of_center();
         let wholes = bits(piece).filter(|&i| {
             let (x, y) = window.pixel(i);

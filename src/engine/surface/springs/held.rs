@@ -6,12 +6,12 @@ use std::ops::Range;
 
 /// What holds some unknowns: the stiffness at their index, of the grid first, then of each coarser level.
 #[derive(Default)]
-pub struct Held {
+pub struct PinStiffness {
     grid: Vec<(u32, f32)>,
     coarser: Vec<Vec<(u32, f32)>>,
 }
 
-impl Held {
+impl PinStiffness {
     /// Those of a run of the grid's unknowns, in order.
     #[inline(always)]
     pub(super) fn each_in(&self, run: Range<usize>, mut visit: impl FnMut(usize, f32)) {
@@ -32,7 +32,7 @@ impl Held {
 impl SpringSolver {
     /// What holds the grid's unknowns: their index, ascending, and a stiffness `> 0`. One that no spring joins to
     /// another is left out.
-    pub fn held(&self, mut grid: Vec<(u32, f32)>) -> Held {
+    pub fn held(&self, mut grid: Vec<(u32, f32)>) -> PinStiffness {
         grid.retain(|(i, _)| self.parent[*i as usize] != graph::NONE);
         let mut coarser: Vec<Vec<(u32, f32)>> = Vec::with_capacity(self.graphs.len());
         let mut parents = &self.parent[..];
@@ -48,6 +48,6 @@ impl SpringSolver {
             coarser.push(sums);
             parents = graph.parents();
         }
-        Held { grid, coarser }
+        PinStiffness { grid, coarser }
     }
 }

@@ -140,12 +140,12 @@ impl PlaneLayout {
 /// Each object whose plane shows something, with its extent there; not yet laid out.
 fn extents(surface: &Surface, unwrapping: &Unwrapping) -> Vec<LaidPiece> {
     let labels = surface.objects().labels();
-    let mut found: Vec<Option<Extent>> = vec![None; surface.objects().count() + 1];
+    let mut found: Vec<Option<ObjectExtent>> = vec![None; surface.objects().count() + 1];
     for (y, row) in (0..labels.height()).map(|y| (y, labels.row(y))) {
         for (x, &label) in row.iter().enumerate().filter(|(_, label)| **label > 0) {
             let (at, links) = (unwrapping.at(x, y), surface.links_plane().at(x, y));
             let Some(found) = found.get_mut(label as usize).filter(|_| at.is_finite()) else { continue };
-            let extent = found.get_or_insert(Extent { low: at, high: at, at: (x, y), links: 0 });
+            let extent = found.get_or_insert(ObjectExtent { low: at, high: at, at: (x, y), links: 0 });
             (extent.low, extent.high) = (extent.low.min(at), extent.high.max(at));
             // Where an anchor stands its piece must be the one that is seen.
             if links.count_ones() > extent.links {
@@ -153,7 +153,7 @@ fn extents(surface: &Surface, unwrapping: &Unwrapping) -> Vec<LaidPiece> {
             }
         }
     }
-    let piece = |(object, extent): (usize, Extent)| {
+    let piece = |(object, extent): (usize, ObjectExtent)| {
         let (low, high) = (extent.low.floor(), extent.high.ceil());
         let rect = Rect::new(low.x as i32, low.y as i32, high.x as i32, high.y as i32);
         let at = vec2(extent.at.0 as f32, extent.at.1 as f32) + 0.5;
@@ -165,7 +165,7 @@ fn extents(surface: &Surface, unwrapping: &Unwrapping) -> Vec<LaidPiece> {
 
 /// What is known of an object's plane.
 #[derive(Clone, Copy)]
-struct Extent {
+struct ObjectExtent {
     low: Vec2,
     high: Vec2,
     /// Its pixel with the most links, the first of those, and how many they are.

@@ -10,7 +10,7 @@ use crate::paint::dynamics::{Curve, Dynamics, Input, Property};
 use crate::paint::grain::{BrushGrain, GrainSource};
 use crate::paint::{Brush, ColorJitter, Tip};
 use crate::psd::descriptor::DescriptorObject;
-use crate::psd::pattern::Pattern;
+use crate::psd::pattern::PatternResource;
 use crate::raster::Picture;
 use std::path::Path;
 
@@ -45,15 +45,15 @@ impl Control {
 }
 
 /// A description being carried over to a brush.
-pub struct Carried<'a> {
+pub struct AbrConversion<'a> {
     preset: &'a DescriptorObject,
     pub brush: Brush,
     pub notes: Vec<String>,
 }
 
 /// A brush with all that a description drives. Nothing follows the pressure unless it says so.
-pub fn carried<'a>(preset: &'a DescriptorObject, brush: Brush, notes: Vec<String>) -> Carried<'a> {
-    let mut carried = Carried { preset, brush: Brush { dynamics: Dynamics::none(), ..brush }, notes };
+pub fn carried<'a>(preset: &'a DescriptorObject, brush: Brush, notes: Vec<String>) -> AbrConversion<'a> {
+    let mut carried = AbrConversion { preset, brush: Brush { dynamics: Dynamics::none(), ..brush }, notes };
     if preset.flag("useTipDynamics") {
         carried.shape();
     }
@@ -81,7 +81,7 @@ fn share(percent: f32) -> f32 {
     (percent / 100.0).max(0.0).min(1.0)
 }
 
-impl Carried<'_> {
+impl AbrConversion<'_> {
     /// A percentage of the brush itself, or of a part of it; 0 where neither says it.
     fn percent(&self, name: &str, part: Option<&DescriptorObject>, in_part: &str) -> f32 {
         // A part often says 0 where the brush says more.
@@ -198,7 +198,7 @@ impl Carried<'_> {
         }
     }
     /// The texture that it takes paint away by; its pattern is in the collection.
-    pub fn textured(&mut self, file: &Path, patterns: &[Pattern], tips: &mut TipNames) {
+    pub fn textured(&mut self, file: &Path, patterns: &[PatternResource], tips: &mut TipNames) {
         if !self.preset.flag("useTexture") {
             return;
         }
@@ -231,7 +231,7 @@ impl Carried<'_> {
 }
 
 /// A pattern's light as grain; where it is transparent it takes no paint.
-fn grain_picture(pattern: &Pattern, inverted: bool) -> Option<Picture> {
+fn grain_picture(pattern: &PatternResource, inverted: bool) -> Option<Picture> {
     let (size, rgba) = pattern.picture();
     let grey = |[r, g, b, a]: &[u8; 4]| {
         let v = srgb::quantise((0.299 * f32::from(*r) + 0.587 * f32::from(*g) + 0.114 * f32::from(*b)) / 255.0);
@@ -261,7 +261,7 @@ mod tests {
     }
     fn told(values: Values) -> (Brush, Vec<String>) {
         let preset = DescriptorObject::of(values);
-        let Carried { brush, notes, .. } = carried(&preset, Brush::default(), Vec::new());
+        let AbrConversion { brush, notes, .. } = carried(&preset, Brush::default(), Vec::new());
         (brush, notes)
     }
     fn at(brush: &Brush, property: Property, pressure: f32) -> f32 {
@@ -332,7 +332,7 @@ mod tests {
     }
     #[test]
     fn a_texture_is_the_collection_s_pattern() {
-        let pattern = Pattern::grey("p", crate::math::Size::new(2, 1), &[0, 200]);
+        let pattern = PatternResource::grey("p", crate::math::Size::new(2, 1), &[0, 200]);
         let values = |blend: &[u8]| {
             DescriptorObject::of(vec![
                 ("useTexture", Flag(true)),
@@ -343,7 +343,7 @@ mod tests {
                 ("textureBlendMode", Word(blend.into())),
             ])
         };
-        let textured = |preset: &DescriptorObject, patterns: &[Pattern]| {
+        let textured = |preset: &DescriptorObject, patterns: &[PatternResource]| {
             let mut carried = carried(preset, Brush::default(), Vec::new());
             carried.textured(Path::new("a.abr"), patterns, &mut TipNames::default());
             (carried.brush.grain, carried.notes)

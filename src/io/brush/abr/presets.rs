@@ -7,7 +7,7 @@ use crate::brush::ImportedBrush;
 use crate::brush::TipNames;
 use crate::paint::{Brush, Tip};
 use crate::psd::descriptor::DescriptorObject;
-use crate::psd::pattern::Pattern;
+use crate::psd::pattern::PatternResource;
 use std::path::Path;
 
 /// One brush of a collection.
@@ -49,7 +49,7 @@ fn said(preset: &DescriptorObject) -> Option<AbrPreset<'_>> {
 /// Where the pictures of a collection come from and go to.
 pub struct AbrPictures<'a> {
     pub file: &'a Path,
-    pub patterns: &'a [Pattern],
+    pub patterns: &'a [PatternResource],
     pub tips: &'a mut TipNames,
 }
 

@@ -9,18 +9,18 @@ use crate::paint::dynamics::{Curve, Input, MOST_ADDED};
 #[derive(Clone)]
 pub struct Added {
     pub base: f32,
-    pub rows: Vec<Row>,
+    pub rows: Vec<AddedInput>,
 }
 
 /// What an input of ours adds.
 #[derive(Clone)]
-pub struct Row {
+pub struct AddedInput {
     pub input: Input,
     /// From left to right.
     pub points: Vec<Vec2>,
 }
 impl Added {
-    pub fn add(&mut self, row: Row) {
+    pub fn add(&mut self, row: AddedInput) {
         match self.rows.iter_mut().find(|known| known.input == row.input) {
             Some(known) => known.points = summed(&known.points, &row.points),
             None => self.rows.push(row),
@@ -44,7 +44,7 @@ impl Added {
     }
     /// Its least and its most.
     pub fn range(&self) -> [f32; 2] {
-        let ends = |row: &Row| {
+        let ends = |row: &AddedInput| {
             let all = row.points.iter().map(|p| p.y);
             [all.clone().fold(f32::INFINITY, f32::min), all.fold(f32::NEG_INFINITY, f32::max)]
         };
@@ -52,19 +52,19 @@ impl Added {
     }
     /// The value where all that drives it is halfway.
     pub fn halfway(&self) -> f32 {
-        self.base + self.rows.iter().map(Row::halfway).sum::<f32>()
+        self.base + self.rows.iter().map(AddedInput::halfway).sum::<f32>()
     }
     /// The row that changes it most.
     pub fn main_row(&self) -> Option<usize> {
         (0..self.rows.len()).max_by(|&a, &b| self.rows[a].span().total_cmp(&self.rows[b].span()))
     }
     /// The value where one input is at a place and all others add nothing.
-    pub fn at(&self, row: &Row, x: f32) -> f32 {
+    pub fn at(&self, row: &AddedInput, x: f32) -> f32 {
         self.base + level(&row.points, x)
     }
 }
 
-impl Row {
+impl AddedInput {
     /// What it adds at a place of its input.
     pub fn at(&self, x: f32) -> f32 {
         level(&self.points, x)

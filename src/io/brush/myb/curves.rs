@@ -22,11 +22,12 @@ pub const STEPS: usize = 40;
 const BESIDE: f32 = 1e-4;
 impl Scales {
     /// Which of our inputs is one of theirs, and how it runs.
-    pub fn way(&self, input: &str) -> Option<Way> {
+    pub fn way(&self, input: &str) -> Option<InputMapping> {
         let Scales { radius, gammas, pressure, custom } = *self;
-        let whole = |input, x: [f32; 2]| Some(Way::Runs(input, vec![CurvePiece::straight([0.0, 1.0], x)]));
-        let paces =
-            |input, gamma| Some(Way::Runs(input, vec![CurvePiece { t: [0.0, 1.0], x: Course::Speed { gamma } }]));
+        let whole = |input, x: [f32; 2]| Some(InputMapping::Runs(input, vec![CurvePiece::straight([0.0, 1.0], x)]));
+        let paces = |input, gamma| {
+            Some(InputMapping::Runs(input, vec![CurvePiece { t: [0.0, 1.0], x: Course::Speed { gamma } }]))
+        };
         match input {
             "pressure" => whole(Input::Pressure, [0.0, pressure]),
             "random" => whole(Input::Chance, [0.0, 1.0]),
@@ -37,7 +38,7 @@ impl Scales {
             // Clockwise, and the same for both ways along a line.
             "direction" => {
                 let half = |from: f32| CurvePiece::straight([from, from + 0.5], [180.0, 0.0]);
-                Some(Way::Runs(Input::Direction, vec![half(0.0), half(0.5)]))
+                Some(InputMapping::Runs(Input::Direction, vec![half(0.0), half(0.5)]))
             }
             "direction_angle" => whole(Input::Direction, [360.0, 0.0]),
             "tilt_declination" => whole(Input::Tilt, [90.0, 0.0]),
@@ -45,19 +46,22 @@ impl Scales {
             "tilt_ascension" => {
                 let upright = CurvePiece::straight([0.0, 0.0], [0.0, 0.0]);
                 let (right, rest) = (CurvePiece::straight([0.0, 0.25], [-90.0, -180.0]), [180.0, -90.0]);
-                Some(Way::Runs(Input::TiltDirection, vec![upright, right, CurvePiece::straight([0.25, 1.0], rest)]))
+                Some(InputMapping::Runs(
+                    Input::TiltDirection,
+                    vec![upright, right, CurvePiece::straight([0.25, 1.0], rest)],
+                ))
             }
             "attack_angle" => whole(Input::Attack, [-180.0, 180.0]),
-            "brush_radius" => Some(Way::Still(radius)),
+            "brush_radius" => Some(InputMapping::Still(radius)),
             // As large as it is, not turned.
-            "viewzoom" | "barrel_rotation" => Some(Way::Still(0.0)),
+            "viewzoom" | "barrel_rotation" => Some(InputMapping::Still(0.0)),
             _ => None,
         }
     }
 }
 
 /// How one of their inputs stands to ours.
-pub enum Way {
+pub enum InputMapping {
     /// It is always this.
     Still(f32),
     Runs(Input, Vec<CurvePiece>),

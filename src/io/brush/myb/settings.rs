@@ -1,8 +1,8 @@
 //! The settings of one of MyPaint's files, each asked for by its name; what nothing asks for is told.
 //! Floor 5. Not here: what they make of a brush (`dab`, `hand`), how curves run (`curves`).
 
-use super::added::{Added, Row};
-use super::curves::{Scales, Way, at, curve_of, number, sampled};
+use super::added::{Added, AddedInput};
+use super::curves::{InputMapping, Scales, at, curve_of, number, sampled};
 use crate::math::vec2;
 use crate::paint::dynamics::Input;
 use serde_json::{Map, Value};
@@ -79,8 +79,10 @@ impl<'a> MyPaintSettings<'a> {
         for (input, points) in inputs.into_iter().flatten() {
             let Some(points) = curve_of(points) else { continue };
             match self.scales.way(input) {
-                Some(Way::Still(x)) => added.base += at(&points, x),
-                Some(Way::Runs(input, pieces)) => added.add(Row { input, points: sampled(&pieces, &points) }),
+                Some(InputMapping::Still(x)) => added.base += at(&points, x),
+                Some(InputMapping::Runs(input, pieces)) => {
+                    added.add(AddedInput { input, points: sampled(&pieces, &points) })
+                }
                 None => {
                     let input: String = input.chars().filter(|c| !c.is_control()).take(60).collect();
                     self.note(&format!("“{name}” does not follow “{input}”"));
@@ -92,7 +94,7 @@ impl<'a> MyPaintSettings<'a> {
     /// What a setting that follows the pressure from nothing adds.
     pub fn pressure(&self) -> Added {
         let points = vec![vec2(0.0, 0.0), vec2(1.0, self.scales.pressure)];
-        Added { base: 0.0, rows: vec![Row { input: Input::Pressure, points }] }
+        Added { base: 0.0, rows: vec![AddedInput { input: Input::Pressure, points }] }
     }
     /// The setting that drives the custom input, as what it adds to our own, which runs from 0 to 1.
     pub fn custom(&mut self) -> Added {

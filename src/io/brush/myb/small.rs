@@ -1,7 +1,7 @@
 //! How large a dab of MyPaint's is that is only a few pixels wide: its rim is smoothed in a way that lengthens its
 //! axes. Floor 5.
 
-use super::added::{Added, Row};
+use super::added::{Added, AddedInput};
 use super::curves::STEPS;
 use super::settings::MyPaintSettings;
 use crate::math::vec2;
@@ -81,7 +81,7 @@ impl DabSmoothing {
         places.sort_by(f32::total_cmp);
         places.dedup();
         let points = places.into_iter().map(|x| vec2(x, here(rest + row.at(x)) - base)).collect();
-        let row = Row { input: row.input, points };
+        let row = AddedInput { input: row.input, points };
         let mut ours = Added { base: theirs.base + base - rest, ..theirs };
         ours.rows[main] = row;
         ours
@@ -125,7 +125,7 @@ mod tests {
     }
     #[test]
     fn what_drives_the_radius_most_drives_what_is_seen() {
-        let row = |input, to: f32| Row { input, points: vec![vec2(0.0, -to), vec2(1.0, to)] };
+        let row = |input, to: f32| AddedInput { input, points: vec![vec2(0.0, -to), vec2(1.0, to)] };
         let theirs = Added { base: 0.2, rows: vec![row(Input::Pressure, 1.0), row(Input::Chance, 0.1)] };
         let hard = dab(1.0, 0.0, 1.0);
         let ours = hard.radius_log_here(theirs.clone());

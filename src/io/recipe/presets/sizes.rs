@@ -1,6 +1,6 @@
 //! Every preset's strokes on a canvas twice as large, reduced by half, beside the strokes themselves.
 
-use super::{Preset, presets};
+use super::{BrushPreset, presets};
 use crate::document::{Content, Document, Layer, Live, Progress, StrokeList, flatten};
 use crate::math::srgb::Color;
 use crate::math::{Size, Vec2, vec2, vec3};
@@ -69,7 +69,7 @@ fn apart(a: &[[f32; 3]], b: &[[f32; 3]], ground: Color) -> Vec<f32> {
 }
 
 /// A preset's stroke as large as it is, and twice as large and reduced again.
-fn twice(preset: &Preset, surface: Option<Arc<Surface>>) -> Vec<f32> {
+fn twice(preset: &BrushPreset, surface: Option<Arc<Surface>>) -> Vec<f32> {
     let dark = u32::from(preset.color.r) + u32::from(preset.color.g) + u32::from(preset.color.b) < 380;
     let ground = if dark { Color::WHITE } else { Color { r: 40, g: 40, b: 46, a: 255 } };
     let stroke = Stroke::new(preset.brush.clone(), preset.operator, preset.color, wave());

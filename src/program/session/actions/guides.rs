@@ -8,11 +8,11 @@ use crate::session::Session;
 use crate::session::replay::{actions, names, record};
 use crate::tools::PenSample;
 use crate::tools::guides::pull;
-use crate::tools::snap::{Grid, SnapTargets, ViewAids};
+use crate::tools::snap::{CanvasGrid, SnapTargets, ViewAids};
 use std::sync::Arc;
 
 names!(AssistantKind);
-record!(Grid { spacing, subdivisions, offset });
+record!(CanvasGrid { spacing, subdivisions, offset });
 record!(ViewAids {
     rulers,
     guides,

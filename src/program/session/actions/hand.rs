@@ -9,7 +9,7 @@ use crate::session::Session;
 use crate::session::replay::{ReplayValue, actions, as_in_recipes, names, record};
 use crate::shape::SculptStroke;
 use crate::surface::{Operator, PaintLimit};
-use crate::tools::frame::Carried;
+use crate::tools::frame::TransformTarget;
 use crate::tools::symmetry::{MOST_ROUND, SymmetryAxes};
 use crate::tools::{Symmetry, ToolKind};
 use serde_json::Value;
@@ -18,7 +18,7 @@ names!(ToolKind);
 names!(PaintLimit);
 names!(LiquifyTool);
 record!(LiquifySettings { tool, size, strength, one_object, foreshortened });
-names!(Carried);
+names!(TransformTarget);
 record!(Fill { tolerance, gap_px, grow_px, antialias, layer_alone, bounded });
 
 as_in_recipes!(BrushMode);
@@ -79,7 +79,7 @@ actions! {
         /// Whether the brush paints, smudges, blurs or clones.
         "mark" Mark { mark: BrushMode }
         /// What the transform tool takes along.
-        "carried" Carried { carried: Carried }
+        "carried" Carried { carried: TransformTarget }
         /// Where the brush may paint.
         "bounded" Bounded { bounded: PaintLimit }
         /// How far from the pen its marks may land, in diameters; 0 is anywhere.

@@ -17,7 +17,7 @@ use crate::session::open_document::Edit;
 use crate::session::replay::actions;
 use crate::session::{LayerPath, LayerPaths, OpenDocument, Property, Session};
 use crate::shading::{Model, Shading};
-use crate::tools::frame::Carried;
+use crate::tools::frame::TransformTarget;
 use crate::tools::transform::{self, mapped};
 use flattening::undisplaced;
 use new::{made, model_name, selecting};
@@ -270,7 +270,7 @@ fn set(tab: &mut OpenDocument, layers: &LayerPaths, to: &Property, done: bool) {
 /// The document with what layers show taken along by a map of the canvas: a step, or a preview of one.
 fn take_along(session: &mut Session, layers: &LayerPaths, by: [f64; 6], done: bool) {
     let Some(tab) = session.active_mut() else { return };
-    tab.hold_frame(Carried::Paint);
+    tab.hold_frame(TransformTarget::Paint);
     let document = tab.document();
     let ids = layers.find(document).map(|ids| document.outermost(&ids)).unwrap_or_default();
     let map = PlaneMap::affine(by).filter(|_| !ids.is_empty());

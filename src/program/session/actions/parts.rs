@@ -28,16 +28,16 @@ record!(ShapeSettings { tool, size, hardness, height, share, normal, radius, rea
 
 /// A preset of inflation, by its name.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Preset(pub Inflation);
+pub struct InflationPreset(pub Inflation);
 
-impl ReplayValue for Preset {
+impl ReplayValue for InflationPreset {
     fn written(&self) -> Value {
         let known = Inflation::PRESETS.iter().find(|(preset, _)| *preset == self.0);
         known.map_or(Inflation::PRESETS[0].1, |(_, name)| name).into()
     }
     fn read(value: &Value) -> Result<Self, String> {
         let known = value.as_str().and_then(|word| Inflation::PRESETS.iter().find(|(_, name)| *name == word));
-        known.map(|(preset, _)| Preset(*preset)).ok_or_else(|| format!("is {value}, which is no preset"))
+        known.map(|(preset, _)| InflationPreset(*preset)).ok_or_else(|| format!("is {value}, which is no preset"))
     }
 }
 
@@ -47,7 +47,7 @@ actions! {
         /// Of the selected layer, the selection or the chosen part, as its kind says; in front of all others.
         "add" Add { kind: NewPart }
         /// A layer gets a shape: one part of its alpha, or one of each of its flat colours, and a Base that is lit.
-        "shape" Shape { layer: LayerPath, preset: Preset, flats: bool }
+        "shape" Shape { layer: LayerPath, preset: InflationPreset, flats: bool }
         /// A part anew, as recipes write it; shown only, until it is `done`.
         "set" Set { part: Value, done: bool }
         /// With what lies on it.
@@ -66,8 +66,8 @@ actions! {
 }
 
 /// Why something could not be done.
-type Refusal = &'static str;
-const NO_PART: Refusal = "There is no such part.";
+type PartRefusal = &'static str;
+const NO_PART: PartRefusal = "There is no such part.";
 
 impl PartAction {
     pub fn apply(&self, session: &mut Session) {
@@ -99,12 +99,12 @@ impl PartAction {
         matches!(self, PartAction::Shape { .. }).then_some("Giving it a shape")
     }
     /// Performs a long edit on a document, on any thread; `None` for any other.
-    pub fn shaped(&self, document: &Document, progress: &Progress) -> Result<Option<FirstShape>, Refusal> {
+    pub fn shaped(&self, document: &Document, progress: &Progress) -> Result<Option<FirstShape>, PartRefusal> {
         let PartAction::Shape { layer, preset, flats } = self else { return Ok(None) };
         let layer = layer.find(document).map(|layer| layer.id).ok_or("There is no such layer.")?;
         first::shaped(document, layer, preset.0, *flats, progress).map(Some)
     }
-    fn step(&self, tab: &mut OpenDocument) -> Result<(), Refusal> {
+    fn step(&self, tab: &mut OpenDocument) -> Result<(), PartRefusal> {
         let document = tab.document();
         let of = |id: &str| document.parts.part(id).cloned().ok_or(NO_PART);
         let (label, next, chosen) = match self {

@@ -6,13 +6,13 @@ use crate::math::range::held;
 use crate::math::{COORDINATE, Vec2, vec2};
 use crate::paint::Selection;
 use crate::raster::CoverageGrid;
-use crate::raster::coverage::{Combine, edges};
+use crate::raster::coverage::{SelectionMode, edges};
 use crate::session::replay::{actions, as_in_recipes, names, record};
 use crate::session::{LayerPath, Session};
 use crate::surface::region::{RegionKind, SurfaceRegion};
 use crate::tools::{SelectSettings, select};
 
-names!(Combine);
+names!(SelectionMode);
 names!(RegionKind);
 as_in_recipes!(SurfaceRegion);
 record!(SelectSettings { combine, wand, joined, region });
@@ -62,16 +62,16 @@ actions! {
         /// By whole pixels; what is selected stays where it is.
         "move" Move { by: Vec2 }
         /// By the surface, about a point.
-        "region" Region { region: SurfaceRegion, how: Combine }
+        "region" Region { region: SurfaceRegion, how: SelectionMode }
         /// Where a layer is opaque.
-        "layer" Layer { layer: LayerPath, how: Combine }
+        "layer" Layer { layer: LayerPath, how: SelectionMode }
         /// What a layer's mask shows.
-        "mask" Mask { layer: LayerPath, how: Combine }
+        "mask" Mask { layer: LayerPath, how: SelectionMode }
         /// The selection becomes a layer's mask.
         "to mask" ToMask { layer: LayerPath }
         /// Kept by a name, in the place of one of that name.
         "keep" Keep { name: String }
-        "take" Take { name: String, how: Combine }
+        "take" Take { name: String, how: SelectionMode }
         "forget" Forget { name: String }
         /// Closes the lasso whose corners are being set, or drops it.
         "close lasso" CloseLasso {}
@@ -187,7 +187,7 @@ impl SelectionAction {
                 let selection = kept.ok_or("There is no selection of that name.")?.selection.clone();
                 let next = match how {
                     // The very same, so that it is stored once.
-                    Combine::Replace => Document { active_selection: Some(selection), ..document.clone() },
+                    SelectionMode::Replace => Document { active_selection: Some(selection), ..document.clone() },
                     _ => document.with_combined(Selection::clone(&selection), *how),
                 };
                 ("Select", next)

@@ -4,7 +4,7 @@
 use super::OpenDocument;
 use crate::document::{Document, LayerId};
 use crate::math::Vec2;
-use crate::tools::frame::{Carried, Framed, KeptFrame, TransformFrame};
+use crate::tools::frame::{Framed, KeptFrame, TransformFrame, TransformTarget};
 
 /// The chosen layers. They count as long as the primary one is among them: whatever selects another layer alone lets go
 /// of the others.
@@ -37,24 +37,24 @@ impl OpenDocument {
         self.selected == Some(layer) || self.selected.is_some_and(also)
     }
     /// The frame of the transform tool around them, or around the shape, as they are shown.
-    pub fn frame(&self, carried: Carried) -> Option<TransformFrame> {
+    pub fn frame(&self, carried: TransformTarget) -> Option<TransformFrame> {
         self.frame_in(self.shown(), carried)
     }
     /// The same as the last step left it.
-    pub fn frame_before(&self, carried: Carried) -> Option<TransformFrame> {
+    pub fn frame_before(&self, carried: TransformTarget) -> Option<TransformFrame> {
         self.frame_in(self.document(), carried)
     }
-    fn frame_in(&self, document: &Document, carried: Carried) -> Option<TransformFrame> {
+    fn frame_in(&self, document: &Document, carried: TransformTarget) -> Option<TransformFrame> {
         let chosen = self.outermost_chosen();
         self.chosen_layers.frame.around(document, Framed::new(carried, document, &chosen))
     }
     /// The frame around the chosen layers turns with them from now on.
-    pub(in crate::session) fn hold_frame(&mut self, carried: Carried) {
+    pub(in crate::session) fn hold_frame(&mut self, carried: TransformTarget) {
         let (document, layers) = (self.document().clone(), self.outermost_chosen());
         self.chosen_layers.frame.hold(&document, Framed::new(carried, &document, &layers));
     }
     /// The frame around the chosen layers is turned about this point from now on, by shares of its sides.
-    pub(in crate::session) fn set_pivot(&mut self, carried: Carried, share: Vec2) {
+    pub(in crate::session) fn set_pivot(&mut self, carried: TransformTarget, share: Vec2) {
         let (document, layers) = (self.document().clone(), self.outermost_chosen());
         self.chosen_layers.frame.set_pivot(&document, Framed::new(carried, &document, &layers), share);
     }

@@ -3,7 +3,7 @@
 
 use super::{clay, scaled, wave};
 use crate::document::{Content, Document, Layer, Live, PixelLayer};
-use crate::io::recipe::Preset;
+use crate::io::recipe::BrushPreset;
 use crate::math::{Size, Vec2, srgb::Color, vec2};
 use crate::raster::TileGrid;
 use crate::surface::Surface;
@@ -16,7 +16,7 @@ const BANDS: f32 = 5.0;
 const COLORS: [[u8; 4]; 3] = [[0xc9, 0x65, 0x3f, 255], [0x2f, 0x7f, 0x86, 255], [0xec, 0xe0, 0xc4, 255]];
 
 /// The document with the stroke; `None` if the stroke changed nothing.
-pub fn drawn(preset: &Preset, surface: Arc<Surface>, scale: f32, background: Color) -> Option<Document> {
+pub fn drawn(preset: &BrushPreset, surface: Arc<Surface>, scale: f32, background: Color) -> Option<Document> {
     let size = surface.size();
     let side = size.width.min(size.height) as f32;
     let paint = PixelLayer { tiles: bands(size, side), file: String::new(), x: 0, y: 0 };

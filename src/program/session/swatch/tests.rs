@@ -15,7 +15,7 @@ fn every_preset_leaves_a_mark_on_the_ball() {
         let image = painted(&preset, 96).unwrap();
         // A retouching brush paints with its flow.
         let brush = Brush { opacity: 0.0, flow: 0.0, ..preset.brush.clone() };
-        let bare = painted(&Preset { brush, ..preset.clone() }, 96).unwrap();
+        let bare = painted(&BrushPreset { brush, ..preset.clone() }, 96).unwrap();
         let pairs = image.as_chunks::<4>().0.iter().zip(bare.as_chunks::<4>().0);
         let marked = pairs.filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 12)).count();
         assert!(marked > 60, "{}: {marked}", preset.key);
@@ -43,12 +43,12 @@ fn sample(name: &str) -> Arc<Surface> {
     Arc::new(surface.fitted(Size::new(CELL, CELL)).unwrap())
 }
 /// A preset as its file is now, so that a file can be changed and looked at without a build.
-fn current(preset: Preset) -> Preset {
+fn current(preset: BrushPreset) -> BrushPreset {
     load_preset(&in_package(&format!("brushes/{}.json", preset.key)), &Budget::default()).unwrap()
 }
 /// A group's presets side by side, on the ball and on two samples below each other.
 fn sheet(group: PresetGroup, samples: &[Arc<Surface>]) -> image::RgbImage {
-    let presets: Vec<Preset> = presets().map(current).filter(|preset| preset.group == group).collect();
+    let presets: Vec<BrushPreset> = presets().map(current).filter(|preset| preset.group == group).collect();
     let mut sheet = image::RgbImage::new(CELL * presets.len() as u32, CELL * (1 + samples.len() as u32));
     for (column, preset) in (0..).zip(&presets) {
         let on_samples = samples.iter().map(|surface| painted_on(preset, surface.clone()).unwrap());

@@ -68,7 +68,7 @@ fn the_shape_is_turned_scaled_and_mirrored_by_numbers_and_a_perspective_is_refus
     let half = surface(&session);
     assert_eq!((half.coverage(100, 75), half.coverage(100, 40)), (255, 0), "half as large about the middle");
     let steps = session.active().unwrap().history.past().count();
-    let frame = session.active().unwrap().frame(crate::tools::frame::Carried::Shape).unwrap();
+    let frame = session.active().unwrap().frame(crate::tools::frame::TransformTarget::Shape).unwrap();
     let corner = frame.corners[2];
     let keys = r#"{"shift":false,"ctrl":true,"alt":false}"#;
     let pen = format!("[{},{},1,0,0,0,{keys}]", corner.x, corner.y);

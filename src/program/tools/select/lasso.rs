@@ -5,7 +5,7 @@ use super::{SLOP_PT, combined, step};
 use crate::document::Document;
 use crate::math::Vec2;
 use crate::paint::Selection;
-use crate::raster::coverage::{Combine, shapes};
+use crate::raster::coverage::{SelectionMode, shapes};
 use crate::tools::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext};
 
 /// Corners of one lasso.
@@ -28,13 +28,13 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
 }
 
 /// The document with the inside of a closed line selected.
-pub fn selected(document: &Document, points: &[Vec2], how: Combine) -> Document {
+pub fn selected(document: &Document, points: &[Vec2], how: SelectionMode) -> Document {
     combined(document, Selection::new(shapes::polygon(points, document.size.rect())), how)
 }
 
 struct LassoGesture {
     document: Document,
-    how: Combine,
+    how: SelectionMode,
     points: Vec<Vec2>,
     /// Where the pen came down.
     at: Vec2,

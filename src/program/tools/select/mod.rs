@@ -13,7 +13,7 @@ use super::{Gesture, GestureStart, Outcome, PenSample, SelectSettings, ToolConte
 use crate::document::Document;
 use crate::math::{Range, Vec2};
 use crate::paint::Selection;
-use crate::raster::coverage::{Combine, CoverageGrid};
+use crate::raster::coverage::{CoverageGrid, SelectionMode};
 
 /// Screen points that the pen moves for all of a tolerance's range.
 const TOLERANCE_PT: f32 = 500.0;
@@ -24,8 +24,8 @@ const SLOP_PT: f32 = 3.0;
 pub fn press(kind: ToolKind, context: &ToolContext, pen: PenSample) -> GestureStart {
     match kind {
         ToolKind::SelectRectangle | ToolKind::SelectEllipse if moves(context, pen) => shapes::moving(context, pen),
-        ToolKind::SelectRectangle => shapes::press(context, pen, shapes::Shape::Rectangle),
-        ToolKind::SelectEllipse => shapes::press(context, pen, shapes::Shape::Ellipse),
+        ToolKind::SelectRectangle => shapes::press(context, pen, shapes::SelectionShape::Rectangle),
+        ToolKind::SelectEllipse => shapes::press(context, pen, shapes::SelectionShape::Ellipse),
         ToolKind::Lasso => lasso::press(context, pen),
         ToolKind::Wand => wand::press(context, pen),
         ToolKind::SurfaceWand => surface::press(context, pen),
@@ -45,7 +45,7 @@ fn moves(context: &ToolContext, pen: PenSample) -> bool {
     // All of the canvas is taken hold of by nobody who drags a rectangle in it.
     let is_all = |grid: &CoverageGrid| grid.area_px() >= document.size.area() as f64;
     let is_in = document.selected().is_some_and(|grid| grid.at(at.x, at.y) >= 128 && !is_all(grid));
-    is_in && pen.place().is_finite() && context.select.how(pen.keys) == Combine::Replace
+    is_in && pen.place().is_finite() && context.select.how(pen.keys) == SelectionMode::Replace
 }
 
 /// The tolerance that a drag to the right or the left says.
@@ -63,6 +63,6 @@ fn step(document: Document) -> Outcome {
     Outcome::Commit { label: "Select".into(), document, select: None }
 }
 
-fn combined(document: &Document, new: Selection, how: Combine) -> Document {
+fn combined(document: &Document, new: Selection, how: SelectionMode) -> Document {
     document.with_combined(new, how)
 }

@@ -5,17 +5,17 @@ use crate::document::Document;
 use crate::math::{Rect, Vec2};
 use crate::paint::Selection;
 use crate::raster::CoverageGrid;
-use crate::raster::coverage::{Combine, shapes};
+use crate::raster::coverage::{SelectionMode, shapes};
 use crate::tools::snap::{SnapLines, SnapTargets};
 use crate::tools::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
 
 #[derive(Clone, Copy, PartialEq)]
-pub enum Shape {
+pub enum SelectionShape {
     Rectangle,
     Ellipse,
 }
 
-pub fn press(context: &ToolContext, pen: PenSample, shape: Shape) -> GestureStart {
+pub fn press(context: &ToolContext, pen: PenSample, shape: SelectionShape) -> GestureStart {
     let (document, how) = (context.document.clone(), context.select.how(pen.keys));
     let slop_px = SLOP_PT * context.px_per_pt;
     let (snap, lines) = (context.snap.clone(), SnapLines::default());
@@ -25,8 +25,8 @@ pub fn press(context: &ToolContext, pen: PenSample, shape: Shape) -> GestureStar
 
 struct ShapeGesture {
     document: Document,
-    shape: Shape,
-    how: Combine,
+    shape: SelectionShape,
+    how: SelectionMode,
     from: Vec2,
     to: Vec2,
     slop_px: f32,
@@ -43,8 +43,8 @@ impl ShapeGesture {
         let canvas = self.document.size.rect();
         let coverage = match self.shape {
             // Along whole pixels, as they are seen.
-            Shape::Rectangle => shapes::rectangle(self.from.round(), self.to.round(), canvas),
-            Shape::Ellipse => shapes::ellipse(self.from, self.to, canvas),
+            SelectionShape::Rectangle => shapes::rectangle(self.from.round(), self.to.round(), canvas),
+            SelectionShape::Ellipse => shapes::ellipse(self.from, self.to, canvas),
         };
         combined(&self.document, Selection::new(coverage), self.how)
     }
@@ -66,7 +66,7 @@ impl Gesture for ShapeGesture {
             return step(self.with());
         }
         // A click beside the selection lets go of it, which can be undone.
-        match self.how == Combine::Replace && self.document.active_selection.is_some() {
+        match self.how == SelectionMode::Replace && self.document.active_selection.is_some() {
             true => {
                 Outcome::Commit { label: "Deselect".into(), document: self.document.with_selection(None), select: None }
             }

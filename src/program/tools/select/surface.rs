@@ -6,7 +6,7 @@ use super::{combined, dragged};
 use crate::document::Document;
 use crate::math::Vec2;
 use crate::paint::Selection;
-use crate::raster::coverage::Combine;
+use crate::raster::coverage::SelectionMode;
 use crate::surface::region::{RegionField, SurfaceRegion};
 use crate::tools::{Gesture, GestureStart, Outcome, PenSample, SelectSettings, ToolContext};
 
@@ -34,7 +34,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
 
 struct RegionGesture {
     document: Document,
-    how: Combine,
+    how: SelectionMode,
     field: RegionField,
     from: Vec2,
     begun: SurfaceRegion,

@@ -5,7 +5,7 @@ use super::{combined, dragged};
 use crate::document::{Content, Document, PreparedDocument, Progress};
 use crate::math::{Rect, Vec2};
 use crate::paint::{Fill, Selection};
-use crate::raster::coverage::Combine;
+use crate::raster::coverage::SelectionMode;
 use crate::raster::{Tile, TileAt, TileGrid};
 use crate::surface::objects::CanvasPart;
 use crate::tools::{Gesture, GestureStart, Outcome, PenSample, SelectSettings, ToolContext};
@@ -18,9 +18,9 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         return (None, Outcome::Refused("Click on the canvas: the wand selects what is like the pixel you click."));
     }
     let picture = match layer_alone(context) {
-        Some(tiles) if settings.wand.layer_alone => ReadPicture::Layer(tiles),
+        Some(tiles) if settings.wand.layer_alone => WandSource::Layer(tiles),
         _ => match PreparedDocument::new(document, &Progress::default()) {
-            Some(prepared) => ReadPicture::new(prepared, document.size.rect()),
+            Some(prepared) => WandSource::new(prepared, document.size.rect()),
             None => return (None, Outcome::Idle),
         },
     };
@@ -47,12 +47,12 @@ fn layer_alone(context: &ToolContext) -> Option<TileGrid> {
 }
 
 /// What the wand reads; each tile is flattened once, however the tolerance changes.
-enum ReadPicture {
+enum WandSource {
     Layer(TileGrid),
     Whole { prepared: Box<PreparedDocument>, columns: i32, tiles: Vec<OnceLock<Option<Arc<Tile>>>> },
 }
 
-impl ReadPicture {
+impl WandSource {
     fn new(prepared: PreparedDocument, canvas: Rect) -> Self {
         let tiles: Vec<_> = TileAt::covering(canvas).map(|_| OnceLock::new()).collect();
         let columns = TileAt::of_pixel(canvas.x1 - 1, 0).col + 1;
@@ -60,8 +60,8 @@ impl ReadPicture {
     }
     fn tile(&self, at: TileAt) -> Option<Arc<Tile>> {
         match self {
-            ReadPicture::Layer(tiles) => tiles.tile(at).cloned(),
-            ReadPicture::Whole { prepared, columns, tiles } => {
+            WandSource::Layer(tiles) => tiles.tile(at).cloned(),
+            WandSource::Whole { prepared, columns, tiles } => {
                 let cell = tiles.get((at.row * columns + at.col) as usize)?;
                 cell.get_or_init(|| prepared.flatten_tile(at)).clone()
             }
@@ -71,9 +71,9 @@ impl ReadPicture {
 
 struct WandGesture {
     document: Document,
-    how: Combine,
+    how: SelectionMode,
     part: CanvasPart,
-    picture: ReadPicture,
+    picture: WandSource,
     from: Vec2,
     begun: SelectSettings,
     /// With the tolerance as far as it was dragged.

@@ -2,7 +2,7 @@
 //! Floor 5.
 
 use super::corner::within_convex;
-use super::placed::{FrameMap, Placed};
+use super::placed::{FrameMap, LayerPlacement};
 use crate::document::FrameBox;
 use crate::document::{Document, LayerId, LayerMap};
 use crate::math::{PlaneMap, Vec2, vec2};
@@ -13,7 +13,7 @@ use crate::tools::{Gesture, Outcome, PenSample};
 /// A layer that is dragged, as it was before.
 pub struct HeldLayer {
     pub id: LayerId,
-    pub own: Placed,
+    pub own: LayerPlacement,
     pub map: LayerMap,
 }
 
@@ -34,7 +34,7 @@ pub struct TransformGesture {
 /// What a drag came to.
 pub enum Dragged {
     /// The layers in their places, in the order of those held.
-    Layers(Vec<Placed>),
+    Layers(Vec<LayerPlacement>),
     /// Where the shape goes on the canvas.
     Shape(PlaneMap),
 }
@@ -71,7 +71,7 @@ impl TransformGesture {
         let layers = self.layers.iter().map(|layer| self.dragged_layer(layer, map, on_canvas));
         layers.collect::<Option<_>>().map(Dragged::Layers)
     }
-    fn dragged_layer(&self, layer: &HeldLayer, map: &FrameMap, on_canvas: PlaneMap) -> Option<Placed> {
+    fn dragged_layer(&self, layer: &HeldLayer, map: &FrameMap, on_canvas: PlaneMap) -> Option<LayerPlacement> {
         let on_canvas = FrameMap::OnCanvas(on_canvas);
         // The frame of one layer is its own: numbers stay as exact as they can.
         let map = if self.layers.len() == 1 { map } else { &on_canvas };

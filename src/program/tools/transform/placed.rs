@@ -8,12 +8,12 @@ use std::sync::Arc;
 
 /// Where a layer is placed: its transform and its liquify.
 #[derive(Clone, PartialEq)]
-pub(super) struct Placed {
+pub(super) struct LayerPlacement {
     pub transform: Option<LayerTransform>,
     pub liquify: Option<Arc<Lattice>>,
 }
 
-impl Placed {
+impl LayerPlacement {
     pub fn of(layer: &Layer) -> Self {
         Self { transform: layer.transform.clone(), liquify: layer.liquify.clone() }
     }

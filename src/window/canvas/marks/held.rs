@@ -6,7 +6,7 @@ use crate::document::{Content, Document, Layer, LayerId};
 use crate::math::{Vec2, vec2};
 use crate::session::Session;
 use crate::tools::frame::TransformFrame;
-use crate::tools::move_content::{Held, held};
+use crate::tools::move_content::{MoveTarget, held};
 use eframe::egui::{Id, Painter, Pos2, Shape};
 
 /// Of a layer with more strokes only the bounds are shown: to find the one under the pointer would take too long for
@@ -19,7 +19,7 @@ const DASH_PT: f32 = 6.0;
 struct Last {
     layer: LayerId,
     at: Vec2,
-    held: Held,
+    held: MoveTarget,
 }
 
 /// `under`: the canvas point under the pointer.
@@ -34,11 +34,11 @@ pub fn draw(painter: &Painter, session: &Session, under: Option<Vec2>, to_screen
     if tab.is_previewing() {
         let Some(last) = last else { return };
         return match last.held {
-            Held::Stroke(index) => {
+            MoveTarget::Stroke(index) => {
                 let strokes = tab.shown().strokes_on_canvas(layer.id);
                 strokes.get(index).into_iter().for_each(|stroke| line_through(painter, stroke, to_screen));
             }
-            Held::Layer => bounds(painter, tab.shown(), layer.id, to_screen),
+            MoveTarget::Layer => bounds(painter, tab.shown(), layer.id, to_screen),
         };
     }
     let Some(at) = under.map(Vec2::floor) else { return };
@@ -48,12 +48,12 @@ pub fn draw(painter: &Painter, session: &Session, under: Option<Vec2>, to_screen
     let Some(now) = known.or_else(|| held(tab.shown(), layer, at + vec2(0.5, 0.5), whole)) else { return };
     painter.ctx().data_mut(|data| data.insert_temp(id, Last { layer: layer.id, at, held: now }));
     match now {
-        Held::Stroke(index) => {
+        MoveTarget::Stroke(index) => {
             let scene = tab.shown().scene_of(layer.id).unwrap_or_else(|| tab.shown().scene());
             let strokes = tab.shown().strokes_on_canvas(layer.id);
             outlined(painter, strokes.get(index).into_iter().collect(), &scene, to_screen);
         }
-        Held::Layer => bounds(painter, tab.shown(), layer.id, to_screen),
+        MoveTarget::Layer => bounds(painter, tab.shown(), layer.id, to_screen),
     }
 }
 

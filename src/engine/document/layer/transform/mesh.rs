@@ -151,7 +151,7 @@ impl Mesh {
     /// Where a point of the frame goes, and how the place moves with it.
     pub fn at(&self, p: Vec2) -> (Vec2, Mat2) {
         let s = (p - self.frame.corner) / self.cell();
-        let (x, y) = (Weights::at(s.x, self.columns), Weights::at(s.y, self.rows));
+        let (x, y) = (SplineWeights::at(s.x, self.columns), SplineWeights::at(s.y, self.rows));
         let (mut q, mut right, mut down) = (Vec2::ZERO, Vec2::ZERO, Vec2::ZERO);
         for (j, row) in y.around.into_iter().enumerate() {
             for (i, column) in x.around.into_iter().enumerate() {
@@ -186,13 +186,13 @@ fn beyond(i: i32, count: usize, value: impl Fn(usize) -> Vec2) -> Vec2 {
 }
 
 /// What four points around a place along one axis weigh, and how that changes with it.
-struct Weights {
+struct SplineWeights {
     around: [i32; 4],
     value: [f32; 4],
     slope: [f32; 4],
 }
 
-impl Weights {
+impl SplineWeights {
     /// * `s`: in cells; beyond the grid the border goes on straight.
     fn at(s: f32, count: usize) -> Self {
         let last = (count - 1) as f32;

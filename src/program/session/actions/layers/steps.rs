@@ -6,7 +6,7 @@ use crate::session::OpenDocument;
 use std::sync::Arc;
 
 /// A step: its name, the document, and what is chosen then.
-pub(super) type Step = (&'static str, Document, Vec<LayerId>);
+pub(super) type EditStep = (&'static str, Document, Vec<LayerId>);
 
 pub(super) fn moves(ids: &[LayerId]) -> &'static str {
     if ids.len() > 1 { "Move layers" } else { "Move layer" }
@@ -18,7 +18,7 @@ pub(super) fn kept(tab: &OpenDocument, ids: Vec<LayerId>) -> Vec<LayerId> {
 }
 
 /// Copies above the topmost layer.
-pub(super) fn duplicated(document: &Document, ids: &[LayerId]) -> Option<Step> {
+pub(super) fn duplicated(document: &Document, ids: &[LayerId]) -> Option<EditStep> {
     let place = document.place_of(*ids.last()?)?;
     let mut next = document.clone();
     let mut copies = Vec::new();
@@ -33,7 +33,7 @@ pub(super) fn duplicated(document: &Document, ids: &[LayerId]) -> Option<Step> {
 }
 
 /// The groups among some layers dissolved.
-pub(super) fn ungrouped(document: &Document, ids: &[LayerId]) -> Option<Step> {
+pub(super) fn ungrouped(document: &Document, ids: &[LayerId]) -> Option<EditStep> {
     let (mut next, mut freed) = (document.clone(), Vec::new());
     for id in ids {
         let Some(group) = next.layer(*id)?.content.group().map(|_| next.with_transform_applied(*id)) else { continue };
@@ -55,7 +55,7 @@ pub(super) fn ungrouped(document: &Document, ids: &[LayerId]) -> Option<Step> {
 }
 
 /// Layers on a part of the shape, on the canvas, or on what is around each; or why not, for the user.
-pub(super) fn homed(document: &Document, ids: &[LayerId], part: Option<&str>) -> Result<Step, &'static str> {
+pub(super) fn homed(document: &Document, ids: &[LayerId], part: Option<&str>) -> Result<EditStep, &'static str> {
     if part.is_some_and(|part| document.parts.home(part).is_none()) {
         return Err("There is no such part.");
     }
@@ -66,7 +66,7 @@ pub(super) fn homed(document: &Document, ids: &[LayerId], part: Option<&str>) ->
 }
 
 /// What is selected taken out of layers, or all that they hold; a layer that cannot be cleared stays as it is.
-pub(super) fn cleared(document: &Document, ids: &[LayerId]) -> Option<Step> {
+pub(super) fn cleared(document: &Document, ids: &[LayerId]) -> Option<EditStep> {
     let (mut next, mut is_any) = (document.clone(), false);
     for id in ids {
         let cleared = match document.selected() {

@@ -1,9 +1,9 @@
 //! The first shape of a drawing: a part of its outline, or one of each of its flat colours, and a Base that is lit, so
 //! that the form is seen at once. Floor 6. What a drawing is `document::parts::drawing` tells.
 
-use super::{Refusal, free_id, new};
+use super::{PartRefusal, free_id, new};
 use crate::document::parts::Part;
-use crate::document::parts::drawing::{DrawingLook, Ground, without_ground};
+use crate::document::parts::drawing::{DrawingLook, FigureBackground, without_background};
 use crate::document::parts::flats::parts_of_flats;
 use crate::document::{Content, Document, Inflation, Layer, LayerId, LayerSlot, Live, PixelLayer, Progress};
 use crate::math::{srgb::Color, vec3};
@@ -38,18 +38,22 @@ pub fn shaped(
     inflation: Inflation,
     flats: bool,
     progress: &Progress,
-) -> Result<FirstShape, Refusal> {
+) -> Result<FirstShape, PartRefusal> {
     let tiles = painted_telling(document, layer, progress)
         .ok_or("This layer paints nothing of its own, so it has no outline.")?;
     let look = DrawingLook::of(&tiles, document.size);
-    let (document, tiles) = match look.ground {
-        Ground::Transparent => (document.clone(), tiles),
-        Ground::Flat(color) => without_flat_ground(document, layer, &tiles, color).ok_or("There is no such layer.")?,
-        Ground::Painted => {
-            return Err("This layer is opaque all over and its ground has many colours, so it has no outline. Select \
-                        the figure, and inflate the selection.");
+    let (document, tiles) = match look.background {
+        FigureBackground::Transparent => (document.clone(), tiles),
+        FigureBackground::Flat(color) => {
+            without_flat_background(document, layer, &tiles, color).ok_or("There is no such layer.")?
         }
-        Ground::Empty => return Err("This layer is empty, so it has no outline."),
+        FigureBackground::Painted => {
+            return Err(
+                "This layer is opaque all over and its background has many colours, so it has no outline. Select \
+                        the figure, and inflate the selection.",
+            );
+        }
+        FigureBackground::Empty => return Err("This layer is empty, so it has no outline."),
     };
     let document = named_alone(&document, layer).ok_or("There is no such layer.")?;
     let name = document.layer(layer).map(|layer| layer.name.clone()).unwrap_or_default();
@@ -87,15 +91,15 @@ fn named_alone(document: &Document, layer: LayerId) -> Option<Document> {
     document.with_layer(layer, |layer| layer.name = named)
 }
 
-/// The drawing as paint without its ground, and the ground as a fill beneath, and the drawing's pixels. What shows
+/// The drawing as paint without its background, and the background as a fill beneath, and the drawing's pixels. What shows
 /// stays as it was.
-fn without_flat_ground(
+fn without_flat_background(
     document: &Document,
     layer: LayerId,
     tiles: &TileGrid,
     color: Color,
 ) -> Option<(Document, TileGrid)> {
-    let bare = without_ground(tiles, document.size, color);
+    let bare = without_background(tiles, document.size, color);
     let paint = Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles: bare.clone() });
     let next = document.with_layer(layer, |layer| {
         // The mask and the transform are in the pixels now.
@@ -103,14 +107,14 @@ fn without_flat_ground(
         layer.liquify = None;
     })?;
     let drawing = next.layer(layer)?;
-    let ground = Layer {
+    let background = Layer {
         clip_to_surface: false,
         visible: drawing.visible,
         opacity: drawing.opacity,
         ..Layer::new(document.free_layer_name("Ground"), Content::Fill(color))
     };
     let place = next.place_of(layer)?;
-    Some((next.with_inserted(ground, place)?, bare))
+    Some((next.with_inserted(background, place)?, bare))
 }
 
 /// The layer that shows the form: the drawing in the light of one warm lamp, with cool shadows, multiplied.

@@ -1,7 +1,7 @@
 //! Pictures of parts that layers give: light and dark of one as detail, and several as shadings of one drawing.
 //! Floor 6. What becomes of them is `shape::relief`'s and `shape::profiles`'.
 
-use super::Refusal;
+use super::PartRefusal;
 use crate::document::parts::{CoverageFile, Part, ProfilePicture};
 use crate::document::{Document, Layer, LayerId};
 use crate::math::srgb::{decode, encode, luminance, quantise};
@@ -12,7 +12,7 @@ use crate::session::drawing::painted;
 use crate::shape::profiles::MOST_PROFILES;
 use std::sync::Arc;
 
-const PAINTS_NOTHING: Refusal = "This layer paints nothing of its own. Select one with light and dark on it.";
+const PAINTS_NOTHING: PartRefusal = "This layer paints nothing of its own. Select one with light and dark on it.";
 
 /// Where lights of hand-made shadings stand, by what their layers are called; in this order where they are called
 /// otherwise.
@@ -35,7 +35,7 @@ pub fn free_files<'a>(document: &Document, stem: &'a str) -> impl Iterator<Item 
 }
 
 /// Light and dark of a layer, sRGB; where it covers nothing, what it is in the mean, so that its edge is no detail.
-pub fn detail(document: &Document, layer: LayerId) -> Result<CoverageFile, Refusal> {
+pub fn detail(document: &Document, layer: LayerId) -> Result<CoverageFile, PartRefusal> {
     let tiles = painted(document, layer).filter(|tiles| !tiles.bounds().is_empty()).ok_or(PAINTS_NOTHING)?;
     let straight = Plane::from_fn(document.size, |x, y| {
         let [r, g, b, a] = tiles.pixel(x as i32, y as i32);
@@ -54,7 +54,7 @@ pub fn detail(document: &Document, layer: LayerId) -> Result<CoverageFile, Refus
 }
 
 /// The chosen layers as shadings, the lowest first.
-pub fn shadings(tab: &OpenDocument) -> Result<Vec<ProfilePicture>, Refusal> {
+pub fn shadings(tab: &OpenDocument) -> Result<Vec<ProfilePicture>, PartRefusal> {
     let (document, chosen) = (tab.document(), tab.chosen_layers());
     let all = document.walk().into_iter().map(|(_, layer)| layer);
     let layers: Vec<&Arc<Layer>> = all.filter(|layer| chosen.contains(&layer.id)).collect();

@@ -1,7 +1,7 @@
 //! New parts: of the selected layer, the selection, the chosen stroke, or bodies in the middle of the canvas.
 //! Floor 6.
 
-use super::{Refusal, free_id, greys};
+use super::{PartRefusal, free_id, greys};
 use crate::document::parts::{CoverageFile, OutlineSource, Part, PartKind, PartMaps};
 use crate::document::{Document, Inflation, LayerId};
 use crate::math::{Vec2, vec2};
@@ -45,7 +45,7 @@ rilievo_engine::named! {
 
 impl NewPart {
     /// Why nothing came of it.
-    pub(super) fn why_empty(self) -> Refusal {
+    pub(super) fn why_empty(self) -> PartRefusal {
         match self {
             NewPart::InflateSelection => "The selection holds no whole pixel, so it has no outline.",
             NewPart::Touches | NewPart::Sculpt | NewPart::Lines | NewPart::Relief => {
@@ -60,7 +60,7 @@ impl NewPart {
 names!(NewPart);
 
 /// A part as it is first made.
-pub fn made(kind: NewPart, tab: &OpenDocument) -> Result<Part, Refusal> {
+pub fn made(kind: NewPart, tab: &OpenDocument) -> Result<Part, PartRefusal> {
     let document = tab.document();
     let shorter = document.size.width.min(document.size.height) as f32;
     let body = |body| {
@@ -124,19 +124,19 @@ pub fn free_name(document: &Document, base: &str) -> String {
 }
 
 /// The chosen part, or the one that it lies on.
-fn form_of_chosen(tab: &OpenDocument) -> Result<String, Refusal> {
+fn form_of_chosen(tab: &OpenDocument) -> Result<String, PartRefusal> {
     let part = tab.part.as_deref().and_then(|id| tab.document().parts.part(id));
     let part = part.ok_or("No part is chosen. Add one first, or give the drawing a shape.")?;
     Ok(part.on().unwrap_or(&part.id).to_owned())
 }
 
-const NO_LAYER: Refusal = "No layer is selected.";
+const NO_LAYER: PartRefusal = "No layer is selected.";
 
-fn selected(tab: &OpenDocument) -> Result<LayerId, Refusal> {
+fn selected(tab: &OpenDocument) -> Result<LayerId, PartRefusal> {
     tab.selected.ok_or(NO_LAYER)
 }
 
-fn of_layer(tab: &OpenDocument) -> Result<OutlineSource, Refusal> {
+fn of_layer(tab: &OpenDocument) -> Result<OutlineSource, PartRefusal> {
     let document = tab.document();
     let layer = document.layer(selected(tab)?).ok_or(NO_LAYER)?;
     if !layer.content.paints() {
