@@ -12,6 +12,8 @@ use std::time::Duration;
 
 /// What is painted as quickly as this is waited for, before a frame is drawn without it.
 const SOON: Duration = Duration::from_millis(12);
+/// What shows that a picture is done is drawn again so long after it, unless something else is sooner.
+const SETTLED: Duration = Duration::from_millis(100);
 
 impl Canvas {
     /// Requests the picture to show, and takes the tiles that were painted.
@@ -39,6 +41,7 @@ impl Canvas {
             }
             self.wanted = Some((drawn, is_dragged));
         }
+        let was_busy = self.is_busy;
         // What the hand did is shown in the same frame, if it is painted soon.
         let is_soon = self.is_busy && session.is_drawing() && ctx.current_pass_index() > 0 && self.took < SOON;
         let wait = if is_soon { SOON } else { Duration::ZERO };
@@ -63,6 +66,10 @@ impl Canvas {
                 self.sheet.changed(painted.tiles.iter().map(|(at, _)| *at));
                 self.whole.take(painted);
             }
+        }
+        if was_busy && !self.is_busy {
+            // The status bar and the panels of this frame were laid out before.
+            ctx.request_repaint_after(SETTLED);
         }
         let is_sent = self.whole.send(ctx, self.is_busy) | self.draft.send(ctx, self.is_busy);
         self.is_draft_in_front = is_draft_next;
