@@ -49,7 +49,7 @@ pub use reach::DabReach;
 pub use scene::Scene;
 pub use support::SupportBounds;
 
-use crate::math::{Size, Vec2, Vec3, srgb::quantise, vec2, vec3};
+use crate::math::{Rect, Size, Vec2, Vec3, srgb::quantise, vec2, vec3};
 use crate::raster::{CoverageGrid, Plane};
 use cache::RecentCache;
 use contours::{ContourMaps, Found, SheetOf};
@@ -116,7 +116,7 @@ pub struct Surface {
     unwrappings: RecentCache<[u32; 2], Unwrapping>,
     plane_layouts: RecentCache<[u32; 2], Option<Arc<PlaneLayout>>>,
     plane_yields: RecentCache<YieldKey, PlaneYield>,
-    plane_springs: RecentCache<[u32; 2], PlaneSprings>,
+    plane_springs: RecentCache<([u32; 2], Rect), PlaneSprings>,
     near_view: OnceLock<Option<NearView>>,
     bounds: MapPyramids,
     objects: OnceLock<Objects>,

@@ -211,13 +211,23 @@ impl Surface {
                 });
                 PlaneYield { planes }
             }
-            None => PlaneYield::solved(self, &self.plane_springs(settings), holds),
+            None => PlaneYield::solved(self, &self.plane_springs(settings, self.pulled_rect(holds)), holds),
         })
     }
-    /// The springs of the unwrapping, cached.
-    fn plane_springs(&self, settings: UnwrapSettings) -> Arc<PlaneSprings> {
-        self.plane_springs.get_or_compute(settings.key(), 1, |_| {
-            let rect = covered(self);
+    /// Around all that holds can move. Parts may hang together beyond what shows each of them.
+    fn pulled_rect(&self, holds: &[PlaneHold]) -> Rect {
+        if self.parts_plane().is_some() {
+            return covered(self);
+        }
+        let object = |hold: &PlaneHold| {
+            let (x, y) = nearest_covered(self, hold.at);
+            self.objects().at(x as i32, y as i32).map(|object| self.objects().rect(object))
+        };
+        holds.iter().filter_map(object).fold(Rect::EMPTY, Rect::union)
+    }
+    /// The springs of the unwrapping over a rectangle that none of what is asked of it leaves, cached.
+    fn plane_springs(&self, settings: UnwrapSettings, rect: Rect) -> Arc<PlaneSprings> {
+        self.plane_springs.get_or_compute((settings.key(), rect), 1, |_| {
             let normals = smooth::normals(self, rect, settings.smooth_px);
             PlaneSprings { rect, solver: SpringSolver::new(springs(self, rect, &normals)) }
         })
