@@ -65,6 +65,8 @@ pub struct Brush {
     pub grain: Option<BrushGrain>,
     /// How the hand is smoothed. The samples of a stroke are smooth already: rendering it does not use this.
     pub stabilizer: Stabilizer,
+    /// What its lengths are measured on.
+    pub stabilizer_on: Measure,
     /// How the hand's ways become readings and dabs.
     pub hand: Hand,
     /// What [`Input::Cycle`] goes by.
@@ -169,7 +171,7 @@ pub enum Stabilizer {
     #[default]
     None,
     /// The line follows the pen as a running average; `weight` in `[0, 1)` is the share of the past that is left after
-    /// the pen has moved ten px.
+    /// the pen has moved ten px, of the canvas or of the surface ([`Brush::stabilizer_on`]).
     Average { weight: f32 },
     /// The pen pulls the line on a string of this length, px: wiggles shorter than it do not show.
     String { length_px: f32 },
@@ -282,6 +284,7 @@ impl Default for Brush {
             tip: Tip::Round,
             grain: None,
             stabilizer: Stabilizer::None,
+            stabilizer_on: Measure::default(),
             hand: Hand::default(),
             cycle: Cycle::default(),
             dynamics: Dynamics::default(),

@@ -28,13 +28,13 @@ crate::named! {
 }
 
 crate::named! {
-    /// What the way between a stroke's dabs is measured on.
+    /// What the way between a stroke's dabs, and that of a hand that is smoothed, is measured on.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
     pub enum Measure {
         /// As it is seen.
         #[default]
         Canvas = "canvas",
-        /// As long as it is on the surface: dabs stand equally far apart all over the form.
+        /// As long as it is on the surface: dabs stand equally far apart, and lines are equally smooth, all over the form.
         Surface = "surface",
     }
 }

@@ -14,6 +14,7 @@ pub mod habits;
 pub mod home;
 pub mod image;
 pub mod liquify;
+mod measure;
 mod patches;
 pub mod pattern;
 mod peaked;

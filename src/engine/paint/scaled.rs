@@ -13,7 +13,7 @@ impl Brush {
             size, hardness, opacity, flow, spacing, spacing_on, overlap, falloff, rate, rotation, facing, ..
         } = *self;
         let Self { softness, scatter, spread, size_jitter, offset, jitter, blend, erases, keeps_alpha, .. } = *self;
-        let Self { bounded, reach, mode, pickup, stabilizer, hand, cycle, seed, .. } = *self;
+        let Self { bounded, reach, mode, pickup, stabilizer, stabilizer_on, hand, cycle, seed, .. } = *self;
         Self {
             size: size * factor,
             hardness,
@@ -42,6 +42,7 @@ impl Brush {
             tip: self.tip.clone(),
             grain: self.grain.as_ref().map(|grain| grain.scaled(factor)),
             stabilizer: stabilizer.scaled(factor),
+            stabilizer_on,
             hand: hand.scaled(factor),
             cycle,
             dynamics: self.dynamics.clone(),

@@ -1,9 +1,12 @@
 //! The stabiliser: turns the pen's samples into a smoother line as they arrive, and completes the line when the pen
 //! lifts. Floor 3.
 
-use super::brush::Stabilizer;
+use super::brush::{Brush, Stabilizer};
+use super::habits::Measure;
+use super::measure::SurfaceMeasure;
 use super::sample::Sample;
 use crate::math::Vec2;
+use crate::surface::{Operator, Scene};
 
 /// The weight of a [`Stabilizer::Average`] is the share of the past that is left after the pen has moved this many px.
 const WEIGHED_PX: f32 = 10.0;
@@ -11,6 +14,8 @@ const WEIGHED_PX: f32 = 10.0;
 const MOST_WEIGHT: f32 = 0.99;
 /// The string is pulled in steps no longer than this, so that the line does not depend on how densely the pen reports.
 const PULL_PX: f32 = 1.0;
+/// On a surface the lag of an average is measured in steps no longer than this.
+const MEASURED_PX: f32 = 4.0;
 /// The most steps between two samples: a pen that leaps leaves a straighter line.
 const MOST_PULLS: f32 = 4096.0;
 
@@ -18,13 +23,21 @@ const MOST_PULLS: f32 = 4096.0;
 #[derive(Clone)]
 pub struct StabilizedPen {
     stabilizer: Stabilizer,
+    /// The surface that lengths are measured on; absent: the canvas.
+    measured: Option<SurfaceMeasure>,
     /// The end of the line, and the last sample of the pen.
     line: Option<(Vec2, Sample)>,
 }
 
 impl StabilizedPen {
+    /// Its lengths are px of the canvas.
     pub fn new(stabilizer: Stabilizer) -> Self {
-        Self { stabilizer, line: None }
+        Self { stabilizer, measured: None, line: None }
+    }
+    /// The stabiliser of a brush; its lengths are px of what the brush measures them on.
+    pub fn of_brush(brush: &Brush, operator: Operator, scene: &Scene) -> Self {
+        let measured = SurfaceMeasure::of(scene, operator).filter(|_| brush.stabilizer_on == Measure::Surface);
+        Self { measured, ..Self::new(brush.stabilizer) }
     }
     /// Takes the pen's next sample; `None` while the line does not move.
     ///
@@ -39,8 +52,8 @@ impl StabilizedPen {
         };
         let at = match self.stabilizer {
             Stabilizer::None => pen.at,
-            Stabilizer::Average { weight } => trailed(end, last.at, pen.at, weight),
-            Stabilizer::String { length_px } => pulled(end, last.at, pen.at, length_px),
+            Stabilizer::Average { weight } => self.trailed(end, last.at, pen.at, weight),
+            Stabilizer::String { length_px } => self.pulled(end, last.at, pen.at, length_px),
             Stabilizer::Lag { secs } => delayed(end, &last, &pen, secs),
         };
         // A hostile leap may overflow f32: the line stays.
@@ -55,14 +68,44 @@ impl StabilizedPen {
         let is_done = end == last.at || matches!(self.stabilizer, Stabilizer::Lag { .. });
         (!is_done).then_some(last)
     }
+    /// How long a px in a direction is, on what lengths are measured on.
+    fn stretch(&self, at: Vec2, way: Vec2) -> f32 {
+        self.measured.as_ref().map_or(1.0, |measured| measured.stretch(at, way))
+    }
+    /// In how many parts the pen's way is looked at, each at most so long, px.
+    fn parts(from: Vec2, to: Vec2, longest_px: f32) -> usize {
+        (from.distance(to) / longest_px).ceil().max(1.0).min(MOST_PULLS) as usize
+    }
+    /// The end of a line that trails behind a pen; on a surface the lag is as long there as elsewhere, and shorter as it
+    /// is seen.
+    fn trailed(&self, end: Vec2, from: Vec2, to: Vec2, weight: f32) -> Vec2 {
+        let parts = if self.measured.is_some() { Self::parts(from, to, MEASURED_PX) } else { 1 };
+        let at = |part: usize| from.lerp(to, part as f32 / parts as f32);
+        (0..parts).fold(end, |end, part| {
+            let (from, to) = (at(part), at(part + 1));
+            trailed(end, (from, to), self.stretch(from.midpoint(to), to - from), weight)
+        })
+    }
+    /// The end of a string of this length whose other end is pulled straight from `from` to `to`.
+    fn pulled(&self, end: Vec2, from: Vec2, to: Vec2, length_px: f32) -> Vec2 {
+        let (length_px, steps) = (length_px.max(0.0), Self::parts(from, to, PULL_PX));
+        (1..=steps).fold(end, |end, step| {
+            let hand = from.lerp(to, step as f32 / steps as f32);
+            let string = end - hand;
+            let length = string.length() * self.stretch(hand, string);
+            if length > length_px { hand + string * (length_px / length) } else { end }
+        })
+    }
 }
 
 /// The end of a line that follows a pen from `from` to `to`: every px it makes up a share 1/ℓ of what it lags behind,
 /// e^(−10/ℓ) = weight. Exact for a pen that moves straight, so that samples between change nothing.
-fn trailed(end: Vec2, from: Vec2, to: Vec2, weight: f32) -> Vec2 {
+///
+/// * `stretch`: how many px of what is measured a px of the way is long.
+fn trailed(end: Vec2, (from, to): (Vec2, Vec2), stretch: f32, weight: f32) -> Vec2 {
     let weight = weight.max(0.0).min(MOST_WEIGHT);
     let way = to - from;
-    let (length, lag) = (way.length(), if weight > 0.0 { -WEIGHED_PX / weight.ln() } else { 0.0 });
+    let (length, lag) = (way.length(), if weight > 0.0 { -WEIGHED_PX / weight.ln() / stretch } else { 0.0 });
     if lag <= 0.0 || length <= 0.0 {
         return if lag <= 0.0 { to } else { end };
     }
@@ -83,22 +126,13 @@ fn delayed(end: Vec2, from: &Sample, to: &Sample, secs: f32) -> Vec2 {
     to.at - behind + (end - from.at + behind) * (-elapsed / secs).exp()
 }
 
-/// The end of a string of this length whose other end is pulled straight from `from` to `to`.
-fn pulled(end: Vec2, from: Vec2, to: Vec2, length_px: f32) -> Vec2 {
-    let length_px = length_px.max(0.0);
-    let steps = (from.distance(to) / PULL_PX).ceil().max(1.0).min(MOST_PULLS) as usize;
-    (1..=steps).fold(end, |end, step| {
-        let hand = from.lerp(to, step as f32 / steps as f32);
-        let string = end - hand;
-        let length = string.length();
-        if length > length_px { hand + string * (length_px / length) } else { end }
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::vec2;
+    use crate::math::{Size, vec2, vec3};
+    use crate::raster::Plane;
+    use crate::surface::{Maps, Surface};
+    use std::sync::Arc;
 
     /// The complete stabilised line of a pen.
     fn line(stabilizer: Stabilizer, pens: &[Vec2]) -> Vec<Vec2> {
@@ -138,9 +172,36 @@ mod tests {
     #[test]
     fn a_straight_pull_trails_by_the_strings_length_and_by_the_averages_lag() {
         let to = vec2(300.0, 0.0);
-        assert_eq!(pulled(Vec2::ZERO, Vec2::ZERO, to, 20.0), vec2(280.0, 0.0));
+        assert_eq!(StabilizedPen::new(CALM[1]).pulled(Vec2::ZERO, Vec2::ZERO, to, 20.0), vec2(280.0, 0.0));
         // e^(−10/ℓ) = 0.6: ℓ is 19.58 px.
-        assert!((trailed(Vec2::ZERO, Vec2::ZERO, to, 0.6).x - (300.0 - 19.576)).abs() < 0.01);
+        assert!((trailed(Vec2::ZERO, (Vec2::ZERO, to), 1.0, 0.6).x - (300.0 - 19.576)).abs() < 0.01);
+    }
+    #[test]
+    fn on_a_slope_the_line_trails_by_what_it_trails_by_on_the_surface() {
+        // z falls by two px for each px to the right: n_z is 1/√5, and a px to the right is √5 px long.
+        let size = Size::new(400, 40);
+        let slope = vec3(-2.0, 0.0, 1.0).normalize();
+        let maps = Maps {
+            normals: Plane::filled(size, slope),
+            depth: Plane::from_fn(size, |x, _| 1.0 - x as f32 / 400.0),
+            coverage: Plane::filled(size, 255),
+        };
+        let scene = Scene { size, surface: Some(Arc::new(Surface::new(maps).unwrap())) };
+        let drawn = |stabilizer, stabilizer_on, way: Vec2| {
+            let brush = Brush { stabilizer, stabilizer_on, ..Brush::default() };
+            let mut pen = StabilizedPen::of_brush(&brush, Operator::None, &scene);
+            let ends = (0..=10).filter_map(|i| pen.push(Sample::at(vec2(20.0, 4.0) + way * (0.1 * i as f32))));
+            (vec2(20.0, 4.0) + way).distance(ends.last().unwrap().at)
+        };
+        for (stabilizer, trails) in [(CALM[0], 19.576), (CALM[1], 20.0)] {
+            let across = drawn(stabilizer, Measure::Surface, vec2(0.0, 32.0));
+            let along = drawn(stabilizer, Measure::Surface, vec2(300.0, 0.0));
+            assert!((along - trails / 5.0f32.sqrt()).abs() < 0.02 * trails, "{stabilizer:?}: {along}");
+            let seen = drawn(stabilizer, Measure::Canvas, vec2(300.0, 0.0));
+            assert!((seen - trails).abs() < 0.02 * trails, "{stabilizer:?}: {seen}");
+            let flat = drawn(stabilizer, Measure::Canvas, vec2(0.0, 32.0));
+            assert!((across - flat).abs() < 0.01, "across the slope nothing is longer: {across} and {flat}");
+        }
     }
     #[test]
     fn a_tap_within_the_string_leaves_its_dot_and_reaches_the_pen() {

@@ -13,6 +13,7 @@ pub fn read(fields: &mut Fields, base: Brush) -> Result<Brush> {
     brush.falloff = fields.one_of("falloff", &Falloff::ALL, brush.falloff)?;
     brush.spread = fields.one_of("spread", &Spread::ALL, brush.spread)?;
     brush.spacing_on = fields.one_of("spacing_on", &Measure::ALL, brush.spacing_on)?;
+    brush.stabilizer_on = fields.one_of("stabilizer_on", &Measure::ALL, brush.stabilizer_on)?;
     for group in GROUPS {
         if group.is_empty() {
             numbers(fields, group, &mut brush)?;
@@ -41,6 +42,7 @@ pub fn write(out: &mut JsonObject, brush: &Brush) {
     out.word("falloff", &Falloff::ALL, brush.falloff, Falloff::default());
     out.word("spread", &Spread::ALL, brush.spread, Spread::default());
     out.word("spacing_on", &Measure::ALL, brush.spacing_on, Measure::default());
+    out.word("stabilizer_on", &Measure::ALL, brush.stabilizer_on, Measure::default());
     for group in GROUPS {
         let mut own = JsonObject::default();
         let numbers = if group.is_empty() { &mut *out } else { &mut own };
@@ -93,7 +95,7 @@ mod tests {
     #[test]
     fn choices_are_written_as_they_were_read_and_what_is_no_setting_is_refused() {
         let text = json!({
-            "falloff": "peaked", "spread": "cloud", "spacing_on": "surface",
+            "falloff": "peaked", "spread": "cloud", "spacing_on": "surface", "stabilizer_on": "surface",
             "offset": { "amount": 0.5, "from": "stroke", "alternates": true },
         });
         assert_eq!(written(&read_text(&text).unwrap()), text);

@@ -81,7 +81,7 @@ fn unwraps(document: &Document) -> bool {
         Content::Strokes(live) => live.params().strokes.iter().any(|stroke| {
             let (brush, grain) = (stroke.brush(), stroke.brush().grain.as_ref());
             is_print(stroke.operator())
-                || brush.spacing_on == Measure::Surface
+                || [brush.spacing_on, brush.stabilizer_on].contains(&Measure::Surface)
                 || grain.is_some_and(|grain| grain.lies == GrainSpace::Unwrapped)
         }),
         _ => false,

@@ -75,7 +75,7 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
     let painting = StrokeGesture {
         lead: line.map(|at| Sample { at, ..pen.sample }).collect(),
         active: Some(work.unwrap_or_else(|| ActiveWork::Strokes(ActiveStrokes::new(&strokes, backdrop, &scene)))),
-        stabilized: StabilizedPen::new(brush.stabilizer),
+        stabilized: StabilizedPen::of_brush(&brush, context.operator, &scene),
         room: Some(Stroke::MOST_SAMPLES),
         label: if is_eraser { "Erase" } else { "Brush stroke" },
         document,

@@ -218,7 +218,10 @@ fn stroke(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
             number.row(ui, secs).map(|c| Stabilizer::Lag { secs: c.to })
         }
     };
+    let has_length = matches!(brush.stabilizer, Stabilizer::Average { .. } | Stabilizer::String { .. });
+    let measured = has_length.then(|| choice_row(ui, "Smooth on", brush.stabilizer_on, &Measure::ALL)).flatten();
     let calmed = chosen.or(amount).map(|stabilizer| Brush { stabilizer, ..brush.clone() });
+    let calmed = calmed.or(measured.map(|stabilizer_on| Brush { stabilizer_on, ..brush.clone() }));
     let blended =
         choice_row(ui, "Blend", brush.blend, &BlendMode::LABELS).map(|blend| Brush { blend, ..brush.clone() });
     let erases = check(ui, "Erases", "The stroke erases", brush.erases);

@@ -101,7 +101,7 @@ fn memory_menu(
     let MemoryUse { painted, pictures, maps, kept } = used.front;
     let text = RichText::new(spoken(used.front.total())).weak();
     let button = ui.menu_button(text, |ui| {
-        ui.set_min_width(300.0);
+        ui.set_width(300.0);
         let rows = [
             ("Painted, with its history", painted),
             ("Pictures placed", pictures),

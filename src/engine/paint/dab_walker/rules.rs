@@ -7,10 +7,11 @@ use crate::math::{Mat2, Rect, Vec2, hash, srgb::Color, vec2};
 use crate::paint::brush::{Brush, Tip};
 use crate::paint::dynamics::{DabInputs, FAR_DIAMETERS, FAST_LENGTHS_PER_SEC, Input, Property, pace_of, turns_of};
 use crate::paint::habits::{Bearing, Measure, Spread};
+use crate::paint::measure::SurfaceMeasure;
 use crate::paint::rim::{Rim, RimTable};
 use crate::paint::scene::Scene;
 use crate::paint::tint;
-use crate::surface::{Curvature, Operator, Surface};
+use crate::surface::{Curvature, Operator};
 use std::f32::consts::TAU;
 use std::sync::Arc;
 
@@ -45,8 +46,8 @@ pub(super) struct DabRules {
     reads_surface: bool,
     /// Whether anything follows what arc tangents and logarithms tell of the pen.
     reads_pen: bool,
-    /// Where ways are measured on it, and a of MATH 8.
-    measured: Option<(Arc<Surface>, f32)>,
+    /// Where ways are measured on it.
+    measured: Option<SurfaceMeasure>,
     varies_in_color: bool,
     rims: Option<Arc<RimTable>>,
 }
@@ -91,8 +92,7 @@ impl Due {
 impl DabRules {
     pub fn new(brush: &Brush, operator: Operator, color: Color, scene: &Scene) -> Self {
         let follows = |input| brush.dynamics.follow(input);
-        let amount = operator.unwrapping().map_or(1.0, |settings| settings.amount);
-        let measured = scene.surface.clone().filter(|_| brush.spacing_on == Measure::Surface);
+        let measured = SurfaceMeasure::of(scene, operator).filter(|_| brush.spacing_on == Measure::Surface);
         let curvature = scene.surface.as_ref().filter(|_| follows(Input::Curvature));
         Self {
             brush: brush.clone(),
@@ -104,7 +104,7 @@ impl DabRules {
             curvature: curvature.map(|surface| surface.curvature(CURVATURE_BLUR_PX)),
             reads_pen: matches!(brush.tip, Tip::Hose(_)) || PEN.into_iter().any(follows),
             reads_surface: [Input::Slope, Input::Curvature, Input::Depth].into_iter().any(follows),
-            measured: measured.map(|surface| (surface, amount)),
+            measured,
             varies_in_color: tint::varies(brush),
             rims: RimTable::of(brush),
         }
@@ -113,15 +113,8 @@ impl DabRules {
     ///
     /// * `at`: counted from where the stroke begins, as all places here.
     pub fn stretch(&self, at: Vec2, way: Vec2) -> f64 {
-        let Some((surface, amount)) = &self.measured else { return 1.0 };
-        let at = at + self.origin.unwrap_or_default();
-        if !self.scene.size.rect().contains(at.x.floor() as i32, at.y.floor() as i32) {
-            return 1.0;
-        }
-        let along = way.normalize_or_zero();
-        let on = |(x, y, share): (usize, usize, f32)| share * (surface.stretch(x, y, *amount) * along).length();
-        let length: f32 = surface.around(at).map(on).sum();
-        if length.is_finite() && length > 0.0 { f64::from(length) } else { 1.0 }
+        let Some(measured) = &self.measured else { return 1.0 };
+        f64::from(measured.stretch(at + self.origin.unwrap_or_default(), way))
     }
     /// In how many parts a piece of the way is measured: of a px where the surface is read, else in one.
     pub fn parts(&self, from: Vec2, to: Vec2) -> usize {
