@@ -1,5 +1,8 @@
 //! Recipes: every kind of layer read with its defaults, refused with the path of what is wrong, and written back.
 
+mod mutations;
+mod refusals;
+
 use rilievo_engine::document::{Content, DerivedMask, Document, MaskKind};
 use rilievo_engine::math::{Size, srgb::Color, vec2};
 use rilievo_engine::paint::{ImageFilter, Tip};
@@ -252,80 +255,6 @@ fn the_same_file_is_read_once() {
 }
 
 #[test]
-fn every_refusal_names_file_and_field() {
-    let operator =
-        |operator: Value| said_of(json!({ "kind": "image", "source": { "file": "p.png" }, "operator": operator }));
-    let cases = [
-        (operator(json!({ "kind": "depth", "gama": 1 })), "layers[0].operator.gama: is unknown; did you mean “gamma”?"),
-        (
-            operator(json!({ "kind": "depth", "gamma": -1 })),
-            "layers[0].operator.gamma: is -1; it must be between 0 and",
-        ),
-        (
-            operator(json!({ "kind": "twist" })),
-            "layers[0].operator.kind: is “twist”; it must be one of none, depth, normal",
-        ),
-        (operator(json!(3)), "layers[0].operator: is a number; it must be an object"),
-        (said_of(json!({ "kind": "fil" })), "layers[0].kind: is “fil”; it must be one of fill, pixels"),
-        (said_of(json!({})), "layers[0].kind: is missing"),
-        (said_of(json!({ "kind": "fill", "color": "red" })), "layers[0].color: is “red”; a colour reads #rrggbb"),
-        (said_of(json!({ "kind": "fill", "opacity": 1.5 })), "layers[0].opacity: is 1.5; it must be between 0 and 1"),
-        (said_of(json!({ "kind": "fill", "opacity": null })), "layers[0].opacity: is null; it must be a number"),
-        (said_of(json!({ "kind": "fill", "blend": "Multiply" })), "layers[0].blend: is “Multiply”"),
-        (said_of(json!({ "kind": "fill", "source": {} })), "layers[0].source: is unknown"),
-        (said_of(json!({ "kind": "image" })), "layers[0].source: is missing"),
-        (said_of(json!({ "kind": "image", "source": { "file": "gone.png" } })), "layers[0].source.file: gone.png: "),
-        (
-            said_of(json!({ "kind": "image", "source": { "file": "broken.png" } })),
-            "layers[0].source.file: broken.png: cannot be read",
-        ),
-        (
-            said_of(json!({ "kind": "image", "source": { "file": "../p.png" } })),
-            "layers[0].source.file: “../p.png” is refused",
-        ),
-        (said_of(json!({ "kind": "pixels", "file": "/p.png" })), "layers[0].file: “/p.png” is refused"),
-        (
-            said_of(json!({ "kind": "fill", "mask": { "file": "p.png" } })),
-            "layers[0].mask.file: “p.png” has 10 × 6 pixels",
-        ),
-        (said_of(json!({ "kind": "gradient", "stops": [] })), "layers[0].stops: is empty"),
-        (
-            said_of(json!({ "kind": "gradient", "stops": [[1, "#000000"], [0, "#000000"]] })),
-            "layers[0].stops[1][0]: is less",
-        ),
-        (said_of(json!({ "kind": "gradient", "from": [1] })), "layers[0].from: has 1 items; it must have 2"),
-        (said_of(json!({ "kind": "gradient", "from": [1, "2"] })), "layers[0].from[1]: is a text"),
-        (
-            said_of(json!({ "kind": "strokes", "strokes": [{ "brush": { "preset": "crayon" } }] })),
-            "layers[0].strokes[0].brush.preset: is “crayon”; the presets are pencil-hb",
-        ),
-        (
-            said_of(json!({ "kind": "strokes", "strokes": [{ "samples": [[1, 2, 3]] }] })),
-            "layers[0].strokes[0].samples[0]: has the pressure 3",
-        ),
-        (
-            said_of(json!({ "kind": "group", "layers": [{ "kind": "fill" }, { "kind": "?" }] })),
-            "layers[0].layers[1].kind: is “?”",
-        ),
-        (
-            said_of(json!({ "kind": "shading", "lights": [{ "direction": [0, 0, 0] }] })),
-            "layers[0].lights[0].direction: has no length",
-        ),
-        (said(&json!({ "layers": [] })), "canvas: is missing, and there is no normal or depth map"),
-        (said(&json!({ "canvas": { "width": 0, "height": 4 } })), "canvas.width: is 0"),
-        (said(&json!({ "canvas": { "width": 100000, "height": 4 } })), "100000 × 4 pixels; a side may have 32768"),
-        (said(&json!({ "format": "psd" })), "format: is “psd”; it must be one of rilievo"),
-        (said(&json!({ "version": 3, "shiny": true })), "version: is 3; this program reads up to 2"),
-        (said(&json!({ "layer": [] })), "layer: is unknown; did you mean “layers”?"),
-        (said(&json!([])), "the document: is a list; it must be an object"),
-        (said(&json!({ "surface": {} })), "surface: names neither a normal map nor a depth map"),
-    ];
-    for (said, wanted) in cases {
-        assert!(said.starts_with("r.json: ") && said.contains(wanted), "{said}\n  lacks {wanted}");
-    }
-}
-
-#[test]
 fn documents_beyond_the_budget_are_refused() {
     let says = |budget: Budget, layers: Value, wanted: &str| {
         let said = read_with(&files(), &with_layers(layers), &budget).err().expect(wanted).to_string();
@@ -407,70 +336,5 @@ fn every_brush_preset_is_listed_in_the_documentation() {
     let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/RECIPES.md")).unwrap();
     for name in recipe::preset_names() {
         assert!(page.contains(&format!("`{name}`")), "{name}");
-    }
-}
-
-mod mutations {
-    use super::*;
-    use proptest::prelude::*;
-
-    /// Every value of a document, by its path.
-    fn pointers(value: &Value, at: &str, out: &mut Vec<String>) {
-        out.push(at.to_owned());
-        match value {
-            Value::Array(items) => items.iter().enumerate().for_each(|(i, v)| pointers(v, &format!("{at}/{i}"), out)),
-            Value::Object(map) => map.iter().for_each(|(k, v)| pointers(v, &format!("{at}/{k}"), out)),
-            _ => {}
-        }
-    }
-
-    fn odd_value() -> impl Strategy<Value = Value> {
-        prop_oneof![
-            Just(Value::Null),
-            Just(json!([])),
-            Just(json!({})),
-            Just(json!("")),
-            Just(json!("none")),
-            Just(json!(true)),
-            any::<i64>().prop_map(Value::from),
-            any::<f64>().prop_map(Value::from),
-            Just(json!(1e300)),
-            Just(json!([0, 0])),
-            Just(json!([[0, 0], [0, 0]])),
-        ]
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
-        /// Whatever value stands wherever: a document or a sentence, and what is read is written and read again.
-        #[test]
-        fn a_value_out_of_place_is_read_or_refused(pick in any::<prop::sample::Index>(), value in odd_value()) {
-            let mut recipe = everything();
-            let mut all = Vec::new();
-            pointers(&recipe, "", &mut all);
-            *recipe.pointer_mut(&all[pick.index(all.len())]).unwrap() = value;
-            match read(&recipe) {
-                Ok(document) => {
-                    let written = recipe::write(&document);
-                    prop_assert_eq!(&recipe::write(&read(&written).unwrap()), &written);
-                }
-                Err(said) => prop_assert!(said.to_string().starts_with("r.json: ")),
-            }
-        }
-        #[test]
-        fn a_damaged_text_is_read_or_refused(
-            at in any::<prop::sample::Index>(), byte in any::<u8>(), cut in any::<prop::sample::Index>()
-        ) {
-            let mut text = everything().to_string().into_bytes();
-            let i = at.index(text.len());
-            text[i] = byte;
-            for text in [&text[..], &text[..cut.index(text.len())]] {
-                let (files, budget) = (files(), Budget::default());
-                let source = RecipeSource { file: Path::new("r.json"), files: &files, budget: &budget, onto: None };
-                if let Err(said) = recipe::read(text, source) {
-                    prop_assert!(said.to_string().starts_with("r.json: "));
-                }
-            }
-        }
     }
 }

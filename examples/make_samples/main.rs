@@ -3,7 +3,9 @@
 //! The same bytes on every run and with any number of threads.
 
 mod cloth;
+mod decals;
 mod landscape;
+mod medal;
 mod muse;
 mod noise;
 mod output;
@@ -13,6 +15,8 @@ mod render;
 mod sdf;
 mod shapes;
 mod sheet;
+mod snail;
+mod textures;
 mod tube;
 
 use std::error::Error;
@@ -29,11 +33,11 @@ const SURFACES: [fn() -> Sample; 11] = [
     shapes::teapot,
     muse::muse,
     shapes::lettering,
-    shapes::medal,
+    medal::medal,
     cloth::drapery,
     shapes::still_life,
     shapes::knot,
-    shapes::snail,
+    snail::snail,
     shapes::moon,
 ];
 

@@ -1,5 +1,6 @@
 //! The sample objects, one function each: what they are made of and how they are framed.
-//! Not here: the sculpted head (`muse`), the draped cloth (`cloth`), how they are traced (`render`).
+//! Not here: the medal (`medal`), the snail (`snail`), the sculpted head (`muse`), the draped cloth (`cloth`), how they
+//! are traced (`render`).
 
 use std::f64::consts::TAU;
 
@@ -31,11 +32,11 @@ pub fn framed(
     Sample { name, surface: Box::new(surface), view: View { width, height, centre, half_width } }
 }
 
-fn traced(distance: impl Fn(DVec3) -> f64 + Sync + 'static, stride: f64) -> impl Surface + 'static {
+pub fn traced(distance: impl Fn(DVec3) -> f64 + Sync + 'static, stride: f64) -> impl Surface + 'static {
     Traced { distance, reach: 2.5, stride }
 }
 
-fn points(list: &[[f64; 4]]) -> Vec<DVec4> {
+pub fn points(list: &[[f64; 4]]) -> Vec<DVec4> {
     list.iter().map(|p| DVec4::from_array(*p)).collect()
 }
 
@@ -280,166 +281,6 @@ const LETTER_RUN: [[f64; 4]; 54] = [
     [7.14, 0.86, 0.02, 0.15],
     [6.92, 1.08, 0.1, 0.13],
 ];
-
-/// A struck medal: the initial in a wreath, with a beaded rim.
-pub fn medal() -> Sample {
-    let turn = object_from_camera(-16.0, 10.0, 0.0);
-    let stem = Tube::through(&points(&[[-0.2, 0.4, 0.0, 0.085], [-0.2, 0.0, 0.0, 0.085], [-0.2, -0.4, 0.0, 0.085]]));
-    let bowl = Tube::through(&points(&[
-        [-0.3, 0.4, 0.0, 0.05],
-        [0.02, 0.41, 0.0, 0.06],
-        [0.24, 0.31, 0.0, 0.085],
-        [0.26, 0.11, 0.0, 0.09],
-        [0.06, -0.01, 0.0, 0.06],
-        [-0.16, -0.03, 0.0, 0.05],
-    ]));
-    let leg = Tube::through(&points(&[
-        [0.0, -0.03, 0.0, 0.06],
-        [0.13, -0.2, 0.0, 0.085],
-        [0.27, -0.39, 0.0, 0.08],
-        [0.4, -0.4, 0.0, 0.045],
-    ]));
-    let serif =
-        Tube::through(&points(&[[-0.34, -0.41, 0.0, 0.04], [-0.2, -0.4, 0.0, 0.06], [-0.06, -0.41, 0.0, 0.04]]));
-    let distance = move |camera: DVec3| {
-        let p = turn * camera;
-        if p.length() > 1.3 {
-            return p.length() - 1.15;
-        }
-        let q = p - v(0.0, 0.0, 0.08);
-        let letter = [&bowl, &leg, &serif].iter().fold(stem.distance(q), |d, t| smooth_min(d, t.distance(q), 0.03));
-        let relief = smooth_min(medal_blank(p), letter, 0.035);
-        smooth_min(relief, wreath(p), 0.02)
-    };
-    framed("medal", traced(distance, 0.85), (480, 480), DVec2::ZERO, 1.08)
-}
-
-fn medal_blank(p: DVec3) -> f64 {
-    let upright = v(p.x, p.z, -p.y);
-    let radial = DVec2::new(p.x, p.y).length();
-    // The field is slightly dished, so that it never reflects a single flat tone.
-    let dish = 0.05 * (1.0 - (radial / 0.9).powi(2)).max(0.0);
-    let plate = cylinder(upright, 1.0, 0.08 - 0.5 * dish, 0.05);
-    let rim = torus(upright - v(0.0, 0.06, 0.0), 0.95, 0.06);
-    let sector = TAU / 72.0;
-    let turn = (p.y.atan2(p.x) / sector).round() * sector;
-    let bead = v(0.845 * turn.cos(), 0.845 * turn.sin(), 0.065);
-    smooth_min(smooth_min(plate, rim, 0.04), sphere(p - bead, 0.029), 0.012)
-}
-
-/// Two branches of leaves, open at the top.
-fn wreath(p: DVec3) -> f64 {
-    let q = v(p.x.abs(), p.y, p.z - 0.075);
-    let radial = DVec2::new(q.x, q.y).length();
-    if (radial - 0.67).abs() > 0.3 || q.z.abs() > 0.3 {
-        return (radial - 0.67).abs().max(q.z.abs()) - 0.15;
-    }
-    let mut best = torus(v(p.x, p.z - 0.075, p.y), 0.67, 0.012).max(p.y - 0.52);
-    for i in 0..11 {
-        let angle = (-83.0 + 12.2 * f64::from(i)).to_radians();
-        let foot = v(0.67 * angle.cos(), 0.67 * angle.sin(), 0.0);
-        for side in [-1.0, 1.0] {
-            let heading = angle + TAU / 4.0 - side * 0.52;
-            let size = 1.0 - 0.025 * f64::from(i);
-            let (s, c) = heading.sin_cos();
-            let d = q - foot;
-            // A leaf reaches 0.185 from its foot; farther ones blend with nothing.
-            if d.length_squared() > 0.3 * 0.3 {
-                best = best.min(d.length() - 0.2);
-                continue;
-            }
-            let local = v(d.x * c + d.y * s, -d.x * s + d.y * c, d.z) / size;
-            let ridge = 0.012 * (-(local.y / 0.012).powi(2)).exp();
-            let tip = 0.036 * (1.0 - 3.2 * (local.x - 0.085));
-            let blade = ellipsoid(local - v(0.085, 0.0, 0.004), v(0.098, tip.max(0.012), 0.032)) + 0.5 * ridge;
-            best = smooth_min(best, blade * size * 0.8, 0.006);
-        }
-    }
-    best
-}
-
-/// A snail, its shell a logarithmic spiral.
-pub fn snail() -> Sample {
-    let turn = object_from_camera(-20.0, 12.0, 0.0);
-    let shell = Tube::open(&shell_spiral());
-    let body = Tube::through(&points(&[
-        [-1.25, -0.7, 0.0, 0.05],
-        [-0.95, -0.66, 0.0, 0.11],
-        [-0.5, -0.58, 0.0, 0.2],
-        [0.0, -0.54, 0.0, 0.25],
-        [0.45, -0.52, 0.02, 0.23],
-        [0.78, -0.36, 0.06, 0.2],
-        [0.98, -0.08, 0.1, 0.19],
-        [1.08, 0.06, 0.13, 0.19],
-    ]));
-    let stalk = Tube::through(&points(&[
-        [1.06, 0.12, 0.18, 0.06],
-        [1.12, 0.34, 0.2, 0.042],
-        [1.24, 0.54, 0.22, 0.036],
-        [1.34, 0.68, 0.24, 0.04],
-    ]));
-    let mouth = snail_mouth();
-    let distance = move |camera: DVec3| {
-        let p = turn * camera;
-        let coil = shell_distance(&shell, p);
-        smooth_min(coil, snail_body(&body, &stalk, &mouth, p), 0.035)
-    };
-    framed("snail", traced(distance, 0.75), (600, 400), DVec2::new(0.14, 0.02), 1.6)
-}
-
-fn snail_body(body: &Tube, stalk: &Tube, mouth: &Tube, p: DVec3) -> f64 {
-    // The sole is flat and its hem ripples.
-    let hem = ellipsoid(p - v(-0.24, -0.76, 0.0), v(1.02, 0.07, 0.3 + 0.012 * (22.0 * p.x).sin()));
-    let flesh = body.distance(p);
-    // The skin is worth its price only near the surface.
-    let skin = if flesh < 0.1 { 0.004 * fbm3(p * v(9.0, 13.0, 9.0), 1, 5) } else { 0.0 };
-    let trunk = smooth_min(flesh + skin, hem * 0.8, 0.14);
-    let mirrored = v(p.x, p.y, (p.z - 0.12).abs() + 0.12);
-    let eye = sphere(mirrored - v(1.34, 0.7, 0.24), 0.07);
-    let feeler = capsule(mirrored, v(1.2, -0.04, 0.2), v(1.37, -0.13, 0.25), 0.03, 0.038);
-    let cheek = ellipsoid(p - v(1.11, 0.03, 0.12), v(0.2, 0.175, 0.18));
-    let head = smooth_min(smooth_min(trunk, cheek, 0.1), feeler, 0.05);
-    let eyes = smooth_min(stalk.distance(mirrored), eye, 0.03);
-    carve(smooth_min(head, eyes, 0.06), mouth.distance(p), 0.03)
-}
-
-/// The groove of the snail's smile, around the front of its head.
-fn snail_mouth() -> Tube {
-    let spot = |i: i32| {
-        let turn = f64::from(i) * 0.24;
-        v(1.11 + 0.21 * turn.cos(), 0.005 + 0.05 * turn * turn, 0.12 + 0.19 * turn.sin())
-            .extend(0.016 - 0.0015 * f64::from(i.abs()))
-    };
-    Tube::through(&(-6..=6).map(spot).collect::<Vec<_>>())
-}
-
-/// Control points of the shell's coil: three and a half turns, each 2.1 times as wide as the one before.
-fn shell_spiral() -> Vec<DVec4> {
-    const TURNS: f64 = 3.4;
-    const GROWTH: f64 = 2.15;
-    (0..=68)
-        .map(|i| {
-            let turn = f64::from(i) / 68.0 * TURNS;
-            let size = GROWTH.powf(turn - TURNS);
-            let angle = -TAU * (turn - TURNS) - 0.9;
-            let reach = 0.62 * size;
-            // The apex stands out of the coil's plane, on the viewer's side.
-            v(-0.16 + reach * angle.cos(), 0.16 + reach * angle.sin(), 0.34 * (1.0 - size) - 0.04)
-                .extend(0.37 * size + 0.012)
-        })
-        .collect()
-}
-
-fn shell_distance(shell: &Tube, p: DVec3) -> f64 {
-    let (d, along) = shell.nearest(p);
-    if d > 0.2 {
-        return d - 0.05;
-    }
-    // Growth lines: fine, closer together toward the apex as the spiral itself is.
-    let lines = (along * 6.0).sin() + 0.3 * (along * 17.0 + 2.0).sin();
-    let size = 2.15_f64.powf((along - 68.0) / 20.0);
-    d + 0.007 * size * lines
-}
 
 /// A cratered moon.
 pub fn moon() -> Sample {

@@ -1,8 +1,12 @@
 //! Icons, drawn: lines on a grid of 16 × 16, so that they are sharp at any scale and need no font.
 //! Floor 7.
 
+mod button;
+
+pub use button::{icon_button, sized_button};
+
 use crate::tools::ToolKind;
-use eframe::egui::{self, Color32, Painter, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, Vec2, pos2, vec2};
+use eframe::egui::{self, Color32, Painter, Pos2, Rect, Stroke, Vec2, pos2};
 
 type IconPoint = (f32, f32);
 
@@ -325,33 +329,4 @@ impl Icon {
             }
         }
     }
-}
-
-/// The side of an icon's button, screen points.
-pub const BUTTON_PT: f32 = 24.0;
-
-/// A button with an icon and, for screen readers, tests and the tooltip, a name.
-pub fn icon_button(ui: &mut Ui, icon: Icon, label: &str, on: bool) -> Response {
-    sized_button(ui, icon, label, on, BUTTON_PT)
-}
-
-pub fn sized_button(ui: &mut Ui, icon: Icon, label: &str, on: bool, side_pt: f32) -> Response {
-    let (rect, response) = ui.allocate_exact_size(Vec2::splat(side_pt), Sense::click());
-    let enabled = ui.is_enabled();
-    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, enabled, on, label));
-    if ui.is_rect_visible(rect) {
-        let look = ui.style().interact_selectable(&response, on);
-        if on || response.hovered() || response.has_focus() {
-            ui.painter().rect(
-                rect.shrink(0.5),
-                look.corner_radius,
-                look.weak_bg_fill,
-                look.bg_stroke,
-                StrokeKind::Inside,
-            );
-        }
-        let inner = Rect::from_center_size(rect.center(), vec2(16.0, 16.0).min(rect.size() * 0.72));
-        icon.draw(ui.painter(), inner, look.text_color());
-    }
-    response
 }

@@ -1,0 +1,93 @@
+use super::*;
+use crate::math::{Size, Vec2, hash, vec2, vec3};
+use crate::paint::Selection;
+use crate::paint::grain::{BrushGrain, GrainSpace};
+use crate::paint::stroke::render_tile;
+use crate::paint::{ColorJitter, Curve, Dynamics, Input, Property, Tip};
+use crate::raster::{BlendMode, CoverageGrid, Plane};
+use crate::surface::{Maps, Surface};
+use proptest::prelude::*;
+
+const SIZE: Size = Size::new(300, 200);
+
+fn waves() -> Scene {
+    let normals = Plane::from_fn(SIZE, |x, y| vec3((0.05 * x as f32).sin(), (0.07 * y as f32).cos(), 1.0));
+    let depth = Plane::from_fn(SIZE, |x, _| 0.5 + 0.4 * (0.02 * x as f32).sin());
+    let maps = Maps { normals, depth, coverage: Plane::filled(SIZE, 255) };
+    Scene { size: SIZE, surface: Some(Arc::new(Surface::new(maps).unwrap())) }
+}
+fn samples(seed: u32, n: u32) -> Vec<Sample> {
+    let random = |i, j| hash::unit(seed, i, j);
+    let (mut at, mut time_secs) = (vec2(150.0, 100.0), 0.0);
+    (0..n)
+        .map(|i| {
+            at = (at + 60.0 * (vec2(random(i, 0), random(i, 1)) - 0.5)).clamp(Vec2::ZERO, vec2(299.0, 199.0));
+            time_secs += 0.01 * random(i, 2);
+            Sample { pressure: random(i, 3), time_secs, ..Sample::at(at) }
+        })
+        .collect()
+}
+fn brushes() -> Vec<Brush> {
+    let dynamics = Dynamics::default().with(Property::Size, Input::Speed, Curve::Share(0.8));
+    let grain = BrushGrain { size_px: 9.0, lies: GrainSpace::Surface { gamma: 1.0 }, ..BrushGrain::default() };
+    let plain = Brush { size: 34.0, dynamics, ..Brush::default() };
+    vec![
+        plain.clone(),
+        Brush { scatter: 0.6, jitter: ColorJitter { hue_degrees: 90.0, ..ColorJitter::default() }, ..plain.clone() },
+        Brush { blend: BlendMode::Multiply, opacity: 0.6, ..plain.clone() },
+        Brush { erases: true, ..plain.clone() },
+        Brush { grain: Some(grain), tip: Tip::Square { ratio: 0.4 }, ..plain },
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+    #[test]
+    fn a_stroke_in_hand_is_the_stroke_painted_at_once_however_its_samples_come(seed: u32, batch in 1usize..9) {
+        let scene = waves();
+        let operator = Operator::Normal { alpha: 0.3, beta: 1.0, detail: 0.0 };
+        let red = Color::parse("#c04020").unwrap();
+        let beneath = Arc::new(Stroke::new(Brush::default(), operator, red, samples(!seed, 6)));
+        // Soft, with tiles wholly selected and tiles not at all; every other brush keeps to it.
+        let soft = Plane::from_fn(SIZE, |x, y| ((x as i32 - 100) * 3 + y as i32 / 4).clamp(0, 255) as u8);
+        let selection = StrokeSelection::new(Arc::new(Selection::new(CoverageGrid::from_plane(&soft, 0, 0))));
+        for (i, brush) in brushes().into_iter().enumerate() {
+            let own = (i % 2 == 1).then(|| selection.moved(vec2(0.25 * i as f32, 0.0)));
+            let color = Color::parse("#20a0e0").unwrap();
+            let samples = samples(seed, 17);
+            let all = samples.clone();
+            let mirror = |s: &Sample| Sample { at: vec2(300.0 - s.at.x, s.at.y), ..*s };
+            let mirrored: Vec<Sample> = samples.iter().map(mirror).collect();
+            let like = [(); 2].map(|_| Stroke::new(brush.clone(), operator, color, Vec::new()).within(own.clone()));
+            let mut stroke = ActiveStrokes::new(&like, Backdrop::Strokes(vec![beneath.clone()]), &scene);
+            let mut shown: HashMap<TileAt, Option<Arc<Tile>>> = HashMap::new();
+            for (batch, mirrored) in samples.chunks(batch).zip(mirrored.chunks(batch)) {
+                shown.extend(stroke.draw(&[batch.to_vec(), mirrored.to_vec()]));
+            }
+            let made = |samples| Stroke::new(brush.clone(), operator, color, samples).within(own.clone());
+            let once = [all, mirrored].map(made);
+            let mut strokes = vec![beneath.clone()];
+            strokes.extend(once.into_iter().map(Arc::new));
+            let bounds = stroke.strokes().iter().map(|s| s.bounds(&scene)).collect::<Vec<_>>();
+            let mut finished = vec![beneath.clone()];
+            finished.extend(stroke.finish().into_iter().map(Arc::new));
+            for at in TileAt::covering(SIZE.rect()) {
+                let whole = render_tile(&strokes, &scene, at);
+                let whole = whole.as_ref().map(|tile| tile.bytes());
+                let again = render_tile(&finished, &scene, at);
+                prop_assert_eq!(again.as_ref().map(|tile| tile.bytes()), whole, "{:?}, finished", at);
+                match shown.get(&at) {
+                    Some(tile) => prop_assert_eq!(tile.as_ref().map(|tile| tile.bytes()), whole, "{:?}", at),
+                    None => {
+                        let is_touched = strokes[1..].iter().any(|s| s.touches(&scene, at));
+                        prop_assert!(!is_touched, "{:?} was left out", at);
+                    }
+                }
+            }
+            for (stroke, bounds) in strokes[1..].iter().zip(bounds) {
+                let own = stroke.bounds(&scene);
+                prop_assert_eq!(own.intersect(bounds), own, "the bounds in hand hold the stroke");
+            }
+        }
+    }
+}
