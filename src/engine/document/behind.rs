@@ -5,7 +5,8 @@
 use crate::math::srgb;
 use crate::paint::Scene;
 use crate::raster::blend::spec;
-use crate::raster::{PlanarTile, TILE, Tile, TileAt};
+use crate::raster::tile::deep::{self, DeepRow};
+use crate::raster::{PlanarTile, TILE, Tile, TileAt, TilePaint};
 use crate::surface::contours::{ContourPixel, TileContours, place_of};
 use std::sync::Arc;
 
@@ -16,10 +17,15 @@ pub struct Behind<'c> {
     contours: TileContours<'c>,
 }
 
-/// Pixels of a layer as other populations see them: bytes as a tile's, a row after the other.
+/// Pixels of a layer as other populations see them: as a tile's, a row after the other.
 pub struct PackedTile {
-    bytes: Box<[u8]>,
+    pixels: PackedPixels,
     opaque: bool,
+}
+
+enum PackedPixels {
+    Bytes(Box<[u8]>),
+    Deep(Box<[DeepRow]>),
 }
 
 /// What a layer sees behind a contour, and before it.
@@ -74,7 +80,7 @@ impl<'c> Behind<'c> {
                 }
                 false => (bare, (pixel.x - corner.x0) as usize, (pixel.y - corner.y0) as usize),
             };
-            tile.map_or([0; 4], |tile| pixel_of(tile, x, y))
+            tile.map_or([0; 4], |tile| pixel_of(tile, (x, y)))
         })
     }
     /// The same of pixels that are not rounded to bytes.
@@ -97,7 +103,19 @@ impl<'c> Behind<'c> {
     /// Packs the pixels of a tile itself: both populations see the same.
     pub fn same(&self, tile: &Tile) -> PackedTile {
         let corner = self.at.rect();
-        self.gathered(|_, pixel| pixel_of(tile, (pixel.x - corner.x0) as usize, (pixel.y - corner.y0) as usize))
+        let place = |pixel: &ContourPixel| ((pixel.x - corner.x0) as usize, (pixel.y - corner.y0) as usize);
+        if !tile.is_deep() {
+            return self.gathered(|_, pixel| pixel_of(tile, place(pixel)));
+        }
+        let mut rows = vec![deep::CLEAR_ROW; self.rows()].into_boxed_slice();
+        let mut opaque = true;
+        for (at, contour) in self.places() {
+            let (x, y) = place(contour);
+            let pixel = tile.deep_pixel(x, y);
+            opaque &= pixel[3] == u16::MAX;
+            deep::put(&mut rows[at / TILE], at % TILE, pixel);
+        }
+        PackedTile { pixels: PackedPixels::Deep(rows), opaque }
     }
     fn gathered(&self, pixel: impl Fn(usize, &ContourPixel) -> [u8; 4]) -> PackedTile {
         let mut bytes = vec![0; self.rows() * TILE * 4].into_boxed_slice();
@@ -107,7 +125,7 @@ impl<'c> Behind<'c> {
             opaque &= pixel[3] == 255;
             bytes[place * 4..place * 4 + 4].copy_from_slice(&pixel);
         }
-        PackedTile { bytes, opaque }
+        PackedTile { pixels: PackedPixels::Bytes(bytes), opaque }
     }
     /// Leaves each pixel wholly, or nothing of it, as dissolving paint does at its place on the canvas.
     pub fn dissolve(&self, pixels: &mut PlanarTile) {
@@ -176,13 +194,23 @@ fn in_light(to: [f32; 4], from: [f32; 4], share: f32, brightest: f32) -> [f32; 4
     [encoded(0), encoded(1), encoded(2), alpha]
 }
 
-fn pixel_of(tile: &Tile, x: usize, y: usize) -> [u8; 4] {
+fn pixel_of(tile: &Tile, (x, y): (usize, usize)) -> [u8; 4] {
     tile.bytes().as_chunks::<4>().0[y * TILE + x]
 }
 
 impl PackedTile {
-    pub fn bytes(&self) -> &[u8] {
-        &self.bytes
+    pub fn as_paint(&self) -> TilePaint<'_> {
+        match &self.pixels {
+            PackedPixels::Bytes(bytes) => TilePaint::Bytes(bytes),
+            PackedPixels::Deep(rows) => TilePaint::Deep(rows),
+        }
+    }
+    /// Bytes that its pixels take.
+    pub fn held_bytes(&self) -> u64 {
+        match &self.pixels {
+            PackedPixels::Bytes(bytes) => bytes.len() as u64,
+            PackedPixels::Deep(rows) => size_of_val::<[DeepRow]>(rows) as u64,
+        }
     }
     /// Every pixel that is used is.
     pub fn is_opaque(&self) -> bool {

@@ -5,7 +5,7 @@ use super::selections::picture;
 use super::{Content, Document, Layer, LayerId, LayerLock, LayerMask, Live, PixelLayer, StrokeList};
 use crate::paint::{Selection, Stroke, StrokeSelection};
 use crate::raster::coverage::product;
-use crate::raster::{CoverageGrid, CoverageTile, Tile, TileGrid};
+use crate::raster::{CoverageGrid, CoverageTile, TILE, Tile, TileGrid};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -120,6 +120,17 @@ fn changed(
 fn kept(tile: &Arc<Tile>, covered: &CoverageTile, share: impl Fn(u8) -> u8) -> Option<Arc<Tile>> {
     if covered.is_whole() {
         return if share(255) == 255 { Some(tile.clone()) } else { None };
+    }
+    if tile.is_deep() {
+        let mut rows = tile.deep_rows();
+        for (row, covered) in rows.iter_mut().zip(covered.bytes().as_chunks::<TILE>().0) {
+            for channel in row {
+                // Rounded to nearest: at most 65535 · 255 + 127.
+                let part = |(v, c): (&mut u16, &u8)| *v = ((u32::from(*v) * u32::from(share(*c)) + 127) / 255) as u16;
+                channel.iter_mut().zip(covered).for_each(part);
+            }
+        }
+        return Tile::from_deep(rows).map(Arc::new);
     }
     let mut bytes = tile.bytes().to_vec();
     for (pixel, c) in bytes.as_chunks_mut::<4>().0.iter_mut().zip(covered.bytes()) {

@@ -113,4 +113,6 @@ fn for_each(nodes: &[PreparedLayer], tell: &mut impl FnMut(&PreparedLayer)) {
 }
 
 #[cfg(test)]
+mod paint_tests;
+#[cfg(test)]
 mod tests;

@@ -16,17 +16,18 @@ pub fn flatten(document: &Document, progress: &Progress) -> Option<TileGrid> {
     prepared.flatten_tiles(&TileGrid::default(), &prepared.all_tiles(), progress)
 }
 
+/// So many tiles, in f32, are held beside a picture that is composed in floats.
+const DEEP_AT_A_TIME: usize = 256;
+
 /// Flattens the whole document without rounding to bytes: premultiplied, sRGB-encoded, row by row; colours are above
 /// their alpha where `highlights` are kept. `None` if cancelled.
 pub fn flatten_deep(document: &Document, highlights: Highlights, progress: &Progress) -> Option<Vec<[f32; 4]>> {
-    // So many tiles, in f32, are held beside the picture.
-    const AT_A_TIME: usize = 256;
     let prepared = PreparedDocument::new(document, progress)?;
     let tiles = prepared.all_tiles();
     let mut deep = DeepTiles::new(&prepared, highlights);
     let canvas = document.size.rect();
     let mut pixels = filled_or_unwind(document.size.area(), [0.0; 4]);
-    for part in tiles.chunks(AT_A_TIME) {
+    for part in tiles.chunks(DEEP_AT_A_TIME) {
         deep.render(&prepared, part, progress);
         let composed = in_parallel(part, progress, |at| prepared.compose_tile(at, Some(&deep)))?;
         for (at, tile) in part.iter().zip(composed) {
@@ -39,6 +40,21 @@ pub fn flatten_deep(document: &Document, highlights: Highlights, progress: &Prog
         }
     }
     Some(pixels)
+}
+
+/// Flattens the whole document to what a paint layer holds: composed without rounding live layers, 16 bits where that
+/// is soft ([`PlanarTile::kept`]). `None` if cancelled.
+pub fn flatten_to_paint(document: &Document, progress: &Progress) -> Option<TileGrid> {
+    let prepared = PreparedDocument::new(document, progress)?;
+    let tiles = prepared.all_tiles();
+    let mut deep = DeepTiles::new(&prepared, Highlights::Clipped);
+    let mut grid = TileGrid::for_rect(document.size.rect());
+    for part in tiles.chunks(DEEP_AT_A_TIME) {
+        deep.render(&prepared, part, progress);
+        let composed = in_parallel(part, progress, |at| prepared.paint_tile(at, &deep))?;
+        part.iter().zip(composed).for_each(|(at, tile)| grid.set(*at, tile));
+    }
+    Some(grid)
 }
 
 /// Flattens one layer alone, shown or not, on transparency: its own opacity and mask, not those of the groups around
@@ -112,6 +128,12 @@ impl PreparedDocument {
             return None;
         }
         Composer { prepared: self, at, behind: None, sought: None, deep: None }.only_tile(&self.stack)
+    }
+    /// A tile as a paint layer holds it: as it shows, but where that is soft.
+    fn paint_tile(&self, at: TileAt, deep: &DeepTiles) -> Option<Arc<Tile>> {
+        let alone = self.alone_in_tile(at).filter(|tile| tile.is_deep());
+        let soft = || self.compose_tile(at, Some(deep)).kept(None).filter(Tile::is_deep).map(Arc::new);
+        alone.or_else(soft).or_else(|| self.flatten_tile(at))
     }
     fn compose_tile(&self, at: TileAt, deep: Option<&DeepTiles>) -> PlanarTile {
         // No adjustment is sought, so composing runs to its end.

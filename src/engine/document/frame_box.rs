@@ -110,11 +110,9 @@ fn is_within(known: Rect, at: TileAt) -> bool {
 /// What is known, and the pixels of one more tile that are not wholly transparent.
 fn with_tile(known: Rect, at: TileAt, tile: &Tile) -> Rect {
     let origin = at.rect();
-    let rows = tile.bytes().chunks_exact(TILE * 4).zip(origin.y0..);
-    rows.fold(known, |all, (row, y)| {
-        let is_painted = |p: &[u8]| p[3] > 0;
-        let (first, last) = (row.chunks_exact(4).position(is_painted), row.chunks_exact(4).rposition(is_painted));
-        match first.zip(last) {
+    (0..TILE).zip(origin.y0..).fold(known, |all, (row, y)| {
+        let is_painted = |x: &usize| tile.is_painted(row * TILE + x);
+        match (0..TILE).find(is_painted).zip((0..TILE).rfind(is_painted)) {
             Some((first, last)) => {
                 all.union(Rect::new(origin.x0 + first as i32, y, origin.x0 + last as i32 + 1, y + 1))
             }

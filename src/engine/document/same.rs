@@ -6,6 +6,7 @@ use super::source::{MaskSource, SurfaceSource};
 use super::{Content, DetailSource, Document, Layer, LayerMask, MaskKind, NamedSelection, StrokeList};
 use crate::paint::Stroke;
 use crate::raster::TileGrid;
+use crate::raster::tile::TILE_AREA;
 use std::sync::Arc;
 
 impl Document {
@@ -195,8 +196,8 @@ fn same_pixels(a: &TileGrid, b: &TileGrid) -> bool {
     }
     let holds = |a: &TileGrid, b: &TileGrid| {
         a.iter().all(|(at, tile)| match b.tile(at) {
-            Some(other) => Arc::ptr_eq(tile, other) || tile.bytes() == other.bytes(),
-            None => tile.bytes().iter().all(|byte| *byte == 0),
+            Some(other) => Arc::ptr_eq(tile, other) || tile.is_same(other),
+            None => (0..TILE_AREA).all(|i| !tile.is_painted(i)),
         })
     };
     holds(a, b) && holds(b, a)

@@ -2,7 +2,7 @@
 //! Floor 4. Only tiles that an edit can change are rendered again.
 
 use super::{
-    Content, Document, Layer, LayerId, LayerLock, LayerSlot, Live, PixelLayer, Progress, StrokeList, flatten_layer,
+    Content, Document, Layer, LayerId, LayerLock, LayerSlot, Live, PixelLayer, Progress, StrokeList, flatten_to_paint,
 };
 use crate::math::Vec2;
 use crate::paint::{Scene, Stroke};
@@ -90,7 +90,7 @@ impl Document {
             layer.content = Content::Strokes(Live::new(StrokeList { strokes }));
             (layer.opacity, layer.mask, layer.blend, layer.clip_to_surface) = (1.0, None, Default::default(), false);
         })?;
-        let tiles = flatten_layer(&bare, layer, &Progress::default())?;
+        let tiles = flatten_to_paint(&bare.with_only(&[layer])?, &Progress::default())?;
         let left = self.without_strokes(layer, &chosen)?;
         let old = self.layer(layer)?;
         let pixels = Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles });

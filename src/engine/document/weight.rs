@@ -9,6 +9,8 @@ use std::sync::Arc;
 
 /// Of a tile, bytes a pixel.
 const TILE_BYTES: u64 = 4;
+/// Of a tile of 16 bits, bytes a pixel.
+const DEEP_TILE_BYTES: u64 = 12;
 /// A tensor of curvature, and the map of κ made of it, bytes a pixel.
 const CURVATURE_BYTES: u64 = 14;
 /// A surface that other normals were put on, bytes a pixel.
@@ -56,7 +58,9 @@ fn of_layer(layer: &Layer, canvas: Rect, area: u64) -> u64 {
         _ => 0,
     };
     // What it is sampled from, and what it shows.
-    let warped = if layer.is_warped() { 2 * area * TILE_BYTES } else { 0 };
+    let is_deep = matches!(&layer.content, Content::Pixels(pixels) if pixels.tiles.is_deep_in(pixels.tiles.bounds()));
+    let tile_bytes = if is_deep { DEEP_TILE_BYTES } else { TILE_BYTES };
+    let warped = if layer.is_warped() { 2 * area * tile_bytes } else { 0 };
     mask + warped
         + match &layer.content {
             Content::Fill(_) | Content::Pixels(_) => 0,

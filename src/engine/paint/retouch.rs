@@ -1,5 +1,5 @@
 //! Smudge, blur, clone, and brushes that pick paint up: they work on the paint that is there. Dab by dab through the
-//! same bent footprint as paint, each on what the last one left, in f32, rounded to bytes as it is shown. Floor 3.
+//! same bent footprint as paint, each on what the last one left, in f32, rounded as it is shown. Floor 3.
 //! `drag` says where smudge and clone take a pixel's colour from, `soften` what blur makes of it, `pickup` which
 //! colour a dab paints, `pixels` holds the pixels. Not here: what the pen did (`tools`).
 

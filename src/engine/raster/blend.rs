@@ -9,7 +9,8 @@ mod rows;
 pub mod spec;
 
 use super::planar::{PlanarTile, sane};
-use super::tile::{TILE_AREA, TileAt};
+use super::tile::deep::DeepRow;
+use super::tile::{TILE_AREA, Tile, TileAt};
 pub use modes::{BlendMode, blend_pixel};
 
 /// How paint meets what it is painted on.
@@ -39,7 +40,16 @@ pub enum TilePaint<'a> {
     Solid([f32; 4]),
     /// Premultiplied bytes, row by row; as many rows as are painted on.
     Bytes(&'a [u8]),
+    /// Premultiplied rows of 16 bits; as many as are painted on.
+    Deep(&'a [DeepRow]),
     Planar(&'a PlanarTile),
+}
+
+impl<'a> TilePaint<'a> {
+    /// All that a tile holds.
+    pub fn of(tile: &'a Tile) -> Self {
+        tile.deep().map_or_else(|| TilePaint::Bytes(tile.bytes()), TilePaint::Deep)
+    }
 }
 
 /// How much of the paint arrives at each pixel of a tile: an opacity times, where there is one, a mask.
@@ -101,6 +111,14 @@ impl TileCoverage {
 }
 
 impl PlanarTile {
+    /// The pixels of a tile, if there is one.
+    pub fn of_tile(tile: Option<&Tile>) -> Self {
+        let mut pixels = Self::transparent();
+        if let Some(tile) = tile {
+            pixels.blend(Mix::default(), TilePaint::of(tile), &TileCoverage::FULL);
+        }
+        pixels
+    }
     /// Blends paint into the tile. NaN cannot come of it: paint is finite, and coverage in `[0, 1]`, by construction.
     pub fn blend(&mut self, mix: Mix, paint: TilePaint<'_>, coverage: &TileCoverage) {
         let paint = if let TilePaint::Solid(color) = paint { TilePaint::Solid(sane(color)) } else { paint };

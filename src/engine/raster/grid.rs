@@ -1,6 +1,11 @@
 //! A sparse grid of tiles, cheap to clone, shared tile by tile: the pixels of a paint layer ([`TileGrid`]), the
-//! coverage of a selection (`coverage`). Floor 1.
+//! coverage of a selection (`coverage`). Floor 1. Straight pixels go in and out in `straight`.
 
+mod straight;
+
+pub use straight::{premultiply, unpremultiply};
+
+use super::tile::deep::{self, DeepRow};
 use super::tile::{TILE, Tile, TileAt};
 use crate::math::Rect;
 use std::sync::Arc;
@@ -128,18 +133,24 @@ impl<T> Grid<T> {
 }
 
 impl Grid<Tile> {
-    /// Copies a row of pixels, premultiplied, from a canvas pixel on.
-    pub fn copy_row(&self, x0: i32, y: i32, row: &mut [[u8; 4]]) {
+    /// Copies a row of pixels, premultiplied, from a canvas pixel on, in levels: 255 is whole.
+    pub fn copy_row(&self, x0: i32, y: i32, row: &mut [[f32; 4]]) {
         let line = Rect::new(x0, y, x0.saturating_add(row.len() as i32), y.saturating_add(1));
         for at in TileAt::covering(line) {
             let (tile, area) = (at.rect(), at.rect().intersect(line));
             let to = &mut row[(area.x0 - x0) as usize..][..area.width()];
             match self.tile(at) {
+                Some(held) if held.is_deep() => {
+                    let pixels = to.iter_mut().zip((area.x0 - tile.x0) as usize..);
+                    let row = (y - tile.y0) as usize;
+                    pixels.for_each(|(to, x)| *to = held.deep_pixel(x, row).map(|v| f32::from(v) / 257.0));
+                }
                 Some(held) => {
                     let start = (y - tile.y0) as usize * TILE + (area.x0 - tile.x0) as usize;
-                    to.copy_from_slice(&held.bytes().as_chunks::<4>().0[start..start + area.width()]);
+                    let bytes = &held.bytes().as_chunks::<4>().0[start..start + area.width()];
+                    to.iter_mut().zip(bytes).for_each(|(to, bytes)| *to = bytes.map(f32::from));
                 }
-                None => to.fill([0; 4]),
+                None => to.fill([0.0; 4]),
             }
         }
     }
@@ -149,6 +160,12 @@ impl Grid<Tile> {
         for (at, tile) in other.iter() {
             let joined = match self.tile(at) {
                 None => Some(tile.clone()),
+                Some(own) if own.is_deep() || tile.is_deep() => {
+                    let mut both = own.deep_rows();
+                    let values = both.as_flattened_mut().as_flattened_mut().iter_mut();
+                    values.zip(tile.deep_rows().as_flattened().as_flattened()).for_each(|(a, b)| *a |= b);
+                    Tile::from_deep(both).map(Arc::new)
+                }
                 Some(own) => {
                     let both = own.bytes().iter().zip(tile.bytes()).map(|(a, b)| a | b).collect();
                     Tile::from_bytes(both).map(Arc::new)
@@ -159,8 +176,18 @@ impl Grid<Tile> {
     }
     /// What it takes, were nothing of it shared.
     pub fn bytes(&self) -> usize {
-        let held = self.tiles.iter().flatten().count();
-        held * TILE * TILE * 4 + self.tiles.len() * size_of::<Option<Arc<Tile>>>()
+        let held: u64 = self.tiles.iter().flatten().map(|tile| tile.held_bytes()).sum();
+        held as usize + self.tiles.len() * size_of::<Option<Arc<Tile>>>()
+    }
+    /// A tile that a rectangle touches holds more than bytes can.
+    pub fn is_deep_in(&self, rect: Rect) -> bool {
+        self.iter().any(|(at, tile)| tile.is_deep() && !at.rect().intersect(rect).is_empty())
+    }
+    /// A premultiplied pixel of 16 bits; transparent where there is no tile.
+    pub fn deep_pixel(&self, x: i32, y: i32) -> [u16; 4] {
+        let at = TileAt::of_pixel(x, y);
+        let (x, y) = ((x - at.rect().x0) as usize, (y - at.rect().y0) as usize);
+        self.tile(at).map_or([0; 4], |tile| tile.deep_pixel(x, y))
     }
     /// A premultiplied pixel; transparent where there is no tile.
     pub fn pixel(&self, x: i32, y: i32) -> [u8; 4] {
@@ -176,82 +203,49 @@ impl Grid<Tile> {
         let to = Rect::new(moved(b.x0, dx), moved(b.y0, dy), moved(b.x1, dx), moved(b.y1, dy));
         let mut grid = TileGrid::for_rect(to);
         for at in TileAt::covering(to) {
-            let mut bytes = vec![0u8; TILE * TILE * 4];
             let from = at.rect();
             let from = Rect::new(moved(from.x0, -dx), moved(from.y0, -dy), moved(from.x1, -dx), moved(from.y1, -dy));
-            for source in TileAt::covering(from) {
-                let Some(tile) = self.tile(source) else { continue };
-                let area = source.rect().intersect(from);
-                for y in area.y0..area.y1 {
-                    let read = ((y - source.rect().y0) as usize * TILE + (area.x0 - source.rect().x0) as usize) * 4;
-                    let write = ((y - from.y0) as usize * TILE + (area.x0 - from.x0) as usize) * 4;
-                    let n = area.width() * 4;
-                    bytes[write..write + n].copy_from_slice(&tile.bytes()[read..read + n]);
+            let tile = if self.is_deep_at(from) { self.deep_block(from) } else { self.block(from) };
+            grid.set(at, tile.map(Arc::new));
+        }
+        grid
+    }
+    /// [`TileGrid::is_deep_in`] of a rectangle of few tiles.
+    pub fn is_deep_at(&self, rect: Rect) -> bool {
+        TileAt::covering(rect).any(|at| self.tile(at).is_some_and(|tile| tile.is_deep()))
+    }
+    /// A square as large as a tile as one, wherever it lies; copied as bytes.
+    fn block(&self, from: Rect) -> Option<Tile> {
+        let mut bytes = vec![0u8; TILE * TILE * 4];
+        for (tile, area, source) in self.parts(from) {
+            for y in area.y0..area.y1 {
+                let read = ((y - source.rect().y0) as usize * TILE + (area.x0 - source.rect().x0) as usize) * 4;
+                let write = ((y - from.y0) as usize * TILE + (area.x0 - from.x0) as usize) * 4;
+                let n = area.width() * 4;
+                bytes[write..write + n].copy_from_slice(&tile.bytes()[read..read + n]);
+            }
+        }
+        Tile::from_pixels(bytes)
+    }
+    /// The same in 16 bits.
+    fn deep_block(&self, from: Rect) -> Option<Tile> {
+        let mut rows = deep::clear_rows();
+        for (tile, area, source) in self.parts(from) {
+            let held = tile.deep_rows();
+            let (read, write) = ((area.x0 - source.rect().x0) as usize, (area.x0 - from.x0) as usize);
+            for y in area.y0..area.y1 {
+                let own: &DeepRow = &held[(y - source.rect().y0) as usize];
+                for (to, own) in rows[(y - from.y0) as usize].iter_mut().zip(own) {
+                    to[write..write + area.width()].copy_from_slice(&own[read..read + area.width()]);
                 }
             }
-            grid.set(at, Tile::from_pixels(bytes).map(Arc::new));
         }
-        grid
+        Tile::from_deep(rows)
     }
-    /// Cuts straight-alpha RGBA bytes (`width · height · 4`, row by row) into premultiplied tiles, at a canvas offset.
-    pub fn from_straight_rgba(rgba: &[u8], width: usize, height: usize, x: i32, y: i32) -> Self {
-        let rect = Rect::new(x, y, x.saturating_add(width as i32), y.saturating_add(height as i32));
-        let mut grid = Self::for_rect(rect);
-        for at in TileAt::covering(rect) {
-            let area = at.rect().intersect(rect);
-            let mut bytes = vec![0u8; TILE * TILE * 4];
-            for py in area.y0..area.y1 {
-                let from = ((py - y) as usize * width + (area.x0 - x) as usize) * 4;
-                let to = ((py - at.rect().y0) as usize * TILE + (area.x0 - at.rect().x0) as usize) * 4;
-                let n = area.width() * 4;
-                premultiply(&rgba[from..from + n], &mut bytes[to..to + n]);
-            }
-            if bytes.iter().any(|&b| b != 0) {
-                grid.set(at, Tile::from_bytes(bytes).map(Arc::new));
-            }
-        }
-        grid
-    }
-    /// Straight-alpha RGBA bytes of a pixel rectangle, row by row.
-    pub fn to_straight_rgba(&self, rect: Rect) -> Vec<u8> {
-        let mut out = vec![0u8; rect.width() * rect.height() * 4];
-        for at in TileAt::covering(rect) {
-            let Some(tile) = self.tile(at) else { continue };
-            let area = at.rect().intersect(rect);
-            for py in area.y0..area.y1 {
-                let from = ((py - at.rect().y0) as usize * TILE + (area.x0 - at.rect().x0) as usize) * 4;
-                let to = ((py - rect.y0) as usize * rect.width() + (area.x0 - rect.x0) as usize) * 4;
-                let n = area.width() * 4;
-                unpremultiply(&tile.bytes()[from..from + n], &mut out[to..to + n]);
-            }
-        }
-        out
-    }
-}
-
-crate::widest! {
-    /// Straight bytes to premultiplied bytes, rounded to nearest.
-    pub fn premultiply(straight: &[u8], premultiplied: &mut [u8]) {
-        let (straight, premultiplied) = (straight.as_chunks::<4>().0, premultiplied.as_chunks_mut::<4>().0);
-        for (s, p) in straight.iter().zip(premultiplied) {
-            // The alpha itself as a colour that is whole.
-            let whole = [s[0], s[1], s[2], 255];
-            let a = u32::from(s[3]);
-            *p = whole.map(|c| ((u32::from(c) * a + 127) / 255) as u8);
-        }
-    }
-
-    /// Premultiplied bytes to straight bytes, rounded to nearest; transparent pixels become transparent black.
-    pub fn unpremultiply(premultiplied: &[u8], straight: &mut [u8]) {
-        let (premultiplied, straight) = (premultiplied.as_chunks::<4>().0, straight.as_chunks_mut::<4>().0);
-        for (p, s) in premultiplied.iter().zip(straight) {
-            let a = i32::from(p[3]);
-            // Of numbers below 2¹⁶ a rounded-down f32 quotient is the whole quotient.
-            let over = a.max(1) as f32;
-            let color = [p[0], p[1], p[2]].map(|c| ((i32::from(c) * 255 + a / 2) as f32 / over) as i32);
-            let held = if a == 0 { 0 } else { 255 };
-            *s = [color[0].min(held) as u8, color[1].min(held) as u8, color[2].min(held) as u8, p[3]];
-        }
+    /// The tiles under a rectangle, and how much of it lies on each.
+    fn parts(&self, from: Rect) -> impl Iterator<Item = (&Tile, Rect, TileAt)> {
+        let part = move |at: TileAt| Some((&**self.tile(at)?, at.rect().intersect(from), at));
+        TileAt::covering(from).filter_map(part)
     }
 }
 
@@ -259,14 +253,6 @@ crate::widest! {
 mod tests {
     use super::*;
 
-    #[test]
-    fn a_picture_cut_into_tiles_comes_back_whole() {
-        let (w, h) = (130, 70);
-        let rgba: Vec<u8> = (0..w * h).flat_map(|i| [(i % 251) as u8, (i % 83) as u8, (i % 7) as u8, 255]).collect();
-        let grid = TileGrid::from_straight_rgba(&rgba, w, h, -5, 3);
-        assert_eq!(grid.to_straight_rgba(Rect::new(-5, 3, 125, 73)), rgba);
-        assert_eq!(grid.pixel(-6, 3), [0; 4]);
-    }
     #[test]
     fn a_picture_joined_from_strips_is_the_picture() {
         let rgba: Vec<u8> = (0..130 * 90 * 4).map(|i| (i % 249) as u8 | 1).collect();
@@ -278,22 +264,6 @@ mod tests {
         assert_eq!(joined.bounds(), whole.bounds());
         assert!(whole.iter().all(|(at, tile)| joined.tile(at).unwrap().bytes() == tile.bytes()));
         assert_eq!(joined.bytes(), 6 * (16384 + 8));
-    }
-    #[test]
-    fn straight_and_premultiplied_bytes_are_rounded_to_nearest() {
-        let all: Vec<[u8; 4]> = (0..=255u8).flat_map(|a| (0..=255u8).map(move |c| [c, 255 - c, c / 2, a])).collect();
-        let (mut premultiplied, mut straight) = (vec![0; all.len() * 4], vec![0; all.len() * 4]);
-        premultiply(all.as_flattened(), &mut premultiplied);
-        unpremultiply(all.as_flattened(), &mut straight);
-        for ((of, p), s) in all.iter().zip(premultiplied.as_chunks::<4>().0).zip(straight.as_chunks::<4>().0) {
-            let a = u32::from(of[3]);
-            for c in 0..3 {
-                let v = u32::from(of[c]);
-                assert_eq!(u32::from(p[c]), (v * a + 127) / 255, "{of:?}");
-                assert_eq!(u32::from(s[c]), if a == 0 { 0 } else { ((v * 255 + a / 2) / a).min(255) }, "{of:?}");
-            }
-            assert_eq!((p[3], s[3]), (of[3], of[3]));
-        }
     }
     #[test]
     fn a_moved_grid_holds_the_same_bytes_elsewhere() {

@@ -2,6 +2,7 @@
 //! that loops over a row need no shuffles.
 //! Floor 1. Stored pixels are `tile`; how they mix is `blend`.
 
+use super::tile::deep::{self, DeepRow};
 use super::tile::{TILE, TILE_AREA, Tile, TileF32};
 use crate::math::srgb::quantise;
 
@@ -97,6 +98,16 @@ impl PlanarTile {
         }
         Tile::from_bytes(bytes)
     }
+    /// As a paint layer keeps it, painted on `was`: rounded to 16 bits where it is soft ([`deep::is_soft`]) or was that
+    /// before, else to bytes. `None` where the tile is wholly transparent.
+    pub fn kept(&self, was: Option<&Tile>) -> Option<Tile> {
+        let mut rows = deep::clear_rows();
+        deep_rows(&self.rows, &mut rows);
+        match was.is_some_and(Tile::is_deep) || deep::is_soft(&rows) {
+            true => Tile::from_deep(rows),
+            false => self.quantised(),
+        }
+    }
 }
 
 impl PixelRow {
@@ -126,6 +137,14 @@ crate::widest! {
                 bytes.copy_from_slice(&packed.to_le_bytes());
             }
         }
+    }
+}
+
+/// Rounds rows to 16 bits; colours above alpha are lowered to it.
+fn deep_rows(rows: &[PixelRow], deep: &mut [DeepRow]) {
+    for (row, deep) in rows.iter().zip(deep) {
+        let PixelRow { rgb: [r, g, b], a } = row;
+        deep::quantise_row([r, g, b, a], deep);
     }
 }
 

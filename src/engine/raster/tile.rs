@@ -1,7 +1,10 @@
-//! A tile: 64 × 64 pixels of a layer, premultiplied 8-bit sRGB, shared and never edited while shared.
-//! Floor 1. The storage depth is hidden here, so that 16-bit tiles can be added without touching layers or files.
+//! A tile: 64 × 64 pixels of a layer, premultiplied sRGB of 8 bits, and of 16 where something soft was painted; shared
+//! and never edited while shared. Floor 1. Pixels of 16 bits, and what is soft, are in `deep`.
+
+pub mod deep;
 
 use crate::math::{Rect, srgb::quantise};
+use deep::DeepRow;
 use tiny_skia::Pixmap;
 
 /// Side of a tile, in pixels. 64² f32 RGBA is 64 KiB: one layer of a flattening stays in the second-level cache.
@@ -51,6 +54,8 @@ impl TileAt {
 pub struct Tile {
     pixmap: Pixmap,
     opaque: bool,
+    /// What `pixmap` was rounded from, if that holds more than bytes can.
+    deep: Option<Box<[DeepRow]>>,
 }
 
 impl Tile {
@@ -61,7 +66,19 @@ impl Tile {
         }
         let opaque = lower_to_alpha(&mut rgba);
         let size = tiny_skia::IntSize::from_wh(TILE as u32, TILE as u32)?;
-        Some(Tile { pixmap: Pixmap::from_vec(rgba, size)?, opaque })
+        Some(Tile { pixmap: Pixmap::from_vec(rgba, size)?, opaque, deep: None })
+    }
+    /// A tile of [`TILE`] rows of 16 bits, colours no greater than alpha; one of bytes where these hold all of it.
+    /// `None` where it is wholly transparent.
+    pub fn from_deep(rows: Box<[DeepRow]>) -> Option<Tile> {
+        if rows.len() != TILE || rows.iter().all(|row| row[3] == [0; TILE]) {
+            return None;
+        }
+        let mut bytes = vec![0u8; TILE_AREA * 4];
+        let is_of_bytes = deep::to_bytes(&rows, &mut bytes);
+        let tile = Tile::from_bytes(bytes)?;
+        let opaque = tile.opaque && rows.iter().all(|row| row[3] == [u16::MAX; TILE]);
+        Some(if is_of_bytes { tile } else { Tile { opaque, deep: Some(rows), ..tile } })
     }
     /// Quantises a tile; `None` where it is wholly transparent.
     pub fn quantised(pixels: &TileF32) -> Option<Tile> {
@@ -76,13 +93,50 @@ impl Tile {
     }
     /// Bytes that its pixels take.
     pub fn held_bytes(&self) -> u64 {
-        self.bytes().len() as u64
+        self.bytes().len() as u64 * if self.is_deep() { 3 } else { 1 }
     }
-    /// Every alpha is 255.
+    /// Every pixel is wholly covered.
     pub fn is_opaque(&self) -> bool {
         self.opaque
     }
-    /// Premultiplied RGBA bytes, row by row.
+    /// Its rows of 16 bits, if bytes do not hold all of it.
+    pub fn deep(&self) -> Option<&[DeepRow]> {
+        self.deep.as_deref()
+    }
+    /// It holds more than bytes can.
+    pub fn is_deep(&self) -> bool {
+        self.deep.is_some()
+    }
+    /// Its rows in 16 bits, whatever it holds.
+    pub fn deep_rows(&self) -> Box<[DeepRow]> {
+        self.deep.clone().unwrap_or_else(|| {
+            let mut rows = deep::clear_rows();
+            deep::of_bytes(self.bytes(), &mut rows);
+            rows
+        })
+    }
+    /// A premultiplied pixel in 16 bits, whatever it holds; `x`, `y` below [`TILE`], transparent beyond.
+    pub fn deep_pixel(&self, x: usize, y: usize) -> [u16; 4] {
+        match &self.deep {
+            Some(rows) => deep::pixel_of(rows, x, y),
+            None => {
+                let byte = self.bytes().as_chunks::<4>().0.get(y * TILE + x).copied().unwrap_or_default();
+                byte.map(|v| u16::from(v) * deep::LEVEL)
+            }
+        }
+    }
+    /// Some paint lies on a pixel, be it fainter than a byte can say; `i`: its place, row by row.
+    pub fn is_painted(&self, i: usize) -> bool {
+        match &self.deep {
+            Some(rows) => rows[i / TILE][3][i % TILE] > 0,
+            None => self.bytes()[4 * i + 3] > 0,
+        }
+    }
+    /// Both hold the same pixels.
+    pub fn is_same(&self, other: &Tile) -> bool {
+        self.deep == other.deep && self.bytes() == other.bytes()
+    }
+    /// Premultiplied RGBA bytes, row by row: of 16 bits, rounded.
     pub fn bytes(&self) -> &[u8] {
         self.pixmap.data()
     }

@@ -1,7 +1,7 @@
 //! Pixels seen through a map: each pixel of the canvas from the pixels that it shows, sampled once.
 //! Floor 1. Maps are `math`'s; this knows them by their inverse alone.
 //!
-//! A map that moves whole pixels copies bytes. Elsewhere a pixel is a weighted mean of the source around the point that
+//! A map that moves whole pixels copies them. What is read of tiles of 16 bits becomes such. Elsewhere a pixel is a weighted mean of the source around the point that
 //! it shows. Where the source is magnified along an axis of the pixel, the weights are a cubic's; where it is reduced,
 //! they are the share of each source pixel's tent in the pixel's own piece of the source.
 
@@ -17,11 +17,12 @@ use source::{GridSource, PixelSource, PlaneSource};
 pub use tile_map::{TileMap, TilePoints};
 use window::SourceWindow;
 
-use super::tile::{TILE, Tile, TileAt, transparent_f32};
+use super::tile::deep::{self, DeepRow};
+use super::tile::{TILE, Tile, TileAt, TileF32, transparent_f32};
 use super::{Plane, TileGrid};
 use crate::math::fast::{max, min};
 use crate::math::plane_map::PixelMove;
-use crate::math::srgb::quantise;
+use crate::math::srgb::{quantise, quantise_deep};
 use crate::math::{Mat2, Rect, Size, Vec2};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -88,7 +89,18 @@ pub fn warped_tile_within(
         let (x, y) = ((x - at.rect().x0) as usize, (y - at.rect().y0) as usize);
         within_range(row, &mut pixels[y * TILE + x..][..row.len()]);
     });
-    Tile::quantised(&pixels).map(Arc::new)
+    let is_deep = grid.is_deep_at(source.held(map.source_rect(at.rect())));
+    let tile = if is_deep { Tile::from_deep(deep_rows(&pixels)) } else { Tile::quantised(&pixels) };
+    tile.map(Arc::new)
+}
+
+/// Pixels rounded to 16 bits.
+fn deep_rows(pixels: &TileF32) -> Box<[DeepRow]> {
+    let mut rows = deep::clear_rows();
+    for (row, pixels) in rows.iter_mut().zip(pixels.chunks_exact(TILE)) {
+        pixels.iter().enumerate().for_each(|(x, pixel)| deep::put(row, x, pixel.map(quantise_deep)));
+    }
+    rows
 }
 
 crate::widest! {
@@ -108,6 +120,19 @@ fn moved_tile(grid: &TileGrid, by: PixelMove, at: TileAt) -> Option<Arc<Tile>> {
         return grid.tile(at).cloned();
     }
     let rect = at.rect();
+    let corners = [(rect.x0, rect.y0), (rect.x1 - 1, rect.y1 - 1)].map(|(x, y)| by.source(x, y));
+    let [(ax, ay), (bx, by_)] = corners;
+    let read = Rect::new(ax.min(bx), ay.min(by_), ax.max(bx).saturating_add(1), ay.max(by_).saturating_add(1));
+    if grid.is_deep_at(read) {
+        let mut rows = deep::clear_rows();
+        for (row, y) in rows.iter_mut().zip(rect.y0..) {
+            for x in 0..TILE {
+                let (sx, sy) = by.source(rect.x0 + x as i32, y);
+                deep::put(row, x, grid.deep_pixel(sx, sy));
+            }
+        }
+        return Tile::from_deep(rows).map(Arc::new);
+    }
     let mut bytes = Vec::with_capacity(TILE * TILE * 4);
     for y in rect.y0..rect.y1 {
         for x in rect.x0..rect.x1 {

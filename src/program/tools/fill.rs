@@ -84,12 +84,10 @@ fn tile(
     if coverage.is_none() {
         return base.cloned();
     }
-    let mut pixels = PlanarTile::transparent();
-    if let Some(base) = base {
-        pixels.blend(Mix::default(), TilePaint::Bytes(base.bytes()), &TileCoverage::FULL);
-    }
+    let base = base.map(|tile| &**tile);
+    let mut pixels = PlanarTile::of_tile(base);
     pixels.blend(mix, TilePaint::Solid(color.premultiplied()), &coverage);
-    pixels.quantised().map(Arc::new)
+    pixels.kept(base).map(Arc::new)
 }
 
 #[cfg(test)]

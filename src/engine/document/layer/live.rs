@@ -238,7 +238,7 @@ impl<T> Live<T> {
             if let BehindPixels::Packed(packed) = behind
                 && count.is_new(packed)
             {
-                count.add_kept(packed.bytes().len() as u64);
+                count.add_kept(packed.held_bytes());
             }
         }
     }

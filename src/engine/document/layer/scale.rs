@@ -8,8 +8,10 @@ use super::Layer;
 use super::map::LayerMap;
 use super::mask::{DerivedMask, MaskKind};
 use super::transform::{LayerTransform, scaled_matrix};
-use crate::math::{PlaneMap, Rect, Size, Vec2, srgb::quantise, vec2};
+use crate::math::srgb::{quantise, quantise_deep};
+use crate::math::{PlaneMap, Rect, Size, Vec2, vec2};
 use crate::paint::{Placement, Sample, Selection, Stroke, StrokeHome};
+use crate::raster::tile::deep;
 use crate::raster::warp::{warped, warped_plane_onto};
 use crate::raster::{Plane, Resampling, TILE, Tile, TileAt, TileGrid};
 use crate::shading::Features;
@@ -168,15 +170,26 @@ impl CanvasScale {
         if TileAt::covering(source).all(|at| grid.tile(at).is_none()) {
             return None;
         }
-        let mut bytes = Vec::with_capacity(TILE * TILE * 4);
-        let mut row = vec![[0; 4]; source.width()];
-        for taps in &rows {
+        let sums = |taps: &[(i32, f32)], row: &mut [[f32; 4]]| {
             let mut sums = [[0.0; 4]; TILE];
             for &(y, weight) in taps {
-                grid.copy_row(source.x0, y, &mut row);
-                resample::add_row(&columns, weight, &row, &mut sums);
+                grid.copy_row(source.x0, y, row);
+                resample::add_row(&columns, weight, row, &mut sums);
             }
-            bytes.extend(sums.as_flattened().iter().map(|v| quantise(v / 255.0)));
+            sums
+        };
+        let mut row = vec![[0.0; 4]; source.width()];
+        if grid.is_deep_at(source) {
+            let mut pixels = deep::clear_rows();
+            for (pixels, taps) in pixels.iter_mut().zip(&rows) {
+                let levels = sums(taps, &mut row).into_iter().enumerate();
+                levels.for_each(|(x, v)| deep::put(pixels, x, v.map(|v| quantise_deep(v / 255.0))));
+            }
+            return Tile::from_deep(pixels);
+        }
+        let mut bytes = Vec::with_capacity(TILE * TILE * 4);
+        for taps in &rows {
+            bytes.extend(sums(taps, &mut row).as_flattened().iter().map(|v| quantise(v / 255.0)));
         }
         bytes.chunks_exact(4).any(|p| p[3] > 0).then(|| Tile::from_bytes(bytes)).flatten()
     }

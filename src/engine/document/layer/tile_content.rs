@@ -23,8 +23,8 @@ impl TileContent {
         match self {
             TileContent::Nothing => None,
             TileContent::Solid(color) => Some(TilePaint::Solid(*color)),
-            TileContent::Tile(tile) => Some(TilePaint::Bytes(tile.bytes())),
-            TileContent::Packed(packed) => Some(TilePaint::Bytes(packed.bytes())),
+            TileContent::Tile(tile) => Some(TilePaint::of(tile)),
+            TileContent::Packed(packed) => Some(packed.as_paint()),
             TileContent::Group(pixels) => Some(TilePaint::Planar(pixels)),
         }
     }

@@ -1,8 +1,8 @@
-//! The pixels of a layer while they are retouched: f32 where they changed, the layer's bytes elsewhere.
+//! The pixels of a layer while they are retouched: f32 where they changed, the layer's own elsewhere.
 //! Floor 3.
 
 use crate::math::{Vec2, vec2};
-use crate::raster::{Mix, PlanarTile, TILE, Tile, TileAt, TileCoverage, TileGrid, TilePaint};
+use crate::raster::{PlanarTile, TILE, Tile, TileAt, TileGrid};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -22,19 +22,15 @@ impl RetouchPixels {
         if let Some(tile) = self.tiles.get(&at) {
             return PlanarTile::clone(tile);
         }
-        let mut pixels = PlanarTile::transparent();
-        if let Some(tile) = self.base.tile(at) {
-            pixels.blend(Mix::default(), TilePaint::Bytes(tile.bytes()), &TileCoverage::FULL);
-        }
-        pixels
+        PlanarTile::of_tile(self.base.tile(at).map(|tile| &**tile))
     }
     pub fn set(&mut self, at: TileAt, tile: PlanarTile) {
         self.tiles.insert(at, Arc::new(tile));
     }
-    /// A tile as the layer stores it: bytes.
+    /// A tile as the layer stores it.
     pub fn stored(&self, at: TileAt) -> Option<Arc<Tile>> {
         match self.tiles.get(&at) {
-            Some(tile) => tile.quantised().map(Arc::new),
+            Some(tile) => tile.kept(self.base.tile(at).map(|tile| &**tile)).map(Arc::new),
             None => self.base.tile(at).cloned(),
         }
     }
@@ -53,7 +49,7 @@ pub(super) struct PixelReader<'p> {
 #[derive(Clone, Copy)]
 enum TileSource<'p> {
     Nothing,
-    Bytes(&'p Tile),
+    Dry(&'p Tile),
     Wet(&'p PlanarTile),
 }
 
@@ -71,7 +67,8 @@ impl<'p> PixelReader<'p> {
         let (x, y) = (x.rem_euclid(TILE as i32) as usize, y.rem_euclid(TILE as i32) as usize);
         match held {
             TileSource::Nothing => [0.0; 4],
-            TileSource::Bytes(tile) => {
+            TileSource::Dry(tile) if tile.is_deep() => tile.deep_pixel(x, y).map(|v| f32::from(v) / 65535.0),
+            TileSource::Dry(tile) => {
                 let bytes = tile.bytes().as_chunks::<4>().0.get(y * TILE + x).copied().unwrap_or_default();
                 bytes.map(|b| f32::from(b) / 255.0)
             }
@@ -81,7 +78,7 @@ impl<'p> PixelReader<'p> {
     fn hold(&mut self, at: TileAt) -> TileSource<'p> {
         let held = match (self.retouched.and_then(|retouched| retouched.tiles.get(&at)), self.base.tile(at)) {
             (Some(tile), _) => TileSource::Wet(tile),
-            (None, Some(tile)) => TileSource::Bytes(tile),
+            (None, Some(tile)) => TileSource::Dry(tile),
             (None, None) => TileSource::Nothing,
         };
         self.tile = Some((at, held));

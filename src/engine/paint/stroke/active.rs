@@ -12,7 +12,7 @@ use crate::paint::grain::GrainTile;
 use crate::paint::scene::Scene;
 use crate::paint::selection::StrokeSelection;
 use crate::paint::stroke_tile::{StrokeBlend, StrokeTile};
-use crate::raster::{Mix, PlanarTile, Tile, TileAt, TileCoverage, TileGrid, TilePaint};
+use crate::raster::{PlanarTile, Tile, TileAt, TileGrid};
 use crate::surface::Operator;
 use crate::surface::objects::CanvasPart;
 use rayon::prelude::*;
@@ -218,7 +218,7 @@ impl ActiveStrokes {
                     shown.blend_over(&mut pixels, *at, StrokeBlend::of(&stroke.brush, stroke.color));
                 }
             }
-            (*at, pixels.quantised().map(Arc::new))
+            (*at, backdrop.kept(*at, &pixels).map(Arc::new))
         };
         let painted = active_tiles.par_iter_mut().map_init(DabScratch::default, paint).collect();
         tiles.extend(active_tiles);
@@ -236,16 +236,17 @@ impl ActiveStrokes {
 }
 
 impl Backdrop {
+    /// A painted tile as the layer holds it: paint as [`PlanarTile::kept`], what is rendered from strokes in bytes.
+    fn kept(&self, at: TileAt, pixels: &PlanarTile) -> Option<Tile> {
+        match self {
+            Backdrop::Pixels(grid) => pixels.kept(grid.tile(at).map(|tile| &**tile)),
+            Backdrop::Strokes(_) => pixels.quantised(),
+        }
+    }
     /// The pixels beneath a tile's active strokes, f32. `cached`: those of the strokes beneath, painted once.
     fn pixels(&self, scene: &Scene, at: TileAt, cached: &mut Option<PlanarTile>) -> PlanarTile {
         match self {
-            Backdrop::Pixels(grid) => {
-                let mut pixels = PlanarTile::transparent();
-                if let Some(tile) = grid.tile(at) {
-                    pixels.blend(Mix::default(), TilePaint::Bytes(tile.bytes()), &TileCoverage::FULL);
-                }
-                pixels
-            }
+            Backdrop::Pixels(grid) => PlanarTile::of_tile(grid.tile(at).map(|tile| &**tile)),
             Backdrop::Strokes(strokes) if strokes.is_empty() => PlanarTile::transparent(),
             Backdrop::Strokes(strokes) => {
                 let paint = || render_pixels(strokes, scene, at).unwrap_or_else(PlanarTile::transparent);

@@ -12,6 +12,7 @@ use super::{BlendMode, Mix, TileCoverage, TilePaint, spec};
 use crate::math::srgb;
 use crate::raster::planar::PixelRow;
 use crate::raster::tile::TILE;
+use crate::raster::tile::deep::DeepRow;
 use formulas::*;
 
 crate::widest! {
@@ -22,6 +23,14 @@ crate::widest! {
         {
             for (row, bytes) in rows.iter_mut().zip(bytes.chunks_exact(4 * TILE)) {
                 bytes_over(row, bytes, coverage.opacity());
+            }
+            return;
+        }
+        if let (TilePaint::Deep(deep), None, BlendMode::Normal, false, false) =
+            (paint, coverage.mask(), mix.mode, mix.linear, mix.atop)
+        {
+            for (row, deep) in rows.iter_mut().zip(deep.iter()) {
+                deep_over(row, deep, coverage.opacity());
             }
             return;
         }
@@ -71,6 +80,23 @@ fn bytes_over(row: &mut PixelRow, bytes: &[u8], opacity: f32) {
     }
 }
 
+/// The same of 16 bits.
+#[inline(always)]
+fn deep_over(row: &mut PixelRow, deep: &DeepRow, opacity: f32) {
+    let unit = opacity / 65535.0;
+    let PixelRow { rgb, a } = row;
+    let [red, green, blue, alpha] = deep;
+    for (channel, own) in rgb.iter_mut().zip([red, green, blue]) {
+        for x in 0..TILE {
+            channel[x] = f32::from(own[x]) * unit + channel[x] * (1.0 - f32::from(alpha[x]) * unit);
+        }
+    }
+    for x in 0..TILE {
+        let sa = f32::from(alpha[x]) * unit;
+        a[x] = sa + a[x] * (1.0 - sa);
+    }
+}
+
 /// Row `y` of the paint, times its coverage.
 #[inline(always)]
 pub(super) fn load(row: &mut PixelRow, paint: &TilePaint<'_>, y: usize, coverage: &TileCoverage) {
@@ -89,6 +115,15 @@ pub(super) fn load(row: &mut PixelRow, paint: &TilePaint<'_>, y: usize, coverage
                 g[x] = ((p >> 8) & 255) as f32 * unit;
                 b[x] = ((p >> 16) & 255) as f32 * unit;
                 a[x] = ((p >> 24) & 255) as f32 * unit;
+            }
+        }
+        TilePaint::Deep(deep) => {
+            let unit = k / 65535.0;
+            let PixelRow { rgb, a } = &mut *row;
+            for (channel, own) in rgb.iter_mut().chain([a]).zip(&deep[y]) {
+                for x in 0..TILE {
+                    channel[x] = f32::from(own[x]) * unit;
+                }
             }
         }
         TilePaint::Planar(tile) => {

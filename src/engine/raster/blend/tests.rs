@@ -2,7 +2,7 @@
 
 use super::spec::BlendFunction;
 use super::*;
-use crate::raster::tile::{TILE, TileF32};
+use crate::raster::tile::{TILE, TileF32, deep};
 
 /// Straight component values worth trying: ends, edges of the piecewise formulas, and between.
 const VALUES: [f32; 9] = [0.0, 0.1, 0.25, 0.3, 0.5, 0.6, 0.75, 0.9, 1.0];
@@ -209,8 +209,9 @@ fn coverage_is_opacity_times_mask_for_every_kind_of_paint() {
     let color = [0.5, 0.25, 0.0, 0.5];
     let tile = PlanarTile::from_pixels(&one_pixel(color));
     let bytes = tile.quantised().unwrap();
+    let deep = tile.kept(None).unwrap();
     let coverage = TileCoverage::uniform(0.5).times(|x, _| if x < 32 { 1.0 } else { 0.5 });
-    for paint in [TilePaint::Solid(color), TilePaint::Bytes(bytes.bytes()), TilePaint::Planar(&tile)] {
+    for paint in [TilePaint::Solid(color), TilePaint::of(&bytes), TilePaint::of(&deep), TilePaint::Planar(&tile)] {
         let mut onto = PlanarTile::transparent();
         onto.blend(Mix::default(), paint, &coverage);
         assert!(close(&onto.rows()[5].pixel(0), &[0.25, 0.125, 0.0, 0.25], 0.003));
@@ -222,6 +223,37 @@ fn coverage_is_opacity_times_mask_for_every_kind_of_paint() {
     assert!(TileCoverage::uniform(f32::NAN).is_none());
     assert!(TileCoverage::uniform(1.0).times(|_, _| f32::NAN).is_none());
     assert!(TileCoverage::uniform(7.0).is_full());
+}
+#[test]
+fn paint_of_16_bits_blends_as_the_floats_that_it_holds() {
+    let value = |i: usize, c: u32| (crate::math::hash::unit(i as u32, c, 7) * 65536.0) as u16;
+    let mut rows = deep::clear_rows();
+    for i in 0..TILE_AREA {
+        deep::put(&mut rows[i / TILE], i % TILE, [0, 1, 2, 3].map(|c| value(i, c)));
+    }
+    let tile = Tile::from_deep(rows).unwrap();
+    let mut floats = PlanarTile::transparent();
+    for i in 0..TILE_AREA {
+        let (x, y) = (i % TILE, i / TILE);
+        floats.rows_mut()[y].set(x, tile.deep_pixel(x, y).map(|v| f32::from(v) / 65535.0));
+    }
+    let same = |a: &PlanarTile, b: &PlanarTile| {
+        (0..TILE_AREA).all(|i| close(&a.rows()[i / TILE].pixel(i % TILE), &b.rows()[i / TILE].pixel(i % TILE), 1e-5))
+    };
+    assert!(same(&PlanarTile::of_tile(Some(&tile)), &floats));
+    assert!(floats.kept(Some(&tile)).unwrap().is_same(&tile), "what is loaded is kept as it was");
+    let masked = TileCoverage::uniform(0.7).times(|x, y| (x * y) as f32 / 4096.0);
+    for (mode, _) in BlendMode::ALL {
+        for coverage in [&TileCoverage::FULL, &TileCoverage::uniform(0.3), &masked] {
+            let mut under = PlanarTile::transparent();
+            under.blend(Mix::default(), TilePaint::Solid([0.3, 0.5, 0.1, 0.8]), &TileCoverage::FULL);
+            let (mut a, mut b) = (under.clone(), under);
+            let mix = Mix { mode, ..Mix::default() };
+            a.blend(mix, TilePaint::of(&tile), coverage);
+            b.blend(mix, TilePaint::Planar(&floats), coverage);
+            assert!(same(&a, &b), "{mode:?}");
+        }
+    }
 }
 #[test]
 fn nothing_out_of_range_comes_out_of_any_mode() {

@@ -5,6 +5,7 @@ use super::layers::{LayerAction, above};
 use crate::document::cut::taken;
 use crate::document::{
     Content, Document, Layer, LayerId, LayerLock, LayerSlot, PixelLayer, Progress, flatten, flatten_layer,
+    flatten_to_paint,
 };
 use crate::math::{Rect, Size};
 use crate::raster::{CoverageGrid, TileGrid};
@@ -91,7 +92,7 @@ fn covered(document: &Document) -> CoverageGrid {
 fn copy(document: &Document, ids: &[LayerId], merged: bool) -> Result<Copied, &'static str> {
     let (covered, progress) = (covered(document), Progress::default());
     let (layers, tiles) = if merged {
-        let tiles = taken(&flatten(document, &progress).ok_or(NOTHING_THERE)?, &covered);
+        let tiles = taken(&flatten_to_paint(document, &progress).ok_or(NOTHING_THERE)?, &covered);
         let pixels = PixelLayer { tiles: tiles.clone(), ..PixelLayer::default() };
         (vec![Layer { clip_to_surface: false, ..Layer::new("Copy", Content::Pixels(pixels)) }], tiles)
     } else if let [id] = *ids {

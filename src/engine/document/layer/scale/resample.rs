@@ -38,13 +38,13 @@ impl AxisTaps {
 
 crate::widest! {
     /// Adds a row of old pixels to the sums of the new ones. `row`: from the first old pixel on; `weight`: the row's.
-    pub(super) fn add_row(columns: &AxisTaps, weight: f32, row: &[[u8; 4]], sums: &mut [[f32; 4]; TILE]) {
+    pub(super) fn add_row(columns: &AxisTaps, weight: f32, row: &[[f32; 4]], sums: &mut [[f32; 4]; TILE]) {
         let mut start = 0;
         for (sum, &end) in sums.iter_mut().zip(&columns.ends) {
             for &(i, tap) in &columns.taps[start..end as usize] {
                 let (pixel, share) = (row[i as usize], tap * weight);
                 for c in 0..4 {
-                    sum[c] += share * f32::from(pixel[c]);
+                    sum[c] += share * pixel[c];
                 }
             }
             start = end as usize;
@@ -61,8 +61,8 @@ mod tests {
         for scale in [0.5, 0.25, 0.3, 1.0, 1.7] {
             let columns = AxisTaps::new(-64..0, scale);
             let value = |x: i32, c: usize| ((x * 37 + 11 * c as i32) & 255) as u8;
-            let row: Vec<[u8; 4]> =
-                (columns.first()..columns.end()).map(|x| std::array::from_fn(|c| value(x, c))).collect();
+            let row: Vec<[f32; 4]> =
+                (columns.first()..columns.end()).map(|x| std::array::from_fn(|c| f32::from(value(x, c)))).collect();
             let mut sums = [[1.0; 4]; TILE];
             add_row(&columns, 0.75, &row, &mut sums);
             for (x, sum) in (-64..0).zip(sums) {

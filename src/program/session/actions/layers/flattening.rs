@@ -2,7 +2,7 @@
 //! is in `document::flatten`.
 
 use super::{LayerAction, sibling};
-use crate::document::{Content, Document, Layer, LayerId, LayerSlot, PixelLayer, Progress, flatten, flatten_layer};
+use crate::document::{Content, Document, Layer, LayerId, LayerSlot, PixelLayer, Progress, flatten_to_paint};
 use crate::raster::TileGrid;
 use crate::session::open_document::Edit;
 use std::sync::Arc;
@@ -32,7 +32,7 @@ impl LayerAction {
                 Some(Edit { label, document, select: Vec::new() })
             }
             LayerAction::Flatten {} => {
-                let flat = painted("Picture", flatten(document, progress)?);
+                let flat = painted("Picture", flatten_to_paint(document, progress)?);
                 let select = vec![flat.id];
                 let document = Document { layers: vec![Arc::new(flat)], ..document.clone() };
                 Some(Edit { label: "Flatten picture", document, select })
@@ -54,7 +54,7 @@ pub(super) fn baked(document: &Document, layer: &Layer, progress: &Progress) -> 
     let bare = document.with_layer(layer.id, |layer| {
         (layer.opacity, layer.mask, layer.blend, layer.clip_to_surface) = (1.0, None, Default::default(), false);
     })?;
-    let tiles = flatten_layer(&bare, layer.id, progress)?;
+    let tiles = flatten_to_paint(&bare.with_only(&[layer.id])?, progress)?;
     // What was drawn lies on the canvas; what carries the layer carries it on from there.
     let transform = document.transform_to_canvas(layer.id)?;
     document.with_layer(layer.id, |layer| {
@@ -89,7 +89,7 @@ fn merged(document: &Document, id: LayerId, progress: &Progress) -> Option<Edit>
     };
     let lower = Layer { clip_below: false, blend: Default::default(), ..Layer::clone(&*seen(&beneath)?) };
     let pair = Document { layers: vec![Arc::new(lower), seen(layer)?], ..document.clone() };
-    let tiles = flatten(&pair, progress)?;
+    let tiles = flatten_to_paint(&pair, progress)?;
     let transform = document.transform_to_canvas(beneath.id)?;
     let document = document.without_layer(layer.id)?.with_layer(beneath.id, |layer| {
         layer.content = Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() });
@@ -107,7 +107,7 @@ fn merged_several(document: &Document, ids: &[LayerId], progress: &Progress) -> 
     let bottom = layers.first()?.clone();
     layers[0] = Arc::new(Layer { clip_below: false, blend: Default::default(), ..Layer::clone(&bottom) });
     let visible = layers.iter().any(|layer| layer.visible);
-    let tiles = flatten(&Document { layers, ..document.clone() }, progress)?;
+    let tiles = flatten_to_paint(&Document { layers, ..document.clone() }, progress)?;
     let Layer { name, blend, blend_linear, clip_below, clip_to_surface, .. } = Layer::clone(&bottom);
     let one = Layer { visible, blend, blend_linear, clip_below, clip_to_surface, ..painted(&name, tiles) };
     let select = vec![one.id];

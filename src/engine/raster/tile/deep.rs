@@ -1,0 +1,229 @@
+//! Pixels of 16 bits, which a tile holds beside its bytes where something soft was painted: premultiplied, 65535 is
+//! whole. Floor 1. Each channel of a row stands on its own, so that loading a row takes no shuffles.
+
+use super::TILE;
+use crate::math::srgb::quantise_deep;
+
+/// One row of a tile: red, green, blue, each no greater than alpha, and alpha.
+pub type DeepRow = [[u16; TILE]; 4];
+
+/// A row without paint.
+pub const CLEAR_ROW: DeepRow = [[0; TILE]; 4];
+
+/// A value of 16 bits of one level of 8.
+pub const LEVEL: u16 = 257;
+
+/// So many pixels of a tile must be soft for it to be kept in 16 bits. Edges of ink leave one or two by chance.
+const LEAST_SOFT: u32 = 8;
+
+/// Nearer to a byte than a sixteenth of a level a value counts as one: strokes let so much through.
+const TRACE: u16 = LEVEL / 16;
+
+/// A tile of transparent rows.
+pub fn clear_rows() -> Box<[DeepRow]> {
+    vec![CLEAR_ROW; TILE].into_boxed_slice()
+}
+
+/// The byte nearest to a value of 16 bits; no value lies between two.
+#[inline(always)]
+pub fn byte_of(v: u16) -> u8 {
+    // (v + 128) / 257 of every v, without a division (tested).
+    ((u32::from(v) * 255 + 32895) >> 16) as u8
+}
+
+/// A pixel of a tile's rows.
+#[inline(always)]
+pub fn pixel_of(rows: &[DeepRow], x: usize, y: usize) -> [u16; 4] {
+    rows.get(y).map_or([0; 4], |row| std::array::from_fn(|c| row[c].get(x).copied().unwrap_or(0)))
+}
+
+/// Puts a pixel into a row; colours above alpha are lowered to it.
+#[inline(always)]
+pub fn put(row: &mut DeepRow, x: usize, [r, g, b, a]: [u16; 4]) {
+    for (channel, value) in row.iter_mut().zip([r.min(a), g.min(a), b.min(a), a]) {
+        channel[x] = value;
+    }
+}
+
+crate::widest! {
+    /// Rounds a premultiplied row of floats; colours above alpha are lowered to it.
+    pub fn quantise_row(row: [&[f32; TILE]; 4], deep: &mut DeepRow) {
+        for (channel, deep) in row.into_iter().zip(deep.iter_mut()) {
+            for x in 0..TILE {
+                deep[x] = quantise_deep(channel[x]);
+            }
+        }
+        let [r, g, b, a] = deep;
+        for channel in [r, g, b] {
+            for x in 0..TILE {
+                channel[x] = channel[x].min(a[x]);
+            }
+        }
+    }
+
+    /// Rounds rows to bytes, four a pixel; whether every value is a byte's own.
+    pub fn to_bytes(deep: &[DeepRow], bytes: &mut [u8]) -> bool {
+        let mut off = 0;
+        for (row, bytes) in deep.iter().zip(bytes.chunks_exact_mut(4 * TILE)) {
+            for (c, channel) in row.iter().enumerate() {
+                for x in 0..TILE {
+                    let byte = byte_of(channel[x]);
+                    bytes[4 * x + c] = byte;
+                    off |= channel[x] ^ (u16::from(byte) * LEVEL);
+                }
+            }
+        }
+        off == 0
+    }
+
+    /// Bytes, four a pixel, in 16 bits.
+    pub fn of_bytes(bytes: &[u8], deep: &mut [DeepRow]) {
+        for (bytes, row) in bytes.chunks_exact(4 * TILE).zip(deep) {
+            for (c, channel) in row.iter_mut().enumerate() {
+                for x in 0..TILE {
+                    channel[x] = u16::from(bytes[4 * x + c]) * LEVEL;
+                }
+            }
+        }
+    }
+
+    /// For each pixel of a row whether it is soft, 1 or 0: see [`is_soft`].
+    fn soft_in_row(above: &DeepRow, row: &DeepRow, below: &DeepRow, soft: &mut [u16; TILE]) {
+        let (mut off, mut steps) = ([0u16; TILE], [0u16; TILE]);
+        for c in 0..4 {
+            // Beyond the tile its border goes on.
+            let mut wide = [0u16; TILE + 2];
+            wide[1..=TILE].copy_from_slice(&row[c]);
+            (wide[0], wide[TILE + 1]) = (row[c][0], row[c][TILE - 1]);
+            for x in 0..TILE {
+                let v = wide[x + 1];
+                off[x] = off[x].max(v.abs_diff(u16::from(byte_of(v)) * LEVEL));
+                let beside = v.abs_diff(wide[x]).max(v.abs_diff(wide[x + 2]));
+                let beyond = v.abs_diff(above[c][x]).max(v.abs_diff(below[c][x]));
+                steps[x] = steps[x].max(beside.max(beyond));
+            }
+        }
+        for x in 0..TILE {
+            soft[x] = u16::from(off[x] > TRACE) & u16::from(steps[x] < LEVEL);
+        }
+    }
+}
+
+/// Whether bytes would lose what was painted: some pixels are soft. A pixel is that if bytes cannot hold it, and all
+/// four beside it lie less than a level of 8 bits away in every channel.
+///
+/// There rounding makes steps that are wider than a pixel, which are seen as bands; and there paint that comes faintly,
+/// stroke upon stroke, is rounded away. At an edge, where neighbours are levels apart, neither is seen: so ink, its
+/// rims included, stays in bytes.
+pub fn is_soft(deep: &[DeepRow]) -> bool {
+    let (mut count, mut soft) = (0u32, [0u16; TILE]);
+    deep.iter().enumerate().any(|(y, row)| {
+        let (above, below) = (&deep[y.saturating_sub(1)], &deep[(y + 1).min(deep.len() - 1)]);
+        soft_in_row(above, row, below, &mut soft);
+        count += u32::from(soft.iter().sum::<u16>());
+        count >= LEAST_SOFT
+    })
+}
+
+/// Straight values of 16 bits to premultiplied ones, rounded to nearest.
+#[inline(always)]
+pub fn premultiplied([r, g, b, a]: [u16; 4]) -> [u16; 4] {
+    // At most 65535² + 32767, which is below 2³².
+    let times = |c: u16| ((u32::from(c) * u32::from(a) + 32767) / 65535) as u16;
+    [times(r), times(g), times(b), a]
+}
+
+/// Premultiplied values to straight ones, rounded to nearest: [`premultiplied`] gives back just these.
+///
+/// For the straight value is at most ½ off, and multiplied by α / 65535 < 1 less than that.
+#[inline(always)]
+pub fn straight([r, g, b, a]: [u16; 4]) -> [u16; 4] {
+    let (whole, half) = (u32::from(a.max(1)), u32::from(a / 2));
+    let of = |c: u16| ((u32::from(c.min(a)) * 65535 + half) / whole) as u16;
+    if a == 0 { [0; 4] } else { [of(r), of(g), of(b), a] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::TILE_AREA;
+    use super::*;
+    use crate::math::hash;
+
+    /// [`is_soft`], pixel by pixel.
+    fn soft_pixels(deep: &[DeepRow]) -> usize {
+        let at = |x: i32, y: i32| pixel_of(deep, x.clamp(0, 63) as usize, y.clamp(0, 63) as usize);
+        let is_soft = |i: usize| {
+            let (x, y) = ((i % TILE) as i32, (i / TILE) as i32);
+            let near = |(dx, dy)| (0..4).all(|c| at(x, y)[c].abs_diff(at(x + dx, y + dy)[c]) < 257);
+            at(x, y).iter().any(|v| (17..=240).contains(&(v % 257)))
+                && [(-1, 0), (1, 0), (0, -1), (0, 1)].into_iter().all(near)
+        };
+        (0..TILE_AREA).filter(|&i| is_soft(i)).count()
+    }
+    fn painted(value: impl Fn(usize, usize) -> [u16; 4]) -> Box<[DeepRow]> {
+        let mut rows = clear_rows();
+        (0..TILE_AREA).for_each(|i| put(&mut rows[i / TILE], i % TILE, value(i % TILE, i / TILE)));
+        rows
+    }
+
+    #[test]
+    fn every_value_has_its_nearest_byte() {
+        for v in 0..=u16::MAX {
+            assert_eq!(u32::from(byte_of(v)), (u32::from(v) + 128) / 257, "{v}");
+        }
+    }
+    #[test]
+    fn premultiplied_values_come_back_as_they_were_from_straight_ones() {
+        let check = |c: u16, a: u16| {
+            let held = [c.min(a), 0, a, a];
+            assert_eq!(premultiplied(straight(held)), held, "{c} of {a}");
+        };
+        for a in [0, 1, 2, 3, 255, 256, 257, 32767, 32768, 65533, 65534, 65535] {
+            (0..=a).for_each(|c| check(c, a));
+        }
+        let random = |i: u32, j: u32| (hash::unit(i, j, 0) * 65536.0) as u16;
+        (0..200_000).for_each(|i| check(random(i, 0), random(i, 1)));
+    }
+    #[test]
+    fn what_is_soft_is_what_the_definition_says() {
+        let ramp = |per_px: usize| painted(|x, _| [0, 0, 0, (20_003 + x * per_px) as u16]);
+        let dots = |n: usize| painted(|x, y| if x % 9 == 4 && y == 5 && x / 9 < n { [0, 0, 0, 100] } else { [0; 4] });
+        let cases = [
+            (clear_rows(), 0),
+            (ramp(256), 4096),
+            (ramp(258), 0),
+            (painted(|_, _| [0, 257, 514, 65535]), 0),
+            (painted(|_, _| [0, 0, 300, 65535]), 4096),
+            (dots(7), 7),
+            (painted(|x, y| if x < 30 && y < 30 { [65535; 4] } else { [(x * 700 + y) as u16, 0, 0, 65535] }), 0),
+        ];
+        for (i, (rows, soft)) in cases.iter().enumerate() {
+            assert_eq!(soft_pixels(rows), *soft, "case {i}");
+            assert_eq!(is_soft(rows), soft_pixels(rows) >= LEAST_SOFT as usize, "case {i}");
+        }
+        for seed in 0..40u32 {
+            let noise = painted(|x, y| {
+                let gentle = (hash::unit(seed, x as u32 / 8, y as u32) * 600.0) as u16;
+                [gentle / 2, gentle, 0, gentle.saturating_mul(1 + (seed as u16) % 3)]
+            });
+            assert_eq!(is_soft(&noise), soft_pixels(&noise) >= LEAST_SOFT as usize, "seed {seed}");
+        }
+    }
+    #[test]
+    fn bytes_go_in_and_out_and_are_known_as_such() {
+        let bytes: Vec<u8> = (0..TILE_AREA * 4).map(|i| (i * 37 % 256) as u8).collect();
+        let (mut rows, mut back) = (clear_rows(), vec![0; TILE_AREA * 4]);
+        of_bytes(&bytes, &mut rows);
+        assert!(to_bytes(&rows, &mut back));
+        assert!(back == bytes);
+        rows[63][2][63] ^= 1;
+        assert!(!to_bytes(&rows, &mut back));
+    }
+    #[test]
+    fn floats_are_rounded_and_colours_lowered_to_alpha() {
+        let [r, g, b, a] = [0.9, 0.25, f32::NAN, 0.5].map(|v| [v; TILE]);
+        let mut deep = CLEAR_ROW;
+        quantise_row([&r, &g, &b, &a], &mut deep);
+        assert_eq!(pixel_of(&[deep], 9, 0), [32768, 16384, 0, 32768]);
+    }
+}
