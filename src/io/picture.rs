@@ -10,11 +10,12 @@ pub use light::finished;
 pub use painted::painted;
 pub use passes::{LightLayer, layers};
 
+use super::bitmap::Bitmap;
 use super::{Budget, bitmap, exr::ExrFile};
 use crate::math::{Size, srgb};
 use crate::raster::grid::unpremultiply;
 use crate::raster::picture::Texels;
-use crate::raster::{Asset, Picture, Plane, Texture, TileGrid};
+use crate::raster::{Asset, Picture, Plane, Texture, TileGrid, tile};
 use crate::{Error, Result};
 use image::DynamicImage;
 use moxcms::{ColorProfile, DataColorSpace, Layout, TransformOptions};
@@ -33,21 +34,19 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
     let picture = if is_exr {
         light::decode(file, bytes, budget)
     } else {
-        decode_bitmap(file, bytes, budget, KeptDepth::SixteenBits)
+        picture_of(file, upright(file, bytes, budget)?, budget)
     }?;
     Ok(Picture { encoded: Some(Asset::from(bytes.to_vec())), ..picture })
 }
 
-/// What is kept of integers of 16 bits.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum KeptDepth {
-    Bytes,
-    SixteenBits,
-}
-
-fn decode_bitmap(file: &Path, bytes: &[u8], budget: &Budget, kept: KeptDepth) -> Result<Picture> {
+/// A decoded file in its upright position.
+fn upright(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
     let mut bitmap = bitmap::decode(file, bytes, budget)?;
     bitmap.image.apply_orientation(bitmap.orientation);
+    Ok(bitmap)
+}
+
+fn picture_of(file: &Path, bitmap: Bitmap, budget: &Budget) -> Result<Picture> {
     let size = Size::new(bitmap.image.width(), bitmap.image.height());
     let picture = match &bitmap.image {
         DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
@@ -55,7 +54,7 @@ fn decode_bitmap(file: &Path, bytes: &[u8], budget: &Budget, kept: KeptDepth) ->
             let profiled = bitmap.icc.as_deref().and_then(|icc| light_through_profile(&texels, icc));
             Picture::linear(size, profiled.unwrap_or(texels))
         }
-        image if kept == KeptDepth::SixteenBits && is_sixteen_bits(image) => {
+        image if is_sixteen_bits(image) => {
             // Beside what was decoded: texels of both kinds.
             let asked = image.as_bytes().len() as u64 + 12 * size.area() as u64;
             budget.room(file, &format!("a picture of {size} pixels of 16 bits a channel"), asked)?;
@@ -85,14 +84,17 @@ fn is_sixteen_bits(image: &DynamicImage) -> bool {
 }
 
 /// The byte nearest to a value of 16 bits.
-fn byte(v: u16) -> u8 {
-    ((u32::from(v) + 128) / 257) as u8
+pub fn byte(v: u16) -> u8 {
+    tile::deep::byte_of(v)
 }
 
-/// A picture as the tiles of a paint layer, its corner at a canvas pixel; light beyond white is clipped, as a texture
-/// clips it.
+/// A picture as the tiles of a paint layer, its corner at a canvas pixel, of 16 bits where it has them; light beyond
+/// white is clipped, as a texture clips it.
 pub fn to_tiles(picture: &Picture, x: i32, y: i32) -> TileGrid {
     let (w, h) = (picture.size.width as usize, picture.size.height as usize);
+    if let Some(deep) = &picture.deep {
+        return TileGrid::from_straight_deep(deep, w, h, x, y);
+    }
     match &picture.texels {
         Texels::Srgb8(texels) => TileGrid::from_straight_rgba(texels.as_flattened(), w, h, x, y),
         Texels::Linear(_) => {

@@ -1,10 +1,11 @@
-//! Pixels as a project stores them: 8-bit sRGB PNGs with straight alpha, each decoded again and compared before it is
-//! trusted. Floor 5. `look` decides which pixels are stored.
+//! Pixels as a project stores them: sRGB PNGs with straight alpha, of 16 bits where some tile has them, else of 8, each
+//! decoded again and compared before it is trusted. Floor 5. `look` decides which pixels are stored.
 
 use crate::Budget;
 use crate::bitmap;
 use crate::document::EncodedPixels;
 use crate::math::{Rect, Size};
+use crate::picture::byte;
 use crate::raster::{Asset, Plane, TILE, Tile, TileAt, TileGrid};
 use crate::{Error, Result};
 use std::borrow::Cow;
@@ -20,13 +21,44 @@ pub struct Painted {
 
 /// The tight rectangle around what is not transparent, as a PNG; one transparent pixel where there is nothing.
 ///
-/// Premultiplied bytes come back from straight ones as they were, so nothing is lost.
+/// Premultiplied values come back from straight ones as they were, so nothing is lost.
 pub fn encode(file: &Path, tiles: &TileGrid, within: Option<Rect>) -> Result<EncodedPixels> {
     let bounds = painted(tiles, within);
     let rect = if bounds.is_empty() { Rect::new(0, 0, 1, 1) } else { bounds };
-    let size = Size::new(rect.width() as u32, rect.height() as u32);
-    let strips = || strips(rect).map(|strip| Cow::Owned(tiles.to_straight_rgba(strip)));
-    Ok(EncodedPixels { file: checked(file, strips, size, png::ColorType::Rgba)?, size, x: rect.x0, y: rect.y0 })
+    Ok(EncodedPixels { file: encode_rect(file, tiles, rect)?, size: size_of(rect), x: rect.x0, y: rect.y0 })
+}
+
+/// All of a rectangle as a PNG.
+pub fn encode_rect(file: &Path, tiles: &TileGrid, rect: Rect) -> Result<Asset> {
+    let is_deep = tiles.is_deep_in(rect);
+    let values = |strip: Rect| match is_deep {
+        true => tiles.to_straight_deep(strip).into_flattened().into_iter().flat_map(u16::to_be_bytes).collect(),
+        false => tiles.to_straight_rgba(strip),
+    };
+    let kind = if is_deep { PngKind::RGBA16 } else { PngKind::RGBA8 };
+    checked(file, || strips(rect).map(|strip| Cow::Owned(values(strip))), size_of(rect), kind)
+}
+
+fn size_of(rect: Rect) -> Size {
+    Size::new(rect.width() as u32, rect.height() as u32)
+}
+
+/// What a PNG holds of each pixel.
+#[derive(Clone, Copy)]
+struct PngKind {
+    color: png::ColorType,
+    depth: png::BitDepth,
+}
+
+impl PngKind {
+    const RGBA8: PngKind = PngKind { color: png::ColorType::Rgba, depth: png::BitDepth::Eight };
+    const RGBA16: PngKind = PngKind { color: png::ColorType::Rgba, depth: png::BitDepth::Sixteen };
+    const GREY8: PngKind = PngKind { color: png::ColorType::Grayscale, depth: png::BitDepth::Eight };
+
+    /// Of a pixel.
+    fn bytes(self) -> usize {
+        self.color.samples() * if self.depth == png::BitDepth::Sixteen { 2 } else { 1 }
+    }
 }
 
 /// A rectangle in rows of tiles.
@@ -41,12 +73,12 @@ pub fn strips(rect: Rect) -> impl Iterator<Item = Rect> {
 
 /// A mask as a grey PNG.
 pub fn encode_coverage(file: &Path, plane: &Plane<u8>) -> Result<Asset> {
-    checked(file, || [Cow::Borrowed(plane.values())].into_iter(), plane.size(), png::ColorType::Grayscale)
+    checked(file, || [Cow::Borrowed(plane.values())].into_iter(), plane.size(), PngKind::GREY8)
 }
 
 /// Straight RGBA texels as a PNG, the colours of transparent ones kept.
 pub fn encode_texels(file: &Path, texels: &[[u8; 4]], size: Size) -> Result<Asset> {
-    checked(file, || [Cow::Borrowed(texels.as_flattened())].into_iter(), size, png::ColorType::Rgba)
+    checked(file, || [Cow::Borrowed(texels.as_flattened())].into_iter(), size, PngKind::RGBA8)
 }
 
 /// Of a chunk of packed pixels.
@@ -61,12 +93,12 @@ fn checked<'v, S: Iterator<Item = Cow<'v, [u8]>>>(
     file: &Path,
     strips: impl Fn() -> S,
     size: Size,
-    color: png::ColorType,
+    kind: PngKind,
 ) -> Result<Asset> {
-    let encode = |how| encoded(strips(), size, color, how).map_err(|e| Error::unsupported(file, e));
+    let encode = |how| encoded(strips(), size, kind, how).map_err(|e| Error::unsupported(file, e));
     let mut bytes = encode(png::Compression::Fast)?;
     // The quick compressor makes noise larger than it is.
-    if bytes.len() > STORED_BYTES + size.area() * color.samples() * 1001 / 1000 {
+    if bytes.len() > STORED_BYTES + size.area() * kind.bytes() * 1001 / 1000 {
         bytes = encode(png::Compression::NoCompression)?;
     }
     if !comes_back(&bytes, strips()) {
@@ -78,13 +110,13 @@ fn checked<'v, S: Iterator<Item = Cow<'v, [u8]>>>(
 fn encoded<'v>(
     strips: impl Iterator<Item = Cow<'v, [u8]>>,
     size: Size,
-    color: png::ColorType,
+    kind: PngKind,
     how: png::Compression,
 ) -> Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, size.width, size.height);
-    encoder.set_color(color);
-    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_color(kind.color);
+    encoder.set_depth(kind.depth);
     encoder.set_compression(how);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     let mut writer = encoder.write_header()?;
@@ -109,14 +141,23 @@ fn comes_back<'v>(png: &[u8], strips: impl Iterator<Item = Cow<'v, [u8]>>) -> bo
     all && matches!(reader.read_row(&mut line), Ok(None)) && reader.finish().is_ok()
 }
 
-/// The values of a PNG that was encoded here.
+/// Whether a PNG that was encoded here holds 16 bits a channel.
+pub fn is_deep(png: &[u8]) -> bool {
+    let reader = png::Decoder::new(std::io::Cursor::new(png)).read_info();
+    reader.is_ok_and(|reader| reader.info().bit_depth == png::BitDepth::Sixteen)
+}
+
+/// The values of a PNG that was encoded here, rounded to bytes.
 pub fn decoded(bytes: &[u8]) -> Option<Vec<u8>> {
     let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().ok()?;
     let mut values = vec![0; reader.output_buffer_size()?];
     let info = reader.next_frame(&mut values).ok()?;
     reader.finish().ok()?;
     values.truncate(info.buffer_size());
-    Some(values)
+    Some(match info.bit_depth {
+        png::BitDepth::Sixteen => values.as_chunks().0.iter().map(|v| byte(u16::from_be_bytes(*v))).collect(),
+        _ => values,
+    })
 }
 
 /// The tiles of a PNG of the kind that is stored here, its corner at a canvas pixel; `None` for any other or damaged
@@ -132,23 +173,38 @@ pub fn decode_tiles(bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Option<Pai
     let is_bare = info.exif_metadata.is_none() && info.animation_control.is_none() && !bitmap::has_png_profile(bytes);
     let size = budget.size(Path::new(""), info.width.into(), info.height.into()).ok()?;
     let (color, depth) = reader.output_color_type();
-    if depth != png::BitDepth::Eight || !is_bare || info.interlaced {
+    let is_deep = depth == png::BitDepth::Sixteen;
+    if !(is_deep || depth == png::BitDepth::Eight) || !is_bare || info.interlaced {
         return None;
     }
     let rect = Rect::new(x, y, x.checked_add(size.width as i32)?, y.checked_add(size.height as i32)?);
     let mut tiles = TileGrid::for_rect(rect);
-    let line = rect.width() * 4;
-    let mut strip = vec![0; line * TILE.min(rect.height())];
+    let (line, held) = (rect.width(), rect.width() * TILE.min(rect.height()));
+    let (mut strip, mut deep) =
+        (vec![[0; 4]; if is_deep { 0 } else { held }], vec![[0; 4]; if is_deep { held } else { 0 }]);
+    let mut used_bytes = 0;
     let mut stored = vec![0; reader.output_line_size(size.width)?];
     let mut top = y;
     while top < rect.y1 {
         let next = TileAt::of_pixel(x, top).rect().y1.min(rect.y1);
         let rows = (next - top) as usize;
-        for row in strip[..rows * line].chunks_exact_mut(line) {
+        for row in 0..rows {
             reader.read_row(&mut stored).ok()??;
-            to_rgba(&stored, color, row)?;
+            let row = row * line..(row + 1) * line;
+            match is_deep {
+                true => {
+                    let samples: Vec<u16> = stored.as_chunks().0.iter().map(|v| u16::from_be_bytes(*v)).collect();
+                    to_rgba(&samples, color, u16::MAX, &mut deep[row])?;
+                }
+                false => to_rgba(&stored, color, u8::MAX, &mut strip[row])?,
+            }
         }
-        let part = TileGrid::from_straight_rgba(&strip[..rows * line], rect.width(), rows, x, top);
+        let part = match is_deep {
+            true => TileGrid::from_straight_deep(&deep[..rows * line], line, rows, x, top),
+            false => TileGrid::from_straight_rgba(strip[..rows * line].as_flattened(), line, rows, x, top),
+        };
+        used_bytes += part.bytes() as u64;
+        budget.room(Path::new(""), "a layer's pixels", used_bytes).ok()?;
         part.iter().for_each(|(at, tile)| tiles.set(at, Some(tile.clone())));
         top = next;
     }
@@ -156,17 +212,16 @@ pub fn decode_tiles(bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Option<Pai
     Some(Painted { size, tiles })
 }
 
-/// A row of a PNG's samples as straight RGBA; `None` of one that still numbers colours.
-fn to_rgba(stored: &[u8], color: png::ColorType, row: &mut [u8]) -> Option<()> {
-    let pixels = row.as_chunks_mut::<4>().0;
+/// A row of a PNG's samples as straight RGBA; `None` of one that still numbers colours. `whole`: the greatest sample.
+fn to_rgba<T: Copy>(stored: &[T], color: png::ColorType, whole: T, row: &mut [[T; 4]]) -> Option<()> {
     match color {
-        png::ColorType::Rgba => row.copy_from_slice(stored.get(..row.len())?),
+        png::ColorType::Rgba => row.copy_from_slice(stored.as_chunks().0.get(..row.len())?),
         png::ColorType::Rgb => {
-            pixels.iter_mut().zip(stored.as_chunks().0).for_each(|(p, [r, g, b])| *p = [*r, *g, *b, 255]);
+            row.iter_mut().zip(stored.as_chunks().0).for_each(|(p, [r, g, b])| *p = [*r, *g, *b, whole]);
         }
-        png::ColorType::Grayscale => pixels.iter_mut().zip(stored).for_each(|(p, v)| *p = [*v, *v, *v, 255]),
+        png::ColorType::Grayscale => row.iter_mut().zip(stored).for_each(|(p, v)| *p = [*v, *v, *v, whole]),
         png::ColorType::GrayscaleAlpha => {
-            pixels.iter_mut().zip(stored.as_chunks().0).for_each(|(p, [v, a])| *p = [*v, *v, *v, *a]);
+            row.iter_mut().zip(stored.as_chunks().0).for_each(|(p, [v, a])| *p = [*v, *v, *v, *a]);
         }
         png::ColorType::Indexed => return None,
     }
@@ -187,10 +242,10 @@ fn painted_of(at: TileAt, tile: &Tile) -> Rect {
         return tile_rect;
     }
     let (mut x0, mut x1, mut y0, mut y1) = (TILE, 0, TILE, 0);
-    for (y, row) in tile.bytes().chunks_exact(TILE * 4).enumerate() {
-        let is_painted = |pixel: &[u8]| pixel[3] != 0;
-        let Some(first) = row.chunks_exact(4).position(is_painted) else { continue };
-        let last = row.chunks_exact(4).rposition(is_painted).unwrap_or(first);
+    for y in 0..TILE {
+        let is_painted = |x: &usize| tile.is_painted(y * TILE + x);
+        let Some(first) = (0..TILE).find(is_painted) else { continue };
+        let last = (0..TILE).rfind(is_painted).unwrap_or(first);
         (x0, x1) = (x0.min(first), x1.max(last + 1));
         (y0, y1) = (y0.min(y), y + 1);
     }
@@ -223,6 +278,39 @@ mod tests {
             assert_eq!(back.tile(at).unwrap().bytes(), tile.bytes(), "{at:?}");
             assert_eq!(quick.tile(at).unwrap().bytes(), tile.bytes(), "{at:?}");
         }
+    }
+    #[test]
+    fn pixels_of_16_bits_come_back_as_they_were_beside_those_of_8() {
+        let value = |i: usize, c: u32| (crate::math::hash::unit(i as u32, c, 3) * 65536.0) as u16;
+        let soft = |i: usize| [0, 1, 2, 3].map(|c| value(i, c));
+        // Fainter than a byte can say at the left border.
+        let pixel = |i: usize| {
+            if i % 200 == 0 {
+                [9, 8, 7, 100]
+            } else if i % 200 > 135 {
+                [257, 514, 0, 65535]
+            } else {
+                soft(i)
+            }
+        };
+        let pixels: Vec<[u16; 4]> = (0..200 * 90).map(pixel).collect();
+        let tiles = TileGrid::from_straight_deep(&pixels, 200, 90, -8, 5);
+        let encoded = encode(Path::new("a"), &tiles, None).unwrap();
+        assert!(is_deep(encoded.file.bytes()));
+        assert_eq!((encoded.x, encoded.y, encoded.size), (-8, 5, Size::new(200, 90)));
+        let quick = decode_tiles(encoded.file.bytes(), encoded.x, encoded.y, &Budget::default()).unwrap().tiles;
+        // With a profile, as Krita writes them, another way is taken.
+        let picture = picture::decode(Path::new("a"), encoded.file.bytes(), &Budget::default()).unwrap();
+        let slow = picture::to_tiles(&picture, encoded.x, encoded.y);
+        for (at, tile) in tiles.iter() {
+            assert!(quick.tile(at).unwrap().is_same(tile) && slow.tile(at).unwrap().is_same(tile), "{at:?}");
+            assert_eq!(tile.is_deep(), at.col < 2, "{at:?}");
+        }
+        assert!(!is_deep(encode(Path::new("a"), &tiles, Some(Rect::new(150, 5, 180, 9))).unwrap().file.bytes()));
+        let short = Budget { memory_bytes: 100_000, ..Budget::default() };
+        assert!(decode_tiles(encoded.file.bytes(), 0, 0, &short).is_none());
+        let bytes = decoded(encoded.file.bytes()).unwrap();
+        assert_eq!(bytes[4 * 33..4 * 34], soft(33).map(|v| ((u32::from(v) + 128) / 257) as u8));
     }
     #[test]
     fn only_what_is_painted_is_stored() {

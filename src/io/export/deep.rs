@@ -186,6 +186,19 @@ mod tests {
         let said = encode_document(Path::new("a.png"), &document, &options, &Budget::default(), &Progress::default());
         assert!(said.unwrap_err().to_string().contains("has 8 or 16 bits a channel, not 32"));
     }
+    #[test]
+    fn an_airbrush_over_sixty_strokes_has_ten_times_the_levels_in_16_bits() {
+        let document = crate::project::sample::softly_painted();
+        let written = |bits| {
+            let options = ExportOptions { bits: Some(bits), ..ExportOptions::default() };
+            let (file, budget) = (Path::new("a.png"), Budget::default());
+            let bytes = encode_document(file, &document, &options, &budget, &Progress::default()).unwrap().unwrap();
+            let image = image::load_from_memory(&bytes).unwrap().to_rgba16();
+            image.pixels().map(|pixel| pixel.0[0]).collect::<std::collections::BTreeSet<u16>>().len()
+        };
+        let (of_16, of_8) = (written(16), written(8));
+        assert!(of_16 >= 10 * of_8, "{of_16} levels, and {of_8} in bytes");
+    }
     fn gradient_4096() -> Document {
         let stop = |t, color| GradientStop { t, color };
         let gradient = Gradient {

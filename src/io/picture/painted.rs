@@ -2,6 +2,7 @@
 //! a large picture is never in memory as a whole beside its tiles. Floor 5.
 
 use super::light;
+use crate::bitmap::Bitmap;
 use crate::exr::{ExrFile, ExrPass};
 use crate::math::Size;
 use crate::pixels::{self, Painted};
@@ -18,8 +19,34 @@ pub fn painted(file: &Path, bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Re
     if let Some(painted) = pixels::decode_tiles(bytes, x, y, budget) {
         return Ok(painted);
     }
-    let picture = super::decode_bitmap(file, bytes, budget, super::KeptDepth::Bytes)?;
+    let bitmap = super::upright(file, bytes, budget)?;
+    if super::is_sixteen_bits(&bitmap.image) {
+        return of_sixteen_bits(file, &bitmap, x, y, budget);
+    }
+    let picture = super::picture_of(file, bitmap, budget)?;
     Ok(Painted { size: picture.size, tiles: super::to_tiles(&picture, x, y) })
+}
+
+/// Integers of 16 bits, through their profile if there is one; else a few rows at a time.
+fn of_sixteen_bits(file: &Path, bitmap: &Bitmap, x: i32, y: i32, budget: &Budget) -> Result<Painted> {
+    let size = Size::new(bitmap.image.width(), bitmap.image.height());
+    let (w, decoded) = (size.width as usize, bitmap.image.as_bytes().len() as u64);
+    let room = |bytes: u64| budget.room(file, &format!("a picture of {size} pixels of 16 bits a channel"), bytes);
+    let mut tiles = TileGrid::default();
+    if let Some(icc) = bitmap.icc.as_deref() {
+        room(decoded + 8 * size.area() as u64)?;
+        if let Some(texels) = super::through_profile(&bitmap.image, icc) {
+            return Ok(Painted { size, tiles: TileGrid::from_straight_deep(&texels, w, size.height as usize, x, y) });
+        }
+    }
+    let mut top = y;
+    for strip in super::strips(&bitmap.image) {
+        let (rows, texels) = (strip.height(), strip.into_rgba16().into_raw());
+        tiles.join(&TileGrid::from_straight_deep(texels.as_chunks().0, w, rows as usize, x, top));
+        room(decoded + tiles.bytes() as u64)?;
+        top = top.saturating_add(rows as i32);
+    }
+    Ok(Painted { size, tiles })
 }
 
 /// A layer of an EXR.

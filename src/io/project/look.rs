@@ -93,6 +93,10 @@ fn flattened(document: &Document, layers: &[LayerId], whole_rim: bool, progress:
     if whole_rim { flatten_whole(document, layers, progress) } else { flatten_layers(document, layers, progress) }
 }
 
+fn is_deep(tiles: &TileGrid) -> bool {
+    tiles.is_deep_in(tiles.bounds())
+}
+
 /// A paint layer's pixels, where nothing hides any of them from other programs.
 fn bare<'a>(document: &Document, layer: &'a Layer, masked: bool) -> Option<&'a TileGrid> {
     let is_moved = document.map_of(layer.id).is_some_and(|map| !map.is_none());
@@ -117,6 +121,11 @@ fn layers_seen_by(document: &Document, layer: &Arc<Layer>) -> Vec<Arc<Layer>> {
 pub fn remember(document: &Document, looks: &BTreeMap<LayerId, EncodedPixels>) {
     for (_, layer) in document.walk() {
         if let Some(encoded) = looks.get(&layer.id) {
+            // Another format rounded what it shows.
+            if bare(document, layer, true).is_some_and(|tiles| is_deep(tiles) != pixels::is_deep(encoded.file.bytes()))
+            {
+                continue;
+            }
             let (scene, seen) = (document.scene(), layers_seen_by(document, layer));
             let kind = LookKind { masked: true, whole_rim: false };
             layer.cache.look.get(&scene, &seen, &kind, || Some(encoded.clone()));

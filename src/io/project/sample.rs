@@ -1,10 +1,12 @@
 //! Documents for tests: every kind of layer, small.
 
-use crate::document::Document;
-use crate::math::{Size, vec3};
-use crate::raster::Plane;
+use crate::document::{Content, Document, Layer, LayerMask, MaskKind, PixelLayer};
+use crate::math::{Size, srgb::Color, vec2, vec3};
+use crate::paint::stroke::{ActiveStrokes, Backdrop};
+use crate::paint::{Brush, Sample, Scene, Stroke};
+use crate::raster::{Plane, TileGrid};
 use crate::recipe::{self, RecipeSource};
-use crate::surface::{Maps, Surface};
+use crate::surface::{Maps, Operator, Surface};
 use crate::{Budget, Files};
 use crate::{Error, Result};
 use serde_json::{Value, json};
@@ -113,6 +115,42 @@ pub fn everything(side: u32) -> Document {
     read(&everything_json(side), &files(side))
 }
 
+/// Paint that was airbrushed by 60 strokes over paper, once more under a mask, too faint for bytes, and an inked line.
+pub fn softly_painted() -> Document {
+    let size = Size::new(150, 100);
+    let scene = Scene { size, surface: None };
+    let painted = |brush: Brush, strokes: u32| {
+        let mut tiles = TileGrid::default();
+        for i in 0..strokes {
+            let at = [vec2(20.0 + i as f32, -20.0), vec2(30.0, 120.0)].map(Sample::at).to_vec();
+            let stroke = Stroke::new(brush.clone(), Operator::None, Color { r: 90, g: 30, b: 4, a: 255 }, Vec::new());
+            let mut active = ActiveStrokes::new(&[stroke], Backdrop::Pixels(tiles.clone()), &scene);
+            active.draw(&[at]).into_iter().for_each(|(at, tile)| tiles.set(at, tile));
+        }
+        Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() })
+    };
+    let airy = |flow: f32| Brush { size: 90.0, hardness: 0.0, flow, spacing: 0.2, ..Brush::default() };
+    let coverage = Arc::new(Plane::from_fn(size, |x, _| (x + 90) as u8));
+    let mask = LayerMask::new(MaskKind::File { file: "m.png".into(), coverage });
+    let layers = [
+        Layer::new("paper", Content::Fill(Color::WHITE)),
+        Layer::new("air", painted(airy(0.004), 60)),
+        Layer { mask: Some(mask), ..Layer::new("masked air", painted(airy(0.02), 5)) },
+        Layer::new("faint", painted(airy(0.0004), 1)),
+        Layer::new("ink", painted(Brush { size: 5.0, hardness: 1.0, ..Brush::default() }, 3)),
+    ];
+    Document { layers: layers.into_iter().map(Arc::new).collect(), ..Document::empty(size) }
+}
+
+/// How many tiles of each paint layer hold 16 bits, bottom first.
+pub fn deep_tiles(document: &Document) -> Vec<usize> {
+    let of = |layer: &Arc<Layer>| match &layer.content {
+        Content::Pixels(pixels) => Some(pixels.tiles.iter().filter(|(_, tile)| tile.is_deep()).count()),
+        _ => None,
+    };
+    document.walk().into_iter().filter_map(|(_, layer)| of(layer)).collect()
+}
+
 /// Panics unless two documents are the same in every parameter and every pixel.
 pub fn assert_same(a: &Document, b: &Document) {
     use crate::document::{Content, MaskKind, Progress, flatten};
@@ -121,7 +159,7 @@ pub fn assert_same(a: &Document, b: &Document) {
     for ((path, x), (_, y)) in a.walk().iter().zip(b.walk()) {
         if let (Content::Pixels(x), Content::Pixels(y)) = (&x.content, &y.content) {
             let rect = x.tiles.bounds().union(y.tiles.bounds());
-            assert!(x.tiles.to_straight_rgba(rect) == y.tiles.to_straight_rgba(rect), "the pixels of {path}");
+            assert!(x.tiles.to_straight_deep(rect) == y.tiles.to_straight_deep(rect), "the pixels of {path}");
         }
         let masks = (x.mask.as_ref().map(|m| &m.kind), y.mask.as_ref().map(|m| &m.kind));
         if let (Some(MaskKind::File { coverage: x, .. }), Some(MaskKind::File { coverage: y, .. })) = masks {

@@ -2,7 +2,7 @@ mod damage;
 mod foreign;
 mod held;
 
-use super::sample::{assert_same, everything, png};
+use super::sample::{assert_same, deep_tiles, everything, png, softly_painted};
 use super::*;
 use crate::Budget;
 use crate::document::{Content, Layer, MaskKind, SurfaceSource};
@@ -47,6 +47,28 @@ fn a_document_comes_back_in_every_parameter_and_pixel() {
     assert_eq!(back.notes, [""; 0]);
     assert!(back.is_whole);
     assert_same(&document, &back.document);
+}
+#[test]
+fn soft_paint_comes_back_in_16_bits_and_ink_is_stored_in_8() {
+    let document = softly_painted();
+    let found = deep_tiles(&document);
+    assert!(found[..3].iter().all(|&deep| deep > 1) && found[3] == 0, "{found:?}");
+    let file = written(&document);
+    let back = read_back(&file);
+    assert!(back.notes.is_empty() && document.difference(&back.document).is_none(), "{:?}", back.notes);
+    assert_same(&document, &back.document);
+    assert_eq!(deep_tiles(&back.document), found);
+    assert!(written(&back.document) == file, "saved again");
+    let depth = |name: &str| {
+        let entry = entries(&file).into_iter().find(|(known, _)| known == name).unwrap();
+        crate::pixels::is_deep(&entry.1)
+    };
+    let names = ["data/001.png", "data/004.png", "mergedimage.png"];
+    assert_eq!(names.map(depth), [true, false, false]);
+    // Another program finds the pixels as they are.
+    let foreign = changed(&file, |name, bytes| (!name.starts_with("rilievo/")).then_some(bytes));
+    let seen = deep_tiles(&read_back(&foreign).document);
+    assert_eq!(seen[1..2], found[..1]);
 }
 #[test]
 fn saved_and_read_and_saved_again_it_is_the_same_file() {

@@ -11,7 +11,7 @@ use crate::math::{Rect, Size};
 use crate::memory;
 use crate::project::look::{self, Cancellable};
 use crate::project::plan::{FormatSupport, ItemContent, PlanItem, plan};
-use crate::raster::BlendMode;
+use crate::raster::{BlendMode, TileGrid};
 use crate::{Error, Result};
 use crate::{pixels, project};
 use std::collections::{BTreeMap, BTreeSet};
@@ -124,8 +124,13 @@ impl RecordBuilder {
             return Ok(());
         }
         let damaged = || Error::unsupported(file, "a layer could not be encoded; nothing was saved");
-        let look = self.looks.next().ok_or_else(damaged)?;
+        let mut look = self.looks.next().ok_or_else(damaged)?;
         let rgba = pixels::decoded(look.file.bytes()).ok_or_else(damaged)?;
+        if pixels::is_deep(look.file.bytes()) {
+            // What our part of the file tells of the record is what it holds; all of the paint stands there, too.
+            look = in_bytes(file, look, &rgba)?;
+            self.notes.push(format!("“{}” has 16 bits a channel here and 8 for other programs", item.name));
+        }
         let is_empty = rgba.chunks_exact(4).all(|pixel| pixel[3] == 0);
         let (x1, y1) = (look.x + look.size.width as i32, look.y + look.size.height as i32);
         let (rect, rgba) = if is_empty { (Rect::EMPTY, Vec::new()) } else { (Rect::new(look.x, look.y, x1, y1), rgba) };
@@ -167,6 +172,14 @@ impl RecordBuilder {
             disabled: false,
         })
     }
+}
+
+/// A look of 16 bits with its values rounded to bytes, as it is stored where those are all that there is.
+fn in_bytes(file: &Path, look: EncodedPixels, rgba: &[u8]) -> Result<EncodedPixels> {
+    if rgba.chunks_exact(4).all(|pixel| pixel[3] == 0) {
+        return pixels::encode(file, &TileGrid::default(), None);
+    }
+    Ok(EncodedPixels { file: pixels::encode_texels(file, rgba.as_chunks().0, look.size)?, ..look })
 }
 
 /// Programs that read the format's word for a mode and compute it otherwise, as was measured (docs/PROJECTS.md).

@@ -10,7 +10,7 @@ use crate::document::{
 use crate::math::{Rect, Size};
 use crate::paint::Selection;
 use crate::project::ProjectContents;
-use crate::project::sample::{assert_same, everything, files, png, read as read_recipe};
+use crate::project::sample::{assert_same, deep_tiles, everything, files, png, read as read_recipe, softly_painted};
 use crate::raster::{BlendMode, CoverageGrid, TileGrid};
 use serde_json::json;
 use std::collections::HashSet;
@@ -46,6 +46,21 @@ fn worst_of(a: &Document, b: &Document, is_counted: &dyn Fn((i32, i32)) -> bool)
         .unwrap_or(0)
 }
 
+#[test]
+fn soft_paint_comes_back_in_16_bits_and_other_programs_see_8_which_is_said() {
+    let document = softly_painted();
+    let made = write(Path::new("a.psd"), &document, &Progress::default()).unwrap().unwrap();
+    let said = |name: &str| made.notes.iter().any(|note| note.contains(name) && note.contains("8 for other programs"));
+    assert!(said("“air”") && !said("“ink”"), "{:?}", made.notes);
+    let back = read_back(&made.bytes);
+    assert!(back.notes.is_empty(), "{:?}", back.notes);
+    assert_same(&document, &back.document);
+    assert_eq!(deep_tiles(&back.document), deep_tiles(&document));
+    assert_same(&document, &read_back(&written(&back.document)).document);
+    let foreign = read_back(&without_ours(&made.bytes)).document;
+    // Three layers are rounded, each by half a level at most, and the picture of them.
+    assert!(worst(&document, &foreign) <= 2, "{}", worst(&document, &foreign));
+}
 #[test]
 fn our_own_file_comes_back_live_in_every_parameter_and_pixel() {
     let document = everything(64);

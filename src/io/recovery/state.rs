@@ -7,7 +7,6 @@ use crate::math::Size;
 use crate::paint::Stroke;
 use crate::pixels;
 use crate::project::assets::{AssetList, MadeFiles, StoredPixels};
-use crate::raster::picture::Texels;
 use crate::raster::{Asset, TILE, Tile, TileAt, TileGrid};
 use crate::recipe::{self, RecipeSource};
 use crate::{Budget, Files, picture};
@@ -149,9 +148,7 @@ impl StateWriter<'_> {
 fn encode_tile(file: &Path, at: TileAt, tile: &Arc<Tile>) -> Result<Vec<u8>> {
     let mut alone = TileGrid::default();
     alone.set(at, Some(tile.clone()));
-    let straight = alone.to_straight_rgba(at.rect());
-    let size = Size::new(TILE as u32, TILE as u32);
-    Ok(pixels::encode_texels(file, straight.as_chunks().0, size)?.bytes().to_vec())
+    Ok(pixels::encode_rect(file, &alone, at.rect())?.bytes().to_vec())
 }
 
 /// The last document in a log; `None` where there is none.
@@ -240,10 +237,8 @@ impl<'a> LastState<'a> {
             let at = TileAt::new(col, row);
             let picture = picture::decode(file, self.blob(file, &tile[2])?, &Budget::default())?;
             let is_tile = picture.size == Size::new(TILE as u32, TILE as u32);
-            if let Texels::Srgb8(texels) = &picture.texels
-                && is_tile
-            {
-                let one = TileGrid::from_straight_rgba(texels.as_flattened(), TILE, TILE, at.rect().x0, at.rect().y0);
+            if is_tile {
+                let one = picture::to_tiles(&picture, at.rect().x0, at.rect().y0);
                 grid.set(at, one.tile(at).cloned());
             }
         }

@@ -6,7 +6,7 @@ use crate::document::{Content, Layer, PixelLayer};
 use crate::fs::Disk;
 use crate::fs::memory::{InjectedError, InjectedFailure, MemoryFs};
 use crate::math::{Size, srgb::Color};
-use crate::project::sample::{assert_same, everything};
+use crate::project::sample::{assert_same, deep_tiles, everything, softly_painted};
 use crate::raster::TileGrid;
 
 const LOG: &str = "/r/1.log";
@@ -42,6 +42,16 @@ fn every_kind_of_layer_comes_back() {
     let (states, back) = read(&fs.file(LOG).unwrap());
     assert_eq!(states, 1);
     assert_same(&document, &back.unwrap());
+}
+#[test]
+fn soft_paint_comes_back_in_16_bits() {
+    let fs = MemoryFs::with(&[("/r/other", b"")]);
+    let mut journal = journal(&fs);
+    let document = softly_painted();
+    journal.record(&document).unwrap();
+    let back = read(&fs.file(LOG).unwrap()).1.unwrap();
+    assert_same(&document, &back);
+    assert_eq!(deep_tiles(&back), deep_tiles(&document));
 }
 /// A line of so many readings of the pen.
 fn drawn(count: usize) -> Arc<crate::paint::Stroke> {
