@@ -84,7 +84,7 @@ fn is_sixteen_bits(image: &DynamicImage) -> bool {
 }
 
 /// The byte nearest to a value of 16 bits.
-pub fn byte(v: u16) -> u8 {
+fn byte(v: u16) -> u8 {
     tile::deep::byte_of(v)
 }
 

@@ -5,7 +5,7 @@ use crate::Budget;
 use crate::bitmap;
 use crate::document::EncodedPixels;
 use crate::math::{Rect, Size};
-use crate::picture::byte;
+use crate::raster::tile::deep::byte_of;
 use crate::raster::{Asset, Plane, TILE, Tile, TileAt, TileGrid};
 use crate::{Error, Result};
 use std::borrow::Cow;
@@ -155,7 +155,7 @@ pub fn decoded(bytes: &[u8]) -> Option<Vec<u8>> {
     reader.finish().ok()?;
     values.truncate(info.buffer_size());
     Some(match info.bit_depth {
-        png::BitDepth::Sixteen => values.as_chunks().0.iter().map(|v| byte(u16::from_be_bytes(*v))).collect(),
+        png::BitDepth::Sixteen => values.as_chunks().0.iter().map(|v| byte_of(u16::from_be_bytes(*v))).collect(),
         _ => values,
     })
 }
