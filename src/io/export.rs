@@ -31,7 +31,7 @@ pub enum ExportFormat {
 }
 
 impl ExportFormat {
-    /// Every format by the extensions of its files.
+    /// Every format by the extensions of its files, of which some have two.
     pub const ALL: [(ExportFormat, &'static str); 7] = [
         (ExportFormat::Png, "png"),
         (ExportFormat::Exr, "exr"),

@@ -2,7 +2,7 @@
 //! presses.
 
 use super::commands::{self, MenuCommand};
-use crate::tools::{ToolKind, ToolRow};
+use crate::tools::ToolKind;
 use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
@@ -17,34 +17,33 @@ pub struct Keymap {
 #[derive(Clone, Copy)]
 pub enum KeyTarget {
     Command(&'static MenuCommand),
-    Tool(&'static ToolRow),
+    Tool(ToolKind),
 }
 
 impl KeyTarget {
     /// Everything that keys can be given to, tools first.
     pub fn all() -> impl Iterator<Item = KeyTarget> {
-        const TOOLS: &[ToolRow] = &ToolKind::ALL;
         let commands = commands::all().map(KeyTarget::Command);
-        TOOLS.iter().map(KeyTarget::Tool).chain(commands)
+        ToolKind::ALL.into_iter().map(|(tool, _)| KeyTarget::Tool(tool)).chain(commands)
     }
     pub fn name(self) -> &'static str {
         match self {
             KeyTarget::Command(command) => command.name,
-            KeyTarget::Tool(row) => row.label,
+            KeyTarget::Tool(tool) => tool.label(),
         }
     }
     pub fn hint(self) -> &'static str {
         match self {
             KeyTarget::Command(command) => command.hint,
-            KeyTarget::Tool(row) => row.hint,
+            KeyTarget::Tool(tool) => tool.hint(),
         }
     }
     /// Its default keys.
     fn own(self) -> Vec<KeyboardShortcut> {
         match self {
             KeyTarget::Command(command) => command.keys.to_vec(),
-            KeyTarget::Tool(row) => {
-                let key = Key::from_name(&row.key.to_string());
+            KeyTarget::Tool(tool) => {
+                let key = Key::from_name(&tool.key().to_string());
                 key.into_iter().map(|key| KeyboardShortcut::new(Modifiers::NONE, key)).collect()
             }
         }

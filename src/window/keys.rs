@@ -32,7 +32,7 @@ pub fn listen(ctx: &Context, session: &Session, keymap: &Keymap, requests: &mut 
             }
             match keyed {
                 KeyTarget::Command(command) => (command.run)(session, requests),
-                KeyTarget::Tool(row) => requests.act(Action::Hand(HandAction::Tool { tool: row.kind })),
+                KeyTarget::Tool(tool) => requests.act(Action::Hand(HandAction::Tool { tool })),
             }
         }
         // What nobody took says why nothing happens; Enter and Escape mean whatever is under way.

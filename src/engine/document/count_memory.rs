@@ -1,6 +1,5 @@
 //! Counts what documents take of memory, and lets go of what they keep for speed alone. Floor 4. How much that may be
-//! is
-//! told by higher floors, which know the machine.
+//! is told by higher floors, which know the machine.
 
 use super::{Document, MaskKind, MemoryCount};
 

@@ -19,7 +19,7 @@
 #[macro_export]
 macro_rules! named {
     ($(#[$meta:meta])* $vis:vis enum $type:ident {
-        $($(#[$row:meta])* $choice:ident = $name:literal => ($label:literal, $hint:literal)),+ $(,)?
+        $($(#[$row:meta])* $choice:ident = $name:literal => ($label:literal, $hint:literal $(,)?)),+ $(,)?
     }) => {
         $crate::named! {
             $(#[$meta])* $vis enum $type { $($(#[$row])* $choice = $name => $label),+ }

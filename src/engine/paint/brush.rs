@@ -212,6 +212,8 @@ impl Tip {
 
 impl Brush {
     pub const SIZE: Range = 0.1..=20_000.0;
+    /// Diameters that the hand sets, px.
+    pub const HAND_SIZE: Range = 1.0..=2000.0;
     /// A hundredth of the diameter is as good as a line; less only costs time.
     pub const SPACING: Range = 0.01..=100.0;
     pub const SCATTER: Range = 0.0..=10.0;

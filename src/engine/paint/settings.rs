@@ -1,10 +1,50 @@
-//! The numbers of a brush's habits: each one's name, range and words, said once for documents and for the window.
-//! Floor 3. What they mean is `habits`'.
+//! The numbers of a brush that the hand sets: each one's range and field, and of its habits the name and words, said
+//! once for documents and for the window. Floor 3. What habits mean is `habits`'.
 
 use super::brush::Brush;
-use crate::math::{Range, range::held};
+use crate::math::{Range, TURNS, UNIT, range::held};
 
-/// One number of a brush.
+/// A number of a brush that the hand sets, for the strokes to come or for those that are there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BrushNumber {
+    Size,
+    Hardness,
+    Opacity,
+    Flow,
+    Softness,
+    Spacing,
+    Rotation,
+    Reach,
+}
+
+impl BrushNumber {
+    /// What the hand may set it to.
+    pub fn range(self) -> Range {
+        match self {
+            BrushNumber::Size => Brush::HAND_SIZE,
+            BrushNumber::Spacing => Brush::SPACING,
+            BrushNumber::Rotation => TURNS,
+            BrushNumber::Reach => Brush::REACHES,
+            BrushNumber::Hardness | BrushNumber::Opacity | BrushNumber::Flow | BrushNumber::Softness => UNIT,
+        }
+    }
+    /// Sets it, within its range.
+    pub fn set(self, brush: &mut Brush, to: f32) {
+        let field = match self {
+            BrushNumber::Size => &mut brush.size,
+            BrushNumber::Hardness => &mut brush.hardness,
+            BrushNumber::Opacity => &mut brush.opacity,
+            BrushNumber::Flow => &mut brush.flow,
+            BrushNumber::Softness => &mut brush.softness,
+            BrushNumber::Spacing => &mut brush.spacing,
+            BrushNumber::Rotation => &mut brush.rotation,
+            BrushNumber::Reach => &mut brush.reach,
+        };
+        *field = held(to, &self.range());
+    }
+}
+
+/// One number of a brush's habits.
 pub struct Setting {
     /// The object of a brush's that documents keep it in; empty: the brush's own.
     pub group: &'static str,

@@ -25,7 +25,7 @@ pub enum Combine {
 }
 
 impl Combine {
-    /// Every way with its name in documents; a union's smoothness is a number beside it.
+    /// Every way with its name in documents; a union's smoothness is a number of its own, which `named!` has no place for.
     pub const ALL: [(Combine, &'static str); 5] = [
         (Combine::Over, "over"),
         (Combine::Union { smooth: Combine::DEFAULT_SMOOTH }, "union"),
@@ -39,13 +39,8 @@ impl Combine {
 
     /// Its name in documents.
     pub fn name(self) -> &'static str {
-        match self {
-            Combine::Over => "over",
-            Combine::Union { .. } => "union",
-            Combine::Add => "add",
-            Combine::Cut => "cut",
-            Combine::Join => "join",
-        }
+        let is_same = |(way, _): &&(Self, &str)| std::mem::discriminant(way) == std::mem::discriminant(&self);
+        Self::ALL.iter().find(is_same).map_or("over", |(_, name)| name)
     }
 }
 

@@ -12,35 +12,19 @@ use image::{ExtendedColorType, ImageEncoder};
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-/// One of the maps.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ShapeMap {
-    /// Camera space.
-    Normals,
-    /// 0 near … 1 far over the surface.
-    Depth,
-    /// 1 near … 0 far; in an EXR px toward the viewer.
-    Height,
-    Mask,
-    /// The number of the part that is seen, from 1 on; 0 where there is none.
-    Parts,
-}
-
-impl ShapeMap {
-    /// Every map with what is added to a file's name, as engines expect it.
-    pub const ALL: [(ShapeMap, &'static str); 5] = [
-        (ShapeMap::Normals, "_n"),
-        (ShapeMap::Depth, "_d"),
-        (ShapeMap::Height, "_h"),
-        (ShapeMap::Mask, "_mask"),
-        (ShapeMap::Parts, "_id"),
-    ];
-    /// What is added to a file's name.
-    pub fn suffix(self) -> &'static str {
-        Self::ALL.iter().find(|(map, _)| *map == self).map_or("", |(_, suffix)| suffix)
-    }
-    pub fn from_suffix(suffix: &str) -> Option<Self> {
-        Self::ALL.iter().find(|(_, known)| *known == suffix).map(|(map, _)| *map)
+rilievo_engine::named! {
+    /// One of the maps, named by what is added to a file's name, as engines expect it.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum ShapeMap {
+        /// Camera space.
+        Normals = "_n",
+        /// 0 near … 1 far over the surface.
+        Depth = "_d",
+        /// 1 near … 0 far; in an EXR px toward the viewer.
+        Height = "_h",
+        Mask = "_mask",
+        /// The number of the part that is seen, from 1 on; 0 where there is none.
+        Parts = "_id",
     }
 }
 
@@ -58,7 +42,7 @@ impl ShapeFiles {
         let stem = if base.extension().is_some_and(known) { base.file_stem() } else { base.file_name() };
         let stem = stem.unwrap_or_default().to_string_lossy();
         let target = |map: &ShapeMap| {
-            let file = base.with_file_name(format!("{stem}{}.{extension}", map.suffix()));
+            let file = base.with_file_name(format!("{stem}{}.{extension}", map.name()));
             Ok((*map, file.clone(), OutputFile::new(&file, terms.clone())?))
         };
         Ok(Self { targets: maps.iter().map(target).collect::<Result<_>>()?, options })

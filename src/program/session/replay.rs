@@ -158,6 +158,11 @@ macro_rules! actions {
         $(#[$meta])*
         #[derive(Clone)]
         pub enum $name { $($(#[$about])* $variant { $($field: $ty),* }),+ }
+        impl $name {
+            /// The words of all of them.
+            #[cfg(test)]
+            pub const WORDS: &'static [&'static str] = &[$($word),+];
+        }
         impl $crate::session::replay::ReplayValue for $name {
             fn written(&self) -> serde_json::Value {
                 let mut object = serde_json::Map::new();

@@ -1,5 +1,5 @@
 //! Floor 5: tools. A tool turns the pen's events on the canvas into documents: a preview while the pen moves, and a
-//! result when it lifts. Each tool is a file and a row of [`ToolKind::ALL`] (`kinds`). Not here: the current tool and
+//! result when it lifts. Each tool is a file and a row of [`ToolKind`] (`kinds`). Not here: the current tool and
 //! the history (`session`), screen coordinates (`window`).
 
 pub mod anchors;
@@ -33,7 +33,7 @@ pub mod unwrapped;
 
 pub use context::ToolContext;
 pub use gesture::{Gesture, GestureStart, Outcome};
-pub use kinds::{ToolKind, ToolRow};
+pub use kinds::ToolKind;
 pub use pen::{GRAB_PT, ModifierKeys, PenSample};
 pub use settings::{BrushTarget, SelectSettings, ShapeSettings};
 pub use symmetry::Symmetry;

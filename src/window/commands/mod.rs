@@ -67,9 +67,9 @@ mod tests {
                 assert_eq!(keys.insert(format!("{key:?}"), command.name), None, "{}", command.name);
             }
         }
-        for tool in crate::tools::ToolKind::ALL {
-            let letter = key(Key::from_name(&tool.key.to_string()).unwrap());
-            assert_eq!(keys.insert(format!("{letter:?}"), tool.label), None, "{}", tool.label);
+        for (tool, _) in crate::tools::ToolKind::ALL {
+            let letter = key(Key::from_name(&tool.key().to_string()).unwrap());
+            assert_eq!(keys.insert(format!("{letter:?}"), tool.label()), None, "{}", tool.label());
         }
     }
 }

@@ -4,9 +4,8 @@
 use super::{brush, colors};
 use crate::file_purpose::FilePurpose;
 use crate::io::recipe::{BrushPreset, PresetGroup};
-use crate::paint::Property;
+use crate::paint::{Brush, Property};
 use crate::requests::{UiRequests, WindowRequest};
-use crate::session::actions::hand::SIZES;
 use crate::session::actions::{FileAction, HandAction};
 use crate::session::brushes::is_found;
 use crate::session::{Action, Session};
@@ -137,7 +136,7 @@ fn preset(ui: &mut Ui, preset: &BrushPreset, is_on: bool, swatches: &mut Swatche
 fn numbers(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let brush = &session.brush;
     let mut push = |action: Option<HandAction>| requests.actions.extend(action.map(Action::Hand));
-    let size = NumberField::new("Size", SIZES[0]..=SIZES[1], "Diameter of a dab").px();
+    let size = NumberField::new("Size", Brush::HAND_SIZE, "Diameter of a dab").px();
     push(size.row(ui, brush.size).map(|c| HandAction::Size { to: c.to }));
     let hardness = NumberField::new("Hardness", 0.0..=1.0, "Share of the radius that is fully covered");
     push(hardness.row(ui, brush.hardness).map(|c| HandAction::Hardness { to: c.to }));

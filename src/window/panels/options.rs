@@ -3,9 +3,9 @@
 
 use super::{assistants, brush_mode, crop, fill, liquify, select, shaping, transform};
 use crate::operators::{OPERATORS, OfferedOperator, OperatorOwner, give, has, hint_of, set, whose};
+use crate::paint::Brush;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::HandAction;
-use crate::session::actions::hand::SIZES;
 use crate::session::{Action, Session};
 use crate::surface::Operator;
 use crate::tools::{Symmetry, ToolKind};
@@ -98,7 +98,7 @@ fn of_tool(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         ToolKind::Liquify => liquify::options(ui, session, requests),
         ToolKind::Assistants => assistants::options(ui, session, requests),
         ToolKind::Crop => crop::options(ui, session, requests),
-        tool => drop(ui.weak(tool.row().hint)),
+        tool => drop(ui.weak(tool.hint())),
     }
 }
 
@@ -158,8 +158,7 @@ fn brush(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let brush = &session.brush;
     let mut push = |action: Option<HandAction>| requests.actions.extend(action.map(Action::Hand));
     let size =
-        NumberField::new("Size", SIZES[0]..=SIZES[1], "Diameter of a dab ([ and ], or drag with the right button)")
-            .px();
+        NumberField::new("Size", Brush::HAND_SIZE, "Diameter of a dab ([ and ], or drag with the right button)").px();
     push(size.inline(ui, brush.size, 90.0).map(|c| HandAction::Size { to: c.to }));
     let opacity = NumberField::new("Opacity", 0.0..=1.0, "Of the whole stroke");
     push(opacity.inline(ui, brush.opacity, 60.0).map(|c| HandAction::Opacity { to: c.to }));

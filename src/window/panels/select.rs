@@ -46,7 +46,7 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     match session.tool {
         ToolKind::Wand => push(wand(ui, select)),
         ToolKind::SurfaceWand => push(region(ui, select.region, select)),
-        _ => drop(ui.weak(session.tool.row().hint)),
+        _ => drop(ui.weak(session.tool.hint())),
     }
 }
 

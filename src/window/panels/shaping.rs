@@ -25,7 +25,7 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         ToolKind::Touch => touching(ui, now),
         ToolKind::Sculpt => sculpting(ui, now),
         tool => {
-            ui.weak(tool.row().hint);
+            ui.weak(tool.hint());
             None
         }
     };

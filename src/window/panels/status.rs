@@ -74,7 +74,7 @@ pub fn show(
                     .on_hover_text("The surface's normal and depth under the pointer");
             }
         } else {
-            ui.weak(session.tool.row().hint);
+            ui.weak(session.tool.hint());
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let took = format!("{:.0} ms", canvas.took.as_secs_f32() * 1000.0);

@@ -4,9 +4,8 @@
 use super::{colors, home, options};
 use crate::icons::{Icon, icon_button};
 use crate::operators::{OPERATORS, OfferedOperator};
-use crate::paint::Stroke;
+use crate::paint::{Brush, Stroke};
 use crate::requests::UiRequests;
-use crate::session::actions::hand::SIZES;
 use crate::session::actions::{HandAction, StrokeAction, Style};
 use crate::session::{Action, LayerPath, Session};
 use crate::tools::ToolKind;
@@ -118,7 +117,7 @@ fn styles(ui: &mut Ui, stroke: &Stroke, mut set: impl FnMut(Style, bool)) {
         }
     };
     let unit = |label, hint| NumberField::new(label, 0.0..=1.0, hint);
-    let size = NumberField::new("Stroke size", SIZES[0]..=SIZES[1], "Diameter of a dab").px();
+    let size = NumberField::new("Stroke size", Brush::HAND_SIZE, "Diameter of a dab").px();
     give(size.row(ui, brush.size).map(|c| c.map(|to| Style::Size { to })));
     let opacity = unit("Opacity", "Of the whole stroke").row(ui, brush.opacity);
     give(opacity.map(|c| c.map(|to| Style::Opacity { to })));

@@ -6,7 +6,7 @@ use crate::keymap::{KeyTarget, Keymap, shown};
 use crate::requests::UiRequests;
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
-use crate::tools::{ToolKind, ToolRow};
+use crate::tools::ToolKind;
 use crate::widgets::swatch;
 use eframe::egui::{Ui, vec2};
 
@@ -19,18 +19,17 @@ const COLOURS_PT: f32 = 124.0;
 pub fn show(ui: &mut Ui, session: &Session, keymap: &Keymap, requests: &mut UiRequests) {
     ui.vertical_centered(|ui| {
         ui.add_space(2.0);
-        const TOOLS: &[ToolRow] = &ToolKind::ALL;
         // In a low window they are smaller, so that all of them and the colours stay in sight.
-        let each = (ui.clip_rect().height() - COLOURS_PT) / TOOLS.len() as f32 - ui.spacing().item_spacing.y;
+        let each = (ui.clip_rect().height() - COLOURS_PT) / ToolKind::ALL.len() as f32 - ui.spacing().item_spacing.y;
         let side = each.max(SMALLEST_PT).min(LARGEST_PT);
-        for row in TOOLS {
-            let response = sized_button(ui, Icon::Tool(row.kind), row.label, session.tool == row.kind, side);
+        for (tool, _) in ToolKind::ALL {
+            let response = sized_button(ui, Icon::Tool(tool), tool.label(), session.tool == tool, side);
             let keys = keymap
-                .of(KeyTarget::Tool(row))
+                .of(KeyTarget::Tool(tool))
                 .first()
                 .map_or_else(String::new, |&keys| format!(" ({})", shown(ui.ctx(), keys)));
-            if response.on_hover_text(format!("{}{keys}\n{}", row.label, row.hint)).clicked() {
-                requests.act(Action::Hand(HandAction::Tool { tool: row.kind }));
+            if response.on_hover_text(format!("{}{keys}\n{}", tool.label(), tool.hint())).clicked() {
+                requests.act(Action::Hand(HandAction::Tool { tool }));
             }
         }
         ui.add_space(8.0);

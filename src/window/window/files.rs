@@ -223,7 +223,7 @@ impl MainWindow {
         };
         // Of several files the name of the first, so that it is seen what they will be called.
         let suffix = match purpose {
-            FilePurpose::ExportMaps => self.maps.maps().first().map_or("", |map| map.suffix()),
+            FilePurpose::ExportMaps => self.maps.maps().first().map_or("", |map| map.name()),
             _ => "",
         };
         format!("{stem}{suffix}.{extension}")

@@ -95,7 +95,7 @@ impl MainWindow {
         let (maps, options) = (self.maps.maps(), self.maps.options);
         // The name was proposed, and perhaps left, as that of the first.
         let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let first = maps.first().map_or("", |map| map.suffix());
+        let first = maps.first().map_or("", |map| map.name());
         let stem = stem.strip_suffix(first).filter(|stem| !stem.is_empty()).unwrap_or(&stem);
         let file = file.with_file_name(format!("{stem}.{}", if options.is_exr { "exr" } else { "png" }));
         self.put(Pending::Maps(Box::new(ExportingMaps { document, file, maps, options, terms })));

@@ -12,23 +12,13 @@ use crate::io::{Budget, Overwrite, Terms, save};
 use crate::math::{Size, Vec2, srgb::Color};
 use crate::session::actions::placing::{place, read_picture};
 use crate::session::actions::{pictures, unwrapped};
-use crate::session::replay::{ReplayValue, actions};
+use crate::session::replay::{actions, names};
 use crate::session::{OpenDocument, PicturePart, Session, brushes, storage};
 use crate::{Error, Result};
-use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// By what is added to a file's name.
-impl ReplayValue for ShapeMap {
-    fn written(&self) -> Value {
-        self.suffix().into()
-    }
-    fn read(value: &Value) -> std::result::Result<Self, String> {
-        let map = value.as_str().and_then(ShapeMap::from_suffix);
-        map.ok_or_else(|| format!("is {value}; it must be _n, _d, _h, _mask or _id"))
-    }
-}
+names!(ShapeMap);
 
 actions! {
     /// Paths are those of the user's own files.

@@ -3,8 +3,9 @@
 
 use crate::io::recipe::read_brush;
 use crate::math::range::held;
-use crate::math::{TURNS, UNIT, Vec2, srgb::Color};
-use crate::paint::{Brush, BrushMode, Fill, LiquifySettings, LiquifyTool, Property};
+use crate::math::{Vec2, srgb::Color};
+use crate::paint::settings::BrushNumber;
+use crate::paint::{BrushMode, Fill, LiquifySettings, LiquifyTool, Property};
 use crate::session::Session;
 use crate::session::replay::{ReplayValue, actions, as_in_recipes, names, record};
 use crate::shape::SculptStroke;
@@ -87,12 +88,8 @@ actions! {
     }
 }
 
-/// The range of brush diameters, px.
-pub const SIZES: [f32; 2] = [1.0, 2000.0];
-
 impl HandAction {
     pub fn apply(&self, session: &mut Session) {
-        let unit = |v: f32| held(v, &UNIT);
         let brush = &mut session.brush;
         match self {
             HandAction::Tool { tool } => {
@@ -114,13 +111,13 @@ impl HandAction {
                 session.liquify.size = held(*to, &LiquifySettings::SIZE);
             }
             HandAction::Liquify { liquify } => session.liquify = liquify.held(),
-            HandAction::Size { to } => brush.size = to.max(SIZES[0]).min(SIZES[1]),
-            HandAction::Hardness { to } => brush.hardness = unit(*to),
-            HandAction::Opacity { to } => brush.opacity = unit(*to),
-            HandAction::Flow { to } => brush.flow = unit(*to),
-            HandAction::Spacing { to } => brush.spacing = held(*to, &Brush::SPACING),
-            HandAction::Softness { to } => brush.softness = unit(*to),
-            HandAction::Rotation { to } => brush.rotation = held(*to, &TURNS),
+            HandAction::Size { to } => BrushNumber::Size.set(brush, *to),
+            HandAction::Hardness { to } => BrushNumber::Hardness.set(brush, *to),
+            HandAction::Opacity { to } => BrushNumber::Opacity.set(brush, *to),
+            HandAction::Flow { to } => BrushNumber::Flow.set(brush, *to),
+            HandAction::Spacing { to } => BrushNumber::Spacing.set(brush, *to),
+            HandAction::Softness { to } => BrushNumber::Softness.set(brush, *to),
+            HandAction::Rotation { to } => BrushNumber::Rotation.set(brush, *to),
             HandAction::Pressure { size, flow } => {
                 let dynamics = brush.dynamics.with_pressure(Property::Size, *size);
                 brush.dynamics = dynamics.with_pressure(Property::Flow, *flow);
@@ -137,7 +134,7 @@ impl HandAction {
             HandAction::Mark { mark: mode } => brush.mode = mode.held(),
             HandAction::Carried { carried } => session.carried = *carried,
             HandAction::Bounded { bounded } => brush.bounded = *bounded,
-            HandAction::Reach { to } => brush.reach = to.max(*Brush::REACHES.start()).min(*Brush::REACHES.end()),
+            HandAction::Reach { to } => BrushNumber::Reach.set(brush, *to),
         }
     }
 }

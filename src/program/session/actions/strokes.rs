@@ -2,8 +2,8 @@
 //! themselves are in `document::strokes`.
 
 use crate::document::{Document, LayerId};
-use crate::math::range::held;
-use crate::math::{TURNS, UNIT, Vec2, srgb::Color, vec2};
+use crate::math::{Vec2, srgb::Color, vec2};
+use crate::paint::settings::BrushNumber;
 use crate::paint::{Brush, BrushMode, Stroke};
 use crate::session::replay::actions;
 use crate::session::{LayerPath, Session};
@@ -131,22 +131,18 @@ impl StrokeAction {
 impl Style {
     /// The stroke painted in this way; `current_brush`: the brush that [`Style::Brush`] gives.
     fn given_to(&self, stroke: &Stroke, current_brush: &Brush) -> Stroke {
-        let unit = |v: f32| held(v, &UNIT);
         let mut brush = stroke.brush().clone();
         let (mut operator, mut color) = (stroke.operator(), stroke.color());
         match self {
             Style::Color { color: to } => color = *to,
             Style::Operator { operator: to } => operator = *to,
-            Style::Size { to } => {
-                let [least, most] = super::hand::SIZES;
-                brush.size = to.max(least).min(most);
-            }
-            Style::Hardness { to } => brush.hardness = unit(*to),
-            Style::Opacity { to } => brush.opacity = unit(*to),
-            Style::Flow { to } => brush.flow = unit(*to),
-            Style::Softness { to } => brush.softness = unit(*to),
-            Style::Spacing { to } => brush.spacing = held(*to, &Brush::SPACING),
-            Style::Rotation { to } => brush.rotation = held(*to, &TURNS),
+            Style::Size { to } => BrushNumber::Size.set(&mut brush, *to),
+            Style::Hardness { to } => BrushNumber::Hardness.set(&mut brush, *to),
+            Style::Opacity { to } => BrushNumber::Opacity.set(&mut brush, *to),
+            Style::Flow { to } => BrushNumber::Flow.set(&mut brush, *to),
+            Style::Softness { to } => BrushNumber::Softness.set(&mut brush, *to),
+            Style::Spacing { to } => BrushNumber::Spacing.set(&mut brush, *to),
+            Style::Rotation { to } => BrushNumber::Rotation.set(&mut brush, *to),
             Style::Brush {} => brush = Brush { mode: BrushMode::Paint, ..current_brush.clone() },
         }
         Stroke::new(brush, operator, color, stroke.samples().to_vec())
