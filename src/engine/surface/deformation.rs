@@ -192,16 +192,22 @@ impl<'a> Deformation<'a> {
     /// D at every pixel centre of `rect`, which may reach beyond the canvas; within 10⁻⁴ px of [`Deformation::at`] on
     /// canvases up to 1024 px, and to f32's precision beyond.
     pub fn fill(&self, rect: Rect, out: &mut DeformedRect) {
-        self.fill_spans(rect, |_| rect.x0..rect.x1, out);
+        self.fill_rows(rect, |_| rect.x0..rect.x1, false, out);
     }
-    /// The same in some columns of each row of `rect`; what `out` holds elsewhere is anything.
+    /// The same in some columns of each row of `rect`, for the short rows of dabs; what `out` holds elsewhere is
+    /// anything.
     pub fn fill_spans(&self, rect: Rect, columns: impl Fn(i32) -> Range<i32>, out: &mut DeformedRect) {
+        self.fill_rows(rect, columns, true, out);
+    }
+    fn fill_rows(&self, rect: Rect, columns: impl Fn(i32) -> Range<i32>, are_short: bool, out: &mut DeformedRect) {
         let n = rect.width() * rect.height();
         out.rect = Some(rect);
         out.x.resize(n, 0.0);
         out.y.resize(n, 0.0);
-        fill::fill(self, rect, &columns, &mut out.x, &mut out.y);
-        if let Some(reach) = self.reach.filter(|reach| self.sheet().is_some() || reach.is_near(rect)) {
+        if !are_short || !fill::fill_dab(self, rect, &columns, &mut out.x, &mut out.y) {
+            fill::fill(self, rect, &columns, &mut out.x, &mut out.y);
+        }
+        if let Some(reach) = self.reach.filter(|_| self.is_limited(rect)) {
             for (y, row) in (rect.y0..rect.y1).enumerate() {
                 for x in columns(row).start.max(rect.x0)..columns(row).end.min(rect.x1) {
                     let i = y * rect.width() + (x - rect.x0) as usize;
@@ -211,6 +217,10 @@ impl<'a> Deformation<'a> {
                 }
             }
         }
+    }
+    /// Whether a reach changes D anywhere in a rectangle.
+    pub fn is_limited(&self, rect: Rect) -> bool {
+        self.reach.is_some_and(|reach| self.sheet().is_some() || reach.is_near(rect))
     }
     fn sheet(&self) -> Option<&'a SheetOf> {
         self.surface.and_then(Surface::sheet_of)

@@ -4,7 +4,7 @@
 use super::operator::reflection;
 use super::{Surface, links};
 use crate::math::{Rect, Size, Vec2, vec2};
-use crate::raster::{Plane, TILE};
+use crate::raster::{Plane, TILE, TileAt};
 use std::sync::OnceLock;
 
 /// Side of the smallest blocks, px.
@@ -46,11 +46,21 @@ impl<T: Copy> Pyramid<T> {
 
 /// Levels of blocks: 8 px, 16 px, … one block for all. At least up to tiles.
 pub(super) struct Pyramid<T> {
+    /// From the level of the tiles on.
     levels: Vec<Plane<T>>,
+    /// The smallest blocks as figures, tile by tile: all 64 of a tile are judged side by side.
+    tiles: Vec<BlockFigures>,
+    tile_columns: usize,
 }
+
+/// One figure of each block of a tile, row by row; 0 where the map has no block.
+pub(super) type BlockFigures = [f32; TILE_BLOCKS * TILE_BLOCKS];
 
 /// Values that can be merged: those of two blocks give those of their union.
 pub(super) trait Join: Copy {
+    /// What it is made of.
+    type Figures: AsRef<[f32]>;
+    fn figures(self) -> Self::Figures;
     fn join(self, other: Self) -> Self;
 }
 
@@ -63,19 +73,24 @@ impl<T: Join> Pyramid<T> {
             .map(&mut leaf)
             .collect();
         let mut levels: Vec<Plane<T>> = Plane::from_values(blocks, leaves).into_iter().collect();
+        let tiles = levels.first().map(by_tiles).unwrap_or_default();
         while let Some(last) = levels.last()
             && (levels.len() <= TILE_LEVEL || last.size().area() > 1)
         {
             levels.push(joined(last, level_size(size, levels.len())));
         }
-        Self { levels }
+        levels.drain(..TILE_LEVEL.min(levels.len()));
+        Self { levels, tiles, tile_columns: level_size(size, TILE_LEVEL).width as usize }
     }
-    /// The smallest blocks.
-    pub(super) fn leaves(&self) -> Option<&Plane<T>> {
-        self.levels.first()
+    /// The figures of a tile's smallest blocks, as many rows as a block has figures; `None` beyond the map.
+    pub(super) fn tile<const N: usize>(&self, at: TileAt) -> Option<&[BlockFigures; N]> {
+        let (col, row) = (usize::try_from(at.col).ok()?, usize::try_from(at.row).ok()?);
+        let start = (col < self.tile_columns).then(|| (row * self.tile_columns + col) * N)?;
+        self.tiles.get(start..start + N)?.try_into().ok()
     }
+    /// Of a tile or a larger block.
     pub(super) fn at(&self, block: PyramidBlock) -> Option<T> {
-        self.levels.get(block.level)?.get(block.col, block.row)
+        self.levels.get(block.level.checked_sub(TILE_LEVEL)?)?.get(block.col, block.row)
     }
 }
 
@@ -84,6 +99,23 @@ impl Pyramid<TurnSpan> {
     pub(super) fn of_points(surface: &Surface, point: impl Fn(usize, usize) -> Vec2) -> Self {
         Self::new(surface.size(), |block| turn_span(surface, block, &point))
     }
+}
+
+fn by_tiles<T: Join>(leaves: &Plane<T>) -> Vec<BlockFigures> {
+    let across = leaves.width().div_ceil(TILE_BLOCKS);
+    let figures = if leaves.size().area() > 0 { leaves.at(0, 0).figures().as_ref().len() } else { 0 };
+    let mut tiles = vec![[0.0; TILE_BLOCKS * TILE_BLOCKS]; across * leaves.height().div_ceil(TILE_BLOCKS) * figures];
+    for row in 0..leaves.height() {
+        for col in 0..leaves.width() {
+            let tile = row / TILE_BLOCKS * across + col / TILE_BLOCKS;
+            let place = row % TILE_BLOCKS * TILE_BLOCKS + col % TILE_BLOCKS;
+            let of_block = leaves.at(col, row).figures();
+            for (figure, value) in tiles[tile * figures..].iter_mut().zip(of_block.as_ref()) {
+                figure[place] = *value;
+            }
+        }
+    }
+    tiles
 }
 
 fn joined<T: Join>(below: &Plane<T>, size: Size) -> Plane<T> {
@@ -120,6 +152,10 @@ pub(super) struct BlockCover {
 }
 
 impl Join for BlockCover {
+    type Figures = [f32; 2];
+    fn figures(self) -> [f32; 2] {
+        [self.some, self.all].map(|is| if is { 1.0 } else { 0.0 })
+    }
     fn join(self, o: Self) -> Self {
         Self { some: self.some || o.some, all: self.all && o.all }
     }
@@ -134,6 +170,10 @@ pub(super) struct DepthSpan {
 }
 
 impl Join for DepthSpan {
+    type Figures = [f32; 3];
+    fn figures(self) -> [f32; 3] {
+        [self.low, self.high, self.slope]
+    }
     fn join(self, o: Self) -> Self {
         Self { low: self.low.min(o.low), high: self.high.max(o.high), slope: self.slope.max(o.slope) }
     }
@@ -149,8 +189,26 @@ pub(super) struct TurnSpan {
 }
 
 impl Join for TurnSpan {
+    type Figures = [f32; 5];
+    fn figures(self) -> [f32; 5] {
+        [self.low.x, self.low.y, self.high.x, self.high.y, self.slope]
+    }
     fn join(self, o: Self) -> Self {
         Self { low: self.low.min(o.low), high: self.high.max(o.high), slope: self.slope.max(o.slope) }
+    }
+}
+
+impl DepthSpan {
+    /// Of values that lie farther out than these by so much.
+    pub(super) fn spread(self, by: f32) -> Self {
+        Self { low: self.low - by, high: self.high + by, ..self }
+    }
+}
+
+impl TurnSpan {
+    /// Of values that lie farther out than these by so much.
+    pub(super) fn spread(self, by: Vec2) -> Self {
+        Self { low: self.low - by, high: self.high + by, ..self }
     }
 }
 

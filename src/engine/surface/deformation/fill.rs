@@ -2,6 +2,9 @@
 //! Floor 2. The operator and the number of anchors are dispatched once per row, outside the pixel loops.
 
 mod kernels;
+mod rows;
+
+pub(super) use rows::fill_dab;
 
 use super::{Deformation, LaidPlanes, Pin};
 use crate::math::{Rect, simd::prefetch};
@@ -190,10 +193,10 @@ enum Kernel {
     Mirror(MirrorKernel),
 }
 
-impl<'d> FillPlan<'d> {
-    fn new(deformation: &'d Deformation<'d>) -> Self {
+impl Kernel {
+    fn of(deformation: &Deformation) -> Self {
         let unit_px = deformation.unit_px;
-        let kernel = match deformation.operator {
+        match deformation.operator {
             _ if deformation.surface.is_none() => Kernel::Still,
             operator if operator.is_identity() => Kernel::Still,
             Operator::None | Operator::Surface { .. } => Kernel::Still,
@@ -202,20 +205,26 @@ impl<'d> FillPlan<'d> {
                 Kernel::Normal(NormalKernel { alpha_px: alpha * unit_px, softness: second_order::softness(beta) })
             }
             Operator::Reflection { alpha, .. } => Kernel::Mirror(MirrorKernel { alpha_px: alpha * unit_px }),
+        }
+    }
+    fn pinned(self, &Pin { anchor, map_values }: &Pin) -> FastPin {
+        let [a, b] = match self {
+            Kernel::Still => [0.0; 2],
+            Kernel::Depth(_) => [map_values.depth, 0.0],
+            Kernel::Normal(_) => map_values.nbar.to_array(),
+            Kernel::Mirror(_) => reflection::mirrored(map_values.nbar, map_values.nz).to_array(),
         };
-        let pin = |&Pin { anchor, map_values }: &Pin| {
-            let [a, b] = match kernel {
-                Kernel::Still => [0.0; 2],
-                Kernel::Depth(_) => [map_values.depth, 0.0],
-                Kernel::Normal(_) => map_values.nbar.to_array(),
-                Kernel::Mirror(_) => reflection::mirrored(map_values.nbar, map_values.nz).to_array(),
-            };
-            let moved = anchor.source - anchor.at;
-            FastPin { x: anchor.at.x, y: anchor.at.y, a, b, move_x: moved.x, move_y: moved.y }
-        };
+        let moved = anchor.source - anchor.at;
+        FastPin { x: anchor.at.x, y: anchor.at.y, a, b, move_x: moved.x, move_y: moved.y }
+    }
+}
+
+impl<'d> FillPlan<'d> {
+    fn new(deformation: &'d Deformation<'d>) -> Self {
+        let kernel = Kernel::of(deformation);
         Self {
             deformation,
-            pins: deformation.pins.iter().map(pin).collect(),
+            pins: deformation.pins.iter().map(|pin| kernel.pinned(pin)).collect(),
             kernel,
             slope: match deformation.weights {
                 Weights::Segment => segment_slope(&deformation.anchors()).to_array(),

@@ -94,6 +94,26 @@ fn rows_hold_what_the_reference_says_inside_the_maps_and_beyond() {
 }
 
 #[test]
+fn short_rows_hold_the_same_bits_as_whole_ones() {
+    let rects = [Rect::new(20, 10, 86, 76), Rect::new(40, 50, 47, 53), Rect::new(-3, 90, 30, 130)];
+    for (operator, surface) in OPERATORS.iter().flat_map(|operator| [(*operator, sphere()), (*operator, paraboloid())])
+    {
+        let d = Deformation::of_dab(Some(&surface), SIZE, operator, vec2(61.3, 48.9));
+        for rect in rects {
+            let (mut whole, mut part) = (DeformedRect::default(), DeformedRect::default());
+            d.fill(rect, &mut whole);
+            let columns = |y: i32| rect.x0 + (y & 3)..rect.x1 - (y & 7);
+            d.fill_spans(rect, columns, &mut part);
+            let pixels = (rect.y0..rect.y1).flat_map(|y| columns(y).map(move |x| (x, y)));
+            for (x, y) in pixels {
+                let i = (y - rect.y0) as usize * rect.width() + (x - rect.x0) as usize;
+                let bits = |d: &DeformedRect| (d.x[i].to_bits(), d.y[i].to_bits());
+                assert_eq!(bits(&part), bits(&whole), "{operator:?} at ({x}, {y})");
+            }
+        }
+    }
+}
+#[test]
 fn the_jacobian_is_the_derivative_of_d() {
     for surface in [sphere(), paraboloid()] {
         for bend in OPERATORS.into_iter().flat_map(bends) {

@@ -3,78 +3,59 @@
 
 use super::{BLOCK, BlockImage, DabExtent, OperatorBounds, RadialOffset, SupportBounds, TILE_BLOCKS, TileBlocks};
 use crate::math::{Vec2, vec2};
-use crate::raster::{Plane, TILE, TileAt};
-use crate::surface::pyramid::{BlockCover, DepthSpan, TurnSpan};
+use crate::raster::{TILE, TileAt};
+use crate::surface::pyramid::{BlockCover, BlockFigures, DepthSpan, Join, Pyramid, TurnSpan};
 
 const BLOCKS: usize = TILE_BLOCKS * TILE_BLOCKS;
 
-/// The ranges of the maps in each block of a tile: one value per row of the array.
-struct BlockRanges<const N: usize> {
-    figures: [[f32; BLOCKS]; N],
-    /// 1 where some of the block is surface; 1 where some is not.
-    inside: [u32; BLOCKS],
-    outside: [u32; BLOCKS],
+/// What is found of a tile's blocks.
+pub struct JudgedBlocks {
+    /// Those that may be touched.
+    pub touched: TileBlocks,
+    /// How long a pixel of each block is at most in the image plane, px; row by row.
+    pub pixel: [f32; BLOCKS],
 }
 
-impl<const N: usize> BlockRanges<N> {
-    fn of<T: Copy>(
-        at: TileAt,
-        cover: Option<&Plane<BlockCover>>,
-        map: Option<&Plane<T>>,
-        figures: impl Fn(T) -> [f32; N],
-    ) -> Self {
-        let mut spans = Self { figures: [[0.0; BLOCKS]; N], inside: [0; BLOCKS], outside: [1; BLOCKS] };
-        for i in 0..BLOCKS {
-            let (col, row) = place(at, i);
-            if let Some(cover) = cover.and_then(|cover| cover.get(col, row)) {
-                (spans.inside[i], spans.outside[i]) = (u32::from(cover.some), u32::from(!cover.all));
-            }
-            if let Some(span) = map.and_then(|map| map.get(col, row)) {
-                for (row, figure) in spans.figures.iter_mut().zip(figures(span)) {
-                    row[i] = figure;
-                }
-            }
-        }
-        spans
+/// What is known of a tile's blocks: some of a block is surface, all of it is, and the ranges of the maps there.
+struct BlockRanges<'p, const N: usize> {
+    cover: &'p [BlockFigures; 2],
+    figures: &'p [BlockFigures; N],
+}
+
+impl<'p, const N: usize> BlockRanges<'p, N> {
+    fn of<T: Join>(at: TileAt, cover: Option<&'p Pyramid<BlockCover>>, map: &'p Pyramid<T>) -> Self {
+        let cover = cover.and_then(|cover| cover.tile(at)).unwrap_or(&[[0.0; BLOCKS]; 2]);
+        Self { cover, figures: map.tile(at).unwrap_or(&[[0.0; BLOCKS]; N]) }
     }
-}
-
-/// The column and row of a tile's `i`th block.
-fn place(at: TileAt, i: usize) -> (i32, i32) {
-    let side = TILE_BLOCKS as i32;
-    (at.col * side + i as i32 % side, at.row * side + i as i32 / side)
 }
 
 /// The blocks of a tile that may be touched.
-pub(super) fn judged(support: &SupportBounds, at: TileAt) -> TileBlocks {
+pub(super) fn judged(support: &SupportBounds, at: TileAt) -> JudgedBlocks {
     let corner = vec2((at.col * TILE as i32) as f32, (at.row * TILE as i32) as f32) + 0.5 - support.at;
-    let cover = support.cover.and_then(|cover| cover.leaves());
-    let mut touched = [0; BLOCKS];
+    let (mut touched, mut pixel) = ([0; BLOCKS], [1.0; BLOCKS]);
+    let (cover, extent) = (support.cover, support.extent);
     match &support.flow {
         // On the surface and off it alike.
-        OperatorBounds::Still => still(corner, support.extent, &mut touched),
+        OperatorBounds::Still => still(corner, extent, &mut touched),
         OperatorBounds::Depth { pyramid, z, rate } => {
-            let figures = |span: DepthSpan| [span.low, span.high, span.slope];
-            let spans = BlockRanges::of(at, cover, pyramid.leaves(), figures);
-            scaled(&spans, corner, support.extent, ScaledBlocks { z: *z, rate: *rate }, &mut touched);
+            let bend = ScaledBlocks { z: *z, rate: *rate };
+            scaled(BlockRanges::of(at, cover, pyramid), corner, extent, bend, &mut touched, &mut pixel);
         }
         OperatorBounds::Turn { pyramid, turn, stretch } => {
-            let figures = |span: TurnSpan| [span.low.x, span.low.y, span.high.x, span.high.y, span.slope];
-            let spans = BlockRanges::of(at, cover, pyramid.leaves(), figures);
-            turned(&spans, corner, support.extent, TurnedBlocks { turn: *turn, stretch: *stretch }, &mut touched);
+            let bend = TurnedBlocks { turn: *turn, stretch: *stretch };
+            turned(BlockRanges::of(at, cover, pyramid), corner, extent, bend, &mut touched, &mut pixel);
         }
         OperatorBounds::Unwrapped { surface, unwrapping, at: anchor } => {
-            let leaves = unwrapping.bounds(surface).leaves();
-            let figures = |span: TurnSpan| [span.low.x, span.low.y, span.high.x, span.high.y, span.slope];
-            let spans = BlockRanges::of(at, cover, leaves, figures);
-            laid(&spans, corner, support.extent, LaidBlocks { at: *anchor }, &mut touched);
+            let ranges = BlockRanges::of(at, cover, unwrapping.bounds(surface));
+            laid(ranges, corner, extent, LaidBlocks { at: *anchor }, &mut touched, &mut pixel);
         }
     }
     let there = support.on_canvas(at);
-    std::array::from_fn(|row| {
+    let touched = std::array::from_fn(|row| {
         let bits = (0..TILE_BLOCKS).map(|col| ((touched[row * TILE_BLOCKS + col] & 1) as u8) << col);
         bits.sum::<u8>() & there[row]
-    })
+    });
+    JudgedBlocks { touched, pixel }
 }
 
 /// The centres of a block's first and last pixel relative to the anchor. Blocks that the canvas's edge cuts count
@@ -129,44 +110,68 @@ impl BlockBend<5> for LaidBlocks {
     }
 }
 
-/// For each block whether it may be touched.
+/// For each block whether it may be touched, and how long a pixel is there.
 #[inline(always)]
 fn each<const N: usize>(
-    spans: &BlockRanges<N>,
+    ranges: BlockRanges<N>,
     corner: Vec2,
     extent: DabExtent,
     bend: impl BlockBend<N>,
-    touched: &mut [u32],
+    touched: &mut [u32; BLOCKS],
+    pixel: &mut [f32; BLOCKS],
 ) {
-    let n = touched.len().min(BLOCKS);
-    let (inside, outside, touched) = (&spans.inside[..n], &spans.outside[..n], &mut touched[..n]);
-    for i in 0..n {
+    let [some, all] = ranges.cover;
+    for i in 0..BLOCKS {
         let (low, high) = corners(corner, i);
         let flat = BlockImage::flat(low, high);
         let mut figures = [0.0; N];
-        for (figure, row) in figures.iter_mut().zip(&spans.figures) {
+        for (figure, row) in figures.iter_mut().zip(ranges.figures) {
             *figure = row[i];
         }
         let bent = bend.image(figures, (low, high), flat);
-        let outside = if extent.may_hold(flat) { outside[i] } else { 0 };
-        touched[i] = outside | if extent.may_hold(bent) { inside[i] } else { 0 };
+        let outside = if extent.may_hold(flat) { u32::from(all[i] < 1.0) } else { 0 };
+        touched[i] = outside | if extent.may_hold(bent) { u32::from(some[i] > 0.0) } else { 0 };
+        let longest = if some[i] > 0.0 { bent.pixel } else { 1.0 };
+        // What is no number stays none.
+        pixel[i] = if longest < 1.0 { 1.0 } else { longest };
     }
 }
 
 crate::widest! {
-    fn still(corner: Vec2, extent: DabExtent, touched: &mut [u32]) {
+    fn still(corner: Vec2, extent: DabExtent, touched: &mut [u32; BLOCKS]) {
         for (i, touched) in touched.iter_mut().enumerate() {
             let (low, high) = corners(corner, i);
             *touched = u32::from(extent.may_hold(BlockImage::flat(low, high)));
         }
     }
-    fn scaled(spans: &BlockRanges<3>, corner: Vec2, extent: DabExtent, bend: ScaledBlocks, touched: &mut [u32]) {
-        each(spans, corner, extent, bend, touched);
+    fn scaled(
+        ranges: BlockRanges<3>,
+        corner: Vec2,
+        extent: DabExtent,
+        bend: ScaledBlocks,
+        touched: &mut [u32; BLOCKS],
+        pixel: &mut [f32; BLOCKS],
+    ) {
+        each(ranges, corner, extent, bend, touched, pixel);
     }
-    fn turned(spans: &BlockRanges<5>, corner: Vec2, extent: DabExtent, bend: TurnedBlocks, touched: &mut [u32]) {
-        each(spans, corner, extent, bend, touched);
+    fn turned(
+        ranges: BlockRanges<5>,
+        corner: Vec2,
+        extent: DabExtent,
+        bend: TurnedBlocks,
+        touched: &mut [u32; BLOCKS],
+        pixel: &mut [f32; BLOCKS],
+    ) {
+        each(ranges, corner, extent, bend, touched, pixel);
     }
-    fn laid(spans: &BlockRanges<5>, corner: Vec2, extent: DabExtent, bend: LaidBlocks, touched: &mut [u32]) {
-        each(spans, corner, extent, bend, touched);
+    fn laid(
+        ranges: BlockRanges<5>,
+        corner: Vec2,
+        extent: DabExtent,
+        bend: LaidBlocks,
+        touched: &mut [u32; BLOCKS],
+        pixel: &mut [f32; BLOCKS],
+    ) {
+        each(ranges, corner, extent, bend, touched, pixel);
     }
 }

@@ -66,15 +66,56 @@ proptest! {
         support.for_each_tile(|tile| tiles.push(tile));
         let d = Deformation::of_dab(Some(&surface), SIZE, operator, at);
         for tile in TileAt::covering(SIZE.rect()) {
+            let judged = support.judged(tile);
             let blocks = support.blocks(tile);
             let Rect { x0, y0, x1, y1 } = tile.rect().intersect(SIZE.rect());
             for (x, y) in (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y))) {
-                let bit = blocks[(y - y0) as usize / 8] >> ((x - x0) / 8) & 1;
+                let (row, col) = ((y - y0) as usize / 8, (x - x0) as usize / 8);
+                let bit = blocks[row] >> col & 1;
+                if let Some(judged) = &judged {
+                    let (pixel, most) = (pixel_length(&surface, &d, at, x, y), judged.pixel[row * 8 + col]);
+                    prop_assert!(pixel <= most + 0.1, "({x}, {y}): {pixel}, not {most} at most");
+                }
                 if bit == 0 || !tiles.contains(&tile) {
                     let (distance, pixel) = (d.at(x, y).distance(at), pixel_length(&surface, &d, at, x, y));
                     prop_assert!(distance >= radius_px + 0.5 * pixel, "({x}, {y}): {distance}, a pixel is {pixel}");
                 }
             }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+    #[test]
+    fn dabs_that_are_sought_together_touch_the_tiles_that_each_of_them_touches(
+        seed: u32, operator in operator(), x in -20.0f32..170.0, y in -20.0f32..150.0, radius_px in 1.0f32..40.0,
+    ) {
+        let surface = surface(seed);
+        let random = |i, j| hash::unit(seed, 10 + i, j);
+        // Mostly a stroke, with leaps and other sizes between.
+        let dab = |i: u32| {
+            let leap = if random(i, 3) > 0.9 { 300.0 } else { 6.0 };
+            let at = vec2(x, y) + leap * (vec2(random(i, 0), random(i, 1)) - 0.5) + 2.0 * i as f32;
+            let size = if random(i, 4) > 0.9 { 5.0 } else { 1.0 };
+            let extent = DabExtent { radius_px: size * radius_px, filter_px: 0.5 };
+            let reach = DabReach::new(at, if i.is_multiple_of(7) { 40.0 } else { 0.0 }, 3.0 * radius_px);
+            SupportBounds::new(Some(&surface), SIZE, operator, at, extent).within(reach)
+        };
+        let dabs: Vec<SupportBounds> = (0..40).map(dab).collect();
+        let mut found = vec![Vec::new(); dabs.len()];
+        let mut last = std::collections::HashMap::new();
+        for_each_tile_of(&dabs.iter().collect::<Vec<_>>(), |i, tile| {
+            found[i].push(tile);
+            assert!(last.insert(tile, i).is_none_or(|before| before < i), "of a tile in their order");
+        });
+        for (dab, found) in dabs.iter().zip(found) {
+            for tile in TileAt::covering(SIZE.rect()) {
+                if dab.blocks(tile) != TileBlocks::default() {
+                    prop_assert!(found.contains(&tile), "{tile:?}");
+                }
+            }
+            prop_assert!(found.iter().all(|tile| !tile.rect().intersect(SIZE.rect()).is_empty()));
         }
     }
 }

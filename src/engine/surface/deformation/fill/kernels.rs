@@ -16,7 +16,7 @@ pub(super) struct KernelSpan<'s> {
 }
 
 /// offset_i of one pixel: (q − q_i, its two map values, the anchor) → canvas px.
-trait OffsetKernel: Copy {
+pub(super) trait OffsetKernel: Copy {
     fn offset(self, from_x: f32, from_y: f32, a: f32, b: f32, pin: &FastPin) -> (f32, f32);
 }
 
@@ -255,15 +255,12 @@ crate::widest! {
             out_y[k] = y[k] + moved_y[k] * share;
         }
     }
-    /// r̄ over a row: `reflection::mirrored` with a polynomial for the arc tangent.
+    /// r̄ over a row.
     pub(super) fn mirror_row(nbar_x: &[f32], nbar_y: &[f32], nz: &[f32], out_x: &mut [f32], out_y: &mut [f32]) {
         let n = out_x.len();
         let (nbar_x, nbar_y, nz, out_y) = (&nbar_x[..n], &nbar_y[..n], &nz[..n], &mut out_y[..n]);
         for k in 0..n {
-            let length = (nbar_x[k] * nbar_x[k] + nbar_y[k] * nbar_y[k]).sqrt();
-            let factor = std::f32::consts::FRAC_2_PI * half_plane_angle(length, nz[k]) / length.max(1e-20);
-            out_x[k] = nbar_x[k] * factor;
-            out_y[k] = nbar_y[k] * factor;
+            (out_x[k], out_y[k]) = mirrored(nbar_x[k], nbar_y[k], nz[k]);
         }
     }
 }
@@ -281,6 +278,14 @@ pub(super) fn inverse_powers(
         *w = (nearest[k] / distance_squared(span, pin, k).max(AT_ANCHOR)).powf(0.5 * power);
         *sum += *w;
     }
+}
+
+/// r̄ of one pixel: `reflection::mirrored` with a polynomial for the arc tangent.
+#[inline(always)]
+pub(super) fn mirrored(nbar_x: f32, nbar_y: f32, nz: f32) -> (f32, f32) {
+    let length = (nbar_x * nbar_x + nbar_y * nbar_y).sqrt();
+    let factor = std::f32::consts::FRAC_2_PI * half_plane_angle(length, nz) / length.max(1e-20);
+    (nbar_x * factor, nbar_y * factor)
 }
 
 /// atan2(y, x) for `y ≥ 0`, (x, y) not both 0; within 10⁻⁶.
