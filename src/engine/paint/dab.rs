@@ -22,9 +22,9 @@ use crate::math::{Rect, srgb::Color};
 use crate::raster::sampler::Antialias;
 use crate::raster::{Outside, TILE, TileAt};
 use crate::surface::deformation::{Deformation, DeformedRect};
-use crate::surface::support::{BLOCK, DabExtent, SupportBounds, TileBlocks};
+use crate::surface::support::{BLOCK, DabExtent, SupportBounds, TILE_BLOCKS, TileBlocks};
 use crate::surface::{DabReach, Surface};
-use round::{RoundTip, RowPaint, RowZones, bent_row, flat_row};
+use round::{BentPart, BlockPixels, RoundTip, RowPaint, RowZones, bent_row, bent_rows, flat_row, flat_rows};
 use std::ops::Range;
 
 /// One dab on the canvas it is painted on.
@@ -95,14 +95,16 @@ impl<'s> PlacedDab<'s> {
     fn touched(&self, at: TileAt) -> TouchedBlocks {
         if self.scene.sheet().is_none() {
             let tile = at.rect();
-            let (blocks, step) = (self.support.blocks(at), 1);
-            let area = touched(&blocks, tile).intersect(self.scene.size.rect());
-            return TouchedBlocks { tile, blocks, area, step };
+            let Some(judged) = self.support.judged(at) else { return TouchedBlocks::none(tile) };
+            let area = touched(&judged.touched, tile).intersect(self.scene.size.rect());
+            // Near its border a dab is pushed away, and pixels are longer.
+            let pixel = if self.deformation.is_limited(area.grown(1)) { ANY_LENGTH } else { judged.pixel };
+            return TouchedBlocks { tile, blocks: judged.touched, area, step: 1, pixel };
         }
         let whole = self.scene.area(at);
         let tile = Rect::new(0, whole.y0, TILE as i32, whole.y0 + TILE as i32);
         let area = touched(&self.sheet_blocks, tile).intersect(whole);
-        TouchedBlocks { tile, blocks: self.sheet_blocks, area, step: 2 }
+        TouchedBlocks { tile, blocks: self.sheet_blocks, area, step: 2, pixel: ANY_LENGTH }
     }
     pub fn dab(&self) -> &Dab {
         &self.dab
@@ -131,25 +133,32 @@ impl<'s> PlacedDab<'s> {
     /// Adds a round tip to a tile, row by row: a ← a + f (c − a), f = flow · F, up to its ceiling c.
     pub fn add_round(&self, at: TileAt, stroke_tile: &mut StrokeTile, scratch: &mut DabScratch) {
         let part = self.touched(at);
+        if part.area.is_empty() {
+            return;
+        }
         let tip = RoundTip::new(&self.dab);
         let DabScratch { deformed, covered, shares, row, .. } = scratch;
         let field = self.bent_over.map(|surface| {
             self.fill_touched(&part, deformed);
             DeformationField { surface, rect: part.area.grown(1), d: deformed }
         });
+        let is_flat = field.is_none();
+        let spans = part.spans().filter_map(|span| if is_flat { span.reached_by(&tip) } else { Some(span) });
+        if let Some(tile) = stroke_tile.plain() {
+            let (mut rows, mut n) = ([PixelSpan::default(); TILE], 0);
+            for (row, span) in rows.iter_mut().zip(spans) {
+                (*row, n) = (span, n + 1);
+            }
+            let (spans, corner) = (&rows[..n], (part.tile.x0, part.tile.y0));
+            return match &field {
+                Some(field) => bent_rows(field, BentPart { corner, spans, pixel: &part.pixel }, &tip, row, tile),
+                None => flat_rows(corner, spans, &tip, row, tile),
+            };
+        }
         let mut add = |span: PixelSpan, tip: &RoundTip, out: RowPaint| match &field {
             Some(field) => bent_row(field.around(span), tip, row, out),
             None => flat_row(span.x as f32 + 0.5, span.y as f32 + 0.5, tip, row, out),
         };
-        let is_flat = field.is_none();
-        let spans = part.spans().filter_map(|span| if is_flat { span.reached_by(&tip) } else { Some(span) });
-        if stroke_tile.is_plain() {
-            for span in spans {
-                let (coverage, reach) = stroke_tile.plain_row(part.start_of(span), span.n);
-                add(span, &tip, RowPaint { coverage, reach });
-            }
-            return;
-        }
         // The stroke tile applies the ceiling, because it knows the coverage.
         let mut uncapped = tip;
         uncapped.ceiling = 1.0;
@@ -184,7 +193,7 @@ impl<'s> PlacedDab<'s> {
 }
 
 /// A row of pixels that a dab may touch.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct PixelSpan {
     x: i32,
     y: i32,
@@ -210,12 +219,19 @@ struct TouchedBlocks {
     area: Rect,
     /// From one row that is painted to the next.
     step: usize,
+    pixel: BlockPixels,
 }
 
+/// Of pixels whose lengths are not known.
+const ANY_LENGTH: BlockPixels = [f32::INFINITY; TILE_BLOCKS * TILE_BLOCKS];
+
 impl TouchedBlocks {
+    fn none(tile: Rect) -> Self {
+        Self { tile, blocks: TileBlocks::default(), area: Rect::EMPTY, step: 1, pixel: ANY_LENGTH }
+    }
     /// The rows of the area, each from its first to its last touched block.
     fn spans(&self) -> impl Iterator<Item = PixelSpan> + use<> {
-        let TouchedBlocks { tile, blocks, area, step } = *self;
+        let TouchedBlocks { tile, blocks, area, step, .. } = *self;
         (area.y0..area.y1).step_by(step).filter_map(move |y| {
             let columns = columns(row_of(&blocks, tile, y), tile);
             let (x0, x1) = (columns.start.max(area.x0), columns.end.min(area.x1));
@@ -260,6 +276,7 @@ struct DeformationField<'f> {
 }
 
 impl<'f> DeformationField<'f> {
+    #[inline(always)]
     fn around(&self, span: PixelSpan) -> SpanNeighbours<'f> {
         let start = |y: i32| (y - self.rect.y0) as usize * self.rect.width() + (span.x - 1 - self.rect.x0) as usize;
         let row = |y: i32| {

@@ -85,9 +85,19 @@ impl RoundProfile {
     #[inline(always)]
     pub fn mean_over(&self, r: f32, width_squared: f32, across_squared: f32) -> f32 {
         let across = if across_squared > 0.0 { across_squared } else { 0.0 };
-        let farther = r + across * (1.0 / 24.0) * r / (r * r + 0.25 * across + 1e-12);
         let filled = self.chord / (across.sqrt() + 1e-6);
-        self.mean(farther, width_squared) * if filled < 1.0 { filled } else { 1.0 }
+        self.mean_over_narrow(r, width_squared, across_squared) * if filled < 1.0 { filled } else { 1.0 }
+    }
+    /// The same, to the bit, of a pixel that is narrower across the radius than [`RoundProfile::chord`].
+    #[inline(always)]
+    pub fn mean_over_narrow(&self, r: f32, width_squared: f32, across_squared: f32) -> f32 {
+        let across = if across_squared > 0.0 { across_squared } else { 0.0 };
+        let farther = r + across * (1.0 / 24.0) * r / (r * r + 0.25 * across + 1e-12);
+        self.mean(farther, width_squared)
+    }
+    /// c: pixels this narrow across the radius are filled by the tip, in radii.
+    pub fn chord(&self) -> f32 {
+        self.chord
     }
     /// Between which distances coverage falls from 1 to 0 before the box; the first may lie below 0.
     pub fn falloff(&self) -> (f32, f32) {
@@ -100,6 +110,11 @@ impl RoundProfile {
         let v = (self.end - r) * self.per_length;
         let half_squared = 0.25 * (self.blur_squared + width_squared) * (self.per_length * self.per_length);
         v * v * (3.0 - 2.0 * v) + (1.0 - 2.0 * v) * half_squared
+    }
+    /// Half the width of the box over a pixel whose width's square is at most this, in radii.
+    #[inline(always)]
+    pub fn half_width(&self, width_squared: f32) -> f32 {
+        0.5 * (self.blur_squared + width_squared).sqrt() + 0.5 * Self::NARROW
     }
     /// Bounds half the width of the box, `½ √(blur² + w²)`, from above by `a + b w²`, w² the square of a pixel's width:
     /// the root's tangent, close around the width `usual`. In radii; gives (a, b).

@@ -48,6 +48,10 @@ impl Rim {
     pub fn inner(self, width: f32) -> f32 {
         if self.width < Self::SHARP * width { self.edge } else { f32::INFINITY }
     }
+    /// Of pixels narrower than this, in radii, the share is 1 everywhere.
+    pub fn soft_below(self) -> f32 {
+        self.width / Self::SHARP
+    }
     fn between(self, to: Rim, s: f32) -> Rim {
         // Never a mean with what is endless: that has no edge.
         Rim { edge: self.edge + (to.edge - self.edge) * s, width: self.width + (to.width - self.width) * s }

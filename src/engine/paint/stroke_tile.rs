@@ -144,18 +144,11 @@ impl StrokeTile {
     pub fn under(self, grain: Arc<GrainTile>) -> Self {
         Self { grain: Some(grain), dark: Some(self.sheet.clone()), ..self }
     }
-    /// Whether rows may be taken as [`StrokeTile::plain_row`]: one colour, no grain.
-    pub fn is_plain(&self) -> bool {
-        self.grain.is_none() && matches!(self.sheet.paint, Paint::OneColor(_))
-    }
-    /// Coverage and reach of `n` pixels from the `start`th on; empty for a tile that is not plain.
-    pub fn plain_row(&mut self, start: usize, n: usize) -> (&mut [f32], &mut [f32]) {
+    /// Coverage and reach of every pixel, row by row, of a tile of one colour without grain.
+    pub fn plain(&mut self) -> Option<(&mut [f32; TILE_AREA], &mut [f32; TILE_AREA])> {
         match &mut self.sheet.paint {
-            Paint::OneColor(coverage) if self.grain.is_none() => (
-                coverage.get_mut(start..start + n).unwrap_or_default(),
-                self.sheet.reach.get_mut(start..start + n).unwrap_or_default(),
-            ),
-            _ => (&mut [], &mut []),
+            Paint::OneColor(coverage) if self.grain.is_none() => Some((coverage, &mut self.sheet.reach)),
+            _ => None,
         }
     }
     /// Coverage of every pixel, row by row, where it is of one colour.

@@ -1,14 +1,17 @@
 //! The round tip over rows of pixels. Pixels are sorted into zones, and each zone is computed no more precisely than it
-//! needs. Floor 3. The profile is in `profile`, D in `surface`.
+//! needs. Floor 3. The loops over rows are in `rows`, the profile is in `profile`, D in `surface`.
 
-use super::SpanNeighbours;
+mod rows;
+
+pub use rows::slope;
+pub(super) use rows::{BentPart, BlockPixels, bent_row, bent_rows, flat_row, flat_rows};
+
 use crate::math::Vec2;
 use crate::paint::dab_walker::Dab;
 use crate::paint::profile::RoundProfile;
 use crate::paint::rim::Rim;
 use crate::paint::stroke_tile::raise;
 use crate::raster::TILE;
-use crate::surface::links;
 use std::ops::Range;
 
 /// Pixels that are judged together. Rows of blocks are whole multiples of them.
@@ -26,6 +29,9 @@ pub(super) struct RoundTip {
     rim: Rim,
     /// Nothing within this distance is on the stroke's edge.
     inner: f32,
+    /// Pixels whose widths' squares add up to less, in radii, count whole: the stroke's edge is no edge to them, and
+    /// the tip fills them.
+    soft: f32,
     pub(super) flow: f32,
     thin: f32,
     pub(super) ceiling: f32,
@@ -47,12 +53,16 @@ pub(super) struct RowZones {
     /// |J|²: the sum of both squared widths of the pixel, in radii.
     wide: [f32; TILE],
     zones: [u32; TILE],
+    /// What a pixel's distance says before its widths are known: `BEYOND`, `WITHIN` or nothing.
+    near: [u32; TILE],
 }
 
 /// The zone that holds a pixel's box wholly, as bits; none where the box lies in several zones or is not a number.
 const BEYOND: u32 = 1;
 const WITHIN: u32 = 2;
 const FALLOFF: u32 = 4;
+/// Beside the zone: the pixel counts whole.
+const SOFT: u32 = 8;
 
 /// Sum of the squares of a pixel's widths, in radii, below which its second dimension does not show in the falloff.
 const NARROW_SQUARED: f32 = 2.0 / (12.0 * 12.0);
@@ -62,7 +72,7 @@ const AT_CENTER: f32 = 1e-12;
 
 impl Default for RowZones {
     fn default() -> Self {
-        Self { r: [0.0; TILE], toward: [0.0; TILE], wide: [0.0; TILE], zones: [0; TILE] }
+        Self { r: [0.0; TILE], toward: [0.0; TILE], wide: [0.0; TILE], zones: [0; TILE], near: [0; TILE] }
     }
 }
 
@@ -70,6 +80,10 @@ impl RoundTip {
     pub(super) fn new(dab: &Dab) -> Self {
         let profile = RoundProfile::new(dab.hardness, dab.softness);
         let per_radius = 1.0 / dab.radius;
+        // Widths are rounded.
+        const SURELY: f32 = 0.999;
+        let (edge, chord) = (dab.rim.soft_below(), profile.chord());
+        let narrow = SURELY * if edge < chord { edge } else { chord };
         Self {
             at: dab.at,
             per_radius,
@@ -78,6 +92,7 @@ impl RoundTip {
             half_width: profile.half_width_bound(per_radius),
             rim: dab.rim,
             inner: dab.rim.inner(per_radius),
+            soft: if dab.thin < 1.0 { 0.0 } else { narrow * narrow },
             flow: dab.flow,
             thin: dab.thin,
             ceiling: dab.ceiling,
@@ -122,6 +137,25 @@ impl RoundTip {
         // What is thinner than a pixel reaches a part of it wherever it lies.
         if self.thin < 1.0 { beyond } else { beyond | within | falls }
     }
+    /// Whether pixels count whole whose widths' squares add up to `wide`, as a bit beside the zone.
+    #[inline(always)]
+    fn softness(&self, wide: f32) -> u32 {
+        if wide < self.soft { SOFT } else { 0 }
+    }
+    /// Of pixels at most so long, px: the squares of the distances beyond which and within which all lie in that zone.
+    #[inline(always)]
+    fn sure(&self, pixel: f32) -> (f32, f32) {
+        // Distances are rounded.
+        const ROUNDING: (f32, f32) = (1.0005, 0.05);
+        let square = pixel * pixel * (self.per_radius * self.per_radius);
+        let beyond = (self.falloff.1 + self.profile.half_width(square)) / self.per_radius * ROUNDING.0 + ROUNDING.1;
+        // Both widths of a pixel are so long at most.
+        let half = self.half_width.0 + self.half_width.1 * 2.0 * square;
+        let within = (self.falloff.0 - half) / self.per_radius / ROUNDING.0 - ROUNDING.1;
+        let is_sure = self.thin >= 1.0 && within > 0.0;
+        // What is no number leaves nothing out.
+        (beyond * beyond, if is_sure { within * within } else { 0.0 })
+    }
     /// A pixel at p from the centre, J's columns `across` and `along`; canvas px. Gives r, |Jᵀ p|², |J|² and the zone.
     #[inline(always)]
     fn judge(&self, p: (f32, f32), across: (f32, f32), along: (f32, f32)) -> (f32, f32, f32, u32) {
@@ -131,7 +165,7 @@ impl RoundTip {
         // J's norm bounds the width in any direction.
         let across = across.0 * across.0 + across.1 * across.1;
         let widest = (across + (along.0 * along.0 + along.1 * along.1)) * square;
-        (r, (a * a + b * b) * square * square, widest, self.zone(r, widest))
+        (r, (a * a + b * b) * square * square, widest, self.zone(r, widest) | self.softness(widest))
     }
     /// a ← a + f (c − a), f = flow · F, up to the ceiling c, where the dab reaches whole pixels.
     #[inline(always)]
@@ -154,13 +188,23 @@ impl RoundTip {
         let covered = if mean < share { mean } else { share };
         raise(coverage, reach, self.flow * self.thin * covered, self.thin * share, self.ceiling);
     }
-    /// Adds to a judged row, chunks of one zone at a time: only where a pixel's box lies across a zone's border does
+    /// The same of a pixel that counts whole, to the bit: its share is 1, and the tip fills it.
+    #[inline(always)]
+    fn raise_whole(&self, coverage: &mut f32, reach: &mut f32, r: f32, width_squared: f32, across_squared: f32) {
+        let mean = self.profile.mean_over_narrow(r, width_squared, across_squared);
+        let mean = if mean > 0.0 { mean } else { 0.0 };
+        let g = self.flow * if mean < 1.0 { mean } else { 1.0 };
+        let room = self.ceiling - *coverage;
+        *coverage += g * if room > 0.0 { room } else { 0.0 };
+        *reach = if g > 0.0 { 1.0 } else { *reach };
+    }
+    /// Adds to judged pixels of a row, chunks of one zone at a time: only where a pixel's box lies across a zone's border does
     /// its mean take a root and a division more, beyond the rim it takes nothing.
     #[inline(always)]
-    fn add(&self, row: &RowZones, paint: RowPaint) {
+    fn add(&self, row: &RowZones, pixels: Range<usize>, paint: RowPaint) {
         let RowPaint { coverage, reach } = paint;
-        let n = coverage.len().min(reach.len()).min(TILE);
-        let mut start = 0;
+        let n = coverage.len().min(reach.len()).min(TILE).min(pixels.end);
+        let mut start = pixels.start;
         while start < n {
             let zone = zone_of(&row.zones, start, n);
             let mut end = start + CHUNK;
@@ -170,10 +214,11 @@ impl RoundTip {
             let end = end.min(n);
             let (r, toward, wide) = (&row.r[start..end], &row.toward[start..end], &row.wide[start..end]);
             let (part, reached) = (&mut coverage[start..end], &mut reach[start..end]);
-            match zone {
+            match zone & !SOFT {
                 BEYOND => {}
                 WITHIN => add_within(*self, part),
                 FALLOFF => add_falloff(*self, r, toward, part),
+                _ if zone & SOFT != 0 => add_soft_rim(*self, (r, toward, wide), part, reached),
                 _ => add_rim(*self, (r, toward, wide), part, reached),
             }
             if zone & (WITHIN | FALLOFF) != 0 {
@@ -206,6 +251,14 @@ fn add_rim(tip: RoundTip, (r, toward, wide): (&[f32], &[f32], &[f32]), coverage:
     }
 }
 
+#[inline(always)]
+fn add_soft_rim(tip: RoundTip, (r, toward, wide): (&[f32], &[f32], &[f32]), coverage: &mut [f32], reach: &mut [f32]) {
+    for ((((a, m), r), toward), wide) in coverage.iter_mut().zip(reach).zip(r).zip(toward).zip(wide) {
+        let width_squared = toward / (r * r);
+        tip.raise_whole(a, m, *r, width_squared, wide - width_squared);
+    }
+}
+
 /// The zone that a chunk's pixels share.
 #[inline(always)]
 fn zone_of(zones: &[u32; TILE], start: usize, end: usize) -> u32 {
@@ -215,87 +268,5 @@ fn zone_of(zones: &[u32; TILE], start: usize, end: usize) -> u32 {
     }
 }
 
-/// A pixel all of whose neighbours continue its surface.
-const INSIDE: u8 = links::LEFT | links::RIGHT | links::UP | links::DOWN;
-
-crate::widest! {
-    /// Where D is the identity; (x, y) is the centre of the first pixel.
-    pub(super) fn flat_row(x: f32, y: f32, tip: &RoundTip, row: &mut RowZones, paint: RowPaint) {
-        let n = paint.coverage.len().min(TILE);
-        let dy = y - tip.at.y;
-        let pixel = tip.per_radius * tip.per_radius;
-        let (r, toward, zones) = (&mut row.r[..n], &mut row.toward[..n], &mut row.zones[..n]);
-        row.wide[..n].fill(2.0 * pixel);
-        for i in 0..n {
-            // Through i32: AVX2 converts no 64-bit integers.
-            let dx = x + i as i32 as f32 - tip.at.x;
-            let r_squared = (dx * dx + dy * dy + AT_CENTER) * pixel;
-            (r[i], toward[i]) = (r_squared.sqrt(), pixel * r_squared);
-            zones[i] = tip.zone(r[i], pixel);
-        }
-        tip.add(row, paint);
-    }
-    /// Bent: J by differences within each pixel's piece of surface.
-    pub(super) fn bent_row(d: SpanNeighbours, tip: &RoundTip, row: &mut RowZones, paint: RowPaint) {
-        let n = paint.coverage.len().min(TILE);
-        if are_inside(&d.linked[..n]) {
-            judge_inside(d, n, tip, row);
-        } else {
-            judge_rim(d, n, tip, row);
-        }
-        tip.add(row, paint);
-    }
-}
-
-/// Eight pixels a word: rows are short.
-#[inline(always)]
-fn are_inside(linked: &[u8]) -> bool {
-    let (words, rest) = linked.as_chunks::<8>();
-    let all = words.iter().fold(u64::MAX, |all, word| all & u64::from_ne_bytes(*word));
-    let inside = u64::from_ne_bytes([INSIDE; 8]);
-    all & inside == inside && rest.iter().all(|bits| bits & INSIDE == INSIDE)
-}
-
-/// Within one piece of surface: J by central differences.
-#[inline(always)]
-fn judge_inside(d: SpanNeighbours, n: usize, tip: &RoundTip, row: &mut RowZones) {
-    let (cx, cy) = (&d.row.0[..n + 2], &d.row.1[..n + 2]);
-    let (ax, ay) = (&d.above.0[..n + 2], &d.above.1[..n + 2]);
-    let (bx, by) = (&d.below.0[..n + 2], &d.below.1[..n + 2]);
-    let (r, toward) = (&mut row.r[..n], &mut row.toward[..n]);
-    let (wide, zones) = (&mut row.wide[..n], &mut row.zones[..n]);
-    for i in 0..n {
-        let p = (cx[i + 1] - tip.at.x, cy[i + 1] - tip.at.y);
-        let across = (0.5 * (cx[i + 2] - cx[i]), 0.5 * (cy[i + 2] - cy[i]));
-        let along = (0.5 * (bx[i + 1] - ax[i + 1]), 0.5 * (by[i + 1] - ay[i + 1]));
-        (r[i], toward[i], wide[i], zones[i]) = tip.judge(p, across, along);
-    }
-}
-
-/// Along a silhouette, a depth jump or outside: J from linked neighbours only.
-#[inline(always)]
-fn judge_rim(d: SpanNeighbours, n: usize, tip: &RoundTip, row: &mut RowZones) {
-    let (cx, cy) = (&d.row.0[..n + 2], &d.row.1[..n + 2]);
-    let (ax, ay) = (&d.above.0[..n + 2], &d.above.1[..n + 2]);
-    let (bx, by) = (&d.below.0[..n + 2], &d.below.1[..n + 2]);
-    let linked = &d.linked[..n];
-    let (r, toward) = (&mut row.r[..n], &mut row.toward[..n]);
-    let (wide, zones) = (&mut row.wide[..n], &mut row.zones[..n]);
-    for i in 0..n {
-        let (x, y) = (cx[i + 1], cy[i + 1]);
-        let has = |bit: u8| linked[i] & bit != 0;
-        let (left, right, up, down) = (has(links::LEFT), has(links::RIGHT), has(links::UP), has(links::DOWN));
-        let across = (slope(left, right, cx[i], x, cx[i + 2], 1.0), slope(left, right, cy[i], y, cy[i + 2], 0.0));
-        let along = (slope(up, down, ax[i + 1], x, bx[i + 1], 0.0), slope(up, down, ay[i + 1], y, by[i + 1], 1.0));
-        (r[i], toward[i], wide[i], zones[i]) = tip.judge((x - tip.at.x, y - tip.at.y), across, along);
-    }
-}
-
-/// The derivative at `here` from those of its two neighbours that are linked; `flat`, the identity's, without any.
-#[inline(always)]
-pub fn slope(has_before: bool, has_after: bool, before: f32, here: f32, after: f32, flat: f32) -> f32 {
-    let low = if has_before { before } else { here };
-    let high = if has_after { after } else { here };
-    let mean = if has_before & has_after { 0.5 * (high - low) } else { high - low };
-    if has_before | has_after { mean } else { flat }
-}
+#[cfg(test)]
+mod tests;

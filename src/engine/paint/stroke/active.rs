@@ -2,12 +2,12 @@
 //! what the stroke has painted so far; only the end of the curve, which the next sample may change, is painted again.
 //! Floor 3. Not here: the pen (`tools`).
 
-use super::dabs::{StrokeDabs, tiles_of};
+use super::dabs::{StrokeDabs, TOGETHER, for_each_tile_of};
 use super::{Sample, Stroke, StrokeCache, render_pixels};
 use crate::math::{Rect, Vec2, srgb::Color};
 use crate::paint::brush::Brush;
 use crate::paint::dab::{DabScratch, PlacedDab};
-use crate::paint::dab_walker::DabWalker;
+use crate::paint::dab_walker::{Dab, DabWalker};
 use crate::paint::grain::GrainTile;
 use crate::paint::scene::Scene;
 use crate::paint::selection::StrokeSelection;
@@ -97,14 +97,13 @@ impl ActiveStroke {
         let settled = dabs.len();
         dabs.extend(self.walker.tail());
         let stroke_dabs = &self.stroke_dabs;
-        let placed: Vec<_> = dabs
-            .par_iter()
-            .map(|dab| {
-                let placed = stroke_dabs.place(*dab, scene);
-                let tiles = tiles_of(&placed);
-                (placed, tiles)
-            })
-            .collect();
+        let place = |dabs: &[Dab]| {
+            let placed: Vec<_> = dabs.iter().map(|dab| stroke_dabs.place(*dab, scene)).collect();
+            let mut tiles = vec![Vec::new(); placed.len()];
+            for_each_tile_of(&placed, |i, at| tiles[i].push(at));
+            placed.into_iter().zip(tiles).collect::<Vec<_>>()
+        };
+        let placed: Vec<_> = dabs.par_chunks(TOGETHER).flat_map_iter(place).collect();
         self.tail.clear();
         let mut fresh = NewDabs { dabs: Vec::with_capacity(placed.len()), settled, tiles: BTreeMap::new() };
         for (i, (placed, tiles)) in placed.into_iter().enumerate() {
@@ -168,10 +167,7 @@ impl ActiveStroke {
     }
     /// The finished stroke, its dabs known already.
     fn finished(mut self, scene: &Scene) -> Stroke {
-        for dab in self.walker.tail() {
-            let tiles = tiles_of(&self.stroke_dabs.place(dab, scene));
-            self.stroke_dabs.push(dab, &tiles);
-        }
+        self.stroke_dabs.lay(&self.walker.tail(), scene);
         let mut found = StrokeCache::default();
         found.keep(&Arc::new(self.stroke_dabs));
         let Self { brush, operator, color, samples, selection, .. } = self;

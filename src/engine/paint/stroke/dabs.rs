@@ -13,6 +13,7 @@ use crate::paint::scene::Scene;
 use crate::paint::stroke_tile::StrokeTile;
 use crate::paint::tint;
 use crate::raster::{TILE, TileAt};
+use crate::surface::support::{self, SupportBounds};
 use std::collections::HashMap;
 use std::mem::size_of;
 use std::ops::Range;
@@ -31,6 +32,8 @@ pub(in crate::paint) struct StrokeDabs {
 
 /// Dabs this near in the stroke's order share a run even if those between them miss the tile.
 const RUN_GAP: u32 = 8;
+/// Dabs that are placed at a time.
+pub(in crate::paint) const TOGETHER: usize = 32;
 /// The most runs per tile: after that the last one grows. This bounds the memory of a hostile stroke.
 const MAX_RUNS: usize = 1024;
 
@@ -51,13 +54,15 @@ impl StrokeDabs {
         stroke_dabs.begin(&stroke.brush, &stroke.samples);
         let dabs = dab_walker::dabs(&stroke.brush, stroke.operator, stroke.color, &stroke.samples, scene);
         stroke_dabs.dabs.reserve_exact(dabs.len());
-        let mut tiles = Vec::new();
-        for dab in dabs {
-            tiles.clear();
-            stroke_dabs.place(dab, scene).support().for_each_tile(|at| tiles.push(at));
-            stroke_dabs.push(dab, &tiles);
-        }
+        dabs.chunks(TOGETHER).for_each(|dabs| stroke_dabs.lay(dabs, scene));
         stroke_dabs
+    }
+    /// Adds dabs that follow each other.
+    pub fn lay(&mut self, dabs: &[Dab], scene: &Scene) {
+        let placed: Vec<PlacedDab> = dabs.iter().map(|dab| self.place(*dab, scene)).collect();
+        let first = self.dabs.len();
+        self.dabs.extend_from_slice(dabs);
+        for_each_tile_of(&placed, |i, at| self.touch((first + i) as u32, at));
     }
     /// The memory it takes, about.
     pub fn bytes(&self) -> u64 {
@@ -85,13 +90,15 @@ impl StrokeDabs {
     pub fn push(&mut self, dab: Dab, tiles: &[TileAt]) {
         let i = self.dabs.len() as u32;
         self.dabs.push(dab);
-        for &at in tiles {
-            let runs = self.tiles.entry(at).or_default();
-            let is_full = runs.len() >= MAX_RUNS;
-            match runs.last_mut() {
-                Some(run) if is_full || i - run.end <= RUN_GAP => run.end = i + 1,
-                _ => runs.push(i..i + 1),
-            }
+        tiles.iter().for_each(|&at| self.touch(i, at));
+    }
+    /// The `i`th dab may touch a tile; of each tile they come in their order.
+    fn touch(&mut self, i: u32, at: TileAt) {
+        let runs = self.tiles.entry(at).or_default();
+        let is_full = runs.len() >= MAX_RUNS;
+        match runs.last_mut() {
+            Some(run) if is_full || i - run.end <= RUN_GAP => run.end = i + 1,
+            _ => runs.push(i..i + 1),
         }
     }
     pub fn is_on(&self, scene: &Scene) -> bool {
@@ -175,6 +182,12 @@ impl TileReach {
     pub fn bounds(&self) -> Rect {
         self.bounds
     }
+}
+
+/// Visits the tiles that each of some dabs may touch, with the dab's number; of a tile in their order.
+pub(in crate::paint) fn for_each_tile_of(dabs: &[PlacedDab], visit: impl FnMut(usize, TileAt)) {
+    let bounds: Vec<&SupportBounds> = dabs.iter().map(PlacedDab::support).collect();
+    support::for_each_tile_of(&bounds, visit);
 }
 
 /// The tiles that a dab may touch.
