@@ -1,13 +1,17 @@
 //! The one error type: what went wrong, in which file, at which field, as a sentence.
 //! Floor 0. Shown once, by the window or by the command line; library code passes it on.
 
+#![warn(missing_docs)]
+
 use crate::memory::OutOfMemory;
 use std::path::{Path, PathBuf};
 
+/// What the library gives back, or why it cannot.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 /// A failure that the user can act on. `Display` is one sentence that names the file and, if there is one, the field.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the fields are what the sentence names")]
 pub enum Error {
     /// The operating system refused.
     #[error("{}: {source}", file.display())]
@@ -46,18 +50,23 @@ pub enum Remedy {
 }
 
 impl Error {
+    /// The operating system refused a file.
     pub fn io(file: impl AsRef<Path>, source: std::io::Error) -> Self {
         Self::Io { file: file.as_ref().into(), source }
     }
+    /// The bytes of a file are not what their format promises.
     pub fn decode(file: impl AsRef<Path>, reason: impl ToString) -> Self {
         Self::Decode { file: file.as_ref().into(), reason: reason.to_string() }
     }
+    /// A file uses what this program does not have.
     pub fn unsupported(file: impl AsRef<Path>, reason: impl ToString) -> Self {
         Self::Unsupported { file: file.as_ref().into(), reason: reason.to_string(), remedy: None }
     }
+    /// A field of a file has a value that it cannot have.
     pub fn invalid(file: impl AsRef<Path>, field: impl ToString, reason: impl ToString) -> Self {
         Self::Invalid { file: file.as_ref().into(), field: field.to_string(), reason: reason.to_string() }
     }
+    /// A file is larger than the budget allows.
     pub fn too_large(file: impl AsRef<Path>, reason: impl ToString) -> Self {
         Self::TooLarge { file: file.as_ref().into(), reason: reason.to_string(), remedy: None }
     }

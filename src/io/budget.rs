@@ -1,6 +1,8 @@
 //! The budget of every reader: no allocation is sized by a file's own numbers without a check against it.
 //! Floor 5.
 
+#![warn(missing_docs)]
+
 use crate::document::Document;
 use crate::math::Size;
 use crate::memory::spoken;
@@ -34,7 +36,9 @@ pub struct Budget {
     pub json_values: usize,
     /// Nesting of a JSON text.
     pub json_depth: usize,
+    /// Layers of a document, groups opened.
     pub layers: usize,
+    /// Groups around a layer.
     pub group_depth: usize,
     /// Anchors a layer.
     pub anchors: usize,

@@ -98,6 +98,7 @@ pub enum Output {
     Project,
     /// The whole document as a Photoshop file.
     Psd,
+    /// A flat picture.
     Picture(ExportFormat),
 }
 

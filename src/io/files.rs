@@ -1,6 +1,8 @@
 //! Where a document's files are found: in the recipe's folder, or in a project's zip. Floor 5. Every file that a
 //! document names is read through [`Files`]; nothing else opens a path from a file.
 
+#![warn(missing_docs)]
+
 use super::Budget;
 use crate::raster::Asset;
 use crate::{Error, Result};
@@ -52,6 +54,7 @@ pub struct RecipeFolder {
 }
 
 impl RecipeFolder {
+    /// The folder that names are read in.
     pub fn new(root: impl Into<PathBuf>) -> Self {
         Self { root: root.into() }
     }
@@ -116,6 +119,7 @@ pub struct TrackedFiles<F> {
 }
 
 impl<F: Files> TrackedFiles<F> {
+    /// Over other files.
     pub fn new(files: F) -> Self {
         Self { files, read: RefCell::default() }
     }
@@ -142,6 +146,7 @@ pub struct CachedFiles<'a> {
 }
 
 impl<'a> CachedFiles<'a> {
+    /// Over other files.
     pub fn new(files: &'a dyn Files) -> Self {
         Self { files, read: RefCell::default() }
     }

@@ -1,6 +1,8 @@
 //! Opens documents: recognises a file by its content and reads it as a document.
 //! Floor 5. Saving is `save`; the formats are modules of their own.
 
+#![warn(missing_docs)]
+
 use super::files::{RecipeFolder, TrackedFiles, read_file};
 use super::project::{self, Archive, ProjectContents};
 use super::recipe::{self, RecipeSource};
@@ -15,11 +17,13 @@ use std::sync::Arc;
 
 /// A document and where it came from.
 pub struct OpenedDocument {
+    /// What the file holds.
     pub document: Document,
     /// What differs from the saved state or could not be imported: a sentence each, to be shown.
     pub notes: Vec<String>,
     /// Whether nothing was lost. A document that is not whole must not overwrite its file without asking.
     pub is_whole: bool,
+    /// What the file is.
     pub kind: FileKind,
     /// What the file was when it was read, for [`super::replace::Overwrite::This`].
     pub stamp: FileStamp,
@@ -34,13 +38,16 @@ pub struct OpenedDocument {
 pub enum FileKind {
     /// OpenRaster, ours or another program's; the only kind that a document is saved to.
     Project,
+    /// A recipe: JSON that names files beside it.
     Recipe,
     /// A Photoshop file.
     Psd,
+    /// A picture, which became a document of one layer.
     Picture,
 }
 
 impl FileKind {
+    /// What it is, in a word.
     pub fn name(self) -> &'static str {
         match self {
             FileKind::Project => "project",

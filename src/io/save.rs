@@ -1,6 +1,8 @@
 //! Saving a document: as a project, or as a Photoshop file where the name asks for one.
 //! Floor 5. The bytes are `project`'s and `psd`'s, how they come to the disk is `replace`'s.
 
+#![warn(missing_docs)]
+
 use super::export::Output;
 use super::fs::Disk;
 use super::replace::{FileStamp, Terms, folder_of, replace, sweep};
@@ -19,6 +21,7 @@ pub struct SavedDocument {
 
 /// A document as the bytes of a file, not written yet.
 pub struct EncodedDocument {
+    /// As they were written.
     pub bytes: Vec<u8>,
     /// What the format cannot hold as it is here; none for a project.
     pub notes: Vec<String>,

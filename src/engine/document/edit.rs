@@ -1,12 +1,15 @@
 //! Tree edits: each gives a new document that shares everything it did not touch.
 //! Floor 4. The list of documents that undo walks is `history`.
 
+#![warn(missing_docs)]
+
 use super::{Document, Layer, LayerId};
 use std::sync::Arc;
 
 /// A position among layers: the group (`None`: the document itself) and the number of layers beneath it there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LayerSlot {
+    /// In which group; absent: in none.
     pub group: Option<LayerId>,
     /// Larger than the number of layers means on top.
     pub index: usize,
@@ -17,6 +20,7 @@ impl LayerSlot {
     pub fn top_level(index: usize) -> Self {
         Self { group: None, index }
     }
+    /// So high in a group.
     pub fn in_group(group: LayerId, index: usize) -> Self {
         Self { group: Some(group), index }
     }
@@ -24,6 +28,7 @@ impl LayerSlot {
 
 /// The edits. Each is `None` where the layer or the place does not exist; `self` never changes.
 impl Document {
+    /// A layer by its id, groups opened.
     pub fn layer(&self, id: LayerId) -> Option<&Arc<Layer>> {
         fn find(layers: &[Arc<Layer>], id: LayerId) -> Option<&Arc<Layer>> {
             layers.iter().find_map(|layer| match layer.content.group() {

@@ -47,17 +47,23 @@ impl LayerId {
 /// One layer of a document. Made with [`Layer::new`]; a clone is the same layer in another version.
 #[derive(Clone)]
 pub struct Layer {
+    /// Its identity, through every edit.
     pub id: LayerId,
+    /// As the list shows it.
     pub name: String,
+    /// It is shown, and what is clipped to it.
     pub visible: bool,
     /// `[0, 1]`.
     pub opacity: f32,
+    /// How its colour meets what lies beneath.
     pub blend: BlendMode,
     /// Blend linear light instead of encoded values.
     pub blend_linear: bool,
     /// Paint only where the nearest layer beneath that is not itself clipped has coverage.
     pub clip_below: bool,
+    /// What is protected from painting.
     pub lock: LayerLock,
+    /// What its coverage is multiplied by; absent: nothing.
     pub mask: Option<LayerMask>,
     /// A colour by which it is found in the list.
     pub label: LayerLabel,
@@ -70,12 +76,14 @@ pub struct Layer {
     /// The part of the shape that carries it, after its own transform; absent: what carries the group around it, or
     /// the canvas.
     pub on: Option<HomeFrame>,
+    /// What it holds.
     pub content: Content,
     /// Cached values of this layer; no part of the document's value.
     pub cache: LayerCache,
 }
 
 impl Layer {
+    /// What an opacity may be.
     pub const OPACITY: Range = UNIT;
     /// Letters of a name that the hand gives; one that a file brings may be longer.
     pub const LONGEST_NAME: usize = 1_000;

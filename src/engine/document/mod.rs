@@ -66,7 +66,9 @@ use std::{collections::BTreeMap, sync::Arc};
 /// A picture being painted: the canvas, its surface, and the layers, bottom first.
 #[derive(Clone)]
 pub struct Document {
+    /// The canvas, px.
     pub size: Size,
+    /// What is painted on; absent: a flat canvas.
     pub surface: Option<Arc<Surface>>,
     /// The maps that the surface was made from; absent if there is no surface or it came from no file.
     pub surface_source: Option<Arc<SurfaceSource>>,
@@ -74,6 +76,7 @@ pub struct Document {
     pub surface_files: Arc<BTreeMap<String, Asset>>,
     /// The parts that the surface is made of, with the maps beneath them.
     pub parts: Arc<Parts>,
+    /// The bottom one first.
     pub layers: Vec<Arc<Layer>>,
     /// Those kept by name; each name stands once.
     pub selections: Vec<NamedSelection>,
@@ -86,6 +89,7 @@ pub struct Document {
 }
 
 impl Document {
+    /// A canvas without layers or surface.
     pub fn empty(size: Size) -> Self {
         Self {
             size,

@@ -1,6 +1,8 @@
 //! The progress of long work, and whether it was cancelled. Floor 4. Higher floors display it; nothing here draws or
 //! waits.
 
+#![warn(missing_docs)]
+
 use crate::raster::TileAt;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -30,6 +32,7 @@ impl Progress {
     pub fn cancel(&self) {
         self.cancelled.store(true, Ordering::Relaxed);
     }
+    /// Whether somebody cancelled the work.
     pub fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)
     }

@@ -1,16 +1,21 @@
 //! Pixel sizes and half-open pixel rectangles.
 //! Floor 0.
 
+#![warn(missing_docs)]
+
 use super::{Vec2, vec2};
 
 /// Width and height in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Size {
+    /// Pixels across.
     pub width: u32,
+    /// Pixels down.
     pub height: u32,
 }
 
 impl Size {
+    /// Of so many pixels across and down.
     pub const fn new(width: u32, height: u32) -> Self {
         Self { width, height }
     }
@@ -22,9 +27,11 @@ impl Size {
     pub fn longer_side(self) -> f32 {
         self.width.max(self.height) as f32
     }
+    /// The rectangle of its pixels, from the origin on.
     pub fn rect(self) -> Rect {
         Rect { x0: 0, y0: 0, x1: self.width as i32, y1: self.height as i32 }
     }
+    /// The point in the middle.
     pub fn center(self) -> Vec2 {
         vec2(self.width as f32, self.height as f32) * 0.5
     }
@@ -44,27 +51,37 @@ impl std::fmt::Display for Size {
 /// The pixels `x0 ≤ x < x1`, `y0 ≤ y < y1`, y down; empty where a side is not positive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Rect {
+    /// The first column.
     pub x0: i32,
+    /// The first row.
     pub y0: i32,
+    /// The column after the last.
     pub x1: i32,
+    /// The row after the last.
     pub y1: i32,
 }
 
 impl Rect {
+    /// No pixel.
     pub const EMPTY: Rect = Rect { x0: 0, y0: 0, x1: 0, y1: 0 };
 
+    /// From the first pixel to the one after the last.
     pub const fn new(x0: i32, y0: i32, x1: i32, y1: i32) -> Self {
         Self { x0, y0, x1, y1 }
     }
+    /// It holds no pixel.
     pub const fn is_empty(self) -> bool {
         self.x0 >= self.x1 || self.y0 >= self.y1
     }
+    /// Columns; 0 of an empty one.
     pub fn width(self) -> usize {
         (self.x1 - self.x0).max(0) as usize
     }
+    /// Rows; 0 of an empty one.
     pub fn height(self) -> usize {
         (self.y1 - self.y0).max(0) as usize
     }
+    /// The pixels of both.
     pub fn intersect(self, other: Rect) -> Rect {
         let r = Rect {
             x0: self.x0.max(other.x0),
@@ -97,6 +114,7 @@ impl Rect {
         let (low, high) = (|v: i32| v.saturating_sub(margin), |v: i32| v.saturating_add(margin));
         Rect { x0: low(self.x0), y0: low(self.y0), x1: high(self.x1), y1: high(self.y1) }
     }
+    /// Whether a pixel is in it.
     pub fn contains(self, x: i32, y: i32) -> bool {
         x >= self.x0 && x < self.x1 && y >= self.y0 && y < self.y1
     }

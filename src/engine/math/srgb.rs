@@ -1,6 +1,8 @@
 //! The sRGB transfer curve (IEC 61966-2-1), colours as text, and the one quantisation to bytes.
 //! Floor 0.
 
+#![warn(missing_docs)]
+
 use std::sync::LazyLock;
 
 /// Linear light of an sRGB-encoded value. Odd extension below 0; 1 maps to 1 and larger values stay larger.
@@ -116,15 +118,22 @@ pub fn luminance(r: f32, g: f32, b: f32) -> f32 {
 /// A colour as artists write it: straight alpha, sRGB-encoded bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Color {
+    /// Red.
     pub r: u8,
+    /// Green.
     pub g: u8,
+    /// Blue.
     pub b: u8,
+    /// Alpha: 255 is opaque.
     pub a: u8,
 }
 
 impl Color {
+    /// Opaque black.
     pub const BLACK: Color = Color { r: 0, g: 0, b: 0, a: 255 };
+    /// Opaque white.
     pub const WHITE: Color = Color { r: 255, g: 255, b: 255, a: 255 };
+    /// Nothing.
     pub const TRANSPARENT: Color = Color { r: 0, g: 0, b: 0, a: 0 };
 
     /// Reads `#rrggbb` or `#rrggbbaa`.

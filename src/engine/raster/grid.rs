@@ -76,6 +76,7 @@ impl<T> Grid<T> {
             self.grow(extent);
         }
     }
+    /// The tile at a place; `None` where nothing is held.
     pub fn tile(&self, at: TileAt) -> Option<&Arc<T>> {
         self.tiles[self.extent.index(at)?].as_ref()
     }

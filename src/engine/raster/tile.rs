@@ -23,11 +23,14 @@ pub fn transparent_f32() -> Box<TileF32> {
 /// Which tile of the canvas lattice: tile (0, 0) holds canvas pixel (0, 0); negative tiles lie left of and above it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct TileAt {
+    /// From the left, in tiles.
     pub col: i32,
+    /// From the top, in tiles.
     pub row: i32,
 }
 
 impl TileAt {
+    /// The place in this column and row.
     pub const fn new(col: i32, row: i32) -> Self {
         Self { col, row }
     }
@@ -140,6 +143,7 @@ impl Tile {
     pub fn bytes(&self) -> &[u8] {
         self.pixmap.data()
     }
+    /// Its premultiplied pixels.
     pub fn pixmap(&self) -> &Pixmap {
         &self.pixmap
     }

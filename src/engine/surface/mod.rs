@@ -76,10 +76,14 @@ pub struct Maps {
 /// Why maps do not make a surface.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SurfaceError {
+    /// The maps are not of one size.
+    #[allow(missing_docs, reason = "the fields are what the sentence names")]
     #[error("the maps differ in size: normals {normals}, {other} {size}")]
     SizesDiffer { normals: Size, other: &'static str, size: Size },
+    /// No pixel shows a surface.
     #[error("there is no surface at all: every pixel is background")]
     Empty,
+    /// A map in perspective was asked for.
     #[error("a surface cannot be seen in a perspective")]
     Perspective,
 }

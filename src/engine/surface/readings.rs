@@ -32,6 +32,7 @@ impl Surface {
     pub(in crate::surface) fn sheet_normals(&self) -> Option<&Plane<Vec3>> {
         self.sheet_normals.as_ref()
     }
+    /// Of its maps, px.
     pub fn size(&self) -> Size {
         self.size
     }
@@ -59,9 +60,11 @@ impl Surface {
     pub fn normal_planes(&self) -> [&Plane<f32>; 3] {
         [&self.nbar_x, &self.nbar_y, &self.nz]
     }
+    /// z of each pixel: 0 near … 1 far.
     pub fn depth_plane(&self) -> &Plane<f32> {
         &self.depth
     }
+    /// How much of each pixel is covered: 255 wholly.
     pub fn coverage_plane(&self) -> &Plane<u8> {
         &self.coverage
     }

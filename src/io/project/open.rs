@@ -21,6 +21,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The result of reading a project.
 pub struct ProjectContents {
+    /// What the project holds.
     pub document: Document,
     /// What differs from the saved state, a sentence each, for the user.
     pub notes: Vec<String>,

@@ -96,6 +96,7 @@ pub struct RecipeSource<'a> {
     pub file: &'a Path,
     /// The files that it may name.
     pub files: &'a dyn Files,
+    /// What it may take.
     pub budget: &'a Budget,
     /// Another object to put the painting on, in place of the document's own.
     pub onto: Option<OtherSurface<'a>>,
@@ -104,7 +105,9 @@ pub struct RecipeSource<'a> {
 /// A surface that is not the document's own, and where its maps are.
 #[derive(Clone, Copy)]
 pub struct OtherSurface<'a> {
+    /// The maps that it names.
     pub surface: &'a SurfaceSource,
+    /// Where names are looked up.
     pub files: &'a dyn Files,
 }
 

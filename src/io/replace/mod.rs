@@ -31,6 +31,7 @@ pub struct FileStamp {
 }
 
 impl FileStamp {
+    /// Of these bytes.
     pub fn of(bytes: &[u8]) -> Self {
         Self { bytes: bytes.len() as u64, crc: crc32fast::hash(bytes) }
     }
@@ -64,6 +65,7 @@ pub enum Overwrite {
 /// On what terms a file is written.
 #[derive(Clone, Debug)]
 pub struct Terms {
+    /// What it may replace.
     pub over: Overwrite,
     /// The old file is kept beside it as `name~`.
     pub keeps_previous: bool,

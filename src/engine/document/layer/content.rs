@@ -36,14 +36,23 @@ use crate::surface::Bend;
 #[derive(Clone)]
 #[expect(clippy::large_enum_variant, reason = "one stands in each layer, and layers stand behind `Arc`")]
 pub enum Content {
+    /// One colour everywhere.
     Fill(Color),
+    /// Pixels to paint on.
     Pixels(PixelLayer),
+    /// A picture, bent over the surface.
     Image(Live<PlacedImage>),
+    /// A colour ramp, bent over the surface.
     Gradient(Live<Gradient>),
+    /// Strokes that stay strokes.
     Strokes(Live<StrokeList>),
+    /// The surface lit.
     Shading(Live<Shading>),
+    /// What lies beneath, brighter or darker by the curvature.
     RadianceScaling(RadianceScaling),
+    /// Detail for the surface that layers above see.
     Normals(NormalLayer),
+    /// Layers.
     Group(Group),
 }
 
@@ -197,6 +206,7 @@ impl Content {
     pub fn label(&self) -> &'static str {
         self.kind().label()
     }
+    /// What it is in its stack.
     pub fn role(&self) -> Role<'_> {
         self.kind().role()
     }

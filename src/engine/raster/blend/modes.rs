@@ -127,12 +127,15 @@ impl BlendMode {
     pub fn function(self) -> BlendFunction {
         self.row().function
     }
+    /// The mode that documents call so.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::find(|row| row.name == name)
     }
+    /// The mode that OpenRaster calls so.
     pub fn from_openraster(word: &str) -> Option<Self> {
         Self::find(|row| row.openraster == word)
     }
+    /// The mode of a key of Photoshop's.
     pub fn from_photoshop(key: [u8; 4]) -> Option<Self> {
         Self::find(|row| row.photoshop == key)
     }

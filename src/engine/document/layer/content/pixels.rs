@@ -14,7 +14,9 @@ use std::sync::Arc;
 pub struct PixelLayer {
     /// Where the pixels came from, if a file; empty for pixels painted here.
     pub file: String,
+    /// Canvas column of the first column of the file.
     pub x: i32,
+    /// Canvas row of the first row of the file.
     pub y: i32,
     /// On the canvas lattice, offset applied.
     pub tiles: TileGrid,

@@ -16,6 +16,7 @@ use std::sync::Arc;
 /// The strokes of a stroke layer, in the order they were painted. Shared, so that adding one copies pointers.
 #[derive(Clone, Default)]
 pub struct StrokeList {
+    /// The first one lies lowest.
     pub strokes: Vec<Arc<Stroke>>,
 }
 
