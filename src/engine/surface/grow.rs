@@ -2,6 +2,7 @@
 //! Floor 2.
 
 use crate::raster::Plane;
+use rayon::prelude::*;
 
 /// A pixel, column and row; [`NONE`] where none is known. Sides of maps are shorter than this holds.
 type Place = [u16; 2];
@@ -128,14 +129,14 @@ pub fn punch_holes(coverage: &mut Plane<u8>, valid: &Plane<bool>) {
     let near_valid = |x: usize, y: usize| {
         (-2..=2).any(|dy| (-2..=2).any(|dx| valid.get(x as i32 + dx, y as i32 + dy).unwrap_or(false)))
     };
-    for y in 0..valid.height() {
-        for x in 0..valid.width() {
-            let c = coverage.at(x, y);
-            if c > 0 && !valid.at(x, y) && !(c < 255 && near_valid(x, y)) {
-                coverage.set(x, y, 0);
+    let width = valid.width().max(1);
+    coverage.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+        for (x, (c, valid)) in row.iter_mut().zip(valid.row(y)).enumerate() {
+            if *c > 0 && !valid && !(*c < 255 && near_valid(x, y)) {
+                *c = 0;
             }
         }
-    }
+    });
 }
 
 #[cfg(test)]

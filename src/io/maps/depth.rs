@@ -6,6 +6,7 @@ use crate::document::source::{DepthConvention, DepthEncoding, Near};
 use crate::math::Vec3;
 use crate::raster::Plane;
 use crate::{Error, Result};
+use rayon::prelude::*;
 
 /// Values beyond this are background whatever the scene's unit: renderers write 1e10.
 const FAR_AWAY: f32 = 1e9;
@@ -40,10 +41,12 @@ pub fn read(
     let edge = background::constant(stored, coverage).map(|t| t[0]);
     let mut values = channel.map(|v| if v.is_finite() && v.abs() < FAR_AWAY { v } else { f32::NAN });
     let stray = |v: f32| overrides.background.iter().any(|b| (v - b).abs() <= 1e-6 * b.abs().max(1.0));
-    values.values_mut().iter_mut().filter(|v| stray(**v)).for_each(|v| *v = f32::NAN);
+    if !overrides.background.is_empty() {
+        values = values.updated(|_, _, v| if stray(v) { f32::NAN } else { v });
+    }
     let mut sentinels = Vec::new();
     while let Some(sentinel) = sentinels.len().lt(&3).then(|| find_sentinel(&values, covered)).flatten() {
-        values.values_mut().iter_mut().filter(|v| **v == sentinel).for_each(|v| *v = f32::NAN);
+        values = values.updated(|_, _, v| if v == sentinel { f32::NAN } else { v });
         sentinels.push(sentinel);
     }
     if stored.lossy {
@@ -56,7 +59,7 @@ pub fn read(
         findings.note(format!("{s} is no depth but background"));
     }
     let area = stored.size.area();
-    let infinite = (0..area).any(|i| channel.at(i) >= FAR_AWAY);
+    let infinite = (0..area).into_par_iter().any(|i| channel.at(i) >= FAR_AWAY);
     let outliers = sentinels.iter().filter(|s| s.abs() > 1000.0 * (high - low).max(1e-6));
     let (above, below) = (infinite || outliers.clone().any(|s| *s > high), outliers.clone().any(|s| *s < low));
     // The farthest value marks the background of metric depth; of camera z, which is negative, the lowest.
@@ -73,19 +76,24 @@ pub fn read(
         _ => 0.0,
     };
     let has_background = !sentinels.is_empty()
-        || (0..area).any(|i| values.values()[i].is_nan() != channel.at(i).is_nan() || channel.at(i).is_nan());
+        || (0..area)
+            .into_par_iter()
+            .any(|i| values.values()[i].is_nan() != channel.at(i).is_nan() || channel.at(i).is_nan());
     Ok(RawDepth { values, has_background, near_high, near_high_leaning: leaning })
 }
 
 /// A number at the end of the range that many pixels hold exactly and a gap sets apart from all others.
 ///
 /// The usual "nothing" numbers need a gap of a quarter of the others' range, any other number of four times it.
-fn find_sentinel(values: &Plane<f32>, covered: impl Fn(usize) -> bool) -> Option<f32> {
+fn find_sentinel(values: &Plane<f32>, covered: impl Fn(usize) -> bool + Sync) -> Option<f32> {
     let (low, high) = range(values, &covered)?;
-    let inside = || values.values().iter().enumerate().filter(|(i, v)| covered(*i) && !v.is_nan()).map(|(_, v)| *v);
+    let inside = || {
+        let values = values.values().par_iter().enumerate();
+        values.filter(|(i, v)| covered(*i) && !v.is_nan()).map(|(_, v)| *v)
+    };
     let total = inside().count();
-    let next_above = inside().filter(|v| *v > low).fold(f32::INFINITY, f32::min);
-    let next_below = inside().filter(|v| *v < high).fold(f32::NEG_INFINITY, f32::max);
+    let next_above = inside().filter(|v| *v > low).reduce(|| f32::INFINITY, f32::min);
+    let next_below = inside().filter(|v| *v < high).reduce(|| f32::NEG_INFINITY, f32::max);
     let is_sentinel = |end: f32, next: f32, other: f32| {
         let (gap, rest) = ((next - end).abs(), (other - next).abs());
         let held = inside().filter(|v| *v == end).count();
@@ -101,7 +109,7 @@ fn find_sentinel(values: &Plane<f32>, covered: impl Fn(usize) -> bool) -> Option
 
 /// Removes pixels that lossy compression mixed from surface and background: pixels near the rim beyond the range of
 /// those further in.
-fn drop_bled(values: &mut Plane<f32>, covered: impl Fn(usize) -> bool) {
+fn drop_bled(values: &mut Plane<f32>, covered: impl Fn(usize) -> bool + Sync) {
     // Blocks of 4 × 4 reach three pixels.
     const REACH: i32 = 3;
     let (w, size) = (values.width(), values.size());
@@ -123,9 +131,9 @@ fn drop_bled(values: &mut Plane<f32>, covered: impl Fn(usize) -> bool) {
     }
 }
 
-fn range(values: &Plane<f32>, covered: impl Fn(usize) -> bool) -> Option<(f32, f32)> {
-    let inside = values.values().iter().enumerate().filter(|(i, v)| covered(*i) && !v.is_nan());
-    inside.fold(None, |r: Option<(f32, f32)>, (_, &v)| Some(r.map_or((v, v), |(a, b)| (a.min(v), b.max(v)))))
+fn range(values: &Plane<f32>, covered: impl Fn(usize) -> bool + Sync) -> Option<(f32, f32)> {
+    let inside = values.values().par_iter().enumerate().filter(|(i, v)| covered(*i) && !v.is_nan());
+    inside.map(|(_, &v)| (v, v)).reduce_with(|(a, b), (c, d)| (a.min(c), b.max(d)))
 }
 
 /// The polarity as far as it is known without normals: from the convention, then from the encoding.
@@ -221,11 +229,11 @@ pub fn normalise(
     coverage: &Plane<u8>,
     findings: &mut Findings,
 ) -> Option<NormalizedDepth> {
-    let pairs = planar.values().iter().zip(inside.values());
+    let (mut near, mut far) = range(&planar, |i| inside.values()[i] && planar.values()[i].is_finite())?;
+    let pairs = planar.values().par_iter().zip(inside.values());
     let mut held: Vec<f32> = pairs.filter(|(v, i)| **i && v.is_finite()).map(|(v, _)| *v).collect();
-    held.sort_unstable_by(f32::total_cmp);
-    let (mut near, mut far) = (*held.first()?, *held.last()?);
-    let percentile = |p: f64| held[((held.len() - 1) as f64 * p).round() as usize];
+    let last = held.len() - 1;
+    let mut percentile = |p: f64| *held.select_nth_unstable_by((last as f64 * p).round() as usize, f32::total_cmp).1;
     let (low, high) = (percentile(0.001), percentile(0.999));
     drop(held);
     if high - low < 0.5 * (far - near) && high > low {
@@ -234,8 +242,8 @@ pub fn normalise(
     } else {
         let slack = 0.02 * (far - near);
         let (from, to) = (near - slack, far + slack);
-        let rim = planar.values().iter().zip(coverage.values()).filter(|(v, c)| **c > 0 && **v >= from && **v <= to);
-        (near, far) = rim.fold((near, far), |(a, b), (v, _)| (a.min(*v), b.max(*v)));
+        let joins = |i: usize| coverage.values()[i] > 0 && (from..=to).contains(&planar.values()[i]);
+        (near, far) = range(&planar, joins).map_or((near, far), |(a, b)| (near.min(a), far.max(b)));
     }
     let span = far - near;
     if span <= 0.0 {

@@ -38,6 +38,7 @@ use crate::{Error, Result};
 use coverage::{alpha, given_mask};
 use overrides::ConventionOverrides;
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 use stored::StoredMap;
 use understood::LoadedMaps;
 
@@ -73,8 +74,8 @@ pub fn import_watched(
     read.map_err(|refused| Error::out_of_memory(files.path(""), refused))?
 }
 
-/// The steps that reading tells of: the normals, the depth, what their numbers mean, what is missing, the surface.
-const STEPS: u64 = 5;
+/// The steps that reading tells of: the files, what their numbers mean, what is missing, the surface.
+const STEPS: u64 = 4;
 
 fn read(
     source: &SurfaceSource,
@@ -88,11 +89,13 @@ fn read(
     };
     let files = &CachedFiles::new(files);
     let mut findings = Findings::default();
-    let normal = source.normal.as_ref().map(|m| load(m, MapRole::Normals, files, budget)).transpose()?;
-    if is_over() {
-        return Ok(None);
-    }
-    let depth = source.depth.as_ref().map(|m| load(m, MapRole::Depth, files, budget)).transpose()?;
+    let [normal, depth] = [
+        source.normal.as_ref().map(|map| MapFile::read(map, MapRole::Normals, files, budget)).transpose()?,
+        source.depth.as_ref().map(|map| MapFile::read(map, MapRole::Depth, files, budget)).transpose()?,
+    ];
+    let decoded = |file: Option<MapFile>| file.map(|file| file.decoded(budget)).transpose();
+    let (normal, depth) = rayon::join(|| decoded(normal), || decoded(depth));
+    let (normal, depth) = (normal?, depth?);
     if is_over() {
         return Ok(None);
     }
@@ -132,9 +135,22 @@ fn read(
     Ok(Some(ImportedSurface { surface, findings, files: files.assets() }))
 }
 
-fn load<C>(map: &MapSource<C>, role: MapRole, files: &dyn Files, budget: &Budget) -> Result<StoredMap> {
-    let bytes = files.read(&map.file, budget)?;
-    stored::load(&files.path(&map.file), &bytes, map.channel.as_deref(), role, budget)
+/// The file of a map, before it is decoded.
+struct MapFile<'s> {
+    file: PathBuf,
+    bytes: Vec<u8>,
+    channel: Option<&'s str>,
+    role: MapRole,
+}
+
+impl<'s> MapFile<'s> {
+    fn read<C>(map: &'s MapSource<C>, role: MapRole, files: &dyn Files, budget: &Budget) -> Result<Self> {
+        let bytes = files.read(&map.file, budget)?;
+        Ok(Self { file: files.path(&map.file), bytes, channel: map.channel.as_deref(), role })
+    }
+    fn decoded(self, budget: &Budget) -> Result<StoredMap> {
+        stored::load(&self.file, &self.bytes, self.channel, self.role, budget)
+    }
 }
 
 fn same_size(file: &std::path::Path, sizes: impl Iterator<Item = (String, Size)>) -> Result<()> {
@@ -156,7 +172,6 @@ mod tests {
     use crate::files::refusal;
     use image::{ImageFormat, Rgb, RgbImage};
     use std::io::Cursor;
-    use std::path::PathBuf;
 
     /// One flat map by every name; whoever reads the first cancels.
     struct GivenUp<'p>(&'p Progress);

@@ -3,6 +3,7 @@
 
 use crate::math::{Vec2, vec2};
 use crate::raster::Plane;
+use rayon::prelude::*;
 
 /// The approximate number of pixels that are read.
 const ENOUGH: usize = 60_000;
@@ -13,8 +14,8 @@ pub fn spread(inside: &Plane<bool>) -> Vec<usize> {
 }
 
 /// Of the numbers below `n` that `is` accepts about `enough`, evenly thinned. Asks twice, rather than hold them all.
-pub fn thinned(n: usize, enough: usize, is: impl Fn(usize) -> bool) -> Vec<usize> {
-    let count = (0..n).filter(|&i| is(i)).count();
+pub fn thinned(n: usize, enough: usize, is: impl Fn(usize) -> bool + Sync) -> Vec<usize> {
+    let count = (0..n).into_par_iter().filter(|&i| is(i)).count();
     (0..n).filter(|&i| is(i)).step_by(count.div_ceil(enough).max(1)).collect()
 }
 
@@ -23,26 +24,21 @@ pub fn thinned(n: usize, enough: usize, is: impl Fn(usize) -> bool) -> Vec<usize
 /// The picture's own border is no rim.
 pub fn rim(inside: &Plane<bool>) -> Vec<(usize, Vec2)> {
     let (w, h) = (inside.width(), inside.height());
-    let mut out = Vec::new();
-    for y in 2..h.saturating_sub(2) {
-        for x in 2..w.saturating_sub(2) {
-            let is = |dx: i32, dy: i32| inside.clamped(x as i32 + dx, y as i32 + dy);
-            if !is(0, 0) || (is(-1, 0) && is(1, 0) && is(0, -1) && is(0, 1)) {
-                continue;
-            }
-            let mut away = vec2(0.0, 0.0);
-            for dy in -2..=2 {
-                for dx in -2..=2 {
-                    if !is(dx, dy) {
-                        away += vec2(dx as f32, -dy as f32);
-                    }
-                }
-            }
-            if away.length() > 2.0 {
-                out.push((y * w + x, away.normalize_or_zero()));
-            }
-        }
-    }
+    let ends_toward = |x: usize, y: usize| {
+        let is = |dx: i32, dy: i32| inside.clamped(x as i32 + dx, y as i32 + dy);
+        let outside = (-2..=2).flat_map(|dy| (-2..=2).map(move |dx| (dx, dy))).filter(|&(dx, dy)| !is(dx, dy));
+        let away: Vec2 = outside.map(|(dx, dy)| vec2(dx as f32, -dy as f32)).sum();
+        (away.length() > 2.0).then(|| (y * w + x, away.normalize_or_zero()))
+    };
+    let of_row = |y: usize| {
+        let [above, here, below] = [y - 1, y, y + 1].map(|y| inside.row(y));
+        let is_rim = move |x: &usize| {
+            let x = *x;
+            here[x] && !(here[x - 1] && here[x + 1] && above[x] && below[x])
+        };
+        (2..w.saturating_sub(2)).filter(is_rim).filter_map(|x| ends_toward(x, y)).collect::<Vec<_>>()
+    };
+    let out: Vec<(usize, Vec2)> = (2..h.saturating_sub(2)).into_par_iter().flat_map_iter(of_row).collect();
     let step = out.len().div_ceil(ENOUGH / 4).max(1);
     out.into_iter().step_by(step).collect()
 }
