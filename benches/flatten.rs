@@ -10,7 +10,7 @@ use rilievo_engine::document::{
 };
 use rilievo_engine::math::{Size, Vec3, hash, srgb::Color, vec2, vec3};
 use rilievo_engine::paint::{Gradient, GradientStop, ImageFilter};
-use rilievo_engine::raster::{BlendMode, Plane, TileAt, TileGrid};
+use rilievo_engine::raster::{BlendMode, Plane, Tile, TileAt, TileGrid};
 use rilievo_engine::shading::{Model, Shading};
 use rilievo_engine::surface::{Maps, Operator, Surface};
 use std::sync::{Arc, LazyLock};
@@ -110,6 +110,31 @@ rilievo_engine::widest! {
             }
         }
     }
+}
+
+/// Ten layers of 2048², all of bytes or all of 16 bits.
+#[divan::bench(args = ["bytes", "16 bits"], sample_count = 11, sample_size = 1)]
+fn ten_layers(bencher: Bencher, depth: &str) {
+    let (w, h) = (SCENE.width, SCENE.height);
+    let value = |seed: u32, i: u32, c: u32| (hash::unit(seed * 4 + c, i % w / 8, i / w / 8) * 65_000.0) as u16;
+    let grid = |seed: u32| {
+        let straight: Vec<[u16; 4]> = (0..w * h).map(|i| [0, 1, 2, 3].map(|c| value(seed, i, c))).collect();
+        TileGrid::from_straight_deep(&straight, w as usize, h as usize, 0, 0)
+    };
+    let layer = |i: u32| {
+        let tiles = in_bytes_if(depth == "bytes", grid(i));
+        Arc::new(Layer::new(format!("{i}"), Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() })))
+    };
+    flatten(bencher, &Document { layers: (0..10).map(layer).collect(), ..Document::empty(SCENE) }, 1);
+}
+
+/// The same, rounded to bytes if asked.
+fn in_bytes_if(rounded: bool, tiles: TileGrid) -> TileGrid {
+    let mut out = tiles.clone();
+    for (at, tile) in tiles.iter().filter(|_| rounded) {
+        out.set(at, Tile::from_pixels(tile.bytes().to_vec()).map(Arc::new));
+    }
+    out
 }
 
 /// Two layers less one: the price of a mode is its second layer's.

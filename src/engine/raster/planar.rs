@@ -101,9 +101,13 @@ impl PlanarTile {
     /// As a paint layer keeps it, painted on `was`: rounded to 16 bits where it is soft ([`deep::is_soft`]) or was that
     /// before, else to bytes. `None` where the tile is wholly transparent.
     pub fn kept(&self, was: Option<&Tile>) -> Option<Tile> {
+        self.kept_after(was.is_some_and(Tile::is_deep))
+    }
+    /// The same of pixels that some paint of 16 bits is in, or none.
+    pub fn kept_after(&self, was_deep: bool) -> Option<Tile> {
         let mut rows = deep::clear_rows();
         deep_rows(&self.rows, &mut rows);
-        match was.is_some_and(Tile::is_deep) || deep::is_soft(&rows) {
+        match was_deep || deep::is_soft(&rows) {
             true => Tile::from_deep(rows),
             false => self.quantised(),
         }

@@ -185,6 +185,11 @@ fn what_is_moved_scaled_cut_and_merged_stays_as_fine() {
     assert!(fine(&document(vec![paint(merged.unwrap())])) > 1000);
     let same = flatten_to_paint(&one, &Progress::default()).unwrap();
     assert!(same.iter().all(|(at, tile)| tile.is_same(soft.tile(at).unwrap())), "a layer alone is what it was");
+    let noise: Vec<[u16; 4]> = (0..64 * 64).map(|i| [(hash::unit(i, 0, 0) * 65535.0) as u16; 4]).collect();
+    let noise = TileGrid::from_straight_deep(&noise, 64, 64, 0, 0);
+    let ink = painted(TileGrid::default(), [stroke(&Brush::default(), Color::WHITE, &[vec2(20.0, 20.0)])]);
+    let both = flatten_to_paint(&document(vec![paint(noise.clone()), paint(ink)]), &Progress::default()).unwrap();
+    assert_eq!(both.deep_pixel(63, 63), noise.deep_pixel(63, 63), "though nothing of it is soft");
     let moved = one.layers[0].content.moved(vec2(17.0, -5.0));
     let Content::Pixels(moved) = &moved else { panic!("paint") };
     assert_eq!(moved.tiles.deep_pixel(77, 55), soft.deep_pixel(60, 60));
