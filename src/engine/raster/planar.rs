@@ -105,12 +105,16 @@ impl PlanarTile {
     }
     /// The same of pixels that some paint of 16 bits is in, or none.
     pub fn kept_after(&self, was_deep: bool) -> Option<Tile> {
-        let mut rows = deep::clear_rows();
-        deep_rows(&self.rows, &mut rows);
-        match was_deep || deep::is_soft(&rows) {
-            true => Tile::from_deep(rows),
-            false => self.quantised(),
+        let put = |y: usize, deep: &mut DeepRow| {
+            let PixelRow { rgb: [r, g, b], a } = &self.rows[y];
+            deep::quantise_row([r, g, b, a], deep);
+        };
+        if self.rows.len() != TILE || !(was_deep || deep::is_soft(put)) {
+            return self.quantised();
         }
+        let mut rows = deep::clear_rows();
+        rows.iter_mut().enumerate().for_each(|(y, row)| put(y, row));
+        Tile::from_deep(rows)
     }
 }
 
@@ -141,14 +145,6 @@ crate::widest! {
                 bytes.copy_from_slice(&packed.to_le_bytes());
             }
         }
-    }
-}
-
-/// Rounds rows to 16 bits; colours above alpha are lowered to it.
-fn deep_rows(rows: &[PixelRow], deep: &mut [DeepRow]) {
-    for (row, deep) in rows.iter().zip(deep) {
-        let PixelRow { rgb: [r, g, b], a } = row;
-        deep::quantise_row([r, g, b, a], deep);
     }
 }
 

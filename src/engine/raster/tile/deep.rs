@@ -45,6 +45,14 @@ pub fn put(row: &mut DeepRow, x: usize, [r, g, b, a]: [u16; 4]) {
     }
 }
 
+/// How far a value lies from the nearest one that a byte has.
+#[inline(always)]
+fn off_byte(v: u16) -> u16 {
+    // 256 high + low = 257 high + (low − high).
+    let off = (v >> 8).abs_diff(v & 255);
+    off.min(LEVEL - off)
+}
+
 crate::widest! {
     /// Rounds a premultiplied row of floats; colours above alpha are lowered to it.
     pub fn quantise_row(row: [&[f32; TILE]; 4], deep: &mut DeepRow) {
@@ -97,7 +105,7 @@ crate::widest! {
             (wide[0], wide[TILE + 1]) = (row[c][0], row[c][TILE - 1]);
             for x in 0..TILE {
                 let v = wide[x + 1];
-                off[x] = off[x].max(v.abs_diff(u16::from(byte_of(v)) * LEVEL));
+                off[x] = off[x].max(off_byte(v));
                 let beside = v.abs_diff(wide[x]).max(v.abs_diff(wide[x + 2]));
                 let beyond = v.abs_diff(above[c][x]).max(v.abs_diff(below[c][x]));
                 steps[x] = steps[x].max(beside.max(beyond));
@@ -115,14 +123,24 @@ crate::widest! {
 /// There rounding makes steps that are wider than a pixel, which are seen as bands; and there paint that comes faintly,
 /// stroke upon stroke, is rounded away. At an edge, where neighbours are levels apart, neither is seen: so ink, its
 /// rims included, stays in bytes.
-pub fn is_soft(deep: &[DeepRow]) -> bool {
-    let (mut count, mut soft) = (0u32, [0u16; TILE]);
-    deep.iter().enumerate().any(|(y, row)| {
-        let (above, below) = (&deep[y.saturating_sub(1)], &deep[(y + 1).min(deep.len() - 1)]);
-        soft_in_row(above, row, below, &mut soft);
+///
+/// * `row`: puts a row in place, the top one first; each is asked for once.
+pub fn is_soft(mut row: impl FnMut(usize, &mut DeepRow)) -> bool {
+    // Three rows at a time, so that they stay in the first-level cache.
+    let (mut window, mut count, mut soft) = ([CLEAR_ROW; 3], 0u32, [0u16; TILE]);
+    row(0, &mut window[0]);
+    for y in 0..TILE {
+        if y + 1 < TILE {
+            row(y + 1, &mut window[(y + 1) % 3]);
+        }
+        let at = |y: usize| &window[y % 3];
+        soft_in_row(at(y.saturating_sub(1)), at(y), at((y + 1).min(TILE - 1)), &mut soft);
         count += u32::from(soft.iter().sum::<u16>());
-        count >= LEAST_SOFT
-    })
+        if count >= LEAST_SOFT {
+            return true;
+        }
+    }
+    false
 }
 
 /// Straight values of 16 bits to premultiplied ones, rounded to nearest.
@@ -170,6 +188,7 @@ mod tests {
     fn every_value_has_its_nearest_byte() {
         for v in 0..=u16::MAX {
             assert_eq!(u32::from(byte_of(v)), (u32::from(v) + 128) / 257, "{v}");
+            assert_eq!(off_byte(v), v.abs_diff(u16::from(byte_of(v)) * 257), "{v}");
         }
     }
     #[test]
@@ -199,14 +218,14 @@ mod tests {
         ];
         for (i, (rows, soft)) in cases.iter().enumerate() {
             assert_eq!(soft_pixels(rows), *soft, "case {i}");
-            assert_eq!(is_soft(rows), soft_pixels(rows) >= LEAST_SOFT as usize, "case {i}");
+            assert_eq!(is_soft(|y, row| *row = rows[y]), soft_pixels(rows) >= LEAST_SOFT as usize, "case {i}");
         }
         for seed in 0..40u32 {
             let noise = painted(|x, y| {
                 let gentle = (hash::unit(seed, x as u32 / 8, y as u32) * 600.0) as u16;
                 [gentle / 2, gentle, 0, gentle.saturating_mul(1 + (seed as u16) % 3)]
             });
-            assert_eq!(is_soft(&noise), soft_pixels(&noise) >= LEAST_SOFT as usize, "seed {seed}");
+            assert_eq!(is_soft(|y, row| *row = noise[y]), soft_pixels(&noise) >= LEAST_SOFT as usize, "seed {seed}");
         }
     }
     #[test]
