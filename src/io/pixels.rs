@@ -285,7 +285,7 @@ mod tests {
         let soft = |i: usize| [0, 1, 2, 3].map(|c| value(i, c));
         // Fainter than a byte can say at the left border.
         let pixel = |i: usize| {
-            if i % 200 == 0 {
+            if i.is_multiple_of(200) {
                 [9, 8, 7, 100]
             } else if i % 200 > 135 {
                 [257, 514, 0, 65535]

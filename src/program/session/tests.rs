@@ -6,6 +6,7 @@ mod held;
 mod selecting;
 mod several;
 mod snapping;
+mod soft;
 mod steps;
 mod transforming;
 mod unwrapped;

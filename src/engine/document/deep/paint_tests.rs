@@ -19,7 +19,7 @@ fn stroke(brush: &Brush, color: Color, path: &[Vec2]) -> Stroke {
 fn painted(mut tiles: TileGrid, strokes: impl IntoIterator<Item = Stroke>) -> TileGrid {
     let scene = Scene { size: SIZE, surface: None };
     for stroke in strokes {
-        let mut active = ActiveStrokes::new(&[stroke.clone()], Backdrop::Pixels(tiles.clone()), &scene);
+        let mut active = ActiveStrokes::new(std::slice::from_ref(&stroke), Backdrop::Pixels(tiles.clone()), &scene);
         let mut changed = active.draw(&[stroke.samples().to_vec()]);
         changed.extend(active.draw(&[Vec::new()]));
         changed.into_iter().for_each(|(at, tile)| tiles.set(at, tile));
@@ -148,7 +148,8 @@ fn retouched_paint_is_kept_as_it_was_and_as_it_becomes() {
     let retouched = |tiles: &TileGrid, mode: BrushMode, offset: Vec2| {
         let brush = Brush { size: 70.0, hardness: 0.2, mode, ..Brush::default() };
         let stroke = stroke(&brush, Color::WHITE, &[vec2(80.0, 60.0), vec2(95.0, 60.0)]);
-        let mut active = ActiveRetouching::new(&[stroke.clone()], &[offset], tiles.clone(), tiles.clone(), &scene);
+        let mut active =
+            ActiveRetouching::new(std::slice::from_ref(&stroke), &[offset], tiles.clone(), tiles.clone(), &scene);
         let mut next = tiles.clone();
         active.draw(&[stroke.samples().to_vec()]).into_iter().for_each(|(at, tile)| next.set(at, tile));
         next

@@ -4,8 +4,7 @@
 use super::layers::{LayerAction, above};
 use crate::document::cut::taken;
 use crate::document::{
-    Content, Document, Layer, LayerId, LayerLock, LayerSlot, PixelLayer, Progress, flatten, flatten_layer,
-    flatten_to_paint,
+    Content, Document, Layer, LayerId, LayerLock, LayerSlot, PixelLayer, Progress, flatten_to_paint,
 };
 use crate::math::{Rect, Size};
 use crate::raster::{CoverageGrid, TileGrid};
@@ -36,12 +35,22 @@ pub struct Copied {
     /// The same for other programs: straight RGBA, where it lies.
     pub rect: Rect,
     pub rgba: Arc<Vec<u8>>,
+    /// The same of 16 bits, where some of it has them.
+    deep: Option<Arc<Vec<[u16; 4]>>>,
 }
 
 impl Copied {
     /// Of one layer that holds all of it.
     fn name(&self) -> String {
         self.layers.last().map_or_else(String::new, |layer| layer.name.clone())
+    }
+    /// All of it as paint, its corner at a pixel.
+    fn tiles(&self, x: i32, y: i32) -> TileGrid {
+        let (width, height) = (self.rect.width(), self.rect.height());
+        match &self.deep {
+            Some(deep) => TileGrid::from_straight_deep(deep, width, height, x, y),
+            None => TileGrid::from_straight_rgba(&self.rgba, width, height, x, y),
+        }
     }
 }
 
@@ -100,7 +109,8 @@ fn copy(document: &Document, ids: &[LayerId], merged: bool) -> Result<Copied, &'
         let look = document.with_layer(id, |layer| {
             (layer.opacity, layer.visible, layer.clip_below) = (1.0, true, false);
         });
-        let painted = look.and_then(|look| flatten_layer(&look, id, &progress)).ok_or(NOTHING_THERE)?;
+        let painted =
+            look.and_then(|look| flatten_to_paint(&look.with_only(&[id])?, &progress)).ok_or(NOTHING_THERE)?;
         (vec![copied], taken(&painted, &covered))
     } else {
         let copies: Vec<Layer> = ids.iter().filter_map(|id| document.copied_from(*id, &covered)).collect();
@@ -109,14 +119,15 @@ fn copy(document: &Document, ids: &[LayerId], merged: bool) -> Result<Copied, &'
         }
         let layers = copies.iter().cloned().map(Arc::new).collect();
         let alone = Document { layers, ..document.clone() };
-        (copies, taken(&flatten(&alone, &progress).ok_or(NOTHING_THERE)?, &covered))
+        (copies, taken(&flatten_to_paint(&alone, &progress).ok_or(NOTHING_THERE)?, &covered))
     };
     let rect = CoverageGrid::of_alpha(&tiles).covered().intersect(document.size.rect());
     if rect.is_empty() && merged {
         return Err("Nothing shows where you selected.");
     }
     let rgba = Arc::new(tiles.to_straight_rgba(rect));
-    Ok(Copied { layers, canvas: document.size, rect, rgba })
+    let deep = tiles.is_deep_in(rect).then(|| Arc::new(tiles.to_straight_deep(rect)));
+    Ok(Copied { layers, canvas: document.size, rect, rgba, deep })
 }
 
 fn cut(tab: &mut OpenDocument) -> Result<Copied, &'static str> {
@@ -154,8 +165,7 @@ fn pasted(copied: &Copied, document: &Document) -> Vec<Layer> {
     let is_plain = |layer: &Layer| layer.mask.is_none() && layer.content.group().is_none();
     if copied.canvas != document.size && !copied.layers.iter().all(is_plain) {
         let Rect { x0, y0, .. } = copied.rect;
-        let tiles = TileGrid::from_straight_rgba(&copied.rgba, copied.rect.width(), copied.rect.height(), x0, y0);
-        let content = Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() });
+        let content = Content::Pixels(PixelLayer { tiles: copied.tiles(x0, y0), ..PixelLayer::default() });
         return vec![Layer::new(copied.name(), content)];
     }
     // Pasted twice, they are other layers.
@@ -166,9 +176,8 @@ fn paste_new(session: &mut Session) {
     let Some(copied) = session.copied.clone().filter(|copied| !copied.rect.is_empty()) else {
         return session.say("Nothing was copied yet.");
     };
-    let (width, height) = (copied.rect.width(), copied.rect.height());
-    let size = Size::new(width as u32, height as u32);
-    let tiles = TileGrid::from_straight_rgba(&copied.rgba, width, height, 0, 0);
+    let size = Size::new(copied.rect.width() as u32, copied.rect.height() as u32);
+    let tiles = copied.tiles(0, 0);
     let layer = Layer::new(copied.name(), Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }));
     let document = Document { layers: vec![Arc::new(layer)], ..Document::empty(size) };
     let name = session.untitled();
