@@ -7,7 +7,6 @@ use crate::panel_layout::PanelSide;
 use crate::panels;
 use crate::requests::UiRequests;
 use crate::theme::ACCENT;
-use eframe::egui::scroll_area::ScrollBarVisibility;
 use eframe::egui::{self, CentralPanel, Frame, Id, Margin, Panel, RichText, Ui};
 
 /// How wide the panels may be, points.
@@ -31,10 +30,9 @@ impl MainWindow {
                 .frame(bar(ui))
                 .show(ui, |ui| panels::status::show(ui, &self.session, &self.canvas, &self.jobs, memory, requests));
             let keymap = &self.settings.keymap;
-            Panel::left("tools").exact_size(44.0).resizable(false).frame(bar(ui)).show(ui, |ui| {
-                // A low window scrolls them.
-                let area = egui::ScrollArea::vertical().scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden);
-                area.show(ui, |ui| panels::tools::show(ui, &self.session, keymap, requests));
+            let tools_pt = panels::tools::width_pt(ui) + 12.0;
+            Panel::left("tools").exact_size(tools_pt).resizable(false).frame(bar(ui)).show(ui, |ui| {
+                panels::tools::show(ui, &self.session, keymap, requests);
             });
             self.side(ui, requests);
             self.apart(ui.ctx(), requests);
