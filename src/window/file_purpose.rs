@@ -36,7 +36,7 @@ impl FilePurpose {
         match self {
             FilePurpose::Open => "Open",
             FilePurpose::Place => "Place an image",
-            FilePurpose::ImportUnwrapped => "Import a picture of the surface laid flat",
+            FilePurpose::ImportUnwrapped => "Import a picture of the unwrapped surface",
             FilePurpose::Brush => "Import a brush",
             FilePurpose::NormalMap => "Normal map",
             FilePurpose::DepthMap => "Depth map",
@@ -45,7 +45,7 @@ impl FilePurpose {
             FilePurpose::Save => "Save as",
             FilePurpose::Export => "Export the picture",
             FilePurpose::ExportMaps => "Export maps of the shape",
-            FilePurpose::ExportUnwrapped => "Export the surface laid flat",
+            FilePurpose::ExportUnwrapped => "Export the unwrapped surface",
         }
     }
     pub fn is_saving(self) -> bool {

@@ -20,11 +20,11 @@ pub struct OfferedOperator {
 pub const OPERATORS: [OfferedOperator; 5] = [FLAT, TEXTURE, DEPTH_TEXTURE, SHADING, REFLECTION];
 
 pub const FLAT: OfferedOperator =
-    OfferedOperator { label: "Flat", begins: Operator::None, hint: "Marks lie on the canvas as they are" };
+    OfferedOperator { label: "Flat", begins: Operator::None, hint: "Marks stay flat on the canvas" };
 pub const TEXTURE: OfferedOperator = OfferedOperator {
     label: "Texture",
     begins: Operator::Surface { amount: 1.0, smooth: 0.0 },
-    hint: "Marks lie on the surface like a print, equally large all over it",
+    hint: "Marks follow the surface like a print, at the same size everywhere",
 };
 pub const DEPTH_TEXTURE: OfferedOperator = OfferedOperator {
     label: "Depth texture",

@@ -91,25 +91,25 @@ macro_rules! settings {
 
 settings! {
     "" "overlap" overlap in 1.0..=100.0, "Overlap",
-        "So many dabs that lie over each other come to the flow together";
+        "How many overlapping dabs add up to the flow";
     "" "size_jitter" size_jitter in 0.0..=4.0, "Size ±",
         "How far a dab's size may be from the brush's, in doublings";
     "rate" "per_diameter" rate.per_diameter in 0.0..=200.0, "Dabs a diameter",
-        "Dabs beside those of the spacing, along the brush's own diameter";
+        "Dabs in addition to those of the spacing, per diameter of the brush";
     "rate" "per_sec" rate.per_sec in 0.0..=200.0, "Dabs a second",
-        "Dabs while time passes, also where the pen rests";
+        "Dabs per second, even while the pen rests";
     "offset" "amount" offset.amount in -10.0..=10.0, "Offset",
-        "How far beside the stroke dabs stand, in diameters";
+        "How far from the stroke dabs are placed, in diameters";
     "offset" "turn" offset.turn_degrees in -360.0..=360.0, "Offset turn",
-        "To where dabs stand beside the stroke, degrees counter-clockwise";
+        "In which direction dabs are placed from the stroke, degrees counter-clockwise";
     "hand" "tremor" hand.tremor in 0.0..=20.0, "Tremor",
         "How far the hand shakes, in diameters";
     "hand" "lag" hand.lag_dabs in 0.0..=100.0, "Lag",
-        "After how many dabs the stroke comes to where the pen is";
+        "How many dabs the stroke lags behind the pen";
     "hand" "lead" hand.lead_secs in -1.0..=1.0, "Lead",
-        "Dabs stand where the pen would be so many seconds later";
+        "Dabs are placed where the pen would be so many seconds later";
     "hand" "direction" hand.direction_px in 0.0..=1000.0, "Steadiness",
-        "The way in pixels over which the stroke's direction is averaged";
+        "The distance in pixels over which the stroke's direction is averaged";
     "hand" "pace" hand.pace_secs in 0.0..=10.0, "Pace over",
         "Seconds over which the pace is averaged";
     "hand" "slow_pace" hand.slow_pace_secs in 0.0..=10.0, "Slow pace over",
@@ -121,15 +121,15 @@ settings! {
     "cycle" "length" cycle.length in 0.01..=10_000.0, "Cycle",
         "How far the cycle takes to rise, in diameters";
     "cycle" "hold" cycle.hold in 0.0..=10.0, "Cycle hold",
-        "How long the cycle stays up, of its length; 10 is for ever";
+        "How long the cycle stays at 1, relative to its length; 10 is for ever";
     "cycle" "pressure" cycle.pressure in 0.0..=1.0, "Cycle pressure",
         "The pressure that the cycle begins at";
     "pickup" "amount" pickup.amount in 0.0..=1.0, "Picks up",
         "How much of its paint the brush takes from a paint layer instead of its own colour";
     "pickup" "length" pickup.length in 0.0..=1.0, "Carries",
-        "How much of the paint that it took up is still there a dab later";
+        "How much of the picked-up paint is left one dab later";
     "pickup" "radius" pickup.radius in 0.05..=20.0, "Reaches",
-        "The radius that it takes paint up from, of the dab's";
+        "The radius that paint is picked up from, relative to the dab's";
 }
 
 #[cfg(test)]

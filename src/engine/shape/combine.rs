@@ -25,7 +25,7 @@ pub enum Combine {
 }
 
 impl Combine {
-    /// Every way with its name in documents; a union's smoothness is a number of its own, which `named!` has no place for.
+    /// Every way with its name in documents; a union has a number of its own, for which `named!` has no place.
     pub const ALL: [(Combine, &'static str); 5] = [
         (Combine::Over, "over"),
         (Combine::Union { smooth: Combine::DEFAULT_SMOOTH }, "union"),

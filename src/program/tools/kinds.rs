@@ -48,13 +48,13 @@ rilievo_engine::named! {
         ),
         Assistants = "assistants" => (
             "Assistants",
-            "Drag to lay an assistant, or a handle of one or of the symmetry's axes; Alt-click takes one away. \
-             Strokes go along them",
+            "Drag to add an assistant, or to move a handle of one or of the axes of symmetry; Alt-click removes \
+             one. Strokes follow them",
         ),
         Crop = "crop" => (
             "Crop",
             "Drag a frame, also beyond the canvas, and its handles; Shift keeps the aspect. Enter crops, Escape \
-             gives up",
+             cancels",
         ),
         Strokes = "strokes" => (
             "Strokes",
@@ -72,15 +72,15 @@ rilievo_engine::named! {
         Sculpt = "sculpt" => ("Sculpt", "Paint height on a part; Ctrl lowers what raises, Shift smooths"),
         SelectRectangle = "select rectangle" => (
             "Select rectangle",
-            "Drag a rectangle to select. Shift adds, Alt takes away, both intersect; a drag inside moves it",
+            "Drag a rectangle to select. Shift adds, Alt subtracts, both intersect; dragging inside moves it",
         ),
         SelectEllipse = "select ellipse" => (
             "Select ellipse",
-            "Drag an ellipse to select; Ctrl makes it a circle. Shift adds, Alt takes away, both intersect",
+            "Drag an ellipse to select; Ctrl makes it a circle. Shift adds, Alt subtracts, both intersect",
         ),
         Lasso = "lasso" => (
             "Lasso",
-            "Drag to select freely, or click corner by corner; Enter or the first corner closes, Escape gives up",
+            "Drag to select freely, or click corner by corner; Enter or the first corner closes it, Escape cancels",
         ),
         Wand = "wand" => (
             "Wand",

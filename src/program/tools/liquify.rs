@@ -14,7 +14,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     };
     let why = match &layer.content {
         _ if layer.lock == LayerLock::All => Some("The layer is locked."),
-        Content::Fill(_) => Some("A layer of one colour looks the same however it is displaced."),
+        Content::Fill(_) => Some("A layer of one colour looks the same when it is displaced."),
         content if !content.can_be_warped() => Some("This layer shows nothing of its own that could be displaced."),
         _ => None,
     };

@@ -52,9 +52,10 @@ pub(super) fn refused(context: &ToolContext, pen: PenSample, purpose: StrokePurp
     let layer = context.layer.and_then(|id| context.document.layer(id));
     if !layer.is_some_and(|layer| matches!(layer.content, Content::Pixels(_))) {
         return Some(Outcome::Refused(if mode.is_retouching() {
-            "Smudge, blur and clone work on paint layers: choose one, or bake this layer."
+            "Smudge, blur and clone work on paint layers. Select one, or bake this layer."
         } else {
-            "This brush paints with what it picks up, which only paint layers have: choose one, or bake this layer."
+            "This brush paints with paint that it picks up, which only paint layers have. Select one, or bake this \
+             layer."
         }));
     }
     let has_source = !mode.is_clone() || context.clone_offset.is_some();

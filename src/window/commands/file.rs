@@ -56,7 +56,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Export unwrapped…",
         &[],
-        "The painting as it lies on the surface laid flat: to paint a pattern over it in another program",
+        "The painting on the unwrapped surface, to paint a pattern over it in another program",
         has_surface,
         |_, requests| requests.request(WindowRequest::ExportUnwrappedDialog),
     ),
@@ -71,7 +71,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Import unwrapped…",
         &[],
-        "A picture of the surface laid flat as a layer that lies on the surface, where the export has it",
+        "A picture of the unwrapped surface as a layer on the surface, placed as it was exported",
         has_surface,
         |_, requests| requests.request(WindowRequest::Choose(FilePurpose::ImportUnwrapped)),
     ),

@@ -19,7 +19,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Rulers",
         &[ctrl(Key::R)],
-        "Rulers along the edges of the view; guides are pulled out of them, and dragged back",
+        "Rulers along the edges of the view; drag guides out of them, and back to remove them",
         always,
         |session, requests| set(session, requests, |aids| aids.rulers ^= true),
     )
@@ -32,7 +32,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         set(session, requests, |aids| aids.locked ^= true)
     })
     .ticked(|session, _| session.aids.locked),
-    row("Clear guides", &[], "Takes all guides away", has_document, |_, requests| {
+    row("Clear guides", &[], "Removes all guides", has_document, |_, requests| {
         requests.act(Action::Guide(GuideAction::Clear {}))
     }),
     LINE,
@@ -50,7 +50,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Snap",
         &[ctrl_shift(Key::Semicolon)],
-        "What is dragged goes to guides, the grid, edges and middles that come within eight points",
+        "Dragged things snap to guides, the grid, edges and middles within eight points",
         always,
         |session, requests| set(session, requests, |aids| aids.snaps ^= true),
     )
@@ -59,14 +59,14 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Draw along assistants",
         &[ctrl_shift(Key::L)],
-        "Strokes go along the lines of assistants, or freely",
+        "Strokes follow the lines of assistants, or nothing",
         always,
         |session, requests| {
             set(session, requests, |aids| aids.magnetism = if aids.magnetism > 0.0 { 0.0 } else { 1.0 })
         },
     )
     .ticked(|session, _| session.aids.magnetism > 0.0),
-    row("Clear assistants", &[], "Takes all assistants away", has_document, |_, requests| {
+    row("Clear assistants", &[], "Removes all assistants", has_document, |_, requests| {
         requests.act(Action::Guide(GuideAction::Assistants { assistants: Vec::new() }))
     }),
 ];

@@ -16,7 +16,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     row("Crop to selection", &[], "The canvas becomes the rectangle around all that is selected", always, |_, r| {
         act(r, CanvasAction::CropToSelection {})
     }),
-    row("Trim canvas", &[], "Takes away borders on which nothing is painted", always, |_, requests| {
+    row("Trim canvas", &[], "Removes borders that hold no paint", always, |_, requests| {
         act(requests, CanvasAction::Trim {})
     }),
     row(
@@ -29,7 +29,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Image size…",
         &[],
-        "Makes the whole picture larger or smaller; what is live stays sharp",
+        "Makes the whole picture larger or smaller; live layers stay sharp",
         has_document,
         |_, requests| requests.request(WindowRequest::ImageSizeDialog),
     ),

@@ -82,7 +82,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "New stroke layer",
         &[],
-        "Strokes stay strokes: each can be moved along the surface later",
+        "Strokes stay editable: each can be moved along the surface later",
         has_document,
         |_, requests| add(requests, NewLayer::Strokes),
     ),
@@ -109,7 +109,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Give it a shape…",
         &[],
-        "Makes a shape of what the drawing covers: one part or a part for each colour, lit, to be painted on",
+        "Makes a lit shape from the drawing, in one part or a part for each colour, to paint on",
         has_document,
         |_, requests| requests.request(WindowRequest::ShapeDialog),
     ),
@@ -117,14 +117,14 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Layer via copy",
         &[ctrl(Key::J)],
-        "A new layer with what is selected of this one; without a selection a copy of all of it",
+        "Copies the selected pixels of this layer to a new one; without a selection, all of it",
         has_layer,
         |_, requests| requests.act(Action::Clipboard(ClipboardAction::LayerVia { cut: false })),
     ),
     row(
         "Layer via cut",
         &[ctrl_shift(Key::J)],
-        "What is selected of this layer is taken out of it to a new one",
+        "Moves the selected pixels of this layer to a new one",
         has_layer,
         |_, requests| requests.act(Action::Clipboard(ClipboardAction::LayerVia { cut: true })),
     ),
@@ -155,14 +155,14 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Move layer up",
         &[ctrl(Key::PageUp)],
-        "Moves the chosen layers above the next one",
+        "Moves the selected layers above the next one",
         has_layer,
         |session, requests| with_chosen(session, requests, |layer| LayerAction::Nudge { layer, by: 1 }),
     ),
     row(
         "Move layer down",
         &[ctrl(Key::PageDown)],
-        "Moves the chosen layers below the next one",
+        "Moves the selected layers below the next one",
         has_layer,
         |session, requests| with_chosen(session, requests, |layer| LayerAction::Nudge { layer, by: -1 }),
     ),
@@ -198,7 +198,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Merge down",
         &[ctrl(Key::E), ctrl_shift(Key::M)],
-        "This layer and the one beneath it, or all chosen ones, become one paint layer",
+        "Makes one paint layer of this layer and the one below it, or of all selected ones",
         has_document,
         |session, requests| with_chosen(session, requests, |layer| LayerAction::MergeDown { layer }),
     ),
@@ -212,7 +212,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Flatten picture",
         &[ctrl_shift(Key::E)],
-        "Everything visible becomes one paint layer",
+        "Makes one paint layer of everything visible",
         has_layer,
         |_, requests| requests.act(Action::Layer(LayerAction::Flatten {})),
     ),

@@ -65,14 +65,15 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Mask from selection",
         &[],
-        "The layer shows only what is selected; a selection by the surface goes on following it",
+        "The layer shows only what is selected; a selection by the surface keeps following the surface",
         has_document,
         |session, requests| of_layer(session, requests, |layer| SelectionAction::ToMask { layer }),
     ),
     row(
         "Quick mask",
         &[],
-        "The brush changes the selection: white selects, black and the eraser take away; the rest is seen under red",
+        "The brush changes the selection: white selects, black and the eraser deselect; what is not selected is \
+         shown in red",
         has_document,
         |session, requests| {
             let on = session.active().is_some_and(|tab| !tab.quick_mask);
@@ -81,7 +82,11 @@ pub const COMMANDS: &[MenuCommand] = &[
     )
     .ticked(|session, _| session.active().is_some_and(|tab| tab.quick_mask)),
     LINE,
-    row("Keep selection…", &[], "Keeps the selection by a name, with the document", has_document, |_, requests| {
-        requests.request(WindowRequest::KeepDialog)
-    }),
+    row(
+        "Keep selection…",
+        &[],
+        "Saves the selection under a name, with the document",
+        has_document,
+        |_, requests| requests.request(WindowRequest::KeepDialog),
+    ),
 ];

@@ -21,7 +21,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         is_transformed,
         |session, requests| with_chosen(session, requests, |layer| LayerAction::ApplyTransform { layer }),
     ),
-    row("Remove transform", &[], "The layer goes back to where it was made", is_transformed, |session, requests| {
+    row("Remove transform", &[], "Moves the layer back to where it was made", is_transformed, |session, requests| {
         with_chosen(session, requests, |layer| {
             let to = Property::Transformed { transform: None };
             LayerAction::Set { layer, to, done: true }

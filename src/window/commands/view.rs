@@ -141,7 +141,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Unwrapped",
         &[alt(Key::Num9)],
-        "The surface laid flat, to paint on: what is drawn straight here lies bent on the form",
+        "The surface unwrapped, to paint on: what you draw straight here bends around the form",
         has_surface,
         |session, requests| match is_unwrapped(session) {
             true => view(requests, ViewAction::Unwrapped { on: false }),

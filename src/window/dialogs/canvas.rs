@@ -61,7 +61,7 @@ impl CanvasSides {
                 ui.end_row();
             }
         });
-        let hint = "One side follows the other";
+        let hint = "Changing one side changes the other";
         let locked = ui.checkbox(&mut self.keeps_aspect, "Keep the aspect").on_hover_text(hint).changed();
         if self.keeps_aspect && (wider || locked) {
             self.height = held(self.width as f32 * h / w);
@@ -142,7 +142,7 @@ impl ImageSizeDialog {
     pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
         ui.set_width(360.0);
         ui.heading("Image size");
-        ui.weak("Paint is sampled; strokes, images, gradients and the shape are made anew, as sharp as before.");
+        ui.weak("Paint is resampled; strokes, images, gradients and the shape are rendered again, as sharp as before.");
         self.sides.show(ui);
         ui.horizontal(|ui| {
             ui.label("Paint is sampled");

@@ -29,7 +29,7 @@ impl Default for ExportDialog {
 const FORMATS: [(&str, &str); 6] = [
     ("png", "PNG: keeps transparency"),
     ("tif", "TIFF: keeps transparency"),
-    ("exr", "EXR: linear light, keeps what is brighter than white"),
+    ("exr", "EXR: linear light, keeps values brighter than white"),
     ("jpg", "JPEG: small, opaque"),
     ("webp", "WebP: lossless, small"),
     ("psd", "PSD: the layers for Photoshop, live ones as pixels"),

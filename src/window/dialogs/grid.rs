@@ -31,7 +31,7 @@ type Choice = fn(&mut ViewAids) -> &mut bool;
 
 const CHOICES: [(&str, &str, Choice); 6] = [
     ("Show grid", "Lines at equal distances over the picture", |aids| &mut aids.grid_shown),
-    ("Snap", "What is dragged goes to lines that come within eight points", |aids| &mut aids.snaps),
+    ("Snap", "Dragged things snap to lines within eight points", |aids| &mut aids.snaps),
     ("To guides", "As long as they are shown", |aids| &mut aids.to_guides),
     ("To the grid", "As long as it is shown", |aids| &mut aids.to_grid),
     ("To the canvas", "Its edges and its middle", |aids| &mut aids.to_canvas),

@@ -24,7 +24,7 @@ impl Replace {
         ui.heading(format!("Replace “{name}”?"));
         ui.label(format!("{}: {}.", pending.file().display(), self.reason));
         if matches!(pending, Pending::Save(_)) {
-            ui.weak(format!("What it holds now is kept as “{name}~”."));
+            ui.weak(format!("Its present content is kept as “{name}~”."));
         }
         match buttons(ui, "Replace", true) {
             Some(true) => self.pending.take().map_or(DialogAnswer::Close, DialogAnswer::Replace),

@@ -82,7 +82,7 @@ impl ShapeDialog {
         ui.add_enabled_ui(self.look.colors > 1, |ui| ui.radio_value(&mut self.flats, true, text));
         self.preset = presets(ui, self.preset).unwrap_or(self.preset);
         if matches!(self.look.background, FigureBackground::Flat(_)) {
-            ui.weak("Its one-coloured background becomes a layer of its own, beneath.");
+            ui.weak("Its one-coloured background becomes a separate layer below.");
         }
         let no = if self.is_first { "Only paint" } else { "Cancel" };
         match answers(ui, "Give it a shape", no, true) {

@@ -29,8 +29,8 @@ impl UnwrappedDialog {
     }
     pub fn show(&mut self, ui: &mut Ui, session: &Session) -> DialogAnswer {
         ui.set_width(320.0);
-        ui.heading("Export the surface laid flat");
-        ui.weak("Painted over in another program and imported unwrapped, it lies on the surface where it was.");
+        ui.heading("Export the unwrapped surface");
+        ui.weak("Paint over it in another program and import it unwrapped: it returns to its place on the surface.");
         for scale in UnwrapOptions::SCALE.filter(|scale| scale.is_power_of_two()) {
             let about = match scale {
                 1 => "As large as on the surface".to_owned(),

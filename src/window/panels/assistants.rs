@@ -11,7 +11,7 @@ use crate::widgets::NumberField;
 use eframe::egui::{Button, Ui};
 
 const KINDS: [(AssistantKind, &str, &str); 6] = [
-    (AssistantKind::Line, "Line", "Drag from end to end; strokes that begin beside it are straight"),
+    (AssistantKind::Line, "Line", "Drag from end to end; strokes that begin near it are straight"),
     (AssistantKind::Parallel, "Parallel lines", "Drag the direction that strokes have everywhere"),
     (AssistantKind::Ellipse, "Ellipse", "Drag one axis; its third handle sets the other"),
     (AssistantKind::OnePoint, "1-point perspective", "Click the vanishing point; level and upright lines go too"),
@@ -28,7 +28,7 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         }
     }
     ui.add_space(6.0);
-    let hint = "How strongly strokes are drawn to assistants: 0 not at all, 1 wholly";
+    let hint = "How strongly strokes are drawn to assistants: 0 not at all, 1 fully";
     let magnetism = NumberField::new("Magnetism", crate::math::UNIT, hint);
     if let Some(changed) = magnetism.inline(ui, aids.magnetism, 80.0) {
         set(ViewAids { magnetism: changed.to, ..aids });

@@ -153,8 +153,8 @@ fn grain(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     number(ui, NumberField::new("Strength", 0.0..=1.0, "How much paint its valleys lose"), &mut to.strength);
     number(ui, NumberField::new("Turn", -180.0..=180.0, "Counter-clockwise").degrees(), &mut to.rotation);
     const SPACES: [(&str, GrainSpace, &str); 3] = [
-        ("On the canvas", GrainSpace::Canvas, "The grain lies on the flat canvas"),
-        ("On the surface", GrainSpace::Unwrapped, "The grain lies on the surface, equally large all over it"),
+        ("On the canvas", GrainSpace::Canvas, "The grain is flat on the canvas"),
+        ("On the surface", GrainSpace::Unwrapped, "The grain follows the surface, at the same size everywhere"),
         ("By depth", GrainSpace::Surface { gamma: 1.0 }, "The grain is larger where the surface is nearer"),
     ];
     ui.horizontal_wrapped(|ui| {
@@ -247,7 +247,7 @@ fn habits(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     let chosen = choice_row(ui, "Offset from", to.offset.from, &Bearing::ALL);
     took(chosen.is_some());
     to.offset.from = chosen.unwrap_or(to.offset.from);
-    let chosen = check(ui, "Sides take turns", "Every other dab stands on the other side", to.offset.alternates);
+    let chosen = check(ui, "Sides take turns", "Every other dab is on the other side", to.offset.alternates);
     took(chosen.is_some());
     to.offset.alternates = chosen.unwrap_or(to.offset.alternates);
     let chosen = choice_row(ui, "Scatter as", to.spread, &Spread::ALL);

@@ -49,7 +49,7 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         requests.act(crop::apply(frame));
     }
     let drops = ui.add_enabled(session.crop.is_some(), Button::new("Give up"));
-    if drops.on_hover_text("Takes the frame away (Escape)").clicked() {
+    if drops.on_hover_text("Removes the frame (Escape)").clicked() {
         requests.act(Action::Canvas(CanvasAction::Frame { frame: None }));
     }
 }

@@ -20,7 +20,7 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     ui.add_space(6.0);
     let field = NumberField::new("Size", LiquifySettings::SIZE, "Diameter of a dab ([ and ], or the right button)");
     to = field.px().inline(ui, now.size, 70.0).map(|c| LiquifySettings { size: c.to, ..now }).or(to);
-    let hint = "How much a dab does; a push at 1 goes as far as the pen. Pressure weakens it";
+    let hint = "How much a dab does; a push at 1 goes as far as the pen. Lighter pressure does less";
     let field = NumberField::new("Strength", LiquifySettings::STRENGTH, hint);
     to = field.inline(ui, now.strength, 60.0).map(|c| LiquifySettings { strength: c.to, ..now }).or(to);
     let mut next = now;
@@ -28,7 +28,7 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     if ui.checkbox(&mut next.one_object, "Keep to one object").on_hover_text(hint).changed() {
         to = Some(LiquifySettings { one_object: next.one_object, ..now });
     }
-    let hint = "Dabs, and how far they go, are measured along the surface: less where it turns away";
+    let hint = "Measures dabs and their movement along the surface: less where it turns away";
     if ui.checkbox(&mut next.foreshortened, "Foreshortened").on_hover_text(hint).changed() {
         to = Some(LiquifySettings { foreshortened: next.foreshortened, ..now });
     }

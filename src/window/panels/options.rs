@@ -46,11 +46,11 @@ fn bending(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         return transform::ways(ui, session, requests);
     }
     if session.tool == ToolKind::Crop {
-        return drop(ui.weak("Everything goes along with the canvas; paint beyond it is kept"));
+        return drop(ui.weak("Everything moves with the canvas; paint beyond it is kept"));
     }
     if session.tool.selects() {
         return drop(
-            ui.weak("Selections say where marks may land: every brush, fill, gradient and eraser keeps to them"),
+            ui.weak("Selections limit where you can paint: every brush, fill, gradient and eraser respects them"),
         );
     }
     let (whose, operator) = whose(session);
@@ -71,7 +71,7 @@ fn bending(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     }
     let has_surface = session.shown().is_none_or(|document| document.surface.is_some());
     if !has_surface && operator != Operator::None {
-        ui.colored_label(ui.visuals().warn_fg_color, "No surface here: marks lie flat");
+        ui.colored_label(ui.visuals().warn_fg_color, "No surface here: marks stay flat");
         let hint = "Makes a shape of what the drawing covers, so that marks bend over it and light falls on it";
         if ui.button("Give it a shape…").on_hover_text(hint).clicked() {
             requests.request(WindowRequest::ShapeDialog);

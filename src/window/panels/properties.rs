@@ -43,7 +43,7 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         Content::RadianceScaling(scaling) => material::radiance_scaling(ui, scaling, &mut setter),
         Content::Normals(normals) => normal_layer(ui, normals, &mut setter),
         Content::Group(group) => {
-            let hint = "Blend each layer with what lies beneath the group, as if the group were not there";
+            let hint = "Blend each layer with what is below the group, as if the group were not there";
             if let Some(on) = check(ui, "Pass through", hint, group.pass_through) {
                 setter.set(Property::PassThrough { on }, true);
             }

@@ -17,7 +17,7 @@ use eframe::egui::{Button, Ui};
 const WAYS: [(SelectionMode, &str, &str); 4] = [
     (SelectionMode::Replace, "New", "A new selection takes the place of the last"),
     (SelectionMode::Add, "Add", "A new selection is added to the last (Shift)"),
-    (SelectionMode::TakeAway, "Take away", "A new selection is taken away from the last (Alt)"),
+    (SelectionMode::TakeAway, "Take away", "A new selection is subtracted from the last (Alt)"),
     (SelectionMode::Intersect, "Intersect", "Only what is in both stays selected (Shift with Alt)"),
 ];
 

@@ -89,7 +89,7 @@ fn sculpting(ui: &mut Ui, now: ShapeSettings) -> Option<ShapeSettings> {
     let field =
         NumberField::new("Size", SculptStroke::SIZE, "Diameter of a dab ([ and ], or drag with the right button)");
     to = field.px().inline(ui, now.size, 70.0).map(|c| ShapeSettings { size: c.to, ..now }).or(to);
-    let field = NumberField::new("Hardness", SculptStroke::HARDNESS, "How much of the dab is whole");
+    let field = NumberField::new("Hardness", SculptStroke::HARDNESS, "How much of the dab is fully covered");
     to = field.inline(ui, now.hardness, 50.0).map(|c| ShapeSettings { hardness: c.to, ..now }).or(to);
     let changed = match now.tool.is_by_height() {
         true => {
@@ -98,7 +98,7 @@ fn sculpting(ui: &mut Ui, now: ShapeSettings) -> Option<ShapeSettings> {
             changed.map(|c| ShapeSettings { height: c.to, ..now })
         }
         false => {
-            let field = NumberField::new("Strength", crate::math::UNIT, "How far a dab goes of the way it could");
+            let field = NumberField::new("Strength", crate::math::UNIT, "How strong a dab is");
             field.inline(ui, now.share, 60.0).map(|c| ShapeSettings { share: c.to, ..now })
         }
     };
@@ -114,7 +114,7 @@ fn about(tool: SculptTool) -> &'static str {
         SculptTool::Flatten => "Toward the plane under the first dab",
         SculptTool::Crease => "A sharp line inward",
         SculptTool::Pinch => "Draws heights together toward the middle",
-        SculptTool::Scrape => "Levels what stands out, and nothing else",
+        SculptTool::Scrape => "Lowers only what stands out",
     }
 }
 

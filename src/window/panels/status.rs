@@ -51,7 +51,7 @@ pub fn show(
         ui.weak(document.size.to_string());
         if tab.unwrapped().is_some() {
             ui.label("Unwrapped")
-                .on_hover_text("You paint on the surface laid flat; View, Unwrapped shows the picture");
+                .on_hover_text("You are painting on the unwrapped surface; View, Unwrapped shows the picture");
         }
         ui.separator();
         if let Some(rect) = canvas.selected().filter(|_| document.active_selection.is_some()) {
@@ -84,7 +84,7 @@ pub fn show(
             let used = memory.documents(session, kept_share, is_idle);
             memory_menu(ui, memory, kept_share, used, requests);
             if document.surface.is_none() {
-                ui.weak("No surface: marks lie flat");
+                ui.weak("No surface: marks stay flat");
             }
         });
     });

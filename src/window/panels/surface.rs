@@ -14,7 +14,7 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         return;
     };
     let Some(surface) = &document.surface else {
-        ui.label("This document has no surface: marks lie flat.");
+        ui.label("This document has no surface: marks stay flat.");
         if ui.button("Give it a shape…").on_hover_text("Of what the drawing covers").clicked() {
             requests.request(WindowRequest::ShapeDialog);
         }
@@ -81,7 +81,7 @@ fn about(view: SurfaceView) -> &'static str {
         SurfaceView::Weights => "How the anchors of the selected layer share the surface",
         SurfaceView::FlowDepth => "How a texture on the surface is compressed",
         SurfaceView::FlowNormals => "How a reflection is compressed",
-        SurfaceView::Unwrapped => "The painting as it lies in the plane of the surface unwrapped",
+        SurfaceView::Unwrapped => "The painting in the plane of the unwrapped surface",
         SurfaceView::FlowOperator => "How the selected layer's operator compresses its image",
         SurfaceView::Scaling => {
             "Radiance scaling: how much light of each brightness is raised on convex and lowered on concave parts"

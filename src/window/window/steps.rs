@@ -13,7 +13,7 @@ type HintStep = (&'static str, &'static str, fn(&Session) -> bool);
 const STEPS: [HintStep; 3] = [
     ("Drop a photo on the shape", "It bends over it like a reflection. Or File, Place image…", has_image),
     ("Paint highlights", "Brush (B), operator Shading (F3): strokes follow the form", has_bent_stroke),
-    ("Move what you made", "Anchors (A) carry the photo along the surface, Move (V) a stroke", has_moved),
+    ("Move what you made", "Anchors (A) move the photo along the surface, Move (V) a stroke", has_moved),
 ];
 
 fn any(session: &Session, is: impl Fn(&Content) -> bool) -> bool {

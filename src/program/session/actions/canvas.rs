@@ -98,7 +98,7 @@ impl CanvasAction {
             CanvasAction::Size { width, height, anchor } => {
                 let to = allowed(*width, *height)?;
                 let change = CanvasChange::resized(size, to, *anchor);
-                ("Canvas size", change.ok_or("A canvas has one pixel at least.")?)
+                ("Canvas size", change.ok_or("A canvas has at least one pixel.")?)
             }
             CanvasAction::Scale { width, height, filter } => {
                 let to = allowed(*width, *height)?;

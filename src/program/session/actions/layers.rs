@@ -41,7 +41,7 @@ actions! {
         "nudge" Nudge { layer: LayerPaths, by: i32 }
         /// One layer with the one beneath it; several with each other.
         "merge down" MergeDown { layer: LayerPaths }
-        /// Everything visible becomes one paint layer.
+        /// Makes one paint layer of everything visible.
         "flatten" Flatten {}
         /// A live layer becomes paint.
         "bake" Bake { layer: LayerPaths }

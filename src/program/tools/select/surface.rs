@@ -16,7 +16,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     };
     let told = SurfaceRegion { at: pen.place(), ..context.select.region };
     let Some(field) = RegionField::new(surface, told.kind, told.at) else {
-        return (None, Outcome::Refused("Click on the surface: beside it there is nothing to select by."));
+        return (None, Outcome::Refused("Click on the surface: outside it there is nothing to select by."));
     };
     let mut gesture = RegionGesture {
         document: context.document.clone(),

@@ -70,11 +70,11 @@ pub fn held(layout: &PlaneLayout, at: Vec2, px_per_pt: f32, keys: ModifierKeys) 
 pub fn press(context: &ToolContext, pen: PenSample, layout: &PlaneLayout) -> GestureStart {
     let layer = context.layer.and_then(|id| context.document.layer(id)).filter(|layer| layer.lock != LayerLock::All);
     let Some((layer, Content::Image(live))) = layer.map(|layer| (layer, &layer.content)) else {
-        return (None, Outcome::Refused("Choose an image layer: it is moved, scaled and turned on one piece"));
+        return (None, Outcome::Refused("Select an image layer to move, scale and turn it on one piece"));
     };
     let image = live.params();
     if image.bend.operator.unwrapping().is_none() {
-        return (None, Outcome::Refused("This image is bent otherwise: only one bent by Texture lies on pieces"));
+        return (None, Outcome::Refused("Only an image bent by Texture can be moved on one piece"));
     }
     let Some(surface) = context.document.surface.clone() else { return (None, Outcome::Idle) };
     let Some((piece, how)) = held(layout, pen.place(), context.px_per_pt, pen.keys) else {

@@ -82,22 +82,22 @@ fn own_curve(curve: &Curve) -> Option<BevelCurve> {
 pub fn lines(ui: &mut Ui, now: Lines) -> Option<ValueChange<Lines>> {
     let form = choice_row(ui, "Lines are", now.form, &LineForm::ALL)
         .map(|form| ValueChange { to: Lines { form, ..now }, done: true });
-    let hint = "How far the form turns beside a line";
+    let hint = "How far the form turns next to a line";
     let angle = degrees("Angle", &Lines::ANGLE, hint, now.angle_deg).show(ui, |angle_deg| Lines { angle_deg, ..now });
     let hint = "How far a line is felt; 0: to the rim and to the next lines";
     let reach = length("Reach", &Lines::REACH, hint, now.reach).show(ui, |reach| Lines { reach, ..now });
     ui.weak(match now.form {
         LineForm::Ridge => "The form falls away on both sides of a line.",
         LineForm::Valley => "The form rises on both sides of a line.",
-        LineForm::Over => "What lies on the inner side of a line's bend turns away at it, before what lies behind.",
-        LineForm::Under => "What lies on the outer side of a line's bend turns away at it, before what lies behind.",
+        LineForm::Over => "The inner side of a line's bend turns away at it, in front of what is behind.",
+        LineForm::Under => "The outer side of a line's bend turns away at it, in front of what is behind.",
     });
     form.or(angle).or(reach)
 }
 
 /// The light of each shading.
 pub fn profiles(ui: &mut Ui, now: &[ProfilePicture]) -> Option<ValueChange<Vec<ProfilePicture>>> {
-    ui.weak("Where the light stands in each shading: drag the ball.");
+    ui.weak("Where the light comes from in each shading: drag the ball.");
     let mut changed = None;
     for (i, shading) in now.iter().enumerate() {
         let with = |light: Vec3| {
@@ -136,9 +136,9 @@ fn light(ui: &mut Ui, label: &str, now: Vec3) -> Option<ValueChange<Vec3>> {
 }
 
 pub fn relief(ui: &mut Ui, now: Detail) -> Option<ValueChange<Detail>> {
-    let coarse = length("Coarse", &Detail::HEIGHT, "How high the coarse detail stands", now.coarse)
+    let coarse = length("Coarse", &Detail::HEIGHT, "How high the coarse detail is", now.coarse)
         .show(ui, |coarse| Detail { coarse, ..now });
-    let fine = length("Fine", &Detail::HEIGHT, "How high the fine detail stands", now.fine)
+    let fine = length("Fine", &Detail::HEIGHT, "How high the fine detail is", now.fine)
         .show(ui, |fine| Detail { fine, ..now });
     let radius = length("Radius", &Detail::RADIUS, "What is larger is form, not detail", now.radius)
         .show(ui, |radius| Detail { radius, ..now });

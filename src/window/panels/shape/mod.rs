@@ -103,10 +103,10 @@ fn head(ui: &mut Ui, session: &Session, document: &Document, requests: &mut UiRe
 /// What to do where there are no parts yet.
 fn begin(ui: &mut Ui, document: &Document, requests: &mut UiRequests) {
     ui.label(match document.surface {
-        Some(_) => "The shape is that of the maps. Parts stand in front of it.",
-        None => "This drawing has no shape yet: marks lie flat.",
+        Some(_) => "The shape comes from the maps. Parts are in front of it.",
+        None => "This drawing has no shape yet: marks stay flat.",
     });
-    let hint = "What the drawing covers is filled with air, in one part or a part for each colour, and lit";
+    let hint = "Inflates what the drawing covers, in one part or a part for each colour, and lights it";
     if ui.button("Give it a shape…").on_hover_text(hint).clicked() {
         requests.request(WindowRequest::ShapeDialog);
     }

@@ -22,7 +22,7 @@ pub fn show(ui: &mut Ui, part: &Part) -> Option<ValueChange<Part>> {
         OutlineSource::Layer { layer, color: None } => format!("Follows the layer “{layer}”"),
         OutlineSource::Layer { layer, color: Some(color) } => format!("Follows the colour {color} of “{layer}”"),
         OutlineSource::Object(object) => format!("Follows object {object} of the maps"),
-        _ => "Keeps the outline that was selected".to_owned(),
+        _ => "Uses the outline that was selected".to_owned(),
     });
     if let Some(source) = source {
         ui.weak(source);

@@ -12,7 +12,7 @@ use std::sync::Arc;
 pub struct Group {
     /// Bottom first.
     pub layers: Vec<Arc<Layer>>,
-    /// Blend each layer with what lies beneath the group, as if the group were not there.
+    /// Blend each layer with what is below the group, as if the group were not there.
     pub pass_through: bool,
 }
 

@@ -33,7 +33,7 @@ impl LayerAction {
             LayerAction::Mesh { layer, columns, rows } if [columns, rows].iter().all(|n| Mesh::SIDE.contains(n)) => {
                 chosen(layer).and_then(|ids| match ids.iter().all(shows) {
                     true => Ok(()),
-                    false => Err("There is nothing on the layer that a mesh could displace."),
+                    false => Err("The layer holds nothing that a mesh could displace."),
                 })
             }
             LayerAction::Mesh { .. } => Err("A mesh has 2 to 33 points along a side."),

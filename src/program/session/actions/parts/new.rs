@@ -25,7 +25,7 @@ rilievo_engine::named! {
         Torus = "torus" => ("Torus", "A ring"),
         Box = "box" => ("Box", "A block with round edges"),
         Lathe = "lathe" => ("Lathe", "What the selected layer covers, turned about its axis: vases, bottles"),
-        Sweep = "sweep" => ("Sweep", "Balls along the chosen stroke, as wide as the pen pressed: tails, tentacles"),
+        Sweep = "sweep" => ("Sweep", "A tube along the selected stroke, as wide as the pen pressed: tails, tentacles"),
         Touches = "touches" => ("Touches", "Normals put down by hand on the chosen part"),
         Sculpt = "sculpt" => ("Sculpt", "Heights sculpted by hand on the chosen part"),
         Lines = "lines" => (
@@ -38,7 +38,7 @@ rilievo_engine::named! {
         ),
         Profiles = "profiles" => (
             "Lighting profiles",
-            "Of two to five chosen layers: greys of one drawing shaded by hand, each with the light elsewhere"
+            "From two to five selected layers: one drawing shaded by hand in greys, each lit from another side"
         ),
     }
 }
@@ -47,11 +47,11 @@ impl NewPart {
     /// Why nothing came of it.
     pub(super) fn why_empty(self) -> PartRefusal {
         match self {
-            NewPart::InflateSelection => "The selection holds no whole pixel, so it has no outline.",
+            NewPart::InflateSelection => "The selection covers no pixel fully, so it has no outline.",
             NewPart::Touches | NewPart::Sculpt | NewPart::Lines | NewPart::Relief => {
                 "The chosen part has no form to put anything on."
             }
-            NewPart::Profiles => "The chosen layers are black all over, so they say nothing of the light.",
+            NewPart::Profiles => "The selected layers are black all over, so they say nothing about the light.",
             _ => "The layer is empty, so it has no outline: paint on it, or select another.",
         }
     }
@@ -126,7 +126,7 @@ pub fn free_name(document: &Document, base: &str) -> String {
 /// The chosen part, or the one that it lies on.
 fn form_of_chosen(tab: &OpenDocument) -> Result<String, PartRefusal> {
     let part = tab.part.as_deref().and_then(|id| tab.document().parts.part(id));
-    let part = part.ok_or("No part is chosen. Add one first, or give the drawing a shape.")?;
+    let part = part.ok_or("No part is selected. Add one first, or give the drawing a shape.")?;
     Ok(part.on().unwrap_or(&part.id).to_owned())
 }
 
@@ -143,9 +143,7 @@ fn of_layer(tab: &OpenDocument) -> Result<OutlineSource, PartRefusal> {
         return Err("This layer paints nothing of its own, so it has no outline. Select another.");
     }
     if document.layer_named(&layer.name).is_none_or(|named| named.id != layer.id) {
-        return Err(
-            "Another layer has the same name; give this one a name of its own, by which its part will follow it.",
-        );
+        return Err("Another layer has the same name. Give this one a different name, so that its part can follow it.");
     }
     Ok(OutlineSource::Layer { layer: layer.name.clone(), color: None })
 }
