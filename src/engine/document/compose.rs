@@ -6,7 +6,7 @@ use super::behind::{Behind, BehindScene};
 use super::deep::DeepTiles;
 use super::layer::tile_content::TileContent;
 use super::prepare::{PreparedDocument, PreparedLayer};
-use super::{Role, mask};
+use super::{Content, Role, mask};
 use crate::raster::{BlendMode, Mix, PlanarTile, TILE, Tile, TileAt, TileCoverage, TilePaint};
 use crate::shading::RadianceScaling;
 use crate::shading::radiance::{BackdropStats, Exactness};
@@ -157,7 +157,11 @@ impl Composer<'_> {
                 None => behind.mix_into(&other, &mut pixels, 1.0),
             }
         }
-        pixels.quantised().map(Arc::new)
+        match node.has_deep_paint(at) {
+            true => pixels.kept_after(true),
+            false => pixels.quantised(),
+        }
+        .map(Arc::new)
     }
     fn painted_in_place(&self, node: &PreparedLayer) -> TileContent {
         if let (Some(deep), Some(marks)) = (self.deep, node.layer.content.marks()) {
@@ -225,6 +229,14 @@ impl Composer<'_> {
 }
 
 impl PreparedLayer {
+    /// Whether its paint, or that of a layer in it or clipped to it, has 16 bits on a tile.
+    pub(super) fn has_deep_paint(&self, at: TileAt) -> bool {
+        let own = match &self.layer.content {
+            Content::Pixels(pixels) => pixels.tiles.tile(at).is_some_and(|tile| tile.is_deep()),
+            _ => false,
+        };
+        own || self.children.iter().chain(&self.clipped).any(|node| node.has_deep_paint(at))
+    }
     fn seen_behind<'s>(&'s self, behind: Behind<'s>) -> BehindScene<'s> {
         BehindScene { behind, front: &self.scene, sheet: self.behind.as_ref() }
     }

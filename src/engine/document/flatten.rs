@@ -4,9 +4,8 @@
 use super::behind::Behind;
 use super::compose::Composer;
 use super::deep::{DeepTiles, Highlights};
-use super::prepare::PreparedLayer;
 use super::progress::in_parallel;
-use super::{Content, Document, Layer, LayerId, PreparedDocument, Progress};
+use super::{Document, Layer, LayerId, PreparedDocument, Progress};
 use crate::memory::filled_or_unwind;
 use crate::raster::{PlanarTile, Tile, TileAt, TileGrid};
 use std::sync::Arc;
@@ -133,7 +132,7 @@ impl PreparedDocument {
     /// A tile as a paint layer holds it: as it shows, but where that is soft.
     fn paint_tile(&self, at: TileAt, deep: &DeepTiles) -> Option<Arc<Tile>> {
         let alone = self.alone_in_tile(at).filter(|tile| tile.is_deep());
-        let was_deep = || has_deep_paint(&self.stack, at);
+        let was_deep = || self.stack.iter().any(|node| node.has_deep_paint(at));
         let soft = || self.compose_tile(at, Some(deep)).kept_after(was_deep()).filter(Tile::is_deep).map(Arc::new);
         alone.or_else(soft).or_else(|| self.flatten_tile(at))
     }
@@ -167,17 +166,6 @@ impl PreparedDocument {
         tiles.iter().zip(composed).for_each(|(&at, tile)| grid.set(at, tile));
         Some(grid)
     }
-}
-
-/// Whether the paint of some layer has 16 bits on a tile.
-fn has_deep_paint(nodes: &[PreparedLayer], at: TileAt) -> bool {
-    nodes.iter().any(|node| {
-        let is_deep = match &node.layer.content {
-            Content::Pixels(pixels) => pixels.tiles.tile(at).is_some_and(|tile| tile.is_deep()),
-            _ => false,
-        };
-        is_deep || has_deep_paint(&node.children, at) || has_deep_paint(&node.clipped, at)
-    })
 }
 
 #[cfg(test)]

@@ -38,6 +38,32 @@ fn lossless_formats_keep_their_bytes() {
     }
 }
 #[test]
+fn pictures_of_16_bits_become_paint_of_16_bits_whatever_way_they_are_read() {
+    let value = |x: u32, y: u32| (x * 911 + y * 77) as u16;
+    let pixel = |x: u32, y: u32| image::Rgba([value(x, y), 65535 - value(x, y), 300, 65000 - x as u16]);
+    let picture: image::ImageBuffer<image::Rgba<u16>, Vec<u16>> = image::ImageBuffer::from_fn(70, 130, pixel);
+    let deep: Vec<[u16; 4]> = picture.pixels().map(|p| p.0).collect();
+    let image = DynamicImage::ImageRgba16(picture);
+    let wanted = TileGrid::from_straight_deep(&deep, 70, 130, -9, 20);
+    // Krita writes its profile, which has to be looked at first.
+    let mut profiled = Vec::new();
+    let mut info = png::Info::with_size(70, 130);
+    info.icc_profile = Some(own_srgb().into());
+    (info.color_type, info.bit_depth) = (png::ColorType::Rgba, png::BitDepth::Sixteen);
+    let mut writer = png::Encoder::with_info(&mut profiled, info).unwrap().write_header().unwrap();
+    let bytes: Vec<u8> = deep.as_flattened().iter().flat_map(|v| v.to_be_bytes()).collect();
+    writer.write_image_data(&bytes).unwrap();
+    writer.finish().unwrap();
+    let files = [encoded(&image, ImageFormat::Png), encoded(&image, ImageFormat::Tiff), profiled];
+    for (file, name) in files.iter().zip(["a.png", "a.tif", "profiled.png"]) {
+        let found = painted(Path::new(name), file, -9, 20, &Budget::default()).unwrap();
+        assert_eq!(found.size, Size::new(70, 130));
+        assert!(wanted.iter().all(|(at, tile)| found.tiles.tile(at).is_some_and(|own| own.is_same(tile))), "{name}");
+    }
+    let short = Budget { memory_bytes: 200_000, ..Budget::default() };
+    assert!(painted(Path::new("profiled.png"), &files[2], 0, 0, &short).is_err());
+}
+#[test]
 fn sixteen_bits_are_kept_beside_the_bytes_that_they_round_to() {
     let deep = image::ImageBuffer::from_fn(300, 2, |x, y| image::Rgba([x as u16 * 211, 7, 40000, 65535 - y as u16]));
     for (format, name) in [(ImageFormat::Png, "a.png"), (ImageFormat::Tiff, "a.tif")] {

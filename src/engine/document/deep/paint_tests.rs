@@ -1,6 +1,6 @@
 //! Paint layers keep what was painted softly: beside what floats give, and what bytes would.
 
-use crate::document::{Content, Document, Highlights, Layer, Live, PixelLayer, Progress, StrokeList, flatten};
+use crate::document::{Content, Document, Group, Highlights, Layer, Live, PixelLayer, Progress, StrokeList, flatten};
 use crate::document::{flatten_deep, flatten_to_paint};
 use crate::math::{Size, Vec2, hash, srgb::Color, vec2};
 use crate::paint::stroke::{ActiveStrokes, Backdrop};
@@ -186,6 +186,16 @@ fn what_is_moved_scaled_cut_and_merged_stays_as_fine() {
     assert!(fine(&document(vec![paint(merged.unwrap())])) > 1000);
     let same = flatten_to_paint(&one, &Progress::default()).unwrap();
     assert!(same.iter().all(|(at, tile)| tile.is_same(soft.tile(at).unwrap())), "a layer alone is what it was");
+    // Liquified alone, and in a group that is liquified.
+    let mut lattice = crate::raster::Lattice::default();
+    lattice.change(SIZE.rect(), |_, _, _| vec2(0.37, 0.21));
+    let liquified = |layer: Layer| Layer { liquify: Some(Arc::new(lattice.clone())), ..layer };
+    let group = Group { layers: vec![Arc::new(paint(soft.clone()))], pass_through: false };
+    for layer in [paint(soft.clone()), Layer::new("group", Content::Group(group))] {
+        let shown = flatten_deep(&document(vec![liquified(layer)]), Highlights::Clipped, &Progress::default());
+        let found = levels(shown.unwrap().iter().map(|p| (p[3] * 65535.0).round() as u32));
+        assert!(found > 1000, "{found} levels");
+    }
     let noise: Vec<[u16; 4]> = (0..64 * 64).map(|i| [(hash::unit(i, 0, 0) * 65535.0) as u16; 4]).collect();
     let noise = TileGrid::from_straight_deep(&noise, 64, 64, 0, 0);
     let ink = painted(TileGrid::default(), [stroke(&Brush::default(), Color::WHITE, &[vec2(20.0, 20.0)])]);
