@@ -1,5 +1,5 @@
-//! What a file is asked for: the title of the dialog, the files to choose from, and how a new one is named.
-//! Floor 7. Asking is `files`'.
+//! What a file dialog is opened for: its title, the files to choose from, and the name of a new one. Floor 7.
+//! Asking is `files`'.
 
 use crate::session::PicturePart;
 use crate::session::brushes::EXTENSIONS;

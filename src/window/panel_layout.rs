@@ -1,5 +1,5 @@
-//! Where the panels stand: at which side, which in front, which in windows of their own.
-//! Floor 7. Keeping it from run to run is `settings`'.
+//! The layout of the panels: on which side, which in front, which in separate windows. Floor 7. Keeping it from run
+//! to run is `settings`'.
 
 rilievo_engine::named! {
     /// A panel that can stand beside the canvas or in a window of its own.

@@ -1,5 +1,5 @@
-//! What the window remembers from one run to the next: recent files, where panels stand, the theme, keys. A small JSON
-//! file in the user's folder for settings; one that is broken is told of and never keeps the program from starting.
+//! What the window remembers from one run to the next: recent files, where panels stand, the theme, keys. A small
+//! JSON file in the user's folder for settings; a broken one is reported and never keeps the program from starting.
 //! Floor 7. Replacing the file is `io::replace`'s.
 
 use super::jobs;

@@ -1,5 +1,5 @@
-//! Composing without rounding to bytes: live layers are rendered anew, in floats, for files of more than 8 bits.
-//! Floor 4. The rendering of marks is in `paint` and `shading`; how layers meet is `compose`'s.
+//! Composing without rounding to bytes: live layers are rendered again, in floats, for files of more than 8 bits.
+//! Floor 4. Not here: the rendering of marks (`paint`, `shading`), how layers meet (`compose`).
 
 use super::behind::Behind;
 use super::layer::marks::Marks;

@@ -1,5 +1,4 @@
-//! The box around what a layer holds, in its own frame: what a transform's handles stand around.
-//! Floor 4.
+//! The box around what a layer holds, in its own frame: what the handles of a transform surround. Floor 4.
 
 use super::{Content, Document, Layer, LayerId, LayerMap, Live, StrokeList};
 use crate::math::{PlaneMap, Rect, Vec2, vec2};

@@ -1,5 +1,5 @@
-//! Guides: straight lines across the canvas that the hand keeps to. A value of the document, no part of the picture.
-//! Floor 4. What snaps to them is the tools'.
+//! Guides: straight lines across the canvas that the hand keeps to. A value of the document, no part of the
+//! picture. Floor 4. Not here: what snaps to them (`tools`).
 
 use crate::math::range::{at_most, within};
 use crate::math::{COORDINATE, PlaneMap, Vec2, vec2};

@@ -1,5 +1,5 @@
-//! Edits of homes: what lies on which part of the shape. Whatever else changes, what lies there shows where it showed.
-//! Floor 4. How homes and transforms meet is `LayerMap`'s.
+//! Edits of homes: what lies on which part of the shape. Whatever else changes, what lies there shows where it
+//! showed. Floor 4. Not here: how homes and transforms meet (`LayerMap`).
 
 use super::layer::content::strokes::{SeenSelections, taken_along};
 use super::{

@@ -1,5 +1,5 @@
-//! What documents take of memory, counted value by value. Floor 4. Whose values these are is told by their owners, and by
-//! `count_memory`.
+//! The memory that documents use, counted value by value.
+//! Floor 4. Not here: whose values they are (their owners, `count_memory`).
 
 use crate::paint::{PictureSource, Selection, Stroke};
 use crate::raster::{CoverageGrid, TileGrid};

@@ -1,6 +1,6 @@
 //! Whether two documents are equal in what they hold, however it came about and wherever it lies in memory: what a
-//! save is compared with.
-//! Floor 4. Names of files are not part of it: a project gives them its own. What must be redrawn is `diff`'s.
+//! save is compared with. Floor 4. Names of files are not part of it: a project gives them its own. Not here: what
+//! must be redrawn (`diff`).
 
 use super::source::{MaskSource, SurfaceSource};
 use super::{Content, DetailSource, Document, Layer, LayerMask, MaskKind, NamedSelection, StrokeList};

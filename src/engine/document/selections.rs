@@ -1,5 +1,5 @@
-//! The selections of a document: the active one, those kept by name, and those that strokes were painted in.
-//! Floor 4. What a selection is stands in `paint::selection`; cutting and copying by one in `cut`.
+//! The selections of a document: the active one, the named ones, and those that strokes were painted in.
+//! Floor 4. Not here: what a selection is (`paint::selection`), cutting and copying by one (`cut`).
 
 use super::{Content, DerivedMask, Document, Layer, LayerMask, Live, MaskKind, StrokeList};
 use crate::paint::{Selection, Stroke, StrokeSelection};

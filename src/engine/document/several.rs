@@ -1,5 +1,5 @@
-//! Tree edits of several layers at once; what stands in a group that is among them goes along with it.
-//! Floor 4. Edits of one layer are in `edit`.
+//! Tree edits of several layers at once; the layers of a group among them move with it. Floor 4. Edits of one layer
+//! are in `edit`.
 
 use super::{Document, Layer, LayerId, LayerSlot};
 use std::sync::Arc;

@@ -1,5 +1,5 @@
-//! How much memory flattening a document takes beside the document itself, told before it begins.
-//! Floor 4. An estimate from above; what there is, floors above know.
+//! How much memory flattening a document takes in addition to the document, estimated before it begins. Floor 4. An
+//! estimate from above; what there is, floors above know.
 
 use super::{Content, DerivedMask, Document, Layer, LayerMask, StrokeList};
 use crate::math::Rect;

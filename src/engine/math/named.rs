@@ -1,5 +1,4 @@
-//! Enums whose choices have names in documents: the choices and their names stand once.
-//! Floor 0.
+//! Enums whose choices have names in documents: choices and names in one place. Floor 0.
 
 /// Declares an enum of plain choices together with their names: `ALL`, `name` and `from_name`. Where the window calls
 /// them otherwise, `label` (and `LABELS`), and where it explains them, `hint`:

@@ -1,5 +1,5 @@
-//! Maps of the plane onto itself: affine and perspective ones, from a layer's own frame to the canvas.
-//! Floor 0. What pixels become under a map is `raster::warp`'s.
+//! Maps of the plane onto itself: affine and perspective ones, from a layer's own frame to the canvas. Floor 0. Not
+//! here: what pixels become under a map (`raster::warp`).
 
 use super::{Affine2, Mat2, Rect, Size, Vec2, vec2};
 use glam::{DMat2, DMat3, DVec2, DVec3, dvec2};

@@ -1,6 +1,5 @@
-//! Ranges of numbers that a document may hold: those that many share, and how one is asked for.
-//! Floor 0. The range of a particular number is a constant of the type that holds it. Readers, panels and replays ask
-//! there.
+//! Ranges of numbers that a document may hold: those that many types share, and how a number is checked. Floor 0.
+//! The range of a particular number is a constant of the type that holds it. Readers, panels and replays ask there.
 
 use std::ops::RangeInclusive;
 

@@ -1,5 +1,5 @@
-//! Liquify: dabs that push, swell and twirl what a layer shows, as a displacement of the nodes under them.
-//! Floor 3. What a displacement is, is `raster::lattice`'s; what layers show through it, `document::layer::warp`'s.
+//! Liquify: dabs that push, swell and twirl what a layer shows, as a displacement of the nodes under them. Floor 3.
+//! Not here: what a displacement is (`raster::lattice`), what layers show through it (`document::layer::warp`).
 
 use super::Scene;
 use crate::math::{COORDINATE, Mat2, PlaneMap, Range, Rect, UNIT, Vec2, vec2};

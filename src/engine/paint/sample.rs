@@ -1,5 +1,4 @@
-//! The pen's samples, as strokes keep them.
-//! Floor 3. How a stroke follows from them is `dab_walker`'s.
+//! The pen's samples, as strokes keep them. Floor 3. Not here: how a stroke follows from them (`dab_walker`).
 
 use crate::math::{COORDINATE, Range, UNIT, Vec2, range, vec2};
 

@@ -1,5 +1,5 @@
-//! The numbers of a brush that the hand sets: each one's range and field, and of its habits the name and words, said
-//! once for documents and for the window. Floor 3. What habits mean is `habits`'.
+//! The numbers of a brush that the hand sets: each one's range and field, and of its habits the name and words,
+//! said once for documents and for the window. Floor 3. Not here: what habits mean (`habits`).
 
 use super::brush::Brush;
 use crate::math::{Range, TURNS, UNIT, range::held};

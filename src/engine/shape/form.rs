@@ -1,5 +1,5 @@
-//! Forms: heights and normals of one part, as every algorithm of this floor gives them.
-//! Floor 3. How forms meet is `combine`'s.
+//! Forms: heights and normals of one part, as every algorithm of this floor gives them. Floor 3. Not here: how
+//! forms meet (`combine`).
 
 use super::{Outline, OutlineRim};
 use crate::math::{Affine2, Mat2, Rect, Size, Vec2, Vec3, vec2, vec3};

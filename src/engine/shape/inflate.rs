@@ -1,5 +1,5 @@
-//! Inflation: the pillow over an outline, z = √u with −∇²u = 4 inside and u = 0 at the rim.
-//! Floor 3. What is made of u (puff, rim, normals) is `form`'s; limbs that shall not be fat are `tube`'s.
+//! Inflation: the pillow over an outline, z = √u with −∇²u = 4 inside and u = 0 at the rim. Floor 3. Not here: what
+//! is made of u (puff, rim, normals) (`form`); limbs that shall not be fat are `tube`'s.
 
 use super::{Outline, OutlineRim};
 use crate::math::Size;

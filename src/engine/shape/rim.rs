@@ -1,4 +1,4 @@
-//! What is asked of a height field at the rim of an outline: held at 0 between pixels, or free where it is joined.
+//! The condition on a height field at the rim of an outline: held at 0 between pixels, or free where it is joined.
 //! Floor 3. It makes the equations that `solver` solves.
 
 use super::Outline;

@@ -1,5 +1,4 @@
-//! What of a picture is surface: the mask that is given, the files' own alpha, what the numbers leave.
-//! Floor 5.
+//! Which pixels are surface: by the given mask, the alpha of the files, or the numbers. Floor 5.
 
 use super::findings::Findings;
 use super::layers::MapRole;

@@ -1,7 +1,7 @@
-//! What speaks for one way or another to turn stored normals and depth into the program's own: how well the slopes of
-//! the normals agree with those of the depth; whether normals at the rim point outward; for which handedness the
-//! normals are those of a height field (no curl). Each in [−1, 1]; priors decide what they leave open.
-//! Floor 5. Which way is taken is `orientation`'s.
+//! What speaks for one way or another to turn stored normals and depth into the program's own: how well the slopes
+//! of the normals agree with those of the depth; whether normals at the rim point outward; for which handedness the
+//! normals are those of a height field (no curl). Each in [−1, 1]; priors decide what they leave open. Floor 5. Not
+//! here: which way is taken (`orientation`).
 
 use super::axes::AxisMapping;
 use super::samples;

@@ -1,5 +1,4 @@
-//! What helps the hand and is no part of the picture: guides, and the colours that layers have in the list.
-//! Floor 5.
+//! Aids that are not part of the picture: guides, and the label colours of layers. Floor 5.
 
 use super::cursor::ByteCursor;
 use super::header::resource;

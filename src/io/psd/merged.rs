@@ -1,5 +1,5 @@
-//! The picture of all its layers that a Photoshop file holds for programs that read nothing else.
-//! Floor 5. What is made of it is `judge`'s.
+//! The picture of all its layers that a Photoshop file holds for programs that read nothing else. Floor 5. Not
+//! here: what is made of it (`judge`).
 
 use super::VERSION_INFO;
 use super::channel;

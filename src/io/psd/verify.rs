@@ -1,5 +1,5 @@
-//! Reads a Photoshop file that was just made, as any file is read, and compares it with what it was made of.
-//! Floor 5. What a project is held to stands in `project::read_back`.
+//! Reads a Photoshop file that was just made, as any file is read, and compares it with what it was made of. Floor
+//! 5. Not here: what a project is held to (`project::read_back`).
 
 use super::merged::off_white;
 use super::parse::{ParsedPsd, parse};

@@ -1,5 +1,5 @@
 //! Selections of a document: those kept by name, the active one, and those that strokes were painted in. Read and
-//! written. Floor 5. Each stands once, under an id; strokes name it. Not here: masks of layers (`masks`).
+//! written. Floor 5. Each is stored once, under an id; strokes name it. Not here: masks of layers (`masks`).
 
 use super::LayerReader;
 use super::value::RecipeValue;

@@ -1,5 +1,5 @@
-//! Values that read alike wherever they stand: in recipes, in projects and in the lines of replays.
-//! Floor 5. Each is read and written in the file of its subject.
+//! Values that are read the same way everywhere: in recipes, in projects and in the lines of replays. Floor 5. Each
+//! is read and written in the file of its subject.
 
 use crate::json::JsonNode;
 use crate::{Error, Result};

@@ -1,5 +1,5 @@
-//! `rilievo shape`: maps for a drawing that has none.
-//! Floor 7. What a shape is made of is `document::parts`; the files are `io::export::shape`'s.
+//! `rilievo shape`: maps for a drawing that has none. Floor 7. Not here: what a shape is made of
+//! (`document::parts`); the files are `io::export::shape`'s.
 
 use super::force::Force;
 use super::{LimitArgs, values};

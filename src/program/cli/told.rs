@@ -1,5 +1,4 @@
-//! What commands say on standard error beside an error.
-//! Floor 7.
+//! What commands print to standard error besides errors. Floor 7.
 
 use std::path::Path;
 

@@ -1,5 +1,5 @@
-//! A layer as a drawing: what it paints by itself, and what it looks like.
-//! Floor 6. What a drawing is `document::parts::drawing` tells.
+//! A layer as a drawing: what it paints by itself, and what it looks like. Floor 6. Not here: what a drawing is
+//! (`document::parts::drawing`).
 
 use crate::document::parts::drawing::DrawingLook;
 use crate::document::{Document, LayerId, Progress, flatten_layer};

@@ -1,5 +1,5 @@
-//! Assistants in the hand: the tool that sets and moves them, and strokes that are drawn along them. Floor 5. What an
-//! assistant's lines are is `document::assistants`'.
+//! Assistants in the hand: the tool that sets and moves them, and strokes that are drawn along them. Floor 5. Not
+//! here: what an assistant's lines are (`document::assistants`).
 
 mod along;
 

@@ -1,5 +1,4 @@
-//! What tools are told when the pen comes down.
-//! Floor 5.
+//! What tools are given when the pen comes down. Floor 5.
 
 use super::frame::{KeptFrame, TransformTarget};
 use super::settings::{BrushTarget, CropAspect, SelectSettings, ShapeSettings};

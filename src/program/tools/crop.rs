@@ -1,5 +1,5 @@
-//! The crop tool: a frame that is dragged over the canvas, or beyond it, until it is applied or given up.
-//! Floor 5. What a document becomes within it is `document::canvas_change`'s.
+//! The crop tool: a frame that is dragged over the canvas, or beyond it, until it is applied or given up. Floor 5.
+//! Not here: what a document becomes within it (`document::canvas_change`).
 
 use super::frame::FrameHandle;
 use super::snap::{SnapLines, SnapTargets};

@@ -1,5 +1,5 @@
 //! The liquify tool: strokes that displace what the selected layer or group shows. The layer itself stays as it is.
-//! Floor 5. What a dab does is `paint::liquify`'s.
+//! Floor 5. Not here: what a dab does (`paint::liquify`).
 
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
 use crate::document::{Content, Document, LayerId, LayerLock};

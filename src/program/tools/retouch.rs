@@ -1,5 +1,5 @@
-//! The brush as smudge, blur, clone, and as one that picks paint up: what it needs before it begins, and what is in
-//! its hand. Floor 5. What it does to pixels is `paint::retouch`'s; the pen's readings become samples in `brush`.
+//! The brush as smudge, blur, clone, and as one that picks paint up: what it needs before it begins, and what it holds.
+//! Floor 5. Not here: what it does to pixels (`paint::retouch`), samples from pen readings (`brush`).
 
 use super::settings::StrokePurpose;
 use super::symmetry::SymmetryImage;

@@ -1,5 +1,5 @@
-//! The transform tool: a frame with handles around the chosen layers and groups, which stay live until it is applied.
-//! Floor 5. What a layer becomes under its transform is `document::layer`'s.
+//! The transform tool: a frame with handles around the chosen layers and groups, which stay live until it is
+//! applied. Floor 5. Not here: what a layer becomes under its transform (`document::layer`).
 
 mod corner;
 mod gesture;

@@ -1,5 +1,5 @@
 //! The frame of the crop tool on the picture: what is left dark outside, thirds inside, handles; and its keys.
-//! Floor 7. What a drag of it does is `tools::crop`'s.
+//! Floor 7. Not here: what a drag of it does (`tools::crop`).
 
 use crate::math::{Rect, Vec2, vec2};
 use crate::session::actions::CanvasAction;

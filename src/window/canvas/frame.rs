@@ -1,5 +1,4 @@
-//! The frame of the transform tool on the picture.
-//! Floor 7. What a drag of it does is `tools::transform`'s.
+//! The frame of the transform tool on the picture. Floor 7. Not here: what a drag of it does (`tools::transform`).
 
 use crate::document::Mesh;
 use crate::math::Vec2;

@@ -1,5 +1,5 @@
-//! Guides, the grid, and the lines that what is dragged snapped to, over the picture.
-//! Floor 7. What snaps is `tools::snap`'s.
+//! Guides, the grid, and the lines that what is dragged snapped to, over the picture. Floor 7. Not here: what snaps
+//! (`tools::snap`).
 
 use super::unwrapped::OnSheet;
 use crate::math::{Rect, Vec2, vec2};

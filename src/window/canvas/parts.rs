@@ -1,5 +1,5 @@
-//! The shape's parts on the picture: the outline of the chosen one with its handles, touches as arrows, the dab of the
-//! sculpting tool. Floor 7. What a drag of them does is `tools::shape`'s.
+//! The shape's parts on the picture: the outline of the chosen one with its handles, touches as arrows, the dab of
+//! the sculpting tool. Floor 7. Not here: what a drag of them does (`tools::shape`).
 
 use crate::document::Part;
 use crate::document::parts::forms::nearest_at;

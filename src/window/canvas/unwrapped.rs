@@ -1,5 +1,5 @@
-//! The unwrapped surface on the screen: its sheet, pulled from the painted tiles of the picture as they come.
-//! Floor 7. Which point of the picture lies at each of its pixels is `surface::unwrap`'s.
+//! The unwrapped surface on the screen: its sheet, pulled from the painted tiles of the picture as they come. Floor
+//! 7. Not here: which point of the picture lies at each of its pixels (`surface::unwrap`).
 
 use super::Canvas;
 use super::sheet::TileSheet;

@@ -1,5 +1,5 @@
-//! The picture swaying before the eye by its depth, so that the relief shows, until a key or a click.
-//! Floor 7. What is seen from aside is `document::view::sway`'s.
+//! The picture swaying before the eye by its depth, so that the relief shows, until a key or a click. Floor 7. Not
+//! here: what is seen from aside (`document::view::sway`).
 
 use super::blocks::{corners, on_screen, quad};
 use crate::document::Document;

@@ -1,5 +1,5 @@
-//! New parts of the shape, a menu within Layer.
-//! Floor 7. What each is made of is `session::actions::parts::new`'s.
+//! New parts of the shape, a menu within Layer. Floor 7. Not here: what each is made of
+//! (`session::actions::parts::new`).
 
 use super::row::{MenuCommand, has_document, row};
 use crate::requests::WindowRequest;

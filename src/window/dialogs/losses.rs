@@ -1,5 +1,5 @@
-//! What a Photoshop file cannot hold, before a document is saved as one.
-//! Floor 7. What it is that gets lost, the format itself tells (`io::psd`).
+//! What a Photoshop file cannot hold, before a document is saved as one. Floor 7. Not here: what is lost
+//! (`io::psd`).
 
 use super::{DialogAnswer, buttons};
 use crate::pending::Saving;

@@ -1,5 +1,4 @@
-//! “Replace?”, before a file is lost that nobody asked about yet.
-//! Floor 7.
+//! “Replace?”, asked before a file is overwritten. Floor 7.
 
 use super::{DialogAnswer, buttons};
 use crate::jobs::short;

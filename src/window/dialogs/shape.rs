@@ -1,5 +1,5 @@
-//! Gives a drawing its first shape: one part or a part for each colour, as a pillow, tube, relief or coin.
-//! Floor 7. What becomes of it is `session::actions::parts::first`'s.
+//! Gives a drawing its first shape: one part or a part for each colour, as a pillow, tube, relief or coin. Floor 7.
+//! Not here: what becomes of it (`session::actions::parts::first`).
 
 use super::{DialogAnswer, answers};
 use crate::document::parts::drawing::{DrawingLook, FigureBackground};

@@ -1,5 +1,4 @@
-//! A surface made small beside the render thread, which goes on painting meanwhile.
-//! Floor 7.
+//! Makes a small surface in the background, while the render thread keeps painting. Floor 7.
 
 use crate::document::{ReducedSurface, SurfaceReduction};
 use crate::memory;

@@ -1,5 +1,5 @@
-//! What panels and menus ask of the window alone: dialogs, where panels stand, how large everything is.
-//! Floor 7.
+//! Requests of panels and menus to the window alone: dialogs, the layout of panels, the size of everything. Floor
+//! 7.
 
 use super::MainWindow;
 use crate::dialogs::{Dialog, canvas, edge, import, new, palette, shortcuts};

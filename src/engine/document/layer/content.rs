@@ -1,6 +1,6 @@
-//! What a layer holds, and what every kind of it can be asked.
-//! Floor 4. Each kind has a file that answers `LayerKind`, so that composing, walking and comparing layers name no
-//! kinds. The rendering of marks is in `paint` and `shading`.
+//! What a layer holds, and the trait that every kind of layer implements. Floor 4. Each kind has a file that
+//! answers `LayerKind`, so that composing, walking and comparing layers name no kinds. The rendering of marks is in
+//! `paint` and `shading`.
 
 mod fill;
 mod gradient;

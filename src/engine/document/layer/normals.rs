@@ -1,5 +1,5 @@
-//! What a normal layer holds: detail, and where it lies.
-//! Floor 4. How it meets the surface is `document::normals`'.
+//! What a normal layer holds: detail, and where it lies. Floor 4. Not here: how it meets the surface
+//! (`document::normals`).
 
 use super::mask::LayerMask;
 use crate::document::conventions::NormalConvention;

@@ -1,5 +1,5 @@
-//! The pixels of a layer in one tile, in the form that its kind has them.
-//! Floor 4. How layers meet is `compose`'s.
+//! The pixels of a layer in one tile, in the form that its kind has them. Floor 4. Not here: how layers meet
+//! (`compose`).
 
 use crate::document::behind::PackedTile;
 use crate::raster::{PlanarTile, Tile, TilePaint};

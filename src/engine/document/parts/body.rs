@@ -1,5 +1,5 @@
-//! The forms of single parts: fields that take long to solve, and what is made of them.
-//! Floor 4. Which of them are made anew is `derive`'s.
+//! The forms of single parts: fields that take long to solve, and what is made of them. Floor 4. Not here: which of
+//! them are made anew (`derive`).
 
 use super::{Inflation, PartMaps, ProfilePicture};
 use crate::math::srgb::decode;

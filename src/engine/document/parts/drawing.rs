@@ -1,5 +1,5 @@
-//! What a drawing is before it has a shape: whether its background is transparent or of one colour, and whether it is of
-//! flat colours. Floor 4. What parts are made of it is `flats`'.
+//! What a drawing is before it has a shape: whether its background is transparent or of one colour, and whether it
+//! is of flat colours. Floor 4. Not here: what parts are made of it (`flats`).
 
 use super::flats::colors_of;
 use super::near::{is_near, share_on_the_way};

@@ -1,5 +1,5 @@
-//! Edits of the list of parts. Each gives a new document with the surface that follows from it; what lies on a part is
-//! carried by it. Floor 4. What lies where is `document::homes`.
+//! Edits of the list of parts. Each gives a new document with the surface that follows from it; what lies on a part
+//! is carried by it. Floor 4. Not here: what lies where (`document::homes`).
 
 use super::{CoverageFile, OutlineSource, Part, Parts};
 use crate::document::{Document, LayerId, NamedSelection, Progress};

@@ -1,5 +1,5 @@
-//! The forms of a document's parts where they stand: what a pointer meets, and what a list shows.
-//! Floor 4. They are those that the surface was made of.
+//! The forms of a document's parts in their places: what a pointer hits, and what a list shows. Floor 4. They are
+//! those that the surface was made of.
 
 use super::Part;
 use crate::document::Document;

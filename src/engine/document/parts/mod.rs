@@ -1,9 +1,11 @@
 //! Parts: the shape of a drawing as a list of values, the farthest first, from which the document's surface follows.
-//! Floor 4. What each kind computes is `shape`'s; `derive` makes the surface and keeps what did not change, `body` one
-//! form, `upon` what lies on one, `unchanged` tells what is the same, and `forms` what was made; `part` is one of them,
-//! `outlines` finds the outlines, `flats` makes parts of a layer of flat colours, whose mixed pixels `shares` shares
-//! out, and `drawing` says what can be made of one; `edit` changes the list, `scale` the canvas, `fit` holds it to what
-//! files can hold.
+//! Floor 4. Not here: what each kind of part computes (`shape`).
+//!
+//! `part` is one of them and `edit` changes the list. `derive` makes the surface and keeps what did not change; it uses
+//! `body` for one form, `upon` for what is on a form, and `unchanged` to compare versions. `outlines` finds outlines,
+//! `drawing` says what can be made of a layer, `flats` makes parts of one in flat colours, and `shares` divides their
+//! mixed pixels. `forms` has the forms that were made, `scale` changes the canvas, and `fit` holds parts to what files
+//! can hold.
 
 mod body;
 mod derive;

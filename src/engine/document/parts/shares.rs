@@ -1,7 +1,6 @@
-//! Which share of each pixel a flat colour takes: all of a pixel in a flat area, and of those that were mixed at edges
-//! what lies between the two areas beside them. Shares add up to the whole pixel, so that areas that touch leave no rim
-//! between them.
-//! Floor 4. Which colours are parts is `flats`'.
+//! Which share of each pixel a flat colour takes: all of a pixel in a flat area, and of those that were mixed at
+//! edges what lies between the two areas beside them. Shares add up to the whole pixel, so that areas that touch
+//! leave no rim between them. Floor 4. Not here: which colours are parts (`flats`).
 
 use super::near::{NEAR, is_near, share_on_the_way};
 use crate::math::srgb::Color;

@@ -1,5 +1,4 @@
-//! What of two versions of a part is the same, so that it is not made again.
-//! Floor 4.
+//! What two versions of a part have in common, so that it is not made again. Floor 4.
 
 use super::outlines::OutlineKey;
 use super::{Part, PartKind};

@@ -1,5 +1,5 @@
-//! What parts do that lie on another: lines, touches, sculpting, reliefs.
-//! Floor 4. Which of them are made anew is `derive`'s.
+//! What parts do that lie on another: lines, touches, sculpting, reliefs. Floor 4. Not here: which of them are made
+//! anew (`derive`).
 
 use super::body::cut_to;
 use super::{Part, PartKind, turned};

@@ -1,5 +1,5 @@
-//! What the dabs of a stroke are made by: the brush, driven by what is read where each stands.
-//! Floor 3. Not here: where they stand (`walk`).
+//! The rules for the dabs of a stroke: the brush, driven by what is read at each dab. Floor 3. Not here: where they
+//! are placed (`walk`).
 
 use super::hand::{CurvePoint, gauss};
 use super::{Dab, FAR_PX};

@@ -1,5 +1,4 @@
-//! Along the curve of a stroke: where dabs are due.
-//! Floor 3. What they are like there is `rules`'.
+//! Along the curve of a stroke: where dabs are due. Floor 3. Not here: what they are like there (`rules`).
 
 use super::hand::{CurvePoint, settled};
 use super::rules::{DabRules, Due, Moment};

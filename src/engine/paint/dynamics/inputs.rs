@@ -1,5 +1,4 @@
-//! What is known where a dab stands, in the terms that brushes are driven by.
-//! Floor 3. Not here: where it is read (`walker`).
+//! What is known at a dab, as the inputs that drive brushes. Floor 3. Not here: where it is read (`dab_walker`).
 
 use super::{Input, Property};
 use crate::math::{Vec2, hash};

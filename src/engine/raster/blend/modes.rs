@@ -1,5 +1,6 @@
-//! The table of blend modes: one row says everything about a mode. Its formula stands in `spec`. Floor 1. To add a
-//! mode, add a row and its formula (the table has more columns than `named!`); `rows` computes it from the formula until it has a faster twin there.
+//! The table of blend modes: one row says everything about a mode. Its formula is in `spec`. Floor 1. To add a
+//! mode, add a row and its formula (the table has more columns than `named!`); `rows` computes it from the formula
+//! until it has a faster twin there.
 
 use super::spec::{self, BlendFunction};
 

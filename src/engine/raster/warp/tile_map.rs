@@ -1,4 +1,4 @@
-//! A map of one tile, told pixel by pixel. Floor 1.
+//! A map of one tile, given pixel by pixel. Floor 1.
 
 use super::window::WIDEST_PX;
 use super::{PixelMap, PointRow};

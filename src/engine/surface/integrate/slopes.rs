@@ -1,5 +1,4 @@
-//! What normals tell of the steps between neighbouring pixels: asked for pixel by pixel, never held.
-//! Floor 2.
+//! The steps between neighbouring pixels that normals give: computed pixel by pixel, never stored. Floor 2.
 
 use crate::math::{Vec3, vec2};
 use crate::raster::Plane;

@@ -1,5 +1,5 @@
-//! What drives a brush of Photoshop's: shape dynamics, scattering, texture, colour dynamics and transfer.
-//! Floor 5. Each stands in the description of the brush beside a switch; its tip is `presets`'.
+//! What drives a brush of Photoshop's: shape dynamics, scattering, texture, colour dynamics and transfer. Floor 5.
+//! Each has a switch in the description of the brush. Not here: its tip (`presets`).
 //!
 //! A control says what a property follows, and down to which share (“minimum”); a jitter takes some of it away at
 //! random, dab by dab.

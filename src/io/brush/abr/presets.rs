@@ -1,5 +1,5 @@
-//! Descriptions of brushes in later versions of Photoshop: names, sizes, spacings, and the tips they are of.
-//! Floor 5. What drives them is `dynamics`'.
+//! Descriptions of brushes in later versions of Photoshop: names, sizes, spacings, and the tips they are of. Floor
+//! 5. Not here: what drives them (`dynamics`).
 
 use super::dynamics::carried;
 use super::{MOST, SPACING};

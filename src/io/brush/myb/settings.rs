@@ -1,5 +1,5 @@
-//! The settings of one of MyPaint's files, each asked for by its name; what nothing asks for is told.
-//! Floor 5. Not here: what they make of a brush (`dab`, `hand`), how curves run (`curves`).
+//! The settings of a MyPaint file, each looked up by name; those that nothing uses are reported. Floor 5. Not here:
+//! what they make of a brush (`dab`, `hand`), how curves run (`curves`).
 
 use super::added::{Added, AddedInput};
 use super::curves::{InputMapping, Scales, at, curve_of, number, sampled};

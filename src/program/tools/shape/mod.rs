@@ -1,5 +1,5 @@
-//! Tools of the shape: `part` moves its parts, `touch` and `sculpt` change them by hand. Here: the list
-//! of parts as they leave it. Floor 5. What parts are is `document::parts`'.
+//! Tools of the shape: `part` moves its parts, `touch` and `sculpt` change them by hand. Here: the list of parts as
+//! they leave it. Floor 5. Not here: what parts are (`document::parts`).
 
 pub mod part;
 pub mod sculpt;

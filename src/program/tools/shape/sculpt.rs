@@ -1,5 +1,5 @@
-//! The sculpting tool: strokes that raise, lower and smooth the part under the pen; they stay strokes.
-//! Floor 5. What a dab does is `shape::sculpt`'s.
+//! The sculpting tool: strokes that raise, lower and smooth the part under the pen; they stay strokes. Floor 5. Not
+//! here: what a dab does (`shape::sculpt`).
 
 use super::length_of;
 use super::touch::layer_on;

@@ -1,5 +1,5 @@
-//! The touch tool: a click or a drag gives the part under the pen a direction there; touches are moved by dragging and
-//! taken away with Alt. Floor 5. How they spread is `shape::touches`'.
+//! The touch tool: a click or a drag gives the part under the pen a direction there; touches are moved by dragging
+//! and taken away with Alt. Floor 5. Not here: how they spread (`shape::touches`).
 
 use super::{free_id, inverse_direction, on_canvas_direction};
 use crate::document::Document;

@@ -1,5 +1,5 @@
-//! Meshes under the transform tool: points that are dragged, one or those that are chosen.
-//! Floor 5. What a mesh does is `document::layer`'s.
+//! Meshes under the transform tool: points that are dragged, one or those that are chosen. Floor 5. Not here: what
+//! a mesh does (`document::layer`).
 
 use crate::document::{Document, Layer, LayerId, LayerTransform, Mesh, MeshFrame, TransformShape};
 use crate::math::{PlaneMap, Vec2, vec2};

@@ -1,5 +1,4 @@
-//! Detail laid onto the surface for what stands above.
-//! Floor 4. What it lays is `document::normals`'.
+//! Detail added to the surface for the layers above. Floor 4. Not here: adding it (`document::normals`).
 
 use super::{CanvasScale, Changed, Content, LayerKind, NameFile, Role, Touched};
 use crate::Result;

@@ -1,5 +1,4 @@
-//! Radiance scaling of what is painted beneath.
-//! Floor 4. What it does to pixels is `shading::radiance`'s.
+//! Radiance scaling of what is painted beneath. Floor 4. Not here: what it does to pixels (`shading::radiance`).
 
 use super::{CanvasScale, Changed, Content, LayerKind, Role};
 use crate::document::Progress;

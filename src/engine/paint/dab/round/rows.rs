@@ -1,4 +1,4 @@
-//! The round tip's loops over rows of pixels. Floor 3. What a pixel is judged by and takes is `round`'s.
+//! The round tip's loops over rows of pixels. Floor 3. Not here: what a pixel is judged by and takes (`round`).
 
 use super::{AT_CENTER, BEYOND, CHUNK, RoundTip, RowPaint, RowZones, WITHIN, add_within, zone_of};
 use crate::paint::dab::{DeformationField, PixelSpan, SpanNeighbours};

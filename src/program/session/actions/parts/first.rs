@@ -1,5 +1,5 @@
-//! The first shape of a drawing: a part of its outline, or one of each of its flat colours, and a Base that is lit, so
-//! that the form is seen at once. Floor 6. What a drawing is `document::parts::drawing` tells.
+//! The first shape of a drawing: a part of its outline, or one of each of its flat colours, and a Base that is lit,
+//! so that the form is seen at once. Floor 6. Not here: what a drawing is (`document::parts::drawing`).
 
 use super::{PartRefusal, free_id, new};
 use crate::document::parts::Part;

@@ -1,6 +1,6 @@
-//! The list of parts with a copy of one, or in another order. What lies on a part (touches, sculpting, reliefs, lines)
-//! stands behind it in the list, and goes along.
-//! Floor 6. Simpler edits of the list are the document's own.
+//! The list of parts with a copy of one, or in another order. What is on a part (touches, sculpting, reliefs, lines)
+//! follows it in the list and moves with it.
+//! Floor 6. Not here: simpler edits of the list (`document::parts`).
 
 use super::free_id;
 use crate::document::Document;
