@@ -112,8 +112,8 @@ fn single(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContents>
     let layers = stored.into_iter().map(layer).collect();
     let notes = match (several, has_whole) {
         (false, _) => None,
-        (true, true) => Some("its other layers are hidden beside the whole picture"),
-        (true, false) => Some("an EXR does not tell how its layers lie on each other: they stand as in the file"),
+        (true, true) => Some("its other layers are hidden, since the file holds the whole picture too"),
+        (true, false) => Some("an EXR does not say in which order its layers are; they are in the order of the file"),
     };
     let notes = notes.map(str::to_owned).into_iter().collect();
     let document = Document { layers, ..Document::empty(size) };

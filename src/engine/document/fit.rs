@@ -68,7 +68,7 @@ impl Document {
     /// Whether every home is the canvas or one of the parts.
     fn homes_fit(&self) -> Result<(), String> {
         let known = |home: &HomeFrame| match home.part() {
-            Some(id) if self.parts.part(id).is_none() => Err(format!("lies on “{id}”, and there is no such part")),
+            Some(id) if self.parts.part(id).is_none() => Err(format!("is on “{id}”, and there is no such part")),
             _ => Ok(()),
         };
         let of_strokes = |layer: &Layer| match &layer.content {
@@ -152,7 +152,7 @@ impl Total {
         at_most("Readings of the pen in the drawing", self.samples, Document::MOST_SAMPLES)?;
         if self.values > Document::MOST_VALUES {
             return Err(
-                "The drawing would hold more strokes, anchors and lights than a file gives back: bake some".into()
+                "The drawing would hold more strokes, anchors and lights than a file can hold: bake some".into()
             );
         }
         Ok(())
@@ -226,7 +226,7 @@ fn pixels_fit(pixels: &PixelLayer, canvas: Size) -> Fit {
     let (width, height) = (inner(rect.width()), inner(rect.height()));
     let side = (Picture::LONGEST_SIDE_PX).max(canvas.width).max(canvas.height) as usize;
     if width.max(height) > side || width * height > Picture::MOST_PX.max(canvas.area()) {
-        return Err(format!("its pixels would lie {width} × {height} px apart, more than a picture holds"));
+        return Err(format!("its pixels would cover {width} × {height} px, more than a picture can hold"));
     }
     Ok(())
 }

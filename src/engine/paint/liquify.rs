@@ -13,7 +13,7 @@ crate::named! {
     pub enum LiquifyTool {
         /// Takes it along with the pen.
         #[default]
-        Push = "push" => ("push", "Takes what lies under the pen along (Ctrl restores)"),
+        Push = "push" => ("push", "Drags what is under the pen (Ctrl restores)"),
         Grow = "grow" => ("grow", "Makes it larger about the middle of the dab (Ctrl shrinks)"),
         Shrink = "shrink" => ("shrink", "Makes it smaller (Ctrl grows)"),
         TwirlLeft = "twirl left" => ("twirl left", "Turns it counter-clockwise (Ctrl: clockwise)"),

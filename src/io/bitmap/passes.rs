@@ -36,7 +36,7 @@ pub fn check(file: &Path, bytes: &[u8], size: Size, budget: &Budget) -> Result<(
     let most = most_visits(budget) / size.area().max(64) as u64;
     let passes = work(bytes).passes;
     if passes > most {
-        let reason = format!("the JPEG goes over its {size} pixels {passes} times; {most} times are allowed");
+        let reason = format!("the JPEG has {passes} passes over its {size} pixels; {most} are allowed");
         return Err(Error::too_large(file, reason).with_remedy(Remedy::MorePixels));
     }
     Ok(())
@@ -106,7 +106,7 @@ mod tests {
         let read = |bytes: &[u8]| crate::bitmap::decode(Path::new("a.jpg"), bytes, &budget).map(|b| b.format);
         assert_eq!(read(&jpeg(64)).unwrap(), "JPEG");
         let said = read(&repeated(&jpeg(64), 33)).unwrap_err();
-        let expected = "a.jpg: too large: the JPEG goes over its 64 × 64 pixels 33 times; 32 times are allowed";
+        let expected = "a.jpg: too large: the JPEG has 33 passes over its 64 × 64 pixels; 32 are allowed";
         assert_eq!(said.to_string(), expected);
         assert_eq!(said.remedy(), Some(Remedy::MorePixels));
     }

@@ -58,7 +58,7 @@ fn ranks<'a>(words: impl Iterator<Item = &'a str>, count: usize, notes: &mut Vec
     let product = ranks.iter().try_fold(1usize, |n, rank| n.checked_mul(rank.count as usize));
     if ranks.is_empty() || product.is_none_or(|n| n > count) {
         if !ranks.is_empty() {
-            notes.push("Its ranks ask for more pictures than it holds; they follow one after the other".into());
+            notes.push("Its ranks need more pictures than it holds; the pictures are used in turn".into());
         }
         return vec![HoseRank { count: count as u32, select: RankSelect::Incremental }];
     }

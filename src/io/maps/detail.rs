@@ -18,10 +18,7 @@ use std::path::Path;
 /// from the numbers.
 pub fn read(file: &Path, bytes: &[u8], overrides: &NormalConvention, budget: &Budget) -> Result<Plane<Vec3>> {
     if overrides.space == Some(NormalSpace::World) {
-        return Err(Error::unsupported(
-            file,
-            "a detail map lies on the surface, not in the world: its space is its own",
-        ));
+        return Err(Error::unsupported(file, "a detail map is in the space of the surface, not of the world"));
     }
     let stored = stored::load(file, bytes, None, MapRole::Normals, budget)?;
     let area = stored.size.area();

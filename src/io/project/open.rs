@@ -78,7 +78,7 @@ impl ProjectReader<'_> {
             true => match self.value(DOCUMENT) {
                 Ok(value) => Some(value),
                 Err(error) => {
-                    self.lost(format!("{error}; what is left are the layers' pictures"));
+                    self.lost(format!("{error}; only the layers' pictures are left"));
                     None
                 }
             },
@@ -103,13 +103,13 @@ impl ProjectReader<'_> {
     fn manifest(&mut self) -> Option<Manifest> {
         if !self.archive.has(MANIFEST) {
             if self.archive.has(DOCUMENT) {
-                self.note("the list of the layers' pictures is missing; changes by other programs cannot be told");
+                self.note("the list of the layers' pictures is missing; changes by other programs cannot be detected");
             }
             return None;
         }
         let read = self.value(MANIFEST).ok().as_ref().and_then(Manifest::read);
         if read.is_none() {
-            self.note("the list of the layers' pictures is damaged; changes by other programs cannot be told");
+            self.note("the list of the layers' pictures is damaged; changes by other programs cannot be detected");
         }
         read
     }

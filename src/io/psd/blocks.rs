@@ -117,11 +117,11 @@ fn blending(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor) {
     match &key {
         b"knko" if data.u8().is_some_and(|v| v != 0) => record.leave_out("its knockout is left out"),
         b"clbl" if data.u8() == Some(0) => {
-            record.leave_out("the layers clipped to it are blended with what lies beneath it elsewhere");
+            record.leave_out("elsewhere the layers clipped to it are blended with what is beneath it");
         }
         b"brst" if !data.rest().is_empty() => record.leave_out("the channels that it leaves alone are painted too"),
         b"tsly" if data.u8() == Some(0) => {
-            record.leave_out("its effects and what is clipped to it take no notice of its transparency elsewhere");
+            record.leave_out("elsewhere its effects and the layers clipped to it ignore its transparency");
         }
         _ => {}
     }

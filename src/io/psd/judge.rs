@@ -71,8 +71,10 @@ pub fn judged(document: Document, merged: Option<Merged>, is_less: bool, notes: 
     let difference = compared(document.size, &shown, &merged);
     if difference.is_alike() {
         if is_less {
-            notes
-                .push(format!("the layers look like the file's own picture; it lies hidden above them as “{PICTURE}”"));
+            notes.push(format!(
+                "the layers look like the file's own picture, which is hidden above them as \
+                               “{PICTURE}”"
+            ));
             return with_picture(document, &merged, false);
         }
         return document;
@@ -83,8 +85,8 @@ pub fn judged(document: Document, merged: Option<Merged>, is_less: bool, notes: 
         return document;
     }
     notes.push(format!(
-        "the layers differ from the file's own picture by {mean:.1} of 255 in the mean, {most} at most: “{PICTURE}” is \
-         shown, and the layers lie hidden beneath it in the group “{LAYERS}”"
+        "the layers differ from the file's own picture by {mean:.1} of 255 on average, {most} at most: “{PICTURE}” \
+         is shown, and the layers are hidden below it in the group “{LAYERS}”"
     ));
     let group = Group { layers: document.layers, pass_through: true };
     let layers = Layer { visible: false, clip_to_surface: false, ..Layer::new(LAYERS, Content::Group(group)) };
@@ -158,11 +160,11 @@ mod tests {
     fn the_file_s_picture_is_shown_where_the_layers_look_otherwise() {
         let (layers, notes) = judged_as(picture(120), false);
         assert_eq!(layers, [(LAYERS.to_owned(), false), (PICTURE.to_owned(), true)]);
-        assert!(notes.len() == 1 && notes[0].contains("20.4 of 255 in the mean, 100 at most"), "{notes:?}");
+        assert!(notes.len() == 1 && notes[0].contains("20.4 of 255 on average, 100 at most"), "{notes:?}");
         assert_eq!(judged_as(picture(100), false), (vec![("grey".to_owned(), true)], vec![]));
         let (layers, notes) = judged_as(picture(100), true);
         assert_eq!(layers, [("grey".to_owned(), true), (PICTURE.to_owned(), false)]);
-        assert!(notes[0].contains("lies hidden"), "{notes:?}");
+        assert!(notes[0].contains("is hidden above"), "{notes:?}");
     }
     #[test]
     fn a_picture_that_is_none_is_not_believed() {

@@ -96,7 +96,7 @@ impl<'a> RecordReader<'a> {
         }
         if record.fill_opacity < 255 {
             if FILLED_OTHERWISE.contains(&record.blend) {
-                record.leave_out("its fill's opacity is taken for the layer's");
+                record.leave_out("the opacity of its fill became the opacity of the layer");
             }
             let both = u32::from(record.opacity) * u32::from(record.fill_opacity);
             record.opacity = ((both + 127) / 255) as u8;
@@ -210,7 +210,7 @@ impl<'a> RecordReader<'a> {
         }
         let [x0, y0, x1, y1] = [rect.x0, rect.y0, rect.x1, rect.y1].map(i64::from);
         if [x0, y0, x1, y1].iter().any(|v| v.abs() > FARTHEST.into()) {
-            return Err(Error::decode(self.file, format!("“{name}” lies {x0}, {y0} pixels away from the canvas")));
+            return Err(Error::decode(self.file, format!("“{name}” is {x0}, {y0} pixels away from the canvas")));
         }
         let size = self.budget.size(self.file, (x1 - x0) as u64, (y1 - y0) as u64)?;
         self.spend(size.area() as u64)?;

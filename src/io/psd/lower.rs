@@ -129,7 +129,7 @@ impl RecordBuilder {
         if pixels::is_deep(look.file.bytes()) {
             // What our part of the file tells of the record is what it holds; all of the paint stands there, too.
             look = in_bytes(file, look, &rgba)?;
-            self.notes.push(format!("“{}” has 16 bits a channel here and 8 for other programs", item.name));
+            self.notes.push(format!("“{}” has 16 bits per channel here and 8 for other programs", item.name));
         }
         let is_empty = rgba.chunks_exact(4).all(|pixel| pixel[3] == 0);
         let (x1, y1) = (look.x + look.size.width as i32, look.y + look.size.height as i32);

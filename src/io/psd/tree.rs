@@ -52,7 +52,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
     let (layers, is_less, mut notes) = builder.done();
     let (selections, inks) = kept;
     if inks > 0 {
-        notes.push("inks beside its colours are left out".into());
+        notes.push("inks in addition to its colours are left out".into());
     }
     let (guides, lost) = parsed.guides;
     if lost > 0 {
@@ -80,7 +80,7 @@ fn colour_notes(parsed: &ParsedPsd) -> Option<String> {
         Mode::Lab => "its Lab colours became sRGB; layers blend in those",
         Mode::Multichannel => "its inks were taken for cyan, magenta, yellow and black; others are left out",
         Mode::Duotone => "its inks are left out: it became grey",
-        _ if header.bits == 32 => "its 32 bits a channel became 8, and what is brighter than white is lost",
+        _ if header.bits == 32 => "its 32 bits per channel became 8, and values brighter than white are lost",
         _ if header.bits == 16 => "its 16 bits a channel became 8",
         _ => return None,
     };
@@ -148,7 +148,7 @@ impl TreeBuilder<'_> {
                 let mut layers = if self.open.len() > 1 { self.open.pop().unwrap_or_default() } else { Vec::new() };
                 if self.open.len() > self.deepest {
                     self.notes
-                        .push(format!("“{}” is nested too deep: its layers stand in the group around it", record.name));
+                        .push(format!("“{}” is nested too deep: its layers are in the group around it", record.name));
                     return self.open.last_mut().map_or((), |list| list.extend(layers));
                 }
                 if let Some(ground) = record.ground {

@@ -159,8 +159,12 @@ fn curves(node: &JsonNode) -> Result<[Option<Curve>; 2]> {
     }
     let mut fields = node.fields()?;
     let added = fields.get("add").map(|node| {
-        let refused =
-            || node.refused("is no curve; it must have points whose first numbers lie in 0 to 1 and do not fall");
+        let refused = || {
+            node.refused(
+                "is not a curve; the first numbers of its points must be between 0 and 1 and must not \
+                             fall",
+            )
+        };
         Curve::added(points(&node, -MOST_ADDED..=MOST_ADDED)?).ok_or_else(refused)
     });
     let times = fields.get("times").map(|node| curve(&node));

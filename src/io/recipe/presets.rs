@@ -101,7 +101,7 @@ pub fn read_brush(value: &Value, like: &Brush) -> Result<Brush> {
     let mut picture = |node: &JsonNode| {
         let named = node.text()?;
         let found = like.pictures().find(|source| source.file == named).cloned();
-        found.ok_or_else(|| node.refused(format!("is “{named}”; the brush in hand has no such picture")))
+        found.ok_or_else(|| node.refused(format!("is “{named}”; the current brush has no such picture")))
     };
     tips::read(&mut fields, &mut brush, &mut picture)?;
     fields.finish()?;

@@ -54,7 +54,7 @@ impl LayerReader<'_> {
         let (on, transform) = (fields.get("on"), fields.get("transform"));
         let Some(on) = on else {
             return match transform {
-                Some(node) => Err(node.refused("is for strokes that lie on something of their own (“on”)")),
+                Some(node) => Err(node.refused("is for strokes that have their own “on”")),
                 None => Ok(None),
             };
         };

@@ -22,7 +22,7 @@ pub fn read(node: &JsonNode, canvas: Option<Size>) -> Result<LayerTransform> {
         (None, None, Some(node)) => TransformShape::Mesh(Arc::new(mesh_of(node, canvas)?)),
         (None, None, None) => return Err(node.refused("has neither “matrix” nor “quad” nor “mesh”")),
         (Some(_), Some(_), _) => return Err(node.refused("has both “matrix” and “quad”; it must have one")),
-        _ => return Err(node.refused("has “mesh” beside another shape; it must have one")),
+        _ => return Err(node.refused("has “mesh” and another shape; it must have one")),
     };
     fields.finish()?;
     let transform = LayerTransform { shape, filter };
@@ -142,7 +142,7 @@ mod tests {
                 r#"{"mesh":{"columns":2,"rows":2,"frame":[0,0,0,9],"points":[[0,0],[1,0],[0,1],[1,1]]}}"#,
                 "mesh.frame[2]",
             ),
-            (r#"{"matrix":[1,0,0,1,0,0],"mesh":{}}"#, "beside another shape"),
+            (r#"{"matrix":[1,0,0,1,0,0],"mesh":{}}"#, "and another shape"),
             (r#"{"matrix":[1,0,0,1,0,0],"filter":"best"}"#, "filter"),
             (r#"{"matrix":[1,0,0,1,0,0],"turn":3}"#, "turn"),
         ] {

@@ -177,7 +177,7 @@ impl ReplaceJob<'_> {
         }
         let is_kept = self.terms.keeps_previous && self.fs.found(target).map_err(|e| self.failed("", e))?.is_some();
         let previous = is_kept.then(|| Previous::keep(self.fs, part, target)).transpose();
-        let previous = previous.map_err(|e| self.failed("the previous version could not be kept beside it", e))?;
+        let previous = previous.map_err(|e| self.failed("the previous version could not be kept next to it", e))?;
         let renamed = self.rename(part, target);
         if let Some(previous) = previous {
             if renamed.is_ok() { previous.forget(self.fs) } else { previous.undo(self.fs) }

@@ -75,7 +75,7 @@ impl Carrier<'_> {
         let transform = if let Some(mesh) = mesh {
             let carried = mesh.carried(map).map(|mesh| TransformShape::Mesh(Arc::new(mesh)));
             let why =
-                || format!("“{}” is warped by a mesh, which no such turn takes along. Apply it first.", layer.name);
+                || format!("“{}” is warped by a mesh, which cannot be turned like this. Apply it first.", layer.name);
             let filter = layer.transform.as_ref().map_or(TURNED, |transform| transform.filter);
             Some(LayerTransform { shape: carried.ok_or_else(why)?, filter })
         } else if next.is_identity_on(*to) {
@@ -85,8 +85,8 @@ impl Carrier<'_> {
             let told = LayerTransform::of_map(&next, filter, *to);
             Some(told.ok_or_else(|| {
                 format!(
-                    "“{}” stands in a perspective that the corners of the new canvas cannot tell. Apply its transform \
-                     first.",
+                    "“{}” is in a perspective that the corners of the new canvas cannot describe. Apply its \
+                     transform first.",
                     layer.name
                 )
             })?)

@@ -46,7 +46,7 @@ fn selected(selection: &Selection, canvas: Size) -> Fit {
     let side = Picture::LONGEST_SIDE_PX.max(canvas.width).max(canvas.height) as usize;
     let (width, height) = (rect.width(), rect.height());
     if width.max(height) > side || width * height > Picture::MOST_PX.max(canvas.area()) {
-        return Err(format!("it has {width} × {height} px, more than a picture holds"));
+        return Err(format!("it has {width} × {height} px, more than a picture can hold"));
     }
     Ok(())
 }

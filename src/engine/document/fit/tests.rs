@@ -66,7 +66,7 @@ fn pixels_that_no_one_picture_holds_are_refused() {
         Layer::new("Dots", Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles }))
     };
     assert!(of(vec![dots(500)]).fits(None).is_ok());
-    says(dots(600), "apart, more than a picture holds");
+    says(dots(600), "px, more than a picture can hold");
     says(dots(20_000), "a pixel's place");
 }
 #[test]

@@ -88,7 +88,7 @@ impl Default for ViewOptions {
 pub enum ViewUnavailable {
     #[error("the document has no surface to show")]
     NoSurface,
-    #[error("no two neighbouring pixels of the surface lie in the plane")]
+    #[error("no two neighbouring pixels of the surface are in the plane")]
     NothingUnwrapped,
     #[error("there is no memory for the picture")]
     NoMemory,

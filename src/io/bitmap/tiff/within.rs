@@ -32,7 +32,7 @@ pub fn check(file: &Path, decoder: &mut Decoder<Cursor<&[u8]>>, file_bytes: &[u8
                 let part = file_bytes.get(start as usize..end as usize).unwrap_or_default();
                 walked += part.len() as u64;
                 if walked > 8 * file_bytes.len() as u64 {
-                    return Err(Error::decode(file, "the parts of the TIFF lie over each other"));
+                    return Err(Error::decode(file, "the parts of the TIFF overlap"));
                 }
                 let found = work(part);
                 known.insert((start, length), found);

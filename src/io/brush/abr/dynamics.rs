@@ -178,7 +178,7 @@ impl AbrConversion<'_> {
         self.brush.spacing = (self.brush.spacing / count).max(*Brush::SPACING.start());
         let counts = self.preset.object("countDynamics");
         if counts.is_some_and(|part| part.number("jitter").unwrap_or(0.0) > 0.0) {
-            self.notes.push("as many dabs stand at each place".to_owned());
+            self.notes.push("as many dabs are placed at each point".to_owned());
         }
     }
     fn color(&mut self) {

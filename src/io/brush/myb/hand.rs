@@ -84,14 +84,14 @@ fn offset(settings: &mut MyPaintSettings, lengths: Lengths, brush: Brush) -> Bru
                 let amount = Added { base: away.length(), rows: Vec::new() };
                 (amount, Offset { turn_degrees, ..Offset::default() })
             } else {
-                settings.note("Dabs stand aside along one of the canvas's axes");
+                settings.note("Dabs are offset along one of the canvas's axes");
                 let upright = Offset { turn_degrees: -90.0, ..Offset::default() };
                 if x.rows.len() >= y.rows.len() { (x, Offset::default()) } else { (y, upright) }
             }
         }
     };
     if kinds.next().is_some() {
-        settings.note("Dabs stand aside in one of several ways");
+        settings.note("Dabs are offset in one of several ways");
     }
     // The multiplier is a logarithm; it multiplies the offset as curves do, from its most.
     let most = times.range()[1].max(-20.0).min(20.0);

@@ -89,7 +89,7 @@ fn a_home_that_is_no_part_is_refused_by_its_path() {
     );
     let quad = json!({ "quad": [[0, 0], [9, 0], [9, 9], [0, 9]] });
     assert!(strokes(json!({ "on": "eye", "transform": quad })).contains("strokes[0].transform: must be a matrix"));
-    assert!(strokes(json!({ "transform": { "matrix": [1, 0, 0, 1, 2, 2] } })).contains("something of their own"));
+    assert!(strokes(json!({ "transform": { "matrix": [1, 0, 0, 1, 2, 2] } })).contains("have their own “on”"));
     let canvas = json!([{ "id": "canvas", "kind": "sweep", "balls": [[9, 9, 3]] }]);
     assert!(refused(&body(&json!({ "surface": { "parts": canvas } }))).contains("cannot have the id"));
 }

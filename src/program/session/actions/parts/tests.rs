@@ -165,7 +165,7 @@ fn what_has_no_outline_says_so_and_changes_nothing() {
         (r#"{"in":"part","do":"shape","layer":"0","preset":"coin","flats":false}"#, "empty"),
         (r#"{"in":"part","do":"add","kind":"inflate"}"#, "empty"),
         (r#"{"in":"part","do":"add","kind":"inflate selection"}"#, "Nothing is selected"),
-        (r#"{"in":"part","do":"add","kind":"sculpt"}"#, "No part is chosen"),
+        (r#"{"in":"part","do":"add","kind":"sculpt"}"#, "No part is selected"),
         (r#"{"in":"part","do":"shape","layer":"7","preset":"coin","flats":false}"#, "no such layer"),
     ] {
         tell(&mut session, line);
