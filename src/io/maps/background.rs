@@ -43,8 +43,30 @@ fn border(size: Size) -> Vec<usize> {
 
 /// Whether two texels are equal up to lossy compression.
 pub fn same(a: [f32; 4], b: [f32; 4], lossy: bool) -> bool {
+    a.iter().zip(b).all(|(a, b)| same_number(*a, b, lossy))
+}
+
+fn same_number(a: f32, b: f32, lossy: bool) -> bool {
     let tolerance = if lossy { 0.024 } else { 0.0 };
-    a.iter().zip(b).all(|(a, b)| (a - b).abs() <= tolerance || (a.is_nan() && b.is_nan()))
+    (a - b).abs() <= tolerance || (a.is_nan() && b.is_nan())
+}
+
+/// The constant that fills the outside of a map, and the pixels that hold it.
+pub struct FilledEdge {
+    pub texel: [f32; 4],
+    pub holds: Plane<bool>,
+}
+
+impl FilledEdge {
+    /// What [`constant`] finds, if anything.
+    pub fn of(stored: &StoredMap, coverage: Option<&Plane<u8>>) -> Option<Self> {
+        let texel = constant(stored, coverage)?;
+        let mut holds = Plane::filled(stored.size, true);
+        for (channel, number) in stored.channels.iter().zip(texel) {
+            channel.keep_where(&mut holds, |v| same_number(v, number, stored.lossy));
+        }
+        Some(Self { texel, holds })
+    }
 }
 
 /// Pixels joined to the border through pixels that `is` accepts (four neighbours).

@@ -4,6 +4,7 @@
 use crate::math::Size;
 use crate::raster::Plane;
 use image::DynamicImage;
+use rayon::prelude::*;
 
 /// The numbers of a channel: `[0, 1]` of integers, as they are of floats.
 #[derive(Clone)]
@@ -27,6 +28,27 @@ impl Channel {
     pub fn map<T: Copy + Send + Sync + Default>(&self, f: impl Fn(f32) -> T + Sync) -> Plane<T> {
         let size = self.size();
         Plane::from_fn(size, |x, y| f(self.at(y * size.width as usize + x)))
+    }
+    /// Takes pixels out of a set whose number is not one of those that `is` accepts; asked once for each number of an
+    /// integer file.
+    pub fn keep_where(&self, set: &mut Plane<bool>, is: impl Fn(f32) -> bool + Sync) {
+        fn keep<T: Copy + Sync>(set: &mut Plane<bool>, plane: &Plane<T>, is: impl Fn(T) -> bool + Sync) {
+            let rows = plane.values().par_chunks(plane.width().max(1));
+            set.values_mut().par_chunks_mut(plane.width().max(1)).zip(rows).for_each(|(set, row)| {
+                set.iter_mut().zip(row).for_each(|(kept, v)| *kept &= is(*v));
+            });
+        }
+        match self {
+            Channel::Byte(plane) => {
+                let known: Vec<bool> = (0..=u8::MAX).map(|v| is(f32::from(v) / 255.0)).collect();
+                keep(set, plane, |v| known[usize::from(v)]);
+            }
+            Channel::Word(plane) => {
+                let known: Vec<bool> = (0..=u16::MAX).map(|v| is(f32::from(v) / 65535.0)).collect();
+                keep(set, plane, |v| known[usize::from(v)]);
+            }
+            Channel::Float(plane) => keep(set, plane, is),
+        }
     }
     fn size(&self) -> Size {
         match self {

@@ -132,8 +132,14 @@ fn drop_bled(values: &mut Plane<f32>, covered: impl Fn(usize) -> bool + Sync) {
 }
 
 fn range(values: &Plane<f32>, covered: impl Fn(usize) -> bool + Sync) -> Option<(f32, f32)> {
-    let inside = values.values().par_iter().enumerate().filter(|(i, v)| covered(*i) && !v.is_nan());
-    inside.map(|(_, &v)| (v, v)).reduce_with(|(a, b), (c, d)| (a.min(c), b.max(d)))
+    const AT_A_TIME: usize = 1 << 14;
+    let of_some = |(n, some): (usize, &[f32])| {
+        let inside = some.iter().enumerate().filter(|(i, v)| !v.is_nan() && covered(n * AT_A_TIME + i));
+        inside.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), (_, &v)| (low.min(v), high.max(v)))
+    };
+    let ranges = values.values().par_chunks(AT_A_TIME).enumerate().map(of_some);
+    let range = ranges.reduce_with(|(a, b), (c, d)| (a.min(c), b.max(d)))?;
+    (range.0 <= range.1).then_some(range)
 }
 
 /// The polarity as far as it is known without normals: from the convention, then from the encoding.

@@ -2,7 +2,7 @@
 //! Floor 5.
 
 use super::axes::AxisMapping;
-use super::background::{self, is_degenerate};
+use super::background::{self, FilledEdge, is_degenerate};
 use super::channel::Channel;
 use super::encoding::{self, TexelReading};
 use super::findings::Findings;
@@ -25,22 +25,23 @@ pub struct RawNormals {
 /// Reads the numbers as vectors.
 ///
 /// * `coverage`: the mask, if there is one.
+/// * `edge`: what fills the map's outside.
 /// * `without`: pixels that depth says are background.
 pub fn read(
     stored: &StoredMap,
     overrides: &NormalConvention,
     coverage: Option<&Plane<u8>>,
+    edge: Option<&FilledEdge>,
     without: impl Fn(usize) -> bool + Sync,
     findings: &mut Findings,
 ) -> Result<RawNormals> {
     let size = stored.size;
     let w = size.width as usize;
-    let edge = background::constant(stored, coverage);
-    let finite = |i: usize| stored.texel(i).iter().all(|v| v.is_finite());
+    let finite = |i: usize| stored.step.is_some() || stored.texel(i).iter().all(|v| v.is_finite());
     let in_mask = |i: usize| coverage.is_none_or(|c| c.values()[i] > 127) && finite(i);
     let likely = Plane::from_fn(size, |x, y| {
         let i = y * w + x;
-        in_mask(i) && !without(i) && edge.is_none_or(|e| !background::same(stored.texel(i), e, stored.lossy))
+        in_mask(i) && !without(i) && edge.is_none_or(|edge| !edge.holds.values()[i])
     });
     let mut at = samples::spread(&likely);
     // A constant map, or one of a single pixel: use all pixels.
@@ -54,12 +55,12 @@ pub fn read(
         let n = reading.vector(stored.texel(y * w + x));
         if n.is_finite() { n } else { Vec3::ZERO }
     });
-    let strange = edge.filter(|&e| {
-        let n = reading.vector(e);
+    let strange = edge.filter(|edge| {
+        let n = reading.vector(edge.texel);
         let rebuilt = matches!(reading.encoding, NormalEncoding::TwoChannel | NormalEncoding::Dxt5nm);
         is_degenerate(n) || (n.length() - 1.0).abs() > 0.3 || (rebuilt && n.truncate().length() > 1.2)
     });
-    let outside = |i: usize| strange.is_some_and(|e| background::same(stored.texel(i), e, stored.lossy));
+    let outside = |i: usize| strange.is_some_and(|edge| edge.holds.values()[i]);
     let interior = at.iter().map(|&i| (vectors.values()[i].length() - 1.0).abs()).sum::<f32>() / at.len().max(1) as f32;
     let coverage = background::coverage_of_normals(&vectors, outside, interior < 0.05);
     Ok(RawNormals { vectors, reading, coverage })

@@ -1,11 +1,12 @@
 //! Maps that were loaded become maps in the program's convention, and then a surface's: step by step, since what one
 //! tells another needs. Floor 5.
 
+use super::background::{self, FilledEdge};
 use super::coverage::{drop_unknown, report_mask};
 use super::findings::Findings;
 use super::overrides::ConventionOverrides;
 use super::stored::StoredMap;
-use super::{background, depth, normals, orientation, steps};
+use super::{depth, normals, orientation, steps};
 use crate::Result;
 use crate::document::Progress;
 use crate::document::source::{DepthConvention, DepthEncoding, Near};
@@ -42,9 +43,11 @@ impl LoadedMaps<'_> {
         let Self { normal, depth, overrides, .. } = self;
         let raw_depth =
             depth.map(|d| depth::read(d, &overrides.depth, given_coverage.as_ref(), self.findings)).transpose()?;
+        let edge_of = |map: &StoredMap| FilledEdge::of(map, given_coverage.as_ref());
+        let (edge_n, edge_d) = (normal.and_then(edge_of), depth.and_then(edge_of));
         let bare = |i: usize| raw_depth.as_ref().is_some_and(|d| d.values.values()[i].is_nan());
         let raw_normals = normal
-            .map(|n| normals::read(n, &overrides.normal, given_coverage.as_ref(), bare, self.findings))
+            .map(|n| normals::read(n, &overrides.normal, given_coverage.as_ref(), edge_n.as_ref(), bare, self.findings))
             .transpose()?;
         let size = normal.or(depth).map_or(Size::new(1, 1), |m| m.size);
         let w = size.width as usize;
@@ -56,21 +59,17 @@ impl LoadedMaps<'_> {
         if !explicit {
             report_mask(normal, raw_depth.as_ref(), &coverage, self.findings);
         }
-        let masked = explicit.then_some(&coverage);
-        let edge_n = normal.and_then(|m| Some((m, background::constant(m, masked)?)));
-        let edge_d = depth.and_then(|m| Some((m, background::constant(m, masked)?)));
         // A partly covered rim pixel with the background's value has no value of its own.
-        let borrowed = |edge: Option<(&StoredMap, [f32; 4])>, i: usize| {
-            let partly = explicit && coverage.values()[i] < 255;
-            partly && edge.is_some_and(|(m, e)| background::same(m.texel(i), e, m.lossy))
+        let borrowed = |edge: &Option<FilledEdge>, i: usize| {
+            explicit && coverage.values()[i] < 255 && edge.as_ref().is_some_and(|edge| edge.holds.values()[i])
         };
         let inside = Plane::from_fn(size, |x, y| {
             let i = y * w + x;
             let zero = raw_normals.as_ref().is_some_and(|r| background::is_degenerate(r.vectors.values()[i]));
-            coverage.values()[i] > 0 && !bare(i) && !zero && !borrowed(edge_n, i) && !borrowed(edge_d, i)
+            coverage.values()[i] > 0 && !bare(i) && !zero && !borrowed(&edge_n, i) && !borrowed(&edge_d, i)
         });
         // A constant border does not help to detect conventions, and its edge may be the silhouette.
-        let fills = |i: usize| !explicit && edge_n.is_some_and(|(m, e)| background::same(m.texel(i), e, m.lossy));
+        let fills = |i: usize| !explicit && edge_n.as_ref().is_some_and(|edge| edge.holds.values()[i]);
         let judged = Plane::from_fn(size, |x, y| inside.at(x, y) && !fills(y * w + x));
         let enough = judged.values().iter().filter(|j| **j).count() >= 16;
         let judged = if enough { &judged } else { &inside };
