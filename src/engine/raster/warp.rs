@@ -1,9 +1,10 @@
 //! Pixels seen through a map: each pixel of the canvas from the pixels that it shows, sampled once.
 //! Floor 1. Maps are `math`'s; this knows them by their inverse alone.
 //!
-//! A map that moves whole pixels copies them. What is read of tiles of 16 bits becomes such. Elsewhere a pixel is a weighted mean of the source around the point that
+//! A map that moves whole pixels copies them. Elsewhere a pixel is a weighted mean of the source around the point that
 //! it shows. Where the source is magnified along an axis of the pixel, the weights are a cubic's; where it is reduced,
-//! they are the share of each source pixel's tent in the pixel's own piece of the source.
+//! they are the share of each source pixel's tent in the pixel's own piece of the source. A tile that shows some of a
+//! tile of 16 bits has 16 bits.
 
 mod points;
 mod rows;
