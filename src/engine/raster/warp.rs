@@ -121,9 +121,9 @@ fn moved_tile(grid: &TileGrid, by: PixelMove, at: TileAt) -> Option<Arc<Tile>> {
         return grid.tile(at).cloned();
     }
     let rect = at.rect();
-    let corners = [(rect.x0, rect.y0), (rect.x1 - 1, rect.y1 - 1)].map(|(x, y)| by.source(x, y));
-    let [(ax, ay), (bx, by_)] = corners;
-    let read = Rect::new(ax.min(bx), ay.min(by_), ax.max(bx).saturating_add(1), ay.max(by_).saturating_add(1));
+    let read = [(rect.x0, rect.y0), (rect.x1 - 1, rect.y1 - 1)].map(|(x, y)| by.source(x, y));
+    let read = read.map(|(x, y)| Rect::new(x, y, x.saturating_add(1), y.saturating_add(1)));
+    let read = read[0].union(read[1]);
     if grid.is_deep_at(read) {
         let mut rows = deep::clear_rows();
         for (row, y) in rows.iter_mut().zip(rect.y0..) {
