@@ -1,6 +1,6 @@
 //! A layer: how it meets what lies beneath, and what it holds.
-//! Floor 4. A layer holds content, and the content of a group holds layers, so everything that a layer consists of is in
-//! submodules of this one.
+//! Floor 4. A layer holds content, and the content of a group holds layers. So everything that a layer consists of is
+//! in submodules of this one.
 
 pub(super) mod cache;
 pub(super) mod content;
