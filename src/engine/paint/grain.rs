@@ -63,7 +63,8 @@ pub enum GrainSpace {
 }
 
 impl GrainSpace {
-    /// Every kind with its name in documents and the numbers of the name alone; `named!` is for choices without numbers.
+    /// Every kind with its name in documents and the numbers of the name alone; `named!` is for choices without
+    /// numbers.
     pub const ALL: [(GrainSpace, &'static str); 3] = [
         (GrainSpace::Canvas, "canvas"),
         (GrainSpace::Surface { gamma: 1.0 }, "surface"),

@@ -34,7 +34,8 @@ crate::named! {
         /// As it is seen.
         #[default]
         Canvas = "canvas",
-        /// As long as it is on the surface: dabs stand equally far apart, and lines are equally smooth, all over the form.
+        /// As long as it is on the surface: dabs stand equally far apart, and lines are equally smooth, all over the
+        /// form.
         Surface = "surface",
     }
 }

@@ -76,8 +76,8 @@ impl StabilizedPen {
     fn parts(from: Vec2, to: Vec2, longest_px: f32) -> usize {
         (from.distance(to) / longest_px).ceil().max(1.0).min(MOST_PULLS) as usize
     }
-    /// The end of a line that trails behind a pen; on a surface the lag is as long there as elsewhere, and shorter as it
-    /// is seen.
+    /// The end of a line that trails behind a pen; on a surface the lag is as long there as elsewhere, and shorter as
+    /// it is seen.
     fn trailed(&self, end: Vec2, from: Vec2, to: Vec2, weight: f32) -> Vec2 {
         let parts = if self.measured.is_some() { Self::parts(from, to, MEASURED_PX) } else { 1 };
         let at = |part: usize| from.lerp(to, part as f32 / parts as f32);

@@ -218,8 +218,8 @@ impl Content {
     pub fn shapes(&self) -> bool {
         matches!(self.role(), Role::Shapes(_))
     }
-    /// Whether a layer of it can be displaced: what shapes the surface or adjusts what lies beneath shows nothing of its
-    /// own.
+    /// Whether a layer of it can be displaced: what shapes the surface or adjusts what lies beneath shows nothing of
+    /// its own.
     pub fn can_be_warped(&self) -> bool {
         matches!(self.role(), Role::Paints | Role::Groups(_))
     }

@@ -110,8 +110,8 @@ fn flat_ground(tiles: &TileGrid, canvas: Size) -> Option<Color> {
     is_most.then_some(Color { r, g, b, a })
 }
 
-/// A picture without its flat background, as far as that is joined to the border. Over the background's colour it is what it
-/// was: pixels at its edge lose just the share that the background has of them.
+/// A picture without its flat background, as far as that is joined to the border. Over the background's colour it is
+/// what it was: pixels at its edge lose just the share that the background has of them.
 pub fn without_background(tiles: &TileGrid, canvas: Size, background: Color) -> TileGrid {
     let color = bytes_of(background);
     let open = joined_to_border(&Plane::from_fn(canvas, |x, y| is_near(tiles.pixel(x as i32, y as i32), color)));

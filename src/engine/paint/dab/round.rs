@@ -198,8 +198,8 @@ impl RoundTip {
         *coverage += g * if room > 0.0 { room } else { 0.0 };
         *reach = if g > 0.0 { 1.0 } else { *reach };
     }
-    /// Adds to judged pixels of a row, chunks of one zone at a time: only where a pixel's box lies across a zone's border does
-    /// its mean take a root and a division more, beyond the rim it takes nothing.
+    /// Adds to judged pixels of a row, chunks of one zone at a time: only where a pixel's box lies across a zone's
+    /// border does its mean take a root and a division more, beyond the rim it takes nothing.
     #[inline(always)]
     fn add(&self, row: &RowZones, pixels: Range<usize>, paint: RowPaint) {
         let RowPaint { coverage, reach } = paint;

@@ -19,7 +19,8 @@ pub(super) struct SourceWindow {
 }
 
 impl SourceWindow {
-    /// The mean of the source about a point: what [`SourceWindow::rows`](super::rows) find side by side, pixel by pixel.
+    /// The mean of the source about a point: what [`SourceWindow::rows`](super::rows) find side by side, pixel by
+    /// pixel.
     pub fn sample(&self, p: Vec2, jacobian: Mat2, filter: Resampling) -> [f32; 4] {
         let (right, down) = (PatchSide::of(jacobian.x_axis, filter), PatchSide::of(jacobian.y_axis, filter));
         match filter {

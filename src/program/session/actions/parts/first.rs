@@ -91,8 +91,8 @@ fn named_alone(document: &Document, layer: LayerId) -> Option<Document> {
     document.with_layer(layer, |layer| layer.name = named)
 }
 
-/// The drawing as paint without its background, and the background as a fill beneath, and the drawing's pixels. What shows
-/// stays as it was.
+/// The drawing as paint without its background, and the background as a fill beneath, and the drawing's pixels. What
+/// shows stays as it was.
 fn without_flat_background(
     document: &Document,
     layer: LayerId,
