@@ -10,6 +10,8 @@ use rayon::prelude::*;
 /// Pixels computed side by side.
 const LANES: usize = 64;
 type Lanes = [f32; LANES];
+/// Of them, pixels that are looked at together.
+const TOGETHER: usize = 16;
 
 /// Height where there is no surface, px: so low that the step back up is a cliff.
 const NOWHERE: f32 = -1e6;
@@ -57,7 +59,7 @@ pub(super) fn compute(surface: &Surface, ways: &HorizonSlices) -> Plane<f32> {
                 continue;
             }
             let mut found = [0.0; LANES];
-            open_lanes(&heights, (x0, y), &LaneSlopes::of(surface, x0, y, out.len()), ways, &mut found);
+            open_lanes(&heights, (x0, y), &LaneSlopes::of(surface, &heights, (x0, y), out.len()), ways, &mut found);
             for (x, (out, &found)) in out.iter_mut().zip(&found).enumerate() {
                 if surface.coverage(x0 + x, y) > 0 {
                     *out = found;
@@ -111,22 +113,49 @@ struct LaneSlopes {
 }
 
 impl LaneSlopes {
-    fn of(surface: &Surface, x0: usize, y: usize, width: usize) -> Self {
+    fn of(surface: &Surface, heights: &Heights, (x0, y): (usize, usize), width: usize) -> Self {
         let mut facing = Self { slope: [[0.0; LANES]; 2], nbar: [[0.0; LANES]; 2], nz: [1.0; LANES] };
+        let [nbar_x, nbar_y, nz] = surface.normal_planes().map(|plane| &plane.row(y)[x0..x0 + width]);
+        facing.nbar[0][..width].copy_from_slice(nbar_x);
+        facing.nbar[1][..width].copy_from_slice(nbar_y);
+        facing.nz.iter_mut().zip(nz).for_each(|(out, z)| *out = z.max(0.0));
+        if is_whole(surface, (x0, y), width) {
+            let row = |dy: i32| [-1, 0, 1].map(|dx| heights.lanes(x0, y, (dx, dy)));
+            slopes_of_whole([row(-1), row(0), row(1)], &mut facing.slope);
+            return facing;
+        }
         for i in 0..width {
-            let (slope, nbar) = (slope(surface, x0 + i, y), surface.nbar(x0 + i, y));
-            (facing.slope[0][i], facing.slope[1][i]) = (slope.x, slope.y);
-            (facing.nbar[0][i], facing.nbar[1][i]) = (nbar.x, nbar.y);
-            facing.nz[i] = surface.normal(x0 + i, y).z.max(0.0);
+            (facing.slope[0][i], facing.slope[1][i]) = slope(surface, x0 + i, y).into();
         }
         facing
     }
 }
 
+/// Whether all pixels from (x, y) on, and those around them, hang together.
+fn is_whole(surface: &Surface, (x, y): (usize, usize), width: usize) -> bool {
+    const INSIDE: u8 = links::LEFT | links::RIGHT | links::UP | links::DOWN;
+    let size = surface.size();
+    let is_inside = x > 0 && y > 0 && x + width < size.width as usize && y + 1 < size.height as usize;
+    let row = |y: usize| &surface.links_plane().row(y)[x - 1..x + width + 1];
+    is_inside
+        && [y - 1, y, y + 1].iter().all(|&y| row(y).iter().fold(u8::MAX, |all, bits| all & bits) & INSIDE == INSIDE)
+}
+
 crate::widest! {
+    /// [`slope`] where all pixels around hang together, to the same bits; `rows`: the heights above, here and below, each
+    /// one px to the left, there and one to the right.
+    fn slopes_of_whole(rows: [[&[f32]; 3]; 3], out: &mut [Lanes; 2]) {
+        let [[a, b, c], [d, e, f], [g, h, k]] = rows.map(|row| row.map(|lanes| &lanes[..LANES]));
+        for i in 0..LANES {
+            // In the order of `slope`, which adds up in rows and in columns.
+            let across = (e[i] - d[i]) + (f[i] - e[i]) + (b[i] - a[i]) + (c[i] - b[i]) + (h[i] - g[i]) + (k[i] - h[i]);
+            let along = (e[i] - b[i]) + (h[i] - e[i]) + (d[i] - a[i]) + (g[i] - d[i]) + (f[i] - c[i]) + (k[i] - f[i]);
+            (out[0][i], out[1][i]) = (across / 6.0, along / 6.0);
+        }
+    }
     /// The open part of the hemisphere over each pixel.
     fn open_lanes(heights: &Heights, at: (usize, usize), facing: &LaneSlopes, ways: &HorizonSlices, out: &mut Lanes) {
-        let (mut open, mut whole) = ([0.0; LANES], [0.0; LANES]);
+        let (mut open, mut whole, mut part) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
         for slice in &ways.slices {
             let toward = slice[0].toward;
             let (mut tangent, mut hidden) = ([[0.0; LANES]; 2], [[0.0; LANES]; 2]);
@@ -136,14 +165,22 @@ crate::widest! {
                 let told = tangents(along, self::along(&facing.nbar, toward, i), facing.nz[i]);
                 (*ahead, *behind) = (told[0], told[1]);
             }
+            let mut is_open = true;
             for side in 0..2 {
-                march(heights, at, &slice[side], ways.radius_px, &tangent[side], &mut hidden[side]);
+                is_open &= !march(heights, at, &slice[side], ways.radius_px, &tangent[side], &mut hidden[side]);
             }
             for i in 0..LANES {
                 let along = -along(&facing.slope, toward, i);
-                let free = [tangent[0][i], tangent[1][i]];
-                whole[i] += open_part(along, 1.0, free);
-                open[i] += open_part(along, 1.0, [free[0] + hidden[0][i], free[1] + hidden[1][i]]);
+                part[i] = open_part(along, 1.0, [tangent[0][i], tangent[1][i]]);
+                whole[i] += part[i];
+            }
+            if is_open {
+                open.iter_mut().zip(&part).for_each(|(open, part)| *open += part);
+                continue;
+            }
+            for i in 0..LANES {
+                let along = -along(&facing.slope, toward, i);
+                open[i] += open_part(along, 1.0, [tangent[0][i] + hidden[0][i], tangent[1][i] + hidden[1][i]]);
             }
         }
         for i in 0..LANES {
@@ -157,7 +194,10 @@ fn along(vector: &[Lanes; 2], toward: Vec2, i: usize) -> f32 {
     vector[0][i] * toward.x + vector[1][i] * toward.y
 }
 
-/// How far the highest horizon along a way stands above the tangent plane's, in cosines.
+/// How far the highest horizon along a way stands above the tangent plane's, in cosines; whether it may do so anywhere.
+///
+/// Most places lie below the tangent plane, which their rise tells without a root or a division. Only where one of a few
+/// neighbours' does not, they are looked at.
 #[inline(always)]
 fn march(
     heights: &Heights,
@@ -166,20 +206,55 @@ fn march(
     radius_px: f32,
     tangent: &Lanes,
     hidden: &mut Lanes,
-) {
+) -> bool {
     let here = heights.lanes(x, y, (0, 0));
     let (per_radius_2, per_cliff) = (1.0 / (radius_px * radius_px), 1.0 / (FLOATS * radius_px));
-    let (mut before, mut cliffs) = ([0.0; LANES], [0.0; LANES]);
+    let (mut rise, mut cliffs) = ([0.0; LANES], [0.0; LANES]);
+    let (mut steep, mut over) = ([0.0; LANES], [0u32; LANES]);
+    for i in 0..LANES {
+        steep[i] = steepness(tangent[i]);
+    }
+    let mut is_hidden = false;
     for step in &way.steps {
         let (near, far) = (heights.lanes(x, y, step.near), heights.lanes(x, y, step.far));
-        let distance_2 = step.distance_px * step.distance_px;
         for i in 0..LANES {
-            let rise = height_between(near[i], far[i], step.between) - here[i];
-            cliffs[i] += fast::max(rise - before[i] - step.cliff_px, 0.0);
-            before[i] = rise;
-            let space_2 = distance_2 + rise * rise;
-            let above = rise / space_2.sqrt() - tangent[i];
-            fast::raise(&mut hidden[i], excess(above, space_2 * per_radius_2, cliffs[i], per_cliff));
+            let before = rise[i];
+            rise[i] = height_between(near[i], far[i], step.between) - here[i];
+            cliffs[i] += fast::max(rise[i] - before - step.cliff_px, 0.0);
+            // What is no number is looked at.
+            over[i] = if rise[i] <= step.distance_px * steep[i] { 0 } else { 1 };
+        }
+        let distance_2 = step.distance_px * step.distance_px;
+        for start in (0..LANES).step_by(TOGETHER) {
+            let lanes = start..start + TOGETHER;
+            if over[lanes.clone()].iter().fold(0, |any, over| any | over) == 0 {
+                continue;
+            }
+            is_hidden = true;
+            let (rise, tangent, cliffs) = (&rise[lanes.clone()], &tangent[lanes.clone()], &cliffs[lanes.clone()]);
+            let hidden = &mut hidden[lanes];
+            for i in 0..TOGETHER {
+                let space_2 = distance_2 + rise[i] * rise[i];
+                let above = rise[i] / space_2.sqrt() - tangent[i];
+                fast::raise(&mut hidden[i], excess(above, space_2 * per_radius_2, cliffs[i], per_cliff));
+            }
         }
     }
+    is_hidden
+}
+
+/// The rise a px, or a little less, that a cosine to the view stands for.
+#[inline(always)]
+pub(super) fn steepness(cosine: f32) -> f32 {
+    /// More than what rounding takes and gives. Of level ground nothing is taken: there both are exactly 0.
+    const LESS: f32 = 1e-5;
+    let cosine = cosine - LESS * cosine.abs();
+    cosine / fast::max(1.0 - cosine * cosine, 0.0).sqrt()
+}
+
+/// The slopes of some pixels of a row.
+#[cfg(test)]
+pub(super) fn slopes(surface: &Surface, ways: &HorizonSlices, at: (usize, usize), width: usize) -> Vec<Vec2> {
+    let [x, y] = LaneSlopes::of(surface, &Heights::of(surface, ways), at, width).slope;
+    x.into_iter().zip(y).take(width).map(Vec2::from).collect()
 }

@@ -97,6 +97,34 @@ fn rows_hold_what_a_pixel_alone_sees() {
     }
 }
 #[test]
+fn slopes_side_by_side_are_those_of_each_pixel() {
+    let surface = relief(|x, y| (x.hypot(y - 40.0) > 9.0).then(|| 14.0 * (x * 0.11).sin() * (y * 0.07).cos()));
+    let ways = HorizonSlices::new(24.0);
+    for y in 0..161 {
+        for (x0, width) in [(0, 64), (64, 64), (128, 33)] {
+            let found = rows::slopes(&surface, &ways, (x0, y), width);
+            for (i, found) in found.into_iter().enumerate() {
+                let expected = slope(&surface, x0 + i, y);
+                assert_eq!(found.to_array().map(f32::to_bits), expected.to_array().map(f32::to_bits), "{} {y}", x0 + i);
+            }
+        }
+    }
+}
+#[test]
+fn a_place_that_its_rise_rules_out_hides_nothing() {
+    for i in 0..4000u32 {
+        let tangent = 2.0 * crate::math::hash::unit(1, i, 0) - 1.0;
+        let distance = 1.0 + 60.0 * crate::math::hash::unit(1, i, 1);
+        let exact = tangent / (1.0 - tangent * tangent).max(1e-9).sqrt() * distance;
+        for rise in [exact * 0.9999, exact, exact * 1.00001, exact + 1e-3, exact - 1e-3] {
+            if rise <= distance * rows::steepness(tangent) {
+                let above = rise / (distance * distance + rise * rise).sqrt() - tangent;
+                assert!(above <= 0.0, "tangent {tangent}, rise {rise} at {distance}: {above}");
+            }
+        }
+    }
+}
+#[test]
 fn smoothing_evens_steps_out_but_stops_at_a_depth_jump() {
     let surface = relief(|x, _| Some(if x < 0.0 { 0.0 } else { 60.0 }));
     let stripes = Plane::from_fn(SIZE, |x, y| if x < 80 { 0.2 } else { 0.8 + 0.1 * (y % 2) as f32 });
