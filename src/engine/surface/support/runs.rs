@@ -9,7 +9,7 @@ use crate::raster::TileAt;
 /// Dabs that are sought together, and how far apart their anchors may lie, px; or in radii.
 const RUN: usize = 32;
 const APART_PX: f32 = 24.0;
-const APART_RADII: f32 = 2.0;
+const APART_RADII: f32 = 1.0;
 
 /// Visits every tile of the canvas that each of some dabs may touch, with the dab's number; of a tile in their order.
 pub fn for_each_tile_of<'s, 'b>(dabs: &[&'b SupportBounds<'s>], mut visit: impl FnMut(usize, TileAt))
