@@ -142,8 +142,9 @@ fn is_whole(surface: &Surface, (x, y): (usize, usize), width: usize) -> bool {
 }
 
 crate::widest! {
-    /// [`slope`] where all pixels around hang together, to the same bits; `rows`: the heights above, here and below, each
-    /// one px to the left, there and one to the right.
+    /// [`slope`] where all pixels around hang together, to the same bits.
+    ///
+    /// `rows`: the heights above, here and below, each one px to the left, there and one to the right.
     fn slopes_of_whole(rows: [[&[f32]; 3]; 3], out: &mut [Lanes; 2]) {
         let [[a, b, c], [d, e, f], [g, h, k]] = rows.map(|row| row.map(|lanes| &lanes[..LANES]));
         for i in 0..LANES {
@@ -196,8 +197,8 @@ fn along(vector: &[Lanes; 2], toward: Vec2, i: usize) -> f32 {
 
 /// How far the highest horizon along a way stands above the tangent plane's, in cosines; whether it may do so anywhere.
 ///
-/// Most places lie below the tangent plane, which their rise tells without a root or a division. Only where one of a few
-/// neighbours' does not, they are looked at.
+/// Most places lie below the tangent plane, which their rise tells without a root or a division. Only where that of one
+/// of a few neighbours does not, they are looked at.
 #[inline(always)]
 fn march(
     heights: &Heights,
