@@ -1,11 +1,12 @@
-//! The brush: strokes of dabs, flat and bent, in ns per covered pixel on one thread, beside libmypaint's flat dabs.
+//! The brush: strokes of dabs, flat and bent, in ns per covered pixel on one thread, next to libmypaint's flat dabs.
 //! `cargo bench --bench brush`; quote ratios from one run, never times from another day.
 //!
-//! Then what a hand feels: a frame's worth of events on a large document, from the pen to the flattened tiles, as the
-//! stroke grows; and one of a thousand strokes moved.
+//! Then what a painter feels: a frame's worth of events on a large document, from the pen to the flattened tiles, as
+//! the stroke grows; and moving one of a thousand strokes.
 //!
-//! A stroke's cost is all of it: its dabs found, what they reach, their coverage, laid on the tiles and quantised. The
-//! peer (benches/peers/libmypaint_dabs.c) is built with `cc` where libmypaint's headers are; else it is skipped, aloud.
+//! The cost of a stroke includes finding its dabs and their reach, computing coverage, painting the tiles and
+//! quantising. The peer (benches/peers/libmypaint_dabs.c) is built with `cc` if libmypaint's headers are installed;
+//! otherwise a message says that it is skipped.
 
 use rilievo_engine::document::{
     Content, Document, Layer, Live, PixelLayer, PreparedDocument, Progress, StrokeList, diff::diff,
@@ -24,7 +25,7 @@ const DABS: usize = 128;
 /// Inking is most strokes: small brushes first.
 const RADII: [f32; 6] = [4.0, 8.0, 12.0, 32.0, 64.0, 128.0];
 
-/// From dab to dab, px: of small brushes a fifth of the radius, as brushes have it.
+/// Distance between dabs, px: a fifth of the radius for small brushes, as in real brushes.
 fn step_px(radius: f32) -> f32 {
     if radius < 32.0 { 0.2 * radius } else { 14.0 }
 }
@@ -53,14 +54,14 @@ fn ball(size: Size) -> Scene {
     Scene { size, surface: Surface::new(Maps { normals, depth, coverage }).ok().map(Arc::new) }
 }
 
-/// Where the `i`th dab of a radius stands: a step further along a circle of 700 px.
+/// Position of the `i`th dab of a radius: a step further along a circle of 700 px.
 fn on_circle(i: f32, radius: f32) -> Sample {
     Sample::at(SIZE.center() + 700.0 * Vec2::from_angle(step_px(radius) / 700.0 * i))
 }
 
-/// A fresh stroke: nothing is found yet.
+/// A new stroke: no dab is found yet.
 fn circle(operator: Operator, radius: f32) -> Arc<Stroke> {
-    // A pen tells of every few px.
+    // A pen reports every few px.
     let samples_px = if radius < 32.0 { 6.0 } else { 1.75 };
     let per_dab = step_px(radius) / samples_px;
     let samples = (0..=(per_dab * (DABS - 1) as f32) as usize).map(|i| on_circle(i as f32 / per_dab, radius)).collect();
@@ -246,7 +247,7 @@ fn frames() {
     }
 }
 
-/// A stroke layer of a thousand strokes, one of which is moved: what is painted again, and how long it takes.
+/// A stroke layer of a thousand strokes, one of which is moved: how much is painted again, and how long it takes.
 fn one_of_a_thousand() {
     let random = |i, j| hash::unit(7, i, j);
     let stroke = |i: u32, by: Vec2| {

@@ -1,6 +1,6 @@
-//! The engine on 4K maps: an image layer bent by D_n, computed *and* sampled, one thread and all, beside OpenCV's
-//! `remap` that is handed the finished map. `cargo bench --bench engine`; quote ratios from one run, never times from
-//! another day.
+//! The engine on 4K maps: an image layer bent by D_n, computed *and* sampled, on one thread and on all, next to
+//! OpenCV's `remap`, which gets the finished map. `cargo bench --bench engine`; quote ratios from one run, never times
+//! from another day.
 
 use rayon::prelude::*;
 use rilievo_engine::document::{Content, Document, DocumentReducer, Layer, Live, Progress, flatten};
@@ -86,7 +86,7 @@ fn bench(bencher: divan::Bencher, case: &str, threads: usize) {
     bencher.bench_local(|| pool.install(|| render(&image)));
 }
 
-/// A picture whose α is dragged, as the window shows it: every pixel, or every second, fourth, eighth a side.
+/// A picture whose α is dragged, as the window shows it: every pixel, or every second, fourth or eighth per side.
 #[divan::bench(args = [1, 2, 4, 8], sample_count = 9, sample_size = 1)]
 fn dragged(bencher: divan::Bencher, step: u32) {
     let content = |alpha: f32| {

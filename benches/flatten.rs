@@ -1,5 +1,5 @@
-//! Flattening 20 semi-transparent paint layers of 3840 × 2160, beside `tiny_skia::draw_pixmap` of the same layers and a
-//! plain byte loop, in the same run; the price of each blend mode; and scenes of few and of many contours.
+//! Flattening 20 semi-transparent paint layers of 3840 × 2160, next to `tiny_skia::draw_pixmap` of the same layers and
+//! a plain byte loop, in the same run; the price of each blend mode; and scenes of few and of many contours.
 //!
 //! Read ratios, not times: `cargo bench --bench flatten`. Throughput counts pixels times layers, so ns per pixel and
 //! layer is 1 / (Gitem/s).
@@ -128,7 +128,7 @@ fn ten_layers(bencher: Bencher, depth: &str) {
     flatten(bencher, &Document { layers: (0..10).map(layer).collect(), ..Document::empty(SCENE) }, 1);
 }
 
-/// The same, rounded to bytes if asked.
+/// The same, rounded to bytes if requested.
 fn in_bytes_if(rounded: bool, tiles: TileGrid) -> TileGrid {
     let mut out = tiles.clone();
     for (at, tile) in tiles.iter().filter(|_| rounded) {
@@ -137,7 +137,7 @@ fn in_bytes_if(rounded: bool, tiles: TileGrid) -> TileGrid {
     out
 }
 
-/// Two layers less one: the price of a mode is its second layer's.
+/// Two layers minus one: the price of a mode is that of its second layer.
 #[divan::bench(args = BlendMode::ALL.map(|(_, name)| name), sample_count = 5, sample_size = 1)]
 fn five_layers(bencher: Bencher, mode: &str) {
     flatten(bencher, &document(5, BlendMode::from_name(mode).unwrap_or_default()), 1);

@@ -1,7 +1,7 @@
 //! What a frame of the window costs while the hand moves: α and an anchor of an image layer, and a gradient's end
-//! dragged, at every size that the window may show them in; a brush's events until their tiles are flattened; getting
-//! a large document ready for a drag. `cargo bench --bench frame`. Peers: the frame rates asked for, 16 ms a drag and
-//! 8 ms a brush; and a copy of the picture.
+//! dragged, at every size that the window may show them in; a brush's events until their tiles are flattened; getting a
+//! large document ready for a drag. `cargo bench --bench frame`. Peers: the target frame times, 16 ms for a drag and
+//! 8 ms for a brush; and a copy of the picture.
 
 mod timing;
 

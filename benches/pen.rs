@@ -40,7 +40,7 @@ fn stroke(number: usize) -> Arc<Stroke> {
         let along = i as f32 / A_STROKE as f32;
         let angle = turn + 1.8 * along * along;
         let at = middle + reach * vec2(angle.cos(), angle.sin()) + 0.4 * vec2(noise(n, 5), noise(n, 6));
-        // A tablet tells one of 8192 levels, and a tilt in whole degrees.
+        // A tablet reports one of 8192 levels, and tilt in whole degrees.
         let pressure = (8191.0 * (0.7 * (3.1 * along).sin() + 0.02 * noise(n, 7)).clamp(0.0, 1.0)).round() / 8191.0;
         let tilt = vec2((32.0 + 9.0 * along).round(), (-20.0 + 6.0 * (4.0 * along).sin()).round());
         Sample { at, pressure, tilt, time_secs: t + 0.0005 * (noise(n, 8) + 0.5) }.settled()
@@ -58,7 +58,7 @@ static HOUR: LazyLock<Document> = LazyLock::new(|| {
     document
 });
 
-/// The layer as it is after an edit: its picture for other programs is encoded anew.
+/// The layer as it is after an edit: its picture for other programs is encoded again.
 fn edited() -> Document {
     HOUR.with_layer(HOUR.layers[0].id, |layer| layer.opacity = 0.9).expect("the layer")
 }

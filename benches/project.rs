@@ -1,8 +1,8 @@
-//! A project of 20 paint layers of 4096 × 4096: saved while a brush paints, and opened, beside the pure decoding of its
-//! PNGs on the same two threads in the same run.
+//! A project of 20 paint layers of 4096 × 4096: saved while a brush paints, and opened, next to decoding only its PNGs
+//! on the same two threads in the same run.
 //!
-//! Read ratios, and of `brush_…` the slowest sample: it is how long the hand is held at most.
-//! `cargo bench --bench project`.
+//! Read ratios, and for `brush_…` the slowest sample: the longest that the painter has to wait. `cargo bench --bench
+//! project`.
 
 use divan::Bencher;
 use divan::counter::BytesCount;
@@ -41,7 +41,7 @@ static GRIDS: LazyLock<Vec<TileGrid>> = LazyLock::new(|| {
     (0..LAYERS as u32).map(|seed| TileGrid::from_straight_rgba(&patches(seed), SIDE, SIDE, 0, 0)).collect()
 });
 
-/// Layers that no file holds yet: nothing is known of them.
+/// Layers that no file holds yet: nothing about them is cached.
 fn document() -> Document {
     let layer = |(i, tiles): (usize, &TileGrid)| {
         let pixels = PixelLayer { file: String::new(), x: 0, y: 0, tiles: tiles.clone() };
@@ -56,7 +56,7 @@ fn written(document: &Document) -> Vec<u8> {
 
 static PROJECT: LazyLock<Vec<u8>> = LazyLock::new(|| written(&document()));
 
-/// The layers' PNGs as they stand in it.
+/// The layers' PNGs as the file holds them.
 static PNGS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     let mut zip = zip::ZipArchive::new(Cursor::new(&PROJECT[..])).expect("a zip");
     let names: Vec<String> = zip.file_names().filter_map(|name| name.ok().map(|name| name.to_string())).collect();
@@ -130,7 +130,7 @@ fn painting() -> Session {
 fn replay(session: &mut Session, line: &str) {
     session.replay(Path::new("bench"), line).expect("an action");
 }
-/// What the hand does in one frame.
+/// The pen's events in one frame.
 fn brush(bencher: Bencher, session: &mut Session) {
     let mut frame = 0u32;
     bencher.bench_local(|| {
@@ -171,7 +171,7 @@ fn brush_while_saving(bencher: Bencher) {
     });
 }
 
-/// With the recovery log, which is told of every stroke.
+/// With the recovery log, which records every stroke.
 #[divan::bench(sample_count = 800, sample_size = 1)]
 fn brush_with_recovery(bencher: Bencher) {
     let mut session = painting();

@@ -80,7 +80,7 @@ static BLOTS: LazyLock<CoverageGrid> = LazyLock::new(|| {
     fill.selected(vec2(1.0, 1.0), LARGE, &CanvasPart::Whole, true, read).unwrap_or_default()
 });
 
-/// All tiles, seen whole in a window of a thousand points, none of them known yet.
+/// All tiles, seen whole in a window of a thousand points, none of them cached yet.
 #[divan::bench]
 fn outline_found_4096(bencher: Bencher) {
     LazyLock::force(&BLOTS);

@@ -1,4 +1,4 @@
-//! How fast radiance scaling and materials are, beside a copy of the same pixels in the same run.
+//! How fast radiance scaling and materials are, next to a copy of the same pixels in the same run.
 //!
 //! `cargo bench --no-default-features --bench shading`. Figures are compared within one run only.
 
@@ -88,7 +88,7 @@ fn copy_of_the_same_pixels(bencher: Bencher, run: Run) {
     });
 }
 
-/// As flattening does it: each tile is in the cache already. Beside it, the copy that makes it so.
+/// As flattening does it: each tile is in the cache already. Next to it, the copy that puts it there.
 #[divan::bench(args = RUNS)]
 fn radiance_scaling_of_tiles_in_the_cache(bencher: Bencher, run: Run) {
     let scene = scene(run.0);

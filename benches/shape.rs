@@ -1,8 +1,8 @@
 //! What a shape costs: inflating an outline of 1 Mpx from nothing and after an edit, and a frame of each slider.
 //!
-//! `cargo bench --bench shape`. Two threads, as the aims are told: 100 ms from nothing, 50 ms after an edit, 16 ms a
-//! slider's frame, a touch or a sculpting dab. Those of a document are all that follows an event but painting: whole,
-//! as when the hand rests, and in the coarse pixels that are shown while it drags.
+//! `cargo bench --bench shape`. Two threads, as the aims assume: 100 ms from nothing, 50 ms after an edit, 16 ms for a
+//! slider's frame, a touch or a sculpting dab. The times of a document include everything that follows an event except
+//! painting: in full, as when the pen rests, and in the coarse pixels shown during a drag.
 
 use divan::{Bencher, black_box};
 use rilievo_engine::document::parts::{Inflation, OutlineSource, Part, PartKind};
@@ -77,7 +77,7 @@ fn profile_dragged(bencher: Bencher) {
     bencher.bench_local(|| pool.install(|| black_box(frame())));
 }
 
-/// What a part costs on its way into the surface's heights.
+/// The cost of turning a part into heights of the surface.
 #[divan::bench(sample_count = 10)]
 fn combined(bencher: Bencher) {
     let (outline, pool) = (creature(0.0), two_threads());

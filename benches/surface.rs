@@ -1,4 +1,4 @@
-//! What knowing the shape costs: the curvature tensor of a map of 3840 × 2160, beside a copy of the same bytes.
+//! What knowing the shape costs: the curvature tensor of a map of 3840 × 2160, next to a copy of the same bytes.
 //!
 //! And what unwrapping a map of 1024 × 1024 costs.
 //!

@@ -1,10 +1,10 @@
 //! From the event to the pixel, in the real window on a display of its own: an anchor of a photo on a map of 3840 ×
 //! 2160 dragged; a brush and a pan on it and on a project of ten layers of 4096 × 4096. Milliseconds from the pointer's
-//! motion until the screen differs there, and of the brush until it is dark beneath the pen.
+//! motion until the screen changes there, or for the brush until it is dark beneath the pen.
 //!
-//! `cargo bench --bench window`. Needs Xvfb and xdotool, and says so where they are missing. A program that draws by a
-//! graphics card is quicker: Xvfb draws by the processor, with which the painting has to share it. The aim: 33 ms in
-//! the middle and 100 at the slowest.
+//! `cargo bench --bench window`. Needs Xvfb and xdotool, and says so if they are missing. A program that draws with a
+//! graphics card is quicker: Xvfb draws with the processor and shares it with the painting. The aim: a median of 33 ms
+//! and at most 100.
 
 #[cfg(any(not(unix), target_os = "macos"))]
 fn main() {
@@ -34,7 +34,7 @@ mod x11 {
     type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
     const SCREEN: (i32, i32) = (1920, 1080);
-    /// An event that nothing answers within this is counted as lost.
+    /// An event with no visible answer within this time counts as lost.
     const LOST: Duration = Duration::from_secs(3);
     /// Side of the squares that are watched.
     const SIDE: i32 = 48;
@@ -125,7 +125,7 @@ mod x11 {
 
     impl Stage {
         fn new(file: &Path, folder: &Path) -> Result<Self> {
-            // Of its own: what the last window left behind when it was killed is not offered to this one.
+            // A folder for each window, so that this one is not offered what the last one left when it was killed.
             let folder = folder.join(file.file_stem().unwrap_or_default());
             let number =
                 (90..).find(|n| !Path::new(&format!("/tmp/.X{n}-lock")).exists()).ok_or("no display is free")?;
@@ -179,7 +179,7 @@ mod x11 {
             }
             Ok(None)
         }
-        /// Nothing moves for a while.
+        /// Waits until nothing moves for a while.
         fn wait_until_still(&self) -> Result<()> {
             let (mut last, mut since) = (Vec::new(), Instant::now());
             self.until(Duration::from_secs(120), |stage| {
@@ -192,7 +192,7 @@ mod x11 {
             })?;
             Ok(())
         }
-        /// The middle of what is pale beside the window's own colours.
+        /// The middle of the area that is pale compared with the window's own colours.
         fn middle_of_canvas(&self) -> Result<(i32, i32)> {
             let all = self.pixels(0, 0, SCREEN.0, SCREEN.1)?;
             let is_pale = |x: i32, y: i32| all[((y * SCREEN.0 + x) * 4) as usize..][..3].iter().all(|&v| v > 130);
@@ -204,7 +204,7 @@ mod x11 {
             };
             Ok(middle(|at| at.0).zip(middle(|at| at.1)).ok_or("no canvas is seen")?)
         }
-        /// Moves along a way with a button down, and watches a square beside the middle.
+        /// Moves along a path with a button down, and watches a square next to the middle.
         fn drag(&self, what: &str, button: &str, step: (i32, i32), beside: (i32, i32)) -> Result<()> {
             let (x, y) = self.middle;
             let (seen_x, seen_y) = (x + beside.0, y + beside.1);
@@ -246,7 +246,7 @@ mod x11 {
                 self.xdotool(&["mousedown", "1"])?;
                 sleep(Duration::from_millis(200));
                 for i in 1..=(600 / step).min(24) {
-                    // Beside the middle, where the pointer's own dot stands.
+                    // Next to the middle, where the pointer's own dot is.
                     let x = left + i * step;
                     let light = |stage: &Self| stage.pixels(x - 4, y - 4, 3, 3).map(|seen| mean(&seen));
                     let before = light(self)?;

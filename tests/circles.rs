@@ -1,5 +1,5 @@
-//! No circles: of the modules beside each other in one folder, each with the rooms within it, none imports another that
-//! imports it in turn. A module and its own rooms may name each other: they are one subject. Reads the sources.
+//! No circles: sibling modules of one folder, submodules included, do not import each other in a circle. A module and
+//! its own submodules may name each other: they are one subject. Reads the sources.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -18,7 +18,7 @@ type ItemPath = Vec<String>;
 struct Module {
     /// What it names.
     named: Vec<ItemPath>,
-    /// What it hands on, by the name it has here.
+    /// What it re-exports, by the name it has here.
     handed_on: BTreeMap<String, ItemPath>,
 }
 
@@ -34,13 +34,13 @@ impl Modules {
         let known: BTreeSet<ModulePath> = texts.keys().cloned().collect();
         Self(texts.iter().map(|(path, text)| (path.clone(), module(path, text, &known))).collect())
     }
-    /// The module that an item stands in, also where others hand it on.
+    /// The module that defines an item, also where others re-export it.
     fn home(&self, item: &[String], depth: usize) -> Option<ModulePath> {
         let (module, rest) = (1..=item.len()).rev().map(|n| item.split_at(n)).find(|(m, _)| self.0.contains_key(*m))?;
         let on = rest.first().and_then(|name| self.0[module].handed_on.get(name)).filter(|on| on[..] != *item);
         on.filter(|_| depth < 8).and_then(|on| self.home(on, depth + 1)).or(Some(module.to_vec()))
     }
-    /// What the modules of a folder import of each other, with an example of each.
+    /// What the modules of a folder import from each other, with an example of each.
     fn arrows(&self, folder: &[String]) -> BTreeMap<(String, String), String> {
         let mut arrows = BTreeMap::new();
         let within = |path: &ModulePath| {
@@ -119,7 +119,7 @@ fn module(path: &ModulePath, code: &str, known: &BTreeSet<ModulePath>) -> Module
     module
 }
 
-/// Where a statement begins to say `use`.
+/// Where a `use` statement begins.
 fn find_use(statement: &str) -> Option<usize> {
     let at = statement.rfind("use ")?;
     let before = statement[..at].trim_end_matches(' ');
@@ -178,7 +178,7 @@ fn absolute(here: &ModulePath, item: &[String], known: &BTreeSet<ModulePath>) ->
     }
 }
 
-/// Groups of modules each of which leads to each other one, by the arrows.
+/// Groups of modules in which the arrows lead from each to every other.
 fn circles(arrows: &BTreeMap<(String, String), String>) -> Vec<Vec<String>> {
     let names: BTreeSet<&String> = arrows.keys().flat_map(|(from, to)| [from, to]).collect();
     let reached = |start: &String| {

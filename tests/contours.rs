@@ -1,5 +1,5 @@
-//! Contours of every kind of layer: nine spheres before each other and before nothing, beside the mean of the same
-//! picture five times as large (MATH 10).
+//! Contours of every kind of layer: nine spheres in front of each other and of nothing, compared with the mean of the
+//! same picture five times as large (MATH 10).
 
 /// The same that the engine's own tests are made of.
 #[path = "../src/engine/surface/contours/tests/spheres.rs"]
@@ -28,7 +28,7 @@ fn surface(times: usize) -> Arc<Surface> {
     };
     Arc::new(Surface::new(maps).unwrap())
 }
-/// Pixels of which the parts that the reference is made of show more than one thing.
+/// Pixels whose parts in the larger reference show more than one thing.
 fn is_contour(x: usize, y: usize) -> bool {
     let at = |k: usize| (k as f32 + 0.5) / TIMES as f32;
     let mut parts = (0..TIMES * TIMES).map(|k| seen(x as f32 + at(k % TIMES), y as f32 + at(k / TIMES)).map(|s| s.0));

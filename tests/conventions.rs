@@ -5,7 +5,7 @@ use rilievo_engine::document::source::*;
 use rilievo_io::Budget;
 use rilievo_io::maps::{ImportedSurface, import};
 
-/// Which files take part beside the one under test.
+/// Which files take part besides the one under test.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum With {
     DepthAndMask,

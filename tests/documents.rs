@@ -41,7 +41,7 @@ fn prose(text: &str) -> String {
     parts.step_by(2).collect::<Vec<_>>().join("\n")
 }
 
-/// What stands between `open` and `close`, each on one line.
+/// The texts between `open` and `close`, each on one line.
 fn between<'a>(text: &'a str, open: &str, close: &str) -> Vec<&'a str> {
     let rests = text.match_indices(open).map(|(at, _)| &text[at + open.len()..]);
     rests.filter_map(|rest| rest.split_once(close)).map(|(inside, _)| inside).filter(|s| !s.contains('\n')).collect()
@@ -73,7 +73,7 @@ fn dead_links(document: &Path, text: &str) -> Vec<String> {
 const OWN: [&str; 10] =
     ["src/", "docs/", "tests/", "benches/", "brushes/", "sample_normals/", "examples/", "fuzz/", ".ci/", "../"];
 
-/// Files between backticks that are not there. A path may stand for several (`docs/*.md`) or be unknown yet
+/// Files between backticks that do not exist. A path may mean several (`docs/*.md`) or be a placeholder
 /// (`src/NAME.rs`); that of a source file may begin at any folder (`raster/tile.rs`).
 fn dead_paths(document: &Path, text: &str) -> Vec<String> {
     let sources = files(&root().join("src"), ".rs");

@@ -14,7 +14,7 @@ fn fault(root: &Path, row: &str) -> Option<String> {
     let [file, name] = quoted(function)[..] else {
         return Some(format!("“{equation}” does not name a `file` and a `function`"));
     };
-    // A test stands in the function's file unless the row names another.
+    // A test is in the function's file unless the row names another.
     let (test_file, test_name) = match quoted(test)[..] {
         [name] => (file, name),
         [file, name] => (file, name),

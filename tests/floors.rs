@@ -1,4 +1,4 @@
-//! The house stands: arrows between modules point down only, neighbours do not import each other, and the lower floors
+//! The floors hold: arrows between modules point down only, neighbours do not import each other, and the lower floors
 //! touch neither files nor clocks nor threads. Reads the sources, so that the table below cannot be forgotten.
 
 use std::{fs, path::Path};
@@ -21,7 +21,7 @@ const FLOORS: [(&str, u32); 14] = [
     ("cli", 7),
 ];
 
-/// What floors 0–4 may not name. Rayon is allowed there: it is handed threads, it does not make its own.
+/// What floors 0–4 may not name. Rayon is allowed there: it gets its threads from outside.
 const OUTSIDE_WORLD: [&str; 7] =
     ["std::fs", "std::net", "std::env", "std::process", "std::thread", "std::time", "std::io"];
 
@@ -78,7 +78,7 @@ fn named_modules(code: &str) -> Vec<&str> {
             None => named.push(word(rest)),
         }
     }
-    // What is re-exported at the top (types, macros) stands on floor 0.
+    // What is re-exported at the top (types, macros) is on floor 0.
     named.retain(|name| name.starts_with(|c: char| c.is_lowercase()) && !["widest", "named"].contains(name));
     named
 }

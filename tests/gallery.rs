@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What a picture of the gallery may weigh.
+/// Largest size of a gallery picture.
 const MOST_BYTES: u64 = 150 * 1024;
 
 fn in_package(path: &str) -> PathBuf {

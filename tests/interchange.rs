@@ -108,7 +108,7 @@ fn info_lists_the_layers_of_documents() {
     }
 }
 
-/// Runs another program on our file, if it is there; what it made of it, and `None` with a word where it is not.
+/// Runs another program on our file; returns its result, or `None` with a message if the program is missing.
 fn other(folder: &Path, program: &str, args: &[&str], made: &str) -> Option<std::path::PathBuf> {
     let run = Command::new(program).args(args).current_dir(folder).output();
     let made = folder.join(made);

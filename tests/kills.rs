@@ -14,7 +14,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_rilievo");
-/// What saving asks of the system.
+/// The system calls of saving.
 const CALLS: &str =
     "openat,read,write,pwrite64,statx,fsync,close,rename,renameat2,link,linkat,unlink,unlinkat,fchmodat,chmod";
 
@@ -47,7 +47,7 @@ fn check(folder: &Path, target: &str, may_be: &[&str], what: &str) {
     assert!(opened.is_whole && opened.notes.is_empty(), "{what}: {:?}", opened.notes);
 }
 /// Runs a conversion of the new recipe in which the `n`th call of each of these kinds is killed (`signal=KILL`) or
-/// fails (`error=ENOSPC`); what it said and whether it ended well. `None` where nothing can be traced.
+/// fails (`error=ENOSPC`); what it said and whether it succeeded. `None` if tracing is impossible.
 fn injected(folder: &Path, target: &str, calls: &str, what: &str, n: usize) -> Option<(String, bool)> {
     let inject = format!("inject={calls}:{what}:when={n}");
     let run = Command::new("strace")
@@ -75,8 +75,8 @@ fn killed_at_every_system_call_it_leaves_the_old_file_or_the_new_one() {
             }
         }
     };
-    // A new file; over an old one; over one with an older version kept; through a link; beside what a killed save left;
-    // where the old file may be read and not written.
+    // A new file; over an old one; over one with an older version kept; through a link; next to the remains of a killed
+    // save; where the old file is read-only.
     for scenario in 0..6 {
         let mut n = 1;
         loop {
@@ -128,7 +128,7 @@ fn a_full_or_failing_disk_costs_a_sentence_and_not_the_old_file() {
                     return eprintln!("skipped: strace is not installed, or may not trace here");
                 };
                 let what = format!("{calls}, {error}, the {n}th: {said}");
-                // The folder is flushed after the new file stands in its place.
+                // The folder is flushed after the new file is in its place.
                 let may_be: &[&str] = if well { &["new.ora"] } else { &["old.ora", "new.ora"] };
                 check(folder.path(), "t.ora", may_be, &what);
                 assert!(well || calls == "write" || said.contains("t.ora"), "{what}");
@@ -168,7 +168,7 @@ fn kill_while_saving(rounds: u32) {
         (rounds / 20..rounds - rounds / 20).contains(&new),
         "the kills came too early or too late: {new} of {rounds}"
     );
-    // What the last one left goes with the next save.
+    // The next save removes what the last one left.
     convert(folder.path(), "new.json", "t.ora");
     let parts = std::fs::read_dir(folder.path()).unwrap().flatten();
     assert_eq!(parts.filter(|entry| entry.file_name().to_string_lossy().starts_with(".rilievo-")).count(), 0);
@@ -210,7 +210,7 @@ fn story() -> String {
     }
     story
 }
-/// What a document is: its parameters and its picture.
+/// A document's parameters and its picture.
 fn fingerprint(document: &Document) -> (String, u32) {
     let picture = flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect());
     (recipe::write(document).to_string(), crc32fast::hash(&picture))
@@ -229,7 +229,7 @@ fn steps(story: &str) -> Vec<(String, u32)> {
     Session::default().replay_telling(Path::new("story"), story, tell).unwrap();
     steps
 }
-/// Paints in a process of its own until it is killed. Every step that it told of is there, as it was.
+/// Paints in a process of its own until it is killed. Every step that it reported is recovered unchanged.
 fn kill_while_painting(rounds: u32) {
     let folder = tempfile::tempdir().unwrap();
     let story = story();
@@ -254,7 +254,7 @@ fn kill_while_painting(rounds: u32) {
         std::thread::sleep(Duration::from_micros(u64::from(mix(round + 7)) % 3_000));
         child.kill().unwrap();
         child.wait().unwrap();
-        // What it told of before it died counts too.
+        // What it reported before it died counts too.
         told = std::iter::from_fn(next).last().map_or(told, number);
         let mut left = recovery::sessions(&disk, &logs);
         let recovered = left[0].recover(&Budget::default()).unwrap_or_else(|e| panic!("round {round}: {e}"));

@@ -1,4 +1,4 @@
-//! Every test of the whole program in one binary, so that it is linked once. Tests of damaged files stand apart
+//! Every test of the whole program in one binary, so that it is linked once. Tests of damaged files are separate
 //! (`damage.rs`): they watch the allocator.
 
 mod circles;

@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 const MIB: usize = 1 << 20;
 
-/// What some work came to, and the most bytes that it held at a time.
+/// The result of some work, and the most bytes that it held at a time.
 fn watched<T>(work: impl FnOnce() -> T) -> (T, usize) {
     let before = watch::forget();
     let done = work();
@@ -59,7 +59,7 @@ fn bomb(bytes: usize) -> Vec<u8> {
     let mut archive = zip::ZipArchive::new(Cursor::new(file)).unwrap();
     let mut packed = vec![0x78, 0xda];
     archive.by_index_raw(0).unwrap().read_to_end(&mut packed).unwrap();
-    // Whatever stands for the checksum is not reached.
+    // The checksum is never reached, so any bytes will do.
     packed.extend([0; 4]);
     packed
 }
@@ -188,7 +188,7 @@ fn a_photoshop_file_takes_no_more_than_is_asked_for() {
     let other = [&bytes[..at], b"8BIM\x12\x66", &bytes[at + 6..]].concat();
     let (read, peak) = watched(|| psd::read(file, &other, &Budget::default()).unwrap());
     assert_eq!((read.document.layers.len(), read.notes.len()), (1, 0));
-    // Asked for: 4 of the layer, 4 + 4 + 4 of the picture, 4 of the layers flattened.
+    // Allocated: 4 for the layer, 4 + 4 + 4 for the picture, 4 for the flattened layers.
     assert!(peak < 21 * size.area(), "{} bytes a pixel", peak / size.area());
     for (bytes_free, what) in
         [(20_000_000, "reading its layers takes"), (60_000_000, "picture of them all"), (100_000_000, "comparing")]

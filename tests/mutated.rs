@@ -49,8 +49,7 @@ fn damaged(bytes: &[u8], dice: &mut Dice) -> Vec<u8> {
     }
     out
 }
-/// Damage that checksums and tables of contents do not tell of: inside the entries of a zip, inside the chunks of a
-/// PNG.
+/// Damage that checksums and tables of contents do not reveal: inside the entries of a zip, inside the chunks of a PNG.
 fn mutated(bytes: &[u8], dice: &mut Dice) -> Vec<u8> {
     let deep = dice.roll(2) == 0;
     if deep && bytes.starts_with(b"PK") {
@@ -167,7 +166,7 @@ fn long_a_million_damaged_files() {
     let (refused, most) = mutate(1_000_000);
     eprintln!("{refused} refused; the most memory: {} KiB", most >> 10);
 }
-/// What the fuzzer begins with, and what it found worth keeping, by the names of its targets.
+/// The fuzzer's seeds and the inputs that it kept, by the names of its targets.
 #[test]
 fn the_corpus_of_the_fuzzer_is_read_or_refused() {
     let _turn = watch::turn();

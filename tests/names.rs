@@ -1,4 +1,4 @@
-//! A type's name means one thing: none of the sources define two types of one name. Those of tests stand apart.
+//! A type's name means one thing: the sources never define two types of one name. Types in tests do not count.
 
 use super::lines::files;
 use std::collections::BTreeMap;

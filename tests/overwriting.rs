@@ -1,4 +1,4 @@
-//! What the commands write over: nothing that they read, and nothing else unasked. The real program.
+//! Commands never overwrite what they read, and nothing else without being told to. Runs the real program.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -303,7 +303,7 @@ fn a_canvas_keeps_its_size_whatever_the_layers() {
     assert!(document.surface.is_none());
 }
 
-/// What the pages show must work, but for the maps, which are another test's.
+/// The examples of the pages must work, except the maps, which another test covers.
 #[test]
 fn every_recipe_in_the_documentation_reads() {
     struct AnyPicture;

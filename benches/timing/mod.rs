@@ -1,4 +1,4 @@
-//! What several benches time alike: the frames of a gesture, and rows of a table.
+//! Shared by several benches: timing the frames of a gesture, and printing rows of a table.
 
 use rilievo_engine::document::{Document, PreparedDocument, Progress, diff};
 use rilievo_engine::math::{Vec2, vec2};

@@ -9,7 +9,7 @@ use crate::noise::{fbm2, hash};
 use crate::pictures::{painted, srgb};
 use crate::sdf::{segment2, smooth_step};
 
-/// An enamelled star in a gold ring, on nothing.
+/// An enamelled star in a gold ring, on a transparent ground.
 pub fn star() -> RgbaImage {
     const SIDE: u32 = 384;
     painted((SIDE, SIDE), 3, |p| {
@@ -39,7 +39,7 @@ pub fn star() -> RgbaImage {
     })
 }
 
-/// A maple-like leaf in autumn colours, on nothing.
+/// A maple-like leaf in autumn colours, on a transparent ground.
 pub fn leaf() -> RgbaImage {
     const SIDE: u32 = 352;
     const LOBES: [[f64; 3]; 5] =

@@ -14,7 +14,7 @@ use crate::sdf::{smooth_step, v};
 struct Sky {
     zenith: DVec3,
     horizon: DVec3,
-    /// Where the sun stands: x across, y up from the horizon, in picture heights.
+    /// Position of the sun: x across, y up from the horizon, in picture heights.
     sun: DVec2,
     sunlight: DVec3,
     /// Share of the sky the clouds leave open, about `[−0.3, 0.3]`.
@@ -95,7 +95,7 @@ fn ridge(sky: &Sky, q: DVec2, layer: u32) -> Option<DVec3> {
     let far = f64::from(4 - layer) / 4.0;
     let seed = 500 + u64::from(layer);
     let broad = fbm2(DVec2::new(q.x * (1.3 + 0.8 * (1.0 - far)) + 7.0 * f64::from(layer), 0.5), 7, 0, seed);
-    // The two nearest ridges are wooded: crowns stand out of the line.
+    // The two nearest ridges are wooded: crowns rise above the line.
     let wooded = smooth_step(0.6, 0.3, far);
     let crowns = fbm2(DVec2::new(q.x * 60.0, 2.0), 3, 0, seed + 9) + 0.6 * mottle(DVec2::new(q.x * 45.0, 0.5), seed);
     let below = 0.012 + 0.075 * far + broad * (0.035 + 0.13 * far) + 0.016 * wooded * crowns - q.y;
@@ -212,7 +212,7 @@ fn tree_shadow(q: DVec2) -> f64 {
 struct Tree {
     width: usize,
     points: Vec<(DVec3, f64)>,
-    /// Where leaves sit: the ends of twigs, by the clump they belong to.
+    /// Positions of leaves: the ends of twigs, by the clump they belong to.
     clumps: Vec<Vec<DVec2>>,
     /// Counts branches, so that each has its own chance.
     count: i64,
@@ -290,7 +290,7 @@ impl Tree {
         }
     }
 
-    /// The leaves of one twig, lit by where they stand in their clump and in the crown.
+    /// The leaves of one twig, lit by their places in the clump and in the crown.
     fn tuft(&mut self, twig: DVec2, middle: DVec2, crown: DVec2, (id, pass): (i64, i64)) {
         const LEFT_ABOVE: DVec2 = DVec2::new(-0.55, 0.83);
         let place = (twig.x * 1e5) as i64;

@@ -68,8 +68,8 @@ impl<F: Fn(DVec3) -> f64 + Sync> Surface for Traced<F> {
 impl<F: Fn(DVec3) -> f64 + Sync> Traced<F> {
     /// Height of the first root of the distance below `top`.
     ///
-    /// Sphere tracing crawls on grazing rays. Near the surface the steps are therefore those of the secant: along a
-    /// ray that passes a convex piece the distance is convex too, and the secant stops short of the root.
+    /// Sphere tracing crawls on grazing rays. Near the surface it therefore uses secant steps: along a ray that passes
+    /// a convex piece the distance is convex too, and the secant stops short of the root.
     fn first_root(&self, at: DVec2, top: f64) -> Option<f64> {
         let mut z = top;
         let mut last = (top + 1.0, f64::INFINITY);
@@ -131,7 +131,7 @@ pub fn facing(n: DVec3) -> DVec3 {
     DVec3::new(n.x, n.y, n.z.max(1e-3 * n.length())).normalize_or(DVec3::Z)
 }
 
-/// What part of the model plane becomes which picture.
+/// Which part of the model plane becomes which picture.
 pub struct View {
     pub width: usize,
     pub height: usize,
@@ -303,7 +303,7 @@ fn finish(mut pixels: Vec<Pixel>, width: usize, height: usize) -> Maps {
     }
 }
 
-/// Empty pixels beside the surface take the mean of their neighbours on it.
+/// Empty pixels next to the surface take the mean of their neighbours on it.
 fn grown(pixels: &[Pixel], w: usize, h: usize) -> Vec<Pixel> {
     let value = |i: usize| {
         if pixels[i].coverage > 0.0 {

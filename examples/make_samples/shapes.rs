@@ -145,7 +145,7 @@ fn teapot_lid(p: DVec3) -> f64 {
     smooth_min(smooth_min(dome, neck, 0.07), knob, 0.035)
 }
 
-/// Solids that overlap in the picture and stand far apart in depth.
+/// Solids that overlap in the picture and are far apart in depth.
 pub fn still_life() -> Sample {
     let turn = object_from_camera(-14.0, 16.0, 0.0);
     let distance = move |camera: DVec3| {

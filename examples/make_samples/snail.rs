@@ -74,7 +74,7 @@ fn shell_spiral() -> Vec<DVec4> {
             let size = GROWTH.powf(turn - TURNS);
             let angle = -TAU * (turn - TURNS) - 0.9;
             let reach = 0.62 * size;
-            // The apex stands out of the coil's plane, on the viewer's side.
+            // The apex rises out of the coil's plane, on the viewer's side.
             v(-0.16 + reach * angle.cos(), 0.16 + reach * angle.sin(), 0.34 * (1.0 - size) - 0.04)
                 .extend(0.37 * size + 0.012)
         })

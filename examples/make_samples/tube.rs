@@ -7,7 +7,7 @@ use glam::{DVec3, DVec4};
 const SAMPLES_PER_SPAN: usize = 6;
 /// Newton steps from the coarse minimum; four already reach 1e-10 on the sample objects.
 const NEWTON_STEPS: usize = 5;
-/// Beyond this a lower bound stands for the distance. Wider than any blend between a tube and its neighbours.
+/// Beyond this a lower bound replaces the distance. Wider than any blend between a tube and its neighbours.
 const FAR: f64 = 0.16;
 
 /// A tube of varying radius along a cubic B-spline.

@@ -1,9 +1,9 @@
 //! What is compared with a reference picture: short recipes, each with its tolerance.
 //!
-//! Tolerances are steps of a byte. Blending, ramps and masks that are pictures take sums, products, quotients and roots
-//! only, which every machine rounds alike: 0. The rest also asks the platform for `exp`, `tan`, `pow` and the like.
-//! Their last bit differs between C libraries, so that a value may be rounded to the next byte: 1. Nothing is granted
-//! for the width of SIMD or the number of threads.
+//! Tolerances are steps of a byte. Blending, ramps and masks that are pictures use only sums, products, quotients and
+//! roots, which every machine rounds alike: 0. The rest also uses the platform's `exp`, `tan`, `pow` and the like.
+//! Their last bit differs between C libraries, so that a value may be rounded to the next byte: 1. The width of SIMD
+//! and the number of threads get no tolerance.
 
 use super::compare::Place;
 use super::pictures::Pictures;
@@ -61,7 +61,7 @@ const BLEND_TILES: [&str; 28] = [
 
 /// One reference picture.
 pub struct Case {
-    /// What it is called: `folder/name`.
+    /// Its name: `folder/name`.
     pub name: String,
     /// Its reference picture.
     pub place: Place,
@@ -200,7 +200,7 @@ fn shading(model: &str) -> Case {
     Case::layers("shading", model, ROUNDED, Shape::Torus, json!([layer]))
 }
 
-/// The relief of a ramp brought out, in a group of its own.
+/// The relief of a ramp made stronger, in a group of its own.
 fn scaling() -> Case {
     let layers = json!([
         { "kind": "fill", "color": "#203040" },

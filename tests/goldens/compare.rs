@@ -14,7 +14,7 @@ pub const GAP: u32 = 4;
 /// How much brighter the picture of a difference is than the difference.
 const AMPLIFIED: u8 = 8;
 
-/// How far two pictures are apart, in steps of a byte of premultiplied colour: where nothing is seen nothing differs.
+/// How far two pictures are apart, in steps of a byte of premultiplied colour: transparent pixels are all equal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {
     pub largest: u8,
@@ -56,7 +56,7 @@ fn premultiplied(Rgba([r, g, b, a]): Rgba<u8>) -> [u8; 4] {
 pub struct Place {
     /// `folder/name` of the file.
     pub file: String,
-    /// Of a sheet of squares, row by row: which of them, and how wide they are.
+    /// A square of a sheet, counted row by row: which one, and how wide squares are.
     tile: Option<(u32, u32)>,
 }
 
@@ -64,7 +64,7 @@ pub struct Place {
 const COLUMNS: u32 = 7;
 
 impl Place {
-    /// In a file of its own.
+    /// A file of its own.
     pub fn alone(name: &str) -> Self {
         Self { file: name.to_owned(), tile: None }
     }
@@ -92,7 +92,7 @@ impl Place {
     }
 }
 
-/// Where references are, where faults are shown, and whether what differs is accepted.
+/// Where references are, where faults are shown, and whether differences are accepted.
 pub struct Found<'a> {
     pub references: &'a Path,
     pub faults: &'a Path,

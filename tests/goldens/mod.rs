@@ -1,9 +1,9 @@
 //! Reference pictures: what each blend mode, operator and filter, shading model, mask and tip looks like, and what the
-//! recipes of the gallery look like. Each is made again and compared, with a tolerance that stands beside its recipe.
+//! recipes of the gallery look like. Each is made again and compared, with a tolerance given next to its recipe.
 //!
 //! `UPDATE_GOLDEN=1 cargo test --test program goldens` accepts what has changed; `CONTRIBUTING.md` says more.
 //!
-//! The other tests hold this one to its purpose: a shift by a pixel is found, and no picture passes for another.
+//! The other tests check this one: a shift by a pixel is found, and no picture passes for another.
 
 mod cases;
 mod compare;
@@ -18,17 +18,17 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-/// What all reference pictures may weigh together, and how many there may be: they are read by people.
+/// The most bytes of all reference pictures together, and the most pictures: people look at them.
 const MOST_BYTES: u64 = 600 << 10;
 const MOST_PICTURES: usize = 60;
 
-/// The reference pictures, beside this file.
+/// The reference pictures, next to this file.
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/goldens")
 }
 
-/// What each case differs by from its picture. Looked at once, before any other test reads the pictures: they may be
-/// accepted.
+/// How much each case differs from its picture. Computed once, before any other test reads the pictures, since this may
+/// accept new ones.
 static FAULTS: LazyLock<Vec<String>> = LazyLock::new(|| {
     let check =
         |case: &Case| compare::check(&folder(), &case.name, &case.place, &case.rendered(), case.tolerance).err();

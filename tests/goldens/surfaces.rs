@@ -13,9 +13,9 @@ const SAMPLES: i32 = 8;
 /// What is painted on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
-    /// Half a ball on nothing.
+    /// Half a ball in front of nothing.
     Ball,
-    /// The front of a ring on nothing.
+    /// The front of a ring in front of nothing.
     Torus,
     /// Waves along both axes, without an end.
     Waves,

@@ -23,7 +23,7 @@ pub fn budget() -> Budget {
     Budget { area_px: 1 << 20, document_px: 1 << 22, side_px: 4096, ..Budget::default() }
 }
 
-/// Every file that is asked for is this one.
+/// Every requested file is this one.
 struct One(Vec<u8>);
 
 impl Files for One {
@@ -50,7 +50,7 @@ pub fn recipe(file: &Path, bytes: &[u8]) -> Result<()> {
     recipe::read(bytes, source).map(drop)
 }
 pub fn picture(file: &Path, bytes: &[u8]) -> Result<()> {
-    // Not every picture is a mask, and not every one has something to tell.
+    // Not every picture is a mask, and not every one gives findings.
     let _ = picture::decode_coverage(file, bytes, &budget());
     let _ = inspect::describe(file, bytes, &budget());
     picture::decode(file, bytes, &budget()).map(drop)

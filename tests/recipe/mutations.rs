@@ -31,7 +31,7 @@ fn odd_value() -> impl Strategy<Value = Value> {
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
-    /// Whatever value stands wherever: a document or a sentence, and what is read is written and read again.
+    /// Any value at any place gives a document or a sentence; a document that was read is written and read again.
     #[test]
     fn a_value_out_of_place_is_read_or_refused(pick in any::<prop::sample::Index>(), value in odd_value()) {
         let mut recipe = everything();

@@ -1,4 +1,4 @@
-//! What a recipe is refused for.
+//! Reasons to refuse a recipe.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! An allocator that remembers what was asked of it, for tests that damaged files must not fill the memory.
+//! An allocator that remembers the requests made to it, for tests that damaged files do not fill the memory.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -11,7 +11,7 @@ pub struct Watch;
 static LIVE: AtomicUsize = AtomicUsize::new(0);
 /// The most that were in use since [`forget`].
 static PEAK: AtomicUsize = AtomicUsize::new(0);
-/// The largest block asked for since [`forget`].
+/// The largest block requested since [`forget`].
 static LARGEST: AtomicUsize = AtomicUsize::new(0);
 
 fn took(bytes: usize) {
@@ -45,7 +45,7 @@ unsafe impl GlobalAlloc for Watch {
     }
 }
 
-/// Begins anew; what is in use now does not count.
+/// Starts again; what is in use now does not count.
 pub fn forget() -> usize {
     LARGEST.store(0, Ordering::Relaxed);
     let live = LIVE.load(Ordering::Relaxed);

@@ -13,7 +13,7 @@ fn editor() -> Story {
     press(&mut harness, "Brush in hand");
     harness
 }
-/// Wherever the panel is scrolled to.
+/// Whatever the scroll position of the panel.
 fn tap(harness: &mut Story, label: &str) {
     harness.get_by_label(label).click_accesskit();
     steps(harness);

@@ -89,7 +89,7 @@ fn several_documents_stand_in_tabs_and_the_next_one_comes_to_the_front() {
     press(&mut harness, "Close Untitled 1");
     assert_eq!(session(&harness).open_documents.len(), 1);
 }
-/// Whether something of this name is there, perhaps a control beside its name.
+/// Whether something of this name is there, perhaps a control next to its name.
 fn shows(harness: &super::Story, label: &str) -> bool {
     harness.query_all_by_label(label).count() > 0
 }
@@ -118,7 +118,7 @@ fn ball(folder: &Path) -> [PathBuf; 2] {
     image::GrayImage::from_fn(96, 96, |x, y| image::Luma([depth(x, y)])).save(&files[1]).unwrap();
     files
 }
-/// The dialog grows to its new size and stays in the middle while it does: a click must not fall beside.
+/// The dialog grows to its new size and stays in the middle while it does: a click must not miss it.
 fn still(harness: &mut super::Story, name: &str) {
     let place = |harness: &super::Story| harness.get_all_by_label(name).next().unwrap().rect();
     let mut still = 0;
@@ -141,7 +141,7 @@ fn maps_are_seen_four_ways_and_corrected_before_they_become_a_document() {
     still(&mut harness, "Flip green");
     harness.get_all_by_label("Flip green").next().unwrap().click();
     steps(&mut harness);
-    // What was chosen stays where it is, and alone.
+    // The choice stays, and nothing else is chosen.
     let chosen = |harness: &super::Story, name: &str| {
         use egui_kittest::kittest::NodeT;
         let node = harness.get_all_by_label(name).next().unwrap();
@@ -257,7 +257,7 @@ fn what_stands_after_a_point_is_a_part_of_the_name() {
     assert!(at("robot v1.2.ora").is_file());
     command(&mut harness, "Export…");
     press(&mut harness, "Export…");
-    // The name that is proposed keeps all of it.
+    // The proposed name keeps all of it.
     until(&mut harness, |harness| harness.query_by_label("File name").is_some());
     assert_eq!(harness.get_by_label("File name").value().as_deref(), Some("robot v1.2.png"));
     choose(&mut harness, &at("final v1.2"));

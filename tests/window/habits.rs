@@ -73,7 +73,7 @@ fn every_command_is_done_by_its_name() {
             // The layers are looked at before the dialog opens.
             until(&mut harness, |harness| harness.query_by_label("Close").is_some());
         }
-        // Whatever dialog it opened goes again.
+        // Closes whatever dialog it opened.
         (0..2).for_each(|_| key(&mut harness, Modifiers::NONE, Key::Escape));
         assert!(session(&harness).active().is_some(), "{name}");
     }

@@ -38,7 +38,7 @@ fn window_at(pixels_per_point: f32, settings: Option<PathBuf>) -> Story {
     click(&mut harness, "Create");
     harness
 }
-/// A window as it is made, which asks for files with its own dialog.
+/// A new window, which uses its own dialog for files.
 fn window_of(pixels_per_point: f32, make: impl Fn(&eframe::egui::Context) -> MainWindow + 'static) -> Story {
     let show = move |ui: &mut eframe::egui::Ui, window: &mut Option<MainWindow>| {
         window.get_or_insert_with(|| make(ui.ctx()).asking_itself()).show(ui);
@@ -49,7 +49,7 @@ fn window_of(pixels_per_point: f32, make: impl Fn(&eframe::egui::Context) -> Mai
     harness.step();
     harness
 }
-/// The painter's thread asks for frames as it likes, so a fixed number of them is enough.
+/// The render thread requests frames at any time, so run a fixed number of them.
 fn steps(harness: &mut Story) {
     (0..4).for_each(|_| harness.step());
 }
@@ -92,7 +92,7 @@ fn command(harness: &mut Story, name: &str) {
     steps(harness);
     key(harness, Modifiers::NONE, Key::Enter);
 }
-/// From the middle of the canvas, with whatever tool is in hand.
+/// From the middle of the canvas, with the current tool.
 fn stroke(harness: &mut Story, by: Vec2) {
     drag(harness, Vec2::ZERO, by);
 }
@@ -111,7 +111,7 @@ fn drag(harness: &mut Story, from: Vec2, to: Vec2) {
 /// Answers the window's own file dialog.
 fn choose(harness: &mut Story, file: &Path) {
     until(harness, |harness| harness.query_by_label("File name").is_some());
-    // What was proposed gives way.
+    // Replaces the proposed text.
     key(harness, Modifiers::COMMAND, Key::A);
     harness.get_by_label("File name").type_text(&file.to_string_lossy());
     steps(harness);

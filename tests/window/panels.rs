@@ -1,4 +1,4 @@
-//! Every panel beside the canvas, in a window of its own, and hidden.
+//! Every panel next to the canvas, in a window of its own, and hidden.
 
 use super::{Story, click, command, key, press, session, steps, window};
 use eframe::egui::{Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, TouchPhase, pos2, vec2};

@@ -1,4 +1,4 @@
-//! What was done in the window, done again without it, ends in the very same document.
+//! Actions recorded in the window, replayed without it, end in the very same document.
 
 use super::{Story, click, command, drag, drop_files, key, layers, press, session, steps, until, window_of};
 use eframe::egui::{Key, Modifiers, vec2};
@@ -71,7 +71,7 @@ fn a_story_of_photo_strokes_moves_and_masks_replays_to_the_same_bytes() {
     drag(&mut harness, vec2(-40.0, -55.0), vec2(10.0, -10.0));
     command(&mut harness, "Undo");
     command(&mut harness, "Redo");
-    // A layer masked, one turned to paint beside the window, one moved in the list.
+    // A layer masked, one turned to paint outside the window, one moved in the list.
     press(&mut harness, "Properties");
     press(&mut harness, "Show all");
     key(&mut harness, Modifiers::NONE, Key::B);

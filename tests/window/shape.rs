@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use tempfile::TempDir;
 
-/// A head on a body, each of a flat colour with soft edges, on nothing.
+/// A head on a body, each of a flat colour with soft edges, on a transparent ground.
 fn drawing(folder: &TempDir) -> PathBuf {
     let disc = |x: f32, y: f32, cx: f32, cy: f32, r: f32| (r + 0.5 - (x - cx).hypot(y - cy)).clamp(0.0, 1.0);
     let picture = image::RgbaImage::from_fn(320, 400, |x, y| {
@@ -25,7 +25,7 @@ fn drawing(folder: &TempDir) -> PathBuf {
     picture.save(&file).unwrap();
     file
 }
-/// A window that was asked to open a file.
+/// A window started with a file to open.
 fn opening(file: &Path) -> Story {
     let mut harness = window_of(1.0, MainWindow::new);
     key(&mut harness, Modifiers::COMMAND, Key::O);
@@ -76,7 +76,7 @@ fn a_drawing_gets_a_shape_is_puffed_touched_sculpted_painted_saved_and_opened_ag
     let (head, down) = (seen(&harness, 160.0, 120.0), seen(&harness, 160.0, 180.0));
     drag(&mut harness, head, head);
     let chosen = session(&harness).active().unwrap().part.clone().unwrap();
-    // In the middle of the chosen part stands the handle of its height.
+    // The height handle is in the middle of the chosen part.
     drag(&mut harness, head, down);
     let part = |harness: &Story, id: &str| parts(harness).into_iter().find(|part| part.id == id).unwrap();
     let flatter = part(&harness, &chosen);
@@ -139,7 +139,7 @@ fn parts_are_added_chosen_ordered_hidden_and_renamed_by_their_controls() {
     command(&mut harness, "Box");
     assert_eq!(parts(&harness).len(), 2);
     until(&mut harness, |harness| harness.query_by_label("Layers").is_some());
-    // The tab beside the layers; the tool of that name stands before it.
+    // The tab next to the layers; the tool of that name comes before it.
     let tabs: Vec<_> = harness.get_all_by_label("Shape").collect();
     tabs.last().unwrap().click();
     steps(&mut harness);
