@@ -113,7 +113,7 @@ fn sniff(file: &Path, bytes: &[u8]) -> Result<(ImageFormat, &'static str, bool)>
 fn limits(format: ImageFormat, bytes: &[u8], budget: &Budget) -> image::Limits {
     let mut limits = image::Limits::no_limits();
     limits.max_alloc = Some(match format {
-        // Here the limit holds for what lies beside the pixels: texts as they are packed, and the profile unpacked.
+        // Here the limit is for everything besides the pixels: packed texts and the unpacked profile.
         ImageFormat::Png => beside_pixels(bytes),
         // Four floats a pixel is the most that any of the formats decodes to.
         _ => budget.area_px.saturating_mul(16),
@@ -121,7 +121,7 @@ fn limits(format: ImageFormat, bytes: &[u8], budget: &Budget) -> image::Limits {
     limits
 }
 
-/// What a PNG may hold in memory beside its pixels.
+/// What a PNG may hold in memory besides its pixels.
 pub fn beside_pixels(bytes: &[u8]) -> u64 {
     PROFILE_BYTES + bytes.len() as u64
 }
@@ -129,7 +129,7 @@ pub fn beside_pixels(bytes: &[u8]) -> u64 {
 /// What a colour profile may unpack to. Those of printing presses have some 4 MB.
 const PROFILE_BYTES: u64 = 16 << 20;
 
-/// Asks for the memory of decoded pixels, once as the decoder gives them and once as they are handed on.
+/// Reserves memory for decoded pixels, once as the decoder gives them and once as they are passed on.
 fn room(file: &Path, size: Size, decoded_bytes: u64, budget: &Budget) -> Result<()> {
     let handed_on = size.area() as u64 * 4;
     budget.room(file, &format!("a picture of {size} pixels"), decoded_bytes.saturating_add(handed_on))

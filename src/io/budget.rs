@@ -49,7 +49,8 @@ pub struct Budget {
 }
 
 impl Default for Budget {
-    /// What a document holds is counted by the constants that edits are held to: whatever was saved is read.
+    /// The contents of a document are limited by the constants that also limit edits, so whatever was saved can be
+    /// read.
     fn default() -> Self {
         Self {
             side_px: Picture::LONGEST_SIDE_PX,
@@ -60,11 +61,11 @@ impl Default for Budget {
             unpacked_bytes: 8 << 30,
             // Each layer may have a look, pixels and a mask, each brush its pictures; a name takes some hundred bytes.
             entries: 1 << 18,
-            // The values count: a text is bound by them, but for readings of the pen, which are packed before it is
-            // parsed.
+            // The limit on values also bounds the text, except for readings of the pen, which are packed before
+            // parsing.
             json_bytes: 256 << 20,
             json_values: Document::MOST_VALUES,
-            // A group takes two levels; what stands in the innermost takes the rest. The parser goes no deeper than
+            // A group takes two levels; the contents of the innermost take the rest. The parser goes no deeper than
             // 127.
             json_depth: 2 * Document::DEEPEST + 20,
             layers: Document::MOST_LAYERS,
@@ -88,13 +89,13 @@ impl Budget {
             ..usual
         }
     }
-    /// The usual ceilings on this machine as it is now: `memory_bytes` is what is free, but for a rest.
+    /// The usual ceilings on this machine as it is now: `memory_bytes` is what is free, minus a reserve.
     pub fn of_this_machine() -> Self {
         Self::default().within(super::machine::free_bytes())
     }
     /// With so much memory.
     pub fn within(self, memory_bytes: u64) -> Self {
-        // A file and what is unpacked from it lie beside what is made of them.
+        // A file and its unpacked data are in memory together with what is made from them.
         let share = memory_bytes / 2;
         Self {
             memory_bytes,
@@ -103,7 +104,7 @@ impl Budget {
             ..self
         }
     }
-    /// Asks for memory before it is taken. `what`: for the sentence, in front of “takes”.
+    /// Checks memory before it is allocated. `what`: for the sentence, in front of “takes”.
     pub fn room(&self, file: &Path, what: &str, bytes: u64) -> Result<()> {
         if bytes > self.memory_bytes {
             let (asked, there) = (spoken(bytes), spoken(self.memory_bytes));

@@ -31,7 +31,7 @@ pub enum ExportFormat {
 }
 
 impl ExportFormat {
-    /// Every format by the extensions of its files, of which some have two.
+    /// Every format by its file extensions; some have two.
     pub const ALL: [(ExportFormat, &'static str); 7] = [
         (ExportFormat::Png, "png"),
         (ExportFormat::Exr, "exr"),
@@ -75,7 +75,7 @@ impl ExportFormat {
 pub struct ExportOptions {
     /// The colour behind transparent parts; none by default.
     pub background: Option<Color>,
-    /// Of a JPEG, 1 … 100.
+    /// Quality of a JPEG, 1 … 100.
     pub quality: u8,
     /// The print resolution, if the format can store it (PNG).
     pub dots_per_inch: Option<f32>,
@@ -91,7 +91,7 @@ impl Default for ExportOptions {
     }
 }
 
-/// What a file's name asks for.
+/// The format that a file's name requests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Output {
     /// The whole document as a project.
@@ -103,7 +103,7 @@ pub enum Output {
 }
 
 impl Output {
-    /// Fails where the name asks for nothing that is written.
+    /// Fails if the name requests no format that can be written.
     pub fn of(file: &Path) -> Result<Self> {
         let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         Ok(match extension.as_str() {
@@ -122,13 +122,13 @@ pub struct OutputFile {
 }
 
 impl OutputFile {
-    /// Fails where the name asks for nothing that is written, or where [`replace`] would.
+    /// Fails if the name requests no format that can be written, or where [`replace`] would.
     pub fn new(named: &Path, terms: Terms) -> Result<Self> {
         Output::of(named)?;
         check(&Disk, named, &terms)?;
         Ok(Self { named: named.into(), terms })
     }
-    /// Flattens a document and writes it, with as many bits as are asked for; nothing if cancelled.
+    /// Flattens a document and writes it, with as many bits as requested; nothing if cancelled.
     pub fn write_document(
         &self,
         document: &Document,
@@ -143,7 +143,7 @@ impl OutputFile {
     pub fn write(&self, pixels: &TileGrid, canvas: Size, options: &ExportOptions) -> Result<()> {
         self.replace(&encode(&self.named, ExportFormat::of(&self.named)?, pixels, canvas, options)?)
     }
-    /// The target is the old file or the new one, never half of it.
+    /// The target is the old file or the new one, never a part of it.
     pub fn replace(&self, bytes: &[u8]) -> Result<()> {
         // It is cancelled while it is painted, if at all: writing is short.
         replace(&Disk, &self.named, bytes, &self.terms, &Progress::default()).map(drop)
@@ -217,7 +217,7 @@ fn png(
     depth: png::BitDepth,
     options: &ExportOptions,
 ) -> Result<Vec<u8>, png::EncodingError> {
-    /// Of a chunk of packed pixels.
+    /// Size of a chunk of packed pixels.
     const CHUNK_BYTES: usize = 1 << 20;
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, size.width, size.height);

@@ -23,7 +23,7 @@ use std::{
 /// One channel of one part.
 #[derive(Clone, Debug)]
 pub struct ExrChannel {
-    /// `part.channel` where the part's name is needed to tell channels apart, else the channel's own name.
+    /// `part.channel` where the part's name is needed to distinguish channels, else the channel's own name.
     pub name: String,
     /// Half, float or unsigned integer.
     pub kind: &'static str,
@@ -63,7 +63,7 @@ impl<'a> ExrFile<'a> {
         let passes = passes(&channels);
         Ok(Self { file, bytes, meta, chunks, channels, passes, size })
     }
-    /// The display window's size: every plane has it.
+    /// The display window's size, which is that of every plane.
     pub fn size(&self) -> Size {
         self.size
     }
@@ -78,7 +78,7 @@ impl<'a> ExrFile<'a> {
     pub fn parts(&self) -> usize {
         self.meta.headers.len()
     }
-    /// What the pixels are compressed with, for people.
+    /// The name of the compression, for people.
     pub fn compression(&self) -> String {
         self.meta.headers.first().map_or_else(String::new, |h| h.compression.to_string())
     }
@@ -96,8 +96,8 @@ impl<'a> ExrFile<'a> {
     pub fn read(&self, wanted: &[usize]) -> Result<Vec<Plane<f32>>> {
         self.read_rows(wanted, 0..self.size.height as usize)
     }
-    /// The rows of the display window in runs that few chunks lie in, each a multiple of the height of tiles but for
-    /// the last.
+    /// The rows of the display window in runs that touch few chunks, each a multiple of the height of tiles except the
+    /// last.
     pub fn bands(&self) -> impl Iterator<Item = Range<usize>> {
         let height = self.size.height as usize;
         let tallest = self.meta.headers.iter().map(|h| h.max_block_pixel_size().y()).max().unwrap_or(1);

@@ -91,7 +91,7 @@ pub struct UserFiles {
 }
 
 impl UserFiles {
-    /// The name by which a document knows a path of the user's.
+    /// The name that a document uses for a path given by the user.
     pub fn add(&mut self, path: &Path) -> String {
         let mut name = path.to_string_lossy().into_owned();
         // Two paths that are not UTF-8 may look alike.
@@ -123,7 +123,7 @@ impl<F: Files> TrackedFiles<F> {
     pub fn new(files: F) -> Self {
         Self { files, read: RefCell::default() }
     }
-    /// The paths that were asked for, in that order.
+    /// The requested paths, in that order.
     pub fn read_paths(&self) -> Vec<PathBuf> {
         self.read.borrow().clone()
     }
@@ -182,7 +182,7 @@ pub fn read_file(path: &Path, max_bytes: u64) -> Result<Vec<u8>> {
     }
     let file = fs::File::open(path).map_err(io)?;
     let mut bytes = Vec::new();
-    // One byte more than allowed tells a file that is too large from one that just fits, whatever its metadata said.
+    // Reading one byte more than allowed reveals a file that is too large, whatever its metadata said.
     file.take(max_bytes.saturating_add(1)).read_to_end(&mut bytes).map_err(io)?;
     if bytes.len() as u64 > max_bytes {
         return Err(Error::too_large(path, format!("the file has more than {max_bytes} bytes")));

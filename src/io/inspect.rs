@@ -22,7 +22,7 @@ pub struct FileDescription {
     /// `PNG`, `EXR`, …
     pub format: &'static str,
     pub size: Size,
-    /// Of pictures: `r`, `g`, `b`, `a`, or `y` where grey. Of EXR: the channels' whole names.
+    /// For pictures: `r`, `g`, `b`, `a`, or `y` if grey. For EXR: the channels' whole names.
     pub channels: Vec<String>,
     /// Bits of a channel; of EXR those of the widest.
     pub bits: u8,
@@ -141,7 +141,7 @@ mod tests {
         let biased = described(rgb, |i| dome(i).unwrap_or(Vec3::Z) * 0.5 + 0.5);
         let sunny = described(rgb, |i| dome(i).map_or(Vec3::ZERO, |n| vec3(0.9, 0.7, 0.4) * n.y.max(0.05)));
         assert_eq!([signed.normals.len(), biased.normals.len(), sunny.normals.len()], [1, 1, 0]);
-        // Nor is the red of colours depth.
+        // The red of colours is not depth either.
         assert_eq!([signed.depths.len(), sunny.depths.len()], [0, 0]);
         let named = described(["N.R", "N.G", "N.B"], |i| dome(i).unwrap_or(Vec3::ZERO) * 0.3);
         assert_eq!(named.normals, ["N"], "what is called so is one, whatever its length");

@@ -1,13 +1,14 @@
-//! How much memory this machine has left for the program, as the system tells: free memory, the ceilings of the control
-//! groups around the process, its address space. Floor 5. The only place that asks; floors beneath are passed figures.
+//! How much memory this machine has left for the program, according to the system: free memory, the ceilings of the
+//! control groups around the process, its address space. Floor 5. Only this file asks the system; floors beneath are
+//! passed figures.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What is taken to be free where the system tells nothing.
+/// What is assumed to be free if the system gives no figure.
 pub const UNKNOWN_BYTES: u64 = 4 << 30;
 
-/// Bytes that may be taken now without driving anything out, but for an eighth that is left to everything else.
+/// Bytes that may be allocated now without evicting anything, minus an eighth that is left to other programs.
 pub fn free_bytes() -> u64 {
     let free = told(Path::new("/")).unwrap_or(UNKNOWN_BYTES);
     free - free / 8
@@ -48,12 +49,12 @@ fn field(text: &str, name: &str) -> Option<u64> {
     line.split_whitespace().next()?.parse().ok()
 }
 
-/// A control group that tells of memory.
+/// A control group that reports memory.
 struct ControlGroup {
     folder: PathBuf,
     /// The files of its ceiling and of what is used.
     names: [&'static str; 2],
-    /// The line of `memory.stat` that tells of files held in memory.
+    /// The line of `memory.stat` for files held in memory.
     cache: &'static str,
 }
 
@@ -86,7 +87,7 @@ fn groups_around(root: &Path, groups: &str) -> Vec<ControlGroup> {
     all.collect()
 }
 
-/// What is left in one group; the files it holds in memory are given back when they are in the way.
+/// What is left in one group; files that it holds in memory count as free, since the system drops them when needed.
 fn left_in_group(group: &ControlGroup) -> Option<u64> {
     let ControlGroup { folder, names: [ceiling, used], cache } = group;
     let read = |name: &str| fs::read_to_string(folder.join(name)).ok();

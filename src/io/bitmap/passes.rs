@@ -10,7 +10,7 @@ use std::path::Path;
 /// Passes over the largest picture that is read. Programs write some ten.
 const MOST: u64 = 32;
 
-/// What the headers of a JPEG promise.
+/// What the headers of a JPEG declare.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct JpegWork {
     /// Pixels of the largest frame.
@@ -59,7 +59,7 @@ pub fn work(bytes: &[u8]) -> JpegWork {
             0xda => work.passes += 1,
             _ => {}
         }
-        // Marks that stand alone: starts, ends, restarts.
+        // Markers without a length: starts, ends, restarts.
         if !matches!(kind, 0x01 | 0xd0..=0xd9) {
             let length = bytes.get(at..at + 2).map_or(2, |b| usize::from(b[0]) << 8 | usize::from(b[1]));
             at += length.max(2);
@@ -68,7 +68,7 @@ pub fn work(bytes: &[u8]) -> JpegWork {
     work
 }
 
-/// Where the next marker begins; within coded data a 0 after ff is not one, nor is another ff.
+/// Where the next marker begins; within coded data ff followed by 0 or by another ff is not one.
 fn next_marker(bytes: &[u8], from: usize) -> Option<usize> {
     let rest = bytes.get(from..)?;
     let found = rest.windows(2).position(|pair| pair[0] == 0xff && !matches!(pair[1], 0 | 0xff))?;

@@ -71,8 +71,7 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
     let meaning = ColorModel::of(entry.value);
     let others = "its colours are neither grey, indexed, RGB, YCbCr nor CMYK";
     let meaning = meaning.ok_or_else(|| Error::unsupported(file, others))?;
-    // The crate reads neither palettes nor white-is-zero with alpha, but it reads them as grey. Their meaning is
-    // restored here.
+    // The crate reads palettes and white-is-zero with alpha as plain grey. Their meaning is restored here.
     let as_grey = match meaning {
         ColorModel::Palette | ColorModel::Ink => Some(entry.with_value(bytes, 1)),
         _ => None,
@@ -92,7 +91,7 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
     let row_bits =
         if is_fax { 1 } else { u64::from(color.bit_depth()) * samples(color) as u64 * u64::from(size.width) };
     weight::plausible(file, size, row_bits.saturating_mul(size.height.into()), bytes.len())?;
-    // What is decoded, those samples sorted, and the picture made of them.
+    // The decoded samples, the sorted samples, and the picture made from them.
     room(file, size, values.saturating_mul(2 * u64::from(color.bit_depth()).div_ceil(8)), budget)?;
     if compression == Some(JPEG) {
         within::check(file, &mut decoder, bytes, budget)?;
@@ -200,7 +199,7 @@ struct TiffLayout {
     layout: BufferLayoutPreference,
     meaning: ColorModel,
     alpha: AlphaKind,
-    /// Of a palette: all reds, all greens, all blues.
+    /// The palette: all reds, all greens, all blues.
     map: Vec<u16>,
 }
 

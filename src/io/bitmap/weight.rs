@@ -1,5 +1,5 @@
-//! What a file of rows of numbers asks for before its pixels are decoded: how much its own bits could hold, and what a
-//! PNG keeps beside its pixels. Floor 5.
+//! Memory limits for files of rows of numbers, before their pixels are decoded: how much their own bits could hold, and
+//! what a PNG keeps besides its pixels. Floor 5.
 
 use crate::math::Size;
 use crate::{Error, Result};

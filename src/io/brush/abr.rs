@@ -111,7 +111,7 @@ impl AbrReader<'_> {
         };
         self.sample(&mut record, name, spacing)
     }
-    /// Versions 6 and later: blocks, of which one holds all sampled tips and another says what they are called.
+    /// Versions 6 and later: blocks; one holds all sampled tips, another their names.
     fn later(&mut self, cursor: &mut ByteCursor, subversion: u16) -> Result<()> {
         // A key of 37 letters, followed by undocumented data.
         let before = match subversion {
@@ -200,7 +200,7 @@ impl AbrReader<'_> {
         }
         Ok(())
     }
-    /// Of a tip that the file does not name.
+    /// The name of a tip that the file does not name.
     fn next_name(&self) -> String {
         let stem = self.file.file_stem().unwrap_or_default().to_string_lossy();
         format!("{stem} {}", self.brushes.len() + 1)
@@ -217,12 +217,12 @@ fn spend(file: &Path, budget: &Budget, used_px: &mut u64, px: u64) -> Result<()>
     Ok(())
 }
 
-/// What stands before the pixels of a tip of versions 1 and 2: its spacing, and its name.
+/// What precedes the pixels of a tip in versions 1 and 2: its spacing and its name.
 fn old_header(record: &mut ByteCursor, version: u16) -> Option<(f32, Option<String>)> {
     record.u32()?;
     let spacing = f32::from(record.u16()?.clamp(1, 1000)) / 100.0;
     let name = if version == 2 { Some(record.unicode()?) } else { None };
-    // Antialiasing, and the bounds in 16 bits: they stand again in 32.
+    // Antialiasing, and the bounds in 16 bits: they follow again in 32.
     record.take(1 + 8)?;
     Some((spacing, name))
 }
@@ -246,7 +246,7 @@ fn padded_section<'a>(block: &mut ByteCursor<'a>) -> Option<ByteCursor<'a>> {
 fn sampled(record: &mut ByteCursor, size: Size, bits: u16, compression: u8) -> Option<Picture> {
     let shape =
         ChannelLayout { width: size.width as usize, height: size.height as usize, bits, is_colour: true, large: false };
-    // Of Photoshop's channels a tip knows only plain rows and run lengths.
+    // Of Photoshop's compressions, tips use only plain rows and run lengths.
     let values = (compression < 2).then(|| decode_as(record, shape, u16::from(compression)))??;
     Picture::srgb8(size, values.into_iter().map(|v| [v, v, v, 255]).collect())
 }

@@ -13,7 +13,7 @@ use std::path::Path;
 pub struct GbrBrush {
     pub name: String,
     pub picture: Picture,
-    /// Of the longer side; GIMP's own default where the file is older than spacings.
+    /// As a share of the longer side; GIMP's own default if the file is older than spacings.
     pub spacing: f32,
 }
 
@@ -70,7 +70,7 @@ enum GbrDepth {
     Grey,
     /// Straight colours.
     Rgba,
-    /// The upper half of a 32-bit float: CinePaint's.
+    /// CinePaint's: the upper half of a 32-bit float.
     Half,
 }
 
@@ -92,7 +92,7 @@ impl GbrDepth {
     }
 }
 
-/// Coverage becomes an opaque grey, which is how tips tell it from colours.
+/// Coverage becomes an opaque grey, which is how tips distinguish it from colours.
 fn texels(bytes: &[u8], depth: GbrDepth) -> Vec<[u8; 4]> {
     let grey = |v: u8| [v, v, v, 255];
     match depth {
@@ -106,7 +106,7 @@ fn texels(bytes: &[u8], depth: GbrDepth) -> Vec<[u8; 4]> {
     }
 }
 
-/// A grey brush in the colours of the pattern at the cursor, if a pattern of its size stands there.
+/// A grey brush in the colours of the pattern at the cursor, if a pattern of its size is there.
 fn colored(cursor: &mut ByteCursor, size: Size, coverage: &[[u8; 4]]) -> Option<Vec<[u8; 4]>> {
     let mut ahead = *cursor;
     let start = ahead.rest().len();

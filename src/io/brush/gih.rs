@@ -40,7 +40,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ImportedBrush>
     Ok(ImportedBrush { notes, ..ImportedBrush::hose(name, Hose::new(pictures, ranks), spacing) })
 }
 
-/// `rank0:4 sel0:angular rank1:2 sel1:random …`; one that says nothing of use runs through its pictures.
+/// `rank0:4 sel0:angular rank1:2 sel1:random …`; without usable words the pictures are used in order.
 fn ranks<'a>(words: impl Iterator<Item = &'a str>, count: usize, notes: &mut Vec<String>) -> Vec<HoseRank> {
     let mut ranks = [HoseRank { count: 0, select: RankSelect::Incremental }; MOST_RANKS];
     for (key, value) in words.filter_map(|word| word.split_once(':')) {

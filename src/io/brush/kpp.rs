@@ -1,6 +1,6 @@
-//! Krita's presets: a PNG whose text holds the settings as XML, and within them the tip as XML again.
-//! Floor 5. Taken are presets of its pixel, colour smudge and clone brushes with generated tips; a tip that is a file
-//! of Krita's own is not in the preset, and becomes a round one with a note.
+//! Krita's presets: a PNG whose text holds the settings as XML, and within them the tip as XML again. Floor 5. Reads
+//! presets of the pixel, colour smudge and clone brushes with generated tips; a tip that is one of Krita's own files is
+//! not in the preset, and becomes a round one with a note.
 
 mod sensors;
 
@@ -171,7 +171,7 @@ fn tip(preset: &KppPreset, brush: Brush, notes: &mut Vec<String>) -> Brush {
         let of = |name: &str| attribute(&mask, name).and_then(|text| number(&text));
         let fade = |name: &str| of(name).unwrap_or(1.0).max(0.0).min(1.0);
         let ratio = of("ratio").unwrap_or(1.0).max(*Tip::RATIO.start());
-        // Of one that is higher than wide the height is the longer side.
+        // If the tip is higher than wide, its height is the longer side.
         let (ratio, longer) = if ratio > 1.0 { (1.0 / ratio, ratio) } else { (ratio, 1.0) };
         if longer > 1.0 {
             brush.rotation = (brush.rotation + 90.0).rem_euclid(360.0);
@@ -201,7 +201,7 @@ fn tip(preset: &KppPreset, brush: Brush, notes: &mut Vec<String>) -> Brush {
     Brush { spacing: spacing.max(0.01).min(10.0), ..brush }
 }
 
-/// Of a colour smudge preset: what is not its own colour was taken up.
+/// A colour smudge preset: what is not its own colour was picked up.
 fn pickup(preset: &KppPreset) -> Pickup {
     if preset.engine != "colorsmudge" {
         return Pickup::default();

@@ -88,8 +88,8 @@ impl BrushFormat {
     }
 }
 
-/// The brushes of a file, in its order; at least one. Fails with a sentence where the file is of none of these formats,
-/// damaged beyond use, or larger than the budget allows.
+/// The brushes of a file, in its order; at least one. Fails with a sentence if the file has none of these formats, is
+/// damaged beyond use, or is larger than the budget allows.
 pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<ImportedBrush>> {
     match BrushFormat::of(file, bytes) {
         Some(BrushFormat::GimpBrush) => gbr::read(file, bytes, budget).map(|brush| vec![brush]),

@@ -75,10 +75,10 @@ fn brush(settings: &mut MyPaintSettings) -> Brush {
     let here = dab::hardness(settings, radius_log.base.exp()).halfway();
     let radius = DabSmoothing::new(settings, here).radius_log_here(radius_log.clone());
     let shrunk = (radius_log.halfway() - radius.halfway()).exp().max(0.2).min(5.0);
-    // What never changes is part of the size.
+    // A constant is part of the size.
     let size = (2.0 * radius.base.max(-2.0).min(6.9).exp()).max(0.1);
     let lengths = Lengths { radius: base.max(-2.0).min(6.9).exp(), size, shrunk };
-    // What adds up in a logarithm doubles here.
+    // A sum of logarithms is a product here.
     let doublings = Added { base: 0.0, ..radius }.times(std::f32::consts::LOG2_E);
     let brush = Brush { size, dynamics: Dynamics::none(), ..Brush::default() };
     let brush = with(with(brush, Property::Size, &doublings), Property::Custom, &custom);

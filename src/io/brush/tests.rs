@@ -110,7 +110,7 @@ const MYB: &str = r#"{ "version": 3, "group": "", "settings": {
     "slow_tracking": { "base_value": 1.5, "inputs": {} },
     "smudge": { "base_value": 0.7, "inputs": {} } } }"#;
 
-/// What inputs make of a property of a brush.
+/// The value of a brush property for given inputs.
 fn driven(brush: &Brush, property: Property, plain: f32, inputs: DabInputs) -> f32 {
     brush.dynamics.value(property, plain, &inputs)
 }
@@ -146,7 +146,7 @@ fn a_mypaint_brush_that_follows_several_inputs_follows_them_all() {
         "dabs_per_second": { "base_value": 80, "inputs": {} },
         "stroke_holdtime": { "base_value": 10, "inputs": {} } } }"#;
     let ImportedBrush { brush, notes, .. } = only("b.myb", text.as_bytes());
-    // Nothing is said of what multiplies it: the pressure does.
+    // The file does not say what multiplies it, so the pressure does.
     let inputs = DabInputs { pressure: 0.5, tilt: 1.0, seed: 3, ..DabInputs::default() };
     let chance = brush.dynamics.added(Property::Flow, Input::Chance).unwrap();
     let random = (0..=100).map(|i| chance.at(i as f32 / 100.0)).fold(0.0, f32::max);

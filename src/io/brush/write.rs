@@ -1,5 +1,4 @@
-//! A brush as a file of this program: a preset's JSON, its pictures beside it.
-//! Floor 5.
+//! A brush as a file of this program: a preset's JSON, with its pictures next to it. Floor 5.
 
 use crate::document::Progress;
 use crate::fs::Disk;
@@ -45,13 +44,13 @@ impl Encoded {
     /// Writes them; none where `terms` do not allow all of them.
     pub fn write(&self, terms: &Terms) -> Result<()> {
         self.check(terms)?;
-        // Nothing here cancels.
+        // Never cancelled.
         let put = |(file, bytes): &(PathBuf, Asset)| replace(&Disk, file, bytes.bytes(), terms, &Progress::default());
         self.files.iter().try_for_each(|file| put(file).map(drop))
     }
 }
 
-/// The pictures that a preset's file names, which lie beside it.
+/// The pictures that a preset's file names, which are next to it.
 pub fn pictures_beside(file: &Path, preset: &BrushPreset) -> impl Iterator<Item = PathBuf> {
     let names = preset.brush.pictures().map(|source| Path::new(&source.file));
     names.filter(|name| name.file_name() == Some(name.as_os_str())).map(|name| file.with_file_name(name))

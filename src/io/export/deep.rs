@@ -10,7 +10,7 @@ use image::DynamicImage;
 use std::io::Cursor;
 use std::path::Path;
 
-/// The bytes of a picture file of a document, of bytes or of more, as is asked for; `None` if cancelled. `file` is for
+/// The bytes of a picture file of a document, with 8 bits or more as requested; `None` if cancelled. `file` is for
 /// messages.
 pub fn encode_document(
     file: &Path,
@@ -131,7 +131,7 @@ pub(super) fn exr(
     Ok(bytes.into_inner())
 }
 
-/// Linear light, multiplied by alpha, of an encoded premultiplied pixel; what a half float can hold of it.
+/// Linear light, multiplied by alpha, of an encoded premultiplied pixel; limited to what a half float can hold.
 pub(super) fn light(&[r, g, b, a]: &[f32; 4]) -> [f32; 4] {
     const HALF_MAX: f32 = 65504.0;
     let light = |v: f32| if a > 0.0 { (srgb::decode((v / a).max(0.0)) * a).min(HALF_MAX) } else { 0.0 };

@@ -63,7 +63,7 @@ const ENDINGS: [&str; 10] = ["png", "exr", "ora", "psd", "jpg", "jpeg", "webp", 
 /// How maps are written.
 #[derive(Clone, Copy, Debug)]
 pub struct ShapeOptions {
-    /// Green points down, as Direct3D has it; else up.
+    /// Green points down, as in Direct3D; else up.
     pub is_directx: bool,
     /// 16 bits a channel of a PNG in place of 8; masks have 8.
     pub is_deep: bool,
@@ -99,7 +99,7 @@ pub fn encode(file: &Path, surface: &Surface, map: ShapeMap, options: &ShapeOpti
             let bytes: Vec<u8> = (0..count).map(|i| quantise(texel(i).1)).collect();
             png(file, &bytes, surface.size(), ExtendedColorType::L8)
         }
-        // A number is no shade: no bit of it may be lost, and most programs show 16 bits.
+        // Numbers are not shades: no bit may be lost, and most programs show 16 bits.
         ShapeMap::Parts => {
             let bytes: Vec<u8> = (0..count).flat_map(|i| sixteen(texel(i).0[0])).collect();
             png(file, &bytes, surface.size(), ExtendedColorType::L16)

@@ -139,9 +139,9 @@ fn tile_block(header: &Header, x: usize, y: usize) -> Option<usize> {
     (x < across && y < down).then_some(y * across + x)
 }
 
-/// Whether a DWA chunk's counters could be true: the decoder sizes its memory by them.
+/// Whether a DWA chunk's counters are plausible: the decoder sizes its memory by them.
 ///
-/// No section holds more than a few times the block's raw bytes, nor do the compressed sections exceed the chunk.
+/// No section holds more than a few times the block's raw bytes, and the compressed sections fit into the chunk.
 fn dwa_is_sane(header: &Header, body: &[u8]) -> bool {
     let block = header.max_block_pixel_size();
     let raw = (block.x() as u64 * block.y() as u64).saturating_mul(header.channels.bytes_per_pixel as u64);

@@ -5,7 +5,7 @@ use super::ExrChannel;
 use exr::meta::MetaData;
 use exr::meta::attribute::{SampleType, Text};
 
-/// The names after the last dot that tell a channel from its siblings, with their letter.
+/// The names after the last dot that distinguish a channel from its siblings, with their letter.
 const SUFFIXES: [(&str, char); 15] = [
     ("r", 'r'),
     ("g", 'g'),
@@ -76,7 +76,7 @@ pub fn channels(meta: &MetaData) -> Vec<ExrChannel> {
     out
 }
 
-/// Groups channels by what stands before the last dot; a name whose end is no known suffix is a pass by itself.
+/// Groups channels by the text before the last dot; a name without a known suffix is a pass by itself.
 pub fn passes(channels: &[ExrChannel]) -> Vec<ExrPass> {
     let mut out: Vec<ExrPass> = Vec::new();
     for (i, channel) in channels.iter().enumerate() {

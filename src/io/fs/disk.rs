@@ -85,7 +85,7 @@ impl Fs for Disk {
         if std::fs::metadata(path)?.permissions().readonly() {
             return Ok(true);
         }
-        // Another's file, or one that the system guards, tells only whoever tries.
+        // For somebody else's file, or one that the system guards, only trying shows it.
         let tried = OpenOptions::new().write(true).open(path);
         Ok(tried.is_err_and(|e| e.kind() == io::ErrorKind::PermissionDenied))
     }
@@ -111,7 +111,7 @@ mod ownership {
     use std::os::unix::fs::{MetadataExt, PermissionsExt, chown};
     use std::path::Path;
 
-    /// Who may read and write, without the bits that let a program run as somebody else.
+    /// Permission bits, without those that let a program run as another user.
     const RIGHTS: u32 = 0o777;
     const GROUP: u32 = 0o070;
 
@@ -121,8 +121,7 @@ mod ownership {
         let has_owner = old.uid() == new.uid() || chown(to, Some(old.uid()), None).is_ok();
         let has_group = old.gid() == new.gid() || chown(to, None, Some(old.gid())).is_ok();
         let rights = old.mode() & RIGHTS;
-        // Another group gets no more than everybody, another owner no less than is needed to read back what was
-        // written.
+        // A different group gets no more than everybody; a different owner keeps what is needed to read back the file.
         let rights = if has_group { rights } else { rights & !GROUP | (rights & 0o007) << 3 };
         set_permissions(to, Permissions::from_mode(if has_owner { rights } else { rights | 0o400 }))
     }
@@ -149,7 +148,7 @@ mod ownership {
     pub fn is_same(_: &Path, _: &Path) -> io::Result<bool> {
         Ok(true)
     }
-    /// Paths alone tell, once they are resolved.
+    /// Only the resolved paths can be compared.
     pub fn identity(_: &Path) -> io::Result<Option<Identity>> {
         Ok(None)
     }

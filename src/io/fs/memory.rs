@@ -57,7 +57,7 @@ pub struct InjectedFailure {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum InjectedError {
     Code(i32),
-    /// Writes less than was asked for.
+    /// Writes less than requested.
     Short,
 }
 
@@ -89,7 +89,7 @@ impl MemoryFs {
     pub fn refuse_links(&self) {
         self.state().has_no_links = true;
     }
-    /// A file becomes another user's.
+    /// Gives a file to another user.
     pub fn give_away(&self, name: &str) {
         let mut state = self.state();
         let inode = state.names[Path::new(name)];

@@ -17,7 +17,7 @@ pub trait Fs: Send + Sync {
     fn create_new(&self, path: &Path) -> io::Result<Box<dyn FileHandle>>;
     /// A file for reading.
     fn open(&self, path: &Path) -> io::Result<Box<dyn FileHandle>>;
-    /// Replaces what stands at `to`, all at once.
+    /// Replaces what is at `to`, all at once.
     fn rename(&self, from: &Path, to: &Path) -> io::Result<()>;
     /// A second name for the same file; fails where `to` exists.
     fn link(&self, from: &Path, to: &Path) -> io::Result<()>;
@@ -32,12 +32,11 @@ pub trait Fs: Send + Sync {
     fn list(&self, folder: &Path) -> io::Result<Vec<PathBuf>>;
     /// Makes a folder, and those around it.
     fn create_folder(&self, folder: &Path) -> io::Result<()>;
-    /// Gives a file the owner, the group and the permissions of another, as far as the system lets.
+    /// Gives a file the owner, the group and the permissions of another, as far as the system allows.
     fn copy_ownership(&self, from: &Path, to: &Path) -> io::Result<()>;
     /// Both files belong to the same user.
     fn is_same_owner(&self, one: &Path, other: &Path) -> io::Result<bool>;
-    /// Which file stands at a path, links followed: the same for each of its names. `None` where the system does not
-    /// tell.
+    /// Identity of the file at a path, links followed: the same for each of its names. `None` if the system cannot say.
     fn identity(&self, path: &Path) -> io::Result<Option<Identity>>;
     /// Nobody, or not this user, may write to the file.
     fn is_read_only(&self, path: &Path) -> io::Result<bool>;
@@ -60,7 +59,7 @@ pub trait FileHandle: Read + Write + Send {
 /// Released when it is dropped, and by the system when the process dies for any reason.
 pub trait FileLock: Send {}
 
-/// What stands at a path.
+/// What is at a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EntryKind {
     File,
@@ -70,7 +69,7 @@ pub enum EntryKind {
     Other,
 }
 
-/// A file itself, whatever its names are.
+/// Identity of a file, whatever its names are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Identity {
     pub device: u64,

@@ -25,8 +25,8 @@ impl<'a> JsonNode<'a> {
     pub fn root(file: &'a Path, value: &'a Value) -> Self {
         Self { file, path: String::new(), value, ranged: true }
     }
-    /// A value of no file, whose numbers need only be finite: for what is refused later where it does not fit
-    /// (`Document::fits`).
+    /// A value that is not from a file, whose numbers need only be finite: `Document::fits` refuses later what does not
+    /// fit.
     pub fn unranged(value: &'a Value) -> Self {
         Self { file: Path::new(""), path: String::new(), value, ranged: false }
     }
@@ -36,7 +36,7 @@ impl<'a> JsonNode<'a> {
     fn holds(&self, range: &RangeInclusive<f32>, number: f32) -> bool {
         if self.ranged { range.contains(&number) } else { number.is_finite() }
     }
-    /// Where the value stands, such as `layers[2].operator.gamma`.
+    /// Path of the value, such as `layers[2].operator.gamma`.
     pub fn path(&self) -> &str {
         &self.path
     }
@@ -58,7 +58,7 @@ impl<'a> JsonNode<'a> {
     pub fn too_large(&self, reason: impl ToString) -> Error {
         Error::too_large(self.file, format!("{} {}", self.path, reason.to_string()))
     }
-    /// Where an item of this list would stand that is told otherwise than as a value.
+    /// The path of a list item that is stored in another form than as a JSON value.
     pub fn item(&self, i: usize) -> JsonNode<'a> {
         JsonNode { path: format!("{}[{i}]", self.path), value: &Value::Null, ..*self }
     }

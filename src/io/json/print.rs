@@ -4,11 +4,11 @@
 
 use serde_json::Value;
 
-/// What a line may hold beside its indent, characters.
+/// Longest line without its indent, characters.
 const LINE: usize = 110;
 
-/// Text in the making. What is long is opened, filled piece by piece and closed, so that it never stands in memory as
-/// values.
+/// Text being built. Long lists and objects are opened, filled piece by piece and closed, so that they are never in
+/// memory as values.
 #[derive(Default)]
 pub struct Printer {
     text: String,
@@ -63,7 +63,7 @@ impl Printer {
             }
         }
     }
-    /// A line of its own for what comes next.
+    /// Starts a new line for what comes next.
     fn begin(&mut self, key: Option<&str>) {
         if let Some(holds) = self.open.last_mut() {
             self.text.push_str(if *holds { ",\n" } else { "\n" });

@@ -31,7 +31,7 @@ impl Directory {
         let is_there = |at: &usize| at.checked_add(it.entry_bytes()).is_some_and(|end| end <= bytes.len());
         Some(Self { entries: entries.into_iter().take_while(is_there).collect(), ..it })
     }
-    /// Where the value of a tag stands.
+    /// Where the value of a tag is.
     pub fn place(&self, bytes: &[u8], tag: u16) -> Option<usize> {
         let found = self.entries.iter().find(|at| self.number(bytes, **at, 2) == Some(tag.into()))?;
         Some(found + self.entry_bytes() - self.address_bytes())

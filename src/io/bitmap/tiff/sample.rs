@@ -51,7 +51,7 @@ impl TiffSample for u8 {
         self.into()
     }
     integer_image!(ImageLuma8, ImageLumaA8, ImageRgb8, ImageRgba8);
-    /// As JPEG has it.
+    /// As in JPEG.
     fn rgb_of_ycbcr(values: Vec<Self>) -> Option<Vec<Self>> {
         let rgb = |[y, b, r]: [u8; 3]| {
             let (y, b, r) = (f32::from(y), f32::from(b) - 128.0, f32::from(r) - 128.0);

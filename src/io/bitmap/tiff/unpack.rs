@@ -1,5 +1,5 @@
-//! Compressions of TIFF that the `tiff` crate lacks: ZSTD, and fax of group 3; and fax whose bits run from the right.
-//! Floor 5. Pieces are unpacked here, and the file is read with those in place of its own.
+//! Compressions of TIFF that the `tiff` crate lacks: ZSTD, group 3 fax, and fax with reversed bit order. Floor 5.
+//! Pieces are unpacked here, and the file is read with these instead of its own.
 
 use super::directory::Directory;
 use crate::{Budget, Error, Result};
@@ -84,7 +84,7 @@ impl Piece {
     fn bytes(&self) -> usize {
         self.row_bytes.saturating_mul(self.rows as usize)
     }
-    /// No more than it can hold.
+    /// At most what it can hold.
     fn zstd(&self, packed: &[u8]) -> std::io::Result<Vec<u8>> {
         let decoder = ruzstd::decoding::StreamingDecoder::new(packed).map_err(std::io::Error::other)?;
         let mut out = Vec::new();

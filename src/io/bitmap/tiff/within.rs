@@ -13,7 +13,7 @@ use tiff::tags::Tag;
 const FILLED_PX: u64 = 64;
 
 /// Refuses JPEGs that claim to be larger than their strips or tiles, whose decoder would allocate that size first, and
-/// those that together go over more pixels than a picture may have. `file_bytes`: of the whole file.
+/// those that together have more pixels than a picture may. `file_bytes`: length of the whole file.
 pub fn check(file: &Path, decoder: &mut Decoder<Cursor<&[u8]>>, file_bytes: &[u8], budget: &Budget) -> Result<()> {
     let mut list = |tags: [Tag; 2]| tags.into_iter().find_map(|tag| decoder.get_tag_u64_vec(tag).ok());
     let starts = list([Tag::TileOffsets, Tag::StripOffsets]).unwrap_or_default();

@@ -1,7 +1,7 @@
-//! What drives a brush of Photoshop's: shape dynamics, scattering, texture, colour dynamics and transfer. Floor 5.
-//! Each has a switch in the description of the brush. Not here: its tip (`presets`).
+//! What drives a Photoshop brush: shape dynamics, scattering, texture, colour dynamics and transfer. Floor 5. Each has
+//! a switch in the description of the brush. Not here: its tip (`presets`).
 //!
-//! A control says what a property follows, and down to which share (“minimum”); a jitter takes some of it away at
+//! A control says which input a property follows and how far it falls (“minimum”); a jitter reduces the property at
 //! random, dab by dab.
 
 use crate::brush::TipNames;
@@ -14,15 +14,15 @@ use crate::psd::pattern::PatternResource;
 use crate::raster::Picture;
 use std::path::Path;
 
-/// Switched on, and nothing here is like them.
+/// Reported when switched on: they have no counterpart here.
 const LEFT_OUT: [(&str, &str); 4] =
     [("Wtdg", "wet edges"), ("Nose", "noise"), ("useDualBrush", "dual brush"), ("useBrushPose", "brush pose")];
 /// Points of a curve that is no line.
 const POINTS: usize = 9;
-/// What texture keeps of a stroke where it is white takes the rest away; other ways are told.
+/// Texture blends where white keeps the stroke and black takes it away; others are reported.
 const TAKEN_BLENDS: [&[u8]; 2] = [b"Mltp", b"Sbtr"];
 
-/// What a control is, by its number.
+/// What a control follows, by its number.
 enum Control {
     Off,
     Follows(Input),
@@ -51,7 +51,7 @@ pub struct AbrConversion<'a> {
     pub notes: Vec<String>,
 }
 
-/// A brush with all that a description drives. Nothing follows the pressure unless it says so.
+/// A brush with all dynamics of a description. Nothing follows the pressure unless the description says so.
 pub fn carried<'a>(preset: &'a DescriptorObject, brush: Brush, notes: Vec<String>) -> AbrConversion<'a> {
     let mut carried = AbrConversion { preset, brush: Brush { dynamics: Dynamics::none(), ..brush }, notes };
     if preset.flag("useTipDynamics") {
@@ -82,7 +82,7 @@ fn share(percent: f32) -> f32 {
 }
 
 impl AbrConversion<'_> {
-    /// A percentage of the brush itself, or of a part of it; 0 where neither says it.
+    /// A percentage from the brush itself, or from a part of it; 0 if neither has it.
     fn percent(&self, name: &str, part: Option<&DescriptorObject>, in_part: &str) -> f32 {
         // A part often says 0 where the brush says more.
         let own = self.preset.number(name).filter(|v| *v != 0.0);
@@ -93,7 +93,7 @@ impl AbrConversion<'_> {
             self.brush.dynamics = self.brush.dynamics.with(property, input, curve);
         }
     }
-    /// The input of a control; what has none here is told of once.
+    /// The input of a control; one without a counterpart is reported once.
     fn input(&mut self, part: &DescriptorObject) -> Option<Input> {
         match Control::of(part) {
             Control::Off => None,
@@ -123,7 +123,7 @@ impl AbrConversion<'_> {
     fn shape(&mut self) {
         self.follow(Property::Size, "szVr", "minimumDiameter");
         if let Some(angle) = self.preset.object("angleDynamics") {
-            // Of the pen's tilt it is the direction that turns a tip.
+            // The direction of the pen's tilt turns the tip.
             let input = self.input(angle).map(|input| if input == Input::Tilt { Input::TiltDirection } else { input });
             if let Some(input) = input {
                 self.drive(Property::Rotation, input, Some(Curve::Share(1.0)));

@@ -12,7 +12,7 @@ use std::path::Path;
 
 /// One brush of a collection.
 pub struct AbrPreset<'a> {
-    /// All that is said of it.
+    /// Its whole description.
     description: &'a DescriptorObject,
     name: String,
     /// The key of its sampled tip; `None` of a computed one.

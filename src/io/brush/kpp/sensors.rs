@@ -7,7 +7,7 @@ use crate::paint::dynamics::{Curve, Input, MAX_POINTS};
 use quick_xml::Reader;
 use quick_xml::events::Event;
 
-/// The sensors of an option that have a counterpart; the others are told of once.
+/// The sensors of an option that have a counterpart; the others are reported once.
 pub fn read(text: &str, notes: &mut Vec<String>) -> Vec<(Input, Curve)> {
     let mut reader = Reader::from_str(text);
     let mut found: Vec<(Input, Curve)> = Vec::new();
@@ -20,7 +20,7 @@ pub fn read(text: &str, notes: &mut Vec<String>) -> Vec<(Input, Curve)> {
                 let is_sensor = matches!(start.local_name().as_ref(), "params" | "ChildSensor");
                 if let Some(id) = attribute(&start, "id").filter(|id| is_sensor && id != "sensorslist") {
                     match input(&id) {
-                        // Without a curve of its own it is the line.
+                        // Without a curve of its own it is linear.
                         Some(input) => found.push((input, Curve::Share(1.0))),
                         None => note(&id, notes),
                     }

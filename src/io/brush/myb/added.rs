@@ -58,14 +58,14 @@ impl Added {
     pub fn main_row(&self) -> Option<usize> {
         (0..self.rows.len()).max_by(|&a, &b| self.rows[a].span().total_cmp(&self.rows[b].span()))
     }
-    /// The value where one input is at a place and all others add nothing.
+    /// The value for one place of one input, while all others add nothing.
     pub fn at(&self, row: &AddedInput, x: f32) -> f32 {
         self.base + level(&row.points, x)
     }
 }
 
 impl AddedInput {
-    /// What it adds at a place of its input.
+    /// What the curve adds at a place of its input.
     pub fn at(&self, x: f32) -> f32 {
         level(&self.points, x)
     }
@@ -79,7 +79,7 @@ impl AddedInput {
     fn span(&self) -> f32 {
         self.most() - self.points.iter().map(|p| p.y).fold(f32::INFINITY, f32::min)
     }
-    /// As a curve that adds; `None` where it adds nothing that can be told.
+    /// As a curve that adds; `None` if it adds nothing measurable.
     pub fn curve(&self) -> Option<Curve> {
         let points = self.points.iter().map(|p| vec2(p.x, p.y.max(-MOST_ADDED).min(MOST_ADDED)));
         Curve::added(straightened(&points.collect::<Vec<_>>()))

@@ -5,12 +5,12 @@ use crate::math::{Vec2, vec2};
 use crate::paint::dynamics::{Input, MAX_POINTS, px_per_sec_of};
 use serde_json::Value;
 
-/// What the inputs are measured by.
+/// The scales of the inputs.
 #[derive(Clone, Copy, Default)]
 pub struct Scales {
     /// ln of the radius without what drives it.
     pub radius: f32,
-    /// Of each of the two speeds, e^gamma.
+    /// e^gamma for each of the two speeds.
     pub gammas: [f32; 2],
     pub pressure: f32,
     /// The custom input at 0 and at 1 of ours.
@@ -18,7 +18,7 @@ pub struct Scales {
 }
 /// Straight pieces by which a bent way is followed.
 pub const STEPS: usize = 40;
-/// How far beside a step its two ends are looked at.
+/// How far from a step its two ends are sampled.
 const BESIDE: f32 = 1e-4;
 impl Scales {
     /// Which of our inputs is one of theirs, and how it runs.
@@ -42,7 +42,7 @@ impl Scales {
             }
             "direction_angle" => whole(Input::Direction, [360.0, 0.0]),
             "tilt_declination" => whole(Input::Tilt, [90.0, 0.0]),
-            // Of an upright pen 0, which is a quarter turn from where ours leans then; else clockwise from below.
+            // 0 for an upright pen, a quarter turn from where ours leans then; else clockwise from below.
             "tilt_ascension" => {
                 let upright = CurvePiece::straight([0.0, 0.0], [0.0, 0.0]);
                 let (right, rest) = (CurvePiece::straight([0.0, 0.25], [-90.0, -180.0]), [180.0, -90.0]);
@@ -60,7 +60,7 @@ impl Scales {
     }
 }
 
-/// How one of their inputs stands to ours.
+/// How one of their inputs relates to ours.
 pub enum InputMapping {
     /// It is always this.
     Still(f32),
@@ -73,7 +73,7 @@ pub struct CurvePiece {
     x: Course,
 }
 
-/// What theirs does there.
+/// Their value at that place.
 enum Course {
     Straight([f32; 2]),
     /// Speeds over a logarithm: 0.5 at 45 px a second, rising by 0.015 a px there.
@@ -111,7 +111,7 @@ impl CurvePiece {
         };
         let steps = if matches!(self.x, Course::Straight(_)) { 1 } else { STEPS };
         let corners = points.iter().map(|p| inner(p.x)).filter(|s| (0.0..=1.0).contains(s)).take(16);
-        // Where two points stand above each other the curve steps: it is looked at on both sides.
+        // Where two points share a position the curve steps: it is sampled on both sides.
         let steep = points.windows(2).filter(|pair| pair[0].x == pair[1].x).map(|pair| inner(pair[0].x));
         let sides = steep.flat_map(|s| [s - BESIDE, s + BESIDE]).filter(|s| (0.0..=1.0).contains(s)).take(16);
         let even = (0..=steps).map(|i| i as f32 / steps as f32);
@@ -126,7 +126,7 @@ pub fn number(value: &Value) -> Option<f32> {
     value.as_f64().map(|v| v as f32).filter(|v| v.abs() < 1e6)
 }
 
-/// A curve's points from left to right; `None` of one that adds nothing.
+/// A curve's points from left to right; `None` if it adds nothing.
 pub fn curve_of(points: &Value) -> Option<Vec<Vec2>> {
     let points = points.as_array()?.iter().take(MAX_POINTS);
     let points = points.filter_map(|p| Some(vec2(number(p.get(0)?)?, number(p.get(1)?)?)));
@@ -138,7 +138,7 @@ pub fn curve_of(points: &Value) -> Option<Vec<Vec2>> {
 /// A curve of theirs: straight between its points, and straight on beyond them.
 pub fn at(points: &[Vec2], x: f32) -> f32 {
     let inner = points.iter().skip(1).take(points.len().saturating_sub(2));
-    // The piece it lies on: the first whose end is not before it, else the last.
+    // The piece that contains it: the first whose end is not before it, else the last.
     let i = inner.take_while(|p| x > p.x).count();
     match points.get(i..) {
         Some(&[from, to, ..]) if to.x > from.x => from.y + (to.y - from.y) * (x - from.x) / (to.x - from.x),

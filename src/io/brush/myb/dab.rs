@@ -1,5 +1,4 @@
-//! What a dab of a MyPaint brush looks like: tip, coverage, colour, and paint that is taken up.
-//! Floor 5.
+//! What a dab of a MyPaint brush looks like: tip, coverage, colour and pickup. Floor 5.
 
 use super::added::Added;
 use super::settings::MyPaintSettings;
@@ -9,7 +8,7 @@ use crate::paint::{Brush, Falloff, Pickup, Tip};
 
 /// A rim as wide as this is every dab's here, px.
 const RIM_PX: f32 = 1.0;
-/// What counts as not round.
+/// Beyond this a dab counts as not round.
 const ROUND: f32 = 1.001;
 
 /// Hardness and the elliptic tip.
@@ -35,7 +34,7 @@ pub fn hardness(settings: &mut MyPaintSettings, radius: f32) -> Added {
     softened(settings.added("hardness", 0.8), rim_px, radius).within(0.0, 1.0)
 }
 
-/// A rim that is asked to be wider than the hardness makes it, the radius at which it covers one half staying.
+/// A hardness for a rim wider than it would have; the radius of half coverage stays.
 fn softened(hardness: Added, rim_px: f32, radius: f32) -> Added {
     let h = hardness.base.max(0.0).min(1.0);
     if rim_px <= RIM_PX || radius * (1.0 - h) >= rim_px {
@@ -55,7 +54,7 @@ pub fn flow(settings: &mut MyPaintSettings, brush: Brush) -> Brush {
     let brush = Brush { overlap, ..brush };
     let opaque = settings.added("opaque", 1.0);
     let times = settings.opaque_multiply();
-    // What follows several inputs adds up here, what follows one multiplies it.
+    // Here several inputs add up; a single input multiplies.
     let (sum, factor) = if opaque.rows.len() < times.rows.len() { (times, opaque) } else { (opaque, times) };
     let Some(main) = factor.main_row() else { return flows(brush, sum.times(factor.base.max(0.0))) };
     if factor.rows.len() > 1 {
@@ -133,11 +132,11 @@ fn pickup(settings: &mut MyPaintSettings, brush: Brush) -> Brush {
 }
 
 impl MyPaintSettings<'_> {
-    /// What `opaque` is multiplied by: the pressure, where a file does not say.
+    /// What `opaque` is multiplied by: the pressure, if the file does not say.
     fn opaque_multiply(&mut self) -> Added {
         if self.has("opaque_multiply") { self.added("opaque_multiply", 0.0) } else { self.pressure() }
     }
-    /// A setting that does nothing here; told of where it does something there.
+    /// A setting with no effect here; reported if it has one in MyPaint.
     fn lost(&mut self, name: &'static str, idle: f32) {
         if self.is_driven(name) || self.base(name, idle) != idle {
             self.note(&format!("“{name}” has no counterpart"));

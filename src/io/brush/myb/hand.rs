@@ -38,7 +38,7 @@ pub fn spacing(settings: &mut MyPaintSettings, lengths: Lengths, brush: Brush) -
     }
 }
 
-/// How far dabs stand from the pen, and how their sizes stray.
+/// How far dabs are from the pen, and how their sizes vary.
 pub fn strays(settings: &mut MyPaintSettings, lengths: Lengths, brush: Brush) -> Brush {
     let scatter = settings.added("offset_by_random", 0.0).times(lengths.diameters()).within(0.0, 10.0);
     let brush = Brush { scatter: scatter.base, spread: Spread::Cloud, ..brush };

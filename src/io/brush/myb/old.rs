@@ -45,7 +45,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Map<String, Va
         let (name, factor) = renamed(name);
         let setting = setting(value, factor, version == "1");
         let is_plain = name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
-        // A line that is no setting is some newer program's.
+        // A line that is not a setting comes from a newer program.
         if let Some(setting) = setting.filter(|_| is_plain) {
             settings.insert(name.to_owned(), setting);
         }

@@ -8,7 +8,7 @@ use crate::paint::dynamics::Input;
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;
 
-/// The settings of a file. Those that are asked for count as carried over; the others are told of.
+/// The settings of a file. Those that are read count as carried over; the others are reported.
 pub struct MyPaintSettings<'a> {
     all: &'a Map<String, Value>,
     asked: BTreeSet<&'static str>,
@@ -16,7 +16,7 @@ pub struct MyPaintSettings<'a> {
     /// The inputs' scales.
     scales: Scales,
 }
-/// Settings that say nothing about the mark, or only what is this program's own business.
+/// Settings that do not affect the mark, or that this program decides itself.
 const OF_NO_MATTER: [&str; 9] = [
     "anti_aliasing",
     "color_h",
@@ -63,7 +63,7 @@ impl<'a> MyPaintSettings<'a> {
         let inputs = self.all.get(name).and_then(|value| value.get("inputs")?.as_object());
         inputs.into_iter().flatten().any(|(_, points)| curve_of(points).is_some())
     }
-    /// A setting that nothing can drive here, where what drives it is halfway; that is told of.
+    /// A setting that nothing can drive here, with its inputs halfway; a drive is reported.
     pub fn plain(&mut self, name: &'static str, default: f32) -> f32 {
         let added = self.added(name, default);
         if !added.rows.is_empty() {
@@ -91,7 +91,7 @@ impl<'a> MyPaintSettings<'a> {
         }
         added
     }
-    /// What a setting that follows the pressure from nothing adds.
+    /// What a setting that follows the pressure from 0 adds.
     pub fn pressure(&self) -> Added {
         let points = vec![vec2(0.0, 0.0), vec2(1.0, self.scales.pressure)];
         Added { base: 0.0, rows: vec![AddedInput { input: Input::Pressure, points }] }
@@ -109,7 +109,7 @@ impl<'a> MyPaintSettings<'a> {
         let width = if most > least { most - least } else { 1.0 };
         Added { base: custom.base - least, ..custom }.times(1.0 / width)
     }
-    /// What was noted, and the settings that nothing asked for though they do something.
+    /// The notes, and the settings that were not read although they have an effect.
     pub fn into_notes(mut self) -> Vec<String> {
         let all = self.all;
         for (name, value) in all {

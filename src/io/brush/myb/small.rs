@@ -9,14 +9,14 @@ use crate::paint::Tip;
 
 /// Dabs of a smaller radius are smoothed there, px.
 const SMOOTHED_PX: f32 = 3.0;
-/// How much longer each half-axis becomes, px, a hardness beyond that of the faintest dabs, which stay as they are; of
-/// dabs of a radius of [`SPECK_PX`] half of it. Measured: within 15 % of the area from 0.4 px on, of round dabs and of
-/// ellipses, of a hardness of 0.3 and more.
+/// How much longer each half-axis becomes, px, per hardness beyond that of the faintest dabs, which stay as they are;
+/// half of it for dabs of radius [`SPECK_PX`]. Measured: within 15 % of the area from 0.4 px on, for round dabs and
+/// ellipses with a hardness of 0.3 and more.
 const LONGER_PX: f32 = 0.45;
 const SPECK_PX: f32 = 0.1;
 const FAINTEST: f32 = 0.1;
 
-/// What a dab's size depends on beside its radius, where all that drives it is halfway.
+/// What a dab's size depends on besides its radius, with all inputs halfway.
 #[derive(Clone, Copy, Debug)]
 pub struct DabSmoothing {
     hardness: f32,
@@ -24,7 +24,7 @@ pub struct DabSmoothing {
     here: f32,
     /// The least width of its rim, px.
     rim_px: f32,
-    /// Of the longer half-axis to the shorter one, at least 1.
+    /// Ratio of the longer half-axis to the shorter one, at least 1.
     elongation: f32,
     /// It covers whole pixels, and is as large as it says.
     snaps: bool,
@@ -55,7 +55,7 @@ impl DabSmoothing {
         // Never smaller: what one of several inputs would take away from the radius, others cannot give back.
         (covered / self.here).sqrt().max(radius_px)
     }
-    /// Radius and hardness of a dab whose rim is as wide as it must be; the radius at which it covers one half stays.
+    /// Radius and hardness of a dab whose rim is as wide as required; the radius of half coverage stays.
     fn with_rim(&self, radius_px: f32) -> (f32, f32) {
         if radius_px * (1.0 - self.hardness) >= self.rim_px {
             return (radius_px, self.hardness);

@@ -60,7 +60,7 @@ fn photoshop_tips_of_every_version_are_read() {
         assert_eq!(deep, [0, 100, 255]);
     }
 }
-/// The same, its second tip called “Reed” by a description, and a computed brush beside it.
+/// The same; a description calls its second tip “Reed”, and there is a computed brush as well.
 pub fn named_abr() -> Vec<u8> {
     let text = |t: &str| {
         let letters: Vec<u8> = t.encode_utf16().chain([0]).flat_map(u16::to_be_bytes).collect();
@@ -88,7 +88,7 @@ pub fn named_abr() -> Vec<u8> {
     let list = [words(&[2]), preset("Reed", &sampled), preset("Dot", &computed)].concat();
     let description = [words(&[16]), object(&[named("Brsh", "VlLs", list)])].concat();
     let mut bytes = new_abr(1);
-    // The second tip's key, a length and its letters, stands behind the length of its record.
+    // The second tip's key, a length and its letters, follows the length of its record.
     let first = bytes.windows(4).position(|w| w == b"samp").unwrap() + 8;
     let length = u32::from_be_bytes(bytes[first..first + 4].try_into().unwrap()) as usize;
     let key = first + 4 + length.next_multiple_of(4) + 4;

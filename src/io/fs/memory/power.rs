@@ -1,4 +1,4 @@
-//! Power cuts: what of a disk in memory is left, for every combination of what may be lost.
+//! Power cuts: what is left of a disk in memory, for every combination of what may be lost.
 
 use super::{DiskState, Inode, MemoryFs, apply};
 use std::sync::{Arc, Mutex};
@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex};
 const BITS_A_FILE: usize = 10;
 
 impl DiskState {
-    /// Values of `luck` that [`DiskState::after_power_cut`] tells apart: all there are, or `most` spread over them.
+    /// Values of `luck` that [`DiskState::after_power_cut`] distinguishes: all of them, or `most` spread over them.
     pub fn lucks(&self, most: u64) -> impl Iterator<Item = u64> {
         let unsynced = self.inodes.iter().filter(|inode| inode.bytes != inode.synced).count();
         let all = 1u64 << (self.pending.len() + BITS_A_FILE * unsynced).min(63);
@@ -15,8 +15,8 @@ impl DiskState {
         let step = if all <= most { 1 } else { 0x9e37_79b9_7f4a_7c15 };
         (0..all.min(most)).map(move |i| i.wrapping_mul(step) % all)
     }
-    /// The disk after a power cut. Each bit of `luck` decides about one change of a folder; then some about each file
-    /// that is not synced: what arrived of it, and how much.
+    /// The disk after a power cut. Each bit of `luck` decides about one change of a folder; further bits decide for
+    /// each file that is not synced what arrived, and how much.
     pub fn after_power_cut(&self, luck: u64) -> MemoryFs {
         let mut names = self.synced_names.clone();
         let mut bits = luck;
