@@ -25,11 +25,11 @@ pub struct OpenedDocument {
     pub is_whole: bool,
     /// What the file is.
     pub kind: FileKind,
-    /// What the file was when it was read, for [`super::replace::Overwrite::This`].
+    /// The file's stamp when it was read, for [`super::replace::Overwrite::This`].
     pub stamp: FileStamp,
-    /// Every file that was read for it, itself first: none of them may be written over by what is made from it.
+    /// Every file that was read for it, itself first: nothing made from them may overwrite them.
     pub reads: Vec<PathBuf>,
-    /// The picture of the whole that a project holds beside its layers, as a PNG.
+    /// The merged picture that a project holds besides its layers, as a PNG.
     pub picture: Option<Asset>,
 }
 
@@ -38,7 +38,7 @@ pub struct OpenedDocument {
 pub enum FileKind {
     /// OpenRaster, ours or another program's; the only kind that a document is saved to.
     Project,
-    /// A recipe: JSON that names files beside it.
+    /// A recipe: JSON that names files next to it.
     Recipe,
     /// A Photoshop file.
     Psd,
@@ -47,7 +47,7 @@ pub enum FileKind {
 }
 
 impl FileKind {
-    /// What it is, in a word.
+    /// The kind of file, in a word.
     pub fn name(self) -> &'static str {
         match self {
             FileKind::Project => "project",
@@ -56,7 +56,7 @@ impl FileKind {
             FileKind::Picture => "picture",
         }
     }
-    /// What a file is by its first bytes; a picture where nothing else fits.
+    /// The kind of a file by its first bytes; a picture if nothing else fits.
     pub fn of(bytes: &[u8]) -> Self {
         let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
         match text.first() {
@@ -70,7 +70,7 @@ impl FileKind {
     }
 }
 
-/// Opens a project, a recipe (the files it names lie beside it), a Photoshop file, or a picture, which becomes a
+/// Opens a project, a recipe (the files it names are next to it), a Photoshop file, or a picture, which becomes a
 /// document of one paint layer.
 ///
 /// A damaged project gives every intact layer; `notes` list the others, and `is_whole` is false.

@@ -21,14 +21,14 @@ use image::DynamicImage;
 use moxcms::{ColorProfile, DataColorSpace, Layout, TransformOptions};
 use std::path::Path;
 
-/// Decodes PNG, JPEG, WebP, TIFF, BMP, TGA, HDR or EXR, told apart by their first bytes.
+/// Decodes PNG, JPEG, WebP, TIFF, BMP, TGA, HDR or EXR, distinguished by their first bytes.
 ///
-/// * `file`: for messages (and for TGA, which only its name tells).
+/// * `file`: for messages (and for TGA, which only its name identifies).
 ///
 /// Integer files become sRGB bytes (through their ICC profile where it says something else), float files linear light.
-/// EXR gives its colour layer, straight alpha; integers of 16 bits are kept beside the bytes. Fails with a sentence on
-/// anything damaged, unknown or beyond `budget`.
-/// The picture keeps `bytes`, so that a project can store the file as it is.
+/// EXR gives its colour layer, straight alpha; integers of 16 bits are kept along with the bytes. Fails with a sentence
+/// on anything damaged, unknown or beyond `budget`. The picture keeps `bytes`, so that a project can store the file as
+/// it is.
 pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
     let is_exr = ExrFile::is_exr(bytes);
     let picture = if is_exr {
@@ -55,7 +55,7 @@ fn picture_of(file: &Path, bitmap: Bitmap, budget: &Budget) -> Result<Picture> {
             Picture::linear(size, profiled.unwrap_or(texels))
         }
         image if is_sixteen_bits(image) => {
-            // Beside what was decoded: texels of both kinds.
+            // In addition to what was decoded: texels of both kinds.
             let asked = image.as_bytes().len() as u64 + 12 * size.area() as u64;
             budget.room(file, &format!("a picture of {size} pixels of 16 bits a channel"), asked)?;
             let profiled = bitmap.icc.as_deref().and_then(|icc| through_profile(image, icc));
@@ -129,7 +129,7 @@ pub fn decode_coverage(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Pla
     plane.ok_or_else(|| Error::decode(file, "the mask has no pixels"))
 }
 
-/// An image in strips of a few rows, so that what is made of them in between is never as large as all of it.
+/// An image in strips of a few rows, so that intermediate results are never as large as the image.
 fn strips(image: &DynamicImage) -> impl Iterator<Item = DynamicImage> {
     const ROWS: u32 = 64;
     let (w, h) = (image.width(), image.height());
@@ -178,8 +178,7 @@ pub fn is_own_srgb(icc: &[u8]) -> bool {
     own_srgb() == icc
 }
 
-/// Straight RGBA bytes in the colours of an ICC profile as sRGB; as they are where `through_profile` finds nothing to
-/// do.
+/// Straight RGBA bytes in the colours of an ICC profile as sRGB; unchanged if `through_profile` finds nothing to do.
 ///
 /// * `is_grey`: red, green and blue are equal, and the profile is one of grey.
 pub fn to_srgb(size: Size, rgba: Vec<u8>, is_grey: bool, icc: &[u8]) -> Vec<u8> {

@@ -19,9 +19,9 @@ pub struct Painted {
     pub tiles: TileGrid,
 }
 
-/// The tight rectangle around what is not transparent, as a PNG; one transparent pixel where there is nothing.
+/// The tight rectangle around what is not transparent, as a PNG; one transparent pixel if all is transparent.
 ///
-/// Premultiplied values come back from straight ones as they were, so nothing is lost.
+/// Premultiplied values come back exactly from straight ones, so nothing is lost.
 pub fn encode(file: &Path, tiles: &TileGrid, within: Option<Rect>) -> Result<EncodedPixels> {
     let bounds = painted(tiles, within);
     let rect = if bounds.is_empty() { Rect::new(0, 0, 1, 1) } else { bounds };
@@ -83,12 +83,12 @@ pub fn encode_texels(file: &Path, texels: &[[u8; 4]], size: Size) -> Result<Asse
 
 /// Of a chunk of packed pixels.
 const CHUNK_BYTES: usize = 1 << 20;
-/// What a PNG takes beside its pixels.
+/// What a PNG takes besides its pixels.
 const STORED_BYTES: usize = 1 << 10;
 
-/// Encodes, decodes what was encoded, and compares: encoders have written files that nobody could read.
+/// Encodes, decodes the result, and compares: encoders have written files that nobody could read.
 ///
-/// * `strips`: the values, a few whole rows at a time. Asked for twice.
+/// * `strips`: the values, a few whole rows at a time. Read twice.
 fn checked<'v, S: Iterator<Item = Cow<'v, [u8]>>>(
     file: &Path,
     strips: impl Fn() -> S,
@@ -163,7 +163,7 @@ pub fn decoded(bytes: &[u8]) -> Option<Vec<u8>> {
 /// The tiles of a PNG of the kind that is stored here, its corner at a canvas pixel; `None` for any other or damaged
 /// one: `picture` then reads it or reports the error.
 ///
-/// A row of tiles at a time, so that no more than that is in memory twice.
+/// A row of tiles at a time, so that only this is in memory twice.
 pub fn decode_tiles(bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Option<Painted> {
     let limits = png::Limits { bytes: usize::try_from(bitmap::beside_pixels(bytes)).ok()? };
     let mut decoder = png::Decoder::new_with_limits(std::io::Cursor::new(bytes), limits);

@@ -1,5 +1,4 @@
-//! How the axes of stored vectors lie.
-//! Floor 5. Finding it is `orientation`'s.
+//! How the axes of stored vectors lie. Floor 5. Not here: detecting it (`orientation`).
 
 use crate::math::{Vec3, vec3};
 

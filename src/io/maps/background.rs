@@ -6,11 +6,11 @@ use crate::math::{Size, Vec3};
 use crate::raster::Plane;
 use std::collections::HashMap;
 
-/// The one texel that fills the outside: outside the mask where there is one, else along the border. `None` if no texel
+/// The one texel that fills the outside: outside the mask if there is one, else along the border. `None` if no texel
 /// fills a third of it.
 pub fn constant(stored: &StoredMap, coverage: Option<&Plane<u8>>) -> Option<[f32; 4]> {
     let size = stored.size;
-    // A value that fills a third of the outside fills a third of a spread sample of it.
+    // A value that fills a third of the outside fills a third of evenly spread samples.
     let outside: Vec<usize> = match coverage {
         Some(c) => {
             let bare = c.values().iter().filter(|c| **c == 0).count();
@@ -76,7 +76,7 @@ pub fn joined_to_border(size: Size, is: impl Fn(usize) -> bool) -> Plane<bool> {
     // No file has more pixels than 32 bits count.
     let mut front: Vec<u32> = border(size).into_iter().filter(|&i| is(i)).map(|i| i as u32).collect();
     front.iter().for_each(|&i| found.values_mut()[i as usize] = true);
-    // Ring after ring, so that no more than two rings are held.
+    // Ring after ring, so that only two rings are in memory.
     while !front.is_empty() {
         let mut next = Vec::new();
         let mut visit = |j: usize| {
@@ -111,11 +111,11 @@ pub fn is_degenerate(n: Vec3) -> bool {
     !n.is_finite() || n.length() < 0.15
 }
 
-/// Where the surface is by the normals alone: not where they are degenerate, nor where the border's constant decodes to
-/// no unit vector.
+/// Where the surface is, judged by the normals alone: not where they are degenerate or equal a constant border that
+/// decodes to no unit vector.
 ///
-/// Within a pixel of a zero-length background, lengths below 1 are coverage (averaged with nothing) where `unit` says
-/// that normals have length 1 elsewhere.
+/// Within a pixel of a zero-length background, lengths below 1 are coverage (averaged with zero) if `unit` says that
+/// normals have length 1 elsewhere.
 pub fn coverage_of_normals(vectors: &Plane<Vec3>, outside: impl Fn(usize) -> bool + Sync, unit: bool) -> Plane<u8> {
     let size = vectors.size();
     let w = size.width as usize;

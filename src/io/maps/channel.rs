@@ -29,8 +29,7 @@ impl Channel {
         let size = self.size();
         Plane::from_fn(size, |x, y| f(self.at(y * size.width as usize + x)))
     }
-    /// Takes pixels out of a set whose number is not one of those that `is` accepts; asked once for each number of an
-    /// integer file.
+    /// Removes the pixels from a set whose numbers `is` rejects; `is` is called once per number of an integer file.
     pub fn keep_where(&self, set: &mut Plane<bool>, is: impl Fn(f32) -> bool + Sync) {
         fn keep<T: Copy + Sync>(set: &mut Plane<bool>, plane: &Plane<T>, is: impl Fn(T) -> bool + Sync) {
             let rows = plane.values().par_chunks(plane.width().max(1));

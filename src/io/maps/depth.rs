@@ -84,7 +84,7 @@ pub fn read(
 
 /// A number at the end of the range that many pixels hold exactly and a gap sets apart from all others.
 ///
-/// The usual "nothing" numbers need a gap of a quarter of the others' range, any other number of four times it.
+/// The usual "nothing" numbers need a gap of a quarter of the others' range, any other number a gap of four times it.
 fn find_sentinel(values: &Plane<f32>, covered: impl Fn(usize) -> bool + Sync) -> Option<f32> {
     let (low, high) = range(values, &covered)?;
     let inside = || {
@@ -187,8 +187,8 @@ pub fn planar(
 
 /// Whether stored numbers that are nearer where they are higher are 1/z.
 ///
-/// The slope the normals tell, over the step of the stored number v, is the same everywhere where v is linear in depth.
-/// For 1/z it falls as v⁻² (as v⁻¹ in perspective, where a pixel spans more the farther it is): the exponent decides.
+/// The slope given by the normals, divided by the step of the stored number v, is constant if v is linear in depth. For
+/// 1/z it falls as v⁻² (as v⁻¹ in perspective, where a pixel spans more the farther it is): the exponent decides.
 pub fn looks_inverse(values: &Plane<f32>, normals: &Plane<Vec3>, inside: &Plane<bool>) -> bool {
     let w = values.width();
     let at = samples::spread(inside);

@@ -1,7 +1,6 @@
-//! What speaks for one way or another to turn stored normals and depth into the program's own: how well the slopes
-//! of the normals agree with those of the depth; whether normals at the rim point outward; for which handedness the
-//! normals are those of a height field (no curl). Each in [−1, 1]; priors decide what they leave open. Floor 5. Not
-//! here: which way is taken (`orientation`).
+//! Evidence for the conventions of stored normals and depth: how well the slopes of the normals agree with those of the
+//! depth; whether normals at the rim point outward; for which handedness the normals are those of a height field (no
+//! curl). Each in [−1, 1]; priors decide the rest. Floor 5. Not here: the decision (`orientation`).
 
 use super::axes::AxisMapping;
 use super::samples;
@@ -36,7 +35,7 @@ impl AxisEvidence {
     ) -> Self {
         let w = vectors.width();
         let n = |i: usize| axes.apply(vectors.values()[i]);
-        // Where a surface ends its normals lean; the flat middle of a texture ends as well, and says nothing.
+        // Normals lean where a surface ends; flat parts of a texture also end, and are no evidence.
         let lean = rim.iter().map(|&(i, _)| n(i).truncate().length()).sum::<f32>() / rim.len().max(1) as f32;
         let counts = ((lean - LEVEL_RIM) / (LEANING_RIM - LEVEL_RIM)).max(0.0).min(1.0);
         let outward = |k: usize| {
@@ -66,8 +65,8 @@ impl AxisEvidence {
     }
 }
 
-/// Correlation of the slopes told by normals with the change of depth: (right, up). Depth that grows away from the
-/// viewer correlates positively with n_x/n_z.
+/// Correlation of the slopes from normals with the change of depth: (right, up). Depth that grows away from the viewer
+/// correlates positively with n_x/n_z.
 fn correlation(depth: &Plane<f32>, at: &[usize], w: usize, n: impl Fn(usize) -> Vec3) -> Vec2 {
     let mut pairs: Vec<(Vec2, Vec2)> = at
         .iter()
@@ -93,8 +92,8 @@ fn correlation(depth: &Plane<f32>, at: &[usize], w: usize, n: impl Fn(usize) -> 
     vec2(pearson(0), pearson(1))
 }
 
-/// A map in a size at which textures of any size are compared: fine noise and the steps of 8 bits are averaged away,
-/// and the same map in another size tells the same.
+/// A map reduced to the size at which all textures are compared: fine noise and the steps of 8 bits average out, and
+/// the same map in another size gives the same result.
 pub struct ReducedMap {
     vectors: Plane<Vec3>,
     inside: Plane<bool>,
@@ -124,13 +123,13 @@ impl ReducedMap {
         let at = samples::spread(&inside);
         Self { vectors, inside, at }
     }
-    /// The mean of what the sizes tell, each of which must have something to tell it by.
+    /// The mean over the sizes, each of which must have enough evidence.
     fn handedness(all: &[Self], axes: AxisMapping) -> f32 {
         let told: Vec<f32> = all.iter().filter_map(|map| map.handed(axes)).collect();
         told.iter().sum::<f32>() / told.len().max(1) as f32
     }
-    /// Compares the curl of (n_x/n_z, n_y/n_z) with that of its mirror image: 1 where only the axes as they are fit a
-    /// surface. `None` where too few pixels tell.
+    /// Compares the curl of (n_x/n_z, n_y/n_z) with that of its mirror image: 1 if only the axes as they are fit a
+    /// surface. `None` if too few pixels are evidence.
     fn handed(&self, axes: AxisMapping) -> Option<f32> {
         let w = self.vectors.width();
         let (mut plain, mut mirrored, mut count) = (0.0f64, 0.0f64, 0u32);
@@ -187,7 +186,7 @@ mod tests {
             assert!(smooth > 0.95, "{side}: {smooth}");
         }
         for side in [1024, 512] {
-            // Noise on every pixel, as of steps and of grain, has no curl of its own.
+            // Noise on every pixel, such as steps and grain, has no preferred curl.
             let (plain, flipped) = (told(&waves(side, 0.2), false), told(&waves(side, 0.2), true));
             assert!(plain > 0.3 && flipped < -0.3, "{side}: {plain}, {flipped}");
         }

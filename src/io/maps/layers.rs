@@ -101,7 +101,7 @@ fn vector_channels(pass: &ExrPass) -> Option<Vec<usize>> {
     ["xyz", "rgb", "xy", "rg"].iter().find_map(|letters| pass.letters(letters))
 }
 
-/// Depth's one channel. A layer with x and y is a vector, whose z is not depth.
+/// The channel of depth. A layer with x and y is a vector, whose z is not depth.
 fn depth_channels(pass: &ExrPass) -> Option<Vec<usize>> {
     if pass.letters("xy").is_some() {
         return None;
@@ -148,7 +148,7 @@ fn depth_rank(pass: &ExrPass) -> Option<usize> {
     }
 }
 
-/// The alpha that covers the whole picture: beside the layers, or the combined picture's.
+/// The alpha of the whole picture: a channel outside the layers, or that of the combined picture.
 fn coverage(exr: &ExrFile) -> Option<usize> {
     let alphas: Vec<(String, usize)> =
         exr.passes().iter().filter_map(|p| Some((p.key(), *p.letters("a")?.first()?))).collect();

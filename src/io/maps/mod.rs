@@ -50,7 +50,7 @@ pub struct ImportedSurface {
     pub files: BTreeMap<String, Asset>,
 }
 
-/// What deriving depth takes at its peak, the surface included: the solver holds some ten planes.
+/// Peak memory of deriving depth, the surface included: the solver holds some ten planes.
 const DERIVED_DEPTH_BYTES_PER_PX: u64 = 100;
 
 /// Reads a document's maps.
@@ -74,7 +74,7 @@ pub fn import_watched(
     read.map_err(|refused| Error::out_of_memory(files.path(""), refused))?
 }
 
-/// The steps that reading tells of: the files, what their numbers mean, what is missing, the surface.
+/// The steps that reading reports: the files, the meaning of their numbers, what is missing, the surface.
 const STEPS: u64 = 4;
 
 fn read(
@@ -120,7 +120,7 @@ fn read(
     let loaded =
         LoadedMaps { normal: normal.as_ref(), depth: depth.as_ref(), overrides: &overrides, findings: &mut findings };
     let understood = loaded.understood(coverage)?;
-    // What is left to do takes the most memory; what the files store is not asked any more.
+    // The remaining work takes the most memory, and the stored maps are no longer needed.
     drop((normal, depth));
     if is_over() {
         return Ok(None);

@@ -81,8 +81,8 @@ fn smooth_if_asked<'a>(
     (stored, Some(copy))
 }
 
-/// Turns vectors into camera space; returns them unit (zero where there are none), and whether stored depth is nearer
-/// where it is higher.
+/// Turns vectors into camera space; returns them with unit length (zero where there are none), and whether higher
+/// stored depth is nearer.
 ///
 /// * `depth`: as stored, NaN where there is none.
 pub fn orient(
@@ -171,7 +171,7 @@ fn report(
     }
 }
 
-/// The matrix from world to camera, where the normals are the world's.
+/// The matrix from world to camera, if the normals are in world space.
 #[expect(clippy::too_many_arguments, reason = "everything that may tell the space")]
 fn space(
     unit: &Plane<Vec3>,

@@ -1,5 +1,4 @@
-//! The conventions that a document tells of its maps.
-//! Floor 5.
+//! The conventions that a document states for its maps. Floor 5.
 
 use crate::document::source::{DepthConvention, NormalConvention, SurfaceSource};
 

@@ -60,11 +60,11 @@ pub fn part_of(file: &Path) -> Option<(String, MapPart)> {
     })
 }
 
-/// What conventions are called in names of files.
+/// The words for conventions in names of files.
 const CONVENTIONS: [&str; 8] = ["gl", "dx", "ogl", "opengl", "directx", "srgb", "linear", "map"];
 
-/// What an object is called, by the file of one of its maps: its name without the words of maps and conventions, else
-/// the folder's. `pot_normal_gl.png` is “pot”, `bunny/normal_gl8.png` “bunny”.
+/// Name of an object, from the file of one of its maps: without the words for maps and conventions; if nothing is left,
+/// the folder's name. `pot_normal_gl.png` is “pot”, `bunny/normal_gl8.png` “bunny”.
 pub fn object_of(file: &Path) -> String {
     const BREAKS: [char; 4] = ['_', '-', '.', ' '];
     let is_map = |word: &str| SUFFIXES.iter().any(|(suffix, _)| *suffix == word);

@@ -13,7 +13,8 @@ pub fn spread(inside: &Plane<bool>) -> Vec<usize> {
     thinned(inside.values().len(), ENOUGH, |i| inside.values()[i])
 }
 
-/// Of the numbers below `n` that `is` accepts about `enough`, evenly thinned. Asks twice, rather than hold them all.
+/// About `enough` of the numbers below `n` that `is` accepts, evenly thinned. Calls `is` twice for each instead of
+/// storing them all.
 pub fn thinned(n: usize, enough: usize, is: impl Fn(usize) -> bool + Sync) -> Vec<usize> {
     let count = (0..n).into_par_iter().filter(|&i| is(i)).count();
     (0..n).filter(|&i| is(i)).step_by(count.div_ceil(enough).max(1)).collect()

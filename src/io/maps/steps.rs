@@ -4,7 +4,7 @@
 use crate::math::{Vec3, vec3};
 use crate::raster::Plane;
 
-/// x and y below this (a byte has no exact 0: 127 and 128 stand beside it) are 0 where a map is flat.
+/// x and y below this (a byte has no exact 0: 127 and 128 are next to it) are 0 where a map is flat.
 const NEARLY_FLAT: f32 = 1.5 / 255.0;
 
 /// Makes flat parts exactly flat: pixels all of whose neighbours within two pixels are nearly flat too. Returns how
@@ -17,7 +17,7 @@ pub fn snap_flat(normals: &mut Plane<Vec3>) -> usize {
     let whole = Plane::from_fn(flat.size(), |x, y| {
         flat.at(x, y) && (-2..=2).all(|dy| (-2..=2).all(|dx| flat.clamped(x as i32 + dx, y as i32 + dy)))
     });
-    // A pixel beside a wholly flat one belongs to the flat part if it is nearly flat itself.
+    // A pixel next to a wholly flat one belongs to the flat part if it is nearly flat itself.
     let snapped = Plane::from_fn(flat.size(), |x, y| {
         flat.at(x, y) && (-2..=2).any(|dy| (-2..=2).any(|dx| whole.get(x as i32 + dx, y as i32 + dy).unwrap_or(false)))
     });
@@ -34,7 +34,7 @@ pub fn snap_flat(normals: &mut Plane<Vec3>) -> usize {
 }
 
 /// Smooths a plane of quantised numbers: the flattest one whose every number still rounds to the stored one, joining
-/// neighbours no more than a step and a half apart, so that edges stay.
+/// neighbours at most a step and a half apart, so that edges stay.
 pub fn smooth(stored: &Plane<f32>, step: f32, inside: &Plane<bool>) -> Plane<f32> {
     // Steps as wide as this many pixels are smoothed; each pass reaches one pixel further.
     const PASSES: usize = 48;

@@ -14,7 +14,7 @@ pub struct StoredMap {
     pub size: Size,
     /// One to four channels: red, green, blue, alpha of a picture; x, y, z of an EXR layer. `[0, 1]` in integer files.
     pub channels: Vec<Channel>,
-    /// Coverage told by the file itself, `[0, 1]`; absent where it is 1 everywhere.
+    /// Coverage stored in the file, `[0, 1]`; absent if it is 1 everywhere.
     pub alpha: Option<Channel>,
     /// The step between two neighbouring numbers of an integer file: 1/255 or 1/65535.
     pub step: Option<f32>,
@@ -45,7 +45,7 @@ fn load_exr(file: &Path, bytes: &[u8], channel: Option<&str>, role: MapRole, bud
     budget.room(file, &surface_of(exr.size()), exr.size().area() as u64 * (PEAK_BYTES_PER_PX + stored))?;
     let mut channels = exr.read(&wanted)?;
     let alpha = if choice.alpha.is_some() { channels.pop() } else { None };
-    // Beyond the data window there is nothing: transparent, and not a number in every other channel.
+    // Beyond the data window there is nothing: alpha 0, and NaN in every other channel.
     let alpha = alpha.map(|a| a.map(|v| if v.is_finite() { v.max(0.0).min(1.0) } else { 0.0 }));
     Ok(StoredMap {
         file: file.into(),
@@ -102,8 +102,7 @@ fn load_bitmap(file: &Path, bytes: &[u8], channel: Option<&str>, budget: &Budget
     Ok(stored)
 }
 
-/// What the largest step of making a surface of maps takes beside the maps as they are stored, measured on one of
-/// 8192².
+/// Memory of the largest step from maps to a surface, besides the stored maps, measured on one of 8192².
 const PEAK_BYTES_PER_PX: u64 = 28;
 
 fn surface_of(size: Size) -> String {

@@ -1,5 +1,5 @@
-//! Maps that were loaded become maps in the program's convention, and then a surface's: step by step, since what one
-//! tells another needs. Floor 5.
+//! Loaded maps become maps in the program's convention, and then a surface: step by step, since each map needs findings
+//! of the other. Floor 5.
 
 use super::background::{self, FilledEdge};
 use super::coverage::{drop_unknown, report_mask};
@@ -14,11 +14,11 @@ use crate::math::{Size, Vec3};
 use crate::raster::Plane;
 use crate::surface::{Maps, differentiate, integrate};
 
-/// What the files hold, of which one map may be missing, and what is told and found of it.
+/// The stored maps, one of which may be missing, with what is stated and detected about them.
 pub struct LoadedMaps<'a> {
     pub normal: Option<&'a StoredMap>,
     pub depth: Option<&'a StoredMap>,
-    /// What they leave open is detected.
+    /// The conventions that the user left open are detected.
     pub overrides: &'a ConventionOverrides,
     pub findings: &'a mut Findings,
 }
@@ -32,7 +32,7 @@ pub struct UnderstoodMaps {
     /// Pixels of the surface with numbers of their own.
     pub inside: Plane<bool>,
     coverage: Plane<u8>,
-    /// Something tells the coverage beside the numbers.
+    /// The coverage comes from something other than the numbers.
     is_masked: bool,
     pub fov_degrees: Option<f32>,
 }
@@ -121,7 +121,7 @@ impl LoadedMaps<'_> {
         self.findings.depth = Some(DepthConvention { near, encoding: Some(encoding), ..overrides.depth.clone() });
         (unit, Some(planar))
     }
-    /// What the numbers of a depth map say.
+    /// The meaning of a depth map's numbers.
     fn depth_encoding(
         &mut self,
         stored: &StoredMap,

@@ -1,5 +1,5 @@
-//! Normals stored in world space: the rotation that brings them into the camera's.
-//! Floor 5. It is given by the user or the file; otherwise the best fit to depth or silhouette is used.
+//! Normals stored in world space: the rotation that brings them into the camera's. Floor 5. The user or the file gives
+//! it; otherwise the best fit to depth or silhouette is used.
 
 use super::samples;
 use crate::math::{Mat3, Vec2, Vec3, vec3};
@@ -64,7 +64,7 @@ impl WorldAlignment {
     }
 }
 
-/// Finds the rotation from depth: slopes of depth, at the scale that fits best, tell camera-space normals.
+/// Finds the rotation from depth: slopes of depth, at the scale that fits best, give camera-space normals.
 ///
 /// `depth` grows away from the viewer, in any unit.
 pub fn from_depth(vectors: &Plane<Vec3>, depth: &Plane<f32>, at: &[usize]) -> Option<WorldAlignment> {

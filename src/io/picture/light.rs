@@ -16,7 +16,7 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
     picture(file, &exr, chosen(file, &exr)?, budget)
 }
 
-/// The finished picture that a renderer stored beside its maps, and its layer's name; `None` where there is none.
+/// The finished picture that a renderer stored with its maps, and its layer's name; `None` if there is none.
 ///
 /// * `maps`: the layer that was read as normals, which is no picture.
 pub fn finished(file: &Path, bytes: &[u8], maps: &str, budget: &Budget) -> Result<Option<(String, Picture)>> {
@@ -66,8 +66,8 @@ pub fn chosen<'e>(file: &Path, exr: &'e ExrFile) -> Result<&'e ExrPass> {
     })
 }
 
-/// Hands on the colours of a layer as stored, of a grey one thrice the same, alpha 1 where it has none: whole rows from
-/// the top, a multiple of the height of tiles at a time, so that no more than that is held.
+/// Passes on the colours of a layer as stored (grey repeated in all three, alpha 1 if absent): whole rows from the top,
+/// a multiple of the height of tiles at a time, so that only these are in memory.
 pub fn in_bands(
     file: &Path,
     exr: &ExrFile,

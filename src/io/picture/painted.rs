@@ -1,5 +1,5 @@
-//! Any readable picture as the tiles of a paint layer, a few rows at a time where its format lets them be had, so that
-//! a large picture is never in memory as a whole beside its tiles. Floor 5.
+//! Any readable picture as the tiles of a paint layer, a few rows at a time if its format allows, so that a large
+//! picture is never in memory as a whole next to its tiles. Floor 5.
 
 use super::light;
 use crate::bitmap::Bitmap;

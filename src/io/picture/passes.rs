@@ -37,7 +37,7 @@ pub fn layers(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<LightLay
         return Err(Error::too_large(file, reason));
     }
     let whole = passes.iter().enumerate().filter(|(_, p)| rank(p) < WHOLE.len()).min_by_key(|(_, p)| rank(p));
-    // Of several parts, such as the views of two eyes, the first is the one to show.
+    // The first of several parts, such as the views of two eyes, is shown.
     let whole = whole.map(|(i, _)| i).or((exr.parts() > 1).then_some(0));
     let mut used_bytes = 0;
     let one = |(i, pass): (usize, &&ExrPass)| {

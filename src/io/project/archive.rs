@@ -1,5 +1,5 @@
-//! A zip read within a budget: its names checked, its bytes counted, its entries found even where its table of contents
-//! is lost. Floor 5. The other files of this folder interpret the entries. Nothing is ever unpacked to the disk.
+//! A zip read within a budget: its names checked, its bytes counted, its entries found even if its table of contents is
+//! lost. Floor 5. The other files of this folder interpret the entries. Nothing is ever unpacked to the disk.
 
 use crate::{Budget, Files, files};
 use crate::{Error, Result};
@@ -100,7 +100,7 @@ impl<'a> Archive<'a> {
     pub fn beginning(&self, name: &str, most: usize) -> Option<Vec<u8>> {
         let first = |entry: &mut dyn Read| {
             let mut bytes = Vec::new();
-            // What is cut off or damaged farther on has begun all the same.
+            // An entry that is cut off or damaged farther on still has a beginning.
             let _ = entry.take(most as u64).read_to_end(&mut bytes);
             (!bytes.is_empty()).then_some(bytes)
         };

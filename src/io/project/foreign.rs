@@ -26,7 +26,7 @@ pub fn document(reading: &mut ProjectReader, stack: StackXml) -> Result<Document
     Ok(Document { layers, ..Document::empty(size) })
 }
 
-/// The canvas's size as `stack.xml` tells it, else as the merged picture shows it.
+/// The canvas's size from `stack.xml`, else from the merged picture.
 fn size(reading: &ProjectReader, stack: &StackXml) -> Result<Size> {
     if let Some(size) = stack.size {
         return Ok(size);
@@ -36,8 +36,8 @@ fn size(reading: &ProjectReader, stack: &StackXml) -> Result<Size> {
     reading.budget.size(reading.file, merged.width.into(), merged.height.into())
 }
 
-/// Counts the pixels of the pictures by their headers, before the first is decoded: a picture of nothing packs a
-/// thousandfold, and many of them take long to be found too many.
+/// Counts the pixels of the pictures by their headers, before the first is decoded: an empty picture packs a
+/// thousandfold, and it takes long to find that many are too many.
 ///
 /// * `ours`: pictures that may show layers as we saved them are not decoded, and not counted.
 fn fit_together(reading: &ProjectReader, elements: &[StackElement], ours: Option<&Manifest>) -> Result<()> {
@@ -49,7 +49,7 @@ fn fit_together(reading: &ProjectReader, elements: &[StackElement], ours: Option
             ElementContent::Stack { layers, .. } => left.extend(layers),
             ElementContent::Picture { src, .. } if is_ours(src) => {}
             ElementContent::Picture { src, .. } => {
-                // What is no PNG is counted as it is decoded.
+                // Pictures other than PNGs are counted when they are decoded.
                 let begun = || reading.archive.beginning(src, PNG_HEADER).and_then(|bytes| png_size(&bytes));
                 let area = |size: Size| u64::from(size.width) * u64::from(size.height);
                 used_px = used_px.saturating_add(*sizes.entry(src).or_insert_with(|| begun().map_or(0, area)));
@@ -127,7 +127,7 @@ pub fn leftovers(reading: &mut ProjectReader, error: Error) -> Result<Document> 
     Ok(Document { layers, ..Document::empty(size) })
 }
 
-/// What we saved, for layers that are still as they were.
+/// What we saved, for layers that are unchanged.
 struct SavedState<'a> {
     value: Value,
     canvas: Value,
@@ -138,7 +138,7 @@ struct ForeignReader<'a, 'b> {
     reading: &'a mut ProjectReader<'b>,
     used_px: u64,
     used_bytes: u64,
-    /// What was decoded, by file and corner: layers that show the same share its tiles.
+    /// Decoded pictures, by file and corner: layers that show the same one share its tiles.
     known: TileGrids,
     live: Option<SavedState<'a>>,
 }

@@ -59,7 +59,7 @@ pub fn pictures_of(items: &[PlanItem]) -> Vec<&PlanItem> {
     out
 }
 
-/// The look of a layer alone: wholly opaque, the surface's edge and its mask in its pixels, if those are asked for.
+/// The look of a layer alone: wholly opaque, the surface's edge and its mask in its pixels, if requested.
 fn look(
     file: &Path,
     document: &Document,
@@ -107,8 +107,8 @@ fn bare<'a>(document: &Document, layer: &'a Layer, masked: bool) -> Option<&'a T
     }
 }
 
-/// What a layer's look depends on besides the scene: the layer itself, normal layers beneath it, and groups that take
-/// it elsewhere.
+/// What a layer's look depends on besides the scene: the layer itself, normal layers beneath it, and groups that move
+/// it.
 fn layers_seen_by(document: &Document, layer: &Arc<Layer>) -> Vec<Arc<Layer>> {
     let all = document.walk().into_iter().map(|(_, layer)| layer);
     let is_taken = |layer: &Layer| layer.transform.is_some() || layer.on.is_some();

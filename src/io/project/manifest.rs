@@ -34,7 +34,7 @@ pub struct ManifestPicture {
 }
 
 impl Manifest {
-    /// `whole_rims`: of the layers whose pictures cover the surface's rim wholly.
+    /// `whole_rims`: the layers whose pictures cover the surface's rim wholly.
     pub fn new(
         document: &Document,
         stack: u32,

@@ -27,7 +27,7 @@ pub struct ProjectContents {
     pub notes: Vec<String>,
     /// Whether nothing was lost. A document that is not whole must not overwrite its file without asking.
     pub is_whole: bool,
-    /// The picture of the whole that the file holds beside the layers, as a PNG.
+    /// The merged picture that the file holds besides the layers, as a PNG.
     pub picture: Option<Asset>,
 }
 
@@ -46,11 +46,10 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
     Ok(ProjectContents { document, notes, is_whole, picture: picture.map(Asset::from) })
 }
 
-/// Reads a project that was just made of a document, and compares the two; nothing that was saved may come back
-/// otherwise.
+/// Reads a project that was just made from a document, and compares the two; everything saved must come back unchanged.
 ///
-/// Pixels whose very bytes were decoded and compared when they were encoded are not decoded once more. Fails with a
-/// sentence that says what would not come back.
+/// Pixels whose bytes were already decoded and compared after encoding are not decoded again. Fails with a sentence
+/// that says what would not come back.
 pub fn read_back(file: &Path, bytes: &[u8], document: &Document, budget: &Budget) -> Result<()> {
     let lost =
         |what: String| Err(Error::unsupported(file, format!("the drawing would not come back as it is: {what}")));
@@ -150,7 +149,7 @@ impl ProjectReader<'_> {
             let known = known.map(|(_, tiles)| tiles.clone());
             let read = || picture::painted(Path::new(&key.0), &bytes, key.1, key.2, self.budget).ok();
             let tiles = known.or_else(|| Some(read()?.tiles))?;
-            // What is in memory counts, not the rectangle around it.
+            // Pixels in memory count, not the rectangle around them.
             let px = (tiles.iter().count() * TILE_AREA) as u64;
             left_px.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left: u64| left.checked_sub(px)).ok()?;
             let bytes = tiles.bytes() as u64;

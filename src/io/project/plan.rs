@@ -5,10 +5,10 @@
 //! the format cannot express is composed:
 //!
 //! * a mask, and clipping to the surface, go into the layer's own picture;
-//! * layers clipped to one beneath become a stack with one composed picture, the layers themselves hidden beside it:
-//!   for Photoshop's format too, whose clipping Krita does not read, nor others to the edge; there the hidden layers
-//!   are clipped as here;
-//! * so does an isolated group with a mask;
+//! * layers clipped to one beneath become a stack with one composed picture, the layers themselves hidden next to it:
+//!   also in Photoshop's format, whose clipping Krita does not read and others do not apply at the edge; there the
+//!   hidden layers are clipped as here;
+//! * an isolated group with a mask becomes one too;
 //! * where several layers keep to the surface and the format has masks, its edge is the mask of a group around them, so
 //!   that it cuts them once;
 //! * a layer that changes or reads what lies beneath in a way that cannot be expressed (radiance scaling, exclusion,
@@ -99,7 +99,7 @@ impl Planner<'_> {
         }
         items
     }
-    /// Runs that keep to the surface in a group whose mask is its edge; `None` where each layer brings it as well.
+    /// Runs of layers on the surface in a group whose mask is its edge; `None` if each layer has the edge anyway.
     fn within_edge(&self, runs: &[&[Arc<Layer>]]) -> Option<Vec<PlanItem>> {
         let edge = self.edge.clone().filter(|_| runs.iter().all(|run| keep_to_surface(run)))?;
         let bare = Planner { edge: None, ..*self };
@@ -217,7 +217,7 @@ impl Planner<'_> {
     }
 }
 
-/// Nothing of these layers is seen beyond the surface.
+/// These layers show nothing beyond the surface.
 fn keep_to_surface(layers: &[Arc<Layer>]) -> bool {
     layers.iter().all(|layer| match layer.content.role() {
         Role::Groups(group) => keep_to_surface(&group.layers),

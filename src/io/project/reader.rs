@@ -1,6 +1,5 @@
-//! A project while it is read, and what there is to say of it.
-//! Floor 5. `open` reads what was saved, `foreign` what another program made of it, `repair` leaves out what is
-//! damaged.
+//! A project while it is read, and the notes about it. Floor 5. `open` reads what was saved, `foreign` what another
+//! program made of it, `repair` leaves out what is damaged.
 
 use super::{Archive, DOCUMENT};
 use crate::document::Document;
@@ -11,7 +10,7 @@ use crate::{Budget, Result};
 use serde_json::Value;
 use std::path::Path;
 
-/// A project being read, and what there is to say of it.
+/// A project being read, and the notes about it.
 pub struct ProjectReader<'a> {
     pub file: &'a Path,
     pub archive: &'a Archive<'a>,

@@ -152,7 +152,7 @@ pub fn name_of(layer: &Value) -> String {
     layer["name"].as_str().unwrap_or_default().to_owned()
 }
 
-/// Bytes at the beginning of a PNG that tell its size.
+/// Bytes at the beginning of a PNG that give its size.
 pub const PNG_HEADER: usize = 24;
 
 /// The size in a PNG's header.

@@ -1,5 +1,5 @@
-//! `stack.xml`, as OpenRaster has it: written from a plan, and read from any program's file into layers.
-//! Floor 5. `look` and `open` handle the pixels.
+//! `stack.xml` of OpenRaster: written from a plan, and read from any program's file into layers. Floor 5. `look` and
+//! `open` handle the pixels.
 
 mod read;
 

@@ -54,7 +54,7 @@ pub fn flow(settings: &mut MyPaintSettings, brush: Brush) -> Brush {
     let brush = Brush { overlap, ..brush };
     let opaque = settings.added("opaque", 1.0);
     let times = settings.opaque_multiply();
-    // Here several inputs add up; a single input multiplies.
+    // The inputs of the one that has more add up; the other multiplies.
     let (sum, factor) = if opaque.rows.len() < times.rows.len() { (times, opaque) } else { (opaque, times) };
     let Some(main) = factor.main_row() else { return flows(brush, sum.times(factor.base.max(0.0))) };
     if factor.rows.len() > 1 {

@@ -122,7 +122,7 @@ impl<'a> MyPaintSettings<'a> {
         }
         self.notes
     }
-    /// What the first of these says counts as carried over where the second is idle.
+    /// Counts settings as carried over: details of another one that is idle or reported already.
     pub fn of_no_use(&mut self, names: &[&'static str]) {
         self.asked.extend(names);
     }

@@ -17,7 +17,7 @@ const ATOP: &str = "svg:src-atop";
 
 /// The contents of a `stack.xml`.
 pub struct StackXml {
-    /// `None` where it does not say.
+    /// `None` if it does not say.
     pub size: Option<Size>,
     /// Bottom first.
     pub layers: Vec<StackElement>,
@@ -176,7 +176,7 @@ impl<'a> StackParser<'a> {
         }
         let offset = |name: &str| attributes.number(name).unwrap_or(0.0).max(-1e6).min(1e6).round() as i32;
         let shows = if is_stack {
-            // A stack that is not set apart, and has nothing that would set it apart, blends layer by layer.
+            // A stack that is not isolated, and has no property that isolates it, blends layer by layer.
             let apart = attributes.get("isolation") == Some("isolate");
             let isolated = apart || layer.opacity < 1.0 || layer.blend != BlendMode::Normal;
             ElementContent::Stack { isolated, layers: Vec::new() }

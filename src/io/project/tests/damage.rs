@@ -16,7 +16,7 @@ fn tiny() -> Document {
     json["layers"][1]["y"] = json!(2);
     read_recipe(&json, &files)
 }
-/// What a document is: its parameters and its picture, summed up.
+/// A checksum of a document's parameters and its picture.
 fn fingerprint(document: &Document) -> (String, u32) {
     let picture = flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect());
     (recipe::write(document).to_string(), crc32fast::hash(&picture))

@@ -1,4 +1,4 @@
-//! Whatever a document may hold comes back live: the figures that only the reader used to know.
+//! Whatever a document may hold comes back live: limits that only the reader used to know.
 
 use super::*;
 use crate::document::{Content, DerivedMask, Group, Layer, LayerMask, Live, StrokeList};
@@ -14,7 +14,7 @@ fn fill() -> Layer {
 fn of(layers: Vec<Layer>) -> Document {
     Document { layers: layers.into_iter().map(Arc::new).collect(), ..Document::empty(Size::new(48, 40)) }
 }
-/// It fits, and saved and opened it is equal, nothing having become pixels.
+/// It fits, and comes back equal when saved and opened: nothing became pixels.
 fn comes_back(document: &Document) -> Vec<u8> {
     assert_eq!(document.fits(None), Ok(()));
     let bytes = written(document);
