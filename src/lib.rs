@@ -47,7 +47,7 @@
 //! # }
 //! ```
 //!
-//! What is not named here is no part of the library: the crates `rilievo-engine`, `rilievo-io`, `rilievo-program` and
+//! Anything not named here is not part of the library: the crates `rilievo-engine`, `rilievo-io`, `rilievo-program` and
 //! `rilievo-window` may change with every release.
 
 #![warn(missing_docs)]

@@ -1,5 +1,5 @@
-//! Saving a document: as a project, or as a Photoshop file where the name asks for one.
-//! Floor 5. The bytes are `project`'s and `psd`'s, how they come to the disk is `replace`'s.
+//! Saving a document: as a project, or as a Photoshop file if its name ends so. Floor 5. Not here: the bytes
+//! (`project`, `psd`), how they are written to the disk (`replace`).
 
 #![warn(missing_docs)]
 
@@ -23,7 +23,7 @@ pub struct SavedDocument {
 pub struct EncodedDocument {
     /// As they were written.
     pub bytes: Vec<u8>,
-    /// What the format cannot hold as it is here; none for a project.
+    /// What the format cannot express; nothing for a project.
     pub notes: Vec<String>,
 }
 
@@ -54,8 +54,8 @@ impl EncodedDocument {
 /// Saves a document; `None` if cancelled, and then nothing has changed.
 ///
 /// Works on a clone, from any thread; it works in threads of its own, so that a brush never waits for it. Returns once
-/// the file and its folder are on the disk. The previous version is kept beside it as `name~`. Fails with
-/// [`Error::Changed`] where `terms` do not allow what would be replaced; whatever fails, the old file is as it was.
+/// the file and its folder are on the disk. The previous version is kept next to it as `name~`. Fails with
+/// [`Error::Changed`] if `terms` do not allow the replacement; whatever fails, the old file is unchanged.
 pub fn save(
     document: &Document,
     file: &Path,
@@ -68,7 +68,7 @@ pub fn save(
     }
 }
 
-/// Removes what killed saves left beside a file; failures are left to the next save.
+/// Removes what killed saves left next to a file; failures are left to the next save.
 pub fn tidy(file: &Path) {
     sweep(&Disk, folder_of(file));
 }

@@ -23,7 +23,7 @@ pub struct FixedAxes {
 pub struct FoundAxes {
     pub axes: AxisMapping,
     pub near_high: bool,
-    /// Evidence for flips of x, y and z.
+    /// Confidence of the flips of x, y and z.
     pub confidence: [f32; 3],
     pub order_confidence: f32,
     pub near_confidence: f32,

@@ -18,7 +18,7 @@ use crate::surface::{Maps, differentiate, integrate};
 pub struct LoadedMaps<'a> {
     pub normal: Option<&'a StoredMap>,
     pub depth: Option<&'a StoredMap>,
-    /// The conventions that the user left open are detected.
+    /// Conventions that these leave open are detected.
     pub overrides: &'a ConventionOverrides,
     pub findings: &'a mut Findings,
 }

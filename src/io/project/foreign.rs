@@ -37,7 +37,7 @@ fn size(reading: &ProjectReader, stack: &StackXml) -> Result<Size> {
 }
 
 /// Counts the pixels of the pictures by their headers, before the first is decoded: an empty picture packs a
-/// thousandfold, and it takes long to find that many are too many.
+/// thousandfold, and decoding many of them takes long before the limit is reached.
 ///
 /// * `ours`: pictures that may show layers as we saved them are not decoded, and not counted.
 fn fit_together(reading: &ProjectReader, elements: &[StackElement], ours: Option<&Manifest>) -> Result<()> {

@@ -99,7 +99,8 @@ impl Planner<'_> {
         }
         items
     }
-    /// Runs of layers on the surface in a group whose mask is its edge; `None` if each layer has the edge anyway.
+    /// Runs of layers on the surface in a group whose mask is its edge; `None` where each layer may as well have the
+    /// edge itself.
     fn within_edge(&self, runs: &[&[Arc<Layer>]]) -> Option<Vec<PlanItem>> {
         let edge = self.edge.clone().filter(|_| runs.iter().all(|run| keep_to_surface(run)))?;
         let bare = Planner { edge: None, ..*self };

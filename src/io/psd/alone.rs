@@ -1,6 +1,5 @@
-//! Whether the layers of a group look the same composed by themselves as on what lies beneath it. Krita leaves out the
-//! mask of a group that passes through, so one that has a mask is isolated where nothing is lost by that.
-//! Floor 5.
+//! Whether the layers of a group look the same composed alone as on what is beneath the group. Krita ignores the mask
+//! of a pass-through group, so one with a mask is isolated if this loses nothing. Floor 5.
 
 use super::{LayerRecord, RecordSection};
 use crate::math::{Rect, Size};
@@ -8,7 +7,7 @@ use crate::math::{Rect, Size};
 /// Blended normally.
 const NORMAL: [u8; 4] = *b"norm";
 
-/// All are blended normally, or stand on opaque layers of the same group wherever they paint. Bottom first.
+/// True if all are blended normally, or are on opaque layers of the same group wherever they paint. Bottom first.
 pub fn stands_alone(size: Size, records: &[LayerRecord]) -> bool {
     let mut ground = OpaqueGround { size, solid: vec![false; size.area()] };
     let mut rest = records.iter();
@@ -45,7 +44,7 @@ fn closing<'a>(rest: &mut std::slice::Iter<'a, LayerRecord>) -> Option<&'a Layer
     })
 }
 
-/// Where layers so far hide all that lies beneath them.
+/// Where the layers so far hide all that is beneath them.
 struct OpaqueGround {
     size: Size,
     solid: Vec<bool>,

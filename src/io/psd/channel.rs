@@ -56,7 +56,7 @@ pub fn decode_as(data: &mut ByteCursor, shape: ChannelLayout, compression: u16) 
     }
 }
 
-/// Several channels in one zlib stream, as a merged picture has them; `shape` tells each one's, all of one size.
+/// Several channels in one zlib stream, as in a merged picture; `shape` is that of each, all of one size.
 pub fn inflate_planes(
     zlib: &[u8],
     count: usize,

@@ -1,5 +1,5 @@
-//! A file's channels of colour, whatever they mean, as straight sRGB.
-//! Floor 5. Reading the channels is `channel`'s; profiles of RGB and grey are `picture`'s.
+//! A file's channels of colour, in any colour mode, as straight sRGB. Floor 5. Not here: reading the channels
+//! (`channel`), profiles of RGB and grey (`picture`).
 
 use crate::math::{Size, srgb};
 use crate::picture;
@@ -49,7 +49,7 @@ pub struct Colours<'a> {
     pub is_light: bool,
     /// All reds, all greens, all blues.
     pub table: &'a [u8],
-    /// Of the table's colours, the one that stands for nothing.
+    /// The colour of the table that means transparent.
     pub nothing: Option<u8>,
     pub icc: Option<&'a [u8]>,
 }

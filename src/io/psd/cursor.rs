@@ -76,7 +76,7 @@ impl<'a> ByteCursor<'a> {
     }
 }
 
-/// What of a text can be shown: no control characters, no blanks around it.
+/// A text as it can be shown: no control characters, no blanks around it.
 pub fn shown_text(text: &str) -> String {
     let plain: String = text.chars().filter(|c| !c.is_control()).collect();
     plain.trim().to_owned()

@@ -1,9 +1,9 @@
-//! Photoshop's descriptors: nested lists of named values, of which names, numbers, texts and lists are kept.
-//! Floor 5. What the names mean is the reader's: brushes' presets, fills, effects.
+//! Photoshop's descriptors: nested lists of named values; names, numbers, texts and lists are kept. Floor 5. Not here:
+//! what the names mean (readers of presets, fills and effects).
 
 use super::cursor::ByteCursor;
 
-/// Objects within objects; more is nobody's.
+/// Depth of objects within objects; no real file needs more.
 const DEEPEST: u32 = 16;
 /// Values of one descriptor together.
 const MOST: u32 = 1 << 20;
@@ -18,7 +18,7 @@ pub enum DescriptorValue {
     List(Vec<DescriptorValue>),
     /// One of some named choices.
     Word(Vec<u8>),
-    /// Of a kind that nothing is read from.
+    /// A kind that is not read.
     Else,
 }
 
@@ -108,7 +108,7 @@ fn object(cursor: &mut ByteCursor, deeper: u32, left: &mut u32) -> Option<Descri
     Some(DescriptorObject(values))
 }
 
-/// A length and so many letters; 0 stands for four.
+/// A length and so many letters; 0 means four.
 fn name<'a>(cursor: &mut ByteCursor<'a>) -> Option<&'a [u8]> {
     match cursor.length(false)? {
         0 => cursor.take(4),

@@ -11,8 +11,8 @@ use crate::picture;
 /// The default print resolution.
 const DOTS_PER_INCH: u32 = 72;
 
-/// The whole file. `merged` is RGBA of the canvas [on white](on_white), `selections` stand beside it as channels,
-/// `ours` is our own resource.
+/// The whole file. `merged` is RGBA of the canvas [on white](on_white), `selections` follow it as channels, `ours` is
+/// our own resource.
 pub fn emit(
     size: Size,
     records: &[LayerRecord],
@@ -162,7 +162,7 @@ fn header(out: &mut Vec<u8>, record: &LayerRecord, channels: &[(i16, Vec<u8>)], 
     out.extend(b"8BIM");
     out.extend(record.blend);
     let hidden = if record.visible { 0 } else { 2 };
-    // Bit 3: bit 4 tells that a record has pixels of its own, which a group's has not.
+    // Bit 3: bit 4 says whether a record has its own pixels; a group has none.
     let no_pixels = if record.section == RecordSection::Layer { 8 } else { 24 };
     out.extend([record.opacity, u8::from(record.clipped), u8::from(record.lock_alpha) | hidden | no_pixels, 0]);
     let mut extra = Vec::new();

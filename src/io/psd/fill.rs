@@ -1,5 +1,5 @@
-//! Fill layers: one colour, a gradient, a pattern, as descriptors say them.
-//! Floor 5. Patterns' pictures are `pattern`'s.
+//! Fill layers: one colour, a gradient or a pattern, read from descriptors. Floor 5. Not here: the pictures of patterns
+//! (`pattern`).
 
 use super::colours::{Colours, Mode};
 use super::cursor::ByteCursor;
@@ -23,9 +23,9 @@ pub struct GradientFill {
     way: GradientStyle,
     /// Counter-clockwise, as seen.
     degrees: f32,
-    /// Of the length that just fills; 1 is that length.
+    /// Relative to the length that just fills, which is 1.
     scale: f32,
-    /// Of the middle, in shares of what is filled.
+    /// Offset of the middle, in shares of what is filled.
     offset: Vec2,
     /// It fills the layer, not the canvas.
     pub aligned: bool,
@@ -52,7 +52,7 @@ pub struct PatternFill {
 
 /// Stops from one that the file names to the next: colours and opacities have middles of their own, where ramps bend.
 const BETWEEN: usize = 8;
-/// More stops are no painter's.
+/// No real gradient has more stops.
 const MOST_STOPS: usize = 1000;
 
 /// Reads the block of a fill; `None` where it holds what is not understood.
@@ -239,7 +239,7 @@ impl GradientFill {
         let [r, g, b, a] = self.at(self.place(self.line(rect), vec2(x as f32 + 0.5, y as f32 + 0.5)));
         Some(Color { r, g, b, a })
     }
-    /// Where on the ramp a point lies; `line`: the middle, and from there to the end.
+    /// Position of a point on the ramp; `line`: the middle, and from there to the end.
     fn place(&self, (middle, half): (Vec2, Vec2), at: Vec2) -> f32 {
         let reach = half.length().max(1e-6);
         let along = half / reach;

@@ -12,7 +12,7 @@ use crate::raster::TileGrid;
 /// How far a fill's pixels may be from it, of 255, before they are believed and not it.
 const SAME: u8 = 3;
 
-/// The content of a layer. What its fill's pixels tell of its shape goes into its mask.
+/// The content of a layer. The shape that its fill's pixels show goes into its mask.
 pub fn content(record: &mut LayerRecord, size: Size, patterns: &[PatternResource]) -> Content {
     match record.fill.take() {
         None => {
@@ -57,7 +57,7 @@ fn drawn(record: &mut LayerRecord, fill: LayerFill, size: Size, patterns: &[Patt
     }
 }
 
-/// A fill beside its pixels, which show its shape: they are believed where they are of other colours.
+/// A fill and its pixels, which show its shape: if their colours differ, the pixels win.
 fn shown(record: &mut LayerRecord, fill: LayerFill, size: Size) -> Content {
     let is_plain = !record.stroked && !record.unfilled;
     let live = match fill {

@@ -1,5 +1,4 @@
-//! What a Photoshop file says of itself, and its resources.
-//! Floor 5.
+//! The header of a Photoshop file, and its resources. Floor 5.
 
 use super::MAGIC;
 use super::channel::ChannelLayout;
@@ -10,7 +9,7 @@ use crate::math::Size;
 use crate::{Error, Result};
 use std::path::Path;
 
-/// What the file says of itself.
+/// The header of the file.
 #[derive(Clone, Copy, Debug)]
 pub struct PsdHeader {
     pub large: bool,
@@ -31,7 +30,7 @@ impl PsdHeader {
             large: self.large,
         }
     }
-    /// What the picture of all layers takes while it is read: RGBA, a plane of bytes a channel, and as it is stored.
+    /// Memory of the merged picture while it is read: RGBA, a plane of bytes per channel, and the stored data.
     pub fn merged_bytes(&self) -> u64 {
         let planes = self.colours() as u64 + 1;
         self.size.area() as u64 * (4 + planes + planes * u64::from(self.bits.div_ceil(8)))

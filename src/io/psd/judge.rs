@@ -1,12 +1,11 @@
-//! Whether the layers look like the picture that the file holds of them, and what is done where they do not.
-//! Floor 5.
+//! Whether the layers look like the file's picture of them, and what is done if they do not. Floor 5.
 //!
-//! Photoshop has more than this program can say. What is left out may or may not be missed, so the pictures are
+//! Photoshop has features that this program cannot express. What is left out may or may not show, so the pictures are
 //! compared:
 //!
 //! * alike, and nothing left out: the layers alone;
-//! * alike, though something was left out: the file's picture lies hidden above them;
-//! * unlike: the file's picture is shown, and the layers lie hidden beneath it, in a group.
+//! * alike, though something was left out: the file's picture is hidden above them;
+//! * unlike: the file's picture is shown, and the layers are hidden beneath it, in a group.
 
 use super::merged::Merged;
 use crate::document::{Content, Document, Group, Layer, PixelLayer, Progress, flatten};
@@ -15,8 +14,7 @@ use crate::raster::tile::TILE;
 use crate::raster::{TileAt, TileGrid};
 use std::sync::Arc;
 
-/// What two pictures may differ by and still be called alike, of 255: in the mean, and in all but a hundredth of the
-/// pixels.
+/// Largest differences of pictures that count as alike, of 255: in the mean, and in all but a hundredth of the pixels.
 const ALIKE_MEAN: f64 = 1.0;
 const ALIKE_P99: usize = 8;
 /// Names of what is added.
@@ -35,7 +33,7 @@ impl Difference {
     fn is_alike(self) -> bool {
         self.mean <= ALIKE_MEAN && self.p99 <= ALIKE_P99
     }
-    /// Of how many pixels differ by how much.
+    /// How many pixels differ by how much.
     fn of(counts: &[u64; 256]) -> Self {
         let all: u64 = counts.iter().sum::<u64>().max(1);
         let total: u64 = counts.iter().zip(0..).map(|(count, by)| count * by).sum();
@@ -51,8 +49,7 @@ impl Difference {
     }
 }
 
-/// The document with the file's own picture where it is needed; what was done stands in the notes. `is_less`: something
-/// was left out.
+/// The document with the file's own picture if needed; the notes say what was done. `is_less`: something was left out.
 pub fn judged(document: Document, merged: Option<Merged>, is_less: bool, notes: &mut Vec<String>) -> Document {
     let without = |notes: &mut Vec<String>, why: &str| {
         if is_less {
@@ -101,7 +98,7 @@ fn with_picture(mut document: Document, merged: &Merged, visible: bool) -> Docum
     document
 }
 
-/// White, black or nothing everywhere: its writer left the picture out, without saying so.
+/// White, black or transparent everywhere: the writer left the picture out without saying so.
 fn is_blank(rgba: &[u8]) -> bool {
     let pixels = rgba.as_chunks::<4>().0;
     let all = |value: u8| pixels.iter().all(|pixel| pixel[..3] == [value; 3]);
@@ -144,7 +141,7 @@ mod tests {
         let fill = Content::Fill(Color { r: value, g: value, b: value, a: 255 });
         Document { layers: vec![Arc::new(Layer::new("grey", fill))], ..Document::empty(Size::new(10, 20)) }
     }
-    /// Of one grey but for one black pixel.
+    /// One grey except for one black pixel.
     fn picture(value: u8) -> Option<Merged> {
         let mut rgba = [value, value, value, 255].repeat(200);
         rgba[..3].fill(0);

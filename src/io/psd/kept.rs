@@ -1,5 +1,5 @@
 //! Selections that a Photoshop file keeps: channels beyond the colours of the merged picture, with their names.
-//! Floor 5. The channels themselves are `merged`'s and `emit`'s.
+//! Floor 5. Not here: the channels themselves (`merged`, `emit`).
 
 use super::cursor::{ByteCursor, shown_text};
 use super::header::resource;
@@ -9,7 +9,7 @@ use crate::raster::CoverageGrid;
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// Names of the channels beyond the colours, a byte and 16 bits a letter; what stands in each; how each is shown.
+/// Names of the channels beyond the colours, with 8 and 16 bits per letter; the identifier of each; how each is shown.
 const NAMES: u16 = 1006;
 const UNICODE_NAMES: u16 = 1045;
 pub const NUMBERS: u16 = 1053;
@@ -17,7 +17,7 @@ const SHOWN: u16 = 1077;
 const SHOWN_BEFORE: u16 = 1007;
 /// The name of the transparency among them.
 const TRANSPARENCY: &str = "Transparency";
-/// Channels that a file may have beside its colours and their transparency.
+/// Channels that a file may have besides its colours and their transparency.
 const MOST: usize = 56 - 4;
 
 /// The selections of a document that a file keeps for other programs, in their order.
@@ -30,7 +30,7 @@ pub fn written(document: &Document) -> Vec<NamedSelection> {
     document.selections.iter().map(within).filter(|kept| !kept.selection.is_empty()).take(MOST).collect()
 }
 
-/// The resources that name them: their numbers and data. Nothing where there are none.
+/// The resources that name them: their numbers and data. Empty if there are none.
 pub fn resources(kept: &[NamedSelection]) -> Vec<(u16, Vec<u8>)> {
     if kept.is_empty() {
         return Vec::new();
@@ -91,7 +91,7 @@ fn names(resources: ByteCursor, has_alpha: bool, count: usize) -> Vec<String> {
 
 /// Which of the channels are inks of their own.
 fn inks(resources: ByteCursor, count: usize) -> HashSet<usize> {
-    /// Where the kind stands among the bytes of a channel, and which kind an ink is.
+    /// Offset of the kind among the bytes of a channel, and the kind of inks.
     const KIND: usize = 12;
     const INK: u8 = 2;
     let newer = resource(resources, SHOWN).and_then(|data| Some((data.get(4..)?, 13)));
@@ -99,7 +99,7 @@ fn inks(resources: ByteCursor, count: usize) -> HashSet<usize> {
         return HashSet::new();
     };
     let kinds: Vec<u8> = data.chunks_exact(bytes).map(|channel| channel[KIND]).collect();
-    // The last ones are these, whether or not the transparency is told of before them.
+    // These are the last ones, whether or not the transparency precedes them.
     let before = kinds.len().saturating_sub(count);
     kinds[before..].iter().enumerate().filter(|(_, kind)| **kind == INK).map(|(i, _)| i).collect()
 }

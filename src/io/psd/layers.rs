@@ -84,7 +84,8 @@ impl<'a> RecordReader<'a> {
             lock_alpha: flags & 1 == 1,
             ..LayerRecord::default()
         };
-        // Black to white of this layer and of those beneath, for all channels and each: what lets everything through.
+        // Blending ranges from black to white of this layer and those beneath, for all channels and each: everything
+        // passes.
         if ranges.rest().chunks(4).any(|range| range != [0, 0, 255, 255]) {
             record.leave_out("it is blended only where its “blend if” lets it be, which is left out");
         }
@@ -192,7 +193,7 @@ impl<'a> RecordReader<'a> {
         }
         Ok(mask.softened(self.header.size, softness))
     }
-    /// What will be drawn on the whole canvas, however small it is in the file.
+    /// Reserves memory for what will cover the whole canvas, however small it is in the file.
     fn spend_for_canvas(&mut self, record: &LayerRecord) -> Result<()> {
         let area = self.header.size.area() as u64;
         if record.rgba.is_empty() && matches!(record.fill, Some(LayerFill::Gradient(_) | LayerFill::Pattern(_))) {
@@ -225,7 +226,7 @@ impl<'a> RecordReader<'a> {
         }
         self.budget.room(self.file, "reading its layers", self.held_bytes())
     }
-    /// What the layers that were read take.
+    /// Memory of the layers that were read.
     pub fn held_bytes(&self) -> u64 {
         self.used_px.saturating_mul(4)
     }

@@ -1,5 +1,5 @@
 //! Converts a document to records: what Photoshop can express is kept, the rest becomes pixels; the document itself is
-//! stored beside them. Floor 5. `emit` writes the records as bytes, `verify` reads them again.
+//! stored with them. Floor 5. `emit` writes the records as bytes, `verify` reads them again.
 
 use super::alone::stands_alone;
 use super::{
@@ -70,7 +70,7 @@ pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancellab
 /// Records in the making.
 struct RecordBuilder {
     size: Size,
-    /// Of the plan's pictures, in their order.
+    /// The looks of the plan's pictures, in their order.
     looks: std::vec::IntoIter<EncodedPixels>,
     records: Vec<LayerRecord>,
     /// The records that show a single layer, for the manifest.
@@ -78,7 +78,7 @@ struct RecordBuilder {
     /// The layers whose records cover the surface's rim wholly.
     whole_rims: BTreeSet<LayerId>,
     notes: Vec<String>,
-    /// The items stand in a group that is not seen.
+    /// The items are in a group that is not visible.
     is_hidden: bool,
 }
 
@@ -127,7 +127,7 @@ impl RecordBuilder {
         let mut look = self.looks.next().ok_or_else(damaged)?;
         let rgba = pixels::decoded(look.file.bytes()).ok_or_else(damaged)?;
         if pixels::is_deep(look.file.bytes()) {
-            // What our part of the file tells of the record is what it holds; all of the paint stands there, too.
+            // Our part of the file says what the record holds; it has all of the paint, too.
             look = in_bytes(file, look, &rgba)?;
             self.notes.push(format!("“{}” has 16 bits per channel here and 8 for other programs", item.name));
         }
@@ -151,7 +151,7 @@ impl RecordBuilder {
         self.records.push(LayerRecord { rect, rgba, mask, ..record(item) });
         Ok(())
     }
-    /// What other programs compute otherwise, though they read it.
+    /// What other programs read but compute differently.
     fn tell_of_blending(&mut self, item: &PlanItem) {
         if let Some(programs) = differs_in(item.blend).filter(|_| item.visible && !self.is_hidden) {
             let blend = item.blend.label().to_lowercase();
@@ -197,10 +197,10 @@ fn key(blend: BlendMode) -> [u8; 4] {
     if blend == BlendMode::Plus { BlendMode::LinearDodge.photoshop() } else { blend.photoshop() }
 }
 
-/// What an item says of itself.
+/// The properties of an item.
 fn record(item: &PlanItem) -> LayerRecord {
     LayerRecord {
-        // As it is read again; ours is kept beside it, with its blanks.
+        // As it will be read; our own name is stored as well, with its blanks.
         name: cursor::shown_text(&item.name),
         blend: key(item.blend),
         opacity: (item.opacity * 255.0).round() as u8,

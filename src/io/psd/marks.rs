@@ -9,7 +9,7 @@ use crate::math::COORDINATE;
 const GUIDES: u16 = 1032;
 /// A step of a guide's place, px.
 const STEPS_A_PX: f32 = 32.0;
-/// How far the lines of the grid stand apart where nobody changed it, in the same steps.
+/// Default distance between the lines of the grid, in the same steps.
 const GRID: u32 = 576;
 
 /// Photoshop's colours of layers, in the order of their numbers.
@@ -24,7 +24,7 @@ const LABELS: [LayerLabel; 8] = [
     LayerLabel::Grey,
 ];
 
-/// A label as the format has it: there is no brown.
+/// A label of the format: there is no brown.
 pub fn carried(label: LayerLabel) -> LayerLabel {
     if LABELS.contains(&label) { label } else { LayerLabel::Orange }
 }

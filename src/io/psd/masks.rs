@@ -1,5 +1,5 @@
-//! A layer's masks as a file holds them: where they lie, how dense and how soft they are, what they are together.
-//! Floor 5. Reading their channels is `layers`', paths are `outline`'s.
+//! A layer's masks as a file holds them: their place, density and softness, and how they combine. Floor 5. Not here:
+//! reading their channels (`layers`), paths (`outline`).
 
 use super::RecordMask;
 use super::cursor::ByteCursor;
@@ -25,21 +25,21 @@ pub struct Softness {
     pub feather_px: f32,
 }
 
-/// What stands before a layer's masks.
+/// What precedes a layer's masks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MaskData {
     /// Channel −2: the painted mask, or the painted and the vector mask together.
     pub shown: MaskRecord,
     /// Channel −3: the painted mask, where −2 is both.
     pub painted: Option<MaskRecord>,
-    /// Of the painted mask and of the vector mask.
+    /// One each for the painted mask and the vector mask.
     pub softness: [Softness; 2],
 }
 
 const HARD: Softness = Softness { density: 255, feather_px: 0.0 };
-/// Photoshop's feather is the reach of its blur; this share of it is the deviation of ours.
+/// Photoshop's feather is the reach of its blur; this share of it is our standard deviation.
 const SIGMA_OF_FEATHER: f32 = 0.5;
-/// More is no drawing's.
+/// No real drawing has more.
 const WIDEST_FEATHER_PX: f32 = 1000.0;
 
 impl MaskData {
@@ -88,7 +88,7 @@ impl MaskRecord {
 }
 
 impl RecordMask {
-    /// What covers as a plane of the canvas does.
+    /// A mask with the coverage of a plane of the canvas.
     pub fn of_canvas(size: Size, values: Vec<u8>) -> Self {
         RecordMask { rect: size.rect(), outside: 0, values, disabled: false }
     }

@@ -1,5 +1,5 @@
-//! The picture of all its layers that a Photoshop file holds for programs that read nothing else. Floor 5. Not
-//! here: what is made of it (`judge`).
+//! The merged picture that a Photoshop file holds for programs that read nothing else. Floor 5. Not here: its use
+//! (`judge`).
 
 use super::VERSION_INFO;
 use super::channel;
@@ -10,7 +10,7 @@ use super::kept;
 use crate::document::NamedSelection;
 use crate::raster::{CoverageGrid, Plane};
 
-/// The picture, as it stands in the file.
+/// The picture, as stored in the file.
 #[derive(Default)]
 pub struct Merged {
     /// Straight sRGB.
@@ -25,8 +25,8 @@ pub struct Merged {
     pub inks: usize,
 }
 
-/// Reads the picture; `None` where it is damaged. `count`: the number that stands before the layers, if there are any;
-/// `has_room`: there is memory for selections too.
+/// Reads the picture; `None` if it is damaged. `count`: the number before the layers, if there are any; `has_room`:
+/// there is memory for selections too.
 pub fn merged(
     rest: &mut ByteCursor,
     header: &PsdHeader,

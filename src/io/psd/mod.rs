@@ -6,14 +6,14 @@
 //! | `cursor`, `descriptor` | numbers, sections and named values read from bytes, never beyond their end |
 //! | `channel` | planes of bytes, plain, PackBits or ZIP |
 //! | `colours` | what planes mean, as sRGB |
-//! | `parse`, `layers`, `blocks` | a file into its parts, its records and what stands behind them |
+//! | `parse`, `layers`, `blocks` | a file into its parts, its records and what follows them |
 //! | `masks`, `outline` | masks that are pictures, and those that are paths |
-//! | `fill`, `pattern`, `filled` | what fill layers are filled with, beside the pixels that show it |
-//! | `kept` | selections, the channels beside the colours |
+//! | `fill`, `pattern`, `filled` | what fill layers are filled with, besides the pixels that show it |
+//! | `kept` | selections, the channels besides the colours |
 //! | `marks` | guides, and the colours of layers in the list |
 //! | `merged` | the picture that the file holds of all its layers |
 //! | `tree` | records into a document |
-//! | `judge` | whether that looks like the file's own picture, and what is done where it does not |
+//! | `judge` | whether that looks like the file's own picture, and what is done if it does not |
 //! | `lower` | a document into records |
 //! | `alone` | whether a group can be composed by itself |
 //! | `emit` | records into a file |
@@ -66,7 +66,7 @@ const OURS: u16 = 4711;
 
 /// Records of a file: of a group two.
 const MOST_RECORDS: usize = 2 * Document::MOST_LAYERS;
-/// The key of a group whose layers blend with what lies beneath it.
+/// The key of a group whose layers blend with what is beneath the group.
 const PASS_THROUGH: [u8; 4] = *b"pass";
 
 /// A layer as stored in the file; groups are records too, around those of their layers.
@@ -100,9 +100,9 @@ pub struct LayerRecord {
     pub unfilled: bool,
     /// Straight RGBA of `rect`, row by row.
     pub rgba: Vec<u8>,
-    /// What is left out of it, and so may be missed in the picture.
+    /// What is left out of it, and so may be missing in the picture.
     pub lost: Vec<&'static str>,
-    /// What became of it, and is seen as it was.
+    /// What it was turned into without changing its look.
     pub told: Vec<&'static str>,
 }
 

@@ -8,7 +8,7 @@ use tiny_skia::{FillRule, Mask, Path, PathBuilder, Transform};
 /// A knot: the handle before it, itself, the handle behind it; each y, x as shares of the canvas.
 type Knot = [[f32; 2]; 3];
 
-/// Paths, as they stand in the file.
+/// Paths, as stored in the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VectorPaths {
     shapes: Vec<FilledPaths>,
@@ -98,7 +98,7 @@ impl VectorPaths {
 }
 
 impl FilledPaths {
-    /// `None` where nothing is covered.
+    /// `None` if nothing is covered.
     fn drawn(&self, size: Size) -> Option<Mask> {
         let path = self.path(size)?;
         let mut mask = Mask::new(size.width, size.height)?;

@@ -14,7 +14,7 @@ use crate::{Budget, picture};
 use crate::{Error, Result};
 use std::path::Path;
 
-/// Which colour of the table stands for nothing.
+/// Which colour of the table means transparent.
 const TRANSPARENT_NUMBER: u16 = 1047;
 
 /// A file's parts.
@@ -31,7 +31,7 @@ pub struct ParsedPsd<'a> {
     pub guides: (Guides, usize),
     /// What could not be read.
     pub damage: Vec<String>,
-    /// What the layers and the picture take in memory.
+    /// Memory of the layers and the picture.
     pub held_bytes: u64,
 }
 
@@ -77,7 +77,7 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
     Ok(ParsedPsd { header, ours: resource(resources, OURS), records, merged, patterns, guides, damage, held_bytes })
 }
 
-/// Where the layers stand: in their own section, or, of deep files, in a block behind it.
+/// Where the layers are: in their own section, or in deep files in a block after it.
 fn layer_info(mut section: ByteCursor<'_>, large: bool) -> Option<ByteCursor<'_>> {
     let whole = section;
     let length = section.length(large)?;

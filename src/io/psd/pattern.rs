@@ -22,7 +22,7 @@ pub struct PatternResource {
 /// More channels no pattern has.
 const MOST_CHANNELS: u32 = 32;
 
-/// The patterns of a file's blocks; those that cannot be read are left out, and what they fill is told.
+/// The patterns of a file's blocks; those that cannot be read are left out, and what they fill is reported.
 pub fn read<'a>(
     blocks: impl Iterator<Item = ([u8; 4], ByteCursor<'a>)>,
     layers: &mut RecordReader,
@@ -36,7 +36,7 @@ pub fn read<'a>(
     Ok(patterns)
 }
 
-/// The patterns of one block. `spend`: asked for each one's pixels; beyond what may be held together, it refuses.
+/// The patterns of one block. `spend`: called with each one's pixels; refuses when they exceed the limit for all.
 pub fn of_block(mut data: ByteCursor, mut spend: impl FnMut(u64) -> Result<()>) -> Result<Vec<PatternResource>> {
     let mut patterns = Vec::new();
     // Each is filled up to four bytes.
@@ -67,7 +67,7 @@ fn head(mut data: ByteCursor) -> Option<(String, Mode, Size, ByteCursor)> {
 fn rgba(mut data: ByteCursor, mode: Mode, size: Size) -> Option<Vec<u8>> {
     let mut table = Vec::new();
     if mode == Mode::Indexed {
-        // Here red, green and blue of a colour stand together.
+        // Here red, green and blue of a colour are interleaved.
         let interleaved = data.take(768)?;
         table = (0..3).flat_map(|c| interleaved.iter().skip(c).step_by(3).copied()).collect();
         data.take(4)?;
@@ -78,7 +78,7 @@ fn rgba(mut data: ByteCursor, mode: Mode, size: Size) -> Option<Vec<u8>> {
     let most = list.u32()?.min(MOST_CHANNELS);
     let mut planes: [Option<Vec<u8>>; 4] = [None, None, None, None];
     let mut alpha = None;
-    // Behind the colours' places come two more, the mask's and the transparency's.
+    // The places of the colours are followed by two more, for the mask and the transparency.
     for i in 0..most + 2 {
         let Some(plane) = channel_of(&mut list, mode, size)? else { continue };
         match planes.get_mut(i as usize).filter(|_| i < u32::from(mode.channels())) {
@@ -97,7 +97,7 @@ fn rgba(mut data: ByteCursor, mode: Mode, size: Size) -> Option<Vec<u8>> {
     Some(colours.to_srgb(size, &planes, alpha.as_deref()))
 }
 
-/// One place of the list; `Some(None)` where nothing is written.
+/// One place of the list; `Some(None)` if it is empty.
 fn channel_of(list: &mut ByteCursor, mode: Mode, size: Size) -> Option<Option<Vec<u8>>> {
     if list.u32()? == 0 {
         return Some(None);
@@ -110,7 +110,7 @@ fn channel_of(list: &mut ByteCursor, mode: Mode, size: Size) -> Option<Option<Ve
     let rect = data.rect()?;
     let bits = data.u16()?;
     let compression = u16::from(data.u8()?);
-    // Whatever the numbers are: their difference may be beyond what they are counted in.
+    // For any numbers: their difference may overflow their type.
     let side = |from: i32, to: i32| i64::from(to) - i64::from(from);
     let fits = [side(rect.x0, rect.x1), side(rect.y0, rect.y1)] == [i64::from(size.width), i64::from(size.height)];
     let header = PsdHeader { large: false, size, channels: 1, bits, mode };
@@ -126,7 +126,7 @@ impl PatternResource {
     pub fn grey(id: &str, size: Size, values: &[u8]) -> Self {
         Self { id: id.into(), size, rgba: values.iter().flat_map(|v| [*v, *v, *v, 255]).collect() }
     }
-    /// What fills and brushes call it.
+    /// Its name in fills and brushes.
     pub fn id(&self) -> &str {
         &self.id
     }

@@ -124,7 +124,7 @@ fn the_surface_s_edge_cuts_layers_that_keep_to_it_once_for_other_programs_as_wel
         let own = read_back(&file);
         assert_eq!(own.notes, [""; 0], "stack {i}");
         assert_same(&document, &own.document);
-        // What it kept for other programs is not how its layers look here.
+        // The pictures stored for other programs do not change how the layers look here.
         assert!(looks(&own.document) == looks(&read_recipe(&recipe, &files)), "stack {i}");
     }
 }

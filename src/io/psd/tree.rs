@@ -72,7 +72,7 @@ fn with_guides_of(document: Document, found: Guides) -> Document {
     if marks::written(&document) == found { document } else { Document { guides: found.into(), ..document } }
 }
 
-/// What became of the file's colours.
+/// What the file's colours were converted to.
 fn colour_notes(parsed: &ParsedPsd) -> Option<String> {
     let header = &parsed.header;
     let what = match header.mode {
@@ -87,7 +87,7 @@ fn colour_notes(parsed: &ParsedPsd) -> Option<String> {
     Some(what.into())
 }
 
-/// Of a file without layers its picture becomes one.
+/// The picture of a file without layers becomes one.
 fn flattened(parsed: &mut ParsedPsd) {
     let rect = parsed.header.size.rect();
     let rgba = parsed.merged.take().map(|merged| merged.rgba).unwrap_or_default();

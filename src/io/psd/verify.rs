@@ -1,5 +1,5 @@
-//! Reads a Photoshop file that was just made, as any file is read, and compares it with what it was made of. Floor
-//! 5. Not here: what a project is held to (`project::read_back`).
+//! Reads a Photoshop file that was just made, like any file, and compares it with its source. Floor 5. Not here: the
+//! check of projects (`project::read_back`).
 
 use super::merged::off_white;
 use super::parse::{ParsedPsd, parse};
@@ -10,7 +10,7 @@ use crate::document::{Document, Guides, NamedSelection};
 use crate::{Error, Result};
 use std::path::Path;
 
-/// What a file was made of.
+/// The source of a file.
 pub struct Meant<'a> {
     pub document: &'a Document,
     pub records: &'a [LayerRecord],
@@ -44,7 +44,7 @@ pub fn read_back(file: &Path, bytes: &[u8], meant: Meant) -> Result<()> {
     }
 }
 
-/// What other programs would see otherwise than it was meant.
+/// What other programs would see differently from what was meant.
 fn difference(parsed: &mut ParsedPsd, meant: &Meant) -> Option<String> {
     if parsed.header.size != meant.document.size {
         return Some(format!("the canvas is {}", parsed.header.size));
@@ -109,7 +109,7 @@ mod tests {
 
     const FILE: &str = "a.psd";
 
-    /// What is said where a file was meant to hold something else.
+    /// The message if a file was meant to hold something else.
     fn said(bytes: &[u8], document: &Document, change: impl FnOnce(&mut Vec<LayerRecord>, &mut Vec<u8>)) -> String {
         let file = Path::new(FILE);
         let written = lower::write(file, document, &Progress::default()).unwrap().unwrap().bytes;

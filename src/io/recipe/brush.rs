@@ -152,7 +152,7 @@ fn dynamics(node: &JsonNode, base: Dynamics) -> Result<Dynamics> {
     Ok(dynamics)
 }
 
-/// One curve; or `{ "add": …, "times": … }`: what is added first, and the curve beside it.
+/// One curve; or `{ "add": …, "times": … }`: what is added first, and the curve that multiplies.
 fn curves(node: &JsonNode) -> Result<[Option<Curve>; 2]> {
     if !node.value().is_object() {
         return Ok([Some(curve(node)?), None]);
@@ -227,7 +227,7 @@ pub fn write_brush(brush: &Brush) -> JsonObject {
     out
 }
 
-/// What differs from the plain brush: a row that only the plain brush has is written as 0.
+/// The differences from the plain brush: a row that only the plain brush has is written as 0.
 fn write_dynamics(dynamics: &Dynamics) -> JsonObject {
     let plain = Dynamics::default();
     let mut out = JsonObject::default();

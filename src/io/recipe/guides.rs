@@ -31,7 +31,7 @@ fn read_assistant(node: &JsonNode) -> Result<Assistant> {
     Ok(assistant)
 }
 
-/// What is not there is not written.
+/// Absent ones are not written.
 pub fn write(out: &mut JsonObject, document: &Document) {
     if !document.guides.is_empty() {
         out.set("guides", write_guides(&document.guides));

@@ -1,5 +1,5 @@
-//! A brush's habits: the numbers of [`SETTINGS`], and the choices beside them. Read and written.
-//! Floor 5. Ranges and defaults are `paint::habits`'.
+//! A brush's habits: the numbers of [`SETTINGS`], and the other choices. Read and written. Floor 5. Not here: ranges
+//! and defaults (`paint::habits`).
 
 use crate::Result;
 use crate::json::{Fields, JsonObject};
@@ -7,7 +7,7 @@ use crate::paint::habits::Bearing;
 use crate::paint::settings::{GROUPS, SETTINGS};
 use crate::paint::{Brush, Falloff, Measure, Offset, Spread};
 
-/// What is not said stays as it is in `base`.
+/// What is absent stays as it is in `base`.
 pub fn read(fields: &mut Fields, base: Brush) -> Result<Brush> {
     let mut brush = base;
     brush.falloff = fields.one_of("falloff", &Falloff::ALL, brush.falloff)?;

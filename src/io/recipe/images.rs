@@ -156,7 +156,7 @@ impl RecipeValue for GradientStop {
     }
 }
 
-/// Where it lies by itself; in a document what covers the canvas is left unsaid.
+/// The placement alone; a document omits one that covers the canvas.
 impl RecipeValue for Placement {
     fn to_json(&self) -> Value {
         let mut out = write_placement_beside(self, &unscaled(self.center));

@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// Whether a layer blends linear light.
 const BLEND_SPACES: [(bool, &str); 2] = [(false, "srgb"), (true, "linear")];
 
-/// Reads what a kind of layer has beside what every layer has; the number says how many groups stand around it.
+/// Reads what a kind of layer has in addition to every layer; the number says how many groups are around it.
 type ReadContent = fn(&mut LayerReader<'_>, &mut Fields<'_>, usize) -> Result<Content>;
 
 /// Every kind of layer as it is read, with its name in documents ([`Content::kind_name`]).
@@ -68,7 +68,7 @@ impl LayerReader<'_> {
         let layer = Layer { visible, opacity, blend, blend_linear, clip_below, lock, ..layer };
         Ok(Layer { label, mask, clip_to_surface, transform, liquify, on, ..layer })
     }
-    /// What a layer or a stroke lies on.
+    /// The home of a layer or a stroke.
     pub fn home(&self, node: &JsonNode) -> Result<HomeFrame> {
         let id = node.text()?;
         if id != HomeFrame::CANVAS && !self.homes.iter().any(|known| known == id) {

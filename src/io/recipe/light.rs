@@ -8,7 +8,7 @@ use crate::math::{COORDINATE, Vec3, srgb::Color};
 use crate::shading::{FeatureScale, Features, Light, LightKind, Reference, Scaling, Term};
 use serde_json::Value;
 
-/// A term that tells nothing.
+/// A term with no fields given.
 const PLAIN: Term = Term::plain(Color::WHITE, 1.0);
 
 #[derive(Clone, Copy)]
@@ -100,7 +100,7 @@ impl RecipeValue for Reference {
     }
 }
 
-/// What an object says, and nothing else.
+/// Reads an object; refuses fields that `read` does not know.
 fn of_object<T>(node: &JsonNode, read: impl FnOnce(&mut Fields) -> Result<T>) -> Result<T> {
     let mut fields = node.fields()?;
     let value = read(&mut fields)?;

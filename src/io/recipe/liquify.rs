@@ -15,8 +15,8 @@ const NODES: usize = SIDE * SIDE;
 /// Blocks of a layer: what a description holds of them alone.
 const MOST_BLOCKS: usize = Document::MOST_VALUES / 150;
 
-/// `{ "blocks": [{ "at": [column, row], "x": [64 numbers], "y": [64 numbers] }, …] }`: of the 64 px wide block at each
-/// place the displacements of its nodes, row by row, in 64ths of a pixel. None where nothing is displaced.
+/// `{ "blocks": [{ "at": [column, row], "x": [64 numbers], "y": [64 numbers] }, …] }`: for each 64 px wide block the
+/// displacements of its nodes, row by row, in 64ths of a pixel. `None` if nothing is displaced.
 pub fn read(node: &JsonNode) -> Result<Option<Arc<Lattice>>> {
     let mut fields = node.fields()?;
     let mut lattice = Lattice::default();

@@ -64,7 +64,7 @@ fn derived(fields: &mut Fields) -> Result<Option<DerivedMask>> {
     let Some(kind) = fields.get("kind") else { return Ok(None) };
     let has_point = fields.get("at").is_some();
     Ok(Some(match kind.one_of(&DERIVED)? {
-        // What has a point is a region about it.
+        // An object with a point is the region around it.
         DerivedMask::Curvature { .. } if has_point => DerivedMask::Region(region(RegionKind::Curvature, fields)?),
         DerivedMask::Depth { .. } if has_point => DerivedMask::Region(region(RegionKind::Depth, fields)?),
         DerivedMask::Region(plain) => DerivedMask::Region(region(plain.kind, fields)?),
@@ -85,7 +85,7 @@ fn derived(fields: &mut Fields) -> Result<Option<DerivedMask>> {
     }))
 }
 
-/// Where the mask is 0 and where it is 1, either way round; a step where the two are the same.
+/// Where the mask is 0 and where it is 1, in either order; a step if the two are equal.
 fn ramp(fields: &mut Fields, range: Range) -> Result<(f32, f32)> {
     let (from, to) = (*range.start(), *range.end());
     Ok((fields.number("from", from, range.clone())?, fields.number("to", to, range)?))

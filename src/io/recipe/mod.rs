@@ -1,4 +1,4 @@
-//! Recipes: a document as JSON that names files beside it. Floor 5. The schema is `docs/RECIPES.md`; a project's zip
+//! Recipes: a document as JSON that names files next to it. Floor 5. The schema is `docs/RECIPES.md`; a project's zip
 //! holds the same JSON and is read through the same [`Files`].
 //!
 //! | file | reads and writes |
@@ -20,7 +20,7 @@
 //! | `selections` | selections |
 //! | `guides` | guides and assistants |
 //! | `pictures` | the files that layers name, each decoded once |
-//! | `value` | what all values are that replays write as recipes do |
+//! | `value` | the trait of values that replays write as recipes do |
 
 mod brush;
 mod guides;
@@ -66,7 +66,7 @@ use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashMap};
 use std::{path::Path, sync::Arc};
 
-/// The newest schema this program reads. What needs nothing of it is written as the first.
+/// The newest schema this program reads. A document that needs nothing newer is written as the first.
 pub const VERSION: i64 = 2;
 
 /// Whether a layer lies on the surface unwrapped, which the first version does not know.
@@ -107,7 +107,7 @@ pub struct RecipeSource<'a> {
 pub struct OtherSurface<'a> {
     /// The maps that it names.
     pub surface: &'a SurfaceSource,
-    /// Where names are looked up.
+    /// Files by name.
     pub files: &'a dyn Files,
 }
 
@@ -164,7 +164,7 @@ fn read_parts(value: &Value, source: RecipeSource, tiles: TileGrids) -> Result<(
     let (known, homes, notes) = (HashMap::new(), Vec::new(), of_maps);
     let mut reader = LayerReader { source, size, layers_left, samples_left, pictures, selections: known, homes, notes };
     let scene = Scene { size, surface: surface.clone() };
-    // Those that follow the surface are found on the maps, and anew once the parts have made theirs.
+    // Those that follow the surface are found on the maps, and again once the parts have made theirs.
     let mut selections = selections.map_or(Ok(Vec::new()), |node| reader.selections(&node, &scene))?;
     let active_selection = active.map(|node| reader.selection_of(&node)).transpose()?.filter(|found| !found.is_empty());
     let parts = match surface_node {
@@ -270,7 +270,7 @@ fn shape(
     Ok(CanvasAndSurface { size, surface, files, notes: findings.notes })
 }
 
-/// Another object is fitted to the canvas, wherever its maps lay on its own.
+/// Another object is fitted to the canvas, wherever its maps were on its own canvas.
 fn fitted_source(onto: OtherSurface) -> SurfaceSource {
     SurfaceSource { matrix: None, ..onto.surface.clone() }
 }
@@ -292,20 +292,20 @@ struct LayerReader<'a> {
     notes: Vec<String>,
 }
 
-/// The JSON that [`read`] reads back to an equal document. Files are named, not written: a project puts its pixels
-/// beside it under the same names.
+/// The JSON that [`read`] reads back to an equal document. Files are named, not written: a project stores its pixels
+/// next to it under the same names.
 pub fn write(document: &Document) -> Value {
     write_naming(document, &SelectionList::of(document))
 }
 
-/// The same of a document whose selections stand in a list, of which it may lack strokes.
+/// The same for a document whose selections are in a list; it may lack some of their strokes.
 pub fn write_naming(document: &Document, list: &SelectionList) -> Value {
     let mut out = head(document, list);
     out.set("layers", layers::write(&document.layers, document.size, list));
     out.done()
 }
 
-/// The same as text. However many strokes there are, no more than one of them stands in memory as values.
+/// The same as text. However many strokes there are, only one at a time is in memory as values.
 pub fn print(document: &Document) -> String {
     let mut out = Printer::default();
     out.open_object(None);

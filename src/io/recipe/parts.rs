@@ -21,15 +21,15 @@ use serde_json::Value;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The defaults that stand in no type.
+/// The defaults that are in no type.
 const TOUCH_RADIUS: f32 = 6.0;
 const BODY_RADIUS: f32 = 50.0;
 const DAB_SIZE: f32 = 40.0;
 const DAB_HARDNESS: f32 = 0.5;
 const DAB_STRENGTH: f32 = 2.0;
 
-/// One part as an edit of a document tells it. The pictures that it names are those that parts of the document have, or
-/// the user's own. `file`: for messages.
+/// One part as an edit of a document describes it. The pictures that it names are those of the document's parts, or the
+/// user's own. `file`: for messages.
 pub fn read_part(file: &Path, value: &Value, document: &Document, budget: &Budget) -> Result<Part> {
     let files = UserFiles::default();
     let source = RecipeSource { file, files: &files, budget, onto: None };
@@ -174,7 +174,7 @@ impl LayerReader<'_> {
     }
     fn maps(&mut self, fields: &mut Fields) -> Result<PartKind> {
         let node = fields.node().clone();
-        // Those of an edit are known, wherever they came from: their files are not read again.
+        // The pictures of an edit are known, wherever they came from: their files are not read again.
         let told = |known: &PartMaps| {
             let written = surface::write(&known.source);
             written.fields().iter().all(|(name, value)| node.value().get(name) == Some(value))

@@ -63,7 +63,7 @@ impl PictureCache {
         let bytes = bytes(source, name)?;
         let path = source.files.path(name.text()?);
         let picture = picture::decode(&path, &bytes, source.budget).map_err(|e| name.led_to(e))?;
-        // Beside it stands the texture that it is read through, of bytes and with its smaller copies.
+        // Counted with it is the texture that it is sampled through, in bytes and with its mip levels.
         self.spend(source, picture.size, picture.bytes() + picture.size.area() * 6)?;
         self.pictures.insert(name.text()?.to_owned(), picture.clone());
         Ok(picture)

@@ -28,7 +28,7 @@ pub struct BrushPreset {
     /// The colour it is shown in; choosing it changes no colour.
     pub color: Color,
     pub brush: Brush,
-    /// What it is meant to be bent by.
+    /// The operator that it is meant for.
     pub operator: Operator,
 }
 
@@ -113,7 +113,7 @@ pub fn written_brush(brush: &Brush) -> Value {
     write_brush(brush).done()
 }
 
-/// A preset in a file of its own; its pictures lie beside it.
+/// A preset in a file of its own; its pictures are next to it.
 pub fn load_preset(file: &Path, budget: &Budget) -> Result<BrushPreset> {
     let text = files::read_file(file, budget.json_bytes)?;
     let folder = RecipeFolder::beside(file);

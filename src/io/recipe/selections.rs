@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// The folder of their masks in a project.
 const FOLDER: &str = "rilievo/selections/";
 
-/// What the selection at a place of the list is called.
+/// The name of the selection at a place of the list.
 fn id(place: usize) -> String {
     format!("s{}", place + 1)
 }
@@ -37,7 +37,7 @@ impl LayerReader<'_> {
                 fields.get("name").map(|name| Ok::<_, crate::Error>((name.text()?.to_owned(), name))).transpose()?;
             let selection = match fields.get("mask") {
                 Some(mask) => Arc::new(self.selection(&mask, scene)?),
-                // What bounds nothing.
+                // A selection without bounds.
                 None => Arc::new(Selection::new(CoverageGrid::filled(self.size.rect()))),
             };
             fields.finish()?;
@@ -180,7 +180,7 @@ pub fn write_of_stroke(stroke: &Stroke, list: &SelectionList) -> JsonObject {
     out
 }
 
-/// What the kept selection of a name is called in a list.
+/// The list's name for a kept selection.
 pub fn id_of_kept(name: &str, list: &SelectionList) -> Option<String> {
     list.named().position(|(known, _)| known == Some(name)).map(id)
 }
@@ -193,7 +193,7 @@ pub fn with_selection(mut stroke: Value, fields: &JsonObject) -> Value {
     stroke
 }
 
-/// Nothing of version 1 says these.
+/// Version 1 cannot express these.
 pub fn is_needed(document: &Document, list: &SelectionList) -> bool {
     use crate::document::{DerivedMask, MaskKind};
     let follows = |mask: &crate::document::LayerMask| matches!(mask.kind, MaskKind::Derived(DerivedMask::Region(_)));

@@ -17,7 +17,7 @@ use crate::surface::Operator;
 use serde_json::Value;
 use std::sync::Arc;
 
-/// What a stroke may have of its own though its brush is that of the stroke before.
+/// What a stroke may have of its own although it has the brush of the stroke before.
 const OWN: [&str; 2] = ["facing", "seed"];
 
 impl LayerReader<'_> {
@@ -49,7 +49,7 @@ impl LayerReader<'_> {
         fields.finish()?;
         Ok(Stroke::new(brush, operator, color, samples).within(selection).on(home))
     }
-    /// What a stroke lies on, where that is not what its layer lies on, and where its frame lies within the layer's.
+    /// The home of a stroke, if it is not that of its layer, and the place of its frame in the layer's.
     fn stroke_home(&self, fields: &mut Fields) -> Result<Option<Arc<StrokeHome>>> {
         let (on, transform) = (fields.get("on"), fields.get("transform"));
         let Some(on) = on else {
@@ -86,7 +86,7 @@ impl LayerReader<'_> {
     }
 }
 
-/// The strokes of a layer as they stand in its `strokes`, one after the other.
+/// The strokes of a layer as in its `strokes`, one after the other.
 pub fn written<'a>(list: &'a StrokeList, selections: &'a SelectionList) -> impl Iterator<Item = Value> + 'a {
     let mut before: Option<JsonObject> = None;
     list.strokes.iter().map(move |stroke| {
@@ -120,7 +120,7 @@ fn write(stroke: &Stroke, brush: &JsonObject) -> Value {
     out.done()
 }
 
-/// What a brush has of its own beside the one before it, where that is all; a plain brush needs no words.
+/// The difference of a brush from the one before it, if it is only that; a plain brush needs no fields.
 fn as_before(brush: &JsonObject, before: &JsonObject) -> Option<JsonObject> {
     let shared = |brush: &JsonObject| -> Vec<(String, Value)> {
         let fields = brush.fields().iter().filter(|(name, _)| !OWN.contains(&name.as_str()));

@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 /// Stored values that mean "no surface".
 const MOST_BACKGROUNDS: usize = 64;
 
-/// Reads the maps of the object `surface`; nothing where it has parts and no maps.
+/// Reads the maps of the object `surface`; none if it has parts and no maps.
 pub fn read(node: &JsonNode) -> Result<Option<SurfaceSource>> {
     let mut fields = node.fields()?;
     let matrix = fields.get("matrix").map(|node| matrix(&node)).transpose()?;
@@ -180,7 +180,7 @@ fn start(file: &str, channel: Option<&str>) -> JsonObject {
     out
 }
 
-/// The field `convention`: the word that stands for it, or each choice that was made.
+/// The field `convention`: one word for all, or each choice that was made.
 pub fn write_normal_convention(into: &mut JsonObject, c: &NormalConvention) {
     if let Some(word) = c.word() {
         return into.text("convention", word, "auto");

@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// `{ "matrix": [a, b, c, d, e, f] }`, `{ "quad": [[x, y] × 4] }` or `{ "mesh": … }`, with a `filter`.
 ///
-/// * `canvas`: the frame of a mesh that tells none; without it a mesh must tell one.
+/// * `canvas`: the frame of a mesh that states none; without it a mesh must state one.
 pub fn read(node: &JsonNode, canvas: Option<Size>) -> Result<LayerTransform> {
     let mut fields = node.fields()?;
     let filter = fields.one_of("filter", &Resampling::ALL, Resampling::default())?;

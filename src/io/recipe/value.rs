@@ -10,7 +10,7 @@ pub trait RecipeValue: Sized {
     fn to_json(&self) -> Value;
     fn from_json(node: &JsonNode) -> Result<Self>;
 
-    /// Reads a value that stands in no file, its numbers in their ranges or not; a refusal is the rest of a sentence
+    /// Reads a value that is not from a file, its numbers in their ranges or not; a refusal is the rest of a sentence
     /// that begins with its name.
     fn from_value(value: &Value) -> Result<Self, String> {
         let node = JsonNode::unranged(value);

@@ -26,7 +26,7 @@ pub struct Journal {
     /// Absent after a failure: a half-written record makes everything after it unreadable.
     handle: Option<Box<dyn FileHandle>>,
     bytes: u64,
-    /// Its length when it was last written anew.
+    /// Its length when it was last rewritten.
     fresh_bytes: u64,
     unsynced: bool,
     pub least_compacted: u64,
@@ -71,7 +71,7 @@ impl Journal {
         }
         let mut out = Vec::new();
         if let Err(error) = state::write(&self.path, document, &mut self.known, &mut out, &self.given_up) {
-            // What it knows no longer matches the log.
+            // The state it remembers no longer matches the log.
             self.handle = None;
             return Err(error);
         }
@@ -94,12 +94,12 @@ impl Journal {
         }
         let Some(handle) = &mut self.handle else { return Ok(()) };
         handle.sync().map_err(|e| {
-            // What the system dropped cannot be written again.
+            // Data that the system dropped cannot be written again.
             self.handle = None;
             Error::io(&self.path, e)
         })
     }
-    /// Writes a log of this one document beside the old one, and puts it in its place.
+    /// Writes a log of only this document next to the old one, and replaces that.
     fn write_anew(&mut self, document: &Document) -> Result<()> {
         let failed = |e| Error::io(&self.path, e);
         let mut known = LoggedParts::default();

@@ -18,7 +18,7 @@ pub enum RecordKind {
     Blob = 2,
     /// JSON: the whole document after an edit, its large parts by their keys.
     State = 3,
-    /// JSON: the document as of here is what a file holds, or what it was made as; nothing would be lost.
+    /// JSON: at this point the document equals its file, or is as it was created; nothing would be lost.
     Saved = 4,
 }
 
@@ -32,7 +32,7 @@ impl RecordKind {
 
 /// Appends a record: its length, kind, checksum of kind and payload, payload.
 ///
-/// A payload is shorter than 4 GiB; of a longer one nothing is written, and it is `false`.
+/// A payload is shorter than 4 GiB; a longer one is not written, and the result is `false`.
 #[must_use]
 pub fn push(log: &mut Vec<u8>, kind: RecordKind, payload: &[&[u8]]) -> bool {
     let Ok(length) = u32::try_from(payload.iter().map(|part| part.len()).sum::<usize>()) else { return false };
@@ -77,7 +77,7 @@ impl<'a> Iterator for Records<'a> {
     }
 }
 
-/// The end of a log, if all of it is valid: the kind of its last record, and the contents of the last one of kind
+/// The end of a log, if all of it is valid: the kind of its last record, and the contents of the last
 /// [`RecordKind::Saved`].
 ///
 /// Reads piece by piece: a broken log may be long.
@@ -117,7 +117,7 @@ pub fn end(log: &mut dyn Read) -> Option<(RecordKind, Option<Vec<u8>>)> {
     }
 }
 
-/// What a record of kind [`RecordKind::Saved`] holds is a name and a few figures.
+/// A record of kind [`RecordKind::Saved`] holds a name and a few figures.
 const SAVED_BYTES: usize = 1 << 16;
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
-//! Recovery: after every edit the drawing is written to a log beside the settings, so that a crash or a power cut loses
-//! only the last moments (docs/PROJECTS.md). Floor 5. Saving is `io::save`; the log is for accidents only, and is gone
-//! once the drawing is closed.
+//! Recovery: after every edit the drawing is written to a log next to the settings, so that a crash or a power cut
+//! loses only the last moments (docs/PROJECTS.md). Floor 5. Saving is `io::save`; the log is for accidents only, and is
+//! gone once the drawing is closed.
 //!
 //! | file | |
 //! |---|---|
@@ -83,8 +83,7 @@ impl RecoveryLog {
     pub fn record(&self, document: &Document) {
         self.send(RecoveryTask::Record(document.clone()));
     }
-    /// The version recorded last is what a file holds; with no file, what the drawing was made as. Nothing would be
-    /// lost.
+    /// The version recorded last equals the file; without a file, the drawing as created. Nothing would be lost.
     pub fn saved(&self, title: &str, file: Option<&Path>, stamp: Option<FileStamp>) {
         self.send(RecoveryTask::Saved(title.into(), file.map(Path::to_owned), stamp));
     }

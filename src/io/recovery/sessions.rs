@@ -1,4 +1,4 @@
-//! Lost sessions: what sessions left that ended without being closed, and how it is recovered. Floor 5. Nothing is
+//! Lost sessions: what sessions that ended without being closed left, and how it is recovered. Floor 5. Nothing is
 //! deleted without asking, and nothing here can keep the program from starting.
 
 use super::log::{self, RecordKind};
@@ -22,7 +22,7 @@ pub struct LostSession {
     pub title: String,
     /// Where it was last saved, if it was. The recovered drawing is untitled all the same.
     pub file: Option<PathBuf>,
-    /// Recovery was started once and did not finish: it is tried again only if the user asks for this one.
+    /// Recovery was started once and did not finish: it is tried again only if the user chooses this one.
     pub has_failed: bool,
     _lock: Box<dyn FileLock>,
 }
@@ -42,8 +42,8 @@ pub fn sessions(fs: &Arc<dyn Fs>, folder: &Path) -> Vec<LostSession> {
     logs.filter_map(|path| session(fs, path)).collect()
 }
 
-/// How many sessions below a folder other processes hold: those of open windows, and for a moment those of one that was
-/// killed, whose locks the system takes back only when the last of its threads has ended.
+/// How many sessions below a folder other processes hold: open windows, and for a moment a killed one, whose locks the
+/// system releases only when its last thread has ended.
 pub fn held_by_others(fs: &Arc<dyn Fs>, folder: &Path) -> usize {
     let ours = format!("-{}-", std::process::id());
     let is_log = |path: &&PathBuf| path.extension().is_some_and(|extension| extension == "log");
@@ -101,8 +101,8 @@ impl LostSession {
         self.has_failed = false;
         Ok(recovered)
     }
-    /// Whether the last version equals its file, or the drawing as created: then nothing was lost.
-    /// Reads the whole log, piece by piece, and with it what the drawing was called last.
+    /// Whether the last version equals its file, or the drawing as created: then nothing was lost. Reads the whole log,
+    /// piece by piece, and with it the last name of the drawing.
     pub fn is_safe(&mut self) -> bool {
         let end = self.fs.open(&self.path).ok().and_then(|mut handle| log::end(&mut handle));
         let Some((last, Some(saved))) = end else { return false };

@@ -1,6 +1,6 @@
-//! ReplaceJob a file: all or nothing, read back and compared before it counts. Projects, exports, brushes and settings
-//! all come to a disk this way.
-//! Floor 5. Every step is here for a loss that somebody had (docs/PROJECTS.md). Not here: what the bytes are.
+//! Replaces a file: all or nothing, read back and compared before it counts. Projects, exports, brushes and settings
+//! are all written this way. Floor 5. Every step prevents a loss that somebody had (docs/PROJECTS.md). Not here: the
+//! bytes themselves.
 
 mod part;
 mod previous;
@@ -31,11 +31,11 @@ pub struct FileStamp {
 }
 
 impl FileStamp {
-    /// Of these bytes.
+    /// The stamp of these bytes.
     pub fn of(bytes: &[u8]) -> Self {
         Self { bytes: bytes.len() as u64, crc: crc32fast::hash(bytes) }
     }
-    /// Of a file, piece by piece.
+    /// The stamp of a file, read piece by piece.
     pub(crate) fn read(handle: &mut dyn FileHandle) -> io::Result<Self> {
         let (mut buffer, mut hasher, mut bytes) = (vec![0; CHUNK], crc32fast::Hasher::new(), 0);
         loop {
@@ -52,13 +52,13 @@ impl FileStamp {
 /// What may be replaced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Overwrite {
-    /// Nothing: there must be no file of that name yet, up to the very moment of its making.
+    /// Nothing: no file of that name may exist, up to the moment when it is created.
     Nothing,
     /// The file as it was when it was opened or last saved; another program's change is not overwritten.
     This(FileStamp),
-    /// Whatever is there, unless it is set read-only: the user agreed to lose what stands under this name.
+    /// Whatever is there, unless it is set read-only: the user agreed to lose what has this name.
     Anything,
-    /// Whatever is there: the user was told what it is, and insists.
+    /// Whatever is there: the user was warned and insists.
     Forced,
 }
 
@@ -67,30 +67,29 @@ pub enum Overwrite {
 pub struct Terms {
     /// What it may replace.
     pub over: Overwrite,
-    /// The old file is kept beside it as `name~`.
+    /// The old file is kept next to it as `name~`.
     pub keeps_previous: bool,
-    /// Never written over, whatever else is allowed: the files that the document was made from.
+    /// Never overwritten, whatever else is allowed: the files that the document was made from.
     pub reads: Vec<PathBuf>,
 }
 
 impl Terms {
-    /// Of what can be made again, such as an exported picture: no previous version is kept.
+    /// For what can be made again, such as an exported picture: no previous version is kept.
     pub fn export(over: Overwrite, reads: Vec<PathBuf>) -> Self {
         Self { over, keeps_previous: false, reads }
     }
 }
 
-/// Of a document itself: the previous version is kept.
+/// For a document itself: the previous version is kept.
 impl From<Overwrite> for Terms {
     fn from(over: Overwrite) -> Self {
         Self { over, keeps_previous: true, reads: Vec::new() }
     }
 }
 
-/// Puts bytes in a file's place by the mechanism of docs/PROJECTS.md; whether it was done, and not cancelled.
+/// Replaces a file by bytes with the mechanism of docs/PROJECTS.md; true if it was done, false if cancelled.
 ///
-/// Fails with [`Error::Changed`] where `terms` do not allow what would be replaced. Whatever fails, the old file is as
-/// it was.
+/// Fails with [`Error::Changed`] if `terms` do not allow the replacement. Whatever fails, the old file is unchanged.
 pub fn replace(fs: &dyn Fs, file: &Path, bytes: &[u8], terms: &Terms, progress: &Progress) -> Result<bool> {
     ReplaceJob { fs, named: file, bytes, terms, progress }.run()
 }
@@ -119,14 +118,14 @@ impl ReplaceJob<'_> {
             Ok(is_written)
         });
         if !matches!(placed, Ok(true)) {
-            // What was begun is taken away; if even that fails, the first failure is the one to tell.
+            // The unfinished file is removed; if even that fails, the first failure is reported.
             let _ = self.fs.remove(&part.path);
             return placed;
         }
         self.flush_folder(&target)?;
         Ok(true)
     }
-    /// Writes the new file under another name and makes sure of it; whether it was not cancelled meanwhile.
+    /// Writes the new file under another name and verifies it; false if cancelled meanwhile.
     fn write_part(&self, part: &mut PartFile, target: &Path) -> Result<bool> {
         let chunks = self.bytes.len().div_ceil(CHUNK) as u64;
         self.progress.add_total(2 * chunks);
@@ -146,7 +145,7 @@ impl ReplaceJob<'_> {
         part.handle.sync().map_err(failed)?;
         self.compare(&part.path)
     }
-    /// What was written is read back.
+    /// The written file is read back.
     fn compare(&self, part: &Path) -> Result<bool> {
         let failed = |e| self.failed("what was written could not be read back; choose another place", e);
         let differs = || failed(io::Error::new(ErrorKind::InvalidData, "the disk gave back other bytes"));
@@ -199,8 +198,8 @@ impl ReplaceJob<'_> {
         }
         Ok(())
     }
-    /// Gives the new file its name where nothing has it: of two programs that do so at once, one is told. False where
-    /// the disk knows no second names.
+    /// Gives the new file its name if no file has it: of two programs that do so at once, one fails. False if the disk
+    /// has no hard links.
     fn link_new(&self, part: &PartFile, target: &Path) -> Result<bool> {
         match self.fs.link(&part.path, target) {
             Ok(()) => {

@@ -1,4 +1,4 @@
-//! The new file while it is being written: beside its target, under a name of its own, held so that others know it is
+//! The new file while it is being written: next to its target, under a temporary name, locked so that others know it is
 //! in use. Floor 5.
 
 use crate::fs::{EntryKind, FileHandle, Fs};
@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 
 const PREFIX: &str = ".rilievo-";
 const PART: &str = "part";
-/// What the old file is called for a moment, before it becomes `name~`.
+/// Extension of the old file for a moment, before it becomes `name~`.
 pub const SPARE: &str = "old";
-/// What stood there as `name~` is called, until the new file is in place.
+/// Extension of the old `name~`, until the new file is in place.
 pub const OLDER: &str = "older";
 /// Digits of a token.
 const DIGITS: usize = 16;
@@ -46,11 +46,11 @@ impl PartFile {
     }
 }
 
-/// Takes away what killed saves and exports left in a folder: files of our names that no process holds. Processes are
-/// not asked for by number, for numbers come again. Whatever fails is left for the next time.
+/// Removes what killed saves and exports left in a folder: files with our names that no process has locked. Process
+/// numbers are not used, since they are reused. Whatever fails is left for the next time.
 pub fn sweep(fs: &dyn Fs, folder: &Path) {
     for path in fs.list(folder).unwrap_or_default().into_iter().filter(|path| is_ours(path)) {
-        // Nothing but a file: opening a pipe would wait for ever.
+        // Only a regular file: opening a pipe would wait for ever.
         if !matches!(fs.found(&path), Ok(Some(EntryKind::File))) {
             continue;
         }

@@ -1,12 +1,11 @@
-//! The previous version of a file, kept beside it as `name~`.
-//! Floor 5.
+//! The previous version of a file, kept next to it as `name~`. Floor 5.
 
 use super::part::{OLDER, PartFile, SPARE};
 use crate::fs::{EntryKind, Fs};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-/// The previous version as it stands beside the file, and what stood there before it, until the new file is in place.
+/// The previous version next to the file, and the version before that, until the new file is in place.
 pub struct Previous {
     name: PathBuf,
     /// The version before, under a passing name.
@@ -14,8 +13,8 @@ pub struct Previous {
 }
 
 impl Previous {
-    /// Keeps what stands at `target` as `name~`, or where that name is too long for the disk under one that is not.
-    /// Never for a moment without a file of that name, and nothing half written under it.
+    /// Keeps the file at `target` as `name~`, or under a shorter name if that is too long for the disk. A file of that
+    /// name exists at every moment, and is never half written.
     pub fn keep(fs: &dyn Fs, part: &PartFile, target: &Path) -> io::Result<Self> {
         let mut name = target.as_os_str().to_owned();
         name.push("~");
@@ -28,7 +27,8 @@ impl Previous {
         let spare = part.path.with_extension(SPARE);
         let previous = Self { older: set_aside(fs, part, &name)?, name };
         let kept = take(fs, part, target, &spare).and_then(|()| fs.rename(&spare, &previous.name));
-        // After a failure it is still there; and where both names were one file's already, for then nothing is renamed.
+        // The spare name is still there after a failure, and if both names belonged to one file: then nothing is
+        // renamed.
         let _ = fs.remove(&spare);
         match kept {
             Ok(()) => Ok(previous),
@@ -38,13 +38,13 @@ impl Previous {
             }
         }
     }
-    /// The new file did not get its place: beside the old one stands again what stood there.
+    /// The new file did not get its place: restores the previous version that was next to the old one.
     pub fn undo(self, fs: &dyn Fs) {
         let put_back = match &self.older {
             Some(older) => fs.rename(older, &self.name),
             None => fs.remove(&self.name),
         };
-        // What cannot be put back stays under its passing name: the old file itself is not touched by any of this.
+        // A version that cannot be restored keeps its temporary name; none of this touches the old file itself.
         if put_back.is_ok() {
             self.forget(fs);
         }
@@ -55,11 +55,11 @@ impl Previous {
     }
 }
 
-/// What stands there already as a previous version, under a passing name as well; `None` where nothing does.
+/// Gives an existing previous version a temporary name; `None` if there is none.
 fn set_aside(fs: &dyn Fs, part: &PartFile, name: &Path) -> io::Result<Option<PathBuf>> {
     let older = part.path.with_extension(OLDER);
     match fs.found(name)? {
-        // What is no file is no version of one.
+        // Only a file can be a previous version.
         Some(EntryKind::File) => take(fs, part, name, &older).map(|()| Some(older)),
         _ => Ok(None),
     }
@@ -67,7 +67,8 @@ fn set_aside(fs: &dyn Fs, part: &PartFile, name: &Path) -> io::Result<Option<Pat
 
 /// A file under a passing name: a second name where the disk knows such, else a copy.
 fn take(fs: &dyn Fs, part: &PartFile, file: &Path, spare: &Path) -> io::Result<()> {
-    // In a folder where everybody keeps their own, a second name of another's file could not be taken away again.
+    // In a folder where users may remove only their own files, a second name of another user's file could not be
+    // removed.
     let is_ours = fs.is_same_owner(file, &part.path).unwrap_or(false);
     if is_ours && fs.link(file, spare).is_ok() {
         return Ok(());
@@ -84,8 +85,8 @@ fn take(fs: &dyn Fs, part: &PartFile, file: &Path, spare: &Path) -> io::Result<(
     copied
 }
 
-/// A name for the previous version that is no longer than the file's own, for where `name~` does not fit. Its checksum
-/// tells it from that of another file whose name begins alike.
+/// A name for the previous version that is no longer than the file's own, used if `name~` does not fit. Its checksum
+/// distinguishes files whose names begin alike.
 fn shortened(target: &Path) -> PathBuf {
     let name = target.file_name().unwrap_or_default();
     let extension = format!("-{:08x}~", crc32fast::hash(name.as_encoded_bytes()));

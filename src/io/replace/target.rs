@@ -23,7 +23,7 @@ pub fn is_same_file(fs: &dyn Fs, one: &Path, other: &Path) -> bool {
 /// A path leads to the file at `target`, which is resolved and has this identity.
 fn is_named(fs: &dyn Fs, path: &Path, target: &Path, identity: Option<Identity>) -> bool {
     let is_path = fs.resolve(path).is_ok_and(|path| path == target);
-    // Another name of the same file, which no path tells.
+    // Another name of the same file, which no path shows.
     is_path || (identity.is_some() && fs.identity(path).is_ok_and(|other| other == identity))
 }
 
@@ -56,11 +56,11 @@ impl ReplaceJob<'_> {
             }
         }
     }
-    /// What stands there may be replaced.
+    /// Checks that the existing file may be replaced.
     pub(super) fn allowed(&self, target: &Path) -> Result<()> {
         let io = |e| self.failed("", e);
         if self.fs.found(target).map_err(io)?.is_none() {
-            // What is gone cannot be lost.
+            // A file that is gone cannot be lost.
             return Ok(());
         }
         if self.is_read(target)? {

@@ -52,7 +52,8 @@ fn a_cancelled_save_changes_nothing() {
 /// The disk, what is written, and the previous version that is kept.
 type Situation = (fn() -> MemoryFs, Terms, Option<&'static [u8]>);
 
-/// The situations in which a disk fails or loses power: what stands there, how it is written, and what is kept.
+/// The situations in which a disk fails or loses power: the existing files, how the new one is written, and what is
+/// kept.
 fn situations() -> Vec<Situation> {
     let older: Option<&[u8]> = Some(b"older still");
     vec![
@@ -104,11 +105,11 @@ fn a_failing_disk_costs_neither_the_old_file_nor_a_panic() {
                     Err(said) => {
                         let is_late = now.as_deref() == Some(NEW) && said.to_string().contains("power cut");
                         assert!(now == old || is_late, "{what}");
-                        // What failed once was put right.
+                        // After a single failure the previous version is back.
                         let is_as_before = fs.file(KEPT) == made().file(KEPT);
                         assert!(sticky || is_late || is_as_before, "{what}: {:?}", fs.file(KEPT));
                         assert!(said.to_string().contains(FILE), "{what}");
-                        // Where only one operation fails, what was begun is taken away.
+                        // If only one operation fails, the unfinished file is removed.
                         assert!(sticky || left_over(&fs).is_empty(), "{what}: {:?}", left_over(&fs));
                     }
                 }

@@ -16,7 +16,7 @@ fn tiny() -> Document {
     json["layers"][1]["y"] = json!(2);
     read_recipe(&json, &files)
 }
-/// A checksum of a document's parameters and its picture.
+/// A document's parameters, and a checksum of its picture.
 fn fingerprint(document: &Document) -> (String, u32) {
     let picture = flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect());
     (recipe::write(document).to_string(), crc32fast::hash(&picture))

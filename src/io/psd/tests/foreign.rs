@@ -1,4 +1,4 @@
-//! What other programs' files hold that ours never do: each a small file made here.
+//! Features that only files of other programs have: each a small file made here.
 
 use super::made::*;
 use super::read_back;
@@ -21,7 +21,7 @@ fn attack(bytes: &[u8]) {
     for i in 0..250 {
         let mut broken = bytes.to_vec();
         for j in 0..1 + i % 3 {
-            // Colours, resources and records come first; most of what may lie stands there.
+            // Colours, resources and records come first; most values that may be wrong are there.
             let at = dice(i, 4 * j) % broken.len().min(if i % 2 == 0 { usize::MAX } else { 900 });
             match dice(i, 4 * j + 1) % 5 {
                 0 => broken[at] ^= 1 << (dice(i, 4 * j + 2) % 8),
@@ -99,11 +99,11 @@ fn what_is_left_out_and_missed_brings_the_file_s_own_picture() {
     assert_eq!(pixel(&back.document, 1, 1), [30, 30, 30, 255]);
     assert!(back.notes[0].contains("“dark”: its adjustment is left out"), "{:?}", back.notes);
     assert!(back.notes[1].contains("differ from the file's own picture by 70.0"), "{:?}", back.notes);
-    // Where it changes nothing, the layers stay in sight.
+    // If it changes nothing, the layers stay visible.
     made.merged = vec![vec![100; 16]; 3];
     let back = opened(&made);
     assert_eq!(names(&back.document), [("ground", true), ("dark", true), ("The file's own picture", false)]);
-    // And where nothing is left out and the pictures agree, there is nothing to add.
+    // If nothing is left out and the pictures agree, there is nothing to add.
     assert_eq!(opened(&plain(4, 4, [100; 3])).notes, [""; 0]);
 }
 #[test]
@@ -241,7 +241,7 @@ fn an_artboard_has_its_ground_and_cuts_off_what_lies_beyond() {
 fn masks_are_switched_off_dense_and_inverted_as_the_file_says() {
     let rect: Vec<u8> = [0i32, 0, 4, 2].iter().flat_map(|v| v.to_be_bytes()).collect();
     let masked = |tail: &[u8]| {
-        // Of a picture unlike the layers, so that both are there.
+        // The picture is unlike the layers, so that both are there.
         let mut made = Made { merged: vec![(0..16).collect(); 3], ..plain(4, 4, [0; 3]) };
         let mut layer = coloured("top", 4, 4, [200; 3]);
         layer.channels.push((-2, vec![255; 8]));

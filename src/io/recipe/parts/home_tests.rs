@@ -107,7 +107,7 @@ fn a_part_may_be_made_of_a_selection_in_whatever_order_they_stand() {
     let region = json!({ "kind": "depth", "at": [24, 20], "tolerance": 0.5 });
     let with =
         |id: &str, selections: Value| body(&json!({ "surface": { "parts": part(id) }, "selections": selections }));
-    // One that bounds nothing covers the canvas.
+    // One without bounds covers the canvas.
     let document = read(&with("s1", json!([{ "id": "s1", "name": "Spot" }]))).unwrap();
     let outline = document.parts.list[0].outline().unwrap();
     assert!(matches!(outline, OutlineSource::Selection(name) if name == "Spot"));

@@ -75,7 +75,7 @@ fn a_project_gives_parts_back_with_the_same_surface() {
     let (a, b) = (document.surface.unwrap(), back.document.surface.clone().unwrap());
     assert!(a.depth_plane() == b.depth_plane() && a.coverage_plane() == b.coverage_plane());
     assert_eq!(project::write(file, &back.document, &Progress::default()).unwrap().unwrap(), bytes);
-    // And what differs is told.
+    // Differences are reported.
     let mut other = back.document.parts.list.clone();
     other.pop();
     assert!(back.document.difference(&back.document.with_parts(other)).is_some_and(|what| what.contains("parts")));

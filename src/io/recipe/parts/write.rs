@@ -1,5 +1,4 @@
-//! Writes the parts of a shape.
-//! Floor 5. Defaults are left out; those that stand in no type are the reader's.
+//! Writes the parts of a shape. Floor 5. Defaults are left out; those that are in no type come from the reader.
 
 use super::super::selections::id_of_kept;
 use super::super::surface;
@@ -18,7 +17,7 @@ pub fn write(parts: &Parts, list: &SelectionList) -> Value {
     parts.list.iter().map(|part| written(part, |name| id_of_kept(name, list))).collect()
 }
 
-/// One part as an edit tells it: as it stands in the list, but selections go by their names.
+/// One part as an edit describes it: as in the list, but with selections by name.
 pub fn write_part(part: &Part) -> Value {
     written(part, |name| Some(name.to_owned()))
 }

@@ -1,4 +1,4 @@
-//! Every preset's strokes on a canvas twice as large, reduced by half, beside the strokes themselves.
+//! Every preset's strokes on a canvas twice as large, reduced by half, compared with the strokes themselves.
 
 use super::{BrushPreset, presets};
 use crate::document::{Content, Document, Layer, Live, Progress, StrokeList, flatten};
@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 const SIZE: Size = Size::new(256, 192);
 
-/// Of the ball, px.
+/// Radius of the ball, px.
 const RADIUS: f32 = 88.0;
 
 /// A ball that fills most of the canvas.
@@ -105,7 +105,7 @@ fn every_preset_paints_the_same_at_twice_the_size() {
 }
 #[test]
 fn a_length_that_is_not_scaled_shows() {
-    // What was found before grain was scaled.
+    // The difference found before grain was scaled.
     let preset = presets().find(|preset| preset.key == "hatching").unwrap();
     let stroke = Stroke::new(preset.brush.clone(), preset.operator, preset.color, wave());
     let grain = |brush: &Brush| brush.grain.as_ref().map(|grain| grain.size_px);

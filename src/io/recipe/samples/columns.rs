@@ -2,17 +2,17 @@
 //! Floor 5.
 //!
 //! The text is base64 (RFC 4648, no padding) of: how many readings there are, as a varint (LEB128); then six columns
-//! (x, y, pressure, tilt x, tilt y, seconds), each a byte that says how it is told, and its values:
+//! (x, y, pressure, tilt x, tilt y, seconds), each a byte that says how it is encoded, and its values:
 //!
 //! | byte | values |
 //! |---|---|
 //! | k, 0 … 24 | multiples of 2⁻ᵏ: the integers' differences, each a zigzag varint |
-//! | 31 | any f32: the places of its bits in the order of all f32, told by the same differences |
-//! | 32 more | differences of those differences: what moves evenly |
+//! | 31 | any f32: its place in the order of all f32, encoded by the same differences |
+//! | 32 more | differences of those differences, for even motion |
 //! | 255 | one value for all: its four bytes, the lowest first |
 //!
-//! Each gives back the very bits of every f32. What the hand takes lies on a grid (`Sample::settled`), so that a step
-//! costs a byte or two; what was turned or calculated lies on none and costs three or four.
+//! Each restores every f32 bit by bit. Readings of a pen are on a grid (`Sample::settled`), so that a step costs a byte
+//! or two; what was turned or calculated is not, and costs three or four.
 
 use super::{COLUMNS, numbers, of_numbers};
 use crate::base64;
@@ -53,11 +53,11 @@ fn put_column(out: &mut Vec<u8>, column: &[f32]) {
     steps(&whole, twice < once).for_each(|step| put(out, step));
 }
 
-/// The least k of which a value is a multiple of 2⁻ᵏ; `None` where it is none that is told so.
+/// The least k of which a value is a multiple of 2⁻ᵏ; `None` if there is none that can be encoded.
 fn grid_of(v: f32) -> Option<u8> {
     const FARTHEST: f32 = 1e9;
     if v == 0.0 {
-        // −0 has bits of its own.
+        // −0 has different bits.
         return v.is_sign_positive().then_some(0);
     }
     if v.abs() > FARTHEST || !v.is_normal() {
@@ -73,7 +73,7 @@ fn scale(k: u8) -> f64 {
     f64::from(1u32 << k.min(FINEST))
 }
 
-/// Where a float stands among all floats: the next float is one more.
+/// Position of a float among all floats: the next float is one more.
 fn place(v: f32) -> i64 {
     let bits = i64::from(v.to_bits());
     if v.is_sign_negative() { -(bits & 0x7fff_ffff) - 1 } else { bits }

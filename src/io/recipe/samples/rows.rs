@@ -25,7 +25,7 @@ pub fn with_rows_packed(text: &[u8]) -> Cow<'_, [u8]> {
     out.into()
 }
 
-/// Where the next list begins that is the value of a key `samples`; `at` goes on behind the key.
+/// Where the next list that is the value of a key `samples` begins; `at` moves past the key.
 fn rows_after(text: &[u8], at: &mut usize) -> Option<usize> {
     const KEY: &[u8] = b"samples";
     loop {
@@ -51,7 +51,7 @@ fn skip(rest: &mut &[u8], byte: u8) -> bool {
     after.is_some()
 }
 
-/// `[[x, y, …], …]`, where nothing else stands in it.
+/// `[[x, y, …], …]`, if it holds nothing else.
 fn rows(rest: &mut &[u8]) -> Option<Vec<Sample>> {
     let mut samples = Vec::new();
     if !skip(rest, b'[') {

@@ -88,7 +88,7 @@ fn a_disk_that_gives_back_other_bytes_is_caught_before_anything_is_replaced() {
         replace(&CorruptingFs(fs.clone()), Path::new(FILE), NEW, &this().into(), &Progress::default()).unwrap_err();
     assert!(said.to_string().contains("other bytes"), "{said}");
     assert_eq!((fs.file(FILE).unwrap(), fs.names().len()), (OLD.to_vec(), 2));
-    // The proof can fail: the very same without reading back tells nothing, and the drawing is broken.
+    // The proof can fail: the same without reading back reports nothing, and the drawing is broken.
     let careless = CorruptingFs(disk());
     let mut handle = careless.create_new(Path::new("/d/part")).unwrap();
     handle.write_all(NEW).and_then(|()| handle.sync()).unwrap();
