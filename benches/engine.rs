@@ -120,7 +120,7 @@ fn ns_per_px(image: &PlacedImage, pool: &rayon::ThreadPool) -> f64 {
     ns[2]
 }
 
-/// ns per pixel of OpenCV's remap, one thread and all; `None`, said aloud, where there is no Python with cv2.
+/// ns per pixel of OpenCV's remap, on one thread and on all; `None`, with a message, if there is no Python with cv2.
 fn peer() -> Option<[f64; 2]> {
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/peers/remap.py");
     let size = [SIZE.width.to_string(), SIZE.height.to_string()];

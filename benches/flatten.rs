@@ -208,7 +208,7 @@ fn balls_first(bencher: Bencher, side: f32) {
     bencher.counter(ItemsCount::new(SCENE.area())).with_inputs(|| painted(&surface)).bench_local_values(flatten);
 }
 
-/// Again: they are known.
+/// Again: they are cached.
 #[divan::bench(args = BALLS, sample_count = 7, sample_size = 1)]
 fn balls_again(bencher: Bencher, side: f32) {
     let document = painted(&balls(side));

@@ -56,7 +56,7 @@ fn painted(size: Size, count: u32) -> Vec<Arc<Layer>> {
     (0..count).map(layer).collect()
 }
 
-/// Brushes by what is measured of them.
+/// Brushes by the property that is measured.
 fn brushes() -> Vec<(&'static str, Brush)> {
     let round = Brush { size: 128.0, ..Brush::default() };
     let with = |tip: Tip| Brush { tip, ..round.clone() };

@@ -2,7 +2,7 @@
 //! time, in strokes of one and a half seconds. Saved (encoded, read back, compared, on the disk) and opened, and how
 //! large the file is.
 //!
-//! The layer is rendered before, as it is in the window, where it was painted. `cargo bench --bench pen`.
+//! The layer is rendered beforehand, as in the window, where it was painted. `cargo bench --bench pen`.
 
 use divan::Bencher;
 use rilievo_engine::document::{Content, Document, Layer, Live, Progress, StrokeList, flatten};

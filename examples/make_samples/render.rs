@@ -278,7 +278,7 @@ fn largest_piece(hits: &[Option<Hit>], step: f64) -> Vec<Hit> {
     pieces.max_by(|a, b| a.len().cmp(&b.len()).then(nearest(a).total_cmp(&nearest(b)))).unwrap_or_default()
 }
 
-/// Whether one slope may lead from one hit to the other. Where a near piece ends it is steep, but the far one is not.
+/// Whether one slope may lead from one hit to the other. A near piece is steep where it ends, the far one is not.
 fn is_one_piece(a: Hit, b: Hit, step: f64) -> bool {
     let slope = |hit: Hit| hit.normal.truncate().length() / hit.normal.z;
     (a.z - b.z).abs() < (2.0 * slope(a).min(slope(b)) + 4.0) * step

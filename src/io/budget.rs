@@ -78,7 +78,7 @@ impl Default for Budget {
 }
 
 impl Budget {
-    /// The usual one, and a canvas of a document that is larger: whoever reads it says so again.
+    /// The usual budget, raised for a document with a larger canvas; whoever reads it must raise theirs again.
     pub fn holding(document: &Document) -> Self {
         let (usual, size) = (Self::default(), document.size);
         let area_px = usual.area_px.max(size.area() as u64);

@@ -145,7 +145,7 @@ impl OutputFile {
     }
     /// The target is the old file or the new one, never a part of it.
     pub fn replace(&self, bytes: &[u8]) -> Result<()> {
-        // It is cancelled while it is painted, if at all: writing is short.
+        // It can be cancelled only during painting: writing is short.
         replace(&Disk, &self.named, bytes, &self.terms, &Progress::default()).map(drop)
     }
 }

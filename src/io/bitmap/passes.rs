@@ -1,6 +1,6 @@
-//! How often a JPEG goes over its picture, counted before it is decoded: progressive ones may do so any number of
-//! times in a few bytes each. Floor 5. Not here: JPEGs in the strips of a TIFF (`tiff/within`), which are counted one
-//! by one.
+//! How many passes a JPEG makes over its picture, counted before it is decoded: progressive ones may do so any number
+//! of times in a few bytes each. Floor 5. Not here: JPEGs in the strips of a TIFF (`tiff/within`), which are counted
+//! one by one.
 
 use crate::Budget;
 use crate::math::Size;
@@ -42,7 +42,7 @@ pub fn check(file: &Path, bytes: &[u8], size: Size, budget: &Budget) -> Result<(
     Ok(())
 }
 
-/// Goes from marker to marker; what follows a damaged one does not count.
+/// Walks from marker to marker; what follows a damaged one does not count.
 pub fn work(bytes: &[u8]) -> JpegWork {
     let mut work = JpegWork::default();
     let mut at = 0;

@@ -191,7 +191,7 @@ fn photometric(bytes: &[u8]) -> Option<Photometric> {
     Some(Photometric { at, directory, value })
 }
 
-/// How the samples lie, and what they mean.
+/// The layout and meaning of the samples.
 struct TiffLayout {
     size: Size,
     samples: usize,

@@ -7,7 +7,7 @@ use std::path::Path;
 
 /// Refuses headers that promise more than the bytes that follow could hold.
 ///
-/// * `bits`: of all samples, as wide as the file itself stores them, before they are packed.
+/// * `bits`: total of all samples, as wide as the file stores them, before compression.
 ///
 /// DEFLATE reaches 1032 : 1, LZW about 2500 : 1, one bit of fax a whole row.
 pub fn plausible(file: &Path, size: Size, bits: u64, file_bytes: usize) -> Result<()> {
@@ -19,7 +19,7 @@ pub fn plausible(file: &Path, size: Size, bits: u64, file_bytes: usize) -> Resul
     Ok(())
 }
 
-/// Bits of a pixel as a PNG stores it, by its header; `None` where it is not whole.
+/// Bits of a pixel as a PNG stores it, by its header; `None` if that is incomplete.
 pub fn png_pixel_bits(bytes: &[u8]) -> Option<u64> {
     let samples = match bytes.get(25)? {
         0 | 3 => 1,

@@ -103,7 +103,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<ImportedBr
 }
 
 impl ImportedBrush {
-    /// A brush that stamps one picture as large as it is. `spacing`: of the longer side.
+    /// A brush that stamps one picture in its own size. `spacing`: share of the longer side.
     fn stamp(name: String, tip: PictureSource, spacing: f32) -> Self {
         let size = tip.picture.size.longer_side();
         Self::with_tip(name, Tip::Picture(tip), size, spacing)

@@ -62,7 +62,7 @@ struct Lengths {
 }
 
 impl Lengths {
-    /// A length in their radii as one in our diameters.
+    /// Converts a length in their radii to one in our diameters.
     fn diameters(self) -> f32 {
         self.radius / self.size
     }

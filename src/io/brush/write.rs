@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 pub struct Encoded {
     /// With the names of its pictures.
     pub preset: BrushPreset,
-    /// The pictures first, so that a preset that is there is whole.
+    /// The pictures first, so that a preset that exists is complete.
     files: Vec<(PathBuf, Asset)>,
 }
 

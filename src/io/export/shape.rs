@@ -23,7 +23,7 @@ rilievo_engine::named! {
         /// 1 near … 0 far; in an EXR px toward the viewer.
         Height = "_h",
         Mask = "_mask",
-        /// The number of the part that is seen, from 1 on; 0 where there is none.
+        /// The number of the visible part, from 1; 0 if there is none.
         Parts = "_id",
     }
 }
@@ -57,7 +57,7 @@ impl ShapeFiles {
     }
 }
 
-/// Endings of the files that shapes are made of and written to.
+/// Extensions of the files that shapes are made from and written to.
 const ENDINGS: [&str; 10] = ["png", "exr", "ora", "psd", "jpg", "jpeg", "webp", "tif", "tiff", "json"];
 
 /// How maps are written.

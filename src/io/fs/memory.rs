@@ -125,7 +125,7 @@ impl MemoryFs {
     pub fn names(&self) -> Vec<String> {
         self.state().names.keys().map(|name| name.display().to_string()).collect()
     }
-    /// One more operation: it fails if it is its turn.
+    /// Counts one more operation, which fails if it is its turn.
     fn turn(&self) -> io::Result<Option<InjectedError>> {
         let mut state = self.state();
         let number = state.operations;
@@ -200,7 +200,7 @@ impl Fs for MemoryFs {
         self.may_move(inode)?;
         self.inode(to).map_or(Ok(()), |inode| self.may_move(inode))?;
         if self.inode(to).is_ok_and(|there| there == inode) {
-            // Two names of one file stay as they are.
+            // Two names of one file are left unchanged.
             return Ok(());
         }
         self.change(vec![(from.into(), None), (to.into(), Some(inode))]);

@@ -13,7 +13,7 @@ use std::time::Duration;
 
 /// A disk. Paths are absolute or relative to the working folder; every error is the system's own.
 pub trait Fs: Send + Sync {
-    /// A new file for writing; fails where there is one already.
+    /// A new file for writing; fails if the file exists.
     fn create_new(&self, path: &Path) -> io::Result<Box<dyn FileHandle>>;
     /// A file for reading.
     fn open(&self, path: &Path) -> io::Result<Box<dyn FileHandle>>;

@@ -9,7 +9,7 @@ use crate::raster::Plane;
 
 /// Longer sides at which the curl is measured.
 const SIDES_PX: [usize; 3] = [512, 256, 128];
-/// Mean |n̄| at a rim from which on it is that of a surface, and up to which it is not.
+/// Mean |n̄| at a rim: up to the first it is not the rim of a surface, from the second on it is.
 const LEVEL_RIM: f32 = 0.2;
 const LEANING_RIM: f32 = 0.5;
 
@@ -101,7 +101,7 @@ pub struct ReducedMap {
 }
 
 impl ReducedMap {
-    /// The map in each of the sizes that it is not smaller than; as it is where it is smaller than all.
+    /// The map reduced to each size that is smaller than its own, or unchanged where a size is not smaller.
     pub fn all(vectors: &Plane<Vec3>, inside: &Plane<bool>) -> Vec<Self> {
         let longer = vectors.width().max(vectors.height());
         let mut factors: Vec<usize> = SIDES_PX.iter().map(|side| longer.div_ceil(*side).max(1)).collect();

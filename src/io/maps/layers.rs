@@ -58,8 +58,8 @@ pub fn fitting(exr: &ExrFile, role: MapRole) -> Vec<String> {
 const MOST_BANDS: usize = 8;
 const MOST_LENGTH_ERROR: f64 = 0.1;
 
-/// Colours under a name that speaks of no normals may be anything, such as the finished picture: whether they are
-/// vectors of length 1, as they are or about ½. Other layers go by their names.
+/// Colours whose name does not mention normals may be anything, such as the finished picture: whether they are vectors
+/// of length 1, as stored or about ½. Other layers are judged by their names.
 fn may_hold_normals(exr: &ExrFile, pass: &ExrPass) -> bool {
     let colours = pass.letters("rgb").filter(|_| pass.letters("xyz").is_none());
     let Some(colours) = colours.filter(|_| normal_rank(pass).is_some_and(|rank| rank > SURE_RANK)) else { return true };

@@ -162,7 +162,7 @@ fn depth_alone(overrides: Option<bool>, leaning: f32, findings: &mut Findings) -
 }
 
 impl UnderstoodMaps {
-    /// Normalises depth and derives the map that is missing. What is cancelled meanwhile is of no use.
+    /// Normalises depth and derives the map that is missing. If cancelled meanwhile, the result is of no use.
     pub fn completed(self, overrides: &ConventionOverrides, findings: &mut Findings, progress: &Progress) -> Maps {
         let UnderstoodMaps { normals, planar, inside, mut coverage, is_masked, fov_degrees } = self;
         let size = inside.size();

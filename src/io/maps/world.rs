@@ -34,7 +34,7 @@ pub fn from_attribute(m: [f32; 16]) -> Option<Mat3> {
     orthonormal(matrix)
 }
 
-/// The matrix without scale; `None` where it is no rotation or reflection.
+/// The matrix without scale; `None` if it is not a rotation or reflection.
 pub fn orthonormal(matrix: Mat3) -> Option<Mat3> {
     let scale = matrix.determinant().abs().cbrt();
     let unit = matrix * (1.0 / scale);

@@ -31,7 +31,7 @@ pub fn finished(file: &Path, bytes: &[u8], maps: &str, budget: &Budget) -> Resul
 
 /// A layer as a picture.
 fn picture(file: &Path, exr: &ExrFile, pass: &ExrPass, budget: &Budget) -> Result<Picture> {
-    // Once as it is gathered, once as it is shared.
+    // Once while it is collected, once as the shared copy.
     let bytes = exr.size().area() as u64 * 2 * size_of::<[f32; 4]>() as u64;
     budget.room(file, &format!("a picture of {} pixels of light", exr.size()), bytes)?;
     let mut texels = Vec::with_capacity(exr.size().area());

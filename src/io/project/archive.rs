@@ -96,7 +96,7 @@ impl<'a> Archive<'a> {
             Ok(None) | Err(_) => Err(Error::decode(self.path(name), "the entry is damaged")),
         }
     }
-    /// The first bytes of an entry, unpacked no further; its checksum is not looked at. `None` where there are none.
+    /// The first bytes of an entry, unpacked no further; its checksum is not checked. `None` if there are none.
     pub fn beginning(&self, name: &str, most: usize) -> Option<Vec<u8>> {
         let first = |entry: &mut dyn Read| {
             let mut bytes = Vec::new();

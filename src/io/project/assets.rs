@@ -32,7 +32,7 @@ pub struct AssetList {
     made: MadeFiles,
 }
 
-/// Files made of data that came from no file, by its address in memory; kept, so that it is encoded once.
+/// Files made from data that came from no file, by its address in memory; kept, so that it is encoded once.
 #[derive(Default)]
 pub struct MadeFiles {
     pictures: BTreeMap<usize, (Picture, Asset)>,
@@ -170,7 +170,7 @@ impl AssetList {
     fn add(&mut self, name: &str, asset: Asset) -> String {
         self.add_in(FOLDER, name, asset)
     }
-    /// The entry that holds these bytes: one that is there already, or a new one called as the file was.
+    /// The entry that holds these bytes: an existing one, or a new one with the name of the file.
     fn add_in(&mut self, folder: &str, name: &str, asset: Asset) -> String {
         let known = self.files.iter().find(|(known, held)| known.starts_with(folder) && *held == asset);
         if let Some((known, _)) = known {

@@ -11,7 +11,7 @@
 //! * an isolated group with a mask becomes one too;
 //! * where several layers keep to the surface and the format has masks, its edge is the mask of a group around them, so
 //!   that it cuts them once;
-//! * a layer that changes or reads what lies beneath in a way that cannot be expressed (radiance scaling, exclusion,
+//! * a layer that changes or reads what is beneath in a way that cannot be expressed (radiance scaling, exclusion,
 //!   plus, blending in linear light, a pass-through group with a mask or opacity) is composed with all that lies
 //!   beneath it in its scope.
 

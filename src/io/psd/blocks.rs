@@ -15,7 +15,7 @@ const ADJUSTMENTS: [[u8; 4]; 17] = [
     *b"post", *b"thrs", *b"selc", *b"grdm", *b"expA", *b"vibA",
 ];
 
-/// The ground of an artboard, which also cuts off what lies beyond it.
+/// The ground of an artboard, which also cuts off what is beyond it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ArtboardBackground {
     pub rect: Rect,
@@ -131,7 +131,7 @@ fn blending(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor) {
 fn ground(mut data: ByteCursor, colours: &Colours) -> Option<ArtboardBackground> {
     let board = descriptor::read(&mut data)?;
     let rect = board.object("artboardRect")?;
-    // Within what a canvas can be, so that sums of them stay numbers.
+    // Limited to possible canvas sizes, so that sums do not overflow.
     let side = |name: &str| rect.number(name).map(|v| v.max(-1e6).min(1e6).round() as i32);
     let rect = Rect::new(side("Left")?, side("Top ")?, side("Rght")?, side("Btom")?);
     let colour = match board.number("artboardBackgroundType").map(|kind| kind as i32) {

@@ -14,7 +14,7 @@ pub struct ChannelLayout {
     pub height: usize,
     /// 1, 8, 16 or 32.
     pub bits: u16,
-    /// Colours, not coverage: of 32 bits they are linear light.
+    /// Colours, not coverage: with 32 bits they are linear light.
     pub is_colour: bool,
     /// Row lengths take four bytes instead of two.
     pub large: bool,

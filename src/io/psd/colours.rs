@@ -108,7 +108,7 @@ impl Colours<'_> {
             None => rgba,
         }
     }
-    /// A number of the table's; a number beyond it is black.
+    /// A colour of the table by its number; a number beyond the table is black.
     fn looked_up(&self, number: u8) -> [u8; 3] {
         let (count, number) = (self.table.len() / 3, usize::from(number));
         [0, 1, 2].map(|c| self.table.get(c * count + number).filter(|_| number < count).copied().unwrap_or(0))
@@ -161,7 +161,7 @@ impl Press {
         printed.transform(&[0; 3], &mut inks).ok()?;
         self.transform.transform(&inks, &mut rgb).ok()?;
         let [r, g, b] = rgb.map(|v| srgb::decode(f32::from(v) / 65535.0));
-        // Beyond this it is no black.
+        // Beyond this it is not black.
         Some(srgb::luminance(r, g, b).max(0.0).min(0.18))
     }
     /// Puts the inks' colours into straight pixels, some thousand at a time.

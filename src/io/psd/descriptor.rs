@@ -91,7 +91,7 @@ impl DescriptorObject {
     }
 }
 
-/// A descriptor behind its version; `None` where it is cut short, or holds what is not understood.
+/// A descriptor after its version; `None` if it is cut short, or holds something unknown.
 pub fn read(cursor: &mut ByteCursor) -> Option<DescriptorObject> {
     cursor.u32()?;
     object(cursor, DEEPEST, &mut MOST.clone())

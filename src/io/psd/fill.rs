@@ -187,7 +187,7 @@ fn stops(ramp: &DescriptorObject, colours: &Colours) -> Option<Vec<GradientStop>
     all.into_iter().map(stop).collect()
 }
 
-/// The value at a place: between two marks it is halfway where the middle lies.
+/// The value at a place: between two marks it is halfway at their middle.
 fn at<const N: usize>(marks: &[Mark<[f32; N]>], t: f32) -> Option<[f32; N]> {
     let next = marks.partition_point(|mark| mark.t <= t);
     let (Some(from), Some(to)) = (next.checked_sub(1).map(|i| marks[i]), marks.get(next)) else {

@@ -9,7 +9,7 @@ use crate::math::srgb::Color;
 use crate::math::{Rect, Size};
 use crate::raster::TileGrid;
 
-/// How far a fill's pixels may be from it, of 255, before they are believed and not it.
+/// How far a fill's pixels may differ from it, of 255, before they win over it.
 const SAME: u8 = 3;
 
 /// The content of a layer. The shape that its fill's pixels show goes into its mask.
@@ -99,7 +99,7 @@ fn filled_rect(record: &LayerRecord, gradient: &GradientFill, size: Size) -> Rec
     if gradient.aligned && !layer.is_empty() { layer } else { size.rect() }
 }
 
-/// The pixels are of those colours, as far as they are there.
+/// Whether the pixels have those colours, faint ones aside.
 fn is_of(record: &LayerRecord, colour: impl Fn([i32; 2]) -> Option<Color>) -> bool {
     let width = record.rect.width().max(1);
     record.rgba.as_chunks::<4>().0.iter().enumerate().all(|(i, &[r, g, b, a])| {

@@ -217,7 +217,7 @@ impl<'a> RecordReader<'a> {
         self.spend(size.area() as u64)?;
         Ok(Some(rect))
     }
-    /// Counts pixels that will be held, of four bytes.
+    /// Counts pixels of four bytes that will be in memory.
     pub fn spend(&mut self, px: u64) -> Result<()> {
         self.used_px += px;
         if self.used_px > self.budget.document_px {

@@ -174,7 +174,7 @@ impl RecordBuilder {
     }
 }
 
-/// A look of 16 bits with its values rounded to bytes, as it is stored where those are all that there is.
+/// A look of 16 bits with its values rounded to bytes, for storing where only bytes exist.
 fn in_bytes(file: &Path, look: EncodedPixels, rgba: &[u8]) -> Result<EncodedPixels> {
     if rgba.chunks_exact(4).all(|pixel| pixel[3] == 0) {
         return pixels::encode(file, &TileGrid::default(), None);

@@ -47,7 +47,7 @@ pub fn merged(
     slots.iter_mut().take(header.colours()).for_each(|slot| *slot = planes.next());
     let alpha = planes.next();
     let mut rgba = colours.to_srgb(header.size, &slots, alpha.as_deref());
-    // Photoshop lays the colours on white as far as they are transparent; some programs do not.
+    // Photoshop blends the colours with white as far as they are transparent; some programs do not.
     if has_alpha && count.is_some() && is_on_white(&rgba) {
         off_white(&mut rgba);
     }
@@ -89,7 +89,7 @@ fn is_on_white(rgba: &[u8]) -> bool {
     rgba.as_chunks::<4>().0.iter().all(|[r, g, b, a]| [r, g, b].iter().all(|c| c.saturating_add(3) >= 255 - a))
 }
 
-/// Takes away the white beneath colours as far as they are transparent; where they are wholly so, no colour is left.
+/// Removes the white beneath colours as far as they are transparent; fully transparent pixels keep no colour.
 pub fn off_white(rgba: &mut [u8]) {
     for [colour @ .., alpha] in rgba.as_chunks_mut::<4>().0 {
         let a = i32::from(*alpha);

@@ -82,7 +82,7 @@ pub struct LayerRecord {
     pub visible: bool,
     pub lock_alpha: bool,
     pub lock_all: bool,
-    /// As the format has it.
+    /// As in the format.
     pub label: LayerLabel,
     pub section: RecordSection,
     pub mask: Option<RecordMask>,

@@ -134,7 +134,7 @@ impl PatternResource {
     pub fn picture(&self) -> (Size, &[u8]) {
         (self.size, &self.rgba)
     }
-    /// Straight RGBA of a canvas filled with it; `None` where it is another.
+    /// Straight RGBA of a canvas filled with it; `None` if the fill names another pattern.
     pub fn pixels(&self, fill: &PatternFill, size: Size) -> Option<Vec<u8>> {
         if self.id != fill.id {
             return None;

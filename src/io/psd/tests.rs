@@ -290,7 +290,7 @@ fn groups_nested_too_deep_are_opened_up_and_many_masks_are_refused() {
     // One level is kept for the group that the layers may be hidden in.
     assert_eq!(walk.iter().map(|(path, _)| depth(path)).max(), Some(Budget::default().group_depth));
     assert!(walk.iter().any(|(_, layer)| layer.name == "leaf"));
-    // Each covers the canvas once it is read, though it takes no room in the file.
+    // Each covers the canvas once read, though it takes no space in the file.
     let mask = Some(RecordMask { rect: Rect::EMPTY, outside: 9, values: Vec::new(), disabled: false });
     let masked = vec![LayerRecord { mask, ..LayerRecord::default() }; 50];
     let bytes = emit::emit(size, &masked, &[0; 64], (&[], &Guides::default()), &[]);

@@ -166,7 +166,7 @@ impl TreeBuilder<'_> {
             list.push(Arc::new(layer));
         }
     }
-    /// An artboard's ground lies beneath its layers, and what lies beyond it is cut off.
+    /// An artboard's ground is beneath its layers, and what is beyond it is cut off.
     fn lay_ground(&self, record: &mut LayerRecord, ground: ArtboardBackground, layers: &mut Vec<Arc<Layer>>) {
         let rect = ground.rect.intersect(self.size.rect());
         let values = vec![255; rect.width() * rect.height()];

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 /// Nodes of a block.
 const NODES: usize = SIDE * SIDE;
-/// Blocks of a layer: what a description holds of them alone.
+/// Most blocks of a layer: as many as a description with nothing else can hold.
 const MOST_BLOCKS: usize = Document::MOST_VALUES / 150;
 
 /// `{ "blocks": [{ "at": [column, row], "x": [64 numbers], "y": [64 numbers] }, …] }`: for each 64 px wide block the

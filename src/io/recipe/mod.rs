@@ -69,7 +69,7 @@ use std::{path::Path, sync::Arc};
 /// The newest schema this program reads. A document that needs nothing newer is written as the first.
 pub const VERSION: i64 = 2;
 
-/// Whether a layer lies on the surface unwrapped, which the first version does not know.
+/// Whether a layer is on the unwrapped surface, which the first version does not know.
 fn unwraps(document: &Document) -> bool {
     let is_print = |operator: Operator| matches!(operator, Operator::Surface { .. });
     let is_new = |layer: &Layer| match &layer.content {
@@ -111,7 +111,7 @@ pub struct OtherSurface<'a> {
     pub files: &'a dyn Files,
 }
 
-/// Loads a recipe; the files it names lie in its own folder or below.
+/// Loads a recipe; the files it names are in its own folder or below.
 pub fn load(file: &Path, budget: &Budget) -> Result<Document> {
     load_onto(file, budget, None)
 }

@@ -1,5 +1,5 @@
-//! The first directory of a TIFF or BigTIFF: where its entries lie, and the file with another one.
-//! Floor 5. Not here: what entries mean (`tiff`); the `tiff` crate reads their values.
+//! The first directory of a TIFF or BigTIFF: where its entries are, and the file with a replaced directory. Floor 5.
+//! Not here: what entries mean (`tiff`); the `tiff` crate reads their values.
 
 /// A directory and how its file writes numbers.
 pub struct Directory {
@@ -95,7 +95,7 @@ impl Directory {
         }
         out
     }
-    /// Addresses as the value of an entry: themselves where they are one, else where they were put.
+    /// Addresses as the value of an entry: a single one itself, several by the place where they were written.
     fn list(&self, out: &mut Vec<u8>, values: &[u64]) -> Vec<u8> {
         let all: Vec<u8> = values.iter().flat_map(|v| self.digits(*v, self.address_bytes())).collect();
         if values.len() == 1 {

@@ -145,7 +145,7 @@ fn bits(text: &str) -> Vec<u8> {
 }
 #[test]
 fn zstd_is_unpacked_strip_by_strip() {
-    // Frames of one block that is stored as it is.
+    // Frames of one block that is stored uncompressed.
     let frame = |data: &[u8]| {
         let block = (data.len() as u32) << 3 | 1;
         [&[0x28, 0xb5, 0x2f, 0xfd, 0x20, data.len() as u8][..], &block.to_le_bytes()[..3], data].concat()

@@ -17,7 +17,7 @@ use std::path::Path;
 /// Reported when switched on: they have no counterpart here.
 const LEFT_OUT: [(&str, &str); 4] =
     [("Wtdg", "wet edges"), ("Nose", "noise"), ("useDualBrush", "dual brush"), ("useBrushPose", "brush pose")];
-/// Points of a curve that is no line.
+/// Points of a curve that is not straight.
 const POINTS: usize = 9;
 /// Texture blends where white keeps the stroke and black takes it away; others are reported.
 const TAKEN_BLENDS: [&[u8]; 2] = [b"Mltp", b"Sbtr"];
@@ -173,7 +173,7 @@ impl AbrConversion<'_> {
         if !self.preset.flag("bothAxes") && self.brush.scatter > 0.0 {
             self.notes.push("it scatters to all sides, not across the stroke alone".to_owned());
         }
-        // So many dabs at a place lie as densely as so much closer places.
+        // Several dabs at a place are as dense as places that many times closer.
         let count = self.preset.number("Cnt ").unwrap_or(1.0).max(1.0).min(16.0);
         self.brush.spacing = (self.brush.spacing / count).max(*Brush::SPACING.start());
         let counts = self.preset.object("countDynamics");

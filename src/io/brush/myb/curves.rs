@@ -53,7 +53,7 @@ impl Scales {
             }
             "attack_angle" => whole(Input::Attack, [-180.0, 180.0]),
             "brush_radius" => Some(InputMapping::Still(radius)),
-            // As large as it is, not turned.
+            // In its own size, not rotated.
             "viewzoom" | "barrel_rotation" => Some(InputMapping::Still(0.0)),
             _ => None,
         }
@@ -62,7 +62,7 @@ impl Scales {
 
 /// How one of their inputs relates to ours.
 pub enum InputMapping {
-    /// It is always this.
+    /// Always this value.
     Still(f32),
     Runs(Input, Vec<CurvePiece>),
 }

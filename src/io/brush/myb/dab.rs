@@ -75,7 +75,7 @@ fn flows(brush: Brush, flow: Added) -> Brush {
     with(Brush { flow: flow.base, ..brush }, Property::Flow, &flow)
 }
 
-/// Colours that change, paint that is taken up or away.
+/// Colour changes, pickup and erasing.
 pub fn paint(settings: &mut MyPaintSettings, brush: Brush) -> Brush {
     let mut brush = brush;
     let changes = [

@@ -1,5 +1,5 @@
-//! How large a dab of MyPaint's is that is only a few pixels wide: its rim is smoothed in a way that lengthens its
-//! axes. Floor 5.
+//! The size of a MyPaint dab that is only a few pixels wide: its rim is smoothed in a way that lengthens its axes.
+//! Floor 5.
 
 use super::added::{Added, AddedInput};
 use super::curves::STEPS;

@@ -63,7 +63,7 @@ fn what_lies_on_parts_is_written_as_it_was_read_and_stands_where_they_stand() {
     }
     assert_eq!(written["layers"][1]["strokes"][1]["on"], "eye");
     assert_eq!(written["layers"][1]["strokes"][1]["transform"], on_parts()[1]["strokes"][1]["transform"]);
-    // And one that lies elsewhere is another document.
+    // One that is elsewhere makes a different document.
     let moved = document.with_layer(base.id, |layer| layer.on = None).unwrap();
     assert!(moved.difference(&again).is_some_and(|what| what.contains("home")));
 }

@@ -68,7 +68,7 @@ fn apart(a: &[[f32; 3]], b: &[[f32; 3]], ground: Color) -> Vec<f32> {
     apart
 }
 
-/// A preset's stroke as large as it is, and twice as large and reduced again.
+/// A preset's stroke in its own size, and twice as large and reduced again.
 fn twice(preset: &BrushPreset, surface: Option<Arc<Surface>>) -> Vec<f32> {
     let dark = u32::from(preset.color.r) + u32::from(preset.color.g) + u32::from(preset.color.b) < 380;
     let ground = if dark { Color::WHITE } else { Color { r: 40, g: 40, b: 46, a: 255 } };

@@ -6,8 +6,8 @@ use super::{ROWS, UNSAID, of_numbers};
 use crate::paint::Sample;
 use std::borrow::Cow;
 
-/// A document's text with long lists of readings as the text that they are written as now: before it is parsed, for as
-/// values a number takes eighty bytes. What is not wholly rows of numbers stays, for the parser to say what is wrong.
+/// A document's text with long lists of readings in today's packed form: before it is parsed, for as values a number
+/// takes eighty bytes. What is not wholly rows of numbers stays, for the parser to say what is wrong.
 pub fn with_rows_packed(text: &[u8]) -> Cow<'_, [u8]> {
     let mut out = Vec::new();
     let (mut copied, mut at) = (0, 0);
