@@ -32,7 +32,7 @@ pub enum Weights {
 impl Bend {
     pub const MOST_ANCHORS: usize = 10_000;
 
-    /// Takes anchors and pieces along with the canvas.
+    /// Moves anchors and pieces with the canvas.
     ///
     /// * `point`: where a point is now; `stretch`: how lengths and directions changed about it.
     pub fn go_along(&mut self, point: impl Fn(Vec2) -> Vec2, stretch: impl Fn(Vec2) -> Mat2) {

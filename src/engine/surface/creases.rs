@@ -8,7 +8,7 @@ use crate::raster::Plane;
 use rayon::prelude::*;
 use std::collections::HashSet;
 
-/// A step of n̄ of at least this length turns at a crease where it is so many times as long as the steps before and
+/// A step of n̄ of at least this length turns at a crease where it is this many times as long as the steps before and
 /// after it, and these are short: detail of a pixel or two is no crease. One that touches such a step is one from the
 /// second row on. n̄ changes steadily up to a smooth silhouette, where n_z falls ever faster.
 const CERTAIN: Sharpness = Sharpness { least: 0.3, times: 4.0 };

@@ -23,7 +23,7 @@ impl Nearest {
         let (dx, dy) = (i64::from(at[0]) - i64::from(place[0]), i64::from(at[1]) - i64::from(place[1]));
         if place == NONE { i64::MAX } else { dx * dx + dy * dy }
     }
-    /// The nearer of the two; of equals the one that was known first.
+    /// The nearer of the two; if equal, the one that was known first.
     fn or(self, place: Place) -> Self {
         let squared = Self::squared(self.at, place);
         if squared < self.squared { Self { place, squared, ..self } } else { self }
@@ -33,7 +33,7 @@ impl Nearest {
 /// For each pixel the index of a nearest valid pixel (itself where valid); `None` where nothing is valid.
 ///
 /// Two sweeps that pass the nearest candidate on (Danielsson's 8-neighbour scheme: exact but for rare ties within a
-/// pixel). Sides are at most 65,534 px; of longer ones nothing is told.
+/// pixel). Sides are at most 65,534 px; for longer ones the result is `None`.
 pub fn nearest(valid: &Plane<bool>) -> Option<Plane<u32>> {
     let (w, h) = (valid.width(), valid.height());
     let own = |x: usize, y: usize| [x as u16, y as u16];
@@ -70,10 +70,10 @@ pub fn nearest(valid: &Plane<bool>) -> Option<Plane<u32>> {
 pub struct KnownNearest(Option<(Plane<bool>, Plane<u32>)>);
 
 impl KnownNearest {
-    /// Of larger maps nothing is kept: it takes 5 bytes a pixel.
+    /// Nothing is kept for larger maps: it takes 5 bytes a pixel.
     const MOST_PX: usize = 1 << 22;
 
-    /// As [`nearest`], taken out where it is known.
+    /// Like [`nearest`], but takes what was kept if it is for the same pixels.
     pub fn take(&mut self, valid: &Plane<bool>) -> Option<Plane<u32>> {
         match self.0.take() {
             Some((known, nearest)) if known == *valid => Some(nearest),
@@ -86,7 +86,7 @@ impl KnownNearest {
     }
 }
 
-/// Takes in what the row above knows, and what stands on the left.
+/// Takes in what is known in the row above and on the left.
 fn sweep_right(here: &mut [Place], above: &[Place], y: usize) {
     for x in 0..here.len() {
         let at = [x as u16, y as u16];
@@ -101,7 +101,7 @@ fn sweep_right(here: &mut [Place], above: &[Place], y: usize) {
     }
 }
 
-/// Takes in what the row below knows, and what stands on the right.
+/// Takes in what is known in the row below and on the right.
 fn sweep_left(here: &mut [Place], below: &[Place], y: usize) {
     for x in (0..here.len()).rev() {
         let at = [x as u16, y as u16];

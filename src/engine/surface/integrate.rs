@@ -44,8 +44,8 @@ pub fn depth_from_normals_while(normals: &Plane<Vec3>, inside: &Plane<bool>, go_
     Some(IntegratedDepth { depth, range_px })
 }
 
-/// Heights that follow normals while a hand changes these: begun where they were, with the springs of the normals that
-/// they began with. Good enough to be looked at for a moment; [`depth_from_normals`] is what stays.
+/// Heights that follow normals while a hand changes these: each solve begins at the last heights, with the springs of
+/// the first normals. Good enough to be looked at for a moment; [`depth_from_normals`] is what stays.
 pub struct Following {
     solver: SpringSolver,
     scratch: SolveScratch,
@@ -74,7 +74,7 @@ impl Following {
         let slopes = Slopes { normals, inside: &self.inside };
         let [right, down] = self.solver.grid().springs();
         let width = self.inside.width();
-        // What flows along its own springs: the slopes are new.
+        // The flow along its own springs, from the new slopes.
         let flow = |x: usize, y: usize, axis: usize| {
             let spring = [right, down][axis][y * width + x];
             if spring > 0.0 { spring * slopes.edge((x, y), axis).1 } else { 0.0 }

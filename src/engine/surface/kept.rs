@@ -1,4 +1,4 @@
-//! What a surface takes of memory: its maps, and what was computed from them and is kept for speed. Floor 2.
+//! The memory that a surface uses: its maps, and what was computed from them and is kept for speed. Floor 2.
 
 use super::Surface;
 use super::cache::RecentCache;
@@ -36,7 +36,7 @@ impl<K: PartialEq, V: KeptBytes> KeptBytes for RecentCache<K, V> {
 }
 
 impl Surface {
-    /// Bytes of the maps, with what is found when a surface is made.
+    /// Bytes of the maps and of what is computed when a surface is made.
     pub fn map_bytes(&self) -> u64 {
         const PER_PX: usize = 4 * size_of::<f32>() + 2 * size_of::<u8>();
         let smooth_links = self.smooth_links.as_ref().map_or(0, |plane| plane.kept_bytes());
@@ -50,7 +50,7 @@ impl Surface {
         let planes = self.unwrappings().kept_bytes() + self.plane_yields.kept_bytes() + self.plane_springs.kept_bytes();
         maps + found + planes + self.sheets().kept_bytes()
     }
-    /// Lets go of what can be computed again. What somebody else holds stays until they let go of it, too.
+    /// Drops what can be computed again. What others hold stays in memory until they drop it, too.
     pub fn let_go(&self) {
         self.curvatures().clear();
         self.rims_cell().clear();

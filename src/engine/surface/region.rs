@@ -1,5 +1,5 @@
 //! Regions of a surface: all that faces the same way as a point, lies as deep, bends as it does, belongs to its object,
-//! would shine with it, or flows along it (MATH 7). Floor 2. A region is found anew wherever its surface changes. Not
+//! would shine with it, or flows along it (MATH 7). Floor 2. A region is computed again when its surface changes. Not
 //! here: selections and masks, which use it.
 
 mod deviation;
@@ -37,7 +37,7 @@ crate::named! {
 }
 
 impl RegionKind {
-    /// Of the tolerance: of angles, depths or curvatures.
+    /// The unit of the tolerance: of angles, depths or curvatures.
     pub fn tolerances(self) -> Range {
         match self {
             RegionKind::Direction | RegionKind::Shine => 0.0..=180.0,
@@ -46,7 +46,7 @@ impl RegionKind {
             RegionKind::Curvature => 0.0..=2.0,
         }
     }
-    /// The tolerance where none is said.
+    /// The tolerance where none is given.
     pub const fn tolerance(self) -> f32 {
         match self {
             RegionKind::Direction | RegionKind::Shine | RegionKind::Flow => 15.0,
@@ -56,7 +56,7 @@ impl RegionKind {
     }
 }
 
-/// A region of a surface, as it is told.
+/// The description of a region of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceRegion {
     pub kind: RegionKind,
@@ -66,7 +66,7 @@ pub struct SurfaceRegion {
     pub tolerance: f32,
     /// Δ / t: from 0, an edge as sharp as pixels allow, to 1.
     pub softness: f32,
-    /// Only what is joined to the point; depth jumps part what they cross.
+    /// Only what is joined to the point; depth jumps separate what they cross.
     pub contiguous: bool,
 }
 
@@ -83,7 +83,7 @@ impl SurfaceRegion {
     }
 }
 
-/// Regions of a surface that are kept: a mask asks for its own tile by tile.
+/// Regions of a surface that are kept: a mask requests its own tile by tile.
 const KEPT: usize = 8;
 
 impl Surface {
@@ -103,7 +103,7 @@ pub fn share(v: f32, t: f32, delta: f32) -> f32 {
     s * s * (3.0 - 2.0 * s)
 }
 
-/// How much every pixel of a surface differs from one: computed once, asked for many tolerances.
+/// How much every pixel of a surface differs from one: computed once, used for many tolerances.
 pub struct RegionField {
     surface: Arc<Surface>,
     at: (i32, i32),
@@ -129,7 +129,7 @@ impl RegionField {
     /// The region of this field's point and kind with a tolerance, softness and contiguity.
     pub fn region(&self, told: &SurfaceRegion) -> CoverageGrid {
         let is_object = told.kind == RegionKind::Object;
-        // An object's pixels differ by nothing, all others without end.
+        // An object's pixels do not differ, all others infinitely.
         let t = if is_object { 1.0 } else { told.tolerance.max(0.0) };
         let soft = told.softness.max(0.0).min(1.0) * t;
         // An object is joined as it is, fragments of its edge across jumps among it.

@@ -37,25 +37,25 @@ impl Scene {
             None => self.clone(),
         }
     }
-    /// Of what it is the sheet, if it is one.
+    /// What it is the sheet of, if it is one.
     pub fn sheet(&self) -> Option<&SheetOf> {
         self.surface.as_deref()?.sheet_of()
     }
-    /// The pixels that there are: of the canvas, or of the sheet.
+    /// All its pixels: of the canvas, or of the sheet.
     pub fn pixels(&self) -> Rect {
         match (self.sheet(), &self.surface) {
             (Some(_), Some(sheet)) => sheet.size().rect(),
             _ => self.size.rect(),
         }
     }
-    /// The pixels that stand for a tile of the canvas; of a sheet at most as many, from some row of it on.
+    /// The pixels that represent a tile of the canvas; of a sheet at most as many, from some row of it on.
     pub fn area(&self, at: TileAt) -> Rect {
         match self.sheet() {
             Some(sheet) => sheet.contours().on(at).map_or(Rect::EMPTY, |contours| contours.sheet),
             None => at.rect().intersect(self.size.rect()),
         }
     }
-    /// The rows of an area that are looked at: of a sheet every other one holds only what is differenced with.
+    /// The rows of an area that are rendered: in a sheet, every other row serves only for differences.
     pub fn rows(&self, area: Rect) -> impl Iterator<Item = i32> + use<> {
         (area.y0..area.y1).step_by(if self.sheet().is_some() { 2 } else { 1 })
     }

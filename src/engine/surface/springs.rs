@@ -1,10 +1,10 @@
 //! Weighted Laplace equations on a grid of any shape: conjugate gradients, preconditioned by one multigrid V-cycle.
 //! Floor 2. Sums are formed row by row and added in order, so that the bits do not depend on the number of threads.
 //! `rows` holds the loops over the grid, `graph` the coarser levels, `merge` which unknowns these join. Not here: what
-//! the springs stand for (`integrate`, `unwrap`).
+//! the springs mean (`integrate`, `unwrap`).
 //!
-//! Coarser levels are graphs, not grids: the pixels of a block of 2 × 2 become one unknown only as far as strong
-//! springs join them. So no level mixes what a cut or a row of weak springs parts, and cuts cost no convergence.
+//! Coarser levels are graphs, not grids: the pixels of a block of 2 × 2 become one unknown only where strong
+//! springs join them. So no level mixes what a cut or a row of weak springs separates, and cuts cost no convergence.
 
 mod graph;
 mod held;
@@ -67,13 +67,13 @@ const BAND: usize = 16;
 /// that a grid holds: Chebyshev's polynomial over [½, 2].
 const STEPS: [f32; 2] = [0.561_7, 1.389_5];
 
-/// Steps without a smaller residual after which f32 has no more to give.
+/// Steps without a smaller residual after which f32 is too coarse to go on.
 const PATIENCE: usize = 3;
 
 /// Springs with all their coarser levels, ready to be solved for many right-hand sides.
 pub struct SpringSolver {
     grid: SpringGrid,
-    /// Of each unknown of the grid, its unknown on the first coarser level; [`graph::NONE`] without springs.
+    /// For each unknown of the grid, its unknown on the first coarser level; [`graph::NONE`] without springs.
     parent: Vec<u32>,
     graphs: Vec<SpringGraph>,
 }
@@ -89,7 +89,7 @@ pub struct SolveScratch {
     levels: Vec<graph::GraphScratch>,
 }
 
-/// Asked between the steps of long work: whether to go on.
+/// Called between the steps of long work: whether to go on.
 pub type GoOn<'g> = &'g dyn Fn() -> bool;
 
 /// How far a solve goes.
@@ -122,8 +122,8 @@ impl SpringSolver {
     pub fn grid(&self) -> &SpringGrid {
         &self.grid
     }
-    /// For each unknown the number of its piece, what springs hold together; [`u32::MAX`] without springs. And how many
-    /// pieces there are.
+    /// For each unknown the number of its piece (unknowns that springs join); [`u32::MAX`] without springs. And the
+    /// number of pieces.
     pub fn pieces(&self) -> (Vec<u32>, usize) {
         let Some((last, finer)) = self.graphs.split_last() else { return (Vec::new(), 0) };
         let (mut labels, count) = last.pieces().clone();
@@ -140,14 +140,13 @@ impl SpringSolver {
     pub fn solve(&self, b: &[f32], v: &mut [f32], effort: Effort, scratch: &mut SolveScratch) -> usize {
         self.solve_held(&PinStiffness::default(), b, v, effort, scratch)
     }
-    /// The same while there is a reason to: `go_on` is asked before each step, and the answer is of no use once it says
-    /// no.
+    /// The same, but `go_on` is called before each step; once it returns false, the result is of no use.
     pub fn solve_while(&self, b: &[f32], v: &mut [f32], effort: Effort, go_on: GoOn) -> usize {
         self.steps(&PinStiffness::default(), b, v, effort, &mut SolveScratch::default(), go_on)
     }
     /// The same with some unknowns held: (A + K) v = b, K the stiffness of what holds them.
     ///
-    /// * `b`: adds up to 0 over every piece of which nothing is held.
+    /// * `b`: adds up to 0 over every piece without a held unknown.
     pub fn solve_held(
         &self,
         held: &PinStiffness,

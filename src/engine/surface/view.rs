@@ -1,6 +1,6 @@
 //! From where a surface was seen: from afar, or from a point through a lens of some field of view. Floor 2. Pure
-//! functions but for the surface's own pixels. Not here: files that tell the field of view (`io::maps`), what materials
-//! make of it (`shading`).
+//! functions but for the surface's own pixels. Not here: files that state the field of view (`io::maps`), what
+//! materials make of it (`shading`).
 
 use super::Surface;
 use crate::math::{Size, Vec2, Vec3, vec3};
@@ -11,7 +11,7 @@ pub enum Eye {
     /// Infinitely far: every pixel is seen along e = (0, 0, 1).
     #[default]
     Afar,
-    /// As many px of the map away from the picture plane, before a point so far from the map's middle.
+    /// So many px of the map from the picture plane, before a point at this offset from the map's middle.
     At { focal_px: f32, beside: Vec2 },
 }
 
@@ -36,7 +36,7 @@ impl Eye {
     /// The eye of a map that another one became.
     ///
     /// * `factor`: how much longer lengths became.
-    /// * `moved`: where a point beside the old map's middle went, from the new one's, px.
+    /// * `moved`: where a point relative to the old map's middle went, from the new one's, px.
     pub(super) fn moved(self, factor: f32, moved: impl Fn(Vec2) -> Vec2) -> Self {
         match self {
             Eye::Afar => Eye::Afar,

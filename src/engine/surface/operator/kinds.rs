@@ -1,5 +1,5 @@
 //! The table of operators: their names in documents, their numbers with ranges and defaults.
-//! Floor 2. Readers, writers, panels and replay ask here; a new operator is a row, its numbers a line each.
+//! Floor 2. Readers, writers, panels and replay use it; a new operator is a row, its numbers a line each.
 
 use super::Operator;
 use crate::math::{Range, range::held};
@@ -9,7 +9,7 @@ use crate::math::{Range, range::held};
 pub struct OperatorNumber {
     /// Its name in documents.
     pub key: &'static str,
-    /// What people call it: in sentences and beside its slider.
+    /// What people call it: in sentences and next to its slider.
     pub label: &'static str,
     /// What a document may hold.
     pub range: Range,
@@ -40,7 +40,7 @@ impl Operator {
         (Operator::Surface { amount: 1.0, smooth: 0.0 }, "surface"),
     ];
 
-    /// Its numbers, where they stand.
+    /// Its numbers, to be changed in place.
     fn slots(&mut self) -> Vec<(&'static OperatorNumber, &mut f32)> {
         match self {
             Operator::None => vec![],

@@ -1,5 +1,5 @@
 //! The operators: how far a point of the image moves where the surface is nearer (D_p), turns (D_n) or mirrors (D_r)
-//! relative to an anchor, or where the surface unwrapped has it (D_s). Floor 2. Pure functions; each is an equation
+//! relative to an anchor, or where it is on the surface unwrapped (D_s). Floor 2. Pure functions; each is an equation
 //! (docs/EQUATIONS.md). `kinds` is the table of their names and numbers. Not here: reading maps (`Surface`), anchors
 //! and weights (`anchor`), the unwrapping itself (`unwrap`), pixels (`raster`).
 

@@ -1,9 +1,9 @@
-//! What the operator by the unwrapped surface asks of an unwrapping (MATH 8).
-//! Floor 2. The unwrapping itself is `unwrap`'s.
+//! What the operator by the unwrapped surface needs of an unwrapping (MATH 8).
+//! Floor 2. Not here: the unwrapping itself (`unwrap`).
 
 use crate::math::Size;
 
-/// What an unwrapping depends on beside the surface.
+/// What an unwrapping depends on besides the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnwrapSettings {
     /// a of MATH 8, `[0, 2]`.

@@ -1,4 +1,4 @@
-//! The coarser levels of springs: unknowns that stand for blocks of finer ones, joined by springs in any shape.
+//! The coarser levels of springs: unknowns that represent blocks of finer ones, joined by springs in any shape.
 //! Floor 2. Their springs, and the V-cycle below the grid. Not here: which unknowns become one (`merge`), the grid
 //! itself (`springs`).
 
@@ -19,9 +19,9 @@ pub(super) struct SpringGraph {
     inverse: Vec<f32>,
     /// The block of the grid that each unknown lies in.
     blocks: Vec<[u32; 2]>,
-    /// Of each unknown, its unknown on the next level; empty on the last.
+    /// For each unknown, its unknown on the next level; empty on the last.
     parent: Vec<u32>,
-    /// Of each unknown of the last level the number of its piece, and how many pieces there are.
+    /// For each unknown of the last level the number of its piece, and the number of pieces.
     pieces: (Vec<u32>, usize),
 }
 
@@ -37,7 +37,7 @@ pub(super) struct GraphScratch {
 const CHUNK: usize = 8192;
 
 impl SpringGraph {
-    /// The first level below a grid, and of each of the grid's unknowns the one that stands for it.
+    /// The first level below a grid, and for each of the grid's unknowns the one that represents it.
     pub fn of_grid(grid: &SpringGrid) -> (Vec<u32>, Self) {
         let (w, h) = (grid.width(), grid.height());
         let mut parent = filled_or_unwind(w * h, NONE);
@@ -68,7 +68,7 @@ impl SpringGraph {
         });
         (parent, graph)
     }
-    /// A graph of unknowns in given blocks; `springs` tells each unknown's finer springs with the unknown at their end.
+    /// A graph of unknowns in given blocks; `springs` gives each unknown's finer springs with the unknown at their end.
     fn joined(blocks: Vec<[u32; 2]>, springs: impl Fn(usize, &mut dyn FnMut(u32, f32)) + Sync) -> Self {
         let chunk = |start: usize| {
             let mut rows: Vec<(u32, f32)> = Vec::new();
@@ -157,7 +157,7 @@ impl SpringGraph {
             }
         }
         let (parent, roots) = numbered(&mut first);
-        // Where all that is left are pieces of one unknown each, merging has come to its end.
+        // Merging ends when only pieces of one unknown each are left.
         if roots.len() * 10 > self.len() * 9 {
             return None;
         }
@@ -171,7 +171,7 @@ impl SpringGraph {
         self.parent = parent;
         Some(graph)
     }
-    /// Of the last level, the number of each unknown's piece, and how many pieces springs hold together.
+    /// The number of each unknown's piece on the last level, and the number of pieces that springs join.
     pub fn pieces(&self) -> &(Vec<u32>, usize) {
         &self.pieces
     }
@@ -183,8 +183,8 @@ impl SpringGraph {
         let (labels, roots) = numbered(&mut first);
         (labels, roots.len())
     }
-    /// Takes away the mean of every piece of which nothing is held: no spring answers what rounding leaves there, and
-    /// it would grow.
+    /// Subtracts the mean of every piece without a held unknown: no spring opposes what rounding leaves there, and it
+    /// would grow.
     fn centre(&self, values: &mut [f32], held: &[(u32, f32)]) {
         let (labels, count) = &self.pieces;
         let mut sums = vec![(0.0f32, 0.0f32); *count];

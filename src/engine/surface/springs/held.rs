@@ -1,5 +1,5 @@
 //! Unknowns that are held: each by one more spring to a value of its own, on every level of a solver.
-//! Floor 2. They are few, so that loops over rows do without them, and what they change is put right afterwards.
+//! Floor 2. They are few, so that loops over rows ignore them, and what they change is corrected afterwards.
 
 use super::{SpringSolver, graph};
 use std::ops::Range;

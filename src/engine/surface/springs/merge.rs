@@ -12,7 +12,7 @@ pub(super) fn is_strong(stiffness: f32, a: f32, b: f32) -> bool {
 }
 
 /// The stiffness between the middles of two blocks: that of the springs between them in a row with half of each block's
-/// own. Of even springs it is half of what lies between; of slack ones between firm blocks all of it.
+/// own. For even springs it is half of what lies between; for slack ones between firm blocks all of it.
 pub(super) fn in_series(between: f32, inner_a: f32, inner_b: f32) -> f32 {
     let yields = |inner: f32| if inner > 0.0 { 0.5 * between / inner } else { 0.0 };
     between / (1.0 + yields(inner_a) + yields(inner_b))
@@ -90,7 +90,7 @@ pub(super) fn numbered(first: &mut [u32]) -> (Vec<u32>, Vec<u32>) {
     (labels, roots)
 }
 
-/// The finer unknowns that each coarser one stands for.
+/// The finer unknowns that each coarser one represents.
 pub(super) struct Children {
     starts: Vec<u32>,
     nodes: Vec<u32>,
