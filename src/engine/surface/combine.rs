@@ -127,7 +127,7 @@ impl super::Surface {
                 let at = sheet.sheet_of().map(|sheet| sheet.canvas_pixel(x as i32, y as i32));
                 let base = sheet.normal(x, y);
                 let (x, y) = at.unwrap_or_default();
-                // The reading beside a pixel at the border lies beyond the canvas.
+                // The reading next to a pixel at the border lies beyond the canvas.
                 combined(base, x.min(canvas.x1 - 1) as usize, y.min(canvas.y1 - 1) as usize)
             })
         });

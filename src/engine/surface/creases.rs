@@ -110,8 +110,8 @@ struct NormalSteps<'m> {
 }
 
 crate::widest! {
-    /// Which steps of n̄ from pixels to those after them may be as long as a likely crease's: the others are not for
-    /// certain.
+    /// Which steps of n̄ from pixels to those after them may be as long as a likely crease's: the others
+    /// certainly are not.
     fn may_turn(from: [&[f32]; 2], to: [&[f32]; 2], out: &mut [u8]) {
         let n = out.len();
         let ([ax, ay], [bx, by]) = (from.map(|row| &row[..n]), to.map(|row| &row[..n]));

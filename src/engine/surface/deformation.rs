@@ -26,11 +26,11 @@ pub struct Deformation<'a> {
     operator: Operator,
     weights: Weights,
     pins: Vec<Pin>,
-    /// Of the operator that unwraps the surface.
+    /// For the operator that unwraps the surface.
     planes: Option<LaidPlanes<'a>>,
-    /// Where the operator asks for detail.
+    /// If the operator has detail.
     curvature: Option<Arc<Curvature>>,
-    /// Of a dab that must stay near the pen.
+    /// For a dab that must stay near the pen.
     reach: Option<DabReach>,
     /// The canvas point that q, anchors and D are counted from.
     origin: (i32, i32),
@@ -51,7 +51,7 @@ pub const DETAIL_SCALE_PX: f32 = 4.0;
 pub const DETAIL_BLUR_PX: f32 = 1.0;
 
 impl<'a> Deformation<'a> {
-    /// Reads the maps at the anchors, of a sheet those of its surface; an anchor off the surface reads the background:
+    /// Reads the maps at the anchors, for a sheet those of its surface; an anchor off the surface reads the background:
     /// facing the viewer, farthest.
     ///
     /// * `surface`: of the canvas's size; without one only moved anchors move anything.
@@ -67,19 +67,19 @@ impl<'a> Deformation<'a> {
     /// D of a dab, its one anchor at the centre `at` with weight 1. Off the surface it reads the nearest surface
     /// values, so that a stroke continues over the silhouette.
     pub fn of_dab(surface: Option<&'a Surface>, size: Size, operator: Operator, at: Vec2) -> Self {
-        // Of the many dabs that nothing bends none asks for memory.
+        // The many dabs that nothing bends allocate no memory.
         let pinned = [Anchor::fixed(at)];
         let anchors = if surface.is_none() || operator.is_identity() { &[][..] } else { &pinned };
         Self::pinned(surface, size, (operator, Weights::default(), anchors), nearest_map_values).laid(
             |surface, settings, anchors| LaidPlanes::of_dab(surface, settings, anchors.first().map_or(at, |a| a.at)),
         )
     }
-    /// The same of a pattern that begins at a point and lies everywhere: grain.
+    /// The same for a pattern that begins at a point and lies everywhere: grain.
     pub fn of_pattern(surface: Option<&'a Surface>, size: Size, operator: Operator, at: Vec2) -> Self {
         let dab = Self::of_dab(surface, size, operator, at);
         Self { planes: dab.planes.map(LaidPlanes::unbounded), ..dab }
     }
-    /// With the planes of the unwrapped surface laid under the anchors, where the operator asks for them.
+    /// With the planes of the unwrapped surface laid under the anchors, where the operator needs them.
     fn laid(self, lay: impl FnOnce(&'a Surface, UnwrapSettings, &[Anchor]) -> LaidPlanes<'a>) -> Self {
         let planes = self.surface.zip(self.operator.unwrapping());
         let planes = planes.map(|(surface, settings)| lay(surface, settings, &self.anchors()));
@@ -92,7 +92,7 @@ impl<'a> Deformation<'a> {
         read: impl Fn(&Surface, Vec2) -> MapValues,
     ) -> Self {
         let near = |p: Vec2| p.clamp(Vec2::splat(-FARTHEST_PX), Vec2::splat(FARTHEST_PX));
-        // A sheet holds readings of single pixels; anchors stand on its surface.
+        // A sheet holds readings of single pixels; anchors are on its surface.
         let whole = surface.and_then(Surface::sheet_of).and_then(|sheet| sheet.surface());
         let pinned = whole.as_deref().or(surface);
         let pins = anchors
@@ -225,7 +225,7 @@ impl<'a> Deformation<'a> {
     fn sheet(&self) -> Option<&'a SheetOf> {
         self.surface.and_then(Surface::sheet_of)
     }
-    /// The centres q of a row's pixels from column `x` on, canvas px; of a sheet where its readings are told.
+    /// The centres q of a row's pixels from column `x` on, canvas px; for a sheet, of its readings.
     fn place(&self, x: i32, y: i32, q_x: &mut [f32], q_y: &mut [f32]) {
         match self.sheet() {
             Some(sheet) if y >= 0 => {

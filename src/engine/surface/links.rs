@@ -99,7 +99,7 @@ pub fn find(
     })
 }
 
-/// Takes away the links between pixels of different pieces.
+/// Removes the links between pixels of different pieces.
 pub fn cut(links: &mut Plane<u8>, piece: impl Fn(usize, usize) -> u32 + Sync) {
     let whole = std::mem::replace(links, Plane::filled(links.size(), 0));
     let (w, h) = (whole.width(), whole.height());
@@ -146,7 +146,7 @@ struct StepMaps<'a> {
 }
 
 crate::widest! {
-    /// Which steps from pixels to those after them may exceed what normals tell: the others do not for certain.
+    /// Which steps from pixels to those after them may exceed what normals say: the others certainly do not.
     ///
     /// * `ends`: of both pixels n̄ along the step, n_z and depth.
     fn may_jump(ends: [[&[f32]; 3]; 2], range_px: f32, out: &mut [u8]) {
@@ -263,7 +263,7 @@ mod tests {
         }
         assert!(seen > 50, "{seen}");
     }
-    /// Maps of 60 × 40 pixels from a height in pixels and the normal that the map tells.
+    /// Maps of 60 × 40 pixels from a height in pixels and the normal that the map gives.
     fn surface(height: impl Fn(f32, f32) -> f32 + Sync, normal: impl Fn(f32, f32) -> Vec3 + Sync) -> Surface {
         let size = Size::new(60, 40);
         let at = |x: usize, y: usize| (x as f32 + 0.5, y as f32 + 0.5);

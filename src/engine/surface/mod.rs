@@ -83,7 +83,7 @@ pub enum SurfaceError {
     /// No pixel shows a surface.
     #[error("there is no surface at all: every pixel is background")]
     Empty,
-    /// A map in perspective was asked for.
+    /// A map in perspective was requested.
     #[error("a surface cannot be seen in a perspective")]
     Perspective,
 }
@@ -138,8 +138,8 @@ pub struct Surface {
     origin: Option<Origin>,
 }
 
-/// n̄_x, n̄_y and n_z of normals. These are given back from their end on as they are taken apart, so that both never
-/// stand whole beside each other.
+/// n̄_x, n̄_y and n_z of normals. These are freed from their end on as they are taken apart, so that both are never
+/// whole in memory.
 fn apart(normals: Plane<Vec3>) -> [Plane<f32>; 3] {
     const AT_A_TIME: usize = 1 << 22;
     let size = normals.size();
@@ -231,7 +231,7 @@ impl Surface {
             origin: None,
         }
     }
-    /// A surface made of parts, whose objects are known: no depth jump is needed to tell them apart.
+    /// A surface made of parts, whose objects are known: no depth jump is needed to separate them.
     ///
     /// * `parts`: for each pixel which part it shows, from 1 on; 0 where there is none.
     /// * `piece_of`: for each part the piece of surface that it belongs to: parts grown into one share it. One that is
@@ -279,7 +279,7 @@ impl Surface {
     fn find_creases(&mut self) {
         self.smooth_links = creases::smooth_links(&self.links, [&self.nbar_x, &self.nbar_y]).map(Arc::new);
     }
-    /// Calls with the maps that contours are found in. `valid`: where the maps told something, if it is known.
+    /// Calls with the maps that contours are found in. `valid`: where the maps held values, if it is known.
     fn with_contour_maps<T>(&self, valid: Option<&Plane<bool>>, with: impl FnOnce(&ContourMaps) -> T) -> T {
         let Self { size, nbar_x, nbar_y, depth, coverage, links: all_links, .. } = self;
         let links = self.smooth_links_plane();

@@ -27,7 +27,7 @@ impl Objects {
     /// path of linked neighbours joins them.
     fn new(surface: &Surface) -> Self {
         if let Some(sheet) = surface.sheet_of() {
-            // Those of the other populations: nobody asks where they lie.
+            // Those of the other populations: nobody needs to know where they lie.
             let whole = sheet.surface();
             let label = |x: usize, y: usize| whole.as_ref().map_or(0, |whole| whole.objects().labels.at(x, y));
             let of = |pixel: &ContourPixel| pixel.nearest_other().map_or(0, |(x, y)| label(x as usize, y as usize));

@@ -11,12 +11,12 @@ use std::sync::OnceLock;
 pub const BLOCK: usize = 8;
 /// Blocks along the side of a tile.
 pub const TILE_BLOCKS: usize = TILE / BLOCK;
-/// The part of a tile that may be touched: bit `c` of row `r` stands for the block of 8 × 8 px in column `c`.
+/// The part of a tile that may be touched: bit `c` of row `r` is the block of 8 × 8 px in column `c`.
 pub type TileBlocks = [u8; TILE_BLOCKS];
 /// The level of the pyramid whose blocks are tiles.
 pub(super) const TILE_LEVEL: usize = TILE_BLOCKS.ilog2() as usize;
 
-/// The maps' pyramids, each built when an operator first asks for it.
+/// The maps' pyramids, each built when an operator first needs it.
 ///
 /// Built by the calling thread alone: a worker that waited for others here could be given a tile that waits for the
 /// same pyramid.
@@ -65,7 +65,7 @@ pub(super) trait Join: Copy {
 }
 
 impl<T: Join> Pyramid<T> {
-    /// `leaf` is asked for every block of pixels, clipped to the map.
+    /// `leaf` is called for every block of pixels, clipped to the map.
     fn new(size: Size, mut leaf: impl FnMut(Rect) -> T) -> Self {
         let blocks = level_size(size, 0);
         let leaves = (0..blocks.height as i32)

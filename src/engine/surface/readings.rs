@@ -1,4 +1,4 @@
-//! What a surface tells of a pixel, its planes, and what is kept of it.
+//! What a surface says about a pixel, its planes, and what is cached of it.
 //! Floor 2.
 
 use super::*;
@@ -72,7 +72,7 @@ impl Surface {
     pub fn links_plane(&self) -> &Plane<u8> {
         &self.links
     }
-    /// The same without links across creases: for what is differenced to tell how it changes within a pixel.
+    /// The same without links across creases: for what is differenced to see how it changes within a pixel.
     pub fn smooth_links_plane(&self) -> &Plane<u8> {
         self.smooth_links.as_deref().unwrap_or(&self.links)
     }

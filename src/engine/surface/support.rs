@@ -74,7 +74,7 @@ impl<'s> SupportBounds<'s> {
     /// Visits every tile of the canvas that may be touched.
     pub fn for_each_tile(&self, mut visit: impl FnMut(TileAt)) {
         if let (OperatorBounds::Still, Some(rect)) = (&self.flow, self.flat_rect()) {
-            // Without a surface's say the tiles about the anchor are all there can be.
+            // An operator that moves nothing touches only tiles about the anchor.
             let is_touched = |at: &TileAt| {
                 self.judge(PyramidBlock { level: TILE_LEVEL, col: at.col, row: at.row }) != BlockOverlap::Nowhere
             };
@@ -98,8 +98,8 @@ impl<'s> SupportBounds<'s> {
             BlockOverlap::Perhaps => Some(blocks::judged(self, at)),
         }
     }
-    /// A rectangle of the canvas that holds all that an extent may reach where D is the identity; `None` where it is
-    /// not told by numbers.
+    /// A rectangle of the canvas that holds all that an extent may reach where D is the identity; `None` where its
+    /// numbers are not finite or too large.
     fn flat_rect(&self) -> Option<Rect> {
         // A little more than `DabExtent::may_hold` allows for.
         let reach = 1.001 * (self.extent.radius_px + self.extent.filter_px + ROUNDING_PX) + 1.0;

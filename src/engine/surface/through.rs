@@ -57,7 +57,7 @@ impl Surface {
     /// normals of a turned map are those of the turned object. Moves of whole pixels, quarter turns and mirrors change
     /// no value; all else is sampled once, from what the surface was first made of. MATH 1.
     ///
-    /// Fails where nothing of the surface is left, and of a perspective.
+    /// Fails where nothing of the surface is left, and for a perspective.
     pub fn through(self: &Arc<Self>, canvas: Size, map: &PlaneMap) -> Result<Arc<Surface>, SurfaceError> {
         let Origin { surface, map: own } = self.origin();
         surface.onto(canvas, Some(&own.then(map)))

@@ -1,6 +1,6 @@
 //! A surface unwrapped: a map of it onto a plane that changes lengths as little as can be, from its normals (MATH 8).
 //! Floor 2. `metric` holds the equations, `steps` the local and global steps over rows, `smooth` the blur before them.
-//! The linear systems are `springs`'. Not here: anchors, and how marks use the plane (`deformation`).
+//! Not here: the linear systems (`springs`), anchors, and how marks use the plane (`deformation`).
 
 mod layout;
 pub mod metric;
@@ -54,14 +54,14 @@ const TURNS: usize = 3;
 const ROUGH: Effort = Effort { goal: 3e-2, most_steps: 30 };
 const FINE: Effort = Effort { goal: 1e-3, most_steps: 60 };
 
-/// How many systems are solved for one unwrapping: it is asked after each whether to go on.
+/// How many systems are solved for one unwrapping: `GoOn` is called after each.
 pub const SOLVES: u64 = (TURNS as u64 + 1) * 2;
 
 impl Unwrapping {
     pub fn new(surface: &Surface, settings: UnwrapSettings) -> Self {
         Self::telling(surface, settings, &|| true).expect("nobody gives it up")
     }
-    /// The same, telling how far it came; `None` where it is given up.
+    /// The same, calling `go_on` after each solve: `None` if it says no.
     pub fn telling(surface: &Surface, settings: UnwrapSettings, go_on: GoOn) -> Option<Self> {
         let size = surface.size();
         let mut planes = [Plane::from_fn(size, |x, _| x as f32 + 0.5), Plane::from_fn(size, |_, y| y as f32 + 0.5)];
@@ -199,8 +199,8 @@ fn springs(surface: &Surface, rect: Rect, normals: &smooth::Normals) -> SpringGr
 const KEPT_PX: usize = 32 << 20;
 
 impl Surface {
-    /// The surface unwrapped, cached. Call it once before going parallel: threads that ask at the same time may each
-    /// compute it. Settings that are not finite count as 0. Of a sheet it is that of its surface, continued.
+    /// The surface unwrapped, cached. Call it once before going parallel: threads that call it at the same time may
+    /// each compute it. Settings that are not finite count as 0. For a sheet it is that of its surface, continued.
     pub fn unwrapped(&self, settings: UnwrapSettings) -> Arc<Unwrapping> {
         let settings = settings.held(self.size());
         self.unwrappings().get_or_compute(settings.key(), self.kept_unwrappings(), |_| match self.sheet_of() {
@@ -208,7 +208,7 @@ impl Surface {
             None => Unwrapping::new(self, settings),
         })
     }
-    /// The same, telling how far it came: `None` where it is given up. What is there already is not told of.
+    /// The same, calling `go_on` after each solve: `None` if it says no. It is not called for what is cached.
     pub fn unwrapped_telling(&self, settings: UnwrapSettings, go_on: GoOn) -> Option<Arc<Unwrapping>> {
         if self.is_unwrapped(settings) || self.sheet_of().is_some() {
             return Some(self.unwrapped(settings));

@@ -6,7 +6,7 @@ use super::line::{CONTINUED_WEIGHTS, LeastSquaresPlane, NEAREST_WEIGHTS, bits};
 use super::window::{PixelWindow, steps_of};
 use crate::math::{Vec2, vec2};
 
-/// Slopes are drawn toward 0 by this weight: few pixels, or a row of them, tell none.
+/// Slopes are drawn toward 0 by this weight: few pixels, or a row of them, give none.
 const RIDGE: f32 = 1e-2;
 /// Fewer pixels give their mean.
 const LEAST_FOR_A_PLANE: u32 = 6;

@@ -27,10 +27,10 @@ pub struct AmendedReading {
 
 /// From this share on a pixel is seen by its own population alone.
 const WHOLLY: f32 = 0.998;
-/// Partly covered pixels for each pixel of a hard rim, from which on coverage tells the outer contours.
+/// Partly covered pixels for each pixel of a hard rim, from which on coverage gives the outer contours.
 const SOFT_SHARE: f32 = 0.25;
-/// A normal is mixed of both sides' where it lies this far from its own side's toward the other's, and at most this far
-/// beside the way, as ratios of the distance between both; and where that distance is large enough to tell.
+/// A normal is mixed of both sides' if it is this far from its own side's toward the other's, and at most this far off
+/// the line between them, as ratios of the distance between both; and if that distance is large enough.
 const MIXED_FROM: f32 = 0.2;
 const MIXED_BESIDE: f32 = 0.25;
 const MIXED_LEAST: f32 = 0.25;
@@ -60,7 +60,7 @@ pub fn find(maps: &ContourMaps) -> Found {
     }
 }
 
-/// Whether the mask is one of shades: then it tells the outer contours itself.
+/// Whether the mask is one of shades: then it gives the outer contours itself.
 fn is_soft(coverage: &Plane<u8>) -> bool {
     let hard = |row: &[u8]| row.windows(2).filter(|pair| pair[0].abs_diff(pair[1]) == 255).count();
     let counts = (0..coverage.height()).into_par_iter().map(|y| {
@@ -72,7 +72,7 @@ fn is_soft(coverage: &Plane<u8>) -> bool {
     partly > 0 && partly as f32 >= SOFT_SHARE * hard as f32
 }
 
-/// The columns of a row at which a contour may be: where a link is missing, or beside covered pixels.
+/// The columns of a row at which a contour may be: where a link is missing, or next to covered pixels.
 fn candidates(maps: &ContourMaps, y: usize) -> impl Iterator<Item = usize> {
     let (links, coverage) = (maps.links.row(y), maps.coverage.row(y));
     let above = y.checked_sub(1).map(|y| maps.coverage.row(y));
@@ -100,7 +100,7 @@ struct Across {
     /// Empty where there is no surface.
     other: u64,
     is_near: bool,
-    /// Both go on into each other.
+    /// Both continue each other.
     is_crease: bool,
 }
 
@@ -143,7 +143,7 @@ impl Examined {
         let contour = contour_pixel(shared(&window, across), (x, y), across.other);
         Self { contour, amended: unmixed(&window, across) }
     }
-    /// A pixel without surface beside one.
+    /// A pixel without surface next to one.
     fn outside(window: &PixelWindow, (x, y): (i32, i32)) -> Self {
         let seeds = BESIDE.map(|beside| 1u64 << beside.bit & window.covered);
         let pieces = seeds.map(|seed| window.pieces(seed, 0).0);
@@ -179,7 +179,7 @@ impl Examined {
     }
 }
 
-/// The piece that a covered pixel belongs to, and the largest that ends beside it.
+/// The piece that a covered pixel belongs to, and the largest that ends next to it.
 fn across(window: &PixelWindow, linked: u8, is_soft: bool) -> Option<Across> {
     let center = 1u64 << CENTER;
     let mut found: Option<(u32, Across)> = None;

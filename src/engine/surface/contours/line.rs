@@ -1,6 +1,6 @@
-//! The straight line by which a contour is told apart within a pixel's window, and the share of the pixel on its nearer
+//! The straight line by which a contour is described within a pixel's window, and the share of the pixel on its nearer
 //! side (MATH 10).
-//! Floor 2. Pure functions of a window; which pixels are looked at is `find`'s.
+//! Floor 2. Pure functions of a window. Not here: which pixels are looked at (`find`).
 
 use super::window::{PixelWindow, SIDE, offset_of};
 use crate::math::{Vec2, vec2};
@@ -29,7 +29,7 @@ const EXPLAINED_PX: f32 = 2.24;
 const FARTHEST_PX: f32 = 0.7;
 /// Cosine of the greatest angle between both lines.
 const ALIKE: f32 = 0.7;
-/// Fewer pixels tell no plane of depths.
+/// Fewer pixels give no plane of depths.
 const LEAST_FOR_A_LINE: u32 = 6;
 /// The share of a straight edge's contrast that a mask must have to be taken for one.
 const LEAST_CONTRAST: f32 = 0.5;
@@ -76,7 +76,7 @@ impl ContourLine {
         }
         if area > 1e-6 { moment / area } else { Vec2::ZERO }
     }
-    /// The line that a binary mask of the nearer side tells: a Gaussian mean of a step is Φ(d / σ), so that d = σ Φ⁻¹
+    /// The line that a binary mask of the nearer side gives: a Gaussian mean of a step is Φ(d / σ), so that d = σ Φ⁻¹
     /// of it; its direction is that of the first moments. `None` where the mask is no single edge, such as at a thin
     /// wire.
     ///
@@ -100,7 +100,7 @@ impl ContourLine {
         let toward_near = gradient.try_normalize().filter(|_| gradient.length() > LEAST_CONTRAST * expected)?;
         Some(Self { distance_px: MASK_SIGMA * quantile, toward_near })
     }
-    /// The line that the nearer side's normals tell: at a smooth silhouette n_z² falls linearly to 0, so that the zero
+    /// The line that the nearer side's normals give: at a smooth silhouette n_z² falls linearly to 0, so that the zero
     /// of a plane fitted to it is the contour. `None` where it contradicts the mask: scanned and coarse meshes have
     /// interpolated normals that never reach the rim.
     ///
@@ -123,7 +123,7 @@ impl ContourLine {
         Some(Self { distance_px, ..line })
     }
     /// The line along which two pieces of surface meet at a crease: where planes fitted to their depths are equally
-    /// deep. `None` where it contradicts which pixels show which: coarse depth does not tell.
+    /// deep. `None` where it contradicts which pixels show which: coarse depth does not show it.
     ///
     /// * `own`, `other`: bits of the window; the nearer side of the line is `own`.
     pub fn of_depths(window: &PixelWindow, own: u64, other: u64) -> Option<Self> {
@@ -168,7 +168,7 @@ pub struct LeastSquaresPlane {
 }
 
 impl LeastSquaresPlane {
-    /// `ridge`: added to both slopes' weights, so that few pixels tell a flat plane. `None` without any weight.
+    /// `ridge`: added to both slopes' weights, so that few pixels give a flat plane. `None` without any weight.
     pub fn weighted(
         members: impl Iterator<Item = u32>,
         ridge: f32,
@@ -185,7 +185,7 @@ impl LeastSquaresPlane {
         if w <= 1e-12 {
             return None;
         }
-        // Centred, the two slopes come of a 2 × 2 system.
+        // Centred, the two slopes come from a 2 × 2 system.
         let ridge = f64::from(ridge);
         let (a, b, c) = (xx - x * x / w + ridge, xy - x * y / w, yy - y * y / w + ridge);
         let (p, q) = (xv - x * v / w, yv - y * v / w);
@@ -275,7 +275,7 @@ mod tests {
                 count += 1.0;
             }
         }
-        // Without the line the error is 0.25; of an edge along the pixels a binary mask tells nothing.
+        // Without the line the error is 0.25; a binary mask says nothing about an edge along the pixels.
         assert!(sum / count < 0.12, "{}", sum / count);
     }
     #[test]

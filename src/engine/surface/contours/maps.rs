@@ -15,6 +15,6 @@ pub struct ContourMaps<'m> {
     pub links: &'m Plane<u8>,
     /// Those across creases, too.
     pub all_links: &'m Plane<u8>,
-    /// Where the maps told something, if it is known: elsewhere the nearest values were repeated.
+    /// Where the maps held values, if it is known: elsewhere the nearest values were repeated.
     pub valid: Option<&'m Plane<bool>>,
 }

@@ -15,7 +15,7 @@ const WIDEST_PX: f32 = 8.0;
 /// Standard deviations from an end up to which its normals flow, and beyond which they need not.
 const FROM: f32 = 2.0;
 const TO: f32 = 3.0;
-/// Standard deviations from an end beyond which nothing flows: what is still felt where the flow is wanted.
+/// Standard deviations from an end beyond which nothing flows: farther pixels have no effect where the flow is used.
 const FLOWING: f32 = 5.2;
 
 /// The blur near the ends of a surface.

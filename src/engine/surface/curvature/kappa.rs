@@ -67,7 +67,7 @@ impl Kappa {
 
 impl Surface {
     /// Isotropic κ: Σ share · tanh(s (k_u + k_v)) (MATH 4). Cached. Call it once before going parallel: threads
-    /// that ask at the same time may each compute it.
+    /// that call it at the same time may each compute it.
     pub fn kappa(&self, scales: &[KappaScale]) -> Arc<Kappa> {
         let key = scales.iter().map(|s| [s.blur_px, s.curvature_scale_px, s.share].map(f32::to_bits)).collect();
         let keep = (KEPT_PX / self.size().area().max(1)).clamp(2, 8);

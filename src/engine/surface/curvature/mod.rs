@@ -25,7 +25,7 @@ use std::sync::Arc;
 pub const GRAZING_NZ: f32 = 0.05;
 
 /// The curvature tensor H of every pixel: axes x right, y **up**; convex > 0; per pixel, before the curvature scale
-/// *s*. At the ends of the surface it is continued from beside; off the surface it is 0.
+/// *s*. At the ends of the surface it is continued from neighbours; off the surface it is 0.
 pub struct Curvature {
     pub hxx: Plane<f32>,
     pub hxy: Plane<f32>,
@@ -102,9 +102,9 @@ impl Surface {
     /// The curvature of the surface, its normals blurred first by a Gaussian of standard deviation `blur_px` (0: not at
     /// all).
     ///
-    /// Neither the blur nor the differences cross the mask's edge or a depth jump. Of a sheet it is that of the other
-    /// populations' pixels nearby. Cached. Call it once before going
-    /// parallel: threads that ask at the same time may each compute it.
+    /// Neither the blur nor the differences cross the mask's edge or a depth jump. For a sheet it is that of the other
+    /// populations' pixels nearby. Cached. Call it once before going parallel: threads that call it at the same time
+    /// may each compute it.
     pub fn curvature(&self, blur_px: f32) -> Arc<Curvature> {
         // `max` first: NaN.max(0) is 0. Half the canvas flattens whatever is on it.
         let blur_px = blur_px.max(0.0).min(0.5 * self.size().longer_side());

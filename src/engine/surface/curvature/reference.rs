@@ -59,7 +59,7 @@ fn slope_at(surface: &Surface, at: (usize, usize), taps: &[f32]) -> (f32, f32) {
     slope(n.x, n.y, n.z)
 }
 
-/// `[h_xx, h_xy, h_yy]` of a pixel; at an end of the surface the mean of those beside that have all their neighbours.
+/// `[h_xx, h_xy, h_yy]` of a pixel; at an end of the surface the mean of nearby ones that have all their neighbours.
 pub fn tensor_at(surface: &Surface, x: usize, y: usize, blur_px: f32) -> [f32; 3] {
     match rims::members(surface, x as i32, y as i32) {
         Some(members) if members != 0 => {

@@ -1,4 +1,4 @@
-//! Curvature at the ends of a surface: continued from the pixels beside that have all their neighbours.
+//! Curvature at the ends of a surface: continued from nearby pixels that have all their neighbours.
 //! Floor 2.
 
 use crate::raster::Plane;
@@ -125,7 +125,7 @@ fn rim(surface: &Surface, x: i32, y: i32) -> Option<RimPixel> {
     members(surface, x, y).map(|members| RimPixel { x, y, members })
 }
 
-/// The pixels around a rim's that belong to its piece and have all their neighbours; `None` of a pixel that is no rim.
+/// The pixels around a rim's that belong to its piece and have all their neighbours; `None` for a pixel that is no rim.
 pub(super) fn members(surface: &Surface, x: i32, y: i32) -> Option<u64> {
     let whole = |x: i32, y: i32| {
         let links = surface.links_plane().at(x as usize, y as usize);

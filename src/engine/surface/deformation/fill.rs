@@ -134,7 +134,7 @@ impl MapSpan {
 struct SpanScratch {
     /// The pixels' centres.
     place: [[f32; SPAN]; 2],
-    /// r̄, where the operator asks for it.
+    /// r̄, where the operator needs it.
     mirrored: [[f32; SPAN]; 2],
     /// 0 outside the surface, 1 + μκ on it.
     gain: [f32; SPAN],
@@ -232,7 +232,7 @@ impl<'d> FillPlan<'d> {
             },
         }
     }
-    /// Asks for what a span of the maps holds.
+    /// Prefetches what a span of the maps holds.
     fn prefetch(&self, span: MapSpan) {
         let Some(surface) = self.deformation.surface else { return };
         prefetch(span.of(surface.coverage_plane()));

@@ -2,7 +2,7 @@
 //! Floor 2. Not here: the unwrapping and how it yields to many anchors (`unwrap`), the operators that are sums over
 //! anchors (`Deformation::at`).
 //!
-//! Each object has a plane of its own: anchors move, and a pair of them turns, the plane of the object that they stand
+//! Each object has a plane of its own: anchors move, and a pair of them turns, the plane of the object that they are
 //! on; the others stay where they are in the picture.
 
 use crate::math::{Affine2, Mat2, Vec2, vec2};
@@ -41,7 +41,7 @@ struct PlanePin {
     source: Vec2,
 }
 
-/// How far away lies what a dab must not touch, px.
+/// The distance of what a dab must not touch, px.
 pub(super) const OUT_OF_REACH_PX: f32 = 1e6;
 
 /// Below this a pin lacks nothing.
@@ -57,7 +57,7 @@ impl<'a> LaidPlanes<'a> {
     /// Then the picture is turned, moved and scaled on the bend's pieces.
     pub fn pinned(surface: &'a Surface, settings: UnwrapSettings, bend: &Bend) -> Self {
         let unwrapping = surface.unwrapped(settings);
-        // Anchors stand on the surface, also of a sheet.
+        // Anchors are on the surface, also for a sheet.
         let whole = surface.sheet_of().and_then(|sheet| sheet.surface());
         let pinned = whole.as_deref().unwrap_or(surface);
         let laid = pinned.unwrapped(settings);
@@ -147,7 +147,7 @@ impl PlaneFit {
         let n = pins.len().max(1) as f32;
         let (from, to) = pins.iter().fold((Vec2::ZERO, Vec2::ZERO), |(a, b), pin| (a + pin.at, b + pin.source));
         let (from, to) = (from / n, to / n);
-        // Of all rotations the one that leaves the least, squared.
+        // The rotation that leaves the least, squared.
         let (mut dot, mut cross, mut spread) = (0.0, 0.0, 0.0);
         for pin in pins {
             let (u, s) = (pin.at - from, pin.source - to);

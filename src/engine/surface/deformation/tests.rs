@@ -136,7 +136,7 @@ fn the_jacobian_does_not_look_across_the_mask_edge() {
     let surface = sphere();
     let bend = &bends(OPERATORS[1])[0];
     let deformation = Deformation::new(Some(&surface), SIZE, bend);
-    // The last covered pixel of a row: beyond it stands the identity, 100 px away.
+    // The last covered pixel of a row: beyond it is the identity, 100 px away.
     let y = 60;
     let x = (80..SIZE.width as i32).rfind(|&x| surface.coverage(x as usize, y as usize) > 0).unwrap();
     let (edge, inside) = (deformation.jacobian(x, y), deformation.jacobian(x - 3, y));

@@ -22,7 +22,7 @@ use std::sync::Arc;
 const SLICES: usize = 10;
 /// From one distance to the next, as a ratio of it, once it is more than a pixel.
 const STRIDE: f32 = 0.16;
-/// Cosine above the tangent plane below which an occluder counts the less: depth is not that fine.
+/// Cosine above the tangent plane below which an occluder counts less: depth is not that fine.
 const UNSURE: f32 = 0.03;
 /// Slope from which a rise is a cliff, px per px; and the tolerance for coarse depth, px.
 const CLIFF: (f32, f32) = (4.0, 1.5);
@@ -131,12 +131,12 @@ fn excess(above: f32, away: f32, cliffs_px: f32, per_cliff: f32) -> f32 {
     above * sure * fast::max(1.0 - away * away, 0.0) * fast::max(1.0 - cliffs_px * per_cliff, 0.0)
 }
 
-/// The slope of the height (toward the viewer, px a px, image axes) told by depth around a pixel, never across a jump.
+/// The slope of the height (toward the viewer, px a px, image axes) from the depth around a pixel, never across a jump.
 fn slope(surface: &Surface, x: usize, y: usize) -> Vec2 {
     let links = surface.links_plane();
     let height = |x: usize, y: usize| -surface.depth(x, y) * surface.depth_range_px();
     let here = links.at(x, y);
-    // The mean of the steps beside the pixel and, where they hang together, beside its two neighbours across.
+    // The mean of the steps next to the pixel and, where linked, next to its two neighbours across.
     let mean = |steps: &[Option<f32>]| {
         let (sum, count) = steps.iter().flatten().fold((0.0, 0.0), |(s, n), step| (s + step, n + 1.0));
         if count > 0.0 { sum / count } else { 0.0 }
@@ -162,9 +162,9 @@ fn slope(surface: &Surface, x: usize, y: usize) -> Vec2 {
 impl Surface {
     /// A(p) of every pixel, `[0, 1]`: 1 where nothing hides the light, 1 off the surface.
     ///
-    /// Occluders count the less the farther they are, those `radius_px` away (in the picture and in depth) not at all;
+    /// Occluders count less the farther they are, those `radius_px` away (in the picture and in depth) not at all;
     /// nor does what floats in front, beyond a depth jump of half the radius. It depends on depth alone: normal layers
-    /// do not change it. Of a sheet it is that of the other populations' pixels nearby. Cached; call it once before
+    /// do not change it. For a sheet it is that of the other populations' pixels nearby. Cached; call it once before
     /// going parallel.
     pub fn occlusion(&self, radius_px: f32) -> Arc<Plane<f32>> {
         const KEPT: usize = 3;
@@ -189,7 +189,7 @@ impl Surface {
 }
 
 /// The tangent plane's horizon on both sides of a slice, as cosines to the view: the higher of what depth and normals
-/// tell.
+/// give.
 #[inline(always)]
 fn tangents(along_slope: f32, along_normal: f32, up_normal: f32) -> [f32; 2] {
     let told_by_depth = along_slope / (1.0 + along_slope * along_slope).sqrt();

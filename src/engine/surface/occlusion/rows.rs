@@ -105,7 +105,7 @@ fn along_links(surface: &Surface, open: &Plane<f32>, (back, forth): (u8, u8), st
     })
 }
 
-/// How the surface stands at each pixel, image axes.
+/// How the surface is inclined at each pixel, image axes.
 struct LaneSlopes {
     slope: [Lanes; 2],
     nbar: [Lanes; 2],
@@ -131,7 +131,7 @@ impl LaneSlopes {
     }
 }
 
-/// Whether all pixels from (x, y) on, and those around them, hang together.
+/// Whether all pixels from (x, y) on, and those around them, are linked.
 fn is_whole(surface: &Surface, (x, y): (usize, usize), width: usize) -> bool {
     const INSIDE: u8 = links::LEFT | links::RIGHT | links::UP | links::DOWN;
     let size = surface.size();
@@ -142,7 +142,7 @@ fn is_whole(surface: &Surface, (x, y): (usize, usize), width: usize) -> bool {
 }
 
 crate::widest! {
-    /// [`slope`] where all pixels around hang together, to the same bits.
+    /// [`slope`] where all pixels around are linked, to the same bits.
     ///
     /// `rows`: the heights above, here and below, each one px to the left, there and one to the right.
     fn slopes_of_whole(rows: [[&[f32]; 3]; 3], out: &mut [Lanes; 2]) {
@@ -195,9 +195,9 @@ fn along(vector: &[Lanes; 2], toward: Vec2, i: usize) -> f32 {
     vector[0][i] * toward.x + vector[1][i] * toward.y
 }
 
-/// How far the highest horizon along a way stands above the tangent plane's, in cosines; whether it may do so anywhere.
+/// How far the highest horizon along a way is above the tangent plane's, in cosines; whether it may do so anywhere.
 ///
-/// Most places lie below the tangent plane, which their rise tells without a root or a division. Only where that of one
+/// Most places lie below the tangent plane, which their rise shows without a root or a division. Only where that of one
 /// of a few neighbours does not, they are looked at.
 #[inline(always)]
 fn march(
@@ -222,7 +222,7 @@ fn march(
             let before = rise[i];
             rise[i] = height_between(near[i], far[i], step.between) - here[i];
             cliffs[i] += fast::max(rise[i] - before - step.cliff_px, 0.0);
-            // What is no number is looked at.
+            // NaN is looked at.
             over[i] = if rise[i] <= step.distance_px * steep[i] { 0 } else { 1 };
         }
         let distance_2 = step.distance_px * step.distance_px;
@@ -244,10 +244,10 @@ fn march(
     is_hidden
 }
 
-/// The rise a px, or a little less, that a cosine to the view stands for.
+/// The rise a px, or a little less, that a cosine to the view means.
 #[inline(always)]
 pub(super) fn steepness(cosine: f32) -> f32 {
-    /// More than what rounding takes and gives. Of level ground nothing is taken: there both are exactly 0.
+    /// More than the error of rounding. Nothing is taken from level ground: there both are exactly 0.
     const LESS: f32 = 1e-5;
     let cosine = cosine - LESS * cosine.abs();
     cosine / fast::max(1.0 - cosine * cosine, 0.0).sqrt()

@@ -34,7 +34,7 @@ where
     }
 }
 
-/// How many of the dabs, from the first on, stand near each other.
+/// How many of the dabs, from the first on, are near each other.
 fn run_of(dabs: &[&SupportBounds]) -> usize {
     let Some(first) = dabs.first() else { return 0 };
     let apart = (APART_RADII * first.extent.radius_px).max(APART_PX);
@@ -48,8 +48,8 @@ fn run_of(dabs: &[&SupportBounds]) -> usize {
     dabs.iter().take(RUN).take_while(is_near).count().max(1)
 }
 
-/// One dab that reaches what any of a run reaches; `None` where their anchors are told by no numbers, or where none
-/// needs to go down from the whole canvas.
+/// One dab that reaches what any of a run reaches; `None` where their anchors are not finite, or where none needs to
+/// go down from the whole canvas.
 fn joined<'s>(dabs: &[&SupportBounds<'s>]) -> Option<SupportBounds<'s>> {
     let first = dabs.first()?;
     let flow = first.flow.at_anchors(dabs.iter().map(|dab| &dab.flow))?;

@@ -1,4 +1,4 @@
-//! The planes of all objects of a surface, laid out beside each other on one sheet: what is seen and painted flat.
+//! The planes of all objects of a surface, laid out next to each other on one sheet: what is seen and painted flat.
 //! Floor 2. Not here: the picture of it (`document::view`), strokes on it (`tools`).
 
 use super::{PlaneView, UnwrapSettings, Unwrapping};
@@ -41,7 +41,7 @@ pub struct CanvasPlace {
 
 /// Between two pieces, and around them, px: room for what is painted over their rims.
 const GAP_PX: i32 = 16;
-/// A pen this far beside a piece still paints on it, px of the sheet.
+/// A pen this far from a piece still paints on it, px of the sheet.
 const BESIDE_PX: i32 = GAP_PX / 2;
 
 impl PlaneLayout {
@@ -85,7 +85,7 @@ impl PlaneLayout {
             ..Bend::default()
         }
     }
-    /// What lies under a point of the sheet. Beside a piece its plane goes on flat; `None` where that would be on
+    /// What lies under a point of the sheet. Next to a piece its plane goes on flat; `None` where that would be on
     /// another object, or is too far away.
     pub fn canvas_at(&self, surface: &Surface, p: Vec2) -> Option<CanvasPlace> {
         let piece = self.piece_at(p)?;
@@ -114,7 +114,7 @@ impl PlaneLayout {
     pub fn jacobian(&self, surface: &Surface, x: usize, y: usize) -> Mat2 {
         self.unwrapping.jacobian(surface, x, y)
     }
-    /// The canvas point in the middle of a piece; of one that is hollow there, some point of it.
+    /// The canvas point in the middle of a piece; of one with a hole there, some point of it.
     pub fn middle_of(&self, surface: &Surface, piece: &LaidPiece) -> Vec2 {
         let Rect { x0, y0, x1, y1 } = piece.rect;
         let middle = vec2(0.5 * (x0 + x1) as f32, 0.5 * (y0 + y1) as f32);
@@ -147,7 +147,7 @@ fn extents(surface: &Surface, unwrapping: &Unwrapping) -> Vec<LaidPiece> {
             let Some(found) = found.get_mut(label as usize).filter(|_| at.is_finite()) else { continue };
             let extent = found.get_or_insert(ObjectExtent { low: at, high: at, at: (x, y), links: 0 });
             (extent.low, extent.high) = (extent.low.min(at), extent.high.max(at));
-            // Where an anchor stands its piece must be the one that is seen.
+            // At an anchor its own piece must be the one that is seen.
             if links.count_ones() > extent.links {
                 (extent.at, extent.links) = ((x, y), links.count_ones());
             }

@@ -1,4 +1,4 @@
-//! The surface's own metric, as its normals tell it in the picture: how long a step of a pixel is on the surface.
+//! The surface's own metric, from its normals in the picture: how long a step of a pixel is on the surface.
 //! Floor 2. Pure functions; each is an equation of MATH 8. Not here: solving for the deformation (`steps`).
 
 use crate::math::{Mat2, Vec2, Vec3, vec2};
@@ -23,7 +23,7 @@ pub fn stretch(nbar: Vec2, nz: f32, amount: f32) -> Mat2 {
 /// S(q) of MATH 8 of a surface that is seen from near: the symmetric root of its first fundamental form, to the power
 /// a.
 ///
-/// The point seen at q lies at Z (b, 1), b = (q − c)/f. Its normal tells how Z grows, ∇Z/Z = g/f with g = n̄/ν and
+/// The point seen at q lies at Z (b, 1), b = (q − c)/f. Its normal says how Z grows, ∇Z/Z = g/f with g = n̄/ν and
 /// ν = n_z − n̄·b, so that ∂P/∂q has the metric `(Z/Z̄)² (1 + b gᵀ + g bᵀ + (1 + |b|²) g gᵀ)`, where a px is as long
 /// as on the picture plane at Z̄. With b = 0 it is that of a parallel view.
 ///
@@ -54,7 +54,7 @@ pub fn facing_from_near(nbar: Vec2, nz: f32, beside: Vec2) -> f32 {
 
 /// R(q) of MATH 8: the rotation in J S⁻¹, by which the solution turned the surface at a pixel.
 ///
-/// `angle = atan2(M₂₁ − M₁₂, M₁₁ + M₂₂)`, M = J S⁻¹: of all rotations the nearest to M. The identity where M tells
+/// `angle = atan2(M₂₁ − M₁₂, M₁₁ + M₂₂)`, M = J S⁻¹: the rotation nearest to M. The identity where M gives
 /// none.
 pub fn turn(jacobian: Mat2, stretch: Mat2) -> Mat2 {
     let m = jacobian * stretch.inverse();

@@ -1,5 +1,5 @@
 //! A surface that is seen from near: how far away its points are against each other, for its metric (MATH 8).
-//! Floor 2. The equations are `metric`'s.
+//! Floor 2. Not here: the equations (`metric`).
 
 use super::metric;
 use crate::math::{Mat2, Vec2, vec2};
@@ -22,7 +22,7 @@ const NEAREST: f64 = 0.02;
 const FARTHEST: f64 = 1e4;
 
 impl NearView {
-    /// `None` of a surface that is seen from afar.
+    /// `None` for a surface that is seen from afar.
     pub fn of(surface: &Surface) -> Option<Self> {
         let Eye::At { focal_px, beside } = surface.eye() else { return None };
         let before = surface.size().center() + beside;
@@ -30,7 +30,7 @@ impl NearView {
         Some(seen.fitted(surface).unwrap_or(seen))
     }
     /// With the distances that agree with the normals: where Z = R (ζ + z), R the range of the depth, ∇z =
-    /// (ζ + z) ∇Z/Z, and the normals tell ∇Z/Z. Least squares over ζ. `None` where the depth tells nothing.
+    /// (ζ + z) ∇Z/Z, and the normals give ∇Z/Z. Least squares over ζ. `None` where the depth says nothing.
     fn fitted(self, surface: &Surface) -> Option<Self> {
         let (mut told, mut squared, mut sum, mut count) = (0.0f64, 0.0f64, 0.0f64, 0u64);
         let links = surface.links_plane();
@@ -72,7 +72,7 @@ impl NearView {
 }
 
 impl Surface {
-    /// From where it is seen, if that is near: with the distances that its depth and its normals tell.
+    /// From where it is seen, if that is near: with the distances from its depth and its normals.
     pub fn near_view(&self) -> Option<NearView> {
         *self.near_view.get_or_init(|| NearView::of(self))
     }

@@ -45,7 +45,7 @@ impl Unwrapping {
     }
 }
 
-/// The pixel that holds a point, or the nearest on the surface: looked for in growing squares around it.
+/// The pixel that holds a point, or the nearest on the surface: searched in growing squares around it.
 pub(super) fn nearest_covered(surface: &Surface, q: Vec2) -> (usize, usize) {
     let coverage = surface.coverage_plane();
     let held = surface.pixel_of(q);

@@ -38,7 +38,7 @@ fn join_crumbs(surface: &Surface, rect: Rect, moved: &mut [Vec<f32>; 2], labels:
     let place = |i: usize| (i as i32 % w, i as i32 / w);
     let is_crumb = |&i: &usize| area(i) < CRUMB_PX && covered(place(i).0, place(i).1);
     let crumbs: Vec<usize> = (0..labels.len()).filter(is_crumb).collect();
-    // By piece; pixels of none stand for themselves, behind all pieces.
+    // By piece; a pixel of none is a piece of its own, after all others.
     let lone = crumbs.iter().filter(|&&i| labels[i] == NONE).count();
     let mut shifts = vec![([0.0f32; 2], 0u32); areas.len() + lone];
     let mut next = areas.len()..;

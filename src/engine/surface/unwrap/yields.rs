@@ -1,5 +1,5 @@
 //! How the plane of a piece yields where several anchors hold it: soft constraints of the equation that unwrapped it
-//! (MATH 8). Floor 2. The rigid part of it is `deformation::plane`'s, the solver `springs`.
+//! (MATH 8). Floor 2. Not here: its rigid part (`deformation::plane`), the solver (`springs`).
 
 use super::{UnwrapSettings, covered, place::nearest_covered, smooth, springs};
 use crate::math::{Rect, Vec2};
@@ -195,7 +195,7 @@ fn distances(holds: &[PlaneHold]) -> Vec<f32> {
 pub(in crate::surface) type YieldKey = Vec<u32>;
 
 impl Surface {
-    /// How its unwrapped planes yield to anchors, cached; of a sheet that of its surface, continued.
+    /// How its unwrapped planes yield to anchors, cached; for a sheet that of its surface, continued.
     ///
     /// * `holds`: at least two of every piece that has any, finite.
     pub fn plane_yield(&self, settings: UnwrapSettings, holds: &[PlaneHold]) -> Arc<PlaneYield> {
@@ -214,7 +214,7 @@ impl Surface {
             None => PlaneYield::solved(self, &self.plane_springs(settings, self.pulled_rect(holds)), holds),
         })
     }
-    /// Around all that holds can move. Parts may hang together beyond what shows each of them.
+    /// Around all that holds can move. Parts may be linked beyond what shows each of them.
     fn pulled_rect(&self, holds: &[PlaneHold]) -> Rect {
         if self.parts_plane().is_some() {
             return covered(self);
@@ -225,7 +225,7 @@ impl Surface {
         };
         holds.iter().filter_map(object).fold(Rect::EMPTY, Rect::union)
     }
-    /// The springs of the unwrapping over a rectangle that none of what is asked of it leaves, cached.
+    /// The springs of the unwrapping over a rectangle that holds all that is read from it, cached.
     fn plane_springs(&self, settings: UnwrapSettings, rect: Rect) -> Arc<PlaneSprings> {
         self.plane_springs.get_or_compute((settings.key(), rect), 1, |_| {
             let normals = smooth::normals(self, rect, settings.smooth_px);

@@ -1,5 +1,5 @@
 //! The loops of D over a span of a row: offsets by operator, weights of anchors.
-//! Floor 2. Not here: which of them a span asks for (`fill`).
+//! Floor 2. Not here: which of them a span needs (`fill`).
 
 use super::FastPin;
 use crate::math::{Mat2, Vec2};

@@ -55,7 +55,7 @@ pub(in crate::surface::deformation) fn fill_dab(
     true
 }
 
-/// Asks for what a dab reads of a row, the links of its pixels as well, which come after D.
+/// Prefetches what a dab reads of a row, also the links of its pixels, which are read after D.
 fn ask(surface: &Surface, kernel: Kernel, span: MapSpan) {
     prefetch(span.of(surface.coverage_plane()));
     prefetch(span.of(surface.smooth_links_plane()));
