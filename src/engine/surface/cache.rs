@@ -26,12 +26,12 @@ impl<K: PartialEq, V> RecentCache<K, V> {
     pub fn sum(&self, figure: impl Fn(&V) -> u64) -> u64 {
         self.lock().iter().map(|(_, value)| figure(value)).sum()
     }
-    /// Holds none any more.
+    /// Drops all values.
     pub fn clear(&self) {
         self.lock().clear();
     }
     /// The value of a key. It never computes while holding the lock: a thread that waits for work of its own pool would
-    /// deadlock. Threads that ask at the same time may each compute the value; the results are equal.
+    /// deadlock. Threads that call it at the same time may each compute it; the results are equal.
     ///
     /// * `keep`: how many are held, `≥ 1`.
     /// * `compute`: receives an evicted value that nobody else holds, so that its memory can be reused.

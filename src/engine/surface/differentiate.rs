@@ -1,5 +1,5 @@
 //! Derivatives of maps and normals from depth, by differences that do not cross depth jumps.
-//! Floor 2. The reverse is `integrate`.
+//! Floor 2. Not here: the reverse (`integrate`).
 
 use super::{Surface, links};
 use crate::math::{Vec2, Vec3, vec2, vec3};

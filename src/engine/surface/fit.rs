@@ -102,7 +102,7 @@ mod tests {
     use super::*;
     use crate::math::vec3;
 
-    /// A plate tilted to the right over the left half, standing before a far wall over the right half.
+    /// A plate tilted to the right over the left half, before a far wall over the right half.
     fn plate_and_wall(size: Size) -> Surface {
         let left = |x: usize| x < size.width as usize / 2;
         Surface::new(Maps {

@@ -27,7 +27,7 @@ pub fn depth_from_normals(normals: &Plane<Vec3>, inside: &Plane<bool>) -> Option
     depth_from_normals_while(normals, inside, &|| true)
 }
 
-/// The same while `go_on` says so; `None` from then on, too.
+/// The same while `go_on` says so; `None` also once it says no.
 pub fn depth_from_normals_while(normals: &Plane<Vec3>, inside: &Plane<bool>, go_on: GoOn) -> Option<IntegratedDepth> {
     let slopes = Slopes { normals, inside };
     let mut heights = heights(&solver(&slopes), &slopes, go_on);
@@ -55,7 +55,7 @@ pub struct Following {
 }
 
 impl Following {
-    /// A part of what is wanted, and steps: each changes little.
+    /// Little accuracy and few steps: each solve changes little.
     const EFFORT: Effort = Effort { goal: 1e-3, most_steps: 4 };
 
     pub fn of(normals: &Plane<Vec3>, inside: &Plane<bool>) -> Self {

@@ -87,8 +87,8 @@ impl SurfaceRegion {
 const KEPT: usize = 8;
 
 impl Surface {
-    /// The coverage of a region, cached. Call it once before going parallel: threads that ask at the same time may each
-    /// compute it.
+    /// The coverage of a region, cached. Call it once before going parallel: threads that call it at the same time may
+    /// each compute it.
     pub fn region(self: &Arc<Self>, region: &SurfaceRegion) -> Arc<CoverageGrid> {
         self.regions().get_or_compute(*region, KEPT, |_| region.on(self))
     }

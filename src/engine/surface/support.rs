@@ -51,9 +51,9 @@ pub struct SupportBounds<'s> {
     flow: OperatorBounds<'s>,
     /// Nothing lands farther from the anchor than this; infinite where anything may.
     border_px: f32,
-    /// Of a run of dabs (`runs`): how far their anchors lie from `at` at most, in each direction.
+    /// For a run of dabs (`runs`): the greatest distance of their anchors from `at`, in each direction.
     spread: Vec2,
-    /// And the map's values there from the one that `flow` holds.
+    /// And of the map's values there from the one that `flow` holds.
     turned: Vec2,
 }
 

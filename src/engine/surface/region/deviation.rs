@@ -47,7 +47,7 @@ pub fn of(surface: &Surface, kind: RegionKind, (x0, y0): (usize, usize)) -> Plan
             let flow = FlowField::of_normals(surface).smoothed(Some(surface.coverage_plane()), FLOW_BLUR * longer);
             let along = |x: usize, y: usize| {
                 let eigen = flow.at(x, y).eigen();
-                // Where the normals turn alike every way there is no line.
+                // Where the normals turn equally in all directions there is no line.
                 (eigen.larger > 1.05 * eigen.smaller.max(0.0) + 1e-12).then_some(eigen.direction)
             };
             let Some(u0) = along(x0, y0) else { return on_surface(&|_, _| f32::INFINITY) };
@@ -56,7 +56,7 @@ pub fn of(surface: &Surface, kind: RegionKind, (x0, y0): (usize, usize)) -> Plan
     }
 }
 
-/// The angle between unit vectors, degrees: 2 asin(½ |a − b|), which small angles do not lose their digits in.
+/// The angle between unit vectors, degrees: 2 asin(½ |a − b|), which keeps the digits of small angles.
 pub fn angle(a: Vec3, b: Vec3) -> f32 {
     2.0 * (0.5 * a.distance(b)).min(1.0).asin().to_degrees()
 }

@@ -15,7 +15,7 @@ pub(super) struct GridRow<'g> {
 #[inline(always)]
 fn each(row: GridRow, [above, here, below]: [&[f32]; 3], mut visit: impl FnMut(usize, f32, f32, f32)) {
     let n = here.len();
-    // The first and the last row have springs to nowhere, whose stiffness is 0: any row of the right length does.
+    // The first and last rows have springs to nowhere, of stiffness 0: any row of the right length will do.
     let (up, above) = if row.up.len() == n && above.len() == n { (row.up, above) } else { (&ZEROS[..0], here) };
     let below = if below.len() == n { below } else { here };
     let (right, down) = (&row.right[..n], &row.down[..n]);
