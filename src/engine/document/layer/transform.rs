@@ -31,7 +31,7 @@ impl LayerTransform {
     pub const FACTOR: range::Range = -1e4..=1e4;
 
     /// The map of the plane; `None` where a matrix cannot be inverted or corners form no convex quadrilateral. A mesh
-    /// that no matrix says leaves the plane and displaces what is seen ([`LayerWarp`]).
+    /// that no matrix says leaves the plane and displaces what is seen ([`super::LayerWarp`]).
     pub fn map(&self, canvas: Size) -> Option<PlaneMap> {
         match &self.shape {
             TransformShape::Matrix(coefficients) => PlaneMap::affine(*coefficients),
