@@ -5,6 +5,7 @@ use crate::Budget;
 use crate::bitmap;
 use crate::document::EncodedPixels;
 use crate::math::{Rect, Size};
+use crate::picture::{is_own_srgb, own_srgb};
 use crate::raster::tile::deep::byte_of;
 use crate::raster::{Asset, Plane, TILE, Tile, TileAt, TileGrid};
 use crate::{Error, Result};
@@ -114,11 +115,15 @@ fn encoded<'v>(
     how: png::Compression,
 ) -> Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, size.width, size.height);
-    encoder.set_color(kind.color);
-    encoder.set_depth(kind.depth);
+    let mut info = png::Info::with_size(size.width, size.height);
+    (info.color_type, info.bit_depth) = (kind.color, kind.depth);
+    match kind.depth {
+        // Krita asks for a profile, layer by layer, for pictures of 16 bits that do not contain one.
+        png::BitDepth::Sixteen => info.icc_profile = Some(own_srgb().into()),
+        _ => info.srgb = Some(png::SrgbRenderingIntent::Perceptual),
+    }
+    let mut encoder = png::Encoder::with_info(&mut bytes, info)?;
     encoder.set_compression(how);
-    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     let mut writer = encoder.write_header()?;
     let mut rows = writer.stream_writer_with_size(CHUNK_BYTES)?;
     for strip in strips {
@@ -170,7 +175,8 @@ pub fn decode_tiles(bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Option<Pai
     decoder.set_transformations(png::Transformations::EXPAND);
     let mut reader = decoder.read_info().ok()?;
     let info = reader.info();
-    let is_bare = info.exif_metadata.is_none() && info.animation_control.is_none() && !bitmap::has_png_profile(bytes);
+    let is_srgb = !bitmap::has_png_profile(bytes) || info.icc_profile.as_deref().is_some_and(is_own_srgb);
+    let is_bare = info.exif_metadata.is_none() && info.animation_control.is_none() && is_srgb;
     let size = budget.size(Path::new(""), info.width.into(), info.height.into()).ok()?;
     let (color, depth) = reader.output_color_type();
     let is_deep = depth == png::BitDepth::Sixteen;
@@ -297,6 +303,7 @@ mod tests {
         let tiles = TileGrid::from_straight_deep(&pixels, 200, 90, -8, 5);
         let encoded = encode(Path::new("a"), &tiles, None).unwrap();
         assert!(is_deep(encoded.file.bytes()));
+        assert!(bitmap::has_png_profile(encoded.file.bytes()), "Krita would ask for one");
         assert_eq!((encoded.x, encoded.y, encoded.size), (-8, 5, Size::new(200, 90)));
         let quick = decode_tiles(encoded.file.bytes(), encoded.x, encoded.y, &Budget::default()).unwrap().tiles;
         // With a profile, as Krita writes them, another way is taken.
