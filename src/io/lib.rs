@@ -22,6 +22,7 @@ pub mod recipe;
 pub mod recovery;
 pub mod replace;
 pub mod save;
+pub mod srgb_profile;
 
 // The floors beneath, under their own names.
 use rilievo_engine::{Error, Remedy, Result, document, math, memory, paint, raster, shading, shape, surface};

@@ -1,6 +1,7 @@
 //! Pictures of every format, with profiles and without.
 
 use super::*;
+use crate::srgb_profile::own_srgb;
 use image::{ImageFormat, RgbaImage};
 use std::io::Cursor;
 

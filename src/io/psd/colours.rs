@@ -103,7 +103,7 @@ impl Colours<'_> {
         }
     }
     fn through_profile(&self, size: Size, rgba: Vec<u8>) -> Vec<u8> {
-        match self.icc.filter(|icc| !self.is_light && !picture::is_own_srgb(icc)) {
+        match self.icc.filter(|icc| !self.is_light && !crate::srgb_profile::is_own_srgb(icc)) {
             Some(icc) => picture::to_srgb(size, rgba, self.mode == Mode::Grey, icc),
             None => rgba,
         }

@@ -6,7 +6,6 @@ use super::{ICC_PROFILE, LayerRecord, MAGIC, OURS, RESOLUTION, RecordMask, Recor
 use super::{kept, marks};
 use crate::document::{Guides, LayerLabel, NamedSelection};
 use crate::math::{Rect, Size};
-use crate::picture;
 
 /// The default print resolution.
 const DOTS_PER_INCH: u32 = 72;
@@ -85,7 +84,7 @@ fn resources(selections: &[NamedSelection], guides: &Guides, ours: &[u8]) -> Vec
     unicode(&mut version, "Rilievo");
     long(&mut version, 1);
     let mut out = Vec::new();
-    let profile = picture::own_srgb();
+    let profile = crate::srgb_profile::own_srgb();
     let mut named = kept::resources(selections);
     named.extend(marks::guides_resource(guides));
     let own = [(RESOLUTION, &resolution[..]), (ICC_PROFILE, &profile), (VERSION_INFO, &version), (OURS, ours)];

@@ -9,8 +9,8 @@ use super::layers::RecordReader;
 use super::merged::{Merged, merged};
 use super::pattern::{self, PatternResource};
 use super::{ICC_PROFILE, LayerRecord, OURS, marks};
+use crate::Budget;
 use crate::document::Guides;
-use crate::{Budget, picture};
 use crate::{Error, Result};
 use std::path::Path;
 
@@ -49,7 +49,7 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
         table: table.rest(),
         nothing: resource(resources, TRANSPARENT_NUMBER)
             .and_then(|data| u8::try_from(ByteCursor::new(data).u16()?).ok()),
-        icc: resource(resources, ICC_PROFILE).filter(|icc| !picture::is_own_srgb(icc)),
+        icc: resource(resources, ICC_PROFILE).filter(|icc| !crate::srgb_profile::is_own_srgb(icc)),
     };
     let length = rest.length(header.large).ok_or_else(cut)?;
     let section = ByteCursor::new(rest.rest().get(..length).unwrap_or(rest.rest()));
