@@ -14,8 +14,8 @@ impl Document {
     /// layers in them. An image or a ramp that is skewed or in perspective keeps its transform. `None` if there is no
     /// such layer.
     ///
-    /// What a part carries is carried on from there: the layer's transform becomes the inverse of where its home stands
-    /// now, so that its coordinates are those of the canvas until the part moves.
+    /// What a part carries stays with it: the layer's transform becomes the inverse of where its home is now, so that
+    /// its coordinates are those of the canvas until the part moves.
     pub fn with_transform_applied(&self, id: LayerId) -> Option<Document> {
         if is_in_place(self.layer(id)?, &self.map_of(id)?) {
             return Some(self.clone());
@@ -30,7 +30,7 @@ impl Document {
     }
 }
 
-/// Whether the frame of a layer and those of its strokes are the canvas, with no transform that could be spared.
+/// Whether the frame of a layer and those of its strokes are the canvas, with no transform that could be dropped.
 fn is_in_place(layer: &Layer, map: &LayerMap) -> bool {
     let is_carried = map.plane != map.without_homes();
     let strokes_are = || match &layer.content {
@@ -43,7 +43,8 @@ fn is_in_place(layer: &Layer, map: &LayerMap) -> bool {
     map.is_none() && !layer.is_warped() && (layer.transform.is_none() || is_carried) && strokes_are()
 }
 
-/// A list of layers with the transforms on the way to a layer handed down; `None` if it is not among them.
+/// A list of layers in which the transforms of the groups around a layer are handed down; `None` if it is not among
+/// them.
 fn applied(layers: &[Arc<Layer>], id: LayerId, around: &LayerMap) -> Option<Vec<Arc<Layer>>> {
     let index = layers.iter().position(|layer| layer.id == id || holds(layer, id))?;
     let mut next = layers.to_vec();
@@ -64,10 +65,11 @@ fn holds(layer: &Layer, id: LayerId) -> bool {
     layer.content.group().is_some_and(|group| group.layers.iter().any(|layer| layer.id == id || holds(layer, id)))
 }
 
-/// A group whose frame is the canvas: each layer in it has its transform instead. `None` where that cannot be said.
+/// A group whose frame is the canvas: each layer in it has its transform instead. `None` where that cannot be
+/// expressed.
 fn handed_down(group: &Arc<Layer>, around: &LayerMap) -> Option<Layer> {
     let was = around.within(group);
-    // What displaces it as a whole cannot be handed down.
+    // Its mesh and liquify cannot be handed down.
     if group.is_warped() {
         return was.is_none().then(|| Layer::clone(group));
     }
@@ -80,19 +82,19 @@ fn handed_down(group: &Arc<Layer>, around: &LayerMap) -> Option<Layer> {
     let inner = group.content.group()?.layers.iter();
     let inner: Option<Vec<Arc<Layer>>> =
         inner.map(|layer| kept(layer, (&was, &now), &|home| Some(home.clone()))).collect();
-    // Its mask goes along once.
+    // Its mask is transformed once.
     let mask = seen(group, &was).mask.clone();
     let content = Content::Group(Group { layers: inner?, ..group.content.group()?.clone() });
     Some(Layer { content, mask, ..bare })
 }
 
-/// A layer on the canvas without its transform, where its kind can say so.
+/// A layer on the canvas without its transform, where its kind can express it.
 pub(in crate::document) fn in_place(layer: &Arc<Layer>, around: &LayerMap) -> Arc<Layer> {
     if layer.content.group().is_some() {
         return handed_down(layer, around).map_or_else(|| layer.clone(), Arc::new);
     }
     let map = around.within(layer);
-    // Of live layers only pixels say what is displaced.
+    // Live content cannot express a displacement.
     if layer.is_warped() && !matches!(layer.content, Content::Pixels(_) | Content::Fill(_)) {
         return layer.clone();
     }
@@ -122,8 +124,8 @@ pub(in crate::document) fn in_place(layer: &Arc<Layer>, around: &LayerMap) -> Ar
     Arc::new(next)
 }
 
-/// Strokes as they lie on the canvas, those with homes of their own carried on by them; `None` where that cannot be
-/// said.
+/// Strokes as they lie on the canvas, those with homes of their own still carried by them; `None` where that cannot be
+/// expressed.
 ///
 /// * `now`: the map of their layer.
 fn carried_on(own: &StrokeList, seen: &Content, now: &LayerMap) -> Option<StrokeList> {
@@ -156,7 +158,7 @@ impl crate::paint::Gradient {
     }
 }
 
-/// A placement on the canvas that a frame lies on; `None` of a frame that is mirrored, skewed or in perspective.
+/// A placement on the canvas that a frame lies on; `None` for a frame that is mirrored, skewed or in perspective.
 pub(in crate::document) fn placed(placement: &Placement, frame: &PlaneMap) -> Option<Placement> {
     let map = similarity(frame, false)?;
     let along = map.matrix2.x_axis;

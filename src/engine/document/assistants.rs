@@ -1,5 +1,5 @@
-//! Assistants: lines, ellipses and perspectives that strokes are drawn along. Values of the document, no part of the
-//! picture. Floor 4. Which of their lines a stroke takes is the tools' (`tools::assistants`).
+//! Assistants: lines, ellipses and perspectives that strokes are drawn along. Values of the document, not part of the
+//! picture. Floor 4. Not here: which of their lines a stroke takes (`tools::assistants`).
 
 use crate::math::range::{at_most, within};
 use crate::math::{COORDINATE, PlaneMap, Vec2};
@@ -17,9 +17,9 @@ crate::named! {
     pub enum AssistantKind {
         /// From one handle to the other.
         Line = "line",
-        /// All lines that run as the one through both handles.
+        /// All lines parallel to the one through both handles.
         Parallel = "parallel",
-        /// Its first two handles are the ends of one axis, the third lies on it across that axis.
+        /// Its first two handles are the ends of one axis, the third lies on it, at a right angle to that axis.
         Ellipse = "ellipse",
         /// All lines to one vanishing point, and the level and upright ones.
         OnePoint = "one-point",
@@ -52,7 +52,7 @@ pub enum AssistantPath {
     Ellipse(EllipseFrame),
 }
 
-/// An ellipse by its middle and its half axes, which stand at right angles.
+/// An ellipse by its middle and its half axes, which are at right angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EllipseFrame {
     pub center: Vec2,
@@ -63,7 +63,7 @@ impl Assistant {
     /// Of a document.
     pub const MOST: usize = 100;
 
-    /// Refuses what no file gives back.
+    /// Refuses what files cannot hold.
     pub fn fits(&self) -> Result<(), String> {
         if self.points.len() != self.kind.handles() {
             let (is, must) = (self.points.len(), self.kind.handles());
@@ -72,12 +72,12 @@ impl Assistant {
         let mut numbers = self.points.iter().flat_map(|point| point.to_array());
         numbers.try_for_each(|v| within("a handle of an assistant", v, &COORDINATE))
     }
-    /// Refuses more of them than a file gives back, and those that no file does.
+    /// Refuses more of them than a file can hold, and those that files cannot hold.
     pub fn all_fit(all: &[Assistant]) -> Result<(), String> {
         at_most("Assistants", all.len(), Self::MOST)?;
         all.iter().try_for_each(Assistant::fits)
     }
-    /// The handle put elsewhere; that of an ellipse's second axis stays across the first.
+    /// With a handle moved; that of an ellipse's second axis stays at a right angle to the first.
     pub fn with_handle(&self, index: usize, at: Vec2) -> Self {
         let mut next = self.clone();
         let half = self.ellipse().map(|ellipse| ellipse.axes[1].length());
@@ -153,8 +153,8 @@ impl AssistantPath {
             AssistantPath::Ellipse(ellipse) => ellipse.nearest(to),
         }
     }
-    /// How far from the path a point lies that a stroke from its beginning has reached, as a share of the way: 0 runs
-    /// along it, 1 across.
+    /// Distance from the path of the point that a stroke has reached, as a share of its length so far: 0 is along the
+    /// path, 1 across.
     pub fn leaning(&self, from: Vec2, to: Vec2) -> f32 {
         let long = from.distance(to).max(f32::MIN_POSITIVE);
         let off = |p: Vec2| p - self.nearest(p);
@@ -173,7 +173,7 @@ impl EllipseFrame {
         let local = to - self.center;
         let (x, y) = (f64::from(local.dot(along)), f64::from(local.dot(across)));
         if !(a > 1e-6 && b > 1e-6) {
-            // A line to and fro.
+            // A line there and back.
             let x = x.max(-a).min(a);
             return self.center + along * x as f32;
         }
@@ -189,7 +189,7 @@ fn swapped((x, y): (f64, f64)) -> (f64, f64) {
 /// In the quarter of both half axes, a ≥ b > 0, x and y ≥ 0.
 fn quarter(a: f64, b: f64, x: f64, y: f64) -> (f64, f64) {
     if y < 1e-9 {
-        // Between the middles of curvature the nearest points lie beside the long axis.
+        // Between the middles of curvature the nearest points lie next to the long axis.
         let reach = (a * a - b * b) / a;
         if x < reach {
             let at = a * a * x / (a * a - b * b);

@@ -1,6 +1,6 @@
-//! The other populations of a tile's contour pixels, packed into rows: as many pixels as there are, not as the tile has
-//! (MATH 10). Layers are rendered and composed on them like on a tile.
-//! Floor 4. Here: their order and their pixels. Not here: composing them (`compose`), rendering them (`content`).
+//! The other populations of a tile's contour pixels, packed into rows: only as many pixels as there are contour pixels
+//! (MATH 10). Layers are rendered and composed on them like on a tile. Floor 4. Here: their order and their pixels. Not
+//! here: composing them (`compose`), rendering them (`content`).
 
 use crate::math::srgb;
 use crate::paint::Scene;
@@ -17,7 +17,7 @@ pub struct Behind<'c> {
     contours: TileContours<'c>,
 }
 
-/// Pixels of a layer as other populations see them: as a tile's, a row after the other.
+/// Pixels of a layer as other populations see them: row after row, like a tile's.
 pub struct PackedTile {
     pixels: PackedPixels,
     opaque: bool,
@@ -54,7 +54,7 @@ impl<'c> Behind<'c> {
         let place = move |i: usize| if i < seen { i } else { first_bare + i - seen };
         self.contours.pixels.iter().enumerate().map(move |(i, pixel)| (place(i), pixel))
     }
-    /// The pixel of the sheet that tells of a place; `None` where no surface is seen.
+    /// The pixel of the sheet for a place; `None` where no surface is seen.
     pub fn sheet_pixel(&self, place: usize) -> Option<(usize, usize)> {
         let (x, y) = (place < self.contours.seen).then(|| place_of(place))?;
         Some((self.contours.sheet.x0 as usize + x, self.contours.sheet.y0 as usize + y))
@@ -69,7 +69,7 @@ impl<'c> Behind<'c> {
         self.places().for_each(|(place, pixel)| values[place] = value(place, pixel));
         values
     }
-    /// Packs pixels: of what was rendered on the sheet, and for those that see no surface of the tile itself.
+    /// Packs pixels: those rendered on the sheet and, where no surface is seen, those of the tile itself.
     pub fn packed(&self, on_sheet: Option<&Tile>, bare: Option<&Tile>) -> PackedTile {
         let corner = self.at.rect();
         self.gathered(|place, pixel| {
@@ -83,7 +83,7 @@ impl<'c> Behind<'c> {
             tile.map_or([0; 4], |tile| pixel_of(tile, (x, y)))
         })
     }
-    /// The same of pixels that are not rounded to bytes.
+    /// The same for pixels that are not rounded to bytes.
     pub fn packed_deep(&self, on_sheet: Option<&PlanarTile>, bare: Option<&PlanarTile>) -> PlanarTile {
         let (mut packed, corner) = (PlanarTile::of_rows(self.rows()), self.at.rect());
         for (place, contour) in self.places() {
@@ -127,7 +127,7 @@ impl<'c> Behind<'c> {
         }
         PackedTile { pixels: PackedPixels::Bytes(bytes), opaque }
     }
-    /// Leaves each pixel wholly, or nothing of it, as dissolving paint does at its place on the canvas.
+    /// Keeps each pixel whole or removes it, as dissolving paint does at its place on the canvas.
     pub fn dissolve(&self, pixels: &mut PlanarTile) {
         for (place, contour) in self.places() {
             let row = &mut pixels.rows_mut()[place / TILE];
@@ -181,7 +181,7 @@ fn mixed(to: [f32; 4], from: [f32; 4], share: f32) -> [f32; 4] {
     std::array::from_fn(|i| to[i] + share * (from[i] - to[i]))
 }
 
-/// The same of their light: two parts of one surface are seen side by side.
+/// The same for their light: two parts of one surface are seen side by side.
 fn in_light(to: [f32; 4], from: [f32; 4], share: f32, brightest: f32) -> [f32; 4] {
     let light = |p: [f32; 4]| {
         let per_a = 1.0 / p[3].max(f32::MIN_POSITIVE);
@@ -212,7 +212,7 @@ impl PackedTile {
             PackedPixels::Deep(rows) => size_of_val::<[DeepRow]>(rows) as u64,
         }
     }
-    /// Every pixel that is used is.
+    /// Every used pixel is opaque.
     pub fn is_opaque(&self) -> bool {
         self.opaque
     }
@@ -221,7 +221,7 @@ impl PackedTile {
 /// What is known of a live layer behind the contours of a tile.
 #[derive(Clone)]
 pub enum BehindPixels {
-    /// The same as the tile itself: of strokes that are still being drawn.
+    /// The same as the tile itself: for strokes that are still being drawn.
     Same,
     Packed(Arc<PackedTile>),
 }

@@ -1,8 +1,8 @@
 //! Another canvas under the same drawing: crops, other borders, turns, mirrors. Floor 4.
 //!
-//! Everything goes along: paint, live layers, transforms, masks, selections, the maps with their vectors, the parts of
-//! the shape. Moves of whole pixels, quarter turns and mirrors change no value of paint; a turn by another angle turns
-//! paint by its transform, so that turns that add up to none leave none. What lies beyond the new canvas is kept, but
+//! Everything follows: paint, live layers, transforms, masks, selections, the maps with their vectors, the parts of the
+//! shape. Moves of whole pixels, quarter turns and mirrors change no value of paint; a turn by another angle turns
+//! paint by its transform, so that turns that cancel out leave nothing. What lies beyond the new canvas is kept, except
 //! for masks. Not here: another size of the picture itself (`scale`).
 
 mod layers;
@@ -23,7 +23,7 @@ use selections::CarriedSelections;
 use std::sync::Arc;
 
 crate::named! {
-    /// Which part of the old picture stays in place when a canvas becomes larger or smaller.
+    /// Which part of the old picture stays in place when the size of the canvas changes.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
     pub enum CanvasAnchor {
         TopLeft = "top-left",
@@ -40,7 +40,7 @@ crate::named! {
 }
 
 impl CanvasAnchor {
-    /// Halves of what is added that come at the left, and at the top.
+    /// Halves of what is added that go to the left and to the top.
     fn halves(self) -> (i32, i32) {
         let place = Self::ALL.iter().position(|(anchor, _)| *anchor == self).unwrap_or(4) as i32;
         (place % 3, place / 3)
@@ -69,13 +69,13 @@ pub struct CanvasChange {
 }
 
 impl CanvasChange {
-    /// To a rectangle of the old canvas, which may reach beyond it; `None` of an empty one.
+    /// To a rectangle of the old canvas, which may reach beyond it; `None` for an empty one.
     pub fn crop(from: Size, to: Rect) -> Option<Self> {
         let map = PlaneMap::translation(vec2(-to.x0 as f32, -to.y0 as f32));
         (!to.is_empty()).then(|| Self { map, from, to: Size::new(to.width() as u32, to.height() as u32) })
     }
-    /// To another size; the anchor says what stays in place. Of an odd difference the smaller half comes first.
-    /// `None` of a size without pixels.
+    /// To another size; the anchor says what stays in place. The smaller half of an odd difference comes first. `None`
+    /// for a size without pixels.
     pub fn resized(from: Size, to: Size, anchor: CanvasAnchor) -> Option<Self> {
         let (across, down) = anchor.halves();
         let (wider, taller) = (to.width as i32 - from.width as i32, to.height as i32 - from.height as i32);
@@ -94,7 +94,7 @@ impl CanvasChange {
         Self { map: PlaneMap::affine(matrix).unwrap_or_default(), from, to }
     }
     /// Turned by an angle, degrees counter-clockwise as seen, on a canvas that holds all of the old one. Its sides are
-    /// odd where the old ones are, so that pixels turned back lie on pixels.
+    /// odd if the old ones are, so that pixels turned back lie on pixels.
     pub fn turned(from: Size, degrees: f64) -> Self {
         let quarters = (degrees / 90.0).round();
         if !degrees.is_finite() || (degrees - quarters * 90.0).abs() < 1e-6 {
@@ -131,7 +131,7 @@ impl CanvasChange {
     pub fn is_none(&self) -> bool {
         self.from == self.to && self.map.is_identity_on(self.from)
     }
-    /// The move of whole pixels that it is, if it is one.
+    /// Its move by whole pixels, if it is one.
     fn pixel_move(&self) -> Option<PixelMove> {
         self.map.pixel_move_on(self.reach())
     }
@@ -161,14 +161,14 @@ impl CanvasChange {
 impl Document {
     /// The drawing on another canvas. Layers keep their ids.
     ///
-    /// Fails, in a sentence, where nothing of the shape would be left, and where a layer's perspective cannot be told
-    /// by the corners of the new canvas.
+    /// Fails, in a sentence, where nothing of the shape would be left, and where the corners of the new canvas cannot
+    /// express a layer's perspective.
     pub fn on_other_canvas(&self, change: &CanvasChange) -> Result<Document, String> {
         if change.is_none() {
             return Ok(self.clone());
         }
         let carried = CarriedSelections::new(change);
-        // What lies on parts is carried as it shows, and put on them again where they came to lie.
+        // What lies on parts is carried as it shows, and put on them again at their new places.
         let lifted = self.lifted_off(|_| true);
         let layers = layers::Carrier { change, selections: &carried }.layers(&lifted.layers)?;
         let maps = self.maps_surface().map(|maps| maps.through(change.to, &change.map));
@@ -203,7 +203,7 @@ impl Document {
 
 const NOTHING_LEFT: &str = "The new canvas would hold nothing of the shape: layers could not be kept to it.";
 
-/// The maps of a surface where it lies now.
+/// The maps of a surface at its new place.
 pub(super) fn placed(source: &SurfaceSource, surface: &Arc<Surface>, canvas: Size) -> SurfaceSource {
     let origin = surface.origin();
     let maps = origin.surface.size();
@@ -212,5 +212,5 @@ pub(super) fn placed(source: &SurfaceSource, surface: &Arc<Surface>, canvas: Siz
     SurfaceSource { matrix, ..source.clone() }
 }
 
-/// How turned paint is sampled, as long as its layer says nothing else.
+/// How turned paint is sampled, unless its layer says otherwise.
 const TURNED: Resampling = Resampling::Smooth;

@@ -1,4 +1,4 @@
-//! Composes one tile of a document: its layers from bottom to top, in f32; and, by the same rules, what the other
+//! Composes one tile of a document: its layers from bottom to top, in f32. By the same rules it composes what the other
 //! populations of its contour pixels see (`behind`). Floor 4. `prepare` selects the layers, `content` renders them,
 //! `raster::blend` mixes the pixels.
 
@@ -20,11 +20,11 @@ pub(super) type ComposeFlow<T = ()> = ControlFlow<PlanarTile, T>;
 pub(super) struct Composer<'a> {
     pub prepared: &'a PreparedDocument,
     pub at: TileAt,
-    /// The pixels that are composed, if not the tile's.
+    /// The pixels to compose, if not the tile's.
     pub behind: Option<Behind<'a>>,
     /// The adjustment to end at, if this is to measure what lies beneath one.
     pub sought: Option<usize>,
-    /// What live layers are composed of, if not of the bytes that they are rendered to.
+    /// The pixels of live layers, if not the bytes that they are rendered to.
     pub deep: Option<&'a DeepTiles>,
 }
 
@@ -39,7 +39,7 @@ impl Composer<'_> {
         let end = nodes.iter().position(|node| self.is_sought_in(node)).unwrap_or(nodes.len());
         nodes[..end].iter().rposition(|node| self.hides_all_beneath(node)).unwrap_or(0)
     }
-    /// The tile of the topmost node, if that is all there is to see: it hides what lies beneath, and nothing is clipped
+    /// The tile of the topmost node, if nothing else is seen: it hides what lies beneath, and nothing is clipped
     /// to it.
     pub fn only_tile(&self, nodes: &[PreparedLayer]) -> Option<Arc<Tile>> {
         let node = nodes.last().filter(|node| node.clipped.is_empty() && self.hides_all_beneath(node))?;
@@ -73,8 +73,8 @@ impl Composer<'_> {
             }
             return ComposeFlow::Continue(());
         }
-        // A clipping group: the run on the base's own pixels and in its shape, then the base's way to meet the
-        // backdrop.
+        // A clipping group: the run on the base's own pixels and in its shape, then onto the backdrop as the base's
+        // blending says.
         let mut own = self.blank();
         if let Some(paint) = painted.as_paint() {
             own.blend(Mix::default(), paint, &coverage.mask_only());
@@ -96,7 +96,7 @@ impl Composer<'_> {
                 None => onto.blend(mix, paint, coverage),
             };
         };
-        // Noise is fixed to the canvas, and packed pixels lie anywhere on it. What is whole or nothing stays so.
+        // Noise is fixed to the canvas, and packed pixels lie anywhere on it. Pixels that are whole or empty stay so.
         let mut dissolved = self.blank();
         dissolved.blend(Mix::default(), paint, coverage);
         behind.dissolve(&mut dissolved);
@@ -104,7 +104,7 @@ impl Composer<'_> {
     }
     fn content(&self, node: &PreparedLayer) -> ComposeFlow<TileContent> {
         if let Role::Groups(_) = node.layer.content.role() {
-            // What lies beneath an adjustment in it is measured where it stands.
+            // What lies beneath an adjustment in it is measured undisplaced.
             if !node.children.iter().any(|child| self.is_sought_in(child))
                 && let Some(shown) = self.displaced(node)
             {
@@ -119,8 +119,8 @@ impl Composer<'_> {
     fn painted(&self, node: &PreparedLayer) -> TileContent {
         self.displaced(node).unwrap_or_else(|| self.painted_in_place(node))
     }
-    /// What a displaced layer shows; `None` where it shows itself, and of one that is not displaced. Both populations
-    /// of a contour pixel see the same, as of paint.
+    /// What a displaced layer shows; `None` where it shows itself, and for one that is not displaced. Both populations
+    /// of a contour pixel see the same, as with paint.
     fn displaced(&self, node: &PreparedLayer) -> Option<TileContent> {
         let shown = node.warp.as_ref()?.shown(self.at, &|at| self.in_place(node, at))?;
         let Some(tile) = shown else { return Some(TileContent::Nothing) };
@@ -129,7 +129,7 @@ impl Composer<'_> {
             None => TileContent::Tile(tile),
         })
     }
-    /// A tile of a layer alone where it stands, undisplaced: its contours mixed, not yet clipped to the surface.
+    /// A tile of a layer alone, undisplaced: its contours mixed, not yet clipped to the surface.
     fn in_place(&self, node: &PreparedLayer, at: TileAt) -> Option<Arc<Tile>> {
         let composed = |behind: Option<Behind>| {
             let composer = Composer { prepared: self.prepared, at, behind, sought: None, deep: None };

@@ -1,5 +1,5 @@
 //! What the numbers of normal and depth maps mean.
-//! Floor 4. Plain data with the names they have in JSON; which files they are of is `source`'s.
+//! Floor 4. Plain data with their names in JSON. Not here: which files they belong to (`source`).
 
 crate::named! {
     /// `"encoding"` of normals: how numbers become components.
@@ -50,7 +50,7 @@ crate::named! {
 }
 
 /// `"convention"` of normals: the words `"auto"`, `"opengl"`, `"directx"`, or an object of the fields below, each of
-/// which is found where it is absent.
+/// which is detected where it is absent.
 ///
 /// ```json
 /// { "encoding": "unsigned", "channels": "rgb", "srgb": false, "flip_x": false, "flip_y": true, "flip_z": false,
@@ -75,15 +75,15 @@ pub struct NormalConvention {
     pub world_to_camera: Option<[[f32; 3]; 3]>,
     /// Treat |xy| < 1.5/255 as 0 where an 8-bit map is flat.
     pub snap_flat: Option<bool>,
-    /// Smooth away the steps of 8 bits, within the half step they stand for. Off unless asked for.
+    /// Smooth away the steps of 8 bits, within half a step. Off unless requested.
     pub smooth_steps: Option<bool>,
 }
 
 impl NormalConvention {
-    /// The words that stand for a whole convention.
+    /// The words that mean a whole convention.
     pub const WORDS: [&'static str; 3] = ["auto", "opengl", "directx"];
 
-    /// The convention a word stands for.
+    /// The convention that a word means.
     pub fn from_word(word: &str) -> Option<Self> {
         let fixed = |flip_y| Self {
             channels: Some([0, 1, 2]),
@@ -101,7 +101,7 @@ impl NormalConvention {
             _ => None,
         }
     }
-    /// The word that stands for exactly this convention.
+    /// The word that means exactly this convention.
     pub fn word(&self) -> Option<&'static str> {
         Self::WORDS.into_iter().find(|w| Self::from_word(w).as_ref() == Some(self))
     }
@@ -118,14 +118,14 @@ impl NormalConvention {
 }
 
 /// How depth is to be read: `"near"`, `"encoding"`, `"fov"`, `"background"`, `"range_px"` and `"smooth_steps"`, each
-/// found where absent.
+/// detected where absent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DepthConvention {
     pub near: Near,
     pub encoding: Option<DepthEncoding>,
     /// `"fov"`: horizontal field of view in degrees, for distances along the ray.
     pub fov_degrees: Option<f32>,
-    /// `"background"`: stored values that mean "no surface", beyond those that are found.
+    /// `"background"`: stored values that mean "no surface", besides those that are detected.
     pub background: Vec<f32>,
     /// `"range_px"`: how many pixels deep the surface is, for normals made from depth.
     pub range_px: Option<f32>,

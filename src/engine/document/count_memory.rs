@@ -1,11 +1,11 @@
-//! Counts what documents take of memory, and lets go of what they keep for speed alone. Floor 4. How much that may be
-//! is told by higher floors, which know the machine.
+//! Counts the memory that documents take, and frees what they keep only for speed. Floor 4. Higher floors, which know
+//! the machine, say how much that may be.
 
 use super::{Document, MaskKind, MemoryCount};
 
 impl MemoryCount {
-    /// Counts what a document holds beside what was counted before; `keeps`: otherwise it lets go of what it keeps for
-    /// speed and nobody before it did. It is computed again when it is needed.
+    /// Counts what a document holds besides what was counted before. Unless `keeps`, it frees what it keeps for speed
+    /// and was not counted before; that is computed again when needed.
     pub fn add(&mut self, document: &Document, keeps: bool) {
         if let Some(surface) = &document.surface {
             self.add_surface(surface, keeps);

@@ -1,4 +1,4 @@
-//! Cutting and copying what is selected of a layer. Paint loses or keeps its pixels; strokes stay strokes, bounded by
+//! Cutting and copying the selected part of a layer. Paint loses or keeps its pixels; strokes stay strokes, bounded by
 //! what is left or taken of their selections; all other kinds stay as they are, under a mask. Floor 4.
 
 use super::selections::picture;
@@ -10,15 +10,15 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 impl Document {
-    /// With what is covered taken away from a layer. `None` where there is no such layer, or it is locked.
+    /// With what is covered removed from a layer. `None` where there is no such layer, or it is locked.
     ///
-    /// A stroke of which nothing is left goes; of other live layers a mask hides what is covered.
+    /// A stroke of which nothing is left is removed; in other live layers a mask hides what is covered.
     pub fn with_cleared(&self, layer: LayerId, covered: &CoverageGrid) -> Option<Document> {
         self.layer(layer).filter(|layer| layer.lock == LayerLock::None)?;
         // Pixels, strokes and masks lie where they show.
         let shown = self.with_transform_applied(layer)?;
         let old = shown.layer(layer)?;
-        // What is still displaced does not lie where it shows.
+        // Displaced content does not lie where it shows.
         if old.is_warped() {
             return None;
         }
@@ -45,8 +45,9 @@ impl Document {
             }
         }
     }
-    /// What is covered of a layer, as a layer of its own under a fresh id: paint with those pixels, the strokes that
-    /// meet it and bounded to it, or the same live layer under a mask. `None` where nothing of the layer is there.
+    /// The covered part of a layer, as a layer of its own under a fresh id: paint with those pixels, the strokes that
+    /// meet the coverage, bounded to it, or the same live layer under a mask. `None` where nothing of the layer is
+    /// there.
     pub fn copied_from(&self, layer: LayerId, covered: &CoverageGrid) -> Option<Layer> {
         let shown = self.with_transform_applied(layer)?;
         let old = shown.layer(layer)?;
@@ -83,7 +84,7 @@ impl Document {
         }
         Some(next)
     }
-    /// A layer's mask times coverage, as a picture; one that follows the surface stays where there was none before.
+    /// A layer's mask times coverage, as a picture; a selection by the surface stays one if there was no mask.
     fn narrowed_mask(&self, layer: &Layer, to: &CoverageGrid) -> LayerMask {
         let is_active = self.selected().is_some_and(|active| active.ptr_eq(to));
         if let Some(mask) = self.selection_as_mask().filter(|_| is_active && layer.mask.is_none()) {
@@ -94,7 +95,7 @@ impl Document {
     }
 }
 
-/// Pixels as far as they are covered.
+/// Pixels times their coverage.
 pub fn taken(tiles: &TileGrid, covered: &CoverageGrid) -> TileGrid {
     let mut out = TileGrid::for_rect(tiles.bounds().intersect(covered.bounds()));
     let both: Vec<_> = tiles.iter().filter_map(|(at, tile)| Some((at, tile, covered.tile(at)?))).collect();
@@ -103,7 +104,7 @@ pub fn taken(tiles: &TileGrid, covered: &CoverageGrid) -> TileGrid {
     out
 }
 
-/// A grid with each tile that is covered at all changed.
+/// A grid in which each tile with any coverage is changed.
 fn changed(
     tiles: &TileGrid,
     covered: &CoverageGrid,
@@ -140,7 +141,7 @@ fn kept(tile: &Arc<Tile>, covered: &CoverageTile, share: impl Fn(u8) -> u8) -> O
     Tile::from_pixels(bytes).map(Arc::new)
 }
 
-/// A stroke that paints only there, too.
+/// A stroke that paints only inside these as well.
 fn narrowed(stroke: &Stroke, to: &CoverageGrid) -> Stroke {
     let own = match stroke.selection() {
         Some(own) => own.narrowed(to),
@@ -187,7 +188,7 @@ mod tests {
         let document = Document { layers: vec![Arc::new(layer.clone())], ..Document::empty(SIZE) };
         flatten(&document, &Progress::default()).unwrap()
     }
-    /// Soft and hard, and empty in a part.
+    /// Soft, hard, and partly empty.
     fn covered() -> CoverageGrid {
         let plane = Plane::from_fn(SIZE, |x, y| if y < 80 { (x as i32 * 3 - 150).clamp(0, 255) as u8 } else { 0 });
         CoverageGrid::from_plane(&plane, 0, 0)

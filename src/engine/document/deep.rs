@@ -1,5 +1,5 @@
 //! Composing without rounding to bytes: live layers are rendered again, in floats, for files of more than 8 bits.
-//! Floor 4. Not here: the rendering of marks (`paint`, `shading`), how layers meet (`compose`).
+//! Floor 4. Not here: rendering marks (`paint`, `shading`), composing layers (`compose`).
 
 use super::behind::Behind;
 use super::layer::marks::Marks;
@@ -14,7 +14,7 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 impl Document {
-    /// Bytes that flattening it in floats takes beside the picture: the textures that images are read from.
+    /// Bytes that flattening it in floats takes besides the picture: the textures that images are read from.
     pub fn deep_bytes(&self) -> u64 {
         let of_layer = |layer: &Arc<Layer>| layer.content.marks().map_or(0, Marks::texture_bytes);
         self.walk().into_iter().map(|(_, layer)| layer).filter(|layer| layer.visible).map(of_layer).sum()
@@ -31,13 +31,12 @@ pub enum Highlights {
     Kept,
 }
 
-/// What is ready of live layers while tiles are composed.
+/// What live layers have ready while tiles are composed.
 pub(super) struct DeepTiles {
     highlights: Highlights,
-    /// Held, so that each is made once.
+    /// Kept, so that each is made once.
     _textures: Vec<Arc<DeepTexture>>,
-    /// Tiles that were rendered together, by layer and place; of what is seen behind contours (`true`), or on the
-    /// canvas.
+    /// Tiles that were rendered together, by layer and place; `true` for those behind contours, else on the canvas.
     together: HashMap<(LayerId, TileAt, bool), Option<PlanarTile>>,
 }
 
@@ -49,12 +48,12 @@ impl DeepTiles {
         });
         Self { highlights, _textures: textures, together: HashMap::new() }
     }
-    /// Textures that are held: how many.
+    /// How many textures are kept.
     #[cfg(test)]
     pub fn held(&self) -> usize {
         self._textures.len()
     }
-    /// Renders what is to be rendered together on some tiles, and forgets what was on others.
+    /// Renders what is to be rendered together on some tiles, and drops what was on others.
     pub fn render(&mut self, prepared: &PreparedDocument, tiles: &[TileAt], progress: &Progress) {
         let found = Mutex::new(HashMap::new());
         for_each(&prepared.stack, &mut |node| {

@@ -1,6 +1,6 @@
 //! What must be redrawn between two versions of a document: the tiles in which they may differ, found by comparing
 //! pointers and parameters, never pixels. Floor 4. It is conservative: a tile that is not reported is the same; a
-//! reported one may be.
+//! reported one may differ.
 
 use super::layer::content::{Changed, Touched};
 use super::layer::on_canvas::on_canvas;
@@ -43,7 +43,7 @@ fn contexts(document: &Document) -> BTreeMap<LayerId, LayerContext> {
     all
 }
 
-/// Notes which layers stand in groups that were transformed.
+/// Notes which layers are in transformed groups.
 fn place(layers: &[Arc<Layer>], around: &LayerMap, all: &mut BTreeMap<LayerId, LayerContext>) {
     for layer in layers {
         if let Some(context) = all.get_mut(&layer.id).filter(|_| !around.moves_nothing()) {
@@ -117,7 +117,7 @@ impl Diff<'_> {
         for layer in new {
             match ranks.get(&layer.id).filter(|_| in_old(&layer)) {
                 None => changed |= self.whole(layer, Version::New),
-                // Of two layers that changed their order, one at least changed its rank.
+                // If two layers changed their order, at least one changed its rank.
                 Some(&(before, old)) => {
                     changed |= if before == rank { self.layer(old, layer, changed) } else { self.both(old, layer) };
                     rank += 1;
@@ -178,7 +178,7 @@ impl Diff<'_> {
         let around = contexts.get(&layer.id).and_then(|context| context.around);
         LayerWarp::of(layer, &around.unwrap_or(LayerMap::none(self.document.size)).within(layer))
     }
-    /// Reports what a layer shows of what `report` reports of it where it stands.
+    /// Reports where a layer shows what `report` reports of it undisplaced.
     fn displaced(&mut self, layer: &Layer, version: Version, report: impl FnOnce(&mut Self) -> bool) -> bool {
         let Some(warp) = self.warp(layer, version) else { return report(self) };
         let before = std::mem::take(&mut self.changed);
@@ -223,7 +223,7 @@ impl Diff<'_> {
         }
         let layer = self.on_canvas(layer, version);
         let canvas = self.scene.size.rect();
-        // Normal layers put another surface in place of the canvas's.
+        // Normal layers replace the canvas's surface.
         let touched = layer.content.touched(Some(&self.scene).filter(|_| !self.sees_normals(layer.id)));
         match touched {
             Touched::Nowhere => false,
@@ -257,7 +257,7 @@ fn same_liquify(a: &Layer, b: &Layer) -> bool {
     }
 }
 
-/// Whether all but the content, the liquify, the name, the lock and the mask's pixels is equal.
+/// Whether all is equal except the content, the liquify, the name, the lock and the mask's pixels.
 fn looks_alike(a: &Layer, b: &Layer) -> bool {
     a.visible == b.visible
         && a.opacity == b.opacity

@@ -1,5 +1,5 @@
 //! Tree edits: each gives a new document that shares everything it did not touch.
-//! Floor 4. The list of documents that undo walks is `history`.
+//! Floor 4. Not here: the list of documents that undo walks (`history`).
 
 #![warn(missing_docs)]
 
@@ -9,7 +9,7 @@ use std::sync::Arc;
 /// A position among layers: the group (`None`: the document itself) and the number of layers beneath it there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LayerSlot {
-    /// In which group; absent: in none.
+    /// The group; absent: none.
     pub group: Option<LayerId>,
     /// Larger than the number of layers means on top.
     pub index: usize,
@@ -20,7 +20,7 @@ impl LayerSlot {
     pub fn top_level(index: usize) -> Self {
         Self { group: None, index }
     }
-    /// So high in a group.
+    /// At this height in a group.
     pub fn in_group(group: LayerId, index: usize) -> Self {
         Self { group: Some(group), index }
     }
@@ -60,7 +60,7 @@ impl Document {
         })?;
         Some(if self.parts.is_empty() { next } else { next.with_outlines_renamed(self, id) })
     }
-    /// With one more layer. `None` also where the document has a layer of that id already. What it has on parts that
+    /// With one more layer. `None` also if the document already has a layer of that id. What it has on parts that
     /// are not in this document stays where it shows.
     pub fn with_inserted(&self, layer: Layer, place: LayerSlot) -> Option<Document> {
         let layer = self.adopted(layer);

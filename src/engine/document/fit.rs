@@ -1,6 +1,6 @@
-//! Whether a file can hold a document: every number in its range, and no more of anything than is read back. An edit
-//! that leaves it is refused in the hand, so that whatever can be set can be saved and opened.
-//! Floor 4. The ranges are those of the types that hold the numbers; readers ask the same ones.
+//! Whether a file can hold a document: every number in its range, and no more of anything than readers accept. An edit
+//! beyond these limits is refused at once, so that whatever can be set can be saved and opened. Floor 4. The ranges are
+//! those of the types that hold the numbers; readers use the same ones.
 
 mod light;
 mod marks;
@@ -18,7 +18,7 @@ use crate::shading::FeatureScale;
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// Fits, or why not: a sentence without its end.
+/// `Ok` if it fits, else why not: a sentence without its end.
 type Fit = Result<(), String>;
 
 impl Document {
@@ -26,13 +26,13 @@ impl Document {
     pub const MOST_LAYERS: usize = 10_000;
     /// Groups around a layer.
     pub const DEEPEST: usize = 50;
-    /// Readings of the pen: days of painting.
+    /// Pen samples: days of painting.
     pub const MOST_SAMPLES: usize = 32_000_000;
     /// Values of its description, an object counting as eight; each takes some eighty bytes while it is read.
     pub const MOST_VALUES: usize = 4_000_000;
 
-    /// Refuses what no file could give back, in a sentence that names the layer. Of the layers that `before` holds
-    /// just so only the number counts: a document that was opened can be edited whatever it was opened with.
+    /// Refuses what files cannot hold, in a sentence that names the layer. Layers that `before` holds unchanged are
+    /// only counted, so that an opened document can be edited whatever it holds.
     pub fn fits(&self, before: Option<&Document>) -> Result<(), String> {
         let mut known = HashSet::new();
         if let Some(before) = before {
@@ -105,10 +105,10 @@ fn named(layer: &Layer, why: &str) -> String {
     format!("“{name}”: {why}.")
 }
 
-/// Values that a block of liquify takes at most.
+/// The most values that a block of liquify takes.
 const A_BLOCK: usize = 150;
 
-/// What counts over all layers.
+/// Totals over all layers.
 #[derive(Default)]
 struct Total {
     layers: usize,
@@ -123,7 +123,7 @@ impl Total {
 
     fn add(&mut self, layer: &Layer, depth: usize) {
         self.layers += 1;
-        // A group that holds nothing stands in no deeper group.
+        // An empty group adds no depth.
         self.deepest = self.deepest.max(depth);
         self.values += Self::A_LAYER;
         self.values += layer.liquify.as_ref().map_or(0, |liquify| A_BLOCK * liquify.blocks().count());

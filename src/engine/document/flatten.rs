@@ -16,7 +16,7 @@ pub fn flatten(document: &Document, progress: &Progress) -> Option<TileGrid> {
     prepared.flatten_tiles(&TileGrid::default(), &prepared.all_tiles(), progress)
 }
 
-/// So many tiles, in f32, are held beside a picture that is composed in floats.
+/// Tiles in f32 that are held besides a picture that is composed in floats.
 const DEEP_AT_A_TIME: usize = 256;
 
 /// Flattens the whole document without rounding to bytes: premultiplied, sRGB-encoded, row by row; colours are above
@@ -42,8 +42,8 @@ pub fn flatten_deep(document: &Document, highlights: Highlights, progress: &Prog
     Some(pixels)
 }
 
-/// Flattens the whole document to what a paint layer holds: composed without rounding live layers, 16 bits where that
-/// is soft ([`PlanarTile::kept`]). `None` if cancelled.
+/// Flattens the whole document to what a paint layer holds: composed without rounding live layers, with 16 bits where
+/// it is soft ([`PlanarTile::kept`]). `None` if cancelled.
 pub fn flatten_to_paint(document: &Document, progress: &Progress) -> Option<TileGrid> {
     let prepared = PreparedDocument::new(document, progress)?;
     let tiles = prepared.all_tiles();
@@ -69,8 +69,8 @@ pub fn flatten_layers(document: &Document, ids: &[LayerId], progress: &Progress)
     flatten(&document.with_only(ids)?, progress)
 }
 
-/// The same with pixels on the surface's rim wholly covered: what a mask of `Surface::shares` around it cuts to the
-/// picture that there is.
+/// The same with pixels on the surface's rim wholly covered: a mask of `Surface::shares` around it cuts it to the same
+/// picture.
 pub fn flatten_whole(document: &Document, ids: &[LayerId], progress: &Progress) -> Option<TileGrid> {
     let document = document.with_only(ids)?;
     let mut prepared = PreparedDocument::new(&document, progress)?;
@@ -86,7 +86,7 @@ impl Document {
     }
 }
 
-/// The layers with all but some hidden; `None` if none of those is among them.
+/// The layers with all hidden except some; `None` if none of those is among them.
 fn alone(layers: &[Arc<Layer>], ids: &[LayerId]) -> Option<Vec<Arc<Layer>>> {
     let (mut found, mut base_is_shown) = (false, false);
     let shown = layers.iter().map(|layer| {
@@ -129,7 +129,7 @@ impl PreparedDocument {
         }
         Composer { prepared: self, at, behind: None, sought: None, deep: None }.only_tile(&self.stack)
     }
-    /// A tile as a paint layer holds it: as it shows, but where that is soft.
+    /// A tile as a paint layer holds it: as it shows, but with 16 bits where it is soft.
     fn paint_tile(&self, at: TileAt, deep: &DeepTiles) -> Option<Arc<Tile>> {
         let alone = self.alone_in_tile(at).filter(|tile| tile.is_deep());
         let was_deep = || self.stack.iter().any(|node| node.has_deep_paint(at));

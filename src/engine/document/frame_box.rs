@@ -33,7 +33,7 @@ impl FrameBox {
 
 impl Document {
     /// The box around the content of a layer in its own frame: paint and strokes exactly, strokes on parts of the
-    /// shape in whole tiles, what has no end the canvas. `None` of an empty layer.
+    /// shape in whole tiles, for unbounded content the canvas. `None` for an empty layer.
     pub fn frame_box(&self, id: LayerId) -> Option<FrameBox> {
         let scene = self.scene_of(id)?;
         let layer = self.layer(id)?;
@@ -48,7 +48,7 @@ impl Document {
 
 /// `map`: the layer's.
 fn box_of(layer: &Layer, scene: &Scene, map: &LayerMap) -> Option<FrameBox> {
-    // What has a frame of its own, in that of the layer.
+    // Content with a frame of its own, in that of the layer.
     let within = |inner: FrameBox, plane: &PlaneMap| {
         let to = plane.then(&map.plane.inverse());
         let corners = inner.corners().map(|corner| to.to_canvas(corner).unwrap_or(corner));
@@ -60,7 +60,7 @@ fn box_of(layer: &Layer, scene: &Scene, map: &LayerMap) -> Option<FrameBox> {
         Content::Strokes(live) if !layer.content.has_homes() => {
             FrameBox::of(live.painted_box(scene, || painted_by_strokes(live, scene)))
         }
-        // What lies elsewhere by itself takes whole tiles.
+        // Content with a home of its own takes whole tiles.
         Content::Strokes(live) => {
             let box_of = |stroke: &Arc<Stroke>| {
                 let inner = FrameBox::of(stroke.bounds(scene))?;
@@ -79,8 +79,8 @@ fn box_of(layer: &Layer, scene: &Scene, map: &LayerMap) -> Option<FrameBox> {
     }
 }
 
-/// The pixels of a grid that are not wholly transparent. Asked for with every frame that shows handles: a tile that
-/// lies within what is known is not looked at.
+/// The pixels of a grid that are not wholly transparent. Called for every window frame that shows handles: a tile
+/// within the known box is not looked at.
 fn painted(tiles: &TileGrid) -> Rect {
     let with = |known: Rect, (at, tile): (TileAt, &Arc<Tile>)| match is_within(known, at) {
         true => known,
@@ -94,7 +94,7 @@ fn painted_by_strokes(live: &Live<StrokeList>, scene: &Scene) -> Rect {
     let strokes = &live.params().strokes;
     let all = strokes.iter().map(|stroke| stroke.bounds(scene)).fold(Rect::EMPTY, Rect::union);
     let mut tiles: Vec<(TileAt, Rect)> = TileAt::covering(all).map(|at| (at, at.rect())).collect();
-    // From the outside in: what lies within what is known is not rendered.
+    // From the outside in: what lies within the known box is not rendered.
     tiles.sort_by_key(|(_, tile)| (tile.x0 - all.x0).min(tile.y0 - all.y0).min(all.x1 - tile.x1).min(all.y1 - tile.y1));
     tiles.into_iter().fold(Rect::EMPTY, |known, (at, _)| {
         let render = || live.tile(scene, at, || stroke::render_tile(strokes, scene, at));
@@ -106,7 +106,7 @@ fn is_within(known: Rect, at: TileAt) -> bool {
     known.union(at.rect()) == known
 }
 
-/// What is known, and the pixels of one more tile that are not wholly transparent.
+/// The known box, extended by the pixels of one more tile that are not wholly transparent.
 fn with_tile(known: Rect, at: TileAt, tile: &Tile) -> Rect {
     let origin = at.rect();
     (0..TILE).zip(origin.y0..).fold(known, |all, (row, y)| {

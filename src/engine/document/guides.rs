@@ -1,4 +1,4 @@
-//! Guides: straight lines across the canvas that the hand keeps to. A value of the document, no part of the
+//! Guides: straight lines across the canvas that what is dragged snaps to. A value of the document, not part of the
 //! picture. Floor 4. Not here: what snaps to them (`tools`).
 
 use crate::math::range::{at_most, within};
@@ -20,7 +20,7 @@ impl Guides {
     pub fn is_empty(&self) -> bool {
         self.vertical.is_empty() && self.horizontal.is_empty()
     }
-    /// Refuses what no file gives back.
+    /// Refuses what files cannot hold.
     pub fn fits(&self) -> Result<(), String> {
         for lines in [&self.vertical, &self.horizontal] {
             at_most("Guides", lines.len(), Self::MOST)?;
@@ -28,7 +28,7 @@ impl Guides {
         }
         Ok(())
     }
-    /// The same lines after a map of the canvas. One that stands neither upright nor level then is left out.
+    /// The same lines after a map of the canvas. One that is then neither upright nor level is left out.
     pub fn through(&self, map: &PlaneMap) -> Self {
         /// Far enough apart to see how a line leans, px.
         const SPAN: f32 = 1024.0;
@@ -67,7 +67,7 @@ mod tests {
 
     #[test]
     fn guides_turn_with_the_canvas_and_those_that_lean_then_go() {
-        // A canvas of 100 × 60 turned to the left stands 60 × 100.
+        // A canvas of 100 × 60 turned to the left is 60 × 100.
         let quarter = PlaneMap::affine([0.0, -1.0, 1.0, 0.0, 0.0, 100.0]).unwrap();
         let turned = guides().through(&quarter);
         assert_eq!(turned, Guides { vertical: vec![7.0], horizontal: vec![90.0, 59.5] });

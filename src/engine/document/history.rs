@@ -1,5 +1,5 @@
-//! Undo: past documents, each with the name of the edit that made it.
-//! Floor 4. A document is a value that shares what it did not change, so a step costs what the edit touched.
+//! Undo: past documents, each with the name of the edit that made it. Floor 4. A document is a value that shares what
+//! it did not change, so a step takes only the memory of what the edit touched.
 
 use super::Document;
 
@@ -35,7 +35,7 @@ impl History {
         let excess = self.past.len().saturating_sub(self.limit);
         self.past.drain(..excess);
     }
-    /// The other documents that it holds, those the fewest steps away first.
+    /// The other documents that it holds, the nearest steps first.
     pub fn others(&self) -> impl Iterator<Item = &Document> {
         let back = |steps: &'_ [HistoryStep], i: usize| steps.len().checked_sub(i + 1);
         (0..self.past.len().max(self.future.len())).flat_map(move |i| {

@@ -1,5 +1,5 @@
-//! Edits of homes: what lies on which part of the shape. Whatever else changes, what lies there shows where it
-//! showed. Floor 4. Not here: how homes and transforms meet (`LayerMap`).
+//! Edits of homes: what lies on which part of the shape. Whatever else changes, it shows where it showed. Floor 4. Not
+//! here: how homes and transforms meet (`LayerMap`).
 
 use super::layer::content::strokes::{SeenSelections, taken_along};
 use super::{
@@ -9,11 +9,11 @@ use crate::math::{Affine2, PlaneMap};
 use crate::paint::{HomeFrame, Stroke, StrokeHome};
 use std::sync::Arc;
 
-/// Which home takes the place of another; `None`: that of what is around.
+/// Which home replaces another; `None`: that of the group around, or the canvas.
 type Rehome<'a> = dyn Fn(&HomeFrame) -> Option<HomeFrame> + 'a;
 
 impl Parts {
-    /// Where the frame of a part stands: canvas from part. What lies on another part has its frame. `None` if there is
+    /// Where the frame of a part is: canvas from part. What lies on another part has its frame. `None` if there is
     /// no such part.
     pub fn frame_of(&self, id: &str) -> Option<Affine2> {
         self.body_of(id).map(|part| part.matrix)
@@ -28,7 +28,7 @@ impl Parts {
 }
 
 impl Document {
-    /// The part that carries a layer: its own home or that of the nearest group around it. `None` of the canvas.
+    /// The part that carries a layer: its own home or that of the nearest group around it. `None` for the canvas.
     pub fn home_of(&self, id: LayerId) -> Option<&HomeFrame> {
         fn find<'d>(layers: &'d [Arc<Layer>], id: LayerId, around: Option<&'d HomeFrame>) -> Option<&'d HomeFrame> {
             layers.iter().find_map(|layer| {
@@ -39,7 +39,7 @@ impl Document {
         find(&self.layers, id, None).filter(|home| !home.is_canvas())
     }
     /// With a layer on a part of the shape, by its id, or on what is around the layer. It shows where it showed, and is
-    /// carried from there. `None` where there is no such layer or part, or the layer's place there cannot be said.
+    /// carried from there. `None` if there is no such layer or part, or the layer's place there cannot be expressed.
     pub fn with_layer_on(&self, id: LayerId, part: Option<&str>) -> Option<Document> {
         let on = match part {
             Some(part) => Some(self.parts.home(part)?),
@@ -65,7 +65,7 @@ impl Document {
             Some(())
         })
     }
-    /// With everything on the parts that it is on in another document, showing where it shows. What cannot be said
+    /// With everything on the parts that it is on in another document, showing where it shows. What cannot be expressed
     /// stays on what is around it.
     pub(in crate::document) fn with_homes_of(&self, other: &Document) -> Document {
         let mut next = self.clone();
@@ -92,7 +92,7 @@ impl Document {
             None => Some(none),
         }
     }
-    /// With every home where its part stands now; itself where nothing moved.
+    /// With every home where its part is now; itself if nothing moved.
     pub(in crate::document) fn with_homes_placed(&self) -> Document {
         match placed(&self.layers, &self.parts) {
             Some(layers) => Document { layers, ..self.clone() },
@@ -106,7 +106,7 @@ impl Document {
         let lifted = |layer: &Arc<Layer>| kept(layer, (&none, &none), &rehome).unwrap_or_else(|| bare(layer, &rehome));
         Document { layers: self.layers.iter().map(lifted).collect(), ..self.clone() }
     }
-    /// A layer of another document: homes that are none here are lifted.
+    /// A layer of another document: homes that do not exist here are removed.
     pub(in crate::document) fn adopted(&self, layer: Layer) -> Layer {
         let alone = Document { layers: vec![Arc::new(layer.clone())], ..Document::empty(self.size) };
         let known = |id: &str| self.parts.part(id).is_some();
@@ -117,7 +117,7 @@ impl Document {
         let lifted = alone.lifted_off(|id| !known(id));
         lifted.layers.first().map_or(layer, |layer| Layer::clone(layer))
     }
-    /// Asks of every home, of layers and of strokes; whether all agree.
+    /// Whether a condition holds for every home, of layers and of strokes.
     pub(in crate::document) fn each_home(&self, agrees: &mut dyn FnMut(&HomeFrame) -> bool) -> bool {
         self.walk().into_iter().all(|(_, layer)| {
             layer.on.as_ref().is_none_or(&mut *agrees)
@@ -132,7 +132,7 @@ impl Document {
     }
 }
 
-/// A layer and all in it without the homes that go, wherever that leads: of one whose place cannot be said otherwise.
+/// A layer and all in it without the homes that go, wherever it moves: for one whose place cannot be expressed.
 fn bare(layer: &Arc<Layer>, rehome: &Rehome) -> Arc<Layer> {
     let mut next = Layer { on: layer.on.as_ref().and_then(rehome), ..Layer::clone(layer) };
     match &mut next.content {
@@ -149,7 +149,7 @@ fn bare(layer: &Arc<Layer>, rehome: &Rehome) -> Arc<Layer> {
     Arc::new(next)
 }
 
-/// Layers with their homes where the parts stand; `None` where all are.
+/// Layers with their homes where the parts are; `None` if all are there already.
 fn placed(layers: &[Arc<Layer>], parts: &Parts) -> Option<Vec<Arc<Layer>>> {
     let next = |home: &HomeFrame| parts.home(&home.part).filter(|next| next != home);
     let stroke = |stroke: &Arc<Stroke>| {
@@ -187,8 +187,8 @@ fn placed(layers: &[Arc<Layer>], parts: &Parts) -> Option<Vec<Arc<Layer>>> {
     out
 }
 
-/// A layer that shows what it showed though what is around it was `old` and is `new`; the very same where nothing of it
-/// has to change. `None` where that cannot be said.
+/// A layer that shows what it showed though what is around it was `old` and is `new`; the same value if nothing in it
+/// has to change. `None` where that cannot be expressed.
 pub(in crate::document) fn kept(
     layer: &Arc<Layer>,
     (old, new): (&LayerMap, &LayerMap),
@@ -207,7 +207,7 @@ fn kept_on(
     let (was, outside) = (old.within(layer), new.outside(on.as_ref()));
     let (stood, mut next) = (old.outside(layer.on.as_ref()), Layer { on, ..Layer::clone(layer) });
     if stood != outside {
-        // From the list that it stood in to the one that it stands in.
+        // From the list that it was in to the one that it is in.
         let outer = stood.then(&outside.inverse());
         next.liquify = layer.carried_liquify(&outer, old.canvas);
         next.transform = match layer.transform.as_ref().and_then(|own| own.mesh()) {
@@ -268,7 +268,8 @@ fn stroke_on(
     }
 }
 
-/// A map as a layer's transform that files hold, none where it moves nothing; outer `None` where there is no such one.
+/// A map as a layer's transform that files can hold, none if it moves nothing; outer `None` if there is no such
+/// transform.
 pub(in crate::document) fn transform_of(map: &PlaneMap, of: &LayerMap) -> Option<Option<LayerTransform>> {
     if map.is_identity_on(of.canvas) {
         return Some(None);

@@ -1,6 +1,5 @@
-//! Layers on another canvas. Each is carried by a map N of its own frame, and its transform T becomes M T N⁻¹, M the
-//! change's own map: the picture is M's, wherever N took the frame.
-//! Floor 4.
+//! Layers on another canvas. Each is carried by a map N of its own frame, and its transform T becomes M T N⁻¹, where M
+//! is the change's own map: the picture is moved by M, whatever N does to the frame. Floor 4.
 
 use super::selections::{CarriedSelections, moved_rect, turned_rect};
 use super::{CanvasChange, TURNED};
@@ -30,7 +29,7 @@ impl Carrier<'_> {
     }
     fn layer(&self, layer: &Arc<Layer>) -> Result<Layer, String> {
         let has_picture = matches!(&layer.mask, Some(LayerMask { kind: MaskKind::File { .. }, .. }));
-        // A mask is as large as the canvas: what a transform brings back from beyond it would be lost.
+        // A mask has the size of the canvas: what a transform brings back from beyond it would be lost.
         if has_picture && (layer.transform.is_some() || layer.is_warped()) && !self.change.holds_all() {
             let shown = in_place(layer, &LayerMap::none(self.change.from));
             if shown.transform.is_none() && !shown.is_warped() {
@@ -48,11 +47,11 @@ impl Carrier<'_> {
         let own = layer.transform.as_ref().and_then(|transform| transform.map(self.change.from)).unwrap_or_default();
         let whole = own.then(&map);
         match &layer.content {
-            // A mesh goes on where its frame stays a rectangle: `carried` sees to it.
+            // A mesh works only where its frame stays a rectangle: `carried` ensures this.
             _ if layer.is_warped() && is_mesh(layer) => map,
-            // Paint needs no transform that only moves its pixels.
+            // Paint needs no transform if its pixels only move.
             Content::Pixels(_) if whole.pixel_move_on(self.change.reach()).is_some() => whole,
-            // Paint turns by its transform, but where its mask would not fit the canvas.
+            // Paint turns by its transform, unless its mask would not fit the canvas.
             Content::Pixels(_) if self.change.pixel_move().is_none() => {
                 let (from, to) = (self.change.from, self.change.to);
                 let fits = to.width >= from.width && to.height >= from.height;
@@ -66,7 +65,7 @@ impl Carrier<'_> {
             _ => map,
         }
     }
-    /// A layer whose frame goes along `frame`.
+    /// A layer whose frame is moved by `frame`.
     fn carried(&self, layer: &Layer, frame: &PlaneMap) -> Result<Layer, String> {
         let CanvasChange { map, from, to } = self.change;
         let own = layer.transform.as_ref().and_then(|transform| transform.map(*from)).unwrap_or_default();
@@ -117,7 +116,7 @@ impl Carrier<'_> {
         };
         LayerMask { kind, ..mask.clone() }
     }
-    /// How much longer *L* was, which bends are measured in.
+    /// How much longer *L*, the unit of bends, was.
     fn ratio(&self) -> f32 {
         self.change.from.longer_side() / self.change.to.longer_side()
     }
@@ -136,7 +135,7 @@ impl Carrier<'_> {
             Content::Group(group) => Content::Group(Group { layers: self.layers(&group.layers)?, ..*group }),
         })
     }
-    /// Pixels beyond the canvas go along.
+    /// Pixels beyond the canvas are moved too.
     fn pixels(&self, pixels: &PixelLayer, frame: &PlaneMap) -> PixelLayer {
         let map = self.layer_map(frame);
         let bounds = pixels.tiles.bounds();
@@ -207,12 +206,12 @@ impl Carrier<'_> {
     }
 }
 
-/// A mesh that no matrix says displaces it.
+/// A mesh that is not a matrix displaces it.
 fn is_mesh(layer: &Layer) -> bool {
     layer.transform.as_ref().and_then(|own| own.mesh()).is_some_and(|mesh| mesh.as_affine().is_none())
 }
 
-/// A layer without its mask, in a group that has it as it lies on the canvas.
+/// A layer without its mask, in a group whose mask is that one as it lies on the canvas.
 fn under_its_mask(layer: &Arc<Layer>, canvas: Size) -> Layer {
     let bare = Layer { mask: None, opacity: 1.0, blend: BlendMode::Normal, clip_below: false, ..Layer::clone(layer) };
     let inner = Layer { id: LayerId::fresh(), visible: true, cache: Default::default(), ..bare };

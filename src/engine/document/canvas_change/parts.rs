@@ -1,7 +1,7 @@
 //! Parts of a shape on another canvas.
 //! Floor 4.
 //!
-//! A part that stands on what it names (a layer, an object of the maps) is carried as that is. Any other one keeps its
+//! A part that follows what it names (a layer, an object of the maps) is carried with that. Any other part keeps its
 //! own frame, or a frame turned in place, and its matrix says where that went; what lies on it is in the same frame.
 
 use super::CanvasChange;
@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 /// Every part of a list where the change takes it.
 ///
-/// * `maps`: the surface of the document's maps before and after; objects are numbered anew.
+/// * `maps`: the surface of the document's maps before and after; objects get new numbers.
 pub fn carried(list: &[Arc<Part>], change: &CanvasChange, maps: Option<[&Arc<Surface>; 2]>) -> Vec<Arc<Part>> {
     let one = |part: &Arc<Part>| {
         let mut next = Frame::of(list, part.on().unwrap_or(&part.id), change).part(part, change);
@@ -40,7 +40,7 @@ pub(super) fn outline_mut(kind: &mut PartKind) -> Option<&mut OutlineSource> {
     }
 }
 
-/// The number of the object that most pixels of another one became; of one that is gone a number that none has.
+/// The number of the object that most pixels of another one became; for one that is gone, a number that no object has.
 pub(super) fn same_object(object: u32, old: &Arc<Surface>, new: &Arc<Surface>, to: impl Fn(Vec2) -> Vec2) -> u32 {
     let (labels, now) = (old.objects().labels(), new.objects());
     let mut counts: BTreeMap<u32, usize> = BTreeMap::new();
@@ -56,16 +56,16 @@ pub(super) fn same_object(object: u32, old: &Arc<Surface>, new: &Arc<Surface>, t
     most.map_or(now.count() as u32 + 1, |(label, _)| label)
 }
 
-/// Where the frame of a part goes, and what lies in it.
+/// Where the frame of a part goes, and its contents.
 struct Frame {
     /// N, rigid.
     map: PlaneMap,
-    /// Of pictures that lie in it afterwards; `None` where they stay as they are.
+    /// For pictures that lie in it afterwards; `None` where they stay as they are.
     pictures: Option<Size>,
 }
 
 impl Frame {
-    /// Of the part that is called so, and of all that lies on it.
+    /// For the part of this name, and for all that lies on it.
     fn of(list: &[Arc<Part>], id: &str, change: &CanvasChange) -> Self {
         let base = list.iter().find(|part| part.id == id);
         let follows = |part: &Arc<Part>| match part.outline() {
@@ -75,12 +75,12 @@ impl Frame {
         if base.is_none_or(follows) {
             return Self { map: change.map, pictures: Some(change.to) };
         }
-        // Lights and normals of what was made elsewhere turn by the matrix.
+        // Lights and normals that were made elsewhere turn by the matrix.
         let is_made = |part: &Arc<Part>| matches!(part.kind, PartKind::Maps(_) | PartKind::Profiles { .. });
         if change.is_shift() || base.is_some_and(is_made) {
             return Self { map: PlaneMap::IDENTITY, pictures: None };
         }
-        // Turned in place, so far that pictures begin at its corner again.
+        // Turned in place, then moved so that pictures begin at its corner again.
         let own = list.iter().filter(|part| part.id == id || part.on() == Some(id));
         let sizes = own.flat_map(|part| {
             Part::clone(part).files_mut().into_iter().map(|file| file.coverage.size()).collect::<Vec<_>>()
@@ -111,7 +111,7 @@ impl Frame {
         next
     }
     fn picture(&self, plane: &Plane<u8>, to: Size) -> Plane<u8> {
-        // What is beyond a picture is not covered: its border does not go on.
+        // What is beyond a picture is not covered: its border is not continued.
         let edged = |v: u32| v.saturating_add(4);
         let wide = Size::new(edged(plane.size().width), edged(plane.size().height));
         let bordered = Plane::from_fn(wide, |x, y| plane.get(x as i32 - 2, y as i32 - 2).unwrap_or(0));
@@ -122,7 +122,7 @@ impl Frame {
     }
 }
 
-/// What a part is made of where a rigid map takes it.
+/// What a part is made of, moved by a rigid map.
 pub(super) fn carry(kind: &mut PartKind, map: Affine2) {
     let at = |p: &mut Vec2| *p = map.transform_point2(*p);
     let path = |outline: &mut OutlineSource| {

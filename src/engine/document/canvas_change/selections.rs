@@ -20,7 +20,7 @@ pub struct CarriedSelections<'c> {
     known: RefCell<HashMap<*const Selection, CarriedSelection>>,
 }
 
-/// A selection with what became of it: the old one is kept so that no other takes its address.
+/// A selection with what became of it: the old one is kept so that no other gets its address.
 type CarriedSelection = (Arc<Selection>, Arc<Selection>);
 
 impl<'c> CarriedSelections<'c> {

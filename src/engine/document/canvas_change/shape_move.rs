@@ -1,6 +1,6 @@
-//! The shape moved, turned, mirrored or scaled on its canvas, with the paint that lies on it.
-//! Floor 4. The canvas under a shape that stays with it is the module above; paint that slides over a shape that stays
-//! is a transform of its layer.
+//! The shape moved, turned, mirrored or scaled on its canvas, with the paint that lies on it. Floor 4. Not here:
+//! changes of the canvas under the shape (the module above), and paint that slides over the shape (a transform of its
+//! layer).
 
 use super::parts::{carry, outline_mut, same_object};
 use super::placed;
@@ -36,17 +36,17 @@ impl FrameBox {
 }
 
 impl Document {
-    /// The drawing with its whole shape where an affine map of the canvas takes it: maps and parts with their normals,
-    /// and the layers that are clipped to the surface, but for light and fills. What was selected by the surface is
-    /// found where its point went.
+    /// The drawing with its whole shape moved by an affine map of the canvas: maps and parts with their normals, and
+    /// the layers that are clipped to the surface, except light and fills. Selections by the surface are found at the
+    /// new place of their point.
     ///
-    /// Maps are sampled once from what they were made of, layers keep a transform: what is turned back is as it was.
+    /// Maps are sampled once from what they were made of, layers keep a transform: turning back restores them.
     ///
-    /// Fails, in a sentence, where there is no shape, nothing of it would be left, or the map is none for it.
+    /// Fails, in a sentence, where there is no shape, nothing of it would be left, or the map does not suit it.
     pub fn with_shape_through(&self, map: &PlaneMap) -> Result<Document, String> {
         let affine = map.as_affine().ok_or("A shape cannot be put in perspective: its depth would not fit.")?;
         self.surface.as_ref().ok_or("There is no shape to move.")?;
-        // What lies on parts is carried as it shows, and put on them again where they came to lie.
+        // What lies on parts is carried as it shows, and put on them again at their new places.
         let lifted = self.lifted_off(|_| true);
         let around = LayerMap::none(self.size);
         let layers = carried(&lifted.layers, &around, map).ok_or("A layer cannot follow the shape there.")?;
@@ -83,8 +83,8 @@ impl Document {
         }
         Ok(next.with_selections_found())
     }
-    /// A part where the shape goes. One whose outline goes along by itself keeps to that; all others go by their
-    /// matrix, and what lies on them with them.
+    /// A part moved with the shape. One whose outline moves by itself follows that; all others move by their matrix,
+    /// and what lies on them with them.
     fn carried_part(&self, part: &Part, map: Affine2, maps: Option<(&Arc<Surface>, &Arc<Surface>)>) -> Part {
         let body = self.parts.body_of(&part.id).map_or(part, |body| body);
         let follows = match body.outline() {
@@ -104,7 +104,7 @@ impl Document {
                 next.raise *= length;
             }
         }
-        // It leans as it is seen: slopes go as those of normals do.
+        // It leans as it is seen: slopes change as those of normals do.
         let slope = vec2(part.tilt_deg.x.to_radians().tan(), part.tilt_deg.y.to_radians().tan());
         if part.tilt_deg != Vec2::ZERO && map.matrix2 != crate::math::Mat2::IDENTITY {
             let slope = length * (map.matrix2.inverse().transpose() * slope);
@@ -117,7 +117,7 @@ impl Document {
     }
 }
 
-/// Whether a layer goes with the shape: it is clipped to the surface and no light, or has a mask that is painted; of a
+/// Whether a layer moves with the shape: it is clipped to the surface and is no light, or has a painted mask; for a
 /// group, whether all in it does.
 fn goes(layer: &Layer) -> bool {
     match &layer.content {
@@ -130,7 +130,7 @@ fn has_painted_mask(layer: &Layer) -> bool {
     layer.mask.as_ref().is_some_and(|mask| matches!(mask.kind, MaskKind::File { .. }))
 }
 
-/// Layers with those that go taken along by a map of the canvas; `None` where that cannot be said.
+/// Layers, those that move with the shape moved by a map of the canvas; `None` where that cannot be expressed.
 fn carried(layers: &[Arc<Layer>], around: &LayerMap, map: &PlaneMap) -> Option<Vec<Arc<Layer>>> {
     let one = |layer: &Arc<Layer>| {
         let own = around.within(layer);
@@ -140,9 +140,9 @@ fn carried(layers: &[Arc<Layer>], around: &LayerMap, map: &PlaneMap) -> Option<V
             let content = Content::Group(Group { layers, ..group.clone() });
             return Some(Arc::new(Layer { content, ..Layer::clone(&masked(layer, map)) }));
         }
-        // The map in the list that the layer stands in.
+        // The map in the list that holds the layer.
         let outer = around.plane.then(map).then(&around.plane.inverse());
-        // Selections by the surface that strokes were painted in lie in their frame, and go with it as they are.
+        // Selections by the surface that strokes were painted in lie in their frame, and move with it unchanged.
         let bound = |selection: &Arc<Selection>| match selection.made {
             Some(_) => Arc::new(Selection::new(selection.coverage.clone())),
             None => selection.clone(),
@@ -161,7 +161,7 @@ fn carried(layers: &[Arc<Layer>], around: &LayerMap, map: &PlaneMap) -> Option<V
     layers.iter().map(one).collect()
 }
 
-/// A layer whose mask is a region of the surface about a point, with that point taken along.
+/// A layer whose mask is a region of the surface about a point, with that point moved.
 fn masked(layer: &Arc<Layer>, map: &PlaneMap) -> Arc<Layer> {
     let Some(mask) = &layer.mask else { return layer.clone() };
     let Some(DerivedMask::Region(region)) = mask.derived() else { return layer.clone() };

@@ -53,15 +53,15 @@ fn image(operator: Operator) -> Layer {
 }
 pub(super) fn ramp(operator: Operator) -> Layer {
     let stops = vec![GradientStop { t: 0.0, color: Color::BLACK }, GradientStop { t: 1.0, color: Color::WHITE }];
-    // Anchors read the pixel that holds them: on its border a turn would take them to the next, and what a crop takes
-    // away tells nothing any more.
+    // Anchors read the pixel that holds them: on its border a turn would take them to the next, and what a crop removes
+    // can no longer be read.
     let (from, to) = (vec2(45.5, 25.5), vec2(95.5, 55.5));
     let (filter, frame) = (ImageFilter::Bilinear, PlaneMap::IDENTITY);
     Layer::new("ramp", Content::Gradient(Live::new(Gradient { from, to, stops, operator, filter, frame })))
 }
 fn strokes(operator: Operator) -> Layer {
     let samples = [(50.5, 35.5), (70.5, 44.5), (90.5, 50.5)].map(|(x, y)| Sample::at(vec2(x, y))).to_vec();
-    // A flat nib: what does not turn with the canvas shows.
+    // A flat nib: it shows what does not turn with the canvas.
     let brush = Brush { size: 26.0, tip: Tip::Ellipse { ratio: 0.3 }, rotation: 30.0, ..Brush::default() };
     let mut stroke = Stroke::new(brush, operator, Color { r: 250, g: 240, b: 20, a: 255 }, samples);
     let inside = CoverageGrid::filled(Rect::new(10, 20, 88, 70));

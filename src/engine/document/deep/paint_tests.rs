@@ -1,4 +1,4 @@
-//! Paint layers keep what was painted softly: beside what floats give, and what bytes would.
+//! Paint layers keep what was painted softly: compared with what floats give, and with what bytes would.
 
 use crate::document::{Content, Document, Group, Highlights, Layer, Live, PixelLayer, Progress, StrokeList, flatten};
 use crate::document::{flatten_deep, flatten_to_paint};

@@ -1,4 +1,4 @@
-//! What is composed in floats: as fine as the layers are, and the picture of bytes before it is rounded.
+//! Composing in floats: as fine as the layers are, and equal to the picture of bytes before it is rounded.
 
 use super::super::prepare::PreparedDocument;
 use super::*;
@@ -109,7 +109,7 @@ fn every_kind_of_layer_is_the_picture_of_bytes_before_it_is_rounded() {
             byte.iter().zip(float).map(|(b, f)| (f32::from(*b) - f * 255.0).abs()).fold(0.0, f32::max)
         };
         let farthest = deep.iter().enumerate().map(apart).fold(0.0, f32::max);
-        // Layers of bytes are rounded one by one; scaling multiplies what is left of that.
+        // Layers of bytes are rounded one by one; scaling multiplies the error.
         assert!(farthest < if n == layers.len() { 3.0 } else { 2.2 }, "{n} layers: {farthest} of 255");
     }
 }

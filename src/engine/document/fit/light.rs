@@ -8,7 +8,7 @@ use crate::shading::{
     Environment, FeatureScale, Features, Light, LightKind, RadianceScaling, Reference, Scaling, Shading, Term,
 };
 
-/// Values that things take in a description, at most.
+/// The most values that things take in a description.
 pub const A_LIGHT: usize = 18;
 pub const A_SCALE: usize = 12;
 

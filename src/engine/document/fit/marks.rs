@@ -15,21 +15,21 @@ use crate::surface::plane_piece::PlanePiece;
 use crate::surface::{Bend, Operator, Weights};
 use std::sync::Arc;
 
-/// Values that things take in a description, at most.
+/// The most values that things take in a description.
 pub const AN_ANCHOR: usize = 14;
 pub const A_STOP: usize = 4;
 const A_STROKE: usize = 60;
 /// Without its curves and pictures.
 const A_BRUSH: usize = 480;
 
-/// The readings of strokes, and the values that they take.
+/// The samples of strokes, and the values that they take.
 pub fn measured(strokes: &[Arc<Stroke>]) -> (usize, usize) {
     let (mut samples, mut values) = (0, 0);
     let mut before: Option<&Stroke> = None;
     for stroke in strokes {
         samples += stroke.samples().len();
         values += A_STROKE;
-        // What is as it was before is not said again.
+        // A brush like the one before is not written again.
         if !before.is_some_and(|before| before.brush().is_alike(stroke.brush())) {
             let points: usize =
                 stroke.brush().dynamics.drives().iter().map(|drive| 20 + 3 * drive.curve.points()).sum();
@@ -41,7 +41,7 @@ pub fn measured(strokes: &[Arc<Stroke>]) -> (usize, usize) {
     (samples, values)
 }
 
-/// Those of the new strokes that the old ones are not, pointer by pointer.
+/// The new strokes that are not among the old ones, by pointer.
 pub fn strokes(old: &[Arc<Stroke>], new: &[Arc<Stroke>]) -> Fit {
     let same = |(a, b): &(&Arc<Stroke>, &Arc<Stroke>)| Arc::ptr_eq(a, b);
     let start = old.iter().zip(new).take_while(same).count();
@@ -208,7 +208,7 @@ pub fn adjust(adjust: &Adjust) -> Fit {
     within("the contrast", adjust.contrast, &Adjust::FACTOR)
 }
 
-/// Of a normal layer without a map.
+/// For a normal layer without a map.
 pub fn relief(grain: &crate::surface::NoiseRelief) -> Fit {
     use crate::surface::NoiseRelief;
     within("the size of the bumps", grain.size_px, &NoiseRelief::SIZE_PX)?;

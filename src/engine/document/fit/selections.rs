@@ -10,7 +10,7 @@ use crate::surface::region::SurfaceRegion;
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// Those of a document that another does not hold already, and their number.
+/// The selections of a document that another does not hold, and their number.
 pub fn fit(document: &Document, before: Option<&Document>) -> Fit {
     let list = SelectionList::of(document);
     if list.is_empty() {

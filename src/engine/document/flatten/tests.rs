@@ -146,7 +146,7 @@ fn a_clipped_layer_stays_within_its_base() {
         clipped(fill("#ff0000")),
         clipped(left_of(20, "#00ff00")),
     ]);
-    // The base's alpha is 128/255; its colour is wholly replaced.
+    // The base's alpha is 128/255; its colour is replaced entirely.
     assert_eq!(p.pixel(10, 0), [0, 128, 0, 255]);
     assert_eq!(p.pixel(30, 0), [128, 0, 0, 255]);
     assert_eq!(p.pixel(60, 0), [0, 0, 0, 255]);
@@ -172,13 +172,13 @@ fn a_hidden_base_hides_its_clipped_layers() {
 fn a_clipped_layer_with_nothing_beneath_paints_nothing() {
     let clipped = || with(fill("#ff0000"), |l| l.clip_below = true);
     assert_eq!(picture(vec![clipped()]).iter().count(), 0);
-    // Nothing beneath in its own group counts, not what is beneath the group.
+    // What counts is that its own group has nothing beneath it, not what is beneath the group.
     assert_eq!(picture(vec![fill("#000000"), group(vec![clipped()], true)]).pixel(0, 0), [0, 0, 0, 255]);
 }
 #[test]
 fn an_isolated_group_blends_as_one_picture() {
     let inside = || vec![with(fill("#808080"), |l| l.blend = BlendMode::Multiply)];
-    // Isolated, multiply meets nothing and lays its grey over the red; passed through, it multiplies the red.
+    // Isolated, multiply has nothing beneath and lays its grey over the red; passed through, it multiplies the red.
     assert_eq!(picture(vec![fill("#ff0000"), group(inside(), false)]).pixel(0, 0), [128, 128, 128, 255]);
     assert_eq!(picture(vec![fill("#ff0000"), group(inside(), true)]).pixel(0, 0), [128, 0, 0, 255]);
 }

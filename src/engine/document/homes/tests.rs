@@ -1,4 +1,4 @@
-//! What lies on a part goes where the part goes. What edits of parts and layers do to it stands in `edits`.
+//! What lies on a part goes where the part goes. Not here: edits of parts and layers (`edits`).
 
 mod edits;
 
@@ -17,7 +17,7 @@ use crate::shape::{Body, Primitive};
 use crate::surface::{Anchor, Bend, Operator};
 
 const SIZE: Size = Size::new(256, 192);
-/// Where the body lies at first: far enough from every border.
+/// Where the body is at first: far enough from every border.
 const AT: Vec2 = vec2(96.0, 80.0);
 const BY: (i32, i32) = (37, 22);
 const NORMAL: Operator = Operator::Normal { alpha: 0.2, beta: 1.0, detail: 0.0 };
@@ -89,8 +89,8 @@ fn on_body(layer: Layer) -> Layer {
 fn path() -> [Vec2; 3] {
     [AT + vec2(-29.5, -9.5), AT + vec2(4.5, 12.5), AT + vec2(33.5, -6.5)]
 }
-/// How far two pictures differ of which the second shows the first moved: the most that any byte is off and how many
-/// pixels are, first where the surface is whole, then on contours.
+/// How far two pictures differ if the second shows the first moved: the greatest difference of any byte and the number
+/// of different pixels, first where the surface is whole, then on contours.
 fn apart(before: &Document, after: &Document, by: (i32, i32)) -> [(u8, usize); 2] {
     let (old, new) = (picture(before), picture(after));
     let contours: std::collections::BTreeSet<(i32, i32)> = match &before.surface {
@@ -101,7 +101,7 @@ fn apart(before: &Document, after: &Document, by: (i32, i32)) -> [(u8, usize); 2
     let mut out = [(0, 0); 2];
     for (x, y) in (0..h - by.1).flat_map(|y| (0..w - by.0).map(move |x| (x, y))) {
         let (a, b) = (pixel(&old, x, y), pixel(&new, x + by.0, y + by.1));
-        // Premultiplied: what is hardly there has any colour.
+        // Premultiplied: nearly transparent pixels may have any colour.
         let seen = |p: [u8; 4], c: usize| if c == 3 { p[3] } else { (u16::from(p[c]) * u16::from(p[3]) / 255) as u8 };
         let off = (0..4).map(|c| seen(a, c).abs_diff(seen(b, c))).max().unwrap();
         let (most, count) = &mut out[usize::from(contours.contains(&(x, y)))];
@@ -113,7 +113,7 @@ fn assert_moved(before: &Document, after: &Document, by: (i32, i32), name: &str,
     let found = apart(before, after, by);
     // Round tips are computed eight pixels of a tile at a time, no more precisely than a byte shows.
     let most = if name.contains("strokes") && by.0 % 64 != 0 { (1, 200) } else { (0, 0) };
-    // What is behind a contour is seen through few pixels of a tile.
+    // Few pixels of a tile show what is behind a contour.
     if found[0].0 > most.0 || found[0].1 > most.1 || found[1].0 > 4 {
         wrong.push(format!("{name}: {found:?}"));
     }
@@ -137,7 +137,7 @@ fn a_part_moved_by_whole_pixels_gives_the_picture_moved_byte_for_byte() {
         let before = document(vec![on_body(layer)]);
         assert!(picture(&before).iter().any(|byte| *byte > 0), "{name} shows");
         assert_moved(&before, &shifted(&before, BY), BY, &name, &mut wrong);
-        // By whole tiles everything is the same, pictures with smoothed pixels too.
+        // After a move by whole tiles everything is the same, also pictures with smoothed pixels.
         let smoothed = before.with_layer(before.layers[0].id, |layer| {
             if let Content::Image(live) = &layer.content {
                 let image = PlacedImage { filter: ImageFilter::Antialias, ..live.params().clone() };
@@ -157,7 +157,7 @@ fn what_is_on_the_canvas_stays_there_and_what_is_turned_with_a_part_bends_anew()
     };
     let moved = standing(&stays, "body", Affine2::from_scale(vec2(1.0, 1.0)));
     assert!(picture(&stays) == picture(&moved));
-    // A ball turned about its middle is the same ball: only its paint goes round.
+    // A ball turned about its middle is the same ball: only its paint turns.
     let painted = document(vec![on_body(strokes("strokes", &path(), NORMAL))]);
     let turned = standing(&painted, "body", turn(90.0));
     let (old, new) = (picture(&painted), picture(&turned));
@@ -237,7 +237,7 @@ fn a_stroke_with_a_home_of_its_own_goes_with_it_and_its_neighbours_stay() {
     }
     assert_eq!(pixel(&old, 190, 145), pixel(&new, 190, 145));
     assert!(Arc::ptr_eq(&moved.strokes(id)[0], &home.strokes(id)[0]), "only the stroke on the eye is another");
-    // Tools see every stroke where it shows; it is carried on from there.
+    // Tools see every stroke where it shows; it is carried from there.
     let shown = moved.with_transform_applied(id).unwrap();
     assert!(picture(&shown) == new);
     assert_eq!(shown.strokes(id)[1].samples()[0].at, vec2(120.0, 90.0));
@@ -269,7 +269,7 @@ fn of_a_layer_in_a_group_the_innermost_home_counts() {
     let turned = turn.transform_point2(vec2(110.0, 50.0));
     assert!(moved.map_of(ids[1]).unwrap().point(vec2(100.0, 50.0)).distance(turned) < 1e-3);
     assert_eq!(moved.home_of(ids[1]).unwrap().part(), Some("body"));
-    // Taken to the canvas each shows what it showed, and is carried on.
+    // Taken to the canvas each shows what it showed, and is still carried.
     for id in ids {
         let applied = moved.with_transform_applied(id).unwrap();
         assert!(applied.map_of(id).unwrap().is_none());

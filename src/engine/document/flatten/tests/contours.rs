@@ -114,7 +114,7 @@ fn away_from_contours_every_byte_stays() {
 }
 #[test]
 fn live_layers_are_rendered_for_both_sides_alike() {
-    // Beside a straight edge on the pixels' border both shares are whole, so that a slanted one is needed: below it the
+    // A straight edge along the pixels' border gives whole shares, so a slanted one is needed: below it the
     // far plate, above it the near one; along it each pixel holds a mean of both.
     let near = |x: usize, y: usize| (y as f32 + 0.5) < 20.0 + 0.31 * x as f32;
     let normals = Plane::from_fn(SIZE, |x, y| if near(x, y) { Vec3::Z } else { vec3(0.0, 0.5, 0.866) });

@@ -1,4 +1,4 @@
-//! Edits of parts, of their layers and of the canvas leave what lies on parts on them.
+//! Edits of parts, of their layers and of the canvas: what lies on parts stays on them.
 
 use super::*;
 
