@@ -47,7 +47,7 @@ impl LayerId {
 /// One layer of a document. Made with [`Layer::new`]; a clone is the same layer in another version.
 #[derive(Clone)]
 pub struct Layer {
-    /// Its identity, through every edit.
+    /// Its identity, kept through every edit.
     pub id: LayerId,
     /// As the list shows it.
     pub name: String,
@@ -69,9 +69,9 @@ pub struct Layer {
     pub label: LayerLabel,
     /// Paint nothing outside the surface.
     pub clip_to_surface: bool,
-    /// Where the frame that content and mask lie in stands on the canvas; absent: it is the canvas.
+    /// Where the frame of content and mask lies on the canvas; absent: it is the canvas.
     pub transform: Option<LayerTransform>,
-    /// How far from itself each point of the list that it stands in looks, its own transform done; never empty.
+    /// A displacement backward at each point of the list that holds it, after its own transform; never empty.
     pub liquify: Option<Arc<Lattice>>,
     /// The part of the shape that carries it, after its own transform; absent: what carries the group around it, or
     /// the canvas.
@@ -85,7 +85,7 @@ pub struct Layer {
 impl Layer {
     /// What an opacity may be.
     pub const OPACITY: Range = UNIT;
-    /// Letters of a name that the hand gives; one that a file brings may be longer.
+    /// Letters of a name given in the window; one from a file may be longer.
     pub const LONGEST_NAME: usize = 1_000;
 
     /// A visible, opaque, unmasked layer that blends normally, under a fresh id.
@@ -109,7 +109,7 @@ impl Layer {
             cache: LayerCache::default(),
         }
     }
-    /// Its liquify on a plane that a map took elsewhere; what lies far beyond the canvas is forgotten.
+    /// Its liquify on a plane moved by a map; what lies far beyond the canvas is dropped.
     pub(super) fn carried_liquify(&self, map: &PlaneMap, canvas: Size) -> Option<Arc<Lattice>> {
         let within = canvas.rect().grown(canvas.longer_side() as i32);
         let carried = self.liquify.as_ref()?.carried(map, within);

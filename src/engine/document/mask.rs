@@ -9,8 +9,8 @@ use crate::raster::{TileAt, TileCoverage};
 use crate::surface::{ContourPixel, Surface};
 
 /// The coverage of a layer in each pixel of a tile: its opacity, its mask, and the surface if it is clipped to it. A
-/// pixel that the surface covers in part counts as covered: what is clipped to the surface is absent from the rest of
-/// it (`behind`), so that coverage acts once.
+/// pixel that the surface covers in part counts as covered: what is clipped to the surface is missing in the rest of
+/// the pixel (`behind`), so that coverage acts once.
 pub(super) fn coverage(node: &PreparedLayer, at: TileAt) -> TileCoverage {
     let coverage = TileCoverage::uniform(node.layer.opacity);
     let coverage = match clip(node) {
@@ -43,7 +43,7 @@ pub(super) fn coverage_behind(node: &PreparedLayer, behind: &Behind) -> TileCove
     }
     let Some(mask) = node.layer.mask.as_ref().filter(|mask| mask.acts_on(&node.scene)) else { return coverage };
     if let (MaskKind::Derived(DerivedMask::Region(region)), Some(surface)) = (&mask.kind, &node.scene.surface) {
-        // Of the other population's piece, nearby.
+        // Read from the other population's piece, nearby.
         let grid = surface.region(region);
         let way = |c: u8| f32::from(if mask.invert { 255 - c } else { c }) / 255.0;
         let value = |_, pixel: &ContourPixel| match pixel.sees_surface() {
@@ -67,8 +67,8 @@ pub(super) fn is_whole_behind(node: &PreparedLayer, behind: &Behind) -> bool {
     clip(node).is_none() || !behind.has_bare()
 }
 
-/// The surface that a layer is clipped to, if any. A group is not clipped, because its layers clip themselves; clipping
-/// twice would thin their rims. An adjustment changes only what is painted already.
+/// The surface that a layer is clipped to, if any. A group is not clipped, because its layers are themselves clipped;
+/// clipping twice would thin their rims. An adjustment changes only what is painted already.
 pub(super) fn clip(node: &PreparedLayer) -> Option<&Surface> {
     let paints = matches!(node.layer.content.role(), Role::Paints | Role::Shapes(_));
     node.scene.surface.as_deref().filter(|_| paints && node.layer.clip_to_surface)

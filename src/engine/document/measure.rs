@@ -56,11 +56,11 @@ impl PreparedDocument {
             let tiles = in_parallel(&self.all_tiles(), progress, of_tile)?;
             Some(tiles.into_iter().fold(LightSums::default(), LightSums::plus))
         };
-        // What is shown is clipped, so it does not grow as the factor does: steps, then finer ones.
+        // What is shown is clipped, so it does not grow with the factor: coarse steps, then finer ones.
         let Some(finer) = sums(GainLadder::whole())?.finer(GainLadder::whole()) else { return Some(1.0) };
         Some(sums(finer)?.gain(finer))
     }
-    /// One tile of what lies beneath the next adjustment, in its own scope.
+    /// One tile beneath the next adjustment, in its own scope.
     fn beneath_next(&self, at: TileAt) -> Option<PlanarTile> {
         let composer = Composer { prepared: self, at, behind: None, sought: Some(self.beneath.len()), deep: None };
         match composer.stack(&self.stack, &mut PlanarTile::transparent()) {

@@ -1,5 +1,5 @@
 //! The memory that documents use, counted value by value.
-//! Floor 4. Not here: whose values they are (their owners, `count_memory`).
+//! Floor 4. Not here: which values there are (their owners, `count_memory`).
 
 use crate::paint::{PictureSource, Selection, Stroke};
 use crate::raster::{CoverageGrid, TileGrid};
@@ -24,7 +24,7 @@ impl MemoryUse {
     pub fn total(self) -> u64 {
         self.painted + self.pictures + self.maps + self.kept
     }
-    /// What came after another count, which it goes on from.
+    /// What was added after another count, which this one continues.
     pub fn minus(self, before: Self) -> Self {
         Self {
             painted: self.painted - before.painted,
@@ -46,7 +46,7 @@ impl MemoryUse {
 /// A count over documents that share what they hold: each value is counted once, with the first that holds it.
 #[derive(Default)]
 pub struct MemoryCount {
-    /// Where what was counted lies. Nothing of it may be dropped while the count goes on.
+    /// Addresses of what was counted. None of it may be dropped while the count goes on.
     seen: HashSet<usize>,
     used: MemoryUse,
 }

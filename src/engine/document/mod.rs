@@ -1,5 +1,5 @@
-//! Floor 4: the document is a value. Cheap to clone, never changed while shared: an edit is a new document, undo a list
-//! of them, and what must be redrawn is what differs by pointer.
+//! Floor 4: the document is a value. It is cheap to clone and never changed while shared: an edit is a new document,
+//! undo is a list of them, and what differs by pointer must be redrawn.
 
 mod apply_transform;
 pub mod assistants;
@@ -78,13 +78,13 @@ pub struct Document {
     pub parts: Arc<Parts>,
     /// The bottom one first.
     pub layers: Vec<Arc<Layer>>,
-    /// Those kept by name; each name stands once.
+    /// Those kept by name; each name occurs once.
     pub selections: Vec<NamedSelection>,
     /// What marks may change; absent: everything. Never empty.
     pub active_selection: Option<Arc<Selection>>,
-    /// Lines that the hand keeps to; no part of the picture.
+    /// Lines that what is dragged snaps to; not part of the picture.
     pub guides: Arc<Guides>,
-    /// What strokes are drawn along; no part of the picture.
+    /// What strokes are drawn along; not part of the picture.
     pub assistants: Arc<Vec<Assistant>>,
 }
 
@@ -130,7 +130,7 @@ impl Document {
     }
     /// A name that no layer has: “Strokes”, “Strokes 2”, …
     pub fn free_layer_name(&self, base: &str) -> String {
-        // Looked up once: asked of the document for each number, names would cost the square of the layers.
+        // Looked up once: a search of the document for each number would cost the square of the layers.
         let layers = self.walk();
         let taken: std::collections::HashSet<&str> = layers.iter().map(|(_, layer)| layer.name.as_str()).collect();
         let mut name = base.to_owned();

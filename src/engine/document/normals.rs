@@ -77,7 +77,7 @@ impl<'a> PlacedDetail<'a> {
     }
 }
 
-/// A normal (y up) of a relief whose places are taken along: slopes s become k A⁻ᵀ s, A how places stretch, and k =
+/// A normal (y up) of a relief whose places are moved by a map: slopes s become k A⁻ᵀ s, A how places stretch, and k =
 /// √|det A|, so that a larger relief is as steep. `jacobian`: A⁻¹, image axes.
 fn taken_along(normal: Vec3, jacobian: Mat2) -> Vec3 {
     let slope = vec2(normal.x, -normal.y) / normal.z.max(1e-3);

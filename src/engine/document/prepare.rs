@@ -1,5 +1,5 @@
 //! Prepares a document for flattening: finds the visible layers, what each is clipped to, and the surface that each
-//! sees. Floor 4. Done once before the tiles; composing one tile is `compose`.
+//! sees. Floor 4. Done once before the tiles. Not here: composing one tile (`compose`).
 
 use super::layer::on_canvas::on_canvas;
 use super::layer::warp::WarpTiles;
@@ -12,7 +12,7 @@ use crate::surface::{Contours, Curvature, Surface};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Everything that flattening needs of a document, resolved. It holds the layers, so the document may be dropped or
+/// Everything that flattening needs from a document, resolved. It holds the layers, so the document may be dropped or
 /// edited.
 pub struct PreparedDocument {
     pub(super) size: Size,
@@ -20,7 +20,7 @@ pub struct PreparedDocument {
     pub(super) stack: Vec<PreparedLayer>,
     /// The pixels that two populations see.
     pub(super) contours: Option<Arc<Contours>>,
-    /// The surface whose rim counts as wholly covered; none: every pixel is mixed of what it shows.
+    /// The surface whose rim counts as wholly covered; none: every pixel is mixed from what it shows.
     pub(super) whole_rims: Option<Arc<Surface>>,
     /// Measurements of the composite beneath each adjustment, in the order they apply.
     pub(super) beneath: Vec<BackdropStats>,
@@ -64,7 +64,7 @@ impl PreparedDocument {
         let contours = document.surface.as_ref().map(|surface| surface.contours().clone());
         let mut prepared = Self { size: document.size, stack, contours, whole_rims: None, beneath: Vec::new() };
         for adjustment in builder.adjustments {
-            // Each may depend on those beneath it, which are measured by now.
+            // Each may depend on those beneath it, which are already measured.
             let beneath = prepared.measure(&adjustment, progress)?;
             prepared.beneath.push(beneath);
         }
@@ -76,7 +76,7 @@ impl PreparedDocument {
     }
 }
 
-/// Where a list of layers stands.
+/// The surroundings of a list of layers.
 #[derive(Clone, Copy)]
 struct Scope<'a> {
     /// The layers beneath it that it blends with.
@@ -85,8 +85,8 @@ struct Scope<'a> {
     map: LayerMap,
 }
 
-/// Some layers of a list, and what lies beneath that list. Few layers ask for it, so it is only gathered then: gathered
-/// for each layer, it would make a document's cost grow with the square of its layers.
+/// Some layers of a list, and what lies beneath that list. Few layers need it, so it is gathered only for them:
+/// gathered for each layer, the cost would grow with the square of the layers.
 #[derive(Clone, Copy)]
 struct Beneath<'a> {
     around: Option<&'a Beneath<'a>>,
@@ -111,7 +111,7 @@ struct StackBuilder<'a> {
 
 /// What a clipped layer would be clipped to.
 enum ClipBase {
-    /// There is nothing beneath: clipped layers paint nothing.
+    /// Nothing is beneath: clipped layers paint nothing.
     Nothing,
     /// Hidden, and its clipped layers with it.
     Hidden,
@@ -187,7 +187,7 @@ impl StackBuilder<'_> {
             adjustments: first..self.adjustments.len(),
         }
     }
-    /// * `isolated`: what lies beneath is none of its own, whatever the group says.
+    /// * `isolated`: the layers have nothing beneath the group, whatever it says.
     fn children(&mut self, group: &Group, scene: &mut Scene, scope: Scope, isolated: bool) -> Vec<PreparedLayer> {
         if group.pass_through && !isolated {
             return self.nodes(&group.layers, scene, scope);
@@ -196,8 +196,8 @@ impl StackBuilder<'_> {
     }
 }
 
-/// Whether a displaced layer is composed where it stands and then sampled: paint is sampled at once, and one colour is
-/// the same everywhere.
+/// Whether a displaced layer is composed undisplaced and then sampled: paint is sampled directly, and one colour is the
+/// same everywhere.
 fn is_composed_first(layer: &Layer) -> bool {
     layer.content.can_be_warped() && !matches!(layer.content, Content::Pixels(_) | Content::Fill(_))
 }

@@ -7,7 +7,7 @@ use crate::raster::TileAt;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Counters shared between those who work and those who watch. Steps have no unit; mostly they are tiles.
+/// Counters shared between those that work and those that watch. Steps have no unit; mostly they are tiles.
 #[derive(Default)]
 pub struct Progress {
     done: AtomicU64,
@@ -32,13 +32,13 @@ impl Progress {
     pub fn cancel(&self) {
         self.cancelled.store(true, Ordering::Relaxed);
     }
-    /// Whether somebody cancelled the work.
+    /// Whether the work was cancelled.
     pub fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)
     }
 }
 
-/// One result a tile, in the order of the tiles; `None` if cancelled.
+/// One result per tile, in the order of the tiles; `None` if cancelled.
 pub(super) fn in_parallel<T: Send>(
     tiles: &[TileAt],
     progress: &Progress,

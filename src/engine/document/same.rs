@@ -1,6 +1,5 @@
-//! Whether two documents are equal in what they hold, however it came about and wherever it lies in memory: what a
-//! save is compared with. Floor 4. Names of files are not part of it: a project gives them its own. Not here: what
-//! must be redrawn (`diff`).
+//! Whether two documents hold the same, however it was made and wherever it lies in memory: a save is compared by this.
+//! Floor 4. Names of files are not part of it: a project gives them its own. Not here: what must be redrawn (`diff`).
 
 use super::source::{MaskSource, SurfaceSource};
 use super::{Content, DetailSource, Document, Layer, LayerMask, MaskKind, NamedSelection, StrokeList};
@@ -10,7 +9,7 @@ use crate::raster::tile::TILE_AREA;
 use std::sync::Arc;
 
 impl Document {
-    /// What of the other document is not as it is here, in a few words; `None` where the two are equal.
+    /// What differs in the other document, in a few words; `None` if the two are equal.
     pub fn difference(&self, other: &Document) -> Option<String> {
         if self.size != other.size {
             return Some("the size of the canvas".into());
@@ -63,8 +62,8 @@ fn has_files(source: &SurfaceSource, document: &Document) -> bool {
     files_of(source).all(|file| document.surface_files.contains_key(file))
 }
 
-/// The same files, read in the same way: the surface follows from them. One that was scaled since is fitted once more
-/// when it is read, which may round it otherwise.
+/// The same files, read in the same way: the surface follows from them. One that was scaled since is fitted again when
+/// it is read, which may round it differently.
 fn same_maps(a: &Document, source: &SurfaceSource, b: &Document, other: &SurfaceSource) -> bool {
     let mut files = files_of(source).zip(files_of(other));
     without_names(source) == without_names(other)
@@ -116,7 +115,7 @@ fn layer(a: &Layer, b: &Layer) -> Option<String> {
 }
 
 fn meets_alike(a: &Layer, b: &Layer) -> bool {
-    // Where a part stands is the part's.
+    // The place of a part belongs to the part.
     let on = |l: &Layer| l.on.as_ref().map(|home| home.part.clone());
     let meets = |l: &Layer| {
         let kind = (l.visible, l.opacity, l.blend, l.blend_linear, l.clip_below);
@@ -137,7 +136,7 @@ fn same_mask(a: Option<&LayerMask>, b: Option<&LayerMask>) -> bool {
     }
 }
 
-/// What of two layers' contents differs; `None` where nothing does.
+/// What differs in two layers' contents; `None` if nothing does.
 fn content(a: &Content, b: &Content) -> Option<&'static str> {
     let (what, is_same) = match (a, b) {
         (Content::Fill(a), Content::Fill(b)) => ("colour", a == b),
@@ -189,7 +188,7 @@ fn same_strokes(a: &StrokeList, b: &StrokeList) -> bool {
     a.strokes.len() == b.strokes.len() && a.strokes.iter().zip(&b.strokes).all(same)
 }
 
-/// Every pixel is the same; a tile that is wholly transparent is none.
+/// Every pixel is the same; a wholly transparent tile counts as absent.
 fn same_pixels(a: &TileGrid, b: &TileGrid) -> bool {
     if a.ptr_eq(b) {
         return true;

@@ -8,7 +8,7 @@ use crate::raster::{CoverageGrid, Plane};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// A selection that is kept by its name.
+/// A selection kept by name.
 #[derive(Clone)]
 pub struct NamedSelection {
     pub name: String,
@@ -34,24 +34,24 @@ impl Document {
         let selection = selection.filter(|selection| !selection.is_empty());
         Document { active_selection: selection.map(Arc::new), ..self.clone() }
     }
-    /// With a new selection that meets the active one. One that replaces it, or meets none, stays as it was told.
+    /// With a new selection that meets the active one. One that replaces it, or meets none, stays unchanged.
     pub fn with_combined(&self, new: Selection, how: SelectionMode) -> Document {
         let canvas = self.size.rect();
         let new = Selection { coverage: new.coverage.within(canvas), ..new };
         let all = || CoverageGrid::filled(canvas);
         let both = match (how, self.selected()) {
             (SelectionMode::Replace, _) | (SelectionMode::Add | SelectionMode::Intersect, None) => new,
-            // Without a selection everything is.
+            // Without a selection everything is covered.
             (SelectionMode::TakeAway, None) => Selection::new(all().combined(&new.coverage, |a, b| how.of(a, b))),
             (_, Some(old)) => Selection::new(old.combined(&new.coverage, |a, b| how.of(a, b))),
         };
         self.with_selection(Some(both))
     }
-    /// What a stroke that begins now is bounded by.
+    /// What bounds a stroke that begins now.
     pub fn stroke_selection(&self) -> Option<StrokeSelection> {
         self.active_selection.clone().map(StrokeSelection::new)
     }
-    /// With the active selection kept by a name, in the place of one of that name. `None` where nothing is selected.
+    /// With the active selection kept by a name, replacing one of that name. `None` if nothing is selected.
     pub fn with_kept_selection(&self, name: &str) -> Option<Document> {
         let (selection, name) = (self.active_selection.clone()?, name.to_owned());
         let mut selections = self.selections.clone();
@@ -61,14 +61,13 @@ impl Document {
         }
         Some(Document { selections, ..self.clone() })
     }
-    /// Without the selection of a name; outlines of parts that follow it keep it as a picture. `None` where there is
-    /// none.
+    /// Without the selection of a name; outlines of parts that follow it keep it as a picture. `None` if there is none.
     pub fn without_kept_selection(&self, name: &str) -> Option<Document> {
         let gone = self.selections.iter().find(|kept| kept.name == name)?;
         let selections = self.selections.iter().filter(|kept| kept.name != name).cloned().collect();
         Some(Document { selections, ..self.without_outlines_of(gone) })
     }
-    /// With every selection that follows the surface found on the present one: called once the surface is another.
+    /// With every selection that follows the surface found on the present one: called when the surface was replaced.
     pub fn with_selections_found(&self) -> Document {
         let scene = self.scene();
         let mut found: HashMap<usize, Arc<Selection>> = HashMap::new();
@@ -90,7 +89,7 @@ impl Document {
             ..self.clone()
         }
     }
-    /// How far a layer covers each pixel of the canvas by its mask; everywhere where it has none.
+    /// How far a layer covers each pixel of the canvas by its mask; fully if it has none.
     pub fn mask_coverage(&self, layer: &Layer) -> CoverageGrid {
         let Some(mask) = &layer.mask else { return CoverageGrid::filled(self.size.rect()) };
         let scene = self.scene_of(layer.id).unwrap_or_else(|| self.scene());
@@ -118,7 +117,7 @@ pub(super) fn picture(coverage: &Plane<u8>) -> MaskKind {
     MaskKind::File { file: String::new(), coverage: Arc::new(coverage.clone()) }
 }
 
-/// A layer with the selections of its strokes replaced; the very same where none was.
+/// A layer with the selections of its strokes replaced; the very same if none was.
 pub(super) fn selecting(layer: &Arc<Layer>, next: &impl Fn(&Arc<Selection>) -> Arc<Selection>) -> Arc<Layer> {
     let content = match &layer.content {
         Content::Strokes(live) => {
@@ -146,7 +145,7 @@ pub(super) fn selecting(layer: &Arc<Layer>, next: &impl Fn(&Arc<Selection>) -> A
 }
 
 /// Every selection of a document once, in a fixed order: those kept by name, the active one, those of strokes. Files
-/// call them by their places.
+/// refer to them by position.
 pub struct SelectionList {
     all: Vec<(Option<String>, Arc<Selection>)>,
     places: HashMap<usize, usize>,
@@ -182,7 +181,7 @@ impl SelectionList {
     pub fn named(&self) -> impl Iterator<Item = (Option<&str>, &Arc<Selection>)> {
         self.all.iter().map(|(name, selection)| (name.as_deref(), selection))
     }
-    /// Where a selection stands among all; `None` of one of another document.
+    /// The position of a selection among all; `None` for one of another document.
     pub fn place(&self, selection: &Arc<Selection>) -> Option<usize> {
         self.places.get(&(Arc::as_ptr(selection) as usize)).copied()
     }

@@ -1,12 +1,12 @@
-//! Tree edits of several layers at once; the layers of a group among them move with it. Floor 4. Edits of one layer
-//! are in `edit`.
+//! Tree edits of several layers at once; the layers of a group among them move with it. Floor 4. Not here: edits of one
+//! layer (`edit`).
 
 use super::{Document, Layer, LayerId, LayerSlot};
 use std::sync::Arc;
 
 /// The edits. Each is `None` where a layer or the place does not exist; `self` never changes. `ids`: in any order.
 impl Document {
-    /// Of some layers those that stand in no other of them, as they lie in the tree, bottom first. What is no layer is
+    /// Those of some layers that are in no other of them, in the order of the tree, bottom first. Ids of no layer are
     /// left out.
     pub fn outermost(&self, ids: &[LayerId]) -> Vec<LayerId> {
         fn visit(layers: &[Arc<Layer>], ids: &[LayerId], out: &mut Vec<LayerId>) {
@@ -30,7 +30,7 @@ impl Document {
     pub fn without_layers(&self, ids: &[LayerId]) -> Option<Document> {
         self.outermost(ids).into_iter().try_fold(self.clone(), |next, id| next.without_layer(id))
     }
-    /// With some layers moved to one place, in the order in which they lay; `place` counts the layers without them.
+    /// With some layers moved to one place, in their order; `place` counts the layers without them.
     /// `None` also if a group would go into itself.
     pub fn with_moved_layers(&self, ids: &[LayerId], place: LayerSlot) -> Option<Document> {
         let outermost = self.outermost(ids);
@@ -41,14 +41,14 @@ impl Document {
             Some(())
         })
     }
-    /// With some layers moved up (positive) or down among their siblings; those that meet an end stay in their order.
+    /// With some layers moved up (positive) or down among their siblings; those that reach an end keep their order.
     pub fn with_nudged_layers(&self, ids: &[LayerId], by: i32) -> Option<Document> {
         let mut outermost = self.outermost(ids);
         if by > 0 {
             outermost.reverse();
         }
         let mut next = self.clone();
-        // No layer has farther to go than past all others.
+        // No layer moves farther than past all others.
         for _ in 0..(by.unsigned_abs() as usize).min(self.walk().len()) {
             for id in &outermost {
                 let place = next.place_of(*id)?;
@@ -63,7 +63,7 @@ impl Document {
         }
         Some(next)
     }
-    /// With some layers replaced by one, where the topmost of them stood. `None` also where there are none of them.
+    /// With some layers replaced by one, in the place of the topmost of them. `None` also if none of them exist.
     pub fn with_one_for(&self, ids: &[LayerId], one: Layer) -> Option<Document> {
         let outermost = self.outermost(ids);
         let place = self.place_of(*outermost.last()?)?;

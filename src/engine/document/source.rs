@@ -1,5 +1,5 @@
-//! What a document says about its surface: its files and what their numbers mean.
-//! Floor 4. Plain data with the names they have in JSON; reading the files is `io::maps`' work.
+//! What a document says about its surface: its files and what their numbers mean. Floor 4. Plain data with their names
+//! in JSON. Not here: reading the files (`io::maps`).
 
 pub use super::conventions::{DepthConvention, DepthEncoding, Near, NormalConvention, NormalEncoding, NormalSpace};
 
@@ -19,11 +19,11 @@ pub struct SurfaceSource {
 }
 
 impl SurfaceSource {
-    /// The matrix as a map; `None` where there is none, or one that cannot be inverted.
+    /// The matrix as a map; `None` if there is none, or one that cannot be inverted.
     pub fn map(&self) -> Option<PlaneMap> {
         PlaneMap::affine(self.matrix?)
     }
-    /// Refuses a matrix that no file gives back; in a sentence.
+    /// Refuses, in a sentence, a matrix that files cannot hold.
     pub fn fits(&self) -> Result<(), String> {
         let Some(matrix) = self.matrix else { return Ok(()) };
         let transform = LayerTransform { shape: TransformShape::Matrix(matrix), filter: Resampling::default() };
@@ -36,10 +36,10 @@ impl SurfaceSource {
 pub struct MapSource<C> {
     /// `"file"`.
     pub file: String,
-    /// `"channel"`: which layer of an EXR (`"ViewLayer.Normal"`) or which single channel (`"ViewLayer.Depth.Z"`); found
-    /// where absent.
+    /// `"channel"`: which layer of an EXR (`"ViewLayer.Normal"`) or which single channel (`"ViewLayer.Depth.Z"`);
+    /// detected where absent.
     pub channel: Option<String>,
-    /// For normals the field `"convention"`; for depth the fields `"near"`, `"encoding"`, … beside `"file"`.
+    /// For normals the field `"convention"`; for depth the fields `"near"`, `"encoding"`, … next to `"file"`.
     pub convention: C,
 }
 

@@ -10,8 +10,8 @@ use crate::raster::TileAt;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// The edits. Each is `None` where there is no such layer or stroke, or the layer is locked; strokes are named by their
-/// places, the first painted 0. `self` never changes.
+/// The edits. Each is `None` where there is no such layer or stroke, or the layer is locked; strokes are named by
+/// position, the first painted is 0. `self` never changes.
 impl Document {
     /// The strokes of a stroke layer, the first painted first; `None` for other layers.
     pub fn strokes(&self, layer: LayerId) -> &[Arc<Stroke>] {
@@ -20,7 +20,7 @@ impl Document {
             _ => &[],
         }
     }
-    /// The same where they show: through the transforms and homes of the layer and of each.
+    /// The same where they show: through the transforms and homes of the layer and of each stroke.
     pub fn strokes_on_canvas(&self, layer: LayerId) -> Vec<Arc<Stroke>> {
         let found = self.layer(layer).zip(self.map_of(layer));
         match found.map(|(layer, map)| map.layer_on_canvas(layer)).map(|layer| layer.content.clone()) {
@@ -28,7 +28,7 @@ impl Document {
             _ => Vec::new(),
         }
     }
-    /// With some strokes changed, each for itself.
+    /// With some strokes changed one by one.
     pub fn with_each_stroke(
         &self,
         layer: LayerId,
@@ -53,12 +53,12 @@ impl Document {
             Some(())
         })
     }
-    /// With a copy of each right above it, moved; and where the copies are.
+    /// With a moved copy of each right above it; and the positions of the copies.
     pub fn with_copied_strokes(&self, layer: LayerId, chosen: &[usize], by: Vec2) -> Option<(Document, Vec<usize>)> {
         let mut copies = Vec::new();
         let next = self.with_strokes(layer, |strokes| {
             for (before, &index) in in_order(chosen, strokes)?.iter().enumerate() {
-                // The copies so far stand below.
+                // The copies so far lie below.
                 let index = index + before;
                 strokes.insert(index + 1, Arc::new(strokes[index].moved(by)));
                 copies.push(index + 1);
@@ -67,7 +67,7 @@ impl Document {
         })?;
         Some((next, copies))
     }
-    /// With one stroke at another place, counted without it; beyond the last means on top.
+    /// With one stroke at another position, counted without it; beyond the last means on top.
     pub fn with_reordered_stroke(&self, layer: LayerId, stroke: usize, to: usize) -> Option<Document> {
         self.with_strokes(layer, |strokes| {
             if stroke >= strokes.len() {
@@ -78,9 +78,9 @@ impl Document {
             Some(())
         })
     }
-    /// With some strokes taken out of their layer and put as pixels on a paint layer of their own, whose id is told.
+    /// With some strokes taken out of their layer and put as pixels on a paint layer of their own; also returns its id.
     ///
-    /// It stands beneath the stroke layer if the strokes were its lowest, else above it, and blends as that layer does.
+    /// It is beneath the stroke layer if the strokes were its lowest, else above it, and blends as that layer does.
     pub fn with_baked_strokes(&self, layer: LayerId, chosen: &[usize]) -> Option<(Document, LayerId)> {
         let all = self.strokes(layer);
         let chosen = in_order(chosen, all)?;
@@ -118,7 +118,7 @@ impl Document {
     }
 }
 
-/// Places in rising order, each once; `None` if one is not there, or there are none.
+/// Positions in rising order, each once; `None` if one does not exist, or there are none.
 fn in_order(chosen: &[usize], strokes: &[Arc<Stroke>]) -> Option<Vec<usize>> {
     let places: BTreeSet<usize> = chosen.iter().copied().collect();
     let all_there = places.last().is_some_and(|&last| last < strokes.len());
@@ -149,7 +149,7 @@ mod tests {
 
     const SIZE: Size = Size::new(300, 200);
 
-    /// Dots in a row from the left, each over the one before it, in hues of their own.
+    /// Dots in a row from the left, each over the one before it, each in its own hue.
     fn document() -> (Document, LayerId) {
         let stroke = |i: u8| {
             let brush = Brush { size: 50.0, hardness: 1.0, ..Brush::default() };
@@ -171,7 +171,7 @@ mod tests {
         let grid = flatten(document, &Progress::default()).unwrap();
         (0..200).flat_map(|y| (0..300).map(move |x| (x, y))).flat_map(|(x, y)| grid.pixel(x, y)).collect()
     }
-    /// The same layers, nothing of them rendered yet.
+    /// The same layers, not rendered yet.
     fn afresh(document: &Document, id: LayerId) -> Document {
         let strokes = document.strokes(id).to_vec();
         let content = Content::Strokes(Live::new(StrokeList { strokes }));

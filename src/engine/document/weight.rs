@@ -1,5 +1,5 @@
 //! How much memory flattening a document takes in addition to the document, estimated before it begins. Floor 4. An
-//! estimate from above; what there is, floors above know.
+//! upper bound. Not here: how much memory there is (floors above).
 
 use super::{Content, DerivedMask, Document, Layer, LayerMask, StrokeList};
 use crate::math::Rect;
@@ -7,17 +7,16 @@ use crate::surface::Contours;
 use crate::surface::region::RegionKind;
 use std::sync::Arc;
 
-/// Of a tile, bytes a pixel.
+/// For a tile, bytes a pixel.
 const TILE_BYTES: u64 = 4;
-/// Of a tile of 16 bits, bytes a pixel.
+/// For a tile of 16 bits, bytes a pixel.
 const DEEP_TILE_BYTES: u64 = 12;
 /// A tensor of curvature, and the map of κ made of it, bytes a pixel.
 const CURVATURE_BYTES: u64 = 14;
-/// A surface that other normals were put on, bytes a pixel.
+/// A surface with other normals, bytes a pixel.
 const SURFACE_BYTES: u64 = 18;
 
-/// What finding a region takes, bytes a pixel: how much each differs, its steps, what is covered, and what they follow
-/// from.
+/// What finding a region takes, bytes a pixel: how much each differs, its steps, what is covered, and their inputs.
 fn region_bytes(kind: RegionKind) -> u64 {
     9 + match kind {
         RegionKind::Curvature => CURVATURE_BYTES,

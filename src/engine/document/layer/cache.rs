@@ -27,7 +27,7 @@ pub struct LayerCache {
     pub(in crate::document) gain: Memo<RadianceScaling>,
 }
 
-/// What of a layer is in its look.
+/// What its look includes of a layer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LookKind {
     /// Its mask.
@@ -36,7 +36,7 @@ pub struct LookKind {
     pub whole_rim: bool,
 }
 
-/// A layer's pixels as a file holds them, and where they lie.
+/// A layer's pixels as a file holds them, with their place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EncodedPixels {
     pub file: Asset,
@@ -67,10 +67,10 @@ impl<K, V> Default for Memo<K, V> {
 }
 
 impl<K: Clone + PartialEq, V: Clone> Memo<K, V> {
-    /// The value for a scene, the identical layers beneath and an equal key; computed again if any differs.
-    /// `None` if `measure` gives up.
+    /// The value for a scene, the identical layers beneath and an equal key; computed again if any differs. `None` if
+    /// `measure` is cancelled.
     ///
-    /// It never computes while holding the lock: a thread that waits for work of its own pool would deadlock.
+    /// It never computes while holding the lock: a thread that waits for work in its own pool would deadlock.
     pub fn get(
         &self,
         scene: &Scene,

@@ -1,6 +1,6 @@
-//! What a layer holds, and the trait that every kind of layer implements. Floor 4. Each kind has a file that
-//! answers `LayerKind`, so that composing, walking and comparing layers name no kinds. The rendering of marks is in
-//! `paint` and `shading`.
+//! What a layer holds, and the trait that every kind of layer implements. Floor 4. Each kind has a file that implements
+//! `LayerKind`, so that composing, walking and comparing layers name no kinds. Not here: rendering marks (`paint`,
+//! `shading`).
 
 mod fill;
 mod gradient;
@@ -32,7 +32,7 @@ use crate::raster::{Picture, TileAt};
 use crate::shading::{RadianceScaling, Shading};
 use crate::surface::Bend;
 
-/// What a layer holds. Live content keeps its parameters and, beside them, the tiles rendered from them.
+/// What a layer holds. Live content keeps its parameters and the tiles rendered from them.
 #[derive(Clone)]
 #[expect(clippy::large_enum_variant, reason = "one stands in each layer, and layers stand behind `Arc`")]
 pub enum Content {
@@ -44,7 +44,7 @@ pub enum Content {
     Image(Live<PlacedImage>),
     /// A colour ramp, bent over the surface.
     Gradient(Live<Gradient>),
-    /// Strokes that stay strokes.
+    /// Strokes that stay editable.
     Strokes(Live<StrokeList>),
     /// The surface lit.
     Shading(Live<Shading>),
@@ -63,20 +63,20 @@ pub enum Role<'a> {
     Paints,
     /// It changes what is painted beneath it.
     Adjusts(&'a RadianceScaling),
-    /// It changes the surface that what stands above it sees.
+    /// It changes the surface that layers above it see.
     Shapes(&'a NormalLayer),
     /// It holds layers.
     Groups(&'a Group),
 }
 
-/// Gives a file its name in another place: called with the name that a picture goes by, and the picture.
+/// Gives a file its name elsewhere: called with the name of a picture, and the picture.
 pub type NameFile<'a> = dyn FnMut(&str, &Picture) -> Result<String> + 'a;
 
-/// What a kind of layer is asked. What is not answered is as a live mark has it that covers the canvas.
+/// What each kind of layer implements. The defaults are those of a live mark that covers the canvas.
 trait LayerKind {
-    /// As documents call it.
+    /// Its name in documents.
     fn name(&self) -> &'static str;
-    /// As the window calls it.
+    /// Its name in the window.
     fn label(&self) -> &'static str;
     fn role(&self) -> Role<'_> {
         Role::Paints
@@ -98,25 +98,25 @@ trait LayerKind {
     fn warm(&self, _scene: &Scene, _progress: &Progress) {}
     /// On a canvas of another size.
     fn scaled(&self, scale: &CanvasScale) -> Content;
-    /// The same on a canvas of another aspect, where that stretches it by more than its numbers can say; `None` of what
-    /// they can, and of what is resampled. Its transform is to say the rest.
+    /// The same on a canvas of another aspect, where that stretches it more than its numbers can express; `None` if
+    /// they can, and for what is resampled. Its transform expresses the rest.
     fn stretched(&self, _scale: &CanvasScale) -> Option<Content> {
         None
     }
-    /// The same for a moment while a hand moves, cheaper to render; `None` of what is the same then.
+    /// The same for a moment while the user drags, cheaper to render; `None` if it is the same then.
     fn drafted(&self) -> Option<Content> {
         None
     }
-    /// Elsewhere on the canvas; `None` of what has no place.
+    /// Elsewhere on the canvas; `None` for what has no place.
     fn moved(&self, _by: Vec2) -> Option<Content> {
         None
     }
-    /// As it lies on the canvas, its frame taken there by `map`; `None` of what has no place. `last`: other content,
+    /// As it lies on the canvas, its frame taken there by `map`; `None` for what has no place. `last`: other content,
     /// and what became of it under the same map.
     fn on_canvas(&self, _map: &LayerMap, _last: Option<(&Content, &Content)>) -> Option<Content> {
         None
     }
-    /// Whether it goes along where the shape that it lies on goes: not so light, and what is the same everywhere.
+    /// Whether it moves with the shape that it lies on: light does not, nor what is the same everywhere.
     fn goes_with_shape(&self) -> bool {
         true
     }
@@ -124,11 +124,11 @@ trait LayerKind {
     fn has_homes(&self) -> bool {
         false
     }
-    /// Without what was painted; `None` of what is not painted on.
+    /// Without what was painted; `None` for what is not painted on.
     fn emptied(&self) -> Option<Content> {
         None
     }
-    /// Operator, anchors and weights, of what is bent as a whole.
+    /// Operator, anchors and weights, if it is bent as a whole.
     fn bend(&self) -> Option<Bend> {
         None
     }
@@ -140,7 +140,7 @@ trait LayerKind {
     fn with_files(&self, _name: &mut NameFile) -> Result<Option<Content>> {
         Ok(None)
     }
-    /// What it cannot be painted without and lacks: the field, and why.
+    /// What it lacks but needs to be painted: the field, and why.
     fn lacks(&self) -> Option<(&'static str, String)> {
         None
     }
@@ -148,11 +148,11 @@ trait LayerKind {
     fn touched(&self, _scene: Option<&Scene>) -> Touched {
         Touched::Canvas
     }
-    /// Where it may look different from `old`, a kind of the same name; `scene`: what both see.
+    /// Where it may look different from `old`, of the same kind; `scene`: what both see.
     fn changed_from(&self, old: &Content, scene: &dyn Fn() -> Scene) -> Changed;
-    /// Counts what it holds, as [`MemoryCount::add`] has it.
+    /// Counts what it holds, as [`MemoryCount::add`] does.
     fn count(&self, _count: &mut MemoryCount, _keeps: bool) {}
-    /// Its looks depend on the whole picture beneath it.
+    /// Its appearance depends on the whole picture beneath it.
     fn measures_beneath(&self) -> bool {
         false
     }
@@ -178,7 +178,7 @@ impl Changed {
     fn wholly_if(is_other: bool) -> Self {
         if is_other { Changed::Wholly } else { Changed::Nowhere }
     }
-    /// Of live content that is either the very same or another.
+    /// For live content that is either the very same or another.
     fn of_live<T>(new: &Live<T>, old: Option<&Live<T>>) -> Self {
         Self::wholly_if(old.is_none_or(|old| !new.ptr_eq(old)))
     }
@@ -198,11 +198,11 @@ impl Content {
             Content::Group(group) => group,
         }
     }
-    /// The kind of layer, as documents call it.
+    /// The name of its kind in documents.
     pub fn kind_name(&self) -> &'static str {
         self.kind().name()
     }
-    /// The kind of layer, as the window calls it.
+    /// The name of its kind in the window.
     pub fn label(&self) -> &'static str {
         self.kind().label()
     }
@@ -214,16 +214,16 @@ impl Content {
     pub fn paints(&self) -> bool {
         matches!(self.role(), Role::Paints)
     }
-    /// It changes the surface for what stands above.
+    /// It changes the surface for layers above.
     pub fn shapes(&self) -> bool {
         matches!(self.role(), Role::Shapes(_))
     }
-    /// Whether a layer of it can be displaced: what shapes the surface or adjusts what lies beneath shows nothing of
+    /// Whether a layer of it can be displaced: what shapes the surface or adjusts the picture beneath shows nothing of
     /// its own.
     pub fn can_be_warped(&self) -> bool {
         matches!(self.role(), Role::Paints | Role::Groups(_))
     }
-    /// It goes along where the shape that it lies on goes.
+    /// It moves with the shape that it lies on.
     pub(in crate::document) fn goes_with_shape(&self) -> bool {
         self.kind().goes_with_shape()
     }
@@ -245,10 +245,9 @@ impl Content {
     pub fn moved(&self, by: Vec2) -> Content {
         self.kind().moved(by).unwrap_or_else(|| self.clone())
     }
-    /// The same content where a map takes its frame.
+    /// The same content, its frame moved by a map.
     ///
-    /// * `last`: other content of the layer and what became of it under this map: what did not change is not made
-    ///   again.
+    /// * `last`: other content of the layer and the result under this map: what did not change is not made again.
     pub fn on_canvas(&self, map: &LayerMap, last: Option<(&Content, &Content)>) -> Content {
         match last {
             Some((own, seen)) if self.is_identical(own) => seen.clone(),
@@ -259,11 +258,11 @@ impl Content {
     pub fn has_homes(&self) -> bool {
         self.kind().has_homes()
     }
-    /// The same kind without what was painted; `None` of what is not painted on.
+    /// The same kind without what was painted; `None` for what is not painted on.
     pub fn emptied(&self) -> Option<Content> {
         self.kind().emptied()
     }
-    /// Operator, anchors and weights, of what is bent as a whole.
+    /// Operator, anchors and weights, if it is bent as a whole.
     pub fn bend(&self) -> Option<Bend> {
         self.kind().bend()
     }
@@ -275,7 +274,7 @@ impl Content {
     pub fn with_files(&self, name: &mut NameFile) -> Result<Content> {
         Ok(self.kind().with_files(name)?.unwrap_or_else(|| self.clone()))
     }
-    /// What it cannot be painted without and lacks: the field, and why.
+    /// What it lacks but needs to be painted: the field, and why.
     pub fn lacks(&self) -> Option<(&'static str, String)> {
         self.kind().lacks()
     }
@@ -285,7 +284,7 @@ impl Content {
     pub(in crate::document) fn painted_behind(&self, scene: &BehindScene) -> TileContent {
         self.kind().painted_behind(scene)
     }
-    /// What it is rendered from without rounding to bytes; `None` of what is not live.
+    /// What it is rendered from without rounding to bytes; `None` for what is not live.
     pub(in crate::document) fn marks(&self) -> Option<&dyn Marks> {
         self.kind().marks()
     }

@@ -1,5 +1,5 @@
-//! Live content: parameters together with the tiles rendered from them, valid until a parameter changes. Floor 4. The
-//! rendering of marks is in `paint` and `shading`.
+//! Live content: parameters together with the tiles rendered from them, valid until a parameter changes. Floor 4. Not
+//! here: rendering marks (`paint`, `shading`).
 
 use super::tile_content::TileContent;
 use crate::document::behind::{BehindPixels, BehindScene};
@@ -14,9 +14,9 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 pub struct Live<T> {
     params: Arc<T>,
     rendered: Arc<RenderedTiles>,
-    /// Whether marks of it have homes of their own, once it was asked.
+    /// Whether marks of it have homes of their own, once computed.
     has_homes: Arc<OnceLock<bool>>,
-    /// The box around what is painted on the scene it was last asked for.
+    /// The box around what is painted, on the scene it was last computed for.
     painted_box: Arc<Mutex<Option<(Scene, Rect)>>>,
 }
 
@@ -73,11 +73,11 @@ impl<T> Live<T> {
     pub fn params(&self) -> &T {
         &self.params
     }
-    /// What was found of the parameters once is not sought again.
+    /// What was once found about the parameters is kept.
     pub(in crate::document) fn has_homes(&self, sought: impl FnOnce(&T) -> bool) -> bool {
         *self.has_homes.get_or_init(|| sought(&self.params))
     }
-    /// The box around what is painted on a scene, sought once.
+    /// The box around what is painted on a scene, computed once.
     pub(in crate::document) fn painted_box(&self, scene: &Scene, seek: impl FnOnce() -> Rect) -> Rect {
         let mut known = self.painted_box.lock().unwrap_or_else(PoisonError::into_inner);
         match &*known {
@@ -132,7 +132,7 @@ impl<T> Live<T> {
         *next.lock() = Some((scene.clone(), Arc::new(cells)));
         next
     }
-    /// The same, to be rendered behind contours where it was only counted as the same there.
+    /// The same, to be rendered behind contours where it only counted as the same.
     pub fn settled(&self) -> Self {
         let (params, has_homes, painted_box) = (self.params.clone(), self.has_homes.clone(), self.painted_box.clone());
         let next = Self { params, rendered: Arc::default(), has_homes, painted_box };
@@ -148,7 +148,7 @@ impl<T> Live<T> {
         }
         next
     }
-    /// Whether a tile is known to look the same in both on this scene: rendered, and the very same pixels.
+    /// Whether a tile is known to look the same in both on this scene: rendered, and with the very same pixels.
     pub fn same_tiles(&self, other: &Self, scene: &Scene) -> impl Fn(TileAt) -> bool {
         let rendered = |live: &Self| {
             let current = live.lock();
@@ -219,7 +219,7 @@ impl<T> Live<T> {
         let is_missing = |at: &TileAt| cells.cell(*at).is_some_and(|cell| cell.get().is_none());
         TileAt::covering(scene.size.rect()).filter(is_missing).collect()
     }
-    /// Counts the rendered tiles, unless they were; `keeps`: otherwise they are let go of.
+    /// Counts the rendered tiles, unless they were; `keeps`: otherwise they are freed.
     pub(in crate::document) fn count_rendered(&self, count: &mut MemoryCount, keeps: bool) {
         if !count.is_new(&self.rendered) {
             return;

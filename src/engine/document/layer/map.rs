@@ -1,9 +1,9 @@
 //! All transforms that act on a layer, as one map of the plane. Floor 4.
 //!
 //! Whatever a layer holds (samples, anchors, placements, ramps, lights, pixels, its mask) lies in the layer's own
-//! frame. A transform takes that frame to the canvas, one of a group takes along all layers in it. Layers are seen
-//! through their transforms when they are prepared: live ones with their parameters taken along, pixels sampled once,
-//! however many transforms there were.
+//! frame. A transform takes that frame to the canvas; one of a group moves all layers in it. Layers are seen through
+//! their transforms when they are prepared: the parameters of live ones are mapped, pixels are sampled once, however
+//! many transforms there are.
 //!
 //! What lies on a part of the shape is carried by it: first the layer's own transform, then the part's matrix, then the
 //! transforms of the groups around. The innermost home counts; those of groups around it do not.
@@ -28,12 +28,12 @@ pub struct LayerMap {
 }
 
 impl LayerMap {
-    /// Of layers that stay where they are.
+    /// For layers that stay where they are.
     pub fn none(canvas: Size) -> Self {
         let [plane, own, around] = [PlaneMap::IDENTITY; 3];
         Self { plane, filter: Resampling::default(), canvas, own, around }
     }
-    /// Of pixels alone, seen through any map.
+    /// For pixels alone, seen through any map.
     pub(in crate::document) fn of_plane(plane: PlaneMap, filter: Resampling, canvas: Size) -> Self {
         Self { plane, filter, ..Self::none(canvas) }
     }
@@ -41,7 +41,7 @@ impl LayerMap {
     pub(in crate::document) fn after(&self, first: &PlaneMap) -> Self {
         Self { plane: first.then(&self.plane), ..*self }
     }
-    /// The same about another map as a whole.
+    /// The same with another map in total.
     pub(in crate::document) fn with_plane(&self, plane: PlaneMap) -> Self {
         Self { plane, ..*self }
     }
@@ -52,30 +52,30 @@ impl LayerMap {
         let filter = layer.transform.as_ref().map_or(self.filter, |transform| transform.filter);
         Self { plane, filter, own, around: self.without_homes(), ..*self }
     }
-    /// What takes the frame of a layer inside, its own transform done, to the canvas.
+    /// What takes the frame of a layer inside, after its own transform, to the canvas.
     pub(in crate::document) fn outside(&self, home: Option<&HomeFrame>) -> PlaneMap {
         match home {
             Some(home) => home.map().then(&self.without_homes()),
             None => self.plane,
         }
     }
-    /// The map of the list that the layer stands in.
+    /// The map of the list that holds the layer.
     pub fn of_list(&self) -> Self {
         Self { plane: self.outside_own(), own: PlaneMap::IDENTITY, ..*self }
     }
-    /// What takes the list that the layer stands in to the canvas.
+    /// What takes the list that holds the layer to the canvas.
     pub fn outside_own(&self) -> PlaneMap {
         if self.own == PlaneMap::IDENTITY { self.plane } else { self.own.inverse().then(&self.plane) }
     }
-    /// As [`LayerMap::plane`] while every part stands where it was made.
+    /// As [`LayerMap::plane`] while every part is where it was made.
     pub(in crate::document) fn without_homes(&self) -> PlaneMap {
         self.own.then(&self.around)
     }
-    /// The same layer where its parts were made: it is carried nowhere.
+    /// The same layer where its parts were made: no part carries it.
     pub(in crate::document) fn at_home(&self) -> Self {
         Self { plane: self.without_homes(), ..*self }
     }
-    /// Of a stroke of the layer that has a home of its own.
+    /// For a stroke of the layer that has a home of its own.
     pub(in crate::document) fn of_stroke(&self, home: &StrokeHome) -> Self {
         let own = home.own_map().then(&self.own);
         Self { plane: own.then(&home.frame.map()).then(&self.around), own, ..*self }

@@ -1,5 +1,5 @@
-//! What live layers answer that are rendered without rounding to bytes.
-//! Floor 4. Composing what they answer is `deep`'s, the rendering of marks in `paint` and `shading`.
+//! How live layers are rendered without rounding to bytes. Floor 4. Not here: composing the results (`deep`), rendering
+//! marks (`paint`, `shading`).
 
 use crate::document::Progress;
 use crate::paint::Scene;
@@ -14,11 +14,11 @@ pub(in crate::document) trait Marks {
     fn stay(&self) -> bool {
         true
     }
-    /// The texture that tiles are read from, to be held while they are.
+    /// The texture that tiles are read from, to be kept meanwhile.
     fn texture(&self) -> Option<Arc<DeepTexture>> {
         None
     }
-    /// What that takes.
+    /// The memory that it takes.
     fn texture_bytes(&self) -> u64 {
         0
     }

@@ -22,7 +22,7 @@ pub struct LayerMask {
 pub enum MaskKind {
     /// A picture of the canvas's size: encoded luminance × alpha.
     File { file: String, coverage: Arc<Plane<u8>> },
-    /// Found anew wherever the surface changes.
+    /// Derived again wherever the surface changes.
     Derived(DerivedMask),
 }
 
@@ -35,7 +35,7 @@ pub enum DerivedMask {
     Curvature { scale: f32, blur: f32, from: f32, to: f32 },
     /// z, 0 at `from`, 1 at `to`.
     Depth { from: f32, to: f32 },
-    /// All that has something in common with a point of the surface.
+    /// The region that has something in common with a point of the surface.
     Region(SurfaceRegion),
 }
 
@@ -70,7 +70,7 @@ impl DerivedMask {
     /// Depths at which the mask is 0 or 1.
     pub const DEPTH: Range = UNIT;
 
-    // The numbers of a mask that tells none.
+    // The numbers of a mask that gives none.
     pub const PLAIN_F0: f32 = 0.04;
     pub const PLAIN_POWER: f32 = 5.0;
     pub const PLAIN_SCALE_PX: f32 = 4.0;
@@ -153,8 +153,7 @@ impl LayerMask {
             (DerivedMask::Curvature { .. }, None) => 1.0,
         }
     }
-    /// The tiles in which another version differs, where both are pictures of one size that count alike; `None` where
-    /// they are not.
+    /// The tiles in which another version differs, where both are pictures of one size, used alike; otherwise `None`.
     pub(in crate::document) fn changed_tiles(&self, new: &LayerMask) -> Option<Vec<TileAt>> {
         let (MaskKind::File { coverage: a, .. }, MaskKind::File { coverage: b, .. }) = (&self.kind, &new.kind) else {
             return None;
@@ -185,7 +184,7 @@ fn ramp(v: f32, from: f32, to: f32) -> f32 {
     ((v - from) / (to - from)).max(0.0).min(1.0)
 }
 
-/// A function of canvas pixels as one of a tile's.
+/// A function of canvas pixels as one of tile pixels.
 pub(in crate::document) fn tile_pixels(at: TileAt, value: impl Fn(i32, i32) -> f32) -> impl Fn(usize, usize) -> f32 {
     let rect = at.rect();
     move |x, y| value(rect.x0 + x as i32, rect.y0 + y as i32)

@@ -18,7 +18,7 @@ pub struct NormalLayer {
     pub outside: Outside,
     /// Multiplies the detail's slopes, `≥ 0`; 1 is the map as it is.
     pub strength: f32,
-    /// Where the frame of `placement` lies on the canvas.
+    /// Where the frame of `placement` is on the canvas.
     pub frame: PlaneMap,
 }
 
@@ -57,7 +57,7 @@ impl PartialEq for NormalLayer {
     }
 }
 
-/// Everything that a combined surface depends on besides the surface beneath.
+/// All that a combined surface depends on besides the surface beneath.
 #[derive(Clone)]
 pub struct Combination {
     pub(in crate::document) normals: NormalLayer,

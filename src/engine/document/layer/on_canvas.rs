@@ -1,5 +1,4 @@
-//! Layers as they lie on the canvas, kept as long as nothing of them changes.
-//! Floor 4.
+//! Layers as they lie on the canvas, kept as long as nothing in them changes. Floor 4.
 
 use super::Layer;
 use super::content::{Content, Group};
@@ -48,7 +47,7 @@ pub(in crate::document) fn each_with_map<'d>(
     }
 }
 
-/// What layers were last seen as; shared by the versions of a layer.
+/// The last results for a layer, shared by its versions.
 #[derive(Clone, Default)]
 pub struct CanvasCache {
     /// The newest last.
@@ -66,7 +65,7 @@ struct CanvasEntry {
 }
 
 impl CanvasCache {
-    /// Of the picture before an edit and the one after it.
+    /// For the picture before an edit and the one after it.
     const KEPT: usize = 2;
 
     pub(in crate::document) fn get(
@@ -106,7 +105,7 @@ impl CanvasCache {
         });
         (content, mask)
     }
-    /// The same of a displaced layer: its paint and its mask are displaced here, all else when it is composed.
+    /// The same for a displaced layer: its paint and its mask are displaced here, all else when it is composed.
     fn warped(
         &self,
         layer: &Layer,

@@ -1,6 +1,6 @@
 //! Layers on a canvas of another size: live ones change their coordinates and stay as sharp as the new canvas, pixels
 //! and masks are resampled.
-//! Floor 4. The rest of a document is `document::scale`'s.
+//! Floor 4. Not here: the rest of a document (`document::scale`).
 
 mod resample;
 
@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
 
-/// Selections and what became of them, by the addresses of the old ones.
+/// Selections and their scaled versions, by the addresses of the old ones.
 type ScaledSelections = HashMap<usize, (Arc<Selection>, Arc<Selection>)>;
 
 /// From one canvas to another.
@@ -32,7 +32,7 @@ pub(in crate::document) struct CanvasScale {
     pub to: Size,
     /// Seen for a moment only: what is fine is read coarsely.
     is_draft: bool,
-    /// How pixels are sampled; by the mean over what they cover without one.
+    /// How pixels are sampled; without one, by the mean over what they cover.
     filter: Option<Resampling>,
     /// Selections that were scaled, by their addresses.
     pub(in crate::document) selections: Mutex<ScaledSelections>,
@@ -48,20 +48,20 @@ impl CanvasScale {
         let per_axis = vec2(to.width as f32 / from.width as f32, to.height as f32 / from.height as f32);
         Some(Self { per_axis, length: factor, from, to, is_draft: false, filter: None, selections: Mutex::default() })
     }
-    /// The same of a document that is seen for a moment only.
+    /// The same for a document that is seen for a moment only.
     pub fn for_a_moment(self) -> Self {
         Self { is_draft: true, ..self }
     }
-    /// A placement of a picture of so many pixels, the same on the new canvas but for the aspect.
+    /// The placement of a picture of a given size, the same on the new canvas except for the aspect.
     pub fn on_new_canvas(&self, placement: &Placement, picture: Size) -> Placement {
         placement.on_canvas_of(self.from, self.to, picture)
     }
-    /// How many of the finest levels of a picture need not be read, so many of whose texels lie under a new pixel.
+    /// How many of the finest levels of a picture need not be read, from the number of its texels under a new pixel.
     ///
     /// Antialiasing spends up to sixteen taps on a pixel before it reads a coarser level. So a pixel that covered four
-    /// took twice as long as one of them, and one that covered sixteen three times.
+    /// took twice as long as a pixel that covered one, and a pixel that covered sixteen three times.
     pub fn levels_to_skip(&self, texels_per_px: f32) -> u32 {
-        // A canvas of an odd size is not quite so much smaller.
+        // A canvas of an odd size shrinks slightly less.
         let (smaller, covered) = ((1.0 / self.length).log2(), texels_per_px.log2() + 0.1);
         // NaN and what is negative become 0.
         if self.is_draft { smaller.min(covered) as u32 } else { 0 }
@@ -78,12 +78,12 @@ impl CanvasScale {
         let (x, y) = (side(self.to.width, self.from.width), side(self.to.height, self.from.height));
         PlaneMap::affine([x, 0.0, 0.0, y, 0.0, 0.0]).unwrap_or_default()
     }
-    /// The sampler of pixels, where there is one, and what they are seen through.
+    /// The sampler of pixels, if there is one, and the map that they are seen through.
     fn sampler(&self) -> Option<LayerMap> {
         let reach = Size::new(self.from.width.max(self.to.width), self.from.height.max(self.to.height));
         Some(LayerMap::of_plane(self.map(), self.filter?, reach))
     }
-    /// An image that the change of the aspect stretches, which its placement cannot say: by its transform. `None` of
+    /// An image that the change of the aspect stretches: its transform says so, as its placement cannot. `None` for
     /// other layers, and where a mask lies in the layer's frame.
     fn stretched(&self, layer: &Layer) -> Option<Layer> {
         let filter = self.filter?;
@@ -166,7 +166,7 @@ impl CanvasScale {
         let rows: Vec<_> = (rect.y0..rect.y1).map(|y| covered(y, self.per_axis.y)).collect();
         let (first, last) = (rows.first()?.first()?.0, rows.last()?.last()?.0);
         let source = Rect::new(columns.first(), first, columns.end(), last + 1);
-        // Most tiles of most layers are not there.
+        // Most layers lack most tiles.
         if TileAt::covering(source).all(|at| grid.tile(at).is_none()) {
             return None;
         }
@@ -193,7 +193,7 @@ impl CanvasScale {
         }
         bytes.chunks_exact(4).any(|p| p[3] > 0).then(|| Tile::from_bytes(bytes)).flatten()
     }
-    /// A map of the canvas resampled; its border continues beyond it.
+    /// A map of the canvas, resampled; its border is continued beyond it.
     pub fn plane(&self, plane: &Plane<u8>) -> Plane<u8> {
         // Pictures of parts may have a size of their own.
         let side = |v: u32, s: f32| ((f64::from(v) * f64::from(s)).ceil() as u32).max(1);

@@ -1,4 +1,4 @@
-//! The pixels of a layer in one tile, in the form that its kind has them. Floor 4. Not here: how layers meet
+//! The pixels of a layer in one tile, in the form that its kind has. Floor 4. Not here: how layers meet
 //! (`compose`).
 
 use crate::document::behind::PackedTile;

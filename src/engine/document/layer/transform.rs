@@ -1,5 +1,5 @@
-//! Transforms: where a layer's own frame lies on the canvas.
-//! Floor 4. All that act on a layer together are a `LayerMap`.
+//! Transforms: where a layer's own frame lies on the canvas. Floor 4. Not here: all transforms that act on a layer
+//! (`LayerMap`).
 
 pub(super) mod mesh;
 
@@ -31,7 +31,7 @@ impl LayerTransform {
     pub const FACTOR: range::Range = -1e4..=1e4;
 
     /// The map of the plane; `None` where a matrix cannot be inverted or corners form no convex quadrilateral. A mesh
-    /// that no matrix says leaves the plane and displaces what is seen ([`super::LayerWarp`]).
+    /// that is not a matrix leaves the plane unmoved and displaces what is seen ([`super::LayerWarp`]).
     pub fn map(&self, canvas: Size) -> Option<PlaneMap> {
         match &self.shape {
             TransformShape::Matrix(coefficients) => PlaneMap::affine(*coefficients),
@@ -43,7 +43,7 @@ impl LayerTransform {
     pub fn mesh(&self) -> Option<&Arc<Mesh>> {
         if let TransformShape::Mesh(mesh) = &self.shape { Some(mesh) } else { None }
     }
-    /// Refuses numbers that no file gives back, and what is no map.
+    /// Refuses numbers that files cannot hold, and what is no map.
     pub fn fits(&self) -> Result<(), String> {
         let place = |v: f64| range::within("a place of the transform", v as f32, &COORDINATE);
         match &self.shape {
@@ -86,7 +86,7 @@ impl LayerTransform {
     }
 }
 
-/// The matrix that does on a canvas `per_axis` times as large what this one does.
+/// The matrix with the same effect on a canvas `per_axis` times as large.
 pub(in crate::document) fn scaled_matrix([a, b, c, d, e, f]: [f64; 6], per_axis: Vec2) -> [f64; 6] {
     let s = per_axis.as_dvec2();
     [a, b * s.y / s.x, c * s.x / s.y, d, e * s.x, f * s.y]

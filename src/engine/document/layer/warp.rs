@@ -2,8 +2,8 @@
 //!
 //! Both are one displacement backward, evaluated a tile at a time: a pixel of the canvas shows what the layer would
 //! show elsewhere. Paint and masks are sampled once through it and their transforms. Live layers and groups are
-//! composed where they stand, both populations of a contour pixel mixed, and seen through it; what was composed stays
-//! while the displacement alone changes. Tiles that show themselves are composed as if there were no warp.
+//! composed undisplaced, both populations of a contour pixel mixed, and seen through it; what was composed is kept
+//! while only the displacement changes. Tiles that show themselves are composed as if there were no warp.
 
 mod cache;
 
@@ -26,7 +26,7 @@ use std::sync::Arc;
 #[derive(Clone)]
 pub struct LayerWarp {
     canvas: Size,
-    /// What takes the list that the layer stands in to the canvas.
+    /// What takes the list that holds the layer to the canvas.
     outside: PlaneMap,
     /// Backward.
     mesh: Option<Arc<Lattice>>,
@@ -52,7 +52,7 @@ impl Layer {
     pub fn is_warped(&self) -> bool {
         self.liquify.is_some() || self.mesh_warp().is_some()
     }
-    /// The mesh of it that no matrix says.
+    /// Its mesh, unless that is a matrix.
     fn mesh_warp(&self) -> Option<&Arc<Mesh>> {
         match self.transform.as_ref().map(|transform| &transform.shape) {
             Some(TransformShape::Mesh(mesh)) if mesh.as_affine().is_none() => Some(mesh),
@@ -62,26 +62,27 @@ impl Layer {
 }
 
 impl LayerWarp {
-    /// Of a layer with its map; `None` where nothing displaces it.
+    /// For a layer with its map; `None` where nothing displaces it.
     pub(in crate::document) fn of(layer: &Layer, map: &LayerMap) -> Option<Self> {
         let (mesh, liquify) = (layer.mesh_warp(), layer.liquify.clone().filter(|lattice| !lattice.is_empty()));
         if mesh.is_none() && liquify.is_none() {
             return None;
         }
-        // What stays in place is to look as it did, so the cubic must pass through the pixels, as Mitchell's does not.
+        // What stays in place must look as it did, so the cubic must pass through the pixels, which Mitchell's does
+        // not.
         let is_kept = mesh.is_none() && map.pixel_move().is_some() && map.filter != Resampling::Nearest;
         let filter = if is_kept { Resampling::Sharp } else { map.filter };
         let mesh = mesh.map(|mesh| mesh.backward(map.canvas()));
         Some(Self { canvas: map.canvas(), outside: map.outside_own(), mesh, liquify, filter })
     }
-    /// What a mesh takes from beyond the canvas is nothing; liquify lets the picture's border go on.
+    /// What a mesh takes from beyond the canvas is nothing; liquify continues the picture's border.
     pub(in crate::document) fn continues(&self) -> bool {
         self.mesh.is_none()
     }
-    /// Which point of the unwarped layer shows at each pixel of a tile, seen through one more map of its own; `None`
-    /// where the tile shows itself.
+    /// Which point of the unwarped layer shows at each pixel of a tile, seen through one more map; `None` where the
+    /// tile shows itself.
     ///
-    /// * `own`: what takes the layer's frame to the canvas; the identity of what is composed on the canvas.
+    /// * `own`: what takes the layer's frame to the canvas; the identity for what is composed on the canvas.
     pub(in crate::document) fn tile_map(&self, at: TileAt, own: &PlaneMap) -> Option<TileMap> {
         let rect = at.rect();
         let middle = |k: usize| {
@@ -122,7 +123,7 @@ impl LayerWarp {
         }
         Some(TileMap::new(rect, points))
     }
-    /// The same of a list that is the canvas, along rows.
+    /// The same for a list that is the canvas, along rows.
     fn on_list(&self, at: TileAt) -> Option<TilePoints> {
         let on_tile = |of: &Option<Arc<Lattice>>| of.as_ref().and_then(|lattice| lattice.on_tile(at));
         let Some(mut points) = on_tile(&self.liquify) else { return on_tile(&self.mesh) };
@@ -135,7 +136,7 @@ impl LayerWarp {
         }
         Some(points)
     }
-    /// What shows at a point of the list, and how it moves with the point.
+    /// The point that shows at a point of the list, and its derivative.
     fn aside(&self, q: Vec2) -> (Vec2, Mat2) {
         let (mut p, mut jacobian) = (q, Mat2::IDENTITY);
         for lattice in [&self.liquify, &self.mesh].into_iter().flatten() {
@@ -166,7 +167,7 @@ impl LayerWarp {
         let all: Vec<TileAt> = TileAt::covering(self.canvas.rect()).collect();
         all.into_par_iter().filter(shows).collect()
     }
-    /// What is read for a rectangle: where the border goes on, the border.
+    /// What is read for a rectangle: where the border is continued, the border.
     fn within(&self, rect: Rect) -> Rect {
         if !self.continues() {
             return rect;
@@ -189,7 +190,7 @@ impl LayerWarp {
     }
 }
 
-/// What was known of a layer's paint or mask under another displacement.
+/// The known result for a layer's paint or mask under another displacement.
 pub(in crate::document) struct LastWarp<'l, T> {
     pub own: &'l T,
     pub seen: &'l T,

@@ -1,5 +1,5 @@
 //! The forms of single parts: fields that take long to solve, and what is made of them. Floor 4. Not here: which of
-//! them are made anew (`derive`).
+//! them are made again (`derive`).
 
 use super::{Inflation, PartMaps, ProfilePicture};
 use crate::math::srgb::decode;
@@ -12,15 +12,15 @@ use std::sync::Arc;
 
 /// What takes long to make: an outline with the fields that were solved over it.
 pub struct SolvedOutline {
-    /// Through the part's matrix but for its whole px.
+    /// Through the part's matrix without its whole px.
     pub outline: Arc<Outline>,
-    /// Where its rim is free, since a part in front begins there.
+    /// Where its rim is free, because a part in front begins there.
     pub joined: Option<Arc<Plane<bool>>>,
     pub pillow: Option<Arc<Plane<f32>>>,
     pub tube: Option<Arc<Plane<f32>>>,
 }
 
-/// The fields that a profile needs over an outline; those that are known stay.
+/// The fields that a profile needs over an outline; known ones are kept.
 pub fn inflated(
     outline: Arc<Outline>,
     joined: Option<Arc<Plane<bool>>>,
@@ -37,13 +37,13 @@ pub fn inflated(
     SolvedOutline { outline, joined, pillow, tube }
 }
 
-/// How far a part goes on beneath the edge of one in front of it.
+/// How far a part continues beneath the edge of one in front of it.
 const EDGE_PX: i32 = 3;
 
-/// An outline where it stands.
+/// An outline in its place.
 #[derive(Clone)]
 pub struct StandingOutline {
-    /// But for its whole px.
+    /// Without its whole px.
     pub outline: Arc<Outline>,
     /// Those.
     pub moved: (i32, i32),
@@ -65,7 +65,7 @@ impl StandingOutline {
         let ((x, y), size) = (self.corner(), self.outline.size());
         Rect::new(x, y, x.saturating_add(size.width as i32), y.saturating_add(size.height as i32))
     }
-    /// Those of some outlines whose planes overlap this one's, moved as if this one stood still.
+    /// Those of some outlines whose planes overlap this one's, relative to this one.
     pub fn met_by(&self, others: &[Option<StandingOutline>]) -> Vec<StandingOutline> {
         let met = others.iter().flatten().filter(|other| !other.rect().intersect(self.rect()).is_empty());
         let beside = |other: &StandingOutline| {
@@ -77,7 +77,7 @@ impl StandingOutline {
 }
 
 /// Where the rim of an outline is no silhouette: outside pixels in which a part in front begins. `None` where there are
-/// none. A rim that lies hidden under such a part stays one: what is inside of it is covered as well.
+/// none. A rim hidden under such a part stays a silhouette: what is inside it is covered as well.
 pub fn joined(own: &Outline, met: &[StandingOutline]) -> Option<Plane<bool>> {
     if met.is_empty() {
         return None;
@@ -89,7 +89,7 @@ pub fn joined(own: &Outline, met: &[StandingOutline]) -> Option<Plane<bool>> {
     };
     let free = Plane::from_fn(own.size(), |x, y| {
         let (x, y) = (x as i32, y as i32);
-        // What lies behind goes on beneath the edge of what lies over it, as far as that is blurred.
+        // What lies behind continues beneath the edge of what lies over it, as far as that edge is blurred.
         let begins = |other: &StandingOutline| {
             let is_in = |x: i32, y: i32| inside.get(x, y).unwrap_or(false);
             let opens = |(dx, dy): (i32, i32)| {
@@ -142,12 +142,12 @@ pub fn of_surface(surface: &Surface) -> Form {
     }
 }
 
-/// A form of maps where a matrix takes it; `None` where nothing of it is left.
+/// A form of maps, moved by a matrix; `None` where nothing of it is left.
 pub fn of_maps(maps: &PartMaps, still: Affine2, most_px: usize) -> Option<Form> {
     of_surface(&maps.surface).through(still, most_px)
 }
 
-/// A form of hand-made shadings over an outline, both on the canvas, where a matrix takes it.
+/// A form of hand-made shadings over an outline, both on the canvas, moved by a matrix.
 pub fn of_profiles(shadings: &[ProfilePicture], outline: &Outline, still: Affine2, most_px: usize) -> Option<Form> {
     let (x0, y0) = outline.corner();
     let profile = |shading: &ProfilePicture| {

@@ -1,5 +1,4 @@
-//! The surface of a document from its parts and its maps; what of a part did not change is not made again.
-//! Floor 4.
+//! The surface of a document from its parts and its maps; only what changed in a part is made again. Floor 4.
 
 use super::body::{self, SolvedOutline, StandingOutline, formed, inflated, joined, of_surface};
 use super::outlines::OutlineKey;
@@ -16,7 +15,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// What was made of parts, by their ids; shared by all versions of a document.
 #[derive(Clone, Default)]
 pub struct PartCache {
-    /// What is made is shown for a moment alone, and may begin where the last ended.
+    /// The result is shown only for a moment, so solving may begin from the last result.
     pub is_draft: bool,
     made: Arc<Mutex<Vec<MadePart>>>,
     /// The last surface, and what it was made of.
@@ -40,24 +39,24 @@ struct MadePart {
     /// What the lines among them are made of.
     inks: Vec<OutlineKey>,
     source: Option<OutlineKey>,
-    /// What in front of it its rim may be free at.
+    /// The parts in front, at which its rim may be free.
     met: Vec<StandingOutline>,
     body: Arc<SolvedOutline>,
-    /// What it was made through; not of one so large that copies would be too many.
+    /// The stages it was made through; not for one so large that copies would be too many.
     stages: Option<Stages>,
-    /// How far the last that lies on it came.
+    /// How far the last part on it came.
     came: Arc<Mutex<Came>>,
     form: Arc<Form>,
-    /// How far the form was moved from where the body stands, whole px.
+    /// How far the form was moved from the body's place, whole px.
     moved: (i32, i32),
 }
 
-/// A form on the way, before it is leaned, raised and moved.
+/// An unfinished form, before it is leaned, raised and moved.
 #[derive(Clone)]
 struct Stages {
     /// Without what lies on it.
     plain: Arc<Form>,
-    /// Without the last that lies on it.
+    /// Without the last part on it.
     before_last: Arc<Form>,
 }
 
@@ -65,13 +64,13 @@ struct Stages {
 const MOST_KEPT_PX: usize = 1 << 24;
 
 impl Document {
-    /// The document with the surface that its parts, layers and maps make now, and with what lies on parts where they
-    /// stand; itself where nothing changed.
+    /// The document with the surface that its parts, layers and maps make now, and with what lies on parts at their
+    /// places; itself if nothing changed.
     pub fn reshaped(&self) -> Document {
-        // Nobody gives it up, so it is whole.
+        // Nobody cancels it, so it is complete.
         self.reshaped_telling(&Progress::default()).unwrap_or_else(|| self.clone())
     }
-    /// The same, a step for each part; `None` if it was given up.
+    /// The same, a step for each part; `None` if cancelled.
     pub fn reshaped_telling(&self, progress: &Progress) -> Option<Document> {
         let placed = self.with_homes_placed();
         if self.parts.is_empty() { Some(placed) } else { placed.derived(progress) }
@@ -100,10 +99,10 @@ impl Document {
             (Some(a), Some(b)) => Arc::ptr_eq(a, b),
             (a, b) => a.is_none() && b.is_none(),
         };
-        // What was selected by the surface is found anew on another.
+        // Selections by the surface are found again on another surface.
         Some(if is_same { self.clone() } else { Document { surface, ..self.clone() }.with_selections_found() })
     }
-    /// The forms together; the last ones are remembered.
+    /// The forms combined; the last result is kept.
     fn whole(&self, forms: Vec<(Arc<Form>, crate::shape::Combine)>) -> Option<Arc<Surface>> {
         let lock = || self.parts.cache.whole.lock().unwrap_or_else(PoisonError::into_inner);
         let same_maps = |maps: &Option<Arc<Surface>>| match (maps, &self.parts.maps) {
@@ -136,12 +135,12 @@ impl Document {
         *lock() = Some(MadeSurface { forms, maps, size: self.size, surface: surface.clone(), nearest: known });
         surface
     }
-    /// Forgets what was made of parts that are gone.
+    /// Drops what was made of parts that are gone.
     fn forget_others(&self) {
         let mut made = self.parts.cache.made.lock().unwrap_or_else(PoisonError::into_inner);
         made.retain(|made| self.parts.part(&made.part.id).is_some());
     }
-    /// The outline of a part where it stands; `None` where it has none.
+    /// The outline of a part in its place; `None` if it has none.
     fn standing_outline(&self, part: &Arc<Part>) -> Option<StandingOutline> {
         let source = OutlineKey::of_part(self, part)??;
         let (still, moved) = apart(part.matrix);
@@ -159,15 +158,15 @@ impl Document {
         let made = self.known(&part.id)?;
         (Arc::ptr_eq(&made.part, part) && same_list(&made.upon, &self.upon(part))).then_some(made.form)
     }
-    /// Makes the forms of all parts that are seen, those that are known again for nothing.
+    /// Makes the forms of all visible parts; known ones cost nothing.
     pub(super) fn make_forms(&self) {
         drop(self.reshaped());
     }
-    /// The parts that lie on another and are seen.
+    /// The visible parts that lie on another.
     fn upon(&self, part: &Part) -> Vec<Arc<Part>> {
         self.parts.list.iter().filter(|p| p.visible && p.on() == Some(part.id.as_str())).cloned().collect()
     }
-    /// The form of a part as it was made last, whatever became of the part since, and the part as it was then.
+    /// The form of a part as it was made last, whatever changed in the part since, and the part as it was then.
     pub(super) fn last_form(&self, id: &str) -> Option<(Arc<Part>, Arc<Form>)> {
         self.known(id).map(|made| (made.part, made.form))
     }
@@ -175,9 +174,9 @@ impl Document {
         let made = self.parts.cache.made.lock().unwrap_or_else(PoisonError::into_inner);
         made.iter().find(|made| made.part.id == id).cloned()
     }
-    /// The form of one part with what lies on it; `None` where it has none.
+    /// The form of one part with what lies on it; `None` if it has none.
     ///
-    /// * `standing`: its outline where it stands, if it has one.
+    /// * `standing`: its outline in its place, if it has one.
     /// * `in_front`: those of the parts nearer to the viewer.
     fn form(
         &self,
@@ -227,7 +226,7 @@ impl Document {
                 (body, Arc::new(form))
             }
         };
-        // What lies beneath the last of those that lie on it is mostly known: a hand works on the last.
+        // What lies beneath the last part on it is mostly known: the user works on the last.
         let last = upon.len().saturating_sub(1);
         let beneath = known.and_then(|made| {
             let as_many = made.upon.len() == upon.len() && same_list(&made.upon[..last], &upon[..last]);
@@ -256,7 +255,7 @@ impl Document {
         self.remember(MadePart { part, upon, inks, source, met, body, stages, came, form, moved });
         Some(of_it)
     }
-    /// A form with what one more part that lies on it does to it.
+    /// A form changed by one more part that lies on it.
     fn with_upon(&self, form: &Form, body: &SolvedOutline, other: &Part, still: Affine2, came: &mut Came) -> Form {
         let PartKind::Lines { lines, .. } = &other.kind else {
             return changed(form, &body.outline, other, still, came);
@@ -270,12 +269,12 @@ impl Document {
         all.retain(|other| other.part.id != made.part.id);
         all.push(made);
     }
-    /// What a part may take: four canvases, so that one that reaches beyond the canvas keeps its shape.
+    /// The area that a part may take: four canvases, so that one that reaches beyond the canvas keeps its shape.
     fn most_px(&self) -> usize {
         self.size.area().saturating_mul(4).max(1 << 20)
     }
-    /// A part made anew, but for the fields of its body that are known; without what lies on it, not leaned and not yet
-    /// moved by whole px.
+    /// A part made again, except known fields of its body; without what lies on it, not leaned and not yet moved by
+    /// whole px.
     fn made(
         &self,
         part: &Part,

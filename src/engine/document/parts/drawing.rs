@@ -1,5 +1,5 @@
-//! What a drawing is before it has a shape: whether its background is transparent or of one colour, and whether it
-//! is of flat colours. Floor 4. Not here: what parts are made of it (`flats`).
+//! What a drawing is before it has a shape: whether its background is transparent or of one colour, and whether it has
+//! flat colours. Floor 4. Not here: which parts are made of it (`flats`).
 
 use super::flats::colors_of;
 use super::near::{is_near, share_on_the_way};
@@ -15,13 +15,13 @@ pub enum FigureBackground {
     Transparent,
     /// One opaque colour, along the whole border.
     Flat(Color),
-    /// All kinds of things, as in a photograph: there is no outline.
+    /// Many colours, as in a photograph: there is no outline.
     Painted,
-    /// There is no figure either.
+    /// Neither figure nor outline.
     Empty,
 }
 
-/// A drawing as it was found.
+/// What was found about a drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DrawingLook {
     pub background: FigureBackground,
@@ -33,13 +33,13 @@ pub struct DrawingLook {
 
 /// A pixel less opaque than this is background.
 const OPAQUE: u8 = 128;
-/// Of the border that must have the colour of a flat background.
+/// The share of the border that must have the colour of a flat background.
 const LEAST_BORDER: f32 = 0.9;
-/// Of the picture that must be transparent, so that what is left is a figure; and that must be figure.
+/// The share of the picture that must be transparent, so that the rest is a figure; and the share that must be figure.
 const LEAST_SHARE: f32 = 0.004;
 
 impl DrawingLook {
-    /// Flats cover most of a figure: shaded paint has few of its pixels in any one colour.
+    /// Flats cover most of a figure: shaded paint has few pixels of any one colour.
     const LEAST_FLAT: f32 = 0.7;
 
     pub fn of(tiles: &TileGrid, canvas: Size) -> Self {
@@ -102,7 +102,7 @@ fn flat_ground(tiles: &TileGrid, canvas: Size) -> Option<Color> {
         .map(|(x, y)| tiles.pixel(x, y))
         .collect();
     let like = |color: [u8; 4]| border.iter().filter(|pixel| is_near(**pixel, color)).count();
-    // Of a background with noise any of its pixels will do; some are tried, all along the border.
+    // In a background with noise any pixel will do; some are tried, all along the border.
     let tried = (0..16).map(|i| border[i * border.len() / 16]).filter(|pixel| pixel[3] == 255);
     let best = tried.max_by_key(|color| like(*color))?;
     let is_most = like(best) as f32 >= LEAST_BORDER * border.len() as f32;
@@ -110,8 +110,8 @@ fn flat_ground(tiles: &TileGrid, canvas: Size) -> Option<Color> {
     is_most.then_some(Color { r, g, b, a })
 }
 
-/// A picture without its flat background, as far as that is joined to the border. Over the background's colour it is
-/// what it was: pixels at its edge lose just the share that the background has of them.
+/// A picture without its flat background, as far as that is joined to the border. Over the background's colour it looks
+/// as before: pixels at its edge lose just the background's share in them.
 pub fn without_background(tiles: &TileGrid, canvas: Size, background: Color) -> TileGrid {
     let color = bytes_of(background);
     let open = joined_to_border(&Plane::from_fn(canvas, |x, y| is_near(tiles.pixel(x as i32, y as i32), color)));

@@ -15,7 +15,7 @@ impl Document {
     pub fn with_parts(&self, list: Vec<Arc<Part>>) -> Document {
         self.with_list(list).reshaped()
     }
-    /// The same, a step for each part; `None` if it was given up.
+    /// The same, a step for each part; `None` if cancelled.
     pub fn with_parts_telling(&self, list: Vec<Arc<Part>>, progress: &Progress) -> Option<Document> {
         self.with_list(list).reshaped_telling(progress)
     }
@@ -46,8 +46,8 @@ impl Document {
         }
         list
     }
-    /// With other parts while a hand drags: what lies on parts goes along at once, the surface stays that of the parts
-    /// before until [`Document::reshaped`], which takes longer than a hand may wait.
+    /// With other parts while the user drags: what lies on parts follows at once, the surface stays that of the parts
+    /// before until [`Document::reshaped`], which takes too long for a drag.
     pub fn with_parts_ahead(&self, list: Vec<Arc<Part>>) -> Document {
         let next = self.with_list(list);
         if next.parts.is_empty() {
@@ -56,7 +56,7 @@ impl Document {
         let parts = Arc::new(Parts { is_ahead: true, ..Parts::clone(&next.parts) });
         Document { parts, ..next }.with_homes_placed()
     }
-    /// The same with one part, as [`Document::with_part`] has it.
+    /// The same with one part, as [`Document::with_part`] does it.
     pub fn with_part_ahead(&self, part: Part) -> Document {
         self.with_parts_ahead(self.list_with(part))
     }
@@ -64,8 +64,8 @@ impl Document {
     pub fn is_shaped(&self) -> bool {
         !self.parts.is_ahead
     }
-    /// Without a part and those that change it. What lies on it stays where it shows, carried no more. `None` if there
-    /// is no such part.
+    /// Without a part and those that change it. What lies on it stays where it shows, no longer carried. `None` if
+    /// there is no such part.
     pub fn without_part(&self, id: &str) -> Option<Document> {
         self.parts.part(id)?;
         let stays = |part: &&Arc<Part>| part.id != id && self.parts.body_of(&part.id).is_none_or(|body| body.id != id);
@@ -79,13 +79,13 @@ impl Document {
         list.insert(index.min(list.len()), part);
         Some(self.with_parts(list))
     }
-    /// With the parts that it was read with gone: what lies on them stays where it shows.
+    /// Without the parts that its layers lie on, which are those of `list`: what lies on them stays where it shows.
     pub fn off_parts(&self, list: Vec<Arc<Part>>) -> Document {
         let parts = Arc::new(Parts { list, ..Parts::default() });
         let placed = Document { parts, ..self.clone() }.with_homes_placed();
         Document { parts: Arc::default(), ..placed.lifted_off(|_| true) }
     }
-    /// With the outlines that follow a kept selection as it is now.
+    /// With the outlines that follow kept selections updated.
     pub(in crate::document) fn without_outlines_of(&self, selection: &NamedSelection) -> Document {
         let names = |part: &Arc<Part>| match part.outline() {
             Some(OutlineSource::Selection(name)) => *name == selection.name,
@@ -117,12 +117,11 @@ impl Document {
         next.parts = Arc::new(Parts { maps: surface, ..Parts::clone(&self.parts) });
         next.reshaped()
     }
-    /// With the outlines that name a layer naming it as it is called now; `before`: the document in which it had
-    /// another name.
+    /// With outlines naming layers by their present names; `before`: the document in which a layer had another name.
     pub(in crate::document) fn with_outlines_renamed(self, before: &Document, id: LayerId) -> Document {
         let names = before.layer(id).zip(self.layer(id)).map(|(old, new)| (old.name.clone(), new.name.clone()));
         let Some((old, new)) = names.filter(|(old, new)| old != new) else { return self };
-        // Outlines name the topmost of several.
+        // If several layers have a name, outlines name the topmost.
         let is_named = before.layer_named(&old).is_some_and(|layer| layer.id == id);
         let renamed = |part: &Arc<Part>| match part.outline() {
             Some(OutlineSource::Layer { layer, .. }) if is_named && *layer == old => {

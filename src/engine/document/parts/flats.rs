@@ -9,11 +9,11 @@ use crate::math::srgb::Color;
 use crate::raster::{Plane, TileGrid};
 use std::collections::BTreeMap;
 
-/// Colours of one layer that become parts; the largest.
+/// The most colours of one layer that become parts; the largest are chosen.
 const MOST_COLOURS: usize = 64;
-/// A colour that covers less than this part of the picture is no part: leftovers of edges.
+/// A colour that covers less than this share of the picture makes no part: it is left over from edges.
 const LEAST_SHARE: f32 = 2e-4;
-/// How far around a common border areas are compared, a part of the longer side.
+/// How far around a common border areas are compared, as a share of the longer side.
 const LOOKED_AROUND: f32 = 0.02;
 
 /// The parts of the flats in a layer called `layer`, the farthest first.
@@ -34,7 +34,7 @@ pub fn parts_of_flats(tiles: &TileGrid, layer: &str, inflation: Inflation) -> Ve
 /// The opaque flat colours of a picture, the most frequent first.
 pub fn colors_of(tiles: &TileGrid, rect: Rect) -> Vec<Color> {
     let mut counts: BTreeMap<[u8; 4], usize> = BTreeMap::new();
-    // Straight edges hold long rows of one mixed colour.
+    // Straight edges contain long rows of one mixed colour.
     for pixel in Flats::of(tiles, rect).flat_pixels().filter(|pixel| pixel[3] == 255) {
         *counts.entry(pixel).or_default() += 1;
     }
@@ -56,8 +56,8 @@ pub fn colors_of(tiles: &TileGrid, rect: Rect) -> Vec<Color> {
 
 /// The places of areas in a list, those in front last.
 ///
-/// What each pixel of a common border says of the two areas is added up (`in_front_by`). The clearest decisions count
-/// most: the farthest is always the one that least stands in front of what is left.
+/// What each pixel of a common border says about the two areas is added up (`in_front_by`). The clearest decisions
+/// count most: the next farthest is always the area that is least in front of the remaining ones.
 pub fn farthest_first(areas: &[Plane<u8>]) -> Vec<usize> {
     let n = areas.len();
     let Some(size) = areas.first().map(|area| area.size()) else { return Vec::new() };
@@ -73,7 +73,7 @@ pub fn farthest_first(areas: &[Plane<u8>]) -> Vec<usize> {
             let Some(b) = owner.get(beside.0 as i32, beside.1 as i32) else { continue };
             if a != b && a != u32::MAX && b != u32::MAX {
                 let (a, b) = (a as usize, b as usize);
-                // Seen from the border itself: either pixel lies on one side of it.
+                // Measured on the border itself: each of the two pixels lies on one side of it.
                 let share = |of: usize| 0.5 * (shares[of].at(x, y) + shares[of].at(beside.0, beside.1));
                 let clearly = f64::from(in_front_by(share(a), share(b)));
                 in_front[a][b] += clearly;
@@ -84,7 +84,7 @@ pub fn farthest_first(areas: &[Plane<u8>]) -> Vec<usize> {
     let mut left: Vec<usize> = (0..n).collect();
     let mut order = Vec::with_capacity(n);
     while !left.is_empty() {
-        // What lies over it says nothing of what it lies over itself.
+        // What lies over an area says nothing about what the area lies over.
         let over = |a: usize| left.iter().map(|b| in_front[a][*b].max(0.0)).sum::<f64>();
         let first = (0..left.len()).min_by(|a, b| over(left[*a]).total_cmp(&over(left[*b]))).unwrap_or(0);
         order.push(left.remove(first));
@@ -92,12 +92,12 @@ pub fn farthest_first(areas: &[Plane<u8>]) -> Vec<usize> {
     order
 }
 
-/// How clearly an area lies in front of another at a pixel of their border, by what shares of the neighbourhood they
-/// have; below 0 it lies behind.
+/// How clearly an area lies in front of another at a pixel of their border, from their shares of the neighbourhood;
+/// below 0 it lies behind.
 ///
-/// * Between the two alone the one whose side bulges lies in front: it has the smaller share.
-/// * Where a third meets them, the outline of the one in front goes on, so that it has half of the neighbourhood; the
-///   others end at it. If that is the third, nothing is told of the two.
+/// * With only the two, the one whose side bulges lies in front: it has the smaller share.
+/// * Where a third meets them, the outline of the one in front continues, so that it has half of the neighbourhood; the
+///   others end at it. If that is the third, nothing is known about the two.
 fn in_front_by(own: f32, other: f32) -> f32 {
     const ALONE: f32 = 0.98;
     const HALF: std::ops::RangeInclusive<f32> = 0.4..=0.6;
@@ -135,7 +135,7 @@ mod tests {
     use super::*;
     use crate::math::{Size, vec2};
 
-    /// Discs (middle and radius), the last in front of the others, as the areas that are seen of each.
+    /// Discs (middle and radius), the last in front of the others, as the visible area of each.
     fn seen(discs: &[([f32; 2], f32)], scale: f32) -> Vec<Plane<u8>> {
         let size = Size::new((320.0 * scale) as u32, (400.0 * scale) as u32);
         let holds = |disc: &([f32; 2], f32), x: usize, y: usize| {

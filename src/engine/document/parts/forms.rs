@@ -1,5 +1,5 @@
-//! The forms of a document's parts in their places: what a pointer hits, and what a list shows. Floor 4. They are
-//! those that the surface was made of.
+//! The forms of a document's parts in their places: what a pointer hits, and what a list shows. Floor 4. The surface
+//! was made of the same forms.
 
 use super::Part;
 use crate::document::Document;
@@ -8,10 +8,10 @@ use crate::shape::Form;
 use std::sync::Arc;
 
 impl Document {
-    /// The forms that are seen, with their parts, the farthest first. Of the shape that was made last nothing is made
-    /// again. Parts that make no form, such as an outline of nothing, are left out.
+    /// The visible forms, with their parts, the farthest first. Nothing of the shape that was made last is made again.
+    /// Parts that make no form, such as an empty outline, are left out.
     ///
-    /// While a hand drags parts their forms are those that were made last, where the parts stood then.
+    /// While the user drags parts, their forms are those that were made last, where the parts were then.
     pub fn part_forms(&self) -> Vec<(Arc<Part>, Arc<Form>)> {
         if !self.is_shaped() {
             return self.last_part_forms().into_iter().map(|(part, form, _)| (part, form)).collect();
@@ -22,8 +22,8 @@ impl Document {
         }
         shown().filter_map(|part| Some((part.clone(), self.made_form(part)?))).collect()
     }
-    /// The forms that were made last, with their parts as they are now, and what takes each form from where it was made
-    /// to where its part stands.
+    /// The forms that were made last, with their parts as they are now, and the map of each form from where it was made
+    /// to where its part is.
     pub fn last_part_forms(&self) -> Vec<(Arc<Part>, Arc<Form>, Affine2)> {
         let shown = self.parts.list.iter().filter(|part| part.visible && part.on().is_none());
         let last = |part: &Arc<Part>| {

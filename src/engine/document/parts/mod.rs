@@ -42,7 +42,7 @@ pub struct Parts {
     pub list: Vec<Arc<Part>>,
     /// The surface of the document's maps, beneath all parts; while there are none it is the document's own.
     pub maps: Option<Arc<Surface>>,
-    /// The document's surface is still that of the parts as they were: a hand drags them.
+    /// The document's surface is still that of the parts as they were, while the user drags them.
     is_ahead: bool,
     cache: PartCache,
 }
@@ -54,11 +54,11 @@ impl Parts {
     pub fn new(list: Vec<Part>) -> Self {
         Self { list: list.into_iter().map(Arc::new).collect(), ..Self::default() }
     }
-    /// None of them, with what is kept for speed.
+    /// No parts, but what is kept for speed.
     pub(in crate::document) fn emptied(&self) -> Self {
         Self { cache: self.cache.clone(), ..Self::default() }
     }
-    /// None, of documents that are shown for a moment while a hand drags: what is made of them may be a little off.
+    /// No parts, for documents that are shown for a moment while the user drags: what is made may be slightly off.
     pub(in crate::document) fn for_drafts() -> Self {
         let mut parts = Self::default();
         parts.cache.is_draft = true;
@@ -67,10 +67,10 @@ impl Parts {
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
-    /// The part that a part changes in the end, or itself; `None` if there is no such part.
+    /// The part that a part finally changes, or itself; `None` if there is no such part.
     pub fn body_of(&self, id: &str) -> Option<&Arc<Part>> {
         let mut part = self.part(id)?;
-        // No chain is longer than the list; one that bites its tail ends there.
+        // No chain is longer than the list; a loop ends there.
         for _ in 0..self.list.len() {
             let Some(next) = part.on().and_then(|on| self.part(on)) else { break };
             part = next;
@@ -94,7 +94,7 @@ pub struct Part {
     pub tilt_deg: Vec2,
     /// Nearer to the viewer by so many px.
     pub raise: f32,
-    /// Where it stands: canvas from part.
+    /// Its place: canvas from part.
     pub matrix: Affine2,
     pub kind: PartKind,
 }
@@ -132,13 +132,13 @@ pub enum PartKind {
         on: String,
         strokes: Vec<SculptStroke>,
     },
-    /// Ink that tells where another part turns.
+    /// Ink that marks where another part turns.
     Lines {
         on: String,
         ink: OutlineSource,
         lines: Lines,
     },
-    /// Several shadings of one drawing by hand, each with the light elsewhere, within an outline or wherever they tell
+    /// Several shadings of one drawing by hand, each with the light elsewhere, within an outline or wherever they hold
     /// anything.
     Profiles {
         outline: Option<OutlineSource>,
@@ -155,7 +155,7 @@ pub enum PartKind {
 }
 
 impl ProfilePicture {
-    /// Each number of its light.
+    /// The range of each number of its light.
     pub const LIGHT: Range = -1e4..=1e4;
 }
 
@@ -177,7 +177,7 @@ pub struct PartMaps {
     pub surface: Arc<Surface>,
 }
 
-/// By what they hold: names are given anew by every project.
+/// By their contents: every project gives new names.
 impl PartialEq for PartMaps {
     fn eq(&self, other: &Self) -> bool {
         let is_same = || {
@@ -230,12 +230,11 @@ impl Default for Inflation {
 /// Where an outline comes from. It stays linked: the part follows what it names.
 #[derive(Clone, Debug, PartialEq)]
 pub enum OutlineSource {
-    /// The alpha of a layer, by its name, the topmost of several; or of it what has a colour.
+    /// The alpha of a layer, by its name, the topmost of several; or its pixels of one colour.
     Layer { layer: String, color: Option<Color> },
     /// A picture of coverage; its upper left corner is the frame's.
     File(CoverageFile),
-    /// A selection that is kept by its name. One that follows the surface is found on the document's maps, without
-    /// parts.
+    /// A selection kept by name. One that follows the surface is found on the document's maps, without parts.
     Selection(String),
     /// A closed polygon, canvas px.
     Path(Vec<Vec2>),
@@ -255,7 +254,7 @@ pub struct CoverageFile {
     pub coverage: Arc<Plane<u8>>,
 }
 
-/// By what they hold: names are given anew by every project.
+/// By their contents: every project gives new names.
 impl PartialEq for CoverageFile {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.coverage, &other.coverage) || self.coverage == other.coverage

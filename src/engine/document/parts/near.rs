@@ -1,5 +1,4 @@
-//! When two colours are one flat, and how far a mixed one lies between two.
-//! Floor 4.
+//! When two colours are one flat, and how far between two colours a mixed one lies. Floor 4.
 
 /// Colours nearer than this, in any channel of 8 bits, are one flat.
 pub const NEAR: i32 = 8;
@@ -8,7 +7,7 @@ pub fn is_near(pixel: [u8; 4], color: [u8; 4]) -> bool {
     pixel.iter().zip(color).all(|(a, b)| (i32::from(*a) - i32::from(b)).abs() <= NEAR)
 }
 
-/// How far a pixel lies from one colour toward another, 255 at the other; 0 where it lies beside the way.
+/// How far a pixel lies from one colour toward another, 255 at the other; 0 if it is off the line between them.
 pub fn share_on_the_way(pixel: [u8; 4], from: [u8; 4], to: [u8; 4]) -> u8 {
     let way: [f32; 4] = std::array::from_fn(|c| f32::from(to[c]) - f32::from(from[c]));
     let gone: [f32; 4] = std::array::from_fn(|c| f32::from(pixel[c]) - f32::from(from[c]));

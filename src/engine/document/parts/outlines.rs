@@ -13,10 +13,10 @@ use crate::surface::Surface;
 use crate::surface::region::SurfaceRegion;
 use std::sync::Arc;
 
-/// What an outline is made of: while it is the same, so is the outline.
+/// What an outline is made of: while this is the same, so is the outline.
 #[derive(Clone)]
 pub enum OutlineKey {
-    /// With what takes it to the canvas, or to the frame of the part, if it is carried by that.
+    /// With its map to the canvas, or to the frame of the part if that carries it.
     Layer(Arc<Layer>, Option<FlatColor>, Box<LayerMap>),
     Coverage(Arc<Plane<u8>>),
     Selection(Arc<Selection>),
@@ -28,11 +28,11 @@ pub enum OutlineKey {
     Object(Arc<Surface>, u32),
 }
 
-/// A colour of a layer of flats.
+/// One colour of a layer of flats.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlatColor {
     color: Color,
-    /// Those of the parts that lie over it, at edges of which it goes on beneath.
+    /// The colours of the parts that lie over it, beneath whose edges it continues.
     over: Vec<Color>,
 }
 
@@ -52,7 +52,7 @@ impl Document {
 }
 
 impl OutlineKey {
-    /// What a part is made of, if it is made of anything; outer `None` where what it names is not there.
+    /// What a part is made of, if it is made of anything; outer `None` if what it names does not exist.
     pub fn of_part(document: &Document, part: &Part) -> Option<Option<Self>> {
         match (&part.kind, part.outline()) {
             (_, Some(outline)) => Self::of(document, part, outline).map(Some),
@@ -163,8 +163,8 @@ fn same_pixels(a: &Layer, b: &Layer) -> bool {
     }
 }
 
-/// What a layer paints where a map takes it: its own pixels, or what it shows alone, without any surface, which follows
-/// from it.
+/// What a layer paints, moved by a map: its own pixels, or what it shows alone, without any surface, which depends on
+/// it.
 fn pixels(document: &Document, layer: &Arc<Layer>, map: &LayerMap) -> Option<TileGrid> {
     if layer.is_warped() {
         let bare = Document { surface: None, ..document.clone() };

@@ -10,7 +10,7 @@ impl Part {
     pub const RAISE: Range = -8192.0..=8192.0;
     /// Letters of an id and of a name.
     pub const LONGEST_NAME: usize = 1000;
-    /// Each number of a matrix.
+    /// The range of each number of a matrix.
     pub const MATRIX: Range = COORDINATE;
 
     /// A part as it is first made.
@@ -25,7 +25,7 @@ impl Part {
         let outline = OutlineSource::Layer { layer: layer.into(), color: None };
         Self::new(id, PartKind::Inflate { outline, inflation })
     }
-    /// The part that this one changes, where it is no form of its own.
+    /// The part that this one changes, if it is no form of its own.
     pub fn on(&self) -> Option<&str> {
         match &self.kind {
             PartKind::Touches { on, .. }
@@ -45,7 +45,7 @@ impl Part {
             _ => {}
         }
     }
-    /// What it is made of; of lines their ink.
+    /// What it is made of; for lines, their ink.
     pub fn outline(&self) -> Option<&OutlineSource> {
         match &self.kind {
             PartKind::Inflate { outline, .. } | PartKind::Bevel { outline, .. } | PartKind::Lathe { outline, .. } => {
@@ -66,7 +66,7 @@ impl Part {
             _ => None,
         }
     }
-    /// The pictures that it names, to be given other names. Maps have names of their own.
+    /// The pictures that it names, to be renamed. Maps have names of their own.
     pub fn files_mut(&mut self) -> Vec<&mut CoverageFile> {
         fn of_outline(outline: &mut OutlineSource) -> Option<&mut CoverageFile> {
             if let OutlineSource::File(file) = outline { Some(file) } else { None }

@@ -1,5 +1,4 @@
-//! Parts on a canvas of another size: every length of theirs, and nothing else.
-//! Floor 4.
+//! Parts on a canvas of another size: all their lengths, and nothing else. Floor 4.
 
 use super::{OutlineSource, Part, PartKind};
 use crate::math::{Mat2, Vec2};
@@ -17,7 +16,7 @@ impl Part {
         let mut next = self.clone();
         next.raise *= length;
         let to = Mat2::from_diagonal(scale);
-        // What it stands on is scaled as well: the matrix maps scaled points to scaled points.
+        // What it refers to is scaled as well: the matrix maps scaled points to scaled points.
         next.matrix.matrix2 = to * self.matrix.matrix2 * to.inverse();
         next.matrix.translation *= scale;
         match &mut next.kind {
@@ -49,7 +48,7 @@ impl Part {
             }),
             PartKind::Sculpt { strokes, .. } => strokes.iter_mut().for_each(|stroke| {
                 stroke.size *= length;
-                // Of tools that go a share of the way it is no length.
+                // For tools that go a share of the way this is not a length.
                 stroke.strength *= if stroke.tool.is_by_height() { length } else { 1.0 };
                 stroke.samples.iter_mut().for_each(|sample| sample.0 *= scale);
             }),

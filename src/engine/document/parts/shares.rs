@@ -1,6 +1,6 @@
-//! Which share of each pixel a flat colour takes: all of a pixel in a flat area, and of those that were mixed at
-//! edges what lies between the two areas beside them. Shares add up to the whole pixel, so that areas that touch
-//! leave no rim between them. Floor 4. Not here: which colours are parts (`flats`).
+//! Which share of each pixel a flat colour takes: all of a pixel in a flat area, and a part of those that were mixed at
+//! edges between two areas. Shares add up to the whole pixel, so that areas that touch leave no rim between them. Floor
+//! 4. Not here: which colours are parts (`flats`).
 
 use super::near::{NEAR, is_near, share_on_the_way};
 use crate::math::srgb::Color;
@@ -10,11 +10,12 @@ use crate::raster::{Plane, TileGrid};
 /// Premultiplied.
 type Pixel = [u8; 4];
 
-/// How far beside a mixed pixel the areas are sought that it lies between, px: edges are rarely blurred more.
+/// How far from a mixed pixel the areas that it lies between are sought, px: edges are rarely blurred more.
 const REACH: i32 = 3;
-/// So many of its eight neighbours have the colour of a pixel in a flat area; along a straight edge two have it.
+/// A pixel in a flat area has its colour in this many of its eight neighbours; along a straight edge two have it.
 const LEAST_ALIKE: usize = 3;
-/// A pixel that is farther from the way between two colours is no mixture of them, a sum of squares over the channels.
+/// A pixel farther than this from the line between two colours is no mixture of them, a sum of squares over the
+/// channels.
 const FARTHEST: i32 = (4 * NEAR) * (4 * NEAR);
 
 /// The pixels of a flat picture.
@@ -53,8 +54,8 @@ impl Flats {
         let both = self.pixels.values().iter().zip(self.is_flat.values());
         both.filter(|(_, is_flat)| **is_flat).map(|(pixel, _)| *pixel)
     }
-    /// The share of each pixel that a colour takes together with others, 255 the whole. What is not between any two
-    /// areas, as of the thinnest lines, counts where it has the colour.
+    /// The share of each pixel that a colour takes together with others, 255 the whole. A pixel that is not between any
+    /// two areas, as in the thinnest lines, counts where it has the colour.
     pub fn share_of(&self, color: Color, with: &[Color]) -> Plane<u8> {
         let own = bytes(color);
         let all: Vec<Pixel> = std::iter::once(own).chain(with.iter().copied().map(bytes)).collect();
@@ -68,7 +69,7 @@ impl Flats {
             let Some((from, to, share)) = self.between(x, y) else {
                 return if is_near(here, own) { 255 } else { 0 };
             };
-            // Only where it has a share itself do the others lie over it.
+            // The others lie over it only where it has a share itself.
             match is_near(from, own) || is_near(to, own) {
                 true => u8::from(counts(from)) * (255 - share) + u8::from(counts(to)) * share,
                 false => 0,
@@ -81,7 +82,7 @@ impl Flats {
         for reach in 1..=REACH {
             for (dx, dy) in ring(reach) {
                 let (x, y) = (x as i32 + dx, y as i32 + dy);
-                // Beyond the picture lies nothing.
+                // There is nothing beyond the picture.
                 let (pixel, is_flat) = match self.pixels.get(x, y) {
                     Some(pixel) => (pixel, self.is_flat(x as usize, y as usize)),
                     None => ([0; 4], true),
@@ -96,7 +97,7 @@ impl Flats {
         }
         None
     }
-    /// Gives the pixels of a seam, which two areas left open between them, to the nearer one.
+    /// Gives the pixels of a seam that two areas left open between them to the nearer one.
     fn close_seams(&mut self) {
         let (w, h) = (self.pixels.width() as i32, self.pixels.height() as i32);
         let mut closed: Vec<(usize, usize, Pixel)> = Vec::new();
@@ -113,7 +114,7 @@ impl Flats {
             }
             let across = |(dx, dy): (i32, i32)| {
                 let ((a, one), (b, other)) = (side(x, y, (dx, dy))?, side(x, y, (-dx, -dy))?);
-                // What is open within one area is meant to be.
+                // A gap within one area is intended.
                 let is_seam = a + b <= REACH + 1 && !is_near(one, other);
                 is_seam.then_some(if a <= b { one } else { other })
             };
@@ -180,7 +181,7 @@ mod tests {
         ];
         shapes.into_iter().find(|(_, is_in)| *is_in).map_or([0; 4], |(color, _)| color)
     }
-    /// Each pixel the mean of what lies in a square about it: sides of 1 are anti-aliased, longer ones blurred.
+    /// Each pixel is the mean over a square about it: sides of 1 are anti-aliased, longer ones blurred.
     fn drawn(side: f32, at: impl Fn(Vec2) -> Pixel) -> TileGrid {
         const N: usize = 8;
         let mut rgba = Vec::with_capacity(SIZE.area() * 4);
@@ -212,7 +213,7 @@ mod tests {
             for (x, y) in (0..160).flat_map(|y| (0..200).map(move |x| (x, y))) {
                 let sum: i32 = shares.iter().map(|share| i32::from(share.at(x, y))).sum();
                 let painted = i32::from(tiles.pixel(x as i32, y as i32)[3]);
-                // Where three meet two of them take it all.
+                // Where three meet, two of them take it all.
                 wrong += i32::from((sum - painted).abs() > 24);
             }
             assert!(wrong <= 6, "{wrong} pixels, edges of {side} px");

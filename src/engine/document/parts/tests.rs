@@ -57,7 +57,7 @@ fn the_part_follows_its_layer_and_what_did_not_change_is_kept() {
     ]);
     let shaped = flat.with_parts(vec![inflated("a", "A"), inflated("b", "B")]);
     assert!(Arc::ptr_eq(shaped.surface.as_ref().unwrap(), shaped.reshaped().surface.as_ref().unwrap()));
-    // A layer's name and opacity shape nothing.
+    // A layer's name and opacity change no shape.
     let dimmed = shaped.with_layer(shaped.layers[0].id, |layer| layer.opacity = 0.3).unwrap().reshaped();
     assert!(Arc::ptr_eq(shaped.surface.as_ref().unwrap(), dimmed.surface.as_ref().unwrap()));
     let other = discs("B", &[(vec2(110.0, 60.0), 15.0, [20, 90, 40])]);
@@ -85,7 +85,7 @@ fn colours_become_parts_and_what_bulges_into_another_lies_in_front() {
     let shaped = document(vec![flats.clone()]).with_parts(parts.into_iter().map(Arc::new).collect());
     let surface = shaped.surface.as_ref().unwrap();
     assert_eq!(surface.objects().count(), 3);
-    // The eye stands out of the body, and its rim is its own.
+    // The eye sticks out of the body, and its rim is its own.
     assert!(surface.depth(95, 55) < surface.depth(80, 65));
     assert!(surface.normal(88, 55).x < -0.4, "{}", surface.normal(88, 55));
 }
@@ -147,7 +147,7 @@ fn every_kind_makes_a_surface() {
         assert!(surface.coverage_plane().values().contains(&255), "{name}");
         assert!(surface.normal_planes()[2].values().iter().all(|z| z.is_finite()), "{name}");
         if matches!(name, "profiles" | "maps") {
-            // Both are told of the same ball.
+            // Both describe the same ball.
             let ball = disc.surface.as_ref().unwrap();
             for (x, y) in [(80, 60), (95, 55), (62, 70)] {
                 let (a, b) = (ball.normal(x, y), surface.normal(x, y));

@@ -5,7 +5,7 @@ use super::{Part, PartKind};
 use crate::math::Affine2;
 use std::sync::Arc;
 
-/// The matrix without its whole px, and those.
+/// The matrix without its whole px, and these.
 pub fn apart(matrix: Affine2) -> (Affine2, (i32, i32)) {
     let whole = matrix.translation.floor();
     let still = Affine2 { translation: matrix.translation - whole, ..matrix };
@@ -20,12 +20,12 @@ pub fn same_inks(a: &[OutlineKey], b: &[OutlineKey]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.is_same(b))
 }
 
-/// Whether two versions of a part have the same form, wherever it stands.
+/// Whether two versions of a part have the same form, wherever it is.
 pub fn same_shape(a: &Arc<Part>, b: &Arc<Part>) -> bool {
     Arc::ptr_eq(a, b) || (same_kind(&a.kind, &b.kind) && a.tilt_deg == b.tilt_deg && a.raise == b.raise)
 }
 
-/// Whether two kinds make the same of the same outline, whatever they call it.
+/// Whether two kinds make the same of one outline, whatever its name.
 pub fn same_kind(a: &PartKind, b: &PartKind) -> bool {
     match (a, b) {
         (PartKind::Inflate { inflation: a, .. }, PartKind::Inflate { inflation: b, .. }) => a == b,

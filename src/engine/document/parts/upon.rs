@@ -1,5 +1,5 @@
-//! What parts do that lie on another: lines, touches, sculpting, reliefs. Floor 4. Not here: which of them are made
-//! anew (`derive`).
+//! What parts that lie on another do: lines, touches, sculpting, reliefs. Floor 4. Not here: which of them are made
+//! again (`derive`).
 
 use super::body::cut_to;
 use super::{Part, PartKind, turned};
@@ -19,11 +19,11 @@ pub fn lined(form: &Form, outline: &Outline, ink: &Outline, lines: Lines) -> For
     lines::lined(form, outline, &inked, lines)
 }
 
-/// How far what lies on a form came.
+/// How far the work on a form came.
 #[derive(Default)]
 pub struct Came {
     pub sculpting: Option<Sculpting>,
-    /// In drafts alone.
+    /// In drafts only.
     pub touching: Option<Touching>,
 }
 
@@ -34,7 +34,7 @@ impl Came {
     }
 }
 
-/// A form with what another part does to it. Its marks lie in the frame of the part that they are on.
+/// A form changed by another part. Its marks lie in the frame of the part that they are on.
 ///
 /// * `came`: how far it came on this very form, and then on the new one.
 pub fn changed(form: &Form, outline: &Outline, part: &Part, still: Affine2, came: &mut Came) -> Form {
@@ -73,7 +73,7 @@ pub fn changed(form: &Form, outline: &Outline, part: &Part, still: Affine2, came
             form
         }
         PartKind::Relief { picture, detail, .. } => {
-            // The picture lies on the canvas, where the part stands when it is not moved.
+            // The picture lies on the canvas, at the place of the unmoved part.
             let corner = outline.corner();
             let luminance = Plane::from_fn(outline.size(), |x, y| {
                 let at = (x as i32 + corner.0, y as i32 + corner.1);

@@ -9,25 +9,25 @@ use std::collections::HashMap;
 use std::sync::{Arc, Weak};
 
 /// Scales documents down by one factor, and remembers the parts of the last one. Pictures and gradients are read more
-/// coarsely than those at rest; with the factor 1 that is all that is done to them.
+/// coarsely than at rest; with the factor 1 that is the only change.
 ///
 /// Parts that did not change come back as the same `Arc`, so that [`diff`](super::super::diff()) reports only what did.
 pub struct DocumentReducer {
     factor: f32,
     surface: Option<(Weak<Surface>, Arc<Surface>)>,
     layers: HashMap<LayerId, (Weak<Layer>, Arc<Layer>)>,
-    /// Small parts by their ids, and what was made of them: of documents whose parts a hand drags.
+    /// Small parts by their ids, and what was made of them: for documents whose parts the user drags.
     parts: HashMap<String, (Weak<Part>, Arc<Part>)>,
     shaped: Arc<Parts>,
 }
 
-/// A surface that is yet to be made small; where that must not hold anything up, on another thread.
+/// A surface that is yet to be scaled down; if that must not delay anything, on another thread.
 pub struct SurfaceReduction {
     of: Arc<Surface>,
     to: Size,
 }
 
-/// A surface that was made small.
+/// A surface that was scaled down.
 pub struct ReducedSurface {
     of: Weak<Surface>,
     small: Arc<Surface>,
@@ -38,7 +38,7 @@ impl SurfaceReduction {
     pub fn make(&self) -> Result<ReducedSurface, SurfaceError> {
         Ok(ReducedSurface { of: Arc::downgrade(&self.of), small: Arc::new(self.of.stretched(self.to)?) })
     }
-    /// Both are the same work.
+    /// Both do the same work.
     pub fn is_same(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.of, &other.of) && self.to == other.to
     }
@@ -51,7 +51,7 @@ impl DocumentReducer {
         Self { factor, surface: None, layers, parts, shaped: Arc::new(Parts::for_drafts()) }
     }
     /// The reduced document: as [`Document::scaled`], with the same errors; but pictures of image layers are read from
-    /// levels as much coarser, and what was selected by the surface is resampled and not found anew.
+    /// levels as much coarser, and selections by the surface are resampled and not found again.
     pub fn of(&mut self, document: &Document) -> Result<Document, SurfaceError> {
         let Some(scale) = self.scale(document) else { return Ok(self.drafted(document)) };
         let of = if document.is_shaped() { document.surface.as_ref() } else { document.maps_surface() };
@@ -80,7 +80,7 @@ impl DocumentReducer {
             self.layers = document.walk().into_iter().map(own).collect();
         }
     }
-    /// A small document with the surface of its parts, which are made small themselves: a hand drags them.
+    /// A small document with the surface of its parts, which are themselves scaled down: the user drags them.
     fn shaped(&mut self, document: &Document, small: Document, scale: &CanvasScale) -> Document {
         let mut parts = HashMap::new();
         for part in &document.parts.list {
@@ -95,7 +95,7 @@ impl DocumentReducer {
         self.shaped = shaped.parts.clone();
         shaped
     }
-    /// What of a document's surface [`DocumentReducer::of`] would have to make small; `None` where nothing.
+    /// What [`DocumentReducer::of`] would have to scale down of a document's surface; `None` if nothing.
     pub fn missing_surface(&self, document: &Document) -> Option<SurfaceReduction> {
         let scale = self.scale(document)?;
         if !document.is_shaped() {
@@ -104,12 +104,12 @@ impl DocumentReducer {
         let surface = document.surface.as_ref().filter(|surface| self.known_surface(surface, scale.to).is_none())?;
         Some(SurfaceReduction { of: surface.clone(), to: scale.to })
     }
-    /// Takes in a surface that was made small elsewhere.
+    /// Takes in a surface that was scaled down elsewhere.
     pub fn take_surface(&mut self, made: ReducedSurface) {
         self.surface = Some((made.of, made.small));
     }
     /// Scales one more layer of the document in advance for [`DocumentReducer::of`]; returns whether there was one. An
-    /// idle thread can prepare in steps with this, and see to [`DocumentReducer::missing_surface`].
+    /// idle thread can prepare in steps with this, and make what [`DocumentReducer::missing_surface`] returns.
     pub fn prepare(&mut self, document: &Document) -> bool {
         let Some(scale) = self.scale(document) else { return false };
         // Groups cost nothing once their layers are known.
@@ -136,7 +136,7 @@ impl DocumentReducer {
         self.surface = Some((Arc::downgrade(surface), small.clone()));
         Ok(small)
     }
-    /// Makes a list of layers anew, taking known ones from last time; `next` collects what is known from now on.
+    /// Makes a list of layers again, taking known ones from last time; `next` collects what is known from now on.
     fn stack(
         &self,
         layers: &[Arc<Layer>],
@@ -333,7 +333,7 @@ mod tests {
         let b = small.part_forms()[1].1.clone();
         let next = reduced.of(&document.with_part_ahead(part("a", 100.0, 0.7))).unwrap();
         assert!(apart(&next, 0.7).iter().all(|d| *d < 1e-3) && Arc::ptr_eq(&next.part_forms()[1].1, &b));
-        // At rest it is the surface that it would have been at once.
+        // At rest it is the same surface as if it had been made directly.
         let rested = dragged.reshaped();
         let at_once = document.with_part(part("a", 100.0, 0.4));
         assert!(rested.is_shaped() && rested.parts.list.len() == 2);

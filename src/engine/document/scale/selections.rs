@@ -28,12 +28,12 @@ impl CanvasScale {
         let (_, scaled) = known.entry(key).or_insert_with(|| {
             let made = selection.made.map(|region| SurfaceRegion { at: region.at * self.per_axis, ..region });
             let scaled = Arc::new(Selection { coverage: self.coverage(&selection.coverage), made });
-            // The old one is kept too, so that no other takes its address.
+            // The old one is kept too, so that no other gets its address.
             (selection.clone(), scaled)
         });
         scaled.clone()
     }
-    /// Coverage resampled; what is not covered goes on beyond the canvas.
+    /// Coverage resampled; the uncovered part continues beyond the canvas.
     fn coverage(&self, grid: &CoverageGrid) -> CoverageGrid {
         let Rect { x0, y0, x1, y1 } = grid.covered();
         let low = |v: i32, s: f32| (f64::from(v) * f64::from(s)).floor() as i32;
@@ -44,7 +44,7 @@ impl CanvasScale {
             high(x1, self.per_axis.x),
             high(y1, self.per_axis.y),
         );
-        // Beyond the old canvas the border goes on, as of masks.
+        // The border is continued beyond the old canvas, as for masks.
         let clamp = |v: i32, n: u32| if (-1..=n as i32).contains(&v) { v.max(0).min(n as i32 - 1) } else { v };
         CoverageGrid::from_tiles(bounds.intersect(self.to.rect().grown(self.to.width as i32)), |at, bytes| {
             let rect = at.rect();

@@ -29,7 +29,7 @@ fn with(mut layer: Layer, change: impl FnOnce(&mut Layer)) -> Arc<Layer> {
     change(&mut layer);
     Arc::new(layer)
 }
-/// A document of every kind of layer that a resolution could trouble.
+/// A document with every kind of layer that another resolution could break.
 fn document() -> Document {
     let tiles = TileGrid::from_straight_rgba(waves(SIZE).as_flattened(), 240, 160, -20, 10);
     let pixels = Content::Pixels(PixelLayer { file: "p.png".into(), x: -20, y: 10, tiles });

@@ -23,7 +23,7 @@ fn line() -> (Document, LayerId) {
 fn alpha(document: &Document, x: i32, y: i32) -> u8 {
     flatten(document, &Progress::default()).unwrap().pixel(x, y)[3]
 }
-/// Left half facing left, right half facing right, turned about if `turned`.
+/// Left half facing left, right half facing right; the other way if `turned`.
 fn roof(turned: bool) -> Arc<Surface> {
     let side = |x: usize| if (x < 100) != turned { -0.6 } else { 0.6 };
     let ridge = |x: usize| (x as f32 - 99.5).abs() / 99.5;

@@ -14,7 +14,7 @@ struct FlowPixel {
     line: Vec2,
     /// Unit or zero; image axes.
     hue_of: Vec2,
-    /// `≥ 0`, in any unit: shown against those of the whole picture.
+    /// `≥ 0`, in any unit: shown relative to those of the whole picture.
     magnitude: f32,
 }
 
@@ -44,7 +44,7 @@ pub(super) fn directions(surface: &Surface, options: &ViewOptions) -> Picture {
     let curvature = surface.curvature(options.blur_px);
     let marks = Plane::from_fn(surface.size(), |x, y| {
         let (ku, kv, u) = curvature.principal(x, y);
-        // The direction in which the surface turns most, whichever way: of a groove that is across it, where k_v < 0.
+        // The direction in which the surface turns most, either way: for a groove this is across it, where k_v < 0.
         let u = if ku.abs() >= kv.abs() { u } else { u.perp() };
         let u = vec2(u.x, -u.y);
         FlowPixel { line: u, hue_of: u, magnitude: (ku.abs() - kv.abs()).abs() }
@@ -83,7 +83,7 @@ fn passes(plane: &Plane<u8>, from: (usize, usize), to: (usize, usize)) -> bool {
     }
 }
 
-/// The magnitude that four fifths of the covered pixels stay below; at least a tiny value.
+/// The magnitude below which four fifths of the covered pixels stay; at least a tiny value.
 fn strong(marks: &Plane<FlowPixel>, covered: impl Fn(usize, usize) -> bool) -> f32 {
     // A regular sample of the pixels is enough.
     let step = (marks.size().area() / 100_000).max(1);

@@ -79,7 +79,7 @@ pub(super) fn lit(surface: &Surface) -> Picture {
     })
 }
 
-/// A matt surface in a lamp's light and, from the other side, in a faint one, so that nothing is quite black; encoded.
+/// A matt surface in a lamp's light and, from the other side, in a faint one, so that nothing is fully black; encoded.
 pub(super) fn clay(surface: &Surface) -> Picture {
     let (lamp, fill) = (LIGHT.normalize_or_zero(), vec3(0.7, -0.3, 0.5).normalize_or_zero());
     painted(surface.size(), Some(surface), |x, y| {
@@ -101,7 +101,7 @@ pub(super) fn contours(surface: &Surface) -> Picture {
     painted(surface.size(), Some(surface), |x, y| {
         let (xi, yi) = (x as i32, y as i32);
         let here = depth.at(x, y) * LINES;
-        // The steepest of the differences to both sides that are no jump: a line is as wide on every slope.
+        // The steepest of the differences to both sides that are no jump: lines are equally wide on every slope.
         let slope = |dx: i32, dy: i32| {
             let side = |s: i32| (depth.clamped(xi + s * dx, yi + s * dy) * LINES - here).abs();
             side(1).min(side(-1))

@@ -48,7 +48,7 @@ crate::named! {
         Scaling = "scaling",
         /// The painting, or one layer, as it lies in the plane of the surface unwrapped: what D_s prints from.
         Unwrapped = "unwrapped",
-        /// The surface and a ball beside it under one light: if they agree, the maps are read the right way round.
+        /// The surface and a ball next to it under one light: if they agree, the maps are read the right way round.
         Lit = "lit",
         /// Unpainted, in even light from above left.
         Clay = "clay",
@@ -136,7 +136,7 @@ pub fn available(document: &Document, layer: Option<&Layer>) -> Vec<SurfaceView>
     let can = |view: SurfaceView| match view {
         SurfaceView::Weights => bend(document, layer).is_ok(),
         SurfaceView::FlowOperator => bend(document, layer).is_ok(),
-        // One shows nothing of this document, the other has a size of its own: they stand alone.
+        // One shows nothing of this document, the other has a size of its own: they are shown alone.
         SurfaceView::Scaling | SurfaceView::Unwrapped => false,
         _ => document.surface.is_some(),
     };

@@ -18,8 +18,9 @@ const MARGIN: f32 = 20.0;
 /// The largest σ shown: e, which is σ(1, 1) for γ = 1.
 const MOST: f32 = std::f32::consts::E;
 
-/// Draws the plots: δ from 0 to 1 rightward, σ from 0 to e upward, a line across at σ = 1 and one down at δ = α,
-/// through whose crossing every curve runs. Blue is convex, red concave, grey flat; the stronger the colour the larger
+/// Draws the plots: δ from 0 to 1 rightward, σ from 0 to e upward, a line across at σ = 1 and one down at δ = α, and
+/// every curve passes through their crossing. Blue is convex, red concave, grey flat; the stronger the colour the
+/// larger
 /// |κ|.
 pub(super) fn plots() -> Option<Picture> {
     let size = Size::new((ALPHAS.len() as f32 * (SIDE + MARGIN) + MARGIN) as u32, (SIDE + 2.0 * MARGIN) as u32);

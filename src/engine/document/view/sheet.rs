@@ -33,7 +33,7 @@ pub fn sheet(pictures: &[Picture]) -> Option<Picture> {
     Picture::srgb8(sheet, texels)
 }
 
-/// The pixels of a picture that one pixel of a smaller one stands for; at least one.
+/// The number of pixels of a picture that one pixel of a smaller one covers; at least one.
 fn covered(from: Size, to: Size, x: u32, y: u32) -> Rect {
     let span = |i: u32, from: u32, to: u32| {
         let at = |i: u32| (u64::from(i) * u64::from(from) / u64::from(to)) as i32;

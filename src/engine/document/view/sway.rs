@@ -1,4 +1,4 @@
-//! A picture seen from a little to the right or to the left of where it was painted, by its depth: the relief shows.
+//! A picture seen from slightly to the right or to the left of where it was painted, by its depth: the relief shows.
 //! Floor 4. What is hidden from the front is not known; what lies behind is drawn over it.
 
 use crate::math::Size;
@@ -11,7 +11,7 @@ pub struct SwayScene {
     size: Size,
     /// Premultiplied.
     pixels: Plane<[u8; 4]>,
-    /// Toward the viewer of the middle of the depth, px of `size`.
+    /// Heights above the middle of the depth toward the viewer, px of `size`.
     heights: Plane<f32>,
 }
 
@@ -35,7 +35,7 @@ impl SwayScene {
         let heights = Plane::from_fn(size, |x, y| {
             let (x, y) = place(x, y);
             let (x, y) = (x as usize, y as usize);
-            // Beside the surface lies the background.
+            // The background lies next to the surface.
             let depth = if surface.coverage(x, y) >= 128 { surface.depth(x, y) } else { 1.0 };
             if depth.is_finite() { (0.5 - depth) * range } else { -0.5 * range }
         });
@@ -52,7 +52,7 @@ impl SwayScene {
         out.par_chunks_mut(width).enumerate().for_each(|(y, row)| self.row(y, lean, row));
         out
     }
-    /// One row: every pixel drawn where it is seen, the nearest on top; holes get what lies behind at their side.
+    /// One row: every pixel drawn where it is seen, the nearest on top; holes get what lies behind next to them.
     fn row(&self, y: usize, lean: f32, row: &mut [[u8; 4]]) {
         let n = row.len();
         let mut near = vec![f32::NEG_INFINITY; n];

@@ -18,9 +18,9 @@ use rayon::prelude::*;
 pub struct UnwrapOptions {
     /// Pixels of the view along one of the plane, [`UnwrapOptions::SCALE`].
     pub scale: u32,
-    /// What the surface is unwrapped with, where the layer does not say.
+    /// How the surface is unwrapped, unless the layer has settings of its own.
     pub settings: UnwrapSettings,
-    /// The painting is composed without rounding to 8 bits, and its highlights are treated so.
+    /// If given, the painting is composed without rounding to 8 bits, and its highlights are treated this way.
     pub deep: Option<Highlights>,
 }
 
@@ -34,12 +34,12 @@ impl Default for UnwrapOptions {
     }
 }
 
-/// A painting in the planes of its surface, and what lays the same picture back: an image layer with this placement
-/// and this bend shows it where it was.
+/// A painting in the planes of its surface, and what puts the same picture back: an image layer with this placement and
+/// this bend shows it where it was.
 pub struct UnwrappedPicture {
     pub size: Size,
-    /// Premultiplied, encoded, row by row. What lies beside the pieces is their rims', a few pixels wide, so that
-    /// nothing shines through where a rim is looked up.
+    /// Premultiplied, encoded, row by row. A few pixels around the pieces continue their rims, so that nothing shines
+    /// through where a rim is looked up.
     pub pixels: Vec<[f32; 4]>,
     pub placement: Placement,
     pub bend: Bend,
@@ -59,7 +59,7 @@ impl UnwrappedPicture {
 /// How far the rims of pieces are continued, px of the plane.
 const BLEED_PX: u32 = 6;
 
-/// The painting in the planes of its surface, the objects laid out beside each other.
+/// The painting in the planes of its surface, the objects laid out next to each other.
 ///
 /// `layer`: shows that layer alone; if it is bent by D_s, in the plane as its own operator and anchors lay it.
 pub fn unwrapped(
@@ -94,7 +94,7 @@ fn laid_by(document: &Document, bend: &Bend) -> Result<PlaneView, ViewUnavailabl
     PlaneView::of(surface, &deformed).ok_or(ViewUnavailable::NothingUnwrapped)
 }
 
-/// The placement that shows a picture over a rectangle of the plane, as wide as it.
+/// The placement that shows a picture over a rectangle of the plane, equally wide.
 pub fn placed_over(rect: Rect, picture: Size, canvas: Size) -> Placement {
     let (w, h) = (picture.width.max(1) as f32, picture.height.max(1) as f32);
     let cover = (canvas.width as f32 / w).max(canvas.height as f32 / h);
@@ -106,7 +106,7 @@ pub fn placed_over(rect: Rect, picture: Size, canvas: Size) -> Placement {
     }
 }
 
-/// What is pulled: composed with 8 bits, or without rounding.
+/// What is sampled: composed with 8 bits, or without rounding.
 enum Painting {
     Tiles(TileGrid, Size),
     Deep(Vec<[f32; 4]>, Size),
@@ -120,7 +120,7 @@ impl Painting {
             (None, None) => Painting::Tiles(flatten(document, progress)?, document.size),
         })
     }
-    /// Premultiplied; the canvas's rim goes on beyond it.
+    /// Premultiplied; the canvas's rim is continued beyond it.
     fn pixel(&self, x: i32, y: i32) -> [f32; 4] {
         let (Painting::Tiles(_, size) | Painting::Deep(_, size)) = self;
         let (x, y) = (x.clamp(0, size.width as i32 - 1), y.clamp(0, size.height as i32 - 1));
@@ -141,7 +141,7 @@ impl Painting {
     }
 }
 
-/// The painting at each pixel of a view of the plane, so many to one of the plane's.
+/// The painting at each pixel of a view of the plane, with so many pixels per pixel of the plane.
 fn pulled(painting: &Painting, view: &PlaneView, scale: u32) -> (Size, Vec<[f32; 4]>) {
     let size = Size::new(view.rect.width() as u32 * scale, view.rect.height() as u32 * scale);
     let corner = vec2(view.rect.x0 as f32, view.rect.y0 as f32);

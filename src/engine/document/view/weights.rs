@@ -22,7 +22,7 @@ pub(super) fn weights(surface: Option<&Surface>, size: Size, bend: &Bend) -> Pic
     with_dots(&shared, bend, &colors).unwrap_or(shared)
 }
 
-/// Blue, green and red as in the paper, then hues that keep apart.
+/// Blue, green and red as in the paper, then distinct hues.
 pub fn color_of(anchor: usize) -> Vec3 {
     const FIRST: [Vec3; 3] = [vec3(0.20, 0.40, 1.00), vec3(0.15, 0.80, 0.25), vec3(1.00, 0.25, 0.20)];
     if let Some(&color) = FIRST.get(anchor) {

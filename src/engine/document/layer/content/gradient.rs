@@ -1,5 +1,4 @@
-//! A gradient, kept live.
-//! Floor 4. Its rendering is `paint::gradient`'s.
+//! A gradient, kept live. Floor 4. Not here: its rendering (`paint::gradient`).
 
 use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, TileContent};
 use crate::document::layer::marks::Marks;

@@ -1,5 +1,4 @@
-//! A group. What is done to it is done to the layers in it, by whoever walks the stack.
-//! Floor 4.
+//! A group. Whoever walks the stack does to the layers in it what is done to the group. Floor 4.
 
 use super::{CanvasScale, Changed, Content, LayerKind, Role, Touched};
 use crate::document::Layer;
@@ -7,7 +6,7 @@ use crate::math::Vec2;
 use crate::paint::Scene;
 use std::sync::Arc;
 
-/// Layers flattened together before they meet what lies beneath.
+/// Layers flattened together before they are blended with what lies beneath.
 #[derive(Clone, Default)]
 pub struct Group {
     /// Bottom first.
@@ -33,7 +32,7 @@ impl LayerKind for Group {
         let moved = |layer: &Arc<Layer>| Arc::new(Layer { content: layer.content.moved(by), ..Layer::clone(layer) });
         Some(Content::Group(Group { layers: self.layers.iter().map(moved).collect(), ..*self }))
     }
-    /// Its layers tell, each for itself.
+    /// Each of its layers says this itself.
     fn touched(&self, _scene: Option<&Scene>) -> Touched {
         Touched::Nowhere
     }

@@ -1,5 +1,4 @@
-//! A placed image, kept live.
-//! Floor 4. Its rendering is `paint::image`'s.
+//! A placed image, kept live. Floor 4. Not here: its rendering (`paint::image`).
 
 use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, NameFile, TileContent};
 use crate::Result;
@@ -20,7 +19,7 @@ impl Marks for PlacedImage {
         Some(self.source.deep_texture())
     }
     fn texture_bytes(&self) -> u64 {
-        // Smaller copies add a third; while it is made the straight texels stand beside it.
+        // Smaller copies add a third; while it is made, the straight texels are in memory too.
         self.source.picture.size.area() as u64 * 3 * size_of::<[f32; 4]>() as u64
     }
 }

@@ -49,7 +49,7 @@ impl LayerKind for NormalLayer {
         }
         Ok(Some(Content::Normals(normals)))
     }
-    /// What sees it has other surroundings.
+    /// Layers that see it see another scene.
     fn touched(&self, _scene: Option<&Scene>) -> Touched {
         Touched::Nowhere
     }

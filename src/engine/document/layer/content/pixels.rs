@@ -23,7 +23,7 @@ pub struct PixelLayer {
 }
 
 impl PixelLayer {
-    /// All of it where a map takes it, beyond the canvas too, as far as the canvas is long.
+    /// All of it, moved by a map, also beyond the canvas by up to the canvas's length.
     pub(in crate::document) fn taken_along(&self, map: &LayerMap) -> Self {
         if map.is_none() {
             return self.clone();

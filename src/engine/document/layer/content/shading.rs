@@ -1,5 +1,4 @@
-//! A material under light, kept live.
-//! Floor 4. Its rendering is `shading::material`'s.
+//! A material under light, kept live. Floor 4. Not here: its rendering (`shading::material`).
 
 use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, NameFile, TileContent};
 use crate::Result;

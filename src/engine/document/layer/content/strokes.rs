@@ -1,5 +1,5 @@
-//! Strokes, kept live.
-//! Floor 4. Their rendering is `paint::stroke`'s; edits of single strokes are `document::strokes`'.
+//! Strokes, kept live. Floor 4. Not here: their rendering (`paint::stroke`), edits of single strokes
+//! (`document::strokes`).
 
 use super::{Behind, BehindScene, CanvasScale, Changed, Content, LayerKind, NameFile, TileContent, Touched};
 use crate::Result;
@@ -29,7 +29,7 @@ impl Marks for StrokeList {
         let is_wanted = || !progress.is_cancelled();
         let seen: Vec<TileAt> = tiles.iter().copied().filter(|&at| !scene.area(at).is_empty()).collect();
         if !seen.is_empty() && stroke::are_heavy(&self.strokes, &scene.front(), seen.len(), is_wanted) == Some(true) {
-            // Cancelled, nothing is asked for any more.
+            // Once cancelled, nothing is needed any more.
             let _ = stroke::render_many(&self.strokes, scene, &seen, is_wanted, done);
         }
     }
@@ -45,8 +45,8 @@ impl LayerKind for Live<StrokeList> {
     fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
         TileContent::of_tile(self.tile(scene, at, || stroke::render_tile(&self.params().strokes, scene, at)))
     }
-    /// Of strokes whose dabs are too many to be cached the tiles as well: tile by tile, each stroke would be laid again
-    /// and again.
+    /// For strokes with too many dabs to cache, the tiles as well: tile by tile, each stroke would be laid again and
+    /// again.
     fn painted_behind(&self, scene: &BehindScene) -> TileContent {
         self.behind(scene, true, |scene, at| stroke::render_tile(&self.params().strokes, scene, at))
     }
@@ -68,7 +68,7 @@ impl LayerKind for Live<StrokeList> {
         let (missing, is_wanted) = (self.missing(scene), || !progress.is_cancelled());
         let strokes = &self.params().strokes;
         if !missing.is_empty() && stroke::are_heavy(strokes, scene, missing.len(), is_wanted) == Some(true) {
-            // Cancelled, they are rendered when they are asked for.
+            // Once cancelled, they are rendered when needed.
             let _ = stroke::render_tiles(strokes, scene, &missing, is_wanted, |at, tile| {
                 self.tile(scene, at, || tile);
             });
@@ -81,7 +81,7 @@ impl LayerKind for Live<StrokeList> {
         Some(self.with_each(|stroke| Arc::new(stroke.moved(by))))
     }
     fn on_canvas(&self, map: &LayerMap, last: Option<(&Content, &Content)>) -> Option<Content> {
-        // A stroke that was seen is seen again as the very same one, with its dabs.
+        // A stroke that was seen before is the very same one again, with its dabs.
         let seen: HashMap<*const Stroke, &Arc<Stroke>> = match last {
             Some((Content::Strokes(own), Content::Strokes(seen))) => {
                 own.params().strokes.iter().map(Arc::as_ptr).zip(&seen.params().strokes).collect()
@@ -133,7 +133,7 @@ impl LayerKind for Live<StrokeList> {
             None => Touched::Canvas,
         }
     }
-    /// Where both are rendered, their tiles tell.
+    /// Where both are rendered, their tiles show it.
     fn changed_from(&self, old: &Content, scene: &dyn Fn() -> Scene) -> Changed {
         let Content::Strokes(old) = old else { return Changed::Wholly };
         if self.ptr_eq(old) {
@@ -173,7 +173,7 @@ impl Live<StrokeList> {
 /// Selections that were sampled under a map, by their addresses: those of the strokes, which live on.
 pub(in crate::document) type SeenSelections = Vec<(LayerMap, HashMap<*const Selection, Arc<Selection>>)>;
 
-/// A stroke where a map takes it; one that it leaves is the very same.
+/// A stroke moved by a map; one that does not move is the very same.
 pub(in crate::document) fn taken_along(
     stroke: &Arc<Stroke>,
     map: &LayerMap,
@@ -200,7 +200,7 @@ fn selected(
 ) -> StrokeSelection {
     let warped = || {
         let (canvas, coverage) = (map.canvas(), own.coverage());
-        // Beyond the canvas of its own frame there may be some, too; a little more, so that it ends.
+        // There may be some beyond the canvas of its own frame, too; a little more, so that it ends.
         let rect = coverage.covered().grown(2).intersect(map.plane.source_rect(canvas.rect()));
         if rect.is_empty() {
             return Arc::default();

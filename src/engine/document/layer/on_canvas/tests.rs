@@ -66,7 +66,7 @@ fn a_group_takes_along_paint_strokes_and_images_as_each_alone_would_go() {
             transform: Some(LayerTransform { shape: shape.clone(), filter: Resampling::Sharp }),
             ..Layer::new("g", Content::Group(group))
         };
-        // The group's filter is that of layers without their own transform.
+        // The group's filter is used for layers without a transform of their own.
         let off = farthest(&picture(&document(vec![group])), &alone);
         assert_eq!(off, 0);
     }
@@ -93,7 +93,7 @@ fn an_image_turned_by_a_quarter_is_its_pixels_turned() {
 }
 #[test]
 fn a_gradient_and_a_bent_image_follow_their_frame() {
-    // On a surface that bends, the anchor is held where it was taken.
+    // On a curved surface the anchor stays where it was put.
     let size = SIZE;
     let normals = Plane::from_fn(size, |x, _| vec3(0.4 * (x as f32 * 0.05).sin(), 0.0, 1.0).normalize());
     let maps = Maps { normals, depth: Plane::filled(size, 0.5), coverage: Plane::filled(size, 255) };

@@ -15,7 +15,7 @@ pub(super) struct AxisTaps {
 }
 
 impl AxisTaps {
-    /// `pixels`: the new ones; `scale`: new pixels an old one.
+    /// `pixels`: the new ones; `scale`: new pixels per old one.
     pub fn new(pixels: Range<i32>, scale: f32) -> Self {
         let all: Vec<_> = pixels.map(|i| covered(i, scale)).collect();
         let first = all.iter().flatten().map(|tap| tap.0).min().unwrap_or(0);

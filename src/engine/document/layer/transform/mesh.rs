@@ -1,10 +1,9 @@
 //! Meshes: a grid of points over a frame, and where each goes. Floor 4.
 //!
-//! Between the points runs Catmull and Rom's cubic in both directions. It passes through the points, so that what is
+//! Catmull and Rom's cubic runs between the points in both directions. It passes through the points, so that what is
 //! dragged lies under the pen, and each point moves only what is within two points of it; a B-spline would be calmer,
-//! but would not go where it is told. Beyond the frame the border goes on straight. What the mesh takes where is turned
-//! about once for a canvas, on a lattice; where it folds over itself, what is later in the order of the points lies
-//! on top.
+//! but would not pass through them. Beyond the frame the border is continued straight. The mesh is inverted once for a
+//! canvas, on a lattice; where it folds over itself, what is later in the order of the points lies on top.
 
 mod backward;
 
@@ -26,7 +25,7 @@ pub struct Mesh {
     backward: Arc<OnceLock<(Size, Arc<Lattice>)>>,
 }
 
-/// The rectangle that the points stand evenly over before they go anywhere, px.
+/// The rectangle over which the points are evenly spread before they move, px.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshFrame {
     pub corner: Vec2,
@@ -49,15 +48,15 @@ impl MeshFrame {
 }
 
 impl Mesh {
-    /// Points along a side: two are a frame's corners, and of more than 33 a hand moves none alone.
+    /// Points along a side: two are a frame's corners; among more than 33 the user could not move single points.
     pub const SIDE: RangeInclusive<usize> = 2..=33;
 
-    /// `None` of a grid with too few or too many points, or of numbers that no file holds.
+    /// `None` for a grid with too few or too many points, or numbers that files cannot hold.
     pub fn new(columns: usize, rows: usize, frame: MeshFrame, points: Vec<Vec2>) -> Option<Self> {
         let mesh = Self { columns, rows, frame, points, backward: Arc::default() };
         mesh.fits().ok().map(|()| mesh)
     }
-    /// That leaves everything in place.
+    /// A mesh that leaves everything in place.
     pub fn even(columns: usize, rows: usize, frame: MeshFrame) -> Option<Self> {
         let bare = Self { columns, rows, frame, points: Vec::new(), backward: Arc::default() };
         (Self::SIDE.contains(&columns) && Self::SIDE.contains(&rows)).then_some(())?;
@@ -77,15 +76,15 @@ impl Mesh {
     pub fn points(&self) -> &[Vec2] {
         &self.points
     }
-    /// Where a point stands in the frame, by its number.
+    /// The place of a point in the frame, by its number.
     fn place(&self, k: usize) -> Vec2 {
         self.frame.corner + vec2((k % self.columns) as f32, (k / self.columns) as f32) * self.cell()
     }
-    /// From one point to the next in the frame.
+    /// The step from one point to the next in the frame.
     fn cell(&self) -> Vec2 {
         self.frame.size / vec2((self.columns - 1) as f32, (self.rows - 1) as f32)
     }
-    /// Refuses what no file gives back.
+    /// Refuses what files cannot hold.
     pub fn fits(&self) -> Result<(), String> {
         for (what, count) in [("columns", self.columns), ("rows", self.rows)] {
             if !Self::SIDE.contains(&count) {
@@ -117,8 +116,8 @@ impl Mesh {
         let points = self.points.iter().map(|p| *p * per_axis).collect();
         Self { frame, points, backward: Arc::default(), ..self.clone() }
     }
-    /// The same of a plane that was taken elsewhere, where its frame stays a rectangle: by moves, mirrors, quarter
-    /// turns. `None` of other maps.
+    /// The same on a plane moved by a map that keeps its frame a rectangle: moves, mirrors, quarter turns. `None` for
+    /// other maps.
     pub(in crate::document) fn carried(&self, map: &PlaneMap) -> Option<Self> {
         let [a, b, c, d, _, _] = map.coefficients()?;
         let (is_upright, is_turned) = (b == 0.0 && c == 0.0, a == 0.0 && d == 0.0);
@@ -148,7 +147,7 @@ impl Mesh {
         let is_there = |(k, p): (usize, &Vec2)| map.to_canvas(self.place(k)).is_some_and(|q| q.distance(*p) < 1e-3);
         self.points.iter().enumerate().all(is_there).then_some(map)
     }
-    /// Where a point of the frame goes, and how the place moves with it.
+    /// Where a point of the frame goes, and the derivative of that place.
     pub fn at(&self, p: Vec2) -> (Vec2, Mat2) {
         let s = (p - self.frame.corner) / self.cell();
         let (x, y) = (SplineWeights::at(s.x, self.columns), SplineWeights::at(s.y, self.rows));
@@ -163,19 +162,19 @@ impl Mesh {
         }
         (q, Mat2::from_cols(right / self.cell().x, down / self.cell().y))
     }
-    /// A point, or what goes on straight where the grid ends.
+    /// A point, or its straight continuation where the grid ends.
     fn extended(&self, column: i32, row: i32) -> Vec2 {
         let along = |row: usize| beyond(column, self.columns, |i| self.points[row * self.columns + i]);
         beyond(row, self.rows, along)
     }
-    /// Backward: how far from a point of the canvas what shows there lies in the frame, near the canvas.
+    /// Backward: the displacement from a point near the canvas to the point of the frame that shows there.
     pub(in crate::document) fn backward(&self, canvas: Size) -> Arc<Lattice> {
         let (size, known) = self.backward.get_or_init(|| (canvas, Arc::new(Backward::of(self, canvas).lattice())));
         if *size == canvas { known.clone() } else { Arc::new(Backward::of(self, canvas).lattice()) }
     }
 }
 
-/// The value at a place of a row of so many, which goes on straight at both ends.
+/// The value at a place of a row, which is continued straight at both ends.
 fn beyond(i: i32, count: usize, value: impl Fn(usize) -> Vec2) -> Vec2 {
     let last = count as i32 - 1;
     match i {
@@ -185,7 +184,7 @@ fn beyond(i: i32, count: usize, value: impl Fn(usize) -> Vec2) -> Vec2 {
     }
 }
 
-/// What four points around a place along one axis weigh, and how that changes with it.
+/// The weights of the four points around a place along one axis, and their derivatives.
 struct SplineWeights {
     around: [i32; 4],
     value: [f32; 4],
@@ -193,7 +192,7 @@ struct SplineWeights {
 }
 
 impl SplineWeights {
-    /// * `s`: in cells; beyond the grid the border goes on straight.
+    /// * `s`: in cells; beyond the grid the border is continued straight.
     fn at(s: f32, count: usize) -> Self {
         let last = (count - 1) as f32;
         let inside = s.max(0.0).min(last);

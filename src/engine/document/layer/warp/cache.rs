@@ -29,18 +29,18 @@ impl Cells {
     }
 }
 
-/// The tiles of a warped layer, found when they are asked for.
+/// The tiles of a warped layer, computed when needed.
 pub struct WarpTiles {
     pub warp: LayerWarp,
     canvas: Rect,
-    /// As it is composed where it stands.
+    /// As it is composed, undisplaced.
     source: Arc<Cells>,
     /// As it shows.
     shown: Cells,
 }
 
 impl WarpTiles {
-    /// What the layer shows on a tile. `None`: there it shows itself.
+    /// What the layer shows on a tile. `None`: it shows itself there.
     pub fn shown(&self, at: TileAt, compose: &dyn Fn(TileAt) -> Option<Arc<Tile>>) -> Option<Option<Arc<Tile>>> {
         let cell = self.shown.cell(at)?;
         if let Some(known) = cell.get() {
@@ -66,7 +66,7 @@ impl WarpTiles {
     }
 }
 
-/// What was last composed of a layer; shared by its versions.
+/// The last composed tiles of a layer, shared by its versions.
 #[derive(Clone, Default)]
 pub struct WarpCache {
     last: Arc<Mutex<Option<Entry>>>,
@@ -81,8 +81,8 @@ struct Entry {
 }
 
 impl WarpCache {
-    /// The tiles of a layer that shows `content` on a scene. What was composed of the same is kept; what it shows is,
-    /// too, where it is displaced as it was.
+    /// The tiles of a layer that shows `content` on a scene. What was composed of the same content is kept; what it
+    /// shows is kept too, where its displacement did not change.
     pub fn tiles(&self, scene: &Scene, content: &Content, map: &LayerMap, warp: LayerWarp) -> Arc<WarpTiles> {
         let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
         let canvas = scene.size.rect();
@@ -115,7 +115,7 @@ impl WarpCache {
     }
 }
 
-/// The very same content: of a group, the very same layers.
+/// The very same content: for a group, the very same layers.
 fn is_same(a: &Content, b: &Content) -> bool {
     match (a, b) {
         (Content::Group(a), Content::Group(b)) => {

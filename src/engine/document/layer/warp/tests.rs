@@ -94,7 +94,7 @@ fn where_nothing_is_displaced_no_byte_changes() {
 
 #[test]
 fn a_layer_shows_at_q_what_it_showed_at_q_and_u() {
-    // By whole pixels over a wide middle: there every byte is another one's.
+    // Moved by whole pixels over a wide middle: there each byte equals that of another pixel.
     let plain = bytes(&document(paint()));
     let found = bytes(&document(liquified(paint(), |_| vec2(9.0, -4.0))));
     for (x, y) in [(100, 90), (128, 96), (150, 110)] {

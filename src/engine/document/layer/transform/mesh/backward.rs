@@ -1,12 +1,11 @@
-//! A mesh turned about: which point of its frame shows at each place of the canvas.
-//! Floor 4.
+//! A mesh inverted: which point of its frame shows at each place of the canvas. Floor 4.
 
 use super::Mesh;
 use crate::math::{Rect, Size, Vec2, vec2};
 use crate::raster::{Lattice, lattice};
 use rayon::prelude::*;
 
-/// A mesh being turned about: the nodes near the canvas, and which point of the frame shows at each.
+/// A mesh being inverted: the nodes near the canvas, and which point of the frame shows at each.
 pub(super) struct Backward<'m> {
     mesh: &'m Mesh,
     /// Px, whole cells.
@@ -16,11 +15,11 @@ pub(super) struct Backward<'m> {
 }
 
 impl<'m> Backward<'m> {
-    /// Pieces that a mesh is cut into at most.
+    /// The most pieces that a mesh is cut into.
     const MOST_PIECES: f32 = 250_000.0;
-    /// Sides of pieces that are sought, px.
+    /// The intended side of pieces, px.
     const PIECE_PX: f32 = 12.0;
-    /// So far beyond the frame the border goes on, px of the frame.
+    /// How far the border is continued beyond the frame, px of the frame.
     const BORDER_PX: f32 = 48.0;
 
     pub(super) fn of(mesh: &'m Mesh, canvas: Size) -> Self {
@@ -88,14 +87,14 @@ impl<'m> Backward<'m> {
             }
         }
     }
-    /// A place in the frame, sought more closely by Newton's method.
+    /// A place in the frame, refined by Newton's method.
     fn closer(&self, node: Vec2, p: Vec2) -> Vec2 {
         let (mut best, mut off) = (p, f32::INFINITY);
         let mut now = p;
         for _ in 0..4 {
             let (q, jacobian) = self.mesh.at(now);
             let miss = node - q;
-            // What diverges, and what is no number, is no better.
+            // A result that diverges or is NaN is no better.
             if miss.is_nan() || miss.length() >= off {
                 break;
             }
@@ -105,7 +104,7 @@ impl<'m> Backward<'m> {
             }
             now += jacobian.inverse() * miss;
         }
-        // On another sheet of a fold it would be far from where the pieces lie.
+        // On another sheet of a fold the result would be far from the pieces.
         if best.distance(p) < self.mesh.cell().length() { best } else { p }
     }
     pub(super) fn lattice(&self) -> Lattice {
@@ -122,7 +121,7 @@ impl<'m> Backward<'m> {
         });
         out
     }
-    /// Nodes that the mesh does not reach look as far aside as those next to them.
+    /// Nodes that the mesh does not reach have the displacement of those next to them.
     fn continue_from_neighbours(&self, by: &mut [Option<Vec2>]) {
         let rows = by.len() / self.across;
         let mut edge: Vec<usize> = (0..by.len()).filter(|&k| by[k].is_some()).collect();
