@@ -1,5 +1,5 @@
 //! Powers, logarithms, tanh and acos for inner loops: polynomials of bounded error that the compiler vectorises.
-//! Floor 0. The references are std's; the bounds below are tests. The approximations of sRGB are in `srgb`, beside the
+//! Floor 0. The references are std's; the bounds below are tests. The approximations of sRGB are in `srgb`, next to the
 //! curve.
 
 /// The larger of two numbers; `b` where `a` is NaN. One instruction, where `f32::max` needs three.
@@ -14,8 +14,9 @@ pub fn min(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-/// Raises a value in place to another, unless that is NaN. `f32::max` and no comparison: of one the compiler makes a
-/// store under a mask, which takes some processors (Zen) forty steps, and what reads the value next waits for it.
+/// Raises a value in place to another, unless that is NaN. `f32::max` and no comparison: the compiler turns a
+/// comparison into a masked store, which takes some processors (Zen) forty steps, and the next read of the value waits
+/// for it.
 #[inline(always)]
 pub fn raise(value: &mut f32, to: f32) {
     *value = value.max(to);
@@ -35,7 +36,7 @@ pub fn exp2(x: f32) -> f32 {
     f32::from_bits(two_to_f.to_bits().wrapping_add(whole))
 }
 
-/// e^x; as [`exp2`].
+/// e^x; like [`exp2`].
 #[inline(always)]
 pub fn exp(x: f32) -> f32 {
     exp2(x * std::f32::consts::LOG2_E)

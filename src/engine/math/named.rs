@@ -1,7 +1,7 @@
 //! Enums whose choices have names in documents: choices and names in one place. Floor 0.
 
-/// Declares an enum of plain choices together with their names: `ALL`, `name` and `from_name`. Where the window calls
-/// them otherwise, `label` (and `LABELS`), and where it explains them, `hint`:
+/// Declares an enum of plain choices together with their names: `ALL`, `name` and `from_name`. If the window has other
+/// names for them, `label` (and `LABELS`), and if it explains them, `hint`:
 ///
 /// ```
 /// rilievo_engine::named! {
@@ -35,9 +35,9 @@ macro_rules! named {
     }) => {
         $crate::named! { $(#[$meta])* $vis enum $type { $($(#[$row])* $choice = $name),+ } }
         impl $type {
-            /// Every choice with what the window calls it.
+            /// Every choice with its name in the window.
             pub const LABELS: [($type, &'static str); [$($name),+].len()] = [$(($type::$choice, $label)),+];
-            /// What the window calls it.
+            /// Its name in the window.
             pub const fn label(self) -> &'static str {
                 match self { $($type::$choice => $label),+ }
             }

@@ -21,7 +21,7 @@ pub fn gradient(p: Vec2, period: u32, seed: u32) -> f32 {
     lerp(rows[0], rows[1], fade.y) * std::f32::consts::SQRT_2
 }
 
-/// Octaves of [`gradient`] added up, each twice as fine as the one before and `rough` times as strong.
+/// Octaves of [`gradient`] added up, each twice as fine as the previous one and `rough` times as strong.
 ///
 /// * `p`: in `[0, 1)²`, the square that repeats.
 /// * `cells`: of the coarsest octave along a side.

@@ -4,8 +4,8 @@
 use super::{Affine2, Mat2, Rect, Size, Vec2, vec2};
 use glam::{DMat2, DMat3, DVec2, DVec3, dvec2};
 
-/// An invertible projective map, with its inverse. Held in f64: maps follow one another, and ten turns of 36° must be
-/// none.
+/// An invertible projective map, with its inverse. In f64: maps are composed, and ten turns of 36° must give the
+/// identity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaneMap {
     forward: DMat3,
@@ -22,7 +22,8 @@ pub struct PixelMove {
     pub origin: (i32, i32),
 }
 
-/// A map whose positions are this far from those of a simpler one is that one, px: far below what a byte shows.
+/// A map whose positions are within this distance of a simpler map's is replaced by it, px: far below what a byte
+/// shows.
 const SAME_PX: f64 = 1.0 / 512.0;
 
 /// Farther than any pixel lies.
@@ -38,7 +39,7 @@ impl Default for PlaneMap {
 impl PlaneMap {
     pub const IDENTITY: PlaneMap = PlaneMap { forward: DMat3::IDENTITY, backward: DMat3::IDENTITY };
 
-    /// x′ = a x + c y + e, y′ = b x + d y + f. `None` where numbers are not finite or the map cannot be inverted.
+    /// x′ = a x + c y + e, y′ = b x + d y + f. `None` if numbers are not finite or the map cannot be inverted.
     pub fn affine([a, b, c, d, e, f]: [f64; 6]) -> Option<Self> {
         Self::of(DMat3::from_cols_array(&[a, b, 0.0, c, d, 0.0, e, f, 1.0]))
     }
@@ -79,7 +80,7 @@ impl PlaneMap {
         Self::of(unit * DMat3::from_scale((high - low).recip()) * DMat3::from_translation(-low))
     }
     fn of(forward: DMat3) -> Option<Self> {
-        // Scaled so that the least and the greatest determinants count alike on every canvas.
+        // Scaled so that the least and the greatest determinants are judged alike on every canvas.
         let determinant = forward.determinant();
         if !forward.is_finite() || determinant.abs() < 1e-12 {
             return None;
@@ -99,7 +100,7 @@ impl PlaneMap {
         let [a, b, g, c, d, h, e, f, i] = self.forward.to_cols_array();
         (g == 0.0 && h == 0.0).then(|| [a, b, c, d, e, f].map(|v| v / i))
     }
-    /// The same to fifteen digits, which every reader of files gives back as the same numbers.
+    /// The same to fifteen digits, which every reader of files parses to the same numbers.
     pub fn told_coefficients(&self) -> Option<[f64; 6]> {
         Some(self.coefficients()?.map(told))
     }
@@ -107,19 +108,19 @@ impl PlaneMap {
         let c = self.coefficients()?.map(|v| v as f32);
         Some(Affine2::from_cols_array(&c))
     }
-    /// Where a point of the frame lies on the canvas. `None` where it lies beyond the horizon.
+    /// Where a point of the frame lies on the canvas. `None` if it lies beyond the horizon.
     pub fn to_canvas(&self, p: Vec2) -> Option<Vec2> {
         project(&self.forward, p).map(|(q, _)| q)
     }
-    /// Which point of the frame lies at a canvas point, and ∂p/∂q there. `None` beyond the horizon.
+    /// The point of the frame at a canvas point, and ∂p/∂q there. `None` beyond the horizon.
     pub fn from_canvas(&self, q: Vec2) -> Option<(Vec2, Mat2)> {
         project(&self.backward, q)
     }
     /// The points that a row of canvas points shows, 1 px apart from `first` on, to the bit as
-    /// [`PlaneMap::from_canvas`] finds them; what lies too far is no number. Nothing is done and `false` returned of a
-    /// perspective, whose points are not evenly apart.
+    /// [`PlaneMap::from_canvas`] finds them; points too far away are NaN. For a perspective, whose points are not
+    /// evenly spaced, nothing is done and `false` returned.
     ///
-    /// * `xs`, `ys`: as many as are asked for.
+    /// * `xs`, `ys`: one for each point wanted.
     pub fn affine_row_from_canvas(&self, first: Vec2, xs: &mut [f32], ys: &mut [f32]) -> bool {
         let [along, down, origin] = [self.backward.x_axis, self.backward.y_axis, self.backward.z_axis];
         if along.z != 0.0 || down.z != 0.0 || origin.z <= 1e-9 {
@@ -134,8 +135,8 @@ impl PlaneMap {
     pub fn stretch_at(&self, p: Vec2) -> Option<Mat2> {
         project(&self.forward, p).map(|(_, jacobian)| jacobian)
     }
-    /// A rectangle of the frame that holds all that a rectangle of the canvas shows, with room for a filter; every
-    /// place where the rectangle reaches beyond the horizon.
+    /// A rectangle of the frame that holds everything a rectangle of the canvas shows, with room for a filter; the
+    /// whole plane if the rectangle reaches beyond the horizon.
     pub fn source_rect(&self, canvas: Rect) -> Rect {
         let corner = |x: i32, y: i32| self.from_canvas(vec2(x as f32, y as f32));
         let Rect { x0, y0, x1, y1 } = canvas;
@@ -150,11 +151,11 @@ impl PlaneMap {
         let reach = 2.0 + reach;
         Rect::new(side(low.x - reach), side(low.y - reach), side(high.x + reach) + 1, side(high.y + reach) + 1)
     }
-    /// Whether it leaves everything on a canvas in place, to far less than a byte shows.
+    /// Whether it leaves everything on a canvas in place, within far less than a byte shows.
     pub fn is_identity_on(&self, canvas: Size) -> bool {
         self.pixel_move_on(canvas) == Some(PixelMove::NONE)
     }
-    /// Whether it takes every point of a frame where another map does, to far less than a byte shows.
+    /// Whether it takes every point of a frame to the same place as another map, within far less than a byte shows.
     pub fn is_same_on(&self, other: &PlaneMap, frame: Size) -> bool {
         let (w, h) = (frame.width as f32, frame.height as f32);
         [vec2(0.0, 0.0), vec2(w, 0.0), vec2(w, h), vec2(0.0, h)].into_iter().all(|corner| {
@@ -183,9 +184,9 @@ impl PlaneMap {
 impl PixelMove {
     pub const NONE: PixelMove = PixelMove { right: (1, 0), down: (0, 1), origin: (0, 0) };
 
-    /// Which pixel of the frame a pixel of the canvas shows.
+    /// The pixel of the frame that a pixel of the canvas shows.
     pub fn source(&self, x: i32, y: i32) -> (i32, i32) {
-        // Centres lie half a pixel in. The matrix is orthogonal, so its inverse is its transpose.
+        // Centres are half a pixel in. The matrix is orthogonal, so its inverse is its transpose.
         let (dx, dy) = (2 * (x - self.origin.0) + 1, 2 * (y - self.origin.1) + 1);
         let along = |axis: (i32, i32)| (axis.0 * dx + axis.1 * dy - 1).div_euclid(2);
         (along(self.right), along(self.down))
@@ -206,8 +207,8 @@ impl PixelMove {
     }
 }
 
-/// The turn, or the mirror and turn, that is nearest to a map's matrix: its orthogonal factor. The identity of one that
-/// only scales.
+/// The turn, or the mirror and turn, that is nearest to a map's matrix: its orthogonal factor. The identity for one
+/// that only scales.
 pub fn orthogonal(matrix: Mat2) -> Mat2 {
     let mirror = Mat2::from_diagonal(vec2(if matrix.determinant() < 0.0 { -1.0 } else { 1.0 }, 1.0));
     let m = matrix * mirror;
@@ -220,11 +221,11 @@ pub fn orthogonal(matrix: Mat2) -> Mat2 {
     Mat2::from_cols(vec2(cosine, sine), vec2(-sine, cosine)) * mirror
 }
 
-/// A number to fifteen digits, and no more than fifteen behind the point: with more, a quick reader of decimals may be
+/// A number to fifteen digits, and no more than fifteen after the point: with more, a fast parser of decimals may be
 /// off by the last bit.
 pub fn told(v: f64) -> f64 {
     let text = if v.abs() < 1.0 { format!("{v:.15}") } else { format!("{v:.14e}") };
-    // −0 is none.
+    // −0 becomes 0.
     text.parse().unwrap_or(v) + 0.0
 }
 

@@ -15,7 +15,7 @@ pub struct Size {
 }
 
 impl Size {
-    /// Of so many pixels across and down.
+    /// This many pixels across and down.
     pub const fn new(width: u32, height: u32) -> Self {
         Self { width, height }
     }
@@ -48,7 +48,7 @@ impl std::fmt::Display for Size {
     }
 }
 
-/// The pixels `x0 ≤ x < x1`, `y0 ≤ y < y1`, y down; empty where a side is not positive.
+/// The pixels `x0 ≤ x < x1`, `y0 ≤ y < y1`, y down; empty if a side is not positive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Rect {
     /// The first column.
@@ -65,7 +65,7 @@ impl Rect {
     /// No pixel.
     pub const EMPTY: Rect = Rect { x0: 0, y0: 0, x1: 0, y1: 0 };
 
-    /// From the first pixel to the one after the last.
+    /// From the first pixel to the one past the last.
     pub const fn new(x0: i32, y0: i32, x1: i32, y1: i32) -> Self {
         Self { x0, y0, x1, y1 }
     }
@@ -73,11 +73,11 @@ impl Rect {
     pub const fn is_empty(self) -> bool {
         self.x0 >= self.x1 || self.y0 >= self.y1
     }
-    /// Columns; 0 of an empty one.
+    /// Columns; 0 for an empty one.
     pub fn width(self) -> usize {
         (self.x1 - self.x0).max(0) as usize
     }
-    /// Rows; 0 of an empty one.
+    /// Rows; 0 for an empty one.
     pub fn height(self) -> usize {
         (self.y1 - self.y0).max(0) as usize
     }
@@ -106,7 +106,7 @@ impl Rect {
             y1: self.y1.max(other.y1),
         }
     }
-    /// One that reaches `margin` pixels further on every side; an empty one stays empty.
+    /// The rectangle grown by `margin` pixels on every side; an empty one stays empty.
     pub fn grown(self, margin: i32) -> Rect {
         if self.is_empty() {
             return Rect::EMPTY;

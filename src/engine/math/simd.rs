@@ -35,7 +35,7 @@ macro_rules! widest {
                 #[allow(clippy::too_many_arguments)]
                 fn wide($($arg: $ty),*) $(-> $ret)? { body($($arg),*) }
                 if std::arch::is_x86_feature_detected!("avx2") {
-                    // SAFETY: the processor has AVX2, asked on the line above.
+                    // SAFETY: the processor has AVX2, checked on the line above.
                     return unsafe { wide($($arg),*) };
                 }
             }
@@ -44,8 +44,8 @@ macro_rules! widest {
     )+};
 }
 
-/// Asks for the cache lines of a slice that will be read soon. Rows of a tile lie pages apart, where the processor's
-/// own prefetching stops; a hint without effect elsewhere than on x86-64.
+/// Prefetches the cache lines of a slice that will be read soon. Rows of a tile lie pages apart, where the processor's
+/// own prefetching stops; a hint that has an effect only on x86-64.
 #[inline(always)]
 pub fn prefetch<T>(soon: &[T]) {
     #[cfg(target_arch = "x86_64")]

@@ -68,9 +68,9 @@ pub fn scale_encoded(v: f32, factor: f32, root: f32) -> f32 {
     if v <= FOOT && straight <= FOOT { straight } else { above }
 }
 
-/// [`scale_encoded`] for factors between e⁻² and e² in fewer steps and without a root: error below 0.1/255.
+/// [`scale_encoded`] for factors between e⁻² and e², in fewer steps and without a root: error below 0.1/255.
 ///
-/// The curve's power, and its inverse, are a straight line plus what they bend away from it on the foot.
+/// The curve's power, and its inverse, are a straight line plus their deviation from it on the foot.
 #[inline(always)]
 pub fn scale_encoded_gently(v: f32, factor: f32, root: f32) -> f32 {
     const FOOT: f32 = 0.04045;
@@ -80,7 +80,7 @@ pub fn scale_encoded_gently(v: f32, factor: f32, root: f32) -> f32 {
     let on_power = (v + 0.055 + below * bend) * root;
     let below = super::fast::min(on_power - FOOT_ON_POWER, 0.0);
     let above = on_power - 0.055 + below * (0.001_357_515_7 + below * 6.569_081);
-    // What stays on the foot is scaled as it is.
+    // Values that stay on the foot are scaled directly.
     let straight = v * factor;
     if super::fast::max(v, straight) <= FOOT { straight } else { above }
 }
@@ -95,7 +95,7 @@ pub fn decode_u8(encoded: u8) -> f32 {
 /// Nearest byte of a value in `[0, 1]`; out of range clamps, NaN becomes 0. The only quantisation to bytes.
 #[inline(always)]
 pub fn quantise(value: f32) -> u8 {
-    // `max` first: of NaN and 0 it is 0.
+    // `max` first: for NaN and 0 it is 0.
     let scaled = super::fast::min(super::fast::max(value, 0.0), 1.0) * 255.0 + 0.5;
     // SAFETY: in [0.5, 255.5] by the line above. The checked cast is not vectorised: 4 ns a pixel instead of 0.5.
     unsafe { scaled.to_int_unchecked::<i32>() as u8 }
@@ -105,7 +105,7 @@ pub fn quantise(value: f32) -> u8 {
 #[inline(always)]
 pub fn quantise_deep(value: f32) -> u16 {
     let scaled = super::fast::min(super::fast::max(value, 0.0), 1.0) * 65535.0 + 0.5;
-    // SAFETY: in [0.5, 65535.5] by the line above: of numbers so large a float still holds halves.
+    // SAFETY: in [0.5, 65535.5] by the line above: at this size a float still holds halves.
     unsafe { scaled.to_int_unchecked::<i32>() as u16 }
 }
 
@@ -133,7 +133,7 @@ impl Color {
     pub const BLACK: Color = Color { r: 0, g: 0, b: 0, a: 255 };
     /// Opaque white.
     pub const WHITE: Color = Color { r: 255, g: 255, b: 255, a: 255 };
-    /// Nothing.
+    /// Fully transparent.
     pub const TRANSPARENT: Color = Color { r: 0, g: 0, b: 0, a: 0 };
 
     /// Reads `#rrggbb` or `#rrggbbaa`.

@@ -11,7 +11,7 @@ impl Asset {
     pub fn bytes(&self) -> &[u8] {
         &self.0
     }
-    /// Where the bytes lie in memory: no two assets that are alive share it.
+    /// Where the bytes are in memory: no two live assets share it.
     pub fn address(&self) -> usize {
         self.0.as_ptr() as usize
     }

@@ -3,7 +3,7 @@
 
 use super::TILE;
 
-/// A pixel a bit: rows of a tile, the leftmost pixel the lowest bit.
+/// One bit per pixel: rows of a tile, the leftmost pixel in the lowest bit.
 pub type TileBits = [u64; TILE];
 
 /// A row of bits as bytes, 1 where a bit is set; eight at a time: a product puts each bit into a byte of its own.
@@ -17,7 +17,7 @@ pub fn bytes_of(bits: u64) -> [u8; TILE] {
     bytes
 }
 
-/// The inverse of [`bytes_of`] of bytes that are 0 or 1.
+/// The inverse of [`bytes_of`] for bytes that are 0 or 1.
 pub fn bits_of(bytes: &[u8; TILE]) -> u64 {
     let eights = bytes.as_chunks::<8>().0.iter().map(|eight| u64::from_le_bytes(*eight));
     // The product gathers the lowest bits of eight bytes in the highest byte.

@@ -1,7 +1,6 @@
-//! Blend modes: how a layer's colour meets the colour beneath it (W3C Compositing and Blending Level 1, and what
-//! painting programs share beside it). Floor 1.
-//! `modes` is the table: a mode is one row of it, one formula of `spec` and one picture of `tests/goldens`. `spec`
-//! reads like the specification; `rows` is fast.
+//! Blend modes: how a layer's colour meets the colour below it (W3C Compositing and Blending Level 1, and what painting
+//! programs have in addition). Floor 1. `modes` is the table: a mode is one row of it, one formula of `spec` and one
+//! picture of `tests/goldens`. `spec` reads like the specification; `rows` is fast.
 
 mod bright;
 mod modes;
@@ -19,14 +18,14 @@ pub struct Mix {
     pub mode: BlendMode,
     /// Blend linear light instead of encoded values.
     pub linear: bool,
-    /// Only where the backdrop is, and leaving its alpha as it is: a clipped layer.
+    /// Only where the backdrop is, without changing its alpha: a clipped layer.
     pub atop: bool,
-    /// The tile's corner on the canvas: what noise is fixed to.
+    /// The tile's corner on the canvas, to which noise is fixed.
     pub corner: [i32; 2],
 }
 
 impl Mix {
-    /// The same on the tile of that place.
+    /// The same on the tile at this place.
     pub fn on(self, at: TileAt) -> Self {
         let rect = at.rect();
         Self { corner: [rect.x0, rect.y0], ..self }
@@ -38,25 +37,25 @@ impl Mix {
 pub enum TilePaint<'a> {
     /// One premultiplied colour everywhere.
     Solid([f32; 4]),
-    /// Premultiplied bytes, row by row; as many rows as are painted on.
+    /// Premultiplied bytes, row by row; one row for each that is painted on.
     Bytes(&'a [u8]),
-    /// Premultiplied rows of 16 bits; as many as are painted on.
+    /// Premultiplied rows of 16 bits; one for each that is painted on.
     Deep(&'a [DeepRow]),
     Planar(&'a PlanarTile),
 }
 
 impl<'a> TilePaint<'a> {
-    /// All that a tile holds.
+    /// Everything that a tile holds.
     pub fn of(tile: &'a Tile) -> Self {
         tile.deep().map_or_else(|| TilePaint::Bytes(tile.bytes()), TilePaint::Deep)
     }
 }
 
-/// How much of the paint arrives at each pixel of a tile: an opacity times, where there is one, a mask.
+/// How much of the paint arrives at each pixel of a tile: an opacity times the mask, if there is one.
 #[derive(Clone, Debug)]
 pub struct TileCoverage {
     opacity: f32,
-    /// Values in `[0, 1]`: `TILE_AREA` of a tile.
+    /// Values in `[0, 1]`: `TILE_AREA` for a tile.
     mask: Option<Box<[f32]>>,
 }
 
@@ -119,7 +118,7 @@ impl PlanarTile {
         }
         pixels
     }
-    /// Blends paint into the tile. NaN cannot come of it: paint is finite, and coverage in `[0, 1]`, by construction.
+    /// Blends paint into the tile. It gives no NaN: paint is finite, and coverage in `[0, 1]`, by construction.
     pub fn blend(&mut self, mix: Mix, paint: TilePaint<'_>, coverage: &TileCoverage) {
         let paint = if let TilePaint::Solid(color) = paint { TilePaint::Solid(sane(color)) } else { paint };
         rows::blend_rows(self.rows_mut(), mix, &paint, coverage);

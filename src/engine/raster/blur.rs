@@ -8,13 +8,13 @@ use rayon::prelude::*;
 /// What the filter finds beyond the picture.
 #[derive(Clone, Copy, PartialEq)]
 enum BlurBorder {
-    /// The border's value, on and on.
+    /// The border's value, repeated.
     Border,
     /// 0: sums lose weight, and dividing by the blurred mask restores it.
     Nothing,
 }
 
-/// Blurs a map; its border value is repeated beyond the border. `sigma_px`: standard deviation; not above 0 changes
+/// Blurs a map; its border value is repeated beyond the border. `sigma_px`: standard deviation; 0 and below change
 /// nothing.
 pub fn gaussian(plane: &Plane<f32>, sigma_px: f32) -> Plane<f32> {
     let (pixels, _) = plane.values().as_chunks::<1>();
@@ -40,7 +40,7 @@ pub fn gaussian_masked(plane: &Plane<f32>, mask: &Plane<f32>, sigma_px: f32) -> 
 
 /// Blurs pixels of `N` values each (RGBA: premultiplied), row by row; the border pixel is repeated beyond the border.
 ///
-/// Returns the pixels unchanged where `sigma_px` is not above 0 or `pixels` are not one per pixel of `size`.
+/// Returns the pixels unchanged if `sigma_px` is not above 0 or `pixels` are not one per pixel of `size`.
 pub fn gaussian_pixels<const N: usize>(size: Size, pixels: &[[f32; N]], sigma_px: f32) -> Vec<[f32; N]> {
     blurred(size, pixels, sigma_px, BlurBorder::Border)
 }
@@ -48,7 +48,7 @@ pub fn gaussian_pixels<const N: usize>(size: Size, pixels: &[[f32; N]], sigma_px
 /// Blurs pixels by a Gaussian of a variance, px²; beyond the border there is nothing, so that sums lose weight: a
 /// weight among the values gives it back. Returns them unchanged as [`gaussian_pixels`] does.
 pub fn spread_pixels<const N: usize>(size: Size, pixels: &[[f32; N]], variance: f32) -> Vec<[f32; N]> {
-    /// Narrower Gaussians are too narrow to be sampled: three pixels of their very variance stand for them.
+    /// Narrower Gaussians are too narrow to be sampled: three pixels of the same variance replace them.
     const SAMPLED: f32 = 0.64;
     if variance > 0.0 && variance < SAMPLED && pixels.len() == size.area() && N > 0 {
         return passed(size, pixels, &Gaussian::Taps(vec![1.0 - variance, 0.5 * variance]), BlurBorder::Nothing);
@@ -70,7 +70,7 @@ fn passed<const N: usize>(size: Size, pixels: &[[f32; N]], filter: &Gaussian, be
     down_columns(&sideways, h, w, filter, beyond)
 }
 
-/// Floats filtered side by side: a cache line, two AVX registers.
+/// Floats filtered together: a cache line, two AVX registers.
 const LANES: usize = 16;
 
 /// A strip of columns: rows of `LANES` floats.

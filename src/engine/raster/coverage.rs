@@ -1,5 +1,5 @@
 //! Coverage in sparse tiles of one byte a pixel, cheap to clone and shared tile by tile: what a selection holds.
-//! Floor 1. `shapes` draws exact ones, `edges` moves and softens their edges, `contour` finds their outline. Not here:
+//! Floor 1. `shapes` draws exact coverage, `edges` moves and softens its edges, `contour` finds its outline. Not here:
 //! what a selection was made of (`paint::selection`).
 
 pub mod contour;
@@ -14,7 +14,7 @@ use crate::math::{Rect, Size};
 use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
 
-/// The coverage of one tile; 255 is wholly covered. `None` in a grid stands for nothing.
+/// The coverage of one tile; 255 is wholly covered. `None` in a grid means no coverage.
 pub struct CoverageTile {
     bytes: Box<[u8; TILE_AREA]>,
     is_whole: bool,
@@ -41,7 +41,7 @@ impl CoverageTile {
         static WHOLE: OnceLock<Arc<CoverageTile>> = OnceLock::new();
         WHOLE.get_or_init(|| Arc::new(Self { bytes: blank(u8::MAX), is_whole: true })).clone()
     }
-    /// A pixel a bit, as floods find them.
+    /// From one bit per pixel, as floods give them.
     pub fn of_bits(bits: &TileBits) -> Option<Arc<Self>> {
         if bits.iter().all(|row| *row == u64::MAX) {
             return Some(Self::whole());
@@ -52,7 +52,7 @@ impl CoverageTile {
         }
         Self::new(bytes)
     }
-    /// Bytes that it takes: none of its own where it is the one that is wholly covered.
+    /// Bytes that it takes: none of its own if it is the shared, wholly covered tile.
     pub fn held_bytes(&self) -> u64 {
         if self.is_whole { 0 } else { TILE_AREA as u64 }
     }
@@ -71,7 +71,7 @@ pub fn blank(value: u8) -> Box<[u8; TILE_AREA]> {
 }
 
 crate::named! {
-    /// How a new selection meets the one there is.
+    /// How a new selection combines with the existing one.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
     pub enum SelectionMode {
         #[default]
@@ -83,8 +83,8 @@ crate::named! {
 }
 
 impl SelectionMode {
-    /// Of one pixel: the larger, what is left, the smaller. Adding or intersecting the same again changes nothing, and
-    /// taking the same away leaves nothing, soft edges too.
+    /// For one pixel: the larger, what is left, the smaller. Adding or intersecting the same again changes nothing, and
+    /// subtracting the same leaves nothing, even at soft edges.
     #[inline(always)]
     pub fn of(self, old: u8, new: u8) -> u8 {
         match self {
@@ -157,7 +157,7 @@ impl Grid<CoverageTile> {
         });
         plane
     }
-    /// Copies the coverage of a row of pixels from a canvas pixel on; what no tile holds stays as it is.
+    /// Copies the coverage of a row of pixels from a canvas pixel on; pixels that no tile holds are left unchanged.
     pub fn copy_row(&self, x0: i32, y: i32, row: &mut [u8]) {
         let line = Rect::new(x0, y, x0.saturating_add(row.len() as i32), y.saturating_add(1));
         for at in TileAt::covering(line) {
@@ -180,20 +180,20 @@ impl Grid<CoverageTile> {
     pub fn covered(&self) -> Rect {
         self.iter().fold(Rect::EMPTY, |all, (at, tile)| {
             let rect = at.rect();
-            // What lies inside already need not be looked through.
+            // Tiles inside it need no scan.
             if tile.is_whole() || all.intersect(rect) == rect { all.union(rect) } else { all.union(covered(at, tile)) }
         })
     }
-    /// The covered pixels, each counted as far as it is covered.
+    /// The number of covered pixels, each weighted by its coverage.
     pub fn area_px(&self) -> f64 {
         let sum = |tile: &CoverageTile| tile.bytes().iter().map(|&b| u64::from(b)).sum::<u64>();
         self.iter().map(|(_, tile)| if tile.is_whole() { TILE_AREA as f64 } else { sum(tile) as f64 / 255.0 }).sum()
     }
-    /// What it takes, were nothing of it shared. A wholly covered tile takes nothing.
+    /// Its bytes if nothing were shared. A wholly covered tile takes none.
     pub fn bytes(&self) -> usize {
         self.iter().filter(|(_, tile)| !tile.is_whole()).count() * (TILE_AREA + 64)
     }
-    /// Both by a rule for each pixel, over the tiles that either holds. `rule` of nothing and nothing must be nothing.
+    /// Combines both by a rule for each pixel, over the tiles that either holds. `rule` of 0 and 0 must be 0.
     pub fn combined(&self, other: &Self, rule: impl Fn(u8, u8) -> u8 + Sync) -> Self {
         let rect = self.bounds().union(other.bounds());
         Self::gathered(rect, |at| {
@@ -218,7 +218,7 @@ impl Grid<CoverageTile> {
             CoverageTile::new(bytes)
         })
     }
-    /// What is not covered of a rectangle; nothing beyond it.
+    /// The uncovered part of a rectangle; nothing beyond it.
     pub fn inverted(&self, rect: Rect) -> Self {
         Self::filled(rect).combined(self, |whole, own| whole.saturating_sub(own))
     }
@@ -263,12 +263,12 @@ impl Grid<CoverageTile> {
     }
 }
 
-/// Where a pixel of a tile stands among its bytes.
+/// The index of a pixel among a tile's bytes.
 fn index(tile: Rect, x: i32, y: i32) -> usize {
     (y - tile.y0) as usize * TILE + (x - tile.x0) as usize
 }
 
-/// Takes away what lies beyond a rectangle.
+/// Removes what lies beyond a rectangle.
 fn clip(bytes: &mut [u8; TILE_AREA], at: TileAt, rect: Rect) {
     let (tile, area) = (at.rect(), at.rect().intersect(rect));
     if area == tile {

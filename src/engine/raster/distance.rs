@@ -1,4 +1,4 @@
-//! How far each pixel is from the nearest marked one, up to a limit.
+//! The distance of each pixel from the nearest marked one, up to a limit.
 //! Floor 1. Exact, between pixel centres (Meijster, Roerdink and Hesselink 2000: columns first, then along rows).
 
 use super::Plane;
@@ -9,11 +9,11 @@ pub const FARTHEST: u16 = 200;
 
 /// Squared distances to the nearest marked pixel (not 0), px²; `(limit + 1)²` where it is farther than `limit` px.
 ///
-/// `limit`: at most [`FARTHEST`]; more counts as that. What lies beyond the plane is not marked.
+/// `limit`: at most [`FARTHEST`]; more counts as that. Nothing beyond the plane is marked.
 pub fn squared(marked: &Plane<u8>, limit: u16) -> Plane<u16> {
     let limit = limit.min(FARTHEST);
     let (width, height) = (marked.width().max(1), marked.height());
-    // Bands of rows, each with so many rows around it that no nearer mark lies beyond.
+    // Bands of rows, each with enough rows around it that no nearer mark lies beyond.
     let around = usize::from(limit);
     let band = (2 * around).max(LEAST_BAND);
     let mut out = Plane::filled(marked.size(), 0u16);
@@ -33,7 +33,7 @@ pub fn squared(marked: &Plane<u8>, limit: u16) -> Plane<u16> {
 /// Rows of a band at least.
 const LEAST_BAND: usize = 64;
 
-/// Distances down and up the columns of some rows, `far` where they are no nearer.
+/// Distances down and up the columns of some rows, at most `far`.
 fn along_columns(marked: &[u8], width: usize, far: u16, columns: &mut Vec<u16>) {
     columns.clear();
     columns.extend(marked.iter().map(|&m| if m != 0 { 0 } else { far }));
@@ -66,7 +66,7 @@ fn along_row(columns: &[u16], limit: u16, row: &mut [u16]) {
 }
 
 crate::widest! {
-    /// A row is one further from what the row beside it is near to.
+    /// A row is one farther from a mark than the adjacent row.
     fn step(beside: &[u16], row: &mut [u16], far: u16) {
         for (d, b) in row.iter_mut().zip(beside) {
             *d = (*d).min(b + 1).min(far);

@@ -1,6 +1,6 @@
 //! Floods: all pixels that are joined to one over their four neighbours, tile by tile, a row of a tile at a time.
-//! Floor 1. Which pixels may be reached, and which neighbours are joined, the caller says; only tiles that are reached
-//! are asked for. The result does not depend on the order in which pixels are found.
+//! Floor 1. The caller says which pixels may be reached and which neighbours are joined; only tiles that are reached
+//! are requested. The result does not depend on the order in which pixels are found.
 
 use super::bits::TileBits;
 use super::tile::{TILE, TileAt};
@@ -36,7 +36,7 @@ struct FloodTile {
 struct FloodEntry {
     /// Of the top and the bottom row.
     rows: [u64; 2],
-    /// Of the left and the right column, a row a bit.
+    /// Of the left and the right column, one bit per row.
     columns: [u64; 2],
     /// The pixel where it begins.
     start: Option<(usize, usize)>,
@@ -50,7 +50,7 @@ pub struct Flooded {
 }
 
 impl Flooded {
-    /// All that is joined to a pixel of the canvas.
+    /// Everything that is joined to a pixel of the canvas.
     pub fn from((x, y): (i32, i32), canvas: Size, opened: impl Fn(TileAt) -> OpenTile + Sync) -> Self {
         let first = TileAt::of_pixel(x, y);
         let start = ((x - first.rect().x0) as usize, (y - first.rect().y0) as usize);

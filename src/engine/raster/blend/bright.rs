@@ -1,4 +1,4 @@
-//! Blending light that is brighter than white, as pictures keep it that are composed for files of light. Floor 1.
+//! Blending light that is brighter than white, which pictures composed for HDR files keep. Floor 1.
 
 use super::rows::load;
 use super::{BlendMode, Mix, TileCoverage, TilePaint};
@@ -6,15 +6,15 @@ use crate::raster::planar::{PixelRow, PlanarTile};
 use crate::raster::tile::TILE;
 
 impl BlendMode {
-    /// Its formula holds of light brighter than white, too.
+    /// Its formula also holds for light brighter than white.
     fn keeps_light(self) -> bool {
         matches!(self, BlendMode::Normal | BlendMode::Multiply)
     }
 }
 
 impl PlanarTile {
-    /// As [`PlanarTile::blend`], where colours may be above their alpha. Formulas that hold up to white alone see both
-    /// sides clipped; what the backdrop has beyond white then shows through by as much as the paint leaves of it.
+    /// As [`PlanarTile::blend`], where colours may be above their alpha. Formulas that hold only up to white see both
+    /// sides clipped; the backdrop's light beyond white then shows through as far as the paint leaves it.
     pub fn blend_bright(&mut self, mix: Mix, paint: TilePaint<'_>, coverage: &TileCoverage) {
         if mix.mode.keeps_light() && !mix.linear {
             return self.blend(mix, paint, coverage);

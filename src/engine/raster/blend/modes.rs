@@ -38,7 +38,7 @@ macro_rules! blend_modes {
             LighterColor, "lighter-color", "Lighter colour", "krita:lighter color", b"lgCl", non_separable(lighter);
             Subtract,     "subtract",      "Subtract",       "krita:subtract",      b"fsub", separable(subtract);
             Divide,       "divide",        "Divide",         "krita:divide",        b"fdiv", separable(divide);
-            /// Each pixel wholly or not at all, by noise fixed to the canvas: as many as its alpha says.
+            /// Each pixel wholly or not at all, by noise fixed to the canvas, with its alpha as the probability.
             Dissolve,     "dissolve",      "Dissolve",       "krita:dissolve",      b"diss", separable(normal);
         }
     };
@@ -71,8 +71,8 @@ macro_rules! declare {
         $(#[$meta:meta])*
         $mode:ident, $name:literal, $label:literal, $ora:literal, $psd:literal, $kind:ident($b:ident);
     )+) => {
-        /// How a layer's colour meets the colour beneath: a function `B(cb, cs)` mixed source-over as W3C mixes its
-        /// own, but for [`BlendMode::Plus`]; what [`BlendMode::Dissolve`] leaves of a layer is mixed so.
+        /// How a layer's colour meets the colour below: a function `B(cb, cs)` mixed source-over as W3C mixes its own,
+        /// except for [`BlendMode::Plus`]; what [`BlendMode::Dissolve`] leaves of a layer is mixed this way.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
         pub enum BlendMode {
             $($(#[$meta])* $mode,)+
@@ -108,19 +108,19 @@ pub fn blend_pixel(mode: BlendMode, backdrop: [f32; 4], source: [f32; 4]) -> [f3
 }
 
 impl BlendMode {
-    /// As documents call it.
+    /// Its name in documents.
     pub fn name(self) -> &'static str {
         self.row().name
     }
-    /// As the window calls it.
+    /// Its name in the window.
     pub fn label(self) -> &'static str {
         self.row().label
     }
-    /// OpenRaster's word; where it has none, that of a program which has one.
+    /// OpenRaster's word, or if it has none, that of a program which has one.
     pub fn openraster(self) -> &'static str {
         self.row().openraster
     }
-    /// Photoshop's key; of a mode that it has not, one that stands in no file.
+    /// Photoshop's key; for a mode that it lacks, one that no file contains.
     pub fn photoshop(self) -> [u8; 4] {
         self.row().photoshop
     }
@@ -128,11 +128,11 @@ impl BlendMode {
     pub fn function(self) -> BlendFunction {
         self.row().function
     }
-    /// The mode that documents call so.
+    /// The mode with this name in documents.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::find(|row| row.name == name)
     }
-    /// The mode that OpenRaster calls so.
+    /// The mode with this name in OpenRaster.
     pub fn from_openraster(word: &str) -> Option<Self> {
         Self::find(|row| row.openraster == word)
     }
@@ -140,12 +140,12 @@ impl BlendMode {
     pub fn from_photoshop(key: [u8; 4]) -> Option<Self> {
         Self::find(|row| row.photoshop == key)
     }
-    /// OpenRaster says it, and other programs read it as this one does: most take its `plus` for a sum of colours
+    /// OpenRaster can express it, and other programs read it as this one does: most read its `plus` as a sum of colours
     /// alone, whatever the alpha.
     pub fn is_said_by_openraster(self) -> bool {
         self.openraster().starts_with("svg:") && self != BlendMode::Plus
     }
-    /// Photoshop says it, and dissolves the same pixels.
+    /// Photoshop can express it, and dissolves the same pixels.
     pub fn is_said_by_photoshop(self) -> bool {
         !matches!(self, BlendMode::Plus | BlendMode::Dissolve)
     }

@@ -2,8 +2,8 @@
 //! Floor 1. Tested against `spec` for every mode.
 //!
 //! With S, D the premultiplied source and backdrop, the result is `S (1 − αb) + T + D (1 − αs)`, T = αs αb B(D/αb,
-//! S/αs). For most modes T needs no division. Which pixels dissolving paint leaves is decided before it is mixed.
-//! *Atop* leaves out the first term and keeps the backdrop's alpha: a clipped layer.
+//! S/αs). For most modes T needs no division. Which pixels dissolving leaves is decided before the paint is mixed.
+//! *Atop* omits the first term and keeps the backdrop's alpha: a clipped layer.
 
 mod formulas;
 
@@ -80,7 +80,7 @@ fn bytes_over(row: &mut PixelRow, bytes: &[u8], opacity: f32) {
     }
 }
 
-/// The same of 16 bits.
+/// The same for 16 bits.
 #[inline(always)]
 fn deep_over(row: &mut PixelRow, deep: &DeepRow, opacity: f32) {
     let unit = opacity / 65535.0;
@@ -284,7 +284,7 @@ fn sum(d: &mut PixelRow, s: &PixelRow, mix: Mix, sum: impl Fn(f32, f32) -> f32 +
     }
 }
 
-/// Decodes both, blends linear light, encodes again; where there is no paint the backdrop stays to the last bit.
+/// Decodes both, blends linear light, encodes again; without paint the backdrop does not change by a bit.
 #[inline(always)]
 fn in_linear_light(d: &mut PixelRow, s: &mut PixelRow, mix: Mix) {
     let before = *d;
@@ -309,7 +309,7 @@ fn through_straight(row: &mut PixelRow, curve: impl Fn(f32) -> f32) {
     }
 }
 
-/// One pixel of [`by_formula`], for modes that otherwise go another way.
+/// One pixel of [`by_formula`], for modes that otherwise take another path.
 #[cfg(test)]
 pub(super) fn pixel_by_formula(mix: Mix, backdrop: [f32; 4], source: [f32; 4]) -> [f32; 4] {
     let [mut d, s] =

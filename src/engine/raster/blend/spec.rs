@@ -1,11 +1,11 @@
 //! The blend functions as the specification writes them: straight colours in [0, 1], one function a mode.
-//! Floor 1. The reference that reads like W3C Compositing and Blending Level 1, sec. 9; `rows` is the fast twin. What
-//! W3C does not name is as Photoshop computes it, held against files that it saved.
+//! Floor 1. The reference that reads like W3C Compositing and Blending Level 1, sec. 9; `rows` is the fast twin. Modes
+//! that W3C does not define follow Photoshop, compared with files that it saved.
 
 use crate::math::hash;
 use crate::raster::planar::sane;
 
-/// One mode's B(cb, cs), backdrop first as in the specification: of a component, or of a whole colour.
+/// One mode's B(cb, cs), backdrop first as in the specification: for a component, or for a whole colour.
 #[derive(Clone, Copy)]
 pub enum BlendFunction {
     /// Each component on its own (sec. 9.1).
@@ -41,8 +41,8 @@ const DISSOLVE_SEED: u32 = 0x0d15_5017;
 /// Where a sum counts as full: half a step of a byte lower than 1, so that rounding decides nothing.
 pub const FULL: f32 = 1.0 - 0.5 / 255.0;
 
-/// What dissolving leaves of a premultiplied pixel at a place of the canvas: all of it, with a chance of its alpha, or
-/// nothing.
+/// What dissolving leaves of a premultiplied pixel at a point of the canvas: all of it, with its alpha as the
+/// probability, or nothing.
 #[inline(always)]
 pub fn dissolved(source: [f32; 4], [x, y]: [i32; 2]) -> [f32; 4] {
     let alpha = source[3];
@@ -198,7 +198,7 @@ pub fn set_lum(c: [f32; 3], l: f32) -> [f32; 3] {
 pub fn sat([r, g, b]: [f32; 3]) -> f32 {
     r.max(g).max(b) - r.min(g).min(b)
 }
-/// The least component becomes 0, the greatest `s`, the middle one keeps its place between them.
+/// The least component becomes 0, the greatest `s`; the middle one keeps its ratio between them.
 #[inline(always)]
 pub fn set_sat(c: [f32; 3], s: f32) -> [f32; 3] {
     let n = c[0].min(c[1]).min(c[2]);

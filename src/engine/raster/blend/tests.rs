@@ -104,8 +104,8 @@ fn non_separable_modes_give_the_values_computed_by_hand() {
 }
 #[test]
 fn half_transparent_paint_mixes_as_the_specification_says() {
-    // Red at half alpha multiplied onto blue at half alpha: a quarter is both (black), a quarter each alone, a quarter
-    // none.
+    // Red at half alpha multiplied onto blue at half alpha: a quarter is both (black), a quarter is each alone, a
+    // quarter is neither.
     let got = blend_pixel(BlendMode::Multiply, [0.0, 0.0, 0.5, 0.5], [0.5, 0.0, 0.0, 0.5]);
     assert!(close(&got, &[0.25, 0.0, 0.25, 0.75], 1e-6), "{got:?}");
     assert_eq!(blend_pixel(BlendMode::Plus, [0.7, 0.2, 0.0, 0.8], [0.5, 0.1, 0.0, 0.5]), [1.0, 0.3, 0.0, 1.0]);
@@ -193,7 +193,7 @@ fn atop_keeps_the_alpha_of_what_it_is_painted_on() {
         assert!(got[..3].iter().all(|&c| (0.0..=0.4 + 1e-6).contains(&c)), "{name}: {got:?}");
         assert_eq!(fast(mix, [0.0; 4], [0.3, 0.6, 0.0, 0.6]), [0.0; 4], "{name}");
     }
-    // Normal: 0.6 of the colour (0.5, 1, 0) and 0.4 of what was there.
+    // Normal: 0.6 of the colour (0.5, 1, 0) and 0.4 of the previous one.
     let got = fast(Mix { atop: true, ..Mix::default() }, [0.2, 0.1, 0.0, 0.4], [0.3, 0.6, 0.0, 0.6]);
     assert!(close(&got, &[0.3 * 0.4 + 0.2 * 0.4, 0.6 * 0.4 + 0.1 * 0.4, 0.0, 0.4], 1e-6), "{got:?}");
 }

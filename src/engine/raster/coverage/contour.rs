@@ -19,7 +19,7 @@ pub struct Run {
 /// The coarsest level: a tile is one block.
 pub const COARSEST: u32 = TILE.trailing_zeros();
 
-/// What the outline in one tile follows from: the tile, and those left of it and above it.
+/// What the outline in one tile depends on: the tile, and those left of it and above it.
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub struct RunsKey {
     at: TileAt,
@@ -28,13 +28,13 @@ pub struct RunsKey {
 }
 
 impl RunsKey {
-    /// Whether the outline it stands for is one of this grid, too.
+    /// Whether its outline belongs to this grid, too.
     pub fn is_of(&self, grid: &CoverageGrid) -> bool {
         *self == key(grid, self.at, self.level)
     }
 }
 
-/// The tiles in which a grid may have an outline: each holds the sides at the left of its pixels and above them.
+/// The tiles in which a grid may have an outline: each holds the sides left of and above its pixels.
 pub fn tiles(grid: &CoverageGrid) -> impl Iterator<Item = TileAt> {
     let bounds = grid.bounds();
     let reach =
@@ -42,20 +42,20 @@ pub fn tiles(grid: &CoverageGrid) -> impl Iterator<Item = TileAt> {
     TileAt::covering(reach)
 }
 
-/// Two outlines of the same key are the same as long as their grids live.
+/// Outlines with the same key are the same as long as their grids live.
 pub fn key(grid: &CoverageGrid, at: TileAt, level: u32) -> RunsKey {
     let address = |at: TileAt| grid.tile(at).map_or(0, |tile| Arc::as_ptr(tile) as usize);
     RunsKey { at, level, tiles: [at, left_of(at), above(at)].map(address) }
 }
 
-/// The outline at the left of and above the pixels of a tile.
+/// The outline left of and above the pixels of a tile.
 ///
-/// * `level`: blocks of 2^level pixels a side, at most [`COARSEST`], count as covered where one of theirs is.
+/// * `level`: blocks of 2^level pixels a side, at most [`COARSEST`], count as covered if one of their pixels is.
 pub fn runs(grid: &CoverageGrid, at: TileAt, level: u32) -> Vec<Run> {
     let level = level.min(COARSEST);
     let n = TILE >> level;
     let here = bits(grid, at, level, 0);
-    // Of the tile above the last row of blocks, of the one at the left their last column.
+    // The last row of blocks of the tile above, and the last column of the tile on the left.
     let above_here = bits(grid, above(at), level, n - 1)[n - 1];
     let left = last_column(grid, left_of(at), level);
     let mut vertical = [0u64; TILE];
@@ -91,7 +91,7 @@ fn mask(n: usize) -> u64 {
     if n >= 64 { u64::MAX } else { (1 << n) - 1 }
 }
 
-/// The blocks of a tile that are covered, a row a number, from a row of blocks on.
+/// The covered blocks of a tile, one number per row, from a row of blocks on.
 fn bits(grid: &CoverageGrid, at: TileAt, level: u32, from: usize) -> TileBits {
     let mut out = [0; TILE];
     let n = TILE >> level;
@@ -108,7 +108,7 @@ fn bits(grid: &CoverageGrid, at: TileAt, level: u32, from: usize) -> TileBits {
     out
 }
 
-/// The last column of blocks of a tile, a row a bit.
+/// The last column of blocks of a tile, one bit per row.
 fn last_column(grid: &CoverageGrid, at: TileAt, level: u32) -> u64 {
     let Some(tile) = grid.tile(at) else { return 0 };
     if tile.is_whole() {

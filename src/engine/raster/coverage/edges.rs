@@ -1,5 +1,5 @@
 //! Edges of coverage moved, drawn, softened and rounded. Floor 1. Edges run where coverage passes ½; beyond the canvas
-//! a selection goes on as it is at the border, so that the border is no edge.
+//! a selection continues as at the border, so that the border is no edge.
 
 use super::CoverageGrid;
 use crate::math::{Range, Rect};
@@ -7,12 +7,12 @@ use crate::raster::{Plane, blur, distance};
 
 /// How far an edge can be moved, and how wide a border may be, px.
 pub const DISTANCE_PX: Range = 0.0..=distance::FARTHEST as f32 - 2.0;
-/// The standard deviation of what softens an edge, or rounds it, px.
+/// The standard deviation of the blur that softens or rounds an edge, px.
 pub const SOFTNESS_PX: Range = 0.0..=500.0;
 
 /// Coverage of marked pixels with their edge moved outward by g: ½ + g − d, clamped, with d how far a pixel's centre
-/// lies beyond the edge, which runs midway between pixels marked and not: a step across an axis stays sharp, a slanted
-/// one is smoothed.
+/// lies beyond the edge, which runs midway between marked and unmarked pixels: a step across an axis stays sharp, a
+/// slanted one is smoothed.
 ///
 /// * `marked`: not 0. Beyond the plane nothing is marked, and nothing ends.
 /// * `grow_px`: g, either way; its amount counts up to [`distance::FARTHEST`] − 1.
@@ -26,7 +26,7 @@ pub fn moved(marked: &Plane<u8>, grow_px: f32, antialias: bool) -> Plane<u8> {
         let share = if antialias { share.clamp(0.0, 1.0) } else { f32::from(u8::from(share > 0.5)) };
         (share * 255.0).round() as u8
     };
-    // A pixel's share follows from its squared distance alone.
+    // A pixel's coverage depends only on its squared distance.
     let farthest = (usize::from(limit.min(distance::FARTHEST)) + 1).pow(2);
     let distances = || (0..=farthest).map(|squared| (squared as f32).sqrt());
     let outside: Vec<u8> = distances().map(|d| share(d - 0.5)).collect();
@@ -38,7 +38,7 @@ pub fn moved(marked: &Plane<u8>, grow_px: f32, antialias: bool) -> Plane<u8> {
     marked.clone().updated(to_share)
 }
 
-/// Its edge moved outward (negative: inward) by so many px.
+/// Its edge moved outward (negative: inward), px.
 pub fn grown(grid: &CoverageGrid, px: f32, canvas: Rect) -> CoverageGrid {
     let px = px.max(-*DISTANCE_PX.end()).min(*DISTANCE_PX.end());
     let Some((rect, plane)) = around(grid, px.abs().ceil() as i32 + 2, canvas) else { return CoverageGrid::default() };
@@ -57,8 +57,8 @@ pub fn feathered(grid: &CoverageGrid, sigma_px: f32, canvas: Rect) -> CoverageGr
     blurred(grid, sigma_px, canvas, |share| share)
 }
 
-/// Its corners rounded: blurred by a Gaussian of this standard deviation σ, and made as steep again as an edge is. A
-/// straight edge rises by 1 / (σ √2π) a px under the blur, so that times σ √2π it rises within one.
+/// Its corners rounded: blurred by a Gaussian of this standard deviation σ, and made as steep as an edge again. A
+/// straight edge rises by 1 / (σ √2π) a px under the blur, so that times σ √2π it rises within one px.
 pub fn smoothed(grid: &CoverageGrid, sigma_px: f32, canvas: Rect) -> CoverageGrid {
     let sigma_px = sigma_px.max(0.0).min(*SOFTNESS_PX.end());
     let steep = (sigma_px * std::f32::consts::TAU.sqrt()).max(1.0);
@@ -66,7 +66,7 @@ pub fn smoothed(grid: &CoverageGrid, sigma_px: f32, canvas: Rect) -> CoverageGri
 }
 
 fn blurred(grid: &CoverageGrid, sigma_px: f32, canvas: Rect, share: impl Fn(f32) -> f32 + Sync) -> CoverageGrid {
-    /// So many standard deviations away less than half a 255th is left.
+    /// This many standard deviations away less than half a 255th is left.
     const REACH: f32 = 3.0;
     let sigma_px = sigma_px.max(0.0).min(*SOFTNESS_PX.end());
     let reach = (REACH * sigma_px).ceil() as i32 + 1;
@@ -76,7 +76,7 @@ fn blurred(grid: &CoverageGrid, sigma_px: f32, canvas: Rect, share: impl Fn(f32)
     CoverageGrid::from_plane(&bytes, rect.x0, rect.y0)
 }
 
-/// What is covered with so much around it, on the canvas; `None` where that is nothing.
+/// The covered rectangle with this margin, within the canvas, and its coverage; `None` if it is empty.
 fn around(grid: &CoverageGrid, reach: i32, canvas: Rect) -> Option<(Rect, Plane<u8>)> {
     let rect = grid.covered().grown(reach).intersect(canvas);
     (!rect.is_empty()).then(|| (rect, grid.to_plane(rect)))
@@ -109,7 +109,7 @@ mod tests {
     #[test]
     fn a_border_is_as_wide_as_said_on_both_sides_of_the_edge() {
         let found = border(&disc(40.0), 6.0, CANVAS);
-        // Of a slanted edge the nearest pixels stand out a little.
+        // The nearest pixels of a slanted edge stick out a little.
         let width = found.area_px() / (std::f64::consts::TAU * 40.0);
         assert!((width - 6.0).abs() < 0.5, "{width}");
         assert_eq!((found.at(100, 90), found.at(140, 90), found.at(145, 90)), (0, 255, 0));

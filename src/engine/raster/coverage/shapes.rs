@@ -34,15 +34,13 @@ pub fn rectangle(a: Vec2, b: Vec2, within: Rect) -> CoverageGrid {
     })
 }
 
-/// The ellipse between two corners.
-///
-/// A polygon that leaves it by less than 1/512 px stands for it.
+/// The ellipse between two corners. Drawn as a polygon that deviates from it by less than 1/512 px.
 pub fn ellipse(a: Vec2, b: Vec2, within: Rect) -> CoverageGrid {
     const SAGITTA_PX: f32 = 1.0 / 512.0;
     let (center, half) = (0.5 * (a + b), 0.5 * (b - a).abs());
     let radius = half.max_element().max(1.0);
     let step = 2.0 * (1.0 - SAGITTA_PX / radius).max(0.0).acos();
-    // NaN and what has no end give no polygon at all.
+    // NaN and infinite values give no polygon at all.
     let sides = ((std::f32::consts::TAU / step).ceil().min(65_536.0) as usize).max(16);
     let turn = std::f64::consts::TAU / sides as f64;
     let corner = |i: usize| {
@@ -52,10 +50,8 @@ pub fn ellipse(a: Vec2, b: Vec2, within: Rect) -> CoverageGrid {
     polygon(&(0..sides).map(corner).collect::<Vec<_>>(), within)
 }
 
-/// The inside of a closed polygon within a rectangle of pixels. Where it runs round a point more than once, that
-/// counts once.
-///
-/// Of a corner that is not finite there is nothing.
+/// The inside of a closed polygon within a rectangle of pixels. Where it runs round a point more than once, that counts
+/// once. A polygon with a corner that is not finite covers nothing.
 pub fn polygon(corners: &[Vec2], within: Rect) -> CoverageGrid {
     if corners.len() < 3 || !corners.iter().all(|p| p.is_finite()) {
         return CoverageGrid::default();
@@ -130,7 +126,7 @@ fn add_edge(turned: &mut [f32], band: Rect, a: Vec2, b: Vec2) {
     }
 }
 
-/// One edge within one row, between two columns; what lies beyond the row's ends is laid on them.
+/// One edge within one row, between two columns; parts beyond the row's ends are moved onto them.
 fn add_piece(row: &mut [f32], width: f64, a: f64, b: f64, height: f64) {
     let (low, high) = (a.min(b), a.max(b));
     if high <= 0.0 || low >= width || high - low < 1e-9 {
@@ -142,7 +138,7 @@ fn add_piece(row: &mut [f32], width: f64, a: f64, b: f64, height: f64) {
         return;
     }
     let per = height / (high - low);
-    // What lies beyond the ends counts as upright there.
+    // Parts beyond the ends count as upright there.
     let before = (0.0 - low).max(0.0) * per;
     row[0] += before as f32;
     let (from, to) = (low.max(0.0), high.min(width));

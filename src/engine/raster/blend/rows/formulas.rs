@@ -12,7 +12,7 @@ pub(super) fn least(a: f32, b: f32) -> f32 {
 pub(super) fn greatest(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
-/// 1/a for `a ≥ 0`; finite at 0, where what it multiplies is 0, too. Without a branch, which would keep loops scalar.
+/// 1/a for `a ≥ 0`; finite at 0, where its factor is 0, too. Without a branch, which would keep loops scalar.
 #[inline(always)]
 pub(super) fn reciprocal(a: f32) -> f32 {
     1.0 / greatest(a, f32::MIN_POSITIVE)
@@ -83,7 +83,7 @@ pub(super) fn luminosity(cb: [f32; 3], cs: [f32; 3]) -> [f32; 3] {
 }
 #[inline(always)]
 pub(super) fn sat([r, g, b]: [f32; 3]) -> f32 {
-    // Not `greatest` and `least`: their comparisons would be merged into branches, and the loop stay scalar.
+    // Not `greatest` and `least`: their comparisons would be merged into branches, and the loop would stay scalar.
     r.max(g).max(b) - r.min(g).min(b)
 }
 #[inline(always)]
