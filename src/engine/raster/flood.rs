@@ -155,7 +155,7 @@ impl FloodTile {
         if let Some((x, y)) = entry.start {
             filled[y] |= 1 << x & self.may.open[y];
         }
-        // Rows that hold pixels which have not spread along them yet, a bit each: all others are as full as they get
+        // Rows that hold pixels which have not spread along them yet, one bit each: all others are as full as they get
         // until something enters them.
         let mut fresh = (0..TILE).fold(0u64, |rows, y| rows | u64::from(filled[y] != before[y]) << y);
         let mut spread = |filled: &mut TileBits, y: usize, entering: u64| {
@@ -194,7 +194,7 @@ impl FloodTile {
 }
 
 impl OpenTile {
-    /// The pixels that may be entered from each side, where that is not all that are open.
+    /// The pixels that may be entered from each side, if that is not every open pixel.
     fn joined(&self) -> JoinedSides {
         let both = |links: &TileBits| std::array::from_fn(|y| links[y] & self.open[y]);
         JoinedSides(self.links.as_ref().map(|links| {
@@ -213,7 +213,7 @@ impl JoinedSides {
 }
 
 /// What seeds reach along a row: to the right over pixels that may be entered from the left, to the left over those
-/// that may be from the right; both by doubling steps.
+/// that may be entered from the right; both by doubling steps.
 fn runs_of(from_left: u64, from_right: u64, seeds: u64) -> u64 {
     let (mut up, mut down) = (seeds, seeds);
     let (mut up_free, mut down_free) = (from_left, from_right);

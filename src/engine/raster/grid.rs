@@ -22,7 +22,7 @@ pub struct Grid<T> {
 /// The pixels of a paint layer; what is not held is transparent.
 pub type TileGrid = Grid<Tile>;
 
-// Derived ones would ask the same of the tiles, which are shared.
+// Derived implementations would require the same of the tiles, which are shared.
 impl<T> Clone for Grid<T> {
     fn clone(&self) -> Self {
         Self { extent: self.extent, tiles: self.tiles.clone() }
@@ -117,7 +117,7 @@ impl<T> Grid<T> {
     pub fn ptr_eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.tiles, &other.tiles)
     }
-    /// The tiles in which two grids differ, by pointer.
+    /// The tiles in which two grids differ, compared by pointer.
     pub fn changed_tiles<'a>(&'a self, other: &'a Self) -> Vec<TileAt> {
         if self.ptr_eq(other) {
             return Vec::new();
@@ -155,7 +155,7 @@ impl Grid<Tile> {
             }
         }
     }
-    /// Takes in the tiles of a grid that paints no pixel that this one paints.
+    /// Adds the tiles of a grid that paints no pixel that this one paints.
     pub fn join(&mut self, other: &TileGrid) {
         self.reserve(other.bounds());
         for (at, tile) in other.iter() {
@@ -175,7 +175,7 @@ impl Grid<Tile> {
             self.set(at, joined);
         }
     }
-    /// What it takes, were nothing of it shared.
+    /// Its bytes if nothing were shared.
     pub fn bytes(&self) -> usize {
         let held: u64 = self.tiles.iter().flatten().map(|tile| tile.held_bytes()).sum();
         held as usize + self.tiles.len() * size_of::<Option<Arc<Tile>>>()
@@ -211,11 +211,11 @@ impl Grid<Tile> {
         }
         grid
     }
-    /// [`TileGrid::is_deep_in`] of a rectangle of few tiles.
+    /// [`TileGrid::is_deep_in`] for a rectangle of few tiles.
     pub fn is_deep_at(&self, rect: Rect) -> bool {
         TileAt::covering(rect).any(|at| self.tile(at).is_some_and(|tile| tile.is_deep()))
     }
-    /// A square as large as a tile as one, wherever it lies; copied as bytes.
+    /// A square of a tile's size at any position, as a tile; copied as bytes.
     fn block(&self, from: Rect) -> Option<Tile> {
         let mut bytes = vec![0u8; TILE * TILE * 4];
         for (tile, area, source) in self.parts(from) {
@@ -243,7 +243,7 @@ impl Grid<Tile> {
         }
         Tile::from_deep(rows)
     }
-    /// The tiles under a rectangle, and how much of it lies on each.
+    /// The tiles under a rectangle, and the part of it on each.
     fn parts(&self, from: Rect) -> impl Iterator<Item = (&Tile, Rect, TileAt)> {
         let part = move |at: TileAt| Some((&**self.tile(at)?, at.rect().intersect(from), at));
         TileAt::covering(from).filter_map(part)

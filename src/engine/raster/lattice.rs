@@ -1,8 +1,8 @@
-//! Displacements on a lattice: what is seen at a point is what would be seen a little aside. Floor 1. Sparse, by
-//! blocks of a tile's size; a block in which nothing is displaced is not held, so that pixels there stay untouched.
+//! Displacements on a lattice: each point shows what would be seen a little away from it. Floor 1. Sparse, in blocks of
+//! a tile's size; a block in which nothing is displaced is not held, so that pixels there stay untouched.
 //!
-//! A node stands at every eighth pixel's upper left corner. Between nodes runs Catmull and Rom's cubic: it passes
-//! through them, is smooth, and is 0 where all nodes around are.
+//! There is a node at every eighth pixel's upper left corner. A Catmull–Rom cubic passes through the nodes; it is
+//! smooth, and 0 where all surrounding nodes are.
 
 use super::grid::Grid;
 use super::tile::{TILE, TILE_AREA, TileAt};
@@ -14,14 +14,14 @@ use std::sync::Arc;
 pub const CELL: usize = 8;
 /// Nodes along a block's side.
 pub const SIDE: usize = TILE / CELL;
-/// Nodes along the side of all that a tile's pixels are interpolated from.
+/// Nodes along a side of the area that a tile's pixels are interpolated from.
 const AROUND: usize = SIDE + 3;
 
 /// The nodes of one tile, row by row: displacements, px.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LatticeBlock(pub [Vec2; SIDE * SIDE]);
 
-/// A displacement u of every point of a plane: at q is seen what would be seen at q + u(q).
+/// A displacement u of every point of a plane: q shows what would be at q + u(q).
 #[derive(Clone, Default)]
 pub struct Lattice {
     blocks: Grid<LatticeBlock>,
@@ -50,11 +50,11 @@ impl std::fmt::Debug for Lattice {
 }
 
 impl Lattice {
-    /// Parts of a pixel that displacements are held in, so that files give them back to the last bit.
+    /// Displacements are held in this fraction of a pixel, so that files keep every bit of them.
     pub const PER_PX: f32 = 64.0;
     /// The longest displacement along an axis, px.
     pub const FARTHEST_PX: f32 = 16_384.0;
-    /// Blocks lie at most so far from the canvas's corner.
+    /// The farthest that blocks may be from the canvas's corner.
     pub const FARTHEST_BLOCK: i32 = 16_000;
 
     pub fn is_empty(&self) -> bool {
@@ -64,7 +64,7 @@ impl Lattice {
     pub fn blocks(&self) -> impl Iterator<Item = (TileAt, &Arc<LatticeBlock>)> {
         self.blocks.iter()
     }
-    /// Puts a block in place, rounded; one that displaces nothing is none.
+    /// Puts a block in place, rounded; one that displaces nothing is not held.
     pub fn set(&mut self, at: TileAt, mut block: LatticeBlock) {
         block.0.iter_mut().for_each(|u| *u = held(*u));
         let is_none = block.0.iter().all(|u| *u == Vec2::ZERO);
@@ -73,14 +73,14 @@ impl Lattice {
             _ => self.blocks.set(at, (!is_none).then(|| Arc::new(block))),
         }
     }
-    /// Of the node `(i, j)`, which stands at `8 (i, j)`.
+    /// At the node `(i, j)`, whose position is `8 (i, j)`.
     pub fn node(&self, i: i32, j: i32) -> Vec2 {
         let side = SIDE as i32;
         let at = TileAt::new(i.div_euclid(side), j.div_euclid(side));
         let place = (j.rem_euclid(side) * side + i.rem_euclid(side)) as usize;
         self.blocks.tile(at).map_or(Vec2::ZERO, |block| block.0[place])
     }
-    /// Changes every node of a rectangle of pixels: its place and its displacement make a new one.
+    /// Changes every node of a rectangle of pixels: its new displacement is a function of its position and its old one.
     pub fn change(&mut self, rect: Rect, new: impl Fn(&Lattice, Vec2, Vec2) -> Vec2) {
         let old = self.clone();
         let cell = CELL as i32;
@@ -112,7 +112,7 @@ impl Lattice {
         }
         Displaced { by, jacobian: Mat2::from_cols(right, down) }
     }
-    /// All nodes that a tile's pixels are interpolated from, row by row; `None` where none displaces.
+    /// All nodes that a tile's pixels are interpolated from, row by row; `None` if none displaces.
     fn around(&self, at: TileAt) -> Option<[[Vec2; AROUND]; AROUND]> {
         let near = |d: i32| (-1..=1).map(move |c| TileAt::new(at.col + c, at.row + d));
         if (-1..=1).flat_map(near).all(|at| self.blocks.tile(at).is_none()) {
@@ -132,12 +132,12 @@ impl Lattice {
     pub fn is_none_on(&self, at: TileAt) -> bool {
         self.around(at).is_none()
     }
-    /// At the middle of every pixel of a tile: which point it shows, and how that moves with the pixel; `None` where
-    /// the tile shows itself. The same as [`Lattice::at`], along rows.
+    /// At the middle of every pixel of a tile: which point it shows, and how that moves with the pixel; `None` if the
+    /// tile shows itself. The same as [`Lattice::at`], along rows.
     pub fn on_tile(&self, at: TileAt) -> Option<TilePoints> {
         let nodes = self.around(at)?;
         let phases: [NodeWeights; CELL] = std::array::from_fn(|k| NodeWeights::at((k as f32 + 0.5) / CELL as f32));
-        // Turned about: of each weight those of all phases side by side.
+        // Transposed: for each weight its values in all phases, contiguous.
         let value: [[f32; CELL]; 4] = std::array::from_fn(|i| std::array::from_fn(|k| phases[k].value[i]));
         let slope: [[f32; CELL]; 4] = std::array::from_fn(|i| std::array::from_fn(|k| phases[k].slope[i]));
         let mut out = TilePoints::new(TILE_AREA);
@@ -173,9 +173,9 @@ impl Lattice {
         near.retain(|at| self.around(*at) != other.around(*at));
         near
     }
-    /// The same displacement of a plane that a map took elsewhere: what was displaced there is displaced likewise.
-    ///
-    /// * `within`: nodes beyond it are forgotten.
+    /// The same displacement after a map of the plane: what was displaced is displaced in the same way in its new
+    /// place.
+    /// * `within`: nodes beyond it are dropped.
     pub fn carried(&self, map: &PlaneMap, within: Rect) -> Lattice {
         let held = self.blocks.bounds().grown(2 * CELL as i32);
         let corner = |x: i32, y: i32| map.to_canvas(vec2(x as f32, y as f32));
@@ -211,18 +211,18 @@ crate::widest! {
     }
 }
 
-/// A displacement as it is held: in range, in whole parts of a pixel; none of what is no number.
+/// A displacement as it is held: in range, a multiple of the smallest part of a pixel; 0 for NaN.
 fn held(u: Vec2) -> Vec2 {
     let side = |v: f32| {
         let v = if v.is_finite() { v } else { 0.0 };
         let far = Lattice::FARTHEST_PX;
-        // −0 is none.
+        // −0 becomes 0.
         (v.max(-far).min(far) * Lattice::PER_PX).round() / Lattice::PER_PX + 0.0
     };
     vec2(side(u.x), side(u.y))
 }
 
-/// The weights of four nodes at a share of the way from the second to the third, and their slopes, per px.
+/// The weights of four nodes at a ratio of the way from the second to the third, and their slopes, per px.
 struct NodeWeights {
     value: [f32; 4],
     slope: [f32; 4],

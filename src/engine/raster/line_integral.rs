@@ -28,7 +28,7 @@ const CONTRAST: f32 = 0.22;
 /// Smears noise along `direction`; values in `[0, 1]` around a mean of ½.
 ///
 /// * `direction`: unit vectors, image axes; their signs do not matter; zero where there is none.
-/// * `passes`: whether a line may go on from one pixel to another, which touch at a side or a corner.
+/// * `passes`: whether a line may continue from one pixel to another that touches it at a side or a corner.
 pub fn smeared_noise(
     direction: &Plane<Vec2>,
     lines: LineStyle,
@@ -63,7 +63,7 @@ fn trace(
     let mut heading = direction.at(here.0, here.1) * sign;
     for &w in weights {
         let along = direction.at(here.0, here.1);
-        // A direction has no sign: the line continues the way it came.
+        // A direction has no sign: the line keeps its heading.
         heading = if along.dot(heading) < 0.0 { -along } else { along };
         if heading == Vec2::ZERO {
             return;
@@ -94,8 +94,8 @@ impl NoiseSum {
         self.value += weight * noise;
         self.squares += weight * weight;
     }
-    /// The sum of independent values of unit variance, scaled to unit variance again: short lines are no louder than
-    /// long ones.
+    /// The sum of independent values of unit variance, scaled to unit variance again: short lines have no more contrast
+    /// than long ones.
     fn of_unit_variance(&self) -> f32 {
         self.value / self.squares.sqrt()
     }

@@ -10,7 +10,7 @@ use std::sync::Arc;
 pub struct Picture {
     pub size: Size,
     pub texels: Texels,
-    /// What the bytes were rounded from, where a file holds 16 bits a channel: straight, encoded, one for each texel.
+    /// What the bytes were rounded from, if a file holds 16 bits a channel: straight, encoded, one for each texel.
     pub deep: Option<Arc<[[u16; 4]]>>,
     /// The file it was decoded from, so that a project can keep the original bytes; `None` for a picture made here.
     pub encoded: Option<Asset>,
@@ -36,7 +36,7 @@ impl PartialEq for Texels {
 }
 
 impl PartialEq for Picture {
-    /// The same texels, from whatever file.
+    /// The same texels, from any file.
     fn eq(&self, other: &Self) -> bool {
         let same_deep = match (&self.deep, &other.deep) {
             (Some(a), Some(b)) => Arc::ptr_eq(a, b) || a == b,
@@ -48,9 +48,9 @@ impl PartialEq for Picture {
 }
 
 impl Picture {
-    /// The longest side that is read unless a command is told otherwise, px.
+    /// The longest side that is read by default, px.
     pub const LONGEST_SIDE_PX: u32 = 32_768;
-    /// So are the pixels.
+    /// The most pixels that are read by default.
     pub const MOST_PX: usize = 268_435_456;
 
     /// `None` unless there is one texel per pixel and at least one pixel.
@@ -71,12 +71,12 @@ impl Picture {
     fn made(size: Size, texels: Texels) -> Self {
         Self { size, texels, deep: None, encoded: None }
     }
-    /// The same picture, of which every texel is also known in 16 bits; bytes alone if there are not as many.
+    /// The same picture with every texel also in 16 bits; only bytes if the number of texels differs.
     pub fn with_deep(self, deep: Vec<[u16; 4]>) -> Self {
         let fits = matches!(self.texels, Texels::Srgb8(_)) && deep.len() == self.size.area();
         Self { deep: fits.then(|| deep.into()), ..self }
     }
-    /// Where its texels lie in memory: pictures that share them have the same.
+    /// Where its texels are in memory: the same for pictures that share them.
     pub fn place(&self) -> usize {
         match &self.texels {
             Texels::Srgb8(texels) => texels.as_ptr() as usize,

@@ -1,5 +1,5 @@
-//! Pixels in flight while a picture is flattened: one tile, f32, premultiplied, each channel of a row on its own so
-//! that loops over a row need no shuffles.
+//! Pixels in flight while a picture is flattened: one tile, f32, premultiplied, each channel of a row separate so that
+//! loops over a row need no shuffles.
 //! Floor 1. Stored pixels are `tile`; how they mix is `blend`.
 
 use super::tile::deep::{self, DeepRow};
@@ -13,10 +13,11 @@ pub fn sane(p: [f32; 4]) -> [f32; 4] {
     [p[0].max(0.0).min(a), p[1].max(0.0).min(a), p[2].max(0.0).min(a), a]
 }
 
-/// One row of a tile, premultiplied, encoded. A KiB, so that a row and what meets it stay in the first-level cache.
+/// One row of a tile, premultiplied, encoded. A KiB, so that a row and what is mixed into it stay in the first-level
+/// cache.
 #[derive(Clone, Copy)]
 pub struct PixelRow {
-    /// Red, green, blue, each in `[0, alpha]`; above it only where a picture keeps light that is brighter than white.
+    /// Red, green, blue, each in `[0, alpha]`; above alpha only if a picture keeps light that is brighter than white.
     pub rgb: [[f32; TILE]; 3],
     /// Alpha, `[0, 1]`.
     pub a: [f32; TILE],
@@ -43,7 +44,7 @@ impl PlanarTile {
     pub fn of_rows(rows: usize) -> Self {
         Self { rows: vec![PixelRow::TRANSPARENT; rows] }
     }
-    /// Takes pixels in; values that are out of range or NaN are brought into range.
+    /// Reads pixels; values that are out of range or NaN are brought into range.
     pub fn from_pixels(pixels: &TileF32) -> Self {
         let mut tile = Self::transparent();
         for (row, pixels) in tile.rows.iter_mut().zip(pixels.chunks_exact(TILE)) {
@@ -66,7 +67,7 @@ impl PlanarTile {
         }
         tile
     }
-    /// Lowers colours that are brighter than white to it.
+    /// Lowers colours that are brighter than white to white.
     pub fn clip_to_white(&mut self) {
         for PixelRow { rgb, a } in &mut self.rows {
             for channel in rgb {
@@ -82,7 +83,7 @@ impl PlanarTile {
             }
         }
     }
-    /// The rows, `TILE` of a tile, the top one first.
+    /// The rows, `TILE` for a tile, the top one first.
     pub fn rows(&self) -> &[PixelRow] {
         &self.rows
     }
@@ -98,12 +99,12 @@ impl PlanarTile {
         }
         Tile::from_bytes(bytes)
     }
-    /// As a paint layer keeps it, painted on `was`: rounded to 16 bits where it is soft ([`deep::is_soft`]) or was that
-    /// before, else to bytes. `None` where the tile is wholly transparent.
+    /// As a paint layer keeps it, painted on `was`: rounded to 16 bits if it is soft ([`deep::is_soft`]) or had them
+    /// before, else to bytes. `None` if the tile is wholly transparent.
     pub fn kept(&self, was: Option<&Tile>) -> Option<Tile> {
         self.kept_after(was.is_some_and(Tile::is_deep))
     }
-    /// The same of pixels that some paint of 16 bits is in, or none.
+    /// The same; `was_deep`: the pixels contain paint of 16 bits.
     pub fn kept_after(&self, was_deep: bool) -> Option<Tile> {
         let put = |y: usize, deep: &mut DeepRow| {
             let PixelRow { rgb: [r, g, b], a } = &self.rows[y];

@@ -11,7 +11,7 @@ pub struct Plane<T> {
     values: Vec<T>,
 }
 
-/// A copy that finds no room is refused as a new plane is.
+/// A copy for which there is no memory is refused like a new plane.
 impl<T: Clone> Clone for Plane<T> {
     fn clone(&self) -> Self {
         Self { size: self.size, values: copied_or_unwind(&self.values) }
@@ -22,7 +22,7 @@ impl<T: Copy> Plane<T> {
     pub fn filled(size: Size, value: T) -> Self {
         Self { size, values: filled_or_unwind(size.area(), value) }
     }
-    /// `None` where `values` does not hold exactly one value per pixel.
+    /// `None` if `values` does not hold exactly one value per pixel.
     pub fn from_values(size: Size, values: Vec<T>) -> Option<Self> {
         (values.len() == size.area()).then_some(Self { size, values })
     }
@@ -41,7 +41,7 @@ impl<T: Copy> Plane<T> {
         });
         Self { size, values }
     }
-    /// Computes every pixel anew from its column, row and value, rows in parallel, in the same memory.
+    /// Computes every pixel again from its column, row and value, rows in parallel, in the same memory.
     pub fn updated(mut self, value: impl Fn(usize, usize, T) -> T + Sync) -> Self
     where
         T: Send + Sync,

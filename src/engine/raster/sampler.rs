@@ -14,7 +14,7 @@ pub use rows::Bilinear;
 use super::texture::{MipLevel, Outside, Texel, Texture};
 use crate::math::Vec2;
 
-/// Positions beyond this, in texels, are pulled in: an index must fit an i32.
+/// Positions beyond this, in texels, are clamped: an index must fit an i32.
 const FARTHEST: f32 = 1e9;
 
 /// One bilinear tap: the premultiplied colour, in `[0, 1]`, at `p` in texels (texel (i, j) has its centre at (i+½,

@@ -1,5 +1,5 @@
-//! A texture: a picture ready to be sampled, premultiplied sRGB with its mip levels: bytes as a rule, floats for
-//! pictures of more than 8 bits a channel. Floor 1. Never edited; shared by `Arc`. Sampling is `sampler`.
+//! A texture: a picture ready to be sampled, premultiplied sRGB with its mip levels: usually bytes, floats for pictures
+//! of more than 8 bits a channel. Floor 1. Never edited; shared by `Arc`. Sampling is `sampler`.
 
 use super::picture::{Picture, Texels};
 use crate::math::{Size, srgb};
@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 crate::named! {
-    /// What a lookup beyond the picture's border finds.
+    /// What a lookup beyond the picture's border returns.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
     pub enum Outside {
         /// The picture mirrored at its border (… b a | a b …).
@@ -23,7 +23,7 @@ crate::named! {
 }
 
 impl Outside {
-    /// The texel at index `i` of a row of `n`, `n ≥ 1`; `None` where there is none.
+    /// The texel at index `i` of a row of `n`, `n ≥ 1`; `None` if there is none.
     #[inline(always)]
     pub fn index(self, i: i32, n: i32) -> Option<i32> {
         if (0..n).contains(&i) {
@@ -43,7 +43,7 @@ impl Outside {
 
 /// What a texture holds of a texel, premultiplied and sRGB-encoded.
 pub trait Texel: Copy + Send + Sync + Default {
-    /// In the unit of the kind: 0 … 255 of bytes, 0 … 1 and beyond of floats.
+    /// In the unit of the kind: 0 … 255 for bytes, 0 … 1 and beyond for floats.
     fn value(self) -> [f32; 4];
     /// The nearest that can be held.
     fn of(value: [f32; 4]) -> Self;
@@ -106,7 +106,7 @@ impl Texture {
 }
 
 impl DeepTexture {
-    /// Of straight encoded texels, one for each pixel.
+    /// From straight encoded texels, one for each pixel.
     pub fn deep(size: Size, straight: Vec<[f32; 4]>) -> Self {
         Self::of_texels(size, straight.into_iter().map(|[r, g, b, a]| [r * a, g * a, b * a, a]).collect())
     }
@@ -124,7 +124,7 @@ impl<T: Texel> Texture<T> {
     pub fn bytes(&self) -> u64 {
         self.levels.iter().map(|level| size_of_val(&level.texels[..]) as u64).sum()
     }
-    /// The same texture without its finest levels, as if the picture were so much smaller; one is always left.
+    /// The same texture without its finest levels, as if the picture were that much smaller; one level is always left.
     pub fn coarser(&self, levels: u32) -> Self {
         let first = self.first.saturating_add(levels as usize).min(self.levels.len() - 1);
         Self { levels: self.levels.clone(), first }

@@ -1,4 +1,4 @@
-//! A tile: 64 × 64 pixels of a layer, premultiplied sRGB of 8 bits, and of 16 where something soft was painted; shared
+//! A tile: 64 × 64 pixels of a layer, premultiplied sRGB with 8 bits, and with 16 if something soft was painted; shared
 //! and never edited while shared. Floor 1. Pixels of 16 bits, and what is soft, are in `deep`.
 
 pub mod deep;
@@ -30,7 +30,7 @@ pub struct TileAt {
 }
 
 impl TileAt {
-    /// The place in this column and row.
+    /// The tile in this column and row.
     pub const fn new(col: i32, row: i32) -> Self {
         Self { col, row }
     }
@@ -52,12 +52,12 @@ impl TileAt {
     }
 }
 
-/// The pixels of one tile. `None` in a grid stands for a transparent one.
+/// The pixels of one tile. `None` in a grid is a transparent tile.
 #[derive(Clone)]
 pub struct Tile {
     pixmap: Pixmap,
     opaque: bool,
-    /// What `pixmap` was rounded from, if that holds more than bytes can.
+    /// What `pixmap` was rounded from, if it holds more than bytes can.
     deep: Option<Box<[DeepRow]>>,
 }
 
@@ -71,8 +71,8 @@ impl Tile {
         let size = tiny_skia::IntSize::from_wh(TILE as u32, TILE as u32)?;
         Some(Tile { pixmap: Pixmap::from_vec(rgba, size)?, opaque, deep: None })
     }
-    /// A tile of [`TILE`] rows of 16 bits, colours no greater than alpha; one of bytes where these hold all of it.
-    /// `None` where it is wholly transparent.
+    /// A tile of [`TILE`] rows of 16 bits, colours no greater than alpha; one of bytes if these hold it exactly. `None`
+    /// if it is wholly transparent.
     pub fn from_deep(rows: Box<[DeepRow]>) -> Option<Tile> {
         if rows.len() != TILE || rows.iter().all(|row| row[3] == [0; TILE]) {
             return None;
@@ -83,13 +83,13 @@ impl Tile {
         let opaque = tile.opaque && rows.iter().all(|row| row[3] == [u16::MAX; TILE]);
         Some(if is_of_bytes { tile } else { Tile { opaque, deep: Some(rows), ..tile } })
     }
-    /// Quantises a tile; `None` where it is wholly transparent.
+    /// Quantises a tile; `None` if it is wholly transparent.
     pub fn quantised(pixels: &TileF32) -> Option<Tile> {
         let mut bytes = vec![0u8; TILE_AREA * 4];
         quantise_pixels(pixels, &mut bytes);
         Tile::from_pixels(bytes)
     }
-    /// As [`Tile::from_bytes`]; `None` where it is wholly transparent.
+    /// As [`Tile::from_bytes`]; `None` if it is wholly transparent.
     pub fn from_pixels(rgba: Vec<u8>) -> Option<Tile> {
         let is_transparent = rgba.chunks_exact(4).all(|p| p[3] == 0);
         if is_transparent { None } else { Tile::from_bytes(rgba) }
@@ -128,7 +128,7 @@ impl Tile {
             }
         }
     }
-    /// Some paint lies on a pixel, be it fainter than a byte can say; `i`: its place, row by row.
+    /// There is some paint on a pixel, even fainter than a byte can hold; `i`: its index, row by row.
     pub fn is_painted(&self, i: usize) -> bool {
         match &self.deep {
             Some(rows) => rows[i / TILE][3][i % TILE] > 0,
@@ -139,7 +139,7 @@ impl Tile {
     pub fn is_same(&self, other: &Tile) -> bool {
         self.deep == other.deep && self.bytes() == other.bytes()
     }
-    /// Premultiplied RGBA bytes, row by row: of 16 bits, rounded.
+    /// Premultiplied RGBA bytes, row by row; 16 bits are rounded.
     pub fn bytes(&self) -> &[u8] {
         self.pixmap.data()
     }

@@ -25,7 +25,7 @@ impl TileGrid {
         }
         grid
     }
-    /// The same of straight values of 16 bits; tiles of which bytes hold all are of bytes.
+    /// The same for straight values of 16 bits; tiles that bytes hold exactly become tiles of bytes.
     pub fn from_straight_deep(rgba: &[[u16; 4]], width: usize, height: usize, x: i32, y: i32) -> Self {
         let rect = Rect::new(x, y, x.saturating_add(width as i32), y.saturating_add(height as i32));
         let mut grid = Self::for_rect(rect);
@@ -57,7 +57,7 @@ impl TileGrid {
         }
         out
     }
-    /// The same in 16 bits, whatever the tiles hold; [`TileGrid::from_straight_deep`] gives back just these.
+    /// The same in 16 bits, whatever the tiles hold; [`TileGrid::from_straight_deep`] is the exact inverse.
     pub fn to_straight_deep(&self, rect: Rect) -> Vec<[u16; 4]> {
         let mut out = vec![[0; 4]; rect.width() * rect.height()];
         for at in TileAt::covering(rect) {
@@ -79,7 +79,7 @@ crate::widest! {
     pub fn premultiply(straight: &[u8], premultiplied: &mut [u8]) {
         let (straight, premultiplied) = (straight.as_chunks::<4>().0, premultiplied.as_chunks_mut::<4>().0);
         for (s, p) in straight.iter().zip(premultiplied) {
-            // The alpha itself as a colour that is whole.
+            // 255 for alpha, which times alpha gives alpha.
             let whole = [s[0], s[1], s[2], 255];
             let a = u32::from(s[3]);
             *p = whole.map(|c| ((u32::from(c) * a + 127) / 255) as u8);
@@ -91,7 +91,7 @@ crate::widest! {
         let (premultiplied, straight) = (premultiplied.as_chunks::<4>().0, straight.as_chunks_mut::<4>().0);
         for (p, s) in premultiplied.iter().zip(straight) {
             let a = i32::from(p[3]);
-            // Of numbers below 2¹⁶ a rounded-down f32 quotient is the whole quotient.
+            // For numbers below 2¹⁶ a rounded-down f32 quotient is the integer quotient.
             let over = a.max(1) as f32;
             let color = [p[0], p[1], p[2]].map(|c| ((i32::from(c) * 255 + a / 2) as f32 / over) as i32);
             let held = if a == 0 { 0 } else { 255 };
@@ -149,7 +149,7 @@ mod tests {
             let [_, _, _, a] = pixels[(y - 3) as usize * w + (x + 59) as usize];
             assert_eq!(grid.deep_pixel(x, y)[3], a);
         }
-        // Moved, and joined of parts, they are the same.
+        // Moved, or joined from parts, they are the same.
         let moved = grid.translated(37, -101);
         assert!(moved.to_straight_deep(Rect::new(-22, -98, 108, -28)) == straight);
         let mut joined = TileGrid::from_straight_deep(&pixels[..w * 30], w, 30, -59, 3);

@@ -1,6 +1,6 @@
 use super::*;
 
-/// A bump of so many px about a point.
+/// A bump of this many px about a point.
 fn bump(center: Vec2, radius: f32, by: Vec2) -> Lattice {
     let mut lattice = Lattice::default();
     let (low, high) = (center - radius, center + radius);

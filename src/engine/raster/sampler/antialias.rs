@@ -3,11 +3,11 @@
 //!
 //! The piece is a curved quadrilateral: each of the pixel's four half-edges is differenced separately, because on real
 //! maps (8 bits, fine detail) the two sides of a pixel often stretch differently, and a single ellipse then misses a
-//! third of the error (docs/OPERATORS.md has the figures). A grid of bilinear taps covers it, each standing for a cell
-//! of about two texels of the mip level, which is the coarsest that the taps can still resolve.
+//! third of the error (docs/OPERATORS.md has the figures). A grid of bilinear taps covers it, each for a cell of about
+//! two texels of the mip level, which is the coarsest that the taps can still resolve.
 //!
-//! Eight neighbours whose patches are alike share a grid, and their taps are placed and read side by side; a pixel
-//! unlike its neighbours (a crease, a silhouette) has its own, one pixel after the other.
+//! Eight neighbours whose patches are alike share a grid, and their taps are placed and read together; a pixel unlike
+//! its neighbours (a crease, a silhouette) has its own grid and is read alone.
 
 mod grid;
 mod lattice;
@@ -54,7 +54,7 @@ pub struct Antialias {
 
 impl Default for Antialias {
     fn default() -> Self {
-        // As many taps as a patch may have are written at once; the surplus is written over by the next.
+        // As many taps as a patch may have are written at once; the surplus is overwritten by the next.
         let room = vec![0.0; SPAN * LANES + LANES];
         Self {
             x: room.clone(),
@@ -70,11 +70,11 @@ impl Default for Antialias {
 }
 
 impl Antialias {
-    /// The picture's premultiplied bytes, averaged over each patch and rounded: one pixel of `out` each.
+    /// The picture's premultiplied bytes, averaged over each patch and rounded: one pixel of `out` for each.
     pub fn row(&mut self, texture: &Texture, patches: PatchRow, outside: Outside, out: &mut [[u8; 4]]) {
         self.row_by(TapRule::AT_REST, texture, patches, outside, out);
     }
-    /// The same, covered as closely as a rule has it.
+    /// The same, covered as closely as a rule demands.
     pub fn row_by(
         &mut self,
         rule: TapRule,
@@ -123,7 +123,7 @@ impl Antialias {
             }
         }
     }
-    /// Tells each patch's number, its mip level and its taps, in texels of level 0; in any order.
+    /// Reports each patch's number, its mip level and its taps, in texels of level 0; in any order.
     pub(super) fn for_each_grid(
         &mut self,
         patches: PatchRow,
@@ -184,7 +184,7 @@ crate::widest! {
         }
     }
     /// Places the taps of the groups that read level `index`, whose texels are `scale` of level 0's: group after group,
-    /// tap after tap, the [`GROUP`] pixels side by side. How many they are.
+    /// tap after tap, the [`GROUP`] pixels side by side. Returns their number.
     fn place_groups(
         patches: PatchRow,
         groups: &[(TapGroup, TapGrid)],
@@ -232,7 +232,7 @@ crate::widest! {
     }
 }
 
-/// One coordinate of the taps of a group whose patches begin at `first`, pixel beside pixel.
+/// One coordinate of the taps of a group whose patches begin at `first`, pixel by pixel.
 #[inline(always)]
 fn spread_group(lattice: &TapLattice, center: &[f32], edges: [&[f32]; 4], first: usize, scale: f32, out: &mut [f32]) {
     let part = first..first + GROUP;
@@ -279,7 +279,7 @@ mod tests {
         let texel = |i: usize| if (i % size.width as usize) % period < period / 2 { [255; 4] } else { [0, 0, 0, 255] };
         Texture::new(&Picture::srgb8(size, (0..size.area()).map(texel).collect()).unwrap())
     }
-    /// One patch of the sides given, straight.
+    /// One straight patch with the given sides.
     fn patch(texture: &Texture, at: [f32; 2], across: f32, along: f32) -> [u8; 4] {
         let [x, y] = at.map(|v| [v]);
         let half = |v: f32| [v / 2.0];

@@ -1,5 +1,5 @@
-//! Reading a texture of floats: the same taps as of bytes, weighed and added without rounding. Floor 1. For pictures
-//! that are written once, so it reads like the definition and is not made to be fast.
+//! Reading a texture of floats: the same taps as for bytes, weighted and added without rounding. Floor 1. For pictures
+//! that are written once, so it follows the definition and is not optimised.
 
 use super::antialias::Antialias;
 use super::{PatchRow, bilinear_in};
@@ -7,7 +7,7 @@ use crate::math::vec2;
 use crate::raster::Outside;
 use crate::raster::texture::DeepTexture;
 
-/// The picture's premultiplied colour at each position (`x`, `y`; texels), one of `out` each: twin of
+/// The picture's premultiplied colour at each position (`x`, `y`; texels), one of `out` for each: twin of
 /// [`Bilinear::row`](super::Bilinear::row).
 pub fn bilinear_row(texture: &DeepTexture, x: &[f32], y: &[f32], outside: Outside, out: &mut [[f32; 4]]) {
     for ((x, y), out) in x.iter().zip(y).zip(out) {
@@ -16,7 +16,7 @@ pub fn bilinear_row(texture: &DeepTexture, x: &[f32], y: &[f32], outside: Outsid
 }
 
 impl Antialias {
-    /// The picture's premultiplied colour averaged over each patch, one of `out` each: twin of [`Antialias::row`].
+    /// The picture's premultiplied colour averaged over each patch, one of `out` for each: twin of [`Antialias::row`].
     pub fn deep_row(&mut self, texture: &DeepTexture, patches: PatchRow, outside: Outside, out: &mut [[f32; 4]]) {
         let last = texture.levels().len() as u32 - 1;
         self.for_each_grid(patches, out.len(), last, |k, level, taps| {
@@ -66,7 +66,7 @@ mod tests {
             let (mut of_bytes, mut of_floats) = (vec![[0; 4]; 1000], vec![[0.0; 4]; 1000]);
             Bilinear::default().row(&bytes, &x, &y, outside, &mut of_bytes);
             bilinear_row(&deep, &x, &y, outside, &mut of_floats);
-            // Half a step of the result, and as much of the texels themselves.
+            // Half a step for the result, and as much for the texels themselves.
             assert!(farthest(&of_bytes, &of_floats) <= 1.05, "{outside:?}");
             let patches = PatchRow { x: &x, y: &y, edges };
             Antialias::default().row(&bytes, patches, outside, &mut of_bytes);

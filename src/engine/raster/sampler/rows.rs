@@ -11,7 +11,7 @@ pub struct Bilinear {
 }
 
 impl Bilinear {
-    /// The picture's premultiplied bytes at each position (`x`, `y`; texels), rounded: one pixel of `out` each.
+    /// The picture's premultiplied bytes at each position (`x`, `y`; texels), rounded: one pixel of `out` for each.
     pub fn row(&mut self, texture: &Texture, x: &[f32], y: &[f32], outside: Outside, out: &mut [[u8; 4]]) {
         // Pixels in flight: their taps stay in the first-level cache.
         const SPAN: usize = 256;

@@ -14,7 +14,7 @@ use find::find;
 /// Where taps read. Scratch, kept from row to row.
 #[derive(Default)]
 pub struct Taps {
-    /// Of the upper left texel; negative at a seam, where the four texels do not lie together inside the picture.
+    /// Of the upper left texel; negative at a seam, where the four texels are not adjacent inside the picture.
     index: Vec<i32>,
     /// Weights of the left texels (low half) and the right ones (high half), in [`ONE`]-ths.
     across: Vec<u32>,
@@ -54,7 +54,7 @@ impl Taps {
     /// Finds the texels of every position.
     pub fn find(&mut self, at: TapPositions) {
         let n = at.x.len();
-        // Every value is written below, so leftovers of the last call do no harm.
+        // Every value is written below, so values left from the last call do not matter.
         if n != self.index.len() {
             self.index.resize(n, 0);
             self.across.resize(n, 0);
@@ -121,7 +121,7 @@ impl Taps {
             }
         }
     }
-    /// Even and odd taps are added up apart, as the wide version does.
+    /// Even and odd taps are added up separately, as in the wide version.
     fn mean(&self, at: TapPositions, taps: std::ops::Range<usize>, share: f32) -> [u8; 4] {
         let mut sums = [[0.0; 4]; 2];
         for (k, tap) in taps.enumerate() {
@@ -151,7 +151,7 @@ impl Taps {
     }
 }
 
-/// What a weight of 1 is as an integer: two weighted bytes then fit 22 bits, which an f32 holds exactly.
+/// A weight of 1 as an integer: two weighted bytes then fit 22 bits, which an f32 holds exactly.
 const ONE: f32 = 16384.0;
 
 /// Two texels side by side, mixed; `[0, 255 ONE]`.
@@ -161,7 +161,7 @@ fn mix_pair([left, right]: &[[u8; 4]; 2], across: u32) -> [f32; 4] {
 }
 
 impl TapRun {
-    /// What makes a sum of `count` taps their mean, in bytes.
+    /// The factor that turns a sum of `count` taps into their mean, in bytes.
     #[inline(always)]
     fn share(self) -> f32 {
         SHARES[usize::from(self.count) % SHARES.len()]

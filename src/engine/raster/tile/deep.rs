@@ -1,5 +1,5 @@
-//! Pixels of 16 bits, which a tile holds beside its bytes where something soft was painted: premultiplied, 65535 is
-//! whole. Floor 1. Each channel of a row stands on its own, so that loading a row takes no shuffles.
+//! Pixels of 16 bits, which a tile holds in addition to its bytes if something soft was painted: premultiplied, 65535
+//! is full. Floor 1. Each channel of a row is separate, so that loading a row takes no shuffles.
 
 use super::TILE;
 use crate::math::srgb::quantise_deep;
@@ -10,13 +10,13 @@ pub type DeepRow = [[u16; TILE]; 4];
 /// A row without paint.
 pub const CLEAR_ROW: DeepRow = [[0; TILE]; 4];
 
-/// A value of 16 bits of one level of 8.
+/// One level of 8 bits in 16 bits.
 pub const LEVEL: u16 = 257;
 
-/// So many pixels of a tile must be soft for it to be kept in 16 bits. Edges of ink leave one or two by chance.
+/// This many pixels of a tile must be soft for it to be kept in 16 bits. Edges of ink leave one or two by chance.
 const LEAST_SOFT: u32 = 8;
 
-/// Nearer to a byte than a sixteenth of a level a value counts as one: strokes let so much through.
+/// A value nearer to a byte than a sixteenth of a level counts as that byte: strokes leave such residues.
 const TRACE: u16 = LEVEL / 16;
 
 /// A tile of transparent rows.
@@ -24,10 +24,10 @@ pub fn clear_rows() -> Box<[DeepRow]> {
     vec![CLEAR_ROW; TILE].into_boxed_slice()
 }
 
-/// The byte nearest to a value of 16 bits; no value lies between two.
+/// The byte nearest to a value of 16 bits; there are no ties.
 #[inline(always)]
 pub fn byte_of(v: u16) -> u8 {
-    // (v + 128) / 257 of every v, without a division (tested).
+    // (v + 128) / 257 for every v, without a division (tested).
     ((u32::from(v) * 255 + 32895) >> 16) as u8
 }
 
@@ -69,7 +69,7 @@ crate::widest! {
         }
     }
 
-    /// Rounds rows to bytes, four a pixel; whether every value is a byte's own.
+    /// Rounds rows to bytes, four a pixel; whether bytes hold every value exactly.
     pub fn to_bytes(deep: &[DeepRow], bytes: &mut [u8]) -> bool {
         let mut off = 0;
         for (row, bytes) in deep.iter().zip(bytes.chunks_exact_mut(4 * TILE)) {
@@ -99,7 +99,7 @@ crate::widest! {
     fn soft_in_row(above: &DeepRow, row: &DeepRow, below: &DeepRow, soft: &mut [u16; TILE]) {
         let (mut off, mut steps) = ([0u16; TILE], [0u16; TILE]);
         for c in 0..4 {
-            // Beyond the tile its border goes on.
+            // The border is repeated beyond the tile.
             let mut wide = [0u16; TILE + 2];
             wide[1..=TILE].copy_from_slice(&row[c]);
             (wide[0], wide[TILE + 1]) = (row[c][0], row[c][TILE - 1]);
@@ -117,14 +117,14 @@ crate::widest! {
     }
 }
 
-/// Whether bytes would lose what was painted: some pixels are soft. A pixel is that if bytes cannot hold it, and all
-/// four beside it lie less than a level of 8 bits away in every channel.
+/// Whether bytes would lose what was painted: some pixels are soft. A pixel is soft if bytes cannot hold it, and all
+/// four neighbours differ by less than a level of 8 bits in every channel.
 ///
-/// There rounding makes steps that are wider than a pixel, which are seen as bands; and there paint that comes faintly,
-/// stroke upon stroke, is rounded away. At an edge, where neighbours are levels apart, neither is seen: so ink, its
-/// rims included, stays in bytes.
+/// In soft pixels rounding makes steps that are wider than a pixel, which show as bands, and faint paint that builds up
+/// stroke by stroke is rounded away. At an edge, where neighbours are levels apart, neither shows: so ink, including
+/// its rims, stays in bytes.
 ///
-/// * `row`: puts a row in place, the top one first; each is asked for once.
+/// * `row`: puts a row in place, the top one first; each is requested once.
 pub fn is_soft(mut row: impl FnMut(usize, &mut DeepRow)) -> bool {
     // Three rows at a time, so that they stay in the first-level cache.
     let (mut window, mut count, mut soft) = ([CLEAR_ROW; 3], 0u32, [0u16; TILE]);
@@ -151,9 +151,9 @@ pub fn premultiplied([r, g, b, a]: [u16; 4]) -> [u16; 4] {
     [times(r), times(g), times(b), a]
 }
 
-/// Premultiplied values to straight ones, rounded to nearest: [`premultiplied`] gives back just these.
+/// Premultiplied values to straight ones, rounded to nearest: [`premultiplied`] is the exact inverse.
 ///
-/// For the straight value is at most ½ off, and multiplied by α / 65535 < 1 less than that.
+/// The straight value is at most ½ off, and less than that after multiplication by α / 65535 < 1.
 #[inline(always)]
 pub fn straight([r, g, b, a]: [u16; 4]) -> [u16; 4] {
     let (whole, half) = (u32::from(a.max(1)), u32::from(a / 2));

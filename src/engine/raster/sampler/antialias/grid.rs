@@ -5,20 +5,19 @@ use super::{PatchRow, SPAN};
 use crate::math::fast::max;
 use crate::raster::sampler::taps::GROUP;
 
-/// How closely patches are covered: handed down from what a picture is drawn for.
+/// How closely patches are covered: depends on what a picture is drawn for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TapRule {
-    /// Side of the cell that one tap stands for, in texels of level 0. A picture drawn pixel for pixel (1 texel) stays
-    /// as it is.
+    /// Side of the cell of one tap, in texels of level 0. A picture drawn pixel for pixel (1 texel) does not change.
     fine_cell: f32,
     /// Most taps a pixel may take, in all.
     most_taps: u32,
 }
 
 impl TapRule {
-    /// Of pictures that stay.
+    /// For pictures that stay.
     pub const AT_REST: Self = Self { fine_cell: 1.5, most_taps: MAX_TAPS };
-    /// Of pictures that are seen for a moment only, while a hand moves.
+    /// For pictures that are seen only for a moment, during a drag.
     pub const MOVING: Self = Self { fine_cell: 2.0, most_taps: 8 };
 
     /// The square of half a cell: a half-edge that is no longer belongs to a side of one cell.
@@ -51,7 +50,7 @@ impl TapGrid {
     /// One tap in level 0.
     pub const SINGLE: Self = Self { across: 1, along: 1, level: 0 };
 
-    /// For a patch that takes so many fine or coarse cells across and along in level 0.
+    /// For a patch that takes this many fine or coarse cells across and along in level 0.
     #[inline(always)]
     pub fn of_cells(fine: [u32; 2], coarse: [u32; 2], last_level: u32, most_taps: u32) -> Self {
         let [across, along] = fine;
@@ -92,9 +91,9 @@ pub struct CellCounts {
     rule: TapRule,
     /// The sides of every patch across and along, in texels.
     sides: [[f32; SPAN]; 2],
-    /// They in fine cells of the rule.
+    /// The sides in fine cells of the rule.
     fine: [[u32; SPAN]; 2],
-    /// In cells of [`COARSE_CELL`]; only where fine ones would be too many.
+    /// In cells of [`COARSE_CELL`]; only if fine ones would be too many.
     coarse: [[u32; SPAN]; 2],
     /// The most cells of a group's patches: fine ones, coarse ones.
     most: [[[u32; SPAN / GROUP]; 2]; 2],
@@ -113,7 +112,7 @@ impl Default for CellCounts {
 }
 
 impl CellCounts {
-    /// Of the first `n` patches of a row.
+    /// For the first `n` patches of a row.
     pub fn count(&mut self, patches: PatchRow, n: usize, rule: TapRule) {
         let n = n.min(SPAN);
         (self.rule, self.largest) = (rule, [1; 2]);
@@ -141,7 +140,7 @@ impl CellCounts {
         let [fine, coarse] = [&self.fine, &self.coarse].map(|cells| [cells[0][k], cells[1][k]]);
         TapGrid::of_cells(fine, coarse, last_level, self.rule.most_taps)
     }
-    /// The grid that holds the largest sides of a group's patches; `None` where it does not suit them all.
+    /// The grid that holds the largest sides of a group's patches; `None` if it does not suit them all.
     #[inline(always)]
     pub fn shared_grid(&self, group: usize, last_level: u32) -> Option<TapGrid> {
         let [fine, coarse] = [0, 1].map(|kind| [self.most[kind][0][group], self.most[kind][1][group]]);
@@ -153,13 +152,14 @@ impl CellCounts {
             let mut grids = (GROUP * group..GROUP * (group + 1)).map(|k| self.grid(k, last_level));
             grids.try_fold(0, |taps, grid| (grid.level == shared.level).then(|| taps + grid.taps()))?
         };
-        // Half as many taps again cost less than pixels that take turns.
+        // Half as many taps again cost less than reading the pixels one by one.
         (2 * shared.taps() * GROUP <= 3 * alone).then_some(shared)
     }
 }
 
 crate::widest! {
-    /// Whether no square of a patch's half-edge is above a limit: level ground, which needs no roots. NaN is above it.
+    /// Whether no squared half-edge of a patch is above a limit: undistorted ground, which needs no roots. NaN is above
+    /// it.
     fn are_within(patches: PatchRow, n: usize, limit: f32) -> bool {
         let mut within = 1;
         for [x, y] in patches.edges {

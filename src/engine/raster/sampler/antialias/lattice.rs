@@ -40,8 +40,8 @@ static LATTICES: [[TapLattice; LANES + 1]; LANES + 1] = {
     lattices
 };
 
-/// For a row of n taps, how far each goes along the half-edge before the middle, 0 … 1. A single tap stands at the
-/// middle of both half-edges, the mean of a patch whose two sides differ.
+/// For a row of n taps, how far each goes along the half-edge before the middle, 0 … 1. A single tap is at the middle
+/// of both half-edges, the mean of a patch whose two sides differ.
 const BEFORE: [[f32; LANES]; LANES + 1] = steps(-1.0);
 /// The same along the half-edge after the middle.
 const AFTER: [[f32; LANES]; LANES + 1] = steps(1.0);

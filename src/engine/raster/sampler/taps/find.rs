@@ -20,7 +20,7 @@ crate::widest! {
             Outside::None => find_folded(at, pair_or_seam, index, across, down),
             Outside::Clamp => find_folded(at, |c, n| pair(within(c, n) - 0.5, n), index, across, down),
             Outside::Repeat => find_folded(at, |c, n| pair_or_seam(repeated(c, n), n), index, across, down),
-            // Few pictures are bent so far that they repeat a second time.
+            // Few pictures are bent so far that they repeat twice.
             Outside::Mirror if all_lie(at.x, -2.0 * wide, 1.999 * wide) && all_lie(at.y, -2.0 * high, 1.999 * high) => {
                 find_folded(at, |c, n| pair(within(mirrored_once(c, n), n) - 0.5, n), index, across, down)
             }
@@ -67,7 +67,7 @@ fn pair(u: f32, n: f32) -> (i32, f32) {
     (integer(first), u - first)
 }
 
-/// The same for any position `c`; −1 where the pair is not in the picture.
+/// The same for any position `c`; −1 if the pair is not in the picture.
 #[inline(always)]
 fn pair_or_seam(c: f32, n: f32) -> (i32, f32) {
     let u = c - 0.5;
@@ -106,17 +106,17 @@ fn repeated(c: f32, n: f32) -> f32 {
 /// 1.5 · 2²³: added to a number below 2²² it leaves its nearest integer in the low bits. Rust's own casts saturate,
 /// which keeps LLVM from converting eight at a time.
 const TO_INTEGER: f32 = 12_582_912.0;
-/// Longest side of a level whose texels are found that way.
+/// Longest side of a level whose texels are found this way.
 const MAX_SIDE: i32 = 1 << 22;
 
-/// `f32::floor`, for values below 2²² in size.
+/// `f32::floor`, for magnitudes below 2²².
 #[inline(always)]
 fn floor(v: f32) -> f32 {
     let nearest = (v + TO_INTEGER) - TO_INTEGER;
     if nearest > v { nearest - 1.0 } else { nearest }
 }
 
-/// The integer that a whole number below 2²² in size is.
+/// A whole number with a magnitude below 2²² as an integer.
 #[inline(always)]
 fn integer(v: f32) -> i32 {
     (v + TO_INTEGER).to_bits() as i32 - TO_INTEGER.to_bits() as i32

@@ -46,10 +46,10 @@ pub fn group_means(taps: &Taps, at: TapPositions, groups: &[TapGroup], out: &mut
     }
 }
 
-/// How many fours of taps ahead their texels are asked for.
+/// How many groups of four taps ahead texels are prefetched.
 const AHEAD: usize = 16;
 
-/// Four pixels at a time; seams are done over, where there are any.
+/// Four pixels at a time; seams, if there are any, are computed again.
 #[target_feature(enable = "avx2")]
 unsafe fn singles_with<const SEAMS: bool>(taps: &Taps, at: TapPositions, out: &mut [[u8; 4]]) {
     let n = out.len().min(taps.index.len());
@@ -89,7 +89,7 @@ unsafe fn singles_with<const SEAMS: bool>(taps: &Taps, at: TapPositions, out: &m
     }
 }
 
-/// Eight pixels at a time; seams are done over, where there are any.
+/// Eight pixels at a time; seams, if there are any, are computed again.
 #[target_feature(enable = "avx2")]
 unsafe fn group_means_with<const SEAMS: bool>(taps: &Taps, at: TapPositions, groups: &[TapGroup], out: &mut [[u8; 4]]) {
     let mut first = 0;
@@ -170,7 +170,7 @@ unsafe fn means_with<const SEAMS: bool>(taps: &Taps, at: TapPositions, runs: &[T
     }
 }
 
-/// A hint that reads nothing: the upper row of one tap and the lower row of another are asked for.
+/// A hint that reads nothing: prefetches the upper row of one tap and the lower row of another.
 #[inline]
 #[target_feature(enable = "avx2")]
 fn prefetch(at: TapPositions, [upper, lower]: [i32; 2]) {
