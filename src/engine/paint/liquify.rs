@@ -24,6 +24,17 @@ crate::named! {
     }
 }
 
+impl LiquifyTool {
+    /// What does the same in a mirror.
+    pub fn mirrored(self) -> Self {
+        match self {
+            LiquifyTool::TwirlLeft => LiquifyTool::TwirlRight,
+            LiquifyTool::TwirlRight => LiquifyTool::TwirlLeft,
+            tool => tool,
+        }
+    }
+}
+
 /// How a stroke of liquify works.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LiquifySettings {

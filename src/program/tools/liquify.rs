@@ -1,9 +1,10 @@
 //! The liquify tool: strokes that displace what the selected layer or group shows. The layer itself stays as it is.
 //! Floor 5. Not here: what a dab does (`paint::liquify`).
 
+use super::symmetry::SymmetryImage;
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
 use crate::document::{Content, Document, LayerId, LayerLock};
-use crate::paint::{LiquifyStroke, LiquifyTool};
+use crate::paint::{LiquifySettings, LiquifyStroke, LiquifyTool};
 use crate::raster::Lattice;
 use std::sync::Arc;
 
@@ -30,13 +31,19 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         _ if pen.keys.ctrl => LiquifyTool::Restore,
         tool => tool,
     };
-    let settings = crate::paint::LiquifySettings { tool, ..context.liquify };
+    let settings = LiquifySettings { tool, ..context.liquify };
     let selection = document.active_selection.as_ref().map(|selection| selection.coverage.clone());
-    let stroke = LiquifyStroke::new(settings, document.scene(), selection, map.outside_own(), pen.place());
+    let of_image = |image: SymmetryImage| {
+        let tool = if image.is_mirrored() { tool.mirrored() } else { tool };
+        let (settings, at) = (LiquifySettings { tool, ..settings }, image.sample(&pen.sample).at);
+        (image, LiquifyStroke::new(settings, document.scene(), selection.clone(), map.outside_own(), at))
+    };
+    let images = context.symmetry.images_about(document.size, context.axes);
+    let strokes: Vec<(SymmetryImage, LiquifyStroke)> = images.into_iter().map(of_image).collect();
     let old = layer.liquify.clone();
     let mut lattice = old.as_deref().cloned().unwrap_or_default();
-    stroke.begin(&mut lattice, pen.sample.pressure);
-    let gesture = LiquifyGesture { document: document.clone(), layer: layer.id, old, lattice, stroke };
+    strokes.iter().for_each(|(_, stroke)| stroke.begin(&mut lattice, pen.sample.pressure));
+    let gesture = LiquifyGesture { document: document.clone(), layer: layer.id, old, lattice, strokes };
     let outcome = gesture.shown();
     (Some(Box::new(gesture)), outcome)
 }
@@ -46,7 +53,8 @@ struct LiquifyGesture {
     layer: LayerId,
     old: Option<Arc<Lattice>>,
     lattice: Lattice,
-    stroke: LiquifyStroke,
+    /// The stroke, then its mirror images.
+    strokes: Vec<(SymmetryImage, LiquifyStroke)>,
 }
 
 impl LiquifyGesture {
@@ -62,7 +70,9 @@ impl LiquifyGesture {
 impl Gesture for LiquifyGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         for pen in pens {
-            self.stroke.draw_to(&mut self.lattice, pen.place(), pen.sample.pressure);
+            for (image, stroke) in &mut self.strokes {
+                stroke.draw_to(&mut self.lattice, image.sample(&pen.sample).at, pen.sample.pressure);
+            }
         }
         self.shown()
     }

@@ -7,6 +7,7 @@ pub mod assistants;
 pub mod brush;
 mod context;
 pub mod crop;
+mod displaced;
 pub mod eyedropper;
 pub mod fill;
 pub mod frame;
@@ -70,6 +71,15 @@ pub fn press(kind: ToolKind, context: &ToolContext, pen: PenSample) -> GestureSt
 
 /// The brush or the eraser comes down on what it is to change.
 fn stroke(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> GestureStart {
+    let warps = displaced::warps(context);
+    match warps.is_empty() {
+        true => stroke_in_place(context, pen, purpose),
+        false => displaced::press(context, pen, warps, purpose),
+    }
+}
+
+/// The same where nothing displaces the layer, or the pen was taken to where it would be without.
+fn stroke_in_place(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> GestureStart {
     match context.target {
         BrushTarget::Layer => brush::press(context, pen, purpose),
         BrushTarget::Mask => mask::press(context, pen, purpose),

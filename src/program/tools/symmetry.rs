@@ -142,6 +142,10 @@ impl Symmetry {
 }
 
 impl SymmetryImage {
+    /// Left and right are exchanged.
+    pub fn is_mirrored(&self) -> bool {
+        self.turn.determinant() < 0.0
+    }
     pub fn sample(&self, sample: &Sample) -> Sample {
         let at = self.center + self.turn * (sample.at - self.center);
         // The stroke itself, to the bit.

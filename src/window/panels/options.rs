@@ -95,7 +95,10 @@ fn of_tool(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         tool if tool.selects() => select::options(ui, session, requests),
         tool if tool.shapes() => shaping::options(ui, session, requests),
         ToolKind::Transform => transform::options(ui, session, requests),
-        ToolKind::Liquify => liquify::options(ui, session, requests),
+        ToolKind::Liquify => {
+            liquify::options(ui, session, requests);
+            symmetry(ui, session, requests);
+        }
         ToolKind::Assistants => assistants::options(ui, session, requests),
         ToolKind::Crop => crop::options(ui, session, requests),
         tool => drop(ui.weak(tool.hint())),

@@ -61,6 +61,19 @@ impl Layer {
     }
 }
 
+impl Document {
+    /// What displaces the layers beside a layer: the warps of the groups around it, the outermost first.
+    pub fn warps_around(&self, id: LayerId) -> Vec<LayerWarp> {
+        let group = self.place_of(id).and_then(|place| place.group);
+        group.map_or_else(Vec::new, |group| self.warps_of(group))
+    }
+    /// What displaces a layer: the warps of the groups around it, the outermost first, and its own.
+    pub fn warps_of(&self, id: LayerId) -> Vec<LayerWarp> {
+        let own = self.layer(id).zip(self.map_of(id)).and_then(|(layer, map)| LayerWarp::of(layer, &map));
+        self.warps_around(id).into_iter().chain(own).collect()
+    }
+}
+
 impl LayerWarp {
     /// For a layer with its map; `None` where nothing displaces it.
     pub(in crate::document) fn of(layer: &Layer, map: &LayerMap) -> Option<Self> {

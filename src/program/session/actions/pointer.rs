@@ -249,7 +249,9 @@ fn works_in_place(tool: ToolKind, tab: &OpenDocument) -> Result<Document, &'stat
     let is_in_place = applied.map_of(layer).is_none_or(|map| map.is_none());
     let is_group = applied.layer(layer).is_some_and(|layer| layer.content.group().is_some());
     let is_warped = applied.layer(layer).is_some_and(|layer| layer.is_warped());
-    if is_in_place && !is_warped || is_group {
+    // Strokes are laid where the layer shows what is under the pen.
+    let is_stroke = matches!(tool, ToolKind::Brush | ToolKind::Eraser);
+    if is_in_place && (!is_warped || is_stroke) || is_group {
         return Ok(applied);
     }
     if is_warped {

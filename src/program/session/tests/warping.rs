@@ -42,10 +42,6 @@ fn a_stroke_layer_is_liquified_live_and_each_stroke_is_a_step() {
     assert!(picture(&session) == once);
     let again = told(&format!("{PAPER}\n{strokes}{STROKE}{PUSH}"));
     assert!(picture(&again) == once);
-    // A brush would paint where it does not show.
-    story(&mut session, STROKE);
-    assert!(session.notes.iter().any(|note| note.contains("liquify displaces the layer")), "{:?}", session.notes);
-    assert!(picture(&session) == once);
     // Applied, it is paint that looks the same, and takes paint.
     story(&mut session, r#"{"in":"layer","do":"apply transform","layer":"1"}"#);
     assert!(picture(&session) == once && !layer(&session).is_warped());
@@ -86,4 +82,43 @@ fn a_mesh_is_laid_dragged_applied_and_undone() {
     assert!(picture(&session) == plain && layer(&session).transform.is_some());
     story(&mut session, r#"{"in":"layer","do":"mesh","layer":"1","columns":40,"rows":3}"#);
     assert!(picture(&session) == plain);
+}
+
+/// Where a blue dot that is painted at (70, 73) shows.
+fn blue_dot(session: &mut Session) -> crate::math::Vec2 {
+    let dot = r##"
+{"in":"hand","do":"color","color":"#0020f0"}
+{"in":"hand","do":"size","to":4}
+{"in":"pointer","do":"press","tool":"brush","pen":[70,73],"px_per_pt":1}
+{"in":"pointer","do":"release"}"##;
+    story(session, dot);
+    let (mut sum, mut mass) = (crate::math::Vec2::ZERO, 0.0);
+    for (k, rgba) in picture(session).chunks_exact(4).enumerate() {
+        let blue = (f32::from(rgba[2]) - f32::from(rgba[0])).max(0.0);
+        sum += crate::math::vec2((k % 200) as f32 + 0.5, (k / 200) as f32 + 0.5) * blue;
+        mass += blue;
+    }
+    sum / mass
+}
+
+#[test]
+fn a_stroke_on_what_is_displaced_shows_under_the_pen() {
+    let strokes = r#"{"in":"layer","do":"add","kind":"strokes"}"#;
+    let shows_there = |session: &mut Session, what: &str| {
+        let at = blue_dot(session);
+        assert!(at.distance(crate::math::vec2(70.0, 73.0)) < 1.5, "{what}: {at}, {:?}", session.notes);
+    };
+    let mut own = told(&format!("{PAPER}\n{strokes}{STROKE}{PUSH}"));
+    shows_there(&mut own, "a stroke layer");
+    assert!(layer(&own).is_warped(), "it stays live");
+    let group = r#"{"in":"layer","do":"group","layer":"1"}"#;
+    let mut around = told(&format!("{PAPER}\n{strokes}{STROKE}\n{group}{PUSH}"));
+    story(&mut around, r#"{"in":"layer","do":"select","layer":"1.0"}"#);
+    shows_there(&mut around, "a stroke layer in a group");
+    let mut paint = told(&format!("{PAPER}\n{{\"in\":\"layer\",\"do\":\"add\",\"kind\":\"paint\"}}{STROKE}{PUSH}"));
+    shows_there(&mut paint, "a paint layer");
+    // A layer of its own above what holds no strokes.
+    let fill = r##"{"in":"layer","do":"add","kind":"fill"}"##;
+    let mut above = told(&format!("{PAPER}\n{strokes}{STROKE}\n{group}{PUSH}\n{fill}"));
+    shows_there(&mut above, "above a fill");
 }

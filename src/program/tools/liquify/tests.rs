@@ -3,7 +3,7 @@ use crate::document::{Group, Layer, PixelLayer, Progress, flatten};
 use crate::math::{Rect, Size, Vec2, srgb::Color, vec2};
 use crate::paint::{Brush, LiquifySettings};
 use crate::raster::{CoverageGrid, TileAt, TileGrid};
-use crate::tools::ModifierKeys;
+use crate::tools::{ModifierKeys, Symmetry};
 
 const SIZE: Size = Size::new(256, 192);
 
@@ -107,4 +107,26 @@ fn what_cannot_be_displaced_says_why() {
     assert!(matches!(press(&context, pen).1, Outcome::Refused(why) if why.contains("one colour")));
     let nothing = ToolContext { layer: None, ..context };
     assert!(matches!(press(&nothing, pen).1, Outcome::Refused(why) if why.contains("Choose a layer")));
+}
+#[test]
+fn a_stroke_and_its_mirror_image_displace_alike() {
+    let (document, brush) = (document(), Brush::default());
+    let layer = Some(document.layers[0].id);
+    for tool in [LiquifyTool::Push, LiquifyTool::Grow, LiquifyTool::TwirlLeft] {
+        let liquify = settings(tool);
+        let context =
+            ToolContext { layer, liquify, symmetry: Symmetry::Vertical, ..ToolContext::new(&document, &brush) };
+        let (gesture, _) = press(&context, PenSample::at(vec2(60.0, 100.0)));
+        let mut gesture = gesture.unwrap();
+        gesture.drag(&[PenSample::at(vec2(70.0, 92.0))]);
+        let Outcome::Commit { document, .. } = gesture.release() else { panic!("{tool:?}") };
+        let lattice = document.layers[0].liquify.clone().unwrap();
+        let mut most = 0f32;
+        for (x, y) in (0..128).step_by(5).flat_map(|x| (40..160).step_by(5).map(move |y| (x as f32, y as f32))) {
+            let (left, right) = (lattice.at(vec2(x, y)).by, lattice.at(vec2(256.0 - x, y)).by);
+            most = most.max(left.length());
+            assert!((left * vec2(-1.0, 1.0) - right).length() < 0.1, "{tool:?} at {x} {y}: {left} {right}");
+        }
+        assert!(most > 1.0, "{tool:?} {most}");
+    }
 }
