@@ -1,5 +1,5 @@
 //! Which features of the surface are enhanced: the scales of curvature, their weights and their direction (RS sec. 4).
-//! Floor 3. Curvature itself is in `surface`; `scaling` applies κ.
+//! Floor 3. Not here: curvature itself (`surface`), applying κ (`scaling`).
 
 use crate::math::{Range, Vec3, fast, simd::prefetch};
 use crate::surface::{
@@ -29,7 +29,7 @@ pub struct FeatureScale {
 }
 
 impl FeatureScale {
-    /// Of curvature, of a mask too.
+    /// For curvature, also of a mask.
     pub const CURVATURE_PX: Range = 0.0..=1000.0;
     pub const BLUR_PX: Range = 0.0..=256.0;
     pub const WEIGHT: Range = 0.0..=1000.0;
@@ -116,7 +116,7 @@ impl FeatureMap {
             }
         }
     }
-    /// κ toward one direction, for the pixels of row `y` from column `x0` on, as many as `kappa` holds.
+    /// κ toward one direction, for the `kappa.len()` pixels of row `y` from column `x0` on.
     pub fn row_toward(&self, x0: usize, y: usize, light: Vec3, kappa: &mut [f32]) {
         match self {
             Self::Isotropic(map) => map.row(x0, y, kappa),

@@ -1,4 +1,4 @@
-//! Lights: plain data, which can be dragged on the canvas, and their directions from a row of pixels.
+//! Lights: plain data that can be dragged on the canvas, and their directions from a row of pixels.
 //! Floor 3.
 
 use super::surface_row::{LightDirection, RowValues, SurfaceRow};
@@ -26,7 +26,7 @@ pub enum LightKind {
 
 impl Light {
     pub const INTENSITY: Range = 0.0..=10_000.0;
-    /// Whether a vector points anywhere: it has a length that numbers resolve.
+    /// Whether a vector has a direction: its length is representable.
     pub fn points(direction: Vec3) -> bool {
         let longest = direction.abs().max_element();
         direction.is_finite() && (1e-6..=1e6).contains(&longest)
@@ -50,7 +50,7 @@ pub struct RowLight {
 }
 
 enum RowLightPosition {
-    /// ℓ, the same everywhere.
+    /// ℓ, the same at every pixel.
     Afar(Vec3),
     /// As [`LightKind::Point`].
     At(Vec3),
@@ -110,8 +110,8 @@ impl Light {
 }
 
 crate::widest! {
-    /// ℓ of each pixel of a row: toward a point that lies at `from_first` from the first pixel, were it at height 0;
-    /// the surface recedes from there by its depth.
+    /// ℓ of each pixel of a row: toward a point at `from_first` from the first pixel as if that were at height 0; the
+    /// surface recedes from there by its depth.
     fn turn_to_point(from_first: Vec3, depth_range_px: f32, depth: &[f32], direction: &mut [RowValues; 3]) {
         let [lx, ly, lz] = direction;
         for (x, (&depth, ((lx, ly), lz))) in depth.iter().zip(lx.iter_mut().zip(ly).zip(lz)).enumerate() {

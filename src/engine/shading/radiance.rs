@@ -41,12 +41,12 @@ impl Default for RadianceScaling {
     }
 }
 
-/// What must be known about the whole composite beneath before one tile of it can be scaled.
+/// What must be known about the whole composite beneath before a tile of it can be scaled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BackdropStats {
     /// Its greatest luminance over the surface, linear light.
     pub brightest: f32,
-    /// The factor that restores its mean luminance: [`LightSums::gain`]; 1 if the mean need not be kept.
+    /// The factor that restores its mean luminance: [`LightSums::gain`]; 1 if the mean is not to be kept.
     pub gain: f32,
 }
 
@@ -61,7 +61,7 @@ pub enum Exactness {
     ExactLight,
 }
 
-/// Factors of the light that are tried at once.
+/// The number of factors of the light that are tried together.
 const GAINS: usize = 12;
 
 /// Even steps between two factors.
@@ -69,7 +69,7 @@ const GAINS: usize = 12;
 pub struct GainLadder(pub [f32; GAINS]);
 
 impl GainLadder {
-    /// Everything within reason.
+    /// All plausible factors.
     pub fn whole() -> Self {
         Self::between(1.0 / 64.0, 64.0)
     }
@@ -78,8 +78,8 @@ impl GainLadder {
     }
 }
 
-/// Luminance of a part of the composite, added up before scaling, and after it for each factor: as it is shown, every
-/// channel clipped at 1. Add the parts in a fixed order.
+/// Luminance of a part of the composite, added up before scaling, and after it for each factor, as shown: every channel
+/// clipped at 1. Add the parts in a fixed order.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LightSums {
     pub before: f64,
@@ -90,19 +90,19 @@ impl LightSums {
     pub fn plus(self, other: LightSums) -> LightSums {
         LightSums { before: self.before + other.before, after: std::array::from_fn(|k| self.after[k] + other.after[k]) }
     }
-    /// Between which steps the light after is that before: the index of the lower one, and how far beyond it.
+    /// The steps between which the light after equals that before: the index of the lower one, and how far beyond it.
     fn bracket(&self) -> Option<(usize, f32)> {
         let over = self.after.iter().position(|&after| after >= self.before)?;
         let low = over.checked_sub(1)?;
         let share = (self.before - self.after[low]) / (self.after[over] - self.after[low]);
         share.is_finite().then_some((low, share as f32))
     }
-    /// A finer ladder around the factor that keeps the light; `None` where none of these does.
+    /// Finer steps around the factor that keeps the light; `None` if none of these does.
     pub fn finer(&self, tried: GainLadder) -> Option<GainLadder> {
         let (low, _) = self.bracket()?;
         Some(GainLadder::between(tried.0[low], tried.0[low + 1]))
     }
-    /// The factor that keeps the light as it was; 1 where none of these does.
+    /// The factor that keeps the light as it was; 1 if none of these does.
     pub fn gain(&self, tried: GainLadder) -> f32 {
         let between = |(low, share): (usize, f32)| tried.0[low] + (tried.0[low + 1] - tried.0[low]) * share;
         self.bracket().map_or(1.0, between)
@@ -114,7 +114,7 @@ impl RadianceScaling {
     pub fn apply_tile(&self, scene: &Scene, at: TileAt, beneath: BackdropStats, pixels: &mut PlanarTile) {
         self.apply_at(scene, at, beneath, Exactness::Fast, pixels);
     }
-    /// The same, as exactly as is asked for.
+    /// The same, as exactly as requested.
     pub fn apply_at(
         &self,
         scene: &Scene,
@@ -137,7 +137,7 @@ impl RadianceScaling {
             }
         });
     }
-    /// The same for rows of pixels that lie anywhere on a surface: `places` tells where, one for each pixel, or that it
+    /// The same for rows of pixels that lie anywhere on a surface: `places` holds the place of each pixel, or that it
     /// is off it.
     pub fn apply_packed(
         &self,
@@ -160,7 +160,7 @@ impl RadianceScaling {
             if gain == 1.0 { scaler.apply(row, &kappa) } else { scaler.apply_with_gains(row, &kappa, &gains) }
         }
     }
-    /// What scales rows, and the factor that keeps the mean; `None` where nothing would change.
+    /// What scales rows, and the factor that keeps the mean; `None` if nothing would change.
     fn scaler(&self, beneath: BackdropStats, exactness: Exactness) -> Option<(RowScaler, f32)> {
         let gain = if self.keep_mean { beneath.gain } else { 1.0 };
         if self.scaling.is_none() && gain == 1.0 {
@@ -174,8 +174,8 @@ impl RadianceScaling {
         };
         Some((scaler, gain))
     }
-    /// Luminance of one tile before scaling, and after it with each factor, weighed by alpha and by how far the surface
-    /// covers each pixel.
+    /// Luminance of one tile before scaling, and after it with each factor, weighted by alpha and by how far the
+    /// surface covers each pixel.
     pub fn means_tile(
         &self,
         scene: &Scene,

@@ -5,10 +5,10 @@ use crate::math::{Range, fast};
 
 /// How a term is scaled: the scaling-invariant point and the magnitude.
 ///
-/// RS names the separate strength of convex and concave features as future work; with both equal it is the paper's γ.
+/// RS names separate strengths for convex and concave features as future work; with both equal it is the paper's γ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scaling {
-    /// α in (0, 1): light of this reflectance is left alone; on a convex feature brighter light rises, dimmer light
+    /// α in (0, 1): light of this reflectance is unchanged; on a convex feature brighter light rises, dimmer light
     /// falls.
     pub alpha: f32,
     /// γ on convex features (κ > 0), `≥ 0`.
@@ -40,10 +40,10 @@ fn ratio(e: f32, delta: f32, alpha: f32) -> f32 {
 impl Scaling {
     /// The paper's default α: convexities are mostly brightened (RS fig. 3).
     pub const ALPHA: f32 = 0.2;
-    /// Short of both 0 and 1.
+    /// Excludes 0 and 1.
     pub const INVARIANT: Range = 0.001..=0.999;
     pub const GAMMA: Range = 0.0..=20.0;
-    /// Leaves every term alone.
+    /// Changes no term.
     pub const NONE: Scaling = Scaling::new(Self::ALPHA, 0.0);
 
     /// The same magnitude on convex and concave features.
@@ -67,7 +67,7 @@ impl Scaling {
     /// E = e^(−γκ) of [`Scaling::sigma_fast`].
     #[inline(always)]
     pub fn exponential(self, kappa: f32) -> f32 {
-        // Both read first: a choice between two places in memory would keep loops from being vectorised.
+        // Both are read first: a choice between two addresses would prevent vectorisation of loops.
         let Scaling { gamma_convex, gamma_concave, .. } = self;
         let gamma = if kappa > 0.0 { gamma_convex } else { gamma_concave };
         fast::exp(-gamma * kappa)
@@ -82,7 +82,7 @@ impl Scaling {
 /// The reflectance that counts as 1: Y*.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum Reference {
-    /// The largest luminance there is over the surface (or in the environment, or on the lit sphere).
+    /// The largest luminance over the surface (or in the environment, or on the lit sphere).
     #[default]
     Auto,
     /// Luminance in linear light, `> 0`.
@@ -92,7 +92,7 @@ pub enum Reference {
 impl Reference {
     pub const VALUE: Range = 1e-4..=65_504.0;
 
-    /// Y*, given the largest luminance there is; never 0.
+    /// Y*, given the largest luminance; never 0.
     pub fn resolve(self, largest: f32) -> f32 {
         let value = match self {
             Reference::Auto => largest,

@@ -17,7 +17,7 @@ pub struct LitSphere {
 }
 
 impl PartialEq for LitSphere {
-    /// The same picture, by whatever name it goes.
+    /// The same picture, whatever its name.
     fn eq(&self, other: &Self) -> bool {
         self.picture == other.picture
     }
@@ -77,13 +77,13 @@ impl SphereLight {
         let below = texel(i, j + 1).lerp(texel(i + 1, j + 1), across);
         above.lerp(below, along).to_array()
     }
-    /// The greatest luminance there is on the sphere.
+    /// The greatest luminance on the sphere.
     pub fn brightest(&self) -> f32 {
         self.brightest
     }
 }
 
-/// The texel if it lies on the disc, else the one toward the centre that does.
+/// The texel if it lies on the disc, else the nearest toward the centre that does.
 fn nearest_inside(picture: &Picture, x: usize, y: usize) -> [f32; 3] {
     let (w, h) = (picture.size.width as f32, picture.size.height as f32);
     // In units of the disc's radius, which may differ along x and y as the picture's sides do.

@@ -1,5 +1,5 @@
-//! One row of a tile on the surface, for shading: normals, κ and position. Floor 3. Materials read it; the maps
-//! themselves are in `surface`.
+//! One row of a tile on the surface, for shading: normals, κ and position. Floor 3. Materials read it. Not here: the
+//! maps themselves (`surface`).
 
 use super::{features::FeatureMap, scaling::Scaling};
 use crate::math::{Vec3, simd::prefetch, vec3};
@@ -25,11 +25,11 @@ pub struct SurfaceRow<'a> {
     pub width: usize,
     /// Camera space: right, up, to the viewer.
     pub normal: [RowValues; 3],
-    /// Where the surface is seen from near by.
+    /// Present if the surface is seen from nearby.
     near: Option<Box<PerspectiveRow>>,
 }
 
-/// A row seen from a point: every pixel from a direction of its own.
+/// A row seen from a point: each pixel from its own direction.
 struct PerspectiveRow {
     /// v, camera space.
     view: [RowValues; 3],
@@ -37,7 +37,7 @@ struct PerspectiveRow {
     normal: [RowValues; 3],
 }
 
-/// The direction that κ is asked for.
+/// The direction for κ.
 #[derive(Clone, Copy)]
 pub enum LightDirection<'a> {
     /// The same for the whole row, any length.
@@ -97,7 +97,7 @@ impl<'a> SurfaceRow<'a> {
         }
         Cow::Owned(seen)
     }
-    /// Prefetches a row further down: it is a canvas's width away in memory.
+    /// Prefetches a row farther down: it is a canvas's width away in memory.
     fn prefetch(&self, y: usize) {
         if y < self.surface.size().height as usize {
             let columns = self.x0..self.x0 + self.width;
@@ -139,7 +139,7 @@ impl<'a> SurfaceRow<'a> {
 /// scaled alike, and without λ κ is the same toward every light.
 pub struct RowRelief {
     kappa: RowValues,
-    /// Which γ (convex, concave) `exponentials` are of; `None` before the first.
+    /// The γ (convex, concave) of `exponentials`; `None` before the first.
     gammas: Option<(f32, f32)>,
     exponentials: RowValues,
     is_isotropic: bool,
@@ -157,7 +157,7 @@ impl RowRelief {
     pub fn leave_row(&mut self) {
         (self.is_isotropic, self.gammas) = (false, None);
     }
-    /// Turns to a direction: κ(ℓ), where it is not the same for all.
+    /// Turns to a direction: κ(ℓ), unless it is the same for all.
     pub fn turn(&mut self, surface_row: &SurfaceRow, toward: LightDirection) {
         if !self.is_isotropic {
             surface_row.find_kappa(toward, &mut self.kappa);

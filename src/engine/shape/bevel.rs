@@ -1,5 +1,5 @@
 //! Bevels: a profile along the distance from the rim, for letters, shields and coins.
-//! Floor 3. Distances are `nearest`'s.
+//! Floor 3. Not here: distances (`nearest`).
 
 use super::nearest::RimDistance;
 use super::{Form, Outline};
@@ -22,17 +22,17 @@ pub enum BevelCurve {
 }
 
 impl BevelCurve {
-    /// Every curve that has a name, as documents call it.
+    /// Every named curve, with its name in documents.
     pub const NAMED: [(BevelCurve, &'static str); 4] = [
         (BevelCurve::Round, "round"),
         (BevelCurve::Chisel, "chisel"),
         (BevelCurve::Cove, "cove"),
         (BevelCurve::Step, "step"),
     ];
-    /// Points of a curve of one's own.
+    /// Points of a custom curve.
     pub const MOST_POINTS: usize = 64;
 
-    /// Height at t and the way along the curve there as (run, rise), `[0, 1]` each but for curves of one's own, which
+    /// Height at t and the direction of the curve there as (run, rise), `[0, 1]` each except for custom curves, which
     /// may fall.
     pub fn at(&self, t: f32) -> (f32, Vec2) {
         if t >= 1.0 {
@@ -67,7 +67,7 @@ impl BevelCurve {
     }
 }
 
-/// What a bevel is made with.
+/// The numbers of a bevel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bevel {
     /// How far in from the rim it rises, px.

@@ -1,5 +1,5 @@
-//! Forms in order, the farthest first, as one surface: over, smooth union, add, cut.
-//! Floor 3. Order gives depth, and which part is seen at a pixel is its object.
+//! Forms in order, the farthest first, as one surface: over, smooth union, add, cut. Floor 3. Order gives depth; the
+//! part that is seen at a pixel is its object.
 
 use super::Form;
 use crate::math::{Range, Size, Vec3, vec3};
@@ -8,24 +8,24 @@ use crate::surface::{KnownNearest, Maps, Surface, SurfaceError};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// How a part meets what lies beneath it.
+/// How a part joins what lies beneath it.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum Combine {
-    /// In front of it, as far as it must be to hide it.
+    /// In front of it, just far enough to hide it.
     #[default]
     Over,
-    /// Grown into one with it, over so many px of height.
+    /// Merged with it, over so many px of height.
     Union { smooth: f32 },
     /// Its height is added.
     Add,
-    /// Its height is taken away.
+    /// Its height is subtracted.
     Cut,
     /// In front of it, but level with it along the rim that lies on it.
     Join,
 }
 
 impl Combine {
-    /// Every way with its name in documents; a union has a number of its own, for which `named!` has no place.
+    /// Every way with its name in documents; a union has a number, which `named!` cannot hold.
     pub const ALL: [(Combine, &'static str); 5] = [
         (Combine::Over, "over"),
         (Combine::Union { smooth: Combine::DEFAULT_SMOOTH }, "union"),
@@ -54,11 +54,11 @@ pub struct Relief {
     pub coverage: Plane<u8>,
     /// Which part is seen, from 1 on; 0 where there is none.
     pub ids: Plane<u32>,
-    /// For each part the one whose piece of surface it belongs to: what is grown into another, or level with it.
+    /// For each part, the one whose piece of surface it belongs to: itself, or one that it is merged or level with.
     pub piece_of: Vec<u32>,
 }
 
-/// The least by which a part stands before another, as a part of the canvas's longer side: enough for a depth jump.
+/// The least distance of a part before another, as a share of the canvas's longer side: enough for a depth jump.
 const GAP: f32 = 0.004;
 
 impl Relief {
@@ -71,9 +71,9 @@ impl Relief {
             piece_of: vec![0],
         }
     }
-    /// With one more part in front; `id` from 1 on. What of it lies off the canvas is left out.
+    /// With one more part in front; `id` from 1 on. Its share off the canvas is left out.
     pub fn add(&mut self, form: &Form, combine: Combine, id: u32) {
-        // Beneath the first part lies nothing.
+        // Nothing lies beneath the first part.
         let is_first = self.coverage.values().par_iter().all(|c| *c == 0);
         let piece = match combine {
             _ if is_first => None,
@@ -122,7 +122,7 @@ impl Relief {
     fn piece(&self, id: u32) -> u32 {
         self.piece_of.get(id as usize).copied().unwrap_or(id)
     }
-    /// The part that most of a form lies on.
+    /// The part beneath most of a form.
     fn mostly_beneath(&self, form: &Form) -> Option<u32> {
         let mut counts = BTreeMap::new();
         for (_, _, (x, y)) in self.pairs(form, self.shared_rows(form)) {
@@ -131,12 +131,12 @@ impl Relief {
         }
         counts.into_iter().filter(|(id, _)| *id > 0).max_by_key(|(_, count)| *count).map(|(id, _)| id)
     }
-    /// The rows of the canvas that a form has a part in.
+    /// The rows of the canvas that a form reaches.
     fn shared_rows(&self, form: &Form) -> std::ops::Range<i32> {
         let rect = form.rect().intersect(self.height.size().rect());
         rect.y0..rect.y1.max(rect.y0)
     }
-    /// Pairs of a form's covered pixels in some rows and those beneath them: heights, and where in the form.
+    /// Pairs of a form's covered pixels in some rows and those beneath them: heights, and the place in the form.
     fn pairs<'a>(
         &'a self,
         form: &'a Form,
@@ -147,13 +147,14 @@ impl Relief {
             (rect.x0..rect.x1).filter_map(move |x| {
                 let (fx, fy) = ((x - form.corner.0) as usize, (y - form.corner.1) as usize);
                 let (x, y) = (x as usize, y as usize);
-                // A pixel that is hardly covered shows its neighbour.
+                // A barely covered pixel shows its neighbour.
                 let both = form.coverage.at(fx, fy) >= 128 && self.coverage.at(x, y) >= 128;
                 both.then(|| (self.height.at(x, y), form.height.at(fx, fy), (fx, fy)))
             })
         })
     }
-    /// The most that anything beneath rises above a form where they overlap or touch, and a gap; 0 where they do not.
+    /// The greatest height of anything beneath above a form where they overlap or touch, plus a gap; 0 where they do
+    /// not.
     fn offset(&self, form: &Form) -> f32 {
         let more = |a: Option<f32>, b: Option<f32>| a.zip(b).map(|(a, b)| a.max(b)).or(a).or(b);
         let of_row = |y: i32| {
@@ -163,7 +164,7 @@ impl Relief {
         let rise = self.shared_rows(form).into_par_iter().map(of_row).reduce(|| None, more);
         rise.map_or(0.0, |rise| (rise + GAP * self.height.size().longer_side()).max(0.0))
     }
-    /// How far what lies beside a form's rim in a row rises above that rim: flats of a drawing touch and do not
+    /// The height of what lies next to a form's rim in a row above that rim: flats of a drawing touch and do not
     /// overlap.
     fn touching<'a>(&'a self, form: &'a Form, y: i32) -> impl Iterator<Item = f32> + 'a {
         const FAR: i32 = 2;
@@ -193,7 +194,7 @@ impl Relief {
     }
     /// The surface, whose objects are the parts: heights become depths, 0 near … 1 far over all that is covered.
     ///
-    /// * `known`: of the surface made before, so that the same need not be found again.
+    /// * `known`: from the previous surface, so that the same need not be found again.
     pub fn into_surface(self, known: &mut KnownNearest) -> Result<Surface, SurfaceError> {
         let Self { height, normals, coverage, ids, piece_of } = self;
         let covered = height.values().par_iter().zip(coverage.values()).filter(|(_, c)| **c > 0);
@@ -205,7 +206,7 @@ impl Relief {
     }
 }
 
-/// What stands at one pixel.
+/// The surface at one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct FormTexel {
     height: f32,
@@ -219,7 +220,7 @@ impl FormTexel {
         let both = 255 - (255 - u32::from(self.coverage)) * (255 - u32::from(above.coverage)) / 255;
         let coverage = both as u8;
         if self.coverage == 0 {
-            // Nothing to add to or to cut from: the part alone, but no hole has a shape.
+            // Nothing to add to or to cut from: the part alone; a hole has no shape.
             return if combine == Combine::Cut { self } else { above };
         }
         match combine {
@@ -237,17 +238,17 @@ impl FormTexel {
             Combine::Cut => self.sum(above, -1.0),
         }
     }
-    /// Heights and slopes added, the part's taken `sign` times.
+    /// Heights and slopes added, the part's times `sign`.
     fn sum(self, above: FormTexel, sign: f32) -> FormTexel {
         let (a, b) = (self.normal, above.normal);
-        // A wall that is added stays steep, but not so that nothing else is seen.
+        // An added wall stays steep, but not so steep that nothing else is seen.
         let (az, bz) = (a.z.max(0.02), b.z.max(0.02));
         let normal = vec3(a.x * bz + sign * b.x * az, a.y * bz + sign * b.y * az, az * bz).normalize_or(Vec3::Z);
         FormTexel { height: self.height + sign * above.height, normal, ..self }
     }
 }
 
-/// The greater of two heights with its edge rounded, and the share that the first has of its slope.
+/// The greater of two heights with its edge rounded, and the first one's share of the slope.
 ///
 /// max(a, b) + k/4 · h² with h = max(k − |a − b|, 0)/k.
 pub fn smooth_max(a: f32, b: f32, smooth: f32) -> (f32, f32) {
@@ -259,7 +260,7 @@ pub fn smooth_max(a: f32, b: f32, smooth: f32) -> (f32, f32) {
     (a.max(b) + 0.25 * smooth * h * h, share)
 }
 
-/// The normal whose slope is the mean of two, the first with a share.
+/// The normal whose slope is the mean of two, weighted by the first one's share.
 fn between(a: Vec3, b: Vec3, share: f32) -> Vec3 {
     let (wa, wb) = (share * b.z, (1.0 - share) * a.z);
     if share >= 1.0 {
@@ -289,7 +290,7 @@ mod tests {
         relief.add(&back, Combine::Over, 1);
         relief.add(&front, Combine::Over, 2);
         assert_eq!((relief.ids.at(60, 60), relief.ids.at(120, 60), relief.ids.at(0, 0)), (1, 2, 0));
-        // Nothing of the front part lies behind what it covers.
+        // No point of the front part lies behind what it covers.
         let mut alone = Relief::empty(SIZE);
         alone.add(&back, Combine::Over, 1);
         for (x, y) in (0..120).flat_map(|y| (0..200).map(move |x| (x, y))) {
@@ -312,7 +313,7 @@ mod tests {
         let before = relief.clone();
         relief.add(&ball(vec2(-400.0, 900.0), 20.0), Combine::Over, 3);
         assert!(relief.height == before.height && relief.ids == before.ids && relief.coverage == before.coverage);
-        // Half of it on the canvas.
+        // Half of it is on the canvas.
         relief.add(&ball(vec2(0.0, 0.0), 20.0), Combine::Over, 4);
         assert_eq!(relief.ids.at(0, 0), 4);
     }

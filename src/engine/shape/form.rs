@@ -1,5 +1,5 @@
-//! Forms: heights and normals of one part, as every algorithm of this floor gives them. Floor 3. Not here: how
-//! forms meet (`combine`).
+//! Forms: heights and normals of one part, the result of every algorithm of this floor. Floor 3. Not here: how forms
+//! are combined (`combine`).
 
 use super::{Outline, OutlineRim};
 use crate::math::{Affine2, Mat2, Rect, Size, Vec2, Vec3, vec2, vec3};
@@ -18,7 +18,7 @@ pub struct Form {
     pub coverage: Plane<u8>,
 }
 
-/// What is made of a squared height.
+/// How a squared height becomes a form.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Roundness {
     /// Factor of the height; 1 makes a half sphere of a disc.
@@ -31,7 +31,7 @@ impl Form {
     /// Heights √q and their normals of a squared height q, px², that is 0 at the rim.
     ///
     /// With puff p and a constant k that flattens the rim, n ∝ (−p² ∂q/∂x, p² ∂q/∂y, 2 p √q + k): exact at the rim,
-    /// where n_z = 0 for k = 0. k is such that the rim turns by `rim_deg` in the mean. The heights whose slopes these
+    /// where n_z = 0 for k = 0. k makes the rim turn by `rim_deg` in the mean. The heights whose slopes these
     /// are: p√q − k/2 ln(1 + 2p√q / k).
     pub fn of_squares(outline: &Outline, squares: &Plane<f32>, rim: &OutlineRim, round: Roundness) -> Self {
         let flat = flattening(outline, squares, rim, round);
@@ -62,11 +62,11 @@ impl Form {
         let (size, (x, y)) = (self.height.size(), self.corner);
         Rect::new(x, y, x.saturating_add(size.width as i32), y.saturating_add(size.height as i32))
     }
-    /// The same form elsewhere.
+    /// The same form, moved.
     pub fn moved(&self, by: (i32, i32)) -> Self {
         self.clone().shifted(by)
     }
-    /// The same in the same memory.
+    /// The same, in the same memory.
     pub fn shifted(self, by: (i32, i32)) -> Self {
         let corner = (self.corner.0.saturating_add(by.0), self.corner.1.saturating_add(by.1));
         Self { corner, ..self }
@@ -74,8 +74,8 @@ impl Form {
     /// The form as it is seen through a map of its plane; `None` where the map flattens it, or its picture would have
     /// more than `most_px` pixels. Whole pixels are moved as they are.
     ///
-    /// Slopes s become k A^−T s and heights k z, with k = √|det A|, as of an object that is turned and scaled with its
-    /// picture (MATH 1). Between pixels normals and heights are those of the covered ones.
+    /// Slopes s become k A^−T s and heights k z, with k = √|det A|, like those of an object that is turned and scaled
+    /// with its picture (MATH 1). Between pixels normals and heights are those of the covered ones.
     pub fn through(&self, map: Affine2, most_px: usize) -> Option<Self> {
         let area = map.matrix2.determinant().abs();
         if !map.is_finite() || area < 1e-6 {
@@ -112,7 +112,7 @@ impl Form {
             coverage: read.map(|(_, _, coverage)| coverage.round() as u8),
         })
     }
-    /// Height, normal and coverage at a place counted from the centre of the first pixel.
+    /// Height, normal and coverage at a place relative to the centre of the first pixel.
     fn between(&self, p: Vec2) -> (f32, Vec3, f32) {
         let whole = p.floor();
         let part = p - whole;
@@ -133,7 +133,7 @@ impl Form {
         if sum > 0.0 { (height / sum, normal.normalize_or(Vec3::Z), coverage) } else { (0.0, Vec3::Z, 0.0) }
     }
     /// Leaned about its middle: a plane is added that rises by `tan(tilt)` toward the right (x) and the bottom (y).
-    /// What is a silhouette stays one. Degrees, between −90 and 90.
+    /// A silhouette stays one. Degrees, between −90 and 90.
     pub fn tilted(mut self, tilt_deg: Vec2) -> Self {
         let slope = vec2(tilt_deg.x.to_radians().tan(), tilt_deg.y.to_radians().tan());
         if slope == Vec2::ZERO || !slope.is_finite() {

@@ -1,21 +1,21 @@
-//! Inflation: the pillow over an outline, z = √u with −∇²u = 4 inside and u = 0 at the rim. Floor 3. Not here: what
-//! is made of u (puff, rim, normals) (`form`); limbs that shall not be fat are `tube`'s.
+//! Inflation: the pillow over an outline, z = √u with −∇²u = 4 inside and u = 0 at the rim. Floor 3. Not here: what is
+//! made of u (puff, rim, normals) (`form`); limbs that should not be fat (`tube`).
 
 use super::{Outline, OutlineRim};
 use crate::math::Size;
 use crate::raster::Plane;
 
 /// A residual of 3e-3 of the right-hand side, squared: on a creature of 1 Mpx normals are then within 0.0001° of the
-/// solution in the mean and 0.01° everywhere, since what is left is rough and small.
+/// solution in the mean and 0.01° everywhere, since the error is rough and small.
 const GOAL: f64 = 1e-5;
-/// Beyond this many pixels the equation is solved at half the resolution: seconds, and gigabytes, would be too many.
+/// Beyond this many pixels the equation is solved at half the resolution: it would take too many seconds and gigabytes.
 const MOST_UNKNOWNS: usize = 1 << 24;
 
 /// u, px², over the planes of an outline: 0 outside, −∇²u = 4 inside (SHAPE: inflation).
 ///
 /// A disc of radius R gives R² − r² and so half a sphere; a strip of half width w gives 2(w² − x²).
-/// * `joined`: as [`OutlineRim::joined`] has it.
-/// * `start`: the u of an outline that was nearly the same, of the same size.
+/// * `joined`: as in [`OutlineRim::joined`].
+/// * `start`: the u of a nearly identical outline of the same size.
 ///
 /// `≥ 0`, finite.
 pub fn inflate(outline: &Outline, joined: Option<&Plane<bool>>, start: Option<&Plane<f32>>) -> Plane<f32> {

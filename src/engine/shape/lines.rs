@@ -1,7 +1,7 @@
-//! Lines as form: ink tells where a form turns (Johnston 2002, Lumo), as a ridge, a valley, or a silhouette over or
-//! under what is beside it.
-//! Floor 3. No height is held at a line: an open one, pinned to a height, is a dent. Normals are held beside the line
-//! and spread over the form; across the ink nothing is passed on, so that the back is not drawn along by the front.
+//! Lines as form: ink marks where a form turns (Johnston 2002, Lumo), as a ridge, a valley, or a silhouette over or
+//! under what is next to it. Floor 3. No height is held at a line: an open line pinned to a height would be a dent.
+//! Normals are held next to the line and spread over the form; nothing spreads across the ink, so that the front does
+//! not pull the back along.
 
 use super::touches::{lifted, spread_within, with_normals};
 use super::{Form, Outline, OutlineRim};
@@ -9,7 +9,7 @@ use crate::math::{Range, Vec2, vec2};
 use crate::raster::Plane;
 
 crate::named! {
-    /// What a line stands for.
+    /// What a line means.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
     pub enum LineForm {
         /// The form falls away on both sides.
@@ -17,10 +17,10 @@ crate::named! {
         Ridge = "ridge",
         /// The form rises on both sides.
         Valley = "valley",
-        /// A silhouette: the form on the inner side of the line's bend turns away at it, before what lies on the outer
-        /// one.
+        /// A silhouette: the form on the inner side of the line's bend turns away at it, in front of what lies on the
+        /// outer one.
         Over = "over",
-        /// The same of the form on the outer side.
+        /// The same for the form on the outer side.
         Under = "under",
     }
 }
@@ -31,9 +31,9 @@ impl LineForm {}
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lines {
     pub form: LineForm,
-    /// Degrees that the form turns beside the line.
+    /// Degrees that the form turns next to the line.
     pub angle_deg: f32,
-    /// How far it is felt, px; 0: to the rim and the next lines.
+    /// How far it reaches, px; 0: to the rim and the next lines.
     pub reach: f32,
 }
 
@@ -48,12 +48,12 @@ impl Default for Lines {
     }
 }
 
-/// Ink covers a pixel from here on.
+/// A pixel counts as ink from this coverage on.
 const INKED: u8 = 128;
-/// Half the side of the square in which a line's bend shows, px, and at least so many of its widths.
+/// Half the side of the square in which a line's bend is measured, px, and at least this many line widths.
 const BEND_PX: i32 = 10;
 const BEND_WIDTHS: i32 = 3;
-/// A line whose ink lies no farther than this beside it is straight, px.
+/// A line whose ink lies no farther than this to its side is straight, px.
 const STRAIGHT_PX: f32 = 0.1;
 /// The widest line that is crossed, px.
 const WIDEST_PX: i32 = 64;
@@ -78,7 +78,7 @@ pub fn lined(form: &Form, outline: &Outline, ink: &Plane<u8>, lines: Lines) -> F
         let at = |dx: i32, dy: i32| inked.get(x as i32 + dx, y as i32 + dy).unwrap_or(false);
         inside.at(x, y) && !inked.at(x, y) && (at(1, 0) || at(-1, 0) || at(0, 1) || at(0, -1))
     };
-    // n̄ beside the line; none where nothing is asked for.
+    // n̄ next to the line; none where nothing is requested.
     let asked = Plane::from_fn(size, |x, y| {
         let away = is_beside(x, y).then(|| sums.away(x as i32, y as i32)).flatten()?;
         let inner = || sums.is_inner(&inked, (x as i32, y as i32), away);
@@ -101,7 +101,7 @@ pub fn lined(form: &Form, outline: &Outline, ink: &Plane<u8>, lines: Lines) -> F
     with_normals(form, outline, normals)
 }
 
-/// A field that is not told at some pixels inside, told there by what is beside them, ring by ring.
+/// A field that is unknown at some pixels inside, filled there from their neighbours, ring by ring.
 pub fn filled(mut field: Plane<Vec2>, inked: &Plane<bool>, inside: &Plane<bool>) -> Plane<Vec2> {
     let mut told = Plane::from_fn(inside.size(), |x, y| inside.at(x, y) && !inked.at(x, y));
     let mut left: Vec<(usize, usize)> = Vec::new();
@@ -129,9 +129,9 @@ pub fn filled(mut field: Plane<Vec2>, inked: &Plane<bool>, inside: &Plane<bool>)
     field
 }
 
-/// How much ink lies in any square, and where.
+/// How much ink any square holds, and where.
 struct InkSums {
-    /// Pixels, their columns and their rows, of all above and left of a corner.
+    /// The number of pixels, and the sums of their columns and rows, above and left of a corner.
     sums: Vec<[u64; 3]>,
     width: i32,
     height: i32,
@@ -153,7 +153,7 @@ impl InkSums {
         }
         Self { sums, width: w as i32, height: h as i32 }
     }
-    /// Inked pixels in the square of so many px around a pixel, and the sums of their columns and rows.
+    /// The number of inked pixels in a square around a pixel, and the sums of their columns and rows.
     fn around(&self, x: i32, y: i32, reach: i32) -> [f64; 3] {
         let column = |x: i32| x.max(0).min(self.width) as usize;
         let row = |y: i32| y.max(0).min(self.height) as usize * (self.width as usize + 1);
@@ -162,14 +162,14 @@ impl InkSums {
         let (a, b, c, d) = (at(x1, y1), at(x0, y0), at(x0, y1), at(x1, y0));
         std::array::from_fn(|k| (a[k] + b[k] - c[k] - d[k]) as f64)
     }
-    /// The way from the ink to a pixel beside it, unit.
+    /// The direction from the ink to a pixel next to it, unit.
     fn away(&self, x: i32, y: i32) -> Option<Vec2> {
         const REACH: i32 = 2;
         let side = |dx: i32, dy: i32| self.around(x + dx, y + dy, REACH)[0] as f32;
         vec2(side(-1, 0) - side(1, 0), side(0, -1) - side(0, 1)).try_normalize()
     }
-    /// Whether a pixel lies on the inner side of the bend of the line beside it: there lies the middle of the ink
-    /// around. Of a straight line the side below it, or on its right.
+    /// Whether a pixel lies on the inner side of the bend of the line next to it, where the middle of the ink around
+    /// lies. For a straight line: the side below it, or on its right.
     fn is_inner(&self, inked: &Plane<bool>, (x, y): (i32, i32), away: Vec2) -> bool {
         let here = vec2(x as f32, y as f32);
         let is_inked = |k: i32| {
@@ -210,7 +210,7 @@ mod tests {
         };
         (form, outline)
     }
-    /// Ink over the planes of the outline, told in px of the canvas.
+    /// Ink over the planes of the outline, given in px of the canvas.
     fn ink(outline: &Outline, is_inked: impl Fn(f32, f32) -> bool + Sync) -> Plane<u8> {
         let (x0, y0) = outline.corner();
         Plane::from_fn(outline.size(), |x, y| {
@@ -261,7 +261,7 @@ mod tests {
         let none = Plane::filled(outline.size(), 0);
         assert!(lined(&form, &outline, &none, Lines::default()) == form);
         let ridge = lined(&form, &outline, &ink(&outline, upright), Lines { reach: 12.0, ..Lines::default() });
-        // Above the upper end the form goes on evenly, and far away it is as it was.
+        // Above the upper end the form continues evenly, and far away it is unchanged.
         let heights: Vec<f32> = (14..29).map(|y| at(&ridge, 60, y).0).collect();
         assert!(heights.windows(2).all(|pair| pair[1] >= pair[0] - 0.05), "{heights:?}");
         assert!(at(&ridge, 100, 20).1.z > 0.99);

@@ -1,5 +1,5 @@
-//! How far inside each pixel is, to the sub-pixel rim, and which way in leads.
-//! Floor 3. Lower envelopes of parabolas (Felzenszwalb and Huttenlocher 2012), which `tube` needs as well.
+//! The distance of each pixel inside from the sub-pixel rim, and the direction inward. Floor 3. Lower envelopes of
+//! parabolas (Felzenszwalb and Huttenlocher 2012), which `tube` uses as well.
 
 use super::Outline;
 use crate::math::{Size, Vec2, vec2};
@@ -10,7 +10,7 @@ use rayon::prelude::*;
 pub struct RimDistance {
     /// px, 0 outside.
     pub distance: Plane<f32>,
-    /// The way from the nearest place of the rim, unit; 0 outside.
+    /// The direction from the nearest place of the rim, unit; 0 outside.
     pub inward: Plane<Vec2>,
 }
 
@@ -19,8 +19,8 @@ impl RimDistance {
     pub fn of(outline: &Outline) -> Self {
         Self::silhouette_of(outline, None)
     }
-    /// As [`RimDistance::of`], of the rim that is not toward pixels of `joined` (as `OutlineRim::joined` has it).
-    /// Without any other, no pixel is farther from it than the plane is long.
+    /// As [`RimDistance::of`], for the rim that is not toward pixels of `joined` (as `OutlineRim::joined` has it).
+    /// If there is no such rim, no pixel is farther from it than the plane is long.
     pub fn silhouette_of(outline: &Outline, joined: Option<&Plane<bool>>) -> Self {
         let inside = outline.inside();
         let joined = joined.filter(|joined| joined.size() == outline.size());
@@ -45,7 +45,7 @@ impl RimDistance {
 /// Beyond this distance the line between crossings is no nearer than they are, to a fiftieth of a pixel.
 const FAR_PX: f32 = 8.0;
 
-/// Distance and way from a crossing of the rim, or from the straight rim through it where its foot is near.
+/// Distance and direction from a crossing of the rim, or from the straight rim through it if its foot is near.
 fn toward(outline: &Outline, here: Vec2, crossing: Vec2) -> (f32, Vec2) {
     let from = here - crossing;
     let plain = from.length();
@@ -127,9 +127,10 @@ fn nearest_crossings(outline: &Outline, joined: Option<&Plane<bool>>, swapped: b
     out
 }
 
-/// For each place q of a line the v with the least (q − v)² + f(v), told to `found`; nothing where all f are infinite.
+/// For each place q of a line the v with the least (q − v)² + f(v), passed to `found`; not called where all f are
+/// infinite.
 ///
-/// Felzenszwalb and Huttenlocher 2012: parabolas of the same shape cross once, so those that are ever lowest stand in
+/// Felzenszwalb and Huttenlocher 2012: parabolas of the same shape cross once, so those that are ever lowest are in
 /// order.
 pub fn lower_envelope(f: &[f64], mut found: impl FnMut(usize, usize)) {
     let (mut lowest, mut from): (Vec<usize>, Vec<f64>) = (Vec::new(), Vec::new());

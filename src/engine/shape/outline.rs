@@ -1,14 +1,13 @@
-//! Outlines: what of a drawing is one part, as anti-aliased coverage, and where its rim lies between pixels.
-//! Floor 3. Where outlines come from in a document (layers, flats, paths) is `document::parts`' and `path`'s.
+//! Outlines: the area of one part of a drawing, as anti-aliased coverage, and where its rim lies between pixels. Floor
+//! 3. Not here: where outlines come from in a document (layers, flats, paths) (`document::parts`, `path`).
 
 use crate::math::{Affine2, Rect, Size, Vec2, vec2};
 use crate::raster::Plane;
 
-/// The nearest that the rim may come to the centre of a pixel, px: nearer ones would make springs too stiff to solve.
+/// The least distance of the rim from the centre of a pixel, px: a smaller one would make springs too stiff to solve.
 const LEAST_CROSSING: f32 = 0.02;
 
-/// Coverage of a part. Around what is covered stands a margin of one empty pixel, so that every pixel inside has four
-/// neighbours.
+/// Coverage of a part, with a margin of one empty pixel around it, so that every pixel inside has four neighbours.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outline {
     /// Canvas px of the plane's first pixel.
@@ -27,8 +26,7 @@ pub struct RimLine {
 }
 
 impl Outline {
-    /// Coverage (255 wholly inside) whose first pixel lies at `corner`, cut to what is covered. `None` where nothing
-    /// is.
+    /// Coverage (255 wholly inside) whose first pixel lies at `corner`, cut to what is covered. `None` if nothing is.
     pub fn new(corner: (i32, i32), coverage: &Plane<u8>) -> Option<Self> {
         let rows = (0..coverage.height()).filter(|y| coverage.row(*y).iter().any(|c| *c > 0));
         let mut bounds = Rect::EMPTY;
@@ -43,7 +41,7 @@ impl Outline {
         let (x0, y0) = (bounds.x0 - 1, bounds.y0 - 1);
         let size = Size::new(bounds.width() as u32 + 2, bounds.height() as u32 + 2);
         let cut = Plane::from_fn(size, |x, y| coverage.get(x as i32 + x0, y as i32 + y0).unwrap_or(0));
-        // A hairline covers no pixel by half: then all that it touches is inside.
+        // A hairline covers no pixel by half: then all pixels that it touches are inside.
         let least = if cut.values().iter().any(|c| *c >= 128) { 128 } else { 1 };
         let inside = cut.map(|c| c >= least);
         Some(Self { corner: (corner.0.saturating_add(x0), corner.1.saturating_add(y0)), coverage: cut, inside })
@@ -63,11 +61,11 @@ impl Outline {
     pub fn coverage(&self) -> &Plane<u8> {
         &self.coverage
     }
-    /// Whether the centre of a pixel is inside: the unknowns of every equation here.
+    /// Whether the centre of a pixel is inside: these pixels are the unknowns of every equation here.
     pub fn inside(&self) -> &Plane<bool> {
         &self.inside
     }
-    /// The same planes with some pixels outside; a plane of another size takes none away.
+    /// The same planes with some pixels made outside; a plane of another size removes none.
     pub fn without(&self, cut: &Plane<bool>) -> Self {
         if cut.size() != self.size() {
             return self.clone();
@@ -76,13 +74,14 @@ impl Outline {
         let inside = Plane::from_fn(self.size(), |x, y| !cut.at(x, y) && self.inside.at(x, y));
         Self { corner: self.corner, coverage, inside }
     }
-    /// The same outline elsewhere.
+    /// The same outline, moved.
     pub fn moved(&self, by: (i32, i32)) -> Self {
         let corner = (self.corner.0.saturating_add(by.0), self.corner.1.saturating_add(by.1));
         Self { corner, ..self.clone() }
     }
-    /// The rim in a partly covered pixel: the straight line that leaves the pixel as much covered as it is, across the
-    /// way coverage falls around it. `None` where a pixel is covered wholly or not at all, or falls nowhere.
+    /// The rim in a partly covered pixel: the straight line that leaves the pixel's coverage, at a right angle to the
+    /// direction in which coverage falls. `None` where a pixel is covered wholly or not at all, or coverage does not
+    /// fall.
     pub fn rim_line(&self, x: usize, y: usize) -> Option<RimLine> {
         let covered = self.coverage.at(x, y);
         if covered == 0 || covered == 255 {
@@ -95,10 +94,10 @@ impl Outline {
         let share = f32::from(covered) / 255.0;
         Some(RimLine { distance: distance_of_share(share, outward), outward })
     }
-    /// How far from the centre of an inside pixel the rim is toward a neighbour outside it, in `[0.02, 1]` px.
+    /// Distance of the rim from the centre of an inside pixel toward a neighbour outside, in `[0.02, 1]` px.
     ///
-    /// Gibou et al. 2002 need this θ to give a rim between pixels its place. The partly covered pixels of the two know
-    /// it; where both or neither are, it is their mean or halfway.
+    /// Gibou et al. 2002 need this θ to place a rim between pixels. It is known from the partly covered pixel of the
+    /// two; from both it is the mean, from neither halfway.
     pub fn crossing(&self, (x, y): (usize, usize), step: (i32, i32)) -> f32 {
         let along = |line: RimLine| {
             let across = if step.0 != 0 { line.outward.x } else { line.outward.y };
@@ -117,7 +116,7 @@ impl Outline {
     /// The outline as it is seen through a map of its plane; `None` where nothing of it is left, or the map flattens
     /// it, or its picture would have more than `most_px` pixels.
     ///
-    /// Whole pixels are moved as they are. Else coverage is read between pixels and made as steep again as it was.
+    /// Moves by whole pixels copy. Otherwise coverage is read between pixels, and its former steepness restored.
     pub fn through(&self, map: Affine2, most_px: usize) -> Option<Self> {
         if !map.is_finite() || map.matrix2.determinant().abs() < 1e-6 {
             return None;
@@ -163,9 +162,9 @@ impl Outline {
     }
 }
 
-/// How far inside a straight rim the centre of a unit square is, of which the rim leaves the share `share`; px.
+/// How far inside a straight rim the centre of a unit square is, if the rim leaves the share `share` of it; px.
 ///
-/// The area that a half plane takes of a square grows quadratically while the rim passes a corner, linearly between
+/// The area of a square within a half plane grows quadratically while the rim passes a corner, linearly between
 /// corners; this is its inverse. `outward`: unit.
 pub fn distance_of_share(share: f32, outward: Vec2) -> f32 {
     let (long, short) =

@@ -1,12 +1,12 @@
 //! Closed paths as coverage: the exact area that a polygon takes of each pixel.
-//! Floor 3. Curves are flattened before they come here.
+//! Floor 3. Not here: flattening of curves.
 
 use super::Outline;
 use crate::math::{Size, Vec2, vec2};
 use crate::raster::Plane;
 
 impl Outline {
-    /// The inside of a closed polygon through `points`, canvas px, where the path winds around.
+    /// The inside of a closed polygon through `points`, canvas px: where the winding number is not 0.
     ///
     /// `None` where it encloses nothing, a point is not finite, or its rectangle has more than `most_px` pixels.
     pub fn of_path(points: &[Vec2], most_px: usize) -> Option<Self> {
@@ -60,7 +60,7 @@ impl Accumulator {
         let end = (right.ceil() as usize).max(first + 1).min(last + 1);
         let mut before = 0.0;
         for (column, sum) in (first..end).zip(&mut row[first..end]) {
-            // How much of the row's height lies to the right of the edge within this column and all before it.
+            // The share of the row's height to the right of the edge within this column and all before it.
             let x = column as f32 + 1.0;
             let mean = if right - left < 1e-6 {
                 (x - left).max(0.0).min(1.0)
@@ -88,7 +88,7 @@ impl Accumulator {
     }
 }
 
-/// A polygon of `corners` points around an ellipse, for outlines that are drawn and tests that know the truth.
+/// A polygon of `corners` points around an ellipse, for drawn outlines and for tests with known results.
 pub fn ellipse(center: Vec2, half_axes: Vec2, turn_rad: f32, corners: usize) -> Vec<Vec2> {
     let turn = Vec2::from_angle(turn_rad);
     let at = |i: usize| std::f32::consts::TAU * i as f32 / corners as f32;

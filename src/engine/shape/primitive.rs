@@ -1,12 +1,12 @@
 //! Primitives: bodies whose heights and normals are known exactly, seen along the z axis.
-//! Floor 3. They are what inflated shapes are tested against, too.
+//! Floor 3. Inflated shapes are tested against them, too.
 
 use super::Form;
 use crate::math::{Mat3, Range, Size, TURNS, Vec2, Vec3, vec2, vec3};
 use crate::raster::Plane;
 
 crate::named! {
-    /// Which body. What each takes of a [`Primitive`]'s numbers stands beside it.
+    /// Which body, each with the numbers of a [`Primitive`] that it uses.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Body {
         /// `radius`.
@@ -15,9 +15,9 @@ crate::named! {
         Ellipsoid = "ellipsoid",
         /// `radius`, `length` along its axis (y before it is turned).
         Cylinder = "cylinder",
-        /// As a cylinder; the point is up.
+        /// As a cylinder; its tip is up.
         Cone = "cone",
-        /// `length` is that between the middles of its ends.
+        /// `length`: between the middles of its ends.
         Capsule = "capsule",
         /// `radius` of its ring, which faces the viewer before it is turned, and `tube` around it.
         Torus = "torus",
@@ -50,14 +50,14 @@ impl Primitive {
     pub const ROUND: Range = 0.0..=8192.0;
     pub const TURN: Range = TURNS;
 
-    /// A body of a size that can be seen.
+    /// A body of a visible size.
     pub fn new(body: Body, center: Vec2, radius: f32) -> Self {
         let half = Vec3::splat(radius);
         let (length, tube, round) = (2.0 * radius, 0.3 * radius, 0.1 * radius);
         Self { body, center, radius, half, length, tube, round, turn_deg: Vec3::ZERO }
     }
-    /// Height (px, toward the viewer, 0 at the body's middle) and unit normal (camera space) that are seen at a canvas
-    /// point; `None` beside the body.
+    /// Visible height (px, toward the viewer, 0 at the body's middle) and unit normal (camera space) at a canvas point;
+    /// `None` off the body.
     pub fn seen_at(&self, p: Vec2) -> Option<(f32, Vec3)> {
         self.seen(self.turn(), p)
     }
@@ -83,7 +83,7 @@ impl Primitive {
         let normal = (turn * normal).normalize_or(Vec3::Z);
         Some((z, vec3(normal.x, normal.y, normal.z.max(0.0)).normalize_or(Vec3::Z)))
     }
-    /// No farther from the middle than this, px.
+    /// The greatest distance from the middle, px.
     fn reach(&self) -> f32 {
         match self.body {
             Body::Sphere => self.radius,
@@ -111,7 +111,7 @@ impl Primitive {
             coverage: texels.map(|t| t.coverage),
         })
     }
-    /// What one pixel shows: its centre, or the mean of what of it is covered.
+    /// What one pixel shows: its centre, or the mean of its covered part.
     fn texel(&self, turn: Mat3, corner: Vec2) -> PrimitiveTexel {
         const SIDE: usize = 8;
         let middle = self.seen(turn, corner + 0.5);
@@ -199,7 +199,7 @@ impl Ray {
         let side = side.filter(|(_, p)| p.y.abs() <= half).map(|(z, p)| (z, vec3(p.x, 0.0, p.z)));
         nearer(side, nearer(self.cap(half, radius), self.cap(-half, radius)))
     }
-    /// x² + z² = (slope (half − y))², the point up.
+    /// x² + z² = (slope (half − y))², the tip up.
     fn cone(&self, radius: f32, half: f32) -> Hit {
         let slope = radius / (2.0 * half);
         let (o, d) = (self.origin, self.way);
@@ -210,7 +210,7 @@ impl Ray {
         let c = o.x * o.x + o.z * o.z - k * above * above;
         let under = b * b - a * c;
         let side = (under >= 0.0 && a.abs() > 1e-9).then(|| under.sqrt()).and_then(|s| {
-            // Where the cone opens toward the viewer the nearer root may lie on its mirror image beyond the point.
+            // Where the cone opens toward the viewer the nearer root may lie on its mirror image beyond the tip.
             let both = [(-b + s) / a, (-b - s) / a].map(|z| (z, self.at(z)));
             let on = both.iter().filter(|(_, p)| p.y.abs() <= half);
             on.max_by(|x, y| x.0.total_cmp(&y.0)).copied()
@@ -228,7 +228,7 @@ impl Ray {
         };
         nearer(side, nearer(end(half), end(-half)))
     }
-    /// The first place where a distance (and its gradient) becomes 0, from `reach` in front of the middle on.
+    /// The first place where a distance (and its gradient) becomes 0, starting `reach` in front of the middle.
     fn traced(&self, reach: f32, distance: impl Fn(Vec3) -> (f32, Vec3)) -> Hit {
         let mut z = reach;
         for _ in 0..200 {
@@ -245,14 +245,14 @@ impl Ray {
     }
 }
 
-/// Distance to a torus around z, and the way from it.
+/// Distance to a torus around z, and the direction from it.
 fn torus(p: Vec3, radius: f32, tube: f32) -> (f32, Vec3) {
     let ring = vec2(p.x, p.y).normalize_or_zero() * radius;
     let from = p - vec3(ring.x, ring.y, 0.0);
     (from.length() - tube, from)
 }
 
-/// Distance to a box of half sides `half` with round edges, and the way from it.
+/// Distance to a box of half sides `half` with round edges, and the direction from it.
 fn rounded_box(p: Vec3, half: Vec3, round: f32) -> (f32, Vec3) {
     let q = p.abs() - (half - round);
     let out = q.max(Vec3::ZERO);

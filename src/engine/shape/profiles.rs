@@ -15,25 +15,25 @@ pub struct ShadedDrawing {
     pub light: Vec3,
 }
 
-/// What shadings tell.
+/// What shadings give.
 pub struct ProfileNormals {
-    /// Unit, camera space; zero where fewer than three shadings say anything.
+    /// Unit, camera space; zero where fewer than three shadings give a value.
     pub normals: Plane<Vec3>,
     /// ρ.
     pub albedo: Plane<f32>,
-    /// How far the shadings contradict each other, r.m.s. of what is left of I, linear light.
+    /// How far the shadings contradict each other, r.m.s. of the residual of I, linear light.
     pub residual: Plane<f32>,
 }
 
 /// How many shadings there may be.
 pub const MOST_PROFILES: usize = 5;
-/// Darker or lighter than this a shading is clipped and says nothing: half a step of 8 bits, and as much below white.
+/// A shading darker or lighter than this is clipped and gives nothing: half a step of 8 bits, and as much below white.
 const CLIPPED: (f32, f32) = (0.0016, 0.9984);
 
 /// ρn = (Σ w ℓℓᵀ)⁻¹ Σ w I ℓ at every pixel, w = 0 where a shading is clipped.
 ///
-/// With two shadings n is the nearest to the viewer of those that both allow (the third equation is n·z ≥ 0, held
-/// faintly). `None` where the planes differ in size or there are fewer than two or more than five.
+/// With two shadings, n is the one nearest to the viewer's direction that both allow (the third equation is n·z ≥ 0,
+/// held faintly). `None` where the planes differ in size or there are fewer than two or more than five.
 pub fn normals_from_profiles(profiles: &[ShadedDrawing]) -> Option<ProfileNormals> {
     let size = profiles.first()?.grey.size();
     let fits = (2..=MOST_PROFILES).contains(&profiles.len()) && profiles.iter().all(|p| p.grey.size() == size);
@@ -48,7 +48,7 @@ pub fn normals_from_profiles(profiles: &[ShadedDrawing]) -> Option<ProfileNormal
     })
 }
 
-/// ρn and the residual at a pixel; zero where it is not told.
+/// ρn and the residual at a pixel; zero where they are unknown.
 fn solved(profiles: &[ShadedDrawing], x: usize, y: usize) -> (Vec3, f32) {
     let told = |p: &&ShadedDrawing| {
         let grey = p.grey.at(x, y);
@@ -62,7 +62,7 @@ fn solved(profiles: &[ShadedDrawing], x: usize, y: usize) -> (Vec3, f32) {
     let mut normal = used.iter().fold(Mat3::ZERO, |m, p| m + outer(p.light));
     let mut right = used.iter().fold(Vec3::ZERO, |v, p| v + p.light * p.grey.at(x, y));
     if used.len() < 3 {
-        // Two planes meet in a line: of its points the one nearest to the viewer's own direction.
+        // Two planes meet in a line: the point of it that is nearest to the viewer's direction.
         const FAINT: f32 = 1e-3;
         let mean = used.iter().map(|p| p.grey.at(x, y)).sum::<f32>() / used.len() as f32;
         normal += FAINT * outer(Vec3::Z);
@@ -79,8 +79,8 @@ fn solved(profiles: &[ShadedDrawing], x: usize, y: usize) -> (Vec3, f32) {
     (found, (left / used.len() as f32).sqrt())
 }
 
-/// The form that shadings tell within an outline: their normals, and heights whose slopes these are. Where they tell
-/// nothing (all but two are clipped) the form goes on as beside it. `None` as of [`normals_from_profiles`].
+/// The form that shadings give within an outline: their normals, and heights with these slopes. Where they give nothing
+/// (all but two are clipped) the form continues from its neighbourhood. `None` as for [`normals_from_profiles`].
 ///
 /// The planes of the shadings are those of the outline.
 pub fn formed(profiles: &[ShadedDrawing], outline: &Outline) -> Option<Form> {
@@ -105,13 +105,13 @@ pub fn formed(profiles: &[ShadedDrawing], outline: &Outline) -> Option<Form> {
         coverage: outline.coverage().clone(),
     };
     let form = with_normals(&flat, outline, normals);
-    // It stands on its lowest place.
+    // Its lowest point is at 0.
     let covered = || form.height.values().iter().zip(inside.values()).filter(|(_, i)| **i).map(|(z, _)| *z);
     let low = covered().fold(f32::MAX, f32::min);
     Some(if low < f32::MAX { form.raised(-low) } else { form })
 }
 
-/// The size of all shadings; `None` where there are none.
+/// The size of all shadings; `None` if there are none.
 pub fn size_of(profiles: &[ShadedDrawing]) -> Option<Size> {
     profiles.first().map(|p| p.grey.size())
 }

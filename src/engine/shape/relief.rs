@@ -1,11 +1,11 @@
 //! Relief from a picture: its detail as height over a form, never its brightness as the form.
-//! Floor 3. Smoothing that keeps edges is the guided filter (He, Sun and Tang 2013), inside the outline only.
+//! Floor 3. Edge-preserving smoothing is the guided filter (He, Sun and Tang 2013), inside the outline only.
 
 use super::Outline;
 use crate::math::Range;
 use crate::raster::Plane;
 
-/// What of a picture becomes height.
+/// What part of a picture becomes height.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Detail {
     /// Height of the whole range of luminance at the coarse and the fine scale, px.
@@ -29,7 +29,7 @@ impl Default for Detail {
     }
 }
 
-/// The height layer of a picture's detail, px: each scale is what its base takes away from the one before.
+/// The height layer of a picture's detail, px: each scale is what its base removes from the one before.
 ///
 /// `luminance`: `[0, 1]`, as large as the outline's planes.
 pub fn relief(outline: &Outline, luminance: &Plane<f32>, detail: Detail) -> Plane<f32> {
@@ -49,7 +49,7 @@ pub fn relief(outline: &Outline, luminance: &Plane<f32>, detail: Detail) -> Plan
     })
 }
 
-/// The guided filter of a plane by itself: q = a p + b with a = var/(var + ε), both meant over the window.
+/// The guided filter of a plane by itself: q = a p + b with a = var/(var + ε), both averaged over the window.
 pub fn guided(plane: &Plane<f32>, inside: &Plane<bool>, radius: usize, epsilon: f32) -> Plane<f32> {
     let mean = mean_within(plane, inside, radius);
     let square = mean_within(&plane.map(|v| v * v), inside, radius);

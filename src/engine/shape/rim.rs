@@ -26,8 +26,8 @@ impl<'a> OutlineRim<'a> {
     pub fn silhouette(outline: &'a Outline) -> Self {
         Self { outline, joined: None }
     }
-    /// A silhouette but toward the pixels of `joined`, a plane as large as the outline's: there the link is left out
-    /// (Neumann), so that the field runs into its neighbour level. A plane of another size joins nothing.
+    /// A silhouette except toward the pixels of `joined`, a plane as large as the outline's: there the link is left out
+    /// (Neumann), so that the field joins its neighbour level. A plane of another size joins nothing.
     pub fn joined(outline: &'a Outline, joined: &'a Plane<bool>) -> Self {
         Self { outline, joined: (joined.size() == outline.size()).then_some(joined) }
     }
@@ -38,7 +38,7 @@ impl<'a> OutlineRim<'a> {
     fn is_free(&self, x: i32, y: i32) -> bool {
         self.joined.is_some_and(|joined| joined.get(x, y).unwrap_or(false))
     }
-    /// The rim from an inside pixel toward a neighbour: none where that is inside too or joined, else θ.
+    /// The rim from an inside pixel toward a neighbour: none if that is inside too or joined, else θ.
     fn toward(&self, (x, y): (usize, usize), step: (i32, i32)) -> Side {
         let other = (x as i32 + step.0, y as i32 + step.1);
         if self.outline.inside().get(other.0, other.1).unwrap_or(false) {
@@ -53,7 +53,8 @@ impl<'a> OutlineRim<'a> {
     /// px⁻², `≥ 0`.
     pub fn equation(&self, screen: impl Fn(usize, usize) -> f32 + Sync) -> Equation {
         let (inside, size) = (self.outline.inside(), self.outline.size());
-        // A piece that is free all around would rise without end: it is held faintly, as far as the plane is long.
+        // A piece that is free all around would rise without limit: it is held weakly, with the plane's length as its
+        // reach.
         let faint = if self.joined.is_some() { size.longer_side().powi(-2) } else { 0.0 };
         let held = Plane::from_fn(size, |x, y| {
             if !inside.at(x, y) {
@@ -72,7 +73,7 @@ impl<'a> OutlineRim<'a> {
     #[inline(always)]
     pub fn slope(&self, field: &Plane<f32>, x: usize, y: usize) -> Vec2 {
         let inside = self.outline.inside();
-        // Inside stands a margin away from the border.
+        // Inside pixels are a margin away from the border.
         if inside.at(x - 1, y) && inside.at(x + 1, y) && inside.at(x, y - 1) && inside.at(x, y + 1) {
             let across = field.at(x + 1, y) - field.at(x - 1, y);
             return vec2(across, field.at(x, y + 1) - field.at(x, y - 1)) * 0.5;
@@ -94,16 +95,16 @@ impl<'a> OutlineRim<'a> {
     }
 }
 
-/// What lies beside an inside pixel.
+/// What lies next to an inside pixel.
 enum Side {
     Inside,
     Free,
-    /// The rim, at this part of a px.
+    /// The rim, at this fraction of a px.
     Rim(f32),
 }
 
 impl Equation {
-    /// The field for a right-hand side, row by row; `start` is where the search begins, a field nearly right.
+    /// The field for a right-hand side, row by row; `start`: the field that the search begins at, nearly right.
     pub fn solve(&self, b: &Plane<f32>, start: Option<&Plane<f32>>, goal: f64) -> Plane<f32> {
         let start = start.filter(|start| start.size() == b.size()).map(|start| start.values().to_vec());
         let found = self.solver.solve(b.values(), start, goal);

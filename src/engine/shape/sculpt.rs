@@ -18,15 +18,15 @@ crate::named! {
         Flatten = "flatten",
         /// Lowers along a sharp line.
         Crease = "crease",
-        /// Draws heights together toward the middle of the dab.
+        /// Pulls heights together toward the middle of the dab.
         Pinch = "pinch",
-        /// As flatten, but only what stands out.
+        /// As flatten, but only what sticks out.
         Scrape = "scrape",
     }
 }
 
 impl SculptTool {
-    /// Whether a dab's strength is a height in px; of the others it is a share of the way.
+    /// Whether a dab's strength is a height in px; for the others it is a share of the way.
     pub fn is_by_height(self) -> bool {
         matches!(self, SculptTool::Raise | SculptTool::Lower | SculptTool::Crease)
     }
@@ -38,9 +38,9 @@ pub struct SculptStroke {
     pub tool: SculptTool,
     /// Diameter of a dab, px.
     pub size: f32,
-    /// The part of the dab that is whole.
+    /// The part of the dab with full strength.
     pub hardness: f32,
-    /// Of raise, lower and crease: px a dab; of the others the share of the way that a dab goes, at most 1.
+    /// For raise, lower and crease: px per dab; for the others: the share of the way that a dab goes, at most 1.
     pub strength: f32,
     /// Canvas px, and pressure.
     pub samples: Vec<(Vec2, f32)>,
@@ -51,12 +51,12 @@ impl SculptStroke {
     pub const HARDNESS: Range = UNIT;
     pub const STRENGTH: Range = 0.0..=512.0;
     pub const PRESSURE: Range = UNIT;
-    /// Samples of one stroke, and strokes of one part.
+    /// The most samples of one stroke, and strokes of one part.
     pub const MOST: usize = 100_000;
-    /// From dab to dab, a part of the diameter.
+    /// From dab to dab, as a share of the diameter.
     const SPACING: f32 = 0.125;
 
-    /// Where dabs stand, with their pressure: as far apart as the spacing says.
+    /// The places of dabs, at the given spacing, with their pressure.
     fn dabs(&self) -> Vec<(Vec2, f32)> {
         let step = (Self::SPACING * self.size).max(0.5);
         let mut dabs: Vec<(Vec2, f32)> = self.samples.first().copied().into_iter().collect();
@@ -80,7 +80,7 @@ pub fn sculpted(form: &Form, strokes: &[SculptStroke]) -> Plane<f32> {
     Sculpting::of(form).go_on(form, strokes).layer
 }
 
-/// How far strokes came over a form: more samples of the last one, and more strokes, go on from there.
+/// How far strokes came over a form: more samples of the last one, and more strokes, continue from there.
 pub struct Sculpting {
     /// Those that are done, the last as far as it was.
     strokes: Vec<SculptStroke>,
@@ -110,8 +110,8 @@ impl Sculpting {
         };
         strokes.len() > before.len() && strokes.starts_with(before) && begins(&strokes[before.len()])
     }
-    /// With what the strokes have more than those that are done; they must go on from there. To the bit as if all were
-    /// done anew.
+    /// With what the strokes have beyond those that are done, which must be their beginning. Bit-identical to doing all
+    /// of them again.
     pub fn go_on(mut self, form: &Form, strokes: &[SculptStroke]) -> Self {
         let done = self.strokes.len().saturating_sub(1);
         let corner = vec2(form.corner.0 as f32, form.corner.1 as f32);
@@ -218,7 +218,7 @@ impl SculptDab<'_> {
             layer.set(x, y, layer.at(x, y) + change);
         }
     }
-    /// The mean height of eight places around a pixel and itself, an eighth of the dab away.
+    /// The mean height of a pixel and eight places around it, an eighth of the dab away.
     fn around(&self, form: &Form, layer: &Plane<f32>, x: usize, y: usize) -> f32 {
         let p = vec2(x as f32 + 0.5, y as f32 + 0.5);
         let far = (0.25 * self.radius).max(1.0);

@@ -1,7 +1,7 @@
-//! Poisson equations over outlines: conjugate gradients, preconditioned by one multigrid V-cycle, begun at the solution
-//! of the coarser grid.
-//! Floor 3. Springs are 1 or 0 here and rims hold; `surface` solves springs of any stiffness that nothing holds.
-//! Sums are formed band by band and added in order, so that the bits do not depend on the number of threads.
+//! Poisson equations over outlines: conjugate gradients, preconditioned by one multigrid V-cycle, starting from the
+//! solution of the coarser grid. Floor 3. Springs are 1 or 0 here and rims are held. Not here: free systems with
+//! springs of any stiffness (`surface`). Sums are formed band by band and added in order, so that the bits do not
+//! depend on the number of threads.
 
 mod level;
 
@@ -11,10 +11,10 @@ use crate::raster::Plane;
 use level::*;
 use rayon::prelude::*;
 
-/// Two sweeps of Jacobi with these steps leave the least of every error between half the steepest and the steepest that
-/// a grid holds: Chebyshev's polynomial over [½, 2].
+/// Two sweeps of Jacobi with these steps damp best the errors from half a grid's highest frequency on: Chebyshev's
+/// polynomial over [½, 2].
 const STEPS: [f32; 2] = [0.561_7, 1.389_5];
-/// Steps of conjugate gradients at most.
+/// The most steps of conjugate gradients.
 const MOST_STEPS: usize = 60;
 
 /// A grid with its coarser ones, ready to be solved for several right-hand sides.
@@ -40,9 +40,9 @@ impl Solver {
         }
         Self { levels }
     }
-    /// Solves A v = b until the residual is a part of b, squared, as small as `goal`, or as far as 60 steps go.
+    /// Solves A v = b until the squared residual, relative to b's, is as small as `goal`, or for 60 steps.
     ///
-    /// `start`: where the search begins; without it the solution of the coarser grids.
+    /// `start`: where the search begins; if absent, at the solution of the coarser grids.
     pub fn solve(&self, b: &[f32], start: Option<Vec<f32>>, goal: f64) -> Vec<f32> {
         let (grid, w) = (&self.levels[0], self.levels[0].w);
         let mut v = start.unwrap_or_else(|| self.nested(0, b));
@@ -80,7 +80,8 @@ impl Solver {
         }
         v
     }
-    /// The coarser grid's solution, itself begun on the one below, read between its blocks and corrected once.
+    /// The coarser grid's solution, itself started from the next coarser one, read between its blocks and corrected
+    /// once.
     fn nested(&self, at: usize, b: &[f32]) -> Vec<f32> {
         let mut scratch = SolverBuffers::default();
         let grid = &self.levels[at];
@@ -169,7 +170,7 @@ fn between_blocks(grid: &Level, below: &Level, coarse: &[f32], y: usize, out: &m
     }
 }
 
-/// Buffers that are used again, zero where no unknown is.
+/// Buffers that are reused, zero where no unknown is.
 #[derive(Default)]
 struct SolverBuffers(Vec<Vec<f32>>);
 

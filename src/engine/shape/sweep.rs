@@ -1,6 +1,5 @@
-//! Bodies that are drawn: sweeps (balls along a pen's stroke, joined by round cones) and lathes (an outline turned
-//! about an axis). Both give squared heights, which `form` makes forms of.
-//! Floor 3.
+//! Drawn bodies: sweeps (balls along a pen's stroke, joined by round cones) and lathes (an outline turned about an
+//! axis). Both give squared heights, of which `form` makes forms. Floor 3.
 
 use super::Outline;
 use crate::math::{Range, Size, Vec2, vec2};
@@ -17,14 +16,14 @@ pub struct Ball {
 
 impl Ball {
     pub const RADIUS: Range = 0.0..=4096.0;
-    /// Balls of one sweep.
+    /// The most balls of one sweep.
     pub const MOST: usize = 4096;
 }
 
 /// The ball between two that reaches highest above a point: its place and radius.
 ///
 /// g(t) = (r₀ + t Δr)² − |p − a − t e|² is greatest at t = (r₀ Δr + e·(p − a)) / (|e|² − Δr²): round cones in closed
-/// form. Where one ball holds the other, that ball.
+/// form. If one ball contains the other, the larger ball.
 pub fn highest_between(a: Ball, b: Ball, p: Vec2) -> Ball {
     let (e, dr) = (b.at - a.at, b.radius - a.radius);
     let bend = e.length_squared() - dr * dr;
@@ -35,7 +34,7 @@ pub fn highest_between(a: Ball, b: Ball, p: Vec2) -> Ball {
     Ball { at: a.at + t * e, radius: a.radius + t * dr }
 }
 
-/// The outline and squared height (px²) of balls along a line; `None` where there is nothing to see, a number is not
+/// The outline and squared height (px²) of balls along a line; `None` if there is nothing to see, a number is not
 /// finite or the rectangle has more than `most_px` pixels.
 pub fn swept(balls: &[Ball], most_px: usize) -> Option<(Outline, Plane<f32>)> {
     let is_finite = |b: &Ball| b.at.is_finite() && b.at.abs().max_element() < 1e6 && b.radius.is_finite();
@@ -56,7 +55,7 @@ pub fn swept(balls: &[Ball], most_px: usize) -> Option<(Outline, Plane<f32>)> {
         if i > 0 && i + 1 == balls.len() {
             break;
         }
-        // Only what the two can reach is looked at.
+        // Only pixels that the two can reach are visited.
         let reach = a.radius.max(b.radius) + 1.0;
         let (from, to) = (a.at.min(b.at) - reach - low, a.at.max(b.at) + reach - low);
         for y in from.y.max(0.0) as usize..(to.y.ceil() as usize).min(size.height as usize) {
@@ -80,8 +79,8 @@ pub fn swept(balls: &[Ball], most_px: usize) -> Option<(Outline, Plane<f32>)> {
 /// The squared height (px²) of an outline turned about an axis: z² = r(s)² − (d − c(s))², s along the axis, r half of
 /// the outline's width there and c its middle.
 ///
-/// `axis`: two points, canvas px; without one it is upright. Across each place of the axis what lies between the first
-/// and the last place inside counts.
+/// `axis`: two points, canvas px; without one it is upright. Across each place of the axis, all between the first and
+/// the last place inside counts.
 pub fn turned(outline: &Outline, axis: Option<[Vec2; 2]>) -> Plane<f32> {
     let size = outline.size();
     let corner = vec2(outline.corner().0 as f32, outline.corner().1 as f32);
@@ -94,7 +93,7 @@ pub fn turned(outline: &Outline, axis: Option<[Vec2; 2]>) -> Plane<f32> {
     let ends = [Vec2::ZERO, vec2(extent.x, 0.0), vec2(0.0, extent.y), extent].map(|p| (p - from).dot(along));
     let first = ends.iter().copied().fold(f32::MAX, f32::min).floor();
     let count = (2.0 * far) as usize + 2;
-    // The outline's two sides across every pixel's length of the axis.
+    // The outline's two sides at every pixel along the axis.
     let sides: Vec<Option<(f32, f32)>> = (0..count)
         .map(|i| {
             let middle = from + (first + i as f32) * along;
@@ -125,18 +124,18 @@ pub fn turned(outline: &Outline, axis: Option<[Vec2; 2]>) -> Plane<f32> {
     })
 }
 
-/// How far along the axis sides are compared, px either way, and by how much a side that is only read from coverage may
-/// be off: what differs more is drawn so.
+/// How far along the axis sides are compared, px either way, and how far off a side read from coverage may be: larger
+/// differences are drawn on purpose.
 const CALM_PX: usize = 5;
 const READ_WITHIN_PX: f32 = 0.4;
 
-/// Sides without the jitter of a tenth of a pixel with which they are read, which would be ripples in the light: each
-/// is that of the parabola nearest to those around it. Steps that are drawn stay.
+/// Sides without their reading error of a tenth of a pixel, which would show as ripples in the light: each is replaced
+/// by the value of the parabola nearest to those around it. Drawn steps are kept.
 fn calmed(sides: &[Option<(f32, f32)>]) -> Vec<Option<(f32, f32)>> {
     let calm = |i: usize| {
         let own = sides[i]?;
         let is_there = |i: &usize| sides.get(*i).is_some_and(Option::is_some);
-        // As many either way, and fewer where the ends are near: there sides turn inward.
+        // As many on both sides, and fewer near the ends, where sides turn inward.
         let reach =
             (1..=2 * CALM_PX).take_while(|k| i.checked_sub(*k).is_some_and(|i| is_there(&i)) && is_there(&(i + k)));
         let reach = reach.count() / 2;
@@ -163,7 +162,7 @@ fn parabola(reach: usize, value: impl Fn(isize) -> f32) -> f32 {
     (-reach..=reach).map(|k| weight(k as f32) * value(k)).sum()
 }
 
-/// The first and the last place along a line that are inside, to a part of a pixel.
+/// The first and the last place along a line that are inside, to a fraction of a pixel.
 fn span_across(outline: &Outline, from: Vec2, way: Vec2, low: f32, high: f32) -> Option<(f32, f32)> {
     const STEP: f32 = 0.5;
     let at = |d: f32| outline.between(from + d * way) - 0.5;

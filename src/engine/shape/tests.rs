@@ -1,4 +1,4 @@
-//! What is known of inflated shapes: values on discs, ellipses and strips, and what must not change them.
+//! What is known about inflated shapes: values on discs, ellipses and strips, and what must not change them.
 
 use super::inflate::inflate;
 use super::path::ellipse;
@@ -168,7 +168,7 @@ fn a_low_rim_turns_by_its_angle_in_the_mean() {
     assert!((mean - 35.0).abs() < 3.0, "{mean}°");
 }
 
-/// Any outline that could come in: one pixel, all, thin, ragged, holes.
+/// Any possible outline: one pixel, all, thin, ragged, holes.
 fn random_mask(seed: u32) -> Plane<u8> {
     let pick = |i: u32, most: u32| (hash::unit(seed, i, 1) * most as f32) as u32;
     let size = Size::new(1 + pick(0, 40), 1 + pick(1, 40));
@@ -233,7 +233,7 @@ fn a_part_that_is_joined_runs_level_into_its_neighbour() {
     let (middle, end) = (u.at(100, row), u.at(strip.size().width as usize - 2, row));
     assert!((end / middle - 1.0).abs() < 0.01, "{end} at the end, {middle} in the middle");
     assert!(u.at(1, row) < 0.3 * middle);
-    // Free all around: finite all the same.
+    // Free all around: still finite.
     let everywhere = Plane::filled(strip.size(), true);
     assert!(inflate(&strip, Some(&everywhere), None).values().iter().all(|v| v.is_finite()));
 }

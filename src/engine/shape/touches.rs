@@ -1,16 +1,15 @@
-//! Touches: normals that were put down by hand, spread over a form.
-//! Floor 3. They are soft constraints on δ = n̄ wanted − n̄ there is: ∇²δ = 0 between them and δ = 0 at the rim, or
-//! within a reach ρ of each −∇²δ + δ/ρ² = 0.
+//! Touches: normals placed by hand, spread over a form. Floor 3. They are soft constraints on δ = n̄ wanted − n̄
+//! present: ∇²δ = 0 between them and δ = 0 at the rim, or within a reach ρ of each −∇²δ + δ/ρ² = 0.
 
 use super::{Form, Outline, OutlineRim};
 use crate::math::{Range, Vec2, Vec3, vec2, vec3};
 use crate::raster::Plane;
 use crate::surface::integrate::{Following, depth_from_normals};
 
-/// How firmly a touch holds, against the springs between pixels, which are 1.
+/// How firmly a touch holds, relative to the springs between pixels, which are 1.
 const FIRM: f32 = 1e3;
-/// The residual, squared, as a part of the right-hand side, which the firm springs rule: a ten thousandth of what is
-/// left where the search begins.
+/// The squared residual, relative to the right-hand side, which the firm springs dominate: a ten thousandth of the
+/// residual at the start.
 const GOAL: f64 = 1e-14;
 
 /// One touch of the normal brush.
@@ -22,22 +21,22 @@ pub struct Touch {
     pub radius: f32,
     /// Unit, camera space (y up).
     pub normal: Vec3,
-    /// How far it is felt, px; 0: to the rim and the next touches.
+    /// How far it reaches, px; 0: to the rim and the next touches.
     pub reach: f32,
 }
 
 impl Touch {
     pub const RADIUS: Range = 0.5..=4096.0;
     pub const REACH: Range = 0.0..=16384.0;
-    /// Touches of one part.
+    /// The most touches of one part.
     pub const MOST: usize = 100_000;
 }
 
-/// The same for a draft: the search need only come near.
+/// The same for a draft: the search need only come close.
 const ROUGH_GOAL: f64 = 1e-11;
 
-/// How far touches came on a form while a hand works on them: the next search begins there. For drafts alone, since
-/// what is found depends on the way there.
+/// How far touches came on a form while the user edits them: the next search begins there. Only for drafts, since the
+/// result depends on the steps before.
 #[derive(Default)]
 pub struct Touching {
     /// By reach, the farthest first.
@@ -45,11 +44,11 @@ pub struct Touching {
     heights: Option<Following>,
 }
 
-/// A form with touches: its normals nearest to what was asked for, and the heights that follow.
+/// A form with touches: the normals nearest to the requested ones, and the heights that follow.
 ///
-/// Of touches that overlap the last one holds. Those with the same reach are spread at once, the farthest first; what
-/// is nearer then changes only what is left to change. Inside a touch the form keeps its own curvature: its mean normal
-/// there becomes the touch's.
+/// Where touches overlap, the last one holds. Those with the same reach are spread together, the farthest first; nearer
+/// ones then change only what remains. Inside a touch the form keeps its own curvature: its mean normal there becomes
+/// the touch's.
 ///
 /// * `last`: in a draft, how far it came, and then how far it comes.
 pub fn touched(form: &Form, outline: &Outline, touches: &[Touch], mut last: Option<&mut Touching>) -> Form {
@@ -82,7 +81,7 @@ pub fn touched(form: &Form, outline: &Outline, touches: &[Touch], mut last: Opti
 }
 
 impl Touching {
-    /// As [`spread`], nearly, begun where the last one of this reach ended.
+    /// As [`spread`], approximately, begun where the last one of this reach ended.
     fn spread(&mut self, outline: &Outline, (held, wanted): (&Plane<bool>, &Plane<Vec2>), reach: f32) -> Plane<Vec2> {
         let at = self.steps.iter().position(|(known, _)| *known == reach);
         let known = at.map(|at| self.steps.swap_remove(at).1).filter(|known| known.size() == held.size());
@@ -91,7 +90,7 @@ impl Touching {
         self.steps.push((reach, step.clone()));
         step
     }
-    /// As [`with_normals`], nearly.
+    /// As [`with_normals`], approximately.
     fn with_normals(&mut self, form: &Form, outline: &Outline, normals: Plane<Vec3>) -> Form {
         let inside = outline.inside();
         let known = self.heights.take().filter(|known| known.is_over(inside));
@@ -103,14 +102,14 @@ impl Touching {
     }
 }
 
-/// The unit normal (camera space, y up) over a projected one, which is held shorter than 1.
+/// The unit normal (camera space, y up) over a projected one, which is kept shorter than 1.
 pub fn lifted(bar: Vec2) -> Vec3 {
     const LONGEST: f32 = 0.999;
     let bar = if bar.is_finite() { bar.clamp_length_max(LONGEST) } else { Vec2::ZERO };
     vec3(bar.x, -bar.y, (1.0 - bar.length_squared()).max(0.0).sqrt())
 }
 
-/// Which pixels are held, and δ there: own touches ask for their normal, others for no change.
+/// Which pixels are held, and δ there: own touches set their normal, others no change.
 fn constraints(outline: &Outline, bar: &Plane<Vec2>, touches: &[Touch], reach: f32) -> (Plane<bool>, Plane<Vec2>) {
     let (inside, corner) = (outline.inside(), outline.corner());
     let mut held = Plane::filled(inside.size(), false);
@@ -143,17 +142,17 @@ fn disc(inside: &Plane<bool>, center: Vec2, radius: f32) -> impl Iterator<Item =
     })
 }
 
-/// δ over the outline: what is wanted where it is held, 0 at the rim, smooth between.
+/// δ over the outline: the wanted value where it is held, 0 at the rim, smooth between.
 pub fn spread(outline: &Outline, held: &Plane<bool>, wanted: &Plane<Vec2>, reach: f32) -> Plane<Vec2> {
     spread_within(&OutlineRim::silhouette(outline), held, wanted, reach)
 }
 
-/// The same within a rim that is free in part.
+/// The same within a partly free rim.
 pub fn spread_within(rim: &OutlineRim, held: &Plane<bool>, wanted: &Plane<Vec2>, reach: f32) -> Plane<Vec2> {
     spread_from(rim, (held, wanted), reach, None, GOAL)
 }
 
-/// The same begun at a field that is nearly right.
+/// The same, starting from a field that is nearly right.
 fn spread_from(
     rim: &OutlineRim,
     (held, wanted): (&Plane<bool>, &Plane<Vec2>),
@@ -174,14 +173,14 @@ fn spread_from(
     Plane::from_fn(held.size(), |i, j| vec2(x.at(i, j), y.at(i, j)))
 }
 
-/// A form with other normals, and heights whose slopes they are, as high in the mean as before.
+/// A form with other normals, and heights with these slopes, as high in the mean as before.
 pub fn with_normals(form: &Form, outline: &Outline, normals: Plane<Vec3>) -> Form {
     let inside = outline.inside();
     let Some(found) = depth_from_normals(&normals, inside) else { return form.clone() };
     raised_to(form, inside, normals, |x, y| -found.depth.at(x, y) * found.range_px)
 }
 
-/// A form with other normals and heights, these moved so that they are as high in the mean as before.
+/// A form with other normals and heights, the heights moved to the same mean as before.
 fn raised_to(
     form: &Form,
     inside: &Plane<bool>,

@@ -1,5 +1,5 @@
-//! Tubes: the union of the largest balls that an outline holds, smoothed across its ridges.
-//! Floor 3. A strip rises to its half width here, not to √2 of it as in `inflate`.
+//! Tubes: the union of the largest balls inside an outline, smoothed across its ridges. Floor 3. A strip rises to its
+//! half width here, not to √2 of it as in `inflate`.
 
 use super::nearest::{RimDistance, lower_envelope};
 use super::{Outline, OutlineRim};
@@ -9,14 +9,14 @@ use rayon::prelude::*;
 
 /// A residual of 1e-3 of the right-hand side, squared.
 const GOAL: f64 = 1e-6;
-/// How far ridges are smoothed, a part of the radius of the ball there: facets go, cross-sections stay.
+/// How far ridges are smoothed, as a share of the radius of the ball there: facets vanish, cross-sections stay.
 const SMOOTHING: f32 = 0.08;
-/// The least smoothing, px: a ball that stands between pixels has its top half a pixel away.
+/// The least smoothing, px: a ball centred between pixels has its top half a pixel away.
 const LEAST_SMOOTHING_PX: f32 = 0.5;
 
 /// h, px², over the planes of an outline: the squared height of its maximal balls, smoothed, 0 at the rim.
 ///
-/// Raw it is max_c (r²(c) − |x − c|²), r the distance to the rim. Smoothed: h − t∇²h = h₀, √t a twelfth of the
+/// Unsmoothed it is max_c (r²(c) − |x − c|²), r the distance to the rim. Smoothed: h − t∇²h = h₀, √t a twelfth of the
 /// ball's radius. `joined` and `start` as for `inflate`.
 pub fn tube(outline: &Outline, joined: Option<&Plane<bool>>, start: Option<&Plane<f32>>) -> Plane<f32> {
     let reach = RimDistance::silhouette_of(outline, joined).distance;

@@ -85,7 +85,7 @@ impl Document {
         let placed = Document { parts, ..self.clone() }.with_homes_placed();
         Document { parts: Arc::default(), ..placed.lifted_off(|_| true) }
     }
-    /// With the outlines that follow kept selections updated.
+    /// With the outlines that follow a kept selection keeping it as a picture.
     pub(in crate::document) fn without_outlines_of(&self, selection: &NamedSelection) -> Document {
         let names = |part: &Arc<Part>| match part.outline() {
             Some(OutlineSource::Selection(name)) => *name == selection.name,

@@ -18,7 +18,7 @@ pub struct Irradiance {
     brightest: f32,
 }
 
-/// Light of a part of the sphere.
+/// The light of one part of the sphere.
 struct LightParcel {
     /// Its mean direction, unit: a small sun in a large parcel keeps its position.
     toward: Vec3,

@@ -28,7 +28,7 @@ pub(super) struct SphereLevel {
 /// The most taps along a stretched footprint; a longer one is also blurred across.
 const MOST_TAPS: f32 = 16.0;
 
-/// The least rows of the finest level: even a picture of one pixel is integrated over hemispheres.
+/// The fewest rows of the finest level: even a picture of one pixel is integrated over hemispheres.
 const FEWEST_ROWS: usize = 64;
 
 impl EnvironmentMap {
@@ -81,8 +81,8 @@ impl EnvironmentMap {
             bilinear(width as i32, height as i32, 0.5 + (place - 0.5) * inward, texel).unwrap_or_default()
         })
     }
-    /// A texel of the picture by column and row; those around a latitude-longitude map are its own, and beyond a disc
-    /// there are none.
+    /// A texel of the picture by column and row; a latitude-longitude map wraps around, and beyond a disc there are
+    /// none.
     fn texel(&self, i: i32, j: i32) -> Option<Vec3> {
         let (w, h) = (self.picture.size.width as i32, self.picture.size.height as i32);
         let (i, j) = match self.projection {
@@ -105,7 +105,7 @@ impl EnvironmentMap {
         }
         let picture = self.texel_rad().min(finest * 0.99);
         let t = ((width_rad / picture).max(1.0).log2() / (finest / picture).log2()).min(1.0);
-        // NaN is no footprint: the picture.
+        // NaN means no footprint: the picture.
         if t > 0.0 { self.at(e).lerp(self.levels[0].at(e), t) } else { self.at(e) }
     }
     /// `level ≥ 0`: between two levels where it is not whole.
@@ -137,7 +137,7 @@ impl EnvironmentMap {
         };
         (0..taps as i32).map(tap).sum::<Vec3>() / taps
     }
-    /// The level with `rows` rows, or the finest where the picture has fewer.
+    /// The level with `rows` rows, or the finest if the picture has fewer.
     pub(super) fn level(&self, rows: usize) -> &SphereLevel {
         self.levels.iter().find(|level| level.rows <= rows).unwrap_or(&self.levels[0])
     }
@@ -190,7 +190,7 @@ impl SphereLevel {
         let edge = |row: usize| (row as f32 / self.rows as f32 * PI).cos();
         TAU / self.columns() as f32 * (edge(row) - edge(row + 1))
     }
-    /// Half as many rows and columns: means by solid angle.
+    /// Half as many rows and columns: means weighted by solid angle.
     fn halved(&self) -> Option<SphereLevel> {
         let rows = self.rows / 2;
         let columns = 2 * rows;
@@ -224,7 +224,7 @@ fn around_row(texels: &[Vec3], width: f32) -> Vec<Vec3> {
     if width <= 1.0 {
         return texels.to_vec();
     }
-    // Whole texels at both sides, and the rest of the width as a part of one more.
+    // Whole texels on both sides, and the rest of the width as a fraction of one more.
     let width = width.min(n as f32);
     let whole = ((width - 1.0) / 2.0) as usize;
     let part = (width - 1.0) / 2.0 - whole as f32;
@@ -240,7 +240,7 @@ fn around_row(texels: &[Vec3], width: f32) -> Vec<Vec3> {
     (0..n).map(mean).collect()
 }
 
-/// The texel of a latitude-longitude map at a column and row that may lie beyond it: columns come round, and beyond a
+/// The texel of a latitude-longitude map at a column and row that may lie beyond it: columns wrap around, and beyond a
 /// pole the rows come back on the other side.
 #[inline(always)]
 fn across_the_poles(i: i32, j: i32, w: i32, h: i32) -> (i32, i32) {
@@ -252,7 +252,7 @@ fn across_the_poles(i: i32, j: i32, w: i32, h: i32) -> (i32, i32) {
     (i.rem_euclid(w), j.clamp(0, h - 1))
 }
 
-/// Between the four texels around `place` in `[0, 1]²`, of those that are there; `None` where none is.
+/// Interpolates between the existing ones of the four texels around `place` in `[0, 1]²`; `None` if there are none.
 #[inline(always)]
 fn bilinear(w: i32, h: i32, place: Vec2, texel: impl Fn(i32, i32) -> Option<Vec3>) -> Option<Vec3> {
     let p = place * vec2(w as f32, h as f32) - 0.5;

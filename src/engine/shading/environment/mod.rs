@@ -1,6 +1,6 @@
-//! An environment: the light that arrives from every direction, as a picture fixed to the camera.
-//! Floor 3. Here: its parameters, and the light seen by camera directions. How directions lie in a picture is
-//! `projection`, reading it over a footprint `map`, gathering it over a hemisphere `irradiance`.
+//! An environment: the light that arrives from every direction, as a picture fixed to the camera. Floor 3. Here: its
+//! parameters, and light by camera direction. Not here: how directions lie in a picture (`projection`), reading it over
+//! a footprint (`map`), gathering it over a hemisphere (`irradiance`).
 
 pub mod irradiance;
 pub mod map;
@@ -28,7 +28,7 @@ pub struct Environment {
 }
 
 impl PartialEq for Environment {
-    /// The same picture, placed alike, whatever its name.
+    /// The same picture in the same place, whatever its name.
     fn eq(&self, other: &Self) -> bool {
         let lies = |e: &Self| (e.projection, e.rotation, e.exposure);
         lies(self) == lies(other) && self.picture == other.picture
@@ -48,7 +48,7 @@ struct PreparedEnvironment {
     irradiance: OnceLock<Irradiance>,
 }
 
-/// The light of an environment as the surface receives it: all lookups go through it. Directions are camera space (y
+/// The light of an environment as the surface receives it: all lookups go through this. Directions are camera space (y
 /// up), light is linear; rotation and exposure are applied.
 #[derive(Clone)]
 pub struct EnvironmentLight {
@@ -79,7 +79,7 @@ impl Environment {
         let (sin, cos) = self.rotation.to_radians().sin_cos();
         EnvironmentLight { prepared: self.prepared(), turn: YRotation { sin, cos }, gain: self.exposure.exp2() }
     }
-    /// It never computes while holding the lock: a thread that waits for work of its own pool would deadlock.
+    /// It never computes while holding the lock: a thread that waits for work in its own pool would deadlock.
     fn prepared(&self) -> Arc<PreparedEnvironment> {
         let lock = || self.cache.lock().unwrap_or_else(PoisonError::into_inner);
         let holds = |k: &PreparedCache| k.projection == self.projection && is_same(&k.picture, &self.picture);
@@ -138,7 +138,7 @@ impl EnvironmentLight {
         };
         (0..count).map(parcel).collect()
     }
-    /// Cached; computed by the first caller.
+    /// Cached; the first caller computes it.
     fn irradiance(&self) -> &Irradiance {
         if let Some(found) = self.prepared.irradiance.get() {
             return found;

@@ -11,7 +11,7 @@ crate::named! {
         /// u = atan2(e_x, −e_z) / 2π, v = acos(e_y) / π from the top.
         #[default]
         LatLong = "lat-long",
-        /// The centre is toward the viewer, the radius proportional to the angle from it, the rim straight away.
+        /// The centre is toward the viewer, the radius proportional to the angle from it, the rim directly away.
         Angular = "angular",
         /// A photographed mirror ball: the picture is the ball, seen orthographically.
         MirrorBall = "mirror-ball",
@@ -27,7 +27,7 @@ impl Projection {
                 vec2(u - u.floor(), e.y.clamp(-1.0, 1.0).acos() / PI)
             }
             Projection::Angular => {
-                // The whole rim is one direction, straight away from the viewer: any of its points is right.
+                // The whole rim is one direction, directly away from the viewer: any point of it is right.
                 let around = vec2(e.x, -e.y).normalize_or(Vec2::X);
                 // atan2 keeps the digits that acos loses near the centre and the rim.
                 0.5 + 0.5 * around * (e.truncate().length().atan2(e.z) / PI)
@@ -78,7 +78,7 @@ mod tests {
         assert_at(Projection::Angular.place(Vec3::Z), 0.5, 0.5);
         assert_at(Projection::Angular.place(Vec3::Y), 0.5, 0.25);
         assert_at(Projection::Angular.place(Vec3::X), 0.75, 0.5);
-        // A mirror ball shows what lies at the right (+x) where its normal stands at 45°.
+        // A mirror ball shows what lies at the right (+x) where its normal is at 45°.
         assert_at(Projection::MirrorBall.place(Vec3::X), 0.5 + 0.5 * 0.5f32.sqrt(), 0.5);
         assert_at(Projection::MirrorBall.place(Vec3::Z), 0.5, 0.5);
     }
@@ -93,7 +93,7 @@ mod tests {
         let all: Vec<Vec3> = (0..500).map(|i| spread(i, 500)).collect();
         let mean = all.iter().sum::<Vec3>() / 500.0;
         assert!(mean.length() < 0.01, "{mean}");
-        // Each stands for a disc of 0.18 across; none is farther from any place than about that.
+        // Each covers a disc 0.18 across; no place is much farther than that from the nearest.
         for e in [Vec3::X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, vec3(-0.6, 0.64, 0.48)] {
             assert!(all.iter().any(|d| (*d - e).length() < 0.12), "{e}");
         }

@@ -1,7 +1,7 @@
 //! The anisotropic Phong material of Ashikhmin and Shirley (2000) under lights (RS sec. 5.2, MATH 5). Floor 3. The
 //! functions for one pixel come first and read like the paper; rows are computed by the same functions.
 //!
-//! Light is counted as everywhere here, without 1/π: ρ is π times the paper's reflectance, times n·ℓ. R_s is the colour
+//! Light has no factor 1/π, as everywhere here: ρ is π times the paper's reflectance, times n·ℓ. R_s is the colour
 //! × weight of the `specular` term, R_d that of `diffuse`.
 
 use super::{Shading, lobes};
@@ -10,7 +10,7 @@ use crate::raster::TILE;
 use crate::shading::light::RowLight;
 use crate::shading::surface_row::{Light3, RowRelief, RowValues, SurfaceRow};
 
-/// Adds every light's matt and glossy term, with δ_d = n·ℓ and δ_s = n·h. `lights`: those of the material, turned to
+/// Adds each light's matt and glossy term, with δ_d = n·ℓ and δ_s = n·h. `lights`: those of the material, turned to
 /// the row.
 pub fn shade(
     shading: &Shading,
@@ -86,7 +86,7 @@ pub fn matt(n_l: f32, n_e: f32) -> f32 {
 pub fn glossy(h_uvn: [f32; 3], h_e: f32, n_l: f32, n_e: f32, nu: f32, nv: f32) -> f32 {
     let [hu, hv, hn] = h_uvn;
     let across = hu * hu + hv * hv;
-    // Where h is the normal itself every exponent gives 1.
+    // If h is the normal itself, every exponent gives 1.
     let exponent = (nu * hu * hu + nv * hv * hv) / fast::max(across, 1e-12);
     let lobe = fast::pow(fast::min(fast::max(hn, 0.0), 1.0), exponent);
     let n_l = fast::max(n_l, 0.0);

@@ -1,7 +1,7 @@
 //! The material of Ashikhmin and Shirley under an environment: sampled in the directions it reflects, with the same
-//! samples at every pixel (RS sec. 5.2, MATH 5). Floor 3. The lobes are in `ashikhmin`.
+//! samples at every pixel (RS sec. 5.2, MATH 5). Floor 3. Not here: the lobes (`ashikhmin`).
 //!
-//! Each sample stands for a part of the lobe and reads the mean of the environment over that part, so that a small sun
+//! Each sample represents a part of the lobe and reads the mean of the environment over that part, so that a small sun
 //! makes no fireflies and single samples are invisible.
 
 use super::{Shading, ashikhmin};
@@ -20,7 +20,7 @@ const HALVES: usize = 32;
 /// What the rows of a tile share.
 pub struct EnvironmentSamples {
     environment_light: EnvironmentLight,
-    /// For the matt term: the whole environment as lights.
+    /// For the matt term: the environment as lights.
     lights: Vec<RowLight>,
     halves: Vec<HalfVector>,
 }
@@ -37,7 +37,7 @@ impl EnvironmentSamples {
     /// `None` without an environment.
     pub fn new(shading: &Shading) -> Option<Self> {
         let environment_light = shading.environment.as_ref()?.environment_light();
-        // Light from a solid angle Ω counts Ω / π: matt white under an even environment is as bright as it.
+        // Light from a solid angle Ω counts Ω / π: matt white is as bright as an even environment around it.
         let light = |p: &crate::shading::environment::Parcel| {
             RowLight::directional(p.direction, (p.radiance * (p.solid_angle / PI)).to_array())
         };
@@ -61,7 +61,7 @@ impl EnvironmentSamples {
     }
     /// The glossy term at a pixel; `kappa`: isotropic κ.
     ///
-    /// With half vectors drawn in proportion to the lobe, light arrives weighed by F (n·ℓ)₊ / max(n·ℓ, n·e), never
+    /// With half vectors drawn in proportion to the lobe, light arrives weighted by F (n·ℓ)₊ / max(n·ℓ, n·e), never
     /// above 1.
     fn glossy(&self, shading: &Shading, surface_row: &SurfaceRow, x: usize, kappa: f32) -> Vec3 {
         let (term, view) = (&shading.specular, surface_row.view_at(x));
@@ -80,7 +80,7 @@ impl EnvironmentSamples {
             }
             let l = from_view(view, l);
             let fresnel = rs + (Vec3::ONE - rs) * ashikhmin::whiteness(h.z);
-            // Of ℓ: dω_h / dω_ℓ = 1 / (4 h·e). A little more than its share, so that neighbours overlap.
+            // For ℓ: dω_h / dω_ℓ = 1 / (4 h·e). Slightly more than its share, so that neighbours overlap.
             let solid_angle = 4.0 * h.z / (half.density * HALVES as f32);
             let radiance = self.environment_light.around(l, 1.5 * solid_angle.sqrt());
             let kappa = if surface_row.features.is_directional() {
@@ -162,7 +162,7 @@ mod tests {
     fn a_matt_material_sees_what_a_hemisphere_gathers() {
         let mut matt = material(environment(|_, y| if y < 32 { 0.9 } else { 0.1 }));
         (matt.diffuse, matt.specular) = (term(Color::WHITE, 0.6, 0.2, 0.0), Term::NONE);
-        // The sum over two thousand directions, instead of over as many as are taken.
+        // The sum over two thousand directions instead of the usual number.
         let all: Vec<Vec3> = (0..2000).map(|i| crate::shading::environment::projection::spread(i, 2000)).collect();
         assert_shows(&matt, 3.0, |surface, x, y| {
             let n = surface.normal(x, y);

@@ -1,5 +1,5 @@
 //! Light from the whole hemisphere: matt under an environment, and ambient occlusion alone (RS sec. 5.3.1, MATH 5).
-//! Floor 3. Occlusion itself is in `surface`, the mean light of the hemisphere in `environment::irradiance`.
+//! Floor 3. Not here: occlusion itself (`surface`), the mean light of the hemisphere (`environment::irradiance`).
 
 use super::{Shading, lobes};
 use crate::math::{Vec3, srgb};

@@ -8,9 +8,9 @@ use crate::shading::LitSphere;
 use crate::shading::sphere::SphereLight;
 use crate::shading::surface_row::{Light3, LightDirection, RowRelief, RowValues, SurfaceRow};
 
-/// Adds the sphere's light, the `specular` term: δ is its luminance over the greatest there is on the spheres.
+/// Adds the sphere's light, the `specular` term: δ is its luminance over the greatest on the spheres.
 ///
-/// Of two spheres the convex one counts (1 + κ) / 2, so that flat parts show half of each.
+/// Of two spheres, the convex one has the weight (1 + κ) / 2, so that flat parts show half of each.
 pub fn shade(shading: &Shading, surface_row: &SurfaceRow, relief: &mut RowRelief, light: &mut Light3) {
     let term = &shading.specular;
     if term.weight <= 0.0 {
@@ -19,7 +19,7 @@ pub fn shade(shading: &Shading, surface_row: &SurfaceRow, relief: &mut RowRelief
     let convex = convex(shading).light();
     let concave = shading.sphere_concave.as_ref().map(LitSphere::light);
     if term.is_scaled() || concave.is_some() {
-        // A painted sphere has no one direction of light, so κ is isotropic.
+        // A painted sphere has no single direction of light, so κ is isotropic.
         relief.turn(surface_row, LightDirection::VIEWER);
     }
     let shown = looked_up(surface_row, convex, concave, relief.kappa());
@@ -32,7 +32,7 @@ pub fn shade(shading: &Shading, surface_row: &SurfaceRow, relief: &mut RowRelief
     lobes::add_shown(light, term.linear(), &shown, &sigma);
 }
 
-/// The sphere of convex features, or of all.
+/// The sphere for convex features, or for all.
 fn convex(shading: &Shading) -> &LitSphere {
     shading.sphere.as_ref().unwrap_or_else(|| LitSphere::clay())
 }

@@ -1,5 +1,5 @@
-//! Adds up the terms of a material along a row: σ(κ, δ) ρ times a colour (RS sec. 5). Floor 3. Each model's own file
-//! defines ρ and δ.
+//! Adds up the terms of a material along a row: σ(κ, δ) ρ times a colour (RS sec. 5). Floor 3. Not here: ρ and δ (each
+//! model's own file).
 
 use crate::math::fast;
 use crate::raster::TILE;
@@ -14,7 +14,7 @@ pub fn tint(color: [f32; 3], radiance: [f32; 3]) -> [f32; 3] {
     std::array::from_fn(|c| color[c] * radiance[c])
 }
 
-/// Adds σ times light that was looked up, one colour a pixel.
+/// Adds σ times light that was looked up, one colour per pixel.
 pub fn add_incoming(light: &mut Light3, incoming: &Light3, scale: Option<(Scaling, &RowValues, &RowValues)>) {
     for (light, incoming) in light.iter_mut().zip(incoming) {
         for (x, (light, &incoming)) in light.iter_mut().zip(incoming).enumerate() {
@@ -64,7 +64,7 @@ crate::widest! {
             }
         }
     }
-    /// Adds light that each pixel has a colour of its own for: tint · σ · shown.
+    /// Adds light of a different colour at each pixel: tint · σ · shown.
     pub fn add_shown(light: &mut Light3, tint: [f32; 3], shown: &Light3, sigma: &RowValues) {
         for c in 0..3 {
             for x in 0..TILE {

@@ -13,9 +13,9 @@ pub fn mirrored(n: Vec3, v: Vec3) -> Vec3 {
     2.0 * n.dot(v) * n - v
 }
 
-/// The refracted view: Snell's law for the view ray −v entering a matter of refractive index `index` > 0 (MATH 5).
+/// The refracted view: Snell's law for the view ray −v entering a medium of refractive index `index` > 0 (MATH 5).
 ///
-/// Total internal reflection (`index` < 1 at a flat angle) mirrors it.
+/// Total internal reflection (`index` < 1 at a grazing angle) mirrors it.
 #[inline(always)]
 pub fn refracted(n: Vec3, v: Vec3, index: f32) -> Vec3 {
     let eta = 1.0 / index;

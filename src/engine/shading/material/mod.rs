@@ -21,12 +21,12 @@ use super::{
 use crate::math::{Range, UNIT, srgb::Color};
 
 crate::named! {
-    /// How a material answers light.
+    /// How a material reflects light.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
     pub enum Model {
         #[default]
         Phong = "phong",
-        /// Phong in flat bands.
+        /// Phong in flat tones.
         Toon = "toon",
         /// (n·ℓ)^ζ: flatter than matt, like the moon.
         SubLambertian = "sub-lambertian",
@@ -82,7 +82,7 @@ impl Term {
 pub struct Shading {
     pub model: Model,
     pub lights: Vec<Light>,
-    /// Light from everywhere; the occlusion of [`Model::AmbientOcclusion`]. Of [`Model::DiffuseEnvironment`] only its
+    /// Light from everywhere; the occlusion of [`Model::AmbientOcclusion`]. For [`Model::DiffuseEnvironment`] only its
     /// scaling counts, which scales the occlusion.
     pub ambient: Term,
     /// The matt term.
@@ -102,7 +102,7 @@ pub struct Shading {
     pub nu: f32,
     pub nv: f32,
     pub environment: Option<Environment>,
-    /// Lit sphere; if there is a concave one too, this one is for convex features. `None` is grey clay.
+    /// Lit sphere; if there is a concave one too, this one is for convex features. `None`: grey clay.
     pub sphere: Option<LitSphere>,
     pub sphere_concave: Option<LitSphere>,
     /// Refractive index, `> 0`.
@@ -113,14 +113,14 @@ pub struct Shading {
 
 impl Shading {
     pub const MOST_LIGHTS: usize = 256;
-    /// Of the Phong highlight and of both Ashikhmin exponents.
+    /// For the Phong highlight and both Ashikhmin exponents.
     pub const SHININESS: Range = 0.0..=100_000.0;
     pub const BANDS: std::ops::RangeInclusive<u32> = 2..=256;
     pub const EXPONENT: Range = UNIT;
     pub const INDEX: Range = 0.1..=10.0;
     pub const OCCLUSION_RADIUS_PX: Range = 0.0..=crate::surface::Surface::WIDEST_OCCLUSION_PX;
 
-    /// Whether its model needs an environment and there is none: it paints black.
+    /// Whether its model needs an environment but has none: it paints black.
     pub fn lacks_environment(&self) -> bool {
         self.model.needs_environment() && self.environment.is_none()
     }

@@ -8,7 +8,7 @@ use crate::shading::surface_row::{Light3, LightDirection, RowRelief, RowValues, 
 
 /// A material's terms along a row: the ambient one, and two for every light; those of weight 0 are left out.
 ///
-/// `L′ = Σ_j Σ_lights σ_j(κ, δ_j) ρ_j L` with δ_j = ρ_j; ρ_a = 1 has no light of its own: scaled it is mean-curvature
+/// `L′ = Σ_j Σ_lights σ_j(κ, δ_j) ρ_j L` with δ_j = ρ_j; ρ_a = 1 has no light of its own: scaled, it is mean-curvature
 /// shading, e^(γκ).
 pub struct PhongTerms {
     lobes: Vec<Lobe>,
@@ -20,7 +20,7 @@ pub struct PhongTerms {
     exponent: Option<f32>,
 }
 
-/// Which term, and the number of its light.
+/// The term, and the number of its light.
 #[derive(Clone, Copy)]
 enum Lobe {
     Ambient,

@@ -38,8 +38,8 @@ impl Shading {
         })?;
         Some(pixels)
     }
-    /// Tells the linear light of each row of a tile that is looked at, and the surface's coverage of it; `None` without
-    /// a surface.
+    /// Passes on the linear light of each wanted row of a tile, and the surface's coverage of it; `None` without a
+    /// surface.
     fn shade_rows(&self, scene: &Scene, at: TileAt, mut tell: impl FnMut(usize, &Light3, &[u8])) -> Option<()> {
         let surface = scene.surface.as_deref()?;
         let inside = scene.area(at);
@@ -88,9 +88,9 @@ impl Shading {
 struct RowShader<'a> {
     shading: &'a Shading,
     lights: Vec<RowLight>,
-    /// Of Phong and what is like it.
+    /// For Phong and similar models.
     terms: PhongTerms,
-    /// Of an Ashikhmin material in an environment.
+    /// For an Ashikhmin material in an environment.
     samples: Option<EnvironmentSamples>,
     relief: RowRelief,
     light: Light3,

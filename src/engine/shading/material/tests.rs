@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 pub(super) const SIZE: Size = Size::new(128, 128);
 
-/// A ball with a dimpled skin, off the canvas's middle, on nothing.
+/// A ball with a dimpled skin, off the canvas's middle, without background.
 pub(super) fn ball() -> Scene {
     let normals = Plane::from_fn(SIZE, |x, y| {
         let (u, v) = ((x as f32 + 0.5 - 60.0) / 50.0, (66.0 - y as f32 - 0.5) / 50.0);
@@ -21,13 +21,13 @@ pub(super) fn ball() -> Scene {
     Scene { size: SIZE, surface: Some(Arc::new(Surface::new(Maps { normals, depth, coverage }).unwrap())) }
 }
 
-/// The same ball seen from near by, through a lens of 60°.
+/// The same ball seen from nearby, through a lens of 60°.
 pub(super) fn near_ball() -> Scene {
     let surface = ball().surface.and_then(Arc::into_inner).unwrap();
     Scene { size: SIZE, surface: Some(Arc::new(surface.seen_by(Eye::of_fov(Some(60.0), SIZE)))) }
 }
 
-/// Every fifth pixel of the ball, from afar and from near by, as the layer shows it and as `expected` says (linear
+/// Every fifth pixel of the ball, from afar and from nearby, as the layer shows it and as `expected` says (linear
 /// light), within `bytes`.
 pub(super) fn assert_shows(shading: &Shading, bytes: f32, expected: impl Fn(&Surface, usize, usize) -> Vec3) {
     [ball(), near_ball()].iter().for_each(|scene| assert_shows_on(scene, shading, bytes, &expected));
@@ -44,7 +44,7 @@ fn assert_shows_on(scene: &Scene, shading: &Shading, bytes: f32, expected: impl 
                 assert_eq!(found, [0; 4]);
                 continue;
             }
-            // What turns from a near eye is not seen.
+            // What faces away from a near eye is not seen.
             if surface.facing(x, y) < 0.1 && surface.eye() != Eye::Afar {
                 continue;
             }

@@ -1,5 +1,4 @@
-//! Toon: Phong in flat tones, each term quantised after it was scaled (RS sec. 5.1, MATH 5).
-//! Floor 3.
+//! Toon: Phong in flat tones, each term quantised after scaling (RS sec. 5.1, MATH 5). Floor 3.
 
 use super::{Shading, lobes, phong::PhongTerms};
 use crate::math::fast;
@@ -57,7 +56,7 @@ fn inside_links(surface_row: &SurfaceRow, has_above: bool, has_below: bool) -> [
 
 /// The tone of a value in `bands` tones, 0 … 1, filtered over a pixel in which the value changes by `change`.
 ///
-/// floor(v · bands) / (bands − 1), at most 1, is constant but for steps at multiples of 1 / bands; the nearest step
+/// floor(v · bands) / (bands − 1), at most 1, is constant except for steps at multiples of 1 / bands; the nearest step
 /// becomes a ramp as wide as the pixel. Where a pixel spans more than a band, the ramps meet: the tones run together.
 ///
 /// * `value`: `≥ 0`; `change`: length of its gradient per pixel; `bands`: `≥ 2`.
@@ -105,7 +104,7 @@ mod tests {
 
     const SIZE: Size = Size::new(96, 96);
 
-    /// A ball of radius 45 px, seen whole.
+    /// A ball of radius 45 px, all of it visible.
     fn ball() -> Scene {
         let normals = Plane::from_fn(SIZE, |x, y| {
             let (u, v) = ((x as f32 - 47.5) / 45.0, (47.5 - y as f32) / 45.0);
@@ -156,7 +155,7 @@ mod tests {
     }
     #[test]
     fn the_edges_of_bands_are_smooth() {
-        // Each pixel beside what 16 × 16 points in it show, of the same ball.
+        // Each pixel compared with what 16 × 16 points in it show of the same ball.
         let shading = toon(3);
         let light = vec3(0.4, 0.5, 0.75).normalize();
         let mut worst = 0.0f32;

@@ -4,8 +4,8 @@
 use crate::memory::filled_or_unwind;
 use rayon::prelude::*;
 
-/// A rim is nearer to the middle of a block than to those of its pixels, but less than twice: of what holds the pixels
-/// this share holds the block. Measured on discs and ragged stars: 0.75 takes the fewest steps, 0.5 three times as
+/// A rim is nearer to the middle of a block than to those of its pixels, but less than twice: the block is held by this
+/// share of what holds the pixels. Measured on discs and ragged stars: 0.75 takes the fewest steps, 0.5 three times as
 /// many.
 const HELD_BY_RIM: f32 = 0.75;
 /// Rows that one task works on.
@@ -76,7 +76,7 @@ impl Level {
     pub(super) fn row<'a>(&self, plane: &'a [f32], y: usize) -> &'a [f32] {
         &plane[y * self.w..(y + 1) * self.w]
     }
-    /// Fills the inner rows of a plane, each from its number.
+    /// Fills the inner rows of a plane; the function gets each row's number.
     pub(super) fn fill(&self, out: &mut [f32], row: impl Fn(usize, &mut [f32]) + Sync) {
         let (w, h) = (self.w, self.h);
         out.par_chunks_mut(w * BAND).enumerate().for_each(|(band, rows)| {
@@ -180,7 +180,7 @@ crate::widest! {
     }
 }
 
-/// The body of [`applied`] for those who stand in a wide body already.
+/// The body of [`applied`] for callers that are already inside `widest!`.
 #[inline(always)]
 pub(super) fn applied_into(springs: Springs, v: [&[f32]; 3], out: &mut [f32]) {
     let n = out.len();
