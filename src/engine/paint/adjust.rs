@@ -27,7 +27,7 @@ pub struct Adjust {
 
 impl Adjust {
     pub const BLUR: crate::math::Range = 0.0..=4096.0;
-    /// Of saturation, brightness and contrast.
+    /// The factors of saturation, brightness and contrast.
     pub const FACTOR: crate::math::Range = 0.0..=100.0;
 }
 
@@ -57,8 +57,8 @@ impl Adjust {
         };
         adjusted.unwrap_or_else(|| picture.clone())
     }
-    /// The texels of the adjusted picture without rounding, of 16 bits where it has them: straight, encoded, light that
-    /// is brighter than white above 1.
+    /// The texels of the adjusted picture without rounding, from 16 bits if it has them: straight, encoded, with light
+    /// that is brighter than white above 1.
     pub fn apply_deep(&self, picture: &Picture) -> Vec<[f32; 4]> {
         let is_linear = matches!(picture.texels, Texels::Linear(_));
         let mut texels = match &picture.deep {
@@ -102,7 +102,7 @@ struct TexelAdjust {
     is_linear: bool,
     /// Factor of linear light.
     exposure: f32,
-    /// Of encoded colour: hue, then saturation, then brightness and contrast; `None` is the identity.
+    /// For encoded colour: hue, then saturation, then brightness and contrast; `None` is the identity.
     encoded: Option<(Mat3, Vec3)>,
 }
 

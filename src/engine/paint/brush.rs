@@ -15,22 +15,21 @@ use crate::surface::PaintLimit;
 pub struct Brush {
     /// Diameter of a dab, px, `> 0`.
     pub size: f32,
-    /// Share of the radius that is fully covered, `[0, 1]`; beyond it coverage falls off to 0 at the rim.
+    /// Ratio of the radius that is fully covered, `[0, 1]`; beyond it coverage falls off to 0 at the rim.
     pub hardness: f32,
     /// Opacity of the whole stroke, `[0, 1]`.
     pub opacity: f32,
     /// Coverage that one dab adds, `[0, 1]`.
     pub flow: f32,
-    /// Distance between dabs, a ratio of the diameter, `> 0`; of a flat tip, of its width along the stroke.
+    /// Distance between dabs, a ratio of the diameter, `> 0`; for a flat tip, of its width along the stroke.
     pub spacing: f32,
-    /// What that distance is measured on, and the cycle and the distance that dabs follow.
+    /// What that distance, the cycle and the input distance are measured on.
     pub spacing_on: Measure,
-    /// How many dabs lie over each other, `≥ 1`: each adds 1 − (1 − flow)^(1/overlap), so that together they come to
-    /// the flow.
+    /// How many dabs overlap, `≥ 1`: each adds 1 − (1 − flow)^(1/overlap), so that together they reach the flow.
     pub overlap: f32,
-    /// How coverage falls off, of round, elliptic and square tips.
+    /// How the coverage of round, elliptic and square tips falls off.
     pub falloff: Falloff,
-    /// Dabs beside those that the spacing asks for.
+    /// Dabs in addition to those of the spacing.
     pub rate: Rate,
     /// Counter-clockwise as seen, degrees.
     pub rotation: f32,
@@ -38,13 +37,13 @@ pub struct Brush {
     pub facing: StrokeFrame,
     /// Blur of the footprint, `[0, 1]`: a rougher, less glossy mark. Its rim moves out by this share of the radius.
     pub softness: f32,
-    /// How far a dab may stand from the stroke, a ratio as `spread` says, `[0, 10]`.
+    /// How far a dab may be from the stroke, a ratio as `spread` says, `[0, 10]`.
     pub scatter: f32,
     pub spread: Spread,
-    /// How far sizes stray: the standard deviation of their doublings. A dab that grows covers less, its paint is
-    /// spread out.
+    /// How far sizes vary: their standard deviation in doublings. A dab that grows covers less: its paint is spread
+    /// out.
     pub size_jitter: f32,
-    /// Where dabs stand beside the stroke.
+    /// How dabs are displaced from the stroke.
     pub offset: Offset,
     pub jitter: ColorJitter,
     /// How the stroke blends with its layer.
@@ -55,11 +54,11 @@ pub struct Brush {
     pub keeps_alpha: bool,
     /// Where the stroke may paint.
     pub bounded: PaintLimit,
-    /// How far from the pen a bent mark may land, a ratio of the dab's diameter, in [`Brush::REACHES`]; 0 is anywhere.
+    /// How far from the pen a bent mark may land, a ratio of the dab's diameter, in [`Brush::REACHES`]; 0 is no limit.
     pub reach: f32,
-    /// What the brush does where its footprint lands. Strokes of a stroke layer paint, whatever it says.
+    /// What the brush does where its footprint lands. Strokes of a stroke layer always paint.
     pub mode: BrushMode,
-    /// Paint that it takes up where it goes.
+    /// The paint that it picks up on its way.
     pub pickup: Pickup,
     pub tip: Tip,
     pub grain: Option<BrushGrain>,
@@ -67,9 +66,9 @@ pub struct Brush {
     pub stabilizer: Stabilizer,
     /// What its lengths are measured on.
     pub stabilizer_on: Measure,
-    /// How the hand's ways become readings and dabs.
+    /// How the hand's movement becomes readings and dabs.
     pub hand: Hand,
-    /// What [`Input::Cycle`] goes by.
+    /// What drives [`Input::Cycle`].
     pub cycle: Cycle,
     pub dynamics: Dynamics,
     /// The seed of all randomness: the same seed and samples paint the same pixels.
@@ -82,12 +81,12 @@ pub struct Brush {
 pub struct StrokeFrame {
     /// Counter-clockwise as seen, degrees.
     pub turn: f32,
-    /// Left and right are exchanged.
+    /// Mirrored left to right.
     pub is_mirrored: bool,
 }
 
 impl StrokeFrame {
-    /// Of an orthogonal map of the canvas, y down.
+    /// From an orthogonal map of the canvas, y down.
     pub fn of(map: Mat2) -> Self {
         let is_mirrored = map.determinant() < 0.0;
         let across = if is_mirrored { -map.x_axis } else { map.x_axis };
@@ -109,12 +108,12 @@ impl StrokeFrame {
     }
 }
 
-/// What a brush does where its footprint lands. All but paint change the pixels of a paint layer.
+/// What a brush does where its footprint lands. All modes but paint change the pixels of a paint layer.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum BrushMode {
     #[default]
     Paint,
-    /// Drags the existing paint along; `length` in `[0, 1]`, the share of it that is left after a drag of one radius.
+    /// Drags existing paint; `length` in `[0, 1]`, the share of it that is left after a drag of one radius.
     Smudge { length: f32 },
     /// Softens the existing paint; `width` in `[0, 1]`: the standard deviation that a stroke leaves, a ratio of the
     /// radius.
@@ -123,7 +122,7 @@ pub enum BrushMode {
     Clone {
         /// At the same offset for every stroke; otherwise every stroke starts at the source point.
         aligned: bool,
-        /// Copies from the whole picture, not from the layer alone.
+        /// Copies from the whole picture, not only from the layer.
         picture: bool,
     },
 }
@@ -134,7 +133,7 @@ impl BrushMode {
     pub const BLUR_WIDTH: f32 = 0.3;
     pub const SHARE: Range = UNIT;
 
-    /// With the nearest numbers that it may have.
+    /// With its numbers clamped to their ranges.
     pub fn held(self) -> Self {
         match self {
             BrushMode::Paint | BrushMode::Clone { .. } => self,
@@ -151,7 +150,7 @@ impl BrushMode {
     }
 }
 
-/// How far a dab's colour may be from the stroke's, either way; each dab at random.
+/// How far a dab's colour may be from the stroke's, either way; drawn for each dab.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct ColorJitter {
     /// `[0, 180]`.
@@ -175,8 +174,7 @@ pub enum Stabilizer {
     Average { weight: f32 },
     /// The pen pulls the line on a string of this length, px: wiggles shorter than it do not show.
     String { length_px: f32 },
-    /// The line comes after the pen as time passes: e^(−t/secs) of what it lags behind is left. It ends where the pen
-    /// lifts.
+    /// The line follows the pen in time: after t, e^(−t/secs) of the lag is left. It ends where the pen lifts.
     Lag { secs: f32 },
 }
 
@@ -194,7 +192,7 @@ pub enum Tip {
     Ellipse {
         ratio: f32,
     },
-    /// A rectangle; its longer side is the diameter. Hardness and softness are those of each side.
+    /// A rectangle; its longer side is the diameter. Hardness and softness apply to each side.
     Square {
         ratio: f32,
     },
@@ -212,17 +210,17 @@ impl Tip {
 
 impl Brush {
     pub const SIZE: Range = 0.1..=20_000.0;
-    /// Diameters that the hand sets, px.
+    /// Diameters that a user can set, px.
     pub const HAND_SIZE: Range = 1.0..=2000.0;
-    /// A hundredth of the diameter is as good as a line; less only costs time.
+    /// A hundredth of the diameter looks like a line; less only costs time.
     pub const SPACING: Range = 0.01..=100.0;
     pub const SCATTER: Range = 0.0..=10.0;
-    /// What a reach may be.
+    /// The range of a reach.
     pub const REACHES: std::ops::RangeInclusive<f32> = 0.0..=100.0;
     /// The reach of the brushes that come with the program: on a rugged surface their marks stay near the pen.
     pub const NEAR: f32 = 3.0;
 
-    /// The pictures that it is made of: its tip's, then its grain's.
+    /// The pictures that it uses: its tip's, then its grain's.
     pub fn pictures(&self) -> impl Iterator<Item = &PictureSource> {
         let tip = match &self.tip {
             Tip::Picture(source) => std::slice::from_ref(source),
@@ -296,7 +294,7 @@ impl Default for Brush {
 }
 
 impl Brush {
-    /// Whether both are one brush: at most what each stroke has of its own differs, its seed and its facing.
+    /// Whether both are the same brush: only what belongs to each stroke may differ, its seed and its facing.
     pub fn is_alike(&self, other: &Brush) -> bool {
         self.size == other.size && *self == Brush { seed: self.seed, facing: self.facing, ..other.clone() }
     }
@@ -308,20 +306,20 @@ impl Brush {
         let follows = [Input::Random, Input::Chance].into_iter().any(|input| self.dynamics.follow(input));
         strays.iter().any(|&v| v > 0.0) || adds || follows || matches!(self.tip, Tip::Hose(_))
     }
-    /// It works on the paint that is there, dab by dab.
+    /// It works on existing paint, dab by dab.
     pub fn is_wet(&self) -> bool {
         self.mode.is_retouching() || self.picks_up()
     }
-    /// It takes paint up where it goes.
+    /// It picks up paint on its way.
     pub fn picks_up(&self) -> bool {
         self.mode == BrushMode::Paint && (self.pickup.amount > 0.0 || self.dynamics.drive(Property::Pickup))
     }
-    /// Without paint to work on it would leave next to nothing: it retouches, or paints with what it takes up more
-    /// than with its own colour.
+    /// Without paint to work on it would leave next to nothing: it retouches, or paints more with what it picks up than
+    /// with its own colour.
     pub fn needs_paint(&self) -> bool {
         self.mode.is_retouching() || (self.mode == BrushMode::Paint && self.pickup.amount > 0.5)
     }
-    /// Of the tip's shorter side to its longer one, before anything drives it; `(0, 1]`.
+    /// The ratio of the tip's shorter side to its longer one, before anything drives it; `(0, 1]`.
     pub fn ratio(&self) -> f32 {
         match self.tip {
             Tip::Ellipse { ratio } | Tip::Square { ratio } => ratio.max(*Tip::RATIO.start()).min(1.0),

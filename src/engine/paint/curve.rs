@@ -18,13 +18,13 @@ pub struct CurveSegment {
 }
 
 impl CurveSegment {
-    /// From `from` to `to`, coming from `before` and going to `after`; without such a neighbour the end is straight.
+    /// From `from` to `to`, with the neighbours `before` and `after`; without a neighbour that end is straight.
     pub fn new(before: Option<Vec2>, from: Vec2, to: Vec2, after: Option<Vec2>) -> Self {
         let (before, after) = (before.unwrap_or(2.0 * from - to), after.unwrap_or(2.0 * to - from));
         let (out, into) = tangents([before, from, to, after]);
         Self { from, to, out, into }
     }
-    /// Where it sets out to.
+    /// The direction at its start.
     pub fn out(&self) -> Vec2 {
         self.out
     }
@@ -33,7 +33,7 @@ impl CurveSegment {
         let length = self.from.distance(self.to).max((self.out.length() + self.into.length()) / 3.0);
         (length / 2.0).ceil().max(1.0).min(128.0) as usize
     }
-    /// The point at a share in `[0, 1]` of it.
+    /// The point at a ratio in `[0, 1]` along it.
     pub fn at(&self, s: f32) -> Vec2 {
         hermite(self.from, self.out, self.to, self.into, s)
     }

@@ -1,5 +1,5 @@
 //! One dab on one tile: F(A⁻¹(D(q) − q_0)) at every pixel it may touch. Floor 3. Not here: where dabs are placed
-//! (`dab_walker`), the tips (`profile`, `stamp`), the round one's rows (`round`), how dabs add up to a stroke
+//! (`dab_walker`), the tips (`profile`, `stamp`), rows of the round tip (`round`), how dabs add up to a stroke
 //! (`stroke`).
 
 mod coverage;
@@ -51,15 +51,15 @@ pub fn round_extent(dab: &Dab) -> DabExtent {
     DabExtent { radius_px: dab.radius * profile.outer_radius(), filter_px: ROUND_FILTER_PX }
 }
 
-/// Buffers of one dab, used again for the next.
+/// Buffers of one dab, reused for the next.
 #[derive(Default)]
 pub struct DabScratch {
     deformed: DeformedRect,
     stamping: StampScratch,
     row: RowZones,
-    /// Coverage of a row, or of a part of a tile.
+    /// Coverage of a row, or part of a tile.
     covered: Vec<f32>,
-    /// Which share of each of its pixels the dab reaches.
+    /// The share of each of its pixels that the dab reaches.
     shares: Vec<f32>,
     /// The pixels that a picture tip paints on a part of a tile.
     stamped: Vec<[u8; 4]>,
@@ -80,7 +80,7 @@ impl<'s> PlacedDab<'s> {
         let surface = scene.surface.as_deref();
         let reach = DabReach::new(dab.at, dab.reach_px, PUSH_RADII * dab.radius);
         let deformation = Deformation::of_dab(surface, scene.size, dab.operator, dab.at).within(reach);
-        // The pixels of a sheet lie where D tells, even if it is the identity.
+        // The pixels of a sheet lie where D says, even if it is the identity.
         let is_sheet = scene.sheet().is_some();
         let bent_over = surface.filter(|_| is_sheet || !deformation.is_identity());
         let bounding = surface.filter(|_| !is_sheet);
@@ -91,7 +91,7 @@ impl<'s> PlacedDab<'s> {
     pub fn on_blocks(self, sheet_blocks: TileBlocks) -> Self {
         Self { sheet_blocks, ..self }
     }
-    /// The blocks that the dab may touch of the pixels that stand for a tile.
+    /// The blocks that the dab may touch, among the pixels that represent a tile.
     fn touched(&self, at: TileAt) -> TouchedBlocks {
         if self.scene.sheet().is_none() {
             let tile = at.rect();
@@ -122,11 +122,11 @@ impl<'s> PlacedDab<'s> {
         };
         self.deformation.fill_spans(area.grown(1), columns, deformed);
     }
-    /// Its colour, one of the stroke's; `None`: the stamp's own colours.
+    /// Its colour, from the stroke's; `None`: the stamp's own colours.
     fn paint(&self, color: Option<Color>) -> DabPaint {
         DabPaint { flow: self.dab.flow, ceiling: self.dab.ceiling, color }
     }
-    /// Of a picture, which has no rim of its own to be thinner.
+    /// For a picture, which has no rim that could be thinner.
     fn stamp_paint(&self, color: Option<Color>) -> DabPaint {
         DabPaint { flow: self.dab.flow * self.dab.thin, ..self.paint(color) }
     }
@@ -201,7 +201,7 @@ struct PixelSpan {
 }
 
 impl PixelSpan {
-    /// The part of it that an unbent dab may reach; `None` where that is nothing.
+    /// The part of it that an unbent dab may reach; `None` if it is empty.
     fn reached_by(self, tip: &RoundTip) -> Option<Self> {
         let chunks = tip.flat_chunks(self.x, self.y, self.n);
         let part = Self { x: self.x + chunks.start as i32, n: chunks.len(), ..self };
@@ -209,7 +209,7 @@ impl PixelSpan {
     }
 }
 
-/// The part of a tile that a dab may touch, or of what stands for one on a sheet.
+/// The part of a tile that a dab may touch, or of what represents one on a sheet.
 #[derive(Clone, Copy)]
 struct TouchedBlocks {
     /// The pixels of the tile.
@@ -217,12 +217,12 @@ struct TouchedBlocks {
     blocks: TileBlocks,
     /// The smallest rectangle that holds the touched blocks.
     area: Rect,
-    /// From one row that is painted to the next.
+    /// The step from one painted row to the next.
     step: usize,
     pixel: BlockPixels,
 }
 
-/// Of pixels whose lengths are not known.
+/// For pixels whose lengths are not known.
 const ANY_LENGTH: BlockPixels = [f32::INFINITY; TILE_BLOCKS * TILE_BLOCKS];
 
 impl TouchedBlocks {
@@ -261,7 +261,7 @@ fn row_of(blocks: &TileBlocks, tile: Rect, y: i32) -> u8 {
     blocks[(y - tile.y0) as usize / BLOCK]
 }
 
-/// The columns of a tile from the first of some blocks to the last; none where there are no blocks.
+/// The columns of a tile from the first of some blocks to the last; none without blocks.
 fn columns(bits: u8, tile: Rect) -> Range<i32> {
     let side = BLOCK as i32;
     let last = 8 - bits.leading_zeros() as i32;

@@ -1,6 +1,6 @@
 //! From the pen's samples to dabs: a smooth curve walked at even steps of arc length, sample by sample as they come.
-//! Floor 3. `walk` says where dabs are due, `rules` what they are like, `hand` how the pen is read. Not here: the
-//! curve (`curve`), what a dab looks like (`profile`, `stamp`), where it lands (`dab`).
+//! Floor 3. `walk` says where dabs are due, `rules` sets their properties, `hand` says how the pen is read. Not here:
+//! the curve (`curve`), what a dab looks like (`profile`, `stamp`), where it lands (`dab`).
 
 mod hand;
 mod rules;
@@ -18,7 +18,7 @@ use hand::{CurvePoint, Speeds, Tremor};
 use rules::DabRules;
 use walk::Walk;
 
-/// Farther from the canvas's corner than any canvas reaches: such samples come from a broken pen.
+/// Farther from the canvas's corner than any canvas extends: such samples come from a broken pen.
 const FAR_PX: f32 = 1e6;
 /// One placement of the footprint.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,31 +27,31 @@ pub struct Dab {
     pub at: Vec2,
     /// Of the undeformed footprint, px; positive.
     pub radius: f32,
-    /// Of the tip's shorter side to its longer one, `(0, 1]`; 1 of tips that have none.
+    /// The ratio of the tip's shorter side to its longer one, `(0, 1]`; 1 for tips without sides.
     pub ratio: f32,
     /// Counter-clockwise as seen.
     pub rotation_rad: f32,
-    /// The footprint is exchanged left to right, as it lies in its own frame.
+    /// The footprint is mirrored left to right, in its own frame.
     pub is_mirrored: bool,
     /// See [`Brush::hardness`], [`Brush::softness`].
     pub hardness: f32,
     pub softness: f32,
     /// Coverage that it adds, `(0, 1]`.
     pub flow: f32,
-    /// How wide it is, of the least width that is drawn, `(0, 1]`: dabs thinner than a pixel reach a part of it.
+    /// Its width as a ratio of the least width that is drawn, `(0, 1]`: dabs thinner than a pixel reach a part of it.
     pub thin: f32,
     /// Where strokes of such dabs end.
     pub rim: Rim,
     /// The coverage that it may bring a pixel to, `(0, 1]`.
     pub ceiling: f32,
-    /// Of one-colour tips where the brush's colours vary; else the stroke's.
+    /// For one-colour tips, if the brush's colours vary; else the stroke's.
     pub color: Color,
     pub operator: Operator,
-    /// How far from its centre it may land, px; 0 is anywhere.
+    /// How far from its centre it may land, px; 0 is no limit.
     pub reach_px: f32,
-    /// Which of the stroke it is, counted from 0; those that cannot be seen count too.
+    /// Its number in the stroke, from 0; invisible dabs count too.
     pub number: u32,
-    /// What it was driven by; its seed is this dab's alone.
+    /// The inputs that drove it; the seed is unique to this dab.
     pub inputs: DabInputs,
 }
 
@@ -82,10 +82,10 @@ impl Dab {
 
 /// Walks along a stroke: samples go in one by one, and dabs that no later sample changes come out.
 ///
-/// The dabs do not depend on how samples are batched, nor on how densely the curve is sampled. The way is computed from
-/// the pixel of the first sample on, and dabs stand on a fine grid: a stroke that is moved by whole px gives the same
-/// dabs moved by them, to the bit. Samples that are not
-/// finite, lie beyond all canvases, or are earlier than the one before are skipped.
+/// The dabs do not depend on how samples are batched, nor on how densely the curve is sampled. The path is computed
+/// from the pixel of the first sample on, and dabs are on a fine grid: a stroke that is moved by whole px gives exactly
+/// the same dabs, moved by them. Samples that are not finite, lie beyond all canvases, or are earlier than the previous
+/// one are skipped.
 #[derive(Clone)]
 pub struct DabWalker {
     rules: DabRules,
@@ -124,7 +124,7 @@ impl DabWalker {
         };
         let distance = last.at.distance(at);
         if distance < SAME_PX {
-            // Of samples at one place, the one with the greatest pressure counts.
+            // Of several samples at one point, the one with the greatest pressure counts.
             last.pressure = last.pressure.max(place.pressure);
             last.until_secs = time_secs;
             self.speeds.moved(0.0, time_secs);
@@ -172,7 +172,7 @@ impl DabWalker {
     }
 }
 
-/// About how many dabs a way of so many px and seconds takes at most.
+/// Roughly the most dabs that a path of this many px and seconds takes.
 pub fn most_dabs(brush: &Brush, way_px: f32, secs: f32) -> usize {
     let timed = (brush.rate.per_sec * secs).max(0.0);
     // A float that is too large becomes the largest integer.

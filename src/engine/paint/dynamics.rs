@@ -10,8 +10,8 @@ pub use inputs::{DabInputs, FAR_DIAMETERS, FAST_LENGTHS_PER_SEC, PACES_PX_PER_SE
 use std::sync::Arc;
 
 crate::named! {
-    /// What can be driven. Curves multiply, except where [`Property::adds`]; a [`Curve::Added`] adds in the unit given
-    /// here, else in the property's own.
+    /// What can be driven. Curves multiply, unless [`Property::adds`]; a [`Curve::Added`] adds in the unit given here,
+    /// else in the property's own.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
     pub enum Property {
         /// An added 1 doubles it.
@@ -25,7 +25,7 @@ crate::named! {
         Rotation = "rotation",
         Scatter = "scatter",
         Softness = "softness",
-        /// A curve's 1 is once round the colour wheel.
+        /// A curve's 1 is a full turn of the colour wheel.
         Hue = "hue",
         Saturation = "saturation",
         Value = "value",
@@ -35,13 +35,13 @@ crate::named! {
         Gamma = "gamma",
         /// μ, the detail of D_n and D_r.
         Detail = "detail",
-        /// Of a round or elliptic tip and a square: the longer side over the shorter one.
+        /// Of a round, elliptic or square tip: the longer side over the shorter one.
         Elongation = "elongation",
         /// HSL lightness of the colour.
         Lightness = "lightness",
-        /// How far sizes stray, see [`super::Brush::size_jitter`].
+        /// How far sizes vary, see [`super::Brush::size_jitter`].
         SizeJitter = "size-jitter",
-        /// How far dabs stand beside the stroke, and to where; see [`super::Offset`].
+        /// How far dabs are displaced from the stroke, and where to; see [`super::Offset`].
         Offset = "offset",
         /// A curve's 1 is a full turn counter-clockwise.
         OffsetTurn = "offset-turn",
@@ -68,12 +68,13 @@ crate::named! {
     pub enum Input {
         /// The pressure of the pen, unchanged.
         Pressure = "pressure",
-        /// From upright, 0, to lying, 1: the length of (tilt x, tilt y) over 90°.
+        /// From upright, 0, to flat, 1: the length of (tilt x, tilt y) over 90°.
         Tilt = "tilt",
-        /// The direction in which the pen leans, in turns counter-clockwise as seen: 0 right, ¼ up. 0 of an upright
+        /// The direction in which the pen leans, in turns counter-clockwise as seen: 0 right, ¼ up. 0 for an upright
         /// pen.
         TiltDirection = "tilt-direction",
-        /// The direction of the stroke, in turns counter-clockwise as seen: 0 right, ¼ up. 0 of a stroke of one sample.
+        /// The direction of the stroke, in turns counter-clockwise as seen: 0 right, ¼ up. 0 for a stroke of one
+        /// sample.
         Direction = "direction",
         /// Over [`FAST_LENGTHS_PER_SEC`].
         Speed = "speed",
@@ -86,20 +87,21 @@ crate::named! {
         /// ½ + ½ κ of MATH 4, *s* a 32nd of *L*, normals blurred by 1 px: hollow 0, flat ½, raised 1. ½ off the
         /// surface.
         Curvature = "curvature",
-        /// Of the map: 0 near, 1 far. 1 off the surface.
+        /// From the map: 0 near, 1 far. 1 off the surface.
         Depth = "depth",
-        /// The speed in canvas px a second over a logarithm's scale, see [`pace_of`], averaged over
+        /// The speed in canvas px a second on a logarithmic scale, see [`pace_of`], averaged over
         /// [`super::Hand::pace_secs`].
         Pace = "pace",
         /// The same, averaged over [`super::Hand::slow_pace_secs`].
         SlowPace = "slow-pace",
-        /// Anew for every dab, the same for all its properties, even.
+        /// Random for every dab, the same for all its properties, uniformly distributed.
         Chance = "chance",
-        /// Along the stroke, again and again; see [`super::Cycle`].
+        /// Repeats along the stroke; see [`super::Cycle`].
         Cycle = "cycle",
-        /// Where the pen leans to, in turns counter-clockwise from where the stroke goes. An upright pen leans down.
+        /// Where the pen leans, in turns counter-clockwise from the stroke's direction. An upright pen counts as
+        /// leaning down.
         Attack = "attack",
-        /// What drives [`Property::Custom`] came to at the dabs before.
+        /// The value of [`Property::Custom`] at the previous dabs.
         Custom = "custom",
     }
 }
@@ -114,8 +116,8 @@ pub struct Drive {
     pub curve: Curve,
 }
 
-/// All rows of a brush: for a property and an input at most one that adds and one that does what the property's
-/// curves do.
+/// All rows of a brush: for a property and an input at most one that adds and one that acts as the property's curves
+/// do.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dynamics {
     drives: Arc<[Drive]>,
@@ -136,14 +138,14 @@ impl Dynamics {
     pub fn drives(&self) -> &[Drive] {
         &self.drives
     }
-    /// With this row in place of the one of its kind for the same property and input. A factor that is always 1 is no
+    /// With this row instead of the one of its kind for the same property and input. A factor that is always 1 needs no
     /// row.
     pub fn with(&self, property: Property, input: Input, curve: Curve) -> Self {
         let adds = curve.adds();
         let is_row = |drive: &&Drive| drive.property == property && drive.input == input && drive.curve.adds() == adds;
         let is_idle = if property.adds() && !curve.adds() { curve == Curve::Share(0.0) } else { curve.is_idle() };
         let row = (!is_idle).then_some(Drive { property, input, curve });
-        // In one order, whatever came first: factors multiply to the same bits.
+        // In a fixed order, whatever came first: factors multiply to the same bits.
         let others = self.drives.iter().filter(|drive| !is_row(drive)).cloned();
         let mut drives: Vec<Drive> = others.chain(row).collect();
         drives.sort_by_key(|drive| (drive.property as u8, drive.input as u8));
@@ -154,7 +156,7 @@ impl Dynamics {
         let stays = |drive: &&Drive| drive.property != property || drive.input != input || drive.curve.adds() != adds;
         Self { drives: self.drives.iter().filter(stays).cloned().collect() }
     }
-    /// The curve by which a property follows an input, if not by adding.
+    /// The curve by which a property follows an input, unless it adds.
     pub fn curve(&self, property: Property, input: Input) -> Option<&Curve> {
         self.of_kind(property, input, false)
     }
@@ -166,7 +168,7 @@ impl Dynamics {
         let mut drives = self.drives.iter().filter(|drive| drive.property == property && drive.input == input);
         drives.find(|drive| drive.curve.adds() == adds).map(|drive| &drive.curve)
     }
-    /// The share of a property that follows the pressure, `[0, 1]`: a slider shows any curve by its total fall.
+    /// The share of a property that follows the pressure, `[0, 1]`: a slider shows a curve by its total fall.
     pub fn pressure_share(&self, property: Property) -> f32 {
         let curve = self.curve(property, Input::Pressure).or(self.added(property, Input::Pressure));
         let fall = |curve: &Curve| match property {
@@ -175,7 +177,7 @@ impl Dynamics {
         };
         curve.map_or(0.0, fall).max(0.0).min(1.0)
     }
-    /// Nothing else that the pressure does to the property stays.
+    /// All other effects of the pressure on the property are removed.
     pub fn with_pressure(&self, property: Property, share: f32) -> Self {
         self.without(property, Input::Pressure, true).with(
             property,
@@ -191,7 +193,7 @@ impl Dynamics {
     pub fn drive(&self, property: Property) -> bool {
         self.drives.iter().any(|drive| drive.property == property)
     }
-    /// What the rows of a property that add come to, and those that multiply.
+    /// The sum of a property's rows that add, and the product of those that multiply.
     fn outputs(&self, property: Property, inputs: &DabInputs) -> (f32, f32) {
         let rows = self.drives.iter().filter(|drive| drive.property == property);
         rows.fold((0.0, 1.0), |(sum, product), drive| {
@@ -199,11 +201,11 @@ impl Dynamics {
             if drive.curve.adds() || property.adds() { (sum + y, product) } else { (sum, product * y) }
         })
     }
-    /// A property whose value is `plain` where nothing drives it: what adds first, then what multiplies.
+    /// A property whose value is `plain` if nothing drives it: sums first, then factors.
     pub fn value(&self, property: Property, plain: f32, inputs: &DabInputs) -> f32 {
         let (sum, product) = self.outputs(property, inputs);
         match property {
-            // Brushes without such a row stay as they are to the bit.
+            // Brushes without such a row do not change by a bit.
             Property::Size if sum != 0.0 => plain * sum.exp2() * product,
             _ => (plain + sum) * product,
         }

@@ -1,6 +1,6 @@
 //! The fill: the pixels joined to one by colours like its own, with small gaps in their border closed and its edge
 //! smoothed. Floor 3. `flood` finds the joined pixels; `gaps` excludes those that are only reached through a gap. Here:
-//! the settings and the edge. Not here: the picture that is read, and what becomes of the pixels (`tools::fill`).
+//! the settings and the edge. Not here: the picture that is read, and what is done with the pixels (`tools::fill`).
 
 mod flood;
 mod gaps;
@@ -27,7 +27,7 @@ pub struct Fill {
     pub grow_px: f32,
     /// Whether pixels at the edge are partly covered.
     pub antialias: bool,
-    /// Colours are those of the layer alone, not of the picture.
+    /// Compare colours of the layer only, not of the picture.
     pub layer_alone: bool,
     pub bounded: PaintLimit,
 }
@@ -39,7 +39,7 @@ impl Default for Fill {
     }
 }
 
-/// The widest gap that can be closed, and the farthest an edge can move, px.
+/// The widest gap that can be closed, and the farthest that an edge can move, px.
 pub const WIDEST_GAP_PX: f32 = 64.0;
 pub const FARTHEST_GROWTH_PX: f32 = 32.0;
 
@@ -62,7 +62,7 @@ impl FilledArea {
 impl Fill {
     /// Fills from a canvas point. `None` if it is off the canvas or outside `part`.
     ///
-    /// * `part`: of the canvas that may be touched (`PaintLimit::from`); its border is one of the fill's.
+    /// * `part`: the part of the canvas that may be touched (`PaintLimit::from`); its border bounds the fill.
     /// * `tile`: gives a tile of the picture that is read, premultiplied; called once for each tile that the fill
     ///   reaches.
     pub fn from(
@@ -85,9 +85,9 @@ impl Fill {
         Some(self.edged(inside, canvas, part))
     }
     /// The same area as coverage on the canvas; `everywhere`: all pixels of a colour like the first one's, joined or
-    /// not, through which gaps do not matter.
+    /// not, so that gaps do not matter.
     ///
-    /// `None` as of [`Fill::from`], whose arguments these are.
+    /// `None` as for [`Fill::from`], which has the same arguments.
     pub fn selected(
         &self,
         start: Vec2,
@@ -143,7 +143,7 @@ fn limited(found: &CoverageGrid, part: &CanvasPart) -> CoverageGrid {
     })
 }
 
-/// Some pixels of the canvas: 1 in a plane that holds a rectangle of it.
+/// Some pixels of the canvas: 1 in a plane that covers a rectangle of it.
 struct PixelSet {
     rect: Rect,
     pixels: Plane<u8>,

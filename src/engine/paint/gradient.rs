@@ -20,7 +20,7 @@ pub struct Gradient {
     pub stops: Vec<GradientStop>,
     pub operator: Operator,
     pub filter: ImageFilter,
-    /// Where the frame that both ends lie in stands on the canvas.
+    /// Where the frame of both ends is on the canvas.
     pub frame: PlaneMap,
 }
 
@@ -33,7 +33,7 @@ impl Gradient {
         let anchors = vec![Anchor::fixed(on_canvas(self.from)), Anchor::fixed(on_canvas(self.to))];
         Bend { operator: self.operator, anchors, weights: Weights::Segment, pieces: Vec::new() }
     }
-    /// One tile of the layer. `None` where it is transparent, without stops, or beyond the canvas.
+    /// One tile of the layer. `None` if it is transparent, without stops, or beyond the canvas.
     pub fn render_tile(&self, scene: &Scene, at: TileAt) -> Option<Tile> {
         self.render_pixels(scene, at)?.quantised()
     }
@@ -44,7 +44,7 @@ impl Gradient {
         if area.is_empty() {
             return None;
         }
-        // One more pixel on every side, for the differences.
+        // One more pixel on every side, for differences.
         let field = RampPositions::over(self, scene, area.grown(1).intersect(scene.pixels()));
         let mut pixels = transparent_f32();
         for y in scene.rows(area) {
@@ -87,7 +87,7 @@ impl RampPositions {
             let t = d.x.iter().zip(&d.y).map(|(&x, &y)| (x - from.x) * flat.x + (y - from.y) * flat.y).collect();
             Self { rect, t, flat: frame.linear.matrix2.transpose() * flat }
         } else {
-            // A segment without length: the whole canvas lies beyond its end.
+            // A segment of length 0: the whole canvas lies beyond its end.
             Self { rect, t: vec![1.0; d.x.len()], flat: Vec2::ZERO }
         }
     }
@@ -153,7 +153,7 @@ mod tests {
         let slow = black_to_white(vec2(10.0, 20.0), vec2(90.0, 70.0));
         let exact = Gradient { filter: ImageFilter::Bilinear, ..slow.clone() };
         assert!(pixel(&slow, 44, 47)[0].abs_diff(pixel(&exact, 44, 47)[0]) <= 1);
-        // All of black to white falls into the right half of pixel 50.
+        // The whole ramp from black to white is in the right half of pixel 50.
         let sharp = black_to_white(vec2(50.5, 0.0), vec2(51.0, 0.0));
         assert_eq!(pixel(&sharp, 50, 10)[0], 64);
         assert_eq!(pixel(&Gradient { filter: ImageFilter::Bilinear, ..sharp }, 50, 10)[0], 0);

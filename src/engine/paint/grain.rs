@@ -8,7 +8,7 @@
 //! ```
 //!
 //! k is the strength, P scales and turns the texture, and q_s is where the stroke began: T(q_s) = q_s, so that the
-//! grain there has its size on the canvas, is larger on nearer parts and smaller on farther ones. G repeats without
+//! grain there has its size on the canvas; it is larger on nearer parts and smaller on farther ones. G repeats without
 //! end.
 
 mod tile;
@@ -31,7 +31,7 @@ pub struct BrushGrain {
     pub size_px: f32,
     /// Counter-clockwise as seen, degrees.
     pub rotation: f32,
-    /// k, `[0, 1]`: 0 is the same as no grain.
+    /// k, `[0, 1]`: 0 is no grain.
     pub strength: f32,
     /// Greys up to the first take no paint, those from the second on take all; both in `[0, 1]`, the first below the
     /// second.
@@ -58,19 +58,18 @@ pub enum GrainSpace {
     Canvas,
     /// The surface, through D_p.
     Surface { gamma: f32 },
-    /// The surface, through D_s: as large everywhere.
+    /// The surface, through D_s: equally large everywhere.
     Unwrapped,
 }
 
 impl GrainSpace {
-    /// Every kind with its name in documents and the numbers of the name alone; `named!` is for choices without
-    /// numbers.
+    /// Every kind with its name in documents and default numbers; `named!` is for choices without numbers.
     pub const ALL: [(GrainSpace, &'static str); 3] = [
         (GrainSpace::Canvas, "canvas"),
         (GrainSpace::Surface { gamma: 1.0 }, "surface"),
         (GrainSpace::Unwrapped, "unwrapped"),
     ];
-    /// The same kind with the numbers of its name alone.
+    /// The same kind with its default numbers.
     pub fn plain(self) -> Self {
         let is_same = |(kind, _): &&(Self, &str)| std::mem::discriminant(kind) == std::mem::discriminant(&self);
         Self::ALL.iter().find(is_same).map_or(self, |(kind, _)| *kind)
@@ -96,15 +95,15 @@ impl Default for BrushGrain {
     }
 }
 
-/// Cached textures: more than one painting uses.
+/// Cached textures: more than a painting uses.
 const KEPT: usize = 16;
 static MADE: Mutex<Vec<(PatternKey, Arc<Texture>)>> = Mutex::new(Vec::new());
 
-/// Which pattern, its seed, its levels, its side.
+/// The pattern, its seed, its levels, its side.
 type PatternKey = (Pattern, u32, [u32; 2], u32);
 
 impl BrushGrain {
-    /// G, its levels applied: red holds it, green its square, alpha whether it is not black.
+    /// G with its levels applied: red holds it, green its square, alpha whether it is not black.
     fn texture(&self) -> Arc<Texture> {
         let levels = self.levels.map(f32::to_bits);
         match &self.source {
@@ -131,7 +130,7 @@ fn square(v: u8) -> u8 {
 fn of_greys(plane: &Plane<f32>, [low, high]: [f32; 2]) -> Texture {
     let span = (high - low).max(1.0 / 256.0);
     let mut picture = grey(&plane.map(|v| (v - low) / span));
-    // What is read: red, the grey, green, its square, and alpha: whether there is any.
+    // The channels: red is the grey, green its square, alpha whether there is any.
     if let crate::raster::picture::Texels::Srgb8(texels) = &picture.texels {
         let greys: Vec<[u8; 4]> =
             texels.iter().map(|&[v, ..]| [v, square(v), 0, if v < BLACK { 0 } else { 255 }]).collect();
@@ -140,7 +139,7 @@ fn of_greys(plane: &Plane<f32>, [low, high]: [f32; 2]) -> Texture {
     Texture::new(&picture)
 }
 
-/// Of premultiplied texels: a light but transparent texel counts as dark.
+/// From premultiplied texels: a light but transparent texel counts as dark.
 fn luminance(texture: &Texture) -> Plane<f32> {
     let level = &texture.levels()[0];
     let grey =

@@ -1,11 +1,11 @@
-//! A brush's habits beside its dab: dabs by time, where dabs stray to, how the hand is read, and paint that is taken
-//! up. Floor 3. Not here: the table of their numbers (`settings`), what is made of them (`dab_walker`, `retouch`).
+//! A brush's habits apart from its dab: dabs by time, scatter and offset, how the hand is read, and paint that is
+//! picked up. Floor 3. Not here: the table of their numbers (`settings`), how they are used (`dab_walker`, `retouch`).
 
 crate::named! {
     /// How coverage falls off from the middle of a dab to its rim.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
     pub enum Falloff {
-        /// Whole up to the hardness h of the radius, then a smoothstep.
+        /// Full up to the hardness h of the radius, then a smoothstep.
         #[default]
         Smooth = "smooth",
         /// Two straight lines over the squared radius that meet at (h, h): a peak with a faint, wide foot. It covers
@@ -15,49 +15,47 @@ crate::named! {
 }
 
 crate::named! {
-    /// How scattered dabs lie.
+    /// How scattered dabs are distributed.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
     pub enum Spread {
-        /// Evenly over a disc whose radius is the scatter times the dab's diameter.
+        /// Uniformly over a disc whose radius is the scatter times the dab's diameter.
         #[default]
         Disc = "disc",
-        /// Most of them near, some far: the standard deviation along each axis is the scatter times the brush's
-        /// diameter.
+        /// Normally: the standard deviation along each axis is the scatter times the brush's diameter.
         Cloud = "cloud",
     }
 }
 
 crate::named! {
-    /// What the way between a stroke's dabs, and that of a hand that is smoothed, is measured on.
+    /// What the path between a stroke's dabs, and that of a smoothed hand, is measured on.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
     pub enum Measure {
-        /// As it is seen.
+        /// On the canvas, as seen.
         #[default]
         Canvas = "canvas",
-        /// As long as it is on the surface: dabs stand equally far apart, and lines are equally smooth, all over the
-        /// form.
+        /// On the surface: dabs are equally far apart, and lines are equally smooth, everywhere on the form.
         Surface = "surface",
     }
 }
 
-/// Dabs beside those of the spacing.
+/// Dabs in addition to those of the spacing.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Rate {
-    /// Along a way as long as the brush's own diameter, whatever drives the size.
+    /// Per path length of the brush's own diameter, whatever drives the size.
     pub per_diameter: f32,
-    /// While time passes, also where the pen rests.
+    /// Per second, even while the pen rests.
     pub per_sec: f32,
 }
 
-/// Where dabs stand beside the stroke.
+/// How dabs are displaced from the stroke.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Offset {
     /// How far, diameters of the brush.
     pub amount: f32,
-    /// To where, degrees counter-clockwise from `from`.
+    /// In which direction, degrees counter-clockwise from `from`.
     pub turn_degrees: f32,
     pub from: Bearing,
-    /// Every other dab stands as far and as much turned on the other side.
+    /// Every other dab is equally far away on the other side.
     pub alternates: bool,
 }
 
@@ -68,31 +66,31 @@ crate::named! {
         /// The right side of the canvas.
         #[default]
         Canvas = "canvas",
-        /// Where the stroke goes.
+        /// The stroke's direction.
         Stroke = "stroke",
-        /// Where the pen leans to; an upright one leans down.
+        /// Where the pen leans; an upright one counts as leaning down.
         Pen = "pen",
     }
 }
 
-/// How the hand's ways become readings and dabs.
+/// How the hand's movement becomes readings and dabs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hand {
-    /// Standard deviation of the places that the pen is read at, diameters of the brush.
+    /// Standard deviation of the positions where the pen is read, diameters of the brush.
     pub tremor: f32,
-    /// Each dab comes 1 − e^(−1/lag) of the way from the last one to the pen.
+    /// Each dab moves 1 − e^(−1/lag) of the way from the last one to the pen.
     pub lag_dabs: f32,
-    /// A dab stands where the pen would be so much later, at its pace; or was earlier.
+    /// A dab is where the pen would be this much later at its pace, or was earlier.
     pub lead_secs: f32,
-    /// Over which way a direction is averaged.
+    /// The path length over which a direction is averaged.
     pub direction_px: f32,
-    /// Over which time each of the two paces is averaged.
+    /// The time over which each of the two paces is averaged.
     pub pace_secs: f32,
     pub slow_pace_secs: f32,
-    /// How many px count as one where a pace is read: more on a canvas that was enlarged, so that its brushes read the
-    /// same hand.
+    /// How many px count as one when a pace is read: more on an enlarged canvas, so that its brushes read the same
+    /// pace.
     pub pace_px: f32,
-    /// Over how many dabs the custom input is averaged.
+    /// The number of dabs over which the custom input is averaged.
     pub custom_dabs: f32,
 }
 
@@ -111,14 +109,15 @@ impl Default for Hand {
     }
 }
 
-/// What the input *cycle* goes by: 0 where the pen begins to press, rising to 1 along the way, held there, and again.
+/// What drives the input *cycle*: 0 where the pen begins to press, rising to 1 along the path, held there, then
+/// repeated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cycle {
-    /// How far it rises, diameters of the brush.
+    /// The path length over which it rises, diameters of the brush.
     pub length: f32,
     /// How long it is held, a ratio of the length; [`Cycle::FOR_EVER`] and more for ever.
     pub hold: f32,
-    /// The pressure that it begins at.
+    /// The pressure at which it begins.
     pub pressure: f32,
 }
 
@@ -132,15 +131,15 @@ impl Default for Cycle {
     }
 }
 
-/// Paint that a brush takes up from its layer and mixes into its own. Strokes of a stroke layer find nothing to take
+/// Paint that a brush picks up from its layer and mixes into its own. Strokes of a stroke layer find nothing to pick
 /// up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pickup {
-    /// How much of a dab's paint was taken up; the rest is the brush's own.
+    /// The share of a dab's paint that was picked up; the rest is the brush's own.
     pub amount: f32,
-    /// The share of what it holds that is still there a dab later; the rest is taken up anew.
+    /// The share of the paint it holds that remains a dab later; the rest is picked up from the layer.
     pub length: f32,
-    /// The radius that it takes paint up from, a ratio of the dab's.
+    /// The radius from which it picks up paint, a ratio of the dab's.
     pub radius: f32,
 }
 

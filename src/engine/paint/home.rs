@@ -1,24 +1,24 @@
 //! Home frames: marks have their coordinates on the canvas or on a part of the document's shape, which carries them
-//! where it goes. Floor 3. Parts themselves are `document::parts`; how homes meet the transforms of layers stands in
-//! `document::layer`.
+//! where it goes. Floor 3. Parts themselves are `document::parts`; `document::layer` combines homes with the transforms
+//! of layers.
 
 use crate::math::{Affine2, PlaneMap};
 use std::sync::Arc;
 
-/// The part that marks lie on, and where it stands.
+/// The part that marks lie on, and where it is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HomeFrame {
     /// The id of the part, or [`HomeFrame::CANVAS`].
     pub part: Arc<str>,
-    /// Canvas from part, as the part stands now: resolved anew whenever the document is shaped.
+    /// Canvas from part at its current position: resolved again whenever the document is shaped.
     pub matrix: Affine2,
 }
 
 impl HomeFrame {
-    /// What documents call the canvas by where they name a home. No part has this id.
+    /// The name of the canvas as a home in documents. No part has this id.
     pub const CANVAS: &'static str = "canvas";
 
-    /// On a part whose place is not known yet.
+    /// On a part whose position is not known yet.
     pub fn on(part: &str) -> Self {
         Self { part: part.into(), matrix: Affine2::IDENTITY }
     }
@@ -29,11 +29,11 @@ impl HomeFrame {
     pub fn is_canvas(&self) -> bool {
         &*self.part == Self::CANVAS
     }
-    /// The part's id; `None` of the canvas.
+    /// The part's id; `None` for the canvas.
     pub fn part(&self) -> Option<&str> {
         Some(&*self.part).filter(|_| !self.is_canvas())
     }
-    /// Canvas from part; a matrix that leaves no area moves nothing.
+    /// Canvas from part; a matrix without area moves nothing.
     pub fn map(&self) -> PlaneMap {
         PlaneMap::affine(self.matrix.to_cols_array().map(f64::from)).unwrap_or_default()
     }
@@ -43,7 +43,7 @@ impl HomeFrame {
 #[derive(Clone, Debug, PartialEq)]
 pub struct StrokeHome {
     pub frame: HomeFrame,
-    /// Where the stroke's own frame lies within that of its layer: a, b, c, d, e, f as of a layer's transform.
+    /// Where the stroke's own frame lies within its layer's: a, b, c, d, e, f as in a layer's transform.
     pub own: [f64; 6],
 }
 

@@ -34,7 +34,8 @@ impl Placement {
     pub fn covering(canvas: Size) -> Self {
         Self { center: canvas.center(), scale: 1.0, rotation: 0.0 }
     }
-    /// Covers what the reflection operator looks up from anywhere on a shape that fits the canvas: `|D(q) − c| ≤ (½ +
+    /// Covers everything that the reflection operator looks up from anywhere on a shape that fits the canvas: `|D(q) −
+    /// c| ≤ (½ +
     /// |α|) L`, so that an angular map, of which only the inscribed disc is painted, leaves no holes.
     ///
     /// * `alpha`: of the operator, canvas lengths. `turn`: r̄ where the picture is pinned.
@@ -46,7 +47,7 @@ impl Placement {
         let center = canvas.center() - alpha * longer * turn;
         Self { center, scale: scale.max(*Self::SCALE.start()).min(*Self::SCALE.end()), rotation: 0.0 }
     }
-    /// The same place on another canvas, px for px, of a picture that covers both by its own aspect.
+    /// The same place on another canvas, px for px, for a picture that covers both by its own aspect.
     pub fn on_canvas_of(&self, from: Size, to: Size, picture: Size) -> Self {
         let cover = |canvas: Size| {
             (canvas.width as f32 / picture.width as f32).max(canvas.height as f32 / picture.height as f32)
@@ -73,16 +74,16 @@ pub struct PictureSource {
     pub picture: Picture,
     pub adjust: Adjust,
     texture: Arc<OnceLock<Texture>>,
-    /// The same in floats, as long as somebody holds it.
+    /// The same in floats, as long as it is in use.
     deep: Arc<Mutex<Weak<DeepTexture>>>,
-    /// How closely it is read where it is antialiased.
+    /// How closely it is read if it is antialiased.
     rule: TapRule,
-    /// The stamps made of it when it is a brush's tip.
+    /// The stamps made from it if it is a brush's tip.
     stamps: Arc<StampCache>,
 }
 
 impl PartialEq for PictureSource {
-    /// The same picture, adjusted alike, by whatever name it goes.
+    /// The same picture with the same adjustments, whatever its name.
     fn eq(&self, other: &Self) -> bool {
         self.adjust == other.adjust && self.picture == other.picture
     }
@@ -93,11 +94,11 @@ impl PictureSource {
         let (texture, deep, stamps) = (Arc::default(), Arc::default(), Arc::default());
         Self { file, picture, adjust, texture, deep, rule: TapRule::AT_REST, stamps }
     }
-    /// The same picture, read as closely as a rule has it where it is antialiased.
+    /// The same picture, read as closely as a rule demands if it is antialiased.
     pub fn read_by(&self, rule: TapRule) -> Self {
         Self { rule, ..self.clone() }
     }
-    /// The same picture without its finest `levels` of detail: what shows it as much smaller reads fewer texels.
+    /// The same picture without its finest `levels` of detail: showing it that much smaller reads fewer texels.
     pub fn coarser(&self, levels: u32) -> Self {
         let texture = OnceLock::from(self.texture().coarser(levels));
         Self { texture: Arc::new(texture), ..self.clone() }
@@ -106,7 +107,7 @@ impl PictureSource {
     pub fn texture_bytes(&self) -> u64 {
         self.texture.get().map_or(0, Texture::bytes)
     }
-    /// It as a tip, with a softness in `[0, 1]`.
+    /// The picture as a tip, with a softness in `[0, 1]`.
     pub(super) fn stamp(&self, softness: f32) -> Arc<TipStamp> {
         self.stamps.stamp(self.texture(), softness)
     }
@@ -122,7 +123,7 @@ impl PictureSource {
     }
 }
 
-/// Buffers of one tile, used again for the next.
+/// Buffers of one tile, reused for the next.
 #[derive(Default)]
 struct ImageScratch {
     positions: DeformedRect,
@@ -132,7 +133,7 @@ struct ImageScratch {
 }
 
 thread_local! {
-    /// Some 60 KiB a thread; made anew they would be filled with zeros for each tile.
+    /// Some 60 KiB a thread; new ones would be filled with zeros for each tile.
     static SCRATCH: RefCell<ImageScratch> = RefCell::default();
 }
 
@@ -149,7 +150,7 @@ pub struct PlacedImage {
 }
 
 impl PlacedImage {
-    /// One tile of the layer; `None` where it is transparent, or beyond the canvas.
+    /// One tile of the layer; `None` if it is transparent or beyond the canvas.
     pub fn render_tile(&self, scene: &Scene, at: TileAt) -> Option<Tile> {
         let area = scene.area(at);
         if area.is_empty() {
@@ -163,7 +164,7 @@ impl PlacedImage {
         let ImageScratch { positions, patches, bilinear, antialias } = scratch;
         let ImageLookup { margin, texels_from_canvas } = self.placed(scene, area, texture.size(), positions);
         let width = area.width();
-        // Tiles begin at the canvas's corner, so an area does at its tile's.
+        // Tiles begin at the canvas's corner, so an area begins at its tile's.
         let first = |y: i32| (y - area.y0) as usize * TILE;
         if margin == 0 && width == TILE {
             // The rows of a whole tile are contiguous: the next row is prefetched while this one is read.
@@ -184,7 +185,7 @@ impl PlacedImage {
         }
         Tile::from_pixels(pixels.into_flattened())
     }
-    /// Where each pixel of an area is read of a texture of this size: `positions` in texels, of the area grown by the
+    /// Where each pixel of an area reads a texture of this size: `positions` in texels, of the area grown by the
     /// margin.
     fn placed(&self, scene: &Scene, area: Rect, texture: Size, positions: &mut DeformedRect) -> ImageLookup {
         let texels_from_frame = self.placement.texels_from_canvas(scene.size, texture);
@@ -212,16 +213,16 @@ struct ImageLookup {
     texels_from_canvas: Affine2,
 }
 
-/// The way back from the canvas into the frame of what is placed in it.
+/// The inverse map, from the canvas into the frame of what is placed in it.
 pub(super) struct BentFrame {
-    /// The map itself where it is affine, else its tangent at the middle of the tile.
+    /// The map itself if it is affine, else its tangent at the middle of the tile.
     pub linear: Affine2,
     perspective: Option<PlaneMap>,
 }
 
 impl BentFrame {
-    /// The corner of the pixels next to where the frame's own corner lies: points are counted from there, so that what
-    /// was moved by whole px is computed from the same numbers. That of the canvas for perspectives.
+    /// The corner of the pixels next to where the frame's own corner lies: points are relative to it, so that what was
+    /// moved by whole px is computed from the same numbers. For perspectives the corner of the canvas.
     pub fn origin(frame: &PlaneMap) -> (i32, i32) {
         const FAR: f64 = 1e6;
         match frame.coefficients() {
@@ -229,8 +230,8 @@ impl BentFrame {
             _ => (0, 0),
         }
     }
-    /// * `area`: the pixels that are asked for.
-    /// * `origin`: what points of the canvas are counted from; of a perspective its own, which is none.
+    /// * `area`: the pixels wanted.
+    /// * `origin`: the point that canvas points are relative to; for a perspective (0, 0).
     pub fn of(frame: &PlaneMap, area: Rect, origin: (i32, i32)) -> Self {
         let from_origin = PlaneMap::translation(vec2(origin.0 as f32, origin.1 as f32));
         if let Some(linear) = from_origin.then(&frame.inverse()).as_affine() {
@@ -242,8 +243,8 @@ impl BentFrame {
             .map_or(Affine2::IDENTITY, |(p, jacobian)| Affine2::from_mat2_translation(jacobian, p - jacobian * middle));
         Self { linear, perspective: Some(*frame) }
     }
-    /// Takes points of the canvas into the frame if a perspective does so; whether it did. Points beyond the horizon go
-    /// far away.
+    /// Takes points of the canvas into the frame if the map is a perspective; whether it did. Points beyond the horizon
+    /// go far away.
     pub fn apply(&self, x: &mut [f32], y: &mut [f32]) -> bool {
         const FAR: f32 = 1e7;
         let Some(frame) = &self.perspective else { return false };

@@ -1,5 +1,5 @@
-//! Liquify: dabs that push, swell and twirl what a layer shows, as a displacement of the nodes under them. Floor 3.
-//! Not here: what a displacement is (`raster::lattice`), what layers show through it (`document::layer::warp`).
+//! Liquify: dabs that push, swell and twirl what a layer shows, as a displacement of the nodes under them. Floor 3. Not
+//! here: what a displacement is (`raster::lattice`), how layers are seen through it (`document::layer::warp`).
 
 use super::Scene;
 use crate::math::{COORDINATE, Mat2, PlaneMap, Range, Rect, UNIT, Vec2, vec2};
@@ -8,17 +8,17 @@ use crate::surface::Surface;
 use std::sync::Arc;
 
 crate::named! {
-    /// What a dab does to what lies under it.
+    /// What a dab does to the pixels under it.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
     pub enum LiquifyTool {
-        /// Takes it along with the pen.
+        /// Moves them with the pen.
         #[default]
         Push = "push" => ("push", "Drags what is under the pen (Ctrl restores)"),
         Grow = "grow" => ("grow", "Makes it larger about the middle of the dab (Ctrl shrinks)"),
         Shrink = "shrink" => ("shrink", "Makes it smaller (Ctrl grows)"),
         TwirlLeft = "twirl left" => ("twirl left", "Turns it counter-clockwise (Ctrl: clockwise)"),
         TwirlRight = "twirl right" => ("twirl right", "Turns it clockwise (Ctrl: counter-clockwise)"),
-        /// Evens out how it is displaced.
+        /// Evens out their displacement.
         Smooth = "smooth" => ("smooth", "Evens out how it is displaced (Shift with any tool)"),
         Restore = "restore" => ("restore", "Takes it back to where it was"),
     }
@@ -41,11 +41,11 @@ pub struct LiquifySettings {
     pub tool: LiquifyTool,
     /// Diameter of a dab, px.
     pub size: f32,
-    /// Of the middle of a dab; a push at 1 goes as far as the pen.
+    /// In the middle of a dab; a push at 1 goes as far as the pen.
     pub strength: f32,
-    /// Nothing but the object under the first dab is displaced.
+    /// Only the object under the first dab is displaced.
     pub one_object: bool,
-    /// Dabs and what they do are measured along the surface.
+    /// Dabs and their effect are measured along the surface.
     pub foreshortened: bool,
 }
 
@@ -72,9 +72,9 @@ pub struct LiquifyStroke {
     scene: Scene,
     /// What is displaced; absent: everything.
     selection: Option<CoverageGrid>,
-    /// What takes the displacement's frame to the canvas.
+    /// The map from the displacement's frame to the canvas.
     to_canvas: PlaneMap,
-    /// The object that it keeps to, where it keeps to one.
+    /// The object that it is limited to, if any.
     object: Option<crate::surface::objects::ObjectId>,
     last: Vec2,
     /// Canvas px since the last dab.
@@ -85,17 +85,17 @@ pub struct LiquifyStroke {
 const SPACING: f32 = 0.1;
 /// Radius of a dab in the frame of the displacement, px.
 const MOST_RADIUS_PX: f32 = 4096.0;
-/// What a dab grows by or shrinks in its middle.
+/// How much a dab grows or shrinks its middle.
 const SWELL: f32 = 0.06;
-/// What a dab turns its middle by, radians.
+/// The angle by which a dab turns its middle, radians.
 const TURN: f32 = 0.08;
-/// A surface that turns farther from the viewer is measured as one that turns so far.
+/// A surface that is tilted more is measured as if it had this tilt.
 const LEAST_FACING: f32 = 0.1;
 
 impl LiquifyStroke {
     /// Begins at a point of the canvas.
     ///
-    /// * `to_canvas`: what takes the frame of the displacement to the canvas.
+    /// * `to_canvas`: the map from the frame of the displacement to the canvas.
     pub fn new(
         settings: LiquifySettings,
         scene: Scene,
@@ -110,13 +110,13 @@ impl LiquifyStroke {
     fn radius(&self) -> f32 {
         0.5 * self.settings.size
     }
-    /// The first dab, of what does not push.
+    /// The first dab, unless it pushes.
     pub fn begin(&self, lattice: &mut Lattice, pressure: f32) {
         if self.settings.tool != LiquifyTool::Push {
             self.dab(lattice, self.last, Vec2::ZERO, pressure);
         }
     }
-    /// On to a point of the canvas.
+    /// Continues to a point of the canvas.
     pub fn draw_to(&mut self, lattice: &mut Lattice, at: Vec2, pressure: f32) {
         if !at.is_finite() || at.abs().max_element() > *COORDINATE.end() {
             return;
@@ -124,9 +124,9 @@ impl LiquifyStroke {
         let spacing = (SPACING * self.radius()).max(1.0);
         let along = (at - self.last).normalize_or_zero();
         let mut left = self.last.distance(at) + self.gone;
-        // The last dab stood `gone` behind.
+        // The last dab was `gone` behind.
         let mut place = self.last - along * self.gone;
-        // A jump across the picture is no push of a thousand dabs.
+        // A jump across the picture must not become a push of a thousand dabs.
         let most = 4096;
         for _ in 0..most {
             if left < spacing {
@@ -140,11 +140,11 @@ impl LiquifyStroke {
     }
     /// One dab: the nodes under it take new displacements.
     ///
-    /// * `step`: how far the pen came since the last one, canvas px.
+    /// * `step`: how far the pen moved since the last one, canvas px.
     fn dab(&self, lattice: &mut Lattice, at: Vec2, step: Vec2, pressure: f32) {
         let Some((center, back)) = self.to_canvas.from_canvas(at) else { return };
         let radius = self.radius() * back.determinant().abs().sqrt();
-        // In a group that is scaled down to nothing a dab would hold no end of nodes.
+        // In a group that is scaled down to nearly nothing, a dab would hold endless nodes.
         if radius.is_nan() || radius > MOST_RADIUS_PX || center.abs().max_element() > *COORDINATE.end() {
             return;
         }
@@ -189,7 +189,7 @@ impl LiquifyStroke {
         }
         self.selection.as_ref().map_or(1.0, |covered| f32::from(covered.at(x, y)) / 255.0)
     }
-    /// How the depth of the surface changes along the axes; 0 where it is not asked for.
+    /// How the depth of the surface changes along the axes; 0 if it is not needed.
     fn slope(&self, p: Vec2) -> Vec2 {
         let surface = self.scene.surface.as_ref().filter(|_| self.settings.foreshortened);
         surface.map_or(Vec2::ZERO, |surface| slope_of(surface, p))
@@ -206,18 +206,18 @@ fn slope_of(surface: &Arc<Surface>, p: Vec2) -> Vec2 {
     vec2(normal.x, -normal.y) / normal.z.max(LEAST_FACING)
 }
 
-/// How much longer than it is seen a direction is along a surface: √(1 + (s · d)²).
+/// How much longer a direction is along a surface than as seen: √(1 + (s · d)²).
 fn stretch(slope: Vec2, along: Vec2) -> f32 {
     (1.0 + slope.dot(along.normalize_or_zero()).powi(2)).sqrt()
 }
 
 /// 1 in the middle of a dab, 0 at its rim, smooth at both.
 fn falloff(t: f32) -> f32 {
-    // What is no number is beyond the rim.
+    // NaN is beyond the rim.
     if t < 1.0 { (1.0 - t * t).powi(2) } else { 0.0 }
 }
 
-/// From a point about the middle to what a turn counter-clockwise as seen brings there.
+/// From a point about the middle to the one that a turn counter-clockwise as seen brings there.
 fn turned(offset: Vec2, by_rad: f32, slope: Vec2) -> Vec2 {
     // y points down: backward, that is a positive angle.
     (Mat2::from_angle(by_rad) * offset - offset) / stretch(slope, offset.perp())
@@ -232,7 +232,7 @@ fn mean(lattice: &Lattice, q: Vec2) -> Vec2 {
     around.map(|(dx, dy)| lattice.node(i + dx, j + dy)).sum::<Vec2>() / 9.0
 }
 
-/// A displacement taken back by a share, at least by as much as can be held: so that nothing is left at last.
+/// A displacement reduced by a ratio, at least by the smallest step that can be held, so that it ends at 0.
 fn restored(u: Vec2, share: f32) -> Vec2 {
     const LEAST_SHARE: f32 = 1.0 / 64.0;
     if share < LEAST_SHARE {
@@ -267,7 +267,7 @@ mod tests {
     fn a_push_at_full_strength_takes_what_lay_under_the_pen_along() {
         let mut lattice = Lattice::default();
         drawn(of(LiquifyTool::Push), &mut lattice, &[vec2(200.0, 152.0), vec2(240.0, 152.0)]);
-        // What shows where the pen ended lay where it began.
+        // Where the pen ended shows what was where it began.
         let found = lattice.at(vec2(240.0, 152.0)).by;
         assert!((found - vec2(-40.0, 0.0)).length() < 2.0, "{found}");
         assert_eq!(lattice.at(vec2(200.0, 20.0)).by, Vec2::ZERO);
@@ -312,7 +312,7 @@ mod tests {
     }
     #[test]
     fn a_direction_down_a_slope_is_longer_than_it_is_seen() {
-        // At 60° a slope of √3: twice as long along it, as long as it is seen across it.
+        // At 60° a slope of √3: twice as long along it as seen, unchanged across it.
         let slope = vec2(3f32.sqrt(), 0.0);
         assert!((stretch(slope, vec2(5.0, 0.0)) - 2.0).abs() < 1e-6);
         assert!((stretch(slope, vec2(0.0, -3.0)) - 1.0).abs() < 1e-6);

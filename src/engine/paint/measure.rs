@@ -1,26 +1,26 @@
-//! Ways measured along the surface, as long as they are there and not as they are seen. Floor 3.
+//! Paths measured along the surface, with their lengths there instead of as seen. Floor 3.
 
 use crate::math::Vec2;
 use crate::surface::{Operator, Scene, Surface};
 use std::sync::Arc;
 
-/// The surface that ways are measured on.
+/// The surface that paths are measured on.
 #[derive(Clone)]
 pub struct SurfaceMeasure {
     surface: Arc<Surface>,
-    /// a of MATH 8: that of the unwrapping where marks are printed by one, else 1.
+    /// a of MATH 8: that of the unwrapping if marks are printed by one, else 1.
     amount: f32,
 }
 
 impl SurfaceMeasure {
-    /// `None` where there is no surface.
+    /// `None` if there is no surface.
     pub fn of(scene: &Scene, operator: Operator) -> Option<Self> {
         let amount = operator.unwrapping().map_or(1.0, |settings| settings.amount);
         scene.surface.clone().map(|surface| Self { surface, amount })
     }
-    /// How long a px of a way is on the surface: |S d| of MATH 8, between pixels; 1 off it.
+    /// The length of a px of a path on the surface: |S d| of MATH 8, between pixels; 1 off it.
     ///
-    /// * `at`: canvas px. `way`: its direction counts.
+    /// * `at`: canvas px. `way`: only its direction matters.
     pub fn stretch(&self, at: Vec2, way: Vec2) -> f32 {
         if !self.surface.size().rect().contains(at.x.floor() as i32, at.y.floor() as i32) {
             return 1.0;

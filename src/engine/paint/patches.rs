@@ -54,7 +54,7 @@ impl Patches {
         let edges = self.edges.each_ref().map(|[x, y]| [&x[..], &y[..]]);
         PatchRow { x: &positions.x[here..here + n], y: &positions.y[here..here + n], edges }
     }
-    /// The edges of a row whose first pixel is at `here`, some of whose neighbours do not continue the surface.
+    /// The edges of a row whose first pixel is at `here`, if some neighbours do not continue the surface.
     fn edges_where_linked(
         &mut self,
         positions: &DeformedRect,

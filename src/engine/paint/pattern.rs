@@ -16,9 +16,9 @@ crate::named! {
         Weave = "weave",
         /// Rows of overlapping scales, each lighter toward its rim.
         Scales = "scales",
-        /// Parallel lines, soft across: levels choose how wide.
+        /// Parallel lines, soft across: levels set their width.
         Lines = "lines",
-        /// Dots in a square grid: levels choose how large.
+        /// Dots in a square grid: levels set their size.
         Dots = "dots",
     }
 }
@@ -26,11 +26,11 @@ crate::named! {
 impl Pattern {
     /// Features along the side of the square that repeats.
     pub const CELLS: u32 = 16;
-    /// Side of that square, texels, the least and the most.
+    /// Side of that square, texels: least and most.
     pub const SIDES: [u32; 2] = [512, 2048];
 
-    /// The side that has a texel for every pixel where features are this large, so that a pattern is as sharp on a
-    /// large canvas as on a small one.
+    /// The side that has a texel for every pixel if features are this large, so that a pattern is as sharp on a large
+    /// canvas as on a small one.
     pub fn side_of(feature_px: f32) -> u32 {
         let [least, most] = Self::SIDES;
         // Comparisons that NaN fails.
@@ -59,7 +59,7 @@ impl Pattern {
     }
 }
 
-/// Threads a cell wide: in turn one along x, one along y lies above.
+/// Threads a cell wide: those along x and along y lie above in turn.
 fn weave(p: Vec2, seed: u32) -> f32 {
     let (cell, within) = (p.floor(), p.fract_gl() - 0.5);
     let is_over = (cell.x + cell.y).rem_euclid(2.0) < 1.0;
@@ -77,14 +77,14 @@ fn weave(p: Vec2, seed: u32) -> f32 {
 /// Rows half a cell high, every other shifted by half a cell: each scale is a disc that covers the ones above it.
 fn scales(p: Vec2) -> f32 {
     let row = (p.y * 2.0).floor();
-    // The lower rows lie beneath: of the discs over a point the topmost is that of the highest row.
+    // The lower rows lie below: of the discs over a point the topmost belongs to the highest row.
     for above in (0..3).rev() {
         let row = row - above as f32;
         let shift = if row.rem_euclid(2.0) < 1.0 { 0.5 } else { 0.0 };
         let center = vec2((p.x - shift).floor() + shift + 0.5, row * 0.5);
         let r = (p - center).length() / 0.56;
         if r < 1.0 && p.y >= center.y {
-            // Dark where it comes from under its neighbour, bright toward the rim, a thin dark edge.
+            // Dark where it emerges from under its neighbour, bright toward the rim, with a thin dark edge.
             let rim = smoothstep(1.0, 0.9, r);
             return rim * (0.25 + 0.75 * smoothstep(0.2, 0.85, r));
         }
@@ -131,7 +131,7 @@ pub fn bristles(count: u32, seed: u32, side: u32) -> Plane<f32> {
         let r = ((i as f32 + 0.2 + 0.6 * chance(0)) / count as f32).sqrt();
         let (sin, cos) = (i as f32 * GOLDEN_ANGLE + 0.5 * chance(1)).sin_cos();
         let radius = (0.55 + 0.65 * chance(2)) / (count as f32).sqrt();
-        // Wholly within the disc.
+        // Entirely within the disc.
         let center = vec2(cos, sin) * r * (1.0 - radius).max(0.0);
         hair(&mut plane, center * half + half, radius * half, 0.35 + 0.65 * chance(3));
     }
@@ -179,7 +179,7 @@ mod tests {
             let plane = pattern.plane(3, Pattern::SIDES[0]);
             let (low, high) = plane.values().iter().fold((1.0f32, 0.0f32), |(a, b), &v| (a.min(v), b.max(v)));
             assert!((0.0..0.3).contains(&low) && (0.7..=1.0).contains(&high), "{name}: {low} to {high}");
-            // Across the seam neighbours differ as they do within.
+            // Neighbours differ as much across the seam as elsewhere.
             let last = Pattern::SIDES[0] as usize - 1;
             let jump = |a: usize, b: usize| {
                 (0..=last)
