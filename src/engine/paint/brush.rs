@@ -174,7 +174,7 @@ pub enum Stabilizer {
     Average { weight: f32 },
     /// The pen pulls the line on a string of this length, px: wiggles shorter than it do not show.
     String { length_px: f32 },
-    /// The line follows the pen in time: after t, e^(−t/secs) of the lag is left. It ends where the pen lifts.
+    /// The line follows the pen in time: after t, e^(−t/secs) of the lag is left. It ends when the pen lifts.
     Lag { secs: f32 },
 }
 

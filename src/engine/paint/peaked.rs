@@ -9,17 +9,17 @@ use super::profile::Profile;
 pub struct PeakedProfile {
     /// √h, where the lines meet.
     knee: f32,
-    /// What the inner line falls by over a squared distance of 1, and the outer one.
+    /// How much the inner line falls over a squared distance of 1, and the outer one.
     inner: f32,
     outer: f32,
-    /// The integral up to the knee, less what the outer line's would be.
+    /// The integral up to the knee, less that of the outer line.
     start: f32,
     /// Width of the box that blurs it, squared.
     blur_squared: f32,
 }
 
 impl PeakedProfile {
-    /// Narrower boxes than this are points, as `RoundProfile` has it.
+    /// Narrower boxes than this are points, as in `RoundProfile`.
     const NARROW: f32 = 5e-4;
     /// Beyond these hardnesses it is a needle and a disc.
     const HARDNESS: [f32; 2] = [1e-3, 0.9999];

@@ -1,4 +1,4 @@
-//! Finds the stroke under a point, and makes copies of a stroke in another place or style.
+//! Finds the stroke under a point, and copies a stroke to another place or style.
 //! Floor 3.
 
 use super::brush::{Brush, StrokeFrame};
@@ -71,10 +71,10 @@ impl Stroke {
     pub fn selecting(&self, selection: Option<StrokeSelection>) -> Stroke {
         self.with_brush(self.brush().clone()).within(selection)
     }
-    /// The stroke where a map takes its samples: `place` tells where a point goes (`None`: nowhere), `length` how much
-    /// longer lengths become there, `turn` how directions turn there (an orthogonal matrix). Its brush grows by the
-    /// mean over the samples that are left and faces as the first of them does; the pen leans along. It has no home and
-    /// no selection.
+    /// The stroke where a map takes its samples: `place` gives the new place of a point (`None`: nowhere), `length` how
+    /// much longer lengths become there, `turn` how directions turn there (an orthogonal matrix). Its brush grows by
+    /// the mean over the remaining samples and faces as at the first of them; the pen's tilt turns too. It has no home
+    /// and no selection.
     pub fn mapped(
         &self,
         place: &dyn Fn(Vec2) -> Option<Vec2>,

@@ -21,7 +21,7 @@ pub enum PreparedTip {
     /// A round tip that shines through a picture.
     Textured(SoftenedStamps),
     Stamp(SoftenedStamps),
-    /// One of the stamps each time.
+    /// One of the stamps for each dab.
     Hose(Hose, Vec<SoftenedStamps>),
 }
 

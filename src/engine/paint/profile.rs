@@ -7,7 +7,7 @@ pub trait Profile {
     fn outer_radius(&self) -> f32;
     /// Mean coverage at distance `r ≥ 0` over a pixel whose width along the radius has this square, both in radii.
     fn mean(&self, r: f32, width_squared: f32) -> f32;
-    /// The same over a pixel that is as wide across the radius as `across_squared` says: its second dimension.
+    /// The same over a pixel whose width across the radius has the square `across_squared`: its second dimension.
     #[inline(always)]
     fn mean_over(&self, r: f32, width_squared: f32, _across_squared: f32) -> f32 {
         self.mean(r, width_squared)
@@ -43,7 +43,7 @@ pub struct RoundProfile {
     blur_squared: f32,
     /// The integral up to the centre, where [`RoundProfile::integral`] starts.
     start: f32,
-    /// How long the tip's mean chord is: its area over its extent along a line through the centre.
+    /// The length of the tip's mean chord: its area over its extent along a line through the centre.
     chord: f32,
 }
 
@@ -57,7 +57,7 @@ impl RoundProfile {
         let half = half.max(0.5 * Self::NARROW);
         let (end, length) = (middle + half, 2.0 * half);
         let (per_length, blur_squared) = (1.0 / length, softness * softness);
-        // ½ π of a disc, 0.942 of a smoothstep from the centre.
+        // ½ π for a disc, 0.942 for a smoothstep from the centre.
         let chord = std::f32::consts::FRAC_PI_2 * (0.6 + 0.4 * hardness);
         Self { end, length, per_length, blur_squared, start: smoothstep_integral(end * per_length), chord }
     }
@@ -80,31 +80,31 @@ impl RoundProfile {
     /// with `r′ = r + v²/24 · r / (r² + v²/4)`.
     ///
     /// Across the radius a pixel's points lie farther out, by v²/24r in the mean; and a tip narrower than the pixel
-    /// fills no more of it than its mean chord c. Within 28 of 255 of many samples for pixels of up to five radii, 3 in
-    /// the mean, where u alone is off by 81 and 14.
+    /// fills no more of it than its mean chord c. Within 28 of 255 of the mean of many samples for pixels of up to five
+    /// radii, 3 in the mean, whereas u alone is off by 81 and 14.
     #[inline(always)]
     pub fn mean_over(&self, r: f32, width_squared: f32, across_squared: f32) -> f32 {
         let across = if across_squared > 0.0 { across_squared } else { 0.0 };
         let filled = self.chord / (across.sqrt() + 1e-6);
         self.mean_over_narrow(r, width_squared, across_squared) * if filled < 1.0 { filled } else { 1.0 }
     }
-    /// The same, to the bit, of a pixel that is narrower across the radius than [`RoundProfile::chord`].
+    /// The same, to the bit, for a pixel that is narrower across the radius than [`RoundProfile::chord`].
     #[inline(always)]
     pub fn mean_over_narrow(&self, r: f32, width_squared: f32, across_squared: f32) -> f32 {
         let across = if across_squared > 0.0 { across_squared } else { 0.0 };
         let farther = r + across * (1.0 / 24.0) * r / (r * r + 0.25 * across + 1e-12);
         self.mean(farther, width_squared)
     }
-    /// c: pixels this narrow across the radius are filled by the tip, in radii.
+    /// c: the tip fills pixels that are this narrow across the radius, in radii.
     pub fn chord(&self) -> f32 {
         self.chord
     }
-    /// Between which distances coverage falls from 1 to 0 before the box; the first may lie below 0.
+    /// The distances between which coverage falls from 1 to 0 before the box; the first may be below 0.
     pub fn falloff(&self) -> (f32, f32) {
         (self.end - self.length, self.end)
     }
-    /// [`RoundProfile::mean`] where the box lies within the falloff: the mean of a cubic over a width is its value in
-    /// the middle and a 24th of its curvature times the width's square. So only the square of the width is needed.
+    /// [`RoundProfile::mean`] if the box lies within the falloff: the mean of a cubic over a width is its value in the
+    /// middle and a 24th of its curvature times the width's square. So only the square of the width is needed.
     #[inline(always)]
     pub fn mean_in_falloff(&self, r: f32, width_squared: f32) -> f32 {
         let v = (self.end - r) * self.per_length;

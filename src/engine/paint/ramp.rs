@@ -6,7 +6,7 @@ use crate::math::srgb::Color;
 /// A colour at a position of the ramp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GradientStop {
-    /// In `[0, 1]`, not decreasing from stop to stop.
+    /// In `[0, 1]`, never decreasing from stop to stop.
     pub t: f32,
     pub color: Color,
 }
@@ -63,7 +63,7 @@ impl RampPiece {
 }
 
 impl Ramp {
-    /// `None` without a stop at a finite place. Stops out of order are sorted; of two at one place the later wins
+    /// `None` without a stop at a finite position. Stops out of order are sorted; of two at one position the later wins
     /// there.
     pub fn new(stops: &[GradientStop]) -> Option<Self> {
         let mut stops: Vec<GradientStop> = stops.iter().copied().filter(|s| s.t.is_finite()).collect();
@@ -90,11 +90,11 @@ impl Ramp {
         let t = t.max(0.0).min(1.0);
         self.piece(t).map_or_else(|color| color, |p| p.at(t))
     }
-    /// The mean of the premultiplied colour over `[t − width/2, t + width/2]`, places beyond `[0, 1]` clamped.
+    /// The mean of the premultiplied colour over `[t − width/2, t + width/2]`, positions beyond `[0, 1]` clamped.
     ///
     /// In closed form, so it equals the mean of any number of samples. Widths too small to matter read the point.
     pub fn mean(&self, t: f32, width: f32) -> [f32; 4] {
-        // A ten-thousandth of the ramp changes no byte unless two stops coincide, and there the edge is as sharp.
+        // A ten-thousandth of the ramp changes no byte unless two stops coincide, where the edge is equally sharp.
         if width.is_nan() || width < 1e-4 {
             return self.at(t);
         }
@@ -105,13 +105,13 @@ impl Ramp {
         let width = f64::from(t + half) - f64::from(t - half);
         std::array::from_fn(|i| ((high[i] - low[i]) / width) as f32)
     }
-    /// ∫ of the premultiplied colour from some fixed place to `t`; linear beyond `[0, 1]`.
+    /// ∫ of the premultiplied colour from some fixed position to `t`; linear beyond `[0, 1]`.
     fn integral(&self, t: f32) -> [f64; 4] {
         let inside = t.max(0.0).min(1.0);
         let from_first = |t: f32| match self.piece(t) {
             Ok(p) => p.integral(t),
             Err(color) => {
-                // Before the first piece the colour is constant and the integral negative; after the last it goes on.
+                // Before the first piece the colour is constant and the integral negative; after the last it continues.
                 let (from, before) = match self.pieces.as_slice() {
                     [first, ..] if t < first.start => (first.start, [0.0; 4]),
                     [.., last] => (last.start + last.length, last.integral(last.start + last.length)),

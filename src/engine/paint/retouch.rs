@@ -1,7 +1,7 @@
-//! Smudge, blur, clone, and brushes that pick paint up: they work on the paint that is there. Dab by dab through the
-//! same bent footprint as paint, each on what the last one left, in f32, rounded as it is shown. Floor 3.
-//! `drag` says where smudge and clone take a pixel's colour from, `soften` what blur makes of it, `pickup` which
-//! colour a dab paints, `pixels` holds the pixels. Not here: what the pen did (`tools`).
+//! Smudge, blur, clone, and brushes that pick up paint: they work on existing paint. Dab by dab through the same bent
+//! footprint as paint, each on the result of the last one, in f32, rounded when it is shown. Floor 3. `drag` says where
+//! smudge and clone take a pixel's colour from, `soften` how blur changes it, `pickup` which colour a dab paints,
+//! `pixels` holds the pixels. Not here: what the pen did (`tools`).
 
 mod drag;
 mod pickup;
@@ -31,7 +31,7 @@ use rayon::prelude::*;
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
 
-/// Retouching strokes that are drawn together: one, or one and its mirror images. Their dabs take turns.
+/// Retouching strokes that are drawn together: one, or one and its mirror images. Their dabs alternate.
 ///
 /// The resulting pixels do not depend on how the samples are batched.
 pub struct ActiveRetouching {
@@ -44,7 +44,7 @@ pub struct ActiveRetouching {
     tail: BTreeSet<TileAt>,
 }
 
-/// One stroke in the making.
+/// One unfinished stroke.
 struct RetouchStroke {
     brush: Brush,
     color: Color,
@@ -64,11 +64,11 @@ struct DabQueue {
     /// Dabs that were not applied yet.
     waiting: VecDeque<Dab>,
     before: Option<Dab>,
-    /// Paint that was taken up.
+    /// Paint that was picked up.
     held: pickup::PickedUpPaint,
 }
 
-/// A dab on a tile: which pixels, and how much of each.
+/// A dab on a tile: its pixels, and their coverage.
 struct TileDab {
     at: TileAt,
     /// Canvas px; it holds every pixel that is covered.
@@ -80,7 +80,7 @@ struct TileDab {
 impl ActiveRetouching {
     /// Starts strokes with the settings of these; their samples are ignored.
     ///
-    /// * `offsets`: of each stroke, from a pixel to what is cloned onto it, px; 0 where none is given.
+    /// * `offsets`: for each stroke, from a pixel to what is cloned onto it, px; 0 if none is given.
     /// * `base`: the layer's pixels. `source`: what clone copies from, as it was before the stroke.
     pub fn new(strokes: &[Stroke], offsets: &[Vec2], base: TileGrid, source: TileGrid, scene: &Scene) -> Self {
         let offsets = offsets.iter().copied().filter(|offset| offset.is_finite()).chain(std::iter::repeat(Vec2::ZERO));
@@ -187,7 +187,7 @@ impl RetouchStroke {
         }
         changed
     }
-    /// The brush's own colour, which varies only once it is mixed.
+    /// The brush's own colour, which varies only after mixing.
     fn own(&self, dab: &Dab) -> Color {
         if tint::varies(&self.brush) { self.color } else { dab.color }
     }
@@ -225,7 +225,7 @@ impl RetouchStroke {
 }
 
 impl TileDab {
-    /// Of a canvas pixel of the area.
+    /// For a canvas pixel of the area.
     fn share(&self, x: i32, y: i32) -> f32 {
         let tile = self.at.rect();
         self.coverage[(y - tile.y0) as usize * TILE + (x - tile.x0) as usize]
@@ -245,14 +245,14 @@ fn mix(tile: &mut PlanarTile, touch: &TileDab, colors: &[[f32; 4]], keeps_alpha:
     }
 }
 
-/// A premultiplied pixel moved by a share toward a colour; keeping its alpha, only its hue and brightness move.
+/// A premultiplied pixel moved by a ratio toward a colour; if it keeps its alpha, only hue and brightness change.
 fn toward(pixel: [f32; 4], color: [f32; 4], share: f32, keeps_alpha: bool) -> [f32; 4] {
     let mixed: [f32; 4] = std::array::from_fn(|c| pixel[c] + (color[c] - pixel[c]) * share);
     if !keeps_alpha {
         return mixed;
     }
     let scale = if mixed[3] > 0.0 { pixel[3] / mixed[3] } else { 0.0 };
-    // Paint of another alpha counts as much as there is of it; colours stay within theirs.
+    // Paint of another alpha is weighted by its alpha; colours stay within the pixel's alpha.
     [0, 1, 2, 3].map(|c| if c == 3 { pixel[3] } else { (mixed[c] * scale).min(pixel[3]) })
 }
 

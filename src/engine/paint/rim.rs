@@ -1,13 +1,13 @@
-//! The rim of a stroke: which share of a pixel its dabs may reach. Floor 3. Pure functions. Not here: a dab's own
+//! The rim of a stroke: the share of a pixel that its dabs may reach. Floor 3. Pure functions. Not here: a dab's own
 //! profile (`profile`), how shares add up (`stroke_tile`).
 //!
 //! Dabs follow each other closely and their rims fall on the same pixels. If each covered a share of such a pixel at
 //! random, a dozen of them would fill it, and lines would be wider by most of a pixel on either side: much in a thin
-//! line, half as much in the same line drawn twice as large. But what one dab leaves bare the next one leaves bare
-//! too. So a pixel on the rim is two parts: one that the stroke's dabs reach, and one that none does.
+//! line, half as much in the same line drawn twice as large. But what one dab leaves bare, the next one leaves bare
+//! too. So a pixel on the rim has two parts: one that the stroke's dabs reach, and one that none reaches.
 //!
-//! Where the edge between them lies follows from how dabs add up along a straight stroke: at the depth x under the
-//! outer rim coverage comes to 1 − ∏ (1 − f P(r_i)). It is an edge as far as that rises within less than a pixel.
+//! The edge between them follows from how dabs add up along a straight stroke: at the depth x inside the outer rim
+//! coverage reaches 1 − ∏ (1 − f P(r_i)). It counts as an edge as far as that rises within less than a pixel.
 
 use super::brush::{Brush, Tip};
 use super::dynamics::Property;
@@ -16,10 +16,10 @@ use super::profile::RoundProfile;
 use crate::memory::made_once;
 use std::sync::{Arc, Mutex};
 
-/// Where a stroke of a dab's like ends, in radii of the dab.
+/// Where a stroke of such dabs ends, in radii of the dab.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rim {
-    /// Distance from the dab's centre at which the stroke's coverage has risen half-way.
+    /// Distance from the dab's centre at which the stroke's coverage has risen halfway.
     pub edge: f32,
     /// The width over which it rises.
     pub width: f32,
@@ -28,8 +28,8 @@ pub struct Rim {
 impl Rim {
     /// No edge: dabs reach whole pixels.
     pub const SOFT: Rim = Rim { edge: 1.0, width: f32::INFINITY };
-    /// An edge counts wholly up to a fifth of a pixel's width, and no more from 1.2 on: between, what is left of the
-    /// error is least (15 of 255 at most over tips of 2 to 64 px, 5 in the mean; without shares 170 and 99).
+    /// An edge counts fully up to a fifth of a pixel's width, and not at all from 1.2 on. This blend leaves the least
+    /// error (15 of 255 at most over tips of 2 to 64 px, 5 in the mean; without shares 170 and 99).
     const SHARP: f32 = 1.2;
 
     /// The share of a pixel that the stroke may reach, in `[0, 1]`. `r`: distance from the centre, `width`: the
@@ -48,12 +48,12 @@ impl Rim {
     pub fn inner(self, width: f32) -> f32 {
         if self.width < Self::SHARP * width { self.edge } else { f32::INFINITY }
     }
-    /// Of pixels narrower than this, in radii, the share is 1 everywhere.
+    /// For pixels narrower than this, in radii, the share is 1 everywhere.
     pub fn soft_below(self) -> f32 {
         self.width / Self::SHARP
     }
     fn between(self, to: Rim, s: f32) -> Rim {
-        // Never a mean with what is endless: that has no edge.
+        // Never a mean with an infinite width: that is no edge.
         Rim { edge: self.edge + (to.edge - self.edge) * s, width: self.width + (to.width - self.width) * s }
     }
 }
@@ -62,19 +62,19 @@ impl Rim {
 pub struct RimTable([Rim; STEPS + 1]);
 
 const STEPS: usize = 10;
-/// Depths at which coverage is found, denser toward the rim, and places along a stroke that are added up.
+/// Depths at which coverage is computed, denser toward the rim, and positions along a stroke that are added up.
 const DEPTHS: usize = 40;
 const PLACES: usize = 12;
-/// Coverage, of what the middle of the stroke comes to, that counts as begun, half-way and done.
+/// Ratios of the coverage in the middle of the stroke that count as begun, halfway and done.
 const RISEN: [f32; 3] = [0.2, 0.5, 0.8];
 
-/// Cached rims: more than one painting uses.
+/// Cached rims: more than a painting uses.
 const KEPT: usize = 64;
 static MADE: Mutex<Vec<([u32; 4], Arc<RimTable>)>> = Mutex::new(Vec::new());
 
 impl RimTable {
-    /// `None` where the dabs of a stroke do not end along one line: those that are scattered, of pictures, of other
-    /// programs' profile (which then paint as they do there), and those that work on paint one by one.
+    /// `None` if the dabs of a stroke do not end along one line: scattered dabs, pictures, profiles of other programs
+    /// (which then paint as they do there), and dabs that work on paint one by one.
     pub fn of(brush: &Brush) -> Option<Arc<Self>> {
         let is_square = match brush.tip {
             Tip::Round | Tip::Ellipse { .. } | Tip::Bristles(_) | Tip::Noise(_) => false,
@@ -100,7 +100,7 @@ impl RimTable {
         let outer = profile.outer_radius();
         let coverage = |r: f32| profile.mean(r, 0.0).max(0.0).min(0.9999);
         let depth = |j: usize| outer * (j as f32 / (DEPTHS - 1) as f32).powi(3);
-        // The dabs that cover a point at this depth: their own coverage there, and how many they are.
+        // The dabs that cover a point at this depth: their coverage there, and their number.
         let over = |j: usize| {
             let across = outer - depth(j);
             let along = if is_square { outer } else { (outer * outer - across * across).max(0.0).sqrt() };
@@ -113,7 +113,7 @@ impl RimTable {
         let over: Vec<_> = (0..DEPTHS).map(over).collect();
         let of_flow = |flow: f32| {
             let left = |p: f32| -(1.0 - flow * p).ln();
-            // At least the one dab that stands beside the point.
+            // At least the one dab next to the point.
             let sum = |(at, beside, dabs): &([f32; PLACES], f32, f32)| {
                 (dabs * at.iter().map(|&p| left(p)).sum::<f32>()).max(left(*beside))
             };
@@ -141,7 +141,7 @@ impl RimTable {
 mod tests {
     use super::*;
 
-    /// The true coverage of a pixel of a straight stroke along x, and what shares make of it; 255 is whole.
+    /// The true coverage of a pixel of a straight stroke along x, and the one computed with shares; 255 is full.
     fn pixel(brush: &Brush, y: f32) -> (f32, f32) {
         let (radius, step) = (0.5 * brush.size, (brush.spacing * brush.size).max(0.1));
         let profile = RoundProfile::new(brush.hardness, brush.softness);

@@ -1,4 +1,4 @@
-//! Brushes for a canvas of another size: every length of theirs, and nothing else. Floor 3. Each type names all of its
+//! Brushes for a canvas of another size: scales all their lengths, and nothing else. Floor 3. Each type names all its
 //! fields here, so that a new one has to say whether it is a length.
 
 use super::brush::{Brush, Stabilizer};
@@ -7,7 +7,7 @@ use super::habits::Hand;
 
 impl Brush {
     /// The same brush for a canvas `factor` times as large, `factor > 0` and finite: its strokes, their samples scaled
-    /// too, look the same there. Lengths in px are multiplied; ratios, angles, times and seeds stay.
+    /// too, look the same there. Lengths in px are multiplied; ratios, angles, times and seeds do not change.
     pub fn scaled(&self, factor: f32) -> Self {
         let Self {
             size, hardness, opacity, flow, spacing, spacing_on, overlap, falloff, rate, rotation, facing, ..

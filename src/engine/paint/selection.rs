@@ -1,6 +1,6 @@
-//! Selections: which pixels marks may change, softly. Coverage, with what it was made of, so that what was selected by
-//! the surface is found anew when the surface changes. Floor 3. Coverage itself is `raster::coverage`, regions of a
-//! surface are `surface::region`. Not here: which selection a document has (`document`), who makes it (`tools`).
+//! Selections: which pixels marks may change, softly. Coverage, with what it was made of, so that a selection by
+//! surface is computed again when the surface changes. Floor 3. Coverage itself is `raster::coverage`, regions of a
+//! surface are `surface::region`. Not here: which selection a document has (`document`), how it is made (`tools`).
 
 use super::scene::Scene;
 use crate::math::{Range, Vec2, vec2};
@@ -22,8 +22,8 @@ impl Selection {
     pub fn new(coverage: CoverageGrid) -> Self {
         Self { coverage, made: None }
     }
-    /// All that a region covers of a scene's surface; the whole canvas where it has none, as masks that are derived
-    /// from a surface have it.
+    /// Everything that a region covers of a scene's surface; the whole canvas without a surface, as with masks that are
+    /// derived from a surface.
     pub fn of_region(region: SurfaceRegion, scene: &Scene) -> Self {
         let coverage = match &scene.surface {
             Some(surface) => CoverageGrid::clone(&surface.region(&region)),
@@ -31,7 +31,7 @@ impl Selection {
         };
         Self { coverage, made: Some(region) }
     }
-    /// The same on another surface; `None` where it follows no surface and stays.
+    /// The same on another surface; `None` if it follows no surface and does not change.
     pub fn found_on(&self, scene: &Scene) -> Option<Self> {
         self.made.map(|region| Self::of_region(region, scene))
     }
@@ -39,7 +39,7 @@ impl Selection {
     pub fn is_empty(&self) -> bool {
         self.coverage.is_empty()
     }
-    /// Told alike, or with the same coverage.
+    /// With the same region, or with the same coverage.
     pub fn is_same(&self, other: &Selection) -> bool {
         match (&self.made, &other.made) {
             (Some(a), Some(b)) => a == b,
@@ -95,7 +95,7 @@ impl StrokeSelection {
         bytes.iter_mut().zip(sums).for_each(|(b, sum)| *b = (sum + 0.5) as u8);
         CoverageTile::new(bytes)
     }
-    /// The coverage where the stroke stands now.
+    /// The coverage where the stroke is now.
     pub fn coverage(&self) -> CoverageGrid {
         if self.moved == Vec2::ZERO {
             return self.selection.coverage.clone();
@@ -111,7 +111,7 @@ impl StrokeSelection {
         );
         CoverageGrid::gathered(to, |at| self.tile(at))
     }
-    /// The same stroke selected there too, and only there.
+    /// The same stroke, limited to this selection too.
     pub fn narrowed(&self, to: &CoverageGrid) -> Self {
         Self::new(Arc::new(Selection::new(self.coverage().combined(to, product))))
     }

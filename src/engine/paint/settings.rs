@@ -1,10 +1,10 @@
-//! The numbers of a brush that the hand sets: each one's range and field, and of its habits the name and words,
-//! said once for documents and for the window. Floor 3. Not here: what habits mean (`habits`).
+//! The numbers of a brush that a user sets: the range and field of each, and for habits the name and label, defined
+//! once for documents and for the window. Floor 3. Not here: what habits mean (`habits`).
 
 use super::brush::Brush;
 use crate::math::{Range, TURNS, UNIT, range::held};
 
-/// A number of a brush that the hand sets, for the strokes to come or for those that are there.
+/// A number of a brush that a user sets, for new strokes or for existing ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BrushNumber {
     Size,
@@ -18,7 +18,7 @@ pub enum BrushNumber {
 }
 
 impl BrushNumber {
-    /// What the hand may set it to.
+    /// The range in which a user may set it.
     pub fn range(self) -> Range {
         match self {
             BrushNumber::Size => Brush::HAND_SIZE,
@@ -46,12 +46,12 @@ impl BrushNumber {
 
 /// One number of a brush's habits.
 pub struct Setting {
-    /// The object of a brush's that documents keep it in; empty: the brush's own.
+    /// The object of a brush that holds it in documents; empty: the brush itself.
     pub group: &'static str,
-    /// In documents.
+    /// Its name in documents.
     pub name: &'static str,
     pub range: Range,
-    /// In the window, and what it means there.
+    /// Its name in the window, and its meaning there.
     pub label: &'static str,
     pub hint: &'static str,
     get: fn(&Brush) -> f32,
@@ -71,7 +71,7 @@ impl Setting {
     }
 }
 
-/// The objects that the settings lie in, as documents call them, in their order.
+/// The objects that hold the settings, by their names in documents, in order.
 pub const GROUPS: [&str; 6] = ["", "rate", "offset", "hand", "cycle", "pickup"];
 
 macro_rules! settings {

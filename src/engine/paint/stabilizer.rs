@@ -10,13 +10,14 @@ use crate::surface::{Operator, Scene};
 
 /// The weight of a [`Stabilizer::Average`] is the share of the past that is left after the pen has moved this many px.
 const WEIGHED_PX: f32 = 10.0;
-/// A greater weight would keep the line where it began.
+/// A greater weight would hold the line at its start.
 const MOST_WEIGHT: f32 = 0.99;
-/// The string is pulled in steps no longer than this, so that the line does not depend on how densely the pen reports.
+/// The string is pulled in steps no longer than this, so that the line does not depend on the rate of the pen's
+/// reports.
 const PULL_PX: f32 = 1.0;
 /// On a surface the lag of an average is measured in steps no longer than this.
 const MEASURED_PX: f32 = 4.0;
-/// The most steps between two samples: a pen that leaps leaves a straighter line.
+/// The most steps between two samples: a pen that jumps leaves a straighter line.
 const MOST_PULLS: f32 = 4096.0;
 
 /// The stabilised pen: a line that follows the pen.
@@ -30,11 +31,11 @@ pub struct StabilizedPen {
 }
 
 impl StabilizedPen {
-    /// Its lengths are px of the canvas.
+    /// With lengths in px of the canvas.
     pub fn new(stabilizer: Stabilizer) -> Self {
         Self { stabilizer, measured: None, line: None }
     }
-    /// The stabiliser of a brush; its lengths are px of what the brush measures them on.
+    /// The stabiliser of a brush, with lengths in px of what the brush measures them on.
     pub fn of_brush(brush: &Brush, operator: Operator, scene: &Scene) -> Self {
         let measured = SurfaceMeasure::of(scene, operator).filter(|_| brush.stabilizer_on == Measure::Surface);
         Self { measured, ..Self::new(brush.stabilizer) }
@@ -56,7 +57,7 @@ impl StabilizedPen {
             Stabilizer::String { length_px } => self.pulled(end, last.at, pen.at, length_px),
             Stabilizer::Lag { secs } => delayed(end, &last, &pen, secs),
         };
-        // A hostile leap may overflow f32: the line stays.
+        // A hostile jump may overflow f32: the line stays.
         let at = if at.is_finite() { at } else { end };
         self.line = Some((at, pen));
         (at != end).then_some(Sample { at, ..pen })
@@ -64,20 +65,20 @@ impl StabilizedPen {
     /// The rest of the way to where the pen lifts; `None` if the line is there already.
     pub fn finish(&mut self) -> Option<Sample> {
         let (end, last) = self.line.take()?;
-        // A hand that was waited for is waited for no more.
+        // A line that lags in time ends where it is.
         let is_done = end == last.at || matches!(self.stabilizer, Stabilizer::Lag { .. });
         (!is_done).then_some(last)
     }
-    /// How long a px in a direction is, on what lengths are measured on.
+    /// The length of a px in a direction, on what lengths are measured on.
     fn stretch(&self, at: Vec2, way: Vec2) -> f32 {
         self.measured.as_ref().map_or(1.0, |measured| measured.stretch(at, way))
     }
-    /// In how many parts the pen's way is looked at, each at most so long, px.
+    /// The number of parts into which the pen's path is divided, each at most this long, px.
     fn parts(from: Vec2, to: Vec2, longest_px: f32) -> usize {
         (from.distance(to) / longest_px).ceil().max(1.0).min(MOST_PULLS) as usize
     }
-    /// The end of a line that trails behind a pen; on a surface the lag is as long there as elsewhere, and shorter as
-    /// it is seen.
+    /// The end of a line that trails behind a pen; on a surface the lag has the same length everywhere, and looks
+    /// shorter where the surface is tilted.
     fn trailed(&self, end: Vec2, from: Vec2, to: Vec2, weight: f32) -> Vec2 {
         let parts = if self.measured.is_some() { Self::parts(from, to, MEASURED_PX) } else { 1 };
         let at = |part: usize| from.lerp(to, part as f32 / parts as f32);
@@ -98,10 +99,10 @@ impl StabilizedPen {
     }
 }
 
-/// The end of a line that follows a pen from `from` to `to`: every px it makes up a share 1/ℓ of what it lags behind,
-/// e^(−10/ℓ) = weight. Exact for a pen that moves straight, so that samples between change nothing.
+/// The end of a line that follows a pen from `from` to `to`: every px it makes up 1/ℓ of its lag, e^(−10/ℓ) = weight.
+/// Exact for a pen that moves straight, so that samples between change nothing.
 ///
-/// * `stretch`: how many px of what is measured a px of the way is long.
+/// * `stretch`: the measured length of a px of the path.
 fn trailed(end: Vec2, (from, to): (Vec2, Vec2), stretch: f32, weight: f32) -> Vec2 {
     let weight = weight.max(0.0).min(MOST_WEIGHT);
     let way = to - from;
@@ -109,13 +110,13 @@ fn trailed(end: Vec2, (from, to): (Vec2, Vec2), stretch: f32, weight: f32) -> Ve
     if lag <= 0.0 || length <= 0.0 {
         return if lag <= 0.0 { to } else { end };
     }
-    // Its final distance behind the pen.
+    // Its final lag behind the pen.
     let behind = way / length * lag;
     to - behind + (end - from + behind) * (-length / lag).exp()
 }
 
-/// The end of a line that comes after a pen as time passes. Exact for a pen that moves evenly, so that samples
-/// between change nothing.
+/// The end of a line that follows a pen in time. Exact for a pen that moves evenly, so that samples between change
+/// nothing.
 fn delayed(end: Vec2, from: &Sample, to: &Sample, secs: f32) -> Vec2 {
     let elapsed = to.time_secs - from.time_secs;
     let is_late = secs > 0.0 && elapsed > 0.0;

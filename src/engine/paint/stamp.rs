@@ -22,13 +22,13 @@ pub struct StampCache {
     grains: Mutex<Vec<([u32; 2], Arc<Texture>)>>,
 }
 
-/// Cached stamps of one picture: the steps of one brush whose softness varies, and a few of others.
+/// Cached stamps of one picture: the steps of a brush whose softness varies, and a few others.
 const KEPT: usize = STEPS as usize + 8;
 /// Softnesses in between are mixed from the two nearest of these steps; the difference to the true blur is invisible.
 pub(in crate::paint) const STEPS: u32 = 12;
 
 impl StampCache {
-    /// The textures made of the picture as grain, by levels.
+    /// The textures made from the picture as grain, by levels.
     pub fn grains(&self) -> &Mutex<Vec<([u32; 2], Arc<Texture>)>> {
         &self.grains
     }
@@ -77,7 +77,7 @@ impl TipStamp {
     }
 }
 
-/// Opaque and grey throughout: a picture of coverage.
+/// Opaque and grey everywhere: a picture of coverage.
 fn is_grey(level: &MipLevel) -> bool {
     level.texels.iter().all(|&[r, g, b, a]| r == g && g == b && a == 255)
 }
@@ -102,7 +102,7 @@ fn softened(level: &MipLevel, is_colored: bool, sigma: f32) -> Picture {
     Picture::srgb8(size, straight.collect()).unwrap_or_else(transparent)
 }
 
-/// A transparent picture in place of one that cannot be made: nothing is painted.
+/// A transparent picture instead of one that cannot be made: nothing is painted.
 fn transparent() -> Picture {
     let texels: Arc<[[u8; 4]]> = Arc::new([[0; 4]]);
     Picture { size: Size::new(1, 1), texels: crate::raster::picture::Texels::Srgb8(texels), deep: None, encoded: None }

@@ -24,8 +24,8 @@ use crate::surface::objects::CanvasPart;
 use dabs::{StrokeDabs, TileReach};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// One stroke of a stroke layer. It is never changed, so the tiles it touches are cached with it, and its dabs as long
-/// as those of all strokes stay below a ceiling.
+/// One stroke of a stroke layer. It is never changed, so the tiles it touches are cached with it, and so are its dabs
+/// as long as those of all strokes stay below a ceiling.
 #[derive(Clone)]
 pub struct Stroke {
     brush: Brush,
@@ -34,12 +34,12 @@ pub struct Stroke {
     samples: Vec<Sample>,
     /// Where it may paint; absent: everywhere.
     selection: Option<StrokeSelection>,
-    /// Where it lies, if elsewhere than its layer.
+    /// Its home, if it differs from its layer's.
     home: Option<Arc<StrokeHome>>,
     found: Arc<Mutex<StrokeCache>>,
 }
 
-/// What was computed of a stroke on a canvas.
+/// What was computed for a stroke on a canvas.
 #[derive(Default)]
 struct StrokeCache {
     stroke_dabs: Option<(Arc<StrokeDabs>, CacheReservation)>,
@@ -49,7 +49,7 @@ struct StrokeCache {
 }
 
 impl Stroke {
-    /// Readings of one stroke: over an hour of a pen that is read 240 times a second.
+    /// The most samples of a stroke: over an hour of a pen that is read 240 times a second.
     pub const MOST_SAMPLES: usize = 1_000_000;
 
     pub fn new(brush: Brush, operator: Operator, color: Color, samples: Vec<Sample>) -> Self {
@@ -59,15 +59,15 @@ impl Stroke {
     pub fn within(self, selection: Option<StrokeSelection>) -> Self {
         Self { selection, ..self }
     }
-    /// The same stroke, which is shown as it is, on another home.
+    /// The same stroke with the same appearance, on another home.
     pub fn on(self, home: Option<Arc<StrokeHome>>) -> Self {
         Self { home, ..self }
     }
-    /// A copy on a home that stands elsewhere.
+    /// A copy on a home in another position.
     pub fn moved_home(&self, home: Arc<StrokeHome>) -> Self {
         Self { home: Some(home), ..self.clone() }
     }
-    /// Its own home, where that differs from its layer's.
+    /// Its own home, if that differs from its layer's.
     pub fn home(&self) -> Option<&Arc<StrokeHome>> {
         self.home.as_ref()
     }
@@ -77,7 +77,7 @@ impl Stroke {
     pub fn operator(&self) -> Operator {
         self.operator
     }
-    /// The colour of one-colour tips; of a stamp only its alpha counts.
+    /// The colour of one-colour tips; for a stamp only its alpha counts.
     pub fn color(&self) -> Color {
         self.color
     }
@@ -105,7 +105,7 @@ impl Stroke {
         let stroke_dabs = self.stroke_dabs(scene);
         self.known_support(scene).unwrap_or_else(|| Arc::new(stroke_dabs.support()))
     }
-    /// The stroke's dabs on a canvas, computed again where they were not cached.
+    /// The stroke's dabs on a canvas, computed again if they were not cached.
     fn stroke_dabs(&self, scene: &Scene) -> Arc<StrokeDabs> {
         if let Some((stroke_dabs, _)) =
             self.found().stroke_dabs.as_ref().filter(|(stroke_dabs, _)| stroke_dabs.is_on(scene))
@@ -121,7 +121,7 @@ impl Stroke {
     fn known_support(&self, scene: &Scene) -> Option<Arc<TileReach>> {
         self.found().support.clone().filter(|support| support.is_on(scene))
     }
-    /// About how many dabs it has at most, without laying them: as densely as dabs follow each other at all.
+    /// Roughly the most dabs it can have, without placing them: at the densest possible spacing.
     fn most_dabs(&self, scene: &Scene) -> usize {
         if let Some(support) = self.known_support(scene) {
             return support.dabs;
@@ -132,7 +132,7 @@ impl Stroke {
             self.samples.last().map_or(0.0, |last| last.time_secs) - self.samples.first().map_or(0.0, |s| s.time_secs);
         dab_walker::most_dabs(&self.brush, way_px, secs)
     }
-    /// Whether its dabs on a canvas are kept.
+    /// Whether its dabs on a canvas are cached.
     fn is_laid(&self, scene: &Scene) -> bool {
         self.found().stroke_dabs.as_ref().is_some_and(|(stroke_dabs, _)| stroke_dabs.is_on(scene))
     }
@@ -142,9 +142,9 @@ impl Stroke {
 }
 
 impl StrokeCache {
-    /// Keeps where a stroke lies, and its dabs if there is room.
+    /// Caches the tiles of a stroke, and its dabs if there is room.
     fn keep(&mut self, stroke_dabs: &Arc<StrokeDabs>) {
-        // Gives back what it held before it asks.
+        // Releases what it held before it reserves again.
         self.stroke_dabs = None;
         self.support = Some(Arc::new(stroke_dabs.support()));
         self.stroke_dabs = CacheReservation::try_new(stroke_dabs.bytes()).map(|kept| (stroke_dabs.clone(), kept));
@@ -152,7 +152,7 @@ impl StrokeCache {
 }
 
 impl Stroke {
-    /// Paints the stroke, whose dabs are given, over a tile. Flow applies per dab; opacity caps the whole stroke.
+    /// Paints the stroke with the given dabs over a tile. Flow applies per dab; opacity caps the whole stroke.
     fn paint(
         &self,
         stroke_dabs: &StrokeDabs,
@@ -181,7 +181,7 @@ impl Stroke {
                 }
             }
             Some(sheet) => {
-                // Which dabs come near is known of the canvas.
+                // Which dabs are near is known for the canvas only.
                 let front = scene.front();
                 for dab in stroke_dabs.on_tile(at) {
                     let near = sheet.blocks_under(at, &stroke_dabs.place(*dab, &front).support().blocks(at));
@@ -204,14 +204,14 @@ impl Stroke {
     }
 }
 
-/// One tile of a stroke layer, the first stroke lowest. `None` where it is transparent.
+/// One tile of a stroke layer, the first stroke lowest. `None` if it is transparent.
 ///
 /// Each stroke accumulates in f32; the tile is quantised once.
 pub fn render_tile(strokes: &[Arc<Stroke>], scene: &Scene, at: TileAt) -> Option<Tile> {
     render_pixels(strokes, scene, at)?.quantised()
 }
 
-/// The same before it is quantised; `None` where no stroke touches the tile.
+/// The same before it is quantised; `None` if no stroke touches the tile.
 pub fn render_pixels(strokes: &[Arc<Stroke>], scene: &Scene, at: TileAt) -> Option<PlanarTile> {
     let front = scene.front();
     let mut here = strokes.iter().filter(|s| s.touches(&front, at)).peekable();

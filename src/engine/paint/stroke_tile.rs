@@ -29,7 +29,7 @@ pub struct StrokeTile {
 #[derive(Clone)]
 struct PaintSheet {
     paint: Paint,
-    /// M: which share of each pixel the dabs have reached (`rim`).
+    /// M: the share of each pixel that the dabs have reached (`rim`).
     reach: Box<[f32; TILE_AREA]>,
 }
 
@@ -44,34 +44,34 @@ enum Paint {
 /// A row of pixels that a dab covers.
 #[derive(Clone, Copy)]
 pub struct CoveredRow<'r> {
-    /// How much of each pixel, `[0, 1]`; no more than the share.
+    /// The coverage of each pixel, `[0, 1]`; no more than the share.
     pub coverage: &'r [f32],
-    /// p: which share of each pixel the dab reaches at all, `[0, 1]`.
+    /// p: the share of each pixel that the dab reaches at all, `[0, 1]`.
     pub shares: &'r [f32],
 }
 
 /// What one dab adds to a stroke tile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DabPaint {
-    /// Coverage that it adds where its footprint is 1, `[0, 1]`.
+    /// The coverage that it adds where its footprint is 1, `[0, 1]`.
     pub flow: f32,
     /// The greatest coverage that it gives a pixel, `[0, 1]`; above it only colours mix.
     pub ceiling: f32,
-    /// Opaque; `None` where a stamp brings its own.
+    /// Opaque; `None` if a stamp has its own.
     pub color: Option<Color>,
 }
 
 /// How a stroke tile is blended with the pixels of its layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrokeBlend {
-    /// The colour of one-colour tiles; of others only its alpha counts.
+    /// The colour of one-colour tiles; for others only its alpha counts.
     pub color: Color,
-    /// Of the whole stroke, `[0, 1]`.
+    /// For the whole stroke, `[0, 1]`.
     pub opacity: f32,
     pub mode: BlendMode,
     /// Erases instead of painting.
     pub erases: bool,
-    /// Paints only where there is paint, and keeps its coverage.
+    /// Paints only on existing paint, and keeps its coverage.
     pub keeps_alpha: bool,
 }
 
@@ -144,14 +144,14 @@ impl StrokeTile {
     pub fn under(self, grain: Arc<GrainTile>) -> Self {
         Self { grain: Some(grain), dark: Some(self.sheet.clone()), ..self }
     }
-    /// Coverage and reach of every pixel, row by row, of a tile of one colour without grain.
+    /// Coverage and reach of every pixel, row by row, for a tile of one colour without grain.
     pub fn plain(&mut self) -> Option<(&mut [f32; TILE_AREA], &mut [f32; TILE_AREA])> {
         match &mut self.sheet.paint {
             Paint::OneColor(coverage) if self.grain.is_none() => Some((coverage, &mut self.sheet.reach)),
             _ => None,
         }
     }
-    /// Coverage of every pixel, row by row, where it is of one colour.
+    /// Coverage of every pixel, row by row, if it has one colour.
     pub fn coverage(&mut self) -> Option<&mut [f32; TILE_AREA]> {
         self.join();
         match &mut self.sheet.paint {
@@ -159,12 +159,12 @@ impl StrokeTile {
             Paint::Colors(_) => None,
         }
     }
-    /// Makes one of the two parts of each pixel: no more can be painted.
+    /// Merges the two parts of each pixel: nothing more can be painted.
     fn join(&mut self) {
         let Some((grain, mut dark)) = self.grain.take().zip(self.dark.take()) else { return };
         let is_one_color = matches!(self.sheet.paint, Paint::OneColor(_));
         for (i, (light, dark)) in self.sheet.planes().into_iter().zip(dark.planes()).enumerate() {
-            // Four planes a row of a tile of colours, one plane of a tile of one.
+            // Four planes a row for a tile of colours, one plane for a tile of one colour.
             let shares = if is_one_color { &grain.share[..] } else { &grain.share[i / 4 * TILE..][..TILE] };
             light.iter_mut().zip(dark).zip(shares).for_each(|((a, b), share)| *a = *b + (*a - *b) * share);
         }
@@ -195,7 +195,7 @@ impl StrokeTile {
             sheet.stamp(start, &part[..stamped.len().min(TILE)], paint);
         }
     }
-    /// Removes what lies outside a part of the canvas; no more can be painted.
+    /// Removes what lies outside a part of the canvas; nothing more can be painted.
     pub fn limit_to(&mut self, part: &CanvasPart, at: TileAt) {
         if part.is_whole() {
             return;
@@ -208,8 +208,8 @@ impl StrokeTile {
             }
         }
     }
-    /// The same on what stands for a tile on a sheet: there the other population's piece of surface counts.
-    /// `selected`: of the tile.
+    /// The same on what represents a tile on a sheet: there the other population's piece of surface counts. `selected`:
+    /// for the tile.
     pub fn limit_on_sheet(&mut self, part: &CanvasPart, selected: Option<&CoverageTile>, sheet: &SheetOf, at: TileAt) {
         let Some(contours) = sheet.contours().on(at) else { return };
         let corner = at.rect();
@@ -232,7 +232,7 @@ impl StrokeTile {
             }
         }
     }
-    /// Keeps of each pixel the share that is selected; no more can be painted.
+    /// Keeps the selected share of each pixel; nothing more can be painted.
     pub fn select(&mut self, selected: &CoverageTile) {
         if selected.is_whole() {
             return;
@@ -250,7 +250,7 @@ impl StrokeTile {
             }
         }
     }
-    /// Lays the dried paint on the pixels of a tile.
+    /// Blends the finished paint with the pixels of a tile.
     pub fn blend_over(mut self, pixels: &mut PlanarTile, at: TileAt, manner: StrokeBlend) {
         self.join();
         if manner.erases {
@@ -267,7 +267,7 @@ impl StrokeTile {
             pixels.blend(mix, TilePaint::Planar(&paint), &TileCoverage::FULL);
         }
     }
-    /// Source over. Of stamps only the colour's alpha counts.
+    /// Source over. For stamps only the colour's alpha counts.
     fn blend_over_normal(&self, pixels: &mut PlanarTile, color: Color, opacity: f32) {
         match &self.sheet.paint {
             Paint::OneColor(coverage) => {

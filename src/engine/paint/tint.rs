@@ -31,7 +31,7 @@ pub fn of(brush: &Brush, color: Color, inputs: &DabInputs) -> Color {
     Color { r, g, b, ..color }
 }
 
-/// The same colour at the lightness (HSL) that drives it, of the same HSL saturation.
+/// The same colour at the driven lightness (HSL), with the same HSL saturation.
 fn lightened([h, s, v]: [f32; 3], dynamics: &Dynamics, inputs: &DabInputs) -> [f32; 3] {
     let share = |part: f32, whole: f32| if whole > 0.0 { part / whole } else { 0.0 };
     let lightness = v * (1.0 - 0.5 * s);
@@ -59,9 +59,9 @@ fn hsv(color: Color) -> [f32; 3] {
     [(sixths / 6.0).rem_euclid(1.0), range / most, most]
 }
 
-/// The inverse; the hue may lie any number of turns away.
+/// The inverse; the hue may be any number of turns.
 fn rgb([hue, saturation, value]: [f32; 3]) -> [f32; 3] {
-    // How far from each primary, in sixths of a turn.
+    // Distance from each primary, in sixths of a turn.
     [5.0, 3.0, 1.0].map(|primary| {
         let k = (primary + 6.0 * hue).rem_euclid(6.0);
         value * (1.0 - saturation * k.min(4.0 - k).max(0.0).min(1.0))
