@@ -90,7 +90,7 @@ impl PlacedDab<'_> {
             stroke_tile.stamp(part.start_of(span), &scratch.stamped[part.range(span)], paint);
         }
     }
-    /// The round tip over a part; D over it and the pixels around it is in `scratch.deformed`.
+    /// The round tip over a part; D over the part and the pixels around it is in `scratch.deformed`.
     fn cover_round(&self, part: &TouchedBlocks, scratch: &mut DabScratch, (covered, shares): (&mut [f32], &mut [f32])) {
         let DabScratch { deformed, row, .. } = scratch;
         let tip = RoundTip::plain(&self.dab);
@@ -163,7 +163,8 @@ impl PlacedDab<'_> {
             self.read_stamp(above, next, part, scratch, mixed);
         }
     }
-    /// `map`: to this stamp's texels from what is in `scratch.deformed`. `mix`: what was there with what is read.
+    /// `map`: to this stamp's texels from what is in `scratch.deformed`. `mix`: combines the old values with those
+    /// read.
     fn read_stamp(
         &self,
         stamp: &TipStamp,

@@ -1,5 +1,5 @@
-//! The round tip over rows of pixels. Pixels are sorted into zones, and each zone is computed no more precisely than it
-//! needs. Floor 3. The loops over rows are in `rows`, the profile is in `profile`, D in `surface`.
+//! The round tip over rows of pixels. Pixels are sorted into zones, and each zone is computed no more precisely than
+//! necessary. Floor 3. The loops over rows are in `rows`, the profile is in `profile`, D in `surface`.
 
 mod rows;
 
@@ -14,7 +14,7 @@ use crate::paint::stroke_tile::raise;
 use crate::raster::TILE;
 use std::ops::Range;
 
-/// Pixels that are judged together. Rows of blocks are whole multiples of them.
+/// Pixels that are classified together. Rows of blocks are whole multiples of them.
 const CHUNK: usize = 8;
 
 /// A round dab with everything precomputed that its rows share.
@@ -23,13 +23,13 @@ pub(super) struct RoundTip {
     at: Vec2,
     per_radius: f32,
     profile: RoundProfile,
-    /// Between which radii coverage falls off, and what bounds half the width of the profile's box.
+    /// The radii between which coverage falls off, and the bound of half the width of the profile's box.
     falloff: (f32, f32),
     half_width: (f32, f32),
     rim: Rim,
     /// Nothing within this distance is on the stroke's edge.
     inner: f32,
-    /// Pixels whose widths' squares add up to less, in radii, count whole: the stroke's edge is no edge to them, and
+    /// Pixels whose squared widths add up to less, in radii, count whole: the stroke's edge does not affect them, and
     /// the tip fills them.
     soft: f32,
     pub(super) flow: f32,
@@ -37,7 +37,7 @@ pub(super) struct RoundTip {
     pub(super) ceiling: f32,
 }
 
-/// What a dab is added to: the coverage of a row's pixels, and which share of each was reached.
+/// What a dab is added to: the coverage of a row's pixels, and the share of each that was reached.
 pub(super) struct RowPaint<'r> {
     pub coverage: &'r mut [f32],
     pub reach: &'r mut [f32],
@@ -53,18 +53,18 @@ pub(super) struct RowZones {
     /// |J|²: the sum of both squared widths of the pixel, in radii.
     wide: [f32; TILE],
     zones: [u32; TILE],
-    /// What a pixel's distance says before its widths are known: `BEYOND`, `WITHIN` or nothing.
+    /// The zone by distance alone, before the pixel's widths are known: `BEYOND`, `WITHIN` or nothing.
     near: [u32; TILE],
 }
 
-/// The zone that holds a pixel's box wholly, as bits; none where the box lies in several zones or is not a number.
+/// The zone that contains a pixel's box, as bits; none if the box lies in several zones or is NaN.
 const BEYOND: u32 = 1;
 const WITHIN: u32 = 2;
 const FALLOFF: u32 = 4;
-/// Beside the zone: the pixel counts whole.
+/// In addition to the zone: the pixel counts whole.
 const SOFT: u32 = 8;
 
-/// Sum of the squares of a pixel's widths, in radii, below which its second dimension does not show in the falloff.
+/// Sum of a pixel's squared widths, in radii, below which its second dimension does not matter in the falloff.
 const NARROW_SQUARED: f32 = 2.0 / (12.0 * 12.0);
 
 /// Added to squared distances, px²: the centre itself has no direction toward it.
@@ -98,12 +98,12 @@ impl RoundTip {
             ceiling: dab.ceiling,
         }
     }
-    /// The same footprint, of which coverage itself is asked.
+    /// The same footprint with full flow and ceiling: gives plain coverage.
     pub(super) fn plain(dab: &Dab) -> Self {
         Self { flow: 1.0, ceiling: 1.0, ..Self::new(dab) }
     }
-    /// Of a row of `n` pixels from the pixel at (x, y) on, the chunks that an unbent dab may reach: all others lie
-    /// beyond it as [`RoundTip::zone`] tells. Small dabs touch few rows of their blocks.
+    /// The chunks of a row of `n` pixels from the pixel at (x, y) on that an unbent dab may reach: all others lie
+    /// beyond it according to [`RoundTip::zone`]. Small dabs touch few rows of their blocks.
     pub(super) fn flat_chunks(&self, x: i32, y: i32, n: usize) -> Range<usize> {
         // Distances are rounded.
         const ROUNDING: (f32, f32) = (1.0005, 0.05);
@@ -115,7 +115,7 @@ impl RoundTip {
         }
         let chord = (limit * limit - dy * dy).sqrt();
         let middle = self.at.x - (x as f32 + 0.5);
-        // What is no number is the whole row.
+        // NaN gives the whole row.
         let place = |v: f32, otherwise: usize| if v.is_nan() { otherwise } else { (v.max(0.0) as usize).min(n) };
         let (first, last) = (place((middle - chord).floor(), 0), place((middle + chord).ceil() + 1.0, n));
         first / CHUNK * CHUNK..last.next_multiple_of(CHUNK).min(n)
@@ -131,29 +131,30 @@ impl RoundTip {
         let first = if start > 0.0 { start } else { 0.0 };
         let beyond = if inner > self.falloff.1 { BEYOND } else { 0 };
         let within = if outer < start { WITHIN } else { 0 };
-        // There a pixel counts as narrow across the radius: of a wider one that is more than a third of a byte.
+        // In the falloff a pixel counts as narrow across the radius: for a wider one that is off by more than a third
+        // of a byte.
         let is_narrow = widest < NARROW_SQUARED;
         let falls = if (inner > first) & (outer < end) & is_narrow { FALLOFF } else { 0 };
-        // What is thinner than a pixel reaches a part of it wherever it lies.
+        // A dab thinner than a pixel reaches only a part of it anywhere.
         if self.thin < 1.0 { beyond } else { beyond | within | falls }
     }
-    /// Whether pixels count whole whose widths' squares add up to `wide`, as a bit beside the zone.
+    /// Whether pixels whose squared widths add up to `wide` count whole, as a bit in addition to the zone.
     #[inline(always)]
     fn softness(&self, wide: f32) -> u32 {
         if wide < self.soft { SOFT } else { 0 }
     }
-    /// Of pixels at most so long, px: the squares of the distances beyond which and within which all lie in that zone.
+    /// For pixels at most this long, px: the squared distances beyond which and within which all are in that zone.
     #[inline(always)]
     fn sure(&self, pixel: f32) -> (f32, f32) {
         // Distances are rounded.
         const ROUNDING: (f32, f32) = (1.0005, 0.05);
         let square = pixel * pixel * (self.per_radius * self.per_radius);
         let beyond = (self.falloff.1 + self.profile.half_width(square)) / self.per_radius * ROUNDING.0 + ROUNDING.1;
-        // Both widths of a pixel are so long at most.
+        // Both widths of a pixel are at most this long.
         let half = self.half_width.0 + self.half_width.1 * 2.0 * square;
         let within = (self.falloff.0 - half) / self.per_radius / ROUNDING.0 - ROUNDING.1;
         let is_sure = self.thin >= 1.0 && within > 0.0;
-        // What is no number leaves nothing out.
+        // NaN excludes nothing.
         (beyond * beyond, if is_sure { within * within } else { 0.0 })
     }
     /// A pixel at p from the centre, J's columns `across` and `along`; canvas px. Gives r, |Jᵀ p|², |J|² and the zone.
@@ -167,28 +168,28 @@ impl RoundTip {
         let widest = (across + (along.0 * along.0 + along.1 * along.1)) * square;
         (r, (a * a + b * b) * square * square, widest, self.zone(r, widest) | self.softness(widest))
     }
-    /// a ← a + f (c − a), f = flow · F, up to the ceiling c, where the dab reaches whole pixels.
+    /// a ← a + f (c − a), f = flow · F, up to the ceiling c, for dabs that reach whole pixels.
     #[inline(always)]
     fn raise(&self, coverage: &mut f32, mean: f32) {
         let f = self.flow * mean;
-        // Comparisons turn NaN into nothing, and rounding must not leave the range.
+        // Comparisons turn NaN into 0, and rounding must not leave the range.
         let f = if f > 0.0 { f } else { 0.0 };
         let f = if f < 1.0 { f } else { 1.0 };
         let room = self.ceiling - *coverage;
         *coverage += f * if room > 0.0 { room } else { 0.0 };
     }
-    /// On the rim: [`raise`] of the share that the stroke may reach. The squares are the pixel's widths along the
+    /// On the rim: [`raise`] with the share that the stroke may reach. The squares are the pixel's widths along the
     /// radius and across it.
     #[inline(always)]
     fn raise_share(&self, coverage: &mut f32, reach: &mut f32, r: f32, width_squared: f32, across_squared: f32) {
         let mean = self.profile.mean_over(r, width_squared, across_squared);
         let share = self.rim.share(r, width_squared.sqrt());
-        // Comparisons turn NaN into nothing.
+        // Comparisons turn NaN into 0.
         let mean = if mean > 0.0 { mean } else { 0.0 };
         let covered = if mean < share { mean } else { share };
         raise(coverage, reach, self.flow * self.thin * covered, self.thin * share, self.ceiling);
     }
-    /// The same of a pixel that counts whole, to the bit: its share is 1, and the tip fills it.
+    /// The same, to the bit, for a pixel that counts whole: its share is 1, and the tip fills it.
     #[inline(always)]
     fn raise_whole(&self, coverage: &mut f32, reach: &mut f32, r: f32, width_squared: f32, across_squared: f32) {
         let mean = self.profile.mean_over_narrow(r, width_squared, across_squared);
@@ -198,8 +199,8 @@ impl RoundTip {
         *coverage += g * if room > 0.0 { room } else { 0.0 };
         *reach = if g > 0.0 { 1.0 } else { *reach };
     }
-    /// Adds to judged pixels of a row, chunks of one zone at a time: only where a pixel's box lies across a zone's
-    /// border does its mean take a root and a division more, beyond the rim it takes nothing.
+    /// Adds to classified pixels of a row, chunks of one zone at a time: the mean takes an extra root and division only
+    /// if a pixel's box crosses a zone's border, and beyond the rim it costs nothing.
     #[inline(always)]
     fn add(&self, row: &RowZones, pixels: Range<usize>, paint: RowPaint) {
         let RowPaint { coverage, reach } = paint;

@@ -15,31 +15,32 @@ use crate::surface::support::DabExtent;
 /// A tip with two axes; the longer one is the diameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TipShape {
-    /// `ratio`: of the shorter axis to the longer, `(0, 1]`.
+    /// `ratio`: the shorter axis over the longer, `(0, 1]`.
     Ellipse { ratio: f32 },
     /// A rectangle, the longer axis along x before it is turned.
     Square { ratio: f32 },
 }
 
-/// Half of the least width that a dab has, px: what is thinner is fainter instead.
+/// Half of a dab's least width, px: a thinner dab is fainter instead.
 const LEAST_HALF_PX: f32 = 0.75;
 
 impl TipShape {
-    /// As long and as thin as what drives a dab has made it.
+    /// With the length and width that the dab's inputs gave it.
     pub fn of_dab(self, dab: &Dab) -> Self {
         match self {
             TipShape::Ellipse { .. } => TipShape::Ellipse { ratio: dab.ratio },
             TipShape::Square { .. } => TipShape::Square { ratio: dab.ratio },
         }
     }
-    /// The shorter half-axis relative to the longer one, as a dab is drawn; and what the dab's flow loses for it.
+    /// The shorter half-axis relative to the longer one, as a dab is drawn; and the factor by which the dab's flow is
+    /// reduced.
     fn ratio(self, radius: f32) -> (f32, f32) {
         let (TipShape::Ellipse { ratio } | TipShape::Square { ratio }) = self;
         let ratio = ratio.max(*Tip::RATIO.start()).min(1.0);
         let drawn = ratio.max((LEAST_HALF_PX / radius).min(1.0));
         (drawn, ratio / drawn)
     }
-    /// What a dab reaches of a pixel's width: below 1 where it is thinner than a pixel.
+    /// The ratio of a pixel's width that a dab reaches: below 1 if it is thinner than a pixel.
     pub fn thinness(self, dab: &Dab) -> f32 {
         self.ratio(dab.radius).1
     }
@@ -66,13 +67,13 @@ impl TipShape {
     }
 }
 
-/// D of a span's pixels, of one more at each end, and of the rows above and below, in tip space; (x, y) each.
+/// D at a span's pixels, at one more at each end, and in the rows above and below, in tip space; (x, y) each.
 #[derive(Clone, Copy)]
 pub struct TipSpanNeighbours<'f> {
     pub above: (&'f [f32], &'f [f32]),
     pub row: (&'f [f32], &'f [f32]),
     pub below: (&'f [f32], &'f [f32]),
-    /// Which neighbours continue the surface, one a pixel of the span.
+    /// Which neighbours continue the surface, one for each pixel of the span.
     pub linked: &'f [u8],
     /// ∂/∂q where no neighbour does.
     pub flat: Mat2,
@@ -88,7 +89,7 @@ pub fn ellipse<P: Profile>(
     across: (f32, f32),
     along: (f32, f32),
 ) -> (f32, f32) {
-    // At the very centre there is no direction; the pixel beside it tells how wide this one is as well as any.
+    // At the exact centre there is no direction; the next pixel's width serves as well as any.
     let r2 = x * x + y * y + 1e-12;
     let (a, b) = (across.0 * x + across.1 * y, along.0 * x + along.1 * y);
     let (r, width_squared) = (r2.sqrt(), (a * a + b * b) / r2);
@@ -114,8 +115,8 @@ pub fn square<P: Profile>(
 }
 
 impl TipShape {
-    /// Coverage of each pixel of a span, in `[0, 1]`, and the share that the stroke may reach; where D is not a number,
-    /// none. `d`: in the tip space of this dab.
+    /// Coverage of each pixel of a span, in `[0, 1]`, and the share that the stroke may reach; 0 where D is NaN. `d`:
+    /// in the tip space of this dab.
     pub fn row(self, falloff: Falloff, dab: &Dab, d: TipSpanNeighbours, coverage: &mut [f32], shares: &mut [f32]) {
         let Dab { hardness, softness, rim, thin, .. } = *dab;
         let out = (coverage, shares);
@@ -192,7 +193,7 @@ mod tests {
     fn dab(radius: f32, rotation_deg: f32, hardness: f32, softness: f32) -> Dab {
         Dab { rotation_rad: rotation_deg.to_radians(), hardness, softness, ..Dab::plain(vec2(50.0, 60.0), radius) }
     }
-    /// Coverage at a place of a flat canvas.
+    /// Coverage at a point of a flat canvas.
     fn at(shape: TipShape, dab: &Dab, place: Vec2) -> f32 {
         let map = shape.tip_from_canvas(dab);
         let (p, across, along) = (map.transform_point2(place), map.matrix2.x_axis, map.matrix2.y_axis);

@@ -25,7 +25,7 @@ impl SoftenedStamps {
         }
         SoftenedStamps::One(source.stamp(softness.max(0.0).min(1.0)))
     }
-    /// The stamp next below a softness, and the one above with its share where the dab lies between them.
+    /// The stamp just below a softness, and the one above with its weight if the dab is between them.
     pub fn at(&self, softness: f32) -> (&TipStamp, Option<(&TipStamp, f32)>) {
         match self {
             SoftenedStamps::One(stamp) => (stamp, None),

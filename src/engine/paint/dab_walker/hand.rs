@@ -1,14 +1,14 @@
-//! The pen as a stroke reads it: where it is, how fast it came, how the hand shakes.
+//! The pen as a stroke reads it: its position, its speed, and the tremor of the hand.
 //! Floor 3.
 
 use crate::math::{Vec2, hash};
 use crate::paint::brush::Brush;
 use crate::paint::habits::Hand;
 
-/// Within this time a speed has come two thirds of the way to a new one: single readings of a pen jump.
+/// Within this time a speed covers two thirds of the way to a new one: single readings of a pen jump.
 const SPEED_SECS: f32 = 0.05;
 
-/// The hand at one place of the curve.
+/// The hand at one point of the curve.
 #[derive(Clone, Copy)]
 pub(super) struct CurvePoint {
     pub at: Vec2,
@@ -17,7 +17,7 @@ pub(super) struct CurvePoint {
     pub px_per_sec: f32,
     /// Averaged over each of the hand's two times, px a second.
     pub paces: [f32; 2],
-    /// When the pen came here, and when it left.
+    /// When the pen arrived here, and when it left.
     pub secs: f32,
     pub until_secs: f32,
 }
@@ -28,7 +28,7 @@ impl CurvePoint {
         let (at, tilt) = (Vec2::ZERO, Vec2::ZERO);
         Self { at, pressure: 0.0, tilt, px_per_sec: 0.0, paces: [0.0; 2], secs, until_secs: secs }
     }
-    /// On the way from one place to another, at no time at rest.
+    /// Between two points, never at rest.
     pub fn lerp(self, to: CurvePoint, s: f32) -> CurvePoint {
         let between = |from: f32, to: f32| from + (to - from) * s;
         let secs = between(self.until_secs, to.secs);
@@ -44,7 +44,7 @@ impl CurvePoint {
     }
 }
 
-/// The hand's speeds, from where it was and when.
+/// The hand's speeds, from its positions and times.
 #[derive(Clone, Copy)]
 pub(super) struct Speeds {
     /// `None` until the clock has moved.
@@ -52,7 +52,7 @@ pub(super) struct Speeds {
     /// They begin at rest.
     paces: [f32; 2],
     over_secs: [f32; 2],
-    /// When they were last found, and how far the hand has come since.
+    /// When they were last computed, and how far the hand has moved since.
     at_secs: f32,
     since_px: f32,
 }
@@ -74,7 +74,7 @@ impl Speeds {
     pub fn px_per_sec(&self) -> f32 {
         self.px_per_sec.unwrap_or(0.0)
     }
-    /// The hand has come so far by then. Samples that share their time count together.
+    /// The hand has moved this far by then. Samples with the same time count together.
     pub fn moved(&mut self, px: f32, secs: f32) {
         self.since_px += px;
         let elapsed = secs - self.at_secs;
@@ -93,23 +93,23 @@ impl Speeds {
     }
 }
 
-/// How far an average over `time` has come to a new value after `elapsed`, `[0, 1]`.
+/// How far an average over `time` has moved to a new value after `elapsed`, `[0, 1]`.
 pub(super) fn settled(elapsed: f32, time: f32) -> f32 {
     if time > 0.0 { 1.0 - (-elapsed / time).exp() } else { 1.0 }
 }
 
-/// Four even numbers in `[0, 1)` added up: nearly normal, mean 0, variance 1, never beyond 3.5.
+/// Four uniform numbers in `[0, 1)` added up: nearly normal, mean 0, variance 1, never beyond 3.5.
 pub(super) fn gauss(seed: u32, channel: u32) -> f32 {
     let sum: f32 = (0..4).map(|i| hash::unit(seed, 4 * channel + i, 5)).sum();
     (sum - 2.0) * 3f32.sqrt()
 }
 
-/// A hand that shakes: it is read less often the more it does, and somewhere around where it is.
+/// A hand that shakes: the more it shakes, the less often it is read, at random positions around its own.
 #[derive(Clone, Copy)]
 pub(super) struct Tremor {
     seed: u32,
     deviation_px: f32,
-    /// Where the pen was last, and how far it has to come before it is read again.
+    /// Where the pen was last, and how far it has to move before it is read again.
     last: Option<Vec2>,
     left_px: f32,
     number: u32,
@@ -122,7 +122,7 @@ impl Tremor {
         let deviation_px = if deviation_px > 1e-3 && deviation_px < super::FAR_PX { deviation_px } else { 0.0 };
         Self { seed: hash::mix(brush.seed ^ 0x7e3a), deviation_px, last: None, left_px: 0.0, number: 0 }
     }
-    /// Where a pen at a place is read; `None` where it is not.
+    /// Where a pen at a point is read; `None` if it is not.
     pub fn shaken(&mut self, at: Vec2) -> Option<Vec2> {
         if self.deviation_px <= 0.0 {
             return Some(at);

@@ -1,4 +1,4 @@
-//! Ways measured on the surface, against its own lengths.
+//! Paths measured on the surface, compared with its own lengths.
 
 use super::*;
 use crate::math::{Size, Vec3, vec2, vec3};
@@ -18,7 +18,7 @@ fn dabs_of(scene: &Scene, spacing_on: Measure, ends: [Vec2; 2]) -> Vec<Dab> {
     let brush = Brush { size: 20.0, spacing: 0.25, spacing_on, ..Brush::default() };
     dabs(&brush, Operator::None, Color::BLACK, &ends.map(Sample::at), scene)
 }
-/// The least and the greatest way between two dabs that follow each other.
+/// The least and the greatest path length between two successive dabs.
 fn ways(dabs: &[Dab], length: impl Fn(Vec2, Vec2) -> f32) -> (f32, f32) {
     let ways = dabs.windows(2).map(|pair| length(pair[0].at, pair[1].at));
     ways.fold((f32::MAX, 0.0), |(least, most), way| (least.min(way), most.max(way)))

@@ -1,5 +1,5 @@
-//! The rules for the dabs of a stroke: the brush, driven by what is read at each dab. Floor 3. Not here: where they
-//! are placed (`walk`).
+//! The rules for the dabs of a stroke: the brush, driven by the readings at each dab. Floor 3. Not here: where they are
+//! placed (`walk`).
 
 use super::hand::{CurvePoint, gauss};
 use super::{Dab, FAR_PX};
@@ -15,20 +15,20 @@ use crate::surface::{Curvature, Operator};
 use std::f32::consts::TAU;
 use std::sync::Arc;
 
-/// The smallest step between dabs. Below it neighbouring dabs of any size are the same to a byte.
+/// The smallest step between dabs. Below it neighbouring dabs of any size do not differ by a byte.
 pub(super) const MIN_STEP_PX: f32 = 0.1;
-/// Dabs stand on a grid as fine as f32 tells places on canvases of 4096 px.
+/// Dabs are on a grid as fine as f32 resolves positions on canvases of 4096 px.
 const STEPS_PER_PX: f32 = 4096.0;
 /// The smallest dab, a little wider than a pixel.
 const PIXEL_RADIUS_PX: f32 = 0.75;
-/// *s* of the κ that drives a brush: *L* over this. Relative, so that a larger canvas paints the same.
+/// *s* of the κ that drives a brush: *L* over this. Relative, so that a larger canvas gives the same picture.
 const CURVATURE_SCALES: f32 = 32.0;
-/// Blur of the normals under that κ: one pixel quiets the noise of 8-bit maps.
+/// Blur of the normals under that κ: one pixel smooths the noise of 8-bit maps.
 const CURVATURE_BLUR_PX: f32 = 1.0;
 /// The longest tip, times its width.
 const MOST_ELONGATION: f32 = 1.0 / *Tip::RATIO.start();
 
-/// Readings that cost more than the others: they are found where something follows them.
+/// Readings that cost more than the others: they are computed only if something follows them.
 const PEN: [Input; 5] = [Input::TiltDirection, Input::Direction, Input::Attack, Input::Pace, Input::SlowPace];
 
 #[derive(Clone)]
@@ -37,16 +37,16 @@ pub(super) struct DabRules {
     operator: Operator,
     color: Color,
     scene: Scene,
-    /// The corner of the pixel that the stroke begins in: what its places are counted from.
+    /// The corner of the pixel in which the stroke begins: its positions are relative to it.
     pub origin: Option<Vec2>,
     /// Canvas from the frame that the stroke was drawn in.
     facing: Mat2,
-    /// Where something follows it.
+    /// If something follows it.
     curvature: Option<Arc<Curvature>>,
     reads_surface: bool,
-    /// Whether anything follows what arc tangents and logarithms tell of the pen.
+    /// Whether anything follows the readings of [`PEN`], which take arc tangents and logarithms.
     reads_pen: bool,
-    /// Where ways are measured on it.
+    /// If paths are measured on the surface.
     measured: Option<SurfaceMeasure>,
     varies_in_color: bool,
     rims: Option<Arc<RimTable>>,
@@ -56,7 +56,7 @@ pub(super) struct DabRules {
 #[derive(Clone, Copy)]
 pub(super) struct Moment {
     pub place: CurvePoint,
-    /// Of the way; of no length where there is none.
+    /// Of the path; zero if there is none.
     pub direction: Vec2,
     pub travelled_px: f64,
     /// `[0, 1]`.
@@ -65,20 +65,20 @@ pub(super) struct Moment {
     pub number: u32,
 }
 
-/// How densely dabs follow one.
+/// How densely dabs follow a dab.
 #[derive(Clone, Copy)]
 pub(super) struct Due {
     /// Along the tip's longer axis.
     per_px: f64,
     pub per_sec: f64,
-    /// Canvas directions in the tip's frame, where its half-axes are as long as each other.
+    /// Canvas directions in the tip's frame, where its half-axes have equal lengths.
     tip: Mat2,
 }
 
 impl Due {
     pub const NEVER: Self = Self { per_px: 0.0, per_sec: 0.0, tip: Mat2::IDENTITY };
 
-    /// Dabs a px on a way.
+    /// Dabs per px of a path.
     pub fn per_px(&self, way: Vec2) -> f64 {
         if self.tip == Mat2::IDENTITY {
             return self.per_px;
@@ -109,16 +109,16 @@ impl DabRules {
             rims: RimTable::of(brush),
         }
     }
-    /// How long a px of a way is on the surface, where it is measured there: |S d| of MATH 8, between pixels; 1 off it.
+    /// The length of a px of a path on the surface, if it is measured there: |S d| of MATH 8, between pixels; 1 off it.
     ///
-    /// * `at`: counted from where the stroke begins, as all places here.
+    /// * `at`: relative to where the stroke begins, like all positions here.
     pub fn stretch(&self, at: Vec2, way: Vec2) -> f64 {
         let Some(measured) = &self.measured else { return 1.0 };
         f64::from(measured.stretch(at + self.origin.unwrap_or_default(), way))
     }
-    /// In how many parts a piece of the way is measured: of a px where the surface is read, else in one.
+    /// The number of parts in which a piece of the path is measured: of a px if the surface is read, else one.
     pub fn parts(&self, from: Vec2, to: Vec2) -> usize {
-        /// A piece that leaps over more is measured coarsely.
+        /// A longer piece is measured coarsely.
         const MOST_PARTS: f32 = 4096.0;
         let origin = self.origin.unwrap_or_default();
         let (low, high) = ((from.min(to) + origin).floor(), (from.max(to) + origin).floor());
@@ -144,7 +144,7 @@ impl DabRules {
         let inputs = if self.reads_pen { self.of_pen(moment, inputs) } else { inputs };
         self.over_surface(self.on_canvas(place.at), inputs)
     }
-    /// Where a place lies on the canvas.
+    /// A position on the canvas.
     fn on_canvas(&self, at: Vec2) -> Vec2 {
         (at * STEPS_PER_PX).round() / STEPS_PER_PX + self.origin.unwrap_or_default()
     }
@@ -162,7 +162,7 @@ impl DabRules {
             ..inputs
         }
     }
-    /// With what the surface is like at the pixel that a dab's centre lies in.
+    /// With the surface's values at the pixel that contains a dab's centre.
     fn over_surface(&self, at: Vec2, inputs: DabInputs) -> DabInputs {
         let flat = DabInputs::default();
         let nowhere = DabInputs { slope: flat.slope, curvature: flat.curvature, depth: flat.depth, ..inputs };
@@ -173,7 +173,7 @@ impl DabRules {
             return nowhere;
         }
         let scale_px = surface.size().longer_side() / CURVATURE_SCALES;
-        // Between pixels, so that a larger canvas reads the same there.
+        // Between pixels, so that a larger canvas reads the same values.
         let (mut slope, mut kappa, mut depth) = (0.0, 0.0, 0.0);
         for (x, y, share) in surface.around(at) {
             slope += share * (1.0 - surface.facing(x, y).max(0.0).min(1.0));
@@ -198,7 +198,7 @@ impl DabRules {
         let step = f64::from((spacing * self.diameter(inputs)).max(MIN_STEP_PX));
         let sane = |v: f32| if v.is_finite() && v > 0.0 { f64::from(v) } else { 0.0 };
         let beside = sane(self.brush.rate.per_diameter / self.brush.size);
-        // A brush without other dabs keeps its step to the bit.
+        // A brush without other dabs keeps its exact step.
         let per_px = if beside > 0.0 { (1.0 / step + beside).min(1.0 / f64::from(MIN_STEP_PX)) } else { 1.0 / step };
         let ratio = self.ratio(inputs);
         let tip = if ratio < 1.0 {
@@ -208,7 +208,7 @@ impl DabRules {
         };
         Due { per_px, per_sec: sane(self.brush.rate.per_sec), tip }
     }
-    /// The tip's shorter side to its longer one.
+    /// The ratio of the tip's shorter side to its longer one.
     fn ratio(&self, inputs: &DabInputs) -> f32 {
         let plain = self.brush.ratio();
         if !self.brush.dynamics.drive(Property::Elongation) {
@@ -221,7 +221,7 @@ impl DabRules {
         let rotation_rad = if brush.rotation.is_finite() { brush.rotation.to_radians() } else { 0.0 };
         brush.facing.rotation_rad(rotation_rad + TAU * brush.dynamics.turns(Property::Rotation, inputs))
     }
-    /// Where a dab stands that is due at a place.
+    /// The position of a dab that is due at a point.
     fn strayed(&self, moment: &Moment, inputs: &DabInputs) -> Vec2 {
         let at = moment.place.at;
         let away = self.scattered(inputs) + self.offset(moment, inputs) + self.lead(moment, inputs);
@@ -236,7 +236,7 @@ impl DabRules {
         let away = match self.brush.spread {
             Spread::Disc => {
                 let (turn, share) = (hash::unit(inputs.seed, 0, 3), hash::unit(inputs.seed, 1, 3));
-                // The root spreads them evenly over the disc.
+                // The root distributes them uniformly over the disc.
                 ratio * self.diameter(inputs) * share.sqrt() * Vec2::from_angle(TAU * turn)
             }
             Spread::Cloud => ratio * self.brush.size * vec2(gauss(inputs.seed, 0), gauss(inputs.seed, 1)),
@@ -264,7 +264,7 @@ impl DabRules {
         let secs = self.value(Property::Lead, self.brush.hand.lead_secs, inputs);
         if secs == 0.0 { Vec2::ZERO } else { secs * moment.place.paces[0] * moment.direction.normalize_or_zero() }
     }
-    /// How much larger a dab is by chance, and how much fainter: what grows spreads its paint.
+    /// How much larger a dab is by chance, and how much fainter: a dab that grows spreads its paint.
     fn chance_of_size(&self, inputs: &DabInputs) -> (f32, f32) {
         let doublings = self.value(Property::SizeJitter, self.brush.size_jitter, inputs);
         if doublings.is_nan() || doublings <= 0.0 {
@@ -273,14 +273,14 @@ impl DabRules {
         let factor = (doublings * gauss(inputs.seed, 2)).exp2();
         (factor, if factor > 1.0 { 1.0 / (factor * factor) } else { 1.0 })
     }
-    /// What one of several dabs adds that lie over each other.
+    /// What each of several overlapping dabs adds.
     fn flow(&self, inputs: &DabInputs) -> f32 {
         let flow = self.value(Property::Flow, self.brush.flow, inputs).max(0.0).min(1.0);
         let overlap = self.brush.overlap;
-        // A brush whose dabs add for themselves keeps its flow to the bit.
+        // A brush whose dabs do not overlap keeps its exact flow.
         if overlap > 1.0 { 1.0 - (1.0 - flow).powf(1.0 / overlap) } else { flow }
     }
-    /// The dab of a moment; `None` where nothing would be seen.
+    /// The dab of a moment; `None` if nothing would be visible.
     pub fn dab(&self, moment: &Moment, inputs: DabInputs) -> Option<Dab> {
         let strayed = self.strayed(moment, &inputs);
         let at = self.on_canvas(strayed);
@@ -293,8 +293,8 @@ impl DabRules {
         let ceiling = unit(self.value(Property::Opacity, 1.0, &inputs));
         // Comparisons that NaN fails.
         let is_visible = radius > 0.01 && radius <= FAR_PX && flow > 0.0 && ceiling > 0.0;
-        // A dab smaller than a pixel is a fainter one of a pixel's size: what it covers is the same. Along the stroke
-        // dabs add up, across it each reaches the same part of the pixel.
+        // A dab smaller than a pixel becomes a fainter one of a pixel's size that covers as much. Along the stroke dabs
+        // add up, across it each reaches the same part of the pixel.
         let share = (radius / PIXEL_RADIUS_PX).min(1.0);
         is_visible.then(|| Dab {
             at,
@@ -316,7 +316,7 @@ impl DabRules {
         })
     }
     fn operator(&self, inputs: &DabInputs) -> Operator {
-        // What the surface is unwrapped with stays: every value would be a solve of its own.
+        // The parameters of unwrapping are not driven: every value would need its own solve.
         self.operator.map(|number, value| match number.key {
             "gamma" => self.value(Property::Gamma, value, inputs),
             "alpha" => self.value(Property::Alpha, value, inputs),
@@ -326,7 +326,7 @@ impl DabRules {
     }
 }
 
-/// Where a pen leans to; an upright one leans down, toward the hand that holds it.
+/// Where a pen leans; an upright one counts as leaning down, toward the hand that holds it.
 fn leaning(place: &CurvePoint) -> Vec2 {
     if place.tilt == Vec2::ZERO { Vec2::Y } else { place.tilt }
 }

@@ -1,4 +1,4 @@
-//! Dabs from samples, against hand-computed positions and inputs.
+//! Dabs from samples, compared with hand-computed positions and inputs.
 
 use super::walk::MAX_STEPS;
 use super::*;
@@ -48,7 +48,7 @@ fn dabs_do_not_depend_on_how_densely_a_line_was_sampled() {
 fn a_circle_sampled_at_twelve_points_stays_round() {
     let on_circle = |i: usize| vec2(200.0, 200.0) + 100.0 * Vec2::from_angle(i as f32 * std::f32::consts::PI / 6.0);
     let samples: Vec<Sample> = (0..14).map(|i| Sample::at(on_circle(i))).collect();
-    // Away from its ends, where the curve does not know how it goes on.
+    // Away from its ends, where the curve has no next sample.
     for dab in dabs(&brush(10.0), &samples).iter().filter(|d| d.at.distance(on_circle(0)) > 60.0) {
         let radius = dab.at.distance(vec2(200.0, 200.0));
         assert!((radius - 100.0).abs() < 0.25, "{radius}");
@@ -121,7 +121,7 @@ fn every_input_reads_what_it_says() {
     // 1000 px/s of 2 · 1000.
     assert!(flow(Input::Speed, &flat()).iter().all(|dab| (dab.flow - 0.5).abs() < 1e-4));
     assert!(flow(Input::Direction, &flat()).iter().all(|dab| (dab.flow - 0.25).abs() < 1e-4));
-    // The first lies at distance 0, and is not seen; the next a quarter of a diameter on, of ten.
+    // The first is at distance 0 and invisible; the next is a quarter of a diameter farther, of ten.
     let distances: Vec<f32> = flow(Input::Distance, &flat()).iter().map(|dab| dab.flow).take(3).collect();
     assert!(distances.iter().zip([0.025, 0.05, 0.075]).all(|(a, b)| (a - b).abs() < 1e-4), "{distances:?}");
     let slopes = flow(Input::Slope, &slope());

@@ -1,4 +1,4 @@
-//! Along the curve of a stroke: where dabs are due. Floor 3. Not here: what they are like there (`rules`).
+//! Along the curve of a stroke: where dabs are due. Floor 3. Not here: their properties there (`rules`).
 
 use super::hand::{CurvePoint, settled};
 use super::rules::{DabRules, Due, Moment};
@@ -6,23 +6,23 @@ use super::{CurveSegment, Dab};
 use crate::math::Vec2;
 use crate::paint::habits::Cycle;
 
-/// A dab due this soon after a piece of the curve ends stands on its end: sums of lengths are rounded.
+/// A dab due this soon after the end of a piece of the curve is placed on its end: sums of lengths are rounded.
 const ROUNDING_PX: f64 = 1e-3;
-/// The most steps along a stroke, so that a hostile one ends: a hundred canvases' width of the smallest steps.
+/// The most steps along a stroke, so that a hostile one ends: the smallest steps over a hundred canvas widths.
 pub(super) const MAX_STEPS: u32 = 1 << 20;
 
 /// How far a stroke has been walked.
 #[derive(Clone, Copy)]
 pub(super) struct Walk {
     pub from: CurvePoint,
-    /// How densely dabs follow the last one, and which share of the way to the next is left.
+    /// How densely dabs follow the last one, and the share of the path to the next that is left.
     due: Due,
     left: f64,
     travelled_px: f64,
     number: u32,
-    /// The direction of the way, averaged; of no length before the first.
+    /// The averaged direction of the path; zero before the first.
     direction: Vec2,
-    /// Where the last dab stood, which the next one comes after.
+    /// The position of the last dab, which the next one follows.
     lagging: Option<Vec2>,
     cycle: f32,
     custom: Option<f32>,
@@ -38,7 +38,7 @@ impl Walk {
             number: 0,
             direction: Vec2::ZERO,
             lagging: None,
-            // As if a cycle had long ended, until the pen presses.
+            // As if a cycle had ended long ago, until the pen presses.
             cycle: f32::NEG_INFINITY,
             custom: None,
         }
@@ -49,7 +49,7 @@ impl Walk {
         self.turn_cycle(&from, 0.0, rules);
         self.stand(from, rules, dabs);
     }
-    /// A dab at a place; the next one is due a step further.
+    /// A dab at a point; the next one is due a step farther.
     fn stand(&mut self, place: CurvePoint, rules: &DabRules, dabs: &mut Vec<Dab>) {
         let lag = settled(1.0, rules.brush.hand.lag_dabs);
         let at = self.lagging.map_or(place.at, |last| last.lerp(place.at, lag));
@@ -75,14 +75,14 @@ impl Walk {
     fn cycle_reading(&self) -> f32 {
         if self.cycle >= 0.0 { self.cycle.min(1.0) } else { 1.0 }
     }
-    /// The cycle goes on by a way; it begins where the pen presses, and when it does so again.
+    /// The cycle advances by a path length; it begins where the pen presses, and each time it presses again.
     fn turn_cycle(&mut self, place: &CurvePoint, px: f32, rules: &DabRules) {
-        /// The pen has let go below this share of the pressure that it began at.
+        /// The pen has let go below this ratio of the pressure at which the cycle began.
         const LET_GO: f32 = 0.9;
         let Cycle { length, hold, pressure } = rules.brush.cycle;
         let (is_begun, least) = (self.cycle >= 0.0, if self.cycle >= 0.0 { LET_GO * pressure } else { pressure });
         if place.pressure <= least {
-            // A cycle without a pressure goes on.
+            // A cycle without a pressure continues.
             if pressure > 0.0 || !is_begun {
                 self.cycle = f32::NEG_INFINITY;
                 return;
@@ -121,7 +121,7 @@ impl Walk {
             self.straight(place, rules, dabs);
         }
     }
-    /// As long as the pen stays where it is.
+    /// While the pen rests.
     pub fn rest(&mut self, rules: &DabRules, dabs: &mut Vec<Dab>) {
         let from = self.from;
         let secs = f64::from(from.until_secs - from.secs);
@@ -163,7 +163,7 @@ impl Walk {
         }
         self.from = to;
     }
-    /// What changes by a piece of the way, so long as it is seen and as it is measured.
+    /// Advances by a piece of the path, with its length as seen and as measured.
     fn go(&mut self, place: &CurvePoint, way: Vec2, [px, measured_px]: [f64; 2], rules: &DabRules) {
         let ahead = way.normalize_or_zero();
         self.direction += (ahead - self.direction) * settled(px as f32, rules.brush.hand.direction_px);

@@ -1,39 +1,39 @@
-//! What an input makes of a property: lines between points, as factors or as what is added.
+//! What an input does to a property: lines between points, as factors or as values that are added.
 //! Floor 3.
 
 use crate::math::{Vec2, vec2};
 use std::sync::Arc;
 
-/// What an input in `[0, 1]` makes of a property.
+/// What an input in `[0, 1]` does to a property.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Curve {
     /// The line from 1 − p to 1: p in `[0, 1]` is the share of the property that follows the input.
     Share(f32),
-    /// Straight lines between points, level beyond the first and the last; factors in `[0, 1]`. Only of
+    /// Straight lines between points, level beyond the first and the last; factors in `[0, 1]`. Only from
     /// [`Curve::through`].
     Points(Arc<[Vec2]>),
-    /// The same, added to the property before anything multiplies it. Only of [`Curve::added`].
+    /// The same, added to the property before anything multiplies it. Only from [`Curve::added`].
     Added(Arc<[Vec2]>),
 }
 
-/// Points of one curve: more than a hand sets.
+/// The most points of one curve: more than a user sets.
 pub const MAX_POINTS: usize = 64;
-/// The most that a curve adds or takes away.
+/// The most that a curve adds or subtracts.
 pub const MOST_ADDED: f32 = 1000.0;
 
 impl Curve {
     /// The curve through points (input, output) of `[0, 1]²` from left to right; two above each other are a step.
-    /// `None` of no points, too many, or others than these.
+    /// `None` for no points, too many, or invalid ones.
     pub fn through(points: Vec<Vec2>) -> Option<Self> {
         let is_inside = points.iter().all(|p| (0.0..=1.0).contains(&p.y));
         (is_inside && are_ordered(&points)).then(|| Curve::Points(points.into()))
     }
-    /// The same of outputs up to [`MOST_ADDED`] either way, that are added.
+    /// The same for outputs up to [`MOST_ADDED`] either way, which are added.
     pub fn added(points: Vec<Vec2>) -> Option<Self> {
         let is_inside = points.iter().all(|p| p.y.abs() <= MOST_ADDED);
         (is_inside && are_ordered(&points)).then(|| Curve::Added(points.into()))
     }
-    /// How many points it has; a share has none.
+    /// The number of its points; a share has none.
     pub fn points(&self) -> usize {
         match self {
             Curve::Share(_) => 0,

@@ -1,4 +1,4 @@
-//! What is known at a dab, as the inputs that drive brushes. Floor 3. Not here: where it is read (`dab_walker`).
+//! The readings at a dab, as the inputs that drive brushes. Floor 3. Not here: where they are read (`dab_walker`).
 
 use super::{Input, Property};
 use crate::math::{Vec2, hash};
@@ -8,10 +8,11 @@ use std::f32::consts::TAU;
 pub const FAST_LENGTHS_PER_SEC: f32 = 2.0;
 /// The distance that reads 1, diameters.
 pub const FAR_DIAMETERS: f32 = 10.0;
-/// The paces, px a second, up to which the scale is about even, and that reads 1.
+/// The pace up to which the scale is nearly linear, and the one that reads 1, px a second.
 pub const PACES_PX_PER_SEC: [f32; 2] = [50.0, 5000.0];
 
-/// A speed as a pace, `[0, 1]`: `ln(1 + v / 50) / ln(1 + 5000 / 50)`. Slow hands differ as much as quick ones.
+/// A speed as a pace, `[0, 1]`: `ln(1 + v / 50) / ln(1 + 5000 / 50)`. Slow hands are distinguished as well as fast
+/// ones.
 pub fn pace_of(px_per_sec: f32) -> f32 {
     let [even, most] = PACES_PX_PER_SEC;
     ((px_per_sec.max(0.0) / even).ln_1p() / (most / even).ln_1p()).min(1.0)
@@ -23,7 +24,7 @@ pub fn px_per_sec_of(pace: f32) -> f32 {
     even * (pace * (most / even).ln_1p()).exp_m1()
 }
 
-/// What is known where a dab stands, each in `[0, 1]` as [`Input`] says.
+/// The readings at a dab, each in `[0, 1]` as [`Input`] says.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DabInputs {
     pub pressure: f32,
@@ -40,7 +41,7 @@ pub struct DabInputs {
     pub cycle: f32,
     pub attack: f32,
     pub custom: f32,
-    /// Of this dab alone: what is random about it follows.
+    /// Unique to this dab: everything random about it depends on it.
     pub seed: u32,
 }
 
@@ -68,7 +69,7 @@ impl Default for DabInputs {
 }
 
 impl DabInputs {
-    /// What drives a property by an input.
+    /// The value of an input for a property.
     pub(super) fn of(&self, input: Input, property: Property) -> f32 {
         match input {
             Input::Pressure => self.pressure,
@@ -92,7 +93,7 @@ impl DabInputs {
     }
 }
 
-/// The direction of a vector in image axes (y down), in turns counter-clockwise as seen, `[0, 1)`; 0 of none.
+/// The direction of a vector in image axes (y down), in turns counter-clockwise as seen, `[0, 1)`; 0 for a zero vector.
 pub fn turns_of(v: Vec2) -> f32 {
     let turns = if v == Vec2::ZERO { 0.0 } else { (-v.y).atan2(v.x) / TAU };
     // A turn just below 0 rounds up to 1.

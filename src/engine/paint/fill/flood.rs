@@ -1,5 +1,5 @@
-//! Which pixels are joined to one by colours like its own, over their four neighbours. Floor 3. Which of them may be
-//! filled is told a row of a tile at a time; `raster::flood` spreads.
+//! Which pixels are joined to one by colours like its own, over their four neighbours. Floor 3. Finds which pixels may
+//! be filled, a row of a tile at a time; `raster::flood` spreads.
 
 use super::PixelSet;
 use crate::math::Size;
@@ -9,7 +9,7 @@ use crate::raster::{CoverageGrid, CoverageTile, Plane, TILE, Tile, TileAt};
 use crate::surface::objects::CanvasPart;
 use std::sync::Arc;
 
-/// All that is joined to a pixel of the canvas; `None` where that pixel may not be touched. `tolerance` in bytes.
+/// Everything that is joined to a pixel of the canvas; `None` if that pixel may not be touched. `tolerance` in bytes.
 pub(super) fn joined(
     (x, y): (i32, i32),
     canvas: Size,
@@ -23,7 +23,7 @@ pub(super) fn joined(
     Some(Flooded::from((x, y), canvas, opened))
 }
 
-/// All pixels of the canvas of a colour like one's, wherever they are.
+/// All pixels of the canvas with a colour like one's, wherever they are.
 pub(super) fn alike(
     start: (i32, i32),
     canvas: Size,
@@ -87,7 +87,7 @@ fn opened(at: TileAt, tile: Option<&Tile>, like: [u8; 4], tolerance: u8, canvas:
 }
 
 crate::widest! {
-    /// 1 for each of a row's pixels whose bytes are all near, 0 for the others: [`is_like`], byte by byte.
+    /// 1 for each of a row's pixels whose bytes are all similar, 0 for the others: [`is_like`], byte by byte.
     fn row_like(row: &[u8], like: [u8; 4], tolerance: u8, alike: &mut [u8; TILE]) {
         let mut near = [[0u8; 4]; TILE];
         for (near, pixel) in near.iter_mut().zip(row.as_chunks::<4>().0) {

@@ -1,9 +1,10 @@
 //! Gap closing: removes what a fill reached only through a narrow passage, up to the narrowest point of the passage.
 //! Floor 3.
 //!
-//! Every pixel inside has a distance to the border. Rooms are hills of that distance, passages between them saddles; a
-//! watershed (Vincent and Soille 1991, by a union of pixels in falling order) gives each pixel to the hill it lies on.
-//! Two hills are one room unless the saddle between them is a gap: low enough, and clearly lower than both tops.
+//! Every pixel inside has a distance to the border. Rooms are hills of that distance, passages between them are
+//! saddles; a watershed (Vincent and Soille 1991, by a union of pixels in falling order) assigns each pixel to the hill
+//! it lies on. Two hills are one room unless the saddle between them is a gap: low enough, and clearly lower than both
+//! tops.
 
 use super::PixelSet;
 use crate::math::Size;
@@ -16,7 +17,7 @@ const CLEARLY_PX: f32 = 1.0;
 /// Levels of distance to a pixel.
 const LEVELS_PER_PX: f32 = 4.0;
 
-/// The room that holds `start`, of what was joined to it.
+/// The room that contains `start`, of what was joined to it.
 pub(super) fn closed(inside: PixelSet, start: (i32, i32), canvas: Size, gap_px: f32) -> PixelSet {
     // From the middle of a gap w px wide to the centre of the border's nearest pixel: at most (w + 1)/2. Tops are
     // capped at the height that makes a saddle of that distance a gap.
@@ -117,7 +118,7 @@ impl<'a> DistanceHills<'a> {
                 self.parent[i] = first as u32;
                 i += 1;
             }
-            // Of the row above, once for each of its runs.
+            // In the row above, once for each of its runs.
             let mut was_top = false;
             for above in first.saturating_sub(width)..i.saturating_sub(width) {
                 let is_top = self.parent[above] != NONE;
@@ -129,7 +130,7 @@ impl<'a> DistanceHills<'a> {
             }
         }
     }
-    /// A pixel joins the highest hill beside it, and merges hills that are one room.
+    /// A pixel joins the highest adjacent hill, and merges hills that are one room.
     fn stand(&mut self, i: usize, width: usize) {
         self.parent[i] = i as u32;
         let beside = [

@@ -22,7 +22,7 @@ fn is_in(filled: &FilledArea, x: i32, y: i32) -> bool {
 const PAPER: [u8; 4] = [255; 4];
 const INK: [u8; 4] = [20, 20, 30, 255];
 
-/// A room of 160 × 110 px with walls of 3 px, and a gap in its right wall that is as high as said.
+/// A room of 160 × 110 px with walls of 3 px, and a gap of the given height in its right wall.
 fn room(gap: i32) -> TileGrid {
     picture(move |x, y| {
         let in_wall = |v: i32, low: i32, high: i32| (low..low + 3).contains(&v) || (high - 3..high).contains(&v);
@@ -70,7 +70,7 @@ fn a_gap_is_closed_up_to_its_width_and_corners_are_filled_all_the_same() {
         let closed = gap_of(gap, gap_px);
         for (x, y) in (0..150).flat_map(|y| (0..200).map(move |x| (x, y))) {
             let in_gap = (177..180).contains(&x) && (70..70 + gap).contains(&y);
-            // On which side of its narrowest place a pixel of the gap lies is not told.
+            // The side of the narrowest point to which a pixel of the gap belongs is not defined.
             let near_gap = (170..190).contains(&x) && (60..90).contains(&y);
             if !in_gap && !near_gap {
                 assert_eq!(is_in(&closed, x, y), is_inside_room(x, y), "({x}, {y}), {gap} px by {gap_px}");

@@ -30,7 +30,7 @@ fn lines(lies: GrainSpace) -> BrushGrain {
     let source = GrainSource::Pattern { pattern: Pattern::Lines, seed: 0 };
     BrushGrain { source, size_px: 8.0, rotation: 90.0, levels: [0.4, 0.6], lies, ..BrushGrain::default() }
 }
-/// How often a part of a row changes from bare to covered.
+/// The number of changes from bare to covered in a part of a row.
 fn crossings(row: &[f32]) -> usize {
     row.windows(2).filter(|pair| pair[0] < 0.5 && pair[1] >= 0.5).count()
 }

@@ -1,5 +1,5 @@
 //! What grain leaves of a stroke's paint on a tile.
-//! Floor 3. Not here: what grain is and the texture of it (`grain`).
+//! Floor 3. Not here: what grain is, and its texture (`grain`).
 
 use super::{BrushGrain, GrainSource, GrainSpace};
 use crate::math::{Affine2, Vec2};
@@ -15,13 +15,13 @@ use crate::surface::deformation::{Deformation, DeformedRect};
 use std::sync::Arc;
 
 /// What grain leaves of each pixel of a tile. A pixel may hold light and dark grain finer than itself: a stroke's dabs
-/// fill the light part sooner than the dark one, so a mean of both would be filled too soon. It is two parts, chosen so
-/// that mean and variance are right; where grain is black and white, the parts are.
+/// fill the light part sooner than the dark one, so a mean of both would be filled too soon. So a pixel has two parts,
+/// chosen so that mean and variance are right; where grain is black and white, so are the parts.
 pub struct GrainTile {
     /// The factor of F in either part, `[0, 1]`.
     pub light: [f32; TILE_AREA],
     pub dark: [f32; TILE_AREA],
-    /// How much of the pixel the lighter part is, `[0, 1]`.
+    /// The lighter part's share of the pixel, `[0, 1]`.
     pub share: [f32; TILE_AREA],
 }
 
@@ -87,8 +87,8 @@ impl StrokeGrain {
     }
 }
 
-/// Two greys and the share of the first, of a mean grey m, the mean of its square and the share p that is not black,
-/// all in `[0, 1]`. Where some is black, that is one part, since no paint ever fills it; else with σ² = ⟨G²⟩ − m²:
+/// Two greys and the share of the first, for a mean grey m, the mean of its square and the share p that is not black,
+/// all in `[0, 1]`. If some is black, that is one part, since paint never fills it; else with σ² = ⟨G²⟩ − m²:
 ///
 /// ```text
 /// p < 1:   light = m / p,                    dark = 0,                        share = p
@@ -99,7 +99,7 @@ pub fn parts(mean: f32, square: f32, share: f32) -> [f32; 3] {
         return [if share > 0.0 { (mean / share).min(1.0) } else { 0.0 }, 0.0, share];
     }
     let variance = (square - mean * mean).max(0.0).min(mean * (1.0 - mean));
-    // What rounding to bytes may be.
+    // The error of rounding to bytes.
     if variance < 2.0 / 255.0 {
         return [mean, mean, 1.0];
     }

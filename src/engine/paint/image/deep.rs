@@ -1,5 +1,5 @@
-//! A placed picture without rounding to bytes: from 16 bits or floats where its file has them, light that is brighter
-//! than white as it is. Floor 3. Twin of `PlacedImage::render_tile`, for pictures that are written once.
+//! A placed picture without rounding to bytes: from 16 bits or floats if its file has them, with light that is brighter
+//! than white. Floor 3. Twin of `PlacedImage::render_tile`, for pictures that are written once.
 
 use super::{ImageLookup, PictureSource, PlacedImage};
 use crate::paint::patches::Patches;
@@ -11,7 +11,7 @@ use crate::surface::deformation::DeformedRect;
 use std::sync::{Arc, PoisonError};
 
 impl PictureSource {
-    /// The adjusted texture in floats; made anew where nobody holds it any more.
+    /// The adjusted texture in floats; made again when it is no longer in use.
     pub fn deep_texture(&self) -> Arc<DeepTexture> {
         let held = || self.deep.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = held().upgrade() {
@@ -68,7 +68,7 @@ mod tests {
             frame: Default::default(),
         }
     }
-    /// The farthest that any value of the tiles of bytes is from that of floats, in bytes.
+    /// The greatest difference between the tiles of bytes and those of floats, in bytes.
     fn apart(image: &PlacedImage, scene: &Scene) -> f32 {
         let mut farthest = 0.0f32;
         for at in TileAt::covering(scene.size.rect()) {
@@ -101,7 +101,7 @@ mod tests {
                 let mut image = PlacedImage { filter, ..placed(picture.clone(), size) };
                 image.bend = Bend { operator, anchors: vec![Anchor::fixed(vec2(30.5, 20.5))], ..Bend::default() };
                 let apart = apart(&image, &scene);
-                // Half a step of the result, of the texels, and of the level that was halved.
+                // Half a step for the result, for the texels, and for the level that was halved.
                 assert!(apart < 1.6, "{filter:?} {operator:?}: {apart}");
             }
         }

@@ -164,8 +164,7 @@ fn antialiasing_removes_three_quarters_of_the_error_against_64_samples_a_pixel()
 }
 #[test]
 fn nothing_bleeds_across_a_silhouette() {
-    // Two plates, the right one far behind and turned: on each D is a translation, so that no pixel needs
-    // filtering.
+    // Two plates, the right one far behind and turned: on each plate D is a translation, so no pixel needs filtering.
     let size = Size::new(64, 64);
     let plates = scene(
         size,

@@ -1,4 +1,4 @@
-//! Strokes of every tip against what their definitions say, pixel by pixel, on a ball and on a flat canvas.
+//! Strokes of every tip compared with their definitions, pixel by pixel, on a ball and on a flat canvas.
 
 use super::TipShape;
 use crate::math::{Size, Vec2, srgb::Color, vec2, vec3};

@@ -15,18 +15,17 @@ use crate::surface::deformation::DeformedRect;
 /// inverse would reach arbitrarily far.
 const FARTHEST_STEPS: f32 = 3.0;
 
-/// The colours that a smudge drags onto the pixels of a touched area, row by row; `None` where it did not move.
+/// The colours that a smudge drags onto the pixels of a touched area, row by row; `None` if it did not move.
 ///
-/// What lay under the dab before lies under this one, at the same place of the image plane relative to its centre. With
+/// What was under the previous dab is under this one, at the same point of the image plane relative to its centre. With
 /// F_k(q) = D_k(q) − q_k, a pixel q takes the colour of the point p with F_{k−1}(p) = F_k(q), found by one step of
 /// Newton's method from q:
 ///
 /// `p = q − (∂D_{k−1}/∂q)⁻¹ (F_{k−1}(q) − F_k(q))`.
 ///
-/// On a flat canvas, and wherever n̄ changes evenly, that is the way the dab went, p = q − (q_k − q_{k−1}).
+/// On a flat canvas, and wherever n̄ changes evenly, that is the dab's movement, p = q − (q_k − q_{k−1}).
 ///
-/// * `length`: the share of the colour that is still there after a drag of one radius, `[0, 1]`, however many dabs it
-///   took.
+/// * `length`: the share of the colour that is left after a drag of one radius, `[0, 1]`, however many dabs it took.
 pub(super) fn smudged(
     touch: &TileDab,
     dab: &Dab,
@@ -60,10 +59,10 @@ pub(super) fn smudged(
 
 /// The colours that a clone copies onto the pixels of a touched area, row by row.
 ///
-/// Pixel q takes the colour at `q_0 + offset + (D(q) − q_0)`: what is copied bends around the dab as its footprint
-/// does. Where a pixel covers several of the picture, the mean of a grid of points in the patch under it.
+/// Pixel q takes the colour at `q_0 + offset + (D(q) − q_0)`: what is copied bends around the dab like its footprint.
+/// Where a pixel covers several of the picture, it is the mean of a grid of points in the patch under it.
 pub(super) fn cloned(touch: &TileDab, dab: &Dab, offset: Vec2, source: &TileGrid, scene: &Scene) -> Vec<[f32; 4]> {
-    /// Points along a side of the grid, at the most.
+    /// The most points along a side of the grid.
     const MOST: f32 = 6.0;
     let mut field = DragField::of(dab, touch.area, scene);
     let mut reader = PixelReader::of(source);
@@ -88,7 +87,7 @@ fn solved(jacobian: Mat2, v: Vec2) -> Vec2 {
     if jacobian.determinant().abs() > 1e-3 { jacobian.inverse() * v } else { v }
 }
 
-/// The centres of the canvas's pixels, between which there is something to read.
+/// The centres of the canvas's pixels: only between them can be read.
 struct SourceBounds {
     last: Vec2,
 }

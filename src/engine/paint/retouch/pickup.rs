@@ -1,5 +1,5 @@
-//! Paint that a brush takes up where it goes, and the colour that a dab of it has: its own mixed with what it holds.
-//! Floor 3. Colours are premultiplied, so that nothing taken up counts as nothing.
+//! Paint that a brush picks up on its way, and the colour of its dabs: its own mixed with what it holds.
+//! Floor 3. Colours are premultiplied, so that transparent pixels add nothing.
 
 use super::pixels::RetouchPixels;
 use crate::math::srgb::Color;
@@ -15,18 +15,17 @@ use crate::paint::tint;
 use crate::raster::{TILE, TileAt};
 use rayon::prelude::*;
 
-/// Paint is taken up most in the middle: a soft round dab whose weights are half its disc.
+/// Most paint is picked up in the middle: a soft round dab whose weights add up to half its disc.
 const SOFT: f32 = 0.4;
-/// A dab of fewer pixels than this looks at each of them, a larger one at as many.
+/// A dab of fewer pixels than this reads each of them, a larger one reads this many.
 const LOOKS: f32 = 1024.0;
 
-/// What a brush holds of the paint that it took up; `None` before its first dab.
+/// What a brush holds of the paint that it picked up; `None` before its first dab.
 pub(super) type PickedUpPaint = Option<[f32; 4]>;
 
-/// The colour that a dab paints, premultiplied: less than opaque where it has taken up less than paint. What is held
-/// changes.
+/// The colour that a dab paints, premultiplied: less than opaque if it picked up transparency. The held paint changes.
 ///
-/// With what lay there, c, and the length l: h ← l h + (1 − l) c, at the first dab h ← c. With the amount a and the
+/// With the paint there, c, and the length l: h ← l h + (1 − l) c, at the first dab h ← c. With the amount a and the
 /// brush's own colour b: a h + (1 − a) b.
 pub(super) fn mixed(
     brush: &Brush,
@@ -56,7 +55,7 @@ pub(super) fn mixed(
     if tint::varies(brush) { tinted(brush, mixed, dab) } else { mixed }
 }
 
-/// The mixed colour as far from itself as the brush makes a dab's.
+/// The mixed colour, varied as the brush varies a dab's.
 fn tinted(brush: &Brush, mixed: [f32; 4], dab: &Dab) -> [f32; 4] {
     let alpha = mixed[3];
     let straight = |v: f32| if alpha > 0.0 { (255.0 * (v / alpha).max(0.0).min(1.0) + 0.5) as u8 } else { 0 };
@@ -65,7 +64,7 @@ fn tinted(brush: &Brush, mixed: [f32; 4], dab: &Dab) -> [f32; 4] {
     [r * alpha, g * alpha, b * alpha, alpha]
 }
 
-/// The mean of what lies under a dab; `None` where it lies beside the canvas.
+/// The mean of what lies under a dab; `None` if it is off the canvas.
 fn taken_up(brush: &Brush, dab: &Dab, retouched: &RetouchPixels, scene: &Scene) -> Option<[f32; 4]> {
     let radius = (dab.radius * brush.pickup.radius).max(1.0);
     let plain = Dab { hardness: SOFT, softness: 0.0, thin: 1.0, rim: Rim::SOFT, ..*dab };
@@ -89,7 +88,7 @@ fn taken_up(brush: &Brush, dab: &Dab, retouched: &RetouchPixels, scene: &Scene) 
         sum
     };
     let sums: Vec<[f32; 5]> = tiles_of(&placed).par_iter().map_init(DabScratch::default, seen).collect();
-    // In the tiles' order, whoever added them up.
+    // In the tiles' order, whichever thread added them up.
     let sum = sums.iter().fold([0.0f32; 5], |all, sum| std::array::from_fn(|c| all[c] + sum[c]));
     (sum[4] > 0.0).then(|| [0, 1, 2, 3].map(|c| sum[c] / sum[4]))
 }

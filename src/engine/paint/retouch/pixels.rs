@@ -57,7 +57,7 @@ impl<'p> PixelReader<'p> {
     pub fn of(base: &'p TileGrid) -> Self {
         Self { retouched: None, base, tile: None }
     }
-    /// A premultiplied pixel; transparent where there is none.
+    /// A premultiplied pixel; transparent if there is none.
     pub fn pixel(&mut self, x: i32, y: i32) -> [f32; 4] {
         let at = TileAt::of_pixel(x, y);
         let held = match self.tile {
@@ -84,7 +84,7 @@ impl<'p> PixelReader<'p> {
         self.tile = Some((at, held));
         held
     }
-    /// The colour at a canvas point, between the four pixels around it.
+    /// The colour at a canvas point, interpolated from the four pixels around it.
     pub fn between(&mut self, at: Vec2) -> [f32; 4] {
         let corner = (at - 0.5).floor();
         let t = at - 0.5 - corner;

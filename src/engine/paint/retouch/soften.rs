@@ -14,14 +14,14 @@ const WIDEST_PX: f32 = 40.0;
 /// Beyond this many standard deviations a Gaussian is negligible.
 const CUT: f32 = 3.0;
 
-/// Where less than this of a Gaussian's weight may count, its own error would be divided: such pixels stay as they are.
+/// If less than this of a Gaussian's weight may count, its own error would be divided: such pixels do not change.
 const LEAST_WEIGHT: f32 = 1e-3;
 
 /// The blurred colours of the pixels of a touched area, row by row.
 ///
 /// * `width`: the standard deviation that a stroke leaves in its middle, a ratio of the dab's radius. The variances of
 ///   the dabs over a pixel add up, 2 r / step of them: so each has the variance (width · r)² · step / 2 r, however
-///   close they stand.
+///   close they are.
 pub(super) fn blurred(
     touch: &TileDab,
     dab: &Dab,
@@ -49,7 +49,7 @@ pub(super) fn blurred(
     out
 }
 
-/// The colour of what was weighed, premultiplied.
+/// The weighted mean colour, premultiplied.
 fn mean([r, g, b, a, weight]: &WeightedPixel) -> [f32; 4] {
     let per = if *weight > 0.0 { 1.0 / weight } else { 0.0 };
     // The filter for wide Gaussians can undershoot 0 by its error.
@@ -58,7 +58,7 @@ fn mean([r, g, b, a, weight]: &WeightedPixel) -> [f32; 4] {
     [r, g, b, a]
 }
 
-/// A premultiplied pixel times how much it counts, and that.
+/// A premultiplied pixel times its weight, and the weight.
 type WeightedPixel = [f32; 5];
 
 /// The pixels of a rectangle; those beyond the canvas count nothing.

@@ -13,11 +13,11 @@ fn layer(color: impl Fn(i32, i32) -> [u8; 4]) -> TileGrid {
     let rgba: Vec<u8> = all.flat_map(|(x, y)| color(x, y)).collect();
     TileGrid::from_straight_rgba(&rgba, 200, 150, 0, 0)
 }
-/// Each pixel's colour tells where it is.
+/// Each pixel's colour encodes its position.
 fn places() -> TileGrid {
     layer(|x, y| [x as u8, y as u8, 0, 255])
 }
-/// n̄ = 0.5 (sin 0.02 x, sin 0.03 y), around the middle: it turns smoothly, not evenly.
+/// n̄ = 0.5 (sin 0.02 x, sin 0.03 y), around the middle: it turns smoothly but not evenly.
 fn nbar(at: Vec2) -> Vec2 {
     0.5 * vec2((0.02 * at.x).sin(), (0.03 * at.y).sin())
 }
@@ -46,7 +46,7 @@ fn bent(q: Vec2, center: Vec2) -> Vec2 {
 fn brush(mode: BrushMode) -> Brush {
     Brush { size: 30.0, hardness: 1.0, spacing: 0.1, mode, ..Brush::default() }
 }
-/// What a stroke leaves of a layer.
+/// A layer after a stroke.
 fn rubbed(brush: Brush, operator: Operator, points: &[Vec2], offset: Vec2, base: &TileGrid, scene: &Scene) -> TileGrid {
     let like = [Stroke::new(brush, operator, Color::BLACK, Vec::new())];
     let mut retouching = ActiveRetouching::new(&like, &[offset], base.clone(), base.clone(), scene);
@@ -61,7 +61,7 @@ fn dab(at: Vec2) -> Dab {
 fn touch(area: Rect) -> TileDab {
     TileDab { at: TileAt::of_pixel(area.x0, area.y0), area, coverage: Box::new([1.0; TILE_AREA]) }
 }
-/// The place that a colour of [`places`] tells.
+/// The position that a colour of [`places`] encodes.
 fn told(color: [f32; 4]) -> Vec2 {
     vec2(color[0], color[1]) * 255.0 + 0.5
 }
@@ -225,7 +225,7 @@ fn hostile_samples_and_settings_end_in_finite_pixels() {
     }
 }
 
-/// A brush of one colour that takes paint up.
+/// A brush of one colour that picks up paint.
 fn picking(amount: f32, length: f32) -> Brush {
     Brush { pickup: crate::paint::Pickup { amount, length, radius: 1.0 }, ..brush(BrushMode::Paint) }
 }

@@ -23,15 +23,15 @@ use std::sync::{Arc, Mutex};
 pub enum Backdrop {
     /// A paint layer's pixels.
     Pixels(TileGrid),
-    /// The strokes beneath in a stroke layer.
+    /// The strokes below in a stroke layer.
     Strokes(Vec<Arc<Stroke>>),
 }
 
 /// Strokes that are drawn together, the first lowest: one, or one and its mirror images.
 ///
 /// Their pixels do not depend on how the samples are batched: they equal those of the finished strokes painted at once.
-/// It takes 16 KiB for every tile that a stroke touches (64 if its dabs vary in colour), and 64 more if strokes lie
-/// beneath.
+/// They take 16 KiB for every tile that a stroke touches (64 if its dabs vary in colour), and 64 more if there are
+/// strokes below.
 pub struct ActiveStrokes {
     scene: Scene,
     backdrop: Backdrop,
@@ -56,7 +56,7 @@ struct ActiveStroke {
 
 /// A tile under active strokes.
 struct ActiveTile {
-    /// The strokes beneath, once they were painted.
+    /// The strokes below, once they were painted.
     beneath: Option<PlanarTile>,
     /// The settled dabs of each active stroke.
     stroke_tiles: Vec<Option<StrokeTile>>,
@@ -67,9 +67,9 @@ struct ActiveTile {
 /// What a batch of samples adds to one stroke.
 struct NewDabs<'s> {
     dabs: Vec<PlacedDab<'s>>,
-    /// How many of them no later sample changes.
+    /// The number of them that no later sample changes.
     settled: usize,
-    /// Which of them may touch a tile, in their order.
+    /// Those that may touch a tile, in order.
     tiles: BTreeMap<TileAt, Vec<usize>>,
 }
 
@@ -88,7 +88,7 @@ impl ActiveStroke {
             bounds: Rect::EMPTY,
         }
     }
-    /// Places the dabs that the samples settle, and the tail after them.
+    /// Places the dabs that the samples settle, and the tail behind them.
     fn take<'s>(&mut self, samples: &[Sample], scene: &'s Scene) -> NewDabs<'s> {
         self.samples.extend_from_slice(samples);
         self.stroke_dabs.begin(&self.brush, &self.samples);
@@ -150,7 +150,7 @@ impl ActiveStroke {
         let start = self.samples.first().map_or(Vec2::ZERO, |sample| sample.at);
         self.brush.bounded.from(scene.surface.as_ref(), start)
     }
-    /// The stroke as far as it was drawn.
+    /// The stroke as drawn so far.
     fn stroke(&self, scene: &Scene) -> Stroke {
         let found = StrokeCache { bounds: Some((scene.clone(), self.bounds)), ..StrokeCache::default() };
         let Self { brush, operator, color, samples, selection, .. } = self;
@@ -220,7 +220,7 @@ impl ActiveStrokes {
         tiles.extend(active_tiles);
         painted
     }
-    /// The strokes as far as they were drawn. Their bounds are known; their dabs would be computed again.
+    /// The strokes as drawn so far. Their bounds are known; their dabs would be computed again.
     pub fn strokes(&self) -> Vec<Stroke> {
         self.strokes.iter().map(|stroke| stroke.stroke(&self.scene)).collect()
     }
@@ -239,7 +239,7 @@ impl Backdrop {
             Backdrop::Strokes(_) => pixels.quantised(),
         }
     }
-    /// The pixels beneath a tile's active strokes, f32. `cached`: those of the strokes beneath, painted once.
+    /// The pixels below a tile's active strokes, f32. `cached`: those of the strokes below, painted once.
     fn pixels(&self, scene: &Scene, at: TileAt, cached: &mut Option<PlanarTile>) -> PlanarTile {
         match self {
             Backdrop::Pixels(grid) => PlanarTile::of_tile(grid.tile(at).map(|tile| &**tile)),

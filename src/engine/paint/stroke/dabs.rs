@@ -57,14 +57,14 @@ impl StrokeDabs {
         dabs.chunks(TOGETHER).for_each(|dabs| stroke_dabs.lay(dabs, scene));
         stroke_dabs
     }
-    /// Adds dabs that follow each other.
+    /// Adds successive dabs.
     pub fn lay(&mut self, dabs: &[Dab], scene: &Scene) {
         let placed: Vec<PlacedDab> = dabs.iter().map(|dab| self.place(*dab, scene)).collect();
         let first = self.dabs.len();
         self.dabs.extend_from_slice(dabs);
         for_each_tile_of(&placed, |i, at| self.touch((first + i) as u32, at));
     }
-    /// The memory it takes, about.
+    /// The approximate memory it takes.
     pub fn bytes(&self) -> u64 {
         let runs: usize = self.tiles.values().map(Vec::capacity).sum();
         let tiles = self.tiles.capacity() * size_of::<(TileAt, Vec<Range<u32>>)>();
@@ -82,7 +82,7 @@ impl StrokeDabs {
             self.grain = Some(StrokeGrain::new(grain, start));
         }
     }
-    /// What the grain leaves of each pixel of a tile, or of what stands for it on a sheet.
+    /// What the grain leaves of each pixel of a tile, or of what represents it on a sheet.
     pub fn grain(&self, scene: &Scene, at: TileAt) -> Option<Arc<GrainTile>> {
         self.grain.as_ref().map(|grain| grain.tile(scene, at).into())
     }
@@ -92,7 +92,7 @@ impl StrokeDabs {
         self.dabs.push(dab);
         tiles.iter().for_each(|&at| self.touch(i, at));
     }
-    /// The `i`th dab may touch a tile; of each tile they come in their order.
+    /// The `i`th dab may touch a tile; for each tile dabs are added in order.
     fn touch(&mut self, i: u32, at: TileAt) {
         let runs = self.tiles.entry(at).or_default();
         let is_full = runs.len() >= MAX_RUNS;
@@ -104,20 +104,20 @@ impl StrokeDabs {
     pub fn is_on(&self, scene: &Scene) -> bool {
         self.scene.is_same(scene)
     }
-    /// How many there are.
+    /// The number of dabs.
     #[cfg(test)]
     pub fn dabs(&self) -> usize {
         self.dabs.len()
     }
-    /// The tiles that they may touch, in no order; some may lie beyond the canvas.
+    /// The tiles that they may touch, in no order; some may be beyond the canvas.
     pub fn tiles(&self) -> impl Iterator<Item = TileAt> {
         self.tiles.keys().copied()
     }
-    /// What they were laid on.
+    /// The scene that they were laid on.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
-    /// The dabs that may touch a tile, in their order.
+    /// The dabs that may touch a tile, in order.
     pub fn on_tile(&self, at: TileAt) -> impl Iterator<Item = &Dab> {
         let runs = self.tiles.get(&at).into_iter().flatten();
         runs.flat_map(|run| &self.dabs[run.start as usize..run.end as usize])
@@ -125,7 +125,7 @@ impl StrokeDabs {
     pub fn place<'s>(&self, dab: Dab, scene: &'s Scene) -> PlacedDab<'s> {
         self.tip.place(dab, scene)
     }
-    /// An empty stroke tile for the stroke's dabs. `grain`: of the tile.
+    /// An empty stroke tile for the stroke's dabs. `grain`: the tile's.
     pub fn stroke_tile(&self, grain: Option<Arc<GrainTile>>) -> StrokeTile {
         let has_colors = self.varies_in_color || self.tip.brings_colors();
         let tile = if has_colors { StrokeTile::colors() } else { StrokeTile::one_color() };
@@ -140,10 +140,10 @@ impl StrokeDabs {
     }
 }
 
-/// The tiles of a canvas that a stroke may touch, a bit each: kept when its dabs are not.
+/// The tiles of a canvas that a stroke may touch, one bit each: kept when its dabs are not.
 pub(in crate::paint) struct TileReach {
     scene: Scene,
-    /// How many dabs there are.
+    /// The number of dabs.
     pub dabs: usize,
     /// Whole tiles.
     bounds: Rect,
@@ -153,7 +153,7 @@ pub(in crate::paint) struct TileReach {
 
 impl TileReach {
     pub fn new(scene: Scene, dabs: usize, tiles: impl Iterator<Item = TileAt> + Clone) -> Self {
-        // Beyond the canvas nothing is asked for.
+        // No tile beyond the canvas is requested.
         let canvas = scene.size.rect();
         let tiles = tiles.filter(|at| !at.rect().intersect(canvas).is_empty());
         let bounds = tiles.clone().fold(Rect::EMPTY, |r, at| r.union(at.rect()));
@@ -184,7 +184,7 @@ impl TileReach {
     }
 }
 
-/// Visits the tiles that each of some dabs may touch, with the dab's number; of a tile in their order.
+/// Visits the tiles that each of some dabs may touch, with the dab's number; for each tile in order.
 pub(in crate::paint) fn for_each_tile_of(dabs: &[PlacedDab], visit: impl FnMut(usize, TileAt)) {
     let bounds: Vec<&SupportBounds> = dabs.iter().map(PlacedDab::support).collect();
     support::for_each_tile_of(&bounds, visit);

@@ -1,6 +1,6 @@
-//! Many strokes on many tiles, with a bounded number of dabs in flight: each stroke is laid once for all the tiles that
-//! wait for it, painted on them, and forgotten. Floor 3. The same pixels as tile by tile (`render_tile`), which lays a
-//! stroke whose dabs are not kept once for each tile.
+//! Many strokes on many tiles, with a bounded number of dabs in flight: the dabs of each stroke are placed once for all
+//! the tiles that wait for it, painted on them, and dropped. Floor 3. The same pixels as tile by tile (`render_tile`),
+//! which places the dabs of a stroke that are not cached once for each tile.
 
 use super::Stroke;
 use super::dabs::{StrokeDabs, TileReach};
@@ -11,13 +11,13 @@ use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Dabs that are held at a time, but for the last stroke's, which may go beyond: some 28 MB.
+/// Dabs that are held at a time, apart from the last stroke's, which may exceed it: some 28 MB.
 const DABS_IN_FLIGHT: usize = 1 << 18;
 /// Tiles that are held at a time, in f32: 64 MB.
 const TILES_IN_FLIGHT: usize = 1 << 10;
 
-/// Whether [`render_tiles`] is to be preferred for so many tiles: some strokes cannot be kept, or there are so many
-/// that asking each tile for its strokes would take long. `None` if it is no longer wanted.
+/// Whether [`render_tiles`] is better for this many tiles: some strokes cannot be cached, or there are so many that
+/// looking up the strokes of each tile would take long. `None` if it is no longer wanted.
 pub fn are_heavy(
     strokes: &[Arc<Stroke>],
     scene: &Scene,
@@ -29,7 +29,7 @@ pub fn are_heavy(
         return is_wanted().then_some(true);
     }
     let front = scene.front();
-    // The first that cannot be kept ends it: the others would be laid in vain.
+    // The first that cannot be cached ends it: the others' dabs would be placed in vain.
     let lay = |stroke: &Arc<Stroke>| {
         if !is_wanted() {
             return Err(None);
@@ -81,7 +81,7 @@ pub fn render_many(
     Some(())
 }
 
-/// The dabs of a stroke; `None` where it is known to touch none of the tiles.
+/// The dabs of a stroke; `None` if it is known to touch none of the tiles.
 fn laid(stroke: &Stroke, front: &Scene, tiles: &[TileAt]) -> Option<Arc<StrokeDabs>> {
     let misses = |support: Arc<TileReach>| !tiles.iter().any(|&at| support.touches(at));
     (!stroke.known_support(front).is_some_and(misses)).then(|| stroke.stroke_dabs(front))
@@ -90,9 +90,9 @@ fn laid(stroke: &Stroke, front: &Scene, tiles: &[TileAt]) -> Option<Arc<StrokeDa
 /// A tile that strokes are being painted on.
 struct Wet {
     at: TileAt,
-    /// Once a stroke touched it.
+    /// Present once a stroke has touched it.
     pixels: Option<PlanarTile>,
-    /// Which strokes of the batch may touch it.
+    /// The strokes of the batch that may touch it.
     here: Vec<usize>,
 }
 
@@ -146,7 +146,7 @@ mod tests {
         let maps = Maps { normals, depth: Plane::filled(SIZE, 0.5), coverage: Plane::filled(SIZE, 255) };
         Scene { size: SIZE, surface: Some(Arc::new(Surface::new(maps).unwrap())) }
     }
-    /// Strokes across the canvas and beyond it, in turn painting, erasing, mixing and grained.
+    /// Strokes across the canvas and beyond it that paint, erase, mix and have grain in turn.
     fn strokes(n: u32) -> Vec<Arc<Stroke>> {
         let plain = Brush { size: 12.0, hardness: 0.4, flow: 0.6, ..Brush::default() };
         let brushes = [

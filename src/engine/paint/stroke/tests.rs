@@ -1,4 +1,4 @@
-//! Strokes against a scalar reference that evaluates the definition pixel by pixel over the whole canvas.
+//! Strokes compared with a scalar reference that evaluates the definition pixel by pixel over the whole canvas.
 
 mod stamps;
 
@@ -13,7 +13,7 @@ use proptest::prelude::*;
 
 const SIZE: Size = Size::new(150, 140);
 
-/// A ball on a canvas of its own, with depth and normals that agree.
+/// A ball on its own canvas, with matching depth and normals.
 fn ball() -> Scene {
     let at = |x: usize, y: usize| (vec2(x as f32, y as f32) + 0.5 - SIZE.center()) / 62.0;
     let height = |x: usize, y: usize| (1.0 - at(x, y).length_squared()).max(0.0).sqrt();
@@ -119,7 +119,7 @@ fn a_hard_flat_dab_covers_its_disc() {
 fn flow_adds_up_dab_by_dab_and_opacity_caps_the_whole() {
     let center = vec2(64.5, 64.5);
     let alpha = |flow: f32, opacity: f32, n: usize| {
-        // Dabs a hundredth of the diameter apart: as good as at one place.
+        // Dabs a hundredth of the diameter apart: practically at one point.
         let brush = Brush { size: 40.0, spacing: 0.0025, flow, opacity, hardness: 1.0, ..Brush::default() };
         let to = center + vec2(0.1 * (n - 1) as f32, 0.0);
         one(white(brush, Operator::None, vec![Sample::at(center), Sample::at(to)]), &flat()).pixel(64, 64)[3]
@@ -272,7 +272,7 @@ fn every_dab_has_its_own_colour_where_the_brush_varies_it() {
     assert!(colors.len() > 4, "{colors:?}");
 }
 
-/// D of a dab by MATH 2, written out again: q + L Σ …, or q + f_p (q − q_0), of the ball's own n̄ and z.
+/// D of a dab by MATH 2, written out again: q + L Σ …, or q + f_p (q − q_0), with the ball's own n̄ and z.
 fn moved_by_math(operator: Operator, q: Vec2, anchor: Vec2) -> Option<Vec2> {
     let over = |q: Vec2| {
         // The pixel that holds q, as the maps do.
@@ -319,7 +319,7 @@ fn driven_dabs_on_a_ball_lie_where_math_puts_them() {
             // At the silhouette depth falls so steeply that a pixel spans more than the dab.
             let Some(d) = moved_by_math(driven, q, at).filter(|_| q.distance(SIZE.center()) < 58.0) else { continue };
             let (distance, alpha) = (d.distance(at), grid.pixel(x, y)[3]);
-            // Away from the rim, by what a pixel spans there.
+            // Away from the rim, within what a pixel spans there.
             if distance < 14.0 {
                 assert_eq!(alpha, 255, "{operator:?} ({x}, {y}): {distance}");
                 inside += 1;

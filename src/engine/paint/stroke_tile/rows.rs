@@ -4,14 +4,14 @@ use super::{CoveredRow, DabPaint};
 use crate::raster::TILE;
 use crate::raster::planar::PixelRow;
 
-/// Adds a dab to a pixel's coverage a: with g how much of the pixel it covers and p which share of it it reaches,
+/// Adds a dab to a pixel's coverage a: with g its coverage of the pixel and p the share that it reaches,
 ///
 /// ```text
 /// M ← max(M, p),    a ← a + g / M · (c M − a)
 /// ```
 ///
-/// up to the ceiling c. What the dabs before left bare beyond M stays bare; of what they reached they took evenly. For
-/// p = 1 that is a ← a + g (c − a). What is already above the ceiling stays.
+/// up to the ceiling c. What earlier dabs left bare beyond M stays bare; what they reached they covered evenly. For p =
+/// 1 that is a ← a + g (c − a). Coverage above the ceiling does not change.
 #[inline(always)]
 pub fn raise(coverage: &mut f32, reach: &mut f32, g: f32, share: f32, ceiling: f32) {
     let most = if g > 0.0 && share > *reach { share } else { *reach };
@@ -21,7 +21,7 @@ pub fn raise(coverage: &mut f32, reach: &mut f32, g: f32, share: f32, ceiling: f
     *reach = most;
 }
 
-/// Adds coverage of weight f up to a ceiling; what is already above the ceiling stays.
+/// Adds coverage of weight f up to a ceiling; coverage above the ceiling does not change.
 #[inline(always)]
 fn raised(coverage: f32, f: f32, ceiling: f32) -> f32 {
     let room = ceiling - coverage;
@@ -29,14 +29,14 @@ fn raised(coverage: f32, f: f32, ceiling: f32) -> f32 {
 }
 
 /// One premultiplied pixel with a colour over it that covers g of it, k of what is there; up to a ceiling: colours mix
-/// as source over mixes them, coverage rises no further than the ceiling.
+/// as in source over, coverage rises no higher than the ceiling.
 #[inline(always)]
 fn mixed(p: [f32; 4], (g, k): (f32, f32), source: [f32; 3], ceiling: f32) -> [f32; 4] {
     let over = |c: usize| p[c] * (1.0 - k) + source[c];
     let a_over = p[3] * (1.0 - k) + g;
     let a = raised(p[3], k, ceiling);
     let (part, whole) = if ceiling < 1.0 && a_over > 0.0 && a < a_over { (a, a_over) } else { (1.0, 1.0) };
-    // Multiplied first: what is as much as the coverage stays so to the bit, however often dabs mix.
+    // Multiplied first: a channel equal to the coverage stays equal to the bit, however often dabs mix.
     [over(0), over(1), over(2), a_over].map(|v| v * part / whole)
 }
 
@@ -90,8 +90,8 @@ crate::widest! {
     }
 }
 
-/// Adds colours to a row from column `x` on, as many as `reach` has pixels; `source`: how much of each pixel is
-/// covered, the straight colour, and which share is reached.
+/// Adds colours to a row from column `x` on, as many as `reach` has pixels; `source`: the coverage of each pixel, the
+/// straight colour, and the share that is reached.
 pub(super) fn add_colors(
     source: impl Fn(usize) -> (f32, [f32; 3], f32),
     ceiling: f32,
@@ -106,7 +106,7 @@ pub(super) fn add_colors(
         let part = if *reach > 0.0 { f / *reach } else { 0.0 };
         let p = [r[x + i], g[x + i], b[x + i], a[x + i]];
         let color = color.map(|c| c * f);
-        // The ceiling holds of what is reached; 1 stays 1, which caps nothing.
+        // The ceiling applies to what is reached; 1 stays 1, which caps nothing.
         let ceiling = if ceiling < 1.0 { ceiling * *reach } else { 1.0 };
         [r[x + i], g[x + i], b[x + i], a[x + i]] = mixed(p, (f, part), color, ceiling);
     }

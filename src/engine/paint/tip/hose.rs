@@ -1,4 +1,4 @@
-//! Hoses: tips of several pictures, of which each dab takes one.
+//! Hoses: tips of several pictures, from which each dab takes one.
 //! Floor 3. The rules are those of GIMP's image hoses, so that imported hoses paint as they do there.
 
 use crate::math::hash;
@@ -7,8 +7,8 @@ use crate::paint::image::PictureSource;
 use std::f32::consts::TAU;
 use std::sync::Arc;
 
-/// A tip of several pictures, in one or more ranks: with ranks of 4 and 2, the first says which four pairs of pictures,
-/// the second which of the pair.
+/// A tip of several pictures, in one or more ranks: with ranks of 4 and 2, the first chooses one of four pairs of
+/// pictures, the second one of the pair.
 #[derive(Clone, PartialEq)]
 pub struct Hose {
     pictures: Arc<[PictureSource]>,
@@ -31,7 +31,7 @@ crate::named! {
         #[default]
         Incremental = "incremental",
         Random = "random",
-        /// Where the stroke is heading: the first is up, the others follow clockwise.
+        /// The stroke's direction: the first is up, the others follow clockwise.
         Angular = "angular",
         Pressure = "pressure",
         Speed = "velocity",
@@ -67,7 +67,7 @@ impl Hose {
     pub fn with_pictures(&self, pictures: Vec<PictureSource>) -> Self {
         Self { pictures: pictures.into(), ranks: self.ranks.clone() }
     }
-    /// The index of a dab's picture, below the number of pictures where there are any.
+    /// The index of a dab's picture, below the number of pictures if there are any.
     pub fn choose(&self, moment: &DabMoment) -> usize {
         let mut stride = self.ranks.iter().fold(1usize, |n, rank| n.saturating_mul(rank.count.max(1) as usize));
         let mut index = 0usize;
@@ -79,7 +79,7 @@ impl Hose {
         }
         index.min(self.pictures.len().saturating_sub(1))
     }
-    /// The longer side of a picture as a share of the longest one's: the diameter belongs to that.
+    /// The longer side of a picture as a ratio of the longest one's, which is the diameter.
     pub fn share(&self, index: usize) -> f32 {
         let side = |source: &PictureSource| source.picture.size.longer_side();
         let longest = self.pictures.iter().map(side).fold(1.0, f32::max);

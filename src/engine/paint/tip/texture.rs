@@ -18,7 +18,7 @@ pub enum TipTexture {
 /// The ends of a brush's hairs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bristles {
-    /// Of hairs, `[1, 1000]`.
+    /// Number of hairs, `[1, 1000]`.
     pub count: u32,
     pub seed: u32,
 }
@@ -53,12 +53,12 @@ impl Default for Noise {
     }
 }
 
-/// Cached pictures: more than one painting uses.
+/// Cached pictures: more than a painting uses.
 const KEPT: usize = 32;
 static MADE: Mutex<Vec<((TipTexture, u32), PictureSource)>> = Mutex::new(Vec::new());
 
 impl TipTexture {
-    /// The picture for dabs of a diameter in px: coverage, opaque and grey. The same one for every brush that asks.
+    /// The picture for dabs of a diameter in px: coverage, opaque and grey. Every brush gets the same one.
     pub fn source(self, diameter_px: f32) -> PictureSource {
         // For NaN the comparisons give the smallest.
         let side = if diameter_px > 400.0 {

@@ -1,4 +1,4 @@
-//! The round tip's loops over rows of pixels. Floor 3. Not here: what a pixel is judged by and takes (`round`).
+//! The round tip's loops over rows of pixels. Floor 3. Not here: how a pixel is classified and covered (`round`).
 
 use super::{AT_CENTER, BEYOND, CHUNK, RoundTip, RowPaint, RowZones, WITHIN, add_within, zone_of};
 use crate::paint::dab::{DeformationField, PixelSpan, SpanNeighbours};
@@ -11,7 +11,7 @@ use std::ops::Range;
 /// A pixel all of whose neighbours continue its surface.
 const INSIDE: u8 = links::LEFT | links::RIGHT | links::UP | links::DOWN;
 
-/// How long a pixel of each block of a tile is at most, px; row by row.
+/// The greatest length of a pixel in each block of a tile, px; row by row.
 pub(in crate::paint::dab) type BlockPixels = [f32; TILE_BLOCKS * TILE_BLOCKS];
 
 /// A part of a tile that a bent dab may touch.
@@ -23,11 +23,11 @@ pub(in crate::paint::dab) struct BentPart<'p> {
     pub pixel: &'p BlockPixels,
 }
 
-/// The coverage and the reach of all pixels of a tile.
+/// The coverage and reach of all pixels of a tile.
 pub(in crate::paint::dab) type TilePlanes<'t> = (&'t mut [f32; TILE_AREA], &'t mut [f32; TILE_AREA]);
 
 crate::widest! {
-    /// Where D is the identity; (x, y) is the centre of the first pixel.
+    /// If D is the identity; (x, y) is the centre of the first pixel.
     pub(in crate::paint::dab) fn flat_row(x: f32, y: f32, tip: &RoundTip, row: &mut RowZones, paint: RowPaint) {
         flat_span(x, y, tip, row, paint);
     }
@@ -51,7 +51,7 @@ crate::widest! {
         tip.add(row, 0..n, paint);
     }
     /// The same over all rows of a part of a tile, to the same bits. Chunks that lie beyond the dab or within its
-    /// hardness by their distance alone are not judged.
+    /// hardness by their distance alone are not classified.
     pub(in crate::paint::dab) fn bent_rows(
         d: &DeformationField,
         part: BentPart,
@@ -68,7 +68,7 @@ crate::widest! {
     }
 }
 
-/// Which distances, squared, px, are surely beyond a dab and within its hardness in each column of a row of blocks.
+/// The squared distances, px, that are surely beyond a dab and within its hardness in each column of a row of blocks.
 struct SureZones {
     row: Option<usize>,
     beyond: [f32; TILE],
@@ -154,7 +154,7 @@ fn bent_span(d: SpanNeighbours, sure: (&[f32], &[f32]), tip: &RoundTip, row: &mu
     }
 }
 
-/// What the distances of pixels say of their zones.
+/// What the distances of pixels say about their zones.
 #[inline(always)]
 fn sort(x: &[f32], y: &[f32], sure: (&[f32], &[f32]), tip: &RoundTip, near: &mut [u32]) {
     let n = near.len();
@@ -162,12 +162,12 @@ fn sort(x: &[f32], y: &[f32], sure: (&[f32], &[f32]), tip: &RoundTip, near: &mut
     for i in 0..n {
         let (dx, dy) = (x[i] - tip.at.x, y[i] - tip.at.y);
         let squared = dx * dx + dy * dy;
-        // What is no number is neither.
+        // NaN is neither.
         near[i] = if squared > beyond[i] { BEYOND } else { 0 } | if squared < within[i] { WITHIN } else { 0 };
     }
 }
 
-/// What pixels of a row are judged by: D of them and of their neighbours.
+/// What pixels of a row are classified by: D at them and at their neighbours.
 #[inline(always)]
 fn judge(d: SpanNeighbours, pixels: Range<usize>, tip: &RoundTip, row: &mut RowZones) {
     if are_inside(&d.linked[pixels.clone()]) {
@@ -227,7 +227,7 @@ fn judge_rim<'d>(d: SpanNeighbours<'d>, pixels: Range<usize>, tip: &RoundTip, ro
     }
 }
 
-/// The derivative at `here` from those of its two neighbours that are linked; `flat`, the identity's, without any.
+/// The derivative at `here` from its linked neighbours, of two; `flat`, the identity's, without any.
 #[inline(always)]
 pub fn slope(has_before: bool, has_after: bool, before: f32, here: f32, after: f32, flat: f32) -> f32 {
     let low = if has_before { before } else { here };

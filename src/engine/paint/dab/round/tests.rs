@@ -1,4 +1,4 @@
-//! All rows of a dab at once against row by row, and pixels that count whole against those that may not.
+//! All rows of a dab at once compared with row by row, and pixels that count whole with those that may not.
 
 use super::*;
 use crate::math::{Size, hash, vec2, vec3};
@@ -36,7 +36,7 @@ fn dab(seed: u32) -> Dab {
     }
 }
 
-/// Coverage and reach of a tile, painted row by row, each pixel judged.
+/// Coverage and reach of a tile, painted row by row, with each pixel classified.
 fn row_by_row(placed: &PlacedDab, at: TileAt, [coverage, reach]: &mut [Vec<f32>; 2]) {
     let part = placed.touched(at);
     if part.area.is_empty() {

@@ -48,7 +48,7 @@ proptest! {
         let operator = Operator::Normal { alpha: 0.3, beta: 1.0, detail: 0.0 };
         let red = Color::parse("#c04020").unwrap();
         let beneath = Arc::new(Stroke::new(Brush::default(), operator, red, samples(!seed, 6)));
-        // Soft, with tiles wholly selected and tiles not at all; every other brush keeps to it.
+        // Soft, with tiles that are wholly selected or not at all; every other brush respects it.
         let soft = Plane::from_fn(SIZE, |x, y| ((x as i32 - 100) * 3 + y as i32 / 4).clamp(0, 255) as u8);
         let selection = StrokeSelection::new(Arc::new(Selection::new(CoverageGrid::from_plane(&soft, 0, 0))));
         for (i, brush) in brushes().into_iter().enumerate() {

@@ -24,7 +24,7 @@ fn a_coloured_stamp_turns_counter_clockwise_and_keeps_its_colours() {
     let brush = Brush { size: 64.0, rotation: 90.0, tip: leaf(), ..Brush::default() };
     let stroke = Stroke::new(brush, Operator::None, Color::BLACK, vec![Sample::at(vec2(70.0, 70.0))]);
     let grid = one(stroke, &flat());
-    // The leaf's right half, green, is seen at the top, as large as the picture: 64 px long, 28 wide.
+    // The leaf's right half, green, is at the top, as large as the picture: 64 px long, 28 wide.
     assert_eq!(grid.pixel(70, 50), [0, 255, 0, 255]);
     assert_eq!(grid.pixel(70, 90), [255, 0, 0, 255]);
     assert_eq!(grid.pixel(50, 70)[3], 0);
