@@ -7,6 +7,6 @@ pub mod session;
 
 pub mod cli;
 
-// The floors beneath, under their own names.
+// The lower floors, under their own names.
 use rilievo_engine::{Error, Remedy, Result, document, math, memory, paint, raster, shading, shape, surface};
 use rilievo_io as io;

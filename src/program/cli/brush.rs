@@ -20,8 +20,8 @@ pub struct BrushArgs {
     /// The brush, or the collection of brushes, to read
     #[arg(value_name = "FROM")]
     from: PathBuf,
-    /// A .json to write the brush to, its pictures beside it; or a .png of a stroke over a ball. Of a collection each
-    /// brush goes to a file of its own, numbered
+    /// A .json to write the brush to, with its pictures next to it; or a .png of a stroke over a ball. Each brush of a
+    /// collection goes to a numbered file of its own
     #[arg(value_name = "TO")]
     to: PathBuf,
     /// Side of the picture, in pixels
@@ -53,7 +53,7 @@ pub fn run(args: &BrushArgs) -> Result<()> {
             let to = if count == 1 { args.to.clone() } else { numbered(&args.to, i + 1) };
             made.push(ConvertedBrush::of(&to, &preset, args.side, &terms)?);
         }
-        // All may be written, or none is.
+        // Either all may be written, or none is.
         made.into_iter().try_for_each(|made| made.write(&terms))
     })
 }
@@ -65,14 +65,14 @@ fn numbered(file: &Path, number: usize) -> PathBuf {
     file.with_file_name(format!("{stem}-{number}.{extension}"))
 }
 
-/// What a brush became, not written yet.
+/// A converted brush, not written yet.
 enum ConvertedBrush {
     Preset(Box<brush::Encoded>),
     Picture(OutputFile, TileGrid, Size),
 }
 
 impl ConvertedBrush {
-    /// Fails where it may not be written.
+    /// Fails if it may not be written.
     fn of(to: &Path, preset: &BrushPreset, side: u32, terms: &Terms) -> Result<Self> {
         let extension = to.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         if extension == "json" {

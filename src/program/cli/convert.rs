@@ -1,5 +1,5 @@
 //! `rilievo convert`: from any file that can be opened to any that can be written.
-//! Floor 7. The formats themselves are in `io`; losses are reported.
+//! Floor 7. Losses are reported. Not here: the formats themselves (`io`).
 
 use super::force::Force;
 use super::painted::{refuse_incomplete, scaled};
@@ -16,8 +16,8 @@ use std::path::{Path, PathBuf};
 
 /// Convert between projects, Photoshop files, recipes and pictures
 ///
-/// What is read is never written over: not FROM, nor any picture, map or tip that it names. Another file is replaced
-/// with --force alone; of a project the previous version is kept as TO~.
+/// Files that are read are never written over: neither FROM nor any picture, map or tip that it names. Another file is
+/// replaced only with --force; the previous version of a project is kept as TO~.
 #[derive(clap::Args)]
 pub struct ConvertArgs {
     /// What to read: .ora, .psd, .json, or a picture
@@ -36,7 +36,7 @@ pub struct ConvertArgs {
     /// own
     #[arg(long)]
     layers: bool,
-    /// Bits a channel: 8 or 16 of a .png or .tif (8 where absent), 16 or 32 of an .exr (16)
+    /// Bits per channel: 8 or 16 for a .png or .tif (default 8), 16 or 32 for an .exr (default 16)
     #[arg(long, value_name = "N", value_parser = values::depth)]
     bits: Option<u8>,
     /// Dots per inch that a .png says it is printed at
@@ -77,7 +77,7 @@ pub fn run(args: &ConvertArgs) -> Result<()> {
                 picture(args, &document, format, terms)?;
             }
         }
-        // Beside an error, notes would only hide it.
+        // Notes would only hide an error.
         tell(&args.from, &notes);
         Ok(())
     })
@@ -110,7 +110,7 @@ fn picture(args: &ConvertArgs, document: &Document, format: ExportFormat, terms:
         crop,
         bits: args.bits,
     };
-    // Before the work that it takes to paint.
+    // Checked before the work of painting.
     let bits = format.bits(&args.to, args.bits)?;
     let budget = args.limits.budget();
     let is_exr = format == ExportFormat::Exr;
@@ -125,8 +125,8 @@ fn picture(args: &ConvertArgs, document: &Document, format: ExportFormat, terms:
     progress::shown(|progress| target.write_document(document, &options, &budget, progress))
 }
 
-/// Every layer with pixels, hidden ones too, beside the name that was asked for: `out-00-sky.png`. None where one of
-/// them would take the place of a file that must stay.
+/// Every layer with pixels, hidden ones too, by a name made from the requested one: `out-00-sky.png`. None if one of
+/// them would replace a file that must stay.
 fn each_layer(args: &ConvertArgs, document: &Document, options: &ExportOptions, terms: &Terms) -> Result<()> {
     let stem = args.to.file_stem().unwrap_or_default().to_string_lossy();
     let extension = args.to.extension().unwrap_or_default().to_string_lossy();
@@ -147,7 +147,7 @@ fn each_layer(args: &ConvertArgs, document: &Document, options: &ExportOptions, 
     Ok(())
 }
 
-/// The smallest rectangle that holds the surface; `None` where there is none.
+/// The smallest rectangle that holds the surface; `None` if there is none.
 fn covered(document: &Document) -> Option<Rect> {
     let coverage = document.surface.as_deref()?.coverage_plane();
     let mut rect = Rect::EMPTY;

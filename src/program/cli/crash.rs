@@ -6,7 +6,7 @@ use crate::memory::OutOfMemory;
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook};
 use std::sync::{Mutex, PoisonError};
 
-/// Where the first panic happened; panics of decoders are caught and are no crash.
+/// Where the first panic happened; panics of decoders are caught and do not count.
 static LAST: Mutex<Option<String>> = Mutex::new(None);
 
 /// The message of any failure, including a panic.
@@ -33,7 +33,7 @@ pub fn caught(work: impl FnOnce() -> Result<()>) -> std::result::Result<(), Stri
 mod tests {
     use super::*;
 
-    /// There is one hook for panics: the tests that set it take turns.
+    /// There is only one panic hook: the tests that set it take turns.
     fn turn() -> std::sync::MutexGuard<'static, ()> {
         static TURN: Mutex<()> = Mutex::new(());
         TURN.lock().unwrap_or_else(PoisonError::into_inner)

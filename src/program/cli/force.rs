@@ -1,24 +1,24 @@
-//! What a command may write over, as every subcommand that writes takes it.
-//! Floor 7. That no command writes over what it reads is `io::replace`'s.
+//! What a command may write over: an option of every subcommand that writes. Floor 7. Not here: that no command writes
+//! over what it reads (`io::replace`).
 
 use crate::io::{Overwrite, Terms};
 use crate::{Error, Result};
 use std::path::PathBuf;
 
-/// Whether files that are there already may be replaced.
+/// Whether existing files may be replaced.
 #[derive(clap::Args, Clone, Copy)]
 pub struct Force {
-    /// Replace files that are there already, read-only ones too; what the command reads is never written over
+    /// Replace existing files, read-only ones too; files that the command reads are never written over
     #[arg(long)]
     force: bool,
 }
 
 impl Force {
-    /// For what is made of a document: nothing that is there is replaced unasked.
+    /// For what is made of a document: no existing file is replaced without the option.
     pub fn export(self, reads: Vec<PathBuf>) -> Terms {
         Terms::export(self.or(Overwrite::Nothing), reads)
     }
-    /// For a project: the same, and the previous version is kept beside it.
+    /// For a project: the same, and the previous version is kept next to it.
     pub fn project(self, reads: Vec<PathBuf>) -> Terms {
         Terms { keeps_previous: true, ..self.export(reads) }
     }

@@ -24,7 +24,7 @@
 //! ```
 //!
 //! `role` is normal, depth, mask, layers (an EXR of several) or picture. `how` is given, found or assumed. `surface`
-//! can be pasted into a recipe: it spells out what was detected.
+//! can be pasted into a recipe: it states what was detected.
 
 mod brushes;
 mod documents;
@@ -41,7 +41,7 @@ use documents::DocumentReport;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
-/// Say what files are: documents with their layers, pictures and how they would be understood as normal and depth maps
+/// Describe files: documents with their layers, pictures and how they would be read as normal and depth maps
 #[derive(clap::Args)]
 pub struct InfoArgs {
     /// Projects, recipes, normal maps, depth maps, masks, EXR files, pictures
@@ -213,7 +213,7 @@ impl MapFiles {
         };
         Self { name: name.into(), files, source }
     }
-    /// The source with everything that was detected spelled out.
+    /// The source with all detected conventions stated.
     fn spelled(&self, findings: &Findings) -> SurfaceSource {
         let mut source = self.source.clone();
         if let (Some(map), Some(convention)) = (&mut source.normal, &findings.normal) {

@@ -15,7 +15,7 @@ pub struct LimitArgs {
     /// Pixels of any picture
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000_000_000))]
     max_pixels: Option<u64>,
-    /// Memory that reading and painting may take, such as 800M or 6G; what is free, unless said
+    /// Memory that reading and painting may take, such as 800M or 6G; by default, what is free
     #[arg(long, value_name = "SIZE", value_parser = bytes)]
     max_memory: Option<u64>,
     /// Threads to work with; the result is the same with any number
@@ -23,7 +23,7 @@ pub struct LimitArgs {
     threads: Option<u16>,
 }
 
-/// A number of bytes, with K, M or G behind it for thousands, millions or thousands of millions of them.
+/// A number of bytes; a suffix K, M or G means thousands, millions or billions.
 fn bytes(text: &str) -> std::result::Result<u64, String> {
     let short = text.trim_end_matches(['b', 'B']);
     let units = [("k", 1e3), ("K", 1e3), ("m", 1e6), ("M", 1e6), ("g", 1e9), ("G", 1e9)];
@@ -45,7 +45,7 @@ impl LimitArgs {
             ..usual
         }
     }
-    /// Asks for what painting a document takes, before it begins.
+    /// Checks, before painting a document, that its memory is available.
     pub fn room_to_paint(&self, file: &Path, document: &Document) -> Result<()> {
         let what = format!("painting {} pixels", document.size);
         self.budget().room(file, &what, document.flattening_bytes())

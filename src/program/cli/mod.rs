@@ -1,7 +1,7 @@
 //! Floor 7: the command line. Each subcommand is one file; this one parses, dispatches and turns errors into exit
 //! codes.
 //!
-//! Exit code 0; 1 with one sentence on standard error, `rilievo: FILE: field: reason`; 2 for a misuse of the command
+//! Exit code 0; 1 with one sentence on standard error, `rilievo: FILE: field: reason`; 2 for wrong usage of the command
 //! line.
 
 mod brush;
@@ -27,7 +27,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use std::io::{ErrorKind, Write};
 use std::{ffi::OsString, path::PathBuf, process::ExitCode};
 
-/// Opens the window on some files and returns when it is closed. It is passed in, because the window is on the same
+/// Opens the window on some files and returns when it is closed. It is passed in because the window is on the same
 /// floor.
 pub type OpenWindow = fn(Vec<PathBuf>) -> Result<()>;
 
@@ -51,9 +51,9 @@ enum CliCommand {
     View(view::ViewArgs),
 }
 
-/// Runs the program on its arguments. Exit code 0; 1 with a sentence on standard error; 2 for a misuse.
+/// Runs the program on its arguments. Exit code 0; 1 with a sentence on standard error; 2 for wrong usage.
 ///
-/// `window` opens the window on these files, in a build that has one.
+/// `window` opens the window on these files, if the build has one.
 pub fn run(arguments: impl IntoIterator<Item = OsString>, window: Option<OpenWindow>) -> ExitCode {
     let parsed = match Arguments::try_parse_from(with_command(arguments.into_iter().collect(), window.is_some())) {
         Ok(parsed) => parsed,
@@ -100,7 +100,7 @@ fn with_command(mut arguments: Vec<OsString>, has_window: bool) -> Vec<OsString>
     arguments
 }
 
-/// Writes to standard output. A reader that closed it has read enough: that is no failure.
+/// Writes to standard output. A reader that closed it has read enough: this is no failure.
 pub fn print(text: &str) -> Result<()> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
@@ -121,13 +121,13 @@ pub fn with_advice(error: &Error) -> String {
     format!("{error}{option}")
 }
 
-/// Writes lines to standard output, without what would steer the terminal.
+/// Writes lines to standard output, without terminal control sequences.
 pub fn print_lines(text: &str) -> Result<()> {
     print(&text.split('\n').map(printable).collect::<Vec<_>>().join("\n"))
 }
 
-/// One line without control characters, nor those that turn the direction of what follows: the name of a file or a
-/// layer must not steer the terminal.
+/// One line without control characters and without those that reverse the direction of text: the name of a file or a
+/// layer must not control the terminal.
 fn printable(sentence: &str) -> String {
     let steers = |c: char| {
         c.is_control() || matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')

@@ -5,7 +5,7 @@ use super::OpenWindow;
 use crate::{Error, Result};
 use std::path::PathBuf;
 
-/// Open the window; files alone, or nothing, do the same
+/// Open the window; giving only files, or nothing, does the same
 #[derive(clap::Args)]
 pub struct OpenArgs {
     /// Projects, recipes, pictures, normal or depth maps
@@ -18,7 +18,7 @@ pub fn run(args: OpenArgs, window: Option<OpenWindow>) -> Result<()> {
     window.ok_or_else(none)?(args.files.into_iter().map(whole).collect())
 }
 
-/// A name from the root, so that a folder can give its name to what lies in it.
+/// An absolute name, so that a folder can give its name to what lies in it.
 fn whole(file: PathBuf) -> PathBuf {
     std::path::absolute(&file).unwrap_or(file)
 }

@@ -1,4 +1,4 @@
-//! What every command does that paints a document: it must be complete, and may be of another size.
+//! What every command that paints a document does: the document must be complete, and may get another size.
 //! Floor 7.
 
 use super::LimitArgs;
@@ -23,7 +23,7 @@ pub fn scaled(file: &Path, factor: f32, limits: &LimitArgs, document: Document) 
     }
     let size = document.size.scaled(factor);
     limits.budget().size(file, size.width.into(), size.height.into())?;
-    // A surface is made anew of normals, depth and coverage; layers are copied.
+    // A surface is made again from normals, depth and coverage; layers are copied.
     let a_pixel = if document.surface.is_some() { 40 } else { 8 };
     limits.budget().room(file, &format!("a canvas of {size} pixels"), size.area() as u64 * a_pixel)?;
     document.scaled(factor).map_err(|error| Error::invalid(file, "--scale", error))

@@ -22,7 +22,7 @@ pub fn shown<T>(work: impl FnOnce(&Progress) -> T) -> T {
         let watched = &progress;
         scope.spawn(move || draw(watched, || is_over.recv_timeout(REDRAW) == Err(RecvTimeoutError::Timeout)));
         let result = work(&progress);
-        // Dropping it wakes the drawing thread; a panic drops it as well.
+        // Dropping it wakes the drawing thread; a panic drops it, too.
         drop(over);
         result
     })

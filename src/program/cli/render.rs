@@ -21,10 +21,10 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args)]
 #[command(group(ArgGroup::new("maps").args(["normal", "depth"]).multiple(true)))]
 pub struct RenderArgs {
-    /// The project (.ora), or the recipe: a JSON file; the files it names lie beside it
+    /// The project (.ora), or the recipe: a JSON file, next to the files that it names
     #[arg(value_name = "DOC")]
     document: PathBuf,
-    /// Where the picture goes: .png, .exr, .jpg, .webp or .tif; one that is there is replaced with --force alone
+    /// Where the picture goes: .png, .exr, .jpg, .webp or .tif; an existing one is replaced only with --force
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Put the painting on another object: its normal map
@@ -33,10 +33,10 @@ pub struct RenderArgs {
     /// Put the painting on another object: its depth map
     #[arg(long, value_name = "FILE")]
     depth: Option<PathBuf>,
-    /// What its normals mean: auto (found), opengl (green up) or directx (green down)
+    /// What its normals mean: auto (detected), opengl (green up) or directx (green down)
     #[arg(long, value_name = "WORD", default_value = "auto", requires = "normal", value_parser = convention)]
     convention: NormalConvention,
-    /// Which numbers of its depth are nearer: auto (found), low or high
+    /// Which numbers of its depth are nearer: auto (detected), low or high
     #[arg(long, value_name = "END", default_value = "auto", requires = "depth", value_parser = near)]
     near: Near,
     /// The other object's mask
@@ -55,7 +55,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "N", default_value_t = ExportOptions::default().quality,
           value_parser = clap::value_parser!(u8).range(1..=100))]
     quality: u8,
-    /// Bits a channel: 8 or 16 of a .png or .tif (8 where absent), 16 or 32 of an .exr (16)
+    /// Bits per channel: 8 or 16 for a .png or .tif (default 8), 16 or 32 for an .exr (default 16)
     #[arg(long, value_name = "N", value_parser = values::depth)]
     bits: Option<u8>,
     #[command(flatten)]
@@ -91,7 +91,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
             ..ExportOptions::default()
         };
         progress::shown(|progress| target.write_document(&shown, &options, &args.limits.budget(), progress))?;
-        // Beside an error, notes would only hide it.
+        // Notes would only hide an error.
         tell(&args.document, &notes);
         Ok(())
     })
@@ -100,7 +100,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
 struct LoadedDocument {
     document: Document,
     notes: Vec<String>,
-    /// Every file it was made from.
+    /// Every file that it was made from.
     reads: Vec<PathBuf>,
 }
 

@@ -9,10 +9,10 @@ use crate::session::{Autosave, Session, is_same};
 use crate::{Error, Result};
 use std::path::PathBuf;
 
-/// Do what a replay file says, line by line: actions as the window does them, files named as the file names them
+/// Perform a replay file line by line: the same actions as in the window, with file names as the replay gives them
 #[derive(clap::Args)]
 pub struct ReplayArgs {
-    /// The replay: one JSON object a line
+    /// The replay: one JSON object per line
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// Keep recovery logs in this folder as the window does, and print every step once it is in its log
@@ -44,7 +44,7 @@ pub fn run(args: &ReplayArgs) -> Result<()> {
         Ok(())
     })?;
     session.close();
-    // What was refused, and what was found out about files.
+    // What was refused, and what was detected in files.
     super::told::tell(&args.file, &session.notes);
     Ok(())
 }

@@ -1,5 +1,5 @@
-//! `rilievo shape`: maps for a drawing that has none. Floor 7. Not here: what a shape is made of
-//! (`document::parts`); the files are `io::export::shape`'s.
+//! `rilievo shape`: maps for a drawing that has none. Floor 7. Not here: what a shape is made of (`document::parts`),
+//! the files (`io::export::shape`).
 
 use super::force::Force;
 use super::{LimitArgs, values};
@@ -28,28 +28,28 @@ pub struct ShapeArgs {
     /// A picture of the same size with a flat colour for each part
     #[arg(long, value_name = "FILE")]
     flats: Option<PathBuf>,
-    /// Where the maps go; made if it is not there
+    /// Where the maps go; created if it does not exist
     #[arg(short, long, value_name = "FOLDER")]
     output: PathBuf,
     /// How parts are rounded
     #[arg(long, value_name = "PRESET", default_value = "pillow", value_parser = presets())]
     preset: Inflation,
-    /// Factor of the height, in place of the preset's
+    /// Factor of the height, instead of the preset's
     #[arg(long, value_name = "FACTOR", value_parser = puff)]
     puff: Option<f32>,
-    /// 0 a pillow to 1 a tube, in place of the preset's
+    /// 0 a pillow to 1 a tube, instead of the preset's
     #[arg(long, value_name = "SHARE", value_parser = profile)]
     profile: Option<f32>,
-    /// Degrees that the rim turns, 90 for a silhouette, in place of the preset's
+    /// Degrees that the rim turns, 90 for a silhouette, instead of the preset's
     #[arg(long, value_name = "DEGREES", value_parser = rim)]
     rim: Option<f32>,
     /// Where green points in the normals: up (opengl) or down (directx)
     #[arg(long, value_name = "WORD", default_value = "opengl", value_parser = ["opengl", "directx"])]
     convention: String,
-    /// Bits a channel of a PNG: 8 or 16
+    /// Bits per channel of a PNG: 8 or 16
     #[arg(long, value_name = "N", default_value_t = 16, value_parser = values::bits)]
     bits: u8,
-    /// The kind of file: png, or exr with 32 bits a channel
+    /// The kind of file: png, or exr with 32 bits per channel
     #[arg(long, value_name = "FORMAT", default_value = "png", value_parser = ["png", "exr"])]
     format: String,
     #[command(flatten)]
@@ -96,7 +96,7 @@ pub fn run(args: &ShapeArgs) -> Result<()> {
             is_exr: args.format == "exr",
         };
         let maps = ShapeMap::ALL.map(|(map, _)| map);
-        // The name's own ending, whichever it is, is no part of it.
+        // The extension of the name is not part of it.
         let base = args.output.join(format!("{stem}.{}", args.format));
         ShapeFiles::new(&base, &maps, options, &args.force.export(reads))?.write(surface).map(drop)
     })
@@ -111,7 +111,7 @@ fn shaped(args: &ShapeArgs) -> Result<Document> {
         rim_deg: args.rim.unwrap_or(args.preset.rim_deg),
     };
     let (size, drawing) = tiles(&args.drawing, &budget)?;
-    // Planes of the equation and its coarser grids, of the form, and of the surface.
+    // Planes of the equation and its coarser grids, the form, and the surface.
     const BYTES_A_PIXEL: u64 = 160;
     budget.room(&args.drawing, &format!("the shape of {size} pixels"), size.area() as u64 * BYTES_A_PIXEL)?;
     let (parts, layers) = match &args.flats {

@@ -12,7 +12,7 @@ pub fn tell(file: &Path, notes: &[String]) {
     }
 }
 
-/// A line on standard error, from which a name cannot steer the terminal.
+/// A line on standard error, in which a name cannot control the terminal.
 pub fn say(line: &str) {
     eprintln!("{}", super::printable(line));
 }

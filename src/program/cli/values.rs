@@ -8,7 +8,7 @@ pub fn bits(text: &str) -> std::result::Result<u8, String> {
     bits.ok_or_else(|| "a channel has 8 or 16 bits".to_owned())
 }
 
-/// Of a picture; which of them it may have is its format's.
+/// Bits of a picture; its format says which it may have.
 pub fn depth(text: &str) -> std::result::Result<u8, String> {
     let bits = text.parse().ok().filter(|bits| [8, 16, 32].contains(bits));
     bits.ok_or_else(|| "a channel has 8, 16 or 32 bits".to_owned())

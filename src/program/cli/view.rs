@@ -1,5 +1,5 @@
 //! `rilievo view`: the maps of a document, or of loose files, as pictures.
-//! Floor 7. The views are in `document::view`.
+//! Floor 7. Not here: the views (`document::view`).
 
 use super::LimitArgs;
 use super::force::Force;
@@ -25,14 +25,14 @@ pub struct ViewArgs {
     /// A recipe, or normal, depth and mask maps told apart by their names (pot_n.png, pot_depth.exr, pot_mask.png)
     #[arg(value_name = "FILES")]
     files: Vec<PathBuf>,
-    /// What to show; “sheet” is all of it side by side
+    /// What to show; “sheet” shows all views side by side
     #[arg(long, value_name = "VIEW", default_value = "sheet", value_parser = shown())]
     show: ShowArg,
     /// Where the picture goes; a folder gets one picture for every view
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// The layer whose anchors or operator are shown, else the topmost that has any; with “unwrapped” the layer that is
-    /// shown, else the whole painting
+    /// The layer whose anchors or operator are shown, else the topmost that has any; with “unwrapped”, the layer that
+    /// is shown, else the whole painting
     #[arg(long, value_name = "NAME")]
     layer: Option<String>,
     /// The normal map, whatever its name
@@ -47,7 +47,7 @@ pub struct ViewArgs {
     /// With “unwrapped”: pixels of the picture along one of the plane
     #[arg(long, value_name = "FACTOR", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=4))]
     scale: u32,
-    /// Curvature scale in pixels: how soon curvature is shown as strong
+    /// Curvature scale in pixels: a larger one shows curvature as stronger
     #[arg(long, value_name = "PX", value_parser = not_negative,
           default_value_t = ViewOptions::default().curvature_scale_px)]
     curvature_scale: f32,
@@ -82,7 +82,7 @@ fn not_negative(text: &str) -> std::result::Result<f32, String> {
         .ok_or_else(|| "it must be a number, 0 or more".into())
 }
 
-/// Draws what was asked for.
+/// Draws what was requested.
 pub fn run(args: &ViewArgs) -> Result<()> {
     args.limits.install(|| {
         let (document, reads) = match args.show {
@@ -101,7 +101,7 @@ pub fn run(args: &ViewArgs) -> Result<()> {
                 let file = args.output.join(view.name()).with_extension("png");
                 Ok((view, OutputFile::new(&file, args.force.export(reads.clone()))?))
             };
-            // All are possible, or none is drawn.
+            // Either all are possible, or none is drawn.
             let targets: Vec<_> = view::available(&document, layer).into_iter().map(target).collect::<Result<_>>()?;
             return targets.into_iter().try_for_each(|(view, target)| write(&target, &draw(view)?));
         }
@@ -113,7 +113,7 @@ pub fn run(args: &ViewArgs) -> Result<()> {
                 let seen = view::unwrapped(&document, layer, options, &Progress::default()).map_err(refused)?;
                 let picture = seen.picture().ok_or_else(|| refused(ViewUnavailable::NoMemory))?;
                 write(&target, &picture)?;
-                // What lays the picture back.
+                // What puts the picture back.
                 println!("{}", layer_line(&document, &args.output, &seen, picture));
                 Ok(())
             }
@@ -171,7 +171,7 @@ fn opened(args: &ViewArgs) -> Result<(Document, Vec<PathBuf>)> {
     }
 }
 
-/// A document of nothing but a surface.
+/// A document with only a surface.
 fn of_maps(args: &ViewArgs, budget: &Budget) -> Result<(Document, Vec<PathBuf>)> {
     let mut files = UserFiles::default();
     let sources = sources(args, &mut files)?;

@@ -1,6 +1,6 @@
 //! Recovery of the open documents: each has a log that follows its edits and is deleted when it is closed. After an
-//! accident, lost documents are recovered. Floor 6. The logs and their workers are in `io::recovery`
-//! (docs/PROJECTS.md).
+//! accident, lost documents are recovered. Floor 6. Not here: the logs and their workers (`io::recovery`,
+//! docs/PROJECTS.md).
 
 use super::{OpenDocument, is_same};
 use crate::Result;
@@ -14,11 +14,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// The longest wait until an edit is written. The record of a stroke takes a fraction of it; that of a large drawing
+/// The longest wait until an edit is written. The record of a stroke takes a fraction of this; that of a large drawing
 /// continues in the background.
 const PATIENCE: Duration = Duration::from_millis(8);
-/// How long a killed program may take to end: with many threads on a busy computer it may still hold its logs when it
-/// is started again.
+/// How long a killed program may take to end: on a busy computer it may still hold its logs when it is started again.
 const DYING: Duration = Duration::from_secs(5);
 const LOOK_AGAIN: Duration = Duration::from_millis(200);
 
@@ -69,7 +68,7 @@ impl FollowedDocument {
 }
 
 impl Autosave {
-    /// * `folder`: as [`recovery::folder`] names it; made when it is needed.
+    /// * `folder`: as [`recovery::folder`] names it; created when needed.
     pub fn new(folder: PathBuf) -> Self {
         Self { fs: Arc::new(Disk), folder, followed: BTreeMap::new(), told: None }
     }
@@ -170,7 +169,7 @@ impl LostSessions {
         for mut session in recovery::sessions(&self.fs, &self.folder) {
             // One that failed before is not even read without asking.
             if !session.has_failed && session.is_safe() {
-                // If it cannot be deleted, it is as safe the next time.
+                // If it cannot be deleted, it is still safe the next time.
                 let _ = session.discard();
             } else {
                 lost.push(session);
@@ -190,7 +189,7 @@ impl LostSessions {
             recovery.trouble().is_none()
         });
         if recovery.is_some() {
-            // A log that stays is offered once more; nothing is lost.
+            // A log that stays is offered again; nothing is lost.
             let _ = session.discard();
         }
         Ok(RecoveredTab { tab, recovery })

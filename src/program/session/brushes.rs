@@ -1,5 +1,5 @@
 //! The available brushes: those of the program, and the user's own, which were imported from files or saved by the
-//! user. Floor 6. The formats are in `io`. The user's own are in a folder, one preset file each.
+//! user. Floor 6. The user's own are in a folder, one preset file each. Not here: the formats (`io`).
 
 use super::Session;
 use crate::io::brush::{self, ImportedBrush, plain};
@@ -71,7 +71,7 @@ fn add(session: &mut Session, mut preset: BrushPreset) -> Result<String> {
     if let Some(folder) = &session.brush_folder {
         std::fs::create_dir_all(folder).map_err(|error| Error::io(folder, error))?;
         let encoded = brush::encode(&file_of(folder, &preset.key), &preset)?;
-        // The name is free, or so it was a moment ago.
+        // The name is free, or was a moment ago.
         encoded.write(&Terms::export(Overwrite::Nothing, Vec::new()))?;
         preset = encoded.preset;
     }
@@ -95,9 +95,9 @@ fn file_of(folder: &Path, key: &str) -> PathBuf {
     folder.join(format!("{key}.json"))
 }
 
-/// The user's own brushes as they lie in a folder, by name, and a sentence for each that cannot be read.
+/// The user's own brushes in a folder, by name, and a sentence for each that cannot be read.
 pub fn kept(folder: &Path) -> (Vec<BrushPreset>, Vec<String>) {
-    // A folder that is not there yet holds none.
+    // A folder that does not exist yet holds none.
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
     let mut files: Vec<PathBuf> = entries.filter(|file| file.extension().is_some_and(|e| e == "json")).collect();
     files.sort();
@@ -134,7 +134,7 @@ fn picture_tip(file: &Path, bytes: &[u8], budget: &Budget) -> Result<BrushPreset
     Ok(preset_of(file, imported).0)
 }
 
-/// A key that no other brush has, nor a file of the folder, such as one that could not be read.
+/// A key that no other brush has, and no file of the folder, such as one that could not be read.
 fn free_key(session: &Session, key: &str) -> String {
     let entries = session.brush_folder.iter().flat_map(std::fs::read_dir).flatten().flatten();
     let stem = |name: std::ffi::OsString| name.to_string_lossy().split('.').next().map(str::to_owned);

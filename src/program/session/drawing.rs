@@ -1,4 +1,4 @@
-//! A layer as a drawing: what it paints by itself, and what it looks like. Floor 6. Not here: what a drawing is
+//! A layer as a drawing: what it paints by itself, and its look. Floor 6. Not here: what a drawing is
 //! (`document::parts::drawing`).
 
 use crate::document::parts::drawing::DrawingLook;
@@ -11,7 +11,7 @@ pub fn painted(document: &Document, layer: LayerId) -> Option<TileGrid> {
     painted_telling(document, layer, &Progress::default())
 }
 
-/// The same; `None` if it was given up, too.
+/// The same; `None` also if cancelled.
 pub fn painted_telling(document: &Document, layer: LayerId, progress: &Progress) -> Option<TileGrid> {
     let flat = Document { surface: None, parts: Arc::default(), ..document.clone() };
     let flat = flat.with_layer(layer, |layer| (layer.visible, layer.opacity) = (true, 1.0))?;

@@ -1,5 +1,5 @@
-//! The picture that a project holds of itself, to be seen until its layers are painted.
-//! Floor 6. The window's canvas shows it.
+//! The picture that a project holds of itself, shown until its layers are painted. Floor 6. The window's canvas shows
+//! it.
 
 use crate::io::{Budget, picture};
 use crate::math::Size;
@@ -7,12 +7,12 @@ use crate::raster::{Asset, TileGrid};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
-/// The pixels of that picture, until somebody takes them.
+/// The pixels of that picture, until they are taken.
 #[derive(Default)]
 pub struct FirstLook(Mutex<Option<TileGrid>>);
 
 impl FirstLook {
-    /// Of a PNG as large as the canvas; nothing of any other, of a damaged one, and where there is no room for it.
+    /// From a PNG as large as the canvas; none from any other or a damaged one, or if memory lacks.
     pub fn of(file: &Path, png: Option<&Asset>, canvas: Size) -> Self {
         let read = || {
             let budget = Budget::of_this_machine();

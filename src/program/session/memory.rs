@@ -1,11 +1,11 @@
-//! What the open documents take of memory, and its ceiling. Floor 6. The counting is `document::memory_use`'s.
+//! The memory that the open documents take, and its ceiling. Floor 6. Not here: the counting (`document::memory_use`).
 
 use super::Session;
 use crate::document::{Document, MemoryCount, MemoryUse};
 
 /// The open documents with their histories, to be counted on a thread of their own.
 pub struct HeldDocuments {
-    /// The one in front, its history, those fewest steps away first, and then the others in the same way.
+    /// The one in front, its history with the nearest steps first, and then the others in the same way.
     presents: Vec<Document>,
     pasts: Vec<Vec<Document>>,
 }
@@ -20,7 +20,7 @@ pub struct DocumentMemory {
 }
 
 impl Session {
-    /// What there is to count; nothing where no document is open.
+    /// What there is to count; nothing if no document is open.
     pub fn held_documents(&self) -> Option<HeldDocuments> {
         let front = self.active()?;
         let others = self.open_documents.iter().filter(|tab| tab.key != front.key);
@@ -36,8 +36,8 @@ impl Session {
 }
 
 impl HeldDocuments {
-    /// Counts them. Once they keep more than `ceiling` bytes for speed, steps of the history let go of what they keep:
-    /// those farthest away first, and those of documents that are not in front before those of the one that is.
+    /// Counts them. Once they keep more than `ceiling` bytes for speed, steps of the history free what they keep: the
+    /// farthest first, and those of the document in front last.
     pub fn count(&self, ceiling: u64) -> DocumentMemory {
         let mut count = MemoryCount::default();
         let Some((front, others)) = self.presents.split_first() else { return DocumentMemory::default() };
@@ -85,7 +85,7 @@ mod tests {
             frame: Default::default(),
         }))
     }
-    /// A session whose gradient was dragged so often, each time seen whole.
+    /// A session whose gradient was dragged so often, each time rendered whole.
     fn dragged(times: usize) -> Session {
         let mut session = Session::default();
         let size = Size::new(256, 128);
@@ -123,7 +123,7 @@ mod tests {
         assert_eq!(used.all.kept, 3 * RENDERED);
         assert_eq!(session.held_documents().unwrap().count(u64::MAX), used, "what was let go of is gone");
         assert_eq!(session.held_documents().unwrap().count(0).all.kept, RENDERED, "what is shown is kept");
-        // It is rendered again as it was.
+        // It is rendered again to the same picture.
         let tab = &mut session.open_documents[session.current];
         tab.history.undo();
         tab.history.redo();

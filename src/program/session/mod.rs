@@ -1,4 +1,4 @@
-//! Floor 6: the program without its window. It holds the open documents and the current tool settings, and does
+//! Floor 6: the program without its window. It holds the open documents and the current tool settings, and performs
 //! everything as [`Action`]s, so that a replay file, a test and the window behave the same.
 
 pub mod actions;
@@ -49,7 +49,7 @@ use storage::OpenedTab;
 /// The number of recent colours.
 const RECENT: usize = 16;
 
-/// Everything but the window.
+/// Everything except the window.
 pub struct Session {
     pub open_documents: Vec<OpenDocument>,
     /// The index of the one in front.
@@ -68,9 +68,9 @@ pub struct Session {
     pub operator: Operator,
     /// How strokes repeat.
     pub symmetry: Symmetry,
-    /// Where its axes stand.
+    /// The place of its axes.
     pub axes: SymmetryAxes,
-    /// What the transform tool takes along.
+    /// What the transform tool moves.
     pub carried: TransformTarget,
     /// The settings of the fill tool.
     pub fill: Fill,
@@ -84,7 +84,7 @@ pub struct Session {
     pub liquify: LiquifySettings,
     /// The points of the selected layer's mesh that are chosen.
     pub mesh_points: Vec<usize>,
-    /// The corners of the lasso that is being set.
+    /// The corners of the unfinished lasso.
     pub lasso: Vec<Vec2>,
     /// The frame of the crop tool, canvas px.
     pub crop: Option<Rect>,
@@ -105,13 +105,13 @@ pub struct Session {
     pub autosave: Option<Autosave>,
     /// The folder of the user's own brushes, if there is one.
     pub brush_folder: Option<PathBuf>,
-    /// The files that brushes in hand or in the list came from.
+    /// The files of the current brush and of those in the list.
     brush_files: Vec<PathBuf>,
-    /// Files that are there are replaced by saving and exporting, as the user said beforehand.
+    /// Whether saving and exporting replace existing files, as the user said beforehand.
     pub replaces_unasked: bool,
-    /// Sentences for the user, not shown yet.
+    /// Sentences for the user, not yet shown.
     pub notes: Vec<String>,
-    /// The same of little weight, which go by themselves.
+    /// The same, of little importance, which disappear by themselves.
     pub said: Vec<String>,
     untitled: usize,
 }
@@ -193,7 +193,7 @@ impl Session {
         let chosen = self.active().map(|tab| LayerPaths::of(tab.document(), &tab.outermost_chosen()));
         chosen.unwrap_or_default()
     }
-    /// What surfaces are unwrapped with: as the operator in hand says, else as they are.
+    /// How surfaces are unwrapped: as the current operator says, else by default.
     pub fn unwrap_settings(&self) -> UnwrapSettings {
         self.operator.unwrapping().unwrap_or(UnwrapSettings { amount: 1.0, smooth_px: 0.0 })
     }
@@ -223,7 +223,7 @@ impl Session {
         self.add_document(tab);
         self.notes.extend(notes);
     }
-    /// A file went into the document in front.
+    /// A file was put into the document in front.
     pub fn note_read(&mut self, file: &Path) {
         if let Some(tab) = self.active_mut() {
             tab.reads.push(file.into());
@@ -233,7 +233,7 @@ impl Session {
     pub fn reads(&self) -> Vec<PathBuf> {
         self.open_documents.iter().flat_map(|tab| &tab.reads).chain(&self.brush_files).cloned().collect()
     }
-    /// On what terms the document in front is saved to a file. `elsewhere`: where that is not its own.
+    /// What saving the document in front to a file may replace. `elsewhere`: for a file that is not its own.
     pub fn saving(&self, file: &Path, elsewhere: Overwrite) -> Terms {
         let own = self.active().and_then(|tab| Some((tab, tab.file.as_deref()?)));
         let own = own.filter(|(_, own)| is_same_file(&Disk, own, file));
@@ -241,7 +241,7 @@ impl Session {
         let over = match own {
             Some((tab, own)) => {
                 reads.retain(|read| !is_same_file(&Disk, read, own));
-                // What was not whole when it was opened must not replace its file unasked.
+                // A document that was incomplete when opened must not replace its file without asking.
                 if elsewhere == Overwrite::Forced {
                     elsewhere
                 } else {
@@ -275,7 +275,7 @@ impl Session {
         self.preset = preset.key.clone();
         self.tool = ToolKind::Brush;
     }
-    /// Tells the user something of little weight.
+    /// Tells the user something of little importance.
     pub fn say(&mut self, sentence: &str) {
         self.said.push(sentence.into());
     }
@@ -294,11 +294,11 @@ impl Session {
         self.recent_colors.insert(0, color);
         self.recent_colors.truncate(RECENT);
     }
-    /// Why edits were not kept goes to the notes.
+    /// Notes why edits were not kept.
     fn tell_refusals(&mut self) {
         self.notes.extend(self.open_documents.iter_mut().filter_map(|tab| tab.refused.take()));
     }
-    /// Brings the recovery logs up to the documents; called after whatever may have changed them.
+    /// Updates the recovery logs to the documents; called after whatever may have changed them.
     pub fn keep(&mut self) {
         self.tell_refusals();
         let trouble = self.autosave.as_mut().and_then(|autosave| autosave.follow(&self.open_documents));

@@ -24,7 +24,7 @@ const STEPS: usize = 200;
 pub struct Edit {
     pub label: &'static str,
     pub document: Document,
-    /// Chosen from now on, the primary one last; none: those that were.
+    /// Chosen from now on, the primary one last; none: unchanged.
     pub select: Vec<LayerId>,
 }
 
@@ -48,15 +48,15 @@ pub struct OpenDocument {
     pub stamp: Option<FileStamp>,
     /// The files that it was made from: none of them may be written over.
     pub reads: Vec<PathBuf>,
-    /// The user was told what the format of that file cannot hold.
+    /// Whether the user was told what the format of that file cannot hold.
     pub knows_losses: bool,
-    /// As the file holds it.
+    /// The document as the file holds it.
     saved: Document,
     /// `None` until the window has shown it.
     pub view: Option<CanvasView>,
-    /// The surface is seen unwrapped, with these settings: the view is of the sheet of its planes.
+    /// The surface is shown unwrapped, with these settings: the view is of the sheet of its planes.
     unwrapped: Option<UnwrapSettings>,
-    /// The view of the picture while the sheet is seen, and of the sheet while the picture is.
+    /// The view of the picture while the sheet is shown, and of the sheet while the picture is.
     other_view: Option<CanvasView>,
     /// The brush and the eraser change the selected layer's mask, not the layer.
     pub on_mask: bool,
@@ -64,17 +64,17 @@ pub struct OpenDocument {
     pub solo: Option<LayerId>,
     /// The brush and the eraser change the selection.
     pub quick_mask: bool,
-    /// The selection that was let go of last.
+    /// The selection that was dropped last.
     pub last_selection: Option<Arc<Selection>>,
     /// Where the last stroke ended, canvas px.
     pub last_end: Option<Vec2>,
     /// Where clone brushes copy from.
     pub clone_source: Option<CloneSource>,
-    /// Why the last edit was not kept, until that is told.
+    /// Why the last edit was not kept, until the user is told.
     pub refused: Option<String>,
     /// The picture that its file held of it, until the window shows it.
     pub first_look: FirstLook,
-    /// The strokes chosen, by their places in the layer.
+    /// The chosen strokes, by their positions in the layer.
     chosen: Option<(LayerId, Vec<usize>)>,
 }
 
@@ -83,7 +83,7 @@ pub struct OpenDocument {
 pub struct CloneSource {
     /// The point that was set, canvas px.
     pub at: Vec2,
-    /// From a pixel to what the last stroke copied onto it, px.
+    /// From a pixel to the one that the last stroke copied onto it, px.
     pub offset: Option<Vec2>,
 }
 
@@ -124,7 +124,7 @@ impl OpenDocument {
             chosen: None,
         }
     }
-    /// The document as the last step left it.
+    /// The document after the last step.
     pub fn document(&self) -> &Document {
         self.history.present()
     }
@@ -132,7 +132,7 @@ impl OpenDocument {
     pub fn shown(&self) -> &Document {
         self.preview.as_ref().map_or(self.history.present(), |preview| &preview.document)
     }
-    /// What the surface is unwrapped with, while it is seen so.
+    /// How the surface is unwrapped, while it is shown so.
     pub fn unwrapped(&self) -> Option<UnwrapSettings> {
         self.unwrapped
     }
@@ -143,15 +143,15 @@ impl OpenDocument {
         }
         self.unwrapped = settings;
     }
-    /// The sheet that is seen, if it is laid out already: see [`OpenDocument::layout`].
+    /// The sheet that is shown, if it is laid out already: see [`OpenDocument::layout`].
     pub fn known_layout(&self) -> Option<Arc<PlaneLayout>> {
         self.document().surface.as_ref()?.known_plane_layout(self.unwrapped?)
     }
-    /// The sheet that is seen, laid out now if it must be.
+    /// The sheet that is shown, laid out now if necessary.
     pub fn layout(&self) -> Option<Arc<PlaneLayout>> {
         self.document().surface.as_ref()?.plane_layout(self.unwrapped?)
     }
-    /// Of what the view shows: the picture, or the sheet.
+    /// The size of what the view shows: the picture, or the sheet.
     pub fn shown_size(&self) -> Size {
         self.known_layout().map_or(self.document().size, |layout| layout.size())
     }
@@ -166,7 +166,7 @@ impl OpenDocument {
     }
     pub fn mark_saved(&mut self, document: Document, file: PathBuf, stamp: FileStamp) {
         self.saved = document;
-        // The file that it was saved to before is one like any other now.
+        // The file that it was saved to before is now like any other.
         self.reads.retain(|read| Some(read) != self.file.as_ref() && *read != file);
         self.reads.push(file.clone());
         (self.file, self.stamp) = (Some(file), Some(stamp));
@@ -182,7 +182,7 @@ impl OpenDocument {
     pub fn show(&mut self, label: impl Into<String>, document: Document) {
         self.preview = Some(Preview { label: label.into(), document });
     }
-    /// Keeps a document as a step; whether it was. What no file could give back is not: why stands in `refused`.
+    /// Keeps a document as a step; returns whether it did. What files cannot hold is refused: `refused` says why.
     pub fn commit(&mut self, label: impl Into<String>, document: Document) -> bool {
         self.preview = None;
         let mut is_kept = true;
@@ -235,7 +235,8 @@ impl OpenDocument {
         let count = self.shown().strokes(*layer).len();
         chosen.iter().copied().filter(|&index| index < count).collect()
     }
-    /// From a pixel to what a clone stroke that begins at `start` copies onto it; `None` before a source was set.
+    /// From a pixel to the one that a clone stroke that begins at `start` copies onto it; `None` before a source was
+    /// set.
     pub fn begin_clone(&mut self, start: Vec2, aligned: bool) -> Option<Vec2> {
         let source = self.clone_source.as_mut()?;
         let kept = source.offset.filter(|_| aligned);

@@ -1,5 +1,5 @@
 //! A layer's path that is valid from one run to the next: indices from the bottom through the groups.
-//! Floor 6. In memory layers have ids; those are new with every run.
+//! Floor 6. In memory layers have ids, which differ with every run.
 
 use super::replay::ReplayValue;
 use crate::document::{Document, Layer, LayerId};
@@ -33,16 +33,16 @@ impl LayerPath {
     }
 }
 
-/// The paths of the layers that an action is done to. Of one it is written as that path, as it always was.
+/// The paths of the layers that an action applies to. A single one is written as just the path, as in older replays.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LayerPaths(Vec<LayerPath>);
 
 impl LayerPaths {
-    /// Of some layers; those that are gone are left out.
+    /// For some layers; those that are gone are left out.
     pub fn of(document: &Document, ids: &[LayerId]) -> Self {
         Self(ids.iter().filter_map(|id| LayerPath::of(document, *id)).collect())
     }
-    /// The layers at the paths; `None` where one leads nowhere, or there are none.
+    /// The layers at the paths; `None` if one leads nowhere, or there are none.
     pub fn find(&self, document: &Document) -> Option<Vec<LayerId>> {
         let found: Option<Vec<_>> = self.0.iter().map(|path| path.find(document).map(|layer| layer.id)).collect();
         found.filter(|found| !found.is_empty())

@@ -1,5 +1,4 @@
-//! The pictures that layers are made of.
-//! Floor 6. Reading them is `actions::pictures`'.
+//! The pictures that layers are made of. Floor 6. Not here: reading them (`actions::pictures`).
 
 use super::replay::names;
 
@@ -22,7 +21,7 @@ rilievo_engine::named! {
 names!(PicturePart);
 
 impl PicturePart {
-    /// The step of putting one there.
+    /// The name of the step that puts one there.
     pub fn step(self) -> &'static str {
         match self {
             PicturePart::Image => "Replace picture",

@@ -1,13 +1,13 @@
 //! Actions as text: one JSON object per line, so that recorded actions can be replayed without the window. Floor 6.
-//! [`ReplayValue`] writes and reads a value; `actions!`, `record!`, `names!` and
-//! `as_in_recipes!` derive it: what documents hold reads as there.
+//! [`ReplayValue`] writes and reads a value; `actions!`, `record!`, `names!` and `as_in_recipes!` derive it. Values
+//! that documents hold are written as there.
 
 use crate::math::{Vec2, Vec3, srgb::Color, vec2, vec3};
 use crate::{Error, Result};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
-/// A value of an action's field. Reading fails with what is wrong, for a sentence that names the line.
+/// A value of an action's field. Reading fails with the reason, for a sentence that names the line.
 pub trait ReplayValue: Sized {
     fn written(&self) -> Value;
     fn read(value: &Value) -> std::result::Result<Self, String>;

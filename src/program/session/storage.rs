@@ -1,5 +1,5 @@
-//! Opens and saves documents: projects, recipes, pictures, maps. Floor 6. The formats are in `io`; here a file's format
-//! and use are recognised.
+//! Opens and saves documents: projects, recipes, pictures, maps. Floor 6. Here a file's format and use are recognised.
+//! Not here: the formats (`io`).
 
 mod endings;
 mod maps;
@@ -45,7 +45,7 @@ pub struct OpenedTab {
     pub tab: OpenDocument,
     /// Sentences about what was found and what could not be kept.
     pub notes: Vec<String>,
-    /// Of a picture: what it looks like as a drawing.
+    /// For a picture: its look as a drawing.
     pub drawing: Option<DrawingLook>,
 }
 
@@ -77,11 +77,11 @@ pub fn open(file: &Path) -> Result<OpenedTab> {
                 io::open(file, &Budget::of_this_machine())?;
             Budget::of_this_machine().room(file, "painting it", document.flattening_bytes())?;
             let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            // A Photoshop file that is taken over with all it has is saved to as well.
+            // A Photoshop file of which everything was taken over is also saved to.
             let is_taken_over = kind == io::open::FileKind::Psd && is_whole && notes.is_empty() && is_saved_to(file);
             let is_project = kind == io::open::FileKind::Project || is_taken_over;
             let mut tab = OpenDocument::new(name, document, is_project.then(|| file.into()));
-            // A document that is not whole must not overwrite its file without asking.
+            // An incomplete document must not overwrite its file without asking.
             tab.stamp = Some(stamp).filter(|_| is_project && is_whole);
             tab.reads = reads;
             tab.first_look = FirstLook::of(file, picture.as_ref(), tab.document().size);
@@ -101,7 +101,7 @@ pub fn open_maps(source: &SurfaceSource) -> Result<OpenedTab> {
     Ok(of_import(source, import(source)?))
 }
 
-/// The same of maps that were read already.
+/// The same with maps that were already read.
 pub fn of_import(source: &SurfaceSource, import: ImportedSurface) -> OpenedTab {
     let ImportedSurface { surface, findings, files } = import;
     let size = surface.size();
@@ -121,7 +121,7 @@ pub fn of_import(source: &SurfaceSource, import: ImportedSurface) -> OpenedTab {
     OpenedTab { tab, notes: findings.notes, drawing: None }
 }
 
-/// A picture that covers the canvas, unbent. `file`: what the document calls it.
+/// A picture that covers the canvas, unbent. `file`: its name in the document.
 pub fn flat_image(name: &str, file: &str, picture: Picture, canvas: Size) -> Layer {
     let image = PlacedImage {
         source: PictureSource::new(file.into(), picture, Adjust::default()),
@@ -134,7 +134,7 @@ pub fn flat_image(name: &str, file: &str, picture: Picture, canvas: Size) -> Lay
     Layer::new(name, Content::Image(Live::new(image)))
 }
 
-/// A picture that covers the canvas, flat, as a layer at the top: a renderer's, to be painted over.
+/// A picture that covers the canvas, flat, as a layer at the top: one from a renderer, to be painted over.
 pub fn with_picture(mut opened: OpenedTab, name: &str, picture: Picture) -> OpenedTab {
     let document = opened.tab.document();
     let mut layers = document.layers.clone();
@@ -161,7 +161,7 @@ fn clay(size: Size) -> Gradient {
     }
 }
 
-/// Saves a document; `None` if it was given up.
+/// Saves a document; `None` if cancelled.
 pub fn save(
     file: &Path,
     document: &Document,

@@ -15,12 +15,12 @@ use std::sync::Arc;
 
 /// The side of a canvas at which brush sizes are not scaled.
 const NATURAL_SIDE: f32 = 360.0;
-/// Least and most diameter of the brush in the picture, as shares of its side.
+/// The least and greatest diameter of the brush in the picture, as shares of its side.
 const SIZES: [f32; 2] = [0.022, 0.3];
 /// Radius of the ball, a share of the side.
 const RADIUS: f32 = 0.43;
 
-/// A preset's picture, straight RGBA bytes, `side` px square. `None` where `side` is 0 or far too large.
+/// A preset's picture, straight RGBA bytes, `side` px square. `None` if `side` is 0 or far too large.
 pub fn painted(preset: &BrushPreset, side: u32) -> Option<Vec<u8>> {
     if !(1..=4096).contains(&side) {
         return None;

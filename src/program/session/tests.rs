@@ -1,4 +1,4 @@
-//! Stories: what a user does, told as the lines of a replay.
+//! Stories: what a user does, written as the lines of a replay.
 
 mod canvas;
 mod dialect;

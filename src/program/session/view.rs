@@ -1,6 +1,6 @@
 //! The view: position, zoom and rotation of the canvas under the window. Screen points are measured from the middle of
-//! the canvas's area of the window, y down; canvas px as everywhere. Floor 6. Pure arithmetic; the window draws with
-//! it.
+//! the canvas's area of the window, y down; canvas px as everywhere else. Floor 6. Pure arithmetic; the window draws
+//! with it.
 
 use super::replay::record;
 use crate::math::{Affine2, Mat2, Size, Vec2, vec2};
@@ -10,9 +10,9 @@ use crate::math::{Affine2, Mat2, Size, Vec2, vec2};
 pub struct CanvasView {
     /// The canvas point in the middle of the window, px.
     pub center: Vec2,
-    /// Screen points to a canvas pixel.
+    /// Screen points per canvas pixel.
     pub zoom: f32,
-    /// Of the canvas, clockwise as seen, radians.
+    /// Rotation of the canvas, clockwise as seen, radians.
     pub turn_rad: f32,
     /// Mirrors the display left to right; the document does not change.
     pub mirrored: bool,

@@ -1,5 +1,5 @@
 //! The anchor tool: edits where an image is pinned to the surface, and which of its points is pinned there. Floor 5.
-//! The effect of anchors is in `surface::deformation`.
+//! Not here: the effect of anchors (`surface::deformation`).
 
 use super::gradient::{self, GradientEnd};
 use super::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext, lights};
@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// What dragging an anchor changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AnchorDrag {
-    /// The anchor moves along the surface and takes its content with it: `at` changes, `source` stays.
+    /// The anchor moves along the surface with its content: `at` changes, `source` stays.
     Carry,
     /// The anchor stays, the content moves under it: `source` changes.
     Content,
@@ -32,8 +32,8 @@ pub fn handles(layer: &Layer, canvas: Size) -> Vec<Vec2> {
     }
 }
 
-/// The handle that the pen takes hold of: from twice as far as other handles, since a near miss would add an anchor,
-/// which bends the whole image anew.
+/// The handle that the pen grabs: from twice as far as other handles, because a near miss would add an anchor, which
+/// would bend the whole image differently.
 pub fn handle_at(layer: &Layer, canvas: Size, at: Vec2, px_per_pt: f32) -> Option<usize> {
     let near = handles(layer, canvas).into_iter().map(|handle| handle.distance(at)).enumerate();
     near.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, d)| *d <= 2.0 * GRAB_PT * px_per_pt).map(|(i, _)| i)
@@ -85,7 +85,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     }
 }
 
-/// A new anchor that changes nothing yet: it pins the image point that is shown there.
+/// A new anchor that changes nothing yet: it pins the image point shown there.
 fn add(document: Document, layer: &Layer, mut image: PlacedImage, pen: PenSample) -> GestureStart {
     let surface = document.surface.clone();
     let at = pen.place();

@@ -1,4 +1,4 @@
-//! Assistants in the hand: the tool that sets and moves them, and strokes that are drawn along them. Floor 5. Not
+//! The tool that sets and moves assistants, and strokes that are drawn along them. Floor 5. Not
 //! here: what an assistant's lines are (`document::assistants`).
 
 mod along;
@@ -12,7 +12,7 @@ use crate::document::{Assistant, AssistantKind, Document};
 use crate::math::Vec2;
 use std::sync::Arc;
 
-/// The handle within so many px of a point: the number of its assistant, and its own.
+/// The handle within a distance in px of a point: the number of its assistant, and its own.
 pub fn handle_at(assistants: &[Assistant], at: Vec2, near_px: f32) -> Option<(usize, usize)> {
     let all = assistants.iter().enumerate();
     let all = all.flat_map(|(i, one)| one.points.iter().enumerate().map(move |(k, p)| (p.distance(at), (i, k))));
@@ -20,7 +20,7 @@ pub fn handle_at(assistants: &[Assistant], at: Vec2, near_px: f32) -> Option<(us
     near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, found)| found)
 }
 
-/// The pen comes down with the tool: a drag moves a handle or sets a new assistant, Alt takes one away.
+/// The pen comes down with the tool: a drag moves a handle or sets a new assistant, Alt removes one.
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let (document, near_px) = (context.document, GRAB_PT * context.px_per_pt);
     if !pen.place().is_finite() {
@@ -78,7 +78,7 @@ fn begin(context: &ToolContext, all: Vec<Assistant>, moving: Moving) -> GestureS
 
 struct Moving {
     index: usize,
-    /// `None`: all of it is being laid.
+    /// `None`: all of it is being placed.
     handle: Option<usize>,
     from: Vec2,
     is_new: bool,

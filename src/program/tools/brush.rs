@@ -1,5 +1,5 @@
 //! The brush and the eraser: the pen's samples become one stroke, live on a stroke layer, pixels on a paint layer.
-//! Floor 5. Dabs and tiles are in `paint`.
+//! Floor 5. Not here: dabs and tiles (`paint`).
 
 mod erase;
 mod stroke;
@@ -92,7 +92,7 @@ fn begin(mut gesture: impl Gesture + 'static, pen: PenSample) -> GestureStart {
     (Some(Box::new(gesture)), outcome)
 }
 
-/// The document with a layer that a stroke can go to. `None` if the selected layer is locked, or there is nothing to
+/// The document with a layer that can take a stroke. `None` if the selected layer is locked, or there is nothing to
 /// erase.
 fn paintable(context: &ToolContext, purpose: StrokePurpose) -> Option<(Document, LayerId)> {
     let document = context.document;

@@ -1,4 +1,4 @@
-//! What tools are given when the pen comes down. Floor 5.
+//! What tools get when the pen comes down. Floor 5.
 
 use super::frame::{KeptFrame, TransformTarget};
 use super::settings::{BrushTarget, CropAspect, SelectSettings, ShapeSettings};
@@ -14,7 +14,7 @@ pub struct ToolContext<'a> {
     pub document: &'a Document,
     /// The selected layer.
     pub layer: Option<LayerId>,
-    /// All chosen layers, those in a chosen group left out, bottom first; what marks nothing works on all of them.
+    /// All chosen layers, those in a chosen group left out, bottom first; tools that make no marks work on all of them.
     pub layers: &'a [LayerId],
     pub brush: &'a Brush,
     /// What brush and eraser change.
@@ -40,26 +40,26 @@ pub struct ToolContext<'a> {
     pub liquify: LiquifySettings,
     /// The chosen part of the shape, by its id.
     pub part: Option<&'a str>,
-    /// The corners of the lasso that is being set.
+    /// The corners of the unfinished lasso.
     pub lasso: &'a [Vec2],
     /// The frame of the crop tool, and the aspect that it keeps.
     pub crop: Option<Rect>,
     pub crop_aspect: CropAspect,
-    /// What the transform tool keeps of the chosen layers.
+    /// What the transform tool keeps about the chosen layers.
     pub frame: &'a KeptFrame,
-    /// What it takes along.
+    /// What it moves.
     pub carried: TransformTarget,
     /// The strokes of the selected layer that are chosen.
     pub strokes: &'a [usize],
     /// The points of the selected layer's mesh that are chosen.
     pub mesh_points: &'a [usize],
-    /// Where the axes of symmetry stand.
+    /// The place of the axes of symmetry.
     pub axes: SymmetryAxes,
     /// What the pen snaps to.
     pub snap: &'a SnapTargets,
     /// What is snapped to and drawn along.
     pub aids: ViewAids,
-    /// From a pixel to what a clone brush copies onto it, px; `None` before it was set.
+    /// From a pixel to the one that a clone brush copies onto it, px; `None` before it was set.
     pub clone_offset: Option<Vec2>,
 }
 
@@ -96,7 +96,7 @@ impl<'a> ToolContext<'a> {
             clone_offset: None,
         }
     }
-    /// The chosen layers: where none are told, the selected one.
+    /// The chosen layers: if none are given, the selected one.
     pub fn chosen(&self) -> &[LayerId] {
         if self.layers.is_empty() { self.layer.as_slice() } else { self.layers }
     }
@@ -112,7 +112,7 @@ pub struct KeptContext {
     strokes: Vec<usize>,
     part: Option<String>,
     snap: SnapTargets,
-    /// All that is no reference.
+    /// All that is not a reference.
     plain: PlainContext,
 }
 
@@ -167,7 +167,7 @@ impl KeptContext {
     pub fn px_per_pt(&self) -> f32 {
         self.plain.px_per_pt
     }
-    /// The context as it was.
+    /// The context of the press.
     pub fn lend<T>(&self, to: impl FnOnce(&ToolContext) -> T) -> T {
         let PlainContext { colors, operator, px_per_pt, last_end, symmetry, axes, fill, .. } = self.plain;
         let PlainContext { target, select, shape, aids, clone_offset, .. } = self.plain;

@@ -1,4 +1,4 @@
-//! The crop tool: a frame that is dragged over the canvas, or beyond it, until it is applied or given up. Floor 5.
+//! The crop tool: a frame that is dragged over the canvas, or beyond it, until it is applied or cancelled. Floor 5.
 //! Not here: what a document becomes within it (`document::canvas_change`).
 
 use super::frame::FrameHandle;
@@ -19,7 +19,7 @@ pub fn edge(frame: Rect, index: usize) -> Vec2 {
     (corners[index % 4] + corners[(index + 1) % 4]) * 0.5
 }
 
-/// What of a frame lies at a point; `grab_px`: how near is near.
+/// The handle of a frame at a point; `grab_px`: the distance that counts as near.
 pub fn handle_at(frame: Rect, at: Vec2, grab_px: f32) -> FrameHandle {
     let near = |p: Vec2| p.distance(at) <= grab_px;
     let corners = corners(frame);
@@ -65,7 +65,7 @@ struct CropGesture {
 }
 
 impl CropGesture {
-    /// The frame with what is held at the pen; Shift keeps the aspect that it had.
+    /// The frame with the held handle at the pen; Shift keeps its aspect.
     fn dragged(&self, pen: &PenSample) -> Rect {
         let at = pen.place();
         let Some(frame) = self.frame.filter(|_| self.handle != FrameHandle::Outside) else {
@@ -89,7 +89,7 @@ fn place(at: Vec2) -> (i32, i32) {
     (held(at.x, &COORDINATE).round() as i32, held(at.y, &COORDINATE).round() as i32)
 }
 
-/// The frame from a corner that stays to the pen, at least a pixel; with an aspect as large as the farther side asks.
+/// The frame from a fixed corner to the pen, at least a pixel; with an aspect it is as large as the farther side needs.
 fn between(fixed: Vec2, at: Vec2, ratio: Option<f32>) -> Rect {
     let by = at - fixed;
     let (mut w, mut h) = (by.x.abs().max(1.0), by.y.abs().max(1.0));
@@ -154,7 +154,7 @@ mod tests {
     use crate::paint::Brush;
     use crate::tools::settings::CropAspect;
 
-    /// The frame after a drag; `None` where it was left as it is.
+    /// The frame after a drag; `None` if it was left unchanged.
     fn dragged(crop: Option<Rect>, aspect: CropAspect, from: Vec2, to: Vec2) -> Option<Rect> {
         let (document, brush) = (Document::empty(Size::new(200, 100)), Brush::default());
         let context = ToolContext { crop, crop_aspect: aspect, ..ToolContext::new(&document, &brush) };
@@ -180,7 +180,7 @@ mod tests {
         assert_eq!(to(vec2(148.0, 79.0), vec2(220.0, 60.0)), Rect::new(50, 20, 220, 60));
         assert_eq!(to(vec2(50.0, 50.0), vec2(70.0, 10.0)), Rect::new(70, 20, 150, 80));
         assert_eq!(to(vec2(100.0, 50.0), vec2(95.0, 58.0)), Rect::new(45, 28, 145, 88));
-        // Past the other side it turns over, and never becomes nothing.
+        // Past the other side it turns over, and never becomes empty.
         assert_eq!(to(vec2(50.0, 50.0), vec2(170.0, 50.0)), Rect::new(150, 20, 170, 80));
         assert_eq!(to(vec2(50.0, 50.0), vec2(150.0, 50.0)).width(), 1);
     }

@@ -1,5 +1,5 @@
-//! Strokes on a layer that a mesh or liquify displaces: they are laid where the layer shows what is under the pen, so
-//! that the paint appears there. Floor 5. Not here: the displacement itself (`document::layer::warp`).
+//! Strokes on a layer that a mesh or liquify displaces: they go where the layer shows what is under the pen, so that
+//! the paint appears there. Floor 5. Not here: the displacement itself (`document::layer::warp`).
 
 use super::settings::{BrushTarget, StrokePurpose};
 use super::snap::SnapLines;
@@ -8,8 +8,8 @@ use crate::document::{Content, LayerWarp};
 use crate::math::Vec2;
 use crate::paint::Sample;
 
-/// What displaces that which a stroke would change, the outermost group's first. A layer that holds no strokes gets a
-/// layer above it, which only the groups around it displace.
+/// The warps of what a stroke would change, the outermost group's first. A layer that holds no strokes gets a layer
+/// above it, which only the groups around it displace.
 pub fn warps(context: &ToolContext) -> Vec<LayerWarp> {
     let document = context.document;
     let Some(layer) = context.layer.and_then(|id| document.layer(id)) else { return Vec::new() };
@@ -21,7 +21,7 @@ pub fn warps(context: &ToolContext) -> Vec<LayerWarp> {
     }
 }
 
-/// The brush or the eraser comes down where something displaces the layer.
+/// The brush or the eraser comes down on a displaced layer.
 pub fn press(context: &ToolContext, pen: PenSample, warps: Vec<LayerWarp>, purpose: StrokePurpose) -> GestureStart {
     let undisplaced = Undisplaced(warps);
     let last_end = context.last_end.map(|at| undisplaced.point(at));

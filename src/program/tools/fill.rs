@@ -1,5 +1,5 @@
-//! The fill tool: a click fills the area connected to the pixel under the pen, on a paint layer. Floor 5. `paint::fill`
-//! finds the area.
+//! The fill tool: a click fills the area connected to the pixel under the pen, on a paint layer. Floor 5. Not here:
+//! finding the area (`paint::fill`).
 
 use super::{GestureStart, Outcome, PenSample, ToolContext};
 use crate::document::{

@@ -1,6 +1,5 @@
-//! The frame of the transform tool and its handles: a box around the chosen layers, where it lies on the canvas, and
-//! the point that it is turned about.
-//! Floor 5.
+//! The frame of the transform tool and its handles: a box around the chosen layers, its place on the canvas, and its
+//! pivot. Floor 5.
 
 use super::pen::GRAB_PT;
 use crate::document::FrameBox;
@@ -12,23 +11,23 @@ use std::sync::Arc;
 /// The frame of a layer, or of several, on the canvas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransformFrame {
-    /// In the layer's own frame; that of several is the canvas as it was when they were first held.
+    /// In the layer's own frame; that of several is the canvas at the time when they were first held.
     pub inner: FrameBox,
     /// From there to the canvas, groups included.
     pub plane: PlaneMap,
-    /// How the pixels of what is in it are sampled.
+    /// How the pixels of its contents are sampled.
     pub filter: Resampling,
     /// Upper left, upper right, lower right, lower left of the untransformed box, canvas px.
     pub corners: [Vec2; 4],
-    /// What it is turned about, as shares of its sides from the upper left corner.
+    /// Its pivot, as shares of its sides from the upper left corner.
     pub pivot_share: Vec2,
 }
 
 rilievo_engine::named! {
-    /// What the transform tool takes along, where there is a shape.
+    /// What the transform tool moves, if there is a shape.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
     pub enum TransformTarget {
-        /// The chosen layers alone: they slide over the shape, which stays.
+        /// Only the chosen layers: they slide over the shape, which stays.
         #[default]
         Paint = "paint" => "slide paint over the shape",
         /// The whole shape, and what is painted on it.
@@ -44,7 +43,7 @@ pub enum Framed<'a> {
 }
 
 impl<'a> Framed<'a> {
-    /// The shape, if that is to be taken along and there is one; else the chosen layers.
+    /// The shape, if that is to be moved and there is one; else the chosen layers.
     pub fn new(carried: TransformTarget, document: &Document, chosen: &'a [LayerId]) -> Self {
         match carried {
             TransformTarget::Shape if document.surface.is_some() => Framed::Shape,
@@ -59,23 +58,23 @@ impl<'a> Framed<'a> {
     }
 }
 
-/// What of a frame the pen holds.
+/// What the pen holds of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrameHandle {
     /// By its number among the corners.
     Corner(usize),
     /// Between a corner and the next.
     Edge(usize),
-    /// The point that the frame is turned about.
+    /// The pivot: the point that the frame is turned about.
     Pivot,
     Inside,
     /// Anywhere else: the frame is turned about its pivot.
     Outside,
 }
 
-/// The pivot is held from nearer than other handles, screen points: around it the inside is dragged.
+/// The pivot is grabbed from nearer than other handles, screen points: around it the inside is dragged.
 const PIVOT_GRAB_PT: f32 = 6.0;
-/// The pivot of a frame whose shorter side is less than this, screen points, is only held with Alt.
+/// The pivot of a frame whose shorter side is less than this, screen points, is only grabbed with Alt.
 const PIVOT_ROOM_PT: f32 = 56.0;
 
 impl TransformFrame {
@@ -84,15 +83,15 @@ impl TransformFrame {
         let [a, b, c, d] = inner.corners().map(|corner| plane.to_canvas(corner));
         Some(Self { inner, plane, filter, corners: [a?, b?, c?, d?], pivot_share: MIDDLE })
     }
-    /// Of a layer; `None` if it is empty or lies beyond the horizon.
+    /// For a layer; `None` if it is empty or lies beyond the horizon.
     pub fn of(document: &Document, layer: LayerId) -> Option<Self> {
         let map = document.map_of(layer)?;
         let is_mesh = document.layer(layer)?.transform.as_ref().is_some_and(|own| own.mesh().is_some());
-        // The points of a mesh lie where it took them.
+        // The points of a mesh lie where the mesh moved them.
         let plane = if is_mesh { map.outside_own() } else { map.plane };
         Self::new(document.frame_box(layer)?, plane, map.filter)
     }
-    /// Around layers: of one its own frame, of several a box on the canvas. `None` if all are empty.
+    /// Around layers: for one its own frame, for several a box on the canvas. `None` if all are empty.
     pub fn around(document: &Document, layers: &[LayerId]) -> Option<Self> {
         if let [layer] = layers {
             return Self::of(document, *layer);
@@ -104,7 +103,7 @@ impl TransformFrame {
         let filter = document.map_of(*layers.first()?)?.filter;
         Self::new(FrameBox { low, high }, PlaneMap::IDENTITY, filter)
     }
-    /// Around the shape: of maps the frame that turned with them, of parts a box on the canvas.
+    /// Around the shape: for maps the frame that turned with them, for parts a box on the canvas.
     pub fn of_shape(document: &Document) -> Option<Self> {
         let surface = document.surface.as_ref()?;
         let origin = surface.origin();
@@ -128,7 +127,7 @@ impl TransformFrame {
         let middle = || self.corners.iter().sum::<Vec2>() * 0.25;
         self.plane.to_canvas(low + share * (high - low)).unwrap_or_else(middle)
     }
-    /// The point that it is turned about, canvas px.
+    /// Its pivot, canvas px.
     pub fn pivot(&self) -> Vec2 {
         self.point(self.pivot_share)
     }
@@ -136,7 +135,7 @@ impl TransformFrame {
     pub fn inner_pivot(&self) -> Vec2 {
         self.inner.low + self.pivot_share * (self.inner.high - self.inner.low)
     }
-    /// A canvas point as shares of its sides; `None` beyond the horizon, and of a frame without area.
+    /// A canvas point as shares of its sides; `None` beyond the horizon, and for a frame without area.
     pub fn share_of(&self, at: Vec2) -> Option<Vec2> {
         let (inner, _) = self.plane.from_canvas(at)?;
         let share = (inner - self.inner.low) / (self.inner.high - self.inner.low);
@@ -167,29 +166,29 @@ impl TransformFrame {
     }
 }
 
-/// The pivot that a frame begins with.
+/// The first pivot of a frame.
 pub const MIDDLE: Vec2 = Vec2::splat(0.5);
 
-/// What the transform tool keeps of the layers in its frame until others are chosen: the pivot, and of several layers
-/// the box that they lay in at first, so that their frame turns with them.
+/// What the transform tool keeps about the layers in its frame until others are chosen: the pivot, and for several
+/// layers their first box, so that their frame turns with them.
 #[derive(Clone, Debug)]
 pub struct KeptFrame {
-    /// Of none: of the shape.
+    /// None: for the shape.
     layers: Vec<LayerId>,
     of_shape: bool,
     pivot_share: Vec2,
-    /// Around all of them as they lay at first.
+    /// Around all of them at first.
     first: Option<FirstFrame>,
 }
 
 #[derive(Clone, Debug)]
 struct FirstFrame {
     inner: FrameBox,
-    /// The own box of each layer then, and its map to the canvas.
+    /// Each layer's own box then, and its map to the canvas.
     each: Vec<Option<PlacedBox>>,
 }
 
-/// A box and where it lies.
+/// A box and its place.
 type PlacedBox = (FrameBox, LayerMap);
 
 /// Nothing is kept.
@@ -208,7 +207,7 @@ impl KeptFrame {
     fn is_of(&self, framed: Framed) -> bool {
         self.of_shape == (framed == Framed::Shape) && self.layers == framed.layers()
     }
-    /// What is kept of these layers as they lie: of others than the last everything is new.
+    /// What is kept about these layers in their places: for others than the last, everything is new.
     pub fn hold(&mut self, document: &Document, framed: Framed) {
         let layers = framed.layers();
         if !self.is_of(framed) {
@@ -245,7 +244,7 @@ impl KeptFrame {
             self.pivot_share = share.clamp(-FARTHEST_PIVOT, FARTHEST_PIVOT);
         }
     }
-    /// Where all of several layers were taken since they were first held; `None` if that is not the same for all, or
+    /// The map by which several layers were moved since they were first held; `None` if it is not the same for all, or
     /// something else was done to them.
     fn taken_along(&self, document: &Document) -> Option<PlaneMap> {
         let first = self.first.as_ref()?;
@@ -261,7 +260,7 @@ impl KeptFrame {
     }
 }
 
-/// Farther from a frame than so many of its sides no pivot lies.
+/// The greatest distance of a pivot from a frame, in sides of the frame.
 const FARTHEST_PIVOT: Vec2 = Vec2::splat(100.0);
 
 fn each(document: &Document, layers: &[LayerId]) -> Vec<Option<PlacedBox>> {

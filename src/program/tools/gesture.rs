@@ -17,7 +17,7 @@ pub enum Outcome {
     Commit {
         label: String,
         document: Document,
-        /// To be selected from now on.
+        /// The layer to select from now on.
         select: Option<LayerId>,
     },
     /// A selection made with settings that the pen changed: a preview, or a finished step.
@@ -26,7 +26,7 @@ pub enum Outcome {
         select: SelectSettings,
         is_done: bool,
     },
-    /// The corners of a lasso that goes on.
+    /// The corners of an unfinished lasso.
     Lasso(Vec<Vec2>),
     /// These strokes of the selected layer are chosen from now on.
     Chosen(Vec<usize>),
@@ -38,13 +38,13 @@ pub enum Outcome {
     Frame(Rect),
     /// Clone brushes copy from here from now on.
     CloneFrom(Vec2),
-    /// Nothing was started, for a reason to show.
+    /// Nothing was started; the reason is to be shown.
     Refused(&'static str),
     /// The frame of the chosen layers is turned about this point, by shares of its sides, from now on.
     Pivot(Vec2),
     /// These points of the layer's mesh are chosen from now on.
     MeshPoints(Vec<usize>),
-    /// The axes of symmetry stand here from now on.
+    /// The axes of symmetry are here from now on.
     Axes(SymmetryAxes),
     /// A colour was picked.
     Picked(Color),
@@ -61,11 +61,11 @@ pub trait Gesture: Send {
     fn snap_lines(&self) -> SnapLines {
         SnapLines::default()
     }
-    /// Where it was last drawn to, if that is not where the pen is.
+    /// The last point that it was drawn to, if that is not at the pen.
     fn end(&self) -> Option<Vec2> {
         None
     }
-    /// Whether it moves a guide, which is taken away where it is dropped on a ruler.
+    /// Whether it moves a guide, which is removed if it is dropped on a ruler.
     fn is_guide(&self) -> bool {
         false
     }

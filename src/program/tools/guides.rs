@@ -1,5 +1,4 @@
-//! Guides in the hand: pulled out of a ruler, dragged over the canvas, and off it to take them away.
-//! Floor 5.
+//! Guides under the pen: pulled out of a ruler, dragged over the canvas, and removed by dragging off it. Floor 5.
 
 use super::snap::{SnapLines, SnapTargets};
 use super::{Gesture, GestureStart, Outcome, PenSample};
@@ -14,7 +13,7 @@ pub struct GuideAt {
     pub index: usize,
 }
 
-/// The guide that lies within so many px of a point: the nearest one.
+/// The nearest guide within a distance in px of a point.
 pub fn guide_at(guides: &Guides, at: Vec2, near_px: f32) -> Option<GuideAt> {
     let of = |lines: &[f32], place: f32, is_vertical: bool| {
         let all =
@@ -26,7 +25,7 @@ pub fn guide_at(guides: &Guides, at: Vec2, near_px: f32) -> Option<GuideAt> {
     near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, guide)| guide)
 }
 
-/// Takes hold of a guide.
+/// Grabs a guide.
 pub fn hold(document: &Document, guide: GuideAt, targets: SnapTargets) -> GestureStart {
     let mut rest = Guides::clone(&document.guides);
     let lines = if guide.is_vertical { &mut rest.vertical } else { &mut rest.horizontal };
@@ -54,7 +53,7 @@ struct GuideGesture {
     rest: Guides,
     is_vertical: bool,
     targets: SnapTargets,
-    /// It was there before.
+    /// Whether it existed before.
     is_old: bool,
     /// Where it is; `None` beyond the canvas.
     at: Option<f32>,
@@ -83,7 +82,7 @@ impl Gesture for GuideGesture {
         let found = self.targets.point(pen.place());
         let axis = usize::from(!self.is_vertical);
         let (at, most) = (found.at[axis], 2.0 * self.document.size.center()[axis]);
-        // Along whole pixels where it snaps to nothing.
+        // At whole pixels if it snaps to nothing.
         let has_snapped = if self.is_vertical { found.lines.x } else { found.lines.y }.is_some();
         let at = if has_snapped { at } else { at.round() };
         self.at = (0.0..=most).contains(&at).then_some(at);

@@ -1,4 +1,5 @@
-//! The image tool: moves, scales and turns the selected image before it is bent. Floor 5. The anchors are in `anchors`.
+//! The image tool: moves, scales and turns the selected image before it is bent. Floor 5. Not here: anchors
+//! (`anchors`).
 
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
 use crate::document::{Content, Document, LayerId, LayerLock, Live};

@@ -1,5 +1,5 @@
-//! The tools there are: what each is called, its key, and what it does.
-//! Floor 5. What they do is in the files of their names.
+//! The list of tools: the name, key and description of each. Floor 5. Not here: what they do (the files of their
+//! names).
 
 rilievo_engine::named! {
     /// The tools, each with its name in replays, its label on buttons, and what it does, for tooltips and the status
@@ -125,17 +125,17 @@ impl ToolKind {
             ToolKind::Zoom => 'Z',
         }
     }
-    /// The pen snaps to guides, the grid and edges, whatever is done with it.
+    /// Whether the pen snaps to guides, the grid and edges in all uses.
     pub fn snaps(self) -> bool {
         use ToolKind::{Assistants, Crop, Gradient, Move, SelectEllipse, SelectRectangle, Transform};
         matches!(self, Assistants | Crop | Gradient | Move | SelectEllipse | SelectRectangle | Transform)
     }
-    /// It makes selections.
+    /// Whether it makes selections.
     pub fn selects(self) -> bool {
         use ToolKind::{Lasso, SelectEllipse, SelectRectangle, SurfaceWand, Wand};
         matches!(self, SelectRectangle | SelectEllipse | Lasso | Wand | SurfaceWand)
     }
-    /// It works on the parts of the shape.
+    /// Whether it works on the parts of the shape.
     pub fn shapes(self) -> bool {
         matches!(self, ToolKind::Shape | ToolKind::Touch | ToolKind::Sculpt)
     }

@@ -1,13 +1,13 @@
 //! The lights of a shading layer on the canvas: each is a handle. A distant light has its handle on a disc around the
 //! middle, which is the half sphere of directions seen from the front; a point light has it at its position. Floor 5.
-//! The effect of light is in `shading`.
+//! Not here: the effect of light (`shading`).
 
 use super::{Gesture, Outcome, PenSample};
 use crate::document::{Content, Document, LayerId, Live};
 use crate::math::{Size, Vec2, Vec3, vec2, vec3};
 use crate::shading::{Light, LightKind, Shading};
 
-/// Radius of the disc of directions, in shorter sides of the canvas.
+/// Radius of the disc of directions, as a share of the canvas's shorter side.
 const REACH: f32 = 0.42;
 
 fn reach_px(canvas: Size) -> f32 {

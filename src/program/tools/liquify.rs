@@ -21,7 +21,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     };
     let map = document.map_of(layer.id);
     let (Some(map), None) = (map, why) else { return (None, why.map_or(Outcome::Idle, Outcome::Refused)) };
-    // Ctrl turns what a tool does about, Shift smooths.
+    // Ctrl reverses what a tool does, Shift smooths.
     let tool = match context.liquify.tool {
         _ if pen.keys.shift => LiquifyTool::Smooth,
         LiquifyTool::Grow if pen.keys.ctrl => LiquifyTool::Shrink,

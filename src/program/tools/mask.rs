@@ -1,6 +1,6 @@
 //! The brush and the eraser on a layer's mask: light colours show the layer, dark ones and the eraser hide it. The
-//! strokes are those of the brush, on a temporary paint layer with the mask's greys. Floor 5. The strokes are in
-//! `brush`.
+//! strokes are those of the brush, on a temporary paint layer with the mask's greys. Floor 5. Not here: the strokes
+//! (`brush`).
 
 use super::brush;
 use super::settings::StrokePurpose;
@@ -26,7 +26,7 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
     painted(context, (pen, purpose), MaskTarget::Layer(layer.id), coverage.clone(), sees)
 }
 
-/// The pen comes down on the selection itself: light colours select, dark ones and the eraser take away.
+/// The pen comes down on the selection itself: light colours select, dark ones and the eraser deselect.
 pub fn press_on_selection(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> GestureStart {
     let size = context.document.size;
     let mask = match context.document.selected() {
@@ -74,7 +74,7 @@ enum MaskTarget {
 struct MaskGesture {
     document: Document,
     target: MaskTarget,
-    /// The mask with the stroke as far as it is drawn, and the tiles that hold the same.
+    /// The mask with the stroke so far, and the tiles that hold the same.
     mask: Arc<Plane<u8>>,
     shown: TileGrid,
     /// On the sheet of greys.

@@ -69,7 +69,7 @@ pub fn press(kind: ToolKind, context: &ToolContext, pen: PenSample) -> GestureSt
     }
 }
 
-/// The brush or the eraser comes down on what it is to change.
+/// The brush or the eraser comes down on what it will change.
 fn stroke(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> GestureStart {
     let warps = displaced::warps(context);
     match warps.is_empty() {
@@ -78,7 +78,7 @@ fn stroke(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> Gest
     }
 }
 
-/// The same where nothing displaces the layer, or the pen was taken to where it would be without.
+/// The same if nothing displaces the layer, or the pen was already mapped to the undisplaced layer.
 fn stroke_in_place(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> GestureStart {
     match context.target {
         BrushTarget::Layer => brush::press(context, pen, purpose),

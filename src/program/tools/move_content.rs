@@ -33,7 +33,7 @@ fn press_several(context: &ToolContext, layers: &[LayerId], pen: PenSample) -> G
     (Some(Box::new(MoveGesture::begin(context, layers.to_vec(), None, pen))), Outcome::Idle)
 }
 
-/// What the tool takes hold of.
+/// What the tool grabs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MoveTarget {
     /// One stroke of the layer.
@@ -41,7 +41,7 @@ pub enum MoveTarget {
     Layer,
 }
 
-/// What a press at a canvas point would hold: the topmost stroke there, or the whole layer; nothing of a locked one.
+/// What a press at a canvas point would hold: the topmost stroke there, or the whole layer; nothing if it is locked.
 /// `whole`: the layer in any case.
 pub fn held(document: &Document, layer: &Layer, at: Vec2, whole: bool) -> Option<MoveTarget> {
     if layer.lock == LayerLock::All {
@@ -60,7 +60,7 @@ pub fn held(document: &Document, layer: &Layer, at: Vec2, whole: bool) -> Option
 struct MoveGesture {
     document: Document,
     layers: Vec<LayerId>,
-    /// One stroke of the only layer alone.
+    /// One stroke, only if a single layer is chosen.
     stroke: Option<usize>,
     from: Vec2,
     by: Vec2,
@@ -88,7 +88,7 @@ impl MoveGesture {
 
 /// A document with a layer moved on the canvas; `by` in whole pixels.
 fn with_moved(document: &Document, layer: LayerId, by: Vec2) -> Option<Document> {
-    // Where the layer's frame lies elsewhere, the frame is moved.
+    // If the layer's frame is not the canvas, the frame is moved.
     let is_warped = document.layer(layer).is_some_and(|layer| layer.is_warped());
     if is_warped || document.map_of(layer).is_some_and(|map| !map.is_none()) {
         return transform::mapped(document, layer, PlaneMap::translation(by));

@@ -1,5 +1,5 @@
-//! Outlines: of the next dab as the surface bends it, which is the brush's cursor, and of a stroke.
-//! Floor 5. The curve on which D(q) is one radius from the anchor, or on which paint begins, found on a grid.
+//! Outlines: of the next dab, bent by the surface, as the brush's cursor, and of a stroke. Floor 5. The curve on which
+//! D(q) is one radius from the anchor, or on which paint begins, found on a grid.
 
 use crate::document::Document;
 use crate::math::{Rect, Vec2, vec2};
@@ -41,7 +41,7 @@ pub fn outline(document: &Document, operator: Operator, at: Vec2, radius_px: f32
         .collect();
     let inside: Vec<bool> = nodes.iter().map(|distance| *distance < 0.0).collect();
     let specks = specks(&inside, cols as usize);
-    // What is left out of the outline counts as outside.
+    // What the outline leaves out counts as outside.
     let node = |c: i32, r: i32| {
         let i = (r * cols + c) as usize;
         if specks[i] { f32::MIN_POSITIVE } else { nodes[i] }
@@ -93,9 +93,9 @@ fn specks(inside: &[bool], cols: usize) -> Vec<bool> {
 
 /// The outline of what a stroke covers, as pairs of points to be joined by lines; canvas px.
 pub fn of_stroke(stroke: &Arc<Stroke>, scene: &Scene) -> Vec<[Vec2; 2]> {
-    /// From this alpha on a pixel counts as covered.
+    /// A pixel counts as covered from this alpha on.
     const LEAST: f32 = 24.0;
-    /// Cells along the longer side: a stroke's outline is more winding than a dab's.
+    /// Cells along the longer side: a stroke's outline winds more than a dab's.
     const CELLS: i32 = 400;
     let covered = stroke.covered(scene);
     let area = stroke.bounds(scene).grown(1);
@@ -190,8 +190,8 @@ mod tests {
         let operator = Operator::Normal { alpha: 0.5, beta: 0.0, detail: 0.0 };
         let lines = outline(&ball, operator, at, 20.0, 0.0);
         assert!(lines.len() > 8);
-        // n̄ = (q − q_0) / 60 on the ball and f_n(u) = α u at β = 0: a point r px away is brought r + α L (r / 60)²
-        // away.
+        // n̄ = (q − q_0) / 60 on the ball and f_n(u) = α u at β = 0: a point r px away is moved to a distance of r + α
+        // L (r / 60)².
         let a = 0.5 * 128.0 / (60.0 * 60.0);
         let expected = ((1.0f32 + 4.0 * a * 20.0).sqrt() - 1.0) / (2.0 * a);
         for point in lines.iter().flatten() {

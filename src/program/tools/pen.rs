@@ -14,7 +14,7 @@ pub struct PenSample {
     pub keys: ModifierKeys,
 }
 
-/// The modifier keys, as they are called on most keyboards.
+/// The modifier keys, by their names on most keyboards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct ModifierKeys {
     pub shift: bool,

@@ -1,5 +1,5 @@
-//! The brush as smudge, blur, clone, and as one that picks paint up: what it needs before it begins, and what it holds.
-//! Floor 5. Not here: what it does to pixels (`paint::retouch`), samples from pen readings (`brush`).
+//! The brush as smudge, blur, clone, and one that picks paint up: what it needs before it begins, and what it holds.
+//! Floor 5. Not here: what it does to pixels (`paint::retouch`), samples from the pen (`brush`).
 
 use super::settings::StrokePurpose;
 use super::symmetry::SymmetryImage;
@@ -24,7 +24,7 @@ impl ActiveWork {
             ActiveWork::Retouching(retouching) => retouching.draw(samples),
         }
     }
-    /// The strokes so far, for a layer that keeps them.
+    /// The strokes so far, for a layer that keeps strokes.
     pub fn strokes(&self) -> Vec<Stroke> {
         match self {
             ActiveWork::Strokes(active) => active.strokes(),
@@ -127,7 +127,7 @@ mod tests {
         let context = ToolContext { symmetry: Symmetry::Vertical, ..on_paint(&document, &brush) };
         let tiles = drawn(&context, vec2(50.0, 60.0), vec2(90.0, 60.0));
         assert!(tiles.pixel(80, 60)[3] > 200 && tiles.pixel(80, 80)[3] == 0);
-        // The image drags nothing onto nothing, from the right.
+        // The image drags transparency onto transparency, from the right.
         assert_eq!(tiles.pixel(120, 60), [0; 4]);
     }
     #[test]

@@ -1,5 +1,5 @@
-//! The settings of the tools.
-//! Floor 5. The brush's are `paint`'s, what snaps is in `snap`, what a frame takes along in `frame`.
+//! The settings of the tools. Floor 5. Not here: those of the brush (`paint`), snapping (`snap`), what a frame moves
+//! (`frame`).
 
 use super::pen::ModifierKeys;
 use crate::math::range::held;
@@ -21,7 +21,7 @@ pub enum BrushTarget {
     Selection,
 }
 
-/// What a stroke is for.
+/// The purpose of a stroke.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StrokePurpose {
     Paint,
@@ -31,7 +31,7 @@ pub enum StrokePurpose {
 /// The settings of the selection tools.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SelectSettings {
-    /// How a new selection meets the one there is, where no key says otherwise.
+    /// How a new selection is combined with the present one, unless a key says otherwise.
     pub combine: SelectionMode,
     /// The wand: its region is that of a fill.
     pub wand: Fill,
@@ -53,14 +53,14 @@ impl Default for SelectSettings {
 }
 
 impl SelectSettings {
-    /// Of the wand.
+    /// The tolerance of the wand.
     pub const TOLERANCE: Range = crate::math::UNIT;
 
     /// With another kind of region, which begins with its own tolerance.
     pub fn with_kind(self, kind: RegionKind) -> Self {
         Self { region: SurfaceRegion { kind, tolerance: kind.tolerance(), ..self.region }, ..self }
     }
-    /// How a selection meets the one there is: Shift adds, Alt takes away, both intersect.
+    /// How a selection is combined with the present one: Shift adds, Alt subtracts, both intersect.
     pub fn how(&self, keys: ModifierKeys) -> SelectionMode {
         match (keys.shift, keys.alt) {
             (true, true) => SelectionMode::Intersect,
@@ -78,17 +78,17 @@ pub struct ShapeSettings {
     pub tool: SculptTool,
     /// Diameter of a dab, px.
     pub size: f32,
-    /// The part of the dab that is whole.
+    /// The part of the dab with full strength.
     pub hardness: f32,
     /// How far a dab raises or lowers, px.
     pub height: f32,
-    /// How far a dab goes that smooths, flattens, pinches or scrapes: the share of the way.
+    /// How far a dab that smooths, flattens, pinches or scrapes goes: the share of the way.
     pub share: f32,
-    /// The direction that a touch gives the surface; unit, camera space (y up).
+    /// The direction that a touch gives to the surface; unit, camera space (y up).
     pub normal: Vec3,
-    /// Of a touch, px.
+    /// The radius of a touch, px.
     pub radius: f32,
-    /// How far a touch is felt, px; 0: to the rim and the next touches.
+    /// How far a touch reaches, px; 0: to the rim and the next touches.
     pub reach: f32,
 }
 
@@ -122,7 +122,7 @@ impl ShapeSettings {
             reach: held(self.reach, &Touch::REACH),
         }
     }
-    /// The strength of a dab of the tool in hand.
+    /// The strength of a dab of the current tool.
     pub fn strength(&self) -> f32 {
         if self.tool.is_by_height() { self.height } else { self.share }
     }
@@ -155,7 +155,7 @@ impl CropAspect {
             CropAspect::ThreeToTwo => Some(1.5),
         }
     }
-    /// A frame with this aspect about the middle of another one, as wide.
+    /// A frame with this aspect about the middle of another one, with its width.
     pub fn given(self, frame: Rect, canvas: Size) -> Rect {
         let Some(ratio) = self.ratio(canvas) else { return frame };
         let height = (frame.width() as f32 / ratio).round().max(1.0) as i32;

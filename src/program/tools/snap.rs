@@ -1,13 +1,12 @@
-//! Snapping: points and boxes that the hand moves go to guides, the grid, the canvas and the boxes of layers where they
-//! come near.
-//! Floor 5. Pure functions; which tools ask is theirs, what is drawn of it the window's.
+//! Snapping: points and boxes that the user drags go to guides, the grid, the canvas and the boxes of layers when near.
+//! Floor 5. Pure functions. Not here: which tools snap (their files), what is drawn (the window).
 
 use super::frame::TransformFrame;
 use crate::document::{AssistantKind, Content, Document, LayerId};
 use crate::math::range::{Range, held};
 use crate::math::{COORDINATE, Vec2, vec2};
 
-/// What is snapped to, and what of it is shown.
+/// What is snapped to, and what is shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewAids {
     /// Rulers along the edges of the view.
@@ -27,9 +26,9 @@ pub struct ViewAids {
     pub to_canvas: bool,
     /// The edges and middles of what other layers hold.
     pub to_layers: bool,
-    /// How strongly assistants draw strokes to them: 0 not at all, 1 wholly.
+    /// How strongly assistants attract strokes: 0 not at all, 1 wholly.
     pub magnetism: f32,
-    /// What the tool *Assistants* sets.
+    /// The kind that the tool *Assistants* sets.
     pub assistant: AssistantKind,
 }
 
@@ -40,7 +39,7 @@ pub struct CanvasGrid {
     pub spacing: f32,
     /// Parts of each square.
     pub subdivisions: u32,
-    /// Where one of the crossings lies, canvas px.
+    /// The place of one crossing, canvas px.
     pub offset: Vec2,
 }
 
@@ -48,7 +47,7 @@ impl CanvasGrid {
     pub const SPACING: Range = 2.0..=10_000.0;
     pub const SUBDIVISIONS: std::ops::RangeInclusive<u32> = 1..=16;
 
-    /// With its numbers in their ranges.
+    /// With its numbers within their ranges.
     pub fn held(self) -> Self {
         Self {
             spacing: held(self.spacing, &Self::SPACING),
@@ -86,7 +85,7 @@ impl Default for ViewAids {
     }
 }
 
-/// The lines that something can snap to, and from how far.
+/// The lines that something can snap to, and the greatest distance.
 #[derive(Clone, Debug, Default)]
 pub struct SnapTargets {
     /// Upright lines by their x, then level ones by their y.
@@ -95,7 +94,7 @@ pub struct SnapTargets {
     radius_px: f32,
 }
 
-/// Where a point went.
+/// The place of a point after snapping.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Snapped {
     pub at: Vec2,
@@ -109,18 +108,18 @@ pub struct SnapLines {
     pub y: Option<f32>,
 }
 
-/// From how far something snaps, screen points.
+/// The greatest distance from which something snaps, screen points.
 pub const SNAP_PT: f32 = 8.0;
-/// Strokes of a layer whose box is asked for: of more it would take too long.
+/// The most strokes of a layer whose box is computed: more would take too long.
 const MOST_STROKES: usize = 400;
 
 impl SnapTargets {
-    /// What nothing snaps to.
+    /// No lines: nothing snaps.
     pub fn none() -> &'static Self {
         static NONE: SnapTargets = SnapTargets { lines: [Vec::new(), Vec::new()], grid: None, radius_px: 0.0 };
         &NONE
     }
-    /// What there is in a document; `moving`: layers that are no targets, since they move themselves.
+    /// The lines of a document; `moving`: layers that are no targets, because they move themselves.
     pub fn of(document: &Document, aids: &ViewAids, moving: &[LayerId], px_per_pt: f32) -> Self {
         let mut targets = Self { radius_px: SNAP_PT * px_per_pt, ..Self::default() };
         if !aids.snaps {
@@ -162,7 +161,7 @@ impl SnapTargets {
     pub fn point(&self, at: Vec2) -> Snapped {
         snapped(at, self, self.radius_px)
     }
-    /// How a box that is moved by hand has to be moved on so that its edges or its middle snap.
+    /// The further move of a dragged box that makes its edges or its middle snap.
     pub fn shift(&self, low: Vec2, high: Vec2) -> Snapped {
         let mut shift = Snapped::default();
         for axis in 0..2 {
@@ -192,9 +191,9 @@ impl SnapLines {
     }
 }
 
-/// A point moved to the nearest upright and the nearest level line that lie within a radius, px; each by itself.
+/// A point moved to the nearest upright and the nearest level line within a radius, px; each separately.
 ///
-/// Total: a point that is no place stays as it is.
+/// Total: an invalid point is returned unchanged.
 pub fn snapped(point: Vec2, candidates: &SnapTargets, radius_px: f32) -> Snapped {
     let mut found = Snapped { at: point, lines: SnapLines::default() };
     if !point.is_finite() {

@@ -1,12 +1,12 @@
 //! The stroke tool: selects strokes of a stroke layer on the canvas and moves them along the surface. Floor 5. The
-//! edits are in `document::strokes`; the session keeps the selection.
+//! session keeps the selection. Not here: the edits (`document::strokes`).
 
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
 use crate::document::{Content, Document, LayerId, LayerLock};
 use crate::math::Vec2;
 use crate::paint::picking;
 
-/// The pen comes down: on a stroke it selects it (with Shift it toggles it), beside all strokes it deselects them.
+/// The pen comes down: on a stroke it selects it (with Shift it toggles it), off all strokes it deselects them.
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let nothing = (None, Outcome::Idle);
     let Some(layer) = context.layer.and_then(|id| context.document.layer(id)) else { return nothing };

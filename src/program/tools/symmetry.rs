@@ -5,7 +5,7 @@ use crate::math::range::held;
 use crate::math::{COORDINATE, Mat2, Size, TURNS, Vec2, vec2};
 use crate::paint::{Brush, Sample, StrokeFrame};
 
-/// How strokes repeat about a point, which is the middle of the canvas unless it was moved.
+/// How strokes repeat about a point, by default the middle of the canvas.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Symmetry {
     #[default]
@@ -16,40 +16,40 @@ pub enum Symmetry {
     Horizontal,
     /// About both axes.
     Both,
-    /// So many times round, `2..=64`.
+    /// Turned around so many times, `2..=64`.
     Radial(u32),
 }
 
-/// The most times round.
+/// The most turns.
 pub const MOST_ROUND: u32 = 64;
 
-/// Where the axes stand.
+/// The place of the axes.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct SymmetryAxes {
-    /// The point about which strokes repeat; without one the middle of the canvas.
+    /// The point about which strokes repeat; if absent, the middle of the canvas.
     pub center: Option<Vec2>,
     /// How far both axes are turned, counter-clockwise, degrees.
     pub turn: f32,
 }
 
-/// What the hand takes hold of.
+/// What the user drags.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AxisHandle {
     Middle,
-    /// Up the upright axis.
+    /// At the upper end of the upright axis.
     End,
 }
 
-/// How far the handle that turns stands from the middle, screen points.
+/// The distance of the turning handle from the middle, screen points.
 const HANDLE_PT: f32 = 90.0;
-/// Turns with Shift go from one multiple of this to the next.
+/// Turns with Shift go in steps of this.
 const STEP_DEGREES: f32 = 15.0;
 
 impl SymmetryAxes {
     pub fn middle(&self, canvas: Size) -> Vec2 {
         self.center.unwrap_or(canvas.center())
     }
-    /// With its numbers in their ranges.
+    /// With its numbers within their ranges.
     pub fn held(self) -> Self {
         let place = |p: Vec2| vec2(held(p.x, &COORDINATE), held(p.y, &COORDINATE));
         Self { center: self.center.map(place), turn: held(self.turn, &TURNS) }
@@ -63,7 +63,7 @@ impl SymmetryAxes {
         let middle = self.middle(canvas);
         [middle, middle - self.rotation() * Vec2::Y * HANDLE_PT * px_per_pt]
     }
-    /// The handle at a point, where there are axes at all.
+    /// The handle at a point, if there are axes.
     pub fn handle_at(&self, symmetry: Symmetry, canvas: Size, at: Vec2, px_per_pt: f32) -> Option<AxisHandle> {
         let [middle, end] = self.handles(canvas, px_per_pt);
         let near = |handle: Vec2| symmetry != Symmetry::None && handle.distance(at) <= super::pen::GRAB_PT * px_per_pt;
@@ -84,7 +84,7 @@ impl SymmetryAxes {
     }
 }
 
-/// Where one of the strokes goes: turned or mirrored about the middle of the axes.
+/// The map of one of the strokes: a turn or mirror about the middle of the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SymmetryImage {
     center: Vec2,
@@ -102,7 +102,7 @@ impl Symmetry {
         };
         self.images(canvas).into_iter().map(turned).collect()
     }
-    /// The lines across which strokes repeat, or that part the turns; canvas px, as far as the canvas reaches.
+    /// The lines across which strokes repeat, or between the turns; canvas px, as long as the canvas.
     pub fn lines_about(self, canvas: Size, axes: SymmetryAxes) -> Vec<[Vec2; 2]> {
         let (center, rotation) = (axes.middle(canvas), axes.rotation());
         let moved = |point: Vec2| center + rotation * (point - canvas.center());

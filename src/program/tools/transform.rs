@@ -64,21 +64,21 @@ pub fn mirror(upright: bool) -> PlaneMap {
     PlaneMap::affine([x, 0.0, 0.0, y, 0.0, 0.0]).unwrap_or_default()
 }
 
-/// A turn about the origin, counter-clockwise as seen; `None` of what is no number.
+/// A turn about the origin, counter-clockwise as seen; `None` for NaN.
 pub fn turn(degrees: f64) -> Option<PlaneMap> {
     degrees.is_finite().then(|| PlaneMap::rotation(degrees, Vec2::ZERO))
 }
 
-/// Layers with what they show mapped about the middle of it. `None` of empty layers, or where that cannot be said.
+/// Layers with what they show mapped about its middle. `None` for empty layers, or where that cannot be expressed.
 pub fn about_middle(document: &Document, layers: &[LayerId], map: PlaneMap) -> Option<Document> {
     let pivot = TransformFrame::around(document, layers)?.pivot();
-    // A middle between pixels along one axis alone would move pixels by halves when they are turned.
+    // A middle between pixels along only one axis would move pixels by halves when they are turned.
     let pivot = if map.coefficients().is_some_and(|c| c[1] != 0.0) { pivot.round() } else { pivot };
     let on_canvas = PlaneMap::translation(-pivot).then(&map).then(&PlaneMap::translation(pivot));
     layers.iter().try_fold(document.clone(), |next, layer| mapped(&next, *layer, on_canvas))
 }
 
-/// A map about the middle of the shape as a matrix on the canvas. `None` where there is no shape.
+/// A map about the middle of the shape as a matrix on the canvas. `None` if there is no shape.
 pub fn about_shape(document: &Document, map: PlaneMap) -> Option<[f64; 6]> {
     let [low, high] = TransformFrame::of_shape(document)?.bounds();
     let middle = (low + high) * 0.5;
@@ -86,7 +86,7 @@ pub fn about_shape(document: &Document, map: PlaneMap) -> Option<[f64; 6]> {
     PlaneMap::translation(-pivot).then(&map).then(&PlaneMap::translation(pivot)).coefficients()
 }
 
-/// A layer with what it shows taken along by a map of the canvas; `None` where that cannot be said.
+/// A layer with what it shows moved by a map of the canvas; `None` where that cannot be expressed.
 pub fn mapped(document: &Document, layer: LayerId, on_canvas: PlaneMap) -> Option<Document> {
     let (own, whole) = (LayerPlacement::of(document.layer(layer)?), document.map_of(layer)?);
     let next = own.then(&whole, &FrameMap::OnCanvas(on_canvas), document.size)?;

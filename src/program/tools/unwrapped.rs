@@ -1,5 +1,5 @@
-//! Painting flat: the pen on the unwrapped sheet is led to the canvas, so that a straight line drawn flat lies bent on
-//! the form. Floor 5. The tools do not know; the sheet is `surface::unwrap`'s.
+//! Painting flat: the pen on the unwrapped sheet is mapped to the canvas, so that a straight line drawn flat lies bent
+//! on the form. Floor 5. The tools know nothing of this. Not here: the sheet (`surface::unwrap`).
 
 pub mod pieces;
 
@@ -15,12 +15,12 @@ use std::sync::Arc;
 
 /// The longest step between two points of a stroke that are looked up, px of the sheet.
 const STEP_PX: f32 = 3.0;
-/// The most of them between two readings: a pen that leaps leaves a coarser line.
+/// The most of them between two samples: a pen that jumps leaves a coarser line.
 const MOST_STEPS: f32 = 4096.0;
 /// Two steps farther apart on the canvas are on two sides of an edge: the stroke is cut there.
 const CUT_PX: f32 = 6.0 * STEP_PX;
 
-/// Whether a tool works on the sheet; others need what they hold to lie as it does in the picture.
+/// Whether a tool works on the sheet; others need what they hold to lie as in the picture.
 pub fn works(tool: ToolKind) -> bool {
     use ToolKind::{Brush, Eraser, Eyedropper, Fill, Hand, Image, SurfaceWand, Wand, Zoom};
     matches!(tool, Brush | Eraser | Eyedropper | Fill | Hand | Image | SurfaceWand | Wand | Zoom)
@@ -78,7 +78,7 @@ struct Sheet {
 }
 
 impl Sheet {
-    /// The reading as it is on the canvas, and the object there; the pen leans as it does on the sheet.
+    /// The sample on the canvas, and the object there; the pen leans as it does on the sheet.
     fn led(&self, pen: PenSample) -> Option<(PenSample, u32)> {
         let CanvasPlace { at, object, turn } = self.layout.canvas_at(&self.surface, pen.place())?;
         let sample = Sample { at, tilt: turn.transpose() * pen.sample.tilt, ..pen.sample };
@@ -86,7 +86,7 @@ impl Sheet {
     }
 }
 
-/// A tool that is led by the sheet.
+/// A tool that is used through the sheet.
 struct LedGesture {
     sheet: Sheet,
     tool: Box<dyn Gesture>,
@@ -108,26 +108,26 @@ struct FlatStroke {
     /// With the strokes that are finished.
     document: Document,
     layer: Option<LayerId>,
-    /// What the brush works with, but for those two.
+    /// What the brush works with, except those two.
     hand: KeptContext,
     start: StrokeStart,
     stabilized: StabilizedPen,
-    /// The last reading on the sheet.
+    /// The last sample on the sheet.
     last: Option<PenSample>,
     /// The stroke on the canvas, the object that it is on, and its last place.
     active: Option<(Box<dyn Gesture>, u32, Vec2)>,
     /// Nothing can be painted: it is not tried again.
     is_refused: bool,
-    /// Its readings that it has not got yet.
+    /// Samples not yet passed to it.
     run: Vec<PenSample>,
-    /// What the finished ones are called.
+    /// The name of the finished ones.
     kept: Option<String>,
-    /// What the brush answered beside pictures.
+    /// What the brush returned besides pictures.
     said: Option<Outcome>,
 }
 
 impl FlatStroke {
-    /// On to a reading on the sheet, in steps short enough to follow the form.
+    /// Continues to a sample on the sheet, in steps short enough to follow the form.
     fn go(&mut self, pen: PenSample) {
         let Some(last) = self.last.replace(pen) else { return self.step(pen) };
         let steps = (last.place().distance(pen.place()) / STEP_PX).ceil().max(1.0).min(MOST_STEPS) as usize;
@@ -163,7 +163,7 @@ impl FlatStroke {
             *at = led.place();
         }
     }
-    /// Hands on what has come; what shows then.
+    /// Passes on the samples so far; returns what shows then.
     fn flush(&mut self) -> Option<Outcome> {
         let run = std::mem::take(&mut self.run);
         let (gesture, ..) = self.active.as_mut()?;

@@ -1,5 +1,5 @@
-//! Actions on the canvas of the document in front: its borders, its size, which way it lies. What cannot be done says
-//! why. Floor 6. What a document becomes is `document::canvas_change`'s and `document::scale`'s.
+//! Actions on the canvas of the document in front: its borders, its size, its orientation. What cannot be done says
+//! why. Floor 6. Not here: what a document becomes (`document::canvas_change`, `document::scale`).
 
 use crate::document::canvas_change::{CanvasAnchor, CanvasChange, CanvasMirror};
 use crate::document::{Document, Progress, flatten};
@@ -19,7 +19,7 @@ names!(CanvasMirror);
 names!(Resampling);
 
 actions! {
-    /// All but the frame are steps that can be undone. Paint beyond the canvas is kept.
+    /// All except the frame are steps that can be undone. Paint beyond the canvas is kept.
     CanvasAction {
         /// To a rectangle, which may reach beyond the canvas.
         "crop" Crop { to: Rect }
@@ -64,7 +64,7 @@ impl CanvasAction {
             Err(why) => session.say(&why),
         }
     }
-    /// What a step is doing that takes long, so that the window does it beside itself.
+    /// What a long step is doing, which the window therefore runs on another thread.
     pub fn takes_long(&self) -> Option<&'static str> {
         matches!(self, CanvasAction::Trim {}).then_some("Trimming the canvas")
     }
@@ -123,12 +123,12 @@ impl CanvasAction {
     }
 }
 
-/// Places of the old canvas mean nothing on another one.
+/// Places on the old canvas mean nothing on another one.
 pub fn forget_places(tab: &mut OpenDocument) {
     (tab.last_end, tab.clone_source, tab.last_selection) = (None, None, None);
 }
 
-/// A frame no farther away than pixels can lie.
+/// A frame within the range of pixels.
 fn near(frame: Rect) -> Rect {
     const FAR: i32 = 1_000_000;
     let [x0, y0, x1, y1] = [frame.x0, frame.y0, frame.x1, frame.y1].map(|v| v.clamp(-FAR, FAR));
@@ -141,7 +141,7 @@ fn cropped(from: Size, to: Rect) -> Result<CanvasChange, String> {
     Ok(change)
 }
 
-/// A size that this machine has memory for.
+/// A size that fits this machine's memory.
 fn allowed(width: u32, height: u32) -> Result<Size, String> {
     let budget = Budget::of_this_machine();
     budget.size(Path::new("canvas"), width.into(), height.into()).map_err(|error| format!("{error}."))

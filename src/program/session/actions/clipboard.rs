@@ -1,5 +1,5 @@
 //! Cut, copy and paste of what is selected. What is copied stays a layer of its own kind: strokes stay strokes, live
-//! layers live; other programs are handed its pixels. Floor 6. The system's clipboard is the window's.
+//! layers live; other programs get its pixels. Floor 6. Not here: the system's clipboard (the window).
 
 use super::layers::{LayerAction, above};
 use crate::document::cut::taken;
@@ -32,10 +32,10 @@ pub struct Copied {
     /// As layers of their own kinds, bottom first.
     layers: Vec<Layer>,
     canvas: Size,
-    /// The same for other programs: straight RGBA, where it lies.
+    /// The same for other programs: straight RGBA, with its place.
     pub rect: Rect,
     pub rgba: Arc<Vec<u8>>,
-    /// The same of 16 bits, where some of it has them.
+    /// The same with 16 bits, if some of it has them.
     deep: Option<Arc<Vec<[u16; 4]>>>,
 }
 
@@ -44,7 +44,7 @@ impl Copied {
     fn name(&self) -> String {
         self.layers.last().map_or_else(String::new, |layer| layer.name.clone())
     }
-    /// All of it as paint, its corner at a pixel.
+    /// All of it as paint, with its corner at a pixel.
     fn tiles(&self, x: i32, y: i32) -> TileGrid {
         let (width, height) = (self.rect.width(), self.rect.height());
         match &self.deep {
@@ -159,8 +159,8 @@ fn paste(tab: &mut OpenDocument, copied: &Copied) {
     }
 }
 
-/// What was copied as new layers of a document; on a canvas of another size masks, which have their canvas's, become
-/// pixels.
+/// What was copied as new layers of a document; on a canvas of another size masks become pixels, because a mask has the
+/// size of its canvas.
 fn pasted(copied: &Copied, document: &Document) -> Vec<Layer> {
     let is_plain = |layer: &Layer| layer.mask.is_none() && layer.content.group().is_none();
     if copied.canvas != document.size && !copied.layers.iter().all(is_plain) {

@@ -5,7 +5,7 @@ use crate::session::Session;
 use crate::session::replay::actions;
 
 actions! {
-    /// Steps taken back and made again.
+    /// Steps undone and redone.
     EditAction {
         "undo" Undo {}
         "redo" Redo {}

@@ -1,4 +1,4 @@
-//! Opening and saving documents, and placing pictures in documents. Floor 6. The formats are in `io`.
+//! Opening and saving documents, and placing pictures in documents. Floor 6. Not here: the formats (`io`).
 
 mod maps;
 
@@ -31,25 +31,25 @@ actions! {
         "open maps" OpenMaps { normal: Option<PathBuf>, depth: Option<PathBuf> }
         /// A picture as an image layer, pinned to the surface at a canvas point.
         "place" Place { file: PathBuf, at: Vec2 }
-        /// The brushes of a file join those to choose from.
+        /// The brushes of a file are added to the list.
         "import brush" ImportBrush { file: PathBuf }
-        /// The brush in hand joins them under a name.
+        /// The current brush is added under a name.
         "keep brush" KeepBrush { name: String }
-        /// One of the user's own, by its key, is gone.
+        /// One of the user's own, by its key, is removed.
         "remove brush" RemoveBrush { name: String }
         "save" Save { file: PathBuf }
-        /// `bits`: a channel; the format's usual ones where absent.
+        /// `bits`: per channel; if absent, the format's default.
         "export" Export { file: PathBuf, background: Option<Color>, quality: u8, bits: Option<u8> }
-        /// The maps of the shape as files whose names begin with this one's, as PNG, or as EXR where it ends in that.
+        /// The maps of the shape as files whose names begin with this one's, as PNG, or as EXR if it ends in that.
         "export maps" ExportMaps { file: PathBuf, maps: Vec<ShapeMap>, directx: bool, bits: u8 }
         /// The painting, or the layer that is seen alone, as it lies in the planes of the unwrapped surface, `scale`
-        /// pixels to one of the plane.
+        /// pixels per pixel of the plane.
         "export unwrapped" ExportUnwrapped { file: PathBuf, scale: u32, deep: bool }
         /// A picture of those planes becomes an image layer that lies on the surface.
         "import unwrapped" ImportUnwrapped { file: PathBuf }
         /// A picture that the selected layer is made of.
         "use" Use { part: PicturePart, file: PathBuf }
-        /// The document's surface anew, of these maps: what is live bends over it.
+        /// A new surface from these maps: live layers bend over it.
         "replace maps" ReplaceMaps { normal: Option<PathBuf>, depth: Option<PathBuf> }
         /// A part of these maps, in front of all others.
         "add maps" AddMaps { normal: Option<PathBuf>, depth: Option<PathBuf> }
@@ -88,7 +88,7 @@ impl FileAction {
                 let Some(tab) = session.active() else { return Ok(()) };
                 let document = tab.document().clone();
                 let terms = session.saving(file, unless_forced(session));
-                // Nothing here gives up, so it is saved.
+                // Nothing here cancels, so it is saved.
                 if let (Some(stamp), Some(tab)) =
                     (storage::save(file, &document, terms, &Progress::default())?, session.active_mut())
                 {
@@ -158,13 +158,13 @@ pub fn empty(size: Size, background: Option<Color>) -> Document {
     Document { layers: fill.into_iter().collect(), ..Document::empty(size) }
 }
 
-/// What saving and exporting may replace beside the document's own file: nothing, since nobody can be asked, or all
-/// where the user said so beforehand.
+/// What saving and exporting may replace besides the document's own file: nothing, since nobody can be asked, or all if
+/// the user said so beforehand.
 fn unless_forced(session: &Session) -> Overwrite {
     if session.replaces_unasked { Overwrite::Forced } else { Overwrite::Nothing }
 }
 
-/// The flattened picture as a file, or the document as a Photoshop file; none is written if that is given up. What the
+/// The flattened picture as a file, or the document as a Photoshop file; none is written if cancelled. Returns what the
 /// format cannot hold.
 pub fn export(
     document: &Document,
@@ -183,7 +183,7 @@ pub fn export(
     Ok(encoded.notes.into_iter().map(|note| format!("{}: {note}", file.display())).collect())
 }
 
-/// The maps of a document's shape as files; their paths.
+/// The maps of a document's shape as files; returns their paths.
 pub fn export_maps(
     document: &Document,
     file: &Path,

@@ -1,5 +1,5 @@
-//! Guides and assistants as they are set, pulled out and cleared; what snaps to them and what of them is shown.
-//! Floor 6. Guides that lie on the canvas are moved by the pen: `tools::guides`.
+//! Setting, pulling out and clearing guides and assistants; what snaps to them and which are shown. Floor 6. Not here:
+//! moving guides on the canvas with the pen (`tools::guides`).
 
 use crate::document::{Assistant, AssistantKind, Document, Guides};
 use crate::math::UNIT;
@@ -32,13 +32,13 @@ record!(Assistant { kind, points });
 
 actions! {
     GuideAction {
-        /// Out of a ruler; drags and a release of the pointer follow, and beyond the canvas it is let go of.
+        /// Out of a ruler; drags and a release of the pointer follow, and released beyond the canvas it is dropped.
         "pull" Pull { vertical: bool, pen: PenSample, px_per_pt: f32 }
         /// All of them.
         "set" Set { guides: Guides }
         "clear" Clear {}
         "assistants" Assistants { assistants: Vec<Assistant> }
-        /// What is shown and what the pen snaps to; no step.
+        /// What is shown and what the pen snaps to; not a step.
         "aids" Aids { aids: ViewAids }
     }
 }
@@ -51,7 +51,7 @@ impl GuideAction {
                 session.aids = ViewAids { grid: aids.grid.held(), magnetism: held(aids.magnetism, &UNIT), ..*aids };
             }
             GuideAction::Pull { vertical, pen, px_per_pt } => {
-                // What is pulled out is to be seen.
+                // A guide that is pulled out becomes visible.
                 session.aids.guides = true;
                 let Some(tab) = session.active() else { return session.say("There is no document.") };
                 let aids = ViewAids { to_guides: false, ..session.aids };

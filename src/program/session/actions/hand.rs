@@ -24,7 +24,7 @@ record!(Fill { tolerance, gap_px, grow_px, antialias, layer_alone, bounded });
 
 as_in_recipes!(BrushMode);
 
-/// A word, or how many times round.
+/// A word, or a number of turns.
 impl ReplayValue for Symmetry {
     fn written(&self) -> Value {
         match *self {
@@ -71,7 +71,7 @@ actions! {
         "default colors" DefaultColors {}
         "operator" Operator { operator: Operator }
         "symmetry" Symmetry { symmetry: Symmetry }
-        /// Where the axes of symmetry stand; without a point about the middle of the canvas.
+        /// The place of the axes of symmetry; without a point, the middle of the canvas.
         "axes" Axes { center: Option<Vec2>, turn: f32 }
         "fill" Fill { fill: Fill }
         "liquify" Liquify { liquify: LiquifySettings }
@@ -79,7 +79,7 @@ actions! {
         "press by speed" PressBySpeed { on: bool }
         /// Whether the brush paints, smudges, blurs or clones.
         "mark" Mark { mark: BrushMode }
-        /// What the transform tool takes along.
+        /// What the transform tool moves.
         "carried" Carried { carried: TransformTarget }
         /// Where the brush may paint.
         "bounded" Bounded { bounded: PaintLimit }

@@ -1,5 +1,5 @@
-//! Actions on the layer tree and its layers. Floor 6. The edits themselves are in `document::edit` and
-//! `document::several`, new layers in `new`.
+//! Actions on the layer tree and its layers. Floor 6. Not here: the edits themselves (`document::edit`,
+//! `document::several`), new layers (`new`).
 
 mod flattening;
 mod new;
@@ -25,7 +25,8 @@ use std::sync::Arc;
 use steps::{cleared, duplicated, homed, kept, moves, ungrouped};
 
 actions! {
-    /// `layer` is always the path before the action; where it may be several, what is in a group among them goes along.
+    /// `layer` is always the path before the action; if several are possible, the layers of a group among them follow
+    /// it.
     LayerAction {
         "select" Select { layer: LayerPath }
         /// These are chosen, the primary one too; `anchor`: where a range begins that is extended later.
@@ -33,7 +34,7 @@ actions! {
         /// Above the selected layer; into it, if it is a group.
         "add" Add { kind: NewLayer }
         "delete" Delete { layer: LayerPaths }
-        /// Copies of several stand together above the topmost of them.
+        /// Copies of several go together above the topmost of them.
         "duplicate" Duplicate { layer: LayerPaths }
         /// Into a group (or, without one, the document) so that so many layers lie beneath, not counting themselves.
         "move" Move { layer: LayerPaths, group: Option<LayerPath>, index: usize }
@@ -53,33 +54,32 @@ actions! {
         "on mask" OnMask { layer: LayerPath, on: bool }
         /// The layer's transform is applied for good: its frame becomes the canvas.
         "apply transform" ApplyTransform { layer: LayerPaths }
-        /// A grid of points over what the layer shows, which the transform tool drags; one that it has takes other
-        /// points.
+        /// A grid of points over what the layer shows, which the transform tool drags; an existing one gets new points.
         "mesh" Mesh { layer: LayerPaths, columns: usize, rows: usize }
         /// Mirrored about the middle of what they hold: left and right, or up and down.
         "mirror" Mirror { layer: LayerPaths, upright: bool }
         /// Turned about the middle of what they hold, counter-clockwise.
         "turn" Turn { layer: LayerPaths, degrees: f32 }
-        /// What they show is taken along by a map of the canvas (a, b, c, d, e, f); shown only, until it is `done`.
+        /// What they show is moved by a map of the canvas (a, b, c, d, e, f); shown only, until it is `done`.
         "take along" TakeAlong { layer: LayerPaths, by: [f64; 6], done: bool }
         /// The frame of the chosen layers is turned about this point, by shares of its sides.
         "pivot" Pivot { at: Vec2 }
-        /// Into a group of their own, where the topmost stood.
+        /// Into a group of their own, in the place of the topmost.
         "group" Group { layer: LayerPaths }
         "ungroup" Ungroup { layer: LayerPaths }
-        /// Shown alone, or no longer.
+        /// Shown alone, or with the others again.
         "solo" Solo { layer: LayerPath }
         /// A property; shown only, until it is `done`.
         "set" Set { layer: LayerPaths, to: Property, done: bool }
         /// On a part of the shape by its id, on `canvas`, or on what is around it; it shows where it showed.
         "home" Home { layer: LayerPaths, part: Option<String> }
-        /// The strokes or pixels are taken out of a layer, or what is selected of them.
+        /// The strokes or pixels of a layer are removed, or the selected ones.
         "clear" Clear { layer: LayerPaths }
     }
 }
 
 impl LayerAction {
-    /// That chooses some layers, the primary one last; `None` where there are none.
+    /// The action that chooses some layers, the primary one last; `None` if there are none.
     pub fn choosing(document: &Document, ids: &[LayerId], anchor: Option<LayerId>) -> Option<Self> {
         let primary = LayerPath::of(document, *ids.last()?)?;
         if ids.len() == 1 {
@@ -267,7 +267,7 @@ fn set(tab: &mut OpenDocument, layers: &LayerPaths, to: &Property, done: bool) {
     }
 }
 
-/// The document with what layers show taken along by a map of the canvas: a step, or a preview of one.
+/// The document with what layers show moved by a map of the canvas: a step, or a preview of one.
 fn take_along(session: &mut Session, layers: &LayerPaths, by: [f64; 6], done: bool) {
     let Some(tab) = session.active_mut() else { return };
     tab.hold_frame(TransformTarget::Paint);

@@ -53,8 +53,8 @@ pub enum Action {
 }
 
 impl Action {
-    /// Does it. What cannot be done changes nothing; only files fail. An edit that no file could hold is refused in a
-    /// note.
+    /// Performs it. What cannot be done changes nothing; only files fail. An edit that no file could hold is refused in
+    /// a note.
     pub fn apply(&self, session: &mut Session) -> Result<()> {
         let mut done = Ok(());
         match self {

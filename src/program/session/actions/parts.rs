@@ -1,6 +1,6 @@
-//! Actions on the shape of the document in front: its parts, the farthest first. What cannot be done says why.
-//! Floor 6. `new` makes parts, of layers' pictures by `greys`, `first` gives a drawing its first shape, `list` orders
-//! them. Parts that the pen changes on the canvas are `tools::shape`'s.
+//! Actions on the shape of the document in front: its parts, the farthest first. What cannot be done says why. Floor 6.
+//! `new` makes parts, `greys` the pictures for them from layers; `first` gives a drawing its first shape, `list` orders
+//! them. Not here: parts that the pen changes on the canvas (`tools::shape`).
 
 pub mod first;
 mod greys;
@@ -46,19 +46,19 @@ actions! {
     PartAction {
         /// Of the selected layer, the selection or the chosen part, as its kind says; in front of all others.
         "add" Add { kind: NewPart }
-        /// A layer gets a shape: one part of its alpha, or one of each of its flat colours, and a Base that is lit.
+        /// A layer gets a shape: one part from its alpha, or one from each of its flat colours, and a lit Base.
         "shape" Shape { layer: LayerPath, preset: InflationPreset, flats: bool }
-        /// A part anew, as recipes write it; shown only, until it is `done`.
+        /// A part in a new version, as recipes write it; shown only, until it is `done`.
         "set" Set { part: Value, done: bool }
         /// With what lies on it.
         "delete" Delete { part: String }
-        /// So that so many parts with a form of their own lie behind it; what lies on it goes along.
+        /// So that this many parts with a form of their own lie behind it; what lies on it follows.
         "order" Order { part: String, index: usize }
         "visible" Visible { part: String, on: bool }
         "duplicate" Duplicate { part: String }
         "select" Select { part: String }
-        /// The whole shape taken along by a map of the canvas (a, b, c, d, e, f), with what is painted on it; shown
-        /// only, until it is `done`.
+        /// The whole shape moved by a map of the canvas (a, b, c, d, e, f), with what is painted on it; shown only,
+        /// until it is `done`.
         "take along" TakeAlong { by: [f64; 6], done: bool }
         /// What the tools that touch and sculpt do.
         "settings" Settings { shape: ShapeSettings }
@@ -94,7 +94,7 @@ impl PartAction {
         };
         session.notes.extend(done.err());
     }
-    /// A description of an edit that takes long.
+    /// A description of a long edit.
     pub fn takes_long(&self) -> Option<&'static str> {
         matches!(self, PartAction::Shape { .. }).then_some("Giving it a shape")
     }
@@ -148,7 +148,7 @@ impl PartAction {
     }
 }
 
-/// The document with its shape taken along by a map of the canvas: a step, or a preview of one.
+/// The document with its shape moved by a map of the canvas: a step, or a preview of one.
 fn take_along(tab: &mut OpenDocument, by: [f64; 6], done: bool) -> Result<(), String> {
     let map = PlaneMap::affine(by).ok_or("A shape cannot be made without area.")?;
     let next = tab.document().with_shape_through(&map).inspect_err(|_| tab.forget_preview())?;
@@ -159,7 +159,7 @@ fn take_along(tab: &mut OpenDocument, by: [f64; 6], done: bool) -> Result<(), St
     Ok(())
 }
 
-/// A part of the document anew.
+/// A part of the document in a new version.
 fn set(tab: &mut OpenDocument, value: &Value, done: bool) -> Result<(), String> {
     let document = tab.document();
     let read = read_part(Path::new("part"), value, document, &Budget::holding(document));
@@ -179,14 +179,14 @@ fn set(tab: &mut OpenDocument, value: &Value, done: bool) -> Result<(), String> 
         let next = document.with_part(next);
         tab.commit(label, next);
     } else {
-        // A hand waits for nothing: whoever shows it shapes it.
+        // A drag must not wait: whoever shows the document makes its shape.
         let next = document.with_part_ahead(next);
         tab.show(label, next);
     }
     Ok(())
 }
 
-/// What a change of a part is called.
+/// The name of a change of a part.
 fn label(old: &Part, next: &Part) -> &'static str {
     let only = |same: &dyn Fn(&mut Part)| {
         let mut changed = old.clone();

@@ -1,5 +1,5 @@
-//! Pictures that layers use, chosen from the user's files: read on any thread, then put into the layer. Floor 6.
-//! Reading files is in `io`.
+//! Pictures that layers use, chosen from the user's files: read on any thread, then put into the layer. Floor 6. Not
+//! here: reading files (`io`).
 
 use super::placing::{free_file, read_picture};
 use crate::Result;
@@ -15,10 +15,10 @@ use crate::surface::DetailMap;
 use std::path::Path;
 use std::sync::Arc;
 
-/// A part as it was read.
+/// A picture part that was read.
 pub struct ReadPart {
     part: PicturePart,
-    /// Of the file, without its folder.
+    /// The name of the file, without its folder.
     name: String,
     what: PartValue,
 }
@@ -116,7 +116,7 @@ fn with_picture(
     document.with_layer(layer, |layer| layer.content = content)
 }
 
-/// A mask stretched over the canvas: the nearest of its pixels.
+/// A mask stretched over the canvas, by nearest pixels.
 fn fitted(mask: &Plane<u8>, canvas: Size) -> Plane<u8> {
     if mask.size() == canvas {
         return mask.clone();

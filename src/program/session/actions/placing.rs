@@ -1,5 +1,5 @@
-//! Pictures that become image layers: where they lie, and what the document calls them.
-//! Floor 6. Pictures that layers have already are `pictures`'.
+//! Pictures that become image layers: their places, and their names in the document. Floor 6. Not here: pictures of
+//! existing layers (`pictures`).
 
 use crate::Result;
 use crate::document::{Content, Document, Layer, Live};
@@ -14,15 +14,15 @@ use crate::surface::{Anchor, Bend, Operator};
 use std::path::Path;
 use std::sync::Arc;
 
-/// A picture of the user's own, with the name it goes by.
+/// A picture of the user's own, with its name.
 pub fn read_picture(file: &Path) -> Result<(String, Picture)> {
     let bytes = read_file(file, Budget::of_this_machine().file_bytes)?;
     let picture = picture::decode(file, &bytes, &Budget::of_this_machine())?;
     Ok((file.file_name().unwrap_or_default().to_string_lossy().into_owned(), picture))
 }
 
-/// A picture becomes an image layer, bent by the current operator (by normals, if that is flat), pinned at `at`.
-/// Without an open document it becomes a document of its own.
+/// A picture becomes an image layer, bent by the current operator (by normals, if that is flat), pinned at `at`. If no
+/// document is open, it becomes one itself.
 pub fn place(session: &mut Session, name: &str, picture: Picture, at: Vec2) {
     let operator = match session.operator {
         Operator::None => DROPPED,
@@ -50,7 +50,7 @@ pub(super) struct Lies {
     pub bend: Bend,
 }
 
-/// A picture becomes an image layer above the selected one, which is selected; whether it could.
+/// A picture becomes an image layer above the selected one, and is selected; returns whether it could.
 pub(super) fn add_image(tab: &mut OpenDocument, name: &str, picture: Picture, lies: Lies, label: &str) -> bool {
     let document = tab.document();
     let Lies { placement, outside, bend } = lies;
@@ -68,7 +68,7 @@ pub(super) fn add_image(tab: &mut OpenDocument, name: &str, picture: Picture, li
     is_added
 }
 
-/// Where a picture lies that is pinned at a point: over the canvas, or over all that a mirror looks up.
+/// The place of a picture that is pinned at a point: over the canvas, or over all that a mirror looks up.
 fn placement(document: &Document, operator: Operator, at: Vec2) -> Placement {
     match (operator, &document.surface) {
         (Operator::Reflection { alpha, .. }, Some(surface)) => {

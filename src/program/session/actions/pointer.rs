@@ -100,7 +100,7 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         Err(why) => return session.notes.push(why.into()),
     };
     let is_line = matches!(tool, ToolKind::Brush | ToolKind::Eraser) && pen.keys.shift && tab.last_end.is_some();
-    // Guides and what else is snapped to lie in the picture.
+    // Guides and other things to snap to lie in the picture.
     let is_line = is_line && layout.is_none();
     let snap = targets(session, &document, tool, &layers, is_line, px_per_pt);
     // Straight lines end where they snap.
@@ -191,13 +191,13 @@ fn stroke_start(tool: ToolKind) -> Option<StrokeStart> {
     })
 }
 
-/// A gesture that something else than a press of the pen on the canvas began.
+/// A gesture that was not begun by a press of the pen on the canvas.
 pub(super) fn begin(session: &mut Session, (gesture, outcome): GestureStart) {
     session.gesture = gesture;
     take(session, outcome);
 }
 
-/// The guide that the move tool takes hold of.
+/// The guide that the move tool grabs.
 fn guide_under(
     session: &Session,
     document: &Document,
@@ -210,10 +210,10 @@ fn guide_under(
     can.then(|| tools::guides::guide_at(&document.guides, pen.place(), near_px)).flatten()
 }
 
-/// How near to a guide the move tool takes hold of it, screen points.
+/// How near to a guide the move tool grabs it, screen points.
 const GUIDE_PT: f32 = 4.0;
 
-/// The canvas point under the pen, which may be on the sheet of the unwrapped surface; `None` beside its pieces.
+/// The canvas point under the pen, which may be on the sheet of the unwrapped surface; `None` off its pieces.
 fn on_canvas(session: &Session, pen: Vec2) -> Option<Vec2> {
     let tab = session.active()?;
     match (tab.layout(), &tab.document().surface) {
@@ -249,7 +249,7 @@ fn works_in_place(tool: ToolKind, tab: &OpenDocument) -> Result<Document, &'stat
     let is_in_place = applied.map_of(layer).is_none_or(|map| map.is_none());
     let is_group = applied.layer(layer).is_some_and(|layer| layer.content.group().is_some());
     let is_warped = applied.layer(layer).is_some_and(|layer| layer.is_warped());
-    // Strokes are laid where the layer shows what is under the pen.
+    // Strokes go where the layer shows what is under the pen.
     let is_stroke = matches!(tool, ToolKind::Brush | ToolKind::Eraser);
     if is_in_place && (!is_warped || is_stroke) || is_group {
         return Ok(applied);

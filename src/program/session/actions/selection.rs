@@ -1,5 +1,5 @@
-//! Actions on the selection of the document in front. What cannot be done says why. Floor 6. Selections made by the pen
-//! are `tools::select`, cutting and copying by them `clipboard`.
+//! Actions on the selection of the document in front. What cannot be done says why. Floor 6. Not here: selections made
+//! by the pen (`tools::select`), cutting and copying (`clipboard`).
 
 use crate::document::Document;
 use crate::math::range::held;
@@ -30,7 +30,7 @@ rilievo_engine::named! {
 }
 
 impl EdgeChange {
-    /// Of its number, px.
+    /// The range of its number, px.
     pub fn range(self) -> crate::math::Range {
         match self {
             EdgeChange::Grow | EdgeChange::Shrink | EdgeChange::Border => edges::DISTANCE_PX,
@@ -51,11 +51,11 @@ impl EdgeChange {
 names!(EdgeChange);
 
 actions! {
-    /// `how` says how a new selection meets the one there is.
+    /// `how` says how a new selection is combined with the present one.
     SelectionAction {
         "all" All {}
         "none" None {}
-        /// The last selection that was let go of.
+        /// The last selection that was dropped.
         "again" Again {}
         "invert" Invert {}
         "change" Change { change: EdgeChange, px: f32 }
@@ -69,16 +69,16 @@ actions! {
         "mask" Mask { layer: LayerPath, how: SelectionMode }
         /// The selection becomes a layer's mask.
         "to mask" ToMask { layer: LayerPath }
-        /// Kept by a name, in the place of one of that name.
+        /// Kept by a name, replacing one of that name.
         "keep" Keep { name: String }
         "take" Take { name: String, how: SelectionMode }
         "forget" Forget { name: String }
         /// Closes the lasso whose corners are being set, or drops it.
         "close lasso" CloseLasso {}
         "drop lasso" DropLasso {}
-        /// The brush paints on the selection, under red, or no longer.
+        /// The brush paints on the selection, under red, or on the layer again.
         "quick mask" QuickMask { on: bool }
-        /// The outline is not drawn, or is again.
+        /// Hides the outline, or shows it again.
         "hide" Hide { on: bool }
         "settings" Settings { select: SelectSettings }
     }
@@ -140,7 +140,7 @@ impl SelectionAction {
             }
             SelectionAction::Invert {} => match document.selected() {
                 Some(grid) => ("Invert selection", with(grid.inverted(canvas))),
-                // All is free, so nothing is what it is not.
+                // All of the canvas may be changed, so the inverse is empty.
                 None => return Err("Nothing is selected, so there is nothing to invert."),
             },
             SelectionAction::Change { change, px } => (change.label(), with(change.of(selected()?, *px, canvas))),
@@ -186,7 +186,7 @@ impl SelectionAction {
                 let kept = document.selections.iter().find(|kept| kept.name == *name);
                 let selection = kept.ok_or("There is no selection of that name.")?.selection.clone();
                 let next = match how {
-                    // The very same, so that it is stored once.
+                    // The very same selection, so that it is stored once.
                     SelectionMode::Replace => Document { active_selection: Some(selection), ..document.clone() },
                     _ => document.with_combined(Selection::clone(&selection), *how),
                 };

@@ -1,5 +1,5 @@
-//! Actions on the strokes of stroke layers: selecting, changing, ordering, deleting, baking. Floor 6. The edits
-//! themselves are in `document::strokes`.
+//! Actions on the strokes of stroke layers: selecting, changing, ordering, deleting, baking. Floor 6. Not here: the
+//! edits themselves (`document::strokes`).
 
 use crate::document::{Document, LayerId};
 use crate::math::{Vec2, srgb::Color, vec2};
@@ -10,29 +10,29 @@ use crate::session::{LayerPath, Session};
 use crate::surface::Operator;
 
 actions! {
-    /// `strokes` are places in the layer's list, the first painted 0.
+    /// `strokes` are positions in the layer's list, the first painted is 0.
     StrokeAction {
         /// Selects strokes; an empty list selects none.
         "choose" Choose { layer: LayerPath, strokes: Vec<usize> }
         "move" Move { layer: LayerPath, strokes: Vec<usize>, by: Vec2 }
         /// Shown only, until it is `done`.
         "restyle" Restyle { layer: LayerPath, strokes: Vec<usize>, to: Style, done: bool }
-        /// To a place counted without it.
+        /// To a position counted without it.
         "order" Order { layer: LayerPath, stroke: usize, to: usize }
-        /// Copies each directly above itself, a little to the side.
+        /// Copies each directly above itself, slightly to the side.
         "duplicate" Duplicate { layer: LayerPath, strokes: Vec<usize> }
         "delete" Delete { layer: LayerPath, strokes: Vec<usize> }
         /// To pixels, on a paint layer of their own.
         "bake" Bake { layer: LayerPath, strokes: Vec<usize> }
         /// On a part of the shape by its id, on `canvas`, or on what the layer lies on; they show where they showed.
         "home" Home { layer: LayerPath, strokes: Vec<usize>, part: Option<String> }
-        /// Takes over its brush, operator and colour.
+        /// Takes its brush, operator and colour as the current ones.
         "take" Take { layer: LayerPath, stroke: usize }
     }
 }
 
 actions! {
-    /// One thing about how a stroke is painted.
+    /// One property of how a stroke is painted.
     Style {
         "color" Color { color: Color }
         "operator" Operator { operator: Operator }

@@ -1,5 +1,5 @@
-//! Pictures of the unwrapped surface: written to a file, and laid back on the surface.
-//! Floor 6. Drawing them is `document::view`'s, the sheet `surface::unwrap`'s.
+//! Pictures of the unwrapped surface: written to a file, and put back on the surface. Floor 6. Not here: drawing them
+//! (`document::view`), the sheet (`surface::unwrap`).
 
 use crate::document::view::{UnwrapOptions, placed_over, unwrapped};
 use crate::document::{Document, Highlights, Progress};
@@ -13,9 +13,9 @@ use crate::session::actions::placing::{Lies, add_image};
 use crate::{Error, Result};
 use std::path::Path;
 
-/// Writes a painting as it lies in the planes of its surface; nothing if that is given up.
+/// Writes a painting as it lies in the planes of its surface; nothing if cancelled.
 ///
-/// Fails where there is no surface, and for formats that cannot hold what is asked for.
+/// Fails if there is no surface, and for formats that cannot hold what is requested.
 pub fn export(
     document: &Document,
     file: &Path,
@@ -25,7 +25,7 @@ pub fn export(
 ) -> Result<()> {
     let target = OutputFile::new(file, terms)?;
     let format = ExportFormat::of(file)?;
-    // A file of light keeps what is brighter than white.
+    // A file of light keeps highlights.
     let deep = (format == ExportFormat::Exr).then_some(Highlights::Kept).or(options.deep);
     let options = UnwrapOptions { deep, ..options };
     let seen = match unwrapped(document, None, options, progress) {
@@ -44,7 +44,7 @@ pub fn export(
     target.replace(&encode(file, format, &grid, seen.size, &written)?)
 }
 
-/// How far the sides of a picture may be from the sheet's, as a ratio, before that is told.
+/// How far the sides of a picture may differ from the sheet's, as a ratio, without a note.
 const SAME_ASPECT: f32 = 0.005;
 
 /// A picture of the sheet becomes an image layer above the selected one, pixel for pixel where the sheet shows it.

@@ -20,7 +20,7 @@ actions! {
         /// A view of the surface over the picture, by its name, or none.
         "overlay" Overlay { view: Option<String> }
         "overlay opacity" OverlayOpacity { to: f32 }
-        /// The surface unwrapped in place of the picture, by what the operator in hand says of it. The pen's points are
+        /// The surface unwrapped instead of the picture, as the current operator says. The pen's points are
         /// then those of the sheet.
         "unwrapped" Unwrapped { on: bool }
     }

@@ -44,7 +44,7 @@ fn after_a_crash_the_drawing_comes_back_untitled_and_unsaved() {
     autosave.adopt(&tab, recovery.unwrap());
     assert!(autosave.follow(std::slice::from_ref(&tab)).is_none());
     assert!(lost(folder.path()).is_empty(), "now it lives here");
-    // And a second crash takes nothing either.
+    // A second crash loses nothing either.
     drop(autosave);
     assert_eq!(lost(folder.path()).len(), 1);
 }

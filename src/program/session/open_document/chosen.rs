@@ -1,24 +1,24 @@
 //! Which layers are chosen: one is the primary one, which the brush paints on; what is done to layers is done to all.
-//! Floor 6. No part of the document: choosing is no step.
+//! Floor 6. The choice is not part of the document: choosing is no step.
 
 use super::OpenDocument;
 use crate::document::{Document, LayerId};
 use crate::math::Vec2;
 use crate::tools::frame::{Framed, KeptFrame, TransformFrame, TransformTarget};
 
-/// The chosen layers. They count as long as the primary one is among them: whatever selects another layer alone lets go
-/// of the others.
+/// The chosen layers. They count as long as the primary one is among them: whatever selects another layer alone drops
+/// the others.
 #[derive(Clone, Debug, Default)]
 pub struct ChosenLayers {
     ids: Vec<LayerId>,
-    /// Where a range begins that Shift extends.
+    /// The start of a range that Shift extends.
     anchor: Option<LayerId>,
-    /// What the transform tool keeps of them.
+    /// What the transform tool keeps about them.
     frame: KeptFrame,
 }
 
 impl OpenDocument {
-    /// The chosen layers as they lie in the tree, bottom first, the primary one among them.
+    /// The chosen layers in the order of the tree, bottom first, the primary one among them.
     pub fn chosen_layers(&self) -> Vec<LayerId> {
         let document = self.shown();
         let Some(primary) = self.selected.filter(|id| document.layer(*id).is_some()) else { return Vec::new() };
@@ -28,7 +28,7 @@ impl OpenDocument {
         let all = document.walk();
         all.iter().map(|(_, layer)| layer.id).filter(|id| self.chosen_layers.ids.contains(id)).collect()
     }
-    /// Those of them that stand in no other one: what is in a chosen group goes along with it.
+    /// Those of them that are in no other one: what is in a chosen group moves with it.
     pub fn outermost_chosen(&self) -> Vec<LayerId> {
         self.shown().outermost(&self.chosen_layers())
     }
@@ -40,7 +40,7 @@ impl OpenDocument {
     pub fn frame(&self, carried: TransformTarget) -> Option<TransformFrame> {
         self.frame_in(self.shown(), carried)
     }
-    /// The same as the last step left it.
+    /// The same after the last step.
     pub fn frame_before(&self, carried: TransformTarget) -> Option<TransformFrame> {
         self.frame_in(self.document(), carried)
     }
@@ -65,11 +65,11 @@ impl OpenDocument {
     pub fn has_several(&self) -> bool {
         self.chosen_layers().len() > 1
     }
-    /// Where a range begins that Shift extends.
+    /// The start of a range that Shift extends.
     pub fn range_start(&self) -> Option<LayerId> {
         self.chosen_layers.anchor.filter(|id| self.is_chosen(*id)).or(self.selected)
     }
-    /// Chooses layers; the primary one is the last of them. None of them: all stays as it is.
+    /// Chooses layers; the primary one is the last of them. If none are given, nothing changes.
     pub fn choose_layers(&mut self, ids: Vec<LayerId>) {
         if let Some(primary) = ids.last().copied() {
             self.selected = Some(primary);
@@ -77,12 +77,12 @@ impl OpenDocument {
             self.chosen_layers = ChosenLayers { ids, anchor: Some(primary), frame };
         }
     }
-    /// The same, with the beginning of the range to extend.
+    /// The same, with the start of the range to extend.
     pub fn choose_range(&mut self, ids: Vec<LayerId>, anchor: Option<LayerId>) {
         self.choose_layers(ids);
         self.chosen_layers.anchor = anchor.or(self.chosen_layers.anchor);
     }
-    /// Chooses the layer that came, or came back, since a document: of several the choice stays.
+    /// Chooses the layer that was added, or came back, since a document; if there are several, the choice stays.
     pub(in crate::session) fn choose_new_since(&mut self, before: &Document) {
         let document = self.document();
         let came: Vec<LayerId> =
@@ -91,14 +91,14 @@ impl OpenDocument {
             self.choose_layers(vec![one]);
         }
     }
-    /// With a layer added to those chosen, or taken away from them, the primary one last. The last one stays.
+    /// With a layer added to those chosen, or removed from them, the primary one last. The last one stays.
     pub fn toggled(&self, layer: LayerId) -> Vec<LayerId> {
         let mut ids = self.chosen_layers();
         match ids.iter().position(|id| *id == layer) {
             Some(_) if ids.len() == 1 => {}
             Some(at) => {
                 ids.remove(at);
-                // The primary one stays it, if it is left.
+                // The primary one stays the same, if it is left.
                 if let Some(primary) = self.selected.filter(|primary| *primary != layer) {
                     ids.retain(|id| *id != primary);
                     ids.push(primary);
@@ -110,7 +110,7 @@ impl OpenDocument {
     }
 }
 
-/// The layers from one to another as they are listed, the other last. `listed`: in any direction.
+/// The layers from one to another in the order of the list, the other last. `listed`: in any direction.
 pub fn range(listed: &[LayerId], from: LayerId, to: LayerId) -> Vec<LayerId> {
     let place = |id: LayerId| listed.iter().position(|other| *other == id);
     let (Some(a), Some(b)) = (place(from), place(to)) else { return vec![to] };
@@ -120,8 +120,8 @@ pub fn range(listed: &[LayerId], from: LayerId, to: LayerId) -> Vec<LayerId> {
     ids
 }
 
-/// The layer above (positive) or beneath another one, groups opened and counted after what is in them: the one itself
-/// at an end.
+/// The layer above (positive) or beneath another one, groups opened and counted after what is in them; at an end the
+/// layer itself.
 pub fn neighbour(document: &Document, layer: LayerId, by: i32) -> LayerId {
     let all: Vec<LayerId> = document.walk().iter().map(|(_, layer)| layer.id).collect();
     let at = all.iter().position(|id| *id == layer).unwrap_or(0);

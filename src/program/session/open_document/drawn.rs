@@ -1,5 +1,4 @@
-//! What the window draws of a document: a layer alone, or the selection under red.
-//! Floor 6.
+//! What the window draws for a document: a layer alone, or the selection under red. Floor 6.
 
 use super::OpenDocument;
 use crate::document::{Content, Document, Layer, LayerId, LayerMask, MaskKind};

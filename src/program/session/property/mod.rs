@@ -40,7 +40,7 @@ actions! {
         "fill" Fill { color: Color }
         "operator" Bend { operator: Operator }
         "anchors" Anchors { anchors: Vec<Anchor> }
-        /// Of an image on the unwrapped surface: pieces whose picture is turned, moved and scaled alone.
+        /// For an image on the unwrapped surface: pieces whose picture is turned, moved and scaled alone.
         "pieces" Pieces { pieces: Vec<PlanePiece> }
         "power" Power { to: f32 }
         "placement" Place { placement: Placement }
@@ -54,13 +54,13 @@ actions! {
         "mask inverted" MaskInverted { on: bool }
         /// Disables or enables the mask.
         "mask disabled" MaskDisabled { on: bool }
-        /// How the environment lies: degrees about the vertical axis, stops.
+        /// The rotation and exposure of the environment: degrees about the vertical axis, stops.
         "environment" Surrounded { projection: Projection, rotation: f32, exposure: f32 }
         /// Removes that picture from the layer.
         "without" Without { part: PicturePart }
         /// The distance up to which occluders count, px.
         "occlusion" Occlusion { to: f32 }
-        /// Of a normal layer without a map.
+        /// For a normal layer without a map.
         "grain" Grained { grain: NoiseRelief }
         "model" ShadingModel { model: Model }
         "lights" Lights { lights: Vec<Light> }
@@ -277,7 +277,7 @@ impl Property {
     }
 }
 
-/// A grain whose numbers are those that a document may hold.
+/// A grain with numbers that a document may hold.
 fn finite(grain: NoiseRelief) -> NoiseRelief {
     NoiseRelief {
         size_px: held(grain.size_px, &NoiseRelief::SIZE_PX),

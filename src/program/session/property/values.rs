@@ -22,7 +22,7 @@ names!(Projection);
 as_in_recipes!(Operator, Anchor, PlanePiece, Placement, Adjust, GradientStop);
 as_in_recipes!(NoiseRelief, DerivedMask, Light, Term, Scaling, Features, Reference);
 
-/// As a document says it.
+/// As documents write it.
 impl crate::session::replay::ReplayValue for LayerTransform {
     fn written(&self) -> serde_json::Value {
         transforms::write(self)

@@ -1,31 +1,30 @@
-//! The endings of files: what holds documents and pictures, what is saved and exported to.
-//! Floor 6.
+//! File extensions: those of documents and pictures, of saving and of exporting. Floor 6.
 
 use crate::io::export::ExportFormat;
 use std::path::{Path, PathBuf};
 
-/// Endings of the files that hold documents.
+/// Extensions of the files that hold documents.
 pub const DOCUMENTS: [&str; 4] = ["ora", "psd", "psb", "json"];
-/// Endings of the files that documents are saved to, the first being this program's own.
+/// Extensions of the files that documents are saved to, the first being this program's own.
 pub const SAVED: [&str; 2] = ["ora", "psd"];
-/// Endings of the files that hold pictures.
+/// Extensions of the files that hold pictures.
 pub const PICTURES: [&str; 10] = ["png", "jpg", "jpeg", "webp", "tif", "tiff", "bmp", "tga", "hdr", "exr"];
 
 pub fn is_document(file: &Path) -> bool {
     ends_in(file, &DOCUMENTS)
 }
 
-/// A document can be saved to a file of this name.
+/// Whether a document can be saved to a file of this name.
 pub fn is_saved_to(file: &Path) -> bool {
     ends_in(file, &SAVED)
 }
 
-/// A file of this name holds a document with all that it is, for every program that opens it.
+/// Whether a file of this name holds all of a document, for every program that opens it.
 pub fn holds_everything(file: &Path) -> bool {
     !ends_in(file, &SAVED[1..])
 }
 
-/// Endings of the files that a picture is exported to, or the whole document for Photoshop.
+/// Extensions of the files that a picture is exported to, or the whole document for Photoshop.
 pub fn exported() -> impl Iterator<Item = &'static str> {
     ExportFormat::ALL.iter().map(|(_, extension)| *extension).chain([SAVED[1]])
 }
@@ -40,13 +39,13 @@ pub fn is_openable(file: &Path) -> bool {
     ends_in(file, &DOCUMENTS) || ends_in(file, &PICTURES)
 }
 
-/// With an ending of these, else with this one: added, for what stands after a name's last point may be a part of the
-/// name.
+/// With one of these extensions, else with this one: it is appended, because what follows a name's last point may be
+/// part of the name.
 pub fn with_document_extension(file: PathBuf, extension: &str, extensions: &[&str]) -> PathBuf {
     if ends_in(&file, extensions) { file } else { file.with_added_extension(extension) }
 }
 
-/// A name without the ending of a file that can be opened or written; all of it where it has none.
+/// A name without the extension of a file that can be opened or written; unchanged if it has none.
 pub fn without_ending(name: &str) -> &str {
     let known = |(stem, extension): &(&str, &str)| {
         let extension = extension.to_lowercase();

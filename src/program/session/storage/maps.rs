@@ -1,5 +1,5 @@
-//! The maps of an object among the user's files: by what is in them, and by their names.
-//! Floor 6. Pairs of names are `io::maps::pairs`'.
+//! The maps of an object among the user's files: by their contents and their names. Floor 6. Not here: pairs of names
+//! (`io::maps::pairs`).
 
 use super::FileUse;
 use super::endings::{PICTURES, ends_in};
@@ -11,12 +11,12 @@ use crate::io::{Budget, UserFiles, files::read_file, inspect, maps, picture};
 use crate::raster::Picture;
 use std::path::{Path, PathBuf};
 
-/// The normals of a file, and its depth where it holds both.
+/// The normals of a file, and its depth if it holds both.
 pub(super) fn with_own_depth(file: &Path) -> SurfaceSource {
     maps_of(Some(file), Some(file).filter(|file| holds_depth(file)))
 }
 
-/// A surface made of these files, every convention to be found.
+/// A surface made of these files, with every convention detected.
 pub fn maps_of(normal: Option<&Path>, depth: Option<&Path>) -> SurfaceSource {
     let name = |file: &Path| file.to_string_lossy().into_owned();
     SurfaceSource {
@@ -31,7 +31,7 @@ pub fn import(source: &SurfaceSource) -> Result<maps::ImportedSurface> {
     maps::import(source, &UserFiles::default(), &Budget::of_this_machine())
 }
 
-/// The same with somebody watching; `None` if cancelled.
+/// The same, with progress; `None` if cancelled.
 pub fn import_watched(source: &SurfaceSource, progress: &Progress) -> Result<Option<maps::ImportedSurface>> {
     maps::import_watched(source, &UserFiles::default(), &Budget::of_this_machine(), progress)
 }
@@ -45,7 +45,7 @@ fn holds_depth(file: &Path) -> bool {
             .is_ok_and(|found| !found.depths.is_empty())
 }
 
-/// The finished picture in the file of the normals, where a renderer put it there, and the name of its layer.
+/// The finished picture in the file of the normals, if a renderer put it there, and the name of its layer.
 pub fn finished_picture(source: &SurfaceSource) -> Option<(String, Picture)> {
     let map = source.normal.as_ref()?;
     let (file, budget) = (Path::new(&map.file), Budget::of_this_machine());
@@ -57,7 +57,7 @@ pub fn finished_picture(source: &SurfaceSource) -> Option<(String, Picture)> {
     Some((name, picture))
 }
 
-/// The maps that belong to a file by their names, or stand in the same EXR: `pot_n.png` brings `pot_depth.exr` and
+/// The maps that belong to a file by their names, or are in the same EXR: `pot_n.png` brings `pot_depth.exr` and
 /// `pot_mask.png` from its folder.
 pub fn maps_beside(file: &Path, kind: FileUse) -> SurfaceSource {
     let part = pairs::part_of(file);
@@ -94,7 +94,7 @@ pub struct SortedFiles {
 }
 
 /// Sorts files of known kinds. A normal map, a depth map and a mask that are opened together belong to one object,
-/// whatever their names; a second normal map begins another object. Missing maps are looked for beside each file (see
+/// whatever their names; a second normal map begins another object. Missing maps are looked for next to each file (see
 /// [`maps_beside`]).
 pub fn sorted(files: Vec<(PathBuf, FileUse)>) -> SortedFiles {
     let mut sorted = SortedFiles::default();

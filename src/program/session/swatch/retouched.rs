@@ -31,7 +31,7 @@ pub fn drawn(preset: &BrushPreset, surface: Arc<Surface>, scale: f32, background
     let context = ToolContext {
         layer: Some(layer),
         operator: preset.operator,
-        // From the band beside.
+        // From the neighbouring band.
         clone_offset: Some(vec2(side / BANDS, 0.0)),
         ..ToolContext::new(&document, &brush)
     };
@@ -46,7 +46,7 @@ pub fn drawn(preset: &BrushPreset, surface: Arc<Surface>, scale: f32, background
     }
 }
 
-/// Bands that fall to the right.
+/// Bands that slope down to the right.
 fn bands(size: Size, side: f32) -> TileGrid {
     let color = |p: Vec2| {
         let band = ((p.x + 0.35 * p.y) / side * BANDS).max(0.0) as usize;

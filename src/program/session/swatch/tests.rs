@@ -1,5 +1,5 @@
-//! Every preset paints; and the sheets of the documentation show what they paint. `UPDATE_GOLDEN=1` paints the sheets
-//! anew.
+//! Every preset paints, and the sheets of the documentation show the results. `UPDATE_GOLDEN=1` paints the sheets
+//! again.
 
 use super::*;
 use crate::document::source::MaskSource;

@@ -1,4 +1,4 @@
-//! The canvas cropped, sized, turned and mirrored, told as the lines of a replay.
+//! The canvas cropped, resized, turned and mirrored, written as the lines of a replay.
 
 use super::*;
 use crate::math::Size;

@@ -1,4 +1,4 @@
-//! Replays and documents have one language: what an edit sets stands in a document as the edit says it.
+//! Replays and documents have one language: a document writes what an edit sets in the words of the edit.
 
 use super::held::everything;
 use super::*;
@@ -6,8 +6,8 @@ use crate::io::recipe;
 use crate::session::replay::ReplayValue;
 use serde_json::{Value, json};
 
-/// A property that is set of one of the layers of [`everything`], the field of it that holds the value, and where a
-/// document says that.
+/// A property that is set on one of the layers of [`everything`], its field that holds the value, and where a document
+/// holds it.
 fn cases() -> Vec<(usize, Value, &'static str, &'static str)> {
     let light = json!({ "kind": "point", "position": [3, 4.5, 20], "color": "#ffeedd", "intensity": 2 });
     let far = json!({ "kind": "directional", "direction": [1, 0.5, 2] });
@@ -71,7 +71,7 @@ fn what_an_edit_sets_stands_in_a_document_as_the_edit_says_it() {
         let document = recipe::write(session.active().unwrap().document());
         let written = &document["layers"][layer];
         match place {
-            // Beside others in the layer itself.
+            // Next to others in the layer itself.
             "/" => {
                 for (name, value) in said.as_object().unwrap() {
                     assert_eq!(written[name], *value, "{name} of {to}");

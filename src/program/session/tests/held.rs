@@ -1,5 +1,5 @@
-//! Whatever a panel, an action or a replay can set is saved and opened as it is, or refused in words; nothing becomes
-//! pixels.
+//! Whatever a panel, an action or a replay can set is saved and opened unchanged, or refused with a reason; nothing
+//! becomes pixels.
 
 mod edits;
 
@@ -17,7 +17,7 @@ use edits::{NUMBERS, OTHERS, PROPERTIES, STROKE};
 use proptest::prelude::*;
 use std::sync::Arc;
 
-/// One layer of every kind on a dome, by their places.
+/// One layer of every kind on a dome, by their positions.
 pub(super) fn everything() -> Document {
     let size = Size::new(48, 40);
     let normals =
@@ -76,10 +76,10 @@ fn edit() -> impl Strategy<Value = String> {
         let mut line = String::new();
         for c in template.chars() {
             match c {
-                // A colour begins with the sign too, within its quotes.
+                // A colour also begins with the sign, within its quotes.
                 '#' if !line.ends_with('"') => line += &numbers.next().unwrap_or_default().to_string(),
                 '%' => line += &(numbers.next().unwrap_or_default().abs().min(1e6) as u32).to_string(),
-                // A long one stands here on two lines, a stroke on several.
+                // A long one takes two lines here, a stroke several.
                 '\n' if !template.contains("pointer") => {}
                 c => line.push(c),
             }
@@ -87,7 +87,7 @@ fn edit() -> impl Strategy<Value = String> {
         line
     })
 }
-/// A property or a way of strokes that is new is to be among the edits.
+/// A new property or stroke style must be among the edits.
 #[test]
 fn every_property_and_every_style_of_strokes_is_among_what_is_set() {
     let is_among = |word: &str, list: &[&str]| list.iter().any(|edit| edit.contains(&format!(r#""do":"{word}""#)));
@@ -162,7 +162,7 @@ fn groups_within_groups_are_refused_when_a_file_could_not_hold_them() {
     assert_eq!(session.notes.len(), 3);
     assert!(session.notes[0].contains("Groups around a layer would be 51; there may be 50"), "{}", session.notes[0]);
 }
-/// How many groups stand around the deepest layer.
+/// How many groups are around the deepest layer.
 fn depth(session: &Session) -> usize {
     let document = session.active().unwrap().document();
     document.walk().iter().map(|(path, _)| path.matches('.').count()).max().unwrap_or_default()

@@ -1,4 +1,4 @@
-//! Selections, told as the lines of a replay: what can be done with them, and what is said where it cannot.
+//! Selections, written as the lines of a replay: what can be done with them, and what is said if it cannot.
 
 use super::*;
 use crate::raster::CoverageGrid;

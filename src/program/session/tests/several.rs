@@ -1,4 +1,4 @@
-//! Several layers at once, told as the lines of a replay: each is one step.
+//! Several layers at once, written as the lines of a replay: each edit is one step.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! Guides, snapping and assistants, told as the lines of a replay.
+//! Guides, snapping and assistants, written as the lines of a replay.
 
 use super::*;
 use crate::math::{Rect, vec2};
@@ -67,7 +67,7 @@ fn nothing_snaps_once_it_is_put_off_and_lines_with_shift_do_else() {
         let strokes = document(session).strokes(layer);
         strokes.last().unwrap().samples().last().unwrap().at
     };
-    // The line itself ends there; the pen went on after it.
+    // The line itself ends there; the pen went on beyond it.
     let layer = session.layer().unwrap().id;
     let strokes = document(&session).strokes(layer).to_vec();
     assert!(

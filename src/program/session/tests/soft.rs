@@ -10,7 +10,7 @@ const AIR: &str = r##"
 {"in":"hand","do":"color","color":"#102030"}
 {"in":"hand","do":"brush","brush":{"size":120,"hardness":0,"flow":0.004,"spacing":0.1,"dynamics":{}}}"##;
 
-/// A stroke of the brush or the eraser in hand.
+/// A stroke of the current brush or eraser.
 fn drawn(tool: &str, x: u32) -> String {
     format!(
         r#"

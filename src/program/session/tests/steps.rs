@@ -1,9 +1,9 @@
-//! Any sequence of edits, undone to the start and made again to the end: every document is the one that was.
+//! Any sequence of edits, undone to the start and redone to the end: every document is the same as before.
 
 use super::*;
 use proptest::prelude::*;
 
-/// One thing a user does, as a line of a replay. Layers are named by places that need not exist.
+/// One thing a user does, as a line of a replay. Layers are named by positions that need not exist.
 fn edit() -> impl Strategy<Value = String> {
     let layer = || {
         let nested = (0..3usize, 0..2usize).prop_map(|(i, j)| format!("{i}.{j}"));
@@ -64,7 +64,7 @@ proptest! {
         edits in prop::collection::vec(edit(), 1..20)
     ) {
         let mut session = told(r##"{"in":"file","do":"new","width":60,"height":40,"background":"#ffffff"}"##);
-        // What stands in the history, and where in it the document is.
+        // The entries of the history, and the document's position in it.
         let (mut known, mut at) = (vec![fingerprint(&document(&session))], 0usize);
         for line in &edits {
             let before = document(&session);

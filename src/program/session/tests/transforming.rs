@@ -1,5 +1,5 @@
-//! The transform tool where there is a shape, told as the lines of a replay: paint that slides over it, and paint that
-//! goes along with it.
+//! The transform tool on a shape, written as the lines of a replay: paint that slides over it, and paint that moves
+//! with it.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! The surface laid flat: seen, painted on, exported and brought back.
+//! The surface laid flat: shown, painted on, exported and brought back.
 
 use super::*;
 use crate::math::{Vec3, vec2, vec3};

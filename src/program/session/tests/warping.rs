@@ -1,4 +1,4 @@
-//! Meshes and liquify, told as the lines of a replay: a photo, a stroke layer and a group are displaced, applied and
+//! Meshes and liquify, written as the lines of a replay: a photo, a stroke layer and a group are displaced, applied and
 //! undone.
 
 use super::*;
@@ -84,7 +84,7 @@ fn a_mesh_is_laid_dragged_applied_and_undone() {
     assert!(picture(&session) == plain);
 }
 
-/// Where a blue dot that is painted at (70, 73) shows.
+/// Where a blue dot painted at (70, 73) shows.
 fn blue_dot(session: &mut Session) -> crate::math::Vec2 {
     let dot = r##"
 {"in":"hand","do":"color","color":"#0020f0"}
@@ -117,7 +117,7 @@ fn a_stroke_on_what_is_displaced_shows_under_the_pen() {
     shows_there(&mut around, "a stroke layer in a group");
     let mut paint = told(&format!("{PAPER}\n{{\"in\":\"layer\",\"do\":\"add\",\"kind\":\"paint\"}}{STROKE}{PUSH}"));
     shows_there(&mut paint, "a paint layer");
-    // A layer of its own above what holds no strokes.
+    // A layer of its own above a layer that holds no strokes.
     let fill = r##"{"in":"layer","do":"add","kind":"fill"}"##;
     let mut above = told(&format!("{PAPER}\n{strokes}{STROKE}\n{group}{PUSH}\n{fill}"));
     shows_there(&mut above, "above a fill");

@@ -1,5 +1,5 @@
-//! Strokes along assistants: the first points of the screen are waited for, then the path that they lean toward most is
-//! taken, and the whole stroke goes along it. Floor 5.
+//! Strokes along assistants: after the first screen points the path nearest to their direction is chosen, and the whole
+//! stroke follows it. Floor 5.
 
 use crate::document::assistants::AssistantPath;
 use crate::math::Vec2;
@@ -9,13 +9,13 @@ use crate::tools::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
 
 /// How far the pen goes until the path is chosen, screen points.
 const CHOICE_PT: f32 = 8.0;
-/// How near to a line or an ellipse strokes begin that are drawn along it, screen points.
+/// How near to a line or an ellipse a stroke must begin to be drawn along it, screen points.
 const NEAR_PT: f32 = 24.0;
 
 /// How a stroke begins.
 pub type StrokeStart = fn(&ToolContext, PenSample) -> GestureStart;
 
-/// The pen comes down: the stroke goes along an assistant if there is one, else it begins at once.
+/// The pen comes down: the stroke follows an assistant if there is one, else it begins at once.
 pub fn press_along(context: &ToolContext, pen: PenSample, start: StrokeStart) -> GestureStart {
     let near_px = NEAR_PT * context.px_per_pt;
     let is_on = context.aids.magnetism > 0.0 && pen.place().is_finite();
@@ -32,7 +32,7 @@ pub fn press_along(context: &ToolContext, pen: PenSample, start: StrokeStart) ->
     )
 }
 
-/// A stroke that has not begun.
+/// A stroke that has not yet begun.
 struct Waiting {
     kept: KeptContext,
     start: StrokeStart,
@@ -69,7 +69,7 @@ impl AlongGesture {
     }
 }
 
-/// The path that a stroke leans toward most.
+/// The path nearest to a stroke's direction.
 fn nearest(paths: &[AssistantPath], from: Vec2, to: Vec2) -> Option<AssistantPath> {
     let leaning = |path: &AssistantPath| path.leaning(from, to);
     paths.iter().copied().min_by(|a, b| leaning(a).total_cmp(&leaning(b)))
@@ -93,7 +93,7 @@ impl Gesture for AlongGesture {
         self.begin()
     }
     fn release(&mut self) -> Outcome {
-        // A dot goes along nothing.
+        // A dot follows nothing.
         let begun = self.begin();
         self.stroke.take().map_or(begun, |mut stroke| stroke.release())
     }

@@ -13,7 +13,7 @@ fn empty() -> Document {
 fn with(kind: AssistantKind, points: &[Vec2]) -> Document {
     Document { assistants: Arc::new(vec![Assistant { kind, points: points.to_vec() }]), ..empty() }
 }
-/// A stroke through points with so much magnetism; where its samples lie.
+/// A stroke through points with some magnetism; the places of its samples.
 fn stroke(document: &Document, points: &[Vec2], magnetism: f32) -> Vec<Vec2> {
     let hard = Brush { size: 4.0, ..Brush::default() };
     let aids = ViewAids { magnetism, ..ViewAids::default() };

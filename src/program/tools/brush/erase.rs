@@ -1,5 +1,4 @@
-//! The eraser with Ctrl on a stroke layer: whole strokes go.
-//! Floor 5.
+//! The eraser with Ctrl on a stroke layer: it removes whole strokes. Floor 5.
 
 use crate::document::{Content, Document, LayerId, Live, StrokeList};
 use crate::math::Vec2;

@@ -17,7 +17,7 @@ pub(super) enum StrokeTarget {
 
 /// A stroke being drawn, and its mirror images.
 pub(super) struct StrokeGesture {
-    /// The document before the stroke, with the layer that the stroke goes to.
+    /// The document before the stroke, with the layer that takes the stroke.
     pub document: Document,
     pub layer: LayerId,
     /// What the layer sees.
@@ -29,16 +29,16 @@ pub(super) struct StrokeGesture {
     pub stabilized: StabilizedPen,
     /// Samples before the pen's first.
     pub lead: Vec<Sample>,
-    /// How many more a stroke may have; `None` once it was told that there are none.
+    /// How many more a stroke may have; `None` once the user was told that there are none.
     pub room: Option<usize>,
     pub label: &'static str,
 }
 
 impl StrokeGesture {
-    /// Draws on to more samples; the tiles that changed.
+    /// Continues the drawing with more samples; returns the tiles that changed.
     fn draw(&mut self, mut samples: Vec<Sample>) -> Vec<(TileAt, Option<Arc<Tile>>)> {
         let Some(active) = &mut self.active else { return Vec::new() };
-        // What a file could not give back is not drawn.
+        // What files cannot hold is not drawn.
         samples.truncate(self.room.unwrap_or_default());
         self.room = self.room.map(|room| room - samples.len());
         let of_image = |image: &SymmetryImage| samples.iter().map(|sample| image.sample(sample).settled()).collect();

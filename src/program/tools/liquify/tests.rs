@@ -51,7 +51,7 @@ fn a_push_takes_pixels_along_and_leaves_all_far_from_it() {
     let at = |x: usize, y: usize| y * SIZE.width as usize + x;
     assert_ne!(old[at(110, 100)], new[at(110, 100)]);
     assert_eq!(old[at(20, 20)], new[at(20, 20)]);
-    // A step back is a step of history: the layer's pixels themselves were not touched.
+    // Undoing is a step of history: the layer's pixels themselves were not changed.
     let Content::Pixels(a) = &before.layers[0].content else { unreachable!() };
     let Content::Pixels(b) = &after.layers[0].content else { unreachable!() };
     assert!(a.tiles.ptr_eq(&b.tiles));

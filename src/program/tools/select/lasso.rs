@@ -1,5 +1,5 @@
 //! The lasso, free and of straight sides in one: a drag draws freely and closes when the pen lifts, a click sets a
-//! corner, after which clicks and drags go on until the first corner is clicked, or Enter is pressed. Floor 5.
+//! corner, after which clicks and drags continue until the first corner is clicked, or Enter is pressed. Floor 5.
 
 use super::{SLOP_PT, combined, step};
 use crate::document::Document;
@@ -8,7 +8,7 @@ use crate::paint::Selection;
 use crate::raster::coverage::{SelectionMode, shapes};
 use crate::tools::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext};
 
-/// Corners of one lasso.
+/// The most corners of one lasso.
 const MOST_CORNERS: usize = 100_000;
 
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
@@ -39,9 +39,9 @@ struct LassoGesture {
     /// Where the pen came down.
     at: Vec2,
     slop_px: f32,
-    /// Corners were set before.
+    /// Whether corners were set before.
     is_begun: bool,
-    /// The pen moved too far for a click.
+    /// Whether the pen moved too far for a click.
     is_free: bool,
 }
 

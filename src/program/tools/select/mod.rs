@@ -1,6 +1,6 @@
 //! The selection tools: rectangle, ellipse, lasso, wand, and the wand of the surface. Each shows its selection while
-//! the pen moves and keeps it when it lifts. Floor 5. What selections are stands in `paint::selection`, how they meet
-//! in `document::selections`. Not here: commands on the selection there is (`session::actions::selection`).
+//! the pen moves and keeps it when it lifts. Floor 5. Not here: what selections are (`paint::selection`), combining
+//! them (`document::selections`), commands on the present selection (`session::actions::selection`).
 
 mod lasso;
 mod shapes;
@@ -15,7 +15,7 @@ use crate::math::{Range, Vec2};
 use crate::paint::Selection;
 use crate::raster::coverage::{CoverageGrid, SelectionMode};
 
-/// Screen points that the pen moves for all of a tolerance's range.
+/// Screen points that the pen moves for the whole range of a tolerance.
 const TOLERANCE_PT: f32 = 500.0;
 /// Movements smaller than this are those of a click, screen points.
 const SLOP_PT: f32 = 3.0;
@@ -38,17 +38,17 @@ pub fn closed(document: &Document, points: &[Vec2], settings: &SelectSettings) -
     (points.len() >= 3).then(|| lasso::selected(document, points, settings.combine))
 }
 
-/// Whether the pen takes hold of the selection that there is: it comes down within it, and would replace it.
+/// Whether the pen grabs the present selection: it comes down within it, and would replace it.
 fn moves(context: &ToolContext, pen: PenSample) -> bool {
     let at = pen.place().floor().as_ivec2();
     let document = context.document;
-    // All of the canvas is taken hold of by nobody who drags a rectangle in it.
+    // A drag within a selection of the whole canvas makes a new rectangle.
     let is_all = |grid: &CoverageGrid| grid.area_px() >= document.size.area() as f64;
     let is_in = document.selected().is_some_and(|grid| grid.at(at.x, at.y) >= 128 && !is_all(grid));
     is_in && pen.place().is_finite() && context.select.how(pen.keys) == SelectionMode::Replace
 }
 
-/// The tolerance that a drag to the right or the left says.
+/// The tolerance that a drag to the right or the left sets.
 fn dragged(from: f32, by_px: f32, px_per_pt: f32, range: &Range) -> f32 {
     let span = range.end() - range.start();
     crate::math::range::held(from + by_px / px_per_pt.max(1e-6) * span / TOLERANCE_PT, range)

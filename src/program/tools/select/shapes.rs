@@ -42,7 +42,7 @@ impl ShapeGesture {
     fn with(&self) -> Document {
         let canvas = self.document.size.rect();
         let coverage = match self.shape {
-            // Along whole pixels, as they are seen.
+            // Along whole pixels, as shown.
             SelectionShape::Rectangle => shapes::rectangle(self.from.round(), self.to.round(), canvas),
             SelectionShape::Ellipse => shapes::ellipse(self.from, self.to, canvas),
         };
@@ -56,7 +56,7 @@ impl Gesture for ShapeGesture {
         let found = self.snap.point(pen.place());
         self.lines = found.lines;
         let by = found.at - self.from;
-        // With Ctrl as wide as high.
+        // With Ctrl the width equals the height.
         let even = Vec2::splat(by.abs().max_element()).copysign(by);
         self.to = self.from + if pen.keys.ctrl { even } else { by };
         if self.is_drawn() { Outcome::Preview(self.with()) } else { Outcome::Idle }
@@ -65,7 +65,7 @@ impl Gesture for ShapeGesture {
         if self.is_drawn() {
             return step(self.with());
         }
-        // A click beside the selection lets go of it, which can be undone.
+        // A click outside the selection drops it, which can be undone.
         match self.how == SelectionMode::Replace && self.document.active_selection.is_some() {
             true => {
                 Outcome::Commit { label: "Deselect".into(), document: self.document.with_selection(None), select: None }
@@ -78,7 +78,7 @@ impl Gesture for ShapeGesture {
     }
 }
 
-/// Takes hold of the selection; its pixels stay.
+/// Grabs the selection; its pixels stay.
 pub fn moving(context: &ToolContext, pen: PenSample) -> GestureStart {
     let (snap, lines) = (context.snap.clone(), SnapLines::default());
     begin(MoveOutline { document: context.document.clone(), from: pen.place(), by: Vec2::ZERO, snap, lines }, pen)

@@ -1,6 +1,6 @@
 //! The surface wand: all that faces the same way as the point under the pen, lies as deep, bends as it does, belongs to
 //! its object, would shine with it, or flows along it; a drag to the right or the left changes the tolerance. Floor 5.
-//! `surface::region` finds it.
+//! Not here: finding it (`surface::region`).
 
 use super::{combined, dragged};
 use crate::document::Document;
@@ -38,7 +38,7 @@ struct RegionGesture {
     field: RegionField,
     from: Vec2,
     begun: SurfaceRegion,
-    /// With the tolerance as far as it was dragged.
+    /// With the tolerance of the drag so far.
     told: SurfaceRegion,
     settings: SelectSettings,
     px_per_pt: f32,

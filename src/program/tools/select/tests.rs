@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 const SIZE: Size = Size::new(200, 130);
 
-/// Bands of grey that get lighter from left to right, 20 px wide; the sixth is parted from the rest.
+/// Bands of grey that get lighter from left to right, 20 px wide; the sixth is separate from the rest.
 fn bands() -> Document {
     let grey = |x: usize| (x / 20 * 20) as u8;
     let rgba: Vec<u8> = (0..200 * 130).flat_map(|i| [grey(i % 200), grey(i % 200), 0, 255]).collect();
@@ -17,7 +17,7 @@ fn bands() -> Document {
     let layer = Layer::new("bands", Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }));
     Document { layers: vec![Arc::new(layer)], ..Document::empty(SIZE) }
 }
-/// Drags a tool; the document it leads to, and the settings it leaves.
+/// Drags a tool; returns the resulting document and settings.
 fn dragged_with(
     kind: ToolKind,
     document: &Document,

@@ -1,5 +1,5 @@
 //! The wand: all pixels of a colour like the one under the pen, joined to it or everywhere; a drag to the right or the
-//! left changes the tolerance. Floor 5. `paint::fill` finds the region.
+//! left changes the tolerance. Floor 5. Not here: finding the region (`paint::fill`).
 
 use super::{combined, dragged};
 use crate::document::{Content, Document, PreparedDocument, Progress};
@@ -76,10 +76,10 @@ struct WandGesture {
     picture: WandSource,
     from: Vec2,
     begun: SelectSettings,
-    /// With the tolerance as far as it was dragged.
+    /// With the tolerance of the drag so far.
     settings: SelectSettings,
     px_per_pt: f32,
-    /// The last selection, and the tolerance it was found with.
+    /// The last selection, and its tolerance.
     shown: Option<(f32, Document)>,
 }
 

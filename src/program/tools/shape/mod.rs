@@ -1,5 +1,5 @@
-//! Tools of the shape: `part` moves its parts, `touch` and `sculpt` change them by hand. Here: the list of parts as
-//! they leave it. Floor 5. Not here: what parts are (`document::parts`).
+//! Tools of the shape: `part` moves its parts, `touch` and `sculpt` change them by hand. Here: the list of parts after
+//! their edits. Floor 5. Not here: what parts are (`document::parts`).
 
 pub mod part;
 pub mod sculpt;
@@ -14,7 +14,7 @@ pub fn with_new(document: &Document, part: Part) -> Document {
     document.with_parts(list_with_new(document, part))
 }
 
-/// With a part that a hand works on, new or not: shaped later, or, once the hand lifts, at once.
+/// With a part that the user drags, new or not: its shape is made later or, at the end of the drag, at once.
 fn with_worked(document: &Document, part: &Part, is_new: bool, is_done: bool) -> Document {
     match (is_new, is_done) {
         (true, true) => with_new(document, part.clone()),
@@ -41,12 +41,12 @@ fn map_about(point: Vec2, map: Mat2) -> Affine2 {
     Affine2::from_translation(point) * Affine2::from_mat2(map) * Affine2::from_translation(-point)
 }
 
-/// How much longer a map makes lengths, in the mean; never 0.
+/// The mean factor by which a map scales lengths; never 0.
 fn length_of(matrix: Affine2) -> f32 {
     matrix.matrix2.determinant().abs().sqrt().max(1e-3)
 }
 
-/// A direction of a part as it stands on the canvas: it turns with the part.
+/// A direction of a part on the canvas: it turns with the part.
 fn on_canvas_direction(normal: Vec3, matrix: Affine2) -> Vec3 {
     turned(normal, matrix.matrix2.x_axis.to_angle())
 }

@@ -1,5 +1,5 @@
 //! The shape tool: the part under the pen is chosen and moved; handles around the chosen one scale, turn, puff and tilt
-//! it. Floor 5. The numbers that have no handle are the panel's.
+//! it. Floor 5. Not here: numbers without a handle (the panel).
 
 use super::map_about;
 use crate::document::Document;
@@ -15,7 +15,7 @@ use std::sync::Arc;
 pub struct PartFrame {
     pub low: Vec2,
     pub high: Vec2,
-    /// Canvas px per screen point: handles within and above the box are so far apart on the screen.
+    /// Canvas px per screen point, by which handles within and above the box keep their distances on the screen.
     pub px_per_pt: f32,
     /// Whether it has a height to drag.
     pub has_puff: bool,
@@ -23,43 +23,43 @@ pub struct PartFrame {
     pub is_inflated: bool,
 }
 
-/// What of a part the pen holds.
+/// What the pen holds of a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PartHandle {
     /// Upper left, upper right, lower right, lower left: scales about the opposite corner.
     Corner(usize),
     /// Above the box: turns about its middle.
     Turn,
-    /// In the middle: dragged up the part rises, dragged down it sinks.
+    /// In the middle: dragging up raises the part, dragging down lowers it.
     Puff,
-    /// The ball below the middle: dragged to a side the part leans there.
+    /// The ball below the middle: the part leans to the side of the drag.
     Tilt,
-    /// Left of the middle: dragged to the right a pillow becomes a tube.
+    /// Left of the middle: dragging to the right makes a pillow a tube.
     Profile,
-    /// Right of the middle: dragged up the rim turns away, dragged down it becomes a low relief.
+    /// Right of the middle: dragging up turns the rim away, dragging down makes a low relief.
     Rim,
-    /// Above the middle: dragged up the part comes nearer.
+    /// Above the middle: dragging up brings the part nearer.
     Depth,
     /// All else of the part.
     Body,
 }
 
-/// How far above the box its turning handle stands, and how far from the middle the handles around it, points.
+/// The distance of the turning handle above the box, and of the handles around the middle from it, points.
 const TURN_PT: f32 = 26.0;
 const AROUND_PT: f32 = 34.0;
-/// In a smaller box there is no room for handles within, points.
+/// A smaller box has no room for handles within, points.
 const LEAST_BOX_PT: f32 = 84.0;
-/// A degree of tilt for so many points.
+/// Points of a drag per degree of tilt.
 const TILT_PT_A_DEGREE: f32 = 2.0;
-/// A drag of so many points takes a pillow to a tube.
+/// Points of a drag from a pillow to a tube.
 const PROFILE_PT: f32 = 120.0;
-/// A degree of the rim for so many points.
+/// Points of a drag per degree of the rim.
 const RIM_PT_A_DEGREE: f32 = 1.5;
-/// Turns with Shift go from one multiple of this to the next.
+/// Turns with Shift go in steps of this.
 const STEP_DEGREES: f32 = 15.0;
 
 impl PartHandle {
-    /// What a hand at it reads: what it changes, and how much of that there is.
+    /// The text shown while it is dragged: what it changes, and its value.
     pub fn told(self, part: &Part) -> Option<String> {
         let inflation = match &part.kind {
             PartKind::Inflate { inflation, .. } => Some(*inflation),
@@ -77,13 +77,13 @@ impl PartHandle {
 }
 
 impl PartFrame {
-    /// Of a part by its form.
+    /// For a part by its form.
     pub fn of(part: &Part, form: &Form, px_per_pt: f32) -> Self {
         let rect = covered(form);
         let is_inflated = matches!(part.kind, PartKind::Inflate { .. });
         Self { low: rect.0, high: rect.1, px_per_pt, has_puff: height_of(&part.kind).is_some(), is_inflated }
     }
-    /// As it stands seen through a map of the canvas.
+    /// The same, seen through a map of the canvas.
     pub fn through(self, map: Affine2) -> Self {
         let corners = self.corners().map(|corner| map.transform_point2(corner));
         let low = corners.iter().fold(Vec2::MAX, |a, b| a.min(*b));
@@ -100,7 +100,7 @@ impl PartFrame {
     pub fn turn(&self) -> Vec2 {
         vec2(self.middle().x, self.low.y - TURN_PT * self.px_per_pt)
     }
-    /// Where the handle of the height stands, if the part has one and there is room.
+    /// The place of the handle of the height, if the part has one and there is room.
     pub fn puff(&self) -> Option<Vec2> {
         (self.has_puff && self.has_room()).then(|| self.middle())
     }
@@ -116,7 +116,7 @@ impl PartFrame {
     pub fn depth(&self) -> Option<Vec2> {
         self.around(vec2(0.0, -1.0))
     }
-    /// Beside the middle, where there is room.
+    /// Next to the middle, if there is room.
     fn around(&self, way: Vec2) -> Option<Vec2> {
         self.has_room().then(|| self.middle() + way * (AROUND_PT * self.px_per_pt))
     }
@@ -261,10 +261,10 @@ impl PartGesture {
                 let rim_deg = (now.rim_deg - by.y / self.pt(RIM_PT_A_DEGREE)).round();
                 Inflation { rim_deg: held(rim_deg, &Inflation::RIM), ..now }
             }),
-            // As the hand goes: a px of height for a px of the canvas.
+            // As the pen moves: a px of height for a px of the canvas.
             PartHandle::Depth => Some(Part { raise: held((part.raise - by.y).round(), &Part::RAISE), ..part.clone() }),
             PartHandle::Tilt => {
-                // Where the ball goes the part faces, so it falls there.
+                // The part faces where the ball goes, so it falls there.
                 let by = by / self.pt(TILT_PT_A_DEGREE);
                 let tilt = (part.tilt_deg - by).round();
                 let tilt_deg = vec2(held(tilt.x, &Part::TILT), held(tilt.y, &Part::TILT));
@@ -274,7 +274,7 @@ impl PartGesture {
     }
 }
 
-/// By whole pixels, so that nothing is made anew; with Shift along one axis.
+/// By whole pixels, so that nothing is made again; with Shift along one axis.
 fn moved_by(by: Vec2, along_axis: bool) -> Vec2 {
     match along_axis {
         true if by.x.abs() >= by.y.abs() => vec2(by.x, 0.0).round(),

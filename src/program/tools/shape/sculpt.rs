@@ -9,7 +9,7 @@ use crate::math::{Affine2, COORDINATE, Vec2};
 use crate::shape::{SculptStroke, SculptTool};
 use crate::tools::{Gesture, GestureStart, ModifierKeys, Outcome, PenSample, ShapeSettings, ToolContext};
 
-/// Samples nearer than this say nothing new, px.
+/// Samples nearer than this add nothing, px.
 const APART_PX: f32 = 0.5;
 
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
@@ -33,7 +33,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     (Some(Box::new(gesture)), outcome)
 }
 
-/// A stroke without samples, in the frame of the part that it lies on. Ctrl turns raising and lowering about, Shift
+/// A stroke without samples, in the frame of the part that it lies on. Ctrl exchanges raising and lowering, Shift
 /// smooths.
 fn stroke(settings: &ShapeSettings, keys: ModifierKeys, matrix: Affine2) -> SculptStroke {
     let tool = match settings.tool {

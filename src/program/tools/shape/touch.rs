@@ -1,5 +1,5 @@
-//! The touch tool: a click or a drag gives the part under the pen a direction there; touches are moved by dragging
-//! and taken away with Alt. Floor 5. Not here: how they spread (`shape::touches`).
+//! The touch tool: a click or a drag gives the part under the pen a direction there; touches are moved by dragging and
+//! removed with Alt. Floor 5. Not here: how they spread (`shape::touches`).
 
 use super::{free_id, inverse_direction, on_canvas_direction};
 use crate::document::Document;
@@ -9,7 +9,7 @@ use crate::shape::Touch;
 use crate::tools::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext};
 use std::sync::Arc;
 
-/// A touch where it stands on the canvas.
+/// A touch with its place on the canvas.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StandingTouch {
     /// The part that holds it, and its place there.
@@ -21,7 +21,7 @@ pub struct StandingTouch {
     pub normal: Vec3,
 }
 
-/// The touches of a document that are seen.
+/// The visible touches of a document.
 pub fn touches(document: &Document) -> Vec<StandingTouch> {
     let of = |part: &Arc<Part>| {
         let PartKind::Touches { on, touches } = &part.kind else { return Vec::new() };
@@ -73,7 +73,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         normal: inverse_direction(settings.normal, base.matrix),
         reach: (settings.reach / scale).max(0.0).min(*Touch::REACH.end()),
     };
-    // A drag puts them down so far apart that each counts.
+    // A drag places them far enough apart that each counts.
     let apart_px = (2.0 * settings.radius).max(GRAB_PT * context.px_per_pt);
     let mut gesture = TouchGesture { document: document.clone(), base, part, is_new, made, apart_px, last: None };
     let outcome = gesture.drag(&[pen]);
@@ -123,7 +123,7 @@ fn without(document: &Document, touch: &StandingTouch) -> Outcome {
     Outcome::Commit { label: "Remove touch".into(), document: document.with_part(next), select: None }
 }
 
-/// Touches being put down.
+/// Touches being placed.
 struct TouchGesture {
     document: Document,
     /// The part that is touched.
@@ -131,10 +131,10 @@ struct TouchGesture {
     /// The one that holds the touches.
     part: Part,
     is_new: bool,
-    /// What each of them is; `at` is the last one's.
+    /// The properties of each; `at` is the last one's.
     made: Touch,
     apart_px: f32,
-    /// Where the last one stands, canvas px.
+    /// The place of the last one, canvas px.
     last: Option<Vec2>,
 }
 

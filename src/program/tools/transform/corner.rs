@@ -1,9 +1,8 @@
-//! A corner of a quadrilateral in the hand: it stays where the quadrilateral is convex.
-//! Floor 5. Pure functions.
+//! A corner of a quadrilateral under the pen: the quadrilateral stays convex. Floor 5. Pure functions.
 
 use crate::math::DVec2;
 
-/// A corner goes no nearer than this to where the quadrilateral would turn concave, as a share of its size.
+/// The least distance of a corner from where the quadrilateral would turn concave, as a share of its size.
 const MARGIN: f64 = 0.02;
 
 /// The point nearest to `at` with which a quadrilateral is convex, its other corners staying. It moves no farther than

@@ -1,5 +1,4 @@
-//! The frame in the hand: what a drag of each handle does to all layers in it.
-//! Floor 5.
+//! The frame under the pen: what a drag of each handle does to all layers in it. Floor 5.
 
 use super::corner::within_convex;
 use super::placed::{FrameMap, LayerPlacement};
@@ -10,7 +9,7 @@ use crate::tools::frame::{FrameHandle, TransformFrame};
 use crate::tools::snap::{SnapLines, SnapTargets};
 use crate::tools::{Gesture, Outcome, PenSample};
 
-/// A layer that is dragged, as it was before.
+/// A dragged layer, as it was before.
 pub struct HeldLayer {
     pub id: LayerId,
     pub own: LayerPlacement,
@@ -19,7 +18,7 @@ pub struct HeldLayer {
 
 pub struct TransformGesture {
     pub document: Document,
-    /// None, where the shape is dragged.
+    /// None, if the shape is dragged.
     pub layers: Vec<HeldLayer>,
     pub of_shape: bool,
     pub frame: TransformFrame,
@@ -31,16 +30,16 @@ pub struct TransformGesture {
     pub lines: SnapLines,
 }
 
-/// What a drag came to.
+/// The result of a drag.
 pub enum Dragged {
     /// The layers in their places, in the order of those held.
     Layers(Vec<LayerPlacement>),
-    /// Where the shape goes on the canvas.
+    /// The map of the shape on the canvas.
     Shape(PlaneMap),
 }
 
 impl TransformGesture {
-    /// What it comes to with the handle at the pen; `None` where that is no map for one of them.
+    /// The result with the handle at the pen; `None` if that is no map for one of them.
     fn dragged(&self, pen: &PenSample) -> Option<Dragged> {
         let inner = self.frame.inner;
         match self.handle {
@@ -73,11 +72,11 @@ impl TransformGesture {
     }
     fn dragged_layer(&self, layer: &HeldLayer, map: &FrameMap, on_canvas: PlaneMap) -> Option<LayerPlacement> {
         let on_canvas = FrameMap::OnCanvas(on_canvas);
-        // The frame of one layer is its own: numbers stay as exact as they can.
+        // The frame of one layer is its own: numbers stay as exact as possible.
         let map = if self.layers.len() == 1 { map } else { &on_canvas };
         layer.own.then(&layer.map, map, self.document.size)
     }
-    /// The pen where it snaps: with a handle itself, with the inside so that the frame does.
+    /// The pen after snapping: with a handle the pen itself snaps, with the inside the frame.
     fn snapped(&mut self, pen: &PenSample) -> PenSample {
         let at = pen.place();
         let (at, lines) = match self.handle {
@@ -99,7 +98,7 @@ impl TransformGesture {
         snapped
     }
     fn moved_by(&self, pen: &PenSample) -> Vec2 {
-        // Whole pixels, so that paint is not sampled where it need not be.
+        // Whole pixels, so that paint is not resampled needlessly.
         let by = (pen.place() - self.from).round();
         match pen.keys.shift {
             true if by.x.abs() >= by.y.abs() => vec2(by.x, 0.0),
@@ -118,7 +117,7 @@ impl TransformGesture {
         let degrees = if pen.keys.shift { (degrees / STEP_DEGREES).round() * STEP_DEGREES } else { degrees };
         Some(PlaneMap::rotation(degrees, pivot))
     }
-    /// A scaling in the frame that takes a handle to the pen. Shift keeps the aspect, Alt the pivot.
+    /// A scaling in the frame that moves a handle to the pen. Shift keeps the aspect, Alt the pivot.
     fn scaled(&self, handle: Vec2, axes: [bool; 2], pen: &PenSample) -> Option<PlaneMap> {
         let inner = self.frame.inner;
         let center = inner.center();
@@ -137,7 +136,7 @@ impl TransformGesture {
         let fixed = fixed.as_dvec2();
         PlaneMap::affine([x, 0.0, 0.0, y, fixed.x * (1.0 - x), fixed.y * (1.0 - y)])
     }
-    /// A shear in the frame that takes an edge along itself.
+    /// A shear in the frame that moves an edge along itself.
     fn skewed(&self, edge: usize, at: Vec2) -> Option<PlaneMap> {
         let corners = self.frame.inner.corners().map(|corner| corner.as_dvec2());
         let (a, opposite) = (corners[edge % 4], corners[(edge + 2) % 4]);
@@ -151,8 +150,8 @@ impl TransformGesture {
         let k = by.y / (a.x - opposite.x);
         PlaneMap::affine([1.0, k, 0.0, 1.0, 0.0, -k * opposite.x])
     }
-    /// What it comes to in a perspective that takes one corner to the pen, or as far toward it as there is
-    /// one, and leaves the others.
+    /// The result of a perspective that moves one corner to the pen, or as far toward it as possible, and leaves the
+    /// others.
     fn distorted(&self, corner: usize, at: Vec2) -> Option<Dragged> {
         let held = self.frame.corners.map(|c| c.as_dvec2());
         let (from, to) = (held[corner], within_convex(held, corner, at.as_dvec2()));
@@ -163,7 +162,7 @@ impl TransformGesture {
             let whole = PlaneMap::rect_to_quad(low.as_dvec2(), high.as_dvec2(), corners)?;
             self.all(&FrameMap::OnCanvas(self.frame.plane.inverse().then(&whole)))
         };
-        // Of a convex frame the horizon may still cross the canvas, which no file can tell.
+        // The horizon of a convex frame may still cross the canvas, which files cannot hold.
         at_share(1.0).or_else(|| {
             let (mut low, mut high, mut found) = (0.0, 1.0, None);
             for _ in 0..HALVINGS {
@@ -187,9 +186,9 @@ impl TransformGesture {
     }
 }
 
-/// How often the way of a corner is halved to find how far it may go: less than a pixel is left.
+/// How often the way of a corner is halved to find how far it may go: less than a pixel remains.
 const HALVINGS: usize = 16;
-/// Turns with Shift go from one multiple of this to the next.
+/// Turns with Shift go in steps of this.
 const STEP_DEGREES: f64 = 15.0;
 
 impl Gesture for TransformGesture {

@@ -6,8 +6,8 @@ use crate::math::{PlaneMap, Vec2, vec2};
 use crate::tools::{GRAB_PT, Gesture, Outcome, PenSample, ToolContext};
 use std::sync::Arc;
 
-/// A layer with a grid of so many points over what it shows; a mesh that it has goes on with other points. `None` of
-/// an empty layer, or where there is no such grid.
+/// A layer with a grid of so many points over what it shows; an existing mesh gets new points. `None` for an empty
+/// layer, or if there is no such grid.
 pub fn meshed(document: &Document, id: LayerId, columns: usize, rows: usize) -> Option<Document> {
     let (layer, map) = (document.layer(id)?, document.map_of(id)?);
     let filter = layer.transform.as_ref().map_or(map.filter, |own| own.filter);
@@ -31,7 +31,7 @@ fn with_mesh(document: &Document, id: LayerId, mesh: Mesh, filter: crate::raster
     document.with_layer(id, |layer| layer.transform = Some(transform))
 }
 
-/// The points of a layer's mesh on the canvas, and the mesh; `None` of a layer without one.
+/// The points of a layer's mesh on the canvas, and the mesh; `None` for a layer without one.
 pub fn points_of(document: &Document, layer: &Layer) -> Option<(Arc<Mesh>, Vec<Vec2>)> {
     let mesh = layer.transform.as_ref()?.mesh()?;
     let to_canvas = document.map_of(layer.id)?.outside_own();
@@ -39,8 +39,8 @@ pub fn points_of(document: &Document, layer: &Layer) -> Option<(Arc<Mesh>, Vec<V
     Some((mesh.clone(), points))
 }
 
-/// What a press does at the points of the chosen layer's mesh; `None` where there is none of them. With Shift a point
-/// is chosen beside others, or no longer.
+/// What a press does at the points of the chosen layer's mesh; `None` if it has none. Shift adds a point to those
+/// chosen, or removes it.
 pub(super) fn press(context: &ToolContext, pen: PenSample) -> Option<(Option<Box<dyn Gesture>>, Outcome)> {
     let [id] = context.chosen() else { return None };
     let document = context.document;
@@ -82,7 +82,7 @@ struct MeshGesture {
     chosen: Vec<usize>,
     to_canvas: PlaneMap,
     from: Vec2,
-    /// Px of the list that the layer stands in.
+    /// Px of the list that holds the layer.
     by: Vec2,
 }
 

@@ -6,7 +6,7 @@ use crate::document::{Document, LayerId, LayerTransform};
 use crate::math::{DVec2, PlaneMap, Vec2};
 use crate::tools::frame::TransformFrame;
 
-/// Where a frame stands that lies in no perspective.
+/// The numbers of a frame without perspective.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameNumbers {
     /// Its upper left corner, canvas px.
@@ -23,11 +23,11 @@ pub struct FrameNumbers {
 }
 
 impl FrameNumbers {
-    /// Nearest and farthest of what can be typed.
+    /// The least and greatest that can be typed.
     pub const SIDE: std::ops::RangeInclusive<f64> = -65_536.0..=65_536.0;
     pub const SKEW: std::ops::RangeInclusive<f64> = -85.0..=85.0;
 
-    /// `None` of a frame in perspective, and of one without area.
+    /// `None` for a frame in perspective, and for one without area.
     pub fn of(frame: &TransformFrame) -> Option<Self> {
         frame.plane.coefficients()?;
         let [a, b, _, d] = frame.corners.map(|corner| corner.as_dvec2());
@@ -40,7 +40,7 @@ impl FrameNumbers {
         let angle = 0.0 - across.y.atan2(across.x).to_degrees();
         let skew = (along / height.abs()).atan().to_degrees();
         let upright = Self { at: a, width, height, angle, skew, own };
-        // Mirrored left and right and not turned, instead of up and down and turned by a half.
+        // Mirrored left and right and not turned, rather than up and down and turned by a half.
         let turned =
             Self { width: -width, height: -height, angle: angle - 180.0f64.copysign(angle), skew: -skew, ..upright };
         let numbers = if height < 0.0 && angle.abs() > 90.0 { turned } else { upright };
@@ -57,11 +57,11 @@ impl FrameNumbers {
         let (right, down) = self.sides();
         self.at + right * f64::from(share.x) + down * f64::from(share.y)
     }
-    /// With a point, told by shares of the sides, where another frame has it: sides and angles change about it.
+    /// With a point, given as shares of the sides, where another frame has it: sides and angles change about it.
     pub fn about(&self, pivot_share: Vec2, other: &Self) -> Self {
         Self { at: self.at + other.point(pivot_share) - self.point(pivot_share), ..*self }
     }
-    /// The map of the canvas that takes a frame with other numbers to this one, as a matrix.
+    /// The map of the canvas from a frame with other numbers to this one, as a matrix.
     pub fn map_from(&self, other: &Self) -> Option<[f64; 6]> {
         let to_frame = |numbers: &Self| {
             let (x, y) = numbers.sides();
@@ -69,8 +69,8 @@ impl FrameNumbers {
         };
         to_frame(other)?.inverse().then(&to_frame(self)?).told_coefficients()
     }
-    /// A layer's own transform under which its frame has these numbers: `None` where that is no map, inner `None` where
-    /// none is left.
+    /// A layer's own transform under which its frame has these numbers: `None` if that is no map, inner `None` if none
+    /// is left.
     pub fn transform(&self, document: &Document, layer: LayerId) -> Option<Option<LayerTransform>> {
         let frame = TransformFrame::of(document, layer)?;
         // A mesh has no sides and angles.

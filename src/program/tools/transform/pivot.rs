@@ -8,7 +8,7 @@ use crate::tools::{Gesture, Outcome, PenSample};
 
 pub struct PivotGesture {
     pub frame: TransformFrame,
-    /// Guides and what else there is; those of the frame itself come first.
+    /// Guides and other lines; those of the frame itself come first.
     pub snap: SnapTargets,
     /// Whether it snaps to the frame.
     pub snaps: bool,
@@ -16,7 +16,7 @@ pub struct PivotGesture {
     pub lines: SnapLines,
 }
 
-/// Where a pivot snaps to, and what the window calls it: the middle, the corners, the middles of the sides.
+/// Where a pivot snaps to, with its name in the window: the middle, the corners, the middles of the sides.
 pub const PIVOTS: [(Vec2, &str); 9] = [
     (vec2(0.0, 0.0), "upper left corner"),
     (vec2(0.5, 0.0), "middle above"),

@@ -1,12 +1,11 @@
-//! Where layers are placed, and where a drag of their frame takes them.
-//! Floor 5.
+//! The places of layers, before and after a drag of their frame. Floor 5.
 
 use crate::document::{Layer, LayerMap, LayerTransform, Mesh, TransformShape};
 use crate::math::{PlaneMap, Size};
 use crate::raster::{Lattice, Resampling};
 use std::sync::Arc;
 
-/// Where a layer is placed: its transform and its liquify.
+/// The place of a layer: its transform and its liquify.
 #[derive(Clone, PartialEq)]
 pub(super) struct LayerPlacement {
     pub transform: Option<LayerTransform>,
@@ -21,7 +20,7 @@ impl LayerPlacement {
         layer.transform.clone_from(&self.transform);
         layer.liquify.clone_from(&self.liquify);
     }
-    /// The same with what shows mapped; `None` where that is no map.
+    /// The same with what shows mapped; `None` if that is no map.
     ///
     /// * `whole`: the layer's map.
     pub fn then(&self, whole: &LayerMap, map: &FrameMap, canvas: Size) -> Option<Self> {
@@ -32,7 +31,7 @@ impl LayerPlacement {
             FrameMap::InFrame(map) if self.mesh().is_some() => own.then(map),
             FrameMap::InFrame(map) => map.then(&own),
         };
-        // The same in the list that the layer stands in.
+        // The same in the list that holds the layer.
         let outer = own.inverse().then(&plane);
         let filter = self.transform.as_ref().map_or(whole.filter, |own| own.filter);
         let transform = match self.mesh() {
@@ -52,14 +51,14 @@ impl LayerPlacement {
     }
 }
 
-/// A layer's own map so that what shows is taken along by a map of the canvas; `whole`: its own and those of the groups
+/// A layer's own map if what shows is moved by a map of the canvas; `whole`: its own and those of the groups
 /// around it.
 fn taken_along(own: PlaneMap, whole: &PlaneMap, on_canvas: PlaneMap) -> PlaneMap {
     let around = own.inverse().then(whole);
     own.then(&around).then(&on_canvas).then(&around.inverse())
 }
 
-/// A map as a transform that a file holds, or none where it moves nothing; outer `None` where there is no such one.
+/// A map as a transform that files can hold, or none if it moves nothing; outer `None` if there is no such transform.
 pub(super) fn said(map: &PlaneMap, filter: Resampling, canvas: Size) -> Option<Option<LayerTransform>> {
     if map.is_identity_on(canvas) {
         return Some(None);

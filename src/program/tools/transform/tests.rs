@@ -87,7 +87,7 @@ fn a_corner_dragged_past_the_others_or_the_horizon_stays_as_near_as_it_can() {
     let corner = |to| corners(&dragged(&document(), vec2(80.0, 50.0), to, distort).expect("it goes on"))[2];
     let folded = corner(vec2(41.0, 31.0));
     assert!(folded.distance(vec2(80.0, 50.0)) > 5.0 && folded.y + 0.5 * folded.x > 70.0, "not folded: {folded}");
-    // Right beneath the upper right corner the far side of the canvas would lie behind the horizon.
+    // Directly beneath the upper right corner the far side of the canvas would lie behind the horizon.
     for to in [vec2(80.2, 31.0), vec2(-500.0, 4000.0), vec2(1e30, -1e30), vec2(40.0, 30.0)] {
         let at = corner(to);
         assert!(at.is_finite() && at.x > 40.0 && at.y > 30.0, "{to} led to {at}");
@@ -267,7 +267,7 @@ fn the_points_of_a_mesh_are_dragged_one_or_several() {
     assert_eq!(moved.points()[0], vec2(40.0, 30.0));
     let both = drag(&[4, 5], vec2(100.0, 60.0), vec2(100.0, 70.0));
     assert_eq!([both.points()[4].y, both.points()[5].y, both.points()[3].y], [70.0, 70.0, 60.0]);
-    // With Shift points are chosen, and no longer.
+    // With Shift points are chosen, and deselected.
     let shift = ModifierKeys { shift: true, ..ModifierKeys::default() };
     let context = ToolContext { layer: Some(id), mesh_points: &[4], ..ToolContext::new(&document, &brush) };
     let at = |p: Vec2| PenSample { keys: shift, ..PenSample::at(p) };

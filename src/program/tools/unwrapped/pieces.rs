@@ -27,13 +27,13 @@ pub struct PieceFrame {
     pub knob: Vec2,
 }
 
-/// How far the knob stands above its piece, screen pt.
+/// The distance of the knob above its piece, screen pt.
 const KNOB_PT: f32 = 22.0;
 /// Pieces smaller than this have no frame, px.
 const LEAST_PX: usize = 24;
 
 impl PieceFrame {
-    /// `None` of a crumb.
+    /// `None` for a crumb.
     pub fn of(piece: &LaidPiece, px_per_pt: f32) -> Option<Self> {
         let Rect { x0, y0, x1, y1 } = piece.rect;
         let [x0, y0, x1, y1] = [x0, y0, x1, y1].map(|v| v as f32);
@@ -44,7 +44,7 @@ impl PieceFrame {
     }
 }
 
-/// The piece that the pen takes hold of, by a handle or on it, and what a drag does there.
+/// The piece that the pen grabs, by a handle or on it, and what a drag does there.
 pub fn held(layout: &PlaneLayout, at: Vec2, px_per_pt: f32, keys: ModifierKeys) -> Option<(LaidPiece, PieceDrag)> {
     let is_near = |handle: Vec2| handle.distance(at) <= GRAB_PT * px_per_pt;
     let by_handle = |piece: &LaidPiece| {
@@ -95,7 +95,7 @@ pub fn press(context: &ToolContext, pen: PenSample, layout: &PlaneLayout) -> Ges
     (Some(Box::new(drag)), Outcome::Idle)
 }
 
-/// How an image's plane lies turned against the sheet, about a point of the canvas, before its pieces are moved.
+/// How an image's plane is turned relative to the sheet, about a point of the canvas, before its pieces are moved.
 fn plane_from_sheet(document: &Document, surface: &Surface, bend: &Bend, layout: &PlaneLayout, at: Vec2) -> Mat2 {
     let (x, y) = surface.pixel_of(at);
     let still = Bend { pieces: Vec::new(), ..bend.clone() };
@@ -112,7 +112,7 @@ struct PieceGesture {
     before: PlanePiece,
     how: PieceDrag,
     from: Vec2,
-    /// What the picture is turned and scaled about, px of the sheet.
+    /// The point that the picture is turned and scaled about, px of the sheet.
     pivot: Vec2,
     plane_from_sheet: Mat2,
     moved: bool,
@@ -249,7 +249,7 @@ mod tests {
         let Content::Image(live) = &turned.layers[0].content else { panic!("an image") };
         assert!((live.params().bend.pieces[0].rotation - 0.5f32.to_degrees()).abs() < 0.1, "counter-clockwise");
         assert!((away(&turned, beside).length() / away(&before, beside).length() - 1.0).abs() < 1e-3);
-        // A second drag goes on from the first.
+        // A second drag continues from the first.
         let twice =
             dragged(&turned, ModifierKeys { ctrl: true, ..Default::default() }, pivot + Vec2::X, pivot + Vec2::Y);
         let Content::Image(live) = &twice.layers[0].content else { panic!("an image") };

@@ -8,7 +8,7 @@ use crate::tools::ModifierKeys;
 
 const RADIUS: f32 = 80.0;
 
-/// An upright cylinder beside a board that faces the viewer, farther away.
+/// An upright cylinder next to a board that faces the viewer, farther away.
 fn surface() -> Arc<Surface> {
     let size = Size::new(320, 120);
     let lean = |x: usize| (x as f32 + 0.5 - 100.0) / RADIUS;
@@ -34,7 +34,7 @@ pub fn laid(document: &Document) -> Arc<PlaneLayout> {
 }
 const BRUSH: StrokeStart = |context, pen| crate::tools::press(ToolKind::Brush, context, pen);
 
-/// The strokes that are left when the pen went along these points of the sheet.
+/// The strokes that result when the pen goes along these points of the sheet.
 fn drawn(document: &Document, brush: &Brush, points: &[Vec2]) -> Vec<Arc<Stroke>> {
     let context = ToolContext::new(document, brush);
     let (gesture, _) = paint(&context, PenSample::at(points[0]), laid(document), BRUSH);

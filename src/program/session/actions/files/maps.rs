@@ -1,5 +1,4 @@
-//! Maps that a document's surface is made of anew, or a part.
-//! Floor 6. Reading them is `io::maps`'.
+//! Maps of which a new surface or a part is made. Floor 6. Not here: reading them (`io::maps`).
 
 use crate::document::parts::PartMaps;
 use crate::document::{Document, SurfaceSource};

@@ -1,5 +1,5 @@
-//! Edits that flatten layers: they can take long, so the window runs them on another thread. Floor 6. Flattening itself
-//! is in `document::flatten`.
+//! Edits that flatten layers: they can take long, so the window runs them on another thread. Floor 6. Not here:
+//! flattening itself (`document::flatten`).
 
 use super::{LayerAction, sibling};
 use crate::document::{Content, Document, Layer, LayerId, LayerSlot, PixelLayer, Progress, flatten_to_paint};
@@ -8,7 +8,7 @@ use crate::session::open_document::Edit;
 use std::sync::Arc;
 
 impl LayerAction {
-    /// A description of an edit that takes long.
+    /// A description of a long edit.
     pub fn takes_long(&self) -> Option<&'static str> {
         match self {
             LayerAction::MergeDown { .. } => Some("Merging layers"),
@@ -55,7 +55,7 @@ pub(super) fn baked(document: &Document, layer: &Layer, progress: &Progress) -> 
         (layer.opacity, layer.mask, layer.blend, layer.clip_to_surface) = (1.0, None, Default::default(), false);
     })?;
     let tiles = flatten_to_paint(&bare.with_only(&[layer.id])?, progress)?;
-    // What was drawn lies on the canvas; what carries the layer carries it on from there.
+    // What was drawn lies on the canvas; the layer's home carries it from there.
     let transform = document.transform_to_canvas(layer.id)?;
     document.with_layer(layer.id, |layer| {
         layer.content = Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() });
@@ -63,7 +63,7 @@ pub(super) fn baked(document: &Document, layer: &Layer, progress: &Progress) -> 
     })
 }
 
-/// With a layer that a mesh or liquify displaces as paint of what it shows, where its kind cannot say so itself.
+/// With a layer that a mesh or liquify displaces as paint of what it shows, if its kind cannot express that.
 pub(super) fn undisplaced(document: &Document, id: LayerId, progress: &Progress) -> Option<Document> {
     let next = document.with_transform_applied(id)?;
     let layer = next.layer(id)?;
@@ -72,7 +72,7 @@ pub(super) fn undisplaced(document: &Document, id: LayerId, progress: &Progress)
 
 /// A layer and the one beneath it as one paint layer.
 fn merged(document: &Document, id: LayerId, progress: &Progress) -> Option<Edit> {
-    // Groups around hand their transforms down, so that what is merged lies as it shows.
+    // Groups around hand down their transforms, so that what is merged lies as it shows.
     let document = &undisplaced(document, id, progress)?;
     let layer = document.layer(id)?;
     let place = document.place_of(layer.id)?;
@@ -82,7 +82,7 @@ fn merged(document: &Document, id: LayerId, progress: &Progress) -> Option<Edit>
     let document = &if is_warped { undisplaced(document, beneath, progress)? } else { document.clone() };
     let (layer, beneath) = (document.layer(id)?, document.layer(beneath)?.clone());
     // The two alone, in a canvas of their own that sees the same surface.
-    // Groups take their layers along one by one.
+    // The layers of groups are taken one by one.
     let seen = |layer: &Arc<Layer>| match layer.content.group() {
         Some(_) => Some(layer.clone()),
         None => Some(document.map_of(layer.id)?.layer_on_canvas(layer)),
@@ -98,8 +98,8 @@ fn merged(document: &Document, id: LayerId, progress: &Progress) -> Option<Edit>
     Some(Edit { label: "Merge down", document, select: vec![beneath.id] })
 }
 
-/// Layers, bottom first, as one paint layer where the topmost of them stood; it has the name and the blend mode of the
-/// bottom one.
+/// Layers, bottom first, as one paint layer in the place of the topmost of them; it has the name and the blend mode of
+/// the bottom one.
 fn merged_several(document: &Document, ids: &[LayerId], progress: &Progress) -> Option<Edit> {
     let in_place = |next: Document, id: &LayerId| next.with_transform_applied(*id);
     let document = &ids.iter().try_fold(document.clone(), in_place)?;

@@ -26,14 +26,14 @@ rilievo_engine::named! {
 
 names!(NewLayer);
 
-/// A new layer that covers the canvas covers what is selected, by a mask.
+/// A new layer that would cover the canvas covers only the selection, by a mask.
 pub(super) fn selecting(document: &Document, layer: Layer) -> Layer {
     let covers =
         !matches!(layer.content, Content::Pixels(_) | Content::Strokes(_) | Content::Group(_) | Content::Normals(_));
     Layer { mask: if covers { document.selection_as_mask() } else { None }, ..layer }
 }
 
-/// “ambient-occlusion” as a layer is called.
+/// “ambient-occlusion” as the name of a layer.
 pub(super) fn model_name(model: Model) -> String {
     let spaced = model.name().replace('-', " ");
     let mut letters = spaced.chars();

@@ -1,5 +1,4 @@
-//! Steps of several layers: what becomes of the document, and which layers are chosen then.
-//! Floor 6.
+//! Steps of several layers: the resulting document, and which layers are chosen then. Floor 6.
 
 use crate::document::{Document, Layer, LayerId, LayerSlot};
 use crate::session::OpenDocument;
@@ -12,7 +11,7 @@ pub(super) fn moves(ids: &[LayerId]) -> &'static str {
     if ids.len() > 1 { "Move layers" } else { "Move layer" }
 }
 
-/// What was moved is chosen; where that was already, the primary one stays it.
+/// What was moved is chosen; if it was already, the primary one stays the same.
 pub(super) fn kept(tab: &OpenDocument, ids: Vec<LayerId>) -> Vec<LayerId> {
     if tab.outermost_chosen() == ids { Vec::new() } else { ids }
 }
@@ -44,7 +43,7 @@ pub(super) fn ungrouped(document: &Document, ids: &[LayerId]) -> Option<EditStep
         next = applied.without_layer(*id)?;
         for (i, inner) in group.layers.iter().enumerate() {
             next = next.with_inserted(Layer::clone(inner), LayerSlot { index: place.index + i, ..place })?;
-            // What carried the group carries each of them.
+            // What carried the group then carries each of them.
             if let Some(home) = home.as_ref().filter(|_| inner.on.is_none()) {
                 next = next.with_layer_on(inner.id, Some(&home.part)).unwrap_or(next);
             }
@@ -65,7 +64,7 @@ pub(super) fn homed(document: &Document, ids: &[LayerId], part: Option<&str>) ->
     next.map(|next| ("Carry with part", next, Vec::new())).ok_or(why)
 }
 
-/// What is selected taken out of layers, or all that they hold; a layer that cannot be cleared stays as it is.
+/// Layers without what is selected, or emptied without a selection; a layer that cannot be cleared stays as it is.
 pub(super) fn cleared(document: &Document, ids: &[LayerId]) -> Option<EditStep> {
     let (mut next, mut is_any) = (document.clone(), false);
     for id in ids {

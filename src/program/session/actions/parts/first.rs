@@ -1,5 +1,5 @@
-//! The first shape of a drawing: a part of its outline, or one of each of its flat colours, and a Base that is lit,
-//! so that the form is seen at once. Floor 6. Not here: what a drawing is (`document::parts::drawing`).
+//! The first shape of a drawing: a part from its outline, or one from each of its flat colours, and a lit Base, so that
+//! the form is seen at once. Floor 6. Not here: what a drawing is (`document::parts::drawing`).
 
 use super::{PartRefusal, free_id, new};
 use crate::document::parts::Part;
@@ -31,7 +31,7 @@ impl FirstShape {
     }
 }
 
-/// A layer of a document gets a shape. What is given up has no result that anyone asks for.
+/// A layer of a document gets a shape. If cancelled, nobody uses the result.
 pub fn shaped(
     document: &Document,
     layer: LayerId,
@@ -67,7 +67,7 @@ pub fn shaped(
         list.push(Arc::new(Part { id, ..part }));
     }
     let part = list.last().map(|part| part.id.clone()).ok_or("No flat colour of it covers enough to be a part.")?;
-    // Its edge is the surface's: to be clipped as well would make it thinner.
+    // Its edge is the surface's: clipping as well would make it thinner.
     let next = document.with_layer(layer, |layer| layer.clip_to_surface = false).unwrap_or(document);
     let base = base(&next);
     let id = base.id;
@@ -75,7 +75,7 @@ pub fn shaped(
         next.place_of(layer).map_or(LayerSlot::top_level(usize::MAX), |at| LayerSlot { index: at.index + 1, ..at });
     let next = next.with_inserted(base, place).ok_or("There is no such layer.")?;
     let next = next.with_parts_telling(list, progress).ok_or("It was given up.")?;
-    // A drawing that is one part goes where the part goes; of several parts each would take a piece of it.
+    // A drawing that is one part moves with the part; of several parts, each would take a piece of it.
     let next = if flats { next } else { next.with_layer_on(layer, Some(&part)).unwrap_or(next) };
     match next.surface {
         Some(_) => Ok(FirstShape { document: next, part, base: id }),
@@ -91,8 +91,8 @@ fn named_alone(document: &Document, layer: LayerId) -> Option<Document> {
     document.with_layer(layer, |layer| layer.name = named)
 }
 
-/// The drawing as paint without its background, and the background as a fill beneath, and the drawing's pixels. What
-/// shows stays as it was.
+/// The drawing as paint without its background, and the background as a fill beneath, and the drawing's pixels. The
+/// picture stays the same.
 fn without_flat_background(
     document: &Document,
     layer: LayerId,

@@ -1,5 +1,5 @@
-//! Pictures of parts that layers give: light and dark of one as detail, and several as shadings of one drawing.
-//! Floor 6. What becomes of them is `shape::relief`'s and `shape::profiles`'.
+//! Pictures for parts, taken from layers: light and dark of one as detail, and several as shadings of one drawing.
+//! Floor 6. Not here: what becomes of them (`shape::relief`, `shape::profiles`).
 
 use super::PartRefusal;
 use crate::document::parts::{CoverageFile, Part, ProfilePicture};
@@ -14,8 +14,8 @@ use std::sync::Arc;
 
 const PAINTS_NOTHING: PartRefusal = "This layer paints nothing of its own. Select one with light and dark on it.";
 
-/// Where lights of hand-made shadings stand, by what their layers are called; in this order where they are called
-/// otherwise.
+/// Directions of the lights of hand-made shadings, by the names of their layers; in this order if the names say
+/// nothing.
 const LIGHTS: [(&[&str], Vec3); MOST_PROFILES] = [
     (&["left"], vec3(-0.7, 0.0, 0.71)),
     (&["right"], vec3(0.7, 0.0, 0.71)),
@@ -24,7 +24,7 @@ const LIGHTS: [(&[&str], Vec3); MOST_PROFILES] = [
     (&["front"], vec3(0.0, 0.0, 1.0)),
 ];
 
-/// Names for pictures that none of the parts has: `outline-1.png`, …
+/// Names for pictures that no part uses: `outline-1.png`, …
 pub fn free_files<'a>(document: &Document, stem: &'a str) -> impl Iterator<Item = String> + 'a {
     let of = |part: &Arc<Part>| {
         let mut part = Part::clone(part);
@@ -34,7 +34,7 @@ pub fn free_files<'a>(document: &Document, stem: &'a str) -> impl Iterator<Item 
     (1..).map(move |i| format!("{stem}-{i}.png")).filter(move |name| !taken.contains(name))
 }
 
-/// Light and dark of a layer, sRGB; where it covers nothing, what it is in the mean, so that its edge is no detail.
+/// Light and dark of a layer, sRGB; where it covers nothing, its mean, so that its edge is no detail.
 pub fn detail(document: &Document, layer: LayerId) -> Result<CoverageFile, PartRefusal> {
     let tiles = painted(document, layer).filter(|tiles| !tiles.bounds().is_empty()).ok_or(PAINTS_NOTHING)?;
     let straight = Plane::from_fn(document.size, |x, y| {
@@ -74,7 +74,7 @@ pub fn shadings(tab: &OpenDocument) -> Result<Vec<ProfilePicture>, PartRefusal> 
     layers.into_iter().zip(free_files(document, "shading")).map(shading).collect()
 }
 
-/// A light for each name: the one that it says, else the first that no other says.
+/// A light for each name: the one that it names, else the first that no other names.
 fn lights_of(names: &[&str]) -> Vec<Vec3> {
     let says = |name: &str| {
         let words: Vec<String> = name.to_lowercase().split(|c: char| !c.is_alphabetic()).map(str::to_owned).collect();
@@ -85,7 +85,7 @@ fn lights_of(names: &[&str]) -> Vec<Vec3> {
     said.iter().map(|said| said.or_else(|| left.next()).map_or(Vec3::Z, |i| LIGHTS[i].1)).collect()
 }
 
-/// How bright an encoded colour is, encoded.
+/// The luminance of an encoded colour, encoded.
 fn grey(r: f32, g: f32, b: f32) -> f32 {
     if r == g && g == b { r } else { encode(luminance(decode(r), decode(g), decode(b))) }
 }

@@ -1,4 +1,4 @@
-//! New parts: of the selected layer, the selection, the chosen stroke, or bodies in the middle of the canvas.
+//! New parts: from the selected layer, the selection or the chosen stroke, or bodies in the middle of the canvas.
 //! Floor 6.
 
 use super::{PartRefusal, free_id, greys};
@@ -11,7 +11,7 @@ use crate::shape::{Ball, Bevel, Body, Detail, Lines, Primitive};
 use std::sync::Arc;
 
 rilievo_engine::named! {
-    /// What a new part is.
+    /// The kinds of new parts.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum NewPart {
         InflateLayer = "inflate" => ("Inflate this layer", "What the selected layer covers, filled with air"),
@@ -44,7 +44,7 @@ rilievo_engine::named! {
 }
 
 impl NewPart {
-    /// Why nothing came of it.
+    /// Why no part was made.
     pub(super) fn why_empty(self) -> PartRefusal {
         match self {
             NewPart::InflateSelection => "The selection covers no pixel fully, so it has no outline.",
@@ -115,7 +115,7 @@ pub fn add_maps(tab: &mut OpenDocument, maps: PartMaps) {
     }
 }
 
-/// A name that no part has, as short as a file takes.
+/// A name that no part has, short enough for a file.
 pub fn free_name(document: &Document, base: &str) -> String {
     let base: String = base.chars().take(Part::LONGEST_NAME - 12).collect();
     let taken = |name: &str| document.parts.list.iter().any(|part| part.name == name);
@@ -154,7 +154,7 @@ fn of_selection(document: &Document) -> Option<OutlineSource> {
     Some(OutlineSource::File(CoverageFile { file: greys::free_files(document, "outline").next()?, coverage }))
 }
 
-/// Balls along the stroke that is chosen, or was painted last, of the selected layer.
+/// Balls along the chosen or last stroke of the selected layer.
 fn of_stroke(tab: &OpenDocument) -> Option<Vec<Ball>> {
     let strokes = tab.document().strokes(tab.selected?);
     let stroke = match tab.chosen_strokes().last() {
@@ -166,7 +166,7 @@ fn of_stroke(tab: &OpenDocument) -> Option<Vec<Ball>> {
     let mut balls: Vec<Ball> = Vec::new();
     for sample in stroke.samples() {
         let ball = Ball { at: sample.at, radius: radius(sample.pressure) };
-        // A fifth of a radius apart they are one body.
+        // A fifth of a radius apart, they form one body.
         if balls.last().is_none_or(|last| last.at.distance(ball.at) >= 0.2 * ball.radius) {
             balls.push(ball);
         }

@@ -9,7 +9,7 @@ use crate::session::actions::placing::of_picture;
 use crate::session::{OpenDocument, Session};
 use std::path::Path;
 
-/// Two flat discs that touch, with soft edges, on nothing or on white.
+/// Two flat discs that touch, with soft edges, on transparency or on white.
 fn snowman(on_white: bool) -> Document {
     let size = Size::new(96, 128);
     let inside = |x: f32, y: f32, cx: f32, cy: f32, r: f32| {
