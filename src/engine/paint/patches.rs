@@ -101,7 +101,7 @@ fn links_or_outside(surface: &Surface, x0: i32, y: i32, bits: &mut [u8]) {
 }
 
 crate::widest! {
-    /// Half-way to the left, right, upper and lower neighbours of a row that is linked to all of them; `row` has one
+    /// Halfway to the left, right, upper and lower neighbours of a row that is linked to all of them; `row` has one
     /// pixel more at each end.
     fn linked_edges(
         row: &[f32],
@@ -123,7 +123,7 @@ crate::widest! {
             down[k] = (below[k] - here) * 0.5;
         }
     }
-    /// Half-way to the neighbour where it is linked, `still` where it is not.
+    /// Halfway to the neighbour if it is linked, else `still`.
     fn half_edges(here: &[f32], there: &[f32], bits: &[u8], bit: u8, still: f32, out: &mut [f32]) {
         let n = out.len();
         let (here, there, bits) = (&here[..n], &there[..n], &bits[..n]);

@@ -1,9 +1,9 @@
 //! Pixels seen through a map: each pixel of the canvas from the pixels that it shows, sampled once.
-//! Floor 1. Maps are `math`'s; this knows them by their inverse alone.
+//! Floor 1. Maps are in `math`; this uses only their inverse.
 //!
-//! A map that moves whole pixels copies them. Elsewhere a pixel is a weighted mean of the source around the point that
+//! A map that moves whole pixels copies them. Otherwise a pixel is a weighted mean of the source around the point that
 //! it shows. Where the source is magnified along an axis of the pixel, the weights are a cubic's; where it is reduced,
-//! they are the share of each source pixel's tent in the pixel's own piece of the source. A tile that shows some of a
+//! they are the share of each source pixel's tent in the pixel's own piece of the source. A tile that shows part of a
 //! tile of 16 bits has 16 bits.
 
 mod points;
@@ -32,7 +32,7 @@ crate::named! {
     /// How magnified or turned pixels are interpolated.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
     pub enum Resampling {
-        /// Mitchell and Netravali's cubic, B = C = ⅓: no rings, a little soft.
+        /// Mitchell and Netravali's cubic, B = C = ⅓: no rings, slightly soft.
         #[default]
         Smooth = "smooth",
         /// Catmull and Rom's cubic: sharp, with faint rings.
@@ -44,20 +44,20 @@ crate::named! {
 
 /// The map that pixels are seen through.
 pub trait PixelMap: Sync {
-    /// The point of the source that shows at a point of the canvas, and how it moves with that point; `None` where
-    /// none shows.
+    /// The point of the source that a point of the canvas shows, and how it moves with that point; `None` if there is
+    /// none.
     fn source_of(&self, q: Vec2) -> Option<(Vec2, Mat2)>;
-    /// The same for the middles of `count` pixels from `(x, y)` on, at most a tile's side.
+    /// The same for the centres of `count` pixels from `(x, y)` on, at most a tile's side.
     fn source_row(&self, x: i32, y: i32, count: usize, row: &mut PointRow) {
         row.fill_by_points(self, x, y, count);
     }
     /// The move of whole pixels that it is, if it is one.
     fn pixel_move(&self) -> Option<PixelMove>;
-    /// A rectangle that holds all that a rectangle of the canvas shows of the source; it may be larger.
+    /// A rectangle of the source that holds everything a rectangle of the canvas shows; it may be larger.
     fn source_rect(&self, canvas: Rect) -> Rect;
 }
 
-/// The tiles of a grid seen through a map, those of `wanted` alone.
+/// The tiles of a grid seen through a map, only those in `wanted`.
 pub fn warped(grid: &TileGrid, map: &dyn PixelMap, filter: Resampling, wanted: &[TileAt]) -> TileGrid {
     let tiles: Vec<Option<Arc<Tile>>> = wanted.par_iter().map(|&at| warped_tile(grid, map, filter, at)).collect();
     let mut out = TileGrid::default();
@@ -68,12 +68,12 @@ pub fn warped(grid: &TileGrid, map: &dyn PixelMap, filter: Resampling, wanted: &
     out
 }
 
-/// One tile of a grid seen through a map; `None` where it is transparent.
+/// One tile of a grid seen through a map; `None` if it is transparent.
 pub fn warped_tile(grid: &TileGrid, map: &dyn PixelMap, filter: Resampling, at: TileAt) -> Option<Arc<Tile>> {
     warped_tile_within(grid, None, map, filter, at)
 }
 
-/// The same of pixels whose border goes on beyond a rectangle, if there is one.
+/// The same for pixels whose border is repeated beyond a rectangle, if there is one.
 pub fn warped_tile_within(
     grid: &TileGrid,
     border: Option<Rect>,
@@ -105,7 +105,7 @@ fn deep_rows(pixels: &TileF32) -> Box<[DeepRow]> {
 }
 
 crate::widest! {
-    /// Premultiplied colours within their alpha, which rings of a cubic may leave.
+    /// Premultiplied colours limited to their alpha, which rings of a cubic may exceed.
     fn within_range(row: &[[f32; 4]], out: &mut [[f32; 4]]) {
         for (out, value) in out.iter_mut().zip(row) {
             let alpha = min(max(value[3], 0.0), 1.0);
@@ -168,7 +168,7 @@ pub fn warped_plane_onto(plane: &Plane<u8>, map: &dyn PixelMap, filter: Resampli
     out
 }
 
-/// The pixels of a rectangle of such a map, each with its place.
+/// The pixels of a rectangle of such a map, each with its position.
 pub fn warped_block(plane: &Plane<u8>, map: &dyn PixelMap, filter: Resampling, rect: Rect) -> Vec<(i32, i32, u8)> {
     if let Some(by) = map.pixel_move() {
         let places = (rect.y0..rect.y1).flat_map(|y| (rect.x0..rect.x1).map(move |x| (x, y)));
@@ -199,7 +199,7 @@ impl<S: PixelSource> Warp<'_, S> {
         });
         out
     }
-    /// The pixels of a block no wider than a tile, in rows from a place on, where it shows anything of the source.
+    /// The pixels of a block no wider than a tile, in rows from a position on, if it shows any of the source.
     fn block(&self, block: Rect, put: &mut impl FnMut(i32, i32, &[[f32; 4]])) {
         if block.is_empty() {
             return;

@@ -1,11 +1,11 @@
-//! The points of the source that a row of pixels shows, each coordinate in a row of its own. Floor 1.
+//! The points of the source that a row of pixels shows, each coordinate in its own row. Floor 1.
 
 use super::PixelMap;
 use crate::math::plane_map::PlaneMap;
 use crate::math::{Mat2, Vec2, vec2};
 use crate::raster::TILE;
 
-/// What a row of at most so many pixels shows.
+/// What a row of at most this many pixels shows.
 #[derive(Clone, Debug)]
 pub struct PointRow {
     /// Px of the source.
@@ -25,14 +25,14 @@ impl Default for PointRow {
 }
 
 impl PointRow {
-    /// The points of `count` pixels from `(x, y)` on, asked for one by one.
+    /// The points of `count` pixels from `(x, y)` on, computed one by one.
     pub fn fill_by_points(&mut self, map: &(impl PixelMap + ?Sized), x: i32, y: i32, count: usize) {
         for k in 0..count.min(TILE) {
             let q = vec2((x + k as i32) as f32 + 0.5, y as f32 + 0.5);
             self.set(k, map.source_of(q));
         }
     }
-    /// The same of a map of the plane. Of an affine one all points of a row are found side by side.
+    /// The same for a map of the plane. For an affine one all points of a row are computed together.
     pub fn fill_by_plane(&mut self, map: &PlaneMap, x: i32, y: i32, count: usize) {
         let count = count.min(TILE);
         let first = vec2(x as f32 + 0.5, y as f32 + 0.5);

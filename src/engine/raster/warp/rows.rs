@@ -1,7 +1,7 @@
-//! Pixels of a warp side by side: to the bit as [`SourceWindow::sample`] finds them one by one. Floor 1.
+//! Pixels of a warp computed together: to the bit as [`SourceWindow::sample`] gives them one by one. Floor 1.
 //!
-//! Weights of a row of pixels are found one tap after another (`weights`); then each pixel adds up what it reads, in
-//! the order of the taps.
+//! Weights of a row of pixels are computed tap by tap (`weights`); then each pixel adds up what it reads, in the order
+//! of the taps.
 
 use super::Resampling;
 use super::points::PointRow;
@@ -9,16 +9,16 @@ use super::weights::{SideKind, TileRow, WarpPatchRow, cubic_weights, extents, si
 use super::window::{MOST_READ_ALONG, SourceWindow};
 use crate::raster::TILE;
 
-/// Taps along each axis that are weighed side by side; patches that take more are read pixel by pixel.
+/// Taps along each axis that are weighted together; patches that take more are read pixel by pixel.
 const MOST_TAPS: usize = 8;
 
-/// What a row of pixels needs on the way.
+/// Buffers for a row of pixels.
 pub(super) struct WarpScratch {
     sides: [SideRow; 2],
     patches: WarpPatchRow,
-    /// Of each tap, row by row of the source, those of all pixels.
+    /// For each tap, row by row of the source, the weights of all pixels.
     weights: Vec<TileRow>,
-    /// Along both axes.
+    /// The weights along both axes.
     cubic: [[TileRow; 4]; 2],
 }
 
@@ -33,7 +33,7 @@ impl Default for WarpScratch {
     }
 }
 
-/// One side of the piece of the source that each pixel shows, as `PatchSide` is of one.
+/// One side of the piece of the source that each pixel shows, like `PatchSide` for one pixel.
 struct SideRow {
     x: TileRow,
     y: TileRow,
@@ -66,7 +66,7 @@ impl SideRow {
 }
 
 impl SourceWindow {
-    /// What the first pixels of a row show, nothing where no point shows.
+    /// What the first pixels of a row show; transparent where they show no point.
     pub fn row(&self, points: &PointRow, filter: Resampling, scratch: &mut WarpScratch, out: &mut [[f32; 4]]) {
         let n = out.len();
         let shown = || points.shows[..n].iter().copied().enumerate().filter(|(_, shows)| *shows).map(|(k, _)| k);
@@ -97,7 +97,7 @@ impl SourceWindow {
             };
         }
     }
-    /// As [`SourceWindow::cubic`], with the weights known.
+    /// Like [`SourceWindow::cubic`], with known weights.
     fn under_cubic(&self, points: &PointRow, k: usize, weights: &[[TileRow; 4]; 2]) -> [f32; 4] {
         let (x, y) = ((points.x[k] - 0.5).floor() as i32 - 1, (points.y[k] - 0.5).floor() as i32 - 1);
         let mut sum = [0.0; 4];
@@ -123,7 +123,7 @@ impl SourceWindow {
         }
         sum
     }
-    /// As [`SourceWindow::reduced`], with the weights known, where they are.
+    /// Like [`SourceWindow::reduced`], with known weights if there are any.
     fn patch(
         &self,
         points: &PointRow,
@@ -162,14 +162,14 @@ impl SourceWindow {
         }
         if total > 0.0 { sum.map(|v| v / total) } else { [0.0; 4] }
     }
-    /// Where the pixel of a corner is held, if all of a rectangle is.
+    /// The index of the pixel at a corner, if the whole rectangle is held.
     fn place_within(&self, x: i32, y: i32, [nx, ny]: [usize; 2]) -> Option<usize> {
         let (x, y) = (i64::from(x) - i64::from(self.rect.x0), i64::from(y) - i64::from(self.rect.y0));
         let is_within =
             x >= 0 && y >= 0 && x + nx as i64 <= self.rect.width() as i64 && y + ny as i64 <= self.rect.height() as i64;
         is_within.then(|| y as usize * self.rect.width() + x as usize)
     }
-    /// Whether nothing of a rectangle is held, nor goes on there.
+    /// Whether nothing of a rectangle is held and no border is repeated there.
     fn is_beyond(&self, x: i32, y: i32, [nx, ny]: [usize; 2]) -> bool {
         let apart = |low: i32, n: usize, from: i32, to: i32| {
             i64::from(low) >= i64::from(to) || i64::from(low) + n as i64 <= i64::from(from)
@@ -180,19 +180,19 @@ impl SourceWindow {
 }
 
 impl WarpPatchRow {
-    /// How many taps a pixel takes along each axis, if they are few.
+    /// The number of taps that a pixel takes along each axis, if they are few.
     fn taps(&self, k: usize) -> Option<[usize; 2]> {
         let count = |i: usize| self.high[i][k] - self.low[i][k] + 1.0;
         let most = MOST_TAPS as f32;
         let [nx, ny] = [count(0), count(1)];
-        // What is no number, or so far that neighbours are the same number, is not counted.
+        // NaN, and positions so far away that neighbours are the same number, are not counted.
         let is_near = self.low[0][k].abs() < 1e6 && self.low[1][k].abs() < 1e6;
         (nx >= 0.0 && ny >= 0.0 && nx <= most && ny <= most && is_near).then_some([nx as usize, ny as usize])
     }
 }
 
 impl WarpScratch {
-    /// Finds the taps of a row of pixels and weighs them; how many there are along each axis at most.
+    /// Finds the taps of a row of pixels and weights them; returns the greatest number of taps along each axis.
     fn patches_of(&mut self, points: &PointRow, n: usize, filter: Resampling) -> [usize; 2] {
         let Self { sides: [right, down], patches, weights, .. } = self;
         turned_about([&right.x[..n], &right.y[..n], &down.x[..n], &down.y[..n]], patches);

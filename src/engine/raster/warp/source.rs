@@ -6,9 +6,9 @@ use crate::raster::{Plane, TILE, TileAt, TileGrid};
 
 /// Where pixels come from: premultiplied, in `[0, 1]`.
 pub(super) trait PixelSource: Sync {
-    /// What of a rectangle must be read.
+    /// The part of a rectangle that must be read.
     fn held(&self, rect: Rect) -> Rect;
-    /// Whether the border continues beyond what is held; else there is nothing.
+    /// Whether the border is repeated beyond what is held; else there is nothing.
     fn continues(&self) -> bool;
     /// The pixels of a rectangle, row by row.
     fn read(&self, rect: Rect) -> Vec<[f32; 4]>;
@@ -20,7 +20,7 @@ pub(super) struct GridSource<'a> {
     pub continues: bool,
 }
 
-/// Of a rectangle what lies within another; at least the nearest pixel of its border.
+/// The part of a rectangle within another; at least the nearest pixel of its border.
 fn nearest(rect: Rect, within: Rect) -> Rect {
     let (x0, y0) = (rect.x0.clamp(within.x0, within.x1 - 1), rect.y0.clamp(within.y0, within.y1 - 1));
     Rect::new(x0, y0, rect.x1.clamp(x0 + 1, within.x1), rect.y1.clamp(y0 + 1, within.y1))

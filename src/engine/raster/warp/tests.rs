@@ -1,7 +1,7 @@
 use super::*;
 use crate::math::{PlaneMap, Size, hash, vec2};
 
-/// A map of the plane, as a layer's is seen from here.
+/// A map of the plane, as layers have it.
 struct Through(PlaneMap, Size);
 
 impl PixelMap for Through {
@@ -79,7 +79,7 @@ fn a_zone_plate_at_half_size_is_what_supersampling_gives() {
             let at = |k: i32| (k as f32 + 0.5) / 4.0;
             let truth: f32 = (0..64).map(|k| rings(2.0 * x as f32 + at(k % 8), 2.0 * y as f32 + at(k / 8))).sum();
             let truth = truth / 64.0;
-            // What one look without a filter gives.
+            // What one sample without a filter gives.
             let point = rings(2.0 * x as f32 + 0.5, 2.0 * y as f32 + 0.5);
             own += f64::from(f32::from(shown.pixel(x, y)[0]) / 255.0 - truth).powi(2);
             unfiltered += f64::from(point - truth).powi(2);
@@ -130,7 +130,7 @@ fn rows_of_pixels_are_to_the_bit_what_each_is_alone() {
     for (degrees, scale) in [(0.0, 1.0), (17.0, 1.0), (3.0, 0.93), (45.0, 0.4), (80.0, 0.11), (10.0, 2.5)] {
         maps.push(Box::new(turn(degrees, scale)));
     }
-    // One that squeezes here, stretches there and is nowhere in between.
+    // One that squeezes in one place, stretches in another, and has nothing in between.
     let rect = TileAt::new(1, 1).rect();
     let mut points = TilePoints::new(TILE * TILE);
     for k in 0..points.len() {
@@ -150,7 +150,7 @@ fn rows_of_pixels_are_to_the_bit_what_each_is_alone() {
             let window = window::SourceWindow { rect: wanted, pixels: source.read(wanted), continues };
             let (mut points, mut scratch) = (PointRow::default(), rows::WarpScratch::default());
             for y in rect.y0..rect.y1 {
-                // Rows that do not fill a tile, too.
+                // Also rows that do not fill a tile.
                 let mut row = [[9.0; 4]; 61];
                 map.source_row(rect.x0, y, row.len(), &mut points);
                 window.row(&points, filter, &mut scratch, &mut row);

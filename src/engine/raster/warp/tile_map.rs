@@ -5,7 +5,7 @@ use super::{PixelMap, PointRow};
 use crate::math::plane_map::PixelMove;
 use crate::math::{Mat2, Rect, Vec2, vec2};
 
-/// The points of the source that the pixels of a rectangle show, row by row, each coordinate in a row of its own.
+/// The points of the source that the pixels of a rectangle show, row by row, each coordinate in its own row.
 #[derive(Clone, Debug, Default)]
 pub struct TilePoints {
     pub x: Vec<f32>,
@@ -20,11 +20,11 @@ pub struct TileMap {
     points: TilePoints,
 }
 
-/// Farther than any pixel lies.
+/// Farther away than any pixel.
 const FAR: f32 = 1e6;
 
 impl TilePoints {
-    /// Room for so many points, all at the corner.
+    /// Room for this many points, all at the corner.
     pub fn new(count: usize) -> Self {
         let row = || vec![0.0; count];
         Self { x: row(), y: row(), jacobian: std::array::from_fn(|_| row()) }
@@ -49,11 +49,11 @@ impl TilePoints {
 }
 
 impl TileMap {
-    /// * `points`: one for each pixel of `rect`; what is no number shows nothing.
+    /// * `points`: one for each pixel of `rect`; NaN shows nothing.
     pub fn new(rect: Rect, points: TilePoints) -> Self {
         Self { rect, points }
     }
-    /// The number of a pixel of the rectangle.
+    /// The index of a pixel of the rectangle.
     fn place(&self, x: i32, y: i32) -> usize {
         (y - self.rect.y0) as usize * self.rect.width() + (x - self.rect.x0) as usize
     }
@@ -102,14 +102,14 @@ impl PixelMap for TileMap {
     }
 }
 
-/// What points reach, and how far their pieces of the source reach around them.
+/// The bounds of points, and how far their pieces of the source extend around them.
 struct PointBounds {
     low: [f32; 2],
     high: [f32; 2],
     reach: f32,
 }
 
-/// Lanes that extents are kept in, so that rows are read side by side.
+/// Lanes for extents, so that rows are read in parallel.
 const LANES: usize = 8;
 
 crate::widest! {

@@ -1,15 +1,15 @@
 //! The weights of a row of pixels of a warp, in plain loops over rows of numbers that the compiler vectorises. Floor 1.
-//! Their twins that look at one pixel are `window`'s.
+//! Their twins for one pixel are in `window`.
 
 use super::Resampling;
 use super::window::{LONGEST_KEPT_PX, WIDEST_PX, cubic_of};
 use crate::math::fast::{max, min};
 use crate::raster::TILE;
 
-/// A number of each pixel.
+/// A number for each pixel.
 pub type TileRow = [f32; TILE];
 
-/// How a side weighs what lies along it.
+/// How a side weights what lies along it.
 #[derive(Clone, Copy, PartialEq)]
 pub enum SideKind {
     Cubic,
@@ -19,13 +19,13 @@ pub enum SideKind {
 
 /// The pieces of the source that pixels show, and the taps in them.
 pub struct WarpPatchRow {
-    /// What takes a step of the source to parts of the two sides, column by column.
+    /// The matrix from a step of the source to ratios of the two sides, column by column.
     pub to_sides: [TileRow; 4],
     pub determinant: TileRow,
-    /// The first tap and the last one, columns and rows.
+    /// The first and the last tap, columns and rows.
     pub low: [TileRow; 2],
     pub high: [TileRow; 2],
-    /// Of the two, the farther reach.
+    /// The farther reach of the two.
     pub reach: TileRow,
 }
 
@@ -114,7 +114,7 @@ crate::widest! {
             s[k] = a[k] * recip;
         }
     }
-    /// The first tap and the last along an axis, and how far they reach.
+    /// The first and the last tap along an axis, and how far they reach.
     pub fn extents(
         p: &[f32],
         sides: [&[f32]; 2],
@@ -132,7 +132,7 @@ crate::widest! {
             farther[k] = if is_first || reach > farther[k] { reach } else { farther[k] };
         }
     }
-    /// How far a tap lies from each point, in parts of the two sides.
+    /// The distance of a tap from each point, in ratios of the two sides.
     pub fn steps(patches: &WarpPatchRow, points: [&[f32]; 2], step: [f32; 2], out: (&mut [f32], &mut [f32])) {
         let n = points[0].len();
         let [px, py] = points.map(|row| &row[..n]);

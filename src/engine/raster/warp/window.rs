@@ -1,26 +1,25 @@
-//! A part of the source of a warp, and what pixels show of it, one by one. Floor 1. Rows of them are `rows`'.
+//! A part of the source of a warp, and what pixels show of it, one by one. Floor 1. Not here: rows of pixels (`rows`).
 
 use super::Resampling;
 use crate::math::{Mat2, Rect, Vec2, vec2};
 
 /// Source pixels read along each axis to either side of a point.
 pub(super) const MOST_READ_ALONG: f32 = 24.0;
-/// A pixel that would show more of the source than this along an axis shows so much, px: beyond lies the horizon.
+/// The most of the source that a pixel shows along an axis, px: more occurs only at the horizon.
 pub(super) const WIDEST_PX: f32 = 512.0;
-/// A side hardly longer than a pixel is one of a turned picture.
+/// A side hardly longer than a pixel belongs to a turned picture.
 pub(super) const LONGEST_KEPT_PX: f32 = 1.0 + 1e-3;
 
 /// A part of the source.
 pub(super) struct SourceWindow {
     pub rect: Rect,
     pub pixels: Vec<[f32; 4]>,
-    /// Whether the border goes on beyond the rectangle; else there is nothing.
+    /// Whether the border is repeated beyond the rectangle; else there is nothing.
     pub continues: bool,
 }
 
 impl SourceWindow {
-    /// The mean of the source about a point: what [`SourceWindow::rows`](super::rows) find side by side, pixel by
-    /// pixel.
+    /// The mean of the source about a point: what [`SourceWindow::rows`](super::rows) compute together, pixel by pixel.
     pub fn sample(&self, p: Vec2, jacobian: Mat2, filter: Resampling) -> [f32; 4] {
         let (right, down) = (PatchSide::of(jacobian.x_axis, filter), PatchSide::of(jacobian.y_axis, filter));
         match filter {
@@ -53,11 +52,11 @@ impl SourceWindow {
         }
         sum
     }
-    /// The pixels under a parallelogram, weighed along its two sides.
+    /// The pixels under a parallelogram, weighted along its two sides.
     pub fn reduced(&self, p: Vec2, axes: [PatchSide; 2]) -> [f32; 4] {
         let sides = Mat2::from_cols(axes[0].side, axes[1].side);
         let determinant = sides.determinant();
-        // Two sides along one line: as a square of the longer one's length.
+        // Two collinear sides: treated as a square with the longer one's length.
         let to_sides = if determinant.abs() > 1e-3 {
             sides.inverse()
         } else {
@@ -65,7 +64,7 @@ impl SourceWindow {
         };
         let reach = axes[0].side.abs() * axes[0].reach + axes[1].side.abs() * axes[1].reach;
         let (low, high) = ((p - reach - 0.5).ceil(), (p + reach - 0.5).floor());
-        // Of a thousand pixels and more some are enough.
+        // Of a thousand or more pixels some are enough.
         let step = ((reach.max_element() / MOST_READ_ALONG) as usize).max(1);
         let (mut sum, mut total) = ([0.0; 4], 0.0);
         for y in (low.y as i32..=high.y as i32).step_by(step) {
@@ -83,14 +82,14 @@ impl SourceWindow {
     }
 }
 
-/// One side of the piece of the source that a pixel shows, and how it is weighed along it.
+/// One side of the piece of the source that a pixel shows, and its weights along it.
 #[derive(Clone, Copy)]
 pub(super) struct PatchSide {
     /// Source px; at least one long.
     pub side: Vec2,
     pub reduces: bool,
     filter: Resampling,
-    /// How far weights reach, in sides.
+    /// How far weights extend, in sides.
     reach: f32,
     /// Half the tent of a source pixel, in sides.
     tent: f32,
