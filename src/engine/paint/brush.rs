@@ -188,7 +188,7 @@ impl Stabilizer {
 #[derive(Clone, PartialEq)]
 pub enum Tip {
     Round,
-    /// `ratio`: of the shorter axis to the longer one, which is the diameter and lies along x; `(0, 1]`.
+    /// `ratio`: the shorter axis over the longer one, which is the diameter and lies along x; `(0, 1]`.
     Ellipse {
         ratio: f32,
     },

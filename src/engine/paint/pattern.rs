@@ -118,7 +118,7 @@ fn equalised(plane: &Plane<f32>) -> Plane<f32> {
 
 /// The ends of a brush's hairs, spread over the disc that touches the square's sides: greys in `[0, 1]`.
 ///
-/// * `count`: of hairs, `≥ 1`.
+/// * `count`: number of hairs, `≥ 1`.
 /// * `side`: of the square, texels.
 pub fn bristles(count: u32, seed: u32, side: u32) -> Plane<f32> {
     let size = Size::new(side.max(1), side.max(1));

@@ -119,7 +119,7 @@ fn the_fast_rows_agree_with_the_specification_in_every_mode() {
                     for (j, cs) in VALUES.into_iter().enumerate() {
                         let backdrop = [cb * ab, VALUES[(i + 4) % 9] * ab, VALUES[(i + 7) % 9] * ab, ab];
                         let source = [cs * as_, VALUES[(j + 2) % 9] * as_, VALUES[(j + 5) % 9] * as_, as_];
-                        // `fast` looks at this place of the tile.
+                        // `fast` reads this pixel of the tile.
                         let left = if mode == BlendMode::Dissolve { spec::dissolved(source, [23, 17]) } else { source };
                         let expected = blend_pixel(mode, backdrop, left);
                         let got = fast(Mix { mode, ..Mix::default() }, backdrop, source);
