@@ -1,5 +1,5 @@
-//! Errors as the window shows them: the sentence, and what the user can do about it in the window.
-//! Floor 7. The command line gives its own advice (`cli`).
+//! Errors as the window shows them: the sentence, and what the user can do about it in the window. Floor 7. Not here:
+//! the advice of the command line (`cli`).
 
 use crate::{Error, Remedy};
 

@@ -20,7 +20,8 @@ fn open() -> Result<Clipboard> {
     Clipboard::new().map_err(|error| Error::unsupported("clipboard", error))
 }
 
-/// The picture or the files in the clipboard; fails if there are none. It takes as long as the program that owns them.
+/// The picture or the files in the clipboard; fails if there are none. It takes as long as the program that owns them
+/// needs.
 pub fn pasted() -> Result<PastedContent> {
     let mut clipboard = open()?;
     if let Ok(image) = clipboard.get_image() {
@@ -70,7 +71,7 @@ fn text(clipboard: &mut Clipboard) -> Result<String> {
     clipboard.get_text().map_err(|error| Error::unsupported("clipboard", error))
 }
 
-/// Puts the text that a field gave to the clipboard there; what is returned is to be kept.
+/// Puts the text that a field copied into the clipboard; the returned value must be kept.
 pub fn take_text(ctx: &Context) -> Option<Clipboard> {
     let mut copied = None;
     ctx.output_mut(|output| {

@@ -8,16 +8,16 @@ use winit::event::{DeviceEvent, DeviceId, StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, EventLoop};
 use winit::window::WindowId;
 
-/// Set, with anything, the window is opened on Wayland where that is what there is.
+/// If this is set to anything, the window is opened on Wayland where available.
 ///
-/// Else it is opened through X11 where both are: Wayland tells this windowing library neither of a pen's pressure nor
-/// of files that are dropped.
+/// Otherwise it is opened through X11 if both are available: on Wayland this windowing library reports neither pen
+/// pressure nor dropped files.
 #[cfg(all(unix, not(target_os = "macos")))]
 const PREFERS_WAYLAND: &str = "RILIEVO_WAYLAND";
 
 /// Runs the window until it is closed; the tablet receives every motion first.
 ///
-/// Fails where there is no display, or where the window cannot be opened on it.
+/// Fails if there is no display, or the window cannot be opened on it.
 pub fn run(options: eframe::NativeOptions, tablet: SharedTablet, start: eframe::AppCreator<'_>) -> eframe::Result {
     let events = event_loop()?;
     let window = eframe::create_native("rilievo", options, start, &events);
@@ -40,7 +40,7 @@ fn event_loop() -> eframe::Result<EventLoop<UserEvent>> {
     Ok(EventLoop::with_user_event().build()?)
 }
 
-/// The window, and what the tablet hears of its events.
+/// The window, and the tablet, which receives its events.
 struct TabletListener<'a> {
     window: EframeWinitApplication<'a>,
     tablet: SharedTablet,

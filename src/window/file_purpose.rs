@@ -1,5 +1,5 @@
-//! What a file dialog is opened for: its title, the files to choose from, and the name of a new one. Floor 7.
-//! Asking is `files`'.
+//! What a file dialog is opened for: its title, the files to choose from, and the name of a new one. Floor 7. Not here:
+//! asking (`files`).
 
 use crate::session::PicturePart;
 use crate::session::brushes::EXTENSIONS;
@@ -25,11 +25,11 @@ pub enum FilePurpose {
     ExportUnwrapped,
 }
 
-/// Endings of maps of the shape.
+/// Extensions of maps of the shape.
 const MAPS: [&str; 2] = ["png", "exr"];
 
 impl FilePurpose {
-    /// What pictures of the unwrapped surface are written to.
+    /// Extensions of pictures of the unwrapped surface.
     const FLAT: [&'static str; 4] = ["png", "tif", "tiff", "exr"];
 
     pub fn title(self) -> &'static str {
@@ -75,7 +75,7 @@ impl FilePurpose {
             FilePurpose::ExportUnwrapped => vec![("Pictures", Self::FLAT.to_vec())],
         }
     }
-    /// What a chosen file will be called. `extension`: of exports that have none.
+    /// The final name of a chosen file. `extension`: for exports without one.
     pub fn named(self, file: PathBuf, extension: &str) -> PathBuf {
         match self {
             FilePurpose::Save => with_document_extension(file, SAVED[0], &SAVED),

@@ -6,7 +6,7 @@ use super::jobs::{JobKind, JobResult, Jobs};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-/// A dialog that returns this soon without an answer was never shown, because there is no portal. Nobody cancels that
+/// A dialog that returns this soon without a result was never shown, because there is no portal. Nobody cancels that
 /// fast.
 const NEVER_SHOWN: Duration = Duration::from_millis(500);
 
@@ -14,7 +14,7 @@ const NEVER_SHOWN: Duration = Duration::from_millis(500);
 pub enum FileAnswer {
     File(PathBuf),
     Cancelled,
-    /// There is no such dialog here.
+    /// The system has no such dialog.
     Nowhere,
 }
 

@@ -21,10 +21,10 @@ enum IconPart {
 }
 use IconPart::{Circle, Closed, Dot, Filled, Line};
 
-/// What an icon stands for.
+/// The meaning of an icon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Icon {
-    /// A tool, and what is made with it.
+    /// A tool, and what it makes.
     Tool(ToolKind),
     Shown,
     Hidden,

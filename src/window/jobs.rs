@@ -50,21 +50,21 @@ pub enum JobResult {
     Flat(PathBuf, String, Picture),
     /// The surface of a tab, by its key, was unwrapped.
     Unwrapped(usize),
-    /// A picture was read that a layer of a tab is to be made of.
+    /// A picture was read for a layer of a tab.
     Part(Box<PartResult>),
     /// The document of a tab was saved.
     Saved(Box<Saving>, FileStamp),
-    /// It was not yet: the user has to know first what the format cannot hold.
+    /// It is not yet saved: the user must first know what the format cannot hold.
     Loses(Box<Saving>),
     /// Something was exported; what the format cannot hold.
     Exported(PathBuf, Vec<String>),
     /// Maps of the shape were exported.
     ExportedMaps(Vec<PathBuf>),
-    /// Something would be lost that nobody was asked about; why.
+    /// Something would be lost that the user was not asked about; why.
     Refused(Pending, String),
     /// An edit of the document of a tab that took long.
     Edited(Box<EditResult>),
-    /// A drawing was given a shape: of a tab, by its key, as it was, and by what action.
+    /// A drawing was given a shape: its tab, by its key, the document before, and the action.
     Shaped(Box<ShapedResult>),
     /// Something cannot be done; why.
     Declined(&'static str),
@@ -75,20 +75,20 @@ pub enum JobResult {
     /// The flattened picture is in the clipboard as long as this is kept.
     Copied(Clipboard),
     Pasted(PastedContent),
-    /// What was copied here is to be pasted.
+    /// What was copied in this window is to be pasted.
     PastedOwn,
     /// The user's own brushes, and the errors of unreadable ones.
     Brushes(Vec<BrushPreset>, Vec<String>),
     /// Nothing to do, as after a cancelled job.
     Nothing,
     Failed(Error),
-    /// The answer of a file dialog; `None` if the system has no dialog.
+    /// The result of a file dialog; `None` if the system has no dialog.
     Chosen(FilePurpose, Option<PathBuf>),
 }
 
 /// Maps as they were read.
 pub struct MapsRead {
-    /// What was asked for: a dialog that wants other maps by now leaves it alone.
+    /// What was requested: a dialog that wants other maps by now ignores it.
     pub source: SurfaceSource,
     pub found: Result<maps::ImportedSurface>,
     /// The finished picture that the same file holds, and the name of its layer.
@@ -189,17 +189,17 @@ impl Jobs {
         let run = move || {
             let done = memory::caught(|| work(&watched));
             let done = done.unwrap_or_else(|refused| JobResult::Failed(Error::out_of_memory(&named, refused)));
-            // The window may be gone by then.
+            // The window may be closed by then.
             let _ = sender.send((key, done));
             ctx.request_repaint();
         };
         if let Err(error) = spawn(&name, run) {
-            // This very end of the channel is held here.
+            // This end of the channel is held here.
             let _ = self.sender.send((key, JobResult::Failed(error)));
         }
         self.under_way.push(RunningJob { key, name, progress, kind, since: Instant::now() });
     }
-    /// Opens files that came together. `at`: where pictures become layers, if they do; else they open as documents.
+    /// Opens files that came together. `at`: where pictures become layers; absent: they open as documents.
     pub fn open(&mut self, files: Vec<PathBuf>, at: Option<PinPosition>) {
         let name = match &files[..] {
             [file] => format!("Opening {}", short(file)),
@@ -244,7 +244,7 @@ impl Jobs {
         let (sentence, _) = self.said.as_ref().filter(|(_, since)| since.elapsed() < TOLD)?;
         Some(sentence)
     }
-    /// The results since the last call. Cancelled jobs have none, unless they were done already.
+    /// The results since the last call. Cancelled jobs have none, unless they were already done.
     pub fn finished(&mut self) -> Vec<JobResult> {
         let mut finished = Vec::new();
         for (key, done) in self.done.try_iter() {
@@ -256,7 +256,7 @@ impl Jobs {
         }
         finished
     }
-    /// Cancels the jobs of a name: what they would find is not wanted any more.
+    /// Cancels the jobs of a name: their results are no longer wanted.
     pub fn give_up(&self, name: &str) {
         self.under_way.iter().filter(|job| job.name == name).for_each(|job| job.progress.cancel());
     }

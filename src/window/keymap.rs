@@ -21,7 +21,7 @@ pub enum KeyTarget {
 }
 
 impl KeyTarget {
-    /// Everything that keys can be given to, tools first.
+    /// Everything that can have keys, tools first.
     pub fn all() -> impl Iterator<Item = KeyTarget> {
         let commands = commands::all().map(KeyTarget::Command);
         ToolKind::ALL.into_iter().map(|(tool, _)| KeyTarget::Tool(tool)).chain(commands)

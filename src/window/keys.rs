@@ -1,5 +1,4 @@
-//! The keyboard: commands and tools by their keys.
-//! Floor 7. The keys are in `keymap`.
+//! The keyboard: commands and tools by their keys. Floor 7. Not here: which keys they have (`keymap`).
 
 use super::commands::MenuCommand;
 use super::keymap::{KeyTarget, Keymap};
@@ -8,7 +7,7 @@ use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
 use eframe::egui::{Context, Event, Key, KeyboardShortcut, Modifiers};
 
-/// Requests what the keys of this frame mean; nothing while a text is being typed.
+/// Requests what the keys of this frame mean; nothing while text is being typed.
 pub fn listen(ctx: &Context, session: &Session, keymap: &Keymap, requests: &mut UiRequests) {
     if ctx.egui_wants_keyboard_input() || session.is_drawing() {
         return;
@@ -35,7 +34,7 @@ pub fn listen(ctx: &Context, session: &Session, keymap: &Keymap, requests: &mut 
                 KeyTarget::Tool(tool) => requests.act(Action::Hand(HandAction::Tool { tool })),
             }
         }
-        // What nobody took says why nothing happens; Enter and Escape mean whatever is under way.
+        // A key that nothing took says why nothing happens; Enter and Escape apply to whatever is under way.
         let silent = |keys: &KeyboardShortcut| matches!(keys.logical_key, Key::Enter | Key::Escape);
         for (keys, keyed) in all.iter().filter(|(keys, _)| !silent(keys)) {
             if let KeyTarget::Command(command) = keyed

@@ -1,5 +1,5 @@
 //! Floor 7: the window. Panels are functions that read the session and request actions; the actions are performed once
-//! per frame. Pixels and equations are not here.
+//! per frame. Not here: pixels and equations.
 
 mod advice;
 mod canvas;
@@ -34,7 +34,7 @@ mod window;
 
 pub use window::MainWindow;
 
-// The floors beneath, under their own names.
+// The lower floors, under their own names.
 use rilievo_engine::{Error, Remedy, Result, document, math, memory, paint, raster, shading, shape, surface};
 use rilievo_io as io;
 use rilievo_program::{session, tools};
@@ -44,9 +44,9 @@ use std::cell::Cell;
 use std::path::PathBuf;
 use std::rc::Rc;
 
-/// Opens the window with these files, or with the sample where there are none; returns when it is closed.
+/// Opens the window with these files, or with the sample if there are none; returns when it is closed.
 ///
-/// Fails with a sentence where there is no display.
+/// Fails with a sentence if there is no display.
 pub fn run(files: Vec<PathBuf>) -> Result<()> {
     let viewport = egui::ViewportBuilder::default()
         .with_title("Rilievo")
@@ -54,8 +54,8 @@ pub fn run(files: Vec<PathBuf>) -> Result<()> {
         .with_inner_size([1280.0, 820.0])
         .with_min_inner_size([720.0, 480.0])
         .with_drag_and_drop(true);
-    // Clipboard shortcuts arrive as keys: see `clipboard`.
-    // Nothing is drawn in more than eight bits: there is nothing to dither, and it costs every pixel of every frame.
+    // Clipboard shortcuts arrive as keys: see `clipboard`. Nothing is drawn in more than eight bits, so there is
+    // nothing to dither, and dithering takes time at every pixel of every frame.
     let options =
         eframe::NativeOptions { viewport, clipboard_shortcuts: false, dithering: false, ..Default::default() };
     let (tablet, is_open) = (pen::SharedTablet::default(), Rc::new(Cell::new(false)));

@@ -11,7 +11,7 @@ use crate::widgets::ValueChange;
 /// An operator as the window offers it.
 pub struct OfferedOperator {
     pub label: &'static str,
-    /// With the numbers it begins with.
+    /// With its first numbers.
     pub begins: Operator,
     pub hint: &'static str,
 }
@@ -55,7 +55,8 @@ pub fn hint_of(key: &str) -> &'static str {
     }
 }
 
-/// Whose operator the bar shows: the selected image's or gradient's with the tools that change it, else the hand's.
+/// Whose operator the bar shows: the selected image's or gradient's with the tools that change it, else the current
+/// one.
 pub enum OperatorOwner {
     Hand,
     Layer(LayerPath),

@@ -1,8 +1,8 @@
-//! The layout of the panels: on which side, which in front, which in separate windows. Floor 7. Keeping it from run
-//! to run is `settings`'.
+//! The layout of the panels: on which side, which in front, which in separate windows. Floor 7. Not here: keeping it
+//! from run to run (`settings`).
 
 rilievo_engine::named! {
-    /// A panel that can stand beside the canvas or in a window of its own.
+    /// A panel that can be next to the canvas or in a window of its own.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum PanelKind {
         Color = "Colour",
@@ -11,20 +11,20 @@ rilievo_engine::named! {
         Surface = "Surface",
         History = "History",
         Navigator = "Navigator",
-        /// Below the others, as the parts of the shape.
+        /// Below the others, like the parts of the shape.
         Layers = "Layers",
         Shape = "Shape",
     }
 }
 
 impl PanelKind {
-    /// Whether it stands below, where the layers are.
+    /// Whether it is below, where the layers are.
     pub fn is_below(self) -> bool {
         matches!(self, PanelKind::Layers | PanelKind::Shape)
     }
 }
 
-/// Where the panels stand.
+/// The places of the panels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PanelLayout {
     pub side: PanelSide,

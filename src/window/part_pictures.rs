@@ -10,22 +10,22 @@ use eframe::egui::{self, Color32, ColorImage, TextureHandle, TextureId, TextureO
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Of a picture, px.
+/// The side of a picture, px.
 const SIDE: usize = 56;
 
 /// The pictures of the document's parts, by their ids.
 #[derive(Default)]
 pub struct PartPictures {
-    /// What the forms were asked of last: while it is the same, so are they.
+    /// What the forms were last taken from: while it is the same, so are they.
     of: Option<(Arc<Parts>, Option<Arc<Surface>>)>,
     forms: Vec<(Arc<Part>, Arc<Form>)>,
-    /// What takes each form to where its part stands now.
+    /// The map of each form to where its part is now.
     moved: Vec<Affine2>,
     painted: HashMap<String, (Arc<Form>, TextureHandle)>,
 }
 
 impl PartPictures {
-    /// Brings the pictures up to a document.
+    /// Updates the pictures to a document.
     pub fn follow(&mut self, ctx: &egui::Context, document: &Document) {
         self.forms(document);
         let forms = &self.forms;
@@ -38,7 +38,7 @@ impl PartPictures {
             }
         }
     }
-    /// The forms of a document with their parts, asked for once a version of it.
+    /// The forms of a document with their parts, computed once per version of it.
     pub fn forms(&mut self, document: &Document) -> &[(Arc<Part>, Arc<Form>)] {
         let is_same = self.of.as_ref().is_some_and(|(parts, surface)| {
             let surfaces = [surface, &document.surface].map(|surface| surface.as_ref().map(Arc::as_ptr));
@@ -47,7 +47,7 @@ impl PartPictures {
         if !is_same {
             let forms = match document.is_shaped() {
                 true => document.part_forms().into_iter().map(|(part, form)| (part, form, Affine2::IDENTITY)).collect(),
-                // A hand drags: nothing is made for it here.
+                // During a drag nothing is made here.
                 false => document.last_part_forms(),
             };
             (self.forms, self.moved) = forms.into_iter().map(|(part, form, map)| ((part, form), map)).unzip();
@@ -55,7 +55,7 @@ impl PartPictures {
         }
         &self.forms
     }
-    /// What takes the form of a part, as it was made last, to where the part stands.
+    /// The map of a part's form, as it was made last, to where the part is.
     pub fn moved(&self, id: &str) -> Affine2 {
         let at = self.forms.iter().position(|(part, _)| part.id == id);
         at.and_then(|at| self.moved.get(at)).copied().unwrap_or(Affine2::IDENTITY)

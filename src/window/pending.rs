@@ -1,5 +1,5 @@
-//! What is to be saved or exported, while it waits for a job or for an answer.
-//! Floor 7. Doing it is `saving`'s, asking `dialogs`'.
+//! What is to be saved or exported, while it waits for a job or for an answer. Floor 7. Not here: doing it (`saving`),
+//! asking (`dialogs`).
 
 use crate::document::Document;
 use crate::document::view::UnwrapOptions;
@@ -38,7 +38,7 @@ pub struct Exporting {
 /// Maps of a shape that are to be exported.
 pub struct ExportingMaps {
     pub document: Document,
-    /// What their names begin with.
+    /// The beginning of their names.
     pub file: PathBuf,
     pub maps: Vec<ShapeMap>,
     pub options: ShapeOptions,
@@ -67,7 +67,7 @@ impl Pending {
             Pending::Maps(exporting) => &exporting.file,
         }
     }
-    /// The user insists.
+    /// The user confirmed.
     pub fn forced(mut self) -> Self {
         match &mut self {
             Pending::Save(saving) => saving.terms.over = Overwrite::Forced,

@@ -1,5 +1,5 @@
-//! Recovery in the window: keeps logs of the open documents, and offers lost drawings at the start. Floor 7. The logs
-//! are in `session::autosave`; they are read on another thread.
+//! Recovery in the window: keeps logs of the open documents, and offers lost drawings at the start. Floor 7. Another
+//! thread reads the logs. Not here: the logs (`session::autosave`).
 
 use super::MainWindow;
 use super::dialogs::{Dialog, recovery};
@@ -19,7 +19,7 @@ impl MainWindow {
         let autosave = Autosave::new(folder);
         let lost = autosave.lost();
         self.session.autosave = Some(autosave);
-        // The window opens, whatever is in that folder.
+        // The window opens whatever is in that folder.
         let look = move || catch_unwind(AssertUnwindSafe(|| lost.list())).unwrap_or_default();
         self.jobs.start("Looking for unsaved drawings".into(), JobKind::Working, move |_: &Progress| {
             JobResult::Lost(look())

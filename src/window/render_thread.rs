@@ -1,7 +1,7 @@
 //! The render thread: flattens documents tile by tile, so that the window never waits for pixels. It compares the shown
 //! document with the requested one and paints only tiles that differ, visible ones first. While something is dragged
 //! and whole pixels would take longer than a frame, it paints a smaller picture instead, and the full one as soon as
-//! the hand rests. Floor 7. Pixels come from `document::flatten`; `pass` tracks what is left to paint of one picture.
+//! the user pauses. Floor 7. Pixels come from `document::flatten`; `pass` tracks what is left to paint of one picture.
 
 mod draft;
 mod pass;
@@ -19,7 +19,7 @@ use std::time::{Duration, Instant};
 
 /// A request: what to show.
 pub struct RenderRequest {
-    /// A new number is a new picture: nothing of the last one is valid.
+    /// A new number means a new picture: nothing of the last one is valid.
     pub picture: u64,
     pub document: Document,
     /// The visible canvas pixels.
@@ -31,16 +31,16 @@ pub struct RenderRequest {
 /// Tiles that were painted.
 pub struct RenderedTileBatch {
     pub picture: u64,
-    /// They are of a picture that is seen for a moment only: of fewer pixels, or read more coarsely.
+    /// They belong to a picture that is shown only for a moment: with fewer pixels, or read more coarsely.
     pub is_draft: bool,
-    /// Of the picture that the tiles are cut from.
+    /// The size of the picture that the tiles are cut from.
     pub size: Size,
     pub tiles: Vec<(TileAt, Option<Arc<Tile>>)>,
     /// Whether nothing visible is left to paint.
     pub is_settled: bool,
     /// The time since work on this document began.
     pub took: Duration,
-    /// There was no memory to paint it; what was painted before stays, until another document is wanted.
+    /// There was no memory to paint it; what was painted before stays until another document is requested.
     pub refused: Option<OutOfMemory>,
 }
 
@@ -51,7 +51,7 @@ struct SharedRequest {
     closed: Mutex<bool>,
 }
 
-/// The handle of the thread, which ends with it.
+/// The handle of the thread; the thread ends with it.
 pub struct RenderThread {
     shared: Arc<SharedRequest>,
     painted: Receiver<RenderedTileBatch>,
@@ -64,21 +64,21 @@ const FEW: usize = 12;
 /// A pass over the visible tiles may take this long before a newer request interrupts it, so that a drag shows complete
 /// pictures.
 const PASS: Duration = Duration::from_millis(150);
-/// A redraw during a drag that takes no longer than this is painted as at rest.
+/// If a redraw during a drag takes no longer than this, it is painted as at rest.
 const FINE: Duration = Duration::from_millis(16);
-/// Of one that takes longer, pictures are read coarsely; where that takes longer than this, it has fewer pixels.
+/// If it takes longer, pictures are read coarsely; if that takes longer than this, it has fewer pixels.
 const FRAME: Duration = Duration::from_millis(30);
-/// What a draft of all pixels takes of the time that the picture takes at rest.
+/// The time of a draft of all pixels, as a share of the picture's time at rest.
 const DRAFT_SHARE: f32 = 0.7;
-/// The hand rests if no request came for this long: then the full picture is painted.
+/// If no request came for this long, the user paused: then the full picture is painted.
 const REST: Duration = Duration::from_millis(180);
 /// After this long without a request, the thread prepares for the next drag.
 const PAUSE: Duration = Duration::from_millis(600);
-/// Between two looks at what another thread makes ready.
+/// The time between two checks of what another thread prepares.
 const LOOK: Duration = Duration::from_millis(30);
-/// What the surface of parts takes a pixel of the canvas, before it was measured.
+/// The time per canvas pixel for the surface of parts, before it was measured.
 const SHAPING: Duration = Duration::from_nanos(120);
-/// Canvas pixels to a pixel of the smallest picture.
+/// Canvas pixels per pixel of the smallest picture.
 const COARSEST: u32 = 8;
 
 impl RenderThread {
@@ -95,7 +95,7 @@ impl RenderThread {
         *lock(&self.shared.wanted) = Some(wanted);
         self.shared.wake.notify_one();
     }
-    /// What was painted since the last call, and what of the picture is still painted within some time.
+    /// What was painted since the last call, and what else is painted within some time.
     pub fn painted(&self, wait: Duration) -> impl Iterator<Item = RenderedTileBatch> + '_ {
         let (until, mut is_settled) = (Instant::now() + wait, false);
         std::iter::from_fn(move || {
@@ -127,20 +127,20 @@ struct RenderWork {
     wanted: Option<RenderRequest>,
     whole: RenderPass,
     draft: Option<DraftRender>,
-    /// What was shown before the hand began to drag.
+    /// What was shown before the drag began.
     at_rest: Option<Document>,
     /// Whether the drag is shown by the draft.
     is_drafting: bool,
-    /// Whether the hand rests: then the document is painted in full, however long that takes.
+    /// Whether the user paused: then the document is painted in full, however long that takes.
     is_resting: bool,
     /// Whether the reduced document is ready for a drag.
     is_prepared: bool,
-    /// The whole picture is still to get the surface of parts that a hand drags, and how long that took last.
+    /// The whole picture still needs the surface of dragged parts, and how long that took last.
     is_behind: bool,
     shaping: Duration,
 }
 
-/// `None` once the window is gone.
+/// `None` once the window is closed.
 fn work(shared: &SharedRequest, sender: &Sender<RenderedTileBatch>, done: &dyn Fn()) -> Option<()> {
     let mut work = RenderWork::default();
     let send = |painted| {
@@ -152,7 +152,7 @@ fn work(shared: &SharedRequest, sender: &Sender<RenderedTileBatch>, done: &dyn F
         if let Some(next) = work.wait(shared)? {
             let picture = next.picture;
             let refused = work.if_there_is_memory(|work| work.take_up(next)).err();
-            // Nothing differs: whoever waits for the picture has it.
+            // Nothing differs: the picture is complete already.
             if !work.has_more() {
                 send(RenderedTileBatch { picture, refused, ..work.nothing() })?;
             }
@@ -179,7 +179,7 @@ fn work(shared: &SharedRequest, sender: &Sender<RenderedTileBatch>, done: &dyn F
 }
 
 impl RenderWork {
-    /// Does some of the work; where there is no memory for it, it is put aside, and the next document is painted whole.
+    /// Does some of the work; without memory for it, it is put aside, and the next document is painted whole.
     fn if_there_is_memory<T>(&mut self, step: impl FnOnce(&mut Self) -> T) -> Result<T, OutOfMemory> {
         let done = memory::caught(|| step(self));
         if done.is_err() {
@@ -188,7 +188,7 @@ impl RenderWork {
         }
         done
     }
-    /// Waits for something to do; the document that is newly wanted, if any. `None` once the window is gone.
+    /// Waits for something to do; returns the newly requested document, if any. `None` once the window is closed.
     fn wait(&mut self, shared: &SharedRequest) -> Option<Option<RenderRequest>> {
         let mut pause = PAUSE;
         let mut wanted = lock(&shared.wanted);
@@ -210,7 +210,7 @@ impl RenderWork {
                 (self.is_drafting, self.is_resting) = (!waited.timed_out(), waited.timed_out());
             } else if waited.timed_out() {
                 drop(wanted);
-                // A drag that has no memory to be prepared will be told so itself, if it comes.
+                // If there is no memory to prepare a drag, the drag itself will report it.
                 let waits = matches!(self.if_there_is_memory(Self::prepare), Ok(Readiness::Waits));
                 // The next part at once.
                 pause = if waits { LOOK } else { Duration::ZERO };
@@ -218,11 +218,11 @@ impl RenderWork {
             }
         }
     }
-    /// A drag will want a smaller picture, and some of it is still to be made.
+    /// A drag will need a smaller picture, and some of it is still to be made.
     fn is_slow(&self) -> bool {
         !self.is_prepared && self.whole.slowest() > FINE
     }
-    /// Makes some of the document small before a drag needs it: all of a large one would hold the first frame up.
+    /// Scales down some of the document before a drag needs it: all of a large one would delay the first frame.
     fn prepare(&mut self) -> Readiness {
         let step = step_for(self.whole.slowest());
         let readiness = match &self.wanted {
@@ -241,12 +241,12 @@ impl RenderWork {
         }
         self.whole.take_up(next.document.clone());
         self.is_behind = !next.document.is_shaped();
-        // The first frame of a large canvas is not waited for, either.
+        // The first frame of a large canvas is not waited for either.
         let area = next.document.size.area();
         let shaping = if self.shaping.is_zero() { SHAPING.mul_f32(area as f32) } else { self.shaping };
         let is_slow = self.is_behind && shaping > FRAME;
         if is_slow && self.draft.is_none() {
-            // The surface of parts is made small, too.
+            // The surface of parts is scaled down, too.
             self.begin_draft(step_for(self.whole.slowest().max(shaping)).max(2));
         }
         let was_quick =
@@ -269,7 +269,7 @@ impl RenderWork {
         self.at_rest.iter().for_each(|document| draft.reduced.keep(document));
         self.draft = Some(draft);
     }
-    /// Hands the wanted document to the draft.
+    /// Passes the requested document to the draft.
     fn redraft(&mut self) {
         if let Some(draft) = self.draft.as_ref().filter(|draft| draft.is_slow()) {
             let step = draft.step * 2;
@@ -279,7 +279,7 @@ impl RenderWork {
         draft.wait_for_surface(&wanted.document);
         match draft.reduced.of(&wanted.document) {
             Ok(small) => draft.pass.take_up(small),
-            // A surface too thin to be made small is painted whole.
+            // A surface too thin to be scaled down is painted whole.
             Err(_) => (self.draft, self.is_drafting) = (None, false),
         }
     }
@@ -298,7 +298,7 @@ impl RenderWork {
         let (tiles, took) = (Vec::new(), Duration::ZERO);
         RenderedTileBatch { picture: 0, is_draft, size, tiles, is_settled: true, took, refused: None }
     }
-    /// Paints some of what is left, tiles in sight first.
+    /// Paints some of what is left, visible tiles first.
     fn paint(&mut self) -> Option<RenderedTileBatch> {
         let wanted = self.wanted.as_ref()?;
         let (picture, is_dragged, visible) = (wanted.picture, wanted.is_dragged, wanted.visible);
@@ -311,7 +311,7 @@ impl RenderWork {
         let done = self.whole.paint(visible, if is_dragged { FEW } else { BATCH })?;
         if is_dragged && !self.is_resting && !done.is_settled && done.took > FINE {
             let step = step_for(done.took.mul_f32(done.share_left() + 1.0));
-            // One that was prepared will do where it is small enough, unless all pixels can be shown.
+            // A prepared one will do if it is small enough, unless all pixels can be shown.
             let does = |draft: &DraftRender| draft.step == step || (draft.is_unused() && draft.step > step && step > 1);
             if !self.draft.as_ref().is_some_and(does) {
                 self.begin_draft(step);
@@ -328,7 +328,7 @@ fn wanted_size(wanted: Option<&RenderRequest>) -> Size {
     wanted.map_or(Size::new(0, 0), |wanted| wanted.document.size)
 }
 
-/// How much smaller a picture must be that is to be painted within a frame, when whole pixels take so long.
+/// How much smaller a picture must be to be painted within a frame, if whole pixels take so long.
 fn step_for(whole: Duration) -> u32 {
     let fits = |step: u32| whole.as_secs_f32() * DRAFT_SHARE <= FRAME.as_secs_f32() * (step * step) as f32;
     [1, 2, 4].into_iter().find(|&step| fits(step)).unwrap_or(COARSEST)

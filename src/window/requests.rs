@@ -1,4 +1,4 @@
-//! What panels ask for: actions that the session does, and things that only a window can do.
+//! What panels request: actions that the session performs, and things that only a window can do.
 //! Floor 7.
 
 use super::file_purpose::FilePurpose;
@@ -52,14 +52,14 @@ pub enum WindowRequest {
     KeptShare(f32),
     /// A sentence in the status bar.
     Say(String),
-    /// Asks where to, for a file of this ending.
+    /// Asks where to, for a file of this extension.
     Export(&'static str),
     ExportUnwrappedDialog,
     /// Asks where to.
     ExportUnwrapped,
-    /// Shows the surface unwrapped, once it is.
+    /// Shows the surface unwrapped, once that is computed.
     Unwrap,
-    /// Asks first where there is unsaved work.
+    /// Asks first if there is unsaved work.
     Close(usize),
     Quit,
     EdgeDialog(EdgeChange),

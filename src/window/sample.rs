@@ -1,5 +1,5 @@
-//! The sample that a first start opens: a bust's worth of shape without a file, ready to be painted on.
-//! Floor 7. Made of formulas, so that nothing is downloaded and nothing is missing.
+//! The sample that a first start opens: a shape without a file, ready to be painted on. Floor 7. Made of formulas, so
+//! that nothing is downloaded and nothing is missing.
 
 use crate::document::{Content, Document, Layer, Live};
 use crate::math::{Size, Vec2, Vec3, srgb::Color, vec2, vec3};
@@ -47,10 +47,10 @@ fn grey(v: u8) -> Color {
     Color { r: v, g: v, b: v, a: 255 }
 }
 
-/// Where the ball and the ring around it stand, in canvas lengths.
+/// The places of the ball and the ring around it, in canvas lengths.
 const BALL: (Vec2, f32) = (vec2(0.5, 0.43), 0.27);
 const RING: (Vec2, f32, f32) = (vec2(0.5, 0.52), 0.36, 0.075);
-/// How far the ring is tilted away: its vertical axis is seen this much shorter.
+/// How far the ring is tilted away: its vertical axis appears this much shorter.
 const TILT: f32 = 0.34;
 
 /// What the line of sight meets first.
@@ -98,7 +98,7 @@ fn ring(p: Vec2) -> Option<Seen> {
     };
     let (near, far, steps) = (0.42, -0.42, 72);
     let at = |i: i32| near + (far - near) * i as f32 / steps as f32;
-    // At a rim the line of sight may enter and leave between two steps: where it comes near, it is looked at closely.
+    // At a rim the line of sight may enter and leave between two steps: near it, smaller steps are taken.
     let (outer, inner) = (0..steps).find_map(|i| {
         if outside(at(i + 1)) < 0.0 {
             return Some((at(i), at(i + 1)));
@@ -115,7 +115,7 @@ fn ring(p: Vec2) -> Option<Seen> {
     Some(Seen { height, normal })
 }
 
-/// Where a function with one low place between two others has it.
+/// The minimum of a function that has one between two places.
 fn lowest(f: &impl Fn(f32) -> f32, mut a: f32, mut b: f32) -> f32 {
     for _ in 0..24 {
         let (low, high) = (a + (b - a) / 3.0, b - (b - a) / 3.0);
@@ -176,7 +176,7 @@ mod tests {
     fn the_ring_ends_before_the_ball_in_a_clean_line() {
         let surface = surface().unwrap();
         let is_ring = |at: Vec2| ring(at).is_some_and(|ring| ball(at).is_none_or(|ball| ball.height < ring.height));
-        // Left and right of these the ring ends before itself.
+        // Left and right of these the ring ends in front of itself.
         let between = 150..490;
         let contours = surface.contours().pixels().iter();
         let before_ball = contours.filter(|pixel| pixel.sees_surface() && between.contains(&pixel.x));

@@ -1,5 +1,5 @@
-//! Saves and exports what is pending, and tells what it came to. Run as jobs.
-//! Floor 7. Writing is `io::replace`'s; the questions on the way are `dialogs`', for nothing is replaced unasked.
+//! Saves and exports what is pending, and reports the result. Run as jobs. Floor 7. Nothing is replaced without asking.
+//! Not here: writing (`io::replace`), the questions (`dialogs`).
 
 use crate::document::Progress;
 use crate::io::fs::Disk;
@@ -23,7 +23,7 @@ impl ExportingMaps {
 /// How far a save came.
 enum SaveStep {
     Saved(FileStamp),
-    /// The user has to be told first what is lost.
+    /// The user must be told first what is lost.
     Loses,
     GivenUp,
 }
@@ -38,7 +38,7 @@ impl Saving {
         }
     }
     fn attempt(&mut self, progress: &Progress) -> Result<SaveStep> {
-        // Before the work that it takes to make the bytes.
+        // Checked before the work of making the bytes.
         check(&Disk, &self.file, &self.terms)?;
         let encoded = match self.encoded.take() {
             Some(encoded) => Some(encoded),
@@ -71,7 +71,7 @@ impl Exporting {
     }
 }
 
-/// What the user may overrule is asked; all else is told.
+/// What the user may overrule is asked; all else is an error.
 fn refused(error: Error, pending: impl FnOnce() -> Pending) -> JobResult {
     match error {
         Error::Changed { reason, .. } => JobResult::Refused(pending(), reason),

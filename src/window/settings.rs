@@ -1,6 +1,6 @@
-//! What the window remembers from one run to the next: recent files, where panels stand, the theme, keys. A small
+//! What the window remembers from one run to the next: recent files, the places of panels, the theme, keys. A small
 //! JSON file in the user's folder for settings; a broken one is reported and never keeps the program from starting.
-//! Floor 7. Replacing the file is `io::replace`'s.
+//! Floor 7. Not here: replacing the file (`io::replace`).
 
 use super::jobs;
 use super::keymap::Keymap;
@@ -112,7 +112,7 @@ impl Settings {
         let kept_share = share.max(*KEPT_SHARE.start()).min(*KEPT_SHARE.end());
         Self { recent, is_light, scale, layout, keymap, is_hint_done, aids, kept_share }
     }
-    /// Reads a settings file; none is an empty one. Fails where it is not JSON, or not to be read.
+    /// Reads a settings file; a missing one counts as empty. Fails if it is not JSON or cannot be read.
     pub fn read(file: &Path) -> Result<Self> {
         let bytes = match std::fs::metadata(file) {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Self::default()),
@@ -126,7 +126,7 @@ impl Settings {
         let object = value.as_object().ok_or_else(|| Error::decode(file, "it does not hold a JSON object"))?;
         Ok(Self::from_json(object))
     }
-    /// Replaces the file: all of it or nothing.
+    /// Replaces the file atomically.
     pub fn write(&self, file: &Path) -> Result<()> {
         if let Some(folder) = file.parent() {
             std::fs::create_dir_all(folder).map_err(|error| Error::io(folder, error))?;

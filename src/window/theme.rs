@@ -56,7 +56,7 @@ pub fn install(ctx: &egui::Context) {
     ctx.style_mut_of(Theme::Dark, |style| dress(style, Visuals::dark(), &DARK));
     ctx.style_mut_of(Theme::Light, |style| dress(style, Visuals::light(), &LIGHT));
     ctx.set_theme(Theme::Dark);
-    // Its keys zoom the picture here.
+    // Its zoom keys zoom the picture here.
     ctx.options_mut(|options| options.zoom_with_keyboard = false);
 }
 
@@ -88,7 +88,7 @@ fn dress(style: &mut Style, mut visuals: Visuals, greys: &Greys) {
     }
     widgets.noninteractive.bg_stroke = Stroke::new(1.0, grey(greys.line));
     style.visuals = visuals;
-    // A drag that misses a slider would mark the text beside it.
+    // A drag that misses a slider would select the text next to it.
     style.interaction.selectable_labels = false;
     style.spacing.item_spacing = vec2(6.0, 5.0);
     style.spacing.button_padding = vec2(7.0, 3.0);

@@ -34,7 +34,7 @@ pub struct Thumbnails {
     made: HashMap<LayerId, TextureHandle>,
     /// Which version of a layer was ordered last.
     ordered: HashMap<LayerId, Weak<Layer>>,
-    /// Of masks that are pictures, each with the one it shows.
+    /// For masks that are pictures, each with the one it shows.
     masks: HashMap<LayerId, (Weak<Plane<u8>>, bool, TextureHandle)>,
     /// Of the parts of the shape.
     pub parts: PartPictures,
@@ -50,7 +50,7 @@ impl Thumbnails {
         let work = move || {
             let mut maker = ThumbnailMaker::default();
             while let Ok(order) = coming.recv() {
-                // Of a layer that changes while it waits, only the last version counts.
+                // If a layer changes while it waits, only the last version counts.
                 let mut latest: HashMap<LayerId, ThumbnailOrder> = HashMap::from([(order.layer.id, order)]);
                 latest.extend(coming.try_iter().map(|order| (order.layer.id, order)));
                 for order in latest.into_values() {

@@ -1,5 +1,5 @@
-//! Memory, for the status bar: what the program takes, as the system tells, and what the open documents take of it.
-//! Floor 7. The ceiling of what they keep for speed is held here, too: counting and letting go are one walk
+//! Memory, for the status bar: what the program takes, as the system reports, and what the open documents take of it.
+//! Floor 7. The ceiling of what they keep for speed is enforced here, too: counting and freeing are one walk
 //! (`session::memory`), on a thread of its own.
 
 use crate::io::machine;
@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 /// The share of the machine's memory that documents may keep for speed.
 pub const KEPT_SHARE: Range = 0.05..=0.75;
-/// What it is unless it was chosen.
+/// Its default.
 pub const USUAL_KEPT_SHARE: f32 = 0.25;
 
 /// The time between two measurements.
@@ -47,7 +47,7 @@ impl MemoryMeter {
             }
         }
     }
-    /// Bytes that the machine has at most.
+    /// The bytes of memory that the machine has.
     pub fn machine_bytes(&self) -> u64 {
         self.machine_bytes
     }
@@ -55,8 +55,8 @@ impl MemoryMeter {
     pub fn ceiling(&self, share: f32) -> u64 {
         (f64::from(share) * self.machine_bytes as f64) as u64
     }
-    /// What documents took at the last count. Another one is begun where that is some time ago, and they are held to
-    /// the ceiling then. `is_idle`: nothing is painted now.
+    /// What documents took at the last count. If that was some time ago, another one begins, which also enforces the
+    /// ceiling. `is_idle`: nothing is painted now.
     pub fn documents(&mut self, session: &Session, share: f32, is_idle: bool) -> DocumentMemory {
         match self.counting.as_ref().map(Receiver::try_recv) {
             Some(Ok(counted)) => (self.counted, self.counting) = (counted, None),

@@ -30,7 +30,7 @@ pub fn change<T>(response: &Response, to: T) -> Option<ValueChange<T>> {
     response.changed().then(|| ValueChange { to, done: !response.dragged() })
 }
 
-/// A number with its name before it.
+/// A number with its name in front of it.
 pub struct NumberField<'a> {
     pub label: &'a str,
     pub hint: &'a str,
@@ -71,7 +71,7 @@ impl<'a> NumberField<'a> {
             .suffix(self.suffix)
             .fixed_decimals(self.decimals)
             .logarithmic(self.logarithmic)
-            // A value that it only shows is not rounded to the digits that it shows: that would be an edit of its own.
+            // A value is not rounded to the digits shown: that would be an edit of its own.
             .clamping(SliderClamping::Edits)
             .trailing_fill(true)
     }
@@ -88,7 +88,7 @@ impl<'a> NumberField<'a> {
     }
     /// A slider in a bar among others, its name before it.
     pub fn inline(self, ui: &mut Ui, value: f32, width_pt: f32) -> Option<ValueChange<f32>> {
-        /// Of the number after the slider: four digits and a unit.
+        /// The width of the number after the slider: four digits and a unit.
         const NUMBER_PT: f32 = 56.0;
         let mut to = value;
         let font = egui::TextStyle::Body.resolve(ui.style());
@@ -125,7 +125,7 @@ pub fn named(response: &Response, label: &str) {
     response.ctx.accesskit_node_builder(response.id, |node| node.set_label(label));
 }
 
-/// A property's name, as wide as all of them.
+/// A property's name; all have the same width.
 pub fn name(ui: &mut Ui, text: &str) -> Response {
     let (rect, response) = ui.allocate_exact_size(vec2(76.0, ui.spacing().interact_size.y), egui::Sense::hover());
     let color = ui.visuals().text_color();
@@ -169,9 +169,9 @@ pub fn check(ui: &mut Ui, label: &str, hint: &str, on: bool) -> Option<bool> {
     ui.checkbox(&mut to, label).on_hover_text(hint).changed().then_some(to)
 }
 
-/// A list in a dialog, as tall as what is in it, up to `most_pt` and what the window has room for.
+/// A list in a dialog, as tall as its content, up to `most_pt` and the room in the window.
 pub fn list(ui: &Ui, most_pt: f32) -> ScrollArea {
-    /// What a dialog has above and below its list.
+    /// The height of a dialog above and below its list.
     const AROUND_PT: f32 = 210.0;
     let height = (ui.ctx().content_rect().height() - AROUND_PT).max(120.0).min(most_pt);
     ScrollArea::vertical().max_height(height).min_scrolled_height(height)

@@ -17,25 +17,25 @@ use std::time::Duration;
 const DASHES_PT: f32 = 8.0;
 /// How fast they march, screen points a second.
 const PACE_PT: f32 = 16.0;
-/// Between two frames of them.
+/// The time between two of their frames.
 const FRAME: Duration = Duration::from_millis(60);
-/// Pieces drawn in a frame, more or less.
+/// The approximate number of pieces drawn in a frame.
 const MOST_PIECES: usize = 24_000;
-/// Outlines of tiles that are kept.
+/// The number of tiles whose outlines are kept.
 const KEPT: usize = 20_000;
 
 /// The outlines of the tiles of the selection that is shown.
 #[derive(Default)]
 pub struct Ants {
-    /// Kept, so that no other tile takes the address of one of its own.
+    /// Kept, so that no other tile gets the address of one of its own.
     grid: CoverageGrid,
     runs: HashMap<RunsKey, Arc<Vec<Run>>>,
     dashes: Option<TextureHandle>,
     /// What is selected, canvas px.
     covered: Option<Rect>,
-    /// Levels that a ragged outline is drawn coarser, so that a frame takes no longer.
+    /// How many levels coarser a ragged outline is drawn, so that a frame takes no longer.
     coarser: u32,
-    /// The level that the zoom asked for last.
+    /// The last level that the zoom needed.
     finest: u32,
 }
 
@@ -52,7 +52,7 @@ impl Ants {
             line(mesh, ends, phase);
         });
     }
-    /// The same as it lies on the unwrapped sheet.
+    /// The same on the unwrapped sheet.
     pub fn draw_unwrapped(
         &mut self,
         painter: &Painter,
@@ -68,7 +68,7 @@ impl Ants {
             }
         });
     }
-    /// `scale`: screen points to a canvas pixel.
+    /// `scale`: screen points per canvas pixel.
     fn draw_runs(
         &mut self,
         painter: &Painter,
@@ -106,8 +106,8 @@ impl Ants {
         painter.add(Shape::mesh(mesh));
         painter.ctx().request_repaint_after(FRAME);
     }
-    /// Takes up another selection, and forgets what is not of it. The old one lives until then, so that tiles of both
-    /// have different addresses.
+    /// Switches to another selection, and drops what is not part of it. The old one lives until then, so that tiles of
+    /// both have different addresses.
     fn follow(&mut self, selected: Option<&CoverageGrid>) {
         let Some(grid) = selected else {
             return *self = Self { dashes: self.dashes.take(), ..Self::default() };
@@ -143,8 +143,8 @@ fn ends(run: &Run) -> [Vec2; 2] {
     [from, from + along]
 }
 
-/// A piece of the outline as a band of one screen point. Its dashes follow its place on the screen, so that they go on
-/// from piece to piece.
+/// A piece of the outline as a band of one screen point. Its dashes follow its place on the screen, so that they
+/// continue from piece to piece.
 fn line(mesh: &mut Mesh, [a, b]: [Vec2; 2], phase: f32) {
     let way = (b - a).normalize_or_zero();
     // Half a point longer at both ends, so that corners are closed.

@@ -1,5 +1,5 @@
-//! Assistants over the picture: their lines, and with the tool their handles and those of the symmetry's axes.
-//! Floor 7. Not here: what strokes do along them (`tools::assistants`).
+//! Assistants over the picture: their lines and, with the tool, their handles and those of the symmetry's axes. Floor
+//! 7. Not here: strokes along them (`tools::assistants`).
 
 use crate::document::{Assistant, AssistantKind};
 use crate::math::{Vec2, vec2};
@@ -13,7 +13,7 @@ const RAYS: u32 = 24;
 /// Segments of an ellipse.
 const SEGMENTS: u32 = 96;
 
-/// Draws them, faintly while another tool is in hand.
+/// Draws them, faintly while another tool is current.
 pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2, is_tool: bool) {
     let Some(document) = session.shown() else { return };
     // Far enough that its ends are out of sight.

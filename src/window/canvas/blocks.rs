@@ -9,13 +9,13 @@ use eframe::egui::{
 };
 use std::collections::BTreeMap;
 
-/// Side of a block, px: eight tiles. A driver's limit is 2048 at the least; a smaller block is cheaper to shrink again.
+/// Side of a block, px: eight tiles. A driver's limit is at least 2048; a smaller block is cheaper to shrink again.
 pub const BLOCK: i32 = 512;
 
 /// How pixels of the picture become pixels of the screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Magnification {
-    /// Fewer than they are: from smaller pictures of the picture, made anew with every change.
+    /// Reduced: from smaller copies of the picture, made again with every change.
     Reduced,
     #[default]
     Smooth,
@@ -24,11 +24,11 @@ pub enum Magnification {
 }
 
 impl Magnification {
-    /// * `scale`: pixels of the screen to one of the picture.
+    /// * `scale`: pixels of the screen per pixel of the picture.
     pub fn of(scale: f32) -> Self {
         match scale {
             _ if scale >= 2.0 => Self::Squares,
-            // A hair below 1 is 1, rounded.
+            // Slightly below 1 means 1, rounded.
             _ if scale > 0.999 => Self::Smooth,
             _ => Self::Reduced,
         }

@@ -1,4 +1,4 @@
-//! The frame of the crop tool on the picture: what is left dark outside, thirds inside, handles; and its keys.
+//! The frame of the crop tool on the picture: dark outside, thirds inside, handles; and its keys.
 //! Floor 7. Not here: what a drag of it does (`tools::crop`).
 
 use crate::math::{Rect, Vec2, vec2};
@@ -34,7 +34,7 @@ pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> P
     }
 }
 
-/// Darkens the canvas beside the frame: four pieces around it, however the view is turned.
+/// Darkens the canvas outside the frame: four pieces around it, however the view is turned.
 fn outside(painter: &Painter, session: &Session, frame: [Vec2; 4], to_screen: &impl Fn(Vec2) -> Pos2) {
     let Some(document) = session.shown() else { return };
     let canvas = crop::corners(document.size.rect());
@@ -51,7 +51,7 @@ fn outside(painter: &Painter, session: &Session, frame: [Vec2; 4], to_screen: &i
     }
 }
 
-/// Enter crops to the frame, Escape gives it up.
+/// Enter crops to the frame, Escape cancels.
 pub fn keys(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
     let Some(frame) = session.crop.filter(|_| session.tool == ToolKind::Crop) else { return };
     if session.is_drawing() || ui.ctx().egui_wants_keyboard_input() {

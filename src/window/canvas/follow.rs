@@ -1,4 +1,4 @@
-//! Follows the document: requests its picture of the render thread, and takes what was painted. Floor 7.
+//! Follows the document: requests its picture from the render thread, and takes what was painted. Floor 7.
 
 use super::sheet::TileSheet;
 use super::{Canvas, visible_rect};
@@ -10,9 +10,9 @@ use crate::tools::ToolKind;
 use eframe::egui::{self, Color32, ColorImage, TextureHandle, TextureOptions};
 use std::time::Duration;
 
-/// What is painted as quickly as this is waited for, before a frame is drawn without it.
+/// How long a frame waits for what is being painted before it is drawn without it.
 const SOON: Duration = Duration::from_millis(12);
-/// What shows that a picture is done is drawn again so long after it, unless something else is sooner.
+/// After this time the sign that a picture is done is drawn again, unless something else causes a frame sooner.
 const SETTLED: Duration = Duration::from_millis(100);
 
 impl Canvas {
@@ -42,7 +42,7 @@ impl Canvas {
             self.wanted = Some((drawn, is_dragged));
         }
         let was_busy = self.is_busy;
-        // What the hand did is shown in the same frame, if it is painted soon.
+        // What the user did is shown in the same frame, if it is painted soon.
         let is_soon = self.is_busy && session.is_drawing() && ctx.current_pass_index() > 0 && self.took < SOON;
         let wait = if is_soon { SOON } else { Duration::ZERO };
         let painted = self.render_thread.iter().flat_map(|thread| thread.painted(wait));
@@ -97,7 +97,7 @@ impl Canvas {
 }
 
 /// Whether a slider, a handle or a layer is being dragged. A brush does not count: its strokes change few tiles, and
-/// are looked at closely. Nor does selecting, which changes nothing of the picture.
+/// the user looks at them closely. Nor does selecting, which changes nothing in the picture.
 fn is_dragged(session: &Session) -> bool {
     let paints = matches!(session.tool, ToolKind::Brush | ToolKind::Eraser) || session.tool.selects();
     let paints = session.is_drawing() && paints;

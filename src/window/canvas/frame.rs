@@ -49,9 +49,9 @@ pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> P
     }
 }
 
-/// The lines of a mesh as they lie; `at`: where a point of its frame is seen.
+/// The lines of a mesh in their places; `at`: where a point of its frame is shown.
 fn grid(painter: &Painter, mesh: &Mesh, at: &impl Fn(Vec2) -> Pos2) {
-    // So many pieces look smooth between two points.
+    // This many pieces look smooth between two points.
     const PIECES: usize = 12;
     let (frame, columns, rows) = (mesh.frame(), mesh.columns(), mesh.rows());
     let place = |x: f32, y: f32| {

@@ -14,7 +14,7 @@ pub(super) struct FrameInput<'a> {
     pub view: CanvasView,
     pub middle: Pos2,
     pub actions: &'a mut Vec<Action>,
-    /// Samples not yet sent: all of a frame go together.
+    /// Samples not yet sent: those of a frame are sent together.
     pub pens: Vec<PenSample>,
 }
 

@@ -11,7 +11,7 @@ const CLOSEST_PT: f32 = 6.0;
 const GUIDE: Color32 = Color32::from_rgb(40, 170, 240);
 const SNAPPED: Color32 = Color32::from_rgb(255, 70, 190);
 
-/// The document's guides as they lie on the unwrapped sheet.
+/// The document's guides on the unwrapped sheet.
 pub fn draw_unwrapped(painter: &Painter, session: &Session, on_sheet: OnSheet, to_screen: &impl Fn(Vec2) -> Pos2) {
     let Some(document) = session.shown().filter(|_| session.aids.guides) else { return };
     let (w, h) = (document.size.width as f32, document.size.height as f32);
@@ -23,7 +23,7 @@ pub fn draw_unwrapped(painter: &Painter, session: &Session, on_sheet: OnSheet, t
     }
 }
 
-/// `visible`: the canvas px in sight; `zoom`: points to a canvas px.
+/// `visible`: the canvas px in sight; `zoom`: points per canvas px.
 pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2, visible: Rect, zoom: f32) {
     let Some(document) = session.shown() else { return };
     let aids = &session.aids;

@@ -66,7 +66,7 @@ pub fn draw(painter: &Painter, session: &Session, screen_from_canvas: Affine2, u
     }
 }
 
-/// The same over the sheet of the unwrapped surface, where dabs are as the brush has them; `under`: on the sheet.
+/// The same over the sheet of the unwrapped surface, where dabs have the brush's own shape; `under`: on the sheet.
 pub fn draw_unwrapped(
     painter: &Painter,
     session: &Session,
@@ -105,7 +105,7 @@ fn footprint(painter: &Painter, lines: Vec<[Vec2; 2]>, at: Vec2, to_screen: &imp
     painter.circle_filled(center, 1.2, Color32::WHITE);
 }
 
-/// The colour in hand, around the point where another is taken.
+/// The current colour, around the point where another is picked.
 fn picked(painter: &Painter, session: &Session, at: Pos2) {
     painter.circle_stroke(at, 14.0, Stroke::new(4.0, color32(session.color)));
     painter.circle_stroke(at, 16.5, Stroke::new(1.0, Color32::from_black_alpha(160)));
@@ -169,7 +169,7 @@ fn line_through(painter: &Painter, stroke: &PaintStroke, to_screen: &impl Fn(Vec
     painter.extend(LOOKS.map(|look| Shape::line(line.clone(), look)));
 }
 
-/// The outlines of strokes, kept as long as they are the same.
+/// The outlines of strokes, kept while they do not change.
 fn outlined(painter: &Painter, strokes: Vec<&Arc<PaintStroke>>, scene: &Scene, to_screen: &impl Fn(Vec2) -> Pos2) {
     let id = eframe::egui::Id::unique("outlines of strokes");
     let old: OutlineCache = painter.ctx().data_mut(|data| data.get_temp(id).unwrap_or_default());

@@ -51,7 +51,7 @@ pub struct Canvas {
     render_thread: Option<RenderThread>,
     /// The picture in whole pixels.
     whole: TileSheet,
-    /// A smaller version, while something is dragged that takes long to redraw.
+    /// A smaller version, while the user drags something that takes long to redraw.
     draft: TileSheet,
     is_draft_in_front: bool,
     /// The picture unwrapped, while that is shown.
@@ -72,7 +72,7 @@ pub struct Canvas {
     small_is_old: bool,
     /// Of the canvas's area, screen points.
     pub area_pt: Vec2,
-    /// The same when each tab was seen last, by its key.
+    /// The same when each tab was last shown, by its key.
     areas_pt: BTreeMap<usize, Vec2>,
     /// The canvas pixel under the pointer.
     pub under: Option<Vec2>,
@@ -142,12 +142,12 @@ impl Canvas {
             return said(ui, rect, "Unwrapping the surface…");
         }
         let size = tab.shown_size();
-        // A canvas that is seen whole is seen whole in a window of another size too.
+        // A canvas that is wholly visible stays so when the window is resized.
         if area_before_pt != self.area_pt && view == CanvasView::fitting(size, area_before_pt) {
             actions.push(Action::View(ViewAction::Fit { window_pt: self.area_pt }));
             ui.ctx().request_repaint();
         }
-        // So is one that has become another, if the last one was.
+        // So it does when its own size changes.
         let last = self.wanted.as_ref().filter(|_| self.tab == Some(tab.key)).map(|(last, _)| last.size);
         if last.is_some_and(|last| last != tab.document().size && view == CanvasView::fitting(last, self.area_pt)) {
             actions.push(Action::View(ViewAction::Fit { window_pt: self.area_pt }));
@@ -177,7 +177,7 @@ impl Canvas {
             if wobble.goes_on(ui, tab.shown()) {
                 return wobble.draw(&painter, screen_from_canvas);
             }
-            // What ended it does nothing else.
+            // The event that ended it does nothing else.
             self.wobble = None;
             return ui.ctx().request_repaint();
         }
@@ -219,7 +219,7 @@ impl Canvas {
             ui.ctx().set_cursor_icon(self.hand.cursor(session, under.is_some()));
         }
     }
-    /// Sways the picture by its depth, or no longer.
+    /// Starts or stops swaying the picture by its depth.
     pub fn wobble(&mut self, ctx: &egui::Context, session: &Session) {
         self.wobble = match self.wobble {
             Some(_) => None,
@@ -261,7 +261,7 @@ impl Canvas {
     }
 }
 
-/// Enter closes a lasso of clicks, Escape gives it up.
+/// Enter closes a lasso of clicks, Escape cancels it.
 fn lasso_keys(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
     if session.lasso.is_empty() || session.is_drawing() || ui.ctx().egui_wants_keyboard_input() {
         return;

@@ -1,5 +1,5 @@
 //! Views of the surface over the picture, drawn on a thread of their own: one over all of it, and the anchors' weights
-//! in a corner (SF fig. 9). Floor 7. The views are in `document::view`.
+//! in a corner (SF fig. 9). Floor 7. Not here: the views (`document::view`).
 
 use super::marks::anchor_color;
 use crate::document::view::{SurfaceView, draw};
@@ -20,7 +20,7 @@ use std::sync::mpsc::{Receiver, channel};
 struct ViewInputs {
     view: SurfaceView,
     document: Document,
-    /// Of a layer's view.
+    /// For the view of a layer.
     layer: Option<Arc<Layer>>,
 }
 
@@ -149,7 +149,7 @@ fn inset(painter: &Painter, texture: &TextureHandle, anchors: usize) {
     }
 }
 
-/// A picture as a texture, shrunk to what any driver takes.
+/// A picture as a texture, shrunk to a size that any driver takes.
 pub fn loaded(ctx: &egui::Context, name: &str, picture: &Picture) -> Option<TextureHandle> {
     const LARGEST: u32 = 2048;
     let longer = picture.size.width.max(picture.size.height);

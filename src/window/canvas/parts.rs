@@ -19,7 +19,7 @@ use std::sync::Arc;
 /// Side of a handle, and the length of a touch's arrow, points.
 const HANDLE_PT: f32 = 9.0;
 const ARROW_PT: f32 = 22.0;
-/// Touches drawn; more would be a cloud.
+/// The most touches drawn; more would be a cloud.
 const MOST_TOUCHES: usize = 2000;
 
 const DARK: Color32 = Color32::from_black_alpha(120);
@@ -86,7 +86,7 @@ impl PartMarks {
         }
         if let Some((part, form)) = chosen.and_then(form_of) {
             let look = Stroke::new(1.4, LIGHT);
-            // While it is dragged its last form goes along.
+            // While it is dragged, its last form moves with it.
             let map = self.known.moved(&part.id);
             let moved = |p: Vec2| to_screen(map.transform_point2(p));
             outline(painter, self.chosen.runs(form, level), &moved, look);
@@ -155,7 +155,7 @@ fn handles(painter: &Painter, part: &Part, frame: &PartFrame, to_screen: &impl F
     }
     inflation_handles(painter, frame, to_screen);
     if let Some(at) = frame.depth().map(to_screen) {
-        // A small sheet before a larger one.
+        // A small sheet in front of a larger one.
         for (by, side) in [(-2.0, 10.0), (2.0, 8.0)] {
             let center = at + eframe::egui::vec2(by, by);
             let sheet = Rect::from_center_size(center, eframe::egui::Vec2::splat(side));
@@ -188,7 +188,7 @@ fn inflation_handles(painter: &Painter, frame: &PartFrame, to_screen: &impl Fn(V
     }
 }
 
-/// What a handle changes, beside the pointer.
+/// What a handle changes, next to the pointer.
 fn hint(painter: &Painter, at: Pos2, text: &str) {
     let font = eframe::egui::FontId::proportional(12.5);
     let galley = painter.layout_no_wrap(text.to_owned(), font, Color32::WHITE);
@@ -210,12 +210,12 @@ pub fn ball(painter: &Painter, at: Pos2, radius: f32, normal: Vec3) {
     painter.circle(tip, 0.26 * radius, Color32::WHITE, Stroke::new(1.0, DARK));
 }
 
-/// Touches as arrows, as long as they lean.
+/// Touches as arrows, longer the more they lean.
 fn arrows(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2, screen_from_canvas: Affine2) {
     let Some(document) = session.shown() else { return };
     for touch in touches(document).into_iter().take(MOST_TOUCHES) {
         let at = to_screen(touch.at);
-        // A turned or mirrored view takes directions along.
+        // A turned or mirrored view also turns or mirrors directions.
         let way = screen_from_canvas.transform_vector2(vec2(touch.normal.x, -touch.normal.y));
         let length = ARROW_PT * vec2(touch.normal.x, touch.normal.y).length();
         let way = way.normalize_or_zero() * length;

@@ -42,7 +42,7 @@ pub struct PointerState {
     pen: WindowPen,
     /// While a stroke is drawn.
     watch: Option<ReportFilter>,
-    /// Two fingers came down: since when, and how far they moved since, points.
+    /// Two fingers came down: when, and how far they moved since, points.
     tap: Option<(f64, f32)>,
     keys: Modifiers,
     space: bool,
@@ -141,7 +141,7 @@ impl PointerState {
             }
             while let Some(report) = self.pen.next() {
                 match report.phase {
-                    // A press beside an open menu closes it, and nothing else.
+                    // A press outside an open menu closes it, and does nothing else.
                     PenPhase::Down(_) if ours(report.at) && Popup::is_any_open(ui.ctx()) => Popup::close_all(ui.ctx()),
                     PenPhase::Down(button) if ours(report.at) && self.pen.touches() < 2 => {
                         self.press(&report, button, &mut listening);
@@ -230,7 +230,7 @@ impl PointerState {
             _ => PointerGesture::Nothing,
         };
     }
-    /// A guide out of a ruler.
+    /// A guide is pulled out of a ruler.
     fn pull(&mut self, report: &PenReport, area: Rect, listening: &mut FrameInput) {
         if self.holding != PointerGesture::Nothing {
             return;
@@ -277,7 +277,7 @@ impl PointerState {
             PointerGesture::Drawing => {
                 let is_guide = std::mem::take(&mut self.pulls) || listening.session.drags_guide();
                 if is_guide && rulers::is_on(self.area, listening.session, self.last) {
-                    // A guide that is dropped on a ruler leaves the canvas.
+                    // A guide that is dropped on a ruler is removed.
                     listening.pens.push(PenSample::at(Vec2::splat(*COORDINATE.start())));
                 }
                 listening.flush();

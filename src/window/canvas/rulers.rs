@@ -1,37 +1,37 @@
-//! Rulers along the upper and the left edge of the view: canvas px, from which guides are pulled out.
-//! Floor 7. The guides themselves are the session's.
+//! Rulers along the upper and the left edge of the view: they show canvas px, and guides are pulled out of them. Floor
+//! 7. Not here: the guides themselves (the session).
 
 use crate::math::{Affine2, Vec2, vec2};
 use crate::session::{CanvasView, Session};
 use eframe::egui::{Align2, Color32, FontId, Pos2, Rect, Stroke, Ui, pos2};
 
-/// How wide a ruler is, points.
+/// The width of a ruler, points.
 pub const RULER_PT: f32 = 18.0;
-/// Labels are at least this far apart, and short marks.
+/// The least distance of labels, and of short marks.
 const LABELS_PT: f32 = 56.0;
 const MARKS_PT: f32 = 6.0;
 
-/// How much room rulers take at the upper and the left edge, points; they measure the picture, not the unwrapped sheet.
+/// The room of rulers at the upper and the left edge, points; they measure the picture, not the unwrapped sheet.
 pub fn room_pt(session: &Session) -> f32 {
     let is_picture = session.active().is_some_and(|tab| tab.unwrapped().is_none());
     if session.aids.rulers && is_picture { RULER_PT } else { 0.0 }
 }
 
-/// Whether a point of the window lies on a ruler beside the canvas's area.
+/// Whether a point of the window lies on a ruler at the canvas's area.
 pub fn is_on(area: Rect, session: &Session, at: Pos2) -> bool {
     let room = room_pt(session);
     let whole = Rect::from_min_max(area.min - eframe::egui::Vec2::splat(room), area.max);
     whole.contains(at) && !area.contains(at)
 }
 
-/// Whether a guide that is pulled out at a point of a ruler stands upright on the canvas.
+/// Whether a guide that is pulled out at a point of a ruler is upright on the canvas.
 pub fn pulls_upright(area: Rect, view: &CanvasView, at: Pos2) -> bool {
     // The upper ruler's guides are level as seen.
     let is_upper = at.y < area.top() && at.x >= area.left();
     is_upper != (axis_along(view) == Some(0) || axis_along(view).is_none())
 }
 
-/// The axis of the canvas that runs along the upper ruler: 0 for x, 1 for y; none in a view that leans.
+/// The axis of the canvas that runs along the upper ruler: 0 for x, 1 for y; none in a turned view.
 fn axis_along(view: &CanvasView) -> Option<usize> {
     let (sin, cos) = view.turn_rad.sin_cos();
     if sin.abs() < 1e-3 {
@@ -50,7 +50,7 @@ fn step_px(zoom: f32, least_pt: f32) -> f32 {
     [1.0, 2.0, 5.0, 10.0].map(|k| k * power).into_iter().find(|step| *step >= least).unwrap_or(10.0 * power)
 }
 
-/// Draws both beside the canvas's area; `under`: the canvas point under the pointer.
+/// Draws both at the edges of the canvas's area; `under`: the canvas point under the pointer.
 pub fn draw(ui: &Ui, session: &Session, area: Rect, screen_from_canvas: Affine2, under: Option<Vec2>) {
     let Some(view) = session.active().and_then(|tab| tab.view).filter(|_| room_pt(session) > 0.0) else { return };
     let upper = Rect::from_min_max(pos2(area.left(), area.top() - RULER_PT), area.right_top());
@@ -62,7 +62,7 @@ pub fn draw(ui: &Ui, session: &Session, area: Rect, screen_from_canvas: Affine2,
     let edge = Stroke::new(1.0, ui.visuals().weak_text_color().gamma_multiply(0.5));
     ui.painter().hline(upper.x_range(), upper.bottom(), edge);
     ui.painter().vline(left.right(), left.y_range(), edge);
-    // In a view that leans nothing stands along the edges.
+    // In a turned view no axis runs along the edges.
     let Some(axis) = axis_along(&view) else { return };
     for (is_upper, strip, axis) in [(true, upper, axis), (false, left, 1 - axis)] {
         marks(ui, strip, is_upper, axis, &view, screen_from_canvas);

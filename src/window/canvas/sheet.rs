@@ -18,7 +18,7 @@ pub struct TileSheet {
     /// Painted tiles that are not on the graphics card yet, and since when.
     unsent: Vec<TileAt>,
     unsent_since: Option<Instant>,
-    /// They are sent though more is being painted.
+    /// They are uploaded although more is being painted.
     is_urgent: bool,
 }
 
@@ -48,7 +48,7 @@ impl TileSheet {
     pub fn take(&mut self, painted: RenderedTileBatch) {
         self.put(painted.tiles);
     }
-    /// Takes tiles that are to be shown at once.
+    /// Takes tiles that must be shown at once.
     pub fn put(&mut self, tiles: Vec<(TileAt, Option<Arc<Tile>>)>) {
         for (at, tile) in tiles {
             self.grid.set(at, tile);
@@ -69,11 +69,11 @@ impl TileSheet {
         self.blocks.update(ctx, &self.grid, self.unsent.drain(..));
         true
     }
-    /// * `scale`: pixels of the screen to one of the canvas.
-    /// * `canvas`: that the picture is drawn as large as.
+    /// * `scale`: pixels of the screen per pixel of the canvas.
+    /// * `canvas`: the size that the picture is drawn at.
     pub fn magnify(&mut self, scale: f32, canvas: Size) {
         let Some(size) = self.size else { return };
-        // A smaller picture stands for the canvas: its own pixels are not to be seen.
+        // A smaller picture represents the canvas: its own pixels must not be visible.
         let magnification = match Magnification::of(scale * canvas.width as f32 / size.width.max(1) as f32) {
             Magnification::Squares if size != canvas => Magnification::Smooth,
             own => own,

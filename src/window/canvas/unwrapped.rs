@@ -12,19 +12,19 @@ use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// The sheet as it is shown, and what it is made of.
+/// The sheet as shown, and what it is made of.
 #[derive(Default)]
 pub struct UnwrappedSheet {
     layout: Option<Arc<PlaneLayout>>,
     pub shown: TileSheet,
-    /// Each of its tiles, with the tiles of the picture that are seen in it.
+    /// Each of its tiles, with the tiles of the picture that it shows.
     feeds: Vec<(TileAt, Vec<TileAt>)>,
     /// Tiles of the picture that changed since they were pulled; `None`: all.
     changed: Option<BTreeSet<TileAt>>,
 }
 
 impl UnwrappedSheet {
-    /// Nothing is shown unwrapped any more.
+    /// Stops showing the surface unwrapped.
     pub fn put_away(&mut self) {
         if self.layout.is_some() {
             *self = Self::default();
@@ -40,7 +40,7 @@ impl UnwrappedSheet {
             changed.extend(tiles);
         }
     }
-    /// Pulls what changed of the picture; whether anything did.
+    /// Samples what changed in the picture; returns whether anything did.
     pub fn follow(&mut self, ctx: &egui::Context, layout: &Arc<PlaneLayout>, picture: &TileGrid) -> bool {
         if !self.layout.as_ref().is_some_and(|known| Arc::ptr_eq(known, layout)) {
             self.shown.begin(layout.size());
@@ -61,20 +61,20 @@ impl UnwrappedSheet {
     }
 }
 
-/// What lies on the picture, as it lies on the sheet.
+/// Overlays of the picture on the sheet.
 #[derive(Clone, Copy)]
 pub struct OnSheet<'a> {
     pub layout: &'a PlaneLayout,
     pub surface: &'a Surface,
 }
 
-/// Lines are bent every so many px of the picture.
+/// Lines bend every so many px of the picture.
 const STEP_PX: f32 = 3.0;
-/// Two of these points farther apart on the sheet lie on two sides of an edge.
+/// Two of these points farther apart than this on the sheet lie on two sides of an edge.
 const CUT_PX: f32 = 6.0 * STEP_PX;
 
 impl OnSheet<'_> {
-    /// Where a point of the picture lies; `None` off the surface. A corner of pixels lies where one of them does.
+    /// The place of a point of the picture; `None` off the surface. A corner of pixels lies where one of them does.
     pub fn point(&self, p: Vec2) -> Option<Vec2> {
         let sides = [(0.25, 0.25), (-0.25, 0.25), (0.25, -0.25), (-0.25, -0.25)];
         let pixels = sides.map(|(x, y)| (p + vec2(x, y)).floor());
@@ -84,9 +84,9 @@ impl OnSheet<'_> {
         let within = (p - middle).clamp(Vec2::splat(-0.499), Vec2::splat(0.499));
         self.layout.sheet_at(self.surface, middle + within)
     }
-    /// A straight line of the picture, in short pieces, without those that lie nowhere.
+    /// A straight line of the picture, in short pieces, without those off the sheet.
     pub fn line(&self, from: Vec2, to: Vec2) -> impl Iterator<Item = [Vec2; 2]> {
-        /// A line across the largest canvas takes fewer.
+        /// A line across the largest canvas needs fewer.
         const MOST_STEPS: f32 = 32_768.0;
         let steps = (from.distance(to) / STEP_PX).ceil().max(1.0).min(MOST_STEPS);
         let on_sheet = *self;
@@ -101,7 +101,7 @@ impl OnSheet<'_> {
 }
 
 impl Canvas {
-    /// Brings the sheet of the unwrapped surface up to the picture, if it is shown.
+    /// Updates the sheet of the unwrapped surface to the picture, if it is shown.
     pub(super) fn follow_unwrapped(&mut self, ctx: &egui::Context, layout: Option<&Arc<PlaneLayout>>) {
         let was_shown = self.sheet.shown.size().is_some();
         match layout {
@@ -112,7 +112,7 @@ impl Canvas {
     }
 }
 
-/// The tiles of the picture that are seen in a tile of the sheet.
+/// The tiles of the picture that a tile of the sheet shows.
 fn feeding(layout: &PlaneLayout, at: TileAt) -> Vec<TileAt> {
     let rect = at.rect();
     let pixels = (rect.y0..rect.y1).flat_map(|y| (rect.x0..rect.x1).map(move |x| (x, y)));
@@ -123,7 +123,7 @@ fn feeding(layout: &PlaneLayout, at: TileAt) -> Vec<TileAt> {
     seen.collect::<BTreeSet<TileAt>>().into_iter().collect()
 }
 
-/// A tile of the sheet; premultiplied, between four pixels of the picture.
+/// A tile of the sheet; premultiplied, interpolated between four pixels of the picture.
 fn pulled(layout: &PlaneLayout, picture: &TileGrid, at: TileAt) -> Option<Arc<Tile>> {
     let rect = at.rect();
     let mut pixels = vec![0u8; TILE * TILE * 4];

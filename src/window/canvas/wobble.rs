@@ -1,5 +1,5 @@
-//! The picture swaying before the eye by its depth, so that the relief shows, until a key or a click. Floor 7. Not
-//! here: what is seen from aside (`document::view::sway`).
+//! The picture swaying by its depth, so that the relief shows, until a key or a click. Floor 7. Not here: the picture
+//! seen from aside (`document::view::sway`).
 
 use super::blocks::{corners, on_screen, quad};
 use crate::document::Document;
@@ -9,10 +9,10 @@ use crate::raster::TileGrid;
 use crate::session::looks_same;
 use eframe::egui::{Color32, ColorImage, Context, Event, Painter, TextureHandle, TextureOptions, Ui, pos2};
 
-/// How far the viewer goes to each side, and how long both ways take.
+/// How far the viewer moves to each side, and the time of both ways.
 const MOST_RAD: f32 = 10.0 * std::f32::consts::PI / 180.0;
 const SECS: f64 = 3.2;
-/// The most px of a side that sways: enough to see the form, few enough to be drawn anew for every frame.
+/// The most px of a side that sways: enough to see the form, few enough to be drawn again for every frame.
 const LONGEST: u32 = 900;
 
 /// The picture that sways.
@@ -24,13 +24,13 @@ pub struct Wobble {
 }
 
 impl Wobble {
-    /// `flat`: the finished picture. `None` where there is no depth.
+    /// `flat`: the finished picture. `None` if there is no depth.
     pub fn new(ctx: &Context, document: &Document, flat: &TileGrid) -> Option<Self> {
         let scene = SwayScene::new(flat, document.surface.as_ref()?, LONGEST);
         let since_secs = ctx.input(|input| input.time);
         Some(Self { of: document.clone(), scene, since_secs, texture: None })
     }
-    /// Whether it goes on: nothing was pressed, and the document is the same.
+    /// Whether it continues: nothing was pressed, and the document is the same.
     pub fn goes_on(&self, ui: &Ui, document: &Document) -> bool {
         let stops = |event: &Event| {
             matches!(

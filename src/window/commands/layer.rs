@@ -11,7 +11,7 @@ use crate::session::chosen::{neighbour, range};
 use crate::session::{Action, LayerPath, LayerPaths, Property, Session};
 use eframe::egui::Key;
 
-/// Does something with all chosen layers; where there are none, that is said.
+/// Does something with all chosen layers; if there are none, says so.
 fn with_chosen(session: &Session, requests: &mut UiRequests, action: impl FnOnce(LayerPaths) -> LayerAction) {
     if session.active().is_some() {
         requests.act(Action::Layer(action(session.layer_paths())));
@@ -32,7 +32,7 @@ fn toggle_lock(session: &Session, requests: &mut UiRequests, lock: LayerLock) {
     set(session, requests, Property::Locked { lock });
 }
 
-/// Goes on to the next layer, or takes it in.
+/// Moves to the next layer, or adds it.
 fn step(session: &Session, requests: &mut UiRequests, by: i32, extends: bool) {
     let Some((tab, primary)) = session.active().and_then(|tab| Some((tab, tab.selected?))) else { return };
     let to = neighbour(tab.document(), primary, by);
@@ -42,7 +42,7 @@ fn step(session: &Session, requests: &mut UiRequests, by: i32, extends: bool) {
     requests.actions.extend(LayerAction::choosing(tab.document(), &ids, anchor).map(Action::Layer));
 }
 
-/// Whether something is so of the selected layer.
+/// Whether something is true of the selected layer.
 fn layer_is(session: &Session, is: impl FnOnce(&Layer) -> bool) -> bool {
     session.layer().is_some_and(|layer| is(layer))
 }

@@ -17,7 +17,7 @@ mod view;
 
 pub use row::MenuCommand;
 
-/// The menus and what is in them.
+/// The menus and their commands.
 pub const MENUS: [(&str, &[MenuCommand]); 8] = [
     ("File", file::COMMANDS),
     ("Edit", edit::COMMANDS),

@@ -1,4 +1,4 @@
-//! New parts of the shape, a menu within Layer. Floor 7. Not here: what each is made of
+//! New parts of the shape, a menu within Layer. Floor 7. Not here: what each is made from
 //! (`session::actions::parts::new`).
 
 use super::row::{MenuCommand, has_document, row};

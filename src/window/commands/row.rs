@@ -1,4 +1,4 @@
-//! One row of the menus: a command with its keys, and the small words that rows are written in.
+//! One row of the menus: a command with its keys, and the short functions that rows are written with.
 //! Floor 7.
 
 use crate::panel_layout::PanelLayout;
@@ -36,7 +36,7 @@ impl MenuCommand {
     pub const fn ticked(self, is_on: fn(&Session, &PanelLayout) -> bool) -> Self {
         Self { is_on: Some(is_on), ..self }
     }
-    /// Why it cannot be done now, for the user; what it would do is in its hint.
+    /// Why it cannot be done now, for the user; its hint says what it would do.
     pub fn refusal(&self, session: &Session) -> String {
         let why = match (session.active(), session.layer()) {
             (None, _) => "there is no document",

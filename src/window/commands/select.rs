@@ -1,5 +1,4 @@
-//! The Select menu. Its commands are always there: what cannot be done says why.
-//! Floor 7.
+//! The Select menu. Its commands are always enabled: what cannot be done says why. Floor 7.
 
 use super::row::{LINE, MenuCommand, always, ctrl, ctrl_shift, has_document, row};
 use crate::raster::coverage::SelectionMode;

@@ -68,7 +68,7 @@ fn is_transformed(session: &Session) -> bool {
     let Some(tab) = session.active().filter(|_| session.lasso.is_empty() && session.crop.is_none()) else {
         return false;
     };
-    // With a brush in hand Enter makes no paint of what is live.
+    // While a brush is current, Enter does not turn live layers into paint.
     let in_hand = matches!(session.tool, ToolKind::Transform | ToolKind::Liquify);
     let is_placed = |id| {
         let layer = tab.document().layer(id);
@@ -97,7 +97,7 @@ fn turn(session: &Session, requests: &mut UiRequests, degrees: f32) {
     }
 }
 
-/// The shape mapped about its middle, while the transform tool takes it along.
+/// The shape mapped about its middle, while the transform tool moves it.
 fn shape_by(session: &Session, map: Option<PlaneMap>) -> Option<Action> {
     let takes_shape = session.tool == ToolKind::Transform && session.carried == TransformTarget::Shape;
     let tab = session.active().filter(|_| takes_shape)?;

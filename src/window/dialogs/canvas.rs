@@ -11,12 +11,12 @@ use crate::session::actions::CanvasAction;
 use crate::widgets::choice;
 use eframe::egui::{Button, DragValue, Grid, Ui};
 
-/// A side in the dialogs, px: as of new documents.
+/// A side in the dialogs, px: as for new documents.
 const SIDE: std::ops::RangeInclusive<u32> = 1..=16_384;
 /// What printers take for one inch.
 const PRINT_PPI: f32 = 300.0;
 
-/// The dialog that is asked for, on a canvas of a size.
+/// The requested dialog, for a canvas of a size.
 pub fn asked(ask: &WindowRequest, size: Size) -> Dialog {
     match ask {
         WindowRequest::ImageSizeDialog => Dialog::ImageSize(ImageSizeDialog::of(size)),
@@ -86,7 +86,7 @@ pub struct CanvasSizeDialog {
     anchor: CanvasAnchor,
 }
 
-/// What the window calls them.
+/// Their names in the window.
 const ANCHORS: [(CanvasAnchor, &str); 9] = [
     (CanvasAnchor::TopLeft, "The upper left corner stays"),
     (CanvasAnchor::Top, "The upper side stays"),

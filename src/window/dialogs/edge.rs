@@ -1,5 +1,4 @@
-//! Asks by how much the edge of the selection is to be changed.
-//! Floor 7.
+//! Asks by how much to change the edge of the selection. Floor 7.
 
 use super::{DialogAnswer, buttons};
 use crate::requests::UiRequests;
@@ -36,7 +35,7 @@ impl EdgeDialog {
     }
 }
 
-/// Asks for the name that the selection is kept by, and shows those that are kept.
+/// Asks for a name to keep the selection by, and shows the kept ones.
 #[derive(Default)]
 pub struct KeepDialog {
     name: String,

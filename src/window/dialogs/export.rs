@@ -16,7 +16,7 @@ pub struct ExportDialog {
     pub extension: &'static str,
     pub background: Option<Color>,
     pub quality: u8,
-    /// Bits a channel; the format's usual ones if it cannot have these.
+    /// Bits per channel; the format's default if it cannot have these.
     pub bits: Option<u8>,
 }
 
@@ -63,12 +63,12 @@ impl ExportDialog {
             None => DialogAnswer::Open,
         }
     }
-    /// The bits a channel that a file of this name gets, if they are not the format's usual ones.
+    /// The bits per channel for a file of this name, if they are not the format's default.
     pub fn bits_for(&self, file: &Path) -> Option<u8> {
         let format = ExportFormat::of(file).ok()?;
         self.bits.filter(|bits| format.depths().contains(bits))
     }
-    /// Where the format can have more than one depth.
+    /// Shown if the format can have more than one depth.
     fn depth(&mut self, ui: &mut Ui) {
         let format = ExportFormat::ALL.iter().find(|(_, extension)| *extension == self.extension);
         let depths = format.map_or(&[][..], |(format, _)| format.depths());

@@ -1,5 +1,4 @@
-//! The numbers of the grid, and what the pen snaps to. Each change is seen at once.
-//! Floor 7.
+//! The numbers of the grid, and what the pen snaps to. Each change is shown at once. Floor 7.
 
 use super::{DialogAnswer, close};
 use crate::requests::UiRequests;

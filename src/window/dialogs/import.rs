@@ -1,5 +1,5 @@
 //! The import dialog: choose the maps, check their detected conventions and their look under a light, and correct them
-//! before the first stroke. Floor 7. `io::maps` reads the maps, on another thread.
+//! before the first stroke. Floor 7. Not here: reading the maps, on another thread (`io::maps`).
 
 mod findings;
 mod ways;
@@ -28,17 +28,17 @@ pub struct ImportDialog {
     read: Option<SurfaceSource>,
     is_reading: bool,
     found: Option<Result<maps::ImportedSurface>>,
-    /// The finished picture beside the maps, the name of its layer, and whether the document begins with it.
+    /// The finished picture next to the maps, the name of its layer, and whether the document begins with it.
     picture: Option<(String, Picture)>,
     takes_picture: bool,
-    /// The user knows that a file which looks like no normal map is one.
+    /// Whether the user confirmed that a file which looks like no normal map is one.
     is_sure: bool,
     /// The surface lit in each of the ways to choose from, in the order of [`ImportDialog::ways`].
     lit: Vec<TextureHandle>,
     /// Which of them is chosen.
     clicked: usize,
-    /// The file that they show, and which of its axes were flipped as it was first found: the ways keep their places
-    /// while one after the other is chosen.
+    /// The file that they show, and which of its axes were flipped when first detected: the ways keep their positions
+    /// while the user tries them.
     first: Option<(String, [bool; 2])>,
     becomes: MapsBecome,
 }
@@ -88,7 +88,7 @@ impl ImportDialog {
             _ => self.source.normal = Some(MapSource { file, ..MapSource::default() }),
         }
     }
-    /// Maps were read; those that another dialog asked for, or that were chosen anew since, are passed over.
+    /// Maps were read; those requested by another dialog, or replaced by a new choice since, are ignored.
     pub fn take(&mut self, ctx: &Context, read: MapsRead) {
         let MapsRead { source, found, picture } = read;
         if self.read.as_ref() != Some(&source) {
@@ -96,7 +96,7 @@ impl ImportDialog {
         }
         (self.is_reading, self.takes_picture) = (false, picture.is_some());
         self.picture = picture;
-        // A flat border counts as background unless the user decides otherwise; then everything is read again.
+        // A flat border counts as background unless the user decides otherwise; then all is read again.
         let is_first = self.found.is_none() && self.source.mask.is_none();
         if is_first && found.as_ref().is_ok_and(|import| import.findings.flat_border > 0.0) {
             self.source.mask = Some(MaskSource::Flat);
@@ -119,7 +119,7 @@ impl ImportDialog {
         }
         self.found = Some(found);
     }
-    /// The ways that these maps may be meant.
+    /// The possible meanings of these maps.
     fn ways(&self) -> &'static [ReadingWay] {
         if self.source.normal.is_some() { &FLIPS } else { &SIDES }
     }
@@ -128,7 +128,7 @@ impl ImportDialog {
         let map = self.source.normal.as_ref().map(|map| &map.file);
         map.or(self.source.depth.as_ref().map(|map| &map.file)).map(String::as_str)
     }
-    /// Which axes were read flipped; of depth alone both where near is bright.
+    /// Which axes were read flipped; for depth alone, both if near is bright.
     fn flipped(&self, findings: &maps::Findings) -> [bool; 2] {
         if self.source.normal.is_some() {
             let normal = findings.normal.clone().unwrap_or_default();
@@ -150,7 +150,7 @@ impl ImportDialog {
         }
         let is_some = self.source.normal.is_some() || self.source.depth.is_some();
         if self.read.as_ref().is_some_and(|read| *read != self.source) {
-            // What was said of other files no longer holds; what was found of them stays to be looked at.
+            // What the user set for other files no longer holds; what was found about them stays visible.
             self.found = self.found.take().filter(|found| found.is_ok() && is_some);
         }
         if is_some && self.read.as_ref() != Some(&self.source) {
@@ -194,7 +194,7 @@ impl ImportDialog {
             None => DialogAnswer::Open,
         }
     }
-    /// The three files, each to be chosen or left out.
+    /// The three files, each of which may be left out.
     fn files(&mut self, ui: &mut Ui, ask: &mut Option<FilePurpose>) {
         let name = |file: &str| Path::new(file).file_name().unwrap_or_default().to_string_lossy().into_owned();
         let mask = match &self.source.mask {
@@ -294,7 +294,7 @@ impl ImportDialog {
                     ui.painter().rect_filled(rect, 4.0, Color32::from_gray(0x20));
                     let uv = egui::Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
                     ui.painter().image(texture.id(), at, uv, Color32::WHITE);
-                    // Of a colour that the pictures have not, whose border may be black or white.
+                    // A colour that the pictures lack, since their border may be black or white.
                     let chosen_rim = egui::Stroke::new(3.0, ui.visuals().selection.bg_fill);
                     let rim = if is_chosen { chosen_rim } else { ui.visuals().window_stroke };
                     ui.painter().rect_stroke(rect, 4.0, rim, StrokeKind::Inside);

@@ -1,5 +1,5 @@
-//! Exports the shape as maps for engines and other programs: which, and how they are written.
-//! Floor 7. The files are `io::export::shape`'s.
+//! Exports the shape as maps for engines and other programs: which, and how they are written. Floor 7. Not here: the
+//! files (`io::export::shape`).
 
 use super::{DialogAnswer, buttons};
 use crate::io::export::shape::{ShapeMap, ShapeOptions};
@@ -23,7 +23,7 @@ impl Default for MapsDialog {
 }
 
 impl MapsDialog {
-    /// The maps to be written.
+    /// The maps to write.
     pub fn maps(&self) -> Vec<ShapeMap> {
         ShapeMap::ALL.iter().zip(self.chosen).filter(|(_, on)| *on).map(|((map, _), _)| *map).collect()
     }

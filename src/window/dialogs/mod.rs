@@ -62,7 +62,7 @@ pub enum DialogAnswer {
     Chosen(FilePurpose, PathBuf),
     /// These maps are to be read.
     Import(Box<SurfaceSource>),
-    /// The document that was made of them.
+    /// The document that was made from them.
     Imported(import::MadeDocument),
     /// The new maps of the document in front.
     Replaced(Box<(SurfaceSource, ImportedSurface)>),
@@ -72,7 +72,7 @@ pub enum DialogAnswer {
     Discard(AfterUnsaved),
     /// Save first, then do this.
     SaveThen(AfterUnsaved),
-    /// Replace what stands there.
+    /// Replace the existing file.
     Replace(Pending),
     /// Save, whatever the format cannot hold.
     Lose(Box<Saving>),
@@ -86,7 +86,7 @@ pub enum DialogAnswer {
 }
 
 impl Dialog {
-    /// Shows the dialog; escape and a click beside it close it. `preview`: the picture of the document in front, small.
+    /// Shows the dialog; escape and a click outside close it. `preview`: the picture of the document in front, small.
     pub fn show(
         &mut self,
         ctx: &egui::Context,
@@ -146,7 +146,7 @@ fn buttons(ui: &mut Ui, yes: &str, can: bool) -> Option<bool> {
     answers(ui, yes, "Cancel", can)
 }
 
-/// The same where giving up has a name of its own.
+/// The same with a special name for cancelling.
 fn answers(ui: &mut Ui, yes: &str, no: &str, can: bool) -> Option<bool> {
     let mut answer = None;
     ui.add_space(4.0);

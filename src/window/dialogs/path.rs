@@ -18,7 +18,7 @@ pub struct PathDialog {
     is_begun: bool,
     /// The existing file that the user was warned about.
     replaces: Option<PathBuf>,
-    /// Of exports that are given none.
+    /// The extension for exports without one.
     extension: &'static str,
 }
 
@@ -31,7 +31,7 @@ struct FolderListing {
 }
 
 impl PathDialog {
-    /// `extension`: of exports that are given none.
+    /// `extension`: for exports without one.
     pub fn new(purpose: FilePurpose, folder: PathBuf, name: &str, extension: &'static str) -> Self {
         Self {
             purpose,
@@ -102,7 +102,7 @@ impl PathDialog {
     }
     /// Overwriting a file needs a second confirmation.
     fn choose(&mut self, file: PathBuf) -> DialogAnswer {
-        // As it will be called, so that the question is about the file that would be lost.
+        // With its final name, so that the question is about the file that would be lost.
         let file = self.purpose.named(file, self.extension);
         if self.purpose.is_saving() && file.is_file() && self.replaces.as_ref() != Some(&file) {
             self.name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();

@@ -8,7 +8,7 @@ use eframe::egui::Ui;
 pub struct Replace {
     /// Absent once it was answered.
     pending: Option<Pending>,
-    /// Why it was not replaced unasked.
+    /// Why it was not replaced without asking.
     reason: String,
 }
 

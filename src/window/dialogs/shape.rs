@@ -1,4 +1,4 @@
-//! Gives a drawing its first shape: one part or a part for each colour, as a pillow, tube, relief or coin. Floor 7.
+//! Gives a drawing its first shape: one part or one per colour, as a pillow, tube, relief or coin. Floor 7.
 //! Not here: what becomes of it (`session::actions::parts::first`).
 
 use super::{DialogAnswer, answers};
@@ -10,7 +10,7 @@ use crate::session::actions::parts::{InflationPreset, PartAction};
 use crate::session::{Action, LayerPath, OpenDocument, Session, drawing};
 use eframe::egui::Ui;
 
-/// Layers that are looked at for a drawing.
+/// How many layers are searched for a drawing.
 const MOST_LOOKS: usize = 12;
 
 pub struct ShapeDialog {

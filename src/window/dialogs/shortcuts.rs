@@ -83,7 +83,7 @@ impl ShortcutsDialog {
             }
         }
     }
-    /// Takes the key that something waits for.
+    /// Takes the key that is being waited for.
     fn listen(&mut self, ui: &Ui, keymap: &mut Keymap) {
         let Some(keyed) = self.waiting.and_then(keyed) else { return };
         let pressed = ui.input_mut(|i| {

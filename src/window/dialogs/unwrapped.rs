@@ -1,5 +1,4 @@
-//! Asks how the unwrapped surface is to be exported.
-//! Floor 7.
+//! Asks how to export the unwrapped surface. Floor 7.
 
 use super::{DialogAnswer, buttons};
 use crate::document::Highlights;
@@ -23,7 +22,7 @@ impl Default for UnwrappedDialog {
 }
 
 impl UnwrappedDialog {
-    /// What was chosen, of a surface unwrapped with these settings.
+    /// What was chosen, for a surface unwrapped with these settings.
     pub fn options(&self, settings: UnwrapSettings) -> UnwrapOptions {
         UnwrapOptions { scale: self.scale, settings, deep: self.is_deep.then_some(Highlights::Clipped) }
     }

@@ -1,4 +1,4 @@
-//! The options of the assistants' tool: what it lays, and how strongly strokes are drawn to them.
+//! The options of the assistants' tool: what it places, and how strongly assistants attract strokes.
 //! Floor 7.
 
 use crate::document::AssistantKind;

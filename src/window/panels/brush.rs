@@ -1,5 +1,5 @@
-//! The editor of the current brush: tip, spread, grain, stabiliser and dynamics. Floor 7. The list of brushes is in
-//! `brushes`, the curve widget in `curve`.
+//! The editor of the current brush: tip, spread, grain, stabiliser and dynamics. Floor 7. Not here: the list of brushes
+//! (`brushes`), the curve widget (`curve`).
 
 use super::curve;
 use crate::io::recipe::written_brush;
@@ -121,7 +121,7 @@ fn spread(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     changed.then_some(to)
 }
 
-/// `None` is no grain.
+/// `None`: no grain.
 const PATTERNS: [(Option<Pattern>, &str); 6] = [
     (None, "none"),
     (Some(Pattern::Paper), "paper"),
@@ -231,7 +231,7 @@ fn stroke(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     calmed.or(blended).or(erases).or(keeps)
 }
 
-/// What the habits of a brush say of themselves, in their order.
+/// The hints of a brush's habits, in their order.
 fn habits(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     let mut to = brush.clone();
     let mut changed = false;

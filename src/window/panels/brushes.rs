@@ -59,7 +59,7 @@ fn presets(ui: &mut Ui, session: &Session, swatches: &mut Swatches, requests: &m
     }
 }
 
-/// A right click on a brush of the user's own.
+/// A right click on one of the user's own brushes.
 fn remove(response: &Response, known: &BrushPreset, requests: &mut UiRequests) {
     response.context_menu(|ui| {
         if ui.button("Remove brush").clicked() {
@@ -104,7 +104,7 @@ fn search(ui: &mut Ui, requests: &mut UiRequests) -> String {
     search
 }
 
-/// Of one preset in the list: its picture above its name.
+/// The size of one preset in the list: its picture above its name.
 const CELL_PT: eframe::egui::Vec2 = vec2(58.0, 74.0);
 const SWATCH_PT: f32 = 44.0;
 
@@ -124,7 +124,7 @@ fn preset(ui: &mut Ui, preset: &BrushPreset, is_on: bool, swatches: &mut Swatche
     }
     let font = egui::TextStyle::Small.resolve(ui.style());
     let mut job = LayoutJob::simple(label.clone(), font, look.text_color(), rect.width() - 4.0);
-    // A name takes two lines; a longer one ends in an ellipsis, and the tooltip has it whole.
+    // A name takes two lines; a longer one ends in an ellipsis, and the tooltip shows all of it.
     job.wrap = TextWrapping { max_rows: 2, break_anywhere: false, ..TextWrapping::wrap_at_width(rect.width() - 4.0) };
     job.halign = Align::Center;
     let text = ui.fonts_mut(|fonts| fonts.layout_job(job));

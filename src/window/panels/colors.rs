@@ -1,4 +1,4 @@
-//! Colour: a square of saturation and value beside a bar of hues, numbers, and the last ones used.
+//! Colour: a square of saturation and value next to a bar of hues, numbers, and the last ones used.
 //! Floor 7.
 
 use crate::math::srgb::Color;
@@ -19,7 +19,7 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     swatches(ui, "Palette", palette, requests);
 }
 
-/// The colour in hand and the last ones, in one row: for panels beside which the picker is not in sight.
+/// The current colour and the last ones, in one row: for panels that hide the picker.
 pub fn strip(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     /// As many as a narrow panel has room for.
     const RECENT: usize = 8;
@@ -36,7 +36,7 @@ pub fn strip(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     });
 }
 
-/// Colours to be taken to hand by a click.
+/// Colours to select by a click.
 fn swatches(
     ui: &mut Ui,
     name: &str,

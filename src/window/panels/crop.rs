@@ -1,4 +1,4 @@
-//! The options of the crop tool: its frame in numbers, the aspect that it keeps, and what to do with it.
+//! The options of the crop tool: its frame in numbers, the aspect that it keeps, and its commands.
 //! Floor 7.
 
 use crate::canvas::crop;

@@ -1,5 +1,5 @@
-//! A curve widget: points in a square with straight lines between them. Floor 7. The brush editor decides what the
-//! curve drives.
+//! A curve widget: points in a square with straight lines between them. Floor 7. Not here: what the curve drives (the
+//! brush editor).
 
 use crate::math::{Vec2, vec2};
 use crate::paint::Curve;
@@ -13,11 +13,11 @@ const NEAR_PT: f32 = 12.0;
 /// The least distance between two points, in the unit square.
 const APART: f32 = 0.01;
 
-/// How far the square of a curve that adds goes beyond what it adds, so that a hand can make it add more.
+/// How far the square of a curve that adds extends beyond its values, so that the user can make it add more.
 const ROOM: f32 = 1.25;
 
-/// A curve's points in the square, as a hand moves them: a share is the line that it is; of one that adds the middle
-/// is nothing, and the edges are `span` away.
+/// A curve's points in the square, as the user moves them: a share is shown as it is; for one that adds, the middle is
+/// 0 and the edges are ± `span`.
 pub fn points(curve: &Curve, span: f32) -> Vec<Vec2> {
     match curve {
         Curve::Share(_) => vec![vec2(0.0, curve.at(0.0)), vec2(1.0, curve.at(1.0))],
@@ -35,14 +35,14 @@ fn through(like: &Curve, points: Vec<Vec2>, span: f32) -> Option<Curve> {
     }
 }
 
-/// How far the square of a curve goes.
+/// The extent of the square of a curve.
 fn span_of(curve: &Curve) -> f32 {
     let Curve::Added(points) = curve else { return 1.0 };
     let most = points.iter().map(|p| p.y.abs()).fold(0.0, f32::max);
     (ROOM * if most > 0.0 { most } else { 1.0 }).min(MOST_ADDED)
 }
 
-/// Shows a curve and bends it: a click adds a point, a drag moves one, a right click takes one away.
+/// Shows a curve and bends it: a click adds a point, a drag moves one, a right click removes one.
 pub fn show(ui: &mut Ui, label: &str, curve: &Curve, height_pt: f32) -> Option<ValueChange<Curve>> {
     let (rect, response) = ui.allocate_exact_size(egui::vec2(ui.available_width(), height_pt), Sense::click_and_drag());
     named(&response, label);
@@ -52,7 +52,7 @@ pub fn show(ui: &mut Ui, label: &str, curve: &Curve, height_pt: f32) -> Option<V
         let p = vec2((p.x - inner.left()) / inner.width(), (inner.bottom() - p.y) / inner.height());
         p.max(Vec2::ZERO).min(Vec2::ONE)
     };
-    // The square stays as it is while a hand pulls at the curve.
+    // The square keeps its extent during a drag.
     let spanned = response.id.with("span");
     let span = ui.data(|data| data.get_temp::<f32>(spanned)).filter(|_| response.dragged());
     let span = span.unwrap_or_else(|| span_of(curve));

@@ -1,5 +1,4 @@
-//! The history: every step by its name; a click goes there.
-//! Floor 7.
+//! The history: every step by its name; a click goes to it. Floor 7.
 
 use crate::requests::UiRequests;
 use crate::session::actions::EditAction;

@@ -5,10 +5,10 @@ use crate::document::{Document, HomeFrame};
 use crate::widgets::choice_row;
 use eframe::egui::Ui;
 
-/// A row with the parts to choose from, where there are any; what was chosen, `None` for what is around.
+/// A row with the parts to choose from, if there are any; returns what was chosen, `None` for what is around.
 ///
-/// * `own`: what it says itself.
-/// * `around`: what the choice of none is called.
+/// * `own`: its own home.
+/// * `around`: the name of the choice of none.
 pub fn choice(ui: &mut Ui, document: &Document, own: Option<&HomeFrame>, around: &str) -> Option<Option<String>> {
     let forms = document.parts.list.iter().filter(|part| part.on().is_none());
     let mut choices: Vec<(Option<&str>, &str)> = vec![(None, around)];
@@ -20,10 +20,10 @@ pub fn choice(ui: &mut Ui, document: &Document, own: Option<&HomeFrame>, around:
         return None;
     }
     let now = own.map(|home| &*home.part).filter(|part| around != CANVAS || *part != HomeFrame::CANVAS);
-    // What lies on touches or sculpting is carried by what these lie on.
+    // What lies on touches or sculpting is carried by the part beneath these.
     let body = now.map(|part| document.parts.body_of(part).map_or(part, |body| body.id.as_str()));
     choice_row(ui, "Lies on", body, &choices).map(|part| part.map(str::to_owned))
 }
 
-/// What the canvas is called.
+/// The name of the canvas.
 pub const CANVAS: &str = "Canvas";

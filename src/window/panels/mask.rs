@@ -94,7 +94,7 @@ pub fn show(ui: &mut Ui, layer: &Layer, on_mask: bool, setter: &mut LayerSetter)
     }
 }
 
-/// It is made elsewhere, and only offered where it is.
+/// It is made elsewhere, and listed only if present.
 fn is_made(choice: MaskChoice) -> bool {
     matches!(choice, MaskChoice::File | MaskChoice::Region)
 }

@@ -130,7 +130,7 @@ fn lights(ui: &mut Ui, lights: &[Light], canvas: Vec2, setter: &mut LayerSetter)
         ui.horizontal(|ui| {
             let direction = match light.kind {
                 LightKind::Directional { direction } => direction,
-                // From far enough a point light is a direction, which the ball shows.
+                // A point light far enough away is a direction, which the ball shows.
                 LightKind::Point { position } => position,
             };
             if let (Some(changed), LightKind::Directional { .. }) =

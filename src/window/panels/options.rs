@@ -13,7 +13,7 @@ use crate::widgets::{NumberField, ValueChange};
 use eframe::egui::scroll_area::ScrollBarVisibility;
 use eframe::egui::{Button, RichText, ScrollArea, Ui};
 
-/// Rows of the bar: how marks bend, and the options of the tool. It has both always.
+/// Rows of the bar: how marks bend, and the options of the tool. Both are always shown.
 pub const ROWS: f32 = 2.0;
 
 pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
@@ -23,7 +23,7 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
 
 /// One row, which a narrow window scrolls sideways.
 fn row(ui: &mut Ui, name: &str, show: impl FnOnce(&mut Ui)) {
-    // A plain wheel is enough: nothing here goes up or down.
+    // A plain wheel scrolls it: nothing here goes up or down.
     ui.style_mut().always_scroll_the_only_direction = true;
     let area = ScrollArea::horizontal().id_salt(name).scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden);
     area.show(ui, |ui| {
@@ -79,7 +79,7 @@ fn bending(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     }
 }
 
-/// The options of the tool in hand.
+/// The options of the current tool.
 fn of_tool(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     match session.tool {
         ToolKind::Fill => fill::options(ui, session.fill, requests),

@@ -1,5 +1,5 @@
-//! Properties of the selected layer: its content, placement and bending. Floor 7. Materials and lights are in
-//! `material`.
+//! Properties of the selected layer: its content, placement and bending. Floor 7. Not here: materials and lights
+//! (`material`).
 
 use super::setter::LayerSetter;
 use super::{colors, home, mask, material, options, strokes};

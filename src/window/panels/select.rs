@@ -13,7 +13,7 @@ use crate::tools::{SelectSettings, ToolKind};
 use crate::widgets::{NumberField, check, choice};
 use eframe::egui::{Button, Ui};
 
-/// How a new selection meets the last, with labels and hints.
+/// How a new selection is combined with the last, with labels and hints.
 const WAYS: [(SelectionMode, &str, &str); 4] = [
     (SelectionMode::Replace, "New", "A new selection takes the place of the last"),
     (SelectionMode::Add, "Add", "A new selection is added to the last (Shift)"),

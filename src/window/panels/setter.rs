@@ -1,5 +1,4 @@
-//! What panels of one layer change it by.
-//! Floor 7.
+//! How the panels of one layer change it. Floor 7.
 
 use crate::file_purpose::FilePurpose;
 use crate::requests::{UiRequests, WindowRequest};
@@ -23,7 +22,7 @@ impl LayerSetter<'_> {
     pub fn act(&mut self, action: impl FnOnce(LayerPath) -> LayerAction) {
         self.requests.act(Action::Layer(action(self.layer.clone())));
     }
-    /// A button that asks for a picture of the layer's.
+    /// A button that requests a picture for the layer.
     pub fn choose(&mut self, ui: &mut Ui, part: PicturePart, text: &str) {
         let response = ui.button(text);
         named(&response, &format!("Choose {}", part.label().to_lowercase()));

@@ -37,7 +37,7 @@ fn leaning(normal: Vec3) -> [f32; 2] {
     [normal.x, normal.y].map(|v| v.max(-1.0).min(1.0).asin().to_degrees())
 }
 
-/// The direction that leans so far; what leans farther than a silhouette is one.
+/// The direction that leans this far; at most a silhouette.
 fn leaned([right, up]: [f32; 2]) -> Vec3 {
     let flat = crate::math::vec2(right.to_radians().sin(), up.to_radians().sin()).clamp_length_max(0.999);
     vec3(flat.x, flat.y, (1.0 - flat.length_squared()).max(0.0).sqrt())
@@ -50,7 +50,7 @@ fn touching(ui: &mut Ui, now: ShapeSettings) -> Option<ShapeSettings> {
     ball(ui.painter(), rect.center(), 0.46 * side, now.normal);
     let mut to = None;
     if response.dragged() {
-        // A drag of so many points leans it over.
+        // Points of a drag that leans it over.
         const POINTS: f32 = 60.0;
         let by = response.drag_delta() / POINTS;
         let flat = crate::math::vec2(now.normal.x + by.x, now.normal.y - by.y).clamp_length_max(0.98);

@@ -90,7 +90,7 @@ pub fn show(
     });
 }
 
-/// What the document in front takes; the menu tells of what, and sets how much may be kept for speed.
+/// The memory of the document in front; the menu lists it, and sets how much may be kept for speed.
 fn memory_menu(
     ui: &mut Ui,
     memory: &mut MemoryMeter,
@@ -140,7 +140,7 @@ fn memory_menu(
     button.response.on_hover_text(about);
 }
 
-/// What was said last, for as long as it stands; whether there is any.
+/// The last message, while it is shown; returns whether there is one.
 fn say(ui: &mut Ui, jobs: &Jobs) -> bool {
     let said = jobs.said();
     if let Some(said) = said {

@@ -1,5 +1,4 @@
-//! The surface: its maps and what is derived from them, over the picture.
-//! Floor 7.
+//! The surface: its maps and what is derived from them, shown over the picture. Floor 7.
 
 use crate::document::view::{SurfaceView, available};
 use crate::requests::{UiRequests, WindowRequest};

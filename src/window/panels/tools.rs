@@ -14,16 +14,16 @@ use eframe::egui::{Frame, Panel, ScrollArea, Ui, vec2};
 /// Sides of a tool's button, points.
 const LARGEST_PT: f32 = 32.0;
 const SMALLEST_PT: f32 = 20.0;
-/// Of those in two columns, and between them.
+/// Of those in two columns, and the gap between them.
 const PAIRED_PT: f32 = 24.0;
 const GAP_PT: f32 = 2.0;
-/// What the colours beneath the tools take, points.
+/// The height of the colours beneath the tools, points.
 const COLOURS_PT: f32 = 124.0;
 
 pub fn show(ui: &mut Ui, session: &Session, keymap: &Keymap, requests: &mut UiRequests) {
     let beneath = Panel::bottom("current colours").resizable(false).show_separator_line(false).frame(Frame::NONE);
     beneath.show(ui, |ui| ui.vertical_centered(|ui| colours(ui, session, requests)));
-    // In a very low window tools scroll; the colours stay in sight.
+    // In a very low window tools scroll; the colours stay visible.
     let area = ScrollArea::vertical().scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden);
     let columns = if ui.available_width() > LARGEST_PT + 1.0 { 2 } else { 1 };
     let side = side_pt(ui, ui.available_height(), columns).max(SMALLEST_PT);
@@ -39,7 +39,7 @@ pub fn show(ui: &mut Ui, session: &Session, keymap: &Keymap, requests: &mut UiRe
     });
 }
 
-/// How wide the bar is inside its margins: in a low window tools stand in two columns.
+/// The width of the bar inside its margins: in a low window tools are in two columns.
 pub fn width_pt(ui: &Ui) -> f32 {
     let one = side_pt(ui, ui.available_height() - COLOURS_PT, 1);
     if one < SMALLEST_PT { 2.0 * PAIRED_PT + GAP_PT } else { LARGEST_PT }

@@ -1,4 +1,4 @@
-//! The options of the transform tool: what it does at once, how pixels are sampled, and its frame in numbers.
+//! The options of the transform tool: its commands, how pixels are sampled, and its frame in numbers.
 //! Floor 7.
 
 use crate::commands::{MenuCommand, TRANSFORMS};
@@ -61,7 +61,7 @@ pub fn ways(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     }
 }
 
-/// A mesh over the layer, by how many points it has along a side.
+/// A mesh over the layer, by the number of points along a side.
 fn meshes(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let Some(layer) = session.layer().filter(|layer| layer.lock != LayerLock::All) else { return };
     let now = layer.transform.as_ref().and_then(|own| own.mesh()).map(|mesh| [mesh.columns(), mesh.rows()]);
@@ -109,7 +109,7 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     }
 }
 
-/// Numbers that were typed or dragged.
+/// Typed or dragged numbers.
 struct EditedNumbers {
     to: FrameNumbers,
     /// They change about the pivot.
@@ -121,7 +121,7 @@ fn numbers(ui: &mut Ui, was: FrameNumbers) -> Option<EditedNumbers> {
     let mut to = was;
     let (mut moved, mut changed, mut done) = (false, false, false);
     let mut number = |ui: &mut Ui, name: &str, value: &mut f64, range: RangeInclusive<f64>, suffix: &str| {
-        // The share of a side stands after it, without a name of its own to be read.
+        // The share of a side follows it, without a name of its own for screen readers.
         let is_share = suffix == " %";
         if !is_share {
             ui.label(name);

@@ -11,7 +11,7 @@ use std::collections::VecDeque;
 pub struct WindowPen {
     reports: VecDeque<PenReport>,
     at: Pos2,
-    /// Of the touch that is down.
+    /// The state of the touch that is down.
     force: Option<f32>,
     /// Fingers and pens on the glass.
     touches: usize,
@@ -55,7 +55,7 @@ impl WindowPen {
         let report = phase.map(|phase| self.report(phase, now_secs));
         self.reports.extend(report);
     }
-    /// All events of a frame are heard.
+    /// All events of a frame are processed.
     pub fn settle(&mut self) {
         if let Some(tablet) = &self.tablet {
             tablet.borrow_mut().settle();
@@ -64,8 +64,8 @@ impl WindowPen {
     fn moved(&mut self, at: Pos2, px_per_pt: f32, now_secs: f64) {
         let at_px = [at.x * px_per_pt, at.y * px_per_pt].map(f64::from);
         if let Some(held) = self.tablet.as_ref().and_then(|tablet| tablet.borrow_mut().take(at_px)) {
-            // Another device took the pointer: a pen's stroke ends where it was. With several mice this may be reported
-            // late.
+            // Another device took the pointer: a pen's stroke ends at its last place. With several mice this may be
+            // reported late.
             if self.is_down && self.held.pressure.is_some() && held.device != self.held.device {
                 self.is_down = false;
                 self.reports.push_back(self.report(PenPhase::Lost, now_secs));

@@ -29,7 +29,7 @@ pub struct PenReport {
     pub pressure: Option<f32>,
     /// Degrees from upright, right and down positive.
     pub tilt: (f32, f32),
-    /// By the clock of the source.
+    /// Seconds, by the clock of the source.
     pub secs: f64,
     /// The pen is held upside down.
     pub is_eraser: bool,
@@ -40,7 +40,7 @@ pub struct PenReport {
 pub enum PenPhase {
     /// A barrel button is reported as its mouse button.
     Down(PointerButton),
-    /// Above the canvas or on it.
+    /// It moved, above the canvas or on it.
     Move,
     Up,
     /// It left the tablet, was unplugged, or was cancelled by the platform: its stroke ends where it last was.
@@ -66,7 +66,7 @@ pub fn devices<T>(events: &winit::event_loop::EventLoop<T>) -> Option<Box<dyn Pe
     let server = is_x11.then(x11::X11Server::connect).flatten()?;
     Some(Box::new(server))
 }
-/// What the platform of the window knows of pens beyond its events.
+/// What the platform of the window knows about pens beyond its events.
 #[cfg(not(all(unix, not(target_os = "macos"))))]
 pub fn devices<T>(_: &winit::event_loop::EventLoop<T>) -> Option<Box<dyn PenDevices>> {
     None

@@ -1,4 +1,4 @@
-//! A recorded pen, for tests: one report a line, `[x, y, pressure, secs]`, `null` for a missing pressure and `"nan"`
+//! A recorded pen, for tests: one report per line, `[x, y, pressure, secs]`, `null` for a missing pressure and `"nan"`
 //! for an invalid number. Floor 7.
 
 use super::{PenPhase, PenReport, PenSource};

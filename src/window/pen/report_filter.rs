@@ -10,7 +10,7 @@ const FAST_PT_PER_SEC: f32 = 2000.0;
 const LEAST_PRESSURE: f32 = 0.2;
 /// The initial pressure of a mouse's stroke.
 const FIRST_PRESSURE: f32 = 0.5;
-/// Within this time a pressure made from speed has come two thirds of the way to a new one.
+/// The time in which a pressure made from speed comes two thirds of the way to a new one.
 const PRESSURE_SECS: f32 = 0.06;
 
 /// One good report of a pen that draws.
@@ -45,7 +45,7 @@ fn is_good(report: &PenReport) -> bool {
 }
 
 impl ReportFilter {
-    /// The pen comes down; `None` where its first report is not good.
+    /// The pen comes down; `None` if its first report is not good.
     pub fn begin(report: &PenReport, presses_by_speed: bool) -> Option<(Self, FilteredReport)> {
         let first = if presses_by_speed { FIRST_PRESSURE } else { 1.0 };
         let pressure = report.pressure.unwrap_or(first).clamp(0.0, 1.0);

@@ -1,5 +1,5 @@
 //! A pen that moves the pointer like a mouse and reports pressure and tilt on separate axes: keeps their values at each
-//! motion. Floor 7. [`Devices`](super::PenDevices) identify the axes.
+//! motion. Floor 7. Not here: which axes they are ([`Devices`](super::PenDevices)).
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -8,9 +8,9 @@ use std::rc::Rc;
 /// Updated by the event loop and read by the window, both on one thread.
 pub type SharedTablet = Rc<RefCell<Tablet>>;
 
-/// Motions kept for a window that does not read them: more than a second of the fastest pen.
+/// The most motions kept for a window that does not read them: more than a second of the fastest pen.
 const MOST_MOTIONS: usize = 4096;
-/// Places that the window rounded to points and back are the same within this, px.
+/// Places within this distance are the same, px: the window rounds them to points and back.
 const SAME_PX: f64 = 0.02;
 
 /// The range of tilt that pens report.
@@ -41,21 +41,21 @@ impl PenAxis {
     pub fn new(number: u32, reads: AxisMeaning, range: (f64, f64), value: f64) -> Option<Self> {
         (range.1 > range.0).then_some(Self { number, reads, range, value })
     }
-    /// Of the range, `[0, 1]`. NaN stays NaN, and ends the stroke.
+    /// As a share of the range, `[0, 1]`. NaN stays NaN, and ends the stroke.
     fn ratio(&self, value: f64) -> f64 {
         ((value - self.range.0) / (self.range.1 - self.range.0)).clamp(0.0, 1.0)
     }
-    /// The common drivers tell degrees; any other range is taken to go from one side to the other.
+    /// The common drivers report degrees; any other range is taken to go from one side to the other.
     fn degrees(&self, value: f64) -> f64 {
         let is_degrees = self.range.0 < 0.0 && self.range.0 >= -90.0 && self.range.1 <= 90.0;
         if is_degrees { value.clamp(-90.0, 90.0) } else { (2.0 * self.ratio(value) - 1.0) * FARTHEST_DEGREES }
     }
 }
 
-/// The axes of one device that are a pen's; a mouse has none.
+/// The pen axes of one device; a mouse has none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PenAxes {
-    /// Which device, by the platform's count.
+    /// The device, by the platform's number.
     pub device: u32,
     pub axes: Vec<PenAxis>,
     /// Whether the device is the eraser end of a pen.
@@ -120,7 +120,7 @@ impl Tablet {
         let found = self.motions.iter().position(|&(at, _)| is_here(at))?;
         self.motions.drain(..=found).next_back().map(|(_, held)| held)
     }
-    /// The window has read all that came.
+    /// The window has read all motions.
     pub fn settle(&mut self) {
         self.motions.clear();
     }

@@ -1,6 +1,6 @@
 //! Pens on X11, XWayland's too: finds which device moves the pointer now, and which of its axes are pressure and tilt,
-//! by asking the server. The values of the axes come with the window's own events. Floor 7. X11 only. Without an answer
-//! of the server, everything is a mouse.
+//! by querying the server. The values of the axes come with the window's own events. Floor 7. X11 only. If the server
+//! does not reply, everything is a mouse.
 
 use super::{AxisMeaning, PenAxes, PenAxis, PenDevices};
 use x11rb::connection::Connection;
@@ -10,7 +10,7 @@ use x11rb::protocol::xinput::{self, ConnectionExt, DeviceClass, DeviceClassData,
 use x11rb::protocol::xproto::{Atom, ConnectionExt as _};
 use x11rb::rust_connection::RustConnection;
 
-/// All pointers that slave devices move, by the server's count.
+/// All pointers that slave devices move, by the server's number.
 const ALL_MASTERS: DeviceId = 1;
 
 /// The server's names of a pen's axes.
@@ -20,7 +20,7 @@ const LABELS: [(&[u8], AxisMeaning); 3] = [
     (b"Abs Tilt Y", AxisMeaning::TiltY),
 ];
 
-/// The X server, asked on a connection of its own.
+/// The X server, queried on a connection of its own.
 pub struct X11Server {
     connection: RustConnection,
     labels: Vec<(Atom, AxisMeaning)>,
@@ -31,7 +31,7 @@ pub struct X11Server {
 }
 
 impl X11Server {
-    /// `None` where there is no server, or none that knows of pens.
+    /// `None` if there is no server, or none that supports pens.
     pub fn connect() -> Option<Self> {
         let (connection, screen) = x11rb::connect(None).ok()?;
         let root = connection.setup().roots.get(screen)?.root;
@@ -68,7 +68,7 @@ impl X11Server {
         let is_eraser = !axes.is_empty() && self.name(source).to_lowercase().contains("eraser");
         PenAxes { device: source.into(), axes, is_eraser }
     }
-    /// Empty for a device that is gone.
+    /// Empty for a device that was removed.
     fn name(&self, device: DeviceId) -> String {
         let asked = self.connection.xinput_xi_query_device(device).map_err(ReplyError::from);
         let known = asked.and_then(|asked| asked.reply()).map(|reply| reply.infos).unwrap_or_default();

@@ -1,5 +1,4 @@
-//! The coarser picture that shows a drag, and what is made ready for it.
-//! Floor 7.
+//! The coarser picture that shows a drag, and its preparation. Floor 7.
 
 use super::pass::RenderPass;
 use super::ready::{JobState, SurfaceJob};
@@ -7,12 +6,12 @@ use super::{COARSEST, DRAFT_SHARE, FINE, FRAME};
 use crate::document::{Document, DocumentReducer};
 use crate::math::Rect;
 
-/// A smaller picture, or one of all pixels that is read more coarsely, for as long as a drag lasts and the next ones.
+/// A smaller picture, or one of all pixels that is read more coarsely, for this drag and the next ones.
 pub struct DraftRender {
-    /// Canvas pixels to one of its own, a side.
+    /// Canvas pixels per pixel of its own, along a side.
     pub step: u32,
     pub reduced: DocumentReducer,
-    /// The surface that is being made small beside this thread.
+    /// The surface that another thread scales down.
     surface: Option<SurfaceJob>,
     pub pass: RenderPass,
 }
@@ -31,7 +30,7 @@ impl DraftRender {
         let reduced = DocumentReducer::new(1.0 / step as f32);
         Self { step, reduced, surface: None, pass: RenderPass::default() }
     }
-    /// Makes one more layer small, or begins with the surface beside.
+    /// Scales down one more layer, or starts on the surface on another thread.
     pub fn prepare(&mut self, document: &Document) -> Readiness {
         let missing = self.reduced.missing_surface(document);
         let missing = missing.and_then(|missing| match self.surface.take() {
@@ -44,7 +43,7 @@ impl DraftRender {
                     self.reduced.take_surface(made);
                     None
                 }
-                // A drag will be told so, if it comes.
+                // A drag will report this itself.
                 JobState::Failed => {
                     self.surface = Some(job);
                     None
@@ -61,7 +60,7 @@ impl DraftRender {
             (false, None) => Readiness::Ready,
         }
     }
-    /// What is half done beside is waited for: made anew it would take longer.
+    /// Half-done work on the other thread is waited for: starting again would take longer.
     pub fn wait_for_surface(&mut self, document: &Document) {
         let missing = self.reduced.missing_surface(document);
         let job = missing.zip(self.surface.take()).filter(|(missing, job)| job.is_of(missing));
@@ -69,17 +68,17 @@ impl DraftRender {
             self.reduced.take_surface(made);
         }
     }
-    /// Of the small picture, the pixels in sight.
+    /// The visible pixels of the small picture.
     pub fn in_sight(&self, canvas: Rect) -> Rect {
         let step = self.step as i32;
         let Rect { x0, y0, x1, y1 } = canvas;
         Rect::new(x0.div_euclid(step), y0.div_euclid(step), x1.div_euclid(step) + 1, y1.div_euclid(step) + 1)
     }
-    /// Its passes take longer than they should, though there is a coarser one. The first made everything small.
+    /// Its passes take too long, and a coarser one is possible. The first does not count: it scaled everything down.
     pub fn is_slow(&self) -> bool {
         self.step < COARSEST && self.pass.passes() > 1 && self.pass.took() > FRAME.mul_f32(1.6)
     }
-    /// It was prepared, and no drag has used it.
+    /// It was prepared, but no drag has used it.
     pub fn is_unused(&self) -> bool {
         self.pass.passes() == 0
     }

@@ -18,7 +18,7 @@ pub struct RenderPass {
     /// Tiles that are not yet those of the document.
     dirty: BTreeSet<TileAt>,
     begun: Option<Instant>,
-    /// Documents taken up, and how long the last one that was settled took.
+    /// The number of documents taken up, and how long the last settled one took.
     passes: u32,
     took: Duration,
     /// The longest that one took.
@@ -33,13 +33,13 @@ pub struct PassBatch {
     pub is_settled: bool,
     /// Since the document was taken up.
     pub took: Duration,
-    /// Tiles painted since then, and those in sight that are left.
+    /// Tiles painted since then, and visible ones that are left.
     painted: usize,
     left: usize,
 }
 
 impl PassBatch {
-    /// Tiles that are left for each that is done.
+    /// Tiles left per tile done.
     pub fn share_left(&self) -> f32 {
         self.left as f32 / self.painted.max(1) as f32
     }
@@ -75,7 +75,7 @@ impl RenderPass {
     pub fn slowest(&self) -> Duration {
         self.slowest
     }
-    /// Paints at most so many tiles, those in sight first; `None` where nothing is left.
+    /// Paints at most so many tiles, visible ones first; `None` if nothing is left.
     pub fn paint(&mut self, visible: Rect, most: usize) -> Option<PassBatch> {
         let document = self.document.as_ref()?;
         if self.dirty.is_empty() {

@@ -5,13 +5,13 @@ use crate::memory;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
-/// The work of one thread, which ends with it; what it made is forgotten where nobody waits for it.
+/// The work of one thread, which ends with it; its result is dropped if nobody waits for it.
 pub struct SurfaceJob {
     of: Arc<SurfaceReduction>,
     made: Receiver<ReducedSurface>,
 }
 
-/// How far a job has come.
+/// The progress of a job.
 pub enum JobState {
     Working,
     Done(ReducedSurface),
@@ -20,13 +20,13 @@ pub enum JobState {
 }
 
 impl SurfaceJob {
-    /// `None` where the system cannot start a thread.
+    /// `None` if the system cannot start a thread.
     pub fn begin(of: SurfaceReduction) -> Option<Self> {
         let of = Arc::new(of);
         let (sender, made) = channel();
         let work = of.clone();
         let job = move || {
-            // Threads of its own: those that paint tiles finish what they have begun before they take up anything new.
+            // Threads of its own: those that paint tiles finish what they have begun before they start anything new.
             let own = rayon::ThreadPoolBuilder::new().num_threads(1).build();
             let make = || memory::caught(|| work.make());
             let made = own.map_or_else(|_| make(), |own| own.install(make));

@@ -1,4 +1,4 @@
-//! What the thread paints, and what it does where there is no memory.
+//! What the thread paints, and what it does without memory.
 
 use super::*;
 use crate::document::{Content, Layer, Live, Progress, flatten};

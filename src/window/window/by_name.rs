@@ -1,5 +1,4 @@
-//! Menus and commands by their names, as tests and recordings ask for them.
-//! Floor 7. The commands are in `commands`.
+//! Menus and commands by their names, for tests and recordings. Floor 7. Not here: the commands (`commands`).
 
 use super::MainWindow;
 use crate::commands;

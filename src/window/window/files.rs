@@ -25,7 +25,7 @@ use crate::session::{Session, brushes, storage};
 use eframe::egui;
 use std::path::{Path, PathBuf};
 
-/// What is done with maps.
+/// What to do with maps.
 type GiveMaps = fn(&mut Session, &SurfaceSource, ImportedSurface) -> crate::Result<()>;
 
 impl MainWindow {
@@ -127,7 +127,7 @@ impl MainWindow {
             JobResult::Nothing => {}
         }
     }
-    /// The user's own brushes are kept here from now on; those that are there join the list.
+    /// The user's own brushes are kept here from now on; existing ones are added to the list.
     pub fn keep_brushes_in(&mut self, folder: PathBuf) {
         self.session.brush_folder = Some(folder.clone());
         self.jobs.start("Reading brushes".into(), JobKind::Working, move |_| {
@@ -135,7 +135,7 @@ impl MainWindow {
             JobResult::Brushes(presets, notes)
         });
     }
-    /// Reads a picture that the selected layer is to be made of.
+    /// Reads a picture for the selected layer.
     fn read_part(&mut self, part: PicturePart, file: PathBuf) {
         let Some((tab, layer)) = self.session.active().and_then(|tab| Some((tab.key, tab.selected?))) else { return };
         self.jobs.start(format!("Reading {}", short(&file)), JobKind::Working, move |_| {
@@ -145,7 +145,7 @@ impl MainWindow {
             }
         });
     }
-    /// A picture becomes a layer. It goes where the pointer is once it was read: the system does not report positions
+    /// A picture becomes a layer. It goes to the pointer's place once it was read: the system does not report positions
     /// of dragged files. Returns the position.
     pub(super) fn pictured(&mut self, name: &str, picture: Picture, at: PinPosition) -> Vec2 {
         let center = self.session.shown().map_or(Vec2::ZERO, |document| document.size.center());
@@ -194,7 +194,7 @@ impl MainWindow {
             self.export_to(named, over, purpose == FilePurpose::ExportUnwrapped);
         }
     }
-    /// The import dialog, where it is open.
+    /// The import dialog, if it is open.
     pub(super) fn import(&mut self) -> Option<&mut import::ImportDialog> {
         self.dialogs.iter_mut().rev().find_map(|dialog| match dialog {
             Dialog::Import(import) => Some(&mut **import),
@@ -208,7 +208,7 @@ impl MainWindow {
     pub(super) fn ask_for(&mut self, purpose: FilePurpose, name: &str) {
         files::request(&mut self.jobs, purpose, name, self.asks_itself);
     }
-    /// The name a file is proposed to have.
+    /// The proposed name of a file.
     pub(super) fn proposed(&self, purpose: FilePurpose) -> String {
         let title = self.session.active().map_or_else(String::new, |tab| tab.title());
         let stem = storage::without_ending(&title);
@@ -221,7 +221,7 @@ impl MainWindow {
             FilePurpose::ExportMaps => "png",
             _ => storage::SAVED[0],
         };
-        // Of several files the name of the first, so that it is seen what they will be called.
+        // For several files the name of the first, so that the user sees what the names will be.
         let suffix = match purpose {
             FilePurpose::ExportMaps => self.maps.maps().first().map_or("", |map| map.name()),
             _ => "",
@@ -240,7 +240,7 @@ impl MainWindow {
     }
     pub(super) fn recent_is(&mut self, file: Option<PathBuf>) {
         if let Some(file) = file {
-            // As it is found from anywhere, on the next run too.
+            // An absolute path, which is also valid in the next run.
             self.settings.recent_is(std::path::absolute(&file).unwrap_or(file));
         }
     }

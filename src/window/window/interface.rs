@@ -1,17 +1,17 @@
-//! The look of the window: light or dark, and the size of its controls. Floor 7. The colours are in `theme`.
+//! The look of the window: light or dark, and the size of its controls. Floor 7. Not here: the colours (`theme`).
 
 use super::MainWindow;
 use crate::session::Action;
 use crate::session::actions::ViewAction;
 use eframe::egui::{self, Theme};
 
-/// Sizes of the interface to choose from; 1 is what the system asks for.
+/// Sizes of the interface to choose from; 1 is the system's.
 const SCALES: [f32; 10] = [0.75, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0];
 /// An unscaled screen of this many points in height is probably dense.
 const DENSE_PT: f32 = 1800.0;
 
 impl MainWindow {
-    /// The look that is remembered, or one that fits the screen.
+    /// The stored look, or one that fits the screen.
     pub(super) fn dress(&mut self, ctx: &egui::Context) {
         if std::mem::replace(&mut self.is_dressed, true) {
             return;
@@ -45,7 +45,7 @@ impl MainWindow {
             view.zoom *= kept;
         }
     }
-    /// 0 fits the canvas; 1 is a pixel of the canvas to one of the screen.
+    /// 0 fits the canvas; 1 is one pixel of the screen per pixel of the canvas.
     pub(super) fn scale(&mut self, ctx: &egui::Context, scale: f32) {
         let action = if scale > 0.0 {
             ViewAction::ZoomTo { zoom: scale / ctx.pixels_per_point() }

@@ -1,5 +1,5 @@
-//! The layout of the panels: beside the canvas, together in a window, or each in its own. Floor 7. The panels
-//! themselves are in `panels`.
+//! The layout of the panels: next to the canvas, together in a window, or each in its own. Floor 7. Not here: the
+//! panels themselves (`panels`).
 
 use super::MainWindow;
 use crate::panel_layout::PanelKind;
@@ -9,7 +9,7 @@ use crate::requests::UiRequests;
 use crate::theme::ACCENT;
 use eframe::egui::{self, CentralPanel, Frame, Id, Margin, Panel, RichText, Ui};
 
-/// How wide the panels may be, points.
+/// The range of the panels' width, points.
 const WIDTHS_PT: std::ops::RangeInclusive<f32> = 230.0..=460.0;
 
 impl MainWindow {
@@ -18,7 +18,7 @@ impl MainWindow {
         let settings = &self.settings;
         Panel::top("menu").frame(bar(ui)).show(ui, |ui| panels::menu::show(ui, &self.session, settings, requests));
         if !self.settings.layout.is_hidden {
-            // Always as tall as its two rows, so that nothing below it moves when other numbers are in it.
+            // Always as tall as its two rows, so that nothing below it moves when its content changes.
             let rows_pt = panels::options::ROWS * ui.spacing().interact_size.y
                 + (panels::options::ROWS - 1.0) * ui.spacing().item_spacing.y;
             Panel::top("options")
@@ -81,7 +81,7 @@ impl MainWindow {
         if let Some(front) = front {
             if has_below {
                 let above = Panel::top("front").resizable(true).default_size(372.0).size_range(140.0..=640.0);
-                // At the same left as the layers beneath.
+                // Aligned on the left with the layers beneath.
                 let above = above.frame(Frame::new().inner_margin(Margin { bottom: 4, ..Margin::ZERO }));
                 above.show(ui, |ui| self.fronted(ui, &strip, front, requests));
             } else {
@@ -146,7 +146,7 @@ impl MainWindow {
     fn apart(&mut self, ctx: &egui::Context, requests: &mut UiRequests) {
         for (i, front) in self.settings.layout.apart.clone().into_iter().enumerate() {
             let mut is_open = true;
-            // Over the canvas, so that none covers where it came from.
+            // Over the canvas, so that none covers its former place.
             let corner = ctx.content_rect().center() + egui::vec2(-160.0, -220.0) + egui::Vec2::splat(26.0 * i as f32);
             let window = egui::Window::new(front.name()).id(Id::unique(("panel", front.name())));
             let window =
@@ -161,7 +161,7 @@ impl MainWindow {
             }
         }
     }
-    /// What went wrong, over the top of the canvas, which stays where it is.
+    /// Errors, over the top of the canvas, which does not move.
     fn show_messages(&mut self, ctx: &egui::Context, canvas: egui::Rect) {
         if self.messages.is_empty() {
             return;

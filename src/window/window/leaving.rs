@@ -45,7 +45,7 @@ impl MainWindow {
             None => self.leaving = true,
         }
     }
-    /// Files dropped on the window: pictures go where they fall, all else is opened.
+    /// Files dropped on the window: pictures go where they were dropped, all else is opened.
     pub(super) fn take_dropped(&mut self, ctx: &egui::Context) {
         let dropped: Vec<_> = ctx.input(|i| i.raw.dropped_files.iter().map(|file| file.path().to_path_buf()).collect());
         if !dropped.is_empty() {

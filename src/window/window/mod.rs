@@ -53,7 +53,7 @@ pub struct MainWindow {
     asks_itself: bool,
     /// Whether the program was started without a file, so that the sample is open.
     is_first_start: bool,
-    /// Which of the steps of a first start were done, in any document.
+    /// Which steps of a first start were done, in any document.
     steps_done: [bool; 3],
     export: export::ExportDialog,
     maps: maps::MapsDialog,
@@ -66,18 +66,18 @@ pub struct MainWindow {
     is_dressed: bool,
     /// The user agreed to leave.
     leaving: bool,
-    /// What is to be done once the document is saved, while it is asked where to.
+    /// What to do once the document is saved, while the user is asked where to.
     after_saving: Option<AfterUnsaved>,
     memory: MemoryMeter,
     /// What was copied last; kept, so that it stays in the system's clipboard.
     clipboard: Option<Clipboard>,
-    /// What was put there last of what was copied here.
+    /// What this window last put there.
     handed_out: Option<Arc<Vec<u8>>>,
     /// The recorded actions, if they are recorded.
     recorded: Option<Vec<Action>>,
 }
 
-/// What the job is called that reads maps for their dialog.
+/// The name of the job that reads maps for their dialog.
 const READING_MAPS: &str = "Reading maps";
 
 impl MainWindow {
@@ -122,7 +122,7 @@ impl MainWindow {
     }
     /// A window that records its actions, see [`MainWindow::recorded`].
     pub fn recording(self) -> Self {
-        // What is snapped to was remembered, and no action of this window.
+        // Snapping settings were stored, and are no action of this window.
         let aids = Action::Guide(GuideAction::Aids { aids: self.session.aids });
         let is_plain = self.session.aids == ViewAids::default();
         Self { recorded: Some(Some(aids).filter(|_| !is_plain).into_iter().collect()), ..self }
@@ -235,7 +235,7 @@ impl MainWindow {
             DialogAnswer::Replace(pending) => self.put(pending.forced()),
             DialogAnswer::Lose(saving) => self.put(Pending::Save(Box::new(Saving { knows_losses: true, ..*saving }))),
             DialogAnswer::Ask(ask) => requests.request(ask),
-            // The parts are where the numbers are.
+            // The parts are next to their numbers.
             DialogAnswer::Shaped => self.settings.layout.below = PanelKind::Shape,
             DialogAnswer::Open
             | DialogAnswer::Close
@@ -248,7 +248,7 @@ impl MainWindow {
     fn do_requests(&mut self, ctx: &egui::Context, requests: UiRequests) {
         let is_editing = self.jobs.editing().is_some();
         if !requests.actions.is_empty() {
-            // The frame is laid out again, so that it shows what was done in it.
+            // The frame is laid out again to show what was done in it.
             ctx.request_discard("an action");
         }
         for action in requests.actions {

@@ -1,4 +1,4 @@
-//! Requests of panels and menus to the window alone: dialogs, the layout of panels, the size of everything. Floor
+//! Requests of panels and menus to the window alone: dialogs, the layout of panels, the size of the interface. Floor
 //! 7.
 
 use super::MainWindow;
@@ -55,7 +55,7 @@ impl MainWindow {
             WindowRequest::About => self.dialogs.push(Dialog::About),
             WindowRequest::TogglePanels => {
                 self.settings.layout.is_hidden = !self.settings.layout.is_hidden;
-                // The tab key that asked for it went on to the next button as well.
+                // The tab key that requested it also moved the focus to the next button.
                 ctx.memory_mut(|memory| memory.stop_text_input());
             }
             WindowRequest::OtherSide => self.settings.layout.side = self.settings.layout.side.other(),

@@ -7,7 +7,7 @@ use crate::session::Session;
 use crate::surface::Operator;
 use eframe::egui::{Align2, Area, Frame, Id, RichText, Ui, vec2};
 
-/// Each step, how it is done, and whether it is.
+/// Each step, how to do it, and whether it is done.
 type HintStep = (&'static str, &'static str, fn(&Session) -> bool);
 
 const STEPS: [HintStep; 3] = [
@@ -39,7 +39,7 @@ impl MainWindow {
         if is_over || !self.is_first_start {
             return;
         }
-        // What was done once in any document is done.
+        // A step done once in any document is done.
         for (was_done, (_, _, is_done)) in self.steps_done.iter_mut().zip(STEPS) {
             *was_done |= is_done(&self.session);
         }

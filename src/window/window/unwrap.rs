@@ -1,4 +1,4 @@
-//! The unwrapped surface: laid flat on a thread, shown once that is done, and pictures of it brought back.
+//! The unwrapped surface: laid flat on a thread, shown once that is done, and pictures of it put back.
 //! Floor 7.
 
 use super::MainWindow;
@@ -13,10 +13,10 @@ use crate::surface::unwrap::SOLVES;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// What the job is called.
+/// The name of the job.
 const UNWRAPPING: &str = "Unwrapping the surface";
 
-/// Tells how far an unwrapping came.
+/// Reports the progress of unwrapping.
 fn is_to_go_on(progress: &Progress) -> bool {
     if progress.read().1 == 0 {
         progress.add_total(SOLVES);
@@ -26,7 +26,7 @@ fn is_to_go_on(progress: &Progress) -> bool {
 }
 
 impl MainWindow {
-    /// Shows the surface of the document in front unwrapped, at once where it is laid flat already.
+    /// Shows the surface of the document in front unwrapped, at once if it is laid flat already.
     pub(super) fn unwrap_surface(&mut self) {
         let settings = self.session.unwrap_settings();
         let Some(tab) = self.session.active() else { return };
@@ -47,8 +47,8 @@ impl MainWindow {
             self.apply(&Action::View(ViewAction::Unwrapped { on: true }));
         }
     }
-    /// Unwraps ahead, on a thread, what will be asked for: the surface that is shown unwrapped, where it is another one
-    /// by now, and the one that the brush in hand prints on. The hand does not wait for what it does not need yet.
+    /// Unwraps ahead, on a thread, what will be needed: the surface that is shown unwrapped, if it was replaced, and
+    /// the one that the current brush prints on. The user does not wait for what is not needed yet.
     pub(super) fn unwrap_ahead(&mut self) {
         let Some(tab) = self.session.active() else { return };
         let Some(surface) = tab.document().surface.clone() else { return };
@@ -62,7 +62,7 @@ impl MainWindow {
         let is_asked =
             |(asked, with): &(Arc<Surface>, UnwrapSettings)| Arc::ptr_eq(asked, &surface) && *with == settings;
         if self.unwrapping.as_ref().is_some_and(is_asked) {
-            // It was given up.
+            // It was cancelled.
             if is_shown {
                 self.apply(&Action::View(ViewAction::Unwrapped { on: false }));
             }

@@ -1,5 +1,5 @@
-//! Long work of the window: saving, exporting, flattening edits. It is started here, and `files` handles the results.
-//! Floor 7.
+//! Long work of the window: saving, exporting, flattening edits. It is started here. Not here: handling the results
+//! (`files`). Floor 7.
 
 use super::MainWindow;
 use crate::clipboard::{self, PastedContent};
@@ -38,7 +38,7 @@ impl MainWindow {
         self.after_saving = then;
         self.ask_where(FilePurpose::Save);
     }
-    /// `over`: what may be replaced where that is not the document's own file.
+    /// `over`: what may be replaced, if that is not the document's own file.
     pub(super) fn save_to(&mut self, file: PathBuf, over: Overwrite, knows_losses: bool, then: Option<AfterUnsaved>) {
         self.session.drop_gesture();
         let Some(tab) = self.session.active() else { return };
@@ -74,7 +74,7 @@ impl MainWindow {
             self.proceed(ctx, then, false);
         }
     }
-    /// `over`: what may be replaced. `is_flat`: as it lies on the unwrapped surface.
+    /// `over`: what may be replaced. `is_flat`: as on the unwrapped surface.
     pub(super) fn export_to(&mut self, file: PathBuf, over: Overwrite, is_flat: bool) {
         let Some(tab) = self.session.active() else { return };
         let document = if is_flat { tab.drawn() } else { tab.document().clone() };
@@ -93,7 +93,7 @@ impl MainWindow {
         let Some(document) = self.session.active().map(|tab| tab.document().clone()) else { return };
         let terms = Terms::export(Overwrite::Nothing, self.session.reads());
         let (maps, options) = (self.maps.maps(), self.maps.options);
-        // The name was proposed, and perhaps left, as that of the first.
+        // The name was proposed, and perhaps kept, as that of the first.
         let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let first = maps.first().map_or("", |map| map.name());
         let stem = stem.strip_suffix(first).filter(|stem| !stem.is_empty()).unwrap_or(&stem);
@@ -127,7 +127,7 @@ impl MainWindow {
             (Err(error), None) => JobResult::Failed(error),
         });
     }
-    /// Whether an action takes long, and was begun on a thread instead.
+    /// Whether an action takes long and was therefore started on a thread.
     pub(super) fn begin_edit(&mut self, action: &Action) -> bool {
         if let Action::Part(action) = action {
             return self.begin_shape(action);
@@ -177,7 +177,7 @@ impl MainWindow {
             self.did(|| action);
         }
     }
-    /// The same of parts.
+    /// The same for parts.
     fn begin_shape(&mut self, action: &PartAction) -> bool {
         let Some(name) = action.takes_long() else { return false };
         self.session.drop_gesture();
@@ -191,7 +191,7 @@ impl MainWindow {
         });
         true
     }
-    /// Looks for the drawing that is to have a shape; then a dialog asks what shape.
+    /// Looks for the drawing that will get a shape; then a dialog asks which.
     pub(super) fn look_for_drawing(&mut self) {
         let Some(tab) = self.session.active() else { return };
         let (key, document, selected) = (tab.key, tab.document().clone(), tab.selected);
@@ -201,13 +201,13 @@ impl MainWindow {
     pub(super) fn shaped(&mut self, shaped: ShapedResult) {
         let ShapedResult { tab, action, from, shape } = shaped;
         let Some(tab) = self.session.open_documents.iter_mut().find(|other| other.key == tab) else { return };
-        // As of other long edits.
+        // As for other long edits.
         if crate::session::is_same(tab.document(), &from) {
             shape.put(tab);
             self.did(|| Action::Part(action));
         }
     }
-    /// Shows the edit that blocks others, once it takes long.
+    /// Shows the edit that blocks others once it takes long.
     pub(super) fn show_editing(&self, ctx: &egui::Context) {
         let Some(job) = self.jobs.editing() else { return };
         ctx.request_repaint_after(std::time::Duration::from_millis(60));
@@ -225,7 +225,7 @@ impl MainWindow {
     }
 }
 
-/// Whether a picture is what was handed out. Clipboards may lose the colours of what is transparent.
+/// Whether a picture is the one put there. Clipboards may lose the colours of transparent pixels.
 fn is_own(picture: &Picture, rgba: &[u8]) -> bool {
     let Texels::Srgb8(texels) = &picture.texels else { return false };
     let same = |(a, b): (&[u8; 4], &[u8; 4])| a == b || (a[3] == 0 && b[3] == 0);

@@ -1,5 +1,5 @@
 //! What the move tool would hold, and what it holds: the outline of a stroke, or the bounds of a layer.
-//! Floor 7. Which of them it is `tools::move_content` tells.
+//! Floor 7. Not here: which of them it is (`tools::move_content`).
 
 use super::{LOOKS, line_through, outlined};
 use crate::document::{Content, Document, Layer, LayerId};
@@ -9,12 +9,12 @@ use crate::tools::frame::TransformFrame;
 use crate::tools::move_content::{MoveTarget, held};
 use eframe::egui::{Id, Painter, Pos2, Shape};
 
-/// Of a layer with more strokes only the bounds are shown: to find the one under the pointer would take too long for
-/// every move of it.
+/// For a layer with more strokes only the bounds are shown: finding the stroke under the pointer would take too long at
+/// every move.
 const MOST_STROKES: usize = 400;
 const DASH_PT: f32 = 6.0;
 
-/// What was under the pointer last: it is held while it is dragged.
+/// What was under the pointer last: it is what is being dragged.
 #[derive(Clone, Copy)]
 struct Last {
     layer: LayerId,
@@ -57,7 +57,7 @@ pub fn draw(painter: &Painter, session: &Session, under: Option<Vec2>, to_screen
     }
 }
 
-/// A dashed frame around what a layer holds, where it stands; around the canvas where that has no end.
+/// A dashed frame around what a layer holds, in its place; around the canvas if that is unbounded.
 fn bounds(painter: &Painter, document: &Document, layer: LayerId, to_screen: &impl Fn(Vec2) -> Pos2) {
     let [a, b, c, d] = frame(document, layer).map(to_screen);
     let outline = [a, b, c, d, a];
@@ -66,8 +66,8 @@ fn bounds(painter: &Painter, document: &Document, layer: LayerId, to_screen: &im
     painter.extend(Shape::dashed_line(&outline, light, DASH_PT, DASH_PT));
 }
 
-/// Upper left, upper right, lower right, lower left; of an empty layer, and of more strokes than are looked through
-/// for every move, the canvas.
+/// Upper left, upper right, lower right, lower left; for an empty layer, and for too many strokes to search at every
+/// move, those of the canvas.
 fn frame(document: &Document, layer: LayerId) -> [Vec2; 4] {
     let (w, h) = (document.size.width as f32, document.size.height as f32);
     let canvas = [Vec2::ZERO, vec2(w, 0.0), vec2(w, h), vec2(0.0, h)];
@@ -76,7 +76,7 @@ fn frame(document: &Document, layer: LayerId) -> [Vec2; 4] {
     known.map_or(canvas, |frame| frame.corners)
 }
 
-/// The strokes of a layer, and of all in it.
+/// The strokes of a layer and of all in it.
 fn strokes_of(layer: &Layer) -> usize {
     match &layer.content {
         Content::Strokes(live) => live.params().strokes.len(),

@@ -1,5 +1,5 @@
-//! What was found of maps, in the words of the window. Floor 7. The fields themselves are those of recipes, which the
-//! command line prints.
+//! What was found about maps, in the words of the window. Floor 7. The fields themselves are those of recipes, which
+//! the command line prints.
 
 use crate::document::source::{Near, NormalEncoding};
 use crate::io::maps::Finding;
@@ -15,7 +15,7 @@ pub const ENCODINGS: [(NormalEncoding, &str); NormalEncoding::ALL.len()] = [
 /// Which values of a depth map are near, in words.
 pub const NEAR: [(Near, &str); Near::ALL.len()] = [(Near::Auto, "found"), (Near::Low, "dark"), (Near::High, "bright")];
 
-/// The name of a choice and what was chosen, in words; a field that has none as it is.
+/// The name of a choice and what was chosen, in words; a field without words is shown unchanged.
 pub fn told(choice: &Finding) -> (&str, String) {
     let Finding { field, value, .. } = choice;
     let (name, words): (&str, &[(&str, &str)]) = match *field {
@@ -56,7 +56,7 @@ fn worded<T: PartialEq>(meant: T, words: &[(T, &'static str)]) -> &'static str {
 
 const FLIPPED: &[(&str, &str)] = &[("false", "as it is"), ("true", "flipped")];
 
-/// The channels that letters stand for.
+/// The channels that letters mean.
 fn channels(letters: &str) -> String {
     let word = |letter: char| match letter {
         'r' => "red",

@@ -1,4 +1,4 @@
-//! The ways that maps may be meant, seen under a light. Floor 7.
+//! The possible meanings of maps, seen under a light. Floor 7.
 
 use crate::math::{Size, srgb::quantise, vec3};
 use crate::raster::Picture;
@@ -6,14 +6,14 @@ use crate::surface::Surface;
 
 /// A way to read maps: its name, and which axes of the normals it flips, x and y.
 pub type ReadingWay = (&'static str, [bool; 2]);
-/// Of normals, each axis may point either way.
+/// For normals, each axis may point either way.
 pub const FLIPS: [ReadingWay; 4] = [
     ("As it is", [false, false]),
     ("Flip red", [true, false]),
     ("Flip green", [false, true]),
     ("Flip both", [true, true]),
 ];
-/// Of depth alone, near may be dark or bright: bumps become dents.
+/// For depth alone, near may be dark or bright: bumps become dents.
 pub const SIDES: [ReadingWay; 2] = [("As it is", [false, false]), ("Inside out", [true, true])];
 
 pub fn xor(a: [bool; 2], b: [bool; 2]) -> [bool; 2] {

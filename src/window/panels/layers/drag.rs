@@ -19,7 +19,7 @@ pub fn show(
     requests: &mut UiRequests,
 ) {
     let document = tab.shown();
-    // A chosen row takes all chosen ones along.
+    // All chosen rows move with a chosen one.
     let held = |id: LayerId| if tab.is_chosen(id) { tab.outermost_chosen() } else { vec![id] };
     response.dnd_set_drag_payload(layer.id);
     if let Some(row) = response.dnd_hover_payload::<LayerId>()
@@ -36,7 +36,7 @@ pub fn show(
     let Some(held) = response.dnd_release_payload::<LayerId>().map(|row| held(*row)) else { return };
     let Some(pointer) = ui.input(|i| i.pointer.interact_pos()) else { return };
     let Some(rest) = document.without_layers(&held) else { return };
-    // Where the row goes along itself there is no such place.
+    // There is no such place among the dragged rows.
     let Some(place) = rest.place_of(layer.id) else { return };
     let (group, index) = match drop_at(layer, rect, pointer.y) {
         LayerDrop::Above => (place.group, place.index + 1),

@@ -1,5 +1,5 @@
-//! The field above the layers that shows only those of a name, a kind or a label.
-//! Floor 7. What it holds is the window's, no part of the document.
+//! The field above the layers that shows only those of a name, a kind or a label. Floor 7. Its content belongs to the
+//! window, not to the document.
 
 use super::color_of;
 use crate::document::{Content, Document, Layer, LayerId, LayerLabel};
@@ -7,17 +7,17 @@ use crate::widgets::named;
 use eframe::egui::{self, Button, Id, RichText, TextEdit, Ui};
 use std::sync::Arc;
 
-/// What is looked for; nothing finds all.
+/// The search; an empty one finds all.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LayerFilter {
     /// A part of the name, in any case.
     pub text: String,
-    /// As a kind calls itself.
+    /// A kind by its name.
     pub kind: Option<&'static str>,
     pub label: Option<LayerLabel>,
 }
 
-/// A row of the list: a layer, and how many groups stand around it.
+/// A row of the list: a layer, and how many groups are around it.
 pub type ListedLayer<'d> = (&'d Arc<Layer>, usize);
 
 impl LayerFilter {
@@ -29,7 +29,7 @@ impl LayerFilter {
             && self.kind.is_none_or(|kind| layer.content.label() == kind)
             && self.label.is_none_or(|label| layer.label == label)
     }
-    /// The rows, the topmost first: what is found, with the groups around it, or all that no folded group hides.
+    /// The rows, the topmost first: the layers found, with the groups around them, or all that no folded group hides.
     pub fn listed<'d>(&self, document: &'d Document, is_folded: impl Fn(LayerId) -> bool) -> Vec<ListedLayer<'d>> {
         let mut rows = Vec::new();
         self.list(&document.layers, 0, &is_folded, &mut rows);

@@ -1,5 +1,4 @@
-//! The context menu of a layer: of all chosen ones where it is among them.
-//! Floor 7.
+//! The context menu of a layer: for all chosen ones if it is among them. Floor 7.
 
 use super::{color_of, set};
 use crate::document::{Layer, LayerLabel};

@@ -36,7 +36,7 @@ fn set(requests: &mut UiRequests, layers: &LayerPaths, to: Property, done: bool)
     requests.act(Action::Layer(LayerAction::Set { layer: layers.clone(), to, done }));
 }
 
-/// What a label is shown as.
+/// The colour that shows a label.
 fn color_of(label: LayerLabel) -> Option<Color32> {
     label.color().map(|color| Color32::from_rgb(color.r, color.g, color.b))
 }
@@ -67,7 +67,7 @@ pub fn show(ui: &mut Ui, session: &Session, thumbnails: &mut Thumbnails, request
     });
 }
 
-/// Blend mode and opacity of the chosen layers, as the primary one has them.
+/// Blend mode and opacity of the chosen layers, showing those of the primary one.
 fn head(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let (Some(layer), Some(path)) = (session.layer(), session.layer_path()) else { return };
     let chosen = session.active().map(|tab| LayerPaths::of(tab.document(), &tab.chosen_layers())).unwrap_or_default();

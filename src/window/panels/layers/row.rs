@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 const ROW_PT: f32 = 38.0;
 const INDENT_PT: f32 = 14.0;
-/// Of the strip of a label's colour.
+/// The width of the strip of a label's colour.
 const LABEL_PT: f32 = 4.0;
 
 /// A layer in its place.
@@ -99,13 +99,13 @@ impl LayerRow<'_> {
     fn choose(&self, ids: &[LayerId], anchor: Option<LayerId>, requests: &mut UiRequests) {
         requests.actions.extend(LayerAction::choosing(self.document, ids, anchor).map(Action::Layer));
     }
-    /// Selects a row, or all between it and where the range begins.
+    /// Selects a row, or all from it to the start of the range.
     fn extend(&self, tab: &OpenDocument, to: LayerId, extends: bool, requests: &mut UiRequests) {
         let anchor = tab.range_start().filter(|_| extends);
         let ids = anchor.map_or_else(|| vec![to], |anchor| range(self.listed, anchor, to));
         self.choose(&ids, anchor, requests);
     }
-    /// Arrows in a row that has the focus go on to the next one; with Shift they take it in.
+    /// Arrow keys in a row that has the focus move to the next one; with Shift they add it.
     fn arrows(&self, ui: &Ui, tab: &OpenDocument, row: &Response, requests: &mut UiRequests) {
         if !row.has_focus() {
             return;

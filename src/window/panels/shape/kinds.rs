@@ -1,5 +1,5 @@
-//! What can be set of bevels, lines, reliefs and lighting profiles.
-//! Floor 7. The rows of other kinds are `numbers`'.
+//! The settings of bevels, lines, reliefs and lighting profiles. Floor 7. Not here: the rows of other kinds
+//! (`numbers`).
 
 use super::fields::{degrees, length, number};
 use crate::canvas::ball;
@@ -13,9 +13,9 @@ use eframe::egui::{self, Sense, Ui};
 
 /// The height of the square in which a bevel's profile is bent.
 const CURVE_PT: f32 = 110.0;
-/// Points by which a curve with a name is told where a hand begins to bend it.
+/// The number of points that a named curve gets when the user begins to bend it.
 const SHOWN_POINTS: usize = 9;
-/// A drag of so many points takes a light from facing the viewer to the side.
+/// Points of a drag that turns a light from facing the viewer to the side.
 const LIGHT_PT: f32 = 60.0;
 
 pub fn beveled(ui: &mut Ui, now: &Bevel) -> Option<ValueChange<Bevel>> {
@@ -37,16 +37,16 @@ pub fn beveled(ui: &mut Ui, now: &Bevel) -> Option<ValueChange<Bevel>> {
     width.or(height).or(curve).or(bent)
 }
 
-/// The profile from the rim, on the left, inward: a click adds a point, a drag moves one, a right click takes one away.
+/// The profile from the rim, on the left, inward: a click adds a point, a drag moves one, a right click removes one.
 fn profile(ui: &mut Ui, now: &BevelCurve) -> Option<ValueChange<BevelCurve>> {
     let shown = Curve::through(points_of(now))?;
     let changed = curve::show(ui, "Profile of the bevel", &shown, CURVE_PT)?;
-    // A click that bends nothing leaves a curve its name.
+    // After a click that bends nothing a curve keeps its name.
     let to = if changed.to == shown { now.clone() } else { own_curve(&changed.to)? };
     Some(ValueChange { to, done: changed.done })
 }
 
-/// Points that show a curve, as a hand would put them.
+/// Points that show a curve, as a user would place them.
 fn points_of(curve: &BevelCurve) -> Vec<Vec2> {
     let held = |p: Vec2| p.clamp(Vec2::ZERO, Vec2::ONE);
     match curve {
@@ -55,7 +55,7 @@ fn points_of(curve: &BevelCurve) -> Vec<Vec2> {
         BevelCurve::Step => vec![vec2(0.0, 1.0), Vec2::ONE],
         round => {
             let at = |i: usize| {
-                // Where such a curve is steep its points stand closer.
+                // Where such a curve is steep, its points are closer together.
                 let t = i as f32 / (SHOWN_POINTS - 1) as f32;
                 let t = if *round == BevelCurve::Round { t.powi(3) } else { 1.0 - (1.0 - t).powi(3) };
                 held(vec2(t, if t >= 1.0 { 1.0 } else { round.at(t).0 }))
@@ -65,7 +65,7 @@ fn points_of(curve: &BevelCurve) -> Vec<Vec2> {
     }
 }
 
-/// The curve of a bevel through a hand's points, level beyond them.
+/// The curve of a bevel through the user's points, level beyond them.
 fn own_curve(curve: &Curve) -> Option<BevelCurve> {
     let Curve::Points(points) = curve else { return None };
     let mut points = points.to_vec();
@@ -116,7 +116,7 @@ pub fn profiles(ui: &mut Ui, now: &[ProfilePicture]) -> Option<ValueChange<Vec<P
     changed
 }
 
-/// A ball whose needle is a direction, to be dragged.
+/// A ball with a needle in a direction, to be dragged.
 fn light(ui: &mut Ui, label: &str, now: Vec3) -> Option<ValueChange<Vec3>> {
     let side = ui.spacing().interact_size.y + 8.0;
     let (rect, response) = ui.allocate_exact_size(egui::vec2(side, side), Sense::drag());

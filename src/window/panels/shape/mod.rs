@@ -1,5 +1,5 @@
 //! The shape: its parts, the nearest on top, with the numbers of the chosen one beneath. Floor 7. `row` shows one part,
-//! `numbers` and `kinds` what can be set of it.
+//! `numbers` and `kinds` its settings.
 
 mod fields;
 mod kinds;
@@ -19,7 +19,7 @@ use eframe::egui::{ScrollArea, Ui};
 pub use fields::presets;
 use std::sync::Arc;
 
-/// The most of the panel's height that the list takes; what is beneath it is the numbers'.
+/// The largest share of the panel's height for the list; the numbers take the rest.
 const LIST_SHARE: f32 = 0.45;
 const LEAST_LIST_PT: f32 = 116.0;
 
@@ -27,7 +27,7 @@ fn act(requests: &mut UiRequests, action: PartAction) {
     requests.act(Action::Part(action));
 }
 
-/// Asks for a part with other values.
+/// Requests a part with other values.
 fn set(requests: &mut UiRequests, changed: ValueChange<Part>) {
     act(requests, PartAction::Set { part: write_part(&changed.to), done: changed.done });
 }
@@ -100,7 +100,7 @@ fn head(ui: &mut Ui, session: &Session, document: &Document, requests: &mut UiRe
     });
 }
 
-/// What to do where there are no parts yet.
+/// What to do if there are no parts yet.
 fn begin(ui: &mut Ui, document: &Document, requests: &mut UiRequests) {
     ui.label(match document.surface {
         Some(_) => "The shape comes from the maps. Parts are in front of it.",

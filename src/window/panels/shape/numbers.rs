@@ -1,5 +1,4 @@
-//! What can be set of a part, with the ranges of its type.
-//! Floor 7.
+//! The settings of a part, with the ranges of its type. Floor 7.
 
 use super::fields::{NumberRow, degrees, length, number, presets};
 use super::kinds;
@@ -32,7 +31,7 @@ pub fn show(ui: &mut Ui, part: &Part) -> Option<ValueChange<Part>> {
 
 const PUFF_HINT: &str = "Factor of the height: at 1 a disc becomes a half ball";
 
-/// Puff, with the fine steps where they are needed.
+/// Puff, with fine steps where they are needed.
 fn puff(value: f32) -> NumberRow<'static> {
     let row = number("Puff", &Inflation::PUFF, PUFF_HINT, value);
     NumberRow { field: row.field.logarithmic(), ..row }
@@ -70,7 +69,7 @@ fn of_kind(ui: &mut Ui, kind: &PartKind) -> Option<ValueChange<PartKind>> {
     }
 }
 
-/// What the pen made of a part; its marks are changed on the canvas.
+/// What the pen made on a part; its marks are changed on the canvas.
 fn by_hand(ui: &mut Ui, kind: &PartKind) -> Option<ValueChange<PartKind>> {
     let count = |n: usize, of: &str| format!("{n} {of}{}", if n == 1 { "" } else { "s" });
     match kind {
@@ -102,10 +101,10 @@ fn inflated(ui: &mut Ui, now: Inflation) -> Option<ValueChange<Inflation>> {
     degrees("Rim", &Inflation::RIM, hint, now.rim_deg).show(ui, |rim_deg| Inflation { rim_deg, ..now }).or(changed)
 }
 
-/// One of three numbers: its name, how it is set, and what it is.
+/// One of three numbers: its name, its setter, and its value.
 type AxisRow = (&'static str, fn(Vec3, f32) -> Vec3, f32);
 
-/// The numbers that a body has.
+/// The numbers of a body.
 fn primitive(ui: &mut Ui, now: &Primitive) -> Option<ValueChange<Primitive>> {
     let now = *now;
     let mut changed = choice_row(ui, "Body", now.body, &Body::ALL)
@@ -145,7 +144,7 @@ fn primitive(ui: &mut Ui, now: &Primitive) -> Option<ValueChange<Primitive>> {
             ("Turn round", |turn, z| Vec3 { z, ..turn }, now.turn_deg.z),
         ];
         for (label, with, value) in turns {
-            // The type's range is that of files; a hand needs one turn.
+            // The type's range is that of files; in the window one turn is enough.
             let row = degrees(label, &(-180.0..=180.0), "In space, about its middle", value);
             changed = row.show(ui, |v| Primitive { turn_deg: with(now.turn_deg, v), ..now }).or(changed);
         }
@@ -153,7 +152,7 @@ fn primitive(ui: &mut Ui, now: &Primitive) -> Option<ValueChange<Primitive>> {
     changed
 }
 
-/// How it leans, how near it is, and how it meets what lies beneath.
+/// How it leans, how near it is, and how it joins what lies beneath.
 fn stands(ui: &mut Ui, part: &Part) -> Option<ValueChange<Part>> {
     let tilted = |tilt_deg: Vec2| Part { tilt_deg, ..part.clone() };
     let tilt = part.tilt_deg;

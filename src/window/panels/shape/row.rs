@@ -123,7 +123,7 @@ fn dragged(ui: &Ui, document: &Document, part: &Part, response: &Response, rect:
     }
     let Some(held) = response.dnd_release_payload::<HeldPart>().filter(|held| held.0 != part.id) else { return };
     let Some(pointer) = ui.input(|i| i.pointer.interact_pos()) else { return };
-    // Behind this one are so many of the others.
+    // How many of the others are behind this one.
     let behind = forms(document).filter(|other| other.id != held.0).position(|other| other.id == part.id);
     let Some(behind) = behind else { return };
     let index = if is_above(pointer.y) { behind + 1 } else { behind };
