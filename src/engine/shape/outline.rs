@@ -1,5 +1,5 @@
-//! Outlines: the area of one part of a drawing, as anti-aliased coverage, and where its rim lies between pixels. Floor
-//! 3. Not here: where outlines come from in a document (layers, flats, paths) (`document::parts`, `path`).
+//! Outlines: the area of one part of a drawing, as anti-aliased coverage, and where its rim lies between pixels.
+//! Floor 3. Not here: where outlines come from in a document (layers, flats, paths) (`document::parts`, `path`).
 
 use crate::math::{Affine2, Rect, Size, Vec2, vec2};
 use crate::raster::Plane;

@@ -1,5 +1,5 @@
-//! Assistants over the picture: their lines and, with the tool, their handles and those of the symmetry's axes. Floor
-//! 7. Not here: strokes along them (`tools::assistants`).
+//! Assistants over the picture: their lines and, with the tool, their handles and those of the symmetry's axes.
+//! Floor 7. Not here: strokes along them (`tools::assistants`).
 
 use crate::document::{Assistant, AssistantKind};
 use crate::math::{Vec2, vec2};

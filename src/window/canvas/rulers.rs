@@ -1,5 +1,5 @@
-//! Rulers along the upper and the left edge of the view: they show canvas px, and guides are pulled out of them. Floor
-//! 7. Not here: the guides themselves (the session).
+//! Rulers along the upper and the left edge of the view: they show canvas px, and guides are pulled out of them.
+//! Floor 7. Not here: the guides themselves (the session).
 
 use crate::math::{Affine2, Vec2, vec2};
 use crate::session::{CanvasView, Session};

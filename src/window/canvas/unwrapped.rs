@@ -1,5 +1,5 @@
-//! The unwrapped surface on the screen: its sheet, pulled from the painted tiles of the picture as they come. Floor
-//! 7. Not here: which point of the picture lies at each of its pixels (`surface::unwrap`).
+//! The unwrapped surface on the screen: its sheet, pulled from the painted tiles of the picture as they come.
+//! Floor 7. Not here: which point of the picture lies at each of its pixels (`surface::unwrap`).
 
 use super::Canvas;
 use super::sheet::TileSheet;

@@ -1,5 +1,5 @@
-//! Requests of panels and menus to the window alone: dialogs, the layout of panels, the size of the interface. Floor
-//! 7.
+//! Requests of panels and menus to the window alone: dialogs, the layout of panels, the size of the interface.
+//! Floor 7.
 
 use super::MainWindow;
 use crate::dialogs::{Dialog, canvas, edge, import, new, palette, shortcuts};

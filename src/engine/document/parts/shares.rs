@@ -1,6 +1,6 @@
 //! Which share of each pixel a flat colour takes: all of a pixel in a flat area, and a part of those that were mixed at
-//! edges between two areas. Shares add up to the whole pixel, so that areas that touch leave no rim between them. Floor
-//! 4. Not here: which colours are parts (`flats`).
+//! edges between two areas. Shares add up to the whole pixel, so that areas that touch leave no rim between them.
+//! Floor 4. Not here: which colours are parts (`flats`).
 
 use super::near::{NEAR, is_near, share_on_the_way};
 use crate::math::srgb::Color;
