@@ -1,5 +1,5 @@
 //! Edits of homes: what lies on which part of the shape. Whatever else changes, it shows where it showed. Floor 4. Not
-//! here: how homes and transforms meet (`LayerMap`).
+//! here: how homes and transforms are combined (`LayerMap`).
 
 use super::layer::content::strokes::{SeenSelections, taken_along};
 use super::{

@@ -1,6 +1,5 @@
-//! A layer: how it meets what lies beneath, and what it holds.
-//! Floor 4. A layer holds content, and the content of a group holds layers. So everything that a layer consists of is
-//! in submodules of this one.
+//! A layer: how it is blended with what lies beneath, and what it holds. Floor 4. A layer holds content, and the
+//! content of a group holds layers. So everything that a layer consists of is in submodules of this one.
 
 pub(super) mod cache;
 pub(super) mod content;
@@ -55,7 +54,7 @@ pub struct Layer {
     pub visible: bool,
     /// `[0, 1]`.
     pub opacity: f32,
-    /// How its colour meets what lies beneath.
+    /// How its colour is blended with what lies beneath.
     pub blend: BlendMode,
     /// Blend linear light instead of encoded values.
     pub blend_linear: bool,

@@ -1,5 +1,5 @@
-//! Normal layers: detail combined with the surface, for everything above in the group (SF fig. 12b–c). Floor 4. The
-//! equation is in `surface::combine`.
+//! Normal layers: detail combined with the surface, for everything above in the group (SF fig. 12b–c). Floor 4. Not
+//! here: the equation (`surface::combine`).
 
 use super::layer::normals::Combination;
 use super::layer::on_canvas::on_canvas;

@@ -34,7 +34,8 @@ impl Document {
         let selection = selection.filter(|selection| !selection.is_empty());
         Document { active_selection: selection.map(Arc::new), ..self.clone() }
     }
-    /// With a new selection that meets the active one. One that replaces it, or meets none, stays unchanged.
+    /// With a new selection combined with the active one. If it replaces that one, or there is none, it stays
+    /// unchanged.
     pub fn with_combined(&self, new: Selection, how: SelectionMode) -> Document {
         let canvas = self.size.rect();
         let new = Selection { coverage: new.coverage.within(canvas), ..new };

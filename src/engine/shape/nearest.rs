@@ -19,7 +19,7 @@ impl RimDistance {
     pub fn of(outline: &Outline) -> Self {
         Self::silhouette_of(outline, None)
     }
-    /// As [`RimDistance::of`], for the rim that is not toward pixels of `joined` (as `OutlineRim::joined` has it).
+    /// As [`RimDistance::of`], for the rim that is not toward pixels of `joined` (as in `OutlineRim::joined`).
     /// If there is no such rim, no pixel is farther from it than the plane is long.
     pub fn silhouette_of(outline: &Outline, joined: Option<&Plane<bool>>) -> Self {
         let inside = outline.inside();

@@ -82,7 +82,7 @@ pub fn sculpted(form: &Form, strokes: &[SculptStroke]) -> Plane<f32> {
 
 /// How far strokes came over a form: more samples of the last one, and more strokes, continue from there.
 pub struct Sculpting {
-    /// Those that are done, the last as far as it was.
+    /// The strokes that are done, the last one up to its end at that time.
     strokes: Vec<SculptStroke>,
     layer: Plane<f32>,
     /// Dabs of the last stroke, and the plane under its first.

@@ -22,7 +22,7 @@ use std::sync::Arc;
 /// Show maps, curvature, weights and flows as pictures
 #[derive(clap::Args)]
 pub struct ViewArgs {
-    /// A recipe, or normal, depth and mask maps told apart by their names (pot_n.png, pot_depth.exr, pot_mask.png)
+    /// A recipe, or normal, depth and mask maps recognised by their names (pot_n.png, pot_depth.exr, pot_mask.png)
     #[arg(value_name = "FILES")]
     files: Vec<PathBuf>,
     /// What to show; “sheet” shows all views side by side

@@ -45,7 +45,7 @@ impl CanvasView {
         let still = self.canvas_from_screen().transform_point2(about);
         Self { zoom, center: still + (self.center - still) * (self.zoom / zoom), ..*self }
     }
-    /// Moved with the hand by screen points.
+    /// Moved by screen points, as by dragging.
     pub fn panned(&self, by: Vec2) -> Self {
         let inverse = self.canvas_from_screen();
         Self { center: self.center - inverse.transform_vector2(by), ..*self }

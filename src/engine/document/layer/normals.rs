@@ -1,4 +1,4 @@
-//! What a normal layer holds: detail, and where it lies. Floor 4. Not here: how it meets the surface
+//! What a normal layer holds: detail, and where it lies. Floor 4. Not here: combining it with the surface
 //! (`document::normals`).
 
 use super::mask::LayerMask;

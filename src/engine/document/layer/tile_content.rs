@@ -1,5 +1,4 @@
-//! The pixels of a layer in one tile, in the form that its kind has. Floor 4. Not here: how layers meet
-//! (`compose`).
+//! The pixels of a layer in one tile, in the form that its kind has. Floor 4. Not here: composing layers (`compose`).
 
 use crate::document::behind::PackedTile;
 use crate::raster::{PlanarTile, Tile, TilePaint};

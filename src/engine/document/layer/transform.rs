@@ -61,7 +61,7 @@ impl LayerTransform {
             TransformShape::Mesh(mesh) => mesh.fits(),
         }
     }
-    /// A map of the plane as a transform; `None` of a perspective whose horizon crosses the canvas.
+    /// A map of the plane as a transform; `None` for a perspective whose horizon crosses the canvas.
     pub fn of_map(map: &PlaneMap, filter: Resampling, canvas: Size) -> Option<Self> {
         if let Some(coefficients) = map.told_coefficients() {
             return Some(LayerTransform { shape: TransformShape::Matrix(coefficients), filter });

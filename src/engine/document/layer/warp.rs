@@ -62,7 +62,7 @@ impl Layer {
 }
 
 impl Document {
-    /// What displaces the layers beside a layer: the warps of the groups around it, the outermost first.
+    /// What displaces the list that holds a layer: the warps of the groups around it, the outermost first.
     pub fn warps_around(&self, id: LayerId) -> Vec<LayerWarp> {
         let group = self.place_of(id).and_then(|place| place.group);
         group.map_or_else(Vec::new, |group| self.warps_of(group))

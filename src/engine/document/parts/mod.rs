@@ -35,7 +35,7 @@ use derive::PartCache;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The parts of a document, and what is kept of them for speed.
+/// The parts of a document, and what is kept about them for speed.
 #[derive(Clone, Default)]
 pub struct Parts {
     /// The farthest first.

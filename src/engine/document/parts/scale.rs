@@ -62,7 +62,7 @@ impl Part {
                 }
             }
             PartKind::Maps(maps) => {
-                // What is thinner than a pixel of the new canvas stays as it was.
+                // What is thinner than a pixel of the new canvas stays unchanged.
                 if let Ok(surface) = maps.surface.stretched(maps.surface.size().scaled(length)) {
                     maps.surface = Arc::new(surface);
                 }

@@ -57,7 +57,7 @@ pub struct EnvironmentLight {
     gain: f32,
 }
 
-/// One of the directions that stand for a whole environment.
+/// One of the directions that represent a whole environment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parcel {
     /// Toward the light, unit, camera space.
