@@ -60,7 +60,7 @@ pub struct EllipseFrame {
 }
 
 impl Assistant {
-    /// Of a document.
+    /// The most in a document.
     pub const MOST: usize = 100;
 
     /// Refuses what files cannot hold.

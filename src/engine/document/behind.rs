@@ -218,7 +218,7 @@ impl PackedTile {
     }
 }
 
-/// What is known of a live layer behind the contours of a tile.
+/// What is known about a live layer behind the contours of a tile.
 #[derive(Clone)]
 pub enum BehindPixels {
     /// The same as the tile itself: for strokes that are still being drawn.

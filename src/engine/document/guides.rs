@@ -14,7 +14,7 @@ pub struct Guides {
 }
 
 impl Guides {
-    /// Of either direction.
+    /// The most of either direction.
     pub const MOST: usize = 1_000;
 
     pub fn is_empty(&self) -> bool {

@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// Bytes, by what they are for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MemoryUse {
-    /// Painted pixels, readings of the pen, masks and selections.
+    /// Painted pixels, pen samples, masks and selections.
     pub painted: u64,
     /// Placed pictures.
     pub pictures: u64,

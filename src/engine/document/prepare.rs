@@ -38,7 +38,7 @@ pub(super) struct PreparedLayer {
     pub behind_curvature: Option<Arc<Curvature>>,
     /// What it shows, if it is a live layer or a group that is displaced.
     pub warp: Option<Arc<WarpTiles>>,
-    /// Of a group, bottom first.
+    /// For a group: its layers, bottom first.
     pub children: Vec<PreparedLayer>,
     /// The run of layers clipped to this one, bottom first.
     pub clipped: Vec<PreparedLayer>,

@@ -1,5 +1,4 @@
-//! The picture that a project holds of itself, shown until its layers are painted. Floor 6. The window's canvas shows
-//! it.
+//! The picture that a project holds of itself, which the window's canvas shows until its layers are painted. Floor 6.
 
 use crate::io::{Budget, picture};
 use crate::math::Size;

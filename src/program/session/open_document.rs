@@ -186,7 +186,7 @@ impl OpenDocument {
     pub fn commit(&mut self, label: impl Into<String>, document: Document) -> bool {
         self.preview = None;
         let mut is_kept = true;
-        // What parts are made of may have been painted on.
+        // The layers that parts are made from may have been painted on.
         let document = document.reshaped();
         if !is_same(self.document(), &document) {
             match document.fits(Some(self.document())) {

@@ -70,7 +70,7 @@ pub struct Canvas {
     /// The picture for the navigator, and whether it is outdated.
     small: Option<TextureHandle>,
     small_is_old: bool,
-    /// Of the canvas's area, screen points.
+    /// The size of the canvas's area, screen points.
     pub area_pt: Vec2,
     /// The same when each tab was last shown, by its key.
     areas_pt: BTreeMap<usize, Vec2>,

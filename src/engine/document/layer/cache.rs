@@ -17,9 +17,9 @@ pub struct LayerCache {
     pub pixels: Memo<(), EncodedPixels>,
     /// The layer seen through its transforms.
     pub(in crate::document) on_canvas: CanvasCache,
-    /// What was composed of it to be displaced.
+    /// The composed tiles that are displaced.
     pub(in crate::document) warped: WarpCache,
-    /// Of a normal layer: the surface with its detail.
+    /// For a normal layer: the surface with its detail.
     pub(in crate::document) combined: Memo<Combination, Arc<Surface>>,
     /// The greatest luminance.
     pub(in crate::document) brightest: Memo<()>,

@@ -56,7 +56,7 @@ pub enum Content {
     Group(Group),
 }
 
-/// What a layer is in its stack: all that composing, planning and walking need to know of a kind.
+/// What a layer is in its stack: all that composing, planning and walking need to know about a kind.
 #[derive(Clone, Copy)]
 pub enum Role<'a> {
     /// It has pixels of its own.

@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 actions! {
     ClipboardAction {
-        /// Of the chosen layers, or of all that shows.
+        /// From the chosen layers, or from all that shows.
         "copy" Copy { merged: bool }
         "cut" Cut {}
         /// In place, above the selected layer.

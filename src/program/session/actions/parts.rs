@@ -44,7 +44,7 @@ impl ReplayValue for InflationPreset {
 actions! {
     /// `part` is always an id.
     PartAction {
-        /// Of the selected layer, the selection or the chosen part, as its kind says; in front of all others.
+        /// From the selected layer, the selection or the chosen part, as its kind says; in front of all others.
         "add" Add { kind: NewPart }
         /// A layer gets a shape: one part from its alpha, or one from each of its flat colours, and a lit Base.
         "shape" Shape { layer: LayerPath, preset: InflationPreset, flats: bool }

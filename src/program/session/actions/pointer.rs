@@ -157,7 +157,7 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
     take(session, outcome);
 }
 
-/// What the pen snaps to with a tool; strokes do where they are lines.
+/// What the pen snaps to with a tool; strokes snap if they are lines.
 fn targets(
     session: &Session,
     document: &Document,

@@ -14,7 +14,7 @@ use eframe::egui::{Id, Painter, Pos2, Shape};
 const MOST_STROKES: usize = 400;
 const DASH_PT: f32 = 6.0;
 
-/// What was under the pointer last: it is what is being dragged.
+/// What was under the pointer last: it stays held during a drag.
 #[derive(Clone, Copy)]
 struct Last {
     layer: LayerId,
