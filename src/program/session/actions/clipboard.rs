@@ -40,7 +40,7 @@ pub struct Copied {
 }
 
 impl Copied {
-    /// From one layer that holds all of it.
+    /// The name for one layer that holds all of it.
     fn name(&self) -> String {
         self.layers.last().map_or_else(String::new, |layer| layer.name.clone())
     }
