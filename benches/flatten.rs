@@ -180,7 +180,15 @@ fn painted(surface: &Arc<Surface>) -> Document {
     let stops = [(0.0, Color::BLACK), (1.0, Color::WHITE)].map(|(t, color)| GradientStop { t, color }).to_vec();
     let operator = Operator::Normal { alpha: 0.3, beta: 1.0, detail: 0.0 };
     let (from, to) = (vec2(100.0, 100.0), vec2(1900.0, 1900.0));
-    let gradient = Gradient { from, to, stops, operator, filter: ImageFilter::Antialias, frame: Default::default() };
+    let gradient = Gradient {
+        from,
+        to,
+        stops,
+        operator,
+        filter: ImageFilter::Antialias,
+        frame: Default::default(),
+        pieces: Vec::new(),
+    };
     let contents = [
         Content::Shading(Live::new(Shading::new(Model::Phong))),
         Content::Gradient(Live::new(gradient)),

@@ -71,6 +71,7 @@ fn ramp(to: Vec2) -> Content {
         operator: D_N,
         filter: ImageFilter::Antialias,
         frame: Default::default(),
+        pieces: Vec::new(),
     }))
 }
 

@@ -183,6 +183,9 @@ fn everything() -> Value {
           "to": [3, 4],
           "stops": [[0, "#000000"], [0.3, "#ff000080"], [1, "#ffffff"]], "operator": { "kind": "depth", "gamma": 2.5 },
           "filter": "bilinear" },
+        { "name": "print of a ramp", "kind": "gradient", "from": [1, 2], "to": [3, 4], "stops": [[0, "#000000"]],
+          "operator": { "kind": "surface", "amount": 0.5, "smooth": 3 },
+          "pieces": [{ "at": [3, 4], "move": [-5, 6.5], "scale": 2, "rotation": -30 }, { "at": [7, 8] }] },
         { "name": "marks", "kind": "strokes", "strokes": [
           { "brush": { "size": 20, "hardness": 0.1, "opacity": 0.9, "flow": 0.8, "spacing": 0.2, "rotation": 15,
             "softness": 0.3,

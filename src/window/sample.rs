@@ -23,6 +23,7 @@ pub fn open() -> Result<OpenedTab> {
         operator: Operator::None,
         filter: ImageFilter::Antialias,
         frame: Default::default(),
+        pieces: Vec::new(),
     };
     let clay = Gradient {
         from: vec2(0.30, 0.22) * SIDE as f32,
@@ -35,6 +36,7 @@ pub fn open() -> Result<OpenedTab> {
         operator: Operator::Normal { alpha: 0.6, beta: 1.0, detail: 0.0 },
         filter: ImageFilter::Antialias,
         frame: Default::default(),
+        pieces: Vec::new(),
     };
     let behind = Layer { clip_to_surface: false, ..Layer::new("Background", Content::Gradient(Live::new(background))) };
     let layers = vec![Arc::new(behind), Arc::new(Layer::new("Base", Content::Gradient(Live::new(clay))))];

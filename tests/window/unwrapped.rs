@@ -52,6 +52,30 @@ fn the_surface_is_laid_flat_painted_on_and_the_story_replays_to_the_same_bytes()
     assert!(bytes(&seen, folder.path(), "seen.ora") == bytes(replayed, folder.path(), "again.ora"));
 }
 #[test]
+fn a_gradient_is_moved_on_one_piece_of_the_sheet_and_the_story_replays() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = opened(folder.path());
+    command(&mut harness, "operator: texture");
+    key(&mut harness, Modifiers::NONE, Key::G);
+    drag(&mut harness, vec2(-60.0, -20.0), vec2(70.0, 30.0));
+    key(&mut harness, Modifiers::ALT, Key::Num9);
+    until(&mut harness, is_unwrapped);
+    drag(&mut harness, vec2(-30.0, 10.0), vec2(20.0, -15.0));
+    {
+        let Content::Gradient(live) = &session(&harness).layer().unwrap().content else { panic!("a gradient") };
+        let [piece] = live.params().pieces[..] else { panic!("one piece: {:?}", live.params().pieces) };
+        assert!(piece.moved.length() > 5.0 && piece.scale == 1.0, "{piece:?}");
+        assert_eq!(session(&harness).active().unwrap().history.done(), Some("Move piece"));
+    }
+    assert!(harness.query_by_label("Dismiss").is_none(), "nothing went wrong");
+    let seen = session(&harness).active().unwrap().document().clone();
+    let text = harness.state().as_ref().unwrap().recorded();
+    let mut again = Session::default();
+    again.replay(Path::new("story.jsonl"), &text).unwrap();
+    let replayed = again.active().unwrap().document();
+    assert!(bytes(&seen, folder.path(), "seen.ora") == bytes(replayed, folder.path(), "again.ora"));
+}
+#[test]
 fn what_is_exported_unwrapped_comes_back_as_a_layer_on_the_surface() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = opened(folder.path());

@@ -133,7 +133,10 @@ impl Total {
                 let crate::surface::Bend { anchors, pieces, .. } = &live.params().bend;
                 self.values += marks::AN_ANCHOR * (anchors.len() + pieces.len());
             }
-            Content::Gradient(live) => self.values += marks::A_STOP * live.params().stops.len(),
+            Content::Gradient(live) => {
+                let crate::paint::Gradient { stops, pieces, .. } = live.params();
+                self.values += marks::A_STOP * stops.len() + marks::AN_ANCHOR * pieces.len();
+            }
             Content::Strokes(live) => {
                 let (samples, values) = marks::measured(&live.params().strokes);
                 (self.samples, self.values) = (self.samples + samples, self.values + values);

@@ -108,6 +108,7 @@ mod tests {
             operator: Operator::None,
             filter: ImageFilter::Antialias,
             frame: Default::default(),
+            pieces: Vec::new(),
         };
         let gradient = || Content::Gradient(Live::new(of_no_stops.clone()));
         assert_eq!(weight(vec![Content::Fill(Color::BLACK)]), 400_000);

@@ -9,6 +9,7 @@ use crate::math::{Affine2, PlaneMap, Rect, Vec2};
 use crate::raster::tile::{TILE, transparent_f32};
 use crate::raster::{PlanarTile, Tile, TileAt};
 use crate::surface::deformation::{Deformation, DeformedRect};
+use crate::surface::plane_piece::PlanePiece;
 use crate::surface::{Anchor, Bend, Operator, Weights, links};
 
 /// ramp(t(D(q))), t the projection on the segment [from, to], clamped. Its two ends are its anchors.
@@ -22,6 +23,8 @@ pub struct Gradient {
     pub filter: ImageFilter,
     /// Where the frame of both ends is on the canvas.
     pub frame: PlaneMap,
+    /// Of the operator that unwraps the surface: pieces on which the ramp is turned, moved and scaled alone.
+    pub pieces: Vec<PlanePiece>,
 }
 
 impl Gradient {
@@ -31,7 +34,7 @@ impl Gradient {
     pub fn bend(&self) -> Bend {
         let on_canvas = |p: Vec2| self.frame.to_canvas(p).unwrap_or(p);
         let anchors = vec![Anchor::fixed(on_canvas(self.from)), Anchor::fixed(on_canvas(self.to))];
-        Bend { operator: self.operator, anchors, weights: Weights::Segment, pieces: Vec::new() }
+        Bend { operator: self.operator, anchors, weights: Weights::Segment, pieces: self.pieces.clone() }
     }
     /// One tile of the layer. `None` if it is transparent, without stops, or beyond the canvas.
     pub fn render_tile(&self, scene: &Scene, at: TileAt) -> Option<Tile> {
@@ -128,6 +131,7 @@ mod tests {
             operator: Operator::None,
             filter: ImageFilter::Antialias,
             frame: Default::default(),
+            pieces: Vec::new(),
         }
     }
     fn pixel(gradient: &Gradient, x: i32, y: i32) -> [u8; 4] {

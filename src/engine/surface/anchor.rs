@@ -39,9 +39,7 @@ impl Bend {
         for Anchor { at, source } in &mut self.anchors {
             (*at, *source) = (point(*at), point(*source));
         }
-        for piece in &mut self.pieces {
-            *piece = piece.mapped(point(piece.at), stretch(piece.at));
-        }
+        PlanePiece::go_along(&mut self.pieces, point, stretch);
     }
 }
 

@@ -43,6 +43,12 @@ impl PlanePiece {
         let linear = Mat2::from_angle(finite(self.rotation).to_radians()) * (1.0 / scale);
         Affine2::from_mat2_translation(linear, shown - linear * (shown + moved))
     }
+    /// Moves pieces with the canvas.
+    ///
+    /// * `point`: where a point is now; `stretch`: how lengths and directions changed about it.
+    pub fn go_along(pieces: &mut [Self], point: impl Fn(Vec2) -> Vec2, stretch: impl Fn(Vec2) -> Mat2) {
+        pieces.iter_mut().for_each(|piece| *piece = piece.mapped(point(piece.at), stretch(piece.at)));
+    }
     /// The same piece after the canvas was mapped.
     ///
     /// * `at`: where its point is now; `stretch`: how lengths and directions changed about it.

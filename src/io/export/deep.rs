@@ -208,6 +208,7 @@ mod tests {
             operator: Operator::None,
             filter: ImageFilter::Antialias,
             frame: Default::default(),
+            pieces: Vec::new(),
         };
         let layer = Layer::new("gradient", Content::Gradient(Live::new(gradient)));
         Document { layers: vec![layer.into()], ..Document::empty(Size::new(4096, 2)) }

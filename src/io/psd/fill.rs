@@ -212,6 +212,7 @@ impl GradientFill {
             operator: Operator::None,
             filter: ImageFilter::Bilinear,
             frame: Default::default(),
+            pieces: Vec::new(),
         })
     }
     /// Its middle, and from there to its end.

@@ -38,6 +38,7 @@ impl LayerReader<'_> {
             operator: operator(fields)?.unwrap_or_default(),
             filter: fields.one_of("filter", &ImageFilter::ALL, ImageFilter::Antialias)?,
             frame: Default::default(),
+            pieces: pieces(fields)?,
         })
     }
     /// Operator, anchors and weights. An operator without a list of anchors is pinned at `center`; an empty list pins
@@ -51,10 +52,7 @@ impl LayerReader<'_> {
             None => default_anchors(operator, center),
         };
         let weights = fields.get("weights").map_or(Ok(Weights::default()), |node| weights(&node))?;
-        let pieces = fields.get("pieces").map_or(Ok(Vec::new()), |node| {
-            node.list(PlanePiece::MOST)?.iter().map(RecipeValue::from_json).collect::<Result<_>>()
-        })?;
-        Ok(Bend { operator, anchors, weights, pieces })
+        Ok(Bend { operator, anchors, weights, pieces: pieces(fields)? })
     }
     pub fn placement(&self, fields: &mut Fields) -> Result<Placement> {
         let covering = Placement::covering(self.size);
@@ -75,6 +73,12 @@ pub fn default_anchors(operator: Operator, center: Vec2) -> Vec<Anchor> {
         Operator::None => Vec::new(),
         _ => vec![Anchor::fixed(center)],
     }
+}
+
+/// The field `pieces`; none by default.
+fn pieces(fields: &mut Fields) -> Result<Vec<PlanePiece>> {
+    let read = |node: JsonNode| node.list(PlanePiece::MOST)?.iter().map(RecipeValue::from_json).collect();
+    fields.get("pieces").map_or(Ok(Vec::new()), read)
 }
 
 /// The field `operator`, if present.
@@ -247,6 +251,7 @@ pub fn write_gradient(out: &mut JsonObject, gradient: &Gradient) {
     out.set("to", object::point(gradient.to));
     out.set("stops", gradient.stops.iter().map(GradientStop::to_json).collect());
     out.object("operator", write_operator(gradient.operator));
+    write_pieces(out, &gradient.pieces);
     out.word("filter", &ImageFilter::ALL, gradient.filter, ImageFilter::Antialias);
 }
 
@@ -255,13 +260,17 @@ fn write_bend(out: &mut JsonObject, bend: &Bend, center: Vec2) {
     if bend.anchors != default_anchors(bend.operator, center) {
         out.set("anchors", bend.anchors.iter().map(Anchor::to_json).collect());
     }
-    if !bend.pieces.is_empty() {
-        out.set("pieces", bend.pieces.iter().map(PlanePiece::to_json).collect());
-    }
+    write_pieces(out, &bend.pieces);
     if let Weights::Shepard { power } = bend.weights {
         let mut weights = JsonObject::default();
         weights.number("power", power, 2.0);
         out.object("weights", weights);
+    }
+}
+
+fn write_pieces(out: &mut JsonObject, pieces: &[PlanePiece]) {
+    if !pieces.is_empty() {
+        out.set("pieces", pieces.iter().map(PlanePiece::to_json).collect());
     }
 }
 

@@ -77,7 +77,7 @@ fn unwraps(document: &Document) -> bool {
             let bend = &live.params().bend;
             is_print(bend.operator) || !bend.pieces.is_empty()
         }
-        Content::Gradient(live) => is_print(live.params().operator),
+        Content::Gradient(live) => is_print(live.params().operator) || !live.params().pieces.is_empty(),
         Content::Strokes(live) => live.params().strokes.iter().any(|stroke| {
             let (brush, grain) = (stroke.brush(), stroke.brush().grain.as_ref());
             is_print(stroke.operator())

@@ -83,6 +83,7 @@ mod tests {
             operator: Operator::None,
             filter: ImageFilter::Antialias,
             frame: Default::default(),
+            pieces: Vec::new(),
         }))
     }
     /// A session whose gradient was dragged so often, each time rendered whole.

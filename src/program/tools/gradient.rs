@@ -41,6 +41,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         operator: context.operator,
         filter: ImageFilter::Antialias,
         frame: Default::default(),
+        pieces: Vec::new(),
     };
     let place = selected.and_then(|layer| context.document.place_of(layer.id));
     let (document, snap, lines) = (context.document.clone(), context.snap.clone(), SnapLines::default());

@@ -22,8 +22,13 @@ const CUT_PX: f32 = 6.0 * STEP_PX;
 
 /// Whether a tool works on the sheet; others need what they hold to lie as in the picture.
 pub fn works(tool: ToolKind) -> bool {
-    use ToolKind::{Brush, Eraser, Eyedropper, Fill, Hand, Image, SurfaceWand, Wand, Zoom};
-    matches!(tool, Brush | Eraser | Eyedropper | Fill | Hand | Image | SurfaceWand | Wand | Zoom)
+    use ToolKind::{Brush, Eraser, Eyedropper, Fill, Hand, SurfaceWand, Wand, Zoom};
+    moves_pieces(tool) || matches!(tool, Brush | Eraser | Eyedropper | Fill | Hand | SurfaceWand | Wand | Zoom)
+}
+
+/// Whether a tool moves, scales and turns what the selected layer shows on one piece of the sheet.
+pub fn moves_pieces(tool: ToolKind) -> bool {
+    matches!(tool, ToolKind::Image | ToolKind::Gradient)
 }
 
 /// The pen comes down on the sheet with a brush: strokes are stabilised and spaced there, painted with the operator
@@ -61,7 +66,7 @@ pub fn paint(context: &ToolContext, pen: PenSample, layout: Arc<PlaneLayout>, st
 /// The pen comes down on the sheet with a tool that is not a brush: it gets the points of the canvas under the pen.
 pub fn point(context: &ToolContext, pen: PenSample, layout: Arc<PlaneLayout>, tool: ToolKind) -> GestureStart {
     let Some(surface) = context.document.surface.clone() else { return (None, Outcome::Idle) };
-    if tool == ToolKind::Image {
+    if moves_pieces(tool) {
         return pieces::press(context, pen, &layout);
     }
     let sheet = Sheet { layout, surface };

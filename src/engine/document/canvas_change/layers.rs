@@ -14,6 +14,7 @@ use crate::paint::{Gradient, PlacedImage, Stroke};
 use crate::raster::warp::{warped, warped_plane_onto};
 use crate::raster::{BlendMode, TileAt};
 use crate::shading::{LightKind, Shading};
+use crate::surface::plane_piece::PlanePiece;
 use crate::surface::region::SurfaceRegion;
 use std::sync::Arc;
 
@@ -166,7 +167,10 @@ impl Carrier<'_> {
     fn gradient(&self, gradient: &Gradient, frame: &PlaneMap) -> Gradient {
         let at = |p: Vec2| frame.to_canvas(p).unwrap_or(p);
         let (from, to) = (at(gradient.from), at(gradient.to));
-        Gradient { from, to, operator: gradient.operator.on_canvas_of(self.ratio()), ..gradient.clone() }
+        let operator = gradient.operator.on_canvas_of(self.ratio());
+        let mut next = Gradient { from, to, operator, ..gradient.clone() };
+        PlanePiece::go_along(&mut next.pieces, at, |p| frame.stretch_at(p).unwrap_or(Mat2::IDENTITY));
+        next
     }
     fn stroke(&self, stroke: &Stroke) -> Stroke {
         let matrix = self.change.matrix();

@@ -10,6 +10,7 @@ use crate::paint::{Brush, Gradient, GradientStop, ImageFilter, PictureSource, Pl
 use crate::raster::{CoverageGrid, Outside, Picture, Plane, TileGrid};
 use crate::shading::{Light, LightKind, Model, Shading};
 use crate::shape::{Body, Primitive, Touch};
+use crate::surface::plane_piece::PlanePiece;
 use crate::surface::{Anchor, Bend, Maps, Operator};
 
 const SIZE: Size = Size::new(150, 100);
@@ -57,7 +58,10 @@ pub(super) fn ramp(operator: Operator) -> Layer {
     // can no longer be read.
     let (from, to) = (vec2(45.5, 25.5), vec2(95.5, 55.5));
     let (filter, frame) = (ImageFilter::Bilinear, PlaneMap::IDENTITY);
-    Layer::new("ramp", Content::Gradient(Live::new(Gradient { from, to, stops, operator, filter, frame })))
+    Layer::new(
+        "ramp",
+        Content::Gradient(Live::new(Gradient { from, to, stops, operator, filter, frame, pieces: Vec::new() })),
+    )
 }
 fn strokes(operator: Operator) -> Layer {
     let samples = [(50.5, 35.5), (70.5, 44.5), (90.5, 50.5)].map(|(x, y)| Sample::at(vec2(x, y))).to_vec();
@@ -170,6 +174,27 @@ fn live_layers_go_along_as_their_picture_does() {
         let stays = Document { layers: start.layers.clone(), ..start.on_other_canvas(&turn).unwrap() };
         assert!(farthest(&picture(&stays), &expected(&before, &turn)) > 20);
     }
+}
+#[test]
+fn a_ramp_on_a_piece_of_the_unwrapped_surface_goes_along_as_its_picture_does() {
+    let on_piece = |moved| {
+        let layer = ramp(Operator::Surface { amount: 1.0, smooth: 0.0 });
+        let Content::Gradient(live) = &layer.content else { unreachable!() };
+        let piece = PlanePiece { moved, scale: 0.5, rotation: 40.0, ..PlanePiece::at(vec2(60.5, 45.5)) };
+        let content = Content::Gradient(Live::new(Gradient { pieces: vec![piece], ..live.params().clone() }));
+        on_dome(Layer { content, ..layer })
+    };
+    let start = on_piece(vec2(9.0, -5.0));
+    let before = picture(&start);
+    // A crop cuts the surface, which is unwrapped anew.
+    let whole = exact().into_iter().filter(|(name, _)| !["crop", "aside"].contains(name));
+    for (name, change) in whole {
+        let next = start.on_other_canvas(&change).unwrap();
+        let off = farthest(&picture(&next), &expected(&before, &change));
+        assert!(off <= 2, "{name}: {off} off");
+    }
+    let other = picture(&on_piece(vec2(-5.0, 9.0)));
+    assert!(farthest(&other, &before.as_chunks().0.iter().map(|p| Some(*p)).collect::<Vec<_>>()) > 20);
 }
 #[test]
 fn ten_degrees_and_back_thirty_six_times_is_the_untouched_picture() {

@@ -21,7 +21,7 @@ fn gradient(from: Vec2, to: Vec2, operator: Operator) -> Layer {
     let stop = |t, color| GradientStop { t, color };
     let stops = vec![stop(0.0, Color::BLACK), stop(1.0, Color::WHITE)];
     let filter = ImageFilter::Antialias;
-    let gradient = Gradient { from, to, stops, operator, filter, frame: Default::default() };
+    let gradient = Gradient { from, to, stops, operator, filter, frame: Default::default(), pieces: Vec::new() };
     Layer::new("gradient", Content::Gradient(Live::new(gradient)))
 }
 fn image(picture: Picture, size: Size, operator: Operator) -> Layer {

@@ -74,6 +74,7 @@ impl RandomNumbers {
                     operator: Operator::None,
                     filter: Default::default(),
                     frame: Default::default(),
+                    pieces: Vec::new(),
                 };
                 Content::Gradient(Live::new(gradient))
             }

@@ -166,12 +166,16 @@ pub fn image(image: &PlacedImage) -> Fit {
         .anchors
         .iter()
         .try_for_each(|anchor| point("an anchor", anchor.at).and(point("an anchor", anchor.source)))?;
-    at_most("pieces", image.bend.pieces.len(), PlanePiece::MOST)?;
-    image.bend.pieces.iter().try_for_each(piece)?;
+    pieces(&image.bend.pieces)?;
     match image.bend.weights {
         Weights::Shepard { power } => within("the sharpness of the anchors", power, &Weights::POWER),
         Weights::Segment => Err("the anchors of an image share by their distances".into()),
     }
+}
+
+fn pieces(list: &[PlanePiece]) -> Fit {
+    at_most("pieces", list.len(), PlanePiece::MOST)?;
+    list.iter().try_for_each(piece)
 }
 
 fn piece(piece: &PlanePiece) -> Fit {
@@ -185,6 +189,7 @@ fn piece(piece: &PlanePiece) -> Fit {
 pub fn gradient(gradient: &Gradient) -> Fit {
     point("an end of the gradient", gradient.from).and(point("an end of the gradient", gradient.to))?;
     operator(gradient.operator)?;
+    pieces(&gradient.pieces)?;
     at_most("stops of the gradient", gradient.stops.len(), Gradient::MOST_STOPS)?;
     gradient.stops.iter().try_for_each(|stop| within("a stop of the gradient", stop.t, &UNIT))?;
     if gradient.stops.is_empty() || !gradient.stops.is_sorted_by(|a, b| a.t <= b.t) {

@@ -70,7 +70,10 @@ fn gradient() -> Layer {
     let stops = [(0.0, Color::BLACK), (1.0, Color::WHITE)].map(|(t, color)| GradientStop { t, color }).to_vec();
     let (filter, frame) = (ImageFilter::Antialias, PlaneMap::IDENTITY);
     let (from, to) = (AT - vec2(40.0, 20.0), AT + vec2(44.0, 12.0));
-    Layer::new("ramp", Content::Gradient(Live::new(Gradient { from, to, stops, operator: NORMAL, filter, frame })))
+    Layer::new(
+        "ramp",
+        Content::Gradient(Live::new(Gradient { from, to, stops, operator: NORMAL, filter, frame, pieces: Vec::new() })),
+    )
 }
 fn lit() -> Layer {
     let position = AT.extend(60.0) + crate::math::vec3(20.0, -30.0, 0.0);

@@ -51,6 +51,7 @@ fn document() -> Document {
         operator,
         filter: ImageFilter::Antialias,
         frame: Default::default(),
+        pieces: Vec::new(),
     };
     let samples = [40.0, 120.0, 190.0].map(|x| Sample::at(vec2(x, 60.0 + 0.2 * x))).to_vec();
     let brush = Brush { size: 50.0, ..Brush::default() };

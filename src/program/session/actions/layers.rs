@@ -99,6 +99,7 @@ impl LayerAction {
             operator: session.operator,
             filter: ImageFilter::Antialias,
             frame: Default::default(),
+            pieces: Vec::new(),
         };
         session.drop_gesture();
         let carried = session.carried;
@@ -160,6 +161,7 @@ impl LayerAction {
             frame: Default::default(),
             operator: Default::default(),
             filter: ImageFilter::Antialias,
+            pieces: Vec::new(),
         };
         if let Some(edit) = self.edit(tab, &settings) {
             tab.take(edit);

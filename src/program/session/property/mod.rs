@@ -40,7 +40,7 @@ actions! {
         "fill" Fill { color: Color }
         "operator" Bend { operator: Operator }
         "anchors" Anchors { anchors: Vec<Anchor> }
-        /// For an image on the unwrapped surface: pieces whose picture is turned, moved and scaled alone.
+        /// For an image or a gradient on the unwrapped surface: pieces on which it is turned, moved and scaled alone.
         "pieces" Pieces { pieces: Vec<PlanePiece> }
         "power" Power { to: f32 }
         "placement" Place { placement: Placement }
@@ -221,6 +221,7 @@ impl Property {
             Property::Bend { operator } => next.operator = *operator,
             Property::Stops { stops } if !stops.is_empty() => next.stops.clone_from(stops),
             Property::Ends { from, to } => (next.from, next.to) = (*from, *to),
+            Property::Pieces { pieces } => next.pieces.clone_from(pieces),
             Property::Filtered { filter } => next.filter = *filter,
             _ => return None,
         }

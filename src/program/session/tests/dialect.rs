@@ -21,6 +21,7 @@ fn cases() -> Vec<(usize, Value, &'static str, &'static str)> {
             "",
         ),
         (1, json!({ "do": "pieces", "pieces": [{ "at": [1, 2], "move": [3, 4], "rotation": 30 }] }), "pieces", ""),
+        (2, json!({ "do": "pieces", "pieces": [{ "at": [1, 2], "move": [3, 4], "scale": 2 }] }), "pieces", ""),
         (
             1,
             json!({ "do": "placement", "placement": { "center": [4, 5], "scale": 2, "rotation": 15 } }),

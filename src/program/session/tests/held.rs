@@ -42,6 +42,7 @@ pub(super) fn everything() -> Document {
         operator: Default::default(),
         filter: ImageFilter::Antialias,
         frame: Default::default(),
+        pieces: Vec::new(),
     };
     let environment = Some(Environment::new("sky.png".into(), picture));
     let shading = Shading { environment, occlusion_radius_px: 4.0, ..Shading::new(Model::Phong) };

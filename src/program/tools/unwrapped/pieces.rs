@@ -1,9 +1,9 @@
-//! An image on the unwrapped sheet: moved, scaled and turned on one piece of the surface alone. Floor 5. Not here:
+//! An image or a gradient on the unwrapped sheet: moved, scaled and turned on one piece of the surface alone. Floor 5. Not here:
 //! what a piece does to its picture (`surface::unwrap`).
 
 use crate::document::{Content, Document, LayerId, LayerLock, Live};
 use crate::math::{Mat2, Rect, Vec2, vec2};
-use crate::paint::PlacedImage;
+use crate::paint::{Gradient, PlacedImage};
 use crate::surface::plane_piece::PlanePiece;
 use crate::surface::unwrap::metric::turn;
 use crate::surface::unwrap::{LaidPiece, PlaneLayout};
@@ -66,47 +66,86 @@ pub fn held(layout: &PlaneLayout, at: Vec2, px_per_pt: f32, keys: ModifierKeys) 
     pieces.iter().find_map(by_handle).or_else(|| pieces.iter().find(inside).map(|piece| (*piece, how)))
 }
 
-/// The pen comes down on the sheet with the image tool; `pen` is on the sheet.
+/// How content that can be moved on one piece is bent.
+pub fn bend_on_pieces(content: &Content) -> Option<Bend> {
+    match content {
+        Content::Image(live) => Some(live.params().bend.clone()),
+        Content::Gradient(live) => Some(live.params().bend()),
+        _ => None,
+    }
+}
+
+/// The same content, its picture moved on these pieces; other content as it is.
+fn with_pieces(content: &Content, pieces: Vec<PlanePiece>) -> Content {
+    match content {
+        Content::Image(live) => {
+            let image = live.params().clone();
+            Content::Image(Live::new(PlacedImage { bend: Bend { pieces, ..image.bend }, ..image }))
+        }
+        Content::Gradient(live) => Content::Gradient(Live::new(Gradient { pieces, ..live.params().clone() })),
+        other => other.clone(),
+    }
+}
+
+/// The pen comes down on the sheet with the image or the gradient tool; `pen` is on the sheet.
 pub fn press(context: &ToolContext, pen: PenSample, layout: &PlaneLayout) -> GestureStart {
     let layer = context.layer.and_then(|id| context.document.layer(id)).filter(|layer| layer.lock != LayerLock::All);
-    let Some((layer, Content::Image(live))) = layer.map(|layer| (layer, &layer.content)) else {
-        return (None, Outcome::Refused("Select an image layer to move, scale and turn it on one piece"));
+    let Some((layer, mut bend)) = layer.and_then(|layer| Some((layer, bend_on_pieces(&layer.content)?))) else {
+        return (None, Outcome::Refused("Select an image or a gradient to move, scale and turn it on one piece"));
     };
-    let image = live.params();
-    if image.bend.operator.unwrapping().is_none() {
-        return (None, Outcome::Refused("Only an image bent by Texture can be moved on one piece"));
+    if bend.operator.unwrapping().is_none() {
+        return (None, Outcome::Refused("Only what is bent by Texture can be moved on one piece"));
     }
     let Some(surface) = context.document.surface.clone() else { return (None, Outcome::Idle) };
     let Some((piece, how)) = held(layout, pen.place(), context.px_per_pt, pen.keys) else {
         return (None, Outcome::Idle);
     };
-    let mut image = image.clone();
-    let known = image.bend.pieces.iter().position(|known| layout.object_at(&surface, known.at) == piece.object);
+    let known = bend.pieces.iter().position(|known| layout.object_at(&surface, known.at) == piece.object);
     let index = known.unwrap_or_else(|| {
-        image.bend.pieces.push(PlanePiece::at(layout.middle_of(&surface, &piece)));
-        image.bend.pieces.len() - 1
+        bend.pieces.push(PlanePiece::at(layout.middle_of(&surface, &piece)));
+        bend.pieces.len() - 1
     });
-    let before = image.bend.pieces[index];
-    let plane_from_sheet = plane_from_sheet(context.document, &surface, &image.bend, layout, before.at);
+    let before = bend.pieces[index];
+    let plane_from_sheet = plane_from_sheet(context.document, &surface, &bend, layout, before.at);
     let middle = layout.sheet_at(&surface, before.at).unwrap_or(pen.place());
-    let pivot = middle + plane_from_sheet.transpose() * before.moved;
-    let (document, layer, from) = (context.document.clone(), layer.id, pen.place());
-    let drag = PieceGesture { document, layer, image, index, before, how, from, pivot, plane_from_sheet, moved: false };
+    let pivot = middle + plane_from_sheet.inverse() * before.moved;
+    let (document, layer, content, from) = (context.document.clone(), layer.id, layer.content.clone(), pen.place());
+    let pieces = bend.pieces;
+    let drag = PieceGesture {
+        document,
+        layer,
+        content,
+        pieces,
+        index,
+        before,
+        how,
+        from,
+        pivot,
+        plane_from_sheet,
+        moved: false,
+    };
     (Some(Box::new(drag)), Outcome::Idle)
 }
 
-/// How an image's plane is turned relative to the sheet, about a point of the canvas, before its pieces are moved.
+/// How a layer's plane is turned and scaled relative to the sheet, about a point of the canvas, before its pieces are
+/// moved: the ends of a gradient scale its plane.
 fn plane_from_sheet(document: &Document, surface: &Surface, bend: &Bend, layout: &PlaneLayout, at: Vec2) -> Mat2 {
     let (x, y) = surface.pixel_of(at);
     let still = Bend { pieces: Vec::new(), ..bend.clone() };
     let plane = Deformation::new(Some(surface), document.size, &still).jacobian(x as i32, y as i32);
-    turn(plane, layout.jacobian(surface, x, y))
+    let sheet = layout.jacobian(surface, x, y);
+    let scale = (plane.determinant() / sheet.determinant()).abs().sqrt();
+    // A ramp between two ends at one place has no scale.
+    let scale = if scale.is_finite() && scale > 1e-6 { scale } else { 1.0 };
+    turn(plane, sheet) * scale
 }
 
 struct PieceGesture {
     document: Document,
     layer: LayerId,
-    image: PlacedImage,
+    /// Before the drag.
+    content: Content,
+    pieces: Vec<PlanePiece>,
     index: usize,
     /// Before the drag.
     before: PlanePiece,
@@ -120,7 +159,7 @@ struct PieceGesture {
 
 impl PieceGesture {
     fn with(&self) -> Option<Document> {
-        let content = Content::Image(Live::new(self.image.clone()));
+        let content = with_pieces(&self.content, self.pieces.clone());
         self.document.with_layer(self.layer, |layer| layer.content = content)
     }
     fn dragged(&self, to: Vec2) -> PlanePiece {
@@ -148,7 +187,7 @@ impl PieceGesture {
 impl Gesture for PieceGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let Some(pen) = pens.last() else { return Outcome::Idle };
-        self.image.bend.pieces[self.index] = self.dragged(pen.place());
+        self.pieces[self.index] = self.dragged(pen.place());
         self.moved = true;
         self.with().map_or(Outcome::Idle, Outcome::Preview)
     }
@@ -166,114 +205,4 @@ impl Gesture for PieceGesture {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::tests::{document, laid};
-    use super::*;
-    use crate::document::Layer;
-    use crate::math::Affine2;
-    use crate::paint::{Adjust, Brush, ImageFilter, PictureSource, Placement};
-    use crate::raster::{Outside, Picture};
-    use crate::surface::{Anchor, Operator};
-    use crate::tools::ToolKind;
-    use std::sync::Arc;
-
-    /// The cylinder and the board, with a picture on both, whose plane is turned on the cylinder by its anchors.
-    fn painted() -> Document {
-        let document = document();
-        let surface = document.surface.clone().unwrap();
-        let plain = laid(&document);
-        let [a, b] = [vec2(80.5, 40.5), vec2(120.5, 40.5)];
-        let [u, v] = [a, b].map(|q| plain.sheet_at(&surface, q).unwrap());
-        let pins = [Anchor { at: a, source: u }, Anchor { at: b, source: u + (v - u).perp() }];
-        let picture = Picture::srgb8(document.size, vec![[9; 4]; document.size.area()]).unwrap();
-        let image = PlacedImage {
-            source: PictureSource::new("p.png".into(), picture, Adjust::default()),
-            placement: Placement::covering(document.size),
-            outside: Outside::Repeat,
-            bend: Bend {
-                operator: Operator::Surface { amount: 1.0, smooth: 0.0 },
-                anchors: pins.to_vec(),
-                ..Bend::default()
-            },
-            filter: ImageFilter::Antialias,
-            frame: Default::default(),
-        };
-        Document { layers: vec![Arc::new(Layer::new("print", Content::Image(Live::new(image))))], ..document }
-    }
-    fn shown_at(document: &Document, q: Vec2) -> Vec2 {
-        let Content::Image(live) = &document.layers[0].content else { panic!("an image") };
-        let surface = document.surface.as_deref();
-        Deformation::new(surface, document.size, &live.params().bend).at(q.x as i32, q.y as i32)
-    }
-    /// The drawing after a drag from the sheet's point of a canvas point to another, or by some px.
-    fn dragged(document: &Document, keys: ModifierKeys, from: Vec2, to: Vec2) -> Document {
-        let brush = Brush::default();
-        let context = ToolContext { layer: Some(document.layers[0].id), ..ToolContext::new(document, &brush) };
-        let pen = PenSample { keys, ..PenSample::at(from) };
-        let (gesture, _) = super::super::point(&context, pen, laid(document), ToolKind::Image);
-        let mut gesture = gesture.expect("a piece is held");
-        gesture.drag(&[PenSample { keys, ..PenSample::at(to) }]);
-        let Outcome::Commit { document, .. } = gesture.release() else { panic!("a step") };
-        document
-    }
-
-    #[test]
-    fn a_drag_on_the_sheet_takes_the_picture_of_one_piece_along() {
-        let before = painted();
-        let layout = laid(&before);
-        let surface = before.surface.clone().unwrap();
-        let on_sheet = |x: f32, y: f32| layout.sheet_at(&surface, vec2(x, y)).unwrap();
-        let (from, to) = (on_sheet(90.5, 60.5), on_sheet(110.5, 75.5));
-        let after = dragged(&before, ModifierKeys::default(), from, to);
-        let (was, is) = (shown_at(&before, vec2(90.5, 60.5)), shown_at(&after, vec2(110.5, 75.5)));
-        assert!(was.distance(is) < 0.05, "what was under the pen is under it: {was} and {is}");
-        let board = vec2(250.5, 60.5);
-        assert_eq!(shown_at(&before, board), shown_at(&after, board));
-    }
-    #[test]
-    fn handles_scale_and_turn_about_the_middle_of_the_piece() {
-        let before = painted();
-        let layout = laid(&before);
-        let surface = before.surface.clone().unwrap();
-        let piece = layout.pieces()[0];
-        let middle = layout.middle_of(&surface, &piece);
-        let pivot = layout.sheet_at(&surface, middle).unwrap();
-        let frame = PieceFrame::of(&piece, 1.0).unwrap();
-        let larger =
-            dragged(&before, ModifierKeys::default(), frame.corners[0], pivot + (frame.corners[0] - pivot) * 2.0);
-        let away = |document: &Document, q: Vec2| shown_at(document, q) - shown_at(document, middle);
-        let beside = middle + vec2(20.0, 10.0);
-        assert!(away(&larger, beside).distance(0.5 * away(&before, beside)) < 0.1, "twice as large");
-        let turn = Affine2::from_translation(pivot) * Affine2::from_angle(-0.5) * Affine2::from_translation(-pivot);
-        let turned = dragged(&before, ModifierKeys::default(), frame.knob, turn.transform_point2(frame.knob));
-        let Content::Image(live) = &turned.layers[0].content else { panic!("an image") };
-        assert!((live.params().bend.pieces[0].rotation - 0.5f32.to_degrees()).abs() < 0.1, "counter-clockwise");
-        assert!((away(&turned, beside).length() / away(&before, beside).length() - 1.0).abs() < 1e-3);
-        // A second drag continues from the first.
-        let twice =
-            dragged(&turned, ModifierKeys { ctrl: true, ..Default::default() }, pivot + Vec2::X, pivot + Vec2::Y);
-        let Content::Image(live) = &twice.layers[0].content else { panic!("an image") };
-        assert_eq!(live.params().bend.pieces.len(), 1);
-    }
-    #[test]
-    fn other_layers_and_operators_are_refused_in_a_sentence() {
-        let flat = document();
-        let brush = Brush::default();
-        let outcome = |document: &Document| {
-            let layer = document.layers.first().map(|layer| layer.id);
-            press(
-                &ToolContext { layer, ..ToolContext::new(document, &brush) },
-                PenSample::at(vec2(60.0, 60.0)),
-                &laid(document),
-            )
-            .1
-        };
-        assert!(matches!(outcome(&flat), Outcome::Refused(_)));
-        let painted = painted();
-        let Content::Image(live) = &painted.layers[0].content else { panic!("an image") };
-        let mut image = live.params().clone();
-        image.bend.operator = Operator::Depth { gamma: 1.0 };
-        let bent = painted.with_layer(painted.layers[0].id, |layer| layer.content = Content::Image(Live::new(image)));
-        assert!(matches!(outcome(&bent.unwrap()), Outcome::Refused(_)));
-    }
-}
+mod tests;

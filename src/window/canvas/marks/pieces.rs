@@ -1,14 +1,13 @@
 //! The frames of pieces on the unwrapped sheet, and the handles of the one under the pointer. Floor 7.
 
-use crate::document::Content;
 use crate::math::Vec2;
 use crate::session::Session;
 use crate::surface::unwrap::PlaneLayout;
 use crate::tools::ModifierKeys;
-use crate::tools::unwrapped::pieces::{PieceFrame, held};
+use crate::tools::unwrapped::pieces::{PieceFrame, bend_on_pieces, held};
 use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, vec2};
 
-/// Draws them while an image lies on the pieces; `under`: on the sheet.
+/// Draws them while an image or a gradient lies on the pieces; `under`: on the sheet.
 pub fn draw(
     painter: &Painter,
     session: &Session,
@@ -17,11 +16,8 @@ pub fn draw(
     px_per_pt: f32,
     to_screen: &impl Fn(Vec2) -> Pos2,
 ) {
-    let lies = session.layer().is_some_and(|layer| match &layer.content {
-        Content::Image(live) => live.params().bend.operator.unwrapping().is_some(),
-        _ => false,
-    });
-    if !lies {
+    let lies = session.layer().and_then(|layer| bend_on_pieces(&layer.content));
+    if lies.is_none_or(|bend| bend.operator.unwrapping().is_none()) {
         return;
     }
     let held = under.and_then(|at| held(layout, at, px_per_pt, ModifierKeys::default())).map(|(piece, _)| piece);

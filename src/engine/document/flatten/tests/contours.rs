@@ -124,7 +124,15 @@ fn live_layers_are_rendered_for_both_sides_alike() {
     let stops =
         vec![GradientStop { t: 0.0, color: color("#000000") }, GradientStop { t: 1.0, color: color("#ffffff") }];
     let (from, to) = (crate::math::vec2(50.0, 2.0), crate::math::vec2(50.0, 68.0));
-    let gradient = Gradient { from, to, stops, operator, filter: ImageFilter::Antialias, frame: Default::default() };
+    let gradient = Gradient {
+        from,
+        to,
+        stops,
+        operator,
+        filter: ImageFilter::Antialias,
+        frame: Default::default(),
+        pieces: Vec::new(),
+    };
     let brush = Brush { size: 300.0, hardness: 1.0, ..Brush::default() };
     let stroke = |operator| {
         let samples = vec![Sample::at(crate::math::vec2(50.0, 5.0))];

@@ -3,9 +3,10 @@
 use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, TileContent};
 use crate::document::layer::marks::Marks;
 use crate::document::{LayerMap, Live, MemoryCount, Progress};
-use crate::math::Vec2;
+use crate::math::{Mat2, Vec2};
 use crate::paint::{Gradient, ImageFilter, Scene};
 use crate::raster::{PlanarTile, TileAt};
+use crate::surface::plane_piece::PlanePiece;
 use crate::surface::{Bend, Deformation};
 
 impl Marks for Gradient {
@@ -42,6 +43,8 @@ impl LayerKind for Live<Gradient> {
         gradient.from *= scale.per_axis;
         gradient.to *= scale.per_axis;
         gradient.operator = gradient.operator.scaled(scale.length);
+        let stretch = Mat2::from_diagonal(scale.per_axis);
+        PlanePiece::go_along(&mut gradient.pieces, |p| p * scale.per_axis, |_| stretch);
         Content::Gradient(Live::new(gradient))
     }
     fn drafted(&self) -> Option<Content> {
@@ -57,7 +60,9 @@ impl LayerKind for Live<Gradient> {
         Some(Content::Gradient(Live::new(Gradient { from, to, ..gradient.clone() })))
     }
     fn on_canvas(&self, map: &LayerMap, _: Option<(&Content, &Content)>) -> Option<Content> {
-        Some(Content::Gradient(Live::new(Gradient { frame: map.plane, ..self.params().clone() })))
+        let mut gradient = Gradient { frame: map.plane, ..self.params().clone() };
+        PlanePiece::go_along(&mut gradient.pieces, |p| map.point(p), |p| map.stretch_at(p));
+        Some(Content::Gradient(Live::new(gradient)))
     }
     fn bend(&self) -> Option<Bend> {
         Some(self.params().bend())

@@ -113,7 +113,7 @@ fn a_gradient_and_a_bent_image_follow_their_frame() {
     let stops = [(0.0, Color::BLACK), (1.0, Color::WHITE)].map(|(t, color)| GradientStop { t, color }).to_vec();
     let ramp = |from, to| {
         let (operator, filter, frame) = (Operator::None, ImageFilter::Antialias, PlaneMap::IDENTITY);
-        let gradient = Gradient { from, to, stops: stops.clone(), operator, filter, frame };
+        let gradient = Gradient { from, to, stops: stops.clone(), operator, filter, frame, pieces: Vec::new() };
         Layer::new("ramp", Content::Gradient(Live::new(gradient)))
     };
     let turned = with(ramp(vec2(46.0, 64.0), vec2(146.0, 64.0)), turned(90.0));
@@ -201,7 +201,8 @@ fn an_applied_transform_shows_what_it_showed() {
     );
     let stops = [(0.0, Color::BLACK), (1.0, Color::WHITE)].map(|(t, color)| GradientStop { t, color }).to_vec();
     let (operator, filter, frame) = (Operator::None, ImageFilter::Antialias, PlaneMap::IDENTITY);
-    let gradient = Gradient { from: vec2(40.0, 60.0), to: vec2(150.0, 70.0), stops, operator, filter, frame };
+    let gradient =
+        Gradient { from: vec2(40.0, 60.0), to: vec2(150.0, 70.0), stops, operator, filter, frame, pieces: Vec::new() };
     let ramp = Layer::new("ramp", Content::Gradient(Live::new(gradient)));
     let strokes = stroke(&[vec2(30.0, 40.0), vec2(160.0, 90.0)], 14.0);
     for layer in [paint(), strokes, image(Bend::default()), ramp] {

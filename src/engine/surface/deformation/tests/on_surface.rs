@@ -1,6 +1,7 @@
 //! D by the unwrapped surface: dabs, anchors and pieces in the planes of objects.
 
 use super::*;
+use std::sync::LazyLock;
 
 const ON_SURFACE: Operator = Operator::Surface { amount: 1.0, smooth: 0.0 };
 
@@ -90,6 +91,30 @@ fn a_gradient_on_the_surface_runs_evenly_along_it() {
         let share = (arc(x as f32 + 0.5) - arc(80.5)) / (arc(130.5) - arc(80.5));
         let found = (d.at(x, 100).x - 80.5) / 50.0;
         assert!((found - share).abs() < 0.01, "at {x}: {found} and {share}");
+    }
+}
+
+proptest! {
+    #[test]
+    fn a_ramp_on_a_piece_is_turned_moved_and_scaled_about_what_the_piece_shows(
+        (x, y, moved_x, moved_y) in (62i32..130, 22i32..118, -40.0f32..40.0, -40.0f32..40.0),
+        (scale, rotation) in (0.1f32..8.0, -180.0f32..180.0),
+    ) {
+        static UNWRAPPED_ONCE: LazyLock<Surface> = LazyLock::new(cylinder_and_plate);
+        let surface = &*UNWRAPPED_ONCE;
+        let at = vec2(x as f32, y as f32) + 0.5;
+        let piece = PlanePiece { at, moved: vec2(moved_x, moved_y), scale, rotation };
+        let anchors = vec![Anchor::fixed(vec2(70.5, 60.5)), Anchor::fixed(vec2(130.5, 90.5))];
+        let before = Bend { operator: ON_SURFACE, anchors, weights: Weights::Segment, ..Bend::default() };
+        let after = Bend { pieces: vec![piece], ..before.clone() };
+        let [d, e] = [&before, &after].map(|bend| Deformation::new(Some(surface), SIZE, bend));
+        let look = piece.looked_up(d.at(x, y));
+        for (x, y) in [(64, 30), (100, 60), (130, 110)] {
+            let (wanted, found) = (look.transform_point2(d.at(x, y)), e.at(x, y));
+            let off = found.distance(wanted);
+            prop_assert!(off < 2e-3 * (1.0 + 1.0 / scale), "({}, {}): {} px off", x, y, off);
+        }
+        prop_assert_eq!(d.at(30, 30), e.at(30, 30), "the plate");
     }
 }
 
