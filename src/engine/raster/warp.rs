@@ -3,9 +3,10 @@
 //!
 //! A map that moves whole pixels copies them. Otherwise a pixel is a weighted mean of the source around the point that
 //! it shows. Where the source is magnified along an axis of the pixel, the weights are a cubic's; where it is reduced,
-//! they are the share of each source pixel's tent in the pixel's own piece of the source. A tile that shows part of a
-//! tile of 16 bits has 16 bits.
+//! they are the share of each source pixel's tent in the pixel's own piece of the source. `Linear` takes the four
+//! nearest pixels instead, as long as this skips none. A tile that shows part of a 16-bit tile has 16 bits.
 
+mod linear;
 mod points;
 mod rows;
 mod source;
@@ -37,6 +38,9 @@ crate::named! {
         Smooth = "smooth",
         /// Catmull and Rom's cubic: sharp, with faint rings.
         Sharp = "sharp",
+        /// The four nearest pixels, where a pixel shows no more than two of the source along a side: quick. Shown
+        /// while a hand drags.
+        Linear = "linear",
         /// The nearest pixel, for pixel art.
         Nearest = "nearest",
     }
@@ -86,11 +90,12 @@ pub fn warped_tile_within(
     }
     let mut pixels = transparent_f32();
     let source = GridSource { grid, bounds: border.unwrap_or_else(|| grid.bounds()), continues: border.is_some() };
-    Warp { source: &source, map, filter }.block(at.rect(), &mut |x, y, row| {
+    let wanted = source.held(map.source_rect(at.rect()));
+    Warp { source: &source, map, filter }.block_of(at.rect(), wanted, &mut |x, y, row| {
         let (x, y) = ((x - at.rect().x0) as usize, (y - at.rect().y0) as usize);
         within_range(row, &mut pixels[y * TILE + x..][..row.len()]);
     });
-    let is_deep = grid.is_deep_at(source.held(map.source_rect(at.rect())));
+    let is_deep = grid.is_deep_at(wanted);
     let tile = if is_deep { Tile::from_deep(deep_rows(&pixels)) } else { Tile::quantised(&pixels) };
     tile.map(Arc::new)
 }
@@ -201,10 +206,12 @@ impl<S: PixelSource> Warp<'_, S> {
     }
     /// The pixels of a block no wider than a tile, in rows from a position on, if it shows any of the source.
     fn block(&self, block: Rect, put: &mut impl FnMut(i32, i32, &[[f32; 4]])) {
-        if block.is_empty() {
-            return;
+        if !block.is_empty() {
+            self.block_of(block, self.source.held(self.map.source_rect(block)), put);
         }
-        let wanted = self.source.held(self.map.source_rect(block));
+    }
+    /// The same of a block of which it is known what of the source it shows.
+    fn block_of(&self, block: Rect, wanted: Rect, put: &mut impl FnMut(i32, i32, &[[f32; 4]])) {
         if wanted.is_empty() {
             return;
         }

@@ -74,6 +74,13 @@ impl LayerTransform {
         let transform = LayerTransform { shape, filter };
         transform.map(canvas).map(|_| transform)
     }
+    /// The same, sampled quickly while a hand drags.
+    pub(in crate::document) fn drafted(&self) -> Self {
+        match self.filter {
+            Resampling::Smooth | Resampling::Sharp => Self { filter: Resampling::Linear, ..self.clone() },
+            Resampling::Linear | Resampling::Nearest => self.clone(),
+        }
+    }
     /// The same picture on a canvas `per_axis` times as large.
     pub(in crate::document) fn scaled(&self, per_axis: Vec2) -> Self {
         let s = per_axis.as_dvec2();

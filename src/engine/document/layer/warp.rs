@@ -83,7 +83,9 @@ impl LayerWarp {
         }
         // What stays in place must look as it did, so the cubic must pass through the pixels, which Mitchell's does
         // not.
-        let is_kept = mesh.is_none() && map.pixel_move().is_some() && map.filter != Resampling::Nearest;
+        let is_kept = mesh.is_none()
+            && map.pixel_move().is_some()
+            && !matches!(map.filter, Resampling::Linear | Resampling::Nearest);
         let filter = if is_kept { Resampling::Sharp } else { map.filter };
         let mesh = mesh.map(|mesh| mesh.backward(map.canvas()));
         Some(Self { canvas: map.canvas(), outside: map.outside_own(), mesh, liquify, filter })

@@ -4,9 +4,10 @@
 //! of the taps.
 
 use super::Resampling;
+use super::linear::LinearRow;
 use super::points::PointRow;
 use super::weights::{SideKind, TileRow, WarpPatchRow, cubic_weights, extents, sides, steps, turned_about, weigh};
-use super::window::{MOST_READ_ALONG, SourceWindow};
+use super::window::{LEAST_LINEAR_TENT, MOST_READ_ALONG, SourceWindow};
 use crate::raster::TILE;
 
 /// Taps along each axis that are weighted together; patches that take more are read pixel by pixel.
@@ -15,6 +16,7 @@ const MOST_TAPS: usize = 8;
 /// Buffers for a row of pixels.
 pub(super) struct WarpScratch {
     sides: [SideRow; 2],
+    linear: LinearRow,
     patches: WarpPatchRow,
     /// For each tap, row by row of the source, the weights of all pixels.
     weights: Vec<TileRow>,
@@ -26,6 +28,7 @@ impl Default for WarpScratch {
     fn default() -> Self {
         Self {
             sides: std::array::from_fn(|_| SideRow::default()),
+            linear: LinearRow::default(),
             patches: WarpPatchRow::default(),
             weights: vec![[0.0; TILE]; MOST_TAPS * MOST_TAPS],
             cubic: [[[0.0; TILE]; 4]; 2],
@@ -56,6 +59,10 @@ impl SideRow {
     fn reduces(&self, k: usize) -> bool {
         self.tent[k] < 1.0
     }
+    /// Short enough for four pixels to leave none out.
+    fn is_linear(&self, k: usize) -> bool {
+        self.tent[k] >= LEAST_LINEAR_TENT
+    }
     fn kind(&self, n: usize) -> SideKind {
         match self.tent[..n].iter().filter(|tent| **tent < 1.0).count() {
             0 => SideKind::Cubic,
@@ -75,21 +82,30 @@ impl SourceWindow {
             shown().for_each(|k| out[k] = self.pixel(points.x[k].floor() as i32, points.y[k].floor() as i32));
             return;
         }
-        let WarpScratch { sides: [right, down], .. } = scratch;
+        let WarpScratch { sides: [right, down], linear, .. } = scratch;
+        linear.takes.fill(false);
         let [a, b, c, d] = &points.jacobian;
         right.fill(&a[..n], &b[..n]);
         down.fill(&c[..n], &d[..n]);
         let (mut some_cubic, mut some_reduced) = (false, false);
         for k in shown() {
             let reduces = right.reduces(k) || down.reduces(k);
-            (some_cubic, some_reduced) = (some_cubic || !reduces, some_reduced || reduces);
+            linear.takes[k] = filter == Resampling::Linear && right.is_linear(k) && down.is_linear(k);
+            some_cubic |= !reduces && !linear.takes[k];
+            some_reduced |= reduces && !linear.takes[k];
+        }
+        if filter == Resampling::Linear {
+            self.linear_row(points, linear, out);
         }
         if some_cubic {
             cubic_weights(&points.x[..n], filter, &mut scratch.cubic[0]);
             cubic_weights(&points.y[..n], filter, &mut scratch.cubic[1]);
         }
         let taps = if some_reduced { scratch.patches_of(points, n, filter) } else { [0; 2] };
-        for k in shown() {
+        for k in shown().filter(|_| some_cubic || some_reduced) {
+            if scratch.linear.takes[k] {
+                continue;
+            }
             let reduces = scratch.sides.iter().any(|side| side.reduces(k));
             out[k] = match reduces {
                 true => self.patch(points, k, filter, scratch, taps),

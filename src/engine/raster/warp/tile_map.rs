@@ -43,8 +43,10 @@ impl TilePoints {
         (self.x[k], self.y[k]) = (p.x, p.y);
         self.jacobian.iter_mut().zip(jacobian.to_cols_array()).for_each(|(row, v)| row[k] = v);
     }
+    /// Whether a pixel shows a point: its numbers are finite, as is their sum.
     fn is_known(&self, k: usize) -> bool {
-        self.x[k].is_finite() && self.y[k].is_finite() && self.jacobian.iter().all(|row| row[k].is_finite())
+        let sum = self.jacobian.iter().fold(self.x[k].abs() + self.y[k].abs(), |sum, row| sum + row[k].abs());
+        sum < f32::INFINITY
     }
 }
 
@@ -77,13 +79,16 @@ impl PixelMap for TileMap {
         for (to, of) in row.jacobian.iter_mut().zip(&points.jacobian) {
             to[..count].copy_from_slice(&of[from..from + count]);
         }
-        (0..count).for_each(|k| row.shows[k] = points.is_known(from + k));
+        let [a, b, c, d] = &points.jacobian;
+        let within = from..from + count;
+        let [a, b, c, d] = [a, b, c, d].map(|row| &row[within.clone()]);
+        known(&points.x[within.clone()], &points.y[within], [a, b, c, d], &mut row.shows[..count]);
     }
     fn pixel_move(&self) -> Option<PixelMove> {
         None
     }
     fn source_rect(&self, canvas: Rect) -> Rect {
-        let mut extent = PointBounds { low: [f32::INFINITY; 2], high: [f32::NEG_INFINITY; 2], reach: 1.0 };
+        let mut extent = PointBounds { low: [f32::INFINITY; 2], high: [f32::NEG_INFINITY; 2], sides_squared: [0.0; 2] };
         let area = canvas.intersect(self.rect);
         for y in area.y0..area.y1 {
             let row = self.place(area.x0, y)..self.place(area.x0, y) + area.width();
@@ -92,21 +97,22 @@ impl PixelMap for TileMap {
             let jacobian = [&a[row.clone()], &b[row.clone()], &c[row.clone()], &d[row.clone()]];
             widen(&mut extent, &p.x[row.clone()], &p.y[row], jacobian);
         }
-        let PointBounds { low, high, reach } = extent;
+        let PointBounds { low, high, sides_squared: [right, down] } = extent;
         if low[0] > high[0] {
             return Rect::EMPTY;
         }
         let side = |v: f32| v.max(-FAR).min(FAR) as i32;
-        let reach = 2.0 + reach;
+        let longest = |squared: f32| squared.sqrt().min(WIDEST_PX);
+        let reach = 2.0 + (longest(right) + longest(down)).max(1.0);
         Rect::new(side(low[0] - reach), side(low[1] - reach), side(high[0] + reach) + 1, side(high[1] + reach) + 1)
     }
 }
 
-/// The bounds of points, and how far their pieces of the source extend around them.
+/// What points reach, and how long the sides of their pieces of the source are at most.
 struct PointBounds {
     low: [f32; 2],
     high: [f32; 2],
-    reach: f32,
+    sides_squared: [f32; 2],
 }
 
 /// Lanes for extents, so that rows are read in parallel.
@@ -116,32 +122,37 @@ crate::widest! {
     fn widen(extent: &mut PointBounds, x: &[f32], y: &[f32], jacobian: [&[f32]; 4]) {
         let n = x.len();
         let (y, [a, b, c, d]) = (&y[..n], jacobian.map(|row| &row[..n]));
-        let (mut low, mut high, mut reach) =
-            ([[f32::INFINITY; LANES]; 2], [[f32::NEG_INFINITY; LANES]; 2], [1.0f32; LANES]);
+        let (mut low, mut high, mut sides) =
+            ([[f32::INFINITY; LANES]; 2], [[f32::NEG_INFINITY; LANES]; 2], [[0.0f32; LANES]; 2]);
         for from in (0..n).step_by(LANES) {
             let count = LANES.min(n - from);
             for l in 0..count {
                 let k = from + l;
-                let side = |x: f32, y: f32| {
-                    let length = (x * x + y * y).sqrt();
-                    if length < WIDEST_PX { length } else { WIDEST_PX }
-                };
-                let sum = x[k] + y[k] + a[k] + b[k] + c[k] + d[k];
-                let is_known = sum.abs() < f32::INFINITY;
-                let both = side(a[k], b[k]) + side(c[k], d[k]);
+                let (right, down) = (a[k] * a[k] + b[k] * b[k], c[k] * c[k] + d[k] * d[k]);
+                let is_known = (x[k] + y[k] + a[k] + b[k] + c[k] + d[k]).abs() < f32::INFINITY;
                 low[0][l] = if is_known && x[k] < low[0][l] { x[k] } else { low[0][l] };
                 low[1][l] = if is_known && y[k] < low[1][l] { y[k] } else { low[1][l] };
                 high[0][l] = if is_known && x[k] > high[0][l] { x[k] } else { high[0][l] };
                 high[1][l] = if is_known && y[k] > high[1][l] { y[k] } else { high[1][l] };
-                reach[l] = if is_known && both > reach[l] { both } else { reach[l] };
+                sides[0][l] = if is_known && right > sides[0][l] { right } else { sides[0][l] };
+                sides[1][l] = if is_known && down > sides[1][l] { down } else { sides[1][l] };
             }
         }
         for l in 0..LANES {
             for i in 0..2 {
                 extent.low[i] = extent.low[i].min(low[i][l]);
                 extent.high[i] = extent.high[i].max(high[i][l]);
+                extent.sides_squared[i] = extent.sides_squared[i].max(sides[i][l]);
             }
-            extent.reach = extent.reach.max(reach[l]);
+        }
+    }
+    /// As [`TilePoints::is_known`], of a row.
+    fn known(x: &[f32], y: &[f32], jacobian: [&[f32]; 4], out: &mut [bool]) {
+        let n = out.len();
+        let (x, y, [a, b, c, d]) = (&x[..n], &y[..n], jacobian.map(|row| &row[..n]));
+        for k in 0..n {
+            let sum = x[k].abs() + y[k].abs() + a[k].abs() + b[k].abs() + c[k].abs() + d[k].abs();
+            out[k] = sum < f32::INFINITY;
         }
     }
 }

@@ -9,6 +9,8 @@ pub(super) const MOST_READ_ALONG: f32 = 24.0;
 pub(super) const WIDEST_PX: f32 = 512.0;
 /// A side hardly longer than a pixel belongs to a turned picture.
 pub(super) const LONGEST_KEPT_PX: f32 = 1.0 + 1e-3;
+/// Half the tent of a source pixel, in sides, of the longest side that [`Resampling::Linear`] leaves no pixel out of.
+pub(super) const LEAST_LINEAR_TENT: f32 = 0.5;
 
 /// A part of the source.
 pub(super) struct SourceWindow {
@@ -24,6 +26,7 @@ impl SourceWindow {
         let (right, down) = (PatchSide::of(jacobian.x_axis, filter), PatchSide::of(jacobian.y_axis, filter));
         match filter {
             Resampling::Nearest => self.pixel(p.x.floor() as i32, p.y.floor() as i32),
+            Resampling::Linear if [right, down].iter().all(|side| side.tent >= LEAST_LINEAR_TENT) => self.linear(p),
             _ if !right.reduces && !down.reduces => self.cubic(p, filter),
             _ => self.reduced(p, [right, down]),
         }
