@@ -49,7 +49,7 @@ impl std::fmt::Display for Size {
 }
 
 /// The pixels `x0 ≤ x < x1`, `y0 ≤ y < y1`, y down; empty if a side is not positive.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub struct Rect {
     /// The first column.
     pub x0: i32,

@@ -7,6 +7,7 @@
 
 pub mod bevel;
 pub mod combine;
+mod following;
 pub mod form;
 pub mod inflate;
 pub mod lines;

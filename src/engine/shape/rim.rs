@@ -3,7 +3,7 @@
 
 use super::Outline;
 use super::solver::Solver;
-use crate::math::{Vec2, vec2};
+use crate::math::{Rect, Vec2, vec2};
 use crate::raster::Plane;
 
 /// The four neighbours of a pixel.
@@ -53,20 +53,23 @@ impl<'a> OutlineRim<'a> {
     /// px⁻², `≥ 0`.
     pub fn equation(&self, screen: impl Fn(usize, usize) -> f32 + Sync) -> Equation {
         let (inside, size) = (self.outline.inside(), self.outline.size());
+        let held = Plane::from_fn(size, |x, y| self.held((x, y), &screen));
+        Equation { solver: Solver::new(inside, held) }
+    }
+    /// The spring of a pixel toward 0.
+    fn held(&self, (x, y): (usize, usize), screen: &impl Fn(usize, usize) -> f32) -> f32 {
+        let inside = self.outline.inside();
+        if !inside.at(x, y) {
+            return 0.0;
+        }
         // A piece that is free all around would rise without limit: it is held weakly, with the plane's length as its
         // reach.
-        let faint = if self.joined.is_some() { size.longer_side().powi(-2) } else { 0.0 };
-        let held = Plane::from_fn(size, |x, y| {
-            if !inside.at(x, y) {
-                return 0.0;
-            }
-            let sides = STEPS.map(|step| match self.toward((x, y), step) {
-                Side::Rim(theta) => 1.0 / theta,
-                Side::Inside | Side::Free => 0.0,
-            });
-            sides.iter().sum::<f32>() + screen(x, y) + faint
+        let faint = if self.joined.is_some() { inside.size().longer_side().powi(-2) } else { 0.0 };
+        let sides = STEPS.map(|step| match self.toward((x, y), step) {
+            Side::Rim(theta) => 1.0 / theta,
+            Side::Inside | Side::Free => 0.0,
         });
-        Equation { solver: Solver::new(inside, held) }
+        sides.iter().sum::<f32>() + screen(x, y) + faint
     }
     /// The slope of a field at an inside pixel, image axes, a px: central differences, of unequal steps at the rim,
     /// where the field is 0.
@@ -104,6 +107,15 @@ enum Side {
 }
 
 impl Equation {
+    /// With another `s` at some pixels.
+    pub fn hold(&mut self, rim: &OutlineRim, pixels: &[(usize, usize)], screen: impl Fn(usize, usize) -> f32) {
+        self.solver.hold(pixels, |x, y| rim.held((x, y), &screen));
+    }
+    /// A field of the right-hand side's size that is nearly right, nearer to the solution ([`Solver::approach`]).
+    pub fn approach(&self, b: &Plane<f32>, start: Plane<f32>, near: Rect) -> Plane<f32> {
+        let found = self.solver.approach(b.values(), start.into_values(), near);
+        Plane::from_values(b.size(), found).unwrap_or_else(|| Plane::filled(b.size(), 0.0))
+    }
     /// The field for a right-hand side, row by row; `start`: the field that the search begins at, nearly right.
     pub fn solve(&self, b: &Plane<f32>, start: Option<&Plane<f32>>, goal: f64) -> Plane<f32> {
         let start = start.filter(|start| start.size() == b.size()).map(|start| start.values().to_vec());

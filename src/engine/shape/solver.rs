@@ -1,11 +1,11 @@
 //! Poisson equations over outlines: conjugate gradients, preconditioned by one multigrid V-cycle, starting from the
-//! solution of the coarser grid. Floor 3. Springs are 1 or 0 here and rims are held. Not here: free systems with
-//! springs of any stiffness (`surface`). Sums are formed band by band and added in order, so that the bits do not
+//! solution of the coarser grid. Floor 3. Springs are mostly 1 or 0 here. Not here: exact solutions with springs of any
+//! stiffness (`surface`). Sums are formed band by band and added in order, so that the bits do not
 //! depend on the number of threads.
 
 mod level;
 
-use crate::math::Size;
+use crate::math::{Rect, Size};
 use crate::memory::filled_or_unwind;
 use crate::raster::Plane;
 use level::*;
@@ -33,6 +33,11 @@ impl Solver {
         let linked = |a: bool, b: bool| if a && b { 1.0 } else { 0.0 };
         let right = Plane::from_fn(inside.size(), |x, y| linked(inside.at(x, y), x + 1 < w && inside.at(x + 1, y)));
         let down = Plane::from_fn(inside.size(), |x, y| linked(inside.at(x, y), y + 1 < h && inside.at(x, y + 1)));
+        Self::of_springs(right, down, held)
+    }
+    /// The same with springs of any stiffness to the right and down, none of them at the border.
+    pub fn of_springs(right: Plane<f32>, down: Plane<f32>, held: Plane<f32>) -> Self {
+        let (w, h) = (held.width(), held.height());
         let mut levels = vec![Level::new(w, h, right.into_values(), down.into_values(), held.into_values())];
         while let Some(last) = levels.last().filter(|level| level.w > 5 || level.h > 5) {
             let coarser = last.coarser();
@@ -40,12 +45,73 @@ impl Solver {
         }
         Self { levels }
     }
+    /// Gives some pixels another spring toward 0: as if the solver had been made with it.
+    pub fn hold(&mut self, pixels: &[(usize, usize)], held: impl Fn(usize, usize) -> f32) {
+        let mut changed = pixels.to_vec();
+        for &(x, y) in &changed {
+            self.levels[0].hold((x, y), held(x, y));
+        }
+        for at in 1..self.levels.len() {
+            changed.iter_mut().for_each(|(x, y)| (*x, *y) = (x.div_ceil(2), y.div_ceil(2)));
+            changed.sort_unstable();
+            changed.dedup();
+            for &(x, y) in &changed {
+                let held = self.levels[at - 1].held_of_block(x, y);
+                self.levels[at].hold((x, y), held);
+            }
+        }
+    }
+    /// A field that is nearly right, nearer to the solution of A v = b, in a fourth of the time of [`Self::solve`].
+    ///
+    /// `near`: where much has changed. It is settled by itself; what varies slowly is corrected on the next coarser
+    /// grid, and a few sweeps smooth the rest.
+    pub fn approach(&self, b: &[f32], mut v: Vec<f32>, near: Rect) -> Vec<f32> {
+        const GOAL: f64 = 1e-3;
+        let grid = &self.levels[0];
+        let mut other = filled_or_unwind(b.len(), 0.0);
+        self.settle(b, &mut v, near, 30);
+        if let Some(below) = self.levels.get(1) {
+            grid.fill(&mut other, |y, out| left_over(grid.springs(y), grid.around(&v, y), grid.row(b, y), out));
+            let mut rest = filled_or_unwind(below.w * below.h, 0.0);
+            restrict(grid, below, &other, &mut rest);
+            let nothing = filled_or_unwind(rest.len(), 0.0);
+            let coarse = self.conjugated(1, &rest, nothing, GOAL);
+            grid.fill(&mut other, |y, out| between_blocks(grid, below, &coarse, y, out));
+            v.par_chunks_mut(grid.w * BAND).zip(other.par_chunks(grid.w * BAND)).for_each(|(v, c)| add(v, 1.0, c));
+        }
+        grid.relax(&v, b, STEPS[1], &mut other);
+        grid.relax(&other, b, STEPS[0], &mut v);
+        self.settle(b, &mut v, near, 10);
+        v
+    }
+    /// Sweeps of successive over-relaxation over some pixels, the others held; fewer over many pixels.
+    fn settle(&self, b: &[f32], v: &mut [f32], near: Rect, most_sweeps: usize) {
+        const OVER: f32 = 1.7;
+        const MOST_PX: usize = 200_000;
+        let grid = &self.levels[0];
+        let w = grid.w;
+        let inner = near.intersect(Rect::new(1, 1, w as i32 - 1, grid.h as i32 - 1));
+        let area = (inner.width() * inner.height()).max(1);
+        for _ in 0..most_sweeps.min(MOST_PX / area) {
+            for y in inner.y0 as usize..inner.y1 as usize {
+                for i in y * w + inner.x0 as usize..y * w + inner.x1 as usize {
+                    let across = grid.right[i - 1] * v[i - 1] + grid.right[i] * v[i + 1];
+                    let pull = across + grid.down[i - w] * v[i - w] + grid.down[i] * v[i + w];
+                    v[i] += OVER * ((b[i] + pull) * grid.inverse[i] - v[i]);
+                }
+            }
+        }
+    }
     /// Solves A v = b until the squared residual, relative to b's, is as small as `goal`, or for 60 steps.
     ///
     /// `start`: where the search begins; if absent, at the solution of the coarser grids.
     pub fn solve(&self, b: &[f32], start: Option<Vec<f32>>, goal: f64) -> Vec<f32> {
-        let (grid, w) = (&self.levels[0], self.levels[0].w);
-        let mut v = start.unwrap_or_else(|| self.nested(0, b));
+        let start = start.unwrap_or_else(|| self.nested(0, b));
+        self.conjugated(0, b, start, goal)
+    }
+    /// The same on any level.
+    fn conjugated(&self, at: usize, b: &[f32], mut v: Vec<f32>, goal: f64) -> Vec<f32> {
+        let (grid, w) = (&self.levels[at], self.levels[at].w);
         let buffer = || filled_or_unwind(b.len(), 0.0);
         let mut residual = buffer();
         grid.fill(&mut residual, |y, out| left_over(grid.springs(y), grid.around(&v, y), grid.row(b, y), out));
@@ -57,7 +123,7 @@ impl Solver {
             if left.is_nan() || left <= goal {
                 break;
             }
-            let z = self.cycle(0, &residual, &mut scratch);
+            let z = self.cycle(at, &residual, &mut scratch);
             let rz = dots(w, &residual, &z);
             let turn = if step == 0 { 0.0 } else { (rz / rz_before) as f32 };
             direction.par_chunks_mut(w * BAND).zip(z.par_chunks(w * BAND)).for_each(|(d, z)| {

@@ -1,10 +1,13 @@
 //! Touches: normals placed by hand, spread over a form. Floor 3. They are soft constraints on δ = n̄ wanted − n̄
 //! present: ∇²δ = 0 between them and δ = 0 at the rim, or within a reach ρ of each −∇²δ + δ/ρ² = 0.
 
+use super::following::Following;
+use super::rim::Equation;
 use super::{Form, Outline, OutlineRim};
-use crate::math::{Range, Vec2, Vec3, vec2, vec3};
+use crate::math::{Range, Rect, Vec2, Vec3, vec2, vec3};
 use crate::raster::Plane;
-use crate::surface::integrate::{Following, depth_from_normals};
+use crate::surface::integrate::depth_from_normals;
+use rayon::prelude::*;
 
 /// How firmly a touch holds, relative to the springs between pixels, which are 1.
 const FIRM: f32 = 1e3;
@@ -32,16 +35,29 @@ impl Touch {
     pub const MOST: usize = 100_000;
 }
 
-/// The same for a draft: the search need only come close.
+/// The same for the first frame of a draft: the search need only come close.
 const ROUGH_GOAL: f64 = 1e-11;
 
 /// How far touches came on a form while the user edits them: the next search begins there. Only for drafts, since the
 /// result depends on the steps before.
 #[derive(Default)]
 pub struct Touching {
-    /// By reach, the farthest first.
-    steps: Vec<(f32, Plane<Vec2>)>,
+    /// By reach.
+    steps: Vec<TouchingStep>,
     heights: Option<Following>,
+    /// Around what changed since the last frame.
+    near: Rect,
+    /// What they are over.
+    outline: Option<Outline>,
+}
+
+/// How far the touches of one reach came.
+struct TouchingStep {
+    reach: f32,
+    held: Plane<bool>,
+    wanted: Plane<Vec2>,
+    equation: Equation,
+    delta: [Plane<f32>; 2],
 }
 
 /// A form with touches: the normals nearest to the requested ones, and the heights that follow.
@@ -55,6 +71,10 @@ pub fn touched(form: &Form, outline: &Outline, touches: &[Touch], mut last: Opti
     let inside = outline.inside();
     if form.normals.size() != inside.size() || touches.is_empty() {
         return form.clone();
+    }
+    if let Some(last) = &mut last {
+        last.begin_over(outline);
+        last.near = Rect::EMPTY;
     }
     let bar = form.normals.map(|n| vec2(n.x, -n.y));
     let mut reaches: Vec<f32> = touches.iter().map(|t| if t.reach > 0.0 { t.reach } else { f32::INFINITY }).collect();
@@ -81,24 +101,69 @@ pub fn touched(form: &Form, outline: &Outline, touches: &[Touch], mut last: Opti
 }
 
 impl Touching {
+    /// Forgets what is known of another outline.
+    fn begin_over(&mut self, outline: &Outline) {
+        if self.outline.as_ref() != Some(outline) {
+            *self = Self { outline: Some(outline.clone()), ..Self::default() };
+        }
+    }
     /// As [`spread`], approximately, begun where the last one of this reach ended.
     fn spread(&mut self, outline: &Outline, (held, wanted): (&Plane<bool>, &Plane<Vec2>), reach: f32) -> Plane<Vec2> {
-        let at = self.steps.iter().position(|(known, _)| *known == reach);
-        let known = at.map(|at| self.steps.swap_remove(at).1).filter(|known| known.size() == held.size());
-        let start = known.map(|known| known.updated(|x, y, d| if held.at(x, y) { wanted.at(x, y) } else { d }));
-        let step = spread_from(&OutlineRim::silhouette(outline), (held, wanted), reach, start.as_ref(), ROUGH_GOAL);
-        self.steps.push((reach, step.clone()));
-        step
+        let rim = OutlineRim::silhouette(outline);
+        let known = self.steps.iter().position(|step| step.reach == reach).map(|at| self.steps.swap_remove(at));
+        let step = match known {
+            Some(known) => {
+                let (step, near) = known.gone_on(&rim, (held, wanted));
+                self.near = self.near.union(near);
+                step
+            }
+            None => {
+                let equation = touching(&rim, held, reach);
+                let delta = solved(&equation, (held, wanted), ROUGH_GOAL);
+                TouchingStep { reach, held: held.clone(), wanted: wanted.clone(), equation, delta }
+            }
+        };
+        let spread = side_by_side(&step.delta);
+        self.steps.push(step);
+        spread
     }
     /// As [`with_normals`], approximately.
     fn with_normals(&mut self, form: &Form, outline: &Outline, normals: Plane<Vec3>) -> Form {
         let inside = outline.inside();
-        let known = self.heights.take().filter(|known| known.is_over(inside));
-        let mut following = known.unwrap_or_else(|| Following::of(&normals, inside));
-        let (far, width) = (following.go_on(&normals), inside.width());
+        let Some(mut following) = self.heights.take().or_else(|| Following::of(&normals, inside)) else {
+            return with_normals(form, outline, normals);
+        };
+        let (far, width) = (following.go_on(&normals, inside, self.near), inside.width());
         let form = raised_to(form, inside, normals, |x, y| -far[y * width + x]);
         self.heights = Some(following);
         form
+    }
+}
+
+impl TouchingStep {
+    /// One more frame, and the pixels around what changed in it.
+    fn gone_on(mut self, rim: &OutlineRim, (held, wanted): (&Plane<bool>, &Plane<Vec2>)) -> (Self, Rect) {
+        /// As far as a touch is felt strongly, px.
+        const FELT: i32 = 12;
+        const SMALL: f32 = 0.01;
+        let width = held.width();
+        let is_other = |i: &usize| {
+            held.values()[*i] != self.held.values()[*i]
+                || wanted.values()[*i].distance_squared(self.wanted.values()[*i]) > SMALL * SMALL
+        };
+        let changed: Vec<_> = (0..held.values().len()).filter(is_other).map(|i| (i % width, i / width)).collect();
+        let pixel = |p: &(usize, usize)| Rect::new(p.0 as i32, p.1 as i32, p.0 as i32 + 1, p.1 as i32 + 1);
+        let near = changed.iter().fold(Rect::EMPTY, |all, p| all.union(pixel(p)));
+        let near = if near.is_empty() { near } else { near.grown(FELT) };
+        self.equation.hold(rim, &changed, stiffness(held, self.reach));
+        for (c, delta) in self.delta.iter_mut().enumerate() {
+            let last = std::mem::replace(delta, Plane::filled(held.size(), 0.0));
+            let start = last.updated(|x, y, d| if held.at(x, y) { wanted.at(x, y)[c] } else { d });
+            *delta = self.equation.approach(&source(held, wanted, c), start, near);
+        }
+        self.held = held.clone();
+        self.wanted = wanted.clone();
+        (self, near)
     }
 }
 
@@ -149,28 +214,36 @@ pub fn spread(outline: &Outline, held: &Plane<bool>, wanted: &Plane<Vec2>, reach
 
 /// The same within a partly free rim.
 pub fn spread_within(rim: &OutlineRim, held: &Plane<bool>, wanted: &Plane<Vec2>, reach: f32) -> Plane<Vec2> {
-    spread_from(rim, (held, wanted), reach, None, GOAL)
+    side_by_side(&solved(&touching(rim, held, reach), (held, wanted), GOAL))
 }
 
-/// The same, starting from a field that is nearly right.
-fn spread_from(
-    rim: &OutlineRim,
-    (held, wanted): (&Plane<bool>, &Plane<Vec2>),
-    reach: f32,
-    start: Option<&Plane<Vec2>>,
-    goal: f64,
-) -> Plane<Vec2> {
+/// How firmly each pixel is held: by touches, and by a reach, px; one that is infinite does not hold.
+fn stiffness(held: &Plane<bool>, reach: f32) -> impl Fn(usize, usize) -> f32 + Sync + '_ {
     let screen = if reach.is_finite() { 1.0 / (reach * reach).max(0.25) } else { 0.0 };
-    let equation = rim.equation(|x, y| if held.at(x, y) { FIRM } else { screen });
-    let component = |c: usize| {
-        let source = Plane::from_fn(held.size(), |x, y| if held.at(x, y) { FIRM * wanted.at(x, y)[c] } else { 0.0 });
+    move |x, y| if held.at(x, y) { FIRM } else { screen }
+}
+
+/// The equation of δ.
+fn touching(rim: &OutlineRim, held: &Plane<bool>, reach: f32) -> Equation {
+    rim.equation(stiffness(held, reach))
+}
+
+/// The right-hand side of one component of δ.
+fn source(held: &Plane<bool>, wanted: &Plane<Vec2>, component: usize) -> Plane<f32> {
+    Plane::from_fn(held.size(), |x, y| if held.at(x, y) { FIRM * wanted.at(x, y)[component] } else { 0.0 })
+}
+
+/// The components of δ.
+fn solved(equation: &Equation, (held, wanted): (&Plane<bool>, &Plane<Vec2>), goal: f64) -> [Plane<f32>; 2] {
+    [0, 1].map(|c| {
         // Where a touch holds, δ is known to a thousandth.
-        let known = |x: usize, y: usize| start.map_or(0.0, |start| start.at(x, y)[c]);
-        let start = Plane::from_fn(held.size(), |x, y| if held.at(x, y) { wanted.at(x, y)[c] } else { known(x, y) });
-        equation.solve(&source, Some(&start), goal)
-    };
-    let (x, y) = (component(0), component(1));
-    Plane::from_fn(held.size(), |i, j| vec2(x.at(i, j), y.at(i, j)))
+        let start = Plane::from_fn(held.size(), |x, y| if held.at(x, y) { wanted.at(x, y)[c] } else { 0.0 });
+        equation.solve(&source(held, wanted, c), Some(&start), goal)
+    })
+}
+
+fn side_by_side([x, y]: &[Plane<f32>; 2]) -> Plane<Vec2> {
+    Plane::from_fn(x.size(), |i, j| vec2(x.at(i, j), y.at(i, j)))
 }
 
 /// A form with other normals, and heights with these slopes, as high in the mean as before.
@@ -187,14 +260,19 @@ fn raised_to(
     normals: Plane<Vec3>,
     rise: impl Fn(usize, usize) -> f32 + Sync,
 ) -> Form {
-    let width = inside.width();
-    let mean = |plane: &dyn Fn(usize) -> f32| {
-        let held = inside.values().iter().enumerate().filter(|(_, i)| **i);
-        let (sum, count) = held.fold((0.0f64, 0u32), |(s, n), (i, _)| (s + f64::from(plane(i)), n + 1));
+    let rows = 0..inside.height();
+    let risen = Plane::from_fn(inside.size(), |x, y| if inside.at(x, y) { rise(x, y) } else { 0.0 });
+    let mean = |plane: &Plane<f32>| {
+        let of_row = |y: usize| {
+            let held = plane.row(y).iter().zip(inside.row(y)).filter(|(_, is)| **is);
+            held.fold((0.0f64, 0u32), |(sum, n), (z, _)| (sum + f64::from(*z), n + 1))
+        };
+        let sums: Vec<(f64, u32)> = rows.clone().into_par_iter().map(of_row).collect();
+        let (sum, count) = sums.iter().fold((0.0, 0), |(s, n), (sum, count)| (s + sum, n + count));
         (sum / f64::from(count.max(1))) as f32
     };
-    let shift = mean(&|i| form.height.values()[i]) - mean(&|i| rise(i % width, i / width));
-    let height = form.height.clone().updated(|x, y, z| if inside.at(x, y) { rise(x, y) + shift } else { z });
+    let shift = mean(&form.height) - mean(&risen);
+    let height = risen.updated(|x, y, z| if inside.at(x, y) { z + shift } else { form.height.at(x, y) });
     Form { height, normals, corner: form.corner, coverage: form.coverage.clone() }
 }
 

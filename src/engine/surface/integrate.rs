@@ -4,11 +4,11 @@
 
 mod slopes;
 
-use super::springs::{Effort, GoOn, SolveScratch, SpringGrid, SpringSolver};
+use super::springs::{Effort, GoOn, SpringGrid, SpringSolver};
 use crate::math::Vec3;
 use crate::memory::filled_or_unwind;
 use crate::raster::Plane;
-use slopes::Slopes;
+pub use slopes::Slopes;
 
 /// Depth made from normals.
 pub struct IntegratedDepth {
@@ -42,50 +42,6 @@ pub fn depth_from_normals_while(normals: &Plane<Vec3>, inside: &Plane<bool>, go_
     let depth = Plane::from_values(normals.size(), heights)?;
     let depth = depth.updated(|x, y, z| if inside.at(x, y) { (z - near) / range_px } else { f32::NAN });
     Some(IntegratedDepth { depth, range_px })
-}
-
-/// Heights that follow normals while a hand changes these: each solve begins at the last heights, with the springs of
-/// the first normals. Good enough to be looked at for a moment; [`depth_from_normals`] is what stays.
-pub struct Following {
-    solver: SpringSolver,
-    scratch: SolveScratch,
-    inside: Plane<bool>,
-    /// Away from the viewer, px; each piece about some depth of its own.
-    heights: Vec<f32>,
-}
-
-impl Following {
-    /// Little accuracy and few steps: each solve changes little.
-    const EFFORT: Effort = Effort { goal: 1e-3, most_steps: 4 };
-
-    pub fn of(normals: &Plane<Vec3>, inside: &Plane<bool>) -> Self {
-        let slopes = Slopes { normals, inside };
-        let solver = solver(&slopes);
-        let mut heights = heights(&solver, &slopes, &|| true);
-        centre_pieces(&mut heights, inside);
-        Self { solver, scratch: SolveScratch::default(), inside: inside.clone(), heights }
-    }
-    /// Whether it follows normals over these pixels.
-    pub fn is_over(&self, inside: &Plane<bool>) -> bool {
-        self.inside == *inside
-    }
-    /// The heights nearest to other normals, px away from the viewer.
-    pub fn go_on(&mut self, normals: &Plane<Vec3>) -> &[f32] {
-        let slopes = Slopes { normals, inside: &self.inside };
-        let [right, down] = self.solver.grid().springs();
-        let width = self.inside.width();
-        // The flow along its own springs, from the new slopes.
-        let flow = |x: usize, y: usize, axis: usize| {
-            let spring = [right, down][axis][y * width + x];
-            if spring > 0.0 { spring * slopes.edge((x, y), axis).1 } else { 0.0 }
-        };
-        let source = Plane::from_fn(self.inside.size(), |x, y| {
-            let before = if x > 0 { flow(x - 1, y, 0) } else { 0.0 } + if y > 0 { flow(x, y - 1, 1) } else { 0.0 };
-            before - flow(x, y, 0) - flow(x, y, 1)
-        });
-        self.solver.solve(source.values(), &mut self.heights, Self::EFFORT, &mut self.scratch);
-        &self.heights
-    }
 }
 
 fn solver(slopes: &Slopes) -> SpringSolver {

@@ -56,11 +56,7 @@ impl Level {
             });
             out
         };
-        // The pixels of block x are 2x − 1 and 2x.
-        let at = |plane: &[f32], x: usize, y: usize| {
-            let inside = x > 0 && y > 0 && x <= self.w && y <= self.h;
-            if inside { plane[(y - 1) * self.w + x - 1] } else { 0.0 }
-        };
+        let at = |plane: &[f32], x: usize, y: usize| self.at_number(plane, x, y);
         let right = blocks(&|x, y| {
             let x = 2 * x + 1;
             if x > self.w { 0.0 } else { 0.5 * (in_rows(self.h, 2 * y, |y| at(&self.right, x, y))) }
@@ -69,9 +65,30 @@ impl Level {
             let y = 2 * y + 1;
             if y > self.h { 0.0 } else { 0.5 * (in_rows(self.w, 2 * x, |x| at(&self.down, x, y))) }
         });
-        let held =
-            blocks(&|x, y| HELD_BY_RIM * in_rows(self.h, 2 * y, |y| in_rows(self.w, 2 * x, |x| at(&self.held, x, y))));
+        let held = blocks(&|x, y| self.held_of_block(x, y));
         Self::new(w, h, right, down, held)
+    }
+    /// The value of a pixel, numbered from 1; 0 beyond the grid. The pixels of block x have the numbers 2x and 2x + 1.
+    #[inline(always)]
+    fn at_number(&self, plane: &[f32], x: usize, y: usize) -> f32 {
+        let inside = x > 0 && y > 0 && x <= self.w && y <= self.h;
+        if inside { plane[(y - 1) * self.w + x - 1] } else { 0.0 }
+    }
+    /// The spring toward 0 of a block of the coarser grid.
+    pub(super) fn held_of_block(&self, x: usize, y: usize) -> f32 {
+        let of_row = |y: usize| in_rows(self.w, 2 * x, |x| self.at_number(&self.held, x, y));
+        HELD_BY_RIM * in_rows(self.h, 2 * y, of_row)
+    }
+    /// Gives a pixel away from the border another spring toward 0.
+    pub(super) fn hold(&mut self, (x, y): (usize, usize), held: f32) {
+        let (w, i) = (self.w, y * self.w + x);
+        if x == 0 || y == 0 || x + 1 >= w || y + 1 >= self.h {
+            return;
+        }
+        self.held[i] = held;
+        let sum = self.right[i] + self.down[i] + self.right[i - 1] + self.down[i - w] + held;
+        self.diagonal[i] = sum;
+        self.inverse[i] = if sum > 0.0 { 1.0 / sum } else { 0.0 };
     }
     pub(super) fn row<'a>(&self, plane: &'a [f32], y: usize) -> &'a [f32] {
         &plane[y * self.w..(y + 1) * self.w]

@@ -40,3 +40,45 @@ fn few_steps_from_nothing_solve_a_large_disc() {
     let top = v[150 * n + 150];
     assert!((top / (radius * radius) - 1.0).abs() < 0.01, "{top}");
 }
+
+/// A ragged square whose rim is held.
+fn ragged(n: usize) -> (Plane<bool>, Plane<f32>) {
+    let is_inner = |x: usize, y: usize| x > 0 && y > 0 && x + 1 < n && y + 1 < n;
+    let inside = Plane::from_fn(Size::new(n as u32, n as u32), |x, y| is_inner(x, y) && (x / 19 + y / 23) % 5 != 4);
+    let held = Plane::from_fn(inside.size(), |x, y| {
+        let out = |x: usize, y: usize| if inside.at(x, y) { 0.0 } else { 1.0 };
+        if !inside.at(x, y) { 0.0 } else { out(x - 1, y) + out(x + 1, y) + out(x, y - 1) + out(x, y + 1) }
+    });
+    (inside, held)
+}
+#[test]
+fn pixels_that_are_held_later_are_held_as_if_they_always_had_been() {
+    let (inside, held) = ragged(97);
+    let pixels: Vec<(usize, usize)> = (30..41).flat_map(|y| (24..31).map(move |x| (x, y))).collect();
+    let more = Plane::from_fn(inside.size(), |x, y| {
+        held.at(x, y) + if inside.at(x, y) && pixels.contains(&(x, y)) { 50.0 } else { 0.0 }
+    });
+    let b: Vec<f32> = inside.values().iter().map(|is| if *is { 1.0 } else { 0.0 }).collect();
+    let mut later = Solver::new(&inside, held.clone());
+    later.hold(&pixels, |x, y| more.at(x, y));
+    let always = Solver::new(&inside, more);
+    assert!(later.solve(&b, None, 1e-8) == always.solve(&b, None, 1e-8));
+    later.hold(&pixels, |x, y| held.at(x, y));
+    assert!(later.solve(&b, None, 1e-8) == Solver::new(&inside, held).solve(&b, None, 1e-8));
+}
+#[test]
+fn a_field_that_is_nearly_right_comes_ten_times_nearer() {
+    let (inside, held) = ragged(97);
+    let (here, radius) = ((47.0f32, 34.0f32), 3.0);
+    let is_near = |x: usize, y: usize| (x as f32 - here.0).hypot(y as f32 - here.1) < radius;
+    let more = Plane::from_fn(inside.size(), |x, y| {
+        held.at(x, y) + if inside.at(x, y) && is_near(x, y) { 1000.0 } else { 0.0 }
+    });
+    let b = Plane::from_fn(inside.size(), |x, y| if inside.at(x, y) && is_near(x, y) { 1000.0 } else { 0.0 });
+    let solver = Solver::new(&inside, more);
+    let right = solver.solve(b.values(), None, 1e-14);
+    let start = b.map(|b| if b > 0.0 { 1.0f32 } else { 0.0 }).into_values();
+    let found = solver.approach(b.values(), start.clone(), Rect::new(32, 19, 63, 50));
+    let off = |v: &[f32]| v.iter().zip(&right).map(|(a, b)| (a - b).abs()).fold(0.0f32, f32::max);
+    assert!(off(&start) > 0.4 && off(&found) < 0.1 * off(&start), "{} of {}", off(&found), off(&start));
+}
