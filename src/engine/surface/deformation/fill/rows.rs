@@ -4,9 +4,9 @@
 
 use super::kernels::{DepthKernel, MirrorKernel, NormalKernel, OffsetKernel, mirrored};
 use super::{FastPin, Kernel, MapSpan};
-use crate::math::{Rect, simd::prefetch};
+use crate::math::{Mat2, Rect, Vec2, simd::prefetch};
 use crate::surface::Surface;
-use crate::surface::deformation::Deformation;
+use crate::surface::deformation::{Deformation, LaidPlanes};
 use std::ops::Range;
 
 /// D in some columns of each row of `rect`; `false`, and nothing is written, where that is not one anchor's plain
@@ -19,10 +19,16 @@ pub(in crate::surface::deformation) fn fill_dab(
     out_y: &mut [f32],
 ) -> bool {
     let (Some(surface), [pin]) = (deformation.surface, &deformation.pins[..]) else { return false };
-    let is_plain = deformation.planes.is_none() && deformation.curvature.is_none() && deformation.sheet().is_none();
+    let is_plain = deformation.curvature.is_none() && deformation.sheet().is_none();
     let kernel = Kernel::of(deformation);
     let is_held = rect.intersect(surface.size().rect()) == rect && !rect.is_empty();
-    if !is_plain || !is_held || matches!(kernel, Kernel::Still) {
+    if !is_plain || !is_held {
+        return false;
+    }
+    if let Some(planes) = &deformation.planes {
+        return fill_laid(deformation, surface, planes, rect, columns, out_x, out_y);
+    }
+    if matches!(kernel, Kernel::Still) {
         return false;
     }
     let pin = kernel.pinned(pin);
@@ -53,6 +59,61 @@ pub(in crate::surface::deformation) fn fill_dab(
         }
     }
     true
+}
+
+/// The same for a dab on the unwrapped surface.
+fn fill_laid(
+    deformation: &Deformation,
+    surface: &Surface,
+    planes: &LaidPlanes,
+    rect: Rect,
+    columns: impl Fn(i32) -> Range<i32>,
+    out_x: &mut [f32],
+    out_y: &mut [f32],
+) -> bool {
+    let [fit] = planes.fits() else { return false };
+    if fit.pulled.is_some() {
+        return false;
+    }
+    let [u, v] = planes.unwrapping.planes();
+    let span_of = |y: i32| {
+        let Range { start, end } = columns(y);
+        let (start, end) = (start.max(rect.x0), end.min(rect.x1));
+        MapSpan { x: start.max(0) as usize, y: y as usize, n: (end - start).max(0) as usize }
+    };
+    let width = rect.width();
+    let rows = out_x.chunks_exact_mut(width).zip(out_y.chunks_exact_mut(width));
+    let mut next = span_of(rect.y0);
+    for (y, (out_x, out_y)) in (rect.y0..rect.y1).zip(rows) {
+        let span = next;
+        if y + 1 < rect.y1 {
+            next = span_of(y + 1);
+            [u, v].into_iter().for_each(|plane| prefetch(next.of(plane)));
+            prefetch(next.of(planes.objects));
+            prefetch(next.of(surface.coverage_plane()));
+            prefetch(next.of(surface.smooth_links_plane()));
+        }
+        let start = span.x - rect.x0 as usize;
+        let (out_x, out_y) = (&mut out_x[start..start + span.n], &mut out_y[start..start + span.n]);
+        let first = deformation.centre(span.x as i32, y).into();
+        let row =
+            LaidRow { first, object: fit.object, linear: fit.linear, shift: fit.shift, away: planes.elsewhere_px() };
+        let coverage = span.of(surface.coverage_plane());
+        laid_dab_row(row, coverage, span.of(planes.objects), span.of(u), span.of(v), out_x, out_y);
+    }
+    true
+}
+
+/// A row of pixels, and how the plane of a dab's object is laid.
+#[derive(Clone, Copy)]
+struct LaidRow {
+    /// The centre of the first pixel.
+    first: (f32, f32),
+    object: u32,
+    linear: Mat2,
+    shift: Vec2,
+    /// What is added on other objects.
+    away: f32,
 }
 
 /// Prefetches what a dab reads of a row, also the links of its pixels, which are read after D.
@@ -90,6 +151,29 @@ impl DabRow {
 }
 
 crate::widest! {
+    fn laid_dab_row(
+        row: LaidRow,
+        coverage: &[u8],
+        objects: &[u32],
+        u: &[f32],
+        v: &[f32],
+        out_x: &mut [f32],
+        out_y: &mut [f32],
+    ) {
+        let n = out_x.len();
+        let (coverage, objects, u, v, out_y) = (&coverage[..n], &objects[..n], &u[..n], &v[..n], &mut out_y[..n]);
+        let ([xx, yx], [xy, yy]) = (row.linear.x_axis.to_array(), row.linear.y_axis.to_array());
+        for k in 0..n {
+            let is_own = objects[k] == row.object;
+            let laid_x = xx * u[k] + xy * v[k] + row.shift.x;
+            let laid_y = yx * u[k] + yy * v[k] + row.shift.y;
+            let x = if is_own { laid_x } else { u[k] + row.away };
+            let y = if is_own { laid_y } else { v[k] + row.away };
+            let is_covered = coverage[k] > 0;
+            out_x[k] = if is_covered { x } else { row.first.0 + k as i32 as f32 };
+            out_y[k] = if is_covered { y } else { row.first.1 };
+        }
+    }
     fn depth_row(
         row: DabRow,
         coverage: &[u8],
