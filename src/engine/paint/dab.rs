@@ -18,10 +18,10 @@ use super::profile::RoundProfile;
 use super::scene::Scene;
 use super::stamp::TipStamp;
 use super::stroke_tile::{CoveredRow, DabPaint, StrokeTile};
-use crate::math::{Rect, srgb::Color};
+use crate::math::{Rect, simd::prefetch, srgb::Color};
 use crate::raster::sampler::Antialias;
 use crate::raster::{Outside, TILE, TileAt};
-use crate::surface::deformation::{Deformation, DeformedRect};
+use crate::surface::deformation::{Deformation, DeformedRect, OwnPlane};
 use crate::surface::support::{BLOCK, DabExtent, SupportBounds, TILE_BLOCKS, TileBlocks};
 use crate::surface::{DabReach, Surface};
 use round::{BentPart, BlockPixels, RoundTip, RowPaint, RowZones, bent_row, bent_rows, flat_row, flat_rows};
@@ -136,12 +136,9 @@ impl<'s> PlacedDab<'s> {
         if part.area.is_empty() {
             return;
         }
-        let tip = RoundTip::new(&self.dab);
         let DabScratch { deformed, covered, shares, row, .. } = scratch;
-        let field = self.bent_over.map(|surface| {
-            self.fill_touched(&part, deformed);
-            DeformationField { surface, rect: part.area.grown(1), d: deformed }
-        });
+        let tip = RoundTip::new(&self.dab);
+        let (tip, field) = self.round_field(&part, tip, deformed);
         let is_flat = field.is_none();
         let spans = part.spans().filter_map(|span| if is_flat { span.reached_by(&tip) } else { Some(span) });
         if let Some(tile) = stroke_tile.plain() {
@@ -171,6 +168,21 @@ impl<'s> PlacedDab<'s> {
             let paint = DabPaint { flow: 1.0, ..self.paint(Some(self.dab.color)) };
             stroke_tile.cover(part.start_of(span), CoveredRow { coverage: covered, shares }, paint);
         }
+    }
+    /// What a round tip reads over a part of a tile, and the tip there: D, or the unwrapped plane itself, in which a
+    /// round tip covers the same pixels however the plane is turned. `None` where D is the identity.
+    fn round_field<'f>(
+        &'f self,
+        part: &TouchedBlocks,
+        tip: RoundTip,
+        deformed: &'f mut DeformedRect,
+    ) -> (RoundTip, Option<DeformationField<'f>>) {
+        let Some(surface) = self.bent_over else { return (tip, None) };
+        if let Some(own) = self.deformation.own_plane(part.area) {
+            return (tip.about(own.at), Some(DeformationField::of_plane(surface, &own)));
+        }
+        self.fill_touched(part, deformed);
+        (tip, Some(DeformationField::new(surface, part.area.grown(1), deformed)))
     }
     /// Adds a picture tip to a tile: its mean over the patch of the image plane under each pixel.
     pub fn add_stamp(&self, stamp: &TipStamp, at: TileAt, stroke_tile: &mut StrokeTile, scratch: &mut DabScratch) {
@@ -271,17 +283,39 @@ fn columns(bits: u8, tile: Rect) -> Range<i32> {
 /// D over a rectangle and the pixels around it.
 struct DeformationField<'f> {
     surface: &'f Surface,
-    rect: Rect,
-    d: &'f DeformedRect,
+    /// The first pixel of `d`, and how many it has in a row.
+    corner: (i32, i32),
+    width: usize,
+    d: (&'f [f32], &'f [f32]),
+    /// It is as large as the canvas, and its rows are pages apart.
+    is_plane: bool,
 }
 
 impl<'f> DeformationField<'f> {
+    fn new(surface: &'f Surface, rect: Rect, d: &'f DeformedRect) -> Self {
+        let (corner, width) = ((rect.x0, rect.y0), rect.width());
+        Self { surface, corner, width, d: (&d.x, &d.y), is_plane: false }
+    }
+    fn of_plane(surface: &'f Surface, own: &OwnPlane<'f>) -> Self {
+        let d = (own.x.values(), own.y.values());
+        Self { surface, corner: (0, 0), width: own.x.width(), d, is_plane: true }
+    }
+    /// Prefetches the row below the one below a span.
+    #[inline(always)]
+    fn prefetch(&self, span: PixelSpan) {
+        if self.is_plane && span.y as usize + 2 < self.d.0.len() / self.width.max(1) {
+            let start = (span.y as usize + 2) * self.width + span.x as usize - 1;
+            prefetch(&self.d.0[start..start + span.n + 2]);
+            prefetch(&self.d.1[start..start + span.n + 2]);
+            prefetch(&self.surface.smooth_links_plane().row(span.y as usize + 1)[span.x as usize..][..span.n]);
+        }
+    }
     #[inline(always)]
     fn around(&self, span: PixelSpan) -> SpanNeighbours<'f> {
-        let start = |y: i32| (y - self.rect.y0) as usize * self.rect.width() + (span.x - 1 - self.rect.x0) as usize;
+        let start = |y: i32| (y - self.corner.1) as usize * self.width + (span.x - 1 - self.corner.0) as usize;
         let row = |y: i32| {
             let range = start(y)..start(y) + span.n + 2;
-            (&self.d.x[range.clone()], &self.d.y[range])
+            (&self.d.0[range.clone()], &self.d.1[range])
         };
         let linked = &self.surface.smooth_links_plane().row(span.y as usize)[span.x as usize..][..span.n];
         SpanNeighbours { above: row(span.y - 1), row: row(span.y), below: row(span.y + 1), linked }

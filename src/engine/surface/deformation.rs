@@ -12,6 +12,7 @@ use super::operator::{MapSlopes, MapValues, Operator, UnwrapSettings, outer};
 use super::{Anchor, Bend, Curvature, DabReach, Surface, Weights};
 use crate::math::{Mat2, Rect, Size, Vec2, vec2};
 use plane::LaidPlanes;
+pub use plane::OwnPlane;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -217,6 +218,15 @@ impl<'a> Deformation<'a> {
                 }
             }
         }
+    }
+    /// Of a dab that the surface is unwrapped under: the plane itself, where D is that, turned, over a rectangle and one
+    /// more pixel around it.
+    pub fn own_plane(&self, rect: Rect) -> Option<OwnPlane<'_>> {
+        let (planes, surface) = self.planes.as_ref().zip(self.surface)?;
+        if self.sheet().is_some() || self.is_limited(rect.grown(1)) {
+            return None;
+        }
+        planes.own(surface, rect)
     }
     /// Whether a reach changes D anywhere in a rectangle.
     pub fn is_limited(&self, rect: Rect) -> bool {

@@ -1,11 +1,12 @@
 //! Objects: the pieces into which silhouette and depth jumps split a surface, and the limits they set to marks.
 //! Floor 2. Which neighbouring pixels belong together is found by `links`.
 
+use super::pyramid::BLOCK;
 use super::{ContourPixel, Surface, links};
-use crate::math::{Rect, Vec2};
+use crate::math::{Rect, Size, Vec2};
 use crate::raster::Plane;
 use std::collections::BTreeMap;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Pieces smaller than this are fragments of a ragged edge, not objects: they join the neighbour nearest in depth. The
 /// area is relative to the longer side squared, so that a picture splits the same way at any size.
@@ -16,6 +17,8 @@ pub struct Objects {
     /// 0 where there is no surface, else one more than the object's place in `rects`.
     labels: Plane<u32>,
     rects: Vec<Rect>,
+    /// [`Objects::around_block`], row by row.
+    blocks: OnceLock<Plane<u32>>,
 }
 
 /// One object of a surface: 1 is the one whose first pixel comes first, row by row.
@@ -31,7 +34,7 @@ impl Objects {
             let whole = sheet.surface();
             let label = |x: usize, y: usize| whole.as_ref().map_or(0, |whole| whole.objects().labels.at(x, y));
             let of = |pixel: &ContourPixel| pixel.nearest_other().map_or(0, |(x, y)| label(x as usize, y as usize));
-            return Self { labels: sheet.map(surface.size(), of), rects: Vec::new() };
+            return Self::of_labels(sheet.map(surface.size(), of), Vec::new());
         }
         if let Some(parts) = surface.parts_plane() {
             return Self::of_parts(surface, parts);
@@ -56,11 +59,30 @@ impl Objects {
             let rect = &mut rects[label as usize - 1];
             *rect = rect.union(Rect::new(x, y, x + 1, y + 1));
         }
-        Self { labels, rects }
+        Self::of_labels(labels, rects)
+    }
+    fn of_labels(labels: Plane<u32>, rects: Vec<Rect>) -> Self {
+        Self { labels, rects, blocks: OnceLock::new() }
     }
     /// The object that covers a pixel; `None` off the surface and off the canvas.
     pub fn at(&self, x: i32, y: i32) -> Option<ObjectId> {
         self.labels.get(x, y).filter(|label| *label > 0).map(ObjectId)
+    }
+    /// The object that covers all pixels of each block of the canvas and the ring around it; 0 where there is none.
+    pub(in crate::surface) fn around_blocks(&self) -> &Plane<u32> {
+        self.blocks.get_or_init(|| {
+            let (w, h) = (self.labels.width(), self.labels.height());
+            let size = Size::new(w.div_ceil(BLOCK) as u32, h.div_ceil(BLOCK) as u32);
+            Plane::from_fn(size, |x, y| {
+                let (x, y) = (x * BLOCK, y * BLOCK);
+                if x == 0 || y == 0 || x + BLOCK >= w || y + BLOCK >= h {
+                    return 0;
+                }
+                let object = self.labels.at(x, y);
+                let is_own = |y: usize| self.labels.row(y)[x - 1..=x + BLOCK].iter().all(|label| *label == object);
+                if (y - 1..=y + BLOCK).all(is_own) { object } else { 0 }
+            })
+        })
     }
     /// How many there are.
     pub fn count(&self) -> usize {
@@ -160,7 +182,7 @@ impl PieceForest {
                 None => rects.push(pixel),
             }
         }
-        Objects { labels, rects }
+        Objects::of_labels(labels, rects)
     }
 }
 

@@ -94,7 +94,7 @@ impl PlacedDab<'_> {
     fn cover_round(&self, part: &TouchedBlocks, scratch: &mut DabScratch, (covered, shares): (&mut [f32], &mut [f32])) {
         let DabScratch { deformed, row, .. } = scratch;
         let tip = RoundTip::plain(&self.dab);
-        let field = self.bent_over.map(|surface| DeformationField { surface, rect: part.area.grown(1), d: deformed });
+        let field = self.bent_over.map(|surface| DeformationField::new(surface, part.area.grown(1), deformed));
         for span in part.spans() {
             let out = RowPaint { coverage: &mut covered[part.range(span)], reach: &mut shares[part.range(span)] };
             match &field {
@@ -129,7 +129,7 @@ impl PlacedDab<'_> {
         const UNLINKED: [u8; TILE] = [0; TILE];
         match self.bent_over {
             Some(surface) => {
-                let SpanNeighbours { above, row, below, linked } = DeformationField { surface, rect, d }.around(span);
+                let SpanNeighbours { above, row, below, linked } = DeformationField::new(surface, rect, d).around(span);
                 shape::TipSpanNeighbours { above, row, below, linked, flat }
             }
             None => {

@@ -98,6 +98,10 @@ impl RoundTip {
             ceiling: dab.ceiling,
         }
     }
+    /// The same footprint elsewhere.
+    pub(super) fn about(self, at: Vec2) -> Self {
+        Self { at, ..self }
+    }
     /// The same footprint with full flow and ceiling: gives plain coverage.
     pub(super) fn plain(dab: &Dab) -> Self {
         Self { flow: 1.0, ceiling: 1.0, ..Self::new(dab) }

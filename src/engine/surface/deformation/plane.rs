@@ -5,10 +5,11 @@
 //! Each object has a plane of its own: anchors move, and a pair of them turns, the plane of the object that they are
 //! on; the others stay where they are in the picture.
 
-use crate::math::{Affine2, Mat2, Vec2, vec2};
+use crate::math::{Affine2, Mat2, Rect, Vec2, vec2};
 use crate::raster::Plane;
 use crate::surface::operator::UnwrapSettings;
 use crate::surface::plane_piece::PlanePiece;
+use crate::surface::pyramid::BLOCK;
 use crate::surface::unwrap::{PlaneHold, PlanePlace, PlaneYield, Unwrapping};
 use crate::surface::{Bend, Surface, Weights};
 use std::sync::Arc;
@@ -22,6 +23,16 @@ pub(super) struct LaidPlanes<'a> {
     pub yields: Option<Arc<PlaneYield>>,
     /// What is not laid lies out of reach: a dab paints on the object under it alone.
     is_bounded: bool,
+    /// Where the anchor of a dab lies in the unwrapped plane.
+    dab_at: Option<Vec2>,
+}
+
+/// The unwrapped plane under a dab, before it is turned: distances from the dab and lengths of pixels are the same.
+pub struct OwnPlane<'p> {
+    pub x: &'p Plane<f32>,
+    pub y: &'p Plane<f32>,
+    /// The dab's centre there.
+    pub at: Vec2,
 }
 
 /// How one object's plane is laid: D = linear U + shift, and where its anchors pull it, `pulled` times how it yields.
@@ -74,7 +85,8 @@ impl<'a> LaidPlanes<'a> {
         let fits: Vec<PlaneFit> =
             groups.iter().map(|(object, pins)| PlaneFit::new(*object, pins, bend.weights, &mut holds)).collect();
         let yields = yields_of(surface, settings, &holds);
-        let mut laid = Self { unwrapping, objects: surface.objects().labels(), fits, yields, is_bounded: false };
+        let mut laid =
+            Self { unwrapping, objects: surface.objects().labels(), fits, yields, is_bounded: false, dab_at: None };
         let of_whole = yields_of(pinned, settings, &holds);
         bend.pieces.iter().for_each(|piece| laid.set_apart(pinned, settings, piece, of_whole.as_deref()));
         laid
@@ -112,7 +124,14 @@ impl<'a> LaidPlanes<'a> {
         let PlanePlace { object, at: there, turn } = pinned.unwrapped(settings).place(pinned, at);
         let linear = turn.transpose();
         let fit = PlaneFit { object, linear, shift: at - linear * there, pulled: None };
-        Self { unwrapping, objects: surface.objects().labels(), fits: vec![fit], yields: None, is_bounded: true }
+        Self {
+            unwrapping,
+            objects: surface.objects().labels(),
+            fits: vec![fit],
+            yields: None,
+            is_bounded: true,
+            dab_at: Some(there),
+        }
     }
     /// The same, laid wherever there is surface: what is not under the anchor stays where it is.
     pub fn unbounded(self) -> Self {
@@ -126,6 +145,17 @@ impl<'a> LaidPlanes<'a> {
             None if self.is_bounded => u + OUT_OF_REACH_PX,
             None => u,
         }
+    }
+    /// For a dab: its plane itself, over a rectangle and one more pixel around it, if all of that is on its object.
+    pub fn own(&self, surface: &Surface, rect: Rect) -> Option<OwnPlane<'_>> {
+        let ([fit], Some(at)) = (&self.fits[..], self.dab_at) else { return None };
+        let blocks = surface.objects().around_blocks();
+        let (x0, y0) = (rect.x0.max(0) as usize / BLOCK, rect.y0.max(0) as usize / BLOCK);
+        let (x1, y1) = (rect.x1.max(0) as usize, rect.y1.max(0) as usize);
+        let (x1, y1) = (x1.div_ceil(BLOCK).min(blocks.width()), y1.div_ceil(BLOCK).min(blocks.height()));
+        let is_own = |y: usize| blocks.row(y)[x0.min(x1)..x1].iter().all(|object| *object == fit.object);
+        let [x, y] = self.unwrapping.planes();
+        (!rect.is_empty() && fit.object > 0 && (y0..y1).all(is_own)).then_some(OwnPlane { x, y, at })
     }
     pub fn fits(&self) -> &[PlaneFit] {
         &self.fits

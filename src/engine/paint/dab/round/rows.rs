@@ -62,6 +62,7 @@ crate::widest! {
         let mut sure = SureZones::default();
         for span in part.spans {
             let Some(paint) = of_span(part.corner, span, (&mut *tile.0, &mut *tile.1)) else { continue };
+            d.prefetch(*span);
             sure.enter((span.y - part.corner.1) as usize / BLOCK, part.pixel, tip);
             bent_span(d.around(*span), sure.from((span.x - part.corner.0) as usize), tip, row, paint);
         }
