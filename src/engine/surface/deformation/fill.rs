@@ -63,7 +63,11 @@ pub(super) fn fill(
             let at = (x - rect.x0) as usize;
             let maps = inside.then_some(MapSpan { x: x as usize, y: y as usize, n });
             if inside && y + 1 < map.y1 {
-                plan.prefetch(MapSpan { x: x as usize, y: y as usize + 1, n });
+                let next = MapSpan { x: x as usize, y: y as usize + 1, n };
+                plan.prefetch(next);
+                if let Some((planes, _)) = unwrapped {
+                    prefetch_laid(planes, next);
+                }
             }
             let (out_x, out_y) = (&mut row_x[at..at + n], &mut row_y[at..at + n]);
             let is_laid = unwrapped
@@ -89,15 +93,16 @@ fn laid_span(planes: &LaidPlanes, surface: &Surface, at: MapSpan, out_x: &mut [f
     }
     let [u, v] = planes.unwrapping.planes().map(|plane| at.of(plane));
     let objects = at.of(planes.objects);
-    let one = objects.iter().all(|object| *object == objects[0]);
+    // Without an early end the loop is vectorised.
+    let one = objects.iter().fold(0, |differs, object| differs | (object ^ objects[0])) == 0;
     match planes.fits().iter().find(|fit| fit.object == objects[0]).filter(|_| one) {
-        Some(fit) => {
-            laid_row(u, v, fit.linear, fit.shift, out_x, out_y);
-            if let Some((pulled, yields)) = fit.pulled.zip(planes.yields.as_ref()) {
-                let [by_x, by_y] = yields.planes().map(|plane| at.of(plane));
-                pulled_row(by_x, by_y, pulled, out_x, out_y);
+        Some(fit) => match fit.pulled.zip(planes.yields.as_ref()) {
+            Some((pulled, yields)) => {
+                let by = yields.planes().map(|plane| at.of(plane));
+                pulled_row([u, v], by, (fit.linear, fit.shift, pulled), out_x, out_y);
             }
-        }
+            None => laid_row(u, v, fit.linear, fit.shift, out_x, out_y),
+        },
         None if one && planes.fits().iter().all(|fit| fit.object != objects[0]) => {
             let away = planes.elsewhere_px();
             shifted_row(u, v, away, out_x, out_y);
@@ -105,6 +110,15 @@ fn laid_span(planes: &LaidPlanes, surface: &Surface, at: MapSpan, out_x: &mut [f
         None => laid_over(planes, surface, at, out_x, out_y),
     }
     true
+}
+
+/// Prefetches what D_s reads of a span.
+fn prefetch_laid(planes: &LaidPlanes, span: MapSpan) {
+    planes.unwrapping.planes().into_iter().for_each(|plane| prefetch(span.of(plane)));
+    prefetch(span.of(planes.objects));
+    if let Some(yields) = &planes.yields {
+        yields.planes().into_iter().for_each(|plane| prefetch(span.of(plane)));
+    }
 }
 
 /// D_s at the pixels of a span that the surface covers, one by one: where objects meet, and at edges.

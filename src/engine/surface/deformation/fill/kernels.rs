@@ -221,14 +221,22 @@ crate::widest! {
             out_y[k] = yx * u[k] + yy * v[k] + shift.y;
         }
     }
-    /// Adds what a plane yields, turned and scaled as the plane is.
-    pub(super) fn pulled_row(by_x: &[f32], by_y: &[f32], pulled: Mat2, out_x: &mut [f32], out_y: &mut [f32]) {
+    /// The same of a plane that yields: what it yields is turned and scaled as the plane is, and added.
+    pub(super) fn pulled_row(
+        uv: [&[f32]; 2],
+        by: [&[f32]; 2],
+        laid: (Mat2, Vec2, Mat2),
+        out_x: &mut [f32],
+        out_y: &mut [f32],
+    ) {
         let n = out_x.len();
-        let (by_x, by_y, out_y) = (&by_x[..n], &by_y[..n], &mut out_y[..n]);
-        let ([xx, yx], [xy, yy]) = (pulled.x_axis.to_array(), pulled.y_axis.to_array());
+        let (u, v, by_x, by_y) = (&uv[0][..n], &uv[1][..n], &by[0][..n], &by[1][..n]);
+        let (out_y, (linear, shift, pulled)) = (&mut out_y[..n], laid);
+        let ([xx, yx], [xy, yy]) = (linear.x_axis.to_array(), linear.y_axis.to_array());
+        let ([pxx, pyx], [pxy, pyy]) = (pulled.x_axis.to_array(), pulled.y_axis.to_array());
         for k in 0..n {
-            out_x[k] += xx * by_x[k] + xy * by_y[k];
-            out_y[k] += yx * by_x[k] + yy * by_y[k];
+            out_x[k] = (xx * u[k] + xy * v[k] + shift.x) + (pxx * by_x[k] + pxy * by_y[k]);
+            out_y[k] = (yx * u[k] + yy * v[k] + shift.y) + (pyx * by_x[k] + pyy * by_y[k]);
         }
     }
     /// Points of the unwrapped plane where they lie, but for a shift in both directions.
