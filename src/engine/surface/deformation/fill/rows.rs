@@ -32,11 +32,7 @@ pub(in crate::surface::deformation) fn fill_dab(
         return false;
     }
     let pin = kernel.pinned(pin);
-    let span_of = |y: i32| {
-        let Range { start, end } = columns(y);
-        let (start, end) = (start.max(rect.x0), end.min(rect.x1));
-        MapSpan { x: start.max(0) as usize, y: y as usize, n: (end - start).max(0) as usize }
-    };
+    let span_of = |y: i32| span_of(rect, columns(y), y);
     let width = rect.width();
     let rows = out_x.chunks_exact_mut(width).zip(out_y.chunks_exact_mut(width));
     let mut next = span_of(rect.y0);
@@ -61,7 +57,14 @@ pub(in crate::surface::deformation) fn fill_dab(
     true
 }
 
-/// The same for a dab on the unwrapped surface.
+/// Some columns of a row of `rect`, which the maps hold.
+#[inline(always)]
+fn span_of(rect: Rect, columns: Range<i32>, y: i32) -> MapSpan {
+    let (start, end) = (columns.start.max(rect.x0), columns.end.min(rect.x1));
+    MapSpan { x: start.max(0) as usize, y: y as usize, n: (end - start).max(0) as usize }
+}
+
+/// The same for a dab on the unwrapped surface: what other objects cover lies out of its reach.
 fn fill_laid(
     deformation: &Deformation,
     surface: &Surface,
@@ -76,11 +79,7 @@ fn fill_laid(
         return false;
     }
     let [u, v] = planes.unwrapping.planes();
-    let span_of = |y: i32| {
-        let Range { start, end } = columns(y);
-        let (start, end) = (start.max(rect.x0), end.min(rect.x1));
-        MapSpan { x: start.max(0) as usize, y: y as usize, n: (end - start).max(0) as usize }
-    };
+    let span_of = |y: i32| span_of(rect, columns(y), y);
     let width = rect.width();
     let rows = out_x.chunks_exact_mut(width).zip(out_y.chunks_exact_mut(width));
     let mut next = span_of(rect.y0);
