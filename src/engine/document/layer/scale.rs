@@ -12,7 +12,7 @@ use crate::math::srgb::{quantise, quantise_deep};
 use crate::math::{PlaneMap, Rect, Size, Vec2, vec2};
 use crate::paint::{Placement, Sample, Selection, Stroke, StrokeHome};
 use crate::raster::tile::deep;
-use crate::raster::warp::{warped, warped_plane_onto};
+use crate::raster::warp::{warped_plane_onto, warped_tile};
 use crate::raster::{Plane, Resampling, TILE, Tile, TileAt, TileGrid};
 use crate::shading::Features;
 use rayon::prelude::*;
@@ -150,6 +150,12 @@ impl CanvasScale {
             .on(stroke.home().map(home))
     }
     pub fn grid(&self, grid: &TileGrid) -> TileGrid {
+        let (mut next, tiles) = self.blank_grid(grid);
+        self.fill_tiles(grid, &tiles, &mut next);
+        next
+    }
+    /// The grid without its tiles, and which there may be.
+    pub fn blank_grid(&self, grid: &TileGrid) -> (TileGrid, Vec<TileAt>) {
         let Rect { x0, y0, x1, y1 } = grid.bounds();
         let side = |v: i32, s: f32| f64::from(v) * f64::from(s);
         let bounds = Rect::new(
@@ -158,14 +164,17 @@ impl CanvasScale {
             side(x1, self.per_axis.x).ceil() as i32,
             side(y1, self.per_axis.y).ceil() as i32,
         );
-        let tiles: Vec<TileAt> = TileAt::covering(bounds).collect();
-        if let Some(sampler) = self.sampler() {
-            return warped(grid, &sampler, sampler.filter, &tiles);
-        }
-        let resampled: Vec<Option<Tile>> = tiles.par_iter().map(|&at| self.tile(grid, at)).collect();
-        let mut next = TileGrid::for_rect(bounds);
-        tiles.into_iter().zip(resampled).for_each(|(at, tile)| next.set(at, tile.map(Arc::new)));
-        next
+        (TileGrid::for_rect(bounds), TileAt::covering(bounds).collect())
+    }
+    /// Resamples some of the tiles.
+    pub fn fill_tiles(&self, grid: &TileGrid, tiles: &[TileAt], next: &mut TileGrid) {
+        let sampler = self.sampler();
+        let tile = |&at: &TileAt| match &sampler {
+            Some(sampler) => warped_tile(grid, sampler, sampler.filter, at),
+            None => self.tile(grid, at).map(Arc::new),
+        };
+        let resampled: Vec<Option<Arc<Tile>>> = tiles.par_iter().map(tile).collect();
+        tiles.iter().zip(resampled).for_each(|(&at, tile)| next.set(at, tile));
     }
     /// One tile of a grid resampled: premultiplied values as they are stored, averaged.
     fn tile(&self, grid: &TileGrid, at: TileAt) -> Option<Tile> {

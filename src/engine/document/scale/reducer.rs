@@ -1,9 +1,10 @@
 //! Scales a changing document down again and again: parts that did not change are not scaled twice. Floor 4. The
 //! scaling of one layer is in `scale`.
 
-use super::super::{Content, Document, Group, Layer, LayerId, LayerTransform, Part, Parts};
+use super::super::{Content, Document, Group, Layer, LayerId, LayerTransform, Part, Parts, PixelLayer};
 use super::CanvasScale;
 use crate::math::Size;
+use crate::raster::{TileAt, TileGrid};
 use crate::surface::{Surface, SurfaceError};
 use std::collections::HashMap;
 use std::sync::{Arc, Weak};
@@ -16,6 +17,7 @@ pub struct DocumentReducer {
     factor: f32,
     surface: Option<(Weak<Surface>, Arc<Surface>)>,
     layers: HashMap<LayerId, KnownLayer>,
+    begun: Option<BegunLayer>,
     /// Small parts by their ids, and what was made of them: for documents whose parts the user drags.
     parts: HashMap<String, (Weak<Part>, Arc<Part>)>,
     shaped: Arc<Parts>,
@@ -37,6 +39,38 @@ impl KnownLayer {
     }
     fn is_of(&self, layer: &Arc<Layer>) -> bool {
         self.of.as_ptr() == Arc::as_ptr(layer)
+    }
+}
+
+/// A paint layer of which some tiles are scaled.
+struct BegunLayer {
+    of: Weak<Layer>,
+    tiles: TileGrid,
+    /// Those still to come.
+    left: Vec<TileAt>,
+}
+
+impl BegunLayer {
+    /// Small tiles that are made in one go: a few ms, which a new stroke may have to wait.
+    const AT_ONCE: usize = 256;
+
+    fn new(layer: &Arc<Layer>, pixels: &PixelLayer, scale: &CanvasScale) -> Self {
+        let (tiles, left) = scale.blank_grid(&pixels.tiles);
+        Self { of: Arc::downgrade(layer), tiles, left }
+    }
+    /// Scales some more tiles; whether that was all.
+    fn go_on(&mut self, pixels: &PixelLayer, scale: &CanvasScale) -> bool {
+        let now = self.left.split_off(self.left.len().saturating_sub(Self::AT_ONCE));
+        scale.fill_tiles(&pixels.tiles, &now, &mut self.tiles);
+        self.left.is_empty()
+    }
+    /// The layer's content with the tiles that were made.
+    fn content(self, pixels: &PixelLayer, scale: &CanvasScale) -> Content {
+        let blank = PixelLayer { tiles: TileGrid::default(), ..pixels.clone() };
+        match Content::Pixels(blank).scaled(scale) {
+            Content::Pixels(small) => Content::Pixels(PixelLayer { tiles: self.tiles, ..small }),
+            other => other,
+        }
     }
 }
 
@@ -67,7 +101,7 @@ impl DocumentReducer {
     /// `factor`: as of [`Document::scaled`].
     pub fn new(factor: f32) -> Self {
         let (layers, parts) = (HashMap::new(), HashMap::new());
-        Self { factor, surface: None, layers, parts, shaped: Arc::new(Parts::for_drafts()) }
+        Self { factor, surface: None, layers, begun: None, parts, shaped: Arc::new(Parts::for_drafts()) }
     }
     /// The reduced document: as [`Document::scaled`], with the same errors; but pictures of image layers are read from
     /// levels as much coarser, and selections by the surface are resampled and not found again.
@@ -137,7 +171,7 @@ impl DocumentReducer {
     pub fn take_surface(&mut self, made: ReducedSurface) {
         self.surface = Some((made.of, made.small));
     }
-    /// Scales one more layer of the document in advance for [`DocumentReducer::of`]; returns whether there was one. An
+    /// Scales one more layer of the document, or more of its tiles, in advance for [`DocumentReducer::of`]; returns whether there was one. An
     /// idle thread can prepare in steps with this, and make what [`DocumentReducer::missing_surface`] returns.
     pub fn prepare(&mut self, document: &Document) -> bool {
         let Some(scale) = self.scale(document) else { return false };
@@ -147,7 +181,21 @@ impl DocumentReducer {
             !known && layer.content.group().is_none()
         };
         let Some(layer) = document.walk().into_iter().map(|(_, layer)| layer).find(is_new) else { return false };
-        self.layers.insert(layer.id, KnownLayer::new(layer, Arc::new(self.scaled(layer, &scale))));
+        let layer = layer.clone();
+        let known = self.layers.get(&layer.id).is_some_and(|known| known.content.is_identical(&layer.content));
+        let made = match &layer.content {
+            Content::Pixels(pixels) if !known => {
+                let begun = self.begun.take().filter(|begun| begun.of.as_ptr() == Arc::as_ptr(&layer));
+                let mut begun = begun.unwrap_or_else(|| BegunLayer::new(&layer, pixels, &scale));
+                if !begun.go_on(pixels, &scale) {
+                    self.begun = Some(begun);
+                    return true;
+                }
+                scale.layer_showing(&layer, Some(&begun.content(pixels, &scale)))
+            }
+            _ => self.scaled(&layer, &scale),
+        };
+        self.layers.insert(layer.id, KnownLayer::new(&layer, Arc::new(made)));
         true
     }
     fn scale(&self, document: &Document) -> Option<CanvasScale> {

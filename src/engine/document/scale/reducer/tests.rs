@@ -4,7 +4,7 @@ use super::*;
 use crate::document::{Live, PixelLayer, Progress, TransformShape, diff, flatten};
 use crate::math::{srgb::Color, vec3};
 use crate::paint::{Adjust, ImageFilter, PictureSource, PlacedImage, Placement};
-use crate::raster::{Outside, Picture, Plane, Resampling};
+use crate::raster::{Outside, Picture, Plane, Resampling, Tile};
 use crate::surface::Maps;
 
 fn fill(name: &str, v: u8) -> Layer {
@@ -152,6 +152,33 @@ fn what_was_prepared_part_by_part_is_not_made_again() {
     assert!(small.layers.iter().zip(&made).all(|(a, b)| Arc::ptr_eq(a, b)));
     let changed = document.with_layer(document.layers[1].id, |layer| layer.opacity = 0.5).unwrap();
     assert!(reduced.prepare(&changed) && !reduced.prepare(&changed), "only the layer that changed");
+}
+#[test]
+fn a_large_paint_layer_is_made_small_in_several_goes_with_the_same_tiles() {
+    let size = Size::new(2400, 2200);
+    let mut tiles = TileGrid::default();
+    tiles.reserve(size.rect());
+    for (k, at) in TileAt::covering(size.rect()).enumerate().filter(|(k, _)| k % 3 != 0) {
+        tiles.set(at, Tile::from_bytes([k as u8 / 2, k as u8 / 3, 0, 200].repeat(64 * 64)).map(Arc::new));
+    }
+    let paint = Layer::new("paint", Content::Pixels(PixelLayer { tiles, x: 3, y: 5, ..PixelLayer::default() }));
+    let document = Document { layers: vec![Arc::new(paint)], ..Document::empty(size) };
+    let mut reduced = DocumentReducer::new(0.5);
+    assert!(reduced.prepare(&document) && reduced.begun.is_some(), "342 small tiles are not made in one go");
+    assert!(reduced.prepare(&document) && reduced.begun.is_none() && !reduced.prepare(&document));
+    let (parts, whole) = (reduced.of(&document).unwrap(), DocumentReducer::new(0.5).of(&document).unwrap());
+    let (Content::Pixels(a), Content::Pixels(b)) = (&parts.layers[0].content, &whole.layers[0].content) else {
+        panic!()
+    };
+    assert_eq!((a.x, a.y, a.tiles.bounds()), (b.x, b.y, b.tiles.bounds()));
+    let bytes = |grid: &TileGrid, at| grid.tile(at).map(|tile| tile.bytes().to_vec());
+    assert!(TileAt::covering(size.rect()).all(|at| bytes(&a.tiles, at) == bytes(&b.tiles, at)));
+    // Another version of the layer before all is made.
+    let mut anew = DocumentReducer::new(0.5);
+    assert!(anew.prepare(&document));
+    let faint = document.with_layer(document.layers[0].id, |layer| layer.opacity = 0.5).unwrap();
+    assert!(anew.prepare(&faint) && anew.prepare(&faint) && !anew.prepare(&faint));
+    assert_eq!(anew.of(&faint).unwrap().layers[0].opacity, 0.5);
 }
 #[test]
 fn parts_that_a_hand_drags_are_shaped_small_and_those_at_rest_are_not_made_again() {
