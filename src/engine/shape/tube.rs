@@ -7,17 +7,23 @@ use crate::math::Size;
 use crate::raster::Plane;
 use rayon::prelude::*;
 
-/// A residual of 1e-3 of the right-hand side, squared.
-const GOAL: f64 = 1e-6;
-/// How far ridges are smoothed, as a share of the radius of the ball there: facets vanish, cross-sections stay.
-const SMOOTHING: f32 = 0.08;
+/// A residual of 3e-3 of the right-hand side, squared.
+const GOAL: f64 = 1e-5;
+/// The same for a field of which only the curvature is used.
+const ROUGH_GOAL: f64 = 1e-3;
+/// How far ridges are smoothed, as a share of the height there: facets vanish, cross-sections stay.
+const SMOOTHING: f32 = 0.26;
 /// The least smoothing, px: a ball centred between pixels has its top half a pixel away.
 const LEAST_SMOOTHING_PX: f32 = 0.5;
+/// −∇²h of a straight limb, h = w² − x²; and of a ball, h = r² − x² − y².
+const BENDS: [f32; 2] = [2.0, 4.0];
 
 /// h, px², over the planes of an outline: the squared height of its maximal balls, smoothed, 0 at the rim.
 ///
-/// Unsmoothed it is max_c (r²(c) − |x − c|²), r the distance to the rim. Smoothed: h − t∇²h = h₀, √t a twelfth of the
-/// ball's radius. `joined` and `start` as for `inflate`.
+/// Unsmoothed it is h₀ = max_c (r²(c) − |x − c|²), r the distance to the rim. Smoothed: h − t∇²h = h₀ + t b, √t about a
+/// quarter of the height. Smoothing lowers what is bent by t times its −∇²h; b makes up for that: it is −∇² of the
+/// field that was smoothed with b = 2, in `[2, 4]`, so that limbs and balls stay as high as they are and only ridges
+/// between balls are levelled. `joined` and `start` as for `inflate`.
 pub fn tube(outline: &Outline, joined: Option<&Plane<bool>>, start: Option<&Plane<f32>>) -> Plane<f32> {
     let reach = RimDistance::silhouette_of(outline, joined).distance;
     let rim = OutlineRim::of(outline, joined);
@@ -27,8 +33,19 @@ pub fn tube(outline: &Outline, joined: Option<&Plane<bool>>, start: Option<&Plan
         let length = (SMOOTHING * raw.at(x, y).max(0.0).sqrt()).max(LEAST_SMOOTHING_PX);
         1.0 / (length * length)
     };
-    let source = Plane::from_fn(raw.size(), |x, y| if inside.at(x, y) { raw.at(x, y) * screen(x, y) } else { 0.0 });
-    let h = rim.equation(screen).solve(&source, start.or(Some(&raw)), GOAL);
+    let equation = rim.equation(screen);
+    let smoothed =
+        |bend: &(dyn Fn(usize, usize) -> f32 + Sync), start: &Plane<f32>, goal: f64| {
+            let source = Plane::from_fn(raw.size(), |x, y| {
+                if inside.at(x, y) { raw.at(x, y) * screen(x, y) + bend(x, y) } else { 0.0 }
+            });
+            equation.solve(&source, Some(start), goal)
+        };
+    let [limb, ball] = BENDS;
+    let first = smoothed(&|_, _| limb, start.unwrap_or(&raw), ROUGH_GOAL);
+    // What the equation leaves as −∇² of its solution.
+    let bend = |x: usize, y: usize| ((raw.at(x, y) - first.at(x, y)) * screen(x, y) + limb).max(limb).min(ball);
+    let h = smoothed(&bend, &first, GOAL);
     h.updated(|x, y, h| if inside.at(x, y) && h.is_finite() { h.max(0.0) } else { 0.0 })
 }
 
