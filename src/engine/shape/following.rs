@@ -1,5 +1,5 @@
-//! Heights that follow normals while a hand changes these. Floor 3. Good enough to be looked at for a moment: what stays
-//! is `surface::integrate`.
+//! Heights that follow normals while the pointer changes these. Floor 3. Good enough to be looked at for a moment; the
+//! lasting heights are those of `surface::integrate`.
 
 use super::solver::Solver;
 use crate::math::{Rect, Vec2, Vec3, vec2};

@@ -4,10 +4,10 @@
 
 mod resample;
 
+use super::Layer;
 use super::map::LayerMap;
 use super::mask::{DerivedMask, MaskKind};
 use super::transform::{LayerTransform, scaled_matrix};
-use super::{Content, Layer};
 use crate::math::srgb::{quantise, quantise_deep};
 use crate::math::{PlaneMap, Rect, Size, Vec2, vec2};
 use crate::paint::{Placement, Sample, Selection, Stroke, StrokeHome};
@@ -107,8 +107,8 @@ impl CanvasScale {
     pub fn layer(&self, layer: &Layer) -> Layer {
         self.layer_showing(layer, None)
     }
-    /// The same with its content, if that was scaled before.
-    pub fn layer_showing(&self, layer: &Layer, known: Option<&Content>) -> Layer {
+    /// The same with the content of another small layer, if it was scaled before.
+    pub fn layer_showing(&self, layer: &Layer, known: Option<&Layer>) -> Layer {
         if let Some(stretched) = self.stretched(layer) {
             return stretched;
         }
@@ -116,7 +116,7 @@ impl CanvasScale {
             let scaled = layer.content.scaled(self);
             if self.is_draft { scaled.drafted().unwrap_or(scaled) } else { scaled }
         };
-        let content = known.map_or_else(scaled, Content::clone);
+        let content = known.map_or_else(scaled, |known| known.content.clone());
         let mut next = Layer { content, cache: Default::default(), ..layer.clone() };
         let transform = layer.transform.as_ref().map(|transform| transform.scaled(self.per_axis));
         next.transform = transform.map(|transform| if self.is_draft { transform.drafted() } else { transform });

@@ -117,7 +117,7 @@ impl DocumentReducer {
     }
     fn scaled(&self, layer: &Arc<Layer>, scale: &CanvasScale) -> Layer {
         let known = self.layers.get(&layer.id).filter(|known| known.content.is_identical(&layer.content));
-        scale.layer_showing(layer, known.map(|known| &known.made.content))
+        scale.layer_showing(layer, known.map(|known| &*known.made))
     }
     /// The document in its own size, its layers read as for a moment: all but those that are [kept](Self::keep).
     fn drafted(&mut self, document: &Document) -> Document {
@@ -191,7 +191,8 @@ impl DocumentReducer {
                     self.begun = Some(begun);
                     return true;
                 }
-                scale.layer_showing(&layer, Some(&begun.content(pixels, &scale)))
+                let content = begun.content(pixels, &scale);
+                scale.layer_showing(&layer, Some(&Layer { content, ..Layer::clone(&layer) }))
             }
             _ => self.scaled(&layer, &scale),
         };
