@@ -5,10 +5,10 @@
 use divan::{Bencher, counter::ItemsCount};
 use rayon::prelude::*;
 use rilievo_engine::document::{Content, Document, Layer, LayerId, Live, PreparedDocument, Progress, diff};
-use rilievo_engine::math::{Size, vec3};
-use rilievo_engine::raster::{PlanarTile, Plane, TileAt, TileGrid, planar::PixelRow};
+use rilievo_engine::math::{Size, Vec3, vec3};
+use rilievo_engine::raster::{Picture, PlanarTile, Plane, TileAt, TileGrid, planar::PixelRow};
 use rilievo_engine::shading::{
-    Light, LightKind, Model, RadianceScaling, Reference, Scaling, Shading, radiance::BackdropStats,
+    Environment, Light, LightKind, Model, RadianceScaling, Reference, Scaling, Shading, radiance::BackdropStats,
 };
 use rilievo_engine::surface::{Maps, Scene, Surface};
 use std::sync::Arc;
@@ -138,9 +138,55 @@ fn other_models(bencher: Bencher, model: Model) {
     material(bencher, (SMALL, 1), model);
 }
 
+/// Models under an environment, next to one look-up of it per pixel.
+#[divan::bench(args = [Model::Mirror, Model::Refraction, Model::DiffuseEnvironment, Model::Ashikhmin])]
+fn under_an_environment(bencher: Bencher, model: Model) {
+    let shading = Shading { environment: Some(studio()), ..lit(model) };
+    rendered(bencher, (SMALL, 1), &shading);
+}
+
+/// The mean over each pixel's footprint about the direction that it mirrors, from mip levels; directions are given.
+#[divan::bench]
+fn one_look_up_of_the_environment(bencher: Bencher) {
+    let (scene, light) = (scene(SMALL), studio().environment_light());
+    let surface = scene.surface.as_deref().expect("a surface");
+    let mirrored = |x: u32, y: u32| {
+        let n = surface.normal(x as usize, y as usize);
+        n * (2.0 * n.z) - vec3(0.0, 0.0, 1.0)
+    };
+    let (width, height) = (SMALL.0 - 1, SMALL.1 - 1);
+    let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    let rays: Vec<[Vec3; 3]> = pixels
+        .map(|(x, y)| {
+            let ray = mirrored(x, y);
+            [ray, mirrored(x + 1, y) - ray, mirrored(x, y + 1) - ray]
+        })
+        .collect();
+    let pool = pool(1);
+    bencher
+        .counter(ItemsCount::new(rays.len()))
+        .bench_local(|| pool.install(|| rays.iter().map(|[ray, dx, dy]| light.over(*ray, *dx, *dy)).sum::<Vec3>()));
+}
+
+/// A latitude-longitude map with two lamps.
+fn studio() -> Environment {
+    let (width, height) = (2048usize, 1024usize);
+    let texel = |i: usize| {
+        let (x, y) = (i % width, i / width);
+        let lamp = if (x / 128 + 3 * (y / 128)) % 7 == 0 { 4.0 } else { 0.1 };
+        [lamp, 0.8 * lamp + 0.001 * (x % 64) as f32, 0.6 * lamp, 1.0]
+    };
+    let size = Size::new(width as u32, height as u32);
+    let picture = Picture::linear(size, (0..width * height).map(texel).collect()).expect("a texel for each pixel");
+    Environment::new("studio".into(), picture)
+}
+
 fn material(bencher: Bencher, run: Run, model: Model) {
+    rendered(bencher, run, &lit(model));
+}
+
+fn rendered(bencher: Bencher, run: Run, shading: &Shading) {
     let scene = scene(run.0);
-    let shading = lit(model);
     shading.warm(&scene);
     let ats: Vec<TileAt> = TileAt::covering(scene.size.rect()).collect();
     let pool = pool(run.1);
