@@ -106,10 +106,14 @@ impl Budget {
     }
     /// Checks memory before it is allocated. `what`: for the sentence, in front of “takes”.
     pub fn room(&self, file: &Path, what: &str, bytes: u64) -> Result<()> {
+        let too_large = |reason| Error::too_large(file, reason).with_remedy(Remedy::MoreMemory);
+        self.room_for(what, bytes).map_err(too_large)
+    }
+    /// The same for work that belongs to no file; fails with a sentence without its full stop.
+    pub fn room_for(&self, what: &str, bytes: u64) -> Result<(), String> {
         if bytes > self.memory_bytes {
             let (asked, there) = (spoken(bytes), spoken(self.memory_bytes));
-            let reason = format!("{what} takes {asked} of memory, and {there} are free for it");
-            return Err(Error::too_large(file, reason).with_remedy(Remedy::MoreMemory));
+            return Err(format!("{what} takes {asked} of memory, and {there} are free for it"));
         }
         Ok(())
     }

@@ -35,6 +35,11 @@ impl Document {
         let of_all = area * TILE_BYTES + of_layers(&self.layers, self.size.rect(), area);
         of_all + self.surface.as_ref().map_or(0, |surface| self.behind_bytes(surface.contours()))
     }
+    /// Bytes that [`flatten_to_paint`](super::flatten_to_paint) takes at most: as flattening, with the textures that
+    /// images are read from, and a picture of 16 bits.
+    pub fn painting_bytes(&self) -> u64 {
+        self.flattening_bytes() + self.deep_bytes() + self.size.area() as u64 * DEEP_TILE_BYTES
+    }
     /// What the other populations of contour pixels take: their readings, and the pixels of live layers, in whole rows
     /// of a tile's width.
     fn behind_bytes(&self, contours: &Contours) -> u64 {

@@ -29,7 +29,11 @@ impl Session {
             presents: tabs.iter().map(|tab| tab.shown().clone()).collect(),
             pasts: tabs
                 .iter()
-                .map(|tab| std::iter::once(tab.document()).chain(tab.history.others()).cloned().collect())
+                .map(|tab| {
+                    let steps = std::iter::once(tab.document()).chain(tab.history.others());
+                    // The history may have dropped what the file holds.
+                    steps.chain([tab.saved()]).cloned().collect()
+                })
                 .collect(),
         })
     }
@@ -66,7 +70,7 @@ impl HeldDocuments {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::{Content, Layer, Live, Progress, flatten};
+    use crate::document::{Content, History, Layer, Live, Progress, flatten};
     use crate::math::{Size, srgb::Color, vec2};
     use crate::paint::{Gradient, GradientStop, ImageFilter};
     use crate::session::OpenDocument;
@@ -115,6 +119,14 @@ mod tests {
         assert_eq!(used.front.kept, 6 * RENDERED, "the present, and five before it");
         assert_eq!(used.front, used.all);
         assert_eq!(held.count(u64::MAX), used);
+    }
+    #[test]
+    fn what_the_file_holds_is_counted_after_the_history_has_dropped_it() {
+        let mut session = dragged(5);
+        let tab = &mut session.open_documents[session.current];
+        let last = tab.document().clone();
+        tab.history = History::new(last, 10);
+        assert_eq!(session.held_documents().unwrap().count(u64::MAX).all.kept, 2 * RENDERED);
     }
     #[test]
     fn beyond_the_ceiling_the_farthest_steps_let_go_and_the_picture_stays() {

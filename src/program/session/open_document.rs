@@ -164,6 +164,10 @@ impl OpenDocument {
     pub fn is_dirty(&self) -> bool {
         !is_same(&self.saved, self.document())
     }
+    /// The document as its file holds it.
+    pub fn saved(&self) -> &Document {
+        &self.saved
+    }
     pub fn mark_saved(&mut self, document: Document, file: PathBuf, stamp: FileStamp) {
         self.saved = document;
         // The file that it was saved to before is now like any other.

@@ -8,7 +8,7 @@ use crate::document::Progress;
 use crate::file_purpose::FilePurpose;
 use crate::io::export::ExportOptions;
 use crate::io::replace::FileStamp;
-use crate::io::{Overwrite, Terms};
+use crate::io::{Budget, Overwrite, Terms};
 use crate::jobs::{EditResult, JobKind, JobResult, ShapedResult, short};
 use crate::math::Size;
 use crate::pending::{AfterUnsaved, Exporting, ExportingMaps, Pending, Saving};
@@ -152,7 +152,10 @@ impl MainWindow {
         let (key, from, action) = (tab.key, tab.document().clone(), action.clone());
         self.jobs.start(name.into(), JobKind::Editing, move |progress| {
             let edit = match &action {
-                Action::Layer(action) => action.flattened(&from, progress).map(Ok),
+                Action::Layer(action) => match action.no_room(&from, &Budget::of_this_machine()) {
+                    None => action.flattened(&from, progress).map(Ok),
+                    no_room => no_room.map(Err),
+                },
                 Action::Canvas(action) => action.long_step(&from, progress),
                 _ => None,
             };

@@ -10,6 +10,7 @@ pub use new::NewLayer;
 pub(super) use steps::copied;
 
 use crate::document::{Content, Document, Group, Layer, LayerId, LayerMask, LayerSlot, Live, MaskKind, Progress};
+use crate::io::Budget;
 use crate::math::{PlaneMap, Vec2, vec2};
 use crate::paint::{Gradient, GradientStop, ImageFilter};
 use crate::raster::Plane;
@@ -140,14 +141,15 @@ impl LayerAction {
                 tab.solo = if tab.solo == id { None } else { id };
             }
             _ => {
-                let refusal = self.refusal(tab.document());
+                let no_room = || self.no_room(tab.document(), &Budget::of_this_machine());
+                let refusal = self.refusal(tab.document()).map(str::to_owned).or_else(no_room);
                 let edit = if refusal.is_none() { self.edit(tab, &gradient_settings) } else { None };
                 match edit {
                     Some(edit) => {
                         tab.take(edit);
                         tab.on_mask = matches!(self, LayerAction::PaintMask { .. });
                     }
-                    None => session.said.extend(refusal.map(str::to_owned)),
+                    None => session.said.extend(refusal),
                 }
             }
         }

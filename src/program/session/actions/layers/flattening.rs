@@ -3,6 +3,7 @@
 
 use super::{LayerAction, sibling};
 use crate::document::{Content, Document, Layer, LayerId, LayerSlot, PixelLayer, Progress, flatten_to_paint};
+use crate::io::Budget;
 use crate::raster::TileGrid;
 use crate::session::open_document::Edit;
 use std::sync::Arc;
@@ -16,6 +17,26 @@ impl LayerAction {
             LayerAction::Flatten {} => Some("Flattening the picture"),
             _ => None,
         }
+    }
+    /// Why a long edit cannot begin: the layers that it paints take more memory than is free.
+    pub fn no_room(&self, document: &Document, budget: &Budget) -> Option<String> {
+        let what = self.takes_long()?;
+        let one = |id: &LayerId| Some(document.with_only(&[*id])?.painting_bytes());
+        let bytes = match self {
+            LayerAction::MergeDown { layer } => {
+                let ids = document.outermost(&layer.find(document)?);
+                let beneath = match &ids[..] {
+                    [only] if !layer.is_several() => layer_beneath(document, *only),
+                    _ => None,
+                };
+                ids.iter().chain(&beneath).filter_map(one).fold(0, u64::saturating_add)
+            }
+            LayerAction::Bake { layer } => {
+                document.outermost(&layer.find(document)?).iter().filter_map(one).fold(0, u64::saturating_add)
+            }
+            _ => document.painting_bytes(),
+        };
+        budget.room_for(what, bytes).err().map(|why| format!("{why}."))
     }
     /// Performs a long edit on a document; `None` for any other edit, if it is impossible, or if it was cancelled.
     pub fn flattened(&self, document: &Document, progress: &Progress) -> Option<Edit> {
@@ -70,13 +91,18 @@ pub(super) fn undisplaced(document: &Document, id: LayerId, progress: &Progress)
     if layer.is_warped() { baked(&next, layer, progress) } else { Some(next) }
 }
 
+/// The layer beneath one in its list.
+fn layer_beneath(document: &Document, id: LayerId) -> Option<LayerId> {
+    let place = document.place_of(id)?;
+    sibling(document, LayerSlot { index: place.index.checked_sub(1)?, ..place })
+}
+
 /// A layer and the one beneath it as one paint layer.
 fn merged(document: &Document, id: LayerId, progress: &Progress) -> Option<Edit> {
     // Groups around hand down their transforms, so that what is merged lies as it shows.
     let document = &undisplaced(document, id, progress)?;
     let layer = document.layer(id)?;
-    let place = document.place_of(layer.id)?;
-    let beneath: LayerId = sibling(document, LayerSlot { index: place.index.checked_sub(1)?, ..place })?;
+    let beneath = layer_beneath(document, layer.id)?;
     let is_group = document.layer(beneath)?.content.group().is_some();
     let is_warped = document.layer(beneath)?.is_warped() && !is_group;
     let document = &if is_warped { undisplaced(document, beneath, progress)? } else { document.clone() };
@@ -113,4 +139,29 @@ fn merged_several(document: &Document, ids: &[LayerId], progress: &Progress) -> 
     let select = vec![one.id];
     let document = document.with_one_for(ids, one)?;
     Some(Edit { label: "Merge layers", document, select })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Size, srgb::Color};
+    use crate::session::LayerPaths;
+
+    #[test]
+    fn a_long_edit_that_memory_does_not_hold_says_so_in_figures() {
+        let fill = || Layer::new("Fill", Content::Fill(Color::BLACK));
+        let layers = (0..3).map(|_| Arc::new(fill())).collect();
+        let document = Document { layers, ..Document::empty(Size::new(1000, 1000)) };
+        let top = LayerPaths::of(&document, &[document.layers[2].id]);
+        // A picture of bytes and one of 16 bits for each layer that is painted.
+        let no_room = |action: &LayerAction, bytes| action.no_room(&document, &Budget::default().within(bytes));
+        let (bake, merge) = (LayerAction::Bake { layer: top.clone() }, LayerAction::MergeDown { layer: top });
+        assert_eq!(no_room(&bake, 16_000_000), None);
+        let why = no_room(&bake, 15_000_000).unwrap();
+        assert_eq!(why, "Baking the layer takes 16 MB of memory, and 15 MB are free for it.");
+        assert_eq!(no_room(&merge, 32_000_000), None);
+        assert!(no_room(&merge, 31_000_000).unwrap().starts_with("Merging layers takes 32 MB"));
+        assert_eq!(no_room(&LayerAction::Flatten {}, 16_000_000), None);
+        assert!(no_room(&LayerAction::Flatten {}, 15_000_000).is_some());
+    }
 }
