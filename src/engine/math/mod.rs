@@ -11,7 +11,7 @@ pub mod rect;
 pub mod simd;
 pub mod srgb;
 
-pub use glam::{Affine2, DVec2, Mat2, Mat3, Vec2, Vec3, Vec4, vec2, vec3};
+pub use glam::{Affine2, DVec2, Mat2, Mat3, Vec2, Vec3, Vec3A, Vec4, vec2, vec3};
 pub use plane_map::PlaneMap;
 pub use range::{COORDINATE, Range, TURNS, UNIT};
 pub use rect::{Rect, Size};

@@ -88,6 +88,7 @@ pub fn scale_encoded_gently(v: f32, factor: f32, root: f32) -> f32 {
 static DECODE: LazyLock<[f32; 256]> = LazyLock::new(|| std::array::from_fn(|i| decode(i as f32 / 255.0)));
 
 /// Linear light of an sRGB byte.
+#[inline(always)]
 pub fn decode_u8(encoded: u8) -> f32 {
     DECODE[encoded as usize]
 }

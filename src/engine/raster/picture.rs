@@ -94,7 +94,11 @@ impl Picture {
     }
     /// Linear light of one texel, straight alpha.
     pub fn linear_at(&self, x: usize, y: usize) -> [f32; 4] {
-        let i = y * self.size.width as usize + x;
+        self.linear_texel(y * self.size.width as usize + x)
+    }
+    /// The same by the texel's number, row by row.
+    #[inline(always)]
+    pub fn linear_texel(&self, i: usize) -> [f32; 4] {
         match &self.texels {
             Texels::Linear(t) => t[i],
             Texels::Srgb8(t) => {

@@ -5,7 +5,7 @@ use super::{features::FeatureMap, scaling::Scaling};
 use crate::math::{Vec3, simd::prefetch, vec3};
 use crate::raster::TILE;
 use crate::surface::Surface;
-use crate::surface::view::{Eye, in_view};
+use crate::surface::view::{Eye, from_view, in_view};
 use std::borrow::Cow;
 
 /// One value for each pixel of a tile's row.
@@ -96,6 +96,16 @@ impl<'a> SurfaceRow<'a> {
             (seen[0][x], seen[1][x], seen[2][x]) = in_view(at(&near.view), at(direction)).into();
         }
         Cow::Owned(seen)
+    }
+    /// The reverse of [`SurfaceRow::seen`].
+    pub fn from_seen<'d>(&self, seen: &'d [RowValues; 3]) -> Cow<'d, [RowValues; 3]> {
+        let Some(near) = &self.near else { return Cow::Borrowed(seen) };
+        let mut direction = *seen;
+        for x in 0..self.width {
+            let at = |rows: &[RowValues; 3]| vec3(rows[0][x], rows[1][x], rows[2][x]);
+            (direction[0][x], direction[1][x], direction[2][x]) = from_view(at(&near.view), at(seen)).into();
+        }
+        Cow::Owned(direction)
     }
     /// Prefetches a row farther down: it is a canvas's width away in memory.
     fn prefetch(&self, y: usize) {

@@ -2,9 +2,10 @@
 //! sec. 5.3.1). Floor 3. It is a small prefiltered map instead of spherical harmonics: nine of those ring around a sun,
 //! a map does not.
 
-use super::map::{EnvironmentMap, SphereLevel};
+use super::level::SphereLevel;
+use super::map::EnvironmentMap;
 use super::projection::lat_long_direction;
-use crate::math::{Vec3, srgb};
+use crate::math::{Vec3, Vec3A, srgb};
 use rayon::prelude::*;
 use std::f32::consts::PI;
 
@@ -32,15 +33,19 @@ impl Irradiance {
         let gather = |i: usize| {
             let n = center(i, ROWS);
             let sum: Vec3 = parcels.iter().map(|p| p.light * n.dot(p.toward).max(0.0)).sum();
-            sum / PI
+            Vec3A::from(sum / PI)
         };
-        let texels: Vec<Vec3> = (0..2 * ROWS * ROWS).into_par_iter().map(gather).collect();
+        let texels: Vec<Vec3A> = (0..2 * ROWS * ROWS).into_par_iter().map(gather).collect();
         let brightest = texels.iter().map(|t| srgb::luminance(t.x, t.y, t.z)).fold(0.0, f32::max);
         Self { level: SphereLevel::new(ROWS, texels), brightest }
     }
     /// max L̄.
     pub fn brightest(&self) -> f32 {
         self.brightest
+    }
+    /// The map, in the picture's own space.
+    pub fn level(&self) -> &SphereLevel {
+        &self.level
     }
     /// L̄ around a unit direction of the picture's own space.
     pub fn at(&self, n: Vec3) -> Vec3 {
@@ -64,7 +69,7 @@ fn parcels(fine: &SphereLevel) -> Vec<LightParcel> {
         for y in row..row + per_side {
             let solid_angle = fine.solid_angle(y);
             for j in (column..column + per_side).map(|x| y * fine.columns() + x) {
-                let here = fine.texels()[j] * solid_angle;
+                let here = Vec3::from(fine.texels()[j]) * solid_angle;
                 toward += center(j, fine.rows()) * srgb::luminance(here.x, here.y, here.z);
                 light += here;
             }

@@ -1,9 +1,10 @@
 //! Reads an environment over a footprint: from the picture itself for small footprints, else from a pyramid of
 //! latitude-longitude maps without visible seam or poles. Floor 3. Directions are the picture's own space, light is
-//! linear.
+//! linear. Not here: the levels of the pyramid (`level`), many footprints side by side (`rows`).
 
-use super::projection::{Projection, lat_long_direction};
-use crate::math::{Size, Vec2, Vec3, srgb, vec2};
+use super::level::{SphereLevel, Spot};
+use super::projection::{Projection, lat_long_direction, lat_long_place};
+use crate::math::{Size, Vec2, Vec3, Vec3A, fast, srgb, vec2};
 use crate::raster::Picture;
 use rayon::prelude::*;
 use std::f32::consts::{PI, TAU};
@@ -18,18 +19,72 @@ pub struct EnvironmentMap {
     levels: Vec<SphereLevel>,
 }
 
-/// Means over about equally large parts of the sphere.
-pub(super) struct SphereLevel {
-    /// A power of two.
-    rows: usize,
-    texels: Vec<Vec3>,
-}
-
 /// The most taps along a stretched footprint; a longer one is also blurred across.
 const MOST_TAPS: f32 = 16.0;
 
 /// The fewest rows of the finest level: even a picture of one pixel is integrated over hemispheres.
 const FEWEST_ROWS: usize = 64;
+
+/// Which layer of an environment shows so wide a cone: 0 is the finest level of the pyramid, −1 the picture.
+#[derive(Clone, Copy)]
+pub(super) struct Layers {
+    /// The angle of one texel of the picture.
+    texel_rad: f32,
+    /// The same, below that of the finest level.
+    picture_rad: f32,
+    finest_rad: f32,
+    /// Layers for each doubling between these two.
+    per_octave: f32,
+    coarsest: f32,
+}
+
+impl Layers {
+    /// A width that is no number means no cone: the picture.
+    #[inline(always)]
+    pub fn layer(self, width_rad: f32) -> f32 {
+        let octaves = fast::log2(fast::max(width_rad / self.picture_rad, 1.0));
+        let above_the_picture = fast::min(octaves * self.per_octave, 1.0) - 1.0;
+        let level = fast::min(fast::log2(width_rad / self.finest_rad), self.coarsest);
+        if width_rad >= self.finest_rad { level } else { above_the_picture }
+    }
+}
+
+/// The taps along a footprint's longer axis.
+pub(super) struct TapLine {
+    pub along: Vec3,
+    pub layer: f32,
+    /// A whole number from 1 to [`MOST_TAPS`].
+    pub taps: f32,
+}
+
+impl TapLine {
+    /// For the footprint with J = [dx, dy].
+    #[inline(always)]
+    pub fn of(dx: Vec3, dy: Vec3, layers: Layers) -> Self {
+        let (xx, xy, yy) = (dx.dot(dx), dx.dot(dy), dy.dot(dy));
+        let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
+        let radius = (half * half + xy * xy).sqrt();
+        let (longer, shorter) = ((mean + radius).sqrt(), fast::max(mean - radius, 0.0).sqrt());
+        // The direction of the longer axis, from its doubled angle: the larger of sine and cosine first.
+        let larger = (0.5 + 0.5 * (half.abs() / fast::max(radius, f32::MIN_POSITIVE))).sqrt();
+        let smaller = 0.5 * xy / fast::max(radius * larger, f32::MIN_POSITIVE);
+        let (cos, sin) = if half >= 0.0 { (larger, smaller) } else { (smaller, larger) };
+        let width = fast::max(fast::max(shorter, layers.texel_rad), longer / MOST_TAPS);
+        let taps = fast::min(fast::max((longer / width).ceil(), 1.0), MOST_TAPS);
+        // Also false if it is no number.
+        let is_wide = longer > layers.texel_rad;
+        Self {
+            along: if is_wide { dx * cos + dy * sin } else { Vec3::ZERO },
+            layer: if is_wide { layers.layer(width) } else { -1.0 },
+            taps: if is_wide { taps } else { 1.0 },
+        }
+    }
+    /// The direction of a tap; it has about the length of `e`.
+    #[inline(always)]
+    pub fn direction(&self, e: Vec3, i: usize) -> Vec3 {
+        e + self.along * ((i as f32 + 0.5) / self.taps - 0.5)
+    }
+}
 
 impl EnvironmentMap {
     pub fn new(picture: Picture, projection: Projection) -> Self {
@@ -73,6 +128,9 @@ impl EnvironmentMap {
     /// Light from a unit direction: the picture, bilinear.
     pub fn at(&self, e: Vec3) -> Vec3 {
         let place = self.projection.place(e);
+        if self.projection == Projection::LatLong {
+            return self.at_place(place).into();
+        }
         let Size { width, height } = self.picture.size;
         let texel = |i, j| self.texel(i, j);
         bilinear(width as i32, height as i32, place, texel).unwrap_or_else(|| {
@@ -98,48 +156,69 @@ impl EnvironmentMap {
     }
     /// The mean light over a cone of about `width_rad` across.
     pub fn around(&self, e: Vec3, width_rad: f32) -> Vec3 {
-        let finest = PI / self.levels[0].rows as f32;
-        if width_rad >= finest {
-            let level = (width_rad / finest).log2();
-            return self.between_levels(e, level);
-        }
-        let picture = self.texel_rad().min(finest * 0.99);
-        let t = ((width_rad / picture).max(1.0).log2() / (finest / picture).log2()).min(1.0);
-        // NaN means no footprint: the picture.
-        if t > 0.0 { self.at(e).lerp(self.levels[0].at(e), t) } else { self.at(e) }
-    }
-    /// `level ≥ 0`: between two levels where it is not whole.
-    fn between_levels(&self, e: Vec3, level: f32) -> Vec3 {
-        let level = level.min((self.levels.len() - 1) as f32);
-        let (fine, t) = (level as usize, level.fract());
-        let near = self.levels[fine].at(e);
-        if t == 0.0 { near } else { near.lerp(self.levels[fine + 1].at(e), t) }
+        self.at_layer(e, lat_long_place(e.x, e.y, e.z), self.layers().layer(width_rad)).into()
     }
     /// The mean light over the footprint of a pixel in which the direction changes by `dx` and by `dy`.
     ///
     /// The footprint is the ellipse with J = [dx, dy]: taps along its major axis, each as wide as the minor one.
     pub fn over(&self, e: Vec3, dx: Vec3, dy: Vec3) -> Vec3 {
-        let (xx, xy, yy) = (dx.dot(dx), dx.dot(dy), dy.dot(dy));
-        let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
-        let radius = half.hypot(xy);
-        let (longer, shorter) = ((mean + radius).sqrt(), (mean - radius).max(0.0).sqrt());
-        let texel = self.texel_rad();
-        if longer.is_nan() || longer <= texel {
-            return self.at(e);
-        }
-        let (sin, cos) = (0.5 * xy.atan2(half)).sin_cos();
-        let along = dx * cos + dy * sin;
-        let width = shorter.max(texel).max(longer / MOST_TAPS);
-        let taps = (longer / width).ceil().clamp(1.0, MOST_TAPS);
-        let tap = |i: i32| {
-            let offset = (i as f32 + 0.5) / taps - 0.5;
-            self.around((e + along * offset).normalize_or(e), width)
+        let layers = self.layers();
+        let line = TapLine::of(dx, dy, layers);
+        let tap = |i: usize| {
+            let e = line.direction(e, i);
+            self.at_layer(e, lat_long_place(e.x, e.y, e.z), line.layer)
         };
-        (0..taps as i32).map(tap).sum::<Vec3>() / taps
+        ((0..line.taps as usize).map(tap).sum::<Vec3A>() / line.taps).into()
+    }
+    pub(super) fn layers(&self) -> Layers {
+        let texel_rad = self.texel_rad();
+        let finest_rad = PI / self.levels[0].rows() as f32;
+        let picture_rad = texel_rad.min(finest_rad * 0.99);
+        let per_octave = 1.0 / (finest_rad / picture_rad).log2();
+        Layers { texel_rad, picture_rad, finest_rad, per_octave, coarsest: (self.levels.len() - 1) as f32 }
+    }
+    /// Light from a direction of any length, and its place in a latitude-longitude map; between two layers where
+    /// `layer` is not whole.
+    #[inline(always)]
+    pub(super) fn at_layer(&self, e: Vec3, place: Vec2, layer: f32) -> Vec3A {
+        let fine = layer.floor();
+        let t = layer - fine;
+        let near = match self.projection {
+            _ if fine >= 0.0 => self.level_at(fine as usize).at_place(place),
+            Projection::LatLong => self.at_place(place),
+            _ => self.disc_at(e),
+        };
+        let coarser = || self.level_at((fine + 1.0) as usize).at_place(place);
+        if t > 0.0 { near * (1.0 - t) + coarser() * t } else { near }
+    }
+    /// A picture that is a disc, from a direction of any length.
+    pub(super) fn disc_at(&self, e: Vec3) -> Vec3A {
+        self.at(e.normalize_or_zero()).into()
+    }
+    /// A latitude-longitude picture, bilinear.
+    #[inline(always)]
+    fn at_place(&self, place: Vec2) -> Vec3A {
+        let Size { width, height } = self.picture.size;
+        Spot::around(place, width as i32, height as i32).mean(|i| self.picture_texel(i))
+    }
+    /// A texel of the picture by its number.
+    #[inline(always)]
+    pub(super) fn picture_texel(&self, i: usize) -> Vec3A {
+        let [r, g, b, _] = self.picture.linear_texel(i);
+        Vec3A::new(r, g, b)
+    }
+    /// A level of the pyramid, 0 the finest.
+    #[inline(always)]
+    pub(super) fn level_at(&self, layer: usize) -> &SphereLevel {
+        &self.levels[layer.min(self.levels.len() - 1)]
+    }
+    /// Of a latitude-longitude picture; `None` for a disc, which is read pixel by pixel.
+    pub(super) fn lat_long_size(&self) -> Option<Size> {
+        (self.projection == Projection::LatLong).then_some(self.picture.size)
     }
     /// The level with `rows` rows, or the finest if the picture has fewer.
     pub(super) fn level(&self, rows: usize) -> &SphereLevel {
-        self.levels.iter().find(|level| level.rows <= rows).unwrap_or(&self.levels[0])
+        self.levels.iter().find(|level| level.rows() <= rows).unwrap_or(&self.levels[0])
     }
     /// The picture as a latitude-longitude map, each texel the mean of several look-ups.
     fn resampled(&self, rows: usize) -> SphereLevel {
@@ -155,89 +234,10 @@ impl EnvironmentMap {
                     ((column + place(k % per_side)) / columns as f32, (row + place(k / per_side)) / rows as f32);
                 sum += self.at(lat_long_direction(u, v));
             }
-            sum / (per_side * per_side) as f32
+            Vec3A::from(sum / (per_side * per_side) as f32)
         };
         SphereLevel::new(rows, (0..rows * columns).into_par_iter().map(texel).collect())
     }
-}
-
-impl SphereLevel {
-    /// `rows` a power of two, twice as many columns.
-    pub fn new(rows: usize, texels: Vec<Vec3>) -> Self {
-        Self { rows, texels }
-    }
-    pub fn rows(&self) -> usize {
-        self.rows
-    }
-    pub fn columns(&self) -> usize {
-        2 * self.rows
-    }
-    /// Row by row.
-    pub fn texels(&self) -> &[Vec3] {
-        &self.texels
-    }
-    /// Light from a direction, bilinear.
-    pub fn at(&self, e: Vec3) -> Vec3 {
-        let (w, h) = (self.columns() as i32, self.rows as i32);
-        let texel = |i, j| {
-            let (i, j) = across_the_poles(i, j, w, h);
-            Some(self.texels[(j * w + i) as usize])
-        };
-        bilinear(w, h, Projection::LatLong.place(e), texel).unwrap_or_default()
-    }
-    /// Solid angle of a texel in a row, steradians.
-    pub fn solid_angle(&self, row: usize) -> f32 {
-        let edge = |row: usize| (row as f32 / self.rows as f32 * PI).cos();
-        TAU / self.columns() as f32 * (edge(row) - edge(row + 1))
-    }
-    /// Half as many rows and columns: means weighted by solid angle.
-    fn halved(&self) -> Option<SphereLevel> {
-        let rows = self.rows / 2;
-        let columns = 2 * rows;
-        let texel = |i: usize| {
-            let (x, y) = (2 * (i % columns), 2 * (i / columns));
-            let pair = |y: usize| self.texels[y * self.columns() + x] + self.texels[y * self.columns() + x + 1];
-            let (above, below) = (self.solid_angle(y), self.solid_angle(y + 1));
-            (pair(y) * above + pair(y + 1) * below) / (2.0 * (above + below))
-        };
-        (rows > 0).then(|| SphereLevel::new(rows, (0..rows * columns).map(texel).collect()))
-    }
-    /// Averages each row over as many texels as fit one texel's height: near the poles texels are slivers, and a lookup
-    /// must not read a single one.
-    fn rounded_at_the_poles(self) -> SphereLevel {
-        let columns = self.columns();
-        let of_row = |row: usize| {
-            let texels = &self.texels[row * columns..][..columns];
-            // The outermost row is a cap around the pole, one texel across: it gets one value, so that the pole is
-            // unique.
-            let is_cap = row == 0 || row + 1 == self.rows;
-            let sin = ((row as f32 + 0.5) / self.rows as f32 * PI).sin();
-            around_row(texels, if is_cap { columns as f32 } else { 1.0 / sin })
-        };
-        SphereLevel::new(self.rows, (0..self.rows).into_par_iter().flat_map_iter(of_row).collect())
-    }
-}
-
-/// The mean over `width` texels around each texel of a cyclic row.
-fn around_row(texels: &[Vec3], width: f32) -> Vec<Vec3> {
-    let n = texels.len();
-    if width <= 1.0 {
-        return texels.to_vec();
-    }
-    // Whole texels on both sides, and the rest of the width as a fraction of one more.
-    let width = width.min(n as f32);
-    let whole = ((width - 1.0) / 2.0) as usize;
-    let part = (width - 1.0) / 2.0 - whole as f32;
-    let mean = |i: usize| {
-        let texel = |offset: usize, back: bool| texels[if back { i + n - offset } else { i + offset } % n];
-        let mut sum = texels[i];
-        for k in 1..=whole {
-            sum += texel(k, true) + texel(k, false);
-        }
-        let next = whole + 1;
-        (sum + (texel(next, true) + texel(next, false)) * part) / (1.0 + 2.0 * (whole as f32 + part))
-    };
-    (0..n).map(mean).collect()
 }
 
 /// The texel of a latitude-longitude map at a column and row that may lie beyond it: columns wrap around, and beyond a

@@ -1,16 +1,20 @@
 //! An environment: the light that arrives from every direction, as a picture fixed to the camera. Floor 3. Here: its
 //! parameters, and light by camera direction. Not here: how directions lie in a picture (`projection`), reading it over
-//! a footprint (`map`), gathering it over a hemisphere (`irradiance`).
+//! a footprint (`map`, `rows`), gathering it over a hemisphere (`irradiance`).
 
 pub mod irradiance;
+pub mod level;
 pub mod map;
 pub mod projection;
+mod rows;
 
 use crate::math::{Vec3, vec3};
-use crate::raster::{Picture, picture::Texels};
+use crate::raster::{Picture, TILE, picture::Texels};
+use crate::shading::surface_row::{Light3, RowValues};
 use irradiance::Irradiance;
 use map::EnvironmentMap;
 pub use projection::Projection;
+pub use rows::Directions;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// A picture of the surroundings.
@@ -117,6 +121,30 @@ impl EnvironmentLight {
         let turn = self.turn;
         self.prepared.map.over(turn.apply(d), turn.apply(dx), turn.apply(dy)) * self.gain
     }
+    /// [`EnvironmentLight::over`] at the covered pixels of a row; elsewhere it is black.
+    pub fn over_row(&self, d: &Directions, dx: &Directions, dy: &Directions, covered: &[u8], light: &mut Light3) {
+        let [d, dx, dy] = [d, dx, dy].map(|directions| self.turned(directions));
+        self.prepared.map.over_row(&d, &dx, &dy, covered, light);
+        self.expose(light);
+    }
+    /// [`EnvironmentLight::around`] at the pixels of a row that `wanted` is not 0 at; elsewhere it is black.
+    pub fn around_row(&self, d: &Directions, width_rad: &RowValues, wanted: &RowValues, light: &mut Light3) {
+        self.prepared.map.around_row(&self.turned(d), width_rad, wanted, light);
+        self.expose(light);
+    }
+    /// [`EnvironmentLight::matt`] at every pixel of a row.
+    pub fn matt_row(&self, n: &Directions, light: &mut Light3) {
+        rows::read_level(self.irradiance().level(), &self.turned(n), light);
+        self.expose(light);
+    }
+    fn turned(&self, d: &Directions) -> Directions {
+        let mut turned = [[0.0; TILE]; 3];
+        turn_row(self.turn, d, &mut turned);
+        turned
+    }
+    fn expose(&self, light: &mut Light3) {
+        light.iter_mut().flatten().for_each(|light| *light *= self.gain);
+    }
     /// L̄(n): the cosine-weighted mean of the light over the hemisphere around a unit normal (RS sec. 5.3.1).
     pub fn matt(&self, n: Vec3) -> Vec3 {
         self.irradiance().at(self.turn.apply(n)) * self.gain
@@ -159,6 +187,15 @@ impl YRotation {
     #[inline(always)]
     fn apply(self, d: Vec3) -> Vec3 {
         vec3(self.cos * d.x + self.sin * d.z, d.y, self.cos * d.z - self.sin * d.x)
+    }
+}
+
+crate::widest! {
+    fn turn_row(turn: YRotation, d: &Directions, turned: &mut Directions) {
+        for x in 0..TILE {
+            let e = turn.apply(vec3(d[0][x], d[1][x], d[2][x]));
+            (turned[0][x], turned[1][x], turned[2][x]) = (e.x, e.y, e.z);
+        }
     }
 }
 

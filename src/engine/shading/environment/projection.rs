@@ -1,7 +1,7 @@
 //! How directions lie in a picture of the surroundings: latitude-longitude, angular, mirror ball.
 //! Floor 3. Pure functions.
 
-use crate::math::{Vec2, Vec3, vec2, vec3};
+use crate::math::{Vec2, Vec3, fast, vec2, vec3};
 use std::f32::consts::{PI, TAU};
 
 crate::named! {
@@ -20,12 +20,10 @@ crate::named! {
 
 impl Projection {
     /// Where in the picture a unit direction of its own space (y up) lies: `[0, 1]²`, from the left and the top.
+    #[inline(always)]
     pub fn place(self, e: Vec3) -> Vec2 {
         match self {
-            Projection::LatLong => {
-                let u = e.x.atan2(-e.z) / TAU;
-                vec2(u - u.floor(), e.y.clamp(-1.0, 1.0).acos() / PI)
-            }
+            Projection::LatLong => lat_long_place(e.x, e.y, e.z),
             Projection::Angular => {
                 // The whole rim is one direction, directly away from the viewer: any point of it is right.
                 let around = vec2(e.x, -e.y).normalize_or(Vec2::X);
@@ -43,6 +41,16 @@ impl Projection {
     pub fn is_disc(self) -> bool {
         self != Projection::LatLong
     }
+}
+
+/// Where a direction lies in a latitude-longitude map; one without direction, or NaN, at some place within.
+#[inline(always)]
+pub fn lat_long_place(x: f32, y: f32, z: f32) -> Vec2 {
+    let u = fast::atan2(x, -z) * (1.0 / TAU);
+    // acos y, with the digits that it loses near the poles.
+    let v = fast::atan2((x * x + z * z).sqrt(), y) * (1.0 / PI);
+    let within = |t: f32| fast::min(fast::max(t, 0.0), 1.0);
+    vec2(within(if u < 0.0 { u + 1.0 } else { u }), within(v))
 }
 
 /// The unit direction at (u, v) of a latitude-longitude map: the reverse of [`Projection::place`].

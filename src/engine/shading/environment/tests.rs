@@ -139,6 +139,39 @@ fn the_small_map_is_the_sum_over_every_texel() {
     assert!(worst < 2e-3, "{worst}");
 }
 #[test]
+fn rows_read_the_same_bits_as_single_pixels() {
+    for (projection, _) in Projection::ALL {
+        let texels = (0..200 * 100).map(|i| [hash::unit(5, i, 0), hash::unit(6, i, 0), 0.1, 1.0]).collect();
+        let picture = Picture::linear(Size::new(200, 100), texels).unwrap();
+        let environment =
+            Environment { projection, rotation: 40.0, exposure: 0.7, ..Environment::new(String::new(), picture) };
+        let seen = environment.environment_light();
+        let row = |of: &dyn Fn(u32) -> Vec3| -> Directions {
+            std::array::from_fn(|c| std::array::from_fn(|x| of(x as u32).to_array()[c]))
+        };
+        // Footprints from a thousandth of a texel to a hemisphere, round and stretched.
+        let size = |x: u32, way: u32| 4f32.powf(hash::unit(way, x, 7) * 9.0 - 8.0);
+        let e = |x| random_direction(x);
+        let dx = |x: u32| random_direction(x + 100) * size(x, 1);
+        let dy = |x: u32| if x.is_multiple_of(9) { Vec3::ZERO } else { random_direction(x + 200) * size(x, 2) };
+        let covered: Vec<u8> = (0..60).map(|x| if x == 20 { 0 } else { 255 }).collect();
+        let [mut over, mut around, mut matt] = [[[1.0; TILE]; 3]; 3];
+        seen.over_row(&row(&e), &row(&dx), &row(&dy), &covered, &mut over);
+        let widths = std::array::from_fn(|x| size(x as u32, 3));
+        seen.around_row(&row(&e), &widths, &std::array::from_fn(|x| (x % 5) as f32), &mut around);
+        seen.matt_row(&row(&e), &mut matt);
+        for x in 0..TILE {
+            let at = |light: &Light3| vec3(light[0][x], light[1][x], light[2][x]);
+            let (d, is_covered) = (e(x as u32), covered.get(x).is_some_and(|c| *c > 0));
+            let expected = if is_covered { seen.over(d, dx(x as u32), dy(x as u32)) } else { Vec3::ZERO };
+            assert_eq!(at(&over), expected, "{projection:?} {x}");
+            let expected = if x % 5 > 0 { seen.around(d, widths[x]) } else { Vec3::ZERO };
+            assert_eq!(at(&around), expected, "{projection:?} {x}");
+            assert_eq!(at(&matt), seen.matt(d), "{x}");
+        }
+    }
+}
+#[test]
 fn half_a_sky_lights_by_the_cosine() {
     // A sky of light 1 over black ground: (1 + cos θ) / 2, θ from the zenith.
     let seen = lat_long(256, 128, |e| Vec3::splat(if e.y > 0.0 { 1.0 } else { 0.0 })).environment_light();

@@ -5,10 +5,15 @@
 //! × weight of the `specular` term, R_d that of `diffuse`.
 
 use super::{Shading, lobes};
-use crate::math::fast;
+use crate::math::{Vec3, fast};
 use crate::raster::TILE;
+use crate::shading::environment::Directions;
 use crate::shading::light::RowLight;
-use crate::shading::surface_row::{Light3, RowRelief, RowValues, SurfaceRow};
+use crate::shading::scaling::Scaling;
+use crate::shading::surface_row::{Light3, LightDirection, RowRelief, RowValues, SurfaceRow};
+
+/// Pixels whose sums are kept in registers.
+const CHUNK: usize = 16;
 
 /// Adds each light's matt and glossy term, with δ_d = n·ℓ and δ_s = n·h. `lights`: those of the material, turned to
 /// the row.
@@ -65,6 +70,41 @@ fn add_glossy(shading: &Shading, surface_row: &SurfaceRow, lit: &RowLight, relie
     lobes::add(light, lobes::tint(rs.map(|c| 1.0 - c), lit.radiance), &row.rho);
 }
 
+/// Light from one direction.
+#[derive(Clone, Copy)]
+pub struct DirectedLight {
+    /// ℓ, unit, camera space.
+    pub direction: Vec3,
+    /// Linear.
+    pub radiance: [f32; 3],
+}
+
+/// The matt term under many lights; [`add_matt`] of each, read side by side.
+pub fn add_matt_of(
+    shading: &Shading,
+    surface_row: &SurfaceRow,
+    lights: &[DirectedLight],
+    relief: &mut RowRelief,
+    light: &mut Light3,
+) {
+    let (diffuse, normal) = (&shading.diffuse, &surface_row.normal);
+    let mut sums = [[0.0; TILE]; 3];
+    if !diffuse.is_scaled() {
+        add_lit(normal, lights, None, &mut sums);
+    } else if surface_row.features.is_directional() {
+        for lit in lights {
+            relief.turn(surface_row, LightDirection::One(lit.direction));
+            add_lit(normal, &[*lit], Some((diffuse.scaling, relief.exponentials(diffuse.scaling))), &mut sums);
+        }
+    } else {
+        relief.turn(surface_row, LightDirection::VIEWER);
+        add_lit(normal, lights, Some((diffuse.scaling, relief.exponentials(diffuse.scaling))), &mut sums);
+    }
+    let (rd, rs) = (diffuse.linear(), mirrored_color(shading));
+    let kept: [f32; 3] = std::array::from_fn(|c| rd[c] * (1.0 - rs[c]));
+    add_seen(&surface_row.seen_normal()[2], kept, &sums, light);
+}
+
 /// R_s, at most 1; black where the glossy term is left out.
 fn mirrored_color(shading: &Shading) -> [f32; 3] {
     shading.specular.linear().map(|c| c.min(1.0))
@@ -73,9 +113,20 @@ fn mirrored_color(shading: &Shading) -> [f32; 3] {
 /// ρ_d / (R_d (1 − R_s)) = 28/23 (1 − (1 − n·ℓ/2)⁵) (1 − (1 − n·e/2)⁵) (n·ℓ)₊ (Ashikhmin and Shirley 2000, eq. 5).
 #[inline(always)]
 pub fn matt(n_l: f32, n_e: f32) -> f32 {
-    let lifted = |cosine: f32| 1.0 - power_5(1.0 - 0.5 * cosine);
+    lit(n_l) * lifted(fast::max(n_e, 0.0))
+}
+
+/// The share of [`matt`] that depends on the light.
+#[inline(always)]
+fn lit(n_l: f32) -> f32 {
     let n_l = fast::max(n_l, 0.0);
-    28.0 / 23.0 * lifted(n_l) * lifted(fast::max(n_e, 0.0)) * n_l
+    28.0 / 23.0 * lifted(n_l) * n_l
+}
+
+/// 1 − (1 − cos/2)⁵.
+#[inline(always)]
+fn lifted(cosine: f32) -> f32 {
+    1.0 - power_5(1.0 - 0.5 * cosine)
 }
 
 /// ρ_s / F = √((ν_u + 1)(ν_v + 1)) / 8 · (n·h)^((ν_u (h·u)² + ν_v (h·v)²) / (1 − (n·h)²)) (n·ℓ)₊ / ((h·e) max(n·ℓ,
@@ -136,6 +187,21 @@ crate::widest! {
             delta[x] = fast::max(n_l, 0.0);
         }
     }
+    /// Adds up the light of many directions, each by its share of [`matt`].
+    fn add_lit(normal: &Directions, lights: &[DirectedLight], scale: Option<(Scaling, &RowValues)>, sums: &mut Light3) {
+        match scale {
+            None => add_lit_by(normal, lights, |_, _| 1.0, sums),
+            Some((scaling, e)) => add_lit_by(normal, lights, |x, n_l| scaling.sigma_of(e[x], n_l), sums),
+        }
+    }
+    /// Adds what a row shows of such sums, by its own share of [`matt`].
+    fn add_seen(n_e: &RowValues, tint: [f32; 3], sums: &Light3, light: &mut Light3) {
+        for c in 0..3 {
+            for x in 0..TILE {
+                light[c][x] += tint[c] * lifted(fast::max(n_e[x], 0.0)) * sums[c][x];
+            }
+        }
+    }
     fn glossy_row(normal: &[RowValues; 3], direction: &[RowValues; 3], nu: f32, nv: f32, row: &mut GlossyRow) {
         for x in 0..TILE {
             let n = [normal[0][x], normal[1][x], normal[2][x]];
@@ -148,6 +214,30 @@ crate::widest! {
             row.rho[x] = glossy(h_uvn, 0.5 * length, n_l, n[2], nu, nv);
             row.white[x] = whiteness(0.5 * length);
             row.delta[x] = h_uvn[2];
+        }
+    }
+}
+/// `sigma`: of a pixel and its n·ℓ.
+#[inline(always)]
+fn add_lit_by(normal: &Directions, lights: &[DirectedLight], sigma: impl Fn(usize, f32) -> f32, sums: &mut Light3) {
+    for first in (0..TILE).step_by(CHUNK) {
+        // The sums stay in registers.
+        let [mut r, mut g, mut b] = [[0.0; CHUNK]; 3];
+        for light in lights {
+            let (l, radiance) = (light.direction, light.radiance);
+            for i in 0..CHUNK {
+                let x = first + i;
+                let n_l = normal[0][x] * l.x + normal[1][x] * l.y + normal[2][x] * l.z;
+                let rho = lit(n_l) * sigma(x, n_l);
+                r[i] += radiance[0] * rho;
+                g[i] += radiance[1] * rho;
+                b[i] += radiance[2] * rho;
+            }
+        }
+        for i in 0..CHUNK {
+            sums[0][first + i] += r[i];
+            sums[1][first + i] += g[i];
+            sums[2][first + i] += b[i];
         }
     }
 }

@@ -4,12 +4,12 @@
 //! Each sample represents a part of the lobe and reads the mean of the environment over that part, so that a small sun
 //! makes no fireflies and single samples are invisible.
 
-use super::{Shading, ashikhmin};
-use crate::math::{Vec3, vec3};
-use crate::shading::environment::EnvironmentLight;
-use crate::shading::light::RowLight;
-use crate::shading::surface_row::{Light3, LightDirection, RowRelief, SurfaceRow};
-use crate::surface::view::{from_view, in_view};
+use super::ashikhmin::{self, DirectedLight};
+use super::{Shading, lobes};
+use crate::math::{Vec3, fast, vec3};
+use crate::raster::TILE;
+use crate::shading::environment::{Directions, EnvironmentLight};
+use crate::shading::surface_row::{Light3, LightDirection, RowRelief, RowValues, SurfaceRow};
 use std::f32::consts::PI;
 
 /// Directions that the matt term is lit from.
@@ -21,7 +21,7 @@ const HALVES: usize = 32;
 pub struct EnvironmentSamples {
     environment_light: EnvironmentLight,
     /// For the matt term: the environment as lights.
-    lights: Vec<RowLight>,
+    lights: Vec<DirectedLight>,
     halves: Vec<HalfVector>,
 }
 
@@ -38,8 +38,9 @@ impl EnvironmentSamples {
     pub fn new(shading: &Shading) -> Option<Self> {
         let environment_light = shading.environment.as_ref()?.environment_light();
         // Light from a solid angle Ω counts Ω / π: matt white is as bright as an even environment around it.
-        let light = |p: &crate::shading::environment::Parcel| {
-            RowLight::directional(p.direction, (p.radiance * (p.solid_angle / PI)).to_array())
+        let light = |p: &crate::shading::environment::Parcel| DirectedLight {
+            direction: p.direction,
+            radiance: (p.radiance * (p.solid_angle / PI)).to_array(),
         };
         let lights = environment_light.parcels(PARCELS).iter().map(light).collect();
         let halves = (0..HALVES).map(|i| half(i, shading.nu, shading.nv)).collect();
@@ -48,50 +49,100 @@ impl EnvironmentSamples {
     /// Adds both terms along a row.
     pub fn shade(&self, shading: &Shading, surface_row: &SurfaceRow, relief: &mut RowRelief, light: &mut Light3) {
         if shading.diffuse.weight > 0.0 {
-            self.lights.iter().for_each(|lit| ashikhmin::add_matt(shading, surface_row, lit, relief, light));
+            ashikhmin::add_matt_of(shading, surface_row, &self.lights, relief, light);
         }
         if shading.specular.weight > 0.0 {
-            relief.turn(surface_row, LightDirection::VIEWER);
-            let kappa = relief.kappa();
-            for x in (0..surface_row.width).filter(|&x| surface_row.coverage()[x] > 0) {
-                let glossy = self.glossy(shading, surface_row, x, kappa[x]);
-                (0..3).for_each(|c| light[c][x] += glossy[c]);
-            }
+            self.add_glossy(shading, surface_row, relief, light);
         }
     }
-    /// The glossy term at a pixel; `kappa`: isotropic κ.
+    /// Adds the glossy term along a row.
     ///
     /// With half vectors drawn in proportion to the lobe, light arrives weighted by F (n·ℓ)₊ / max(n·ℓ, n·e), never
     /// above 1.
-    fn glossy(&self, shading: &Shading, surface_row: &SurfaceRow, x: usize, kappa: f32) -> Vec3 {
-        let (term, view) = (&shading.specular, surface_row.view_at(x));
-        // In the frame of the pixel's view, where that is (0, 0, 1).
-        let n = in_view(view, surface_row.normal_at(x));
-        let rs = Vec3::from(term.linear()).min(Vec3::ONE);
-        let u = (Vec3::X - n.x * n).normalize_or(Vec3::Y);
-        let v = n.cross(u);
-        let mut sum = Vec3::ZERO;
+    fn add_glossy(&self, shading: &Shading, surface_row: &SurfaceRow, relief: &mut RowRelief, light: &mut Light3) {
+        let scaling = shading.specular.scaling;
+        let rs = shading.specular.linear().map(|c| c.min(1.0));
+        // In the frame of each pixel's view, where that is (0, 0, 1).
+        let normal = surface_row.seen_normal();
+        let [mut u, mut v, mut toward, mut incoming] = [[[0.0; TILE]; 3]; 4];
+        let [mut h_e, mut weight, mut width_rad] = [[0.0; TILE]; 3];
+        find_frames(normal, &mut u, &mut v);
+        relief.turn(surface_row, LightDirection::VIEWER);
         for half in &self.halves {
-            let h = half.uvn.x * u + half.uvn.y * v + half.uvn.z * n;
-            let l = 2.0 * h.z * h - Vec3::Z;
-            let n_l = n.dot(l);
-            if n_l <= 0.0 || h.z <= 0.0 {
+            mirror_at(normal, [&u, &v], half, &mut toward, &mut h_e);
+            weigh(normal, &toward, &h_e, surface_row.coverage(), &mut weight);
+            if weight.iter().all(|w| *w == 0.0) {
                 continue;
             }
-            let l = from_view(view, l);
-            let fresnel = rs + (Vec3::ONE - rs) * ashikhmin::whiteness(h.z);
-            // For ℓ: dω_h / dω_ℓ = 1 / (4 h·e). Slightly more than its share, so that neighbours overlap.
-            let solid_angle = 4.0 * h.z / (half.density * HALVES as f32);
-            let radiance = self.environment_light.around(l, 1.5 * solid_angle.sqrt());
-            let kappa = if surface_row.features.is_directional() {
-                surface_row.features.at(surface_row.x0 + x, surface_row.y, l)
-            } else {
-                kappa
-            };
-            let sigma = term.scaling.sigma(kappa, half.uvn.z);
-            sum += fresnel * radiance * (sigma * n_l / n_l.max(n.z).max(1e-3));
+            find_widths(&h_e, half.density, &mut width_rad);
+            let toward = surface_row.from_seen(&toward);
+            self.environment_light.around_row(&toward, &width_rad, &weight, &mut incoming);
+            if shading.specular.is_scaled() {
+                if surface_row.features.is_directional() {
+                    relief.turn(surface_row, LightDirection::Each(&toward[0], &toward[1]));
+                }
+                lobes::scale(&mut weight, scaling, relief.exponentials(scaling), &[half.uvn.z; TILE]);
+            }
+            add_weighed(&incoming, &weight, &h_e, rs, light);
         }
-        sum / HALVES as f32
+    }
+}
+
+crate::widest! {
+    /// u and v of each pixel: u runs along the picture's x, v along its y.
+    fn find_frames(normal: &Directions, u: &mut Directions, v: &mut Directions) {
+        for x in 0..TILE {
+            let n = [normal[0][x], normal[1][x], normal[2][x]];
+            // (x − n_x n) / |…|; where the normal is ±x, any u is valid.
+            let squared = n[1] * n[1] + n[2] * n[2];
+            let length = squared.sqrt();
+            let is_side = squared < 1e-12;
+            let per_length = 1.0 / fast::max(length, 1e-6);
+            let of = |k: usize, along: f32| (along - n[0] * n[k]) * per_length;
+            let a = if is_side { [0.0, 1.0, 0.0] } else { [of(0, 1.0), of(1, 0.0), of(2, 0.0)] };
+            (u[0][x], u[1][x], u[2][x]) = (a[0], a[1], a[2]);
+            v[0][x] = n[1] * a[2] - n[2] * a[1];
+            v[1][x] = n[2] * a[0] - n[0] * a[2];
+            v[2][x] = n[0] * a[1] - n[1] * a[0];
+        }
+    }
+    /// The viewer mirrored at a half vector, and h·e.
+    fn mirror_at(n: &Directions, uv: [&Directions; 2], half: &HalfVector, toward: &mut Directions, h_e: &mut RowValues) {
+        let [u, v] = uv;
+        for x in 0..TILE {
+            let h = |c: usize| half.uvn.x * u[c][x] + half.uvn.y * v[c][x] + half.uvn.z * n[c][x];
+            let twice = 2.0 * h(2);
+            (toward[0][x], toward[1][x], toward[2][x]) = (twice * h(0), twice * h(1), twice * h(2) - 1.0);
+            h_e[x] = h(2);
+        }
+    }
+    /// (n·ℓ)₊ / max(n·ℓ, n·e) of the covered pixels.
+    fn weigh(n: &Directions, toward: &Directions, h_e: &RowValues, covered: &[u8], weight: &mut RowValues) {
+        let mut is_covered = [0; TILE];
+        is_covered[..covered.len()].copy_from_slice(covered);
+        for x in 0..TILE {
+            let n_l = n[0][x] * toward[0][x] + n[1][x] * toward[1][x] + n[2][x] * toward[2][x];
+            let share = n_l / fast::max(fast::max(n_l, n[2][x]), 1e-3);
+            let arrives = (n_l > 0.0) & (h_e[x] > 0.0) & (is_covered[x] > 0);
+            weight[x] = if arrives { share } else { 0.0 };
+        }
+    }
+    /// How wide a part of the lobe each sample represents, radians.
+    fn find_widths(h_e: &RowValues, density: f32, width_rad: &mut RowValues) {
+        for x in 0..TILE {
+            // For ℓ: dω_h / dω_ℓ = 1 / (4 h·e). Slightly more than its share, so that neighbours overlap.
+            let solid_angle = 4.0 * fast::max(h_e[x], 0.0) / (density * HALVES as f32);
+            width_rad[x] = 1.5 * solid_angle.sqrt();
+        }
+    }
+    /// Adds a sample: F times its light and weight.
+    fn add_weighed(incoming: &Light3, weight: &RowValues, h_e: &RowValues, rs: [f32; 3], light: &mut Light3) {
+        for c in 0..3 {
+            for x in 0..TILE {
+                let fresnel = rs[c] + (1.0 - rs[c]) * ashikhmin::whiteness(h_e[x]);
+                light[c][x] += fresnel * incoming[c][x] * weight[x] * (1.0 / HALVES as f32);
+            }
+        }
     }
 }
 

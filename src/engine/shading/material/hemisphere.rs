@@ -2,7 +2,7 @@
 //! Floor 3. Not here: occlusion itself (`surface`), the mean light of the hemisphere (`environment::irradiance`).
 
 use super::{Shading, lobes};
-use crate::math::{Vec3, srgb};
+use crate::math::srgb;
 use crate::raster::TILE;
 use crate::shading::surface_row::{Light3, LightDirection, RowValues, SurfaceRow};
 
@@ -12,14 +12,14 @@ pub fn diffuse(shading: &Shading, surface_row: &SurfaceRow, light: &mut Light3) 
     let (Some(environment), term) = (&shading.environment, &shading.diffuse) else { return };
     let environment_light = environment.environment_light();
     let per_brightest = 1.0 / shading.reference.resolve(environment_light.brightest_matt());
-    let tint = Vec3::from(term.linear());
+    let tint = term.linear();
     let open = scaled_occlusion(shading, surface_row);
     let mut incoming: Light3 = [[0.0; TILE]; 3];
     let mut delta = [0.0; TILE];
-    for x in (0..surface_row.width).filter(|&x| surface_row.coverage()[x] > 0) {
-        let mean = environment_light.matt(surface_row.normal_at(x));
-        delta[x] = srgb::luminance(mean.x, mean.y, mean.z) * per_brightest;
-        (incoming[0][x], incoming[1][x], incoming[2][x]) = (mean * tint * open[x]).into();
+    environment_light.matt_row(&surface_row.normal, &mut incoming);
+    for x in 0..TILE {
+        delta[x] = srgb::luminance(incoming[0][x], incoming[1][x], incoming[2][x]) * per_brightest;
+        (0..3).for_each(|c| incoming[c][x] *= tint[c] * open[x]);
     }
     if !term.is_scaled() {
         return lobes::add_incoming(light, &incoming, None);
@@ -54,7 +54,7 @@ fn scaled_occlusion(shading: &Shading, surface_row: &SurfaceRow) -> RowValues {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{Size, srgb::Color, vec3};
+    use crate::math::{Size, Vec3, srgb::Color, vec3};
     use crate::raster::Picture;
     use crate::shading::material::tests::{assert_shows, term};
     use crate::shading::{Environment, Features, Model, Term};

@@ -2,10 +2,11 @@
 //! Floor 3. One interface and no second bounce: occlusion of the environment by the surface is ignored.
 
 use super::{Model, Shading, lobes};
-use crate::math::{Vec3, srgb};
+use crate::math::{Vec3, srgb, vec3};
 use crate::raster::TILE;
-use crate::shading::surface_row::{Light3, LightDirection, SurfaceRow};
-use crate::surface::{Surface, links};
+use crate::shading::environment::Directions;
+use crate::shading::surface_row::{Light3, LightDirection, RowValues, SurfaceRow};
+use crate::surface::{links, view::Eye};
 
 /// The mirrored view r = 2(n·v)n − v, v toward the eye (MATH 5).
 #[inline(always)]
@@ -21,60 +22,135 @@ pub fn refracted(n: Vec3, v: Vec3, index: f32) -> Vec3 {
     let eta = 1.0 / index;
     let cos = n.dot(v).max(0.0);
     let under_root = 1.0 - eta * eta * (1.0 - cos * cos);
-    if under_root < 0.0 {
-        return mirrored(n, v);
-    }
-    (eta * cos - under_root.sqrt()) * n - eta * v
+    let through = (eta * cos - under_root.max(0.0).sqrt()) * n - eta * v;
+    if under_root < 0.0 { mirrored(n, v) } else { through }
 }
 
 /// Adds L_env(r), scaled with δ = L_env(r) / max L_env, as the specular term.
 pub fn shade(shading: &Shading, surface_row: &SurfaceRow, light: &mut Light3) {
     let (Some(environment), term) = (&shading.environment, &shading.specular) else { return };
     let environment_light = environment.environment_light();
-    let ray = |n: Vec3, v: Vec3| match shading.model {
-        Model::Refraction => refracted(n, v, shading.index),
-        _ => mirrored(n, v),
-    };
     let per_brightest = 1.0 / shading.reference.resolve(environment_light.brightest());
-    let tint = Vec3::from(term.linear());
+    let rays = RayRow::new(
+        surface_row,
+        match shading.model {
+            Model::Refraction => Some(shading.index),
+            _ => None,
+        },
+    );
     let mut incoming: Light3 = [[0.0; TILE]; 3];
-    let [mut delta, mut toward_x, mut toward_y] = [[0.0; TILE]; 3];
-    for x in (0..surface_row.width).filter(|&x| surface_row.coverage()[x] > 0) {
-        let r = ray(surface_row.normal_at(x), surface_row.view_at(x));
-        let (dx, dy) = changes(surface_row.surface, surface_row.x0 + x, surface_row.y, r, ray);
-        let radiance = environment_light.over(r, dx, dy);
-        (toward_x[x], toward_y[x]) = (r.x, r.y);
-        delta[x] = srgb::luminance(radiance.x, radiance.y, radiance.z) * per_brightest;
-        (incoming[0][x], incoming[1][x], incoming[2][x]) = (radiance * tint).into();
-    }
+    environment_light.over_row(&rays.ray, &rays.dx, &rays.dy, surface_row.coverage(), &mut incoming);
+    let mut delta = [0.0; TILE];
+    tint(&mut incoming, term.linear(), per_brightest, &mut delta);
     if !term.is_scaled() {
         return lobes::add_incoming(light, &incoming, None);
     }
-    let kappa = surface_row.kappa(LightDirection::Each(&toward_x, &toward_y));
+    let kappa = surface_row.kappa(LightDirection::Each(&rays.ray[0], &rays.ray[1]));
     lobes::add_incoming(light, &incoming, Some((term.scaling, &kappa, &delta)));
 }
 
-/// How a ray changes from pixel to pixel along x and y; differences do not cross depth jumps or the mask's edge.
-fn changes(surface: &Surface, x: usize, y: usize, r: Vec3, ray: impl Fn(Vec3, Vec3) -> Vec3) -> (Vec3, Vec3) {
-    let joined = surface.smooth_links_plane().at(x, y);
-    let ray = |x: usize, y: usize| ray(surface.normal(x, y), surface.view(x, y));
-    let change = |back: u8, forth: u8, step: (usize, usize)| {
-        let before = (joined & back != 0).then(|| ray(x - step.0, y - step.1));
-        let after = (joined & forth != 0).then(|| ray(x + step.0, y + step.1));
-        match (before, after) {
-            (Some(a), Some(b)) => (b - a) * 0.5,
-            (Some(a), None) => r - a,
-            (None, Some(b)) => b - r,
-            (None, None) => Vec3::ZERO,
+/// The rays of a row's pixels, and how they change from pixel to pixel.
+struct RayRow {
+    ray: Directions,
+    /// Along x and y; differences do not cross depth jumps or the mask's edge.
+    dx: Directions,
+    dy: Directions,
+}
+
+/// A row of a tile with a neighbour at each end.
+const SPAN: usize = TILE + 2;
+type Span = [[f32; SPAN]; 3];
+
+impl RayRow {
+    /// Mirrored rays, or with a refractive index refracted ones.
+    fn new(surface_row: &SurfaceRow, index: Option<f32>) -> Self {
+        let height = surface_row.surface.size().height as usize;
+        let y = surface_row.y;
+        // A row beyond the picture is linked to none.
+        let [above, here, below] =
+            [y.saturating_sub(1), y, (y + 1).min(height - 1)].map(|y| rays(surface_row, y, index));
+        let [ray, dx, dy] = [[[0.0; TILE]; 3]; 3];
+        let mut row = Self { ray, dx, dy };
+        let mut joined = [0; TILE];
+        joined[..surface_row.width].copy_from_slice(surface_row.links());
+        for c in 0..3 {
+            row.ray[c].copy_from_slice(&here[c][1..=TILE]);
+            let (before, after) = (&here[c][..TILE], &here[c][2..]);
+            differences(&joined, (links::LEFT, links::RIGHT), [before, &row.ray[c], after], &mut row.dx[c]);
+            let (before, after) = (&above[c][1..=TILE], &below[c][1..=TILE]);
+            differences(&joined, (links::UP, links::DOWN), [before, &row.ray[c], after], &mut row.dy[c]);
         }
-    };
-    (change(links::LEFT, links::RIGHT, (1, 0)), change(links::UP, links::DOWN, (0, 1)))
+        row
+    }
+}
+
+/// The rays of another row of the same columns, and of one more at each end.
+fn rays(surface_row: &SurfaceRow, y: usize, index: Option<f32>) -> Span {
+    let SurfaceRow { surface, x0, width, .. } = *surface_row;
+    let (first, end) = (x0.saturating_sub(1), (x0 + width + 1).min(surface.size().width as usize));
+    let held = first + 1 - x0..end + 1 - x0;
+    let facing = [[0.0; SPAN], [0.0; SPAN], [1.0; SPAN]];
+    let (mut normal, mut view) = (facing, facing);
+    for (row, plane) in normal.iter_mut().zip(surface.normal_planes()) {
+        row[held.clone()].copy_from_slice(&plane.row(y)[first..end]);
+    }
+    // Camera space has y up.
+    normal[1].iter_mut().for_each(|y| *y = -*y);
+    if surface.eye() != Eye::Afar {
+        for (i, x) in held.zip(first..end) {
+            (view[0][i], view[1][i], view[2][i]) = surface.view(x, y).into();
+        }
+    }
+    let mut rays = [[0.0; SPAN]; 3];
+    match index {
+        Some(index) => refract_span(&normal, &view, index, &mut rays),
+        None => mirror_span(&normal, &view, &mut rays),
+    }
+    rays
+}
+
+crate::widest! {
+    fn mirror_span(normal: &Span, view: &Span, rays: &mut Span) {
+        for i in 0..SPAN {
+            let r = mirrored(at(normal, i), at(view, i));
+            (rays[0][i], rays[1][i], rays[2][i]) = (r.x, r.y, r.z);
+        }
+    }
+    fn refract_span(normal: &Span, view: &Span, index: f32, rays: &mut Span) {
+        for i in 0..SPAN {
+            let r = refracted(at(normal, i), at(view, i), index);
+            (rays[0][i], rays[1][i], rays[2][i]) = (r.x, r.y, r.z);
+        }
+    }
+    /// How a value changes from pixel to pixel, of those before, here and after; only linked ones count.
+    fn differences(joined: &[u8; TILE], sides: (u8, u8), values: [&[f32]; 3], to: &mut RowValues) {
+        let [before, here, after] = values.map(|row| &row[..TILE]);
+        for x in 0..TILE {
+            let (to_back, to_forth) = (joined[x] & sides.0 != 0, joined[x] & sides.1 != 0);
+            let a = if to_back { before[x] } else { here[x] };
+            let b = if to_forth { after[x] } else { here[x] };
+            to[x] = (b - a) * if to_back & to_forth { 0.5 } else { 1.0 };
+        }
+    }
+    /// Tints light, after δ of each pixel was computed from it.
+    fn tint(light: &mut Light3, by: [f32; 3], per_brightest: f32, delta: &mut RowValues) {
+        let [red, green, blue] = light;
+        for x in 0..TILE {
+            delta[x] = srgb::luminance(red[x], green[x], blue[x]) * per_brightest;
+            (red[x], green[x], blue[x]) = (red[x] * by[0], green[x] * by[1], blue[x] * by[2]);
+        }
+    }
+}
+
+#[inline(always)]
+fn at(span: &Span, i: usize) -> Vec3 {
+    vec3(span[0][i], span[1][i], span[2][i])
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{Size, vec3};
+    use crate::math::Size;
     use crate::raster::Picture;
     use crate::shading::material::tests::{assert_shows, term};
     use crate::shading::{Environment, Shading};
