@@ -17,29 +17,39 @@ pub struct RimDistance {
 impl RimDistance {
     /// Exact to where the rim crosses the links between pixels, and near it to the line between those crossings.
     pub fn of(outline: &Outline) -> Self {
-        Self::silhouette_of(outline, None)
-    }
-    /// As [`RimDistance::of`], for the rim that is not toward pixels of `joined` (as in `OutlineRim::joined`).
-    /// If there is no such rim, no pixel is farther from it than the plane is long.
-    pub fn silhouette_of(outline: &Outline, joined: Option<&Plane<bool>>) -> Self {
-        let inside = outline.inside();
-        let joined = joined.filter(|joined| joined.size() == outline.size());
-        let upright = nearest_crossings(outline, joined, false);
-        let across = nearest_crossings(outline, joined, true);
-        let farthest = outline.size().longer_side();
-        let both = Plane::from_fn(outline.size(), |x, y| {
-            if !inside.at(x, y) {
-                return (0.0, Vec2::ZERO);
-            }
-            let here = vec2(x as f32, y as f32);
-            let (a, b) = (upright.at(x, y), across.at(y, x));
-            let b = vec2(b.y, b.x);
-            let nearer = if here.distance_squared(b) < here.distance_squared(a) { b } else { a };
-            let (distance, way) = toward(outline, here, nearer);
-            if distance <= farthest { (distance, way) } else { (farthest, Vec2::ZERO) }
-        });
+        let both = measured(outline, None, |distance, inward| (distance, inward));
         Self { distance: both.map(|v| v.0), inward: both.map(|v| v.1) }
     }
+}
+
+/// The distance as in [`RimDistance::of`], from the rim that is not toward pixels of `joined` (as in
+/// `OutlineRim::joined`). If there is no such rim, no pixel is farther from it than the plane is long.
+pub fn silhouette_distance(outline: &Outline, joined: Option<&Plane<bool>>) -> Plane<f32> {
+    measured(outline, joined, |distance, _| distance)
+}
+
+/// What is made of each pixel's distance and direction.
+fn measured<T: Copy + Default + Send + Sync>(
+    outline: &Outline,
+    joined: Option<&Plane<bool>>,
+    of: impl Fn(f32, Vec2) -> T + Sync,
+) -> Plane<T> {
+    let inside = outline.inside();
+    let joined = joined.filter(|joined| joined.size() == outline.size());
+    let crossings = |swapped: bool| nearest_crossings(outline, joined, swapped);
+    let (upright, across) = rayon::join(|| crossings(false), || crossings(true));
+    let farthest = outline.size().longer_side();
+    Plane::from_fn(outline.size(), |x, y| {
+        if !inside.at(x, y) {
+            return of(0.0, Vec2::ZERO);
+        }
+        let here = vec2(x as f32, y as f32);
+        let (a, b) = (upright.at(x, y), across.at(y, x));
+        let b = vec2(b.y, b.x);
+        let nearer = if here.distance_squared(b) < here.distance_squared(a) { b } else { a };
+        let (distance, way) = toward(outline, here, nearer);
+        if distance <= farthest { of(distance, way) } else { of(farthest, Vec2::ZERO) }
+    })
 }
 
 /// Beyond this distance the line between crossings is no nearer than they are, to a fiftieth of a pixel.

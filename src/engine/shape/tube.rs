@@ -1,7 +1,7 @@
 //! Tubes: the union of the largest balls inside an outline, smoothed across its ridges. Floor 3. A strip rises to its
 //! half width here, not to √2 of it as in `inflate`.
 
-use super::nearest::{RimDistance, lower_envelope};
+use super::nearest::{lower_envelope, silhouette_distance};
 use super::{Outline, OutlineRim};
 use crate::math::Size;
 use crate::raster::Plane;
@@ -25,7 +25,7 @@ const BENDS: [f32; 2] = [2.0, 4.0];
 /// field that was smoothed with b = 2, in `[2, 4]`, so that limbs and balls stay as high as they are and only ridges
 /// between balls are levelled. `joined` and `start` as for `inflate`.
 pub fn tube(outline: &Outline, joined: Option<&Plane<bool>>, start: Option<&Plane<f32>>) -> Plane<f32> {
-    let reach = RimDistance::silhouette_of(outline, joined).distance;
+    let reach = silhouette_distance(outline, joined);
     let rim = OutlineRim::of(outline, joined);
     let raw = balls(outline, &reach);
     let inside = outline.inside();
@@ -45,7 +45,11 @@ pub fn tube(outline: &Outline, joined: Option<&Plane<bool>>, start: Option<&Plan
     let first = smoothed(&|_, _| limb, start.unwrap_or(&raw), ROUGH_GOAL);
     // What the equation leaves as −∇² of its solution.
     let bend = |x: usize, y: usize| ((raw.at(x, y) - first.at(x, y)) * screen(x, y) + limb).max(limb).min(ball);
-    let h = smoothed(&bend, &first, GOAL);
+    // Where the bend hardly varies, this is the solution.
+    let raised = Plane::from_fn(raw.size(), |x, y| {
+        if inside.at(x, y) { first.at(x, y) + (bend(x, y) - limb) / screen(x, y) } else { 0.0 }
+    });
+    let h = smoothed(&bend, &raised, GOAL);
     h.updated(|x, y, h| if inside.at(x, y) && h.is_finite() { h.max(0.0) } else { 0.0 })
 }
 
