@@ -145,6 +145,49 @@ fn under_an_environment(bencher: Bencher, model: Model) {
     rendered(bencher, (SMALL, 1), &shading);
 }
 
+/// The same with inter-reflection, on balls that lie on a plate; 0 bounces are none.
+#[divan::bench(args = [(Model::Mirror, 0), (Model::Mirror, 1), (Model::Mirror, 4), (Model::Refraction, 1),
+    (Model::Ashikhmin, 0), (Model::Ashikhmin, 1)])]
+fn inter_reflection(bencher: Bencher, (model, bounces): (Model, u32)) {
+    let shading = Shading { environment: Some(studio()), bounces, ..lit(model) };
+    rendered_on(bencher, (SMALL, 1), &balls(SMALL), &shading);
+}
+
+/// What rays are marched through: once for each surface, then kept.
+#[divan::bench(sample_count = 10, sample_size = 1)]
+fn what_rays_are_marched_through(bencher: Bencher) {
+    let pool = pool(1);
+    bencher
+        .counter(area((SMALL, 1)))
+        .with_inputs(|| balls(SMALL))
+        .bench_local_refs(|scene| pool.install(|| scene.surface.as_deref().map(Surface::ray_map)));
+}
+
+/// Balls in rows on a plate that is seen aslant.
+fn balls((width, height): (u32, u32)) -> Scene {
+    const RADIUS: f32 = 40.0;
+    let (size, tilt) = (Size::new(width, height), vec3(0.0, 0.6, 0.8));
+    // The height toward the viewer and the normal; the plate rises by ¾ px a px down the picture.
+    let at = |x: usize, y: usize| {
+        let (x, y) = (x as f32 + 0.5, y as f32 + 0.5);
+        let (dx, dy) = (x.rem_euclid(128.0) - 64.0, y.rem_euclid(128.0) - 64.0);
+        let plate = 0.75 * y;
+        let under_root = RADIUS * RADIUS - dx * dx - dy * dy;
+        let top = 0.75 * (y - dy) + 45.0 + under_root.max(0.0).sqrt();
+        match under_root > 0.0 && top > plate {
+            true => (top, vec3(dx, -dy, under_root.sqrt()) / RADIUS),
+            false => (plate, tilt),
+        }
+    };
+    let highest = 0.75 * height as f32 + 100.0;
+    let maps = Maps {
+        normals: Plane::from_fn(size, |x, y| at(x, y).1),
+        depth: Plane::from_fn(size, |x, y| 1.0 - at(x, y).0 / highest),
+        coverage: Plane::filled(size, 255),
+    };
+    Scene { size, surface: Some(Arc::new(Surface::new(maps).expect("a whole surface"))) }
+}
+
 /// The mean over each pixel's footprint about the direction that it mirrors, from mip levels; directions are given.
 #[divan::bench]
 fn one_look_up_of_the_environment(bencher: Bencher) {
@@ -186,12 +229,15 @@ fn material(bencher: Bencher, run: Run, model: Model) {
 }
 
 fn rendered(bencher: Bencher, run: Run, shading: &Shading) {
-    let scene = scene(run.0);
-    shading.warm(&scene);
+    rendered_on(bencher, run, &scene(run.0), shading);
+}
+
+fn rendered_on(bencher: Bencher, run: Run, scene: &Scene, shading: &Shading) {
+    shading.warm(scene);
     let ats: Vec<TileAt> = TileAt::covering(scene.size.rect()).collect();
     let pool = pool(run.1);
     bencher.counter(area(run)).bench_local(|| {
-        pool.install(|| ats.par_iter().for_each(|&at| drop(divan::black_box(shading.render_tile(&scene, at)))));
+        pool.install(|| ats.par_iter().for_each(|&at| drop(divan::black_box(shading.render_tile(scene, at)))));
     });
 }
 

@@ -95,10 +95,13 @@ fn every_kind_of_layer_and_any_number_of_them_is_smooth_at_contours() {
     let strokes = json!({ "name": "strokes", "kind": "strokes", "strokes": [stroke(40), stroke(90), stroke(140)] });
     let mirror = json!({ "name": "mirror", "kind": "shading", "model": "mirror", "reference": 1,
                          "environment": { "file": "photo.png" } });
+    let mut bounced = mirror.clone();
+    (bounced["name"], bounced["bounces"]) = ("bounced".into(), 2.into());
     let scaling = json!({ "name": "scaling", "kind": "radiance-scaling", "gamma": 1.5, "reference": 1 });
     let curvature = json!({ "kind": "curvature", "from": 0.0, "to": 0.6 });
     // The last number: the most that may be left of one sample's error, a tenth more than was measured. A fifth is the
-    // aim; what changes fastest at a rim misses it, and curvature, which is highest along creases.
+    // aim; what changes fastest at a rim misses it, and curvature, which is highest along creases. What a mirror sees of
+    // itself has outlines of its own, one ray a pixel.
     let kinds = [
         ("fill", json!([fill("#d08040")]), 0.08),
         ("gradient", json!([gradient]), 0.12),
@@ -106,6 +109,7 @@ fn every_kind_of_layer_and_any_number_of_them_is_smooth_at_contours() {
         ("strokes", json!([fill("#304030"), strokes]), 0.18),
         ("Phong", json!([phong]), 0.14),
         ("mirror", json!([mirror]), 0.25),
+        ("mirror with two bounces", json!([bounced]), 0.33),
         ("radiance scaling", json!([phong, scaling]), 0.26),
         ("Fresnel mask", json!([phong, masked(json!({ "kind": "fresnel" }))]), 0.20),
         ("curvature mask", json!([phong, masked(curvature)]), 0.52),

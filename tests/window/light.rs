@@ -15,6 +15,7 @@ fn every_shading_model_is_made_from_the_menu_and_shows_its_properties() {
         ("New Ashikhmin layer", "Choose environment"),
         ("New lit-sphere layer", "Choose lit sphere of hollows"),
         ("New mirror layer", "Choose environment"),
+        ("New mirror layer", "Bounces"),
         ("New glass layer", "Index"),
         ("New layer lit by an environment", "Reach"),
         ("New ambient occlusion layer", "Reach"),

@@ -48,7 +48,7 @@ impl Surface {
         let maps = self.curvatures().kept_bytes() + self.kappas().kept_bytes() + self.occlusions().kept_bytes();
         let found = self.regions().kept_bytes() + self.rims_cell().kept_bytes() + self.bounds().kept_bytes();
         let planes = self.unwrappings().kept_bytes() + self.plane_yields.kept_bytes() + self.plane_springs.kept_bytes();
-        maps + found + planes + self.sheets().kept_bytes()
+        maps + found + planes + self.sheets().kept_bytes() + self.ray_maps().kept_bytes()
     }
     /// Drops what can be computed again. What others hold stays in memory until they drop it, too.
     pub fn let_go(&self) {
@@ -56,6 +56,7 @@ impl Surface {
         self.rims_cell().clear();
         self.kappas().clear();
         self.occlusions().clear();
+        self.ray_maps().clear();
         self.regions().clear();
         self.plane_layouts().clear();
         self.unwrappings().clear();

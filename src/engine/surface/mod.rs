@@ -25,6 +25,7 @@ mod occlusion;
 pub mod operator;
 pub mod plane_piece;
 mod pyramid;
+pub mod ray;
 pub mod reach;
 mod readings;
 pub mod region;
@@ -55,6 +56,7 @@ use cache::RecentCache;
 use contours::{ContourMaps, Found, SheetOf};
 use curvature::{CurvatureRims, Kappa};
 use pyramid::MapPyramids;
+use ray::RayMap;
 use rayon::prelude::*;
 use region::SurfaceRegion;
 use std::sync::{Arc, OnceLock};
@@ -115,6 +117,7 @@ pub struct Surface {
     base: Option<Arc<Surface>>,
     /// By radius.
     occlusions: RecentCache<u32, Plane<f32>>,
+    ray_maps: RecentCache<(), RayMap>,
     regions: RecentCache<SurfaceRegion, CoverageGrid>,
     /// By amount and blur.
     unwrappings: RecentCache<[u32; 2], Unwrapping>,
@@ -215,6 +218,7 @@ impl Surface {
             kappas: RecentCache::default(),
             base: None,
             occlusions: RecentCache::default(),
+            ray_maps: RecentCache::default(),
             regions: RecentCache::default(),
             unwrappings: RecentCache::default(),
             plane_layouts: RecentCache::default(),

@@ -114,6 +114,9 @@ impl Surface {
     pub(in crate::surface) fn plane_layouts(&self) -> &RecentCache<[u32; 2], Option<Arc<PlaneLayout>>> {
         &self.plane_layouts
     }
+    pub(in crate::surface) fn ray_maps(&self) -> &RecentCache<(), RayMap> {
+        &self.ray_maps
+    }
     pub(in crate::surface) fn occlusions(&self) -> &RecentCache<u32, Plane<f32>> {
         &self.occlusions
     }

@@ -65,6 +65,7 @@ impl Surface {
     pub fn seen_by(mut self, eye: Eye) -> Self {
         self.eye = eye;
         self.near_view = Default::default();
+        self.ray_maps.clear();
         self
     }
     pub fn eye(&self) -> Eye {

@@ -69,7 +69,7 @@ use std::{path::Path, sync::Arc};
 /// The newest schema this program reads. A document that needs nothing newer is written as the first.
 pub const VERSION: i64 = 2;
 
-/// Whether a layer is on the unwrapped surface, which the first version does not know.
+/// Whether a layer is on the unwrapped surface, or sees itself, which the first version does not know.
 fn unwraps(document: &Document) -> bool {
     let is_print = |operator: Operator| matches!(operator, Operator::Surface { .. });
     let is_new = |layer: &Layer| match &layer.content {
@@ -84,6 +84,7 @@ fn unwraps(document: &Document) -> bool {
                 || [brush.spacing_on, brush.stabilizer_on].contains(&Measure::Surface)
                 || grain.is_some_and(|grain| grain.lies == GrainSpace::Unwrapped)
         }),
+        Content::Shading(live) => live.params().bounces > 0,
         _ => false,
     };
     document.walk().iter().any(|(_, layer)| is_new(layer))

@@ -45,6 +45,7 @@ impl LayerReader<'_> {
                 base.occlusion_radius_px,
                 Shading::OCCLUSION_RADIUS_PX,
             )?,
+            bounces: fields.get("bounces").map_or(Ok(base.bounces), |node| node.whole(Shading::BOUNCES))?,
         })
     }
     fn environment(&mut self, node: &JsonNode) -> Result<Environment> {
@@ -136,6 +137,7 @@ pub fn write(out: &mut JsonObject, shading: &Shading) {
     }
     out.number("index", shading.index, base.index);
     out.number("occlusion_radius", shading.occlusion_radius_px, base.occlusion_radius_px);
+    out.number("bounces", shading.bounces as f32, base.bounces as f32);
 }
 
 pub fn write_radiance_scaling(out: &mut JsonObject, scaling: &RadianceScaling) {

@@ -51,6 +51,12 @@ pub fn shading(ui: &mut Ui, shading: &Shading, canvas: Vec2, setter: &mut LayerS
         let number = NumberField::new("Reach", 0.0..=400.0, "Distance up to which occluders count, px").decimals(0);
         setter.take(number.row(ui, shading.occlusion_radius_px).map(|c| c.map(|to| Property::Occlusion { to })));
     }
+    if shading.model.bounces() {
+        let hint = "How often rays that meet the surface itself are sent on; 0 looks at the environment at once";
+        let most = *Shading::BOUNCES.end() as f32;
+        let number = NumberField::new("Bounces", 0.0..=most, hint).decimals(0);
+        setter.take(number.row(ui, shading.bounces as f32).map(|c| c.map(|to| Property::Bounces { to: to as u32 })));
+    }
     pictures(ui, shading, setter);
     if !shading.model.needs_environment() && !matches!(shading.model, Model::LitSphere | Model::AmbientOcclusion) {
         lights(ui, &shading.lights, canvas, setter);

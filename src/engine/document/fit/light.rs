@@ -27,6 +27,9 @@ pub fn shading(shading: &Shading) -> Fit {
     within("the highlight along y", shading.nv, &Shading::SHININESS)?;
     within("the refractive index", shading.index, &Shading::INDEX)?;
     within("the reach of occlusion", shading.occlusion_radius_px, &Shading::OCCLUSION_RADIUS_PX)?;
+    if !Shading::BOUNCES.contains(&shading.bounces) {
+        return Err(format!("the bounces are {}; there may be 0 to {}", shading.bounces, Shading::BOUNCES.end()));
+    }
     shading.environment.as_ref().map_or(Ok(()), environment)
 }
 

@@ -5,7 +5,8 @@
 //! makes no fireflies and single samples are invisible.
 
 use super::ashikhmin::{self, DirectedLight};
-use super::{Shading, lobes};
+use super::second_look::{PixelRay, RayStart, SecondLook};
+use super::{Shading, lobes, mirror};
 use crate::math::{Vec3, fast, vec3};
 use crate::raster::TILE;
 use crate::shading::environment::{Directions, EnvironmentLight};
@@ -23,6 +24,8 @@ pub struct EnvironmentSamples {
     /// For the matt term: the environment as lights.
     lights: Vec<DirectedLight>,
     halves: Vec<HalfVector>,
+    /// About as far as the lobe spreads the light of one direction, radians.
+    lobe_rad: f32,
 }
 
 /// A half vector that the glossy lobe is sampled at.
@@ -44,7 +47,9 @@ impl EnvironmentSamples {
         };
         let lights = environment_light.parcels(PARCELS).iter().map(light).collect();
         let halves = (0..HALVES).map(|i| half(i, shading.nu, shading.nv)).collect();
-        Some(Self { environment_light, lights, halves })
+        // The solid angle of the half vectors' lobe, 2π / (ν + 1), is four times as large in ℓ.
+        let lobe_rad = (8.0 * PI / ((shading.nu + 1.0) * (shading.nv + 1.0)).sqrt()).sqrt();
+        Some(Self { environment_light, lights, halves, lobe_rad })
     }
     /// Adds both terms along a row.
     pub fn shade(&self, shading: &Shading, surface_row: &SurfaceRow, relief: &mut RowRelief, light: &mut Light3) {
@@ -68,6 +73,7 @@ impl EnvironmentSamples {
         let [mut h_e, mut weight, mut width_rad] = [[0.0; TILE]; 3];
         find_frames(normal, &mut u, &mut v);
         relief.turn(surface_row, LightDirection::VIEWER);
+        let second = SecondLook::on(surface_row.surface, shading.bounces_made());
         for half in &self.halves {
             mirror_at(normal, [&u, &v], half, &mut toward, &mut h_e);
             weigh(normal, &toward, &h_e, surface_row.coverage(), &mut weight);
@@ -76,7 +82,12 @@ impl EnvironmentSamples {
             }
             find_widths(&h_e, half.density, &mut width_rad);
             let toward = surface_row.from_seen(&toward);
-            self.environment_light.around_row(&toward, &width_rad, &weight, &mut incoming);
+            match &second {
+                Some(second) => {
+                    self.follow(shading, surface_row, second, (&toward, &width_rad, &weight), &mut incoming)
+                }
+                None => self.environment_light.around_row(&toward, &width_rad, &weight, &mut incoming),
+            }
             if shading.specular.is_scaled() {
                 if surface_row.features.is_directional() {
                     relief.turn(surface_row, LightDirection::Each(&toward[0], &toward[1]));
@@ -86,6 +97,70 @@ impl EnvironmentSamples {
             add_weighed(&incoming, &weight, &h_e, rs, light);
         }
     }
+    /// What the rays of one half vector see along a row: the environment, or the surface where they meet it, with both
+    /// terms under the environment alone. Of the surface's own lobe one ray represents all.
+    ///
+    /// * `rays`: directions, widths in radians, and weights: those of 0 are not wanted.
+    fn follow(
+        &self,
+        shading: &Shading,
+        surface_row: &SurfaceRow,
+        second: &SecondLook,
+        rays: (&Directions, &RowValues, &RowValues),
+        incoming: &mut Light3,
+    ) {
+        let (toward, width_rad, weight) = rays;
+        let (mut last, mut width_rad) = (*toward, *width_rad);
+        let [mut matt, mut kept] = [[[0.0; TILE]; 3]; 2];
+        for x in (0..surface_row.width).filter(|&x| weight[x] > 0.0) {
+            let (n, v) = (surface_row.normal_at(x), surface_row.view_at(x));
+            let start = second.start(surface_row.x0 + x, surface_row.y, n, v);
+            let mut sample = BouncedSample { matt: Vec3::ZERO, kept: Vec3::ONE, width_rad: width_rad[x] };
+            let l = vec3(toward[0][x], toward[1][x], toward[2][x]);
+            let direction = self.bounce(shading, (second, start), l, &mut sample);
+            width_rad[x] = sample.width_rad;
+            for c in 0..3 {
+                (last[c][x], matt[c][x], kept[c][x]) = (direction[c], sample.matt[c], sample.kept[c]);
+            }
+        }
+        self.environment_light.around_row(&last, &width_rad, weight, incoming);
+        for c in 0..3 {
+            for x in 0..TILE {
+                incoming[c][x] = matt[c][x] + kept[c][x] * incoming[c][x];
+            }
+        }
+    }
+    /// Follows one ray to the last.
+    fn bounce(
+        &self,
+        shading: &Shading,
+        (second, start): (&SecondLook, RayStart),
+        l: Vec3,
+        sample: &mut BouncedSample,
+    ) -> Vec3 {
+        let [rd, rs] = [&shading.diffuse, &shading.specular].map(|term| Vec3::from(term.linear()));
+        let rs = rs.min(Vec3::ONE);
+        let ray = PixelRay { direction: l, changes: [Vec3::ZERO; 2] };
+        let last = second.follow(start, ray, mirror::mirrored, |hit, r| {
+            let facing = -hit.normal.dot(r);
+            if shading.diffuse.weight > 0.0 {
+                let light = self.environment_light.matt(hit.normal);
+                sample.matt += sample.kept * rd * (Vec3::ONE - rs) * light * ashikhmin::lifted(facing);
+            }
+            sample.kept *= rs + (Vec3::ONE - rs) * ashikhmin::whiteness(facing);
+            sample.width_rad = sample.width_rad.hypot(self.lobe_rad);
+        });
+        last.direction
+    }
+}
+
+/// What a ray has gathered where it met the surface, and how it goes on.
+struct BouncedSample {
+    /// Light of the matt term.
+    matt: Vec3,
+    /// What is kept of the light that it still sees.
+    kept: Vec3,
+    width_rad: f32,
 }
 
 crate::widest! {

@@ -1,6 +1,8 @@
 //! Mirror and refraction: the environment seen along one ray (RS sec. 5.3.2, MATH 5).
-//! Floor 3. One interface and no second bounce: occlusion of the environment by the surface is ignored.
+//! Floor 3. One interface: a refracted ray does not leave its object by a second one. Not here: what a ray meets on
+//! its way (`second_look`).
 
+use super::second_look::{PixelRay, SecondLook};
 use super::{Model, Shading, lobes};
 use crate::math::{Vec3, srgb, vec3};
 use crate::raster::TILE;
@@ -31,21 +33,28 @@ pub fn shade(shading: &Shading, surface_row: &SurfaceRow, light: &mut Light3) {
     let (Some(environment), term) = (&shading.environment, &shading.specular) else { return };
     let environment_light = environment.environment_light();
     let per_brightest = 1.0 / shading.reference.resolve(environment_light.brightest());
-    let rays = RayRow::new(
-        surface_row,
-        match shading.model {
-            Model::Refraction => Some(shading.index),
-            _ => None,
-        },
-    );
+    let index = match shading.model {
+        Model::Refraction => Some(shading.index),
+        _ => None,
+    };
+    let mut rays = RayRow::new(surface_row, index);
+    let toward = [rays.ray[0], rays.ray[1]];
+    let second = SecondLook::on(surface_row.surface, shading.bounces_made());
+    // No surface returns more than it receives.
+    let once = Vec3::from(term.linear()).min(Vec3::ONE);
+    let kept = second.map(|second| rays.follow(&second, surface_row, index, once));
     let mut incoming: Light3 = [[0.0; TILE]; 3];
     environment_light.over_row(&rays.ray, &rays.dx, &rays.dy, surface_row.coverage(), &mut incoming);
+    if let Some(kept) = kept {
+        let pairs = incoming.iter_mut().flatten().zip(kept.iter().flatten());
+        pairs.for_each(|(incoming, kept)| *incoming *= kept);
+    }
     let mut delta = [0.0; TILE];
     tint(&mut incoming, term.linear(), per_brightest, &mut delta);
     if !term.is_scaled() {
         return lobes::add_incoming(light, &incoming, None);
     }
-    let kappa = surface_row.kappa(LightDirection::Each(&rays.ray[0], &rays.ray[1]));
+    let kappa = surface_row.kappa(LightDirection::Each(&toward[0], &toward[1]));
     lobes::add_incoming(light, &incoming, Some((term.scaling, &kappa, &delta)));
 }
 
@@ -81,6 +90,30 @@ impl RayRow {
             differences(&joined, (links::UP, links::DOWN), [before, &row.ray[c], after], &mut row.dy[c]);
         }
         row
+    }
+}
+
+impl RayRow {
+    /// Follows the rays over the surface to the last ones, and returns what is kept of the light that they see.
+    ///
+    /// * `once`: what one bounce keeps.
+    fn follow(&mut self, second: &SecondLook, surface_row: &SurfaceRow, index: Option<f32>, once: Vec3) -> Light3 {
+        let mut kept_row = [[1.0; TILE]; 3];
+        let bend = |n: Vec3, v: Vec3| index.map_or_else(|| mirrored(n, v), |index| refracted(n, v, index));
+        let of = |row: &Directions, x: usize| vec3(row[0][x], row[1][x], row[2][x]);
+        for x in (0..surface_row.width).filter(|&x| surface_row.coverage()[x] > 0) {
+            let start =
+                second.start(surface_row.x0 + x, surface_row.y, surface_row.normal_at(x), surface_row.view_at(x));
+            let ray = PixelRay { direction: of(&self.ray, x), changes: [of(&self.dx, x), of(&self.dy, x)] };
+            let mut kept = Vec3::ONE;
+            let last = second.follow(start, ray, bend, |_, _| kept *= once);
+            for c in 0..3 {
+                kept_row[c][x] = kept[c];
+                self.ray[c][x] = last.direction[c];
+                (self.dx[c][x], self.dy[c][x]) = (last.changes[0][c], last.changes[1][c]);
+            }
+        }
+        kept_row
     }
 }
 

@@ -9,6 +9,7 @@ mod lobes;
 mod mirror;
 mod phong;
 mod render;
+mod second_look;
 mod toon;
 
 use super::{
@@ -46,6 +47,10 @@ impl Model {
     /// Whether it is lit by an environment alone: lights have no effect.
     pub fn needs_environment(self) -> bool {
         matches!(self, Model::DiffuseEnvironment | Model::Mirror | Model::Refraction)
+    }
+    /// Whether its rays can meet the surface itself before they reach the environment.
+    pub fn bounces(self) -> bool {
+        matches!(self, Model::Mirror | Model::Refraction | Model::Ashikhmin)
     }
 }
 
@@ -109,6 +114,9 @@ pub struct Shading {
     pub index: f32,
     /// The distance up to which occluders count, px; 0 turns occlusion off.
     pub occlusion_radius_px: f32,
+    /// How often a ray that meets the surface itself is sent on before it looks at the environment: inter-reflection.
+    /// 0: never, each ray looks at the environment at once.
+    pub bounces: u32,
 }
 
 impl Shading {
@@ -120,6 +128,12 @@ impl Shading {
     pub const INDEX: Range = 0.1..=10.0;
     pub const OCCLUSION_RADIUS_PX: Range = 0.0..=crate::surface::Surface::WIDEST_OCCLUSION_PX;
 
+    pub const BOUNCES: std::ops::RangeInclusive<u32> = 0..=8;
+
+    /// How many bounces its rays make; 0 without an environment, which they look for.
+    fn bounces_made(&self) -> u32 {
+        if self.model.bounces() && self.environment.is_some() { self.bounces } else { 0 }
+    }
     /// Whether its model needs an environment but has none: it paints black.
     pub fn lacks_environment(&self) -> bool {
         self.model.needs_environment() && self.environment.is_none()
@@ -157,6 +171,7 @@ impl Shading {
             sphere_concave: None,
             index: 1.5,
             occlusion_radius_px: 48.0,
+            bounces: 0,
         }
     }
 }

@@ -3,7 +3,7 @@
 
 use super::{
     Model, Shading, ashikhmin, ashikhmin_environment::EnvironmentSamples, hemisphere, lit_sphere, mirror,
-    phong::PhongTerms, toon,
+    phong::PhongTerms, second_look::SecondLook, toon,
 };
 use crate::math::{fast, srgb};
 use crate::raster::planar::{BRIGHTEST, PixelRow};
@@ -71,9 +71,12 @@ impl Shading {
             self.features.on(surface);
             let environment_light = self.environment.as_ref().map(Environment::environment_light);
             let shows_occlusion = matches!(self.model, Model::DiffuseEnvironment | Model::AmbientOcclusion);
-            if self.model == Model::DiffuseEnvironment {
+            let shows_matt = self.model == Model::DiffuseEnvironment
+                || self.model == Model::Ashikhmin && self.bounces > 0 && self.diffuse.weight > 0.0;
+            if shows_matt {
                 environment_light.map(|s| s.brightest_matt());
             }
+            SecondLook::on(surface, self.bounces_made());
             if shows_occlusion && self.occlusion_radius_px > 0.0 {
                 surface.occlusion(self.occlusion_radius_px);
             }

@@ -25,7 +25,7 @@ const STRIDE: f32 = 0.16;
 /// Cosine above the tangent plane below which an occluder counts less: depth is not that fine.
 const UNSURE: f32 = 0.03;
 /// Slope from which a rise is a cliff, px per px; and the tolerance for coarse depth, px.
-const CLIFF: (f32, f32) = (4.0, 1.5);
+pub(super) const CLIFF: (f32, f32) = (4.0, 1.5);
 /// A cliff of this share of the radius hides nothing: such an object floats in front.
 const FLOATS: f32 = 0.5;
 

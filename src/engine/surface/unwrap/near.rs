@@ -62,7 +62,16 @@ impl NearView {
     /// b of a pixel's centre: focal lengths from the point before the eye.
     #[inline(always)]
     pub fn beside(&self, x: usize, y: usize) -> Vec2 {
-        (vec2(x as f32 + 0.5, y as f32 + 0.5) - self.before) / self.focal_px
+        self.beside_at(vec2(x as f32 + 0.5, y as f32 + 0.5))
+    }
+    /// b of a point of the map, px.
+    #[inline(always)]
+    pub fn beside_at(&self, q: Vec2) -> Vec2 {
+        (q - self.before) / self.focal_px
+    }
+    /// f, px of the map.
+    pub fn focal_px(&self) -> f32 {
+        self.focal_px
     }
     /// Z/Z̄ at a depth.
     #[inline(always)]

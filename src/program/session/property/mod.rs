@@ -60,6 +60,8 @@ actions! {
         "without" Without { part: PicturePart }
         /// The distance up to which occluders count, px.
         "occlusion" Occlusion { to: f32 }
+        /// How often rays that meet the surface itself are sent on.
+        "bounces" Bounces { to: u32 }
         /// For a normal layer without a map.
         "grain" Grained { grain: NoiseRelief }
         "model" ShadingModel { model: Model }
@@ -111,7 +113,7 @@ impl Property {
             Property::Mask { .. } | Property::MaskInverted { .. } | Property::MaskDisabled { .. } => "Layer mask",
             Property::Surrounded { .. } => "Environment",
             Property::Without { .. } => "Remove picture",
-            Property::Occlusion { .. } => "Material",
+            Property::Occlusion { .. } | Property::Bounces { .. } => "Material",
             Property::Grained { .. } => "Detail normals",
             Property::ShadingModel { .. } => "Shading model",
             Property::Lights { .. } => "Lights",
@@ -254,6 +256,7 @@ impl Property {
             Property::Occlusion { to } => {
                 next.occlusion_radius_px = held(*to, &Shading::OCCLUSION_RADIUS_PX);
             }
+            Property::Bounces { to } => next.bounces = (*to).min(*Shading::BOUNCES.end()),
             Property::Surrounded { projection, rotation, exposure } => {
                 let environment = next.environment.as_mut()?;
                 environment.projection = *projection;

@@ -43,6 +43,7 @@ pub const PROPERTIES: &[&str] = &[
     r#"{"do":"mask inverted","on":true}"#,
     r#"{"do":"environment","projection":"angular","rotation":#,"exposure":#}"#,
     r#"{"do":"occlusion","to":#}"#,
+    r#"{"do":"bounces","to":%}"#,
     r#"{"do":"grain","grain":{"size":#,"octaves":%,"roughness":#,"stretch":#,"seed":%}}"#,
     r##"{"do":"lights","lights":[{"kind":"directional","direction":[#,0,#],"color":"#ffffff","intensity":1}]}"##,
     r##"{"do":"lights","lights":[{"kind":"point","position":[#,0,#],"color":"#ffffff","intensity":#}]}"##,
