@@ -1,7 +1,7 @@
 //! The peaked tip: coverage that falls in two straight lines over the squared distance, averaged in closed form.
 //! Floor 3. Pure functions. The smooth one is `profile`'s.
 
-use super::profile::Profile;
+use super::profile::{Profile, farther};
 
 /// A radial profile, the radius of the undeformed footprint being 1, of hardness h: 1 in the middle, h at the squared
 /// distance h, 0 at the rim, straight lines over the squared distance between. So it covers the share h of its disc.
@@ -16,6 +16,8 @@ pub struct PeakedProfile {
     start: f32,
     /// Width of the box that blurs it, squared.
     blur_squared: f32,
+    /// The length of the tip's mean chord: its area over its extent along a line through the centre; with the box.
+    chord: f32,
 }
 
 impl PeakedProfile {
@@ -31,7 +33,9 @@ impl PeakedProfile {
         let (knee, inner, outer) = (h.sqrt(), 1.0 / h - 1.0, h / (1.0 - h));
         let at = |x: f32, slope: f32| x - slope * x * x * x / 3.0;
         let start = at(knee, inner) - outer * at(knee, 1.0);
-        Self { knee, inner, outer, start, blur_squared: softness * softness }
+        // The area is π h, half the extent the integral up to the rim.
+        let chord = std::f32::consts::FRAC_PI_2 * h / (start + outer * (2.0 / 3.0));
+        Self { knee, inner, outer, start, blur_squared: softness * softness, chord: chord.hypot(softness) }
     }
     /// ∫ from 0 to x ≥ 0 of the profile before the box.
     #[inline(always)]
@@ -53,6 +57,13 @@ impl Profile for PeakedProfile {
         let (inner, outer) = (r - 0.5 * width, r + 0.5 * width);
         // The integral is odd, since the profile continues evenly beyond the centre.
         (self.integral(outer) - self.integral(inner.abs()).copysign(inner)) / width
+    }
+    /// Over a pixel of two dimensions, as [`super::profile::RoundProfile::mean_over`] is.
+    #[inline(always)]
+    fn mean_over(&self, r: f32, width_squared: f32, across_squared: f32) -> f32 {
+        let across = if across_squared > 0.0 { across_squared } else { 0.0 };
+        let filled = self.chord / (across.sqrt() + 1e-6);
+        self.mean(farther(r, across), width_squared) * if filled < 1.0 { filled } else { 1.0 }
     }
 }
 
@@ -91,6 +102,28 @@ mod tests {
                 let (found, expected) = (tip.mean(r, width * width), sum / n as f32);
                 assert!((found - expected).abs() < 2e-3, "{hardness} {softness} at {r}: {found}, not {expected}");
             }
+        }
+    }
+    #[test]
+    fn a_pixel_wider_than_the_tip_is_filled_by_its_area() {
+        const SIDE: usize = 48;
+        let place = |i: usize| (i as f32 + 0.5) / SIDE as f32 - 0.5;
+        for (hardness, softness) in [(0.9, 0.0), (0.5, 0.0), (0.25, 0.0), (0.1, 0.0), (0.1, 0.35)] {
+            let tip = PeakedProfile::new(hardness, softness);
+            let (mut off, mut bias, mut plain, mut n) = (0.0, 0.0, 0.0, 0.0);
+            for width in [0.5f32, 1.0, 1.33, 2.0, 3.0, 5.0] {
+                for step in 0..20 {
+                    let r = step as f32 / 20.0 * (1.0 + width);
+                    let points = (0..SIDE * SIDE).map(|i| (r + width * place(i % SIDE)).hypot(width * place(i / SIDE)));
+                    let truth = points.map(|r| tip.mean(r, 0.0)).sum::<f32>() / (SIDE * SIDE) as f32;
+                    let error = 255.0 * (tip.mean_over(r, width * width, width * width) - truth);
+                    (off, bias, n) = (off + error.abs(), bias + error, n + 1.0);
+                    plain += 255.0 * (tip.mean(r, width * width) - truth);
+                }
+            }
+            let (off, bias, plain) = (off / n, bias / n, plain / n);
+            assert!(off < 5.0 && bias.abs() < 3.0, "{hardness} {softness}: {off} off, {bias} too bright");
+            assert!(plain > 10.0, "{hardness} {softness}: one dimension alone is {plain} too bright");
         }
     }
 }

@@ -92,8 +92,7 @@ impl RoundProfile {
     #[inline(always)]
     pub fn mean_over_narrow(&self, r: f32, width_squared: f32, across_squared: f32) -> f32 {
         let across = if across_squared > 0.0 { across_squared } else { 0.0 };
-        let farther = r + across * (1.0 / 24.0) * r / (r * r + 0.25 * across + 1e-12);
-        self.mean(farther, width_squared)
+        self.mean(farther(r, across), width_squared)
     }
     /// c: the tip fills pixels that are this narrow across the radius, in radii.
     pub fn chord(&self) -> f32 {
@@ -128,6 +127,13 @@ impl RoundProfile {
     fn integral(&self, x: f32) -> f32 {
         self.length * (self.start - smoothstep_integral((self.end - x) * self.per_length))
     }
+}
+
+/// How far out the points of a pixel at r lie in the mean, its width across the radius having this square: by v²/24r
+/// farther than its middle, if that is not near the centre.
+#[inline(always)]
+pub fn farther(r: f32, across_squared: f32) -> f32 {
+    r + across_squared * (1.0 / 24.0) * r / (r * r + 0.25 * across_squared + 1e-12)
 }
 
 /// ∫ up to v of the smoothstep 3v² − 2v³, which is 0 below 0 and 1 above 1.
