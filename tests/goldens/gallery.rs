@@ -25,9 +25,11 @@ struct Shown {
 
 const WHITE: Rgb<u8> = Rgb([255; 3]);
 const WALL: Rgb<u8> = Rgb([0x2c, 0x2a, 0x2e]);
+const LIGHT_WALL: Rgb<u8> = Rgb([0xd9, 0xd4, 0xcc]);
+const NIGHT: Rgb<u8> = Rgb([0x14, 0x1a, 0x24]);
 
 /// Layers that the gallery shows alone: picture, recipe, layer, background.
-const LAYERS: [(&str, &str, &str, Rgb<u8>); 12] = [
+const LAYERS: [(&str, &str, &str, Rgb<u8>); 26] = [
     ("noise_knot_1", "noise_knot", "γ 1", WHITE),
     ("noise_knot_2", "noise_knot", "γ 2", WHITE),
     ("noise_knot_3", "noise_knot", "γ 3", WHITE),
@@ -40,6 +42,20 @@ const LAYERS: [(&str, &str, &str, Rgb<u8>); 12] = [
     ("axolotl_flat", "axolotl", "Flats", WHITE),
     ("balloon_lettering_flat", "balloon_lettering", "Flats", WHITE),
     ("vase_and_pear_flat", "vase_and_pear", "Flats", WHITE),
+    ("placed_knot_1", "placed_knot", "α 0.2", LIGHT_WALL),
+    ("placed_knot_2", "placed_knot", "α 0.5", LIGHT_WALL),
+    ("placed_knot_3", "placed_knot", "Four anchors", LIGHT_WALL),
+    ("imitated_knot_mirror", "imitated_knot", "Mirror", LIGHT_WALL),
+    ("imitated_knot_glass", "imitated_knot", "Glass", LIGHT_WALL),
+    ("imitated_knot_plastic", "imitated_knot", "Plastic", LIGHT_WALL),
+    ("glass_muse_plain", "glass_muse", "Glass", NIGHT),
+    ("glass_muse_scaled", "glass_muse", "Glass, scaled", NIGHT),
+    ("precomputed_muse_1", "precomputed_muse", "Environment", WALL),
+    ("precomputed_muse_2", "precomputed_muse", "Environment, scaled", WALL),
+    ("precomputed_muse_3", "precomputed_muse", "Occlusion", WALL),
+    ("precomputed_muse_4", "precomputed_muse", "Occlusion, scaled", WALL),
+    ("precomputed_muse_5", "precomputed_muse", "Sphere", WALL),
+    ("precomputed_muse_6", "precomputed_muse", "Sphere, scaled", WALL),
 ];
 
 /// Recipes that the gallery shows at three quarters of their size.
