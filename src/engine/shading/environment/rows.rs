@@ -19,7 +19,7 @@ struct TapLines {
 }
 
 /// Taps that are read together.
-struct TapRun {
+struct LightTaps {
     len: usize,
     directions: Directions,
     layer: RowValues,
@@ -33,7 +33,7 @@ impl EnvironmentMap {
         let mut lines = TapLines { along: [[0.0; TILE]; 3], layer: [0.0; TILE], taps: [1.0; TILE] };
         find_lines(dx, dy, self.layers(), &mut lines);
         let mut sums = [Vec3A::ZERO; TILE];
-        let mut run = TapRun::default();
+        let mut run = LightTaps::default();
         for (x, _) in covered.iter().enumerate().take(TILE).filter(|(_, c)| **c > 0) {
             let along = vec3(lines.along[0][x], lines.along[1][x], lines.along[2][x]);
             let line = TapLine { along, layer: lines.layer[x], taps: lines.taps[x] };
@@ -55,7 +55,7 @@ impl EnvironmentMap {
     pub fn around_row(&self, e: &Directions, width_rad: &RowValues, wanted: &RowValues, light: &mut Light3) {
         let mut layer = [0.0; TILE];
         find_layers(width_rad, self.layers(), &mut layer);
-        let mut run = TapRun::default();
+        let mut run = LightTaps::default();
         for (x, _) in wanted.iter().enumerate().filter(|(_, w)| **w != 0.0) {
             let direction = vec3(e[0][x], e[1][x], e[2][x]);
             run.push(x, direction, layer[x]);
@@ -68,13 +68,13 @@ impl EnvironmentMap {
     }
 }
 
-impl Default for TapRun {
+impl Default for LightTaps {
     fn default() -> Self {
         Self { len: 0, directions: [[0.0; TILE]; 3], layer: [0.0; TILE], pixel: [0; TILE] }
     }
 }
 
-impl TapRun {
+impl LightTaps {
     /// `len` must be below [`TILE`].
     #[inline(always)]
     fn push(&mut self, x: usize, direction: Vec3, layer: f32) {
@@ -101,7 +101,7 @@ crate::widest! {
         }
     }
     /// Adds a run's taps to the sums of their pixels.
-    fn add_run(map: &EnvironmentMap, run: &TapRun, sums: &mut [Vec3A; TILE]) {
+    fn add_run(map: &EnvironmentMap, run: &LightTaps, sums: &mut [Vec3A; TILE]) {
         let [mut u, mut v, mut t] = [[0.0; TILE]; 3];
         let mut near = SpotRow { index: [[0; TILE]; 4], weight: [[0.0; TILE]; 4], layer: [0; TILE] };
         let mut coarser = near;

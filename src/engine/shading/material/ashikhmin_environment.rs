@@ -75,7 +75,7 @@ impl EnvironmentSamples {
         relief.turn(surface_row, LightDirection::VIEWER);
         let second = SecondLook::on(surface_row.surface, shading.bounces_made());
         for half in &self.halves {
-            mirror_at(normal, [&u, &v], half, &mut toward, &mut h_e);
+            mirror_at([&u, &v, normal], half, &mut toward, &mut h_e);
             weigh(normal, &toward, &h_e, surface_row.coverage(), &mut weight);
             if weight.iter().all(|w| *w == 0.0) {
                 continue;
@@ -182,8 +182,8 @@ crate::widest! {
         }
     }
     /// The viewer mirrored at a half vector, and h·e.
-    fn mirror_at(n: &Directions, uv: [&Directions; 2], half: &HalfVector, toward: &mut Directions, h_e: &mut RowValues) {
-        let [u, v] = uv;
+    fn mirror_at(frame: [&Directions; 3], half: &HalfVector, toward: &mut Directions, h_e: &mut RowValues) {
+        let [u, v, n] = frame;
         for x in 0..TILE {
             let h = |c: usize| half.uvn.x * u[c][x] + half.uvn.y * v[c][x] + half.uvn.z * n[c][x];
             let twice = 2.0 * h(2);
