@@ -5,8 +5,8 @@ use crate::memory::filled_or_unwind;
 use rayon::prelude::*;
 
 /// A rim is nearer to the middle of a block than to those of its pixels, but less than twice: the block is held by this
-/// share of what holds its pixels there. Measured on discs and ragged stars: 0.75 takes the fewest steps, 0.5 three times as
-/// many.
+/// share of what holds its pixels there. Measured on discs and ragged stars: 0.75 takes the fewest steps, 0.5 three
+/// times as many.
 const HELD_BY_RIM: f32 = 0.75;
 /// Rows that one task works on.
 pub(super) const BAND: usize = 16;
