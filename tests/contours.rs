@@ -100,8 +100,8 @@ fn every_kind_of_layer_and_any_number_of_them_is_smooth_at_contours() {
     let scaling = json!({ "name": "scaling", "kind": "radiance-scaling", "gamma": 1.5, "reference": 1 });
     let curvature = json!({ "kind": "curvature", "from": 0.0, "to": 0.6 });
     // The last number: the most that may be left of one sample's error, a tenth more than was measured. A fifth is the
-    // aim; what changes fastest at a rim misses it, and curvature, which is highest along creases. What a mirror sees of
-    // itself has outlines of its own, one ray a pixel.
+    // aim; what changes fastest at a rim misses it, and curvature, which is highest along creases. What a mirror sees
+    // of itself has outlines of its own, one ray a pixel.
     let kinds = [
         ("fill", json!([fill("#d08040")]), 0.08),
         ("gradient", json!([gradient]), 0.12),

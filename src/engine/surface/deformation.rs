@@ -219,8 +219,8 @@ impl<'a> Deformation<'a> {
             }
         }
     }
-    /// Of a dab that the surface is unwrapped under: the plane itself, where D is that, turned, over a rectangle and one
-    /// more pixel around it.
+    /// Of a dab that the surface is unwrapped under: the plane itself, where D is that, turned, over a rectangle and
+    /// one more pixel around it.
     pub fn own_plane(&self, rect: Rect) -> Option<OwnPlane<'_>> {
         let (planes, surface) = self.planes.as_ref().zip(self.surface)?;
         if self.sheet().is_some() || self.is_limited(rect.grown(1)) {

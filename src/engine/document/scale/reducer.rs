@@ -171,8 +171,9 @@ impl DocumentReducer {
     pub fn take_surface(&mut self, made: ReducedSurface) {
         self.surface = Some((made.of, made.small));
     }
-    /// Scales one more layer of the document, or more of its tiles, in advance for [`DocumentReducer::of`]; returns whether there was one. An
-    /// idle thread can prepare in steps with this, and make what [`DocumentReducer::missing_surface`] returns.
+    /// Scales one more layer of the document, or more of its tiles, in advance for [`DocumentReducer::of`]; returns
+    /// whether there was one. An idle thread can prepare in steps with this, and make what
+    /// [`DocumentReducer::missing_surface`] returns.
     pub fn prepare(&mut self, document: &Document) -> bool {
         let Some(scale) = self.scale(document) else { return false };
         // Groups cost nothing once their layers are known.

@@ -123,8 +123,8 @@ fn lit(n_l: f32) -> f32 {
     28.0 / 23.0 * lifted(n_l) * n_l
 }
 
-/// 1 − (1 − cos/2)⁵: the matt term's part of either direction. Under even light of 1 the whole term is that of the view,
-/// times R_d (1 − R_s): the integral over the other one is 23/28.
+/// 1 − (1 − cos/2)⁵: the matt term's part of either direction. Under even light of 1 the whole term is that of the
+/// view, times R_d (1 − R_s): the integral over the other one is 23/28.
 #[inline(always)]
 pub fn lifted(cosine: f32) -> f32 {
     1.0 - power_5(1.0 - 0.5 * cosine)

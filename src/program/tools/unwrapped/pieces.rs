@@ -1,5 +1,5 @@
-//! An image or a gradient on the unwrapped sheet: moved, scaled and turned on one piece of the surface alone. Floor 5. Not here:
-//! what a piece does to its picture (`surface::unwrap`).
+//! An image or a gradient on the unwrapped sheet: moved, scaled and turned on one piece of the surface alone. Floor 5.
+//! Not here: what a piece does to its picture (`surface::unwrap`).
 
 use crate::document::{Content, Document, LayerId, LayerLock, Live};
 use crate::math::{Mat2, Rect, Vec2, vec2};
