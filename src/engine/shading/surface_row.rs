@@ -3,7 +3,7 @@
 
 use super::{features::FeatureMap, scaling::Scaling};
 use crate::math::{Vec3, simd::prefetch, vec3};
-use crate::raster::TILE;
+use crate::raster::{TILE, TileAt};
 use crate::surface::Surface;
 use crate::surface::view::{Eye, from_view, in_view};
 use std::borrow::Cow;
@@ -23,7 +23,8 @@ pub struct SurfaceRow<'a> {
     pub y: usize,
     /// How many pixels lie on the canvas.
     pub width: usize,
-    /// Camera space: right, up, to the viewer.
+    /// Camera space: right, up, to the viewer. Those of contour pixels lie in the middle of what their own population
+    /// sees.
     pub normal: [RowValues; 3],
     /// Present if the surface is seen from nearby.
     near: Option<Box<PerspectiveRow>>,
@@ -68,6 +69,7 @@ impl<'a> SurfaceRow<'a> {
         self.normal[0][..self.width].copy_from_slice(nbar_x);
         self.normal[2][..self.width].copy_from_slice(nz);
         self.normal[1].iter_mut().zip(nbar_y).for_each(|(up, down)| *up = -down);
+        self.turn_to_own_shares();
         if let Some(near) = &mut self.near {
             for x in 0..self.width {
                 let (v, n) =
@@ -77,6 +79,18 @@ impl<'a> SurfaceRow<'a> {
             }
         }
         self.prefetch(y + 2);
+    }
+    /// Moves the normals of contour pixels to the middle of what their own population sees (MATH 10).
+    fn turn_to_own_shares(&mut self) {
+        let at = TileAt::new((self.x0 / TILE) as i32, (self.y / TILE) as i32);
+        let Some(contours) = self.surface.contours().on(at) else { return };
+        for pixel in contours.in_row(self.y as i32) {
+            let x = (pixel.x as usize).wrapping_sub(self.x0);
+            if x < self.width {
+                let n = pixel.own_normal(self.normal_at(x));
+                (self.normal[0][x], self.normal[1][x], self.normal[2][x]) = n.into();
+            }
+        }
     }
     /// v of a pixel of the row: the unit vector toward the eye, camera space.
     #[inline(always)]

@@ -129,6 +129,9 @@ fn rays(surface_row: &SurfaceRow, y: usize, index: Option<f32>) -> Span {
     }
     // Camera space has y up.
     normal[1].iter_mut().for_each(|y| *y = -*y);
+    if y == surface_row.y {
+        normal.iter_mut().zip(&surface_row.normal).for_each(|(to, own)| to[1..=width].copy_from_slice(&own[..width]));
+    }
     if surface.eye() != Eye::Afar {
         for (i, x) in held.zip(first..end) {
             (view[0][i], view[1][i], view[2][i]) = surface.view(x, y).into();

@@ -34,9 +34,7 @@ impl Continued {
     /// n̄ at a distance from the pixel's centre, px, shortened to the disc where it leaves it.
     pub fn nbar(&self, from_center: Vec2) -> Vec2 {
         let [x, y] = self.nbar.map(|fit| fit.here + fit.slope.dot(from_center));
-        let n = vec2(x, y);
-        let length = n.length();
-        if length > RIM_NBAR { n * (RIM_NBAR / length) } else { n }
+        within_rim(vec2(x, y))
     }
     /// z at a distance from the pixel's centre, `[0, 1]`.
     pub fn depth(&self, from_center: Vec2) -> f32 {
@@ -53,6 +51,12 @@ pub fn plane_of(pixel: &ContourPixel, map: impl Fn(usize, usize) -> f32, from_ce
         (CONTINUED_WEIGHTS.at(i), map((pixel.x + dx) as usize, (pixel.y + dy) as usize))
     });
     fitted.map_or(0.0, |fit| fit.here + fit.slope.dot(pixel.other_at + from_center))
+}
+
+/// n̄ shortened to the disc where it leaves it.
+pub fn within_rim(nbar: Vec2) -> Vec2 {
+    let length = nbar.length();
+    if length > RIM_NBAR { nbar * (RIM_NBAR / length) } else { nbar }
 }
 
 /// n_z of an n̄ within the disc.

@@ -128,7 +128,8 @@ impl Examined {
             return if is_soft { Self::default() } else { Self::outside(&window, (x, y)) };
         }
         if coverage < 255 {
-            let contour = ContourPixel { x, y, share: f32::from(coverage) / 255.0, others: 0, other_at: Vec2::ZERO };
+            let (share, still) = (f32::from(coverage) / 255.0, Vec2::ZERO);
+            let contour = ContourPixel { x, y, share, others: 0, other_at: still, own_turn: still };
             let own = window.pieces(1 << CENTER, 0).0 & !(1 << CENTER);
             let is_told = maps.valid.is_none_or(|valid| valid.at(x as usize, y as usize));
             return Self { contour: Some(contour), amended: if is_told { None } else { continued(&window, own) } };
@@ -140,7 +141,7 @@ impl Examined {
             return between;
         }
         let Some(across) = across(&window, linked, is_soft) else { return Self::default() };
-        let contour = contour_pixel(shared(&window, across), (x, y), across.other);
+        let contour = contour_pixel(&window, shared(&window, across), (x, y), (across.own, across.other));
         Self { contour, amended: unmixed(&window, across) }
     }
     /// A pixel without surface next to one.
@@ -152,7 +153,7 @@ impl Examined {
             return Self::default();
         }
         let across = Across { own: window.nothing(), other, is_near: false, is_crease: false };
-        Self { contour: contour_pixel(shared(window, across), (x, y), other), amended: None }
+        Self { contour: contour_pixel(window, shared(window, across), (x, y), (0, other)), amended: None }
     }
     /// A pixel that continues none of its neighbours, at a depth between theirs: a renderer mixed both sides in it.
     fn between(window: &PixelWindow, (x, y): (i32, i32)) -> Option<Self> {
@@ -175,7 +176,8 @@ impl Examined {
         let (own, others) = if own_is_near { (near, far) } else { (far, near) };
         let by_depth = Shared { own: by_depth.max(1.0 - by_depth), other_at: Vec2::ZERO };
         let shared = line.map_or(by_depth, |line| Shared::by(line, own_is_near));
-        Some(Self { contour: contour_pixel(Some(shared), (x, y), others), amended: continued(window, own) })
+        let contour = contour_pixel(window, Some(shared), (x, y), (own, others));
+        Some(Self { contour, amended: continued(window, own) })
     }
 }
 
@@ -208,9 +210,20 @@ fn across(window: &PixelWindow, linked: u8, is_soft: bool) -> Option<Across> {
 }
 
 /// A pixel of which both populations see something.
-fn contour_pixel(shared: Option<Shared>, (x, y): (i32, i32), others: u64) -> Option<ContourPixel> {
+///
+/// * `own`, `others`: pixels of the window that belong to either.
+fn contour_pixel(
+    window: &PixelWindow,
+    shared: Option<Shared>,
+    (x, y): (i32, i32),
+    (own, others): (u64, u64),
+) -> Option<ContourPixel> {
     let Shared { own: share, other_at } = shared.filter(|shared| shared.own < WHOLLY)?;
-    Some(ContourPixel { x, y, share, others, other_at })
+    // The middles of both, weighed by their shares, are the pixel's centre.
+    let own_at = other_at * (-(1.0 - share) / share.max(0.25));
+    let continued = Continued::from(window, own & !(1 << CENTER));
+    let own_turn = continued.map_or(Vec2::ZERO, |own| own.nbar(own_at) - own.nbar(Vec2::ZERO));
+    Some(ContourPixel { x, y, share, others, other_at, own_turn })
 }
 
 /// How the middle pixel is shared; `None` where no single edge passes.

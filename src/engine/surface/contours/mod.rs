@@ -17,7 +17,7 @@ mod tests;
 
 pub use sheet::{SheetOf, place_of};
 
-use crate::math::{Rect, Size, Vec2};
+use crate::math::{Rect, Size, Vec2, Vec3, vec2, vec3};
 use crate::raster::TileAt;
 use std::ops::Range;
 
@@ -41,9 +41,19 @@ pub struct ContourPixel {
     others: u64,
     /// The middle of what the other population sees, from the pixel's centre, px: what is read for it is read there.
     other_at: Vec2,
+    /// How n̄ differs in the middle of what its own population sees from the pixel's centre.
+    own_turn: Vec2,
 }
 
 impl ContourPixel {
+    /// The unit normal (camera space) in the middle of what the pixel's own population sees, from that at its centre.
+    pub fn own_normal(&self, center: Vec3) -> Vec3 {
+        if self.own_turn == Vec2::ZERO || center.z <= 0.0 {
+            return center;
+        }
+        let nbar = continued::within_rim(vec2(center.x, -center.y) + self.own_turn);
+        vec3(nbar.x, -nbar.y, continued::nz_of(nbar))
+    }
     /// The other population sees a surface.
     pub fn sees_surface(&self) -> bool {
         self.others != 0
@@ -81,6 +91,18 @@ pub struct TileContours<'c> {
     pub seen: usize,
     /// Where their readings are on the sheet.
     pub sheet: Rect,
+}
+
+impl<'c> TileContours<'c> {
+    /// Those in a row of the canvas, in any order.
+    pub fn in_row(self, y: i32) -> impl Iterator<Item = &'c ContourPixel> {
+        let (seen, bare) = self.pixels.split_at(self.seen);
+        let block = |v: i32| v / sheet::BLOCK as i32;
+        let from = seen.partition_point(|p| block(p.y) < block(y));
+        let beside = seen[from..].iter().take_while(move |p| block(p.y) == block(y));
+        let first = bare.partition_point(|p| p.y < y);
+        beside.chain(bare[first..].iter().take_while(move |p| p.y == y)).filter(move |p| p.y == y)
+    }
 }
 
 impl Contours {

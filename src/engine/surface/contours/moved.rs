@@ -25,9 +25,9 @@ impl Contours {
             // What it saw beyond its own edge was cut away.
             let is_blind = others == 0 && pixel.others != 0;
             if canvas.rect().contains(x, y) && !is_blind {
-                let other_at = by.turned_vector(pixel.other_at);
+                let [other_at, own_turn] = [pixel.other_at, pixel.own_turn].map(|v| by.turned_vector(v));
                 let tile = &mut tiles[y as usize / TILE * columns + x as usize / TILE];
-                tile.push(ContourPixel { x, y, others, other_at, ..*pixel });
+                tile.push(ContourPixel { x, y, others, other_at, own_turn, ..*pixel });
             }
         }
         Self::of_tiles(canvas, tiles)

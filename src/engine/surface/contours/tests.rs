@@ -81,3 +81,33 @@ fn smooth_bodies_come_within_a_fifth_of_one_samples_error() {
         assert!(two < 0.2 * one, "{bits} bits: {two} of {one}");
     }
 }
+#[test]
+fn a_pixel_s_own_normal_is_that_of_the_middle_of_its_own_share() {
+    let surface = surface(0);
+    let (mut before, mut after, mut count) = (0.0, 0.0, 0);
+    for pixel in surface.contours().pixels() {
+        let Some((own, center, _)) = seen(pixel.x as f32 + 0.5, pixel.y as f32 + 0.5) else { continue };
+        let at = |k: usize| (k as f32 + 0.5) / 12.0;
+        let samples = (0..144).filter_map(|k| seen(pixel.x as f32 + at(k % 12), pixel.y as f32 + at(k / 12)));
+        let mean = samples.filter(|s| s.0 == own).map(|s| s.1).sum::<Vec3>().normalize();
+        let center = center.normalize();
+        before += center.distance(mean);
+        after += pixel.own_normal(center).distance(mean);
+        count += 1;
+    }
+    assert!(count > 500 && after < 0.5 * before, "{count}: {before} became {after}");
+}
+#[test]
+fn rows_hold_every_contour_pixel_of_a_tile_once() {
+    let surface = surface(0);
+    for at in TileAt::covering(SIZE.rect()) {
+        let Some(contours) = surface.contours().on(at) else { continue };
+        let key = |p: &ContourPixel| (p.y, p.x, p.sees_surface());
+        let rows = at.rect().y0..at.rect().y1;
+        let mut found: Vec<_> = rows.flat_map(|y| contours.in_row(y).map(key).collect::<Vec<_>>()).collect();
+        let mut expected: Vec<_> = contours.pixels.iter().map(key).collect();
+        expected.sort();
+        found.sort();
+        assert_eq!(found, expected);
+    }
+}
