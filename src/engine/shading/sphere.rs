@@ -1,8 +1,9 @@
 //! A lit sphere (Sloan et al. 2001; "matcap"): a painted sphere that gives the colour of every normal.
 //! Floor 3.
 
-use crate::math::{Size, Vec2, Vec3, srgb, vec2, vec3};
-use crate::raster::Picture;
+use crate::math::{Size, Vec2, Vec3, Vec3A, fast, srgb, vec2, vec3};
+use crate::raster::{Picture, TILE};
+use crate::shading::surface_row::{Light3, RowValues};
 use rayon::prelude::*;
 use std::sync::{Arc, LazyLock, OnceLock};
 
@@ -43,7 +44,8 @@ pub struct SphereLight {
     size: Size,
     /// Beyond the disc the nearest colour inside is repeated, so that lookups at the rim never read the picture's
     /// background.
-    texels: Vec<[f32; 3]>,
+    /// Each takes 16 bytes, so that one instruction reads it.
+    texels: Vec<Vec3A>,
     /// The greatest luminance on the disc.
     brightest: f32,
 }
@@ -53,33 +55,71 @@ impl SphereLight {
         let (width, height) = (picture.size.width as usize, picture.size.height as usize);
         // This runs on one thread: a worker that waited for others could be given a tile that waits for this same
         // sphere.
-        let texel = |i: usize| nearest_inside(picture, i % width, i / width);
-        let texels: Vec<[f32; 3]> = match rayon::current_thread_index() {
+        let texel = |i: usize| Vec3A::from(nearest_inside(picture, i % width, i / width));
+        let texels: Vec<Vec3A> = match rayon::current_thread_index() {
             Some(_) => (0..width * height).map(texel).collect(),
             None => (0..width * height).into_par_iter().map(texel).collect(),
         };
-        let brightest = texels.iter().map(|&[r, g, b]| srgb::luminance(r, g, b)).fold(0.0, f32::max);
+        let brightest = texels.iter().map(|t| srgb::luminance(t.x, t.y, t.z)).fold(0.0, f32::max);
         Self { size: picture.size, texels, brightest }
     }
     /// The colour at ½ + ½ n̄ of the picture, bilinear, linear light (MATH 5). `nbar`: image axes (y down), length ≤ 1.
     #[inline(always)]
     pub fn at(&self, nbar: Vec2) -> [f32; 3] {
+        let SphereSpot { index, across, along } = self.spot(nbar);
+        self.between(index, across, along).to_array()
+    }
+    /// The same for a row of normals, camera space (y up).
+    pub fn at_row(&self, normal: &[RowValues; 3], light: &mut Light3) {
+        read_row(self, normal, light);
+    }
+    #[inline(always)]
+    fn spot(&self, nbar: Vec2) -> SphereSpot {
         let (w, h) = (self.size.width as i32, self.size.height as i32);
         let (x, y) = ((0.5 + 0.5 * nbar.x) * w as f32 - 0.5, (0.5 + 0.5 * nbar.y) * h as f32 - 0.5);
         let (left, top) = (x.floor(), y.floor());
-        let (across, along) = (x - left, y - top);
-        let texel = |i: i32, j: i32| {
-            let at = j.clamp(0, h - 1) as usize * w as usize + i.clamp(0, w - 1) as usize;
-            Vec3::from(self.texels.get(at).copied().unwrap_or_default())
-        };
-        let (i, j) = (left as i32, top as i32);
-        let above = texel(i, j).lerp(texel(i + 1, j), across);
-        let below = texel(i, j + 1).lerp(texel(i + 1, j + 1), across);
-        above.lerp(below, along).to_array()
+        let (i, j) = (fast::whole(left), fast::whole(top));
+        let index = |i: i32, j: i32| j.max(0).min(h - 1) * w + i.max(0).min(w - 1);
+        let index = [index(i, j), index(i + 1, j), index(i, j + 1), index(i + 1, j + 1)];
+        SphereSpot { index, across: x - left, along: y - top }
+    }
+    /// Of four texels, by their numbers.
+    #[inline(always)]
+    fn between(&self, index: [i32; 4], across: f32, along: f32) -> Vec3A {
+        let texel = |i: i32| self.texels.get(i as usize).copied().unwrap_or_default();
+        let above = texel(index[0]).lerp(texel(index[1]), across);
+        let below = texel(index[2]).lerp(texel(index[3]), across);
+        above.lerp(below, along)
     }
     /// The greatest luminance on the sphere.
     pub fn brightest(&self) -> f32 {
         self.brightest
+    }
+}
+
+/// Where a normal is read: the numbers of four texels, and how far between them.
+struct SphereSpot {
+    index: [i32; 4],
+    across: f32,
+    along: f32,
+}
+
+crate::widest! {
+    fn read_row(sphere: &SphereLight, normal: &[RowValues; 3], light: &mut Light3) {
+        let mut index = [[0; TILE]; 4];
+        let [mut across, mut along] = [[0.0; TILE]; 2];
+        for x in 0..TILE {
+            let spot = sphere.spot(vec2(normal[0][x], -normal[1][x]));
+            for i in 0..4 {
+                index[i][x] = spot.index[i];
+            }
+            (across[x], along[x]) = (spot.across, spot.along);
+        }
+        for x in 0..TILE {
+            let index = [index[0][x], index[1][x], index[2][x], index[3][x]];
+            let here = sphere.between(index, across[x], along[x]);
+            (light[0][x], light[1][x], light[2][x]) = (here.x, here.y, here.z);
+        }
     }
 }
 
@@ -135,6 +175,17 @@ mod tests {
         for nbar in [vec2(0.0, 0.0), vec2(0.5, -0.3), vec2(-0.6, 0.7)] {
             let [r, g, _] = sphere.light().at(nbar);
             assert!((r - (0.5 + 0.5 * nbar.x)).abs() < 1e-4 && (g - (0.5 + 0.5 * nbar.y)).abs() < 1e-4, "{r} {g}");
+        }
+    }
+    #[test]
+    fn a_row_reads_the_same_bits_as_single_normals() {
+        let sphere = disc(57);
+        let at = |x: usize| Vec2::from_angle(x as f32 * 0.7) * (x as f32 / (TILE - 1) as f32);
+        let (nx, ny) = (std::array::from_fn(|x| at(x).x), std::array::from_fn(|x| -at(x).y));
+        let mut light = [[0.0; TILE]; 3];
+        sphere.light().at_row(&[nx, ny, [0.0; TILE]], &mut light);
+        for x in 0..TILE {
+            assert_eq!([light[0][x], light[1][x], light[2][x]], sphere.light().at(at(x)), "{x}");
         }
     }
     #[test]

@@ -2,7 +2,7 @@
 //! one for concave features, blended by κ (RS sec. 5.3.1, MATH 5). Floor 3.
 
 use super::{Shading, lobes};
-use crate::math::{srgb, vec2};
+use crate::math::srgb;
 use crate::raster::TILE;
 use crate::shading::LitSphere;
 use crate::shading::sphere::SphereLight;
@@ -50,16 +50,15 @@ fn looked_up(
     kappa: &RowValues,
 ) -> Light3 {
     let mut shown = [[0.0; TILE]; 3];
-    let [nx, ny, _] = surface_row.seen_normal();
-    for x in 0..surface_row.width {
-        let nbar = vec2(nx[x], -ny[x]);
-        let mut color = convex.at(nbar);
-        if let Some(concave) = concave {
-            let share = 0.5 + 0.5 * kappa[x];
-            let other = concave.at(nbar);
-            color = std::array::from_fn(|c| other[c] + share * (color[c] - other[c]));
+    convex.at_row(surface_row.seen_normal(), &mut shown);
+    if let Some(concave) = concave {
+        let mut other = [[0.0; TILE]; 3];
+        concave.at_row(surface_row.seen_normal(), &mut other);
+        for (shown, other) in shown.iter_mut().zip(&other) {
+            for (x, (shown, other)) in shown.iter_mut().zip(other).enumerate() {
+                *shown = other + (0.5 + 0.5 * kappa[x]) * (*shown - other);
+            }
         }
-        (shown[0][x], shown[1][x], shown[2][x]) = (color[0], color[1], color[2]);
     }
     shown
 }
