@@ -110,9 +110,7 @@ crate::widest! {
         let [mut across, mut along] = [[0.0; TILE]; 2];
         for x in 0..TILE {
             let spot = sphere.spot(vec2(normal[0][x], -normal[1][x]));
-            for i in 0..4 {
-                index[i][x] = spot.index[i];
-            }
+            [index[0][x], index[1][x], index[2][x], index[3][x]] = spot.index;
             (across[x], along[x]) = (spot.across, spot.along);
         }
         for x in 0..TILE {
@@ -184,9 +182,8 @@ mod tests {
         let (nx, ny) = (std::array::from_fn(|x| at(x).x), std::array::from_fn(|x| -at(x).y));
         let mut light = [[0.0; TILE]; 3];
         sphere.light().at_row(&[nx, ny, [0.0; TILE]], &mut light);
-        for x in 0..TILE {
-            assert_eq!([light[0][x], light[1][x], light[2][x]], sphere.light().at(at(x)), "{x}");
-        }
+        let read = |x: usize| light.map(|row| row[x]);
+        (0..TILE).for_each(|x| assert_eq!(read(x), sphere.light().at(at(x)), "{x}"));
     }
     #[test]
     fn the_ground_around_the_sphere_is_never_seen() {

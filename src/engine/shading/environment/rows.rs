@@ -106,9 +106,9 @@ crate::widest! {
         let mut near = SpotRow { index: [[0; TILE]; 4], weight: [[0.0; TILE]; 4], layer: [0; TILE] };
         let mut coarser = near;
         find_places(&run.directions, &mut u, &mut v);
-        for k in 0..TILE {
+        for (k, t) in t.iter_mut().enumerate() {
             let fine = run.layer[k].floor();
-            t[k] = run.layer[k] - fine;
+            *t = run.layer[k] - fine;
             (near.layer[k], coarser.layer[k]) = (fast::whole(fine), fast::whole(fine) + 1);
         }
         let finest_rows = map.level_at(0).rows() as i32;

@@ -149,13 +149,13 @@ crate::widest! {
     fn mirror_span(normal: &Span, view: &Span, rays: &mut Span) {
         for i in 0..SPAN {
             let r = mirrored(at(normal, i), at(view, i));
-            (rays[0][i], rays[1][i], rays[2][i]) = (r.x, r.y, r.z);
+            put(rays, i, r);
         }
     }
     fn refract_span(normal: &Span, view: &Span, index: f32, rays: &mut Span) {
         for i in 0..SPAN {
             let r = refracted(at(normal, i), at(view, i), index);
-            (rays[0][i], rays[1][i], rays[2][i]) = (r.x, r.y, r.z);
+            put(rays, i, r);
         }
     }
     /// How a value changes from pixel to pixel, of those before, here and after; only linked ones count.
@@ -176,6 +176,11 @@ crate::widest! {
             (red[x], green[x], blue[x]) = (red[x] * by[0], green[x] * by[1], blue[x] * by[2]);
         }
     }
+}
+
+#[inline(always)]
+fn put(span: &mut Span, i: usize, v: Vec3) {
+    (span[0][i], span[1][i], span[2][i]) = (v.x, v.y, v.z);
 }
 
 #[inline(always)]
