@@ -115,6 +115,43 @@ fn a_drawing_gets_a_shape_is_puffed_touched_sculpted_painted_saved_and_opened_ag
     assert_eq!(surfaces[0].normal_planes()[0].values(), surfaces[1].normal_planes()[0].values());
 }
 #[test]
+fn flats_become_a_part_for_each_place_or_a_part_is_split_by_place() {
+    let folder = TempDir::new().unwrap();
+    let picture = image::RgbaImage::from_fn(300, 200, |x, y| {
+        let inside = |cx: f32, r: f32| (x as f32 + 0.5 - cx).hypot(y as f32 - 99.5) < r;
+        let (eye, face) = ([250, 250, 250, 255], [230, 170, 90, 255]);
+        let ground = if inside(150.0, 95.0) { face } else { [0; 4] };
+        image::Rgba(if inside(110.0, 18.0) || inside(190.0, 22.0) { eye } else { ground })
+    });
+    let file = folder.path().join("pair.png");
+    picture.save(&file).unwrap();
+    let mut harness = opening(&file);
+    asked(&mut harness);
+    press(&mut harness, "A part for each place");
+    give(&mut harness);
+    let places = |harness: &Story| parts(harness).iter().filter(|part| part.place().is_some()).count();
+    assert_eq!((parts(&harness).len(), places(&harness)), (3, 2));
+
+    // As one part it can be split later.
+    let mut harness = opening(&file);
+    asked(&mut harness);
+    press(&mut harness, "One part");
+    give(&mut harness);
+    assert!(harness.query_by_label("Split by place").is_none(), "it is of no colour");
+    let mut harness = opening(&file);
+    asked(&mut harness);
+    harness.get_by_label_contains("A part for each colour").click();
+    steps(&mut harness);
+    give(&mut harness);
+    assert_eq!((parts(&harness).len(), places(&harness)), (2, 0));
+    press(&mut harness, "Split by place");
+    steps(&mut harness);
+    assert_eq!(parts(&harness).len(), 3, "{:?} {:?}", session(&harness).notes, parts(&harness));
+    assert_eq!(places(&harness), 2);
+    assert!(harness.query_by_label("Split by place").is_none(), "a part of one place cannot be split");
+}
+
+#[test]
 fn who_only_wants_to_paint_is_not_asked_again_but_told_where_marks_lie_flat() {
     let folder = TempDir::new().unwrap();
     let mut harness = opening(&drawing(&folder));

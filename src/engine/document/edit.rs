@@ -58,7 +58,7 @@ impl Document {
             layer.id = id;
             Some(())
         })?;
-        Some(if self.parts.is_empty() { next } else { next.with_outlines_renamed(self, id) })
+        Some(if self.parts.is_empty() { next } else { next.with_outlines_renamed(self, id).with_places_carried(self) })
     }
     /// With one more layer. `None` also if the document already has a layer of that id. What it has on parts that
     /// are not in this document stays where it shows.

@@ -5,6 +5,8 @@
 mod flood;
 mod gaps;
 
+pub use gaps::rooms;
+
 #[cfg(test)]
 mod tests;
 

@@ -40,7 +40,8 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
         reading.lost("the file's table of contents is damaged; its entries were found without it");
     }
     let document = reading.document()?;
-    let ProjectReader { notes, is_whole, .. } = reading;
+    let ProjectReader { mut notes, is_whole, .. } = reading;
+    notes.extend(document.note_of_lost(None));
     // Without it the layers are painted before anything is seen.
     let picture = archive.has(MERGED).then(|| archive.bytes(MERGED, budget.file_bytes).ok()).flatten();
     Ok(ProjectContents { document, notes, is_whole, picture: picture.map(Asset::from) })

@@ -194,7 +194,8 @@ fn read_parts(value: &Value, source: RecipeSource, tiles: TileGrids) -> Result<(
         Some(_) => bare.off_parts(parts),
         None => bare.with_parts(parts).with_selections_found(),
     };
-    Ok((document, reader.notes))
+    let lost = document.note_of_lost(None);
+    Ok((document, reader.notes.into_iter().chain(lost).collect()))
 }
 
 fn check_version(root: &mut Fields) -> Result<()> {

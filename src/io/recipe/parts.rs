@@ -7,7 +7,9 @@ pub use write::{write, write_part};
 
 use super::pictures::PictureCache;
 use super::{LayerReader, RecipeSource, maps, surface};
-use crate::document::parts::{CoverageFile, Inflation, OutlineSource, Part, PartKind, PartMaps, Parts, ProfilePicture};
+use crate::document::parts::{
+    CoverageFile, FlatColor, Inflation, OutlineSource, Part, PartKind, PartMaps, Parts, ProfilePicture,
+};
 use crate::document::{Document, NamedSelection};
 use crate::files::UserFiles;
 use crate::json::{Fields, JsonNode};
@@ -201,6 +203,11 @@ impl LayerReader<'_> {
     fn outline_of(&mut self, node: &JsonNode) -> Result<OutlineSource> {
         let mut fields = node.fields()?;
         let color = fields.get("color").map(|node| node.color()).transpose()?;
+        let at = fields.get("at").map(|node| node.point()).transpose()?;
+        if at.is_some() && color.is_none() {
+            return Err(node.refused("has a place, but no colour that is sought there"));
+        }
+        let color = color.map(|color| FlatColor { color, at });
         let source = if let Some(layer) = fields.get("layer") {
             OutlineSource::Layer { layer: layer.text()?.to_owned(), color }
         } else if let Some(file) = fields.get("file") {

@@ -3,7 +3,8 @@
 
 use super::force::Force;
 use super::{LimitArgs, values};
-use crate::document::parts::{Inflation, Part, flats};
+use crate::document::parts::flats::{self, PartFor};
+use crate::document::parts::{Inflation, Part};
 use crate::document::{Content, Document, Layer, PixelLayer};
 use crate::io::export::shape::{ShapeFiles, ShapeMap, ShapeOptions};
 use crate::io::files::read_file;
@@ -28,6 +29,9 @@ pub struct ShapeArgs {
     /// A picture of the same size with a flat colour for each part
     #[arg(long, value_name = "FILE")]
     flats: Option<PathBuf>,
+    /// A part for each place of a colour: areas that are apart from each other, such as two eyes
+    #[arg(long, requires = "flats")]
+    places: bool,
     /// Where the maps go; created if it does not exist
     #[arg(short, long, value_name = "FOLDER")]
     output: PathBuf,
@@ -124,7 +128,8 @@ fn shaped(args: &ShapeArgs) -> Result<Document> {
             if other != size {
                 return Err(Error::unsupported(file, format!("it has {other} pixels, the drawing {size}")));
             }
-            let parts = flats::parts_of_flats(&flats, "Flats", inflation);
+            let each = if args.places { PartFor::Place } else { PartFor::Color };
+            let parts = flats::parts_of_flats(&flats, "Flats", inflation, each);
             if parts.is_empty() {
                 return Err(Error::unsupported(file, "no flat colour in it covers enough to be a part"));
             }

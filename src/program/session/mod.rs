@@ -294,9 +294,10 @@ impl Session {
         self.recent_colors.insert(0, color);
         self.recent_colors.truncate(RECENT);
     }
-    /// Notes why edits were not kept.
+    /// Notes why edits were not kept, and what they did to parts.
     fn tell_refusals(&mut self) {
-        self.notes.extend(self.open_documents.iter_mut().filter_map(|tab| tab.refused.take()));
+        let told = |tab: &mut OpenDocument| [tab.refused.take(), tab.lost.take()];
+        self.notes.extend(self.open_documents.iter_mut().flat_map(told).flatten());
     }
     /// Updates the recovery logs to the documents; called after whatever may have changed them.
     pub fn keep(&mut self) {

@@ -6,7 +6,7 @@ use crate::document::{Content, Layer, LayerLock, LayerMask, MaskKind};
 use crate::file_purpose::FilePurpose;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::PicturePart;
-use crate::session::actions::{ClipboardAction, LayerAction, NewLayer};
+use crate::session::actions::{ClipboardAction, LayerAction, NewLayer, PartAction};
 use crate::session::chosen::{neighbour, range};
 use crate::session::{Action, LayerPath, LayerPaths, Property, Session};
 use eframe::egui::Key;
@@ -112,6 +112,17 @@ pub const COMMANDS: &[MenuCommand] = &[
         "Makes a lit shape from the drawing, in one part or a part for each colour, to paint on",
         has_document,
         |_, requests| requests.request(WindowRequest::ShapeDialog),
+    ),
+    row(
+        "Split part by place",
+        &[],
+        "Areas of the chosen part's colour that are apart, such as two eyes, become parts of their own",
+        |session| session.active().and_then(|tab| tab.chosen_part()).is_some_and(|part| part.is_of_color()),
+        |session, requests| {
+            if let Some(part) = session.active().and_then(|tab| tab.chosen_part()) {
+                requests.act(Action::Part(PartAction::Split { part: part.id.clone() }));
+            }
+        },
     ),
     LINE,
     row(

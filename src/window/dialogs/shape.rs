@@ -1,8 +1,9 @@
-//! Gives a drawing its first shape: one part or one per colour, as a pillow, tube, relief or coin. Floor 7.
+//! Gives a drawing its first shape: one part, or one per colour or place, as a pillow, tube, relief or coin. Floor 7.
 //! Not here: what becomes of it (`session::actions::parts::first`).
 
 use super::{DialogAnswer, answers};
 use crate::document::parts::drawing::{DrawingLook, FigureBackground};
+use crate::document::parts::flats::PartFor;
 use crate::document::{Document, Inflation, LayerId};
 use crate::panels::shape::presets;
 use crate::requests::UiRequests;
@@ -20,7 +21,7 @@ pub struct ShapeDialog {
     layer: Option<LayerId>,
     look: DrawingLook,
     preset: Inflation,
-    flats: bool,
+    each: PartFor,
     /// The document was opened just now, from a picture.
     is_first: bool,
 }
@@ -57,7 +58,8 @@ impl ShapeDialog {
     }
     fn new(tab: &OpenDocument, layer: Option<LayerId>, look: DrawingLook) -> Self {
         let preset = Inflation::PRESETS[0].0;
-        Self { tab: tab.key, layer, look, preset, flats: look.is_of_flats(), is_first: false }
+        let each = if look.is_of_flats() { PartFor::Color } else { PartFor::Layer };
+        Self { tab: tab.key, layer, look, preset, each, is_first: false }
     }
     pub fn show(&mut self, ui: &mut Ui, session: &Session, requests: &mut UiRequests) -> DialogAnswer {
         ui.set_width(380.0);
@@ -74,12 +76,16 @@ impl ShapeDialog {
             "With a shape, light falls on the drawing, and strokes, gradients and photos bend over it. Every number \
              can be changed later, in the panel Shape.",
         );
-        ui.radio_value(&mut self.flats, false, "One part");
+        ui.radio_value(&mut self.each, PartFor::Layer, "One part");
         let text = match self.look.colors {
             0 | 1 => "A part for each colour".to_owned(),
             n => format!("A part for each colour ({n})"),
         };
-        ui.add_enabled_ui(self.look.colors > 1, |ui| ui.radio_value(&mut self.flats, true, text));
+        ui.add_enabled_ui(self.look.colors > 1, |ui| ui.radio_value(&mut self.each, PartFor::Color, text));
+        ui.add_enabled_ui(self.look.colors > 0, |ui| {
+            let hint = "Areas of one colour that are apart, such as two eyes, become parts of their own";
+            ui.radio_value(&mut self.each, PartFor::Place, "A part for each place").on_hover_text(hint);
+        });
         self.preset = presets(ui, self.preset).unwrap_or(self.preset);
         if matches!(self.look.background, FigureBackground::Flat(_)) {
             ui.weak("Its one-coloured background becomes a separate layer below.");
@@ -111,7 +117,7 @@ impl ShapeDialog {
     fn ask(&self, tab: usize, document: &Document, requests: &mut UiRequests) {
         let Some(layer) = self.layer.and_then(|layer| LayerPath::of(document, layer)) else { return };
         requests.act(Action::File(crate::session::actions::FileAction::Tab { index: tab }));
-        let (preset, flats) = (InflationPreset(self.preset), self.flats);
+        let (preset, flats) = (InflationPreset(self.preset), self.each);
         requests.act(Action::Part(PartAction::Shape { layer, preset, flats }));
     }
 }

@@ -125,11 +125,7 @@ impl Frame {
 /// What a part is made of, moved by a rigid map.
 pub(super) fn carry(kind: &mut PartKind, map: Affine2) {
     let at = |p: &mut Vec2| *p = map.transform_point2(*p);
-    let path = |outline: &mut OutlineSource| {
-        if let OutlineSource::Path(points) = outline {
-            points.iter_mut().for_each(at);
-        }
-    };
+    let path = |outline: &mut OutlineSource| outline.points_mut().for_each(at);
     match kind {
         PartKind::Inflate { outline, .. } | PartKind::Bevel { outline, .. } => path(outline),
         PartKind::Primitive(body) => *body = turned(body, map),

@@ -1,7 +1,7 @@
 //! The forms of single parts: fields that take long to solve, and what is made of them. Floor 4. Not here: which of
 //! them are made again (`derive`).
 
-use super::{Inflation, PartMaps, ProfilePicture};
+use super::{Inflation, Part, PartMaps, ProfilePicture};
 use crate::math::srgb::decode;
 use crate::math::{Affine2, Rect, Vec3};
 use crate::raster::Plane;
@@ -47,6 +47,16 @@ pub struct StandingOutline {
     pub outline: Arc<Outline>,
     /// Those.
     pub moved: (i32, i32),
+    /// The place that it is of no longer has its colour: it is that of the nearest area.
+    pub is_lost: bool,
+}
+
+/// The parts, by their ids, whose outlines are not of the area that was meant.
+pub fn lost<'a>(outlines: impl Iterator<Item = (&'a Arc<Part>, &'a Option<StandingOutline>)>) -> Vec<String> {
+    let of_lost = |(part, outline): (&Arc<Part>, &Option<StandingOutline>)| {
+        outline.as_ref().is_some_and(|outline| outline.is_lost).then(|| part.id.clone())
+    };
+    outlines.filter_map(of_lost).collect()
 }
 
 /// The very same outline in the same place.
@@ -70,7 +80,7 @@ impl StandingOutline {
         let met = others.iter().flatten().filter(|other| !other.rect().intersect(self.rect()).is_empty());
         let beside = |other: &StandingOutline| {
             let moved = (other.moved.0.saturating_sub(self.moved.0), other.moved.1.saturating_sub(self.moved.1));
-            StandingOutline { outline: other.outline.clone(), moved }
+            StandingOutline { outline: other.outline.clone(), moved, is_lost: other.is_lost }
         };
         met.map(beside).collect()
     }

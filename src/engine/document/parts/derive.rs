@@ -1,6 +1,6 @@
 //! The surface of a document from its parts and its maps; only what changed in a part is made again. Floor 4.
 
-use super::body::{self, SolvedOutline, StandingOutline, formed, inflated, joined, of_surface};
+use super::body::{self, SolvedOutline, StandingOutline, formed, inflated, joined, lost, of_surface};
 use super::outlines::OutlineKey;
 use super::unchanged::{apart, same_inks, same_kind, same_list, same_shape};
 use super::upon::{Came, changed, lined};
@@ -42,6 +42,8 @@ struct MadePart {
     /// The parts in front, at which its rim may be free.
     met: Vec<StandingOutline>,
     body: Arc<SolvedOutline>,
+    /// Its place no longer has its colour.
+    is_lost: bool,
     /// The stages it was made through; not for one so large that copies would be too many.
     stages: Option<Stages>,
     /// How far the last part on it came.
@@ -58,6 +60,14 @@ struct Stages {
     plain: Arc<Form>,
     /// Without the last part on it.
     before_last: Arc<Form>,
+}
+
+/// The very same surface, or none twice.
+fn same_surface(a: &Option<Arc<Surface>>, b: &Option<Arc<Surface>>) -> bool {
+    match (a, b) {
+        (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+        (a, b) => a.is_none() && b.is_none(),
+    }
 }
 
 /// Stages of forms with more pixels than this are not kept.
@@ -90,29 +100,21 @@ impl Document {
         }
         self.forget_others();
         let surface = self.whole(forms);
-        if self.parts.is_ahead {
-            let parts = Arc::new(Parts { is_ahead: false, ..Parts::clone(&self.parts) });
-            let next = Document { surface, parts, ..self.clone() };
-            return Some(next.with_selections_found());
+        let lost = lost(shown().zip(&outlines));
+        if !self.parts.is_ahead && self.parts.lost == lost && same_surface(&surface, &self.surface) {
+            return Some(self.clone());
         }
-        let is_same = match (&surface, &self.surface) {
-            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-            (a, b) => a.is_none() && b.is_none(),
-        };
+        let parts = Arc::new(Parts { is_ahead: false, lost, ..Parts::clone(&self.parts) });
         // Selections by the surface are found again on another surface.
-        Some(if is_same { self.clone() } else { Document { surface, ..self.clone() }.with_selections_found() })
+        Some(Document { surface, parts, ..self.clone() }.with_selections_found())
     }
     /// The forms combined; the last result is kept.
     fn whole(&self, forms: Vec<(Arc<Form>, crate::shape::Combine)>) -> Option<Arc<Surface>> {
         let lock = || self.parts.cache.whole.lock().unwrap_or_else(PoisonError::into_inner);
-        let same_maps = |maps: &Option<Arc<Surface>>| match (maps, &self.parts.maps) {
-            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-            (a, b) => a.is_none() && b.is_none(),
-        };
         if let Some(made) = &*lock() {
             let same = |((a, x), (b, y)): (&(Arc<Form>, _), &(Arc<Form>, _))| Arc::ptr_eq(a, b) && x == y;
             if made.size == self.size
-                && same_maps(&made.maps)
+                && same_surface(&made.maps, &self.parts.maps)
                 && made.forms.len() == forms.len()
                 && made.forms.iter().zip(&forms).all(same)
             {
@@ -147,11 +149,14 @@ impl Document {
         let known = self.known(&part.id).filter(|made| {
             made.source.as_ref().is_some_and(|known| known.is_same(&source)) && apart(made.part.matrix).0 == still
         });
-        let outline = match known {
-            Some(made) => made.body.outline.clone(),
-            None => Arc::new(source.outline(self, self.most_px())?.through(still, self.most_px())?),
+        let (outline, is_lost) = match known {
+            Some(made) => (made.body.outline.clone(), made.is_lost),
+            None => {
+                let (outline, is_lost) = source.placed_outline(self, self.most_px())?;
+                (Arc::new(outline.through(still, self.most_px())?), is_lost)
+            }
         };
-        Some(StandingOutline { outline, moved })
+        Some(StandingOutline { outline, moved, is_lost })
     }
     /// The form of a part as it was made last, if neither the part nor what lies on it was changed since.
     pub(super) fn made_form(&self, part: &Arc<Part>) -> Option<Arc<Form>> {
@@ -216,6 +221,7 @@ impl Document {
             self.remember(next);
             return Some(form);
         }
+        let is_lost = standing.as_ref().is_some_and(|own| own.is_lost);
         let own = standing.map(|own| own.outline);
         let kept = known.as_ref().filter(|made| same_kind(&made.part.kind, &part.kind));
         let (body, plain) = match kept.and_then(|made| Some((made.body.clone(), made.stages.as_ref()?.plain.clone()))) {
@@ -252,7 +258,7 @@ impl Document {
         let came = if is_small { came } else { Came::default() };
         let (part, came) = (part.clone(), Arc::new(Mutex::new(came)));
         let of_it = form.clone();
-        self.remember(MadePart { part, upon, inks, source, met, body, stages, came, form, moved });
+        self.remember(MadePart { part, upon, inks, source, met, body, is_lost, stages, came, form, moved });
         Some(of_it)
     }
     /// A form changed by one more part that lies on it.

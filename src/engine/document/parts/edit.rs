@@ -31,7 +31,9 @@ impl Document {
         if list.is_empty() {
             next.surface = maps.clone();
         }
-        next.parts = Arc::new(Parts { list, maps, is_ahead: false, cache: self.parts.cache.clone() });
+        // Those that stay lost are found again with the surface.
+        let lost = self.parts.lost.iter().filter(|id| stays(id)).cloned().collect();
+        next.parts = Arc::new(Parts { list, maps, lost, is_ahead: false, cache: self.parts.cache.clone() });
         next
     }
     /// With a part in the place of the one of its id, or in front of all.

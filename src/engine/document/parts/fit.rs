@@ -65,8 +65,9 @@ impl OutlineSource {
                 at_most("points of the path", points.len(), Self::MOST_POINTS)?;
                 points.iter().try_for_each(|p| place("a point of the path", *p))
             }
-            OutlineSource::Layer { layer, .. } => {
-                at_most("letters of the layer's name", layer.chars().count(), Part::LONGEST_NAME)
+            OutlineSource::Layer { layer, color } => {
+                at_most("letters of the layer's name", layer.chars().count(), Part::LONGEST_NAME)?;
+                color.and_then(|flat| flat.at).map_or(Ok(()), |at| place("the place of a colour", at))
             }
             OutlineSource::Selection(name) => {
                 at_most("letters of the selection's name", name.chars().count(), NamedSelection::LONGEST_NAME)

@@ -1,34 +1,74 @@
-//! Parts of a layer of flat colours: one for each colour, ordered by who interrupts whose outline.
-//! Floor 4.
+//! Parts of a layer of flat colours: one for each colour, or for each place of one, ordered by who interrupts whose
+//! outline. Floor 4.
 
 use super::near::is_near;
+use super::places::{ColorPlaces, least_area};
 use super::shares::Flats;
-use super::{Inflation, OutlineSource, Part, PartKind};
-use crate::math::Rect;
+use super::{FlatColor, Inflation, OutlineSource, Part, PartKind};
 use crate::math::srgb::Color;
+use crate::math::{Rect, Size, vec2};
 use crate::raster::{Plane, TileGrid};
 use std::collections::BTreeMap;
 
-/// The most colours of one layer that become parts; the largest are chosen.
-const MOST_COLOURS: usize = 64;
-/// A colour that covers less than this share of the picture makes no part: it is left over from edges.
-const LEAST_SHARE: f32 = 2e-4;
+/// The most colours or places of one layer that become parts; the largest are chosen.
+pub const MOST_COLOURS: usize = 64;
 /// How far around a common border areas are compared, as a share of the longer side.
 const LOOKED_AROUND: f32 = 0.02;
 
-/// The parts of the flats in a layer called `layer`, the farthest first.
-pub fn parts_of_flats(tiles: &TileGrid, layer: &str, inflation: Inflation) -> Vec<Part> {
+/// What becomes a part of its own.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PartFor {
+    /// All that a layer covers.
+    #[default]
+    Layer,
+    /// Each flat colour of it.
+    Color,
+    /// Each area of a flat colour that is apart from the others of that colour.
+    Place,
+}
+
+/// The parts of the flats in a layer called `layer`, a part for each colour or each place; the farthest first.
+///
+/// `tiles`: what the layer shows on the canvas.
+pub fn parts_of_flats(tiles: &TileGrid, layer: &str, inflation: Inflation, each: PartFor) -> Vec<Part> {
     let rect = tiles.bounds();
-    let colors = colors_of(tiles, rect);
     let flats = Flats::of(tiles, rect);
-    let areas: Vec<Plane<u8>> = colors.iter().map(|color| flats.share_of(*color, &[])).collect();
+    let colors = colors_of(tiles, rect);
+    let (found, areas): (Vec<FlatColor>, Vec<Plane<u8>>) = match each {
+        PartFor::Place => places(&flats, &colors, rect).into_iter().unzip(),
+        _ => colors.iter().map(|color| (FlatColor::from(*color), flats.share_of(*color, &[]))).unzip(),
+    };
     let order = farthest_first(&areas);
     let part = |(place, index): (usize, usize)| {
-        let outline = OutlineSource::Layer { layer: layer.into(), color: Some(colors[index]) };
+        let outline = OutlineSource::Layer { layer: layer.into(), color: Some(found[index]) };
         let id = format!("part-{}", place + 1);
         Part { name: format!("Part {}", place + 1), ..Part::new(id, PartKind::Inflate { outline, inflation }) }
     };
     order.into_iter().enumerate().map(part).collect()
+}
+
+/// The places of some colours, a colour that has only one without its point, and the share of each in each pixel.
+fn places(flats: &Flats, colors: &[Color], rect: Rect) -> Vec<(FlatColor, Plane<u8>)> {
+    let found: Vec<ColorPlaces> = colors.iter().map(|color| ColorPlaces::of(flats, *color)).collect();
+    let of_color = |(i, places): (usize, &ColorPlaces)| -> Vec<_> {
+        places.large().into_iter().map(|place| (std::cmp::Reverse(places.pixels(place)), i, place)).collect()
+    };
+    let mut all: Vec<_> = found.iter().enumerate().flat_map(of_color).collect();
+    all.sort();
+    all.truncate(MOST_COLOURS);
+    let corner = vec2(rect.x0 as f32, rect.y0 as f32);
+    let mut out = Vec::with_capacity(all.len());
+    for (i, color) in colors.iter().enumerate() {
+        let own: Vec<u32> = all.iter().filter(|(_, of, _)| *of == i).map(|(_, _, place)| *place).collect();
+        let share = flats.share_of(*color, &[]);
+        if found[i].large().len() == 1 && own.len() == 1 {
+            out.push((FlatColor::from(*color), share));
+            continue;
+        }
+        let at = own.iter().map(|place| FlatColor { color: *color, at: Some(corner + found[i].middle(*place)) });
+        out.extend(at.zip(found[i].shares(&own, &share)));
+    }
+    out
 }
 
 /// The opaque flat colours of a picture, the most frequent first.
@@ -48,7 +88,7 @@ pub fn colors_of(tiles: &TileGrid, rect: Rect) -> Vec<Color> {
             None => {}
         }
     }
-    let least = ((rect.width() * rect.height()) as f32 * LEAST_SHARE).max(16.0) as usize;
+    let least = least_area(Size::new(rect.width() as u32, rect.height() as u32));
     groups.retain(|(_, count)| *count >= least);
     groups.truncate(MOST_COLOURS);
     groups.into_iter().filter_map(|([r, g, b, _], _)| Color::parse(&format!("#{r:02x}{g:02x}{b:02x}"))).collect()
@@ -133,7 +173,6 @@ fn share_around(area: &Plane<u8>, radius: usize) -> Plane<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{Size, vec2};
 
     /// Discs (middle and radius), the last in front of the others, as the visible area of each.
     fn seen(discs: &[([f32; 2], f32)], scale: f32) -> Vec<Plane<u8>> {

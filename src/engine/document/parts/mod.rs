@@ -4,8 +4,8 @@
 //! `part` is one of them and `edit` changes the list. `derive` makes the surface and keeps what did not change; it uses
 //! `body` for one form, `upon` for what is on a form, and `unchanged` to compare versions. `outlines` finds outlines,
 //! `drawing` says what can be made of a layer, `flats` makes parts of one in flat colours, and `shares` divides their
-//! mixed pixels. `forms` has the forms that were made, `scale` changes the canvas, and `fit` holds parts to what files
-//! can hold.
+//! mixed pixels; `places` tells the areas of one colour apart. `forms` has the forms that were made, `scale` changes
+//! the canvas, and `fit` holds parts to what files can hold.
 
 mod body;
 mod derive;
@@ -17,6 +17,7 @@ pub mod forms;
 mod near;
 mod outlines;
 mod part;
+pub mod places;
 mod scale;
 mod shares;
 mod unchanged;
@@ -42,6 +43,8 @@ pub struct Parts {
     pub list: Vec<Arc<Part>>,
     /// The surface of the document's maps, beneath all parts; while there are none it is the document's own.
     pub maps: Option<Arc<Surface>>,
+    /// The parts, by their ids, whose place no longer has their colour, so that they take the nearest area of it.
+    pub lost: Vec<String>,
     /// The document's surface is still that of the parts as they were, while the user drags them.
     is_ahead: bool,
     cache: PartCache,
@@ -231,7 +234,7 @@ impl Default for Inflation {
 #[derive(Clone, Debug, PartialEq)]
 pub enum OutlineSource {
     /// The alpha of a layer, by its name, the topmost of several; or its pixels of one colour.
-    Layer { layer: String, color: Option<Color> },
+    Layer { layer: String, color: Option<FlatColor> },
     /// A picture of coverage; its upper left corner is the frame's.
     File(CoverageFile),
     /// A selection kept by name. One that follows the surface is found on the document's maps, without parts.
@@ -240,6 +243,26 @@ pub enum OutlineSource {
     Path(Vec<Vec2>),
     /// An object of the document's maps, from 1 on.
     Object(u32),
+}
+
+/// A colour of a layer of flats, wherever it is, or in one place only.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlatColor {
+    pub color: Color,
+    /// A point of the area that is meant, px of the part's frame, which is the canvas before the part's matrix. If the
+    /// colour is not there, the nearest area of it is meant.
+    pub at: Option<Vec2>,
+}
+
+impl FlatColor {
+    /// Areas that are joined by nothing wider than this are separate places, px: the gap closing of the fill.
+    pub const GAP_PX: f32 = 2.0;
+}
+
+impl From<Color> for FlatColor {
+    fn from(color: Color) -> Self {
+        Self { color, at: None }
+    }
 }
 
 impl OutlineSource {

@@ -1,11 +1,12 @@
 //! The outlines that parts name: of layers, colours, pictures, paths and objects.
 //! Floor 4.
 
+use super::places::{ColorPlaces, SplitPlaces};
 use super::shares::Flats;
-use super::{CoverageFile, OutlineSource, Part, PartKind};
+use super::{CoverageFile, FlatColor, OutlineSource, Part, PartKind, Parts};
 use crate::document::{Content, Document, Layer, LayerMap, LayerTransform, Progress, flatten_layer};
 use crate::math::srgb::Color;
-use crate::math::{Rect, Size};
+use crate::math::{Rect, Size, vec2};
 use crate::paint::{Scene, Selection};
 use crate::raster::{CoverageGrid, Plane, TileGrid};
 use crate::shape::Outline;
@@ -17,7 +18,7 @@ use std::sync::Arc;
 #[derive(Clone)]
 pub enum OutlineKey {
     /// With its map to the canvas, or to the frame of the part if that carries it.
-    Layer(Arc<Layer>, Option<FlatColor>, Box<LayerMap>),
+    Layer(Arc<Layer>, Option<FlatArea>, Box<LayerMap>),
     Coverage(Arc<Plane<u8>>),
     Selection(Arc<Selection>),
     /// A selection that follows the maps.
@@ -28,10 +29,10 @@ pub enum OutlineKey {
     Object(Arc<Surface>, u32),
 }
 
-/// One colour of a layer of flats.
+/// What a part takes of a layer of flats.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FlatColor {
-    color: Color,
+pub struct FlatArea {
+    flat: FlatColor,
     /// The colours of the parts that lie over it, beneath whose edges it continues.
     over: Vec<Color>,
 }
@@ -44,10 +45,79 @@ impl Document {
         };
         let nearer = self.parts.list.iter().skip_while(|other| other.id != part.id).skip(1);
         let color = |other: &Arc<Part>| match other.outline() {
-            Some(OutlineSource::Layer { layer, color }) if layer == own && other.matrix == part.matrix => *color,
+            Some(OutlineSource::Layer { layer, color }) if layer == own && other.matrix == part.matrix => {
+                color.map(|flat| flat.color)
+            }
             _ => None,
         };
-        nearer.filter(|other| other.visible && other.on().is_none()).filter_map(color).collect()
+        let mut colors: Vec<Color> = Vec::new();
+        for color in nearer.filter(|other| other.visible && other.on().is_none()).filter_map(color) {
+            // Several parts may take one colour in different places.
+            if !colors.contains(&color) {
+                colors.push(color);
+            }
+        }
+        colors
+    }
+}
+
+impl Document {
+    /// Where the pixels of a layer are in the frame of a part that follows it: on the canvas, or, if the part carries
+    /// the layer, where it would be without that.
+    fn map_under(&self, layer: &Layer, part: &Part) -> Option<LayerMap> {
+        let map = self.map_of(layer.id)?;
+        let home = self.home_of(layer.id).and_then(|home| self.parts.body_of(&home.part));
+        let body = self.parts.body_of(&part.id);
+        let is_home = home.zip(body).is_some_and(|(home, body)| home.id == body.id);
+        Some(if is_home { map.at_home() } else { map })
+    }
+    /// The places of the colour that a part takes of a layer, wherever it is; `None` for any other part, and for one
+    /// that has a place already.
+    pub fn places_of(&self, part: &Part) -> Option<SplitPlaces> {
+        let OutlineSource::Layer { layer, color: Some(FlatColor { color, at: None }) } = part.outline()? else {
+            return None;
+        };
+        let layer = self.layer_named(layer)?;
+        let tiles = pixels(self, layer, &self.map_under(layer, part)?)?;
+        let rect = tiles.bounds();
+        (!rect.is_empty()).then(|| SplitPlaces::of(&Flats::of(&tiles, rect), *color, rect))
+    }
+    /// What the user is told when parts take another area than the one that was meant, which no longer has their
+    /// colour; `before`: of those parts nothing is said again.
+    pub fn note_of_lost(&self, before: Option<&Document>) -> Option<String> {
+        let known = |id: &String| before.is_some_and(|before| before.parts.lost.contains(id));
+        let part = |id: &String| self.parts.part(id).map(|part| format!("“{}”", part.name));
+        let names: Vec<String> = self.parts.lost.iter().filter(|id| !known(id)).filter_map(part).collect();
+        let is = if names.len() == 1 {
+            "takes the area of its colour that is"
+        } else {
+            "take the areas of their colours that are"
+        };
+        (!names.is_empty())
+            .then(|| format!("{} {is} nearest: the place it had has another colour now.", names.join(", ")))
+    }
+    /// With the places of colours in layers that were moved since `before`, paint unchanged, moved as well.
+    pub(in crate::document) fn with_places_carried(self, before: &Document) -> Document {
+        let carried = |part: &Arc<Part>| {
+            let Some(OutlineSource::Layer { layer, color: Some(FlatColor { at: Some(at), .. }) }) = part.outline()
+            else {
+                return None;
+            };
+            let (old, new) = (before.layer_named(layer)?, self.layer_named(layer)?);
+            if old.id != new.id || !(Arc::ptr_eq(old, new) || same_pixels(old, new)) {
+                return None;
+            }
+            let (from, to) = (before.map_under(old, part)?.plane, self.map_under(new, part)?.plane);
+            let moved = from.inverse().then(&to).to_canvas(*at).filter(|_| from != to)?;
+            let mut next = Part::clone(part);
+            next.outline_mut()?.points_mut().for_each(|p| *p = moved);
+            Some(Arc::new(next))
+        };
+        if self.parts.list.iter().all(|part| part.place().is_none()) {
+            return self;
+        }
+        let list = self.parts.list.iter().map(|part| carried(part).unwrap_or_else(|| part.clone())).collect();
+        Document { parts: Arc::new(Parts { list, ..Parts::clone(&self.parts) }), ..self }
     }
 }
 
@@ -66,12 +136,8 @@ impl OutlineKey {
         Some(match source {
             OutlineSource::Layer { layer, color } => {
                 let layer = document.layer_named(layer)?;
-                let map = document.map_of(layer.id)?;
-                let home = document.home_of(layer.id).and_then(|home| document.parts.body_of(&home.part));
-                let body = document.parts.body_of(&part.id);
-                let is_home = home.zip(body).is_some_and(|(home, body)| home.id == body.id);
-                let map = if is_home { map.at_home() } else { map };
-                let color = color.map(|color| FlatColor { color, over: document.colors_over(part) });
+                let map = document.map_under(layer, part)?;
+                let color = color.map(|flat| FlatArea { flat, over: document.colors_over(part) });
                 Self::Layer(layer.clone(), color, Box::new(map))
             }
             OutlineSource::File(CoverageFile { coverage, .. }) => Self::Coverage(coverage.clone()),
@@ -105,44 +171,60 @@ impl OutlineKey {
     }
     /// The outline; `None` where nothing is covered.
     pub fn outline(&self, document: &Document, most_px: usize) -> Option<Outline> {
-        match self {
-            Self::Layer(layer, color, map) => {
-                let tiles = pixels(document, layer, map)?;
-                let rect = tiles.bounds();
-                if rect.is_empty() || rect.width().checked_mul(rect.height()).is_none_or(|px| px > most_px) {
-                    return None;
+        self.placed_outline(document, most_px).map(|(outline, _)| outline)
+    }
+    /// The same, and whether it is of another area because its place no longer has its colour.
+    pub fn placed_outline(&self, document: &Document, most_px: usize) -> Option<(Outline, bool)> {
+        let mut is_lost = false;
+        let outline =
+            match self {
+                Self::Layer(layer, color, map) => {
+                    let tiles = pixels(document, layer, map)?;
+                    let rect = tiles.bounds();
+                    if rect.is_empty() || rect.width().checked_mul(rect.height()).is_none_or(|px| px > most_px) {
+                        return None;
+                    }
+                    let coverage = match color {
+                        None => alpha(&tiles, rect),
+                        Some(FlatArea { flat, over }) => {
+                            let flats = Flats::of(&tiles, rect);
+                            let share = flats.share_of(flat.color, over);
+                            match flat.at {
+                                None => share,
+                                Some(at) => {
+                                    let places = ColorPlaces::of(&flats, flat.color);
+                                    let (place, is_beside) =
+                                        places.nearest(at - vec2(rect.x0 as f32, rect.y0 as f32))?;
+                                    is_lost = is_beside;
+                                    places.shares(&[place], &share).pop()?
+                                }
+                            }
+                        }
+                    };
+                    Outline::new((rect.x0, rect.y0), &coverage)
                 }
-                let coverage = match color {
-                    None => alpha(&tiles, rect),
-                    Some(FlatColor { color, over }) => Flats::of(&tiles, rect).share_of(*color, over),
-                };
-                Outline::new((rect.x0, rect.y0), &coverage)
-            }
-            Self::Coverage(coverage) => Outline::new((0, 0), coverage),
-            Self::Selection(selection) => covered(&selection.coverage, most_px),
-            Self::Region(region, surface) => {
-                let scene = Scene { size: document.size, surface: surface.clone() };
-                covered(&Selection::of_region(*region, &scene).coverage, most_px)
-            }
-            Self::Told(pictures) => {
-                let size = pictures.first()?.size();
-                let told = |x: usize, y: usize| pictures.iter().any(|p| p.get(x as i32, y as i32).unwrap_or(0) > 0);
-                Outline::new((0, 0), &Plane::from_fn(size, |x, y| if told(x, y) { 255 } else { 0 }))
-            }
-            Self::Path(OutlineSource::Path(points)) => Outline::of_path(points, most_px),
-            Self::Path(_) => None,
-            Self::Object(surface, object) => {
-                let labels = surface.objects().labels();
-                let coverage =
-                    Plane::from_fn(
-                        surface.size(),
-                        |x, y| {
-                            if labels.at(x, y) == *object { surface.coverage(x, y) } else { 0 }
-                        },
-                    );
-                Outline::new((0, 0), &coverage)
-            }
-        }
+                Self::Coverage(coverage) => Outline::new((0, 0), coverage),
+                Self::Selection(selection) => covered(&selection.coverage, most_px),
+                Self::Region(region, surface) => {
+                    let scene = Scene { size: document.size, surface: surface.clone() };
+                    covered(&Selection::of_region(*region, &scene).coverage, most_px)
+                }
+                Self::Told(pictures) => {
+                    let size = pictures.first()?.size();
+                    let told = |x: usize, y: usize| pictures.iter().any(|p| p.get(x as i32, y as i32).unwrap_or(0) > 0);
+                    Outline::new((0, 0), &Plane::from_fn(size, |x, y| if told(x, y) { 255 } else { 0 }))
+                }
+                Self::Path(OutlineSource::Path(points)) => Outline::of_path(points, most_px),
+                Self::Path(_) => None,
+                Self::Object(surface, object) => {
+                    let labels = surface.objects().labels();
+                    let coverage = Plane::from_fn(surface.size(), |x, y| {
+                        if labels.at(x, y) == *object { surface.coverage(x, y) } else { 0 }
+                    });
+                    Outline::new((0, 0), &coverage)
+                }
+            };
+        Some((outline?, is_lost))
     }
 }
 

@@ -5,6 +5,18 @@ use super::{CoverageFile, Inflation, OutlineSource, Part, PartKind};
 use crate::math::{Affine2, COORDINATE, Range, Vec2};
 use crate::shape::Combine;
 
+impl OutlineSource {
+    /// What it has of points in the part's frame, which go where that goes.
+    pub(in crate::document) fn points_mut(&mut self) -> impl Iterator<Item = &mut Vec2> {
+        let (path, place): (&mut [Vec2], Option<&mut Vec2>) = match self {
+            OutlineSource::Path(points) => (points, None),
+            OutlineSource::Layer { color: Some(flat), .. } => (&mut [], flat.at.as_mut()),
+            _ => (&mut [], None),
+        };
+        path.iter_mut().chain(place)
+    }
+}
+
 impl Part {
     pub const TILT: Range = -80.0..=80.0;
     pub const RAISE: Range = -8192.0..=8192.0;
@@ -65,6 +77,23 @@ impl Part {
             PartKind::Profiles { outline, .. } => outline.as_mut(),
             _ => None,
         }
+    }
+    /// The one place of a colour that it takes, if it takes one.
+    pub fn place(&self) -> Option<Vec2> {
+        match self.outline() {
+            Some(OutlineSource::Layer { color, .. }) => color.and_then(|flat| flat.at),
+            _ => None,
+        }
+    }
+    /// Takes only the area of its colour at a point of its frame, if it takes a colour.
+    pub fn set_place(&mut self, at: Vec2) {
+        if let Some(OutlineSource::Layer { color: Some(flat), .. }) = self.outline_mut() {
+            flat.at = Some(at);
+        }
+    }
+    /// Whether it takes a colour wherever that is.
+    pub fn is_of_color(&self) -> bool {
+        matches!(self.outline(), Some(OutlineSource::Layer { color: Some(flat), .. }) if flat.at.is_none())
     }
     /// The pictures that it names, to be renamed. Maps have names of their own.
     pub fn files_mut(&mut self) -> Vec<&mut CoverageFile> {

@@ -82,8 +82,6 @@ impl Part {
 
 impl OutlineSource {
     fn scale(&mut self, scale: Vec2) {
-        if let OutlineSource::Path(points) = self {
-            points.iter_mut().for_each(|p| *p *= scale);
-        }
+        self.points_mut().for_each(|p| *p *= scale);
     }
 }

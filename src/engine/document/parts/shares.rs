@@ -158,7 +158,7 @@ fn nearest_way(pixel: Pixel, colors: &[Pixel]) -> Option<(Pixel, Pixel, u8)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::parts::flats::{colors_of, parts_of_flats};
+    use crate::document::parts::flats::{PartFor, colors_of, parts_of_flats};
     use crate::document::{Content, Document, Inflation, Layer, PixelLayer};
     use crate::math::{Vec2, vec2};
     use std::sync::Arc;
@@ -230,7 +230,7 @@ mod tests {
     fn a_creature_of_flats_that_touch_has_no_rims_and_no_stray_points() {
         for side in [1.0, 2.2] {
             let tiles = drawn(side, at);
-            let parts = parts_of_flats(&tiles, "Flats", Inflation::default());
+            let parts = parts_of_flats(&tiles, "Flats", Inflation::default(), PartFor::Color);
             assert_eq!(parts.len(), 4);
             let pixels = PixelLayer { tiles: tiles.clone(), ..PixelLayer::default() };
             let layers = vec![Arc::new(Layer::new("Flats", Content::Pixels(pixels)))];

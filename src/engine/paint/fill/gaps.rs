@@ -26,14 +26,8 @@ pub(super) fn closed(inside: PixelSet, start: (i32, i32), canvas: Size, gap_px: 
     // The surroundings of the rectangle count as border; the edge of the canvas does not.
     let rect = inside.rect.grown(i32::from(limit)).intersect(canvas.rect());
     let PixelSet { rect, mut pixels } = inside.within(rect);
-    let to_border = distance::squared(&pixels.map(|p| u8::from(p == 0)), limit);
-    let top = (top_px * LEVELS_PER_PX) as u8;
-    let farthest = (usize::from(limit) + 1).pow(2);
-    let level = |squared: usize| (((squared as f32).sqrt() * LEVELS_PER_PX) as u8).min(top);
-    let levels: Vec<u8> = (0..=farthest).map(level).collect();
-    let levels = to_border.map(|d| levels[usize::from(d).min(farthest)]);
-    drop(to_border);
-    let mut rooms = DistanceHills::new(&pixels, &levels, top);
+    let levels = levels(&pixels, limit, top_px);
+    let mut rooms = DistanceHills::new(&pixels, &levels, (top_px * LEVELS_PER_PX) as u8);
     rooms.rise();
     let width = pixels.width().max(1);
     let first = (start.1 - rect.y0) as usize * width + (start.0 - rect.x0) as usize;
@@ -49,6 +43,44 @@ pub(super) fn closed(inside: PixelSet, start: (i32, i32), canvas: Size, gap_px: 
         }
     });
     PixelSet { rect, pixels }
+}
+
+/// The rooms of some pixels, numbered from 1 in the order of their first pixels; 0 outside. Passages up to `gap_px`
+/// wide divide them; the border of the plane is a wall.
+pub fn rooms(inside: &Plane<bool>, gap_px: f32) -> Plane<u32> {
+    let top_px = 0.5 * (gap_px.max(0.0).min(super::WIDEST_GAP_PX) + 1.0) + CLEARLY_PX;
+    let limit = top_px.ceil() as u16;
+    let size = inside.size();
+    // One pixel around it is the wall.
+    let walled = Size::new(size.width.saturating_add(2), size.height.saturating_add(2));
+    let at = |x: usize, y: usize| inside.get(x as i32 - 1, y as i32 - 1).unwrap_or(false);
+    let pixels = Plane::from_fn(walled, |x, y| u8::from(at(x, y)));
+    let levels = levels(&pixels, limit, top_px);
+    let mut hills = DistanceHills::new(&pixels, &levels, (top_px * LEVELS_PER_PX) as u8);
+    hills.rise();
+    let width = pixels.width();
+    let mut numbers = vec![0u32; pixels.values().len()];
+    let (mut count, mut rooms) = (0, Plane::filled(size, 0u32));
+    for y in 0..rooms.height() {
+        for (x, room) in rooms.row_mut(y).iter_mut().enumerate().filter(|(x, _)| inside.at(*x, y)) {
+            let number = &mut numbers[hills.top_of((y + 1) * width + x + 1)];
+            if *number == 0 {
+                count += 1;
+                *number = count;
+            }
+            *room = *number;
+        }
+    }
+    rooms
+}
+
+/// Levels of distance to the border, capped at the tops.
+fn levels(pixels: &Plane<u8>, limit: u16, top_px: f32) -> Plane<u8> {
+    let top = (top_px * LEVELS_PER_PX) as u8;
+    let farthest = (usize::from(limit) + 1).pow(2);
+    let level = |squared: usize| (((squared as f32).sqrt() * LEVELS_PER_PX) as u8).min(top);
+    let levels: Vec<u8> = (0..=farthest).map(level).collect();
+    distance::squared(&pixels.map(|p| u8::from(p == 0)), limit).map(|d| levels[usize::from(d).min(farthest)])
 }
 
 /// The top of the hill that a pixel with this parent lies on.

@@ -82,6 +82,26 @@ fn a_project_gives_parts_back_with_the_same_surface() {
 }
 
 #[test]
+fn a_place_of_a_colour_is_written_read_and_told_of_when_its_colour_is_gone() {
+    let part = json!([{ "id": "eye", "name": "eye", "kind": "inflate",
+        "outline": { "layer": "Flats", "color": "#c08040", "at": [12.5, 9] } }]);
+    let document = read(&part).unwrap();
+    assert!(document.parts.lost.is_empty() && document.surface.is_some());
+    assert_eq!(recipe::write(&document)["surface"]["parts"][0]["outline"], part[0]["outline"]);
+    let file = Path::new("a.ora");
+    let stored = |document: &Document| project::write(file, document, &Progress::default()).unwrap().unwrap();
+    let back = project::read(file, &stored(&document), &Budget::default()).unwrap();
+    assert!(back.is_whole && back.notes.is_empty(), "{:?}", back.notes);
+    assert_eq!(document.difference(&back.document), None);
+    // Beyond the canvas nothing has the colour.
+    let mut away = part.clone();
+    away[0]["outline"]["at"] = json!([300, -50]);
+    let back = project::read(file, &stored(&read(&away).unwrap()), &Budget::default()).unwrap();
+    assert!(back.notes.iter().any(|note| note.contains("“eye” takes the area")), "{:?}", back.notes);
+    assert_eq!(recipe::write(&back.document)["surface"]["parts"][0]["outline"]["at"], json!([300, -50]));
+}
+
+#[test]
 fn without_parts_the_first_version_is_written() {
     let document = read(&json!([])).unwrap();
     assert!(document.surface.is_none());
@@ -108,6 +128,10 @@ fn what_is_wrong_is_named_with_its_path() {
     says(json!({ "kind": "inflate", "outline": {} }), "names no layer, file, selection, path or object");
     says(json!({ "kind": "inflate", "outline": { "file": "../mask.png" } }), "is refused");
     says(json!({ "kind": "inflate", "outline": { "path": [[0, 0], [1, 1e30]] } }), "must be between");
+    let nowhere = json!({ "layer": "Flats", "at": [1, 2] });
+    says(json!({ "kind": "inflate", "outline": nowhere }), "has a place, but no colour");
+    let far = json!({ "layer": "Flats", "color": "#c08040", "at": [1, 1e30] });
+    says(json!({ "kind": "inflate", "outline": far }), "surface.parts[0].outline.at");
     says(json!({ "kind": "balloon" }), "must be one of inflate, bevel, primitive");
     says(json!({ "kind": "bevel", "outline": layer, "curve": [[0.5, 0], [0.2, 1]] }), "farther in");
     says(json!({ "kind": "sweep", "balls": [[1, 2, -3]] }), "radius of a ball");

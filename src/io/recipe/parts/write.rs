@@ -51,7 +51,8 @@ fn write_outline(outline: &OutlineSource, selection: impl Fn(&str) -> Option<Str
     match outline {
         OutlineSource::Layer { layer, color } => {
             out.set("layer", layer.as_str().into());
-            out.said("color", *color, object::color);
+            out.said("color", color.map(|flat| flat.color), object::color);
+            out.said("at", color.and_then(|flat| flat.at), object::point);
         }
         OutlineSource::File(file) => out.set("file", file.file.as_str().into()),
         OutlineSource::Path(points) => out.set("path", points.iter().copied().map(object::point).collect()),

@@ -1,16 +1,17 @@
 //! Actions on the shape of the document in front: its parts, the farthest first. What cannot be done says why. Floor 6.
 //! `new` makes parts, `greys` the pictures for them from layers; `first` gives a drawing its first shape, `list` orders
-//! them. Not here: parts that the pen changes on the canvas (`tools::shape`).
+//! them, `split` divides them. Not here: parts that the pen changes on the canvas (`tools::shape`).
 
 pub mod first;
 mod greys;
 mod list;
 pub mod new;
+mod split;
 
 pub use first::FirstShape;
 pub use new::NewPart;
 
-use crate::document::parts::Part;
+use crate::document::parts::{Part, flats::PartFor};
 use crate::document::{Document, Inflation, Progress};
 use crate::io::Budget;
 use crate::io::recipe::parts::read_part;
@@ -30,6 +31,26 @@ record!(ShapeSettings { tool, size, hardness, height, share, normal, radius, rea
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InflationPreset(pub Inflation);
 
+/// Whether there is a part for each colour was the question before places were known.
+impl ReplayValue for PartFor {
+    fn written(&self) -> Value {
+        match self {
+            PartFor::Layer => false.into(),
+            PartFor::Color => true.into(),
+            PartFor::Place => PLACES.into(),
+        }
+    }
+    fn read(value: &Value) -> Result<Self, String> {
+        match value {
+            Value::Bool(is_color) => Ok(if *is_color { PartFor::Color } else { PartFor::Layer }),
+            Value::String(word) if word == PLACES => Ok(PartFor::Place),
+            _ => Err(format!("must be true, false or “{PLACES}”")),
+        }
+    }
+}
+
+const PLACES: &str = "places";
+
 impl ReplayValue for InflationPreset {
     fn written(&self) -> Value {
         let known = Inflation::PRESETS.iter().find(|(preset, _)| *preset == self.0);
@@ -46,8 +67,9 @@ actions! {
     PartAction {
         /// From the selected layer, the selection or the chosen part, as its kind says; in front of all others.
         "add" Add { kind: NewPart }
-        /// A layer gets a shape: one part from its alpha, or one from each of its flat colours, and a lit Base.
-        "shape" Shape { layer: LayerPath, preset: InflationPreset, flats: bool }
+        /// A layer gets a shape: one part from its alpha (`false`), one from each of its flat colours (`true`) or from
+        /// each place of them (`"places"`), and a lit Base.
+        "shape" Shape { layer: LayerPath, preset: InflationPreset, flats: PartFor }
         /// A part in a new version, as recipes write it; shown only, until it is `done`.
         "set" Set { part: Value, done: bool }
         /// With what lies on it.
@@ -56,6 +78,8 @@ actions! {
         "order" Order { part: String, index: usize }
         "visible" Visible { part: String, on: bool }
         "duplicate" Duplicate { part: String }
+        /// A part of a colour in several places becomes a part for each.
+        "split" Split { part: String }
         "select" Select { part: String }
         /// The whole shape moved by a map of the canvas (a, b, c, d, e, f), with what is painted on it; shown only,
         /// until it is `done`.
@@ -134,6 +158,10 @@ impl PartAction {
             PartAction::Duplicate { part } => {
                 let (next, id) = list::duplicated(document, &*of(part)?);
                 ("Duplicate part", next, Some(id))
+            }
+            PartAction::Split { part } => {
+                let part = of(part)?;
+                ("Split by place", split::by_place(document, &part)?, Some(part.id.clone()))
             }
             PartAction::Set { .. }
             | PartAction::TakeAlong { .. }

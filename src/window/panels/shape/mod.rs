@@ -55,6 +55,12 @@ pub fn show(ui: &mut Ui, session: &Session, pictures: &mut PartPictures, request
     ui.add_space(2.0);
     let Some(part) = tab.chosen_part() else { return };
     ScrollArea::vertical().id_salt("part").auto_shrink([false, false]).show(ui, |ui| {
+        if part.is_of_color() {
+            let hint = "Areas of its colour that are apart, such as two eyes, become parts of their own";
+            if ui.button("Split by place").on_hover_text(hint).clicked() {
+                act(requests, PartAction::Split { part: part.id.clone() });
+            }
+        }
         if let Some(changed) = numbers::show(ui, part) {
             set(requests, changed);
         }

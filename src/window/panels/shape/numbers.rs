@@ -19,7 +19,10 @@ pub fn show(ui: &mut Ui, part: &Part) -> Option<ValueChange<Part>> {
     let stands = stands(ui, part);
     let source = part.outline().map(|outline| match outline {
         OutlineSource::Layer { layer, color: None } => format!("Follows the layer “{layer}”"),
-        OutlineSource::Layer { layer, color: Some(color) } => format!("Follows the colour {color} of “{layer}”"),
+        OutlineSource::Layer { layer, color: Some(flat) } => {
+            let one = if flat.at.is_some() { "one place of " } else { "" };
+            format!("Follows {one}the colour {} of “{layer}”", flat.color)
+        }
         OutlineSource::Object(object) => format!("Follows object {object} of the maps"),
         _ => "Uses the outline that was selected".to_owned(),
     });

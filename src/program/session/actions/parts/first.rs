@@ -1,10 +1,10 @@
-//! The first shape of a drawing: a part from its outline, or one from each of its flat colours, and a lit Base, so that
-//! the form is seen at once. Floor 6. Not here: what a drawing is (`document::parts::drawing`).
+//! The first shape of a drawing: a part from its outline, or one from each of its flat colours or places, and a lit
+//! Base, so that the form is seen at once. Floor 6. Not here: what a drawing is (`document::parts::drawing`).
 
 use super::{PartRefusal, free_id, new};
 use crate::document::parts::Part;
 use crate::document::parts::drawing::{DrawingLook, FigureBackground, without_background};
-use crate::document::parts::flats::parts_of_flats;
+use crate::document::parts::flats::{PartFor, parts_of_flats};
 use crate::document::{Content, Document, Inflation, Layer, LayerId, LayerSlot, Live, PixelLayer, Progress};
 use crate::math::{srgb::Color, vec3};
 use crate::raster::{BlendMode, TileGrid};
@@ -36,7 +36,7 @@ pub fn shaped(
     document: &Document,
     layer: LayerId,
     inflation: Inflation,
-    flats: bool,
+    each: PartFor,
     progress: &Progress,
 ) -> Result<FirstShape, PartRefusal> {
     let tiles = painted_telling(document, layer, progress)
@@ -57,9 +57,9 @@ pub fn shaped(
     };
     let document = named_alone(&document, layer).ok_or("There is no such layer.")?;
     let name = document.layer(layer).map(|layer| layer.name.clone()).unwrap_or_default();
-    let made = match flats {
-        true => parts_of_flats(&tiles, &name, inflation),
-        false => vec![Part { name: new::free_name(&document, &name), ..Part::of_layer("", &name, inflation) }],
+    let made = match each {
+        PartFor::Color | PartFor::Place => parts_of_flats(&tiles, &name, inflation, each),
+        PartFor::Layer => vec![Part { name: new::free_name(&document, &name), ..Part::of_layer("", &name, inflation) }],
     };
     let mut list = document.parts.list.clone();
     for part in made {
@@ -76,7 +76,10 @@ pub fn shaped(
     let next = next.with_inserted(base, place).ok_or("There is no such layer.")?;
     let next = next.with_parts_telling(list, progress).ok_or("It was given up.")?;
     // A drawing that is one part moves with the part; of several parts, each would take a piece of it.
-    let next = if flats { next } else { next.with_layer_on(layer, Some(&part)).unwrap_or(next) };
+    let next = match each {
+        PartFor::Layer => next.with_layer_on(layer, Some(&part)).unwrap_or(next),
+        PartFor::Color | PartFor::Place => next,
+    };
     match next.surface {
         Some(_) => Ok(FirstShape { document: next, part, base: id }),
         None => Err("Nothing in this layer is opaque enough to have a shape."),

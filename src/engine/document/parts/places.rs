@@ -1,0 +1,165 @@
+//! The places of a flat colour: its areas that nothing joins, or only a passage too narrow to be meant.
+//! Floor 4. Not here: which share of a pixel a colour takes (`shares`), the gap closing (`paint::fill`).
+
+use super::FlatColor;
+use super::shares::Flats;
+use crate::math::srgb::Color;
+use crate::math::{Rect, Size, Vec2, vec2};
+use crate::paint::fill::rooms;
+use crate::raster::{Plane, distance};
+use std::collections::VecDeque;
+
+/// An area that covers less than this share of a picture is left over from edges: it makes no part.
+pub const LEAST_SHARE: f32 = 2e-4;
+
+/// The fewest pixels of an area that makes a part.
+pub fn least_area(size: Size) -> usize {
+    (size.area() as f32 * LEAST_SHARE).max(16.0) as usize
+}
+
+/// The areas of one colour of flats, numbered from 1.
+pub struct ColorPlaces {
+    /// The place of each pixel that is mostly of the colour; 0 elsewhere.
+    labels: Plane<u32>,
+    /// What each covers, and how many pixels that is; the first is place 1.
+    areas: Vec<(Rect, usize)>,
+}
+
+impl ColorPlaces {
+    pub fn of(flats: &Flats, color: Color) -> Self {
+        let inside = flats.share_of(color, &[]).map(|share| share >= 128);
+        let mut labels = rooms(&inside, FlatColor::GAP_PX);
+        let least = least_area(labels.size());
+        let areas = areas(&labels);
+        // Crumbs behind a narrow passage belong to the area at its other end.
+        let is_crumb = |label: u32| label == 0 || areas[label as usize - 1].1 < least;
+        let mut large = labels.map(|label| if is_crumb(label) { 0 } else { label });
+        spread(&mut large, |x, y| labels.at(x, y) > 0);
+        for (label, large) in labels.values_mut().iter_mut().zip(large.values()) {
+            if *large > 0 {
+                *label = *large;
+            }
+        }
+        let areas = self::areas(&labels);
+        Self { labels, areas }
+    }
+    /// The places large enough for parts of their own, the largest first.
+    pub fn large(&self) -> Vec<u32> {
+        let least = least_area(self.labels.size());
+        let mut large: Vec<u32> = (1..=self.areas.len() as u32).filter(|place| self.pixels(*place) >= least).collect();
+        large.sort_by_key(|place| (std::cmp::Reverse(self.pixels(*place)), *place));
+        large
+    }
+    /// How many pixels a place has.
+    pub fn pixels(&self, place: u32) -> usize {
+        self.areas.get((place as usize).wrapping_sub(1)).map_or(0, |(_, pixels)| *pixels)
+    }
+    /// The place at a point of the plane, px, or else the nearest one, and whether it is only that; `None` if there is
+    /// none at all.
+    pub fn nearest(&self, at: Vec2) -> Option<(u32, bool)> {
+        let (x, y) = (at.x.floor(), at.y.floor());
+        let here = self.labels.get(x as i32, y as i32).filter(|place| at.is_finite() && *place > 0);
+        if let Some(place) = here {
+            return Some((place, false));
+        }
+        let (w, h) = (self.labels.width(), self.labels.height());
+        let mut best: Option<(f32, u32)> = None;
+        for y in 0..h {
+            let row = self.labels.row(y);
+            for (x, place) in row.iter().enumerate().take(w).filter(|(_, place)| **place > 0) {
+                let away = vec2(x as f32 + 0.5, y as f32 + 0.5).distance_squared(at);
+                if best.is_none_or(|(least, _)| away < least) {
+                    best = Some((away, *place));
+                }
+            }
+        }
+        best.map(|(_, place)| (place, true))
+    }
+    /// A point of a place, as far from its rim as one can be (of several such points, the one nearest to its centre of
+    /// gravity): the centre of a pixel, px of the plane.
+    pub fn middle(&self, place: u32) -> Vec2 {
+        let Some((rect, pixels)) = self.areas.get((place as usize).wrapping_sub(1)) else { return Vec2::ZERO };
+        let around = rect.grown(1);
+        let size = Size::new(around.width() as u32, around.height() as u32);
+        let is_own = |x: usize, y: usize| self.labels.get(x as i32 + around.x0, y as i32 + around.y0) == Some(place);
+        let rim = Plane::from_fn(size, |x, y| u8::from(!is_own(x, y)));
+        let deep = distance::squared(&rim, distance::FARTHEST);
+        let own = || (0..size.area()).map(|i| (i % rim.width(), i / rim.width())).filter(|(x, y)| rim.at(*x, *y) == 0);
+        let sum = own().fold([0u64; 2], |sum, (x, y)| [sum[0] + x as u64, sum[1] + y as u64]);
+        let mean = sum.map(|sum| sum as f32 / (*pixels).max(1) as f32);
+        let away = |(x, y): (usize, usize)| vec2(x as f32, y as f32).distance_squared(mean.into());
+        let best = own().reduce(|a, b| {
+            let order = deep.at(b.0, b.1).cmp(&deep.at(a.0, a.1)).then(away(a).total_cmp(&away(b)));
+            if order.is_gt() { b } else { a }
+        });
+        best.map_or(Vec2::ZERO, |(x, y)| vec2((x as i32 + around.x0) as f32 + 0.5, (y as i32 + around.y0) as f32 + 0.5))
+    }
+    /// The share of each pixel that each of some places takes of what the colour takes: mixed pixels go to the nearest
+    /// place.
+    pub fn shares(&self, places: &[u32], share: &Plane<u8>) -> Vec<Plane<u8>> {
+        let mut labels = self.labels.clone();
+        spread(&mut labels, |x, y| share.at(x, y) > 0);
+        let of = |x: usize, y: usize, place: u32| if labels.at(x, y) == place { share.at(x, y) } else { 0 };
+        places.iter().map(|place| Plane::from_fn(share.size(), |x, y| of(x, y, *place))).collect()
+    }
+}
+
+/// The places that a part of a colour can be split into.
+pub struct SplitPlaces {
+    places: ColorPlaces,
+    large: Vec<u32>,
+    /// Where the plane lies in the part's frame.
+    corner: Vec2,
+}
+
+impl SplitPlaces {
+    /// Of the picture in a rectangle of the part's frame.
+    pub fn of(flats: &Flats, color: Color, rect: Rect) -> Self {
+        let places = ColorPlaces::of(flats, color);
+        Self { large: places.large(), places, corner: vec2(rect.x0 as f32, rect.y0 as f32) }
+    }
+    /// A point of each place, px of the part's frame, the largest place first.
+    pub fn points(&self) -> Vec<Vec2> {
+        self.large.iter().map(|place| self.corner + self.places.middle(*place)).collect()
+    }
+    /// Which of these places is at a point or nearest to it.
+    pub fn nearest(&self, at: Vec2) -> usize {
+        let found = self.places.nearest(at - self.corner).map(|(place, _)| place);
+        self.large.iter().position(|place| Some(*place) == found).unwrap_or(0)
+    }
+}
+
+/// What each label covers, and how many pixels that is.
+fn areas(labels: &Plane<u32>) -> Vec<(Rect, usize)> {
+    let count = labels.values().iter().copied().max().unwrap_or(0) as usize;
+    let mut areas = vec![(Rect::EMPTY, 0usize); count];
+    for y in 0..labels.height() {
+        for (x, label) in labels.row(y).iter().enumerate().filter(|(_, label)| **label > 0) {
+            let (rect, pixels) = &mut areas[*label as usize - 1];
+            *rect = rect.union(Rect::new(x as i32, y as i32, x as i32 + 1, y as i32 + 1));
+            *pixels += 1;
+        }
+    }
+    areas
+}
+
+/// Gives pixels without a label that of the nearest one, by steps over such pixels.
+fn spread(labels: &mut Plane<u32>, may: impl Fn(usize, usize) -> bool) {
+    let (w, h) = (labels.width(), labels.height());
+    let all = (0..h).flat_map(|y| (0..w).map(move |x| (x, y)));
+    let mut ahead: VecDeque<(usize, usize)> = all.filter(|(x, y)| labels.at(*x, *y) > 0).collect();
+    while let Some((x, y)) = ahead.pop_front() {
+        let label = labels.at(x, y);
+        // Side by side before corner to corner.
+        for (dx, dy) in [(1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, 1), (1, -1), (-1, -1)] {
+            let (x, y) = (x as i32 + dx, y as i32 + dy);
+            if labels.get(x, y) == Some(0) && may(x as usize, y as usize) {
+                labels.set(x as usize, y as usize, label);
+                ahead.push_back((x as usize, y as usize));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

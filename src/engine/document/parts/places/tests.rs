@@ -1,0 +1,168 @@
+//! Areas of one colour are told apart, and parts follow theirs.
+
+use super::super::flats::{PartFor, parts_of_flats};
+use super::super::{Inflation, OutlineSource, Part, PartKind};
+use super::*;
+use crate::document::{CanvasChange, Content, Document, Layer, LayerTransform, PixelLayer};
+use crate::math::PlaneMap;
+use crate::raster::{Resampling, TileGrid};
+use std::sync::Arc;
+
+const SIZE: Size = Size::new(200, 120);
+const EYE: [u8; 3] = [250, 250, 250];
+const BODY: [u8; 3] = [200, 120, 60];
+
+/// Discs (middle, radius, colour), the last in front, anti-aliased by counting.
+fn tiles(discs: &[([f32; 2], f32, [u8; 3])]) -> TileGrid {
+    let mut rgba = vec![0u8; SIZE.area() * 4];
+    for (i, pixel) in rgba.as_chunks_mut::<4>().0.iter_mut().enumerate() {
+        let corner = vec2((i % SIZE.width as usize) as f32, (i / SIZE.width as usize) as f32);
+        let mut sum = [0.0f32; 4];
+        for k in 0..16 {
+            let p = corner + vec2((k % 4) as f32 + 0.5, (k / 4) as f32 + 0.5) / 4.0;
+            if let Some((.., color)) = discs.iter().rev().find(|(c, r, _)| p.distance(Vec2::from(*c)) < *r) {
+                (0..3).for_each(|c| sum[c] += f32::from(color[c]));
+                sum[3] += 1.0;
+            }
+        }
+        if sum[3] > 0.0 {
+            (0..3).for_each(|c| pixel[c] = (sum[c] / sum[3]).round() as u8);
+            pixel[3] = (sum[3] / 16.0 * 255.0).round() as u8;
+        }
+    }
+    TileGrid::from_straight_rgba(&rgba, SIZE.width as usize, SIZE.height as usize, 0, 0)
+}
+fn content(tiles: TileGrid) -> Content {
+    Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles })
+}
+fn face(eyes: &[([f32; 2], f32)]) -> TileGrid {
+    let mut all = vec![([100.0, 60.0], 55.0, BODY)];
+    all.extend(eyes.iter().map(|(at, r)| (*at, *r, EYE)));
+    tiles(&all)
+}
+const EYES: [([f32; 2], f32); 2] = [([80.0, 50.0], 10.0), ([122.0, 50.0], 12.0)];
+
+/// A document of flats with a part for the eye at a point only.
+fn one_eye(at: [f32; 2]) -> Document {
+    let flat = FlatColor { color: Color::parse("#fafafa").unwrap(), at: Some(at.into()) };
+    let outline = OutlineSource::Layer { layer: "Flats".into(), color: Some(flat) };
+    let part = Part::new("eye", PartKind::Inflate { outline, inflation: Inflation::default() });
+    let layers = vec![Arc::new(Layer::new("Flats", content(face(&EYES))))];
+    Document { layers, ..Document::empty(SIZE) }.with_parts(vec![Arc::new(part)])
+}
+fn covered(document: &Document, x: usize, y: usize) -> bool {
+    document.surface.as_ref().is_some_and(|surface| surface.coverage(x, y) > 0)
+}
+fn painted(document: &Document, tiles: TileGrid) -> Document {
+    let id = document.layers[0].id;
+    document.with_layer(id, |layer| layer.content = content(tiles.clone())).unwrap().reshaped()
+}
+
+#[test]
+fn two_eyes_become_two_parts_and_the_body_has_no_place() {
+    let tiles = face(&EYES);
+    let parts = parts_of_flats(&tiles, "Flats", Inflation::default(), PartFor::Place);
+    let places: Vec<Option<Vec2>> = parts.iter().map(Part::place).collect();
+    assert_eq!(places.len(), 3);
+    assert_eq!(places[0], None, "the body lies behind");
+    for (eye, _) in EYES {
+        assert!(places.iter().flatten().any(|at| at.distance(eye.into()) < 1.5), "{eye:?}: {places:?}");
+    }
+    assert_eq!(parts_of_flats(&tiles, "Flats", Inflation::default(), PartFor::Color).len(), 2);
+    let layers = vec![Arc::new(Layer::new("Flats", content(tiles)))];
+    let shaped = Document { layers, ..Document::empty(SIZE) }.with_parts(parts.into_iter().map(Arc::new).collect());
+    assert_eq!(shaped.surface.as_ref().unwrap().objects().count(), 3);
+    assert!(shaped.parts.lost.is_empty());
+}
+
+#[test]
+fn a_part_takes_only_the_area_around_its_point() {
+    let document = one_eye([82.0, 48.0]);
+    assert!(covered(&document, 80, 50) && !covered(&document, 122, 50) && !covered(&document, 100, 100));
+    assert!(document.parts.lost.is_empty());
+}
+
+#[test]
+fn shares_of_all_places_add_up_to_that_of_the_colour() {
+    let tiles = face(&EYES);
+    let flats = Flats::of(&tiles, tiles.bounds());
+    let color = Color::parse("#fafafa").unwrap();
+    let (places, share) = (ColorPlaces::of(&flats, color), flats.share_of(color, &[]));
+    let both = places.shares(&places.large(), &share);
+    assert_eq!(both.len(), 2);
+    for (x, y) in (0..share.height()).flat_map(|y| (0..share.width()).map(move |x| (x, y))) {
+        assert_eq!(both.iter().map(|own| own.at(x, y)).sum::<u8>(), share.at(x, y), "({x}, {y})");
+    }
+}
+
+#[test]
+fn a_narrow_passage_separates_places_and_a_wide_one_joins_them() {
+    let bridge = |height: usize| {
+        let mut rgba = vec![0u8; SIZE.area() * 4];
+        for (i, pixel) in rgba.as_chunks_mut::<4>().0.iter_mut().enumerate() {
+            let (x, y) = (i % SIZE.width as usize, i / SIZE.width as usize);
+            let is_square = (20..80).contains(&y) && ((20..80).contains(&x) || (110..170).contains(&x));
+            if is_square || ((80..110).contains(&x) && (48..48 + height).contains(&y)) {
+                *pixel = [EYE[0], EYE[1], EYE[2], 255];
+            }
+        }
+        let tiles = TileGrid::from_straight_rgba(&rgba, SIZE.width as usize, SIZE.height as usize, 0, 0);
+        let places = ColorPlaces::of(&Flats::of(&tiles, tiles.bounds()), Color::parse("#fafafa").unwrap());
+        places.large().len()
+    };
+    assert_eq!([bridge(0), bridge(1), bridge(2), bridge(8)], [2, 2, 2, 1]);
+}
+
+#[test]
+fn a_part_follows_its_place_when_the_flats_are_painted_again() {
+    let document = one_eye([80.0, 50.0]);
+    let larger = painted(&document, face(&[([80.0, 50.0], 18.0), EYES[1]]));
+    assert!(covered(&larger, 66, 50) && !covered(&document, 66, 50) && !covered(&larger, 122, 50));
+    assert_eq!(larger.note_of_lost(Some(&document)), None);
+    // The eye was painted elsewhere: the nearest is taken, and the user is told once.
+    let elsewhere = painted(&document, face(&[([70.0, 80.0], 10.0), ([160.0, 60.0], 8.0)]));
+    assert!(covered(&elsewhere, 70, 80) && !covered(&elsewhere, 160, 60));
+    assert_eq!(elsewhere.parts.lost, ["eye"]);
+    let note = elsewhere.note_of_lost(Some(&document)).unwrap();
+    assert!(note.contains("“eye”") && note.contains("nearest"), "{note}");
+    assert_eq!(elsewhere.note_of_lost(Some(&elsewhere)), None);
+    let back = painted(&elsewhere, face(&EYES));
+    assert!(back.parts.lost.is_empty() && covered(&back, 80, 50));
+    // Without the colour there is no part.
+    assert!(painted(&document, face(&[])).surface.is_none());
+}
+
+#[test]
+fn a_layer_that_is_moved_takes_the_places_along() {
+    let document = one_eye([80.0, 50.0]);
+    let moved = PlaneMap::affine([1.0, 0.0, 0.0, 1.0, 42.0, 0.0]).unwrap();
+    let change = |layer: &mut Layer| {
+        layer.transform = Some(LayerTransform::of_map(&moved, Resampling::default(), SIZE).unwrap())
+    };
+    let next = document.with_layer(document.layers[0].id, change).unwrap().reshaped();
+    // Without that it would be the left eye, which stands where the right one was.
+    assert_eq!(next.parts.list[0].place(), Some(vec2(122.0, 50.0)));
+    assert!(covered(&next, 122, 50) && !covered(&next, 164, 50) && next.parts.lost.is_empty());
+}
+
+#[test]
+fn places_go_with_the_canvas() {
+    let document = one_eye([80.0, 50.0]);
+    let change = CanvasChange::crop(SIZE, Rect::new(30, 10, 180, 110)).unwrap();
+    let cropped = document.on_other_canvas(&change).unwrap();
+    assert!(covered(&cropped, 50, 40) && !covered(&cropped, 92, 40), "{:?}", cropped.parts.list);
+    assert!(cropped.parts.lost.is_empty());
+}
+
+#[test]
+fn any_point_finds_a_place_or_none() {
+    let tiles = face(&EYES);
+    let flats = Flats::of(&tiles, tiles.bounds());
+    let places = ColorPlaces::of(&flats, Color::parse("#fafafa").unwrap());
+    for at in [Vec2::NAN, Vec2::INFINITY, vec2(-1e9, 1e9), vec2(1e30, 0.0)] {
+        let found = places.nearest(at);
+        assert!(found.is_none_or(|(place, is_beside)| is_beside && places.pixels(place) > 0), "{at}: {found:?}");
+    }
+    let none = ColorPlaces::of(&flats, Color::parse("#010203").unwrap());
+    assert!(none.large().is_empty() && none.nearest(vec2(3.0, 3.0)).is_none());
+}

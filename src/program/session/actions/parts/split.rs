@@ -1,0 +1,66 @@
+//! One part of a colour that stands in several places becomes a part for each place.
+//! Floor 6. Not here: where the places are (`document::parts::places`).
+
+use super::{PartRefusal, free_id};
+use crate::document::Document;
+use crate::document::parts::flats::MOST_COLOURS;
+use crate::document::parts::places::SplitPlaces;
+use crate::document::parts::{Part, PartKind};
+use std::sync::Arc;
+
+/// The document with a part split. The largest place keeps the part's id and name, and the paint that lies on it;
+/// touches and strokes of sculpting go to the place that they are at, and lines and reliefs to all places.
+pub fn by_place(document: &Document, part: &Part) -> Result<Document, PartRefusal> {
+    let refused = "Only a part that follows a colour of a layer, wherever it is, can be split by place.";
+    let places = document.places_of(part).ok_or(refused)?;
+    let points = places.points();
+    match points.len() {
+        0 | 1 => return Err("The colour of this part stands in one place only."),
+        n if n > MOST_COLOURS => return Err("The colour of this part stands in too many places: more than 64."),
+        _ => {}
+    }
+    let upon: Vec<&Arc<Part>> =
+        document.parts.list.iter().filter(|other| other.on() == Some(part.id.as_str())).collect();
+    let mut made: Vec<Arc<Part>> = Vec::new();
+    for (index, point) in points.into_iter().enumerate() {
+        let mut own = part.clone();
+        own.set_place(point);
+        if index > 0 {
+            own.id = free_id(document, &made);
+            own.name = format!("{} {}", part.name, index + 1);
+        }
+        let id = own.id.clone();
+        made.push(Arc::new(own));
+        for other in &upon {
+            let Some(mut other) = at_place(other, &places, index) else { continue };
+            if index > 0 {
+                other.id = free_id(document, &made);
+                other.lie_on(&id);
+            }
+            made.push(Arc::new(other));
+        }
+    }
+    let goes = |other: &Arc<Part>| other.id == part.id || other.on() == Some(part.id.as_str());
+    let at = document.parts.list.iter().position(|other| other.id == part.id).unwrap_or(0);
+    let mut list: Vec<Arc<Part>> = document.parts.list[..at].iter().filter(|other| !goes(other)).cloned().collect();
+    list.extend(made);
+    list.extend(document.parts.list[at..].iter().filter(|other| !goes(other)).cloned());
+    Ok(document.with_parts(list))
+}
+
+/// What of a part that lies on the split one is at a place; `None` if nothing is.
+fn at_place(part: &Part, places: &SplitPlaces, index: usize) -> Option<Part> {
+    let mut own = part.clone();
+    let is_left = match &mut own.kind {
+        PartKind::Touches { touches, .. } => {
+            touches.retain(|touch| places.nearest(touch.at) == index);
+            !touches.is_empty()
+        }
+        PartKind::Sculpt { strokes, .. } => {
+            strokes.retain(|stroke| stroke.samples.first().is_some_and(|(at, _)| places.nearest(*at) == index));
+            !strokes.is_empty()
+        }
+        _ => true,
+    };
+    is_left.then_some(own)
+}
