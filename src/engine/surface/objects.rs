@@ -17,7 +17,7 @@ pub struct Objects {
     /// 0 where there is no surface, else one more than the object's place in `rects`.
     labels: Plane<u32>,
     rects: Vec<Rect>,
-    /// [`Objects::around_block`], row by row.
+    /// As [`Objects::around_blocks`] gives them.
     blocks: OnceLock<Plane<u32>>,
 }
 
