@@ -35,29 +35,59 @@ pub struct FlatArea {
     flat: FlatColor,
     /// The colours of the parts that lie over it, beneath whose edges it continues.
     over: Vec<Color>,
+    /// The colours of all nearer parts of the same layer, moved and hidden ones too: it continues beneath what they
+    /// cover inside of it.
+    nearer: Vec<Color>,
+    /// The other colours of parts of that layer.
+    farther: Vec<Color>,
+}
+
+impl FlatArea {
+    /// The share of each pixel that it takes.
+    fn share(&self, flats: &Flats) -> Plane<u8> {
+        let mut share = flats.share_of(self.flat.color, &self.over);
+        if !self.nearer.is_empty() {
+            flats.fill_beneath(&mut share, &self.nearer, &self.farther);
+        }
+        share
+    }
 }
 
 impl Document {
-    /// The colours of the same layer whose parts lie over a part, where both were made.
-    fn colors_over(&self, part: &Part) -> Vec<Color> {
+    /// What a part takes of the colour of a layer, among the other parts of the same layer.
+    fn area_of(&self, part: &Part, flat: FlatColor) -> FlatArea {
+        let mut area = FlatArea { flat, over: Vec::new(), nearer: Vec::new(), farther: Vec::new() };
         let Some(OutlineSource::Layer { layer: own, .. }) = part.outline().filter(|_| part.on().is_none()) else {
-            return Vec::new();
+            return area;
         };
-        let nearer = self.parts.list.iter().skip_while(|other| other.id != part.id).skip(1);
-        let color = |other: &Arc<Part>| match other.outline() {
-            Some(OutlineSource::Layer { layer, color }) if layer == own && other.matrix == part.matrix => {
-                color.map(|flat| flat.color)
+        // Several parts may take one colour in different places.
+        let add = |to: &mut Vec<Color>, color: Color| {
+            if !to.contains(&color) {
+                to.push(color);
             }
-            _ => None,
         };
-        let mut colors: Vec<Color> = Vec::new();
-        for color in nearer.filter(|other| other.visible && other.on().is_none()).filter_map(color) {
-            // Several parts may take one colour in different places.
-            if !colors.contains(&color) {
-                colors.push(color);
+        let mut is_nearer = false;
+        for other in &self.parts.list {
+            if other.id == part.id {
+                is_nearer = true;
+                continue;
+            }
+            let Some(OutlineSource::Layer { layer, color: Some(FlatColor { color, .. }) }) =
+                other.outline().filter(|_| other.on().is_none())
+            else {
+                continue;
+            };
+            if layer != own {
+                continue;
+            }
+            add(if is_nearer { &mut area.nearer } else { &mut area.farther }, *color);
+            // Edges meet where both were made.
+            if is_nearer && other.visible && other.matrix == part.matrix {
+                add(&mut area.over, *color);
             }
         }
-        colors
+        area.farther.retain(|color| *color != flat.color && !area.nearer.contains(color));
+        area
     }
 }
 
@@ -137,7 +167,7 @@ impl OutlineKey {
             OutlineSource::Layer { layer, color } => {
                 let layer = document.layer_named(layer)?;
                 let map = document.map_under(layer, part)?;
-                let color = color.map(|flat| FlatArea { flat, over: document.colors_over(part) });
+                let color = color.map(|flat| document.area_of(part, flat));
                 Self::Layer(layer.clone(), color, Box::new(map))
             }
             OutlineSource::File(CoverageFile { coverage, .. }) => Self::Coverage(coverage.clone()),
@@ -186,13 +216,13 @@ impl OutlineKey {
                     }
                     let coverage = match color {
                         None => alpha(&tiles, rect),
-                        Some(FlatArea { flat, over }) => {
+                        Some(area) => {
                             let flats = Flats::of(&tiles, rect);
-                            let share = flats.share_of(flat.color, over);
-                            match flat.at {
+                            let share = area.share(&flats);
+                            match area.flat.at {
                                 None => share,
                                 Some(at) => {
-                                    let places = ColorPlaces::of(&flats, flat.color);
+                                    let places = ColorPlaces::of(&flats, area.flat.color);
                                     let (place, is_beside) =
                                         places.nearest(at - vec2(rect.x0 as f32, rect.y0 as f32))?;
                                     is_lost = is_beside;

@@ -2,7 +2,7 @@
 //! Floor 4. Not here: which share of a pixel a colour takes (`shares`), the gap closing (`paint::fill`).
 
 use super::FlatColor;
-use super::shares::Flats;
+use super::shares::{Flats, MOSTLY};
 use crate::math::srgb::Color;
 use crate::math::{Rect, Size, Vec2, vec2};
 use crate::paint::fill::rooms;
@@ -27,7 +27,7 @@ pub struct ColorPlaces {
 
 impl ColorPlaces {
     pub fn of(flats: &Flats, color: Color) -> Self {
-        let inside = flats.share_of(color, &[]).map(|share| share >= 128);
+        let inside = flats.share_of(color, &[]).map(|share| share >= MOSTLY);
         let mut labels = rooms(&inside, FlatColor::GAP_PX);
         let least = least_area(labels.size());
         let areas = areas(&labels);
