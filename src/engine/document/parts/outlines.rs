@@ -46,7 +46,7 @@ impl FlatArea {
     /// The share of each pixel that it takes.
     fn share(&self, flats: &Flats) -> Plane<u8> {
         let mut share = flats.share_of(self.flat.color, &self.over);
-        if !self.nearer.is_empty() {
+        if !(self.nearer.is_empty() && self.farther.is_empty()) {
             flats.fill_beneath(&mut share, &self.nearer, &self.farther);
         }
         share

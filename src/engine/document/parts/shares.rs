@@ -3,6 +3,7 @@
 //! Floor 4. Not here: which colours are parts (`flats`).
 
 use super::near::{NEAR, is_near, share_on_the_way};
+use super::places::least_area;
 use crate::math::srgb::Color;
 use crate::math::{Rect, Size};
 use crate::raster::{Plane, TileGrid};
@@ -80,38 +81,34 @@ impl Flats {
         })
     }
     /// Gives a colour all that the colours of nearer parts cover inside of it: there it goes on beneath them, as a face
-    /// does beneath its eyes. An area that touches the border, or has a flat area of nothing or of a colour of a
-    /// farther part in it, is no such area.
+    /// does beneath its eyes. An area with a flat area of a farther part's colour in it is no such area, unless it is
+    /// too small for a part, as a glint in a pupil is; one that touches the border or is in part empty never is.
     pub fn fill_beneath(&self, share: &mut Plane<u8>, nearer: &[Color], farther: &[Color]) {
-        let nearer: Vec<Pixel> = nearer.iter().copied().map(bytes).collect();
-        let open: Vec<Pixel> = farther.iter().copied().map(bytes).chain([[0; 4]]).collect();
+        let [nearer, farther] = [nearer, farther].map(|colors| colors.iter().copied().map(bytes).collect::<Vec<_>>());
         let is_of = |colors: &[Pixel], x: usize, y: usize| {
             self.is_flat(x, y) && colors.iter().any(|color| is_near(self.pixels.at(x, y), *color))
         };
         let (w, h) = (share.width(), share.height());
+        let least = least_area(share.size());
         let mut seen = share.map(|share| share >= MOSTLY);
         for start in (0..h).flat_map(|y| (0..w).map(move |x| (x, y))) {
-            let (mut is_open, mut has_nearer) = (false, false);
+            if seen.at(start.0, start.1) {
+                continue;
+            }
+            let (mut is_open, mut has_nearer, mut has_farther, mut pixels) = (false, false, false, 0);
             walk(start, (w, h), |x, y| {
                 if seen.at(x, y) {
                     return false;
                 }
                 seen.set(x, y, true);
-                is_open |= x == 0 || y == 0 || x + 1 == w || y + 1 == h || is_of(&open, x, y);
-                has_nearer |= !is_open && is_of(&nearer, x, y);
+                pixels += 1;
+                is_open = is_open || x == 0 || y == 0 || x + 1 == w || y + 1 == h || is_of(&[[0; 4]], x, y);
+                has_nearer = has_nearer || !is_open && is_of(&nearer, x, y);
+                has_farther = has_farther || !is_open && is_of(&farther, x, y);
                 true
             });
-            if has_nearer && !is_open {
-                walk(start, (w, h), |x, y| {
-                    let is_within = share.at(x, y) < MOSTLY;
-                    // With the mixed pixels around it.
-                    for (x, y) in square(x, y, if is_within { 0 } else { REACH - 1 }) {
-                        if is_within || share.get(x, y).is_some_and(|share| share >= MOSTLY) {
-                            share.set(x as usize, y as usize, 255);
-                        }
-                    }
-                    is_within
-                });
+            if !is_open && (pixels < least || has_nearer && !has_farther) {
+                fill(share, start);
             }
         }
     }
@@ -177,6 +174,19 @@ fn walk(start: (usize, usize), (w, h): (usize, usize), mut enter: impl FnMut(usi
             ahead.extend(beside.into_iter().filter(|(x, y)| *x < w && *y < h));
         }
     }
+}
+
+/// Gives a colour all of an area in which it has no pixel mostly, and of the mixed pixels around it.
+fn fill(share: &mut Plane<u8>, start: (usize, usize)) {
+    walk(start, (share.width(), share.height()), |x, y| {
+        let is_within = share.at(x, y) < MOSTLY;
+        for (x, y) in square(x, y, if is_within { 0 } else { REACH - 1 }) {
+            if is_within || share.get(x, y).is_some_and(|share| share >= MOSTLY) {
+                share.set(x as usize, y as usize, 255);
+            }
+        }
+        is_within
+    });
 }
 
 fn bytes(color: Color) -> Pixel {

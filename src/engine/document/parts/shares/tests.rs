@@ -160,6 +160,17 @@ fn what_is_farther_away_shows_through_a_hole() {
     assert!(share == own);
 }
 #[test]
+fn a_glint_too_small_for_a_part_is_no_hole() {
+    let glinting = |radius: f32| {
+        let glint = move |p: Vec2| (p - vec2(80.0, 80.0)).length() < radius;
+        let flats = Flats::of(&drawn(1.0, |p| if glint(p) { EYE } else { at(p) }), SIZE.rect());
+        let mut share = flats.share_of(color(BODY), &[]);
+        flats.fill_beneath(&mut share, &[], &[color(EYE)]);
+        share.at(80, 80)
+    };
+    assert_eq!((glinting(1.5), glinting(6.0)), (255, 0));
+}
+#[test]
 fn a_face_is_whole_beneath_an_eye_that_is_moved_or_hidden() {
     let tiles = drawn(1.0, at);
     let parts = parts_of_flats(&tiles, "Flats", Inflation::default(), PartFor::Color);
