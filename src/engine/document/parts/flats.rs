@@ -2,8 +2,8 @@
 //! outline. Floor 4.
 
 use super::near::is_near;
-use super::places::{ColorPlaces, least_area};
-use super::shares::Flats;
+use super::places::{ColorPlaces, least_area, spread};
+use super::shares::{Flats, MOSTLY};
 use super::{FlatColor, Inflation, OutlineSource, Part, PartKind};
 use crate::math::srgb::Color;
 use crate::math::{Rect, Size, vec2};
@@ -34,10 +34,11 @@ pub fn parts_of_flats(tiles: &TileGrid, layer: &str, inflation: Inflation, each:
     let rect = tiles.bounds();
     let flats = Flats::of(tiles, rect);
     let colors = colors_of(tiles, rect);
-    let (found, areas): (Vec<FlatColor>, Vec<Plane<u8>>) = match each {
+    let (found, mut areas): (Vec<FlatColor>, Vec<Plane<u8>>) = match each {
         PartFor::Place => places(&flats, &colors, rect).into_iter().unzip(),
         _ => colors.iter().map(|color| (FlatColor::from(*color), flats.share_of(*color, &[]))).unzip(),
     };
+    complete(&mut areas, &flats);
     let order = farthest_first(&areas);
     let part = |(place, index): (usize, usize)| {
         let outline = OutlineSource::Layer { layer: layer.into(), color: Some(found[index]) };
@@ -45,6 +46,22 @@ pub fn parts_of_flats(tiles: &TileGrid, layer: &str, inflation: Inflation, each:
         Part { name: format!("Part {}", place + 1), ..Part::new(id, PartKind::Inflate { outline, inflation }) }
     };
     order.into_iter().enumerate().map(part).collect()
+}
+
+/// Gives areas what is painted beside them and makes no part, such as a glint in a pupil: it does not keep two areas
+/// from meeting.
+fn complete(areas: &mut [Plane<u8>], flats: &Flats) {
+    let Some(size) = areas.first().map(Plane::size) else { return };
+    let owner = |x: usize, y: usize| areas.iter().position(|area| area.at(x, y) >= MOSTLY);
+    let mut labels = Plane::from_fn(size, |x, y| owner(x, y).map_or(0, |i| i as u32 + 1));
+    let is_painted = |x: usize, y: usize| flats.pixel(x, y)[3] == 255;
+    spread(&mut labels, is_painted);
+    for (x, y) in (0..labels.height()).flat_map(|y| (0..labels.width()).map(move |x| (x, y))) {
+        let Some(nearest) = (labels.at(x, y) as usize).checked_sub(1).filter(|_| is_painted(x, y)) else { continue };
+        let others = areas.iter().map(|area| u32::from(area.at(x, y))).sum::<u32>();
+        let rest = 255u32.saturating_sub(others) as u8;
+        areas[nearest].set(x, y, areas[nearest].at(x, y).saturating_add(rest));
+    }
 }
 
 /// The places of some colours, a colour that has only one without its point, and the share of each in each pixel.
@@ -96,22 +113,32 @@ pub fn colors_of(tiles: &TileGrid, rect: Rect) -> Vec<Color> {
 
 /// The places of areas in a list, those in front last.
 ///
-/// What each pixel of a common border says about the two areas is added up (`in_front_by`). The clearest decisions
+/// An area that meets nothing but one other lies in front of it, and is as much as a mark on it to all others. What
+/// each pixel of another common border says about the two areas is added up (`in_front_by`). The clearest decisions
 /// count most: the next farthest is always the area that is least in front of the remaining ones.
 pub fn farthest_first(areas: &[Plane<u8>]) -> Vec<usize> {
     let n = areas.len();
     let Some(size) = areas.first().map(|area| area.size()) else { return Vec::new() };
     let radius = (LOOKED_AROUND * size.longer_side()).max(2.0) as usize;
-    let shares: Vec<Plane<f32>> = areas.iter().map(|area| share_around(area, radius)).collect();
-    let owner =
-        Plane::from_fn(size, |x, y| areas.iter().position(|area| area.at(x, y) >= 128).map_or(u32::MAX, |i| i as u32));
+    let mut shares: Vec<Plane<f32>> = areas.iter().map(|area| share_around(area, radius)).collect();
+    let mostly = |x: usize, y: usize| areas.iter().position(|area| area.at(x, y) >= MOSTLY);
+    let owner = Plane::from_fn(size, |x, y| mostly(x, y).map_or(u32::MAX, |i| i as u32));
     // in_front[a][b]: how clearly a lies in front of b.
     let mut in_front = vec![vec![0.0f64; n]; n];
+    let islands = islands(&owner, n);
+    for &Island { area, within, border_px } in &islands {
+        in_front[area][within] = border_px as f64;
+        in_front[within][area] = -(border_px as f64);
+        shares[within] = Plane::from_fn(size, |x, y| shares[within].at(x, y) + shares[area].at(x, y));
+    }
+    let is_known =
+        |a: usize, b: usize| islands.iter().any(|island| [(a, b), (b, a)].contains(&(island.area, island.within)));
     for (x, y) in (0..owner.height()).flat_map(|y| (0..owner.width()).map(move |x| (x, y))) {
         for (dx, dy) in [(1, 0), (0, 1), (2, 0), (0, 2)] {
             let (a, beside) = (owner.at(x, y), (x + dx, y + dy));
             let Some(b) = owner.get(beside.0 as i32, beside.1 as i32) else { continue };
-            if a != b && a != u32::MAX && b != u32::MAX {
+            let is_border = a != b && a != u32::MAX && b != u32::MAX;
+            if is_border && !is_known(a as usize, b as usize) {
                 let (a, b) = (a as usize, b as usize);
                 // Measured on the border itself: each of the two pixels lies on one side of it.
                 let share = |of: usize| 0.5 * (shares[of].at(x, y) + shares[of].at(beside.0, beside.1));
@@ -130,6 +157,47 @@ pub fn farthest_first(areas: &[Plane<u8>]) -> Vec<usize> {
         order.push(left.remove(first));
     }
     order
+}
+
+/// An area all around which is another.
+struct Island {
+    area: usize,
+    within: usize,
+    border_px: usize,
+}
+
+/// The areas that meet only one other, islands in them aside; what is in an island comes before it.
+fn islands(owner: &Plane<u32>, n: usize) -> Vec<Island> {
+    /// A mixed pixel may belong to a third, or to none.
+    const ALL: f32 = 0.95;
+    // px that each area has in common with each other, and with none.
+    let mut borders = vec![vec![0usize; n + 1]; n];
+    let of = |x: i32, y: i32| owner.get(x, y).map_or(n, |owner| (owner as usize).min(n));
+    for (x, y) in (0..owner.height() as i32).flat_map(|y| (0..owner.width() as i32).map(move |x| (x, y))) {
+        for (x1, y1) in [(x - 1, y), (x + 1, y), (x, y - 1), (x, y + 1)] {
+            let (a, b) = (of(x, y), of(x1, y1));
+            if a != b && a < n {
+                borders[a][b] += 1;
+            }
+        }
+    }
+    let mut found: Vec<Island> = Vec::new();
+    loop {
+        let island = |area: usize| {
+            if found.iter().any(|island| island.area == area) {
+                return None;
+            }
+            let is_left = |other: usize| !found.iter().any(|island| island.area == other && island.within == area);
+            let left = || (0..=n).filter(|other| is_left(*other));
+            let within = left().max_by_key(|other| borders[area][*other]).filter(|other| *other < n)?;
+            let (border_px, all) = (borders[area][within], left().map(|other| borders[area][other]).sum::<usize>());
+            (border_px as f32 >= ALL * all as f32 && border_px > 0).then_some(Island { area, within, border_px })
+        };
+        match (0..n).find_map(island) {
+            Some(next) => found.push(next),
+            None => return found,
+        }
+    }
 }
 
 /// How clearly an area lies in front of another at a pixel of their border, from their shares of the neighbourhood;

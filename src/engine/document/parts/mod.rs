@@ -7,6 +7,7 @@
 //! mixed pixels; `places` tells the areas of one colour apart. `forms` has the forms that were made, `scale` changes
 //! the canvas, and `fit` holds parts to what files can hold.
 
+mod beneath;
 mod body;
 mod derive;
 pub mod drawing;

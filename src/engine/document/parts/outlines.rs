@@ -1,12 +1,13 @@
 //! The outlines that parts name: of layers, colours, pictures, paths and objects.
 //! Floor 4.
 
+use super::beneath::fill_beneath;
 use super::places::{ColorPlaces, SplitPlaces};
 use super::shares::Flats;
 use super::{CoverageFile, FlatColor, OutlineSource, Part, PartKind, Parts};
 use crate::document::{Content, Document, Layer, LayerMap, LayerTransform, Progress, flatten_layer};
 use crate::math::srgb::Color;
-use crate::math::{Rect, Size, vec2};
+use crate::math::{Rect, Size, Vec2, vec2};
 use crate::paint::{Scene, Selection};
 use crate::raster::{CoverageGrid, Plane, TileGrid};
 use crate::shape::Outline;
@@ -35,21 +36,29 @@ pub struct FlatArea {
     flat: FlatColor,
     /// The colours of the parts that lie over it, beneath whose edges it continues.
     over: Vec<Color>,
-    /// The colours of all nearer parts of the same layer, moved and hidden ones too: it continues beneath what they
-    /// cover inside of it.
+    /// The colours of all nearer parts of the same layer, the farthest first, moved and hidden ones too: it continues
+    /// beneath what they cover inside of it.
     nearer: Vec<Color>,
     /// The other colours of parts of that layer.
     farther: Vec<Color>,
 }
 
 impl FlatArea {
-    /// The share of each pixel that it takes.
-    fn share(&self, flats: &Flats) -> Plane<u8> {
+    /// The share of each pixel that it takes, and whether its place has its colour no longer, so that this is the
+    /// nearest one; `corner`: of the flats. `None` where the colour is nowhere.
+    fn share(&self, flats: &Flats, corner: Vec2) -> Option<(Plane<u8>, bool)> {
         let mut share = flats.share_of(self.flat.color, &self.over);
-        if !(self.nearer.is_empty() && self.farther.is_empty()) {
-            flats.fill_beneath(&mut share, &self.nearer, &self.farther);
+        let mut is_lost = false;
+        if let Some(at) = self.flat.at {
+            let places = ColorPlaces::of(flats, self.flat.color);
+            let (place, is_beside) = places.nearest(at - corner)?;
+            is_lost = is_beside;
+            share = places.shares(&[place], &share).pop()?;
         }
-        share
+        if !(self.nearer.is_empty() && self.farther.is_empty()) {
+            fill_beneath(&mut share, flats, &self.nearer, &self.farther);
+        }
+        Some((share, is_lost))
     }
 }
 
@@ -86,7 +95,7 @@ impl Document {
                 add(&mut area.over, *color);
             }
         }
-        area.farther.retain(|color| *color != flat.color && !area.nearer.contains(color));
+        area.farther.retain(|color| !area.nearer.contains(color));
         area
     }
 }
@@ -217,18 +226,10 @@ impl OutlineKey {
                     let coverage = match color {
                         None => alpha(&tiles, rect),
                         Some(area) => {
-                            let flats = Flats::of(&tiles, rect);
-                            let share = area.share(&flats);
-                            match area.flat.at {
-                                None => share,
-                                Some(at) => {
-                                    let places = ColorPlaces::of(&flats, area.flat.color);
-                                    let (place, is_beside) =
-                                        places.nearest(at - vec2(rect.x0 as f32, rect.y0 as f32))?;
-                                    is_lost = is_beside;
-                                    places.shares(&[place], &share).pop()?
-                                }
-                            }
+                            let corner = vec2(rect.x0 as f32, rect.y0 as f32);
+                            let (share, is_beside) = area.share(&Flats::of(&tiles, rect), corner)?;
+                            is_lost = is_beside;
+                            share
                         }
                     };
                     Outline::new((rect.x0, rect.y0), &coverage)

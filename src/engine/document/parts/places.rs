@@ -144,7 +144,7 @@ fn areas(labels: &Plane<u32>) -> Vec<(Rect, usize)> {
 }
 
 /// Gives pixels without a label that of the nearest one, by steps over such pixels.
-fn spread(labels: &mut Plane<u32>, may: impl Fn(usize, usize) -> bool) {
+pub fn spread(labels: &mut Plane<u32>, may: impl Fn(usize, usize) -> bool) {
     let (w, h) = (labels.width(), labels.height());
     let all = (0..h).flat_map(|y| (0..w).map(move |x| (x, y)));
     let mut ahead: VecDeque<(usize, usize)> = all.filter(|(x, y)| labels.at(*x, *y) > 0).collect();

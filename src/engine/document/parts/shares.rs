@@ -3,7 +3,6 @@
 //! Floor 4. Not here: which colours are parts (`flats`).
 
 use super::near::{NEAR, is_near, share_on_the_way};
-use super::places::least_area;
 use crate::math::srgb::Color;
 use crate::math::{Rect, Size};
 use crate::raster::{Plane, TileGrid};
@@ -12,10 +11,10 @@ use crate::raster::{Plane, TileGrid};
 pub const MOSTLY: u8 = 128;
 
 /// Premultiplied.
-type Pixel = [u8; 4];
+pub type Pixel = [u8; 4];
 
 /// How far from a mixed pixel the areas that it lies between are sought, px: edges are rarely blurred more.
-const REACH: i32 = 3;
+pub const REACH: i32 = 3;
 /// A pixel in a flat area has its colour in this many of its eight neighbours; along a straight edge two have it.
 const LEAST_ALIKE: usize = 3;
 /// A pixel farther than this from the line between two colours is no mixture of them, a sum of squares over the
@@ -53,6 +52,9 @@ impl Flats {
     pub fn is_flat(&self, x: usize, y: usize) -> bool {
         self.is_flat.at(x, y)
     }
+    pub fn pixel(&self, x: usize, y: usize) -> Pixel {
+        self.pixels.at(x, y)
+    }
     /// Those in flat areas, row by row.
     pub fn flat_pixels(&self) -> impl Iterator<Item = Pixel> + '_ {
         let both = self.pixels.values().iter().zip(self.is_flat.values());
@@ -79,38 +81,6 @@ impl Flats {
                 false => 0,
             }
         })
-    }
-    /// Gives a colour all that the colours of nearer parts cover inside of it: there it goes on beneath them, as a face
-    /// does beneath its eyes. An area with a flat area of a farther part's colour in it is no such area, unless it is
-    /// too small for a part, as a glint in a pupil is; one that touches the border or is in part empty never is.
-    pub fn fill_beneath(&self, share: &mut Plane<u8>, nearer: &[Color], farther: &[Color]) {
-        let [nearer, farther] = [nearer, farther].map(|colors| colors.iter().copied().map(bytes).collect::<Vec<_>>());
-        let is_of = |colors: &[Pixel], x: usize, y: usize| {
-            self.is_flat(x, y) && colors.iter().any(|color| is_near(self.pixels.at(x, y), *color))
-        };
-        let (w, h) = (share.width(), share.height());
-        let least = least_area(share.size());
-        let mut seen = share.map(|share| share >= MOSTLY);
-        for start in (0..h).flat_map(|y| (0..w).map(move |x| (x, y))) {
-            if seen.at(start.0, start.1) {
-                continue;
-            }
-            let (mut is_open, mut has_nearer, mut has_farther, mut pixels) = (false, false, false, 0);
-            walk(start, (w, h), |x, y| {
-                if seen.at(x, y) {
-                    return false;
-                }
-                seen.set(x, y, true);
-                pixels += 1;
-                is_open = is_open || x == 0 || y == 0 || x + 1 == w || y + 1 == h || is_of(&[[0; 4]], x, y);
-                has_nearer = has_nearer || !is_open && is_of(&nearer, x, y);
-                has_farther = has_farther || !is_open && is_of(&farther, x, y);
-                true
-            });
-            if !is_open && (pixels < least || has_nearer && !has_farther) {
-                fill(share, start);
-            }
-        }
     }
     /// The two areas that a mixed pixel lies between, and the share of the second; `None` where it lies between none.
     fn between(&self, x: usize, y: usize) -> Option<(Pixel, Pixel, u8)> {
@@ -165,45 +135,16 @@ impl Flats {
     }
 }
 
-/// Goes from a pixel to those beside it, and on from each that `enter` says to go on from.
-fn walk(start: (usize, usize), (w, h): (usize, usize), mut enter: impl FnMut(usize, usize) -> bool) {
-    let mut ahead = vec![start];
-    while let Some((x, y)) = ahead.pop() {
-        if enter(x, y) {
-            let beside = [(x.wrapping_sub(1), y), (x + 1, y), (x, y.wrapping_sub(1)), (x, y + 1)];
-            ahead.extend(beside.into_iter().filter(|(x, y)| *x < w && *y < h));
-        }
-    }
-}
-
-/// Gives a colour all of an area in which it has no pixel mostly, and of the mixed pixels around it.
-fn fill(share: &mut Plane<u8>, start: (usize, usize)) {
-    walk(start, (share.width(), share.height()), |x, y| {
-        let is_within = share.at(x, y) < MOSTLY;
-        for (x, y) in square(x, y, if is_within { 0 } else { REACH - 1 }) {
-            if is_within || share.get(x, y).is_some_and(|share| share >= MOSTLY) {
-                share.set(x as usize, y as usize, 255);
-            }
-        }
-        is_within
-    });
-}
-
-fn bytes(color: Color) -> Pixel {
+pub fn bytes(color: Color) -> Pixel {
     color.premultiplied().map(|v| (v * 255.0).round() as u8)
 }
 
 const AROUND: [(i32, i32); 8] = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
 
-/// The pixels at most so far from one, in both directions.
-fn square(x: usize, y: usize, reach: i32) -> impl Iterator<Item = (i32, i32)> {
-    let (x, y) = (x as i32, y as i32);
-    (y - reach..=y + reach).flat_map(move |y| (x - reach..=x + reach).map(move |x| (x, y)))
-}
-
 /// The steps to the pixels of a square's border.
 fn ring(reach: i32) -> impl Iterator<Item = (i32, i32)> {
-    square(0, 0, reach).filter(move |(dx, dy): &(i32, i32)| dx.abs().max(dy.abs()) == reach)
+    let all = (-reach..=reach).flat_map(move |dy| (-reach..=reach).map(move |dx| (dx, dy)));
+    all.filter(move |(dx, dy): &(i32, i32)| dx.abs().max(dy.abs()) == reach)
 }
 
 /// The pair of colours whose mixture a pixel is, and the share of the second.
@@ -221,4 +162,4 @@ fn nearest_way(pixel: Pixel, colors: &[Pixel]) -> Option<(Pixel, Pixel, u8)> {
 }
 
 #[cfg(test)]
-mod tests;
+pub mod tests;

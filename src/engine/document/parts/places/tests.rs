@@ -76,6 +76,28 @@ fn two_eyes_become_two_parts_and_the_body_has_no_place() {
 }
 
 #[test]
+fn a_glint_does_not_bring_the_eye_before_its_pupil() {
+    const PUPIL: [u8; 3] = [40, 30, 50];
+    let with_glints = |pupil: f32, glint: f32| {
+        let eye = |x: f32| [([x, 50.0], 14.0, EYE), ([x + 2.0, 52.0], pupil, PUPIL), ([x + 1.5, 51.5], glint, EYE)];
+        let discs: Vec<_> = [([100.0, 60.0], 55.0, BODY)].into_iter().chain(eye(75.0)).chain(eye(125.0)).collect();
+        tiles(&discs)
+    };
+    let colors = |each: PartFor, (pupil, glint): (f32, f32), right_of: f32| -> Vec<[u8; 3]> {
+        let parts = parts_of_flats(&with_glints(pupil, glint), "Flats", Inflation::default(), each);
+        let flats = parts.iter().filter_map(|part| match part.outline() {
+            Some(OutlineSource::Layer { color, .. }) => *color,
+            _ => None,
+        });
+        let here = flats.filter(|flat| flat.at.is_none_or(|at| at.x > right_of));
+        here.map(|FlatColor { color, .. }| [color.r, color.g, color.b]).collect()
+    };
+    assert_eq!(colors(PartFor::Color, (5.0, 2.0), 0.0), [BODY, EYE, PUPIL]);
+    assert_eq!(colors(PartFor::Place, (5.0, 2.0), 100.0), [BODY, EYE, PUPIL], "the glint makes no part");
+    assert_eq!(colors(PartFor::Place, (9.0, 3.0), 100.0), [BODY, EYE, PUPIL, EYE], "it does");
+}
+
+#[test]
 fn a_part_takes_only_the_area_around_its_point() {
     let document = one_eye([82.0, 48.0]);
     assert!(covered(&document, 80, 50) && !covered(&document, 122, 50) && !covered(&document, 100, 100));

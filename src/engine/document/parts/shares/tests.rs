@@ -1,20 +1,20 @@
-//! Shares of mixed pixels, and what lies beneath nearer colours.
+//! Shares of mixed pixels add up, and leave no rims.
 
 use super::*;
 use crate::document::parts::flats::{PartFor, colors_of, parts_of_flats};
-use crate::document::{Content, Document, Inflation, Layer, OutlineSource, Part, PixelLayer};
-use crate::math::{Affine2, Vec2, vec2};
+use crate::document::{Content, Document, Inflation, Layer, PixelLayer};
+use crate::math::{Vec2, vec2};
 use std::sync::Arc;
 
-const SIZE: Size = Size::new(200, 160);
-const BODY: [u8; 4] = [200, 120, 60, 255];
-const WING: [u8; 4] = [90, 140, 60, 255];
+pub const SIZE: Size = Size::new(200, 160);
+pub const BODY: [u8; 4] = [200, 120, 60, 255];
+pub const WING: [u8; 4] = [90, 140, 60, 255];
 /// White and the pupil's colour mix to the body's, nearly.
-const EYE: [u8; 4] = [255, 255, 255, 255];
-const PUPIL: [u8; 4] = [145, 10, 0, 255];
+pub const EYE: [u8; 4] = [255, 255, 255, 255];
+pub const PUPIL: [u8; 4] = [145, 10, 0, 255];
 
 /// A creature of four flats that touch, the nearest last.
-fn at(p: Vec2) -> Pixel {
+pub fn at(p: Vec2) -> Pixel {
     let within = |centre: Vec2, half: Vec2| ((p - centre) / half).length() < 1.0;
     let shapes = [
         (PUPIL, within(vec2(122.0, 61.0), vec2(5.0, 6.0))),
@@ -25,7 +25,7 @@ fn at(p: Vec2) -> Pixel {
     shapes.into_iter().find(|(_, is_in)| *is_in).map_or([0; 4], |(color, _)| color)
 }
 /// Each pixel is the mean over a square about it: sides of 1 are anti-aliased, longer ones blurred.
-fn drawn(side: f32, at: impl Fn(Vec2) -> Pixel) -> TileGrid {
+pub fn drawn(side: f32, at: impl Fn(Vec2) -> Pixel) -> TileGrid {
     const N: usize = 8;
     let mut rgba = Vec::with_capacity(SIZE.area() * 4);
     for i in 0..SIZE.area() {
@@ -42,7 +42,7 @@ fn drawn(side: f32, at: impl Fn(Vec2) -> Pixel) -> TileGrid {
     }
     TileGrid::from_straight_rgba(&rgba, SIZE.width as usize, SIZE.height as usize, 0, 0)
 }
-fn color([r, g, b, a]: Pixel) -> Color {
+pub fn color([r, g, b, a]: Pixel) -> Color {
     Color { r, g, b, a }
 }
 
@@ -120,77 +120,4 @@ fn what_is_behind_goes_on_beneath_the_edge_of_what_lies_over_it() {
     let edge: Vec<usize> = (100..112).filter(|x| (1..255).contains(&alone.at(*x, 66))).collect();
     assert!(!edge.is_empty() && edge.iter().all(|x| beneath.at(*x, 66) == 255), "{edge:?}");
     assert_eq!(beneath.at(120, 60), 0, "not beneath all of it");
-}
-
-/// A body of four flats around its eye, and a hole through it in which something stands.
-fn ringed(p: Vec2) -> Pixel {
-    let hole = (p - vec2(60.0, 90.0)).length();
-    match at(p) {
-        BODY if hole < 6.0 => EYE,
-        BODY if hole < 12.0 => [0; 4],
-        color => color,
-    }
-}
-
-#[test]
-fn a_colour_goes_on_beneath_nearer_colours_inside_of_it_and_a_hole_stays() {
-    for side in [1.0, 2.2] {
-        let flats = Flats::of(&drawn(side, ringed), SIZE.rect());
-        let mut share = flats.share_of(color(BODY), &[]);
-        flats.fill_beneath(&mut share, &[color(EYE), color(PUPIL)], &[color(WING)]);
-        for (x, y) in (52..80).flat_map(|y| (103..137).map(move |x| (x, y))) {
-            assert_eq!(share.at(x, y), 255, "({x}, {y}), beneath the eye, edges of {side} px");
-        }
-        assert_eq!((share.at(60, 81), share.at(60, 90)), (0, 0), "the hole and what stands in it");
-        assert_eq!((share.at(40, 45), share.at(2, 2)), (0, 0), "a wing at the side, and nothing");
-    }
-}
-#[test]
-fn what_is_farther_away_shows_through_a_hole() {
-    let flats = Flats::of(&drawn(1.0, at), SIZE.rect());
-    let own = flats.share_of(color(BODY), &[]);
-    let mut share = own.clone();
-    flats.fill_beneath(&mut share, &[color(PUPIL)], &[color(EYE)]);
-    assert!(share == own, "the eye's white is behind the body");
-    // A glint that is no part is paint on the eye, and the eye without a part of its own stays a hole.
-    flats.fill_beneath(&mut share, &[color(PUPIL)], &[]);
-    assert_eq!(share.at(112, 56), 255);
-    let mut share = own.clone();
-    flats.fill_beneath(&mut share, &[color(WING)], &[]);
-    assert!(share == own);
-}
-#[test]
-fn a_glint_too_small_for_a_part_is_no_hole() {
-    let glinting = |radius: f32| {
-        let glint = move |p: Vec2| (p - vec2(80.0, 80.0)).length() < radius;
-        let flats = Flats::of(&drawn(1.0, |p| if glint(p) { EYE } else { at(p) }), SIZE.rect());
-        let mut share = flats.share_of(color(BODY), &[]);
-        flats.fill_beneath(&mut share, &[], &[color(EYE)]);
-        share.at(80, 80)
-    };
-    assert_eq!((glinting(1.5), glinting(6.0)), (255, 0));
-}
-#[test]
-fn a_face_is_whole_beneath_an_eye_that_is_moved_or_hidden() {
-    let tiles = drawn(1.0, at);
-    let parts = parts_of_flats(&tiles, "Flats", Inflation::default(), PartFor::Color);
-    let pixels = PixelLayer { tiles: tiles.clone(), ..PixelLayer::default() };
-    let layers = vec![Arc::new(Layer::new("Flats", Content::Pixels(pixels)))];
-    let document = Document { layers, ..Document::empty(SIZE) };
-    let is_eye = |part: &Part| {
-        let Some(OutlineSource::Layer { color: Some(flat), .. }) = part.outline() else { return false };
-        [EYE, PUPIL].iter().any(|eye| flat.color == color(*eye))
-    };
-    let with = |edit: &dyn Fn(&mut Part)| {
-        let mut parts = parts.clone();
-        parts.iter_mut().filter(|part| is_eye(part)).for_each(edit);
-        document.with_parts(parts.into_iter().map(Arc::new).collect()).surface.unwrap()
-    };
-    let hidden = with(&|part| part.visible = false);
-    let moved = with(&|part| part.matrix = Affine2::from_translation(vec2(-40.0, 20.0)));
-    for (x, y) in (52..80).flat_map(|y| (103..137).map(move |x| (x, y))) {
-        assert_eq!((hidden.coverage(x, y), moved.coverage(x, y)), (255, 255), "({x}, {y})");
-        let off = hidden.normal(x, y).distance(moved.normal(x, y));
-        assert!(off < 0.02, "({x}, {y}): {off}");
-    }
 }

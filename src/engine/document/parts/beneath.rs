@@ -1,0 +1,174 @@
+//! What a flat colour covers unseen: its area goes on beneath nearer colours, as a face does beneath its eyes.
+//! Floor 4. Not here: which share of a visible pixel a colour takes (`shares`).
+
+use super::near::is_near;
+use super::places::least_area;
+use super::shares::{Flats, MOSTLY, Pixel, REACH, bytes};
+use crate::math::srgb::Color;
+use crate::raster::Plane;
+use std::collections::BTreeMap;
+
+/// A flat area of a farther colour that is at most so many of the smallest areas that make parts…
+const LARGEST_GLINT: usize = 10;
+/// … and at most this share of what the colour covers is painted on it, like a glint in a pupil, and no hole.
+const GLINT_SHARE: f32 = 0.125;
+
+/// What is seen at a pixel, from far to near: this, the nearer colours in their order, glints, and the colour itself.
+const OPEN: u16 = 0;
+/// Of a farther colour: open, or a glint.
+const FARTHER: u16 = u16::MAX - 3;
+const GLINT: u16 = u16::MAX - 2;
+/// No flat area, and no colour of a part.
+const UNKNOWN: u16 = u16::MAX - 1;
+const OWN: u16 = u16::MAX;
+
+/// Gives a colour the areas that nearer colours cover inside of it; `nearer`: the farthest of them first.
+///
+/// A nearer area is inside of the colour if it meets nothing but the colour itself, areas nearer than itself, which may
+/// hide how it goes on, and other areas inside of it. A hole, through which nothing or a farther colour is seen, stays.
+pub fn fill_beneath(share: &mut Plane<u8>, flats: &Flats, nearer: &[Color], farther: &[Color]) {
+    let mut seen = what_is_seen(share, flats, nearer, farther);
+    turn_small_areas_to_glints(&mut seen);
+    spread(&mut seen);
+    let open = what_is_open(&seen);
+    let size = (share.width(), share.height());
+    let is_inside = |x: usize, y: usize| seen.at(x, y) != OWN && !open.at(x, y);
+    for start in pixels(size) {
+        let touches = || beside(start, size).any(|(x, y)| seen.at(x, y) == OWN);
+        if is_inside(start.0, start.1) && share.at(start.0, start.1) < MOSTLY && touches() {
+            walk(start, size, |x, y| {
+                if seen.at(x, y) == OWN {
+                    fill_mixed_around(share, x, y);
+                }
+                let enters = is_inside(x, y) && share.at(x, y) < 255;
+                if enters {
+                    share.set(x, y, 255);
+                }
+                enters
+            });
+        }
+    }
+}
+
+fn what_is_seen(share: &Plane<u8>, flats: &Flats, nearer: &[Color], farther: &[Color]) -> Plane<u16> {
+    let [nearer, farther] = [nearer, farther].map(|colors| colors.iter().copied().map(bytes).collect::<Vec<Pixel>>());
+    let of = |pixel: Pixel| match nearer.iter().position(|color| is_near(pixel, *color)) {
+        _ if is_near(pixel, [0; 4]) => OPEN,
+        Some(place) => (place as u16).saturating_add(1).min(FARTHER - 1),
+        None if farther.iter().any(|color| is_near(pixel, *color)) => FARTHER,
+        None => UNKNOWN,
+    };
+    Plane::from_fn(share.size(), |x, y| match flats.is_flat(x, y) {
+        _ if share.at(x, y) >= MOSTLY => OWN,
+        true => of(flats.pixel(x, y)),
+        false => UNKNOWN,
+    })
+}
+
+/// Decides for areas of farther colours whether they are glints or open.
+fn turn_small_areas_to_glints(seen: &mut Plane<u16>) {
+    let own = seen.values().iter().filter(|seen| **seen == OWN).count();
+    let largest = (LARGEST_GLINT * least_area(seen.size())).min((GLINT_SHARE * own as f32) as usize);
+    let size = (seen.width(), seen.height());
+    for start in pixels(size) {
+        if seen.at(start.0, start.1) != FARTHER {
+            continue;
+        }
+        let mut area = Vec::new();
+        walk(start, size, |x, y| {
+            let enters = seen.at(x, y) == FARTHER;
+            if enters {
+                seen.set(x, y, OPEN);
+                area.push((x, y));
+            }
+            enters
+        });
+        if area.len() <= largest {
+            area.into_iter().for_each(|(x, y)| seen.set(x, y, GLINT));
+        }
+    }
+}
+
+/// Gives pixels between areas what is seen at the nearest one, by steps over such pixels.
+fn spread(seen: &mut Plane<u16>) {
+    let size = (seen.width(), seen.height());
+    let is_known = |seen: u16| seen != UNKNOWN && seen != OWN;
+    let unknown = |seen: &Plane<u16>, at| beside(at, size).any(|(x, y)| seen.at(x, y) == UNKNOWN);
+    let mut rim: Vec<(usize, usize)> =
+        pixels(size).filter(|at| is_known(seen.at(at.0, at.1)) && unknown(seen, *at)).collect();
+    while !rim.is_empty() {
+        let mut next = Vec::new();
+        for at in rim {
+            for (x, y) in beside(at, size).filter(|(x, y)| seen.at(*x, *y) == UNKNOWN).collect::<Vec<_>>() {
+                seen.set(x, y, seen.at(at.0, at.1));
+                next.push((x, y));
+            }
+        }
+        rim = next;
+    }
+    // What nothing is known about, in the middle of the colour itself.
+    seen.values_mut().iter_mut().filter(|seen| **seen == UNKNOWN).for_each(|seen| *seen = OPEN);
+}
+
+/// Which pixels meet the outside: over areas that lie as near, or nearer, step by step.
+fn what_is_open(seen: &Plane<u16>) -> Plane<bool> {
+    let size @ (w, h) = (seen.width(), seen.height());
+    let mut open = seen.map(|seen| seen == OPEN);
+    let mut ahead: BTreeMap<u16, Vec<(usize, usize)>> = BTreeMap::new();
+    let is_border = |(x, y): (usize, usize)| x == 0 || y == 0 || x + 1 == w || y + 1 == h;
+    for at in pixels(size).filter(|at| ![OPEN, OWN].contains(&seen.at(at.0, at.1))) {
+        if is_border(at) || beside(at, size).any(|(x, y)| seen.at(x, y) == OPEN) {
+            ahead.entry(seen.at(at.0, at.1)).or_default().push(at);
+        }
+    }
+    while let Some((here, starts)) = ahead.pop_first() {
+        for start in starts {
+            walk(start, size, |x, y| {
+                let there = seen.at(x, y);
+                if there == OWN || there < here || open.at(x, y) {
+                    return false;
+                }
+                if there > here {
+                    ahead.entry(there).or_default().push((x, y));
+                    return false;
+                }
+                open.set(x, y, true);
+                true
+            });
+        }
+    }
+    open
+}
+
+/// Gives a colour all of the mixed pixels at its rim.
+fn fill_mixed_around(share: &mut Plane<u8>, x: usize, y: usize) {
+    let reach = REACH - 1;
+    let (x, y) = (x as i32, y as i32);
+    for (x, y) in (y - reach..=y + reach).flat_map(|y| (x - reach..=x + reach).map(move |x| (x, y))) {
+        if share.get(x, y).is_some_and(|share| share >= MOSTLY) {
+            share.set(x as usize, y as usize, 255);
+        }
+    }
+}
+
+/// Goes from a pixel to those beside it, and on from each that `enters`.
+fn walk(start: (usize, usize), size: (usize, usize), mut enters: impl FnMut(usize, usize) -> bool) {
+    let mut ahead = vec![start];
+    while let Some(at) = ahead.pop() {
+        if enters(at.0, at.1) {
+            ahead.extend(beside(at, size));
+        }
+    }
+}
+
+fn beside((x, y): (usize, usize), (w, h): (usize, usize)) -> impl Iterator<Item = (usize, usize)> {
+    let all = [(x.wrapping_sub(1), y), (x + 1, y), (x, y.wrapping_sub(1)), (x, y + 1)];
+    all.into_iter().filter(move |(x, y)| *x < w && *y < h)
+}
+
+fn pixels((w, h): (usize, usize)) -> impl Iterator<Item = (usize, usize)> {
+    (0..h).flat_map(move |y| (0..w).map(move |x| (x, y)))
+}
+
+#[cfg(test)]
+mod tests;
