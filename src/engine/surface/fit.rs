@@ -1,9 +1,12 @@
 //! Fitting a surface to a canvas of another size: another object under a finished painting, or a painting at another
-//! scale. Floor 2. Values are averaged over what one new pixel covers, never across a depth jump or the mask's edge.
+//! scale. Floor 2. Values are averaged over what one new pixel covers, never across a depth jump or the mask's edge; at
+//! contours of a larger canvas, by the side of their line (`contours::enlarged`).
 
+use super::contours::{ContourMaps, EnlargedContours};
 use super::{Maps, Surface, SurfaceError};
 use crate::math::{Size, Vec2, Vec3, vec2};
 use crate::raster::Plane;
+use rayon::prelude::*;
 
 impl Surface {
     /// The whole surface as large as `canvas` allows, its aspect kept, centred; what is left of the canvas has no
@@ -25,16 +28,70 @@ impl Surface {
     /// Centred on each other, `scale` canvas px per map px.
     fn resampled(&self, canvas: Size, scale: Vec2) -> Result<Surface, SurfaceError> {
         let map_from_canvas = |q: Vec2| (q - canvas.center()) / scale + self.size().center();
+        let read = self.texels(canvas, scale.recip() * 0.5, map_from_canvas);
+        let maps =
+            Maps { normals: read.map(|v| v.normal), depth: read.map(|v| v.depth), coverage: read.map(|v| v.coverage) };
+        let range_px = self.depth_range_px() * scale.element_product().sqrt();
+        let mut made = Surface::with_depth_range(maps, Some(range_px))?;
+        if scale.min_element() >= 1.0 {
+            made.repeat_beside(self, map_from_canvas);
+        }
+        Ok(made.seen_by(self.eye().scaled(scale.x)))
+    }
+    /// Where there is no surface, the same values as beside the one that this one was made of: what starts there, such
+    /// as a stroke, reads the same at any size.
+    fn repeat_beside(&mut self, of: &Surface, map_from_canvas: impl Fn(Vec2) -> Vec2 + Sync) {
+        let coverage = &self.coverage;
+        let last = vec2(of.size().width as f32, of.size().height as f32) - 1.0;
+        let planes = [&mut self.nbar_x, &mut self.nbar_y, &mut self.nz, &mut self.depth];
+        for (plane, from) in planes.into_iter().zip([&of.nbar_x, &of.nbar_y, &of.nz, &of.depth]) {
+            let width = plane.width();
+            plane.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+                for (x, v) in row.iter_mut().enumerate().filter(|(x, _)| coverage.at(*x, y) == 0) {
+                    let at = map_from_canvas(vec2(x as f32 + 0.5, y as f32 + 0.5)).max(Vec2::ZERO).min(last);
+                    *v = from.at(at.x as usize, at.y as usize);
+                }
+            });
+        }
+    }
+    /// What the pixels of a canvas read.
+    ///
+    /// * `half`: half the sides of the box of the map that one covers, px.
+    /// * `map_from_canvas`: where its middle lies.
+    pub(super) fn texels(
+        &self,
+        canvas: Size,
+        half: Vec2,
+        map_from_canvas: impl Fn(Vec2) -> Vec2 + Sync,
+    ) -> Plane<MeanTexel> {
+        let at = |x: usize, y: usize| map_from_canvas(vec2(x as f32 + 0.5, y as f32 + 0.5));
         // A new pixel covers at least one old one: averaging over that box is then bilinear interpolation.
-        let half = (scale.recip() * 0.5).max(Vec2::splat(0.5));
-        let read =
-            Plane::from_fn(canvas, |x, y| self.mean_over(map_from_canvas(vec2(x as f32 + 0.5, y as f32 + 0.5)), half));
-        Surface::new(Maps {
-            normals: read.map(|v| v.normal),
-            depth: read.map(|v| v.depth),
-            coverage: read.map(|v| v.coverage),
+        let widened = half.max(Vec2::splat(0.5));
+        if half.max_element() > 0.5 + 1e-4 {
+            return Plane::from_fn(canvas, |x, y| self.mean_over(at(x, y), widened));
+        }
+        self.with_contour_maps(None, |maps: &ContourMaps| {
+            let contours = EnlargedContours::new(maps, self.contours());
+            Plane::from_fn(canvas, |x, y| self.enlarged(&contours, at(x, y), half))
         })
-        .map(|surface| surface.seen_by(self.eye().scaled(scale.x)))
+    }
+    /// What a pixel reads that covers at most one old one: interpolated, but at contours by the side of their line
+    /// that its middle lies on; and how much of it is covered.
+    fn enlarged(&self, contours: &EnlargedContours, center: Vec2, half: Vec2) -> MeanTexel {
+        let border = vec2(self.size().width as f32, self.size().height as f32);
+        if center.min_element() < 0.0 || center.x >= border.x || center.y >= border.y {
+            return MeanTexel::default();
+        }
+        let smooth = self.mean_over(center, Vec2::splat(0.5));
+        let (low, high) = ((center - half).max(Vec2::ZERO), (center + half).min(border));
+        let coverage = (255.0 * contours.coverage(low, high)).round() as u8;
+        // What counted as covered still does.
+        let is_held = self.coverage(center.x as usize, center.y as usize) > 0;
+        let coverage = coverage.max(is_held.into());
+        match contours.reading(center) {
+            Some((normal, depth)) => MeanTexel { normal, depth, coverage },
+            None => MeanTexel { coverage, ..smooth },
+        }
     }
     /// The mean over the box of half sides `half` around a point of the map, cut at its border; beyond there is no
     /// surface.
@@ -98,44 +155,4 @@ impl Default for MeanTexel {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::math::vec3;
-
-    /// A plate tilted to the right over the left half, before a far wall over the right half.
-    fn plate_and_wall(size: Size) -> Surface {
-        let left = |x: usize| x < size.width as usize / 2;
-        Surface::new(Maps {
-            normals: Plane::from_fn(size, |x, _| if left(x) { vec3(0.0, 0.6, 0.8) } else { Vec3::Z }),
-            depth: Plane::from_fn(size, |x, _| if left(x) { 0.0 } else { 1.0 }),
-            coverage: Plane::filled(size, 255),
-        })
-        .unwrap()
-    }
-    #[test]
-    fn the_same_size_keeps_every_value() {
-        let a = plate_and_wall(Size::new(8, 6));
-        let b = a.fitted(a.size()).unwrap();
-        assert_eq!(a.depth_plane(), b.depth_plane());
-        assert_eq!(a.coverage_plane(), b.coverage_plane());
-        for y in 0..6 {
-            for x in 0..8 {
-                assert!((a.normal(x, y) - b.normal(x, y)).length() < 1e-6);
-            }
-        }
-    }
-    #[test]
-    fn a_wide_map_on_a_square_canvas_stands_centred_with_its_aspect() {
-        let s = plate_and_wall(Size::new(8, 4)).fitted(Size::new(16, 16)).unwrap();
-        assert_eq!((s.coverage(8, 3), s.coverage(8, 4), s.coverage(8, 11), s.coverage(8, 12)), (0, 255, 255, 0));
-    }
-    #[test]
-    fn no_new_pixel_mixes_the_two_sides_of_a_depth_jump() {
-        for size in [Size::new(7, 5), Size::new(30, 20)] {
-            let s = plate_and_wall(Size::new(10, 8)).stretched(size).unwrap();
-            for &z in s.depth_plane().values() {
-                assert!(z == 0.0 || z == 1.0, "{z}");
-            }
-        }
-    }
-}
+mod tests;

@@ -115,14 +115,11 @@ impl Surface {
     fn sampled(&self, canvas: Size, map: &PlaneMap) -> Result<Surface, SurfaceError> {
         let affine = map.as_affine().ok_or(SurfaceError::Perspective)?;
         let inverse = map.inverse().as_affine().ok_or(SurfaceError::Perspective)?;
-        // A^−T of image axes, and how much a pixel shows along the map's axes: at least one of its pixels.
+        // A^−T of image axes, and how much a pixel shows along the map's axes.
         let (across, back) = (inverse.matrix2.transpose(), inverse.matrix2);
         let scale = affine.matrix2.determinant().abs().sqrt();
-        let half = (vec2(back.row(0).length(), back.row(1).length()) * 0.5).max(Vec2::splat(0.5));
-        let read = Plane::from_fn(canvas, |x, y| {
-            let q = vec2(x as f32 + 0.5, y as f32 + 0.5);
-            self.mean_over(map.from_canvas(q).map_or(Vec2::splat(-1.0), |(p, _)| p), half)
-        });
+        let half = vec2(back.row(0).length(), back.row(1).length()) * 0.5;
+        let read = self.texels(canvas, half, |q| map.from_canvas(q).map_or(Vec2::splat(-1.0), |(p, _)| p));
         let normals = read.map(|v| {
             let nbar = scale * (across * vec2(v.normal.x, -v.normal.y));
             vec3(nbar.x, -nbar.y, v.normal.z).normalize_or(Vec3::ZERO)

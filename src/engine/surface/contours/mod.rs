@@ -5,6 +5,7 @@
 //! Not here: mixing both (`document::compose`).
 
 mod continued;
+mod enlarged;
 mod find;
 mod line;
 mod maps;
@@ -22,6 +23,7 @@ use crate::raster::TileAt;
 use std::ops::Range;
 
 pub(super) use continued::mean_of;
+pub(super) use enlarged::EnlargedContours;
 pub(super) use find::{Found, find};
 pub(super) use line::bits;
 pub(super) use maps::ContourMaps;
