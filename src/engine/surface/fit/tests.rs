@@ -65,7 +65,7 @@ fn a_rim_of_shades_covers_as_much_at_any_larger_size() {
         for (x, y) in (0..3600).map(|i| (i % 60, i / 60)) {
             let of =
                 |k: u32| (x * factor as usize + (k % factor) as usize, y * factor as usize + (k / factor) as usize);
-            let sum: f32 = (0..factor * factor).map(|k| of(k)).map(|(x, y)| f32::from(large.coverage(x, y))).sum();
+            let sum: f32 = (0..factor * factor).map(of).map(|(x, y)| f32::from(large.coverage(x, y))).sum();
             let (mean, told) = (sum / (factor * factor) as f32, f32::from(small.coverage(x, y)));
             assert!((mean - told).abs() < 1.25, "{factor} times, {x}, {y}: {mean} of {told}");
         }
