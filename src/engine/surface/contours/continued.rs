@@ -2,7 +2,8 @@
 //! Floor 2.
 
 use super::ContourPixel;
-use super::line::{CONTINUED_WEIGHTS, LeastSquaresPlane, NEAREST_WEIGHTS, bits};
+use super::line::{CONTINUED_WEIGHTS, NEAREST_WEIGHTS, bits};
+use super::plane::LeastSquaresPlane;
 use super::window::{PixelWindow, steps_of};
 use crate::math::{Vec2, vec2};
 

@@ -2,6 +2,7 @@
 //! side (MATH 10).
 //! Floor 2. Pure functions of a window. Not here: which pixels are looked at (`find`).
 
+use super::plane::LeastSquaresPlane;
 use super::window::{PixelWindow, SIDE, offset_of};
 use crate::math::{Vec2, vec2};
 use std::sync::LazyLock;
@@ -15,17 +16,24 @@ pub struct ContourLine {
     pub toward_near: Vec2,
 }
 
-/// Standard deviations of the windows' Gaussians, px: of the mask's line, of the normals' line.
+/// Standard deviations of the windows' Gaussians, px: of the mask's line where it is straight all over the window, of
+/// the mask's line elsewhere, of the normals' line.
+const STRAIGHT_SIGMA: f32 = 2.0;
 const MASK_SIGMA: f32 = 1.2;
-const NORMALS_SIGMA: f32 = 1.5;
+const NORMALS_SIGMA: f32 = 1.0;
 /// Beyond this n_z² a pixel says little about where n_z² reaches 0.
 const RIM_NZ_SQUARED: f32 = 0.25;
-/// How far the normals' line may lie on the wrong side of a pixel's centre that it should explain, px; what is added by
-/// squared distance, since contours bend: so far a circle of 25 px is from its tangent; within what distance of the
-/// middle pixel; and how far from the mask's own line.
+/// How far a line may lie on the wrong side of a pixel's centre that it should explain, px: that of normals, any other;
+/// what is added by squared distance, since contours bend: so far a circle of 25 px is from its tangent; within what
+/// distance of the middle pixel; and how far the normals' line may be from the mask's own.
+const NORMALS_TOLERANCE_PX: f32 = 0.05;
 const TOLERANCE_PX: f32 = 0.1;
 const BEND_PER_PX: f32 = 0.02;
 const EXPLAINED_PX: f32 = 2.24;
+/// All of the window is nearer than that.
+const WINDOW_PX: f32 = 4.3;
+/// The share of the variance of n_z² that a plane must explain.
+const LEAST_LINEAR: f32 = 0.98;
 const FARTHEST_PX: f32 = 0.7;
 /// Cosine of the greatest angle between both lines.
 const ALIKE: f32 = 0.7;
@@ -33,6 +41,9 @@ const ALIKE: f32 = 0.7;
 const LEAST_FOR_A_LINE: u32 = 6;
 /// The share of a straight edge's contrast that a mask must have to be taken for one.
 const LEAST_CONTRAST: f32 = 0.5;
+/// A Gaussian mean's distance from ½ is taken this many times: a window of 7 px holds 0.92 of a Gaussian of σ = 2 px.
+/// The narrow one is whole, but it sees few pixels, and drawn toward the middle by as much its line is nearer the truth.
+const WITHIN_WINDOW: f32 = 0.92;
 
 impl ContourLine {
     /// The area of the unit pixel on the nearer side, `[0, 1]`: exact (MATH 10).
@@ -76,16 +87,28 @@ impl ContourLine {
         }
         if area > 1e-6 { moment / area } else { Vec2::ZERO }
     }
-    /// The line that a binary mask of the nearer side gives: a Gaussian mean of a step is Φ(d / σ), so that d = σ Φ⁻¹
-    /// of it; its direction is that of the first moments. `None` where the mask is no single edge, such as at a thin
-    /// wire.
+    /// The line that a binary mask of the nearer side gives. Where a line of the wide Gaussian explains all of the
+    /// window, as at a straight edge, it is that one: the more pixels, the finer the line. Where the contour bends, at
+    /// corners and thin strokes, it is that of the narrow one. `None` where the mask is no single edge, such as at a
+    /// thin wire.
     ///
     /// * `near`, `known`: bits of the window: on the nearer side; to be counted at all.
     pub fn of_mask(near: u64, known: u64) -> Option<Self> {
+        let narrow = Self::of_moments(near, known, MASK_SIGMA, &MASK_WEIGHTS)?;
+        let wide = Self::of_moments(near, known, STRAIGHT_SIGMA, &STRAIGHT_WEIGHTS).filter(|wide| {
+            let is_alike = wide.toward_near.dot(narrow.toward_near) >= ALIKE;
+            is_alike && wide.explains(near, known, TOLERANCE_PX, WINDOW_PX)
+        });
+        Some(wide.unwrap_or(narrow))
+    }
+    /// A Gaussian mean of a step is Φ(d / σ), so that d = σ Φ⁻¹ of it; its direction is that of the first moments.
+    ///
+    /// * `sigma`: σ of `weights`, px.
+    fn of_moments(near: u64, known: u64, sigma: f32, weights: &WindowGaussian) -> Option<Self> {
         let (mut all, mut ones) = (0.0, 0.0);
         let (mut moment, mut shift) = (Vec2::ZERO, Vec2::ZERO);
         for i in bits(known) {
-            let w = MASK_WEIGHTS.at(i);
+            let w = weights.at(i);
             let at = offset_of(i);
             (all, shift) = (all + w, shift + w * at);
             if near >> i & 1 == 1 {
@@ -94,29 +117,33 @@ impl ContourLine {
         }
         let mean = (ones / all).clamp(1e-4, 1.0 - 1e-4);
         let gradient = (moment - mean * shift) / all;
-        let quantile = normal_quantile(mean);
+        let quantile = normal_quantile(0.5 + WITHIN_WINDOW * (mean - 0.5));
         // A step at this distance has first moments of σ φ(d / σ).
-        let expected = MASK_SIGMA * (-0.5 * quantile * quantile).exp() / (2.0 * std::f32::consts::PI).sqrt();
+        let expected = sigma * (-0.5 * quantile * quantile).exp() / (2.0 * std::f32::consts::PI).sqrt();
         let toward_near = gradient.try_normalize().filter(|_| gradient.length() > LEAST_CONTRAST * expected)?;
-        Some(Self { distance_px: MASK_SIGMA * quantile, toward_near })
+        Some(Self { distance_px: sigma * quantile, toward_near })
     }
     /// The line that the nearer side's normals give: at a smooth silhouette n_z² falls linearly to 0, so that the zero
-    /// of a plane fitted to it is the contour. `None` where it contradicts the mask: scanned and coarse meshes have
-    /// interpolated normals that never reach the rim.
+    /// of a plane fitted to it is the contour. `None` where it contradicts the mask, or where n_z² is not linear:
+    /// scanned and coarse meshes have interpolated normals that never reach the rim.
     ///
     /// * `guess`: the mask's own line.
     pub fn of_normals(window: &PixelWindow, near: u64, known: u64, guess: ContourLine) -> Option<Self> {
-        let fitted = LeastSquaresPlane::weighted(bits(near), 1e-9, |i| {
+        let weight_and_value = |i: u32| {
             let nz2 = window.nz_squared(i);
             (NORMALS_WEIGHTS.at(i) * (-nz2 / RIM_NZ_SQUARED).exp(), nz2)
-        })?;
+        };
+        let fitted = LeastSquaresPlane::weighted(bits(near), 1e-9, weight_and_value)?;
         let steepness = fitted.slope.length();
         if near.count_ones() < 4 || steepness < 1e-5 {
             return None;
         }
         let line = Self { distance_px: fitted.here / steepness, toward_near: fitted.slope / steepness };
         let in_reach = (-1.2..1.5).contains(&line.distance_px) && line.toward_near.dot(guess.toward_near) >= ALIKE;
-        if !in_reach || !line.explains(near, known) {
+        if !in_reach || !line.explains(near, known, NORMALS_TOLERANCE_PX, EXPLAINED_PX) {
+            return None;
+        }
+        if fitted.explained(bits(near), weight_and_value) < LEAST_LINEAR {
             return None;
         }
         let distance_px = line.distance_px.clamp(guess.distance_px - FARTHEST_PX, guess.distance_px + FARTHEST_PX);
@@ -139,60 +166,22 @@ impl ContourLine {
             return None;
         }
         let line = Self { distance_px: here / steepness, toward_near: slope / steepness };
-        [line, line.turned()].into_iter().find(|line| line.explains(own, own | other))
+        [line, line.turned()].into_iter().find(|line| line.explains(own, own | other, TOLERANCE_PX, EXPLAINED_PX))
     }
-    /// Pixels lie on their side of the line, those nearby, but for a little.
-    fn explains(&self, near: u64, known: u64) -> bool {
+    /// Pixels within `reach_px` of the middle one lie on their side of the line, but for a little.
+    fn explains(&self, near: u64, known: u64, tolerance_px: f32, reach_px: f32) -> bool {
         bits(known).all(|i| {
             let at = offset_of(i);
             let d = self.distance_px + self.toward_near.dot(at);
             let away = at.length();
-            let tolerance = TOLERANCE_PX + BEND_PER_PX * away * away;
-            away > EXPLAINED_PX || if near >> i & 1 == 1 { d } else { -d } >= -tolerance
+            let tolerance = tolerance_px + BEND_PER_PX * away * away;
+            away > reach_px || if near >> i & 1 == 1 { d } else { -d } >= -tolerance
         })
     }
     /// The same line, moved so far that the middle pixel's centre lies on the side that it was seen on.
     pub fn with_center(self, is_near: bool) -> Self {
         let d = self.distance_px;
         Self { distance_px: if is_near { d.max(0.0) } else { d.min(0.0) }, ..self }
-    }
-}
-
-/// A plane v(x, y) fitted to a window's values by weighted least squares.
-#[derive(Clone, Copy, Debug)]
-pub struct LeastSquaresPlane {
-    /// At the middle pixel's centre.
-    pub here: f32,
-    /// Per px, image axes.
-    pub slope: Vec2,
-}
-
-impl LeastSquaresPlane {
-    /// `ridge`: added to both slopes' weights, so that few pixels give a flat plane. `None` without any weight.
-    pub fn weighted(
-        members: impl Iterator<Item = u32>,
-        ridge: f32,
-        weight_and_value: impl Fn(u32) -> (f32, f32),
-    ) -> Option<Self> {
-        let mut sums = [0.0f64; 9];
-        for i in members {
-            let (w, v) = weight_and_value(i);
-            let (w, v, at) = (f64::from(w), f64::from(v), offset_of(i).as_dvec2());
-            let terms = [1.0, at.x, at.y, at.x * at.x, at.x * at.y, at.y * at.y, v, at.x * v, at.y * v];
-            sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += w * term);
-        }
-        let [w, x, y, xx, xy, yy, v, xv, yv] = sums;
-        if w <= 1e-12 {
-            return None;
-        }
-        // Centred, the two slopes come from a 2 × 2 system.
-        let ridge = f64::from(ridge);
-        let (a, b, c) = (xx - x * x / w + ridge, xy - x * y / w, yy - y * y / w + ridge);
-        let (p, q) = (xv - x * v / w, yv - y * v / w);
-        let det = a * c - b * b;
-        let (sx, sy) = if det > 1e-18 { ((c * p - b * q) / det, (a * q - b * p) / det) } else { (0.0, 0.0) };
-        let here = (v - sx * x - sy * y) / w;
-        Some(Self { here: here as f32, slope: vec2(sx as f32, sy as f32) })
     }
 }
 
@@ -231,6 +220,7 @@ fn gaussian(sigma: f32) -> [f32; (SIDE * SIDE) as usize] {
     std::array::from_fn(|i| (-offset_of(i as u32).length_squared() / (2.0 * sigma * sigma)).exp())
 }
 
+static STRAIGHT_WEIGHTS: WindowGaussian = WindowGaussian(LazyLock::new(|| gaussian(STRAIGHT_SIGMA)));
 static MASK_WEIGHTS: WindowGaussian = WindowGaussian(LazyLock::new(|| gaussian(MASK_SIGMA)));
 static NORMALS_WEIGHTS: WindowGaussian = WindowGaussian(LazyLock::new(|| gaussian(NORMALS_SIGMA)));
 /// For maps that are continued as planes.
@@ -276,7 +266,19 @@ mod tests {
             }
         }
         // Without the line the error is 0.25; a binary mask says nothing about an edge along the pixels.
-        assert!(sum / count < 0.12, "{}", sum / count);
+        assert!(sum / count < 0.1, "{}", sum / count);
+    }
+    #[test]
+    fn a_line_of_the_whole_window_is_taken_for_straight_edges_alone() {
+        let of =
+            |is_near: &dyn Fn(Vec2) -> bool| (0..49).filter(|&i| is_near(offset_of(i))).fold(0, |set, i| set | 1 << i);
+        let is_narrow = |near: u64| {
+            ContourLine::of_mask(near, ALL) == ContourLine::of_moments(near, ALL, MASK_SIGMA, &MASK_WEIGHTS)
+        };
+        let toward = Vec2::from_angle(0.3);
+        assert!(!is_narrow(of(&|at| toward.dot(at) > -0.2)), "an edge");
+        assert!(is_narrow(of(&|at| (-0.2..2.8).contains(&toward.dot(at)))), "a stroke of 3 px");
+        assert!(is_narrow(of(&|at| at.x > -0.5 && at.y > -0.5)), "a corner");
     }
     #[test]
     fn a_wire_is_no_edge() {
@@ -289,14 +291,5 @@ mod tests {
         for (p, z) in [(0.5, 0.0), (0.841_345, 1.0), (0.022_750, -2.0), (0.999, 3.090_232)] {
             assert!((normal_quantile(p) - z).abs() < 5e-4, "{p}: {}", normal_quantile(p));
         }
-    }
-    #[test]
-    fn a_plane_is_fitted_exactly() {
-        let value = |i: u32| (1.0, 3.0 + vec2(0.5, -0.25).dot(offset_of(i)));
-        let fit = LeastSquaresPlane::weighted(bits(0b1011 << 14), 0.0, value);
-        assert!(fit.is_some_and(|fit| fit.slope.y == 0.0), "one row tells nothing about y: {fit:?}");
-        let fit = LeastSquaresPlane::weighted(bits(ALL & !0xfff), 0.0, value).unwrap();
-        assert!((fit.here - 3.0).abs() < 1e-5 && (fit.slope - vec2(0.5, -0.25)).length() < 1e-5, "{fit:?}");
-        assert!(LeastSquaresPlane::weighted(bits(0), 1.0, value).is_none());
     }
 }

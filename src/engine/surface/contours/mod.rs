@@ -10,6 +10,7 @@ mod find;
 mod line;
 mod maps;
 mod moved;
+mod plane;
 mod sheet;
 mod window;
 

@@ -1,0 +1,83 @@
+//! A plane fitted to values of a contour pixel's window (MATH 10).
+//! Floor 2.
+
+use super::window::offset_of;
+use crate::math::{Vec2, vec2};
+
+/// A plane v(x, y) fitted to a window's values by weighted least squares.
+#[derive(Clone, Copy, Debug)]
+pub struct LeastSquaresPlane {
+    /// At the middle pixel's centre.
+    pub here: f32,
+    /// Per px, image axes.
+    pub slope: Vec2,
+}
+
+impl LeastSquaresPlane {
+    /// `ridge`: added to both slopes' weights, so that few pixels give a flat plane. `None` without any weight.
+    pub fn weighted(
+        members: impl Iterator<Item = u32>,
+        ridge: f32,
+        weight_and_value: impl Fn(u32) -> (f32, f32),
+    ) -> Option<Self> {
+        let mut sums = [0.0f64; 9];
+        for i in members {
+            let (w, v) = weight_and_value(i);
+            let (w, v, at) = (f64::from(w), f64::from(v), offset_of(i).as_dvec2());
+            let terms = [1.0, at.x, at.y, at.x * at.x, at.x * at.y, at.y * at.y, v, at.x * v, at.y * v];
+            sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += w * term);
+        }
+        let [w, x, y, xx, xy, yy, v, xv, yv] = sums;
+        if w <= 1e-12 {
+            return None;
+        }
+        // Centred, the two slopes come from a 2 × 2 system.
+        let ridge = f64::from(ridge);
+        let (a, b, c) = (xx - x * x / w + ridge, xy - x * y / w, yy - y * y / w + ridge);
+        let (p, q) = (xv - x * v / w, yv - y * v / w);
+        let det = a * c - b * b;
+        let (sx, sy) = if det > 1e-18 { ((c * p - b * q) / det, (a * q - b * p) / det) } else { (0.0, 0.0) };
+        let here = (v - sx * x - sy * y) / w;
+        Some(Self { here: here as f32, slope: vec2(sx as f32, sy as f32) })
+    }
+    /// The share of the values' variance that the plane explains, `[0, 1]` for the values that it was fitted to.
+    pub fn explained(&self, members: impl Iterator<Item = u32>, weight_and_value: impl Fn(u32) -> (f32, f32)) -> f32 {
+        let (mut all, mut sum, mut squares, mut left) = (0.0, 0.0, 0.0, 0.0);
+        for i in members {
+            let (w, v) = weight_and_value(i);
+            // From the plane at the middle pixel: sums of differences lose fewer digits.
+            let (v, slope) = (v - self.here, self.slope.dot(offset_of(i)));
+            (all, sum, squares) = (all + w, sum + w * v, squares + w * v * v);
+            left += w * (v - slope) * (v - slope);
+        }
+        let variance = squares - sum * sum / all;
+        if variance > 0.0 { 1.0 - left / variance } else { 0.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::contours::line::bits;
+    use crate::surface::contours::window::ALL;
+
+    #[test]
+    fn a_plane_is_fitted_exactly() {
+        let value = |i: u32| (1.0, 3.0 + vec2(0.5, -0.25).dot(offset_of(i)));
+        let fit = LeastSquaresPlane::weighted(bits(0b1011 << 14), 0.0, value);
+        assert!(fit.is_some_and(|fit| fit.slope.y == 0.0), "one row tells nothing about y: {fit:?}");
+        let fit = LeastSquaresPlane::weighted(bits(ALL & !0xfff), 0.0, value).unwrap();
+        assert!((fit.here - 3.0).abs() < 1e-5 && (fit.slope - vec2(0.5, -0.25)).length() < 1e-5, "{fit:?}");
+        assert!(LeastSquaresPlane::weighted(bits(0), 1.0, value).is_none());
+    }
+    #[test]
+    fn a_plane_explains_all_of_linear_values_and_less_of_others() {
+        let linear = |i: u32| (1.0, 0.4 + vec2(0.1, -0.05).dot(offset_of(i)));
+        let fit = LeastSquaresPlane::weighted(bits(ALL), 0.0, linear).unwrap();
+        assert!((fit.explained(bits(ALL), linear) - 1.0).abs() < 1e-5);
+        let facets = |i: u32| (1.0, 0.4 + vec2(0.1, -0.05).dot(offset_of(i)).clamp(-0.1, 0.1));
+        let fit = LeastSquaresPlane::weighted(bits(ALL), 0.0, facets).unwrap();
+        assert!(fit.explained(bits(ALL), facets) < 0.98);
+        assert_eq!(fit.explained(bits(ALL), |_| (1.0, fit.here)), 0.0, "nothing to explain");
+    }
+}
