@@ -42,7 +42,7 @@ const LEAST_FOR_A_LINE: u32 = 6;
 /// The share of a straight edge's contrast that a mask must have to be taken for one.
 const LEAST_CONTRAST: f32 = 0.5;
 /// A Gaussian mean's distance from ½ is taken this many times: a window of 7 px holds 0.92 of a Gaussian of σ = 2 px.
-/// The narrow one is whole, but it sees few pixels, and drawn toward the middle by as much its line is nearer the truth.
+/// The narrow one is whole, but it sees few pixels, and drawn to ½ by as much its line is nearer the truth.
 const WITHIN_WINDOW: f32 = 0.92;
 
 impl ContourLine {
