@@ -40,7 +40,7 @@ pub fn smooth_links(links: &Plane<u8>, nbar: [&Plane<f32>; 2]) -> Option<Plane<u
     let mut steps = Plane::filled(links.size(), 0u8);
     let width = links.width().max(1);
     steps.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| maps.flags_of_row(y, row));
-    keep_chains(&mut steps);
+    keep_chains(&mut steps, links);
     if steps.values().iter().all(|&flags| flags & ANY_CREASE == 0) {
         return None;
     }
@@ -75,10 +75,11 @@ impl Axis {
 }
 
 /// Turns likely creases into creases where they touch one, over the eight neighbours of a pixel, and drops what is too
-/// short.
-fn keep_chains(steps: &mut Plane<u8>) {
+/// short, unless it closes a gap in the line of a jump: that fades where two bodies run into each other.
+fn keep_chains(steps: &mut Plane<u8>, links: &Plane<u8>) {
     let width = steps.width();
-    let mut seeds: Vec<usize> = (0..steps.values().len()).filter(|&i| steps.values()[i] & ANY_CREASE != 0).collect();
+    let at = |i: usize| ((i % width) as i32, (i / width) as i32);
+    let mut seeds: Vec<usize> = (0..steps.values().len()).filter(|&i| steps.values()[i] != 0).collect();
     let mut seen = HashSet::new();
     while let Some(seed) = seeds.pop() {
         if !seen.insert(seed) {
@@ -86,7 +87,7 @@ fn keep_chains(steps: &mut Plane<u8>) {
         }
         let (mut chain, mut next) = (vec![seed], 0);
         while next < chain.len() {
-            let (x, y) = ((chain[next] % width) as i32, (chain[next] / width) as i32);
+            let (x, y) = at(chain[next]);
             for (x, y) in (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (x + dx, y + dy))) {
                 let is_step = steps.get(x, y).is_some_and(|flags| flags & ANY != 0);
                 if is_step && seen.insert(y as usize * width + x as usize) {
@@ -95,12 +96,39 @@ fn keep_chains(steps: &mut Plane<u8>) {
             }
             next += 1;
         }
-        let is_kept = chain.len() >= LEAST_STEPS;
+        let is_certain = chain.iter().any(|&i| steps.values()[i] & ANY_CREASE != 0);
+        let ends = || -> HashSet<(i32, i32)> {
+            let corners = chain.iter().flat_map(|&i| corners_of(at(i), steps.values()[i]));
+            corners.filter(|corner| is_at_jump(links, *corner)).collect()
+        };
+        let is_kept = is_certain && chain.len() >= LEAST_STEPS || ends().len() >= 2;
         for i in chain {
             let flags = &mut steps.values_mut()[i];
             *flags = if is_kept { (*flags | *flags >> 1) & ANY_CREASE } else { 0 };
         }
     }
+}
+
+/// The corners of pixels at which the flagged sides of a pixel end.
+fn corners_of((x, y): (i32, i32), flags: u8) -> impl Iterator<Item = (i32, i32)> {
+    let ends = |axis: Axis, from: (i32, i32)| {
+        let is_flagged = flags >> axis.shift() & (CREASE | LIKELY_CREASE) != 0;
+        is_flagged.then_some([from, (x + 1, y + 1)]).into_iter().flatten()
+    };
+    ends(Axis::Across, (x + 1, y)).chain(ends(Axis::Down, (x, y + 1)))
+}
+
+/// Whether a jump ends at a corner of pixels, or passes it.
+fn is_at_jump(links: &Plane<u8>, (x, y): (i32, i32)) -> bool {
+    let linked = |x: i32, y: i32| links.get(x, y).unwrap_or(0);
+    let is_jump = |here: (i32, i32), link: u8, there: (i32, i32)| {
+        let (here, there) = (linked(here.0, here.1), linked(there.0, there.1));
+        here != 0 && there != 0 && here & link == 0
+    };
+    is_jump((x - 1, y - 1), links::RIGHT, (x, y - 1))
+        || is_jump((x - 1, y), links::RIGHT, (x, y))
+        || is_jump((x - 1, y - 1), links::DOWN, (x - 1, y))
+        || is_jump((x, y - 1), links::DOWN, (x, y))
 }
 
 /// What a step from one pixel to the next is judged by.
@@ -201,11 +229,19 @@ mod tests {
 
     const SIZE: Size = Size::new(40, 30);
 
-    /// The rows and columns of the right steps that are cut.
+    /// The columns and rows of the right steps that are cut.
     fn cut(normal: impl Fn(usize, usize) -> Vec3 + Sync) -> Vec<(usize, usize)> {
+        cut_beside(|_, _| false, normal)
+    }
+    /// The same, with jumps after some pixels.
+    fn cut_beside(
+        jumps: impl Fn(usize, usize) -> bool + Sync,
+        normal: impl Fn(usize, usize) -> Vec3 + Sync,
+    ) -> Vec<(usize, usize)> {
         let all = Plane::from_fn(SIZE, |x, y| {
             let side = |bit: u8, is: bool| if is { bit } else { 0 };
-            side(links::LEFT, x > 0) | side(links::RIGHT, x < 39) | side(links::UP, y > 0) | side(links::DOWN, y < 29)
+            let (left, right) = (x > 0 && !jumps(x - 1, y), x < 39 && !jumps(x, y));
+            side(links::LEFT, left) | side(links::RIGHT, right) | side(links::UP, y > 0) | side(links::DOWN, y < 29)
         });
         let of = |axis: usize| Plane::from_fn(SIZE, |x, y| normal(x, y).normalize()[axis]);
         let [x, y] = [of(0), of(1)];
@@ -247,6 +283,14 @@ mod tests {
     fn a_roof_is_cut_at_its_ridge_alone() {
         let roof = |x: usize, _| vec3(if x < 20 { -0.5 } else { 0.5 }, 0.0, 1.0);
         assert_eq!(cut(roof), (0..30).map(|y| (19, y)).collect::<Vec<_>>());
+    }
+    #[test]
+    fn a_gap_in_the_line_of_a_jump_is_cut_however_slight_the_turn() {
+        let roof = |x: usize, y: usize| vec3(if x < 20 { -0.08 } else { 0.08 }, 0.0, 1.0);
+        let broken = |x: usize, y: usize| x == 19 && !(10..12).contains(&y);
+        assert_eq!(cut_beside(broken, roof), [(19, 10), (19, 11)]);
+        let ending = |x: usize, y: usize| x == 19 && y < 10;
+        assert_eq!(cut_beside(ending, roof), [], "nothing so slight goes on beyond the jump");
     }
     #[test]
     fn a_ridge_that_a_renderer_mixed_in_a_pixel_is_cut_at_its_longer_half() {
