@@ -104,15 +104,15 @@ fn every_kind_of_layer_and_any_number_of_them_is_smooth_at_contours() {
     // one ray a pixel.
     let kinds = [
         ("fill", json!([fill("#d08040")]), 0.06),
-        ("gradient", json!([gradient]), 0.10),
-        ("image", json!([image]), 0.20),
-        ("strokes", json!([fill("#304030"), strokes]), 0.16),
-        ("Phong", json!([phong]), 0.11),
-        ("mirror", json!([mirror]), 0.19),
-        ("mirror with two bounces", json!([bounced]), 0.27),
+        ("gradient", json!([gradient]), 0.09),
+        ("image", json!([image]), 0.18),
+        ("strokes", json!([fill("#304030"), strokes]), 0.14),
+        ("Phong", json!([phong]), 0.10),
+        ("mirror", json!([mirror]), 0.15),
+        ("mirror with two bounces", json!([bounced]), 0.25),
         ("radiance scaling", json!([phong, scaling]), 0.24),
-        ("Fresnel mask", json!([phong, masked(json!({ "kind": "fresnel" }))]), 0.18),
-        ("curvature mask", json!([phong, masked(curvature)]), 0.51),
+        ("Fresnel mask", json!([phong, masked(json!({ "kind": "fresnel" }))]), 0.16),
+        ("curvature mask", json!([phong, masked(curvature)]), 0.53),
         ("depth mask", json!([phong, masked(json!({ "kind": "depth" }))]), 0.09),
     ];
     let surfaces = [surface(1), surface(TIMES)];
