@@ -286,7 +286,7 @@ mod tests {
     }
     #[test]
     fn a_gap_in_the_line_of_a_jump_is_cut_however_slight_the_turn() {
-        let roof = |x: usize, y: usize| vec3(if x < 20 { -0.08 } else { 0.08 }, 0.0, 1.0);
+        let roof = |x: usize, _: usize| vec3(if x < 20 { -0.08 } else { 0.08 }, 0.0, 1.0);
         let broken = |x: usize, y: usize| x == 19 && !(10..12).contains(&y);
         assert_eq!(cut_beside(broken, roof), [(19, 10), (19, 11)]);
         let ending = |x: usize, y: usize| x == 19 && y < 10;
