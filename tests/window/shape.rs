@@ -4,7 +4,7 @@ use super::{Story, choose, command, drag, key, layers, press, session, steps, st
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Key, Modifiers, Vec2, vec2};
 use egui_kittest::kittest::Queryable;
-use rilievo_engine::document::{Part, PartKind};
+use rilievo_engine::document::{Document, Part, PartKind, Progress, flatten_layer};
 use rilievo_program::tools::ToolKind;
 use rilievo_window::MainWindow;
 use std::path::{Path, PathBuf};
@@ -168,6 +168,41 @@ fn who_only_wants_to_paint_is_not_asked_again_but_told_where_marks_lie_flat() {
     give(&mut harness);
     assert_eq!(parts(&harness).len(), 1);
     assert!(puff(&parts(&harness)[0]) < 0.3);
+}
+#[test]
+fn a_first_minute_leads_from_a_drawing_to_a_bent_stroke_and_its_picture() {
+    let folder = TempDir::new().unwrap();
+    let mut harness = opening(&drawing(&folder));
+    asked(&mut harness);
+    press(&mut harness, "Tube");
+    give(&mut harness);
+    key(&mut harness, Modifiers::NONE, Key::B);
+    key(&mut harness, Modifiers::NONE, Key::F3);
+    stroke(&mut harness, vec2(40.0, 60.0));
+    let painted = |harness: &Story, is_bent: bool| {
+        let document = session(harness).active().unwrap().document().clone();
+        let top = document.layers.last().unwrap().id;
+        let document = if is_bent { document } else { Document { surface: None, ..document } };
+        flatten_layer(&document, top, &Progress::default()).unwrap().to_straight_rgba(document.size.rect())
+    };
+    let (bent, flat) = (painted(&harness, true), painted(&harness, false));
+    let apart = bent.iter().zip(&flat).filter(|(a, b)| a.abs_diff(**b) > 30).count();
+    assert!(apart > 200, "{apart} values differ from the flat stroke");
+
+    key(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(layers(&harness), ["creature", "Base"]);
+    key(&mut harness, Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    assert!(painted(&harness, true) == bent);
+    command(&mut harness, "Export…");
+    press(&mut harness, "Export…");
+    let png = folder.path().join("painted.png");
+    choose(&mut harness, &png);
+    until(&mut harness, |harness| harness.query_by_label_contains("Exported").is_some());
+    let (before, after) =
+        (image::open(drawing(&folder)).unwrap().into_rgba8(), image::open(&png).unwrap().into_rgba8());
+    let changed = before.pixels().zip(after.pixels()).filter(|(a, b)| a != b).count();
+    assert_eq!(before.dimensions(), after.dimensions());
+    assert!(changed > 20_000, "lit all over: {changed}");
 }
 #[test]
 fn parts_are_added_chosen_ordered_hidden_and_renamed_by_their_controls() {

@@ -2,8 +2,9 @@
 //! the files (`io::export::shape`).
 
 use super::force::Force;
+use super::told::tell;
 use super::{LimitArgs, values};
-use crate::document::parts::flats::{self, PartFor};
+use crate::document::parts::flats::{self, FlatParts, PartFor};
 use crate::document::parts::{Inflation, Part};
 use crate::document::{Content, Document, Layer, PixelLayer};
 use crate::io::export::shape::{ShapeFiles, ShapeMap, ShapeOptions};
@@ -88,7 +89,7 @@ fn rim(text: &str) -> std::result::Result<f32, String> {
 
 pub fn run(args: &ShapeArgs) -> Result<()> {
     args.limits.install(|| {
-        let document = shaped(args)?;
+        let (document, note) = shaped(args)?;
         let nothing = || Error::unsupported(&args.drawing, "nothing in it is opaque enough to have a shape");
         let surface = document.surface.as_ref().ok_or_else(nothing)?;
         std::fs::create_dir_all(&args.output).map_err(|e| Error::io(&args.output, e))?;
@@ -102,12 +103,14 @@ pub fn run(args: &ShapeArgs) -> Result<()> {
         let maps = ShapeMap::ALL.map(|(map, _)| map);
         // The extension of the name is not part of it.
         let base = args.output.join(format!("{stem}.{}", args.format));
-        ShapeFiles::new(&base, &maps, options, &args.force.export(reads))?.write(surface).map(drop)
+        ShapeFiles::new(&base, &maps, options, &args.force.export(reads))?.write(surface)?;
+        tell(args.flats.as_ref().unwrap_or(&args.drawing), note.as_slice());
+        Ok(())
     })
 }
 
-/// The drawing as a document with parts.
-fn shaped(args: &ShapeArgs) -> Result<Document> {
+/// The drawing as a document with parts, and what is told about colours without one.
+fn shaped(args: &ShapeArgs) -> Result<(Document, Option<String>)> {
     let budget = args.limits.budget();
     let inflation = Inflation {
         puff: args.puff.unwrap_or(args.preset.puff),
@@ -121,7 +124,8 @@ fn shaped(args: &ShapeArgs) -> Result<Document> {
     let (parts, layers) = match &args.flats {
         None => {
             refuse_opaque(&args.drawing, &drawing, size)?;
-            (vec![Part::of_layer("drawing", "Drawing", inflation)], vec![layer("Drawing", drawing)])
+            let part = Part::of_layer("drawing", "Drawing", inflation);
+            (FlatParts { parts: vec![part], left_out: 0 }, vec![layer("Drawing", drawing)])
         }
         Some(file) => {
             let (other, flats) = tiles(file, &budget)?;
@@ -130,14 +134,15 @@ fn shaped(args: &ShapeArgs) -> Result<Document> {
             }
             let each = if args.places { PartFor::Place } else { PartFor::Color };
             let parts = flats::parts_of_flats(&flats, "Flats", inflation, each);
-            if parts.is_empty() {
+            if parts.parts.is_empty() {
                 return Err(Error::unsupported(file, "no flat colour in it covers enough to be a part"));
             }
             (parts, vec![layer("Flats", flats), layer("Drawing", drawing)])
         }
     };
     let document = Document { layers, ..Document::empty(size) };
-    Ok(document.with_parts(parts.into_iter().map(Arc::new).collect()))
+    let note = parts.note();
+    Ok((document.with_parts(parts.parts.into_iter().map(Arc::new).collect()), note))
 }
 
 fn layer(name: &str, tiles: TileGrid) -> Arc<Layer> {

@@ -296,7 +296,7 @@ impl Session {
     }
     /// Notes why edits were not kept, and what they did to parts.
     fn tell_refusals(&mut self) {
-        let told = |tab: &mut OpenDocument| [tab.refused.take(), tab.lost.take()];
+        let told = |tab: &mut OpenDocument| [tab.refused.take(), tab.noted.take()];
         self.notes.extend(self.open_documents.iter_mut().flat_map(told).flatten());
     }
     /// Updates the recovery logs to the documents; called after whatever may have changed them.

@@ -73,7 +73,7 @@ pub struct OpenDocument {
     /// Why the last edit was not kept, until the user is told.
     pub refused: Option<String>,
     /// What became of parts in the last edit that the user would not expect, until it is told.
-    pub lost: Option<String>,
+    pub noted: Option<String>,
     /// The picture that its file held of it, until the window shows it.
     pub first_look: FirstLook,
     /// The chosen strokes, by their positions in the layer.
@@ -122,7 +122,7 @@ impl OpenDocument {
             last_end: None,
             clone_source: None,
             refused: None,
-            lost: None,
+            noted: None,
             first_look: FirstLook::default(),
             chosen: None,
         }
@@ -198,7 +198,7 @@ impl OpenDocument {
         if !is_same(self.document(), &document) {
             match document.fits(Some(self.document())) {
                 Ok(()) => {
-                    self.lost = document.note_of_lost(Some(self.document()));
+                    self.noted = document.note_of_lost(Some(self.document()));
                     if document.active_selection.is_none() {
                         let let_go = self.document().active_selection.clone();
                         self.last_selection = let_go.or(self.last_selection.take());

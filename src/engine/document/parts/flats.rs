@@ -2,7 +2,7 @@
 //! outline. Floor 4.
 
 use super::near::is_near;
-use super::places::{ColorPlaces, least_area, spread};
+use super::places::{ColorPlaces, LEAST_SEEN, LEAST_SHARE, least_area, spread};
 use super::shares::{Flats, MOSTLY};
 use super::{FlatColor, Inflation, OutlineSource, Part, PartKind};
 use crate::math::srgb::Color;
@@ -27,15 +27,37 @@ pub enum PartFor {
     Place,
 }
 
-/// The parts of the flats in a layer called `layer`, a part for each colour or each place; the farthest first.
+/// The parts of flats.
+#[derive(Default)]
+pub struct FlatParts {
+    /// The farthest first.
+    pub parts: Vec<Part>,
+    /// Colours, or places of them, that are seen but too small or too many to be parts.
+    pub left_out: usize,
+}
+
+impl FlatParts {
+    /// What the user is told about colours without a part.
+    pub fn note(&self) -> Option<String> {
+        let areas = match self.left_out {
+            0 => return None,
+            1 => "One area is".into(),
+            n => format!("{n} areas are"),
+        };
+        let least = LEAST_SHARE * 100.0;
+        Some(format!("{areas} left without a part: one takes {least} % of the picture, and {MOST_COLOURS} at most."))
+    }
+}
+
+/// The parts of the flats in a layer called `layer`, a part for each colour or each place.
 ///
 /// `tiles`: what the layer shows on the canvas.
-pub fn parts_of_flats(tiles: &TileGrid, layer: &str, inflation: Inflation, each: PartFor) -> Vec<Part> {
+pub fn parts_of_flats(tiles: &TileGrid, layer: &str, inflation: Inflation, each: PartFor) -> FlatParts {
     let rect = tiles.bounds();
     let flats = Flats::of(tiles, rect);
-    let colors = colors_of(tiles, rect);
+    let Palette { colors, mut left_out } = palette_of(tiles, rect);
     let (found, mut areas): (Vec<FlatColor>, Vec<Plane<u8>>) = match each {
-        PartFor::Place => places(&flats, &colors, rect).into_iter().unzip(),
+        PartFor::Place => places(&flats, &colors, rect, &mut left_out).into_iter().unzip(),
         _ => colors.iter().map(|color| (FlatColor::from(*color), flats.share_of(*color, &[]))).unzip(),
     };
     complete(&mut areas, &flats);
@@ -45,7 +67,7 @@ pub fn parts_of_flats(tiles: &TileGrid, layer: &str, inflation: Inflation, each:
         let id = format!("part-{}", place + 1);
         Part { name: format!("Part {}", place + 1), ..Part::new(id, PartKind::Inflate { outline, inflation }) }
     };
-    order.into_iter().enumerate().map(part).collect()
+    FlatParts { parts: order.into_iter().enumerate().map(part).collect(), left_out }
 }
 
 /// Gives areas what is painted beside them and makes no part, such as a glint in a pupil: it does not keep two areas
@@ -65,13 +87,14 @@ fn complete(areas: &mut [Plane<u8>], flats: &Flats) {
 }
 
 /// The places of some colours, a colour that has only one without its point, and the share of each in each pixel.
-fn places(flats: &Flats, colors: &[Color], rect: Rect) -> Vec<(FlatColor, Plane<u8>)> {
+fn places(flats: &Flats, colors: &[Color], rect: Rect, left_out: &mut usize) -> Vec<(FlatColor, Plane<u8>)> {
     let found: Vec<ColorPlaces> = colors.iter().map(|color| ColorPlaces::of(flats, *color)).collect();
     let of_color = |(i, places): (usize, &ColorPlaces)| -> Vec<_> {
         places.large().into_iter().map(|place| (std::cmp::Reverse(places.pixels(place)), i, place)).collect()
     };
     let mut all: Vec<_> = found.iter().enumerate().flat_map(of_color).collect();
     all.sort();
+    *left_out += found.iter().map(ColorPlaces::small).sum::<usize>() + all.len().saturating_sub(MOST_COLOURS);
     all.truncate(MOST_COLOURS);
     let corner = vec2(rect.x0 as f32, rect.y0 as f32);
     let mut out = Vec::with_capacity(all.len());
@@ -90,6 +113,16 @@ fn places(flats: &Flats, colors: &[Color], rect: Rect) -> Vec<(FlatColor, Plane<
 
 /// The opaque flat colours of a picture, the most frequent first.
 pub fn colors_of(tiles: &TileGrid, rect: Rect) -> Vec<Color> {
+    palette_of(tiles, rect).colors
+}
+
+struct Palette {
+    colors: Vec<Color>,
+    /// Others that are seen.
+    left_out: usize,
+}
+
+fn palette_of(tiles: &TileGrid, rect: Rect) -> Palette {
     let mut counts: BTreeMap<[u8; 4], usize> = BTreeMap::new();
     // Straight edges contain long rows of one mixed colour.
     for pixel in Flats::of(tiles, rect).flat_pixels().filter(|pixel| pixel[3] == 255) {
@@ -106,9 +139,12 @@ pub fn colors_of(tiles: &TileGrid, rect: Rect) -> Vec<Color> {
         }
     }
     let least = least_area(Size::new(rect.width() as u32, rect.height() as u32));
+    let seen = groups.iter().filter(|(_, count)| *count >= LEAST_SEEN).count();
     groups.retain(|(_, count)| *count >= least);
     groups.truncate(MOST_COLOURS);
-    groups.into_iter().filter_map(|([r, g, b, _], _)| Color::parse(&format!("#{r:02x}{g:02x}{b:02x}"))).collect()
+    let left_out = seen.saturating_sub(groups.len());
+    let colors = groups.into_iter().map(|([r, g, b, a], _)| Color { r, g, b, a });
+    Palette { colors: colors.collect(), left_out }
 }
 
 /// The places of areas in a list, those in front last.

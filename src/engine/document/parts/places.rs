@@ -12,9 +12,12 @@ use std::collections::VecDeque;
 /// An area that covers less than this share of a picture is left over from edges: it makes no part.
 pub const LEAST_SHARE: f32 = 2e-4;
 
+/// Fewer pixels, px, are not noticed to be an area.
+pub const LEAST_SEEN: usize = 16;
+
 /// The fewest pixels of an area that makes a part.
 pub fn least_area(size: Size) -> usize {
-    (size.area() as f32 * LEAST_SHARE).max(16.0) as usize
+    (size.area() as f32 * LEAST_SHARE).max(LEAST_SEEN as f32) as usize
 }
 
 /// The areas of one colour of flats, numbered from 1.
@@ -49,6 +52,11 @@ impl ColorPlaces {
         let mut large: Vec<u32> = (1..=self.areas.len() as u32).filter(|place| self.pixels(*place) >= least).collect();
         large.sort_by_key(|place| (std::cmp::Reverse(self.pixels(*place)), *place));
         large
+    }
+    /// How many places are seen that are too small for parts of their own.
+    pub fn small(&self) -> usize {
+        let least = least_area(self.labels.size());
+        self.areas.iter().filter(|(_, pixels)| (LEAST_SEEN..least).contains(pixels)).count()
     }
     /// How many pixels a place has.
     pub fn pixels(&self, place: u32) -> usize {

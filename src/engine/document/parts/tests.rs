@@ -73,7 +73,7 @@ fn colours_become_parts_and_what_bulges_into_another_lies_in_front() {
     let flats =
         discs("Flats", &[(vec2(40.0, 30.0), 18.0, ear), (vec2(80.0, 65.0), 45.0, body), (vec2(95.0, 55.0), 9.0, eye)]);
     let Content::Pixels(pixels) = &flats.content else { panic!("paint") };
-    let parts = flats::parts_of_flats(&pixels.tiles, "Flats", Inflation::default(), flats::PartFor::Color);
+    let parts = flats::parts_of_flats(&pixels.tiles, "Flats", Inflation::default(), flats::PartFor::Color).parts;
     let colors: Vec<String> = parts
         .iter()
         .map(|part| match part.outline() {

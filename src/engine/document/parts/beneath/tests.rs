@@ -76,7 +76,7 @@ fn a_belly_that_a_wing_hides_in_part_lies_on_the_body() {
 #[test]
 fn a_face_is_whole_beneath_an_eye_that_is_moved_or_hidden() {
     let tiles = drawn(1.0, at);
-    let parts = parts_of_flats(&tiles, "Flats", Inflation::default(), PartFor::Color);
+    let parts = parts_of_flats(&tiles, "Flats", Inflation::default(), PartFor::Color).parts;
     let pixels = PixelLayer { tiles: tiles.clone(), ..PixelLayer::default() };
     let layers = vec![Arc::new(Layer::new("Flats", Content::Pixels(pixels)))];
     let document = Document { layers, ..Document::empty(SIZE) };

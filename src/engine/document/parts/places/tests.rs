@@ -4,7 +4,7 @@ use super::super::flats::{PartFor, parts_of_flats};
 use super::super::{Inflation, OutlineSource, Part, PartKind};
 use super::*;
 use crate::document::{CanvasChange, Content, Document, Layer, LayerTransform, PixelLayer};
-use crate::math::PlaneMap;
+use crate::math::{Affine2, PlaneMap};
 use crate::raster::{Resampling, TileGrid};
 use std::sync::Arc;
 
@@ -40,6 +40,13 @@ fn face(eyes: &[([f32; 2], f32)]) -> TileGrid {
     all.extend(eyes.iter().map(|(at, r)| (*at, *r, EYE)));
     tiles(&all)
 }
+/// The same in a corner of a canvas in which areas of 64 px are small.
+fn large(eyes: &[([f32; 2], f32)]) -> TileGrid {
+    let mut tiles = face(eyes);
+    let far = TileGrid::from_straight_rgba(&[BODY[0], BODY[1], BODY[2], 255], 1, 1, 799, 399);
+    tiles.join(&far);
+    tiles
+}
 const EYES: [([f32; 2], f32); 2] = [([80.0, 50.0], 10.0), ([122.0, 50.0], 12.0)];
 
 /// A document of flats with a part for the eye at a point only.
@@ -61,14 +68,14 @@ fn painted(document: &Document, tiles: TileGrid) -> Document {
 #[test]
 fn two_eyes_become_two_parts_and_the_body_has_no_place() {
     let tiles = face(&EYES);
-    let parts = parts_of_flats(&tiles, "Flats", Inflation::default(), PartFor::Place);
+    let parts = parts_of_flats(&tiles, "Flats", Inflation::default(), PartFor::Place).parts;
     let places: Vec<Option<Vec2>> = parts.iter().map(Part::place).collect();
     assert_eq!(places.len(), 3);
     assert_eq!(places[0], None, "the body lies behind");
     for (eye, _) in EYES {
         assert!(places.iter().flatten().any(|at| at.distance(eye.into()) < 1.5), "{eye:?}: {places:?}");
     }
-    assert_eq!(parts_of_flats(&tiles, "Flats", Inflation::default(), PartFor::Color).len(), 2);
+    assert_eq!(parts_of_flats(&tiles, "Flats", Inflation::default(), PartFor::Color).parts.len(), 2);
     let layers = vec![Arc::new(Layer::new("Flats", content(tiles)))];
     let shaped = Document { layers, ..Document::empty(SIZE) }.with_parts(parts.into_iter().map(Arc::new).collect());
     assert_eq!(shaped.surface.as_ref().unwrap().objects().count(), 3);
@@ -84,7 +91,7 @@ fn a_glint_does_not_bring_the_eye_before_its_pupil() {
         tiles(&discs)
     };
     let colors = |each: PartFor, (pupil, glint): (f32, f32), right_of: f32| -> Vec<[u8; 3]> {
-        let parts = parts_of_flats(&with_glints(pupil, glint), "Flats", Inflation::default(), each);
+        let parts = parts_of_flats(&with_glints(pupil, glint), "Flats", Inflation::default(), each).parts;
         let flats = parts.iter().filter_map(|part| match part.outline() {
             Some(OutlineSource::Layer { color, .. }) => *color,
             _ => None,
@@ -174,6 +181,40 @@ fn places_go_with_the_canvas() {
     let cropped = document.on_other_canvas(&change).unwrap();
     assert!(covered(&cropped, 50, 40) && !covered(&cropped, 92, 40), "{:?}", cropped.parts.list);
     assert!(cropped.parts.lost.is_empty());
+}
+
+#[test]
+fn a_place_is_one_of_the_flats_however_its_part_is_moved_and_scaled() {
+    let document = one_eye([80.0, 50.0]);
+    let part = Part::clone(&document.parts.list[0]);
+    let turned = Affine2::from_scale_angle_translation(vec2(2.0, 2.0), 0.6, vec2(20.0, -120.0));
+    let moved = document.with_parts(vec![Arc::new(Part { matrix: turned, ..part })]);
+    let at = turned.transform_point2(vec2(80.0, 50.0));
+    assert!(covered(&moved, at.x as usize, at.y as usize) && moved.parts.lost.is_empty());
+    let other = turned.transform_point2(vec2(122.0, 50.0));
+    assert!(!covered(&moved, other.x as usize, other.y as usize), "{other}");
+    // Image size.
+    for factor in [0.5, 2.0] {
+        let scaled = document.scaled(factor).unwrap().reshaped();
+        let seen = |x: f32, y: f32| covered(&scaled, (x * factor) as usize, (y * factor) as usize);
+        assert!(seen(80.0, 50.0) && !seen(122.0, 50.0), "{factor}: {:?}", scaled.parts.list);
+        assert!(scaled.parts.lost.is_empty());
+    }
+}
+
+#[test]
+fn what_is_too_small_for_a_part_is_told() {
+    let specks = [([40.0, 60.0], 3.6), ([160.0, 60.0], 3.6), ([80.0, 50.0], 10.0)];
+    let note = |each: PartFor, eyes: &[([f32; 2], f32)]| {
+        let made = parts_of_flats(&large(eyes), "Flats", Inflation::default(), each);
+        (made.parts.len(), made.note())
+    };
+    let (parts, told) = note(PartFor::Place, &specks);
+    assert_eq!(parts, 2);
+    assert!(told.unwrap().starts_with("2 areas are left without a part"));
+    assert_eq!(note(PartFor::Color, &specks), (2, None), "they are of the eye's part");
+    assert!(note(PartFor::Color, &specks[..1]).1.unwrap().starts_with("One area is left without a part"));
+    assert_eq!(note(PartFor::Place, &EYES).1, None);
 }
 
 #[test]

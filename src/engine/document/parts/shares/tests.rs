@@ -73,7 +73,7 @@ fn only_areas_are_colours() {
 fn a_creature_of_flats_that_touch_has_no_rims_and_no_stray_points() {
     for side in [1.0, 2.2] {
         let tiles = drawn(side, at);
-        let parts = parts_of_flats(&tiles, "Flats", Inflation::default(), PartFor::Color);
+        let parts = parts_of_flats(&tiles, "Flats", Inflation::default(), PartFor::Color).parts;
         assert_eq!(parts.len(), 4);
         let pixels = PixelLayer { tiles: tiles.clone(), ..PixelLayer::default() };
         let layers = vec![Arc::new(Layer::new("Flats", Content::Pixels(pixels)))];

@@ -4,7 +4,7 @@
 use super::{PartRefusal, free_id, new};
 use crate::document::parts::Part;
 use crate::document::parts::drawing::{DrawingLook, FigureBackground, without_background};
-use crate::document::parts::flats::{PartFor, parts_of_flats};
+use crate::document::parts::flats::{FlatParts, PartFor, parts_of_flats};
 use crate::document::{Content, Document, Inflation, Layer, LayerId, LayerSlot, Live, PixelLayer, Progress};
 use crate::math::{srgb::Color, vec3};
 use crate::raster::{BlendMode, TileGrid};
@@ -20,6 +20,8 @@ pub struct FirstShape {
     pub part: String,
     /// The layer that shows the form.
     pub base: LayerId,
+    /// What the user is told about colours without a part.
+    pub note: Option<String>,
 }
 
 impl FirstShape {
@@ -27,6 +29,7 @@ impl FirstShape {
     pub fn put(self, tab: &mut OpenDocument) {
         if tab.commit("Give it a shape", self.document) {
             (tab.part, tab.selected) = (Some(self.part), Some(self.base));
+            tab.noted = self.note.or(tab.noted.take());
         }
     }
 }
@@ -59,10 +62,14 @@ pub fn shaped(
     let name = document.layer(layer).map(|layer| layer.name.clone()).unwrap_or_default();
     let made = match each {
         PartFor::Color | PartFor::Place => parts_of_flats(&tiles, &name, inflation, each),
-        PartFor::Layer => vec![Part { name: new::free_name(&document, &name), ..Part::of_layer("", &name, inflation) }],
+        PartFor::Layer => {
+            let part = Part { name: new::free_name(&document, &name), ..Part::of_layer("", &name, inflation) };
+            FlatParts { parts: vec![part], left_out: 0 }
+        }
     };
+    let note = made.note();
     let mut list = document.parts.list.clone();
-    for part in made {
+    for part in made.parts {
         let id = free_id(&document, &list);
         list.push(Arc::new(Part { id, ..part }));
     }
@@ -81,7 +88,7 @@ pub fn shaped(
         PartFor::Color | PartFor::Place => next,
     };
     match next.surface {
-        Some(_) => Ok(FirstShape { document: next, part, base: id }),
+        Some(_) => Ok(FirstShape { document: next, part, base: id, note }),
         None => Err("Nothing in this layer is opaque enough to have a shape."),
     }
 }
