@@ -205,6 +205,30 @@ fn a_first_minute_leads_from_a_drawing_to_a_bent_stroke_and_its_picture() {
     assert!(changed > 20_000, "lit all over: {changed}");
 }
 #[test]
+fn the_row_of_a_part_that_is_clicked_on_the_canvas_comes_into_sight() {
+    let mut harness = window();
+    command(&mut harness, "Sphere");
+    until(&mut harness, |harness| harness.query_by_label("Layers").is_some());
+    let tabs: Vec<_> = harness.get_all_by_label("Shape").collect();
+    tabs.last().unwrap().click();
+    steps(&mut harness);
+    for name in ["Box", "Cone", "Torus", "Cylinder", "Capsule", "Ellipsoid"] {
+        command(&mut harness, name);
+        steps(&mut harness);
+        harness.get_by_label(&format!("Show part {name}")).click_accesskit();
+        steps(&mut harness);
+    }
+    assert_eq!(parts(&harness).iter().filter(|part| part.visible).count(), 1);
+    let row = |harness: &Story, name: &str| harness.get_by_label(&format!("Part {name}")).rect();
+    let (nearest, hidden) = (row(&harness, "Ellipsoid"), row(&harness, "Sphere"));
+    assert!(hidden.min.y > nearest.max.y + 60.0, "{hidden:?} is far below {nearest:?}");
+    key(&mut harness, Modifiers::NONE, Key::P);
+    drag(&mut harness, vec2(50.0, -70.0), vec2(50.0, -70.0));
+    steps(&mut harness);
+    assert_eq!(session(&harness).active().unwrap().chosen_part().unwrap().name, "Sphere");
+    assert!(row(&harness, "Sphere").min.y < hidden.min.y - 30.0, "scrolled to");
+}
+#[test]
 fn parts_are_added_chosen_ordered_hidden_and_renamed_by_their_controls() {
     let mut harness = window();
     command(&mut harness, "Sphere");

@@ -30,6 +30,9 @@ pub fn show(
     let lies_on = part.on().is_some_and(|on| document.parts.part(on).is_some());
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_PT), Sense::click_and_drag());
     let is_chosen = session.active().is_some_and(|tab| tab.part.as_ref() == Some(&part.id));
+    if is_chosen {
+        show_once(ui, &response, &part.id);
+    }
     let label = format!("Part {}", part.name);
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_chosen, &label));
     let fill = match (is_chosen, response.hovered()) {
@@ -58,6 +61,15 @@ pub fn show(
         act(requests, PartAction::Select { part: part.id.clone() });
     }
     response.on_hover_text("Drag it up to bring it forward; double-click to rename it");
+}
+
+/// Brings a part's row into sight when the part becomes the chosen one, as by a click on the canvas.
+fn show_once(ui: &Ui, row: &Response, part: &str) {
+    let shown = Id::unique("shown part");
+    if ui.data(|data| data.get_temp::<String>(shown)).as_deref() != Some(part) {
+        row.scroll_to_me(None);
+        ui.data_mut(|data| data.insert_temp(shown, part.to_owned()));
+    }
 }
 
 fn picture(ui: &mut Ui, part: &Part, pictures: &PartPictures) {
