@@ -323,3 +323,25 @@ fn a_shape_has_a_part_for_each_colour_or_place_and_tells_what_has_none() {
     let alone = rilievo(&["shape", "face.png", "--places", "-o", "maps"]).output().unwrap();
     assert_eq!(alone.status.code(), Some(2), "--places is of flats: {}", said(&alone));
 }
+
+#[test]
+fn a_part_whose_place_has_another_colour_is_told_when_it_is_rendered() {
+    let desk = Desk::with(
+        r##"{ "format": "rilievo", "version": 2, "canvas": { "width": 100, "height": 70 },
+        "surface": { "parts": [{ "id": "eye", "name": "Eye", "kind": "inflate",
+          "outline": { "layer": "Flats", "color": "#fafafa", "at": [20.5, 35.5] } }] },
+        "layers": [{ "kind": "pixels", "name": "Flats", "file": "flats.png" }] }"##,
+    );
+    let flats = |cx: i32| {
+        image::RgbaImage::from_fn(100, 70, |x, y| match (x as i32 - cx).pow(2) + (y as i32 - 35).pow(2) < 200 {
+            true => image::Rgba([250, 250, 250, 255]),
+            false => image::Rgba([0; 4]),
+        })
+    };
+    for (cx, is_lost) in [(20, false), (70, true)] {
+        flats(cx).save(desk.path("flats.png")).unwrap();
+        let output = desk.render("out.png", &["--force"]);
+        assert!(output.status.success(), "{}", said(&output));
+        assert_eq!(said(&output).contains("“Eye” takes the area of its colour that is nearest"), is_lost, "{cx}");
+    }
+}
