@@ -8,9 +8,10 @@ use crate::math::srgb::Color;
 use crate::raster::Plane;
 use std::collections::BTreeMap;
 
-/// A flat area of a farther colour that is at most so many of the smallest areas that make parts…
+/// A glint in a pupil is painted on it and no hole through which the white of the eye is seen: a flat area of a farther
+/// colour that is at most so many times as large as the smallest part, and at most this share of what the colour around
+/// it covers.
 const LARGEST_GLINT: usize = 10;
-/// … and at most this share of what the colour covers is painted on it, like a glint in a pupil, and no hole.
 const GLINT_SHARE: f32 = 0.125;
 
 /// What is seen at a pixel, from far to near: this, the nearer colours in their order, glints, and the colour itself.
