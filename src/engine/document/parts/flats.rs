@@ -45,7 +45,10 @@ impl FlatParts {
             n => format!("{n} areas are"),
         };
         let least = LEAST_SHARE * 100.0;
-        Some(format!("{areas} left without a part: one takes {least} % of the picture, and {MOST_COLOURS} at most."))
+        Some(format!(
+            "{areas} left without a part: a part covers at least {least} % of the picture, and at most {MOST_COLOURS} \
+             are made."
+        ))
     }
 }
 
