@@ -5,6 +5,7 @@ mod circles;
 mod cli;
 mod contours;
 mod conventions;
+mod depth;
 mod documents;
 mod equations;
 mod floors;

@@ -128,12 +128,17 @@ fn light_becomes_a_paint_layer_a_few_rows_at_a_time() {
     let file = folder.path().join("light.exr");
     let bytes = exr::encode_channels(&file, size, channels).unwrap();
     std::fs::write(&file, &bytes).unwrap();
-    let (opened, peak) = watched(|| open(&file, &Budget::default()).unwrap());
-    let taken = peak.saturating_sub(bytes.len());
-    assert!(taken < 10 * size.area(), "{} bytes a pixel beside the file", taken / size.area());
-    let Content::Pixels(pixels) = &opened.document.layers[0].content else { panic!("a paint layer") };
     let whole = picture::to_tiles(&picture::decode(&file, &bytes, &Budget::default()).unwrap(), 0, 0);
-    assert!(whole.iter().all(|(at, tile)| pixels.tiles.tile(at).unwrap().bytes() == tile.bytes()));
+    // Its 16 bits take 12 a pixel, bytes 4.
+    let little = Budget { memory_bytes: 11 * size.area() as u64, ..Budget::default() };
+    for (budget, most, is_deep) in [(Budget::default(), 15, true), (little, 7, false)] {
+        let (opened, peak) = watched(|| open(&file, &budget).unwrap());
+        let taken = peak.saturating_sub(bytes.len());
+        assert!(taken < most * size.area(), "{} bytes a pixel beside the file", taken / size.area());
+        let Content::Pixels(pixels) = &opened.document.layers[0].content else { panic!("a paint layer") };
+        assert!(whole.iter().all(|(at, tile)| pixels.tiles.tile(at).unwrap().bytes() == tile.bytes()));
+        assert_eq!((pixels.tiles.is_deep_in(size.rect()), opened.notes.len()), (is_deep, usize::from(!is_deep)));
+    }
 }
 #[test]
 fn sparse_layers_take_what_is_painted_on_them() {

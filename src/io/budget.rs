@@ -7,7 +7,7 @@ use crate::document::Document;
 use crate::math::Size;
 use crate::memory::spoken;
 use crate::paint::Stroke;
-use crate::raster::Picture;
+use crate::raster::{Picture, Tile};
 use crate::surface::Bend;
 use crate::{Error, Remedy, Result};
 use std::path::Path;
@@ -24,6 +24,8 @@ pub struct Budget {
     pub document_px: u64,
     /// Bytes that reading a file may take at its peak, what was read included.
     pub memory_bytes: u64,
+    /// Whether paint has 16 bits a channel where its file has more than 8. It takes three times the memory.
+    pub deep_paint: bool,
     /// Bytes of any one file.
     pub file_bytes: u64,
     /// Bytes read from all entries of a zip together.
@@ -57,6 +59,7 @@ impl Default for Budget {
             area_px: Picture::MOST_PX as u64,
             document_px: 1 << 31,
             memory_bytes: super::machine::UNKNOWN_BYTES,
+            deep_paint: true,
             file_bytes: 2 << 30,
             unpacked_bytes: 8 << 30,
             // Each layer may have a look, pixels and a mask, each brush its pictures; a name takes some hundred bytes.
@@ -92,6 +95,10 @@ impl Budget {
     /// The usual ceilings on this machine as it is now: `memory_bytes` is what is free, minus a reserve.
     pub fn of_this_machine() -> Self {
         Self::default().within(super::machine::free_bytes())
+    }
+    /// Bytes that a pixel of paint takes at most.
+    pub fn paint_bytes(&self) -> u64 {
+        Tile::most_bytes_a_pixel(self.deep_paint)
     }
     /// With so much memory.
     pub fn within(self, memory_bytes: u64) -> Self {

@@ -5,6 +5,7 @@ pub mod base64;
 pub mod bitmap;
 pub mod brush;
 pub mod budget;
+pub mod deep_paint;
 pub mod export;
 pub mod exr;
 pub mod files;

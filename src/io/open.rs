@@ -7,11 +7,10 @@ use super::files::{RecipeFolder, TrackedFiles, read_file};
 use super::project::{self, Archive, ProjectContents};
 use super::recipe::{self, RecipeSource};
 use super::replace::FileStamp;
-use super::{Budget, json, picture, psd};
+use super::{Budget, deep_paint, json, picture, psd};
+use crate::Result;
 use crate::document::{Content, Document, Layer, PixelLayer};
-use crate::memory;
 use crate::raster::Asset;
-use crate::{Error, Result};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -79,7 +78,7 @@ pub fn open(file: &Path, budget: &Budget) -> Result<OpenedDocument> {
     let kind = FileKind::of(&bytes);
     let files = TrackedFiles::new(RecipeFolder::beside(file));
     let whole = |(document, notes)| ProjectContents { document, notes, is_whole: true, picture: None };
-    let read = || match kind {
+    let read = |budget: &Budget| match kind {
         FileKind::Project => project::read(file, &bytes, budget),
         FileKind::Recipe => {
             recipe::read_noting(&bytes, RecipeSource { file, files: &files, budget, onto: None }).map(whole)
@@ -87,8 +86,10 @@ pub fn open(file: &Path, budget: &Budget) -> Result<OpenedDocument> {
         FileKind::Psd => psd::read(file, &bytes, budget),
         FileKind::Picture => single(file, &bytes, budget),
     };
-    let read = memory::caught(read).map_err(|refused| Error::out_of_memory(file, refused))?;
-    let ProjectContents { document, notes, is_whole, picture } = read?;
+    let (read, rounded) = deep_paint::fitted(file, budget, read, |read| &read.document)?;
+    let ProjectContents { document, mut notes, is_whole, picture } = read;
+    let is_whole = is_whole && rounded.is_none();
+    notes.extend(rounded);
     let reads = [vec![file.into()], files.read_paths()].concat();
     Ok(OpenedDocument { document, notes, is_whole, kind, stamp: FileStamp::of(&bytes), reads, picture })
 }

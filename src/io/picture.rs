@@ -13,9 +13,8 @@ pub use passes::{LightLayer, layers};
 use super::bitmap::Bitmap;
 use super::{Budget, bitmap, exr::ExrFile};
 use crate::math::{Size, srgb};
-use crate::raster::grid::unpremultiply;
 use crate::raster::picture::Texels;
-use crate::raster::{Asset, Picture, Plane, Texture, TileGrid, tile};
+use crate::raster::{Asset, Picture, Plane, TileGrid, tile};
 use crate::{Error, Result};
 use image::DynamicImage;
 use moxcms::{ColorProfile, DataColorSpace, Layout, TransformOptions};
@@ -49,7 +48,7 @@ fn upright(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
 fn picture_of(file: &Path, bitmap: Bitmap, budget: &Budget) -> Result<Picture> {
     let size = Size::new(bitmap.image.width(), bitmap.image.height());
     let picture = match &bitmap.image {
-        DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
+        image if is_light(image) => {
             let texels = bitmap.image.into_rgba32f().into_raw().as_chunks().0.to_vec();
             let profiled = bitmap.icc.as_deref().and_then(|icc| light_through_profile(&texels, icc));
             Picture::linear(size, profiled.unwrap_or(texels))
@@ -83,26 +82,23 @@ fn is_sixteen_bits(image: &DynamicImage) -> bool {
     )
 }
 
+fn is_light(image: &DynamicImage) -> bool {
+    matches!(image, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_))
+}
+
 /// The byte nearest to a value of 16 bits.
 fn byte(v: u16) -> u8 {
     tile::deep::byte_of(v)
 }
 
-/// A picture as the tiles of a paint layer, its corner at a canvas pixel, of 16 bits where it has them; light beyond
-/// white is clipped, as a texture clips it.
+/// A picture as the tiles of a paint layer, its corner at a canvas pixel, of 16 bits where it has more than 8; light
+/// beyond white is clipped, as a texture clips it.
 pub fn to_tiles(picture: &Picture, x: i32, y: i32) -> TileGrid {
     let (w, h) = (picture.size.width as usize, picture.size.height as usize);
-    if let Some(deep) = &picture.deep {
-        return TileGrid::from_straight_deep(deep, w, h, x, y);
-    }
-    match &picture.texels {
-        Texels::Srgb8(texels) => TileGrid::from_straight_rgba(texels.as_flattened(), w, h, x, y),
-        Texels::Linear(_) => {
-            let texture = Texture::new(picture);
-            let mut straight = vec![0; w * h * 4];
-            unpremultiply(texture.levels()[0].texels.as_flattened(), &mut straight);
-            TileGrid::from_straight_rgba(&straight, w, h, x, y)
-        }
+    match (&picture.texels, &picture.deep) {
+        (Texels::Srgb8(_), Some(deep)) => TileGrid::from_straight_deep(deep, w, h, x, y),
+        (Texels::Srgb8(texels), None) => TileGrid::from_straight_rgba(texels.as_flattened(), w, h, x, y),
+        (Texels::Linear(light), _) => TileGrid::from_light(light, w, h, x, y),
     }
 }
 
@@ -129,11 +125,13 @@ pub fn decode_coverage(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Pla
     plane.ok_or_else(|| Error::decode(file, "the mask has no pixels"))
 }
 
+/// Rows of a strip.
+const STRIP_ROWS: u32 = 64;
+
 /// An image in strips of a few rows, so that intermediate results are never as large as the image.
 fn strips(image: &DynamicImage) -> impl Iterator<Item = DynamicImage> {
-    const ROWS: u32 = 64;
     let (w, h) = (image.width(), image.height());
-    (0..h).step_by(ROWS as usize).map(move |y| image.crop_imm(0, y, w, ROWS.min(h - y)))
+    (0..h).step_by(STRIP_ROWS as usize).map(move |y| image.crop_imm(0, y, w, STRIP_ROWS.min(h - y)))
 }
 
 fn coverage([r, g, b, a]: [f32; 4]) -> u8 {
@@ -155,6 +153,18 @@ pub fn to_srgb(size: Size, rgba: Vec<u8>, is_grey: bool, icc: &[u8]) -> Vec<u8> 
         Some(texels) => texels.into_flattened().into_iter().map(byte).collect(),
         None => image.into_rgba8().into_raw(),
     }
+}
+
+/// The same for straight values of 16 bits.
+pub fn to_srgb_deep(size: Size, texels: Vec<[u16; 4]>, is_grey: bool, icc: &[u8]) -> Vec<[u16; 4]> {
+    let image = if is_grey {
+        let two = texels.iter().flat_map(|[grey, .., alpha]| [*grey, *alpha]).collect();
+        image::ImageBuffer::from_raw(size.width, size.height, two).map(DynamicImage::ImageLumaA16)
+    } else {
+        let four = texels.as_flattened().to_vec();
+        image::ImageBuffer::from_raw(size.width, size.height, four).map(DynamicImage::ImageRgba16)
+    };
+    image.and_then(|image| through_profile(&image, icc)).unwrap_or(texels)
 }
 
 /// Straight sRGB of an integer image in the colours of its ICC profile, 16 bits a channel.

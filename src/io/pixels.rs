@@ -209,6 +209,7 @@ pub fn decode_tiles(bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Option<Pai
             true => TileGrid::from_straight_deep(&deep[..rows * line], line, rows, x, top),
             false => TileGrid::from_straight_rgba(strip[..rows * line].as_flattened(), line, rows, x, top),
         };
+        let part = if budget.deep_paint { part } else { part.rounded() };
         used_bytes += part.bytes() as u64;
         budget.room(Path::new(""), "a layer's pixels", used_bytes).ok()?;
         part.iter().for_each(|(at, tile)| tiles.set(at, Some(tile.clone())));

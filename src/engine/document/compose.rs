@@ -237,6 +237,16 @@ impl PreparedLayer {
         };
         own || self.children.iter().chain(&self.clipped).any(|node| node.has_deep_paint(at))
     }
+    /// Whether a placed picture of more than 8 bits shows on a tile: its own, or one of a layer in or clipped to it.
+    pub(super) fn shows_deep_picture(&self, at: TileAt) -> bool {
+        let own = match &self.layer.content {
+            Content::Image(live) if live.params().source.picture.is_deep() => {
+                !matches!(self.layer.content.painted(&self.scene, at), TileContent::Nothing)
+            }
+            _ => false,
+        };
+        own || self.children.iter().chain(&self.clipped).any(|node| node.shows_deep_picture(at))
+    }
     fn seen_behind<'s>(&'s self, behind: Behind<'s>) -> BehindScene<'s> {
         BehindScene { behind, front: &self.scene, sheet: self.behind.as_ref() }
     }

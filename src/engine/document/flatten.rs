@@ -43,7 +43,7 @@ pub fn flatten_deep(document: &Document, highlights: Highlights, progress: &Prog
 }
 
 /// Flattens the whole document to what a paint layer holds: composed without rounding live layers, with 16 bits where
-/// it is soft ([`PlanarTile::kept`]). `None` if cancelled.
+/// it is soft ([`PlanarTile::kept`]), and where placed pictures of more than 8 are seen. `None` if cancelled.
 pub fn flatten_to_paint(document: &Document, progress: &Progress) -> Option<TileGrid> {
     let prepared = PreparedDocument::new(document, progress)?;
     let tiles = prepared.all_tiles();
@@ -129,10 +129,11 @@ impl PreparedDocument {
         }
         Composer { prepared: self, at, behind: None, sought: None, deep: None }.only_tile(&self.stack)
     }
-    /// A tile as a paint layer holds it: as it shows, but with 16 bits where it is soft.
+    /// A tile as a paint layer holds it: as it shows, but with 16 bits where it is soft, or shows a picture that has
+    /// them.
     fn paint_tile(&self, at: TileAt, deep: &DeepTiles) -> Option<Arc<Tile>> {
         let alone = self.alone_in_tile(at).filter(|tile| tile.is_deep());
-        let was_deep = || self.stack.iter().any(|node| node.has_deep_paint(at));
+        let was_deep = || self.stack.iter().any(|node| node.has_deep_paint(at) || node.shows_deep_picture(at));
         let soft = || self.compose_tile(at, Some(deep)).kept_after(was_deep()).filter(Tile::is_deep).map(Arc::new);
         alone.or_else(soft).or_else(|| self.flatten_tile(at))
     }

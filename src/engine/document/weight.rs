@@ -3,14 +3,15 @@
 
 use super::{Content, DerivedMask, Document, Layer, LayerMask, StrokeList};
 use crate::math::Rect;
+use crate::raster::Tile;
 use crate::surface::Contours;
 use crate::surface::region::RegionKind;
 use std::sync::Arc;
 
 /// For a tile, bytes a pixel.
-const TILE_BYTES: u64 = 4;
+const TILE_BYTES: u64 = Tile::most_bytes_a_pixel(false);
 /// For a tile of 16 bits, bytes a pixel.
-const DEEP_TILE_BYTES: u64 = 12;
+const DEEP_TILE_BYTES: u64 = Tile::most_bytes_a_pixel(true);
 /// A tensor of curvature, and the map of κ made of it, bytes a pixel.
 const CURVATURE_BYTES: u64 = 14;
 /// A surface with other normals, bytes a pixel.

@@ -184,6 +184,14 @@ impl Grid<Tile> {
     pub fn is_deep_in(&self, rect: Rect) -> bool {
         self.iter().any(|(at, tile)| tile.is_deep() && !at.rect().intersect(rect).is_empty())
     }
+    /// The same pixels in 8 bits everywhere; what is fainter than that is gone.
+    pub fn rounded(&self) -> TileGrid {
+        let mut grid = self.clone();
+        for (at, tile) in self.iter().filter(|(_, tile)| tile.is_deep()) {
+            grid.set(at, Tile::from_pixels(tile.bytes().to_vec()).map(Arc::new));
+        }
+        grid
+    }
     /// A premultiplied pixel of 16 bits; transparent where there is no tile.
     pub fn deep_pixel(&self, x: i32, y: i32) -> [u16; 4] {
         let at = TileAt::of_pixel(x, y);

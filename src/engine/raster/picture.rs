@@ -76,6 +76,10 @@ impl Picture {
         let fits = matches!(self.texels, Texels::Srgb8(_)) && deep.len() == self.size.area();
         Self { deep: fits.then(|| deep.into()), ..self }
     }
+    /// It holds more than 8 bits a channel.
+    pub fn is_deep(&self) -> bool {
+        self.deep.is_some() || matches!(self.texels, Texels::Linear(_))
+    }
     /// Where its texels are in memory: the same for pictures that share them.
     pub fn place(&self) -> usize {
         match &self.texels {

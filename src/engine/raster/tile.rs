@@ -94,9 +94,13 @@ impl Tile {
         let is_transparent = rgba.chunks_exact(4).all(|p| p[3] == 0);
         if is_transparent { None } else { Tile::from_bytes(rgba) }
     }
+    /// Bytes that a pixel takes at most; `deep`: tiles may have 16 bits.
+    pub const fn most_bytes_a_pixel(deep: bool) -> u64 {
+        if deep { 12 } else { 4 }
+    }
     /// Bytes that its pixels take.
     pub fn held_bytes(&self) -> u64 {
-        self.bytes().len() as u64 * if self.is_deep() { 3 } else { 1 }
+        TILE_AREA as u64 * Self::most_bytes_a_pixel(self.is_deep())
     }
     /// Every pixel is wholly covered.
     pub fn is_opaque(&self) -> bool {

@@ -41,9 +41,9 @@ pub fn layers(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<LightLay
     let whole = whole.map(|(i, _)| i).or((exr.parts() > 1).then_some(0));
     let mut used_bytes = 0;
     let one = |(i, pass): (usize, &&ExrPass)| {
-        let painted = of_light(file, &exr, pass, 0, 0, budget)?;
+        let left = Budget { memory_bytes: budget.memory_bytes.saturating_sub(used_bytes), ..*budget };
+        let painted = of_light(file, &exr, pass, 0, 0, &left)?;
         used_bytes += painted.tiles.bytes() as u64;
-        budget.room(file, "what its layers hold", used_bytes)?;
         Ok(LightLayer { name: pass.name.clone(), painted, is_whole: whole == Some(i) })
     };
     passes.iter().enumerate().map(one).collect()

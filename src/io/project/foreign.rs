@@ -3,8 +3,9 @@
 
 use super::MERGED;
 use super::manifest::Manifest;
+use super::png_header::{PNG_HEADER, png_size};
 use super::reader::ProjectReader;
-use super::repair::{PNG_HEADER, layer_mut, name_of, png_size};
+use super::repair::{layer_mut, name_of};
 use super::stack::{self, ElementContent, StackElement, StackXml};
 use crate::document::{Content, Document, Group, Layer, PixelLayer};
 use crate::math::Size;
@@ -110,7 +111,11 @@ pub fn leftovers(reading: &mut ProjectReader, error: Error) -> Result<Document> 
             break;
         }
         let Ok(bytes) = reading.archive.bytes(name, reading.budget.file_bytes) else { continue };
-        let Ok(painted) = picture::painted(Path::new(name), &bytes, 0, 0, reading.budget) else { continue };
+        let painted = match picture::painted(Path::new(name), &bytes, 0, 0, reading.budget) {
+            Ok(painted) => painted,
+            Err(error) if reading.fits_if_rounded(&error) => return Err(error),
+            Err(_) => continue,
+        };
         let (own, tiles) = (painted.size, painted.tiles);
         let grown = |s: Size| Size::new(s.width.max(own.width), s.height.max(own.height));
         size = Some(size.map_or(own, grown));

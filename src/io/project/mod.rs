@@ -19,6 +19,7 @@ pub(super) mod manifest;
 mod open;
 pub(super) mod packer;
 pub(super) mod plan;
+mod png_header;
 mod reader;
 mod repair;
 #[cfg(test)]

@@ -3,6 +3,7 @@
 
 use super::look::{paint, remember};
 use super::manifest::{Manifest, ManifestPicture};
+use super::png_header::png_size;
 use super::reader::ProjectReader;
 use super::{Archive, DOCUMENT, MANIFEST, MERGED, STACK, foreign, repair, stack};
 use crate::document::EncodedPixels;
@@ -89,6 +90,9 @@ impl ProjectReader<'_> {
             (Some(manifest), Some(Ok(text))) if stack_crc != Some(manifest.stack) => {
                 let restored = foreign::restored(self, &text, &value, manifest);
                 restored.or_else(|error| {
+                    if self.fits_if_rounded(&error) {
+                        return Err(error);
+                    }
                     self.lost(format!("{error}; the layers are as Rilievo saved them"));
                     self.own(value, Some(manifest))
                 })
@@ -122,7 +126,7 @@ impl ProjectReader<'_> {
             Ok(document) => document,
             Err(error) => {
                 // A newer version or a field out of range is no damage: leaving something out would not help.
-                if !repair::leave_out_damaged(self, &mut value, manifest) {
+                if self.fits_if_rounded(&error) || !repair::leave_out_damaged(self, &mut value, manifest) {
                     return Err(error);
                 }
                 self.read_value(&value)?
@@ -142,7 +146,7 @@ impl ProjectReader<'_> {
         let left_bytes = AtomicU64::new(self.budget.memory_bytes);
         let one = |key: (String, i32, i32)| {
             let bytes = self.archive.bytes(&key.0, self.budget.file_bytes).ok()?;
-            let size = repair::png_size(&bytes)?;
+            let size = png_size(&bytes)?;
             self.budget.size(self.file, size.width.into(), size.height.into()).ok()?;
             let known = self.known.iter().find(|(known, _)| {
                 (known.x, known.y, known.size) == (key.1, key.2, size) && known.file.bytes() == bytes

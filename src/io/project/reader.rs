@@ -1,12 +1,13 @@
 //! A project while it is read, and the notes about it. Floor 5. `open` reads what was saved, `foreign` what another
 //! program made of it, `repair` leaves out what is damaged.
 
+use super::png_header::{PNG_HEADER, is_deep_png};
 use super::{Archive, DOCUMENT};
 use crate::document::Document;
 use crate::document::EncodedPixels;
 use crate::raster::TileGrid;
 use crate::recipe::{self, RecipeSource};
-use crate::{Budget, Result};
+use crate::{Budget, Error, Remedy, Result};
 use serde_json::Value;
 use std::path::Path;
 
@@ -30,6 +31,14 @@ impl ProjectReader<'_> {
     pub fn lost(&mut self, sentence: impl Into<String>) {
         self.is_whole = false;
         self.notes.push(sentence.into());
+    }
+    /// Whether something was refused that may fit once paint has 8 bits: then nothing is left out, and the file is read
+    /// again (`deep_paint`).
+    pub fn fits_if_rounded(&self, error: &Error) -> bool {
+        let is_deep = |name: &str| self.archive.beginning(name, PNG_HEADER).is_some_and(|bytes| is_deep_png(&bytes));
+        self.budget.deep_paint
+            && error.remedy() == Some(Remedy::MoreMemory)
+            && self.archive.names().into_iter().filter(|name| name.ends_with(".png")).any(is_deep)
     }
     pub fn archive_path(&self, name: &str) -> std::path::PathBuf {
         use crate::Files;

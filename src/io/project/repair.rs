@@ -2,6 +2,7 @@
 //! Floor 5. Works on the document's JSON, before it is read.
 
 use super::manifest::{Manifest, ManifestPicture};
+use super::png_header::png_size;
 use super::reader::ProjectReader;
 use crate::math::Size;
 use crate::raster::Asset;
@@ -150,13 +151,4 @@ fn list_layers(layers: &Value, prefix: &str, out: &mut Vec<String>) {
 
 pub fn name_of(layer: &Value) -> String {
     layer["name"].as_str().unwrap_or_default().to_owned()
-}
-
-/// Bytes at the beginning of a PNG that give its size.
-pub const PNG_HEADER: usize = 24;
-
-/// The size in a PNG's header.
-pub fn png_size(bytes: &[u8]) -> Option<Size> {
-    let side = |at: usize| Some(u32::from_be_bytes(bytes.get(at..at + 4)?.try_into().ok()?));
-    Some(Size::new(side(16)?, side(20)?))
 }

@@ -1,8 +1,9 @@
-//! One channel's values, row by row: plain, run lengths (PackBits), or ZIP with and without prediction.
-//! Floor 5.
+//! One channel's values, row by row: plain, run lengths (PackBits), or ZIP with and without prediction; as bytes, or as
+//! 16 bits. Floor 5.
 
 use super::cursor::ByteCursor;
 use crate::math::srgb;
+use crate::raster::tile::deep::{LEVEL, byte_of};
 use std::io::Read;
 use zip::ZipReadOptions;
 use zip::read::read_zipfile_from_stream_with_options;
@@ -29,17 +30,57 @@ impl ChannelLayout {
     }
 }
 
-/// The 8-bit values of a channel: its compression, then its data. `None` where the data is damaged, or too short to
-/// hold what the shape promises.
-pub fn decode(data: &mut ByteCursor, shape: ChannelLayout) -> Option<Vec<u8>> {
+/// What the values of a channel are read as.
+pub trait ChannelValue: Copy + Default {
+    /// Fully covered, or brightest.
+    const WHOLE: Self;
+    /// From values of the depth that the layout says, rounded.
+    fn all_of(stored: &[u8], shape: ChannelLayout) -> Vec<Self>;
+    /// The nearest byte.
+    fn byte(self) -> u8;
+}
+
+impl ChannelValue for u8 {
+    const WHOLE: Self = u8::MAX;
+    fn all_of(stored: &[u8], shape: ChannelLayout) -> Vec<Self> {
+        to_bytes(stored, shape)
+    }
+    fn byte(self) -> u8 {
+        self
+    }
+}
+
+impl ChannelValue for u16 {
+    const WHOLE: Self = u16::MAX;
+    fn all_of(stored: &[u8], shape: ChannelLayout) -> Vec<Self> {
+        match shape.bits {
+            16 => stored.as_chunks().0.iter().map(|v| u16::from_be_bytes(*v)).collect(),
+            32 => stored.as_chunks().0.iter().map(|v| srgb::quantise_deep(encoded(*v, shape))).collect(),
+            _ => to_bytes(stored, shape).into_iter().map(|v| u16::from(v) * LEVEL).collect(),
+        }
+    }
+    fn byte(self) -> u8 {
+        byte_of(self)
+    }
+}
+
+/// A float as stored; of colours, linear light, which is clipped to white and encoded.
+fn encoded(stored: [u8; 4], shape: ChannelLayout) -> f32 {
+    let value = f32::from_be_bytes(stored);
+    if shape.is_colour { srgb::encode(value.max(0.0).min(1.0)) } else { value }
+}
+
+/// The values of a channel: its compression, then its data. `None` where the data is damaged, or too short to hold what
+/// the shape promises.
+pub fn decode<T: ChannelValue>(data: &mut ByteCursor, shape: ChannelLayout) -> Option<Vec<T>> {
     let compression = data.u16()?;
     decode_as(data, shape, compression)
 }
 
 /// As [`decode`], for data whose compression is already known; leaves the cursor after the channel.
-pub fn decode_as(data: &mut ByteCursor, shape: ChannelLayout, compression: u16) -> Option<Vec<u8>> {
+pub fn decode_as<T: ChannelValue>(data: &mut ByteCursor, shape: ChannelLayout, compression: u16) -> Option<Vec<T>> {
     match compression {
-        0 => Some(to_bytes(data.take(shape.bytes())?, shape)),
+        0 => Some(T::all_of(data.take(shape.bytes())?, shape)),
         1 => {
             let lengths = row_lengths(data, shape, shape.height)?;
             unpack_rows(data, shape, &lengths)
@@ -50,25 +91,25 @@ pub fn decode_as(data: &mut ByteCursor, shape: ChannelLayout, compression: u16) 
             if compression == 3 {
                 undo_prediction(&mut values, shape);
             }
-            Some(to_bytes(&values, shape))
+            Some(T::all_of(&values, shape))
         }
         _ => None,
     }
 }
 
 /// Several channels in one zlib stream, as in a merged picture; `shape` is that of each, all of one size.
-pub fn inflate_planes(
+pub fn inflate_planes<T: ChannelValue>(
     zlib: &[u8],
     count: usize,
     shape: impl Fn(usize) -> ChannelLayout,
     is_predicted: bool,
-) -> Option<Vec<Vec<u8>>> {
+) -> Option<Vec<Vec<T>>> {
     let bytes = shape(0).bytes();
     let mut values = inflate(zlib, bytes.checked_mul(count)?)?;
     if is_predicted {
         undo_prediction(&mut values, shape(0));
     }
-    Some(values.chunks_exact(bytes.max(1)).enumerate().map(|(c, plane)| to_bytes(plane, shape(c))).collect())
+    Some(values.chunks_exact(bytes.max(1)).enumerate().map(|(c, plane)| T::all_of(plane, shape(c))).collect())
 }
 
 /// How long each packed row is.
@@ -80,7 +121,7 @@ pub fn row_lengths(data: &mut ByteCursor, shape: ChannelLayout, rows: usize) -> 
 }
 
 /// Rows of run lengths.
-pub fn unpack_rows(data: &mut ByteCursor, shape: ChannelLayout, lengths: &[usize]) -> Option<Vec<u8>> {
+pub fn unpack_rows<T: ChannelValue>(data: &mut ByteCursor, shape: ChannelLayout, lengths: &[usize]) -> Option<Vec<T>> {
     let packed: usize = lengths.iter().sum();
     // Two bytes hold at most 128.
     if shape.bytes() / 64 > packed + shape.height {
@@ -90,7 +131,7 @@ pub fn unpack_rows(data: &mut ByteCursor, shape: ChannelLayout, lengths: &[usize
     for length in lengths {
         unpack(data.take(*length)?, shape.row_bytes(), &mut values)?;
     }
-    Some(to_bytes(&values, shape))
+    Some(T::all_of(&values, shape))
 }
 
 /// One row of PackBits; `None` where it holds fewer than `wanted` bytes. What runs beyond them is cut off: some
@@ -183,19 +224,14 @@ fn undo_prediction(values: &mut [u8], shape: ChannelLayout) {
 
 /// Values of any depth as bytes, rounded. A bit is a drop of ink.
 fn to_bytes(values: &[u8], shape: ChannelLayout) -> Vec<u8> {
-    let short = |v: &[u8; 2]| ((u32::from(u16::from_be_bytes(*v)) + 128) / 257) as u8;
-    let float = |v: &[u8; 4]| {
-        let value = f32::from_be_bytes(*v);
-        srgb::quantise(if shape.is_colour { srgb::encode(value.max(0.0).min(1.0)) } else { value })
-    };
     match shape.bits {
         1 => {
             let bit = |row: &[u8], x: usize| if row[x / 8] >> (7 - x % 8) & 1 == 0 { 255 } else { 0 };
             let rows = values.chunks_exact(shape.row_bytes().max(1));
             rows.flat_map(|row| (0..shape.width).map(move |x| bit(row, x))).collect()
         }
-        16 => values.as_chunks().0.iter().map(short).collect(),
-        32 => values.as_chunks().0.iter().map(float).collect(),
+        16 => values.as_chunks().0.iter().map(|v| byte_of(u16::from_be_bytes(*v))).collect(),
+        32 => values.as_chunks().0.iter().map(|v| srgb::quantise(encoded(*v, shape))).collect(),
         _ => values.to_vec(),
     }
 }
@@ -223,7 +259,7 @@ mod tests {
         }
     }
     #[test]
-    fn sixteen_bits_with_prediction_come_back_rounded() {
+    fn sixteen_bits_with_prediction_come_back_whole_and_rounded() {
         let values: [u16; 4] = [0, 257 * 100, 257 * 100 + 129, 65535];
         let mut bytes: Vec<u8> = values.iter().flat_map(|v| v.to_be_bytes()).collect();
         for i in (2..bytes.len()).step_by(2).rev() {
@@ -235,8 +271,9 @@ mod tests {
         let mut zlib = vec![0x78, 1, 1, 8, 0, 0xf7, 0xff];
         zlib.extend(&bytes);
         let data = [&[0, 3][..], &zlib].concat();
-        let decoded = decode(&mut ByteCursor::new(&data), shape(4, 1, 16)).unwrap();
+        let decoded: Vec<u8> = decode(&mut ByteCursor::new(&data), shape(4, 1, 16)).unwrap();
         assert_eq!(decoded, [0, 100, 101, 255]);
+        assert_eq!(decode::<u16>(&mut ByteCursor::new(&data), shape(4, 1, 16)).unwrap(), values);
     }
     #[test]
     fn damaged_rows_are_refused_before_room_is_made_for_them() {
@@ -246,7 +283,7 @@ mod tests {
         assert_eq!(out[out.len() - 3..], [7; 3], "a run beyond the row");
         let huge = ChannelLayout { width: 300_000, height: 300_000, bits: 8, is_colour: true, large: true };
         for compression in 0..5 {
-            assert_eq!(decode_as(&mut ByteCursor::new(&[0; 100]), huge, compression), None);
+            assert_eq!(decode_as::<u16>(&mut ByteCursor::new(&[0; 100]), huge, compression), None);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! A file's channels of colour, in any colour mode, as straight sRGB. Floor 5. Not here: reading the channels
 //! (`channel`), profiles of RGB and grey (`picture`).
 
+use super::channel::ChannelValue;
 use crate::math::{Size, srgb};
 use crate::picture;
 use moxcms::{ColorProfile, DataColorSpace, Layout, RenderingIntent, TransformOptions};
@@ -54,7 +55,54 @@ pub struct Colours<'a> {
     pub icc: Option<&'a [u8]>,
 }
 
+/// Straight sRGB, row by row.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StraightPixels {
+    /// Four bytes a pixel.
+    pub rgba: Vec<u8>,
+    /// What the bytes were rounded from, if they were read as 16 bits; else empty.
+    pub deep: Vec<[u16; 4]>,
+}
+
+/// A channel's value whose colours are known.
+pub trait ColourValue: ChannelValue {
+    /// As [`Colours::to_srgb`].
+    fn pixels(colours: Colours, size: Size, planes: &[Option<Vec<Self>>; 4], alpha: Option<&[Self]>) -> StraightPixels;
+}
+
+impl ColourValue for u8 {
+    fn pixels(colours: Colours, size: Size, planes: &[Option<Vec<u8>>; 4], alpha: Option<&[u8]>) -> StraightPixels {
+        StraightPixels { rgba: colours.to_srgb(size, planes, alpha), deep: Vec::new() }
+    }
+}
+
+impl ColourValue for u16 {
+    fn pixels(colours: Colours, size: Size, planes: &[Option<Vec<u16>>; 4], alpha: Option<&[u16]>) -> StraightPixels {
+        let deep = colours.to_srgb_deep(size, planes, alpha);
+        StraightPixels { rgba: deep.as_flattened().iter().map(|v| v.byte()).collect(), deep }
+    }
+}
+
 impl Colours<'_> {
+    /// As [`to_srgb`](Self::to_srgb), of RGB and grey, in 16 bits.
+    fn to_srgb_deep(self, size: Size, planes: &[Option<Vec<u16>>; 4], alpha: Option<&[u16]>) -> Vec<[u16; 4]> {
+        if planes.iter().all(Option::is_none) && alpha.is_none() {
+            return vec![[0; 4]; size.area()];
+        }
+        let value = |c: usize, i: usize| planes[c].as_ref().and_then(|plane| plane.get(i)).copied().unwrap_or(0);
+        let opacity = |i: usize| alpha.map_or(u16::WHOLE, |alpha| alpha.get(i).copied().unwrap_or(u16::WHOLE));
+        let is_grey = self.mode == Mode::Grey;
+        let colour = |i: usize| if is_grey { [value(0, i); 3] } else { [0, 1, 2].map(|c| value(c, i)) };
+        let texel = |i: usize| {
+            let [r, g, b] = colour(i);
+            [r, g, b, opacity(i)]
+        };
+        let texels = (0..size.area()).map(texel).collect();
+        match self.profile() {
+            Some(icc) => picture::to_srgb_deep(size, texels, is_grey, icc),
+            None => texels,
+        }
+    }
     /// Straight sRGB of planes; without alpha opaque, without a colour channel black, without any transparent.
     pub fn to_srgb(self, size: Size, planes: &[Option<Vec<u8>>; 4], alpha: Option<&[u8]>) -> Vec<u8> {
         let area = size.area();
@@ -102,8 +150,12 @@ impl Colours<'_> {
             }
         }
     }
+    /// The profile that RGB and grey go through.
+    fn profile(&self) -> Option<&[u8]> {
+        self.icc.filter(|icc| !self.is_light && !crate::srgb_profile::is_own_srgb(icc))
+    }
     fn through_profile(&self, size: Size, rgba: Vec<u8>) -> Vec<u8> {
-        match self.icc.filter(|icc| !self.is_light && !crate::srgb_profile::is_own_srgb(icc)) {
+        match self.profile() {
             Some(icc) => picture::to_srgb(size, rgba, self.mode == Mode::Grey, icc),
             None => rgba,
         }

@@ -19,7 +19,7 @@ pub fn content(record: &mut LayerRecord, size: Size, patterns: &[PatternResource
             if record.stroked && record.rgba.is_empty() {
                 record.leave_out("the line around its shape is left out");
             }
-            pixels(std::mem::take(&mut record.rgba), record.rect)
+            own_pixels(record)
         }
         Some(fill) if record.rgba.is_empty() => drawn(record, fill, size, patterns),
         Some(fill) => shown(record, fill, size),
@@ -67,7 +67,7 @@ fn shown(record: &mut LayerRecord, fill: LayerFill, size: Size) -> Content {
     };
     let Some(live) = live else {
         record.tell("its fill became pixels");
-        return pixels(std::mem::take(&mut record.rgba), record.rect);
+        return own_pixels(record);
     };
     let values: Vec<u8> = record.rgba.iter().skip(3).step_by(4).copied().collect();
     let covers_all = record.rect.intersect(size.rect()) == size.rect() && values.iter().all(|v| *v == 255);
@@ -78,7 +78,7 @@ fn shown(record: &mut LayerRecord, fill: LayerFill, size: Size) -> Content {
             None => shape,
         });
     }
-    record.rgba = Vec::new();
+    (record.rgba, record.deep) = (Vec::new(), Vec::new());
     live
 }
 
@@ -109,11 +109,23 @@ fn is_of(record: &LayerRecord, colour: impl Fn([i32; 2]) -> Option<Color>) -> bo
     })
 }
 
-fn pixels(rgba: Vec<u8>, rect: Rect) -> Content {
+/// Straight pixels of a rectangle as paint, of 16 bits where there are some.
+pub fn paint(rgba: &[u8], deep: &[[u16; 4]], rect: Rect) -> Content {
     let (w, h, x, y) = (rect.width(), rect.height(), rect.x0, rect.y0);
     let tiles = match rect.is_empty() || rgba.is_empty() {
         true => TileGrid::default(),
-        false => TileGrid::from_straight_rgba(&rgba, w, h, x, y),
+        false if deep.is_empty() => TileGrid::from_straight_rgba(rgba, w, h, x, y),
+        false => TileGrid::from_straight_deep(deep, w, h, x, y),
     };
     Content::Pixels(PixelLayer { file: String::new(), x, y, tiles })
+}
+
+fn pixels(rgba: Vec<u8>, rect: Rect) -> Content {
+    paint(&rgba, &[], rect)
+}
+
+/// The pixels that the file holds of a record, which it loses.
+fn own_pixels(record: &mut LayerRecord) -> Content {
+    let (rgba, deep) = (std::mem::take(&mut record.rgba), std::mem::take(&mut record.deep));
+    paint(&rgba, &deep, record.rect)
 }

@@ -17,6 +17,9 @@ pub struct PsdHeader {
     pub channels: u16,
     pub bits: u16,
     pub mode: Mode,
+    /// Its pixels are read as 16 bits: it has more than 8, of colours that are kept as they are, and the budget allows
+    /// deep paint.
+    pub is_deep: bool,
 }
 
 impl PsdHeader {
@@ -30,10 +33,11 @@ impl PsdHeader {
             large: self.large,
         }
     }
-    /// Memory of the merged picture while it is read: RGBA, a plane of bytes per channel, and the stored data.
+    /// Memory of the merged picture while it is read: RGBA, a plane of values per channel, and the stored data.
     pub fn merged_bytes(&self) -> u64 {
         let planes = self.colours() as u64 + 1;
-        self.size.area() as u64 * (4 + planes + planes * u64::from(self.bits.div_ceil(8)))
+        let (rgba, value) = if self.is_deep { (12, 2) } else { (4, 1) };
+        self.size.area() as u64 * (rgba + planes * value + planes * u64::from(self.bits.div_ceil(8)))
     }
     /// Channels of colour, at most four.
     pub fn colours(&self) -> usize {
@@ -65,7 +69,8 @@ pub fn header(file: &Path, rest: &mut ByteCursor, budget: &Budget) -> Result<Psd
     if channels < mode.channels() || channels > 56 {
         return Err(Error::decode(file, format!("it has {channels} channels")));
     }
-    Ok(PsdHeader { large: version == 2, size, channels, bits, mode })
+    let is_deep = budget.deep_paint && bits > 8 && matches!(mode, Mode::Rgb | Mode::Grey);
+    Ok(PsdHeader { large: version == 2, size, channels, bits, mode, is_deep })
 }
 
 /// The data of a resource.

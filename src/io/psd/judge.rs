@@ -7,8 +7,9 @@
 //! * alike, though something was left out: the file's picture is hidden above them;
 //! * unlike: the file's picture is shown, and the layers are hidden beneath it, in a group.
 
+use super::filled;
 use super::merged::Merged;
-use crate::document::{Content, Document, Group, Layer, PixelLayer, Progress, flatten};
+use crate::document::{Content, Document, Group, Layer, Progress, flatten};
 use crate::math::Size;
 use crate::raster::tile::TILE;
 use crate::raster::{TileAt, TileGrid};
@@ -77,7 +78,7 @@ pub fn judged(document: Document, merged: Option<Merged>, is_less: bool, notes: 
         return document;
     }
     let Difference { mean, most, .. } = difference;
-    if is_blank(&merged.rgba) {
+    if is_blank(&merged.pixels.rgba) {
         notes.push("the file's own picture is empty, so it was not compared with the layers".into());
         return document;
     }
@@ -91,9 +92,7 @@ pub fn judged(document: Document, merged: Option<Merged>, is_less: bool, notes: 
 }
 
 fn with_picture(mut document: Document, merged: &Merged, visible: bool) -> Document {
-    let (w, h) = (document.size.width as usize, document.size.height as usize);
-    let tiles = TileGrid::from_straight_rgba(&merged.rgba, w, h, 0, 0);
-    let pixels = Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles });
+    let pixels = filled::paint(&merged.pixels.rgba, &merged.pixels.deep, document.size.rect());
     document.layers.push(Arc::new(Layer { visible, clip_to_surface: false, ..Layer::new(PICTURE, pixels) }));
     document
 }
@@ -115,7 +114,7 @@ fn compared(size: Size, shown: &TileGrid, merged: &Merged) -> Difference {
                 let in_tile = ((y - at.rect().y0) as usize * TILE + (x - at.rect().x0) as usize) * 4;
                 let own = tile.and_then(|bytes| bytes.get(in_tile..)?.first_chunk()).copied().unwrap_or([0; 4]);
                 let in_picture = (y as usize * size.width as usize + x as usize) * 4;
-                let other = merged.rgba.get(in_picture..).and_then(|rest| rest.first_chunk()).copied();
+                let other = merged.pixels.rgba.get(in_picture..).and_then(|rest| rest.first_chunk()).copied();
                 counts[usize::from(apart(own, other.unwrap_or([0; 4]), merged.has_alpha))] += 1;
             }
         }
@@ -136,6 +135,7 @@ fn apart(own: [u8; 4], straight: [u8; 4], with_alpha: bool) -> u8 {
 mod tests {
     use super::*;
     use crate::math::srgb::Color;
+    use crate::psd::colours::StraightPixels;
 
     fn grey(value: u8) -> Document {
         let fill = Content::Fill(Color { r: value, g: value, b: value, a: 255 });
@@ -145,7 +145,7 @@ mod tests {
     fn picture(value: u8) -> Option<Merged> {
         let mut rgba = [value, value, value, 255].repeat(200);
         rgba[..3].fill(0);
-        Some(Merged { rgba, is_real: true, ..Merged::default() })
+        Some(Merged { pixels: StraightPixels { rgba, deep: Vec::new() }, is_real: true, ..Merged::default() })
     }
     fn judged_as(merged: Option<Merged>, is_less: bool) -> (Vec<(String, bool)>, Vec<String>) {
         let mut notes = Vec::new();
@@ -165,7 +165,8 @@ mod tests {
     }
     #[test]
     fn a_picture_that_is_none_is_not_believed() {
-        let plain = |is_real| Some(Merged { rgba: vec![255; 800], is_real, ..Merged::default() });
+        let white = || StraightPixels { rgba: vec![255; 800], deep: Vec::new() };
+        let plain = |is_real| Some(Merged { pixels: white(), is_real, ..Merged::default() });
         for (merged, is_less, said) in [
             (None, true, "damaged or missing"),
             (plain(false), true, "saved without a picture"),

@@ -3,7 +3,7 @@
 
 use super::blocks::{self, block};
 use super::channel;
-use super::colours::Colours;
+use super::colours::{ColourValue, Colours, StraightPixels};
 use super::cursor::ByteCursor;
 use super::fill::LayerFill;
 use super::header::PsdHeader;
@@ -36,6 +36,8 @@ pub struct RecordReader<'a> {
     header: &'a PsdHeader,
     colours: &'a Colours<'a>,
     used_px: u64,
+    /// What 16 bits take in addition to bytes.
+    deep_bytes: u64,
     drawn_px: u64,
     /// What could not be read.
     pub damage: Vec<String>,
@@ -43,7 +45,7 @@ pub struct RecordReader<'a> {
 
 impl<'a> RecordReader<'a> {
     pub fn new(file: &'a Path, budget: &'a Budget, header: &'a PsdHeader, colours: &'a Colours<'a>) -> Self {
-        Self { file, budget, header, colours, used_px: 0, drawn_px: 0, damage: Vec::new() }
+        Self { file, budget, header, colours, used_px: 0, deep_bytes: 0, drawn_px: 0, damage: Vec::new() }
     }
     /// All of them, bottom first; unreadable ones are reported.
     pub fn records(&mut self, mut rest: ByteCursor) -> Result<Vec<LayerRecord>> {
@@ -60,7 +62,12 @@ impl<'a> RecordReader<'a> {
             };
             pending.push(record);
         }
-        pending.into_iter().map(|pending| self.filled(pending, &mut rest)).collect()
+        let is_deep = self.header.is_deep;
+        let filled = |pending| match is_deep {
+            true => self.filled::<u16>(pending, &mut rest),
+            false => self.filled::<u8>(pending, &mut rest),
+        };
+        pending.into_iter().map(filled).collect()
     }
     fn record(&self, rest: &mut ByteCursor) -> Option<PendingRecord> {
         let rect = rest.rect()?;
@@ -105,11 +112,15 @@ impl<'a> RecordReader<'a> {
         Some(PendingRecord { record, channels, masks })
     }
     /// Reads a record's channels.
-    fn filled(&mut self, pending: PendingRecord, rest: &mut ByteCursor) -> Result<LayerRecord> {
+    fn filled<T: ColourValue>(&mut self, pending: PendingRecord, rest: &mut ByteCursor) -> Result<LayerRecord> {
         let PendingRecord { mut record, channels, masks } = pending;
         record.rect = self.affordable(&record.name, record.rect)?.unwrap_or(Rect::EMPTY);
         let size = Size::new(record.rect.width() as u32, record.rect.height() as u32);
-        let mut planes: [Option<Vec<u8>>; 4] = [None, None, None, None];
+        if self.header.is_deep {
+            self.deep_bytes += size.area() as u64 * size_of::<[u16; 4]>() as u64;
+            self.budget.room(self.file, "reading its layers", self.held_bytes())?;
+        }
+        let mut planes: [Option<Vec<T>>; 4] = [None, None, None, None];
         let mut alpha = None;
         let mut drawn = [None, None];
         let mut is_damaged = false;
@@ -138,7 +149,8 @@ impl<'a> RecordReader<'a> {
         if is_damaged {
             self.damage.push(format!("“{}” is damaged or cut short", record.name));
         }
-        record.rgba = self.colours.to_srgb(size, &planes, alpha.as_deref());
+        let StraightPixels { rgba, deep } = T::pixels(*self.colours, size, &planes, alpha.as_deref());
+        (record.rgba, record.deep) = (rgba, deep);
         self.masked(&mut record, masks, drawn)?;
         self.spend_for_canvas(&record)?;
         Ok(record)
@@ -228,7 +240,7 @@ impl<'a> RecordReader<'a> {
     }
     /// Memory of the layers that were read.
     pub fn held_bytes(&self) -> u64 {
-        self.used_px.saturating_mul(4)
+        self.used_px.saturating_mul(4).saturating_add(self.deep_bytes)
     }
     /// A mask's rectangle and its values; `None` where they are damaged.
     fn mask(&mut self, name: &str, data: &mut ByteCursor, rect: Rect) -> Result<Option<(Rect, Vec<u8>)>> {

@@ -2,8 +2,8 @@
 //! (`judge`).
 
 use super::VERSION_INFO;
-use super::channel;
-use super::colours::{Colours, Mode};
+use super::channel::{self, ChannelValue};
+use super::colours::{ColourValue, Colours, Mode, StraightPixels};
 use super::cursor::ByteCursor;
 use super::header::{PsdHeader, resource};
 use super::kept;
@@ -14,7 +14,7 @@ use crate::raster::{CoverageGrid, Plane};
 #[derive(Default)]
 pub struct Merged {
     /// Straight sRGB.
-    pub rgba: Vec<u8>,
+    pub pixels: StraightPixels,
     /// Its alpha is the transparency of all layers.
     pub has_alpha: bool,
     /// The writer did not say that it left the picture out.
@@ -27,7 +27,7 @@ pub struct Merged {
 
 /// Reads the picture; `None` if it is damaged. `count`: the number before the layers, if there are any; `has_room`:
 /// there is memory for selections too.
-pub fn merged(
+pub fn merged<T: ColourValue>(
     rest: &mut ByteCursor,
     header: &PsdHeader,
     colours: &Colours,
@@ -38,22 +38,26 @@ pub fn merged(
     let has_alpha = usize::from(header.channels) > header.colours() && has_alpha(resources, header.mode, count);
     let own = header.colours() + usize::from(has_alpha);
     let wanted = if has_room && header.mode != Mode::Multichannel { usize::from(header.channels) } else { own };
-    let mut planes = planes(rest, header, own, wanted)?;
-    let coverage = |values| Some(CoverageGrid::from_plane(&Plane::from_values(header.size, values)?, 0, 0));
+    let mut planes = planes::<T>(rest, header, own, wanted)?;
+    let coverage = |values: Vec<T>| {
+        let bytes = values.into_iter().map(ChannelValue::byte).collect();
+        Some(CoverageGrid::from_plane(&Plane::from_values(header.size, bytes)?, 0, 0))
+    };
     let channels = planes.split_off(own).into_iter().map_while(coverage).collect();
     let (selections, inks) = kept::selections(channels, has_alpha, resources);
     let mut planes = planes.into_iter();
-    let mut slots: [Option<Vec<u8>>; 4] = [None, None, None, None];
+    let mut slots: [Option<Vec<T>>; 4] = [None, None, None, None];
     slots.iter_mut().take(header.colours()).for_each(|slot| *slot = planes.next());
     let alpha = planes.next();
-    let mut rgba = colours.to_srgb(header.size, &slots, alpha.as_deref());
+    let mut pixels = T::pixels(*colours, header.size, &slots, alpha.as_deref());
     // Photoshop blends the colours with white as far as they are transparent; some programs do not.
-    if has_alpha && count.is_some() && is_on_white(&rgba) {
-        off_white(&mut rgba);
+    if has_alpha && count.is_some() && is_on_white(&pixels.rgba) {
+        off_white(pixels.rgba.as_chunks_mut().0);
+        off_white(&mut pixels.deep);
     }
     // Since the number of its version: whether the picture is real.
     let is_real = resource(resources, VERSION_INFO).is_none_or(|data| data.get(4) != Some(&0));
-    Some(Merged { rgba, has_alpha, is_real, selections, inks })
+    Some(Merged { pixels, has_alpha, is_real, selections, inks })
 }
 
 /// A channel beyond the colours is the transparency of all layers, not a selection that somebody kept.
@@ -64,11 +68,16 @@ fn has_alpha(resources: ByteCursor, mode: Mode, count: Option<i16>) -> bool {
 }
 
 /// The first channels, `own` at least, and of the others up to `wanted` as many as are whole.
-fn planes(rest: &mut ByteCursor, header: &PsdHeader, own: usize, wanted: usize) -> Option<Vec<Vec<u8>>> {
+fn planes<T: ChannelValue>(
+    rest: &mut ByteCursor,
+    header: &PsdHeader,
+    own: usize,
+    wanted: usize,
+) -> Option<Vec<Vec<T>>> {
     let shape = |c: usize| header.shape(header.size, c < header.colours());
     let (height, channels) = (header.size.height as usize, usize::from(header.channels));
     let compression = rest.u16()?;
-    let planes: Vec<Vec<u8>> = match compression {
+    let planes: Vec<Vec<T>> = match compression {
         0 => (0..wanted).map_while(|c| channel::decode_as(rest, shape(c), 0)).collect(),
         1 => {
             let lengths = channel::row_lengths(rest, shape(0), height * channels)?;
@@ -90,12 +99,16 @@ fn is_on_white(rgba: &[u8]) -> bool {
 }
 
 /// Removes the white beneath colours as far as they are transparent; fully transparent pixels keep no colour.
-pub fn off_white(rgba: &mut [u8]) {
-    for [colour @ .., alpha] in rgba.as_chunks_mut::<4>().0 {
-        let a = i32::from(*alpha);
+pub fn off_white<T: ChannelValue + TryFrom<i64>>(texels: &mut [[T; 4]])
+where
+    i64: From<T>,
+{
+    let whole = i64::from(T::WHOLE);
+    for [colour @ .., alpha] in texels {
+        let a = i64::from(*alpha);
         if a > 0 {
-            let c = |c: u8| ((i32::from(c) - 255 + a) * 255 + a / 2) / a;
-            *colour = colour.map(|v| c(v).max(0).min(255) as u8);
+            let c = |c: T| ((i64::from(c) - whole + a) * whole + a / 2) / a;
+            *colour = colour.map(|v| T::try_from(c(v).max(0).min(whole)).unwrap_or(T::WHOLE));
         }
     }
 }
@@ -106,9 +119,13 @@ mod tests {
 
     #[test]
     fn white_beneath_what_is_transparent_is_taken_away() {
-        let mut rgba = [[255, 127, 127, 128], [9, 9, 9, 255], [255, 255, 255, 0], [0, 0, 0, 10]].concat();
-        off_white(&mut rgba);
+        let mut rgba: Vec<u8> = [[255, 127, 127, 128], [9, 9, 9, 255], [255, 255, 255, 0], [0, 0, 0, 10]].concat();
+        off_white(rgba.as_chunks_mut().0);
         assert_eq!(rgba, [[255, 0, 0, 128], [9, 9, 9, 255], [255, 255, 255, 0], [0, 0, 0, 10]].concat());
+        let mut deep: [[u16; 4]; 3] =
+            [[65535, 32767, 32767, 32768], [65535, 60000, 59999, 6000], [65535, 65535, 65535, 0]];
+        off_white(&mut deep);
+        assert_eq!(deep, [[65535, 0, 0, 32768], [65535, 5079, 5068, 6000], [65535, 65535, 65535, 0]]);
         assert!(is_on_white(&[[255, 127, 127, 128], [0, 0, 0, 255]].concat()));
         assert!(!is_on_white(&[100, 100, 100, 20]));
     }

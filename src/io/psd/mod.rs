@@ -1,10 +1,10 @@
 //! Photoshop documents, in and out: the format that illustrators exchange (docs/PROJECTS.md says what is carried).
-//! Floor 5. Every kind of colours in, PSD and PSB; 8-bit RGB out.
+//! Floor 5. Every kind of colours in, PSD and PSB, RGB and grey with up to 16 bits; 8-bit RGB out.
 //!
 //! | file | |
 //! |---|---|
 //! | `cursor`, `descriptor` | numbers, sections and named values read from bytes, never beyond their end |
-//! | `channel` | planes of bytes, plain, PackBits or ZIP |
+//! | `channel` | planes of bytes or 16 bits, plain, PackBits or ZIP |
 //! | `colours` | what planes mean, as sRGB |
 //! | `parse`, `layers`, `blocks` | a file into its parts, its records and what follows them |
 //! | `masks`, `outline` | masks that are pictures, and those that are paths |
@@ -100,6 +100,8 @@ pub struct LayerRecord {
     pub unfilled: bool,
     /// Straight RGBA of `rect`, row by row.
     pub rgba: Vec<u8>,
+    /// What it was rounded from, if the file has more than 8 bits a channel; else empty.
+    pub deep: Vec<[u16; 4]>,
     /// What is left out of it, and so may be missing in the picture.
     pub lost: Vec<&'static str>,
     /// What it was turned into without changing its look.
@@ -143,6 +145,7 @@ impl Default for LayerRecord {
             stroked: false,
             unfilled: false,
             rgba: Vec::new(),
+            deep: Vec::new(),
             lost: Vec::new(),
             told: Vec::new(),
         }

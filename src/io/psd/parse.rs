@@ -64,12 +64,19 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
     let held_bytes = held_bytes.saturating_add(header.merged_bytes());
     budget.room(file, "reading its layers and the picture of them all", held_bytes)?;
     let channels = usize::from(header.channels).saturating_sub(header.colours());
-    let with_channels = held_bytes.saturating_add((header.size.area() as u64).saturating_mul(2 * channels as u64));
-    let has_room = budget.room(file, "", with_channels).is_ok();
+    // A plane of each, and the coverage that is made of it.
+    let channel_bytes = if header.is_deep { 3 } else { 2 } * header.size.area() as u64;
+    let with_channels = held_bytes.saturating_add(channel_bytes.saturating_mul(channels as u64));
+    let has_room = budget.room(file, "its layers, its picture and its selections", with_channels);
+    let has_room = if header.is_deep { has_room.map(|()| true)? } else { has_room.is_ok() };
     if !has_room {
         damage.push("the selections that it keeps are left out: there is too little memory for them".into());
     }
-    let merged = if is_there { merged(&mut rest, &header, &colours, resources, count, has_room) } else { None };
+    let merged = match (is_there, header.is_deep) {
+        (false, _) => None,
+        (true, true) => merged::<u16>(&mut rest, &header, &colours, resources, count, has_room),
+        (true, false) => merged::<u8>(&mut rest, &header, &colours, resources, count, has_room),
+    };
     if merged.is_none() && records.is_empty() {
         return Err(Error::decode(file, "it holds no layers, and its picture is damaged or cut short"));
     }

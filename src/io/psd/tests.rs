@@ -1,3 +1,4 @@
+mod deep;
 mod foreign;
 mod made;
 mod marks;

@@ -2,7 +2,7 @@
 //! Floor 5. Parsing is in `parse`.
 
 use super::blocks::ArtboardBackground;
-use super::colours::Mode;
+use super::colours::{Mode, StraightPixels};
 use super::judge::judged;
 use super::parse::{ParsedPsd, parse};
 use super::pattern::PatternResource;
@@ -16,7 +16,7 @@ use crate::project::manifest::Manifest;
 use crate::project::packer::ZipPacker;
 use crate::project::{self, ProjectContents};
 use crate::raster::BlendMode;
-use crate::{Error, Result};
+use crate::{Error, Remedy, Result};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -34,6 +34,8 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
                 return Ok(ProjectContents { document, is_whole, notes, ..contents });
             }
             Ok(None) => notes.push("the layers were changed by another program: live layers became pixels".into()),
+            // Read again with paint of 8 bits, it may fit.
+            Err(error) if budget.deep_paint && error.remedy() == Some(Remedy::MoreMemory) => return Err(error),
             Err(error) => notes.push(format!("live layers became pixels: {error}")),
         }
     }
@@ -80,6 +82,13 @@ fn colour_notes(parsed: &ParsedPsd) -> Option<String> {
         Mode::Lab => "its Lab colours became sRGB; layers blend in those",
         Mode::Multichannel => "its inks were taken for cyan, magenta, yellow and black; others are left out",
         Mode::Duotone => "its inks are left out: it became grey",
+        _ if header.is_deep && header.bits == 32 => {
+            "its 32 bits a channel became 16, and values brighter than white are lost; a Photoshop file that is saved \
+             here has 8 for other programs"
+        }
+        _ if header.is_deep => {
+            "its 16 bits a channel are kept here; a Photoshop file that is saved here has 8 for other programs"
+        }
         _ if header.bits == 32 => "its 32 bits per channel became 8, and values brighter than white are lost",
         _ if header.bits == 16 => "its 16 bits a channel became 8",
         _ => return None,
@@ -90,8 +99,8 @@ fn colour_notes(parsed: &ParsedPsd) -> Option<String> {
 /// The picture of a file without layers becomes one.
 fn flattened(parsed: &mut ParsedPsd) {
     let rect = parsed.header.size.rect();
-    let rgba = parsed.merged.take().map(|merged| merged.rgba).unwrap_or_default();
-    parsed.records.push(LayerRecord { name: "Background".into(), rect, rgba, ..LayerRecord::default() });
+    let StraightPixels { rgba, deep } = parsed.merged.take().map(|merged| merged.pixels).unwrap_or_default();
+    parsed.records.push(LayerRecord { name: "Background".into(), rect, rgba, deep, ..LayerRecord::default() });
 }
 
 /// The document that our own resource holds, the layers' pixels taken from the file; `None` where the layers are

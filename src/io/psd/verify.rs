@@ -66,10 +66,10 @@ fn difference(parsed: &mut ParsedPsd, meant: &Meant) -> Option<String> {
     let mut expected = meant.merged.clone();
     if !meant.records.is_empty() {
         // As the reader takes the white away: no two pixels become the same by that.
-        off_white(&mut expected);
+        off_white::<u8>(expected.as_chunks_mut().0);
     }
     let Some(read) = parsed.merged.take() else { return Some("the picture of all layers".into()) };
-    if !read.is_real || read.rgba != expected {
+    if !read.is_real || read.pixels.rgba != expected {
         return Some("the picture of all layers".into());
     }
     let is_kept = |(a, b): (&NamedSelection, &NamedSelection)| a.selection.coverage.is_same(&b.selection.coverage);

@@ -113,8 +113,9 @@ impl PictureCache {
                     picture::painted(&path, &bytes, x, y, source.budget).map_err(|e| name.led_to(e))?
                 }
             };
-            self.spend(source, painted.size, painted.tiles.bytes())?;
-            self.tiles.insert(key.clone(), painted.tiles);
+            let tiles = if source.budget.deep_paint { painted.tiles } else { painted.tiles.rounded() };
+            self.spend(source, painted.size, tiles.bytes())?;
+            self.tiles.insert(key.clone(), tiles);
         }
         let tiles = self.tiles.get(&key).cloned().unwrap_or_default();
         Ok((key.0, tiles))

@@ -11,7 +11,7 @@ use crate::io::export::{ExportFormat, ExportOptions, OutputFile};
 use crate::io::files::{TrackedFiles, read_file};
 use crate::io::open::FileKind;
 use crate::io::recipe::{self, OtherSurface, RecipeSource};
-use crate::io::{RecipeFolder, UserFiles, open};
+use crate::io::{Budget, RecipeFolder, UserFiles, deep_paint, open};
 use crate::math::srgb::Color;
 use crate::{Error, Result};
 use clap::ArgGroup;
@@ -115,8 +115,13 @@ fn load(args: &RenderArgs) -> Result<LoadedDocument> {
     let mut reads = vec![args.document.clone()];
     let (document, notes) = match FileKind::of(&bytes) {
         FileKind::Recipe => {
-            let source = RecipeSource { file: &args.document, files: &files, budget: &budget, onto };
-            recipe::read_noting(&bytes, source)?
+            let read = |budget: &Budget| {
+                recipe::read_noting(&bytes, RecipeSource { file: &args.document, files: &files, budget, onto })
+            };
+            let ((document, mut notes), rounded) =
+                deep_paint::fitted(&args.document, &budget, read, |(document, _)| document)?;
+            notes.extend(rounded);
+            (document, notes)
         }
         _ => {
             let opened = open(&args.document, &budget)?;

@@ -3,6 +3,7 @@
 
 use super::LimitArgs;
 use super::force::Force;
+use super::told::tell;
 use crate::document::source::{MapSource, MaskSource};
 use crate::document::view::{self, SurfaceView, UnwrappedPicture, ViewOptions, ViewUnavailable};
 use crate::document::{Content, Document, Layer, Live, Progress, SurfaceSource};
@@ -10,7 +11,7 @@ use crate::io::export::{ExportOptions, OutputFile};
 use crate::io::files::{TrackedFiles, read_file};
 use crate::io::maps::{self, pairs};
 use crate::io::recipe::{self, RecipeSource};
-use crate::io::{Budget, RecipeFolder, UserFiles};
+use crate::io::{Budget, RecipeFolder, UserFiles, deep_paint};
 use crate::math::{Size, srgb::Color};
 use crate::paint::{Adjust, ImageFilter, PictureSource, PlacedImage};
 use crate::raster::{Outside, Picture, TileGrid, picture::Texels};
@@ -163,8 +164,10 @@ fn opened(args: &ViewArgs) -> Result<(Document, Vec<PathBuf>)> {
         [recipe] if !loose && recipe.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) => {
             let files = TrackedFiles::new(RecipeFolder::beside(recipe));
             let text = read_file(recipe, budget.json_bytes)?;
-            let document =
-                recipe::read(&text, RecipeSource { file: recipe, files: &files, budget: &budget, onto: None })?;
+            let read =
+                |budget: &Budget| recipe::read(&text, RecipeSource { file: recipe, files: &files, budget, onto: None });
+            let (document, rounded) = deep_paint::fitted(recipe, &budget, read, |document| document)?;
+            tell(recipe, rounded.as_slice());
             Ok((document, [vec![recipe.clone()], files.read_paths()].concat()))
         }
         _ => of_maps(args, &budget),

@@ -2,7 +2,7 @@
 
 use super::super::prepare::PreparedDocument;
 use super::*;
-use crate::document::{Content, Group, Layer, Live, StrokeList, flatten, flatten_deep};
+use crate::document::{Content, Group, Layer, Live, StrokeList, flatten, flatten_deep, flatten_to_paint};
 use crate::math::srgb::{self, Color};
 use crate::math::{Size, Vec2, hash, vec2, vec3};
 use crate::paint::{Adjust, Brush, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement, Sample};
@@ -156,4 +156,31 @@ fn textures_of_floats_are_held_while_tiles_are_composed() {
     let document = document(size, vec![image(picture, size, Operator::None), strokes(1)]);
     let prepared = PreparedDocument::new(&document, &Progress::default()).unwrap();
     assert_eq!(DeepTiles::new(&prepared, Highlights::Kept).held(), 1);
+}
+#[test]
+fn a_placed_picture_of_more_than_8_bits_becomes_paint_of_16_even_if_nothing_is_soft() {
+    let size = Size::new(100, 70);
+    let value = |i: usize, c: u32| (hash::unit(i as u32, c, 4) * 65536.0) as u16;
+    let deep: Vec<[u16; 4]> = (0..size.area()).map(|i| [value(i, 0), value(i, 1), value(i, 2), 65535]).collect();
+    let bytes = Picture::srgb8(size, deep.iter().map(|t| t.map(|v| (v / 257) as u8)).collect()).unwrap();
+    let light = deep.iter().map(|t| t.map(|v| srgb::decode(f32::from(v) / 65535.0))).collect();
+    let wide = bytes.clone().with_deep(deep.clone());
+    for (picture, is_deep) in [(wide, true), (Picture::linear(size, light).unwrap(), true), (bytes.clone(), false)] {
+        // One is in a group and clipped, as a layer may be.
+        let alone = image(picture, size, Operator::None);
+        let clipped = Layer { clip_below: true, ..alone.clone() };
+        let base = image(bytes.clone(), size, Operator::None);
+        let group = Group { layers: vec![base.into(), clipped.into()], pass_through: false };
+        let grouped = Layer::new("group", Content::Group(group));
+        assert_eq!(is_kept_deep(grouped, size), is_deep);
+        let tiles = flatten_to_paint(&document(size, vec![alone]), &Progress::default()).unwrap();
+        assert_eq!(tiles.is_deep_in(size.rect()), is_deep);
+        let found = tiles.to_straight_deep(size.rect());
+        let apart = found.iter().zip(&deep).flat_map(|(a, b)| a.iter().zip(b)).map(|(a, b)| a.abs_diff(*b)).max();
+        assert!(!is_deep || apart <= Some(1), "{apart:?}");
+    }
+}
+fn is_kept_deep(layer: Layer, size: Size) -> bool {
+    let tiles = flatten_to_paint(&document(size, vec![layer]), &Progress::default()).unwrap();
+    tiles.is_deep_in(size.rect())
 }

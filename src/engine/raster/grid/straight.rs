@@ -2,7 +2,8 @@
 
 use super::super::tile::{TILE, Tile, TileAt, deep};
 use super::TileGrid;
-use crate::math::Rect;
+use crate::math::{Rect, srgb};
+use rayon::prelude::*;
 use std::sync::Arc;
 
 impl TileGrid {
@@ -27,19 +28,41 @@ impl TileGrid {
     }
     /// The same for straight values of 16 bits; tiles that bytes hold exactly become tiles of bytes.
     pub fn from_straight_deep(rgba: &[[u16; 4]], width: usize, height: usize, x: i32, y: i32) -> Self {
+        Self::from_deep_rows(rgba, [width, height], [x, y], deep::premultiplied)
+    }
+    /// The same for straight linear light, which is clipped to white, encoded and premultiplied before it is rounded.
+    pub fn from_light(light: &[[f32; 4]], width: usize, height: usize, x: i32, y: i32) -> Self {
+        Self::from_deep_rows(light, [width, height], [x, y], |[r, g, b, a]| {
+            // In this order NaN becomes 0.
+            let bounded = |v: f32| v.max(0.0).min(1.0);
+            let a = bounded(a);
+            let encoded = |v: f32| srgb::quantise_deep(srgb::encode(bounded(v)) * a);
+            [encoded(r), encoded(g), encoded(b), srgb::quantise_deep(a)]
+        })
+    }
+    /// `of`: a pixel's premultiplied 16 bits; colours above alpha are lowered to it.
+    fn from_deep_rows<T: Copy + Sync>(
+        pixels: &[T],
+        [width, height]: [usize; 2],
+        [x, y]: [i32; 2],
+        of: impl Fn(T) -> [u16; 4] + Sync,
+    ) -> Self {
         let rect = Rect::new(x, y, x.saturating_add(width as i32), y.saturating_add(height as i32));
-        let mut grid = Self::for_rect(rect);
-        for at in TileAt::covering(rect) {
+        let tile = |at: TileAt| {
             let (area, corner) = (at.rect().intersect(rect), at.rect());
             let mut rows = deep::clear_rows();
             for py in area.y0..area.y1 {
                 let from = (py - y) as usize * width + (area.x0 - x) as usize;
                 let row = &mut rows[(py - corner.y0) as usize];
-                let pixels = rgba[from..from + area.width()].iter().zip((area.x0 - corner.x0) as usize..);
-                pixels.for_each(|(pixel, x)| deep::put(row, x, deep::premultiplied(*pixel)));
+                let pixels = pixels[from..from + area.width()].iter().zip((area.x0 - corner.x0) as usize..);
+                pixels.for_each(|(pixel, x)| deep::put(row, x, of(*pixel)));
             }
-            grid.set(at, Tile::from_deep(rows).map(Arc::new));
-        }
+            (at, Tile::from_deep(rows).map(Arc::new))
+        };
+        let places: Vec<TileAt> = TileAt::covering(rect).collect();
+        let tiles: Vec<_> = places.into_par_iter().map(tile).collect();
+        let mut grid = Self::for_rect(rect);
+        tiles.into_iter().for_each(|(at, tile)| grid.set(at, tile));
         grid
     }
     /// Straight-alpha RGBA bytes of a pixel rectangle, row by row.
@@ -128,6 +151,46 @@ mod tests {
             }
             assert_eq!((p[3], s[3]), (of[3], of[3]));
         }
+    }
+    #[test]
+    fn light_becomes_16_bits_that_round_to_the_bytes_of_a_texture() {
+        use crate::math::Size;
+        use crate::raster::{Picture, Texture};
+        let (w, h) = (70, 66);
+        let light = |i: usize, c: u32| hash::unit(i as u32, c, 7) * 1.3 - 0.1;
+        let mut texels: Vec<[f32; 4]> = (0..w * h).map(|i| [0, 1, 2, 3].map(|c| light(i, c))).collect();
+        texels[0] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1.0];
+        texels[1] = [1.0, 1.0, 1.0, f32::NAN];
+        let grid = TileGrid::from_light(&texels, w, h, -3, 5);
+        assert_eq!((grid.deep_pixel(-3, 5), grid.deep_pixel(-2, 5)), ([0, 65535, 0, 65535], [0; 4]));
+        let texture = Texture::new(&Picture::linear(Size::new(w as u32, h as u32), texels.clone()).unwrap());
+        for (i, bytes) in texture.levels()[0].texels.iter().enumerate().skip(2) {
+            let (x, y) = ((i % w) as i32 - 3, (i / w) as i32 + 5);
+            let deep = grid.deep_pixel(x, y);
+            let alpha = texels[i][3].clamp(0.0, 1.0);
+            for c in 0..3 {
+                let exact = srgb::encode(texels[i][c].clamp(0.0, 1.0)) * alpha * 65535.0;
+                assert!((f32::from(deep[c]) - exact).abs() <= 0.51, "{deep:?} for {:?}", texels[i]);
+            }
+            // Rounded twice: a value near the middle between two bytes may become the other.
+            let apart = |(d, b): (&u16, &u8)| (i32::from(*d) - i32::from(*b) * 257).abs();
+            assert!(deep.iter().zip(bytes).map(apart).max() <= Some(129), "{deep:?} and {bytes:?}");
+        }
+        assert!(grid.is_deep_in(grid.bounds()));
+        // Light that bytes hold exactly takes no more than bytes.
+        let plain: Vec<[f32; 4]> = (0..w * h).map(|i| [srgb::decode_u8((i % 256) as u8), 0.0, 1.0, 1.0]).collect();
+        let plain = TileGrid::from_light(&plain, w, h, 0, 0);
+        assert!(!plain.is_deep_in(plain.bounds()));
+    }
+    #[test]
+    fn rounded_pixels_are_the_bytes_that_were_seen() {
+        let value = |i: usize, c: u32| (hash::unit(i as u32, c, 0) * 65536.0) as u16;
+        let pixels: Vec<[u16; 4]> = (0..130 * 70).map(|i| [0, 1, 2, 3].map(|c| value(i, c))).collect();
+        let grid = TileGrid::from_straight_deep(&pixels, 130, 70, 0, 0);
+        let rounded = grid.rounded();
+        assert!(grid.is_deep_in(grid.bounds()) && !rounded.is_deep_in(rounded.bounds()));
+        assert!(grid.iter().all(|(at, tile)| rounded.tile(at).unwrap().bytes() == tile.bytes()));
+        assert_eq!(TileGrid::from_straight_deep(&[[9, 9, 9, 100]; 4], 2, 2, 0, 0).rounded().iter().count(), 0);
     }
     #[test]
     fn pixels_of_16_bits_come_back_and_take_more_only_where_bytes_do_not_hold_them() {

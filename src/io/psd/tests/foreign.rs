@@ -15,7 +15,7 @@ fn opened(made: &Made) -> ProjectContents {
     read_back(&bytes)
 }
 /// Each of these files in many damaged versions: read or refused, never a panic, nothing as large as a file claims.
-fn attack(bytes: &[u8]) {
+pub fn attack(bytes: &[u8]) {
     let budget = Budget { area_px: 1 << 18, document_px: 1 << 20, side_px: 2048, ..Budget::default() };
     let dice = |i: u32, j: u32| mix(i.wrapping_mul(31).wrapping_add(j)) as usize;
     for i in 0..250 {

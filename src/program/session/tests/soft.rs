@@ -85,3 +85,42 @@ fn baked_soft_strokes_are_as_fine_as_they_were_alive() {
     bake.apply(&mut session).unwrap();
     assert!(levels(&paint(&session)) > 1000, "{} levels", levels(&paint(&session)));
 }
+#[test]
+fn a_picture_of_16_bits_keeps_them_when_it_is_opened_or_placed_and_baked() {
+    let folder = tempfile::tempdir().unwrap();
+    let noise = |x: u32, y: u32| image::Luma([(crate::math::hash::unit(x, y, 0) * 65536.0) as u16]);
+    let picture = image::ImageBuffer::from_fn(200, 150, noise);
+    let file = folder.path().join("noise.png");
+    image::DynamicImage::ImageLuma16(picture.clone()).save(&file).unwrap();
+    let named = file.to_string_lossy().replace('\\', "/");
+    let opened = told(&format!(r#"{{"in":"file","do":"open","file":"{named}"}}"#));
+    let mut placed = told(r#"{"in":"file","do":"new","width":200,"height":150,"background":null}"#);
+    tell(&mut placed, &format!(r#"{{"in":"file","do":"place","file":"{named}","at":[100,75]}}"#));
+    tell(&mut placed, r#"{"in":"layer","do":"bake","layer":"0"}"#);
+    for session in [opened, placed] {
+        let tiles = paint(&session).tiles;
+        let apart =
+            |(x, y, pixel): (u32, u32, &image::Luma<u16>)| tiles.deep_pixel(x as i32, y as i32)[0].abs_diff(pixel.0[0]);
+        assert!(picture.enumerate_pixels().map(apart).max() <= Some(1));
+    }
+}
+#[test]
+fn a_photoshop_file_of_16_bits_is_not_saved_over_with_8() {
+    let folder = tempfile::tempdir().unwrap();
+    // One pixel without layers: its header, no table, resources or layers, and three plain channels.
+    let file = |bits: u8, plane: &[u8]| {
+        let head = [&b"8BPS\0\x01\0\0\0\0\0\0\0\x03\0\0\0\x01\0\0\0\x01\0"[..], &[bits, 0, 3]].concat();
+        let bytes = [&head, &[0; 14][..], &plane.repeat(3)].concat();
+        let file = folder.path().join(format!("{bits}.psd"));
+        std::fs::write(&file, bytes).unwrap();
+        file
+    };
+    let opened = |file: &Path| crate::session::storage::open(file).unwrap_or_else(|e| panic!("{e}"));
+    let wide = opened(&file(16, &[0x12, 0x34]));
+    let Content::Pixels(pixels) = &wide.tab.document().layers[0].content else { panic!("paint") };
+    assert_eq!(pixels.tiles.deep_pixel(0, 0), [0x1234, 0x1234, 0x1234, 65535]);
+    assert!(wide.notes[0].contains("8 for other programs"), "{:?}", wide.notes);
+    assert_eq!(wide.tab.file, None);
+    let narrow = opened(&file(8, &[0x12]));
+    assert!(narrow.notes.is_empty() && narrow.tab.file.is_some());
+}
