@@ -4,6 +4,7 @@
 use super::force::Force;
 use super::told::tell;
 use super::{LimitArgs, values};
+use crate::document::parts::drawing::{FigureBackground, without_background};
 use crate::document::parts::flats::{self, FlatParts, PartFor};
 use crate::document::parts::{Inflation, Part};
 use crate::document::{Content, Document, Layer, PixelLayer};
@@ -19,12 +20,12 @@ use std::sync::Arc;
 
 /// Make normals, depth and parts for a drawing that has no maps
 ///
-/// The drawing's alpha is its outline. With --flats each flat colour is a part of its own, and parts that interrupt the
-/// outline of others lie in front of them. FOLDER gets DRAWING_n (normals), _d (depth, near is 0), _h (height), _mask
-/// and _id (the number of the part).
+/// The drawing's alpha is its outline; a ground of one colour all around is left out. With --flats each flat colour is
+/// a part of its own, and parts that interrupt the outline of others lie in front of them. FOLDER gets DRAWING_n
+/// (normals), _d (depth, near is 0), _h (height), _mask and _id (the number of the part).
 #[derive(clap::Args)]
 pub struct ShapeArgs {
-    /// The drawing, on transparent ground
+    /// The drawing, on a ground that is transparent or of one colour
     #[arg(value_name = "DRAWING")]
     drawing: PathBuf,
     /// A picture of the same size with a flat colour for each part
@@ -123,9 +124,9 @@ fn shaped(args: &ShapeArgs) -> Result<(Document, Option<String>)> {
     budget.room(&args.drawing, &format!("the shape of {size} pixels"), size.area() as u64 * BYTES_A_PIXEL)?;
     let (parts, layers) = match &args.flats {
         None => {
-            refuse_opaque(&args.drawing, &drawing, size)?;
+            let figure = figure(&args.drawing, drawing, size)?;
             let part = Part::of_layer("drawing", "Drawing", inflation);
-            (FlatParts { parts: vec![part], left_out: 0 }, vec![layer("Drawing", drawing)])
+            (FlatParts::of_one(part), vec![layer("Drawing", figure)])
         }
         Some(file) => {
             let (other, flats) = tiles(file, &budget)?;
@@ -133,6 +134,10 @@ fn shaped(args: &ShapeArgs) -> Result<(Document, Option<String>)> {
                 return Err(Error::unsupported(file, format!("it has {other} pixels, the drawing {size}")));
             }
             let each = if args.places { PartFor::Place } else { PartFor::Color };
+            let flats = match FigureBackground::of(&flats, size) {
+                FigureBackground::Flat(ground) => without_background(&flats, size, ground),
+                _ => flats,
+            };
             let parts = flats::parts_of_flats(&flats, "Flats", inflation, each);
             if parts.parts.is_empty() {
                 return Err(Error::unsupported(file, "no flat colour in it covers enough to be a part"));
@@ -154,18 +159,16 @@ fn tiles(file: &Path, budget: &Budget) -> Result<(Size, TileGrid)> {
     Ok((picture.size, picture::to_tiles(&picture, 0, 0)))
 }
 
-/// A drawing that fills its picture has no outline but the picture's.
-fn refuse_opaque(file: &Path, drawing: &TileGrid, size: Size) -> Result<()> {
-    let corners = [(0, 0), (size.width - 1, 0), (0, size.height - 1), (size.width - 1, size.height - 1)];
-    let is_full = size.area() > 1 && corners.iter().all(|(x, y)| drawing.pixel(*x as i32, *y as i32)[3] == 255);
-    let is_full =
-        is_full && (0..size.height as i32).all(|y| (0..size.width as i32).all(|x| drawing.pixel(x, y)[3] == 255));
-    match is_full {
-        true => Err(Error::unsupported(
+/// A drawing without its ground; one that fills its picture has no outline but the picture's.
+fn figure(file: &Path, drawing: TileGrid, size: Size) -> Result<TileGrid> {
+    match FigureBackground::of(&drawing, size) {
+        FigureBackground::Transparent => Ok(drawing),
+        FigureBackground::Flat(ground) => Ok(without_background(&drawing, size, ground)),
+        FigureBackground::Painted => Err(Error::unsupported(
             file,
             "it is opaque everywhere, so it has no outline; give it a transparent ground, or name its flats \
              with --flats",
         )),
-        false => Ok(()),
+        FigureBackground::Empty => Err(Error::unsupported(file, "nothing in it is opaque enough to have a shape")),
     }
 }

@@ -1,9 +1,8 @@
 //! What a flat colour covers unseen: its area goes on beneath nearer colours, as a face does beneath its eyes.
 //! Floor 4. Not here: which share of a visible pixel a colour takes (`shares`).
 
-use super::near::is_near;
-use super::places::least_area;
-use super::shares::{Flats, MOSTLY, Pixel, REACH, bytes};
+use super::areas::{beside, least_area, pixels, walk};
+use super::shares::{FlatOwner, Flats, MOSTLY, REACH};
 use crate::math::srgb::Color;
 use crate::raster::Plane;
 use std::collections::BTreeMap;
@@ -52,17 +51,18 @@ pub fn fill_beneath(share: &mut Plane<u8>, flats: &Flats, nearer: &[Color], fart
 }
 
 fn what_is_seen(share: &Plane<u8>, flats: &Flats, nearer: &[Color], farther: &[Color]) -> Plane<u16> {
-    let [nearer, farther] = [nearer, farther].map(|colors| colors.iter().copied().map(bytes).collect::<Vec<Pixel>>());
-    let of = |pixel: Pixel| match nearer.iter().position(|color| is_near(pixel, *color)) {
-        _ if is_near(pixel, [0; 4]) => OPEN,
+    let [nearer, farther] =
+        [nearer, farther].map(|colors| colors.iter().map(|color| flats.number_of(*color)).collect::<Vec<_>>());
+    let of = |number: u16| match nearer.iter().position(|color| *color == Some(number)) {
         Some(place) => (place as u16).saturating_add(1).min(FARTHER - 1),
-        None if farther.iter().any(|color| is_near(pixel, *color)) => FARTHER,
+        None if farther.contains(&Some(number)) => FARTHER,
         None => UNKNOWN,
     };
-    Plane::from_fn(share.size(), |x, y| match flats.is_flat(x, y) {
+    Plane::from_fn(share.size(), |x, y| match flats.owner(x, y) {
         _ if share.at(x, y) >= MOSTLY => OWN,
-        true => of(flats.pixel(x, y)),
-        false => UNKNOWN,
+        FlatOwner::Color(number) => of(number),
+        FlatOwner::Nothing => OPEN,
+        FlatOwner::Unknown => UNKNOWN,
     })
 }
 
@@ -150,25 +150,6 @@ fn fill_mixed_around(share: &mut Plane<u8>, x: usize, y: usize) {
             share.set(x as usize, y as usize, 255);
         }
     }
-}
-
-/// Goes from a pixel to those beside it, and on from each that `enters`.
-fn walk(start: (usize, usize), size: (usize, usize), mut enters: impl FnMut(usize, usize) -> bool) {
-    let mut ahead = vec![start];
-    while let Some(at) = ahead.pop() {
-        if enters(at.0, at.1) {
-            ahead.extend(beside(at, size));
-        }
-    }
-}
-
-fn beside((x, y): (usize, usize), (w, h): (usize, usize)) -> impl Iterator<Item = (usize, usize)> {
-    let all = [(x.wrapping_sub(1), y), (x + 1, y), (x, y.wrapping_sub(1)), (x, y + 1)];
-    all.into_iter().filter(move |(x, y)| *x < w && *y < h)
-}
-
-fn pixels((w, h): (usize, usize)) -> impl Iterator<Item = (usize, usize)> {
-    (0..h).flat_map(move |y| (0..w).map(move |x| (x, y)))
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! The surface of a document from its parts and its maps; only what changed in a part is made again. Floor 4.
 
 use super::body::{self, SolvedOutline, StandingOutline, formed, inflated, joined, lost, of_surface};
+use super::known::LastFlats;
 use super::outlines::OutlineKey;
-use super::unchanged::{apart, same_inks, same_kind, same_list, same_shape};
+use super::unchanged::{apart, same_inks, same_kind, same_list, same_shape, same_surface};
 use super::upon::{Came, changed, lined};
 use super::{Part, PartKind, Parts};
 use crate::document::{Document, Progress};
@@ -18,6 +19,7 @@ pub struct PartCache {
     /// The result is shown only for a moment, so solving may begin from the last result.
     pub is_draft: bool,
     made: Arc<Mutex<Vec<MadePart>>>,
+    pub(super) flats: Arc<LastFlats>,
     /// The last surface, and what it was made of.
     whole: Arc<Mutex<Option<MadeSurface>>>,
 }
@@ -62,14 +64,6 @@ struct Stages {
     before_last: Arc<Form>,
 }
 
-/// The very same surface, or none twice.
-fn same_surface(a: &Option<Arc<Surface>>, b: &Option<Arc<Surface>>) -> bool {
-    match (a, b) {
-        (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-        (a, b) => a.is_none() && b.is_none(),
-    }
-}
-
 /// Stages of forms with more pixels than this are not kept.
 const MOST_KEPT_PX: usize = 1 << 24;
 
@@ -99,6 +93,7 @@ impl Document {
             progress.step();
         }
         self.forget_others();
+        self.parts.forget_flats();
         let surface = self.whole(forms);
         let lost = lost(shown().zip(&outlines));
         if !self.parts.is_ahead && self.parts.lost == lost && same_surface(&surface, &self.surface) {

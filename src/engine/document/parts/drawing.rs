@@ -1,8 +1,9 @@
 //! What a drawing is before it has a shape: whether its background is transparent or of one colour, and whether it has
 //! flat colours. Floor 4. Not here: which parts are made of it (`flats`).
 
-use super::flats::colors_of;
+use super::flats::LEAST_FLAT;
 use super::near::{is_near, share_on_the_way};
+use super::shares::{Flats, bytes};
 use crate::math::srgb::Color;
 use crate::math::{Rect, Size};
 use crate::raster::grid::unpremultiply;
@@ -27,7 +28,7 @@ pub struct DrawingLook {
     pub background: FigureBackground,
     /// Flat colours of the figure that are large enough to be parts.
     pub colors: usize,
-    /// The share of the figure that has one of them, `[0, 1]`.
+    /// The share of the figure that lies in their areas, `[0, 1]`.
     pub flat_share: f32,
 }
 
@@ -38,42 +39,35 @@ const LEAST_BORDER: f32 = 0.9;
 /// The share of the picture that must be transparent, so that the rest is a figure; and the share that must be figure.
 const LEAST_SHARE: f32 = 0.004;
 
-impl DrawingLook {
-    /// Flats cover most of a figure: shaded paint has few pixels of any one colour.
-    const LEAST_FLAT: f32 = 0.7;
-
+impl FigureBackground {
+    /// Of a picture as large as the canvas.
     pub fn of(tiles: &TileGrid, canvas: Size) -> Self {
-        let rect = canvas.rect();
-        let opaque = count(rect, |x, y| tiles.pixel(x, y)[3] >= OPAQUE);
         let all = canvas.area().max(1) as f32;
-        if opaque as f32 / all < LEAST_SHARE {
-            return Self { background: FigureBackground::Empty, colors: 0, flat_share: 0.0 };
+        let opaque = opaque(tiles, canvas) as f32 / all;
+        match flat_ground(tiles, canvas) {
+            _ if opaque < LEAST_SHARE => Self::Empty,
+            _ if 1.0 - opaque >= LEAST_SHARE => Self::Transparent,
+            Some(color) => Self::Flat(color),
+            None => Self::Painted,
         }
-        let is_cut_out = 1.0 - opaque as f32 / all >= LEAST_SHARE;
-        let background = match flat_ground(tiles, canvas) {
-            _ if is_cut_out => FigureBackground::Transparent,
-            Some(color) => FigureBackground::Flat(color),
-            None => FigureBackground::Painted,
-        };
-        // A photograph has as many colours as pixels; none of them will be a part.
-        if background == FigureBackground::Painted {
-            return Self { background, colors: 0, flat_share: 0.0 };
-        }
+    }
+}
+
+impl DrawingLook {
+    pub fn of(tiles: &TileGrid, canvas: Size) -> Self {
+        let background = FigureBackground::of(tiles, canvas);
+        let without_colors = |background| Self { background, colors: 0, flat_share: 0.0 };
         let figure = match background {
+            // A photograph has as many colours as pixels; none of them will be a part.
+            FigureBackground::Empty | FigureBackground::Painted => return without_colors(background),
             FigureBackground::Flat(color) => without_background(tiles, canvas, color),
-            _ => tiles.clone(),
+            FigureBackground::Transparent => tiles.clone(),
         };
-        let of_figure = count(rect, |x, y| figure.pixel(x, y)[3] >= OPAQUE);
-        if of_figure as f32 / all < LEAST_SHARE {
-            return Self { background: FigureBackground::Empty, colors: 0, flat_share: 0.0 };
+        if (opaque(&figure, canvas) as f32) < LEAST_SHARE * canvas.area().max(1) as f32 {
+            return without_colors(FigureBackground::Empty);
         }
-        let colors = colors_of(&figure, figure.bounds());
-        let known: Vec<[u8; 4]> = colors.iter().map(|color| bytes_of(*color)).collect();
-        let flat = count(rect, |x, y| {
-            let pixel = figure.pixel(x, y);
-            pixel[3] == 255 && known.iter().any(|color| is_near(pixel, *color))
-        });
-        Self { background, colors: colors.len(), flat_share: flat as f32 / of_figure.max(1) as f32 }
+        let flats = Flats::of(&figure, figure.bounds(), &[]);
+        Self { background, colors: flats.colors().len(), flat_share: flats.flat_share() }
     }
     /// Whether it can be given a shape as it is.
     pub fn has_outline(&self) -> bool {
@@ -81,16 +75,14 @@ impl DrawingLook {
     }
     /// Whether its colours are worth a part each.
     pub fn is_of_flats(&self) -> bool {
-        self.colors > 1 && self.flat_share >= Self::LEAST_FLAT
+        self.colors > 1 && self.flat_share >= LEAST_FLAT
     }
 }
 
-fn count(rect: Rect, is: impl Fn(i32, i32) -> bool) -> usize {
-    (rect.y0..rect.y1).map(|y| (rect.x0..rect.x1).filter(|x| is(*x, y)).count()).sum()
-}
-
-fn bytes_of(color: Color) -> [u8; 4] {
-    color.premultiplied().map(|v| (v * 255.0).round() as u8)
+/// How many pixels of the canvas are painted, px.
+fn opaque(tiles: &TileGrid, canvas: Size) -> usize {
+    let Rect { x0, y0, x1, y1 } = canvas.rect();
+    (y0..y1).map(|y| (x0..x1).filter(|x| tiles.pixel(*x, y)[3] >= OPAQUE).count()).sum()
 }
 
 /// The opaque colour that nearly all of the canvas's border has.
@@ -113,7 +105,7 @@ fn flat_ground(tiles: &TileGrid, canvas: Size) -> Option<Color> {
 /// A picture without its flat background, as far as that is joined to the border. Over the background's colour it looks
 /// as before: pixels at its edge lose just the background's share in them.
 pub fn without_background(tiles: &TileGrid, canvas: Size, background: Color) -> TileGrid {
-    let color = bytes_of(background);
+    let color = bytes(background);
     let open = joined_to_border(&Plane::from_fn(canvas, |x, y| is_near(tiles.pixel(x as i32, y as i32), color)));
     let pixel = |x: usize, y: usize| {
         let (x, y) = (x as i32, y as i32);

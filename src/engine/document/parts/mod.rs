@@ -3,21 +3,33 @@
 //!
 //! `part` is one of them and `edit` changes the list. `derive` makes the surface and keeps what did not change; it uses
 //! `body` for one form, `upon` for what is on a form, and `unchanged` to compare versions. `outlines` finds outlines,
-//! `drawing` says what can be made of a layer, `flats` makes parts of one in flat colours, and `shares` divides their
-//! mixed pixels; `places` tells the areas of one colour apart. `forms` has the forms that were made, `scale` changes
-//! the canvas, and `fit` holds parts to what files can hold.
+//! `drawing` says what can be made of a layer, and `flats` makes parts of one in flat colours, for which `order` finds
+//! who lies in front. `forms` has the forms that were made, `scale` changes the canvas, and `fit` holds parts to what
+//! files can hold.
+//!
+//! `shares` says what each pixel of flats is of: `picture` reads its areas and mixed pixels, `palette` finds its
+//! colours, `ink` takes lines out, and `complete` gives what is left to the areas beside it. `places` tells the areas
+//! of one colour apart, `beneath` continues them under nearer ones, `known` keeps what was found, and `areas` has walks
+//! over pixels.
 
+mod areas;
 mod beneath;
 mod body;
+mod complete;
 mod derive;
 pub mod drawing;
 mod edit;
 mod fit;
 pub mod flats;
 pub mod forms;
+mod ink;
+mod known;
 mod near;
+mod order;
 mod outlines;
+mod palette;
 mod part;
+mod picture;
 pub mod places;
 mod scale;
 mod shares;
@@ -253,11 +265,6 @@ pub struct FlatColor {
     /// A point of the area that is meant, px of the part's frame, which is the canvas before the part's matrix. If the
     /// colour is not there, the nearest area of it is meant.
     pub at: Option<Vec2>,
-}
-
-impl FlatColor {
-    /// Areas that are joined by nothing wider than this are separate places, px: the gap closing of the fill.
-    pub const GAP_PX: f32 = 2.0;
 }
 
 impl From<Color> for FlatColor {

@@ -2,7 +2,8 @@
 //! Floor 4.
 
 use super::beneath::fill_beneath;
-use super::places::{ColorPlaces, SplitPlaces};
+use super::known::KnownFlats;
+use super::places::SplitPlaces;
 use super::shares::Flats;
 use super::{CoverageFile, FlatColor, OutlineSource, Part, PartKind, Parts};
 use crate::document::{Content, Document, Layer, LayerMap, LayerTransform, Progress, flatten_layer};
@@ -44,13 +45,21 @@ pub struct FlatArea {
 }
 
 impl FlatArea {
+    /// The colours of all parts of the layer, in an order that is the same for each of them.
+    fn asked(&self) -> Vec<Color> {
+        let mut all: Vec<Color> = [&self.nearer[..], &self.farther[..], &[self.flat.color]].concat();
+        all.sort_unstable_by_key(|color| [color.r, color.g, color.b, color.a]);
+        all.dedup();
+        all
+    }
     /// The share of each pixel that it takes, and whether its place has its colour no longer, so that this is the
     /// nearest one; `corner`: of the flats. `None` where the colour is nowhere.
-    fn share(&self, flats: &Flats, corner: Vec2) -> Option<(Plane<u8>, bool)> {
+    fn share(&self, known: &KnownFlats, corner: Vec2) -> Option<(Plane<u8>, bool)> {
+        let flats = &known.flats;
         let mut share = flats.share_of(self.flat.color, &self.over);
         let mut is_lost = false;
         if let Some(at) = self.flat.at {
-            let places = ColorPlaces::of(flats, self.flat.color);
+            let places = known.places_of(self.flat.color);
             let (place, is_beside) = places.nearest(at - corner)?;
             is_lost = is_beside;
             share = places.shares(&[place], &share).pop()?;
@@ -119,7 +128,8 @@ impl Document {
         let layer = self.layer_named(layer)?;
         let tiles = pixels(self, layer, &self.map_under(layer, part)?)?;
         let rect = tiles.bounds();
-        (!rect.is_empty()).then(|| SplitPlaces::of(&Flats::of(&tiles, rect), *color, rect))
+        let area = self.area_of(part, (*color).into());
+        (!rect.is_empty()).then(|| SplitPlaces::of(&Flats::of(&tiles, rect, &area.asked()), *color, rect))
     }
     /// What the user is told when parts take another area than the one that was meant, which no longer has their
     /// colour; `before`: of those parts nothing is said again.
@@ -227,7 +237,8 @@ impl OutlineKey {
                         None => alpha(&tiles, rect),
                         Some(area) => {
                             let corner = vec2(rect.x0 as f32, rect.y0 as f32);
-                            let (share, is_beside) = area.share(&Flats::of(&tiles, rect), corner)?;
+                            let flats = document.parts.flats_of(&tiles, &area.asked());
+                            let (share, is_beside) = area.share(&flats, corner)?;
                             is_lost = is_beside;
                             share
                         }
@@ -278,7 +289,7 @@ fn same_pixels(a: &Layer, b: &Layer) -> bool {
 
 /// What a layer paints, moved by a map: its own pixels, or what it shows alone, without any surface, which depends on
 /// it.
-fn pixels(document: &Document, layer: &Arc<Layer>, map: &LayerMap) -> Option<TileGrid> {
+pub fn pixels(document: &Document, layer: &Arc<Layer>, map: &LayerMap) -> Option<TileGrid> {
     if layer.is_warped() {
         let bare = Document { surface: None, ..document.clone() };
         return flatten_layer(&bare, layer.id, &Progress::default());

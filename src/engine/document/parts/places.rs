@@ -1,24 +1,12 @@
 //! The places of a flat colour: its areas that nothing joins, or only a passage too narrow to be meant.
 //! Floor 4. Not here: which share of a pixel a colour takes (`shares`), the gap closing (`paint::fill`).
 
-use super::FlatColor;
+use super::areas::{LEAST_SEEN, least_area, spread};
 use super::shares::{Flats, MOSTLY};
 use crate::math::srgb::Color;
 use crate::math::{Rect, Size, Vec2, vec2};
 use crate::paint::fill::rooms;
 use crate::raster::{Plane, distance};
-use std::collections::VecDeque;
-
-/// An area that covers less than this share of a picture is left over from edges: it makes no part.
-pub const LEAST_SHARE: f32 = 2e-4;
-
-/// Fewer pixels, px, are not noticed to be an area.
-pub const LEAST_SEEN: usize = 16;
-
-/// The fewest pixels of an area that makes a part.
-pub fn least_area(size: Size) -> usize {
-    (size.area() as f32 * LEAST_SHARE).max(LEAST_SEEN as f32) as usize
-}
 
 /// The areas of one colour of flats, numbered from 1.
 pub struct ColorPlaces {
@@ -30,8 +18,10 @@ pub struct ColorPlaces {
 
 impl ColorPlaces {
     pub fn of(flats: &Flats, color: Color) -> Self {
-        let inside = flats.share_of(color, &[]).map(|share| share >= MOSTLY);
-        let mut labels = rooms(&inside, FlatColor::GAP_PX);
+        let share = flats.share_of(color, &[]);
+        // What a line separates stays apart.
+        let inside = Plane::from_fn(share.size(), |x, y| share.at(x, y) >= MOSTLY && !flats.is_given(x, y));
+        let mut labels = rooms(&inside, flats.gap_px());
         let least = least_area(labels.size());
         let areas = areas(&labels);
         // Crumbs behind a narrow passage belong to the area at its other end.
@@ -43,8 +33,13 @@ impl ColorPlaces {
                 *label = *large;
             }
         }
+        spread(&mut labels, |x, y| share.at(x, y) >= MOSTLY);
         let areas = self::areas(&labels);
         Self { labels, areas }
+    }
+    /// How many pixels the picture has.
+    pub fn area(&self) -> usize {
+        self.labels.size().area()
     }
     /// The places large enough for parts of their own, the largest first.
     pub fn large(&self) -> Vec<u32> {
@@ -102,6 +97,11 @@ impl ColorPlaces {
         });
         best.map_or(Vec2::ZERO, |(x, y)| vec2((x as i32 + around.x0) as f32 + 0.5, (y as i32 + around.y0) as f32 + 0.5))
     }
+    /// Writes a number to the pixels of a place.
+    pub fn mark(&self, place: u32, numbers: &mut Plane<u32>, number: u32) {
+        let both = numbers.values_mut().iter_mut().zip(self.labels.values());
+        both.filter(|(_, label)| **label == place).for_each(|(to, _)| *to = number);
+    }
     /// The share of each pixel that each of some places takes of what the colour takes: mixed pixels go to the nearest
     /// place.
     pub fn shares(&self, places: &[u32], share: &Plane<u8>) -> Vec<Plane<u8>> {
@@ -149,24 +149,6 @@ fn areas(labels: &Plane<u32>) -> Vec<(Rect, usize)> {
         }
     }
     areas
-}
-
-/// Gives pixels without a label that of the nearest one, by steps over such pixels.
-pub fn spread(labels: &mut Plane<u32>, may: impl Fn(usize, usize) -> bool) {
-    let (w, h) = (labels.width(), labels.height());
-    let all = (0..h).flat_map(|y| (0..w).map(move |x| (x, y)));
-    let mut ahead: VecDeque<(usize, usize)> = all.filter(|(x, y)| labels.at(*x, *y) > 0).collect();
-    while let Some((x, y)) = ahead.pop_front() {
-        let label = labels.at(x, y);
-        // Side by side before corner to corner.
-        for (dx, dy) in [(1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, 1), (1, -1), (-1, -1)] {
-            let (x, y) = (x as i32 + dx, y as i32 + dy);
-            if labels.get(x, y) == Some(0) && may(x as usize, y as usize) {
-                labels.set(x as usize, y as usize, label);
-                ahead.push_back((x as usize, y as usize));
-            }
-        }
-    }
 }
 
 #[cfg(test)]

@@ -2,163 +2,246 @@
 //! edges between two areas. Shares add up to the whole pixel, so that areas that touch leave no rim between them.
 //! Floor 4. Not here: which colours are parts (`flats`).
 
-use super::near::{NEAR, is_near, share_on_the_way};
+use super::areas::{LEAST_SEEN, beside, least_area, pixels, walk};
+use super::complete::{Given, complete};
+use super::ink::lines;
+use super::palette::{NONE, NOTHING, Palette, PaletteColor, nearest};
+use super::picture::{Between, FlatPicture, MixedPixel};
+use crate::math::Rect;
 use crate::math::srgb::Color;
-use crate::math::{Rect, Size};
 use crate::raster::{Plane, TileGrid};
 
-/// A pixel is mostly of a colour that takes this share of it.
-pub const MOSTLY: u8 = 128;
+pub use super::picture::{MOSTLY, Pixel, REACH};
 
-/// Premultiplied.
-pub type Pixel = [u8; 4];
+/// The most colours of one layer that become parts, besides those that are asked for; the largest are chosen.
+pub const MOST_COLOURS: usize = 64;
+/// Areas that are joined by nothing wider than this are separate places, px: the gap closing of the fill.
+const GAP_PX: f32 = 2.0;
 
-/// How far from a mixed pixel the areas that it lies between are sought, px: edges are rarely blurred more.
-pub const REACH: i32 = 3;
-/// A pixel in a flat area has its colour in this many of its eight neighbours; along a straight edge two have it.
-const LEAST_ALIKE: usize = 3;
-/// A pixel farther than this from the line between two colours is no mixture of them, a sum of squares over the
-/// channels.
-const FARTHEST: i32 = (4 * NEAR) * (4 * NEAR);
-
-/// The pixels of a flat picture.
+/// What each pixel of a flat picture is of.
 pub struct Flats {
-    pixels: Plane<Pixel>,
-    /// Those in flat areas.
-    is_flat: Plane<bool>,
+    /// Those that were asked for, then the most frequent first.
+    colors: Vec<PaletteColor>,
+    /// The number of the colour of each pixel; [`NOTHING`], or [`NONE`] where several share it or none is known.
+    owner: Plane<u16>,
+    /// The pixels that two areas share, row by row.
+    mixed: Vec<MixedPixel>,
+    /// Those of lines and specks, that are given to the areas beside them.
+    is_given: Plane<bool>,
+    gap_px: f32,
+    /// Colours that are seen, but too small to be parts.
+    left_out: usize,
+    /// The share of what is painted that lies in flat areas of its colours.
+    flat_share: f32,
+}
+
+/// What a pixel is of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FlatOwner {
+    /// A colour, by its number.
+    Color(u16),
+    /// Nothing is painted there.
+    Nothing,
+    /// Several share it, or no flat colour is known.
+    Unknown,
 }
 
 impl Flats {
-    /// The pixels of a rectangle.
-    pub fn of(tiles: &TileGrid, rect: Rect) -> Self {
-        let size = Size::new(rect.width() as u32, rect.height() as u32);
-        let mut pixels = Plane::filled(size, [0u8; 4]);
-        for y in 0..pixels.height() {
-            for (x, pixel) in pixels.row_mut(y).iter_mut().enumerate() {
-                *pixel = tiles.pixel(rect.x0 + x as i32, rect.y0 + y as i32);
+    /// The pixels of a rectangle; `asked`: colours that are looked for however small their areas are.
+    pub fn of(tiles: &TileGrid, rect: Rect, asked: &[Color]) -> Self {
+        let picture = FlatPicture::of(tiles, rect);
+        let asked: Vec<Pixel> = asked.iter().copied().map(bytes).collect();
+        let Palette { mut colors, of: mut owner } = Palette::of(&picture, &asked);
+        let between = picture.between_areas();
+        for index in picture.of_thin_lines(&between) {
+            let here = picture.pixels.values()[index];
+            if let Some(number) = nearest(colors.iter().map(|color| color.color), here) {
+                owner.values_mut()[index] = number as u16;
             }
         }
-        let is_flat = Plane::from_fn(size, |x, y| {
-            let here = pixels.at(x, y);
-            let alike =
-                |&(dx, dy): &(i32, i32)| is_near(pixels.get(x as i32 + dx, y as i32 + dy).unwrap_or_default(), here);
-            AROUND.iter().filter(|step| alike(step)).count() >= LEAST_ALIKE
-        });
-        let mut flats = Self { pixels, is_flat };
-        flats.close_seams();
+        let in_areas = |owner: &Plane<u16>| owner.values().iter().filter(|of| **of < NOTHING).count();
+        let with_lines = in_areas(&owner);
+        let is_line = take_out_lines(&mut owner, &between, &mut colors);
+        let of_lines = with_lines - in_areas(&owner);
+        if !picture.is_pixel_art {
+            take_out_specks(&mut owner, &mut colors);
+        }
+        let is_kept = kept(&colors, least_area(owner.size()));
+        let is_seen = |i: usize| colors[i].pixels >= LEAST_SEEN && !is_line[i];
+        let left_out = (0..colors.len()).filter(|i| !is_kept[*i] && is_seen(*i)).count();
+        owner = renumbered(owner, &is_kept);
+        colors = (0..colors.len()).filter(|i| is_kept[*i]).map(|i| colors[i]).collect();
+        let flat = in_areas(&owner) + of_lines;
+        let painted = picture.pixels.values().iter().filter(|pixel| pixel[3] >= MOSTLY).count();
+        let Given { is_given, mixed, nearest } = complete(&mut owner, &picture, &between);
+        let gap_px = if picture.is_pixel_art { 0.0 } else { GAP_PX };
+        let flat_share = flat as f32 / painted.max(1) as f32;
+        let mut flats = Self { colors, owner, mixed, is_given, gap_px, left_out, flat_share };
+        flats.add_mixed(between, &nearest);
         flats
     }
-    /// Whether a pixel lies in a flat area.
-    pub fn is_flat(&self, x: usize, y: usize) -> bool {
-        self.is_flat.at(x, y)
+    /// Adds the pixels between areas; `nearest`: the number of the nearest area of each pixel, one more.
+    fn add_mixed(&mut self, between: Vec<Between>, nearest: &Plane<u32>) {
+        for Between { index, sides, share } in between {
+            let is_of_line = |side: &usize| self.is_given.values()[*side];
+            let is_beside_line = sides.iter().flatten().any(is_of_line);
+            let sides = sides.map(|side| match side {
+                // A line is of the area that is nearest here; farther along it may be of another.
+                Some(side) if is_of_line(&side) => nearest.values()[index].checked_sub(1).map_or(NONE, |of| of as u16),
+                Some(side) => self.owner.values()[side],
+                None => NOTHING,
+            });
+            self.is_given.values_mut()[index] = is_beside_line;
+            match sides[0] == sides[1] && sides[0] < NOTHING {
+                true => self.owner.values_mut()[index] = sides[0],
+                false => self.mixed.push(MixedPixel { index, sides, share }),
+            }
+        }
+        self.mixed.sort_unstable_by_key(|mixed| mixed.index);
     }
-    pub fn pixel(&self, x: usize, y: usize) -> Pixel {
-        self.pixels.at(x, y)
+    /// Its colours, by their numbers.
+    pub fn colors(&self) -> Vec<Color> {
+        self.colors
+            .iter()
+            .map(|PaletteColor { color: [r, g, b, a], .. }| Color { r: *r, g: *g, b: *b, a: *a })
+            .collect()
     }
-    /// Those in flat areas, row by row.
-    pub fn flat_pixels(&self) -> impl Iterator<Item = Pixel> + '_ {
-        let both = self.pixels.values().iter().zip(self.is_flat.values());
-        both.filter(|(_, is_flat)| **is_flat).map(|(pixel, _)| *pixel)
+    /// The number of a colour.
+    pub fn number_of(&self, color: Color) -> Option<u16> {
+        nearest(self.colors.iter().map(|color| color.color), bytes(color)).map(|number| number as u16)
     }
-    /// The share of each pixel that a colour takes together with others, 255 the whole. A pixel that is not between any
-    /// two areas, as in the thinnest lines, counts where it has the colour.
+    /// How many colours are seen that are too small, or too many, to be parts.
+    pub fn left_out(&self) -> usize {
+        self.left_out
+    }
+    /// The share of what is painted that lies in flat areas of its colours, `[0, 1]`.
+    pub fn flat_share(&self) -> f32 {
+        self.flat_share
+    }
+    /// Areas that are joined by nothing wider than this are separate places, px.
+    pub fn gap_px(&self) -> f32 {
+        self.gap_px
+    }
+    /// Whether a pixel is of a line or a speck that is given to the areas beside it.
+    pub fn is_given(&self, x: usize, y: usize) -> bool {
+        self.is_given.at(x, y)
+    }
+    pub fn owner(&self, x: usize, y: usize) -> FlatOwner {
+        match self.owner.at(x, y) {
+            NONE => FlatOwner::Unknown,
+            NOTHING => FlatOwner::Nothing,
+            number => FlatOwner::Color(number),
+        }
+    }
+    /// The number of the colour that takes the most of each pixel; [`NOTHING`] or [`NONE`].
+    pub fn mostly(&self) -> Plane<u16> {
+        let mut mostly = self.owner.clone();
+        for MixedPixel { index, sides, share } in &self.mixed {
+            mostly.values_mut()[*index] = sides[usize::from(*share >= MOSTLY)];
+        }
+        mostly
+    }
+    /// The share of each pixel that a colour takes together with others, 255 the whole.
     pub fn share_of(&self, color: Color, with: &[Color]) -> Plane<u8> {
-        let own = bytes(color);
-        let all: Vec<Pixel> = std::iter::once(own).chain(with.iter().copied().map(bytes)).collect();
-        let counts = |pixel: Pixel| all.iter().any(|color| is_near(pixel, *color));
-        Plane::from_fn(self.pixels.size(), |x, y| {
-            let here = self.pixels.at(x, y);
-            if self.is_flat(x, y) {
-                // Areas of the other colours are not its own.
-                return if is_near(here, own) { 255 } else { 0 };
-            }
-            let Some((from, to, share)) = self.between(x, y) else {
-                return if is_near(here, own) { 255 } else { 0 };
-            };
-            // The others lie over it only where it has a share itself.
-            match is_near(from, own) || is_near(to, own) {
-                true => u8::from(counts(from)) * (255 - share) + u8::from(counts(to)) * share,
-                false => 0,
-            }
-        })
-    }
-    /// The two areas that a mixed pixel lies between, and the share of the second; `None` where it lies between none.
-    fn between(&self, x: usize, y: usize) -> Option<(Pixel, Pixel, u8)> {
-        let mut beside: Vec<Pixel> = Vec::new();
-        for reach in 1..=REACH {
-            for (dx, dy) in ring(reach) {
-                let (x, y) = (x as i32 + dx, y as i32 + dy);
-                // There is nothing beyond the picture.
-                let (pixel, is_flat) = match self.pixels.get(x, y) {
-                    Some(pixel) => (pixel, self.is_flat(x as usize, y as usize)),
-                    None => ([0; 4], true),
-                };
-                if is_flat && !beside.iter().any(|known| is_near(*known, pixel)) {
-                    beside.push(pixel);
-                }
-            }
-            if let Some(found) = nearest_way(self.pixels.at(x, y), &beside) {
-                return Some(found);
+        let Some(own) = self.number_of(color) else { return Plane::filled(self.owner.size(), 0) };
+        let all: Vec<u16> =
+            std::iter::once(own).chain(with.iter().filter_map(|color| self.number_of(*color))).collect();
+        let mut shares = self.owner.map(|of| if of == own { 255 } else { 0 });
+        // The others lie over it only where it has a share itself.
+        for MixedPixel { index, sides: [from, to], share } in &self.mixed {
+            if [from, to].contains(&&own) {
+                let of = |side: &u16, share: u8| if all.contains(side) { share } else { 0 };
+                shares.values_mut()[*index] = of(from, 255 - share) + of(to, *share);
             }
         }
-        None
-    }
-    /// Gives the pixels of a seam that two areas left open between them to the nearer one.
-    fn close_seams(&mut self) {
-        let (w, h) = (self.pixels.width() as i32, self.pixels.height() as i32);
-        let mut closed: Vec<(usize, usize, Pixel)> = Vec::new();
-        let side = |x: i32, y: i32, (dx, dy): (i32, i32)| {
-            (1..=REACH).find_map(|k| {
-                let (x, y) = (x + k * dx, y + k * dy);
-                let pixel = self.pixels.get(x, y)?;
-                (pixel[3] == 255 && self.is_flat(x as usize, y as usize)).then_some((k, pixel))
-            })
+        // In a line, areas need not share any pixel where they meet.
+        let is_beneath = |x: usize, y: usize| {
+            let is_others = self.is_given.at(x, y) && self.owner.at(x, y) != own && all.contains(&self.owner.at(x, y));
+            let is_own = |x: usize, y: usize| self.owner.at(x, y) == own && self.is_given.at(x, y);
+            is_others && beside((x, y), (shares.width(), shares.height())).any(|(x, y)| is_own(x, y))
         };
-        for (x, y) in (0..h).flat_map(|y| (0..w).map(move |x| (x, y))) {
-            if self.pixels.at(x as usize, y as usize)[3] == 255 {
-                continue;
-            }
-            let across = |(dx, dy): (i32, i32)| {
-                let ((a, one), (b, other)) = (side(x, y, (dx, dy))?, side(x, y, (-dx, -dy))?);
-                // A gap within one area is intended.
-                let is_seam = a + b <= REACH + 1 && !is_near(one, other);
-                is_seam.then_some(if a <= b { one } else { other })
-            };
-            if let Some(pixel) = across((1, 0)).or_else(|| across((0, 1))) {
-                closed.push((x as usize, y as usize, pixel));
-            }
-        }
-        for (x, y, pixel) in closed {
-            self.pixels.set(x, y, pixel);
-            self.is_flat.set(x, y, true);
+        match all.len() {
+            1 => shares,
+            _ => Plane::from_fn(shares.size(), |x, y| if is_beneath(x, y) { 255 } else { shares.at(x, y) }),
         }
     }
+}
+
+/// Takes lines out of each colour; which colours were mostly that. One that was asked for keeps them if it is nothing
+/// else.
+fn take_out_lines(owner: &mut Plane<u16>, between: &[Between], colors: &mut [PaletteColor]) -> Vec<bool> {
+    let mut mostly = owner.clone();
+    for Between { index, sides, share } in between {
+        let side = sides[usize::from(*share >= MOSTLY)];
+        mostly.values_mut()[*index] = side.map_or(NOTHING, |side| owner.values()[side]);
+    }
+    let least = least_area(owner.size());
+    let take_out = |(i, color): (usize, &mut PaletteColor)| {
+        let Some(lines) = lines(&mostly, i as u16) else { return false };
+        let is_own = |(x, y): &(usize, usize)| owner.at(*x, *y) == i as u16;
+        let left = color.pixels.saturating_sub(lines.iter().filter(|at| is_own(at)).count());
+        if color.is_asked && left < least {
+            return false;
+        }
+        color.pixels = left;
+        for (x, y) in lines {
+            if owner.at(x, y) == i as u16 {
+                owner.set(x, y, NONE);
+            }
+        }
+        true
+    };
+    colors.iter_mut().enumerate().map(take_out).collect()
+}
+
+/// Takes out areas too small to be seen: compression leaves such specks. The pixels of each colour are counted again.
+fn take_out_specks(owner: &mut Plane<u16>, colors: &mut [PaletteColor]) {
+    let size = (owner.width(), owner.height());
+    let mut seen = Plane::filled(owner.size(), false);
+    colors.iter_mut().for_each(|color| color.pixels = 0);
+    for start in pixels(size) {
+        let color = owner.at(start.0, start.1);
+        if color >= NOTHING || seen.at(start.0, start.1) {
+            continue;
+        }
+        let mut area = Vec::new();
+        walk(start, size, |x, y| {
+            let enters = owner.at(x, y) == color && !seen.at(x, y);
+            if enters {
+                seen.set(x, y, true);
+                area.push((x, y));
+            }
+            enters
+        });
+        match area.len() < LEAST_SEEN {
+            true => area.into_iter().for_each(|(x, y)| owner.set(x, y, NONE)),
+            false => colors[usize::from(color)].pixels += area.len(),
+        }
+    }
+}
+
+/// Which colours are asked for, or large enough to be parts.
+fn kept(colors: &[PaletteColor], least: usize) -> Vec<bool> {
+    let mut found: Vec<usize> =
+        (0..colors.len()).filter(|i| !colors[*i].is_asked && colors[*i].pixels >= least).collect();
+    found.sort_by_key(|i| (std::cmp::Reverse(colors[*i].pixels), *i));
+    found.truncate(MOST_COLOURS);
+    (0..colors.len()).map(|i| colors[i].is_asked || found.contains(&i)).collect()
+}
+
+/// Without the colours that are not kept.
+fn renumbered(owner: Plane<u16>, is_kept: &[bool]) -> Plane<u16> {
+    let mut next = 0;
+    let number = is_kept.iter().map(|is_kept| {
+        next += u16::from(*is_kept);
+        if *is_kept { next - 1 } else { NONE }
+    });
+    let numbers: Vec<u16> = number.collect();
+    owner.map(|of| if of < NOTHING { numbers[usize::from(of)] } else { of })
 }
 
 pub fn bytes(color: Color) -> Pixel {
     color.premultiplied().map(|v| (v * 255.0).round() as u8)
-}
-
-const AROUND: [(i32, i32); 8] = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
-
-/// The steps to the pixels of a square's border.
-fn ring(reach: i32) -> impl Iterator<Item = (i32, i32)> {
-    let all = (-reach..=reach).flat_map(move |dy| (-reach..=reach).map(move |dx| (dx, dy)));
-    all.filter(move |(dx, dy): &(i32, i32)| dx.abs().max(dy.abs()) == reach)
-}
-
-/// The pair of colours whose mixture a pixel is, and the share of the second.
-fn nearest_way(pixel: Pixel, colors: &[Pixel]) -> Option<(Pixel, Pixel, u8)> {
-    let pairs = colors.iter().enumerate().flat_map(|(i, a)| colors[i + 1..].iter().map(move |b| (*a, *b)));
-    let off = |(a, b): (Pixel, Pixel)| {
-        let share = share_on_the_way(pixel, a, b);
-        let mixed =
-            |c: usize| (i32::from(a[c]) * (255 - i32::from(share)) + i32::from(b[c]) * i32::from(share) + 127) / 255;
-        let off = (0..4).map(|c| (i32::from(pixel[c]) - mixed(c)).pow(2)).sum::<i32>();
-        (off, a, b, share)
-    };
-    let (off, a, b, share) = pairs.map(off).min_by_key(|(off, ..)| *off)?;
-    (off <= FARTHEST).then_some((a, b, share))
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use super::outlines::OutlineKey;
 use super::{Part, PartKind};
 use crate::math::Affine2;
+use crate::surface::Surface;
 use std::sync::Arc;
 
 /// The matrix without its whole px, and these.
@@ -32,5 +33,13 @@ pub fn same_kind(a: &PartKind, b: &PartKind) -> bool {
         (PartKind::Bevel { bevel: a, .. }, PartKind::Bevel { bevel: b, .. }) => a == b,
         (PartKind::Lathe { axis: a, puff: x, .. }, PartKind::Lathe { axis: b, puff: y, .. }) => a == b && x == y,
         _ => a == b,
+    }
+}
+
+/// The very same surface, or none twice.
+pub fn same_surface(a: &Option<Arc<Surface>>, b: &Option<Arc<Surface>>) -> bool {
+    match (a, b) {
+        (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+        (a, b) => a.is_none() && b.is_none(),
     }
 }

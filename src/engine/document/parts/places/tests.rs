@@ -1,7 +1,7 @@
 //! Areas of one colour are told apart, and parts follow theirs.
 
 use super::super::flats::{PartFor, parts_of_flats};
-use super::super::{Inflation, OutlineSource, Part, PartKind};
+use super::super::{FlatColor, Inflation, OutlineSource, Part, PartKind};
 use super::*;
 use crate::document::{CanvasChange, Content, Document, Layer, LayerTransform, PixelLayer};
 use crate::math::{Affine2, PlaneMap};
@@ -114,7 +114,7 @@ fn a_part_takes_only_the_area_around_its_point() {
 #[test]
 fn shares_of_all_places_add_up_to_that_of_the_colour() {
     let tiles = face(&EYES);
-    let flats = Flats::of(&tiles, tiles.bounds());
+    let flats = Flats::of(&tiles, tiles.bounds(), &[]);
     let color = Color::parse("#fafafa").unwrap();
     let (places, share) = (ColorPlaces::of(&flats, color), flats.share_of(color, &[]));
     let both = places.shares(&places.large(), &share);
@@ -126,20 +126,24 @@ fn shares_of_all_places_add_up_to_that_of_the_colour() {
 
 #[test]
 fn a_narrow_passage_separates_places_and_a_wide_one_joins_them() {
-    let bridge = |height: usize| {
-        let mut rgba = vec![0u8; SIZE.area() * 4];
+    let bridge = |height: usize, width: usize| {
+        let mut rgba = vec![0u8; width * 120 * 4];
         for (i, pixel) in rgba.as_chunks_mut::<4>().0.iter_mut().enumerate() {
-            let (x, y) = (i % SIZE.width as usize, i / SIZE.width as usize);
+            let (x, y) = (i % width, i / width);
             let is_square = (20..80).contains(&y) && ((20..80).contains(&x) || (110..170).contains(&x));
             if is_square || ((80..110).contains(&x) && (48..48 + height).contains(&y)) {
                 *pixel = [EYE[0], EYE[1], EYE[2], 255];
             }
         }
-        let tiles = TileGrid::from_straight_rgba(&rgba, SIZE.width as usize, SIZE.height as usize, 0, 0);
-        let places = ColorPlaces::of(&Flats::of(&tiles, tiles.bounds()), Color::parse("#fafafa").unwrap());
+        let tiles = TileGrid::from_straight_rgba(&rgba, width, 120, 0, 0);
+        let places = ColorPlaces::of(
+            &Flats::of(&tiles, Rect::new(0, 0, width as i32, 120), &[]),
+            Color::parse("#fafafa").unwrap(),
+        );
         places.large().len()
     };
-    assert_eq!([bridge(0), bridge(1), bridge(2), bridge(8)], [2, 2, 2, 1]);
+    assert_eq!([0, 1, 2, 8].map(|height| bridge(height, 300)), [2, 2, 2, 1]);
+    assert_eq!([0, 1, 2, 8].map(|height| bridge(height, 200)), [2, 1, 1, 1], "in pixel art every pixel is meant");
 }
 
 #[test]
@@ -220,7 +224,7 @@ fn what_is_too_small_for_a_part_is_told() {
 #[test]
 fn any_point_finds_a_place_or_none() {
     let tiles = face(&EYES);
-    let flats = Flats::of(&tiles, tiles.bounds());
+    let flats = Flats::of(&tiles, tiles.bounds(), &[]);
     let places = ColorPlaces::of(&flats, Color::parse("#fafafa").unwrap());
     for at in [Vec2::NAN, Vec2::INFINITY, vec2(-1e9, 1e9), vec2(1e30, 0.0)] {
         let found = places.nearest(at);

@@ -64,7 +64,7 @@ pub fn shaped(
         PartFor::Color | PartFor::Place => parts_of_flats(&tiles, &name, inflation, each),
         PartFor::Layer => {
             let part = Part { name: new::free_name(&document, &name), ..Part::of_layer("", &name, inflation) };
-            FlatParts { parts: vec![part], left_out: 0 }
+            FlatParts::of_one(part)
         }
     };
     let note = made.note();

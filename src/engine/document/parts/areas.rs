@@ -1,0 +1,59 @@
+//! Areas of pixels: the smallest that count, and walks over them, side by side. Floor 4.
+
+use crate::math::Size;
+use crate::raster::Plane;
+use std::collections::VecDeque;
+
+/// An area that covers less than this share of a picture is left over from edges: it makes no part.
+pub const LEAST_SHARE: f32 = 2e-4;
+
+/// Fewer pixels, px, are not noticed to be an area.
+pub const LEAST_SEEN: usize = 16;
+
+/// The fewest pixels of an area that makes a part.
+pub fn least_area(size: Size) -> usize {
+    (size.area() as f32 * LEAST_SHARE).max(LEAST_SEEN as f32) as usize
+}
+
+/// Goes from a pixel to those beside it, and on from each that `enters`.
+pub fn walk(start: (usize, usize), size: (usize, usize), mut enters: impl FnMut(usize, usize) -> bool) {
+    let mut ahead = vec![start];
+    while let Some(at) = ahead.pop() {
+        if enters(at.0, at.1) {
+            ahead.extend(beside(at, size));
+        }
+    }
+}
+
+/// The pixels at the four sides of one.
+pub fn beside((x, y): (usize, usize), (w, h): (usize, usize)) -> impl Iterator<Item = (usize, usize)> {
+    let all = [(x.wrapping_sub(1), y), (x + 1, y), (x, y.wrapping_sub(1)), (x, y + 1)];
+    all.into_iter().filter(move |(x, y)| *x < w && *y < h)
+}
+
+/// All of them, row by row.
+pub fn pixels((w, h): (usize, usize)) -> impl Iterator<Item = (usize, usize)> {
+    (0..h).flat_map(move |y| (0..w).map(move |x| (x, y)))
+}
+
+/// Gives pixels without a label that of the nearest one, by steps over such pixels.
+pub fn spread(labels: &mut Plane<u32>, may: impl Fn(usize, usize) -> bool) {
+    // Side by side before corner to corner.
+    const STEPS: [(i32, i32); 8] = [(1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, 1), (1, -1), (-1, -1)];
+    let may_take = |labels: &Plane<u32>, x: i32, y: i32| labels.get(x, y) == Some(0) && may(x as usize, y as usize);
+    let at_rim = |(x, y): &(usize, usize)| {
+        let beside = |(dx, dy): &(i32, i32)| may_take(labels, *x as i32 + dx, *y as i32 + dy);
+        labels.at(*x, *y) > 0 && STEPS.iter().any(beside)
+    };
+    let mut ahead: VecDeque<(usize, usize)> = pixels((labels.width(), labels.height())).filter(at_rim).collect();
+    while let Some((x, y)) = ahead.pop_front() {
+        let label = labels.at(x, y);
+        for (dx, dy) in STEPS {
+            let (x, y) = (x as i32 + dx, y as i32 + dy);
+            if may_take(labels, x, y) {
+                labels.set(x as usize, y as usize, label);
+                ahead.push_back((x as usize, y as usize));
+            }
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! Lines of a drawing that separate its areas, such as ink: they belong to what they run along. Floor 4.
+//! Not here: which of two areas takes a pixel of a line (`complete`).
+
+use super::areas::{beside, least_area, pixels, walk};
+use super::palette::{NONE, NOTHING};
+use crate::raster::{Plane, distance};
+
+/// Half of the widest line, as a share of the longer side of a picture; at least 1 px.
+const HALF_WIDTH: f32 = 0.005;
+/// The share of a colour that must be in lines, and the share of these that must have two areas on their sides.
+const LEAST_THIN: f32 = 0.3;
+const LEAST_BETWEEN: f32 = 0.4;
+/// A line is long for its width: the least square of its rim, px, for each of its pixels; 13 for a disc.
+const LEAST_LONG: usize = 32;
+/// An area is no corner in which lines meet: the least of it, in squares of half of the widest line.
+const LEAST_THICK: usize = 24;
+/// How far beyond a line's border an area begins, px: the border is soft.
+const SOFT: usize = 4;
+
+/// The pixels of lines between areas in one colour, if that is mostly such lines.
+///
+/// `of`: the number of the colour that takes the most of each pixel.
+pub fn lines(of: &Plane<u16>, color: u16) -> Option<Vec<(usize, usize)>> {
+    let half = (HALF_WIDTH * of.size().longer_side()).max(1.0) as usize;
+    let size = (of.width(), of.height());
+    let is_rim = |at: (usize, usize)| beside(at, size).any(|(x, y)| of.at(x, y) != color);
+    let own = || pixels(size).filter(|(x, y)| of.at(*x, *y) == color);
+    let (all, rim) = own().fold((0usize, 0usize), |(all, rim), at| (all + 1, rim + usize::from(is_rim(at))));
+    // A line of that width has a pixel of rim for each pixel of half its width.
+    if all == 0 || (rim * half) as f32 <= LEAST_THIN * all as f32 {
+        return None;
+    }
+    let mut thin = thin_pixels(of, color, half);
+    let mut lines: Vec<(usize, usize)> = Vec::new();
+    for start in pixels(size) {
+        let area = taken(&mut thin, start);
+        let rim = area.iter().filter(|at| is_rim(**at)).count();
+        if rim * rim >= LEAST_LONG * area.len() {
+            lines.extend(area);
+        }
+    }
+    let between = lines.iter().filter(|at| is_between_areas(of, **at, 2 * half + SOFT)).count();
+    let is_ink = lines.len() as f32 >= LEAST_THIN * all as f32 && between as f32 >= LEAST_BETWEEN * lines.len() as f32;
+    is_ink.then_some(lines)
+}
+
+/// The pixels of a colour that are in none of its areas that are wider than lines and large enough to be parts.
+fn thin_pixels(of: &Plane<u16>, color: u16, half: usize) -> Plane<bool> {
+    let reach = half.min(usize::from(distance::FARTHEST) - 1);
+    let within = (reach * reach + reach) as u16;
+    let outside = distance::squared(&of.map(|of| u8::from(of != color)), reach as u16 + 1);
+    let core = distance::squared(&outside.map(|away| u8::from(away > within)), reach as u16 + 1);
+    let is_thick = |x: usize, y: usize| of.at(x, y) == color && core.at(x, y) <= within;
+    let mut thick = Plane::from_fn(of.size(), is_thick);
+    let mut thin = Plane::from_fn(of.size(), |x, y| of.at(x, y) == color && !is_thick(x, y));
+    let least = least_area(of.size()).max(LEAST_THICK * half * half);
+    for start in pixels((of.width(), of.height())) {
+        let area = taken(&mut thick, start);
+        if area.len() < least {
+            area.into_iter().for_each(|(x, y)| thin.set(x, y, true));
+        }
+    }
+    thin
+}
+
+/// The pixels of a set that are joined to one of it; they are taken out.
+fn taken(set: &mut Plane<bool>, start: (usize, usize)) -> Vec<(usize, usize)> {
+    let mut area = Vec::new();
+    walk(start, (set.width(), set.height()), |x, y| {
+        let enters = set.at(x, y);
+        if enters {
+            set.set(x, y, false);
+            area.push((x, y));
+        }
+        enters
+    });
+    area
+}
+
+/// Whether different colours, or a colour and nothing, lie on the two sides of a pixel of a line.
+fn is_between_areas(of: &Plane<u16>, (x, y): (usize, usize), reach: usize) -> bool {
+    let own = of.at(x, y);
+    let side = |dx: i32, dy: i32| {
+        (1..=reach as i32).find_map(|k| match of.get(x as i32 + k * dx, y as i32 + k * dy) {
+            None => Some(NOTHING),
+            Some(other) => (other != own && other != NONE).then_some(other),
+        })
+    };
+    let differ = |a: Option<u16>, b: Option<u16>| a.zip(b).is_some_and(|(a, b)| a != b);
+    differ(side(-1, 0), side(1, 0)) || differ(side(0, -1), side(0, 1))
+}

@@ -1,0 +1,63 @@
+//! What was found in the flats that parts are made of, kept while they are made: many parts ask for one picture.
+//! Floor 4.
+
+use super::Parts;
+use super::places::ColorPlaces;
+use super::shares::Flats;
+use crate::math::srgb::Color;
+use crate::raster::TileGrid;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// Places of more pixels together than this are not kept.
+const MOST_KEPT_PX: usize = 1 << 25;
+
+/// The flats of one picture.
+pub struct KnownFlats {
+    pub flats: Flats,
+    tiles: TileGrid,
+    asked: Vec<Color>,
+    places: Mutex<Vec<(Color, Arc<ColorPlaces>)>>,
+}
+
+/// The last that were asked for.
+#[derive(Default)]
+pub struct LastFlats(Mutex<Option<Arc<KnownFlats>>>);
+
+fn lock<T>(value: &Mutex<T>) -> MutexGuard<'_, T> {
+    value.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl KnownFlats {
+    /// The places of a colour.
+    pub fn places_of(&self, color: Color) -> Arc<ColorPlaces> {
+        let known = lock(&self.places).iter().find(|(of, _)| *of == color).map(|(_, places)| places.clone());
+        known.unwrap_or_else(|| {
+            let found = Arc::new(ColorPlaces::of(&self.flats, color));
+            let mut places = lock(&self.places);
+            if places.iter().map(|(_, places)| places.area()).sum::<usize>() + found.area() > MOST_KEPT_PX {
+                places.clear();
+            }
+            places.push((color, found.clone()));
+            found
+        })
+    }
+}
+
+impl Parts {
+    /// The flats of a picture; `asked`: colours that are looked for however small their areas are.
+    pub(super) fn flats_of(&self, tiles: &TileGrid, asked: &[Color]) -> Arc<KnownFlats> {
+        let last = &self.cache.flats.0;
+        let known = lock(last).clone().filter(|known| known.tiles.ptr_eq(tiles) && known.asked == asked);
+        known.unwrap_or_else(|| {
+            // What is no longer needed is let go of first.
+            *lock(last) = None;
+            let flats = Flats::of(tiles, tiles.bounds(), asked);
+            let known = KnownFlats { flats, tiles: tiles.clone(), asked: asked.to_vec(), places: Mutex::default() };
+            lock(last).insert(Arc::new(known)).clone()
+        })
+    }
+    /// Drops them: they are large, and an edit of the picture needs others.
+    pub(super) fn forget_flats(&self) {
+        *lock(&self.cache.flats.0) = None;
+    }
+}
