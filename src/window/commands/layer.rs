@@ -124,6 +124,16 @@ pub const COMMANDS: &[MenuCommand] = &[
             }
         },
     ),
+    row(
+        "Cut drawing by parts",
+        &[],
+        "A layer for each part that was made from the selected one, so that a part that is moved takes its paint along",
+        has_layer,
+        |session, requests| {
+            let cut = session.layer_path().map(|layer| Action::Part(PartAction::Cut { layer }));
+            requests.actions.extend(cut);
+        },
+    ),
     LINE,
     row(
         "Layer via copy",

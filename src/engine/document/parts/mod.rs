@@ -16,6 +16,7 @@ mod areas;
 mod beneath;
 mod body;
 mod complete;
+mod cut;
 mod derive;
 pub mod drawing;
 mod edit;

@@ -80,6 +80,8 @@ actions! {
         "duplicate" Duplicate { part: String }
         /// A part of a colour in several places becomes a part for each.
         "split" Split { part: String }
+        /// A drawing becomes a layer for each part that has its outline from it, which goes with the part.
+        "cut" Cut { layer: LayerPath }
         "select" Select { part: String }
         /// The whole shape moved by a map of the canvas (a, b, c, d, e, f), with what is painted on it; shown only,
         /// until it is `done`.
@@ -162,6 +164,14 @@ impl PartAction {
             PartAction::Split { part } => {
                 let part = of(part)?;
                 ("Split by place", split::by_place(document, &part)?, Some(part.id.clone()))
+            }
+            PartAction::Cut { layer } => {
+                let layer = layer.find(document).map(|layer| layer.id).ok_or("There is no such layer.")?;
+                let (next, group) = document.cut_by_parts(layer)?;
+                if tab.commit("Cut drawing by parts", next) {
+                    tab.selected = Some(group);
+                }
+                return Ok(());
             }
             PartAction::Set { .. }
             | PartAction::TakeAlong { .. }

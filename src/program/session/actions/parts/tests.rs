@@ -1,7 +1,7 @@
 //! Stories of parts, replayed.
 
 use crate::document::parts::PartKind;
-use crate::document::{Content, Document, Progress, flatten};
+use crate::document::{Content, Document, Layer, Progress, flatten};
 use crate::math::Size;
 use crate::math::vec2;
 use crate::raster::Picture;
@@ -106,6 +106,23 @@ fn each_place_of_a_colour_becomes_a_part_at_once() {
     assert_eq!(session.notes, Vec::<String>::new());
     assert_eq!(ids(&session), ["part-1", "part-2"]);
     assert!(shown(&session).parts.list.iter().all(|part| part.place().is_some()));
+}
+#[test]
+fn a_drawing_that_is_cut_goes_with_its_parts_and_comes_back_by_undo() {
+    let mut session = opened(pair());
+    tell(&mut session, r#"{"in":"part","do":"cut","layer":"0"}"#);
+    assert!(session.notes.pop().unwrap().contains("outline"), "it has no part yet");
+    tell(&mut session, r#"{"in":"part","do":"shape","layer":"0","preset":"pillow","flats":"places"}"#);
+    let before = shown(&session).clone();
+    tell(&mut session, r#"{"in":"part","do":"cut","layer":"0"}"#);
+    assert_eq!(session.notes, Vec::<String>::new());
+    let group = shown(&session).layers[1].content.group().unwrap();
+    let on = |layer: &std::sync::Arc<Layer>| layer.on.as_ref().map(|on| on.part.to_string());
+    assert_eq!(group.layers.iter().filter_map(on).collect::<Vec<_>>(), ids(&session));
+    assert_eq!(session.active().unwrap().selected, Some(shown(&session).layers[1].id));
+    assert!(!shown(&session).layers[0].visible && shown(&session).parts.list == before.parts.list);
+    tell(&mut session, r#"{"in":"edit","do":"undo"}"#);
+    assert!(shown(&session).layers[0].visible && shown(&session).layers.len() == before.layers.len());
 }
 #[test]
 fn a_part_is_split_by_place_with_its_touches_and_the_user_is_told_of_a_place_that_goes() {
