@@ -149,6 +149,15 @@ fn flats_become_a_part_for_each_place_or_a_part_is_split_by_place() {
     assert_eq!(parts(&harness).len(), 3, "{:?} {:?}", session(&harness).notes, parts(&harness));
     assert_eq!(places(&harness), 2);
     assert!(harness.query_by_label("Split by place").is_none(), "a part of one place cannot be split");
+
+    // The drawing goes with its parts.
+    press(&mut harness, "Cut drawing");
+    steps(&mut harness);
+    assert_eq!(layers(&harness)[..2], ["pair", "pair by parts"]);
+    let document = session(&harness).shown().unwrap().clone();
+    let group = document.layers[1].content.group().unwrap();
+    assert!(group.layers.iter().all(|piece| piece.on.is_some()) && group.layers.len() == 3);
+    assert!(harness.query_by_label("Cut drawing").is_none(), "it is cut already");
 }
 
 #[test]

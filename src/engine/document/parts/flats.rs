@@ -129,4 +129,4 @@ fn places(flats: &Flats, rect: Rect) -> FlatAreas {
 }
 
 #[cfg(test)]
-mod tests;
+pub mod tests;

@@ -3,10 +3,13 @@
 
 use super::areas::{beside, least_area, pixels, walk};
 use super::palette::{NONE, NOTHING};
+use crate::math::Size;
 use crate::raster::{Plane, distance};
 
-/// Half of the widest line, as a share of the longer side of a picture; at least 1 px.
+/// Half of the widest line, as a share of the longer side of a picture; and the share that it may be up to 2 px wide.
 const HALF_WIDTH: f32 = 0.005;
+const HALF_WIDTH_SMALL: f32 = 0.01;
+const SMALL_PX: f32 = 2.0;
 /// The share of a colour that must be in lines, and the share of these that must have two areas on their sides.
 const LEAST_THIN: f32 = 0.3;
 const LEAST_BETWEEN: f32 = 0.4;
@@ -17,11 +20,17 @@ const LEAST_THICK: usize = 24;
 /// How far beyond a line's border an area begins, px: the border is soft.
 const SOFT: usize = 4;
 
+/// Half of the widest line in a picture, px; at least 1.
+pub fn half_width(size: Size) -> usize {
+    let side = size.longer_side();
+    (HALF_WIDTH * side).max(SMALL_PX.min(HALF_WIDTH_SMALL * side)).max(1.0) as usize
+}
+
 /// The pixels of lines between areas in one colour, if that is mostly such lines.
 ///
 /// `of`: the number of the colour that takes the most of each pixel.
 pub fn lines(of: &Plane<u16>, color: u16) -> Option<Vec<(usize, usize)>> {
-    let half = (HALF_WIDTH * of.size().longer_side()).max(1.0) as usize;
+    let half = half_width(of.size());
     let size = (of.width(), of.height());
     let is_rim = |at: (usize, usize)| beside(at, size).any(|(x, y)| of.at(x, y) != color);
     let own = || pixels(size).filter(|(x, y)| of.at(*x, *y) == color);

@@ -13,7 +13,7 @@ use crate::io::recipe::parts::write_part;
 use crate::part_pictures::PartPictures;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::PartAction;
-use crate::session::{Action, Session};
+use crate::session::{Action, LayerPath, Session};
 use crate::widgets::ValueChange;
 use eframe::egui::{ScrollArea, Ui};
 pub use fields::presets;
@@ -55,16 +55,29 @@ pub fn show(ui: &mut Ui, session: &Session, pictures: &mut PartPictures, request
     ui.add_space(2.0);
     let Some(part) = tab.chosen_part() else { return };
     ScrollArea::vertical().id_salt("part").auto_shrink([false, false]).show(ui, |ui| {
-        if part.is_of_color() {
-            let hint = "Areas of its colour that are apart, such as two eyes, become parts of their own";
-            if ui.button("Split by place").on_hover_text(hint).clicked() {
-                act(requests, PartAction::Split { part: part.id.clone() });
-            }
-        }
+        ui.horizontal(|ui| flats(ui, document, part, requests));
         if let Some(changed) = numbers::show(ui, part) {
             set(requests, changed);
         }
     });
+}
+
+/// What can be done with a part that has its colour from a drawing, and with that drawing.
+fn flats(ui: &mut Ui, document: &Document, part: &Part, requests: &mut UiRequests) {
+    if part.is_of_color() {
+        let hint = "Areas of its colour that are apart, such as two eyes, become parts of their own";
+        if ui.button("Split by place").on_hover_text(hint).clicked() {
+            act(requests, PartAction::Split { part: part.id.clone() });
+        }
+    }
+    let drawing = document.drawing_to_cut(part).and_then(|id| LayerPath::of(document, id));
+    if let Some(layer) = drawing {
+        let hint =
+            "The drawing becomes a layer for each of its parts, so that a part that is moved takes its paint along";
+        if ui.button("Cut drawing").on_hover_text(hint).clicked() {
+            act(requests, PartAction::Cut { layer });
+        }
+    }
 }
 
 /// The parts that have a form of their own, the farthest first; and those that lie on nothing.

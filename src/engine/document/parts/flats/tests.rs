@@ -7,13 +7,13 @@ use crate::math::{Size, Vec2};
 use crate::surface::Surface;
 use std::sync::Arc;
 
-const SIZE: Size = Size::new(600, 400);
-const INK: [f32; 3] = [30.0, 20.0, 20.0];
-const HEAD: [f32; 3] = [220.0, 140.0, 60.0];
-const BELLY: [f32; 3] = [240.0, 230.0, 210.0];
+pub const SIZE: Size = Size::new(600, 400);
+pub const INK: [f32; 3] = [30.0, 20.0, 20.0];
+pub const HEAD: [f32; 3] = [220.0, 140.0, 60.0];
+pub const BELLY: [f32; 3] = [240.0, 230.0, 210.0];
 
 /// What is seen at a point, anti-aliased by counting.
-fn drawn(at: impl Fn(Vec2) -> Option<[f32; 3]>) -> TileGrid {
+pub fn drawn(at: impl Fn(Vec2) -> Option<[f32; 3]>) -> TileGrid {
     let mut rgba = vec![0u8; SIZE.area() * 4];
     for (i, pixel) in rgba.as_chunks_mut::<4>().0.iter_mut().enumerate() {
         let corner = vec2((i % SIZE.width as usize) as f32, (i / SIZE.width as usize) as f32);
@@ -33,7 +33,7 @@ fn drawn(at: impl Fn(Vec2) -> Option<[f32; 3]>) -> TileGrid {
 }
 
 /// Discs (middle, radius, colour), the last in front, each with a line of 4 px around it.
-fn inked(discs: &'static [([f32; 2], f32, [f32; 3])]) -> TileGrid {
+pub fn inked(discs: &'static [([f32; 2], f32, [f32; 3])]) -> TileGrid {
     drawn(|p| {
         let front = discs.iter().rev().find(|(middle, radius, _)| p.distance(Vec2::from(*middle)) < radius + 2.0)?;
         Some(if p.distance(Vec2::from(front.0)) > front.1 - 2.0 { INK } else { front.2 })
@@ -156,4 +156,10 @@ fn paint_that_is_not_flat_is_told() {
     });
     let note = parts(&cloudy, PartFor::Color).note().unwrap();
     assert!(note.starts_with("Only 0 %") && note.contains("one part for all"), "{note}");
+}
+#[test]
+fn ink_around_an_eye_is_no_part() {
+    let tiles = inked(&[([300.0, 200.0], 120.0, HEAD), ([330.0, 180.0], 30.0, BELLY)]);
+    let made = parts(&tiles, PartFor::Color);
+    assert_eq!((colors(&made), made.note()), (vec![color(HEAD), color(BELLY)], None));
 }
