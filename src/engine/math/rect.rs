@@ -114,6 +114,11 @@ impl Rect {
         let (low, high) = (|v: i32| v.saturating_sub(margin), |v: i32| v.saturating_add(margin));
         Rect { x0: low(self.x0), y0: low(self.y0), x1: high(self.x1), y1: high(self.y1) }
     }
+    /// The same pixels elsewhere.
+    pub fn moved(self, dx: i32, dy: i32) -> Rect {
+        let Rect { x0, y0, x1, y1 } = self;
+        Rect::new(x0.saturating_add(dx), y0.saturating_add(dy), x1.saturating_add(dx), y1.saturating_add(dy))
+    }
     /// Whether a pixel is in it.
     pub fn contains(self, x: i32, y: i32) -> bool {
         x >= self.x0 && x < self.x1 && y >= self.y0 && y < self.y1

@@ -17,11 +17,12 @@ pub fn least_area(size: Size) -> usize {
 
 /// Goes from a pixel to those beside it, and on from each that `enters`.
 pub fn walk(start: (usize, usize), size: (usize, usize), mut enters: impl FnMut(usize, usize) -> bool) {
-    let mut ahead = vec![start];
+    let mut ahead = Vec::new();
+    if enters(start.0, start.1) {
+        ahead.push(start);
+    }
     while let Some(at) = ahead.pop() {
-        if enters(at.0, at.1) {
-            ahead.extend(beside(at, size));
-        }
+        ahead.extend(beside(at, size).filter(|(x, y)| enters(*x, *y)));
     }
 }
 
@@ -36,16 +37,31 @@ pub fn pixels((w, h): (usize, usize)) -> impl Iterator<Item = (usize, usize)> {
     (0..h).flat_map(move |y| (0..w).map(move |x| (x, y)))
 }
 
+/// The pixels that count beside some others, row by row.
+pub fn rim(
+    others: impl Iterator<Item = (usize, usize)>,
+    steps: impl IntoIterator<Item = (i32, i32)> + Copy,
+    counts: impl Fn(i32, i32) -> bool,
+) -> Vec<(usize, usize)> {
+    let mut rim: Vec<(usize, usize)> = Vec::new();
+    for (x, y) in others {
+        let beside = steps.into_iter().map(|(dx, dy)| (x as i32 + dx, y as i32 + dy));
+        rim.extend(beside.filter(|(x, y)| counts(*x, *y)).map(|(x, y)| (y as usize, x as usize)));
+    }
+    rim.sort_unstable();
+    rim.dedup();
+    rim.into_iter().map(|(y, x)| (x, y)).collect()
+}
+
 /// Gives pixels without a label that of the nearest one, by steps over such pixels.
 pub fn spread(labels: &mut Plane<u32>, may: impl Fn(usize, usize) -> bool) {
     // Side by side before corner to corner.
     const STEPS: [(i32, i32); 8] = [(1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, 1), (1, -1), (-1, -1)];
     let may_take = |labels: &Plane<u32>, x: i32, y: i32| labels.get(x, y) == Some(0) && may(x as usize, y as usize);
-    let at_rim = |(x, y): &(usize, usize)| {
-        let beside = |(dx, dy): &(i32, i32)| may_take(labels, *x as i32 + dx, *y as i32 + dy);
-        labels.at(*x, *y) > 0 && STEPS.iter().any(beside)
-    };
-    let mut ahead: VecDeque<(usize, usize)> = pixels((labels.width(), labels.height())).filter(at_rim).collect();
+    let size = (labels.width(), labels.height());
+    let is_labelled = |x: i32, y: i32| labels.get(x, y).is_some_and(|label| label > 0);
+    let mut ahead: VecDeque<(usize, usize)> =
+        rim(pixels(size).filter(|(x, y)| labels.at(*x, *y) == 0 && may(*x, *y)), STEPS, is_labelled).into();
     while let Some((x, y)) = ahead.pop_front() {
         let label = labels.at(x, y);
         for (dx, dy) in STEPS {

@@ -1,9 +1,10 @@
 //! What a flat colour covers unseen: its area goes on beneath nearer colours, as a face does beneath its eyes.
 //! Floor 4. Not here: which share of a visible pixel a colour takes (`shares`).
 
-use super::areas::{beside, least_area, pixels, walk};
+use super::areas::{self, beside, least_area, pixels, walk};
 use super::shares::{FlatOwner, Flats, MOSTLY, REACH};
 use crate::math::srgb::Color;
+use crate::math::{Rect, Size};
 use crate::raster::Plane;
 use std::collections::BTreeMap;
 
@@ -27,22 +28,26 @@ const OWN: u16 = u16::MAX;
 /// A nearer area is inside of the colour if it meets nothing but the colour itself, areas nearer than itself, which may
 /// hide how it goes on, and other areas inside of it. A hole, through which nothing or a farther colour is seen, stays.
 pub fn fill_beneath(share: &mut Plane<u8>, flats: &Flats, nearer: &[Color], farther: &[Color]) {
-    let mut seen = what_is_seen(share, flats, nearer, farther);
-    turn_small_areas_to_glints(&mut seen);
+    // What goes beyond the colour on some side is open.
+    let around = own_area(share).grown(1).intersect(share.size().rect());
+    let mut seen = what_is_seen(share, around, flats, nearer, farther);
+    turn_small_areas_to_glints(&mut seen, least_area(share.size()));
     spread(&mut seen);
     let open = what_is_open(&seen);
-    let size = (share.width(), share.height());
+    let size = (seen.width(), seen.height());
+    let (x0, y0) = (around.x0 as usize, around.y0 as usize);
     let is_inside = |x: usize, y: usize| seen.at(x, y) != OWN && !open.at(x, y);
     for start in pixels(size) {
         let touches = || beside(start, size).any(|(x, y)| seen.at(x, y) == OWN);
-        if is_inside(start.0, start.1) && share.at(start.0, start.1) < MOSTLY && touches() {
+        if is_inside(start.0, start.1) && share.at(start.0 + x0, start.1 + y0) < MOSTLY && touches() {
             walk(start, size, |x, y| {
+                let at = (x + x0, y + y0);
                 if seen.at(x, y) == OWN {
-                    fill_mixed_around(share, x, y);
+                    fill_mixed_around(share, at.0, at.1);
                 }
-                let enters = is_inside(x, y) && share.at(x, y) < 255;
+                let enters = is_inside(x, y) && share.at(at.0, at.1) < 255;
                 if enters {
-                    share.set(x, y, 255);
+                    share.set(at.0, at.1, 255);
                 }
                 enters
             });
@@ -50,7 +55,21 @@ pub fn fill_beneath(share: &mut Plane<u8>, flats: &Flats, nearer: &[Color], fart
     }
 }
 
-fn what_is_seen(share: &Plane<u8>, flats: &Flats, nearer: &[Color], farther: &[Color]) -> Plane<u16> {
+/// Around all pixels that are mostly of the colour.
+fn own_area(share: &Plane<u8>) -> Rect {
+    let mut area = Rect::EMPTY;
+    for y in 0..share.height() {
+        let is_own = |share: &u8| *share >= MOSTLY;
+        let row = share.row(y);
+        if let Some((first, last)) = row.iter().position(is_own).zip(row.iter().rposition(is_own)) {
+            area = area.union(Rect::new(first as i32, y as i32, last as i32 + 1, y as i32 + 1));
+        }
+    }
+    area
+}
+
+/// In an area of the flats.
+fn what_is_seen(share: &Plane<u8>, area: Rect, flats: &Flats, nearer: &[Color], farther: &[Color]) -> Plane<u16> {
     let [nearer, farther] =
         [nearer, farther].map(|colors| colors.iter().map(|color| flats.number_of(*color)).collect::<Vec<_>>());
     let of = |number: u16| match nearer.iter().position(|color| *color == Some(number)) {
@@ -58,18 +77,23 @@ fn what_is_seen(share: &Plane<u8>, flats: &Flats, nearer: &[Color], farther: &[C
         None if farther.contains(&Some(number)) => FARTHER,
         None => UNKNOWN,
     };
-    Plane::from_fn(share.size(), |x, y| match flats.owner(x, y) {
-        _ if share.at(x, y) >= MOSTLY => OWN,
-        FlatOwner::Color(number) => of(number),
-        FlatOwner::Nothing => OPEN,
-        FlatOwner::Unknown => UNKNOWN,
+    let of: Vec<u16> = (0..flats.colors().len() as u16).map(of).collect();
+    let size = Size::new(area.width() as u32, area.height() as u32);
+    Plane::from_fn(size, |x, y| {
+        let (x, y) = (x + area.x0 as usize, y + area.y0 as usize);
+        match flats.owner(x, y) {
+            _ if share.at(x, y) >= MOSTLY => OWN,
+            FlatOwner::Color(number) => of.get(usize::from(number)).copied().unwrap_or(UNKNOWN),
+            FlatOwner::Nothing => OPEN,
+            FlatOwner::Unknown => UNKNOWN,
+        }
     })
 }
 
-/// Decides for areas of farther colours whether they are glints or open.
-fn turn_small_areas_to_glints(seen: &mut Plane<u16>) {
+/// Decides for areas of farther colours whether they are glints or open; `least`: the pixels of the smallest part.
+fn turn_small_areas_to_glints(seen: &mut Plane<u16>, least: usize) {
     let own = seen.values().iter().filter(|seen| **seen == OWN).count();
-    let largest = (LARGEST_GLINT * least_area(seen.size())).min((GLINT_SHARE * own as f32) as usize);
+    let largest = (LARGEST_GLINT * least).min((GLINT_SHARE * own as f32) as usize);
     let size = (seen.width(), seen.height());
     for start in pixels(size) {
         if seen.at(start.0, start.1) != FARTHER {
@@ -84,7 +108,8 @@ fn turn_small_areas_to_glints(seen: &mut Plane<u16>) {
             }
             enters
         });
-        if area.len() <= largest {
+        let goes_on = area.iter().any(|at| is_border(*at, size));
+        if area.len() <= largest && !goes_on {
             area.into_iter().for_each(|(x, y)| seen.set(x, y, GLINT));
         }
     }
@@ -93,10 +118,9 @@ fn turn_small_areas_to_glints(seen: &mut Plane<u16>) {
 /// Gives pixels between areas what is seen at the nearest one, by steps over such pixels.
 fn spread(seen: &mut Plane<u16>) {
     let size = (seen.width(), seen.height());
-    let is_known = |seen: u16| seen != UNKNOWN && seen != OWN;
-    let unknown = |seen: &Plane<u16>, at| beside(at, size).any(|(x, y)| seen.at(x, y) == UNKNOWN);
-    let mut rim: Vec<(usize, usize)> =
-        pixels(size).filter(|at| is_known(seen.at(at.0, at.1)) && unknown(seen, *at)).collect();
+    let is_known = |x: i32, y: i32| seen.get(x, y).is_some_and(|seen| seen != UNKNOWN && seen != OWN);
+    let unknown = pixels(size).filter(|(x, y)| seen.at(*x, *y) == UNKNOWN);
+    let mut rim = areas::rim(unknown, [(-1, 0), (1, 0), (0, -1), (0, 1)], is_known);
     while !rim.is_empty() {
         let mut next = Vec::new();
         for at in rim {
@@ -113,12 +137,11 @@ fn spread(seen: &mut Plane<u16>) {
 
 /// Which pixels meet the outside: over areas that lie as near, or nearer, step by step.
 fn what_is_open(seen: &Plane<u16>) -> Plane<bool> {
-    let size @ (w, h) = (seen.width(), seen.height());
+    let size = (seen.width(), seen.height());
     let mut open = seen.map(|seen| seen == OPEN);
     let mut ahead: BTreeMap<u16, Vec<(usize, usize)>> = BTreeMap::new();
-    let is_border = |(x, y): (usize, usize)| x == 0 || y == 0 || x + 1 == w || y + 1 == h;
     for at in pixels(size).filter(|at| ![OPEN, OWN].contains(&seen.at(at.0, at.1))) {
-        if is_border(at) || beside(at, size).any(|(x, y)| seen.at(x, y) == OPEN) {
+        if is_border(at, size) || beside(at, size).any(|(x, y)| seen.at(x, y) == OPEN) {
             ahead.entry(seen.at(at.0, at.1)).or_default().push(at);
         }
     }
@@ -139,6 +162,11 @@ fn what_is_open(seen: &Plane<u16>) -> Plane<bool> {
         }
     }
     open
+}
+
+/// Whether a pixel is at the border of a plane.
+fn is_border((x, y): (usize, usize), (w, h): (usize, usize)) -> bool {
+    x == 0 || y == 0 || x + 1 == w || y + 1 == h
 }
 
 /// Gives a colour all of the mixed pixels at its rim.

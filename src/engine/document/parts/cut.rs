@@ -7,7 +7,7 @@ mod lines;
 mod owners;
 mod pieces;
 
-use super::outlines::{OutlineKey, pixels};
+use super::outlines::pixels;
 use super::shares::bytes;
 use super::{OutlineSource, Part};
 use crate::document::{Content, Document, Group, Layer, LayerId, LayerSlot, PixelLayer};
@@ -89,7 +89,7 @@ impl Document {
         if of != layer {
             return None;
         }
-        let outline = OutlineKey::of_part(self, part)??.outline(self, usize::MAX)?;
+        let outline = self.own_outline(part)?;
         Some(PieceOutline { outline, color: color.map(|flat| bytes(flat.color)) })
     }
 }

@@ -82,7 +82,7 @@ impl Document {
     fn derived(&self, progress: &Progress) -> Option<Document> {
         let shown = || self.parts.list.iter().filter(|part| part.visible && part.on().is_none());
         progress.add_total(shown().count() as u64);
-        let outlines: Vec<_> = shown().map(|part| self.standing_outline(part)).collect();
+        let outlines = self.standing_outlines(&shown().collect::<Vec<_>>());
         let mut forms = Vec::with_capacity(outlines.len());
         for (i, part) in shown().enumerate() {
             if progress.is_cancelled() {
@@ -137,21 +137,17 @@ impl Document {
         let mut made = self.parts.cache.made.lock().unwrap_or_else(PoisonError::into_inner);
         made.retain(|made| self.parts.part(&made.part.id).is_some());
     }
-    /// The outline of a part in its place; `None` if it has none.
-    fn standing_outline(&self, part: &Arc<Part>) -> Option<StandingOutline> {
-        let source = OutlineKey::of_part(self, part)??;
-        let (still, moved) = apart(part.matrix);
-        let known = self.known(&part.id).filter(|made| {
-            made.source.as_ref().is_some_and(|known| known.is_same(&source)) && apart(made.part.matrix).0 == still
-        });
-        let (outline, is_lost) = match known {
-            Some(made) => (made.body.outline.clone(), made.is_lost),
-            None => {
-                let (outline, is_lost) = source.placed_outline(self, self.most_px())?;
-                (Arc::new(outline.through(still, self.most_px())?), is_lost)
-            }
-        };
-        Some(StandingOutline { outline, moved, is_lost })
+    /// The outline of a part that was found last, as far as that was not moved, and whether its place was lost; `None`
+    /// if what it is made of has changed.
+    pub(super) fn known_outline(&self, part: &Part, source: &OutlineKey) -> Option<(Arc<Outline>, bool)> {
+        let made = self.known(&part.id).filter(|made| apart(made.part.matrix).0 == apart(part.matrix).0)?;
+        let is_same = made.source.as_ref().is_some_and(|known| known.is_same(source));
+        is_same.then(|| (made.body.outline.clone(), made.is_lost))
+    }
+    /// The outline of a part that was found last and not moved since, whatever it was made of.
+    pub(super) fn last_outline(&self, part: &Part) -> Option<Arc<Outline>> {
+        let made = self.known(&part.id).filter(|made| apart(made.part.matrix).0 == apart(part.matrix).0)?;
+        Some(made.body.outline.clone())
     }
     /// The form of a part as it was made last, if neither the part nor what lies on it was changed since.
     pub(super) fn made_form(&self, part: &Arc<Part>) -> Option<Arc<Form>> {
@@ -189,10 +185,17 @@ impl Document {
         let source = OutlineKey::of_part(self, part)?;
         let inks: Vec<OutlineKey> = upon.iter().filter_map(|part| OutlineKey::of_part(self, part)?).collect();
         let (still, moved) = apart(part.matrix);
-        let same_source = |made: &MadePart| match (&made.source, &source) {
+        let is_unchanged = |made: &MadePart| match (&made.source, &source) {
             (Some(a), Some(b)) => a.is_same(b),
             (a, b) => a.is_none() && b.is_none(),
         };
+        // Paint may change without the outline.
+        let same_outline = |made: &MadePart| {
+            let outline = standing.as_ref().map(|own| &own.outline);
+            matches!(source, Some(OutlineKey::Layer(..)))
+                && outline.is_some_and(|own| Arc::ptr_eq(own, &made.body.outline))
+        };
+        let same_source = |made: &MadePart| is_unchanged(made) || same_outline(made);
         let same_place = |made: &MadePart| apart(made.part.matrix).0 == still;
         let known = known.filter(|made| same_source(made) && same_place(made));
         // Only what is inflated has a rim that can be free.
@@ -207,12 +210,13 @@ impl Document {
             .as_ref()
             .filter(|made| same_shape(&made.part, part) && same_list(&made.upon, &upon) && same_inks(&made.inks, &inks))
         {
-            if made.moved == moved && Arc::ptr_eq(&made.part, part) {
+            if made.moved == moved && Arc::ptr_eq(&made.part, part) && is_unchanged(made) {
                 return Some(made.form.clone());
             }
             let by = (moved.0 - made.moved.0, moved.1 - made.moved.1);
             let form = if by == (0, 0) { made.form.clone() } else { Arc::new(made.form.moved(by)) };
-            let next = MadePart { part: part.clone(), form: form.clone(), moved, source, met, ..made.clone() };
+            let is_lost = standing.as_ref().is_some_and(|own| own.is_lost);
+            let next = MadePart { part: part.clone(), form: form.clone(), moved, source, met, is_lost, ..made.clone() };
             self.remember(next);
             return Some(form);
         }
@@ -271,7 +275,7 @@ impl Document {
         all.push(made);
     }
     /// The area that a part may take: four canvases, so that one that reaches beyond the canvas keeps its shape.
-    fn most_px(&self) -> usize {
+    pub(super) fn most_px(&self) -> usize {
         self.size.area().saturating_mul(4).max(1 << 20)
     }
     /// A part made again, except known fields of its body; without what lies on it, not leaned and not yet moved by

@@ -5,6 +5,7 @@ use super::areas::{beside, least_area, pixels, walk};
 use super::palette::{NONE, NOTHING};
 use crate::math::Size;
 use crate::raster::{Plane, distance};
+use rayon::prelude::*;
 
 /// Half of the widest line, as a share of the longer side of a picture; and the share that it may be up to 2 px wide.
 const HALF_WIDTH: f32 = 0.005;
@@ -26,24 +27,55 @@ pub fn half_width(size: Size) -> usize {
     (HALF_WIDTH * side).max(SMALL_PX.min(HALF_WIDTH_SMALL * side)).max(1.0) as usize
 }
 
+/// How many pixels a colour takes, and how many of them are beside others.
+#[derive(Clone, Copy, Default)]
+pub struct ColorPixels {
+    all: usize,
+    rim: usize,
+}
+
+/// Those of the first `n` colours.
+pub fn color_pixels(of: &Plane<u16>, n: usize) -> Vec<ColorPixels> {
+    let count = |mut counts: Vec<ColorPixels>, y: usize| {
+        for (x, color) in of.row(y).iter().enumerate() {
+            if let Some(count) = counts.get_mut(usize::from(*color)) {
+                count.all += 1;
+                count.rim += usize::from(is_rim(of, (x, y)));
+            }
+        }
+        counts
+    };
+    let both = |a: Vec<ColorPixels>, b: Vec<ColorPixels>| {
+        a.into_iter().zip(b).map(|(a, b)| ColorPixels { all: a.all + b.all, rim: a.rim + b.rim }).collect()
+    };
+    let none = || vec![ColorPixels::default(); n];
+    (0..of.height()).into_par_iter().fold(none, count).reduce(none, both)
+}
+
+/// Whether a pixel is beside one of another colour.
+fn is_rim(of: &Plane<u16>, (x, y): (usize, usize)) -> bool {
+    beside((x, y), (of.width(), of.height())).any(|(x1, y1)| of.at(x1, y1) != of.at(x, y))
+}
+
 /// The pixels of lines between areas in one colour, if that is mostly such lines.
 ///
-/// `of`: the number of the colour that takes the most of each pixel.
-pub fn lines(of: &Plane<u16>, color: u16) -> Option<Vec<(usize, usize)>> {
+/// * `of`: the number of the colour that takes the most of each pixel.
+/// * `count`: of the colour.
+pub fn lines(of: &Plane<u16>, color: u16, count: ColorPixels) -> Option<Vec<(usize, usize)>> {
     let half = half_width(of.size());
-    let size = (of.width(), of.height());
-    let is_rim = |at: (usize, usize)| beside(at, size).any(|(x, y)| of.at(x, y) != color);
-    let own = || pixels(size).filter(|(x, y)| of.at(*x, *y) == color);
-    let (all, rim) = own().fold((0usize, 0usize), |(all, rim), at| (all + 1, rim + usize::from(is_rim(at))));
+    let ColorPixels { all, rim } = count;
     // A line of that width has a pixel of rim for each pixel of half its width.
     if all == 0 || (rim * half) as f32 <= LEAST_THIN * all as f32 {
         return None;
     }
     let mut thin = thin_pixels(of, color, half);
     let mut lines: Vec<(usize, usize)> = Vec::new();
-    for start in pixels(size) {
+    for start in pixels((of.width(), of.height())) {
         let area = taken(&mut thin, start);
-        let rim = area.iter().filter(|at| is_rim(**at)).count();
+        if area.is_empty() {
+            continue;
+        }
+        let rim = area.iter().filter(|at| is_rim(of, **at)).count();
         if rim * rim >= LEAST_LONG * area.len() {
             lines.extend(area);
         }
@@ -75,6 +107,9 @@ fn thin_pixels(of: &Plane<u16>, color: u16, half: usize) -> Plane<bool> {
 /// The pixels of a set that are joined to one of it; they are taken out.
 fn taken(set: &mut Plane<bool>, start: (usize, usize)) -> Vec<(usize, usize)> {
     let mut area = Vec::new();
+    if !set.at(start.0, start.1) {
+        return area;
+    }
     walk(start, (set.width(), set.height()), |x, y| {
         let enters = set.at(x, y);
         if enters {

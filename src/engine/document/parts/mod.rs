@@ -2,10 +2,10 @@
 //! Floor 4. Not here: what each kind of part computes (`shape`).
 //!
 //! `part` is one of them and `edit` changes the list. `derive` makes the surface and keeps what did not change; it uses
-//! `body` for one form, `upon` for what is on a form, and `unchanged` to compare versions. `outlines` finds outlines,
-//! `drawing` says what can be made of a layer, and `flats` makes parts of one in flat colours, for which `order` finds
-//! who lies in front. `forms` has the forms that were made, `scale` changes the canvas, and `fit` holds parts to what
-//! files can hold.
+//! `standing` for outlines in their places, `body` for one form, `upon` for what is on a form, and `unchanged` to
+//! compare versions. `outlines` finds outlines, `drawing` says what can be made of a layer, and `flats` makes parts of
+//! one in flat colours, for which `order` finds who lies in front; `cut` makes a drawing go with its parts. `forms` has
+//! the forms that were made, `scale` changes the canvas, and `fit` holds parts to what files can hold.
 //!
 //! `shares` says what each pixel of flats is of: `picture` reads its areas and mixed pixels, `palette` finds its
 //! colours, `ink` takes lines out, and `complete` gives what is left to the areas beside it. `places` tells the areas
@@ -34,6 +34,7 @@ mod picture;
 pub mod places;
 mod scale;
 mod shares;
+mod standing;
 mod unchanged;
 mod upon;
 

@@ -4,7 +4,7 @@
 
 use super::areas::{LEAST_SEEN, beside, least_area, pixels, walk};
 use super::complete::{Given, complete};
-use super::ink::lines;
+use super::ink::{color_pixels, lines};
 use super::palette::{NONE, NOTHING, Palette, PaletteColor, nearest};
 use super::picture::{Between, FlatPicture, MixedPixel};
 use crate::math::Rect;
@@ -176,8 +176,9 @@ fn take_out_lines(owner: &mut Plane<u16>, between: &[Between], colors: &mut [Pal
         mostly.values_mut()[*index] = side.map_or(NOTHING, |side| owner.values()[side]);
     }
     let least = least_area(owner.size());
+    let counts = color_pixels(&mostly, colors.len());
     let take_out = |(i, color): (usize, &mut PaletteColor)| {
-        let Some(lines) = lines(&mostly, i as u16) else { return false };
+        let Some(lines) = lines(&mostly, i as u16, counts[i]) else { return false };
         let is_own = |(x, y): &(usize, usize)| owner.at(*x, *y) == i as u16;
         let left = color.pixels.saturating_sub(lines.iter().filter(|at| is_own(at)).count());
         if color.is_asked && left < least {

@@ -68,6 +68,33 @@ fn the_part_follows_its_layer_and_what_did_not_change_is_kept() {
 }
 
 #[test]
+fn paint_that_changes_one_outline_leaves_the_forms_of_the_others() {
+    let [orange, green, white] = [[200, 90, 40], [20, 90, 40], [240, 240, 230]];
+    let (left, right) = ((vec2(50.0, 60.0), 30.0, orange), (vec2(118.0, 60.0), 25.0, green));
+    let drawn = |more: &[(Vec2, f32, [u8; 3])]| discs("Flats", &[&[left, right], more].concat());
+    let of = |id: &str, [r, g, b]: [u8; 3]| {
+        let color = Some(Color { r, g, b, a: 255 }.into());
+        let outline = OutlineSource::Layer { layer: "Flats".into(), color };
+        Arc::new(Part::new(id, PartKind::Inflate { outline, inflation: Inflation::default() }))
+    };
+    let shaped = document(vec![drawn(&[])]).with_parts(vec![of("a", orange), of("b", green)]);
+    let painted = |more: &[(Vec2, f32, [u8; 3])]| {
+        let id = shaped.layers[0].id;
+        shaped.with_layer(id, |layer| layer.content = drawn(more).content.clone()).unwrap().reshaped()
+    };
+    let form = |document: &Document, id: &str| document.last_form(id).unwrap().1;
+    let before = ["a", "b"].map(|id| form(&shaped, id));
+    // A spot too small for a part changes nothing at all.
+    let spot = painted(&[(vec2(50.0, 60.0), 1.5, white)]);
+    assert!(Arc::ptr_eq(spot.surface.as_ref().unwrap(), shaped.surface.as_ref().unwrap()));
+    assert!(Arc::ptr_eq(&before[0], &form(&spot, "a")));
+    let larger = painted(&[(vec2(118.0, 60.0), 28.0, green)]);
+    assert!(Arc::ptr_eq(&before[0], &form(&larger, "a")) && !Arc::ptr_eq(&before[1], &form(&larger, "b")));
+    let anew = larger.with_parts(Vec::new()).with_parts(larger.parts.list.clone());
+    assert_eq!(anew.surface.unwrap().coverage_plane().values(), larger.surface.unwrap().coverage_plane().values());
+}
+
+#[test]
 fn colours_become_parts_and_what_bulges_into_another_lies_in_front() {
     let (body, eye, ear) = ([200, 120, 60], [250, 250, 250], [120, 60, 30]);
     let flats =

@@ -1,6 +1,7 @@
 //! Lines between two parts of a drawing go with the nearer one, whose outline they draw: an eye that is moved takes all
 //! of its ring along. Floor 4.
 
+use super::super::areas::pixels;
 use super::super::ink::half_width;
 use super::super::near::{away, share_on_the_way};
 use super::super::picture::Pixel;
@@ -34,15 +35,11 @@ impl CutLines {
         };
         let marks = Plane::from_fn(size, |x, y| u8::from(is_marked(x, y)));
         let away = distance::squared(&marks, SOFT as u16 + 1);
-        let mut taker = taken(cut);
+        let mut taker = taken(cut, &marks);
         let is_ink = taker.map(|part| part != NO_PART);
         for _ in 0..SOFT {
-            let known = taker.clone();
-            let beside = |x: usize, y: usize| {
-                let mut takers = around(x, y, 1).filter_map(|(x, y)| known.get(x, y));
-                takers.find(|part| cut.may_take(*part, x, y)).unwrap_or(NO_PART)
-            };
-            taker = taker.updated(|x, y, part| if part == NO_PART { beside(x, y) } else { part });
+            let grown: Vec<(usize, usize, u16)> = soft_border(cut, &taker);
+            grown.into_iter().for_each(|(x, y, part)| taker.set(x, y, part));
         }
         Self { taker, is_ink, away }
     }
@@ -93,24 +90,22 @@ fn is_off_color(cut: &Cut, part: u16, (x, y): (usize, usize)) -> bool {
 }
 
 /// The ink on farther parts along each part, walked from its outline as far as a line is wide.
-fn taken(cut: &Cut) -> Plane<u16> {
+fn taken(cut: &Cut, marks: &Plane<u8>) -> Plane<u16> {
     let most_steps = 2 * half_width(cut.drawn.size());
     let mut taker = Plane::filled(cut.drawn.size(), NO_PART);
     let enters = |taker: &Plane<u16>, part: u16, x: i32, y: i32| {
         taker.get(x, y) == Some(NO_PART) && {
             let at = (x as usize, y as usize);
-            cut.may_take(part, at.0, at.1) && cut.is_ink_between(part, at)
+            marks.at(at.0, at.1) > 0 && cut.may_take(part, at.0, at.1) && cut.is_ink_between(part, at)
         }
     };
     let mut ahead: VecDeque<(usize, usize, usize)> = VecDeque::new();
-    for y in 0..taker.height() {
-        for x in 0..taker.width() {
-            let beside = around(x, y, 1).filter_map(|(x, y)| cut.nearest.get(x, y)).map(|[first, _]| first);
-            let Some(part) = beside.filter(|part| *part != NO_PART).max() else { continue };
-            if enters(&taker, part, x as i32, y as i32) {
-                taker.set(x, y, part);
-                ahead.push_back((x, y, 1));
-            }
+    for (x, y) in pixels((taker.width(), taker.height())).filter(|(x, y)| marks.at(*x, *y) > 0) {
+        let beside = around(x, y, 1).filter_map(|(x, y)| cut.nearest.get(x, y)).map(|[first, _]| first);
+        let Some(part) = beside.filter(|part| *part != NO_PART).max() else { continue };
+        if enters(&taker, part, x as i32, y as i32) {
+            taker.set(x, y, part);
+            ahead.push_back((x, y, 1));
         }
     }
     while let Some((x, y, steps)) = ahead.pop_front() {
@@ -123,6 +118,18 @@ fn taken(cut: &Cut) -> Plane<u16> {
         }
     }
     taker
+}
+
+/// The pixels beside what is taken that may be taken as well, and by which part.
+fn soft_border(cut: &Cut, taker: &Plane<u16>) -> Vec<(usize, usize, u16)> {
+    let mut border = Vec::new();
+    for (x, y) in pixels((taker.width(), taker.height())).filter(|(x, y)| taker.at(*x, *y) != NO_PART) {
+        let part = taker.at(x, y);
+        let free = around(x, y, 1).filter(|(x, y)| taker.get(*x, *y) == Some(NO_PART));
+        let free = free.map(|(x, y)| (x as usize, y as usize)).filter(|(x, y)| cut.may_take(part, *x, *y));
+        border.extend(free.map(|(x, y)| (x, y, part)));
+    }
+    border
 }
 
 /// The pixels in a square, row by row.

@@ -5,13 +5,14 @@ use super::super::picture::{MOSTLY, Pixel};
 use crate::math::{Rect, Size};
 use crate::raster::{Plane, TileGrid};
 use crate::shape::Outline;
+use std::sync::Arc;
 
 /// No part.
 pub const NO_PART: u16 = u16::MAX;
 
 /// The outline of a part, and the flat colour that it has in the drawing, if it is of one.
 pub struct PieceOutline {
-    pub outline: Outline,
+    pub outline: Arc<Outline>,
     pub color: Option<Pixel>,
 }
 
