@@ -1,6 +1,6 @@
 //! Areas of pixels: the smallest that count, and walks over them, side by side. Floor 4.
 
-use crate::math::Size;
+use crate::math::{Rect, Size};
 use crate::raster::Plane;
 use std::collections::VecDeque;
 
@@ -35,6 +35,25 @@ pub fn beside((x, y): (usize, usize), (w, h): (usize, usize)) -> impl Iterator<I
 /// All of them, row by row.
 pub fn pixels((w, h): (usize, usize)) -> impl Iterator<Item = (usize, usize)> {
     (0..h).flat_map(move |y| (0..w).map(move |x| (x, y)))
+}
+
+/// Around all values of a plane that count.
+pub fn around_all<T: Copy>(plane: &Plane<T>, counts: impl Fn(T) -> bool) -> Rect {
+    let mut area = Rect::EMPTY;
+    for y in 0..plane.height() {
+        let (row, counts) = (plane.row(y), |value: &T| counts(*value));
+        if let Some((first, last)) = row.iter().position(counts).zip(row.iter().rposition(counts)) {
+            area = area.union(Rect::new(first as i32, y as i32, last as i32 + 1, y as i32 + 1));
+        }
+    }
+    area
+}
+
+/// A plane over an area of a larger one, of each pixel's place there and its index in the plane.
+pub fn over<T: Copy + Send + Sync + Default>(area: Rect, value: impl Fn(usize, usize, usize) -> T + Sync) -> Plane<T> {
+    let size = Size::new(area.width() as u32, area.height() as u32);
+    let (x0, y0) = (area.x0 as usize, area.y0 as usize);
+    Plane::from_fn(size, |x, y| value(x + x0, y + y0, y * area.width() + x))
 }
 
 /// The pixels that count beside some others, row by row.

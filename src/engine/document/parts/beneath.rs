@@ -1,10 +1,10 @@
 //! What a flat colour covers unseen: its area goes on beneath nearer colours, as a face does beneath its eyes.
 //! Floor 4. Not here: which share of a visible pixel a colour takes (`shares`).
 
-use super::areas::{self, beside, least_area, pixels, walk};
+use super::areas::{self, around_all, beside, least_area, over, pixels, walk};
 use super::shares::{FlatOwner, Flats, MOSTLY, REACH};
+use crate::math::Rect;
 use crate::math::srgb::Color;
-use crate::math::{Rect, Size};
 use crate::raster::Plane;
 use std::collections::BTreeMap;
 
@@ -13,6 +13,9 @@ use std::collections::BTreeMap;
 /// it covers.
 const LARGEST_GLINT: usize = 10;
 const GLINT_SHARE: f32 = 0.125;
+
+/// An area that goes on beyond the colour by more than this share of the colour's longer side is open.
+const LOOKED_BEYOND: f32 = 0.5;
 
 /// What is seen at a pixel, from far to near: this, the nearer colours in their order, glints, and the colour itself.
 const OPEN: u16 = 0;
@@ -28,8 +31,9 @@ const OWN: u16 = u16::MAX;
 /// A nearer area is inside of the colour if it meets nothing but the colour itself, areas nearer than itself, which may
 /// hide how it goes on, and other areas inside of it. A hole, through which nothing or a farther colour is seen, stays.
 pub fn fill_beneath(share: &mut Plane<u8>, flats: &Flats, nearer: &[Color], farther: &[Color]) {
-    // What goes beyond the colour on some side is open.
-    let around = own_area(share).grown(1).intersect(share.size().rect());
+    let own = around_all(share, |share| share >= MOSTLY);
+    let beyond = (LOOKED_BEYOND * own.width().max(own.height()) as f32) as i32 + 1;
+    let around = own.grown(beyond).intersect(share.size().rect());
     let mut seen = what_is_seen(share, around, flats, nearer, farther);
     turn_small_areas_to_glints(&mut seen, least_area(share.size()));
     spread(&mut seen);
@@ -55,19 +59,6 @@ pub fn fill_beneath(share: &mut Plane<u8>, flats: &Flats, nearer: &[Color], fart
     }
 }
 
-/// Around all pixels that are mostly of the colour.
-fn own_area(share: &Plane<u8>) -> Rect {
-    let mut area = Rect::EMPTY;
-    for y in 0..share.height() {
-        let is_own = |share: &u8| *share >= MOSTLY;
-        let row = share.row(y);
-        if let Some((first, last)) = row.iter().position(is_own).zip(row.iter().rposition(is_own)) {
-            area = area.union(Rect::new(first as i32, y as i32, last as i32 + 1, y as i32 + 1));
-        }
-    }
-    area
-}
-
 /// In an area of the flats.
 fn what_is_seen(share: &Plane<u8>, area: Rect, flats: &Flats, nearer: &[Color], farther: &[Color]) -> Plane<u16> {
     let [nearer, farther] =
@@ -78,15 +69,11 @@ fn what_is_seen(share: &Plane<u8>, area: Rect, flats: &Flats, nearer: &[Color], 
         None => UNKNOWN,
     };
     let of: Vec<u16> = (0..flats.colors().len() as u16).map(of).collect();
-    let size = Size::new(area.width() as u32, area.height() as u32);
-    Plane::from_fn(size, |x, y| {
-        let (x, y) = (x + area.x0 as usize, y + area.y0 as usize);
-        match flats.owner(x, y) {
-            _ if share.at(x, y) >= MOSTLY => OWN,
-            FlatOwner::Color(number) => of.get(usize::from(number)).copied().unwrap_or(UNKNOWN),
-            FlatOwner::Nothing => OPEN,
-            FlatOwner::Unknown => UNKNOWN,
-        }
+    over(area, |x, y, _| match flats.owner(x, y) {
+        _ if share.at(x, y) >= MOSTLY => OWN,
+        FlatOwner::Color(number) => of.get(usize::from(number)).copied().unwrap_or(UNKNOWN),
+        FlatOwner::Nothing => OPEN,
+        FlatOwner::Unknown => UNKNOWN,
     })
 }
 

@@ -1,9 +1,9 @@
 //! Lines of a drawing that separate its areas, such as ink: they belong to what they run along. Floor 4.
 //! Not here: which of two areas takes a pixel of a line (`complete`).
 
-use super::areas::{beside, least_area, pixels, walk};
+use super::areas::{beside, least_area, over, pixels, walk};
 use super::palette::{NONE, NOTHING};
-use crate::math::Size;
+use crate::math::{Rect, Size};
 use crate::raster::{Plane, distance};
 use rayon::prelude::*;
 
@@ -32,6 +32,7 @@ pub fn half_width(size: Size) -> usize {
 pub struct ColorPixels {
     all: usize,
     rim: usize,
+    area: Rect,
 }
 
 /// Those of the first `n` colours.
@@ -41,12 +42,21 @@ pub fn color_pixels(of: &Plane<u16>, n: usize) -> Vec<ColorPixels> {
             if let Some(count) = counts.get_mut(usize::from(*color)) {
                 count.all += 1;
                 count.rim += usize::from(is_rim(of, (x, y)));
+                let (x, y) = (x as i32, y as i32);
+                if !count.area.contains(x, y) {
+                    count.area = count.area.union(Rect::new(x, y, x + 1, y + 1));
+                }
             }
         }
         counts
     };
     let both = |a: Vec<ColorPixels>, b: Vec<ColorPixels>| {
-        a.into_iter().zip(b).map(|(a, b)| ColorPixels { all: a.all + b.all, rim: a.rim + b.rim }).collect()
+        let sum = |(a, b): (ColorPixels, ColorPixels)| ColorPixels {
+            all: a.all + b.all,
+            rim: a.rim + b.rim,
+            area: a.area.union(b.area),
+        };
+        a.into_iter().zip(b).map(sum).collect()
     };
     let none = || vec![ColorPixels::default(); n];
     (0..of.height()).into_par_iter().fold(none, count).reduce(none, both)
@@ -63,12 +73,16 @@ fn is_rim(of: &Plane<u16>, (x, y): (usize, usize)) -> bool {
 /// * `count`: of the colour.
 pub fn lines(of: &Plane<u16>, color: u16, count: ColorPixels) -> Option<Vec<(usize, usize)>> {
     let half = half_width(of.size());
-    let ColorPixels { all, rim } = count;
+    let ColorPixels { all, rim, area } = count;
     // A line of that width has a pixel of rim for each pixel of half its width.
     if all == 0 || (rim * half) as f32 <= LEAST_THIN * all as f32 {
         return None;
     }
-    let mut thin = thin_pixels(of, color, half);
+    let reach = 2 * half + SOFT;
+    let area = area.grown(reach as i32 + 1).intersect(of.size().rect());
+    let least = least_area(of.size()).max(LEAST_THICK * half * half);
+    let of = &over(area, |x, y, _| of.at(x, y));
+    let mut thin = thin_pixels(of, color, half, least);
     let mut lines: Vec<(usize, usize)> = Vec::new();
     for start in pixels((of.width(), of.height())) {
         let area = taken(&mut thin, start);
@@ -80,13 +94,16 @@ pub fn lines(of: &Plane<u16>, color: u16, count: ColorPixels) -> Option<Vec<(usi
             lines.extend(area);
         }
     }
-    let between = lines.iter().filter(|at| is_between_areas(of, **at, 2 * half + SOFT)).count();
+    let between = lines.iter().filter(|at| is_between_areas(of, **at, reach)).count();
     let is_ink = lines.len() as f32 >= LEAST_THIN * all as f32 && between as f32 >= LEAST_BETWEEN * lines.len() as f32;
-    is_ink.then_some(lines)
+    let (x0, y0) = (area.x0 as usize, area.y0 as usize);
+    is_ink.then(|| lines.into_iter().map(|(x, y)| (x + x0, y + y0)).collect())
 }
 
 /// The pixels of a colour that are in none of its areas that are wider than lines and large enough to be parts.
-fn thin_pixels(of: &Plane<u16>, color: u16, half: usize) -> Plane<bool> {
+///
+/// `least`: the pixels of the smallest of these.
+fn thin_pixels(of: &Plane<u16>, color: u16, half: usize, least: usize) -> Plane<bool> {
     let reach = half.min(usize::from(distance::FARTHEST) - 1);
     let within = (reach * reach + reach) as u16;
     let outside = distance::squared(&of.map(|of| u8::from(of != color)), reach as u16 + 1);
@@ -94,7 +111,6 @@ fn thin_pixels(of: &Plane<u16>, color: u16, half: usize) -> Plane<bool> {
     let is_thick = |x: usize, y: usize| of.at(x, y) == color && core.at(x, y) <= within;
     let mut thick = Plane::from_fn(of.size(), is_thick);
     let mut thin = Plane::from_fn(of.size(), |x, y| of.at(x, y) == color && !is_thick(x, y));
-    let least = least_area(of.size()).max(LEAST_THICK * half * half);
     for start in pixels((of.width(), of.height())) {
         let area = taken(&mut thick, start);
         if area.len() < least {

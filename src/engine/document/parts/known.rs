@@ -34,7 +34,8 @@ impl KnownFlats {
         known.unwrap_or_else(|| {
             let found = Arc::new(ColorPlaces::of(&self.flats, color));
             let mut places = lock(&self.places);
-            if places.iter().map(|(_, places)| places.area()).sum::<usize>() + found.area() > MOST_KEPT_PX {
+            if places.iter().map(|(_, places)| places.pixels_held()).sum::<usize>() + found.pixels_held() > MOST_KEPT_PX
+            {
                 places.clear();
             }
             places.push((color, found.clone()));

@@ -1,28 +1,38 @@
 //! The places of a flat colour: its areas that nothing joins, or only a passage too narrow to be meant.
 //! Floor 4. Not here: which share of a pixel a colour takes (`shares`), the gap closing (`paint::fill`).
 
-use super::areas::{LEAST_SEEN, least_area, spread};
+use super::areas::{LEAST_SEEN, around_all, least_area, over, spread};
 use super::shares::{Flats, MOSTLY};
 use crate::math::srgb::Color;
 use crate::math::{Rect, Size, Vec2, vec2};
 use crate::paint::fill::rooms;
 use crate::raster::{Plane, distance};
 
+/// How far around a colour pixels are looked at, px: what lies over its edge belongs to its places.
+const BESIDE: i32 = 2;
+
 /// The areas of one colour of flats, numbered from 1.
 pub struct ColorPlaces {
-    /// The place of each pixel that is mostly of the colour; 0 elsewhere.
+    /// Of the flats.
+    size: Size,
+    /// Where the colour is.
+    area: Rect,
+    /// The place of each pixel there that is mostly of the colour; 0 elsewhere.
     labels: Plane<u32>,
-    /// What each covers, and how many pixels that is; the first is place 1.
+    /// What each covers of these, and how many pixels that is; the first is place 1.
     areas: Vec<(Rect, usize)>,
 }
 
 impl ColorPlaces {
     pub fn of(flats: &Flats, color: Color) -> Self {
-        let share = flats.share_of(color, &[]);
+        let all = flats.share_of(color, &[]);
+        let size = all.size();
+        let area = around_all(&all, |share| share > 0).grown(BESIDE).intersect(size.rect());
+        let share = over(area, |x, y, _| all.at(x, y));
         // What a line separates stays apart.
-        let inside = Plane::from_fn(share.size(), |x, y| share.at(x, y) >= MOSTLY && !flats.is_given(x, y));
+        let inside = over(area, |x, y, _| all.at(x, y) >= MOSTLY && !flats.is_given(x, y));
         let mut labels = rooms(&inside, flats.gap_px());
-        let least = least_area(labels.size());
+        let least = least_area(size);
         let areas = areas(&labels);
         // Crumbs behind a narrow passage belong to the area at its other end.
         let is_crumb = |label: u32| label == 0 || areas[label as usize - 1].1 < least;
@@ -35,22 +45,22 @@ impl ColorPlaces {
         }
         spread(&mut labels, |x, y| share.at(x, y) >= MOSTLY);
         let areas = self::areas(&labels);
-        Self { labels, areas }
+        Self { size, area, labels, areas }
     }
-    /// How many pixels the picture has.
-    pub fn area(&self) -> usize {
+    /// How many pixels it takes.
+    pub fn pixels_held(&self) -> usize {
         self.labels.size().area()
     }
     /// The places large enough for parts of their own, the largest first.
     pub fn large(&self) -> Vec<u32> {
-        let least = least_area(self.labels.size());
+        let least = least_area(self.size);
         let mut large: Vec<u32> = (1..=self.areas.len() as u32).filter(|place| self.pixels(*place) >= least).collect();
         large.sort_by_key(|place| (std::cmp::Reverse(self.pixels(*place)), *place));
         large
     }
     /// How many places are seen that are too small for parts of their own.
     pub fn small(&self) -> usize {
-        let least = least_area(self.labels.size());
+        let least = least_area(self.size);
         self.areas.iter().filter(|(_, pixels)| (LEAST_SEEN..least).contains(pixels)).count()
     }
     /// How many pixels a place has.
@@ -60,6 +70,7 @@ impl ColorPlaces {
     /// The place at a point of the plane, px, or else the nearest one, and whether it is only that; `None` if there is
     /// none at all.
     pub fn nearest(&self, at: Vec2) -> Option<(u32, bool)> {
+        let at = at - self.corner();
         let (x, y) = (at.x.floor(), at.y.floor());
         let here = self.labels.get(x as i32, y as i32).filter(|place| at.is_finite() && *place > 0);
         if let Some(place) = here {
@@ -95,19 +106,30 @@ impl ColorPlaces {
             let order = deep.at(b.0, b.1).cmp(&deep.at(a.0, a.1)).then(away(a).total_cmp(&away(b)));
             if order.is_gt() { b } else { a }
         });
-        best.map_or(Vec2::ZERO, |(x, y)| vec2((x as i32 + around.x0) as f32 + 0.5, (y as i32 + around.y0) as f32 + 0.5))
+        let middle = |(x, y)| vec2((x as i32 + around.x0) as f32 + 0.5, (y as i32 + around.y0) as f32 + 0.5);
+        best.map_or(Vec2::ZERO, |at| self.corner() + middle(at))
+    }
+    /// Where its planes begin in the flats, px.
+    fn corner(&self) -> Vec2 {
+        vec2(self.area.x0 as f32, self.area.y0 as f32)
     }
     /// Writes a number to the pixels of a place.
     pub fn mark(&self, place: u32, numbers: &mut Plane<u32>, number: u32) {
-        let both = numbers.values_mut().iter_mut().zip(self.labels.values());
-        both.filter(|(_, label)| **label == place).for_each(|(to, _)| *to = number);
+        let columns = self.area.x0 as usize..self.area.x1 as usize;
+        for y in 0..self.labels.height() {
+            let to = &mut numbers.row_mut(y + self.area.y0 as usize)[columns.clone()];
+            let both = to.iter_mut().zip(self.labels.row(y));
+            both.filter(|(_, label)| **label == place).for_each(|(to, _)| *to = number);
+        }
     }
     /// The share of each pixel that each of some places takes of what the colour takes: mixed pixels go to the nearest
     /// place.
     pub fn shares(&self, places: &[u32], share: &Plane<u8>) -> Vec<Plane<u8>> {
         let mut labels = self.labels.clone();
-        spread(&mut labels, |x, y| share.at(x, y) > 0);
-        let of = |x: usize, y: usize, place: u32| if labels.at(x, y) == place { share.at(x, y) } else { 0 };
+        let (x0, y0) = (self.area.x0 as usize, self.area.y0 as usize);
+        spread(&mut labels, |x, y| share.at(x + x0, y + y0) > 0);
+        let label = |x: usize, y: usize| labels.get(x as i32 - self.area.x0, y as i32 - self.area.y0);
+        let of = |x: usize, y: usize, place: u32| if label(x, y) == Some(place) { share.at(x, y) } else { 0 };
         places.iter().map(|place| Plane::from_fn(share.size(), |x, y| of(x, y, *place))).collect()
     }
 }

@@ -1,12 +1,13 @@
 //! Outlines of parts in their places, found once and known while what they are made of is the same. Floor 4. Not here:
 //! what they are made of (`outlines`).
 
-use super::Part;
 use super::body::StandingOutline;
 use super::outlines::OutlineKey;
 use super::unchanged::apart;
+use super::{OutlineSource, Part};
 use crate::document::Document;
 use crate::math::Affine2;
+use crate::math::srgb::Color;
 use crate::shape::Outline;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -14,17 +15,39 @@ use std::sync::Arc;
 /// Each outline needs several planes of the canvas while it is found; on larger canvases they are found one by one, px.
 const MOST_AT_ONCE_PX: usize = 1 << 24;
 
+/// A part, and the room for its outline.
+struct Sought<'a> {
+    part: &'a Arc<Part>,
+    found: &'a mut Option<StandingOutline>,
+}
+
 impl Document {
-    /// The outlines of parts in their places, side by side once the first has found what many share.
+    /// The outlines of parts in their places, side by side: but one after the other where parts are of one colour,
+    /// whose places are found once, and after the first, which finds what all share.
     pub(super) fn standing_outlines(&self, parts: &[&Arc<Part>]) -> Vec<Option<StandingOutline>> {
-        let Some((first, rest)) = parts.split_first() else { return Vec::new() };
-        let first = self.standing_outline(first);
-        let outline = |part: &&Arc<Part>| self.standing_outline(part);
-        let rest: Vec<_> = match self.size.area() <= MOST_AT_ONCE_PX {
-            true => rest.par_iter().map(outline).collect(),
-            false => rest.iter().map(outline).collect(),
+        let mut found: Vec<Option<StandingOutline>> = vec![None; parts.len()];
+        let Some((first, rest)) = found.split_first_mut() else { return found };
+        *first = self.standing_outline(parts[0]);
+        let color = |part: &Part| match part.outline() {
+            Some(OutlineSource::Layer { color: Some(flat), .. }) => Some(flat.color),
+            _ => None,
         };
-        std::iter::once(first).chain(rest).collect()
+        let mut groups: Vec<(Option<Color>, Vec<Sought>)> = Vec::new();
+        for (part, found) in parts[1..].iter().zip(rest) {
+            let of = color(part);
+            match groups.iter_mut().find(|(other, _)| of.is_some() && *other == of) {
+                Some((_, group)) => group.push(Sought { part, found }),
+                None => groups.push((of, vec![Sought { part, found }])),
+            }
+        }
+        let find = |(_, group): (Option<Color>, Vec<Sought>)| {
+            group.into_iter().for_each(|Sought { part, found }| *found = self.standing_outline(part));
+        };
+        match self.size.area() <= MOST_AT_ONCE_PX {
+            true => groups.into_par_iter().for_each(find),
+            false => groups.into_iter().for_each(find),
+        }
+        found
     }
     /// The outline of a part before it was moved; `None` if it has none.
     pub(super) fn own_outline(&self, part: &Part) -> Option<Arc<Outline>> {

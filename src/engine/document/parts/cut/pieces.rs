@@ -1,10 +1,10 @@
 //! What each part carries of a drawing. Floor 4.
 
-use super::super::areas::spread;
+use super::super::areas::{over, spread};
 use super::super::picture::Pixel;
 use super::lines::{CutLines, added};
 use super::owners::{Cut, NO_PART, PieceOutline};
-use crate::math::{Rect, Size};
+use crate::math::Rect;
 use crate::raster::{Plane, Tile, TileAt, TileGrid};
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ impl Cut {
         let mut pieces = Vec::with_capacity(self.outlines.len());
         for (part, area) in (0..).zip(self.reached(&lines)) {
             let own = self.own_colors(part, area, &lines);
-            let piece = plane_over(area, |x, y, i| {
+            let piece = over(area, |x, y, i| {
                 let own = own.values()[i];
                 match lines.taker(x, y) {
                     Some(taker) if taker == part => lines.over(self, (x, y), beneath.at(x, y).color),
@@ -41,7 +41,7 @@ impl Cut {
             pieces.push(self.tiles_of(&piece, area));
         }
         let rest = self.drawn.size().rect();
-        let left = plane_over(rest, |x, y, _| if self.owner.at(x, y) == 0 { self.drawn.at(x, y) } else { OUT });
+        let left = over(rest, |x, y, _| if self.owner.at(x, y) == 0 { self.drawn.at(x, y) } else { OUT });
         (pieces, self.tiles_of(&left, rest))
     }
     /// Where each part covers something, or has a pixel.
@@ -90,7 +90,7 @@ impl Cut {
         };
         let pure = self.nearest_where(part, area, is_pure);
         let plain = self.nearest_where(part, area, |x, y| is_pure(x, y) && lines.is_far(x, y));
-        plane_over(area, |x, y, i| {
+        over(area, |x, y, i| {
             let (pure, plain, first) = (pure.values()[i], plain.values()[i], self.nearest.at(x, y)[0]);
             let is_beneath = first != part && first != NO_PART && self.coverage(first, x, y) == 255;
             if plain[3] > 0 && (is_beneath || lines.taker(x, y).is_some()) { plain } else { pure }
@@ -99,7 +99,7 @@ impl Cut {
     /// The colour of the nearest pixel that counts, wherever a part covers something.
     fn nearest_where(&self, part: u16, area: Rect, counts: impl Fn(usize, usize) -> bool + Sync) -> Plane<Pixel> {
         let width = self.drawn.width();
-        let mut nearest = plane_over(area, |x, y, _| if counts(x, y) { (y * width + x) as u32 + 1 } else { 0 });
+        let mut nearest = over(area, |x, y, _| if counts(x, y) { (y * width + x) as u32 + 1 } else { 0 });
         let (x0, y0) = (area.x0 as usize, area.y0 as usize);
         spread(&mut nearest, |x, y| self.coverage(part, x + x0, y + y0) > 0);
         nearest.map(|index| index.checked_sub(1).map_or(OUT, |index| self.drawn.values()[index as usize]))
@@ -116,16 +116,6 @@ impl Cut {
         }
         tiles
     }
-}
-
-/// A plane over an area of the drawing's planes, of each pixel's place and its index in the plane.
-fn plane_over<T: Copy + Send + Sync + Default>(
-    area: Rect,
-    value: impl Fn(usize, usize, usize) -> T + Sync,
-) -> Plane<T> {
-    let size = Size::new(area.width() as u32, area.height() as u32);
-    let (x0, y0) = (area.x0 as usize, area.y0 as usize);
-    Plane::from_fn(size, |x, y| value(x + x0, y + y0, y * area.width() + x))
 }
 
 /// The pixels of an area, row by row.
