@@ -55,7 +55,7 @@ pub fn show(ui: &mut Ui, session: &Session, pictures: &mut PartPictures, request
     ui.add_space(2.0);
     let Some(part) = tab.chosen_part() else { return };
     ScrollArea::vertical().id_salt("part").auto_shrink([false, false]).show(ui, |ui| {
-        ui.horizontal(|ui| flats(ui, document, part, requests));
+        flats(ui, document, part, requests);
         if let Some(changed) = numbers::show(ui, part) {
             set(requests, changed);
         }
@@ -64,20 +64,28 @@ pub fn show(ui: &mut Ui, session: &Session, pictures: &mut PartPictures, request
 
 /// What can be done with a part that has its colour from a drawing, and with that drawing.
 fn flats(ui: &mut Ui, document: &Document, part: &Part, requests: &mut UiRequests) {
-    if part.is_of_color() {
-        let hint = "Areas of its colour that are apart, such as two eyes, become parts of their own";
-        if ui.button("Split by place").on_hover_text(hint).clicked() {
-            act(requests, PartAction::Split { part: part.id.clone() });
-        }
-    }
+    let split = part.is_of_color().then(|| PartAction::Split { part: part.id.clone() });
     let drawing = document.drawing_to_cut(part).and_then(|id| LayerPath::of(document, id));
-    if let Some(layer) = drawing {
-        let hint =
-            "The drawing becomes a layer for each of its parts, so that a part that is moved takes its paint along";
-        if ui.button("Cut drawing").on_hover_text(hint).clicked() {
-            act(requests, PartAction::Cut { layer });
-        }
+    let cut = drawing.map(|layer| PartAction::Cut { layer });
+    let buttons = [
+        (split, "Split by place", "Areas of its colour that are apart, such as two eyes, become parts of their own"),
+        (
+            cut,
+            "Cut drawing",
+            "The drawing becomes a layer for each of its parts, so that a part that is moved takes its paint along",
+        ),
+    ];
+    if buttons.iter().all(|(action, ..)| action.is_none()) {
+        return;
     }
+    ui.horizontal(|ui| {
+        for (action, label, hint) in buttons {
+            // Only what can be done has a button.
+            if let Some(action) = action.filter(|_| ui.button(label).on_hover_text(hint).clicked()) {
+                act(requests, action);
+            }
+        }
+    });
 }
 
 /// The parts that have a form of their own, the farthest first; and those that lie on nothing.

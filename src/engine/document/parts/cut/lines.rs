@@ -89,35 +89,61 @@ fn is_off_color(cut: &Cut, part: u16, (x, y): (usize, usize)) -> bool {
     color.is_some_and(|color| away(cut.drawn.at(x, y), color) > LINE)
 }
 
-/// The ink on farther parts along each part, walked from its outline as far as a line is wide.
+/// The ink on farther parts along each part, as far from its outline as the part's own side of the line is wide.
 fn taken(cut: &Cut, marks: &Plane<u8>) -> Plane<u16> {
-    let most_steps = 2 * half_width(cut.drawn.size());
-    let mut taker = Plane::filled(cut.drawn.size(), NO_PART);
-    let enters = |taker: &Plane<u16>, part: u16, x: i32, y: i32| {
-        taker.get(x, y) == Some(NO_PART) && {
-            let at = (x as usize, y as usize);
-            marks.at(at.0, at.1) > 0 && cut.may_take(part, at.0, at.1) && cut.is_ink_between(part, at)
-        }
-    };
-    let mut ahead: VecDeque<(usize, usize, usize)> = VecDeque::new();
-    for (x, y) in pixels((taker.width(), taker.height())).filter(|(x, y)| marks.at(*x, *y) > 0) {
+    let size = (cut.drawn.width(), cut.drawn.height());
+    let is_marked = |x: usize, y: usize| marks.at(x, y) > 0;
+    let may_take =
+        |part: u16, x: usize, y: usize| is_marked(x, y) && cut.may_take(part, x, y) && cut.is_ink_between(part, (x, y));
+    let seed = |(x, y): (usize, usize)| {
         let beside = around(x, y, 1).filter_map(|(x, y)| cut.nearest.get(x, y)).map(|[first, _]| first);
-        let Some(part) = beside.filter(|part| *part != NO_PART).max() else { continue };
-        if enters(&taker, part, x as i32, y as i32) {
-            taker.set(x, y, part);
-            ahead.push_back((x, y, 1));
-        }
-    }
-    while let Some((x, y, steps)) = ahead.pop_front() {
-        let part = taker.at(x, y);
+        let part = beside.filter(|part| *part != NO_PART).max()?;
+        may_take(part, x, y).then_some((x, y, part))
+    };
+    let seeds: Vec<(usize, usize, u16)> = pixels(size).filter(|(x, y)| is_marked(*x, *y)).filter_map(seed).collect();
+    let widest = vec![2 * half_width(cut.drawn.size()); cut.outlines.len()];
+    let is_own_ink = |part: u16, x: usize, y: usize| is_marked(x, y) && cut.owner.at(x, y) == u32::from(part) + 1;
+    let own_side = walked(cut, &seeds, &widest, is_own_ink);
+    let count = |taken: &[(usize, usize, u16)]| {
+        let mut counts = vec![0usize; cut.outlines.len()];
+        taken.iter().for_each(|(.., part)| counts[usize::from(*part)] += 1);
+        counts
+    };
+    // As wide in the mean.
+    let width = |(own, seeds): (usize, usize)| own.saturating_sub(seeds).div_ceil(seeds.max(1));
+    let widths: Vec<usize> = count(&own_side).into_iter().zip(count(&seeds)).map(width).collect();
+    let mut taker = Plane::filled(cut.drawn.size(), NO_PART);
+    let found = walked(cut, &seeds, &widths, may_take);
+    found.into_iter().for_each(|(x, y, part)| taker.set(x, y, part));
+    taker
+}
+
+/// The pixels that each part reaches from its seeds over those that it may enter, the seeds first; each is reached by
+/// one part. `most_px`: how far each part goes from a seed.
+fn walked(
+    cut: &Cut,
+    seeds: &[(usize, usize, u16)],
+    most_px: &[usize],
+    enters: impl Fn(u16, usize, usize) -> bool,
+) -> Vec<(usize, usize, u16)> {
+    let mut is_reached = Plane::filled(cut.drawn.size(), false);
+    seeds.iter().for_each(|(x, y, _)| is_reached.set(*x, *y, true));
+    let mut reached = seeds.to_vec();
+    let mut ahead: VecDeque<_> = seeds.iter().map(|(x, y, part)| ((*x, *y), (*x, *y), *part)).collect();
+    while let Some((seed, (x, y), part)) = ahead.pop_front() {
+        let most = most_px[usize::from(part)].pow(2);
         for (x, y) in around(x, y, 1) {
-            if steps < most_steps && enters(&taker, part, x, y) {
-                taker.set(x as usize, y as usize, part);
-                ahead.push_back((x as usize, y as usize, steps + 1));
+            let is_new = is_reached.get(x, y) == Some(false);
+            let (x, y) = (x.max(0) as usize, y.max(0) as usize);
+            let is_near = || seed.0.abs_diff(x).pow(2) + seed.1.abs_diff(y).pow(2) <= most;
+            if is_new && is_near() && enters(part, x, y) {
+                is_reached.set(x, y, true);
+                reached.push((x, y, part));
+                ahead.push_back((seed, (x, y), part));
             }
         }
     }
-    taker
+    reached
 }
 
 /// The pixels beside what is taken that may be taken as well, and by which part.
@@ -126,7 +152,9 @@ fn soft_border(cut: &Cut, taker: &Plane<u16>) -> Vec<(usize, usize, u16)> {
     for (x, y) in pixels((taker.width(), taker.height())).filter(|(x, y)| taker.at(*x, *y) != NO_PART) {
         let part = taker.at(x, y);
         let free = around(x, y, 1).filter(|(x, y)| taker.get(*x, *y) == Some(NO_PART));
-        let free = free.map(|(x, y)| (x as usize, y as usize)).filter(|(x, y)| cut.may_take(part, *x, *y));
+        // Ink that goes on is of another line.
+        let is_soft = |x: usize, y: usize| cut.may_take(part, x, y) && !cut.is_ink_between(part, (x, y));
+        let free = free.map(|(x, y)| (x as usize, y as usize)).filter(|(x, y)| is_soft(*x, *y));
         border.extend(free.map(|(x, y)| (x, y, part)));
     }
     border
