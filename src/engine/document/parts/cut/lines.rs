@@ -109,8 +109,8 @@ fn taken(cut: &Cut, marks: &Plane<u8>) -> Plane<u16> {
         taken.iter().for_each(|(.., part)| counts[usize::from(*part)] += 1);
         counts
     };
-    // As wide in the mean.
-    let width = |(own, seeds): (usize, usize)| own.saturating_sub(seeds).div_ceil(seeds.max(1));
+    // The border runs in the middle of a line: its other side is as wide in the mean, and ends softly.
+    let width = |(own, seeds): (usize, usize)| own.saturating_sub(seeds).div_ceil(seeds.max(1)) + 1;
     let widths: Vec<usize> = count(&own_side).into_iter().zip(count(&seeds)).map(width).collect();
     let mut taker = Plane::filled(cut.drawn.size(), NO_PART);
     let found = walked(cut, &seeds, &widths, may_take);
