@@ -112,26 +112,6 @@ fn an_inked_eye_takes_its_ring_along_and_leaves_a_face_without_ink() {
     assert_eq!(after.pixel(330, 138), tiles.pixel(330, 138));
 }
 #[test]
-fn a_head_takes_no_more_of_the_lines_that_end_at_it_than_its_own_is_wide() {
-    use drawings::{BELLY, HEAD, INK, SIZE, drawn};
-    // A head over a body, whose outline runs up to the head's.
-    let (head, body) = (vec2(300.0, 150.0), vec2(300.0, 260.0));
-    let ring = |away: f32, radius: f32| (radius - 2.0..radius + 2.0).contains(&away);
-    let tiles = drawn(|p| match (p.distance(head), p.distance(body)) {
-        (of_head, _) if of_head < 98.0 => Some(HEAD),
-        (of_head, of_body) if ring(of_head, 100.0) || ring(of_body, 90.0) => Some(INK),
-        (_, of_body) => (of_body < 90.0).then_some(BELLY),
-    });
-    let next = cut(&shaped_on(SIZE, &tiles));
-    let pieces = &next.layers[1].content.group().unwrap().layers;
-    assert_eq!(pieces.len(), 2);
-    let Content::Pixels(front) = &pieces[1].content else { panic!("{}", pieces[1].name) };
-    let farthest = (0..400).flat_map(|y| (0..600).map(move |x| (x, y)));
-    let farthest = farthest.filter(|(x, y)| front.tiles.pixel(*x, *y)[3] > 32);
-    let farthest = farthest.map(|(x, y)| (vec2(x as f32, y as f32) + 0.5).distance(head)).fold(0.0, f32::max);
-    assert!((101.0..107.0).contains(&farthest), "{farthest} px from the head's middle");
-}
-#[test]
 fn three_colours_that_meet_in_a_pixel_lose_nothing() {
     let tiles = drawings::drawn(|p| {
         let turn = (p - vec2(300.3, 200.6)).to_angle().to_degrees().rem_euclid(360.0);
