@@ -269,6 +269,29 @@ fn a_flat_border_is_surface_until_it_is_said_to_be_background() {
 }
 
 #[test]
+fn a_hole_in_a_ring_is_background_where_the_depth_says_so_and_a_plate_at_the_border_is_not() {
+    // A ring, and a plate that faces the viewer and fills the lowest rows.
+    let seen = |x: usize, y: usize| {
+        let (p, r) = (glam::vec2(x as f32 - 47.5, 40.0 - y as f32), 12.0);
+        let t = (p.length() - 24.0) / r;
+        let ring = (t.abs() < 0.99).then(|| (p.normalize() * t, 0.5 - 0.4 * (1.0 - t * t).sqrt()));
+        ring.map(|(n, z)| (n.extend((1.0 - n.length_squared()).sqrt()), z))
+            .or((y >= 84).then_some((glam::Vec3::Z, 0.7)))
+    };
+    let normals = png(16, |x, y| seen(x, y).map_or([0.5, 0.5, 1.0, 1.0], |(n, _)| encode(n.x, n.y, n.z)));
+    let depth = png(16, |x, y| [seen(x, y).map_or(1.0, |(_, z)| z); 4]);
+    let files = Memory::new([("n.png", normals), ("d.png", depth)]);
+    let coverage = |depth: Option<MapSource<DepthConvention>>| {
+        let flat = SurfaceSource { mask: Some(MaskSource::Flat), ..source(map("n.png"), depth, false) };
+        let surface = import(&flat, &files, &Budget::default()).unwrap().surface;
+        // Beside the ring, within it, on it, on the plate.
+        [(2, 2), (47, 40), (24, 40), (47, 90)].map(|(x, y)| surface.coverage(x, y))
+    };
+    assert_eq!(coverage(None), [0, 255, 255, 0]);
+    assert_eq!(coverage(map("d.png")), [0, 0, 255, 255]);
+}
+
+#[test]
 fn maps_that_do_not_fit_get_a_sentence() {
     let ball = Ball::new();
     let small = super::maps::png_of(SIDE / 2, 8, |_, _| [0.5, 0.5, 1.0, 1.0]);

@@ -41,11 +41,7 @@ fn border(size: Size) -> Vec<usize> {
     rows.chain((1..h - 1).flat_map(|y| [y * w, y * w + w - 1])).collect()
 }
 
-/// Whether two texels are equal up to lossy compression.
-pub fn same(a: [f32; 4], b: [f32; 4], lossy: bool) -> bool {
-    a.iter().zip(b).all(|(a, b)| same_number(*a, b, lossy))
-}
-
+/// Whether two numbers are equal up to lossy compression.
 fn same_number(a: f32, b: f32, lossy: bool) -> bool {
     let tolerance = if lossy { 0.024 } else { 0.0 };
     (a - b).abs() <= tolerance || (a.is_nan() && b.is_nan())

@@ -1,19 +1,20 @@
 //! Which pixels are surface: by the given mask, the alpha of the files, or the numbers. Floor 5.
 
+use super::background::{self, FilledEdge};
+use super::encoding;
 use super::findings::Findings;
 use super::layers::MapRole;
 use super::overrides::ConventionOverrides;
 use super::stored::{self, StoredMap};
-use super::{background, depth, encoding};
 use crate::document::source::{MaskSource, SurfaceSource};
 use crate::math::{Vec3, srgb};
 use crate::raster::Plane;
 use crate::{Budget, Error, Files, Result, picture};
 
-/// The mask that the document names, and its name for messages.
+/// The mask that the document names, and its name for messages; `maps` are its normals and its depth.
 pub fn given_mask(
     source: &SurfaceSource,
-    normal: Option<&StoredMap>,
+    maps: [Option<&StoredMap>; 2],
     files: &dyn Files,
     budget: &Budget,
     findings: &mut Findings,
@@ -34,22 +35,35 @@ pub fn given_mask(
             Ok(Some((path.display().to_string(), plane)))
         }
         Some(MaskSource::Flat) => {
-            let Some(normal) = normal else {
+            let [Some(normal), depth] = maps else {
                 return Err(Error::invalid(files.path(""), "surface.mask.from", "“flat” needs a normal map"));
             };
             findings.given("mask", "flat");
-            Ok(Some((normal.file.display().to_string(), not_flat(normal))))
+            Ok(Some((normal.file.display().to_string(), not_flat(normal, depth))))
         }
     }
 }
 
+/// The share of a flat border that has one depth if that depth stands for “nothing”. The rest may be a wall or a plate.
+const SHARE_OF_ONE_DEPTH: f32 = 0.5;
+
 /// 0 where the border's value continues inward from the border, 255 elsewhere.
-fn not_flat(normal: &StoredMap) -> Plane<u8> {
-    let edge = background::constant(normal, None);
-    let flat = background::joined_to_border(normal.size, |i| {
-        edge.is_some_and(|e| background::same(normal.texel(i), e, normal.lossy))
-    });
-    flat.map(|f| if f { 0 } else { 255 })
+///
+/// If the border has one depth as well, only pixels of that depth are background; and all of them that have its normal
+/// are, also within a ring or a handle.
+fn not_flat(normal: &StoredMap, depth: Option<&StoredMap>) -> Plane<u8> {
+    let holds_edge = |map: &StoredMap| FilledEdge::of(map, None).map(|edge| edge.holds);
+    let Some(flat) = holds_edge(normal) else { return Plane::filled(normal.size, 255) };
+    let outside = background::joined_to_border(normal.size, |i| flat.values()[i]);
+    let far = depth.filter(|depth| depth.size == normal.size).and_then(holds_edge);
+    let count = |is: &dyn Fn(usize) -> bool| (0..normal.size.area()).filter(|&i| outside.values()[i] && is(i)).count();
+    let background = match far {
+        Some(far) if count(&|i| far.values()[i]) as f32 > SHARE_OF_ONE_DEPTH * count(&|_| true) as f32 => {
+            flat.updated(|x, y, flat| flat && far.at(x, y))
+        }
+        _ => outside,
+    };
+    background.map(|b| if b { 0 } else { 255 })
 }
 
 /// The files' own coverage.
@@ -65,20 +79,20 @@ pub fn alpha(maps: &[&StoredMap], overrides: &ConventionOverrides, findings: &mu
 
 /// Notes where the mask came from, and a border that looks like background but does not count as such.
 pub fn report_mask(
-    normal: Option<&StoredMap>,
-    depth: Option<&depth::RawDepth>,
+    [normal, depth]: [Option<&StoredMap>; 2],
+    is_found_in_depth: bool,
     coverage: &Plane<u8>,
     findings: &mut Findings,
 ) {
     let bare = coverage.values().iter().filter(|c| **c == 0).count();
-    let how = match (depth.is_some_and(|d| d.has_background), bare) {
+    let how = match (is_found_in_depth, bare) {
         (_, 0) => "none",
         (true, _) => "depth",
         _ => "normals",
     };
     findings.found("mask", how, if bare > 0 { 0.9 } else { 0.5 });
     let Some(normal) = normal.filter(|_| bare == 0) else { return };
-    let flat = not_flat(normal).values().iter().filter(|c| **c == 0).count();
+    let flat = not_flat(normal, depth).values().iter().filter(|c| **c == 0).count();
     let share = flat as f32 / coverage.values().len() as f32;
     if share > 0.02 && share < 1.0 {
         findings.flat_border = share;

@@ -111,7 +111,7 @@ fn read(
     for (map, warning) in maps.iter().filter_map(|m| Some((m, m.warning?))) {
         findings.note(format!("{}: {warning}", map.file.display()));
     }
-    let mask = given_mask(source, normal.as_ref(), files, budget, &mut findings)?;
+    let mask = given_mask(source, [normal.as_ref(), depth.as_ref()], files, budget, &mut findings)?;
     let of = |m: &StoredMap| (m.file.display().to_string(), m.size);
     let sizes = maps.iter().copied().map(of).chain(mask.iter().map(|(name, m)| (name.clone(), m.size())));
     same_size(&file, sizes)?;

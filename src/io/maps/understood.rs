@@ -57,7 +57,8 @@ impl LoadedMaps<'_> {
             Plane::from_fn(size, |x, y| if bare(y * w + x) { 0 } else { by_normals.map_or(255, |c| c.at(x, y)) })
         });
         if !explicit {
-            report_mask(normal, raw_depth.as_ref(), &coverage, self.findings);
+            let is_found_in_depth = raw_depth.as_ref().is_some_and(|depth| depth.has_background);
+            report_mask([normal, depth], is_found_in_depth, &coverage, self.findings);
         }
         // A partly covered rim pixel with the background's value has no value of its own.
         let borrowed = |edge: &Option<FilledEdge>, i: usize| {
