@@ -16,27 +16,20 @@ pub struct ContourLine {
     pub toward_near: Vec2,
 }
 
-/// Standard deviations of the windows' Gaussians, px: of the mask's line where it is straight all over the window, of
-/// the mask's line elsewhere, of the normals' line.
+/// Standard deviations of the windows' Gaussians, px: of the mask's line where it is straight all over the window, and
+/// elsewhere.
 const STRAIGHT_SIGMA: f32 = 2.0;
 const MASK_SIGMA: f32 = 1.2;
-const NORMALS_SIGMA: f32 = 1.0;
-/// Beyond this n_z² a pixel says little about where n_z² reaches 0.
-const RIM_NZ_SQUARED: f32 = 0.25;
-/// How far a line may lie on the wrong side of a pixel's centre that it should explain, px: that of normals, any other;
-/// what is added by squared distance, since contours bend: so far a circle of 25 px is from its tangent; within what
-/// distance of the middle pixel; and how far the normals' line may be from the mask's own.
-const NORMALS_TOLERANCE_PX: f32 = 0.05;
+/// How far a line may lie on the wrong side of a pixel's centre that it should explain, px; what is added by squared
+/// distance, since contours bend: so far a circle of 25 px is from its tangent; and within what distance of the middle
+/// pixel.
 const TOLERANCE_PX: f32 = 0.1;
 const BEND_PER_PX: f32 = 0.02;
-const EXPLAINED_PX: f32 = 2.24;
+pub const EXPLAINED_PX: f32 = 2.24;
 /// All of the window is nearer than that.
 const WINDOW_PX: f32 = 4.3;
-/// The share of the variance of n_z² that a plane must explain.
-const LEAST_LINEAR: f32 = 0.98;
-const FARTHEST_PX: f32 = 0.7;
-/// Cosine of the greatest angle between both lines.
-const ALIKE: f32 = 0.7;
+/// Cosine of the greatest angle between two lines of one contour.
+pub const ALIKE: f32 = 0.7;
 /// Fewer pixels give no plane of depths.
 const LEAST_FOR_A_LINE: u32 = 6;
 /// The share of a straight edge's contrast that a mask must have to be taken for one.
@@ -123,32 +116,6 @@ impl ContourLine {
         let toward_near = gradient.try_normalize().filter(|_| gradient.length() > LEAST_CONTRAST * expected)?;
         Some(Self { distance_px: sigma * quantile, toward_near })
     }
-    /// The line that the nearer side's normals give: at a smooth silhouette n_z² falls linearly to 0, so that the zero
-    /// of a plane fitted to it is the contour. `None` where it contradicts the mask, or where n_z² is not linear:
-    /// scanned and coarse meshes have interpolated normals that never reach the rim.
-    ///
-    /// * `guess`: the mask's own line.
-    pub fn of_normals(window: &PixelWindow, near: u64, known: u64, guess: ContourLine) -> Option<Self> {
-        let weight_and_value = |i: u32| {
-            let nz2 = window.nz_squared(i);
-            (NORMALS_WEIGHTS.at(i) * (-nz2 / RIM_NZ_SQUARED).exp(), nz2)
-        };
-        let fitted = LeastSquaresPlane::weighted(bits(near), 1e-9, weight_and_value)?;
-        let steepness = fitted.slope.length();
-        if near.count_ones() < 4 || steepness < 1e-5 {
-            return None;
-        }
-        let line = Self { distance_px: fitted.here / steepness, toward_near: fitted.slope / steepness };
-        let in_reach = (-1.2..1.5).contains(&line.distance_px) && line.toward_near.dot(guess.toward_near) >= ALIKE;
-        if !in_reach || !line.explains(near, known, NORMALS_TOLERANCE_PX, EXPLAINED_PX) {
-            return None;
-        }
-        if fitted.explained(bits(near), weight_and_value) < LEAST_LINEAR {
-            return None;
-        }
-        let distance_px = line.distance_px.clamp(guess.distance_px - FARTHEST_PX, guess.distance_px + FARTHEST_PX);
-        Some(Self { distance_px, ..line })
-    }
     /// The line along which two pieces of surface meet at a crease: where planes fitted to their depths are equally
     /// deep. `None` where it contradicts which pixels show which: coarse depth does not show it.
     ///
@@ -169,7 +136,7 @@ impl ContourLine {
         [line, line.turned()].into_iter().find(|line| line.explains(own, own | other, TOLERANCE_PX, EXPLAINED_PX))
     }
     /// Pixels within `reach_px` of the middle one lie on their side of the line, but for a little.
-    fn explains(&self, near: u64, known: u64, tolerance_px: f32, reach_px: f32) -> bool {
+    pub fn explains(&self, near: u64, known: u64, tolerance_px: f32, reach_px: f32) -> bool {
         bits(known).all(|i| {
             let at = offset_of(i);
             let d = self.distance_px + self.toward_near.dot(at);
@@ -222,10 +189,9 @@ fn gaussian(sigma: f32) -> [f32; (SIDE * SIDE) as usize] {
 
 static STRAIGHT_WEIGHTS: WindowGaussian = WindowGaussian(LazyLock::new(|| gaussian(STRAIGHT_SIGMA)));
 static MASK_WEIGHTS: WindowGaussian = WindowGaussian(LazyLock::new(|| gaussian(MASK_SIGMA)));
-static NORMALS_WEIGHTS: WindowGaussian = WindowGaussian(LazyLock::new(|| gaussian(NORMALS_SIGMA)));
 /// For maps that are continued as planes.
 pub static CONTINUED_WEIGHTS: WindowGaussian = WindowGaussian(LazyLock::new(|| gaussian(2.0)));
-/// For what is carried over from the nearest pixels.
+/// For what is carried over from the nearest pixels, and for normals that turn toward a rim.
 pub static NEAREST_WEIGHTS: WindowGaussian = WindowGaussian(LazyLock::new(|| gaussian(1.0)));
 
 #[cfg(test)]

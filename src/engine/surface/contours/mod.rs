@@ -11,6 +11,7 @@ mod line;
 mod maps;
 mod moved;
 mod plane;
+mod rim;
 mod sheet;
 mod window;
 

@@ -40,19 +40,6 @@ impl LeastSquaresPlane {
         let here = (v - sx * x - sy * y) / w;
         Some(Self { here: here as f32, slope: vec2(sx as f32, sy as f32) })
     }
-    /// The share of the values' variance that the plane explains, `[0, 1]` for the values that it was fitted to.
-    pub fn explained(&self, members: impl Iterator<Item = u32>, weight_and_value: impl Fn(u32) -> (f32, f32)) -> f32 {
-        let (mut all, mut sum, mut squares, mut left) = (0.0, 0.0, 0.0, 0.0);
-        for i in members {
-            let (w, v) = weight_and_value(i);
-            // From the plane at the middle pixel: sums of differences lose fewer digits.
-            let (v, slope) = (v - self.here, self.slope.dot(offset_of(i)));
-            (all, sum, squares) = (all + w, sum + w * v, squares + w * v * v);
-            left += w * (v - slope) * (v - slope);
-        }
-        let variance = squares - sum * sum / all;
-        if variance > 0.0 { 1.0 - left / variance } else { 0.0 }
-    }
 }
 
 #[cfg(test)]
@@ -69,15 +56,5 @@ mod tests {
         let fit = LeastSquaresPlane::weighted(bits(ALL & !0xfff), 0.0, value).unwrap();
         assert!((fit.here - 3.0).abs() < 1e-5 && (fit.slope - vec2(0.5, -0.25)).length() < 1e-5, "{fit:?}");
         assert!(LeastSquaresPlane::weighted(bits(0), 1.0, value).is_none());
-    }
-    #[test]
-    fn a_plane_explains_all_of_linear_values_and_less_of_others() {
-        let linear = |i: u32| (1.0, 0.4 + vec2(0.1, -0.05).dot(offset_of(i)));
-        let fit = LeastSquaresPlane::weighted(bits(ALL), 0.0, linear).unwrap();
-        assert!((fit.explained(bits(ALL), linear) - 1.0).abs() < 1e-5);
-        let facets = |i: u32| (1.0, 0.4 + vec2(0.1, -0.05).dot(offset_of(i)).clamp(-0.1, 0.1));
-        let fit = LeastSquaresPlane::weighted(bits(ALL), 0.0, facets).unwrap();
-        assert!(fit.explained(bits(ALL), facets) < 0.98);
-        assert_eq!(fit.explained(bits(ALL), |_| (1.0, fit.here)), 0.0, "nothing to explain");
     }
 }
