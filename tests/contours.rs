@@ -114,7 +114,7 @@ fn every_kind_of_layer_and_any_number_of_them_is_smooth_at_contours() {
         ("mirror", json!([mirror]), 0.14),
         ("mirror with two bounces", json!([bounced]), 0.24),
         ("radiance scaling", json!([phong, scaling]), 0.22),
-        ("Fresnel mask", json!([phong, masked(json!({ "kind": "fresnel" }))]), 0.14),
+        ("Fresnel mask", json!([phong, masked(json!({ "kind": "fresnel" }))]), 0.12),
         ("curvature mask", json!([phong, masked(curvature)]), 0.51),
         ("depth mask", json!([phong, masked(json!({ "kind": "depth" }))]), 0.07),
     ];

@@ -3,6 +3,7 @@
 //! materials make of it (`shading`).
 
 use super::Surface;
+use super::contours::ContourPixel;
 use crate::math::{Size, Vec2, Vec3, vec3};
 
 /// The eye.
@@ -87,6 +88,11 @@ impl Surface {
             Eye::Afar => self.normal(x, y).z,
             Eye::At { .. } => self.normal(x, y).dot(self.view(x, y)),
         }
+    }
+    /// The same of a contour pixel, in the middle of what its own population sees (MATH 10).
+    pub fn own_facing(&self, pixel: &ContourPixel) -> f32 {
+        let (x, y) = (pixel.x as usize, pixel.y as usize);
+        pixel.own_normal(self.normal(x, y)).dot(self.view(x, y))
     }
 }
 

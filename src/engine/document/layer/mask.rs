@@ -3,9 +3,10 @@
 
 use crate::math::{Range, UNIT};
 use crate::paint::Scene;
-use crate::raster::{Plane, TileAt, TileCoverage};
-use crate::surface::Curvature;
+use crate::raster::tile::TILE_AREA;
+use crate::raster::{Plane, TILE, TileAt, TileCoverage};
 use crate::surface::region::SurfaceRegion;
+use crate::surface::{Curvature, Surface};
 use std::sync::Arc;
 
 /// What a layer's coverage is multiplied by.
@@ -121,7 +122,25 @@ impl LayerMask {
             let way = |c: u8| f32::from(if self.invert { 255 - c } else { c }) / 255.0;
             return coverage.times(tile_pixels(at, |x, y| way(grid.at(x, y))));
         }
-        coverage.times(tile_pixels(at, |x, y| self.at(scene, curvature, x, y)))
+        let on_contours = self.own_facings(scene, at);
+        coverage.times(tile_pixels(at, |x, y| {
+            let own = |_: &Surface| {
+                let facing = on_contours.as_ref()?[y as usize % TILE * TILE + x as usize % TILE];
+                (!facing.is_nan()).then_some(facing)
+            };
+            self.at_facing(scene, curvature, (x, y), own)
+        }))
+    }
+    /// Of a mask that follows the view: n·v in the middle of what a tile's contour pixels see themselves, else NaN.
+    fn own_facings(&self, scene: &Scene, at: TileAt) -> Option<Vec<f32>> {
+        let Some(DerivedMask::Fresnel { .. }) = self.derived() else { return None };
+        let surface = scene.surface.as_ref()?;
+        let contours = surface.contours().on(at)?;
+        let mut own = vec![f32::NAN; TILE_AREA];
+        for pixel in contours.pixels {
+            own[pixel.y as usize % TILE * TILE + pixel.x as usize % TILE] = surface.own_facing(pixel);
+        }
+        Some(own)
     }
     /// It is shown, and what it is derived from is there.
     pub(in crate::document) fn acts_on(&self, scene: &Scene) -> bool {
@@ -130,6 +149,17 @@ impl LayerMask {
     }
     /// The mask at a pixel of the canvas, `[0, 1]`; `curvature`: the surface's, for a mask derived from it.
     pub(in crate::document) fn at(&self, scene: &Scene, curvature: Option<&Curvature>, x: i32, y: i32) -> f32 {
+        let own = |surface: &Surface| Some(surface.own_facing(surface.contours().at(x, y)?));
+        self.at_facing(scene, curvature, (x, y), own)
+    }
+    /// The same, where it is known what n·v of a contour pixel is in the middle of what it sees itself.
+    fn at_facing(
+        &self,
+        scene: &Scene,
+        curvature: Option<&Curvature>,
+        (x, y): (i32, i32),
+        on_contour: impl Fn(&Surface) -> Option<f32>,
+    ) -> f32 {
         if self.disabled {
             return 1.0;
         }
@@ -145,7 +175,10 @@ impl LayerMask {
         let (x, y) = (x as usize, y as usize);
         match (derived, curvature) {
             (DerivedMask::Region(region), _) => way(f32::from(surface.region(&region).at(x as i32, y as i32)) / 255.0),
-            (DerivedMask::Fresnel { f0, power }, _) => way(fresnel(surface.facing(x, y), f0, power)),
+            (DerivedMask::Fresnel { f0, power }, _) => {
+                let facing = on_contour(surface).unwrap_or_else(|| surface.facing(x, y));
+                way(fresnel(facing, f0, power))
+            }
             (DerivedMask::Depth { from, to }, _) => way(ramp(surface.depth(x, y), from, to)),
             (DerivedMask::Curvature { scale, from, to, .. }, Some(curvature)) => {
                 way(ramp(curvature.kappa(x, y, scale), from, to))

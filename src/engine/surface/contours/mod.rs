@@ -147,6 +147,10 @@ impl Contours {
         let seen = (tile.seen - tile.start) as usize;
         (!pixels.is_empty()).then(|| TileContours { pixels, seen, sheet: sheet::rect(tile.sheet_row, seen) })
     }
+    /// A pixel of the canvas, if it is one.
+    pub fn at(&self, x: i32, y: i32) -> Option<&ContourPixel> {
+        self.on(TileAt::of_pixel(x, y))?.in_row(y).find(|pixel| pixel.x == x)
+    }
     /// The tiles with pixels whose other population sees a surface.
     pub fn seen_tiles(&self) -> impl Iterator<Item = TileAt> + '_ {
         let columns = self.columns.max(1);
