@@ -24,13 +24,12 @@ pub struct Continued {
 impl Continued {
     /// From the pixels of a window; `None` without any.
     pub fn from(window: &PixelWindow, members: u64) -> Option<Self> {
-        let fit = |value: &dyn Fn(u32) -> f32| {
-            let ridge = if members.count_ones() < LEAST_FOR_A_PLANE { f32::MAX } else { RIDGE };
-            let weight_and_value = |i: u32| (CONTINUED_WEIGHTS.at(i), value(i));
-            LeastSquaresPlane::weighted(bits(members), ridge, weight_and_value)
-        };
-        let nbar = |axis: usize| fit(&|i| window.nbar(i)[axis]);
-        Some(Self { nbar: [nbar(0)?, nbar(1)?], depth: fit(&|i| window.depth(i))? })
+        let ridge = if members.count_ones() < LEAST_FOR_A_PLANE { f32::MAX } else { RIDGE };
+        let [x, y, depth] = LeastSquaresPlane::of_each(bits(members), ridge, |i| {
+            let nbar = window.nbar(i);
+            (CONTINUED_WEIGHTS.at(i), [nbar.x, nbar.y, window.depth(i)])
+        })?;
+        Some(Self { nbar: [x, y], depth })
     }
     /// n̄ at a distance from the pixel's centre, px, shortened to the disc where it leaves it.
     pub fn nbar(&self, from_center: Vec2) -> Vec2 {

@@ -3,7 +3,7 @@
 //! Floor 2. Pure functions of a window. Not here: which pixels are looked at (`find`).
 
 use super::plane::LeastSquaresPlane;
-use super::window::{PixelWindow, SIDE, offset_of};
+use super::window::{PIXELS, PixelWindow, offset_of};
 use crate::math::{Vec2, vec2};
 use std::sync::LazyLock;
 
@@ -90,7 +90,7 @@ impl ContourLine {
         let narrow = Self::of_moments(near, known, MASK_SIGMA, &MASK_WEIGHTS)?;
         let wide = Self::of_moments(near, known, STRAIGHT_SIGMA, &STRAIGHT_WEIGHTS).filter(|wide| {
             let is_alike = wide.toward_near.dot(narrow.toward_near) >= ALIKE;
-            is_alike && wide.explains(near, known, TOLERANCE_PX, WINDOW_PX)
+            is_alike && wide.explains(near, known, 0.0, TOLERANCE_PX, WINDOW_PX)
         });
         Some(wide.unwrap_or(narrow))
     }
@@ -133,17 +133,38 @@ impl ContourLine {
             return None;
         }
         let line = Self { distance_px: here / steepness, toward_near: slope / steepness };
-        [line, line.turned()].into_iter().find(|line| line.explains(own, own | other, TOLERANCE_PX, EXPLAINED_PX))
+        [line, line.turned()].into_iter().find(|line| line.explains(own, own | other, 0.0, TOLERANCE_PX, EXPLAINED_PX))
     }
     /// Pixels within `reach_px` of the middle one lie on their side of the line, but for a little.
-    pub fn explains(&self, near: u64, known: u64, tolerance_px: f32, reach_px: f32) -> bool {
+    ///
+    /// * `bend`: the contour's curvature, as far as it is known, per px.
+    pub fn explains(&self, near: u64, known: u64, bend: f32, tolerance_px: f32, reach_px: f32) -> bool {
         bits(known).all(|i| {
             let at = offset_of(i);
-            let d = self.distance_px + self.toward_near.dot(at);
+            let d = self.distance_to(at, bend);
             let away = at.length();
             let tolerance = tolerance_px + BEND_PER_PX * away * away;
             away > reach_px || if near >> i & 1 == 1 { d } else { -d } >= -tolerance
         })
+    }
+    /// The component along the line.
+    pub fn along(self, v: Vec2) -> f32 {
+        v.dot(self.toward_near.perp())
+    }
+    /// The distance of a place from the line, or from a circle that touches it next to the pixel's centre, px; positive
+    /// on the nearer side.
+    ///
+    /// * `place`: from the pixel's centre, px.
+    /// * `bend`: the circle's curvature, per px; positive where the nearer side is inside.
+    pub fn distance_to(self, place: Vec2, bend: f32) -> f32 {
+        let (across, along) = (self.distance_px + self.toward_near.dot(place), self.along(place));
+        let from_middle = vec2(1.0 - bend * across, bend * along).length();
+        (2.0 * across - bend * (across * across + along * along)) / (1.0 + from_middle)
+    }
+    /// The place with that distance from the line itself: moved across it.
+    pub fn straightened(self, place: Vec2, bend: f32) -> Vec2 {
+        let across = self.distance_px + self.toward_near.dot(place);
+        place + (self.distance_to(place, bend) - across) * self.toward_near
     }
     /// The same line, moved so far that the middle pixel's centre lies on the side that it was seen on.
     pub fn with_center(self, is_near: bool) -> Self {
@@ -173,7 +194,7 @@ fn normal_quantile(p: f32) -> f32 {
 }
 
 /// A Gaussian over the window's pixels.
-pub struct WindowGaussian(LazyLock<[f32; (SIDE * SIDE) as usize]>);
+pub struct WindowGaussian(LazyLock<[f32; PIXELS]>);
 
 impl WindowGaussian {
     /// The weight of a pixel of the window.
@@ -183,7 +204,7 @@ impl WindowGaussian {
     }
 }
 
-fn gaussian(sigma: f32) -> [f32; (SIDE * SIDE) as usize] {
+fn gaussian(sigma: f32) -> [f32; PIXELS] {
     std::array::from_fn(|i| (-offset_of(i as u32).length_squared() / (2.0 * sigma * sigma)).exp())
 }
 

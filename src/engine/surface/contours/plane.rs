@@ -20,25 +20,48 @@ impl LeastSquaresPlane {
         ridge: f32,
         weight_and_value: impl Fn(u32) -> (f32, f32),
     ) -> Option<Self> {
-        let mut sums = [0.0f64; 9];
+        let [plane] = Self::of_each(members, ridge, |i| {
+            let (weight, value) = weight_and_value(i);
+            (weight, [value])
+        })?;
+        Some(plane)
+    }
+    /// The planes of several values that have the same weights.
+    pub fn of_each<const N: usize>(
+        members: impl Iterator<Item = u32>,
+        ridge: f32,
+        weight_and_values: impl Fn(u32) -> (f32, [f32; N]),
+    ) -> Option<[Self; N]> {
+        let mut of_places = [0.0f64; 6];
+        let mut of_values = [[0.0f64; 3]; N];
         for i in members {
-            let (w, v) = weight_and_value(i);
-            let (w, v, at) = (f64::from(w), f64::from(v), offset_of(i).as_dvec2());
-            let terms = [1.0, at.x, at.y, at.x * at.x, at.x * at.y, at.y * at.y, v, at.x * v, at.y * v];
-            sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += w * term);
+            let (weight, values) = weight_and_values(i);
+            let (w, at) = (f64::from(weight), offset_of(i).as_dvec2());
+            let terms = [1.0, at.x, at.y, at.x * at.x, at.x * at.y, at.y * at.y];
+            for (sum, term) in of_places.iter_mut().zip(&terms) {
+                *sum += w * term;
+            }
+            for (sums, value) in of_values.iter_mut().zip(&values) {
+                let v = f64::from(*value);
+                for (sum, term) in sums.iter_mut().zip(&[v, at.x * v, at.y * v]) {
+                    *sum += w * term;
+                }
+            }
         }
-        let [w, x, y, xx, xy, yy, v, xv, yv] = sums;
+        let [w, x, y, xx, xy, yy] = of_places;
         if w <= 1e-12 {
             return None;
         }
         // Centred, the two slopes come from a 2 × 2 system.
         let ridge = f64::from(ridge);
         let (a, b, c) = (xx - x * x / w + ridge, xy - x * y / w, yy - y * y / w + ridge);
-        let (p, q) = (xv - x * v / w, yv - y * v / w);
         let det = a * c - b * b;
-        let (sx, sy) = if det > 1e-18 { ((c * p - b * q) / det, (a * q - b * p) / det) } else { (0.0, 0.0) };
-        let here = (v - sx * x - sy * y) / w;
-        Some(Self { here: here as f32, slope: vec2(sx as f32, sy as f32) })
+        Some(of_values.map(|[v, xv, yv]| {
+            let (p, q) = (xv - x * v / w, yv - y * v / w);
+            let (sx, sy) = if det > 1e-18 { ((c * p - b * q) / det, (a * q - b * p) / det) } else { (0.0, 0.0) };
+            let here = (v - sx * x - sy * y) / w;
+            Self { here: here as f32, slope: vec2(sx as f32, sy as f32) }
+        }))
     }
 }
 

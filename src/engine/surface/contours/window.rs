@@ -9,6 +9,8 @@ use crate::surface::links;
 /// From the middle to the border of a window, and its side, px.
 pub const REACH: i32 = 3;
 pub const SIDE: i32 = 2 * REACH + 1;
+/// Its pixels.
+pub const PIXELS: usize = (SIDE * SIDE) as usize;
 /// The bit of the middle pixel. Bits count row by row.
 pub const CENTER: u32 = (SIDE * SIDE / 2) as u32;
 /// Every pixel of a window.
