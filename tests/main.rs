@@ -3,6 +3,7 @@
 
 mod circles;
 mod cli;
+mod commands;
 mod contours;
 mod conventions;
 mod depth;

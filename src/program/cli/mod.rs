@@ -51,6 +51,11 @@ enum CliCommand {
     View(view::ViewArgs),
 }
 
+/// The grammar of the command line, for those who check or describe it.
+pub fn command() -> clap::Command {
+    Arguments::command()
+}
+
 /// Runs the program on its arguments. Exit code 0; 1 with a sentence on standard error; 2 for wrong usage.
 ///
 /// `window` opens the window on these files, if the build has one.
