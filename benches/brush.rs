@@ -8,13 +8,14 @@
 //! quantising. The peer (benches/peers/libmypaint_dabs.c) is built with `cc` if libmypaint's headers are installed;
 //! otherwise a message says that it is skipped.
 
-use rilievo_engine::document::{
-    Content, Document, Layer, Live, PixelLayer, PreparedDocument, Progress, StrokeList, diff::diff,
-};
-use rilievo_engine::math::{Size, Vec2, hash, srgb::Color, vec2, vec3};
-use rilievo_engine::paint::{Brush, Sample, Stroke, stroke};
-use rilievo_engine::raster::{Plane, Tile, TileAt, TileGrid};
-use rilievo_engine::surface::{Maps, Operator, Scene, Surface};
+use rilievo::document::{Live, PixelLayer, PreparedDocument, StrokeList, diff};
+use rilievo::math::{Vec2, vec2, vec3};
+use rilievo::paint::{Brush, Sample, Stroke};
+use rilievo::raster::{Plane, Tile, TileAt};
+use rilievo::surface::Scene;
+use rilievo::{Color, Content, Document, Layer, Maps, Operator, Progress, Size, Surface, TileGrid};
+use rilievo_engine::math::hash;
+use rilievo_engine::paint::stroke;
 use rilievo_program::tools::{self, Outcome, PenSample, ToolContext, ToolKind};
 use std::process::Command;
 use std::sync::{Arc, LazyLock};

@@ -3,11 +3,13 @@
 //! from another day.
 
 use rayon::prelude::*;
-use rilievo_engine::document::{Content, Document, DocumentReducer, Layer, Live, Progress, flatten};
-use rilievo_engine::math::{Size, vec2, vec3};
-use rilievo_engine::paint::{Adjust, ImageFilter, PictureSource, PlacedImage, Placement};
-use rilievo_engine::raster::{Outside, Picture, Plane, Tile, TileAt};
-use rilievo_engine::surface::{Anchor, Bend, Maps, Operator, Scene, Surface};
+use rilievo::document::Live;
+use rilievo::math::{vec2, vec3};
+use rilievo::paint::{Adjust, ImageFilter, PictureSource, PlacedImage, Placement};
+use rilievo::raster::{Outside, Picture, Plane, Tile, TileAt};
+use rilievo::surface::Scene;
+use rilievo::{Anchor, Bend, Content, Document, Layer, Maps, Operator, Progress, Size, Surface, flatten};
+use rilievo_engine::document::DocumentReducer;
 use std::process::Command;
 use std::sync::{Arc, LazyLock};
 use std::time::Instant;

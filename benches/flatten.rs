@@ -5,14 +5,13 @@
 //! layer is 1 / (Gitem/s).
 
 use divan::{Bencher, counter::ItemsCount};
-use rilievo_engine::document::{
-    Content, DerivedMask, Document, Layer, LayerMask, Live, PixelLayer, PreparedDocument, Progress,
-};
-use rilievo_engine::math::{Size, Vec3, hash, srgb::Color, vec2, vec3};
-use rilievo_engine::paint::{Gradient, GradientStop, ImageFilter};
-use rilievo_engine::raster::{BlendMode, Plane, Tile, TileAt, TileGrid};
-use rilievo_engine::shading::{Model, Shading};
-use rilievo_engine::surface::{Maps, Operator, Surface};
+use rilievo::document::{DerivedMask, LayerMask, Live, PixelLayer, PreparedDocument};
+use rilievo::math::{Vec3, vec2, vec3};
+use rilievo::paint::{Gradient, GradientStop, ImageFilter};
+use rilievo::raster::{Plane, Tile, TileAt};
+use rilievo::shading::{Model, Shading};
+use rilievo::{BlendMode, Color, Content, Document, Layer, Maps, Operator, Progress, Size, Surface, TileGrid};
+use rilievo_engine::math::hash;
 use std::sync::{Arc, LazyLock};
 use tiny_skia::{Pixmap, PixmapPaint, Transform};
 
@@ -66,7 +65,7 @@ fn pool(threads: usize) -> rayon::ThreadPool {
 }
 fn flatten(bencher: Bencher, document: &Document, threads: usize) {
     let pool = pool(threads);
-    let flatten = || pool.install(|| rilievo_engine::document::flatten(document, &Progress::default()));
+    let flatten = || pool.install(|| rilievo::flatten(document, &Progress::default()));
     bencher.counter(pixels(document.layers.len())).bench_local(flatten);
 }
 
@@ -212,7 +211,7 @@ const BALLS: [f32; 3] = [2048.0, 128.0, 32.0];
 #[divan::bench(args = BALLS, sample_count = 5, sample_size = 1)]
 fn balls_first(bencher: Bencher, side: f32) {
     let surface = balls(side);
-    let flatten = |document: Document| rilievo_engine::document::flatten(&document, &Progress::default());
+    let flatten = |document: Document| rilievo::flatten(&document, &Progress::default());
     bencher.counter(ItemsCount::new(SCENE.area())).with_inputs(|| painted(&surface)).bench_local_values(flatten);
 }
 
@@ -220,8 +219,8 @@ fn balls_first(bencher: Bencher, side: f32) {
 #[divan::bench(args = BALLS, sample_count = 7, sample_size = 1)]
 fn balls_again(bencher: Bencher, side: f32) {
     let document = painted(&balls(side));
-    rilievo_engine::document::flatten(&document, &Progress::default());
-    let flatten = || rilievo_engine::document::flatten(&document, &Progress::default());
+    rilievo::flatten(&document, &Progress::default());
+    let flatten = || rilievo::flatten(&document, &Progress::default());
     bencher.counter(ItemsCount::new(SCENE.area())).bench_local(flatten);
 }
 

@@ -5,17 +5,17 @@
 
 mod timing;
 
-use rilievo_engine::document::{
-    Content, Document, DocumentReducer, Layer, LayerTransform, Live, Mesh, MeshFrame, PixelLayer, Progress,
-    TransformShape, flatten,
+use rilievo::document::{LayerTransform, Live, Mesh, MeshFrame, PixelLayer, TransformShape};
+use rilievo::math::{PlaneMap, Vec2, vec2, vec3};
+use rilievo::paint::{Adjust, Brush, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement};
+use rilievo::raster::{Outside, Picture, Plane, Resampling, Tile, TileAt};
+use rilievo::surface::Scene;
+use rilievo::{
+    Anchor, Bend, Color, Content, Document, Layer, Maps, Operator, Progress, Size, Surface, TileGrid, flatten,
 };
-use rilievo_engine::math::srgb::Color;
-use rilievo_engine::math::{PlaneMap, Size, Vec2, hash, vec2, vec3};
-use rilievo_engine::paint::{
-    Adjust, Brush, Gradient, GradientStop, ImageFilter, LiquifySettings, PictureSource, PlacedImage, Placement,
-};
-use rilievo_engine::raster::{Outside, Picture, Plane, Resampling, Tile, TileAt, TileGrid};
-use rilievo_engine::surface::{Anchor, Bend, Maps, Operator, Scene, Surface};
+use rilievo_engine::document::DocumentReducer;
+use rilievo_engine::math::hash;
+use rilievo_engine::paint::LiquifySettings;
 use rilievo_program::tools::{PenSample, ToolContext, ToolKind};
 use std::sync::Arc;
 use std::time::Instant;

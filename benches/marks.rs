@@ -3,17 +3,15 @@
 
 mod timing;
 
-use rilievo_engine::document::{
-    Content, Document, Layer, Live, PixelLayer, PreparedDocument, Progress, StrokeList, flatten,
+use rilievo::document::{Live, PixelLayer, PreparedDocument, StrokeList};
+use rilievo::math::{Vec2, vec2, vec3};
+use rilievo::paint::{
+    Adjust, Bristles, Brush, BrushGrain, BrushMode, Fill, Noise, Pickup, PictureSource, Sample, Stroke, Tip,
 };
-use rilievo_engine::math::srgb::Color;
-use rilievo_engine::math::{Size, Vec2, hash, vec2, vec3};
-use rilievo_engine::paint::grain::BrushGrain;
-use rilievo_engine::paint::tip::{Bristles, Noise};
-use rilievo_engine::paint::{Adjust, Brush, BrushMode, Fill, Pickup, PictureSource, Sample, Stroke, Tip};
-use rilievo_engine::raster::{Picture, Plane, Tile, TileAt, TileGrid};
-use rilievo_engine::surface::objects::CanvasPart;
-use rilievo_engine::surface::{Maps, Operator, Scene, Surface};
+use rilievo::raster::{Picture, Plane, Tile, TileAt};
+use rilievo::surface::{CanvasPart, Scene};
+use rilievo::{Color, Content, Document, Layer, Maps, Operator, Progress, Size, Surface, TileGrid, flatten};
+use rilievo_engine::math::hash;
 use rilievo_program::session::actions::{Action, LayerAction, NewLayer};
 use rilievo_program::session::{OpenDocument, Session};
 use rilievo_program::tools::{ToolContext, ToolKind};

@@ -5,11 +5,11 @@
 //! The layer is rendered beforehand, as in the window, where it was painted. `cargo bench --bench pen`.
 
 use divan::Bencher;
-use rilievo_engine::document::{Content, Document, Layer, Live, Progress, StrokeList, flatten};
-use rilievo_engine::math::{Size, hash, srgb::Color, vec2};
-use rilievo_engine::paint::{Brush, Sample, Stroke};
-use rilievo_engine::surface::Operator;
-use rilievo_io::{Budget, Overwrite, open, save};
+use rilievo::document::{Live, StrokeList};
+use rilievo::math::vec2;
+use rilievo::paint::{Brush, Sample, Stroke};
+use rilievo::{Budget, Color, Content, Document, Layer, Operator, Overwrite, Progress, Size, flatten, open, save};
+use rilievo_engine::math::hash;
 use std::sync::{Arc, LazyLock};
 
 const RATE: usize = 240;

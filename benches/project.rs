@@ -6,10 +6,10 @@
 
 use divan::Bencher;
 use divan::counter::BytesCount;
-use rilievo_engine::document::{Content, Document, Layer, PixelLayer, Progress};
-use rilievo_engine::math::{Size, hash};
-use rilievo_engine::raster::TileGrid;
-use rilievo_io::{Budget, project};
+use rilievo::document::PixelLayer;
+use rilievo::{Budget, Content, Document, Layer, Progress, Size, TileGrid};
+use rilievo_engine::math::hash;
+use rilievo_io::project;
 use rilievo_program::session::{Autosave, OpenDocument, Session};
 use std::io::{Cursor, Read};
 use std::path::Path;
@@ -162,7 +162,7 @@ fn brush_while_saving(bencher: Bencher) {
         scope.spawn(|| {
             while !over.load(Ordering::Relaxed) {
                 let file = folder.path().join("a.ora");
-                let saved = rilievo_io::save(&document(), &file, rilievo_io::Overwrite::Anything, &Progress::default());
+                let saved = rilievo::save(&document(), &file, rilievo::Overwrite::Anything, &Progress::default());
                 saved.expect("a saved project");
             }
         });

@@ -6,13 +6,14 @@
 //! of one without a selection.
 
 use divan::Bencher;
-use rilievo_engine::math::{Rect, Size, Vec2, hash, srgb::Color, vec2, vec3};
-use rilievo_engine::paint::{ActiveStrokes, Backdrop, Brush, Fill, Sample, Scene, Selection, Stroke, StrokeSelection};
+use rilievo::math::{Rect, Vec2, vec2, vec3};
+use rilievo::paint::{ActiveStrokes, Backdrop, Brush, Fill, Sample, Selection, Stroke, StrokeSelection};
+use rilievo::raster::{CoverageGrid, Plane, TileAt};
+use rilievo::surface::{CanvasPart, RegionKind, Scene, SurfaceRegion};
+use rilievo::{Color, Maps, Operator, Size, Surface, TileGrid};
+use rilievo_engine::math::hash;
 use rilievo_engine::raster::coverage::{contour, edges, shapes};
-use rilievo_engine::raster::{CoverageGrid, Plane, TileAt, TileGrid};
-use rilievo_engine::surface::objects::CanvasPart;
-use rilievo_engine::surface::region::{RegionField, RegionKind, SurfaceRegion};
-use rilievo_engine::surface::{Maps, Operator, Surface};
+use rilievo_engine::surface::region::RegionField;
 use std::sync::{Arc, LazyLock};
 
 const LARGE: Size = Size::new(4096, 4096);

@@ -4,13 +4,14 @@
 
 use divan::{Bencher, counter::ItemsCount};
 use rayon::prelude::*;
-use rilievo_engine::document::{Content, Document, Layer, LayerId, Live, PreparedDocument, Progress, diff};
-use rilievo_engine::math::{Size, Vec3, vec3};
-use rilievo_engine::raster::{Picture, PlanarTile, Plane, TileAt, TileGrid, planar::PixelRow};
-use rilievo_engine::shading::{
-    Environment, Light, LightKind, Model, RadianceScaling, Reference, Scaling, Shading, radiance::BackdropStats,
-};
-use rilievo_engine::surface::{Maps, Scene, Surface};
+use rilievo::document::{LayerId, Live, PreparedDocument, diff};
+use rilievo::math::{Vec3, vec3};
+use rilievo::raster::{Picture, PlanarTile, Plane, TileAt};
+use rilievo::shading::{Environment, Light, LightKind, Model, RadianceScaling, Reference, Scaling, Shading};
+use rilievo::surface::Scene;
+use rilievo::{Content, Document, Layer, Maps, Progress, Size, Surface, TileGrid};
+use rilievo_engine::raster::planar::PixelRow;
+use rilievo_engine::shading::radiance::BackdropStats;
 use std::sync::Arc;
 
 fn main() {
@@ -39,7 +40,7 @@ fn composite(scene: &Scene) -> Vec<(TileAt, PlanarTile)> {
     let tone = |x: usize, y: usize, c: usize| ((x * (3 + c) + y * 5) % 256) as f32 / 255.0;
     let row = |y: usize| PixelRow {
         rgb: std::array::from_fn(|c| std::array::from_fn(|x| tone(x, y, c))),
-        a: [1.0; rilievo_engine::raster::TILE],
+        a: [1.0; rilievo::raster::TILE],
     };
     let mut tile = PlanarTile::transparent();
     tile.rows_mut().iter_mut().enumerate().for_each(|(y, r)| *r = row(y));
@@ -250,8 +251,7 @@ const DRAGS: [&str; 4] = ["gamma of the layer", "gamma of the layer, mean kept",
 fn drag_on_1024_by_768(bencher: Bencher, what: &str) {
     let pool = pool(2);
     let mut document = lit_document(what);
-    let mut shown =
-        pool.install(|| rilievo_engine::document::flatten(&document, &Progress::default())).expect("not cancelled");
+    let mut shown = pool.install(|| rilievo::flatten(&document, &Progress::default())).expect("not cancelled");
     let mut step = 0;
     bencher.counter(area((SMALL, 2))).bench_local(|| {
         step += 1;

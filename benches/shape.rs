@@ -5,12 +5,13 @@
 //! painting: in full, as when the pen rests, and in the coarse pixels shown during a drag.
 
 use divan::{Bencher, black_box};
-use rilievo_engine::document::parts::{Inflation, OutlineSource, Part, PartKind};
-use rilievo_engine::document::{Document, DocumentReducer};
-use rilievo_engine::math::{Size, Vec2, vec2, vec3};
-use rilievo_engine::raster::Plane;
-use rilievo_engine::shape::{Combine, Form, Outline, OutlineRim, Relief, Roundness, inflate::inflate, tube};
-use rilievo_engine::shape::{SculptStroke, SculptTool, Touch};
+use rilievo::math::{Vec2, vec2, vec3};
+use rilievo::raster::Plane;
+use rilievo::shape::{Combine, Inflation, OutlineSource, Part, PartKind, SculptStroke, SculptTool, Touch};
+use rilievo::{Document, Size};
+use rilievo_engine::document::DocumentReducer;
+use rilievo_engine::shape::inflate::inflate;
+use rilievo_engine::shape::{Form, Outline, OutlineRim, Relief, Roundness, tube};
 
 fn main() {
     divan::main();

@@ -5,12 +5,13 @@
 //! `cargo bench --bench surface`. Figures are per map; divide by 8.29 million for ns per pixel. `threads = 0` is all.
 
 use divan::{Bencher, black_box, counter::ItemsCount};
-use rilievo_engine::math::{Size, vec2, vec3};
-use rilievo_engine::raster::Plane;
+use rilievo::math::{vec2, vec3};
+use rilievo::raster::Plane;
+use rilievo::surface::Deformation;
+use rilievo::{Anchor, Bend, Maps, Operator, Size, Surface};
 use rilievo_engine::surface::deformation::DeformedRect;
 use rilievo_engine::surface::operator::UnwrapSettings;
 use rilievo_engine::surface::unwrap::Unwrapping;
-use rilievo_engine::surface::{Anchor, Bend, Deformation, Maps, Operator, Surface};
 
 fn main() {
     divan::main();

@@ -19,9 +19,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 #[cfg(all(unix, not(target_os = "macos")))]
 mod x11 {
     use image::RgbImage;
-    use rilievo_engine::document::{Content, Document, Layer, PixelLayer, Progress};
-    use rilievo_engine::math::{Size, hash};
-    use rilievo_engine::raster::TileGrid;
+    use rilievo::document::PixelLayer;
+    use rilievo::{Content, Document, Layer, Progress, Size, TileGrid};
+    use rilievo_engine::math::hash;
     use rilievo_io::project;
     use std::path::{Path, PathBuf};
     use std::process::{Child, Command, Stdio};

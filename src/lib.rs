@@ -1,64 +1,201 @@
 //! Rilievo as a library: paint over normal and depth maps without the window.
 //!
 //! A [`Document`] is a canvas, the [`Surface`] that is painted on, and layers. It is read from a recipe or a project
-//! file, or built in code; [`flatten()`] makes the picture. Values are cheap to clone and never change while shared.
+//! file, or built in code; [`render`] makes the picture. Values are cheap to clone and never change while shared.
 //!
-//! Render a recipe to a PNG:
+//! Make a surface from a normal map in memory, bend a gradient over it, and keep the picture:
 //!
 //! ```
-//! use rilievo::export::{ExportOptions, OutputFile};
-//! use rilievo::{Budget, Overwrite, Progress, Terms, flatten, open};
+//! use rilievo::math::vec2;
+//! use rilievo::paint::Gradient;
+//! use rilievo::raster::Plane;
+//! use rilievo::{Color, Document, Layer, Maps, Operator, Overwrite, Size, Surface, write_picture};
 //!
-//! # fn main() -> rilievo::Result<()> {
-//! # let folder = tempfile::tempdir().unwrap();
-//! # let recipe = folder.path().join("painting.json");
-//! # let text = r##"{ "format": "rilievo", "version": 1, "canvas": { "width": 64, "height": 64 },
-//! #     "layers": [{ "kind": "fill", "color": "#20242c" }] }"##;
-//! # std::fs::write(&recipe, text).unwrap();
-//! # let picture = folder.path().join("painting.png");
-//! let opened = open(&recipe, &Budget::default())?;
-//! for note in &opened.notes {
-//!     eprintln!("{note}");
-//! }
-//! let pixels = flatten(&opened.document, &Progress::default()).unwrap_or_default();
-//! let output = OutputFile::new(&picture, Terms::export(Overwrite::Nothing, vec![recipe]))?;
-//! output.write(&pixels, opened.document.size, &ExportOptions::default())?;
-//! # assert!(picture.exists());
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # let folder = tempfile::tempdir()?;
+//! # let file = folder.path().join("ball.png");
+//! // Camera space: x to the right, y up, z to the viewer. A zero normal is background.
+//! let normals = Plane::from_fn(Size::new(128, 128), |x, y| {
+//!     let p = (vec2(x as f32, y as f32) - 63.5) / 60.0;
+//!     if p.length() < 1.0 { vec2(p.x, -p.y).extend((1.0 - p.length_squared()).sqrt()) } else { Default::default() }
+//! });
+//! let surface = Surface::new(Maps::from_normals(normals))?;
+//! let ramp = Gradient::new(vec2(40.0, 30.0), vec2(90.0, 100.0), &[Color::WHITE, Color::rgb(40, 60, 120)])
+//!     .with_operator(Operator::Normal { alpha: 0.3, beta: 1.0, detail: 0.0 });
+//! let document = Document::over(surface).with_top(Layer::new("Ramp", ramp));
+//! write_picture(&document, &file, Overwrite::Nothing)?;
+//! # assert!(file.exists());
 //! # Ok(())
 //! # }
 //! ```
 //!
-//! Build a document in code and save it as a project that the program opens:
+//! Open what the program made, or a recipe, and render it in memory:
 //!
 //! ```
-//! use rilievo::{BlendMode, Color, Content, Document, Layer, Overwrite, Progress, Size, save};
+//! use rilievo::{Budget, open, render};
+//!
+//! # fn main() -> rilievo::Result<()> {
+//! # let folder = tempfile::tempdir().unwrap();
+//! # let file = folder.path().join("painting.json");
+//! # let text = r##"{ "format": "rilievo", "version": 1, "canvas": { "width": 64, "height": 64 },
+//! #     "layers": [{ "kind": "fill", "color": "#20242c" }] }"##;
+//! # std::fs::write(&file, text).unwrap();
+//! let opened = open(&file, &Budget::default())?;
+//! for note in &opened.notes {
+//!     eprintln!("{note}");
+//! }
+//! let pixels = render(&opened.document);
+//! assert_eq!(pixels.pixel(10, 10), [0x20, 0x24, 0x2c, 255]);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! Save a document as a project that the program opens:
+//!
+//! ```
+//! use rilievo::{BlendMode, Color, Document, Layer, Overwrite, Progress, Size, save};
 //!
 //! # fn main() -> rilievo::Result<()> {
 //! # let folder = tempfile::tempdir().unwrap();
 //! # let project = folder.path().join("two-fills.ora");
-//! let mut document = Document::empty(Size::new(320, 200));
-//! let fill = |r, g, b| Content::Fill(Color { r, g, b, a: 255 });
-//! document.layers.push(Layer::new("Ground", fill(32, 36, 44)).into());
-//! let glow = Layer { blend: BlendMode::Screen, opacity: 0.5, ..Layer::new("Glow", fill(192, 128, 64)) };
-//! document.layers.push(glow.into());
+//! let glow = Layer { blend: BlendMode::Screen, opacity: 0.5, ..Layer::new("Glow", Color::rgb(192, 128, 64)) };
+//! let document = Document::empty(Size::new(320, 200))
+//!     .with_top(Layer::new("Ground", Color::rgb(32, 36, 44)))
+//!     .with_top(glow);
 //! save(&document, &project, Overwrite::Nothing, &Progress::default())?;
 //! # assert!(project.exists());
 //! # Ok(())
 //! # }
 //! ```
 //!
+//! The repository's `examples` folder has a page each on rendering, gradients, strokes, and shapes made from drawings.
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`surface`] | normal and depth maps, the operators that bend marks over them, anchors |
+//! | [`paint`] | brushes and strokes, gradients, placed images, fills, selections |
+//! | [`shading`] | materials, lights, environments, radiance scaling |
+//! | [`shape`] | shapes for drawings that have no maps: parts, and what they are made of |
+//! | [`document`] | documents and layers, and rendering them |
+//! | [`raster`] | pixels: tiles, planes, pictures, blend modes |
+//! | [`math`] | vectors, sizes, rectangles, colours |
+//! | [`files`] | recipes, projects, pictures and maps on the disk, and the limits that readers respect |
+//!
+//! Coordinates are canvas pixels, x to the right and y down; the middle of the first pixel is (0.5, 0.5). Normals are
+//! in camera space, y up. Colours are sRGB, and pixels of a picture are premultiplied. Angles are in degrees,
+//! counter-clockwise as seen, where a name does not say otherwise.
+//!
 //! Anything not named here is not part of the library: the crates `rilievo-engine`, `rilievo-io`, `rilievo-program` and
 //! `rilievo-window` may change with every release.
 
 #![warn(missing_docs)]
 
-pub use rilievo_engine::document::{
-    Content, Document, Group, Layer, LayerId, LayerLock, LayerSlot, PixelLayer, Progress, flatten, flatten_layer,
-};
-pub use rilievo_engine::math::{Size, srgb::Color};
-pub use rilievo_engine::raster::{BlendMode, TILE, Tile, TileGrid};
-pub use rilievo_engine::surface::Surface;
+/// Normal and depth maps, the operators that bend marks over them, and the anchors that pin marks.
+pub mod surface {
+    #[doc(inline)]
+    pub use rilievo_engine::surface::{
+        Anchor, Bend, Curvature, Deformation, DetailMap, FlowField, Maps, NoiseRelief, Objects, Operator, PaintLimit,
+        Scene, StructureTensor, Surface, SurfaceError, Weights,
+        objects::CanvasPart,
+        plane_piece::PlanePiece,
+        region::{RegionKind, SurfaceRegion},
+    };
+}
+
+/// Marks: brushes and their strokes, gradients, placed images, fills and selections.
+pub mod paint {
+    #[doc(inline)]
+    pub use rilievo_engine::paint::{
+        ActiveRetouching, ActiveStrokes, Adjust, Backdrop, Brush, BrushMode, ColorJitter, Curve, Cycle, DabInputs,
+        Drive, Dynamics, Falloff, Fill, Gradient, GradientStop, Hand, HomeFrame, ImageFilter, Input, Measure, Offset,
+        Pickup, PictureSource, PlacedImage, Placement, Property, Rate, Sample, Selection, Spread, StabilizedPen,
+        Stabilizer, Stroke, StrokeFrame, StrokeHome, StrokeSelection, Tip,
+        grain::{BrushGrain, GrainSource, GrainSpace},
+        tip::{Bristles, Hose, Noise},
+    };
+}
+
+/// Light: materials, lights, environments, and radiance scaling.
+pub mod shading {
+    #[doc(inline)]
+    pub use rilievo_engine::shading::{
+        Environment, FeatureScale, Features, Light, LightKind, LitSphere, Model, Projection, RadianceScaling,
+        Reference, Scaling, Shading, Term,
+    };
+}
+
+/// Shapes for drawings that have no maps: parts of a document, and what they are made of.
+pub mod shape {
+    #[doc(inline)]
+    pub use rilievo_engine::document::parts::{
+        CoverageFile, FlatColor, Inflation, OutlineSource, Part, PartKind, PartMaps, Parts, ProfilePicture,
+        drawing::{FigureBackground, without_background},
+        flats::{FlatParts, PartFor, parts_of_flats},
+    };
+    #[doc(inline)]
+    pub use rilievo_engine::shape::{
+        Ball, Bevel, BevelCurve, Body, Combine, Detail, LineForm, Lines, Primitive, SculptStroke, SculptTool, Touch,
+    };
+}
+
+/// Documents: layers and what they hold, and rendering them.
+pub mod document {
+    #[doc(inline)]
+    pub use rilievo_engine::document::{
+        Content, DerivedMask, DetailSource, Document, Group, Highlights, History, Layer, LayerId, LayerLabel,
+        LayerLock, LayerMask, LayerSlot, LayerTransform, Live, MaskKind, Mesh, MeshFrame, NamedSelection, NormalLayer,
+        PixelLayer, PreparedDocument, Progress, StrokeList, TransformShape, diff, flatten, flatten_deep, flatten_layer,
+        flatten_layers,
+    };
+}
+
+/// Pixels: tiles of a layer, planes of a map, pictures of a file, and how colours are blended.
+pub mod raster {
+    #[doc(inline)]
+    pub use rilievo_engine::raster::{
+        Asset, BlendMode, CoverageGrid, Lattice, Outside, Picture, PlanarTile, Plane, Resampling, SelectionMode, TILE,
+        Tile, TileAt, TileGrid, picture::Texels,
+    };
+}
+
+/// Numbers: vectors, sizes, rectangles, maps of the plane and colours.
+pub mod math {
+    #[doc(inline)]
+    pub use rilievo_engine::math::{
+        Affine2, Mat2, Mat3, PlaneMap, Range, Rect, Size, Vec2, Vec3, srgb::Color, vec2, vec3,
+    };
+}
+
+/// Files: recipes, projects, pictures and maps, and the limits that their readers respect.
+pub mod files {
+    #[doc(inline)]
+    pub use rilievo_engine::document::source::{
+        DepthConvention, DepthEncoding, MapSource, MaskSource, Near, NormalConvention, NormalEncoding, NormalSpace,
+        SurfaceSource,
+    };
+    #[doc(inline)]
+    pub use rilievo_io::{
+        Budget, Files, OpenedDocument, Overwrite, RecipeFolder, SavedDocument, Terms, export, maps, open, picture,
+        recipe, save,
+    };
+}
+
+#[doc(no_inline)]
+pub use crate::document::{Content, Document, Group, Layer, Progress, flatten, flatten_layer};
+#[doc(no_inline)]
+pub use crate::files::{Budget, Overwrite, export::write_picture, open, save};
+#[doc(no_inline)]
+pub use crate::math::{Color, Size};
+#[doc(no_inline)]
+pub use crate::raster::{BlendMode, TileGrid};
+#[doc(no_inline)]
+pub use crate::surface::{Anchor, Bend, Maps, Operator, Surface};
 pub use rilievo_engine::{Error, Remedy, Result};
-pub use rilievo_io::{
-    Budget, Files, OpenedDocument, Overwrite, RecipeFolder, SavedDocument, Terms, export, open, recipe, save,
-};
+
+/// The whole picture of a document: premultiplied sRGB in tiles, the pixels of the canvas and no others.
+///
+/// It uses all cores. Work that is watched or cancelled calls [`flatten()`] with a [`Progress`] of its own.
+pub fn render(document: &Document) -> TileGrid {
+    // None only where the work was cancelled, and nobody can.
+    flatten(document, &Progress::default()).unwrap_or_default()
+}

@@ -5,10 +5,11 @@
 #[path = "../src/engine/surface/contours/tests/spheres.rs"]
 mod spheres;
 
-use rilievo::{Budget, Color, Content, Document, Layer, Progress, RecipeFolder, Size, Surface, flatten, recipe};
-use rilievo_engine::math::{Vec3, srgb};
-use rilievo_engine::raster::Plane;
-use rilievo_engine::surface::Maps;
+use rilievo::files::{RecipeFolder, recipe};
+use rilievo::math::Vec3;
+use rilievo::raster::Plane;
+use rilievo::{Budget, Color, Content, Document, Layer, Maps, Progress, Size, Surface, flatten};
+use rilievo_engine::math::srgb;
 use serde_json::{Value, json};
 use spheres::seen;
 use std::path::Path;

@@ -1,9 +1,9 @@
 //! One surface, a ball with a bump, stored in every convention: it must come back as the same normals and depth.
 
 use super::maps::{Ball, Memory, SIDE, encode, exr_bytes, png};
-use rilievo_engine::document::source::*;
-use rilievo_io::Budget;
-use rilievo_io::maps::{ImportedSurface, import};
+use rilievo::Budget;
+use rilievo::files::maps::{ImportedSurface, import};
+use rilievo::files::{DepthConvention, DepthEncoding, MapSource, MaskSource, NormalConvention, SurfaceSource};
 
 /// Which files take part besides the one under test.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -250,7 +250,8 @@ fn depth_in_pictures_of_any_depth_and_polarity_is_read() {
             Memory::new([("n.png", ball.normal_png()), ("d.png", png(bits, value)), ("m.png", ball.mask_png())]);
         let import = import(&source(map("n.png"), map("d.png"), true), &files, &Budget::default()).unwrap();
         assert!(errors(&import).1 < granted, "{bits} bits, white near {white_is_near}: {:?}", import.findings);
-        let alone = rilievo_io::maps::import(&source(None, map("d.png"), true), &files, &Budget::default()).unwrap();
+        let alone =
+            rilievo::files::maps::import(&source(None, map("d.png"), true), &files, &Budget::default()).unwrap();
         assert!(errors(&alone).1 < granted && errors(&alone).0 < 12.0, "alone: {:?}", errors(&alone));
     }
 }

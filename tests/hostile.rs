@@ -1,9 +1,9 @@
 //! Damaged and lying files: no panic, no allocation beyond what the budget allows.
 
 use super::watch;
-use rilievo_engine::document::source::{MapSource, SurfaceSource};
-use rilievo_engine::{Error, Result};
-use rilievo_io::{Budget, Files, inspect, maps, picture};
+use rilievo::files::{Files, MapSource, SurfaceSource, maps, picture};
+use rilievo::{Budget, Error, Result};
+use rilievo_io::inspect;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
@@ -40,7 +40,7 @@ fn read_all(name: &str, bytes: &[u8], budget: &Budget) -> Vec<Error> {
         match maps::import(&source, &files, budget) {
             Ok(import) => {
                 let s = import.surface;
-                let finite = |p: &rilievo_engine::raster::Plane<f32>| p.values().iter().all(|v| v.is_finite());
+                let finite = |p: &rilievo::raster::Plane<f32>| p.values().iter().all(|v| v.is_finite());
                 assert!(finite(s.depth_plane()) && s.normal_planes().iter().all(|p| finite(p)), "{name}");
             }
             Err(e) => errors.push(e),

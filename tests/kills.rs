@@ -1,10 +1,11 @@
 //! The real program, killed while it saves: the file is the old one or the new one, and opens. Killed while it paints:
 //! no finished stroke is lost.
 
-use rilievo_engine::document::{Document, Progress, flatten};
+use rilievo::files::recipe;
+use rilievo::{Budget, Document, Progress, flatten};
 use rilievo_engine::math::hash::mix;
 use rilievo_io::fs::{Disk, Fs};
-use rilievo_io::{Budget, recipe, recovery};
+use rilievo_io::recovery;
 use rilievo_program::session::{Session, is_same};
 use std::fmt::Write;
 use std::io::{BufRead, BufReader};
@@ -43,7 +44,7 @@ fn check(folder: &Path, target: &str, may_be: &[&str], what: &str) {
     };
     let is = |name: &&&str| std::fs::read(folder.join(name)).is_ok_and(|known| known == bytes);
     assert!(may_be.iter().filter(is).count() > 0, "{what}: {} bytes that are neither", bytes.len());
-    let opened = rilievo_io::open(&folder.join(target), &Budget::default()).unwrap_or_else(|e| panic!("{what}: {e}"));
+    let opened = rilievo::open(&folder.join(target), &Budget::default()).unwrap_or_else(|e| panic!("{what}: {e}"));
     assert!(opened.is_whole && opened.notes.is_empty(), "{what}: {:?}", opened.notes);
 }
 /// Runs a conversion of the new recipe in which the `n`th call of each of these kinds is killed (`signal=KILL`) or

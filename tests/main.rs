@@ -9,6 +9,7 @@ mod conventions;
 mod depth;
 mod documents;
 mod equations;
+mod examples;
 mod floors;
 mod gallery;
 mod goldens;

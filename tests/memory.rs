@@ -2,14 +2,15 @@
 //! more than what is made of them needs; beyond what there is they get a sentence with both figures.
 
 use super::watch;
-use rilievo_engine::document::source::{MapSource, SurfaceSource};
-use rilievo_engine::document::{Content, Document, Layer, Live, Progress, StrokeList, flatten};
-use rilievo_engine::math::{Size, hash, srgb::Color, vec2};
+use rilievo::document::{Live, StrokeList};
+use rilievo::files::export::{self, ExportFormat, ExportOptions};
+use rilievo::files::{MapSource, SurfaceSource, maps, picture};
+use rilievo::math::vec2;
+use rilievo::paint::{Brush, Sample, Stroke};
+use rilievo::{Budget, Color, Content, Document, Layer, Operator, Progress, Size, flatten, open};
+use rilievo_engine::math::hash;
 use rilievo_engine::memory::set_kept_ceiling;
-use rilievo_engine::paint::{Brush, Sample, Stroke};
-use rilievo_engine::surface::Operator;
-use rilievo_io::export::{self, ExportFormat, ExportOptions};
-use rilievo_io::{Budget, UserFiles, exr, maps, open, picture, psd};
+use rilievo_io::{UserFiles, exr, psd};
 use std::io::{Cursor, Read, Write};
 use std::path::Path;
 use std::sync::Arc;

@@ -148,7 +148,7 @@ fn every_seed_is_read_as_it_is() {
     }
 }
 /// A recipe alone names files that are not there.
-fn needs_files(name: &str, error: rilievo_engine::Error) -> rilievo_engine::Result<()> {
+fn needs_files(name: &str, error: rilievo::Error) -> rilievo::Result<()> {
     if name.ends_with(".json") && error.to_string().contains(".png") { Ok(()) } else { Err(error) }
 }
 #[test]

@@ -3,14 +3,14 @@
 mod mutations;
 mod refusals;
 
-use rilievo_engine::document::{Content, DerivedMask, Document, MaskKind};
-use rilievo_engine::math::{Size, srgb::Color, vec2};
-use rilievo_engine::paint::{ImageFilter, Tip};
-use rilievo_engine::raster::{BlendMode, Outside};
-use rilievo_engine::surface::{Anchor, Operator, Weights};
-use rilievo_engine::{Error, Result};
-use rilievo_io::recipe::{self, RecipeSource};
-use rilievo_io::{Budget, Files};
+use rilievo::document::{DerivedMask, MaskKind};
+use rilievo::files::Files;
+use rilievo::files::recipe::{self, RecipeSource};
+use rilievo::math::vec2;
+use rilievo::paint::{ImageFilter, Tip};
+use rilievo::raster::Outside;
+use rilievo::surface::Weights;
+use rilievo::{Anchor, BlendMode, Budget, Color, Content, Document, Error, Operator, Result, Size};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -61,7 +61,7 @@ fn with_layers(layers: Value) -> Value {
     json!({ "canvas": { "width": 32, "height": 16 }, "layers": layers })
 }
 
-fn only_layer(layer: Value) -> rilievo_engine::document::Layer {
+fn only_layer(layer: Value) -> rilievo::Layer {
     let document = read(&with_layers(json!([layer]))).unwrap_or_else(|e| panic!("{e}"));
     (*document.layers[0]).clone()
 }
@@ -136,7 +136,7 @@ fn strokes_read_their_samples_brush_and_preset() {
     assert_eq!(strokes[1].brush().size, 33.0);
     assert!(matches!(strokes[1].operator(), Operator::Normal { .. }), "the preset's own operator");
     assert!(matches!(strokes[2].brush().tip, Tip::Picture(_)));
-    assert_eq!(strokes[2].brush().dynamics.pressure_share(rilievo_engine::paint::Property::Size), 1.0);
+    assert_eq!(strokes[2].brush().dynamics.pressure_share(rilievo::paint::Property::Size), 1.0);
     assert_eq!(strokes[2].operator(), Operator::Depth { gamma: 1.0 });
 }
 

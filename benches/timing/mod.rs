@@ -1,9 +1,10 @@
 //! Shared by several benches: timing the frames of a gesture, and printing rows of a table.
 
-use rilievo_engine::document::{Document, PreparedDocument, Progress, diff};
-use rilievo_engine::math::{Vec2, vec2};
-use rilievo_engine::paint::Sample;
-use rilievo_engine::raster::{TileAt, TileGrid};
+use rilievo::document::{PreparedDocument, diff};
+use rilievo::math::{Vec2, vec2};
+use rilievo::paint::Sample;
+use rilievo::raster::TileAt;
+use rilievo::{Document, Progress, TileGrid};
 use rilievo_program::tools::{self, Outcome, PenSample, ToolContext, ToolKind};
 use std::time::Instant;
 

@@ -10,7 +10,7 @@ use crate::fs::Disk;
 use crate::math::{Rect, Size, srgb, srgb::Color};
 use crate::pixels::strips;
 use crate::raster::TileGrid;
-use crate::replace::{Terms, check, replace};
+use crate::replace::{Overwrite, Terms, check, replace};
 use crate::{Budget, Error, Remedy, Result};
 use std::io::{Cursor, Write};
 use std::path::{Path, PathBuf};
@@ -148,6 +148,15 @@ impl OutputFile {
         // It can be cancelled only during painting: writing is short.
         replace(&Disk, &self.named, bytes, &self.terms, &Progress::default()).map(drop)
     }
+}
+
+/// Renders a document to a picture file, in the format that its name ends in: `.png`, `.exr`, `.jpg`, `.webp`, `.tif`.
+///
+/// The file is written wholly or not at all. Fails if the name requests no format that can be written, if `over` does
+/// not allow to replace what is there, or if the disk refuses.
+pub fn write_picture(document: &Document, file: &Path, over: Overwrite) -> Result<()> {
+    let output = OutputFile::new(file, Terms::export(over, Vec::new()))?;
+    output.write_document(document, &ExportOptions::default(), &Budget::of_this_machine(), &Progress::default())
 }
 
 /// The bytes of a picture file; `file` is for messages.

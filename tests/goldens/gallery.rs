@@ -3,9 +3,8 @@
 
 use super::compare;
 use image::{Rgb, RgbImage};
-use rilievo_engine::document::{Document, Progress, flatten, flatten_layer};
-use rilievo_engine::raster::TileGrid;
-use rilievo_io::{Budget, recipe};
+use rilievo::files::recipe;
+use rilievo::{Budget, Document, Progress, TileGrid, flatten, flatten_layer};
 use std::path::{Path, PathBuf};
 
 /// Both pictures are averaged over squares of so many pixels.

@@ -2,8 +2,8 @@
 
 use super::surfaces::SIZE;
 use image::{Rgba, RgbaImage};
-use rilievo_engine::{Error, Result};
-use rilievo_io::{Budget, Files};
+use rilievo::files::Files;
+use rilievo::{Budget, Error, Result};
 use std::collections::HashMap;
 use std::io::Cursor;
 use std::path::PathBuf;

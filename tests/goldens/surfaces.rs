@@ -1,8 +1,8 @@
 //! Shapes for the reference pictures. Sums, products, quotients and roots only, which IEEE 754 rounds alike everywhere.
 
-use rilievo_engine::math::{Size, Vec3, vec3};
-use rilievo_engine::raster::Plane;
-use rilievo_engine::surface::{Maps, Surface};
+use rilievo::math::{Vec3, vec3};
+use rilievo::raster::Plane;
+use rilievo::{Maps, Size, Surface};
 use std::sync::Arc;
 
 /// Beyond one tile each way, so that borders of tiles are seen.

@@ -2,8 +2,8 @@
 #![allow(dead_code, reason = "each test program uses its own part")]
 
 use glam::{Vec3, vec3};
-use rilievo_engine::{Error, Result};
-use rilievo_io::{Budget, Files};
+use rilievo::files::Files;
+use rilievo::{Budget, Error, Result};
 use std::collections::HashMap;
 use std::io::Cursor;
 use std::path::PathBuf;

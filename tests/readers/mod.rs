@@ -1,8 +1,9 @@
 //! Every reader of files on any bytes: what the mutations, the fuzz targets and the replay of their corpus run.
 
-use rilievo_engine::document::source::{MapSource, SurfaceSource};
-use rilievo_engine::{Error, Result};
-use rilievo_io::{Budget, Files, inspect, maps, open::FileKind, picture, project, psd, recipe, recovery};
+use rilievo::files::open::FileKind;
+use rilievo::files::{Files, MapSource, SurfaceSource, maps, picture, recipe};
+use rilievo::{Budget, Error, Result};
+use rilievo_io::{inspect, project, psd, recovery};
 use std::path::{Path, PathBuf};
 
 /// A reader by its name; it must neither panic nor allocate beyond the budget, and fail with a sentence.
@@ -64,7 +65,7 @@ pub fn maps(file: &Path, bytes: &[u8]) -> Result<()> {
     let depth = SurfaceSource { depth, ..SurfaceSource::default() };
     let tried = [normal, depth].map(|source| {
         let surface = maps::import(&source, &files, &budget())?.surface;
-        let is_finite = |plane: &rilievo_engine::raster::Plane<f32>| plane.values().iter().all(|v| v.is_finite());
+        let is_finite = |plane: &rilievo::raster::Plane<f32>| plane.values().iter().all(|v| v.is_finite());
         assert!(is_finite(surface.depth_plane()) && surface.normal_planes().iter().all(|plane| is_finite(plane)));
         Ok(())
     });

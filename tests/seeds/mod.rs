@@ -1,11 +1,11 @@
 //! Small files of every format that is read, most of them made here, some by other programs (`files/`).
 
-use rilievo_engine::document::{Document, Progress};
+use rilievo::files::{Files, recipe};
+use rilievo::{Budget, Document, Error, Progress, Result};
 use rilievo_engine::math::hash::mix;
-use rilievo_engine::{Error, Result};
 use rilievo_io::fs::Disk;
 use rilievo_io::recovery::RecoveryLog;
-use rilievo_io::{Budget, Files, project, psd, recipe};
+use rilievo_io::{project, psd};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::io::Cursor;

@@ -4,8 +4,7 @@ use super::{Story, press, session, steps, window};
 use eframe::egui::accesskit::Role;
 use eframe::egui::vec2;
 use egui_kittest::kittest::Queryable;
-use rilievo_engine::paint::dynamics::{Input, Property};
-use rilievo_engine::paint::{Stabilizer, Tip};
+use rilievo::paint::{Input, Property, Stabilizer, Tip};
 
 fn editor() -> Story {
     let mut harness = window();

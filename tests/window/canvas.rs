@@ -3,7 +3,7 @@
 use super::{Story, command, drag, key, press, session, steps, until, window};
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
-use rilievo_engine::math::Size;
+use rilievo::Size;
 use rilievo_program::tools::ToolKind;
 
 fn size(harness: &Story) -> Size {

@@ -116,12 +116,8 @@ fn the_interface_is_made_larger_and_the_picture_stays_as_it_is() {
 fn the_palette_puts_what_begins_with_the_words_first() {
     let mut harness = window();
     command(&mut harness, "operator: shading");
-    assert!(matches!(session(&harness).operator, rilievo_engine::surface::Operator::Normal { .. }));
+    assert!(matches!(session(&harness).operator, rilievo::Operator::Normal { .. }));
     command(&mut harness, "lock");
-    assert_eq!(
-        session(&harness).layer().unwrap().lock,
-        rilievo_engine::document::LayerLock::Alpha,
-        "not “Clip” or “Block”"
-    );
+    assert_eq!(session(&harness).layer().unwrap().lock, rilievo::document::LayerLock::Alpha, "not “Clip” or “Block”");
     assert_eq!(layers(&harness), ["Background"]);
 }

@@ -3,7 +3,8 @@
 use super::{Story, click, command, layers, press, session, steps, stroke, until, window};
 use eframe::egui::{Modifiers, pos2, vec2};
 use egui_kittest::kittest::Queryable;
-use rilievo_engine::document::{Content, MaskKind};
+use rilievo::Content;
+use rilievo::document::MaskKind;
 
 #[test]
 fn layers_are_added_hidden_and_deleted_by_their_buttons() {

@@ -2,7 +2,7 @@
 
 use super::{Story, choose, command, drop_files, layers, press, session, until, window};
 use egui_kittest::kittest::Queryable;
-use rilievo_engine::document::Content;
+use rilievo::Content;
 
 #[test]
 fn every_shading_model_is_made_from_the_menu_and_shows_its_properties() {

@@ -3,7 +3,7 @@
 use super::{Story, click, command, drag, key, layers, session, steps, window};
 use eframe::egui::{Event, Key, Modifiers, Pos2, TouchDeviceId, TouchId, TouchPhase, Vec2, vec2};
 use egui_kittest::kittest::Queryable;
-use rilievo_engine::document::Content;
+use rilievo::Content;
 
 #[test]
 fn a_new_document_is_painted_on_and_the_stroke_undone() {

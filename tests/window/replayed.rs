@@ -3,8 +3,7 @@
 use super::{Story, click, command, drag, drop_files, key, layers, press, session, steps, until, window_of};
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
-use rilievo_engine::document::{Document, Progress, flatten};
-use rilievo_io::Overwrite;
+use rilievo::{Document, Overwrite, Progress, flatten};
 use rilievo_program::session::{Session, storage};
 use rilievo_window::MainWindow;
 use std::io::Read;
@@ -81,9 +80,7 @@ fn a_story_of_photo_strokes_moves_and_masks_replays_to_the_same_bytes() {
     click(&mut harness, "Gradient layer");
     slide(&mut harness, "Opacity", -14.0);
     command(&mut harness, "Bake layer");
-    until(&mut harness, |harness| {
-        matches!(session(harness).layer().unwrap().content, rilievo_engine::document::Content::Pixels(_))
-    });
+    until(&mut harness, |harness| matches!(session(harness).layer().unwrap().content, rilievo::Content::Pixels(_)));
     command(&mut harness, "Move layer down");
     let seen = session(&harness).active().unwrap().document().clone();
     assert_eq!(seen.layers.len(), 5, "{:?}", layers(&harness));

@@ -3,7 +3,7 @@
 use super::{Story, command, drag, key, layers, press, session, steps, window};
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
-use rilievo_engine::raster::CoverageGrid;
+use rilievo::raster::CoverageGrid;
 use rilievo_program::tools::ToolKind;
 
 fn area(harness: &Story) -> f64 {

@@ -4,7 +4,8 @@ use super::{Story, choose, command, drag, key, layers, press, session, steps, st
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Key, Modifiers, Vec2, vec2};
 use egui_kittest::kittest::Queryable;
-use rilievo_engine::document::{Document, Part, PartKind, Progress, flatten_layer};
+use rilievo::shape::{Part, PartKind};
+use rilievo::{Document, Progress, flatten_layer};
 use rilievo_program::tools::ToolKind;
 use rilievo_window::MainWindow;
 use std::path::{Path, PathBuf};
@@ -46,7 +47,7 @@ fn parts(harness: &Story) -> Vec<Arc<Part>> {
 /// Where a canvas point is seen, from the middle of the canvas.
 fn seen(harness: &Story, x: f32, y: f32) -> Vec2 {
     let view = session(harness).active().unwrap().view.unwrap();
-    let at = view.screen_from_canvas().transform_point2(rilievo_engine::math::vec2(x, y));
+    let at = view.screen_from_canvas().transform_point2(rilievo::math::vec2(x, y));
     vec2(at.x, at.y)
 }
 fn puff(part: &Part) -> f32 {

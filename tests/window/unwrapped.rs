@@ -4,7 +4,7 @@ use super::replayed::{bytes, project};
 use super::{Story, choose, command, drag, key, press, session, until, window_of};
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
-use rilievo_engine::document::Content;
+use rilievo::Content;
 use rilievo_program::session::Session;
 use rilievo_window::MainWindow;
 use std::path::Path;

@@ -3,7 +3,7 @@
 use super::{Story, click, command, drag, press, session, steps, window};
 use eframe::egui::vec2;
 use egui_kittest::kittest::Queryable;
-use rilievo_engine::document::Layer;
+use rilievo::Layer;
 use std::sync::Arc;
 
 /// A paint layer with a stroke on it.

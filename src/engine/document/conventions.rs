@@ -58,6 +58,7 @@ crate::named! {
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NormalConvention {
+    /// How three numbers make a normal; absent: detected.
     pub encoding: Option<NormalEncoding>,
     /// Which channels hold x, y and z: indices 0 … 3 for red, green, blue, alpha. JSON: three of the letters `rgba`.
     pub channels: Option<[u8; 3]>,
@@ -69,6 +70,7 @@ pub struct NormalConvention {
     pub flip_y: Option<bool>,
     /// The stored z points away from the viewer.
     pub flip_z: Option<bool>,
+    /// What the axes are those of; absent: detected.
     pub space: Option<NormalSpace>,
     /// Rows of the rotation n_camera = R n_world (camera: x right, y up, z to the viewer). JSON: 3 × 3 or 4 × 4, row by
     /// row, for column vectors.
@@ -121,7 +123,9 @@ impl NormalConvention {
 /// detected where absent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DepthConvention {
+    /// Which end of the range is near.
     pub near: Near,
+    /// What the numbers measure; absent: detected.
     pub encoding: Option<DepthEncoding>,
     /// `"fov"`: horizontal field of view in degrees, for distances along the ray.
     pub fov_degrees: Option<f32>,

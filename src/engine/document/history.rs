@@ -24,6 +24,7 @@ impl History {
     pub fn new(document: Document, limit: usize) -> Self {
         Self { past: Vec::new(), present: document, future: Vec::new(), limit }
     }
+    /// The document as it is now.
     pub fn present(&self) -> &Document {
         &self.present
     }

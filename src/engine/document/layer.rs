@@ -88,7 +88,7 @@ impl Layer {
     pub const LONGEST_NAME: usize = 1_000;
 
     /// A visible, opaque, unmasked layer that blends normally, under a fresh id.
-    pub fn new(name: impl Into<String>, content: Content) -> Self {
+    pub fn new(name: impl Into<String>, content: impl Into<Content>) -> Self {
         Self {
             id: LayerId::fresh(),
             name: name.into(),
@@ -104,7 +104,7 @@ impl Layer {
             transform: None,
             liquify: None,
             on: None,
-            content,
+            content: content.into(),
             cache: LayerCache::default(),
         }
     }

@@ -104,6 +104,16 @@ impl Document {
             assistants: Arc::default(),
         }
     }
+    /// A canvas of a surface's own size, without layers, to paint on that surface.
+    pub fn over(surface: impl Into<Arc<Surface>>) -> Self {
+        let surface = surface.into();
+        Self { surface: Some(surface.clone()), ..Self::empty(surface.size()) }
+    }
+    /// With one more layer, on top.
+    pub fn with_top(mut self, layer: impl Into<Arc<Layer>>) -> Self {
+        self.layers.push(layer.into());
+        self
+    }
     /// The canvas as the bottom layer sees it.
     pub fn scene(&self) -> Scene {
         Scene { size: self.size, surface: self.surface.clone() }

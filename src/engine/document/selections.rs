@@ -11,7 +11,9 @@ use std::sync::Arc;
 /// A selection kept by name.
 #[derive(Clone)]
 pub struct NamedSelection {
+    /// Its name, which no other has.
     pub name: String,
+    /// What it selects.
     pub selection: Arc<Selection>,
 }
 
@@ -153,6 +155,7 @@ pub struct SelectionList {
 }
 
 impl SelectionList {
+    /// The selections of a document, each once.
     pub fn of(document: &Document) -> Self {
         let mut list = Self { all: Vec::new(), places: HashMap::new() };
         for kept in &document.selections {

@@ -10,8 +10,11 @@ use crate::raster::Resampling;
 /// The `"surface"` object. At least one of `normal` and `depth`; the importer derives the other.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SurfaceSource {
+    /// The normal map; derived from the depth if it is absent.
     pub normal: Option<MapSource<NormalConvention>>,
+    /// The depth map; derived from the normals if it is absent.
     pub depth: Option<MapSource<DepthConvention>>,
+    /// Where the shape is; absent: found from alpha and background values.
     pub mask: Option<MaskSource>,
     /// `"matrix"`: canvas from the pixels of the maps, a, b, c, d, e, f: x′ = a x + c y + e, y′ = b x + d y + f.
     /// Without one the maps are as large as the canvas allows, centred.

@@ -37,12 +37,14 @@ impl Default for PlaneMap {
 }
 
 impl PlaneMap {
+    /// Every point stays.
     pub const IDENTITY: PlaneMap = PlaneMap { forward: DMat3::IDENTITY, backward: DMat3::IDENTITY };
 
     /// x′ = a x + c y + e, y′ = b x + d y + f. `None` if numbers are not finite or the map cannot be inverted.
     pub fn affine([a, b, c, d, e, f]: [f64; 6]) -> Option<Self> {
         Self::of(DMat3::from_cols_array(&[a, b, 0.0, c, d, 0.0, e, f, 1.0]))
     }
+    /// Every point moves by the same vector, px.
     pub fn translation(by: Vec2) -> Self {
         let by = by.as_dvec2();
         Self { forward: DMat3::from_translation(by), backward: DMat3::from_translation(-by) }
@@ -92,6 +94,7 @@ impl PlaneMap {
     pub fn then(&self, outer: &PlaneMap) -> PlaneMap {
         Self { forward: outer.forward * self.forward, backward: self.backward * outer.backward }
     }
+    /// The way back.
     pub fn inverse(&self) -> PlaneMap {
         Self { forward: self.backward, backward: self.forward }
     }
@@ -104,6 +107,7 @@ impl PlaneMap {
     pub fn told_coefficients(&self) -> Option<[f64; 6]> {
         Some(self.coefficients()?.map(told))
     }
+    /// The same without a perspective; `None` if it has one.
     pub fn as_affine(&self) -> Option<Affine2> {
         let c = self.coefficients()?.map(|v| v as f32);
         Some(Affine2::from_cols_array(&c))

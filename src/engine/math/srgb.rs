@@ -137,6 +137,10 @@ impl Color {
     /// Fully transparent.
     pub const TRANSPARENT: Color = Color { r: 0, g: 0, b: 0, a: 0 };
 
+    /// An opaque colour of sRGB-encoded bytes.
+    pub const fn rgb(r: u8, g: u8, b: u8) -> Self {
+        Self { r, g, b, a: 255 }
+    }
     /// Reads `#rrggbb` or `#rrggbbaa`.
     pub fn parse(text: &str) -> Option<Color> {
         let hex = text.strip_prefix('#')?;

@@ -39,12 +39,14 @@ pub struct Brush {
     pub softness: f32,
     /// How far a dab may be from the stroke, a ratio as `spread` says, `[0, 10]`.
     pub scatter: f32,
+    /// How dabs are spread within the scatter.
     pub spread: Spread,
     /// How far sizes vary: their standard deviation in doublings. A dab that grows covers less: its paint is spread
     /// out.
     pub size_jitter: f32,
     /// How dabs are displaced from the stroke.
     pub offset: Offset,
+    /// How far the colour of each dab strays.
     pub jitter: ColorJitter,
     /// How the stroke blends with its layer.
     pub blend: BlendMode,
@@ -60,7 +62,9 @@ pub struct Brush {
     pub mode: BrushMode,
     /// The paint that it picks up on its way.
     pub pickup: Pickup,
+    /// What a dab looks like.
     pub tip: Tip,
+    /// A texture that takes paint away.
     pub grain: Option<BrushGrain>,
     /// How the hand is smoothed. The samples of a stroke are smooth already: rendering it does not use this.
     pub stabilizer: Stabilizer,
@@ -70,6 +74,7 @@ pub struct Brush {
     pub hand: Hand,
     /// What drives [`Input::Cycle`].
     pub cycle: Cycle,
+    /// What follows pen and surface, and how.
     pub dynamics: Dynamics,
     /// The seed of all randomness: the same seed and samples paint the same pixels.
     pub seed: u32,
@@ -130,7 +135,9 @@ pub enum BrushMode {
 impl BrushMode {
     /// The defaults of a smudge's length and a blur's width.
     pub const SMUDGE_LENGTH: f32 = 0.8;
+    /// The default of a blur's width.
     pub const BLUR_WIDTH: f32 = 0.3;
+    /// What length and width may be.
     pub const SHARE: Range = UNIT;
 
     /// With its numbers clamped to their ranges.
@@ -145,6 +152,7 @@ impl BrushMode {
     pub fn is_retouching(self) -> bool {
         self != BrushMode::Paint
     }
+    /// Whether it copies from elsewhere.
     pub fn is_clone(self) -> bool {
         matches!(self, BrushMode::Clone { .. })
     }
@@ -157,10 +165,12 @@ pub struct ColorJitter {
     pub hue_degrees: f32,
     /// `[0, 1]`, of the colour's saturation and value (HSV).
     pub saturation: f32,
+    /// `[0, 1]`, as for the saturation.
     pub value: f32,
 }
 
 impl ColorJitter {
+    /// How far hues may stray.
     pub const HUE_DEGREES: Range = 0.0..=180.0;
 }
 
@@ -179,8 +189,11 @@ pub enum Stabilizer {
 }
 
 impl Stabilizer {
+    /// What the weight of an average may be.
     pub const WEIGHT: Range = UNIT;
+    /// What the length of a string may be.
     pub const LENGTH_PX: Range = 0.0..=10_000.0;
+    /// What a lag may be.
     pub const SECS: Range = 0.0..=10.0;
 }
 
@@ -205,15 +218,18 @@ pub enum Tip {
 }
 
 impl Tip {
+    /// What the ratio of its axes may be.
     pub const RATIO: Range = 0.01..=1.0;
 }
 
 impl Brush {
+    /// Diameters that a file may hold, px.
     pub const SIZE: Range = 0.1..=20_000.0;
     /// Diameters that a user can set, px.
     pub const HAND_SIZE: Range = 1.0..=2000.0;
     /// A hundredth of the diameter looks like a line; less only costs time.
     pub const SPACING: Range = 0.01..=100.0;
+    /// What scatter may be.
     pub const SCATTER: Range = 0.0..=10.0;
     /// The range of a reach.
     pub const REACHES: std::ops::RangeInclusive<f32> = 0.0..=100.0;

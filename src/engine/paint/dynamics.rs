@@ -111,8 +111,11 @@ impl Input {}
 /// One row: a property follows an input.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drive {
+    /// What is driven.
     pub property: Property,
+    /// What drives it.
     pub input: Input,
+    /// The output for each input.
     pub curve: Curve,
 }
 
@@ -135,6 +138,7 @@ impl Dynamics {
     pub fn none() -> Self {
         Self { drives: Arc::new([]) }
     }
+    /// All of them, in the order in which they are applied.
     pub fn drives(&self) -> &[Drive] {
         &self.drives
     }

@@ -5,7 +5,7 @@ use super::image::{BentFrame, transform};
 pub use super::ramp::GradientStop;
 use super::ramp::Ramp;
 use super::scene::{ImageFilter, Scene};
-use crate::math::{Affine2, PlaneMap, Rect, Vec2};
+use crate::math::{Affine2, PlaneMap, Rect, Vec2, srgb::Color};
 use crate::raster::tile::{TILE, transparent_f32};
 use crate::raster::{PlanarTile, Tile, TileAt};
 use crate::surface::deformation::{Deformation, DeformedRect};
@@ -15,11 +15,15 @@ use crate::surface::{Anchor, Bend, Operator, Weights, links};
 /// ramp(t(D(q))), t the projection on the segment [from, to], clamped. Its two ends are its anchors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gradient {
+    /// Where the ramp begins, px of its frame.
     pub from: Vec2,
+    /// Where it ends.
     pub to: Vec2,
     /// At least one. Between two stops straight-alpha encoded values are interpolated linearly.
     pub stops: Vec<GradientStop>,
+    /// How it is bent over the surface.
     pub operator: Operator,
+    /// How the ramp is read.
     pub filter: ImageFilter,
     /// Where the frame of both ends is on the canvas.
     pub frame: PlaneMap,
@@ -28,8 +32,27 @@ pub struct Gradient {
 }
 
 impl Gradient {
+    /// The stops of one ramp.
     pub const MOST_STOPS: usize = 1_000;
 
+    /// A ramp of these colours, evenly spaced from one point to the other, canvas px. It is not bent.
+    pub fn new(from: Vec2, to: Vec2, colors: &[Color]) -> Self {
+        let steps = colors.len().saturating_sub(1).max(1) as f32;
+        let stop = |(i, color): (usize, &Color)| GradientStop { t: i as f32 / steps, color: *color };
+        Self {
+            from,
+            to,
+            stops: colors.iter().enumerate().map(stop).collect(),
+            operator: Operator::None,
+            filter: ImageFilter::default(),
+            frame: PlaneMap::IDENTITY,
+            pieces: Vec::new(),
+        }
+    }
+    /// The same ramp, bent by an operator.
+    pub fn with_operator(self, operator: Operator) -> Self {
+        Self { operator, ..self }
+    }
     /// The *where*: both ends are anchors, and their weights change along the segment (MATH 2).
     pub fn bend(&self) -> Bend {
         let on_canvas = |p: Vec2| self.frame.to_canvas(p).unwrap_or(p);
@@ -120,19 +143,10 @@ impl RampPositions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{Size, srgb::Color, vec2};
+    use crate::math::{Size, vec2};
 
     fn black_to_white(from: Vec2, to: Vec2) -> Gradient {
-        let stops = vec![GradientStop { t: 0.0, color: Color::BLACK }, GradientStop { t: 1.0, color: Color::WHITE }];
-        Gradient {
-            from,
-            to,
-            stops,
-            operator: Operator::None,
-            filter: ImageFilter::Antialias,
-            frame: Default::default(),
-            pieces: Vec::new(),
-        }
+        Gradient::new(from, to, &[Color::BLACK, Color::WHITE])
     }
     fn pixel(gradient: &Gradient, x: i32, y: i32) -> [u8; 4] {
         let scene = Scene { size: Size::new(100, 100), surface: None };

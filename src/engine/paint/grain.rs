@@ -26,6 +26,7 @@ use std::sync::{Arc, Mutex};
 /// A brush's grain.
 #[derive(Clone, PartialEq)]
 pub struct BrushGrain {
+    /// What the texture is.
     pub source: GrainSource,
     /// Size of one feature of a pattern, or of a picture's longer side; canvas px, `> 0`.
     pub size_px: f32,
@@ -36,6 +37,7 @@ pub struct BrushGrain {
     /// Greys up to the first take no paint, those from the second on take all; both in `[0, 1]`, the first below the
     /// second.
     pub levels: [f32; 2],
+    /// What it is fixed to.
     pub lies: GrainSpace,
 }
 
@@ -77,8 +79,11 @@ impl GrainSpace {
 }
 
 impl BrushGrain {
+    /// What the size of a feature may be, px.
     pub const SIZE_PX: Range = 0.5..=20_000.0;
+    /// What a level may be.
     pub const LEVEL: Range = -4.0..=4.0;
+    /// What the rate of its own operator may be.
     pub const GAMMA: Range = 0.0..=8.0;
 }
 

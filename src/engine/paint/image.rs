@@ -28,6 +28,7 @@ pub struct Placement {
 }
 
 impl Placement {
+    /// What a scale may be.
     pub const SCALE: crate::math::Range = 1e-4..=1e4;
 
     /// Covers the canvas, centred.
@@ -71,7 +72,9 @@ impl Placement {
 pub struct PictureSource {
     /// Its name in the document: a path relative to the recipe, or an entry of the project.
     pub file: String,
+    /// As it was decoded.
     pub picture: Picture,
+    /// What is done to it before it is read.
     pub adjust: Adjust,
     texture: Arc<OnceLock<Texture>>,
     /// The same in floats, as long as it is in use.
@@ -89,7 +92,15 @@ impl PartialEq for PictureSource {
     }
 }
 
+/// A picture made here, as it is.
+impl From<Picture> for PictureSource {
+    fn from(picture: Picture) -> Self {
+        Self::new(String::new(), picture, Adjust::default())
+    }
+}
+
 impl PictureSource {
+    /// A picture under its name in the document, and what is done to it.
     pub fn new(file: String, picture: Picture, adjust: Adjust) -> Self {
         let (texture, deep, stamps) = (Arc::default(), Arc::default(), Arc::default());
         Self { file, picture, adjust, texture, deep, rule: TapRule::AT_REST, stamps }
@@ -140,16 +151,36 @@ thread_local! {
 /// I(P⁻¹(D(q))).
 #[derive(Clone, PartialEq)]
 pub struct PlacedImage {
+    /// What is placed.
     pub source: PictureSource,
+    /// Where it lies before it is bent.
     pub placement: Placement,
+    /// What is beyond its edges.
     pub outside: Outside,
+    /// How it is bent, and where it is pinned.
     pub bend: Bend,
+    /// How it is read.
     pub filter: ImageFilter,
     /// Where the frame of `placement` lies on the canvas; anchors are on the canvas already.
     pub frame: PlaneMap,
 }
 
 impl PlacedImage {
+    /// A picture that is not bent yet, mirrored beyond its edges.
+    pub fn new(source: impl Into<PictureSource>, placement: Placement) -> Self {
+        Self {
+            source: source.into(),
+            placement,
+            outside: Outside::Mirror,
+            bend: Bend::default(),
+            filter: ImageFilter::default(),
+            frame: PlaneMap::IDENTITY,
+        }
+    }
+    /// The same picture, bent.
+    pub fn with_bend(self, bend: Bend) -> Self {
+        Self { bend, ..self }
+    }
     /// One tile of the layer; `None` if it is transparent or beyond the canvas.
     pub fn render_tile(&self, scene: &Scene, at: TileAt) -> Option<Tile> {
         let area = scene.area(at);

@@ -8,6 +8,7 @@ use crate::math::srgb::Color;
 pub struct GradientStop {
     /// In `[0, 1]`, never decreasing from stop to stop.
     pub t: f32,
+    /// The colour there; its alpha counts.
     pub color: Color,
 }
 

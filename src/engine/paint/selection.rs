@@ -13,12 +13,14 @@ use std::sync::Arc;
 /// A selection. It is never changed, so strokes and documents share it.
 #[derive(Clone, Default)]
 pub struct Selection {
+    /// How much of each pixel is selected.
     pub coverage: CoverageGrid,
     /// The region of the surface that the coverage was found by; absent once the coverage was changed by hand.
     pub made: Option<SurfaceRegion>,
 }
 
 impl Selection {
+    /// Coverage that belongs to no region of the surface.
     pub fn new(coverage: CoverageGrid) -> Self {
         Self { coverage, made: None }
     }
@@ -52,6 +54,7 @@ impl Selection {
 /// The selection that a stroke was painted in. It moves with the stroke.
 #[derive(Clone)]
 pub struct StrokeSelection {
+    /// What is selected.
     pub selection: Arc<Selection>,
     /// How far the stroke was moved since, canvas px.
     pub moved: Vec2,
@@ -61,6 +64,7 @@ impl StrokeSelection {
     /// How far a stroke can have been moved along each axis, px.
     pub const MOVED_PX: Range = -1e6..=1e6;
 
+    /// The selection where it was made.
     pub fn new(selection: Arc<Selection>) -> Self {
         Self { selection, moved: Vec2::ZERO }
     }

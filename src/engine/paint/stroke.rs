@@ -52,6 +52,7 @@ impl Stroke {
     /// The most samples of a stroke: over an hour of a pen that is read 240 times a second.
     pub const MOST_SAMPLES: usize = 1_000_000;
 
+    /// The stroke of a brush along the samples of a pen, each dab bent by an operator around its own centre.
     pub fn new(brush: Brush, operator: Operator, color: Color, samples: Vec<Sample>) -> Self {
         Self { brush, operator, color, samples, selection: None, home: None, found: Arc::default() }
     }
@@ -71,9 +72,11 @@ impl Stroke {
     pub fn home(&self) -> Option<&Arc<StrokeHome>> {
         self.home.as_ref()
     }
+    /// The brush that it was painted with.
     pub fn brush(&self) -> &Brush {
         &self.brush
     }
+    /// How its dabs are bent.
     pub fn operator(&self) -> Operator {
         self.operator
     }
@@ -81,6 +84,7 @@ impl Stroke {
     pub fn color(&self) -> Color {
         self.color
     }
+    /// The path of the pen.
     pub fn samples(&self) -> &[Sample] {
         &self.samples
     }

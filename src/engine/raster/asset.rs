@@ -8,6 +8,7 @@ use std::{fmt, sync::Arc};
 pub struct Asset(Arc<[u8]>);
 
 impl Asset {
+    /// The file, as it was read.
     pub fn bytes(&self) -> &[u8] {
         &self.0
     }

@@ -8,7 +8,9 @@ use std::sync::Arc;
 /// Straight (not premultiplied) RGBA, row by row, the top row first. Cheap to clone.
 #[derive(Clone, Debug)]
 pub struct Picture {
+    /// Its sides, px.
     pub size: Size,
+    /// One for each pixel.
     pub texels: Texels,
     /// What the bytes were rounded from, if a file holds 16 bits a channel: straight, encoded, one for each texel.
     pub deep: Option<Arc<[[u16; 4]]>>,

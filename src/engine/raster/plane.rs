@@ -19,6 +19,7 @@ impl<T: Clone> Clone for Plane<T> {
 }
 
 impl<T: Copy> Plane<T> {
+    /// The same value everywhere.
     pub fn filled(size: Size, value: T) -> Self {
         Self { size, values: filled_or_unwind(size.area(), value) }
     }
@@ -55,6 +56,7 @@ impl<T: Copy> Plane<T> {
         });
         self
     }
+    /// Another map, computed value by value, rows in parallel.
     pub fn map<U: Copy + Send + Sync + Default>(&self, f: impl Fn(T) -> U + Sync) -> Plane<U>
     where
         T: Send + Sync,
@@ -67,12 +69,15 @@ impl<T: Copy> Plane<T> {
         });
         Plane { size: self.size, values }
     }
+    /// Its sides, px.
     pub fn size(&self) -> Size {
         self.size
     }
+    /// Pixels in a row.
     pub fn width(&self) -> usize {
         self.size.width as usize
     }
+    /// The number of rows.
     pub fn height(&self) -> usize {
         self.size.height as usize
     }
@@ -91,25 +96,31 @@ impl<T: Copy> Plane<T> {
         let (w, h) = (self.size.width as i32, self.size.height as i32);
         self.at(x.clamp(0, w - 1) as usize, y.clamp(0, h - 1) as usize)
     }
+    /// Sets the value at column `x`, row `y`, both inside the map.
     #[inline(always)]
     pub fn set(&mut self, x: usize, y: usize, value: T) {
         self.values[y * self.size.width as usize + x] = value;
     }
+    /// The values of a row inside the map.
     #[inline(always)]
     pub fn row(&self, y: usize) -> &[T] {
         let w = self.size.width as usize;
         &self.values[y * w..(y + 1) * w]
     }
+    /// As [`Plane::row`], to change them.
     pub fn row_mut(&mut self, y: usize) -> &mut [T] {
         let w = self.size.width as usize;
         &mut self.values[y * w..(y + 1) * w]
     }
+    /// All values, row by row.
     pub fn values(&self) -> &[T] {
         &self.values
     }
+    /// As [`Plane::values`], to change them.
     pub fn values_mut(&mut self) -> &mut [T] {
         &mut self.values
     }
+    /// All values, row by row, in the same memory.
     pub fn into_values(self) -> Vec<T> {
         self.values
     }

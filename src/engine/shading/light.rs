@@ -9,7 +9,9 @@ use crate::surface::contours::SheetOf;
 /// One light. It casts no shadows and does not weaken with distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
+    /// Where it is.
     pub kind: LightKind,
+    /// Its colour; alpha is ignored.
     pub color: Color,
     /// Factor of the colour in linear light, `≥ 0`.
     pub intensity: f32,
@@ -25,6 +27,7 @@ pub enum LightKind {
 }
 
 impl Light {
+    /// What an intensity may be.
     pub const INTENSITY: Range = 0.0..=10_000.0;
     /// Whether a vector has a direction: its length is representable.
     pub fn points(direction: Vec3) -> bool {

@@ -18,7 +18,9 @@ use row::RowScaler;
 /// δ = Y / Y*, Y the luminance of the composite in linear light; the linear colour is multiplied by σ(κ, δ).
 #[derive(Clone, Debug, PartialEq)]
 pub struct RadianceScaling {
+    /// σ: how strongly, and around which light.
     pub scaling: Scaling,
+    /// The curvature that it follows.
     pub features: Features,
     /// ℓ, toward the light, camera space (y up): the direction that λ refers to. Any length but 0.
     pub light: Vec3,

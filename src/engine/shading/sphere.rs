@@ -12,6 +12,7 @@ use std::sync::{Arc, LazyLock, OnceLock};
 pub struct LitSphere {
     /// Its name in the document.
     pub file: String,
+    /// A painted sphere that fills its picture.
     pub picture: Picture,
     /// Shared by clones, made on first use.
     light: Arc<OnceLock<SphereLight>>,
@@ -25,6 +26,7 @@ impl PartialEq for LitSphere {
 }
 
 impl LitSphere {
+    /// A painted sphere, under its name in the document.
     pub fn new(file: String, picture: Picture) -> Self {
         Self { file, picture, light: Arc::default() }
     }

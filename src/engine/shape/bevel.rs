@@ -74,11 +74,14 @@ pub struct Bevel {
     pub width: f32,
     /// How high, px.
     pub height: f32,
+    /// The profile from the rim inward.
     pub curve: BevelCurve,
 }
 
 impl Bevel {
+    /// What a width may be, px.
     pub const WIDTH: Range = 0.5..=4096.0;
+    /// What a height may be, px.
     pub const HEIGHT: Range = -4096.0..=4096.0;
 }
 

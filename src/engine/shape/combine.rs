@@ -35,6 +35,7 @@ impl Combine {
     ];
     /// px.
     pub const SMOOTH: Range = 0.0..=1024.0;
+    /// How far a union is blended by default, px.
     pub const DEFAULT_SMOOTH: f32 = 8.0;
 
     /// Its name in documents.

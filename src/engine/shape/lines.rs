@@ -30,6 +30,7 @@ impl LineForm {}
 /// How ink shapes a form.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lines {
+    /// What the ink stands for.
     pub form: LineForm,
     /// Degrees that the form turns next to the line.
     pub angle_deg: f32,
@@ -38,7 +39,9 @@ pub struct Lines {
 }
 
 impl Lines {
+    /// Degrees that the form may turn.
     pub const ANGLE: Range = 1.0..=90.0;
+    /// What a reach may be, px.
     pub const REACH: Range = 0.0..=16384.0;
 }
 

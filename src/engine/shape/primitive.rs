@@ -31,14 +31,19 @@ impl Body {}
 /// A body on the canvas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Primitive {
+    /// Which body it is.
     pub body: Body,
     /// Canvas px.
     pub center: Vec2,
     /// px.
     pub radius: f32,
+    /// Half the axes of an ellipsoid or the sides of a box, px.
     pub half: Vec3,
+    /// The length of a cylinder, a cone or a capsule, px.
     pub length: f32,
+    /// The radius of a torus's tube, px.
     pub tube: f32,
+    /// The radius of rounded edges, px.
     pub round: f32,
     /// Degrees about x, then y, then z (camera space, y up), counter-clockwise.
     pub turn_deg: Vec3,
@@ -47,7 +52,9 @@ pub struct Primitive {
 impl Primitive {
     /// Lengths, px.
     pub const LENGTH: Range = 0.5..=8192.0;
+    /// What `round` may be, px.
     pub const ROUND: Range = 0.0..=8192.0;
+    /// What a turn may be, degrees.
     pub const TURN: Range = TURNS;
 
     /// A body of a visible size.

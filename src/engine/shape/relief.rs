@@ -10,6 +10,7 @@ use crate::raster::Plane;
 pub struct Detail {
     /// Height of the whole range of luminance at the coarse and the fine scale, px.
     pub coarse: f32,
+    /// As `coarse`, at the fine scale.
     pub fine: f32,
     /// Radius of the coarse scale, px; the fine one's is a quarter of it.
     pub radius: f32,
@@ -18,8 +19,11 @@ pub struct Detail {
 }
 
 impl Detail {
+    /// What a height may be, px.
     pub const HEIGHT: Range = -512.0..=512.0;
+    /// What a radius may be, px.
     pub const RADIUS: Range = 1.0..=512.0;
+    /// What an edge may be.
     pub const EDGE: Range = 0.005..=1.0;
 }
 

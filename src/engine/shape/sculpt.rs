@@ -35,6 +35,7 @@ impl SculptTool {
 /// A stroke on the height layer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SculptStroke {
+    /// What it does to the heights.
     pub tool: SculptTool,
     /// Diameter of a dab, px.
     pub size: f32,
@@ -47,9 +48,13 @@ pub struct SculptStroke {
 }
 
 impl SculptStroke {
+    /// What a diameter may be, px.
     pub const SIZE: Range = 1.0..=8192.0;
+    /// What a hardness may be.
     pub const HARDNESS: Range = UNIT;
+    /// What a strength may be, px.
     pub const STRENGTH: Range = 0.0..=512.0;
+    /// What a pressure may be.
     pub const PRESSURE: Range = UNIT;
     /// The most samples of one stroke, and strokes of one part.
     pub const MOST: usize = 100_000;

@@ -15,6 +15,7 @@ pub struct Ball {
 }
 
 impl Ball {
+    /// What a radius may be, px.
     pub const RADIUS: Range = 0.0..=4096.0;
     /// The most balls of one sweep.
     pub const MOST: usize = 4096;

@@ -29,7 +29,9 @@ pub struct Touch {
 }
 
 impl Touch {
+    /// What a radius may be, px.
     pub const RADIUS: Range = 0.5..=4096.0;
+    /// What a reach may be, px.
     pub const REACH: Range = 0.0..=16384.0;
     /// The most touches of one part.
     pub const MOST: usize = 100_000;

@@ -15,6 +15,7 @@ pub struct Anchor {
 }
 
 impl Anchor {
+    /// Pins the image where it lies.
     pub fn fixed(at: Vec2) -> Self {
         Self { at, source: at }
     }
@@ -30,7 +31,13 @@ pub enum Weights {
 }
 
 impl Bend {
+    /// The anchors of one layer.
     pub const MOST_ANCHORS: usize = 10_000;
+
+    /// An operator with the image pinned at some points, canvas px.
+    pub fn pinned(operator: Operator, at: impl IntoIterator<Item = Vec2>) -> Self {
+        Self { operator, anchors: at.into_iter().map(Anchor::fixed).collect(), ..Self::default() }
+    }
 
     /// Moves anchors and pieces with the canvas.
     ///
@@ -52,14 +59,18 @@ impl Default for Weights {
 /// The *where* of a footprint: operator, anchors and weights.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Bend {
+    /// Which surface flow is followed.
     pub operator: Operator,
+    /// Where the image is pinned; without any it is not bent.
     pub anchors: Vec<Anchor>,
+    /// How the anchors share their influence.
     pub weights: Weights,
     /// Of the operator that unwraps the surface: pieces whose picture is turned, moved and scaled alone.
     pub pieces: Vec<PlanePiece>,
 }
 
 impl Weights {
+    /// What a power may be.
     pub const POWER: crate::math::Range = 0.1..=16.0;
 
     /// w_i(q) of every anchor: `≥ 0`, adding up to 1; empty where there are no anchors.

@@ -53,6 +53,7 @@ impl DetailMap {
         }
         Self { levels }
     }
+    /// Its sides, px.
     pub fn size(&self) -> Size {
         self.levels[0].size()
     }

@@ -101,9 +101,11 @@ impl FlowField {
         let tensors = Plane::from_values(size, tensors.collect()).expect("one tensor per pixel");
         Self { tensors, unbent: self.unbent }
     }
+    /// Its sides, px.
     pub fn size(&self) -> Size {
         self.tensors.size()
     }
+    /// The tensor of a pixel.
     pub fn at(&self, x: usize, y: usize) -> StructureTensor {
         self.tensors.at(x, y)
     }

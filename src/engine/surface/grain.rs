@@ -15,6 +15,7 @@ pub struct NoiseRelief {
     pub roughness: f32,
     /// How many times longer the bumps are along x than along y: brushed.
     pub stretch: f32,
+    /// Other seeds give other noise.
     pub seed: u32,
 }
 
@@ -25,9 +26,13 @@ impl Default for NoiseRelief {
 }
 
 impl NoiseRelief {
+    /// What a size may be, px.
     pub const SIZE_PX: crate::math::Range = 0.1..=100_000.0;
+    /// How many layers of noise there may be.
     pub const OCTAVES: std::ops::RangeInclusive<u32> = 1..=12;
+    /// What a roughness may be.
     pub const ROUGHNESS: crate::math::Range = 0.0..=2.0;
+    /// What a stretch may be.
     pub const STRETCH: crate::math::Range = 0.01..=1000.0;
 
     /// The normal of the relief (y up, not of unit length), at a place in px from its origin (y down), seen through a

@@ -20,6 +20,7 @@ pub mod grow;
 pub mod integrate;
 mod kept;
 pub mod links;
+mod maps;
 pub mod objects;
 mod occlusion;
 pub mod operator;

@@ -253,6 +253,7 @@ impl CanvasPart {
             }
         }
     }
+    /// Whether it is all of the canvas.
     pub fn is_whole(&self) -> bool {
         matches!(self, CanvasPart::Whole)
     }

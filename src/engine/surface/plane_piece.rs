@@ -17,8 +17,11 @@ pub struct PlanePiece {
 }
 
 impl PlanePiece {
+    /// What a move may be, px.
     pub const MOVED: Range = COORDINATE;
+    /// What a scale may be.
     pub const SCALE: Range = 0.01..=100.0;
+    /// What a rotation may be, degrees.
     pub const ROTATION: Range = TURNS;
     /// Pieces that a bend may name.
     pub const MOST: usize = 10_000;

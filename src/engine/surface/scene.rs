@@ -11,7 +11,9 @@ use std::sync::Arc;
 /// are those of the sheet, and what is rendered is what the other populations of contour pixels see.
 #[derive(Clone)]
 pub struct Scene {
+    /// The canvas, px.
     pub size: Size,
+    /// What is painted on; absent: a flat canvas.
     pub surface: Option<Arc<Surface>>,
 }
 

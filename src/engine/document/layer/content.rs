@@ -3,6 +3,7 @@
 //! `shading`).
 
 mod fill;
+mod from;
 mod gradient;
 mod group;
 mod image;

@@ -62,6 +62,7 @@ impl TileCells {
 }
 
 impl<T> Live<T> {
+    /// Parameters of which nothing is rendered yet.
     pub fn new(params: T) -> Self {
         Self {
             params: Arc::new(params),
@@ -70,6 +71,7 @@ impl<T> Live<T> {
             painted_box: Arc::default(),
         }
     }
+    /// What the tiles are rendered from.
     pub fn params(&self) -> &T {
         &self.params
     }

@@ -12,6 +12,7 @@ use std::sync::Arc;
 /// What a layer's coverage is multiplied by.
 #[derive(Clone)]
 pub struct LayerMask {
+    /// Where its values come from.
     pub kind: MaskKind,
     /// 1 − the mask.
     pub invert: bool,
@@ -19,6 +20,7 @@ pub struct LayerMask {
     pub disabled: bool,
 }
 
+/// What a mask is made of.
 #[derive(Clone)]
 pub enum MaskKind {
     /// A picture of the canvas's size: encoded luminance × alpha.
@@ -64,7 +66,9 @@ impl LayerMask {
 }
 
 impl DerivedMask {
+    /// What the share of light reflected straight back may be.
     pub const F0: Range = UNIT;
+    /// What the exponent of the Fresnel term may be.
     pub const POWER: Range = 0.0..=64.0;
     /// Curvatures at which the mask is 0 or 1.
     pub const KAPPA: Range = -1.0..=1.0;
@@ -72,11 +76,17 @@ impl DerivedMask {
     pub const DEPTH: Range = UNIT;
 
     // The numbers of a mask that gives none.
+    /// The share of light that most materials reflect straight back.
     pub const PLAIN_F0: f32 = 0.04;
+    /// The exponent of Schlick's approximation.
     pub const PLAIN_POWER: f32 = 5.0;
+    /// The scale of curvature by default, px.
     pub const PLAIN_SCALE_PX: f32 = 4.0;
+    /// Stronger toward the silhouette, as most materials reflect.
     pub const FRESNEL: Self = Self::Fresnel { f0: Self::PLAIN_F0, power: Self::PLAIN_POWER };
+    /// From hollow to raised.
     pub const CURVATURE: Self = Self::Curvature { scale: Self::PLAIN_SCALE_PX, blur: 0.0, from: -1.0, to: 1.0 };
+    /// From near to far.
     pub const RAMP_OF_DEPTH: Self = Self::Depth { from: 0.0, to: 1.0 };
 }
 

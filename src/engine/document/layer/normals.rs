@@ -13,8 +13,11 @@ use std::sync::Arc;
 /// mask weight its strength; its blend mode has no effect.
 #[derive(Clone)]
 pub struct NormalLayer {
+    /// Where the detail comes from.
     pub source: DetailSource,
+    /// Where it lies on the canvas.
     pub placement: Placement,
+    /// What is beyond its picture.
     pub outside: Outside,
     /// Multiplies the detail's slopes, `≥ 0`; 1 is the map as it is.
     pub strength: f32,
@@ -23,6 +26,7 @@ pub struct NormalLayer {
 }
 
 impl NormalLayer {
+    /// What it may be.
     pub const STRENGTH: Range = 0.0..=100.0;
 }
 

@@ -12,10 +12,13 @@ use std::sync::Arc;
 /// Where a layer's frame lies, and how its pixels are sampled.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LayerTransform {
+    /// Where points of the frame go.
     pub shape: TransformShape,
+    /// How pixels are sampled.
     pub filter: Resampling,
 }
 
+/// A map of the layer's frame to the canvas.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TransformShape {
     /// a, b, c, d, e, f: x′ = a x + c y + e, y′ = b x + d y + f.

@@ -25,6 +25,7 @@ pub enum FigureBackground {
 /// What was found about a drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DrawingLook {
+    /// What is behind the figure.
     pub background: FigureBackground,
     /// Flat colours of the figure that are large enough to be parts.
     pub colors: usize,
@@ -54,6 +55,7 @@ impl FigureBackground {
 }
 
 impl DrawingLook {
+    /// What is behind the figure of a drawing.
     pub fn of(tiles: &TileGrid, canvas: Size) -> Self {
         let background = FigureBackground::of(tiles, canvas);
         let without_colors = |background| Self { background, colors: 0, flat_share: 0.0 };

@@ -18,7 +18,9 @@ impl OutlineSource {
 }
 
 impl Part {
+    /// Degrees that a part may lean, each way.
     pub const TILT: Range = -80.0..=80.0;
+    /// Pixels that a part may be nearer or farther.
     pub const RAISE: Range = -8192.0..=8192.0;
     /// Letters of an id and of a name.
     pub const LONGEST_NAME: usize = 1000;

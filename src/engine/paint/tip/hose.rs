@@ -20,6 +20,7 @@ pub struct Hose {
 pub struct HoseRank {
     /// The number of choices, `≥ 1`.
     pub count: u32,
+    /// What selects a picture of the rank.
     pub select: RankSelect,
 }
 
@@ -49,6 +50,7 @@ pub struct DabMoment {
 }
 
 impl Hose {
+    /// The pictures of one hose.
     pub const MOST_PICTURES: usize = 1024;
     /// GIMP's own limit.
     pub const MOST_RANKS: usize = 4;
@@ -57,9 +59,11 @@ impl Hose {
     pub fn new(pictures: Vec<PictureSource>, ranks: Vec<HoseRank>) -> Self {
         Self { pictures: pictures.into(), ranks: ranks.into() }
     }
+    /// All its pictures.
     pub fn pictures(&self) -> &[PictureSource] {
         &self.pictures
     }
+    /// The ranks, the one with the largest stride first.
     pub fn ranks(&self) -> &[HoseRank] {
         &self.ranks
     }

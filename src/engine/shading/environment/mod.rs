@@ -22,7 +22,9 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 pub struct Environment {
     /// Its name in the document.
     pub file: String,
+    /// The light from every direction.
     pub picture: Picture,
+    /// How its pixels are directions.
     pub projection: Projection,
     /// About the vertical axis, degrees: direction d is looked up at R_y(rotation) d.
     pub rotation: f32,
@@ -73,6 +75,7 @@ pub struct Parcel {
 }
 
 impl Environment {
+    /// A panorama as it is, under its name in the document.
     pub fn new(file: String, picture: Picture) -> Self {
         let projection = Projection::default();
         Self { file, picture, projection, rotation: 0.0, exposure: 0.0, cache: Arc::default() }

@@ -57,13 +57,16 @@ impl Model {
 /// One term of a material: weight × colour × ρ × light, scaled by its own σ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Term {
+    /// Its colour; alpha is ignored.
     pub color: Color,
     /// `≥ 0`; 0 leaves the term out.
     pub weight: f32,
+    /// How the relief scales it.
     pub scaling: Scaling,
 }
 
 impl Term {
+    /// What a weight may be.
     pub const WEIGHT: Range = 0.0..=100.0;
 
     /// Not scaled.
@@ -85,7 +88,9 @@ impl Term {
 /// The parameters of a shading layer.
 #[derive(Clone, PartialEq)]
 pub struct Shading {
+    /// How it reflects light.
     pub model: Model,
+    /// What it is lit by.
     pub lights: Vec<Light>,
     /// Light from everywhere; the occlusion of [`Model::AmbientOcclusion`]. For [`Model::DiffuseEnvironment`] only its
     /// scaling counts, which scales the occlusion.
@@ -96,6 +101,7 @@ pub struct Shading {
     pub specular: Term,
     /// η of the Phong highlight, `≥ 0`.
     pub shininess: f32,
+    /// The curvature that scales its terms.
     pub features: Features,
     /// What counts as full reflectance where light comes from a picture (environment, lit sphere).
     pub reference: Reference,
@@ -105,10 +111,13 @@ pub struct Shading {
     pub exponent: f32,
     /// Ashikhmin: exponents along the picture's x and y.
     pub nu: f32,
+    /// As `nu`, along the picture's y.
     pub nv: f32,
+    /// Light from all directions; absent: none.
     pub environment: Option<Environment>,
     /// Lit sphere; if there is a concave one too, this one is for convex features. `None`: grey clay.
     pub sphere: Option<LitSphere>,
+    /// The lit sphere of concave features.
     pub sphere_concave: Option<LitSphere>,
     /// Refractive index, `> 0`.
     pub index: f32,
@@ -120,14 +129,20 @@ pub struct Shading {
 }
 
 impl Shading {
+    /// The lights of one layer.
     pub const MOST_LIGHTS: usize = 256;
     /// For the Phong highlight and both Ashikhmin exponents.
     pub const SHININESS: Range = 0.0..=100_000.0;
+    /// What `bands` may be.
     pub const BANDS: std::ops::RangeInclusive<u32> = 2..=256;
+    /// What `exponent` may be.
     pub const EXPONENT: Range = UNIT;
+    /// What `index` may be.
     pub const INDEX: Range = 0.1..=10.0;
+    /// What `occlusion_radius_px` may be.
     pub const OCCLUSION_RADIUS_PX: Range = 0.0..=crate::surface::Surface::WIDEST_OCCLUSION_PX;
 
+    /// What `bounces` may be.
     pub const BOUNCES: std::ops::RangeInclusive<u32> = 0..=8;
 
     /// How many bounces its rays make; 0 without an environment, which they look for.

@@ -28,7 +28,9 @@ pub struct Mesh {
 /// The rectangle over which the points are evenly spread before they move, px.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshFrame {
+    /// Its upper left corner, px.
     pub corner: Vec2,
+    /// Its sides, px.
     pub size: Vec2,
 }
 
@@ -42,6 +44,7 @@ impl MeshFrame {
     /// Sides of a frame.
     pub const SIDE_PX: range::Range = 1.0..=1e6;
 
+    /// The whole canvas.
     pub fn of(canvas: Size) -> Self {
         Self { corner: Vec2::ZERO, size: vec2(canvas.width as f32, canvas.height as f32) }
     }
@@ -63,12 +66,15 @@ impl Mesh {
         let places = (0..columns * rows).map(|k| bare.place(k)).collect();
         Self::new(columns, rows, frame, places)
     }
+    /// Points from left to right.
     pub fn columns(&self) -> usize {
         self.columns
     }
+    /// Points from top to bottom.
     pub fn rows(&self) -> usize {
         self.rows
     }
+    /// The rectangle over which its points were spread.
     pub fn frame(&self) -> MeshFrame {
         self.frame
     }
