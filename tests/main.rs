@@ -21,6 +21,7 @@ mod lines;
 mod maps;
 mod names;
 mod overwriting;
+mod performance;
 mod recipe;
 mod view;
 #[cfg(feature = "window-tests")]

@@ -13,7 +13,7 @@ const COMMANDS: [(&str, &str); 10] = [
     ("bench", "--bench= --benches --no-run"),
     ("build", "--release --bin= --example= --all-targets"),
     ("clippy", "--release --all-targets --tests"),
-    ("doc", "--no-deps --document-private-items"),
+    ("doc", "--no-deps --document-private-items --open"),
     ("fmt", "--check"),
     ("metadata", ""),
     ("package", "--list --no-verify --allow-dirty"),

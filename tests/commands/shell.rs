@@ -42,6 +42,7 @@ fn split_commands(text: &str) -> Vec<Vec<String>> {
     let mut word: Option<String> = None;
     let mut quote: Option<char> = None;
     let mut depth = 0;
+    let text = text.replace("2>&1", "");
     let mut chars = text.chars().peekable();
     while let Some(c) = chars.next() {
         match c {
