@@ -5,7 +5,7 @@ use super::behind::Behind;
 use super::compose::Composer;
 use super::deep::{DeepTiles, Highlights};
 use super::progress::in_parallel;
-use super::{Document, Layer, LayerId, PreparedDocument, Progress};
+use super::{Content, Document, Group, Layer, LayerId, PreparedDocument, Progress};
 use crate::memory::filled_or_unwind;
 use crate::raster::{PlanarTile, Tile, TileAt, TileGrid};
 use std::sync::Arc;
@@ -66,13 +66,13 @@ pub fn flatten_layer(document: &Document, id: LayerId, progress: &Progress) -> O
 /// As [`flatten_layer`], for some layers of one list composed with each other. A layer stays clipped if its base is
 /// among them.
 pub fn flatten_layers(document: &Document, ids: &[LayerId], progress: &Progress) -> Option<TileGrid> {
-    flatten(&document.with_only(ids)?, progress)
+    flatten(&without_others(document, ids)?, progress)
 }
 
 /// The same with pixels on the surface's rim wholly covered: a mask of `Surface::shares` around it cuts it to the same
 /// picture.
 pub fn flatten_whole(document: &Document, ids: &[LayerId], progress: &Progress) -> Option<TileGrid> {
-    let document = document.with_only(ids)?;
+    let document = without_others(document, ids)?;
     let mut prepared = PreparedDocument::new(&document, progress)?;
     prepared.whole_rims = document.surface.clone();
     prepared.flatten_tiles(&TileGrid::default(), &prepared.all_tiles(), progress)
@@ -82,36 +82,38 @@ impl Document {
     /// With some layers of one list alone, shown or not, without the opacity and masks of the groups around them;
     /// `None` if there are none of them.
     pub fn with_only(&self, ids: &[LayerId]) -> Option<Document> {
-        Some(Document { layers: alone(&self.layers, ids)?, ..self.clone() })
+        Some(Document { layers: alone(&self.layers, ids, true)?, ..self.clone() })
     }
 }
 
-/// The layers with all hidden except some; `None` if none of those is among them.
-fn alone(layers: &[Arc<Layer>], ids: &[LayerId]) -> Option<Vec<Arc<Layer>>> {
+/// The same without the hidden ones, which parts may be made of: to be seen, not to be shaped again.
+fn without_others(document: &Document, ids: &[LayerId]) -> Option<Document> {
+    Some(Document { layers: alone(&document.layers, ids, false)?, ..document.clone() })
+}
+
+/// The layers with all hidden except some, or without those; `None` if none of the wanted ones is among them.
+fn alone(layers: &[Arc<Layer>], ids: &[LayerId], keeps_hidden: bool) -> Option<Vec<Arc<Layer>>> {
     let (mut found, mut base_is_shown) = (false, false);
-    let shown = layers.iter().map(|layer| {
-        let mut next = Layer::clone(layer);
+    let shown = layers.iter().filter_map(|layer| {
         let is_chosen = ids.contains(&layer.id);
-        next.clip_below &= base_is_shown;
+        let clip_below = layer.clip_below && base_is_shown;
         if !layer.clip_below && !layer.content.shapes() {
             base_is_shown = is_chosen;
         }
         if is_chosen {
-            (next.visible, found) = (true, true);
-            return Arc::new(next);
+            found = true;
+            return Some(Arc::new(Layer { visible: true, clip_below, ..Layer::clone(layer) }));
         }
-        if let Some(group) = next.content.group_mut()
-            && let Some(inner) = alone(&group.layers, ids)
-        {
-            group.layers = inner;
-            group.pass_through = true;
-            (next.visible, next.opacity, next.mask, found) = (true, 1.0, None, true);
-            return Arc::new(next);
+        let inner = layer.content.group().and_then(|group| alone(&group.layers, ids, keeps_hidden));
+        if let Some(layers) = inner {
+            found = true;
+            let content = Content::Group(Group { layers, pass_through: true });
+            let next = Layer { visible: true, opacity: 1.0, mask: None, clip_below, ..Layer::clone(layer) };
+            return Some(Arc::new(Layer { content, ..next }));
         }
-        if !layer.content.shapes() {
-            next.visible = false;
-        }
-        Arc::new(next)
+        let shapes = layer.content.shapes();
+        (shapes || keeps_hidden)
+            .then(|| Arc::new(Layer { visible: layer.visible && shapes, clip_below, ..Layer::clone(layer) }))
     });
     let shown = shown.collect();
     found.then_some(shown)

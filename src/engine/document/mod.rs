@@ -61,7 +61,8 @@ pub use source::SurfaceSource;
 
 use crate::paint::{Scene, Selection};
 use crate::{math::Size, raster::Asset, surface::Surface};
-use std::{collections::BTreeMap, sync::Arc};
+use std::collections::{BTreeMap, HashSet};
+use std::sync::Arc;
 
 /// A picture being painted: the canvas, its surface, and the layers, bottom first.
 #[derive(Clone)]
@@ -127,6 +128,14 @@ impl Document {
         });
         found
     }
+    /// The layers whose frames are not the canvas.
+    pub fn moved_layers(&self) -> HashSet<LayerId> {
+        let mut moved = HashSet::new();
+        layer::on_canvas::each_with_map(&self.layers, &LayerMap::none(self.size), &mut |layer, map| {
+            moved.extend((!map.is_none()).then_some(layer.id));
+        });
+        moved
+    }
     /// A layer by its name, groups opened, the topmost of several.
     pub fn layer_named(&self, name: &str) -> Option<&Arc<Layer>> {
         fn find<'a>(layers: &'a [Arc<Layer>], name: &str) -> Option<&'a Arc<Layer>> {
@@ -142,7 +151,7 @@ impl Document {
     pub fn free_layer_name(&self, base: &str) -> String {
         // Looked up once: a search of the document for each number would cost the square of the layers.
         let layers = self.walk();
-        let taken: std::collections::HashSet<&str> = layers.iter().map(|(_, layer)| layer.name.as_str()).collect();
+        let taken: HashSet<&str> = layers.iter().map(|(_, layer)| layer.name.as_str()).collect();
         let mut name = base.to_owned();
         for i in 2.. {
             if !taken.contains(name.as_str()) {

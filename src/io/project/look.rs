@@ -8,7 +8,7 @@ use crate::document::{EncodedPixels, LookKind};
 use crate::pixels;
 use crate::raster::{BlendMode, TileGrid};
 use rayon::prelude::*;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -22,13 +22,13 @@ pub fn render(
     items: &[PlanItem],
     progress: &Progress,
 ) -> Cancellable<Vec<EncodedPixels>> {
-    let shown = pictures_of(items);
+    let (shown, seen) = (pictures_of(items), SeenLayers::of(document));
     progress.add_total(shown.len() as u64);
     let one = |item: &&PlanItem| {
         let encoded = match &item.shows {
             ItemContent::Layer(layer) => {
                 let kind = LookKind { masked: item.mask.is_none(), whole_rim: item.whole_rim };
-                look(file, document, layer, kind, progress)?
+                look(file, &seen, layer, kind, progress)?
             }
             ItemContent::Composed { document, layers } => flattened(document, layers, item.whole_rim, progress)
                 .map(|tiles| pixels::encode(file, &tiles, None))
@@ -59,15 +59,49 @@ pub fn pictures_of(items: &[PlanItem]) -> Vec<&PlanItem> {
     out
 }
 
+/// What is asked about each layer of a document, found once for all of them.
+struct SeenLayers<'d> {
+    document: &'d Document,
+    /// Those whose frames are not the canvas.
+    moved: HashSet<LayerId>,
+    /// What a layer's look depends on besides the scene and the layer itself: normal layers, and groups that move
+    /// those within.
+    others: Vec<Arc<Layer>>,
+}
+
+impl<'d> SeenLayers<'d> {
+    fn of(document: &'d Document) -> Self {
+        let is_taken = |layer: &Layer| layer.transform.is_some() || layer.on.is_some();
+        let takes_along = |layer: &Layer| is_taken(layer) && layer.content.group().is_some();
+        let all = document.walk().into_iter().map(|(_, layer)| layer);
+        let others = all.filter(|layer| layer.content.shapes() || takes_along(layer)).cloned().collect();
+        Self { document, moved: document.moved_layers(), others }
+    }
+    fn by(&self, layer: &Arc<Layer>) -> Vec<Arc<Layer>> {
+        std::iter::once(layer).chain(&self.others).cloned().collect()
+    }
+    /// A paint layer's pixels, where nothing hides any of them from other programs.
+    fn bare<'a>(&self, layer: &'a Layer, masked: bool) -> Option<&'a TileGrid> {
+        let is_moved = self.moved.contains(&layer.id);
+        let has_surface = self.document.surface.is_some();
+        let is_cut = is_moved || (masked && layer.mask.is_some()) || (has_surface && layer.clip_to_surface);
+        match &layer.content {
+            Content::Pixels(pixels) if !is_cut => Some(&pixels.tiles),
+            _ => None,
+        }
+    }
+}
+
 /// The look of a layer alone: wholly opaque, the surface's edge and its mask in its pixels, if requested.
 fn look(
     file: &Path,
-    document: &Document,
+    seen: &SeenLayers,
     layer: &Arc<Layer>,
     kind: LookKind,
     progress: &Progress,
 ) -> Cancellable<EncodedPixels> {
-    if let Some(tiles) = bare(document, layer, kind.masked) {
+    let document = seen.document;
+    if let Some(tiles) = seen.bare(layer, kind.masked) {
         return pixels_of(file, document, layer, tiles).map(Some);
     }
     let render = || {
@@ -79,7 +113,7 @@ fn look(
         tiles.map(|tiles| pixels::encode(file, &tiles, Some(document.size.rect()))).transpose()
     };
     let mut failed = None;
-    let look = layer.cache.look.get(&document.scene(), &layers_seen_by(document, layer), &kind, || {
+    let look = layer.cache.look.get(&document.scene(), &seen.by(layer), &kind, || {
         render().unwrap_or_else(|error| {
             failed = Some(error);
             None
@@ -97,40 +131,20 @@ fn is_deep(tiles: &TileGrid) -> bool {
     tiles.is_deep_in(tiles.bounds())
 }
 
-/// A paint layer's pixels, where nothing hides any of them from other programs.
-fn bare<'a>(document: &Document, layer: &'a Layer, masked: bool) -> Option<&'a TileGrid> {
-    let is_moved = document.map_of(layer.id).is_some_and(|map| !map.is_none());
-    let is_cut = is_moved || (masked && layer.mask.is_some()) || (document.surface.is_some() && layer.clip_to_surface);
-    match &layer.content {
-        Content::Pixels(pixels) if !is_cut => Some(&pixels.tiles),
-        _ => None,
-    }
-}
-
-/// What a layer's look depends on besides the scene: the layer itself, normal layers beneath it, and groups that move
-/// it.
-fn layers_seen_by(document: &Document, layer: &Arc<Layer>) -> Vec<Arc<Layer>> {
-    let all = document.walk().into_iter().map(|(_, layer)| layer);
-    let is_taken = |layer: &Layer| layer.transform.is_some() || layer.on.is_some();
-    let takes_along = |layer: &Layer| is_taken(layer) && layer.content.group().is_some();
-    let others = all.filter(|layer| layer.content.shapes() || takes_along(layer));
-    std::iter::once(layer).chain(others).cloned().collect()
-}
-
 /// Stores the pictures that were read with a document as the looks of its layers, so that saving copies them.
 pub fn remember(document: &Document, looks: &BTreeMap<LayerId, EncodedPixels>) {
+    let (scene, seen) = (document.scene(), SeenLayers::of(document));
     for (_, layer) in document.walk() {
         if let Some(encoded) = looks.get(&layer.id) {
+            let bare = seen.bare(layer, true);
             // Another format rounded what it shows.
-            if bare(document, layer, true).is_some_and(|tiles| is_deep(tiles) != pixels::is_deep(encoded.file.bytes()))
-            {
+            if bare.is_some_and(|tiles| is_deep(tiles) != pixels::is_deep(encoded.file.bytes())) {
                 continue;
             }
-            let (scene, seen) = (document.scene(), layers_seen_by(document, layer));
             let kind = LookKind { masked: true, whole_rim: false };
-            layer.cache.look.get(&scene, &seen, &kind, || Some(encoded.clone()));
+            layer.cache.look.get(&scene, &seen.by(layer), &kind, || Some(encoded.clone()));
             // Nothing hides any of its pixels, so they are its look.
-            if bare(document, layer, true).is_some() {
+            if bare.is_some() {
                 layer.cache.pixels.get(&scene, std::slice::from_ref(layer), &(), || Some(encoded.clone()));
             }
         }
