@@ -5,7 +5,7 @@ use super::MERGED;
 use super::manifest::Manifest;
 use super::png_header::{PNG_HEADER, png_size};
 use super::reader::ProjectReader;
-use super::repair::{layer_mut, name_of};
+use super::repair::{alone, around, layer_mut, name_of};
 use super::stack::{self, ElementContent, StackElement, StackXml};
 use crate::document::{Content, Document, Group, Layer, PixelLayer};
 use crate::math::Size;
@@ -80,8 +80,8 @@ pub fn restored(reading: &mut ProjectReader, text: &[u8], value: &Value, manifes
     // The surface alone: the layers are taken one by one.
     let mut base = value.clone();
     base["layers"] = json!([]);
-    let canvas = json!({ "width": size.width, "height": size.height });
-    base["canvas"] = canvas.clone();
+    base["canvas"] = json!({ "width": size.width, "height": size.height });
+    let around = around(&base);
     let base = reading.read_value(&base).or_else(|error| {
         reading.lost(format!("the surface is lost: {error}"));
         Ok::<_, Error>(Document::empty(size))
@@ -91,10 +91,10 @@ pub fn restored(reading: &mut ProjectReader, text: &[u8], value: &Value, manifes
         used_px: 0,
         used_bytes: 0,
         known: HashMap::new(),
-        live: Some(SavedState { value: value.clone(), canvas, manifest }),
+        live: Some(SavedState { value: value.clone(), around, manifest }),
     };
     let layers = reader.layers(stack.layers)?;
-    Ok(Document { layers, size, ..base })
+    Ok(Document { layers, size, ..base }.reshaped())
 }
 
 /// The list of layers is lost: each readable picture becomes a layer, else the merged picture.
@@ -135,7 +135,8 @@ pub fn leftovers(reading: &mut ProjectReader, error: Error) -> Result<Document> 
 /// What we saved, for layers that are unchanged.
 struct SavedState<'a> {
     value: Value,
-    canvas: Value,
+    /// What each layer is read in.
+    around: Value,
     manifest: &'a Manifest,
 }
 
@@ -192,8 +193,7 @@ impl ForeignReader<'_, '_> {
         let bytes = self.reading.archive.bytes(src, self.reading.budget.file_bytes).ok()?;
         ((shown.x, shown.y) == (x, y) && crc32fast::hash(&bytes) == shown.crc).then_some(())?;
         let layer = layer_mut(&mut saved.value, &shown.layer)?.clone();
-        let alone = json!({ "format": "rilievo", "canvas": saved.canvas, "layers": [layer] });
-        match self.reading.read_value(&alone) {
+        match self.reading.read_value(&alone(&saved.around, &layer)) {
             Ok(document) => document.layers.into_iter().next().map(Arc::unwrap_or_clone),
             Err(error) => {
                 self.reading.lost(format!("“{}” became pixels: {error}", name_of(&layer)));

@@ -45,9 +45,10 @@ pub fn check_pictures(
 /// Replaces every layer that cannot be read by its picture, or by an empty one, and leaves out maps that cannot be
 /// read; whether there was any.
 pub fn leave_out_damaged(reading: &mut ProjectReader, document: &mut Value, manifest: Option<&Manifest>) -> bool {
-    let mut left_out = false;
+    let mut left_out = leave_out_selections(reading, document);
     if let Some(surface) = document.get("surface").cloned() {
-        let alone = json!({ "format": "rilievo", "version": document["version"], "surface": surface });
+        let mut alone = around(document);
+        alone["surface"] = surface;
         if let Err(error) = reading.read_value(&alone) {
             reading.lost(format!("the surface is lost: {error}"));
             if let Value::Object(fields) = &mut *document {
@@ -56,19 +57,17 @@ pub fn leave_out_damaged(reading: &mut ProjectReader, document: &mut Value, mani
             left_out = true;
         }
     }
-    left_out |= leave_out_selections(reading, document);
-    let canvas =
-        json!({ "canvas": document["canvas"], "selections": document.get("selections").unwrap_or(&json!([])) });
+    let around = around(document);
     let mut paths = Vec::new();
     list_layers(&document["layers"], "", &mut paths);
     for path in paths {
         let Some(layer) = layer_mut(document, &path) else { continue };
-        let Some(error) = trouble(reading, &canvas, layer) else { continue };
+        let Some(error) = trouble(reading, &around, layer) else { continue };
         let name = name_of(layer);
         let shown = manifest.and_then(|m| m.pictures.iter().find(|shown| shown.layer == path));
         let pixels = shown.map(|shown| as_picture(layer, Some(shown)));
         let pixels = pixels.filter(|pixels| pixels["file"] != layer["file"]);
-        let pixels = pixels.filter(|pixels| trouble(reading, &canvas, pixels).is_none());
+        let pixels = pixels.filter(|pixels| trouble(reading, &around, pixels).is_none());
         match pixels {
             Some(pixels) => {
                 reading.lost(format!("“{name}” became pixels: {error}"));
@@ -99,17 +98,43 @@ fn leave_out_selections(reading: &mut ProjectReader, document: &mut Value) -> bo
     left_out
 }
 
+/// A document without layers in which each of them can be read alone: its canvas and its selections, and parts of the
+/// same ids that hold nothing.
+pub fn around(document: &Value) -> Value {
+    let mut out = json!({ "format": "rilievo", "version": document["version"], "layers": [] });
+    for field in ["canvas", "selections"] {
+        if let Some(value) = document.get(field) {
+            out[field] = value.clone();
+        }
+    }
+    let part = |part: &Value| Some(json!({ "id": part.get("id")?, "kind": "sweep", "balls": [] }));
+    let parts: Vec<Value> = document["surface"]["parts"].as_array().into_iter().flatten().filter_map(part).collect();
+    if !parts.is_empty() {
+        out["surface"] = json!({ "parts": parts });
+    }
+    out
+}
+
+/// A document of one layer alone, with the selections that its strokes name.
+pub fn alone(around: &Value, layer: &Value) -> Value {
+    let strokes = || layer["strokes"].as_array().into_iter().flatten();
+    let is_named = |selection: &&Value| strokes().any(|stroke| stroke.get("selection") == selection.get("id"));
+    let selections = around["selections"].as_array().into_iter().flatten().filter(is_named).cloned().collect();
+    let mut out = around.clone();
+    out["selections"] = Value::Array(selections);
+    out["layers"] = json!([layer]);
+    out
+}
+
 /// Why a single layer cannot be read. A group is tested without its layers.
-fn trouble(reading: &ProjectReader, canvas: &Value, layer: &Value) -> Option<crate::Error> {
+fn trouble(reading: &ProjectReader, around: &Value, layer: &Value) -> Option<crate::Error> {
     let mut layer = layer.clone();
     if layer["kind"] == "group"
         && let Value::Object(fields) = &mut layer
     {
         fields.shift_remove("layers");
     }
-    let (canvas, selections) = (&canvas["canvas"], &canvas["selections"]);
-    let alone = json!({ "format": "rilievo", "canvas": canvas, "selections": selections, "layers": [layer] });
-    reading.read_value(&alone).err()
+    reading.read_value(&alone(around, &layer)).err()
 }
 
 /// Replaces a layer by its picture, or by an empty one; its blending stays.
