@@ -3,7 +3,7 @@
 
 #![warn(missing_docs)]
 
-use crate::document::Document;
+use crate::document::{Content, Document, Part, PartKind};
 use crate::math::Size;
 use crate::memory::spoken;
 use crate::paint::Stroke;
@@ -11,6 +11,7 @@ use crate::raster::{Picture, Tile};
 use crate::surface::Bend;
 use crate::{Error, Remedy, Result};
 use std::path::Path;
+use std::sync::Arc;
 
 /// Limits for what one file may request. The command line raises them with `--max-pixels`, `--max-side` and
 /// `--max-memory`.
@@ -22,6 +23,8 @@ pub struct Budget {
     pub area_px: u64,
     /// Pixels of all pictures of one document together.
     pub document_px: u64,
+    /// Pixels in which regions of the surface are looked for, all together.
+    pub region_px: u64,
     /// Bytes that reading a file may take at its peak, what was read included.
     pub memory_bytes: u64,
     /// Whether paint has 16 bits a channel where its file has more than 8. It takes three times the memory.
@@ -58,6 +61,7 @@ impl Default for Budget {
             side_px: Picture::LONGEST_SIDE_PX,
             area_px: Picture::MOST_PX as u64,
             document_px: 1 << 31,
+            region_px: Document::MOST_REGION_PX,
             memory_bytes: super::machine::UNKNOWN_BYTES,
             deep_paint: true,
             file_bytes: 2 << 30,
@@ -81,14 +85,26 @@ impl Default for Budget {
 }
 
 impl Budget {
-    /// The usual budget, raised for a document with a larger canvas; whoever reads it must raise theirs again.
+    /// The usual budget, raised for a document with a larger canvas, or with maps that were put on one; whoever reads
+    /// it must raise theirs again. What its paint takes is in memory already, and as much is free as this machine has.
     pub fn holding(document: &Document) -> Self {
-        let (usual, size) = (Self::default(), document.size);
-        let area_px = usual.area_px.max(size.area() as u64);
+        let usual = Self::default();
+        let painted = document.walk().into_iter().map(|(_, layer)| match &layer.content {
+            Content::Pixels(pixels) => pixels.tiles.bytes() as u64,
+            _ => 0,
+        });
+        let memory_bytes = usual.memory_bytes.max(super::machine::free_bytes()).saturating_add(painted.sum());
+        let frame = |part: &Arc<Part>| match &part.kind {
+            PartKind::Maps(maps) => Some(maps.surface.size()),
+            _ => None,
+        };
+        let sizes = || document.parts.list.iter().filter_map(frame).chain([document.size]);
+        let area_px = sizes().map(|size| size.area() as u64).fold(usual.area_px, u64::max);
         Self {
-            side_px: usual.side_px.max(size.width).max(size.height),
+            side_px: sizes().map(|size| size.width.max(size.height)).fold(usual.side_px, u32::max),
             area_px,
             document_px: usual.document_px.max(area_px.saturating_mul(4)),
+            memory_bytes,
             ..usual
         }
     }

@@ -13,12 +13,12 @@ mod shape_move;
 #[cfg(test)]
 mod tests;
 
-use super::{Document, NamedSelection, SurfaceSource};
+use super::{Document, NamedSelection};
 use crate::math::plane_map::PixelMove;
 use crate::math::{Mat2, PlaneMap, Rect, Size, Vec2, vec2};
 use crate::paint::Selection;
 use crate::raster::Resampling;
-use crate::surface::{Surface, SurfaceError};
+use crate::surface::SurfaceError;
 use selections::CarriedSelections;
 use std::sync::Arc;
 
@@ -183,7 +183,7 @@ impl Document {
         let parts = parts::carried(&self.parts.list, change, both);
         let bare = Document {
             size: change.to,
-            surface_source: source.map(|(source, maps)| Arc::new(placed(source, maps, change.to))),
+            surface_source: source.map(|(source, maps)| Arc::new(source.placed_as(maps))),
             surface: maps,
             surface_files: self.surface_files.clone(),
             parts: Arc::default(),
@@ -202,15 +202,6 @@ impl Document {
 }
 
 const NOTHING_LEFT: &str = "The new canvas would hold nothing of the shape: layers could not be kept to it.";
-
-/// The maps of a surface at its new place.
-pub(super) fn placed(source: &SurfaceSource, surface: &Arc<Surface>, canvas: Size) -> SurfaceSource {
-    let origin = surface.origin();
-    let maps = origin.surface.size();
-    let is_fitted = origin.map.is_same_on(&Surface::fit_map(maps, canvas), maps);
-    let matrix = if is_fitted { None } else { origin.map.told_coefficients() };
-    SurfaceSource { matrix, ..source.clone() }
-}
 
 /// How turned paint is sampled, unless its layer says otherwise.
 const TURNED: Resampling = Resampling::Smooth;

@@ -9,7 +9,7 @@ mod selections;
 use super::TransformShape;
 use super::{
     Assistant, Content, DerivedMask, DetailSource, Document, HomeFrame, Layer, LayerMask, LayerTransform, MaskKind,
-    PixelLayer,
+    Part, PixelLayer, SelectionList,
 };
 use crate::math::range::{at_most, within};
 use crate::math::{COORDINATE, Size};
@@ -47,12 +47,14 @@ impl Document {
                 fit = layer_fits(layer, was.map(|was| &**was), self.size).map_err(|why| named(layer, &why));
             }
         });
+        self.parts.list.iter().for_each(|part| total.add_part(part));
+        total.values += selections::A_SELECTION * SelectionList::of(self).all().len();
         let homes = || self.homes_fit();
         let values = || total.fits().map_err(|why| format!("{why}."));
         fit.and_then(|()| self.aids_fit())
             .and_then(|()| selections::fit(self, before))
             .and_then(|()| self.surface_fits())
-            .and_then(|()| self.parts_fit())
+            .and_then(|()| self.parts_fit(before))
             .and_then(|()| homes())
             .and_then(|()| values())
     }
@@ -149,14 +151,17 @@ impl Total {
             Content::Fill(_) | Content::Pixels(_) | Content::Normals(_) | Content::Group(_) => {}
         }
     }
+    fn add_part(&mut self, part: &Part) {
+        let (samples, values) = part.measured();
+        (self.samples, self.values) = (self.samples + samples, self.values + values);
+    }
     fn fits(&self) -> Fit {
         at_most("Layers", self.layers, Document::MOST_LAYERS)?;
         at_most("Groups around a layer", self.deepest, Document::DEEPEST)?;
         at_most("Readings of the pen in the drawing", self.samples, Document::MOST_SAMPLES)?;
         if self.values > Document::MOST_VALUES {
-            return Err(
-                "The drawing would hold more strokes, anchors and lights than a file can hold: bake some".into()
-            );
+            let what = "strokes, anchors, lights and parts";
+            return Err(format!("The drawing would hold more {what} than a file can hold: bake some"));
         }
         Ok(())
     }

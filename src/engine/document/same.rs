@@ -2,7 +2,7 @@
 //! Floor 4. Names of files are not part of it: a project gives them its own. Not here: what must be redrawn (`diff`).
 
 use super::source::{MaskSource, SurfaceSource};
-use super::{Content, DetailSource, Document, Layer, LayerMask, MaskKind, NamedSelection, StrokeList};
+use super::{Content, DetailSource, Document, Layer, LayerMask, MaskKind, NamedSelection, Part, StrokeList};
 use crate::paint::Stroke;
 use crate::raster::TileGrid;
 use crate::raster::tile::TILE_AREA;
@@ -14,9 +14,8 @@ impl Document {
         if self.size != other.size {
             return Some("the size of the canvas".into());
         }
-        let parts = self.parts.list != other.parts.list;
         surface(self, other)
-            .or_else(|| parts.then(|| "the parts of its shape".into()))
+            .or_else(|| parts(&self.parts.list, &other.parts.list))
             .or_else(|| layers(&self.layers, &other.layers))
             .or_else(|| selections(self, other))
             .or_else(|| (self.guides != other.guides).then(|| "the guides".into()))
@@ -55,6 +54,14 @@ fn surface(a: &Document, b: &Document) -> Option<String> {
         _ => false,
     };
     (!is_same).then(|| "the surface".into())
+}
+
+fn parts(a: &[Arc<Part>], b: &[Arc<Part>]) -> Option<String> {
+    if a.len() != b.len() {
+        return Some(format!("the number of parts of its shape, {} and not {}", b.len(), a.len()));
+    }
+    let (part, _) = a.iter().zip(b).find(|(a, b)| !Arc::ptr_eq(a, b) && a != b)?;
+    Some(format!("“{}” among the parts of its shape", part.name))
 }
 
 /// Whether the files of a surface's maps are known, so that they themselves are stored.
@@ -104,8 +111,8 @@ fn layer(a: &Layer, b: &Layer) -> Option<String> {
     }
     let what = if a.name != b.name {
         "name"
-    } else if !meets_alike(a, b) {
-        "opacity, blend mode, clipping, lock, label, home or liquify"
+    } else if let Some(what) = meeting(a, b) {
+        what
     } else if !same_mask(a.mask.as_ref(), b.mask.as_ref()) {
         "mask"
     } else {
@@ -114,14 +121,22 @@ fn layer(a: &Layer, b: &Layer) -> Option<String> {
     Some(format!("“{}”: its {what}", a.name))
 }
 
-fn meets_alike(a: &Layer, b: &Layer) -> bool {
+/// What differs in how two layers meet what is around them.
+fn meeting(a: &Layer, b: &Layer) -> Option<&'static str> {
     // The place of a part belongs to the part.
     let on = |l: &Layer| l.on.as_ref().map(|home| home.part.clone());
-    let meets = |l: &Layer| {
-        let kind = (l.visible, l.opacity, l.blend, l.blend_linear, l.clip_below);
-        (kind, l.lock, l.clip_to_surface, l.transform.clone(), l.label, on(l))
-    };
-    meets(a) == meets(b) && a.liquify == b.liquify
+    let each = [
+        ("visibility", a.visible == b.visible),
+        ("opacity", a.opacity == b.opacity),
+        ("blend mode", (a.blend, a.blend_linear) == (b.blend, b.blend_linear)),
+        ("clipping", (a.clip_below, a.clip_to_surface) == (b.clip_below, b.clip_to_surface)),
+        ("lock", a.lock == b.lock),
+        ("label", a.label == b.label),
+        ("transform", a.transform == b.transform),
+        ("liquify", a.liquify == b.liquify),
+        ("home", on(a) == on(b)),
+    ];
+    each.into_iter().find(|(_, is_same)| !is_same).map(|(what, _)| what)
 }
 
 fn same_mask(a: Option<&LayerMask>, b: Option<&LayerMask>) -> bool {

@@ -7,7 +7,7 @@ mod selections;
 pub use reducer::{DocumentReducer, ReducedSurface, SurfaceReduction};
 
 use super::layer::scale::CanvasScale;
-use super::{Document, Part, canvas_change};
+use super::{Document, Part};
 use crate::math::Size;
 use crate::raster::Resampling;
 use crate::surface::SurfaceError;
@@ -42,7 +42,7 @@ impl Document {
         let source = self.surface_source.as_ref().zip(maps.as_ref());
         let scaled = Document {
             size: to,
-            surface_source: source.map(|(source, maps)| Arc::new(canvas_change::placed(source, maps, to))),
+            surface_source: source.map(|(source, maps)| Arc::new(source.placed_as(maps))),
             surface: maps,
             parts: Arc::default(),
             layers: scale.layers(&self.layers),

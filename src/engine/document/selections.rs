@@ -26,6 +26,9 @@ impl NamedSelection {
 impl Document {
     /// Selections of a document, those of strokes too.
     pub const MOST_SELECTIONS: usize = 10_000;
+    /// Pixels of the canvas for each selection that follows the surface, all together: each is looked for when the
+    /// drawing is opened. On a canvas of 4096 × 4096 there may be 1024 of them.
+    pub const MOST_REGION_PX: u64 = 1 << 34;
 
     /// The coverage of the active selection; `None` where everything may be changed.
     pub fn selected(&self) -> Option<&CoverageGrid> {

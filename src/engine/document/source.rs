@@ -6,6 +6,8 @@ pub use super::conventions::{DepthConvention, DepthEncoding, Near, NormalConvent
 use super::{LayerTransform, TransformShape};
 use crate::math::PlaneMap;
 use crate::raster::Resampling;
+use crate::surface::Surface;
+use std::sync::Arc;
 
 /// The `"surface"` object. At least one of `normal` and `depth`; the importer derives the other.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -25,6 +27,15 @@ impl SurfaceSource {
     /// The matrix as a map; `None` if there is none, or one that cannot be inverted.
     pub fn map(&self) -> Option<PlaneMap> {
         PlaneMap::affine(self.matrix?)
+    }
+    /// The same maps where they are as a surface that was made of them: with the matrix that takes them there, or
+    /// without one if they are fitted to it.
+    pub fn placed_as(&self, surface: &Arc<Surface>) -> Self {
+        let origin = surface.origin();
+        let (maps, canvas) = (origin.surface.size(), surface.size());
+        let is_fitted = origin.map.is_same_on(&Surface::fit_map(maps, canvas), maps);
+        let matrix = if is_fitted { None } else { origin.map.told_coefficients() };
+        SurfaceSource { matrix, ..self.clone() }
     }
     /// Refuses, in a sentence, a matrix that files cannot hold.
     pub fn fits(&self) -> Result<(), String> {

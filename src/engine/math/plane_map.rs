@@ -49,6 +49,12 @@ impl PlaneMap {
         let by = by.as_dvec2();
         Self { forward: DMat3::from_translation(by), backward: DMat3::from_translation(-by) }
     }
+    /// The whole of one canvas over the whole of another.
+    pub fn scaling(from: Size, to: Size) -> Self {
+        let side = |to: u32, from: u32| f64::from(to) / f64::from(from.max(1));
+        let (x, y) = (side(to.width, from.width), side(to.height, from.height));
+        Self::affine([x, 0.0, 0.0, y, 0.0, 0.0]).unwrap_or_default()
+    }
     /// A turn counter-clockwise as seen about a point, degrees.
     pub fn rotation(degrees: f64, about: Vec2) -> Self {
         // y points down, so counter-clockwise as seen is a negative angle.
@@ -103,7 +109,7 @@ impl PlaneMap {
         let [a, b, g, c, d, h, e, f, i] = self.forward.to_cols_array();
         (g == 0.0 && h == 0.0).then(|| [a, b, c, d, e, f].map(|v| v / i))
     }
-    /// The same to fifteen digits, which every reader of files parses to the same numbers.
+    /// The same to fifteen digits: short in a file, and without what composing maps rounded.
     pub fn told_coefficients(&self) -> Option<[f64; 6]> {
         Some(self.coefficients()?.map(told))
     }
@@ -225,8 +231,7 @@ pub fn orthogonal(matrix: Mat2) -> Mat2 {
     Mat2::from_cols(vec2(cosine, sine), vec2(-sine, cosine)) * mirror
 }
 
-/// A number to fifteen digits, and no more than fifteen after the point: with more, a fast parser of decimals may be
-/// off by the last bit.
+/// A number to fifteen digits, and no more than fifteen after the point.
 pub fn told(v: f64) -> f64 {
     let text = if v.abs() < 1.0 { format!("{v:.15}") } else { format!("{v:.14e}") };
     // −0 becomes 0.

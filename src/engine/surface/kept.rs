@@ -36,12 +36,14 @@ impl<K: PartialEq, V: KeptBytes> KeptBytes for RecentCache<K, V> {
 }
 
 impl Surface {
+    /// Bytes of the maps alone and of the links between their pixels.
+    pub const BYTES_PER_PX: usize = 4 * size_of::<f32>() + 2 * size_of::<u8>();
+
     /// Bytes of the maps and of what is computed when a surface is made.
     pub fn map_bytes(&self) -> u64 {
-        const PER_PX: usize = 4 * size_of::<f32>() + 2 * size_of::<u8>();
         let smooth_links = self.smooth_links.as_ref().map_or(0, |plane| plane.kept_bytes());
         let parts = self.parts.as_ref().map_or(0, |plane| plane.kept_bytes());
-        (self.size().area() * PER_PX) as u64 + smooth_links + parts + self.contours().bytes()
+        (self.size().area() * Self::BYTES_PER_PX) as u64 + smooth_links + parts + self.contours().bytes()
     }
     /// Bytes of what was computed from the maps and can be computed again.
     pub fn computed_bytes(&self) -> u64 {

@@ -7,7 +7,7 @@ use super::png_header::png_size;
 use super::reader::ProjectReader;
 use super::{Archive, DOCUMENT, MANIFEST, MERGED, STACK, foreign, repair, stack};
 use crate::document::EncodedPixels;
-use crate::document::{Content, Document, LayerId};
+use crate::document::{Content, Document, Layer, LayerId};
 use crate::math::Size;
 use crate::raster::Asset;
 use crate::raster::tile::TILE_AREA;
@@ -42,7 +42,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
     }
     let document = reading.document()?;
     let ProjectReader { mut notes, is_whole, .. } = reading;
-    notes.extend(document.note_of_lost(None));
+    notes.extend(document.note_of_lost(None).into_iter().chain(document.note_of_astray()));
     // Without it the layers are painted before anything is seen.
     let picture = archive.has(MERGED).then(|| archive.bytes(MERGED, budget.file_bytes).ok()).flatten();
     Ok(ProjectContents { document, notes, is_whole, picture: picture.map(Asset::from) })
@@ -134,7 +134,9 @@ impl ProjectReader<'_> {
         };
         let of_this_program = manifest.is_some_and(Manifest::is_of_this_program);
         if of_this_program {
-            remember(&document, &looks(&document, intact));
+            // A Photoshop file, which has no stack.xml, keeps masks beside the pixels of layers.
+            let has_masks_in_pixels = self.archive.has(STACK);
+            remember(&document, &looks(&document, intact, has_masks_in_pixels));
         }
         Ok(document)
     }
@@ -193,13 +195,18 @@ fn list_paint(layers: &Value, out: &mut BTreeSet<(String, i32, i32)>) {
     }
 }
 
-/// The pictures by the layers they show.
-fn looks(document: &Document, intact: Vec<(ManifestPicture, Asset, Size)>) -> BTreeMap<LayerId, EncodedPixels> {
+/// The pictures by the layers they show, if they show them as they look here.
+fn looks(
+    document: &Document,
+    intact: Vec<(ManifestPicture, Asset, Size)>,
+    has_masks_in_pixels: bool,
+) -> BTreeMap<LayerId, EncodedPixels> {
     let mut by_path: BTreeMap<String, EncodedPixels> = intact
         .into_iter()
         .filter(|(shown, ..)| !shown.whole_rim)
         .map(|(shown, file, size)| (shown.layer, EncodedPixels { file, size, x: shown.x, y: shown.y }))
         .collect();
-    let walk = document.walk().into_iter();
+    let is_whole = |layer: &Layer| has_masks_in_pixels || layer.mask.is_none();
+    let walk = document.walk().into_iter().filter(|(_, layer)| is_whole(layer));
     walk.filter_map(|(path, layer)| Some((layer.id, by_path.remove(&path)?))).collect()
 }

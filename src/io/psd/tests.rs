@@ -69,6 +69,8 @@ fn our_own_file_comes_back_live_in_every_parameter_and_pixel() {
     assert_eq!(back.notes, [""; 0]);
     assert!(back.is_whole);
     assert_same(&document, &back.document);
+    // Masks, which such a file keeps beside the pixels, are in the pixels of a project.
+    assert!(looks(&back.document) == looks(&everything(64)));
 }
 #[test]
 fn names_that_other_programs_cannot_show_do_not_cost_what_is_live() {

@@ -55,8 +55,6 @@ impl LayerReader<'_> {
         let warped = fields.get("liquify");
         let liquify = warped.as_ref().map(liquify::read).transpose()?.flatten();
         let on = fields.get("on").map(|node| self.home(&node)).transpose()?;
-        // Outside of groups the canvas is what is around.
-        let on = on.filter(|home| depth > 0 || !home.is_canvas());
         let content = read_content(self, &mut fields, depth)?;
         fields.finish()?;
         let layer = Layer::new(name, content);

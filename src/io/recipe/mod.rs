@@ -167,7 +167,7 @@ fn read_parts(value: &Value, source: RecipeSource, tiles: TileGrids) -> Result<(
     let scene = Scene { size, surface: surface.clone() };
     // Those that follow the surface are found on the maps, and again once the parts have made theirs.
     let mut selections = selections.map_or(Ok(Vec::new()), |node| reader.selections(&node, &scene))?;
-    let active_selection = active.map(|node| reader.selection_of(&node)).transpose()?.filter(|found| !found.is_empty());
+    let active_selection = active.map(|node| reader.selection_of(&node)).transpose()?;
     let parts = match surface_node {
         Some(node) => node.fields()?.get("parts").map(|node| reader.parts(&node)).transpose()?.unwrap_or_default(),
         None => Vec::new(),
@@ -175,27 +175,27 @@ fn read_parts(value: &Value, source: RecipeSource, tiles: TileGrids) -> Result<(
     selections.extend(reader.outlined(&parts, &selections));
     reader.homes = parts.iter().map(|part| part.id.clone()).collect();
     let layers = layers.map_or(Ok(Vec::new()), |node| reader.layers(&node, 0))?;
-    let (surface_files, no_parts) = (Arc::new(files), Arc::default());
     let bare = Document {
         size,
         surface,
         surface_source,
-        surface_files,
-        parts: no_parts,
+        surface_files: Arc::new(files),
+        parts: Arc::default(),
         layers,
         selections,
         active_selection,
         guides: Arc::new(guides),
         assistants: Arc::new(assistants),
     };
-    let document = match source.onto {
+    let mut document = match source.onto {
         _ if parts.is_empty() => bare,
         // Another object takes the place of the document's own, parts and all.
         Some(_) => bare.off_parts(parts),
         None => bare.with_parts(parts).with_selections_found(),
     };
-    let lost = document.note_of_lost(None);
-    Ok((document, reader.notes.into_iter().chain(lost).collect()))
+    document.active_selection = document.active_selection.filter(|found| !found.is_empty());
+    let of_parts = document.note_of_lost(None).into_iter().chain(document.note_of_astray());
+    Ok((document, reader.notes.into_iter().chain(of_parts).collect()))
 }
 
 fn check_version(root: &mut Fields) -> Result<()> {
@@ -340,7 +340,7 @@ fn head(document: &Document, list: &SelectionList) -> JsonObject {
     out.set("canvas", json!({ "width": document.size.width, "height": document.size.height }));
     let mut surface = document.surface_source.as_deref().map(surface::write).unwrap_or_default();
     if !document.parts.is_empty() {
-        surface.set("parts", parts::write(&document.parts, list));
+        surface.set("parts", parts::write(document, list));
     }
     out.object("surface", surface);
     selections::write(&mut out, document, list);

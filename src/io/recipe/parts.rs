@@ -3,21 +3,23 @@
 
 mod write;
 
+use write::write_maps;
 pub use write::{write, write_part};
 
 use super::pictures::PictureCache;
-use super::{LayerReader, RecipeSource, maps, surface};
+use super::{LayerReader, RecipeSource, maps, samples, surface};
 use crate::document::parts::{
     CoverageFile, FlatColor, Inflation, OutlineSource, Part, PartKind, PartMaps, Parts, ProfilePicture,
 };
-use crate::document::{Document, NamedSelection};
+use crate::document::{Document, NamedSelection, SurfaceSource};
 use crate::files::UserFiles;
-use crate::json::{Fields, JsonNode};
-use crate::math::{Affine2, COORDINATE, Range, Vec2, Vec3, vec2};
+use crate::json::{Fields, JsonNode, JsonObject};
+use crate::math::{Affine2, COORDINATE, Range, Size, Vec2, Vec3, vec2};
 use crate::shape::profiles::MOST_PROFILES;
 use crate::shape::{
     Ball, Bevel, BevelCurve, Body, Combine, Detail, LineForm, Lines, Primitive, SculptStroke, SculptTool, Touch,
 };
+use crate::surface::Surface;
 use crate::{Budget, Result};
 use serde_json::Value;
 use std::path::Path;
@@ -105,7 +107,7 @@ impl LayerReader<'_> {
             (|reader, fields| reader.lathe(fields), "lathe"),
             (|_, fields| sweep(fields), "sweep"),
             (|_, fields| touches(fields), "touches"),
-            (|_, fields| sculpt(fields), "sculpt"),
+            (|reader, fields| reader.sculpt(fields), "sculpt"),
             (|reader, fields| reader.relief(fields), "relief"),
             (|reader, fields| reader.lines(fields), "lines"),
             (|reader, fields| reader.profiles(fields), "profiles"),
@@ -165,7 +167,7 @@ impl LayerReader<'_> {
         let outline = fields.get("outline").map(|node| self.outline_of(&node)).transpose()?;
         let mut shading = |item: &JsonNode| {
             let mut fields = item.fields()?;
-            let (file, coverage) = self.pictures.coverage(self.source, &fields.required("file")?, Some(self.size))?;
+            let (file, coverage) = self.pictures.coverage(self.source, &fields.required("file")?, None)?;
             let light = fields.required("light")?.vector(ProfilePicture::LIGHT)?;
             fields.finish()?;
             Ok(ProfilePicture { picture: CoverageFile { file, coverage }, light })
@@ -176,25 +178,59 @@ impl LayerReader<'_> {
     }
     fn maps(&mut self, fields: &mut Fields) -> Result<PartKind> {
         let node = fields.node().clone();
+        let frame = fields.get("frame").map(|node| self.frame(&node)).transpose()?;
+        let (size, matrix) = frame.unwrap_or((self.size, None));
         // The pictures of an edit are known, wherever they came from: their files are not read again.
-        let told = |known: &PartMaps| {
-            let written = surface::write(&known.source);
-            written.fields().iter().all(|(name, value)| node.value().get(name) == Some(value))
+        let is_told = |known: &PartMaps| {
+            let mut written = JsonObject::default();
+            write_maps(&mut written, known, Some(known.surface.size()));
+            let is_same = |(name, value): (&String, &Value)| name == "frame" || node.value().get(name) == Some(value);
+            (known.surface.size(), known.source.matrix) == (size, matrix) && written.fields().iter().all(is_same)
         };
-        if let Some(known) = self.pictures.known_maps(told) {
+        if let Some(known) = self.pictures.known_maps(is_told) {
             for name in ["normal", "depth", "mask"] {
                 fields.get(name);
             }
             return Ok(PartKind::Maps(known));
         }
-        let source = surface::maps_of(fields)?;
+        let source = SurfaceSource { matrix, ..surface::maps_of(fields)? };
         if source.normal.is_none() && source.depth.is_none() {
             return Err(node.refused("names neither a normal map nor a depth map"));
         }
         let found = maps::import(&source, self.source.files, self.source.budget).map_err(|error| node.led_to(error))?;
-        let fitted = Arc::new(found.surface).onto(self.size, None).map_err(|error| node.refused(error))?;
+        let made = Arc::new(found.surface).onto(size, source.map().as_ref());
+        let surface = made.map_err(|error| node.refused(error))?;
         self.notes.extend(found.findings.notes);
-        Ok(PartKind::Maps(PartMaps { source: Arc::new(source), files: Arc::new(found.files), surface: fitted }))
+        Ok(PartKind::Maps(PartMaps { source: Arc::new(source), files: Arc::new(found.files), surface }))
+    }
+    /// The frame that maps are put on, and how, if they are not fitted to it.
+    fn frame(&mut self, node: &JsonNode) -> Result<(Size, Option<[f64; 6]>)> {
+        let mut fields = node.fields()?;
+        let mut side = |name| fields.required(name)?.integer(1..=i64::from(u32::MAX));
+        let (width, height) = (side("width")?, side("height")?);
+        let matrix = fields.get("matrix").map(|node| surface::matrix(&node)).transpose()?;
+        fields.finish()?;
+        let size = self.source.budget.size(self.source.file, width as u64, height as u64)?;
+        self.pictures.hold(self.source, size.area() * Surface::BYTES_PER_PX)?;
+        Ok((size, matrix))
+    }
+    fn sculpt(&mut self, fields: &mut Fields) -> Result<PartKind> {
+        let mut stroke = |item: &JsonNode| {
+            let mut fields = item.fields()?;
+            let samples = fields.required("samples")?;
+            let stroke = SculptStroke {
+                tool: fields.one_of("tool", &SculptTool::ALL, SculptTool::default())?,
+                size: fields.number("size", DAB_SIZE, SculptStroke::SIZE)?,
+                hardness: fields.number("hardness", DAB_HARDNESS, SculptStroke::HARDNESS)?,
+                strength: fields.number("strength", DAB_STRENGTH, SculptStroke::STRENGTH)?,
+                samples: samples::read_pressed(&samples, SculptStroke::MOST, &mut self.samples_left)?,
+            };
+            fields.finish()?;
+            Ok(stroke)
+        };
+        let items = fields.required("strokes")?.list(SculptStroke::MOST)?;
+        let strokes = items.iter().map(&mut stroke).collect::<Result<_>>()?;
+        Ok(PartKind::Sculpt { on: on(fields)?, strokes })
     }
     fn outline(&mut self, fields: &mut Fields) -> Result<OutlineSource> {
         let node = fields.required("outline")?;
@@ -290,28 +326,6 @@ fn touches(fields: &mut Fields) -> Result<PartKind> {
     };
     let touches = fields.required("touches")?.list(Touch::MOST)?.iter().map(touch).collect::<Result<_>>()?;
     Ok(PartKind::Touches { on: on(fields)?, touches })
-}
-
-fn sculpt(fields: &mut Fields) -> Result<PartKind> {
-    let stroke = |item: &JsonNode| {
-        let mut fields = item.fields()?;
-        let sample = |item: &JsonNode| {
-            let v = item.numbers(2, 3, COORDINATE)?;
-            Ok((vec2(v[0], v[1]), v.get(2).copied().unwrap_or(1.0)))
-        };
-        let samples = fields.required("samples")?.list(SculptStroke::MOST)?;
-        let stroke = SculptStroke {
-            tool: fields.one_of("tool", &SculptTool::ALL, SculptTool::default())?,
-            size: fields.number("size", DAB_SIZE, SculptStroke::SIZE)?,
-            hardness: fields.number("hardness", DAB_HARDNESS, SculptStroke::HARDNESS)?,
-            strength: fields.number("strength", DAB_STRENGTH, SculptStroke::STRENGTH)?,
-            samples: samples.iter().map(sample).collect::<Result<_>>()?,
-        };
-        fields.finish()?;
-        Ok(stroke)
-    };
-    let strokes = fields.required("strokes")?.list(SculptStroke::MOST)?.iter().map(stroke).collect::<Result<_>>()?;
-    Ok(PartKind::Sculpt { on: on(fields)?, strokes })
 }
 
 #[cfg(test)]

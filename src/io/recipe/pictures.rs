@@ -29,6 +29,7 @@ pub struct PictureCache {
     tiles: TileGrids,
     details: Vec<CachedDetail>,
     used_px: u64,
+    searched_px: u64,
     used_bytes: u64,
 }
 
@@ -92,14 +93,27 @@ impl PictureCache {
     }
     /// Counts the pixels of a document: many pictures, each within its own limit, could fill the memory together.
     pub(super) fn spend(&mut self, source: RecipeSource, size: Size, bytes: usize) -> Result<()> {
-        self.used_bytes += bytes as u64;
-        source.budget.room(source.file, "what its layers hold", self.used_bytes)?;
+        self.hold(source, bytes)?;
         self.used_px += size.area() as u64;
         if self.used_px > source.budget.document_px {
             let reason = format!("its pictures hold more than {} pixels together", source.budget.document_px);
             return Err(Error::too_large(source.file, reason));
         }
         Ok(())
+    }
+    /// Counts a search for a region of the surface on the canvas.
+    pub(super) fn search(&mut self, source: RecipeSource, canvas: Size) -> Result<()> {
+        self.searched_px += canvas.area() as u64;
+        if self.searched_px > source.budget.region_px {
+            let reason = format!("its selections by the surface look through more than {} px", source.budget.region_px);
+            return Err(Error::too_large(source.file, reason));
+        }
+        Ok(())
+    }
+    /// Counts bytes alone.
+    pub(super) fn hold(&mut self, source: RecipeSource, bytes: usize) -> Result<()> {
+        self.used_bytes += bytes as u64;
+        source.budget.room(source.file, "what its layers hold", self.used_bytes)
     }
     /// The pixels that a field names, cut into tiles at an offset on the canvas.
     pub fn tiles(&mut self, source: RecipeSource, name: &JsonNode, x: i32, y: i32) -> Result<(String, TileGrid)> {

@@ -1,5 +1,5 @@
-//! Readings of the pen in a document: rows of numbers where they are few, one text where they are many.
-//! Floor 5. What the numbers of a reading may be is `paint::Sample`'s own.
+//! Readings of the pen in a document, of every kind of stroke: rows of numbers where they are few, one text where they
+//! are many. Floor 5. What the numbers of a reading may be is `paint::Sample`'s own.
 //!
 //! | file | |
 //! |---|---|
@@ -12,7 +12,7 @@ mod rows;
 mod tests;
 
 use crate::json::{self, JsonNode, object};
-use crate::math::{COORDINATE, vec2};
+use crate::math::{COORDINATE, Vec2, vec2};
 use crate::paint::Sample;
 use crate::{Budget, Error, Result};
 use columns::{Unreadable, pack, unpack};
@@ -61,6 +61,21 @@ pub fn read(node: &JsonNode, most: usize, left: &mut usize) -> Result<Vec<Sample
     };
     *left -= samples.len();
     Ok(samples)
+}
+
+/// The same of strokes that have no more than places and pressures.
+pub fn write_pressed(samples: &[(Vec2, f32)]) -> Value {
+    write(&samples.iter().map(|(at, pressure)| Sample { pressure: *pressure, ..Sample::at(*at) }).collect::<Vec<_>>())
+}
+
+/// What [`write_pressed`] writes. A reading with a tilt or a time is refused.
+pub fn read_pressed(node: &JsonNode, most: usize, left: &mut usize) -> Result<Vec<(Vec2, f32)>> {
+    let pressed = |(i, sample): (usize, Sample)| {
+        let Sample { at, pressure, tilt, time_secs } = sample;
+        let is_pressed = tilt == Vec2::ZERO && time_secs == 0.0;
+        is_pressed.then_some((at, pressure)).ok_or_else(|| node.item(i).refused("has more than a place and a pressure"))
+    };
+    read(node, most, left)?.into_iter().enumerate().map(pressed).collect()
 }
 
 /// [x, y, pressure 1, tilt_x 0, tilt_y 0, time_secs 0]; the last four may be absent.

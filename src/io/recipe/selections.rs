@@ -86,8 +86,10 @@ impl LayerReader<'_> {
         let selection = match fields.get("kind") {
             // Each takes as long as a picture of the canvas.
             Some(kind) => {
-                self.pictures.spend(self.source, self.size, self.size.area())?;
-                Selection::of_region(region(kind.one_of(&RegionKind::ALL)?, &mut fields)?, scene)
+                self.pictures.search(self.source, self.size)?;
+                let found = Selection::of_region(region(kind.one_of(&RegionKind::ALL)?, &mut fields)?, scene);
+                self.pictures.hold(self.source, found.coverage.bytes())?;
+                found
             }
             None => {
                 let mut side = |name| fields.get(name).map_or(Ok(0), |node| node.integer(-1_000_000..=1_000_000));

@@ -40,7 +40,8 @@ pub fn maps_of(fields: &mut Fields) -> Result<SurfaceSource> {
     })
 }
 
-fn matrix(node: &JsonNode) -> Result<[f64; 6]> {
+/// The matrix of maps.
+pub fn matrix(node: &JsonNode) -> Result<[f64; 6]> {
     let matrix = transforms::matrix_of(node)?;
     let source = SurfaceSource { matrix: Some(matrix), ..SurfaceSource::default() };
     source.fits().map(|()| matrix).map_err(|why| node.refused(why))

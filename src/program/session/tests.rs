@@ -3,6 +3,7 @@
 mod canvas;
 mod dialect;
 mod held;
+mod kept;
 mod selecting;
 mod several;
 mod snapping;

@@ -3,7 +3,6 @@
 //! layer).
 
 use super::parts::{carry, outline_mut, same_object};
-use super::placed;
 use crate::document::FrameBox;
 use crate::document::homes::transform_of;
 use crate::document::parts::{OutlineSource, Part};
@@ -56,7 +55,7 @@ impl Document {
             other => format!("The shape stays where it is: {other}."),
         })?;
         let source = self.surface_source.as_ref().zip(maps.as_ref());
-        let source: Option<SurfaceSource> = source.map(|(source, maps)| placed(source, maps, self.size));
+        let source: Option<SurfaceSource> = source.map(|(source, maps)| source.placed_as(maps));
         let both = self.maps_surface().zip(maps.as_ref());
         let parts = self.parts.list.iter().map(|part| Arc::new(self.carried_part(part, affine, both))).collect();
         let found = |selection: &Arc<Selection>| match selection.made {

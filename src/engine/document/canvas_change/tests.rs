@@ -11,7 +11,7 @@ use crate::raster::{CoverageGrid, Outside, Picture, Plane, TileGrid};
 use crate::shading::{Light, LightKind, Model, Shading};
 use crate::shape::{Body, Primitive, Touch};
 use crate::surface::plane_piece::PlanePiece;
-use crate::surface::{Anchor, Bend, Maps, Operator};
+use crate::surface::{Anchor, Bend, Maps, Operator, Surface};
 
 const SIZE: Size = Size::new(150, 100);
 

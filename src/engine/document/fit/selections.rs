@@ -10,6 +10,9 @@ use crate::surface::region::SurfaceRegion;
 use std::collections::HashSet;
 use std::sync::Arc;
 
+/// The most values that a selection takes in a description.
+pub const A_SELECTION: usize = 40;
+
 /// The selections of a document that another does not hold, and their number.
 pub fn fit(document: &Document, before: Option<&Document>) -> Fit {
     let list = SelectionList::of(document);
@@ -17,6 +20,10 @@ pub fn fit(document: &Document, before: Option<&Document>) -> Fit {
         return Ok(());
     }
     at_most("Selections", list.all().len(), Document::MOST_SELECTIONS).map_err(|why| format!("{why}."))?;
+    let regions = list.all().filter(|selection| selection.made.is_some()).count();
+    let most = Document::MOST_REGION_PX / document.size.area().max(1) as u64;
+    at_most("Selections that follow the surface", regions, usize::try_from(most).unwrap_or(usize::MAX).max(1))
+        .map_err(|why| format!("{why}."))?;
     let mut known = HashSet::new();
     if let Some(before) = before {
         known.extend(SelectionList::of(before).all().map(Arc::as_ptr));

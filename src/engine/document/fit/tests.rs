@@ -1,9 +1,10 @@
 use super::*;
-use crate::document::{Group, Live, StrokeList};
-use crate::math::{Vec2, srgb::Color, vec2};
+use crate::document::{Group, Live, PartKind, Parts, StrokeList};
+use crate::math::{Vec2, Vec3, srgb::Color, vec2};
 use crate::paint::{Brush, Gradient, GradientStop, Sample, Stroke};
 use crate::raster::{Plane, Tile, TileAt, TileGrid};
 use crate::shading::{Model, Shading};
+use crate::shape::{Ball, Touch};
 use crate::surface::Operator;
 
 const SIZE: Size = Size::new(64, 64);
@@ -118,4 +119,41 @@ fn only_strokes_that_are_new_are_looked_at() {
     };
     assert!(add(Brush::default()).fits(Some(&old)).is_ok());
     assert!(add(Brush { size: 0.0, ..Brush::default() }).fits(Some(&old)).unwrap_err().contains("stroke 2"));
+}
+#[test]
+fn what_lies_on_itself_in_a_circle_or_on_no_part_is_refused_where_it_is_put_there() {
+    let ball = PartKind::Sweep { balls: vec![Ball { at: Vec2::splat(30.0), radius: 9.0 }], puff: 1.0 };
+    let on = |id: &str, on: &str| Part::new(id, PartKind::Touches { on: on.into(), touches: Vec::new() });
+    let with = |parts: Vec<Part>| {
+        let list = [Part::new("ball", ball.clone())].into_iter().chain(parts).map(Arc::new).collect();
+        of(vec![fill()]).with_parts(list)
+    };
+    assert_eq!(with(vec![on("a", "ball"), on("b", "a")]).fits(None), Ok(()));
+    for (parts, why) in [
+        (vec![on("a", "a")], "“a” lies on itself"),
+        (vec![on("a", "nose")], "“a” lies on “nose”, and there is no such part"),
+        (vec![on("a", "b"), on("b", "a")], "“a” lies on “b”, which lies on no part with a form of its own"),
+    ] {
+        let document = with(parts);
+        assert_eq!(document.fits(None), Err(format!("{why}.")));
+        assert!(document.note_of_astray().is_some_and(|note| note.contains(why)));
+        let other = document.with_layer(document.layers[0].id, |layer| layer.opacity = 0.5).unwrap();
+        let again = |part: &Arc<Part>| Arc::new(Part { raise: 2.0, ..Part::clone(part) });
+        let other = other.with_parts(other.parts.list.iter().map(again).collect());
+        assert_eq!(other.fits(Some(&document)), Ok(()), "it was opened so");
+    }
+    assert_eq!(with(Vec::new()).note_of_astray(), None);
+}
+#[test]
+fn what_parts_take_of_a_description_is_counted() {
+    let touch = Touch { at: Vec2::ONE, radius: 3.0, normal: Vec3::Z, reach: 0.0 };
+    let kind = || PartKind::Touches { on: "ball".into(), touches: vec![touch; 20_000] };
+    let ball = PartKind::Sweep { balls: vec![Ball { at: Vec2::splat(30.0), radius: 9.0 }], puff: 1.0 };
+    let with = |n: usize| {
+        let touches = (0..n).map(|i| Part { visible: false, ..Part::new(format!("t{i}"), kind()) });
+        let list: Vec<Part> = [Part::new("ball", ball.clone())].into_iter().chain(touches).collect();
+        Document { parts: Arc::new(Parts::new(list)), ..of(vec![fill()]) }
+    };
+    assert_eq!(with(4).fits(None), Ok(()));
+    assert!(with(12).fits(None).unwrap_err().contains("parts than a file can hold: bake"));
 }

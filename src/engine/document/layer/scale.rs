@@ -74,9 +74,7 @@ impl CanvasScale {
         is_some.then_some(Self { per_axis, length, from, to, is_draft: false, filter, selections })
     }
     pub fn map(&self) -> PlaneMap {
-        let side = |to: u32, from: u32| f64::from(to) / f64::from(from);
-        let (x, y) = (side(self.to.width, self.from.width), side(self.to.height, self.from.height));
-        PlaneMap::affine([x, 0.0, 0.0, y, 0.0, 0.0]).unwrap_or_default()
+        PlaneMap::scaling(self.from, self.to)
     }
     /// The sampler of pixels, if there is one, and the map that they are seen through.
     fn sampler(&self) -> Option<LayerMap> {

@@ -9,16 +9,21 @@ use crate::paint::HomeFrame;
 use crate::shading::Light;
 use crate::shape::profiles::MOST_PROFILES;
 use crate::shape::{Ball, Bevel, BevelCurve, Combine, Detail, Lines, Primitive, SculptStroke, Touch};
+use std::sync::Arc;
 
 impl Document {
-    /// Whether files can hold the parts.
-    pub(in crate::document) fn parts_fit(&self) -> Result<(), String> {
+    /// Whether files can hold the parts. Those that lie on the same in `before` may lie on anything: so it was opened.
+    pub(in crate::document) fn parts_fit(&self, before: Option<&Document>) -> Result<(), String> {
         at_most("Parts", self.parts.list.len(), Parts::MOST)?;
         for (i, part) in self.parts.list.iter().enumerate() {
             let shown: String = part.name.chars().take(60).collect();
             part.fits().map_err(|why| format!("“{shown}”: {why}."))?;
             if self.parts.list[..i].iter().any(|other| other.id == part.id) {
                 return Err(format!("“{shown}”: another part has the id “{}” as well.", part.id));
+            }
+            let lay = before.and_then(|before| before.parts.part(&part.id)).map(|part| part.on());
+            if lay != Some(part.on()) {
+                self.parts.astray(part).map_or(Ok(()), |why| Err(format!("“{shown}” {why}.")))?;
             }
             if let Some(OutlineSource::Selection(name)) = part.outline()
                 && !self.selections.iter().any(|kept| kept.name == *name)
@@ -30,7 +35,60 @@ impl Document {
     }
 }
 
+impl Document {
+    /// A sentence about the parts that lie on none with a form of its own, so that they change nothing.
+    pub fn note_of_astray(&self) -> Option<String> {
+        let one = |part: &Arc<Part>| Some(format!("“{}” {}", part.name, self.parts.astray(part)?));
+        let all: Vec<String> = self.parts.list.iter().filter_map(one).collect();
+        (!all.is_empty()).then(|| format!("{}, and so changes nothing.", all.join("; ")))
+    }
+}
+
+impl Parts {
+    /// Why a part lies on none with a form of its own, if it lies on another: the rest of a sentence that begins with
+    /// its name.
+    fn astray(&self, part: &Part) -> Option<String> {
+        let on = part.on()?;
+        if on == part.id {
+            return Some("lies on itself".into());
+        }
+        if self.part(on).is_none() {
+            return Some(format!("lies on “{on}”, and there is no such part"));
+        }
+        let body = self.body_of(on)?;
+        body.on().is_some().then(|| format!("lies on “{on}”, which lies on no part with a form of its own"))
+    }
+}
+
 impl Part {
+    /// Its readings of the pen, and the values that it takes in a description.
+    pub(in crate::document) fn measured(&self) -> (usize, usize) {
+        /// More than any part takes without its lists.
+        const A_PART: usize = 300;
+        const A_STROKE: usize = 24;
+        const A_BALL: usize = 4;
+        const A_TOUCH: usize = 24;
+        const A_POINT: usize = 3;
+        const A_SHADING: usize = 16;
+        let path = |outline: &OutlineSource| match outline {
+            OutlineSource::Path(points) => A_POINT * points.len(),
+            _ => 0,
+        };
+        let (samples, lists) = match &self.kind {
+            PartKind::Bevel { bevel: Bevel { curve: BevelCurve::Points(points), .. }, .. } => {
+                (0, A_POINT * points.len())
+            }
+            PartKind::Sweep { balls, .. } => (0, A_BALL * balls.len()),
+            PartKind::Touches { touches, .. } => (0, A_TOUCH * touches.len()),
+            PartKind::Sculpt { strokes, .. } => {
+                // Whatever its length, a list of readings is one text.
+                (strokes.iter().map(|stroke| stroke.samples.len()).sum(), A_STROKE * strokes.len())
+            }
+            PartKind::Profiles { shadings, .. } => (0, A_SHADING * shadings.len()),
+            _ => (0, 0),
+        };
+        (samples, A_PART + lists + self.outline().map_or(0, path))
+    }
     /// Whether a file can hold it: every number in its range; else a sentence.
     pub fn fits(&self) -> Result<(), String> {
         at_most("letters of the id", self.id.chars().count(), Self::LONGEST_NAME)?;

@@ -186,9 +186,11 @@ pub struct ProfilePicture {
     pub light: Vec3,
 }
 
-/// Maps as a part, with the surface that they are, as large as the canvas.
+/// Maps as a part, with the surface that they are. Its size is that of their frame: the canvas on which they were put,
+/// whatever became of that since.
 #[derive(Clone)]
 pub struct PartMaps {
+    /// With the matrix that takes them to their frame, if they are not fitted to it.
     pub source: Arc<SurfaceSource>,
     /// The files that it names.
     pub files: Arc<BTreeMap<String, Asset>>,

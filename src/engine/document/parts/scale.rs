@@ -1,8 +1,9 @@
 //! Parts on a canvas of another size: all their lengths, and nothing else. Floor 4.
 
-use super::{OutlineSource, Part, PartKind};
-use crate::math::{Mat2, Vec2};
+use super::{OutlineSource, Part, PartKind, PartMaps};
+use crate::math::{Mat2, PlaneMap, Size, Vec2};
 use crate::raster::Plane;
+use crate::surface::Surface;
 use std::sync::Arc;
 
 impl Part {
@@ -61,12 +62,7 @@ impl Part {
                     outline.scale(scale);
                 }
             }
-            PartKind::Maps(maps) => {
-                // What is thinner than a pixel of the new canvas stays unchanged.
-                if let Ok(surface) = maps.surface.stretched(maps.surface.size().scaled(length)) {
-                    maps.surface = Arc::new(surface);
-                }
-            }
+            PartKind::Maps(maps) => *maps = maps.scaled(scale),
             PartKind::Relief { detail, .. } => {
                 detail.coarse *= length;
                 detail.fine *= length;
@@ -77,6 +73,22 @@ impl Part {
             file.coverage = Arc::new(plane(&file.coverage));
         }
         next
+    }
+}
+
+impl PartMaps {
+    /// The same maps in a frame with other sides. Where nothing would be left of what is thinner than a pixel there,
+    /// they stay unchanged.
+    fn scaled(&self, scale: Vec2) -> PartMaps {
+        let Size { width, height } = self.surface.size();
+        let side = |v: u32, s: f32| ((f64::from(v) * f64::from(s)).round() as u32).max(1);
+        let frame = Size::new(side(width, scale.x), side(height, scale.y));
+        let map = PlaneMap::affine([scale.x.into(), 0.0, 0.0, scale.y.into(), 0.0, 0.0]).unwrap_or_default();
+        self.surface.through(frame, &map).map_or_else(|_| self.clone(), |surface| self.on(surface))
+    }
+    /// These maps as another surface made of them.
+    fn on(&self, surface: Arc<Surface>) -> PartMaps {
+        PartMaps { source: Arc::new(self.source.placed_as(&surface)), files: self.files.clone(), surface }
     }
 }
 

@@ -1,11 +1,14 @@
 //! Whatever a document may hold comes back live: limits that only the reader used to know.
 
 use super::*;
-use crate::document::{Content, DerivedMask, Group, Layer, LayerMask, Live, StrokeList};
+use crate::document::{
+    Content, DerivedMask, Group, Layer, LayerMask, LayerTransform, Live, Part, PartKind, StrokeList, TransformShape,
+};
 use crate::json;
 use crate::math::vec2;
 use crate::paint::{Brush, Sample, Stroke};
 use crate::shading::{Environment, Model, Shading};
+use crate::shape::{Ball, SculptStroke, SculptTool};
 use crate::surface::Operator;
 
 fn fill() -> Layer {
@@ -64,6 +67,44 @@ fn a_stroke_of_nine_hundred_thousand_readings_comes_back() {
     assert!(description.len() < 12_000_000, "{} bytes", description.len());
 }
 #[test]
+fn sculpting_comes_back_whatever_the_number_of_readings() {
+    let stroke = |count: usize| SculptStroke {
+        tool: SculptTool::Raise,
+        size: 9.0,
+        hardness: 0.5,
+        strength: 0.5,
+        samples: drawn(count).samples().iter().map(|sample| (sample.at, sample.pressure)).collect(),
+    };
+    let strokes = [1, 2, 32, 33, 200, 5_000].map(stroke).to_vec();
+    let ball = PartKind::Sweep { balls: vec![Ball { at: vec2(24.0, 20.0), radius: 15.0 }], puff: 1.0 };
+    let sculpt = PartKind::Sculpt { on: "ball".into(), strokes };
+    let parts = [Part::new("ball", ball), Part::new("sculpt", sculpt)];
+    comes_back(&of(vec![fill()]).with_parts(parts.map(Arc::new).to_vec()));
+}
+#[test]
+fn factors_of_any_digits_come_back() {
+    let noise = |i: u32| f64::from(crate::math::hash::mix(i)) / f64::from(u32::MAX);
+    let turned = |i: u32| {
+        let [a, b, c, d, e, f] = std::array::from_fn(|k| noise(6 * i + k as u32));
+        let shape = TransformShape::Matrix([1.0 + a, b, -c, 1.0 + d, 90.0 * e, -1e-9 * f]);
+        Layer { transform: Some(LayerTransform { shape, filter: Default::default() }), ..fill() }
+    };
+    comes_back(&of((0..500).map(turned).collect()));
+}
+#[test]
+fn what_differs_is_called_by_its_name() {
+    let told = |change: fn(&mut Layer)| {
+        let mut other = fill();
+        change(&mut other);
+        of(vec![fill()]).difference(&of(vec![other])).unwrap_or_default()
+    };
+    let shape = TransformShape::Matrix([1.0, 0.0, 0.0, 1.0, 3.0, 0.0]);
+    assert_eq!(told(|layer| layer.opacity = 0.5), "“Fill”: its opacity");
+    assert_eq!(told(|layer| layer.on = Some(crate::document::HomeFrame::canvas())), "“Fill”: its home");
+    let moved = Layer { transform: Some(LayerTransform { shape, filter: Default::default() }), ..fill() };
+    assert_eq!(of(vec![fill()]).difference(&of(vec![moved])).unwrap_or_default(), "“Fill”: its transform");
+}
+#[test]
 fn a_mask_that_is_a_step_comes_back() {
     let kinds = [
         DerivedMask::Depth { from: 0.5, to: 0.5 },
@@ -110,7 +151,9 @@ fn a_description_takes_no_more_values_than_edits_are_held_to() {
             .sum::<usize>()
     };
     let lines = |n: usize| strokes((0..n).map(|_| drawn(40)).collect());
-    for document in [of(vec![lines(400)]), of((0..50).map(|_| fill()).collect()), everything(64)] {
+    let few = |n: usize| strokes((0..n).map(|_| drawn(20)).collect());
+    let many = [of(vec![lines(400)]), of(vec![few(400)]), of((0..50).map(|_| fill()).collect()), everything(64)];
+    for document in many {
         let text = String::from_utf8(entries(&written(&document)).remove(1).1).unwrap();
         let value = json::parse(Path::new("d"), text.as_bytes(), &Budget::default()).unwrap();
         let (layers, strokes) = (document.walk().len(), value.to_string().matches("samples").count());

@@ -94,12 +94,12 @@ fn a_home_that_is_no_part_is_refused_by_its_path() {
     assert!(refused(&body(&json!({ "surface": { "parts": canvas } }))).contains("cannot have the id"));
 }
 #[test]
-fn homes_on_the_canvas_alone_need_no_word() {
-    let plain = json!({ "format": "rilievo", "version": 1, "canvas": { "width": 48, "height": 40 },
+fn a_layer_on_the_canvas_stays_so_outside_of_groups_too() {
+    let plain = json!({ "format": "rilievo", "version": 2, "canvas": { "width": 48, "height": 40 },
         "layers": [{ "kind": "fill", "color": "#000000", "on": "canvas" }] });
     let document = read(&plain).unwrap();
-    assert!(document.layers[0].on.is_none());
-    assert_eq!(recipe::write(&document)["version"], 1);
+    assert!(document.layers[0].on.as_ref().is_some_and(|home| home.is_canvas()));
+    assert_eq!(recipe::write(&document), plain);
 }
 #[test]
 fn a_part_may_be_made_of_a_selection_in_whatever_order_they_stand() {

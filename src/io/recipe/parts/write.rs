@@ -1,28 +1,31 @@
 //! Writes the parts of a shape. Floor 5. Defaults are left out; those that are in no type come from the reader.
 
 use super::super::selections::id_of_kept;
-use super::super::surface;
+use super::super::{samples, surface};
 use super::{BODY_RADIUS, DAB_HARDNESS, DAB_SIZE, DAB_STRENGTH, TOUCH_RADIUS};
-use crate::document::SelectionList;
-use crate::document::parts::{Inflation, OutlineSource, Part, PartKind, Parts, ProfilePicture};
+use crate::document::parts::{Inflation, OutlineSource, Part, PartKind, PartMaps, ProfilePicture};
+use crate::document::{Document, SelectionList, SurfaceSource};
 use crate::json::{JsonObject, object};
-use crate::math::{Affine2, Vec2};
+use crate::math::{Affine2, Size, Vec2};
 use crate::shape::{
     Ball, Bevel, BevelCurve, Body, Combine, Detail, LineForm, Lines, Primitive, SculptStroke, SculptTool, Touch,
 };
 use serde_json::{Value, json};
+use std::sync::Arc;
 
-/// The list as JSON; `list`: what selections are called.
-pub fn write(parts: &Parts, list: &SelectionList) -> Value {
-    parts.list.iter().map(|part| written(part, |name| id_of_kept(name, list))).collect()
+/// The list of a document's parts as JSON; `list`: what selections are called.
+pub fn write(document: &Document, list: &SelectionList) -> Value {
+    let one = |part: &Arc<Part>| written(part, Some(document.size), |name| id_of_kept(name, list));
+    document.parts.list.iter().map(one).collect()
 }
 
-/// One part as an edit describes it: as in the list, but with selections by name.
+/// One part as an edit describes it: as in the list, but with selections by name, and whatever the canvas.
 pub fn write_part(part: &Part) -> Value {
-    written(part, |name| Some(name.to_owned()))
+    written(part, None, |name| Some(name.to_owned()))
 }
 
-fn written(part: &Part, selection: impl Fn(&str) -> Option<String>) -> Value {
+/// `canvas`: the frame of maps that need not be named.
+fn written(part: &Part, canvas: Option<Size>, selection: impl Fn(&str) -> Option<String>) -> Value {
     let mut out = JsonObject::default();
     out.set("id", part.id.as_str().into());
     out.text("name", &part.name, &part.id);
@@ -35,7 +38,7 @@ fn written(part: &Part, selection: impl Fn(&str) -> Option<String>) -> Value {
     if let Some(outline) = part.outline() {
         out.set("outline", write_outline(outline, selection));
     }
-    write_kind(&mut out, &part.kind);
+    write_kind(&mut out, &part.kind, canvas);
     if part.tilt_deg != Vec2::ZERO {
         out.set("tilt", object::point(part.tilt_deg));
     }
@@ -62,7 +65,7 @@ fn write_outline(outline: &OutlineSource, selection: impl Fn(&str) -> Option<Str
     out.done()
 }
 
-fn write_kind(out: &mut JsonObject, kind: &PartKind) {
+fn write_kind(out: &mut JsonObject, kind: &PartKind, canvas: Option<Size>) {
     match kind {
         PartKind::Inflate { inflation, .. } => {
             let plain = Inflation::default();
@@ -122,9 +125,7 @@ fn write_kind(out: &mut JsonObject, kind: &PartKind) {
             };
             out.set("pictures", shadings.iter().map(shading).collect());
         }
-        PartKind::Maps(maps) => {
-            surface::write(&maps.source).fields().iter().for_each(|(name, value)| out.set(name, value.clone()));
-        }
+        PartKind::Maps(maps) => write_maps(out, maps, canvas),
         PartKind::Relief { on, picture, detail } => {
             let plain = Detail::default();
             out.set("on", on.as_str().into());
@@ -137,17 +138,28 @@ fn write_kind(out: &mut JsonObject, kind: &PartKind) {
     }
 }
 
+/// The maps, and their frame unless they are fitted to the canvas.
+pub fn write_maps(out: &mut JsonObject, maps: &PartMaps, canvas: Option<Size>) {
+    // The matrix of a part is another.
+    let bare = SurfaceSource { matrix: None, ..SurfaceSource::clone(&maps.source) };
+    surface::write(&bare).fields().iter().for_each(|(name, value)| out.set(name, value.clone()));
+    let size = maps.surface.size();
+    if maps.source.matrix.is_some() || canvas != Some(size) {
+        let mut frame = JsonObject::default();
+        frame.set("width", size.width.into());
+        frame.set("height", size.height.into());
+        frame.said("matrix", maps.source.matrix, |matrix| json!(matrix));
+        out.set("frame", frame.done());
+    }
+}
+
 fn write_stroke(stroke: &SculptStroke) -> Value {
     let mut out = JsonObject::default();
     out.word("tool", &SculptTool::ALL, stroke.tool, SculptTool::default());
     out.number("size", stroke.size, DAB_SIZE);
     out.number("hardness", stroke.hardness, DAB_HARDNESS);
     out.number("strength", stroke.strength, DAB_STRENGTH);
-    let sample = |(at, pressure): &(Vec2, f32)| match pressure {
-        1.0 => object::point(*at),
-        _ => json!([object::number(at.x), object::number(at.y), object::number(*pressure)]),
-    };
-    out.set("samples", stroke.samples.iter().map(sample).collect());
+    out.set("samples", samples::write_pressed(&stroke.samples));
     out.done()
 }
 

@@ -2,18 +2,19 @@
 //! Floor 5.
 
 use super::columns::pack;
-use super::{ROWS, UNSAID, of_numbers};
+use super::{UNSAID, of_numbers};
 use crate::paint::Sample;
 use std::borrow::Cow;
 
-/// A document's text with long lists of readings in today's packed form: before it is parsed, for as values a number
-/// takes eighty bytes. What is not wholly rows of numbers stays, for the parser to say what is wrong.
+/// A document's text with lists of readings in today's packed form, each one value: before it is parsed, for as values
+/// a number takes eighty bytes, and many short strokes would hold more of them than a document may. What is not wholly
+/// rows of numbers stays, for the parser to say what is wrong.
 pub fn with_rows_packed(text: &[u8]) -> Cow<'_, [u8]> {
     let mut out = Vec::new();
     let (mut copied, mut at) = (0, 0);
     while let Some(start) = rows_after(text, &mut at) {
         let mut rest = &text[start..];
-        let Some(samples) = rows(&mut rest).filter(|samples| samples.len() > ROWS) else { continue };
+        let Some(samples) = rows(&mut rest) else { continue };
         out.extend_from_slice(&text[copied..start]);
         out.extend_from_slice(format!("\"{}\"", pack(&samples)).as_bytes());
         (copied, at) = (text.len() - rest.len(), text.len() - rest.len());

@@ -80,8 +80,13 @@ fn rows_of_any_length_open_and_are_packed_before_they_are_values() {
         let packed = with_rows_packed(text.as_bytes());
         let packed: Value = serde_json::from_slice(&packed).unwrap();
         assert!(bits(&read_value(&packed["samples"]).unwrap()) == bits(&samples));
-        assert_eq!((&packed["name"], &packed["other"]), (&text_of(&text)["name"], &text_of(&text)["other"]));
+        assert_eq!(packed["name"], text_of(&text)["name"]);
+        assert_eq!(read_value(&packed["other"][0]["samples"]).unwrap(), [Sample::at(vec2(1.0, 2.0))]);
     }
+    // However short the strokes, each list of readings is one value: together they would be six million.
+    let hatch = format!("{{\"samples\": [{}[0, 1]]}},", "[1.5, 2e1, 0.5, 3],".repeat(29));
+    let hatches = format!("{{\"strokes\": [{}{{}}]}}", hatch.repeat(40_000));
+    assert!(parse(Path::new("r.json"), hatches.as_bytes(), &Budget::default()).is_ok());
     let crowd = format!("{{\"samples\": [{}[0, 1]]}}", "[1.5, 2e1, 0.5],\n".repeat(900_000));
     let parsed = parse(Path::new("r.json"), crowd.as_bytes(), &Budget::default()).unwrap();
     assert_eq!(read_value(&parsed["samples"]).unwrap().len(), 900_001);
@@ -104,6 +109,19 @@ fn what_is_not_wholly_rows_is_left_to_the_parser() {
     let said =
         parse(Path::new("r.json"), format!("{{\n\"samples\": [{rows}[1, 2]],\n}}").as_bytes(), &Budget::default());
     assert!(said.unwrap_err().to_string().contains("line 3"), "lines are those of the file");
+}
+#[test]
+fn strokes_that_only_press_read_what_others_do_and_refuse_the_rest() {
+    let (samples, mut left) = (drawn(300, true), 1_000);
+    let pressed: Vec<(Vec2, f32)> = samples.iter().map(|sample| (sample.at, sample.pressure)).collect();
+    let mut read = |value: &Value| read_pressed(&JsonNode::root(Path::new("r.json"), value), 500, &mut left);
+    for some in [&pressed[..], &pressed[..32], &pressed[..1], &[]] {
+        assert_eq!(read(&write_pressed(some)).unwrap(), some);
+    }
+    assert_eq!(write_pressed(&[(vec2(1.0, 2.0), 1.0), (vec2(3.0, 4.0), 0.5)]), json!([[1, 2], [3, 4, 0.5]]));
+    let said = read(&json!([[1, 2, 0.5], [1, 2, 0.5, 9]])).unwrap_err().to_string();
+    assert!(said.contains("[1]: has more than a place and a pressure"), "{said}");
+    assert!(read(&json!([[1, 2, 2]])).is_err());
 }
 #[test]
 fn damage_is_told_and_asks_for_no_memory() {

@@ -3,6 +3,7 @@
 use crate::document::parts::PartMaps;
 use crate::document::{Document, SurfaceSource};
 use crate::io::maps;
+use crate::math::{PlaneMap, Size};
 use crate::session::actions::parts;
 use crate::session::{Session, storage};
 use crate::{Error, Result};
@@ -15,20 +16,16 @@ pub fn replace_maps(session: &mut Session, source: &SurfaceSource, import: maps:
     let Some(tab) = session.active_mut() else { return Ok(()) };
     let (canvas, found) = (tab.document().size, surface.size());
     let mut notes = findings.notes;
-    let placed = source.map();
-    let surface = if found == canvas && placed.is_none() {
-        Arc::new(surface)
-    } else if let Some(map) = &placed {
-        Arc::new(surface).onto(canvas, Some(map)).map_err(|error| Error::unsupported("maps", error))?
-    } else {
-        notes.push(format!("The maps have {found} pixels and were stretched to the canvas, {canvas}."));
-        Arc::new(surface.stretched(canvas).map_err(|error| Error::unsupported("maps", error))?)
-    };
-    let is_whole = found == canvas || placed.is_some();
+    let map = source.map().or_else(|| {
+        let is_other = found != canvas;
+        notes.extend(is_other.then(|| stretched(found, canvas)));
+        is_other.then(|| PlaneMap::scaling(found, canvas))
+    });
+    let surface = Arc::new(surface).onto(canvas, map.as_ref()).map_err(|error| Error::unsupported("maps", error))?;
     let next = Document {
+        surface_source: Some(Arc::new(source.placed_as(&surface))),
         surface: Some(surface),
-        surface_source: is_whole.then(|| Arc::new(source.clone())),
-        surface_files: Arc::new(if is_whole { files } else { Default::default() }),
+        surface_files: Arc::new(files),
         ..tab.document().clone()
     };
     let maps = next.surface.clone();
@@ -39,6 +36,10 @@ pub fn replace_maps(session: &mut Session, source: &SurfaceSource, import: maps:
     Ok(())
 }
 
+fn stretched(found: Size, canvas: Size) -> String {
+    format!("The maps have {found} pixels and were stretched to the canvas, {canvas}.")
+}
+
 /// A part of maps in front of all others, stretched to the canvas, as a step. Fails if no surface of the canvas's size
 /// can be made of them.
 pub fn add_maps(session: &mut Session, source: &SurfaceSource, import: maps::ImportedSurface) -> Result<()> {
@@ -46,10 +47,9 @@ pub fn add_maps(session: &mut Session, source: &SurfaceSource, import: maps::Imp
     let Some(tab) = session.active_mut() else { return Ok(()) };
     let (canvas, found) = (tab.document().size, surface.size());
     let mut notes = findings.notes;
-    if found != canvas {
-        notes.push(format!("The maps have {found} pixels and were stretched to the canvas, {canvas}."));
-    }
-    let surface = Arc::new(surface).onto(canvas, None).map_err(|error| Error::unsupported("maps", error))?;
+    notes.extend((found != canvas).then(|| stretched(found, canvas)));
+    let surface =
+        Arc::new(surface).onto(canvas, source.map().as_ref()).map_err(|error| Error::unsupported("maps", error))?;
     parts::new::add_maps(tab, PartMaps { source: Arc::new(source.clone()), files: Arc::new(files), surface });
     tab.reads.extend(storage::map_files(source));
     session.notes.extend(notes);
