@@ -259,7 +259,7 @@ fn kill_while_painting(rounds: u32) {
         told = std::iter::from_fn(next).last().map_or(told, number);
         let mut left = recovery::sessions(&disk, &logs);
         let recovered = left[0].recover(&Budget::default()).unwrap_or_else(|e| panic!("round {round}: {e}"));
-        let found = fingerprint(&recovered.document);
+        let found = fingerprint(&recovered.version.document);
         assert!(
             (told..steps.len().min(told + 3)).any(|n| steps[n] == found),
             "round {round}: {told} steps were finished; what came back is step {:?}",

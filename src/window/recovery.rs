@@ -43,11 +43,12 @@ impl MainWindow {
     }
     pub(super) fn take_recovered(&mut self, found: Result<RecoveredTab>) {
         match found {
-            Ok(RecoveredTab { tab, recovery }) => {
+            Ok(RecoveredTab { tab, recovery, tool }) => {
                 if let (Some(autosave), Some(recovery)) = (&mut self.session.autosave, recovery) {
                     autosave.adopt(&tab, recovery);
                 }
                 self.session.add_document(tab);
+                self.session.tool = tool.unwrap_or(self.session.tool);
             }
             Err(error) => self.messages.push(with_advice(&error)),
         }

@@ -3,23 +3,27 @@
 
 use super::Document;
 
-/// The present document, the past ones and the undone ones.
-pub struct History {
-    /// Oldest first; the label is of the edit that led away from it.
-    past: Vec<HistoryStep>,
+/// The present document, the past ones and the undone ones. With each edit goes a small value of the caller's from
+/// before it and one from after it, such as what was selected: undo gives the first back, redo the second.
+pub struct History<T> {
+    /// Oldest first; the edit of each led away from its document.
+    past: Vec<HistoryStep<T>>,
     present: Document,
-    /// Nearest last; the label is of the edit that leads to it.
-    future: Vec<HistoryStep>,
+    /// Nearest last; the edit of each leads to its document.
+    future: Vec<HistoryStep<T>>,
     /// The most steps that are kept.
     limit: usize,
 }
 
-struct HistoryStep {
+struct HistoryStep<T> {
     label: String,
     document: Document,
+    before: T,
+    /// `None` until [`History::settle`].
+    after: Option<T>,
 }
 
-impl History {
+impl<T> History<T> {
     /// Keeps at most `limit` steps; the oldest are forgotten.
     pub fn new(document: Document, limit: usize) -> Self {
         Self { past: Vec::new(), present: document, future: Vec::new(), limit }
@@ -29,34 +33,47 @@ impl History {
         &self.present
     }
     /// Makes an edited document the present one; undone documents are dropped.
-    pub fn commit(&mut self, label: impl Into<String>, document: Document) {
+    ///
+    /// * `before`: what undo gives back.
+    pub fn commit(&mut self, label: impl Into<String>, document: Document, before: T) {
         self.future.clear();
-        let before = std::mem::replace(&mut self.present, document);
-        self.past.push(HistoryStep { label: label.into(), document: before });
+        let old = std::mem::replace(&mut self.present, document);
+        self.past.push(HistoryStep { label: label.into(), document: old, before, after: None });
         let excess = self.past.len().saturating_sub(self.limit);
         self.past.drain(..excess);
     }
+    /// Whether it was said what redo gives back for the last edit.
+    pub fn is_settled(&self) -> bool {
+        self.past.last().is_none_or(|step| step.after.is_some())
+    }
+    /// Says what redo gives back for the last edit, unless that was said before.
+    pub fn settle(&mut self, after: T) {
+        if let Some(step) = self.past.last_mut() {
+            step.after.get_or_insert(after);
+        }
+    }
     /// The other documents that it holds, the nearest steps first.
     pub fn others(&self) -> impl Iterator<Item = &Document> {
-        let back = |steps: &'_ [HistoryStep], i: usize| steps.len().checked_sub(i + 1);
+        let back = |steps: &'_ [HistoryStep<T>], i: usize| steps.len().checked_sub(i + 1);
         (0..self.past.len().max(self.future.len())).flat_map(move |i| {
             let past = back(&self.past, i).map(|at| &self.past[at].document);
             past.into_iter().chain(back(&self.future, i).map(|at| &self.future[at].document))
         })
     }
-    /// Goes back by one edit and returns its label; `None` at the beginning.
-    pub fn undo(&mut self) -> Option<&str> {
-        let HistoryStep { label, document } = self.past.pop()?;
-        let document = std::mem::replace(&mut self.present, document);
-        self.future.push(HistoryStep { label, document });
-        self.undone()
+    /// Goes back by one edit and returns what was given from before it; `None` at the beginning.
+    pub fn undo(&mut self) -> Option<&T> {
+        let mut step = self.past.pop()?;
+        std::mem::swap(&mut self.present, &mut step.document);
+        self.future.push(step);
+        self.future.last().map(|step| &step.before)
     }
-    /// Goes forward again by one edit and returns its label; `None` at the end.
-    pub fn redo(&mut self) -> Option<&str> {
-        let HistoryStep { label, document } = self.future.pop()?;
-        let document = std::mem::replace(&mut self.present, document);
-        self.past.push(HistoryStep { label, document });
-        self.done()
+    /// Goes forward again by one edit and returns what was given from after it, or from before if that was never set;
+    /// `None` at the end.
+    pub fn redo(&mut self) -> Option<&T> {
+        let mut step = self.future.pop()?;
+        std::mem::swap(&mut self.present, &mut step.document);
+        self.past.push(step);
+        self.past.last().map(|step| step.after.as_ref().unwrap_or(&step.before))
     }
     /// Every edit that was made, oldest first.
     pub fn past(&self) -> impl ExactSizeIterator<Item = &str> {
@@ -105,9 +122,10 @@ mod tests {
                 pixels.tiles.set(TileAt::new(0, 0), None);
             }
         });
-        history.commit("Erase", erased.unwrap());
+        history.commit("Erase", erased.unwrap(), ());
         assert_eq!(tiles(history.present()).changed_tiles(tiles(&first)), [TileAt::new(0, 0)]);
-        assert_eq!(history.undo(), Some("Erase"));
+        assert!(history.undo().is_some());
+        assert_eq!(history.undone(), Some("Erase"));
         assert!(tiles(history.present()).ptr_eq(tiles(&first)));
         assert!(Arc::ptr_eq(&history.present().layers[0], &first.layers[0]));
     }
@@ -117,23 +135,30 @@ mod tests {
         for label in ["One", "Two", "Three"] {
             let mut next = history.present().clone();
             next.layers.push(Arc::new(Layer::new(label, Content::Fill(Color::BLACK))));
-            history.commit(label, next);
+            history.commit(label, next, format!("before {label}"));
         }
-        assert_eq!((history.undo().map(String::from), history.undo()), (Some("Three".into()), Some("Two")));
+        assert!(!history.is_settled());
+        history.settle("after Three".into());
+        assert!(history.is_settled());
+        let two = [history.undo().cloned(), history.undo().cloned()];
+        assert_eq!(two, [Some("before Three".into()), Some("before Two".into())]);
         assert_eq!((history.done(), history.undone()), (Some("One"), Some("Two")));
-        assert_eq!(history.redo(), Some("Two"));
-        assert_eq!(history.present().layers.len(), 3);
-        history.commit("Other", painted());
+        assert_eq!(history.redo(), Some(&"before Two".into()), "nothing was said about after it");
+        assert_eq!(history.redo(), Some(&"after Three".into()));
+        history.settle("much later".into());
+        assert_eq!((history.undo().is_some(), history.redo()), (true, Some(&"after Three".into())));
+        assert_eq!(history.present().layers.len(), 4);
+        history.undo();
+        history.commit("Other", painted(), "before Other".into());
         assert_eq!(history.redo(), None, "a new edit forgets what was undone");
     }
     #[test]
     fn only_so_many_steps_are_kept() {
         let mut history = History::new(painted(), 2);
-        (0..5).for_each(|i| history.commit(i.to_string(), painted()));
+        (0..5).for_each(|i| history.commit(i.to_string(), painted(), i));
         assert_eq!(
-            (history.undo().map(String::from), history.undo().map(String::from)),
-            (Some("4".into()), Some("3".into()))
+            [history.undo().copied(), history.undo().copied(), history.undo().copied()],
+            [Some(4), Some(3), None]
         );
-        assert_eq!(history.undo(), None);
     }
 }

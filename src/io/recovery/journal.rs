@@ -1,9 +1,9 @@
 //! One drawing's recovery log on a disk: appended to after every edit, and rewritten when it has grown to twice the
 //! needed size. Floor 5. It is used from one thread, which `mod` owns.
 
+use super::DrawingVersion;
 use super::log::{self, RecordKind};
 use super::state::{self, LoggedParts};
-use crate::document::Document;
 use crate::fs::{FileHandle, Fs};
 use crate::replace::FileStamp;
 use crate::{Error, Result};
@@ -63,14 +63,15 @@ impl Journal {
         debug_assert!(is_short, "it has a few hundred bytes");
         self.append(&out)
     }
-    /// Appends a version of the document.
-    pub fn record(&mut self, document: &Document) -> Result<()> {
+    /// Appends a version of the drawing.
+    pub fn record(&mut self, version: impl Into<DrawingVersion>) -> Result<()> {
+        let version = &version.into();
         let has_grown = self.bytes > self.least_compacted.max(2 * self.fresh_bytes);
         if has_grown || self.handle.is_none() {
-            return self.write_anew(document);
+            return self.write_anew(version);
         }
         let mut out = Vec::new();
-        if let Err(error) = state::write(&self.path, document, &mut self.known, &mut out, &self.given_up) {
+        if let Err(error) = state::write(&self.path, version, &mut self.known, &mut out, &self.given_up) {
             // The state it remembers no longer matches the log.
             self.handle = None;
             return Err(error);
@@ -99,14 +100,14 @@ impl Journal {
             Error::io(&self.path, e)
         })
     }
-    /// Writes a log of only this document next to the old one, and replaces that.
-    fn write_anew(&mut self, document: &Document) -> Result<()> {
+    /// Writes a log of only this version next to the old one, and replaces that.
+    fn write_anew(&mut self, version: &DrawingVersion) -> Result<()> {
         let failed = |e| Error::io(&self.path, e);
         let mut known = LoggedParts::default();
         let mut out = log::MAGIC.to_vec();
         let is_short = log::push(&mut out, RecordKind::Head, &[self.head.to_string().as_bytes()]);
         debug_assert!(is_short, "a head has a few hundred bytes");
-        state::write(&self.path, document, &mut known, &mut out, &self.given_up)?;
+        state::write(&self.path, version, &mut known, &mut out, &self.given_up)?;
         let part = self.path.with_extension("new");
         // Left by a session of this name that was interrupted here.
         let _ = self.fs.remove(&part);

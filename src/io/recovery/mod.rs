@@ -23,6 +23,7 @@ use super::replace::FileStamp;
 use crate::document::Document;
 use crate::{Error, Result};
 use journal::Journal;
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -46,8 +47,22 @@ pub struct RecoveryLog {
     lock: Option<Box<dyn FileLock>>,
 }
 
+/// A version of a drawing for its log.
+#[derive(Clone)]
+pub struct DrawingVersion {
+    pub document: Document,
+    /// What the program wants to know of this version besides the document; small.
+    pub aside: Value,
+}
+
+impl From<&Document> for DrawingVersion {
+    fn from(document: &Document) -> Self {
+        Self { document: document.clone(), aside: Value::Null }
+    }
+}
+
 enum RecoveryTask {
-    Record(Document),
+    Record(DrawingVersion),
     Saved(String, Option<PathBuf>, Option<FileStamp>),
     /// Signals when everything before it is written; `true`: flushed to the disk.
     Tell(Sender<()>, bool),
@@ -62,7 +77,7 @@ impl RecoveryLog {
     pub fn start(
         fs: Arc<dyn Fs>,
         folder: &Path,
-        document: &Document,
+        version: impl Into<DrawingVersion>,
         title: &str,
         file: Option<&Path>,
     ) -> Result<Self> {
@@ -76,12 +91,12 @@ impl RecoveryLog {
         let told = Arc::clone(&trouble);
         let worker = worker.spawn(move || work(journal, &received, &told)).map_err(|e| Error::io(folder, e))?;
         let recovery = Self { tasks: Some(tasks), given_up, worker: Some(worker), trouble, fs, path, lock: Some(lock) };
-        recovery.record(document);
+        recovery.record(version);
         Ok(recovery)
     }
     /// Writes a version of the drawing; called after every edit, undo and redo. Returns at once.
-    pub fn record(&self, document: &Document) {
-        self.send(RecoveryTask::Record(document.clone()));
+    pub fn record(&self, version: impl Into<DrawingVersion>) {
+        self.send(RecoveryTask::Record(version.into()));
     }
     /// The version recorded last equals the file; without a file, the drawing as created. Nothing would be lost.
     pub fn saved(&self, title: &str, file: Option<&Path>, stamp: Option<FileStamp>) {
@@ -180,12 +195,12 @@ fn work(mut journal: Journal, tasks: &Receiver<RecoveryTask>, trouble: &Mutex<Op
     loop {
         let patience = waiting_since.map_or(Duration::MAX, |since| FLUSH_AFTER.saturating_sub(since.elapsed()));
         match next.take().map_or_else(|| tasks.recv_timeout(patience), Ok) {
-            Ok(RecoveryTask::Record(document)) => {
+            Ok(RecoveryTask::Record(version)) => {
                 next = tasks.try_recv().ok();
                 if matches!(next, Some(RecoveryTask::Record(_))) {
                     continue;
                 }
-                say(journal.record(&document).err());
+                say(journal.record(version).err());
                 waiting_since.get_or_insert_with(Instant::now);
             }
             Ok(RecoveryTask::Saved(title, file, stamp)) => tell(journal.saved(&title, file.as_deref(), stamp)),

@@ -1,10 +1,10 @@
 //! Lost sessions: what sessions that ended without being closed left, and how it is recovered. Floor 5. Nothing is
 //! deleted without asking, and nothing here can keep the program from starting.
 
+use super::DrawingVersion;
 use super::log::{self, RecordKind};
 use super::state::LastState;
 use crate::Budget;
-use crate::document::Document;
 use crate::fs::{FileLock, Fs};
 use crate::replace::FileStamp;
 use crate::{Error, Result};
@@ -29,7 +29,7 @@ pub struct LostSession {
 
 /// A drawing brought back. It has no name: saving asks for one.
 pub struct RecoveredDocument {
-    pub document: Document,
+    pub version: DrawingVersion,
     pub title: String,
     /// Versions in the log, the first being the drawing as it was opened.
     pub versions: usize,
@@ -75,10 +75,10 @@ fn named(head: &Value) -> (String, Option<PathBuf>) {
 /// The last whole version in the bytes of a log.
 pub fn read(file: &Path, log: &[u8], budget: &Budget) -> Result<RecoveredDocument> {
     let last = LastState::of(log);
-    let document = last.document(file, budget)?;
-    let document = document.ok_or_else(|| Error::decode(file, "it holds no whole version of the drawing"))?;
+    let version = last.version(file, budget)?;
+    let version = version.ok_or_else(|| Error::decode(file, "it holds no whole version of the drawing"))?;
     let (title, _) = named(&last.head.unwrap_or_default());
-    Ok(RecoveredDocument { document, title, versions: last.states })
+    Ok(RecoveredDocument { version, title, versions: last.states })
 }
 
 impl LostSession {

@@ -1,6 +1,7 @@
 //! A document in a recovery log: small JSON after every edit, and each large part once, by key. Floor 5. The schema is
 //! that of recipes; tiles, strokes and files are replaced by keys of blobs.
 
+use super::DrawingVersion;
 use super::log::{self, RecordKind};
 use crate::document::{Content, Document, Layer, Live, PixelLayer, SelectionList, StrokeList};
 use crate::math::Size;
@@ -37,11 +38,12 @@ enum LoggedPart {
 /// It also fails when the log was given up; after a failure neither `known` nor the appended bytes are usable.
 pub fn write(
     file: &Path,
-    document: &Document,
+    version: &DrawingVersion,
     known: &mut LoggedParts,
     out: &mut Vec<u8>,
     given_up: &AtomicBool,
 ) -> Result<()> {
+    let DrawingVersion { document, aside } = version;
     let (pixels, shared) = (BTreeMap::new(), BTreeMap::new());
     let mut assets = AssetList::again(std::mem::take(&mut known.made));
     let renamed = assets.rename(file, document, &StoredPixels { pixels: &pixels, shared: &shared })?;
@@ -57,7 +59,7 @@ pub fn write(
         files.insert(name.clone(), key.into());
     }
     let used = std::mem::take(&mut writer.used);
-    let state = json!({ "document": value, "files": files }).to_string();
+    let state = json!({ "document": value, "files": files, "aside": aside }).to_string();
     if !log::push(out, RecordKind::State, &[state.as_bytes()]) {
         return Err(Error::too_large(file, "the document's description has more than 4 GiB"));
     }
@@ -177,8 +179,8 @@ impl<'a> LastState<'a> {
         }
         last
     }
-    /// The document; `None` where the log holds none.
-    pub fn document(&self, file: &Path, budget: &Budget) -> Result<Option<Document>> {
+    /// The drawing; `None` where the log holds none.
+    pub fn version(&self, file: &Path, budget: &Budget) -> Result<Option<DrawingVersion>> {
         let Some(state) = self.state else { return Ok(None) };
         let mut state = crate::json::parse(file, state, budget)?;
         let mut tiles = Vec::new();
@@ -195,7 +197,7 @@ impl<'a> LastState<'a> {
             };
             document = id.and_then(|id| document.with_layer(id, put)).unwrap_or(document);
         }
-        Ok(Some(document))
+        Ok(Some(DrawingVersion { document, aside: state["aside"].take() }))
     }
     /// Puts strokes back in the places of their keys, and takes the tiles out, by the paths of their layers.
     fn fill_in(

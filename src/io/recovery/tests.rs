@@ -27,7 +27,7 @@ fn journal(fs: &MemoryFs) -> Journal {
 }
 fn read(log: &[u8]) -> (usize, Option<Document>) {
     let last = LastState::of(log);
-    (last.states, last.document(Path::new(LOG), &Budget::default()).unwrap())
+    (last.states, last.version(Path::new(LOG), &Budget::default()).unwrap().map(|version| version.document))
 }
 fn disk() -> Arc<dyn Fs> {
     Arc::new(Disk)
@@ -256,7 +256,7 @@ fn sessions_that_live_are_left_alone_and_those_that_died_come_back() {
     assert_eq!(titles, ["one", "two"]);
     assert!(sessions(&disk(), folder.path()).is_empty(), "another window holds them");
     let recovered = left[1].recover(&Budget::default()).unwrap();
-    assert!(recovered.versions == 2 && pixels_of(&recovered.document) == pixels_of(&dotted(5)));
+    assert!(recovered.versions == 2 && pixels_of(&recovered.version.document) == pixels_of(&dotted(5)));
     drop(left);
     for session in sessions(&disk(), folder.path()) {
         session.discard().unwrap();

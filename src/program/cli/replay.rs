@@ -30,8 +30,8 @@ pub fn run(args: &ReplayArgs) -> Result<()> {
     session.autosave = args.recover_in.clone().map(Autosave::new);
     let (mut steps, mut last) = (0, None);
     session.replay_telling(&args.file, &text, |session| {
-        let Session { autosave: Some(autosave), open_documents, .. } = session else { return Ok(()) };
-        if let Some(trouble) = autosave.follow(open_documents) {
+        let Session { autosave: Some(autosave), open_documents, tool, .. } = session else { return Ok(()) };
+        if let Some(trouble) = autosave.follow(open_documents, *tool) {
             return Err(Error::unsupported(&args.file, trouble));
         }
         let now = session.active().map(|tab| tab.document().clone());

@@ -2,13 +2,16 @@
 //! accident, lost documents are recovered. Floor 6. Not here: the logs and their workers (`io::recovery`,
 //! docs/PROJECTS.md).
 
+use super::replay::ReplayValue;
 use super::{OpenDocument, is_same};
 use crate::Result;
 use crate::document::Document;
 use crate::io::Budget;
 use crate::io::fs::{Disk, Fs};
-use crate::io::recovery::{self, RecoveryLog};
+use crate::io::recovery::{self, DrawingVersion, RecoveryLog};
 use crate::io::replace::FileStamp;
+use crate::tools::ToolKind;
+use serde_json::json;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -41,9 +44,9 @@ struct FollowedDocument {
 
 impl FollowedDocument {
     /// The first record is the whole document; `saved` follows separately.
-    fn begin(fs: &Arc<dyn Fs>, folder: &Path, tab: &OpenDocument) -> (Self, Option<String>) {
+    fn begin(fs: &Arc<dyn Fs>, folder: &Path, tab: &OpenDocument, tool: ToolKind) -> (Self, Option<String>) {
         let document = tab.document().clone();
-        let begun = RecoveryLog::start(fs.clone(), folder, &document, &tab.title(), tab.file.as_deref());
+        let begun = RecoveryLog::start(fs.clone(), folder, version(tab, tool), &tab.title(), tab.file.as_deref());
         let (recovery, trouble) = match begun {
             Ok(recovery) => (Some(recovery), None),
             Err(error) => (None, Some(error.to_string())),
@@ -51,12 +54,12 @@ impl FollowedDocument {
         (Self { recovery, document, held: None }, trouble)
     }
     /// Records changes of the document in the log; returns whether there were any.
-    fn follow(&mut self, tab: &OpenDocument) -> bool {
+    fn follow(&mut self, tab: &OpenDocument, tool: ToolKind) -> bool {
         let Some(recovery) = &self.recovery else { return false };
         let is_edited = !is_same(&self.document, tab.document());
         if is_edited {
             self.document = tab.document().clone();
-            recovery.record(&self.document);
+            recovery.record(version(tab, tool));
         }
         let held = (!tab.is_dirty()).then(|| (tab.title(), tab.file.clone(), tab.stamp));
         if let Some((title, file, stamp)) = held.as_ref().filter(|_| is_edited || held != self.held) {
@@ -74,19 +77,21 @@ impl Autosave {
     }
     /// Updates the logs to the open documents; called after every change. Returns a new error as a sentence.
     ///
+    /// * `tool`: the one in hand, which a recovered drawing brings back.
+    ///
     /// It waits a few milliseconds for an edit to be written, so that what the user sees is safe from `kill -9`.
-    pub fn follow(&mut self, open_documents: &[OpenDocument]) -> Option<String> {
+    pub fn follow(&mut self, open_documents: &[OpenDocument], tool: ToolKind) -> Option<String> {
         let mut trouble = None;
         for tab in open_documents {
             let is_edited = match self.followed.get_mut(&tab.key) {
                 Some(followed) if followed.recovery.is_some() || is_same(&followed.document, tab.document()) => {
-                    followed.follow(tab)
+                    followed.follow(tab, tool)
                 }
                 // Not known yet, or edited since its log could not be created: try again.
                 _ => {
-                    let (mut followed, why) = FollowedDocument::begin(&self.fs, &self.folder, tab);
+                    let (mut followed, why) = FollowedDocument::begin(&self.fs, &self.folder, tab, tool);
                     trouble = trouble.or(why);
-                    followed.follow(tab);
+                    followed.follow(tab, tool);
                     self.followed.insert(tab.key, followed);
                     false
                 }
@@ -121,8 +126,8 @@ impl Autosave {
         }
     }
     /// The program ends normally: saved or untouched documents need no log. Other logs stay, to be offered.
-    pub fn close(&mut self, open_documents: &[OpenDocument]) {
-        self.follow(open_documents);
+    pub fn close(&mut self, open_documents: &[OpenDocument], tool: ToolKind) {
+        self.follow(open_documents, tool);
         for tab in open_documents.iter().filter(|tab| !tab.is_dirty()) {
             // A log that cannot be deleted is recognised as safe the next time.
             let _ = self.end(tab.key);
@@ -148,6 +153,14 @@ pub struct LostSessions {
 pub struct RecoveredTab {
     pub tab: OpenDocument,
     pub recovery: Option<RecoveryLog>,
+    /// What the user had in hand.
+    pub tool: Option<ToolKind>,
+}
+
+/// What a log holds of an open document.
+fn version(tab: &OpenDocument, tool: ToolKind) -> DrawingVersion {
+    let aside = json!({ "target": tab.stored_target(), "tool": tool.written() });
+    DrawingVersion { document: tab.document().clone(), aside }
 }
 
 impl LostSessions {
@@ -181,9 +194,13 @@ impl LostSessions {
     pub fn bring_back(&self, mut session: recovery::LostSession) -> Result<RecoveredTab> {
         let recovered = session.recover(&Budget::of_this_machine())?;
         let name = Path::new(&recovered.title).file_stem().unwrap_or_default().to_string_lossy();
-        let mut tab = OpenDocument::new(format!("{name} (recovered)"), recovered.document, None);
+        let DrawingVersion { document, aside } = recovered.version;
+        let mut tab = OpenDocument::new(format!("{name} (recovered)"), document, None);
         tab.mark_unsaved();
-        let begun = RecoveryLog::start(self.fs.clone(), &self.folder, tab.document(), &tab.title(), None);
+        tab.aim_as_stored(&aside["target"]);
+        let tool = ToolKind::read(&aside["tool"]).ok();
+        let again = version(&tab, tool.unwrap_or_default());
+        let begun = RecoveryLog::start(self.fs.clone(), &self.folder, again, &tab.title(), None);
         let recovery = begun.ok().filter(|recovery| {
             recovery.flush();
             recovery.trouble().is_none()
@@ -192,7 +209,7 @@ impl LostSessions {
             // A log that stays is offered again; nothing is lost.
             let _ = session.discard();
         }
-        Ok(RecoveredTab { tab, recovery })
+        Ok(RecoveredTab { tab, recovery, tool })
     }
 }
 

@@ -102,7 +102,7 @@ mod tests {
         for i in 1..=times {
             let next = tab.document().with_layer(id, |layer| layer.content = gradient(i as f32)).unwrap();
             flatten(&next, &Progress::default()).unwrap();
-            tab.history.commit("Drag", next);
+            tab.commit("Drag", next);
         }
         session.open_documents.push(tab);
         session.current = session.open_documents.len() - 1;

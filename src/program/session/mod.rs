@@ -294,6 +294,10 @@ impl Session {
         self.recent_colors.insert(0, color);
         self.recent_colors.truncate(RECENT);
     }
+    /// The last steps are over: what is chosen now is what redo goes back to. Called before whatever may choose.
+    fn settle(&mut self) {
+        self.open_documents.iter_mut().for_each(OpenDocument::settle);
+    }
     /// Notes why edits were not kept, and what they did to parts.
     fn tell_refusals(&mut self) {
         let told = |tab: &mut OpenDocument| [tab.refused.take(), tab.noted.take()];
@@ -302,13 +306,13 @@ impl Session {
     /// Updates the recovery logs to the documents; called after whatever may have changed them.
     pub fn keep(&mut self) {
         self.tell_refusals();
-        let trouble = self.autosave.as_mut().and_then(|autosave| autosave.follow(&self.open_documents));
+        let trouble = self.autosave.as_mut().and_then(|autosave| autosave.follow(&self.open_documents, self.tool));
         self.notes.extend(trouble);
     }
     /// Called when the program ends: see [`Autosave::close`].
     pub fn close(&mut self) {
         if let Some(autosave) = &mut self.autosave {
-            autosave.close(&self.open_documents);
+            autosave.close(&self.open_documents, self.tool);
         }
     }
     /// Performs the actions of a replay file line by line; stops with an error at the first that fails.

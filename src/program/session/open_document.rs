@@ -3,6 +3,7 @@
 
 pub mod chosen;
 mod drawn;
+mod target;
 
 use super::first_look::FirstLook;
 use super::view::CanvasView;
@@ -16,6 +17,7 @@ use chosen::ChosenLayers;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use target::EditTarget;
 
 /// Steps that can be undone.
 const STEPS: usize = 200;
@@ -32,7 +34,7 @@ pub struct Edit {
 pub struct OpenDocument {
     /// Identifies the tab as long as the program runs.
     pub key: usize,
-    pub history: History,
+    pub history: History<EditTarget>,
     /// The preview during a gesture: not a step yet.
     preview: Option<Preview>,
     /// The primary one of the chosen layers: what the brush paints on.
@@ -192,6 +194,7 @@ impl OpenDocument {
     /// Keeps a document as a step; returns whether it did. What files cannot hold is refused: `refused` says why.
     pub fn commit(&mut self, label: impl Into<String>, document: Document) -> bool {
         self.preview = None;
+        self.settle();
         let mut is_kept = true;
         // The layers that parts are made from may have been painted on.
         let document = document.reshaped();
@@ -203,7 +206,7 @@ impl OpenDocument {
                         let let_go = self.document().active_selection.clone();
                         self.last_selection = let_go.or(self.last_selection.take());
                     }
-                    self.history.commit(label, document);
+                    self.history.commit(label, document, self.target());
                 }
                 Err(why) => {
                     is_kept = false;
@@ -256,16 +259,21 @@ impl OpenDocument {
         strokes.dedup();
         self.chosen = Some((layer, strokes));
     }
-    /// Goes back (negative) or forward by steps.
+    /// Goes back (negative) or forward by steps, to what was chosen before the last one undone, or after the last one
+    /// redone.
     pub fn walk(&mut self, steps: i32) {
         self.preview = None;
+        self.settle();
+        let mut target = None;
         for _ in 0..steps.unsigned_abs() {
-            let gone = if steps < 0 { self.history.undo().is_some() } else { self.history.redo().is_some() };
-            if !gone {
-                break;
-            }
+            let gone = if steps < 0 { self.history.undo() } else { self.history.redo() };
+            let Some(gone) = gone else { break };
+            target = Some(gone.clone());
         }
-        self.repair();
+        match target {
+            Some(target) => self.aim(target),
+            None => self.repair(),
+        }
     }
     /// Selects the topmost layer if the selected one is gone.
     pub(super) fn repair(&mut self) {

@@ -9,6 +9,7 @@ mod several;
 mod snapping;
 mod soft;
 mod steps;
+mod targets;
 mod transforming;
 mod unwrapped;
 mod warping;

@@ -23,9 +23,7 @@ impl EditAction {
             EditAction::Walk { steps } => *steps,
         };
         if let Some(tab) = session.active_mut() {
-            let before = tab.document().clone();
             tab.walk(steps);
-            tab.choose_new_since(&before);
         }
     }
 }

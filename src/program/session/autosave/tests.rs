@@ -37,12 +37,12 @@ fn after_a_crash_the_drawing_comes_back_untitled_and_unsaved() {
     crash(session);
     let left = lost(folder.path()).pop().unwrap();
     let mut autosave = Autosave::new(folder.path().into());
-    let RecoveredTab { tab, recovery } = autosave.lost().bring_back(left).unwrap();
+    let RecoveredTab { tab, recovery, .. } = autosave.lost().bring_back(left).unwrap();
     assert_eq!((tab.title().as_str(), &tab.file), ("Untitled 1 (recovered)", &None));
     assert!(tab.is_dirty());
     assert_eq!(crate::io::recipe::write(tab.document()), before);
     autosave.adopt(&tab, recovery.unwrap());
-    assert!(autosave.follow(std::slice::from_ref(&tab)).is_none());
+    assert!(autosave.follow(std::slice::from_ref(&tab), ToolKind::Brush).is_none());
     assert!(lost(folder.path()).is_empty(), "now it lives here");
     // A second crash loses nothing either.
     drop(autosave);
@@ -115,7 +115,7 @@ fn the_program_ends_as_it_should_and_leaves_only_what_is_unsaved() {
     let mut session = painted(folder.path());
     session.replay(Path::new("story"), STORY.lines().next().unwrap()).unwrap();
     let Session { open_documents, autosave, .. } = &mut session;
-    autosave.as_mut().unwrap().close(open_documents);
+    autosave.as_mut().unwrap().close(open_documents, ToolKind::Brush);
     drop(session);
     let left = lost(folder.path());
     assert_eq!(left.len(), 1);
@@ -137,4 +137,22 @@ fn a_folder_that_cannot_be_had_is_told_once_and_tried_again() {
     assert!(session.notes.is_empty());
     crash(session);
     assert_eq!(lost(&logs).len(), 1);
+}
+#[test]
+fn what_was_chosen_and_in_hand_comes_back_with_the_drawing() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut session = painted(folder.path());
+    let story = r#"{"in":"layer","do":"add","kind":"paint"}
+{"in":"layer","do":"paint mask","layer":"0","hides":false}
+{"in":"hand","do":"tool","tool":"eraser"}
+{"in":"pointer","do":"press","tool":"eraser","pen":[20,30],"px_per_pt":1}
+{"in":"pointer","do":"drag","pens":[[60,44]]}
+{"in":"pointer","do":"release"}"#;
+    session.replay(Path::new("story"), story).unwrap();
+    session.keep();
+    crash(session);
+    let RecoveredTab { tab, tool, .. } =
+        Autosave::new(folder.path().into()).lost().bring_back(lost(folder.path()).pop().unwrap()).unwrap();
+    let chosen = tab.document().layer(tab.selected.unwrap()).unwrap();
+    assert_eq!((chosen.name.as_str(), tab.on_mask, tool), ("Background", true, Some(ToolKind::Eraser)));
 }

@@ -17,6 +17,21 @@ pub struct ChosenLayers {
     frame: KeptFrame,
 }
 
+impl ChosenLayers {
+    /// These, the primary one last.
+    pub(super) fn of(ids: Vec<LayerId>) -> Self {
+        Self { anchor: ids.last().copied(), ids, frame: KeptFrame::default() }
+    }
+    /// The choice alone.
+    pub(super) fn without_frame(&self) -> Self {
+        Self { frame: KeptFrame::default(), ids: self.ids.clone(), ..*self }
+    }
+    /// Chooses as another does; what the transform tool keeps stays.
+    pub(super) fn choose_as(&mut self, other: Self) {
+        (self.ids, self.anchor) = (other.ids, other.anchor);
+    }
+}
+
 impl OpenDocument {
     /// The chosen layers in the order of the tree, bottom first, the primary one among them.
     pub fn chosen_layers(&self) -> Vec<LayerId> {
@@ -73,23 +88,13 @@ impl OpenDocument {
     pub fn choose_layers(&mut self, ids: Vec<LayerId>) {
         if let Some(primary) = ids.last().copied() {
             self.selected = Some(primary);
-            let frame = std::mem::take(&mut self.chosen_layers.frame);
-            self.chosen_layers = ChosenLayers { ids, anchor: Some(primary), frame };
+            self.chosen_layers.choose_as(ChosenLayers::of(ids));
         }
     }
     /// The same, with the start of the range to extend.
     pub fn choose_range(&mut self, ids: Vec<LayerId>, anchor: Option<LayerId>) {
         self.choose_layers(ids);
         self.chosen_layers.anchor = anchor.or(self.chosen_layers.anchor);
-    }
-    /// Chooses the layer that was added, or came back, since a document; if there are several, the choice stays.
-    pub(in crate::session) fn choose_new_since(&mut self, before: &Document) {
-        let document = self.document();
-        let came: Vec<LayerId> =
-            document.walk().iter().map(|(_, layer)| layer.id).filter(|id| before.layer(*id).is_none()).collect();
-        if let [one] = document.outermost(&came)[..] {
-            self.choose_layers(vec![one]);
-        }
     }
     /// With a layer added to those chosen, or removed from them, the primary one last. The last one stays.
     pub fn toggled(&self, layer: LayerId) -> Vec<LayerId> {

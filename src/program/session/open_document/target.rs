@@ -1,0 +1,98 @@
+//! What the next edit of an open document applies to. Floor 6. Every step of the history holds it as it was before and
+//! after the step, so that undo and redo put the user back where the step was made; recovery logs hold the last one.
+//! Not here: the tool in hand, which belongs to all documents and which undo never takes away.
+
+use super::OpenDocument;
+use super::chosen::ChosenLayers;
+use crate::document::{Document, LayerId};
+use crate::session::replay::{ReplayValue, record};
+use crate::session::{LayerPath, LayerPaths};
+use serde_json::Value;
+
+/// What is chosen, and what the brush paints on.
+#[derive(Clone, Debug, Default)]
+pub struct EditTarget {
+    selected: Option<LayerId>,
+    layers: ChosenLayers,
+    part: Option<String>,
+    strokes: Option<(LayerId, Vec<usize>)>,
+    on_mask: bool,
+    quick_mask: bool,
+}
+
+/// The same by paths, which are valid in another run of the program. Strokes are those of the primary layer.
+struct StoredTarget {
+    primary: Option<LayerPath>,
+    layers: LayerPaths,
+    part: Option<String>,
+    strokes: Vec<usize>,
+    on_mask: bool,
+    quick_mask: bool,
+}
+record!(StoredTarget { primary, layers, part, strokes, on_mask, quick_mask });
+
+impl OpenDocument {
+    /// What the next edit applies to.
+    pub(super) fn target(&self) -> EditTarget {
+        EditTarget {
+            selected: self.selected,
+            layers: self.chosen_layers.without_frame(),
+            part: self.part.clone(),
+            strokes: self.chosen.clone(),
+            on_mask: self.on_mask,
+            quick_mask: self.quick_mask,
+        }
+    }
+    /// Goes back to a target; where something of it is gone, another takes its place.
+    pub(super) fn aim(&mut self, target: EditTarget) {
+        let EditTarget { selected, layers, part, strokes, on_mask, quick_mask } = target;
+        self.chosen_layers.choose_as(layers);
+        (self.selected, self.part, self.chosen) = (selected, part, strokes);
+        (self.on_mask, self.quick_mask) = (on_mask, quick_mask);
+        self.repair();
+    }
+    /// Where the last step left the user is what redo goes back to: called before the target is changed by anything
+    /// but a step.
+    pub(in crate::session) fn settle(&mut self) {
+        if !self.history.is_settled() {
+            let after = self.target();
+            self.history.settle(after);
+        }
+    }
+    /// The target for a recovery log.
+    pub(in crate::session) fn stored_target(&self) -> Value {
+        let document = self.document();
+        let stored = StoredTarget {
+            primary: self.selected.and_then(|id| LayerPath::of(document, id)),
+            layers: LayerPaths::of(document, &self.chosen_layers()),
+            part: self.part.clone(),
+            strokes: self.chosen_strokes(),
+            on_mask: self.on_mask,
+            quick_mask: self.quick_mask,
+        };
+        stored.written()
+    }
+    /// Goes to a target from a recovery log. One that cannot be read, as of an older log, changes nothing.
+    pub(in crate::session) fn aim_as_stored(&mut self, value: &Value) {
+        if let Ok(stored) = StoredTarget::read(value) {
+            let target = stored.found(self.document());
+            self.aim(target);
+        }
+    }
+}
+
+impl StoredTarget {
+    fn found(self, document: &Document) -> EditTarget {
+        let selected = self.primary.and_then(|path| path.find(document)).map(|layer| layer.id);
+        let mut layers = self.layers.find(document).unwrap_or_default();
+        layers.extend(selected);
+        EditTarget {
+            selected,
+            layers: ChosenLayers::of(layers),
+            part: self.part,
+            strokes: selected.map(|layer| (layer, self.strokes)),
+            on_mask: self.on_mask,
+            quick_mask: self.quick_mask,
+        }
+    }
+}
