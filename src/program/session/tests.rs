@@ -1,6 +1,7 @@
 //! Stories: what a user does, written as the lines of a replay.
 
 mod canvas;
+mod closed;
 mod dialect;
 mod held;
 mod kept;

@@ -2,8 +2,8 @@
 //! Not here: the effect of anchors (`surface::deformation`).
 
 use super::gradient::{self, GradientEnd};
-use super::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext, lights};
-use crate::document::{Content, Document, Layer, LayerId, LayerLock, Live};
+use super::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext, closed, lights};
+use crate::document::{Content, Document, Layer, LayerId, Live};
 use crate::math::{Size, Vec2};
 use crate::paint::PlacedImage;
 use crate::surface::{Anchor, Deformation, Surface};
@@ -40,8 +40,10 @@ pub fn handle_at(layer: &Layer, canvas: Size, at: Vec2, px_per_pt: f32) -> Optio
 }
 
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
-    let layer = context.layer.and_then(|id| context.document.layer(id)).filter(|layer| layer.lock != LayerLock::All);
-    let Some(layer) = layer else { return (None, Outcome::Idle) };
+    let Some(layer) = context.layer.and_then(|id| context.document.layer(id)) else { return (None, Outcome::Idle) };
+    if let Some(why) = closed::locked(layer) {
+        return (None, Outcome::Refused(why.into()));
+    }
     let taken = handle_at(layer, context.document.size, pen.place(), context.px_per_pt);
     let document = context.document.clone();
     match (&layer.content, taken) {
@@ -80,8 +82,10 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
             (Some(Box::new(lights::LightGesture { document, layer, shading, index, moved: false })), Outcome::Idle)
         }
         (Content::Image(_) | Content::Gradient(_), None) => (None, Outcome::Idle),
-        (Content::Strokes(_), _) => (None, Outcome::Refused("Strokes have no anchors: the Strokes tool moves them")),
-        _ => (None, Outcome::Refused("This layer has no anchors: images, gradients and lights do")),
+        (Content::Strokes(_), _) => {
+            (None, Outcome::Refused("Strokes have no anchors: the Strokes tool moves them".into()))
+        }
+        _ => (None, Outcome::Refused("This layer has no anchors: images, gradients and lights do".into())),
     }
 }
 

@@ -42,7 +42,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         return (Some(Box::new(AxisGesture { handle, axes, canvas })), Outcome::Idle);
     }
     if document.assistants.len() >= Assistant::MOST {
-        return (None, Outcome::Refused("There are as many assistants as a document holds."));
+        return (None, Outcome::Refused("There are as many assistants as a document holds.".into()));
     }
     let from = context.snap.point(pen.place()).at;
     let mut all = Vec::clone(&document.assistants);

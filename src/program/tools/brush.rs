@@ -6,6 +6,7 @@ mod stroke;
 
 pub use erase::is_on;
 
+use super::closed;
 use super::retouch::{self, ActiveWork};
 use super::settings::StrokePurpose;
 use super::symmetry::SymmetryImage;
@@ -22,7 +23,10 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
     if let Some(refused) = retouch::refused(context, pen, purpose) {
         return (None, refused);
     }
-    let Some((document, id)) = paintable(context, purpose) else { return (None, Outcome::Idle) };
+    let (document, id) = match paintable(context, purpose) {
+        Ok(found) => found,
+        Err(why) => return (None, why.map_or(Outcome::Idle, |why| Outcome::Refused(why.into()))),
+    };
     let Some(layer) = document.layer(id) else { return (None, Outcome::Idle) };
     let scene = document.scene_of(id).unwrap_or_else(|| document.scene());
     let (target, backdrop) = match (&layer.content, purpose) {
@@ -92,9 +96,9 @@ fn begin(mut gesture: impl Gesture + 'static, pen: PenSample) -> GestureStart {
     (Some(Box::new(gesture)), outcome)
 }
 
-/// The document with a layer that can take a stroke. `None` if the selected layer is locked, or there is nothing to
-/// erase.
-fn paintable(context: &ToolContext, purpose: StrokePurpose) -> Option<(Document, LayerId)> {
+/// The document with a layer that can take a stroke; or why the selected layer cannot be painted on; `None` if there
+/// is nothing to erase.
+fn paintable(context: &ToolContext, purpose: StrokePurpose) -> Result<(Document, LayerId), Option<String>> {
     let document = context.document;
     let selected = context.layer.and_then(|id| document.layer(id));
     if let Some(layer) = selected {
@@ -102,22 +106,26 @@ fn paintable(context: &ToolContext, purpose: StrokePurpose) -> Option<(Document,
             Content::Strokes(list) => purpose == StrokePurpose::Paint || !list.params().strokes.is_empty(),
             content => matches!(content, Content::Pixels(_)),
         };
-        if layer.lock == LayerLock::All {
-            return None;
-        }
-        if holds {
-            return Some((document.clone(), layer.id));
+        let why = match holds {
+            true => closed::unpaintable(document, layer),
+            // A stroke gets a layer of its own, next to it.
+            false => closed::locked(layer).or_else(|| closed::hidden_around(document, layer.id)),
+        };
+        match why {
+            Some(why) => return Err(Some(why)),
+            None if holds => return Ok((document.clone(), layer.id)),
+            None => {}
         }
     }
     if purpose == StrokePurpose::Erase {
-        return None;
+        return Err(None);
     }
     let place = selected
         .and_then(|layer| document.place_of(layer.id))
         .map_or(LayerSlot::top_level(usize::MAX), |place| LayerSlot { index: place.index + 1, ..place });
     let layer = Layer::new(document.free_layer_name("Strokes"), Content::Strokes(Live::new(StrokeList::default())));
     let id = layer.id;
-    Some((document.with_inserted(layer, place)?, id))
+    Ok((document.with_inserted(layer, place).ok_or(None)?, id))
 }
 
 #[cfg(test)]

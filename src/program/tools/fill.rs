@@ -1,7 +1,7 @@
 //! The fill tool: a click fills the area connected to the pixel under the pen, on a paint layer. Floor 5. Not here:
 //! finding the area (`paint::fill`).
 
-use super::{GestureStart, Outcome, PenSample, ToolContext};
+use super::{GestureStart, Outcome, PenSample, ToolContext, closed};
 use crate::document::{
     Content, Document, Layer, LayerId, LayerLock, LayerSlot, PixelLayer, PreparedDocument, Progress,
 };
@@ -15,7 +15,12 @@ use std::sync::Arc;
 
 /// The pen comes down: all is done at once. A selected layer that holds no pixels gets a paint layer above it.
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
-    (None, filled(context, pen).unwrap_or(Outcome::Idle))
+    let selected = context.layer.and_then(|id| context.document.layer(id));
+    let why = selected.and_then(|layer| match layer.content {
+        Content::Pixels(_) => closed::unpaintable(context.document, layer),
+        _ => closed::hidden_around(context.document, layer.id),
+    });
+    (None, why.map(|why| Outcome::Refused(why.into())).or_else(|| filled(context, pen)).unwrap_or(Outcome::Idle))
 }
 
 fn filled(context: &ToolContext, pen: PenSample) -> Option<Outcome> {
@@ -36,12 +41,12 @@ fn filled(context: &ToolContext, pen: PenSample) -> Option<Outcome> {
     Some(Outcome::Commit { label: "Fill".into(), document, select: Some(id) })
 }
 
-/// The document with a paint layer to fill; `None` if the selected layer is locked.
+/// The document with a paint layer to fill.
 fn fillable(context: &ToolContext) -> Option<(Document, LayerId)> {
     let document = context.document;
     let selected = context.layer.and_then(|id| document.layer(id));
     if let Some(layer) = selected.filter(|layer| matches!(layer.content, Content::Pixels(_))) {
-        return (layer.lock != LayerLock::All).then(|| (document.clone(), layer.id));
+        return Some((document.clone(), layer.id));
     }
     let place = selected
         .and_then(|layer| document.place_of(layer.id))

@@ -7,6 +7,7 @@ use super::snap::SnapLines;
 use super::symmetry::SymmetryAxes;
 use crate::document::{Document, LayerId};
 use crate::math::{Rect, Vec2, Vec3, srgb::Color};
+use std::borrow::Cow;
 
 /// What a tool returns for an event of the pen.
 pub enum Outcome {
@@ -39,7 +40,7 @@ pub enum Outcome {
     /// Clone brushes copy from here from now on.
     CloneFrom(Vec2),
     /// Nothing was started; the reason is to be shown.
-    Refused(&'static str),
+    Refused(Cow<'static, str>),
     /// The frame of the chosen layers is turned about this point, by shares of its sides, from now on.
     Pivot(Vec2),
     /// These points of the layer's mesh are chosen from now on.

@@ -2,8 +2,8 @@
 //! Floor 5.
 
 use super::snap::{SnapLines, SnapTargets};
-use super::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext};
-use crate::document::{Content, Document, Layer, LayerId, LayerLock, LayerSlot, Live};
+use super::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext, closed};
+use crate::document::{Content, Document, Layer, LayerId, LayerSlot, Live};
 use crate::math::Vec2;
 use crate::paint::{Gradient, GradientStop, ImageFilter};
 
@@ -20,8 +20,8 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     if let Some(layer) = selected
         && let Content::Gradient(live) = &layer.content
     {
-        if layer.lock == LayerLock::All {
-            return (None, Outcome::Idle);
+        if let Some(why) = closed::locked(layer) {
+            return (None, Outcome::Refused(why.into()));
         }
         let gradient = live.params().clone();
         let near = |end: Vec2| end.distance(at) <= GRAB_PT * context.px_per_pt;

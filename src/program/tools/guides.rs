@@ -39,7 +39,7 @@ pub fn hold(document: &Document, guide: GuideAt, targets: SnapTargets) -> Gestur
 /// A new guide that follows the pen.
 pub fn pull(document: &Document, is_vertical: bool, targets: SnapTargets, pen: PenSample) -> GestureStart {
     if document.guides.vertical.len().max(document.guides.horizontal.len()) >= Guides::MOST {
-        return (None, Outcome::Refused("There are as many guides as a document holds."));
+        return (None, Outcome::Refused("There are as many guides as a document holds.".into()));
     }
     let rest = Guides::clone(&document.guides);
     let mut gesture = GuideGesture::new(document, rest, is_vertical, targets, false);

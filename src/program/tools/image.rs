@@ -1,16 +1,19 @@
 //! The image tool: moves, scales and turns the selected image before it is bent. Floor 5. Not here: anchors
 //! (`anchors`).
 
-use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
-use crate::document::{Content, Document, LayerId, LayerLock, Live};
+use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext, closed};
+use crate::document::{Content, Document, LayerId, Live};
 use crate::math::Vec2;
 use crate::paint::{PlacedImage, Placement};
 
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
-    let layer = context.layer.and_then(|id| context.document.layer(id)).filter(|layer| layer.lock != LayerLock::All);
+    let layer = context.layer.and_then(|id| context.document.layer(id));
     let Some((layer, Content::Image(live))) = layer.map(|layer| (layer, &layer.content)) else {
         return (None, Outcome::Idle);
     };
+    if let Some(why) = closed::locked(layer) {
+        return (None, Outcome::Refused(why.into()));
+    }
     let how = match pen.keys {
         keys if keys.shift => ImageDrag::Scale,
         keys if keys.ctrl => ImageDrag::Turn,

@@ -2,8 +2,8 @@
 //! Floor 5. Not here: what a dab does (`paint::liquify`).
 
 use super::symmetry::SymmetryImage;
-use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
-use crate::document::{Content, Document, LayerId, LayerLock};
+use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext, closed};
+use crate::document::{Content, Document, LayerId};
 use crate::paint::{LiquifySettings, LiquifyStroke, LiquifyTool};
 use crate::raster::Lattice;
 use std::sync::Arc;
@@ -11,16 +11,20 @@ use std::sync::Arc;
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let document = context.document;
     let Some(layer) = context.layer.and_then(|id| document.layer(id)) else {
-        return (None, Outcome::Refused("Choose a layer or a group to liquify."));
+        return (None, Outcome::Refused("Choose a layer or a group to liquify.".into()));
     };
+    if let Some(why) = closed::unpaintable(document, layer) {
+        return (None, Outcome::Refused(why.into()));
+    }
     let why = match &layer.content {
-        _ if layer.lock == LayerLock::All => Some("The layer is locked."),
         Content::Fill(_) => Some("A layer of one colour looks the same when it is displaced."),
         content if !content.can_be_warped() => Some("This layer shows nothing of its own that could be displaced."),
         _ => None,
     };
     let map = document.map_of(layer.id);
-    let (Some(map), None) = (map, why) else { return (None, why.map_or(Outcome::Idle, Outcome::Refused)) };
+    let (Some(map), None) = (map, why) else {
+        return (None, why.map_or(Outcome::Idle, |why| Outcome::Refused(why.into())));
+    };
     // Ctrl reverses what a tool does, Shift smooths.
     let tool = match context.liquify.tool {
         _ if pen.keys.shift => LiquifyTool::Smooth,

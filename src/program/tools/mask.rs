@@ -3,19 +3,22 @@
 //! (`brush`).
 
 use super::brush;
+use super::closed;
 use super::settings::StrokePurpose;
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
-use crate::document::{Content, Document, Layer, LayerId, LayerLock, LayerMask, MaskKind, PixelLayer};
+use crate::document::{Content, Document, Layer, LayerId, LayerMask, MaskKind, PixelLayer};
 use crate::math::srgb::{Color, luminance, quantise};
 use crate::paint::Selection;
 use crate::raster::{CoverageGrid, Plane, TILE, Tile, TileAt, TileGrid};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// The pen comes down. Nothing starts if the layer is locked or has no paintable mask.
+/// The pen comes down. Nothing starts if the layer is locked or hidden, or has no paintable mask.
 pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> GestureStart {
-    let layer = context.layer.and_then(|id| context.document.layer(id)).filter(|layer| layer.lock != LayerLock::All);
-    let Some(layer) = layer else { return (None, Outcome::Idle) };
+    let Some(layer) = context.layer.and_then(|id| context.document.layer(id)) else { return (None, Outcome::Idle) };
+    if let Some(why) = closed::unpaintable(context.document, layer) {
+        return (None, Outcome::Refused(why.into()));
+    }
     let Some(LayerMask { kind: MaskKind::File { coverage, .. }, .. }) = &layer.mask else {
         return (None, Outcome::Idle);
     };

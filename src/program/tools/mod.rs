@@ -5,6 +5,7 @@
 pub mod anchors;
 pub mod assistants;
 pub mod brush;
+mod closed;
 mod context;
 pub mod crop;
 mod displaced;

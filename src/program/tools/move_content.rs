@@ -4,7 +4,7 @@
 use super::frame::TransformFrame;
 use super::snap::{SnapLines, SnapTargets};
 use super::transform;
-use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
+use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext, closed};
 use crate::document::{Content, Document, Layer, LayerId, LayerLock};
 use crate::math::{PlaneMap, Vec2};
 use crate::paint::picking;
@@ -14,6 +14,9 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         return press_several(context, several, pen);
     }
     let layer = context.layer.and_then(|id| context.document.layer(id));
+    if let Some(why) = layer.and_then(|layer| closed::locked(layer)) {
+        return (None, Outcome::Refused(why.into()));
+    }
     let held = layer.and_then(|layer| held(context.document, layer, pen.place(), pen.keys.shift));
     let Some((layer, held)) = layer.zip(held) else { return (None, Outcome::Idle) };
     let stroke = match held {
@@ -26,9 +29,8 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
 /// Several layers are moved whole, whatever they hold.
 fn press_several(context: &ToolContext, layers: &[LayerId], pen: PenSample) -> GestureStart {
     let document = context.document;
-    let is_locked = |id: &LayerId| document.layer(*id).is_some_and(|layer| layer.lock == LayerLock::All);
-    if layers.iter().any(is_locked) {
-        return (None, Outcome::Refused("One of the layers is locked."));
+    if let Some(why) = layers.iter().find_map(|id| closed::locked(document.layer(*id)?)) {
+        return (None, Outcome::Refused(why.into()));
     }
     (Some(Box::new(MoveGesture::begin(context, layers.to_vec(), None, pen))), Outcome::Idle)
 }

@@ -52,14 +52,15 @@ pub(super) fn refused(context: &ToolContext, pen: PenSample, purpose: StrokePurp
     let layer = context.layer.and_then(|id| context.document.layer(id));
     if !layer.is_some_and(|layer| matches!(layer.content, Content::Pixels(_))) {
         return Some(Outcome::Refused(if mode.is_retouching() {
-            "Smudge, blur and clone work on paint layers. Select one, or bake this layer."
+            "Smudge, blur and clone work on paint layers. Select one, or bake this layer.".into()
         } else {
             "This brush paints with paint that it picks up, which only paint layers have. Select one, or bake this \
              layer."
+                .into()
         }));
     }
     let has_source = !mode.is_clone() || context.clone_offset.is_some();
-    (!has_source).then_some(Outcome::Refused("Alt-click where the clone brush should copy from, then paint."))
+    (!has_source).then_some(Outcome::Refused("Alt-click where the clone brush should copy from, then paint.".into()))
 }
 
 /// What works on the pixels of a layer; `None` where the strokes only add paint.

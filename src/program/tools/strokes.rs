@@ -1,8 +1,8 @@
 //! The stroke tool: selects strokes of a stroke layer on the canvas and moves them along the surface. Floor 5. The
 //! session keeps the selection. Not here: the edits (`document::strokes`).
 
-use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
-use crate::document::{Content, Document, LayerId, LayerLock};
+use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext, closed};
+use crate::document::{Content, Document, LayerId};
 use crate::math::Vec2;
 use crate::paint::picking;
 
@@ -10,8 +10,11 @@ use crate::paint::picking;
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let nothing = (None, Outcome::Idle);
     let Some(layer) = context.layer.and_then(|id| context.document.layer(id)) else { return nothing };
-    if layer.lock == LayerLock::All || !matches!(layer.content, Content::Strokes(_)) {
+    if !matches!(layer.content, Content::Strokes(_)) {
         return nothing;
+    }
+    if let Some(why) = closed::locked(layer) {
+        return (None, Outcome::Refused(why.into()));
     }
     let strokes = context.document.strokes(layer.id);
     let scene = context.document.scene_of(layer.id).unwrap_or_else(|| context.document.scene());

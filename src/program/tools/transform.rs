@@ -13,8 +13,8 @@ pub use pivot::PIVOTS;
 
 use super::frame::{FrameHandle, Framed, TransformFrame};
 use super::snap::SnapLines;
-use super::{GestureStart, Outcome, PenSample, ToolContext};
-use crate::document::{Document, Layer, LayerId, LayerLock};
+use super::{GestureStart, Outcome, PenSample, ToolContext, closed};
+use crate::document::{Document, Layer, LayerId};
 use crate::math::{PlaneMap, Vec2};
 use gesture::{HeldLayer, TransformGesture};
 use pivot::PivotGesture;
@@ -27,17 +27,16 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let chosen = if of_shape { &[] } else { context.chosen() };
     let layers: Vec<&Layer> = chosen.iter().filter_map(|id| document.layer(*id)).map(|l| &**l).collect();
     if layers.is_empty() && !of_shape {
-        return (None, Outcome::Refused("Choose a layer first."));
+        return (None, Outcome::Refused("Choose a layer first.".into()));
     }
-    if layers.iter().any(|layer| layer.lock == LayerLock::All) {
-        let is_one = layers.len() == 1;
-        return (None, Outcome::Refused(if is_one { "The layer is locked." } else { "One of the layers is locked." }));
+    if let Some(why) = layers.iter().find_map(|layer| closed::locked(layer)) {
+        return (None, Outcome::Refused(why.into()));
     }
     if !of_shape && let Some(begun) = mesh::press(context, pen) {
         return begun;
     }
     let Some(frame) = context.frame.around(document, framed) else {
-        return (None, Outcome::Refused("The layer is empty: there is nothing to transform."));
+        return (None, Outcome::Refused("The layer is empty: there is nothing to transform.".into()));
     };
     let handle = frame.handle_at(pen.place(), context.px_per_pt, pen.keys.alt);
     if handle == FrameHandle::Pivot {
@@ -46,7 +45,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         return (Some(Box::new(gesture)), Outcome::Idle);
     }
     if of_shape && pen.keys.ctrl && matches!(handle, FrameHandle::Corner(_)) {
-        return (None, Outcome::Refused("A shape has no perspective: its depth would not fit. Drag its sides."));
+        return (None, Outcome::Refused("A shape has no perspective: its depth would not fit. Drag its sides.".into()));
     }
     let held = |layer: &&Layer| {
         Some(HeldLayer { id: layer.id, own: LayerPlacement::of(layer), map: document.map_of(layer.id)? })

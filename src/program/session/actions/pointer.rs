@@ -94,6 +94,10 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         tab.hold_frame(carried);
     }
     let Some(tab) = session.active() else { return };
+    let paints = matches!(tool, ToolKind::Brush | ToolKind::Eraser | ToolKind::Fill | ToolKind::Liquify);
+    if let Some(why) = tab.hidden_beside().filter(|_| paints && !tab.quick_mask) {
+        return session.notes.push(why);
+    }
     let (strokes, layers) = (tab.chosen_strokes(), tab.outermost_chosen());
     let document = match works_in_place(tool, tab) {
         Ok(document) => document,
@@ -291,7 +295,7 @@ fn take(session: &mut Session, outcome: Outcome) {
         }
         Outcome::Frame(frame) => session.crop = Some(frame),
         Outcome::CloneFrom(at) => tab.clone_source = Some(CloneSource { at, offset: None }),
-        Outcome::Refused(why) => session.notes.push(why.into()),
+        Outcome::Refused(why) => session.notes.push(why.into_owned()),
         Outcome::Chosen(strokes) => {
             if let Some(layer) = tab.selected {
                 tab.choose_strokes(layer, strokes);

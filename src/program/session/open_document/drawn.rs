@@ -14,6 +14,18 @@ impl OpenDocument {
         }
         self.solo.and_then(|id| alone(shown, id)).unwrap_or_else(|| shown.clone())
     }
+    /// Why paint on the selected layer would not be seen: another layer is shown alone.
+    pub fn hidden_beside(&self) -> Option<String> {
+        let document = self.document();
+        let (alone, selected) = (document.layer(self.solo?)?, document.layer(self.selected?)?);
+        let is_seen = alone.id == selected.id || document.outermost(&[alone.id, selected.id]) == [alone.id];
+        let (beside, shown) = (&selected.name, &alone.name);
+        (!is_seen).then(|| {
+            format!(
+                "“{beside}” is hidden, since “{shown}” is shown alone. Show all (Layer, Show layer alone) to paint."
+            )
+        })
+    }
 }
 
 /// The document with what is not selected under red.

@@ -71,7 +71,7 @@ impl Gesture for StrokeGesture {
         match self.room {
             Some(0) => {
                 self.room = None;
-                return Outcome::Refused("A stroke can be no longer than this. Lift the pen to begin another.");
+                return Outcome::Refused("A stroke can be no longer than this. Lift the pen to begin another.".into());
             }
             None => return Outcome::Idle,
             Some(_) => {}

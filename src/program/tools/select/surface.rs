@@ -12,11 +12,14 @@ use crate::tools::{Gesture, GestureStart, Outcome, PenSample, SelectSettings, To
 
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let Some(surface) = &context.document.surface else {
-        return (None, Outcome::Refused("There is no surface here to select by. File › New… opens one from its maps."));
+        return (
+            None,
+            Outcome::Refused("There is no surface here to select by. File › New… opens one from its maps.".into()),
+        );
     };
     let told = SurfaceRegion { at: pen.place(), ..context.select.region };
     let Some(field) = RegionField::new(surface, told.kind, told.at) else {
-        return (None, Outcome::Refused("Click on the surface: outside it there is nothing to select by."));
+        return (None, Outcome::Refused("Click on the surface: outside it there is nothing to select by.".into()));
     };
     let mut gesture = RegionGesture {
         document: context.document.clone(),

@@ -15,7 +15,10 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let (settings, document) = (context.select, context.document);
     let at = pen.place().floor().as_ivec2();
     if !pen.place().is_finite() || !document.size.rect().contains(at.x, at.y) {
-        return (None, Outcome::Refused("Click on the canvas: the wand selects what is like the pixel you click."));
+        return (
+            None,
+            Outcome::Refused("Click on the canvas: the wand selects what is like the pixel you click.".into()),
+        );
     }
     let picture = match layer_alone(context) {
         Some(tiles) if settings.wand.layer_alone => WandSource::Layer(tiles),

@@ -181,7 +181,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let forms = document.part_forms();
     if forms.is_empty() {
         let why = "There is no part here. Layer › Give it a shape… makes some, or the panel Shape adds one.";
-        return (None, Outcome::Refused(why));
+        return (None, Outcome::Refused(why.into()));
     }
     let frame_of = |id: &str| {
         let (part, form) = forms.iter().find(|(part, _)| part.id == id)?;

@@ -16,7 +16,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let document = context.document;
     let Some(base) = document.part_at(pen.place()) else {
         let why = "Sculpt on a part: there is none under the pen. Layer › Give it a shape… makes some.";
-        return (None, Outcome::Refused(why));
+        return (None, Outcome::Refused(why.into()));
     };
     let (mut part, is_new) = layer_on(
         document,

@@ -57,7 +57,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     }
     let Some(base) = document.part_at(at) else {
         let why = "Touch a part: there is none under the pen. Layer › Give it a shape… makes some.";
-        return (None, Outcome::Refused(why));
+        return (None, Outcome::Refused(why.into()));
     };
     let settings = context.shape;
     let (part, is_new) = layer_on(
@@ -104,10 +104,12 @@ pub(super) fn layer_on(
 
 /// The direction of the surface at a point.
 fn taken(document: &Document, at: Vec2) -> Outcome {
-    let Some(surface) = &document.surface else { return Outcome::Refused("There is no surface to take it from.") };
+    let Some(surface) = &document.surface else {
+        return Outcome::Refused("There is no surface to take it from.".into());
+    };
     let (x, y) = surface.pixel_of(at);
     match surface.coverage(x, y) {
-        0 => Outcome::Refused("There is no surface under the pen to take a direction from."),
+        0 => Outcome::Refused("There is no surface under the pen to take a direction from.".into()),
         _ => Outcome::Direction(surface.normal(x, y)),
     }
 }

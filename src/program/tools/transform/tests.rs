@@ -1,5 +1,5 @@
 use super::*;
-use crate::document::{Content, Group, Layer, LayerTransform, PixelLayer, TransformShape};
+use crate::document::{Content, Group, Layer, LayerLock, LayerTransform, PixelLayer, TransformShape};
 use crate::math::{Size, vec2};
 use crate::paint::Brush;
 use crate::raster::TileGrid;

@@ -1,14 +1,14 @@
 //! An image or a gradient on the unwrapped sheet: moved, scaled and turned on one piece of the surface alone. Floor 5.
 //! Not here: what a piece does to its picture (`surface::unwrap`).
 
-use crate::document::{Content, Document, LayerId, LayerLock, Live};
+use crate::document::{Content, Document, LayerId, Live};
 use crate::math::{Mat2, Rect, Vec2, vec2};
 use crate::paint::{Gradient, PlacedImage};
 use crate::surface::plane_piece::PlanePiece;
 use crate::surface::unwrap::metric::turn;
 use crate::surface::unwrap::{LaidPiece, PlaneLayout};
 use crate::surface::{Bend, Deformation, Surface};
-use crate::tools::{GRAB_PT, Gesture, GestureStart, ModifierKeys, Outcome, PenSample, ToolContext};
+use crate::tools::{GRAB_PT, Gesture, GestureStart, ModifierKeys, Outcome, PenSample, ToolContext, closed};
 
 /// What a drag does to the picture on a piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,12 +89,18 @@ fn with_pieces(content: &Content, pieces: Vec<PlanePiece>) -> Content {
 
 /// The pen comes down on the sheet with the image or the gradient tool; `pen` is on the sheet.
 pub fn press(context: &ToolContext, pen: PenSample, layout: &PlaneLayout) -> GestureStart {
-    let layer = context.layer.and_then(|id| context.document.layer(id)).filter(|layer| layer.lock != LayerLock::All);
+    let layer = context.layer.and_then(|id| context.document.layer(id));
+    if let Some(why) = layer.and_then(|layer| closed::locked(layer)) {
+        return (None, Outcome::Refused(why.into()));
+    }
     let Some((layer, mut bend)) = layer.and_then(|layer| Some((layer, bend_on_pieces(&layer.content)?))) else {
-        return (None, Outcome::Refused("Select an image or a gradient to move, scale and turn it on one piece"));
+        return (
+            None,
+            Outcome::Refused("Select an image or a gradient to move, scale and turn it on one piece".into()),
+        );
     };
     if bend.operator.unwrapping().is_none() {
-        return (None, Outcome::Refused("Only what is bent by Texture can be moved on one piece"));
+        return (None, Outcome::Refused("Only what is bent by Texture can be moved on one piece".into()));
     }
     let Some(surface) = context.document.surface.clone() else { return (None, Outcome::Idle) };
     let Some((piece, how)) = held(layout, pen.place(), context.px_per_pt, pen.keys) else {
