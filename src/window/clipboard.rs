@@ -1,20 +1,28 @@
 //! The system's clipboard: pictures, and texts for text fields. Floor 7. The toolkit's own clipboard is not built in,
 //! so its keys and texts are handled here.
 
+#[cfg(all(unix, not(target_os = "macos")))]
+mod x11;
+
+use crate::io::{Budget, picture};
 use crate::math::Size;
 use crate::raster::Picture;
+use crate::session::actions::PastedPicture;
 use crate::{Error, Result};
 pub use arboard::Clipboard;
 use arboard::ImageData;
 use eframe::egui::{Context, Event, Key, Modifiers, OutputCommand};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The content of the clipboard to paste.
 pub enum PastedContent {
-    Picture(Picture),
+    Picture(PastedPicture),
     /// Copied in a file manager.
     Files(Vec<PathBuf>),
 }
+
+/// Reads the clipboard; called on a thread of its own.
+pub type ClipboardSource = fn() -> Result<PastedContent>;
 
 fn open() -> Result<Clipboard> {
     Clipboard::new().map_err(|error| Error::unsupported("clipboard", error))
@@ -23,16 +31,27 @@ fn open() -> Result<Clipboard> {
 /// The picture or the files in the clipboard; fails if there are none. It takes as long as the program that owns them
 /// needs.
 pub fn pasted() -> Result<PastedContent> {
+    if let Some((name, bytes)) = offered(Budget::of_this_machine().file_bytes)? {
+        let picture = picture::decode(Path::new(&name), &bytes, &Budget::of_this_machine())?;
+        return Ok(PastedContent::Picture(PastedPicture { name, picture }));
+    }
     let mut clipboard = open()?;
     if let Ok(image) = clipboard.get_image() {
         let size = Size::new(image.width as u32, image.height as u32);
         let picture = Picture::srgb8(size, image.bytes.as_chunks::<4>().0.to_vec());
-        return picture
-            .map(PastedContent::Picture)
-            .ok_or_else(|| Error::unsupported("clipboard", "its picture is broken"));
+        let picture = picture.ok_or_else(|| Error::unsupported("clipboard", "its picture is broken"))?;
+        return Ok(PastedContent::Picture(PastedPicture { name: "Pasted.png".into(), picture }));
     }
     let files = clipboard.get().file_list().ok().filter(|files| !files.is_empty());
     files.map(PastedContent::Files).ok_or_else(|| Error::unsupported("clipboard", "it holds no picture"))
+}
+
+/// A picture as the file that another program offers, with a name for it, where the system has such.
+fn offered(most_bytes: u64) -> Result<Option<(String, Vec<u8>)>> {
+    #[cfg(all(unix, not(target_os = "macos")))]
+    return Ok(x11::picture(most_bytes)?.map(|(ending, bytes)| (format!("Pasted.{ending}"), bytes)));
+    #[cfg(not(all(unix, not(target_os = "macos"))))]
+    return Ok(None).inspect(|_: &Option<_>| drop(most_bytes));
 }
 
 /// Puts a picture of straight RGBA into the clipboard. It stays there as long as the returned value is kept.

@@ -8,14 +8,15 @@ use crate::file_purpose::FilePurpose;
 use crate::io::recipe::BrushPreset;
 use crate::io::replace::FileStamp;
 use crate::io::{maps, recovery};
+use crate::math::Vec2;
 use crate::memory;
 use crate::pending::{Pending, Saving};
 use crate::raster::Picture;
 use crate::session::PicturePart;
-use crate::session::actions::PartAction;
 use crate::session::actions::parts::FirstShape;
 use crate::session::actions::pictures::ReadPart;
 use crate::session::actions::placing::read_picture;
+use crate::session::actions::{PartAction, PasteTo};
 use crate::session::autosave::RecoveredTab;
 use crate::session::storage::{self, FileUse, OpenedTab, SortedFiles};
 use crate::session::{Action, Edit};
@@ -34,8 +35,8 @@ pub enum JobResult {
     AreMaps(Box<SurfaceSource>),
     /// The file is opened as a document of its own.
     IsDocument(PathBuf),
-    /// The file is read to become an image layer.
-    IsPicture(PathBuf, PinPosition),
+    /// The file is read to become a layer.
+    IsPicture(PathBuf, PictureUse),
     /// Several results.
     Several(Vec<JobResult>),
     /// Maps were read, for the import dialog.
@@ -44,8 +45,8 @@ pub enum JobResult {
     Lost(Vec<recovery::LostSession>),
     /// One of them was recovered.
     Recovered(Box<Result<RecoveredTab>>),
-    /// A picture was read from a file, to become an image layer.
-    Pictured(PathBuf, String, Picture, PinPosition),
+    /// A picture was read from a file, to become a layer.
+    Pictured(PathBuf, String, Picture, PictureUse),
     /// The same, to lie on the unwrapped surface.
     Flat(PathBuf, String, Picture),
     /// The surface of a tab, by its key, was unwrapped.
@@ -74,9 +75,9 @@ pub enum JobResult {
     Said(String),
     /// The flattened picture is in the clipboard as long as this is kept.
     Copied(Clipboard),
-    Pasted(PastedContent),
+    Pasted(PastedContent, PastePlace),
     /// What was copied in this window is to be pasted.
-    PastedOwn,
+    PastedOwn(PastePlace),
     /// The user's own brushes, and the errors of unreadable ones.
     Brushes(Vec<BrushPreset>, Vec<String>),
     /// Nothing to do, as after a cancelled job.
@@ -102,6 +103,21 @@ pub struct PartResult {
     pub part: PicturePart,
     pub file: PathBuf,
     pub read: ReadPart,
+}
+
+/// What becomes of a picture from a file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PictureUse {
+    Placed(PinPosition),
+    Pasted(PastePlace),
+}
+
+/// What is pasted becomes this.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PastePlace {
+    pub to: PasteTo,
+    /// With its middle at this canvas point, or in the middle of the view.
+    pub at: Option<Vec2>,
 }
 
 /// Where a picture is to be pinned to the surface.
@@ -199,8 +215,8 @@ impl Jobs {
         }
         self.under_way.push(RunningJob { key, name, progress, kind, since: Instant::now() });
     }
-    /// Opens files that came together. `at`: where pictures become layers; absent: they open as documents.
-    pub fn open(&mut self, files: Vec<PathBuf>, at: Option<PinPosition>) {
+    /// Opens files that came together. `use_of`: what becomes of pictures; absent: they open as documents.
+    pub fn open(&mut self, files: Vec<PathBuf>, use_of: Option<PictureUse>) {
         let name = match &files[..] {
             [file] => format!("Opening {}", short(file)),
             files => format!("Opening {} files", files.len()),
@@ -215,8 +231,8 @@ impl Jobs {
             }
             let SortedFiles { objects, others } = storage::sorted(known);
             done.extend(objects.into_iter().map(|source| JobResult::AreMaps(Box::new(source))));
-            done.extend(others.into_iter().map(|(file, kind)| match at.filter(|_| kind == FileUse::Picture) {
-                Some(at) => JobResult::IsPicture(file, at),
+            done.extend(others.into_iter().map(|(file, kind)| match use_of.filter(|_| kind == FileUse::Picture) {
+                Some(use_of) => JobResult::IsPicture(file, use_of),
                 None => JobResult::IsDocument(file),
             }));
             JobResult::Several(done)
@@ -229,9 +245,9 @@ impl Jobs {
             JobResult::Opened(Some(file), Box::new(opened))
         });
     }
-    pub fn read_picture(&mut self, file: PathBuf, at: PinPosition) {
+    pub fn read_picture(&mut self, file: PathBuf, use_of: PictureUse) {
         self.start(format!("Reading {}", short(&file)), JobKind::Working, move |_| match read_picture(&file) {
-            Ok((name, picture)) => JobResult::Pictured(file, name, picture, at),
+            Ok((name, picture)) => JobResult::Pictured(file, name, picture, use_of),
             Err(error) => JobResult::Failed(error),
         });
     }

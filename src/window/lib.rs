@@ -32,6 +32,7 @@ mod usage;
 mod widgets;
 mod window;
 
+pub use clipboard::PastedContent;
 pub use window::MainWindow;
 
 // The lower floors, under their own names.

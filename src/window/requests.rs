@@ -4,7 +4,7 @@
 use super::file_purpose::FilePurpose;
 use super::panel_layout::PanelKind;
 use crate::session::Action;
-use crate::session::actions::EdgeChange;
+use crate::session::actions::{EdgeChange, PasteTo};
 use std::path::PathBuf;
 
 /// Pushed by panels, done once a frame.
@@ -68,7 +68,7 @@ pub enum WindowRequest {
     CanvasSizeDialog,
     ImageSizeDialog,
     TurnDialog,
-    Paste,
+    Paste(PasteTo),
     Palette,
     Shortcuts,
     About,

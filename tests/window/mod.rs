@@ -8,6 +8,7 @@ mod layers;
 mod light;
 mod marks;
 mod panels;
+mod pasting;
 mod recovery;
 mod replayed;
 mod selecting;

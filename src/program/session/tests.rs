@@ -5,6 +5,7 @@ mod closed;
 mod dialect;
 mod held;
 mod kept;
+mod pasting;
 mod selecting;
 mod several;
 mod snapping;

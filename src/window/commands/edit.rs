@@ -1,10 +1,10 @@
 //! The Edit menu.
 //! Floor 7.
 
-use super::row::{LINE, MenuCommand, always, ctrl, ctrl_shift, has_document, has_layer, key, row};
+use super::row::{LINE, MenuCommand, always, ctrl, ctrl_alt, ctrl_shift, has_document, has_layer, key, row};
 use crate::requests::WindowRequest;
 use crate::session::Action;
-use crate::session::actions::{ClipboardAction, EditAction, HandAction, LayerAction};
+use crate::session::actions::{ClipboardAction, EditAction, HandAction, LayerAction, PasteTo};
 use crate::tools::ToolKind;
 use eframe::egui::Key;
 
@@ -44,16 +44,24 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Paste",
         &[ctrl(Key::V)],
-        "Pastes what was copied where it was, as a layer; of another program its picture, as an image layer",
+        "Pastes what was copied where it was, as a layer; a picture of another program as paint, at its own size, at \
+         the pointer",
         always,
-        |_, requests| requests.request(WindowRequest::Paste),
+        |_, requests| requests.request(WindowRequest::Paste(PasteTo::Paint)),
+    ),
+    row(
+        "Paste as image layer",
+        &[ctrl_alt(Key::V)],
+        "Pastes a picture as a live layer, bent over the surface and pinned at the pointer",
+        always,
+        |_, requests| requests.request(WindowRequest::Paste(PasteTo::Image)),
     ),
     row(
         "Paste as new document",
         &[ctrl_shift(Key::V)],
         "A document as large as what was copied, which is its layer",
         always,
-        |_, requests| requests.act(Action::Clipboard(ClipboardAction::PasteNew {})),
+        |_, requests| requests.request(WindowRequest::Paste(PasteTo::Document)),
     ),
     LINE,
     row(

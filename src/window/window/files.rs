@@ -11,16 +11,15 @@ use crate::file_purpose::FilePurpose;
 use crate::files;
 use crate::io::Overwrite;
 use crate::io::maps::ImportedSurface;
-use crate::jobs::{JobKind, JobResult, PartResult, PinPosition, short};
+use crate::jobs::{JobKind, JobResult, PartResult, PastePlace, PictureUse, PinPosition, short};
 use crate::math::Vec2;
 use crate::raster::Picture;
 use crate::session::Action;
 use crate::session::PicturePart;
-use crate::session::actions::ClipboardAction;
-use crate::session::actions::FileAction;
 use crate::session::actions::pictures;
 use crate::session::actions::placing::place;
 use crate::session::actions::unwrapped;
+use crate::session::actions::{ClipboardAction, FileAction, PasteTo, PastedPicture};
 use crate::session::{Session, brushes, storage};
 use eframe::egui;
 use std::path::{Path, PathBuf};
@@ -53,7 +52,7 @@ impl MainWindow {
                 Err(error) => self.messages.push(with_advice(&error)),
             },
             JobResult::IsDocument(file) => self.jobs.read_document(file),
-            JobResult::IsPicture(file, at) => self.jobs.read_picture(file, at),
+            JobResult::IsPicture(file, use_of) => self.jobs.read_picture(file, use_of),
             JobResult::AreMaps(source) => {
                 self.dialogs.push(Dialog::Import(Box::new(import::ImportDialog::of(*source))))
             }
@@ -75,7 +74,10 @@ impl MainWindow {
                 brushes::adopt(&mut self.session, presets);
                 self.messages.extend(notes);
             }
-            JobResult::Pictured(file, name, picture, at) => {
+            JobResult::Pictured(_, name, picture, PictureUse::Pasted(place)) => {
+                self.pasted(PastedPicture { name, picture }, place);
+            }
+            JobResult::Pictured(file, name, picture, PictureUse::Placed(at)) => {
                 let at = self.pictured(&name, picture, at);
                 self.session.note_read(&file);
                 self.did(|| Action::File(FileAction::Place { file, at }));
@@ -114,11 +116,16 @@ impl MainWindow {
                 }
             }
             JobResult::Said(why) => self.jobs.say(why),
-            JobResult::Pasted(PastedContent::Picture(picture)) => {
-                self.pictured("pasted.png", picture, PinPosition::Pointer);
-            }
-            JobResult::Pasted(PastedContent::Files(files)) => self.take_files(files),
-            JobResult::PastedOwn => self.apply(&Action::Clipboard(ClipboardAction::Paste {})),
+            JobResult::Pasted(PastedContent::Picture(picture), place) => self.pasted(picture, place),
+            JobResult::Pasted(PastedContent::Files(files), place) => match place.to {
+                PasteTo::Document => self.jobs.open(files, None),
+                PasteTo::Paint | PasteTo::Image => self.take_files(files, PictureUse::Pasted(place)),
+            },
+            JobResult::PastedOwn(PastePlace { to, at }) => self.apply(&Action::Clipboard(match to {
+                PasteTo::Paint => ClipboardAction::Paste {},
+                PasteTo::Image => ClipboardAction::PasteImage { at },
+                PasteTo::Document => ClipboardAction::PasteNew {},
+            })),
             JobResult::Copied(clipboard) => {
                 self.clipboard = Some(clipboard);
                 self.jobs.say("The picture is in the clipboard".into());
@@ -153,12 +160,16 @@ impl MainWindow {
         place(&mut self.session, name, picture, at);
         at
     }
+    /// A picture of another program is pasted.
+    fn pasted(&mut self, picture: PastedPicture, PastePlace { to, at }: PastePlace) {
+        self.apply(&Action::Clipboard(ClipboardAction::PastePicture { picture, to, at }));
+    }
     /// A file was chosen in a dialog.
     pub(super) fn chosen(&mut self, purpose: FilePurpose, file: PathBuf) {
         match purpose {
             FilePurpose::Open => self.jobs.open(vec![file], None),
             FilePurpose::Place => {
-                self.jobs.read_picture(file, PinPosition::Middle);
+                self.jobs.read_picture(file, PictureUse::Placed(PinPosition::Middle));
             }
             FilePurpose::ImportUnwrapped => self.import_unwrapped(file),
             FilePurpose::Brush => {

@@ -3,7 +3,7 @@
 
 use super::MainWindow;
 use crate::dialogs::{Dialog, unsaved};
-use crate::jobs::PinPosition;
+use crate::jobs::{PictureUse, PinPosition};
 use crate::pending::AfterUnsaved;
 use crate::session::Action;
 use crate::session::actions::FileAction;
@@ -49,10 +49,11 @@ impl MainWindow {
     pub(super) fn take_dropped(&mut self, ctx: &egui::Context) {
         let dropped: Vec<_> = ctx.input(|i| i.raw.dropped_files.iter().map(|file| file.path().to_path_buf()).collect());
         if !dropped.is_empty() {
-            self.take_files(dropped);
+            self.take_files(dropped, PictureUse::Placed(PinPosition::Pointer));
         }
     }
-    pub(super) fn take_files(&mut self, files: Vec<PathBuf>) {
-        self.jobs.open(files, self.session.active().map(|_| PinPosition::Pointer));
+    /// Opens files; pictures become layers of the document in front, if there is one.
+    pub(super) fn take_files(&mut self, files: Vec<PathBuf>, use_of: PictureUse) {
+        self.jobs.open(files, self.session.active().map(|_| use_of));
     }
 }

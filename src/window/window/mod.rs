@@ -12,7 +12,7 @@ mod unwrap;
 mod work;
 
 use super::canvas::Canvas;
-use super::clipboard::{self, Clipboard};
+use super::clipboard::{self, Clipboard, ClipboardSource};
 use super::dialogs::{Dialog, DialogAnswer, export, maps, unwrapped};
 use super::jobs::{JobKind, JobResult, Jobs, MapsRead};
 use super::panel_layout::PanelKind;
@@ -69,6 +69,8 @@ pub struct MainWindow {
     /// What to do once the document is saved, while the user is asked where to.
     after_saving: Option<AfterUnsaved>,
     memory: MemoryMeter,
+    /// What the system's clipboard holds.
+    clipboard_source: ClipboardSource,
     /// What was copied last; kept, so that it stays in the system's clipboard.
     clipboard: Option<Clipboard>,
     /// What this window last put there.
@@ -111,6 +113,7 @@ impl MainWindow {
             leaving: false,
             after_saving: None,
             memory: MemoryMeter::default(),
+            clipboard_source: clipboard::pasted,
             clipboard: None,
             handed_out: None,
             recorded: None,
@@ -120,6 +123,10 @@ impl MainWindow {
     pub fn asking_itself(self) -> Self {
         Self { asks_itself: true, ..self }
     }
+    /// A window that pastes what this returns, not what is in the system's clipboard.
+    pub fn pasting_from(self, clipboard_source: ClipboardSource) -> Self {
+        Self { clipboard_source, ..self }
+    }
     /// A window that records its actions, see [`MainWindow::recorded`].
     pub fn recording(self) -> Self {
         // Snapping settings were stored, and are no action of this window.
@@ -127,8 +134,8 @@ impl MainWindow {
         let is_plain = self.session.aids == ViewAids::default();
         Self { recorded: Some(Some(aids).filter(|_| !is_plain).into_iter().collect()), ..self }
     }
-    /// The recorded actions as a replay file, one line each. Documents with corrected maps, pasted pictures and
-    /// recovered drawings do not come from files, and are not in it.
+    /// The recorded actions as a replay file, one line each. Documents with corrected maps and recovered drawings do
+    /// not come from files, and are not in it.
     pub fn recorded(&self) -> String {
         self.recorded.iter().flatten().map(|action| format!("{}\n", action.written())).collect()
     }

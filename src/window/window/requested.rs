@@ -49,7 +49,7 @@ impl MainWindow {
             WindowRequest::EdgeDialog(change) => self.dialogs.push(Dialog::Edge(edge::EdgeDialog::new(change))),
             WindowRequest::KeepDialog => self.dialogs.push(Dialog::Keep(edge::KeepDialog::default())),
             WindowRequest::GridDialog => self.dialogs.push(Dialog::Grid),
-            WindowRequest::Paste => self.paste(),
+            WindowRequest::Paste(to) => self.paste(to),
             WindowRequest::Palette => self.dialogs.push(Dialog::Palette(palette::CommandPalette::default())),
             WindowRequest::Shortcuts => self.dialogs.push(Dialog::Shortcuts(shortcuts::ShortcutsDialog::default())),
             WindowRequest::About => self.dialogs.push(Dialog::About),

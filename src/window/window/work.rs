@@ -9,13 +9,13 @@ use crate::file_purpose::FilePurpose;
 use crate::io::export::ExportOptions;
 use crate::io::replace::FileStamp;
 use crate::io::{Budget, Overwrite, Terms};
-use crate::jobs::{EditResult, JobKind, JobResult, ShapedResult, short};
+use crate::jobs::{EditResult, JobKind, JobResult, PastePlace, ShapedResult, short};
 use crate::math::Size;
 use crate::pending::{AfterUnsaved, Exporting, ExportingMaps, Pending, Saving};
 use crate::raster::Picture;
 use crate::raster::picture::Texels;
-use crate::session::actions::PartAction;
 use crate::session::actions::canvas::forget_places;
+use crate::session::actions::{PartAction, PasteTo};
 use crate::session::{Action, storage};
 use crate::widgets::bar;
 use eframe::egui::{self, Modal};
@@ -117,13 +117,17 @@ impl MainWindow {
         let put = move |_: &Progress| clipboard::put(size, &rgba).map_or(JobResult::Nothing, JobResult::Copied);
         self.jobs.start("Copying".into(), JobKind::Working, put);
     }
-    /// Pastes the system's picture, or what was copied here if that is the same, or there is none.
-    pub(super) fn paste(&mut self) {
+    /// Pastes the system's picture, or what was copied here if that is the same, or there is none; at the pointer, if
+    /// that is on the canvas.
+    pub(super) fn paste(&mut self, to: PasteTo) {
         let own = self.session.copied.as_ref().map(|copied| copied.rgba.clone());
-        self.jobs.start("Pasting".into(), JobKind::Working, move |_| match (clipboard::pasted(), own) {
-            (Ok(PastedContent::Picture(picture)), Some(own)) if is_own(&picture, &own) => JobResult::PastedOwn,
-            (Ok(pasted), _) => JobResult::Pasted(pasted),
-            (Err(_), Some(_)) => JobResult::PastedOwn,
+        let (place, read) = (PastePlace { to, at: self.canvas.under }, self.clipboard_source);
+        self.jobs.start("Pasting".into(), JobKind::Working, move |_| match (read(), own) {
+            (Ok(PastedContent::Picture(pasted)), Some(own)) if is_own(&pasted.picture, &own) => {
+                JobResult::PastedOwn(place)
+            }
+            (Ok(pasted), _) => JobResult::Pasted(pasted, place),
+            (Err(_), Some(_)) => JobResult::PastedOwn(place),
             (Err(error), None) => JobResult::Failed(error),
         });
     }

@@ -1,13 +1,18 @@
 //! Cut, copy and paste of what is selected. What is copied stays a layer of its own kind: strokes stay strokes, live
-//! layers live; other programs get its pixels. Floor 6. Not here: the system's clipboard (the window).
+//! layers live; other programs get its pixels. Floor 6. Not here: the system's clipboard (the window), pictures of
+//! other programs (`pasted`).
+
+mod pasted;
+
+pub use pasted::{PasteTo, PastedPicture};
 
 use super::layers::{LayerAction, above};
 use crate::document::cut::taken;
 use crate::document::{
     Content, Document, Layer, LayerId, LayerLock, LayerSlot, PixelLayer, Progress, flatten_to_paint,
 };
-use crate::math::{Rect, Size};
-use crate::raster::{CoverageGrid, TileGrid};
+use crate::math::{Rect, Size, Vec2};
+use crate::raster::{CoverageGrid, Picture, TileGrid};
 use crate::session::replay::actions;
 use crate::session::{OpenDocument, Session};
 use std::sync::Arc;
@@ -21,6 +26,11 @@ actions! {
         "paste" Paste {}
         /// As a document of its size.
         "paste new" PasteNew {}
+        /// As an image layer, bent by the current operator and pinned at a canvas point; in the middle of the view
+        /// without one.
+        "paste image" PasteImage { at: Option<Vec2> }
+        /// A picture of another program, with its middle at a canvas point; in that of the view without one.
+        "paste picture" PastePicture { picture: PastedPicture, to: PasteTo, at: Option<Vec2> }
         /// A new layer with what is selected of this one: copied, or taken out of it.
         "layer via" LayerVia { cut: bool }
     }
@@ -57,8 +67,11 @@ impl Copied {
 impl ClipboardAction {
     pub fn apply(&self, session: &mut Session) {
         session.drop_gesture();
-        if let ClipboardAction::PasteNew {} = self {
-            return paste_new(session);
+        match self {
+            ClipboardAction::PasteNew {} => return paste_new(session),
+            ClipboardAction::PasteImage { at } => return paste_image(session, *at),
+            ClipboardAction::PastePicture { picture, to, at } => return pasted::paste(session, picture, *to, *at),
+            _ => {}
         }
         let copied = session.copied.clone();
         let Some(tab) = session.active_mut() else { return session.say("There is no document.") };
@@ -77,18 +90,23 @@ impl ClipboardAction {
             },
             ClipboardAction::Paste {} => match copied {
                 Some(copied) => return paste(tab, &copied),
-                None => "Nothing was copied yet.",
+                None => NOTHING_COPIED,
             },
             ClipboardAction::LayerVia { cut } => match layer_via(tab, *cut) {
                 Ok(()) => return,
                 Err(why) => why,
             },
-            ClipboardAction::PasteNew {} => return,
+            ClipboardAction::PasteNew {}
+            | ClipboardAction::PasteImage { .. }
+            | ClipboardAction::PastePicture { .. } => {
+                return;
+            }
         };
         session.say(said);
     }
 }
 
+const NOTHING_COPIED: &str = "Nothing was copied yet.";
 const NO_LAYER: &str = "Choose a layer first.";
 const NOTHING_THERE: &str = "The layer has nothing where you selected.";
 const LOCKED: &str = "The layer is locked: unlock it to cut from it.";
@@ -174,7 +192,7 @@ fn pasted(copied: &Copied, document: &Document) -> Vec<Layer> {
 
 fn paste_new(session: &mut Session) {
     let Some(copied) = session.copied.clone().filter(|copied| !copied.rect.is_empty()) else {
-        return session.say("Nothing was copied yet.");
+        return session.say(NOTHING_COPIED);
     };
     let size = Size::new(copied.rect.width() as u32, copied.rect.height() as u32);
     let tiles = copied.tiles(0, 0);
@@ -184,6 +202,21 @@ fn paste_new(session: &mut Session) {
     let mut tab = OpenDocument::new(name, document, None);
     tab.mark_unsaved();
     session.add_document(tab);
+}
+
+/// What was copied here, as the picture that other programs get.
+fn paste_image(session: &mut Session, at: Option<Vec2>) {
+    let Some(copied) = session.copied.clone().filter(|copied| !copied.rect.is_empty()) else {
+        return session.say(NOTHING_COPIED);
+    };
+    let size = Size::new(copied.rect.width() as u32, copied.rect.height() as u32);
+    let Some(picture) = Picture::srgb8(size, copied.rgba.as_chunks::<4>().0.to_vec()) else { return };
+    let picture = match &copied.deep {
+        Some(deep) => picture.with_deep(deep.to_vec()),
+        None => picture,
+    };
+    let pasted = PastedPicture { name: format!("{}.png", copied.name()), picture };
+    pasted::paste(session, &pasted, PasteTo::Image, at);
 }
 
 /// Copies what is selected of the layer to a new one above it, and takes it out of this one if it is cut.

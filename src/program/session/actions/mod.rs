@@ -18,7 +18,7 @@ pub mod unwrapped;
 pub mod views;
 
 pub use canvas::CanvasAction;
-pub use clipboard::ClipboardAction;
+pub use clipboard::{ClipboardAction, PasteTo, PastedPicture};
 pub use edit::EditAction;
 pub use files::FileAction;
 pub use guides::GuideAction;

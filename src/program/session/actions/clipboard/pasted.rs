@@ -1,0 +1,111 @@
+//! Pictures of other programs, pasted: as paint at their own size, as an image layer, or as a document. Floor 6. Not
+//! here: the system's clipboard (the window), what was copied in the program itself (`clipboard`).
+
+use crate::document::{Content, Document, Layer, PixelLayer};
+use crate::io::{Budget, base64, picture, pixels};
+use crate::math::range::held;
+use crate::math::{COORDINATE, Vec2};
+use crate::raster::picture::Texels;
+use crate::raster::{Asset, Picture, TileGrid};
+use crate::session::actions::layers::above;
+use crate::session::actions::placing::place;
+use crate::session::replay::{ReplayValue, names};
+use crate::session::{OpenDocument, Session};
+use serde_json::{Value, json};
+use std::path::Path;
+use std::sync::Arc;
+
+rilievo_engine::named! {
+    /// What a pasted picture becomes.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum PasteTo {
+        Paint = "paint" => "Paste",
+        Image = "image" => "Paste as image layer",
+        Document = "document" => "Paste as new document",
+    }
+}
+names!(PasteTo);
+
+/// A picture with the name of its file, or one like a file's. A replay holds the whole file.
+#[derive(Clone)]
+pub struct PastedPicture {
+    pub name: String,
+    pub picture: Picture,
+}
+
+impl PastedPicture {
+    /// The bytes of its file, or of one made now.
+    fn file(&self) -> Option<Asset> {
+        match (&self.picture.encoded, &self.picture.texels) {
+            (Some(file), _) => Some(file.clone()),
+            (None, Texels::Srgb8(texels)) => pixels::encode_texels(Path::new("pasted"), texels, self.picture.size).ok(),
+            (None, Texels::Linear(_)) => None,
+        }
+    }
+}
+
+impl ReplayValue for PastedPicture {
+    fn written(&self) -> Value {
+        json!({ "name": self.name, "file": self.file().map(|file| base64::encode(file.bytes())) })
+    }
+    fn read(value: &Value) -> Result<Self, String> {
+        let text = |name: &str| value.get(name).and_then(Value::as_str);
+        let (Some(name), Some(file)) = (text("name"), text("file")) else {
+            return Err("must have a name and a file".into());
+        };
+        let bytes = base64::decode(file).ok_or("has a file that is not base64")?;
+        let read = picture::decode(Path::new(name), &bytes, &Budget::of_this_machine());
+        Ok(Self { name: name.into(), picture: read.map_err(|error| error.to_string())? })
+    }
+}
+
+/// Pastes a picture with its middle at a canvas point. Without a point: the middle of the view.
+pub(super) fn paste(session: &mut Session, pasted: &PastedPicture, to: PasteTo, at: Option<Vec2>) {
+    let Some(tab) = session.active_mut().filter(|_| to != PasteTo::Document) else {
+        return open(session, picture::to_tiles(&pasted.picture, 0, 0), pasted);
+    };
+    let at = at.unwrap_or_else(|| view_middle(tab));
+    let at = Vec2::new(held(at.x, &COORDINATE), held(at.y, &COORDINATE));
+    if to == PasteTo::Image {
+        return place(session, &pasted.name, pasted.picture.clone(), at);
+    }
+    let size = pasted.picture.size;
+    let corner = (at - Vec2::new(size.width as f32, size.height as f32) / 2.0).round();
+    let tiles = picture::to_tiles(&pasted.picture, corner.x as i32, corner.y as i32);
+    let layer = paint(tab.document().free_layer_name(&stem(&pasted.name)), tiles);
+    let id = layer.id;
+    if let Some(next) = tab.document().with_inserted(layer, above(tab))
+        && tab.commit("Paste", next)
+    {
+        tab.choose_layers(vec![id]);
+    }
+}
+
+/// The canvas point in the middle of the window; of the canvas, while the surface is shown unwrapped.
+fn view_middle(tab: &OpenDocument) -> Vec2 {
+    let size = tab.document().size;
+    let view = tab.view.filter(|_| tab.unwrapped().is_none());
+    let side = Vec2::new(size.width as f32, size.height as f32);
+    view.map_or(size.center(), |view| view.center.max(Vec2::ZERO).min(side))
+}
+
+/// Paint that nothing cuts off, neither the surface's edge nor what is selected.
+fn paint(name: String, tiles: TileGrid) -> Layer {
+    let pixels = PixelLayer { tiles, ..PixelLayer::default() };
+    Layer { clip_to_surface: false, ..Layer::new(name, Content::Pixels(pixels)) }
+}
+
+/// A document of the picture's size, which is its paint.
+fn open(session: &mut Session, tiles: TileGrid, pasted: &PastedPicture) {
+    let layer = paint(stem(&pasted.name), tiles);
+    let document = Document { layers: vec![Arc::new(layer)], ..Document::empty(pasted.picture.size) };
+    let name = session.untitled();
+    let mut tab = OpenDocument::new(name, document, None);
+    tab.mark_unsaved();
+    session.add_document(tab);
+}
+
+/// The name of a layer: that of a file without its ending.
+fn stem(name: &str) -> String {
+    Path::new(name).file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}
