@@ -24,7 +24,7 @@ fn normal(x: usize, y: usize) -> Vec3 {
     if p.length() >= 1.0 {
         return Vec3::ZERO;
     }
-    let knobs = 0.18 * vec2((24.0 * p.x).sin(), (24.0 * p.y).sin());
+    let knobs = 0.12 * vec2((9.0 * p.x + 5.0 * p.y).sin(), (7.0 * p.y - 6.0 * p.x).sin());
     vec3(p.x + knobs.x, -p.y - knobs.y, (1.0 - p.length_squared()).sqrt()).normalize()
 }
 
