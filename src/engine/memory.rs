@@ -2,7 +2,7 @@
 //! Floor 0. Not here: how much the machine has, which floors above read and pass in.
 
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// The allocator has no room for a buffer of so many bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -81,6 +81,16 @@ impl Drop for CacheReservation {
     fn drop(&mut self) {
         KEPT.fetch_sub(self.bytes, Ordering::Relaxed);
     }
+}
+
+/// The value of a cell, or a new one. Nothing is held while it is made: a worker that waits for others there may be given
+/// work that needs the same cell, and would then wait for itself. So two threads may both make it; the results are equal.
+pub fn once<T>(cell: &OnceLock<T>, make: impl FnOnce() -> T) -> &T {
+    if let Some(known) = cell.get() {
+        return known;
+    }
+    let made = make();
+    cell.get_or_init(|| made)
 }
 
 /// The value of a key that was made before, or a new one.

@@ -32,7 +32,7 @@ impl LitSphere {
     }
     /// The sphere's light, ready to be looked up.
     pub fn light(&self) -> &SphereLight {
-        self.light.get_or_init(|| SphereLight::new(&self.picture))
+        crate::memory::once(&self.light, || SphereLight::new(&self.picture))
     }
     /// Grey clay under a window at the upper left: the sphere of a layer that names none.
     pub fn clay() -> &'static LitSphere {

@@ -4,6 +4,7 @@
 use super::pyramid::BLOCK;
 use super::{ContourPixel, Surface, links};
 use crate::math::{Rect, Size, Vec2};
+use crate::memory::once;
 use crate::raster::Plane;
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
@@ -70,7 +71,7 @@ impl Objects {
     }
     /// The object that covers all pixels of each block of the canvas and the ring around it; 0 where there is none.
     pub(in crate::surface) fn around_blocks(&self) -> &Plane<u32> {
-        self.blocks.get_or_init(|| {
+        once(&self.blocks, || {
             let (w, h) = (self.labels.width(), self.labels.height());
             let size = Size::new(w.div_ceil(BLOCK) as u32, h.div_ceil(BLOCK) as u32);
             Plane::from_fn(size, |x, y| {
@@ -190,7 +191,7 @@ impl Surface {
     /// The objects of the surface, cached. Normal layers do not change them: jumps depend on depth alone.
     pub fn objects(&self) -> &Objects {
         let base = self.base();
-        base.objects_cell().get_or_init(|| Objects::new(base))
+        once(base.objects_cell(), || Objects::new(base))
     }
 }
 
@@ -269,17 +270,38 @@ mod tests {
 
     /// A plate from column 10 on, a disc of 20 px that floats before its middle, and a crumb of 2 × 2 px behind both.
     fn plate_and_disc() -> Arc<Surface> {
+        plate_and_disc_of(SIZE)
+    }
+    fn plate_and_disc_of(size: Size) -> Arc<Surface> {
         let disc = |x: usize, y: usize| vec2(x as f32 + 0.5, y as f32 + 0.5).distance(vec2(60.0, 40.0)) < 20.0;
         let crumb = |x: usize, y: usize| (100..102).contains(&x) && (60..62).contains(&y);
-        let depth = Plane::from_fn(SIZE, |x, y| match (disc(x, y), crumb(x, y)) {
+        let depth = Plane::from_fn(size, |x, y| match (disc(x, y), crumb(x, y)) {
             (true, _) => 0.2,
             (_, true) => 1.0,
             _ => 0.6,
         });
-        let coverage = Plane::from_fn(SIZE, |x, _| if x < 10 { 0 } else { 255 });
-        Arc::new(Surface::new(Maps { normals: Plane::filled(SIZE, Vec3::Z), depth, coverage }).unwrap())
+        let coverage = Plane::from_fn(size, |x, _| if x < 10 { 0 } else { 255 });
+        Arc::new(Surface::new(Maps { normals: Plane::filled(size, Vec3::Z), depth, coverage }).unwrap())
     }
 
+    /// While objects are found a worker helps others, whose work may need the same objects.
+    #[test]
+    fn workers_that_need_the_objects_at_once_never_wait_for_themselves() {
+        use rayon::prelude::*;
+        let (done, finished) = std::sync::mpsc::channel();
+        let look = move || {
+            let surface = plate_and_disc_of(Size::new(960, 640));
+            for _ in 0..40 {
+                let objects = Objects::new(&surface);
+                let count = |_: usize| objects.around_blocks().values().iter().filter(|label| **label > 0).count();
+                let counts: Vec<usize> = (0..64).into_par_iter().map(count).collect();
+                assert!(counts.iter().all(|count| *count == counts[0]));
+            }
+            let _ = done.send(());
+        };
+        rayon::ThreadPoolBuilder::new().num_threads(4).build().unwrap().spawn(look);
+        assert!(finished.recv_timeout(std::time::Duration::from_secs(120)).is_ok(), "they wait for each other");
+    }
     #[test]
     fn a_disc_before_a_plate_is_an_object_of_its_own_and_a_crumb_is_none() {
         let surface = plate_and_disc();

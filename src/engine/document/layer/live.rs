@@ -5,6 +5,7 @@ use super::tile_content::TileContent;
 use crate::document::behind::{BehindPixels, BehindScene};
 use crate::document::memory_use::MemoryCount;
 use crate::math::Rect;
+use crate::memory::once;
 use crate::paint::Scene;
 use crate::raster::{Tile, TileAt};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -81,11 +82,14 @@ impl<T> Live<T> {
     }
     /// The box around what is painted on a scene, computed once.
     pub(in crate::document) fn painted_box(&self, scene: &Scene, seek: impl FnOnce() -> Rect) -> Rect {
-        let mut known = self.painted_box.lock().unwrap_or_else(PoisonError::into_inner);
-        match &*known {
-            Some((on, painted)) if on.is_same(scene) => *painted,
-            _ => known.insert((scene.clone(), seek())).1,
-        }
+        let lock = || self.painted_box.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = lock().as_ref().filter(|(on, _)| on.is_same(scene)).map(|(_, painted)| *painted);
+        known.unwrap_or_else(|| {
+            // Without the lock: seeking lays strokes, and other threads take part in that.
+            let painted = seek();
+            *lock() = Some((scene.clone(), painted));
+            painted
+        })
     }
     /// New parameters that change only some tiles: the rendered tiles for which `keeps` is true are taken over.
     pub fn with(&self, params: T, keeps: impl Fn(TileAt) -> bool) -> Self {
@@ -174,7 +178,7 @@ impl<T> Live<T> {
     /// A tile of the layer on a scene, rendered by `render` if it is not cached.
     pub fn tile(&self, scene: &Scene, at: TileAt, render: impl FnOnce() -> Option<Tile>) -> Option<Arc<Tile>> {
         let cells = self.cells(scene);
-        cells.cell(at)?.get_or_init(|| render().map(Arc::new)).clone()
+        once(cells.cell(at)?, || render().map(Arc::new)).clone()
     }
     /// The layer as the other populations of a tile's contour pixels see it, rendered by `render` if it is not cached.
     ///
@@ -193,7 +197,7 @@ impl<T> Live<T> {
             let bare = if stays && behind.has_bare() { own() } else { None };
             BehindPixels::Packed(Arc::new(behind.packed(on_sheet.as_ref(), bare.as_deref())))
         };
-        match cell.get_or_init(packed) {
+        match once(cell, packed) {
             BehindPixels::Packed(packed) => TileContent::Packed(packed.clone()),
             BehindPixels::Same => {
                 own().map_or(TileContent::Nothing, |tile| TileContent::Packed(Arc::new(behind.same(&tile))))

@@ -24,14 +24,15 @@ impl CanvasScale {
     /// A selection scaled, resampled once however many strokes share it.
     pub(in crate::document) fn selection(&self, selection: &Arc<Selection>) -> Arc<Selection> {
         let key = Arc::as_ptr(selection) as usize;
-        let mut known = self.selections.lock().unwrap_or_else(PoisonError::into_inner);
-        let (_, scaled) = known.entry(key).or_insert_with(|| {
-            let made = selection.made.map(|region| SurfaceRegion { at: region.at * self.per_axis, ..region });
-            let scaled = Arc::new(Selection { coverage: self.coverage(&selection.coverage), made });
-            // The old one is kept too, so that no other gets its address.
-            (selection.clone(), scaled)
-        });
-        scaled.clone()
+        let lock = || self.selections.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, scaled)) = lock().get(&key) {
+            return scaled.clone();
+        }
+        // Without the lock: other threads take part in resampling.
+        let made = selection.made.map(|region| SurfaceRegion { at: region.at * self.per_axis, ..region });
+        let scaled = Arc::new(Selection { coverage: self.coverage(&selection.coverage), made });
+        // The old one is kept too, so that no other gets its address.
+        lock().entry(key).or_insert((selection.clone(), scaled)).1.clone()
     }
     /// Coverage resampled; the uncovered part continues beyond the canvas.
     fn coverage(&self, grid: &CoverageGrid) -> CoverageGrid {

@@ -171,11 +171,7 @@ impl EnvironmentLight {
     }
     /// Cached; the first caller computes it.
     fn irradiance(&self) -> &Irradiance {
-        if let Some(found) = self.prepared.irradiance.get() {
-            return found;
-        }
-        let computed = Irradiance::of(&self.prepared.map);
-        self.prepared.irradiance.get_or_init(|| computed)
+        crate::memory::once(&self.prepared.irradiance, || Irradiance::of(&self.prepared.map))
     }
 }
 

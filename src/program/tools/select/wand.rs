@@ -66,7 +66,7 @@ impl WandSource {
             WandSource::Layer(tiles) => tiles.tile(at).cloned(),
             WandSource::Whole { prepared, columns, tiles } => {
                 let cell = tiles.get((at.row * columns + at.col) as usize)?;
-                cell.get_or_init(|| prepared.flatten_tile(at)).clone()
+                crate::memory::once(cell, || prepared.flatten_tile(at)).clone()
             }
         }
     }

@@ -4,6 +4,7 @@ use super::LayerWarp;
 use crate::document::layer::content::Content;
 use crate::document::layer::map::LayerMap;
 use crate::math::Rect;
+use crate::memory::once;
 use crate::paint::Scene;
 use crate::raster::warp::{PixelMap, warped_tile_within};
 use crate::raster::{Tile, TileAt, TileGrid};
@@ -47,7 +48,7 @@ impl WarpTiles {
             return Some(known.clone());
         }
         let map = self.warp.tile_map(at, &crate::math::PlaneMap::IDENTITY)?;
-        Some(cell.get_or_init(|| self.sampled(at, &map, compose)).clone())
+        Some(once(cell, || self.sampled(at, &map, compose)).clone())
     }
     fn sampled(
         &self,
@@ -58,7 +59,7 @@ impl WarpTiles {
         let wanted = self.warp.within(map.source_rect(at.rect().intersect(self.canvas))).intersect(self.canvas);
         let mut grid = TileGrid::default();
         for from in TileAt::covering(wanted) {
-            let tile = self.source.cell(from).map(|cell| cell.get_or_init(|| compose(from)).clone());
+            let tile = self.source.cell(from).map(|cell| once(cell, || compose(from)).clone());
             grid.set(from, tile.flatten());
         }
         let border = self.warp.continues().then_some(self.canvas);
