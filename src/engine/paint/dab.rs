@@ -22,8 +22,8 @@ use crate::math::{Rect, simd::prefetch, srgb::Color};
 use crate::raster::sampler::Antialias;
 use crate::raster::{Outside, TILE, TileAt};
 use crate::surface::deformation::{Deformation, DeformedRect, OwnPlane};
-use crate::surface::support::{BLOCK, DabExtent, SupportBounds, TILE_BLOCKS, TileBlocks};
-use crate::surface::{DabReach, Surface};
+use crate::surface::support::{BLOCK, DabExtent, SupportBounds, TILE_BLOCKS, TileBlocks, is_out_of_reach};
+use crate::surface::{DabReach, Operator, Surface};
 use round::{BentPart, BlockPixels, RoundTip, RowPaint, RowZones, bent_row, bent_rows, flat_row, flat_rows};
 use std::ops::Range;
 
@@ -78,6 +78,11 @@ impl<'s> PlacedDab<'s> {
     /// `extent`: of the tip's footprint.
     pub fn new(dab: Dab, scene: &'s Scene, extent: DabExtent) -> Self {
         let surface = scene.surface.as_deref();
+        if surface.is_some_and(|surface| is_out_of_reach(surface, dab.operator, dab.at, extent)) {
+            let deformation = Deformation::of_dab(None, scene.size, Operator::None, dab.at);
+            let support = SupportBounds::nowhere(scene.size, dab.at, extent);
+            return Self { dab, scene, deformation, bent_over: None, support, sheet_blocks: TileBlocks::default() };
+        }
         let reach = DabReach::new(dab.at, dab.reach_px, PUSH_RADII * dab.radius);
         let deformation = Deformation::of_dab(surface, scene.size, dab.operator, dab.at).within(reach);
         // The pixels of a sheet lie where D says, even if it is the identity.

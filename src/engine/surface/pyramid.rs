@@ -312,6 +312,11 @@ pub(super) struct PyramidBlock {
 }
 
 impl PyramidBlock {
+    /// The one that holds a whole map.
+    pub(super) fn whole(size: Size) -> Self {
+        let level = (TILE_LEVEL..).find(|level| level_size(size, *level).area() <= 1).unwrap_or(TILE_LEVEL);
+        Self { level, col: 0, row: 0 }
+    }
     /// The four blocks one level below.
     pub(super) fn quarters(self) -> [PyramidBlock; 4] {
         let PyramidBlock { level, col, row } = self;

@@ -40,6 +40,27 @@ impl DabExtent {
     }
 }
 
+/// Whether an anchor lies so far beyond the canvas that its mark touches nothing, whatever the surface is like. Off the
+/// surface the plane of an unwrapping goes on flat, so no pixel is nearer to the anchor there than the canvas is, less
+/// what the plane extends. Other operators are quick to judge.
+///
+/// Conservative, as [`SupportBounds`] is.
+pub fn is_out_of_reach(surface: &Surface, operator: Operator, at: Vec2, extent: DabExtent) -> bool {
+    let Some(settings) = operator.finite().unwrapping() else { return false };
+    let canvas = vec2(surface.size().width as f32, surface.size().height as f32);
+    let away = at.distance(at.max(Vec2::ZERO).min(canvas));
+    if away <= canvas.max_element() {
+        return false;
+    }
+    let unwrapping = surface.unwrapped(settings);
+    let span = unwrapping.bounds(surface).at(PyramidBlock::whole(surface.size()));
+    span.is_some_and(|span| {
+        // Rounded where they are computed, the anchor's place most of all.
+        let near = 0.999 * away - (span.high - span.low).length() - 1.0;
+        near > extent.radius_px + extent.filter_px * span.slope.max(1.0) + ROUNDING_PX
+    })
+}
+
 /// The blocks in which one anchored operator brings the image plane within an extent of the anchor.
 ///
 /// Conservative: no block is left out that holds a pixel q with |D(q) − q_0| within the extent.
@@ -67,6 +88,10 @@ impl<'s> SupportBounds<'s> {
         let cover = surface.map(|s| s.bounds().cover(s));
         Self { size, at, extent, cover, flow, border_px: f32::INFINITY, spread: Vec2::ZERO, turned: Vec2::ZERO }
     }
+    /// Of a mark that touches nothing: it lies beyond the canvas, farther than its operator brings it.
+    pub fn nowhere(size: Size, at: Vec2, extent: DabExtent) -> Self {
+        Self { border_px: 0.0, ..Self::new(None, size, Operator::None, at, extent) }
+    }
     /// The same, of a mark that stays within a reach.
     pub fn within(self, reach: Option<DabReach>) -> Self {
         Self { border_px: reach.map_or(f32::INFINITY, |reach| reach.border_px()), ..self }
@@ -80,11 +105,7 @@ impl<'s> SupportBounds<'s> {
             };
             return TileAt::covering(rect).filter(is_touched).for_each(visit);
         }
-        let mut level = TILE_LEVEL;
-        while level_size(self.size, level).area() > 1 {
-            level += 1;
-        }
-        self.descend(PyramidBlock { level, col: 0, row: 0 }, TILE_LEVEL, &mut |b| visit(TileAt::new(b.col, b.row)));
+        self.descend(PyramidBlock::whole(self.size), TILE_LEVEL, &mut |b| visit(TileAt::new(b.col, b.row)));
     }
     /// The blocks of a tile that may be touched.
     pub fn blocks(&self, at: TileAt) -> TileBlocks {

@@ -154,3 +154,22 @@ fn figures_that_are_not_numbers_reach_everything_rather_than_nothing() {
     support.for_each_tile(|_| tiles += 1);
     assert_eq!(tiles, 8);
 }
+#[test]
+fn what_is_out_of_reach_touches_nothing_and_most_of_a_way_far_off_is() {
+    let operator = Operator::Surface { amount: 1.0, smooth: 0.0 };
+    let extent = DabExtent { radius_px: 25.0, filter_px: 0.5 };
+    for seed in 0..4 {
+        let surface = surface(seed);
+        let mut out = 0;
+        for i in 0..400 {
+            let far = 10f32.powf(1.0 + 5.0 * hash::unit(seed, i, 0));
+            let at = 100.0 + far * Vec2::from_angle(6.3 * hash::unit(seed, i, 1));
+            if is_out_of_reach(&surface, operator, at, extent) {
+                out += 1;
+                let support = SupportBounds::new(Some(&surface), surface.size(), operator, at, extent);
+                support.for_each_tile(|tile| panic!("{at} may touch {tile:?}"));
+            }
+        }
+        assert!(out > 200, "{out} of 400");
+    }
+}
