@@ -6,10 +6,10 @@ use std::process::{Command, Output};
 use tempfile::TempDir;
 
 /// A folder with a recipe and the files it names.
-struct Desk(TempDir);
+pub struct Desk(TempDir);
 
 impl Desk {
-    fn with(recipe: &str) -> Self {
+    pub fn with(recipe: &str) -> Self {
         let desk = Desk(tempfile::tempdir().unwrap());
         fs::write(desk.path("r.json"), recipe).unwrap();
         let photo = image::RgbaImage::from_fn(100, 70, |x, y| {
@@ -18,11 +18,11 @@ impl Desk {
         photo.save(desk.path("photo.png")).unwrap();
         desk
     }
-    fn path(&self, name: &str) -> PathBuf {
+    pub fn path(&self, name: &str) -> PathBuf {
         self.0.path().join(name)
     }
     /// `rilievo render r.json -o OUT …`
-    fn render(&self, out: &str, more: &[&str]) -> Output {
+    pub fn render(&self, out: &str, more: &[&str]) -> Output {
         let mut command = rilievo(&["render"]);
         command.arg(self.path("r.json")).arg("-o").arg(self.path(out)).args(more);
         command.output().unwrap()
@@ -34,18 +34,18 @@ impl Desk {
     }
 }
 
-fn rilievo(args: &[&str]) -> Command {
+pub fn rilievo(args: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_rilievo"));
     command.args(args);
     command
 }
 
-fn said(output: &Output) -> String {
+pub fn said(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
 /// Exit code 1 and one sentence with all of these words.
-fn refused(output: &Output, words: &[&str]) {
+pub fn refused(output: &Output, words: &[&str]) {
     let said = said(output);
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(said.starts_with("rilievo: ") && said.trim_end().lines().count() == 1, "{said}");
@@ -54,7 +54,7 @@ fn refused(output: &Output, words: &[&str]) {
     }
 }
 
-const PHOTO: &str = r#"{ "canvas": { "width": 100, "height": 70 },
+pub const PHOTO: &str = r#"{ "canvas": { "width": 100, "height": 70 },
     "layers": [{ "name": "photo", "kind": "image", "source": { "file": "photo.png" }, "filter": "bilinear" }] }"#;
 
 const MANY: &str = r##"{ "canvas": { "width": 300, "height": 200 }, "layers": [
@@ -291,37 +291,6 @@ fn a_mirror_of_nothing_is_refused_rather_than_painted_black() {
     refused(&Desk::with(document).render("out.png", &[]), &["layers[1].environment", "mirror", "is missing"]);
     let hidden = document.replace(r#""model""#, r#""visible": false, "model""#);
     assert!(Desk::with(&hidden).render("out.png", &[]).status.success());
-}
-
-#[test]
-fn a_shape_has_a_part_for_each_colour_or_place_and_tells_what_has_none() {
-    let desk = Desk::with(PHOTO);
-    let picture = image::RgbaImage::from_fn(800, 600, |x, y| {
-        let within = |cx: f32, cy: f32, r: f32| (x as f32 + 0.5 - cx).hypot(y as f32 + 0.5 - cy) < r;
-        let eyes = [(300.0, 240.0, 40.0), (500.0, 240.0, 48.0), (400.0, 440.0, 3.4)];
-        let is_eye = eyes.into_iter().any(|(cx, cy, r)| within(cx, cy, r));
-        image::Rgba(match is_eye {
-            true => [250, 250, 250, 255],
-            false if within(400.0, 300.0, 240.0) => [230, 170, 90, 255],
-            false => [0; 4],
-        })
-    });
-    picture.save(desk.path("face.png")).unwrap();
-    let parts = |more: &[&str], folder: &str| {
-        let (face, out) = (desk.path("face.png"), desk.path(folder));
-        let mut command = rilievo(&["shape"]);
-        let output = command.arg(&face).arg("--flats").arg(&face).arg("-o").arg(&out).args(more).output().unwrap();
-        assert!(output.status.success(), "{}", said(&output));
-        let ids = image::open(out.join("face_id.png")).unwrap().into_luma16();
-        let known: std::collections::BTreeSet<u16> = ids.pixels().map(|id| id.0[0]).collect();
-        (known.len() - 1, said(&output))
-    };
-    assert_eq!(parts(&[], "colours"), (2, String::new()));
-    let (count, told) = parts(&["--places"], "places");
-    assert_eq!(count, 3);
-    assert!(told.contains("face.png: One area is left without a part"), "{told}");
-    let alone = rilievo(&["shape", "face.png", "--places", "-o", "maps"]).output().unwrap();
-    assert_eq!(alone.status.code(), Some(2), "--places is of flats: {}", said(&alone));
 }
 
 #[test]

@@ -135,8 +135,9 @@ fn shaped(args: &ShapeArgs) -> Result<(Document, Option<String>)> {
             }
             let each = if args.places { PartFor::Place } else { PartFor::Color };
             let flats = match FigureBackground::of(&flats, size) {
-                FigureBackground::Flat(ground) => without_background(&flats, size, ground),
-                _ => flats,
+                // Flats may fill their picture.
+                FigureBackground::Painted => flats,
+                _ => figure(file, flats, size)?,
             };
             let parts = flats::parts_of_flats(&flats, "Flats", inflation, each);
             if parts.parts.is_empty() {
@@ -169,6 +170,9 @@ fn figure(file: &Path, drawing: TileGrid, size: Size) -> Result<TileGrid> {
             "it is opaque everywhere, so it has no outline; give it a transparent ground, or name its flats \
              with --flats",
         )),
+        FigureBackground::Bare(_) => {
+            Err(Error::unsupported(file, "it has one colour all over, so there is no figure in it to have a shape"))
+        }
         FigureBackground::Empty => Err(Error::unsupported(file, "nothing in it is opaque enough to have a shape")),
     }
 }

@@ -16,6 +16,8 @@ pub enum FigureBackground {
     Transparent,
     /// One opaque colour, along the whole border.
     Flat(Color),
+    /// One opaque colour, and nothing on it: there is no figure.
+    Bare(Color),
     /// Many colours, as in a photograph: there is no outline.
     Painted,
     /// Neither figure nor outline.
@@ -48,6 +50,7 @@ impl FigureBackground {
         match flat_ground(tiles, canvas) {
             _ if opaque < LEAST_SHARE => Self::Empty,
             _ if 1.0 - opaque >= LEAST_SHARE => Self::Transparent,
+            Some(color) if is_all(tiles, canvas, color) => Self::Bare(color),
             Some(color) => Self::Flat(color),
             None => Self::Painted,
         }
@@ -61,14 +64,20 @@ impl DrawingLook {
         let without_colors = |background| Self { background, colors: 0, flat_share: 0.0 };
         let figure = match background {
             // A photograph has as many colours as pixels; none of them will be a part.
-            FigureBackground::Empty | FigureBackground::Painted => return without_colors(background),
+            FigureBackground::Empty | FigureBackground::Bare(_) | FigureBackground::Painted => {
+                return without_colors(background);
+            }
             FigureBackground::Flat(color) => without_background(tiles, canvas, color),
             FigureBackground::Transparent => tiles.clone(),
         };
-        if (opaque(&figure, canvas) as f32) < LEAST_SHARE * canvas.area().max(1) as f32 {
-            return without_colors(FigureBackground::Empty);
+        if let FigureBackground::Flat(color) = background
+            && (opaque(&figure, canvas) as f32) < LEAST_SHARE * canvas.area().max(1) as f32
+        {
+            return without_colors(FigureBackground::Bare(color));
         }
-        let flats = Flats::of(&figure, figure.bounds(), &[]);
+        let Some(flats) = Flats::of(&figure, figure.bounds(), &[]) else {
+            return without_colors(FigureBackground::Empty);
+        };
         Self { background, colors: flats.colors().len(), flat_share: flats.flat_share() }
     }
     /// Whether it can be given a shape as it is.
@@ -85,6 +94,12 @@ impl DrawingLook {
 fn opaque(tiles: &TileGrid, canvas: Size) -> usize {
     let Rect { x0, y0, x1, y1 } = canvas.rect();
     (y0..y1).map(|y| (x0..x1).filter(|x| tiles.pixel(*x, y)[3] >= OPAQUE).count()).sum()
+}
+
+/// Whether every pixel of the canvas has a colour, as nearly as one can tell.
+fn is_all(tiles: &TileGrid, canvas: Size, color: Color) -> bool {
+    let (color, Rect { x0, y0, x1, y1 }) = (bytes(color), canvas.rect());
+    (y0..y1).all(|y| (x0..x1).all(|x| is_near(tiles.pixel(x, y), color)))
 }
 
 /// The opaque colour that nearly all of the canvas's border has.
@@ -197,7 +212,10 @@ mod tests {
         assert_eq!((photo.background, photo.is_of_flats()), (FigureBackground::Painted, false));
         assert_eq!(DrawingLook::of(&TileGrid::default(), CANVAS).background, FigureBackground::Empty);
         let paper = TileGrid::from_straight_rgba(&[255; 12_000], 60, 50, 0, 0);
-        assert_eq!(DrawingLook::of(&paper, CANVAS).background, FigureBackground::Empty, "paper alone is no figure");
+        assert_eq!(DrawingLook::of(&paper, CANVAS).background, FigureBackground::Bare(white), "paper is no figure");
+        let speck = |i: usize| if i == 1500 { [0, 0, 0, 255] } else { [255; 4] };
+        let speck = TileGrid::from_straight_rgba(&(0..3000).flat_map(speck).collect::<Vec<u8>>(), 60, 50, 0, 0);
+        assert_eq!(DrawingLook::of(&speck, CANVAS).background, FigureBackground::Bare(white), "nor is a speck on it");
     }
     #[test]
     fn a_drawing_without_its_ground_over_that_ground_is_what_it_was() {

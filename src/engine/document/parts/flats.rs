@@ -68,10 +68,10 @@ impl FlatParts {
 
 /// The parts of the flats in a layer called `layer`, a part for each colour or each place.
 ///
-/// `tiles`: what the layer shows on the canvas.
+/// `tiles`: what the layer shows on the canvas. Nothing makes no parts.
 pub fn parts_of_flats(tiles: &TileGrid, layer: &str, inflation: Inflation, each: PartFor) -> FlatParts {
     let rect = tiles.bounds();
-    let flats = Flats::of(tiles, rect, &[]);
+    let Some(flats) = Flats::of(tiles, rect, &[]) else { return FlatParts::default() };
     let FlatAreas { of, labels, left_out } = match each {
         PartFor::Place => places(&flats, rect),
         _ => {

@@ -45,16 +45,17 @@ impl KnownFlats {
 }
 
 impl Parts {
-    /// The flats of a picture; `asked`: colours that are looked for however small their areas are.
-    pub(super) fn flats_of(&self, tiles: &TileGrid, asked: &[Color]) -> Arc<KnownFlats> {
+    /// The flats of a picture, `None` if it is empty; `asked`: colours that are looked for however small their areas
+    /// are.
+    pub(super) fn flats_of(&self, tiles: &TileGrid, asked: &[Color]) -> Option<Arc<KnownFlats>> {
         let last = &self.cache.flats.0;
         let known = lock(last).clone().filter(|known| known.tiles.ptr_eq(tiles) && known.asked == asked);
-        known.unwrap_or_else(|| {
+        known.or_else(|| {
             // What is no longer needed is let go of first.
             *lock(last) = None;
-            let flats = Flats::of(tiles, tiles.bounds(), asked);
+            let flats = Flats::of(tiles, tiles.bounds(), asked)?;
             let known = KnownFlats { flats, tiles: tiles.clone(), asked: asked.to_vec(), places: Mutex::default() };
-            lock(last).insert(Arc::new(known)).clone()
+            Some(lock(last).insert(Arc::new(known)).clone())
         })
     }
     /// Drops them: they are large, and an edit of the picture needs others.

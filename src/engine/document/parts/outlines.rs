@@ -129,7 +129,7 @@ impl Document {
         let tiles = pixels(self, layer, &self.map_under(layer, part)?)?;
         let rect = tiles.bounds();
         let area = self.area_of(part, (*color).into());
-        (!rect.is_empty()).then(|| SplitPlaces::of(&Flats::of(&tiles, rect, &area.asked()), *color, rect))
+        Flats::of(&tiles, rect, &area.asked()).map(|flats| SplitPlaces::of(&flats, *color, rect))
     }
     /// What the user is told when parts take another area than the one that was meant, which no longer has their
     /// colour; `before`: of those parts nothing is said again.
@@ -237,7 +237,7 @@ impl OutlineKey {
                         None => alpha(&tiles, rect),
                         Some(area) => {
                             let corner = vec2(rect.x0 as f32, rect.y0 as f32);
-                            let flats = document.parts.flats_of(&tiles, &area.asked());
+                            let flats = document.parts.flats_of(&tiles, &area.asked())?;
                             let (share, is_beside) = area.share(&flats, corner)?;
                             is_lost = is_beside;
                             share

@@ -47,8 +47,12 @@ pub enum FlatOwner {
 }
 
 impl Flats {
-    /// The pixels of a rectangle; `asked`: colours that are looked for however small their areas are.
-    pub fn of(tiles: &TileGrid, rect: Rect, asked: &[Color]) -> Self {
+    /// The pixels of a rectangle, `None` if it holds none; `asked`: colours that are looked for however small their
+    /// areas are.
+    pub fn of(tiles: &TileGrid, rect: Rect, asked: &[Color]) -> Option<Self> {
+        if rect.is_empty() {
+            return None;
+        }
         let picture = FlatPicture::of(tiles, rect);
         let asked: Vec<Pixel> = asked.iter().copied().map(bytes).collect();
         let Palette { mut colors, of: mut owner } = Palette::of(&picture, &asked);
@@ -78,7 +82,7 @@ impl Flats {
         let flat_share = flat as f32 / painted.max(1) as f32;
         let mut flats = Self { colors, owner, mixed, is_given, gap_px, left_out, flat_share };
         flats.add_mixed(between, &nearest);
-        flats
+        Some(flats)
     }
     /// Adds the pixels between areas; `nearest`: the number of the nearest area of each pixel, one more.
     fn add_mixed(&mut self, between: Vec<Between>, nearest: &Plane<u32>) {

@@ -21,7 +21,7 @@ fn ringed(p: Vec2) -> Pixel {
 #[test]
 fn a_colour_goes_on_beneath_nearer_colours_inside_of_it_and_a_hole_stays() {
     for side in [1.0, 2.2] {
-        let flats = Flats::of(&drawn(side, ringed), SIZE.rect(), &[]);
+        let flats = Flats::of(&drawn(side, ringed), SIZE.rect(), &[]).unwrap();
         let mut share = flats.share_of(color(BODY), &[]);
         fill_beneath(&mut share, &flats, &[color(EYE), color(PUPIL)], &[color(WING)]);
         for (x, y) in (52..80).flat_map(|y| (103..137).map(move |x| (x, y))) {
@@ -33,7 +33,7 @@ fn a_colour_goes_on_beneath_nearer_colours_inside_of_it_and_a_hole_stays() {
 }
 #[test]
 fn what_is_farther_away_shows_through_a_hole() {
-    let flats = Flats::of(&drawn(1.0, at), SIZE.rect(), &[]);
+    let flats = Flats::of(&drawn(1.0, at), SIZE.rect(), &[]).unwrap();
     let own = flats.share_of(color(BODY), &[]);
     let mut share = own.clone();
     fill_beneath(&mut share, &flats, &[color(PUPIL)], &[color(EYE)]);
@@ -49,7 +49,7 @@ fn what_is_farther_away_shows_through_a_hole() {
 fn a_glint_is_no_hole() {
     let glinting = |radius: f32| {
         let glint = |p: Vec2| (p - vec2(80.0, 80.0)).length() < radius;
-        let flats = Flats::of(&drawn(1.0, |p| if glint(p) { EYE } else { at(p) }), SIZE.rect(), &[]);
+        let flats = Flats::of(&drawn(1.0, |p| if glint(p) { EYE } else { at(p) }), SIZE.rect(), &[]).unwrap();
         let mut share = flats.share_of(color(BODY), &[]);
         fill_beneath(&mut share, &flats, &[], &[color(EYE)]);
         share.at(80, 80)
@@ -64,7 +64,7 @@ fn a_belly_that_a_wing_hides_in_part_lies_on_the_body() {
         p if (p - vec2(110.0, 84.0)).length() < 24.0 => EYE,
         p => at(p),
     };
-    let flats = Flats::of(&drawn(1.0, winged), SIZE.rect(), &[]);
+    let flats = Flats::of(&drawn(1.0, winged), SIZE.rect(), &[]).unwrap();
     let shares = |nearer: &[Pixel]| {
         let nearer: Vec<Color> = nearer.iter().copied().map(color).collect();
         let mut share = flats.share_of(color(BODY), &nearer);

@@ -114,7 +114,7 @@ fn a_part_takes_only_the_area_around_its_point() {
 #[test]
 fn shares_of_all_places_add_up_to_that_of_the_colour() {
     let tiles = face(&EYES);
-    let flats = Flats::of(&tiles, tiles.bounds(), &[]);
+    let flats = Flats::of(&tiles, tiles.bounds(), &[]).unwrap();
     let color = Color::parse("#fafafa").unwrap();
     let (places, share) = (ColorPlaces::of(&flats, color), flats.share_of(color, &[]));
     let both = places.shares(&places.large(), &share);
@@ -137,7 +137,7 @@ fn a_narrow_passage_separates_places_and_a_wide_one_joins_them() {
         }
         let tiles = TileGrid::from_straight_rgba(&rgba, width, 120, 0, 0);
         let places = ColorPlaces::of(
-            &Flats::of(&tiles, Rect::new(0, 0, width as i32, 120), &[]),
+            &Flats::of(&tiles, Rect::new(0, 0, width as i32, 120), &[]).unwrap(),
             Color::parse("#fafafa").unwrap(),
         );
         places.large().len()
@@ -224,7 +224,7 @@ fn what_is_too_small_for_a_part_is_told() {
 #[test]
 fn any_point_finds_a_place_or_none() {
     let tiles = face(&EYES);
-    let flats = Flats::of(&tiles, tiles.bounds(), &[]);
+    let flats = Flats::of(&tiles, tiles.bounds(), &[]).unwrap();
     let places = ColorPlaces::of(&flats, Color::parse("#fafafa").unwrap());
     for at in [Vec2::NAN, Vec2::INFINITY, vec2(-1e9, 1e9), vec2(1e30, 0.0)] {
         let found = places.nearest(at);

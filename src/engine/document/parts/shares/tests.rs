@@ -51,7 +51,7 @@ pub fn color([r, g, b, a]: Pixel) -> Color {
 fn the_shares_of_a_pixel_add_up_to_what_is_painted_of_it() {
     for side in [1.0, 2.2] {
         let tiles = drawn(side, at);
-        let flats = Flats::of(&tiles, SIZE.rect(), &[]);
+        let flats = Flats::of(&tiles, SIZE.rect(), &[]).unwrap();
         let shares = [BODY, WING, EYE, PUPIL].map(|own| flats.share_of(color(own), &[]));
         let mut wrong = 0;
         for (x, y) in (0..160).flat_map(|y| (0..200).map(move |x| (x, y))) {
@@ -67,8 +67,8 @@ fn the_shares_of_a_pixel_add_up_to_what_is_painted_of_it() {
 fn only_areas_are_colours() {
     // A long straight edge half-way through its pixels is a long row of one mixed colour.
     let halves = drawn(1.0, |p| if p.x < 90.5 { BODY } else { WING });
-    assert_eq!(Flats::of(&halves, SIZE.rect(), &[]).colors().len(), 2);
-    assert_eq!(Flats::of(&drawn(2.2, at), SIZE.rect(), &[]).colors().len(), 4);
+    assert_eq!(Flats::of(&halves, SIZE.rect(), &[]).unwrap().colors().len(), 2);
+    assert_eq!(Flats::of(&drawn(2.2, at), SIZE.rect(), &[]).unwrap().colors().len(), 4);
 }
 #[test]
 fn a_creature_of_flats_that_touch_has_no_rims_and_no_stray_points() {
@@ -103,7 +103,7 @@ fn a_seam_between_two_flats_is_closed_and_a_gap_within_one_stays() {
         _ if (p.x - 170.0).abs() < 1.0 => [0; 4],
         _ => EYE,
     };
-    let flats = Flats::of(&drawn(1.0, seam), SIZE.rect(), &[]);
+    let flats = Flats::of(&drawn(1.0, seam), SIZE.rect(), &[]).unwrap();
     let whole = |x: usize, y: usize| {
         [BODY, WING, EYE].iter().map(|own| u32::from(flats.share_of(color(*own), &[]).at(x, y))).sum::<u32>()
     };
@@ -116,7 +116,7 @@ fn a_seam_between_two_flats_is_closed_and_a_gap_within_one_stays() {
 #[test]
 fn what_is_behind_goes_on_beneath_the_edge_of_what_lies_over_it() {
     let tiles = drawn(1.0, at);
-    let flats = Flats::of(&tiles, SIZE.rect(), &[]);
+    let flats = Flats::of(&tiles, SIZE.rect(), &[]).unwrap();
     let (alone, beneath) = (flats.share_of(color(BODY), &[]), flats.share_of(color(BODY), &[color(EYE), color(PUPIL)]));
     let edge: Vec<usize> = (100..112).filter(|x| (1..255).contains(&alone.at(*x, 66))).collect();
     assert!(!edge.is_empty() && edge.iter().all(|x| beneath.at(*x, 66) == 255), "{edge:?}");

@@ -56,6 +56,9 @@ pub fn shaped(
                         the figure, and inflate the selection.",
             );
         }
+        FigureBackground::Bare(_) => {
+            return Err("This layer has one colour all over, and no figure large enough on it to have an outline.");
+        }
         FigureBackground::Empty => return Err("This layer is empty, so it has no outline."),
     };
     let document = named_alone(&document, layer).ok_or("There is no such layer.")?;

@@ -1,0 +1,58 @@
+//! Shapes from the command line: what becomes of a drawing, and what is said about one that has no shape.
+
+use crate::cli::{Desk, PHOTO, refused, rilievo, said};
+use std::process::Output;
+
+/// `rilievo shape FILE -o maps …`
+fn shape(desk: &Desk, file: &str, more: &[&str]) -> Output {
+    let mut command = rilievo(&["shape"]);
+    command.arg(desk.path(file)).arg("-o").arg(desk.path("maps")).args(more).output().unwrap()
+}
+
+#[test]
+fn a_shape_has_a_part_for_each_colour_or_place_and_tells_what_has_none() {
+    let desk = Desk::with(PHOTO);
+    let picture = image::RgbaImage::from_fn(800, 600, |x, y| {
+        let within = |cx: f32, cy: f32, r: f32| (x as f32 + 0.5 - cx).hypot(y as f32 + 0.5 - cy) < r;
+        let eyes = [(300.0, 240.0, 40.0), (500.0, 240.0, 48.0), (400.0, 440.0, 3.4)];
+        let is_eye = eyes.into_iter().any(|(cx, cy, r)| within(cx, cy, r));
+        image::Rgba(match is_eye {
+            true => [250, 250, 250, 255],
+            false if within(400.0, 300.0, 240.0) => [230, 170, 90, 255],
+            false => [0; 4],
+        })
+    });
+    picture.save(desk.path("face.png")).unwrap();
+    let parts = |more: &[&str], folder: &str| {
+        let (face, out) = (desk.path("face.png"), desk.path(folder));
+        let mut command = rilievo(&["shape"]);
+        let output = command.arg(&face).arg("--flats").arg(&face).arg("-o").arg(&out).args(more).output().unwrap();
+        assert!(output.status.success(), "{}", said(&output));
+        let ids = image::open(out.join("face_id.png")).unwrap().into_luma16();
+        let known: std::collections::BTreeSet<u16> = ids.pixels().map(|id| id.0[0]).collect();
+        (known.len() - 1, said(&output))
+    };
+    assert_eq!(parts(&[], "colours"), (2, String::new()));
+    let (count, told) = parts(&["--places"], "places");
+    assert_eq!(count, 3);
+    assert!(told.contains("face.png: One area is left without a part"), "{told}");
+    let alone = rilievo(&["shape", "face.png", "--places", "-o", "maps"]).output().unwrap();
+    assert_eq!(alone.status.code(), Some(2), "--places is of flats: {}", said(&alone));
+}
+
+#[test]
+fn a_drawing_of_one_colour_or_of_nothing_is_refused_for_what_it_is() {
+    let desk = Desk::with(PHOTO);
+    let pictures = [("red", [200, 30, 30, 255]), ("paper", [255; 4]), ("nothing", [0; 4]), ("faint", [255, 0, 0, 9])];
+    for (name, color) in pictures {
+        let file = format!("{name}.png");
+        image::RgbaImage::from_pixel(64, 48, image::Rgba(color)).save(desk.path(&file)).unwrap();
+        let why = if color[3] == 255 { "it has one colour all over" } else { "nothing in it is opaque enough" };
+        refused(&shape(&desk, &file, &[]), &[&file, why]);
+        let flats = desk.path(&file);
+        for more in [&["--places"][..], &[]] {
+            let more = [&["--flats", flats.to_str().unwrap()][..], more].concat();
+            refused(&shape(&desk, &file, &more), &[&file, why]);
+        }
+    }
+}
