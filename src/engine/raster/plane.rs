@@ -11,6 +11,14 @@ pub struct Plane<T> {
     values: Vec<T>,
 }
 
+/// Pixels that are worth a task: less is done sooner than it is handed to another thread.
+const LEAST_PX: usize = 1 << 9;
+
+/// Rows of a width that are not divided among threads.
+fn least_rows(width: usize) -> usize {
+    LEAST_PX.div_ceil(width)
+}
+
 /// A copy for which there is no memory is refused like a new plane.
 impl<T: Clone> Clone for Plane<T> {
     fn clone(&self) -> Self {
@@ -35,7 +43,7 @@ impl<T: Copy> Plane<T> {
         use rayon::prelude::*;
         let width = size.width.max(1) as usize;
         let mut values = filled_or_unwind(size.area(), T::default());
-        values.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+        values.par_chunks_mut(width).enumerate().with_min_len(least_rows(width)).for_each(|(y, row)| {
             for (x, v) in row.iter_mut().enumerate() {
                 *v = value(x, y);
             }
@@ -49,7 +57,7 @@ impl<T: Copy> Plane<T> {
     {
         use rayon::prelude::*;
         let width = self.size.width.max(1) as usize;
-        self.values.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+        self.values.par_chunks_mut(width).enumerate().with_min_len(least_rows(width)).for_each(|(y, row)| {
             for (x, v) in row.iter_mut().enumerate() {
                 *v = value(x, y, *v);
             }
@@ -64,7 +72,8 @@ impl<T: Copy> Plane<T> {
         use rayon::prelude::*;
         let width = self.width().max(1);
         let mut values = filled_or_unwind(self.size.area(), U::default());
-        values.par_chunks_mut(width).zip(self.values.par_chunks(width)).for_each(|(row, from)| {
+        let rows = values.par_chunks_mut(width).zip(self.values.par_chunks(width));
+        rows.with_min_len(least_rows(width)).for_each(|(row, from)| {
             row.iter_mut().zip(from).for_each(|(v, &from)| *v = f(from));
         });
         Plane { size: self.size, values }

@@ -126,7 +126,8 @@ impl Solver {
             let z = self.cycle(at, &residual, &mut scratch);
             let rz = dots(w, &residual, &z);
             let turn = if step == 0 { 0.0 } else { (rz / rz_before) as f32 };
-            direction.par_chunks_mut(w * BAND).zip(z.par_chunks(w * BAND)).for_each(|(d, z)| {
+            let bands = direction.par_chunks_mut(w * BAND).zip(z.par_chunks(w * BAND));
+            bands.with_min_len(least_bands(w)).for_each(|(d, z)| {
                 d.iter_mut().zip(z).for_each(|(d, z)| *d = z + turn * *d);
             });
             scratch.keep(z);
@@ -138,7 +139,7 @@ impl Solver {
             let along = (rz / energy) as f32;
             let bands = v.par_chunks_mut(w * BAND).zip(residual.par_chunks_mut(w * BAND));
             let moved = direction.par_chunks(w * BAND).zip(pulled.par_chunks(w * BAND));
-            bands.zip(moved).for_each(|((v, r), (d, p))| {
+            bands.zip(moved).with_min_len(least_bands(w)).for_each(|((v, r), (d, p))| {
                 add(v, along, d);
                 add(r, -along, p);
             });

@@ -10,6 +10,13 @@ use rayon::prelude::*;
 const HELD_BY_RIM: f32 = 0.75;
 /// Rows that one task works on.
 pub(super) const BAND: usize = 16;
+/// Pixels that are worth a task: less is done sooner than it is handed to another thread.
+const LEAST_PX: usize = 1 << 14;
+
+/// Bands of a width that are not divided among threads.
+pub(super) fn least_bands(w: usize) -> usize {
+    LEAST_PX.div_ceil(w * BAND)
+}
 
 /// One grid: its first and last rows and columns hold no unknowns.
 pub(super) struct Level {
@@ -101,7 +108,7 @@ impl Level {
     /// Fills the inner rows of a plane; the function gets each row's number.
     pub(super) fn fill(&self, out: &mut [f32], row: impl Fn(usize, &mut [f32]) + Sync) {
         let (w, h) = (self.w, self.h);
-        out.par_chunks_mut(w * BAND).enumerate().for_each(|(band, rows)| {
+        out.par_chunks_mut(w * BAND).enumerate().with_min_len(least_bands(w)).for_each(|(band, rows)| {
             for (y, out) in (band * BAND..).zip(rows.chunks_mut(w)) {
                 if y > 0 && y + 1 < h {
                     row(y, out);
@@ -216,6 +223,7 @@ pub(super) fn applied_into(springs: Springs, v: [&[f32]; 3], out: &mut [f32]) {
 
 /// Sums over two planes, folded band by band.
 pub(super) fn dots(w: usize, a: &[f32], b: &[f32]) -> f64 {
-    let bands: Vec<f64> = a.par_chunks(w * BAND).zip(b.par_chunks(w * BAND)).map(|(a, b)| dot(a, b)).collect();
+    let bands = a.par_chunks(w * BAND).zip(b.par_chunks(w * BAND)).with_min_len(least_bands(w));
+    let bands: Vec<f64> = bands.map(|(a, b)| dot(a, b)).collect();
     bands.iter().sum()
 }
