@@ -8,8 +8,10 @@ use rilievo::files::{MapSource, SurfaceSource, maps, picture};
 use rilievo::math::vec2;
 use rilievo::paint::{Brush, Sample, Stroke};
 use rilievo::{Budget, Color, Content, Document, Layer, Operator, Progress, Size, flatten, open};
+use rilievo_engine::document::parts::{Part, PartKind};
 use rilievo_engine::math::hash;
-use rilievo_engine::memory::set_kept_ceiling;
+use rilievo_engine::memory::{DABS, FORMS};
+use rilievo_engine::shape::{Body, Primitive};
 use rilievo_io::{UserFiles, exr, psd};
 use std::io::{Cursor, Read, Write};
 use std::path::Path;
@@ -206,7 +208,7 @@ fn a_photoshop_file_takes_no_more_than_is_asked_for() {
 #[test]
 fn of_very_many_strokes_few_dabs_are_held() {
     let _turn = watch::turn();
-    set_kept_ceiling(4 << 20);
+    DABS.set_ceiling(4 << 20);
     let size = Size::new(1000, 800);
     let stroke = |i: u32| {
         let at = |j: u32| vec2(1000.0 * hash::unit(i, j, 0), 800.0 * hash::unit(i, j, 1));
@@ -218,8 +220,43 @@ fn of_very_many_strokes_few_dabs_are_held() {
     let layer = Layer::new("strokes", Content::Strokes(Live::new(list)));
     let document = Document { layers: vec![Arc::new(layer)], ..Document::empty(size) };
     let (pixels, peak) = watched(|| flatten(&document, &Progress::default()).unwrap());
-    set_kept_ceiling(64 << 20);
+    DABS.set_ceiling(64 << 20);
     assert!(pixels.iter().count() > 100);
     // All dabs together take some 130 MiB.
     assert!(peak < 90 * MIB, "{peak} bytes");
+}
+#[test]
+fn forms_beyond_their_ceiling_are_made_one_at_a_time_to_the_same_surface() {
+    let _turn = watch::turn();
+    let size = Size::new(700, 700);
+    let ball = |i: u16| {
+        let middle = vec2(350.0 + f32::from(i), 350.0);
+        Arc::new(Part::new(
+            format!("{i}"),
+            PartKind::Primitive(Primitive::new(Body::Sphere, middle, 340.0 - f32::from(i))),
+        ))
+    };
+    let list: Vec<Arc<Part>> = (0..24).map(ball).collect();
+    let usual = FORMS.ceiling();
+    let made = |ceiling: u64| {
+        FORMS.set_ceiling(ceiling);
+        let empty = Document::empty(size);
+        let most = empty.shape_bytes(&list) as usize;
+        let (shaped, peak) = watched(|| empty.with_parts(list.clone()));
+        assert!(peak < most, "{peak} bytes, {most} were expected at most");
+        // One is moved, and the farthest hidden.
+        let mut other = list.clone();
+        other[20] = ball(60);
+        let next = shaped.with_parts(other[1..].to_vec());
+        FORMS.set_ceiling(usual);
+        let areas = next.part_areas();
+        assert_eq!((areas.len(), areas[3].1.at(352, 350), areas[3].1.at(3, 3)), (23, 255, 0));
+        ([shaped, next].map(|document| document.surface.unwrap()), peak)
+    };
+    let ((kept, whole), (again, held)) = (made(1 << 30), made(0));
+    for (a, b) in kept.iter().zip(&again) {
+        assert_eq!(a.depth_plane(), b.depth_plane());
+        assert_eq!((a.normal_planes(), a.coverage_plane()), (b.normal_planes(), b.coverage_plane()));
+    }
+    assert!(held < 100 * size.area() && whole > held + 15 * 17 * size.area(), "{held} and {whole} bytes");
 }

@@ -56,3 +56,18 @@ fn a_drawing_of_one_colour_or_of_nothing_is_refused_for_what_it_is() {
         }
     }
 }
+
+#[test]
+fn a_shape_for_which_there_is_no_memory_is_refused_before_it_is_made() {
+    let outline = "[[100, 100], [16000, 100], [16000, 16000], [100, 16000]]";
+    let part = format!(r#"{{ "id": "a", "name": "A", "kind": "inflate", "outline": {{ "path": {outline} }} }}"#);
+    let document = format!(
+        r##"{{ "format": "rilievo", "version": 2, "canvas": {{ "width": 16384, "height": 16384 }},
+        "surface": {{ "parts": [{part}] }}, "layers": [{{ "kind": "fill", "color": "#336699" }}] }}"##
+    );
+    let desk = Desk::with(&document);
+    let begun = std::time::Instant::now();
+    let output = desk.render("out.png", &["--max-memory", "400M"]);
+    refused(&output, &["r.json", "the shape of 1 part on 16384 × 16384 pixels takes", "of memory", "--max-memory"]);
+    assert!(begun.elapsed().as_secs() < 20, "{:?}", begun.elapsed());
+}

@@ -53,38 +53,55 @@ pub fn spoken(bytes: u64) -> String {
     if mb < 1000.0 { format!("{mb:.0} MB") } else { format!("{:.1} GB", mb / 1000.0) }
 }
 
-/// Bytes that may be kept for speed alone, and those that are.
-static CEILING: AtomicU64 = AtomicU64::new(64 << 20);
-static KEPT: AtomicU64 = AtomicU64::new(0);
+/// Bytes that may be kept for speed alone, what could be computed again, and those that are.
+#[derive(Debug)]
+pub struct CachePool {
+    ceiling: AtomicU64,
+    kept: AtomicU64,
+}
 
-/// Sets how much may be kept for speed alone: what could be computed again. What is kept already stays.
-pub fn set_kept_ceiling(bytes: u64) {
-    CEILING.store(bytes, Ordering::Relaxed);
+/// For the dabs of strokes.
+pub static DABS: CachePool = CachePool::new(64 << 20);
+/// For the forms of parts.
+pub static FORMS: CachePool = CachePool::new(1 << 30);
+
+impl CachePool {
+    const fn new(ceiling: u64) -> Self {
+        Self { ceiling: AtomicU64::new(ceiling), kept: AtomicU64::new(0) }
+    }
+    /// Sets how much may be kept. What is kept already stays.
+    pub fn set_ceiling(&self, bytes: u64) {
+        self.ceiling.store(bytes, Ordering::Relaxed);
+    }
+    /// How much may be kept.
+    pub fn ceiling(&self) -> u64 {
+        self.ceiling.load(Ordering::Relaxed)
+    }
+    /// `None` where all that is kept would be more than the ceiling.
+    pub fn reserve(&'static self, bytes: u64) -> Option<CacheReservation> {
+        let ceiling = self.ceiling();
+        let more = |kept: u64| kept.checked_add(bytes).filter(|sum| *sum <= ceiling);
+        let kept = self.kept.fetch_update(Ordering::Relaxed, Ordering::Relaxed, more);
+        kept.ok().map(|_| CacheReservation { pool: self, bytes })
+    }
 }
 
 /// Leave to keep something that could be computed again, for as long as this lives.
 #[derive(Debug)]
 pub struct CacheReservation {
+    pool: &'static CachePool,
     bytes: u64,
-}
-
-impl CacheReservation {
-    /// `None` where all that is kept would be more than the ceiling.
-    pub fn try_new(bytes: u64) -> Option<Self> {
-        let ceiling = CEILING.load(Ordering::Relaxed);
-        let more = |kept: u64| kept.checked_add(bytes).filter(|sum| *sum <= ceiling);
-        KEPT.fetch_update(Ordering::Relaxed, Ordering::Relaxed, more).ok().map(|_| Self { bytes })
-    }
 }
 
 impl Drop for CacheReservation {
     fn drop(&mut self) {
-        KEPT.fetch_sub(self.bytes, Ordering::Relaxed);
+        self.pool.kept.fetch_sub(self.bytes, Ordering::Relaxed);
     }
 }
 
-/// The value of a cell, or a new one. Nothing is held while it is made: a worker that waits for others there may be given
-/// work that needs the same cell, and would then wait for itself. So two threads may both make it; the results are equal.
+/// The value of a cell, or a new one. Nothing is held while it is made: a worker that waits for others there may be
+/// given work that needs the same cell, and would then wait for itself. So two threads may both make it; the results
+/// are equal.
 pub fn once<T>(cell: &OnceLock<T>, make: impl FnOnce() -> T) -> &T {
     if let Some(known) = cell.get() {
         return known;
@@ -138,12 +155,12 @@ mod tests {
     }
     #[test]
     fn what_is_kept_stays_below_the_ceiling_and_is_given_back() {
-        assert!(CacheReservation::try_new(u64::MAX).is_none());
-        let kept = CacheReservation::try_new(1000);
-        assert!(kept.is_some() && KEPT.load(Ordering::Relaxed) >= 1000);
-        assert!(CacheReservation::try_new((64 << 20) - 999).is_none());
+        assert!(DABS.reserve(u64::MAX).is_none());
+        let kept = DABS.reserve(1000);
+        assert!(kept.is_some() && DABS.kept.load(Ordering::Relaxed) >= 1000);
+        assert!(DABS.reserve((64 << 20) - 999).is_none());
         drop(kept);
-        assert!(CacheReservation::try_new(1000).is_some());
+        assert!(DABS.reserve(1000).is_some());
     }
     #[test]
     fn bytes_are_spoken() {

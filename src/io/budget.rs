@@ -140,6 +140,13 @@ impl Budget {
         }
         Ok(())
     }
+    /// Checks memory before the surface of some parts is made. `held_bytes`: of the layers that were read.
+    pub fn room_for_shape(&self, file: &Path, document: &Document, list: &[Arc<Part>], held_bytes: u64) -> Result<()> {
+        let parts = if list.len() == 1 { "1 part".into() } else { format!("{} parts", list.len()) };
+        let what = format!("the shape of {parts} on {} pixels", document.size);
+        let held_bytes = held_bytes + document.maps_surface().map_or(0, |maps| maps.map_bytes());
+        self.room(file, &what, document.shape_bytes(list).saturating_add(held_bytes))
+    }
     /// The size, or a sentence saying which ceiling it breaks. A side of 0 is not a picture.
     pub fn size(&self, file: &Path, width: u64, height: u64) -> Result<Size> {
         if width == 0 || height == 0 {

@@ -14,7 +14,7 @@ pub fn free_bytes() -> u64 {
     free - free / 8
 }
 
-/// Bytes that may be kept for speed alone (`memory::set_kept_ceiling`): a small share, so that old machines keep less.
+/// Bytes that may be kept for speed alone (`memory::DABS`): a small share, so that old machines keep less.
 pub fn kept_bytes() -> u64 {
     const MOST: u64 = 64 << 20;
     MOST.min(told(Path::new("/")).unwrap_or(UNKNOWN_BYTES) / 32)

@@ -1,7 +1,7 @@
 //! Small pictures of parts: each alone in the light of one lamp.
 //! Floor 7.
 
-use crate::document::parts::Parts;
+use crate::document::parts::{FormArea, Parts};
 use crate::document::{Document, Part};
 use crate::math::{Affine2, Vec3, srgb, vec3};
 use crate::shape::Form;
@@ -16,48 +16,48 @@ const SIDE: usize = 56;
 /// The pictures of the document's parts, by their ids.
 #[derive(Default)]
 pub struct PartPictures {
-    /// What the forms were last taken from: while it is the same, so are they.
+    /// What these were last taken from: while it is the same, so are they.
     of: Option<(Arc<Parts>, Option<Arc<Surface>>)>,
-    forms: Vec<(Arc<Part>, Arc<Form>)>,
+    areas: Vec<(Arc<Part>, Arc<FormArea>)>,
     /// The map of each form to where its part is now.
     moved: Vec<Affine2>,
-    painted: HashMap<String, (Arc<Form>, TextureHandle)>,
+    painted: HashMap<String, (Arc<FormArea>, TextureHandle)>,
 }
 
 impl PartPictures {
     /// Updates the pictures to a document.
     pub fn follow(&mut self, ctx: &egui::Context, document: &Document) {
-        self.forms(document);
-        let forms = &self.forms;
-        self.painted.retain(|id, _| forms.iter().any(|(part, _)| part.id == *id));
-        for (part, form) in forms {
-            let is_known = self.painted.get(&part.id).is_some_and(|(known, _)| Arc::ptr_eq(known, form));
-            if !is_known {
-                let texture = ctx.load_texture(format!("part {}", part.id), lit(form), TextureOptions::LINEAR);
-                self.painted.insert(part.id.clone(), (form.clone(), texture));
+        self.areas(document);
+        let areas = &self.areas;
+        self.painted.retain(|id, _| areas.iter().any(|(part, _)| part.id == *id));
+        for (part, area) in areas {
+            let is_known = self.painted.get(&part.id).is_some_and(|(known, _)| Arc::ptr_eq(known, area));
+            if !is_known && let Some(form) = document.form_of(&part.id) {
+                let texture = ctx.load_texture(format!("part {}", part.id), lit(&form), TextureOptions::LINEAR);
+                self.painted.insert(part.id.clone(), (area.clone(), texture));
             }
         }
     }
-    /// The forms of a document with their parts, computed once per version of it.
-    pub fn forms(&mut self, document: &Document) -> &[(Arc<Part>, Arc<Form>)] {
+    /// Where the forms of a document lie, with their parts, computed once per version of it.
+    pub fn areas(&mut self, document: &Document) -> &[(Arc<Part>, Arc<FormArea>)] {
         let is_same = self.of.as_ref().is_some_and(|(parts, surface)| {
             let surfaces = [surface, &document.surface].map(|surface| surface.as_ref().map(Arc::as_ptr));
             Arc::ptr_eq(parts, &document.parts) && surfaces[0] == surfaces[1]
         });
         if !is_same {
-            let forms = match document.is_shaped() {
-                true => document.part_forms().into_iter().map(|(part, form)| (part, form, Affine2::IDENTITY)).collect(),
+            let areas = match document.is_shaped() {
+                true => document.part_areas().into_iter().map(|(part, area)| (part, area, Affine2::IDENTITY)).collect(),
                 // During a drag nothing is made here.
-                false => document.last_part_forms(),
+                false => document.last_part_areas(),
             };
-            (self.forms, self.moved) = forms.into_iter().map(|(part, form, map)| ((part, form), map)).unzip();
+            (self.areas, self.moved) = areas.into_iter().map(|(part, area, map)| ((part, area), map)).unzip();
             self.of = Some((document.parts.clone(), document.surface.clone()));
         }
-        &self.forms
+        &self.areas
     }
     /// The map of a part's form, as it was made last, to where the part is.
     pub fn moved(&self, id: &str) -> Affine2 {
-        let at = self.forms.iter().position(|(part, _)| part.id == id);
+        let at = self.areas.iter().position(|(part, _)| part.id == id);
         at.and_then(|at| self.moved.get(at)).copied().unwrap_or(Affine2::IDENTITY)
     }
     /// A picture and its size.

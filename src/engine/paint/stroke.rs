@@ -17,7 +17,7 @@ use super::scene::Scene;
 use super::selection::StrokeSelection;
 use super::stroke_tile::StrokeBlend;
 use crate::math::{Rect, Vec2, srgb::Color};
-use crate::memory::CacheReservation;
+use crate::memory::{CacheReservation, DABS};
 use crate::raster::{PlanarTile, Tile, TileAt};
 use crate::surface::Operator;
 use crate::surface::objects::CanvasPart;
@@ -151,7 +151,7 @@ impl StrokeCache {
         // Releases what it held before it reserves again.
         self.stroke_dabs = None;
         self.support = Some(Arc::new(stroke_dabs.support()));
-        self.stroke_dabs = CacheReservation::try_new(stroke_dabs.bytes()).map(|kept| (stroke_dabs.clone(), kept));
+        self.stroke_dabs = DABS.reserve(stroke_dabs.bytes()).map(|kept| (stroke_dabs.clone(), kept));
     }
 }
 

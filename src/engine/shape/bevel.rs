@@ -108,6 +108,7 @@ pub fn beveled(outline: &Outline, bevel: &Bevel) -> Form {
         };
         vec3(-way.x * along.y * steep, way.y * along.y * steep, along.x).normalize_or(Vec3::Z)
     });
+    let (height, normals) = (height.into(), normals.into());
     Form { corner: outline.corner(), height, normals, coverage: outline.coverage().clone() }
 }
 

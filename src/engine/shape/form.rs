@@ -5,17 +5,18 @@ use super::{Outline, OutlineRim};
 use crate::math::{Affine2, Mat2, Rect, Size, Vec2, Vec3, vec2, vec3};
 use crate::raster::Plane;
 use rayon::prelude::*;
+use std::sync::Arc;
 
-/// The shape of one part over a rectangle of the canvas.
+/// The shape of one part over a rectangle of the canvas. A copy shares the planes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Form {
     /// Canvas px of the planes' first pixel.
     pub corner: (i32, i32),
     /// Toward the viewer, canvas px; 0 where nothing is covered.
-    pub height: Plane<f32>,
+    pub height: Arc<Plane<f32>>,
     /// Unit, camera space (y up); +z where nothing is covered.
-    pub normals: Plane<Vec3>,
-    pub coverage: Plane<u8>,
+    pub normals: Arc<Plane<Vec3>>,
+    pub coverage: Arc<Plane<u8>>,
 }
 
 /// How a squared height becomes a form.
@@ -55,7 +56,12 @@ impl Form {
                 }
             }
         });
-        Self { corner: outline.corner(), height, normals, coverage: outline.coverage().clone() }
+        Self {
+            corner: outline.corner(),
+            height: height.into(),
+            normals: normals.into(),
+            coverage: outline.coverage().clone(),
+        }
     }
     /// The pixels of the canvas that the planes hold.
     pub fn rect(&self) -> Rect {
@@ -107,9 +113,9 @@ impl Form {
         };
         Some(Self {
             corner: (low.x as i32, low.y as i32),
-            height: read.map(|(height, _, _)| height * scale),
-            normals: read.map(|(_, normal, _)| turned(normal)),
-            coverage: read.map(|(_, _, coverage)| coverage.round() as u8),
+            height: read.map(|(height, _, _)| height * scale).into(),
+            normals: read.map(|(_, normal, _)| turned(normal)).into(),
+            coverage: read.map(|(_, _, coverage)| coverage.round() as u8).into(),
         })
     }
     /// Height, normal and coverage at a place relative to the centre of the first pixel.
@@ -142,11 +148,11 @@ impl Form {
         let size = self.height.size();
         let middle = vec2(size.width as f32, size.height as f32) * 0.5;
         let coverage = &self.coverage;
-        self.height = self.height.updated(|x, y, z| {
+        self.height = updated(self.height, |x, y, z| {
             let from = vec2(x as f32 + 0.5, y as f32 + 0.5) - middle;
             if coverage.at(x, y) > 0 { z + slope.dot(from) } else { z }
         });
-        self.normals = self.normals.updated(|x, y, n| match coverage.at(x, y) {
+        self.normals = updated(self.normals, |x, y, n| match coverage.at(x, y) {
             0 => n,
             _ => vec3(n.x - slope.x * n.z, n.y + slope.y * n.z, n.z).normalize_or(Vec3::Z),
         });
@@ -156,7 +162,7 @@ impl Form {
     pub fn raised(mut self, by_px: f32) -> Self {
         let coverage = &self.coverage;
         if by_px != 0.0 && by_px.is_finite() {
-            self.height = self.height.updated(|x, y, z| if coverage.at(x, y) > 0 { z + by_px } else { z });
+            self.height = updated(self.height, |x, y, z| if coverage.at(x, y) > 0 { z + by_px } else { z });
         }
         self
     }
@@ -166,7 +172,7 @@ impl Form {
             return self;
         }
         let coverage = &self.coverage;
-        self.normals = self.normals.updated(|x, y, n| {
+        self.normals = updated(self.normals, |x, y, n| {
             let covered = |x: i32, y: i32| coverage.get(x, y).unwrap_or(0) > 0;
             if !covered(x as i32, y as i32) {
                 return n;
@@ -174,9 +180,14 @@ impl Form {
             let slope = slope_within(added, &covered, x as i32, y as i32);
             vec3(n.x - slope.x * n.z, n.y + slope.y * n.z, n.z).normalize_or(Vec3::Z)
         });
-        self.height = self.height.updated(|x, y, z| if coverage.at(x, y) > 0 { z + added.at(x, y) } else { z });
+        self.height = updated(self.height, |x, y, z| if coverage.at(x, y) > 0 { z + added.at(x, y) } else { z });
         self
     }
+}
+
+/// A plane computed again pixel by pixel, in the same memory if nobody else holds it.
+fn updated<T: Copy + Send + Sync>(plane: Arc<Plane<T>>, value: impl Fn(usize, usize, T) -> T + Sync) -> Arc<Plane<T>> {
+    Arc::new(Arc::unwrap_or_clone(plane).updated(value))
 }
 
 /// The slope of a plane at a pixel by differences that do not leave what is covered.

@@ -207,8 +207,8 @@ mod tests {
         let outline = Outline::new((0, 0), &coverage).unwrap();
         let form = Form {
             corner: outline.corner(),
-            height: Plane::filled(outline.size(), 0.0),
-            normals: Plane::filled(outline.size(), Vec3::Z),
+            height: Plane::filled(outline.size(), 0.0).into(),
+            normals: Plane::filled(outline.size(), Vec3::Z).into(),
             coverage: outline.coverage().clone(),
         };
         (form, outline)

@@ -3,6 +3,7 @@
 
 use crate::math::{Affine2, Rect, Size, Vec2, vec2};
 use crate::raster::Plane;
+use std::sync::Arc;
 
 /// The least distance of the rim from the centre of a pixel, px: a smaller one would make springs too stiff to solve.
 const LEAST_CROSSING: f32 = 0.02;
@@ -12,7 +13,7 @@ const LEAST_CROSSING: f32 = 0.02;
 pub struct Outline {
     /// Canvas px of the plane's first pixel.
     corner: (i32, i32),
-    coverage: Plane<u8>,
+    coverage: Arc<Plane<u8>>,
     inside: Plane<bool>,
 }
 
@@ -44,7 +45,7 @@ impl Outline {
         // A hairline covers no pixel by half: then all pixels that it touches are inside.
         let least = if cut.values().iter().any(|c| *c >= 128) { 128 } else { 1 };
         let inside = cut.map(|c| c >= least);
-        Some(Self { corner: (corner.0.saturating_add(x0), corner.1.saturating_add(y0)), coverage: cut, inside })
+        Some(Self { corner: (corner.0.saturating_add(x0), corner.1.saturating_add(y0)), coverage: cut.into(), inside })
     }
     /// Canvas px of the first pixel of the planes.
     pub fn corner(&self) -> (i32, i32) {
@@ -58,7 +59,7 @@ impl Outline {
         let (x, y) = self.corner;
         Rect::new(x, y, x.saturating_add(self.size().width as i32), y.saturating_add(self.size().height as i32))
     }
-    pub fn coverage(&self) -> &Plane<u8> {
+    pub fn coverage(&self) -> &Arc<Plane<u8>> {
         &self.coverage
     }
     /// Whether the centre of a pixel is inside: these pixels are the unknowns of every equation here.
@@ -72,7 +73,7 @@ impl Outline {
         }
         let coverage = Plane::from_fn(self.size(), |x, y| if cut.at(x, y) { 0 } else { self.coverage.at(x, y) });
         let inside = Plane::from_fn(self.size(), |x, y| !cut.at(x, y) && self.inside.at(x, y));
-        Self { corner: self.corner, coverage, inside }
+        Self { corner: self.corner, coverage: coverage.into(), inside }
     }
     /// The same outline, moved.
     pub fn moved(&self, by: (i32, i32)) -> Self {

@@ -91,7 +91,7 @@ impl Primitive {
         Some((z, vec3(normal.x, normal.y, normal.z.max(0.0)).normalize_or(Vec3::Z)))
     }
     /// The greatest distance from the middle, px.
-    fn reach(&self) -> f32 {
+    pub fn reach(&self) -> f32 {
         match self.body {
             Body::Sphere => self.radius,
             Body::Ellipsoid | Body::Box => self.half.length(),
@@ -113,9 +113,9 @@ impl Primitive {
         let texels = Plane::from_fn(size, |x, y| self.texel(turn, low + vec2(x as f32, y as f32)));
         Some(Form {
             corner: (low.x as i32, low.y as i32),
-            height: texels.map(|t| t.height),
-            normals: texels.map(|t| t.normal),
-            coverage: texels.map(|t| t.coverage),
+            height: texels.map(|t| t.height).into(),
+            normals: texels.map(|t| t.normal).into(),
+            coverage: texels.map(|t| t.coverage).into(),
         })
     }
     /// What one pixel shows: its centre, or the mean of its covered part.

@@ -100,8 +100,8 @@ pub fn formed(profiles: &[ShadedDrawing], outline: &Outline) -> Option<Form> {
     let normals = Plane::from_fn(inside.size(), |x, y| if inside.at(x, y) { lifted(bar.at(x, y)) } else { Vec3::Z });
     let flat = Form {
         corner: outline.corner(),
-        height: Plane::filled(inside.size(), 0.0),
-        normals: normals.clone(),
+        height: Plane::filled(inside.size(), 0.0).into(),
+        normals: normals.clone().into(),
         coverage: outline.coverage().clone(),
     };
     let form = with_normals(&flat, outline, normals);

@@ -261,9 +261,9 @@ mod tests {
         let size = Size::new(120, 90);
         Form {
             corner: (10, 20),
-            height: Plane::from_fn(size, height),
-            normals: Plane::filled(size, Vec3::Z),
-            coverage: Plane::filled(size, 255),
+            height: Plane::from_fn(size, height).into(),
+            normals: Plane::filled(size, Vec3::Z).into(),
+            coverage: Plane::filled(size, 255).into(),
         }
     }
     fn stroke(tool: SculptTool, strength: f32, samples: &[(f32, f32)]) -> SculptStroke {

@@ -275,7 +275,7 @@ fn raised_to(
     };
     let shift = mean(&form.height) - mean(&risen);
     let height = risen.updated(|x, y, z| if inside.at(x, y) { z + shift } else { form.height.at(x, y) });
-    Form { height, normals, corner: form.corner, coverage: form.coverage.clone() }
+    Form { height: height.into(), normals: normals.into(), corner: form.corner, coverage: form.coverage.clone() }
 }
 
 #[cfg(test)]

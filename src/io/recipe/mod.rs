@@ -20,6 +20,7 @@
 //! | `selections` | selections |
 //! | `guides` | guides and assistants |
 //! | `pictures` | the files that layers name, each decoded once |
+//! | `version` | which version a document needs |
 //! | `value` | the trait of values that replays write as recipes do |
 
 mod brush;
@@ -42,6 +43,7 @@ pub mod surface;
 mod tips;
 pub mod transforms;
 pub mod value;
+mod version;
 
 pub use presets::{
     BrushPreset, PresetGroup, load_preset, preset, preset_brush, preset_names, presets, read_brush, write_preset,
@@ -53,42 +55,19 @@ pub use strokes::write_stroke;
 
 use super::json::{Fields, JsonNode, JsonObject, Printer};
 use super::{Budget, Files, RecipeFolder, files, maps};
-use crate::document::{Content, Document, Guides, Layer, LayerLabel, SelectionList, SurfaceSource};
+use crate::document::{Document, Guides, SelectionList, SurfaceSource};
 use crate::math::Size;
-use crate::paint::grain::GrainSpace;
-use crate::paint::{Measure, Scene, Selection};
+use crate::paint::{Scene, Selection};
 use crate::raster::Asset;
-use crate::surface::{Operator, Surface, SurfaceError};
+use crate::surface::{Surface, SurfaceError};
 use crate::{Error, Result};
 use pictures::PictureCache;
 pub use pictures::TileGrids;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashMap};
 use std::{path::Path, sync::Arc};
-
-/// The newest schema this program reads. A document that needs nothing newer is written as the first.
-pub const VERSION: i64 = 2;
-
-/// Whether a layer is on the unwrapped surface, or sees itself, which the first version does not know.
-fn unwraps(document: &Document) -> bool {
-    let is_print = |operator: Operator| matches!(operator, Operator::Surface { .. });
-    let is_new = |layer: &Layer| match &layer.content {
-        Content::Image(live) => {
-            let bend = &live.params().bend;
-            is_print(bend.operator) || !bend.pieces.is_empty()
-        }
-        Content::Gradient(live) => is_print(live.params().operator) || !live.params().pieces.is_empty(),
-        Content::Strokes(live) => live.params().strokes.iter().any(|stroke| {
-            let (brush, grain) = (stroke.brush(), stroke.brush().grain.as_ref());
-            is_print(stroke.operator())
-                || [brush.spacing_on, brush.stabilizer_on].contains(&Measure::Surface)
-                || grain.is_some_and(|grain| grain.lies == GrainSpace::Unwrapped)
-        }),
-        Content::Shading(live) => live.params().bounces > 0,
-        _ => false,
-    };
-    document.walk().iter().any(|(_, layer)| is_new(layer))
-}
+pub use version::VERSION;
+use version::{needs_second_version, unwraps};
 
 /// The source of a document.
 #[derive(Clone, Copy)]
@@ -191,7 +170,10 @@ fn read_parts(value: &Value, source: RecipeSource, tiles: TileGrids) -> Result<(
         _ if parts.is_empty() => bare,
         // Another object takes the place of the document's own, parts and all.
         Some(_) => bare.off_parts(parts),
-        None => bare.with_parts(parts).with_selections_found(),
+        None => {
+            source.budget.room_for_shape(source.file, &bare, &parts, reader.pictures.used_bytes())?;
+            bare.with_parts(parts).with_selections_found()
+        }
     };
     document.active_selection = document.active_selection.filter(|found| !found.is_empty());
     let of_parts = document.note_of_lost(None).into_iter().chain(document.note_of_astray());
@@ -316,16 +298,6 @@ pub fn print(document: &Document) -> String {
     layers::print(&document.layers, document.size, &list, &mut out);
     out.close_object();
     out.done()
-}
-
-/// Whether the first version has no words for something in a document.
-fn needs_second_version(document: &Document) -> bool {
-    let has_matrix = document.surface_source.as_ref().is_some_and(|source| source.matrix.is_some());
-    let is_new = |layer: &Layer| {
-        let is_carried = layer.on.is_some() || layer.content.has_homes();
-        is_carried || layer.transform.is_some() || layer.liquify.is_some() || layer.label != LayerLabel::None
-    };
-    has_matrix || !document.parts.is_empty() || document.walk().iter().any(|(_, layer)| is_new(layer))
 }
 
 /// All but the layers.

@@ -91,6 +91,10 @@ impl PictureCache {
         self.details.push(CachedDetail { file, convention, blur_px, map: map.clone() });
         Ok(map)
     }
+    /// Bytes that the pictures read so far take.
+    pub fn used_bytes(&self) -> u64 {
+        self.used_bytes
+    }
     /// Counts the pixels of a document: many pictures, each within its own limit, could fill the memory together.
     pub(super) fn spend(&mut self, source: RecipeSource, size: Size, bytes: usize) -> Result<()> {
         self.hold(source, bytes)?;

@@ -68,7 +68,10 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, window: Option<OpenWin
             return ExitCode::from(u8::try_from(refusal.exit_code()).unwrap_or(2));
         }
     };
-    crate::memory::set_kept_ceiling(crate::io::machine::kept_bytes());
+    crate::memory::DABS.set_ceiling(crate::io::machine::kept_bytes());
+    // A document that is read once is made once.
+    let is_edited = matches!(parsed.command, Some(CliCommand::Open(_) | CliCommand::Replay(_)));
+    crate::memory::FORMS.set_ceiling(if is_edited { crate::io::machine::whole_bytes() / 8 } else { 0 });
     let done = crash::caught(|| force::naming_the_flag(dispatched(parsed.command, window)));
     match done {
         Ok(()) => ExitCode::SUCCESS,

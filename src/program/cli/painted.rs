@@ -25,6 +25,8 @@ pub fn scaled(file: &Path, factor: f32, limits: &LimitArgs, document: Document) 
     limits.budget().size(file, size.width.into(), size.height.into())?;
     // A surface is made again from normals, depth and coverage; layers are copied.
     let a_pixel = if document.surface.is_some() { 40 } else { 8 };
-    limits.budget().room(file, &format!("a canvas of {size} pixels"), size.area() as u64 * a_pixel)?;
+    let shape = document.shape_bytes(&document.parts.list) as f64 * f64::from(factor * factor);
+    let bytes = (size.area() as u64 * a_pixel).max(shape as u64);
+    limits.budget().room(file, &format!("a canvas of {size} pixels"), bytes)?;
     document.scaled(factor).map_err(|error| Error::invalid(file, "--scale", error))
 }

@@ -119,9 +119,10 @@ fn shaped(args: &ShapeArgs) -> Result<(Document, Option<String>)> {
         rim_deg: args.rim.unwrap_or(args.preset.rim_deg),
     };
     let (size, drawing) = tiles(&args.drawing, &budget)?;
-    // Planes of the equation and its coarser grids, the form, and the surface.
-    const BYTES_A_PIXEL: u64 = 160;
+    // Flats are found through so much, and no surface takes less.
+    const BYTES_A_PIXEL: u64 = 64;
     budget.room(&args.drawing, &format!("the shape of {size} pixels"), size.area() as u64 * BYTES_A_PIXEL)?;
+    let held = drawing.bytes() as u64;
     let (parts, layers) = match &args.flats {
         None => {
             let figure = figure(&args.drawing, drawing, size)?;
@@ -148,7 +149,9 @@ fn shaped(args: &ShapeArgs) -> Result<(Document, Option<String>)> {
     };
     let document = Document { layers, ..Document::empty(size) };
     let note = parts.note();
-    Ok((document.with_parts(parts.parts.into_iter().map(Arc::new).collect()), note))
+    let list: Vec<Arc<Part>> = parts.parts.into_iter().map(Arc::new).collect();
+    budget.room_for_shape(&args.drawing, &document, &list, held)?;
+    Ok((document.with_parts(list), note))
 }
 
 fn layer(name: &str, tiles: TileGrid) -> Arc<Layer> {

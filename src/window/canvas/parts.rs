@@ -2,13 +2,12 @@
 //! the sculpting tool. Floor 7. Not here: what a drag of them does (`tools::shape`).
 
 use crate::document::Part;
+use crate::document::parts::FormArea;
 use crate::document::parts::forms::nearest_at;
 use crate::math::{Affine2, Vec2, Vec3, vec2};
 use crate::part_pictures::PartPictures;
-use crate::raster::CoverageGrid;
 use crate::raster::coverage::contour::{self, Run};
 use crate::session::Session;
-use crate::shape::Form;
 use crate::theme::ACCENT;
 use crate::tools::ToolKind;
 use crate::tools::shape::part::PartFrame;
@@ -36,18 +35,18 @@ pub struct PartMarks {
 /// The outline of a form, found once.
 #[derive(Default)]
 struct PartOutline {
-    of: Option<(Arc<Form>, u32)>,
+    of: Option<(Arc<FormArea>, u32)>,
     runs: Vec<Run>,
 }
 
 impl PartOutline {
     /// `level`: blocks of 2^level pixels a side are one.
-    fn runs(&mut self, form: &Arc<Form>, level: u32) -> &[Run] {
-        let is_known = self.of.as_ref().is_some_and(|(known, at)| Arc::ptr_eq(known, form) && *at == level);
+    fn runs(&mut self, area: &Arc<FormArea>, level: u32) -> &[Run] {
+        let is_known = self.of.as_ref().is_some_and(|(known, at)| Arc::ptr_eq(known, area) && *at == level);
         if !is_known {
-            let grid = CoverageGrid::from_plane(&form.coverage, form.corner.0, form.corner.1);
+            let grid = area.coverage();
             self.runs = contour::tiles(&grid).flat_map(|at| contour::runs(&grid, at, level)).collect();
-            self.of = Some((form.clone(), level));
+            self.of = Some((area.clone(), level));
         }
         &self.runs
     }
@@ -64,7 +63,7 @@ impl PartMarks {
         tool: ToolKind,
     ) {
         let (Some(document), true) = (session.shown(), tool.shapes()) else { return };
-        let forms = self.known.forms(document).to_vec();
+        let areas = self.known.areas(document).to_vec();
         let to_screen = |p: Vec2| {
             let p = screen_from_canvas.transform_point2(p);
             pos2(p.x, p.y)
@@ -73,25 +72,25 @@ impl PartMarks {
         let level = (1.0 / scale).log2().floor().max(0.0) as u32;
         let chosen =
             session.active().and_then(|tab| tab.part.as_deref()).map(|id| on_form(document.parts.part(id), id));
-        let form_of = |id: &str| forms.iter().find(|(part, _)| part.id == id);
-        let at = under.filter(|_| !session.is_drawing()).and_then(|at| nearest_at(&forms, at));
-        if let Some((_, form)) = at.as_ref().filter(|part| chosen != Some(&*part.id)).and_then(|part| form_of(&part.id))
+        let area_of = |id: &str| areas.iter().find(|(part, _)| part.id == id);
+        let at = under.filter(|_| !session.is_drawing()).and_then(|at| nearest_at(&areas, at));
+        if let Some((_, area)) = at.as_ref().filter(|part| chosen != Some(&*part.id)).and_then(|part| area_of(&part.id))
         {
             outline(
                 painter,
-                self.under.runs(form, level),
+                self.under.runs(area, level),
                 &to_screen,
                 Stroke::new(1.0, Color32::from_white_alpha(150)),
             );
         }
-        if let Some((part, form)) = chosen.and_then(form_of) {
+        if let Some((part, area)) = chosen.and_then(area_of) {
             let look = Stroke::new(1.4, LIGHT);
             // While it is dragged, its last form moves with it.
             let map = self.known.moved(&part.id);
             let moved = |p: Vec2| to_screen(map.transform_point2(p));
-            outline(painter, self.chosen.runs(form, level), &moved, look);
+            outline(painter, self.chosen.runs(area, level), &moved, look);
             if tool == ToolKind::Shape {
-                let frame = PartFrame::of(part, form, 1.0 / scale).through(map);
+                let frame = PartFrame::of(part, area, 1.0 / scale).through(map);
                 handles(painter, part, &frame, &to_screen);
                 let told = under.and_then(|at| Some((at, frame.handle_at(at)?.told(part)?)));
                 if let Some((at, text)) = told {

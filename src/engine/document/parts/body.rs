@@ -135,8 +135,8 @@ pub fn cut_to(form: &Form, outline: &Outline) -> Form {
     let size = outline.size();
     Form {
         corner: outline.corner(),
-        height: Plane::from_fn(size, |x, y| form.height.get(at(x, y).0, at(x, y).1).unwrap_or(0.0)),
-        normals: Plane::from_fn(size, |x, y| form.normals.get(at(x, y).0, at(x, y).1).unwrap_or(Vec3::Z)),
+        height: Plane::from_fn(size, |x, y| form.height.get(at(x, y).0, at(x, y).1).unwrap_or(0.0)).into(),
+        normals: Plane::from_fn(size, |x, y| form.normals.get(at(x, y).0, at(x, y).1).unwrap_or(Vec3::Z)).into(),
         coverage: outline.coverage().clone(),
     }
 }
@@ -146,9 +146,9 @@ pub fn of_surface(surface: &Surface) -> Form {
     let range = surface.depth_range_px();
     Form {
         corner: (0, 0),
-        height: surface.depth_plane().map(|z| (1.0 - z) * range),
-        normals: Plane::from_fn(surface.size(), |x, y| surface.normal(x, y)),
-        coverage: surface.coverage_plane().clone(),
+        height: surface.depth_plane().map(|z| (1.0 - z) * range).into(),
+        normals: Plane::from_fn(surface.size(), |x, y| surface.normal(x, y)).into(),
+        coverage: surface.coverage_plane().clone().into(),
     }
 }
 

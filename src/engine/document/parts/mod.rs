@@ -1,11 +1,12 @@
 //! Parts: the shape of a drawing as a list of values, the farthest first, from which the document's surface follows.
 //! Floor 4. Not here: what each kind of part computes (`shape`).
 //!
-//! `part` is one of them and `edit` changes the list. `derive` makes the surface and keeps what did not change; it uses
-//! `standing` for outlines in their places, `body` for one form, `upon` for what is on a form, and `unchanged` to
-//! compare versions. `outlines` finds outlines, `drawing` says what can be made of a layer, and `flats` makes parts of
-//! one in flat colours, for which `order` finds who lies in front; `cut` makes a drawing go with its parts. `forms` has
-//! the forms that were made, `scale` changes the canvas, and `fit` holds parts to what files can hold.
+//! `part` is one of them and `edit` changes the list. `derive` makes the surface again where it changed; it uses
+//! `standing` for outlines in their places, `make` and `body` for one form, `upon` for what is on a form, `whole` for
+//! all together, `made` for what is kept, and `unchanged` to compare versions. `weight` says what memory that takes.
+//! `outlines` finds outlines, `drawing` says what can be made of a layer, and `flats` makes parts of one in flat
+//! colours, for which `order` finds who lies in front; `cut` makes a drawing go with its parts. `forms` has the forms
+//! that were made, `scale` changes the canvas, and `fit` holds parts to what files can hold.
 //!
 //! `shares` says what each pixel of flats is of: `picture` reads its areas and mixed pixels, `palette` finds its
 //! colours, `ink` takes lines out, and `complete` gives what is left to the areas beside it. `places` tells the areas
@@ -25,6 +26,8 @@ pub mod flats;
 pub mod forms;
 mod ink;
 mod known;
+mod made;
+mod make;
 mod near;
 mod order;
 mod outlines;
@@ -37,6 +40,8 @@ mod shares;
 mod standing;
 mod unchanged;
 mod upon;
+mod weight;
+mod whole;
 
 #[cfg(test)]
 mod tests;
@@ -47,7 +52,8 @@ use crate::math::{Affine2, Range, UNIT, Vec2, Vec3, vec2, vec3};
 use crate::raster::{Asset, Plane};
 use crate::shape::{Ball, Bevel, Combine, Detail, Lines, Primitive, SculptStroke, Touch};
 use crate::surface::Surface;
-use derive::PartCache;
+pub use made::FormArea;
+use made::PartCache;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 

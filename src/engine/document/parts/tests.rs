@@ -82,7 +82,7 @@ fn paint_that_changes_one_outline_leaves_the_forms_of_the_others() {
         let id = shaped.layers[0].id;
         shaped.with_layer(id, |layer| layer.content = drawn(more).content.clone()).unwrap().reshaped()
     };
-    let form = |document: &Document, id: &str| document.last_form(id).unwrap().1;
+    let form = |document: &Document, id: &str| document.last_area(id).unwrap().1;
     let before = ["a", "b"].map(|id| form(&shaped, id));
     // A spot too small for a part changes nothing at all.
     let spot = painted(&[(vec2(50.0, 60.0), 1.5, white)]);

@@ -140,7 +140,7 @@ impl PartAction {
                 let next = list::with_new(document, part);
                 // What lies on another shows there.
                 let shows = next.parts.part(&id).and_then(|part| part.on().map(str::to_owned)).unwrap_or(id.clone());
-                if !next.part_forms().iter().any(|(part, _)| part.id == shows) {
+                if !next.part_areas().iter().any(|(part, _)| part.id == shows) {
                     return Err(kind.why_empty());
                 }
                 ("Add part", next, Some(id))

@@ -3,10 +3,10 @@
 
 use super::map_about;
 use crate::document::Document;
-use crate::document::parts::{Inflation, Part, PartKind};
+use crate::document::parts::{FormArea, Inflation, Part, PartKind};
 use crate::math::range::held;
 use crate::math::{Affine2, Mat2, Vec2, vec2};
-use crate::shape::{Bevel, Form};
+use crate::shape::Bevel;
 use crate::tools::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext};
 use std::sync::Arc;
 
@@ -77,11 +77,11 @@ impl PartHandle {
 }
 
 impl PartFrame {
-    /// For a part by its form.
-    pub fn of(part: &Part, form: &Form, px_per_pt: f32) -> Self {
-        let rect = covered(form);
+    /// For a part by what its form covers.
+    pub fn of(part: &Part, area: &FormArea, px_per_pt: f32) -> Self {
+        let (low, high) = area.covered();
         let is_inflated = matches!(part.kind, PartKind::Inflate { .. });
-        Self { low: rect.0, high: rect.1, px_per_pt, has_puff: height_of(&part.kind).is_some(), is_inflated }
+        Self { low, high, px_per_pt, has_puff: height_of(&part.kind).is_some(), is_inflated }
     }
     /// The same, seen through a map of the canvas.
     pub fn through(self, map: Affine2) -> Self {
@@ -141,20 +141,6 @@ impl PartFrame {
     }
 }
 
-/// The corners of what a form covers.
-fn covered(form: &Form) -> (Vec2, Vec2) {
-    let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
-    for y in 0..form.coverage.height() {
-        let row = form.coverage.row(y);
-        let Some(first) = row.iter().position(|c| *c > 0) else { continue };
-        let last = row.iter().rposition(|c| *c > 0).unwrap_or(first);
-        low = low.min(vec2(first as f32, y as f32));
-        high = high.max(vec2(last as f32 + 1.0, y as f32 + 1.0));
-    }
-    let corner = vec2(form.corner.0 as f32, form.corner.1 as f32);
-    if low.is_finite() { (low + corner, high + corner) } else { (corner, corner) }
-}
-
 /// The number that is the height of a part, and how much of it a drag over half of the part's smaller side changes.
 fn height_of(kind: &PartKind) -> Option<(f32, f32)> {
     match kind {
@@ -178,19 +164,19 @@ fn with_height(kind: &PartKind, to: f32) -> PartKind {
 
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let document = context.document;
-    let forms = document.part_forms();
-    if forms.is_empty() {
+    let areas = document.part_areas();
+    if areas.is_empty() {
         let why = "There is no part here. Layer › Give it a shape… makes some, or the panel Shape adds one.";
         return (None, Outcome::Refused(why.into()));
     }
     let frame_of = |id: &str| {
-        let (part, form) = forms.iter().find(|(part, _)| part.id == id)?;
-        Some((part.clone(), PartFrame::of(part, form, context.px_per_pt)))
+        let (part, area) = areas.iter().find(|(part, _)| part.id == id)?;
+        Some((part.clone(), PartFrame::of(part, area, context.px_per_pt)))
     };
     let chosen = context.part.and_then(frame_of);
     let on_handle = chosen.and_then(|(part, frame)| Some((part, frame, frame.handle_at(pen.place())?)));
     let held = on_handle.or_else(|| {
-        let part = crate::document::parts::forms::nearest_at(&forms, pen.place())?;
+        let part = crate::document::parts::forms::nearest_at(&areas, pen.place())?;
         let (part, frame) = frame_of(&part.id)?;
         Some((part, frame, PartHandle::Body))
     });

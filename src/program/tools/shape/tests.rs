@@ -58,8 +58,8 @@ fn the_part_under_the_pen_is_chosen_and_moved_by_whole_pixels_with_its_surface()
 #[test]
 fn handles_puff_tilt_scale_and_turn_the_chosen_part() {
     let document = scene();
-    let forms = document.part_forms();
-    let frame = PartFrame::of(&forms[0].0, &forms[0].1, 1.0);
+    let areas = document.part_areas();
+    let frame = PartFrame::of(&areas[0].0, &areas[0].1, 1.0);
     assert!(frame.low.distance(vec2(60.0, 60.0)) < 2.0 && frame.high.distance(vec2(260.0, 260.0)) < 2.0);
     assert_eq!(frame.handle_at(frame.middle()), Some(PartHandle::Puff));
     let drag = |from: Vec2, by: Vec2| {
@@ -117,8 +117,7 @@ fn sculpting_raises_with_ctrl_lowers_with_shift_smooths_and_strokes_share_a_part
     let (label, raised) = committed(dragged(&document, ToolKind::Sculpt, "square", &way, NONE).1);
     assert_eq!(label, "Sculpt");
     let rise = |document: &Document| {
-        let forms = document.part_forms();
-        let form = &forms[0].1;
+        let form = document.form_of(&document.part_areas()[0].0.id).unwrap();
         form.height.get(160 - form.corner.0, 160 - form.corner.1).unwrap()
     };
     assert!(rise(&raised) > rise(&document) + 2.0, "{} from {}", rise(&raised), rise(&document));

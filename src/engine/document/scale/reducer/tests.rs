@@ -205,9 +205,9 @@ fn parts_that_a_hand_drags_are_shaped_small_and_those_at_rest_are_not_made_again
         [(30, 50), (60, 70), (140, 60), (160, 80)].map(|(x, y)| at(a, x, y).distance(at(b, x, y)))
     };
     assert!(apart(&small, 0.4).iter().all(|d| *d < 1e-3), "{:?}", apart(&small, 0.4));
-    let b = small.part_forms()[1].1.clone();
+    let b = small.part_areas()[1].1.clone();
     let next = reduced.of(&document.with_part_ahead(part("a", 100.0, 0.7))).unwrap();
-    assert!(apart(&next, 0.7).iter().all(|d| *d < 1e-3) && Arc::ptr_eq(&next.part_forms()[1].1, &b));
+    assert!(apart(&next, 0.7).iter().all(|d| *d < 1e-3) && Arc::ptr_eq(&next.part_areas()[1].1, &b));
     // At rest it is the same surface as if it had been made directly.
     let rested = dragged.reshaped();
     let at_once = document.with_part(part("a", 100.0, 0.4));
