@@ -9,7 +9,7 @@ use crate::raster::Plane;
 /// solution in the mean and 0.01° everywhere, since the error is rough and small.
 const GOAL: f64 = 1e-5;
 /// Beyond this many pixels the equation is solved at half the resolution: it would take too many seconds and gigabytes.
-const MOST_UNKNOWNS: usize = 1 << 24;
+pub const MOST_UNKNOWNS: usize = 1 << 24;
 
 /// u, px², over the planes of an outline: 0 outside, −∇²u = 4 inside (SHAPE: inflation).
 ///

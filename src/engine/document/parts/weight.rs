@@ -6,6 +6,7 @@ use super::{OutlineSource, Part, PartKind};
 use crate::document::{Content, Document};
 use crate::math::{Affine2, Rect, Size, Vec2, vec2};
 use crate::memory::FORMS;
+use crate::shape::inflate;
 use std::sync::Arc;
 
 /// Heights, normals, coverage and parts of all forms together, bytes a pixel of the canvas.
@@ -20,11 +21,16 @@ const OUTLINE_BYTES: u64 = 2;
 const FLATS_BYTES: u64 = 64;
 const SOUGHT_BYTES: u64 = 8;
 
+/// The equation of a pillow on its grids, and the vectors of its search.
+const PILLOW_BYTES: u64 = 90;
+/// A pillow that fills so many pixels is found at half their resolution, if nothing in front frees its rim.
+const HALVED_PX: u64 = inflate::MOST_UNKNOWNS as u64;
+const HALVED_BYTES: u64 = 50;
+
 /// What a kind of part is made through, bytes a pixel of its box.
 fn making_bytes(kind: &PartKind) -> u64 {
     match kind {
-        // The equation on its grids, and the vectors of its search.
-        PartKind::Inflate { inflation, .. } if inflation.profile <= 0.0 => 90,
+        PartKind::Inflate { inflation, .. } if inflation.profile <= 0.0 => PILLOW_BYTES,
         PartKind::Inflate { .. } => 130,
         PartKind::Bevel { .. } => 70,
         PartKind::Primitive(_) | PartKind::Lathe { .. } | PartKind::Sweep { .. } => 45,
@@ -70,11 +76,16 @@ impl Document {
         let canvas = self.size.area() as u64;
         let shown = || list.iter().filter(|part| part.visible && part.on().is_none());
         let (mut outlines, mut most, mut forms, mut flats) = (0u64, 0u64, 0u64, 0u64);
+        let nearest = shown().rfind(|part| part.outline().is_some()).map(|part| &part.id);
         for part in shown() {
             let px = self.box_px(part);
+            let making = match making_bytes(&part.kind) {
+                PILLOW_BYTES if px > HALVED_PX && nearest == Some(&part.id) => HALVED_BYTES,
+                bytes => bytes,
+            };
             let upon = list.iter().filter(|other| other.visible && other.on() == Some(part.id.as_str()));
             let upon = upon.map(|other| making_bytes(&other.kind) + 2 * FORM_BYTES).max().unwrap_or(0);
-            most = most.max(px * (FORM_BYTES + making_bytes(&part.kind).max(upon)));
+            most = most.max(px * (FORM_BYTES + making.max(upon)));
             forms = forms.saturating_add(px * 2 * FORM_BYTES);
             if let Some(source) = part.outline() {
                 outlines = outlines.saturating_add(px * OUTLINE_BYTES);
