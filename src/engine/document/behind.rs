@@ -135,7 +135,8 @@ impl<'c> Behind<'c> {
             row.set(x, spec::dissolved(row.pixel(x), [contour.x, contour.y]));
         }
     }
-    /// Mixes both populations of each contour pixel: c · own + (1 − c) · other (MATH 10).
+    /// Mixes both populations of each contour pixel: c · own + (1 − c) · other (MATH 10). Where one of them sees no
+    /// surface, the share is an opacity, wherever the pixel's centre lies.
     ///
     /// * `brightest`: the straight encoded colour above which light is clipped; 1 is white.
     pub fn mix_into(&self, other: &PlanarTile, own: &mut PlanarTile, brightest: f32) {
@@ -147,7 +148,7 @@ impl<'c> Behind<'c> {
             let to = row.pixel(x);
             if to != from {
                 let share = 1.0 - pixel.share;
-                let mixed = match pixel.sees_surface() {
+                let mixed = match pixel.is_between_parts() {
                     true => in_light(to, from, share, brightest),
                     false => mixed(to, from, share),
                 };
@@ -159,15 +160,13 @@ impl<'c> Behind<'c> {
 
 impl Behind<'_> {
     /// As [`Behind::mix_into`], but where one population alone sees a surface the pixel is wholly that one's.
-    ///
-    /// * `covered`: the pixel's own population sees a surface.
-    pub fn take_surface_into(&self, other: &PlanarTile, own: &mut PlanarTile, covered: impl Fn(i32, i32) -> bool) {
+    pub fn take_surface_into(&self, other: &PlanarTile, own: &mut PlanarTile) {
         let corner = self.at.rect();
         for (place, pixel) in self.places().filter(|(_, pixel)| pixel.sees_surface()) {
             let from = other.rows()[place / TILE].pixel(place % TILE);
             let (x, y) = ((pixel.x - corner.x0) as usize, (pixel.y - corner.y0) as usize);
             let row = &mut own.rows_mut()[y];
-            let taken = match covered(pixel.x, pixel.y) {
+            let taken = match pixel.own_sees_surface() {
                 true => in_light(row.pixel(x), from, 1.0 - pixel.share, 1.0),
                 false => from,
             };

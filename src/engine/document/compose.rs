@@ -150,10 +150,7 @@ impl Composer<'_> {
             let other = composed(Some(behind));
             match mask::clip(node) {
                 // The surface cuts what is shown, so that all of a rim's pixel is the surface's here.
-                Some(surface) => {
-                    let covered = |x, y| surface.coverage_plane().get(x, y).is_some_and(|c| c > 0);
-                    behind.take_surface_into(&other, &mut pixels, covered);
-                }
+                Some(_) => behind.take_surface_into(&other, &mut pixels),
                 None => behind.mix_into(&other, &mut pixels, 1.0),
             }
         }

@@ -74,7 +74,7 @@ pub fn flatten_layers(document: &Document, ids: &[LayerId], progress: &Progress)
 pub fn flatten_whole(document: &Document, ids: &[LayerId], progress: &Progress) -> Option<TileGrid> {
     let document = without_others(document, ids)?;
     let mut prepared = PreparedDocument::new(&document, progress)?;
-    prepared.whole_rims = document.surface.clone();
+    prepared.whole_rims = true;
     prepared.flatten_tiles(&TileGrid::default(), &prepared.all_tiles(), progress)
 }
 
@@ -151,12 +151,9 @@ impl PreparedDocument {
         if let Some(contours) = self.contours.as_ref().and_then(|contours| contours.on(at)) {
             let behind = Behind::new(at, contours);
             let other = composed(Some(behind));
-            match &self.whole_rims {
-                None => behind.mix_into(&other, &mut pixels, deep.map_or(1.0, DeepTiles::brightest)),
-                Some(surface) => {
-                    let covered = |x, y| surface.coverage_plane().get(x, y).is_some_and(|c| c > 0);
-                    behind.take_surface_into(&other, &mut pixels, covered);
-                }
+            match self.whole_rims {
+                false => behind.mix_into(&other, &mut pixels, deep.map_or(1.0, DeepTiles::brightest)),
+                true => behind.take_surface_into(&other, &mut pixels),
             }
         }
         pixels

@@ -8,7 +8,7 @@ use crate::math::Size;
 use crate::paint::Scene;
 use crate::raster::TileAt;
 use crate::shading::{RadianceScaling, radiance::BackdropStats};
-use crate::surface::{Contours, Curvature, Surface};
+use crate::surface::{Contours, Curvature};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -20,8 +20,8 @@ pub struct PreparedDocument {
     pub(super) stack: Vec<PreparedLayer>,
     /// The pixels that two populations see.
     pub(super) contours: Option<Arc<Contours>>,
-    /// The surface whose rim counts as wholly covered; none: every pixel is mixed from what it shows.
-    pub(super) whole_rims: Option<Arc<Surface>>,
+    /// The surface's rim counts as wholly covered; else every pixel is mixed from what it shows.
+    pub(super) whole_rims: bool,
     /// Measurements of the composite beneath each adjustment, in the order they apply.
     pub(super) beneath: Vec<BackdropStats>,
 }
@@ -62,7 +62,7 @@ impl PreparedDocument {
         let scope = Scope { beneath: Beneath::NOTHING, map: LayerMap::none(document.size) };
         let stack = builder.nodes(&document.layers, &mut document.scene(), scope);
         let contours = document.surface.as_ref().map(|surface| surface.contours().clone());
-        let mut prepared = Self { size: document.size, stack, contours, whole_rims: None, beneath: Vec::new() };
+        let mut prepared = Self { size: document.size, stack, contours, whole_rims: false, beneath: Vec::new() };
         for adjustment in builder.adjustments {
             // Each may depend on those beneath it, which are already measured.
             let beneath = prepared.measure(&adjustment, progress)?;

@@ -277,7 +277,15 @@ mod tests {
             for share in [0.5, 0.6, 0.75, 0.9, 0.97] {
                 let line = ContourLine::of_share(share, toward_near);
                 let other_at = line.turned().near_middle();
-                let pixel = ContourPixel { x: 0, y: 0, share, others: 0, other_at, own_turn: Vec2::ZERO };
+                let pixel = ContourPixel {
+                    x: 0,
+                    y: 0,
+                    share,
+                    own_sees_surface: true,
+                    others: 0,
+                    other_at,
+                    own_turn: Vec2::ZERO,
+                };
                 let found = pixel.line().unwrap();
                 let off =
                     (found.toward_near - line.toward_near).length() + (found.distance_px - line.distance_px).abs();

@@ -129,7 +129,8 @@ impl Examined {
         }
         if coverage < 255 {
             let (share, still) = (f32::from(coverage) / 255.0, Vec2::ZERO);
-            let contour = ContourPixel { x, y, share, others: 0, other_at: still, own_turn: still };
+            let contour =
+                ContourPixel { x, y, share, own_sees_surface: true, others: 0, other_at: still, own_turn: still };
             let own = window.pieces(1 << CENTER, 0).0 & !(1 << CENTER);
             let is_told = maps.valid.is_none_or(|valid| valid.at(x as usize, y as usize));
             return Self { contour: Some(contour), amended: if is_told { None } else { continued(&window, own) } };
@@ -223,7 +224,7 @@ fn contour_pixel(
     let own_at = other_at * (-(1.0 - share) / share.max(0.25));
     let continued = Continued::from(window, own & !(1 << CENTER));
     let own_turn = continued.map_or(Vec2::ZERO, |own| own.nbar(own_at) - own.nbar(Vec2::ZERO));
-    Some(ContourPixel { x, y, share, others, other_at, own_turn })
+    Some(ContourPixel { x, y, share, own_sees_surface: own != 0, others, other_at, own_turn })
 }
 
 /// How the middle pixel is shared; `None` where no single edge passes.

@@ -40,6 +40,8 @@ pub struct ContourPixel {
     /// The share that its own population sees, `[0, 1]`: the one whose readings the maps hold at the pixel, or no
     /// surface where they hold none.
     pub share: f32,
+    /// Its own population sees a surface.
+    own_sees_surface: bool,
     /// Which pixels of the window around it belong to the other population's piece of surface; none where it sees no
     /// surface.
     others: u64,
@@ -61,6 +63,14 @@ impl ContourPixel {
     /// The other population sees a surface.
     pub fn sees_surface(&self) -> bool {
         self.others != 0
+    }
+    /// Its own population sees a surface: the mask covers the pixel.
+    pub fn own_sees_surface(&self) -> bool {
+        self.own_sees_surface
+    }
+    /// Both populations see a surface.
+    pub fn is_between_parts(&self) -> bool {
+        self.own_sees_surface && self.sees_surface()
     }
 }
 

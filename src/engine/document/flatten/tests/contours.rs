@@ -182,3 +182,74 @@ fn contours_do_not_depend_on_the_number_of_threads() {
     };
     assert_eq!(bytes(1), bytes(2));
 }
+
+/// A disc that faces the viewer before nothing. `hard`: its mask is binary, else one of 64 samples a pixel.
+fn disc(hard: bool) -> Arc<Surface> {
+    let from_rim = |x: f32, y: f32| crate::math::vec2(x - 50.3, y - 34.6).length() - 27.4;
+    let part = |i: usize| (i as f32 + 0.5) / 8.0;
+    let coverage = Plane::from_fn(SIZE, |x, y| {
+        let covers = |i: &usize| from_rim(x as f32 + part(i % 8), y as f32 + part(i / 8)) < 0.0;
+        match hard {
+            true => 255 * u8::from(from_rim(x as f32 + 0.5, y as f32 + 0.5) < 0.0),
+            false => (255 * (0..64).filter(covers).count() / 64) as u8,
+        }
+    });
+    let (normals, depth) = (Plane::filled(SIZE, Vec3::Z), Plane::filled(SIZE, 0.5));
+    Arc::new(Surface::new(Maps { normals, depth, coverage }).unwrap())
+}
+/// Every rim pixel of a disc: how much of it is covered, and what it shows.
+fn rim(surface: &Arc<Surface>, pixels: impl Fn(i32, i32) -> [f32; 4]) -> Vec<(f32, [f32; 4])> {
+    let covered = |p: &crate::surface::ContourPixel| if p.own_sees_surface() { p.share } else { 1.0 - p.share };
+    let mut rim: Vec<_> = surface.contours().pixels().iter().map(|p| (covered(p), pixels(p.x, p.y))).collect();
+    rim.sort_by(|a, b| a.0.total_cmp(&b.0));
+    rim
+}
+#[test]
+fn a_rim_shows_its_coverage_as_an_opacity_wherever_the_pixels_centres_lie() {
+    let on_ground = |layers: Vec<Layer>| std::iter::once(unclipped("#203038")).chain(layers).collect();
+    let white = || fill("#e0d0c0");
+    let clipped = |l: Layer| with(l, |l| l.clip_below = true);
+    let half = |l: Layer| with(l, |l| l.opacity = 0.5);
+    let mut stacks: Vec<(&str, Vec<Layer>)> = vec![
+        ("no ground", vec![white()]),
+        ("fill", on_ground(vec![white()])),
+        ("half", on_ground(vec![half(white()), half(white())])),
+        ("group", on_ground(vec![group(vec![white(), group(vec![white()], true)], false)])),
+        ("passing group", on_ground(vec![half(group(vec![white(), half(fill("#ff0000"))], true))])),
+        ("clipping", on_ground(vec![fill("#808080"), clipped(white()), clipped(group(vec![white()], false))])),
+        ("clipped to the ground", on_ground(vec![clipped(white())])),
+    ];
+    for (mode, name) in BlendMode::ALL.into_iter().filter(|(mode, _)| *mode != BlendMode::Dissolve) {
+        stacks.push((name, on_ground(vec![with(white(), |l| l.blend = mode)])));
+    }
+    for (name, layers) in stacks {
+        for hard in [true, false] {
+            let surface = disc(hard);
+            let document = Document { surface: Some(surface.clone()), ..document(layers.clone()) };
+            let bytes = flatten(&document, &Progress::default()).unwrap();
+            let deep = flatten_deep(&document, Highlights::Clipped, &Progress::default()).unwrap();
+            let bytes = |x: i32, y: i32| bytes.pixel(x, y).map(|v| f32::from(v) / 255.0);
+            let deep = |x: i32, y: i32| deep[y as usize * SIZE.width as usize + x as usize];
+            for (depth, rim) in [("8", rim(&surface, bytes)), ("16", rim(&surface, deep))] {
+                let (bare, whole) =
+                    if depth == "8" { (bytes(1, 1), bytes(50, 34)) } else { (deep(1, 1), deep(50, 34)) };
+                let what = format!("{name}, {depth} bits, hard: {hard}");
+                assert!(rim.len() > 100, "{what}: {}", rim.len());
+                for (covered, shown) in &rim {
+                    for i in 0..4 {
+                        let expected = bare[i] + covered * (whole[i] - bare[i]);
+                        let off = (shown[i] - expected).abs();
+                        assert!(off < 1.1 / 255.0, "{what}: {covered} covered shows {shown:?}, not {expected}");
+                    }
+                }
+                // Less is never brighter.
+                for pair in rim.windows(2) {
+                    for i in 0..4 {
+                        let grows = (pair[1].1[i] - pair[0].1[i]) * (whole[i] - bare[i]).signum();
+                        assert!(whole[i] == bare[i] || grows > -1e-6, "{what}: {pair:?}");
+                    }
+                }
+            }
+        }
+    }
+}
