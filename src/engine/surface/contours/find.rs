@@ -29,6 +29,8 @@ pub struct AmendedReading {
 const WHOLLY: f32 = 0.998;
 /// Partly covered pixels for each pixel of a hard rim, from which on coverage gives the outer contours.
 const SOFT_SHARE: f32 = 0.25;
+/// Shades below this leave the pixel's centre uncovered, as a rule.
+const HARDLY_COVERED: u8 = 100;
 /// A normal is mixed of both sides' if it is this far from its own side's toward the other's, and at most this far off
 /// the line between them, as ratios of the distance between both; and if that distance is large enough.
 const MIXED_FROM: f32 = 0.2;
@@ -37,7 +39,7 @@ const MIXED_LEAST: f32 = 0.25;
 
 /// Finds the contours of a surface. The same whatever the number of threads: tiles are found one by one.
 pub fn find(maps: &ContourMaps) -> Found {
-    let is_soft = is_soft(maps.coverage);
+    let mask = MaskReading { is_soft: is_soft(maps.coverage), holds_means: holds_means(maps) };
     let columns = maps.size.width.div_ceil(TILE as u32) as usize;
     let rows = maps.size.height.div_ceil(TILE as u32) as usize;
     let of_row = |row: usize| {
@@ -45,7 +47,7 @@ pub fn find(maps: &ContourMaps) -> Found {
         let mut amended = Vec::new();
         for y in row * TILE..((row + 1) * TILE).min(maps.size.height as usize) {
             for x in candidates(maps, y) {
-                let examined = Examined::at(maps, is_soft, x as i32, y as i32);
+                let examined = Examined::at(maps, mask, x as i32, y as i32);
                 tiles[x / TILE].extend(examined.contour);
                 amended.extend(examined.amended.map(|reading| (y * maps.size.width as usize + x, reading)));
             }
@@ -58,6 +60,26 @@ pub fn find(maps: &ContourMaps) -> Found {
         contours: Contours::of_tiles(maps.size, tiles.into_iter().flatten().collect()),
         amended: amended.into_iter().flatten().collect(),
     }
+}
+
+/// How the mask and what lies under it are to be read.
+#[derive(Clone, Copy)]
+struct MaskReading {
+    /// It gives the outer contours itself.
+    is_soft: bool,
+    /// Partly covered pixels hold means of what is covered, else readings of their centres, if these are covered.
+    holds_means: bool,
+}
+
+/// Whether most pixels that are hardly covered hold values, although their centres are not covered.
+fn holds_means(maps: &ContourMaps) -> bool {
+    let Some(valid) = maps.valid else { return true };
+    let counts = (0..maps.coverage.height()).into_par_iter().map(|y| {
+        let hardly = maps.coverage.row(y).iter().zip(valid.row(y)).filter(|(c, _)| (1..HARDLY_COVERED).contains(*c));
+        hardly.fold((0, 0), |(told, all), (_, &is_told)| (told + usize::from(is_told), all + 1))
+    });
+    let (told, all) = counts.reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
+    2 * told >= all
 }
 
 /// Whether the mask is one of shades: then it gives the outer contours itself.
@@ -121,19 +143,14 @@ impl Shared {
 }
 
 impl Examined {
-    fn at(maps: &ContourMaps, is_soft: bool, x: i32, y: i32) -> Self {
+    fn at(maps: &ContourMaps, mask: MaskReading, x: i32, y: i32) -> Self {
         let coverage = maps.coverage.at(x as usize, y as usize);
         let window = PixelWindow::around(maps, x, y);
         if coverage == 0 {
-            return if is_soft { Self::default() } else { Self::outside(&window, (x, y)) };
+            return if mask.is_soft { Self::default() } else { Self::outside(&window, (x, y)) };
         }
         if coverage < 255 {
-            let (share, still) = (f32::from(coverage) / 255.0, Vec2::ZERO);
-            let contour =
-                ContourPixel { x, y, share, own_sees_surface: true, others: 0, other_at: still, own_turn: still };
-            let own = window.pieces(1 << CENTER, 0).0 & !(1 << CENTER);
-            let is_told = maps.valid.is_none_or(|valid| valid.at(x as usize, y as usize));
-            return Self { contour: Some(contour), amended: if is_told { None } else { continued(&window, own) } };
+            return Self::shaded(maps, mask, &window, (x, y));
         }
         let linked = maps.links.at(x as usize, y as usize);
         if linked == 0
@@ -141,9 +158,30 @@ impl Examined {
         {
             return between;
         }
-        let Some(across) = across(&window, linked, is_soft) else { return Self::default() };
+        let Some(across) = across(&window, linked, mask.is_soft) else { return Self::default() };
         let contour = contour_pixel(&window, shared(&window, across), (x, y), (across.own, across.other));
         Self { contour, amended: unmixed(&window, across) }
+    }
+    /// A pixel that the mask says to be covered in part: its own population sees the surface in the middle of that part.
+    fn shaded(maps: &ContourMaps, mask: MaskReading, window: &PixelWindow, (x, y): (i32, i32)) -> Self {
+        let at = (x as usize, y as usize);
+        let share = f32::from(maps.coverage.at(at.0, at.1)) / 255.0;
+        let piece = window.piece_of_center() & !(1 << CENTER);
+        // What other partly covered pixels hold is as doubtful; a pixel that continues no other may hold nothing's depth.
+        let trusted = [piece & window.whole, window.whole, piece].into_iter().find(|&members| members != 0);
+        let continued = trusted.and_then(|members| Continued::from(window, members));
+        let line = ContourLine::of_shades(maps.coverage, (x, y));
+        let [own_at, other_at] =
+            line.map_or([Vec2::ZERO; 2], |line| [line, line.turned()].map(ContourLine::near_middle));
+        let told = maps.valid.is_none_or(|valid| valid.at(at.0, at.1)).then(|| window.nbar(CENTER));
+        // Files hold a normal toward the viewer where there is no surface.
+        let is_mixed = |own: &Continued| told.is_none_or(|told| is_between(told, own.nbar(own_at), Vec2::ZERO));
+        let amended = continued.filter(is_mixed).map(|own| own.reading(Vec2::ZERO));
+        let is_of_middle = mask.holds_means && amended.is_none();
+        let turn = |own: Continued| own.nbar(own_at) - own.nbar(Vec2::ZERO);
+        let own_turn = continued.filter(|_| !is_of_middle).map_or(Vec2::ZERO, turn);
+        let contour = ContourPixel { x, y, share, own_sees_surface: true, others: 0, other_at, own_turn };
+        Self { contour: Some(contour), amended }
     }
     /// A pixel without surface next to one.
     fn outside(window: &PixelWindow, (x, y): (i32, i32)) -> Self {
@@ -248,23 +286,32 @@ fn unmixed(window: &PixelWindow, Across { own, other, is_crease, .. }: Across) -
         return None;
     }
     let (mine, theirs) = (Continued::from(window, rest)?, Continued::from(window, other)?);
-    let normal = |nbar: Vec2| nbar.extend(nz_of(nbar));
-    let (a, b, n) = (normal(mine.nbar(Vec2::ZERO)), normal(theirs.nbar(Vec2::ZERO)), normal(window.nbar(CENTER)));
-    let way = b - a;
+    let is_mixed = is_between(window.nbar(CENTER), mine.nbar(Vec2::ZERO), theirs.nbar(Vec2::ZERO));
+    is_mixed.then(|| mine.reading(Vec2::ZERO))
+}
+
+/// A normal is mixed of two others, from their n̄: of its own side's and the other side's.
+fn is_between(nbar: Vec2, own: Vec2, other: Vec2) -> bool {
+    let [n, own, other] = [nbar, own, other].map(|nbar| nbar.extend(nz_of(nbar)));
+    let way = other - own;
     let squared = way.length_squared();
     if squared < MIXED_LEAST * MIXED_LEAST {
-        return None;
+        return false;
     }
-    let along = (n - a).dot(way) / squared;
-    let beside = (n - a - along * way).length();
-    let is_mixed = along > MIXED_FROM && beside < MIXED_BESIDE * squared.sqrt();
-    is_mixed.then(|| continued(window, rest)).flatten()
+    let along = (n - own).dot(way) / squared;
+    let beside = (n - own - along * way).length();
+    along > MIXED_FROM && beside < MIXED_BESIDE * squared.sqrt()
+}
+
+impl Continued {
+    fn reading(&self, from_center: Vec2) -> AmendedReading {
+        let nbar = self.nbar(from_center);
+        AmendedReading { nbar, nz: nz_of(nbar), depth: self.depth(from_center) }
+    }
 }
 
 fn continued(window: &PixelWindow, members: u64) -> Option<AmendedReading> {
-    let continued = Continued::from(window, members)?;
-    let nbar = continued.nbar(Vec2::ZERO);
-    Some(AmendedReading { nbar, nz: nz_of(nbar), depth: continued.depth(Vec2::ZERO) })
+    Continued::from(window, members).map(|continued| continued.reading(Vec2::ZERO))
 }
 
 const _: () = assert!(ALL >> CENTER & 1 == 1);

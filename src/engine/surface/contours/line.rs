@@ -57,14 +57,17 @@ impl ContourLine {
     pub fn turned(self) -> Self {
         Self { distance_px: -self.distance_px, toward_near: -self.toward_near }
     }
+    /// From the line to a point, px; positive on the nearer side. `from_center`: px.
+    pub fn height(self, from_center: Vec2) -> f32 {
+        self.distance_px + self.toward_near.dot(from_center)
+    }
     /// The centroid of the unit pixel's area on the nearer side, from the pixel's centre, px; the centre where there is
     /// no such area.
     pub fn near_middle(self) -> Vec2 {
-        let height = |p: Vec2| self.distance_px + self.toward_near.dot(p);
         let corners = [vec2(-0.5, -0.5), vec2(0.5, -0.5), vec2(0.5, 0.5), vec2(-0.5, 0.5)];
         let mut outline: Vec<Vec2> = Vec::with_capacity(5);
         for (a, b) in std::iter::zip(corners, [corners[1], corners[2], corners[3], corners[0]]) {
-            let (from, to) = (height(a), height(b));
+            let (from, to) = (self.height(a), self.height(b));
             if from >= 0.0 {
                 outline.push(a);
             }
@@ -157,14 +160,13 @@ impl ContourLine {
     /// * `place`: from the pixel's centre, px.
     /// * `bend`: the circle's curvature, per px; positive where the nearer side is inside.
     pub fn distance_to(self, place: Vec2, bend: f32) -> f32 {
-        let (across, along) = (self.distance_px + self.toward_near.dot(place), self.along(place));
+        let (across, along) = (self.height(place), self.along(place));
         let from_middle = vec2(1.0 - bend * across, bend * along).length();
         (2.0 * across - bend * (across * across + along * along)) / (1.0 + from_middle)
     }
     /// The place with that distance from the line itself: moved across it.
     pub fn straightened(self, place: Vec2, bend: f32) -> Vec2 {
-        let across = self.distance_px + self.toward_near.dot(place);
-        place + (self.distance_to(place, bend) - across) * self.toward_near
+        place + (self.distance_to(place, bend) - self.height(place)) * self.toward_near
     }
     /// The same line, moved so far that the middle pixel's centre lies on the side that it was seen on.
     pub fn with_center(self, is_near: bool) -> Self {

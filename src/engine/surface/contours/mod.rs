@@ -12,6 +12,7 @@ mod maps;
 mod moved;
 mod plane;
 mod rim;
+mod shades;
 mod sheet;
 mod window;
 

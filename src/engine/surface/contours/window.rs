@@ -54,6 +54,8 @@ pub struct PixelWindow<'m> {
     /// On the canvas, and of those covered by any surface.
     pub inside: u64,
     pub covered: u64,
+    /// Of those, the ones that are covered wholly.
+    pub whole: u64,
     /// Continued by the pixel at the right, or below.
     rightward: u64,
     downward: u64,
@@ -61,7 +63,7 @@ pub struct PixelWindow<'m> {
 
 impl<'m> PixelWindow<'m> {
     pub fn around(maps: &'m ContourMaps, x: i32, y: i32) -> Self {
-        let mut window = Self { maps, x, y, inside: 0, covered: 0, rightward: 0, downward: 0 };
+        let mut window = Self { maps, x, y, inside: 0, covered: 0, whole: 0, rightward: 0, downward: 0 };
         let size = maps.size;
         for dy in -REACH..=REACH {
             let row = y + dy;
@@ -73,8 +75,12 @@ impl<'m> PixelWindow<'m> {
                 let bit = 1u64 << ((dy + REACH) * SIDE + dx + REACH);
                 let linked = links[(x + dx) as usize];
                 window.inside |= bit;
-                if coverage[(x + dx) as usize] > 0 {
+                let shade = coverage[(x + dx) as usize];
+                if shade > 0 {
                     window.covered |= bit;
+                }
+                if shade == u8::MAX {
+                    window.whole |= bit;
                 }
                 if linked & links::RIGHT != 0 && dx < REACH {
                     window.rightward |= bit;
