@@ -2,7 +2,7 @@
 //! Floor 2.
 
 use super::continued::{Continued, nz_of};
-use super::line::ContourLine;
+use super::line::{ContourLine, EXPLAINED_PX};
 use super::maps::ContourMaps;
 use super::window::{ALL, BESIDE, Beside, CENTER, PixelWindow};
 use super::{ContourPixel, Contours};
@@ -36,6 +36,8 @@ const HARDLY_COVERED: u8 = 100;
 const MIXED_FROM: f32 = 0.2;
 const MIXED_BESIDE: f32 = 0.25;
 const MIXED_LEAST: f32 = 0.25;
+/// How far the line of a crease may lie on the wrong side of a pixel's centre, px.
+const CREASE_TOLERANCE_PX: f32 = 0.1;
 
 /// Finds the contours of a surface. The same whatever the number of threads: tiles are found one by one.
 pub fn find(maps: &ContourMaps) -> Found {
@@ -162,12 +164,12 @@ impl Examined {
         let contour = contour_pixel(&window, shared(&window, across), (x, y), (across.own, across.other));
         Self { contour, amended: unmixed(&window, across) }
     }
-    /// A pixel that the mask says to be covered in part: its own population sees the surface in the middle of that part.
+    /// A pixel that the mask covers in part: its own population sees the surface in the middle of that part.
     fn shaded(maps: &ContourMaps, mask: MaskReading, window: &PixelWindow, (x, y): (i32, i32)) -> Self {
         let at = (x as usize, y as usize);
         let share = f32::from(maps.coverage.at(at.0, at.1)) / 255.0;
         let piece = window.piece_of_center() & !(1 << CENTER);
-        // What other partly covered pixels hold is as doubtful; a pixel that continues no other may hold nothing's depth.
+        // Other partly covered pixels are as doubtful; one that continues no other may hold nothing's depth.
         let trusted = [piece & window.whole, window.whole, piece].into_iter().find(|&members| members != 0);
         let continued = trusted.and_then(|members| Continued::from(window, members));
         let line = ContourLine::of_shades(maps.coverage, (x, y));
@@ -268,13 +270,18 @@ fn contour_pixel(
 /// How the middle pixel is shared; `None` where no single edge passes.
 fn shared(window: &PixelWindow, across: Across) -> Option<Shared> {
     if across.is_crease {
-        let guess = ContourLine::of_mask(across.own, window.inside)?;
+        // Noise and detail turn like a crease here and there; an edge of the surface is straight for some pixels.
+        let is_edge =
+            |line: &ContourLine| line.explains(across.own, window.inside, 0.0, CREASE_TOLERANCE_PX, EXPLAINED_PX);
+        let guess = ContourLine::of_mask(across.own, window.inside).filter(is_edge)?;
         let line = ContourLine::of_depths(window, across.own, across.other).unwrap_or(guess);
         return Some(Shared::by(line.with_center(true), true));
     }
     let near = if across.is_near { across.own } else { across.other };
-    let guess = ContourLine::of_mask(near, window.inside)?;
-    let line = ContourLine::of_normals(window, near, window.inside, guess).unwrap_or(guess);
+    // Other pieces nearby end at lines of their own.
+    let known = across.own | across.other | window.nothing();
+    let guess = ContourLine::of_mask(near, known)?;
+    let line = ContourLine::of_normals(window, near, known, guess).unwrap_or(guess);
     Some(Shared::by(line.with_center(across.is_near), across.is_near))
 }
 

@@ -97,7 +97,8 @@ impl ContourLine {
         });
         Some(wide.unwrap_or(narrow))
     }
-    /// A Gaussian mean of a step is Φ(d / σ), so that d = σ Φ⁻¹ of it; its direction is that of the first moments.
+    /// A Gaussian mean of a step is Φ(d / σ), so that d = σ Φ⁻¹ of it, from the middle of the known pixels; its
+    /// direction is that of the first moments.
     ///
     /// * `sigma`: σ of `weights`, px.
     fn of_moments(near: u64, known: u64, sigma: f32, weights: &WindowGaussian) -> Option<Self> {
@@ -117,7 +118,7 @@ impl ContourLine {
         // A step at this distance has first moments of σ φ(d / σ).
         let expected = sigma * (-0.5 * quantile * quantile).exp() / (2.0 * std::f32::consts::PI).sqrt();
         let toward_near = gradient.try_normalize().filter(|_| gradient.length() > LEAST_CONTRAST * expected)?;
-        Some(Self { distance_px: sigma * quantile, toward_near })
+        Some(Self { distance_px: sigma * quantile - toward_near.dot(shift / all), toward_near })
     }
     /// The line along which two pieces of surface meet at a crease: where planes fitted to their depths are equally
     /// deep. `None` where it contradicts which pixels show which: coarse depth does not show it.
@@ -213,7 +214,7 @@ fn gaussian(sigma: f32) -> [f32; PIXELS] {
 static STRAIGHT_WEIGHTS: WindowGaussian = WindowGaussian(LazyLock::new(|| gaussian(STRAIGHT_SIGMA)));
 static MASK_WEIGHTS: WindowGaussian = WindowGaussian(LazyLock::new(|| gaussian(MASK_SIGMA)));
 /// For maps that are continued as planes.
-pub static CONTINUED_WEIGHTS: WindowGaussian = WindowGaussian(LazyLock::new(|| gaussian(2.0)));
+pub static CONTINUED_WEIGHTS: WindowGaussian = WindowGaussian(LazyLock::new(|| gaussian(1.2)));
 /// For what is carried over from the nearest pixels, and for normals that turn toward a rim.
 pub static NEAREST_WEIGHTS: WindowGaussian = WindowGaussian(LazyLock::new(|| gaussian(1.0)));
 

@@ -153,6 +153,39 @@ fn a_shaded_rim_reads_the_middle_of_what_is_covered_whether_or_not_its_maps_do()
         assert!(after < most, "{told:?}: {before}, own {after}");
     }
 }
+/// How far shares are off, in the mean, along a straight edge with a nearer band beside it, `gap` px away.
+fn error_beside_a_band(gap: f32) -> f32 {
+    let (mut error, mut count) = (0.0, 0.0);
+    for turn in 0..6 {
+        let toward_near = Vec2::from_angle(turn as f32 * 0.52 + 0.1);
+        let edge = |x: usize, y: usize| {
+            let from = vec2(x as f32 - 130.2, y as f32 - 100.3);
+            line::ContourLine { distance_px: toward_near.dot(from), toward_near }
+        };
+        let depth = |d: f32| if d < 0.0 { 0.8 } else { [0.4, 0.1][usize::from((gap..gap + 4.0).contains(&d))] };
+        let depth = Plane::from_fn(SIZE, |x, y| depth(edge(x, y).distance_px));
+        let (normals, coverage) = (Plane::filled(SIZE, Vec3::Z), Plane::filled(SIZE, 255));
+        let surface = Surface::new(Maps { normals, depth, coverage }).unwrap();
+        for (x, y) in (5..195).flat_map(|y| (5..255).map(move |x| (x, y))) {
+            let edge = edge(x, y);
+            let own = if edge.distance_px < 0.0 { edge.turned() } else { edge }.near_share();
+            if edge.distance_px.abs() < 0.7 && own < 0.998 {
+                let found = surface.contours().at(x as i32, y as i32).map_or(1.0, |pixel| pixel.share);
+                (error, count) = (error + (found - own).abs(), count + 1.0);
+            }
+        }
+    }
+    error / count
+}
+#[test]
+fn the_edge_of_a_narrow_band_is_found_next_to_a_third_piece() {
+    let alone = error_beside_a_band(30.0);
+    for gap in [2.0, 2.5, 3.0] {
+        let error = error_beside_a_band(gap);
+        eprintln!("{gap} px: {error}, alone {alone}");
+        assert!(error < 1.5 * alone, "{gap} px: {error}, alone {alone}");
+    }
+}
 #[test]
 fn rows_hold_every_contour_pixel_of_a_tile_once() {
     let surface = surface(0);
