@@ -5,7 +5,7 @@ use super::behind::Behind;
 use super::layer::marks::Marks;
 use super::layer::tile_content::TileContent;
 use super::prepare::{PreparedDocument, PreparedLayer};
-use super::{Document, Layer, LayerId, Progress};
+use super::{Document, Layer, LayerId, Progress, Role};
 use crate::paint::Scene;
 use crate::raster::planar::BRIGHTEST;
 use crate::raster::{DeepTexture, PlanarTile, TileAt};
@@ -18,6 +18,13 @@ impl Document {
     pub fn deep_bytes(&self) -> u64 {
         let of_layer = |layer: &Arc<Layer>| layer.content.marks().map_or(0, Marks::texture_bytes);
         self.walk().into_iter().map(|(_, layer)| layer).filter(|layer| layer.visible).map(of_layer).sum()
+    }
+    /// Whether bytes between live layers can differ from floats by more than two levels in the picture: where a steep
+    /// blend mode or radiance scaling magnifies how they were rounded.
+    pub fn shows_rounding(&self) -> bool {
+        let shown = || self.walk().into_iter().map(|(_, layer)| layer).filter(|layer| layer.visible);
+        let magnifies = |layer: &Arc<Layer>| layer.blend.is_steep() || matches!(layer.content.role(), Role::Adjusts(_));
+        shown().any(magnifies) && shown().any(|layer| layer.content.marks().is_some())
     }
 }
 

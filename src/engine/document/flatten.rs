@@ -42,19 +42,41 @@ pub fn flatten_deep(document: &Document, highlights: Highlights, progress: &Prog
     Some(pixels)
 }
 
+/// Flattens the whole document to bytes that are rounded once, at the end: live layers are composed in floats. As
+/// [`flatten`] where rounding them in between changes nothing by more than two levels. `None` if cancelled.
+pub fn flatten_rounding_once(document: &Document, progress: &Progress) -> Option<TileGrid> {
+    if !document.shows_rounding() {
+        return flatten(document, progress);
+    }
+    let prepared = PreparedDocument::new(document, progress)?;
+    flatten_in_floats(&prepared, document, progress, |at, deep| {
+        prepared.compose_tile(at, Some(deep)).quantised().map(Arc::new)
+    })
+}
+
+/// A tile at a time of what is composed in floats.
+fn flatten_in_floats(
+    prepared: &PreparedDocument,
+    document: &Document,
+    progress: &Progress,
+    tile: impl Fn(TileAt, &DeepTiles) -> Option<Arc<Tile>> + Sync,
+) -> Option<TileGrid> {
+    let tiles = prepared.all_tiles();
+    let mut deep = DeepTiles::new(prepared, Highlights::Clipped);
+    let mut grid = TileGrid::for_rect(document.size.rect());
+    for part in tiles.chunks(DEEP_AT_A_TIME) {
+        deep.render(prepared, part, progress);
+        let composed = in_parallel(part, progress, |at| tile(at, &deep))?;
+        part.iter().zip(composed).for_each(|(at, tile)| grid.set(*at, tile));
+    }
+    Some(grid)
+}
+
 /// Flattens the whole document to what a paint layer holds: composed without rounding live layers, with 16 bits where
 /// it is soft ([`PlanarTile::kept`]), and where placed pictures of more than 8 are seen. `None` if cancelled.
 pub fn flatten_to_paint(document: &Document, progress: &Progress) -> Option<TileGrid> {
     let prepared = PreparedDocument::new(document, progress)?;
-    let tiles = prepared.all_tiles();
-    let mut deep = DeepTiles::new(&prepared, Highlights::Clipped);
-    let mut grid = TileGrid::for_rect(document.size.rect());
-    for part in tiles.chunks(DEEP_AT_A_TIME) {
-        deep.render(&prepared, part, progress);
-        let composed = in_parallel(part, progress, |at| prepared.paint_tile(at, &deep))?;
-        part.iter().zip(composed).for_each(|(at, tile)| grid.set(*at, tile));
-    }
-    Some(grid)
+    flatten_in_floats(&prepared, document, progress, |at, deep| prepared.paint_tile(at, deep))
 }
 
 /// Flattens one layer alone, shown or not, on transparency: its own opacity and mask, not those of the groups around

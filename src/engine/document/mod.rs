@@ -42,7 +42,9 @@ pub use canvas_change::CanvasChange;
 pub use deep::Highlights;
 pub use diff::diff;
 pub use edit::LayerSlot;
-pub use flatten::{flatten, flatten_deep, flatten_layer, flatten_layers, flatten_to_paint, flatten_whole};
+pub use flatten::{
+    flatten, flatten_deep, flatten_layer, flatten_layers, flatten_rounding_once, flatten_to_paint, flatten_whole,
+};
 pub use frame_box::FrameBox;
 pub use guides::Guides;
 pub use history::History;

@@ -2,7 +2,7 @@
 //! rounding. Floor 5.
 
 use super::{ExportFormat, ExportOptions, png};
-use crate::document::{Document, Highlights, Progress, flatten, flatten_deep};
+use crate::document::{Document, Highlights, Progress, flatten, flatten_deep, flatten_rounding_once};
 use crate::math::{Size, srgb};
 use crate::project::Cancellable;
 use crate::{Budget, Error, Result};
@@ -21,7 +21,9 @@ pub fn encode_document(
 ) -> Cancellable<Vec<u8>> {
     let format = ExportFormat::of(file)?;
     if format.bits(file, options.bits)? == 8 {
-        let pixels = flatten(document, progress);
+        // Without room for textures of floats, layers are rounded to bytes one by one, as on the screen.
+        let is_exact = budget.room(file, "a picture that is rounded once", document.deep_bytes()).is_ok();
+        let pixels = if is_exact { flatten_rounding_once(document, progress) } else { flatten(document, progress) };
         return pixels.map(|pixels| super::encode(file, format, &pixels, document.size, options)).transpose();
     }
     let Some(pixels) = flattened(file, document, highlights(format), budget, progress)? else { return Ok(None) };

@@ -145,6 +145,14 @@ impl BlendMode {
     pub fn is_said_by_openraster(self) -> bool {
         self.openraster().starts_with("svg:") && self != BlendMode::Plus
     }
+    /// A step of one colour may change the result by more than a step.
+    pub fn is_steep(self) -> bool {
+        use BlendMode as Mode;
+        let is_even = matches!(self, Mode::Normal | Mode::Multiply | Mode::Screen)
+            || matches!(self, Mode::Darken | Mode::Lighten | Mode::Difference | Mode::Exclusion)
+            || matches!(self, Mode::Plus | Mode::LinearDodge | Mode::LinearBurn | Mode::Subtract);
+        !is_even
+    }
     /// Photoshop can express it, and dissolves the same pixels.
     pub fn is_said_by_photoshop(self) -> bool {
         !matches!(self, BlendMode::Plus | BlendMode::Dissolve)
