@@ -4,13 +4,16 @@
 //! Each sample represents a part of the lobe and reads the mean of the environment over that part, so that a small sun
 //! makes no fireflies and single samples are invisible.
 
+mod bounced;
+
 use super::ashikhmin::{self, DirectedLight};
-use super::second_look::{PixelRay, RayStart, SecondLook};
-use super::{Shading, lobes, mirror};
+use super::second_look::SecondLook;
+use super::{Shading, lobes};
 use crate::math::{Vec3, fast, vec3};
 use crate::raster::TILE;
 use crate::shading::environment::{Directions, EnvironmentLight};
 use crate::shading::surface_row::{Light3, LightDirection, RowRelief, RowValues, SurfaceRow};
+use bounced::BouncedLight;
 use std::f32::consts::PI;
 
 /// Directions that the matt term is lit from.
@@ -26,6 +29,8 @@ pub struct EnvironmentSamples {
     halves: Vec<HalfVector>,
     /// About as far as the lobe spreads the light of one direction, radians.
     lobe_rad: f32,
+    /// What the surface adds on the tile that is shaded.
+    bounced: Option<BouncedLight>,
 }
 
 /// A half vector that the glossy lobe is sampled at.
@@ -49,7 +54,7 @@ impl EnvironmentSamples {
         let halves = (0..HALVES).map(|i| half(i, shading.nu, shading.nv)).collect();
         // The solid angle of the half vectors' lobe, 2π / (ν + 1), is four times as large in ℓ.
         let lobe_rad = (8.0 * PI / ((shading.nu + 1.0) * (shading.nv + 1.0)).sqrt()).sqrt();
-        Some(Self { environment_light, lights, halves, lobe_rad })
+        Some(Self { environment_light, lights, halves, lobe_rad, bounced: None })
     }
     /// Adds both terms along a row.
     pub fn shade(&self, shading: &Shading, surface_row: &SurfaceRow, relief: &mut RowRelief, light: &mut Light3) {
@@ -73,7 +78,10 @@ impl EnvironmentSamples {
         let [mut h_e, mut weight, mut width_rad] = [[0.0; TILE]; 3];
         find_frames(normal, &mut u, &mut v);
         relief.turn(surface_row, LightDirection::VIEWER);
-        let second = SecondLook::on(surface_row.surface, shading.bounces_made());
+        // Pixels of a sheet follow all of their rays themselves.
+        let bounces = if self.bounced.is_some() { 0 } else { shading.bounces_made() };
+        let second = SecondLook::on(surface_row.surface, bounces);
+        let [mut weights, mut scaled] = [[0.0; TILE]; 2];
         for half in &self.halves {
             mirror_at([&u, &v, normal], half, &mut toward, &mut h_e);
             weigh(normal, &toward, &h_e, surface_row.coverage(), &mut weight);
@@ -88,97 +96,51 @@ impl EnvironmentSamples {
                 }
                 None => self.environment_light.around_row(&toward, &width_rad, &weight, &mut incoming),
             }
+            add_row(&weight, &mut weights);
             if shading.specular.is_scaled() {
                 if surface_row.features.is_directional() {
                     relief.turn(surface_row, LightDirection::Each(&toward[0], &toward[1]));
                 }
                 lobes::scale(&mut weight, scaling, relief.exponentials(scaling), &[half.uvn.z; TILE]);
             }
+            add_row(&weight, &mut scaled);
             add_weighed(&incoming, &weight, &h_e, rs, light);
         }
-    }
-    /// What the rays of one half vector see along a row: the environment, or the surface where they meet it, with both
-    /// terms under the environment alone. Of the surface's own lobe one ray represents all.
-    ///
-    /// * `rays`: directions, widths in radians, and weights: those of 0 are not wanted.
-    fn follow(
-        &self,
-        shading: &Shading,
-        surface_row: &SurfaceRow,
-        second: &SecondLook,
-        rays: (&Directions, &RowValues, &RowValues),
-        incoming: &mut Light3,
-    ) {
-        let (toward, width_rad, weight) = rays;
-        let (mut last, mut width_rad) = (*toward, *width_rad);
-        let [mut matt, mut kept] = [[[0.0; TILE]; 3]; 2];
-        for x in (0..surface_row.width).filter(|&x| weight[x] > 0.0) {
-            let (n, v) = (surface_row.normal_at(x), surface_row.view_at(x));
-            let start = second.start(surface_row.x0 + x, surface_row.y, n, v);
-            let mut sample = BouncedSample { matt: Vec3::ZERO, kept: Vec3::ONE, width_rad: width_rad[x] };
-            let l = vec3(toward[0][x], toward[1][x], toward[2][x]);
-            let direction = self.bounce(shading, (second, start), l, &mut sample);
-            width_rad[x] = sample.width_rad;
-            for c in 0..3 {
-                (last[c][x], matt[c][x], kept[c][x]) = (direction[c], sample.matt[c], sample.kept[c]);
-            }
+        let Some(bounced) = &self.bounced else { return };
+        // Scaled as the light of all half vectors is in the mean.
+        for x in (0..surface_row.width).filter(|&x| weights[x] > 0.0) {
+            let change = bounced.at(surface_row.surface, (surface_row.x0 + x, surface_row.y));
+            let change = change * (scaled[x] / weights[x]);
+            (0..3).for_each(|c| light[c][x] += change[c]);
         }
-        self.environment_light.around_row(&last, &width_rad, weight, incoming);
-        for c in 0..3 {
-            for x in 0..TILE {
-                incoming[c][x] = matt[c][x] + kept[c][x] * incoming[c][x];
-            }
-        }
-    }
-    /// Follows one ray to the last.
-    fn bounce(
-        &self,
-        shading: &Shading,
-        (second, start): (&SecondLook, RayStart),
-        l: Vec3,
-        sample: &mut BouncedSample,
-    ) -> Vec3 {
-        let [rd, rs] = [&shading.diffuse, &shading.specular].map(|term| Vec3::from(term.linear()));
-        let rs = rs.min(Vec3::ONE);
-        let ray = PixelRay { direction: l, changes: [Vec3::ZERO; 2] };
-        let last = second.follow(start, ray, mirror::mirrored, |hit, r| {
-            let facing = -hit.normal.dot(r);
-            if shading.diffuse.weight > 0.0 {
-                let light = self.environment_light.matt(hit.normal);
-                sample.matt += sample.kept * rd * (Vec3::ONE - rs) * light * ashikhmin::lifted(facing);
-            }
-            sample.kept *= rs + (Vec3::ONE - rs) * ashikhmin::whiteness(facing);
-            sample.width_rad = sample.width_rad.hypot(self.lobe_rad);
-        });
-        last.direction
     }
 }
 
-/// What a ray has gathered where it met the surface, and how it goes on.
-struct BouncedSample {
-    /// Light of the matt term.
-    matt: Vec3,
-    /// What is kept of the light that it still sees.
-    kept: Vec3,
-    width_rad: f32,
+/// u and v of a normal: u runs along the picture's x, v along its y.
+#[inline(always)]
+fn frame(n: Vec3) -> (Vec3, Vec3) {
+    // (x − n_x n) / |…|; where the normal is ±x, any u is valid.
+    let squared = n.y * n.y + n.z * n.z;
+    let per_length = 1.0 / fast::max(squared.sqrt(), 1e-6);
+    let along = vec3(1.0 - n.x * n.x, -n.x * n.y, -n.x * n.z) * per_length;
+    let u = if squared < 1e-12 { Vec3::Y } else { along };
+    (u, n.cross(u))
+}
+
+/// How wide a part of the lobe a half vector represents, radians. For ℓ: dω_h / dω_ℓ = 1 / (4 h·e). Slightly more than
+/// its share, so that neighbours overlap.
+#[inline(always)]
+fn width_rad(h_e: f32, density: f32) -> f32 {
+    1.5 * (4.0 * fast::max(h_e, 0.0) / (density * HALVES as f32)).sqrt()
 }
 
 crate::widest! {
-    /// u and v of each pixel: u runs along the picture's x, v along its y.
+    /// The frame of each pixel.
     fn find_frames(normal: &Directions, u: &mut Directions, v: &mut Directions) {
         for x in 0..TILE {
-            let n = [normal[0][x], normal[1][x], normal[2][x]];
-            // (x − n_x n) / |…|; where the normal is ±x, any u is valid.
-            let squared = n[1] * n[1] + n[2] * n[2];
-            let length = squared.sqrt();
-            let is_side = squared < 1e-12;
-            let per_length = 1.0 / fast::max(length, 1e-6);
-            let of = |k: usize, along: f32| (along - n[0] * n[k]) * per_length;
-            let a = if is_side { [0.0, 1.0, 0.0] } else { [of(0, 1.0), of(1, 0.0), of(2, 0.0)] };
-            (u[0][x], u[1][x], u[2][x]) = (a[0], a[1], a[2]);
-            v[0][x] = n[1] * a[2] - n[2] * a[1];
-            v[1][x] = n[2] * a[0] - n[0] * a[2];
-            v[2][x] = n[0] * a[1] - n[1] * a[0];
+            let (a, b) = frame(vec3(normal[0][x], normal[1][x], normal[2][x]));
+            (u[0][x], u[1][x], u[2][x]) = (a.x, a.y, a.z);
+            (v[0][x], v[1][x], v[2][x]) = (b.x, b.y, b.z);
         }
     }
     /// The viewer mirrored at a half vector, and h·e.
@@ -203,11 +165,14 @@ crate::widest! {
         }
     }
     /// How wide a part of the lobe each sample represents, radians.
-    fn find_widths(h_e: &RowValues, density: f32, width_rad: &mut RowValues) {
+    fn find_widths(h_e: &RowValues, density: f32, widths_rad: &mut RowValues) {
         for x in 0..TILE {
-            // For ℓ: dω_h / dω_ℓ = 1 / (4 h·e). Slightly more than its share, so that neighbours overlap.
-            let solid_angle = 4.0 * fast::max(h_e[x], 0.0) / (density * HALVES as f32);
-            width_rad[x] = 1.5 * solid_angle.sqrt();
+            widths_rad[x] = width_rad(h_e[x], density);
+        }
+    }
+    fn add_row(row: &RowValues, sums: &mut RowValues) {
+        for x in 0..TILE {
+            sums[x] += row[x];
         }
     }
     /// Adds a sample: F times its light and weight.

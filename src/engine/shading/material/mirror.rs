@@ -4,9 +4,9 @@
 
 use super::second_look::{PixelRay, SecondLook};
 use super::{Model, Shading, lobes};
-use crate::math::{Vec3, srgb, vec3};
+use crate::math::{Vec2, Vec3, srgb, vec2, vec3};
 use crate::raster::TILE;
-use crate::shading::environment::Directions;
+use crate::shading::environment::{Directions, EnvironmentLight};
 use crate::shading::surface_row::{Light3, LightDirection, RowValues, SurfaceRow};
 use crate::surface::{links, view::Eye};
 
@@ -37,17 +37,14 @@ pub fn shade(shading: &Shading, surface_row: &SurfaceRow, light: &mut Light3) {
         Model::Refraction => Some(shading.index),
         _ => None,
     };
-    let mut rays = RayRow::new(surface_row, index);
+    let rays = RayRow::new(surface_row, index);
     let toward = [rays.ray[0], rays.ray[1]];
-    let second = SecondLook::on(surface_row.surface, shading.bounces_made());
-    // No surface returns more than it receives.
-    let once = Vec3::from(term.linear()).min(Vec3::ONE);
-    let kept = second.map(|second| rays.follow(&second, surface_row, index, once));
     let mut incoming: Light3 = [[0.0; TILE]; 3];
     environment_light.over_row(&rays.ray, &rays.dx, &rays.dy, surface_row.coverage(), &mut incoming);
-    if let Some(kept) = kept {
-        let pairs = incoming.iter_mut().flatten().zip(kept.iter().flatten());
-        pairs.for_each(|(incoming, kept)| *incoming *= kept);
+    if let Some(second) = SecondLook::on(surface_row.surface, shading.bounces_made()) {
+        // No surface returns more than it receives.
+        let once = Vec3::from(term.linear()).min(Vec3::ONE);
+        rays.follow(&second, surface_row, (index, once), &environment_light, &mut incoming);
     }
     let mut delta = [0.0; TILE];
     tint(&mut incoming, term.linear(), per_brightest, &mut delta);
@@ -93,27 +90,51 @@ impl RayRow {
     }
 }
 
+/// Where the rays of a pixel that is followed lie in it, px from its middle: even along both axes.
+const PARTS: [Vec2; 4] = [vec2(-0.125, -0.375), vec2(0.375, -0.125), vec2(0.125, 0.375), vec2(-0.375, 0.125)];
+/// The sides of what each of them stands for, px.
+const PART_PX: f32 = 0.5;
+
 impl RayRow {
-    /// Follows the rays over the surface to the last ones, and returns what is kept of the light that they see.
+    /// Follows the rays over the surface, and replaces the light of pixels where they meet it: by the mean over several
+    /// rays, since what curved surfaces mirror of each other changes within a pixel.
     ///
-    /// * `once`: what one bounce keeps.
-    fn follow(&mut self, second: &SecondLook, surface_row: &SurfaceRow, index: Option<f32>, once: Vec3) -> Light3 {
-        let mut kept_row = [[1.0; TILE]; 3];
+    /// * `index`, `once`: how a ray is bent, as [`RayRow::new`], and what one bounce keeps.
+    fn follow(
+        &self,
+        second: &SecondLook,
+        surface_row: &SurfaceRow,
+        (index, once): (Option<f32>, Vec3),
+        environment_light: &EnvironmentLight,
+        incoming: &mut Light3,
+    ) {
         let bend = |n: Vec3, v: Vec3| index.map_or_else(|| mirrored(n, v), |index| refracted(n, v, index));
         let of = |row: &Directions, x: usize| vec3(row[0][x], row[1][x], row[2][x]);
         for x in (0..surface_row.width).filter(|&x| surface_row.coverage()[x] > 0) {
             let start =
                 second.start(surface_row.x0 + x, surface_row.y, surface_row.normal_at(x), surface_row.view_at(x));
-            let ray = PixelRay { direction: of(&self.ray, x), changes: [of(&self.dx, x), of(&self.dy, x)] };
-            let mut kept = Vec3::ONE;
-            let last = second.follow(start, ray, bend, |_, _| kept *= once);
-            for c in 0..3 {
-                kept_row[c][x] = kept[c];
-                self.ray[c][x] = last.direction[c];
-                (self.dx[c][x], self.dy[c][x]) = (last.changes[0][c], last.changes[1][c]);
+            let (ray, dx, dy) = (of(&self.ray, x), of(&self.dx, x), of(&self.dy, x));
+            let follow = |at: Vec2| {
+                let direction = (ray + dx * at.x + dy * at.y).normalize_or(ray);
+                let part = PixelRay { direction, changes: [dx * PART_PX, dy * PART_PX] };
+                let (mut kept, mut is_met) = (Vec3::ONE, false);
+                let last = second.follow(start.of_part(PART_PX), part, bend, |_, _| {
+                    (kept, is_met) = (kept * once, true);
+                });
+                (last, kept, is_met)
+            };
+            // Where two on opposite sides of the pixel meet nothing, the others hardly do.
+            let first = [follow(PARTS[0]), follow(PARTS[2])];
+            if first.iter().all(|(_, _, is_met)| !is_met) {
+                continue;
             }
+            let seen = |(PixelRay { direction, changes: [dx, dy] }, kept, _): (PixelRay, Vec3, bool)| {
+                kept * environment_light.over(direction, dx, dy)
+            };
+            let mean = (first.into_iter().chain([follow(PARTS[1]), follow(PARTS[3])])).map(seen).sum::<Vec3>()
+                / PARTS.len() as f32;
+            (incoming[0][x], incoming[1][x], incoming[2][x]) = mean.into();
         }
-        kept_row
     }
 }
 

@@ -55,6 +55,9 @@ impl Shading {
         } else if !inside.is_empty() {
             let mut surface_row = surface_row(inside.y0);
             let mut worker = RowShader::new(self);
+            if let Some(samples) = &mut worker.samples {
+                samples.follow_tile(self, surface, inside);
+            }
             let looked_at = if scene.sheet().is_some() { 2 } else { 1 };
             for (row, y) in rows.step_by(looked_at) {
                 surface_row.move_to(y as usize);

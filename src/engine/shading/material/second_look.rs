@@ -26,6 +26,15 @@ pub struct RayStart {
     pub view: Vec3,
     at: Vec2,
     nearness: f32,
+    /// The sides of what the ray stands for, px of the picture.
+    side_px: f32,
+}
+
+impl RayStart {
+    /// The same for one of several rays of a pixel, by the sides of its part.
+    pub fn of_part(self, side_px: f32) -> Self {
+        Self { side_px, ..self }
+    }
 }
 
 /// Follows rays over the surface that they leave.
@@ -58,7 +67,7 @@ impl<'s> SecondLook<'s> {
             None => (x as i32, y as i32),
         };
         let at = vec2(px as f32 + 0.5, py as f32 + 0.5);
-        RayStart { normal, view, at, nearness: self.map.nearness_of(self.shaded.depth(x, y)) }
+        RayStart { normal, view, at, nearness: self.map.nearness_of(self.shaded.depth(x, y)), side_px: 1.0 }
     }
     /// The last ray of the way that a ray takes: the one that looks at the environment.
     ///
@@ -72,12 +81,12 @@ impl<'s> SecondLook<'s> {
         mut meet: impl FnMut(&RayHit, Vec3),
     ) -> PixelRay {
         let surface = self.of_sheet.as_deref().unwrap_or(self.shaded);
-        let RayStart { normal, view, at, nearness } = start;
+        let RayStart { normal, view, at, nearness, side_px } = start;
         let inward = ray.direction.dot(normal) < 0.0;
         let mut leaving = SurfaceRay { at, nearness, direction: ray.direction, inward };
         let mut changes = ray.changes;
         // What a pixel shows of the surface, along the view.
-        let pixel = self.map.spanned(nearness);
+        let pixel = side_px * self.map.spanned(nearness);
         let mut moved =
             [vec3(pixel, 0.0, 0.0), vec3(0.0, -pixel, 0.0)].map(|step| onto_plane(step, normal, view, GRAZING));
         for _ in 0..self.bounces {

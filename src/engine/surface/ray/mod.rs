@@ -25,7 +25,7 @@ const FACING: f32 = 0.02;
 /// Nearness where there is no surface.
 const NOWHERE: f32 = -1e30;
 /// Sides of the blocks that rays jump over, px.
-const BLOCKS: [usize; 2] = [64, 8];
+const BLOCKS: [usize; 3] = [64, 16, 4];
 
 /// What rays are marched through.
 ///
@@ -34,7 +34,7 @@ const BLOCKS: [usize; 2] = [64, 8];
 pub struct RayMap {
     nearness: Plane<f32>,
     /// The greatest nearness in each block and within a pixel of it.
-    blocks: [Plane<f32>; 2],
+    blocks: [Plane<f32>; 3],
     nearest: f32,
     farthest: f32,
     thickness: f32,
