@@ -7,7 +7,7 @@ mod selections;
 pub use reducer::{DocumentReducer, ReducedSurface, SurfaceReduction};
 
 use super::layer::scale::CanvasScale;
-use super::{Document, Part};
+use super::{Document, Part, Parts};
 use crate::math::Size;
 use crate::raster::Resampling;
 use crate::surface::SurfaceError;
@@ -20,7 +20,7 @@ impl Document {
     /// the memory. Fails if nothing is left of a surface thinner than the new pixels.
     pub fn scaled(&self, factor: f32) -> Result<Document, SurfaceError> {
         let Some(scale) = CanvasScale::of(self.size, factor) else { return Ok(self.clone()) };
-        let surface = self.surface.as_ref().map(|s| s.stretched(scale.to).map(Arc::new)).transpose()?;
+        let surface = self.surface.as_ref().map(|s| s.scaled(scale.to)).transpose()?;
         let layers = scale.layers(&self.layers);
         let guides = Arc::new(self.guides.scaled(scale.per_axis));
         let assistants = Arc::new(self.assistants.iter().map(|assistant| assistant.scaled(scale.per_axis)).collect());
@@ -64,7 +64,7 @@ impl CanvasScale {
     fn parts(&self, old: &Document, new: Document) -> Result<Document, SurfaceError> {
         let list = old.parts.list.iter().map(|part| self.part(part)).collect();
         let maps = old.maps_surface().map(|maps| maps.stretched(self.to).map(Arc::new)).transpose()?;
-        let bare = Document { surface: maps, parts: Arc::default(), ..new };
+        let bare = Document { surface: maps, parts: Arc::new(Parts::pointing_on(old.surface.clone())), ..new };
         Ok(bare.with_parts(list))
     }
     fn part(&self, part: &Part) -> Arc<Part> {

@@ -5,7 +5,6 @@ use super::Scene;
 use crate::math::{COORDINATE, Mat2, PlaneMap, Range, Rect, UNIT, Vec2, vec2};
 use crate::raster::{CoverageGrid, Lattice};
 use crate::surface::Surface;
-use std::sync::Arc;
 
 crate::named! {
     /// What a dab does to the pixels under it.
@@ -196,14 +195,9 @@ impl LiquifyStroke {
     }
 }
 
-fn slope_of(surface: &Arc<Surface>, p: Vec2) -> Vec2 {
-    let (x, y) = (p.x.floor() as i32, p.y.floor() as i32);
-    if !surface.size().rect().contains(x, y) {
-        return Vec2::ZERO;
-    }
-    let normal = surface.normal(x as usize, y as usize);
+fn slope_of(surface: &Surface, p: Vec2) -> Vec2 {
     // Image axes: y down.
-    vec2(normal.x, -normal.y) / normal.z.max(LEAST_FACING)
+    surface.at_point(p).map_or(Vec2::ZERO, |at| at.nbar / at.nz.max(LEAST_FACING))
 }
 
 /// How much longer a direction is along a surface than as seen: √(1 + (s · d)²).

@@ -22,13 +22,13 @@ impl SurfaceMeasure {
     ///
     /// * `at`: canvas px. `way`: only its direction matters.
     pub fn stretch(&self, at: Vec2, way: Vec2) -> f32 {
-        if !self.surface.size().rect().contains(at.x.floor() as i32, at.y.floor() as i32) {
+        let (surface, at) = self.surface.read_at(at);
+        if !surface.size().rect().contains(at.x.floor() as i32, at.y.floor() as i32) {
             return 1.0;
         }
         let along = way.normalize_or_zero();
-        let on =
-            |(x, y, share): (usize, usize, f32)| share * (self.surface.stretch(x, y, self.amount) * along).length();
-        let length: f32 = self.surface.around(at).map(on).sum();
+        let on = |(x, y, share): (usize, usize, f32)| share * (surface.stretch(x, y, self.amount) * along).length();
+        let length: f32 = surface.around(at).map(on).sum();
         if length.is_finite() && length > 0.0 { length } else { 1.0 }
     }
 }

@@ -8,7 +8,7 @@ use crate::math::{Mat2, Vec2};
 /// Pins the point `source` of the undeformed image at the canvas point `at`: D(at) = source.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Anchor {
-    /// q_i, canvas px; the maps are read at the pixel that holds it.
+    /// q_i, canvas px; the maps are read there, between pixels.
     pub at: Vec2,
     /// s_i, canvas px; equal to `at` unless the content was dragged.
     pub source: Vec2,

@@ -71,7 +71,7 @@ impl<'a> Deformation<'a> {
         // The many dabs that nothing bends allocate no memory.
         let pinned = [Anchor::fixed(at)];
         let anchors = if surface.is_none() || operator.is_identity() { &[][..] } else { &pinned };
-        Self::pinned(surface, size, (operator, Weights::default(), anchors), nearest_map_values).laid(
+        Self::pinned(surface, size, (operator, Weights::default(), anchors), Surface::near_point).laid(
             |surface, settings, anchors| LaidPlanes::of_dab(surface, settings, anchors.first().map_or(at, |a| a.at)),
         )
     }
@@ -291,19 +291,9 @@ fn sane(weights: Weights) -> Weights {
     }
 }
 
-/// What the maps hold at the pixel of an anchor.
+/// What an anchor reads.
 fn at_anchor(surface: &Surface, at: Vec2) -> MapValues {
-    let (x, y) = (at.x.floor() as i32, at.y.floor() as i32);
-    match surface.coverage_plane().get(x, y) {
-        Some(coverage) if coverage > 0 => map_values(surface, x as usize, y as usize),
-        _ => MapValues::BACKGROUND,
-    }
-}
-
-/// What the maps hold at the piece of surface nearest to a point: they are grown outward.
-fn nearest_map_values(surface: &Surface, at: Vec2) -> MapValues {
-    let (x, y) = surface.pixel_of(at);
-    map_values(surface, x, y)
+    surface.at_point(at).unwrap_or(MapValues::BACKGROUND)
 }
 
 fn map_values(surface: &Surface, x: usize, y: usize) -> MapValues {

@@ -25,6 +25,7 @@ pub mod objects;
 mod occlusion;
 pub mod operator;
 pub mod plane_piece;
+mod points;
 mod pyramid;
 pub mod ray;
 pub mod reach;
@@ -56,6 +57,7 @@ use crate::raster::{CoverageGrid, Plane};
 use cache::RecentCache;
 use contours::{ContourMaps, Found, SheetOf};
 use curvature::{CurvatureRims, Kappa};
+use points::PointSource;
 use pyramid::MapPyramids;
 use ray::RayMap;
 use rayon::prelude::*;
@@ -140,6 +142,8 @@ pub struct Surface {
     sheet_of: Option<SheetOf>,
     /// What this one was seen through a map of, if it was.
     origin: Option<Origin>,
+    /// Where its points are read, if not on itself.
+    points: Option<PointSource>,
 }
 
 /// n̄_x, n̄_y and n_z of normals. These are freed from their end on as they are taken apart, so that both are never
@@ -234,6 +238,7 @@ impl Surface {
             sheet_normals: None,
             sheet_of: None,
             origin: None,
+            points: None,
         }
     }
     /// A surface made of parts, whose objects are known: no depth jump is needed to separate them.

@@ -120,23 +120,4 @@ impl Surface {
     pub(in crate::surface) fn occlusions(&self) -> &RecentCache<u32, Plane<f32>> {
         &self.occlusions
     }
-    /// The covered pixels whose centres lie around a point of the map, and their bilinear shares, which add up to 1;
-    /// none where none is covered.
-    pub fn around(&self, q: Vec2) -> impl Iterator<Item = (usize, usize, f32)> + use<> {
-        let corner = (q - 0.5).floor();
-        let part = q - 0.5 - corner;
-        let pixel = |dx: f32, dy: f32| {
-            let (x, y) = self.pixel_of(corner + vec2(dx, dy));
-            let share = (if dx > 0.0 { part.x } else { 1.0 - part.x }) * if dy > 0.0 { part.y } else { 1.0 - part.y };
-            (x, y, if self.coverage(x, y) > 0 { share } else { 0.0 })
-        };
-        let pixels = [pixel(0.0, 0.0), pixel(1.0, 0.0), pixel(0.0, 1.0), pixel(1.0, 1.0)];
-        let sum: f32 = pixels.iter().map(|(.., share)| share).sum();
-        pixels.into_iter().filter(|(.., share)| *share > 0.0).map(move |(x, y, share)| (x, y, share / sum))
-    }
-    /// The pixel that holds a canvas point, clamped into the map.
-    pub fn pixel_of(&self, q: Vec2) -> (usize, usize) {
-        let clamp = |v: f32, n: u32| (v.max(0.0) as usize).min(n as usize - 1);
-        (clamp(q.x, self.size.width), clamp(q.y, self.size.height))
-    }
 }

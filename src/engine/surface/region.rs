@@ -60,7 +60,7 @@ impl RegionKind {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceRegion {
     pub kind: RegionKind,
-    /// Canvas px; the maps are read at the pixel that holds it.
+    /// Canvas px; the maps are read there, between pixels.
     pub at: Vec2,
     /// t: how different pixels may be; in the kind's own unit.
     pub tolerance: f32,
@@ -121,7 +121,7 @@ impl RegionField {
         let pixel = at.floor().as_ivec2();
         let covered = surface.coverage_plane().get(pixel.x, pixel.y).filter(|_| at.is_finite());
         covered.filter(|c| *c > 0)?;
-        let deviation = deviation::of(surface, kind, (pixel.x as usize, pixel.y as usize));
+        let deviation = deviation::of(surface, kind, at);
         let half_step = half_steps(surface, &deviation);
         let joined = links_of(surface);
         Some(Self { surface: surface.clone(), at: (pixel.x, pixel.y), deviation, half_step, joined })

@@ -33,7 +33,7 @@ impl Document {
         }
         // Those that stay lost are found again with the surface.
         let lost = self.parts.lost.iter().filter(|id| stays(id)).cloned().collect();
-        next.parts = Arc::new(Parts { list, maps, lost, is_ahead: false, cache: self.parts.cache.clone() });
+        next.parts = Arc::new(Parts { list, maps, lost, is_ahead: false, ..Parts::clone(&self.parts) });
         next
     }
     /// With a part in the place of the one of its id, or in front of all.

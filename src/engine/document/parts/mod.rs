@@ -68,6 +68,8 @@ pub struct Parts {
     pub lost: Vec<String>,
     /// The document's surface is still that of the parts as they were, while the user drags them.
     is_ahead: bool,
+    /// Of a document of another size: its surface, on which the points of this one's are read.
+    points: Option<Arc<Surface>>,
     cache: PartCache,
 }
 
@@ -81,6 +83,10 @@ impl Parts {
     /// No parts, but what is kept for speed.
     pub(in crate::document) fn emptied(&self) -> Self {
         Self { cache: self.cache.clone(), ..Self::default() }
+    }
+    /// No parts yet, for a document of another size than one whose surface is given.
+    pub(in crate::document) fn pointing_on(points: Option<Arc<Surface>>) -> Self {
+        Self { points, ..Self::default() }
     }
     /// No parts, for documents that are shown for a moment while the user drags: what is made may be slightly off.
     pub(in crate::document) fn for_drafts() -> Self {

@@ -73,7 +73,8 @@ impl<'d> Whole<'d> {
         }
         self.begin();
         let mut known = lock(self.document).take().map(|made| made.nearest).unwrap_or_default();
-        let surface = self.relief.and_then(|relief| relief.into_surface(&mut known).ok()).map(Arc::new);
+        let made = self.relief.and_then(|relief| relief.into_surface(&mut known).ok());
+        let surface = made.map(|made| Arc::new(made.pointing_on(self.document.parts.points.as_ref())));
         let forms = self.added.into_iter().map(|made| (made.area, made.part.combine)).collect();
         let (maps, size) = (self.document.parts.maps.clone(), self.document.size);
         *lock(self.document) = Some(MadeSurface { forms, maps, size, surface: surface.clone(), nearest: known });

@@ -89,7 +89,7 @@ pub struct ReducedSurface {
 impl SurfaceReduction {
     /// Takes half a second at 4096². Fails if nothing is left of a surface thinner than the new pixels.
     pub fn make(&self) -> Result<ReducedSurface, SurfaceError> {
-        Ok(ReducedSurface { of: Arc::downgrade(&self.of), small: Arc::new(self.of.stretched(self.to)?) })
+        Ok(ReducedSurface { of: Arc::downgrade(&self.of), small: self.of.scaled(self.to)? })
     }
     /// Both do the same work.
     pub fn is_same(&self, other: &Self) -> bool {
@@ -211,7 +211,7 @@ impl DocumentReducer {
         if let Some(small) = self.known_surface(surface, scale.to) {
             return Ok(small.clone());
         }
-        let small = Arc::new(surface.stretched(scale.to)?);
+        let small = surface.scaled(scale.to)?;
         self.surface = Some((Arc::downgrade(surface), small.clone()));
         Ok(small)
     }

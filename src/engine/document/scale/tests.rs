@@ -105,6 +105,47 @@ fn twice_as_large_and_reduced_again_is_the_picture() {
     let (mean, _) = difference(&reduced(&picture(&double), 0.5), &picture(&full), SIZE);
     assert!(mean < 1.5, "mean difference {mean}");
 }
+/// A picture, a gradient and strokes bent by normals with bumps as fine as a pixel, pinned in the middles of pixels.
+fn bumpy() -> Document {
+    let lean = |x: usize, y: usize, k: u32| 0.5 * (crate::math::hash::unit(x as u32, y as u32, k) - 0.5);
+    let maps = Maps {
+        normals: Plane::from_fn(SIZE, |x, y| vec3(lean(x, y, 1), lean(x, y, 2), 1.0)),
+        depth: Plane::filled(SIZE, 0.5),
+        coverage: Plane::filled(SIZE, 255),
+    };
+    let mut document = document();
+    document.surface = Some(Arc::new(Surface::new(maps).unwrap()));
+    let mut layers = document.layers[0].content.group().unwrap().layers.clone();
+    for layer in &mut layers {
+        let mut next = Layer::clone(layer);
+        match &mut next.content {
+            Content::Image(live) => {
+                let mut image = live.params().clone();
+                image.bend.anchors = vec![Anchor::fixed(vec2(100.5, 70.5))];
+                *live = Live::new(image);
+            }
+            Content::Gradient(live) => {
+                let (from, to) = (vec2(50.5, 30.5), vec2(180.5, 120.5));
+                *live = Live::new(Gradient { from, to, ..live.params().clone() });
+            }
+            _ => {}
+        }
+        *layer = Arc::new(next);
+    }
+    layers.retain(|layer| !matches!(layer.content, Content::RadianceScaling(_)));
+    Document { layers, ..document }
+}
+#[test]
+fn a_larger_picture_on_bumps_is_pinned_like_the_original() {
+    let full = bumpy();
+    let [two, three, four] = [2.0, 3.0, 4.0].map(|factor| {
+        let larger = full.scaled(factor).unwrap();
+        let back = CanvasScale::of(larger.size, 1.0 / factor).unwrap();
+        difference(&back.grid(&picture(&larger)), &picture(&full), SIZE).0
+    });
+    // Three times as large, the middle of a pixel is one again: what is left are bumps that were interpolated.
+    assert!(three < 3.0 && two < 1.3 * three && four < 1.3 * three, "{two}, {three}, {four}");
+}
 #[test]
 fn layers_keep_their_ids_and_a_factor_of_one_keeps_everything() {
     let full = document();

@@ -3,7 +3,7 @@
 
 use super::hand::{CurvePoint, gauss};
 use super::{Dab, FAR_PX};
-use crate::math::{Mat2, Rect, Vec2, hash, srgb::Color, vec2};
+use crate::math::{Mat2, Rect, Vec2, hash, srgb::Color, vec2, vec3};
 use crate::paint::brush::{Brush, Tip};
 use crate::paint::dynamics::{DabInputs, FAR_DIAMETERS, FAST_LENGTHS_PER_SEC, Input, Property, pace_of, turns_of};
 use crate::paint::habits::{Bearing, Measure, Spread};
@@ -101,7 +101,7 @@ impl DabRules {
             scene: scene.clone(),
             origin: None,
             facing: brush.facing.map(),
-            curvature: curvature.map(|surface| surface.curvature(CURVATURE_BLUR_PX)),
+            curvature: curvature.map(|surface| surface.read_at(Vec2::ZERO).0.curvature(CURVATURE_BLUR_PX)),
             reads_pen: matches!(brush.tip, Tip::Hose(_)) || PEN.into_iter().any(follows),
             reads_surface: [Input::Slope, Input::Curvature, Input::Depth].into_iter().any(follows),
             measured,
@@ -162,24 +162,22 @@ impl DabRules {
             ..inputs
         }
     }
-    /// With the surface's values at the pixel that contains a dab's centre.
+    /// With the surface's values at a dab's centre, between pixels.
     fn over_surface(&self, at: Vec2, inputs: DabInputs) -> DabInputs {
         let flat = DabInputs::default();
         let nowhere = DabInputs { slope: flat.slope, curvature: flat.curvature, depth: flat.depth, ..inputs };
-        let is_over = self.reads_surface && self.scene.size.rect().contains(at.x.floor() as i32, at.y.floor() as i32);
-        let Some(surface) = self.scene.surface.as_deref().filter(|_| is_over) else { return nowhere };
-        let (x, y) = surface.pixel_of(at);
-        if surface.coverage(x, y) == 0 {
+        let Some(surface) = self.scene.surface.as_deref().filter(|_| self.reads_surface) else { return nowhere };
+        let (surface, at) = surface.read_at(at);
+        if !surface.is_on(at) {
             return nowhere;
         }
         let scale_px = surface.size().longer_side() / CURVATURE_SCALES;
-        // Between pixels, so that a larger canvas reads the same values.
-        let (mut slope, mut kappa, mut depth) = (0.0, 0.0, 0.0);
-        for (x, y, share) in surface.around(at) {
-            slope += share * (1.0 - surface.facing(x, y).max(0.0).min(1.0));
-            kappa += share * self.curvature.as_ref().map_or(0.0, |curvature| curvature.kappa(x, y, scale_px));
-            depth += share * surface.depth(x, y);
-        }
+        let kappa = |x, y| self.curvature.as_ref().map_or(0.0, |curvature| curvature.kappa(x, y, scale_px));
+        let read = |x, y| {
+            let slope = 1.0 - surface.facing(x, y).max(0.0).min(1.0);
+            vec3(slope, kappa(x, y), surface.depth(x, y))
+        };
+        let [slope, kappa, depth] = surface.blended(at, read).to_array();
         DabInputs { slope, curvature: 0.5 + 0.5 * kappa, depth: depth.max(0.0).min(1.0), ..inputs }
     }
     fn value(&self, property: Property, plain: f32, inputs: &DabInputs) -> f32 {

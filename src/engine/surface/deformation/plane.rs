@@ -111,8 +111,8 @@ impl<'a> LaidPlanes<'a> {
                 &mut self.fits[last]
             }
         };
-        let (x, y) = surface.pixel_of(piece.at);
-        let shown = fit.at(at, yields.map_or(Vec2::ZERO, |yields| yields.at(x, y)));
+        let yielded = yields.map_or(Vec2::ZERO, |yields| surface.blended(piece.at, |x, y| yields.at(x, y)));
+        let shown = fit.at(at, yielded);
         let Affine2 { matrix2, .. } = fit.looked_up(piece.looked_up(shown));
         fit.pulled = fit.pulled.map(|pulled| matrix2 * pulled);
     }

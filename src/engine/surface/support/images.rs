@@ -3,7 +3,7 @@
 
 use crate::math::{Vec2, vec2};
 use crate::surface::Surface;
-use crate::surface::operator::{Operator, first_order, reflection, second_order};
+use crate::surface::operator::{MapValues, Operator, first_order, reflection, second_order};
 use crate::surface::pyramid::{DepthSpan, Pyramid, PyramidBlock, TurnSpan};
 use crate::surface::unwrap::Unwrapping;
 use std::sync::Arc;
@@ -145,14 +145,13 @@ impl RadialOffset {
 
 impl<'s> OperatorBounds<'s> {
     pub fn new(surface: &'s Surface, operator: Operator, at: Vec2) -> Self {
-        let (x, y) = surface.pixel_of(at);
-        let (nbar, nz) = (surface.nbar(x, y), surface.normal(x, y).z);
+        let MapValues { depth, nbar, nz } = surface.near_point(at);
         let unit_px = surface.size().longer_side();
         match operator {
             Operator::None => OperatorBounds::Still,
             Operator::Depth { gamma } => OperatorBounds::Depth {
                 pyramid: surface.bounds().depth(surface),
-                z: surface.depth(x, y),
+                z: depth,
                 rate: first_order::rate(gamma),
             },
             Operator::Normal { alpha, beta, detail } => {

@@ -19,17 +19,19 @@ pub struct PlanePlace {
 }
 
 impl Unwrapping {
-    /// Where a point lies; off the surface the plane of the nearest piece goes on flat, so that strokes cross the
-    /// silhouette evenly.
+    /// Where a point lies, blended between the pixels around it; off the surface the plane of the nearest piece goes on
+    /// flat, so that strokes cross the silhouette evenly.
     pub fn place(&self, surface: &Surface, q: Vec2) -> PlanePlace {
         let (x, y) = nearest_covered(surface, q);
-        let jacobian = self.jacobian(surface, x, y);
-        // The rotation in J: of J = R S, S symmetric, it is R itself.
-        let turn = super::metric::turn(jacobian, Mat2::IDENTITY);
-        let from = q - (vec2(x as f32, y as f32) + 0.5);
-        let is_on = from.abs().max_element() <= 0.5;
-        let at = self.at(x, y) + if is_on { jacobian * from } else { turn * from };
-        PlanePlace { object: surface.objects().labels().at(x, y), at, turn }
+        let object = surface.objects().labels().at(x, y);
+        let from = |x: usize, y: usize| q - (vec2(x as f32, y as f32) + 0.5);
+        if from(x, y).abs().max_element() <= 0.5 {
+            let jacobian = surface.blended(q, |x, y| self.jacobian(surface, x, y));
+            let at = surface.blended(q, |x, y| self.at(x, y) + self.jacobian(surface, x, y) * from(x, y));
+            return PlanePlace { object, at, turn: turn_of(jacobian) };
+        }
+        let turn = turn_of(self.jacobian(surface, x, y));
+        PlanePlace { object, at: self.at(x, y) + turn * from(x, y), turn }
     }
     /// ∂D/∂q at a pixel, differenced within its piece; where a pixel has no neighbour along an axis, 1.
     pub fn jacobian(&self, surface: &Surface, x: usize, y: usize) -> Mat2 {
@@ -44,6 +46,11 @@ impl Unwrapping {
         }
         jacobian
     }
+}
+
+/// The rotation in J: of J = R S, S symmetric, it is R itself.
+fn turn_of(jacobian: Mat2) -> Mat2 {
+    super::metric::turn(jacobian, Mat2::IDENTITY)
 }
 
 /// The pixel that holds a point, or the nearest on the surface. Of several as near, the one in the smallest square

@@ -9,7 +9,7 @@ use crate::paint::{Adjust, ImageFilter, PictureSource, PlacedImage, Placement};
 use crate::raster::{Outside, Picture};
 use crate::session::actions::layers::above;
 use crate::session::{OpenDocument, Session, storage};
-use crate::surface::operator::reflection;
+use crate::surface::operator::{MapValues, reflection};
 use crate::surface::{Anchor, Bend, Operator};
 use std::path::Path;
 use std::sync::Arc;
@@ -72,8 +72,8 @@ pub(super) fn add_image(tab: &mut OpenDocument, name: &str, picture: Picture, li
 fn placement(document: &Document, operator: Operator, at: Vec2) -> Placement {
     match (operator, &document.surface) {
         (Operator::Reflection { alpha, .. }, Some(surface)) => {
-            let (x, y) = surface.pixel_of(at);
-            let turn = reflection::mirrored(surface.nbar(x, y), surface.normal(x, y).z);
+            let MapValues { nbar, nz, .. } = surface.near_point(at);
+            let turn = reflection::mirrored(nbar, nz);
             Placement::covering_mirror(document.size, alpha, turn)
         }
         _ => Placement::covering(document.size),

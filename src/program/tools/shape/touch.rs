@@ -4,8 +4,9 @@
 use super::{free_id, inverse_direction, on_canvas_direction};
 use crate::document::Document;
 use crate::document::parts::{Part, PartKind};
-use crate::math::{COORDINATE, Vec2, Vec3};
+use crate::math::{COORDINATE, Vec2, Vec3, vec3};
 use crate::shape::Touch;
+use crate::surface::operator::MapValues;
 use crate::tools::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext};
 use std::sync::Arc;
 
@@ -107,10 +108,9 @@ fn taken(document: &Document, at: Vec2) -> Outcome {
     let Some(surface) = &document.surface else {
         return Outcome::Refused("There is no surface to take it from.".into());
     };
-    let (x, y) = surface.pixel_of(at);
-    match surface.coverage(x, y) {
-        0 => Outcome::Refused("There is no surface under the pen to take a direction from.".into()),
-        _ => Outcome::Direction(surface.normal(x, y)),
+    match surface.at_point(at) {
+        None => Outcome::Refused("There is no surface under the pen to take a direction from.".into()),
+        Some(MapValues { nbar, nz, .. }) => Outcome::Direction(vec3(nbar.x, -nbar.y, nz)),
     }
 }
 
