@@ -50,6 +50,11 @@ impl LayerPaths {
     pub fn is_several(&self) -> bool {
         self.0.len() > 1
     }
+    /// As a replay may name them, whether they lead anywhere or not.
+    #[cfg(test)]
+    pub fn several(paths: Vec<LayerPath>) -> Self {
+        Self(paths)
+    }
 }
 
 impl From<LayerPath> for LayerPaths {

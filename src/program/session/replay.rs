@@ -163,6 +163,15 @@ macro_rules! actions {
             #[cfg(test)]
             pub const WORDS: &'static [&'static str] = &[$($word),+];
         }
+        #[cfg(test)]
+        impl $crate::session::tests::stories::Drawn for $name {
+            fn drawn(dice: &mut $crate::session::tests::stories::Dice) -> Self {
+                let all: &[fn(&mut $crate::session::tests::stories::Dice) -> Self] = &[$(|_dice| Self::$variant {
+                    $($field: _dice.value($word, stringify!($field))),*
+                }),+];
+                all[dice.variant(Self::WORDS, stringify!($name))](dice)
+            }
+        }
         impl $crate::session::replay::ReplayValue for $name {
             fn written(&self) -> serde_json::Value {
                 let mut object = serde_json::Map::new();
@@ -200,6 +209,12 @@ macro_rules! record {
                 Ok(Self { $($field),+ })
             }
         }
+        #[cfg(test)]
+        impl $crate::session::tests::stories::Drawn for $name {
+            fn drawn(dice: &mut $crate::session::tests::stories::Dice) -> Self {
+                Self { $($field: dice.value(stringify!($name), stringify!($field))),+ }
+            }
+        }
     };
 }
 pub(crate) use record;
@@ -227,6 +242,12 @@ macro_rules! names {
             fn read(value: &serde_json::Value) -> std::result::Result<Self, String> {
                 let found = value.as_str().and_then(<$name>::from_name);
                 found.ok_or_else(|| format!("is {value}, which is not known here"))
+            }
+        }
+        #[cfg(test)]
+        impl $crate::session::tests::stories::Drawn for $name {
+            fn drawn(dice: &mut $crate::session::tests::stories::Dice) -> Self {
+                dice.one_of(&<$name>::ALL.map(|row| row.0))
             }
         }
     };

@@ -11,6 +11,7 @@ mod several;
 mod snapping;
 mod soft;
 mod steps;
+pub(in crate::session) mod stories;
 mod targets;
 mod transforming;
 mod unwrapped;

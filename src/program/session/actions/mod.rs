@@ -35,21 +35,55 @@ use super::replay::ReplayValue;
 use crate::Result;
 use serde_json::Value;
 
-/// One action.
-#[derive(Clone)]
-pub enum Action {
-    Canvas(CanvasAction),
-    Clipboard(ClipboardAction),
-    Edit(EditAction),
-    File(FileAction),
-    Guide(GuideAction),
-    Hand(HandAction),
-    Layer(LayerAction),
-    Part(PartAction),
-    Pointer(PointerAction),
-    Selection(SelectionAction),
-    Stroke(StrokeAction),
-    View(ViewAction),
+/// One action for each of the enums, by the word that its room has in replays.
+macro_rules! rooms {
+    ($($word:literal $room:ident($action:ty)),+ $(,)?) => {
+        /// One action.
+        #[derive(Clone)]
+        pub enum Action { $($room($action)),+ }
+        impl Action {
+            /// The words of all rooms.
+            pub const ROOMS: &'static [&'static str] = &[$($word),+];
+        }
+        impl ReplayValue for Action {
+            fn written(&self) -> Value {
+                let (room, mut value) = match self { $(Action::$room(action) => ($word, action.written())),+ };
+                if let Some(object) = value.as_object_mut() {
+                    object.insert("in".into(), room.into());
+                }
+                value
+            }
+            fn read(value: &Value) -> std::result::Result<Self, String> {
+                Ok(match value.get("in").and_then(Value::as_str) {
+                    $(Some($word) => Action::$room(ReplayValue::read(value)?),)+
+                    _ => return Err(format!("“in” must be one of: {}", Self::ROOMS.join(", "))),
+                })
+            }
+        }
+        #[cfg(test)]
+        impl super::tests::stories::Drawn for Action {
+            fn drawn(dice: &mut super::tests::stories::Dice) -> Self {
+                let all: &[fn(&mut super::tests::stories::Dice) -> Self] =
+                    &[$(|dice| Action::$room(super::tests::stories::Drawn::drawn(dice))),+];
+                all[dice.variant(Self::ROOMS, "Action")](dice)
+            }
+        }
+    };
+}
+
+rooms! {
+    "canvas" Canvas(CanvasAction),
+    "clipboard" Clipboard(ClipboardAction),
+    "edit" Edit(EditAction),
+    "file" File(FileAction),
+    "guide" Guide(GuideAction),
+    "hand" Hand(HandAction),
+    "layer" Layer(LayerAction),
+    "part" Part(PartAction),
+    "pointer" Pointer(PointerAction),
+    "selection" Selection(SelectionAction),
+    "stroke" Stroke(StrokeAction),
+    "view" View(ViewAction),
 }
 
 impl Action {
@@ -74,49 +108,5 @@ impl Action {
         }
         session.tell_refusals();
         done
-    }
-}
-
-impl ReplayValue for Action {
-    fn written(&self) -> Value {
-        let (room, mut value) = match self {
-            Action::Canvas(action) => ("canvas", action.written()),
-            Action::Clipboard(action) => ("clipboard", action.written()),
-            Action::Edit(action) => ("edit", action.written()),
-            Action::File(action) => ("file", action.written()),
-            Action::Guide(action) => ("guide", action.written()),
-            Action::Hand(action) => ("hand", action.written()),
-            Action::Layer(action) => ("layer", action.written()),
-            Action::Part(action) => ("part", action.written()),
-            Action::Pointer(action) => ("pointer", action.written()),
-            Action::Selection(action) => ("selection", action.written()),
-            Action::Stroke(action) => ("stroke", action.written()),
-            Action::View(action) => ("view", action.written()),
-        };
-        if let Some(object) = value.as_object_mut() {
-            object.insert("in".into(), room.into());
-        }
-        value
-    }
-    fn read(value: &Value) -> std::result::Result<Self, String> {
-        Ok(match value.get("in").and_then(Value::as_str) {
-            Some("canvas") => Action::Canvas(ReplayValue::read(value)?),
-            Some("clipboard") => Action::Clipboard(ReplayValue::read(value)?),
-            Some("edit") => Action::Edit(ReplayValue::read(value)?),
-            Some("file") => Action::File(ReplayValue::read(value)?),
-            Some("guide") => Action::Guide(ReplayValue::read(value)?),
-            Some("hand") => Action::Hand(ReplayValue::read(value)?),
-            Some("layer") => Action::Layer(ReplayValue::read(value)?),
-            Some("part") => Action::Part(ReplayValue::read(value)?),
-            Some("pointer") => Action::Pointer(ReplayValue::read(value)?),
-            Some("selection") => Action::Selection(ReplayValue::read(value)?),
-            Some("stroke") => Action::Stroke(ReplayValue::read(value)?),
-            Some("view") => Action::View(ReplayValue::read(value)?),
-            _ => {
-                let rooms =
-                    "canvas, clipboard, edit, file, guide, hand, layer, part, pointer, selection, stroke or view";
-                return Err(format!("“in” must be {rooms}"));
-            }
-        })
     }
 }

@@ -1,0 +1,122 @@
+//! Stories that nobody thought of: any actions and tools in any order, drawn from the tables of the program, and what
+//! holds after each of them. Not here: stories that somebody thought of (the other files of `tests`).
+//!
+//! An action, a property, a tool or a kind of part that is new is drawn at once, or the compiler leads to the table
+//! where it is missing. A story is played by its seed; one that fails is made short and printed as a replay.
+
+mod dice;
+mod facts;
+mod gestures;
+mod known;
+mod parts;
+mod play;
+mod promises;
+mod shrink;
+mod starts;
+mod values;
+mod weights;
+
+pub use dice::{Dice, Drawn};
+
+use super::*;
+use crate::session::actions::{Action, PartAction, StrokeAction};
+use play::story;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// Stories of the ordinary test run.
+const FEW: u64 = 200;
+/// Stories of a night.
+const MANY: u64 = 10_000;
+
+/// Stories that failed in one way.
+struct Fault {
+    count: usize,
+    /// The first of them, and what was wrong.
+    seed: u64,
+    what: String,
+}
+
+/// Plays so many stories; each fault by its kind.
+fn played(first: u64, count: u64) -> BTreeMap<String, Fault> {
+    let mut faults: BTreeMap<String, Fault> = BTreeMap::new();
+    let folder = starts::StoryFolder::new();
+    for seed in first..first + count {
+        let told = story(seed, &folder);
+        if let Some(broken) = told.broken {
+            let fault = faults.entry(broken.kind).or_insert(Fault { count: 0, seed, what: broken.what });
+            fault.count += 1;
+        }
+    }
+    faults
+}
+
+/// The number that the environment gives, as for property tests.
+fn given(name: &str) -> Option<u64> {
+    std::env::var(name).ok()?.parse().ok()
+}
+
+/// A story made short, as a replay next to its files: `rilievo replay --force` takes it.
+fn replay_of(seed: u64) -> PathBuf {
+    let folder = starts::StoryFolder::new();
+    let told = story(seed, &folder);
+    let target = std::env::temp_dir().join(format!("rilievo-story-{seed}"));
+    starts::write_assets(&target);
+    let Some(broken) = told.broken else { return target };
+    let (actions, broken) = shrink::shrunk(told.actions, broken, &folder);
+    let lines: Vec<String> = actions.iter().map(|action| action.written().to_string()).collect();
+    let there = |text: &str| text.replace(&*folder.path().to_string_lossy(), &target.to_string_lossy());
+    let text = format!("# {}: {}\n{}\n", broken.kind, broken.what.replace('\n', " "), there(&lines.join("\n")));
+    let file = target.join("story.jsonl");
+    std::fs::write(&file, &text).unwrap();
+    eprintln!("{}:\n{text}", file.display());
+    file
+}
+
+fn assert_no_faults(first: u64, count: u64) {
+    let faults = played(first, count);
+    let mut list: Vec<(&String, &Fault)> = faults.iter().collect();
+    list.sort_by_key(|(_, fault)| std::cmp::Reverse(fault.count));
+    let (mut failed, mut ways) = (0, 0);
+    for (kind, Fault { count, seed, what }) in &list {
+        let is_known = known::is_known(kind);
+        let about = if is_known { "known: " } else { "" };
+        eprintln!("{about}{count} stories, the first is {seed}: {kind}\n    {what}");
+        if !is_known {
+            (failed, ways) = (failed + count, ways + 1);
+            replay_of(*seed);
+        }
+    }
+    assert!(ways == 0, "{failed} of {count} stories failed, in {ways} ways");
+}
+
+#[test]
+fn whatever_happens_documents_are_kept_undone_and_drawn_the_same() {
+    assert_no_faults(0, FEW);
+}
+/// `PROPTEST_CASES`: how many; `PROPTEST_RNG_SEED`: where they begin.
+#[test]
+#[ignore = "takes a night"]
+fn whatever_happens_in_a_night_documents_are_kept_undone_and_drawn_the_same() {
+    let first = given("PROPTEST_RNG_SEED").unwrap_or_default().wrapping_mul(1_000_000) % (1 << 60);
+    assert_no_faults(first, given("PROPTEST_CASES").unwrap_or(MANY));
+}
+/// A word that is spelled wrongly would weigh nothing.
+#[test]
+fn the_tables_of_stories_name_words_of_the_program() {
+    let words: [(&str, &[&str]); 9] = [
+        ("Action", Action::ROOMS),
+        ("LayerAction", LayerAction::WORDS),
+        ("PartAction", PartAction::WORDS),
+        ("FileAction", actions::FileAction::WORDS),
+        ("CanvasAction", actions::CanvasAction::WORDS),
+        ("EditAction", actions::EditAction::WORDS),
+        ("HandAction", actions::HandAction::WORDS),
+        ("SelectionAction", actions::SelectionAction::WORDS),
+        ("Property", Property::WORDS),
+    ];
+    let is_known = |(of, word): &(&str, &str)| words.iter().any(|(known, words)| known == of && words.contains(word));
+    let unknown: Vec<_> = weights::words().filter(|row| !is_known(row)).collect();
+    assert!(unknown.is_empty(), "{unknown:?}");
+    assert!(!StrokeAction::WORDS.is_empty());
+}

@@ -1,0 +1,262 @@
+//! What holds after every story: see `docs/PROJECTS.md`. Each broken promise has a kind, by which stories that fail in
+//! one way are counted and shrunk.
+
+use crate::document::{Document, Progress, flatten};
+use crate::io::export::ExportOptions;
+use crate::io::export::deep::encode_document;
+use crate::io::project::{self, Archive};
+use crate::io::{Budget, picture, psd, recipe};
+use crate::raster::picture::Texels;
+use crate::session::{Autosave, OpenDocument, Session, is_same};
+use std::any::Any;
+use std::path::Path;
+
+/// A promise that was not kept.
+#[derive(Clone, Debug)]
+pub struct Broken {
+    /// Of stories that fail in the same way; without numbers and names.
+    pub kind: String,
+    pub what: String,
+}
+
+impl Broken {
+    pub fn new(kind: &str, what: String) -> Self {
+        Self { kind: kind.into(), what }
+    }
+    /// One whose kind is also what was said, without numbers and what is in quotes.
+    fn said(kind: &str, what: impl ToString) -> Self {
+        let what = what.to_string();
+        let mut is_quoted = false;
+        let plain: String = what
+            .chars()
+            .filter(|&c| {
+                is_quoted = (is_quoted || c == '“') && c != '”';
+                !is_quoted && !c.is_ascii_digit()
+            })
+            .collect();
+        Self { kind: format!("{kind}: {plain}"), what }
+    }
+    pub fn panicked(panic: &(dyn Any + Send)) -> Self {
+        let text = panic.downcast_ref::<String>().cloned();
+        let text = text.or_else(|| panic.downcast_ref::<&str>().map(|text| (*text).to_owned()));
+        Self::said("panic", text.unwrap_or_else(|| "without words".into()))
+    }
+}
+
+type Kept = Result<(), Broken>;
+
+/// A document as it was at some step, and what it was like.
+pub struct Seen {
+    document: Document,
+    fingerprint: (String, u32),
+}
+
+impl Seen {
+    pub fn now(session: &Session) -> Result<Option<Self>, Broken> {
+        let document = session.active().map(|tab| tab.document().clone());
+        document.map(|document| Ok(Self { fingerprint: fingerprint(&document)?, document })).transpose()
+    }
+}
+
+/// What a document is: its parameters and its picture.
+fn fingerprint(document: &Document) -> Result<(String, u32), Broken> {
+    Ok((recipe::write(document).to_string(), crc32fast::hash(&rendered(document)?)))
+}
+pub fn fingerprints(session: &Session) -> Result<Vec<(String, u32)>, Broken> {
+    session.open_documents.iter().map(|tab| fingerprint(tab.document())).collect()
+}
+fn rendered(document: &Document) -> Result<Vec<u8>, Broken> {
+    let tiles = flatten(document, &Progress::default());
+    let tiles = tiles.ok_or_else(|| Broken::new("not rendered", String::new()))?;
+    Ok(tiles.to_straight_rgba(document.size.rect()))
+}
+
+/// An action that failed changed nothing.
+pub fn nothing_changed(session: &Session, before: Option<(usize, Document)>, why: &str) -> Kept {
+    let now = session.active().map(|tab| (tab.key, tab.document()));
+    match (&before, now) {
+        (Some((key, before)), Some((now_key, now))) if *key == now_key && is_same(before, now) => Ok(()),
+        (None, None) => Ok(()),
+        _ => Err(Broken::said("failed, and yet changed", why)),
+    }
+}
+
+/// What an edit accepted, files can hold; what was refused changed nothing.
+pub fn after_step(session: &Session, before: Option<(usize, Document)>, told: &[String]) -> Kept {
+    let Some(tab) = session.active() else { return Ok(()) };
+    let refused = told.iter().find(|note| note.ends_with("Nothing was changed."));
+    let is_changed = before.is_some_and(|(key, before)| key == tab.key && !is_same(&before, tab.document()));
+    match refused {
+        Some(note) if is_changed => return Err(Broken::said("refused, and yet changed", note)),
+        _ => {}
+    }
+    if is_changed {
+        tab.document().fits(None).map_err(|why| Broken::said("accepted, and does not fit", why))
+    } else {
+        Ok(())
+    }
+}
+
+/// Everything that holds at the end of a story.
+pub fn at_end(session: &mut Session, seen: &[Seen], all_formats: bool) -> Kept {
+    let before = fingerprints(session)?;
+    for tab in &session.open_documents {
+        is_kept(tab.document(), all_formats)?;
+    }
+    // What is kept for speed goes, and comes again.
+    if let Some(held) = session.held_documents() {
+        let kept = held.count(0).all.kept;
+        let again = session.held_documents().map(|held| held.count(u64::MAX).all.kept);
+        if again != Some(kept) {
+            return Err(Broken::new("memory", format!("{kept} bytes were kept, then {again:?}")));
+        }
+    }
+    if fingerprints(session)? != before {
+        return Err(Broken::new("without what was kept for speed, another picture", String::new()));
+    }
+    session.open_documents.iter_mut().try_for_each(|tab| steps(tab, seen))
+}
+
+/// Steps that are undone: each is drawn anew.
+const STEPS: usize = 4;
+
+/// Undone and made again, every document is the one that was.
+fn steps(tab: &mut OpenDocument, seen: &[Seen]) -> Kept {
+    let last = tab.document().clone();
+    let ahead = tab.history.future().count() as i32;
+    tab.walk(ahead);
+    let mut known = Vec::new();
+    loop {
+        let now = fingerprint(tab.document())?;
+        let was = seen.iter().find(|seen| is_same(&seen.document, tab.document()));
+        if let Some(was) = was.filter(|was| was.fingerprint != now) {
+            let what = if was.fingerprint.0 == now.0 { "the picture" } else { "what it is" };
+            return Err(Broken::new("undone, another document", what.into()));
+        }
+        known.push(now);
+        if tab.history.past().next().is_none() || known.len() > STEPS {
+            break;
+        }
+        tab.walk(-1);
+    }
+    for was in known.iter().rev().skip(1) {
+        tab.walk(1);
+        if fingerprint(tab.document())? != *was {
+            return Err(Broken::new("redone, another document", String::new()));
+        }
+    }
+    tab.walk(-ahead);
+    match is_same(&last, tab.document()) {
+        true => Ok(()),
+        false => Err(Broken::new("walked, another document", String::new())),
+    }
+}
+
+/// A document is saved and opened unchanged, by every way out.
+fn is_kept(document: &Document, all_formats: bool) -> Kept {
+    let (file, progress, budget) = (Path::new("a.ora"), Progress::default(), Budget::holding(document));
+    let written = project::write(file, document, &progress).map_err(|error| Broken::said("not saved", error))?;
+    let bytes = written.unwrap_or_default();
+    let read = project::read(file, &bytes, &budget).map_err(|error| Broken::said("not opened", error))?;
+    // What it says of itself is no loss.
+    let own = document.note_of_lost(None);
+    if let Some(note) = read.notes.iter().find(|note| Some(*note) != own.as_ref()) {
+        return Err(Broken::said("opened with a note", note));
+    }
+    if let Some(what) = document.difference(&read.document) {
+        return Err(Broken::said("reopened, it differs in", what));
+    }
+    let picture = rendered(document)?;
+    same_bytes("reopened, another picture", &picture, &rendered(&read.document)?)?;
+    same_bytes("the merged picture", &picture, &merged(file, &bytes)?)?;
+    let again =
+        project::write(file, &read.document, &progress).map_err(|error| Broken::said("not saved again", error))?;
+    if again.is_none_or(|again| again != bytes) {
+        return Err(Broken::new("saved again, other bytes", String::new()));
+    }
+    exported(document, &read.document, &picture, if all_formats { &[8, 16] } else { &[8] })?;
+    if all_formats { is_kept_by_photoshop(document, &picture) } else { Ok(()) }
+}
+
+/// Pictures of both are the same, and what is shown.
+fn exported(document: &Document, reopened: &Document, picture: &[u8], depths: &[u8]) -> Kept {
+    let (file, progress, budget) = (Path::new("a.png"), Progress::default(), Budget::holding(document));
+    for &bits in depths {
+        let options = ExportOptions { bits: Some(bits), ..ExportOptions::default() };
+        let bytes = |document: &Document| {
+            let bytes = encode_document(file, document, &options, &budget, &progress);
+            bytes.map_err(|error| Broken::said("not exported", error)).map(Option::unwrap_or_default)
+        };
+        let bytes = [bytes(document)?, bytes(reopened)?];
+        if bytes[0] != bytes[1] {
+            return Err(Broken::new("reopened, another export", format!("{bits} bits")));
+        }
+        if bits == 8 {
+            same_bytes("exported, another picture", picture, &decoded(file, &bytes[0])?)?;
+        }
+    }
+    Ok(())
+}
+
+/// Our Photoshop files hold the document as it is.
+fn is_kept_by_photoshop(document: &Document, picture: &[u8]) -> Kept {
+    let (file, progress, budget) = (Path::new("a.psd"), Progress::default(), Budget::holding(document));
+    let written = psd::write(file, document, &progress).map_err(|error| Broken::said("psd: not saved", error))?;
+    let Some(written) = written else { return Ok(()) };
+    let read = psd::read(file, &written.bytes, &budget).map_err(|error| Broken::said("psd: not opened", error))?;
+    let own = document.note_of_lost(None);
+    if let Some(note) = read.notes.iter().find(|note| Some(*note) != own.as_ref()) {
+        return Err(Broken::said("psd: opened with a note", note));
+    }
+    if let Some(what) = document.difference(&read.document) {
+        return Err(Broken::said("psd: reopened, it differs in", what));
+    }
+    same_bytes("psd: reopened, another picture", picture, &rendered(&read.document)?)
+}
+
+/// The picture in a project.
+fn merged(file: &Path, bytes: &[u8]) -> Result<Vec<u8>, Broken> {
+    let archive = Archive::open(file, bytes, &Budget::default());
+    let merged = archive.and_then(|archive| archive.bytes("mergedimage.png", u64::MAX));
+    decoded(file, &merged.map_err(|error| Broken::said("no merged picture", error))?)
+}
+fn decoded(file: &Path, bytes: &[u8]) -> Result<Vec<u8>, Broken> {
+    let picture =
+        picture::decode(file, bytes, &Budget::default()).map_err(|error| Broken::said("not decoded", error))?;
+    match picture.texels {
+        Texels::Srgb8(texels) => Ok(texels.as_flattened().to_vec()),
+        _ => Err(Broken::new("not decoded as bytes", String::new())),
+    }
+}
+fn same_bytes(kind: &str, a: &[u8], b: &[u8]) -> Kept {
+    let pixels = a.chunks(4).zip(b.chunks(4));
+    let differing = pixels.filter(|(a, b)| a != b).count();
+    if a.len() == b.len() && differing == 0 {
+        return Ok(());
+    }
+    let most = a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or_default();
+    Err(Broken::new(kind, format!("{differing} of {} pixels, by {most} at most", a.len() / 4)))
+}
+
+/// After a crash every document with edits that no file holds comes back as it was.
+pub fn recovered(session: &mut Session, folder: &Path) -> Kept {
+    session.keep();
+    let Some(autosave) = session.autosave.take() else { return Ok(()) };
+    autosave.settle();
+    drop(autosave);
+    let lost = Autosave::new(folder.into()).lost();
+    let mut back = Vec::new();
+    for left in lost.list() {
+        let recovered = lost.bring_back(left).map_err(|error| Broken::said("not recovered", error))?;
+        back.push(recovered.tab.document().clone());
+    }
+    for tab in session.open_documents.iter().filter(|tab| tab.is_dirty()) {
+        let differences: Vec<_> = back.iter().map(|document| tab.document().difference(document)).collect();
+        let Some(index) = differences.iter().position(Option::is_none) else {
+            let what = differences.into_iter().flatten().last();
+            return Err(Broken::said("recovered, it differs in", what.unwrap_or_else(|| "everything".into())));
+        };
+        same_bytes("recovered, another picture", &rendered(tab.document())?, &rendered(&back[index])?)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,241 @@
+//! Draws the values that documents hold: operators, anchors, lights, masks, transforms, brushes. Each is mostly one
+//! that a file may hold, at times one that it may not, which must then be refused. Not here: parts (`parts`).
+
+use super::dice::{Dice, Drawn};
+use crate::document::parts::flats::PartFor;
+use crate::document::{DerivedMask, Inflation, LayerTransform, TransformShape};
+use crate::io::recipe::value::RecipeValue;
+use crate::math::{DVec2, Range, Size};
+use crate::paint::{Adjust, BrushMode, GradientStop, Placement};
+use crate::raster::{Picture, Resampling};
+use crate::session::actions::clipboard::PastedPicture;
+use crate::session::actions::parts::InflationPreset;
+use crate::shading::{FeatureScale, Features, Light, LightKind, Reference, Scaling, Term};
+use crate::surface::plane_piece::PlanePiece;
+use crate::surface::region::{RegionKind, SurfaceRegion};
+use crate::surface::{Anchor, NoiseRelief, Operator};
+use crate::tools::Symmetry;
+use serde_json::{Value, json};
+
+impl Dice {
+    /// A number of a range, or of the useful part of it.
+    fn in_range(&mut self, useful: Range, all: Range) -> f32 {
+        match self.below(30) {
+            0 => *all.start(),
+            1 => *all.end(),
+            _ => self.within(*useful.start(), *useful.end()),
+        }
+    }
+}
+
+impl Drawn for Operator {
+    fn drawn(dice: &mut Dice) -> Self {
+        let kind = dice.one_of(&Operator::KINDS).0;
+        kind.map(|number, _| dice.in_range(number.useful.clone(), number.range.clone()))
+    }
+}
+impl Drawn for Anchor {
+    fn drawn(dice: &mut Dice) -> Self {
+        let at = dice.place();
+        if dice.is(50) { Anchor::fixed(at) } else { Anchor { at, source: dice.place() } }
+    }
+}
+impl Drawn for PlanePiece {
+    fn drawn(dice: &mut Dice) -> Self {
+        let (at, moved) = (dice.place(), dice.place() * 0.2);
+        let scale = dice.in_range(0.5..=2.0, PlanePiece::SCALE);
+        PlanePiece { at, moved, scale, rotation: dice.within(-180.0, 180.0) }
+    }
+}
+impl Drawn for Placement {
+    fn drawn(dice: &mut Dice) -> Self {
+        let scale = dice.in_range(0.2..=3.0, 0.01..=40.0);
+        Placement { center: dice.place(), scale, rotation: dice.within(-180.0, 180.0) }
+    }
+}
+impl Drawn for Adjust {
+    fn drawn(dice: &mut Dice) -> Self {
+        let blur = dice.within(0.0, 3.0);
+        let mut factor = || dice.in_range(0.0..=2.0, Adjust::FACTOR);
+        let [saturation, brightness, contrast] = [factor(), factor(), factor()];
+        Adjust {
+            blur,
+            exposure: dice.within(-2.0, 2.0),
+            hue: dice.within(-180.0, 180.0),
+            saturation,
+            brightness,
+            contrast,
+        }
+    }
+}
+impl Drawn for GradientStop {
+    fn drawn(dice: &mut Dice) -> Self {
+        GradientStop { t: dice.in_range(0.0..=1.0, 0.0..=1.0), color: dice.value(dice.word, "color") }
+    }
+}
+impl Drawn for NoiseRelief {
+    fn drawn(dice: &mut Dice) -> Self {
+        let size_px = dice.in_range(1.0..=40.0, NoiseRelief::SIZE_PX);
+        let (octaves, seed) = (1 + dice.below(6) as u32, dice.below(1000) as u32);
+        let roughness = dice.in_range(0.0..=1.0, NoiseRelief::ROUGHNESS);
+        NoiseRelief { size_px, octaves, roughness, stretch: dice.in_range(0.2..=5.0, NoiseRelief::STRETCH), seed }
+    }
+}
+impl Drawn for SurfaceRegion {
+    fn drawn(dice: &mut Dice) -> Self {
+        let kind = dice.one_of(&RegionKind::ALL).0;
+        let tolerance = dice.in_range(0.0..=2.0 * kind.tolerance(), kind.tolerances());
+        let (at, softness) = (dice.place(), dice.in_range(0.0..=1.0, SurfaceRegion::SOFTNESS));
+        SurfaceRegion { kind, at, tolerance, softness, contiguous: dice.is(50) }
+    }
+}
+impl Drawn for DerivedMask {
+    fn drawn(dice: &mut Dice) -> Self {
+        // As many kinds as there are: a new one is told by the compiler.
+        let (a, b) = (dice.within(0.0, 1.0), dice.within(0.0, 1.0));
+        match dice.one_of(&[DerivedMask::FRESNEL, DerivedMask::CURVATURE, DerivedMask::RAMP_OF_DEPTH]) {
+            _ if dice.is(35) => DerivedMask::Region(SurfaceRegion::drawn(dice)),
+            DerivedMask::Fresnel { .. } => DerivedMask::Fresnel { f0: a, power: 8.0 * b },
+            DerivedMask::Curvature { .. } => DerivedMask::Curvature { scale: 1.0 + 6.0 * a, blur: b, from: -b, to: a },
+            DerivedMask::Depth { .. } => DerivedMask::Depth { from: a, to: b },
+            DerivedMask::Region(region) => DerivedMask::Region(region),
+        }
+    }
+}
+impl Drawn for Light {
+    fn drawn(dice: &mut Dice) -> Self {
+        let position = dice.place().extend(dice.within(1.0, 80.0));
+        let kind = match Light::default().kind {
+            LightKind::Directional { .. } if dice.is(50) => LightKind::Point { position },
+            LightKind::Directional { .. } => LightKind::Directional { direction: dice.value(dice.word, "direction") },
+            LightKind::Point { .. } => LightKind::Point { position },
+        };
+        Light { kind, color: dice.value(dice.word, "color"), intensity: dice.in_range(0.0..=3.0, Light::INTENSITY) }
+    }
+}
+impl Drawn for Term {
+    fn drawn(dice: &mut Dice) -> Self {
+        let (color, weight) = (dice.value(dice.word, "color"), dice.in_range(0.0..=2.0, Term::WEIGHT));
+        Term { color, weight, scaling: Scaling::drawn(dice) }
+    }
+}
+impl Drawn for Scaling {
+    fn drawn(dice: &mut Dice) -> Self {
+        let alpha = dice.in_range(0.05..=0.95, Scaling::INVARIANT);
+        let mut gamma = || dice.in_range(0.0..=4.0, Scaling::GAMMA);
+        Scaling { alpha, gamma_convex: gamma(), gamma_concave: gamma() }
+    }
+}
+impl Drawn for Features {
+    fn drawn(dice: &mut Dice) -> Self {
+        let scale = |dice: &mut Dice| FeatureScale {
+            curvature_scale_px: dice.in_range(1.0..=12.0, FeatureScale::CURVATURE_PX).min(100.0),
+            blur_px: dice.within(0.0, 4.0),
+            weight: dice.in_range(0.0..=2.0, FeatureScale::WEIGHT),
+        };
+        let scales = (0..1 + dice.below(3)).map(|_| scale(dice)).collect();
+        Features { scales, lambda: dice.in_range(-1.0..=1.0, Features::LAMBDA) }
+    }
+}
+impl Drawn for Reference {
+    fn drawn(dice: &mut Dice) -> Self {
+        if dice.is(30) { Reference::Auto } else { Reference::Value(dice.in_range(0.1..=4.0, Reference::VALUE)) }
+    }
+}
+impl Drawn for LayerTransform {
+    fn drawn(dice: &mut Dice) -> Self {
+        let size = dice.facts.size.as_dvec2();
+        let near = |dice: &mut Dice, x: f64, y: f64| -> DVec2 {
+            let off = [dice.within(-12.0, 12.0), dice.within(-9.0, 9.0)].map(f64::from);
+            DVec2::new(x, y) * size + DVec2::from_array(off)
+        };
+        let shape = match dice.is(60) {
+            true => TransformShape::Matrix(<[f64; 6]>::drawn(dice)),
+            false => {
+                TransformShape::Quad([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| near(dice, x, y)))
+            }
+        };
+        LayerTransform { shape, filter: Resampling::drawn(dice) }
+    }
+}
+impl Drawn for BrushMode {
+    fn drawn(dice: &mut Dice) -> Self {
+        let (aligned, picture) = (dice.is(50), dice.is(50));
+        let kinds = [
+            BrushMode::Paint,
+            BrushMode::Smudge { length: dice.within(0.0, 1.0) },
+            BrushMode::Blur { width: dice.within(0.0, 1.0) },
+            BrushMode::Clone { aligned, picture },
+        ];
+        match dice.one_of(&kinds) {
+            // A new kind of mark belongs in the list above.
+            mode @ (BrushMode::Paint | BrushMode::Smudge { .. } | BrushMode::Blur { .. } | BrushMode::Clone { .. }) => {
+                mode
+            }
+        }
+    }
+}
+impl Drawn for Symmetry {
+    fn drawn(dice: &mut Dice) -> Self {
+        let round = Symmetry::Radial(2 + dice.below(5) as u32);
+        match dice.one_of(&[Symmetry::None, Symmetry::Vertical, Symmetry::Horizontal, Symmetry::Both, round]) {
+            _ if dice.is(50) => Symmetry::None,
+            symmetry @ (Symmetry::None | Symmetry::Vertical | Symmetry::Horizontal) => symmetry,
+            symmetry @ (Symmetry::Both | Symmetry::Radial(_)) => symmetry,
+        }
+    }
+}
+impl Drawn for PartFor {
+    fn drawn(dice: &mut Dice) -> Self {
+        match dice.one_of(&[PartFor::Layer, PartFor::Color, PartFor::Place]) {
+            each @ (PartFor::Layer | PartFor::Color | PartFor::Place) => each,
+        }
+    }
+}
+impl Drawn for InflationPreset {
+    fn drawn(dice: &mut Dice) -> Self {
+        InflationPreset(dice.one_of(&Inflation::PRESETS).0)
+    }
+}
+/// One of another program, somewhat transparent.
+impl Drawn for PastedPicture {
+    fn drawn(dice: &mut Dice) -> Self {
+        let size = Size::new(1 + dice.below(60) as u32, 1 + dice.below(50) as u32);
+        let texels = (0..size.area()).map(|_| dice.number().to_le_bytes()).map(|[r, g, b, a, ..]| [r, g, b, a]);
+        let picture = Picture::srgb8(size, texels.collect());
+        PastedPicture { name: "picture.png".into(), picture: picture.unwrap() }
+    }
+}
+/// Values with a form of their own in files: a brush, or a part in a new version.
+impl Drawn for Value {
+    fn drawn(dice: &mut Dice) -> Self {
+        match dice.field {
+            "part" => super::parts::changed(dice),
+            _ => brush(dice),
+        }
+    }
+}
+
+fn brush(dice: &mut Dice) -> Value {
+    let share = |dice: &mut Dice| f64::from(dice.within(0.0, 1.0));
+    let number = |dice: &mut Dice, high: f32| f64::from(dice.within(0.0, high));
+    let mut brush = json!({ "size": number(dice, 30.0) + 1.0, "hardness": share(dice), "flow": share(dice) });
+    let more = [
+        ("scatter", json!(share(dice))),
+        ("jitter", json!({ "hue": number(dice, 60.0), "value": share(dice) })),
+        ("stabilizer", json!({ "string": number(dice, 9.0) })),
+        ("stabilizer", json!({ "average": share(dice) * 0.9 })),
+        ("stabilizer", json!({ "lag": share(dice) * 0.2 })),
+        ("tip", json!({ "kind": "noise", "cells": 2 + dice.below(9) })),
+        ("keeps_alpha", json!(dice.is(50))),
+        ("erases", json!(dice.is(50))),
+        ("softness", json!(share(dice))),
+        ("seed", json!(dice.below(1000))),
+        ("mark", BrushMode::drawn(dice).to_json()),
+    ];
+    for _ in 0..dice.below(4) {
+        let (name, value) = dice.one_of(&more);
+        brush[name] = value;
+    }
+    brush
+}
