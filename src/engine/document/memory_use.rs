@@ -101,10 +101,10 @@ impl MemoryCount {
     pub(in crate::document) fn add_surface(&mut self, surface: &Arc<Surface>, keeps: bool) {
         if self.is_new(surface) {
             if !keeps {
-                surface.let_go();
+                surface.clear_caches();
             }
             self.used.maps += surface.map_bytes();
-            self.used.kept += surface.computed_bytes();
+            self.used.kept += surface.cached_bytes();
         }
     }
 }

@@ -5,6 +5,8 @@ use super::Scene;
 use crate::math::{COORDINATE, Mat2, PlaneMap, Range, Rect, UNIT, Vec2, vec2};
 use crate::raster::{CoverageGrid, Lattice};
 use crate::surface::Surface;
+use crate::surface::objects::{ObjectId, Objects};
+use std::sync::Arc;
 
 crate::named! {
     /// What a dab does to the pixels under it.
@@ -74,7 +76,7 @@ pub struct LiquifyStroke {
     /// The map from the displacement's frame to the canvas.
     to_canvas: PlaneMap,
     /// The object that it is limited to, if any.
-    object: Option<crate::surface::objects::ObjectId>,
+    object: Option<(Arc<Objects>, ObjectId)>,
     last: Vec2,
     /// Canvas px since the last dab.
     gone: f32,
@@ -103,7 +105,10 @@ impl LiquifyStroke {
         at: Vec2,
     ) -> Self {
         let surface = scene.surface.as_ref().filter(|_| settings.one_object);
-        let object = surface.and_then(|surface| surface.objects().at(at.x.floor() as i32, at.y.floor() as i32));
+        let object = surface.and_then(|surface| {
+            let objects = surface.objects();
+            objects.at(at.x.floor() as i32, at.y.floor() as i32).map(|object| (objects, object))
+        });
         Self { settings: settings.held(), scene, selection, to_canvas, object, last: at, gone: 0.0 }
     }
     fn radius(&self) -> f32 {
@@ -181,9 +186,7 @@ impl LiquifyStroke {
     /// How much of a canvas point may be displaced.
     fn share(&self, p: Vec2) -> f32 {
         let (x, y) = (p.x.floor() as i32, p.y.floor() as i32);
-        if let (Some(object), Some(surface)) = (self.object, &self.scene.surface)
-            && surface.objects().at(x, y) != Some(object)
-        {
+        if self.object.as_ref().is_some_and(|(objects, object)| objects.at(x, y) != Some(*object)) {
             return 0.0;
         }
         self.selection.as_ref().map_or(1.0, |covered| f32::from(covered.at(x, y)) / 255.0)

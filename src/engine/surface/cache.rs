@@ -1,7 +1,19 @@
-//! A small cache of results computed from a surface: it keeps the last few values by their keys.
-//! Floor 2.
+//! Caches of what is computed from a surface, and the memory that they hold.
+//! Floor 2. Not here: which caches a surface has (`derived`).
+use crate::raster::coverage::CoverageTile;
+use crate::raster::{CoverageGrid, Plane};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+/// Memory on the heap.
+pub(super) trait HeapSize {
+    fn heap_bytes(&self) -> u64;
+}
+
+/// Values that can be computed again.
+pub(super) trait Cache: HeapSize {
+    /// Drops them. What others hold stays in memory until they drop it, too.
+    fn clear(&self);
+}
 
 /// The last few values, the oldest first.
 pub(super) struct RecentCache<K, V> {
@@ -52,6 +64,53 @@ impl<K: PartialEq, V> RecentCache<K, V> {
         entries.push((key, computed.clone()));
         computed
     }
+}
+
+impl<T: Copy> HeapSize for Plane<T> {
+    fn heap_bytes(&self) -> u64 {
+        (self.size().area() * size_of::<T>()) as u64
+    }
+}
+
+impl<T: HeapSize> HeapSize for Option<T> {
+    fn heap_bytes(&self) -> u64 {
+        self.as_ref().map_or(0, T::heap_bytes)
+    }
+}
+
+impl<T: HeapSize> HeapSize for Arc<T> {
+    fn heap_bytes(&self) -> u64 {
+        T::heap_bytes(self)
+    }
+}
+
+impl HeapSize for CoverageGrid {
+    fn heap_bytes(&self) -> u64 {
+        self.iter().map(|(_, tile)| CoverageTile::held_bytes(tile)).sum()
+    }
+}
+
+impl<K: PartialEq, V: HeapSize> HeapSize for RecentCache<K, V> {
+    fn heap_bytes(&self) -> u64 {
+        self.sum(V::heap_bytes)
+    }
+}
+
+impl<K: PartialEq, V: HeapSize> Cache for RecentCache<K, V> {
+    fn clear(&self) {
+        RecentCache::clear(self);
+    }
+}
+
+impl<T: Copy> HeapSize for OnceLock<T> {
+    fn heap_bytes(&self) -> u64 {
+        0
+    }
+}
+
+impl<T: Copy> Cache for OnceLock<T> {
+    /// A few numbers, read at every pixel: they stay, and need no lock.
+    fn clear(&self) {}
 }
 
 #[cfg(test)]

@@ -28,7 +28,7 @@ pub struct Deformation<'a> {
     weights: Weights,
     pins: Vec<Pin>,
     /// For the operator that unwraps the surface.
-    planes: Option<LaidPlanes<'a>>,
+    planes: Option<LaidPlanes>,
     /// If the operator has detail.
     curvature: Option<Arc<Curvature>>,
     /// For a dab that must stay near the pen.
@@ -81,7 +81,7 @@ impl<'a> Deformation<'a> {
         Self { planes: dab.planes.map(LaidPlanes::unbounded), ..dab }
     }
     /// With the planes of the unwrapped surface laid under the anchors, where the operator needs them.
-    fn laid(self, lay: impl FnOnce(&'a Surface, UnwrapSettings, &[Anchor]) -> LaidPlanes<'a>) -> Self {
+    fn laid(self, lay: impl FnOnce(&'a Surface, UnwrapSettings, &[Anchor]) -> LaidPlanes) -> Self {
         let planes = self.surface.zip(self.operator.unwrapping());
         let planes = planes.map(|(surface, settings)| lay(surface, settings, &self.anchors()));
         Self { planes, ..self }
@@ -222,11 +222,11 @@ impl<'a> Deformation<'a> {
     /// Of a dab that the surface is unwrapped under: the plane itself, where D is that, turned, over a rectangle and
     /// one more pixel around it.
     pub fn own_plane(&self, rect: Rect) -> Option<OwnPlane<'_>> {
-        let (planes, surface) = self.planes.as_ref().zip(self.surface)?;
+        let planes = self.planes.as_ref()?;
         if self.sheet().is_some() || self.is_limited(rect.grown(1)) {
             return None;
         }
-        planes.own(surface, rect)
+        planes.own(rect)
     }
     /// Whether a reach changes D anywhere in a rectangle.
     pub fn is_limited(&self, rect: Rect) -> bool {

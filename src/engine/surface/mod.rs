@@ -12,13 +12,13 @@ mod creases;
 pub mod curvature;
 pub mod deformation;
 mod deformed_rect;
+mod derived;
 pub mod differentiate;
 pub mod fit;
 pub mod flow;
 pub mod grain;
 pub mod grow;
 pub mod integrate;
-mod kept;
 pub mod links;
 mod maps;
 pub mod objects;
@@ -52,19 +52,14 @@ pub use reach::DabReach;
 pub use scene::Scene;
 pub use support::SupportBounds;
 
-use crate::math::{Rect, Size, Vec2, Vec3, srgb::quantise, vec2, vec3};
-use crate::raster::{CoverageGrid, Plane};
-use cache::RecentCache;
+use crate::math::{Size, Vec2, Vec3, srgb::quantise, vec2, vec3};
+use crate::raster::Plane;
 use contours::{ContourMaps, Found, SheetOf};
-use curvature::{CurvatureRims, Kappa};
+use derived::DerivedCaches;
 use points::PointSource;
-use pyramid::MapPyramids;
-use ray::RayMap;
 use rayon::prelude::*;
-use region::SurfaceRegion;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 use through::Origin;
-use unwrap::{NearView, PlaneLayout, PlaneSprings, PlaneYield, Unwrapping, YieldKey};
 use view::Eye;
 
 /// What a surface is made from. At least one of normals and depth must be there; the importer derives the other.
@@ -110,32 +105,13 @@ pub struct Surface {
     /// The same without those across creases; absent where there are none.
     smooth_links: Option<Arc<Plane<u8>>>,
     depth_range_px: f32,
-    /// By blur.
-    curvatures: RecentCache<u32, Curvature>,
-    /// Where curvature is continued.
-    rims: RecentCache<(), CurvatureRims>,
-    /// By the scales that are weighed.
-    kappas: RecentCache<Vec<[u32; 3]>, Kappa>,
+    derived: DerivedCaches,
     /// The surface that detail was combined onto, if any; what depends on depth alone is computed there.
     base: Option<Arc<Surface>>,
-    /// By radius.
-    occlusions: RecentCache<u32, Plane<f32>>,
-    ray_maps: RecentCache<(), RayMap>,
-    regions: RecentCache<SurfaceRegion, CoverageGrid>,
-    /// By amount and blur.
-    unwrappings: RecentCache<[u32; 2], Unwrapping>,
-    plane_layouts: RecentCache<[u32; 2], Option<Arc<PlaneLayout>>>,
-    plane_yields: RecentCache<YieldKey, PlaneYield>,
-    plane_springs: RecentCache<([u32; 2], Rect), PlaneSprings>,
-    near_view: OnceLock<Option<NearView>>,
-    bounds: MapPyramids,
-    objects: OnceLock<Objects>,
     /// Which part each pixel shows, where the surface was made of parts; their objects are these.
     parts: Option<Arc<Plane<u32>>>,
     /// The pixels that two populations see.
     contours: Arc<Contours>,
-    /// What the other populations read.
-    sheets: RecentCache<(), Surface>,
     /// Their normals, where detail was combined onto them.
     sheet_normals: Option<Plane<Vec3>>,
     /// The surface that this one is the sheet of, if it is one.
@@ -218,23 +194,10 @@ impl Surface {
             links,
             smooth_links: None,
             depth_range_px,
-            curvatures: RecentCache::default(),
-            rims: RecentCache::default(),
-            kappas: RecentCache::default(),
+            derived: DerivedCaches::default(),
             base: None,
-            occlusions: RecentCache::default(),
-            ray_maps: RecentCache::default(),
-            regions: RecentCache::default(),
-            unwrappings: RecentCache::default(),
-            plane_layouts: RecentCache::default(),
-            plane_yields: RecentCache::default(),
-            plane_springs: RecentCache::default(),
-            near_view: OnceLock::new(),
-            bounds: MapPyramids::default(),
-            objects: OnceLock::new(),
             parts: None,
             contours: Arc::default(),
-            sheets: RecentCache::default(),
             sheet_normals: None,
             sheet_of: None,
             origin: None,

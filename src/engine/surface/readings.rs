@@ -1,6 +1,7 @@
 //! What a surface says about a pixel, its planes, and what is cached of it.
 //! Floor 2.
 
+use super::pyramid::MapPyramids;
 use super::*;
 
 impl Surface {
@@ -25,9 +26,6 @@ impl Surface {
     /// What this is the sheet of: its pixels are readings of other populations, not pixels of the canvas.
     pub fn sheet_of(&self) -> Option<&SheetOf> {
         self.sheet_of.as_ref()
-    }
-    pub(in crate::surface) fn sheets(&self) -> &RecentCache<(), Surface> {
-        &self.sheets
     }
     pub(in crate::surface) fn sheet_normals(&self) -> Option<&Plane<Vec3>> {
         self.sheet_normals.as_ref()
@@ -86,38 +84,10 @@ impl Surface {
     }
     /// Min–max pyramids of the maps, for `support`.
     pub(in crate::surface) fn bounds(&self) -> &MapPyramids {
-        &self.bounds
-    }
-    pub(in crate::surface) fn curvatures(&self) -> &RecentCache<u32, Curvature> {
-        &self.curvatures
-    }
-    pub(in crate::surface) fn rims_cell(&self) -> &RecentCache<(), CurvatureRims> {
-        &self.rims
-    }
-    pub(in crate::surface) fn kappas(&self) -> &RecentCache<Vec<[u32; 3]>, Kappa> {
-        &self.kappas
+        &self.derived.bounds
     }
     /// The surface without the detail that was combined onto it.
     pub(in crate::surface) fn base(&self) -> &Surface {
         self.base.as_deref().unwrap_or(self)
-    }
-    /// Computed by the calling thread alone: see `pyramid`.
-    pub(in crate::surface) fn objects_cell(&self) -> &OnceLock<Objects> {
-        &self.objects
-    }
-    pub(in crate::surface) fn regions(&self) -> &RecentCache<SurfaceRegion, CoverageGrid> {
-        &self.regions
-    }
-    pub(in crate::surface) fn unwrappings(&self) -> &RecentCache<[u32; 2], Unwrapping> {
-        &self.unwrappings
-    }
-    pub(in crate::surface) fn plane_layouts(&self) -> &RecentCache<[u32; 2], Option<Arc<PlaneLayout>>> {
-        &self.plane_layouts
-    }
-    pub(in crate::surface) fn ray_maps(&self) -> &RecentCache<(), RayMap> {
-        &self.ray_maps
-    }
-    pub(in crate::surface) fn occlusions(&self) -> &RecentCache<u32, Plane<f32>> {
-        &self.occlusions
     }
 }

@@ -90,7 +90,7 @@ impl Surface {
     /// The coverage of a region, cached. Call it once before going parallel: threads that call it at the same time may
     /// each compute it.
     pub fn region(self: &Arc<Self>, region: &SurfaceRegion) -> Arc<CoverageGrid> {
-        self.regions().get_or_compute(*region, KEPT, |_| region.on(self))
+        self.derived.regions.get_or_compute(*region, KEPT, |_| region.on(self))
     }
 }
 

@@ -19,8 +19,8 @@ pub use seen::PlaneView;
 pub(super) use yields::YieldKey;
 pub use yields::{PlaneHold, PlaneSprings, PlaneYield};
 
+use super::cache::HeapSize;
 use super::contours::SheetOf;
-use super::kept::KeptBytes;
 use super::operator::UnwrapSettings;
 use super::pyramid::{Pyramid, TurnSpan};
 use super::springs::{Effort, GoOn, SolveScratch, SpringGrid, SpringSolver};
@@ -42,9 +42,9 @@ pub struct Unwrapping {
     bounds: OnceLock<Pyramid<TurnSpan>>,
 }
 
-impl KeptBytes for Unwrapping {
-    fn kept_bytes(&self) -> u64 {
-        self.x.kept_bytes() + self.y.kept_bytes() + self.bounds.get().map_or(0, Pyramid::bytes)
+impl HeapSize for Unwrapping {
+    fn heap_bytes(&self) -> u64 {
+        self.x.heap_bytes() + self.y.heap_bytes() + self.bounds.get().map_or(0, Pyramid::bytes)
     }
 }
 
@@ -203,7 +203,7 @@ impl Surface {
     /// each compute it. Settings that are not finite count as 0. For a sheet it is that of its surface, continued.
     pub fn unwrapped(&self, settings: UnwrapSettings) -> Arc<Unwrapping> {
         let settings = settings.held(self.size());
-        self.unwrappings().get_or_compute(settings.key(), self.kept_unwrappings(), |_| match self.sheet_of() {
+        self.derived.unwrappings.get_or_compute(settings.key(), self.kept_unwrappings(), |_| match self.sheet_of() {
             Some(sheet) => Unwrapping::on_sheet(self.size(), sheet, settings),
             None => Unwrapping::new(self, settings),
         })
@@ -215,11 +215,11 @@ impl Surface {
         }
         let settings = settings.held(self.size());
         let unwrapped = Unwrapping::telling(self, settings, go_on)?;
-        Some(self.unwrappings().get_or_compute(settings.key(), self.kept_unwrappings(), |_| unwrapped))
+        Some(self.derived.unwrappings.get_or_compute(settings.key(), self.kept_unwrappings(), |_| unwrapped))
     }
     /// Whether it is unwrapped with these settings already.
     pub fn is_unwrapped(&self, settings: UnwrapSettings) -> bool {
-        self.unwrappings().known(&settings.held(self.size()).key()).is_some()
+        self.derived.unwrappings.known(&settings.held(self.size()).key()).is_some()
     }
     fn kept_unwrappings(&self) -> usize {
         (KEPT_PX / self.size().area().max(1)).clamp(2, 8)

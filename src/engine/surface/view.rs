@@ -65,8 +65,8 @@ impl Surface {
     /// The same surface seen by another eye.
     pub fn seen_by(mut self, eye: Eye) -> Self {
         self.eye = eye;
-        self.near_view = Default::default();
-        self.ray_maps.clear();
+        self.derived.near_view = Default::default();
+        self.derived.ray_maps.clear();
         self
     }
     pub fn eye(&self) -> Eye {

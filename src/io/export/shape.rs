@@ -131,7 +131,10 @@ fn at(surface: &Surface, i: usize) -> (usize, usize) {
 
 /// The part that a pixel shows, or its object where the surface is not made of parts.
 fn part(surface: &Surface, x: usize, y: usize) -> u32 {
-    surface.parts_plane().unwrap_or_else(|| surface.objects().labels()).at(x, y)
+    match surface.parts_plane() {
+        Some(parts) => parts.at(x, y),
+        None => surface.objects().labels().at(x, y),
+    }
 }
 
 /// 16 bits in the machine's own order, as the encoder takes them.

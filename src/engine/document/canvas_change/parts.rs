@@ -42,7 +42,8 @@ pub(super) fn outline_mut(kind: &mut PartKind) -> Option<&mut OutlineSource> {
 
 /// The number of the object that most pixels of another one became; for one that is gone, a number that no object has.
 pub(super) fn same_object(object: u32, old: &Arc<Surface>, new: &Arc<Surface>, to: impl Fn(Vec2) -> Vec2) -> u32 {
-    let (labels, now) = (old.objects().labels(), new.objects());
+    let (before, now) = (old.objects(), new.objects());
+    let labels = before.labels();
     let mut counts: BTreeMap<u32, usize> = BTreeMap::new();
     let own = labels.values().iter().enumerate().filter(|(_, label)| **label == object);
     for (i, _) in own {

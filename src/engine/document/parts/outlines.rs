@@ -259,7 +259,8 @@ impl OutlineKey {
                 Self::Path(OutlineSource::Path(points)) => Outline::of_path(points, most_px),
                 Self::Path(_) => None,
                 Self::Object(surface, object) => {
-                    let labels = surface.objects().labels();
+                    let objects = surface.objects();
+                    let labels = objects.labels();
                     let coverage = Plane::from_fn(surface.size(), |x, y| {
                         if labels.at(x, y) == *object { surface.coverage(x, y) } else { 0 }
                     });

@@ -20,7 +20,8 @@ pub(super) fn mask(surface: &Surface) -> Picture {
 
 /// A colour for each object, darker where it turns away.
 pub(super) fn objects(surface: &Surface) -> Picture {
-    let labels = surface.objects().labels();
+    let objects = surface.objects();
+    let labels = objects.labels();
     painted(surface.size(), Some(surface), |x, y| {
         let color = super::anchor_color((labels.at(x, y) as usize).saturating_sub(1));
         (color * (0.35 + 0.65 * surface.normal(x, y).z.max(0.0))).to_array()

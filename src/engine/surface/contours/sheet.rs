@@ -174,7 +174,7 @@ impl Surface {
     /// What the other populations of contour pixels read; `None` where no pixel has another one on a surface. Cached.
     pub fn sheet(self: &Arc<Self>) -> Option<Arc<Surface>> {
         let rows = self.contours().sheet_rows.len();
-        (rows > 0).then(|| self.sheets().get_or_compute((), 1, |_| self.made_sheet(rows)))
+        (rows > 0).then(|| self.derived.sheets.get_or_compute((), 1, |_| self.made_sheet(rows)))
     }
     fn made_sheet(self: &Arc<Self>, rows: usize) -> Surface {
         let size = Size::new(SHEET_SIDE as u32, (rows * BLOCK) as u32);

@@ -4,7 +4,7 @@
 use super::{Curvature, Surface};
 use crate::math::{Size, fast};
 use crate::raster::Plane;
-use crate::surface::kept::KeptBytes;
+use crate::surface::cache::HeapSize;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -30,9 +30,9 @@ const CHUNK: usize = 4096;
 /// Pixels of all maps of κ kept, 2 bytes each.
 const KEPT_PX: usize = 64 << 20;
 
-impl KeptBytes for Kappa {
-    fn kept_bytes(&self) -> u64 {
-        self.steps.kept_bytes()
+impl HeapSize for Kappa {
+    fn heap_bytes(&self) -> u64 {
+        self.steps.heap_bytes()
     }
 }
 
@@ -71,7 +71,7 @@ impl Surface {
     pub fn kappa(&self, scales: &[KappaScale]) -> Arc<Kappa> {
         let key = scales.iter().map(|s| [s.blur_px, s.curvature_scale_px, s.share].map(f32::to_bits)).collect();
         let keep = (KEPT_PX / self.size().area().max(1)).clamp(2, 8);
-        self.kappas().get_or_compute(key, keep, |recycled| {
+        self.derived.kappas.get_or_compute(key, keep, |recycled| {
             let parts: Vec<_> = scales.iter().map(|&scale| (self.curvature(scale.blur_px), scale)).collect();
             Kappa::compute(self.size(), &parts, recycled)
         })

@@ -15,8 +15,8 @@ pub use kappa::{Kappa, KappaScale};
 pub use rims::CurvatureRims;
 
 use super::Surface;
+use super::cache::HeapSize;
 use super::contours::SheetOf;
-use super::kept::KeptBytes;
 use crate::math::{Vec2, Vec3, vec2};
 use crate::raster::Plane;
 use std::sync::Arc;
@@ -92,9 +92,9 @@ impl Curvature {
 /// Pixels of all curvatures kept, 12 bytes each: a few scales weighed at once, or two on a large canvas.
 const KEPT_PX: usize = 16 << 20;
 
-impl KeptBytes for Curvature {
-    fn kept_bytes(&self) -> u64 {
-        [&self.hxx, &self.hxy, &self.hyy].map(Plane::kept_bytes).iter().sum()
+impl HeapSize for Curvature {
+    fn heap_bytes(&self) -> u64 {
+        [&self.hxx, &self.hxy, &self.hyy].map(Plane::heap_bytes).iter().sum()
     }
 }
 
@@ -113,7 +113,7 @@ impl Surface {
             Some(sheet) => self.of_sheet(sheet, blur_px),
             None => tiles::compute(self, blur_px, recycled),
         };
-        self.curvatures().get_or_compute(blur_px.to_bits(), keep, compute)
+        self.derived.curvatures.get_or_compute(blur_px.to_bits(), keep, compute)
     }
     fn of_sheet(&self, sheet: &SheetOf, blur_px: f32) -> Curvature {
         let whole = sheet.surface().map(|surface| surface.curvature(blur_px));

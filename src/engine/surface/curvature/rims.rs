@@ -3,8 +3,8 @@
 
 use crate::raster::Plane;
 use crate::surface::Surface;
+use crate::surface::cache::HeapSize;
 use crate::surface::contours::{BESIDE, PixelWindow, bits, mean_of};
-use crate::surface::kept::KeptBytes;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
@@ -15,8 +15,8 @@ pub struct CurvatureRims {
     pixels: Vec<RimPixel>,
 }
 
-impl KeptBytes for CurvatureRims {
-    fn kept_bytes(&self) -> u64 {
+impl HeapSize for CurvatureRims {
+    fn heap_bytes(&self) -> u64 {
         size_of_val(&self.pixels[..]) as u64
     }
 }
@@ -31,7 +31,7 @@ struct RimPixel {
 impl Surface {
     /// Cached.
     pub(super) fn rims(&self) -> Arc<CurvatureRims> {
-        self.rims_cell().get_or_compute((), 1, |_| CurvatureRims::of(self))
+        self.derived.rims.get_or_compute((), 1, |_| CurvatureRims::of(self))
     }
 }
 

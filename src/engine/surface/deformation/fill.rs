@@ -92,7 +92,7 @@ fn laid_span(planes: &LaidPlanes, surface: &Surface, at: MapSpan, out_x: &mut [f
         return false;
     }
     let [u, v] = planes.unwrapping.planes().map(|plane| at.of(plane));
-    let objects = at.of(planes.objects);
+    let objects = at.of(planes.objects.labels());
     // Without an early end the loop is vectorised.
     let one = objects.iter().fold(0, |differs, object| differs | (object ^ objects[0])) == 0;
     match planes.fits().iter().find(|fit| fit.object == objects[0]).filter(|_| one) {
@@ -115,7 +115,7 @@ fn laid_span(planes: &LaidPlanes, surface: &Surface, at: MapSpan, out_x: &mut [f
 /// Prefetches what D_s reads of a span.
 fn prefetch_laid(planes: &LaidPlanes, span: MapSpan) {
     planes.unwrapping.planes().into_iter().for_each(|plane| prefetch(span.of(plane)));
-    prefetch(span.of(planes.objects));
+    prefetch(span.of(planes.objects.labels()));
     if let Some(yields) = &planes.yields {
         yields.planes().into_iter().for_each(|plane| prefetch(span.of(plane)));
     }

@@ -11,13 +11,13 @@ use crate::surface::operator::UnwrapSettings;
 use crate::surface::plane_piece::PlanePiece;
 use crate::surface::pyramid::BLOCK;
 use crate::surface::unwrap::{PlaneHold, PlanePlace, PlaneYield, Unwrapping};
-use crate::surface::{Bend, Surface, Weights};
+use crate::surface::{Bend, Objects, Surface, Weights};
 use std::sync::Arc;
 
 /// An unwrapped surface whose planes are laid under anchors.
-pub(super) struct LaidPlanes<'a> {
+pub(super) struct LaidPlanes {
     pub unwrapping: Arc<Unwrapping>,
-    pub objects: &'a Plane<u32>,
+    pub objects: Arc<Objects>,
     fits: Vec<PlaneFit>,
     /// How planes yield where a rigid fit misses anchors.
     pub yields: Option<Arc<PlaneYield>>,
@@ -58,7 +58,7 @@ pub(super) const OUT_OF_REACH_PX: f32 = 1e6;
 /// Below this a pin lacks nothing.
 const MET_PX: f32 = 1e-3;
 
-impl<'a> LaidPlanes<'a> {
+impl LaidPlanes {
     /// D(q_i) = s_i at every anchor. Two or more on one object turn its plane as a whole, so that they are met as
     /// nearly as a turn can; what each still lacks the plane yields, by the equation that unwrapped it.
     ///
@@ -66,7 +66,7 @@ impl<'a> LaidPlanes<'a> {
     /// ramp runs evenly over the surface between them.
     ///
     /// Then the picture is turned, moved and scaled on the bend's pieces.
-    pub fn pinned(surface: &'a Surface, settings: UnwrapSettings, bend: &Bend) -> Self {
+    pub fn pinned(surface: &Surface, settings: UnwrapSettings, bend: &Bend) -> Self {
         let unwrapping = surface.unwrapped(settings);
         // Anchors are on the surface, also for a sheet.
         let whole = surface.sheet_of().and_then(|sheet| sheet.surface());
@@ -85,8 +85,7 @@ impl<'a> LaidPlanes<'a> {
         let fits: Vec<PlaneFit> =
             groups.iter().map(|(object, pins)| PlaneFit::new(*object, pins, bend.weights, &mut holds)).collect();
         let yields = yields_of(surface, settings, &holds);
-        let mut laid =
-            Self { unwrapping, objects: surface.objects().labels(), fits, yields, is_bounded: false, dab_at: None };
+        let mut laid = Self { unwrapping, objects: surface.objects(), fits, yields, is_bounded: false, dab_at: None };
         let of_whole = yields_of(pinned, settings, &holds);
         bend.pieces.iter().for_each(|piece| laid.set_apart(pinned, settings, piece, of_whole.as_deref()));
         laid
@@ -117,7 +116,7 @@ impl<'a> LaidPlanes<'a> {
         fit.pulled = fit.pulled.map(|pulled| matrix2 * pulled);
     }
     /// `D(q) − q_0 = R(q_0)ᵀ (U(q) − U(q_0))`: a decal, upright where it is put down.
-    pub fn of_dab(surface: &'a Surface, settings: UnwrapSettings, at: Vec2) -> Self {
+    pub fn of_dab(surface: &Surface, settings: UnwrapSettings, at: Vec2) -> Self {
         let unwrapping = surface.unwrapped(settings);
         let whole = surface.sheet_of().and_then(|sheet| sheet.surface());
         let pinned = whole.as_deref().unwrap_or(surface);
@@ -126,7 +125,7 @@ impl<'a> LaidPlanes<'a> {
         let fit = PlaneFit { object, linear, shift: at - linear * there, pulled: None };
         Self {
             unwrapping,
-            objects: surface.objects().labels(),
+            objects: surface.objects(),
             fits: vec![fit],
             yields: None,
             is_bounded: true,
@@ -139,7 +138,7 @@ impl<'a> LaidPlanes<'a> {
     }
     /// D(q) at the centre of a pixel that the surface covers.
     pub fn at(&self, x: usize, y: usize) -> Vec2 {
-        let (object, u) = (self.objects.at(x, y), self.unwrapping.at(x, y));
+        let (object, u) = (self.objects.labels().at(x, y), self.unwrapping.at(x, y));
         match self.fits.iter().find(|fit| fit.object == object) {
             Some(fit) => fit.at(u, self.yields.as_ref().map_or(Vec2::ZERO, |yields| yields.at(x, y))),
             None if self.is_bounded => u + OUT_OF_REACH_PX,
@@ -147,9 +146,9 @@ impl<'a> LaidPlanes<'a> {
         }
     }
     /// For a dab: its plane itself, over a rectangle and one more pixel around it, if all of that is on its object.
-    pub fn own(&self, surface: &Surface, rect: Rect) -> Option<OwnPlane<'_>> {
+    pub fn own(&self, rect: Rect) -> Option<OwnPlane<'_>> {
         let ([fit], Some(at)) = (&self.fits[..], self.dab_at) else { return None };
-        let blocks = surface.objects().around_blocks();
+        let blocks = self.objects.around_blocks();
         let (x0, y0) = (rect.x0.max(0) as usize / BLOCK, rect.y0.max(0) as usize / BLOCK);
         let (x1, y1) = (rect.x1.max(0) as usize, rect.y1.max(0) as usize);
         let (x1, y1) = (x1.div_ceil(BLOCK).min(blocks.width()), y1.div_ceil(BLOCK).min(blocks.height()));

@@ -171,7 +171,7 @@ impl Surface {
         // NaN.max is the other one.
         let radius_px = radius_px.max(1.0).min(Self::WIDEST_OCCLUSION_PX);
         if let Some(sheet) = self.sheet_of() {
-            return self.occlusions().get_or_compute(radius_px.to_bits(), KEPT, |_| {
+            return self.derived.occlusions.get_or_compute(radius_px.to_bits(), KEPT, |_| {
                 let open = sheet.surface().map(|surface| surface.occlusion(radius_px));
                 let of = |x: usize, y: usize| open.as_ref().map_or(1.0, |open| open.at(x, y));
                 sheet.map(self.size(), |pixel| pixel.other_mean(of))
@@ -179,7 +179,7 @@ impl Surface {
         }
         // Detail combined onto the surface casts no shade.
         let base = self.base();
-        base.occlusions().get_or_compute(radius_px.to_bits(), KEPT, |_| {
+        base.derived.occlusions.get_or_compute(radius_px.to_bits(), KEPT, |_| {
             let open = rows::compute(base, &HorizonSlices::new(radius_px));
             rows::smoothed(base, &open)
         })

@@ -9,7 +9,7 @@ mod line;
 #[cfg(test)]
 mod tests;
 
-use super::kept::KeptBytes;
+use super::cache::HeapSize;
 use super::occlusion::CLIFF;
 use super::unwrap::NearView;
 use super::{Surface, links};
@@ -219,9 +219,9 @@ impl RayMap {
     }
 }
 
-impl KeptBytes for RayMap {
-    fn kept_bytes(&self) -> u64 {
-        self.blocks.iter().chain([&self.nearness]).map(Plane::kept_bytes).sum()
+impl HeapSize for RayMap {
+    fn heap_bytes(&self) -> u64 {
+        self.blocks.iter().chain([&self.nearness]).map(Plane::heap_bytes).sum()
     }
 }
 
@@ -234,7 +234,7 @@ impl Surface {
     /// going parallel.
     pub fn ray_map(&self) -> Arc<RayMap> {
         let base = self.base();
-        base.ray_maps().get_or_compute((), 1, |_| RayMap::of(base))
+        base.derived.ray_maps.get_or_compute((), 1, |_| RayMap::of(base))
     }
     /// Where a ray meets the surface again, as far as the picture shows it; `None` where it leaves the picture, passes
     /// behind an object or meets nothing.

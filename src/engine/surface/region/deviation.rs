@@ -35,7 +35,8 @@ pub fn of(surface: &Surface, kind: RegionKind, at: Vec2) -> Plane<f32> {
             on_surface(&|x, y| (kappa(x, y) - k0).abs())
         }
         RegionKind::Object => {
-            let labels = surface.objects().labels();
+            let objects = surface.objects();
+            let labels = objects.labels();
             let (x0, y0) = surface.pixel_of(at);
             let here = labels.at(x0, y0);
             on_surface(&|x, y| if labels.at(x, y) == here { 0.0 } else { f32::INFINITY })

@@ -3,6 +3,7 @@
 
 use super::{PlaneView, UnwrapSettings, Unwrapping};
 use crate::math::{Mat2, Rect, Size, Vec2, vec2};
+use crate::surface::cache::HeapSize;
 use crate::surface::{Anchor, Bend, Operator, Surface};
 use std::sync::Arc;
 
@@ -13,6 +14,13 @@ pub struct PlaneLayout {
     /// The largest first.
     pieces: Vec<LaidPiece>,
     sheet: PlaneView,
+}
+
+impl HeapSize for PlaneLayout {
+    /// Without the unwrapping, which is cached by itself.
+    fn heap_bytes(&self) -> u64 {
+        (self.pieces.len() * size_of::<LaidPiece>() + self.sheet.points.len() * size_of::<Vec2>()) as u64
+    }
 }
 
 /// One object's plane on the sheet.
@@ -50,7 +58,8 @@ impl PlaneLayout {
         let unwrapping = surface.unwrapped(settings);
         let mut pieces = extents(surface, &unwrapping);
         let size = shelved(&mut pieces)?;
-        let (w, labels) = (surface.size().width as usize, surface.objects().labels());
+        let (w, objects) = (surface.size().width as usize, surface.objects());
+        let labels = objects.labels();
         let most = pieces.iter().map(|piece| piece.object as usize + 1).max().unwrap_or(0);
         let mut shifts = vec![Vec2::NAN; most];
         pieces.iter().for_each(|piece| shifts[piece.object as usize] = piece.shift);
@@ -139,8 +148,9 @@ impl PlaneLayout {
 
 /// Each object whose plane shows something, with its extent there; not yet laid out.
 fn extents(surface: &Surface, unwrapping: &Unwrapping) -> Vec<LaidPiece> {
-    let labels = surface.objects().labels();
-    let mut found: Vec<Option<ObjectExtent>> = vec![None; surface.objects().count() + 1];
+    let objects = surface.objects();
+    let labels = objects.labels();
+    let mut found: Vec<Option<ObjectExtent>> = vec![None; objects.count() + 1];
     for (y, row) in (0..labels.height()).map(|y| (y, labels.row(y))) {
         for (x, &label) in row.iter().enumerate().filter(|(_, label)| **label > 0) {
             let (at, links) = (unwrapping.at(x, y), surface.links_plane().at(x, y));
@@ -200,13 +210,15 @@ impl Surface {
     /// The sheet of its unwrapped planes, cached like them; `None` where it has none.
     pub fn plane_layout(&self, settings: UnwrapSettings) -> Option<Arc<PlaneLayout>> {
         let settings = settings.held(self.size());
-        let laid =
-            self.plane_layouts().get_or_compute(settings.key(), 1, |_| PlaneLayout::new(self, settings).map(Arc::new));
+        let laid = self
+            .derived
+            .plane_layouts
+            .get_or_compute(settings.key(), 1, |_| PlaneLayout::new(self, settings).map(Arc::new));
         Option::clone(&laid)
     }
     /// The same if it is there already.
     pub fn known_plane_layout(&self, settings: UnwrapSettings) -> Option<Arc<PlaneLayout>> {
-        self.plane_layouts().known(&settings.held(self.size()).key()).and_then(|laid| Option::clone(&laid))
+        self.derived.plane_layouts.known(&settings.held(self.size()).key()).and_then(|laid| Option::clone(&laid))
     }
 }
 

@@ -83,7 +83,7 @@ impl NearView {
 impl Surface {
     /// From where it is seen, if that is near: with the distances from its depth and its normals.
     pub fn near_view(&self) -> Option<NearView> {
-        *crate::memory::once(&self.near_view, || NearView::of(self))
+        *crate::memory::once(&self.derived.near_view, || NearView::of(self))
     }
     /// S(q) of MATH 8 at a pixel: how long steps of the picture are on the surface, seen as it is.
     ///

@@ -5,7 +5,7 @@ use super::{UnwrapSettings, covered, place::nearest_covered, smooth, springs};
 use crate::math::{Rect, Vec2};
 use crate::memory::filled_or_unwind;
 use crate::raster::Plane;
-use crate::surface::kept::KeptBytes;
+use crate::surface::cache::HeapSize;
 use crate::surface::springs::{Effort, SolveScratch, SpringSolver};
 use crate::surface::{Surface, links};
 use std::sync::Arc;
@@ -24,14 +24,14 @@ pub struct PlaneYield {
     planes: [Plane<f32>; 2],
 }
 
-impl KeptBytes for PlaneYield {
-    fn kept_bytes(&self) -> u64 {
-        self.planes.iter().map(Plane::kept_bytes).sum()
+impl HeapSize for PlaneYield {
+    fn heap_bytes(&self) -> u64 {
+        self.planes.iter().map(Plane::heap_bytes).sum()
     }
 }
 
-impl KeptBytes for PlaneSprings {
-    fn kept_bytes(&self) -> u64 {
+impl HeapSize for PlaneSprings {
+    fn heap_bytes(&self) -> u64 {
         self.solver.bytes()
     }
 }
@@ -203,7 +203,7 @@ impl Surface {
         let bits = |hold: &PlaneHold| [hold.at.x, hold.at.y, hold.lacks.x, hold.lacks.y].map(f32::to_bits);
         let key: YieldKey = settings.key().into_iter().chain(holds.iter().flat_map(bits)).collect();
         let keep = self.kept_unwrappings().min(4);
-        self.plane_yields.get_or_compute(key, keep, |_| match self.sheet_of() {
+        self.derived.plane_yields.get_or_compute(key, keep, |_| match self.sheet_of() {
             Some(sheet) => {
                 let whole = sheet.surface().map(|surface| surface.plane_yield(settings, holds));
                 let planes = [0, 1].map(|axis| {
@@ -219,15 +219,16 @@ impl Surface {
         if self.parts_plane().is_some() {
             return covered(self);
         }
+        let objects = self.objects();
         let object = |hold: &PlaneHold| {
             let (x, y) = nearest_covered(self, hold.at);
-            self.objects().at(x as i32, y as i32).map(|object| self.objects().rect(object))
+            objects.at(x as i32, y as i32).map(|object| objects.rect(object))
         };
         holds.iter().filter_map(object).fold(Rect::EMPTY, Rect::union)
     }
     /// The springs of the unwrapping over a rectangle that holds all that is read from it, cached.
     fn plane_springs(&self, settings: UnwrapSettings, rect: Rect) -> Arc<PlaneSprings> {
-        self.plane_springs.get_or_compute((settings.key(), rect), 1, |_| {
+        self.derived.plane_springs.get_or_compute((settings.key(), rect), 1, |_| {
             let normals = smooth::normals(self, rect, settings.smooth_px);
             PlaneSprings { rect, solver: SpringSolver::new(springs(self, rect, &normals)) }
         })

@@ -68,7 +68,8 @@ fn a_line_over_the_gap_between_two_pieces_is_cut_there_and_one_step() {
     let (from, to) = (on_sheet(&document, 100.0, 60.0), on_sheet(&document, 260.0, 60.0));
     let strokes = drawn(&document, &Brush::default(), &[from, to]);
     assert_eq!(strokes.len(), 2, "one on each piece");
-    let labels = document.surface.as_ref().unwrap().objects().labels();
+    let objects = document.surface.as_ref().unwrap().objects();
+    let labels = objects.labels();
     for stroke in &strokes {
         let on: Vec<u32> = stroke.samples().iter().map(|s| labels.clamped(s.at.x as i32, s.at.y as i32)).collect();
         let there: Vec<u32> = on.iter().copied().filter(|label| *label > 0).collect();

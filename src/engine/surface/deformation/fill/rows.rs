@@ -88,7 +88,7 @@ fn fill_laid(
         if y + 1 < rect.y1 {
             next = span_of(y + 1);
             [u, v].into_iter().for_each(|plane| prefetch(next.of(plane)));
-            prefetch(next.of(planes.objects));
+            prefetch(next.of(planes.objects.labels()));
             prefetch(next.of(surface.coverage_plane()));
             prefetch(next.of(surface.smooth_links_plane()));
         }
@@ -98,7 +98,7 @@ fn fill_laid(
         let row =
             LaidRow { first, object: fit.object, linear: fit.linear, shift: fit.shift, away: planes.elsewhere_px() };
         let coverage = span.of(surface.coverage_plane());
-        laid_dab_row(row, coverage, span.of(planes.objects), span.of(u), span.of(v), out_x, out_y);
+        laid_dab_row(row, coverage, span.of(planes.objects.labels()), span.of(u), span.of(v), out_x, out_y);
     }
     true
 }
