@@ -4,11 +4,11 @@
 
 use super::behind::{Behind, BehindScene};
 use super::deep::DeepTiles;
+use super::layer::adjustment::{AdjustedPlace, Adjustment};
 use super::layer::tile_content::TileContent;
 use super::prepare::{PreparedDocument, PreparedLayer};
 use super::{Content, Role, mask};
 use crate::raster::{BlendMode, Mix, PlanarTile, TILE, Tile, TileAt, TileCoverage, TilePaint};
-use crate::shading::RadianceScaling;
 use crate::shading::radiance::{BackdropStats, Exactness};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -188,14 +188,17 @@ impl Composer<'_> {
         if self.sought == Some(index) {
             return ComposeFlow::Break(std::mem::replace(onto, PlanarTile::transparent()));
         }
-        let (Role::Adjusts(scaling), Some(&beneath)) = (node.layer.content.role(), self.prepared.beneath.get(index))
+        let (Role::Adjusts(adjustment), Some(&beneath)) = (node.layer.content.role(), self.prepared.beneath.get(index))
         else {
             return ComposeFlow::Continue(());
         };
         let exactness = self.deep.map_or(Exactness::Fast, DeepTiles::exactness);
         let apply = |pixels: &mut PlanarTile| match &self.behind {
-            Some(behind) => adjust_behind(scaling, &node.seen_behind(*behind), beneath, exactness, pixels),
-            None => scaling.apply_at(&node.scene, self.at, beneath, exactness, pixels),
+            Some(behind) => adjust_behind(adjustment, &node.seen_behind(*behind), beneath, exactness, pixels),
+            None => {
+                let place = AdjustedPlace::Tile { scene: &node.scene, at: self.at };
+                adjustment.adjust(&place, beneath, exactness, pixels);
+            }
         };
         if coverage.is_full() && node.clipped.is_empty() {
             apply(onto);
@@ -251,16 +254,14 @@ impl PreparedLayer {
 
 /// An adjustment of what the other populations see.
 fn adjust_behind(
-    scaling: &RadianceScaling,
+    adjustment: &dyn Adjustment,
     scene: &BehindScene,
     beneath: BackdropStats,
     exactness: Exactness,
     pixels: &mut PlanarTile,
 ) {
-    let sheet = scene.sheet.and_then(|sheet| sheet.surface.as_deref());
+    let surface = scene.sheet.and_then(|sheet| sheet.surface.as_deref());
     let places: Vec<Option<(usize, usize)>> =
         (0..scene.behind.rows() * TILE).map(|place| scene.behind.sheet_pixel(place)).collect();
-    if let Some(sheet) = sheet {
-        scaling.apply_packed(sheet, &places, beneath, exactness, pixels);
-    }
+    adjustment.adjust(&AdjustedPlace::Packed { surface, places: &places }, beneath, exactness, pixels);
 }

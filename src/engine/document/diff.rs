@@ -158,7 +158,7 @@ impl Diff<'_> {
             let beneath = beneath && b.pass_through && !new.is_warped();
             return self.displaced(new, Version::New, |diff| diff.stack(&a.layers, &b.layers, beneath));
         }
-        if beneath && new.content.measures_beneath() {
+        if beneath && new.content.reads_all_beneath() {
             return self.both(old, new);
         }
         if Arc::ptr_eq(old, new) {

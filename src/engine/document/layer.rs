@@ -1,6 +1,7 @@
 //! A layer: how it is blended with what lies beneath, and what it holds. Floor 4. A layer holds content, and the
 //! content of a group holds layers. So everything that a layer consists of is in submodules of this one.
 
+pub(super) mod adjustment;
 pub(super) mod cache;
 pub(super) mod content;
 mod live;
@@ -14,6 +15,7 @@ pub(super) mod tile_content;
 pub(super) mod transform;
 pub(super) mod warp;
 
+pub use adjustment::{AdjustedPlace, Adjustment, BackdropMeter, Reach};
 pub use cache::{EncodedPixels, LayerCache, LookKind};
 pub use content::{Content, Group, PixelLayer, Role, StrokeList};
 pub use live::Live;

@@ -1,69 +1,79 @@
 //! Measures what an adjustment must know about the whole composite beneath it before one tile can be adjusted.
 //! Floor 4. Tiles are measured in parallel and added up in their order, so the figures do not depend on the threads.
 
-use super::Progress;
 use super::compose::{ComposeFlow, Composer};
-use super::prepare::{Adjustment, PreparedDocument};
+use super::layer::adjustment::BackdropMeter;
+use super::prepare::{AdjustmentLayer, PreparedDocument};
 use super::progress::in_parallel;
+use super::{Progress, Role};
 use crate::math::fast;
 use crate::math::srgb::{decode, decode_fast, luminance};
 use crate::raster::{PlanarTile, TILE, TileAt, planar::PixelRow};
+use crate::shading::RadianceScaling;
 use crate::shading::radiance::{BackdropStats, GainLadder, LightSums};
-use crate::shading::{RadianceScaling, Reference};
 use crate::surface::Scene;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
+/// What lies beneath an adjustment in its scope. The adjustments beneath it are measured already.
+struct Meter<'a> {
+    prepared: &'a PreparedDocument,
+    adjusted: &'a AdjustmentLayer,
+    progress: &'a Progress,
+}
+
 impl PreparedDocument {
     /// Measures what lies beneath the next adjustment, or takes it from the cache; `None` if cancelled.
-    pub(super) fn measure(&self, adjustment: &Adjustment, progress: &Progress) -> Option<BackdropStats> {
-        let Adjustment { layer, scaling, scene, beneath } = adjustment;
-        let brightest = match scaling.reference {
-            Reference::Value(value) => value,
-            Reference::Auto => {
-                layer.cache.brightest.get(scene, beneath, &(), || self.brightest_beneath(scene, progress))?
-            }
-        };
-        let gain = match scaling.keep_mean {
-            false => 1.0,
-            true => {
-                let measure = || self.gain(scaling, scene, brightest, progress);
-                layer.cache.gain.get(scene, beneath, scaling, measure)?
-            }
-        };
-        Some(BackdropStats { brightest, gain })
+    pub(super) fn measure(&self, adjusted: &AdjustmentLayer, progress: &Progress) -> Option<BackdropStats> {
+        match adjusted.layer.content.role() {
+            Role::Adjusts(adjustment) => adjustment.measure(&Meter { prepared: self, adjusted, progress }),
+            _ => Some(BackdropStats::default()),
+        }
     }
-    /// Y*: the greatest luminance beneath the next adjustment.
-    fn brightest_beneath(&self, scene: &Scene, progress: &Progress) -> Option<f32> {
+}
+
+impl BackdropMeter for Meter<'_> {
+    fn brightest(&self) -> Option<f32> {
+        let AdjustmentLayer { layer, scene, beneath } = self.adjusted;
+        layer.cache.brightest.get(scene, beneath, &(), || self.measure_brightest())
+    }
+    fn gain(&self, scaling: &RadianceScaling, brightest: f32) -> Option<f32> {
+        let AdjustmentLayer { layer, scene, beneath } = self.adjusted;
+        layer.cache.gain.get(scene, beneath, scaling, || self.measure_gain(scaling, brightest))
+    }
+}
+
+impl Meter<'_> {
+    fn measure_brightest(&self) -> Option<f32> {
         // A tile that cannot be brighter than one already measured is skipped; the greatest is found in any order.
         // Luminance is not negative, so floats compare like their bits.
         let known = AtomicU32::new(0);
         let of_tile = |at| {
             let most = f32::from_bits(known.load(Relaxed));
-            let found = self.beneath_next(at).map_or(0.0, |pixels| brightest(&pixels, scene, at, most));
+            let found = self.tile(at).map_or(0.0, |pixels| brightest(&pixels, &self.adjusted.scene, at, most));
             known.fetch_max(found.to_bits(), Relaxed);
             found
         };
-        let tiles = in_parallel(&self.all_tiles(), progress, of_tile)?;
+        let tiles = in_parallel(&self.prepared.all_tiles(), self.progress, of_tile)?;
         Some(tiles.into_iter().fold(0.0, f32::max))
     }
-    /// The factor that restores the mean luminance beneath the next adjustment.
-    fn gain(&self, scaling: &RadianceScaling, scene: &Scene, brightest: f32, progress: &Progress) -> Option<f32> {
+    fn measure_gain(&self, scaling: &RadianceScaling, brightest: f32) -> Option<f32> {
         let sums = |tried: GainLadder| {
             let of_tile = |at| {
-                let pixels = self.beneath_next(at);
-                pixels.map(|pixels| scaling.means_tile(scene, at, brightest, &pixels, tried)).unwrap_or_default()
+                let means = |pixels| scaling.means_tile(&self.adjusted.scene, at, brightest, &pixels, tried);
+                self.tile(at).map(means).unwrap_or_default()
             };
-            let tiles = in_parallel(&self.all_tiles(), progress, of_tile)?;
+            let tiles = in_parallel(&self.prepared.all_tiles(), self.progress, of_tile)?;
             Some(tiles.into_iter().fold(LightSums::default(), LightSums::plus))
         };
         // What is shown is clipped, so it does not grow with the factor: coarse steps, then finer ones.
         let Some(finer) = sums(GainLadder::whole())?.finer(GainLadder::whole()) else { return Some(1.0) };
         Some(sums(finer)?.gain(finer))
     }
-    /// One tile beneath the next adjustment, in its own scope.
-    fn beneath_next(&self, at: TileAt) -> Option<PlanarTile> {
-        let composer = Composer { prepared: self, at, behind: None, sought: Some(self.beneath.len()), deep: None };
-        match composer.stack(&self.stack, &mut PlanarTile::transparent()) {
+    /// One tile of it.
+    fn tile(&self, at: TileAt) -> Option<PlanarTile> {
+        let sought = Some(self.prepared.beneath.len());
+        let composer = Composer { prepared: self.prepared, at, behind: None, sought, deep: None };
+        match composer.stack(&self.prepared.stack, &mut PlanarTile::transparent()) {
             ComposeFlow::Break(beneath) => Some(beneath),
             ComposeFlow::Continue(()) => None,
         }

@@ -49,9 +49,9 @@ pub use frame_box::FrameBox;
 pub use guides::Guides;
 pub use history::History;
 pub use layer::{
-    Content, DerivedMask, DetailSource, EncodedPixels, Group, Layer, LayerCache, LayerId, LayerLabel, LayerLock,
-    LayerMap, LayerMask, LayerTransform, LayerWarp, Live, LookKind, MaskKind, Mesh, MeshFrame, NormalLayer, PixelLayer,
-    Role, StrokeList, TransformShape,
+    AdjustedPlace, Adjustment, BackdropMeter, Content, DerivedMask, DetailSource, EncodedPixels, Group, Layer,
+    LayerCache, LayerId, LayerLabel, LayerLock, LayerMap, LayerMask, LayerTransform, LayerWarp, Live, LookKind,
+    MaskKind, Mesh, MeshFrame, NormalLayer, PixelLayer, Reach, Role, StrokeList, TransformShape,
 };
 pub use memory_use::{MemoryCount, MemoryUse};
 pub use parts::{Inflation, OutlineSource, Part, PartKind, Parts};

@@ -7,7 +7,7 @@ use super::{Content, DerivedMask, Document, Group, Layer, LayerMap, LayerMask, L
 use crate::math::Size;
 use crate::paint::Scene;
 use crate::raster::TileAt;
-use crate::shading::{RadianceScaling, radiance::BackdropStats};
+use crate::shading::radiance::BackdropStats;
 use crate::surface::{Contours, Curvature};
 use std::ops::Range;
 use std::sync::Arc;
@@ -46,10 +46,9 @@ pub(super) struct PreparedLayer {
     pub adjustments: Range<usize>,
 }
 
-/// An adjustment and all it depends on.
-pub(super) struct Adjustment {
+/// A layer that adjusts what lies beneath, and all it depends on.
+pub(super) struct AdjustmentLayer {
     pub layer: Arc<Layer>,
-    pub scaling: RadianceScaling,
     pub scene: Scene,
     /// Every layer beneath it in its scope (a pass-through group belongs to the scope around it).
     pub beneath: Vec<Arc<Layer>>,
@@ -105,7 +104,7 @@ impl Beneath<'_> {
 }
 
 struct StackBuilder<'a> {
-    adjustments: Vec<Adjustment>,
+    adjustments: Vec<AdjustmentLayer>,
     progress: &'a Progress,
 }
 
@@ -165,9 +164,9 @@ impl StackBuilder<'_> {
         if let Some(behind) = &behind {
             layer.content.warm(behind, self.progress);
         }
-        if let Role::Adjusts(scaling) = layer.content.role() {
-            let (layer, scaling, beneath) = (layer.clone(), scaling.clone(), scope.beneath.gathered());
-            self.adjustments.push(Adjustment { layer, scaling, scene: visible_scene.clone(), beneath });
+        if let Role::Adjusts(_) = layer.content.role() {
+            let (layer, beneath) = (layer.clone(), scope.beneath.gathered());
+            self.adjustments.push(AdjustmentLayer { layer, scene: visible_scene.clone(), beneath });
         }
         if let (Some(DerivedMask::Region(region)), Some(surface)) =
             (layer.mask.as_ref().and_then(LayerMask::derived), &visible_scene.surface)

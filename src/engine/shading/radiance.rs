@@ -52,6 +52,13 @@ pub struct BackdropStats {
     pub gain: f32,
 }
 
+impl Default for BackdropStats {
+    /// Of a picture that is not measured.
+    fn default() -> Self {
+        Self { brightest: 1.0, gain: 1.0 }
+    }
+}
+
 /// How pixels are scaled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exactness {

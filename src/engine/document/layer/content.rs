@@ -17,6 +17,7 @@ pub use group::Group;
 pub use pixels::PixelLayer;
 pub use strokes::StrokeList;
 
+use super::adjustment::{Adjustment, Reach};
 use super::live::Live;
 use super::map::LayerMap;
 use super::marks::Marks;
@@ -63,7 +64,7 @@ pub enum Role<'a> {
     /// It has pixels of its own.
     Paints,
     /// It changes what is painted beneath it.
-    Adjusts(&'a RadianceScaling),
+    Adjusts(&'a dyn Adjustment),
     /// It changes the surface that layers above it see.
     Shapes(&'a NormalLayer),
     /// It holds layers.
@@ -153,10 +154,6 @@ trait LayerKind {
     fn changed_from(&self, old: &Content, scene: &dyn Fn() -> Scene) -> Changed;
     /// Counts what it holds, as [`MemoryCount::add`] does.
     fn count(&self, _count: &mut MemoryCount, _keeps: bool) {}
-    /// Its appearance depends on the whole picture beneath it.
-    fn measures_beneath(&self) -> bool {
-        false
-    }
 }
 
 /// Where a layer can be seen.
@@ -324,7 +321,8 @@ impl Content {
     pub(in crate::document) fn count(&self, count: &mut MemoryCount, keeps: bool) {
         self.kind().count(count, keeps);
     }
-    pub(in crate::document) fn measures_beneath(&self) -> bool {
-        self.kind().measures_beneath()
+    /// Its appearance depends on the whole picture beneath it.
+    pub(in crate::document) fn reads_all_beneath(&self) -> bool {
+        matches!(self.role(), Role::Adjusts(adjustment) if adjustment.reach() == Reach::Picture)
     }
 }

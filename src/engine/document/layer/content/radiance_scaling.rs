@@ -2,7 +2,10 @@
 
 use super::{CanvasScale, Changed, Content, LayerKind, Role};
 use crate::document::Progress;
+use crate::document::layer::adjustment::{AdjustedPlace, Adjustment, BackdropMeter, Reach};
 use crate::paint::Scene;
+use crate::raster::PlanarTile;
+use crate::shading::radiance::{BackdropStats, Exactness};
 use crate::shading::{RadianceScaling, Reference};
 
 impl LayerKind for RadianceScaling {
@@ -29,7 +32,27 @@ impl LayerKind for RadianceScaling {
     fn changed_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
         Changed::wholly_if(!matches!(old, Content::RadianceScaling(old) if old == self))
     }
-    fn measures_beneath(&self) -> bool {
-        self.keep_mean || self.reference == Reference::Auto
+}
+
+impl Adjustment for RadianceScaling {
+    fn reach(&self) -> Reach {
+        if self.keep_mean || self.reference == Reference::Auto { Reach::Picture } else { Reach::Pixel }
+    }
+    fn measure(&self, beneath: &dyn BackdropMeter) -> Option<BackdropStats> {
+        let brightest = match self.reference {
+            Reference::Value(value) => value,
+            Reference::Auto => beneath.brightest()?,
+        };
+        let gain = if self.keep_mean { beneath.gain(self, brightest)? } else { 1.0 };
+        Some(BackdropStats { brightest, gain })
+    }
+    fn adjust(&self, place: &AdjustedPlace, beneath: BackdropStats, exactness: Exactness, pixels: &mut PlanarTile) {
+        match *place {
+            AdjustedPlace::Tile { scene, at } => self.apply_at(scene, at, beneath, exactness, pixels),
+            AdjustedPlace::Packed { surface: Some(surface), places } => {
+                self.apply_packed(surface, places, beneath, exactness, pixels);
+            }
+            AdjustedPlace::Packed { surface: None, .. } => (),
+        }
     }
 }

@@ -1,0 +1,50 @@
+//! What a layer that adjusts the picture beneath it implements: composed pixels in, changed colours out.
+//! Floor 4. Not here: composing what lies beneath (`compose`), measuring it (`measure`).
+
+use crate::paint::Scene;
+use crate::raster::{PlanarTile, TileAt};
+use crate::shading::RadianceScaling;
+use crate::shading::radiance::{BackdropStats, Exactness};
+use crate::surface::Surface;
+
+/// Changes the colours of what is composed beneath a layer, in its scope.
+pub trait Adjustment {
+    /// How much of the picture beneath a changed pixel depends on.
+    fn reach(&self) -> Reach {
+        Reach::Pixel
+    }
+    /// What must be known of the whole picture beneath before a part of it can be adjusted; `None` if cancelled.
+    fn measure(&self, _beneath: &dyn BackdropMeter) -> Option<BackdropStats> {
+        Some(BackdropStats::default())
+    }
+    /// Changes pixels in place: premultiplied sRGB of those that `place` names.
+    ///
+    /// * `beneath`: what [`Adjustment::measure`] found.
+    fn adjust(&self, place: &AdjustedPlace, beneath: BackdropStats, exactness: Exactness, pixels: &mut PlanarTile);
+}
+
+/// Measures the picture beneath an adjustment. Every figure is `None` if that is cancelled.
+pub trait BackdropMeter {
+    /// Y*: its greatest luminance over the surface, linear light.
+    fn brightest(&self) -> Option<f32>;
+    /// The factor that restores its mean luminance after a scaling.
+    fn gain(&self, scaling: &RadianceScaling, brightest: f32) -> Option<f32>;
+}
+
+/// How much of the picture beneath a changed pixel depends on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reach {
+    /// On the pixel beneath it.
+    Pixel,
+    /// On all of it.
+    Picture,
+}
+
+/// Where the pixels lie that are adjusted.
+pub enum AdjustedPlace<'a> {
+    /// A tile of the canvas.
+    Tile { scene: &'a Scene, at: TileAt },
+    /// Rows of pixels as the other populations of contour pixels see them: for each its place on the surface that is
+    /// seen there, or that it is off it.
+    Packed { surface: Option<&'a Surface>, places: &'a [Option<(usize, usize)>] },
+}
