@@ -194,8 +194,9 @@ pub use rilievo_engine::{Error, Remedy, Result};
 
 /// The whole picture of a document: premultiplied sRGB in tiles, the pixels of the canvas and no others.
 ///
-/// It uses all cores. Work that is watched or cancelled calls [`flatten()`] with a [`Progress`] of its own.
+/// A surface that the document's parts no longer make is made first. It uses all cores. Work that is watched or
+/// cancelled calls [`flatten()`] with a [`Progress`] of its own.
 pub fn render(document: &Document) -> TileGrid {
     // None only where the work was cancelled, and nobody can.
-    flatten(document, &Progress::default()).unwrap_or_default()
+    flatten(&document.reshaped(), &Progress::default()).unwrap_or_default()
 }

@@ -211,6 +211,38 @@ fn story() -> String {
     }
     story
 }
+/// A blot with a shape and a lit base above it: by turns it is painted on, which changes its outline, and bent, and now
+/// and then that is undone.
+fn shaped_story() -> String {
+    let mut story = String::from(
+        r##"{"in":"file","do":"new","width":180,"height":140,"background":"#ffffff"}
+{"in":"layer","do":"add","kind":"paint"}
+{"in":"hand","do":"preset","name":"hard-round"}
+{"in":"hand","do":"size","to":50}
+{"in":"pointer","do":"press","tool":"brush","pen":[60,60],"px_per_pt":1}
+{"in":"pointer","do":"drag","pens":[[110,80]]}
+{"in":"pointer","do":"release"}
+{"in":"part","do":"shape","layer":"1","preset":"pillow","flats":false}
+{"in":"hand","do":"size","to":24}"##,
+    );
+    for i in 0..STROKES / 2 {
+        let [x, y, z] = [1, 2, 3].map(|k| 20 + mix(i * 3 + k) % 110);
+        let tool = if i % 3 == 1 { "liquify" } else { "brush" };
+        write!(
+            story,
+            r#"
+{{"in":"layer","do":"select","layer":"1"}}
+{{"in":"pointer","do":"press","tool":"{tool}","pen":[{x},{y}],"px_per_pt":1}}
+{{"in":"pointer","do":"drag","pens":[[{y},{z}]]}}
+{{"in":"pointer","do":"release"}}"#
+        )
+        .unwrap();
+        if i % 3 == 1 {
+            story.push_str("\n{\"in\":\"edit\",\"do\":\"undo\"}");
+        }
+    }
+    story
+}
 /// A document's parameters and its picture.
 fn fingerprint(document: &Document) -> (String, u32) {
     let picture = flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect());
@@ -231,11 +263,10 @@ fn steps(story: &str) -> Vec<(String, u32)> {
     steps
 }
 /// Paints in a process of its own until it is killed. Every step that it reported is recovered unchanged.
-fn kill_while_painting(rounds: u32) {
+fn kill_while_painting(rounds: u32, story: &str) {
     let folder = tempfile::tempdir().unwrap();
-    let story = story();
-    std::fs::write(folder.path().join("story"), &story).unwrap();
-    let steps = steps(&story);
+    std::fs::write(folder.path().join("story"), story).unwrap();
+    let steps = steps(story);
     let disk: Arc<dyn Fs> = Arc::new(Disk);
     for round in 0..rounds {
         let logs = folder.path().join(format!("logs-{round}"));
@@ -247,7 +278,7 @@ fn kill_while_painting(rounds: u32) {
             .stdout(Stdio::piped())
             .spawn()
             .unwrap();
-        let wanted = 1 + mix(round) as usize % (STROKES as usize - 20);
+        let wanted = 1 + mix(round) as usize % (steps.len() - 12);
         let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
         let mut next = || lines.next().and_then(Result::ok);
         let number = |line: String| line.split(' ').next().unwrap().parse::<usize>().unwrap();
@@ -258,7 +289,8 @@ fn kill_while_painting(rounds: u32) {
         // What it reported before it died counts too.
         told = std::iter::from_fn(next).last().map_or(told, number);
         let mut left = recovery::sessions(&disk, &logs);
-        let recovered = left[0].recover(&Budget::default()).unwrap_or_else(|e| panic!("round {round}: {e}"));
+        let recovered = left[0].recover(&Budget::default(), &Progress::default());
+        let recovered = recovered.unwrap_or_else(|e| panic!("round {round}: {e}")).unwrap();
         let found = fingerprint(&recovered.version.document);
         assert!(
             (told..steps.len().min(told + 3)).any(|n| steps[n] == found),
@@ -270,11 +302,16 @@ fn kill_while_painting(rounds: u32) {
 }
 #[test]
 fn killed_while_painting_it_loses_no_finished_stroke() {
-    kill_while_painting(20);
+    kill_while_painting(20, &story());
+}
+#[test]
+fn killed_while_a_shape_is_painted_it_brings_back_the_shape() {
+    kill_while_painting(8, &shaped_story());
 }
 /// *Long*: see docs/PROJECTS.md.
 #[test]
 #[ignore = "ten minutes; run by name"]
 fn long_a_thousand_kills_while_it_paints() {
-    kill_while_painting(1_000);
+    kill_while_painting(1_000, &story());
+    kill_while_painting(200, &shaped_story());
 }

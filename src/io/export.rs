@@ -128,7 +128,8 @@ impl OutputFile {
         check(&Disk, named, &terms)?;
         Ok(Self { named: named.into(), terms })
     }
-    /// Flattens a document and writes it, with as many bits as requested; nothing if cancelled.
+    /// Flattens a document and writes it, with as many bits as requested; nothing if cancelled. A shape that is still
+    /// to be made is made first.
     pub fn write_document(
         &self,
         document: &Document,
@@ -136,7 +137,8 @@ impl OutputFile {
         budget: &Budget,
         progress: &Progress,
     ) -> Result<()> {
-        let bytes = deep::encode_document(&self.named, document, options, budget, progress)?;
+        let Some(document) = document.reshaped_telling(progress) else { return Ok(()) };
+        let bytes = deep::encode_document(&self.named, &document, options, budget, progress)?;
         bytes.map_or(Ok(()), |bytes| self.replace(&bytes))
     }
     /// Encodes and writes the part of a flattened picture that the canvas shows.

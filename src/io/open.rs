@@ -70,7 +70,7 @@ impl FileKind {
 }
 
 /// Opens a project, a recipe (the files it names are next to it), a Photoshop file, or a picture, which becomes a
-/// document of one paint layer.
+/// document of one paint layer. Its surface is what its parts make.
 ///
 /// A damaged project gives every intact layer; `notes` list the others, and `is_whole` is false.
 pub fn open(file: &Path, budget: &Budget) -> Result<OpenedDocument> {
@@ -86,6 +86,9 @@ pub fn open(file: &Path, budget: &Budget) -> Result<OpenedDocument> {
         FileKind::Psd => psd::read(file, &bytes, budget),
         FileKind::Picture => single(file, &bytes, budget),
     };
+    // Layers may have been put in after their parts were read.
+    let shaped = |read: ProjectContents| ProjectContents { document: read.document.reshaped(), ..read };
+    let read = |budget: &Budget| read(budget).map(shaped);
     let (read, rounded) = deep_paint::fitted(file, budget, read, |read| &read.document)?;
     let ProjectContents { document, mut notes, is_whole, picture } = read;
     let is_whole = is_whole && rounded.is_none();

@@ -27,18 +27,21 @@ pub struct EncodedDocument {
     pub notes: Vec<String>,
 }
 
-/// The bytes that a document is saved as under this name; `None` if cancelled. A project is read back as a file is
-/// opened, and compared with the document: it fails where the two differ.
+/// The bytes that a document is saved as under this name; `None` if cancelled. A shape that is still to be made is made
+/// first. A project is read back as a file is opened, and compared with the document: it fails where the two differ.
 pub fn encode(document: &Document, file: &Path, progress: &Progress) -> Result<Option<EncodedDocument>> {
-    in_own_threads(file, || match Output::of(file) {
-        Ok(Output::Psd) => {
-            let written = psd::write(file, document, progress)?;
-            Ok(written.map(|written| EncodedDocument { bytes: written.bytes, notes: written.notes }))
-        }
-        _ => {
-            let Some(bytes) = project::write(file, document, progress)? else { return Ok(None) };
-            project::read_back(file, &bytes, document, &Budget::holding(document))?;
-            Ok(Some(EncodedDocument { bytes, notes: Vec::new() }))
+    in_own_threads(file, || {
+        let Some(document) = &document.reshaped_telling(progress) else { return Ok(None) };
+        match Output::of(file) {
+            Ok(Output::Psd) => {
+                let written = psd::write(file, document, progress)?;
+                Ok(written.map(|written| EncodedDocument { bytes: written.bytes, notes: written.notes }))
+            }
+            _ => {
+                let Some(bytes) = project::write(file, document, progress)? else { return Ok(None) };
+                project::read_back(file, &bytes, document, &Budget::holding(document))?;
+                Ok(Some(EncodedDocument { bytes, notes: Vec::new() }))
+            }
         }
     })?
 }

@@ -174,6 +174,13 @@ impl RunningJob {
         let (done, total) = self.progress.read();
         (total > 0).then(|| done as f32 / total as f32)
     }
+    /// Its description, and what it does now if that has a name of its own.
+    pub fn title(&self) -> String {
+        match self.progress.stage() {
+            "" => self.name.clone(),
+            stage => format!("{}: {stage}", self.name),
+        }
+    }
     /// Whether it has run long enough to be shown.
     pub fn is_long(&self) -> bool {
         self.since.elapsed() > Duration::from_millis(250)

@@ -45,10 +45,12 @@ impl PartPictures {
             Arc::ptr_eq(parts, &document.parts) && surfaces[0] == surfaces[1]
         });
         if !is_same {
-            let areas = match document.is_shaped() {
-                true => document.part_areas().into_iter().map(|(part, area)| (part, area, Affine2::IDENTITY)).collect(),
+            let areas = match document.is_ahead() {
                 // During a drag nothing is made here.
-                false => document.last_part_areas(),
+                true => document.last_part_areas(),
+                false => {
+                    document.part_areas().into_iter().map(|(part, area)| (part, area, Affine2::IDENTITY)).collect()
+                }
             };
             (self.areas, self.moved) = areas.into_iter().map(|(part, area, map)| ((part, area), map)).unzip();
             self.of = Some((document.parts.clone(), document.surface.clone()));

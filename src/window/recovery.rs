@@ -35,9 +35,12 @@ impl MainWindow {
         for one in lost {
             let Some(autosave) = &self.session.autosave else { return };
             let (bring, title) = (autosave.lost(), one.title.clone());
-            self.jobs.start(format!("Recovering {title}"), JobKind::Working, move |_: &Progress| {
-                let found = catch_unwind(AssertUnwindSafe(|| bring.bring_back(one)));
-                JobResult::Recovered(Box::new(found.unwrap_or_else(|_| Err(broken(&title)))))
+            self.jobs.start(format!("Recovering {title}"), JobKind::Working, move |progress: &Progress| {
+                let found = catch_unwind(AssertUnwindSafe(|| bring.bring_back(one, progress)));
+                match found.unwrap_or_else(|_| Err(broken(&title))).transpose() {
+                    Some(found) => JobResult::Recovered(Box::new(found)),
+                    None => JobResult::Nothing,
+                }
             });
         }
     }

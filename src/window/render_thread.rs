@@ -240,7 +240,7 @@ impl RenderWork {
             self.at_rest = Some(old.document);
         }
         self.whole.take_up(next.document.clone());
-        self.is_behind = !next.document.is_shaped();
+        self.is_behind = next.document.is_ahead();
         // The first frame of a large canvas is not waited for either.
         let area = next.document.size.area();
         let shaping = if self.shaping.is_zero() { SHAPING.mul_f32(area as f32) } else { self.shaping };

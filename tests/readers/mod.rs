@@ -2,7 +2,7 @@
 
 use rilievo::files::open::FileKind;
 use rilievo::files::{Files, MapSource, SurfaceSource, maps, picture, recipe};
-use rilievo::{Budget, Error, Result};
+use rilievo::{Budget, Error, Progress, Result};
 use rilievo_io::{inspect, project, psd, recovery};
 use std::path::{Path, PathBuf};
 
@@ -74,7 +74,7 @@ pub fn maps(file: &Path, bytes: &[u8]) -> Result<()> {
     as_normals.or(as_depth)
 }
 pub fn recovery(file: &Path, bytes: &[u8]) -> Result<()> {
-    recovery::read(file, bytes, &budget()).map(drop)
+    recovery::read(file, bytes, &budget(), &Progress::default()).map(drop)
 }
 /// With the reader that the program would take.
 #[allow(dead_code)]

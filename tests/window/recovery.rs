@@ -1,7 +1,10 @@
 //! What an accident left is offered at the next start.
 
-use super::{Story, click, layers, session, until, window_of};
+use super::{Story, click, key, layers, session, until, window_of};
+use eframe::egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
+use rilievo_engine::document::{Document, Progress, flatten};
+use rilievo_program::session::{Autosave, Session};
 use rilievo_window::MainWindow;
 use std::path::Path;
 
@@ -37,4 +40,40 @@ fn after_a_crash_the_window_offers_what_was_unsaved() {
     let tab = session(&harness).active().unwrap();
     assert!(tab.is_dirty() && tab.file.is_none());
     assert_eq!(tab.title(), "Untitled 1 (recovered)");
+}
+
+/// A blot with a shape, which was painted in a program that crashed.
+const SHAPED: &str = r##"{"in":"file","do":"new","width":180,"height":140,"background":"#ffffff"}
+{"in":"layer","do":"add","kind":"paint"}
+{"in":"hand","do":"preset","name":"hard-round"}
+{"in":"hand","do":"size","to":50}
+{"in":"pointer","do":"press","tool":"brush","pen":[60,60],"px_per_pt":1}
+{"in":"pointer","do":"drag","pens":[[110,80]]}
+{"in":"pointer","do":"release"}
+{"in":"part","do":"shape","layer":"1","preset":"pillow","flats":false}"##;
+
+#[test]
+fn a_recovered_drawing_has_its_shape_and_keeps_it_when_an_edit_is_undone() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut crashed = Session::default();
+    crashed.autosave = Some(Autosave::new(folder.path().into()));
+    crashed.replay(Path::new("story"), SHAPED).unwrap();
+    crashed.keep();
+    let picture =
+        |document: &Document| flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect());
+    let before = picture(crashed.active().unwrap().document());
+    crashed.autosave.as_ref().unwrap().settle();
+    drop(crashed);
+    let mut harness = window_recovering(folder.path());
+    until(&mut harness, |harness| harness.query_by_label("Recover unsaved drawings?").is_some());
+    harness.get_by_label("Recover Untitled 1").click();
+    until(&mut harness, |harness| session(harness).active().is_some());
+    let shown = |harness: &Story| picture(session(harness).active().unwrap().document());
+    assert!(shown(&harness) == before);
+    assert!(harness.query_by_label_contains("No surface").is_none());
+    click(&mut harness, "+ Add");
+    click(&mut harness, "Gradient layer");
+    assert!(shown(&harness) != before);
+    key(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert!(shown(&harness) == before);
 }

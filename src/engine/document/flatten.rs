@@ -102,9 +102,10 @@ pub fn flatten_whole(document: &Document, ids: &[LayerId], progress: &Progress) 
 
 impl Document {
     /// With some layers of one list alone, shown or not, without the opacity and masks of the groups around them;
-    /// `None` if there are none of them.
+    /// `None` if there are none of them. They see the surface of this document, from which nothing is made again: it
+    /// has no parts.
     pub fn with_only(&self, ids: &[LayerId]) -> Option<Document> {
-        Some(Document { layers: alone(&self.layers, ids, true)?, ..self.clone() })
+        Some(Document { layers: alone(&self.layers, ids, true)?, parts: Arc::default(), ..self.clone() })
     }
 }
 

@@ -1,5 +1,8 @@
 //! Undo: past documents, each with the name of the edit that made it. Floor 4. A document is a value that shares what
 //! it did not change, so a step takes only the memory of what the edit touched.
+//!
+//! What follows from a document is made before it becomes a step: whoever reads one, or goes back to it, finds the
+//! surface that its parts and layers make.
 
 use super::Document;
 
@@ -26,7 +29,7 @@ struct HistoryStep<T> {
 impl<T> History<T> {
     /// Keeps at most `limit` steps; the oldest are forgotten.
     pub fn new(document: Document, limit: usize) -> Self {
-        Self { past: Vec::new(), present: document, future: Vec::new(), limit }
+        Self { past: Vec::new(), present: document.reshaped(), future: Vec::new(), limit }
     }
     /// The document as it is now.
     pub fn present(&self) -> &Document {
@@ -37,7 +40,7 @@ impl<T> History<T> {
     /// * `before`: what undo gives back.
     pub fn commit(&mut self, label: impl Into<String>, document: Document, before: T) {
         self.future.clear();
-        let old = std::mem::replace(&mut self.present, document);
+        let old = std::mem::replace(&mut self.present, document.reshaped());
         self.past.push(HistoryStep { label: label.into(), document: old, before, after: None });
         let excess = self.past.len().saturating_sub(self.limit);
         self.past.drain(..excess);

@@ -6,6 +6,7 @@
 use crate::raster::TileAt;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 /// Counters shared between those that work and those that watch. Steps have no unit; mostly they are tiles.
 #[derive(Default)]
@@ -13,6 +14,7 @@ pub struct Progress {
     done: AtomicU64,
     total: AtomicU64,
     cancelled: AtomicBool,
+    stage: Mutex<&'static str>,
 }
 
 impl Progress {
@@ -27,6 +29,14 @@ impl Progress {
     /// Steps done and steps announced so far.
     pub fn read(&self) -> (u64, u64) {
         (self.done.load(Ordering::Relaxed), self.total.load(Ordering::Relaxed))
+    }
+    /// Names what is done now, in a few words; empty: what the work itself is called.
+    pub fn enter(&self, stage: &'static str) {
+        *self.stage.lock().unwrap_or_else(PoisonError::into_inner) = stage;
+    }
+    /// What is done now; empty if that has no name of its own.
+    pub fn stage(&self) -> &'static str {
+        *self.stage.lock().unwrap_or_else(PoisonError::into_inner)
     }
     /// Cancels the work: it ends soon, without a result.
     pub fn cancel(&self) {

@@ -4,8 +4,9 @@
 use super::source::{MaskSource, SurfaceSource};
 use super::{Content, DetailSource, Document, Layer, LayerMask, MaskKind, NamedSelection, Part, StrokeList};
 use crate::paint::Stroke;
-use crate::raster::TileGrid;
 use crate::raster::tile::TILE_AREA;
+use crate::raster::{Plane, TileGrid};
+use crate::surface::Surface;
 use std::sync::Arc;
 
 impl Document {
@@ -17,6 +18,7 @@ impl Document {
         surface(self, other)
             .or_else(|| parts(&self.parts.list, &other.parts.list))
             .or_else(|| layers(&self.layers, &other.layers))
+            .or_else(|| shape(self, other))
             .or_else(|| selections(self, other))
             .or_else(|| (self.guides != other.guides).then(|| "the guides".into()))
             .or_else(|| (self.assistants != other.assistants).then(|| "the assistants".into()))
@@ -62,6 +64,42 @@ fn parts(a: &[Arc<Part>], b: &[Arc<Part>]) -> Option<String> {
     }
     let (part, _) = a.iter().zip(b).find(|(a, b)| !Arc::ptr_eq(a, b) && a != b)?;
     Some(format!("“{}” among the parts of its shape", part.name))
+}
+
+/// What the same parts make of the same layers on the same maps; other maps were fitted again, which may round them.
+fn shape(a: &Document, b: &Document) -> Option<String> {
+    let is_same = |a: Option<&Arc<Surface>>, b: Option<&Arc<Surface>>| match (a, b) {
+        (Some(a), Some(b)) => Arc::ptr_eq(a, b) || a.has_same_maps(b),
+        (a, b) => a.is_none() && b.is_none(),
+    };
+    let follows = !a.parts.is_empty() && is_same(a.maps_surface(), b.maps_surface());
+    let is_made = match (&a.surface, &b.surface) {
+        (Some(a), Some(b)) => looks_alike(a, b),
+        (a, b) => a.is_none() && b.is_none(),
+    };
+    (follows && !is_made).then(|| "the shape that its parts make".into())
+}
+
+/// A shape that was moved and one that was made at its place may be rounded differently, so that a few pixels at an
+/// edge are of another part: one in so many.
+const ONE_IN: usize = 1000;
+/// Less is not seen, of 1.
+const LEAST_SEEN: f32 = 1.0 / 256.0;
+
+fn looks_alike(a: &Surface, b: &Surface) -> bool {
+    let (range, other) = (a.depth_range_px(), b.depth_range_px());
+    if a.size() != b.size() || (range - other).abs() > LEAST_SEEN * range.max(1.0) {
+        return false;
+    }
+    let apart = |a: &Plane<f32>, b: &Plane<f32>| -> Vec<bool> {
+        a.values().iter().zip(b.values()).map(|(a, b)| (a - b).abs() > LEAST_SEEN).collect()
+    };
+    let [x, y, z] = a.normal_planes();
+    let [u, v, w] = b.normal_planes();
+    let planes = [apart(x, u), apart(y, v), apart(z, w), apart(a.depth_plane(), b.depth_plane())];
+    let covered = a.coverage_plane().values().iter().zip(b.coverage_plane().values());
+    let differs = |(i, (a, b)): (usize, (&u8, &u8))| a.abs_diff(*b) > 1 || planes.iter().any(|plane| plane[i]);
+    covered.enumerate().filter(|pixel| differs(*pixel)).count() <= a.size().area() / ONE_IN
 }
 
 /// Whether the files of a surface's maps are known, so that they themselves are stored.

@@ -43,7 +43,7 @@ impl Document {
     /// unchanged.
     pub fn with_combined(&self, new: Selection, how: SelectionMode) -> Document {
         let canvas = self.size.rect();
-        let new = Selection { coverage: new.coverage.within(canvas), ..new };
+        let new = new.within(canvas);
         let all = || CoverageGrid::filled(canvas);
         let both = match (how, self.selected()) {
             (SelectionMode::Replace, _) | (SelectionMode::Add | SelectionMode::Intersect, None) => new,
@@ -73,7 +73,7 @@ impl Document {
         let selections = self.selections.iter().filter(|kept| kept.name != name).cloned().collect();
         Some(Document { selections, ..self.without_outlines_of(gone) })
     }
-    /// With every selection that follows the surface found on the present one: called when the surface was replaced.
+    /// With every selection that follows the surface found on the present one; itself if they were.
     pub fn with_selections_found(&self) -> Document {
         let scene = self.scene();
         let mut found: HashMap<usize, Arc<Selection>> = HashMap::new();

@@ -3,12 +3,13 @@
 //! surface are `surface::region`. Not here: which selection a document has (`document`), how it is made (`tools`).
 
 use super::scene::Scene;
-use crate::math::{Range, Vec2, vec2};
+use crate::math::{Range, Rect, Size, Vec2, vec2};
 use crate::raster::coverage::{blank, product};
 use crate::raster::tile::TILE_AREA;
 use crate::raster::{CoverageGrid, CoverageTile, TILE, TileAt};
+use crate::surface::Surface;
 use crate::surface::region::SurfaceRegion;
-use std::sync::Arc;
+use std::sync::{Arc, Weak};
 
 /// A selection. It is never changed, so strokes and documents share it.
 #[derive(Clone, Default)]
@@ -17,12 +18,35 @@ pub struct Selection {
     pub coverage: CoverageGrid,
     /// The region of the surface that the coverage was found by; absent once the coverage was changed by hand.
     pub made: Option<SurfaceRegion>,
+    /// Where the region was found last; absent: the coverage was carried from elsewhere.
+    found: Option<FoundOn>,
+}
+
+/// A canvas and its surface, which is not held by this.
+#[derive(Clone)]
+struct FoundOn {
+    size: Size,
+    surface: Option<Weak<Surface>>,
+}
+
+impl FoundOn {
+    fn new(scene: &Scene) -> Self {
+        Self { size: scene.size, surface: scene.surface.as_ref().map(Arc::downgrade) }
+    }
+    fn is_on(&self, scene: &Scene) -> bool {
+        let same = self.surface.as_ref().map(Weak::as_ptr) == scene.surface.as_ref().map(Arc::as_ptr);
+        self.size == scene.size && same
+    }
 }
 
 impl Selection {
     /// Coverage that belongs to no region of the surface.
     pub fn new(coverage: CoverageGrid) -> Self {
-        Self { coverage, made: None }
+        Self { coverage, made: None, found: None }
+    }
+    /// Coverage that a region of the surface has for now, until it is found where it belongs.
+    pub fn carried(coverage: CoverageGrid, made: Option<SurfaceRegion>) -> Self {
+        Self { coverage, made, found: None }
     }
     /// Everything that a region covers of a scene's surface; the whole canvas without a surface, as with masks that are
     /// derived from a surface.
@@ -31,11 +55,16 @@ impl Selection {
             Some(surface) => CoverageGrid::clone(&surface.region(&region)),
             None => CoverageGrid::filled(scene.size.rect()),
         };
-        Self { coverage, made: Some(region) }
+        Self { coverage, made: Some(region), found: Some(FoundOn::new(scene)) }
     }
-    /// The same on another surface; `None` if it follows no surface and does not change.
+    /// The same on another surface; `None` if it follows no surface or was found on this one.
     pub fn found_on(&self, scene: &Scene) -> Option<Self> {
-        self.made.map(|region| Self::of_region(region, scene))
+        let is_known = self.found.as_ref().is_some_and(|found| found.is_on(scene));
+        self.made.filter(|_| !is_known).map(|region| Self::of_region(region, scene))
+    }
+    /// What of it lies in a rectangle.
+    pub fn within(self, rect: Rect) -> Self {
+        Self { coverage: self.coverage.within(rect), ..self }
     }
     /// Nothing is selected.
     pub fn is_empty(&self) -> bool {
@@ -132,7 +161,7 @@ impl StrokeSelection {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{Rect, Size, hash};
+    use crate::math::hash;
     use crate::raster::Plane;
 
     fn blot() -> Arc<Selection> {
@@ -160,7 +189,9 @@ mod tests {
         let region = SurfaceRegion::new(Default::default(), vec2(5.0, 5.0));
         let selection = Selection::of_region(region, &scene);
         assert!(selection.coverage.is_same(&CoverageGrid::filled(Rect::new(0, 0, 100, 70))));
-        assert!(selection.found_on(&scene).is_some_and(|found| found.is_same(&selection)));
+        assert!(selection.found_on(&scene).is_none(), "it was found there");
+        let wide = Scene { size: Size::new(120, 70), surface: None };
+        assert_eq!(selection.found_on(&wide).unwrap().coverage.covered(), Rect::new(0, 0, 120, 70));
         assert!(blot().found_on(&scene).is_none());
     }
 }

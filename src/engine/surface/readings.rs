@@ -66,6 +66,14 @@ impl Surface {
     pub fn coverage_plane(&self) -> &Plane<u8> {
         &self.coverage
     }
+    /// Whether it was made of the same maps, to the bit.
+    pub fn has_same_maps(&self, other: &Self) -> bool {
+        self.size() == other.size()
+            && self.depth_range_px() == other.depth_range_px()
+            && self.normal_planes() == other.normal_planes()
+            && self.depth_plane() == other.depth_plane()
+            && self.coverage_plane() == other.coverage_plane()
+    }
     /// For each pixel, which of its four neighbours continue the same surface: bits of [`links`].
     pub fn links_plane(&self) -> &Plane<u8> {
         &self.links

@@ -20,10 +20,11 @@ pub fn encode(
     budget: &Budget,
     progress: &Progress,
 ) -> Cancellable<Vec<u8>> {
+    let Some(document) = document.reshaped_telling(progress) else { return Ok(None) };
     let size = document.size;
     let seen = |document: &Document| flattened(file, document, Highlights::Kept, budget, progress);
     let mut channels = Vec::new();
-    let Some(whole) = seen(document)? else { return Ok(None) };
+    let Some(whole) = seen(&document)? else { return Ok(None) };
     push_picture(&mut channels, "", whole, bits);
     let mut taken = BTreeSet::from(["normal".to_owned(), "depth".to_owned()]);
     for (_, layer) in document.walk() {

@@ -5,7 +5,9 @@ use super::DrawingVersion;
 use super::log::{self, RecordKind};
 use super::state::LastState;
 use crate::Budget;
+use crate::document::Progress;
 use crate::fs::{FileLock, Fs};
+use crate::project::Cancellable;
 use crate::replace::FileStamp;
 use crate::{Error, Result};
 use serde_json::Value;
@@ -72,13 +74,14 @@ fn named(head: &Value) -> (String, Option<PathBuf>) {
     (title, head["file"].as_str().map(PathBuf::from))
 }
 
-/// The last whole version in the bytes of a log.
-pub fn read(file: &Path, log: &[u8], budget: &Budget) -> Result<RecoveredDocument> {
+/// The last whole version in the bytes of a log, with the surface that its parts make; `None` if cancelled.
+pub fn read(file: &Path, log: &[u8], budget: &Budget, progress: &Progress) -> Cancellable<RecoveredDocument> {
     let last = LastState::of(log);
     let version = last.version(file, budget)?;
     let version = version.ok_or_else(|| Error::decode(file, "it holds no whole version of the drawing"))?;
+    let Some(document) = version.document.reshaped_telling(progress) else { return Ok(None) };
     let (title, _) = named(&last.head.unwrap_or_default());
-    Ok(RecoveredDocument { version, title, versions: last.states })
+    Ok(Some(RecoveredDocument { version: DrawingVersion { document, ..version }, title, versions: last.states }))
 }
 
 impl LostSession {
@@ -88,15 +91,15 @@ impl LostSession {
         let micros = u64::from_str_radix(name.split('-').next()?, 16).ok()?;
         UNIX_EPOCH.checked_add(Duration::from_micros(micros))
     }
-    /// The last whole version in the log.
+    /// The last whole version in the log; `None` if cancelled.
     ///
     /// It leaves a mark file while it works: if it crashes the program, `has_failed` is true the next time.
-    pub fn recover(&mut self, budget: &Budget) -> Result<RecoveredDocument> {
+    pub fn recover(&mut self, budget: &Budget, progress: &Progress) -> Cancellable<RecoveredDocument> {
         let mark = self.path.with_extension("trying");
         // Without the mark nothing would be lost but the warning.
         let _ = self.fs.create_new(&mark).and_then(|mut mark| mark.sync());
         self.has_failed = true;
-        let recovered = self.read(budget)?;
+        let recovered = self.read(budget, progress)?;
         let _ = self.fs.remove(&mark);
         self.has_failed = false;
         Ok(recovered)
@@ -115,12 +118,12 @@ impl LostSession {
         let is_held = |found| held.is_none_or(|(bytes, crc)| found == FileStamp { bytes, crc });
         last == RecordKind::Saved && found.is_ok_and(is_held)
     }
-    fn read(&self, budget: &Budget) -> Result<RecoveredDocument> {
+    fn read(&self, budget: &Budget, progress: &Progress) -> Cancellable<RecoveredDocument> {
         let io = |e| Error::io(&self.path, e);
         let mut log = Vec::new();
         let handle = self.fs.open(&self.path).map_err(io)?;
         handle.take(budget.unpacked_bytes).read_to_end(&mut log).map_err(io)?;
-        read(&self.path, &log, budget)
+        read(&self.path, &log, budget, progress)
     }
     /// Deletes what the session left: only if the user says so, or once the drawing is safe in another session.
     pub fn discard(self) -> Result<()> {

@@ -2,7 +2,7 @@ use super::journal::Journal;
 use super::state::LastState;
 use super::*;
 use crate::Budget;
-use crate::document::{Content, Layer, PixelLayer};
+use crate::document::{Content, Layer, PixelLayer, Progress};
 use crate::fs::Disk;
 use crate::fs::memory::{InjectedError, InjectedFailure, MemoryFs};
 use crate::math::{Size, srgb::Color};
@@ -255,7 +255,7 @@ fn sessions_that_live_are_left_alone_and_those_that_died_come_back() {
     let titles: Vec<&str> = left.iter().map(|session| session.title.as_str()).collect();
     assert_eq!(titles, ["one", "two"]);
     assert!(sessions(&disk(), folder.path()).is_empty(), "another window holds them");
-    let recovered = left[1].recover(&Budget::default()).unwrap();
+    let recovered = left[1].recover(&Budget::default(), &Progress::default()).unwrap().unwrap();
     assert!(recovered.versions == 2 && pixels_of(&recovered.version.document) == pixels_of(&dotted(5)));
     drop(left);
     for session in sessions(&disk(), folder.path()) {
@@ -281,7 +281,10 @@ fn a_session_that_failed_once_says_so_and_garbage_keeps_nobody_from_starting() {
     }
     let mut left = sessions(&disk(), folder.path());
     assert_eq!(left.len(), 3);
-    assert!(left.iter_mut().all(|session| !session.has_failed && session.recover(&Budget::default()).is_err()));
+    assert!(
+        left.iter_mut()
+            .all(|session| !session.has_failed && session.recover(&Budget::default(), &Progress::default()).is_err())
+    );
     drop(left);
     let again = sessions(&disk(), folder.path());
     assert!(again.iter().all(|session| session.has_failed), "they are opened by hand only");

@@ -5,7 +5,7 @@
 use super::replay::ReplayValue;
 use super::{OpenDocument, is_same};
 use crate::Result;
-use crate::document::Document;
+use crate::document::{Document, Progress};
 use crate::io::Budget;
 use crate::io::fs::{Disk, Fs};
 use crate::io::recovery::{self, DrawingVersion, RecoveryLog};
@@ -190,9 +190,10 @@ impl LostSessions {
         }
         lost
     }
-    /// Recovers a drawing: untitled and unsaved. Its old log is deleted once a new one holds it.
-    pub fn bring_back(&self, mut session: recovery::LostSession) -> Result<RecoveredTab> {
-        let recovered = session.recover(&Budget::of_this_machine())?;
+    /// Recovers a drawing: untitled and unsaved. Its old log is deleted once a new one holds it. `None` if cancelled:
+    /// it is offered again.
+    pub fn bring_back(&self, mut session: recovery::LostSession, progress: &Progress) -> Result<Option<RecoveredTab>> {
+        let Some(recovered) = session.recover(&Budget::of_this_machine(), progress)? else { return Ok(None) };
         let name = Path::new(&recovered.title).file_stem().unwrap_or_default().to_string_lossy();
         let DrawingVersion { document, aside } = recovered.version;
         let mut tab = OpenDocument::new(format!("{name} (recovered)"), document, None);
@@ -209,7 +210,7 @@ impl LostSessions {
             // A log that stays is offered again; nothing is lost.
             let _ = session.discard();
         }
-        Ok(RecoveredTab { tab, recovery, tool })
+        Ok(Some(RecoveredTab { tab, recovery, tool }))
     }
 }
 

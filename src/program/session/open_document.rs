@@ -99,6 +99,8 @@ struct Preview {
 impl OpenDocument {
     pub fn new(name: impl Into<String>, document: Document, file: Option<PathBuf>) -> Self {
         static NEXT: AtomicUsize = AtomicUsize::new(0);
+        // What follows from it is there before anything is done with it, wherever it comes from.
+        let document = document.reshaped();
         let part = nearest_part(&document);
         let selected = document.layers.last().map(|layer| layer.id);
         Self {
@@ -196,7 +198,7 @@ impl OpenDocument {
         self.preview = None;
         self.settle();
         let mut is_kept = true;
-        // The layers that parts are made from may have been painted on.
+        // The layers that parts are made from may have been painted on or bent.
         let document = document.reshaped();
         if !is_same(self.document(), &document) {
             match document.fits(Some(self.document())) {

@@ -8,6 +8,7 @@ mod kept;
 mod pasting;
 mod selecting;
 mod several;
+mod shaped;
 mod snapping;
 mod soft;
 mod steps;

@@ -23,7 +23,7 @@ pub fn show(
 ) {
     ui.horizontal(|ui| {
         for job in jobs.under_way.iter().filter(|job| job.kind == JobKind::Working && job.is_long()) {
-            ui.label(&job.name);
+            ui.label(job.title());
             bar(ui, job.share(), 90.0);
             if ui.small_button("Cancel").on_hover_text(format!("Give up: {}", job.name)).clicked() {
                 job.progress.cancel();

@@ -16,7 +16,7 @@ use crate::raster::Picture;
 use crate::raster::picture::Texels;
 use crate::session::actions::canvas::forget_places;
 use crate::session::actions::{PartAction, PasteTo};
-use crate::session::{Action, storage};
+use crate::session::{Action, Edit, storage};
 use crate::widgets::bar;
 use eframe::egui::{self, Modal};
 use std::path::{Path, PathBuf};
@@ -163,6 +163,12 @@ impl MainWindow {
                 Action::Canvas(action) => action.long_step(&from, progress),
                 _ => None,
             };
+            // What follows from it is made here, where it can be cancelled, and not when the edit is kept.
+            let shaped = |edit: Edit| Some(Edit { document: edit.document.reshaped_telling(progress)?, ..edit });
+            let edit = match edit {
+                Some(Ok(edit)) => shaped(edit).map(Ok),
+                other => other,
+            };
             match edit {
                 Some(Ok(edit)) => JobResult::Edited(Box::new(EditResult { tab: key, action, from, edit })),
                 Some(Err(why)) => JobResult::Said(why),
@@ -223,7 +229,7 @@ impl MainWindow {
         }
         Modal::new(egui::Id::unique("editing")).show(ctx, |ui| {
             ui.set_width(280.0);
-            ui.heading(&job.name);
+            ui.heading(job.title());
             bar(ui, job.share(), 280.0);
             if ui.button("Cancel").clicked() {
                 job.progress.cancel();

@@ -31,7 +31,7 @@ impl<'c> CarriedSelections<'c> {
         let mut known = self.known.borrow_mut();
         let (_, carried) = known.entry(Arc::as_ptr(selection)).or_insert_with(|| {
             let made = selection.made.map(|region| SurfaceRegion { at: self.change.point(region.at), ..region });
-            (selection.clone(), Arc::new(Selection { coverage: self.coverage(&selection.coverage), made }))
+            (selection.clone(), Arc::new(Selection::carried(self.coverage(&selection.coverage), made)))
         });
         carried.clone()
     }

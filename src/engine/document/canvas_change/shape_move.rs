@@ -61,7 +61,7 @@ impl Document {
         let found = |selection: &Arc<Selection>| match selection.made {
             Some(region) => {
                 let made = Some(SurfaceRegion { at: affine.transform_point2(region.at), ..region });
-                Arc::new(Selection { made, coverage: selection.coverage.clone() })
+                Arc::new(Selection::carried(selection.coverage.clone(), made))
             }
             None => selection.clone(),
         };

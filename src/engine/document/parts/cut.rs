@@ -7,7 +7,6 @@ mod lines;
 mod owners;
 mod pieces;
 
-use super::outlines::pixels;
 use super::shares::bytes;
 use super::{OutlineSource, Part};
 use crate::document::{Content, Document, Group, Layer, LayerId, LayerSlot, PixelLayer};
@@ -27,8 +26,11 @@ impl Document {
         self.can_be_cut(drawing)?;
         let of_it: Vec<(&Arc<Part>, PieceOutline)> =
             self.parts.list.iter().filter_map(|part| Some((part, self.piece_outline(part, &drawing.name)?))).collect();
-        self.parts.forget_flats();
-        let drawn = self.map_of(layer).and_then(|map| pixels(self, drawing, &map));
+        self.parts.forget_drawn();
+        let drawn = match &drawing.content {
+            Content::Pixels(pixels) => self.map_of(layer).map(|map| pixels.taken_along(&map).tiles),
+            _ => None,
+        };
         let drawn = drawn.filter(|tiles| !tiles.bounds().is_empty());
         let (Some(drawn), false) = (drawn, of_it.is_empty()) else {
             return Err("No part has its outline from this layer.");

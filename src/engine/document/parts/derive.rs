@@ -4,7 +4,7 @@
 use super::body::{SolvedOutline, StandingOutline, joined, lost};
 use super::made::{MadePart, NewForm, Stages};
 use super::outlines::OutlineKey;
-use super::unchanged::{apart, same_inks, same_kind, same_list, same_shape, same_surface};
+use super::unchanged::{apart, same_inks, same_kind, same_list, same_shape};
 use super::upon::{Came, changed, lined};
 use super::whole::Whole;
 use super::{Part, PartKind, Parts};
@@ -17,28 +17,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 const MOST_KEPT_PX: usize = 1 << 24;
 
 impl Document {
-    /// The document with the surface that its parts, layers and maps make now, and with what lies on parts at their
-    /// places; itself if nothing changed.
-    pub fn reshaped(&self) -> Document {
-        // Nobody cancels it, so it is complete.
-        self.reshaped_telling(&Progress::default()).unwrap_or_else(|| self.clone())
-    }
-    /// The same, a step for each part; `None` if cancelled.
-    pub fn reshaped_telling(&self, progress: &Progress) -> Option<Document> {
-        let placed = self.with_homes_placed();
-        if self.parts.is_empty() {
-            return Some(placed);
-        }
-        // On a thread of the pool: handed over one by one, the many small steps of small parts would take longer than
-        // they need.
-        rayon::scope(|_| placed.derived(progress))
-    }
-    fn derived(&self, progress: &Progress) -> Option<Document> {
+    /// As [`Document::reshaped_telling`], made even if nothing changed: then what is known costs nothing.
+    pub(super) fn derived(&self, progress: &Progress) -> Option<Document> {
         let shown = || self.parts.list.iter().filter(|part| part.visible && part.on().is_none());
         progress.add_total(shown().count() as u64);
         let outlines = self.standing_outlines(&shown().collect::<Vec<_>>());
         // They are large, and needed for outlines alone.
-        self.parts.forget_flats();
+        self.parts.forget_drawn();
         let mut whole = Whole::new(self);
         for (i, part) in shown().enumerate() {
             if progress.is_cancelled() {
@@ -50,19 +35,12 @@ impl Document {
             progress.step();
         }
         self.parts.cache.keep_only(|id| self.parts.part(id).is_some());
-        self.parts.forget_flats();
         let surface = whole.done();
         let lost = lost(shown().zip(&outlines));
-        if !self.parts.is_ahead && self.parts.lost == lost && same_surface(&surface, &self.surface) {
-            return Some(self.clone());
-        }
-        let parts = Arc::new(Parts { is_ahead: false, lost, ..Parts::clone(&self.parts) });
-        // Selections by the surface are found again on another surface.
-        Some(Document { surface, parts, ..self.clone() }.with_selections_found())
-    }
-    /// Makes the forms of all visible parts; known ones cost nothing.
-    pub(super) fn make_forms(&self) {
-        drop(self.reshaped());
+        let next = Document { surface, ..self.clone() }.with_selections_found();
+        let made_of = Some(Arc::new(next.surface_inputs()));
+        let parts = Arc::new(Parts { is_ahead: false, lost, made_of, ..Parts::clone(&self.parts) });
+        Some(Document { parts, ..next })
     }
     /// The visible parts that lie on another.
     pub(super) fn upon(&self, part: &Part) -> Vec<Arc<Part>> {

@@ -62,9 +62,9 @@ impl Document {
     pub fn with_part_ahead(&self, part: Part) -> Document {
         self.with_parts_ahead(self.list_with(part))
     }
-    /// Whether its surface is that of its parts.
-    pub fn is_shaped(&self) -> bool {
-        !self.parts.is_ahead
+    /// The user drags its parts: they are where the hand is, and its surface follows when it is asked for.
+    pub fn is_ahead(&self) -> bool {
+        self.parts.is_ahead
     }
     /// Without a part and those that change it. What lies on it stays where it shows, no longer carried. `None` if
     /// there is no such part.

@@ -2,7 +2,7 @@
 //! was made of the same forms.
 
 use super::{FormArea, Part};
-use crate::document::Document;
+use crate::document::{Document, Progress};
 use crate::math::{Affine2, Vec2};
 use std::sync::Arc;
 
@@ -12,12 +12,13 @@ impl Document {
     ///
     /// While the user drags parts, their forms are those that were made last, where the parts were then.
     pub fn part_areas(&self) -> Vec<(Arc<Part>, Arc<FormArea>)> {
-        if !self.is_shaped() {
+        if self.is_ahead() {
             return self.last_part_areas().into_iter().map(|(part, area, _)| (part, area)).collect();
         }
         let shown = || self.parts.list.iter().filter(|part| part.visible && part.on().is_none());
         if shown().any(|part| self.made_area(part).is_none()) {
-            self.make_forms();
+            // What was made last may be of another version of the document.
+            drop(self.derived(&Progress::default()));
         }
         shown().filter_map(|part| Some((part.clone(), self.made_area(part)?))).collect()
     }

@@ -3,6 +3,7 @@
 
 use super::Part;
 use super::body::{SolvedOutline, StandingOutline};
+use super::drawn::LastDrawn;
 use super::known::LastFlats;
 use super::outlines::OutlineKey;
 use super::unchanged::{apart, same_list};
@@ -22,6 +23,7 @@ pub struct PartCache {
     pub is_draft: bool,
     made: Arc<Mutex<Vec<MadePart>>>,
     pub(super) flats: Arc<LastFlats>,
+    pub(super) drawn: Arc<LastDrawn>,
     /// The last surface, and what it was made of.
     pub(super) whole: Arc<Mutex<Option<MadeSurface>>>,
 }

@@ -3,10 +3,11 @@
 //!
 //! `part` is one of them and `edit` changes the list. `derive` makes the surface again where it changed; it uses
 //! `standing` for outlines in their places, `make` and `body` for one form, `upon` for what is on a form, `whole` for
-//! all together, `made` for what is kept, and `unchanged` to compare versions. `weight` says what memory that takes.
-//! `outlines` finds outlines, `drawing` says what can be made of a layer, and `flats` makes parts of one in flat
-//! colours, for which `order` finds who lies in front; `cut` makes a drawing go with its parts. `forms` has the forms
-//! that were made, `scale` changes the canvas, and `fit` holds parts to what files can hold.
+//! all together, `made` for what is kept, and `unchanged` to compare versions. `inputs` says whether a surface is
+//! still the right one, `weight` what memory it takes. `outlines` finds outlines, `drawn` what layers draw for them;
+//! `drawing` says what can be made of a layer, and `flats` makes parts of one in flat colours, for which `order` finds
+//! who lies in front; `cut` makes a drawing go with its parts. `forms` has the forms that were made, `scale` changes
+//! the canvas, and `fit` holds parts to what files can hold.
 //!
 //! `shares` says what each pixel of flats is of: `picture` reads its areas and mixed pixels, `palette` finds its
 //! colours, `ink` takes lines out, and `complete` gives what is left to the areas beside it. `places` tells the areas
@@ -20,11 +21,13 @@ mod complete;
 mod cut;
 mod derive;
 pub mod drawing;
+mod drawn;
 mod edit;
 mod fit;
 pub mod flats;
 pub mod forms;
 mod ink;
+mod inputs;
 mod known;
 mod made;
 mod make;
@@ -52,6 +55,7 @@ use crate::math::{Affine2, Range, UNIT, Vec2, Vec3, vec2, vec3};
 use crate::raster::{Asset, Plane};
 use crate::shape::{Ball, Bevel, Combine, Detail, Lines, Primitive, SculptStroke, Touch};
 use crate::surface::Surface;
+use inputs::SurfaceInputs;
 pub use made::FormArea;
 use made::PartCache;
 use std::collections::BTreeMap;
@@ -70,6 +74,8 @@ pub struct Parts {
     is_ahead: bool,
     /// Of a document of another size: its surface, on which the points of this one's are read.
     points: Option<Arc<Surface>>,
+    /// What the document's surface was made of.
+    made_of: Option<Arc<SurfaceInputs>>,
     cache: PartCache,
 }
 
@@ -212,14 +218,7 @@ pub struct PartMaps {
 /// By their contents: every project gives new names.
 impl PartialEq for PartMaps {
     fn eq(&self, other: &Self) -> bool {
-        let is_same = || {
-            self.surface.size() == other.surface.size()
-                && self.surface.depth_range_px() == other.surface.depth_range_px()
-                && self.surface.normal_planes() == other.surface.normal_planes()
-                && self.surface.depth_plane() == other.surface.depth_plane()
-                && self.surface.coverage_plane() == other.surface.coverage_plane()
-        };
-        Arc::ptr_eq(&self.surface, &other.surface) || is_same()
+        Arc::ptr_eq(&self.surface, &other.surface) || self.surface.has_same_maps(&other.surface)
     }
 }
 

@@ -2,11 +2,12 @@
 //! Floor 4.
 
 use super::beneath::fill_beneath;
+use super::drawn::{DrawnLayer, is_same_paint};
 use super::known::KnownFlats;
 use super::places::SplitPlaces;
 use super::shares::Flats;
 use super::{CoverageFile, FlatColor, OutlineSource, Part, PartKind, Parts};
-use crate::document::{Content, Document, Layer, LayerMap, LayerTransform, Progress, flatten_layer};
+use crate::document::Document;
 use crate::math::srgb::Color;
 use crate::math::{Rect, Size, Vec2, vec2};
 use crate::paint::{Scene, Selection};
@@ -19,8 +20,7 @@ use std::sync::Arc;
 /// What an outline is made of: while this is the same, so is the outline.
 #[derive(Clone)]
 pub enum OutlineKey {
-    /// With its map to the canvas, or to the frame of the part if that carries it.
-    Layer(Arc<Layer>, Option<FlatArea>, Box<LayerMap>),
+    Layer(Box<DrawnLayer>, Option<FlatArea>),
     Coverage(Arc<Plane<u8>>),
     Selection(Arc<Selection>),
     /// A selection that follows the maps.
@@ -110,15 +110,6 @@ impl Document {
 }
 
 impl Document {
-    /// Where the pixels of a layer are in the frame of a part that follows it: on the canvas, or, if the part carries
-    /// the layer, where it would be without that.
-    fn map_under(&self, layer: &Layer, part: &Part) -> Option<LayerMap> {
-        let map = self.map_of(layer.id)?;
-        let home = self.home_of(layer.id).and_then(|home| self.parts.body_of(&home.part));
-        let body = self.parts.body_of(&part.id);
-        let is_home = home.zip(body).is_some_and(|(home, body)| home.id == body.id);
-        Some(if is_home { map.at_home() } else { map })
-    }
     /// The places of the colour that a part takes of a layer, wherever it is; `None` for any other part, and for one
     /// that has a place already.
     pub fn places_of(&self, part: &Part) -> Option<SplitPlaces> {
@@ -126,7 +117,7 @@ impl Document {
             return None;
         };
         let layer = self.layer_named(layer)?;
-        let tiles = pixels(self, layer, &self.map_under(layer, part)?)?;
+        let tiles = DrawnLayer::of(self, layer, part)?.pixels(self)?;
         let rect = tiles.bounds();
         let area = self.area_of(part, (*color).into());
         Flats::of(&tiles, rect, &area.asked()).map(|flats| SplitPlaces::of(&flats, *color, rect))
@@ -153,10 +144,11 @@ impl Document {
                 return None;
             };
             let (old, new) = (before.layer_named(layer)?, self.layer_named(layer)?);
-            if old.id != new.id || !(Arc::ptr_eq(old, new) || same_pixels(old, new)) {
+            if old.id != new.id || !is_same_paint(old, new) {
                 return None;
             }
-            let (from, to) = (before.map_under(old, part)?.plane, self.map_under(new, part)?.plane);
+            let plane = |document, layer| Some(DrawnLayer::of(document, layer, part)?.map().plane);
+            let (from, to) = (plane(before, old)?, plane(&self, new)?);
             let moved = from.inverse().then(&to).to_canvas(*at).filter(|_| from != to)?;
             let mut next = Part::clone(part);
             next.outline_mut()?.points_mut().for_each(|p| *p = moved);
@@ -185,9 +177,8 @@ impl OutlineKey {
         Some(match source {
             OutlineSource::Layer { layer, color } => {
                 let layer = document.layer_named(layer)?;
-                let map = document.map_under(layer, part)?;
                 let color = color.map(|flat| document.area_of(part, flat));
-                Self::Layer(layer.clone(), color, Box::new(map))
+                Self::Layer(Box::new(DrawnLayer::of(document, layer, part)?), color)
             }
             OutlineSource::File(CoverageFile { coverage, .. }) => Self::Coverage(coverage.clone()),
             OutlineSource::Selection(name) => {
@@ -203,9 +194,7 @@ impl OutlineKey {
     }
     pub fn is_same(&self, other: &Self) -> bool {
         match (self, other) {
-            (Self::Layer(a, x, from), Self::Layer(b, y, to)) => {
-                x == y && from == to && (Arc::ptr_eq(a, b) || same_pixels(a, b))
-            }
+            (Self::Layer(a, x), Self::Layer(b, y)) => x == y && a.is_same(b),
             (Self::Coverage(a), Self::Coverage(b)) => Arc::ptr_eq(a, b),
             (Self::Selection(a), Self::Selection(b)) => Arc::ptr_eq(a, b),
             (Self::Region(a, on), Self::Region(b, other)) => {
@@ -227,8 +216,8 @@ impl OutlineKey {
         let mut is_lost = false;
         let outline =
             match self {
-                Self::Layer(layer, color, map) => {
-                    let tiles = pixels(document, layer, map)?;
+                Self::Layer(drawn, color) => {
+                    let tiles = drawn.pixels(document)?;
                     let rect = tiles.bounds();
                     if rect.is_empty() || rect.width().checked_mul(rect.height()).is_none_or(|px| px > most_px) {
                         return None;
@@ -278,34 +267,6 @@ fn covered(coverage: &CoverageGrid, most_px: usize) -> Option<Outline> {
         return None;
     }
     Outline::new((rect.x0, rect.y0), &coverage.to_plane(rect))
-}
-
-/// Whether two versions of a layer hold the same paint: its name, mode or opacity change no outline.
-fn same_pixels(a: &Layer, b: &Layer) -> bool {
-    match (&a.content, &b.content) {
-        (Content::Pixels(a), Content::Pixels(b)) => a.tiles.ptr_eq(&b.tiles),
-        _ => false,
-    }
-}
-
-/// What a layer paints, moved by a map: its own pixels, or what it shows alone, without any surface, which depends on
-/// it.
-pub fn pixels(document: &Document, layer: &Arc<Layer>, map: &LayerMap) -> Option<TileGrid> {
-    if layer.is_warped() {
-        let bare = Document { surface: None, ..document.clone() };
-        return flatten_layer(&bare, layer.id, &Progress::default());
-    }
-    let layer = match &layer.content {
-        Content::Pixels(pixels) => return Some(pixels.taken_along(map).tiles),
-        Content::Group(_) => {
-            let transform = LayerTransform::of_map(&map.plane, map.filter, document.size);
-            Layer { on: None, transform, ..Layer::clone(layer) }
-        }
-        _ => Layer::clone(&map.layer_on_canvas(layer)),
-    };
-    let id = layer.id;
-    let flat = Document { layers: vec![Arc::new(layer)], ..Document::empty(document.size) };
-    flatten_layer(&flat, id, &Progress::default())
 }
 
 fn size_of(rect: Rect) -> Size {

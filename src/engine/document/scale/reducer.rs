@@ -107,13 +107,13 @@ impl DocumentReducer {
     /// levels as much coarser, and selections by the surface are resampled and not found again.
     pub fn of(&mut self, document: &Document) -> Result<Document, SurfaceError> {
         let Some(scale) = self.scale(document) else { return Ok(self.drafted(document)) };
-        let of = if document.is_shaped() { document.surface.as_ref() } else { document.maps_surface() };
+        let of = if document.is_ahead() { document.maps_surface() } else { document.surface.as_ref() };
         let surface = of.map(|surface| self.surface(surface, &scale)).transpose()?;
         let mut layers = HashMap::new();
         let small = self.stack(&document.layers, &|layer| Arc::new(self.scaled(layer, &scale)), &mut layers);
         self.layers = layers;
         let small = Document { size: scale.to, surface, layers: small, ..scale.selected(document) };
-        Ok(if document.is_shaped() { small } else { self.shaped(document, small, &scale) })
+        Ok(if document.is_ahead() { self.shaped(document, small, &scale) } else { small })
     }
     fn scaled(&self, layer: &Arc<Layer>, scale: &CanvasScale) -> Layer {
         let known = self.layers.get(&layer.id).filter(|known| known.content.is_identical(&layer.content));
@@ -134,7 +134,7 @@ impl DocumentReducer {
         };
         let stack = self.stack(&document.layers, &drafted, &mut layers);
         self.layers = layers;
-        Document { layers: stack, ..if document.is_shaped() { document.clone() } else { document.reshaped() } }
+        Document { layers: stack, ..if document.is_ahead() { document.reshaped() } else { document.clone() } }
     }
     /// Layers of a document at rest are rendered already: in their own size they are shown as they are.
     pub fn keep(&mut self, document: &Document) {
@@ -161,7 +161,7 @@ impl DocumentReducer {
     /// What [`DocumentReducer::of`] would have to scale down of a document's surface; `None` if nothing.
     pub fn missing_surface(&self, document: &Document) -> Option<SurfaceReduction> {
         let scale = self.scale(document)?;
-        if !document.is_shaped() {
+        if document.is_ahead() {
             return None;
         }
         let surface = document.surface.as_ref().filter(|surface| self.known_surface(surface, scale.to).is_none())?;

@@ -30,7 +30,7 @@ impl CanvasScale {
         }
         // Without the lock: other threads take part in resampling.
         let made = selection.made.map(|region| SurfaceRegion { at: region.at * self.per_axis, ..region });
-        let scaled = Arc::new(Selection { coverage: self.coverage(&selection.coverage), made });
+        let scaled = Arc::new(Selection::carried(self.coverage(&selection.coverage), made));
         // The old one is kept too, so that no other gets its address.
         lock().entry(key).or_insert((selection.clone(), scaled)).1.clone()
     }

@@ -37,7 +37,7 @@ fn after_a_crash_the_drawing_comes_back_untitled_and_unsaved() {
     crash(session);
     let left = lost(folder.path()).pop().unwrap();
     let mut autosave = Autosave::new(folder.path().into());
-    let RecoveredTab { tab, recovery, .. } = autosave.lost().bring_back(left).unwrap();
+    let RecoveredTab { tab, recovery, .. } = autosave.lost().bring_back(left, &Progress::default()).unwrap().unwrap();
     assert_eq!((tab.title().as_str(), &tab.file), ("Untitled 1 (recovered)", &None));
     assert!(tab.is_dirty());
     assert_eq!(crate::io::recipe::write(tab.document()), before);
@@ -151,8 +151,11 @@ fn what_was_chosen_and_in_hand_comes_back_with_the_drawing() {
     session.replay(Path::new("story"), story).unwrap();
     session.keep();
     crash(session);
-    let RecoveredTab { tab, tool, .. } =
-        Autosave::new(folder.path().into()).lost().bring_back(lost(folder.path()).pop().unwrap()).unwrap();
+    let RecoveredTab { tab, tool, .. } = Autosave::new(folder.path().into())
+        .lost()
+        .bring_back(lost(folder.path()).pop().unwrap(), &Progress::default())
+        .unwrap()
+        .unwrap();
     let chosen = tab.document().layer(tab.selected.unwrap()).unwrap();
     assert_eq!((chosen.name.as_str(), tab.on_mask, tool), ("Background", true, Some(ToolKind::Eraser)));
 }

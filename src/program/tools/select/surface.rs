@@ -49,7 +49,7 @@ struct RegionGesture {
 
 impl RegionGesture {
     fn outcome(&self, is_done: bool) -> Outcome {
-        let selection = Selection { coverage: self.field.region(&self.told), made: Some(self.told) };
+        let selection = Selection::carried(self.field.region(&self.told), Some(self.told));
         let document = combined(&self.document, selection, self.how);
         Outcome::Tuned { document, select: SelectSettings { region: self.told, ..self.settings }, is_done }
     }

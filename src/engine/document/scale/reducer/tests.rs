@@ -196,7 +196,11 @@ fn parts_that_a_hand_drags_are_shaped_small_and_those_at_rest_are_not_made_again
     let document = document.with_part(part("a", 100.0, 1.0)).with_part(part("b", 280.0, 1.0));
     let mut reduced = DocumentReducer::new(0.5);
     let dragged = document.with_part_ahead(part("a", 100.0, 0.4));
-    assert!(!dragged.is_shaped() && Arc::ptr_eq(dragged.surface.as_ref().unwrap(), document.surface.as_ref().unwrap()));
+    assert!(
+        dragged.is_ahead()
+            && !dragged.is_shaped()
+            && Arc::ptr_eq(dragged.surface.as_ref().unwrap(), document.surface.as_ref().unwrap())
+    );
     let small = reduced.of(&dragged).unwrap();
     let apart = |small: &Document, puff: f32| {
         let whole = document.with_part(part("a", 100.0, puff)).scaled(0.5).unwrap();

@@ -99,7 +99,11 @@ fn a_drag_of_a_number_is_one_step_and_reshapes_meanwhile() {
     tell(&mut session, &part(0.5, false));
     assert!(puff(&session, "part-1") == 0.5 && session.active().unwrap().is_previewing());
     let drags = shown(&session);
-    assert!(!drags.is_shaped() && drags.surface.as_ref().unwrap().normal(70, 84) == before.normal(70, 84));
+    assert!(
+        drags.is_ahead()
+            && !drags.is_shaped()
+            && drags.surface.as_ref().unwrap().normal(70, 84) == before.normal(70, 84)
+    );
     let flatter = drags.reshaped().surface.unwrap();
     assert!(flatter.normal(70, 84).z > before.normal(70, 84).z + 0.1);
     tell(&mut session, &part(0.25, true));

@@ -247,8 +247,9 @@ pub fn recovered(session: &mut Session, folder: &Path) -> Kept {
     let lost = Autosave::new(folder.into()).lost();
     let mut back = Vec::new();
     for left in lost.list() {
-        let recovered = lost.bring_back(left).map_err(|error| Broken::said("not recovered", error))?;
-        back.push(recovered.tab.document().clone());
+        let recovered = lost.bring_back(left, &Progress::default());
+        let recovered = recovered.map_err(|error| Broken::said("not recovered", error))?;
+        back.extend(recovered.map(|recovered| recovered.tab.document().clone()));
     }
     for tab in session.open_documents.iter().filter(|tab| tab.is_dirty()) {
         let differences: Vec<_> = back.iter().map(|document| tab.document().difference(document)).collect();
