@@ -105,6 +105,21 @@ pub struct PartResult {
     pub read: ReadPart,
 }
 
+impl JobResult {
+    /// Whether something comes in front that nobody waits for: a document, or a dialog about one.
+    pub fn comes_in_front(&self) -> bool {
+        match self {
+            JobResult::Several(several) => several.iter().any(JobResult::comes_in_front),
+            JobResult::Opened(..)
+            | JobResult::AreMaps(_)
+            | JobResult::Lost(_)
+            | JobResult::Recovered(_)
+            | JobResult::Looked(..) => true,
+            _ => false,
+        }
+    }
+}
+
 /// What becomes of a picture from a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PictureUse {
@@ -156,6 +171,8 @@ pub enum JobKind {
     Editing,
     /// It waits for another program: a dialog of the system.
     Asking,
+    /// It reads what a dialog will show, which the user asked for. It can be cancelled.
+    Looking,
 }
 
 /// A running job.
@@ -282,6 +299,10 @@ impl Jobs {
     /// Cancels the jobs of a name: their results are no longer wanted.
     pub fn give_up(&self, name: &str) {
         self.under_way.iter().filter(|job| job.name == name).for_each(|job| job.progress.cancel());
+    }
+    /// Whether a job is under way that ends with a dialog, or waits in one of the system's.
+    pub fn awaits_dialog(&self) -> bool {
+        self.under_way.iter().any(|job| matches!(job.kind, JobKind::Asking | JobKind::Looking))
     }
     /// The job that blocks other edits.
     pub fn editing(&self) -> Option<&RunningJob> {

@@ -1,6 +1,7 @@
 //! The window, driven by the names of its controls, with no display and no graphics card.
 
 mod brushes;
+mod busy;
 mod canvas;
 mod documents;
 mod habits;

@@ -3,7 +3,7 @@
 
 use crate::canvas::Canvas;
 use crate::document::MemoryUse;
-use crate::jobs::{JobKind, Jobs};
+use crate::jobs::{JobKind, Jobs, RunningJob};
 use crate::math::Vec2;
 use crate::memory::spoken;
 use crate::requests::{UiRequests, WindowRequest};
@@ -22,7 +22,8 @@ pub fn show(
     requests: &mut UiRequests,
 ) {
     ui.horizontal(|ui| {
-        for job in jobs.under_way.iter().filter(|job| job.kind == JobKind::Working && job.is_long()) {
+        let is_shown = |job: &RunningJob| matches!(job.kind, JobKind::Working | JobKind::Looking) && job.is_long();
+        for job in jobs.under_way.iter().filter(|job| is_shown(job)) {
             ui.label(job.title());
             bar(ui, job.share(), 90.0);
             if ui.small_button("Cancel").on_hover_text(format!("Give up: {}", job.name)).clicked() {

@@ -29,7 +29,7 @@ type GiveMaps = fn(&mut Session, &SurfaceSource, ImportedSurface) -> crate::Resu
 
 impl MainWindow {
     pub(super) fn finish_jobs(&mut self, ctx: &egui::Context) {
-        for done in self.jobs.finished() {
+        for done in self.results(ctx) {
             self.finish(ctx, done);
         }
     }
@@ -47,7 +47,7 @@ impl MainWindow {
                     if let Some(file) = file {
                         self.did(|| Action::File(FileAction::Open { file }));
                     }
-                    self.messages.append(&mut self.session.notes);
+                    self.tell_notes();
                 }
                 Err(error) => self.messages.push(with_advice(&error)),
             },
@@ -74,8 +74,9 @@ impl MainWindow {
                 brushes::adopt(&mut self.session, presets);
                 self.messages.extend(notes);
             }
-            JobResult::Pictured(_, name, picture, PictureUse::Pasted(place)) => {
+            JobResult::Pictured(file, name, picture, PictureUse::Pasted(place)) => {
                 self.pasted(PastedPicture { name, picture }, place);
+                self.session.note_read(&file);
             }
             JobResult::Pictured(file, name, picture, PictureUse::Placed(at)) => {
                 let at = self.pictured(&name, picture, at);
@@ -192,7 +193,7 @@ impl MainWindow {
     pub(super) fn take_maps(&mut self, (source, import): (SurfaceSource, ImportedSurface), give: GiveMaps) {
         let done = give(&mut self.session, &source, import);
         self.messages.extend(done.err().map(|error| with_advice(&error)));
-        self.messages.append(&mut self.session.notes);
+        self.tell_notes();
     }
     fn chosen_to_write(&mut self, purpose: FilePurpose, file: PathBuf) {
         let named = purpose.named(file.clone(), self.export.extension);

@@ -8,6 +8,7 @@ mod layout;
 mod leaving;
 mod requested;
 mod steps;
+mod typing;
 mod unwrap;
 mod work;
 
@@ -19,10 +20,10 @@ use super::panel_layout::PanelKind;
 use super::pen::SharedTablet;
 use super::pending::{AfterUnsaved, Pending, Saving};
 use super::requests::{UiRequests, WindowRequest};
+use super::sample;
 use super::settings::{Settings, SettingsFile};
 use super::swatches::Swatches;
 use super::thumbnails::Thumbnails;
-use super::{keys, sample};
 use crate::advice::with_advice;
 use crate::document::Progress;
 use crate::session::actions::{self, GuideAction};
@@ -75,6 +76,8 @@ pub struct MainWindow {
     clipboard: Option<Clipboard>,
     /// What this window last put there.
     handed_out: Option<Arc<Vec<u8>>>,
+    /// What waits until it is no longer busy.
+    busy: typing::BusyInput,
     /// The recorded actions, if they are recorded.
     recorded: Option<Vec<Action>>,
 }
@@ -116,6 +119,7 @@ impl MainWindow {
             clipboard_source: clipboard::pasted,
             clipboard: None,
             handed_out: None,
+            busy: typing::BusyInput::default(),
             recorded: None,
         }
     }
@@ -172,15 +176,16 @@ impl MainWindow {
         self.tell_troubles();
         self.unwrap_ahead();
         self.thumbnails.collect(ui.ctx());
-        if self.dialogs.is_empty() && self.jobs.editing().is_none() {
-            keys::listen(ui.ctx(), &self.session, &self.settings.keymap, &mut requests);
-        }
+        self.do_held(&mut requests);
+        self.hear_keys(ui.ctx(), &mut requests);
         self.take_dropped(ui.ctx());
         self.lay_out(ui, &mut requests);
         self.show_dialog(ui.ctx(), &mut requests);
         self.show_editing(ui.ctx());
         self.guard_leaving(ui.ctx());
+        let dialogs = self.dialogs.len();
         self.do_requests(ui.ctx(), requests);
+        self.expect_dialog(dialogs);
         self.session.keep();
         self.set_title(ui.ctx());
         self.settings.aids = self.session.aids;
@@ -190,6 +195,14 @@ impl MainWindow {
     fn tell_troubles(&mut self) {
         let troubles = [&mut self.canvas.trouble, &mut self.thumbnails.trouble, &mut self.swatches.trouble];
         self.messages.extend(troubles.into_iter().filter_map(Option::take).map(|error| with_advice(&error)));
+    }
+    /// Shows what the session has to say, once: a stroke tried again says nothing new.
+    fn tell_notes(&mut self) {
+        for note in std::mem::take(&mut self.session.notes) {
+            if !self.messages.contains(&note) {
+                self.messages.push(note);
+            }
+        }
     }
     fn show_dialog(&mut self, ctx: &egui::Context, requests: &mut UiRequests) {
         let Some(dialog) = self.dialogs.last_mut() else { return };
@@ -253,19 +266,16 @@ impl MainWindow {
     }
     /// Performs a request.
     fn do_requests(&mut self, ctx: &egui::Context, requests: UiRequests) {
-        let is_editing = self.jobs.editing().is_some();
         if !requests.actions.is_empty() {
             // The frame is laid out again to show what was done in it.
             ctx.request_discard("an action");
         }
         for action in requests.actions {
-            // While an edit is running, the document can be viewed but not changed.
-            if (is_editing && !matches!(action, Action::View(_))) || self.begin_edit(&action) {
-                continue;
+            if !self.holds(&action) && !self.begin_edit(&action) {
+                self.apply(&action);
             }
-            self.apply(&action);
         }
-        self.messages.append(&mut self.session.notes);
+        self.tell_notes();
         self.session.said.drain(..).for_each(|sentence| self.jobs.say(sentence));
         self.hand_out();
         for ask in requests.window {
@@ -277,7 +287,7 @@ impl MainWindow {
             Ok(()) => self.did(|| action.clone()),
             Err(error) => self.messages.push(with_advice(&error)),
         }
-        self.messages.append(&mut self.session.notes);
+        self.tell_notes();
     }
     fn set_title(&mut self, ctx: &egui::Context) {
         let title = self.session.active().map_or_else(

@@ -209,7 +209,7 @@ impl MainWindow {
         let Some(tab) = self.session.active() else { return };
         let (key, document, selected) = (tab.key, tab.document().clone(), tab.selected);
         let look = move |_: &Progress| JobResult::Looked(key, shape::looked(&document, selected));
-        self.jobs.start("Looking at the drawing".into(), JobKind::Working, look);
+        self.jobs.start("Looking at the drawing".into(), JobKind::Looking, look);
     }
     pub(super) fn shaped(&mut self, shaped: ShapedResult) {
         let ShapedResult { tab, action, from, shape } = shaped;
@@ -221,20 +221,32 @@ impl MainWindow {
         }
     }
     /// Shows the edit that blocks others once it takes long.
-    pub(super) fn show_editing(&self, ctx: &egui::Context) {
+    pub(super) fn show_editing(&mut self, ctx: &egui::Context) {
         let Some(job) = self.jobs.editing() else { return };
         ctx.request_repaint_after(std::time::Duration::from_millis(60));
         if !job.is_long() {
             return;
         }
-        Modal::new(egui::Id::unique("editing")).show(ctx, |ui| {
+        let content = |ui: &mut egui::Ui| {
             ui.set_width(280.0);
             ui.heading(job.title());
             bar(ui, job.share(), 280.0);
-            if ui.button("Cancel").clicked() {
-                job.progress.cancel();
+            let escape = ui.input(|input| input.key_pressed(egui::Key::Escape));
+            ui.button("Cancel").clicked() || (escape && !ctx.text_edit_focused())
+        };
+        // A modal would take the keyboard from what is being typed.
+        let is_cancelled = match ctx.text_edit_focused() {
+            true => {
+                let area = egui::Area::new(egui::Id::unique("editing while typing"));
+                let area = area.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO).order(egui::Order::Foreground);
+                area.show(ctx, |ui| egui::Frame::popup(ui.style()).show(ui, content).inner).inner
             }
-        });
+            false => Modal::new(egui::Id::unique("editing")).show(ctx, content).inner,
+        };
+        if is_cancelled {
+            job.progress.cancel();
+            self.forget_held();
+        }
     }
 }
 

@@ -123,7 +123,7 @@ const STEPS: usize = 4;
 /// Undone and made again, every document is the one that was.
 fn steps(tab: &mut OpenDocument, seen: &[Seen]) -> Kept {
     let last = tab.document().clone();
-    let ahead = tab.history.future().count() as i32;
+    let ahead = tab.history.future_labels().len() as i32;
     tab.walk(ahead);
     let mut known = Vec::new();
     loop {
