@@ -30,6 +30,17 @@ pub fn change<T>(response: &Response, to: T) -> Option<ValueChange<T>> {
     response.changed().then(|| ValueChange { to, done: !response.dragged() })
 }
 
+/// Gives a widget the keyboard when it was not there a moment ago: the first number of a dialog, so that it can be
+/// typed at once.
+pub fn begin_with(response: &Response) {
+    let (ctx, id) = (&response.ctx, response.id.with("shown last"));
+    let now = ctx.cumulative_pass_nr();
+    let last = ctx.data_mut(|data| std::mem::replace(data.get_temp_mut_or(id, 0), now));
+    if now > last + 2 {
+        response.request_focus();
+    }
+}
+
 /// A number with its name in front of it.
 pub struct NumberField<'a> {
     pub label: &'a str,

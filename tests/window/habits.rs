@@ -1,7 +1,7 @@
 //! Menus, keys, the palette of commands, and what the window remembers.
 
 use super::{Story, command, key, layers, press, session, steps, until, window, window_at};
-use eframe::egui::{Key, Modifiers};
+use eframe::egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use rilievo_program::tools::ToolKind;
 use rilievo_window::MainWindow;
@@ -86,7 +86,7 @@ fn the_keys_of_krita_do_what_they_do_there_and_say_so_where_they_cannot() {
     let (ctrl, shift) = (Modifiers::COMMAND, Modifiers::SHIFT);
     let is_selected = |harness: &Story| session(harness).active().unwrap().document().selected().is_some();
     for (modifiers, letter, selects) in
-        [(ctrl, Key::A, true), (ctrl | shift, Key::A, false), (ctrl, Key::D, true), (ctrl | shift, Key::I, false)]
+        [(ctrl, Key::A, true), (ctrl, Key::D, false), (ctrl | shift, Key::D, true), (ctrl | shift, Key::I, false)]
     {
         key(&mut harness, modifiers, letter);
         assert_eq!(is_selected(&harness), selects, "{letter:?}");
@@ -120,4 +120,51 @@ fn the_palette_puts_what_begins_with_the_words_first() {
     command(&mut harness, "lock");
     assert_eq!(session(&harness).layer().unwrap().lock, rilievo::document::LayerLock::Alpha, "not “Clip” or “Block”");
     assert_eq!(layers(&harness), ["Background"]);
+}
+#[test]
+fn a_dialog_begins_in_its_first_number_and_enter_accepts() {
+    let mut harness = window();
+    let typed = |harness: &mut Story, text: &str| {
+        harness.event(Event::Text(text.into()));
+        steps(harness);
+        key(harness, Modifiers::NONE, Key::Enter);
+    };
+    let area = |harness: &Story| {
+        let tab = session(harness).active().unwrap();
+        tab.document().selected().map_or(0.0, rilievo_engine::raster::CoverageGrid::area_px)
+    };
+    command(&mut harness, "Select all");
+    command(&mut harness, "Shrink selection…");
+    typed(&mut harness, "40");
+    assert!((area(&harness) - 944.0 * 944.0).abs() < 944.0 * 4.0, "{}", area(&harness));
+    key(&mut harness, Modifiers::COMMAND, Key::N);
+    typed(&mut harness, "300");
+    assert_eq!(session(&harness).shown().unwrap().size.width, 300);
+}
+#[test]
+fn ctrl_shift_tab_goes_to_the_document_before() {
+    let mut harness = window();
+    for _ in 0..2 {
+        key(&mut harness, Modifiers::COMMAND, Key::N);
+        key(&mut harness, Modifiers::NONE, Key::Enter);
+    }
+    let back = Modifiers::COMMAND | Modifiers::SHIFT;
+    for expected in [1, 0, 2] {
+        key(&mut harness, back, Key::Tab);
+        assert_eq!(session(&harness).current, expected);
+    }
+    key(&mut harness, Modifiers::COMMAND, Key::Tab);
+    assert_eq!(session(&harness).current, 0);
+}
+#[test]
+fn in_full_screen_tab_leaves_nothing_but_the_picture() {
+    let mut harness = window();
+    key(&mut harness, Modifiers::NONE, Key::Tab);
+    assert!(harness.query_by_label("File").is_some(), "in a window the menus stay");
+    let root = eframe::egui::ViewportId::ROOT;
+    harness.input_mut().viewports.entry(root).or_default().fullscreen = Some(true);
+    steps(&mut harness);
+    assert!(harness.query_by_label("File").is_none());
+    key(&mut harness, Modifiers::NONE, Key::Tab);
+    assert!(harness.query_by_label("File").is_some());
 }

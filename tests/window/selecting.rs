@@ -29,7 +29,7 @@ fn a_rectangle_is_selected_grown_inverted_and_let_go_of_and_the_status_says_wher
     assert!(harness.query_by_label_contains("Selected ").is_none());
     key(&mut harness, Modifiers::COMMAND | Modifiers::SHIFT, Key::A);
     harness.get_by_label_contains("Nothing is selected.");
-    key(&mut harness, Modifiers::COMMAND, Key::D);
+    key(&mut harness, Modifiers::COMMAND | Modifiers::SHIFT, Key::D);
     assert!(area(&harness) > 0.0, "what was let go of is back");
 }
 #[test]

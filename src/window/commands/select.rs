@@ -23,12 +23,20 @@ pub const COMMANDS: &[MenuCommand] = &[
     row("Select all", &[ctrl(Key::A)], "Selects the whole canvas", always, |_, requests| {
         act(requests, SelectionAction::All {})
     }),
-    row("Deselect", &[ctrl_shift(Key::A)], "Lets go of the selection: everything can be painted on", always, |_, r| {
-        act(r, SelectionAction::None {})
-    }),
-    row("Select again", &[ctrl(Key::D)], "Takes back the selection that was let go of last", always, |_, requests| {
-        act(requests, SelectionAction::Again {})
-    }),
+    row(
+        "Deselect",
+        &[ctrl(Key::D), ctrl_shift(Key::A)],
+        "Lets go of the selection: everything can be painted on",
+        always,
+        |_, requests| act(requests, SelectionAction::None {}),
+    ),
+    row(
+        "Select again",
+        &[ctrl_shift(Key::D)],
+        "Takes back the selection that was let go of last",
+        always,
+        |_, requests| act(requests, SelectionAction::Again {}),
+    ),
     row("Invert selection", &[ctrl_shift(Key::I)], "Selects what is not selected", always, |_, requests| {
         act(requests, SelectionAction::Invert {})
     }),

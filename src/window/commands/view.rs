@@ -6,7 +6,7 @@ use crate::math::Vec2;
 use crate::panel_layout::PanelKind;
 use crate::panel_layout::PanelSide;
 use crate::requests::{UiRequests, WindowRequest};
-use crate::session::actions::ViewAction;
+use crate::session::actions::{FileAction, ViewAction};
 use crate::session::{Action, Session};
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 
@@ -24,6 +24,11 @@ fn is_unwrapped(session: &Session) -> bool {
 }
 const fn alt(key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(Modifiers::ALT, key)
+}
+/// The tab so many to the right of the one in front, around the end.
+fn tab_beside(session: &Session, requests: &mut UiRequests, by: usize) {
+    let index = (session.current + by) % session.open_documents.len().max(1);
+    requests.act(Action::File(FileAction::Tab { index }));
 }
 const STEP_RAD: f32 = std::f32::consts::PI / 12.0;
 
@@ -150,9 +155,13 @@ pub const COMMANDS: &[MenuCommand] = &[
     )
     .ticked(|session, _| is_unwrapped(session)),
     LINE,
-    row("Hide panels", &[key(Key::Tab)], "Shows only the canvas, or all panels again", always, |_, requests| {
-        requests.request(WindowRequest::TogglePanels)
-    })
+    row(
+        "Hide panels",
+        &[key(Key::Tab)],
+        "Shows only the canvas, in full screen without the menus, or all again",
+        always,
+        |_, requests| requests.request(WindowRequest::TogglePanels),
+    )
     .ticked(|_, layout| layout.is_hidden),
     row("Panels on the other side", &[], "To the left of the canvas, or to the right", always, |_, requests| {
         requests.request(WindowRequest::OtherSide)
@@ -199,9 +208,9 @@ pub const COMMANDS: &[MenuCommand] = &[
         &[ctrl(Key::Tab), ctrl_shift(Key::CloseBracket)],
         "The next tab",
         has_document,
-        |session, requests| {
-            let index = (session.current + 1) % session.open_documents.len().max(1);
-            requests.act(Action::File(crate::session::actions::FileAction::Tab { index }));
-        },
+        |session, requests| tab_beside(session, requests, 1),
     ),
+    row("Previous document", &[ctrl_shift(Key::Tab)], "The tab before this one", has_document, |session, requests| {
+        tab_beside(session, requests, session.open_documents.len().saturating_sub(1))
+    }),
 ];

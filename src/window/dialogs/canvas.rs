@@ -8,7 +8,7 @@ use crate::raster::Resampling;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::Action;
 use crate::session::actions::CanvasAction;
-use crate::widgets::choice;
+use crate::widgets::{begin_with, choice};
 use eframe::egui::{Button, DragValue, Grid, Ui};
 
 /// A side in the dialogs, px: as for new documents.
@@ -50,7 +50,11 @@ impl CanvasSides {
                 let label = ui.label(name);
                 let side = if i == 0 { &mut self.width } else { &mut self.height };
                 let px = DragValue::new(side).range(SIDE).suffix(" px");
-                let mut is_other = ui.add(px).labelled_by(label.id).changed();
+                let px = ui.add(px).labelled_by(label.id);
+                if i == 0 {
+                    begin_with(&px);
+                }
+                let mut is_other = px.changed();
                 let share = DragValue::new(&mut percent[i]).range(0.1..=10_000.0).speed(0.5).suffix(" %");
                 let share = ui.add(share).on_hover_text(format!("{name} as a share of what it was"));
                 if share.changed() {
@@ -170,7 +174,7 @@ impl TurnDialog {
         ui.horizontal(|ui| {
             let label = ui.label("Angle");
             let angle = DragValue::new(&mut self.degrees).range(-360.0..=360.0).speed(0.5).suffix("°");
-            ui.add(angle).labelled_by(label.id);
+            begin_with(&ui.add(angle).labelled_by(label.id));
         });
         ui.weak(about(self.size, CanvasChange::turned(self.size, f64::from(self.degrees)).size()));
         answer(ui, requests, "Turn", CanvasAction::Turn { degrees: self.degrees })

@@ -4,6 +4,7 @@ use super::{DialogAnswer, buttons};
 use crate::requests::UiRequests;
 use crate::session::Action;
 use crate::session::actions::{EdgeChange, SelectionAction};
+use crate::widgets::begin_with;
 use eframe::egui::{DragValue, Ui};
 
 pub struct EdgeDialog {
@@ -22,7 +23,8 @@ impl EdgeDialog {
         ui.horizontal(|ui| {
             let label = ui.label("Pixels");
             let range = self.change.range();
-            ui.add(DragValue::new(&mut self.px).range(range).speed(0.1).suffix(" px")).labelled_by(label.id);
+            let px = DragValue::new(&mut self.px).range(range).speed(0.1).suffix(" px");
+            begin_with(&ui.add(px).labelled_by(label.id));
         });
         match buttons(ui, "Change", true) {
             Some(true) => {

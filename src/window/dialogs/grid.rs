@@ -5,8 +5,8 @@ use crate::requests::UiRequests;
 use crate::session::actions::GuideAction;
 use crate::session::{Action, Session};
 use crate::tools::snap::{CanvasGrid, ViewAids};
-use crate::widgets::check;
-use eframe::egui::{DragValue, Ui};
+use crate::widgets::{begin_with, check};
+use eframe::egui::{DragValue, Key, Ui};
 
 pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) -> DialogAnswer {
     ui.set_width(320.0);
@@ -22,7 +22,11 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) -> Dialog
     if aids != session.aids {
         requests.act(Action::Guide(GuideAction::Aids { aids }));
     }
-    close(ui)
+    // Enter in a number sets it, and with it the grid is done.
+    match ui.input(|input| input.key_pressed(Key::Enter)) {
+        true => DialogAnswer::Close,
+        false => close(ui),
+    }
 }
 
 /// A setting of the snapping, to be read and written.
@@ -39,12 +43,13 @@ const CHOICES: [(&str, &str, Choice); 6] = [
 
 fn grid(ui: &mut Ui, grid: &mut CanvasGrid) {
     let mut number = |label: &str, value: &mut f32, range: std::ops::RangeInclusive<f32>| {
-        ui.horizontal(|ui| {
+        let row = ui.horizontal(|ui| {
             let label = ui.label(label);
-            ui.add(DragValue::new(value).range(range).speed(0.5).suffix(" px")).labelled_by(label.id);
+            ui.add(DragValue::new(value).range(range).speed(0.5).suffix(" px")).labelled_by(label.id)
         });
+        row.inner
     };
-    number("Spacing", &mut grid.spacing, CanvasGrid::SPACING);
+    begin_with(&number("Spacing", &mut grid.spacing, CanvasGrid::SPACING));
     number("Offset x", &mut grid.offset.x, crate::math::COORDINATE);
     number("Offset y", &mut grid.offset.y, crate::math::COORDINATE);
     ui.horizontal(|ui| {

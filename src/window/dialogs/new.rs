@@ -6,6 +6,7 @@ use crate::math::srgb::Color;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::Action;
 use crate::session::actions::FileAction;
+use crate::widgets::begin_with;
 use eframe::egui::{DragValue, Ui};
 
 pub struct NewDialog {
@@ -49,7 +50,8 @@ impl NewDialog {
         ui.label("An empty canvas");
         ui.horizontal(|ui| {
             let label = ui.label("Width");
-            ui.add(DragValue::new(&mut self.width).range(1..=16384).suffix(" px")).labelled_by(label.id);
+            let width = DragValue::new(&mut self.width).range(1..=16384).suffix(" px");
+            begin_with(&ui.add(width).labelled_by(label.id));
             let label = ui.label("Height");
             ui.add(DragValue::new(&mut self.height).range(1..=16384).suffix(" px")).labelled_by(label.id);
         });

@@ -16,7 +16,11 @@ impl MainWindow {
     pub(super) fn lay_out(&mut self, ui: &mut Ui, requests: &mut UiRequests) {
         let bar = |ui: &Ui| Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(6, 3));
         let settings = &self.settings;
-        Panel::top("menu").frame(bar(ui)).show(ui, |ui| panels::menu::show(ui, &self.session, settings, requests));
+        // In full screen hidden panels leave nothing but the picture.
+        let is_bare = settings.layout.is_hidden && ui.input(|i| i.viewport().fullscreen.unwrap_or(false));
+        if !is_bare {
+            Panel::top("menu").frame(bar(ui)).show(ui, |ui| panels::menu::show(ui, &self.session, settings, requests));
+        }
         if !self.settings.layout.is_hidden {
             // Always as tall as its two rows, so that nothing below it moves when its content changes.
             let rows_pt = panels::options::ROWS * ui.spacing().interact_size.y
@@ -37,7 +41,7 @@ impl MainWindow {
             self.side(ui, requests);
             self.apart(ui.ctx(), requests);
         }
-        if !self.session.open_documents.is_empty() {
+        if !self.session.open_documents.is_empty() && !is_bare {
             Panel::top("tabs").frame(bar(ui)).show(ui, |ui| panels::menu::tabs(ui, &self.session, requests));
         }
         CentralPanel::no_frame().show(ui, |ui| {
