@@ -18,8 +18,31 @@ pub struct History<T> {
     limit: usize,
 }
 
+/// What an edit did.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct EditLabel {
+    /// Its name, the same for all edits of its kind.
+    pub name: String,
+    /// The one layer that it was done to, if there is one.
+    pub layer: Option<LabelledLayer>,
+}
+
+/// The layer that an edit was done to, by the name that it had then.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum LabelledLayer {
+    Changed(String),
+    /// Added to the layers, or deleted from them.
+    Listed(String),
+}
+
+impl<S: Into<String>> From<S> for EditLabel {
+    fn from(name: S) -> Self {
+        Self { name: name.into(), layer: None }
+    }
+}
+
 struct HistoryStep<T> {
-    label: String,
+    label: EditLabel,
     document: Document,
     before: T,
     /// `None` until [`History::settle`].
@@ -38,7 +61,7 @@ impl<T> History<T> {
     /// Makes an edited document the present one; undone documents are dropped.
     ///
     /// * `before`: what undo gives back.
-    pub fn commit(&mut self, label: impl Into<String>, document: Document, before: T) {
+    pub fn commit(&mut self, label: impl Into<EditLabel>, document: Document, before: T) {
         self.future.clear();
         let old = std::mem::replace(&mut self.present, document.reshaped());
         self.past.push(HistoryStep { label: label.into(), document: old, before, after: None });
@@ -78,21 +101,25 @@ impl<T> History<T> {
         self.past.push(step);
         self.past.last().map(|step| step.after.as_ref().unwrap_or(&step.before))
     }
-    /// Every edit that was made, oldest first.
+    /// The names of the edits that were made, oldest first.
     pub fn past(&self) -> impl ExactSizeIterator<Item = &str> {
-        self.past.iter().map(|step| step.label.as_str())
+        self.past_labels().map(|label| label.name.as_str())
+    }
+    /// Every edit that was made, oldest first.
+    pub fn past_labels(&self) -> impl ExactSizeIterator<Item = &EditLabel> {
+        self.past.iter().map(|step| &step.label)
     }
     /// Every edit that was undone, the next to redo first.
-    pub fn future(&self) -> impl ExactSizeIterator<Item = &str> {
-        self.future.iter().rev().map(|step| step.label.as_str())
+    pub fn future_labels(&self) -> impl ExactSizeIterator<Item = &EditLabel> {
+        self.future.iter().rev().map(|step| &step.label)
     }
     /// The edit that undo would revert.
     pub fn done(&self) -> Option<&str> {
-        self.past.last().map(|step| step.label.as_str())
+        self.past.last().map(|step| step.label.name.as_str())
     }
     /// The edit that redo would repeat.
     pub fn undone(&self) -> Option<&str> {
-        self.future.last().map(|step| step.label.as_str())
+        self.future.last().map(|step| step.label.name.as_str())
     }
 }
 

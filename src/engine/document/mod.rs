@@ -47,7 +47,7 @@ pub use flatten::{
 };
 pub use frame_box::FrameBox;
 pub use guides::Guides;
-pub use history::History;
+pub use history::{EditLabel, History, LabelledLayer};
 pub use layer::{
     AdjustedPlace, Adjustment, BackdropMeter, Content, DerivedMask, DetailSource, EncodedPixels, Group, Layer,
     LayerCache, LayerId, LayerLabel, LayerLock, LayerMap, LayerMask, LayerTransform, LayerWarp, Live, LookKind,

@@ -3,6 +3,7 @@
 
 pub mod chosen;
 mod drawn;
+pub mod labels;
 mod target;
 
 use super::first_look::FirstLook;
@@ -208,6 +209,7 @@ impl OpenDocument {
                         let let_go = self.document().active_selection.clone();
                         self.last_selection = let_go.or(self.last_selection.take());
                     }
+                    let label = labels::label(label.into(), self.document(), &document);
                     self.history.commit(label, document, self.target());
                 }
                 Err(why) => {

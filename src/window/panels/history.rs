@@ -1,8 +1,8 @@
-//! The history: every step by its name; a click goes to it. Floor 7.
+//! The history: every step by what was done to which layer; a click goes to it. Floor 7.
 
 use crate::requests::UiRequests;
 use crate::session::actions::EditAction;
-use crate::session::{Action, Session};
+use crate::session::{Action, Session, labels};
 use eframe::egui::{self, Button, RichText, Ui};
 
 pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
@@ -11,9 +11,9 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         return;
     };
     let done = tab.history.past().len() as i32;
-    let opened = std::iter::once(("Opened", -done));
-    let past = tab.history.past().enumerate().map(|(i, label)| (label, i as i32 + 1 - done));
-    let future = tab.history.future().enumerate().map(|(i, label)| (label, i as i32 + 1));
+    let opened = std::iter::once(("Opened".to_owned(), -done));
+    let past = tab.history.past_labels().enumerate().map(|(i, label)| (labels::sentence(label), i as i32 + 1 - done));
+    let future = tab.history.future_labels().enumerate().map(|(i, label)| (labels::sentence(label), i as i32 + 1));
     egui::ScrollArea::vertical().id_salt("history").auto_shrink([false, false]).stick_to_bottom(true).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 1.0;
         for (label, steps) in opened.chain(past).chain(future) {

@@ -109,3 +109,26 @@ fn chosen_strokes_are_those_that_were_chosen_before_they_were_ordered() {
     redo(&mut session);
     assert_eq!(strokes(&session), [0]);
 }
+#[test]
+fn the_history_says_which_layer_a_step_was_done_to() {
+    let mut session = two_layers();
+    act(&mut session, &drawn_with("brush"));
+    act(&mut session, r#"{"in":"layer","do":"set","layer":"1","to":{"do":"opacity","to":0.5},"done":true}"#);
+    act(&mut session, r#"{"in":"layer","do":"group","layer":["1","2"]}"#);
+    act(&mut session, r#"{"in":"layer","do":"select","layer":"1.0"}"#);
+    act(&mut session, &drawn_with("brush"));
+    act(&mut session, r#"{"in":"layer","do":"delete","layer":"1.1"}"#);
+    act(&mut session, r#"{"in":"selection","do":"all"}"#);
+    let said: Vec<String> = session.active().unwrap().history.past_labels().map(labels::sentence).collect();
+    let expected = [
+        "Add layer “Paint”",
+        "Add layer “Paint 2”",
+        "Brush stroke on “Paint”",
+        "Opacity on “Paint”",
+        "Group layers “Group”",
+        "Brush stroke on “Paint”",
+        "Delete layer “Paint 2”",
+        "Select all",
+    ];
+    assert_eq!(said, expected);
+}
