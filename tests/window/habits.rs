@@ -129,14 +129,6 @@ fn a_dialog_begins_in_its_first_number_and_enter_accepts() {
         steps(harness);
         key(harness, Modifiers::NONE, Key::Enter);
     };
-    let area = |harness: &Story| {
-        let tab = session(harness).active().unwrap();
-        tab.document().selected().map_or(0.0, rilievo_engine::raster::CoverageGrid::area_px)
-    };
-    command(&mut harness, "Select all");
-    command(&mut harness, "Shrink selection…");
-    typed(&mut harness, "40");
-    assert!((area(&harness) - 944.0 * 944.0).abs() < 944.0 * 4.0, "{}", area(&harness));
     key(&mut harness, Modifiers::COMMAND, Key::N);
     typed(&mut harness, "300");
     assert_eq!(session(&harness).shown().unwrap().size.width, 300);
