@@ -4,7 +4,9 @@
 use super::theme::color32;
 use crate::math::srgb::Color;
 use eframe::egui::{
-    self, Align, DragValue, Layout, ProgressBar, Response, RichText, ScrollArea, Slider, SliderClamping, Ui, vec2,
+    self, Align, DragValue, Layout, ProgressBar, Response, RichText, ScrollArea, Slider, SliderClamping, TextEdit, Ui,
+    text::{CCursor, CCursorRange},
+    vec2,
 };
 use std::ops::RangeInclusive;
 
@@ -38,8 +40,16 @@ pub fn begin_with(response: &Response) {
     let last = ctx.data_mut(|data| std::mem::replace(data.get_temp_mut_or(id, 0), now));
     if now > last + 2 {
         response.request_focus();
+        // What is typed replaces the number.
+        let mut state = TextEdit::load_state(ctx, response.id).unwrap_or_default();
+        let whole = CCursorRange::two(CCursor::new(0), CCursor::new(NUMBER_CHARS));
+        state.cursor.set_char_range(Some(whole));
+        state.store(ctx, response.id);
     }
 }
+
+/// More characters than a number has.
+const NUMBER_CHARS: usize = 64;
 
 /// A number with its name in front of it.
 pub struct NumberField<'a> {
