@@ -1,12 +1,13 @@
-//! The brush: strokes of dabs, flat and bent, in ns per covered pixel on one thread, next to libmypaint's flat dabs.
-//! `cargo bench --bench brush`; quote ratios from one run, never times from another day.
+//! The brush: strokes of dabs, flat and bent, in ns per covered pixel on one thread, next to
+//! libmypaint's flat dabs. `cargo bench --bench brush`; quote ratios from one run, never times from
+//! another day.
 //!
-//! Then what a painter feels: a frame's worth of events on a large document, from the pen to the flattened tiles, as
-//! the stroke grows; and moving one of a thousand strokes.
+//! Then what a painter feels: a frame's worth of events on a large document, from the pen to the
+//! flattened tiles, as the stroke grows; and moving one of a thousand strokes.
 //!
-//! The cost of a stroke includes finding its dabs and their reach, computing coverage, painting the tiles and
-//! quantising. The peer (benches/peers/libmypaint_dabs.c) is built with `cc` if libmypaint's headers are installed;
-//! otherwise a message says that it is skipped.
+//! The cost of a stroke includes finding its dabs and their reach, computing coverage, painting the
+//! tiles and quantising. The peer (benches/peers/libmypaint_dabs.c) is built with `cc` if
+//! libmypaint's headers are installed; otherwise a message says that it is skipped.
 
 use rilievo::document::{Live, PixelLayer, PreparedDocument, StrokeList, diff};
 use rilievo::math::{Vec2, vec2, vec3};
@@ -65,7 +66,9 @@ fn circle(operator: Operator, radius: f32) -> Arc<Stroke> {
     // A pen reports every few px.
     let samples_px = if radius < 32.0 { 6.0 } else { 1.75 };
     let per_dab = step_px(radius) / samples_px;
-    let samples = (0..=(per_dab * (DABS - 1) as f32) as usize).map(|i| on_circle(i as f32 / per_dab, radius)).collect();
+    let samples = (0..=(per_dab * (DABS - 1) as f32) as usize)
+        .map(|i| on_circle(i as f32 / per_dab, radius))
+        .collect();
     let spacing = step_px(radius) / (2.0 * radius);
     let brush = Brush { size: 2.0 * radius, spacing, flow: 0.4, hardness: 0.5, ..Brush::default() };
     Arc::new(Stroke::new(brush, operator, Color { r: 230, g: 128, b: 26, a: 255 }, samples))
@@ -81,7 +84,12 @@ fn paint(stroke: Arc<Stroke>) -> Vec<Option<Tile>> {
 fn covered_px(operator: Operator, radius: f32) -> usize {
     let dab = |i| {
         let brush = Brush { size: 2.0 * radius, ..Brush::default() };
-        let tiles = paint(Arc::new(Stroke::new(brush, operator, Color::WHITE, vec![on_circle(i as f32, radius)])));
+        let tiles = paint(Arc::new(Stroke::new(
+            brush,
+            operator,
+            Color::WHITE,
+            vec![on_circle(i as f32, radius)],
+        )));
         let bytes = tiles.iter().flatten().flat_map(|tile| tile.bytes().chunks_exact(4));
         bytes.filter(|p| p[3] > 0).count()
     };
@@ -90,8 +98,10 @@ fn covered_px(operator: Operator, radius: f32) -> usize {
 
 #[divan::bench(args = OPERATORS.map(|o| o.0), consts = [32, 64, 128], sample_count = 15, sample_size = 1)]
 fn stroke_of_dabs<const RADIUS: usize>(bencher: divan::Bencher, operator: &str) {
-    let (_, operator) = OPERATORS.into_iter().find(|o| o.0 == operator).expect("an operator of the table");
-    let bencher = bencher.counter(divan::counter::ItemsCount::new(covered_px(operator, RADIUS as f32)));
+    let (_, operator) =
+        OPERATORS.into_iter().find(|o| o.0 == operator).expect("an operator of the table");
+    let bencher =
+        bencher.counter(divan::counter::ItemsCount::new(covered_px(operator, RADIUS as f32)));
     bencher.with_inputs(|| circle(operator, RADIUS as f32)).bench_local_values(paint);
 }
 
@@ -111,7 +121,8 @@ fn ns_per_px(operator: Operator, radius: f32) -> f64 {
 fn peer() -> Option<Vec<f64>> {
     let source = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/peers/libmypaint_dabs.c");
     let program = std::env::temp_dir().join(format!("libmypaint_dabs_{}", std::process::id()));
-    let flags = Command::new("pkg-config").args(["--cflags", "--libs", "libmypaint"]).output().ok()?;
+    let flags =
+        Command::new("pkg-config").args(["--cflags", "--libs", "libmypaint"]).output().ok()?;
     let flags = String::from_utf8_lossy(&flags.stdout).into_owned();
     let mut cc = Command::new("cc");
     cc.args(["-O2", source, "-o"]).arg(&program).args(flags.split_whitespace()).arg("-lm");
@@ -119,7 +130,8 @@ fn peer() -> Option<Vec<f64>> {
     let run = is_built.then(|| Command::new(&program).args(RADII.map(|r| r.to_string())).output());
     let _ = std::fs::remove_file(&program);
     let run = run?.ok()?;
-    let ns: Vec<f64> = String::from_utf8_lossy(&run.stdout).lines().filter_map(|n| n.parse().ok()).collect();
+    let ns: Vec<f64> =
+        String::from_utf8_lossy(&run.stdout).lines().filter_map(|n| n.parse().ok()).collect();
     (ns.len() == RADII.len()).then_some(ns)
 }
 
@@ -139,7 +151,8 @@ fn main() {
     }
     for (name, operator) in OPERATORS {
         let ns = RADII.map(|radius| ns_per_px(operator, radius));
-        let ratios = peer.as_ref().map(|peer| ns.iter().zip(peer).map(|(a, b)| a / b).collect::<Vec<f64>>());
+        let ratios =
+            peer.as_ref().map(|peer| ns.iter().zip(peer).map(|(a, b)| a / b).collect::<Vec<f64>>());
         println!("{name:24}{}   {}", columns(&ns), columns(&ratios.unwrap_or_default()));
     }
     frames();
@@ -160,7 +173,9 @@ fn layers() -> Document {
         tiles.reserve(LARGE.rect());
         for (row, col) in BAND.flat_map(|row| (0..64).map(move |col| (row, col))) {
             let tile = |p: u32| {
-                let a = 64 + (hash::mix(p ^ i << 12 ^ (row as u32) << 20 ^ (col as u32) << 26) & 127) as u8;
+                let a = 64
+                    + (hash::mix(p ^ i << 12 ^ (row as u32) << 20 ^ (col as u32) << 26) & 127)
+                        as u8;
                 [a / 2, a / 3, a, a]
             };
             let bytes = (0..64 * 64).flat_map(tile).collect();
@@ -169,7 +184,11 @@ fn layers() -> Document {
         let pixels = PixelLayer { file: String::new(), x: 0, y: 0, tiles };
         Arc::new(Layer::new(format!("paint {i}"), Content::Pixels(pixels)))
     };
-    Document { surface: LARGE_SCENE.surface.clone(), layers: (0..20).map(layer).collect(), ..Document::empty(LARGE) }
+    Document {
+        surface: LARGE_SCENE.surface.clone(),
+        layers: (0..20).map(layer).collect(),
+        ..Document::empty(LARGE)
+    }
 }
 
 /// Samples a frame at 1,000 a second, and how far apart the hand puts them at 2,000 px a second.
@@ -179,7 +198,10 @@ const HAND_PX: f32 = 2.0;
 /// The `i`th sample of a wavy line through the band.
 fn on_wave(i: usize) -> PenSample {
     let x = 200.0 + HAND_PX * i as f32;
-    let sample = Sample { time_secs: i as f32 / 1000.0, ..Sample::at(vec2(x, 2048.0 + 120.0 * (x / 150.0).sin())) };
+    let sample = Sample {
+        time_secs: i as f32 / 1000.0,
+        ..Sample::at(vec2(x, 2048.0 + 120.0 * (x / 150.0).sin()))
+    };
     PenSample { sample, ..PenSample::at(Vec2::ZERO) }
 }
 
@@ -192,8 +214,9 @@ fn frame_times(document: &Document, layer: usize, operator: Operator) -> Vec<[f6
     let mut gesture = gesture.expect("the layer takes paint");
     let progress = Progress::default();
     let picture = PreparedDocument::new(document, &progress).expect("nobody cancels");
-    let mut picture =
-        picture.flatten_tiles(&TileGrid::default(), &picture.all_tiles(), &progress).expect("nobody cancels");
+    let mut picture = picture
+        .flatten_tiles(&TileGrid::default(), &picture.all_tiles(), &progress)
+        .expect("nobody cancels");
     let mut shown = document.clone();
     let frame = |frame: usize| {
         let pens: Vec<PenSample> = (1..=FRAME).map(|i| on_wave(frame * FRAME + i)).collect();
@@ -235,7 +258,8 @@ fn frames() {
         let step = |i: usize| median(times.iter().map(|steps| steps[i]).collect());
         let mut all: Vec<f64> = times.iter().map(|steps| steps.iter().sum()).collect();
         let fifth = all.len() / 5;
-        let (first, last) = (median(all[..fifth].to_vec()), median(all[all.len() - fifth..].to_vec()));
+        let (first, last) =
+            (median(all[..fifth].to_vec()), median(all[all.len() - fifth..].to_vec()));
         all.sort_by(f64::total_cmp);
         let (middle, most) = (all[all.len() / 2], all[all.len() * 9 / 10]);
         println!(
@@ -248,25 +272,36 @@ fn frames() {
     }
 }
 
-/// A stroke layer of a thousand strokes, one of which is moved: how much is painted again, and how long it takes.
+/// A stroke layer of a thousand strokes, one of which is moved: how much is painted again, and how
+/// long it takes.
 fn one_of_a_thousand() {
     let random = |i, j| hash::unit(7, i, j);
     let stroke = |i: u32, by: Vec2| {
         let start = vec2(3900.0 * random(i, 0), 3900.0 * random(i, 1)) + by;
-        let samples =
-            (0..5).map(|j| Sample::at(start + 40.0 * Vec2::from_angle(6.0 * random(i, 2)) * j as f32)).collect();
-        Arc::new(Stroke::new(Brush { size: 48.0, ..Brush::default() }, OPERATORS[1].1, Color::BLACK, samples))
+        let samples = (0..5)
+            .map(|j| Sample::at(start + 40.0 * Vec2::from_angle(6.0 * random(i, 2)) * j as f32))
+            .collect();
+        Arc::new(Stroke::new(
+            Brush { size: 48.0, ..Brush::default() },
+            OPERATORS[1].1,
+            Color::BLACK,
+            samples,
+        ))
     };
     let list = StrokeList { strokes: (0..1000).map(|i| stroke(i, Vec2::ZERO)).collect() };
     let layer = Layer::new("strokes", Content::Strokes(Live::new(list)));
     let id = layer.id;
-    let document =
-        Document { surface: LARGE_SCENE.surface.clone(), layers: vec![Arc::new(layer)], ..Document::empty(LARGE) };
+    let document = Document {
+        surface: LARGE_SCENE.surface.clone(),
+        layers: vec![Arc::new(layer)],
+        ..Document::empty(LARGE)
+    };
     let progress = Progress::default();
     let start = Instant::now();
     let prepared = PreparedDocument::new(&document, &progress).expect("nobody cancels");
-    let picture =
-        prepared.flatten_tiles(&TileGrid::default(), &prepared.all_tiles(), &progress).expect("nobody cancels");
+    let picture = prepared
+        .flatten_tiles(&TileGrid::default(), &prepared.all_tiles(), &progress)
+        .expect("nobody cancels");
     let whole = start.elapsed().as_secs_f64() * 1e3;
     let move_one = |i: u32| {
         let moved = stroke(i, vec2(20.0, 10.0));
@@ -281,6 +316,9 @@ fn one_of_a_thousand() {
         Some((start.elapsed().as_secs_f64() * 1e3, tiles.len() as f64))
     };
     let moved: Vec<(f64, f64)> = (0..50).filter_map(|i| move_one(i * 17)).collect();
-    let (ms, tiles) = (median(moved.iter().map(|m| m.0).collect()), median(moved.iter().map(|m| m.1).collect()));
-    println!("\na thousand strokes on 4096²: {whole:.0} ms for all; one moved: {ms:.2} ms, {tiles:.0} of 4096 tiles");
+    let (ms, tiles) =
+        (median(moved.iter().map(|m| m.0).collect()), median(moved.iter().map(|m| m.1).collect()));
+    println!(
+        "\na thousand strokes on 4096²: {whole:.0} ms for all; one moved: {ms:.2} ms, {tiles:.0} of 4096 tiles"
+    );
 }

@@ -1,6 +1,6 @@
-//! The engine on 4K maps: an image layer bent by D_n, computed *and* sampled, on one thread and on all, next to
-//! OpenCV's `remap`, which gets the finished map. `cargo bench --bench engine`; quote ratios from one run, never times
-//! from another day.
+//! The engine on 4K maps: an image layer bent by D_n, computed *and* sampled, on one thread and on
+//! all, next to OpenCV's `remap`, which gets the finished map. `cargo bench --bench engine`; quote
+//! ratios from one run, never times from another day.
 
 use rayon::prelude::*;
 use rilievo::document::Live;
@@ -8,7 +8,9 @@ use rilievo::math::{vec2, vec3};
 use rilievo::paint::{Adjust, ImageFilter, PictureSource, PlacedImage, Placement};
 use rilievo::raster::{Outside, Picture, Plane, Tile, TileAt};
 use rilievo::surface::Scene;
-use rilievo::{Anchor, Bend, Content, Document, Layer, Maps, Operator, Progress, Size, Surface, flatten};
+use rilievo::{
+    Anchor, Bend, Content, Document, Layer, Maps, Operator, Progress, Size, Surface, flatten,
+};
 use rilievo_engine::document::DocumentReducer;
 use std::process::Command;
 use std::sync::{Arc, LazyLock};
@@ -16,21 +18,28 @@ use std::time::Instant;
 
 const SIZE: Size = Size::new(3840, 2160);
 
-/// Bumps all over: n̄ = 0.3 (cos x/97 sin y/131, sin x/89 cos y/113), the same as in `peers/remap.py`.
+/// Bumps all over: n̄ = 0.3 (cos x/97 sin y/131, sin x/89 cos y/113), the same as in
+/// `peers/remap.py`.
 static SCENE: LazyLock<Scene> = LazyLock::new(|| {
     let normals = Plane::from_fn(SIZE, |x, y| {
         let (x, y) = (x as f32 + 0.5, y as f32 + 0.5);
-        let nbar = vec2((x / 97.0).cos() * (y / 131.0).sin(), (x / 89.0).sin() * (y / 113.0).cos()) * 0.3;
+        let nbar =
+            vec2((x / 97.0).cos() * (y / 131.0).sin(), (x / 89.0).sin() * (y / 113.0).cos()) * 0.3;
         vec3(nbar.x, -nbar.y, (1.0 - nbar.length_squared()).sqrt())
     });
-    let maps = Maps { normals, depth: Plane::filled(SIZE, 0.5), coverage: Plane::filled(SIZE, 255) };
+    let maps =
+        Maps { normals, depth: Plane::filled(SIZE, 0.5), coverage: Plane::filled(SIZE, 255) };
     Scene { size: SIZE, surface: Surface::new(maps).ok().map(Arc::new) }
 });
 
 static SOURCE: LazyLock<PictureSource> = LazyLock::new(|| {
     let texel = |i: u32, j: u32| [i as u8, j as u8, (i ^ j) as u8, 255];
     let texels = (0..SIZE.height).flat_map(|j| (0..SIZE.width).map(move |i| texel(i, j))).collect();
-    PictureSource::new("xor".into(), Picture::srgb8(SIZE, texels).expect("one texel a pixel"), Adjust::default())
+    PictureSource::new(
+        "xor".into(),
+        Picture::srgb8(SIZE, texels).expect("one texel a pixel"),
+        Adjust::default(),
+    )
 });
 
 fn image(operator: Operator, filter: ImageFilter, anchors: usize) -> PlacedImage {
@@ -82,13 +91,15 @@ fn all_threads(bencher: divan::Bencher, case: &str) {
 }
 
 fn bench(bencher: divan::Bencher, case: &str, threads: usize) {
-    let (_, operator, filter, anchors) = CASES.into_iter().find(|c| c.0 == case).expect("a case of the table");
+    let (_, operator, filter, anchors) =
+        CASES.into_iter().find(|c| c.0 == case).expect("a case of the table");
     let (image, pool) = (image(operator, filter, anchors), pool(threads));
     let bencher = bencher.counter(divan::counter::ItemsCount::new(SIZE.area()));
     bencher.bench_local(|| pool.install(|| render(&image)));
 }
 
-/// A picture whose α is dragged, as the window shows it: every pixel, or every second, fourth or eighth per side.
+/// A picture whose α is dragged, as the window shows it: every pixel, or every second, fourth or
+/// eighth per side.
 #[divan::bench(args = [1, 2, 4, 8], sample_count = 9, sample_size = 1)]
 fn dragged(bencher: divan::Bencher, step: u32) {
     let content = |alpha: f32| {
@@ -104,7 +115,9 @@ fn dragged(bencher: divan::Bencher, step: u32) {
     let mut alpha = 0.5;
     bencher.bench_local(|| {
         alpha += 1e-3;
-        let next = document.with_layer(id, |layer| layer.content = content(alpha)).expect("it has that layer");
+        let next = document
+            .with_layer(id, |layer| layer.content = content(alpha))
+            .expect("it has that layer");
         flatten(&reduced.of(&next).expect("a surface that can be made small"), &Progress::default())
     });
 }
@@ -122,7 +135,8 @@ fn ns_per_px(image: &PlacedImage, pool: &rayon::ThreadPool) -> f64 {
     ns[2]
 }
 
-/// ns per pixel of OpenCV's remap, on one thread and on all; `None`, with a message, if there is no Python with cv2.
+/// ns per pixel of OpenCV's remap, on one thread and on all; `None`, with a message, if there is no
+/// Python with cv2.
 fn peer() -> Option<[f64; 2]> {
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/peers/remap.py");
     let size = [SIZE.width.to_string(), SIZE.height.to_string()];

@@ -1,8 +1,9 @@
-//! Flattening 20 semi-transparent paint layers of 3840 × 2160, next to `tiny_skia::draw_pixmap` of the same layers and
-//! a plain byte loop, in the same run; the price of each blend mode; and scenes of few and of many contours.
+//! Flattening 20 semi-transparent paint layers of 3840 × 2160, next to `tiny_skia::draw_pixmap` of
+//! the same layers and a plain byte loop, in the same run; the price of each blend mode; and scenes
+//! of few and of many contours.
 //!
-//! Read ratios, not times: `cargo bench --bench flatten`. Throughput counts pixels times layers, so ns per pixel and
-//! layer is 1 / (Gitem/s).
+//! Read ratios, not times: `cargo bench --bench flatten`. Throughput counts pixels times layers, so
+//! ns per pixel and layer is 1 / (Gitem/s).
 
 use divan::{Bencher, counter::ItemsCount};
 use rilievo::document::{DerivedMask, LayerMask, Live, PixelLayer, PreparedDocument};
@@ -10,7 +11,9 @@ use rilievo::math::{Vec3, vec2, vec3};
 use rilievo::paint::{Gradient, GradientStop, ImageFilter};
 use rilievo::raster::{Plane, Tile, TileAt};
 use rilievo::shading::{Model, Shading};
-use rilievo::{BlendMode, Color, Content, Document, Layer, Maps, Operator, Progress, Size, Surface, TileGrid};
+use rilievo::{
+    BlendMode, Color, Content, Document, Layer, Maps, Operator, Progress, Size, Surface, TileGrid,
+};
 use rilievo_engine::math::hash;
 use std::sync::{Arc, LazyLock};
 use tiny_skia::{Pixmap, PixmapPaint, Transform};
@@ -25,12 +28,21 @@ fn main() {
 /// Straight RGBA noise in soft patches, no pixel opaque.
 fn patches(seed: u32) -> Vec<u8> {
     let (w, h) = (SIZE.width as usize, SIZE.height as usize);
-    let byte = |x: usize, y: usize, c: u32| (hash::unit(seed * 4 + c, x as u32, y as u32) * 254.0) as u8;
+    let byte =
+        |x: usize, y: usize, c: u32| (hash::unit(seed * 4 + c, x as u32, y as u32) * 254.0) as u8;
     (0..w * h).flat_map(|i| [0, 1, 2, 3].map(|c| byte(i % w / 8, i / w / 8, c))).collect()
 }
 
 static GRIDS: LazyLock<Vec<TileGrid>> = LazyLock::new(|| {
-    let grid = |seed| TileGrid::from_straight_rgba(&patches(seed), SIZE.width as usize, SIZE.height as usize, 0, 0);
+    let grid = |seed| {
+        TileGrid::from_straight_rgba(
+            &patches(seed),
+            SIZE.width as usize,
+            SIZE.height as usize,
+            0,
+            0,
+        )
+    };
     (0..LAYERS as u32).map(grid).collect()
 });
 
@@ -40,7 +52,8 @@ static PIXMAPS: LazyLock<Vec<Pixmap>> = LazyLock::new(|| {
         let mut pixmap = Pixmap::new(SIZE.width, SIZE.height)?;
         for (at, tile) in grid.iter() {
             let (x, y) = (at.rect().x0, at.rect().y0);
-            let source = PixmapPaint { blend_mode: tiny_skia::BlendMode::Source, ..Default::default() };
+            let source =
+                PixmapPaint { blend_mode: tiny_skia::BlendMode::Source, ..Default::default() };
             pixmap.draw_pixmap(x, y, tile.pixmap().as_ref(), &source, Transform::identity(), None);
         }
         Some(pixmap)
@@ -55,14 +68,20 @@ fn document(count: usize, blend: BlendMode) -> Document {
         layer.blend = if i == 0 { BlendMode::Normal } else { blend };
         Arc::new(layer)
     };
-    Document { layers: GRIDS.iter().take(count).enumerate().map(layer).collect(), ..Document::empty(SIZE) }
+    Document {
+        layers: GRIDS.iter().take(count).enumerate().map(layer).collect(),
+        ..Document::empty(SIZE)
+    }
 }
+
 fn pixels(layers: usize) -> ItemsCount {
     ItemsCount::new(SIZE.area() * layers)
 }
+
 fn pool(threads: usize) -> rayon::ThreadPool {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a thread pool")
 }
+
 fn flatten(bencher: Bencher, document: &Document, threads: usize) {
     let pool = pool(threads);
     let flatten = || pool.install(|| rilievo::flatten(document, &Progress::default()));
@@ -81,7 +100,9 @@ fn tiny_skia_draw_pixmap_20_layers(bencher: Bencher) {
     let paint = PixmapPaint::default();
     bencher.counter(pixels(LAYERS)).bench_local(|| {
         let mut canvas = Pixmap::new(SIZE.width, SIZE.height)?;
-        layers.iter().for_each(|p| canvas.draw_pixmap(0, 0, p.as_ref(), &paint, Transform::identity(), None));
+        layers.iter().for_each(|p| {
+            canvas.draw_pixmap(0, 0, p.as_ref(), &paint, Transform::identity(), None)
+        });
         Some(canvas)
     });
 }
@@ -97,7 +118,8 @@ fn byte_loop_20_layers(bencher: Bencher) {
 }
 
 rilievo_engine::widest! {
-    /// Source-over in bytes, rounded after every layer: the least work there is, and the least precise.
+    /// Source-over in bytes, rounded after every layer: the least work there is, and the least
+    /// precise.
     fn bytes_over(canvas: &mut [u8], layer: &[u8]) {
         for (d, s) in canvas.chunks_exact_mut(32).zip(layer.chunks_exact(32)) {
             for p in 0..8 {
@@ -115,16 +137,26 @@ rilievo_engine::widest! {
 #[divan::bench(args = ["bytes", "16 bits"], sample_count = 11, sample_size = 1)]
 fn ten_layers(bencher: Bencher, depth: &str) {
     let (w, h) = (SCENE.width, SCENE.height);
-    let value = |seed: u32, i: u32, c: u32| (hash::unit(seed * 4 + c, i % w / 8, i / w / 8) * 65_000.0) as u16;
+    let value = |seed: u32, i: u32, c: u32| {
+        (hash::unit(seed * 4 + c, i % w / 8, i / w / 8) * 65_000.0) as u16
+    };
     let grid = |seed: u32| {
-        let straight: Vec<[u16; 4]> = (0..w * h).map(|i| [0, 1, 2, 3].map(|c| value(seed, i, c))).collect();
+        let straight: Vec<[u16; 4]> =
+            (0..w * h).map(|i| [0, 1, 2, 3].map(|c| value(seed, i, c))).collect();
         TileGrid::from_straight_deep(&straight, w as usize, h as usize, 0, 0)
     };
     let layer = |i: u32| {
         let tiles = in_bytes_if(depth == "bytes", grid(i));
-        Arc::new(Layer::new(format!("{i}"), Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() })))
+        Arc::new(Layer::new(
+            format!("{i}"),
+            Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }),
+        ))
     };
-    flatten(bencher, &Document { layers: (0..10).map(layer).collect(), ..Document::empty(SCENE) }, 1);
+    flatten(
+        bencher,
+        &Document { layers: (0..10).map(layer).collect(), ..Document::empty(SCENE) },
+        1,
+    );
 }
 
 /// The same, rounded to bytes if requested.
@@ -152,14 +184,17 @@ fn five_layers_in_linear_light(bencher: Bencher) {
 #[divan::bench(sample_count = 20)]
 fn one_tile_of_20_layers(bencher: Bencher) {
     let prepared =
-        PreparedDocument::new(&document(LAYERS, BlendMode::Normal), &Progress::default()).expect("not cancelled");
-    bencher.counter(ItemsCount::new(64 * 64 * LAYERS)).bench_local(|| prepared.flatten_tile(TileAt::new(3, 3)));
+        PreparedDocument::new(&document(LAYERS, BlendMode::Normal), &Progress::default())
+            .expect("not cancelled");
+    bencher
+        .counter(ItemsCount::new(64 * 64 * LAYERS))
+        .bench_local(|| prepared.flatten_tile(TileAt::new(3, 3)));
 }
 
 const SCENE: Size = Size::new(2048, 2048);
 
-/// Balls in rows before a wall, each `side` px wide: their contours are seen by two populations. One as wide as the
-/// canvas has few.
+/// Balls in rows before a wall, each `side` px wide: their contours are seen by two populations.
+/// One as wide as the canvas has few.
 fn balls(side: f32) -> Arc<Surface> {
     let at = |x: usize, y: usize| {
         let center = |v: f32| ((v / side).floor() + 0.5) * side;
@@ -176,7 +211,9 @@ fn balls(side: f32) -> Arc<Surface> {
 
 /// A material, a gradient and four fills, two of them masked.
 fn painted(surface: &Arc<Surface>) -> Document {
-    let stops = [(0.0, Color::BLACK), (1.0, Color::WHITE)].map(|(t, color)| GradientStop { t, color }).to_vec();
+    let stops = [(0.0, Color::BLACK), (1.0, Color::WHITE)]
+        .map(|(t, color)| GradientStop { t, color })
+        .to_vec();
     let operator = Operator::Normal { alpha: 0.3, beta: 1.0, detail: 0.0 };
     let (from, to) = (vec2(100.0, 100.0), vec2(1900.0, 1900.0));
     let gradient = Gradient {
@@ -212,7 +249,10 @@ const BALLS: [f32; 3] = [2048.0, 128.0, 32.0];
 fn balls_first(bencher: Bencher, side: f32) {
     let surface = balls(side);
     let flatten = |document: Document| rilievo::flatten(&document, &Progress::default());
-    bencher.counter(ItemsCount::new(SCENE.area())).with_inputs(|| painted(&surface)).bench_local_values(flatten);
+    bencher
+        .counter(ItemsCount::new(SCENE.area()))
+        .with_inputs(|| painted(&surface))
+        .bench_local_values(flatten);
 }
 
 /// Again: they are cached.

@@ -1,17 +1,21 @@
-//! What a frame of the window costs while the hand moves: α and an anchor of an image layer, and a gradient's end
-//! dragged, at every size that the window may show them in; a brush's events until their tiles are flattened; getting a
-//! large document ready for a drag. `cargo bench --bench frame`. Peers: the target frame times, 16 ms for a drag and
-//! 8 ms for a brush; and a copy of the picture.
+//! What a frame of the window costs while the hand moves: α and an anchor of an image layer, and a
+//! gradient's end dragged, at every size that the window may show them in; a brush's events until
+//! their tiles are flattened; getting a large document ready for a drag. `cargo bench --bench
+//! frame`. Peers: the target frame times, 16 ms for a drag and 8 ms for a brush; and a copy of the
+//! picture.
 
 mod timing;
 
 use rilievo::document::{LayerTransform, Live, Mesh, MeshFrame, PixelLayer, TransformShape};
 use rilievo::math::{PlaneMap, Vec2, vec2, vec3};
-use rilievo::paint::{Adjust, Brush, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement};
+use rilievo::paint::{
+    Adjust, Brush, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement,
+};
 use rilievo::raster::{Outside, Picture, Plane, Resampling, Tile, TileAt};
 use rilievo::surface::Scene;
 use rilievo::{
-    Anchor, Bend, Color, Content, Document, Layer, Maps, Operator, Progress, Size, Surface, TileGrid, flatten,
+    Anchor, Bend, Color, Content, Document, Layer, Maps, Operator, Progress, Size, Surface,
+    TileGrid, flatten,
 };
 use rilievo_engine::document::DocumentReducer;
 use rilievo_engine::math::hash;
@@ -35,7 +39,8 @@ fn ball(size: Size) -> Scene {
         let z = (1.0 - q.length_squared()).max(0.0).sqrt();
         if z > 0.0 { vec3(q.x, -q.y, z) } else { vec3(0.0, 0.0, 1.0) }
     });
-    let depth = Plane::from_fn(size, |x, y| 1.0 - (1.0 - at(x, y).length_squared()).max(0.0).sqrt());
+    let depth =
+        Plane::from_fn(size, |x, y| 1.0 - (1.0 - at(x, y).length_squared()).max(0.0).sqrt());
     let maps = Maps { normals, depth, coverage: Plane::filled(size, 255) };
     Scene { size, surface: Surface::new(maps).ok().map(Arc::new) }
 }
@@ -43,7 +48,11 @@ fn ball(size: Size) -> Scene {
 fn photo(size: Size) -> PictureSource {
     let texel = |i: u32, j: u32| [i as u8, j as u8, (i ^ j) as u8, 255];
     let texels = (0..size.height).flat_map(|j| (0..size.width).map(move |i| texel(i, j))).collect();
-    PictureSource::new("xor".into(), Picture::srgb8(size, texels).expect("one texel a pixel"), Adjust::default())
+    PictureSource::new(
+        "xor".into(),
+        Picture::srgb8(size, texels).expect("one texel a pixel"),
+        Adjust::default(),
+    )
 }
 
 fn image(source: &PictureSource, size: Size, alpha: f32, anchors: &[Vec2]) -> Content {
@@ -96,14 +105,17 @@ fn drag(size: Size, step: u32, content: impl Fn(f32) -> Content) -> Vec<f64> {
 /// A photo as paint over a ground.
 fn photo_painted(size: Size) -> Document {
     let texel = |i: u32, j: u32| [i as u8, j as u8, (i ^ j) as u8, 255];
-    let rgba: Vec<u8> = (0..size.height).flat_map(|j| (0..size.width).flat_map(move |i| texel(i, j))).collect();
-    let tiles = TileGrid::from_straight_rgba(&rgba, size.width as usize, size.height as usize, 0, 0);
+    let rgba: Vec<u8> =
+        (0..size.height).flat_map(|j| (0..size.width).flat_map(move |i| texel(i, j))).collect();
+    let tiles =
+        TileGrid::from_straight_rgba(&rgba, size.width as usize, size.height as usize, 0, 0);
     let ground = Layer::new("ground", Content::Fill(Color { r: 90, g: 90, b: 90, a: 255 }));
     let photo = Layer::new("photo", Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }));
     Document { layers: vec![Arc::new(ground), Arc::new(photo)], ..Document::empty(size) }
 }
 
-/// ms from a frame's events (16 samples, 2 px apart) of liquify, 200 px wide, to its flattened tiles.
+/// ms from a frame's events (16 samples, 2 px apart) of liquify, 200 px wide, to its flattened
+/// tiles.
 fn liquified(document: &Document) -> Vec<f64> {
     let (brush, layer) = (Brush::default(), Some(document.layers[1].id));
     let liquify = LiquifySettings { size: 200.0, ..LiquifySettings::default() };
@@ -157,16 +169,25 @@ fn painted(size: Size, count: u32) -> Vec<Arc<Layer>> {
 
 /// ms from a frame's events (16 samples, 2 px apart) to its flattened tiles: D_n, radius 64.
 fn strokes() -> Vec<f64> {
-    let document = Document { surface: ball(SQUARE).surface, layers: painted(SQUARE, 10), ..Document::empty(SQUARE) };
+    let document = Document {
+        surface: ball(SQUARE).surface,
+        layers: painted(SQUARE, 10),
+        ..Document::empty(SQUARE)
+    };
     let brush = Brush { size: 128.0, ..Brush::default() };
     let layer = Some(document.layers[5].id);
     let context = ToolContext { layer, operator: D_N, ..ToolContext::new(&document, &brush) };
     frames(ToolKind::Brush, &context, on_wave, 44)
 }
 
-/// ms to make 20 layers of 4096² small: all at once, and the longest of the parts that are made one by one.
+/// ms to make 20 layers of 4096² small: all at once, and the longest of the parts that are made one
+/// by one.
 fn first_small(step: u32) -> [f64; 2] {
-    let document = Document { surface: ball(LARGE).surface, layers: painted(LARGE, 20), ..Document::empty(LARGE) };
+    let document = Document {
+        surface: ball(LARGE).surface,
+        layers: painted(LARGE, 20),
+        ..Document::empty(LARGE)
+    };
     let timed = |work: &mut dyn FnMut() -> bool| {
         let start = Instant::now();
         let more = divan::black_box(work());
@@ -194,12 +215,23 @@ fn main() {
         let (source, middle) = (photo(HD), size.center());
         for step in [1, 2, 4, 8] {
             let alpha = |t: f32| image(&source, size, 0.4 + t, &[middle]);
-            row(&format!("α of an image, {size}, one pixel in {step} × {step}"), drag(size, step, alpha));
+            row(
+                &format!("α of an image, {size}, one pixel in {step} × {step}"),
+                drag(size, step, alpha),
+            );
             if size == HD {
-                let anchor = |t: f32| image(&source, size, 0.5, &[middle, middle + vec2(300.0 + 900.0 * t, 120.0)]);
-                row(&format!("an anchor of two, {size}, one pixel in {step} × {step}"), drag(size, step, anchor));
+                let anchor = |t: f32| {
+                    image(&source, size, 0.5, &[middle, middle + vec2(300.0 + 900.0 * t, 120.0)])
+                };
+                row(
+                    &format!("an anchor of two, {size}, one pixel in {step} × {step}"),
+                    drag(size, step, anchor),
+                );
                 let end = |t: f32| ramp(vec2(1500.0 + 300.0 * t, 800.0));
-                row(&format!("a gradient's end, {size}, one pixel in {step} × {step}"), drag(size, step, end));
+                row(
+                    &format!("a gradient's end, {size}, one pixel in {step} × {step}"),
+                    drag(size, step, end),
+                );
             }
         }
     }
@@ -214,11 +246,19 @@ fn main() {
     let document = photo_painted(HD);
     row("liquify, 200 px wide, 1920 × 1080", liquified(&document));
     for step in [1, 2, 4, 8] {
-        row(&format!("a point of a mesh, {HD}, one pixel in {step} × {step}"), placed(&document, step, meshed));
-        row(&format!("a turn by a matrix, {HD}, one pixel in {step} × {step}"), placed(&document, step, turned));
+        row(
+            &format!("a point of a mesh, {HD}, one pixel in {step} × {step}"),
+            placed(&document, step, meshed),
+        );
+        row(
+            &format!("a turn by a matrix, {HD}, one pixel in {step} × {step}"),
+            placed(&document, step, turned),
+        );
     }
     for step in [2, 4, 8] {
         let [all, longest] = first_small(step);
-        println!("20 layers of 4096² made small, {step}: {all:.1} ms at once, {longest:.1} at most in parts");
+        println!(
+            "20 layers of 4096² made small, {step}: {all:.1} ms at once, {longest:.1} at most in parts"
+        );
     }
 }

@@ -1,16 +1,20 @@
-//! What other marks than the round brush cost: a frame of tips, grain and retouching brushes; fills; ten thousand short
-//! strokes; the hundredth layer. `cargo bench --bench marks`. Peers: a frame of 16 ms; the round brush in the same run.
+//! What other marks than the round brush cost: a frame of tips, grain and retouching brushes;
+//! fills; ten thousand short strokes; the hundredth layer. `cargo bench --bench marks`. Peers: a
+//! frame of 16 ms; the round brush in the same run.
 
 mod timing;
 
 use rilievo::document::{Live, PixelLayer, PreparedDocument, StrokeList};
 use rilievo::math::{Vec2, vec2, vec3};
 use rilievo::paint::{
-    Adjust, Bristles, Brush, BrushGrain, BrushMode, Fill, Noise, Pickup, PictureSource, Sample, Stroke, Tip,
+    Adjust, Bristles, Brush, BrushGrain, BrushMode, Fill, Noise, Pickup, PictureSource, Sample,
+    Stroke, Tip,
 };
 use rilievo::raster::{Picture, Plane, Tile, TileAt};
 use rilievo::surface::{CanvasPart, Scene};
-use rilievo::{Color, Content, Document, Layer, Maps, Operator, Progress, Size, Surface, TileGrid, flatten};
+use rilievo::{
+    Color, Content, Document, Layer, Maps, Operator, Progress, Size, Surface, TileGrid, flatten,
+};
 use rilievo_engine::math::hash;
 use rilievo_program::session::actions::{Action, LayerAction, NewLayer};
 use rilievo_program::session::{OpenDocument, Session};
@@ -25,7 +29,9 @@ const D_N: Operator = Operator::Normal { alpha: 0.3, beta: 1.0, detail: 0.0 };
 
 /// A ball that nearly fills the canvas; beyond it there is no surface.
 fn ball(size: Size) -> Scene {
-    let at = |x: usize, y: usize| (vec2(x as f32 + 0.5, y as f32 + 0.5) - size.center()) / (0.48 * size.width as f32);
+    let at = |x: usize, y: usize| {
+        (vec2(x as f32 + 0.5, y as f32 + 0.5) - size.center()) / (0.48 * size.width as f32)
+    };
     let height = |p: Vec2| (1.0 - p.length_squared()).max(0.0).sqrt();
     let normals = Plane::from_fn(size, |x, y| {
         let p = at(x, y);
@@ -70,7 +76,10 @@ fn brushes() -> Vec<(&'static str, Brush)> {
         ("noise", with(Tip::Noise(Noise::default()))),
         ("picture", with(Tip::Picture(PictureSource::new("leaf".into(), leaf, Adjust::default())))),
         ("grain", Brush { grain: Some(BrushGrain::default()), ..round.clone() }),
-        ("picks paint up", Brush { pickup: Pickup { amount: 0.5, length: 0.9, radius: 1.0 }, ..round.clone() }),
+        (
+            "picks paint up",
+            Brush { pickup: Pickup { amount: 0.5, length: 0.9, radius: 1.0 }, ..round.clone() },
+        ),
         ("smudge", mode(BrushMode::Smudge { length: 0.7 })),
         ("blur", mode(BrushMode::Blur { width: 0.5 })),
         ("clone", mode(BrushMode::Clone { aligned: true, picture: false })),
@@ -81,7 +90,8 @@ fn brushes() -> Vec<(&'static str, Brush)> {
 fn frames(document: &Document, brush: &Brush, operator: Operator) -> Vec<f64> {
     let layer = Some(document.layers[5].id);
     let clone_offset = Some(vec2(-300.0, 40.0));
-    let context = ToolContext { layer, operator, clone_offset, ..ToolContext::new(document, brush) };
+    let context =
+        ToolContext { layer, operator, clone_offset, ..ToolContext::new(document, brush) };
     timing::frames(ToolKind::Brush, &context, on_wave, 40)
 }
 
@@ -102,7 +112,9 @@ fn fills() {
     let grey = |i: usize| if is_island(i % side, i / side) { 40 } else { 200 };
     let rgba: Vec<u8> = (0..LARGE.area()).flat_map(|i| [grey(i), grey(i), grey(i), 255]).collect();
     let blots = TileGrid::from_straight_rgba(&rgba, side, side, 0, 0);
-    let start = (0..4096).map(|x| vec2(x as f32, 2000.0)).find(|at| blots.pixel(at.x as i32, 2000)[0] == 200);
+    let start = (0..4096)
+        .map(|x| vec2(x as f32, 2000.0))
+        .find(|at| blots.pixel(at.x as i32, 2000)[0] == 200);
     let start = start.unwrap_or(Vec2::ZERO);
     for gap_px in [0.0, 4.0, 32.0] {
         let fill = Fill { gap_px, ..Fill::default() };
@@ -115,14 +127,24 @@ fn fills() {
 }
 
 /// Strokes of ten samples, brush 8, rendered for the first time.
-fn many_strokes(surface: Option<Arc<Surface>>, count: u32, step_px: f32, operator: Operator) -> f64 {
+fn many_strokes(
+    surface: Option<Arc<Surface>>,
+    count: u32,
+    step_px: f32,
+    operator: Operator,
+) -> f64 {
     let random = |i: u32, j: u32| hash::unit(7, i, j);
     let size = CANVAS;
     let stroke = |i: u32| {
         let start = vec2(size.width as f32 * random(i, 0), size.height as f32 * random(i, 1));
         let way = step_px * Vec2::from_angle(std::f32::consts::TAU * random(i, 2));
         let samples = (0..10).map(|j| Sample::at(start + way * j as f32)).collect();
-        Arc::new(Stroke::new(Brush { size: 8.0, ..Brush::default() }, operator, Color::BLACK, samples))
+        Arc::new(Stroke::new(
+            Brush { size: 8.0, ..Brush::default() },
+            operator,
+            Color::BLACK,
+            samples,
+        ))
     };
     let list = StrokeList { strokes: (0..count).map(stroke).collect() };
     let layer = Arc::new(Layer::new("strokes", Content::Strokes(Live::new(list))));
@@ -159,7 +181,11 @@ fn main() {
         "least", "middle", "9 of 10"
     );
     let scene = ball(CANVAS);
-    let document = Document { surface: scene.surface.clone(), layers: painted(CANVAS, 10), ..Document::empty(CANVAS) };
+    let document = Document {
+        surface: scene.surface.clone(),
+        layers: painted(CANVAS, 10),
+        ..Document::empty(CANVAS)
+    };
     for (name, brush) in brushes() {
         row(&format!("{name}, flat"), frames(&document, &brush, Operator::None));
         row(&format!("{name}, D_n"), frames(&document, &brush, D_N));

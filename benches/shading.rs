@@ -7,7 +7,9 @@ use rayon::prelude::*;
 use rilievo::document::{LayerId, Live, PreparedDocument, diff};
 use rilievo::math::{Vec3, vec3};
 use rilievo::raster::{Picture, PlanarTile, Plane, TileAt};
-use rilievo::shading::{Environment, Light, LightKind, Model, RadianceScaling, Reference, Scaling, Shading};
+use rilievo::shading::{
+    Environment, Light, LightKind, Model, RadianceScaling, Reference, Scaling, Shading,
+};
 use rilievo::surface::Scene;
 use rilievo::{Content, Document, Layer, Maps, Progress, Size, Surface, TileGrid};
 use rilievo_engine::raster::planar::PixelRow;
@@ -31,7 +33,8 @@ fn scene((width, height): (u32, u32)) -> Scene {
         let (x, y) = (x as f32 * 0.05, y as f32 * 0.07);
         vec3(0.6 * x.sin(), 0.5 * (y + x * 0.3).cos(), 1.0)
     });
-    let maps = Maps { normals, depth: Plane::filled(size, 0.5), coverage: Plane::filled(size, 255) };
+    let maps =
+        Maps { normals, depth: Plane::filled(size, 0.5), coverage: Plane::filled(size, 255) };
     Scene { size, surface: Some(Arc::new(Surface::new(maps).expect("a whole surface"))) }
 }
 
@@ -64,7 +67,9 @@ fn radiance_scaling_layer(bencher: Bencher, run: Run) {
     let pool = pool(run.1);
     // A fresh composite each time: one scaled again and again ends in numbers too small to be fast.
     bencher.counter(area(run)).with_inputs(|| tiles.clone()).bench_local_refs(|tiles| {
-        pool.install(|| tiles.par_iter_mut().for_each(|(at, tile)| layer.apply_tile(&scene, *at, beneath, tile)));
+        pool.install(|| {
+            tiles.par_iter_mut().for_each(|(at, tile)| layer.apply_tile(&scene, *at, beneath, tile))
+        });
     });
 }
 
@@ -72,10 +77,9 @@ fn radiance_scaling_layer(bencher: Bencher, run: Run) {
 #[divan::bench(args = RUNS, sample_count = 3, sample_size = 1)]
 fn ambient_occlusion(bencher: Bencher, run: Run) {
     let pool = pool(run.1);
-    bencher
-        .counter(area(run))
-        .with_inputs(|| scene(run.0))
-        .bench_local_refs(|scene| pool.install(|| scene.surface.as_deref().map(|surface| surface.occlusion(48.0))));
+    bencher.counter(area(run)).with_inputs(|| scene(run.0)).bench_local_refs(|scene| {
+        pool.install(|| scene.surface.as_deref().map(|surface| surface.occlusion(48.0)))
+    });
 }
 
 #[divan::bench(args = RUNS)]
@@ -85,11 +89,16 @@ fn copy_of_the_same_pixels(bencher: Bencher, run: Run) {
     let mut to = from.clone();
     let pool = pool(run.1);
     bencher.counter(area(run)).bench_local(|| {
-        pool.install(|| to.par_iter_mut().zip(&from).for_each(|(t, f)| t.1.rows_mut().copy_from_slice(f.1.rows())));
+        pool.install(|| {
+            to.par_iter_mut()
+                .zip(&from)
+                .for_each(|(t, f)| t.1.rows_mut().copy_from_slice(f.1.rows()))
+        });
     });
 }
 
-/// As flattening does it: each tile is in the cache already. Next to it, the copy that puts it there.
+/// As flattening does it: each tile is in the cache already. Next to it, the copy that puts it
+/// there.
 #[divan::bench(args = RUNS)]
 fn radiance_scaling_of_tiles_in_the_cache(bencher: Bencher, run: Run) {
     let scene = scene(run.0);
@@ -115,9 +124,9 @@ fn in_cache(bencher: Bencher, run: Run, work: impl Fn(TileAt, &mut PlanarTile) +
         work(*at, own);
         divan::black_box(own);
     };
-    bencher
-        .counter(area(run))
-        .bench_local(|| pool.install(|| ats.par_iter().for_each_init(PlanarTile::transparent, each)));
+    bencher.counter(area(run)).bench_local(|| {
+        pool.install(|| ats.par_iter().for_each_init(PlanarTile::transparent, each))
+    });
 }
 
 /// One light, its two terms and the ambient one scaled.
@@ -189,7 +198,8 @@ fn balls((width, height): (u32, u32)) -> Scene {
     Scene { size, surface: Some(Arc::new(Surface::new(maps).expect("a whole surface"))) }
 }
 
-/// The mean over each pixel's footprint about the direction that it mirrors, from mip levels; directions are given.
+/// The mean over each pixel's footprint about the direction that it mirrors, from mip levels;
+/// directions are given.
 #[divan::bench]
 fn one_look_up_of_the_environment(bencher: Bencher) {
     let (scene, light) = (scene(SMALL), studio().environment_light());
@@ -207,9 +217,9 @@ fn one_look_up_of_the_environment(bencher: Bencher) {
         })
         .collect();
     let pool = pool(1);
-    bencher
-        .counter(ItemsCount::new(rays.len()))
-        .bench_local(|| pool.install(|| rays.iter().map(|[ray, dx, dy]| light.over(*ray, *dx, *dy)).sum::<Vec3>()));
+    bencher.counter(ItemsCount::new(rays.len())).bench_local(|| {
+        pool.install(|| rays.iter().map(|[ray, dx, dy]| light.over(*ray, *dx, *dy)).sum::<Vec3>())
+    });
 }
 
 /// A latitude-longitude map with two lamps.
@@ -221,7 +231,8 @@ fn studio() -> Environment {
         [lamp, 0.8 * lamp + 0.001 * (x % 64) as f32, 0.6 * lamp, 1.0]
     };
     let size = Size::new(width as u32, height as u32);
-    let picture = Picture::linear(size, (0..width * height).map(texel).collect()).expect("a texel for each pixel");
+    let picture = Picture::linear(size, (0..width * height).map(texel).collect())
+        .expect("a texel for each pixel");
     Environment::new("studio".into(), picture)
 }
 
@@ -238,20 +249,24 @@ fn rendered_on(bencher: Bencher, run: Run, scene: &Scene, shading: &Shading) {
     let ats: Vec<TileAt> = TileAt::covering(scene.size.rect()).collect();
     let pool = pool(run.1);
     bencher.counter(area(run)).bench_local(|| {
-        pool.install(|| ats.par_iter().for_each(|&at| drop(divan::black_box(shading.render_tile(scene, at)))));
+        pool.install(|| {
+            ats.par_iter().for_each(|&at| drop(divan::black_box(shading.render_tile(scene, at))))
+        });
     });
 }
 
 /// What is dragged.
-const DRAGS: [&str; 4] = ["gamma of the layer", "gamma of the layer, mean kept", "a light, Y* set", "a light, Y* auto"];
+const DRAGS: [&str; 4] =
+    ["gamma of the layer", "gamma of the layer, mean kept", "a light, Y* set", "a light, Y* auto"];
 
-/// The time between a drag's event and the new picture: the new document, what differs, and those tiles; on two
-/// threads.
+/// The time between a drag's event and the new picture: the new document, what differs, and those
+/// tiles; on two threads.
 #[divan::bench(args = DRAGS)]
 fn drag_on_1024_by_768(bencher: Bencher, what: &str) {
     let pool = pool(2);
     let mut document = lit_document(what);
-    let mut shown = pool.install(|| rilievo::flatten(&document, &Progress::default())).expect("not cancelled");
+    let mut shown =
+        pool.install(|| rilievo::flatten(&document, &Progress::default())).expect("not cancelled");
     let mut step = 0;
     bencher.counter(area((SMALL, 2))).bench_local(|| {
         step += 1;
@@ -271,12 +286,20 @@ fn redrawn(old: &Document, new: &Document, shown: &TileGrid) -> TileGrid {
 fn lit_document(what: &str) -> Document {
     let scene = scene(SMALL);
     let reference = if what.ends_with("set") { Reference::Value(0.8) } else { Reference::Auto };
-    let scaling = RadianceScaling { reference, keep_mean: what.ends_with("kept"), ..RadianceScaling::default() };
+    let scaling = RadianceScaling {
+        reference,
+        keep_mean: what.ends_with("kept"),
+        ..RadianceScaling::default()
+    };
     let layers = [
         Layer::new("lit", Content::Shading(Live::new(lit(Model::Phong)))),
         Layer::new("relief", Content::RadianceScaling(scaling)),
     ];
-    Document { surface: scene.surface, layers: layers.map(Arc::new).into(), ..Document::empty(scene.size) }
+    Document {
+        surface: scene.surface,
+        layers: layers.map(Arc::new).into(),
+        ..Document::empty(scene.size)
+    }
 }
 
 fn dragged(document: &Document, what: &str, t: f32) -> Document {

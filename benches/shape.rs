@@ -1,13 +1,17 @@
-//! What a shape costs: inflating an outline of 1 Mpx from nothing and after an edit, and a frame of each slider.
+//! What a shape costs: inflating an outline of 1 Mpx from nothing and after an edit, and a frame of
+//! each slider.
 //!
-//! `cargo bench --bench shape`. Two threads, as the aims assume: 100 ms from nothing, 50 ms after an edit, 16 ms for a
-//! slider's frame, a touch or a sculpting dab. The times of a document include everything that follows an event except
-//! painting: in full, as when the pen rests, and in the coarse pixels shown during a drag.
+//! `cargo bench --bench shape`. Two threads, as the aims assume: 100 ms from nothing, 50 ms after
+//! an edit, 16 ms for a slider's frame, a touch or a sculpting dab. The times of a document include
+//! everything that follows an event except painting: in full, as when the pen rests, and in the
+//! coarse pixels shown during a drag.
 
 use divan::{Bencher, black_box};
 use rilievo::math::{Vec2, vec2, vec3};
 use rilievo::raster::Plane;
-use rilievo::shape::{Combine, Inflation, OutlineSource, Part, PartKind, SculptStroke, SculptTool, Touch};
+use rilievo::shape::{
+    Combine, Inflation, OutlineSource, Part, PartKind, SculptStroke, SculptTool, Touch,
+};
 use rilievo::{Document, Size};
 use rilievo_engine::document::DocumentReducer;
 use rilievo_engine::shape::inflate::inflate;
@@ -50,7 +54,9 @@ fn inflate_after_an_edit(bencher: Bencher) {
     let (before, after, pool) = (creature(0.0), creature(6.0), two_threads());
     let known = inflate(&before, None, None);
     let shift = (after.corner().0 - before.corner().0, after.corner().1 - before.corner().1);
-    let start = Plane::from_fn(after.size(), |x, y| known.get(x as i32 + shift.0, y as i32 + shift.1).unwrap_or(0.0));
+    let start = Plane::from_fn(after.size(), |x, y| {
+        known.get(x as i32 + shift.0, y as i32 + shift.1).unwrap_or(0.0)
+    });
     bencher.bench_local(|| pool.install(|| black_box(inflate(&after, None, Some(&start)))));
 }
 
@@ -72,8 +78,11 @@ fn puff_dragged(bencher: Bencher) {
 #[divan::bench(sample_count = 20)]
 fn profile_dragged(bencher: Bencher) {
     let (outline, pool) = (creature(0.0), two_threads());
-    let (u, h, rim) =
-        (inflate(&outline, None, None), tube::tube(&outline, None, None), OutlineRim::silhouette(&outline));
+    let (u, h, rim) = (
+        inflate(&outline, None, None),
+        tube::tube(&outline, None, None),
+        OutlineRim::silhouette(&outline),
+    );
     let frame = || Form::of_squares(&outline, &tube::blend(&u, &h, 0.4), &rim, ROUND);
     bencher.bench_local(|| pool.install(|| black_box(frame())));
 }
@@ -95,7 +104,10 @@ fn combined(bencher: Bencher) {
 /// The creature as a document's part, puffed so much.
 fn puffed(side: f32, puff: f32) -> Part {
     let outline = OutlineSource::Path(way_around(side, 0.0));
-    Part::new("a", PartKind::Inflate { outline, inflation: Inflation { puff, ..Inflation::default() } })
+    Part::new(
+        "a",
+        PartKind::Inflate { outline, inflation: Inflation { puff, ..Inflation::default() } },
+    )
 }
 
 fn document(side: u32) -> Document {
@@ -103,7 +115,12 @@ fn document(side: u32) -> Document {
 }
 
 /// Frames in which one part of a document is another one each time, whole or in pixels of four.
-fn frames(bencher: Bencher, document: &Document, is_draft: bool, part: impl Fn(usize) -> Part + Sync) {
+fn frames(
+    bencher: Bencher,
+    document: &Document,
+    is_draft: bool,
+    part: impl Fn(usize) -> Part + Sync,
+) {
     let (pool, mut reduced, mut frame) = (two_threads(), DocumentReducer::new(0.25), 0);
     pool.install(|| reduced.of(&document.with_part_ahead(part(0))).expect("a small document"));
     bencher.bench_local(|| {
@@ -126,7 +143,13 @@ fn slider_of_a_document(bencher: Bencher, is_draft: bool) {
 fn sculpting_at_2048(bencher: Bencher, is_draft: bool) {
     let stroke = |n: usize| {
         let samples = (0..n + 20).map(|i| (vec2(700.0 + 4.0 * i as f32, 1024.0), 1.0)).collect();
-        let stroke = SculptStroke { tool: SculptTool::Raise, size: 80.0, hardness: 0.3, strength: 1.0, samples };
+        let stroke = SculptStroke {
+            tool: SculptTool::Raise,
+            size: 80.0,
+            hardness: 0.3,
+            strength: 1.0,
+            samples,
+        };
         Part::new("s", PartKind::Sculpt { on: "a".into(), strokes: vec![stroke] })
     };
     frames(bencher, &document(2048).with_part(stroke(0)), is_draft, stroke);
@@ -142,7 +165,10 @@ fn touching_at_2048(bencher: Bencher, is_draft: bool) {
             normal: vec3(-0.4, 0.5, 0.768),
             reach: 0.0,
         };
-        Part::new("t", PartKind::Touches { on: "a".into(), touches: (0..10 + n).map(touch).collect() })
+        Part::new(
+            "t",
+            PartKind::Touches { on: "a".into(), touches: (0..10 + n).map(touch).collect() },
+        )
     };
     frames(bencher, &document(2048).with_part(touches(0)), is_draft, touches);
 }

@@ -1,8 +1,10 @@
-//! What knowing the shape costs: the curvature tensor of a map of 3840 × 2160, next to a copy of the same bytes.
+//! What knowing the shape costs: the curvature tensor of a map of 3840 × 2160, next to a copy of
+//! the same bytes.
 //!
 //! And what unwrapping a map of 1024 × 1024 costs.
 //!
-//! `cargo bench --bench surface`. Figures are per map; divide by 8.29 million for ns per pixel. `threads = 0` is all.
+//! `cargo bench --bench surface`. Figures are per map; divide by 8.29 million for ns per pixel.
+//! `threads = 0` is all.
 
 use divan::{Bencher, black_box, counter::ItemsCount};
 use rilievo::math::{vec2, vec3};
@@ -26,7 +28,8 @@ fn balls_before_a_wall() -> Maps {
         let z2 = 1.0 - (cx * cx + cy * cy) / (300.0 * 300.0);
         (z2 > 0.0).then(|| (vec3(cx, -cy, 300.0 * z2.sqrt()), 0.5 - 0.3 * z2.sqrt()))
     };
-    let wall = |x: usize, y: usize| (vec3((x as f32 * 0.05).sin(), (y as f32 * 0.04).cos(), 2.0), 1.0);
+    let wall =
+        |x: usize, y: usize| (vec3((x as f32 * 0.05).sin(), (y as f32 * 0.04).cos(), 2.0), 1.0);
     Maps {
         normals: Plane::from_fn(SIZE, |x, y| ball(x, y).unwrap_or_else(|| wall(x, y)).0),
         depth: Plane::from_fn(SIZE, |x, y| ball(x, y).unwrap_or_else(|| wall(x, y)).1),
@@ -35,7 +38,11 @@ fn balls_before_a_wall() -> Maps {
 }
 
 fn with_threads(threads: usize, work: impl FnOnce() + Send) {
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a thread pool").install(work);
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .expect("a thread pool")
+        .install(work);
 }
 
 /// The peer: the three planes of normals read and three planes written.
@@ -68,7 +75,9 @@ fn ball_before_a_wall() -> Surface {
         let z2 = 1.0 - (dx * dx + dy * dy) / (400.0 * 400.0);
         let (bump_x, bump_y) = (0.2 * (x as f32 * 0.11).sin(), 0.2 * (y as f32 * 0.13).cos());
         match z2 > 0.0 {
-            true => (vec3(dx / 400.0 + bump_x, -dy / 400.0 + bump_y, z2.sqrt()), 0.5 - 0.4 * z2.sqrt()),
+            true => {
+                (vec3(dx / 400.0 + bump_x, -dy / 400.0 + bump_y, z2.sqrt()), 0.5 - 0.4 * z2.sqrt())
+            }
             false => (vec3(bump_x, bump_y, 1.0), 1.0),
         }
     };
@@ -90,7 +99,8 @@ fn unwrapping(bencher: Bencher, threads: usize) {
     });
 }
 
-/// D over the whole canvas by one thread after an anchor was moved, the surface being unwrapped. Arguments: anchors.
+/// D over the whole canvas by one thread after an anchor was moved, the surface being unwrapped.
+/// Arguments: anchors.
 #[divan::bench(sample_count = 9, sample_size = 1, args = [1, 3])]
 fn unwrapped_under_a_moved_anchor(bencher: Bencher, anchors: usize) {
     let surface = ball_before_a_wall();
@@ -104,6 +114,7 @@ fn unwrapped_under_a_moved_anchor(bencher: Bencher, anchors: usize) {
     Deformation::new(Some(&surface), UNWRAPPED, &bend).fill(UNWRAPPED.rect(), &mut deformed);
     bencher.counter(ItemsCount::new(UNWRAPPED.area())).bench_local(|| {
         bend.anchors[0].at.x += 1.0;
-        Deformation::new(Some(&surface), UNWRAPPED, &bend).fill(UNWRAPPED.rect(), black_box(&mut deformed));
+        Deformation::new(Some(&surface), UNWRAPPED, &bend)
+            .fill(UNWRAPPED.rect(), black_box(&mut deformed));
     });
 }

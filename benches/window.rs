@@ -1,10 +1,11 @@
-//! From the event to the pixel, in the real window on a display of its own: an anchor of a photo on a map of 3840 ×
-//! 2160 dragged; a brush and a pan on it and on a project of ten layers of 4096 × 4096. Milliseconds from the pointer's
-//! motion until the screen changes there, or for the brush until it is dark beneath the pen.
+//! From the event to the pixel, in the real window on a display of its own: an anchor of a photo on
+//! a map of 3840 × 2160 dragged; a brush and a pan on it and on a project of ten layers of 4096 ×
+//! 4096. Milliseconds from the pointer's motion until the screen changes there, or for the brush
+//! until it is dark beneath the pen.
 //!
-//! `cargo bench --bench window`. Needs Xvfb and xdotool, and says so if they are missing. A program that draws with a
-//! graphics card is quicker: Xvfb draws with the processor and shares it with the painting. The aim: a median of 33 ms
-//! and at most 100.
+//! `cargo bench --bench window`. Needs Xvfb and xdotool, and says so if they are missing. A program
+//! that draws with a graphics card is quicker: Xvfb draws with the processor and shares it with the
+//! painting. The aim: a median of 33 ms and at most 100.
 
 #[cfg(any(not(unix), target_os = "macos"))]
 fn main() {
@@ -41,13 +42,21 @@ mod x11 {
 
     pub fn run() -> Result<()> {
         for tool in ["Xvfb", "xdotool"] {
-            if Command::new("which").arg(tool).stdout(Stdio::null()).status().map_or(true, |status| !status.success()) {
+            if Command::new("which")
+                .arg(tool)
+                .stdout(Stdio::null())
+                .status()
+                .map_or(true, |status| !status.success())
+            {
                 println!("skipped: {tool} is not installed");
                 return Ok(());
             }
         }
         let folder = tempfile::tempdir()?;
-        println!("{:<44} {:>8} {:>8} {:>8}", "ms from the event to the pixel", "middle", "9 of 10", "slowest");
+        println!(
+            "{:<44} {:>8} {:>8} {:>8}",
+            "ms from the event to the pixel", "middle", "9 of 10", "slowest"
+        );
         let (map, project) = (photo_on_a_map(folder.path())?, ten_layers(folder.path())?);
         let mut stage = Stage::new(&map, folder.path())?;
         stage.drag_anchor("3840 × 2160")?;
@@ -65,12 +74,15 @@ mod x11 {
     fn photo_on_a_map(folder: &Path) -> Result<PathBuf> {
         let normal = |x: u32, y: u32| {
             let (x, y) = (x as f32, y as f32);
-            let n = [0.5 * (x * 0.01).sin() + 0.2 * (y * 0.023).sin(), 0.5 * (y * 0.012).cos(), 1.0];
+            let n =
+                [0.5 * (x * 0.01).sin() + 0.2 * (y * 0.023).sin(), 0.5 * (y * 0.012).cos(), 1.0];
             let length = n.iter().map(|v| v * v).sum::<f32>().sqrt();
             image::Rgb(n.map(|v| ((v / length * 0.5 + 0.5) * 255.0).round() as u8))
         };
         RgbImage::from_fn(3840, 2160, normal).save(folder.join("normal.png"))?;
-        let photo = RgbImage::from_fn(1800, 1200, |x, y| image::Rgb([0, 1, 2].map(|channel| pale(x, y, channel))));
+        let photo = RgbImage::from_fn(1800, 1200, |x, y| {
+            image::Rgb([0, 1, 2].map(|channel| pale(x, y, channel)))
+        });
         photo.save(folder.join("photo.png"))?;
         let document = serde_json::json!({
             "format": "rilievo", "version": 1,
@@ -90,15 +102,30 @@ mod x11 {
     fn ten_layers(folder: &Path) -> Result<PathBuf> {
         const LARGE: u32 = 4096;
         let layer = |i: u32| {
-            let alpha = |x: u32, y: u32| if i == 0 { 255 } else { hash::mix(x / 256 + 61 * (y / 256) + i) as u8 / 2 };
-            let pixel = |x: u32, y: u32| [pale(x + i, y, 0), pale(x, y + i, 1), pale(x, y, 2 + i), alpha(x, y)];
-            let rgba: Vec<u8> = (0..LARGE).flat_map(|y| (0..LARGE).flat_map(move |x| pixel(x, y))).collect();
+            let alpha = |x: u32, y: u32| {
+                if i == 0 { 255 } else { hash::mix(x / 256 + 61 * (y / 256) + i) as u8 / 2 }
+            };
+            let pixel = |x: u32, y: u32| {
+                [pale(x + i, y, 0), pale(x, y + i, 1), pale(x, y, 2 + i), alpha(x, y)]
+            };
+            let rgba: Vec<u8> =
+                (0..LARGE).flat_map(|y| (0..LARGE).flat_map(move |x| pixel(x, y))).collect();
             let tiles = TileGrid::from_straight_rgba(&rgba, LARGE as usize, LARGE as usize, 0, 0);
-            Layer::new(format!("{i}"), Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() })).into()
+            Layer::new(
+                format!("{i}"),
+                Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }),
+            )
+            .into()
         };
-        let document = Document { layers: (0..10).map(layer).collect(), ..Document::empty(Size::new(LARGE, LARGE)) };
+        let document = Document {
+            layers: (0..10).map(layer).collect(),
+            ..Document::empty(Size::new(LARGE, LARGE))
+        };
         let file = folder.join("layers.ora");
-        std::fs::write(&file, project::write(&file, &document, &Progress::default())?.ok_or("cancelled")?)?;
+        std::fs::write(
+            &file,
+            project::write(&file, &document, &Progress::default())?.ok_or("cancelled")?,
+        )?;
         Ok(file)
     }
 
@@ -125,14 +152,19 @@ mod x11 {
 
     impl Stage {
         fn new(file: &Path, folder: &Path) -> Result<Self> {
-            // A folder for each window, so that this one is not offered what the last one left when it was killed.
+            // A folder for each window, so that this one is not offered what the last one left when
+            // it was killed.
             let folder = folder.join(file.file_stem().unwrap_or_default());
-            let number =
-                (90..).find(|n| !Path::new(&format!("/tmp/.X{n}-lock")).exists()).ok_or("no display is free")?;
+            let number = (90..)
+                .find(|n| !Path::new(&format!("/tmp/.X{n}-lock")).exists())
+                .ok_or("no display is free")?;
             let display = format!(":{number}");
             let mut server = Command::new("Xvfb");
             server.arg(&display).args(["-screen", "0", &format!("{}x{}x24", SCREEN.0, SCREEN.1)]);
-            let server = server.args(["-ac", "-noreset", "+extension", "GLX"]).stderr(Stdio::null()).spawn()?;
+            let server = server
+                .args(["-ac", "-noreset", "+extension", "GLX"])
+                .stderr(Stdio::null())
+                .spawn()?;
             let server = Running(server);
             sleep(Duration::from_secs(1));
             let mut window = Command::new(env!("CARGO_BIN_EXE_rilievo"));
@@ -141,35 +173,64 @@ mod x11 {
                 .env("DISPLAY", &display)
                 .env_remove("WAYLAND_DISPLAY")
                 .env_remove("DBUS_SESSION_BUS_ADDRESS");
-            window.env("XDG_CONFIG_HOME", folder.join("config")).env("XDG_STATE_HOME", folder.join("state"));
+            window
+                .env("XDG_CONFIG_HOME", folder.join("config"))
+                .env("XDG_STATE_HOME", folder.join("state"));
             let window = Running(window.stdout(Stdio::null()).stderr(Stdio::null()).spawn()?);
             let (connection, screen) = x11rb::connect(Some(&display))?;
             let root = connection.setup().roots[screen].root;
-            let mut stage = Self { _window: window, _server: server, display, connection, root, middle: (0, 0) };
-            stage.until(Duration::from_secs(60), |stage| Ok(stage.pixels(0, 0, 200, 20)?.iter().any(|&v| v > 40)))?;
+            let mut stage = Self {
+                _window: window,
+                _server: server,
+                display,
+                connection,
+                root,
+                middle: (0, 0),
+            };
+            stage.until(Duration::from_secs(60), |stage| {
+                Ok(stage.pixels(0, 0, 200, 20)?.iter().any(|&v| v > 40))
+            })?;
             let (width, height) = (SCREEN.0.to_string(), SCREEN.1.to_string());
-            let search = ["search", "--name", "Rilievo", "windowmove", "0", "0", "windowsize", &width, &height];
+            let search = [
+                "search",
+                "--name",
+                "Rilievo",
+                "windowmove",
+                "0",
+                "0",
+                "windowsize",
+                &width,
+                &height,
+            ];
             stage.xdotool(&[&search[..], &["windowfocus"]].concat())?;
             stage.wait_until_still()?;
             stage.middle = stage.middle_of_canvas()?;
             Ok(stage)
         }
+
         /// BGRX of a part of the screen.
         fn pixels(&self, x: i32, y: i32, width: i32, height: i32) -> Result<Vec<u8>> {
             let (format, root) = (ImageFormat::Z_PIXMAP, self.root);
             let (x, y, width, height) = (x as i16, y as i16, width as u16, height as u16);
             Ok(self.connection.get_image(format, root, x, y, width, height, !0)?.reply()?.data)
         }
+
         fn move_to(&self, x: i32, y: i32) -> Result<()> {
             self.connection.warp_pointer(0u32, self.root, 0, 0, 0, 0, x as i16, y as i16)?;
             Ok(self.connection.flush()?)
         }
+
         fn xdotool(&self, words: &[&str]) -> Result<()> {
             Command::new("xdotool").args(words).env("DISPLAY", &self.display).status()?;
             Ok(())
         }
+
         /// How long it takes until something is so, ms.
-        fn until(&self, most: Duration, mut is_so: impl FnMut(&Self) -> Result<bool>) -> Result<Option<f32>> {
+        fn until(
+            &self,
+            most: Duration,
+            mut is_so: impl FnMut(&Self) -> Result<bool>,
+        ) -> Result<Option<f32>> {
             let begun = Instant::now();
             while begun.elapsed() < most {
                 if is_so(self)? {
@@ -179,6 +240,7 @@ mod x11 {
             }
             Ok(None)
         }
+
         /// Waits until nothing moves for a while.
         fn wait_until_still(&self) -> Result<()> {
             let (mut last, mut since) = (Vec::new(), Instant::now());
@@ -192,11 +254,15 @@ mod x11 {
             })?;
             Ok(())
         }
+
         /// The middle of the area that is pale compared with the window's own colours.
         fn middle_of_canvas(&self) -> Result<(i32, i32)> {
             let all = self.pixels(0, 0, SCREEN.0, SCREEN.1)?;
-            let is_pale = |x: i32, y: i32| all[((y * SCREEN.0 + x) * 4) as usize..][..3].iter().all(|&v| v > 130);
-            let inside = (120..SCREEN.1 - 50).flat_map(|y| (60..SCREEN.0 - 280).map(move |x| (x, y)));
+            let is_pale = |x: i32, y: i32| {
+                all[((y * SCREEN.0 + x) * 4) as usize..][..3].iter().all(|&v| v > 130)
+            };
+            let inside =
+                (120..SCREEN.1 - 50).flat_map(|y| (60..SCREEN.0 - 280).map(move |x| (x, y)));
             let pale: Vec<(i32, i32)> = inside.filter(|&(x, y)| is_pale(x, y)).collect();
             let middle = |of: fn(&(i32, i32)) -> i32| {
                 let (low, high) = (pale.iter().map(of).min(), pale.iter().map(of).max());
@@ -204,8 +270,15 @@ mod x11 {
             };
             Ok(middle(|at| at.0).zip(middle(|at| at.1)).ok_or("no canvas is seen")?)
         }
+
         /// Moves along a path with a button down, and watches a square next to the middle.
-        fn drag(&self, what: &str, button: &str, step: (i32, i32), beside: (i32, i32)) -> Result<()> {
+        fn drag(
+            &self,
+            what: &str,
+            button: &str,
+            step: (i32, i32),
+            beside: (i32, i32),
+        ) -> Result<()> {
             let (x, y) = self.middle;
             let (seen_x, seen_y) = (x + beside.0, y + beside.1);
             self.move_to(x, y)?;
@@ -215,18 +288,22 @@ mod x11 {
             for i in 1..40 {
                 let before = self.pixels(seen_x, seen_y, SIDE, SIDE)?;
                 self.move_to(x + step.0 * (i % 20), y + step.1 * (i % 20))?;
-                took.push(self.until(LOST, |stage| Ok(stage.pixels(seen_x, seen_y, SIDE, SIDE)? != before))?);
+                took.push(self.until(LOST, |stage| {
+                    Ok(stage.pixels(seen_x, seen_y, SIDE, SIDE)? != before)
+                })?);
                 pause(i);
             }
             self.xdotool(&["mouseup", button])?;
             told(what, took);
             self.wait_until_still()
         }
+
         fn drag_anchor(&mut self, of: &str) -> Result<()> {
             self.xdotool(&["key", "a"])?;
             sleep(Duration::from_millis(500));
             self.drag(&format!("an anchor, {of}"), "1", (6, 3), (200, 150))
         }
+
         fn paint_and_look(&mut self, of: &str) -> Result<()> {
             self.xdotool(&["key", "b"])?;
             self.wait_until_still()?;
@@ -236,6 +313,7 @@ mod x11 {
             self.paint(&format!("a brush, a part of {of}"), 50)?;
             self.drag(&format!("a pan over {of}"), "2", (12, 7), (100, 100))
         }
+
         /// Four lines; `step` px between two motions, more than a radius.
         fn paint(&self, what: &str, step: i32) -> Result<()> {
             let mut took = Vec::new();
@@ -248,7 +326,8 @@ mod x11 {
                 for i in 1..=(600 / step).min(24) {
                     // Next to the middle, where the pointer's own dot is.
                     let x = left + i * step;
-                    let light = |stage: &Self| stage.pixels(x - 4, y - 4, 3, 3).map(|seen| mean(&seen));
+                    let light =
+                        |stage: &Self| stage.pixels(x - 4, y - 4, 3, 3).map(|seen| mean(&seen));
                     let before = light(self)?;
                     self.move_to(x, y)?;
                     took.push(self.until(LOST, |stage| Ok(light(stage)? < before - 40.0))?);
@@ -266,16 +345,22 @@ mod x11 {
     fn pause(i: i32) {
         sleep(Duration::from_millis(8 + (i * 7 % 17) as u64));
     }
+
     fn mean(bgrx: &[u8]) -> f32 {
-        let sum: f32 = bgrx.chunks_exact(4).map(|p| p[..3].iter().map(|&v| f32::from(v)).sum::<f32>() / 3.0).sum();
+        let sum: f32 = bgrx
+            .chunks_exact(4)
+            .map(|p| p[..3].iter().map(|&v| f32::from(v)).sum::<f32>() / 3.0)
+            .sum();
         sum / (bgrx.len() / 4).max(1) as f32
     }
+
     fn told(what: &str, took: Vec<Option<f32>>) {
         let mut ms: Vec<f32> = took.iter().flatten().copied().collect();
         ms.sort_by(f32::total_cmp);
         let Some(&slowest) = ms.last() else { return println!("{what:<44} nothing was seen") };
         let (middle, most, lost) = (ms[ms.len() / 2], ms[ms.len() * 9 / 10], took.len() - ms.len());
-        let note = if lost > 0 { format!("   {lost} of {} not seen", took.len()) } else { String::new() };
+        let note =
+            if lost > 0 { format!("   {lost} of {} not seen", took.len()) } else { String::new() };
         println!("{what:<44} {middle:>8.1} {most:>8.1} {slowest:>8.1}{note}");
     }
 }

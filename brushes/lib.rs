@@ -1,5 +1,5 @@
-//! The brushes that come with Rilievo, as texts. To add one, add a file to this folder and a line here. A file has the
-//! fields of a stroke, and what a list shows (`docs/RECIPES.md`).
+//! The brushes that come with Rilievo, as texts. To add one, add a file to this folder and a line
+//! here. A file has the fields of a stroke, and what a list shows (`docs/RECIPES.md`).
 
 macro_rules! table {
     ($($key:literal),* $(,)?) => {

@@ -1,12 +1,17 @@
-//! Paints a stroke on waves: its dabs follow the slopes. The layer keeps the stroke, so it can be changed afterwards.
+//! Paints a stroke on waves: its dabs follow the slopes. The layer keeps the stroke, so it can be
+//! changed afterwards.
 //!
-//! `cargo run --example paint_stroke -- [PICTURE]`; without an argument, to the folder for temporary files.
+//! `cargo run --example paint_stroke -- [PICTURE]`; without an argument, to the folder for
+//! temporary files.
 
 use rilievo::math::vec2;
 use rilievo::paint::{Brush, Sample, Stroke};
 use rilievo::raster::Plane;
 use rilievo::shading::{Model, Shading};
-use rilievo::{BlendMode, Color, Content, Document, Layer, Maps, Operator, Overwrite, Size, Surface, write_picture};
+use rilievo::{
+    BlendMode, Color, Content, Document, Layer, Maps, Operator, Overwrite, Size, Surface,
+    write_picture,
+};
 use std::path::{Path, PathBuf};
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
@@ -19,7 +24,8 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// What the pen reported: a wavy line across the canvas at a height, pressed harder toward its middle.
+/// What the pen reported: a wavy line across the canvas at a height, pressed harder toward its
+/// middle.
 fn pen(y: f32) -> Vec<Sample> {
     let sample = |i: usize| {
         let t = i as f32 / 120.0;
@@ -40,7 +46,8 @@ pub fn paint(picture: &Path) -> Result<()> {
     let on_surface = Operator::Surface { amount: 1.0, smooth: 2.0 };
     let red = Stroke::new(brush.clone(), on_surface, Color::rgb(190, 60, 40), pen(180.0));
 
-    let light = Layer { blend: BlendMode::Multiply, ..Layer::new("Light", Shading::new(Model::Phong)) };
+    let light =
+        Layer { blend: BlendMode::Multiply, ..Layer::new("Light", Shading::new(Model::Phong)) };
     let document = Document::over(surface)
         .with_top(Layer::new("Cloth", Color::rgb(226, 214, 190)))
         .with_top(Layer::new("Strokes", red.clone()))

@@ -1,6 +1,7 @@
 //! Gives a drawing in flat colours a shape: each colour becomes a part, which is inflated and lit.
 //!
-//! `cargo run --example shape_from_drawing -- [PICTURE]`; without an argument, to the folder for temporary files.
+//! `cargo run --example shape_from_drawing -- [PICTURE]`; without an argument, to the folder for
+//! temporary files.
 
 use rilievo::math::vec2;
 use rilievo::shading::{Model, Shading};
@@ -28,8 +29,10 @@ fn drawing() -> TileGrid {
         (vec2(134.0, 172.0), vec2(16.0, 16.0), Color::rgb(40, 36, 44)),
     ];
     let pixel = |i: usize| {
-        let at = vec2((i % SIZE.width as usize) as f32 + 0.5, (i / SIZE.width as usize) as f32 + 0.5);
-        let inside = ellipses.iter().rev().find(|(middle, radii, _)| ((at - middle) / radii).length() < 1.0);
+        let at =
+            vec2((i % SIZE.width as usize) as f32 + 0.5, (i / SIZE.width as usize) as f32 + 0.5);
+        let inside =
+            ellipses.iter().rev().find(|(middle, radii, _)| ((at - middle) / radii).length() < 1.0);
         inside.map_or([0; 4], |(_, _, color)| [color.r, color.g, color.b, 255])
     };
     let rgba: Vec<u8> = (0..SIZE.area()).flat_map(pixel).collect();
@@ -39,13 +42,15 @@ fn drawing() -> TileGrid {
 /// Writes the picture.
 pub fn shape(picture: &Path) -> rilievo::Result<()> {
     let flats = drawing();
-    // A part for each colour, in the order in which they lie on each other. Parts stay linked to the layer by its name:
-    // if it is painted on, the shape follows.
+    // A part for each colour, in the order in which they lie on each other. Parts stay linked to
+    // the layer by its name: if it is painted on, the shape follows.
     let found = parts_of_flats(&flats, "Drawing", Inflation::default(), PartFor::Color);
     let parts = found.parts.into_iter().map(|part| Arc::new(Part { raise: 4.0, ..part }));
 
     // From here on, the document has a surface, as if its maps had been read from files.
-    let document = Document::empty(SIZE).with_top(Layer::new("Drawing", flats)).with_parts(parts.collect());
-    let light = Layer { blend: BlendMode::Multiply, ..Layer::new("Light", Shading::new(Model::Phong)) };
+    let document =
+        Document::empty(SIZE).with_top(Layer::new("Drawing", flats)).with_parts(parts.collect());
+    let light =
+        Layer { blend: BlendMode::Multiply, ..Layer::new("Light", Shading::new(Model::Phong)) };
     write_picture(&document.with_top(light), picture, Overwrite::Anything)
 }

@@ -1,7 +1,8 @@
 //! Rilievo as a library: paint over normal and depth maps without the window.
 //!
-//! A [`Document`] is a canvas, the [`Surface`] that is painted on, and layers. It is read from a recipe or a project
-//! file, or built in code; [`render`] makes the picture. Values are cheap to clone and never change while shared.
+//! A [`Document`] is a canvas, the [`Surface`] that is painted on, and layers. It is read from a
+//! recipe or a project file, or built in code; [`render`] makes the picture. Values are cheap to
+//! clone and never change while shared.
 //!
 //! Make a surface from a normal map in memory, bend a gradient over it, and keep the picture:
 //!
@@ -68,7 +69,8 @@
 //! # }
 //! ```
 //!
-//! The repository's `examples` folder has a page each on rendering, gradients, strokes, and shapes made from drawings.
+//! The repository's `examples` folder has a page each on rendering, gradients, strokes, and shapes
+//! made from drawings.
 //!
 //! | module | holds |
 //! |---|---|
@@ -81,12 +83,13 @@
 //! | [`math`] | vectors, sizes, rectangles, colours |
 //! | [`files`] | recipes, projects, pictures and maps on the disk, and the limits that readers respect |
 //!
-//! Coordinates are canvas pixels, x to the right and y down; the middle of the first pixel is (0.5, 0.5). Normals are
-//! in camera space, y up. Colours are sRGB, and pixels of a picture are premultiplied. Angles are in degrees,
-//! counter-clockwise as seen, where a name does not say otherwise.
+//! Coordinates are canvas pixels, x to the right and y down; the middle of the first pixel is (0.5,
+//! 0.5). Normals are in camera space, y up. Colours are sRGB, and pixels of a picture are
+//! premultiplied. Angles are in degrees, counter-clockwise as seen, where a name does not say
+//! otherwise.
 //!
-//! Anything not named here is not part of the library: the crates `rilievo-engine`, `rilievo-io`, `rilievo-program` and
-//! `rilievo-window` may change with every release.
+//! Anything not named here is not part of the library: the crates `rilievo-engine`, `rilievo-io`,
+//! `rilievo-program` and `rilievo-window` may change with every release.
 
 #![warn(missing_docs)]
 
@@ -94,8 +97,8 @@
 pub mod surface {
     #[doc(inline)]
     pub use rilievo_engine::surface::{
-        Anchor, Bend, Curvature, Deformation, DetailMap, FlowField, Maps, NoiseRelief, Objects, Operator, PaintLimit,
-        Scene, StructureTensor, Surface, SurfaceError, Weights,
+        Anchor, Bend, Curvature, Deformation, DetailMap, FlowField, Maps, NoiseRelief, Objects,
+        Operator, PaintLimit, Scene, StructureTensor, Surface, SurfaceError, Weights,
         objects::CanvasPart,
         plane_piece::PlanePiece,
         region::{RegionKind, SurfaceRegion},
@@ -106,10 +109,11 @@ pub mod surface {
 pub mod paint {
     #[doc(inline)]
     pub use rilievo_engine::paint::{
-        ActiveRetouching, ActiveStrokes, Adjust, Backdrop, Brush, BrushMode, ColorJitter, Curve, Cycle, DabInputs,
-        Drive, Dynamics, Falloff, Fill, Gradient, GradientStop, Hand, HomeFrame, ImageFilter, Input, Measure, Offset,
-        Pickup, PictureSource, PlacedImage, Placement, Property, Rate, Sample, Selection, Spread, StabilizedPen,
-        Stabilizer, Stroke, StrokeFrame, StrokeHome, StrokeSelection, Tip,
+        ActiveRetouching, ActiveStrokes, Adjust, Backdrop, Brush, BrushMode, ColorJitter, Curve,
+        Cycle, DabInputs, Drive, Dynamics, Falloff, Fill, Gradient, GradientStop, Hand, HomeFrame,
+        ImageFilter, Input, Measure, Offset, Pickup, PictureSource, PlacedImage, Placement,
+        Property, Rate, Sample, Selection, Spread, StabilizedPen, Stabilizer, Stroke, StrokeFrame,
+        StrokeHome, StrokeSelection, Tip,
         grain::{BrushGrain, GrainSource, GrainSpace},
         tip::{Bristles, Hose, Noise},
     };
@@ -119,8 +123,8 @@ pub mod paint {
 pub mod shading {
     #[doc(inline)]
     pub use rilievo_engine::shading::{
-        Environment, FeatureScale, Features, Light, LightKind, LitSphere, Model, Projection, RadianceScaling,
-        Reference, Scaling, Shading, Term,
+        Environment, FeatureScale, Features, Light, LightKind, LitSphere, Model, Projection,
+        RadianceScaling, Reference, Scaling, Shading, Term,
     };
 }
 
@@ -128,13 +132,15 @@ pub mod shading {
 pub mod shape {
     #[doc(inline)]
     pub use rilievo_engine::document::parts::{
-        CoverageFile, FlatColor, Inflation, OutlineSource, Part, PartKind, PartMaps, Parts, ProfilePicture,
+        CoverageFile, FlatColor, Inflation, OutlineSource, Part, PartKind, PartMaps, Parts,
+        ProfilePicture,
         drawing::{FigureBackground, without_background},
         flats::{FlatParts, PartFor, parts_of_flats},
     };
     #[doc(inline)]
     pub use rilievo_engine::shape::{
-        Ball, Bevel, BevelCurve, Body, Combine, Detail, LineForm, Lines, Primitive, SculptStroke, SculptTool, Touch,
+        Ball, Bevel, BevelCurve, Body, Combine, Detail, LineForm, Lines, Primitive, SculptStroke,
+        SculptTool, Touch,
     };
 }
 
@@ -142,10 +148,10 @@ pub mod shape {
 pub mod document {
     #[doc(inline)]
     pub use rilievo_engine::document::{
-        Content, DerivedMask, DetailSource, Document, Group, Highlights, History, Layer, LayerId, LayerLabel,
-        LayerLock, LayerMask, LayerSlot, LayerTransform, Live, MaskKind, Mesh, MeshFrame, NamedSelection, NormalLayer,
-        PixelLayer, PreparedDocument, Progress, StrokeList, TransformShape, diff, flatten, flatten_deep, flatten_layer,
-        flatten_layers,
+        Content, DerivedMask, DetailSource, Document, Group, Highlights, History, Layer, LayerId,
+        LayerLabel, LayerLock, LayerMask, LayerSlot, LayerTransform, Live, MaskKind, Mesh,
+        MeshFrame, NamedSelection, NormalLayer, PixelLayer, PreparedDocument, Progress, StrokeList,
+        TransformShape, diff, flatten, flatten_deep, flatten_layer, flatten_layers,
     };
 }
 
@@ -153,8 +159,8 @@ pub mod document {
 pub mod raster {
     #[doc(inline)]
     pub use rilievo_engine::raster::{
-        Asset, BlendMode, CoverageGrid, Lattice, Outside, Picture, PlanarTile, Plane, Resampling, SelectionMode, TILE,
-        Tile, TileAt, TileGrid, picture::Texels,
+        Asset, BlendMode, CoverageGrid, Lattice, Outside, Picture, PlanarTile, Plane, Resampling,
+        SelectionMode, TILE, Tile, TileAt, TileGrid, picture::Texels,
     };
 }
 
@@ -170,13 +176,13 @@ pub mod math {
 pub mod files {
     #[doc(inline)]
     pub use rilievo_engine::document::source::{
-        DepthConvention, DepthEncoding, MapSource, MaskSource, Near, NormalConvention, NormalEncoding, NormalSpace,
-        SurfaceSource,
+        DepthConvention, DepthEncoding, MapSource, MaskSource, Near, NormalConvention,
+        NormalEncoding, NormalSpace, SurfaceSource,
     };
     #[doc(inline)]
     pub use rilievo_io::{
-        Budget, Files, OpenedDocument, Overwrite, RecipeFolder, SavedDocument, Terms, export, maps, open, picture,
-        recipe, save,
+        Budget, Files, OpenedDocument, Overwrite, RecipeFolder, SavedDocument, Terms, export, maps,
+        open, picture, recipe, save,
     };
 }
 
@@ -192,10 +198,11 @@ pub use crate::raster::{BlendMode, TileGrid};
 pub use crate::surface::{Anchor, Bend, Maps, Operator, Surface};
 pub use rilievo_engine::{Error, Remedy, Result};
 
-/// The whole picture of a document: premultiplied sRGB in tiles, the pixels of the canvas and no others.
+/// The whole picture of a document: premultiplied sRGB in tiles, the pixels of the canvas and no
+/// others.
 ///
-/// A surface that the document's parts no longer make is made first. It uses all cores. Work that is watched or
-/// cancelled calls [`flatten()`] with a [`Progress`] of its own.
+/// A surface that the document's parts no longer make is made first. It uses all cores. Work that
+/// is watched or cancelled calls [`flatten()`] with a [`Progress`] of its own.
 pub fn render(document: &Document) -> TileGrid {
     // None only where the work was cancelled, and nobody can.
     flatten(&document.reshaped(), &Progress::default()).unwrap_or_default()

@@ -1,5 +1,5 @@
-//! The program's entry point: passes the arguments to the command line, with the window if there is one, and returns
-//! its exit code.
+//! The program's entry point: passes the arguments to the command line, with the window if there is
+//! one, and returns its exit code.
 
 use rilievo_program::cli::{self, OpenWindow};
 use std::process::ExitCode;

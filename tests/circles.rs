@@ -1,13 +1,18 @@
-//! No circles: sibling modules of one folder, submodules included, do not import each other in a circle. A module and
-//! its own submodules may name each other: they are one subject. Reads the sources.
+//! No circles: sibling modules of one folder, submodules included, do not import each other in a
+//! circle. A module and its own submodules may name each other: they are one subject. Reads the
+//! sources.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::{fs, iter};
 
 /// The crates, by the names that they are imported by.
-const CRATES: [(&str, &str); 4] =
-    [("engine", "rilievo_engine"), ("io", "rilievo_io"), ("program", "rilievo_program"), ("window", "rilievo_window")];
+const CRATES: [(&str, &str); 4] = [
+    ("engine", "rilievo_engine"),
+    ("io", "rilievo_io"),
+    ("program", "rilievo_program"),
+    ("window", "rilievo_window"),
+];
 
 /// A module by the names that lead to it: `["io", "maps", "stored"]`.
 type ModulePath = Vec<String>;
@@ -34,23 +39,38 @@ impl Modules {
         let known: BTreeSet<ModulePath> = texts.keys().cloned().collect();
         Self(texts.iter().map(|(path, text)| (path.clone(), module(path, text, &known))).collect())
     }
+
     /// The module that defines an item, also where others re-export it.
     fn home(&self, item: &[String], depth: usize) -> Option<ModulePath> {
-        let (module, rest) = (1..=item.len()).rev().map(|n| item.split_at(n)).find(|(m, _)| self.0.contains_key(*m))?;
-        let on = rest.first().and_then(|name| self.0[module].handed_on.get(name)).filter(|on| on[..] != *item);
+        let (module, rest) = (1..=item.len())
+            .rev()
+            .map(|n| item.split_at(n))
+            .find(|(m, _)| self.0.contains_key(*m))?;
+        let on = rest
+            .first()
+            .and_then(|name| self.0[module].handed_on.get(name))
+            .filter(|on| on[..] != *item);
         on.filter(|_| depth < 8).and_then(|on| self.home(on, depth + 1)).or(Some(module.to_vec()))
     }
+
     /// What the modules of a folder import from each other, with an example of each.
     fn arrows(&self, folder: &[String]) -> BTreeMap<(String, String), String> {
         let mut arrows = BTreeMap::new();
         let within = |path: &ModulePath| {
-            (path.starts_with(folder) && path.len() > folder.len()).then(|| path[folder.len()].clone())
+            (path.starts_with(folder) && path.len() > folder.len())
+                .then(|| path[folder.len()].clone())
         };
         for (path, module) in &self.0 {
             let Some(from) = within(path) else { continue };
             for item in &module.named {
-                if let Some(to) = self.home(item, 0).and_then(|home| within(&home)).filter(|to| *to != from) {
-                    arrows.entry((from.clone(), to)).or_insert(format!("{} names {}", path.join("/"), item.join("::")));
+                if let Some(to) =
+                    self.home(item, 0).and_then(|home| within(&home)).filter(|to| *to != from)
+                {
+                    arrows.entry((from.clone(), to)).or_insert(format!(
+                        "{} names {}",
+                        path.join("/"),
+                        item.join("::")
+                    ));
                 }
             }
         }
@@ -65,7 +85,9 @@ fn visit(folder: &Path, path: &ModulePath, out: &mut BTreeMap<ModulePath, String
         if name == "tests" || name.ends_with("_tests") {
             continue;
         }
-        let inner = |name: &str| path.iter().cloned().chain(iter::once(name.to_owned())).collect::<ModulePath>();
+        let inner = |name: &str| {
+            path.iter().cloned().chain(iter::once(name.to_owned())).collect::<ModulePath>()
+        };
         if entry.is_dir() {
             visit(&entry, &inner(&name), out);
         } else if entry.extension().is_some_and(|e| e == "rs") {
@@ -97,7 +119,8 @@ fn module(path: &ModulePath, code: &str, known: &BTreeSet<ModulePath>) -> Module
             continue;
         };
         rest.push_str(&statement[..at]);
-        let is_public = statement[..at].trim_end().ends_with("pub") || statement[..at].trim_end().ends_with(')');
+        let is_public = statement[..at].trim_end().ends_with("pub")
+            || statement[..at].trim_end().ends_with(')');
         let tree = statement[at + "use ".len()..].trim_end_matches(';');
         for (item, name) in leaves(tree) {
             let Some(item) = absolute(path, &item, known) else { continue };
@@ -123,7 +146,10 @@ fn module(path: &ModulePath, code: &str, known: &BTreeSet<ModulePath>) -> Module
 fn find_use(statement: &str) -> Option<usize> {
     let at = statement.rfind("use ")?;
     let before = statement[..at].trim_end_matches(' ');
-    let begins = before.is_empty() || before.ends_with('\n') || before.ends_with("pub") || before.ends_with(')');
+    let begins = before.is_empty()
+        || before.ends_with('\n')
+        || before.ends_with("pub")
+        || before.ends_with(')');
     begins.then_some(at)
 }
 
@@ -131,10 +157,14 @@ fn find_use(statement: &str) -> Option<usize> {
 fn leaves(tree: &str) -> Vec<(Vec<String>, String)> {
     let tree = tree.trim();
     let words = |text: &str| -> Vec<String> {
-        text.split("::").map(|word| word.trim().to_owned()).filter(|word| !word.is_empty()).collect()
+        text.split("::")
+            .map(|word| word.trim().to_owned())
+            .filter(|word| !word.is_empty())
+            .collect()
     };
     let Some(open) = tree.find('{') else {
-        let (item, name) = tree.split_once(" as ").map_or((tree, None), |(item, name)| (item, Some(name.trim())));
+        let (item, name) =
+            tree.split_once(" as ").map_or((tree, None), |(item, name)| (item, Some(name.trim())));
         let mut item = words(item);
         if item.last().is_some_and(|last| last == "self") {
             item.pop();
@@ -163,7 +193,8 @@ fn leaves(tree: &str) -> Vec<(Vec<String>, String)> {
 /// A path from the root of its crate; `None` where it leads to no crate of ours.
 fn absolute(here: &ModulePath, item: &[String], known: &BTreeSet<ModulePath>) -> Option<ItemPath> {
     let (first, rest) = item.split_first()?;
-    let below = |base: &[String], rest: &[String]| base.iter().chain(rest).cloned().collect::<ItemPath>();
+    let below =
+        |base: &[String], rest: &[String]| base.iter().chain(rest).cloned().collect::<ItemPath>();
     if let Some((name, _)) = CRATES.iter().find(|(_, import)| import == first) {
         return Some(below(&[(*name).to_owned()], rest));
     }
@@ -192,27 +223,39 @@ fn circles(arrows: &BTreeMap<(String, String), String>) -> Vec<Vec<String>> {
         }
         seen
     };
-    let reached: BTreeMap<&String, BTreeSet<String>> = names.iter().map(|name| (*name, reached(name))).collect();
+    let reached: BTreeMap<&String, BTreeSet<String>> =
+        names.iter().map(|name| (*name, reached(name))).collect();
     let group = |name: &&String| -> Vec<String> {
         reached[*name].iter().filter(|other| reached[other].contains(*name)).cloned().collect()
     };
-    let groups: BTreeSet<Vec<String>> = names.iter().map(group).filter(|group| group.len() > 1).collect();
+    let groups: BTreeSet<Vec<String>> =
+        names.iter().map(group).filter(|group| group.len() > 1).collect();
     groups.into_iter().collect()
 }
 
 #[test]
 fn modules_beside_each_other_import_each_other_in_no_circles() {
     let modules = Modules::read();
-    let folders: BTreeSet<&[String]> =
-        modules.0.keys().filter(|path| path.len() > 1).map(|path| &path[..path.len() - 1]).collect();
+    let folders: BTreeSet<&[String]> = modules
+        .0
+        .keys()
+        .filter(|path| path.len() > 1)
+        .map(|path| &path[..path.len() - 1])
+        .collect();
     let mut wrong = Vec::new();
     for folder in folders {
         let arrows = modules.arrows(folder);
         let found = circles(&arrows);
         for circle in &found {
             wrong.push(format!("{}: {} import each other:", folder.join("/"), circle.join(", ")));
-            let within = |(from, to): &(String, String)| circle.contains(from) && circle.contains(to);
-            wrong.extend(arrows.iter().filter(|(arrow, _)| within(arrow)).map(|(_, example)| format!("    {example}")));
+            let within =
+                |(from, to): &(String, String)| circle.contains(from) && circle.contains(to);
+            wrong.extend(
+                arrows
+                    .iter()
+                    .filter(|(arrow, _)| within(arrow))
+                    .map(|(_, example)| format!("    {example}")),
+            );
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
@@ -229,7 +272,8 @@ fn a_circle_is_found_however_its_imports_are_written() {
     ];
     let owned = |path: &[&str]| path.iter().map(|name| (*name).to_owned()).collect::<ModulePath>();
     let known: BTreeSet<ModulePath> = texts.iter().map(|(path, _)| owned(path)).collect();
-    let read = texts.iter().map(|(path, text)| (owned(path), module(&owned(path), &bare(text), &known)));
+    let read =
+        texts.iter().map(|(path, text)| (owned(path), module(&owned(path), &bare(text), &known)));
     let arrows = Modules(read.collect()).arrows(&owned(&["io"]));
     let named: Vec<String> = arrows.keys().map(|(from, to)| format!("{from} {to}")).collect();
     assert_eq!(named, ["a b", "b c", "c a"]);

@@ -1,4 +1,5 @@
-//! The program as its users meet it: the real binary, its pictures, its exit codes and its sentences.
+//! The program as its users meet it: the real binary, its pictures, its exit codes and its
+//! sentences.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,20 +14,28 @@ impl Desk {
         let desk = Desk(tempfile::tempdir().unwrap());
         fs::write(desk.path("r.json"), recipe).unwrap();
         let photo = image::RgbaImage::from_fn(100, 70, |x, y| {
-            image::Rgba([(x * 2) as u8, (y * 3) as u8, ((x * y) % 256) as u8, if x < 10 { 0 } else { 255 }])
+            image::Rgba([
+                (x * 2) as u8,
+                (y * 3) as u8,
+                ((x * y) % 256) as u8,
+                if x < 10 { 0 } else { 255 },
+            ])
         });
         photo.save(desk.path("photo.png")).unwrap();
         desk
     }
+
     pub fn path(&self, name: &str) -> PathBuf {
         self.0.path().join(name)
     }
+
     /// `rilievo render r.json -o OUT …`
     pub fn render(&self, out: &str, more: &[&str]) -> Output {
         let mut command = rilievo(&["render"]);
         command.arg(self.path("r.json")).arg("-o").arg(self.path(out)).args(more);
         command.output().unwrap()
     }
+
     fn rendered(&self, out: &str, more: &[&str]) -> image::DynamicImage {
         let output = self.render(out, more);
         assert!(output.status.success(), "{}", said(&output));
@@ -69,7 +78,8 @@ const MANY: &str = r##"{ "canvas": { "width": 300, "height": 200 }, "layers": [
 #[test]
 fn an_image_of_the_canvas_size_read_by_one_tap_is_the_file() {
     let desk = Desk::with(PHOTO);
-    let (picture, photo) = (desk.rendered("out.png", &[]).to_rgba8(), image::open(desk.path("photo.png")).unwrap());
+    let (picture, photo) =
+        (desk.rendered("out.png", &[]).to_rgba8(), image::open(desk.path("photo.png")).unwrap());
     for (a, b) in picture.pixels().zip(photo.to_rgba8().pixels()) {
         assert!(a == b || (a[3] == 0 && b[3] == 0), "{a:?} {b:?}");
     }
@@ -113,7 +123,10 @@ fn one_layer_alone_stands_on_nothing_or_on_a_background() {
     assert_eq!(desk.rendered("a.png", &["--layer", "photo"]).to_rgba8().get_pixel(3, 3)[3], 0);
     let on_red = desk.rendered("b.png", &["--background", "#ff0000"]).to_rgba8();
     assert_eq!(on_red.get_pixel(3, 3).0, [255, 0, 0, 255]);
-    refused(&desk.render("c.png", &["--layer", "foto"]), &["--layer", "no layer is called “foto”", "“photo”"]);
+    refused(
+        &desk.render("c.png", &["--layer", "foto"]),
+        &["--layer", "no layer is called “foto”", "“photo”"],
+    );
 }
 
 /// The normal map of a sphere that touches the four sides, transparent around it.
@@ -173,18 +186,30 @@ fn a_scaled_picture_is_the_same_painting_at_another_size() {
     assert_eq!((small.width(), small.height()), (64, 64));
     // Red runs smoothly over the photo: a picture that is off by one pixel differs by 8 and more.
     let reduced = large.resize_exact(64, 64, image::imageops::FilterType::Triangle).to_rgba8();
-    let both = small.to_rgba8().pixels().zip(reduced.pixels()).map(|(a, b)| (*a, *b)).collect::<Vec<_>>();
+    let both =
+        small.to_rgba8().pixels().zip(reduced.pixels()).map(|(a, b)| (*a, *b)).collect::<Vec<_>>();
     let covered: Vec<_> = both.iter().filter(|(a, b)| a[3] == 255 && b[3] == 255).collect();
     let difference: u64 = covered.iter().map(|(a, b)| u64::from(a[0].abs_diff(b[0]))).sum();
-    assert!(covered.len() > 2500 && difference < 3 * covered.len() as u64, "{difference} over {}", covered.len());
-    refused(&desk.render("c.png", &["--scale", "100", "--max-side", "5000"]), &["too large", "--max-side"]);
+    assert!(
+        covered.len() > 2500 && difference < 3 * covered.len() as u64,
+        "{difference} over {}",
+        covered.len()
+    );
+    refused(
+        &desk.render("c.png", &["--scale", "100", "--max-side", "5000"]),
+        &["too large", "--max-side"],
+    );
 }
 
 #[test]
 fn what_is_refused_is_named_and_nothing_is_written() {
     let cases = [
         (r#"{ "canvas": "#, "c.png", vec!["r.json", "line 1 column"]),
-        (r#"{ "layers": [], "canvas": { "width": 1 } }"#, "c.png", vec!["r.json", "canvas.height: is missing"]),
+        (
+            r#"{ "layers": [], "canvas": { "width": 1 } }"#,
+            "c.png",
+            vec!["r.json", "canvas.height: is missing"],
+        ),
         (PHOTO, "c.gif", vec!["c.gif", ".png, .exr, .jpg"]),
         (PHOTO, "no/c.png", vec!["no/c.png", "no folder"]),
         (PHOTO, "photo.png", vec!["photo.png", "an open document is made from it"]),
@@ -209,7 +234,12 @@ fn a_recipe_reads_nothing_outside_its_folder() {
         fs::write(inner.join("r.json"), PHOTO.replace("photo.png", name)).unwrap();
         #[cfg(unix)]
         let _ = std::os::unix::fs::symlink("../photo.png", inner.join("link.png"));
-        let output = rilievo(&["render"]).arg(inner.join("r.json")).arg("-o").arg(desk.path("c.png")).output().unwrap();
+        let output = rilievo(&["render"])
+            .arg(inner.join("r.json"))
+            .arg("-o")
+            .arg(desk.path("c.png"))
+            .output()
+            .unwrap();
         refused(&output, &["layers[0].source.file"]);
         assert!(!desk.path("c.png").exists());
     }
@@ -279,7 +309,12 @@ fn paths_need_not_be_utf8() {
     for name in ["r.json", "photo.png"] {
         fs::copy(desk.path(name), odd.join(name)).unwrap();
     }
-    let output = rilievo(&["render"]).arg(odd.join("r.json")).arg("-o").arg(odd.join("out.png")).output().unwrap();
+    let output = rilievo(&["render"])
+        .arg(odd.join("r.json"))
+        .arg("-o")
+        .arg(odd.join("out.png"))
+        .output()
+        .unwrap();
     assert!(output.status.success(), "{}", said(&output));
     assert!(Path::new(&odd.join("out.png")).exists());
 }
@@ -288,7 +323,10 @@ fn paths_need_not_be_utf8() {
 fn a_mirror_of_nothing_is_refused_rather_than_painted_black() {
     let document = r##"{ "canvas": { "width": 20, "height": 20 }, "layers": [
         { "kind": "fill", "color": "#336699" }, { "kind": "shading", "model": "mirror" }] }"##;
-    refused(&Desk::with(document).render("out.png", &[]), &["layers[1].environment", "mirror", "is missing"]);
+    refused(
+        &Desk::with(document).render("out.png", &[]),
+        &["layers[1].environment", "mirror", "is missing"],
+    );
     let hidden = document.replace(r#""model""#, r#""visible": false, "model""#);
     assert!(Desk::with(&hidden).render("out.png", &[]).status.success());
 }
@@ -302,15 +340,21 @@ fn a_part_whose_place_has_another_colour_is_told_when_it_is_rendered() {
         "layers": [{ "kind": "pixels", "name": "Flats", "file": "flats.png" }] }"##,
     );
     let flats = |cx: i32| {
-        image::RgbaImage::from_fn(100, 70, |x, y| match (x as i32 - cx).pow(2) + (y as i32 - 35).pow(2) < 200 {
-            true => image::Rgba([250, 250, 250, 255]),
-            false => image::Rgba([0; 4]),
+        image::RgbaImage::from_fn(100, 70, |x, y| {
+            match (x as i32 - cx).pow(2) + (y as i32 - 35).pow(2) < 200 {
+                true => image::Rgba([250, 250, 250, 255]),
+                false => image::Rgba([0; 4]),
+            }
         })
     };
     for (cx, is_lost) in [(20, false), (70, true)] {
         flats(cx).save(desk.path("flats.png")).unwrap();
         let output = desk.render("out.png", &["--force"]);
         assert!(output.status.success(), "{}", said(&output));
-        assert_eq!(said(&output).contains("“Eye” takes the area of its colour that is nearest"), is_lost, "{cx}");
+        assert_eq!(
+            said(&output).contains("“Eye” takes the area of its colour that is nearest"),
+            is_lost,
+            "{cx}"
+        );
     }
 }

@@ -1,9 +1,12 @@
-//! One surface, a ball with a bump, stored in every convention: it must come back as the same normals and depth.
+//! One surface, a ball with a bump, stored in every convention: it must come back as the same
+//! normals and depth.
 
 use super::maps::{Ball, Memory, SIDE, encode, exr_bytes, png};
 use rilievo::Budget;
 use rilievo::files::maps::{ImportedSurface, import};
-use rilievo::files::{DepthConvention, DepthEncoding, MapSource, MaskSource, NormalConvention, SurfaceSource};
+use rilievo::files::{
+    DepthConvention, DepthEncoding, MapSource, MaskSource, NormalConvention, SurfaceSource,
+};
 
 /// Which files take part besides the one under test.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,7 +21,8 @@ fn source(
     depth: Option<MapSource<DepthConvention>>,
     mask: bool,
 ) -> SurfaceSource {
-    let mask = mask.then(|| MaskSource::File { file: "m.png".into(), channel: None, invert: false });
+    let mask =
+        mask.then(|| MaskSource::File { file: "m.png".into(), channel: None, invert: false });
     SurfaceSource { normal, depth, mask, matrix: None }
 }
 
@@ -45,7 +49,8 @@ fn errors(import: &ImportedSurface) -> (f64, f64) {
 
 type Encode = fn(glam::Vec3) -> [f32; 4];
 
-/// Name, how a unit normal becomes numbers in [0, 1], what fills the outside, bits, and degrees granted.
+/// Name, how a unit normal becomes numbers in [0, 1], what fills the outside, bits, and degrees
+/// granted.
 const NORMALS: [(&str, Encode, [f32; 4], u8, f64); 15] = [
     ("opengl 8", |n| encode(n.x, n.y, n.z), [0.5, 0.5, 1.0, 1.0], 8, 0.25),
     ("opengl 16", |n| encode(n.x, n.y, n.z), [0.5, 0.5, 1.0, 1.0], 16, 0.01),
@@ -57,7 +62,13 @@ const NORMALS: [(&str, Encode, [f32; 4], u8, f64); 15] = [
     ("dxt5nm", |n| dxt5nm(encode(n.x, n.y, n.z)), [1.0, 0.5, 0.0, 0.5], 8, 0.6),
     ("z x y", |n| encode(n.z, n.x, n.y), [1.0, 0.5, 0.5, 1.0], 8, 0.25),
     ("y z x, y down", |n| encode(-n.y, n.z, n.x), [0.5, 1.0, 0.5, 1.0], 8, 0.25),
-    ("baked through srgb", |n| through_srgb(encode(n.x, n.y, n.z)), [0.735_4, 0.735_4, 1.0, 1.0], 8, 0.6),
+    (
+        "baked through srgb",
+        |n| through_srgb(encode(n.x, n.y, n.z)),
+        [0.735_4, 0.735_4, 1.0, 1.0],
+        8,
+        0.6,
+    ),
     ("shortened at the rim", |n| shortened(n), [0.5, 0.5, 0.5, 1.0], 16, 0.05),
     ("black outside", |n| encode(n.x, n.y, n.z), [0.0, 0.0, 0.0, 1.0], 8, 0.25),
     ("grey outside", |n| encode(n.x, n.y, n.z), [0.501_96, 0.501_96, 0.501_96, 1.0], 8, 0.25),
@@ -69,15 +80,19 @@ fn shortened(n: glam::Vec3) -> [f32; 4] {
     let n = n * (0.6 + n.z).min(1.0);
     encode(n.x, n.y, n.z)
 }
+
 fn full_z([r, g, b, a]: [f32; 4]) -> [f32; 4] {
     [r, g, 2.0 * b - 1.0, a]
 }
+
 fn empty_b([r, g, _, a]: [f32; 4]) -> [f32; 4] {
     [r, g, 0.0, a]
 }
+
 fn dxt5nm([r, g, ..]: [f32; 4]) -> [f32; 4] {
     [1.0, g, 0.0, r]
 }
+
 fn through_srgb(v: [f32; 4]) -> [f32; 4] {
     let [r, g, b, a] = v.map(rilievo_engine::math::srgb::encode);
     [r, g, b, a]
@@ -88,13 +103,22 @@ fn every_encoding_of_normals_comes_back_as_the_same_normals() {
     let ball = Ball::new();
     for (name, texel, outside, bits, granted) in NORMALS {
         let file = png(bits, |x, y| ball.at(x, y).map_or(outside, |(n, _)| texel(n)));
-        let files = Memory::new([("n.png", file), ("d.png", ball.depth_png()), ("m.png", ball.mask_png())]);
+        let files =
+            Memory::new([("n.png", file), ("d.png", ball.depth_png()), ("m.png", ball.mask_png())]);
         for with in [With::DepthAndMask, With::Depth, With::Mask] {
             let depth = if with == With::Mask { None } else { map("d.png") };
-            let import = import(&source(map("n.png"), depth, with != With::Depth), &files, &Budget::default());
+            let import = import(
+                &source(map("n.png"), depth, with != With::Depth),
+                &files,
+                &Budget::default(),
+            );
             let import = import.unwrap_or_else(|e| panic!("{name} {with:?}: {e}"));
             let (angle, depth) = errors(&import);
-            assert!(angle < granted, "{name} {with:?}: {angle:.3}° off; {:?}", import.findings.choices);
+            assert!(
+                angle < granted,
+                "{name} {with:?}: {angle:.3}° off; {:?}",
+                import.findings.choices
+            );
             let depth_granted = if with == With::Mask { 0.05 } else { 1e-4 };
             assert!(depth < depth_granted, "{name} {with:?}: depth {depth:.5} off");
         }
@@ -104,13 +128,26 @@ fn every_encoding_of_normals_comes_back_as_the_same_normals() {
 #[test]
 fn what_was_found_reads_the_same_maps_again() {
     let ball = Ball::new();
-    let file = png(8, |x, y| ball.at(x, y).map_or([0.5, 0.5, 1.0, 1.0], |(n, _)| encode(n.z, -n.x, n.y)));
-    let files = Memory::new([("n.png", file), ("d.png", ball.depth_png()), ("m.png", ball.mask_png())]);
-    let found = import(&source(map("n.png"), map("d.png"), true), &files, &Budget::default()).unwrap();
-    let told = Some(MapSource { convention: found.findings.normal.clone().unwrap(), ..map("n.png").unwrap() });
+    let file =
+        png(8, |x, y| ball.at(x, y).map_or([0.5, 0.5, 1.0, 1.0], |(n, _)| encode(n.z, -n.x, n.y)));
+    let files =
+        Memory::new([("n.png", file), ("d.png", ball.depth_png()), ("m.png", ball.mask_png())]);
+    let found =
+        import(&source(map("n.png"), map("d.png"), true), &files, &Budget::default()).unwrap();
+    let told = Some(MapSource {
+        convention: found.findings.normal.clone().unwrap(),
+        ..map("n.png").unwrap()
+    });
     let alone = import(&source(told, None, true), &files, &Budget::default()).unwrap();
     assert!(errors(&alone).0 < 0.25);
-    assert!(alone.findings.choices.iter().filter(|c| c.field.starts_with("normal")).all(|c| c.confidence == 1.0));
+    assert!(
+        alone
+            .findings
+            .choices
+            .iter()
+            .filter(|c| c.field.starts_with("normal"))
+            .all(|c| c.confidence == 1.0)
+    );
 }
 
 #[test]
@@ -162,7 +199,9 @@ fn world_space_normals_are_turned_to_the_camera() {
     ];
     // For row vectors, as the attribute is defined: the transpose of the matrix for column vectors.
     let c = turn.to_cols_array_2d();
-    let attribute = std::array::from_fn(|i| if i / 4 < 3 && i % 4 < 3 { c[i / 4][i % 4] } else { [0.0, 1.0][i / 15] });
+    let attribute = std::array::from_fn(|i| {
+        if i / 4 < 3 && i % 4 < 3 { c[i / 4][i % 4] } else { [0.0, 1.0][i / 15] }
+    });
     let rows = [0, 1, 2].map(|r| [0, 1, 2].map(|k| c[k][r]));
     let told = NormalConvention { world_to_camera: Some(rows), ..NormalConvention::default() };
     let cases = [
@@ -172,7 +211,8 @@ fn world_space_normals_are_turned_to_the_camera() {
         ("given by the user", None, told, true, 0.05),
     ];
     for (name, attribute, convention, with_depth, granted) in cases {
-        let files = Memory::new([("g.exr", exr_bytes(&channels, attribute)), ("m.png", ball.mask_png())]);
+        let files =
+            Memory::new([("g.exr", exr_bytes(&channels, attribute)), ("m.png", ball.mask_png())]);
         let normal = Some(MapSource { convention, ..map("g.exr").unwrap() });
         let depth = if with_depth { map("g.exr") } else { None };
         let import = import(&source(normal, depth, true), &files, &Budget::default()).unwrap();
@@ -188,12 +228,19 @@ fn every_convention_of_depth_comes_back_as_the_same_depth() {
     let (near, far) = ball.range();
     let focal = SIDE as f32 * 0.5 / (25.0f32.to_radians()).tan();
     let ray = |x: usize, y: usize, z: f32| {
-        let (u, v) = ((x as f32 + 0.5 - SIDE as f32 * 0.5) / focal, (y as f32 + 0.5 - SIDE as f32 * 0.5) / focal);
+        let (u, v) = (
+            (x as f32 + 0.5 - SIDE as f32 * 0.5) / focal,
+            (y as f32 + 0.5 - SIDE as f32 * 0.5) / focal,
+        );
         z * (1.0 + u * u + v * v).sqrt()
     };
     type Store<'a> = &'a dyn Fn(usize, usize, f32) -> f32;
     let plain: Store = &|_, _, z| z;
-    let told = |encoding, fov_degrees| DepthConvention { encoding: Some(encoding), fov_degrees, ..Default::default() };
+    let told = |encoding, fov_degrees| DepthConvention {
+        encoding: Some(encoding),
+        fov_degrees,
+        ..Default::default()
+    };
     let auto = DepthConvention::default;
     let odd = DepthConvention { background: vec![170.0], ..Default::default() };
     let cases: [(&str, Store, f32, DepthConvention, f64); 15] = [
@@ -214,7 +261,9 @@ fn every_convention_of_depth_comes_back_as_the_same_depth() {
         ("along the ray", &|x, y, z| ray(x, y, z), 0.0, told(RayDistance, Some(50.0)), 1e-4),
     ];
     for (name, store, outside, convention, granted) in cases {
-        let value = |i: usize| ball.at(i % SIDE, i / SIDE).map_or(outside, |(_, z)| store(i % SIDE, i / SIDE, z));
+        let value = |i: usize| {
+            ball.at(i % SIDE, i / SIDE).map_or(outside, |(_, z)| store(i % SIDE, i / SIDE, z))
+        };
         let values: Vec<f32> = (0..SIDE * SIDE).map(value).collect();
         let files = Memory::new([
             ("n.png", ball.normal_png()),
@@ -223,7 +272,8 @@ fn every_convention_of_depth_comes_back_as_the_same_depth() {
         ]);
         for mask in [true, false] {
             let depth = Some(MapSource { convention: convention.clone(), ..map("d.exr").unwrap() });
-            let import = import(&source(map("n.png"), depth, mask), &files, &Budget::default()).unwrap();
+            let import =
+                import(&source(map("n.png"), depth, mask), &files, &Budget::default()).unwrap();
             let (angle, off) = errors(&import);
             assert!(
                 off < granted && angle < 0.01,
@@ -240,19 +290,37 @@ fn every_convention_of_depth_comes_back_as_the_same_depth() {
 fn depth_in_pictures_of_any_depth_and_polarity_is_read() {
     let ball = Ball::new();
     let (near, far) = ball.range();
-    for (bits, white_is_near, granted) in [(8, false, 2e-3), (8, true, 2e-3), (16, false, 1e-5), (16, true, 1e-5)] {
+    for (bits, white_is_near, granted) in
+        [(8, false, 2e-3), (8, true, 2e-3), (16, false, 1e-5), (16, true, 1e-5)]
+    {
         let value = |x, y| {
             let z = ball.at(x, y).map_or(1.0, |(_, z)| (z - near) / (far - near));
             let v = if white_is_near { 1.0 - z } else { z };
             [v, v, v, 1.0]
         };
-        let files =
-            Memory::new([("n.png", ball.normal_png()), ("d.png", png(bits, value)), ("m.png", ball.mask_png())]);
-        let import = import(&source(map("n.png"), map("d.png"), true), &files, &Budget::default()).unwrap();
-        assert!(errors(&import).1 < granted, "{bits} bits, white near {white_is_near}: {:?}", import.findings);
-        let alone =
-            rilievo::files::maps::import(&source(None, map("d.png"), true), &files, &Budget::default()).unwrap();
-        assert!(errors(&alone).1 < granted && errors(&alone).0 < 12.0, "alone: {:?}", errors(&alone));
+        let files = Memory::new([
+            ("n.png", ball.normal_png()),
+            ("d.png", png(bits, value)),
+            ("m.png", ball.mask_png()),
+        ]);
+        let import =
+            import(&source(map("n.png"), map("d.png"), true), &files, &Budget::default()).unwrap();
+        assert!(
+            errors(&import).1 < granted,
+            "{bits} bits, white near {white_is_near}: {:?}",
+            import.findings
+        );
+        let alone = rilievo::files::maps::import(
+            &source(None, map("d.png"), true),
+            &files,
+            &Budget::default(),
+        )
+        .unwrap();
+        assert!(
+            errors(&alone).1 < granted && errors(&alone).0 < 12.0,
+            "alone: {:?}",
+            errors(&alone)
+        );
     }
 }
 
@@ -279,11 +347,13 @@ fn a_hole_in_a_ring_is_background_where_the_depth_says_so_and_a_plate_at_the_bor
         ring.map(|(n, z)| (n.extend((1.0 - n.length_squared()).sqrt()), z))
             .or((y >= 84).then_some((glam::Vec3::Z, 0.7)))
     };
-    let normals = png(16, |x, y| seen(x, y).map_or([0.5, 0.5, 1.0, 1.0], |(n, _)| encode(n.x, n.y, n.z)));
+    let normals =
+        png(16, |x, y| seen(x, y).map_or([0.5, 0.5, 1.0, 1.0], |(n, _)| encode(n.x, n.y, n.z)));
     let depth = png(16, |x, y| [seen(x, y).map_or(1.0, |(_, z)| z); 4]);
     let files = Memory::new([("n.png", normals), ("d.png", depth)]);
     let coverage = |depth: Option<MapSource<DepthConvention>>| {
-        let flat = SurfaceSource { mask: Some(MaskSource::Flat), ..source(map("n.png"), depth, false) };
+        let flat =
+            SurfaceSource { mask: Some(MaskSource::Flat), ..source(map("n.png"), depth, false) };
         let surface = import(&flat, &files, &Budget::default()).unwrap().surface;
         // Beside the ring, within it, on it, on the plate.
         [(2, 2), (47, 40), (24, 40), (47, 90)].map(|(x, y)| surface.coverage(x, y))
@@ -301,9 +371,17 @@ fn maps_that_do_not_fit_get_a_sentence() {
         [v, v, v, 1.0]
     });
     let empty = exr_bytes(&[("Z", vec![f32::INFINITY; SIDE * SIDE])], None);
-    let files = Memory::new([("n.png", ball.normal_png()), ("s.png", small), ("g.png", grey), ("e.exr", empty)]);
+    let files = Memory::new([
+        ("n.png", ball.normal_png()),
+        ("s.png", small),
+        ("g.png", grey),
+        ("e.exr", empty),
+    ]);
     let cases = [
-        (source(map("s.png"), map("g.png"), false), "differ in size: s.png has 48 × 48 pixels, g.png has 96 × 96"),
+        (
+            source(map("s.png"), map("g.png"), false),
+            "differ in size: s.png has 48 × 48 pixels, g.png has 96 × 96",
+        ),
         (source(map("g.png"), None, false), "g.png: cannot be read: the picture is grey"),
         (source(None, map("n.png"), false), "n.png: cannot be read: the picture is coloured"),
         (source(None, map("e.exr"), false), "no surface at all"),
@@ -312,7 +390,10 @@ fn maps_that_do_not_fit_get_a_sentence() {
         (SurfaceSource::default(), "neither normals nor depth"),
     ];
     for (source, part) in cases {
-        let said = import(&source, &files, &Budget::default()).err().map(|e| e.to_string()).unwrap_or_default();
+        let said = import(&source, &files, &Budget::default())
+            .err()
+            .map(|e| e.to_string())
+            .unwrap_or_default();
         assert!(said.contains(part), "“{said}” should say “{part}”");
     }
 }

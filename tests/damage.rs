@@ -1,4 +1,5 @@
-//! Damaged and hostile files, read while the allocator is watched. A binary of its own, whose tests run one at a time.
+//! Damaged and hostile files, read while the allocator is watched. A binary of its own, whose tests
+//! run one at a time.
 
 mod hostile;
 mod memory;

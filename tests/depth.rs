@@ -1,4 +1,5 @@
-//! The depth of pictures through the whole program: what a file of more than 8 bits holds comes out of it again.
+//! The depth of pictures through the whole program: what a file of more than 8 bits holds comes out
+//! of it again.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -6,6 +7,7 @@ use std::process::{Command, Output};
 fn rilievo(folder: &Path, args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_rilievo")).current_dir(folder).args(args).output().unwrap()
 }
+
 fn said(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
@@ -17,8 +19,12 @@ fn step(x: u32) -> [u16; 4] {
     let v = (x * 65535 / (STEPS - 1)) as u16;
     [v, 65535 - v, 9, 65535]
 }
+
 /// Renders with 16 bits; what the program said, and the picture.
-fn rendered(folder: &Path, more: &[&str]) -> (String, image::ImageBuffer<image::Rgba<u16>, Vec<u16>>) {
+fn rendered(
+    folder: &Path,
+    more: &[&str],
+) -> (String, image::ImageBuffer<image::Rgba<u16>, Vec<u16>>) {
     let args = [&["render", "--bits", "16", "--force", "-o", "out.png"], more].concat();
     let output = rilievo(folder, &args);
     assert!(output.status.success(), "{}", said(&output));
@@ -29,8 +35,8 @@ fn rendered(folder: &Path, more: &[&str]) -> (String, image::ImageBuffer<image::
 fn a_ramp_of_16_bits_that_is_paint_in_a_recipe_or_a_project_is_rendered_as_it_was() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    let recipe =
-        r#"{ "canvas": { "width": 4096, "height": 2 }, "layers": [{ "kind": "pixels", "file": "ramp.png" }] }"#;
+    let recipe = r#"{ "canvas": { "width": 4096, "height": 2 },
+        "layers": [{ "kind": "pixels", "file": "ramp.png" }] }"#;
     std::fs::write(folder.join("r.json"), recipe).unwrap();
     let ramp = image::ImageBuffer::from_fn(STEPS, 2, |x, _| image::Rgba(step(x)));
     image::DynamicImage::ImageRgba16(ramp).save(folder.join("ramp.png")).unwrap();

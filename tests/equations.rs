@@ -10,7 +10,9 @@ fn quoted(cell: &str) -> Vec<&str> {
 /// What is wrong with one row, as a sentence; `None` where both of its names are found.
 fn fault(root: &Path, row: &str) -> Option<String> {
     let cells: Vec<&str> = row.trim().trim_matches('|').split('|').map(str::trim).collect();
-    let [equation, function, test] = cells[..] else { return Some(format!("“{row}” has not three cells")) };
+    let [equation, function, test] = cells[..] else {
+        return Some(format!("“{row}” has not three cells"));
+    };
     let [file, name] = quoted(function)[..] else {
         return Some(format!("“{equation}” does not name a `file` and a `function`"));
     };
@@ -27,7 +29,8 @@ fn fault(root: &Path, row: &str) -> Option<String> {
     if !holds(file, name) {
         return Some(format!("“{equation}”: there is no fn {name} in {file}"));
     }
-    (!holds(test_file, test_name)).then(|| format!("“{equation}”: there is no test {test_name} in {test_file}"))
+    (!holds(test_file, test_name))
+        .then(|| format!("“{equation}”: there is no test {test_name} in {test_file}"))
 }
 
 #[test]
@@ -43,9 +46,10 @@ fn every_equation_points_at_a_function_and_a_test() {
 #[test]
 fn a_row_that_points_nowhere_is_found() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let row =
-        "| eq. 0 | `src/engine/math/srgb.rs` `there_is_no_such_function` | `every_byte_survives_decode_and_encode` |";
+    let row = "| eq. 0 | `src/engine/math/srgb.rs` `there_is_no_such_function` | \
+               `every_byte_survives_decode_and_encode` |";
     assert!(fault(root, row).is_some_and(|f| f.contains("there_is_no_such_function")));
-    let row = "| eq. 0 | `src/engine/math/srgb.rs` `decode` | `every_byte_survives_decode_and_encode` |";
+    let row =
+        "| eq. 0 | `src/engine/math/srgb.rs` `decode` | `every_byte_survives_decode_and_encode` |";
     assert_eq!(fault(root, row), None);
 }

@@ -35,8 +35,10 @@ fn rgb(picture: &RgbaImage, x: u32, y: u32) -> [i32; 3] {
 fn a_gradient_is_bent_over_a_ball() {
     let picture = drawn(|file| bend_gradient::bend(file).unwrap());
     assert_eq!(rgb(&picture, 4, 4), [236, 232, 224], "the ground beside the ball");
-    // Bent by the knobs, the ramp changes along a line that it would not change along on a flat canvas.
-    let along: std::collections::HashSet<[i32; 3]> = (0..120).map(|i| rgb(&picture, 160 + i, 280 - i / 3)).collect();
+    // Bent by the knobs, the ramp changes along a line that it would not change along on a flat
+    // canvas.
+    let along: std::collections::HashSet<[i32; 3]> =
+        (0..120).map(|i| rgb(&picture, 160 + i, 280 - i / 3)).collect();
     assert!(along.len() > 40, "{} colours", along.len());
 }
 
@@ -44,7 +46,9 @@ fn a_gradient_is_bent_over_a_ball() {
 fn strokes_are_painted_on_waves_and_kept() {
     let picture = drawn(|file| paint_stroke::paint(file).unwrap());
     let is = |wanted: fn([i32; 3]) -> bool, y: std::ops::Range<u32>| {
-        y.flat_map(|y| (0..512).map(move |x| (x, y))).filter(|&(x, y)| wanted(rgb(&picture, x, y))).count()
+        y.flat_map(|y| (0..512).map(move |x| (x, y)))
+            .filter(|&(x, y)| wanted(rgb(&picture, x, y)))
+            .count()
     };
     let red = is(|[r, g, b]| r > 2 * g && r > 2 * b, 80..280);
     let blue = is(|[r, g, b]| b > 3 * r / 2 && b > g, 240..440);

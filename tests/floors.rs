@@ -1,5 +1,6 @@
-//! The floors hold: arrows between modules point down only, neighbours do not import each other, and the lower floors
-//! touch neither files nor clocks nor threads. Reads the sources, so that the table below cannot be forgotten.
+//! The floors hold: arrows between modules point down only, neighbours do not import each other,
+//! and the lower floors touch neither files nor clocks nor threads. Reads the sources, so that the
+//! table below cannot be forgotten.
 
 use std::{fs, path::Path};
 
@@ -41,8 +42,14 @@ fn sources() -> Vec<(String, String)> {
                 let code: String = text
                     .lines()
                     .filter(|l| !l.trim_start().starts_with("//"))
-                    .fold(String::new(), |code, line| code + line.split(" // ").next().unwrap_or("") + "\n");
-                let name = path.strip_prefix(env!("CARGO_MANIFEST_DIR")).unwrap().to_string_lossy().into_owned();
+                    .fold(String::new(), |code, line| {
+                        code + line.split(" // ").next().unwrap_or("") + "\n"
+                    });
+                let name = path
+                    .strip_prefix(env!("CARGO_MANIFEST_DIR"))
+                    .unwrap()
+                    .to_string_lossy()
+                    .into_owned();
                 out.push((name, code));
             }
         }
@@ -55,8 +62,8 @@ fn sources() -> Vec<(String, String)> {
 /// The crates that hold several floors; the others are one floor each.
 const CRATES_OF_FLOORS: [&str; 2] = ["engine", "program"];
 
-/// The module on a floor that a file belongs to: `src/io/json/text.rs` belongs to `io`, `src/engine/math/rect.rs` to
-/// `math`.
+/// The module on a floor that a file belongs to: `src/io/json/text.rs` belongs to `io`,
+/// `src/engine/math/rect.rs` to `math`.
 fn module_of(file: &str) -> &str {
     let mut parts = file.split('/').skip(1).map(|part| part.trim_end_matches(".rs"));
     let first = parts.next().unwrap();
@@ -79,7 +86,9 @@ fn named_modules(code: &str) -> Vec<&str> {
         }
     }
     // What is re-exported at the top (types, macros) is on floor 0.
-    named.retain(|name| name.starts_with(|c: char| c.is_lowercase()) && !["widest", "named"].contains(name));
+    named.retain(|name| {
+        name.starts_with(|c: char| c.is_lowercase()) && !["widest", "named"].contains(name)
+    });
     named
 }
 
@@ -124,7 +133,9 @@ fn arrows_between_floors_point_down_only() {
                 Some(below) if below < at => {}
                 // An error may wrap what memory refused.
                 Some(_) if (here, named) == ("error", "memory") => {}
-                Some(other) => wrong.push(format!("{file}: {here} (floor {at}) names {named} (floor {other})")),
+                Some(other) => {
+                    wrong.push(format!("{file}: {here} (floor {at}) names {named} (floor {other})"))
+                }
                 // A crate of one floor names its own modules.
                 None if ["io", "window"].contains(&here) => {}
                 None => wrong.push(format!("{file}: names {named}, which stands on no floor")),
@@ -137,9 +148,10 @@ fn arrows_between_floors_point_down_only() {
 #[test]
 fn no_chain_of_supers_climbs_out_of_its_module() {
     for (file, code) in sources().into_iter().filter(|(file, _)| !is_root(file)) {
-        // src/io/json/text.rs is three deep: a third `super` would leave its floor. Inside `mod tests` one more is
-        // fine.
-        let in_floors = CRATES_OF_FLOORS.iter().any(|name| file.starts_with(&format!("src/{name}/")));
+        // src/io/json/text.rs is three deep: a third `super` would leave its floor. Inside `mod
+        // tests` one more is fine.
+        let in_floors =
+            CRATES_OF_FLOORS.iter().any(|name| file.starts_with(&format!("src/{name}/")));
         let mut depth = file.split('/').count() - 1 - usize::from(in_floors);
         if file.ends_with("/mod.rs") {
             depth -= 1;

@@ -1,5 +1,5 @@
-//! The gallery: `docs/GALLERY.md` has the command of every sample recipe and shows every picture. What the pictures
-//! look like is held by `goldens::gallery`.
+//! The gallery: `docs/GALLERY.md` has the command of every sample recipe and shows every picture.
+//! What the pictures look like is held by `goldens::gallery`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -62,9 +62,13 @@ fn every_picture_of_the_gallery_is_shown_and_light() {
 #[test]
 fn every_picture_that_the_gallery_shows_exists() {
     let gallery = gallery();
-    let shown: Vec<&str> = gallery.split("](gallery/").skip(1).filter_map(|rest| rest.split(')').next()).collect();
+    let shown: Vec<&str> =
+        gallery.split("](gallery/").skip(1).filter_map(|rest| rest.split(')').next()).collect();
     assert!(shown.len() >= 20, "only {} pictures are shown", shown.len());
     for picture in shown {
-        assert!(in_package("docs/gallery").join(picture).is_file(), "docs/gallery/{picture} is missing");
+        assert!(
+            in_package("docs/gallery").join(picture).is_file(),
+            "docs/gallery/{picture} is missing"
+        );
     }
 }

@@ -15,6 +15,7 @@ impl Files for One {
     fn read(&self, _: &str, _: &Budget) -> Result<Vec<u8>> {
         Ok(self.0.clone())
     }
+
     fn path(&self, name: &str) -> PathBuf {
         name.into()
     }
@@ -40,8 +41,12 @@ fn read_all(name: &str, bytes: &[u8], budget: &Budget) -> Vec<Error> {
         match maps::import(&source, &files, budget) {
             Ok(import) => {
                 let s = import.surface;
-                let finite = |p: &rilievo::raster::Plane<f32>| p.values().iter().all(|v| v.is_finite());
-                assert!(finite(s.depth_plane()) && s.normal_planes().iter().all(|p| finite(p)), "{name}");
+                let finite =
+                    |p: &rilievo::raster::Plane<f32>| p.values().iter().all(|v| v.is_finite());
+                assert!(
+                    finite(s.depth_plane()) && s.normal_planes().iter().all(|p| finite(p)),
+                    "{name}"
+                );
             }
             Err(e) => errors.push(e),
         }
@@ -51,7 +56,9 @@ fn read_all(name: &str, bytes: &[u8], budget: &Budget) -> Vec<Error> {
 
 fn bitmap(format: image::ImageFormat) -> Vec<u8> {
     let n = SIDE as u32;
-    let image = image::RgbImage::from_fn(n, n, |x, y| image::Rgb([128 + x as u8 * 3, 128 - y as u8 * 3, 240]));
+    let image = image::RgbImage::from_fn(n, n, |x, y| {
+        image::Rgb([128 + x as u8 * 3, 128 - y as u8 * 3, 240])
+    });
     let image = image::DynamicImage::ImageRgb8(image);
     let image = if format == image::ImageFormat::Hdr { image.to_rgb32f().into() } else { image };
     let mut out = Cursor::new(Vec::new());
@@ -61,9 +68,12 @@ fn bitmap(format: image::ImageFormat) -> Vec<u8> {
 
 fn exr(compression: exr::prelude::Compression, tiles: bool) -> Vec<u8> {
     use exr::prelude::*;
-    let plane = |f: fn(f32) -> f32| FlatSamples::F32((0..SIDE * SIDE).map(|i| f(i as f32 / 600.0)).collect());
-    let half =
-        |f: fn(f32) -> f32| FlatSamples::F16((0..SIDE * SIDE).map(|i| f16::from_f32(f(i as f32 / 600.0))).collect());
+    let plane = |f: fn(f32) -> f32| {
+        FlatSamples::F32((0..SIDE * SIDE).map(|i| f(i as f32 / 600.0)).collect())
+    };
+    let half = |f: fn(f32) -> f32| {
+        FlatSamples::F16((0..SIDE * SIDE).map(|i| f16::from_f32(f(i as f32 / 600.0))).collect())
+    };
     let list = [
         AnyChannel::new("N.X", plane(|v| v * 0.4)),
         AnyChannel::new("N.Y", plane(|v| 0.3 - v * 0.5)),
@@ -99,7 +109,8 @@ impl Dice {
     }
 }
 
-/// Flips bits, cuts, doubles a stretch, or writes an extreme figure, mostly near the front where headers are.
+/// Flips bits, cuts, doubles a stretch, or writes an extreme figure, mostly near the front where
+/// headers are.
 fn damage(seed: &[u8], dice: &mut Dice) -> Vec<u8> {
     let mut bytes = seed.to_vec();
     for _ in 0..=dice.roll(3) {
@@ -108,8 +119,10 @@ fn damage(seed: &[u8], dice: &mut Dice) -> Vec<u8> {
         match dice.roll(6) {
             0 => bytes.truncate(at.max(1)),
             1 => {
-                let extreme = [0u32, 1, 0x7fff_ffff, 0xffff_ffff, 60_000, 0x0100_0000][dice.roll(6)];
-                let figure = if dice.roll(2) == 0 { extreme.to_le_bytes() } else { extreme.to_be_bytes() };
+                let extreme =
+                    [0u32, 1, 0x7fff_ffff, 0xffff_ffff, 60_000, 0x0100_0000][dice.roll(6)];
+                let figure =
+                    if dice.roll(2) == 0 { extreme.to_le_bytes() } else { extreme.to_be_bytes() };
                 bytes.iter_mut().skip(at).zip(figure).for_each(|(b, v)| *b = v);
             }
             2 => {
@@ -191,6 +204,9 @@ fn headers_that_promise_too_much_are_refused_before_anything_is_allocated() {
 
 fn crc32(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(!0u32, |crc, b| {
-        (0..8).fold(crc ^ u32::from(*b), |c, _| if c & 1 == 1 { (c >> 1) ^ 0xedb8_8320 } else { c >> 1 })
+        (0..8).fold(
+            crc ^ u32::from(*b),
+            |c, _| if c & 1 == 1 { (c >> 1) ^ 0xedb8_8320 } else { c >> 1 },
+        )
     })
 }

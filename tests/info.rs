@@ -6,13 +6,19 @@ use std::fs;
 use std::process::{Command, Output};
 
 fn info(folder: &std::path::Path, args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_rilievo")).arg("info").args(args).current_dir(folder).output().unwrap()
+    Command::new(env!("CARGO_BIN_EXE_rilievo"))
+        .arg("info")
+        .args(args)
+        .current_dir(folder)
+        .output()
+        .unwrap()
 }
 
 #[test]
 fn a_set_is_recognised_and_its_convention_told_as_json() {
     let (ball, folder) = (Ball::new(), tempfile::tempdir().unwrap());
-    let normal = png(8, |x, y| ball.at(x, y).map_or([0.5, 0.5, 1.0, 1.0], |(n, _)| encode(n.x, -n.y, n.z)));
+    let normal =
+        png(8, |x, y| ball.at(x, y).map_or([0.5, 0.5, 1.0, 1.0], |(n, _)| encode(n.x, -n.y, n.z)));
     fs::write(folder.path().join("pot_n.png"), normal).unwrap();
     fs::write(folder.path().join("pot_d.png"), ball.depth_png()).unwrap();
     fs::write(folder.path().join("pot_mask.png"), ball.mask_png()).unwrap();
@@ -31,7 +37,9 @@ fn a_set_is_recognised_and_its_convention_told_as_json() {
 fn an_exr_is_listed_by_layers_and_read_as_a_surface() {
     let (ball, folder) = (Ball::new(), tempfile::tempdir().unwrap());
     let plane = |f: &dyn Fn(glam::Vec3, f32) -> f32, outside: f32| -> Vec<f32> {
-        let at = |i: usize| ball.at(i % super::maps::SIDE, i / super::maps::SIDE).map_or(outside, |(n, z)| f(n, z));
+        let at = |i: usize| {
+            ball.at(i % super::maps::SIDE, i / super::maps::SIDE).map_or(outside, |(n, z)| f(n, z))
+        };
         (0..super::maps::SIDE * super::maps::SIDE).map(at).collect()
     };
     let channels = [

@@ -1,5 +1,5 @@
-//! The real program, killed while it saves: the file is the old one or the new one, and opens. Killed while it paints:
-//! no finished stroke is lost.
+//! The real program, killed while it saves: the file is the old one or the new one, and opens.
+//! Killed while it paints: no finished stroke is lost.
 
 use rilievo::files::recipe;
 use rilievo::{Budget, Document, Progress, flatten};
@@ -16,13 +16,18 @@ use std::time::{Duration, Instant};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_rilievo");
 /// The system calls of saving.
-const CALLS: &str =
-    "openat,read,write,pwrite64,statx,fsync,close,rename,renameat2,link,linkat,unlink,unlinkat,fchmodat,chmod";
+const CALLS: &str = "openat,read,write,pwrite64,statx,fsync,close,rename,renameat2,\
+                     link,linkat,unlink,unlinkat,fchmodat,chmod";
 
 fn convert(folder: &Path, from: &str, to: &str) {
-    let done = Command::new(PROGRAM).args(["convert", from, to, "--force"]).current_dir(folder).output().unwrap();
+    let done = Command::new(PROGRAM)
+        .args(["convert", from, to, "--force"])
+        .current_dir(folder)
+        .output()
+        .unwrap();
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
 }
+
 /// Two recipes, and what each becomes.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
@@ -37,6 +42,7 @@ fn folder() -> tempfile::TempDir {
     }
     folder
 }
+
 /// The target is one of those it may be, and opens without a note.
 fn check(folder: &Path, target: &str, may_be: &[&str], what: &str) {
     let Ok(bytes) = std::fs::read(folder.join(target)) else {
@@ -44,12 +50,21 @@ fn check(folder: &Path, target: &str, may_be: &[&str], what: &str) {
     };
     let is = |name: &&&str| std::fs::read(folder.join(name)).is_ok_and(|known| known == bytes);
     assert!(may_be.iter().filter(is).count() > 0, "{what}: {} bytes that are neither", bytes.len());
-    let opened = rilievo::open(&folder.join(target), &Budget::default()).unwrap_or_else(|e| panic!("{what}: {e}"));
+    let opened = rilievo::open(&folder.join(target), &Budget::default())
+        .unwrap_or_else(|e| panic!("{what}: {e}"));
     assert!(opened.is_whole && opened.notes.is_empty(), "{what}: {:?}", opened.notes);
 }
-/// Runs a conversion of the new recipe in which the `n`th call of each of these kinds is killed (`signal=KILL`) or
-/// fails (`error=ENOSPC`); what it said and whether it succeeded. `None` if tracing is impossible.
-fn injected(folder: &Path, target: &str, calls: &str, what: &str, n: usize) -> Option<(String, bool)> {
+
+/// Runs a conversion of the new recipe in which the `n`th call of each of these kinds is killed
+/// (`signal=KILL`) or fails (`error=ENOSPC`); what it said and whether it succeeded. `None` if
+/// tracing is impossible.
+fn injected(
+    folder: &Path,
+    target: &str,
+    calls: &str,
+    what: &str,
+    n: usize,
+) -> Option<(String, bool)> {
     let inject = format!("inject={calls}:{what}:when={n}");
     let run = Command::new("strace")
         .args(["-f", "-o", "/dev/null", "-e", &format!("trace={calls}"), "-e", &inject, PROGRAM])
@@ -76,8 +91,8 @@ fn killed_at_every_system_call_it_leaves_the_old_file_or_the_new_one() {
             }
         }
     };
-    // A new file; over an old one; over one with an older version kept; through a link; next to the remains of a killed
-    // save; where the old file is read-only.
+    // A new file; over an old one; over one with an older version kept; through a link; next to the
+    // remains of a killed save; where the old file is read-only.
     for scenario in 0..6 {
         let mut n = 1;
         loop {
@@ -107,7 +122,12 @@ fn killed_at_every_system_call_it_leaves_the_old_file_or_the_new_one() {
             };
             let before = if scenario == 0 { "" } else { "old.ora" };
             let may_be: &[&str] = if lived { &["new.ora"] } else { &[before, "new.ora"] };
-            check(folder.path(), "t.ora", may_be, &format!("scenario {scenario}, killed at call {n}"));
+            check(
+                folder.path(),
+                "t.ora",
+                may_be,
+                &format!("scenario {scenario}, killed at call {n}"),
+            );
             if lived {
                 break;
             }
@@ -116,6 +136,7 @@ fn killed_at_every_system_call_it_leaves_the_old_file_or_the_new_one() {
         assert!(n > 8, "scenario {scenario}: only {n} calls");
     }
 }
+
 #[test]
 fn a_full_or_failing_disk_costs_a_sentence_and_not_the_old_file() {
     let folder = folder();
@@ -139,13 +160,15 @@ fn a_full_or_failing_disk_costs_a_sentence_and_not_the_old_file() {
     }
     assert!(failed >= 8, "only {failed} failed");
 }
+
 fn kill_while_saving(rounds: u32) {
     let folder = folder();
     let at = |name: &str| folder.path().join(name);
     let begun = Instant::now();
     convert(folder.path(), "new.json", "t.ora");
-    // Kills are spread evenly over a span that grows where one came before the renaming and shrinks where one came
-    // after: so about as many come before as after, however long a save takes here at the time.
+    // Kills are spread evenly over a span that grows where one came before the renaming and shrinks
+    // where one came after: so about as many come before as after, however long a save takes here
+    // at the time.
     let mut span_secs = begun.elapsed().as_secs_f64() * 1.5;
     let mut new = 0;
     for round in 0..rounds {
@@ -156,7 +179,9 @@ fn kill_while_saving(rounds: u32) {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        std::thread::sleep(Duration::from_secs_f64(f64::from(mix(round)) / f64::from(u32::MAX) * span_secs));
+        std::thread::sleep(Duration::from_secs_f64(
+            f64::from(mix(round)) / f64::from(u32::MAX) * span_secs,
+        ));
         child.kill().unwrap();
         child.wait().unwrap();
         check(folder.path(), "t.ora", &["old.ora", "new.ora"], &format!("round {round}"));
@@ -172,12 +197,17 @@ fn kill_while_saving(rounds: u32) {
     // The next save removes what the last one left.
     convert(folder.path(), "new.json", "t.ora");
     let parts = std::fs::read_dir(folder.path()).unwrap().flatten();
-    assert_eq!(parts.filter(|entry| entry.file_name().to_string_lossy().starts_with(".rilievo-")).count(), 0);
+    assert_eq!(
+        parts.filter(|entry| entry.file_name().to_string_lossy().starts_with(".rilievo-")).count(),
+        0
+    );
 }
+
 #[test]
 fn killed_at_any_time_it_leaves_the_old_file_or_the_new_one() {
     kill_while_saving(200);
 }
+
 /// *Long*: see docs/PROJECTS.md.
 #[test]
 #[ignore = "half an hour; run by name"]
@@ -189,7 +219,9 @@ const STROKES: u32 = 70;
 
 /// Strokes on a stroke layer and on a paint layer by turns, now and then one of them undone.
 fn story() -> String {
-    let mut story = String::from(r##"{"in":"file","do":"new","width":180,"height":140,"background":"#ffffff"}"##);
+    let mut story = String::from(
+        r##"{"in":"file","do":"new","width":180,"height":140,"background":"#ffffff"}"##,
+    );
     for kind in ["strokes", "paint"] {
         story.push_str(&format!("\n{{\"in\":\"layer\",\"do\":\"add\",\"kind\":\"{kind}\"}}"));
     }
@@ -211,8 +243,9 @@ fn story() -> String {
     }
     story
 }
-/// A blot with a shape and a lit base above it: by turns it is painted on, which changes its outline, and bent, and now
-/// and then that is undone.
+
+/// A blot with a shape and a lit base above it: by turns it is painted on, which changes its
+/// outline, and bent, and now and then that is undone.
 fn shaped_story() -> String {
     let mut story = String::from(
         r##"{"in":"file","do":"new","width":180,"height":140,"background":"#ffffff"}
@@ -243,11 +276,14 @@ fn shaped_story() -> String {
     }
     story
 }
+
 /// A document's parameters and its picture.
 fn fingerprint(document: &Document) -> (String, u32) {
-    let picture = flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect());
+    let picture =
+        flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect());
     (recipe::write(document).to_string(), crc32fast::hash(&picture))
 }
+
 /// The drawing after each step of the story, the first being the empty canvas.
 fn steps(story: &str) -> Vec<(String, u32)> {
     let (mut steps, mut last): (Vec<_>, Option<Document>) = (Vec::new(), None);
@@ -262,7 +298,9 @@ fn steps(story: &str) -> Vec<(String, u32)> {
     Session::default().replay_telling(Path::new("story"), story, tell).unwrap();
     steps
 }
-/// Paints in a process of its own until it is killed. Every step that it reported is recovered unchanged.
+
+/// Paints in a process of its own until it is killed. Every step that it reported is recovered
+/// unchanged.
 fn kill_while_painting(rounds: u32, story: &str) {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("story"), story).unwrap();
@@ -300,14 +338,17 @@ fn kill_while_painting(rounds: u32, story: &str) {
         std::fs::remove_dir_all(&logs).unwrap();
     }
 }
+
 #[test]
 fn killed_while_painting_it_loses_no_finished_stroke() {
     kill_while_painting(20, &story());
 }
+
 #[test]
 fn killed_while_a_shape_is_painted_it_brings_back_the_shape() {
     kill_while_painting(8, &shaped_story());
 }
+
 /// *Long*: see docs/PROJECTS.md.
 #[test]
 #[ignore = "ten minutes; run by name"]

@@ -1,5 +1,5 @@
-//! Every test of the whole program in one binary, so that it is linked once. Tests of damaged files are separate
-//! (`damage.rs`): they watch the allocator.
+//! Every test of the whole program in one binary, so that it is linked once. Tests of damaged files
+//! are separate (`damage.rs`): they watch the allocator.
 
 mod circles;
 mod cli;

@@ -1,5 +1,6 @@
-//! Memory has a ceiling: files that unpack without end, large maps, light and layers, and very many strokes take no
-//! more than what is made of them needs; beyond what there is they get a sentence with both figures.
+//! Memory has a ceiling: files that unpack without end, large maps, light and layers, and very many
+//! strokes take no more than what is made of them needs; beyond what there is they get a sentence
+//! with both figures.
 
 use super::watch;
 use rilievo::document::{Live, StrokeList};
@@ -28,8 +29,10 @@ fn watched<T>(work: impl FnOnce() -> T) -> (T, usize) {
 
 fn chunk(kind: &[u8; 4], body: &[u8]) -> Vec<u8> {
     let named = [kind, body].concat();
-    [&(body.len() as u32).to_be_bytes()[..], &named, &crc32fast::hash(&named).to_be_bytes()].concat()
+    [&(body.len() as u32).to_be_bytes()[..], &named, &crc32fast::hash(&named).to_be_bytes()]
+        .concat()
 }
+
 /// A PNG of one colour of `bits` and a kind, with chunks in front of its pixels.
 fn png_of(size: Size, kind: png::ColorType, bits: png::BitDepth, before: &[Vec<u8>]) -> Vec<u8> {
     let mut bytes = Vec::new();
@@ -52,6 +55,7 @@ fn png_of(size: Size, kind: png::ColorType, bits: png::BitDepth, before: &[Vec<u
     bytes.splice(33..33, before.concat());
     bytes
 }
+
 /// Zeros, packed by DEFLATE within the frame that a PNG wants.
 fn bomb(bytes: usize) -> Vec<u8> {
     let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
@@ -79,12 +83,14 @@ fn what_unpacks_without_end_beside_a_picture_is_left_packed() {
     for chunk in beside {
         let name = String::from_utf8_lossy(&chunk[4..8]).into_owned();
         let file = png_of(Size::new(8, 8), png::ColorType::Rgb, png::BitDepth::Eight, &[chunk]);
-        let read = |file: &[u8]| picture::decode(Path::new("a.png"), file, &Budget::default()).unwrap();
+        let read =
+            |file: &[u8]| picture::decode(Path::new("a.png"), file, &Budget::default()).unwrap();
         let (read, peak) = watched(|| read(&file));
         assert_eq!(read.size, Size::new(8, 8));
         assert!(peak < 48 * MIB, "{name}: {peak} bytes");
     }
 }
+
 #[test]
 fn files_that_pack_well_open() {
     let _turn = watch::turn();
@@ -93,7 +99,9 @@ fn files_that_pack_well_open() {
     let palette = png_of(size, png::ColorType::Indexed, png::BitDepth::One, &[]);
     assert!(palette.len() < 12_000, "{} bytes", palette.len());
     let grey = png_of(size, png::ColorType::Grayscale, png::BitDepth::One, &[]);
-    for (name, bytes, pixel) in [("palette.png", palette, [255, 0, 0, 255]), ("grey.png", grey, [0, 0, 0, 255])] {
+    for (name, bytes, pixel) in
+        [("palette.png", palette, [255, 0, 0, 255]), ("grey.png", grey, [0, 0, 0, 255])]
+    {
         let file = folder.path().join(name);
         std::fs::write(&file, bytes).unwrap();
         let document = open(&file, &Budget::default()).unwrap_or_else(|e| panic!("{e}")).document;
@@ -101,6 +109,7 @@ fn files_that_pack_well_open() {
         assert_eq!((document.size, pixels.tiles.pixel(5999, 3999)), (size, pixel), "{name}");
     }
 }
+
 #[test]
 fn a_map_takes_no_more_than_is_asked_for_with_its_depth_derived() {
     let _turn = watch::turn();
@@ -110,39 +119,56 @@ fn a_map_takes_no_more_than_is_asked_for_with_its_depth_derived() {
     std::fs::write(&file, png_of(size, png::ColorType::Rgb, png::BitDepth::Eight, &[])).unwrap();
     let normal = MapSource { file: file.to_string_lossy().into_owned(), ..MapSource::default() };
     let source = SurfaceSource { normal: Some(normal), ..SurfaceSource::default() };
-    let (read, peak) = watched(|| maps::import(&source, &UserFiles::default(), &Budget::default()).unwrap());
+    let (read, peak) =
+        watched(|| maps::import(&source, &UserFiles::default(), &Budget::default()).unwrap());
     assert_eq!(read.surface.size(), size);
     assert!(peak < 100 * size.area(), "{} bytes a pixel", peak / size.area());
     let little = Budget::default().within(300_000_000);
     let said = maps::import(&source, &UserFiles::default(), &little).err().unwrap();
-    let figures = "a surface of 4200 × 4000 pixels takes 521 MB of memory, and 300 MB are free for it";
+    let figures =
+        "a surface of 4200 × 4000 pixels takes 521 MB of memory, and 300 MB are free for it";
     assert!(said.to_string().contains(figures) && said.remedy().is_some(), "{said}");
     let more = Budget::default().within(1_000_000_000);
     let said = maps::import(&source, &UserFiles::default(), &more).err().unwrap();
     assert!(said.to_string().contains("the depth of 4200 × 4000 pixels"), "{said}");
 }
+
 #[test]
 fn light_becomes_a_paint_layer_a_few_rows_at_a_time() {
     let _turn = watch::turn();
     let size = Size::new(2000, 3000);
-    let channel = |c: u32| (0..size.area()).map(|i| ((i as u32 * 7 + c) % 1009) as f32 / 900.0).collect();
+    let channel =
+        |c: u32| (0..size.area()).map(|i| ((i as u32 * 7 + c) % 1009) as f32 / 900.0).collect();
     let channels = vec![("R", channel(0)), ("G", channel(1)), ("B", channel(2))];
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("light.exr");
     let bytes = exr::encode_channels(&file, size, channels).unwrap();
     std::fs::write(&file, &bytes).unwrap();
-    let whole = picture::to_tiles(&picture::decode(&file, &bytes, &Budget::default()).unwrap(), 0, 0);
+    let whole =
+        picture::to_tiles(&picture::decode(&file, &bytes, &Budget::default()).unwrap(), 0, 0);
     // Its 16 bits take 12 a pixel, bytes 4.
     let little = Budget { memory_bytes: 11 * size.area() as u64, ..Budget::default() };
     for (budget, most, is_deep) in [(Budget::default(), 15, true), (little, 7, false)] {
         let (opened, peak) = watched(|| open(&file, &budget).unwrap());
         let taken = peak.saturating_sub(bytes.len());
-        assert!(taken < most * size.area(), "{} bytes a pixel beside the file", taken / size.area());
-        let Content::Pixels(pixels) = &opened.document.layers[0].content else { panic!("a paint layer") };
-        assert!(whole.iter().all(|(at, tile)| pixels.tiles.tile(at).unwrap().bytes() == tile.bytes()));
-        assert_eq!((pixels.tiles.is_deep_in(size.rect()), opened.notes.len()), (is_deep, usize::from(!is_deep)));
+        assert!(
+            taken < most * size.area(),
+            "{} bytes a pixel beside the file",
+            taken / size.area()
+        );
+        let Content::Pixels(pixels) = &opened.document.layers[0].content else {
+            panic!("a paint layer")
+        };
+        assert!(
+            whole.iter().all(|(at, tile)| pixels.tiles.tile(at).unwrap().bytes() == tile.bytes())
+        );
+        assert_eq!(
+            (pixels.tiles.is_deep_in(size.rect()), opened.notes.len()),
+            (is_deep, usize::from(!is_deep))
+        );
     }
 }
+
 #[test]
 fn sparse_layers_take_what_is_painted_on_them() {
     let _turn = watch::turn();
@@ -157,7 +183,8 @@ fn sparse_layers_take_what_is_painted_on_them() {
     encoder.write_header().unwrap().write_image_data(&rgba).unwrap();
     drop(rgba);
     let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
-    let stored = zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
+    let stored =
+        zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
     let mut stack = format!("<?xml version='1.0'?><image w='{side}' h='{side}'><stack>");
     let mut entry = |name: &str, bytes: &[u8]| {
         zip.start_file(name, stored).unwrap();
@@ -175,14 +202,20 @@ fn sparse_layers_take_what_is_painted_on_them() {
     let (seen, peak) = watched(|| {
         let document = open(&file, &Budget::default()).unwrap().document;
         let pixels = flatten(&document, &Progress::default()).unwrap();
-        let out =
-            export::encode(Path::new("a.png"), ExportFormat::Png, &pixels, document.size, &ExportOptions::default());
+        let out = export::encode(
+            Path::new("a.png"),
+            ExportFormat::Png,
+            &pixels,
+            document.size,
+            &ExportOptions::default(),
+        );
         (document.layers.len(), pixels.pixel(2999, 2999), out.unwrap().len())
     });
     assert_eq!((seen.0, seen.1), (layers, [200, 30, 60, 255]));
     // One decoded picture alone would take 36 MB.
     assert!(peak < 16 * MIB, "{peak} bytes");
 }
+
 #[test]
 fn a_photoshop_file_takes_no_more_than_is_asked_for() {
     let _turn = watch::turn();
@@ -198,13 +231,16 @@ fn a_photoshop_file_takes_no_more_than_is_asked_for() {
     assert_eq!((read.document.layers.len(), read.notes.len()), (1, 0));
     // Allocated: 4 for the layer, 4 + 4 + 4 for the picture, 4 for the flattened layers.
     assert!(peak < 21 * size.area(), "{} bytes a pixel", peak / size.area());
-    for (bytes_free, what) in
-        [(20_000_000, "reading its layers takes"), (60_000_000, "picture of them all"), (100_000_000, "comparing")]
-    {
+    for (bytes_free, what) in [
+        (20_000_000, "reading its layers takes"),
+        (60_000_000, "picture of them all"),
+        (100_000_000, "comparing"),
+    ] {
         let said = psd::read(file, &other, &Budget::default().within(bytes_free)).err().unwrap();
         assert!(said.to_string().contains(what) && said.remedy().is_some(), "{said}");
     }
 }
+
 #[test]
 fn of_very_many_strokes_few_dabs_are_held() {
     let _turn = watch::turn();
@@ -225,6 +261,7 @@ fn of_very_many_strokes_few_dabs_are_held() {
     // All dabs together take some 130 MiB.
     assert!(peak < 90 * MIB, "{peak} bytes");
 }
+
 #[test]
 fn forms_beyond_their_ceiling_are_made_one_at_a_time_to_the_same_surface() {
     let _turn = watch::turn();
@@ -256,7 +293,13 @@ fn forms_beyond_their_ceiling_are_made_one_at_a_time_to_the_same_surface() {
     let ((kept, whole), (again, held)) = (made(1 << 30), made(0));
     for (a, b) in kept.iter().zip(&again) {
         assert_eq!(a.depth_plane(), b.depth_plane());
-        assert_eq!((a.normal_planes(), a.coverage_plane()), (b.normal_planes(), b.coverage_plane()));
+        assert_eq!(
+            (a.normal_planes(), a.coverage_plane()),
+            (b.normal_planes(), b.coverage_plane())
+        );
     }
-    assert!(held < 100 * size.area() && whole > held + 15 * 17 * size.area(), "{held} and {whole} bytes");
+    assert!(
+        held < 100 * size.area() && whole > held + 15 * 17 * size.area(),
+        "{held} and {whole} bytes"
+    );
 }

@@ -1,5 +1,6 @@
-//! Files of every format, damaged at random and in their structure: never a panic, never an abort, never more memory
-//! than is allowed, and every refusal a sentence that names the file. The same mutations on every run.
+//! Files of every format, damaged at random and in their structure: never a panic, never an abort,
+//! never more memory than is allowed, and every refusal a sentence that names the file. The same
+//! mutations on every run.
 
 use super::{readers, seeds, watch};
 use rilievo_engine::math::hash::mix;
@@ -37,8 +38,10 @@ fn damaged(bytes: &[u8], dice: &mut Dice) -> Vec<u8> {
                 out.splice(at..at, again);
             }
             6 => {
-                let extreme = [0u32, 1, 0x7fff_ffff, 0xffff_ffff, 60_000, 0x0100_0000][dice.roll(6)];
-                let figure = if dice.roll(2) == 0 { extreme.to_le_bytes() } else { extreme.to_be_bytes() };
+                let extreme =
+                    [0u32, 1, 0x7fff_ffff, 0xffff_ffff, 60_000, 0x0100_0000][dice.roll(6)];
+                let figure =
+                    if dice.roll(2) == 0 { extreme.to_le_bytes() } else { extreme.to_be_bytes() };
                 out.iter_mut().skip(at).zip(figure).for_each(|(byte, digit)| *byte = digit);
             }
             _ => out.truncate(at.max(8)),
@@ -49,7 +52,9 @@ fn damaged(bytes: &[u8], dice: &mut Dice) -> Vec<u8> {
     }
     out
 }
-/// Damage that checksums and tables of contents do not reveal: inside the entries of a zip, inside the chunks of a PNG.
+
+/// Damage that checksums and tables of contents do not reveal: inside the entries of a zip, inside
+/// the chunks of a PNG.
 fn mutated(bytes: &[u8], dice: &mut Dice) -> Vec<u8> {
     let deep = dice.roll(2) == 0;
     if deep && bytes.starts_with(b"PK") {
@@ -61,6 +66,7 @@ fn mutated(bytes: &[u8], dice: &mut Dice) -> Vec<u8> {
     }
     out
 }
+
 fn entries_changed(bytes: &[u8], dice: &mut Dice) -> Vec<u8> {
     let mut zip = zip::ZipArchive::new(Cursor::new(bytes)).unwrap();
     let mut entries: Vec<(String, Vec<u8>)> = Vec::new();
@@ -75,7 +81,10 @@ fn entries_changed(bytes: &[u8], dice: &mut Dice) -> Vec<u8> {
     match dice.roll(8) {
         0 => drop(entries.remove(at)),
         1 => entries.swap(at, other),
-        2 => entries[at].0 = ["../a", "/etc/passwd", "a\\b", "C:x", "data/é.png", ""][dice.roll(6)].into(),
+        2 => {
+            entries[at].0 =
+                ["../a", "/etc/passwd", "a\\b", "C:x", "data/é.png", ""][dice.roll(6)].into()
+        }
         3 => entries[at].0 = entries[other].0.clone() + " ",
         4 => entries[at].1 = entries[other].1.clone(),
         _ => {
@@ -87,7 +96,8 @@ fn entries_changed(bytes: &[u8], dice: &mut Dice) -> Vec<u8> {
         }
     }
     let mut out = zip::ZipWriter::new(Cursor::new(Vec::new()));
-    let stored = zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
+    let stored =
+        zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
     for (name, bytes) in entries {
         // A name that the writer refuses is left out.
         if out.start_file(name, stored).is_ok() {
@@ -96,10 +106,13 @@ fn entries_changed(bytes: &[u8], dice: &mut Dice) -> Vec<u8> {
     }
     out.finish().unwrap().into_inner()
 }
+
 /// Gives every chunk the checksum of what is in it now.
 fn mend_checksums(png: &mut [u8]) {
     let mut at = 8;
-    while let Some(length) = png.get(at..at + 4).map(|b| u32::from_be_bytes(b.try_into().unwrap()) as usize) {
+    while let Some(length) =
+        png.get(at..at + 4).map(|b| u32::from_be_bytes(b.try_into().unwrap()) as usize)
+    {
         let end = at.saturating_add(8).saturating_add(length);
         if png.len() < end.saturating_add(4) {
             return;
@@ -110,7 +123,8 @@ fn mend_checksums(png: &mut [u8]) {
     }
 }
 
-/// Panics unless every mutation is read or refused; how many were refused, and the most memory one took.
+/// Panics unless every mutation is read or refused; how many were refused, and the most memory one
+/// took.
 fn mutate(count: u32) -> (u32, usize) {
     // Decoders' panics are caught at the door; their traces would bury this test's own.
     std::panic::set_hook(Box::new(|panic| {
@@ -144,13 +158,17 @@ fn mutate(count: u32) -> (u32, usize) {
 fn every_seed_is_read_as_it_is() {
     let _turn = watch::turn();
     for (name, bytes) in seeds::all() {
-        readers::any(Path::new(&name), &bytes).or_else(|e| needs_files(&name, e)).unwrap_or_else(|e| panic!("{e}"));
+        readers::any(Path::new(&name), &bytes)
+            .or_else(|e| needs_files(&name, e))
+            .unwrap_or_else(|e| panic!("{e}"));
     }
 }
+
 /// A recipe alone names files that are not there.
 fn needs_files(name: &str, error: rilievo::Error) -> rilievo::Result<()> {
     if name.ends_with(".json") && error.to_string().contains(".png") { Ok(()) } else { Err(error) }
 }
+
 #[test]
 fn damaged_files_of_every_format_are_read_or_refused_with_a_sentence() {
     let _turn = watch::turn();
@@ -158,6 +176,7 @@ fn damaged_files_of_every_format_are_read_or_refused_with_a_sentence() {
     eprintln!("{refused} refused; the most memory: {} KiB", most >> 10);
     assert!(refused > 5_000, "the mutations do damage: {refused}");
 }
+
 /// *Long*: see docs/PROJECTS.md.
 #[test]
 #[ignore = "twenty minutes; run by name"]
@@ -166,6 +185,7 @@ fn long_a_million_damaged_files() {
     let (refused, most) = mutate(1_000_000);
     eprintln!("{refused} refused; the most memory: {} KiB", most >> 10);
 }
+
 /// The fuzzer's seeds and the inputs that it kept, by the names of its targets.
 #[test]
 fn the_corpus_of_the_fuzzer_is_read_or_refused() {
@@ -173,7 +193,9 @@ fn the_corpus_of_the_fuzzer_is_read_or_refused() {
     let fuzz = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz");
     for (target, reader) in readers::ALL {
         let folders = ["seeds", "corpus"].map(|folder| fuzz.join(folder).join(target));
-        let files = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());
+        let files = folders
+            .iter()
+            .flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());
         let mut read = 0;
         for entry in files {
             let bytes = std::fs::read(entry.path()).unwrap();
@@ -181,7 +203,11 @@ fn the_corpus_of_the_fuzzer_is_read_or_refused() {
             if let Err(error) = reader(&entry.path(), &bytes) {
                 assert!(!error.to_string().is_empty());
             }
-            assert!(watch::peak().saturating_sub(before) <= MOST_BYTES, "{}", entry.path().display());
+            assert!(
+                watch::peak().saturating_sub(before) <= MOST_BYTES,
+                "{}",
+                entry.path().display()
+            );
             read += 1;
         }
         assert!(read > 0, "{target} has nothing to begin with");

@@ -1,21 +1,28 @@
-//! A type's name means one thing: the sources never define two types of one name. Types in tests do not count.
+//! A type's name means one thing: the sources never define two types of one name. Types in tests do
+//! not count.
 
 use super::lines::files;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// The types that a text defines: structs, enums, traits and aliases, not those within traits and `impl`s.
+/// The types that a text defines: structs, enums, traits and aliases, not those within traits and
+/// `impl`s.
 fn defined(text: &str) -> Vec<String> {
     let without_tests = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
     let name = |line: &str| {
-        let line = line.strip_prefix("    ").filter(|rest| rest.starts_with("pub enum ")).unwrap_or(line);
+        let line =
+            line.strip_prefix("    ").filter(|rest| rest.starts_with("pub enum ")).unwrap_or(line);
         let line = match line.strip_prefix("pub") {
-            Some(rest) if rest.starts_with('(') => rest.split_once(") ").map_or("", |(_, rest)| rest),
+            Some(rest) if rest.starts_with('(') => {
+                rest.split_once(") ").map_or("", |(_, rest)| rest)
+            }
             Some(rest) => rest.trim_start(),
             None => line,
         };
-        let rest = ["struct ", "enum ", "trait ", "type ", "union "].iter().find_map(|word| line.strip_prefix(word))?;
+        let rest = ["struct ", "enum ", "trait ", "type ", "union "]
+            .iter()
+            .find_map(|word| line.strip_prefix(word))?;
         let name = rest.split(|c: char| !(c.is_alphanumeric() || c == '_')).next()?;
         (!name.is_empty()).then(|| name.to_owned())
     };
@@ -25,8 +32,14 @@ fn defined(text: &str) -> Vec<String> {
 #[test]
 fn no_two_types_have_one_name() {
     let mut homes: BTreeMap<String, Vec<String>> = BTreeMap::new();
-    let is_test = |path: &Path| path.components().any(|part| part.as_os_str() == "tests") || path.ends_with("tests.rs");
-    for path in ["src", "brushes"].into_iter().flat_map(|folder| files(folder, "rs")).filter(|path| !is_test(path)) {
+    let is_test = |path: &Path| {
+        path.components().any(|part| part.as_os_str() == "tests") || path.ends_with("tests.rs")
+    };
+    for path in ["src", "brushes"]
+        .into_iter()
+        .flat_map(|folder| files(folder, "rs"))
+        .filter(|path| !is_test(path))
+    {
         for name in defined(&fs::read_to_string(&path).unwrap()) {
             homes.entry(name).or_default().push(path.display().to_string());
         }

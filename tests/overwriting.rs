@@ -1,4 +1,5 @@
-//! Commands never overwrite what they read, and nothing else without being told to. Runs the real program.
+//! Commands never overwrite what they read, and nothing else without being told to. Runs the real
+//! program.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -28,10 +29,12 @@ const SOURCES: [&str; 5] = ["r.json", "photo.png", "tip.png", "n.png", "m.png"];
 fn run(folder: &Path, args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_rilievo")).args(args).current_dir(folder).output().unwrap()
 }
+
 fn done(folder: &Path, args: &[&str]) {
     let output = run(folder, args);
     assert!(output.status.success(), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));
 }
+
 /// It fails with exit code 1 and a sentence with these words.
 fn refused(folder: &Path, args: &[&str], words: &str) {
     let output = run(folder, args);
@@ -39,8 +42,10 @@ fn refused(folder: &Path, args: &[&str], words: &str) {
     assert_eq!(output.status.code(), Some(1), "{args:?}: {said}");
     assert!(said.contains(words), "{args:?}: {said}");
 }
+
 fn bytes(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
-    let mut files: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let mut files: Vec<_> =
+        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.sort();
     files.into_iter().map(|file| (file.clone(), fs::read(file).unwrap_or_default())).collect()
 }
@@ -56,10 +61,16 @@ fn no_command_writes_over_what_its_document_reads_not_even_with_force() {
     }
     for to in targets {
         for force in [&[][..], &["--force"]] {
-            for command in
-                [&["convert", "r.json", to][..], &["render", "r.json", "-o", to], &["view", "r.json", "-o", to]]
-            {
-                refused(folder.path(), &[command, force].concat(), "an open document is made from it");
+            for command in [
+                &["convert", "r.json", to][..],
+                &["render", "r.json", "-o", to],
+                &["view", "r.json", "-o", to],
+            ] {
+                refused(
+                    folder.path(),
+                    &[command, force].concat(),
+                    "an open document is made from it",
+                );
             }
             let story = format!(
                 "{{\"in\":\"file\",\"do\":\"open\",\"file\":\"r.json\"}}\n\
@@ -67,12 +78,17 @@ fn no_command_writes_over_what_its_document_reads_not_even_with_force() {
             );
             let story_file = folder.path().join("story");
             fs::write(&story_file, story).unwrap();
-            refused(folder.path(), &[&["replay", "story"][..], force].concat(), "an open document is made from it");
+            refused(
+                folder.path(),
+                &[&["replay", "story"][..], force].concat(),
+                "an open document is made from it",
+            );
             fs::remove_file(story_file).unwrap();
         }
     }
     assert_eq!(bytes(folder.path()), before);
 }
+
 #[test]
 fn files_that_are_there_are_replaced_with_force_alone() {
     let folder = folder();
@@ -93,13 +109,20 @@ fn files_that_are_there_are_replaced_with_force_alone() {
         let file = there(to);
         let before = bytes(folder.path());
         refused(folder.path(), command, "--force replaces it");
-        assert_eq!(bytes(folder.path()), before, "{command:?}: all is as it was, and nothing is new");
+        assert_eq!(
+            bytes(folder.path()),
+            before,
+            "{command:?}: all is as it was, and nothing is new"
+        );
         done(folder.path(), &[command, &["--force"]].concat());
         assert_ne!(fs::read(&file).unwrap(), b"somebody's", "{command:?}");
     }
-    let left = bytes(folder.path()).into_iter().filter(|(file, _)| file.to_string_lossy().contains(".rilievo-"));
+    let left = bytes(folder.path())
+        .into_iter()
+        .filter(|(file, _)| file.to_string_lossy().contains(".rilievo-"));
     assert_eq!(left.count(), 0);
 }
+
 #[test]
 fn every_view_of_a_folder_is_drawn_or_none() {
     let folder = folder();
@@ -114,6 +137,7 @@ fn every_view_of_a_folder_is_drawn_or_none() {
     done(folder.path(), &["view", "r.json", "-o", "views", "--force"]);
     assert_eq!(bytes(&views), drawn);
 }
+
 #[test]
 fn a_project_is_replaced_with_force_alone_and_keeps_its_previous_version() {
     let folder = folder();
@@ -125,6 +149,7 @@ fn a_project_is_replaced_with_force_alone_and_keeps_its_previous_version() {
     done(folder.path(), &["convert", "a.ora", "b.ora", "--force"]);
     assert_eq!(fs::read(folder.path().join("b.ora~")).unwrap(), b"the old one");
 }
+
 #[test]
 fn a_replay_saves_over_another_file_with_force_alone_and_over_its_own_as_often_as_it_likes() {
     let folder = folder();
@@ -141,6 +166,7 @@ fn a_replay_saves_over_another_file_with_force_alone_and_over_its_own_as_often_a
     done(folder.path(), &["replay", "story"]);
     assert_ne!(fs::read(folder.path().join("mine.ora")).unwrap(), b"somebody's");
 }
+
 #[test]
 fn a_brush_does_not_take_the_place_of_its_own_tip() {
     let folder = folder();
@@ -148,12 +174,25 @@ fn a_brush_does_not_take_the_place_of_its_own_tip() {
     fs::write(folder.path().join("leaf.json"), brush).unwrap();
     let before = bytes(folder.path());
     // Its picture would be written as tip.png.
-    refused(folder.path(), &["brush", "leaf.json", "tip.json", "--force"], "an open document is made from it");
-    refused(folder.path(), &["brush", "leaf.json", "tip.png", "--force"], "an open document is made from it");
-    refused(folder.path(), &["brush", "leaf.json", "leaf.json", "--force"], "an open document is made from it");
+    refused(
+        folder.path(),
+        &["brush", "leaf.json", "tip.json", "--force"],
+        "an open document is made from it",
+    );
+    refused(
+        folder.path(),
+        &["brush", "leaf.json", "tip.png", "--force"],
+        "an open document is made from it",
+    );
+    refused(
+        folder.path(),
+        &["brush", "leaf.json", "leaf.json", "--force"],
+        "an open document is made from it",
+    );
     assert_eq!(bytes(folder.path()), before);
     done(folder.path(), &["brush", "leaf.json", "copy.json"]);
 }
+
 #[cfg(unix)]
 #[test]
 fn links_that_lead_nowhere_and_read_only_files_stay_what_they_are() {
@@ -172,6 +211,7 @@ fn links_that_lead_nowhere_and_read_only_files_stay_what_they_are() {
         assert_eq!(fs::metadata(&file).unwrap().permissions().mode() & 0o777, 0o444);
     }
 }
+
 #[test]
 fn names_of_layers_do_not_steer_the_terminal() {
     let folder = folder();
@@ -183,11 +223,13 @@ fn names_of_layers_do_not_steer_the_terminal() {
     assert!(!output.stdout.iter().any(|b| b.is_ascii_control() && *b != b'\n'));
     assert!(String::from_utf8_lossy(&output.stdout).contains("red"));
 }
+
 #[test]
 fn a_recipe_in_utf16_is_called_so() {
     let folder = folder();
     let text = fs::read_to_string(folder.path().join("r.json")).unwrap();
-    let bytes: Vec<u8> = format!("\u{feff}{text}").encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let bytes: Vec<u8> =
+        format!("\u{feff}{text}").encode_utf16().flat_map(u16::to_le_bytes).collect();
     fs::write(folder.path().join("wide.json"), bytes).unwrap();
     refused(folder.path(), &["render", "wide.json", "-o", "o.png"], "UTF-16");
     refused(folder.path(), &["info", "wide.json"], "UTF-16");

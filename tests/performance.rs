@@ -16,7 +16,10 @@ fn the_page_of_speed_holds_the_kept_figures() {
     let figures = Figures::parse(&read("benches/page/figures.txt"));
     assert_eq!(figures.print(), read("benches/page/figures.txt"));
     let template = read("benches/page/template.md");
-    assert!(figures.fill(&template) == read("docs/PERFORMANCE.md"), "run: cargo run --example performance_page");
+    assert!(
+        figures.fill(&template) == read("docs/PERFORMANCE.md"),
+        "run: cargo run --example performance_page"
+    );
     // A dash is what the run does not hold.
     let missing: Vec<&str> = template
         .split("{{")

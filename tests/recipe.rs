@@ -1,4 +1,5 @@
-//! Recipes: every kind of layer read with its defaults, refused with the path of what is wrong, and written back.
+//! Recipes: every kind of layer read with its defaults, refused with the path of what is wrong, and
+//! written back.
 
 mod mutations;
 mod refusals;
@@ -29,6 +30,7 @@ impl Files for InMemory {
         let missing = || Error::io(name, std::io::Error::from(std::io::ErrorKind::NotFound));
         self.files.get(name).cloned().ok_or_else(missing)
     }
+
     fn path(&self, name: &str) -> PathBuf {
         name.into()
     }
@@ -43,14 +45,20 @@ fn png(width: u32, height: u32, rgba: [u8; 4]) -> Vec<u8> {
 }
 
 fn files() -> InMemory {
-    let files =
-        [("p.png", png(10, 6, [9, 8, 7, 255])), ("m.png", png(32, 16, [255; 4])), ("broken.png", vec![1, 2, 3])];
+    let files = [
+        ("p.png", png(10, 6, [9, 8, 7, 255])),
+        ("m.png", png(32, 16, [255; 4])),
+        ("broken.png", vec![1, 2, 3]),
+    ];
     InMemory { files: files.into(), ..InMemory::default() }
 }
 
 fn read_with(files: &InMemory, recipe: &Value, budget: &Budget) -> Result<Document> {
     let text = recipe.to_string();
-    recipe::read(text.as_bytes(), RecipeSource { file: Path::new("r.json"), files, budget, onto: None })
+    recipe::read(
+        text.as_bytes(),
+        RecipeSource { file: Path::new("r.json"), files, budget, onto: None },
+    )
 }
 
 fn read(recipe: &Value) -> Result<Document> {
@@ -83,7 +91,9 @@ fn what_is_not_said_takes_its_default() {
     assert_eq!((layer.opacity, layer.blend, layer.name.as_str()), (1.0, BlendMode::Normal, ""));
     assert!(matches!(layer.content, Content::Fill(Color::BLACK)));
 
-    let Content::Image(image) = only_layer(json!({ "kind": "image", "source": { "file": "p.png" } })).content else {
+    let Content::Image(image) =
+        only_layer(json!({ "kind": "image", "source": { "file": "p.png" } })).content
+    else {
         panic!("an image layer");
     };
     let image = image.params();
@@ -113,7 +123,10 @@ fn an_operator_without_anchors_is_pinned_at_the_centre_of_the_placement() {
     assert_eq!(anchors(Value::Null), [Anchor::fixed(vec2(3.0, 4.0))]);
     assert_eq!(anchors(json!([])), []);
     let dragged = anchors(json!([{ "at": [1, 2], "source": [5, 6] }, { "at": [7, 8] }]));
-    assert_eq!(dragged, [Anchor { at: vec2(1.0, 2.0), source: vec2(5.0, 6.0) }, Anchor::fixed(vec2(7.0, 8.0))]);
+    assert_eq!(
+        dragged,
+        [Anchor { at: vec2(1.0, 2.0), source: vec2(5.0, 6.0) }, Anchor::fixed(vec2(7.0, 8.0))]
+    );
 }
 
 #[test]
@@ -145,7 +158,13 @@ fn masks_read_with_their_defaults() {
     let mask = |mask: Value| only_layer(json!({ "kind": "fill", "mask": mask })).mask.unwrap();
     assert!(matches!(mask(json!({ "file": "m.png" })).kind, MaskKind::File { .. }));
     let fresnel = mask(json!({ "kind": "fresnel", "invert": true }));
-    assert!(fresnel.invert && matches!(fresnel.kind, MaskKind::Derived(DerivedMask::Fresnel { f0: 0.04, power: 5.0 })));
+    assert!(
+        fresnel.invert
+            && matches!(
+                fresnel.kind,
+                MaskKind::Derived(DerivedMask::Fresnel { f0: 0.04, power: 5.0 })
+            )
+    );
     let curvature = mask(json!({ "kind": "curvature" })).kind;
     assert!(matches!(curvature, MaskKind::Derived(DerivedMask::CURVATURE)));
     assert!(matches!(
@@ -159,7 +178,8 @@ fn everything() -> Value {
     let placement = json!({ "center": [10.5, 3], "scale": 0.75, "rotation": -30 });
     let source = json!({ "file": "p.png", "blur": 2, "exposure": -1, "hue": 20, "saturation": 0.5, "brightness": 1.1,
         "contrast": 0.9 });
-    let term = json!({ "color": "#102030", "weight": 0.4, "scaling": { "alpha": 0.3, "gamma": 2 } });
+    let term =
+        json!({ "color": "#102030", "weight": 0.4, "scaling": { "alpha": 0.3, "gamma": 2 } });
     with_layers(json!([
         { "name": "ground", "kind": "fill", "visible": false, "opacity": 0.3, "blend": "color-dodge",
           "blend_space": "linear",
@@ -219,8 +239,15 @@ fn everything() -> Value {
 fn every_field_of_every_kind_is_written_as_it_was_read() {
     let recipe = everything();
     let written = recipe::write(&read(&recipe).unwrap_or_else(|e| panic!("{e}")));
-    for (read, written) in recipe["layers"].as_array().unwrap().iter().zip(written["layers"].as_array().unwrap()) {
-        assert_eq!(without_float_spelling(read), without_float_spelling(written), "{}", read["name"]);
+    for (read, written) in
+        recipe["layers"].as_array().unwrap().iter().zip(written["layers"].as_array().unwrap())
+    {
+        assert_eq!(
+            without_float_spelling(read),
+            without_float_spelling(written),
+            "{}",
+            read["name"]
+        );
     }
     assert_eq!(recipe["canvas"], written["canvas"]);
 }
@@ -230,7 +257,9 @@ fn without_float_spelling(value: &Value) -> Value {
     match value {
         Value::Number(n) => json!(n.as_f64()),
         Value::Array(items) => items.iter().map(without_float_spelling).collect(),
-        Value::Object(map) => map.iter().map(|(k, v)| (k.clone(), without_float_spelling(v))).collect(),
+        Value::Object(map) => {
+            map.iter().map(|(k, v)| (k.clone(), without_float_spelling(v))).collect()
+        }
         other => other.clone(),
     }
 }
@@ -250,9 +279,12 @@ fn the_same_file_is_read_once() {
     let files = files();
     let image = json!({ "kind": "image", "source": { "file": "p.png" } });
     let pixels = json!({ "kind": "pixels", "file": "p.png", "x": 2 });
-    let document = read_with(&files, &with_layers(json!([image, image, pixels])), &Budget::default()).unwrap();
+    let document =
+        read_with(&files, &with_layers(json!([image, image, pixels])), &Budget::default()).unwrap();
     assert_eq!(files.reads.load(Ordering::Relaxed), 1);
-    let (Content::Image(a), Content::Image(b)) = (&document.layers[0].content, &document.layers[1].content) else {
+    let (Content::Image(a), Content::Image(b)) =
+        (&document.layers[0].content, &document.layers[1].content)
+    else {
         panic!("image layers");
     };
     assert!(std::ptr::eq(a.params().source.texture(), b.params().source.texture()));
@@ -261,15 +293,35 @@ fn the_same_file_is_read_once() {
 #[test]
 fn documents_beyond_the_budget_are_refused() {
     let says = |budget: Budget, layers: Value, wanted: &str| {
-        let said = read_with(&files(), &with_layers(layers), &budget).err().expect(wanted).to_string();
+        let said =
+            read_with(&files(), &with_layers(layers), &budget).err().expect(wanted).to_string();
         assert!(said.contains("too large") && said.contains(wanted), "{said}");
     };
-    let small = Budget { layers: 2, group_depth: 1, anchors: 1, samples: 1, document_px: 100, ..Budget::default() };
+    let small = Budget {
+        layers: 2,
+        group_depth: 1,
+        anchors: 1,
+        samples: 1,
+        document_px: 100,
+        ..Budget::default()
+    };
     let fill = json!({ "kind": "fill" });
     let image = |anchors: Value| json!({ "kind": "image", "source": { "file": "p.png" }, "anchors": anchors });
-    says(small, json!([fill, { "kind": "group", "layers": [fill] }]), "layers[1].layers has 1 items");
-    says(small, json!([{ "kind": "group", "layers": [{ "kind": "group" }] }]), "layers[0].layers[0] is nested");
-    says(small, json!([image(json!([{ "at": [1, 2] }, { "at": [1, 2] }]))]), "layers[0].anchors has 2 items");
+    says(
+        small,
+        json!([fill, { "kind": "group", "layers": [fill] }]),
+        "layers[1].layers has 1 items",
+    );
+    says(
+        small,
+        json!([{ "kind": "group", "layers": [{ "kind": "group" }] }]),
+        "layers[0].layers[0] is nested",
+    );
+    says(
+        small,
+        json!([image(json!([{ "at": [1, 2] }, { "at": [1, 2] }]))]),
+        "layers[0].anchors has 2 items",
+    );
     says(
         small,
         json!([{ "kind": "strokes", "strokes": [{ "samples": [[1, 2], [1, 2]] }] }]),
@@ -281,7 +333,8 @@ fn documents_beyond_the_budget_are_refused() {
 
 #[test]
 fn thirty_two_groups_within_each_other_fit() {
-    let innermost = json!({ "kind": "image", "source": { "file": "p.png" }, "anchors": [{ "at": [1, 2] }] });
+    let innermost =
+        json!({ "kind": "image", "source": { "file": "p.png" }, "anchors": [{ "at": [1, 2] }] });
     let nested = (0..32).fold(innermost, |inner, _| json!({ "kind": "group", "layers": [inner] }));
     assert!(read(&with_layers(json!([nested]))).is_ok());
 }
@@ -319,19 +372,26 @@ fn every_recipe_in_the_documentation_reads() {
         fn read(&self, _: &str, _: &Budget) -> Result<Vec<u8>> {
             Ok(png(4, 4, [255; 4]))
         }
+
         fn path(&self, name: &str) -> PathBuf {
             name.into()
         }
     }
     let mut read = 0;
     for page in ["README.md", "docs/RECIPES.md"] {
-        let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(page)).unwrap();
+        let text =
+            std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(page)).unwrap();
         for block in text.split("```json\n").skip(1).map(|rest| rest.split("```").next().unwrap()) {
-            let mut recipe: Value = serde_json::from_str(block).unwrap_or_else(|e| panic!("{page}: {e}"));
+            let mut recipe: Value =
+                serde_json::from_str(block).unwrap_or_else(|e| panic!("{page}: {e}"));
             recipe.as_object_mut().unwrap().remove("surface");
             recipe["canvas"] = json!({ "width": 8, "height": 8 });
-            let source =
-                RecipeSource { file: Path::new(page), files: &AnyPicture, budget: &Budget::default(), onto: None };
+            let source = RecipeSource {
+                file: Path::new(page),
+                files: &AnyPicture,
+                budget: &Budget::default(),
+                onto: None,
+            };
             recipe::read(recipe.to_string().as_bytes(), source).unwrap_or_else(|e| panic!("{e}"));
             read += 1;
         }
@@ -341,7 +401,9 @@ fn every_recipe_in_the_documentation_reads() {
 
 #[test]
 fn every_brush_preset_is_listed_in_the_documentation() {
-    let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/RECIPES.md")).unwrap();
+    let page =
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/RECIPES.md"))
+            .unwrap();
     for name in recipe::preset_names() {
         assert!(page.contains(&format!("`{name}`")), "{name}");
     }

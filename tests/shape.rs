@@ -1,4 +1,5 @@
-//! Shapes from the command line: what becomes of a drawing, and what is said about one that has no shape.
+//! Shapes from the command line: what becomes of a drawing, and what is said about one that has no
+//! shape.
 
 use crate::cli::{Desk, PHOTO, refused, rilievo, said};
 use std::process::Output;
@@ -13,7 +14,8 @@ fn shape(desk: &Desk, file: &str, more: &[&str]) -> Output {
 fn a_shape_has_a_part_for_each_colour_or_place_and_tells_what_has_none() {
     let desk = Desk::with(PHOTO);
     let picture = image::RgbaImage::from_fn(800, 600, |x, y| {
-        let within = |cx: f32, cy: f32, r: f32| (x as f32 + 0.5 - cx).hypot(y as f32 + 0.5 - cy) < r;
+        let within =
+            |cx: f32, cy: f32, r: f32| (x as f32 + 0.5 - cx).hypot(y as f32 + 0.5 - cy) < r;
         let eyes = [(300.0, 240.0, 40.0), (500.0, 240.0, 48.0), (400.0, 440.0, 3.4)];
         let is_eye = eyes.into_iter().any(|(cx, cy, r)| within(cx, cy, r));
         image::Rgba(match is_eye {
@@ -26,7 +28,15 @@ fn a_shape_has_a_part_for_each_colour_or_place_and_tells_what_has_none() {
     let parts = |more: &[&str], folder: &str| {
         let (face, out) = (desk.path("face.png"), desk.path(folder));
         let mut command = rilievo(&["shape"]);
-        let output = command.arg(&face).arg("--flats").arg(&face).arg("-o").arg(&out).args(more).output().unwrap();
+        let output = command
+            .arg(&face)
+            .arg("--flats")
+            .arg(&face)
+            .arg("-o")
+            .arg(&out)
+            .args(more)
+            .output()
+            .unwrap();
         assert!(output.status.success(), "{}", said(&output));
         let ids = image::open(out.join("face_id.png")).unwrap().into_luma16();
         let known: std::collections::BTreeSet<u16> = ids.pixels().map(|id| id.0[0]).collect();
@@ -43,11 +53,20 @@ fn a_shape_has_a_part_for_each_colour_or_place_and_tells_what_has_none() {
 #[test]
 fn a_drawing_of_one_colour_or_of_nothing_is_refused_for_what_it_is() {
     let desk = Desk::with(PHOTO);
-    let pictures = [("red", [200, 30, 30, 255]), ("paper", [255; 4]), ("nothing", [0; 4]), ("faint", [255, 0, 0, 9])];
+    let pictures = [
+        ("red", [200, 30, 30, 255]),
+        ("paper", [255; 4]),
+        ("nothing", [0; 4]),
+        ("faint", [255, 0, 0, 9]),
+    ];
     for (name, color) in pictures {
         let file = format!("{name}.png");
         image::RgbaImage::from_pixel(64, 48, image::Rgba(color)).save(desk.path(&file)).unwrap();
-        let why = if color[3] == 255 { "it has one colour all over" } else { "nothing in it is opaque enough" };
+        let why = if color[3] == 255 {
+            "it has one colour all over"
+        } else {
+            "nothing in it is opaque enough"
+        };
         refused(&shape(&desk, &file, &[]), &[&file, why]);
         let flats = desk.path(&file);
         for more in [&["--places"][..], &[]] {
@@ -60,7 +79,9 @@ fn a_drawing_of_one_colour_or_of_nothing_is_refused_for_what_it_is() {
 #[test]
 fn a_shape_for_which_there_is_no_memory_is_refused_before_it_is_made() {
     let outline = "[[100, 100], [16000, 100], [16000, 16000], [100, 16000]]";
-    let part = format!(r#"{{ "id": "a", "name": "A", "kind": "inflate", "outline": {{ "path": {outline} }} }}"#);
+    let part = format!(
+        r#"{{ "id": "a", "name": "A", "kind": "inflate", "outline": {{ "path": {outline} }} }}"#
+    );
     let document = format!(
         r##"{{ "format": "rilievo", "version": 2, "canvas": {{ "width": 16384, "height": 16384 }},
         "surface": {{ "parts": [{part}] }}, "layers": [{{ "kind": "fill", "color": "#336699" }}] }}"##
@@ -68,6 +89,14 @@ fn a_shape_for_which_there_is_no_memory_is_refused_before_it_is_made() {
     let desk = Desk::with(&document);
     let begun = std::time::Instant::now();
     let output = desk.render("out.png", &["--max-memory", "400M"]);
-    refused(&output, &["r.json", "the shape of 1 part on 16384 × 16384 pixels takes", "of memory", "--max-memory"]);
+    refused(
+        &output,
+        &[
+            "r.json",
+            "the shape of 1 part on 16384 × 16384 pixels takes",
+            "of memory",
+            "--max-memory",
+        ],
+    );
     assert!(begun.elapsed().as_secs() < 20, "{:?}", begun.elapsed());
 }

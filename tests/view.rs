@@ -1,4 +1,5 @@
-//! `rilievo view` as its users meet it: pictures of maps and recipes, and sentences where there is nothing to show.
+//! `rilievo view` as its users meet it: pictures of maps and recipes, and sentences where there is
+//! nothing to show.
 
 use image::{DynamicImage, Rgb, Rgba};
 use std::fs;
@@ -6,8 +7,8 @@ use std::path::PathBuf;
 use std::process::{Command, Output};
 use tempfile::TempDir;
 
-/// A folder with the maps of a ball (`ball_n.png`, `ball_depth.png`, `ball_mask.png`) and a recipe with a gradient over
-/// it (`r.json`).
+/// A folder with the maps of a ball (`ball_n.png`, `ball_depth.png`, `ball_mask.png`) and a recipe
+/// with a gradient over it (`r.json`).
 struct Desk(TempDir);
 
 const SIDE: u32 = 96;
@@ -30,7 +31,8 @@ impl Desk {
         };
         let word = |v: f32| (v * 65535.0).round() as u16;
         let normals = image::ImageBuffer::from_fn(SIDE, SIDE, |x, y| {
-            Rgb(sphere(x, y).map_or([word(0.5), word(0.5), 65535], |n| n.map(|c| word(c * 0.5 + 0.5))))
+            Rgb(sphere(x, y)
+                .map_or([word(0.5), word(0.5), 65535], |n| n.map(|c| word(c * 0.5 + 0.5))))
         });
         DynamicImage::ImageRgb16(normals).save(desk.path("ball_n.png")).unwrap();
         let depth = image::ImageBuffer::from_fn(SIDE, SIDE, |x, y| {
@@ -44,15 +46,18 @@ impl Desk {
         fs::write(desk.path("r.json"), RECIPE).unwrap();
         desk
     }
+
     fn path(&self, name: &str) -> PathBuf {
         self.0.path().join(name)
     }
+
     /// `rilievo view FILES -o OUT …`
     fn view(&self, files: &[&str], out: &str, more: &[&str]) -> Output {
         let mut command = Command::new(env!("CARGO_BIN_EXE_rilievo"));
         command.args(["view", "--force"]).args(files.iter().map(|f| self.path(f)));
         command.arg("-o").arg(self.path(out)).args(more).output().unwrap()
     }
+
     fn shown(&self, files: &[&str], more: &[&str]) -> image::RgbaImage {
         let output = self.view(files, "out.png", more);
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -79,23 +84,28 @@ fn loose_maps_are_told_apart_by_their_names() {
     let mask = desk.shown(&[MAPS[0], MAPS[1], "ball_mask.png"], &["--show", "mask"]);
     assert_eq!([mask.get_pixel(2, 2).0[0], mask.get_pixel(48, 48).0[0]], [0, 255]);
 }
+
 #[test]
 fn a_convex_ball_is_blue_and_the_scale_says_how_soon() {
     let desk = Desk::new();
     let center = |scale: &str| {
-        let shown = desk.shown(&MAPS, &["--show", "curvature", "--curvature-scale", scale, "--blur", "0"]);
+        let shown =
+            desk.shown(&MAPS, &["--show", "curvature", "--curvature-scale", scale, "--blur", "0"]);
         shown.get_pixel(48, 48).0
     };
     let ([r0, _, b0, _], [r1, _, b1, _]) = (center("0"), center("60"));
     assert!(r0 > b0 && b1 > r1, "yellow at no scale, blue at a large one");
 }
+
 #[test]
 fn a_folder_gets_every_view_and_a_file_the_sheet() {
     let desk = Desk::new();
     fs::create_dir(desk.path("all")).unwrap();
     assert!(desk.view(&["r.json"], "all", &[]).status.success());
-    let mut names: Vec<String> =
-        fs::read_dir(desk.path("all")).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    let mut names: Vec<String> = fs::read_dir(desk.path("all"))
+        .unwrap()
+        .map(|e| e.unwrap().file_name().into_string().unwrap())
+        .collect();
     names.sort();
     let all = "clay contours curvature-grey curvature depth directions flow-depth flow-normals flow-operator lit mask \
                normals objects weights";
@@ -105,13 +115,16 @@ fn a_folder_gets_every_view_and_a_file_the_sheet() {
     let sheet = desk.shown(&["r.json"], &[]);
     assert_eq!(sheet.dimensions(), (4 * (SIDE + 8) + 8, 4 * (SIDE + 8) + 8));
 }
+
 #[test]
 fn the_weights_of_a_layer_have_a_colour_for_each_anchor() {
     let desk = Desk::new();
     let weights = desk.shown(&["r.json"], &["--show", "weights", "--layer", "ramp"]);
-    let (Rgba([r0, _, b0, _]), Rgba([_, g1, b1, _])) = (*weights.get_pixel(20, 48), *weights.get_pixel(78, 48));
+    let (Rgba([r0, _, b0, _]), Rgba([_, g1, b1, _])) =
+        (*weights.get_pixel(20, 48), *weights.get_pixel(78, 48));
     assert!(b0 > r0 && g1 > b1);
 }
+
 #[test]
 fn any_number_of_threads_shows_the_same() {
     let desk = Desk::new();
@@ -119,12 +132,16 @@ fn any_number_of_threads_shows_the_same() {
     let two = desk.shown(&["r.json"], &["--show", "flow-operator", "--threads", "2"]);
     assert!(one == two);
 }
+
 #[test]
 fn what_cannot_be_shown_is_refused_in_a_sentence() {
     let desk = Desk::new();
     let show = |files: &[&str], more: &[&str]| desk.view(files, "out.png", more);
     refused(&show(&MAPS, &["--show", "weights"]), &["ball_n.png", "--show weights", "anchors"]);
-    refused(&show(&["r.json"], &["--show", "weights", "--layer", "ground"]), &["ground", "no anchors"]);
+    refused(
+        &show(&["r.json"], &["--show", "weights", "--layer", "ground"]),
+        &["ground", "no anchors"],
+    );
     refused(&show(&["r.json"], &["--layer", "sky"]), &["--layer", "sky", "ramp"]);
     refused(&show(&["missing_n.png"], &[]), &["missing_n.png"]);
     refused(&show(&["ball_n.png", "ball_n.png"], &[]), &["same kind"]);
@@ -151,7 +168,13 @@ fn the_unwrapped_view_prints_the_layer_that_lays_its_picture_back() {
     let rendered = |name: &str| {
         let mut command = Command::new(env!("CARGO_BIN_EXE_rilievo"));
         let out = desk.path(name).with_extension("png");
-        let output = command.args(["render", "--force"]).arg(desk.path(name)).arg("-o").arg(&out).output().unwrap();
+        let output = command
+            .args(["render", "--force"])
+            .arg(desk.path(name))
+            .arg("-o")
+            .arg(&out)
+            .output()
+            .unwrap();
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         image::open(out).unwrap().to_rgba8()
     };

@@ -1,8 +1,10 @@
-//! The figures of one run of the benches: read from what they print, kept as a text, put into a page.
+//! The figures of one run of the benches: read from what they print, kept as a text, put into a
+//! page.
 
 use std::fmt::Write;
 
-/// A row of numbers by the bench that printed it and by its name; the machine and the month of the run.
+/// A row of numbers by the bench that printed it and by its name; the machine and the month of the
+/// run.
 #[derive(Debug, Default, PartialEq)]
 pub struct Figures {
     machine: String,
@@ -19,8 +21,8 @@ struct Row {
 impl Figures {
     /// From the output of `cargo bench`, where a line `Running benches/NAME.rs` begins each bench.
     ///
-    /// Rows are those of tables: a name, two spaces or more, and numbers. Of divan's trees the median is taken, in ms;
-    /// its name is that of all branches to it, such as `one_thread/unbent`.
+    /// Rows are those of tables: a name, two spaces or more, and numbers. Of divan's trees the
+    /// median is taken, in ms; its name is that of all branches to it, such as `one_thread/unbent`.
     pub fn of_run(output: &str, machine: &str) -> Self {
         let (mut rows, mut bench, mut branches) = (Vec::new(), String::new(), Vec::<&str>::new());
         for line in output.lines() {
@@ -36,6 +38,7 @@ impl Figures {
         }
         Self { machine: machine.to_owned(), rows }
     }
+
     /// As [`Figures::print`] writes them: the machine, then `bench; name; value value …`.
     pub fn parse(text: &str) -> Self {
         let mut lines = text.lines();
@@ -47,6 +50,7 @@ impl Figures {
         };
         Self { machine, rows: lines.filter_map(row).collect() }
     }
+
     pub fn print(&self) -> String {
         let mut text = format!("{}\n", self.machine);
         for Row { bench, name, values } in &self.rows {
@@ -54,8 +58,10 @@ impl Figures {
         }
         text
     }
-    /// A page with the figures in the places that name them: `{{bench; name}}` is all values of a row, with a number
-    /// behind, from 1 on, one of them, and `{{machine}}` the machine. What the run does not hold is a dash.
+
+    /// A page with the figures in the places that name them: `{{bench; name}}` is all values of a
+    /// row, with a number behind, from 1 on, one of them, and `{{machine}}` the machine. What the
+    /// run does not hold is a dash.
     pub fn fill(&self, template: &str) -> String {
         let mut parts = template.split("{{");
         let mut page = parts.next().unwrap_or_default().to_owned();
@@ -66,6 +72,7 @@ impl Figures {
         }
         page
     }
+
     fn value(&self, place: &str) -> Option<String> {
         if place == "machine" {
             return Some(self.machine.clone());
@@ -80,8 +87,13 @@ impl Figures {
     }
 }
 
-/// A line of a divan tree at a depth: a branch, or a leaf with its median, the third of its columns.
-fn tree_row<'a>(line: &'a str, depth: usize, branches: &mut Vec<&'a str>) -> Option<(String, Vec<String>)> {
+/// A line of a divan tree at a depth: a branch, or a leaf with its median, the third of its
+/// columns.
+fn tree_row<'a>(
+    line: &'a str,
+    depth: usize,
+    branches: &mut Vec<&'a str>,
+) -> Option<(String, Vec<String>)> {
     let content = line.trim_start_matches(['│', ' ']).trim_start_matches(['├', '╰', '─', ' ']);
     let mut columns = content.split('│').map(str::trim);
     let first = columns.next()?;
@@ -99,12 +111,14 @@ fn tree_row<'a>(line: &'a str, depth: usize, branches: &mut Vec<&'a str>) -> Opt
 fn table_row(line: &str) -> Option<(String, Vec<String>)> {
     let (name, rest) = split_at_gap(line)?;
     let is_number = |word: &&str| word.parse::<f64>().is_ok() || *word == "–";
-    let mut values: Vec<String> = rest.split_whitespace().take_while(is_number).map(str::to_owned).collect();
+    let mut values: Vec<String> =
+        rest.split_whitespace().take_while(is_number).map(str::to_owned).collect();
     // The number that a note begins with is not a column.
     if rest.split_whitespace().count() > values.len() {
         values.pop();
     }
-    (!name.is_empty() && !line.starts_with(' ') && !values.is_empty()).then(|| (name.to_owned(), values))
+    (!name.is_empty() && !line.starts_with(' ') && !values.is_empty())
+        .then(|| (name.to_owned(), values))
 }
 
 /// What lies before the first two spaces, and after them.

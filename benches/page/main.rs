@@ -5,8 +5,9 @@
 //! cargo run --example performance_page -- bench.txt "two idle cores of a Xeon, AVX2, November 2026"
 //! ```
 //!
-//! The figures of the run go to `benches/page/figures.txt`, and into the places of `benches/page/template.md` that name
-//! them. Without arguments the page is made again from the figures as they are.
+//! The figures of the run go to `benches/page/figures.txt`, and into the places of
+//! `benches/page/template.md` that name them. Without arguments the page is made again from the
+//! figures as they are.
 
 mod figures;
 

@@ -14,19 +14,27 @@ const SAMPLES: usize = 16;
 /// ms from the events of each frame of a gesture to its flattened tiles.
 ///
 /// * `pen`: the gesture's `i`th sample; the first is where the pen comes down.
-pub fn frames(tool: ToolKind, context: &ToolContext, pen: impl Fn(usize) -> PenSample, count: usize) -> Vec<f64> {
+pub fn frames(
+    tool: ToolKind,
+    context: &ToolContext,
+    pen: impl Fn(usize) -> PenSample,
+    count: usize,
+) -> Vec<f64> {
     let (gesture, _) = tools::press(tool, context, pen(0));
     let mut gesture = gesture.expect("the tool can begin");
     let progress = Progress::default();
     let mut shown: Document = context.document.clone();
     let all = PreparedDocument::new(&shown, &progress).expect("nobody cancels");
-    let mut picture = all.flatten_tiles(&TileGrid::default(), &all.all_tiles(), &progress).expect("nobody cancels");
+    let mut picture = all
+        .flatten_tiles(&TileGrid::default(), &all.all_tiles(), &progress)
+        .expect("nobody cancels");
     let frame = |frame: usize| {
         let pens: Vec<PenSample> = (1..=SAMPLES).map(|i| pen(frame * SAMPLES + i)).collect();
         let start = Instant::now();
         let Outcome::Preview(next) = gesture.drag(&pens) else { return None };
         let tiles: Vec<TileAt> = diff(&shown, &next).into_iter().collect();
-        picture = PreparedDocument::new(&next, &progress)?.flatten_tiles(&picture, &tiles, &progress)?;
+        picture =
+            PreparedDocument::new(&next, &progress)?.flatten_tiles(&picture, &tiles, &progress)?;
         shown = next;
         Some(start.elapsed().as_secs_f64() * 1e3)
     };

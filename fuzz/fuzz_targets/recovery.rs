@@ -1,4 +1,5 @@
-//! Any bytes to one reader: read or refused, within the budget. The reader is the one that `tests/mutated.rs` runs.
+//! Any bytes to one reader: read or refused, within the budget. The reader is the one that
+//! `tests/mutated.rs` runs.
 #![no_main]
 use libfuzzer_sys::fuzz_target;
 use std::path::Path;

@@ -59,9 +59,11 @@ fn fallen() -> Vec<DVec3> {
     now
 }
 
-/// Where point `i` starts: a level sheet, turned in its plane, with slight dents that seed the folds.
+/// Where point `i` starts: a level sheet, turned in its plane, with slight dents that seed the
+/// folds.
 fn laid_out(i: usize) -> DVec3 {
-    let at = DVec2::new((i % SIDE) as f64, (i / SIDE) as f64) / (SIDE - 1) as f64 - DVec2::splat(0.5);
+    let at =
+        DVec2::new((i % SIDE) as f64, (i / SIDE) as f64) / (SIDE - 1) as f64 - DVec2::splat(0.5);
     let dent = 0.02 * fbm2(at * 7.0, 2, 0, 31);
     let flat = DVec2::from_angle(0.35).rotate(at * LENGTH);
     v(flat.x + 0.05, BALL_RADIUS + 0.03 + dent, flat.y - 0.03)

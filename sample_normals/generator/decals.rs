@@ -30,11 +30,15 @@ pub fn star() -> RgbaImage {
         let ring = (r - 0.88).abs();
         let rays = 1.0 + 0.1 * (40.0 * angle).sin() * smooth_step(0.1, 0.8, r);
         let mut colour = enamel * rays;
-        colour =
-            colour.lerp(srgb(0xfff3cf) * 0.95, smooth_step(-0.03, -0.02, -inside.abs()) * smooth_step(0.8, 0.7, r));
+        colour = colour.lerp(
+            srgb(0xfff3cf) * 0.95,
+            smooth_step(-0.03, -0.02, -inside.abs()) * smooth_step(0.8, 0.7, r),
+        );
         colour = if inside > 0.0 { gold * facet } else { colour };
-        colour =
-            colour.lerp(srgb(0xf6d27a) * (1.15 - 60.0 * (ring - 0.02).powi(2)) * lit, smooth_step(0.062, 0.055, ring));
+        colour = colour.lerp(
+            srgb(0xf6d27a) * (1.15 - 60.0 * (ring - 0.02).powi(2)) * lit,
+            smooth_step(0.062, 0.055, ring),
+        );
         colour.extend(smooth_step(0.945, 0.935, r))
     })
 }
@@ -42,11 +46,17 @@ pub fn star() -> RgbaImage {
 /// A maple-like leaf in autumn colours, on a transparent ground.
 pub fn leaf() -> RgbaImage {
     const SIDE: u32 = 352;
-    const LOBES: [[f64; 3]; 5] =
-        [[90.0, 0.86, 0.2], [40.0, 0.72, 0.17], [140.0, 0.72, 0.17], [-8.0, 0.5, 0.13], [188.0, 0.5, 0.13]];
+    const LOBES: [[f64; 3]; 5] = [
+        [90.0, 0.86, 0.2],
+        [40.0, 0.72, 0.17],
+        [140.0, 0.72, 0.17],
+        [-8.0, 0.5, 0.13],
+        [188.0, 0.5, 0.13],
+    ];
     let foot = DVec2::new(0.0, -0.28);
     painted((SIDE, SIDE), 3, move |p| {
-        let q = (p / f64::from(SIDE) * 2.0 - DVec2::new(1.0, 1.06)) * DVec2::new(0.78, -0.78) - foot;
+        let q =
+            (p / f64::from(SIDE) * 2.0 - DVec2::new(1.0, 1.06)) * DVec2::new(0.78, -0.78) - foot;
         let mut blade = q.length() - 0.2;
         let mut vein = f64::INFINITY;
         for [degrees, reach, width] in LOBES {
@@ -55,7 +65,10 @@ pub fn leaf() -> RgbaImage {
             let teeth = 0.028
                 * ((along * 26.0 - 5.0 * across).sin() + 0.6 * (along * 61.0).sin())
                 * smooth_step(0.3, 0.6, along);
-            let profile = width * (1.9 * along.clamp(0.0, 1.0).powf(0.7) * (1.0 - along.clamp(0.0, 1.0)).powf(0.55))
+            let profile = width
+                * (1.9
+                    * along.clamp(0.0, 1.0).powf(0.7)
+                    * (1.0 - along.clamp(0.0, 1.0)).powf(0.55))
                 + teeth * (1.0 - along).max(0.0);
             blade = blade.min(if (0.0..1.0).contains(&along) { across - profile } else { 1.0 });
             vein = vein.min(segment2(q, DVec2::ZERO, axis * reach * 0.93) + 0.012 * along.max(0.0));
@@ -91,7 +104,11 @@ pub fn window() -> RgbaImage {
 
 /// Two columns of three panes with an arched top, their edges blurred over `soft`.
 fn pane(q: DVec2, soft: f64) -> f64 {
-    let arch = if q.y < -0.2 { 0.74 - (DVec2::new(q.x, (q.y + 0.2) * 1.1)).length() } else { 0.74 - q.x.abs() };
+    let arch = if q.y < -0.2 {
+        0.74 - (DVec2::new(q.x, (q.y + 0.2) * 1.1)).length()
+    } else {
+        0.74 - q.x.abs()
+    };
     let frame = arch.min(0.86 - q.y);
     let post = q.x.abs() - 0.035;
     let bars = [-0.2, 0.34].iter().map(|y| (q.y - y).abs() - 0.028).fold(f64::INFINITY, f64::min);

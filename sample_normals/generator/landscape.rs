@@ -1,5 +1,5 @@
-//! Two landscapes: a panorama for reflections, and a backplate with one tree before a clear horizon.
-//! Linear light; the tree is painted leaf by leaf.
+//! Two landscapes: a panorama for reflections, and a backplate with one tree before a clear
+//! horizon. Linear light; the tree is painted leaf by leaf.
 
 use std::f64::consts::TAU;
 
@@ -38,11 +38,13 @@ impl Sky {
         (air + glow + disc * (1.0 - cover)).lerp(cloud, cover * haze * 0.94)
     }
 
-    /// Cover and shade of the clouds: a warped fractal on a plane overhead, so they shrink toward the horizon.
+    /// Cover and shade of the clouds: a warped fractal on a plane overhead, so they shrink toward
+    /// the horizon.
     fn cloud(&self, q: DVec2) -> (f64, f64) {
         let on_plane = |up: f64| DVec2::new(q.x, 0.55) * 1.25 / (up.max(0.0) + 0.16);
         let field = |at: DVec2| {
-            let warp = DVec2::new(fbm2(at * 0.8, 4, 0, self.seed), fbm2(at * 0.8, 4, 0, self.seed + 40));
+            let warp =
+                DVec2::new(fbm2(at * 0.8, 4, 0, self.seed), fbm2(at * 0.8, 4, 0, self.seed + 40));
             fbm2(at + warp * 0.75, 7, 0, self.seed + 80) - self.open
         };
         let density = field(on_plane(q.y));
@@ -51,7 +53,9 @@ impl Sky {
         let cover = smooth_step(-0.02, 0.3, density);
         (
             cover,
-            (smooth_step(0.05, 0.6, density) * 0.6 + smooth_step(-0.12, 0.22, toward - density * 0.6) * 0.55).min(1.0),
+            (smooth_step(0.05, 0.6, density) * 0.6
+                + smooth_step(-0.12, 0.22, toward - density * 0.6) * 0.55)
+                .min(1.0),
         )
     }
 }
@@ -69,7 +73,8 @@ pub fn panorama() -> RgbaImage {
     painted((1024, 512), 2, |p| {
         let q = DVec2::new((p.x - 512.0) / 512.0, (256.0 - p.y) / 512.0);
         let shore = -0.012 + 0.01 * fbm2(DVec2::new(q.x * 3.0, 4.0), 3, 0, 91);
-        let meadow = -0.33 + 0.07 * fbm2(DVec2::new(q.x * 1.7, 1.0), 4, 0, 17) + 0.1 * (q.x + 0.25).powi(2);
+        let meadow =
+            -0.33 + 0.07 * fbm2(DVec2::new(q.x * 1.7, 1.0), 4, 0, 17) + 0.1 * (q.x + 0.25).powi(2);
         let light = if q.y < meadow {
             grass(q, 0.1 + meadow - q.y, v(1.0, 0.86, 0.58))
         } else if q.y < shore {
@@ -94,10 +99,12 @@ fn land_and_sky(sky: &Sky, q: DVec2) -> DVec3 {
 fn ridge(sky: &Sky, q: DVec2, layer: u32) -> Option<DVec3> {
     let far = f64::from(4 - layer) / 4.0;
     let seed = 500 + u64::from(layer);
-    let broad = fbm2(DVec2::new(q.x * (1.3 + 0.8 * (1.0 - far)) + 7.0 * f64::from(layer), 0.5), 7, 0, seed);
+    let broad =
+        fbm2(DVec2::new(q.x * (1.3 + 0.8 * (1.0 - far)) + 7.0 * f64::from(layer), 0.5), 7, 0, seed);
     // The two nearest ridges are wooded: crowns rise above the line.
     let wooded = smooth_step(0.6, 0.3, far);
-    let crowns = fbm2(DVec2::new(q.x * 60.0, 2.0), 3, 0, seed + 9) + 0.6 * mottle(DVec2::new(q.x * 45.0, 0.5), seed);
+    let crowns = fbm2(DVec2::new(q.x * 60.0, 2.0), 3, 0, seed + 9)
+        + 0.6 * mottle(DVec2::new(q.x * 45.0, 0.5), seed);
     let below = 0.012 + 0.075 * far + broad * (0.035 + 0.13 * far) + 0.016 * wooded * crowns - q.y;
     if below <= 0.0 {
         return None;
@@ -118,7 +125,8 @@ fn lake(sky: &Sky, q: DVec2, shore: f64) -> DVec3 {
     let ripple = fbm2(rows, 4, 0, 61);
     let calm = smooth_step(0.1, -0.3, fbm2(DVec2::new(q.x * 2.0, depth * 18.0), 3, 0, 71));
     let swing = ripple * (0.008 + 0.06 * near) * (1.0 - 0.75 * calm);
-    let mirrored = DVec2::new(q.x + 0.25 * swing, (shore + depth * 0.95 + swing).max(shore + 0.002));
+    let mirrored =
+        DVec2::new(q.x + 0.25 * swing, (shore + depth * 0.95 + swing).max(shore + 0.002));
     let tint = v(0.72, 0.84, 0.86).lerp(v(0.4, 0.55, 0.58), near);
     let deep = srgb(0x18333a) * 0.7;
     (land_and_sky(sky, mirrored) * tint).lerp(deep, 0.12 + 0.35 * near)
@@ -220,7 +228,12 @@ struct Tree {
 
 impl Tree {
     fn new(width: usize, height: usize) -> Self {
-        Self { width, points: vec![(DVec3::ZERO, 0.0); width * height], clumps: Vec::new(), count: 0 }
+        Self {
+            width,
+            points: vec![(DVec3::ZERO, 0.0); width * height],
+            clumps: Vec::new(),
+            count: 0,
+        }
     }
 
     /// A branch from `foot`, then its forks. Lengths in picture heights.
@@ -320,11 +333,13 @@ impl Tree {
         const SCALE: f64 = 1680.0;
         let (cx, cy, r) = (1260.0 + at.x * SCALE, 975.0 - at.y * SCALE, reach * SCALE + 1.0);
         let height = self.points.len() / self.width;
-        let span =
-            |c: f64, size: usize| ((c - r).max(0.0) as usize)..((c + r).clamp(0.0, size as f64 - 1.0) as usize + 1);
+        let span = |c: f64, size: usize| {
+            ((c - r).max(0.0) as usize)..((c + r).clamp(0.0, size as f64 - 1.0) as usize + 1)
+        };
         for y in span(cy, height) {
             for x in span(cx, self.width) {
-                let q = DVec2::new((x as f64 + 0.5 - 1260.0) / SCALE, (975.0 - y as f64 - 0.5) / SCALE);
+                let q =
+                    DVec2::new((x as f64 + 0.5 - 1260.0) / SCALE, (975.0 - y as f64 - 0.5) / SCALE);
                 let (colour, cover) = paint(q);
                 let under = &mut self.points[y * self.width + x];
                 let total = cover + under.1 * (1.0 - cover);

@@ -58,7 +58,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         output::write_maps(&out.join(sample.name), &maps)?;
         println!("{:<12} {:>6.1} s", sample.name, start.elapsed().as_secs_f64());
     }
-    let landscapes: [Picture; 2] = [("panorama.jpg", landscape::panorama), ("backplate.jpg", landscape::backplate)];
+    let landscapes: [Picture; 2] =
+        [("panorama.jpg", landscape::panorama), ("backplate.jpg", landscape::backplate)];
     for (name, make) in PICTURES.into_iter().chain(landscapes) {
         if only.as_deref().is_some_and(|wanted| wanted != name) {
             continue;

@@ -11,7 +11,11 @@ use crate::tube::Tube;
 /// A struck medal: the initial in a wreath, with a beaded rim.
 pub fn medal() -> Sample {
     let turn = object_from_camera(-16.0, 10.0, 0.0);
-    let stem = Tube::through(&points(&[[-0.2, 0.4, 0.0, 0.085], [-0.2, 0.0, 0.0, 0.085], [-0.2, -0.4, 0.0, 0.085]]));
+    let stem = Tube::through(&points(&[
+        [-0.2, 0.4, 0.0, 0.085],
+        [-0.2, 0.0, 0.0, 0.085],
+        [-0.2, -0.4, 0.0, 0.085],
+    ]));
     let bowl = Tube::through(&points(&[
         [-0.3, 0.4, 0.0, 0.05],
         [0.02, 0.41, 0.0, 0.06],
@@ -26,15 +30,20 @@ pub fn medal() -> Sample {
         [0.27, -0.39, 0.0, 0.08],
         [0.4, -0.4, 0.0, 0.045],
     ]));
-    let serif =
-        Tube::through(&points(&[[-0.34, -0.41, 0.0, 0.04], [-0.2, -0.4, 0.0, 0.06], [-0.06, -0.41, 0.0, 0.04]]));
+    let serif = Tube::through(&points(&[
+        [-0.34, -0.41, 0.0, 0.04],
+        [-0.2, -0.4, 0.0, 0.06],
+        [-0.06, -0.41, 0.0, 0.04],
+    ]));
     let distance = move |camera: DVec3| {
         let p = turn * camera;
         if p.length() > 1.3 {
             return p.length() - 1.15;
         }
         let q = p - v(0.0, 0.0, 0.08);
-        let letter = [&bowl, &leg, &serif].iter().fold(stem.distance(q), |d, t| smooth_min(d, t.distance(q), 0.03));
+        let letter = [&bowl, &leg, &serif]
+            .iter()
+            .fold(stem.distance(q), |d, t| smooth_min(d, t.distance(q), 0.03));
         let relief = smooth_min(medal_blank(p), letter, 0.035);
         smooth_min(relief, wreath(p), 0.02)
     };
@@ -78,7 +87,8 @@ fn wreath(p: DVec3) -> f64 {
             let local = v(d.x * c + d.y * s, -d.x * s + d.y * c, d.z) / size;
             let ridge = 0.012 * (-(local.y / 0.012).powi(2)).exp();
             let tip = 0.036 * (1.0 - 3.2 * (local.x - 0.085));
-            let blade = ellipsoid(local - v(0.085, 0.0, 0.004), v(0.098, tip.max(0.012), 0.032)) + 0.5 * ridge;
+            let blade = ellipsoid(local - v(0.085, 0.0, 0.004), v(0.098, tip.max(0.012), 0.032))
+                + 0.5 * ridge;
             best = smooth_min(best, blade * size * 0.8, 0.006);
         }
     }

@@ -6,7 +6,8 @@ use glam::{DVec2, DVec3, DVec4};
 
 use crate::render::Traced;
 use crate::sdf::{
-    capsule, carve, cylinder, ellipsoid, object_from_camera, smooth_max, smooth_min, smooth_step, sphere, torus, v,
+    capsule, carve, cylinder, ellipsoid, object_from_camera, smooth_max, smooth_min, smooth_step,
+    sphere, torus, v,
 };
 use crate::shapes::{Sample, framed};
 use crate::tube::Tube;
@@ -35,7 +36,13 @@ pub fn muse() -> Sample {
         let head = smooth_min(face(&lines, right), neck(p), 0.12);
         smooth_min(smooth_min(head, hair(p, right), 0.02), plinth(p), 0.01)
     };
-    framed("muse", Traced { distance, reach: 2.5, stride: 0.75 }, (448, 576), DVec2::new(-0.03, -0.1), 0.98)
+    framed(
+        "muse",
+        Traced { distance, reach: 2.5, stride: 0.75 },
+        (448, 576),
+        DVec2::new(-0.03, -0.1),
+        0.98,
+    )
 }
 
 fn tube(list: &[[f64; 4]]) -> Tube {

@@ -1,5 +1,5 @@
-//! Deterministic noise: hashes, gradient noise, fractal sums and cells, each with an optional period.
-//! Not here: what the noise is used for (`shapes`, `pictures`).
+//! Deterministic noise: hashes, gradient noise, fractal sums and cells, each with an optional
+//! period. Not here: what the noise is used for (`shapes`, `pictures`).
 
 use glam::{DVec2, DVec3};
 
@@ -57,7 +57,8 @@ pub fn noise3(p: DVec3, seed: u64) -> f64 {
     let (u, v, w) = (fade(f.x), fade(f.y), fade(f.z));
     let mut sum = 0.0;
     for corner in 0..8_u32 {
-        let d = DVec3::new(f64::from(corner & 1), f64::from(corner >> 1 & 1), f64::from(corner >> 2));
+        let d =
+            DVec3::new(f64::from(corner & 1), f64::from(corner >> 1 & 1), f64::from(corner >> 2));
         let c = cell + d;
         let h = mix(c.x as i64, c.y as i64, c.z as i64, seed);
         let unit = |shift: u32| (h >> shift & 0xFFFF) as f64 / 32767.5 - 1.0;
@@ -76,7 +77,8 @@ pub fn fbm2(p: DVec2, octaves: u32, period: i64, seed: u64) -> f64 {
     for octave in 0..octaves {
         // Each octave is shifted so that their common zeros at lattice points do not coincide.
         let shift = if period > 0 { DVec2::ZERO } else { DVec2::splat(17.3 * f64::from(octave)) };
-        sum += gain * noise2(p * scale + shift, (period as f64 * scale) as i64, seed + u64::from(octave));
+        sum += gain
+            * noise2(p * scale + shift, (period as f64 * scale) as i64, seed + u64::from(octave));
         gain *= 0.5;
         scale *= 2.0;
     }
@@ -89,7 +91,8 @@ pub fn fbm3(p: DVec3, octaves: u32, seed: u64) -> f64 {
     let mut gain = 0.5;
     let mut scale = 1.0;
     for octave in 0..octaves {
-        sum += gain * noise3(p * scale + DVec3::splat(11.7 * f64::from(octave)), seed + u64::from(octave));
+        sum += gain
+            * noise3(p * scale + DVec3::splat(11.7 * f64::from(octave)), seed + u64::from(octave));
         gain *= 0.5;
         scale *= 2.0;
     }

@@ -22,8 +22,12 @@ const DEPTH_BITS: u32 = 15;
 /// Writes `normal.png`, `depth.png` and `mask.png` into `folder`.
 pub fn write_maps(folder: &Path, maps: &Maps) -> Outcome {
     fs::create_dir_all(folder)?;
-    let normal: Vec<u16> =
-        maps.normal.iter().flat_map(|n| n.to_array()).map(|c| quantised(c * 0.5 + 0.5, NORMAL_BITS)).collect();
+    let normal: Vec<u16> = maps
+        .normal
+        .iter()
+        .flat_map(|n| n.to_array())
+        .map(|c| quantised(c * 0.5 + 0.5, NORMAL_BITS))
+        .collect();
     let depth: Vec<u16> = maps.depth.iter().map(|z| quantised(*z, DEPTH_BITS)).collect();
     let mask: Vec<u8> = maps.coverage.iter().map(|c| (c * 255.0).round() as u8).collect();
     let size = (maps.width as u32, maps.height as u32);
@@ -44,7 +48,8 @@ fn bytes(values: &[u16]) -> Vec<u8> {
 
 fn write_png(path: &Path, data: &[u8], (w, h): (u32, u32), colour: ExtendedColorType) -> Outcome {
     let file = BufWriter::new(File::create(path)?);
-    PngEncoder::new_with_quality(file, CompressionType::Best, FilterType::Adaptive).write_image(data, w, h, colour)?;
+    PngEncoder::new_with_quality(file, CompressionType::Best, FilterType::Adaptive)
+        .write_image(data, w, h, colour)?;
     Ok(())
 }
 
@@ -57,7 +62,12 @@ pub fn write_picture(path: &Path, picture: &RgbaImage) -> Outcome {
     if path.extension().is_some_and(|ending| ending == "jpg") {
         let file = BufWriter::new(File::create(path)?);
         let rgb: Vec<u8> = picture.pixels().flat_map(|Rgba([r, g, b, _])| [*r, *g, *b]).collect();
-        JpegEncoder::new_with_quality(file, 88).write_image(&rgb, size.0, size.1, ExtendedColorType::Rgb8)?;
+        JpegEncoder::new_with_quality(file, 88).write_image(
+            &rgb,
+            size.0,
+            size.1,
+            ExtendedColorType::Rgb8,
+        )?;
         return Ok(());
     }
     if picture.pixels().all(|p| p[3] == 255) {

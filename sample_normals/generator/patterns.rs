@@ -44,7 +44,8 @@ pub fn knit() -> RgbaImage {
             let bow = 0.12 * (1.0 - (along * 1.6 - 0.8).powi(2));
             ((1.0 - away * away).max(0.0).sqrt() + bow, row, at)
         });
-        let (height, row, at) = legs.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0, DVec2::ZERO));
+        let (height, row, at) =
+            legs.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0, DVec2::ZERO));
         let row = row.rem_euclid(ROWS);
         let wool = match MOTIF[(row % 10) as usize][column.rem_euclid(8) as usize] {
             b'#' => srgb(0x9c2f2a),
@@ -68,9 +69,12 @@ pub fn tiles() -> RgbaImage {
         let q = (p / f64::from(SIDE) * TILES).fract_gl() * 2.0 - 1.0;
         let (far, angle) = (q.length(), q.y.atan2(q.x));
         let corner = (DVec2::ONE - q.abs()).length();
-        let over = |under: DVec3, colour: DVec3, edge: f64| under.lerp(colour, 1.0 - smooth_step(-0.012, 0.012, edge));
+        let over = |under: DVec3, colour: DVec3, edge: f64| {
+            under.lerp(colour, 1.0 - smooth_step(-0.012, 0.012, edge))
+        };
         let petals = 0.42 + 0.16 * (4.0 * angle).cos().abs();
-        let leaves = far * (1.0 + 0.9 * ((2.0 * (angle + 0.5 * FRAC_PI_2)).cos().abs() - 1.0).abs()) - 0.9;
+        let leaves =
+            far * (1.0 + 0.9 * ((2.0 * (angle + 0.5 * FRAC_PI_2)).cos().abs() - 1.0).abs()) - 0.9;
         let mut colour = over(white, pale, leaves);
         colour = over(colour, white, far - petals - 0.06);
         colour = over(colour, blue, far - petals);

@@ -1,6 +1,6 @@
-//! The sample pictures that are not landscapes: all of them listed, and a studio, a weave and lit spheres.
-//! Not here: textures (`textures`, `patterns`), decals (`decals`).
-//! Colours are linear light until [`encoded`]; textures whose doc says seamless repeat without a seam.
+//! The sample pictures that are not landscapes: all of them listed, and a studio, a weave and lit
+//! spheres. Not here: textures (`textures`, `patterns`), decals (`decals`). Colours are linear
+//! light until [`encoded`]; textures whose doc says seamless repeat without a seam.
 
 use std::f64::consts::{PI, TAU};
 
@@ -56,19 +56,34 @@ pub fn rolled_off(c: DVec3) -> DVec3 {
     DVec3::ONE - (-c).exp()
 }
 
-/// A picture from straight (not premultiplied) linear colour and alpha, averaged over `fine` × `fine` points per pixel.
-pub fn painted((width, height): (u32, u32), fine: u32, colour: impl Fn(DVec2) -> DVec4 + Sync) -> RgbaImage {
+/// A picture from straight (not premultiplied) linear colour and alpha, averaged over `fine` ×
+/// `fine` points per pixel.
+pub fn painted(
+    (width, height): (u32, u32),
+    fine: u32,
+    colour: impl Fn(DVec2) -> DVec4 + Sync,
+) -> RgbaImage {
     let pixel = |i: usize| {
         let corner = DVec2::new((i % width as usize) as f64, (i / width as usize) as f64);
         let mut sum = DVec4::ZERO;
         for k in 0..fine * fine {
-            let c = colour(corner + DVec2::new(f64::from(k % fine) + 0.5, f64::from(k / fine) + 0.5) / f64::from(fine));
+            let c = colour(
+                corner
+                    + DVec2::new(f64::from(k % fine) + 0.5, f64::from(k / fine) + 0.5)
+                        / f64::from(fine),
+            );
             sum += (c.truncate() * c.w).extend(c.w);
         }
         let rgb = sum.truncate() / sum.w.max(1e-9);
-        [encoded(rgb.x), encoded(rgb.y), encoded(rgb.z), (sum.w / f64::from(fine * fine) * 255.0).round() as u8]
+        [
+            encoded(rgb.x),
+            encoded(rgb.y),
+            encoded(rgb.z),
+            (sum.w / f64::from(fine * fine) * 255.0).round() as u8,
+        ]
     };
-    let pixels: Vec<[u8; 4]> = (0..(width * height) as usize).into_par_iter().with_min_len(256).map(pixel).collect();
+    let pixels: Vec<[u8; 4]> =
+        (0..(width * height) as usize).into_par_iter().with_min_len(256).map(pixel).collect();
     RgbaImage::from_fn(width, height, |x, y| Rgba(pixels[(y * width + x) as usize]))
 }
 
@@ -100,8 +115,8 @@ impl SoftBox {
     }
 }
 
-/// An angular map of the studio. The centre is straight behind the viewer, the circle that touches the sides straight
-/// ahead.
+/// An angular map of the studio. The centre is straight behind the viewer, the circle that touches
+/// the sides straight ahead.
 fn studio() -> RgbaImage {
     let side = f64::from(TEXTURE);
     let lights = soft_boxes();
@@ -115,8 +130,8 @@ fn studio() -> RgbaImage {
     })
 }
 
-/// The light of the studio itself, not rolled off: a latitude-longitude map of 256 × 128 pixels, its lamps far above
-/// white.
+/// The light of the studio itself, not rolled off: a latitude-longitude map of 256 × 128 pixels,
+/// its lamps far above white.
 pub fn studio_lat_long() -> (usize, usize, Vec<Rgb<f32>>) {
     const SIZE: (usize, usize) = (256, 128);
     const FINE: usize = 4;
@@ -142,11 +157,36 @@ fn studio_light(lights: &[SoftBox], d: DVec3) -> DVec3 {
 
 fn soft_boxes() -> [SoftBox; 5] {
     [
-        SoftBox { toward: v(-0.95, 0.5, 0.85), half: DVec2::new(0.4, 0.52), roll: 8.0, light: v(3.2, 3.1, 2.95) },
-        SoftBox { toward: v(1.2, 0.22, 0.35), half: DVec2::new(0.14, 0.95), roll: -4.0, light: v(2.0, 2.2, 2.5) },
-        SoftBox { toward: v(0.35, 1.3, 0.1), half: DVec2::new(0.6, 0.2), roll: 12.0, light: v(2.3, 2.25, 2.2) },
-        SoftBox { toward: v(-1.0, 0.1, -0.9), half: DVec2::new(0.12, 0.8), roll: 0.0, light: v(2.6, 2.0, 1.4) },
-        SoftBox { toward: v(0.55, -0.62, 0.8), half: DVec2::new(0.36, 0.13), roll: 20.0, light: v(0.55, 0.42, 0.3) },
+        SoftBox {
+            toward: v(-0.95, 0.5, 0.85),
+            half: DVec2::new(0.4, 0.52),
+            roll: 8.0,
+            light: v(3.2, 3.1, 2.95),
+        },
+        SoftBox {
+            toward: v(1.2, 0.22, 0.35),
+            half: DVec2::new(0.14, 0.95),
+            roll: -4.0,
+            light: v(2.0, 2.2, 2.5),
+        },
+        SoftBox {
+            toward: v(0.35, 1.3, 0.1),
+            half: DVec2::new(0.6, 0.2),
+            roll: 12.0,
+            light: v(2.3, 2.25, 2.2),
+        },
+        SoftBox {
+            toward: v(-1.0, 0.1, -0.9),
+            half: DVec2::new(0.12, 0.8),
+            roll: 0.0,
+            light: v(2.6, 2.0, 1.4),
+        },
+        SoftBox {
+            toward: v(0.55, -0.62, 0.8),
+            half: DVec2::new(0.36, 0.13),
+            roll: 20.0,
+            light: v(0.55, 0.42, 0.3),
+        },
     ]
 }
 
@@ -179,21 +219,25 @@ fn weave_normal() -> RgbaImage {
 fn studio_room(d: DVec3) -> DVec3 {
     let wall = srgb(0x1b2430).lerp(srgb(0x76808c), smooth_step(-0.15, 0.55, d.y - 0.25 * d.x));
     let ceiling = srgb(0x0c0f14);
-    let floor = srgb(0x2a2623).lerp(srgb(0x6e6258), smooth_step(-1.0, -0.1, d.y) * (0.55 + 0.45 * d.z));
+    let floor =
+        srgb(0x2a2623).lerp(srgb(0x6e6258), smooth_step(-1.0, -0.1, d.y) * (0.55 + 0.45 * d.z));
     let room = floor.lerp(wall, smooth_step(-0.22, 0.02, d.y));
     let room = room.lerp(ceiling, smooth_step(0.62, 0.95, d.y));
     // A black card on the right gives edges something dark to mirror.
-    let card =
-        smooth_step(0.12, 0.06, (d.x - 0.62).abs()) * smooth_step(0.66, 0.6, d.y.abs()) * smooth_step(0.0, 0.1, d.z);
+    let card = smooth_step(0.12, 0.06, (d.x - 0.62).abs())
+        * smooth_step(0.66, 0.6, d.y.abs())
+        * smooth_step(0.0, 0.1, d.z);
     room * (1.0 - 0.92 * card)
 }
 
-/// A lit sphere of pale wax: warm light from the upper left, a cool sky, red where little light comes through.
+/// A lit sphere of pale wax: warm light from the upper left, a cool sky, red where little light
+/// comes through.
 fn sphere_wax() -> RgbaImage {
     lit_sphere(|n| {
         let (key, sky) = (n.dot(v(-0.5, 0.6, 0.62)), 0.5 + 0.5 * n.y);
         let matt = srgb(0x6a2a20).lerp(srgb(0xf0c898), smooth_step(-0.35, 0.95, key));
-        let sheen = smooth_step(0.55, 0.9, key) * 0.25 + smooth_step(0.93, 0.985, n.dot(v(-0.28, 0.34, 0.9))) * 0.45;
+        let sheen = smooth_step(0.55, 0.9, key) * 0.25
+            + smooth_step(0.93, 0.985, n.dot(v(-0.28, 0.34, 0.9))) * 0.45;
         matt + srgb(0x27405f) * 0.35 * sky * (1.0 - n.z) + DVec3::splat(sheen)
     })
 }

@@ -1,5 +1,5 @@
-//! From a surface to its maps: an orthographic tracer with 4 × 4 samples where the picture needs them.
-//! Not here: the surfaces (`shapes`, `cloth`), files (`output`).
+//! From a surface to its maps: an orthographic tracer with 4 × 4 samples where the picture needs
+//! them. Not here: the surfaces (`shapes`, `cloth`), files (`output`).
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -30,7 +30,8 @@ pub trait Surface: Sync {
     /// The first hit at or below height `top` at the model point (x, y), +y up, if there is one.
     fn hit(&self, at: DVec2, top: f64) -> Option<Hit>;
 
-    /// A height above which no ray closer than `radius` to `at` meets the surface; none if no ray does.
+    /// A height above which no ray closer than `radius` to `at` meets the surface; none if no ray
+    /// does.
     fn clearance(&self, _at: DVec2, _radius: f64) -> Option<f64> {
         Some(f64::INFINITY)
     }
@@ -68,8 +69,9 @@ impl<F: Fn(DVec3) -> f64 + Sync> Surface for Traced<F> {
 impl<F: Fn(DVec3) -> f64 + Sync> Traced<F> {
     /// Height of the first root of the distance below `top`.
     ///
-    /// Sphere tracing crawls on grazing rays. Near the surface it therefore uses secant steps: along a ray that passes
-    /// a convex piece the distance is convex too, and the secant stops short of the root.
+    /// Sphere tracing crawls on grazing rays. Near the surface it therefore uses secant steps:
+    /// along a ray that passes a convex piece the distance is convex too, and the secant stops
+    /// short of the root.
     fn first_root(&self, at: DVec2, top: f64) -> Option<f64> {
         let mut z = top;
         let mut last = (top + 1.0, f64::INFINITY);
@@ -79,11 +81,16 @@ impl<F: Fn(DVec3) -> f64 + Sync> Traced<F> {
                 return Some(z);
             }
             if d < 0.0 {
-                return Some(if last.1.is_finite() { self.bracketed_root(at, last, (z, d)) } else { z });
+                return Some(if last.1.is_finite() {
+                    self.bracketed_root(at, last, (z, d))
+                } else {
+                    z
+                });
             }
             let fall = (last.1 - d) / (last.0 - z);
             let safe = d * self.stride;
-            let secant = if d < 0.04 && fall.is_finite() && fall > 0.0 { 0.95 * d / fall } else { safe };
+            let secant =
+                if d < 0.04 && fall.is_finite() && fall > 0.0 { 0.95 * d / fall } else { safe };
             last = (z, d);
             // The cap keeps a wrong guess from stepping through something thin.
             z -= secant.clamp(safe, (safe * 8.0).min(safe + 0.006)).max(0.5 * HIT);
@@ -122,7 +129,12 @@ impl<F: Fn(DVec3) -> f64 + Sync> Traced<F> {
             DVec3::new(-1.0, 1.0, -1.0),
             DVec3::new(1.0, 1.0, 1.0),
         ];
-        facing(CORNERS.iter().map(|corner| *corner * (self.distance)(p + *corner * GRADIENT_REACH)).sum())
+        facing(
+            CORNERS
+                .iter()
+                .map(|corner| *corner * (self.distance)(p + *corner * GRADIENT_REACH))
+                .sum(),
+        )
     }
 }
 
@@ -211,7 +223,11 @@ pub fn render(surface: &dyn Surface, view: &View) -> Maps {
         .with_min_len(w / 4)
         .map(|i| {
             if is_smooth(&centres, w, h, i, jump) {
-                centres[i].map_or(EMPTY, |hit| Pixel { coverage: 1.0, z: hit.z, normal: hit.normal })
+                centres[i].map_or(EMPTY, |hit| Pixel {
+                    coverage: 1.0,
+                    z: hit.z,
+                    normal: hit.normal,
+                })
             } else {
                 sub_sampled(&scene, i % w, i / w)
             }
@@ -226,7 +242,8 @@ const EMPTY: Pixel = Pixel { coverage: 0.0, z: 0.0, normal: DVec3::Z };
 fn is_smooth(hits: &[Option<Hit>], w: usize, h: usize, i: usize, jump: f64) -> bool {
     let (x, y) = (i % w, i / w);
     let rows = y.saturating_sub(1)..=(y + 1).min(h - 1);
-    let mut around = rows.flat_map(|v| (x.saturating_sub(1)..=(x + 1).min(w - 1)).map(move |u| v * w + u));
+    let mut around =
+        rows.flat_map(|v| (x.saturating_sub(1)..=(x + 1).min(w - 1)).map(move |u| v * w + u));
     around.all(|j| match (hits[i], hits[j]) {
         (None, None) => true,
         (Some(a), Some(b)) => a.normal.dot(b.normal) > CREASE_COS && (a.z - b.z).abs() < jump,
@@ -234,8 +251,9 @@ fn is_smooth(hits: &[Option<Hit>], w: usize, h: usize, i: usize, jump: f64) -> b
     })
 }
 
-/// Coverage from every sub-sample; depth and normal from the piece of surface that holds most of them. A mean over
-/// pieces would leave a pixel between the near and the far one, and a bent picture would show it as a fringe.
+/// Coverage from every sub-sample; depth and normal from the piece of surface that holds most of
+/// them. A mean over pieces would leave a pixel between the near and the far one, and a bent
+/// picture would show it as a fringe.
 fn sub_sampled(scene: &Scene, x: usize, y: usize) -> Pixel {
     let offset = |i: usize| (i as f64 + 0.5) / SUB as f64;
     let spots = (0..SUB * SUB).map(|i| (x as f64 + offset(i % SUB), y as f64 + offset(i / SUB)));
@@ -252,7 +270,8 @@ fn sub_sampled(scene: &Scene, x: usize, y: usize) -> Pixel {
     }
 }
 
-/// The hits of the piece that holds most sub-samples, the nearer of two equals; `step` lies between sub-samples.
+/// The hits of the piece that holds most sub-samples, the nearer of two equals; `step` lies between
+/// sub-samples.
 fn largest_piece(hits: &[Option<Hit>], step: f64) -> Vec<Hit> {
     let mut piece_of: Vec<usize> = (0..hits.len()).collect();
     let mut join = |i: usize, j: usize| {
@@ -272,13 +291,20 @@ fn largest_piece(hits: &[Option<Hit>], step: f64) -> Vec<Hit> {
         }
     }
     let pieces = (0..hits.len()).map(|piece| -> Vec<Hit> {
-        hits.iter().zip(&piece_of).filter(|(_, p)| **p == piece).filter_map(|(hit, _)| *hit).collect()
+        hits.iter()
+            .zip(&piece_of)
+            .filter(|(_, p)| **p == piece)
+            .filter_map(|(hit, _)| *hit)
+            .collect()
     });
     let nearest = |piece: &[Hit]| piece.iter().map(|hit| hit.z).fold(f64::NEG_INFINITY, f64::max);
-    pieces.max_by(|a, b| a.len().cmp(&b.len()).then(nearest(a).total_cmp(&nearest(b)))).unwrap_or_default()
+    pieces
+        .max_by(|a, b| a.len().cmp(&b.len()).then(nearest(a).total_cmp(&nearest(b))))
+        .unwrap_or_default()
 }
 
-/// Whether one slope may lead from one hit to the other. A near piece is steep where it ends, the far one is not.
+/// Whether one slope may lead from one hit to the other. A near piece is steep where it ends, the
+/// far one is not.
 fn is_one_piece(a: Hit, b: Hit, step: f64) -> bool {
     let slope = |hit: Hit| hit.normal.truncate().length() / hit.normal.z;
     (a.z - b.z).abs() < (2.0 * slope(a).min(slope(b)) + 4.0) * step
@@ -287,13 +313,15 @@ fn is_one_piece(a: Hit, b: Hit, step: f64) -> bool {
 /// Normalises depth over the surface and grows the surface's values outward.
 fn finish(mut pixels: Vec<Pixel>, width: usize, height: usize) -> Maps {
     let covered = pixels.iter().filter(|p| p.coverage > 0.0).map(|p| p.z);
-    let (far, near) = covered.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), z| (a.min(z), b.max(z)));
+    let (far, near) =
+        covered.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), z| (a.min(z), b.max(z)));
     let coverage = pixels.iter().map(|p| p.coverage).collect();
     // A few pixels of margin keep filters that straddle the silhouette on the surface's own values.
     for _ in 0..4 {
         pixels = grown(&pixels, width, height);
     }
-    let depth_of = |p: &Pixel| if p.coverage > 0.0 { (near - p.z) / (near - far).max(1e-9) } else { 1.0 };
+    let depth_of =
+        |p: &Pixel| if p.coverage > 0.0 { (near - p.z) / (near - far).max(1e-9) } else { 1.0 };
     Maps {
         width,
         height,
@@ -311,7 +339,8 @@ fn grown(pixels: &[Pixel], w: usize, h: usize) -> Vec<Pixel> {
         }
         let (x, y) = (i % w, i / w);
         let rows = y.saturating_sub(1)..=(y + 1).min(h - 1);
-        let around = rows.flat_map(|v| (x.saturating_sub(1)..=(x + 1).min(w - 1)).map(move |u| v * w + u));
+        let around =
+            rows.flat_map(|v| (x.saturating_sub(1)..=(x + 1).min(w - 1)).map(move |u| v * w + u));
         let valid: Vec<&Pixel> = around.map(|j| &pixels[j]).filter(|p| p.coverage > 0.0).collect();
         if valid.is_empty() {
             return pixels[i];

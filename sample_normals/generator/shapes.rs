@@ -1,6 +1,6 @@
-//! The sample objects, one function each: what they are made of and how they are framed.
-//! Not here: the medal (`medal`), the snail (`snail`), the sculpted head (`muse`), the draped cloth (`cloth`), how they
-//! are traced (`render`).
+//! The sample objects, one function each: what they are made of and how they are framed. Not here:
+//! the medal (`medal`), the snail (`snail`), the sculpted head (`muse`), the draped cloth
+//! (`cloth`), how they are traced (`render`).
 
 use std::f64::consts::TAU;
 
@@ -9,8 +9,8 @@ use glam::{DVec2, DVec3, DVec4};
 use crate::noise::{fbm3, hash};
 use crate::render::{Hit, Surface, Traced, View};
 use crate::sdf::{
-    capsule, carve, cylinder, ellipsoid, object_from_camera, rounded_box, smooth_max, smooth_min, smooth_step, sphere,
-    torus, v,
+    capsule, carve, cylinder, ellipsoid, object_from_camera, rounded_box, smooth_max, smooth_min,
+    smooth_step, sphere, torus, v,
 };
 use crate::tube::Tube;
 
@@ -21,7 +21,8 @@ pub struct Sample {
     pub view: View,
 }
 
-/// Frames `surface`: a picture of `width` × `height` whose centre and half width are in model units.
+/// Frames `surface`: a picture of `width` × `height` whose centre and half width are in model
+/// units.
 pub fn framed(
     name: &'static str,
     surface: impl Surface + 'static,
@@ -32,7 +33,10 @@ pub fn framed(
     Sample { name, surface: Box::new(surface), view: View { width, height, centre, half_width } }
 }
 
-pub fn traced(distance: impl Fn(DVec3) -> f64 + Sync + 'static, stride: f64) -> impl Surface + 'static {
+pub fn traced(
+    distance: impl Fn(DVec3) -> f64 + Sync + 'static,
+    stride: f64,
+) -> impl Surface + 'static {
     Traced { distance, reach: 2.5, stride }
 }
 
@@ -75,11 +79,16 @@ pub fn apple() -> Sample {
 /// A spindle torus, narrower below, with the five soft lobes of the calyx end.
 fn apple_flesh(p: DVec3) -> f64 {
     let taper = 1.0 + 0.16 * (0.25 - p.y);
-    let radial = DVec2::new(p.x, p.z).length() * (1.0 + 0.16 * (taper - 1.0).max(-0.5)) * taper.max(0.6);
+    let radial =
+        DVec2::new(p.x, p.z).length() * (1.0 + 0.16 * (taper - 1.0).max(-0.5)) * taper.max(0.6);
     let angle = p.z.atan2(p.x);
-    let lobes = 0.014 * (5.0 * angle).cos() * smooth_step(0.2, -0.8, p.y) * smooth_step(0.0, 0.3, radial);
+    let lobes =
+        0.014 * (5.0 * angle).cos() * smooth_step(0.2, -0.8, p.y) * smooth_step(0.0, 0.3, radial);
     let swell = 0.014 * (2.0 * angle + 0.7).cos() * smooth_step(0.0, 0.3, radial);
-    let flesh = DVec2::new((radial * radial + 0.0016).sqrt() - 0.3, (p.y + 0.05) * 0.86).length() - 0.5 - swell - lobes;
+    let flesh = DVec2::new((radial * radial + 0.0016).sqrt() - 0.3, (p.y + 0.05) * 0.86).length()
+        - 0.5
+        - swell
+        - lobes;
     flesh * 0.9
 }
 
@@ -91,8 +100,14 @@ fn leaf(p: DVec3) -> f64 {
     }
     let local = object_from_camera(18.0, 24.0, 14.0) * q;
     let along = local.x - 0.3;
-    let bent = v(along, local.y + 0.75 * along * along - 0.07 - 0.4 * (local.z * local.z + 2e-4).sqrt(), local.z);
-    let veins = 0.006 * (70.0 * (along * 0.75 - local.z.abs() * 0.6)).sin() * smooth_step(0.0, 0.05, local.z.abs());
+    let bent = v(
+        along,
+        local.y + 0.75 * along * along - 0.07 - 0.4 * (local.z * local.z + 2e-4).sqrt(),
+        local.z,
+    );
+    let veins = 0.006
+        * (70.0 * (along * 0.75 - local.z.abs() * 0.6)).sin()
+        * smooth_step(0.0, 0.05, local.z.abs());
     let width = 0.17 * (1.0 - 0.55 * along);
     let lens = ellipsoid(bent, v(0.36, 0.036, width)) + veins * 0.5;
     lens * 0.7
@@ -130,7 +145,9 @@ fn teapot_body(p: DVec3) -> f64 {
     let angle = p.z.atan2(p.x);
     let radial = DVec2::new(p.x, p.z).length();
     // Melon ribs: rounded lobes with a narrow valley, fading out at the shoulder and the foot.
-    let fade = smooth_step(-0.5, -0.25, p.y) * smooth_step(0.36, 0.12, p.y) * smooth_step(0.1, 0.4, radial);
+    let fade = smooth_step(-0.5, -0.25, p.y)
+        * smooth_step(0.36, 0.12, p.y)
+        * smooth_step(0.1, 0.4, radial);
     let ribs = 0.03 * fade * (((7.0 * angle).sin().powi(2) + 0.02).sqrt() - 0.6);
     let belly = ellipsoid(p - v(0.0, -0.1, 0.0), v(0.62, 0.47, 0.62)) - ribs;
     let foot = cylinder(p - v(0.0, -0.56, 0.0), 0.34, 0.05, 0.03);
@@ -153,7 +170,9 @@ pub fn still_life() -> Sample {
         let ring = object_from_camera(28.0, 78.0, 16.0) * (p - v(-0.28, 0.1, 0.1));
         let block = object_from_camera(34.0, 0.0, 0.0) * (p - v(-0.72, -0.5, -0.75));
         let column = cylinder(p - v(0.46, -0.02, -1.0), 0.27, 0.86, 0.05);
-        let flutes = 0.018 * (12.0 * (p.z + 1.0).atan2(p.x - 0.46)).cos() * smooth_step(0.86, 0.7, (p.y + 0.02).abs());
+        let flutes = 0.018
+            * (12.0 * (p.z + 1.0).atan2(p.x - 0.46)).cos()
+            * smooth_step(0.86, 0.7, (p.y + 0.02).abs());
         let pieces = [
             torus(ring, 0.56, 0.15),
             sphere(p - v(0.3, -0.5, 0.75), 0.36),
@@ -181,7 +200,11 @@ pub fn knot() -> Sample {
     let control: Vec<DVec4> = (0..60)
         .map(|i| {
             let t = f64::from(i) / 60.0 * TAU;
-            let at = v(t.sin() + 2.0 * (2.0 * t).sin(), t.cos() - 2.0 * (2.0 * t).cos(), -1.25 * (3.0 * t).sin());
+            let at = v(
+                t.sin() + 2.0 * (2.0 * t).sin(),
+                t.cos() - 2.0 * (2.0 * t).cos(),
+                -1.25 * (3.0 * t).sin(),
+            );
             (at * 0.3).extend(0.195 + 0.025 * (3.0 * t + 0.6).cos())
         })
         .collect();
@@ -217,8 +240,8 @@ fn heavier(stroke: &[DVec4]) -> Vec<DVec4> {
     stroke.iter().map(|p| p.truncate().extend(p.w * 1.16)).collect()
 }
 
-/// The stroke of "R" after its stem, and of "ilievo": x, y, lift, radius. Thin going up, full coming down;
-/// where the stroke crosses itself the later pass lies on top.
+/// The stroke of "R" after its stem, and of "ilievo": x, y, lift, radius. Thin going up, full
+/// coming down; where the stroke crosses itself the later pass lies on top.
 const LETTER_RUN: [[f64; 4]; 54] = [
     [-0.3, 1.55, 0.1, 0.1],
     [-0.28, 1.9, 0.14, 0.13],
@@ -293,7 +316,9 @@ pub fn moon() -> Sample {
         let dir = p / r.max(1e-6);
         let plains = smooth_step(-0.12, 0.2, fbm3(dir * 1.4 + DVec3::splat(4.0), 3, 77));
         let rough = 0.014 * fbm3(dir * 7.0, 4, 9) * (0.35 + 0.65 * plains);
-        r - 1.0 - rough - craters.iter().map(|c| c.height(dir)).sum::<f64>() * (0.45 + 0.55 * plains)
+        r - 1.0
+            - rough
+            - craters.iter().map(|c| c.height(dir)).sum::<f64>() * (0.45 + 0.55 * plains)
     };
     framed("moon", traced(distance, 0.8), (480, 480), DVec2::ZERO, 1.07)
 }

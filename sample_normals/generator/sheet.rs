@@ -1,5 +1,5 @@
-//! A smooth two-sided sheet through a grid of points: a bicubic B-spline, drawn finely into a depth buffer.
-//! Rays read the buffer; its samples are exactly the renderer's sub-samples.
+//! A smooth two-sided sheet through a grid of points: a bicubic B-spline, drawn finely into a depth
+//! buffer. Rays read the buffer; its samples are exactly the renderer's sub-samples.
 
 use glam::{DVec2, DVec3};
 
@@ -30,7 +30,8 @@ impl Sheet {
         let corner = view.centre + DVec2::new(-(width as f64), height as f64) / (2.0 * scale);
         let mut sheet = Self { width, height, scale, corner, samples: vec![None; width * height] };
         let across = (side - 3) * FINE + 1;
-        let row = |j: usize| -> Vec<Vertex> { (0..across).map(|i| spline(points, side, i, j)).collect() };
+        let row =
+            |j: usize| -> Vec<Vertex> { (0..across).map(|i| spline(points, side, i, j)).collect() };
         let mut above = row(0);
         for j in 1..across {
             let below = row(j);
@@ -45,7 +46,8 @@ impl Sheet {
 
     /// Draws one facet, keeping the samples nearer than what is there.
     fn draw(&mut self, facet: [Vertex; 3]) {
-        let [a, b, c] = facet.map(|(p, _)| (p.truncate() - self.corner) * DVec2::new(self.scale, -self.scale));
+        let [a, b, c] =
+            facet.map(|(p, _)| (p.truncate() - self.corner) * DVec2::new(self.scale, -self.scale));
         let area = (b - a).perp_dot(c - a);
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
         if area.abs() < 1e-12 || low.min_element() < 0.0 {
@@ -57,14 +59,20 @@ impl Sheet {
                 let q = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
                 let (wb, wc) = ((q - a).perp_dot(c - a) / area, (b - a).perp_dot(q - a) / area);
                 if wb >= -1e-9 && wc >= -1e-9 && wb + wc <= 1.0 + 1e-9 {
-                    self.keep_nearer(y as usize * self.width + x as usize, &facet, [1.0 - wb - wc, wb, wc]);
+                    self.keep_nearer(
+                        y as usize * self.width + x as usize,
+                        &facet,
+                        [1.0 - wb - wc, wb, wc],
+                    );
                 }
             }
         }
     }
 
     fn keep_nearer(&mut self, i: usize, facet: &[Vertex; 3], weights: [f64; 3]) {
-        let mean = |pick: fn(&Vertex) -> DVec3| facet.iter().zip(weights).map(|(v, w)| pick(v) * w).sum::<DVec3>();
+        let mean = |pick: fn(&Vertex) -> DVec3| {
+            facet.iter().zip(weights).map(|(v, w)| pick(v) * w).sum::<DVec3>()
+        };
         let z = mean(|v| v.0).z;
         if self.samples[i].is_none_or(|hit| hit.z < z) {
             let normal = mean(|v| v.1);
@@ -76,7 +84,8 @@ impl Sheet {
 }
 
 impl Surface for Sheet {
-    /// Bilinear between the four nearest samples, exact at each of them; the nearest where one of them misses.
+    /// Bilinear between the four nearest samples, exact at each of them; the nearest where one of
+    /// them misses.
     fn hit(&self, at: DVec2, _top: f64) -> Option<Hit> {
         let q = (at - self.corner) * DVec2::new(self.scale, -self.scale) - DVec2::splat(0.5);
         let (base, f) = ((q + DVec2::splat(1e-6)).floor(), q - (q + DVec2::splat(1e-6)).floor());
@@ -91,7 +100,9 @@ impl Surface for Sheet {
             return sample(f.x.round(), f.y.round());
         }
         let weights = [(1.0 - f.x) * (1.0 - f.y), f.x * (1.0 - f.y), (1.0 - f.x) * f.y, f.x * f.y];
-        let blend = |pick: fn(&Hit) -> DVec3| hits.iter().zip(weights).map(|(h, w)| pick(h) * w).sum::<DVec3>();
+        let blend = |pick: fn(&Hit) -> DVec3| {
+            hits.iter().zip(weights).map(|(h, w)| pick(h) * w).sum::<DVec3>()
+        };
         Some(Hit { z: blend(|h| DVec3::splat(h.z)).z, normal: facing(blend(|h| h.normal)) })
     }
 }
@@ -118,6 +129,7 @@ fn spline(points: &[DVec3], side: usize, i: usize, j: usize) -> Vertex {
 fn basis(t: f64) -> ([f64; 4], [f64; 4]) {
     let s = 1.0 - t;
     let (t2, t3) = (t * t, t * t * t);
-    let weights = [s * s * s, 3.0 * t3 - 6.0 * t2 + 4.0, -3.0 * t3 + 3.0 * t2 + 3.0 * t + 1.0, t3].map(|w| w / 6.0);
+    let weights = [s * s * s, 3.0 * t3 - 6.0 * t2 + 4.0, -3.0 * t3 + 3.0 * t2 + 3.0 * t + 1.0, t3]
+        .map(|w| w / 6.0);
     (weights, [-0.5 * s * s, 1.5 * t2 - 2.0 * t, -1.5 * t2 + t + 0.5, 0.5 * t2])
 }

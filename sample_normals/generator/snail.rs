@@ -64,7 +64,8 @@ fn snail_mouth() -> Tube {
     Tube::through(&(-6..=6).map(spot).collect::<Vec<_>>())
 }
 
-/// Control points of the shell's coil: three and a half turns, each 2.1 times as wide as the one before.
+/// Control points of the shell's coil: three and a half turns, each 2.1 times as wide as the one
+/// before.
 fn shell_spiral() -> Vec<DVec4> {
     const TURNS: f64 = 3.4;
     const GROWTH: f64 = 2.15;

@@ -10,7 +10,8 @@ use crate::sdf::smooth_step;
 /// A 2/2 twill in a tartan sett. Seamless.
 pub fn tartan() -> RgbaImage {
     const THREADS: i64 = 64;
-    let (navy, green, red, cream) = (srgb(0x1c2b4a), srgb(0x24503f), srgb(0xa3242c), srgb(0xe8dcc0));
+    let (navy, green, red, cream) =
+        (srgb(0x1c2b4a), srgb(0x24503f), srgb(0xa3242c), srgb(0xe8dcc0));
     let sett = move |thread: i64| match thread.rem_euclid(THREADS / 2) {
         0..=9 => navy,
         10 | 11 => red,
@@ -45,15 +46,24 @@ pub fn scales() -> RgbaImage {
     const ACROSS: f64 = 10.0;
     painted((TEXTURE, TEXTURE), 3, |p| {
         let q = p / f64::from(TEXTURE) * DVec2::new(ACROSS, ACROSS * 2.0);
-        // Rows overlap downward: the first scale found, from the lowest row that can reach here, is on top.
+        // Rows overlap downward: the first scale found, from the lowest row that can reach here, is
+        // on top.
         let base = q.y.floor() as i64;
         for row in (base - 4..=base).map(|r| r + 1) {
             let shift = if row.rem_euclid(2) == 0 { 0.0 } else { 0.5 };
             let column = (q.x - shift).floor() as i64;
-            let local = DVec2::new(q.x - shift - column as f64 - 0.5, (q.y - row as f64) * 0.5 + 0.12);
+            let local =
+                DVec2::new(q.x - shift - column as f64 - 0.5, (q.y - row as f64) * 0.5 + 0.12);
             let rim = scale_outline(local);
             if rim < 0.0 && local.y > -0.5 {
-                return scale_colour(local, rim, column.rem_euclid(ACROSS as i64), row.rem_euclid(20), p).extend(1.0);
+                return scale_colour(
+                    local,
+                    rim,
+                    column.rem_euclid(ACROSS as i64),
+                    row.rem_euclid(20),
+                    p,
+                )
+                .extend(1.0);
             }
         }
         srgb(0x0b1510).extend(1.0)
@@ -62,7 +72,10 @@ pub fn scales() -> RgbaImage {
 
 /// Negative inside a scale that hangs from (0, −0.5) and ends in a blunt point below.
 fn scale_outline(q: DVec2) -> f64 {
-    let width = 0.53 * (1.0 - smooth_step(0.0, 0.62, q.y) * (q.y / 0.62).clamp(0.0, 1.0).powf(1.5)).max(0.0).sqrt();
+    let width = 0.53
+        * (1.0 - smooth_step(0.0, 0.62, q.y) * (q.y / 0.62).clamp(0.0, 1.0).powf(1.5))
+            .max(0.0)
+            .sqrt();
     if q.y > 0.62 { 1.0 } else { (q.x.abs() - width).max(-1.0) }
 }
 
@@ -89,7 +102,8 @@ pub fn marble() -> RgbaImage {
         let vein = |k: f64, width: f64| (-((cloud - k).abs() / width)).exp();
         let fine = (-(fbm2(q * 2.0 + again * 1.6, 5, 8, 300).abs() / 0.035)).exp();
         let stone = srgb(0xf1ece4).lerp(srgb(0xc9c3bd), smooth_step(-0.5, 0.6, cloud));
-        let stone = stone.lerp(srgb(0x56595f), (0.8 * vein(0.1, 0.045) + 0.4 * vein(-0.25, 0.03)).min(0.9));
+        let stone =
+            stone.lerp(srgb(0x56595f), (0.8 * vein(0.1, 0.045) + 0.4 * vein(-0.25, 0.03)).min(0.9));
         stone.lerp(srgb(0xa98a5e), 0.4 * fine * smooth_step(-0.1, 0.4, warp.x)).extend(1.0)
     })
 }
@@ -111,15 +125,18 @@ pub fn bricks() -> RgbaImage {
         let tag = hash(column.rem_euclid(COLUMNS), row.rem_euclid(ROWS), 8);
         let grain = fbm2(unit * 64.0, 4, 64, 11);
         let stain = fbm2(unit * 8.0, 5, 8, 31);
-        let clay = srgb(0xa4523a)
-            .lerp(srgb(0x6f3a30), tag)
-            .lerp(srgb(0xc98a5c), smooth_step(0.75, 1.0, hash(column.rem_euclid(COLUMNS), row.rem_euclid(ROWS), 9)));
+        let clay = srgb(0xa4523a).lerp(srgb(0x6f3a30), tag).lerp(
+            srgb(0xc98a5c),
+            smooth_step(0.75, 1.0, hash(column.rem_euclid(COLUMNS), row.rem_euclid(ROWS), 9)),
+        );
         let clay = clay * (1.0 + 0.45 * grain + 0.5 * stain);
         let mortar = srgb(0xb3a898) * (0.85 + 0.35 * grain);
         // Light from above left: lit upper edges, shade below.
         let bevel = smooth_step(0.1, 0.0, inset) * (if fy < 0.5 { 0.28 } else { -0.35 });
         let shade = 1.0 - 0.5 * smooth_step(-0.01, -0.05, inset) * smooth_step(0.12, 0.0, fy);
-        (mortar.lerp(clay * (1.0 + bevel), smooth_step(-0.012, 0.02, inset)).max(DVec3::ZERO) * shade).extend(1.0)
+        (mortar.lerp(clay * (1.0 + bevel), smooth_step(-0.012, 0.02, inset)).max(DVec3::ZERO)
+            * shade)
+            .extend(1.0)
     })
 }
 

@@ -7,7 +7,8 @@ use glam::{DVec3, DVec4};
 const SAMPLES_PER_SPAN: usize = 6;
 /// Newton steps from the coarse minimum; four already reach 1e-10 on the sample objects.
 const NEWTON_STEPS: usize = 5;
-/// Beyond this a lower bound replaces the distance. Wider than any blend between a tube and its neighbours.
+/// Beyond this a lower bound replaces the distance. Wider than any blend between a tube and its
+/// neighbours.
 const FAR: f64 = 0.16;
 
 /// A tube of varying radius along a cubic B-spline.
@@ -24,7 +25,8 @@ pub struct Tube {
 struct Jet(DVec4, DVec4, DVec4);
 
 impl Tube {
-    /// An open tube; the spline starts and ends at the first and last control point, with round caps.
+    /// An open tube; the spline starts and ends at the first and last control point, with round
+    /// caps.
     pub fn open(control: &[DVec4]) -> Self {
         let (first, last) = (control[0], control[control.len() - 1]);
         // Reflected phantom points make the spline pass through its ends with a live tangent.
@@ -40,8 +42,8 @@ impl Tube {
 
     /// An open tube close to every given point, for shapes drawn by hand.
     ///
-    /// A Catmull–Rom curve through the points is resampled and used as control points: what it lacks in
-    /// second derivatives the spline restores.
+    /// A Catmull–Rom curve through the points is resampled and used as control points: what it
+    /// lacks in second derivatives the spline restores.
     pub fn through(points: &[DVec4]) -> Self {
         const RESAMPLE: usize = 3;
         let at = |i: isize| points[i.clamp(0, points.len() as isize - 1) as usize];
@@ -50,7 +52,8 @@ impl Tube {
             let (a, b, c, d) = (at(i - 1), at(i), at(i + 1), at(i + 2));
             for step in 0..RESAMPLE {
                 let t = step as f64 / RESAMPLE as f64;
-                let bend = (a * 2.0 - b * 5.0 + c * 4.0 - d) * t * t + (b * 3.0 - a - c * 3.0 + d) * t * t * t;
+                let bend = (a * 2.0 - b * 5.0 + c * 4.0 - d) * t * t
+                    + (b * 3.0 - a - c * 3.0 + d) * t * t * t;
                 control.push(b + ((c - a) * t + bend) * 0.5);
             }
         }
@@ -65,7 +68,8 @@ impl Tube {
             let points: Vec<DVec4> = points.map(|t| tube.jet(span, t).0).collect();
             let hull = &tube.control[span..span + 4];
             let centre = hull.iter().map(|c| c.truncate()).sum::<DVec3>() / 4.0;
-            let reach = points.iter().map(|s| s.truncate().distance(centre) + s.w).fold(0.0, f64::max);
+            let reach =
+                points.iter().map(|s| s.truncate().distance(centre) + s.w).fold(0.0, f64::max);
             // Between samples the curve leaves their hull by less than this share.
             tube.bounds.push((centre, reach * 1.05));
             tube.samples.extend(points);
@@ -82,7 +86,11 @@ impl Tube {
             + c[2] * (-3.0 * t3 + 3.0 * t2 + 3.0 * t + 1.0)
             + c[3] * t3)
             / 6.0;
-        let d1 = (c[0] * (-s * s) + c[1] * (3.0 * t2 - 4.0 * t) + c[2] * (-3.0 * t2 + 2.0 * t + 1.0) + c[3] * t2) * 0.5;
+        let d1 = (c[0] * (-s * s)
+            + c[1] * (3.0 * t2 - 4.0 * t)
+            + c[2] * (-3.0 * t2 + 2.0 * t + 1.0)
+            + c[3] * t2)
+            * 0.5;
         let d2 = c[0] * s + c[1] * (3.0 * t - 2.0) + c[2] * (1.0 - 3.0 * t) + c[3] * t;
         Jet(at, d1, d2)
     }
@@ -92,8 +100,8 @@ impl Tube {
         self.nearest(p).0
     }
 
-    /// Signed distance, and where along the tube (in spans) the nearest point lies. Farther than [`FAR`]: a lower
-    /// bound, and the span it comes from.
+    /// Signed distance, and where along the tube (in spans) the nearest point lies. Farther than
+    /// [`FAR`]: a lower bound, and the span it comes from.
     pub fn nearest(&self, p: DVec3) -> (f64, f64) {
         let lower = |span: usize| p.distance(self.bounds[span].0) - self.bounds[span].1;
         let mut first = (f64::INFINITY, 0);
@@ -124,11 +132,13 @@ impl Tube {
         let coarse = row.iter().map(|s| p.distance(s.truncate()) - s.w).enumerate();
         let (index, found) = coarse.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, 0.0));
         // The true minimum lies at most half a sample step from the coarse one.
-        if found - row[0].distance(row[SAMPLES_PER_SPAN]).max(row[0].distance(row[1]) * 2.0) > best {
+        if found - row[0].distance(row[SAMPLES_PER_SPAN]).max(row[0].distance(row[1]) * 2.0) > best
+        {
             return (found, span as f64);
         }
         let step = 1.0 / SAMPLES_PER_SPAN as f64;
-        let (low, high) = ((index as f64 - 1.0).max(0.0) * step, ((index + 1) as f64 * step).min(1.0));
+        let (low, high) =
+            ((index as f64 - 1.0).max(0.0) * step, ((index + 1) as f64 * step).min(1.0));
         let mut t = index as f64 * step;
         for _ in 0..NEWTON_STEPS {
             let Jet(at, d1, d2) = self.jet(span, t);
@@ -136,7 +146,8 @@ impl Tube {
             let m = e.length().max(1e-9);
             let slope = e.dot(d1.truncate()) / m;
             let g1 = slope - d1.w;
-            let g2 = (d1.truncate().length_squared() + e.dot(d2.truncate()) - slope * slope) / m - d2.w;
+            let g2 =
+                (d1.truncate().length_squared() + e.dot(d2.truncate()) - slope * slope) / m - d2.w;
             let next = if g2 > 1e-12 { t - g1 / g2 } else { t - g1.signum() * step * 0.25 };
             let moved = (next.clamp(low, high) - t).abs();
             t = next.clamp(low, high);

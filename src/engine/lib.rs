@@ -1,10 +1,10 @@
-//! The engine: surfaces, the operators that bend marks over them, brushes, shading and the layered document. Floors 0
-//! to 4 (`docs/ARCHITECTURE.md`). It opens no file, reads no clock and starts no thread of its own. It gives the same
-//! bytes on every run, with any number of threads.
+//! The engine: surfaces, the operators that bend marks over them, brushes, shading and the layered
+//! document. Floors 0 to 4 (`docs/ARCHITECTURE.md`). It opens no file, reads no clock and starts no
+//! thread of its own. It gives the same bytes on every run, with any number of threads.
 //!
-//! A picture of an object's shape (a normal map, a depth map, a mask) is a [`surface::Surface`]. Every dab, gradient
-//! and photo is a footprint (*where*: operator, anchors, weights) times a source (*what*: tip, ramp, image), bent
-//! over that surface before it lands on a tile.
+//! A picture of an object's shape (a normal map, a depth map, a mask) is a [`surface::Surface`].
+//! Every dab, gradient and photo is a footprint (*where*: operator, anchors, weights) times a
+//! source (*what*: tip, ramp, image), bent over that surface before it lands on a tile.
 //!
 //! | floor | module | holds |
 //! |---|---|---|

@@ -1,5 +1,6 @@
-//! What memory may be used for: buffers that ask before they are made, and the ceiling of what is kept for speed alone.
-//! Floor 0. Not here: how much the machine has, which floors above read and pass in.
+//! What memory may be used for: buffers that ask before they are made, and the ceiling of what is
+//! kept for speed alone. Floor 0. Not here: how much the machine has, which floors above read and
+//! pass in.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -11,10 +12,11 @@ pub struct OutOfMemory {
     pub bytes: u64,
 }
 
-/// `len` copies of a value, or a refusal where the allocator has no room for them: `vec!` would end the program.
+/// `len` copies of a value, or a refusal where the allocator has no room for them: `vec!` would end
+/// the program.
 ///
-/// The room is asked for and given back before the buffer is made, since a buffer of zeros comes from the system
-/// untouched, which one that is filled by hand does not.
+/// The room is asked for and given back before the buffer is made, since a buffer of zeros comes
+/// from the system untouched, which one that is filled by hand does not.
 pub fn filled<T: Clone>(len: usize, value: T) -> Result<Vec<T>, OutOfMemory> {
     let mut probe: Vec<T> = Vec::new();
     let bytes = (len as u64).saturating_mul(size_of::<T>() as u64);
@@ -23,7 +25,8 @@ pub fn filled<T: Clone>(len: usize, value: T) -> Result<Vec<T>, OutOfMemory> {
     Ok(vec![value; len])
 }
 
-/// As [`filled`] for those who cannot fail: unwinds with an [`OutOfMemory`], which [`caught`] makes a refusal of.
+/// As [`filled`] for those who cannot fail: unwinds with an [`OutOfMemory`], which [`caught`] makes
+/// a refusal of.
 pub fn filled_or_unwind<T: Clone>(len: usize, value: T) -> Vec<T> {
     filled(len, value).unwrap_or_else(|refused| std::panic::panic_any(refused))
 }
@@ -41,9 +44,11 @@ pub fn copied_or_unwind<T: Clone>(values: &[T]) -> Vec<T> {
 /// Does work of which some buffer may find no room.
 pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, OutOfMemory> {
     // What the work made is dropped with it; nothing half done is seen again.
-    std::panic::catch_unwind(std::panic::AssertUnwindSafe(work)).map_err(|payload| match payload.downcast() {
-        Ok(refused) => *refused,
-        Err(other) => std::panic::resume_unwind(other),
+    std::panic::catch_unwind(std::panic::AssertUnwindSafe(work)).map_err(|payload| {
+        match payload.downcast() {
+            Ok(refused) => *refused,
+            Err(other) => std::panic::resume_unwind(other),
+        }
     })
 }
 
@@ -69,14 +74,17 @@ impl CachePool {
     const fn new(ceiling: u64) -> Self {
         Self { ceiling: AtomicU64::new(ceiling), kept: AtomicU64::new(0) }
     }
+
     /// Sets how much may be kept. What is kept already stays.
     pub fn set_ceiling(&self, bytes: u64) {
         self.ceiling.store(bytes, Ordering::Relaxed);
     }
+
     /// How much may be kept.
     pub fn ceiling(&self) -> u64 {
         self.ceiling.load(Ordering::Relaxed)
     }
+
     /// `None` where all that is kept would be more than the ceiling.
     pub fn reserve(&'static self, bytes: u64) -> Option<CacheReservation> {
         let ceiling = self.ceiling();
@@ -99,9 +107,9 @@ impl Drop for CacheReservation {
     }
 }
 
-/// The value of a cell, or a new one. Nothing is held while it is made: a worker that waits for others there may be
-/// given work that needs the same cell, and would then wait for itself. So two threads may both make it; the results
-/// are equal.
+/// The value of a cell, or a new one. Nothing is held while it is made: a worker that waits for
+/// others there may be given work that needs the same cell, and would then wait for itself. So two
+/// threads may both make it; the results are equal.
 pub fn once<T>(cell: &OnceLock<T>, make: impl FnOnce() -> T) -> &T {
     if let Some(known) = cell.get() {
         return known;
@@ -120,7 +128,9 @@ pub fn made_once<K: PartialEq, V>(
     make: impl FnOnce() -> V,
 ) -> Arc<V> {
     let lock = || made.lock().unwrap_or_else(PoisonError::into_inner);
-    let find = |made: &[(K, Arc<V>)]| made.iter().find(|(known, _)| *known == key).map(|(_, value)| value.clone());
+    let find = |made: &[(K, Arc<V>)]| {
+        made.iter().find(|(known, _)| *known == key).map(|(_, value)| value.clone())
+    };
     if let Some(value) = find(&lock()) {
         return value;
     }
@@ -148,11 +158,13 @@ mod tests {
         assert_eq!(caught(|| filled_or_unwind(usize::MAX / 16, [0u64; 2]).len()), Err(refused));
         assert_eq!(filled(3, 7u8), Ok(vec![7; 3]));
     }
+
     #[test]
     fn other_panics_are_passed_on() {
         let passed = std::panic::catch_unwind(|| caught(|| panic!("another")));
         assert_eq!(passed.unwrap_err().downcast_ref(), Some(&"another"));
     }
+
     #[test]
     fn what_is_kept_stays_below_the_ceiling_and_is_given_back() {
         assert!(DABS.reserve(u64::MAX).is_none());
@@ -162,8 +174,12 @@ mod tests {
         drop(kept);
         assert!(DABS.reserve(1000).is_some());
     }
+
     #[test]
     fn bytes_are_spoken() {
-        assert_eq!([312_000_000, 900_000_000, 1_440_000_000].map(spoken), ["312 MB", "900 MB", "1.4 GB"]);
+        assert_eq!(
+            [312_000_000, 900_000_000, 1_440_000_000].map(spoken),
+            ["312 MB", "900 MB", "1.4 GB"]
+        );
     }
 }

@@ -54,12 +54,15 @@ mod tests {
 
     #[test]
     fn texts_are_those_of_the_standard() {
-        for (bytes, text) in [("", ""), ("f", "Zg"), ("fo", "Zm8"), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")] {
+        for (bytes, text) in
+            [("", ""), ("f", "Zg"), ("fo", "Zm8"), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")]
+        {
             assert_eq!(encode(bytes.as_bytes()), text);
             assert_eq!(decode(text).unwrap(), bytes.as_bytes());
         }
         assert_eq!(encode(&[255, 254, 253]), "//79");
     }
+
     #[test]
     fn what_was_not_written_so_is_refused() {
         for text in ["Z", "Zg==", "Zh", "Zm9", "Zm9v\n", "Zmé"] {

@@ -28,7 +28,8 @@ pub struct Bitmap {
 
 const READABLE: &str = "PNG, JPEG, WebP, TIFF, BMP, TGA, HDR or EXR";
 
-/// The formats of this module; the flag says whether a file of a few bytes may hold any number of pixels.
+/// The formats of this module; the flag says whether a file of a few bytes may hold any number of
+/// pixels.
 const FORMATS: [(ImageFormat, &str, bool); 7] = [
     (ImageFormat::Png, "PNG", false),
     (ImageFormat::Jpeg, "JPEG", false),
@@ -48,7 +49,10 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
         // A PNG may have lost only its end marker; if pixels are missing, decoding fails again.
         let whole = [bytes, &end].concat();
         if let Ok(bitmap) = decode_as(file, &whole, budget, found) {
-            return Ok(Bitmap { warning: Some("the PNG has no end marker; all its pixels are there"), ..bitmap });
+            return Ok(Bitmap {
+                warning: Some("the PNG has no end marker; all its pixels are there"),
+                ..bitmap
+            });
         }
     }
     result
@@ -61,7 +65,10 @@ fn decode_as(
     (format, name, unbounded): (ImageFormat, &'static str, bool),
 ) -> Result<Bitmap> {
     if format == ImageFormat::Jpeg && !ends(bytes) {
-        return Err(Error::decode(file, "the JPEG data ends before its end marker; the file is cut short"));
+        return Err(Error::decode(
+            file,
+            "the JPEG data ends before its end marker; the file is cut short",
+        ));
     }
     let decoded = catch_unwind(AssertUnwindSafe(|| {
         if format == ImageFormat::Tiff {
@@ -75,7 +82,12 @@ fn decode_as(
         if !unbounded {
             let decoded = decoder.total_bytes().saturating_mul(8);
             let stored = weight::png_pixel_bits(bytes).filter(|_| format == ImageFormat::Png);
-            weight::plausible(file, size, stored.map_or(decoded, |bits| bits * size.area() as u64), bytes.len())?;
+            weight::plausible(
+                file,
+                size,
+                stored.map_or(decoded, |bits| bits * size.area() as u64),
+                bytes.len(),
+            )?;
         }
         if format == ImageFormat::Jpeg {
             passes::check(file, bytes, size, budget)?;
@@ -83,7 +95,8 @@ fn decode_as(
         room(file, size, decoder.total_bytes(), budget)?;
         let icc = decoder.icc_profile().ok().flatten();
         let is_lost = icc.is_none() && format == ImageFormat::Png && weight::has_png_profile(bytes);
-        let warning = is_lost.then_some("its colour profile is damaged or unpacks without end, and was left out");
+        let warning = is_lost
+            .then_some("its colour profile is damaged or unpacks without end, and was left out");
         let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
         let image = DynamicImage::from_decoder(decoder).map_err(|e| failure(file, name, &e))?;
         Ok(Bitmap { image, icc, orientation, format: name, warning })
@@ -101,7 +114,12 @@ fn sniff(file: &Path, bytes: &[u8]) -> Result<(ImageFormat, &'static str, bool)>
         _ if is_big_tiff => ImageFormat::Tiff,
         Ok(format) => format,
         Err(_) if is_tga => ImageFormat::Tga,
-        Err(_) => return Err(Error::decode(file, format!("the file does not begin like a {READABLE} picture"))),
+        Err(_) => {
+            return Err(Error::decode(
+                file,
+                format!("the file does not begin like a {READABLE} picture"),
+            ));
+        }
     };
     let row = FORMATS.iter().find(|(format, ..)| *format == found);
     row.copied().ok_or_else(|| {
@@ -113,7 +131,8 @@ fn sniff(file: &Path, bytes: &[u8]) -> Result<(ImageFormat, &'static str, bool)>
 fn limits(format: ImageFormat, bytes: &[u8], budget: &Budget) -> image::Limits {
     let mut limits = image::Limits::no_limits();
     limits.max_alloc = Some(match format {
-        // Here the limit is for everything besides the pixels: packed texts and the unpacked profile.
+        // Here the limit is for everything besides the pixels: packed texts and the unpacked
+        // profile.
         ImageFormat::Png => beside_pixels(bytes),
         // Four floats a pixel is the most that any of the formats decodes to.
         _ => budget.area_px.saturating_mul(16),
@@ -129,10 +148,15 @@ pub fn beside_pixels(bytes: &[u8]) -> u64 {
 /// What a colour profile may unpack to. Those of printing presses have some 4 MB.
 const PROFILE_BYTES: u64 = 16 << 20;
 
-/// Reserves memory for decoded pixels, once as the decoder gives them and once as they are passed on.
+/// Reserves memory for decoded pixels, once as the decoder gives them and once as they are passed
+/// on.
 fn room(file: &Path, size: Size, decoded_bytes: u64, budget: &Budget) -> Result<()> {
     let handed_on = size.area() as u64 * 4;
-    budget.room(file, &format!("a picture of {size} pixels"), decoded_bytes.saturating_add(handed_on))
+    budget.room(
+        file,
+        &format!("a picture of {size} pixels"),
+        decoded_bytes.saturating_add(handed_on),
+    )
 }
 
 /// Whether a JPEG's last scan is followed by its end marker.

@@ -1,5 +1,5 @@
-//! The budget of every reader: no allocation is sized by a file's own numbers without a check against it.
-//! Floor 5.
+//! The budget of every reader: no allocation is sized by a file's own numbers without a check
+//! against it. Floor 5.
 
 #![warn(missing_docs)]
 
@@ -13,8 +13,8 @@ use crate::{Error, Remedy, Result};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Limits for what one file may request. The command line raises them with `--max-pixels`, `--max-side` and
-/// `--max-memory`.
+/// Limits for what one file may request. The command line raises them with `--max-pixels`,
+/// `--max-side` and `--max-memory`.
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {
     /// Longest side of a picture, px.
@@ -27,7 +27,8 @@ pub struct Budget {
     pub region_px: u64,
     /// Bytes that reading a file may take at its peak, what was read included.
     pub memory_bytes: u64,
-    /// Whether paint has 16 bits a channel where its file has more than 8. It takes three times the memory.
+    /// Whether paint has 16 bits a channel where its file has more than 8. It takes three times the
+    /// memory.
     pub deep_paint: bool,
     /// Bytes of any one file.
     pub file_bytes: u64,
@@ -37,7 +38,8 @@ pub struct Budget {
     pub entries: usize,
     /// Bytes of a JSON text.
     pub json_bytes: u64,
-    /// Values of a JSON text, an object counting as eight; each takes some eighty bytes once parsed.
+    /// Values of a JSON text, an object counting as eight; each takes some eighty bytes once
+    /// parsed.
     pub json_values: usize,
     /// Nesting of a JSON text.
     pub json_depth: usize,
@@ -54,8 +56,8 @@ pub struct Budget {
 }
 
 impl Default for Budget {
-    /// The contents of a document are limited by the constants that also limit edits, so whatever was saved can be
-    /// read.
+    /// The contents of a document are limited by the constants that also limit edits, so whatever
+    /// was saved can be read.
     fn default() -> Self {
         Self {
             side_px: Picture::LONGEST_SIDE_PX,
@@ -66,14 +68,15 @@ impl Default for Budget {
             deep_paint: true,
             file_bytes: 2 << 30,
             unpacked_bytes: 8 << 30,
-            // Each layer may have a look, pixels and a mask, each brush its pictures; a name takes some hundred bytes.
+            // Each layer may have a look, pixels and a mask, each brush its pictures; a name takes
+            // some hundred bytes.
             entries: 1 << 18,
-            // The limit on values also bounds the text, except for readings of the pen, which are packed before
-            // parsing.
+            // The limit on values also bounds the text, except for readings of the pen, which are
+            // packed before parsing.
             json_bytes: 256 << 20,
             json_values: Document::MOST_VALUES,
-            // A group takes two levels; the contents of the innermost take the rest. The parser goes no deeper than
-            // 127.
+            // A group takes two levels; the contents of the innermost take the rest. The parser
+            // goes no deeper than 127.
             json_depth: 2 * Document::DEEPEST + 20,
             layers: Document::MOST_LAYERS,
             group_depth: Document::DEEPEST,
@@ -85,15 +88,17 @@ impl Default for Budget {
 }
 
 impl Budget {
-    /// The usual budget, raised for a document with a larger canvas, or with maps that were put on one; whoever reads
-    /// it must raise theirs again. What its paint takes is in memory already, and as much is free as this machine has.
+    /// The usual budget, raised for a document with a larger canvas, or with maps that were put on
+    /// one; whoever reads it must raise theirs again. What its paint takes is in memory already,
+    /// and as much is free as this machine has.
     pub fn holding(document: &Document) -> Self {
         let usual = Self::default();
         let painted = document.walk().into_iter().map(|(_, layer)| match &layer.content {
             Content::Pixels(pixels) => pixels.tiles.bytes() as u64,
             _ => 0,
         });
-        let memory_bytes = usual.memory_bytes.max(super::machine::free_bytes()).saturating_add(painted.sum());
+        let memory_bytes =
+            usual.memory_bytes.max(super::machine::free_bytes()).saturating_add(painted.sum());
         let frame = |part: &Arc<Part>| match &part.kind {
             PartKind::Maps(maps) => Some(maps.surface.size()),
             _ => None,
@@ -108,14 +113,18 @@ impl Budget {
             ..usual
         }
     }
-    /// The usual ceilings on this machine as it is now: `memory_bytes` is what is free, minus a reserve.
+
+    /// The usual ceilings on this machine as it is now: `memory_bytes` is what is free, minus a
+    /// reserve.
     pub fn of_this_machine() -> Self {
         Self::default().within(super::machine::free_bytes())
     }
+
     /// Bytes that a pixel of paint takes at most.
     pub fn paint_bytes(&self) -> u64 {
         Tile::most_bytes_a_pixel(self.deep_paint)
     }
+
     /// With so much memory.
     pub fn within(self, memory_bytes: u64) -> Self {
         // A file and its unpacked data are in memory together with what is made from them.
@@ -127,11 +136,13 @@ impl Budget {
             ..self
         }
     }
+
     /// Checks memory before it is allocated. `what`: for the sentence, in front of “takes”.
     pub fn room(&self, file: &Path, what: &str, bytes: u64) -> Result<()> {
         let too_large = |reason| Error::too_large(file, reason).with_remedy(Remedy::MoreMemory);
         self.room_for(what, bytes).map_err(too_large)
     }
+
     /// The same for work that belongs to no file; fails with a sentence without its full stop.
     pub fn room_for(&self, what: &str, bytes: u64) -> Result<(), String> {
         if bytes > self.memory_bytes {
@@ -140,17 +151,29 @@ impl Budget {
         }
         Ok(())
     }
-    /// Checks memory before the surface of some parts is made. `held_bytes`: of the layers that were read.
-    pub fn room_for_shape(&self, file: &Path, document: &Document, list: &[Arc<Part>], held_bytes: u64) -> Result<()> {
+
+    /// Checks memory before the surface of some parts is made. `held_bytes`: of the layers that
+    /// were read.
+    pub fn room_for_shape(
+        &self,
+        file: &Path,
+        document: &Document,
+        list: &[Arc<Part>],
+        held_bytes: u64,
+    ) -> Result<()> {
         let parts = if list.len() == 1 { "1 part".into() } else { format!("{} parts", list.len()) };
         let what = format!("the shape of {parts} on {} pixels", document.size);
         let held_bytes = held_bytes + document.maps_surface().map_or(0, |maps| maps.map_bytes());
         self.room(file, &what, document.shape_bytes(list).saturating_add(held_bytes))
     }
+
     /// The size, or a sentence saying which ceiling it breaks. A side of 0 is not a picture.
     pub fn size(&self, file: &Path, width: u64, height: u64) -> Result<Size> {
         if width == 0 || height == 0 {
-            return Err(Error::decode(file, format!("a picture of {width} × {height} pixels has no pixels")));
+            return Err(Error::decode(
+                file,
+                format!("a picture of {width} × {height} pixels has no pixels"),
+            ));
         }
         if width.max(height) > u64::from(self.side_px) {
             let reason = format!("{width} × {height} pixels; a side may have {}", self.side_px);

@@ -1,5 +1,6 @@
-//! Paint of 16 bits a channel as far as there is memory for it: what does not fit is read with 8, and a note says so.
-//! Floor 5. Readers ask [`Budget::deep_paint`]; which tiles have 16 bits is the rule of `raster::tile::deep`.
+//! Paint of 16 bits a channel as far as there is memory for it: what does not fit is read with 8,
+//! and a note says so. Floor 5. Readers ask [`Budget::deep_paint`]; which tiles have 16 bits is the
+//! rule of `raster::tile::deep`.
 
 #![warn(missing_docs)]
 
@@ -10,8 +11,8 @@ use std::path::Path;
 /// What was read, and a sentence if its paint had to be rounded to 8 bits.
 pub type Fitted<T> = (T, Option<String>);
 
-/// Reads a document with the depth of its files. If the budget does not hold it and what flattening takes, it is read
-/// again with paint of 8 bits.
+/// Reads a document with the depth of its files. If the budget does not hold it and what flattening
+/// takes, it is read again with paint of 8 bits.
 ///
 /// * `read`: is called a second time only in that case, after what it returned first is freed.
 ///
@@ -23,7 +24,8 @@ pub fn fitted<T>(
     document: impl Fn(&T) -> &Document,
 ) -> Result<Fitted<T>> {
     let read = |budget: &Budget| {
-        memory::caught(|| read(budget)).unwrap_or_else(|refused| Err(Error::out_of_memory(file, refused)))
+        memory::caught(|| read(budget))
+            .unwrap_or_else(|refused| Err(Error::out_of_memory(file, refused)))
     };
     let first = read(budget);
     let fits = match &first {
@@ -45,7 +47,8 @@ pub fn fitted<T>(
 
 const NOTE: &str = "its paint was read with 8 bits a channel: there is too little memory for 16";
 
-/// Whether a document has no paint of 16 bits, or fits the budget together with what flattening it takes.
+/// Whether a document has no paint of 16 bits, or fits the budget together with what flattening it
+/// takes.
 fn is_held(document: &Document, budget: &Budget) -> bool {
     let is_deep = document.walk().into_iter().any(|(_, layer)| match &layer.content {
         Content::Pixels(pixels) => pixels.tiles.is_deep_in(pixels.tiles.bounds()),
@@ -53,7 +56,10 @@ fn is_held(document: &Document, budget: &Budget) -> bool {
     });
     let mut held = MemoryCount::default();
     held.add(document, true);
-    !is_deep || budget.room_for("", held.used().total().saturating_add(document.flattening_bytes())).is_ok()
+    !is_deep
+        || budget
+            .room_for("", held.used().total().saturating_add(document.flattening_bytes()))
+            .is_ok()
 }
 
 #[cfg(test)]

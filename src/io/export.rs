@@ -1,5 +1,5 @@
-//! Writes pictures: PNG, JPEG, WebP, TIFF and EXR, each completely or not at all. Floor 5. Not here: flattening
-//! (`document::flatten`), more than 8 bits (`deep`), layers of an EXR (`layers`).
+//! Writes pictures: PNG, JPEG, WebP, TIFF and EXR, each completely or not at all. Floor 5. Not
+//! here: flattening (`document::flatten`), more than 8 bits (`deep`), layers of an EXR (`layers`).
 
 pub mod deep;
 pub mod layers;
@@ -50,22 +50,31 @@ impl ExportFormat {
             ExportFormat::Jpeg | ExportFormat::WebP => &[8],
         }
     }
-    /// The bits a channel that a picture is written with; `file` is for messages. Fails where the format has none such.
+
+    /// The bits a channel that a picture is written with; `file` is for messages. Fails where the
+    /// format has none such.
     pub fn bits(self, file: &Path, asked: Option<u8>) -> Result<u8> {
         let depths = self.depths();
         let bits = asked.unwrap_or(depths[0]);
         depths.contains(&bits).then_some(bits).ok_or_else(|| {
             let known: Vec<String> = depths.iter().map(u8::to_string).collect();
-            Error::unsupported(file, format!("such a file has {} bits a channel, not {bits}", known.join(" or ")))
+            Error::unsupported(
+                file,
+                format!("such a file has {} bits a channel, not {bits}", known.join(" or ")),
+            )
         })
     }
+
     /// The format for a file name.
     pub fn of(file: &Path) -> Result<ExportFormat> {
         let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         let found = Self::ALL.iter().find(|(_, known)| *known == extension);
         found.map(|(format, _)| *format).ok_or_else(|| {
             let known: Vec<_> = Self::ALL.iter().map(|(_, known)| format!(".{known}")).collect();
-            Error::unsupported(file, format!("a picture is written to a file that ends in {}", known.join(", ")))
+            Error::unsupported(
+                file,
+                format!("a picture is written to a file that ends in {}", known.join(", ")),
+            )
         })
     }
 }
@@ -128,8 +137,9 @@ impl OutputFile {
         check(&Disk, named, &terms)?;
         Ok(Self { named: named.into(), terms })
     }
-    /// Flattens a document and writes it, with as many bits as requested; nothing if cancelled. A shape that is still
-    /// to be made is made first.
+
+    /// Flattens a document and writes it, with as many bits as requested; nothing if cancelled. A
+    /// shape that is still to be made is made first.
     pub fn write_document(
         &self,
         document: &Document,
@@ -141,10 +151,12 @@ impl OutputFile {
         let bytes = deep::encode_document(&self.named, &document, options, budget, progress)?;
         bytes.map_or(Ok(()), |bytes| self.replace(&bytes))
     }
+
     /// Encodes and writes the part of a flattened picture that the canvas shows.
     pub fn write(&self, pixels: &TileGrid, canvas: Size, options: &ExportOptions) -> Result<()> {
         self.replace(&encode(&self.named, ExportFormat::of(&self.named)?, pixels, canvas, options)?)
     }
+
     /// The target is the old file or the new one, never a part of it.
     pub fn replace(&self, bytes: &[u8]) -> Result<()> {
         // It can be cancelled only during painting: writing is short.
@@ -152,13 +164,19 @@ impl OutputFile {
     }
 }
 
-/// Renders a document to a picture file, in the format that its name ends in: `.png`, `.exr`, `.jpg`, `.webp`, `.tif`.
+/// Renders a document to a picture file, in the format that its name ends in: `.png`, `.exr`,
+/// `.jpg`, `.webp`, `.tif`.
 ///
-/// The file is written wholly or not at all. Fails if the name requests no format that can be written, if `over` does
-/// not allow to replace what is there, or if the disk refuses.
+/// The file is written wholly or not at all. Fails if the name requests no format that can be
+/// written, if `over` does not allow to replace what is there, or if the disk refuses.
 pub fn write_picture(document: &Document, file: &Path, over: Overwrite) -> Result<()> {
     let output = OutputFile::new(file, Terms::export(over, Vec::new()))?;
-    output.write_document(document, &ExportOptions::default(), &Budget::of_this_machine(), &Progress::default())
+    output.write_document(
+        document,
+        &ExportOptions::default(),
+        &Budget::of_this_machine(),
+        &Progress::default(),
+    )
 }
 
 /// The bytes of a picture file; `file` is for messages.
@@ -252,11 +270,16 @@ fn jpeg(file: &Path, rgba: &[u8], size: Size, quality: u8) -> Result<Vec<u8>> {
         return Err(Error::unsupported(file, reason).with_remedy(Remedy::Background));
     }
     if size.width.max(size.height) > u16::MAX.into() {
-        return Err(Error::unsupported(file, format!("a JPEG has at most 65535 pixels a side, not {size}")));
+        return Err(Error::unsupported(
+            file,
+            format!("a JPEG has at most 65535 pixels a side, not {size}"),
+        ));
     }
-    let rgb: Vec<u8> = rgba.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
+    let rgb: Vec<u8> =
+        rgba.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
     let mut bytes = Cursor::new(Vec::new());
-    let mut encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(&mut bytes, quality.clamp(1, 100));
+    let mut encoder =
+        image::codecs::jpeg::JpegEncoder::new_with_quality(&mut bytes, quality.clamp(1, 100));
     let encoded = encoder.encode(&rgb, size.width, size.height, image::ExtendedColorType::Rgb8);
     encoded.map_err(|e| Error::unsupported(file, e))?;
     Ok(bytes.into_inner())
@@ -264,7 +287,10 @@ fn jpeg(file: &Path, rgba: &[u8], size: Size, quality: u8) -> Result<Vec<u8>> {
 
 fn webp(file: &Path, rgba: &[u8], size: Size) -> Result<Vec<u8>> {
     if size.width.max(size.height) > 16_384 {
-        return Err(Error::unsupported(file, format!("a WebP has at most 16384 pixels a side, not {size}")));
+        return Err(Error::unsupported(
+            file,
+            format!("a WebP has at most 16384 pixels a side, not {size}"),
+        ));
     }
     let mut bytes = Cursor::new(Vec::new());
     let encoder = image::codecs::webp::WebPEncoder::new_lossless(&mut bytes);

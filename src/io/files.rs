@@ -1,5 +1,6 @@
-//! Where a document's files are found: in the recipe's folder, or in a project's zip. Floor 5. Every file that a
-//! document names is read through [`Files`]; nothing else opens a path from a file.
+//! Where a document's files are found: in the recipe's folder, or in a project's zip. Floor 5.
+//! Every file that a document names is read through [`Files`]; nothing else opens a path from a
+//! file.
 
 #![warn(missing_docs)]
 
@@ -16,8 +17,8 @@ use std::{
 
 /// The files a document may name.
 pub trait Files {
-    /// The whole file called `name`, or a sentence: no such file, larger than the budget, or a name that leaves the
-    /// folder.
+    /// The whole file called `name`, or a sentence: no such file, larger than the budget, or a name
+    /// that leaves the folder.
     fn read(&self, name: &str, budget: &Budget) -> Result<Vec<u8>>;
     /// The path of `name`, for messages.
     fn path(&self, name: &str) -> PathBuf;
@@ -25,7 +26,8 @@ pub trait Files {
 
 /// Why a document may not use this file name; `None` if it may.
 ///
-/// Names are relative, below the document's own folder, with `/` between parts, the same on every system.
+/// Names are relative, below the document's own folder, with `/` between parts, the same on every
+/// system.
 pub fn refusal(name: &str) -> Option<&'static str> {
     if name.is_empty() {
         return Some("the name is empty");
@@ -48,7 +50,8 @@ pub fn refusal(name: &str) -> Option<&'static str> {
     None
 }
 
-/// The folder that holds a recipe. Links are not followed: a recipe cannot reach beyond its folder through one.
+/// The folder that holds a recipe. Links are not followed: a recipe cannot reach beyond its folder
+/// through one.
 pub struct RecipeFolder {
     root: PathBuf,
 }
@@ -58,6 +61,7 @@ impl RecipeFolder {
     pub fn new(root: impl Into<PathBuf>) -> Self {
         Self { root: root.into() }
     }
+
     /// The folder of a recipe.
     pub fn beside(recipe: &Path) -> Self {
         Self::new(recipe.parent().unwrap_or(Path::new("")))
@@ -74,11 +78,15 @@ impl Files for RecipeFolder {
             path.push(part);
             let found = fs::symlink_metadata(&path).map_err(|e| Error::io(&path, e))?;
             if found.is_symlink() {
-                return Err(Error::unsupported(&path, "it is a link, which could lead out of the document's folder"));
+                return Err(Error::unsupported(
+                    &path,
+                    "it is a link, which could lead out of the document's folder",
+                ));
             }
         }
         read_file(&path, budget.file_bytes)
     }
+
     fn path(&self, name: &str) -> PathBuf {
         self.root.join(name)
     }
@@ -107,6 +115,7 @@ impl Files for UserFiles {
     fn read(&self, name: &str, budget: &Budget) -> Result<Vec<u8>> {
         read_file(&self.path(name), budget.file_bytes)
     }
+
     fn path(&self, name: &str) -> PathBuf {
         self.paths.get(name).cloned().unwrap_or_else(|| name.into())
     }
@@ -123,6 +132,7 @@ impl<F: Files> TrackedFiles<F> {
     pub fn new(files: F) -> Self {
         Self { files, read: RefCell::default() }
     }
+
     /// The requested paths, in that order.
     pub fn read_paths(&self) -> Vec<PathBuf> {
         self.read.borrow().clone()
@@ -134,6 +144,7 @@ impl<F: Files> Files for TrackedFiles<F> {
         self.read.borrow_mut().push(self.path(name));
         self.files.read(name, budget)
     }
+
     fn path(&self, name: &str) -> PathBuf {
         self.files.path(name)
     }
@@ -150,6 +161,7 @@ impl<'a> CachedFiles<'a> {
     pub fn new(files: &'a dyn Files) -> Self {
         Self { files, read: RefCell::default() }
     }
+
     /// What was read, by name.
     pub fn assets(&self) -> BTreeMap<String, Asset> {
         self.read.borrow().clone()
@@ -165,12 +177,14 @@ impl Files for CachedFiles<'_> {
         self.read.borrow_mut().insert(name.to_owned(), bytes.clone().into());
         Ok(bytes)
     }
+
     fn path(&self, name: &str) -> PathBuf {
         self.files.path(name)
     }
 }
 
-/// Reads a regular file of at most `max_bytes`; a folder, a pipe or a device is refused before it is opened.
+/// Reads a regular file of at most `max_bytes`; a folder, a pipe or a device is refused before it
+/// is opened.
 pub fn read_file(path: &Path, max_bytes: u64) -> Result<Vec<u8>> {
     let io = |e| Error::io(path, e);
     let found = fs::metadata(path).map_err(io)?;
@@ -182,7 +196,8 @@ pub fn read_file(path: &Path, max_bytes: u64) -> Result<Vec<u8>> {
     }
     let file = fs::File::open(path).map_err(io)?;
     let mut bytes = Vec::new();
-    // Reading one byte more than allowed reveals a file that is too large, whatever its metadata said.
+    // Reading one byte more than allowed reveals a file that is too large, whatever its metadata
+    // said.
     file.take(max_bytes.saturating_add(1)).read_to_end(&mut bytes).map_err(io)?;
     if bytes.len() as u64 > max_bytes {
         return Err(Error::too_large(path, format!("the file has more than {max_bytes} bytes")));
@@ -202,6 +217,7 @@ mod tests {
         let folder = RecipeFolder::beside(&outer.path().join("doc/recipe.json"));
         (outer, folder)
     }
+
     #[test]
     fn files_below_the_folder_are_read() {
         let (_outer, folder) = folder_with_a_file();
@@ -209,15 +225,25 @@ mod tests {
             assert_eq!(folder.read(name, &Budget::default()).unwrap(), b"inside", "{name}");
         }
     }
+
     #[test]
     fn names_that_leave_the_folder_are_refused() {
         let (outer, folder) = folder_with_a_file();
         let absolute = outer.path().join("secret.png").display().to_string();
-        for name in ["../secret.png", "sub/../../secret.png", "C:/a.png", "sub\\a.png", "a\0b", "", &absolute] {
+        for name in [
+            "../secret.png",
+            "sub/../../secret.png",
+            "C:/a.png",
+            "sub\\a.png",
+            "a\0b",
+            "",
+            &absolute,
+        ] {
             let said = folder.read(name, &Budget::default()).unwrap_err().to_string();
             assert!(said.contains("the name"), "{name}: {said}");
         }
     }
+
     #[cfg(unix)]
     #[test]
     fn links_are_refused_wherever_they_lead() {
@@ -230,15 +256,21 @@ mod tests {
             assert!(said.contains("is a link"), "{said}");
         }
     }
+
     #[test]
     fn a_folder_a_device_and_a_file_beyond_the_budget_are_refused() {
         let (_outer, folder) = folder_with_a_file();
-        assert!(folder.read("sub", &Budget::default()).unwrap_err().to_string().contains("is a folder"));
+        assert!(
+            folder.read("sub", &Budget::default()).unwrap_err().to_string().contains("is a folder")
+        );
         let small = Budget { file_bytes: 5, ..Budget::default() };
-        assert!(folder.read("sub/a.png", &small).unwrap_err().to_string().contains("more than 5 bytes"));
+        assert!(
+            folder.read("sub/a.png", &small).unwrap_err().to_string().contains("more than 5 bytes")
+        );
         let exact = Budget { file_bytes: 6, ..Budget::default() };
         assert!(folder.read("sub/a.png", &exact).is_ok());
     }
+
     #[test]
     fn what_the_user_names_may_be_anywhere() {
         let (outer, _) = folder_with_a_file();

@@ -40,19 +40,23 @@ pub struct FileDescription {
     pub warning: Option<&'static str>,
 }
 
-/// Describes a file. Of an EXR only some rows of colours that may be normals are decoded; other formats' pixels all
-/// are, so that damage shows.
+/// Describes a file. Of an EXR only some rows of colours that may be normals are decoded; other
+/// formats' pixels all are, so that damage shows.
 pub fn describe(file: &Path, bytes: &[u8], budget: &Budget) -> Result<FileDescription> {
-    if ExrFile::is_exr(bytes) { describe_exr(file, bytes, budget) } else { describe_bitmap(file, bytes, budget) }
+    if ExrFile::is_exr(bytes) {
+        describe_exr(file, bytes, budget)
+    } else {
+        describe_bitmap(file, bytes, budget)
+    }
 }
 
 fn describe_exr(file: &Path, bytes: &[u8], budget: &Budget) -> Result<FileDescription> {
     let exr = ExrFile::open(file, bytes, budget)?;
     let of = |i: &usize| exr.channels().get(*i).map(|c| (c.name.clone(), c.kind));
-    let layers = exr
-        .passes()
-        .iter()
-        .map(|p| ExrLayer { name: p.name.clone(), channels: p.channels.iter().filter_map(of).collect() });
+    let layers = exr.passes().iter().map(|p| ExrLayer {
+        name: p.name.clone(),
+        channels: p.channels.iter().filter_map(of).collect(),
+    });
     Ok(FileDescription {
         format: "EXR",
         size: exr.size(),
@@ -78,7 +82,11 @@ fn describe_bitmap(file: &Path, bytes: &[u8], budget: &Budget) -> Result<FileDes
     Ok(FileDescription {
         format: bitmap.format,
         size: Size::new(image.width(), image.height()),
-        channels: names.iter().take(colour.channel_count().into()).map(ToString::to_string).collect(),
+        channels: names
+            .iter()
+            .take(colour.channel_count().into())
+            .map(ToString::to_string)
+            .collect(),
         bits: (colour.bits_per_pixel() / u16::from(colour.channel_count())) as u8,
         layers: Vec::new(),
         compression: None,
@@ -103,10 +111,12 @@ fn texels(image: &image::DynamicImage) -> Vec<[f32; 3]> {
     rows.flat_map(|y| (0..w).step_by(step).map(move |x| (x, y))).map(|(x, y)| at(x, y)).collect()
 }
 
-/// How far the vectors of these numbers are from length 1 in the mean, z about ½ as x and y are, or from 0 to 1.
+/// How far the vectors of these numbers are from length 1 in the mean, z about ½ as x and y are, or
+/// from 0 to 1.
 fn length_error(texels: &[[f32; 3]]) -> f32 {
     let of = |z: fn(f32) -> f32| {
-        let error = |[r, g, b]: &[f32; 3]| (vec3(2.0 * r - 1.0, 2.0 * g - 1.0, z(*b)).length() - 1.0).abs();
+        let error =
+            |[r, g, b]: &[f32; 3]| (vec3(2.0 * r - 1.0, 2.0 * g - 1.0, z(*b)).length() - 1.0).abs();
         texels.iter().map(error).sum::<f32>() / texels.len().max(1) as f32
     };
     of(|b| 2.0 * b - 1.0).min(of(|b| b))
@@ -127,33 +137,48 @@ mod tests {
         let square = x * x + y * y;
         (square < 1.0).then(|| vec3(x, y, (1.0 - square).sqrt()))
     }
+
     fn described(names: [&str; 3], color: impl Fn(usize) -> Vec3) -> FileDescription {
         let size = Size::new(SIDE, SIDE);
         let colors: Vec<Vec3> = (0..size.area()).map(color).collect();
-        let channels = names.into_iter().enumerate().map(|(c, name)| (name, colors.iter().map(|v| v[c]).collect()));
+        let channels = names
+            .into_iter()
+            .enumerate()
+            .map(|(c, name)| (name, colors.iter().map(|v| v[c]).collect()));
         let file = Path::new("a.exr");
-        describe(file, &encode_channels(file, size, channels.collect()).unwrap(), &Budget::default()).unwrap()
+        describe(
+            file,
+            &encode_channels(file, size, channels.collect()).unwrap(),
+            &Budget::default(),
+        )
+        .unwrap()
     }
+
     #[test]
     fn colours_are_normals_where_they_have_length_1_and_a_finished_picture_is_none() {
         let rgb = ["R", "G", "B"];
         let signed = described(rgb, |i| dome(i).unwrap_or(Vec3::ZERO));
         let biased = described(rgb, |i| dome(i).unwrap_or(Vec3::Z) * 0.5 + 0.5);
-        let sunny = described(rgb, |i| dome(i).map_or(Vec3::ZERO, |n| vec3(0.9, 0.7, 0.4) * n.y.max(0.05)));
+        let sunny =
+            described(rgb, |i| dome(i).map_or(Vec3::ZERO, |n| vec3(0.9, 0.7, 0.4) * n.y.max(0.05)));
         assert_eq!([signed.normals.len(), biased.normals.len(), sunny.normals.len()], [1, 1, 0]);
         // The red of colours is not depth either.
         assert_eq!([signed.depths.len(), sunny.depths.len()], [0, 0]);
         let named = described(["N.R", "N.G", "N.B"], |i| dome(i).unwrap_or(Vec3::ZERO) * 0.3);
         assert_eq!(named.normals, ["N"], "what is called so is one, whatever its length");
     }
+
     #[test]
     fn a_map_whose_z_goes_from_0_to_1_is_one() {
         let texels = |full_z: bool| -> Vec<[f32; 3]> {
-            let of = |n: Vec3| [n.x * 0.5 + 0.5, n.y * 0.5 + 0.5, if full_z { n.z } else { n.z * 0.5 + 0.5 }];
+            let of = |n: Vec3| {
+                [n.x * 0.5 + 0.5, n.y * 0.5 + 0.5, if full_z { n.z } else { n.z * 0.5 + 0.5 }]
+            };
             (0..(SIDE * SIDE) as usize).map(|i| of(dome(i).unwrap_or(Vec3::Z))).collect()
         };
         assert!(length_error(&texels(true)) < 0.01 && length_error(&texels(false)) < 0.01);
-        let sky: Vec<[f32; 3]> = (0..900).map(|i| [0.2 + i as f32 / 3000.0, 0.5, 0.9 - i as f32 / 2000.0]).collect();
+        let sky: Vec<[f32; 3]> =
+            (0..900).map(|i| [0.2 + i as f32 / 3000.0, 0.5, 0.9 - i as f32 / 2000.0]).collect();
         assert!(length_error(&sky) > 0.06, "{}", length_error(&sky));
     }
 }

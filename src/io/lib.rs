@@ -1,5 +1,5 @@
-//! Floor 5: files. There is one module per format. Each converts what it reads to the program's own conventions at
-//! once.
+//! Floor 5: files. There is one module per format. Each converts what it reads to the program's own
+//! conventions at once.
 
 pub mod base64;
 pub mod bitmap;
@@ -26,7 +26,9 @@ pub mod save;
 pub mod srgb_profile;
 
 // The floors beneath, under their own names.
-use rilievo_engine::{Error, Remedy, Result, document, math, memory, paint, raster, shading, shape, surface};
+use rilievo_engine::{
+    Error, Remedy, Result, document, math, memory, paint, raster, shading, shape, surface,
+};
 
 pub use budget::Budget;
 pub use files::{Files, RecipeFolder, UserFiles};

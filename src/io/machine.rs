@@ -1,6 +1,6 @@
-//! How much memory this machine has left for the program, according to the system: free memory, the ceilings of the
-//! control groups around the process, its address space. Floor 5. Only this file asks the system; floors beneath are
-//! passed figures.
+//! How much memory this machine has left for the program, according to the system: free memory, the
+//! ceilings of the control groups around the process, its address space. Floor 5. Only this file
+//! asks the system; floors beneath are passed figures.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,19 +8,22 @@ use std::path::{Path, PathBuf};
 /// What is assumed to be free if the system gives no figure.
 pub const UNKNOWN_BYTES: u64 = 4 << 30;
 
-/// Bytes that may be allocated now without evicting anything, minus an eighth that is left to other programs.
+/// Bytes that may be allocated now without evicting anything, minus an eighth that is left to other
+/// programs.
 pub fn free_bytes() -> u64 {
     let free = told(Path::new("/")).unwrap_or(UNKNOWN_BYTES);
     free - free / 8
 }
 
-/// Bytes that may be kept for speed alone (`memory::DABS`): a small share, so that old machines keep less.
+/// Bytes that may be kept for speed alone (`memory::DABS`): a small share, so that old machines
+/// keep less.
 pub fn kept_bytes() -> u64 {
     const MOST: u64 = 64 << 20;
     MOST.min(told(Path::new("/")).unwrap_or(UNKNOWN_BYTES) / 32)
 }
 
-/// Bytes that the machine has for the program at most: its memory, or the lowest ceiling around the process.
+/// Bytes that the machine has for the program at most: its memory, or the lowest ceiling around the
+/// process.
 pub fn whole_bytes() -> u64 {
     whole(Path::new("/")).unwrap_or(UNKNOWN_BYTES)
 }
@@ -29,12 +32,14 @@ fn whole(root: &Path) -> Option<u64> {
     let read = |name: &str| fs::read_to_string(root.join(name)).ok();
     let memory = field(&read("proc/meminfo")?, "MemTotal:")? * 1024;
     let groups = read("proc/self/cgroup").unwrap_or_default();
-    let ceiling =
-        |group: &ControlGroup| fs::read_to_string(group.folder.join(group.names[0])).ok()?.trim().parse().ok();
+    let ceiling = |group: &ControlGroup| {
+        fs::read_to_string(group.folder.join(group.names[0])).ok()?.trim().parse().ok()
+    };
     Some(groups_around(root, &groups).iter().filter_map(ceiling).fold(memory, u64::min))
 }
 
-/// The least of what each of Linux's accounts leaves; `None` on other systems. `root`: where its folders hang.
+/// The least of what each of Linux's accounts leaves; `None` on other systems. `root`: where its
+/// folders hang.
 fn told(root: &Path) -> Option<u64> {
     let read = |name: &str| fs::read_to_string(root.join(name)).ok();
     let free = field(&read("proc/meminfo")?, "MemAvailable:")? * 1024;
@@ -73,26 +78,36 @@ fn groups_around(root: &Path, groups: &str) -> Vec<ControlGroup> {
     };
     let second = line(&|controllers| controllers.is_empty());
     let first = line(&|controllers| controllers.split(',').any(|c| c == "memory"));
-    let second = second.map(|path| ("sys/fs/cgroup", path, ["memory.max", "memory.current"], "inactive_file"));
+    let second = second
+        .map(|path| ("sys/fs/cgroup", path, ["memory.max", "memory.current"], "inactive_file"));
     let first = first.map(|path| {
-        ("sys/fs/cgroup/memory", path, ["memory.limit_in_bytes", "memory.usage_in_bytes"], "total_inactive_file")
+        (
+            "sys/fs/cgroup/memory",
+            path,
+            ["memory.limit_in_bytes", "memory.usage_in_bytes"],
+            "total_inactive_file",
+        )
     });
     let all = second.into_iter().chain(first).flat_map(|(mount, path, names, cache)| {
         let top = root.join(mount);
         let inner = top.join(path);
-        // Within a container the path may be one of the world outside; its own group is then the top.
-        let around = inner.ancestors().take_while(|folder| folder.starts_with(&top)).map(Path::to_owned);
+        // Within a container the path may be one of the world outside; its own group is then the
+        // top.
+        let around =
+            inner.ancestors().take_while(|folder| folder.starts_with(&top)).map(Path::to_owned);
         around.map(|folder| ControlGroup { folder, names, cache }).collect::<Vec<_>>()
     });
     all.collect()
 }
 
-/// What is left in one group; files that it holds in memory count as free, since the system drops them when needed.
+/// What is left in one group; files that it holds in memory count as free, since the system drops
+/// them when needed.
 fn left_in_group(group: &ControlGroup) -> Option<u64> {
     let ControlGroup { folder, names: [ceiling, used], cache } = group;
     let read = |name: &str| fs::read_to_string(folder.join(name)).ok();
     let number = |name: &str| read(name)?.trim().parse::<u64>().ok();
-    let cache = read("memory.stat").and_then(|stat| field(&stat, &format!("{cache} "))).unwrap_or(0);
+    let cache =
+        read("memory.stat").and_then(|stat| field(&stat, &format!("{cache} "))).unwrap_or(0);
     Some(number(ceiling)?.saturating_sub(number(used)?.saturating_sub(cache)))
 }
 
@@ -109,7 +124,10 @@ mod tests {
     /// A machine of 8 GB, 6 of them free, with more files of the system.
     fn machine(files: &[(&str, &str)]) -> Option<u64> {
         let root = tempfile::tempdir().unwrap();
-        let meminfo = ("proc/meminfo", "MemTotal:  8000000 kB\nMemFree:  1000000 kB\nMemAvailable:  6000000 kB\n");
+        let meminfo = (
+            "proc/meminfo",
+            "MemTotal:  8000000 kB\nMemFree:  1000000 kB\nMemAvailable:  6000000 kB\n",
+        );
         for (name, text) in files.iter().chain([&meminfo]) {
             let file = root.path().join(name);
             fs::create_dir_all(file.parent().unwrap()).unwrap();
@@ -117,15 +135,18 @@ mod tests {
         }
         told(root.path())
     }
+
     #[test]
     fn the_least_of_all_ceilings_counts() {
         assert_eq!(machine(&[]), Some(6_144_000_000));
-        let unlimited = "Max address space         unlimited            unlimited            bytes\n";
+        let unlimited =
+            "Max address space         unlimited            unlimited            bytes\n";
         let limited = "Max address space         2000000000           unlimited            bytes\n";
         let status = ("proc/self/status", "VmSize:\t  500000 kB\n");
         assert_eq!(machine(&[("proc/self/limits", unlimited), status]), Some(6_144_000_000));
         assert_eq!(machine(&[("proc/self/limits", limited), status]), Some(1_488_000_000));
     }
+
     #[test]
     fn groups_count_with_all_around_them_and_their_cached_files_are_free() {
         let groups = ("proc/self/cgroup", "0::/user/app\n");
@@ -141,6 +162,7 @@ mod tests {
         ];
         assert_eq!(machine(&old), Some(500_000_000));
     }
+
     #[test]
     fn the_machine_is_as_large_as_its_lowest_ceiling() {
         let root = tempfile::tempdir().unwrap();
@@ -156,6 +178,7 @@ mod tests {
         write("sys/fs/cgroup/user/memory.max", "1000000000\n");
         assert_eq!(whole(root.path()), Some(1_000_000_000));
     }
+
     #[test]
     fn a_system_that_tells_nothing_is_taken_for_a_small_one() {
         assert_eq!(told(Path::new("no such folder")), None);

@@ -20,7 +20,8 @@ pub struct OpenedDocument {
     pub document: Document,
     /// What differs from the saved state or could not be imported: a sentence each, to be shown.
     pub notes: Vec<String>,
-    /// Whether nothing was lost. A document that is not whole must not overwrite its file without asking.
+    /// Whether nothing was lost. A document that is not whole must not overwrite its file without
+    /// asking.
     pub is_whole: bool,
     /// What the file is.
     pub kind: FileKind,
@@ -55,6 +56,7 @@ impl FileKind {
             FileKind::Picture => "picture",
         }
     }
+
     /// The kind of a file by its first bytes; a picture if nothing else fits.
     pub fn of(bytes: &[u8]) -> Self {
         let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
@@ -69,32 +71,43 @@ impl FileKind {
     }
 }
 
-/// Opens a project, a recipe (the files it names are next to it), a Photoshop file, or a picture, which becomes a
-/// document of one paint layer. Its surface is what its parts make.
+/// Opens a project, a recipe (the files it names are next to it), a Photoshop file, or a picture,
+/// which becomes a document of one paint layer. Its surface is what its parts make.
 ///
 /// A damaged project gives every intact layer; `notes` list the others, and `is_whole` is false.
 pub fn open(file: &Path, budget: &Budget) -> Result<OpenedDocument> {
     let bytes = read_file(file, budget.file_bytes)?;
     let kind = FileKind::of(&bytes);
     let files = TrackedFiles::new(RecipeFolder::beside(file));
-    let whole = |(document, notes)| ProjectContents { document, notes, is_whole: true, picture: None };
+    let whole =
+        |(document, notes)| ProjectContents { document, notes, is_whole: true, picture: None };
     let read = |budget: &Budget| match kind {
         FileKind::Project => project::read(file, &bytes, budget),
         FileKind::Recipe => {
-            recipe::read_noting(&bytes, RecipeSource { file, files: &files, budget, onto: None }).map(whole)
+            recipe::read_noting(&bytes, RecipeSource { file, files: &files, budget, onto: None })
+                .map(whole)
         }
         FileKind::Psd => psd::read(file, &bytes, budget),
         FileKind::Picture => single(file, &bytes, budget),
     };
     // Layers may have been put in after their parts were read.
-    let shaped = |read: ProjectContents| ProjectContents { document: read.document.reshaped(), ..read };
+    let shaped =
+        |read: ProjectContents| ProjectContents { document: read.document.reshaped(), ..read };
     let read = |budget: &Budget| read(budget).map(shaped);
     let (read, rounded) = deep_paint::fitted(file, budget, read, |read| &read.document)?;
     let ProjectContents { document, mut notes, is_whole, picture } = read;
     let is_whole = is_whole && rounded.is_none();
     notes.extend(rounded);
     let reads = [vec![file.into()], files.read_paths()].concat();
-    Ok(OpenedDocument { document, notes, is_whole, kind, stamp: FileStamp::of(&bytes), reads, picture })
+    Ok(OpenedDocument {
+        document,
+        notes,
+        is_whole,
+        kind,
+        stamp: FileStamp::of(&bytes),
+        reads,
+        picture,
+    })
 }
 
 /// A picture as a document of its size; an EXR of several layers with all of them.
@@ -116,8 +129,12 @@ fn single(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContents>
     let layers = stored.into_iter().map(layer).collect();
     let notes = match (several, has_whole) {
         (false, _) => None,
-        (true, true) => Some("its other layers are hidden, since the file holds the whole picture too"),
-        (true, false) => Some("an EXR does not say in which order its layers are; they are in the order of the file"),
+        (true, true) => {
+            Some("its other layers are hidden, since the file holds the whole picture too")
+        }
+        (true, false) => Some(
+            "an EXR does not say in which order its layers are; they are in the order of the file",
+        ),
     };
     let notes = notes.map(str::to_owned).into_iter().collect();
     let document = Document { layers, ..Document::empty(size) };
@@ -133,20 +150,30 @@ mod tests {
         use crate::exr::encode_channels;
         let file = Path::new("a.exr");
         let opened = |names: &[&'static str]| {
-            let light = |layer: &'static str| ["R", "G", "B"].map(|c| (format!("{layer}{c}"), vec![0.5f32; 4]));
-            let channels: Vec<(String, Vec<f32>)> = names.iter().flat_map(|name| light(name)).collect();
-            let channels = channels.iter().map(|(name, values)| (name.as_str(), values.clone())).collect();
+            let light = |layer: &'static str| {
+                ["R", "G", "B"].map(|c| (format!("{layer}{c}"), vec![0.5f32; 4]))
+            };
+            let channels: Vec<(String, Vec<f32>)> =
+                names.iter().flat_map(|name| light(name)).collect();
+            let channels =
+                channels.iter().map(|(name, values)| (name.as_str(), values.clone())).collect();
             let bytes = encode_channels(file, crate::math::Size::new(2, 2), channels).unwrap();
             single(file, &bytes, &Budget::default()).unwrap()
         };
         let shown = |contents: &ProjectContents| -> Vec<(String, bool)> {
-            contents.document.layers.iter().map(|layer| (layer.name.clone(), layer.visible)).collect()
+            contents
+                .document
+                .layers
+                .iter()
+                .map(|layer| (layer.name.clone(), layer.visible))
+                .collect()
         };
         let alone = opened(&["diffuse."]);
         assert_eq!((shown(&alone), alone.notes.len()), (vec![("a".into(), true)], 0));
         assert_eq!(shown(&opened(&["b.", "c."])), [("b".into(), true), ("c".into(), true)]);
         assert_eq!(shown(&opened(&["", "c."])), [("a".into(), true), ("c".into(), false)]);
     }
+
     #[test]
     fn what_a_file_is_shows_in_its_first_bytes() {
         assert_eq!(FileKind::of(b"PK\x03\x04rest"), FileKind::Project);

@@ -1,5 +1,6 @@
-//! Pictures to paint with: any readable file as sRGB bytes or linear light, in its upright position.
-//! Floor 5. Not here: normal, depth and mask maps, which are data and whose colour tags are ignored (`maps`).
+//! Pictures to paint with: any readable file as sRGB bytes or linear light, in its upright
+//! position. Floor 5. Not here: normal, depth and mask maps, which are data and whose colour tags
+//! are ignored (`maps`).
 
 mod light;
 mod painted;
@@ -24,10 +25,10 @@ use std::path::Path;
 ///
 /// * `file`: for messages (and for TGA, which only its name identifies).
 ///
-/// Integer files become sRGB bytes (through their ICC profile where it says something else), float files linear light.
-/// EXR gives its colour layer, straight alpha; integers of 16 bits are kept along with the bytes. Fails with a sentence
-/// on anything damaged, unknown or beyond `budget`. The picture keeps `bytes`, so that a project can store the file as
-/// it is.
+/// Integer files become sRGB bytes (through their ICC profile where it says something else), float
+/// files linear light. EXR gives its colour layer, straight alpha; integers of 16 bits are kept
+/// along with the bytes. Fails with a sentence on anything damaged, unknown or beyond `budget`. The
+/// picture keeps `bytes`, so that a project can store the file as it is.
 pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
     let is_exr = ExrFile::is_exr(bytes);
     let picture = if is_exr {
@@ -50,17 +51,23 @@ fn picture_of(file: &Path, bitmap: Bitmap, budget: &Budget) -> Result<Picture> {
     let picture = match &bitmap.image {
         image if is_light(image) => {
             let texels = bitmap.image.into_rgba32f().into_raw().as_chunks().0.to_vec();
-            let profiled = bitmap.icc.as_deref().and_then(|icc| light_through_profile(&texels, icc));
+            let profiled =
+                bitmap.icc.as_deref().and_then(|icc| light_through_profile(&texels, icc));
             Picture::linear(size, profiled.unwrap_or(texels))
         }
         image if is_sixteen_bits(image) => {
             // In addition to what was decoded: texels of both kinds.
             let asked = image.as_bytes().len() as u64 + 12 * size.area() as u64;
-            budget.room(file, &format!("a picture of {size} pixels of 16 bits a channel"), asked)?;
+            budget.room(
+                file,
+                &format!("a picture of {size} pixels of 16 bits a channel"),
+                asked,
+            )?;
             let profiled = bitmap.icc.as_deref().and_then(|icc| through_profile(image, icc));
             let plain = || bitmap.image.into_rgba16().into_raw().as_chunks().0.to_vec();
             let deep = profiled.unwrap_or_else(plain);
-            Picture::srgb8(size, deep.iter().map(|t| t.map(byte)).collect()).map(|picture| picture.with_deep(deep))
+            Picture::srgb8(size, deep.iter().map(|t| t.map(byte)).collect())
+                .map(|picture| picture.with_deep(deep))
         }
         image => {
             let profiled = bitmap.icc.as_deref().and_then(|icc| through_profile(image, icc));
@@ -91,13 +98,15 @@ fn byte(v: u16) -> u8 {
     tile::deep::byte_of(v)
 }
 
-/// A picture as the tiles of a paint layer, its corner at a canvas pixel, of 16 bits where it has more than 8; light
-/// beyond white is clipped, as a texture clips it.
+/// A picture as the tiles of a paint layer, its corner at a canvas pixel, of 16 bits where it has
+/// more than 8; light beyond white is clipped, as a texture clips it.
 pub fn to_tiles(picture: &Picture, x: i32, y: i32) -> TileGrid {
     let (w, h) = (picture.size.width as usize, picture.size.height as usize);
     match (&picture.texels, &picture.deep) {
         (Texels::Srgb8(_), Some(deep)) => TileGrid::from_straight_deep(deep, w, h, x, y),
-        (Texels::Srgb8(texels), None) => TileGrid::from_straight_rgba(texels.as_flattened(), w, h, x, y),
+        (Texels::Srgb8(texels), None) => {
+            TileGrid::from_straight_rgba(texels.as_flattened(), w, h, x, y)
+        }
         (Texels::Linear(light), _) => TileGrid::from_light(light, w, h, x, y),
     }
 }
@@ -118,7 +127,8 @@ pub fn decode_coverage(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Pla
         let size = Size::new(bitmap.image.width(), bitmap.image.height());
         let mut covered = Vec::with_capacity(size.area());
         for strip in strips(&bitmap.image) {
-            covered.extend(strip.into_rgba32f().as_raw().as_chunks().0.iter().map(|&t| coverage(t)));
+            covered
+                .extend(strip.into_rgba32f().as_raw().as_chunks().0.iter().map(|&t| coverage(t)));
         }
         Plane::from_values(size, covered)
     };
@@ -138,14 +148,19 @@ fn coverage([r, g, b, a]: [f32; 4]) -> u8 {
     srgb::quantise(srgb::luminance(r, g, b) * a)
 }
 
-/// Straight RGBA bytes in the colours of an ICC profile as sRGB; unchanged if `through_profile` finds nothing to do.
+/// Straight RGBA bytes in the colours of an ICC profile as sRGB; unchanged if `through_profile`
+/// finds nothing to do.
 ///
 /// * `is_grey`: red, green and blue are equal, and the profile is one of grey.
 pub fn to_srgb(size: Size, rgba: Vec<u8>, is_grey: bool, icc: &[u8]) -> Vec<u8> {
-    let Some(image) = image::RgbaImage::from_raw(size.width, size.height, rgba) else { return Vec::new() };
+    let Some(image) = image::RgbaImage::from_raw(size.width, size.height, rgba) else {
+        return Vec::new();
+    };
     let image = if is_grey {
         let two = image.pixels().flat_map(|pixel| [pixel[0], pixel[3]]).collect();
-        image::ImageBuffer::from_raw(size.width, size.height, two).map(DynamicImage::ImageLumaA8).unwrap_or_default()
+        image::ImageBuffer::from_raw(size.width, size.height, two)
+            .map(DynamicImage::ImageLumaA8)
+            .unwrap_or_default()
     } else {
         DynamicImage::ImageRgba8(image)
     };
@@ -169,8 +184,8 @@ pub fn to_srgb_deep(size: Size, texels: Vec<[u16; 4]>, is_grey: bool, icc: &[u8]
 
 /// Straight sRGB of an integer image in the colours of its ICC profile, 16 bits a channel.
 ///
-/// `None` where the profile is sRGB as far as a byte can tell (so that such files keep their bytes), does not belong to
-/// the image's kind of colour, or cannot be used.
+/// `None` where the profile is sRGB as far as a byte can tell (so that such files keep their
+/// bytes), does not belong to the image's kind of colour, or cannot be used.
 fn through_profile(image: &DynamicImage, icc: &[u8]) -> Option<Vec<[u16; 4]>> {
     let profile = ColorProfile::new_from_slice(icc).ok()?;
     let grey = matches!(
@@ -186,20 +201,28 @@ fn through_profile(image: &DynamicImage, icc: &[u8]) -> Option<Vec<[u16; 4]>> {
         _ => return None,
     };
     let target = ColorProfile::new_srgb();
-    let transform = profile.create_transform_16bit(layout, &target, Layout::Rgba, TransformOptions::default()).ok()?;
+    let transform = profile
+        .create_transform_16bit(layout, &target, Layout::Rgba, TransformOptions::default())
+        .ok()?;
     let run = |source: &[u16]| {
         let mut out = vec![0u16; source.len() / layout.channels() * 4];
         transform.transform(source, &mut out).ok().map(|()| out)
     };
     let probe = probe(layout);
-    let moved = run(&probe)?.as_chunks::<4>().0.iter().zip(probe.chunks(layout.channels())).any(|(to, from)| {
-        let from = if grey { [from[0]; 3] } else { [from[0], from[1], from[2]] };
-        (0..3).any(|c| byte(to[c]).abs_diff(byte(from[c])) > 1)
-    });
+    let moved = run(&probe)?.as_chunks::<4>().0.iter().zip(probe.chunks(layout.channels())).any(
+        |(to, from)| {
+            let from = if grey { [from[0]; 3] } else { [from[0], from[1], from[2]] };
+            (0..3).any(|c| byte(to[c]).abs_diff(byte(from[c])) > 1)
+        },
+    );
     moved.then_some(())?;
     let mut texels = Vec::with_capacity(image.width() as usize * image.height() as usize);
     for strip in strips(image) {
-        let source = if grey { strip.into_luma_alpha16().into_raw() } else { strip.into_rgba16().into_raw() };
+        let source = if grey {
+            strip.into_luma_alpha16().into_raw()
+        } else {
+            strip.into_rgba16().into_raw()
+        };
         texels.extend_from_slice(run(&source)?.as_chunks::<4>().0);
     }
     Some(texels)
@@ -207,8 +230,8 @@ fn through_profile(image: &DynamicImage, icc: &[u8]) -> Option<Vec<[u16; 4]>> {
 
 /// Linear light of float texels in the colours of an ICC profile; beyond white it is clipped.
 ///
-/// `None` where the profile's light is sRGB's and linear (so that such files keep what is beyond white), or cannot be
-/// used.
+/// `None` where the profile's light is sRGB's and linear (so that such files keep what is beyond
+/// white), or cannot be used.
 fn light_through_profile(texels: &[[f32; 4]], icc: &[u8]) -> Option<Vec<[f32; 4]>> {
     let profile = ColorProfile::new_from_slice(icc).ok()?;
     let layout = match profile.color_space {
@@ -217,7 +240,9 @@ fn light_through_profile(texels: &[[f32; 4]], icc: &[u8]) -> Option<Vec<[f32; 4]
         _ => return None,
     };
     let options = TransformOptions::default();
-    let transform = profile.create_transform_f32(layout, &ColorProfile::new_srgb(), Layout::Rgba, options).ok()?;
+    let transform = profile
+        .create_transform_f32(layout, &ColorProfile::new_srgb(), Layout::Rgba, options)
+        .ok()?;
     let run = |texels: &[[f32; 4]]| -> Option<Vec<[f32; 4]>> {
         let bounded = |v: f32| v.max(0.0).min(1.0);
         let source: Vec<f32> = match layout {
@@ -226,12 +251,17 @@ fn light_through_profile(texels: &[[f32; 4]], icc: &[u8]) -> Option<Vec<[f32; 4]
         };
         let mut out = vec![0.0; texels.len() * 4];
         transform.transform(&source, &mut out).ok()?;
-        let light =
-            |[r, g, b, a]: [f32; 4]| [srgb::decode(bounded(r)), srgb::decode(bounded(g)), srgb::decode(bounded(b)), a];
+        let light = |[r, g, b, a]: [f32; 4]| {
+            [srgb::decode(bounded(r)), srgb::decode(bounded(g)), srgb::decode(bounded(b)), a]
+        };
         Some(out.as_chunks().0.iter().map(|texel| light(*texel)).collect())
     };
-    let probe: Vec<[f32; 4]> =
-        probe(Layout::Rgba).as_chunks().0.iter().map(|t: &[u16; 4]| t.map(|v| f32::from(v) / 65535.0)).collect();
+    let probe: Vec<[f32; 4]> = probe(Layout::Rgba)
+        .as_chunks()
+        .0
+        .iter()
+        .map(|t: &[u16; 4]| t.map(|v| f32::from(v) / 65535.0))
+        .collect();
     let probe: Vec<[f32; 4]> = match layout {
         Layout::Rgba => probe,
         _ => probe.into_iter().map(|[r, _, _, a]| [r, r, r, a]).collect(),
@@ -245,7 +275,9 @@ fn light_through_profile(texels: &[[f32; 4]], icc: &[u8]) -> Option<Vec<[f32; 4]
 fn probe(layout: Layout) -> Vec<u16> {
     let level = |i: usize| (i * 13107) as u16;
     match layout {
-        Layout::Rgba => (0..216).flat_map(|i| [level(i % 6), level(i / 6 % 6), level(i / 36), u16::MAX]).collect(),
+        Layout::Rgba => (0..216)
+            .flat_map(|i| [level(i % 6), level(i / 6 % 6), level(i / 36), u16::MAX])
+            .collect(),
         _ => (0..256).flat_map(|i| [(i * 257) as u16, u16::MAX]).collect(),
     }
 }

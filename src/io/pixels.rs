@@ -1,5 +1,6 @@
-//! Pixels as a project stores them: sRGB PNGs with straight alpha, of 16 bits where some tile has them, else of 8, each
-//! decoded again and compared before it is trusted. Floor 5. `look` decides which pixels are stored.
+//! Pixels as a project stores them: sRGB PNGs with straight alpha, of 16 bits where some tile has
+//! them, else of 8, each decoded again and compared before it is trusted. Floor 5. `look` decides
+//! which pixels are stored.
 
 use crate::Budget;
 use crate::bitmap;
@@ -20,20 +21,31 @@ pub struct Painted {
     pub tiles: TileGrid,
 }
 
-/// The tight rectangle around what is not transparent, as a PNG; one transparent pixel if all is transparent.
+/// The tight rectangle around what is not transparent, as a PNG; one transparent pixel if all is
+/// transparent.
 ///
 /// Premultiplied values come back exactly from straight ones, so nothing is lost.
 pub fn encode(file: &Path, tiles: &TileGrid, within: Option<Rect>) -> Result<EncodedPixels> {
     let bounds = painted(tiles, within);
     let rect = if bounds.is_empty() { Rect::new(0, 0, 1, 1) } else { bounds };
-    Ok(EncodedPixels { file: encode_rect(file, tiles, rect)?, size: size_of(rect), x: rect.x0, y: rect.y0 })
+    Ok(EncodedPixels {
+        file: encode_rect(file, tiles, rect)?,
+        size: size_of(rect),
+        x: rect.x0,
+        y: rect.y0,
+    })
 }
 
 /// All of a rectangle as a PNG.
 pub fn encode_rect(file: &Path, tiles: &TileGrid, rect: Rect) -> Result<Asset> {
     let is_deep = tiles.is_deep_in(rect);
     let values = |strip: Rect| match is_deep {
-        true => tiles.to_straight_deep(strip).into_flattened().into_iter().flat_map(u16::to_be_bytes).collect(),
+        true => tiles
+            .to_straight_deep(strip)
+            .into_flattened()
+            .into_iter()
+            .flat_map(u16::to_be_bytes)
+            .collect(),
         false => tiles.to_straight_rgba(strip),
     };
     let kind = if is_deep { PngKind::RGBA16 } else { PngKind::RGBA8 };
@@ -54,7 +66,8 @@ struct PngKind {
 impl PngKind {
     const RGBA8: PngKind = PngKind { color: png::ColorType::Rgba, depth: png::BitDepth::Eight };
     const RGBA16: PngKind = PngKind { color: png::ColorType::Rgba, depth: png::BitDepth::Sixteen };
-    const GREY8: PngKind = PngKind { color: png::ColorType::Grayscale, depth: png::BitDepth::Eight };
+    const GREY8: PngKind =
+        PngKind { color: png::ColorType::Grayscale, depth: png::BitDepth::Eight };
 
     /// Of a pixel.
     fn bytes(self) -> usize {
@@ -103,7 +116,10 @@ fn checked<'v, S: Iterator<Item = Cow<'v, [u8]>>>(
         bytes = encode(png::Compression::NoCompression)?;
     }
     if !comes_back(&bytes, strips()) {
-        return Err(Error::unsupported(file, "a picture did not come back as it was written; nothing was saved"));
+        return Err(Error::unsupported(
+            file,
+            "a picture did not come back as it was written; nothing was saved",
+        ));
     }
     Ok(bytes.into())
 }
@@ -118,7 +134,8 @@ fn encoded<'v>(
     let mut info = png::Info::with_size(size.width, size.height);
     (info.color_type, info.bit_depth) = (kind.color, kind.depth);
     match kind.depth {
-        // Krita asks for a profile, layer by layer, for pictures of 16 bits that do not contain one.
+        // Krita asks for a profile, layer by layer, for pictures of 16 bits that do not contain
+        // one.
         png::BitDepth::Sixteen => info.icc_profile = Some(own_srgb().into()),
         _ => info.srgb = Some(png::SrgbRenderingIntent::Perceptual),
     }
@@ -136,13 +153,17 @@ fn encoded<'v>(
 
 /// Whether a PNG holds these values, row by row.
 fn comes_back<'v>(png: &[u8], strips: impl Iterator<Item = Cow<'v, [u8]>>) -> bool {
-    let Ok(mut reader) = png::Decoder::new(std::io::Cursor::new(png)).read_info() else { return false };
+    let Ok(mut reader) = png::Decoder::new(std::io::Cursor::new(png)).read_info() else {
+        return false;
+    };
     let Some(length) = reader.output_line_size(reader.info().width) else { return false };
     let mut line = vec![0; length];
     let is_same = |reader: &mut png::Reader<_>, line: &mut Vec<u8>, row: &[u8]| {
         matches!(reader.read_row(line), Ok(Some(_))) && line == row
     };
-    let all = strips.into_iter().all(|strip| strip.chunks(length).all(|row| is_same(&mut reader, &mut line, row)));
+    let all = strips
+        .into_iter()
+        .all(|strip| strip.chunks(length).all(|row| is_same(&mut reader, &mut line, row)));
     all && matches!(reader.read_row(&mut line), Ok(None)) && reader.finish().is_ok()
 }
 
@@ -160,13 +181,15 @@ pub fn decoded(bytes: &[u8]) -> Option<Vec<u8>> {
     reader.finish().ok()?;
     values.truncate(info.buffer_size());
     Some(match info.bit_depth {
-        png::BitDepth::Sixteen => values.as_chunks().0.iter().map(|v| byte_of(u16::from_be_bytes(*v))).collect(),
+        png::BitDepth::Sixteen => {
+            values.as_chunks().0.iter().map(|v| byte_of(u16::from_be_bytes(*v))).collect()
+        }
         _ => values,
     })
 }
 
-/// The tiles of a PNG of the kind that is stored here, its corner at a canvas pixel; `None` for any other or damaged
-/// one: `picture` then reads it or reports the error.
+/// The tiles of a PNG of the kind that is stored here, its corner at a canvas pixel; `None` for any
+/// other or damaged one: `picture` then reads it or reports the error.
 ///
 /// A row of tiles at a time, so that only this is in memory twice.
 pub fn decode_tiles(bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Option<Painted> {
@@ -175,7 +198,8 @@ pub fn decode_tiles(bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Option<Pai
     decoder.set_transformations(png::Transformations::EXPAND);
     let mut reader = decoder.read_info().ok()?;
     let info = reader.info();
-    let is_srgb = !bitmap::has_png_profile(bytes) || info.icc_profile.as_deref().is_some_and(is_own_srgb);
+    let is_srgb =
+        !bitmap::has_png_profile(bytes) || info.icc_profile.as_deref().is_some_and(is_own_srgb);
     let is_bare = info.exif_metadata.is_none() && info.animation_control.is_none() && is_srgb;
     let size = budget.size(Path::new(""), info.width.into(), info.height.into()).ok()?;
     let (color, depth) = reader.output_color_type();
@@ -183,11 +207,14 @@ pub fn decode_tiles(bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Option<Pai
     if !(is_deep || depth == png::BitDepth::Eight) || !is_bare || info.interlaced {
         return None;
     }
-    let rect = Rect::new(x, y, x.checked_add(size.width as i32)?, y.checked_add(size.height as i32)?);
+    let rect =
+        Rect::new(x, y, x.checked_add(size.width as i32)?, y.checked_add(size.height as i32)?);
     let mut tiles = TileGrid::for_rect(rect);
     let (line, held) = (rect.width(), rect.width() * TILE.min(rect.height()));
-    let (mut strip, mut deep) =
-        (vec![[0; 4]; if is_deep { 0 } else { held }], vec![[0; 4]; if is_deep { held } else { 0 }]);
+    let (mut strip, mut deep) = (
+        vec![[0; 4]; if is_deep { 0 } else { held }],
+        vec![[0; 4]; if is_deep { held } else { 0 }],
+    );
     let mut used_bytes = 0;
     let mut stored = vec![0; reader.output_line_size(size.width)?];
     let mut top = y;
@@ -199,7 +226,8 @@ pub fn decode_tiles(bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Option<Pai
             let row = row * line..(row + 1) * line;
             match is_deep {
                 true => {
-                    let samples: Vec<u16> = stored.as_chunks().0.iter().map(|v| u16::from_be_bytes(*v)).collect();
+                    let samples: Vec<u16> =
+                        stored.as_chunks().0.iter().map(|v| u16::from_be_bytes(*v)).collect();
                     to_rgba(&samples, color, u16::MAX, &mut deep[row])?;
                 }
                 false => to_rgba(&stored, color, u8::MAX, &mut strip[row])?,
@@ -207,7 +235,13 @@ pub fn decode_tiles(bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Option<Pai
         }
         let part = match is_deep {
             true => TileGrid::from_straight_deep(&deep[..rows * line], line, rows, x, top),
-            false => TileGrid::from_straight_rgba(strip[..rows * line].as_flattened(), line, rows, x, top),
+            false => TileGrid::from_straight_rgba(
+                strip[..rows * line].as_flattened(),
+                line,
+                rows,
+                x,
+                top,
+            ),
         };
         let part = if budget.deep_paint { part } else { part.rounded() };
         used_bytes += part.bytes() as u64;
@@ -219,14 +253,24 @@ pub fn decode_tiles(bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Option<Pai
     Some(Painted { size, tiles })
 }
 
-/// A row of a PNG's samples as straight RGBA; `None` of one that still numbers colours. `whole`: the greatest sample.
-fn to_rgba<T: Copy>(stored: &[T], color: png::ColorType, whole: T, row: &mut [[T; 4]]) -> Option<()> {
+/// A row of a PNG's samples as straight RGBA; `None` of one that still numbers colours. `whole`:
+/// the greatest sample.
+fn to_rgba<T: Copy>(
+    stored: &[T],
+    color: png::ColorType,
+    whole: T,
+    row: &mut [[T; 4]],
+) -> Option<()> {
     match color {
         png::ColorType::Rgba => row.copy_from_slice(stored.as_chunks().0.get(..row.len())?),
         png::ColorType::Rgb => {
-            row.iter_mut().zip(stored.as_chunks().0).for_each(|(p, [r, g, b])| *p = [*r, *g, *b, whole]);
+            row.iter_mut()
+                .zip(stored.as_chunks().0)
+                .for_each(|(p, [r, g, b])| *p = [*r, *g, *b, whole]);
         }
-        png::ColorType::Grayscale => row.iter_mut().zip(stored).for_each(|(p, v)| *p = [*v, *v, *v, whole]),
+        png::ColorType::Grayscale => {
+            row.iter_mut().zip(stored).for_each(|(p, v)| *p = [*v, *v, *v, whole])
+        }
         png::ColorType::GrayscaleAlpha => {
             row.iter_mut().zip(stored.as_chunks().0).for_each(|(p, [v, a])| *p = [*v, *v, *v, *a]);
         }
@@ -268,7 +312,8 @@ mod tests {
     #[test]
     fn premultiplied_pixels_come_back_as_they_were() {
         // Every alpha with every colour it allows.
-        let premultiplied: Vec<u8> = (0..=255u8).flat_map(|a| (0..=a).flat_map(move |c| [c, a - c, 0, a])).collect();
+        let premultiplied: Vec<u8> =
+            (0..=255u8).flat_map(|a| (0..=a).flat_map(move |c| [c, a - c, 0, a])).collect();
         let mut tiles = TileGrid::default();
         for (i, chunk) in premultiplied.chunks(TILE * TILE * 4).enumerate() {
             let mut bytes = chunk.to_vec();
@@ -276,16 +321,20 @@ mod tests {
             tiles.set(TileAt::new(i as i32 - 3, 1), Tile::from_bytes(bytes).map(Into::into));
         }
         let encoded = encode(Path::new("a"), &tiles, None).unwrap();
-        let picture = picture::decode(Path::new("a"), encoded.file.bytes(), &Budget::default()).unwrap();
+        let picture =
+            picture::decode(Path::new("a"), encoded.file.bytes(), &Budget::default()).unwrap();
         let crate::raster::picture::Texels::Srgb8(texels) = picture.texels else { panic!("bytes") };
         let (w, h) = (encoded.size.width as usize, encoded.size.height as usize);
         let back = TileGrid::from_straight_rgba(texels.as_flattened(), w, h, encoded.x, encoded.y);
-        let quick = decode_tiles(encoded.file.bytes(), encoded.x, encoded.y, &Budget::default()).unwrap().tiles;
+        let quick = decode_tiles(encoded.file.bytes(), encoded.x, encoded.y, &Budget::default())
+            .unwrap()
+            .tiles;
         for (at, tile) in tiles.iter() {
             assert_eq!(back.tile(at).unwrap().bytes(), tile.bytes(), "{at:?}");
             assert_eq!(quick.tile(at).unwrap().bytes(), tile.bytes(), "{at:?}");
         }
     }
+
     #[test]
     fn pixels_of_16_bits_come_back_as_they_were_beside_those_of_8() {
         let value = |i: usize, c: u32| (crate::math::hash::unit(i as u32, c, 3) * 65536.0) as u16;
@@ -306,20 +355,29 @@ mod tests {
         assert!(is_deep(encoded.file.bytes()));
         assert!(bitmap::has_png_profile(encoded.file.bytes()), "Krita would ask for one");
         assert_eq!((encoded.x, encoded.y, encoded.size), (-8, 5, Size::new(200, 90)));
-        let quick = decode_tiles(encoded.file.bytes(), encoded.x, encoded.y, &Budget::default()).unwrap().tiles;
+        let quick = decode_tiles(encoded.file.bytes(), encoded.x, encoded.y, &Budget::default())
+            .unwrap()
+            .tiles;
         // With a profile, as Krita writes them, another way is taken.
-        let picture = picture::decode(Path::new("a"), encoded.file.bytes(), &Budget::default()).unwrap();
+        let picture =
+            picture::decode(Path::new("a"), encoded.file.bytes(), &Budget::default()).unwrap();
         let slow = picture::to_tiles(&picture, encoded.x, encoded.y);
         for (at, tile) in tiles.iter() {
-            assert!(quick.tile(at).unwrap().is_same(tile) && slow.tile(at).unwrap().is_same(tile), "{at:?}");
+            assert!(
+                quick.tile(at).unwrap().is_same(tile) && slow.tile(at).unwrap().is_same(tile),
+                "{at:?}"
+            );
             assert_eq!(tile.is_deep(), at.col < 2, "{at:?}");
         }
-        assert!(!is_deep(encode(Path::new("a"), &tiles, Some(Rect::new(150, 5, 180, 9))).unwrap().file.bytes()));
+        assert!(!is_deep(
+            encode(Path::new("a"), &tiles, Some(Rect::new(150, 5, 180, 9))).unwrap().file.bytes()
+        ));
         let short = Budget { memory_bytes: 100_000, ..Budget::default() };
         assert!(decode_tiles(encoded.file.bytes(), 0, 0, &short).is_none());
         let bytes = decoded(encoded.file.bytes()).unwrap();
         assert_eq!(bytes[4 * 33..4 * 34], soft(33).map(|v| ((u32::from(v) + 128) / 257) as u8));
     }
+
     #[test]
     fn only_what_is_painted_is_stored() {
         let mut rgba = vec![0; 100 * 90 * 4];
@@ -332,11 +390,13 @@ mod tests {
         let nothing = encode(Path::new("a"), &TileGrid::default(), None).unwrap();
         assert_eq!(nothing.size, Size::new(1, 1));
     }
+
     #[test]
     fn a_mask_comes_back_as_it_was() {
         let plane = Plane::from_fn(Size::new(256, 2), |x, _| x as u8);
         let file = encode_coverage(Path::new("m"), &plane).unwrap();
-        let back = picture::decode_coverage(Path::new("m"), file.bytes(), &Budget::default()).unwrap();
+        let back =
+            picture::decode_coverage(Path::new("m"), file.bytes(), &Budget::default()).unwrap();
         assert_eq!(back.values(), plane.values());
     }
 }

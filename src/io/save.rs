@@ -1,5 +1,5 @@
-//! Saving a document: as a project, or as a Photoshop file if its name ends so. Floor 5. Not here: the bytes
-//! (`project`, `psd`), how they are written to the disk (`replace`).
+//! Saving a document: as a project, or as a Photoshop file if its name ends so. Floor 5. Not here:
+//! the bytes (`project`, `psd`), how they are written to the disk (`replace`).
 
 #![warn(missing_docs)]
 
@@ -27,18 +27,26 @@ pub struct EncodedDocument {
     pub notes: Vec<String>,
 }
 
-/// The bytes that a document is saved as under this name; `None` if cancelled. A shape that is still to be made is made
-/// first. A project is read back as a file is opened, and compared with the document: it fails where the two differ.
-pub fn encode(document: &Document, file: &Path, progress: &Progress) -> Result<Option<EncodedDocument>> {
+/// The bytes that a document is saved as under this name; `None` if cancelled. A shape that is
+/// still to be made is made first. A project is read back as a file is opened, and compared with
+/// the document: it fails where the two differ.
+pub fn encode(
+    document: &Document,
+    file: &Path,
+    progress: &Progress,
+) -> Result<Option<EncodedDocument>> {
     in_own_threads(file, || {
         let Some(document) = &document.reshaped_telling(progress) else { return Ok(None) };
         match Output::of(file) {
             Ok(Output::Psd) => {
                 let written = psd::write(file, document, progress)?;
-                Ok(written.map(|written| EncodedDocument { bytes: written.bytes, notes: written.notes }))
+                Ok(written
+                    .map(|written| EncodedDocument { bytes: written.bytes, notes: written.notes }))
             }
             _ => {
-                let Some(bytes) = project::write(file, document, progress)? else { return Ok(None) };
+                let Some(bytes) = project::write(file, document, progress)? else {
+                    return Ok(None);
+                };
                 project::read_back(file, &bytes, document, &Budget::holding(document))?;
                 Ok(Some(EncodedDocument { bytes, notes: Vec::new() }))
             }
@@ -48,7 +56,12 @@ pub fn encode(document: &Document, file: &Path, progress: &Progress) -> Result<O
 
 impl EncodedDocument {
     /// Writes it; `None` if cancelled. Fails as [`save`] does.
-    pub fn save(&self, file: &Path, terms: &Terms, progress: &Progress) -> Result<Option<SavedDocument>> {
+    pub fn save(
+        &self,
+        file: &Path,
+        terms: &Terms,
+        progress: &Progress,
+    ) -> Result<Option<SavedDocument>> {
         let done = replace(&Disk, file, &self.bytes, terms, progress)?;
         Ok(done.then(|| SavedDocument { stamp: FileStamp::of(&self.bytes) }))
     }
@@ -56,9 +69,10 @@ impl EncodedDocument {
 
 /// Saves a document; `None` if cancelled, and then nothing has changed.
 ///
-/// Works on a clone, from any thread; it works in threads of its own, so that a brush never waits for it. Returns once
-/// the file and its folder are on the disk. The previous version is kept next to it as `name~`. Fails with
-/// [`Error::Changed`] if `terms` do not allow the replacement; whatever fails, the old file is unchanged.
+/// Works on a clone, from any thread; it works in threads of its own, so that a brush never waits
+/// for it. Returns once the file and its folder are on the disk. The previous version is kept next
+/// to it as `name~`. Fails with [`Error::Changed`] if `terms` do not allow the replacement;
+/// whatever fails, the old file is unchanged.
 pub fn save(
     document: &Document,
     file: &Path,
@@ -94,13 +108,17 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("a.ora");
         let document = sample::everything(32);
-        let first = save(&document, &file, Overwrite::Nothing, &Progress::default()).unwrap().unwrap();
+        let first =
+            save(&document, &file, Overwrite::Nothing, &Progress::default()).unwrap().unwrap();
         let opened = open(&file, &Budget::default()).unwrap();
         assert_eq!(opened.stamp, first.stamp);
         sample::assert_same(&document, &opened.document);
-        save(&opened.document, &file, Overwrite::This(opened.stamp), &Progress::default()).unwrap().unwrap();
+        save(&opened.document, &file, Overwrite::This(opened.stamp), &Progress::default())
+            .unwrap()
+            .unwrap();
         std::fs::write(&file, "another program's").unwrap();
-        let said = save(&document, &file, Overwrite::This(opened.stamp), &Progress::default()).unwrap_err();
+        let said = save(&document, &file, Overwrite::This(opened.stamp), &Progress::default())
+            .unwrap_err();
         assert!(matches!(said, Error::Changed { .. }), "{said}");
         assert_eq!(std::fs::read(&file).unwrap(), b"another program's");
     }

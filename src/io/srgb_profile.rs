@@ -3,8 +3,8 @@
 
 use moxcms::ColorProfile;
 
-/// The profile of sRGB that this program writes. Its encoder would write the present time into it; the time is fixed,
-/// so that the same document gives the same bytes.
+/// The profile of sRGB that this program writes. Its encoder would write the present time into it;
+/// the time is fixed, so that the same document gives the same bytes.
 pub fn own_srgb() -> Vec<u8> {
     /// Year, month, day, hour, minute and second, as the header of a profile holds them.
     const DATE: [u8; 12] = [0x07, 0xd0, 0, 1, 0, 1, 0, 0, 0, 0, 0, 0];
@@ -19,7 +19,8 @@ pub fn own_srgb() -> Vec<u8> {
     aligned(&profile).unwrap_or(profile)
 }
 
-/// A profile with each part at a multiple of four bytes: readers require it, but the encoder does not do it.
+/// A profile with each part at a multiple of four bytes: readers require it, but the encoder does
+/// not do it.
 fn aligned(profile: &[u8]) -> Option<Vec<u8>> {
     let number = |at: usize| Some(u32::from_be_bytes(*profile.get(at..)?.first_chunk()?) as usize);
     let table = 132 + 12 * number(128)?;

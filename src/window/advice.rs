@@ -1,12 +1,14 @@
-//! Errors as the window shows them: the sentence, and what the user can do about it in the window. Floor 7. Not here:
-//! the advice of the command line (`cli`).
+//! Errors as the window shows them: the sentence, and what the user can do about it in the window.
+//! Floor 7. Not here: the advice of the command line (`cli`).
 
 use crate::{Error, Remedy};
 
 /// The sentence of an error, with the menu or control that would help.
 pub fn with_advice(error: &Error) -> String {
     let advice = match error.remedy() {
-        Some(Remedy::LongerSides | Remedy::MorePixels) => ". A smaller version of the picture can be opened",
+        Some(Remedy::LongerSides | Remedy::MorePixels) => {
+            ". A smaller version of the picture can be opened"
+        }
         Some(Remedy::MoreMemory) => ". Close other drawings (File, Close) and programs",
         Some(Remedy::Background) => ". Tick “Lay it on white” in File, Export…",
         None => "",
@@ -23,7 +25,8 @@ mod tests {
     #[test]
     fn the_window_names_its_own_controls_and_no_options_of_the_command_line() {
         let too_large = Budget::default().size(Path::new("a.png"), 1 << 20, 1).unwrap_err();
-        let transparent = Error::unsupported("a.jpg", "it is transparent").with_remedy(Remedy::Background);
+        let transparent =
+            Error::unsupported("a.jpg", "it is transparent").with_remedy(Remedy::Background);
         for (error, help) in [(too_large, "smaller version"), (transparent, "Lay it on white")] {
             let said = with_advice(&error);
             assert!(said.contains(help) && !said.contains("--"), "{said}");

@@ -1,5 +1,5 @@
-//! The system's clipboard: pictures, and texts for text fields. Floor 7. The toolkit's own clipboard is not built in,
-//! so its keys and texts are handled here.
+//! The system's clipboard: pictures, and texts for text fields. Floor 7. The toolkit's own
+//! clipboard is not built in, so its keys and texts are handled here.
 
 #[cfg(all(unix, not(target_os = "macos")))]
 mod x11;
@@ -28,8 +28,8 @@ fn open() -> Result<Clipboard> {
     Clipboard::new().map_err(|error| Error::unsupported("clipboard", error))
 }
 
-/// The picture or the files in the clipboard; fails if there are none. It takes as long as the program that owns them
-/// needs.
+/// The picture or the files in the clipboard; fails if there are none. It takes as long as the
+/// program that owns them needs.
 pub fn pasted() -> Result<PastedContent> {
     if let Some((name, bytes)) = offered(Budget::of_this_machine().file_bytes)? {
         let picture = picture::decode(Path::new(&name), &bytes, &Budget::of_this_machine())?;
@@ -39,14 +39,18 @@ pub fn pasted() -> Result<PastedContent> {
     if let Ok(image) = clipboard.get_image() {
         let size = Size::new(image.width as u32, image.height as u32);
         let picture = Picture::srgb8(size, image.bytes.as_chunks::<4>().0.to_vec());
-        let picture = picture.ok_or_else(|| Error::unsupported("clipboard", "its picture is broken"))?;
+        let picture =
+            picture.ok_or_else(|| Error::unsupported("clipboard", "its picture is broken"))?;
         return Ok(PastedContent::Picture(PastedPicture { name: "Pasted.png".into(), picture }));
     }
     let files = clipboard.get().file_list().ok().filter(|files| !files.is_empty());
-    files.map(PastedContent::Files).ok_or_else(|| Error::unsupported("clipboard", "it holds no picture"))
+    files
+        .map(PastedContent::Files)
+        .ok_or_else(|| Error::unsupported("clipboard", "it holds no picture"))
 }
 
-/// A picture as the file that another program offers, with a name for it, where the system has such.
+/// A picture as the file that another program offers, with a name for it, where the system has
+/// such.
 fn offered(most_bytes: u64) -> Result<Option<(String, Vec<u8>)>> {
     #[cfg(all(unix, not(target_os = "macos")))]
     return Ok(x11::picture(most_bytes)?.map(|(ending, bytes)| (format!("Pasted.{ending}"), bytes)));
@@ -54,10 +58,12 @@ fn offered(most_bytes: u64) -> Result<Option<(String, Vec<u8>)>> {
     return Ok(None).inspect(|_: &Option<_>| drop(most_bytes));
 }
 
-/// Puts a picture of straight RGBA into the clipboard. It stays there as long as the returned value is kept.
+/// Puts a picture of straight RGBA into the clipboard. It stays there as long as the returned value
+/// is kept.
 pub fn put(size: Size, rgba: &[u8]) -> Result<Clipboard> {
     let mut clipboard = open()?;
-    let image = ImageData { width: size.width as usize, height: size.height as usize, bytes: rgba.into() };
+    let image =
+        ImageData { width: size.width as usize, height: size.height as usize, bytes: rgba.into() };
     clipboard.set_image(image).map_err(|error| Error::unsupported("clipboard", error))?;
     Ok(clipboard)
 }
@@ -69,7 +75,10 @@ pub fn hear(ctx: &Context, events: &mut [Event]) {
     }
     for event in events {
         let Event::Key {
-            key, pressed: true, modifiers: Modifiers { command: true, shift: false, alt: false, .. }, ..
+            key,
+            pressed: true,
+            modifiers: Modifiers { command: true, shift: false, alt: false, .. },
+            ..
         } = event
         else {
             continue;

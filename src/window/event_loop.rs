@@ -10,15 +10,19 @@ use winit::window::WindowId;
 
 /// If this is set to anything, the window is opened on Wayland where available.
 ///
-/// Otherwise it is opened through X11 if both are available: on Wayland this windowing library reports neither pen
-/// pressure nor dropped files.
+/// Otherwise it is opened through X11 if both are available: on Wayland this windowing library
+/// reports neither pen pressure nor dropped files.
 #[cfg(all(unix, not(target_os = "macos")))]
 const PREFERS_WAYLAND: &str = "RILIEVO_WAYLAND";
 
 /// Runs the window until it is closed; the tablet receives every motion first.
 ///
 /// Fails if there is no display, or the window cannot be opened on it.
-pub fn run(options: eframe::NativeOptions, tablet: SharedTablet, start: eframe::AppCreator<'_>) -> eframe::Result {
+pub fn run(
+    options: eframe::NativeOptions,
+    tablet: SharedTablet,
+    start: eframe::AppCreator<'_>,
+) -> eframe::Result {
     let events = event_loop()?;
     let window = eframe::create_native("rilievo", options, start, &events);
     let devices = pen::devices(&events);
@@ -35,6 +39,7 @@ fn event_loop() -> eframe::Result<EventLoop<UserEvent>> {
     }
     Ok(builder.build()?)
 }
+
 #[cfg(not(all(unix, not(target_os = "macos"))))]
 fn event_loop() -> eframe::Result<EventLoop<UserEvent>> {
     Ok(EventLoop::with_user_event().build()?)
@@ -68,27 +73,35 @@ impl ApplicationHandler<UserEvent> for TabletListener<'_> {
         self.overhear(&event);
         self.window.window_event(events, window, event);
     }
+
     fn new_events(&mut self, events: &ActiveEventLoop, cause: StartCause) {
         self.window.new_events(events, cause);
     }
+
     fn resumed(&mut self, events: &ActiveEventLoop) {
         self.window.resumed(events);
     }
+
     fn suspended(&mut self, events: &ActiveEventLoop) {
         self.window.suspended(events);
     }
+
     fn user_event(&mut self, events: &ActiveEventLoop, event: UserEvent) {
         self.window.user_event(events, event);
     }
+
     fn device_event(&mut self, events: &ActiveEventLoop, device: DeviceId, event: DeviceEvent) {
         self.window.device_event(events, device, event);
     }
+
     fn about_to_wait(&mut self, events: &ActiveEventLoop) {
         self.window.about_to_wait(events);
     }
+
     fn exiting(&mut self, events: &ActiveEventLoop) {
         self.window.exiting(events);
     }
+
     fn memory_warning(&mut self, events: &ActiveEventLoop) {
         self.window.memory_warning(events);
     }

@@ -1,5 +1,5 @@
-//! What a file dialog is opened for: its title, the files to choose from, and the name of a new one. Floor 7. Not here:
-//! asking (`files`).
+//! What a file dialog is opened for: its title, the files to choose from, and the name of a new
+//! one. Floor 7. Not here: asking (`files`).
 
 use crate::session::PicturePart;
 use crate::session::brushes::EXTENSIONS;
@@ -48,9 +48,17 @@ impl FilePurpose {
             FilePurpose::ExportUnwrapped => "Export the unwrapped surface",
         }
     }
+
     pub fn is_saving(self) -> bool {
-        matches!(self, FilePurpose::Save | FilePurpose::Export | FilePurpose::ExportMaps | FilePurpose::ExportUnwrapped)
+        matches!(
+            self,
+            FilePurpose::Save
+                | FilePurpose::Export
+                | FilePurpose::ExportMaps
+                | FilePurpose::ExportUnwrapped
+        )
     }
+
     /// The extensions of files to choose from, with the name of each group.
     pub fn filters(self) -> Vec<(&'static str, Vec<&'static str>)> {
         let pictures = || PICTURES.to_vec();
@@ -75,13 +83,18 @@ impl FilePurpose {
             FilePurpose::ExportUnwrapped => vec![("Pictures", Self::FLAT.to_vec())],
         }
     }
+
     /// The final name of a chosen file. `extension`: for exports without one.
     pub fn named(self, file: PathBuf, extension: &str) -> PathBuf {
         match self {
             FilePurpose::Save => with_document_extension(file, SAVED[0], &SAVED),
             FilePurpose::ExportMaps => with_document_extension(file, MAPS[0], &MAPS),
-            FilePurpose::Export => with_document_extension(file, extension, &exported().collect::<Vec<_>>()),
-            FilePurpose::ExportUnwrapped => with_document_extension(file, Self::FLAT[0], &Self::FLAT),
+            FilePurpose::Export => {
+                with_document_extension(file, extension, &exported().collect::<Vec<_>>())
+            }
+            FilePurpose::ExportUnwrapped => {
+                with_document_extension(file, Self::FLAT[0], &Self::FLAT)
+            }
             _ => file,
         }
     }

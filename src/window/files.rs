@@ -6,8 +6,8 @@ use super::jobs::{JobKind, JobResult, Jobs};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-/// A dialog that returns this soon without a result was never shown, because there is no portal. Nobody cancels that
-/// fast.
+/// A dialog that returns this soon without a result was never shown, because there is no portal.
+/// Nobody cancels that fast.
 const NEVER_SHOWN: Duration = Duration::from_millis(500);
 
 /// The result of the system's dialog.
@@ -18,14 +18,16 @@ pub enum FileAnswer {
     Nowhere,
 }
 
-/// Asks with the system's dialog, on another thread. [`JobResult::Chosen`] with `None` means that there is none, or
-/// that the window should show its own (`by_itself`).
+/// Asks with the system's dialog, on another thread. [`JobResult::Chosen`] with `None` means that
+/// there is none, or that the window should show its own (`by_itself`).
 pub fn request(jobs: &mut Jobs, purpose: FilePurpose, name: &str, by_itself: bool) {
     let name = name.to_owned();
-    jobs.start(purpose.title().into(), JobKind::Asking, move |_| match answer(purpose, &name, by_itself) {
-        FileAnswer::File(file) => JobResult::Chosen(purpose, Some(file)),
-        FileAnswer::Cancelled => JobResult::Nothing,
-        FileAnswer::Nowhere => JobResult::Chosen(purpose, None),
+    jobs.start(purpose.title().into(), JobKind::Asking, move |_| {
+        match answer(purpose, &name, by_itself) {
+            FileAnswer::File(file) => JobResult::Chosen(purpose, Some(file)),
+            FileAnswer::Cancelled => JobResult::Nothing,
+            FileAnswer::Nowhere => JobResult::Chosen(purpose, None),
+        }
     });
 }
 
@@ -44,7 +46,11 @@ fn system_dialog(purpose: FilePurpose, name: &str) -> FileAnswer {
         dialog = dialog.add_filter(label, &extensions);
     }
     let asked = Instant::now();
-    let file = if purpose.is_saving() { dialog.set_file_name(name).save_file() } else { dialog.pick_file() };
+    let file = if purpose.is_saving() {
+        dialog.set_file_name(name).save_file()
+    } else {
+        dialog.pick_file()
+    };
     match file {
         Some(file) => FileAnswer::File(file),
         None if asked.elapsed() < NEVER_SHOWN => FileAnswer::Nowhere,

@@ -1,5 +1,5 @@
-//! Long work: each job runs on its own thread, with a progress bar and a cancel button, so that the window never waits.
-//! Floor 7.
+//! Long work: each job runs on its own thread, with a progress bar and a cancel button, so that the
+//! window never waits. Floor 7.
 
 use crate::clipboard::{Clipboard, PastedContent};
 use crate::document::parts::drawing::DrawingLook;
@@ -167,7 +167,8 @@ pub struct ShapedResult {
 pub enum JobKind {
     /// It can be cancelled.
     Working,
-    /// It edits the document in front, so no other edits are possible meanwhile. It can be cancelled.
+    /// It edits the document in front, so no other edits are possible meanwhile. It can be
+    /// cancelled.
     Editing,
     /// It waits for another program: a dialog of the system.
     Asking,
@@ -191,6 +192,7 @@ impl RunningJob {
         let (done, total) = self.progress.read();
         (total > 0).then(|| done as f32 / total as f32)
     }
+
     /// Its description, and what it does now if that has a name of its own.
     pub fn title(&self) -> String {
         match self.progress.stage() {
@@ -198,6 +200,7 @@ impl RunningJob {
             stage => format!("{}: {stage}", self.name),
         }
     }
+
     /// Whether it has run long enough to be shown.
     pub fn is_long(&self) -> bool {
         self.since.elapsed() > Duration::from_millis(250)
@@ -219,8 +222,14 @@ impl Jobs {
         let (sender, done) = channel();
         Self { sender, done, ctx: ctx.clone(), next: 0, under_way: Vec::new(), said: None }
     }
+
     /// Runs a job; `name` is shown meanwhile.
-    pub fn start(&mut self, name: String, kind: JobKind, work: impl FnOnce(&Progress) -> JobResult + Send + 'static) {
+    pub fn start(
+        &mut self,
+        name: String,
+        kind: JobKind,
+        work: impl FnOnce(&Progress) -> JobResult + Send + 'static,
+    ) {
         let key = self.next;
         self.next += 1;
         let progress = Arc::new(Progress::default());
@@ -228,7 +237,8 @@ impl Jobs {
         let named = name.clone();
         let run = move || {
             let done = memory::caught(|| work(&watched));
-            let done = done.unwrap_or_else(|refused| JobResult::Failed(Error::out_of_memory(&named, refused)));
+            let done = done
+                .unwrap_or_else(|refused| JobResult::Failed(Error::out_of_memory(&named, refused)));
             // The window may be closed by then.
             let _ = sender.send((key, done));
             ctx.request_repaint();
@@ -239,7 +249,9 @@ impl Jobs {
         }
         self.under_way.push(RunningJob { key, name, progress, kind, since: Instant::now() });
     }
-    /// Opens files that came together. `use_of`: what becomes of pictures; absent: they open as documents.
+
+    /// Opens files that came together. `use_of`: what becomes of pictures; absent: they open as
+    /// documents.
     pub fn open(&mut self, files: Vec<PathBuf>, use_of: Option<PictureUse>) {
         let name = match &files[..] {
             [file] => format!("Opening {}", short(file)),
@@ -255,13 +267,16 @@ impl Jobs {
             }
             let SortedFiles { objects, others } = storage::sorted(known);
             done.extend(objects.into_iter().map(|source| JobResult::AreMaps(Box::new(source))));
-            done.extend(others.into_iter().map(|(file, kind)| match use_of.filter(|_| kind == FileUse::Picture) {
-                Some(use_of) => JobResult::IsPicture(file, use_of),
-                None => JobResult::IsDocument(file),
+            done.extend(others.into_iter().map(|(file, kind)| {
+                match use_of.filter(|_| kind == FileUse::Picture) {
+                    Some(use_of) => JobResult::IsPicture(file, use_of),
+                    None => JobResult::IsDocument(file),
+                }
             }));
             JobResult::Several(done)
         });
     }
+
     pub fn read_document(&mut self, file: PathBuf) {
         let name = format!("Opening {}", short(&file));
         self.start(name, JobKind::Working, move |_| {
@@ -269,26 +284,33 @@ impl Jobs {
             JobResult::Opened(Some(file), Box::new(opened))
         });
     }
+
     pub fn read_picture(&mut self, file: PathBuf, use_of: PictureUse) {
-        self.start(format!("Reading {}", short(&file)), JobKind::Working, move |_| match read_picture(&file) {
-            Ok((name, picture)) => JobResult::Pictured(file, name, picture, use_of),
-            Err(error) => JobResult::Failed(error),
+        self.start(format!("Reading {}", short(&file)), JobKind::Working, move |_| {
+            match read_picture(&file) {
+                Ok((name, picture)) => JobResult::Pictured(file, name, picture, use_of),
+                Err(error) => JobResult::Failed(error),
+            }
         });
     }
+
     /// Shows a success message for a while.
     pub fn say(&mut self, sentence: String) {
         self.said = Some((sentence, Instant::now()));
     }
+
     /// The current success message.
     pub fn said(&self) -> Option<&str> {
         let (sentence, _) = self.said.as_ref().filter(|(_, since)| since.elapsed() < TOLD)?;
         Some(sentence)
     }
+
     /// The results since the last call. Cancelled jobs have none, unless they were already done.
     pub fn finished(&mut self) -> Vec<JobResult> {
         let mut finished = Vec::new();
         for (key, done) in self.done.try_iter() {
-            let given_up = self.under_way.iter().any(|job| job.key == key && job.progress.is_cancelled());
+            let given_up =
+                self.under_way.iter().any(|job| job.key == key && job.progress.is_cancelled());
             self.under_way.retain(|job| job.key != key);
             if !given_up || matches!(done, JobResult::Saved(..)) {
                 finished.push(done);
@@ -296,14 +318,17 @@ impl Jobs {
         }
         finished
     }
+
     /// Cancels the jobs of a name: their results are no longer wanted.
     pub fn give_up(&self, name: &str) {
         self.under_way.iter().filter(|job| job.name == name).for_each(|job| job.progress.cancel());
     }
+
     /// Whether a job is under way that ends with a dialog, or waits in one of the system's.
     pub fn awaits_dialog(&self) -> bool {
         self.under_way.iter().any(|job| matches!(job.kind, JobKind::Asking | JobKind::Looking))
     }
+
     /// The job that blocks other edits.
     pub fn editing(&self) -> Option<&RunningJob> {
         self.under_way.iter().find(|job| job.kind == JobKind::Editing)

@@ -1,5 +1,5 @@
-//! The keymap: the default keys of commands and tools, and those the user chose instead. Floor 7. `keys` handles key
-//! presses.
+//! The keymap: the default keys of commands and tools, and those the user chose instead. Floor 7.
+//! `keys` handles key presses.
 
 use super::commands::{self, MenuCommand};
 use crate::tools::ToolKind;
@@ -7,7 +7,8 @@ use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
-/// The keys chosen by the user, by the name of the command or the label of the tool; all others keep their defaults.
+/// The keys chosen by the user, by the name of the command or the label of the tool; all others
+/// keep their defaults.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Keymap {
     chosen: BTreeMap<String, Vec<KeyboardShortcut>>,
@@ -26,18 +27,21 @@ impl KeyTarget {
         let commands = commands::all().map(KeyTarget::Command);
         ToolKind::ALL.into_iter().map(|(tool, _)| KeyTarget::Tool(tool)).chain(commands)
     }
+
     pub fn name(self) -> &'static str {
         match self {
             KeyTarget::Command(command) => command.name,
             KeyTarget::Tool(tool) => tool.label(),
         }
     }
+
     pub fn hint(self) -> &'static str {
         match self {
             KeyTarget::Command(command) => command.hint,
             KeyTarget::Tool(tool) => tool.hint(),
         }
     }
+
     /// Its default keys.
     fn own(self) -> Vec<KeyboardShortcut> {
         match self {
@@ -54,13 +58,16 @@ impl Keymap {
     pub fn of(&self, keyed: KeyTarget) -> Vec<KeyboardShortcut> {
         self.chosen.get(keyed.name()).cloned().unwrap_or_else(|| keyed.own())
     }
+
     /// The first key of a command, which menus show.
     pub fn first(&self, command: &'static MenuCommand) -> Option<KeyboardShortcut> {
         self.of(KeyTarget::Command(command)).first().copied()
     }
+
     pub fn is_chosen(&self, keyed: KeyTarget) -> bool {
         self.chosen.contains_key(keyed.name())
     }
+
     /// Sets the keys; default ones are not stored.
     pub fn set(&mut self, keyed: KeyTarget, keys: Vec<KeyboardShortcut>) {
         if keys == keyed.own() {
@@ -69,13 +76,17 @@ impl Keymap {
             self.chosen.insert(keyed.name().to_owned(), keys);
         }
     }
+
     pub fn reset(&mut self, keyed: KeyTarget) {
         self.chosen.remove(keyed.name());
     }
+
     /// What else has this key.
     pub fn conflict(&self, keys: KeyboardShortcut, except: KeyTarget) -> Option<KeyTarget> {
-        KeyTarget::all().find(|other| other.name() != except.name() && self.of(*other).contains(&keys))
+        KeyTarget::all()
+            .find(|other| other.name() != except.name() && self.of(*other).contains(&keys))
     }
+
     /// Takes a key from its present owner, and assigns it.
     pub fn take(&mut self, keys: KeyboardShortcut, to: KeyTarget) {
         while let Some(other) = self.conflict(keys, to) {
@@ -88,10 +99,19 @@ impl Keymap {
         }
         self.set(to, of);
     }
+
     pub fn to_json(&self) -> Value {
-        let text = |keys: &Vec<KeyboardShortcut>| keys.iter().map(|&keys| Value::from(written(keys))).collect();
-        Value::Object(self.chosen.iter().map(|(name, keys)| (name.clone(), Value::Array(text(keys)))).collect())
+        let text = |keys: &Vec<KeyboardShortcut>| {
+            keys.iter().map(|&keys| Value::from(written(keys))).collect()
+        };
+        Value::Object(
+            self.chosen
+                .iter()
+                .map(|(name, keys)| (name.clone(), Value::Array(text(keys))))
+                .collect(),
+        )
     }
+
     /// Unknown entries are left out.
     pub fn from_json(value: &Map<String, Value>) -> Self {
         let known = |name: &str| KeyTarget::all().any(|keyed| keyed.name() == name);
@@ -99,7 +119,9 @@ impl Keymap {
             list.as_array()?.iter().map(|keys| read(keys.as_str()?)).collect()
         };
         let chosen = value.iter().filter(|(name, _)| known(name));
-        Self { chosen: chosen.filter_map(|(name, list)| Some((name.clone(), keys(list)?))).collect() }
+        Self {
+            chosen: chosen.filter_map(|(name, list)| Some((name.clone(), keys(list)?))).collect(),
+        }
     }
 }
 
@@ -125,7 +147,9 @@ fn written(keys: KeyboardShortcut) -> String {
 
 fn read(text: &str) -> Option<KeyboardShortcut> {
     let (mut modifiers, mut rest) = (Modifiers::NONE, text);
-    for (word, modifier) in [("Ctrl+", Modifiers::COMMAND), ("Alt+", Modifiers::ALT), ("Shift+", Modifiers::SHIFT)] {
+    for (word, modifier) in
+        [("Ctrl+", Modifiers::COMMAND), ("Alt+", Modifiers::ALT), ("Shift+", Modifiers::SHIFT)]
+    {
         if let Some(after) = rest.strip_prefix(word) {
             (modifiers, rest) = (modifiers.plus(modifier), after);
         }
@@ -150,6 +174,7 @@ mod tests {
         }
         assert_eq!(read("Ctrl+Nothing"), None);
     }
+
     #[test]
     fn a_key_that_is_taken_is_gone_from_where_it_was() {
         let mut keymap = Keymap::default();

@@ -1,4 +1,5 @@
-//! The keyboard: commands and tools by their keys. Floor 7. Not here: which keys they have (`keymap`).
+//! The keyboard: commands and tools by their keys. Floor 7. Not here: which keys they have
+//! (`keymap`).
 
 use super::commands::MenuCommand;
 use super::keymap::{KeyTarget, Keymap};
@@ -15,8 +16,9 @@ pub fn listen(ctx: &Context, session: &Session, keymap: &Keymap, requests: &mut 
     let is_pressed = |event: &Event| matches!(event, Event::Key { pressed: true, .. });
     if ctx.input(|i| i.events.iter().any(is_pressed)) {
         // Those with more modifiers first: Ctrl+Shift+Z is not Ctrl+Z.
-        let mut all: Vec<(KeyboardShortcut, KeyTarget)> =
-            KeyTarget::all().flat_map(|keyed| keymap.of(keyed).into_iter().map(move |keys| (keys, keyed))).collect();
+        let mut all: Vec<(KeyboardShortcut, KeyTarget)> = KeyTarget::all()
+            .flat_map(|keyed| keymap.of(keyed).into_iter().map(move |keys| (keys, keyed)))
+            .collect();
         all.sort_by_key(|(keys, _)| {
             let Modifiers { alt, shift, command, .. } = keys.modifiers;
             std::cmp::Reverse(u8::from(alt) + u8::from(shift) + u8::from(command))
@@ -34,7 +36,8 @@ pub fn listen(ctx: &Context, session: &Session, keymap: &Keymap, requests: &mut 
                 KeyTarget::Tool(tool) => requests.act(Action::Hand(HandAction::Tool { tool })),
             }
         }
-        // A key that nothing took says why nothing happens; Enter and Escape apply to whatever is under way.
+        // A key that nothing took says why nothing happens; Enter and Escape apply to whatever is
+        // under way.
         let silent = |keys: &KeyboardShortcut| matches!(keys.logical_key, Key::Enter | Key::Escape);
         for (keys, keyed) in all.iter().filter(|(keys, _)| !silent(keys)) {
             if let KeyTarget::Command(command) = keyed

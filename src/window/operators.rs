@@ -19,8 +19,11 @@ pub struct OfferedOperator {
 /// The operators as the tool bar offers them.
 pub const OPERATORS: [OfferedOperator; 5] = [FLAT, TEXTURE, DEPTH_TEXTURE, SHADING, REFLECTION];
 
-pub const FLAT: OfferedOperator =
-    OfferedOperator { label: "Flat", begins: Operator::None, hint: "Marks stay flat on the canvas" };
+pub const FLAT: OfferedOperator = OfferedOperator {
+    label: "Flat",
+    begins: Operator::None,
+    hint: "Marks stay flat on the canvas",
+};
 pub const TEXTURE: OfferedOperator = OfferedOperator {
     label: "Texture",
     begins: Operator::Surface { amount: 1.0, smooth: 0.0 },
@@ -49,21 +52,28 @@ pub fn hint_of(key: &str) -> &'static str {
         "beta" => "How much more the middle of the surface bends than its rim",
         "detail" => "How much small bumps bend the image beyond the large form",
         "gamma" => "How strongly the texture follows the depth",
-        "amount" => "How far the surface is unwrapped: 0 is flat, 1 as long as the surface is, 2 exaggerates it",
-        "smooth" => "Blurs the shape beforehand, in pixels, so that fine relief does not shear the print",
+        "amount" => {
+            "How far the surface is unwrapped: 0 is flat, 1 as long as the surface is, 2 exaggerates it"
+        }
+        "smooth" => {
+            "Blurs the shape beforehand, in pixels, so that fine relief does not shear the print"
+        }
         _ => "",
     }
 }
 
-/// Whose operator the bar shows: the selected image's or gradient's with the tools that change it, else the current
-/// one.
+/// Whose operator the bar shows: the selected image's or gradient's with the tools that change it,
+/// else the current one.
 pub enum OperatorOwner {
     Hand,
     Layer(LayerPath),
 }
 
 pub fn whose(session: &Session) -> (OperatorOwner, Operator) {
-    let of_layer = matches!(session.tool, ToolKind::Image | ToolKind::Anchors | ToolKind::Move | ToolKind::Gradient);
+    let of_layer = matches!(
+        session.tool,
+        ToolKind::Image | ToolKind::Anchors | ToolKind::Move | ToolKind::Gradient
+    );
     let bent = session.layer().filter(|_| of_layer).and_then(|layer| layer.content.bend());
     let operator = bent.map(|bend| bend.operator);
     match (operator, session.layer_path()) {
@@ -86,8 +96,10 @@ pub fn set(requests: &mut UiRequests, whose: &OperatorOwner, operator: ValueChan
     let ValueChange { to, done } = operator;
     requests.act(match whose {
         OperatorOwner::Hand => Action::Hand(HandAction::Operator { operator: to }),
-        OperatorOwner::Layer(layer) => {
-            Action::Layer(LayerAction::Set { layer: layer.clone().into(), to: Property::Bend { operator: to }, done })
-        }
+        OperatorOwner::Layer(layer) => Action::Layer(LayerAction::Set {
+            layer: layer.clone().into(),
+            to: Property::Bend { operator: to },
+            done,
+        }),
     });
 }

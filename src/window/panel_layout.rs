@@ -1,5 +1,5 @@
-//! The layout of the panels: on which side, which in front, which in separate windows. Floor 7. Not here: keeping it
-//! from run to run (`settings`).
+//! The layout of the panels: on which side, which in front, which in separate windows. Floor 7. Not
+//! here: keeping it from run to run (`settings`).
 
 rilievo_engine::named! {
     /// A panel that can be next to the canvas or in a window of its own.

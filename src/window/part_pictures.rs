@@ -31,37 +31,49 @@ impl PartPictures {
         let areas = &self.areas;
         self.painted.retain(|id, _| areas.iter().any(|(part, _)| part.id == *id));
         for (part, area) in areas {
-            let is_known = self.painted.get(&part.id).is_some_and(|(known, _)| Arc::ptr_eq(known, area));
+            let is_known =
+                self.painted.get(&part.id).is_some_and(|(known, _)| Arc::ptr_eq(known, area));
             if !is_known && let Some(form) = document.form_of(&part.id) {
-                let texture = ctx.load_texture(format!("part {}", part.id), lit(&form), TextureOptions::LINEAR);
+                let texture = ctx.load_texture(
+                    format!("part {}", part.id),
+                    lit(&form),
+                    TextureOptions::LINEAR,
+                );
                 self.painted.insert(part.id.clone(), (area.clone(), texture));
             }
         }
     }
+
     /// Where the forms of a document lie, with their parts, computed once per version of it.
     pub fn areas(&mut self, document: &Document) -> &[(Arc<Part>, Arc<FormArea>)] {
         let is_same = self.of.as_ref().is_some_and(|(parts, surface)| {
-            let surfaces = [surface, &document.surface].map(|surface| surface.as_ref().map(Arc::as_ptr));
+            let surfaces =
+                [surface, &document.surface].map(|surface| surface.as_ref().map(Arc::as_ptr));
             Arc::ptr_eq(parts, &document.parts) && surfaces[0] == surfaces[1]
         });
         if !is_same {
             let areas = match document.is_ahead() {
                 // During a drag nothing is made here.
                 true => document.last_part_areas(),
-                false => {
-                    document.part_areas().into_iter().map(|(part, area)| (part, area, Affine2::IDENTITY)).collect()
-                }
+                false => document
+                    .part_areas()
+                    .into_iter()
+                    .map(|(part, area)| (part, area, Affine2::IDENTITY))
+                    .collect(),
             };
-            (self.areas, self.moved) = areas.into_iter().map(|(part, area, map)| ((part, area), map)).unzip();
+            (self.areas, self.moved) =
+                areas.into_iter().map(|(part, area, map)| ((part, area), map)).unzip();
             self.of = Some((document.parts.clone(), document.surface.clone()));
         }
         &self.areas
     }
+
     /// The map of a part's form, as it was made last, to where the part is.
     pub fn moved(&self, id: &str) -> Affine2 {
         let at = self.areas.iter().position(|(part, _)| part.id == id);
         at.and_then(|at| self.moved.get(at)).copied().unwrap_or(Affine2::IDENTITY)
     }
+
     /// A picture and its size.
     pub fn picture(&self, part: &Part) -> Option<(TextureId, Vec2)> {
         let (_, texture) = self.painted.get(part.on().unwrap_or(&part.id))?;

@@ -1,5 +1,5 @@
-//! What is to be saved or exported, while it waits for a job or for an answer. Floor 7. Not here: doing it (`saving`),
-//! asking (`dialogs`).
+//! What is to be saved or exported, while it waits for a job or for an answer. Floor 7. Not here:
+//! doing it (`saving`), asking (`dialogs`).
 
 use crate::document::Document;
 use crate::document::view::UnwrapOptions;
@@ -67,6 +67,7 @@ impl Pending {
             Pending::Maps(exporting) => &exporting.file,
         }
     }
+
     /// The user confirmed.
     pub fn forced(mut self) -> Self {
         match &mut self {

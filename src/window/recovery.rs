@@ -1,5 +1,5 @@
-//! Recovery in the window: keeps logs of the open documents, and offers lost drawings at the start. Floor 7. Another
-//! thread reads the logs. Not here: the logs (`session::autosave`).
+//! Recovery in the window: keeps logs of the open documents, and offers lost drawings at the start.
+//! Floor 7. Another thread reads the logs. Not here: the logs (`session::autosave`).
 
 use super::MainWindow;
 use super::dialogs::{Dialog, recovery};
@@ -21,29 +21,38 @@ impl MainWindow {
         self.session.autosave = Some(autosave);
         // The window opens whatever is in that folder.
         let look = move || catch_unwind(AssertUnwindSafe(|| lost.list())).unwrap_or_default();
-        self.jobs.start("Looking for unsaved drawings".into(), JobKind::Working, move |_: &Progress| {
-            JobResult::Lost(look())
-        });
+        self.jobs.start(
+            "Looking for unsaved drawings".into(),
+            JobKind::Working,
+            move |_: &Progress| JobResult::Lost(look()),
+        );
     }
+
     pub(super) fn offer(&mut self, lost: Vec<LostSession>) {
         if !lost.is_empty() {
             self.dialogs.push(Dialog::Recovery(recovery::RecoveryDialog::new(lost)));
         }
     }
+
     pub(super) fn recover(&mut self, lost: Vec<LostSession>) {
         self.close_empty_offer();
         for one in lost {
             let Some(autosave) = &self.session.autosave else { return };
             let (bring, title) = (autosave.lost(), one.title.clone());
-            self.jobs.start(format!("Recovering {title}"), JobKind::Working, move |progress: &Progress| {
-                let found = catch_unwind(AssertUnwindSafe(|| bring.bring_back(one, progress)));
-                match found.unwrap_or_else(|_| Err(broken(&title))).transpose() {
-                    Some(found) => JobResult::Recovered(Box::new(found)),
-                    None => JobResult::Nothing,
-                }
-            });
+            self.jobs.start(
+                format!("Recovering {title}"),
+                JobKind::Working,
+                move |progress: &Progress| {
+                    let found = catch_unwind(AssertUnwindSafe(|| bring.bring_back(one, progress)));
+                    match found.unwrap_or_else(|_| Err(broken(&title))).transpose() {
+                        Some(found) => JobResult::Recovered(Box::new(found)),
+                        None => JobResult::Nothing,
+                    }
+                },
+            );
         }
     }
+
     pub(super) fn take_recovered(&mut self, found: Result<RecoveredTab>) {
         match found {
             Ok(RecoveredTab { tab, recovery, tool }) => {
@@ -56,12 +65,14 @@ impl MainWindow {
             Err(error) => self.messages.push(with_advice(&error)),
         }
     }
+
     pub(super) fn delete(&mut self, lost: LostSession) {
         self.close_empty_offer();
         if let Err(error) = lost.discard() {
             self.messages.push(with_advice(&error));
         }
     }
+
     fn close_empty_offer(&mut self) {
         if let Some(Dialog::Recovery(recovery)) = self.dialogs.last()
             && recovery.is_empty()
@@ -72,5 +83,8 @@ impl MainWindow {
 }
 
 fn broken(title: &str) -> Error {
-    Error::decode(title, "its recovery log is damaged in an unexpected way; it was left where it is")
+    Error::decode(
+        title,
+        "its recovery log is damaged in an unexpected way; it was left where it is",
+    )
 }

@@ -1,7 +1,8 @@
-//! The render thread: flattens documents tile by tile, so that the window never waits for pixels. It compares the shown
-//! document with the requested one and paints only tiles that differ, visible ones first. While something is dragged
-//! and whole pixels would take longer than a frame, it paints a smaller picture instead, and the full one as soon as
-//! the user pauses. Floor 7. Pixels come from `document::flatten`; `pass` tracks what is left to paint of one picture.
+//! The render thread: flattens documents tile by tile, so that the window never waits for pixels.
+//! It compares the shown document with the requested one and paints only tiles that differ, visible
+//! ones first. While something is dragged and whole pixels would take longer than a frame, it
+//! paints a smaller picture instead, and the full one as soon as the user pauses. Floor 7. Pixels
+//! come from `document::flatten`; `pass` tracks what is left to paint of one picture.
 
 mod draft;
 mod pass;
@@ -24,14 +25,16 @@ pub struct RenderRequest {
     pub document: Document,
     /// The visible canvas pixels.
     pub visible: Rect,
-    /// Whether a slider or a handle is being dragged: a smaller picture soon is better than a full one late.
+    /// Whether a slider or a handle is being dragged: a smaller picture soon is better than a full
+    /// one late.
     pub is_dragged: bool,
 }
 
 /// Tiles that were painted.
 pub struct RenderedTileBatch {
     pub picture: u64,
-    /// They belong to a picture that is shown only for a moment: with fewer pixels, or read more coarsely.
+    /// They belong to a picture that is shown only for a moment: with fewer pixels, or read more
+    /// coarsely.
     pub is_draft: bool,
     /// The size of the picture that the tiles are cut from.
     pub size: Size,
@@ -40,7 +43,8 @@ pub struct RenderedTileBatch {
     pub is_settled: bool,
     /// The time since work on this document began.
     pub took: Duration,
-    /// There was no memory to paint it; what was painted before stays until another document is requested.
+    /// There was no memory to paint it; what was painted before stays until another document is
+    /// requested.
     pub refused: Option<OutOfMemory>,
 }
 
@@ -61,12 +65,13 @@ pub struct RenderThread {
 const BATCH: usize = 48;
 /// The same during a drag, so that a slow redraw is noticed soon.
 const FEW: usize = 12;
-/// A pass over the visible tiles may take this long before a newer request interrupts it, so that a drag shows complete
-/// pictures.
+/// A pass over the visible tiles may take this long before a newer request interrupts it, so that a
+/// drag shows complete pictures.
 const PASS: Duration = Duration::from_millis(150);
 /// If a redraw during a drag takes no longer than this, it is painted as at rest.
 const FINE: Duration = Duration::from_millis(16);
-/// If it takes longer, pictures are read coarsely; if that takes longer than this, it has fewer pixels.
+/// If it takes longer, pictures are read coarsely; if that takes longer than this, it has fewer
+/// pixels.
 const FRAME: Duration = Duration::from_millis(30);
 /// The time of a draft of all pixels, as a share of the picture's time at rest.
 const DRAFT_SHARE: f32 = 0.7;
@@ -82,24 +87,33 @@ const SHAPING: Duration = Duration::from_nanos(120);
 const COARSEST: u32 = 8;
 
 impl RenderThread {
-    /// `done` is called on the render thread after each batch. Fails if the system cannot start a thread.
+    /// `done` is called on the render thread after each batch. Fails if the system cannot start a
+    /// thread.
     pub fn new(done: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         let shared = Arc::new(SharedRequest::default());
         let (sender, painted) = channel();
         let for_thread = shared.clone();
-        std::thread::Builder::new().name("painter".into()).spawn(move || work(&for_thread, &sender, &done))?;
+        std::thread::Builder::new()
+            .name("painter".into())
+            .spawn(move || work(&for_thread, &sender, &done))?;
         Ok(Self { shared, painted })
     }
+
     /// Requests a document; only the last request counts.
     pub fn want(&self, wanted: RenderRequest) {
         *lock(&self.shared.wanted) = Some(wanted);
         self.shared.wake.notify_one();
     }
+
     /// What was painted since the last call, and what else is painted within some time.
     pub fn painted(&self, wait: Duration) -> impl Iterator<Item = RenderedTileBatch> + '_ {
         let (until, mut is_settled) = (Instant::now() + wait, false);
         std::iter::from_fn(move || {
-            let left = if is_settled { Duration::ZERO } else { until.saturating_duration_since(Instant::now()) };
+            let left = if is_settled {
+                Duration::ZERO
+            } else {
+                until.saturating_duration_since(Instant::now())
+            };
             let batch = match left.is_zero() {
                 true => self.painted.try_recv().ok(),
                 false => self.painted.recv_timeout(left).ok(),
@@ -171,7 +185,8 @@ fn work(shared: &SharedRequest, sender: &Sender<RenderedTileBatch>, done: &dyn F
             let is_settled = painted.is_settled;
             send(painted)?;
             let newer = lock(&shared.wanted).is_some();
-            if (newer && (is_settled || begun.elapsed() > PASS)) || (work.is_drafting && is_settled) {
+            if (newer && (is_settled || begun.elapsed() > PASS)) || (work.is_drafting && is_settled)
+            {
                 break;
             }
         }
@@ -179,8 +194,12 @@ fn work(shared: &SharedRequest, sender: &Sender<RenderedTileBatch>, done: &dyn F
 }
 
 impl RenderWork {
-    /// Does some of the work; without memory for it, it is put aside, and the next document is painted whole.
-    fn if_there_is_memory<T>(&mut self, step: impl FnOnce(&mut Self) -> T) -> Result<T, OutOfMemory> {
+    /// Does some of the work; without memory for it, it is put aside, and the next document is
+    /// painted whole.
+    fn if_there_is_memory<T>(
+        &mut self,
+        step: impl FnOnce(&mut Self) -> T,
+    ) -> Result<T, OutOfMemory> {
         let done = memory::caught(|| step(self));
         if done.is_err() {
             (self.whole, self.draft) = (RenderPass::default(), None);
@@ -188,7 +207,9 @@ impl RenderWork {
         }
         done
     }
-    /// Waits for something to do; returns the newly requested document, if any. `None` once the window is closed.
+
+    /// Waits for something to do; returns the newly requested document, if any. `None` once the
+    /// window is closed.
     fn wait(&mut self, shared: &SharedRequest) -> Option<Option<RenderRequest>> {
         let mut pause = PAUSE;
         let mut wanted = lock(&shared.wanted);
@@ -204,7 +225,8 @@ impl RenderWork {
                 wanted = shared.wake.wait(wanted).unwrap_or_else(PoisonError::into_inner);
                 continue;
             };
-            let (next, waited) = shared.wake.wait_timeout(wanted, rest).unwrap_or_else(PoisonError::into_inner);
+            let (next, waited) =
+                shared.wake.wait_timeout(wanted, rest).unwrap_or_else(PoisonError::into_inner);
             wanted = next;
             if self.is_drafting {
                 (self.is_drafting, self.is_resting) = (!waited.timed_out(), waited.timed_out());
@@ -218,20 +240,26 @@ impl RenderWork {
             }
         }
     }
+
     /// A drag will need a smaller picture, and some of it is still to be made.
     fn is_slow(&self) -> bool {
         !self.is_prepared && self.whole.slowest() > FINE
     }
-    /// Scales down some of the document before a drag needs it: all of a large one would delay the first frame.
+
+    /// Scales down some of the document before a drag needs it: all of a large one would delay the
+    /// first frame.
     fn prepare(&mut self) -> Readiness {
         let step = step_for(self.whole.slowest());
         let readiness = match &self.wanted {
-            Some(wanted) => self.draft.get_or_insert_with(|| DraftRender::new(step)).prepare(&wanted.document),
+            Some(wanted) => {
+                self.draft.get_or_insert_with(|| DraftRender::new(step)).prepare(&wanted.document)
+            }
             None => Readiness::Ready,
         };
         self.is_prepared = matches!(readiness, Readiness::Ready);
         readiness
     }
+
     fn take_up(&mut self, next: RenderRequest) {
         if self.wanted.as_ref().is_none_or(|old| old.picture != next.picture) {
             (self.whole, self.draft, self.at_rest) = (RenderPass::default(), None, None);
@@ -243,20 +271,24 @@ impl RenderWork {
         self.is_behind = next.document.is_ahead();
         // The first frame of a large canvas is not waited for either.
         let area = next.document.size.area();
-        let shaping = if self.shaping.is_zero() { SHAPING.mul_f32(area as f32) } else { self.shaping };
+        let shaping =
+            if self.shaping.is_zero() { SHAPING.mul_f32(area as f32) } else { self.shaping };
         let is_slow = self.is_behind && shaping > FRAME;
         if is_slow && self.draft.is_none() {
             // The surface of parts is scaled down, too.
             self.begin_draft(step_for(self.whole.slowest().max(shaping)).max(2));
         }
-        let was_quick =
-            self.draft.as_ref().is_none_or(|draft| draft.is_unused() || draft.would_be_quick_in_whole_pixels());
+        let was_quick = self
+            .draft
+            .as_ref()
+            .is_none_or(|draft| draft.is_unused() || draft.would_be_quick_in_whole_pixels());
         self.is_drafting = next.is_dragged && (is_slow || !was_quick);
         (self.wanted, self.is_resting, self.is_prepared) = (Some(next), false, false);
         if self.is_drafting {
             self.redraft();
         }
     }
+
     /// Gives the whole picture the surface of its parts.
     fn catch_up(&mut self) {
         let Some(wanted) = self.wanted.as_ref().filter(|_| self.is_behind) else { return };
@@ -264,11 +296,13 @@ impl RenderWork {
         self.whole.take_up(wanted.document.reshaped());
         (self.shaping, self.is_behind) = (begun.elapsed(), false);
     }
+
     fn begin_draft(&mut self, step: u32) {
         let mut draft = DraftRender::new(step);
         self.at_rest.iter().for_each(|document| draft.reduced.keep(document));
         self.draft = Some(draft);
     }
+
     /// Passes the requested document to the draft.
     fn redraft(&mut self) {
         if let Some(draft) = self.draft.as_ref().filter(|draft| draft.is_slow()) {
@@ -283,12 +317,14 @@ impl RenderWork {
             Err(_) => (self.draft, self.is_drafting) = (None, false),
         }
     }
+
     fn has_more(&self) -> bool {
         match &self.draft {
             Some(draft) if self.is_drafting => draft.pass.has_more(),
             _ => self.is_behind || self.whole.has_more(),
         }
     }
+
     fn nothing(&self) -> RenderedTileBatch {
         let size = self.wanted.as_ref().map_or(Size::new(0, 0), |wanted| wanted.document.size);
         let (is_draft, size) = match &self.draft {
@@ -296,8 +332,17 @@ impl RenderWork {
             _ => (false, size),
         };
         let (tiles, took) = (Vec::new(), Duration::ZERO);
-        RenderedTileBatch { picture: 0, is_draft, size, tiles, is_settled: true, took, refused: None }
+        RenderedTileBatch {
+            picture: 0,
+            is_draft,
+            size,
+            tiles,
+            is_settled: true,
+            took,
+            refused: None,
+        }
     }
+
     /// Paints some of what is left, visible tiles first.
     fn paint(&mut self) -> Option<RenderedTileBatch> {
         let wanted = self.wanted.as_ref()?;
@@ -312,7 +357,9 @@ impl RenderWork {
         if is_dragged && !self.is_resting && !done.is_settled && done.took > FINE {
             let step = step_for(done.took.mul_f32(done.share_left() + 1.0));
             // A prepared one will do if it is small enough, unless all pixels can be shown.
-            let does = |draft: &DraftRender| draft.step == step || (draft.is_unused() && draft.step > step && step > 1);
+            let does = |draft: &DraftRender| {
+                draft.step == step || (draft.is_unused() && draft.step > step && step > 1)
+            };
             if !self.draft.as_ref().is_some_and(does) {
                 self.begin_draft(step);
             }
@@ -330,7 +377,8 @@ fn wanted_size(wanted: Option<&RenderRequest>) -> Size {
 
 /// How much smaller a picture must be to be painted within a frame, if whole pixels take so long.
 fn step_for(whole: Duration) -> u32 {
-    let fits = |step: u32| whole.as_secs_f32() * DRAFT_SHARE <= FRAME.as_secs_f32() * (step * step) as f32;
+    let fits =
+        |step: u32| whole.as_secs_f32() * DRAFT_SHARE <= FRAME.as_secs_f32() * (step * step) as f32;
     [1, 2, 4].into_iter().find(|&step| fits(step)).unwrap_or(COARSEST)
 }
 

@@ -18,6 +18,7 @@ impl UiRequests {
     pub fn act(&mut self, action: Action) {
         self.actions.push(action);
     }
+
     pub fn request(&mut self, ask: WindowRequest) {
         self.window.push(ask);
     }

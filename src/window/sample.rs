@@ -1,5 +1,5 @@
-//! The sample that a first start opens: a shape without a file, ready to be painted on. Floor 7. Made of formulas, so
-//! that nothing is downloaded and nothing is missing.
+//! The sample that a first start opens: a shape without a file, ready to be painted on. Floor 7.
+//! Made of formulas, so that nothing is downloaded and nothing is missing.
 
 use crate::document::{Content, Document, Layer, Live};
 use crate::math::{Size, Vec2, Vec3, srgb::Color, vec2, vec3};
@@ -19,7 +19,10 @@ pub fn open() -> Result<OpenedTab> {
     let background = Gradient {
         from: vec2(0.0, 0.0),
         to: vec2(0.0, SIDE as f32),
-        stops: vec![GradientStop { t: 0.0, color: grey(0x3a) }, GradientStop { t: 1.0, color: grey(0x24) }],
+        stops: vec![
+            GradientStop { t: 0.0, color: grey(0x3a) },
+            GradientStop { t: 1.0, color: grey(0x24) },
+        ],
         operator: Operator::None,
         filter: ImageFilter::Antialias,
         frame: Default::default(),
@@ -38,11 +41,19 @@ pub fn open() -> Result<OpenedTab> {
         frame: Default::default(),
         pieces: Vec::new(),
     };
-    let behind = Layer { clip_to_surface: false, ..Layer::new("Background", Content::Gradient(Live::new(background))) };
-    let layers = vec![Arc::new(behind), Arc::new(Layer::new("Base", Content::Gradient(Live::new(clay))))];
+    let behind = Layer {
+        clip_to_surface: false,
+        ..Layer::new("Background", Content::Gradient(Live::new(background)))
+    };
+    let layers =
+        vec![Arc::new(behind), Arc::new(Layer::new("Base", Content::Gradient(Live::new(clay))))];
     let size = Size::new(SIDE as u32, SIDE as u32);
     let document = Document { surface: Some(Arc::new(surface)), layers, ..Document::empty(size) };
-    Ok(OpenedTab { tab: OpenDocument::new("Sample", document, None), notes: Vec::new(), drawing: None })
+    Ok(OpenedTab {
+        tab: OpenDocument::new("Sample", document, None),
+        notes: Vec::new(),
+        drawing: None,
+    })
 }
 
 fn grey(v: u8) -> Color {
@@ -70,7 +81,8 @@ fn seen(p: Vec2) -> Option<Seen> {
 
 /// The near side of a ball with ripples, so that there is detail to bring out.
 fn ball(p: Vec2) -> Option<Seen> {
-    // The squared height over the squared radius is smooth at the rim, and its slope (−2 n_x, 2 n_y) · height there.
+    // The squared height over the squared radius is smooth at the rim, and its slope (−2 n_x, 2
+    // n_y) · height there.
     let squared = |q: Vec2| {
         let rest = 1.0 - q.length_squared();
         let ripple = 1.0 + 0.012 * (q.x * 17.0 + (q.y * 9.0).sin() * 1.4).sin() * rest.max(0.0);
@@ -100,7 +112,8 @@ fn ring(p: Vec2) -> Option<Seen> {
     };
     let (near, far, steps) = (0.42, -0.42, 72);
     let at = |i: i32| near + (far - near) * i as f32 / steps as f32;
-    // At a rim the line of sight may enter and leave between two steps: near it, smaller steps are taken.
+    // At a rim the line of sight may enter and leave between two steps: near it, smaller steps are
+    // taken.
     let (outer, inner) = (0..steps).find_map(|i| {
         if outside(at(i + 1)) < 0.0 {
             return Some((at(i), at(i + 1)));
@@ -140,16 +153,21 @@ fn surface() -> std::result::Result<Surface, crate::surface::SurfaceError> {
     let place = |x: usize, y: usize| vec2(x as f32 + 0.5, y as f32 + 0.5) / SIDE as f32;
     let px = 1.0 / SIDE as f32;
     let seen_at = |x: usize, y: usize| seen(place(x, y));
-    let heights = Plane::from_fn(size, |x, y| seen_at(x, y).map_or(f32::NEG_INFINITY, |seen| seen.height));
+    let heights =
+        Plane::from_fn(size, |x, y| seen_at(x, y).map_or(f32::NEG_INFINITY, |seen| seen.height));
     let normals = Plane::from_fn(size, |x, y| seen_at(x, y).map_or(Vec3::ZERO, |seen| seen.normal));
     let finite = |h: &f32| h.is_finite();
     let low = heights.values().iter().copied().filter(finite).fold(f32::INFINITY, f32::min);
     let high = heights.values().iter().copied().filter(finite).fold(f32::NEG_INFINITY, f32::max);
-    let depth = heights.map(|h| if h.is_finite() { (high - h) / (high - low).max(1e-6) } else { f32::NAN });
+    let depth =
+        heights.map(|h| if h.is_finite() { (high - h) / (high - low).max(1e-6) } else { f32::NAN });
     // Coverage: 8 × 8 places of each pixel at the rim.
     let coverage = Plane::from_fn(size, |x, y| {
         let is_on = |dx: i32, dy: i32| heights.clamped(x as i32 + dx, y as i32 + dy).is_finite();
-        let on = [(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)].into_iter().filter(|&(dx, dy)| is_on(dx, dy)).count();
+        let on = [(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)]
+            .into_iter()
+            .filter(|&(dx, dy)| is_on(dx, dy))
+            .count();
         if on == 0 || on == 5 {
             return if on == 0 { 0 } else { 255 };
         }
@@ -174,14 +192,18 @@ mod tests {
         assert!(n.z > 0.9, "{n}");
         assert!(!opened.tab.is_dirty(), "there is nothing to save yet");
     }
+
     #[test]
     fn the_ring_ends_before_the_ball_in_a_clean_line() {
         let surface = surface().unwrap();
-        let is_ring = |at: Vec2| ring(at).is_some_and(|ring| ball(at).is_none_or(|ball| ball.height < ring.height));
+        let is_ring = |at: Vec2| {
+            ring(at).is_some_and(|ring| ball(at).is_none_or(|ball| ball.height < ring.height))
+        };
         // Left and right of these the ring ends in front of itself.
         let between = 150..490;
         let contours = surface.contours().pixels().iter();
-        let before_ball = contours.filter(|pixel| pixel.sees_surface() && between.contains(&pixel.x));
+        let before_ball =
+            contours.filter(|pixel| pixel.sees_surface() && between.contains(&pixel.x));
         let errors: Vec<f32> = before_ball
             .map(|pixel| {
                 let px = |v: i32, i: i32| (v as f32 + (i as f32 + 0.5) / 16.0) / SIDE as f32;
@@ -193,6 +215,10 @@ mod tests {
             .collect();
         let mean = errors.iter().sum::<f32>() / errors.len() as f32;
         let worst = errors.iter().copied().fold(0.0, f32::max);
-        assert!(errors.len() > 300 && mean < 0.015 && worst < 0.08, "{} pixels: {mean}, {worst}", errors.len());
+        assert!(
+            errors.len() > 300 && mean < 0.015 && worst < 0.08,
+            "{} pixels: {mean}, {worst}",
+            errors.len()
+        );
     }
 }

@@ -1,5 +1,5 @@
-//! Saves and exports what is pending, and reports the result. Run as jobs. Floor 7. Nothing is replaced without asking.
-//! Not here: writing (`io::replace`), the questions (`dialogs`).
+//! Saves and exports what is pending, and reports the result. Run as jobs. Floor 7. Nothing is
+//! replaced without asking. Not here: writing (`io::replace`), the questions (`dialogs`).
 
 use crate::document::Progress;
 use crate::io::fs::Disk;
@@ -37,6 +37,7 @@ impl Saving {
             Err(error) => refused(error, || Pending::Save(Box::new(self))),
         }
     }
+
     fn attempt(&mut self, progress: &Progress) -> Result<SaveStep> {
         // Checked before the work of making the bytes.
         check(&Disk, &self.file, &self.terms)?;
@@ -59,7 +60,8 @@ impl Exporting {
         let terms = self.terms.clone();
         let written = match self.unwrapped {
             Some(options) => {
-                unwrapped::export(&self.document, &self.file, options, terms, progress).map(|()| Vec::new())
+                unwrapped::export(&self.document, &self.file, options, terms, progress)
+                    .map(|()| Vec::new())
             }
             None => export(&self.document, &self.file, &self.options, terms, progress),
         };

@@ -1,6 +1,6 @@
-//! What the window remembers from one run to the next: recent files, the places of panels, the theme, keys. A small
-//! JSON file in the user's folder for settings; a broken one is reported and never keeps the program from starting.
-//! Floor 7. Not here: replacing the file (`io::replace`).
+//! What the window remembers from one run to the next: recent files, the places of panels, the
+//! theme, keys. A small JSON file in the user's folder for settings; a broken one is reported and
+//! never keeps the program from starting. Floor 7. Not here: replacing the file (`io::replace`).
 
 use super::jobs;
 use super::keymap::Keymap;
@@ -63,9 +63,11 @@ impl Settings {
         self.recent.insert(0, file);
         self.recent.truncate(RECENT);
     }
+
     fn to_json(&self) -> Value {
         let PanelLayout { side, is_hidden, front, below, apart, width_pt } = &self.layout;
-        let recent: Vec<String> = self.recent.iter().map(|file| file.to_string_lossy().into_owned()).collect();
+        let recent: Vec<String> =
+            self.recent.iter().map(|file| file.to_string_lossy().into_owned()).collect();
         let apart: Vec<&str> = apart.iter().map(|front| front.name()).collect();
         let side = SIDES.iter().find(|(known, _)| known == side).map_or("right", |(_, name)| name);
         json!({
@@ -82,61 +84,90 @@ impl Settings {
             "kept share": self.kept_share,
         })
     }
+
     /// Unknown values keep their defaults.
     fn from_json(value: &Map<String, Value>) -> Self {
         let text = |value: &Value| value.as_str().map(str::to_owned);
         let texts = |value: Option<&Value>| -> Vec<String> {
             value.and_then(Value::as_array).into_iter().flatten().filter_map(text).collect()
         };
-        let flag = |object: &Map<String, Value>, name: &str| object.get(name).and_then(Value::as_bool).unwrap_or(false);
+        let flag = |object: &Map<String, Value>, name: &str| {
+            object.get(name).and_then(Value::as_bool).unwrap_or(false)
+        };
         let nothing = Map::new();
         let object = |name: &str| value.get(name).and_then(Value::as_object).unwrap_or(&nothing);
         let panels = object("panels");
         let word = |name: &str| panels.get(name).and_then(Value::as_str).unwrap_or_default();
         let plain = PanelLayout::default();
-        let width = panels.get("width").and_then(Value::as_f64).map_or(plain.width_pt, |width| width as f32);
+        let width = panels
+            .get("width")
+            .and_then(Value::as_f64)
+            .map_or(plain.width_pt, |width| width as f32);
         let layout = PanelLayout {
-            side: SIDES.iter().find(|(_, name)| *name == word("side")).map_or(plain.side, |(side, _)| *side),
+            side: SIDES
+                .iter()
+                .find(|(_, name)| *name == word("side"))
+                .map_or(plain.side, |(side, _)| *side),
             is_hidden: flag(panels, "hidden"),
             front: PanelKind::from_name(word("front")).unwrap_or(plain.front),
             below: PanelKind::from_name(word("below")).unwrap_or(plain.below),
-            apart: texts(panels.get("apart")).iter().filter_map(|name| PanelKind::from_name(name)).collect(),
+            apart: texts(panels.get("apart"))
+                .iter()
+                .filter_map(|name| PanelKind::from_name(name))
+                .collect(),
             width_pt: width.max(200.0).min(800.0),
         };
-        let recent = texts(value.get("recent")).into_iter().take(RECENT).map(PathBuf::from).collect();
+        let recent =
+            texts(value.get("recent")).into_iter().take(RECENT).map(PathBuf::from).collect();
         let keymap = Keymap::from_json(object("keys"));
-        let scale = value.get("scale").and_then(Value::as_f64).map(|scale| (scale as f32).max(0.5).min(4.0));
+        let scale = value
+            .get("scale")
+            .and_then(Value::as_f64)
+            .map(|scale| (scale as f32).max(0.5).min(4.0));
         let aids = value.get("aids").and_then(|aids| ViewAids::read(aids).ok()).unwrap_or_default();
         let (is_light, is_hint_done) = (flag(value, "light"), flag(value, "hint done"));
-        let share = value.get("kept share").and_then(Value::as_f64).map_or(USUAL_KEPT_SHARE, |share| share as f32);
+        let share = value
+            .get("kept share")
+            .and_then(Value::as_f64)
+            .map_or(USUAL_KEPT_SHARE, |share| share as f32);
         let kept_share = share.max(*KEPT_SHARE.start()).min(*KEPT_SHARE.end());
         Self { recent, is_light, scale, layout, keymap, is_hint_done, aids, kept_share }
     }
-    /// Reads a settings file; a missing one counts as empty. Fails if it is not JSON or cannot be read.
+
+    /// Reads a settings file; a missing one counts as empty. Fails if it is not JSON or cannot be
+    /// read.
     pub fn read(file: &Path) -> Result<Self> {
         let bytes = match std::fs::metadata(file) {
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Self::default()),
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+                return Ok(Self::default());
+            }
             Err(error) => return Err(Error::io(file, error)),
             Ok(found) if found.len() > LARGEST_BYTES => {
                 return Err(Error::too_large(file, "it is not a settings file"));
             }
             Ok(_) => std::fs::read(file).map_err(|error| Error::io(file, error))?,
         };
-        let value: Value = serde_json::from_slice(&bytes).map_err(|error| Error::decode(file, error))?;
-        let object = value.as_object().ok_or_else(|| Error::decode(file, "it does not hold a JSON object"))?;
+        let value: Value =
+            serde_json::from_slice(&bytes).map_err(|error| Error::decode(file, error))?;
+        let object = value
+            .as_object()
+            .ok_or_else(|| Error::decode(file, "it does not hold a JSON object"))?;
         Ok(Self::from_json(object))
     }
+
     /// Replaces the file atomically.
     pub fn write(&self, file: &Path) -> Result<()> {
         if let Some(folder) = file.parent() {
             std::fs::create_dir_all(folder).map_err(|error| Error::io(folder, error))?;
         }
         let text = format!("{:#}\n", self.to_json());
-        replace(&Disk, file, text.as_bytes(), &Overwrite::Anything.into(), &Progress::default()).map(drop)
+        replace(&Disk, file, text.as_bytes(), &Overwrite::Anything.into(), &Progress::default())
+            .map(drop)
     }
 }
 
-/// The settings file: `rilievo/settings.json` in the user's folder for them; `None` if the system has none.
+/// The settings file: `rilievo/settings.json` in the user's folder for them; `None` if the system
+/// has none.
 pub fn file() -> Option<PathBuf> {
     use etcetera::BaseStrategy;
     let base = etcetera::choose_base_strategy().ok()?;
@@ -158,16 +189,21 @@ pub struct SettingsFile {
 }
 
 impl SettingsFile {
-    /// The settings of a file and the value that keeps it up to date; without a file nothing is stored.
+    /// The settings of a file and the value that keeps it up to date; without a file nothing is
+    /// stored.
     pub fn new(file: Option<PathBuf>) -> (Settings, Self, Option<String>) {
         let read = file.as_deref().map_or_else(|| Ok(Settings::default()), Settings::read);
         let (settings, trouble) = match read {
             Ok(settings) => (settings, None),
-            Err(error) => (Settings::default(), Some(format!("{error}; the window starts with its default settings"))),
+            Err(error) => (
+                Settings::default(),
+                Some(format!("{error}; the window starts with its default settings")),
+            ),
         };
         let keeper = Self { file, written: settings.clone(), looked: Instant::now() };
         (settings, keeper, trouble)
     }
+
     /// Writes what changed, on a thread of its own, not too often.
     pub fn keep(&mut self, settings: &Settings) {
         if self.looked.elapsed() < PAUSE {
@@ -180,10 +216,13 @@ impl SettingsFile {
         // A failure does not disturb painting; it is reported on leaving.
         let _ = jobs::spawn("settings", move || drop(settings.write(&file)));
     }
+
     /// Writes what changed, now.
     pub fn finish(&mut self, settings: &Settings) -> Result<()> {
         match &self.file {
-            Some(file) if Settings::read(file).ok().as_ref() != Some(settings) => settings.write(file),
+            Some(file) if Settings::read(file).ok().as_ref() != Some(settings) => {
+                settings.write(file)
+            }
             _ => Ok(()),
         }
     }
@@ -208,20 +247,25 @@ mod tests {
             width_pt: 300.0,
         };
         let aids = ViewAids { rulers: true, locked: true, ..ViewAids::default() };
-        let mut settings = Settings { is_light: true, layout, is_hint_done: true, aids, ..Settings::default() };
+        let mut settings =
+            Settings { is_light: true, layout, is_hint_done: true, aids, ..Settings::default() };
         (0..20).for_each(|i| settings.recent_is(PathBuf::from(format!("{i}.ora"))));
         settings.write(&file).unwrap();
         let read = Settings::read(&file).unwrap();
         assert_eq!(read, settings);
         assert_eq!((read.recent.len(), read.recent[0].to_str()), (RECENT, Some("19.ora")));
     }
+
     #[test]
     fn a_broken_file_is_told_of_and_starts_all_the_same() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("settings.json");
-        for text in
-            ["{", "[]", "\u{0}", "{\"panels\": 7, \"recent\": [3], \"keys\": {\"Save\": [9]}, \"light\": \"x\"}"]
-        {
+        for text in [
+            "{",
+            "[]",
+            "\u{0}",
+            "{\"panels\": 7, \"recent\": [3], \"keys\": {\"Save\": [9]}, \"light\": \"x\"}",
+        ] {
             std::fs::write(&file, text).unwrap();
             let (settings, _, trouble) = SettingsFile::new(Some(file.clone()));
             assert_eq!(settings, Settings::default(), "{text}");

@@ -1,5 +1,5 @@
-//! The pictures of the brushes: each is painted once, on another thread, when its row is first visible. Floor 7. Not
-//! here: painting them (`session::swatch`).
+//! The pictures of the brushes: each is painted once, on another thread, when its row is first
+//! visible. Floor 7. Not here: painting them (`session::swatch`).
 
 use super::jobs;
 use crate::Error;

@@ -1,5 +1,5 @@
-//! The theme: neutral greys, so that the window does not affect the perception of the picture's colours, and one
-//! accent. Floor 7.
+//! The theme: neutral greys, so that the window does not affect the perception of the picture's
+//! colours, and one accent. Floor 7.
 
 use eframe::egui::{self, Color32, CornerRadius, Stroke, Style, TextStyle, Theme, Visuals, vec2};
 

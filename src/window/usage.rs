@@ -1,6 +1,6 @@
-//! Memory, for the status bar: what the program takes, as the system reports, and what the open documents take of it.
-//! Floor 7. The ceiling of what they keep for speed is enforced here, too: counting and freeing are one walk
-//! (`session::memory`), on a thread of its own.
+//! Memory, for the status bar: what the program takes, as the system reports, and what the open
+//! documents take of it. Floor 7. The ceiling of what they keep for speed is enforced here, too:
+//! counting and freeing are one walk (`session::memory`), on a thread of its own.
 
 use crate::io::machine;
 use crate::jobs::spawn;
@@ -31,7 +31,13 @@ pub struct MemoryMeter {
 impl Default for MemoryMeter {
     fn default() -> Self {
         let machine_bytes = machine::whole_bytes();
-        Self { sampled: None, machine_bytes, counted: DocumentMemory::default(), since: None, counting: None }
+        Self {
+            sampled: None,
+            machine_bytes,
+            counted: DocumentMemory::default(),
+            since: None,
+            counting: None,
+        }
     }
 }
 
@@ -41,22 +47,27 @@ impl MemoryMeter {
         match self.sampled {
             Some((since, bytes)) if since.elapsed() < PAUSE => bytes,
             _ => {
-                let bytes = std::fs::read_to_string("/proc/self/status").ok().and_then(|text| resident(&text));
+                let bytes = std::fs::read_to_string("/proc/self/status")
+                    .ok()
+                    .and_then(|text| resident(&text));
                 self.sampled = Some((Instant::now(), bytes));
                 bytes
             }
         }
     }
+
     /// The bytes of memory that the machine has.
     pub fn machine_bytes(&self) -> u64 {
         self.machine_bytes
     }
+
     /// Bytes that may be kept for speed.
     pub fn ceiling(&self, share: f32) -> u64 {
         (f64::from(share) * self.machine_bytes as f64) as u64
     }
-    /// What documents took at the last count. If that was some time ago, another one begins, which also enforces the
-    /// ceiling. `is_idle`: nothing is painted now.
+
+    /// What documents took at the last count. If that was some time ago, another one begins, which
+    /// also enforces the ceiling. `is_idle`: nothing is painted now.
     pub fn documents(&mut self, session: &Session, share: f32, is_idle: bool) -> DocumentMemory {
         match self.counting.as_ref().map(Receiver::try_recv) {
             Some(Ok(counted)) => (self.counted, self.counting) = (counted, None),
@@ -98,6 +109,7 @@ mod tests {
         assert_eq!(resident("Name:\tx\nVmRSS:\t    2048 kB\n"), Some(2 << 20));
         assert_eq!(resident("VmRSS: many kB"), None);
     }
+
     #[test]
     fn the_ceiling_is_a_share_of_the_machine() {
         let meter = MemoryMeter { machine_bytes: 8_000_000_000, ..MemoryMeter::default() };

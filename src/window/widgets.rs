@@ -1,10 +1,11 @@
-//! The window's own widgets: each has a name that a screen reader and a test can find, and distinguishes dragging from
-//! its end. Floor 7.
+//! The window's own widgets: each has a name that a screen reader and a test can find, and
+//! distinguishes dragging from its end. Floor 7.
 
 use super::theme::color32;
 use crate::math::srgb::Color;
 use eframe::egui::{
-    self, Align, DragValue, Layout, ProgressBar, Response, RichText, ScrollArea, Slider, SliderClamping, TextEdit, Ui,
+    self, Align, DragValue, Layout, ProgressBar, Response, RichText, ScrollArea, Slider,
+    SliderClamping, TextEdit, Ui,
     text::{CCursor, CCursorRange},
     vec2,
 };
@@ -32,8 +33,8 @@ pub fn change<T>(response: &Response, to: T) -> Option<ValueChange<T>> {
     response.changed().then(|| ValueChange { to, done: !response.dragged() })
 }
 
-/// Gives a widget the keyboard when it was not there a moment ago: the first number of a dialog, so that it can be
-/// typed at once.
+/// Gives a widget the keyboard when it was not there a moment ago: the first number of a dialog, so
+/// that it can be typed at once.
 pub fn begin_with(response: &Response) {
     let (ctx, id) = (&response.ctx, response.id.with("shown last"));
     let now = ctx.cumulative_pass_nr();
@@ -65,25 +66,32 @@ impl<'a> NumberField<'a> {
     pub fn new(label: &'a str, range: RangeInclusive<f32>, hint: &'a str) -> Self {
         Self { label, hint, range, suffix: "", decimals: 2, logarithmic: false }
     }
+
     pub fn px(self) -> Self {
         Self { suffix: " px", decimals: 0, logarithmic: true, ..self }
     }
+
     /// A few pixels, perhaps none.
     pub fn pixels(self) -> Self {
         Self { suffix: " px", decimals: 1, ..self }
     }
+
     pub fn degrees(self) -> Self {
         Self { suffix: "°", decimals: 0, ..self }
     }
+
     pub fn percent(self) -> Self {
         Self { suffix: " %", decimals: 0, ..self }
     }
+
     pub fn decimals(self, decimals: usize) -> Self {
         Self { decimals, ..self }
     }
+
     pub fn logarithmic(self) -> Self {
         Self { logarithmic: true, ..self }
     }
+
     fn slider<'v>(&self, value: &'v mut f32) -> Slider<'v>
     where
         'a: 'v,
@@ -96,6 +104,7 @@ impl<'a> NumberField<'a> {
             .clamping(SliderClamping::Edits)
             .trailing_fill(true)
     }
+
     /// A slider in a row of its own, the name to its left.
     pub fn row(self, ui: &mut Ui, value: f32) -> Option<ValueChange<f32>> {
         let mut to = value;
@@ -107,15 +116,19 @@ impl<'a> NumberField<'a> {
         });
         change(&response.inner.on_hover_text(self.hint), to)
     }
+
     /// A slider in a bar among others, its name before it.
     pub fn inline(self, ui: &mut Ui, value: f32, width_pt: f32) -> Option<ValueChange<f32>> {
         /// The width of the number after the slider: four digits and a unit.
         const NUMBER_PT: f32 = 56.0;
         let mut to = value;
         let font = egui::TextStyle::Body.resolve(ui.style());
-        let name_pt = ui.painter().layout_no_wrap(self.label.into(), font, egui::Color32::WHITE).size().x;
-        let room =
-            vec2(name_pt + width_pt + NUMBER_PT + 2.0 * ui.spacing().item_spacing.x, ui.spacing().interact_size.y);
+        let name_pt =
+            ui.painter().layout_no_wrap(self.label.into(), font, egui::Color32::WHITE).size().x;
+        let room = vec2(
+            name_pt + width_pt + NUMBER_PT + 2.0 * ui.spacing().item_spacing.x,
+            ui.spacing().interact_size.y,
+        );
         // In a wrapping bar, label and slider stay together.
         let inner = ui.allocate_ui_with_layout(room, Layout::left_to_right(Align::Center), |ui| {
             let label = ui.label(self.label);
@@ -124,6 +137,7 @@ impl<'a> NumberField<'a> {
         });
         change(&inner.inner.on_hover_text(self.hint), to)
     }
+
     /// A number alone, to be dragged or typed.
     pub fn field(self, ui: &mut Ui, value: f32) -> Option<ValueChange<f32>> {
         let mut to = value;
@@ -148,7 +162,8 @@ pub fn named(response: &Response, label: &str) {
 
 /// A property's name; all have the same width.
 pub fn name(ui: &mut Ui, text: &str) -> Response {
-    let (rect, response) = ui.allocate_exact_size(vec2(76.0, ui.spacing().interact_size.y), egui::Sense::hover());
+    let (rect, response) =
+        ui.allocate_exact_size(vec2(76.0, ui.spacing().interact_size.y), egui::Sense::hover());
     let color = ui.visuals().text_color();
     let font = egui::TextStyle::Body.resolve(ui.style());
     ui.painter().text(rect.left_center(), egui::Align2::LEFT_CENTER, text, font, color);
@@ -157,20 +172,31 @@ pub fn name(ui: &mut Ui, text: &str) -> Response {
 }
 
 /// A choice among several options.
-pub fn choice<T: Copy + PartialEq>(ui: &mut Ui, label: &str, current: T, choices: &[(T, &str)]) -> Option<T> {
+pub fn choice<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    label: &str,
+    current: T,
+    choices: &[(T, &str)],
+) -> Option<T> {
     let shown = choices.iter().find(|(choice, _)| *choice == current).map_or("", |(_, word)| word);
     let mut to = current;
-    let combo = egui::ComboBox::from_id_salt(label).selected_text(sentence(shown)).show_ui(ui, |ui| {
-        for (choice, word) in choices {
-            ui.selectable_value(&mut to, *choice, sentence(word));
-        }
-    });
+    let combo =
+        egui::ComboBox::from_id_salt(label).selected_text(sentence(shown)).show_ui(ui, |ui| {
+            for (choice, word) in choices {
+                ui.selectable_value(&mut to, *choice, sentence(word));
+            }
+        });
     named(&combo.response, label);
     (to != current).then_some(to)
 }
 
 /// As [`choice`], in a row with its name.
-pub fn choice_row<T: Copy + PartialEq>(ui: &mut Ui, label: &str, current: T, choices: &[(T, &str)]) -> Option<T> {
+pub fn choice_row<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    label: &str,
+    current: T,
+    choices: &[(T, &str)],
+) -> Option<T> {
     ui.horizontal(|ui| {
         name(ui, label);
         choice(ui, label, current, choices)
@@ -207,7 +233,9 @@ pub fn title(ui: &mut Ui, text: &str) {
 /// How far a job has come.
 pub fn bar(ui: &mut Ui, share: Option<f32>, width_pt: f32) {
     match share {
-        Some(share) => drop(ui.add(ProgressBar::new(share).desired_width(width_pt).desired_height(8.0))),
+        Some(share) => {
+            drop(ui.add(ProgressBar::new(share).desired_width(width_pt).desired_height(8.0)))
+        }
         None => drop(ui.spinner()),
     }
 }
@@ -218,7 +246,11 @@ pub fn swatch(ui: &mut Ui, label: &str, color: Color, size: egui::Vec2) -> Respo
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, label));
     let painter = ui.painter();
     painter.rect_filled(rect, 3.0, color32(Color { a: 255, ..color }));
-    let rim = if response.hovered() { ui.visuals().widgets.hovered.fg_stroke } else { ui.visuals().window_stroke };
+    let rim = if response.hovered() {
+        ui.visuals().widgets.hovered.fg_stroke
+    } else {
+        ui.visuals().window_stroke
+    };
     painter.rect_stroke(rect, 3.0, rim, egui::StrokeKind::Inside);
     response.on_hover_text(format!("{label}: {color}"))
 }

@@ -1,4 +1,5 @@
-//! What `cargo` lines are resolved against: the packages of the workspace, their features, targets and tests.
+//! What `cargo` lines are resolved against: the packages of the workspace, their features, targets
+//! and tests.
 
 use super::tests_of::{TestName, bench_names, test_names};
 use std::collections::BTreeSet;
@@ -6,7 +7,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Options that every command of cargo takes here; those that end in `=` take a value.
-const EVERYWHERE: &str = "-p= --package= --features= --no-default-features --workspace --locked -q --quiet";
+const EVERYWHERE: &str =
+    "-p= --package= --features= --no-default-features --workspace --locked -q --quiet";
 
 /// The commands of cargo that pages name, with their own options.
 const COMMANDS: [(&str, &str); 10] = [
@@ -60,6 +62,7 @@ impl Parsed {
     fn has(&self, option: &str) -> bool {
         self.options.iter().any(|(name, _)| name == option)
     }
+
     fn values<'a>(&'a self, option: &'a str) -> impl Iterator<Item = &'a str> {
         self.options.iter().filter(move |(name, _)| name == option).map(|(_, value)| value.as_str())
     }
@@ -73,7 +76,12 @@ impl Workspace {
         let text = String::from_utf8(done.stdout).unwrap();
         let json: serde_json::Value = serde_json::from_str(&text).unwrap();
         let texts = |value: &serde_json::Value| -> Vec<String> {
-            value.as_array().into_iter().flatten().filter_map(|v| Some(v.as_str()?.to_owned())).collect()
+            value
+                .as_array()
+                .into_iter()
+                .flatten()
+                .filter_map(|v| Some(v.as_str()?.to_owned()))
+                .collect()
         };
         let target = |value: &serde_json::Value| Target {
             name: value["name"].as_str().unwrap().to_owned(),
@@ -85,28 +93,41 @@ impl Workspace {
         let package = |value: &serde_json::Value| Package {
             name: value["name"].as_str().unwrap().to_owned(),
             is_default: default.iter().any(|id| value["id"] == **id),
-            features: value["features"].as_object().unwrap().iter().map(|(k, v)| (k.clone(), texts(v))).collect(),
+            features: value["features"]
+                .as_object()
+                .unwrap()
+                .iter()
+                .map(|(k, v)| (k.clone(), texts(v)))
+                .collect(),
             targets: value["targets"].as_array().unwrap().iter().map(target).collect(),
             default_run: value["default_run"].as_str().map(str::to_owned),
         };
         let packages = json["packages"].as_array().unwrap().iter().map(package).collect();
         Self { packages, root: root.to_owned() }
     }
-    /// What is wrong with the arguments of cargo, as a sentence; else the arguments of this program that it runs.
+
+    /// What is wrong with the arguments of cargo, as a sentence; else the arguments of this program
+    /// that it runs.
     pub fn resolve(&self, arguments: &[String]) -> Result<Option<Vec<String>>, String> {
         let arguments = match arguments {
             [first, rest @ ..] if first.starts_with('+') => rest,
             all => all,
         };
         match arguments {
-            [fuzz, run, target, ..] if fuzz == "fuzz" && run == "run" => return self.fuzz_target(target),
+            [fuzz, run, target, ..] if fuzz == "fuzz" && run == "run" => {
+                return self.fuzz_target(target);
+            }
             _ => {}
         }
         let line = parse(arguments)?;
         let packages = self.selected(&line)?;
-        let enabled: Vec<BTreeSet<String>> = packages.iter().map(|package| package.enabled(&line)).collect();
+        let enabled: Vec<BTreeSet<String>> =
+            packages.iter().map(|package| package.enabled(&line)).collect();
         for feature in line.values("--features").flat_map(|list| list.split(',')) {
-            if !packages.iter().any(|package| package.features.iter().any(|(name, _)| name == feature)) {
+            if !packages
+                .iter()
+                .any(|package| package.features.iter().any(|(name, _)| name == feature))
+            {
                 return Err(format!("no package that is built has a feature {feature}"));
             }
         }
@@ -115,22 +136,30 @@ impl Workspace {
             check_filters(&line, &chosen, &enabled)?;
         }
         if line.command == "bench" {
-            let names: Vec<String> = chosen.iter().flat_map(|(_, target)| bench_names(&target.source)).collect();
-            if let Some(filter) = line.filters.iter().find(|f| !names.iter().any(|name| name.contains(*f))) {
+            let names: Vec<String> =
+                chosen.iter().flat_map(|(_, target)| bench_names(&target.source)).collect();
+            if let Some(filter) =
+                line.filters.iter().find(|f| !names.iter().any(|name| name.contains(*f)))
+            {
                 return Err(format!("no benchmark's name holds {filter}"));
             }
         }
-        let runs_us = line.command == "run" && chosen.iter().any(|(_, target)| target.kind == "bin");
+        let runs_us =
+            line.command == "run" && chosen.iter().any(|(_, target)| target.kind == "bin");
         Ok(runs_us.then_some(line.after))
     }
+
     fn fuzz_target(&self, name: &str) -> Result<Option<Vec<String>>, String> {
         let source = self.root.join("fuzz/fuzz_targets").join(format!("{name}.rs"));
         source.is_file().then_some(None).ok_or_else(|| format!("there is no fuzz target {name}"))
     }
+
     /// The packages that a line is about.
     fn selected(&self, line: &Parsed) -> Result<Vec<&Package>, String> {
         let names: Vec<&str> = line.values("-p").chain(line.values("--package")).collect();
-        if let Some(lost) = names.iter().find(|name| !self.packages.iter().any(|package| package.name == **name)) {
+        if let Some(lost) =
+            names.iter().find(|name| !self.packages.iter().any(|package| package.name == **name))
+        {
             return Err(format!("there is no package {lost}"));
         }
         let is_selected = |package: &&Package| match names.is_empty() {
@@ -164,8 +193,10 @@ impl Package {
 fn parse(arguments: &[String]) -> Result<Parsed, String> {
     let mut words = arguments.iter();
     let command = words.next().ok_or("cargo does nothing")?.clone();
-    let own =
-        COMMANDS.iter().find(|(name, _)| *name == command).ok_or(format!("cargo has no command {command} here"))?;
+    let own = COMMANDS
+        .iter()
+        .find(|(name, _)| *name == command)
+        .ok_or(format!("cargo has no command {command} here"))?;
     let known: Vec<&str> = EVERYWHERE.split(' ').chain(own.1.split(' ')).collect();
     let mut line = Parsed { command, ..Parsed::default() };
     while let Some(word) = words.next() {
@@ -190,15 +221,17 @@ fn parse(arguments: &[String]) -> Result<Parsed, String> {
     }
 }
 
-/// The targets that a line is about, each with the place of its package. Fails where one that it names is missing or
-/// lacks its features, or where one would be left out without a word.
+/// The targets that a line is about, each with the place of its package. Fails where one that it
+/// names is missing or lacks its features, or where one would be left out without a word.
 fn chosen<'a>(
     line: &Parsed,
     packages: &[&'a Package],
     enabled: &[BTreeSet<String>],
 ) -> Result<Vec<(usize, &'a Target)>, String> {
-    let all =
-        packages.iter().enumerate().flat_map(|(i, package)| package.targets.iter().map(move |target| (i, target)));
+    let all = packages
+        .iter()
+        .enumerate()
+        .flat_map(|(i, package)| package.targets.iter().map(move |target| (i, target)));
     let all: Vec<(usize, &Target)> = all.collect();
     let mut wanted = Vec::new();
     for kind in ["test", "bench", "bin", "example"] {
@@ -212,7 +245,9 @@ fn chosen<'a>(
     }
     if wanted.is_empty() {
         let is_wanted = |(i, target): &(usize, &Target)| match line.command.as_str() {
-            "run" => packages[*i].default_run.as_ref() == Some(&target.name) && target.kind == "bin",
+            "run" => {
+                packages[*i].default_run.as_ref() == Some(&target.name) && target.kind == "bin"
+            }
             "test" => ["lib", "bin", "test"].contains(&target.kind.as_str()),
             "bench" => target.kind == "bench",
             _ => false,
@@ -224,16 +259,23 @@ fn chosen<'a>(
     }
     let lacks = |(i, target): &&(usize, &Target)| !target.required.is_subset(&enabled[*i]);
     match wanted.iter().find(lacks) {
-        Some((_, target)) => Err(format!("{} {} needs the features {:?}", target.kind, target.name, target.required)),
+        Some((_, target)) => {
+            Err(format!("{} {} needs the features {:?}", target.kind, target.name, target.required))
+        }
         None => Ok(wanted),
     }
 }
 
 /// Fails where a filter chooses no test.
-fn check_filters(line: &Parsed, chosen: &[(usize, &Target)], enabled: &[BTreeSet<String>]) -> Result<(), String> {
+fn check_filters(
+    line: &Parsed,
+    chosen: &[(usize, &Target)],
+    enabled: &[BTreeSet<String>],
+) -> Result<(), String> {
     let mut filters = line.filters.clone();
     for word in &line.after {
-        let is_known = OF_TESTS.split(' ').any(|option| option.strip_suffix('=').unwrap_or(option) == word);
+        let is_known =
+            OF_TESTS.split(' ').any(|option| option.strip_suffix('=').unwrap_or(option) == word);
         match word.starts_with('-') {
             true if !is_known => return Err(format!("tests have no option {word}")),
             true => {}

@@ -1,5 +1,5 @@
-//! Every command that a page, a comment or `.ci/run` gives can be run as it is written: its packages, targets,
-//! features, filters, subcommands, options and samples exist. Nothing is run.
+//! Every command that a page, a comment or `.ci/run` gives can be run as it is written: its
+//! packages, targets, features, filters, subcommands, options and samples exist. Nothing is run.
 
 mod cargo;
 mod shell;
@@ -23,11 +23,15 @@ fn pages() -> Vec<(PathBuf, String)> {
         (path, text)
     };
     let top = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md"].map(|name| root().join(name));
-    let mut pages: Vec<(PathBuf, String)> = top.into_iter().chain(files("docs", "md")).map(read).collect();
+    let mut pages: Vec<(PathBuf, String)> =
+        top.into_iter().chain(files("docs", "md")).map(read).collect();
     let (path, script) = read(root().join(".ci/run"));
     pages.push((path, format!("```sh\n{script}\n```\n")));
     let folders = ["src", "tests", "benches", "examples", "sample_normals", "brushes"];
-    let sources = folders.iter().flat_map(|folder| files(folder, "rs")).filter(|path| !path.starts_with(own_folder()));
+    let sources = folders
+        .iter()
+        .flat_map(|folder| files(folder, "rs"))
+        .filter(|path| !path.starts_with(own_folder()));
     pages.extend(sources.map(read).map(|(path, text)| (path, comments(&text))));
     pages
 }
@@ -40,7 +44,8 @@ fn own_folder() -> PathBuf {
 /// The documentation that a source holds.
 fn comments(source: &str) -> String {
     let comment = |line: &'_ str| -> Option<String> {
-        let rest = line.trim_start().strip_prefix("//!").or(line.trim_start().strip_prefix("///"))?;
+        let rest =
+            line.trim_start().strip_prefix("//!").or(line.trim_start().strip_prefix("///"))?;
         Some(format!("{}\n", rest.strip_prefix(' ').unwrap_or(rest)))
     };
     source.lines().map(|line| comment(line).unwrap_or_else(|| "\n".to_owned())).collect()
@@ -61,7 +66,8 @@ fn fault(workspace: &Workspace, line: &CommandLine) -> Option<String> {
 /// What is wrong with the arguments of this program.
 fn fault_of_ours(arguments: &[String], is_whole: bool) -> Option<String> {
     let is_sample = |word: &&String| word.starts_with("sample_normals/") && !word.contains('*');
-    if let Some(lost) = arguments.iter().filter(is_sample).find(|word| !root().join(word).exists()) {
+    if let Some(lost) = arguments.iter().filter(is_sample).find(|word| !root().join(word).exists())
+    {
         return Some(format!("there is no file {lost}"));
     }
     let mut words = vec!["rilievo".to_owned()];
@@ -87,7 +93,8 @@ fn refusal(words: &[String], is_whole: bool) -> Option<String> {
         ErrorKind::MissingRequiredArgument | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand
     );
     let is_help = matches!(refused.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion);
-    (!is_help && (is_whole || !lacks)).then(|| refused.to_string().lines().next().unwrap_or_default().to_owned())
+    (!is_help && (is_whole || !lacks))
+        .then(|| refused.to_string().lines().next().unwrap_or_default().to_owned())
 }
 
 #[test]
@@ -132,7 +139,9 @@ fn commands_that_cannot_be_run_are_found() {
         ("rilievo view a.json --show everything -o a.png", "everything"),
     ];
     for (text, part) in faulty {
-        let [line] = &commands(&format!("```sh\n{text}\n```\n"))[..] else { panic!("{text}: not one command") };
+        let [line] = &commands(&format!("```sh\n{text}\n```\n"))[..] else {
+            panic!("{text}: not one command")
+        };
         let found = fault(&workspace, line).unwrap_or_default();
         assert!(found.contains(part), "{text}: “{found}” should say “{part}”");
     }

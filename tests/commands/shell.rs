@@ -1,4 +1,5 @@
-//! The `cargo` and `rilievo` lines of a page of Markdown: blocks of `sh`, indented lines, and code within sentences.
+//! The `cargo` and `rilievo` lines of a page of Markdown: blocks of `sh`, indented lines, and code
+//! within sentences.
 
 /// One command of a page.
 #[derive(Clone, Debug, PartialEq)]
@@ -8,7 +9,8 @@ pub struct CommandLine {
     pub is_whole: bool,
 }
 
-/// Every command of a page that begins with `cargo` or `rilievo`, in the order of blocks, then sentences.
+/// Every command of a page that begins with `cargo` or `rilievo`, in the order of blocks, then
+/// sentences.
 pub fn commands(page: &str) -> Vec<CommandLine> {
     let (blocks, prose) = parted(page);
     let spans = prose.split('`').skip(1).step_by(2).map(|span| (span.replace('\n', " "), false));
@@ -16,7 +18,9 @@ pub fn commands(page: &str) -> Vec<CommandLine> {
     let split = |(text, is_whole): (String, bool)| {
         split_commands(&text).into_iter().map(move |words| CommandLine { words, is_whole })
     };
-    let is_ours = |line: &CommandLine| line.words.first().is_some_and(|word| word == "cargo" || word == "rilievo");
+    let is_ours = |line: &CommandLine| {
+        line.words.first().is_some_and(|word| word == "cargo" || word == "rilievo")
+    };
     lines.chain(spans).flat_map(split).filter(is_ours).collect()
 }
 
@@ -27,16 +31,21 @@ fn parted(page: &str) -> (Vec<String>, String) {
     for line in page.lines() {
         match (&mut open, line.trim_start().strip_prefix("```")) {
             (None, Some(language)) => open = Some((language == "sh", String::new())),
-            (Some(_), Some(_)) => blocks.extend(open.take().filter(|(is_shell, _)| *is_shell).map(|(_, text)| text)),
+            (Some(_), Some(_)) => {
+                blocks.extend(open.take().filter(|(is_shell, _)| *is_shell).map(|(_, text)| text))
+            }
             (Some((_, text)), None) => *text += &format!("{line}\n"),
-            (None, None) if line.starts_with("    ") && !line.contains('`') => blocks.push(line.trim().to_owned()),
+            (None, None) if line.starts_with("    ") && !line.contains('`') => {
+                blocks.push(line.trim().to_owned())
+            }
             (None, None) => prose += &format!("{line}\n"),
         }
     }
     (blocks, prose)
 }
 
-/// The commands of a shell's text as words, without the variables set before them. Substitutions stay as written.
+/// The commands of a shell's text as words, without the variables set before them. Substitutions
+/// stay as written.
 fn split_commands(text: &str) -> Vec<Vec<String>> {
     let mut commands = vec![Vec::new()];
     let mut word: Option<String> = None;
@@ -61,7 +70,10 @@ fn split_commands(text: &str) -> Vec<Vec<String>> {
                 while chars.next_if(|c| *c != '\n').is_some() {}
                 continue;
             }
-            c if depth == 0 && quote.is_none() && (c.is_whitespace() || matches!(c, ';' | '&' | '|')) => {
+            c if depth == 0
+                && quote.is_none()
+                && (c.is_whitespace() || matches!(c, ';' | '&' | '|')) =>
+            {
                 let last = commands.last_mut().expect("there is always one");
                 last.extend(word.take());
                 if !matches!(c, ' ' | '\t') {
@@ -74,7 +86,9 @@ fn split_commands(text: &str) -> Vec<Vec<String>> {
         word.get_or_insert_default().push(c);
     }
     commands.last_mut().expect("there is always one").extend(word);
-    let is_before = |word: &String| word == "do" || word.split_once('=').is_some_and(|(name, _)| is_variable(name));
+    let is_before = |word: &String| {
+        word == "do" || word.split_once('=').is_some_and(|(name, _)| is_variable(name))
+    };
     for words in &mut commands {
         let before = words.iter().take_while(|word| is_before(word)).count();
         words.drain(..before);
@@ -83,7 +97,8 @@ fn split_commands(text: &str) -> Vec<Vec<String>> {
 }
 
 fn is_variable(name: &str) -> bool {
-    !name.is_empty() && name.chars().all(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_')
+    !name.is_empty()
+        && name.chars().all(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_')
 }
 
 #[test]

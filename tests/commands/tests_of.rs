@@ -25,8 +25,15 @@ pub fn bench_names(source: &Path) -> Vec<String> {
     fs::read_to_string(source).unwrap_or_default().lines().filter_map(function).collect()
 }
 
-/// Adds the tests of a file and of its modules, which lie in `folder`. rustfmt's indentation tells what is within what.
-fn read_module(file: &Path, folder: &Path, prefix: &str, features: &BTreeSet<String>, found: &mut Vec<TestName>) {
+/// Adds the tests of a file and of its modules, which lie in `folder`. rustfmt's indentation tells
+/// what is within what.
+fn read_module(
+    file: &Path,
+    folder: &Path,
+    prefix: &str,
+    features: &BTreeSet<String>,
+    found: &mut Vec<TestName>,
+) {
     let text = fs::read_to_string(file).unwrap_or_default();
     // Modules written in this file that are open, each with its indentation.
     let mut open: Vec<(usize, &str)> = Vec::new();
@@ -39,7 +46,9 @@ fn read_module(file: &Path, folder: &Path, prefix: &str, features: &BTreeSet<Str
             is_test = true;
         } else if trimmed.starts_with("#[ignore") {
             is_ignored = true;
-        } else if let Some(feature) = trimmed.strip_prefix("#[cfg(feature = \"").and_then(|s| s.strip_suffix("\")]")) {
+        } else if let Some(feature) =
+            trimmed.strip_prefix("#[cfg(feature = \"").and_then(|s| s.strip_suffix("\")]"))
+        {
             is_left_out = !features.contains(feature);
         } else if let Some(name) = module(trimmed) {
             match name.strip_suffix(" {") {
@@ -57,7 +66,13 @@ fn read_module(file: &Path, folder: &Path, prefix: &str, features: &BTreeSet<Str
 }
 
 /// The file `NAME.rs` or `NAME/mod.rs`.
-fn read_submodule(name: &str, folder: &Path, prefix: &str, features: &BTreeSet<String>, found: &mut Vec<TestName>) {
+fn read_submodule(
+    name: &str,
+    folder: &Path,
+    prefix: &str,
+    features: &BTreeSet<String>,
+    found: &mut Vec<TestName>,
+) {
     let (below, beside) = (folder.join(name), folder.join(format!("{name}.rs")));
     let file = if beside.is_file() { beside } else { below.join("mod.rs") };
     read_module(&file, &below, &format!("{prefix}{name}::"), features, found);
@@ -67,7 +82,8 @@ fn read_submodule(name: &str, folder: &Path, prefix: &str, features: &BTreeSet<S
 fn module(line: &str) -> Option<&str> {
     let (before, rest) = line.split_once("mod ")?;
     let is_declared = before.is_empty() || before.starts_with("pub");
-    let is_name = |name: &str| name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
+    let is_name =
+        |name: &str| name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
     let found = rest.strip_suffix(';').or(rest.ends_with(" {").then_some(rest))?;
     (is_declared && is_name(found.trim_end_matches(" {"))).then_some(found)
 }

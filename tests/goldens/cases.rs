@@ -1,9 +1,10 @@
 //! What is compared with a reference picture: short recipes, each with its tolerance.
 //!
-//! Tolerances are steps of a byte. Blending, ramps and masks that are pictures use only sums, products, quotients and
-//! roots, which every machine rounds alike: 0. The rest also uses the platform's `exp`, `tan`, `pow` and the like.
-//! Their last bit differs between C libraries, so that a value may be rounded to the next byte: 1. The width of SIMD
-//! and the number of threads get no tolerance.
+//! Tolerances are steps of a byte. Blending, ramps and masks that are pictures use only sums,
+//! products, quotients and roots, which every machine rounds alike: 0. The rest also uses the
+//! platform's `exp`, `tan`, `pow` and the like. Their last bit differs between C libraries, so that
+//! a value may be rounded to the next byte: 1. The width of SIMD and the number of threads get no
+//! tolerance.
 
 use super::compare::Place;
 use super::pictures::Pictures;
@@ -24,7 +25,8 @@ const ROUNDED: u8 = 1;
 
 /// The canvas of a blend mode.
 const SMALL: Size = Size::new(48, 48);
-/// The tiles of the sheet of blend modes. New ones go to the end, so that the others stay where they are.
+/// The tiles of the sheet of blend modes. New ones go to the end, so that the others stay where
+/// they are.
 const BLEND_TILES: [&str; 28] = [
     "normal",
     "multiply",
@@ -76,8 +78,14 @@ enum Subject {
 impl Case {
     fn layers(group: &str, name: &str, tolerance: u8, shape: Shape, layers: Value) -> Self {
         let name = format!("{group}/{name}");
-        Self { place: Place::alone(&name), name, tolerance, subject: Subject::Layers(SIZE, Some(shape), layers) }
+        Self {
+            place: Place::alone(&name),
+            name,
+            tolerance,
+            subject: Subject::Layers(SIZE, Some(shape), layers),
+        }
     }
+
     pub fn rendered(&self) -> RgbaImage {
         match &self.subject {
             Subject::Layers(size, shape, layers) => {
@@ -107,9 +115,14 @@ pub fn all() -> Vec<Case> {
 }
 
 fn read(size: Size, layers: &Value) -> Document {
-    let recipe = json!({ "canvas": { "width": size.width, "height": size.height }, "layers": layers });
-    let source =
-        RecipeSource { file: Path::new("case.json"), files: &Pictures, budget: &Budget::default(), onto: None };
+    let recipe =
+        json!({ "canvas": { "width": size.width, "height": size.height }, "layers": layers });
+    let source = RecipeSource {
+        file: Path::new("case.json"),
+        files: &Pictures,
+        budget: &Budget::default(),
+        onto: None,
+    };
     recipe::read_value(&recipe, source).unwrap_or_else(|e| panic!("{e}"))
 }
 
@@ -117,7 +130,8 @@ fn as_image(picture: &TileGrid, size: Size) -> RgbaImage {
     RgbaImage::from_raw(size.width, size.height, picture.to_straight_rgba(size.rect())).unwrap()
 }
 
-/// Two ramps crossed, both of which fade: opaque on opaque, on half, on nothing, and the other way round.
+/// Two ramps crossed, both of which fade: opaque on opaque, on half, on nothing, and the other way
+/// round.
 fn blend(mode: &str) -> Case {
     let layers = json!([
         { "kind": "gradient", "from": [0, 20], "to": [48, 28],
@@ -127,10 +141,16 @@ fn blend(mode: &str) -> Case {
     ]);
     let tile = BLEND_TILES.iter().position(|name| *name == mode).unwrap_or(BLEND_TILES.len());
     let place = Place::tile("blend/modes", tile as u32, SMALL.width);
-    Case { name: format!("blend/{mode}"), place, tolerance: EXACT, subject: Subject::Layers(SMALL, None, layers) }
+    Case {
+        name: format!("blend/{mode}"),
+        place,
+        tolerance: EXACT,
+        subject: Subject::Layers(SMALL, None, layers),
+    }
 }
 
-/// Each operator with each filter, pinned at two places, the content dragged at one; and a bent ramp.
+/// Each operator with each filter, pinned at two places, the content dragged at one; and a bent
+/// ramp.
 fn operators() -> Vec<Case> {
     let operators = [
         ("depth", json!({ "kind": "depth", "gamma": 1.5 })),
@@ -145,8 +165,9 @@ fn operators() -> Vec<Case> {
             "anchors": [{ "at": [30.5, 33.5] }, { "at": [70.5, 10.5], "source": [66.5, 15] }] }]);
         Case::layers("operator", &format!("{kind}-{filter}"), ROUNDED, Shape::BallAndWall, layers)
     };
-    let both =
-        operators.iter().flat_map(|(kind, operator)| ["antialias", "bilinear"].map(|f| image(kind, operator, f)));
+    let both = operators
+        .iter()
+        .flat_map(|(kind, operator)| ["antialias", "bilinear"].map(|f| image(kind, operator, f)));
     let ramp = json!([{ "kind": "gradient", "from": [22, 24], "to": [52, 52], "operator": operators[1].1,
         "stops": [[0, "#fff4d0"], [0.35, "#d07030"], [0.36, "#401040"], [1, "#2060a0"]] }]);
     let even = json!([{ "kind": "gradient", "from": [14, 37], "to": [62, 37], "operator": operators[3].1,
@@ -221,14 +242,18 @@ fn normals() -> Case {
 /// White where the mask is, over blue.
 fn masks() -> Vec<Case> {
     let masked = |name: &str, tolerance: u8, mask: Value| {
-        let layers =
-            json!([{ "kind": "fill", "color": "#183058" }, { "kind": "fill", "color": "#fff8e8", "mask": mask }]);
+        let ink = json!({ "kind": "fill", "color": "#fff8e8", "mask": mask });
+        let layers = json!([{ "kind": "fill", "color": "#183058" }, ink]);
         Case::layers("mask", name, tolerance, Shape::BallAndWall, layers)
     };
     vec![
         masked("file", EXACT, json!({ "file": "mask.png", "invert": true })),
         masked("fresnel", ROUNDED, json!({ "kind": "fresnel", "f0": 0.1, "power": 2.5 })),
-        masked("curvature", ROUNDED, json!({ "kind": "curvature", "scale": 10, "blur": 1, "from": -0.4, "to": 0.9 })),
+        masked(
+            "curvature",
+            ROUNDED,
+            json!({ "kind": "curvature", "scale": 10, "blur": 1, "from": -0.4, "to": 0.9 }),
+        ),
         masked("depth", EXACT, json!({ "kind": "depth", "from": 0.9, "to": 0.1 })),
     ]
 }
@@ -255,7 +280,12 @@ fn tips() -> Vec<Case> {
     let case = |(name, tip): (&str, Value)| {
         let strokes = [
             dab(&tip, json!({ "kind": "none" }), [17.0, 54.0], "#203050"),
-            dab(&tip, json!({ "kind": "normal", "alpha": 0.5, "beta": 1 }), [52.5, 22.5], "#b03018"),
+            dab(
+                &tip,
+                json!({ "kind": "normal", "alpha": 0.5, "beta": 1 }),
+                [52.5, 22.5],
+                "#b03018",
+            ),
             dab(&tip, json!({ "kind": "depth", "gamma": 2 }), [54.0, 50.0], "#186830"),
         ];
         // A hose takes its second picture with the second dab.
@@ -277,8 +307,9 @@ fn tips() -> Vec<Case> {
 
 /// A stroke that varies with the pen, in size, flow, place and colour, and one that takes away.
 fn stroke() -> Case {
-    let pen: Vec<[f32; 3]> =
-        (0..=12).map(|i| [8.0 + 5.0 * i as f32, 20.0 + 3.0 * ((i * i) % 11) as f32, i as f32 / 12.0]).collect();
+    let pen: Vec<[f32; 3]> = (0..=12)
+        .map(|i| [8.0 + 5.0 * i as f32, 20.0 + 3.0 * ((i * i) % 11) as f32, i as f32 / 12.0])
+        .collect();
     let layers = json!([
         { "kind": "fill", "color": "#e8ecf0" },
         { "kind": "strokes", "strokes": [
@@ -298,7 +329,12 @@ fn retouch() -> Case {
         (BrushMode::Clone { aligned: true, picture: false }, [10.0, 60.0, 66.0, 58.0]),
     ];
     let name = "tip/retouch";
-    Case { place: Place::alone(name), name: name.into(), tolerance: ROUNDED, subject: Subject::Retouched(strokes) }
+    Case {
+        place: Place::alone(name),
+        name: name.into(),
+        tolerance: ROUNDED,
+        subject: Subject::Retouched(strokes),
+    }
 }
 
 fn retouched(strokes: &[(BrushMode, [f32; 4])]) -> TileGrid {
@@ -310,7 +346,8 @@ fn retouched(strokes: &[(BrushMode, [f32; 4])]) -> TileGrid {
         let brush = Brush { size: 16.0, hardness: 0.8, mode, ..Brush::default() };
         let stroke = Stroke::new(brush, operator, Color::BLACK, Vec::new());
         let offset = vec2(3.0, -21.0);
-        let mut hand = ActiveRetouching::new(&[stroke], &[offset], pixels.clone(), pixels.clone(), &scene);
+        let mut hand =
+            ActiveRetouching::new(&[stroke], &[offset], pixels.clone(), pixels.clone(), &scene);
         let samples = [vec2(x0, y0), vec2(x1, y1)].map(Sample::at).to_vec();
         hand.draw(&[samples]).into_iter().for_each(|(at, tile)| pixels.set(at, tile));
     }

@@ -1,5 +1,5 @@
-//! Pictures compared with stored ones: the largest difference and where it is, a picture of the fault, and how to
-//! accept it.
+//! Pictures compared with stored ones: the largest difference and where it is, a picture of the
+//! fault, and how to accept it.
 
 use image::{Rgba, RgbaImage};
 use std::fs;
@@ -14,7 +14,8 @@ pub const GAP: u32 = 4;
 /// How much brighter the picture of a difference is than the difference.
 const AMPLIFIED: u8 = 8;
 
-/// How far two pictures are apart, in steps of a byte of premultiplied colour: transparent pixels are all equal.
+/// How far two pictures are apart, in steps of a byte of premultiplied colour: transparent pixels
+/// are all equal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {
     pub largest: u8,
@@ -68,17 +69,21 @@ impl Place {
     pub fn alone(name: &str) -> Self {
         Self { file: name.to_owned(), tile: None }
     }
+
     /// A square of a sheet, from 0.
     pub fn tile(sheet: &str, index: u32, side: u32) -> Self {
         Self { file: sheet.to_owned(), tile: Some((index, side)) }
     }
+
     fn path(&self, references: &Path) -> PathBuf {
         references.join(format!("{}.png", self.file))
     }
+
     /// The upper left corner of a square.
     fn corner(index: u32, side: u32) -> (u32, u32) {
         (index % COLUMNS * side, index / COLUMNS * side)
     }
+
     /// Stores a picture here; of a sheet the other squares stay.
     fn put(&self, references: &Path, picture: &RgbaImage) {
         let path = self.path(references);
@@ -99,8 +104,15 @@ pub struct Found<'a> {
     pub accept: bool,
 }
 
-/// Compares a picture with the one that is stored for it; `UPDATE_GOLDEN=1` stores it where they differ.
-pub fn check(references: &Path, name: &str, place: &Place, found: &RgbaImage, tolerance: u8) -> Result<(), String> {
+/// Compares a picture with the one that is stored for it; `UPDATE_GOLDEN=1` stores it where they
+/// differ.
+pub fn check(
+    references: &Path,
+    name: &str,
+    place: &Place,
+    found: &RgbaImage,
+    tolerance: u8,
+) -> Result<(), String> {
     let faults = faults();
     let accept = std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1");
     Found { references, faults: &faults, accept }.check(name, place, found, tolerance)
@@ -113,14 +125,21 @@ pub fn faults() -> PathBuf {
 
 impl Found<'_> {
     /// * `name`: of the case, for messages and the picture of its fault.
-    pub fn check(&self, name: &str, place: &Place, found: &RgbaImage, tolerance: u8) -> Result<(), String> {
+    pub fn check(
+        &self,
+        name: &str,
+        place: &Place,
+        found: &RgbaImage,
+        tolerance: u8,
+    ) -> Result<(), String> {
         let fault = match stored(self.references, place) {
             Err(missing) => format!("{name}: {missing}"),
             Ok(expected) if expected.dimensions() != found.dimensions() => {
                 format!("{name}: {:?} pixels, not {:?}", found.dimensions(), expected.dimensions())
             }
             Ok(expected) => {
-                let Difference { largest, at, pixels } = Difference::of(found, &expected, tolerance);
+                let Difference { largest, at, pixels } =
+                    Difference::of(found, &expected, tolerance);
                 if largest <= tolerance {
                     return Ok(());
                 }
@@ -153,7 +172,9 @@ pub fn stored(references: &Path, place: &Place) -> Result<RgbaImage, String> {
 }
 
 fn read(path: &Path) -> Result<RgbaImage, String> {
-    image::open(path).map(|picture| picture.to_rgba8()).map_err(|e| format!("{}: {e}", path.display()))
+    image::open(path)
+        .map(|picture| picture.to_rgba8())
+        .map_err(|e| format!("{}: {e}", path.display()))
 }
 
 fn save(path: &Path, picture: &RgbaImage) {
@@ -178,5 +199,7 @@ fn side_by_side(found: &RgbaImage, expected: &RgbaImage) -> RgbaImage {
 pub fn moved(picture: &RgbaImage, dx: i32, dy: i32) -> RgbaImage {
     let (width, height) = picture.dimensions();
     let from = |v: u32, by: i32, n: u32| (v as i32 - by).clamp(0, n as i32 - 1) as u32;
-    RgbaImage::from_fn(width, height, |x, y| *picture.get_pixel(from(x, dx, width), from(y, dy, height)))
+    RgbaImage::from_fn(width, height, |x, y| {
+        *picture.get_pixel(from(x, dx, width), from(y, dy, height))
+    })
 }

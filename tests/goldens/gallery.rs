@@ -1,5 +1,5 @@
-//! The recipes of `sample_normals` make the pictures of `docs/gallery`. Both are compared small, since the pictures are
-//! stored as JPEG.
+//! The recipes of `sample_normals` make the pictures of `docs/gallery`. Both are compared small,
+//! since the pictures are stored as JPEG.
 
 use super::compare;
 use image::{Rgb, RgbImage};
@@ -58,7 +58,8 @@ const LAYERS: [(&str, &str, &str, Rgb<u8>); 26] = [
 ];
 
 /// Recipes that the gallery shows at three quarters of their size.
-const SMALLER: [&str; 4] = ["crystal_ball", "glass_1_placed", "glass_2_tree_moved", "glass_3_horizon_aligned"];
+const SMALLER: [&str; 4] =
+    ["crystal_ball", "glass_1_placed", "glass_2_tree_moved", "glass_3_horizon_aligned"];
 
 fn in_package(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
@@ -76,7 +77,8 @@ fn shown() -> Vec<Shown> {
         layer: Some((layer, background)),
         scale: 1.0,
     });
-    let files = std::fs::read_dir(in_package("sample_normals")).unwrap().map(|entry| entry.unwrap().path());
+    let files =
+        std::fs::read_dir(in_package("sample_normals")).unwrap().map(|entry| entry.unwrap().path());
     let mut names: Vec<String> = files
         .filter(|path| path.extension().is_some_and(|e| e == "json"))
         .map(|path| path.file_stem().unwrap().to_string_lossy().into_owned())
@@ -99,13 +101,17 @@ impl Shown {
         let path = in_package("docs/gallery").join(format!("{}.jpg", self.picture));
         image::open(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display())).to_rgb8()
     }
+
     fn rendered(&self) -> RgbImage {
-        let document = recipe::load(&self.recipe, &Budget::default()).unwrap_or_else(|e| panic!("{e}"));
-        let document = if self.scale == 1.0 { document } else { document.scaled(self.scale).unwrap() };
+        let document =
+            recipe::load(&self.recipe, &Budget::default()).unwrap_or_else(|e| panic!("{e}"));
+        let document =
+            if self.scale == 1.0 { document } else { document.scaled(self.scale).unwrap() };
         let (tiles, background) = match self.layer {
             None => (flatten(&document, &Progress::default()), WHITE),
             Some((layer, background)) => {
-                let id = document.layer_named(layer).unwrap_or_else(|| panic!("{layer} is missing")).id;
+                let id =
+                    document.layer_named(layer).unwrap_or_else(|| panic!("{layer} is missing")).id;
                 (flatten_layer(&document, id, &Progress::default()), background)
             }
         };
@@ -117,7 +123,8 @@ fn over(document: &Document, tiles: &TileGrid, Rgb(background): Rgb<u8>) -> RgbI
     let rgba = tiles.to_straight_rgba(document.size.rect());
     let pixel = |&[r, g, b, a]: &[u8; 4]| {
         let mix = |over: u8, under: u8| {
-            ((u32::from(over) * u32::from(a) + u32::from(under) * (255 - u32::from(a)) + 127) / 255) as u8
+            ((u32::from(over) * u32::from(a) + u32::from(under) * (255 - u32::from(a)) + 127) / 255)
+                as u8
         };
         [mix(r, background[0]), mix(g, background[1]), mix(b, background[2])]
     };
@@ -130,8 +137,10 @@ fn small(picture: &RgbImage) -> Vec<[f32; 3]> {
     let (columns, rows) = (picture.width() / SQUARE, picture.height() / SQUARE);
     let mean = |i: u32| {
         let (x0, y0) = (i % columns * SQUARE, i / columns * SQUARE);
-        let pixels = (0..SQUARE * SQUARE).map(|i| picture.get_pixel(x0 + i % SQUARE, y0 + i / SQUARE).0);
-        let sum = pixels.fold([0.0; 3], |sum: [f32; 3], p| std::array::from_fn(|c| sum[c] + f32::from(p[c])));
+        let pixels =
+            (0..SQUARE * SQUARE).map(|i| picture.get_pixel(x0 + i % SQUARE, y0 + i / SQUARE).0);
+        let sum = pixels
+            .fold([0.0; 3], |sum: [f32; 3], p| std::array::from_fn(|c| sum[c] + f32::from(p[c])));
         sum.map(|v| v / (SQUARE * SQUARE) as f32)
     };
     (0..columns * rows).map(mean).collect()
@@ -169,16 +178,26 @@ fn the_recipes_make_the_pictures_of_the_gallery() {
             ));
         }
     }
-    assert!(faults.is_empty(), "{}\nIf the change is meant, run the commands of docs/GALLERY.md", faults.join("\n"));
+    assert!(
+        faults.is_empty(),
+        "{}\nIf the change is meant, run the commands of docs/GALLERY.md",
+        faults.join("\n")
+    );
 }
 
 #[test]
 fn a_picture_of_the_gallery_is_told_from_every_other_and_from_itself_moved() {
-    let pictures: Vec<(String, RgbImage)> =
-        shown().into_iter().map(|shown| (shown.stored(), shown)).map(|(p, s)| (s.picture, p)).collect();
+    let pictures: Vec<(String, RgbImage)> = shown()
+        .into_iter()
+        .map(|shown| (shown.stored(), shown))
+        .map(|(p, s)| (s.picture, p))
+        .collect();
     for (i, (name, picture)) in pictures.iter().enumerate() {
         for (other_name, other) in &pictures[..i] {
-            assert!(!is_alike(apart(picture, other)), "{name} and {other_name} pass for each other");
+            assert!(
+                !is_alike(apart(picture, other)),
+                "{name} and {other_name} pass for each other"
+            );
         }
         let wide = image::DynamicImage::from(picture.clone()).to_rgba8();
         let moved = image::DynamicImage::from(compare::moved(&wide, 4, 0)).to_rgb8();

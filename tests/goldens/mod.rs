@@ -1,7 +1,9 @@
-//! Reference pictures: what each blend mode, operator and filter, shading model, mask and tip looks like, and what the
-//! recipes of the gallery look like. Each is made again and compared, with a tolerance given next to its recipe.
+//! Reference pictures: what each blend mode, operator and filter, shading model, mask and tip looks
+//! like, and what the recipes of the gallery look like. Each is made again and compared, with a
+//! tolerance given next to its recipe.
 //!
-//! `UPDATE_GOLDEN=1 cargo test --test program goldens` accepts what has changed; `CONTRIBUTING.md` says more.
+//! `UPDATE_GOLDEN=1 cargo test --test program goldens` accepts what has changed; `CONTRIBUTING.md`
+//! says more.
 //!
 //! The other tests check this one: a shift by a pixel is found, and no picture passes for another.
 
@@ -27,11 +29,12 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/goldens")
 }
 
-/// How much each case differs from its picture. Computed once, before any other test reads the pictures, since this may
-/// accept new ones.
+/// How much each case differs from its picture. Computed once, before any other test reads the
+/// pictures, since this may accept new ones.
 static FAULTS: LazyLock<Vec<String>> = LazyLock::new(|| {
-    let check =
-        |case: &Case| compare::check(&folder(), &case.name, &case.place, &case.rendered(), case.tolerance).err();
+    let check = |case: &Case| {
+        compare::check(&folder(), &case.name, &case.place, &case.rendered(), case.tolerance).err()
+    };
     cases::all().iter().filter_map(check).collect()
 });
 
@@ -50,14 +53,21 @@ fn every_reference_picture_belongs_to_a_case_and_all_are_light() {
     LazyLock::force(&FAULTS);
     let known: BTreeSet<String> = cases::all().into_iter().map(|case| case.place.file).collect();
     let (mut bytes, mut stored) = (0, BTreeSet::new());
-    for group in std::fs::read_dir(folder()).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_dir()) {
+    for group in std::fs::read_dir(folder())
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.is_dir())
+    {
         for picture in std::fs::read_dir(&group).unwrap().map(|entry| entry.unwrap().path()) {
             bytes += picture.metadata().unwrap().len();
             let name = picture.strip_prefix(folder()).unwrap().with_extension("");
             stored.insert(name.to_string_lossy().replace('\\', "/"));
         }
     }
-    assert_eq!(stored, known, "one picture a case or a sheet (UPDATE_GOLDEN=1 makes those that are missing)");
+    assert_eq!(
+        stored, known,
+        "one picture a case or a sheet (UPDATE_GOLDEN=1 makes those that are missing)"
+    );
     assert!(stored.len() <= MOST_PICTURES, "{} pictures", stored.len());
     assert!(bytes <= MOST_BYTES, "{bytes} bytes");
 }
@@ -86,8 +96,11 @@ fn no_two_cases_look_alike() {
     };
     let goldens: Vec<(Case, RgbaImage)> = cases::all().into_iter().map(with_picture).collect();
     for (i, (a, picture)) in goldens.iter().enumerate() {
-        for (b, other) in goldens[..i].iter().filter(|(_, other)| other.dimensions() == picture.dimensions()) {
-            let Difference { pixels, .. } = Difference::of(picture, other, a.tolerance.max(b.tolerance));
+        for (b, other) in
+            goldens[..i].iter().filter(|(_, other)| other.dimensions() == picture.dimensions())
+        {
+            let Difference { pixels, .. } =
+                Difference::of(picture, other, a.tolerance.max(b.tolerance));
             assert!(pixels > 20, "{} and {} differ in {pixels} pixels only", a.name, b.name);
         }
     }
@@ -101,13 +114,20 @@ fn a_fault_is_told_with_its_place_and_a_picture() {
     found.put_pixel(3, 2, Rgba([90, 103, 110, 255]));
     let scratch = tempfile::tempdir().unwrap();
     let told = |tolerance| {
-        let scratch = Found { references: scratch.path(), faults: &scratch.path().join("faults"), accept: false };
+        let scratch = Found {
+            references: scratch.path(),
+            faults: &scratch.path().join("faults"),
+            accept: false,
+        };
         scratch.check("a/b", &Place::alone("a/b"), &found, tolerance)
     };
     std::fs::create_dir(scratch.path().join("a")).unwrap();
     expected.save(scratch.path().join("a/b.png")).unwrap();
     let sentence = told(3).unwrap_err();
-    assert!(sentence.contains("by up to 40 at (12, 7)") && sentence.contains("1 pixel"), "{sentence}");
+    assert!(
+        sentence.contains("by up to 40 at (12, 7)") && sentence.contains("1 pixel"),
+        "{sentence}"
+    );
     assert!(told(2).unwrap_err().contains("2 pixels"));
     assert_eq!(told(40), Ok(()));
     let shown = image::open(scratch.path().join("faults/a/b.png")).unwrap().to_rgba8();
@@ -117,11 +137,17 @@ fn a_fault_is_told_with_its_place_and_a_picture() {
 #[test]
 fn a_tile_of_a_sheet_is_accepted_alone_and_read_back() {
     let scratch = tempfile::tempdir().unwrap();
-    let colors = [[200, 0, 0, 255], [0, 150, 0, 255], [0, 0, 90, 128]].map(|c| RgbaImage::from_pixel(6, 6, Rgba(c)));
+    let colors = [[200, 0, 0, 255], [0, 150, 0, 255], [0, 0, 90, 128]]
+        .map(|c| RgbaImage::from_pixel(6, 6, Rgba(c)));
     let check = |tile: u32, found: &RgbaImage, accept: bool| {
         let faults = scratch.path().join("faults");
         let place = Place::tile("a/sheet", tile, 6);
-        Found { references: scratch.path(), faults: &faults, accept }.check(&format!("a/{tile}"), &place, found, 0)
+        Found { references: scratch.path(), faults: &faults, accept }.check(
+            &format!("a/{tile}"),
+            &place,
+            found,
+            0,
+        )
     };
     // The last one first: the sheet grows by rows.
     for (tile, color) in [(9, &colors[2]), (0, &colors[0]), (3, &colors[1])] {

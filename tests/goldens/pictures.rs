@@ -28,6 +28,7 @@ impl Files for Pictures {
         let missing = || Error::io(name, std::io::Error::from(std::io::ErrorKind::NotFound));
         FILES.get(name).cloned().ok_or_else(missing)
     }
+
     fn path(&self, name: &str) -> PathBuf {
         name.into()
     }
@@ -54,14 +55,23 @@ fn tiles(x: u32, y: u32) -> [u8; 4] {
 fn sky(x: u32, y: u32) -> [u8; 4] {
     let lamp = x.abs_diff(40) < 4 && y.abs_diff(10) < 3;
     let light = 255 - 6 * y as u8;
-    if lamp { [255, 250, 220, 255] } else { [light - 40 + (x / 2) as u8, light, light.saturating_add(20), 255] }
+    if lamp {
+        [255, 250, 220, 255]
+    } else {
+        [light - 40 + (x / 2) as u8, light, light.saturating_add(20), 255]
+    }
 }
 
 /// Red to the right, green downward, a highlight at the upper left.
 fn sphere(x: u32, y: u32) -> [u8; 4] {
     let (dx, dy) = (x as i32 - 15, y as i32 - 13);
     let light = (160 - 2 * (dx * dx + dy * dy)).max(0) as u8;
-    [(40 + 3 * x as u8).saturating_add(light), (30 + 3 * y as u8).saturating_add(light), 70 + light / 2, 255]
+    [
+        (40 + 3 * x as u8).saturating_add(light),
+        (30 + 3 * y as u8).saturating_add(light),
+        70 + light / 2,
+        255,
+    ]
 }
 
 /// A half disc with a notch, thinner to the right.

@@ -1,4 +1,5 @@
-//! Shapes for the reference pictures. Sums, products, quotients and roots only, which IEEE 754 rounds alike everywhere.
+//! Shapes for the reference pictures. Sums, products, quotients and roots only, which IEEE 754
+//! rounds alike everywhere.
 
 use rilievo::math::{Vec3, vec3};
 use rilievo::raster::Plane;
@@ -29,22 +30,30 @@ type Point = (f32, Vec3);
 impl Shape {
     pub fn surface(self) -> Arc<Surface> {
         let center = |x: usize, y: usize| self.at(x as f32 + 0.5, y as f32 + 0.5);
-        let heights: Vec<f32> = all().filter_map(|(x, y)| center(x, y)).map(|(height, _)| height).collect();
-        let (low, high) = heights.iter().fold((f32::MAX, f32::MIN), |(a, b), &h| (a.min(h), b.max(h)));
-        let depth = |x, y| center(x, y).map_or(f32::NAN, |(height, _)| (high - height) / (high - low));
+        let heights: Vec<f32> =
+            all().filter_map(|(x, y)| center(x, y)).map(|(height, _)| height).collect();
+        let (low, high) =
+            heights.iter().fold((f32::MAX, f32::MIN), |(a, b), &h| (a.min(h), b.max(h)));
+        let depth =
+            |x, y| center(x, y).map_or(f32::NAN, |(height, _)| (high - height) / (high - low));
         let maps = Maps {
-            normals: Plane::from_fn(SIZE, |x, y| center(x, y).map_or(Vec3::ZERO, |(_, normal)| normal)),
+            normals: Plane::from_fn(SIZE, |x, y| {
+                center(x, y).map_or(Vec3::ZERO, |(_, normal)| normal)
+            }),
             depth: Plane::from_fn(SIZE, depth),
             coverage: Plane::from_fn(SIZE, |x, y| self.coverage(x, y)),
         };
         Arc::new(Surface::new(maps).unwrap())
     }
+
     fn coverage(self, x: usize, y: usize) -> u8 {
         let along = |i: i32| (i as f32 + 0.5) / SAMPLES as f32;
-        let samples = (0..SAMPLES * SAMPLES).map(|i| (x as f32 + along(i % SAMPLES), y as f32 + along(i / SAMPLES)));
+        let samples = (0..SAMPLES * SAMPLES)
+            .map(|i| (x as f32 + along(i % SAMPLES), y as f32 + along(i / SAMPLES)));
         let inside = samples.filter(|&(x, y)| self.at(x, y).is_some()).count() as i32;
         (inside * 255 / (SAMPLES * SAMPLES)) as u8
     }
+
     /// The nearest surface at a point of the canvas, y down.
     fn at(self, x: f32, y: f32) -> Option<Point> {
         match self {

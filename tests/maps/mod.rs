@@ -18,10 +18,12 @@ pub struct Ball {
 
 impl Ball {
     pub fn new() -> Self {
-        let surface =
-            (0..SIDE * SIDE).map(|i| Self::formula((i % SIDE) as f32 + 0.5, (i / SIDE) as f32 + 0.5)).collect();
+        let surface = (0..SIDE * SIDE)
+            .map(|i| Self::formula((i % SIDE) as f32 + 0.5, (i / SIDE) as f32 + 0.5))
+            .collect();
         Self { surface }
     }
+
     /// Normal (y up) and planar depth in pixels from a camera 150 pixels away.
     fn formula(x: f32, y: f32) -> Option<(Vec3, f32)> {
         let (dx, dy) = (x - 48.0, 48.0 - y);
@@ -35,9 +37,11 @@ impl Ball {
         let slope = |d: f32, b: f32| -d / rest.sqrt() - bump * 2.0 * b / 90.0;
         Some((vec3(-slope(dx, bx), -slope(dy, by), 1.0).normalize(), 150.0 - height))
     }
+
     pub fn at(&self, x: usize, y: usize) -> Option<(Vec3, f32)> {
         self.surface[y * SIDE + x]
     }
+
     /// Whether a pixel and its neighbours are on the surface.
     pub fn is_inner(&self, x: usize, y: usize) -> bool {
         x > 0
@@ -46,20 +50,24 @@ impl Ball {
             && y < SIDE - 1
             && (y - 1..=y + 1).all(|y| (x - 1..=x + 1).all(|x| self.at(x, y).is_some()))
     }
+
     /// Nearest and farthest depth.
     pub fn range(&self) -> (f32, f32) {
         let depths = self.surface.iter().flatten().map(|s| s.1);
         depths.fold((f32::INFINITY, 0.0), |(a, b), z| (a.min(z), b.max(z)))
     }
+
     /// OpenGL, 16 bits, flat outside.
     pub fn normal_png(&self) -> Vec<u8> {
         png(16, |x, y| self.at(x, y).map_or([0.5, 0.5, 1.0, 1.0], |(n, _)| encode(n.x, n.y, n.z)))
     }
+
     /// 16 bits, 0 near, far outside.
     pub fn depth_png(&self) -> Vec<u8> {
         let (near, far) = self.range();
         png(16, |x, y| [self.at(x, y).map_or(1.0, |(_, z)| (z - near) / (far - near)); 4])
     }
+
     pub fn mask_png(&self) -> Vec<u8> {
         png(8, |x, y| if self.at(x, y).is_some() { [1.0; 4] } else { [0.0, 0.0, 0.0, 1.0] })
     }
@@ -81,11 +89,13 @@ pub fn png_of(side: usize, bits: u8, texel: impl Fn(usize, usize) -> [f32; 4]) -
     let n = side as u32;
     let image = if bits == 8 {
         let bytes = texels.iter().flat_map(|t| t.map(|v| (v * 255.0).round() as u8)).collect();
-        let image = image::DynamicImage::ImageRgba8(image::RgbaImage::from_raw(n, n, bytes).unwrap());
+        let image =
+            image::DynamicImage::ImageRgba8(image::RgbaImage::from_raw(n, n, bytes).unwrap());
         if opaque { image.to_rgb8().into() } else { image }
     } else {
         let words = texels.iter().flat_map(|t| t.map(|v| (v * 65535.0).round() as u16)).collect();
-        let image = image::DynamicImage::ImageRgba16(image::ImageBuffer::from_raw(n, n, words).unwrap());
+        let image =
+            image::DynamicImage::ImageRgba16(image::ImageBuffer::from_raw(n, n, words).unwrap());
         if opaque { image.to_rgb16().into() } else { image }
     };
     let mut out = Cursor::new(Vec::new());
@@ -96,7 +106,10 @@ pub fn png_of(side: usize, bits: u8, texel: impl Fn(usize, usize) -> [f32; 4]) -
 /// A float EXR of named channels.
 pub fn exr_bytes(channels: &[(&str, Vec<f32>)], world_to_camera: Option<[f32; 16]>) -> Vec<u8> {
     use exr::prelude::*;
-    let list = channels.iter().map(|(name, values)| AnyChannel::new(*name, FlatSamples::F32(values.clone()))).collect();
+    let list = channels
+        .iter()
+        .map(|(name, values)| AnyChannel::new(*name, FlatSamples::F32(values.clone())))
+        .collect();
     let attributes = LayerAttributes { world_to_camera, ..LayerAttributes::named("main") };
     let encoding = Encoding { compression: Compression::ZIP16, ..Encoding::default() };
     let layer = Layer::new((SIDE, SIDE), attributes, encoding, AnyChannels::sort(list));
@@ -119,6 +132,7 @@ impl Files for Memory {
         let missing = || Error::io(name, std::io::Error::from(std::io::ErrorKind::NotFound));
         self.0.get(name).cloned().ok_or_else(missing)
     }
+
     fn path(&self, name: &str) -> PathBuf {
         name.into()
     }

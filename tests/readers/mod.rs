@@ -1,4 +1,5 @@
-//! Every reader of files on any bytes: what the mutations, the fuzz targets and the replay of their corpus run.
+//! Every reader of files on any bytes: what the mutations, the fuzz targets and the replay of their
+//! corpus run.
 
 use rilievo::files::open::FileKind;
 use rilievo::files::{Files, MapSource, SurfaceSource, maps, picture, recipe};
@@ -6,7 +7,8 @@ use rilievo::{Budget, Error, Progress, Result};
 use rilievo_io::{inspect, project, psd, recovery};
 use std::path::{Path, PathBuf};
 
-/// A reader by its name; it must neither panic nor allocate beyond the budget, and fail with a sentence.
+/// A reader by its name; it must neither panic nor allocate beyond the budget, and fail with a
+/// sentence.
 pub type Reader = fn(&Path, &[u8]) -> Result<()>;
 
 /// The readers by the names of their fuzz targets.
@@ -35,6 +37,7 @@ impl Files for One {
             _ => Ok(self.0.clone()),
         }
     }
+
     fn path(&self, name: &str) -> PathBuf {
         name.into()
     }
@@ -43,19 +46,24 @@ impl Files for One {
 pub fn project(file: &Path, bytes: &[u8]) -> Result<()> {
     project::read(file, bytes, &budget()).map(drop)
 }
+
 pub fn psd(file: &Path, bytes: &[u8]) -> Result<()> {
     psd::read(file, bytes, &budget()).map(drop)
 }
+
 pub fn recipe(file: &Path, bytes: &[u8]) -> Result<()> {
-    let source = recipe::RecipeSource { file, files: &One(Vec::new()), budget: &budget(), onto: None };
+    let source =
+        recipe::RecipeSource { file, files: &One(Vec::new()), budget: &budget(), onto: None };
     recipe::read(bytes, source).map(drop)
 }
+
 pub fn picture(file: &Path, bytes: &[u8]) -> Result<()> {
     // Not every picture is a mask, and not every one gives findings.
     let _ = picture::decode_coverage(file, bytes, &budget());
     let _ = inspect::describe(file, bytes, &budget());
     picture::decode(file, bytes, &budget()).map(drop)
 }
+
 pub fn maps(file: &Path, bytes: &[u8]) -> Result<()> {
     let name = file.to_string_lossy().into_owned();
     let files = One(bytes.to_vec());
@@ -65,17 +73,23 @@ pub fn maps(file: &Path, bytes: &[u8]) -> Result<()> {
     let depth = SurfaceSource { depth, ..SurfaceSource::default() };
     let tried = [normal, depth].map(|source| {
         let surface = maps::import(&source, &files, &budget())?.surface;
-        let is_finite = |plane: &rilievo::raster::Plane<f32>| plane.values().iter().all(|v| v.is_finite());
-        assert!(is_finite(surface.depth_plane()) && surface.normal_planes().iter().all(|plane| is_finite(plane)));
+        let is_finite =
+            |plane: &rilievo::raster::Plane<f32>| plane.values().iter().all(|v| v.is_finite());
+        assert!(
+            is_finite(surface.depth_plane())
+                && surface.normal_planes().iter().all(|plane| is_finite(plane))
+        );
         Ok(())
     });
     // A file may be the one and not the other.
     let [as_normals, as_depth] = tried;
     as_normals.or(as_depth)
 }
+
 pub fn recovery(file: &Path, bytes: &[u8]) -> Result<()> {
     recovery::read(file, bytes, &budget(), &Progress::default()).map(drop)
 }
+
 /// With the reader that the program would take.
 #[allow(dead_code)]
 pub fn any(file: &Path, bytes: &[u8]) -> Result<()> {

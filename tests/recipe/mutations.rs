@@ -7,7 +7,9 @@ use proptest::prelude::*;
 fn pointers(value: &Value, at: &str, out: &mut Vec<String>) {
     out.push(at.to_owned());
     match value {
-        Value::Array(items) => items.iter().enumerate().for_each(|(i, v)| pointers(v, &format!("{at}/{i}"), out)),
+        Value::Array(items) => {
+            items.iter().enumerate().for_each(|(i, v)| pointers(v, &format!("{at}/{i}"), out))
+        }
         Value::Object(map) => map.iter().for_each(|(k, v)| pointers(v, &format!("{at}/{k}"), out)),
         _ => {}
     }
@@ -31,7 +33,8 @@ fn odd_value() -> impl Strategy<Value = Value> {
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
-    /// Any value at any place gives a document or a sentence; a document that was read is written and read again.
+    /// Any value at any place gives a document or a sentence; a document that was read is written
+    /// and read again.
     #[test]
     fn a_value_out_of_place_is_read_or_refused(pick in any::<prop::sample::Index>(), value in odd_value()) {
         let mut recipe = everything();
@@ -46,6 +49,7 @@ proptest! {
             Err(said) => prop_assert!(said.to_string().starts_with("r.json: ")),
         }
     }
+
     #[test]
     fn a_damaged_text_is_read_or_refused(
         at in any::<prop::sample::Index>(), byte in any::<u8>(), cut in any::<prop::sample::Index>()

@@ -1,4 +1,5 @@
-//! Small files of every format that is read, most of them made here, some by other programs (`files/`).
+//! Small files of every format that is read, most of them made here, some by other programs
+//! (`files/`).
 
 use rilievo::files::{Files, recipe};
 use rilievo::{Budget, Document, Error, Progress, Result};
@@ -25,6 +26,7 @@ impl Files for InMemory {
     fn read(&self, name: &str, _: &Budget) -> Result<Vec<u8>> {
         self.0.get(name).cloned().ok_or_else(|| Error::unsupported(name, "there is no such file"))
     }
+
     fn path(&self, name: &str) -> PathBuf {
         name.into()
     }
@@ -33,6 +35,7 @@ impl Files for InMemory {
 fn pixel(x: u32, y: u32) -> [u8; 4] {
     [mix(x * 31 + y) as u8, 90, (x * 9) as u8, 255 - y as u8]
 }
+
 /// A hemisphere as an OpenGL normal map.
 fn dome(x: u32, y: u32) -> [u8; 4] {
     let [nx, ny] = [x as f32 / 7.5 - 1.0, 1.0 - y as f32 / 7.5];
@@ -40,20 +43,26 @@ fn dome(x: u32, y: u32) -> [u8; 4] {
     let byte = |v: f32| ((v + 1.0) * 127.5).round() as u8;
     if square >= 1.0 { [0; 4] } else { [byte(nx), byte(ny), byte((1.0 - square).sqrt()), 255] }
 }
+
 fn encoded(image: impl Into<image::DynamicImage>, format: image::ImageFormat) -> Vec<u8> {
     let mut out = Cursor::new(Vec::new());
     image.into().write_to(&mut out, format).unwrap();
     out.into_inner()
 }
+
 fn png(w: u32, h: u32, pixel: fn(u32, u32) -> [u8; 4]) -> Vec<u8> {
-    encoded(image::RgbaImage::from_fn(w, h, |x, y| image::Rgba(pixel(x, y))), image::ImageFormat::Png)
+    encoded(
+        image::RgbaImage::from_fn(w, h, |x, y| image::Rgba(pixel(x, y))),
+        image::ImageFormat::Png,
+    )
 }
 
 /// What the `image` crate writes: every depth and channel count of each format.
 fn bitmaps() -> Vec<Seed> {
     use image::DynamicImage as Image;
     use image::ImageFormat::{Bmp, Hdr, Jpeg, Png, Tga, Tiff, WebP};
-    let rgba = Image::ImageRgba8(image::RgbaImage::from_fn(19, 11, |x, y| image::Rgba(pixel(x, y))));
+    let rgba =
+        Image::ImageRgba8(image::RgbaImage::from_fn(19, 11, |x, y| image::Rgba(pixel(x, y))));
     let rgb = Image::ImageRgb8(rgba.to_rgb8());
     let deep = [
         Image::ImageLuma16(rgba.to_luma16()),
@@ -106,7 +115,8 @@ fn palettes() -> Vec<Seed> {
         out
     };
     let indexed = depths.map(|d| (format!("palette-{}.png", d as u8), one(ColorType::Indexed, d)));
-    let grey = [depths[0], depths[2]].map(|d| (format!("grey-{}.png", d as u8), one(ColorType::Grayscale, d)));
+    let grey = [depths[0], depths[2]]
+        .map(|d| (format!("grey-{}.png", d as u8), one(ColorType::Grayscale, d)));
     [indexed.to_vec(), grey.to_vec()].concat()
 }
 
@@ -125,7 +135,9 @@ fn exrs() -> Vec<Seed> {
         ("dwaa", Compression::DWAA(None), false),
     ];
     let one = |compression, tiled| {
-        let plane = |f: fn(f32) -> f32| FlatSamples::F32((0..SIDE * SIDE).map(|i| f(i as f32 / 300.0)).collect());
+        let plane = |f: fn(f32) -> f32| {
+            FlatSamples::F32((0..SIDE * SIDE).map(|i| f(i as f32 / 300.0)).collect())
+        };
         let half = |f: fn(f32) -> f32| {
             FlatSamples::F16((0..SIDE * SIDE).map(|i| f16::from_f32(f(i as f32 / 300.0))).collect())
         };
@@ -147,12 +159,14 @@ fn exrs() -> Vec<Seed> {
         Image::from_layer(layer).write().to_buffered(&mut out).unwrap();
         out.into_inner()
     };
-    let pictures = all.map(|(name, compression, tiled)| (format!("{name}.exr"), one(compression, tiled)));
+    let pictures =
+        all.map(|(name, compression, tiled)| (format!("{name}.exr"), one(compression, tiled)));
     let maps = [("maps/zip.exr".to_owned(), one(Compression::ZIP16, false))];
     [pictures.to_vec(), maps.to_vec()].concat()
 }
 
-/// Recipes with every kind of layer, as themselves, as projects, as Photoshop files and as recovery logs.
+/// Recipes with every kind of layer, as themselves, as projects, as Photoshop files and as recovery
+/// logs.
 fn documents() -> Vec<Seed> {
     let paint = json!({ "canvas": { "width": 24, "height": 20 }, "layers": [
         { "name": "ground", "kind": "fill", "color": "#204060" },
@@ -180,32 +194,48 @@ fn documents() -> Vec<Seed> {
         let document = read(&json, &files);
         let (progress, file) = (Progress::default(), Path::new(name));
         seeds.push((format!("{name}.json"), json.to_string().into_bytes()));
-        seeds.push((format!("{name}.ora"), project::write(file, &document, &progress).unwrap().unwrap()));
-        seeds.push((format!("{name}.psd"), psd::write(file, &document, &progress).unwrap().unwrap().bytes));
+        seeds.push((
+            format!("{name}.ora"),
+            project::write(file, &document, &progress).unwrap().unwrap(),
+        ));
+        seeds.push((
+            format!("{name}.psd"),
+            psd::write(file, &document, &progress).unwrap().unwrap().bytes,
+        ));
         seeds.push((format!("{name}.log"), log(&document)));
     }
     seeds
 }
+
 fn read(json: &Value, files: &InMemory) -> Document {
     let budget = Budget::default();
-    let source = recipe::RecipeSource { file: Path::new("r.json"), files, budget: &budget, onto: None };
+    let source =
+        recipe::RecipeSource { file: Path::new("r.json"), files, budget: &budget, onto: None };
     recipe::read(json.to_string().as_bytes(), source).unwrap_or_else(|e| panic!("{e}"))
 }
+
 fn log(document: &Document) -> Vec<u8> {
     let folder = tempfile::tempdir().unwrap();
-    let recovery = RecoveryLog::start(Arc::new(Disk), folder.path(), document, "seed", None).unwrap();
+    let recovery =
+        RecoveryLog::start(Arc::new(Disk), folder.path(), document, "seed", None).unwrap();
     recovery.flush();
     let logs = std::fs::read_dir(folder.path()).unwrap().flatten().map(|entry| entry.path());
-    std::fs::read(logs.into_iter().find(|path| path.extension().is_some_and(|e| e == "log")).unwrap()).unwrap()
+    std::fs::read(
+        logs.into_iter().find(|path| path.extension().is_some_and(|e| e == "log")).unwrap(),
+    )
+    .unwrap()
 }
 
 /// What other programs wrote.
 fn others() -> Vec<Seed> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/seeds/files");
-    let mut paths: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().flatten().map(|entry| entry.path()).collect();
+    let mut paths: Vec<PathBuf> =
+        std::fs::read_dir(folder).unwrap().flatten().map(|entry| entry.path()).collect();
     paths.sort();
     paths
         .iter()
-        .map(|path| (path.file_name().unwrap().to_string_lossy().into(), std::fs::read(path).unwrap()))
+        .map(|path| {
+            (path.file_name().unwrap().to_string_lossy().into(), std::fs::read(path).unwrap())
+        })
         .collect()
 }

@@ -1,4 +1,5 @@
-//! An allocator that remembers the requests made to it, for tests that damaged files do not fill the memory.
+//! An allocator that remembers the requests made to it, for tests that damaged files do not fill
+//! the memory.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -27,17 +28,20 @@ unsafe impl GlobalAlloc for Watch {
         // SAFETY: the caller's promises are passed on.
         unsafe { System.alloc(layout) }
     }
+
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
         took(layout.size());
         // SAFETY: the caller's promises are passed on.
         unsafe { System.alloc_zeroed(layout) }
     }
+
     unsafe fn realloc(&self, block: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         LIVE.fetch_sub(layout.size(), Ordering::Relaxed);
         took(size);
         // SAFETY: the caller's promises are passed on.
         unsafe { System.realloc(block, layout, size) }
     }
+
     unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
         LIVE.fetch_sub(layout.size(), Ordering::Relaxed);
         // SAFETY: the caller's promises are passed on.
@@ -52,10 +56,12 @@ pub fn forget() -> usize {
     PEAK.store(live, Ordering::Relaxed);
     live
 }
+
 /// The most bytes in use since then.
 pub fn peak() -> usize {
     PEAK.load(Ordering::Relaxed)
 }
+
 /// The largest block since then.
 pub fn largest() -> usize {
     LARGEST.load(Ordering::Relaxed)

@@ -12,11 +12,13 @@ fn editor() -> Story {
     press(&mut harness, "Brush in hand");
     harness
 }
+
 /// Whatever the scroll position of the panel.
 fn tap(harness: &mut Story, label: &str) {
     harness.get_by_label(label).click_accesskit();
     steps(harness);
 }
+
 fn pick(harness: &mut Story, label: &str, choice: &str) {
     harness.get_by_role_and_label(Role::ComboBox, label).click_accesskit();
     steps(harness);
@@ -43,6 +45,7 @@ fn a_preset_goes_to_hand_and_its_parts_can_be_changed() {
     pick(&mut harness, "Pattern", "None");
     assert!(session(&harness).brush.grain.is_none());
 }
+
 #[test]
 fn a_property_follows_what_it_is_told_to_by_a_curve_that_a_hand_bends() {
     let mut harness = editor();
@@ -64,9 +67,11 @@ fn a_property_follows_what_it_is_told_to_by_a_curve_that_a_hand_bends() {
     steps(&mut harness);
     harness.drop_at(middle + vec2(0.0, -20.0));
     steps(&mut harness);
-    let curve = session(&harness).brush.dynamics.curve(Property::Flow, Input::Pressure).unwrap().clone();
+    let curve =
+        session(&harness).brush.dynamics.curve(Property::Flow, Input::Pressure).unwrap().clone();
     assert!(curve.at(0.5) > 0.6, "a point was added and drawn up: {}", curve.at(0.5));
 }
+
 #[test]
 fn a_brush_is_kept_under_a_name_and_stands_with_ones_own() {
     let mut harness = editor();

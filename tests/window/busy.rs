@@ -1,4 +1,5 @@
-//! Keys pressed while the window is busy, undo, and what the window says of strokes that it does not keep.
+//! Keys pressed while the window is busy, undo, and what the window says of strokes that it does
+//! not keep.
 
 use super::{Story, command, key, layers, session, steps, stroke, until, window};
 use eframe::egui::{Event, Key, Modifiers, vec2};
@@ -10,10 +11,12 @@ fn letter(harness: &mut Story, key: Key, text: &str) {
     harness.key_press(key);
     harness.event(Event::Text(text.into()));
 }
+
 fn row(harness: &mut Story, name: &str) {
     harness.get_by_label(&format!("Layer {name}")).click();
     steps(harness);
 }
+
 /// Several layers, whose merging takes longer than a frame.
 fn layered() -> Story {
     let mut harness = window();
@@ -33,6 +36,7 @@ fn what_is_typed_before_a_dialog_is_there_goes_into_it() {
     assert_eq!(harness.get_by_label("File name").value().as_deref(), Some("eg"));
     assert_eq!(session(&harness).tool, ToolKind::Brush);
 }
+
 #[test]
 fn keys_over_the_canvas_during_an_edit_are_done_after_it_in_their_order() {
     let mut harness = layered();
@@ -42,9 +46,12 @@ fn keys_over_the_canvas_during_an_edit_are_done_after_it_in_their_order() {
     harness.step();
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     harness.step();
-    until(&mut harness, |harness| session(harness).active().unwrap().history.undone() == Some("Flatten picture"));
+    until(&mut harness, |harness| {
+        session(harness).active().unwrap().history.undone() == Some("Flatten picture")
+    });
     assert_eq!((layers(&harness).len(), session(&harness).tool), (5, ToolKind::Eraser));
 }
+
 #[test]
 fn a_name_typed_during_an_edit_stays_in_its_field_and_switches_no_tool() {
     let mut harness = layered();
@@ -69,11 +76,13 @@ fn a_name_typed_during_an_edit_stays_in_its_field_and_switches_no_tool() {
     assert_eq!(layers(&harness), ["Picture"]);
     assert_eq!(session(&harness).tool, ToolKind::Brush);
 }
+
 /// By its name, without a palette.
 fn command_under(harness: &mut Story, name: &str) {
     let ctx = harness.ctx.clone();
     harness.state_mut().as_mut().unwrap().command(&ctx, name);
 }
+
 #[test]
 fn after_undo_the_layer_is_chosen_that_was_chosen_before() {
     let mut harness = window();
@@ -90,6 +99,7 @@ fn after_undo_the_layer_is_chosen_that_was_chosen_before() {
     stroke(&mut harness, vec2(40.0, 10.0));
     assert_eq!(layers(&harness), before, "the stroke goes to that layer");
 }
+
 #[test]
 fn a_stroke_on_a_locked_layer_names_it_once() {
     let mut harness = window();

@@ -27,6 +27,7 @@ fn a_frame_is_dragged_given_up_by_escape_and_applied_by_enter() {
     key(&mut harness, Modifiers::COMMAND, Key::Z);
     assert_eq!(size(&harness), Size::new(1024, 1024));
 }
+
 #[test]
 fn the_canvas_grows_from_its_anchor_the_picture_shrinks_and_turns() {
     let mut harness = window();
@@ -51,11 +52,14 @@ fn the_canvas_grows_from_its_anchor_the_picture_shrinks_and_turns() {
     command(&mut harness, "Mirror canvas left and right");
     assert_eq!(session(&harness).active().unwrap().history.done(), Some("Mirror canvas"));
 }
+
 #[test]
 fn the_canvas_is_trimmed_to_what_is_painted_beside_the_window() {
     let mut harness = window();
     command(&mut harness, "Trim canvas");
-    until(&mut harness, |harness| harness.query_by_label_contains("the picture reaches every border").is_some());
+    until(&mut harness, |harness| {
+        harness.query_by_label_contains("the picture reaches every border").is_some()
+    });
     command(&mut harness, "Delete layer");
     command(&mut harness, "New paint layer");
     press(&mut harness, "Brush");

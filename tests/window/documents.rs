@@ -1,6 +1,9 @@
 //! Documents made, opened, exported, saved and closed.
 
-use super::{choose, click, command, drop_files, layers, press, session, steps, stroke, until, window, window_of};
+use super::{
+    choose, click, command, drop_files, layers, press, session, steps, stroke, until, window,
+    window_of,
+};
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
 use rilievo_window::MainWindow;
@@ -18,6 +21,7 @@ fn closing_with_unsaved_work_asks_first() {
     steps(&mut harness);
     assert!(session(&harness).active().is_none());
 }
+
 #[test]
 fn what_cannot_be_opened_is_told_in_a_sentence_that_stays() {
     let mut harness = window();
@@ -28,6 +32,7 @@ fn what_cannot_be_opened_is_told_in_a_sentence_that_stays() {
     click(&mut harness, "Dismiss");
     assert!(harness.query_by_label_contains("no such picture.png").is_none());
 }
+
 #[test]
 fn a_picture_is_exported_and_a_project_saved_with_the_windows_own_dialogs() {
     let folder = tempfile::tempdir().unwrap();
@@ -43,6 +48,7 @@ fn a_picture_is_exported_and_a_project_saved_with_the_windows_own_dialogs() {
     until(&mut harness, |harness| session(harness).active().unwrap().file.is_some());
     assert!(ora.is_file() && !session(&harness).active().unwrap().is_dirty());
 }
+
 #[test]
 fn a_picture_of_sixteen_bits_is_exported_where_that_is_chosen() {
     let folder = tempfile::tempdir().unwrap();
@@ -55,6 +61,7 @@ fn a_picture_of_sixteen_bits_is_exported_where_that_is_chosen() {
     until(&mut harness, |harness| harness.query_by_label_contains("Exported").is_some());
     assert_eq!(image::open(&png).unwrap().color(), image::ColorType::Rgba16);
 }
+
 #[test]
 fn quitting_asks_for_each_document_with_unsaved_work_and_saves_it_where_it_is_told() {
     let folder = tempfile::tempdir().unwrap();
@@ -74,6 +81,7 @@ fn quitting_asks_for_each_document_with_unsaved_work_and_saves_it_where_it_is_to
     assert_eq!(layers(&harness), ["Background", "Strokes"]);
     assert!(!session(&harness).active().unwrap().is_dirty());
 }
+
 #[test]
 fn several_documents_stand_in_tabs_and_the_next_one_comes_to_the_front() {
     let mut harness = window();
@@ -89,10 +97,12 @@ fn several_documents_stand_in_tabs_and_the_next_one_comes_to_the_front() {
     press(&mut harness, "Close Untitled 1");
     assert_eq!(session(&harness).open_documents.len(), 1);
 }
+
 /// Whether something of this name is there, perhaps a control next to its name.
 fn shows(harness: &super::Story, label: &str) -> bool {
     harness.query_all_by_label(label).count() > 0
 }
+
 /// Makes a document of the maps, as soon as they are read as the dialog says.
 fn create(harness: &mut super::Story) {
     for _ in 0..300 {
@@ -104,6 +114,7 @@ fn create(harness: &mut super::Story) {
     }
     panic!("the maps were never read");
 }
+
 /// A ball's normals and depth, as 8-bit pictures with a flat border.
 fn ball(folder: &Path) -> [PathBuf; 2] {
     let files = ["shape.png", "far.png"].map(|name| folder.join(name));
@@ -113,12 +124,18 @@ fn ball(folder: &Path) -> [PathBuf; 2] {
         if z > 0.0 { [x, -y, z.sqrt()] } else { [0.0, 0.0, 1.0] }
     };
     let byte = |v: f32| (v * 127.5 + 128.0) as u8;
-    image::RgbImage::from_fn(96, 96, |x, y| image::Rgb(at(x, y).map(byte))).save(&files[0]).unwrap();
-    let depth = |x: u32, y: u32| if at(x, y) == [0.0, 0.0, 1.0] { 255 } else { 200 - (at(x, y)[2] * 150.0) as u8 };
+    image::RgbImage::from_fn(96, 96, |x, y| image::Rgb(at(x, y).map(byte)))
+        .save(&files[0])
+        .unwrap();
+    let depth = |x: u32, y: u32| {
+        if at(x, y) == [0.0, 0.0, 1.0] { 255 } else { 200 - (at(x, y)[2] * 150.0) as u8 }
+    };
     image::GrayImage::from_fn(96, 96, |x, y| image::Luma([depth(x, y)])).save(&files[1]).unwrap();
     files
 }
-/// The dialog grows to its new size and stays in the middle while it does: a click must not miss it.
+
+/// The dialog grows to its new size and stays in the middle while it does: a click must not miss
+/// it.
 fn still(harness: &mut super::Story, name: &str) {
     let place = |harness: &super::Story| harness.get_all_by_label(name).next().unwrap().rect();
     let mut still = 0;
@@ -129,6 +146,7 @@ fn still(harness: &mut super::Story, name: &str) {
         still = if place(harness) == before { still + 1 } else { 0 };
     }
 }
+
 #[test]
 fn maps_are_seen_four_ways_and_corrected_before_they_become_a_document() {
     let folder = tempfile::tempdir().unwrap();
@@ -147,7 +165,9 @@ fn maps_are_seen_four_ways_and_corrected_before_they_become_a_document() {
         let node = harness.get_all_by_label(name).next().unwrap();
         format!("{:?}", node.accesskit_node().toggled()).contains("True")
     };
-    until(&mut harness, |harness| shows(harness, "Flip green") && !shows(harness, "Reading the maps…"));
+    until(&mut harness, |harness| {
+        shows(harness, "Flip green") && !shows(harness, "Reading the maps…")
+    });
     let all = ["As it is", "Flip red", "Flip green", "Flip both"];
     assert_eq!(all.map(|name| chosen(&harness, name)), [false, false, true, false]);
     press(&mut harness, "What was found");
@@ -161,6 +181,7 @@ fn maps_are_seen_four_ways_and_corrected_before_they_become_a_document() {
     assert_eq!((surface.coverage(2, 2), surface.coverage(48, 48)), (0, 255));
     assert!(surface.normal(48, 20).y < 0.0, "the upper half looks down now");
 }
+
 #[test]
 fn bumps_of_a_depth_map_alone_become_dents_by_a_click() {
     let folder = tempfile::tempdir().unwrap();
@@ -171,7 +192,9 @@ fn bumps_of_a_depth_map_alone_become_dents_by_a_click() {
     let looks_up = |turned: bool| {
         let mut harness = window();
         drop_files(&mut harness, &[&alone]);
-        let read = |harness: &super::Story| shows(harness, "Inside out") && !shows(harness, "Reading the maps…");
+        let read = |harness: &super::Story| {
+            shows(harness, "Inside out") && !shows(harness, "Reading the maps…")
+        };
         until(&mut harness, read);
         if turned {
             still(&mut harness, "Inside out");
@@ -185,6 +208,7 @@ fn bumps_of_a_depth_map_alone_become_dents_by_a_click() {
     };
     assert_ne!(looks_up(false), looks_up(true));
 }
+
 #[test]
 fn maps_that_are_dropped_together_are_one_objects() {
     let folder = tempfile::tempdir().unwrap();
@@ -201,6 +225,7 @@ fn maps_that_are_dropped_together_are_one_objects() {
     assert!(harness.query_by_label("Create").is_none(), "there was one dialog");
     assert_eq!(session(&harness).open_documents.len(), 2);
 }
+
 #[test]
 fn the_first_start_opens_a_sample_with_three_steps_that_can_be_put_away() {
     let mut harness = window_of(1.0, |ctx| {
@@ -214,11 +239,13 @@ fn the_first_start_opens_a_sample_with_three_steps_that_can_be_put_away() {
     assert!(harness.query_by_label("Three steps").is_none());
     key_is_free(&mut harness);
 }
+
 /// With the hint gone, keys reach the canvas as ever.
 fn key_is_free(harness: &mut super::Story) {
     super::key(harness, Modifiers::NONE, Key::E);
     assert_eq!(session(harness).tool, rilievo_program::tools::ToolKind::Eraser);
 }
+
 #[test]
 fn a_file_that_is_there_already_is_replaced_only_when_that_is_said_twice() {
     let folder = tempfile::tempdir().unwrap();
@@ -234,6 +261,7 @@ fn a_file_that_is_there_already_is_replaced_only_when_that_is_said_twice() {
     until(&mut harness, |harness| harness.query_by_label_contains("Exported").is_some());
     assert_ne!(std::fs::read(&file).unwrap(), b"something else");
 }
+
 #[test]
 fn a_smaller_document_comes_to_the_front_under_a_pointer_over_a_larger_one() {
     let mut harness = window();
@@ -245,6 +273,7 @@ fn a_smaller_document_comes_to_the_front_under_a_pointer_over_a_larger_one() {
     until(&mut harness, |harness| session(harness).open_documents.len() == 2);
     assert!(session(&harness).shown().is_some_and(|document| document.surface.is_some()));
 }
+
 #[test]
 fn what_stands_after_a_point_is_a_part_of_the_name() {
     let folder = tempfile::tempdir().unwrap();
@@ -264,6 +293,7 @@ fn what_stands_after_a_point_is_a_part_of_the_name() {
     until(&mut harness, |_| at("final v1.2.png").is_file());
     assert_eq!(std::fs::read(at("robot v1.ora")).unwrap(), b"another painting");
 }
+
 #[test]
 fn a_photoshop_file_is_saved_once_it_was_said_what_it_loses() {
     let folder = tempfile::tempdir().unwrap();
@@ -287,6 +317,7 @@ fn a_photoshop_file_is_saved_once_it_was_said_what_it_loses() {
     assert_eq!(layers(&harness), ["Background", "Strokes"]);
     assert_eq!(session(&harness).active().unwrap().file, Some(file));
 }
+
 #[test]
 fn a_photoshop_file_is_exported() {
     let folder = tempfile::tempdir().unwrap();
@@ -301,6 +332,7 @@ fn a_photoshop_file_is_exported() {
     assert!(std::fs::read(&file).unwrap().starts_with(b"8BPS"));
     assert!(session(&harness).active().unwrap().file.is_none(), "an export is no save");
 }
+
 #[test]
 fn what_an_open_document_was_made_from_is_never_exported_over() {
     let folder = tempfile::tempdir().unwrap();
@@ -317,6 +349,7 @@ fn what_an_open_document_was_made_from_is_never_exported_over() {
     until(&mut harness, |harness| harness.query_by_label_contains("made from it").is_some());
     assert_eq!(std::fs::read(&photo).unwrap(), before);
 }
+
 #[test]
 fn a_file_that_may_not_be_replaced_unasked_is_asked_about_when_it_is_saved() {
     let folder = tempfile::tempdir().unwrap();

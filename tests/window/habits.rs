@@ -21,6 +21,7 @@ fn a_key_that_is_taken_is_asked_for_and_then_given() {
     key(&mut harness, Modifiers::COMMAND, Key::J);
     assert_eq!(layers(&harness), ["Background", "Radiance scaling"]);
 }
+
 #[test]
 fn what_was_chosen_is_there_the_next_time() {
     let folder = tempfile::tempdir().unwrap();
@@ -30,7 +31,9 @@ fn what_was_chosen_is_there_the_next_time() {
     command(&mut harness, "Panels on the other side");
     command(&mut harness, "Layers in a window");
     press(&mut harness, "History");
-    let is_kept = move |_: &Story| std::fs::read_to_string(&settings).is_ok_and(|text| text.contains("History"));
+    let is_kept = move |_: &Story| {
+        std::fs::read_to_string(&settings).is_ok_and(|text| text.contains("History"))
+    };
     until(&mut harness, is_kept);
     drop(harness);
     let harness = window_at(1.0, Some(folder.path().join("settings.json")));
@@ -38,6 +41,7 @@ fn what_was_chosen_is_there_the_next_time() {
     assert!(panels.left() < harness.get_by_label("Canvas").rect().left(), "they stand at the left");
     assert!(!harness.ctx.global_style().visuals.dark_mode);
 }
+
 #[test]
 fn a_pixel_of_the_canvas_is_one_of_the_screen_at_any_density() {
     for pixels_per_point in [1.0, 1.5, 2.0] {
@@ -48,6 +52,7 @@ fn a_pixel_of_the_canvas_is_one_of_the_screen_at_any_density() {
         harness.get_by_label("100 %");
     }
 }
+
 #[test]
 fn every_command_stands_in_its_menu() {
     let mut harness = window();
@@ -61,11 +66,13 @@ fn every_command_stands_in_its_menu() {
         key(&mut harness, Modifiers::NONE, Key::Escape);
     }
 }
+
 #[test]
 fn every_command_is_done_by_its_name() {
     let mut harness = window();
     command(&mut harness, "New gradient layer");
-    let names: Vec<&str> = MainWindow::menus().flat_map(|(_, names)| names).filter(|name| *name != "Close").collect();
+    let names: Vec<&str> =
+        MainWindow::menus().flat_map(|(_, names)| names).filter(|name| *name != "Close").collect();
     assert!(names.len() > 60);
     for name in names {
         command(&mut harness, name);
@@ -80,18 +87,25 @@ fn every_command_is_done_by_its_name() {
     command(&mut harness, "Close");
     press(&mut harness, "Do not save");
 }
+
 #[test]
 fn the_keys_of_krita_do_what_they_do_there_and_say_so_where_they_cannot() {
     let mut harness = window();
     let (ctrl, shift) = (Modifiers::COMMAND, Modifiers::SHIFT);
-    let is_selected = |harness: &Story| session(harness).active().unwrap().document().selected().is_some();
-    for (modifiers, letter, selects) in
-        [(ctrl, Key::A, true), (ctrl, Key::D, false), (ctrl | shift, Key::D, true), (ctrl | shift, Key::I, false)]
-    {
+    let is_selected =
+        |harness: &Story| session(harness).active().unwrap().document().selected().is_some();
+    for (modifiers, letter, selects) in [
+        (ctrl, Key::A, true),
+        (ctrl, Key::D, false),
+        (ctrl | shift, Key::D, true),
+        (ctrl | shift, Key::I, false),
+    ] {
         key(&mut harness, modifiers, letter);
         assert_eq!(is_selected(&harness), selects, "{letter:?}");
     }
-    for (modifiers, letter, tool) in [(ctrl, Key::T, ToolKind::Transform), (Modifiers::NONE, Key::C, ToolKind::Crop)] {
+    for (modifiers, letter, tool) in
+        [(ctrl, Key::T, ToolKind::Transform), (Modifiers::NONE, Key::C, ToolKind::Crop)]
+    {
         key(&mut harness, modifiers, letter);
         assert_eq!(session(&harness).tool, tool);
     }
@@ -102,25 +116,34 @@ fn the_keys_of_krita_do_what_they_do_there_and_say_so_where_they_cannot() {
     key(&mut harness, ctrl, Key::J);
     harness.get_by_label("Layer via copy: no layer is chosen.");
 }
+
 #[test]
 fn the_interface_is_made_larger_and_the_picture_stays_as_it_is() {
     let mut harness = window();
-    let zoom = |harness: &Story| session(harness).active().unwrap().view.unwrap().zoom * harness.ctx.pixels_per_point();
+    let zoom = |harness: &Story| {
+        session(harness).active().unwrap().view.unwrap().zoom * harness.ctx.pixels_per_point()
+    };
     let before = zoom(&harness);
     command(&mut harness, "Larger interface");
     assert!(harness.ctx.zoom_factor() > 1.05 && (zoom(&harness) / before - 1.0).abs() < 1e-3);
     command(&mut harness, "Smaller interface");
     assert!((harness.ctx.zoom_factor() - 1.0).abs() < 1e-3);
 }
+
 #[test]
 fn the_palette_puts_what_begins_with_the_words_first() {
     let mut harness = window();
     command(&mut harness, "operator: shading");
     assert!(matches!(session(&harness).operator, rilievo::Operator::Normal { .. }));
     command(&mut harness, "lock");
-    assert_eq!(session(&harness).layer().unwrap().lock, rilievo::document::LayerLock::Alpha, "not “Clip” or “Block”");
+    assert_eq!(
+        session(&harness).layer().unwrap().lock,
+        rilievo::document::LayerLock::Alpha,
+        "not “Clip” or “Block”"
+    );
     assert_eq!(layers(&harness), ["Background"]);
 }
+
 #[test]
 fn a_dialog_begins_in_its_first_number_and_enter_accepts() {
     let mut harness = window();
@@ -133,6 +156,7 @@ fn a_dialog_begins_in_its_first_number_and_enter_accepts() {
     typed(&mut harness, "300");
     assert_eq!(session(&harness).shown().unwrap().size.width, 300);
 }
+
 #[test]
 fn ctrl_shift_tab_goes_to_the_document_before() {
     let mut harness = window();
@@ -148,6 +172,7 @@ fn ctrl_shift_tab_goes_to_the_document_before() {
     key(&mut harness, Modifiers::COMMAND, Key::Tab);
     assert_eq!(session(&harness).current, 0);
 }
+
 #[test]
 fn in_full_screen_tab_leaves_nothing_but_the_picture() {
     let mut harness = window();

@@ -19,12 +19,15 @@ fn layers_are_added_hidden_and_deleted_by_their_buttons() {
     steps(&mut harness);
     assert_eq!(layers(&harness), ["Background"]);
 }
+
 #[test]
 fn layers_are_merged_baked_and_flattened_beside_the_window() {
     let mut harness = window();
     command(&mut harness, "New gradient layer");
     command(&mut harness, "Bake layer");
-    until(&mut harness, |harness| matches!(session(harness).layer().unwrap().content, Content::Pixels(_)));
+    until(&mut harness, |harness| {
+        matches!(session(harness).layer().unwrap().content, Content::Pixels(_))
+    });
     command(&mut harness, "Merge down");
     until(&mut harness, |harness| layers(harness) == ["Background"]);
     command(&mut harness, "Flatten picture");
@@ -32,6 +35,7 @@ fn layers_are_merged_baked_and_flattened_beside_the_window() {
     command(&mut harness, "Undo");
     assert_eq!(layers(&harness), ["Background"]);
 }
+
 #[test]
 fn a_mask_is_made_painted_on_inverted_put_aside_and_deleted() {
     let mut harness = window();
@@ -42,7 +46,10 @@ fn a_mask_is_made_painted_on_inverted_put_aside_and_deleted() {
         MaskKind::File { coverage, .. } => coverage,
         _ => panic!("a mask to paint on"),
     };
-    assert!(session(&harness).active().unwrap().on_mask && coverage(&harness).values().iter().all(|&v| v == 0));
+    assert!(
+        session(&harness).active().unwrap().on_mask
+            && coverage(&harness).values().iter().all(|&v| v == 0)
+    );
     command(&mut harness, "Swap colours");
     stroke(&mut harness, vec2(60.0, 10.0));
     assert!(coverage(&harness).values().iter().any(|&v| v > 100), "white paint shows");
@@ -57,9 +64,12 @@ fn a_mask_is_made_painted_on_inverted_put_aside_and_deleted() {
     command(&mut harness, "Paint on mask");
     assert!(masked(&harness).is_some(), "every command is in the palette");
 }
+
 /// From the middle of a row of the list to a share of the height of another one.
 fn drag_row(harness: &mut Story, from: &str, to: &str, share: f32) {
-    let row = |harness: &Story, name: &str| harness.get_by_label_contains(&format!("Layer {name}")).rect();
+    let row = |harness: &Story, name: &str| {
+        harness.get_by_label_contains(&format!("Layer {name}")).rect()
+    };
     let (start, end) = (row(harness, from), row(harness, to));
     let at = pos2(end.center().x, end.top() + share * end.height());
     harness.drag_at(start.center());
@@ -71,10 +81,13 @@ fn drag_row(harness: &mut Story, from: &str, to: &str, share: f32) {
     harness.drop_at(at);
     steps(harness);
 }
+
 #[test]
 fn rows_are_dragged_to_another_place_and_into_a_group_one_or_several() {
     let mut harness = window();
-    ["New fill layer", "New gradient layer", "New group"].into_iter().for_each(|name| command(&mut harness, name));
+    ["New fill layer", "New gradient layer", "New group"]
+        .into_iter()
+        .for_each(|name| command(&mut harness, name));
     assert_eq!(layers(&harness), ["Background", "Fill", "Gradient", "Group"]);
     drag_row(&mut harness, "Gradient", "Fill", 0.9);
     assert_eq!(layers(&harness), ["Background", "Gradient", "Fill", "Group"]);

@@ -21,23 +21,31 @@ fn every_shading_model_is_made_from_the_menu_and_shows_its_properties() {
         ("New ambient occlusion layer", "Reach"),
     ] {
         command(&mut harness, name);
-        assert!(matches!(session(&harness).layer().unwrap().content, Content::Shading(_)), "{name}");
+        assert!(
+            matches!(session(&harness).layer().unwrap().content, Content::Shading(_)),
+            "{name}"
+        );
         assert!(harness.query_all_by_label(shows).count() > 0, "{name} shows {shows}");
     }
     command(&mut harness, "New detail normals");
     assert!(harness.query_all_by_label("Roughness").count() > 0);
 }
+
 fn environment(harness: &Story) -> Option<String> {
     match &session(harness).layer().unwrap().content {
-        Content::Shading(live) => live.params().environment.as_ref().map(|environment| environment.file.clone()),
+        Content::Shading(live) => {
+            live.params().environment.as_ref().map(|environment| environment.file.clone())
+        }
         _ => None,
     }
 }
+
 #[test]
 fn pictures_and_maps_are_read_beside_the_window_and_put_where_they_belong() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("sky.png");
-    let picture = image::RgbImage::from_fn(64, 32, |x, y| image::Rgb([(x * 4) as u8, (y * 8) as u8, 20]));
+    let picture =
+        image::RgbImage::from_fn(64, 32, |x, y| image::Rgb([(x * 4) as u8, (y * 8) as u8, 20]));
     picture.save(&file).unwrap();
     let mut harness = window();
     command(&mut harness, "New mirror layer");

@@ -17,12 +17,15 @@ fn a_new_document_is_painted_on_and_the_stroke_undone() {
     harness.drop_at(canvas.center() + vec2(90.0, 30.0));
     steps(&mut harness);
     assert_eq!(layers(&harness), ["Background", "Strokes"]);
-    let Content::Strokes(live) = &session(&harness).layer().unwrap().content else { panic!("a stroke layer") };
+    let Content::Strokes(live) = &session(&harness).layer().unwrap().content else {
+        panic!("a stroke layer")
+    };
     assert!(live.params().strokes[0].samples().len() >= 2);
     click(&mut harness, "Edit");
     click(&mut harness, "Undo");
     assert_eq!(layers(&harness), ["Background"]);
 }
+
 #[test]
 fn a_stroke_is_chosen_in_the_list_ordered_duplicated_and_deleted() {
     let mut harness = window();
@@ -36,7 +39,11 @@ fn a_stroke_is_chosen_in_the_list_ordered_duplicated_and_deleted() {
     }
     let heights = |harness: &Story| -> Vec<f32> {
         let tab = session(harness).active().unwrap();
-        tab.document().strokes(tab.selected.unwrap()).iter().map(|stroke| stroke.samples()[0].at.y).collect()
+        tab.document()
+            .strokes(tab.selected.unwrap())
+            .iter()
+            .map(|stroke| stroke.samples()[0].at.y)
+            .collect()
     };
     let [upper, lower] = heights(&harness)[..] else { panic!("two strokes") };
     harness.get_by_label("Properties").click();
@@ -63,6 +70,7 @@ fn a_stroke_is_chosen_in_the_list_ordered_duplicated_and_deleted() {
     assert_eq!(session(&harness).active().unwrap().chosen_strokes(), [0]);
     assert!(heights(&harness)[0] < lower && heights(&harness)[1] == upper);
 }
+
 #[test]
 fn the_fill_tool_shows_its_options_and_fills() {
     let mut harness = window();
@@ -77,9 +85,12 @@ fn the_fill_tool_shows_its_options_and_fills() {
     harness.drop_at(canvas.center());
     steps(&mut harness);
     assert_eq!(layers(&harness), ["Background", "Paint"]);
-    let Content::Pixels(pixels) = &session(&harness).layer().unwrap().content else { panic!("a paint layer") };
+    let Content::Pixels(pixels) = &session(&harness).layer().unwrap().content else {
+        panic!("a paint layer")
+    };
     assert_ne!(pixels.tiles.pixel(3, 3), [0; 4]);
 }
+
 #[test]
 fn the_brush_is_made_to_smudge_and_says_what_it_needs() {
     let mut harness = window();
@@ -97,6 +108,7 @@ fn the_brush_is_made_to_smudge_and_says_what_it_needs() {
     assert_eq!(layers(&harness), ["Background"]);
     harness.get_by_label_contains("work on paint layers");
 }
+
 #[test]
 fn two_fingers_that_tap_take_a_step_back() {
     let mut harness = window();
@@ -113,9 +125,11 @@ fn two_fingers_that_tap_take_a_step_back() {
     steps(&mut harness);
     assert_eq!(layers(&harness), ["Background"]);
 }
+
 fn touch(finger: u64, phase: TouchPhase, pos: Pos2) -> Event {
     Event::Touch { device_id: TouchDeviceId(0), id: TouchId(finger), phase, pos, force: None }
 }
+
 #[test]
 fn keys_that_other_painting_programs_taught_do_the_same_here() {
     let mut harness = window();

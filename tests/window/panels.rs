@@ -1,7 +1,9 @@
 //! Every panel next to the canvas, in a window of its own, and hidden.
 
 use super::{Story, click, command, key, press, session, steps, window};
-use eframe::egui::{Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, TouchPhase, pos2, vec2};
+use eframe::egui::{
+    Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, TouchPhase, pos2, vec2,
+};
 use egui_kittest::kittest::Queryable;
 
 const PANELS: [&str; 6] = ["Colour", "Brushes", "Properties", "Surface", "History", "Navigator"];
@@ -9,9 +11,15 @@ const PANELS: [&str; 6] = ["Colour", "Brushes", "Properties", "Surface", "Histor
 #[test]
 fn every_panel_shows_every_kind_of_layer() {
     let mut harness = window();
-    for kind in
-        ["Paint layer", "Stroke layer", "Fill layer", "Gradient layer", "Shading layer", "Radiance scaling", "Group"]
-    {
+    for kind in [
+        "Paint layer",
+        "Stroke layer",
+        "Fill layer",
+        "Gradient layer",
+        "Shading layer",
+        "Radiance scaling",
+        "Group",
+    ] {
         click(&mut harness, "+ Add");
         harness.get_by_label(kind).click();
         steps(&mut harness);
@@ -21,6 +29,7 @@ fn every_panel_shows_every_kind_of_layer() {
         }
     }
 }
+
 #[test]
 fn every_panel_stands_in_a_window_of_its_own_and_goes_back() {
     let mut harness = window();
@@ -37,13 +46,16 @@ fn every_panel_stands_in_a_window_of_its_own_and_goes_back() {
         assert!(!stands(&harness, |at, beside| at < beside), "{panel} is beside it again");
     }
 }
+
 #[test]
 fn the_panels_hide_go_to_the_other_side_and_into_a_window_together() {
     let mut harness = window();
     let canvas = |harness: &Story| harness.get_by_label("Canvas").rect();
     let usual = canvas(&harness);
     key(&mut harness, Modifiers::NONE, Key::Tab);
-    assert!(harness.query_by_label("History").is_none() && canvas(&harness).width() > usual.width());
+    assert!(
+        harness.query_by_label("History").is_none() && canvas(&harness).width() > usual.width()
+    );
     key(&mut harness, Modifiers::NONE, Key::Tab);
     assert_eq!(canvas(&harness), usual);
     command(&mut harness, "Panels on the other side");
@@ -52,6 +64,7 @@ fn the_panels_hide_go_to_the_other_side_and_into_a_window_together() {
     assert!(canvas(&harness).width() > usual.width());
     harness.get_by_label("History");
 }
+
 #[test]
 fn a_click_in_the_history_goes_there_and_one_in_the_navigator_looks_there() {
     let mut harness = window();
@@ -64,7 +77,8 @@ fn a_click_in_the_history_goes_there_and_one_in_the_navigator_looks_there() {
     assert_eq!(super::layers(&harness), ["Background"]);
     command(&mut harness, "Actual pixels");
     press(&mut harness, "Navigator");
-    let corner = harness.get_all_by_label("Navigator").last().unwrap().rect().left_top() + eframe::egui::vec2(9.0, 9.0);
+    let corner = harness.get_all_by_label("Navigator").last().unwrap().rect().left_top()
+        + eframe::egui::vec2(9.0, 9.0);
     harness.drag_at(corner);
     steps(&mut harness);
     harness.drop_at(corner);
@@ -72,6 +86,7 @@ fn a_click_in_the_history_goes_there_and_one_in_the_navigator_looks_there() {
     let center = session(&harness).active().unwrap().view.unwrap().center;
     assert!(center.x < 200.0 && center.y < 200.0, "{center}");
 }
+
 #[test]
 fn colours_are_typed_in_hex_and_numbers_and_remembered_once_painted_with() {
     let mut harness = window();
@@ -88,6 +103,7 @@ fn colours_are_typed_in_hex_and_numbers_and_remembered_once_painted_with() {
     press(&mut harness, "Recent colour 1");
     assert_eq!(session(&harness).color, color);
 }
+
 #[test]
 fn what_a_small_window_cuts_off_the_options_comes_by_the_wheel() {
     let mut harness = window();
@@ -106,6 +122,7 @@ fn what_a_small_window_cuts_off_the_options_comes_by_the_wheel() {
     (0..60).for_each(|_| harness.step());
     assert!(ends(&harness) < 1020.0, "{}", ends(&harness));
 }
+
 #[test]
 fn a_canvas_that_was_seen_whole_is_so_in_a_window_that_grew_behind_another() {
     let mut harness = window();

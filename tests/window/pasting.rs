@@ -21,9 +21,11 @@ fn window() -> Story {
     super::click(&mut harness, "Create");
     harness
 }
+
 fn document(harness: &Story) -> &Document {
     session(harness).active().unwrap().document()
 }
+
 fn covered(harness: &Story) -> Rect {
     match &session(harness).layer().unwrap().content {
         Content::Pixels(pixels) => CoverageGrid::of_alpha(&pixels.tiles).covered(),
@@ -43,13 +45,18 @@ fn ctrl_v_pastes_paint_under_the_pointer_and_the_line_replays() {
     let found = covered(&harness);
     assert_eq!((found.width(), found.height()), (60, 40));
     let at = view.center + rilievo_engine::math::Vec2::new(80.0, 50.0) / view.zoom;
-    assert!((found.x0 as f32 + 30.0 - at.x).abs() <= 2.0 && (found.y0 as f32 + 20.0 - at.y).abs() <= 2.0, "{found:?}");
+    assert!(
+        (found.x0 as f32 + 30.0 - at.x).abs() <= 2.0
+            && (found.y0 as f32 + 20.0 - at.y).abs() <= 2.0,
+        "{found:?}"
+    );
     let lines = harness.state().as_ref().unwrap().recorded();
     let mut again = rilievo_program::session::Session::default();
     again.replay(std::path::Path::new("story"), &lines).unwrap();
     let Content::Pixels(pixels) = &again.layer().unwrap().content else { panic!("paint") };
     assert_eq!(CoverageGrid::of_alpha(&pixels.tiles).covered(), found);
 }
+
 #[test]
 fn a_picture_of_another_program_becomes_a_document_or_an_image_layer_where_that_is_asked_for() {
     let mut harness = window();

@@ -17,6 +17,7 @@ fn window_recovering(folder: &Path) -> Story {
         window
     })
 }
+
 #[test]
 fn after_a_crash_the_window_offers_what_was_unsaved() {
     let folder = tempfile::tempdir().unwrap();
@@ -59,8 +60,9 @@ fn a_recovered_drawing_has_its_shape_and_keeps_it_when_an_edit_is_undone() {
     crashed.autosave = Some(Autosave::new(folder.path().into()));
     crashed.replay(Path::new("story"), SHAPED).unwrap();
     crashed.keep();
-    let picture =
-        |document: &Document| flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect());
+    let picture = |document: &Document| {
+        flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect())
+    };
     let before = picture(crashed.active().unwrap().document());
     crashed.autosave.as_ref().unwrap().settle();
     drop(crashed);

@@ -1,6 +1,8 @@
 //! Actions recorded in the window, replayed without it, end in the very same document.
 
-use super::{Story, click, command, drag, drop_files, key, layers, press, session, steps, until, window_of};
+use super::{
+    Story, click, command, drag, drop_files, key, layers, press, session, steps, until, window_of,
+};
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
 use rilievo::{Document, Overwrite, Progress, flatten};
@@ -20,12 +22,16 @@ pub fn project(folder: &Path) -> std::path::PathBuf {
     image::RgbImage::from_fn(256, 192, at).save(&normals).unwrap();
     let opened = storage::open_maps(&storage::maps_of(Some(&normals), None)).unwrap();
     let file = folder.join("wave.ora");
-    storage::save(&file, opened.tab.document(), Overwrite::Nothing, &Progress::default()).unwrap().unwrap();
+    storage::save(&file, opened.tab.document(), Overwrite::Nothing, &Progress::default())
+        .unwrap()
+        .unwrap();
     file
 }
+
 /// The bytes of the picture, and of the document as its project describes it.
 pub fn bytes(document: &Document, folder: &Path, name: &str) -> (Vec<u8>, Vec<u8>) {
-    let picture = flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect());
+    let picture =
+        flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect());
     let file = folder.join(name);
     storage::save(&file, document, Overwrite::Anything, &Progress::default()).unwrap().unwrap();
     let mut archive = zip::ZipArchive::new(std::fs::File::open(file).unwrap()).unwrap();
@@ -33,6 +39,7 @@ pub fn bytes(document: &Document, folder: &Path, name: &str) -> (Vec<u8>, Vec<u8
     archive.by_name("rilievo/document.json").unwrap().read_to_end(&mut text).unwrap();
     (picture, text)
 }
+
 fn slide(harness: &mut Story, label: &str, by_pt: f32) {
     let slider = harness.get_all_by_label(label).last().unwrap().rect();
     harness.drag_at(slider.center());
@@ -42,13 +49,16 @@ fn slide(harness: &mut Story, label: &str, by_pt: f32) {
     harness.drop_at(slider.center() + vec2(by_pt, 0.0));
     steps(harness);
 }
+
 #[test]
 fn a_story_of_photo_strokes_moves_and_masks_replays_to_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
     let (file, photo) = (project(folder.path()), folder.path().join("photo.png"));
-    image::RgbImage::from_fn(90, 60, |x, y| image::Rgb([(x * 2) as u8, (y * 4) as u8, (x * y % 255) as u8]))
-        .save(&photo)
-        .unwrap();
+    image::RgbImage::from_fn(90, 60, |x, y| {
+        image::Rgb([(x * 2) as u8, (y * 4) as u8, (x * y % 255) as u8])
+    })
+    .save(&photo)
+    .unwrap();
     let mut harness = window_of(1.0, move |ctx| {
         let mut window = MainWindow::new(ctx).recording();
         window.begin(vec![file.clone()]);
@@ -80,7 +90,9 @@ fn a_story_of_photo_strokes_moves_and_masks_replays_to_the_same_bytes() {
     click(&mut harness, "Gradient layer");
     slide(&mut harness, "Opacity", -14.0);
     command(&mut harness, "Bake layer");
-    until(&mut harness, |harness| matches!(session(harness).layer().unwrap().content, rilievo::Content::Pixels(_)));
+    until(&mut harness, |harness| {
+        matches!(session(harness).layer().unwrap().content, rilievo::Content::Pixels(_))
+    });
     command(&mut harness, "Move layer down");
     let seen = session(&harness).active().unwrap().document().clone();
     assert_eq!(seen.layers.len(), 5, "{:?}", layers(&harness));

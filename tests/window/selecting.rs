@@ -32,6 +32,7 @@ fn a_rectangle_is_selected_grown_inverted_and_let_go_of_and_the_status_says_wher
     key(&mut harness, Modifiers::COMMAND | Modifiers::SHIFT, Key::D);
     assert!(area(&harness) > 0.0, "what was let go of is back");
 }
+
 #[test]
 fn buttons_and_keys_say_how_a_selection_meets_the_last() {
     let mut harness = window();
@@ -48,6 +49,7 @@ fn buttons_and_keys_say_how_a_selection_meets_the_last() {
     command(&mut harness, "Select all");
     assert_eq!(area(&harness), 1024.0 * 1024.0);
 }
+
 #[test]
 fn a_lasso_of_clicks_is_closed_by_enter_and_given_up_by_escape() {
     let mut harness = window();
@@ -62,6 +64,7 @@ fn a_lasso_of_clicks_is_closed_by_enter_and_given_up_by_escape() {
     key(&mut harness, Modifiers::NONE, Key::Enter);
     assert!(area(&harness) > 1000.0 && session(&harness).lasso.is_empty());
 }
+
 #[test]
 fn what_is_selected_is_cut_to_a_layer_of_its_own_kept_by_name_and_taken_again() {
     let mut harness = window();

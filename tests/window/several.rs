@@ -10,10 +10,12 @@ fn four() -> Story {
     (0..3).for_each(|_| command(&mut harness, "New fill layer"));
     harness
 }
+
 fn row(harness: &mut Story, name: &str, modifiers: Modifiers) {
     harness.get_by_label_contains(&format!("Layer {name}")).click_modifiers(modifiers);
     steps(harness);
 }
+
 fn chosen(harness: &Story) -> Vec<String> {
     let tab = session(harness).active().unwrap();
     tab.chosen_layers().iter().map(|id| tab.document().layer(*id).unwrap().name.clone()).collect()
@@ -39,6 +41,7 @@ fn layers_are_chosen_with_keys_held_and_grouped_as_one_step() {
     command(&mut harness, "Undo");
     assert_eq!(layers(&harness).len(), 4);
 }
+
 #[test]
 fn the_keys_of_pages_go_through_the_layers_and_extend_with_shift() {
     let mut harness = four();
@@ -51,8 +54,12 @@ fn the_keys_of_pages_go_through_the_layers_and_extend_with_shift() {
     assert_eq!(chosen(&harness), ["Fill 2", "Fill 3"], "the beginning stays");
     command(&mut harness, "Show or hide layer");
     let document = session(&harness).active().unwrap().document();
-    assert_eq!(document.layers.iter().map(|layer| layer.visible).collect::<Vec<_>>(), [true, true, false, false]);
+    assert_eq!(
+        document.layers.iter().map(|layer| layer.visible).collect::<Vec<_>>(),
+        [true, true, false, false]
+    );
 }
+
 #[test]
 fn the_list_is_filtered_by_name_and_an_eye_with_alt_shows_one_layer_alone() {
     let mut harness = four();
@@ -63,18 +70,23 @@ fn the_list_is_filtered_by_name_and_an_eye_with_alt_shows_one_layer_alone() {
     assert!(harness.query_by_label_contains("Layer Fill 2").is_some());
     assert!(harness.query_by_label_contains("Layer Background").is_none());
     key(&mut harness, Modifiers::NONE, Key::Escape);
-    assert!(harness.query_by_label_contains("Layer Background").is_some(), "Escape shows all again");
+    assert!(
+        harness.query_by_label_contains("Layer Background").is_some(),
+        "Escape shows all again"
+    );
     for is_alone in [true, false] {
         harness.get_by_label("Show Fill").click_modifiers(Modifiers::ALT);
         steps(&mut harness);
         assert_eq!(session(&harness).active().unwrap().solo.is_some(), is_alone);
     }
 }
+
 #[test]
 fn guides_are_pulled_out_of_a_ruler_and_dragged_back() {
     let mut harness = window();
     command(&mut harness, "Rulers");
-    let guides = |harness: &Story| session(harness).active().unwrap().document().guides.vertical.clone();
+    let guides =
+        |harness: &Story| session(harness).active().unwrap().document().guides.vertical.clone();
     let canvas = harness.get_by_label("Canvas").rect();
     let ruler = vec2(-0.5 * canvas.width() - 6.0, 0.0);
     drag(&mut harness, ruler, vec2(40.0, 30.0));
@@ -83,7 +95,8 @@ fn guides_are_pulled_out_of_a_ruler_and_dragged_back() {
     drag(&mut harness, vec2(40.0, 60.0), vec2(-37.0, 0.0));
     let moved = guides(&harness);
     assert_eq!(moved.len(), 1);
-    let done: Vec<String> = session(&harness).active().unwrap().history.past().map(str::to_owned).collect();
+    let done: Vec<String> =
+        session(&harness).active().unwrap().history.past().map(str::to_owned).collect();
     assert_eq!(done, ["Add guide", "Move guide"]);
     drag(&mut harness, vec2(-37.0, 0.0), ruler);
     assert!(guides(&harness).is_empty());
@@ -96,6 +109,7 @@ fn guides_are_pulled_out_of_a_ruler_and_dragged_back() {
     assert!(session(&harness).aids.to_layers);
     press(&mut harness, "Close");
 }
+
 #[test]
 fn an_assistant_is_laid_and_a_stroke_beside_it_is_straight() {
     let mut harness = window();
@@ -108,5 +122,8 @@ fn an_assistant_is_laid_and_a_stroke_beside_it_is_straight() {
     let tab = session(&harness).active().unwrap();
     let strokes = tab.document().strokes(tab.selected.unwrap());
     let on = assistants[0].points[0].y;
-    assert!(strokes[0].samples().iter().all(|sample| (sample.at.y - on).abs() < 0.05), "it lies on the line");
+    assert!(
+        strokes[0].samples().iter().all(|sample| (sample.at.y - on).abs() < 0.05),
+        "it lies on the line"
+    );
 }

@@ -1,6 +1,9 @@
 //! The shape workshop: from a drawing to a lit, bent picture, by the window's own controls.
 
-use super::{Story, choose, command, drag, key, layers, press, session, steps, stroke, until, window, window_of};
+use super::{
+    Story, choose, command, drag, key, layers, press, session, steps, stroke, until, window,
+    window_of,
+};
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Key, Modifiers, Vec2, vec2};
 use egui_kittest::kittest::Queryable;
@@ -14,7 +17,9 @@ use tempfile::TempDir;
 
 /// A head on a body, each of a flat colour with soft edges, on a transparent ground.
 fn drawing(folder: &TempDir) -> PathBuf {
-    let disc = |x: f32, y: f32, cx: f32, cy: f32, r: f32| (r + 0.5 - (x - cx).hypot(y - cy)).clamp(0.0, 1.0);
+    let disc = |x: f32, y: f32, cx: f32, cy: f32, r: f32| {
+        (r + 0.5 - (x - cx).hypot(y - cy)).clamp(0.0, 1.0)
+    };
     let picture = image::RgbaImage::from_fn(320, 400, |x, y| {
         let (x, y) = (x as f32 + 0.5, y as f32 + 0.5);
         let (head, body) = (disc(x, y, 160.0, 120.0, 80.0), disc(x, y, 160.0, 260.0, 110.0));
@@ -26,6 +31,7 @@ fn drawing(folder: &TempDir) -> PathBuf {
     picture.save(&file).unwrap();
     file
 }
+
 /// A window started with a file to open.
 fn opening(file: &Path) -> Story {
     let mut harness = window_of(1.0, MainWindow::new);
@@ -33,23 +39,28 @@ fn opening(file: &Path) -> Story {
     choose(&mut harness, file);
     harness
 }
+
 fn asked(harness: &mut Story) {
     until(harness, |harness| harness.query_by_label("Only paint").is_some());
 }
+
 /// Answers the question with yes, and waits for the shape.
 fn give(harness: &mut Story) {
     press(harness, "Give it a shape");
     until(harness, |harness| !parts(harness).is_empty());
 }
+
 fn parts(harness: &Story) -> Vec<Arc<Part>> {
     session(harness).active().unwrap().document().parts.list.clone()
 }
+
 /// Where a canvas point is seen, from the middle of the canvas.
 fn seen(harness: &Story, x: f32, y: f32) -> Vec2 {
     let view = session(harness).active().unwrap().view.unwrap();
     let at = view.screen_from_canvas().transform_point2(rilievo::math::vec2(x, y));
     vec2(at.x, at.y)
 }
+
 fn puff(part: &Part) -> f32 {
     match &part.kind {
         PartKind::Inflate { inflation, .. } => inflation.puff,
@@ -79,7 +90,8 @@ fn a_drawing_gets_a_shape_is_puffed_touched_sculpted_painted_saved_and_opened_ag
     let chosen = session(&harness).active().unwrap().part.clone().unwrap();
     // The height handle is in the middle of the chosen part.
     drag(&mut harness, head, down);
-    let part = |harness: &Story, id: &str| parts(harness).into_iter().find(|part| part.id == id).unwrap();
+    let part =
+        |harness: &Story, id: &str| parts(harness).into_iter().find(|part| part.id == id).unwrap();
     let flatter = part(&harness, &chosen);
     assert!(puff(&flatter) < 0.5, "dragged down it is flatter: {flatter:?}");
 
@@ -90,8 +102,12 @@ fn a_drawing_gets_a_shape_is_puffed_touched_sculpted_painted_saved_and_opened_ag
     let (from, to) = (seen(&harness, 110.0, 280.0), seen(&harness, 200.0, 320.0));
     drag(&mut harness, from, to);
     let body = made.iter().find(|part| part.id != chosen).unwrap().id.clone();
-    let on_body: Vec<Arc<Part>> = parts(&harness).into_iter().filter(|part| part.on() == Some(body.as_str())).collect();
-    assert_eq!(on_body.iter().map(|part| part.kind.name()).collect::<Vec<_>>(), ["touches", "sculpt"]);
+    let on_body: Vec<Arc<Part>> =
+        parts(&harness).into_iter().filter(|part| part.on() == Some(body.as_str())).collect();
+    assert_eq!(
+        on_body.iter().map(|part| part.kind.name()).collect::<Vec<_>>(),
+        ["touches", "sculpt"]
+    );
 
     key(&mut harness, Modifiers::NONE, Key::B);
     key(&mut harness, Modifiers::NONE, Key::F3);
@@ -115,6 +131,7 @@ fn a_drawing_gets_a_shape_is_puffed_touched_sculpted_painted_saved_and_opened_ag
     let surfaces = [&document, opened].map(|document| document.surface.clone().unwrap());
     assert_eq!(surfaces[0].normal_planes()[0].values(), surfaces[1].normal_planes()[0].values());
 }
+
 #[test]
 fn flats_become_a_part_for_each_place_or_a_part_is_split_by_place() {
     let folder = TempDir::new().unwrap();
@@ -130,7 +147,8 @@ fn flats_become_a_part_for_each_place_or_a_part_is_split_by_place() {
     asked(&mut harness);
     press(&mut harness, "A part for each place");
     give(&mut harness);
-    let places = |harness: &Story| parts(harness).iter().filter(|part| part.place().is_some()).count();
+    let places =
+        |harness: &Story| parts(harness).iter().filter(|part| part.place().is_some()).count();
     assert_eq!((parts(&harness).len(), places(&harness)), (3, 2));
 
     // As one part it can be split later.
@@ -149,7 +167,10 @@ fn flats_become_a_part_for_each_place_or_a_part_is_split_by_place() {
     steps(&mut harness);
     assert_eq!(parts(&harness).len(), 3, "{:?} {:?}", session(&harness).notes, parts(&harness));
     assert_eq!(places(&harness), 2);
-    assert!(harness.query_by_label("Split by place").is_none(), "a part of one place cannot be split");
+    assert!(
+        harness.query_by_label("Split by place").is_none(),
+        "a part of one place cannot be split"
+    );
 
     // The drawing goes with its parts.
     press(&mut harness, "Cut drawing");
@@ -179,6 +200,7 @@ fn who_only_wants_to_paint_is_not_asked_again_but_told_where_marks_lie_flat() {
     assert_eq!(parts(&harness).len(), 1);
     assert!(puff(&parts(&harness)[0]) < 0.3);
 }
+
 #[test]
 fn a_first_minute_leads_from_a_drawing_to_a_bent_stroke_and_its_picture() {
     let folder = TempDir::new().unwrap();
@@ -193,7 +215,9 @@ fn a_first_minute_leads_from_a_drawing_to_a_bent_stroke_and_its_picture() {
         let document = session(harness).active().unwrap().document().clone();
         let top = document.layers.last().unwrap().id;
         let document = if is_bent { document } else { Document { surface: None, ..document } };
-        flatten_layer(&document, top, &Progress::default()).unwrap().to_straight_rgba(document.size.rect())
+        flatten_layer(&document, top, &Progress::default())
+            .unwrap()
+            .to_straight_rgba(document.size.rect())
     };
     let (bent, flat) = (painted(&harness, true), painted(&harness, false));
     let apart = bent.iter().zip(&flat).filter(|(a, b)| a.abs_diff(**b) > 30).count();
@@ -208,12 +232,15 @@ fn a_first_minute_leads_from_a_drawing_to_a_bent_stroke_and_its_picture() {
     let png = folder.path().join("painted.png");
     choose(&mut harness, &png);
     until(&mut harness, |harness| harness.query_by_label_contains("Exported").is_some());
-    let (before, after) =
-        (image::open(drawing(&folder)).unwrap().into_rgba8(), image::open(&png).unwrap().into_rgba8());
+    let (before, after) = (
+        image::open(drawing(&folder)).unwrap().into_rgba8(),
+        image::open(&png).unwrap().into_rgba8(),
+    );
     let changed = before.pixels().zip(after.pixels()).filter(|(a, b)| a != b).count();
     assert_eq!(before.dimensions(), after.dimensions());
     assert!(changed > 20_000, "lit all over: {changed}");
 }
+
 #[test]
 fn the_row_of_a_part_that_is_clicked_on_the_canvas_comes_into_sight() {
     let mut harness = window();
@@ -238,6 +265,7 @@ fn the_row_of_a_part_that_is_clicked_on_the_canvas_comes_into_sight() {
     assert_eq!(session(&harness).active().unwrap().chosen_part().unwrap().name, "Sphere");
     assert!(row(&harness, "Sphere").min.y < hidden.min.y - 30.0, "scrolled to");
 }
+
 #[test]
 fn parts_are_added_chosen_ordered_hidden_and_renamed_by_their_controls() {
     let mut harness = window();
@@ -258,6 +286,7 @@ fn parts_are_added_chosen_ordered_hidden_and_renamed_by_their_controls() {
     press(&mut harness, "Delete part");
     assert_eq!(parts(&harness).len(), 1);
 }
+
 #[test]
 fn maps_of_the_shape_are_exported_under_the_names_that_engines_expect() {
     let folder = TempDir::new().unwrap();
@@ -271,11 +300,17 @@ fn maps_of_the_shape_are_exported_under_the_names_that_engines_expect() {
     choose(&mut harness, &folder.path().join("ball.png"));
     let is_there = |name: &str| folder.path().join(name).exists();
     until(&mut harness, |_| is_there("ball_id.png"));
-    assert!(is_there("ball_n.png") && is_there("ball_d.png") && is_there("ball_h.png") && !is_there("ball_mask.png"));
+    assert!(
+        is_there("ball_n.png")
+            && is_there("ball_d.png")
+            && is_there("ball_h.png")
+            && !is_there("ball_mask.png")
+    );
     let normals = image::open(folder.path().join("ball_n.png")).unwrap().into_rgba8();
     let above = normals.get_pixel(512, 300).0;
     assert!(above[1] < 100 && above[3] == 255, "green points down: {above:?}");
 }
+
 #[test]
 fn a_layer_is_carried_by_a_part_that_is_chosen_in_its_properties() {
     let mut harness = window();
@@ -294,6 +329,7 @@ fn a_layer_is_carried_by_a_part_that_is_chosen_in_its_properties() {
     key(&mut harness, Modifiers::COMMAND, Key::Z);
     assert_eq!(home(&harness), None);
 }
+
 #[test]
 fn a_bevel_shows_its_profile_and_lines_their_angle() {
     let folder = TempDir::new().unwrap();

@@ -15,8 +15,10 @@ fn painted() -> Story {
     command(&mut harness, "Transform");
     harness
 }
+
 fn numbers(harness: &Story) -> FrameNumbers {
-    FrameNumbers::of(&session(harness).active().unwrap().frame(session(harness).carried).unwrap()).unwrap()
+    FrameNumbers::of(&session(harness).active().unwrap().frame(session(harness).carried).unwrap())
+        .unwrap()
 }
 
 #[test]
@@ -37,17 +39,22 @@ fn the_options_of_the_transform_tool_fit_a_small_window_in_two_rows() {
         &["X", "Y", "Width", "Width in %", "Height", "Height in %", "Angle", "Skew"],
     ];
     for row in rows {
-        let controls = row.iter().flat_map(|name| harness.query_all_by_label(name).collect::<Vec<_>>());
+        let controls =
+            row.iter().flat_map(|name| harness.query_all_by_label(name).collect::<Vec<_>>());
         let controls: Vec<_> = controls.filter(|node| node.rect().top() < 110.0).collect();
         assert!(controls.len() >= row.len(), "some of {row:?} are missing");
         let middle = controls[0].rect().center().y;
         for node in controls {
             let (name, rect) = (node.accesskit_node().label(), node.rect());
             assert!(rect.right() < 1018.0, "{name:?} is cut off: {rect}");
-            assert!((rect.center().y - middle).abs() < 3.0, "{name:?} stands in another row: {rect}");
+            assert!(
+                (rect.center().y - middle).abs() < 3.0,
+                "{name:?} stands in another row: {rect}"
+            );
         }
     }
 }
+
 #[test]
 fn several_layers_are_turned_by_a_number_and_their_frame_turns_along() {
     let mut harness = painted();
@@ -63,12 +70,19 @@ fn several_layers_are_turned_by_a_number_and_their_frame_turns_along() {
         key(&mut harness, Modifiers::NONE, Key::Enter);
         let now = numbers(&harness);
         let wanted: f64 = degrees.parse().unwrap();
-        assert!((now.angle - wanted).abs() < 0.01 && (now.width - before.width).abs() < 0.01, "{now:?}");
+        assert!(
+            (now.angle - wanted).abs() < 0.01 && (now.width - before.width).abs() < 0.01,
+            "{now:?}"
+        );
         let tab = session(&harness).active().unwrap();
-        let stay = tab.chosen_layers().iter().all(|id| tab.document().layer(*id).unwrap().transform.is_none());
+        let stay = tab
+            .chosen_layers()
+            .iter()
+            .all(|id| tab.document().layer(*id).unwrap().transform.is_none());
         assert_eq!(stay, is_back);
     }
 }
+
 #[test]
 fn a_press_on_the_canvas_beside_an_open_menu_closes_it_and_nothing_else() {
     let mut harness = painted();

@@ -19,6 +19,7 @@ fn opened(folder: &Path) -> Story {
     until(&mut harness, |harness| session(harness).active().is_some());
     harness
 }
+
 fn is_unwrapped(harness: &Story) -> bool {
     session(harness).active().unwrap().unwrapped().is_some()
 }
@@ -34,7 +35,9 @@ fn the_surface_is_laid_flat_painted_on_and_the_story_replays_to_the_same_bytes()
     drag(&mut harness, vec2(-90.0, -20.0), vec2(80.0, 40.0));
     {
         let tab = session(&harness).active().unwrap();
-        let Content::Strokes(live) = &session(&harness).layer().unwrap().content else { panic!("a stroke layer") };
+        let Content::Strokes(live) = &session(&harness).layer().unwrap().content else {
+            panic!("a stroke layer")
+        };
         let stroke = &live.params().strokes[0];
         assert!(stroke.operator().unwrapping().is_some() && stroke.samples().len() > 20);
         let canvas = tab.document().size.rect();
@@ -51,6 +54,7 @@ fn the_surface_is_laid_flat_painted_on_and_the_story_replays_to_the_same_bytes()
     let replayed = again.active().unwrap().document();
     assert!(bytes(&seen, folder.path(), "seen.ora") == bytes(replayed, folder.path(), "again.ora"));
 }
+
 #[test]
 fn a_gradient_is_moved_on_one_piece_of_the_sheet_and_the_story_replays() {
     let folder = tempfile::tempdir().unwrap();
@@ -62,8 +66,12 @@ fn a_gradient_is_moved_on_one_piece_of_the_sheet_and_the_story_replays() {
     until(&mut harness, is_unwrapped);
     drag(&mut harness, vec2(-30.0, 10.0), vec2(20.0, -15.0));
     {
-        let Content::Gradient(live) = &session(&harness).layer().unwrap().content else { panic!("a gradient") };
-        let [piece] = live.params().pieces[..] else { panic!("one piece: {:?}", live.params().pieces) };
+        let Content::Gradient(live) = &session(&harness).layer().unwrap().content else {
+            panic!("a gradient")
+        };
+        let [piece] = live.params().pieces[..] else {
+            panic!("one piece: {:?}", live.params().pieces)
+        };
         assert!(piece.moved.length() > 5.0 && piece.scale == 1.0, "{piece:?}");
         assert_eq!(session(&harness).active().unwrap().history.done(), Some("Move piece"));
     }
@@ -75,6 +83,7 @@ fn a_gradient_is_moved_on_one_piece_of_the_sheet_and_the_story_replays() {
     let replayed = again.active().unwrap().document();
     assert!(bytes(&seen, folder.path(), "seen.ora") == bytes(replayed, folder.path(), "again.ora"));
 }
+
 #[test]
 fn what_is_exported_unwrapped_comes_back_as_a_layer_on_the_surface() {
     let folder = tempfile::tempdir().unwrap();
@@ -87,8 +96,12 @@ fn what_is_exported_unwrapped_comes_back_as_a_layer_on_the_surface() {
     until(&mut harness, |_| flat.is_file());
     command(&mut harness, "Import unwrapped");
     choose(&mut harness, &flat);
-    until(&mut harness, |harness| session(harness).layer().is_some_and(|layer| layer.name == "flat"));
-    let Content::Image(live) = &session(&harness).layer().unwrap().content else { panic!("an image layer") };
+    until(&mut harness, |harness| {
+        session(harness).layer().is_some_and(|layer| layer.name == "flat")
+    });
+    let Content::Image(live) = &session(&harness).layer().unwrap().content else {
+        panic!("an image layer")
+    };
     assert!(live.params().bend.operator.unwrapping().is_some());
     assert!(harness.query_by_label("Dismiss").is_none(), "nothing went wrong");
 }

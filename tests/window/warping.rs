@@ -14,6 +14,7 @@ fn painted() -> Story {
     drag(&mut harness, vec2(-60.0, -30.0), vec2(60.0, 30.0));
     harness
 }
+
 fn layer(harness: &Story) -> Arc<Layer> {
     session(harness).layer().unwrap().clone()
 }
@@ -32,6 +33,7 @@ fn a_layer_is_liquified_by_the_named_tool_undone_and_its_liquify_removed() {
     command(&mut harness, "Remove liquify");
     assert!(layer(&harness).liquify.is_none());
 }
+
 #[test]
 fn a_mesh_is_laid_from_its_menu_and_applied() {
     let mut harness = painted();

@@ -1,21 +1,24 @@
-//! Applies transforms for good: the frames of a layer become the canvas, so that tools can work on it as it shows.
-//! Floor 4.
+//! Applies transforms for good: the frames of a layer become the canvas, so that tools can work on
+//! it as it shows. Floor 4.
 
 use super::homes::{kept, transform_of};
 use super::layer::on_canvas::seen;
-use super::{Content, Document, Group, Layer, LayerId, LayerMap, LayerTransform, Live, NormalLayer, StrokeList};
+use super::{
+    Content, Document, Group, Layer, LayerId, LayerMap, LayerTransform, Live, NormalLayer,
+    StrokeList,
+};
 use crate::math::{Affine2, PlaneMap, Vec2};
 use crate::paint::{PlacedImage, Placement, StrokeHome};
 use std::sync::Arc;
 
 impl Document {
-    /// The same picture with the frame of a layer on the canvas, as far as its kind can say: pixels are sampled for
-    /// good, strokes, ramps, lights and placements take new numbers. The transforms of groups around it go to the
-    /// layers in them. An image or a ramp that is skewed or in perspective keeps its transform. `None` if there is no
-    /// such layer.
+    /// The same picture with the frame of a layer on the canvas, as far as its kind can say: pixels
+    /// are sampled for good, strokes, ramps, lights and placements take new numbers. The transforms
+    /// of groups around it go to the layers in them. An image or a ramp that is skewed or in
+    /// perspective keeps its transform. `None` if there is no such layer.
     ///
-    /// What a part carries stays with it: the layer's transform becomes the inverse of where its home is now, so that
-    /// its coordinates are those of the canvas until the part moves.
+    /// What a part carries stays with it: the layer's transform becomes the inverse of where its
+    /// home is now, so that its coordinates are those of the canvas until the part moves.
     pub fn with_transform_applied(&self, id: LayerId) -> Option<Document> {
         if is_in_place(self.layer(id)?, &self.map_of(id)?) {
             return Some(self.clone());
@@ -23,14 +26,17 @@ impl Document {
         let layers = applied(&self.layers, id, &LayerMap::none(self.size))?;
         Some(Document { layers, ..self.clone() })
     }
-    /// The transform with which a layer's frame is the canvas. `None` if there is no such layer, or no such transform.
+
+    /// The transform with which a layer's frame is the canvas. `None` if there is no such layer, or
+    /// no such transform.
     pub fn transform_to_canvas(&self, id: LayerId) -> Option<Option<LayerTransform>> {
         let (layer, around) = (self.layer(id)?, self.map_around(id)?);
         transform_of(&around.outside(layer.on.as_ref()).inverse(), &around.within(layer))
     }
 }
 
-/// Whether the frame of a layer and those of its strokes are the canvas, with no transform that could be dropped.
+/// Whether the frame of a layer and those of its strokes are the canvas, with no transform that
+/// could be dropped.
 fn is_in_place(layer: &Layer, map: &LayerMap) -> bool {
     let is_carried = map.plane != map.without_homes();
     let strokes_are = || match &layer.content {
@@ -40,11 +46,14 @@ fn is_in_place(layer: &Layer, map: &LayerMap) -> bool {
         }
         _ => true,
     };
-    map.is_none() && !layer.is_warped() && (layer.transform.is_none() || is_carried) && strokes_are()
+    map.is_none()
+        && !layer.is_warped()
+        && (layer.transform.is_none() || is_carried)
+        && strokes_are()
 }
 
-/// A list of layers in which the transforms of the groups around a layer are handed down; `None` if it is not among
-/// them.
+/// A list of layers in which the transforms of the groups around a layer are handed down; `None` if
+/// it is not among them.
 fn applied(layers: &[Arc<Layer>], id: LayerId, around: &LayerMap) -> Option<Vec<Arc<Layer>>> {
     let index = layers.iter().position(|layer| layer.id == id || holds(layer, id))?;
     let mut next = layers.to_vec();
@@ -62,11 +71,14 @@ fn applied(layers: &[Arc<Layer>], id: LayerId, around: &LayerMap) -> Option<Vec<
 }
 
 fn holds(layer: &Layer, id: LayerId) -> bool {
-    layer.content.group().is_some_and(|group| group.layers.iter().any(|layer| layer.id == id || holds(layer, id)))
+    layer
+        .content
+        .group()
+        .is_some_and(|group| group.layers.iter().any(|layer| layer.id == id || holds(layer, id)))
 }
 
-/// A group whose frame is the canvas: each layer in it has its transform instead. `None` where that cannot be
-/// expressed.
+/// A group whose frame is the canvas: each layer in it has its transform instead. `None` where that
+/// cannot be expressed.
 fn handed_down(group: &Arc<Layer>, around: &LayerMap) -> Option<Layer> {
     let was = around.within(group);
     // Its mesh and liquify cannot be handed down.
@@ -100,32 +112,44 @@ pub(in crate::document) fn in_place(layer: &Arc<Layer>, around: &LayerMap) -> Ar
     }
     let seen = seen(layer, &map);
     let content = match &seen.content {
-        Content::Image(live) => live.params().unframed().map(|image| Content::Image(Live::new(image))),
-        Content::Gradient(live) => live.params().unframed().map(|ramp| Content::Gradient(Live::new(ramp))),
-        Content::Normals(normals) => placed(&normals.placement, &normals.frame)
-            .map(|placement| Content::Normals(NormalLayer { placement, frame: PlaneMap::IDENTITY, ..normals.clone() })),
+        Content::Image(live) => {
+            live.params().unframed().map(|image| Content::Image(Live::new(image)))
+        }
+        Content::Gradient(live) => {
+            live.params().unframed().map(|ramp| Content::Gradient(Live::new(ramp)))
+        }
+        Content::Normals(normals) => placed(&normals.placement, &normals.frame).map(|placement| {
+            Content::Normals(NormalLayer {
+                placement,
+                frame: PlaneMap::IDENTITY,
+                ..normals.clone()
+            })
+        }),
         content => Some(content.clone()),
     };
     let transform = transform_of(&around.outside(layer.on.as_ref()).inverse(), &map);
     let (Some(content), Some(transform)) = (content, transform) else { return layer.clone() };
-    let mut next = Layer { content, transform, liquify: None, mask: seen.mask.clone(), ..Layer::clone(layer) };
+    let mut next =
+        Layer { content, transform, liquify: None, mask: seen.mask.clone(), ..Layer::clone(layer) };
     let now = around.within(&next);
     match &layer.content {
         // What lies beyond the canvas comes back with its part.
         Content::Pixels(pixels) if layer.on.is_some() && !layer.is_warped() => {
             next.content = Content::Pixels(pixels.taken_along(&map))
         }
-        Content::Strokes(own) if layer.content.has_homes() => match carried_on(own.params(), &seen.content, &now) {
-            Some(list) => next.content = Content::Strokes(Live::new(list)),
-            None => return layer.clone(),
-        },
+        Content::Strokes(own) if layer.content.has_homes() => {
+            match carried_on(own.params(), &seen.content, &now) {
+                Some(list) => next.content = Content::Strokes(Live::new(list)),
+                None => return layer.clone(),
+            }
+        }
         _ => {}
     }
     Arc::new(next)
 }
 
-/// Strokes as they lie on the canvas, those with homes of their own still carried by them; `None` where that cannot be
-/// expressed.
+/// Strokes as they lie on the canvas, those with homes of their own still carried by them; `None`
+/// where that cannot be expressed.
 ///
 /// * `now`: the map of their layer.
 fn carried_on(own: &StrokeList, seen: &Content, now: &LayerMap) -> Option<StrokeList> {
@@ -142,7 +166,8 @@ fn carried_on(own: &StrokeList, seen: &Content, now: &LayerMap) -> Option<Stroke
 }
 
 impl PlacedImage {
-    /// The same image placed on the canvas itself; `None` where its frame is mirrored, skewed or in perspective.
+    /// The same image placed on the canvas itself; `None` where its frame is mirrored, skewed or in
+    /// perspective.
     fn unframed(&self) -> Option<PlacedImage> {
         let placement = placed(&self.placement, &self.frame)?;
         Some(PlacedImage { placement, frame: PlaneMap::IDENTITY, ..self.clone() })
@@ -150,7 +175,8 @@ impl PlacedImage {
 }
 
 impl crate::paint::Gradient {
-    /// The same ramp with its ends on the canvas; `None` where its frame is skewed or in perspective.
+    /// The same ramp with its ends on the canvas; `None` where its frame is skewed or in
+    /// perspective.
     fn unframed(&self) -> Option<Self> {
         similarity(&self.frame, true)?;
         let (from, to) = (self.frame.to_canvas(self.from)?, self.frame.to_canvas(self.to)?);
@@ -158,7 +184,8 @@ impl crate::paint::Gradient {
     }
 }
 
-/// A placement on the canvas that a frame lies on; `None` for a frame that is mirrored, skewed or in perspective.
+/// A placement on the canvas that a frame lies on; `None` for a frame that is mirrored, skewed or
+/// in perspective.
 pub(in crate::document) fn placed(placement: &Placement, frame: &PlaneMap) -> Option<Placement> {
     let map = similarity(frame, false)?;
     let along = map.matrix2.x_axis;

@@ -1,5 +1,6 @@
-//! Assistants: lines, ellipses and perspectives that strokes are drawn along. Values of the document, not part of the
-//! picture. Floor 4. Not here: which of their lines a stroke takes (`tools::assistants`).
+//! Assistants: lines, ellipses and perspectives that strokes are drawn along. Values of the
+//! document, not part of the picture. Floor 4. Not here: which of their lines a stroke takes
+//! (`tools::assistants`).
 
 use crate::math::range::{at_most, within};
 use crate::math::{COORDINATE, PlaneMap, Vec2};
@@ -19,7 +20,8 @@ crate::named! {
         Line = "line",
         /// All lines parallel to the one through both handles.
         Parallel = "parallel",
-        /// Its first two handles are the ends of one axis, the third lies on it, at a right angle to that axis.
+        /// Its first two handles are the ends of one axis, the third lies on it, at a right angle
+        /// to that axis.
         Ellipse = "ellipse",
         /// All lines to one vanishing point, and the level and upright ones.
         OnePoint = "one-point",
@@ -72,11 +74,13 @@ impl Assistant {
         let mut numbers = self.points.iter().flat_map(|point| point.to_array());
         numbers.try_for_each(|v| within("a handle of an assistant", v, &COORDINATE))
     }
+
     /// Refuses more of them than a file can hold, and those that files cannot hold.
     pub fn all_fit(all: &[Assistant]) -> Result<(), String> {
         at_most("Assistants", all.len(), Self::MOST)?;
         all.iter().try_for_each(Assistant::fits)
     }
+
     /// With a handle moved; that of an ellipse's second axis stays at a right angle to the first.
     pub fn with_handle(&self, index: usize, at: Vec2) -> Self {
         let mut next = self.clone();
@@ -91,20 +95,25 @@ impl Assistant {
         }
         next
     }
+
     /// Its ellipse, if it is one.
     pub fn ellipse(&self) -> Option<EllipseFrame> {
-        let (AssistantKind::Ellipse, [a, b, c]) = (self.kind, &self.points[..]) else { return None };
+        let (AssistantKind::Ellipse, [a, b, c]) = (self.kind, &self.points[..]) else {
+            return None;
+        };
         let (center, half) = ((*a + *b) * 0.5, (*b - *a) * 0.5);
         let across = half.perp().normalize_or(Vec2::Y);
         Some(EllipseFrame { center, axes: [half, across * (*c - center).dot(across)] })
     }
-    /// The paths that a stroke from a point can take. A line and an ellipse are paths only for strokes that begin
-    /// within `near_px` of them; the others have lines through every point.
+
+    /// The paths that a stroke from a point can take. A line and an ellipse are paths only for
+    /// strokes that begin within `near_px` of them; the others have lines through every point.
     pub fn paths(&self, from: Vec2, near_px: f32) -> Vec<AssistantPath> {
         let toward = |to: Vec2| line(from, to - from);
         match (self.kind, &self.points[..]) {
             (AssistantKind::Line, [a, b]) => {
-                let near = line(*a, *b - *a).filter(|line| line.nearest(from).distance(from) <= near_px);
+                let near =
+                    line(*a, *b - *a).filter(|line| line.nearest(from).distance(from) <= near_px);
                 // The line ends at its handles.
                 let is_beside = |line: &AssistantPath| match line {
                     AssistantPath::Line { at, along } => {
@@ -117,27 +126,40 @@ impl Assistant {
             (AssistantKind::Parallel, [a, b]) => line(from, *b - *a).into_iter().collect(),
             (AssistantKind::Ellipse, _) => {
                 let path = self.ellipse().map(AssistantPath::Ellipse);
-                path.filter(|path| path.nearest(from).distance(from) <= near_px).into_iter().collect()
+                path.filter(|path| path.nearest(from).distance(from) <= near_px)
+                    .into_iter()
+                    .collect()
             }
             (AssistantKind::OnePoint, [v]) => {
-                [toward(*v), line(from, Vec2::X), line(from, Vec2::Y)].into_iter().flatten().collect()
+                [toward(*v), line(from, Vec2::X), line(from, Vec2::Y)]
+                    .into_iter()
+                    .flatten()
+                    .collect()
             }
             (AssistantKind::TwoPoint, [v, w]) => {
                 let across = line(from, (*w - *v).perp());
                 [toward(*v), toward(*w), across].into_iter().flatten().collect()
             }
-            (AssistantKind::ThreePoint, points) => points.iter().filter_map(|v| toward(*v)).collect(),
+            (AssistantKind::ThreePoint, points) => {
+                points.iter().filter_map(|v| toward(*v)).collect()
+            }
             _ => Vec::new(),
         }
     }
+
     /// After a map of the canvas; `None` where a handle lies beyond its horizon.
     pub fn through(&self, map: &PlaneMap) -> Option<Self> {
-        let points: Option<Vec<Vec2>> = self.points.iter().map(|point| map.to_canvas(*point)).collect();
+        let points: Option<Vec<Vec2>> =
+            self.points.iter().map(|point| map.to_canvas(*point)).collect();
         Some(Self { kind: self.kind, points: points? }).filter(|next| next.fits().is_ok())
     }
+
     /// On a canvas `per_axis` times as large.
     pub(super) fn scaled(&self, per_axis: Vec2) -> Self {
-        Self { kind: self.kind, points: self.points.iter().map(|point| *point * per_axis).collect() }
+        Self {
+            kind: self.kind,
+            points: self.points.iter().map(|point| *point * per_axis).collect(),
+        }
     }
 }
 
@@ -153,8 +175,9 @@ impl AssistantPath {
             AssistantPath::Ellipse(ellipse) => ellipse.nearest(to),
         }
     }
-    /// Distance from the path of the point that a stroke has reached, as a share of its length so far: 0 is along the
-    /// path, 1 across.
+
+    /// Distance from the path of the point that a stroke has reached, as a share of its length so
+    /// far: 0 is along the path, 1 across.
     pub fn leaning(&self, from: Vec2, to: Vec2) -> f32 {
         let long = from.distance(to).max(f32::MIN_POSITIVE);
         let off = |p: Vec2| p - self.nearest(p);
@@ -163,13 +186,15 @@ impl AssistantPath {
 }
 
 impl EllipseFrame {
-    /// The nearest point of the ellipse: that at which a normal through `to` meets it. With half axes a ≥ b and the
-    /// point (x, y) in their quarter, it is (a² x / (t + a²), b² y / (t + b²)) for the largest root t of
-    /// (a x / (t + a²))² + (b y / (t + b²))² = 1, which is found by halving.
+    /// The nearest point of the ellipse: that at which a normal through `to` meets it. With half
+    /// axes a ≥ b and the point (x, y) in their quarter, it is (a² x / (t + a²), b² y / (t + b²))
+    /// for the largest root t of (a x / (t + a²))² + (b y / (t + b²))² = 1, which is found by
+    /// halving.
     pub fn nearest(&self, to: Vec2) -> Vec2 {
         let [u, v] = self.axes;
         let (a, b) = (f64::from(u.length()), f64::from(v.length()));
-        let (along, across) = (u.normalize_or(Vec2::X), v.normalize_or(u.perp().normalize_or(Vec2::Y)));
+        let (along, across) =
+            (u.normalize_or(Vec2::X), v.normalize_or(u.perp().normalize_or(Vec2::Y)));
         let local = to - self.center;
         let (x, y) = (f64::from(local.dot(along)), f64::from(local.dot(across)));
         if !(a > 1e-6 && b > 1e-6) {
@@ -177,7 +202,11 @@ impl EllipseFrame {
             let x = x.max(-a).min(a);
             return self.center + along * x as f32;
         }
-        let (px, py) = if a >= b { quarter(a, b, x.abs(), y.abs()) } else { swapped(quarter(b, a, y.abs(), x.abs())) };
+        let (px, py) = if a >= b {
+            quarter(a, b, x.abs(), y.abs())
+        } else {
+            swapped(quarter(b, a, y.abs(), x.abs()))
+        };
         self.center + along * px.copysign(x) as f32 + across * py.copysign(y) as f32
     }
 }
@@ -202,7 +231,8 @@ fn quarter(a: f64, b: f64, x: f64, y: f64) -> (f64, f64) {
         p * p + q * q > 1.0
     };
     // At the lower end the sum is at least 1, at the upper one at most.
-    let (mut low, mut high) = (-b * b + b * y, -b * b + (a * a * x * x + b * b * y * y).sqrt().max(b * y));
+    let (mut low, mut high) =
+        (-b * b + b * y, -b * b + (a * a * x * x + b * b * y * y).sqrt().max(b * y));
     for _ in 0..80 {
         let middle = 0.5 * (low + high);
         if beyond(middle) { low = middle } else { high = middle }
@@ -220,6 +250,7 @@ mod tests {
     fn of(kind: AssistantKind, points: &[Vec2]) -> Assistant {
         Assistant { kind, points: points.to_vec() }
     }
+
     fn ellipse() -> Assistant {
         of(AssistantKind::Ellipse, &[vec2(20.0, 50.0), vec2(180.0, 50.0), vec2(100.0, 20.0)])
     }
@@ -230,19 +261,31 @@ mod tests {
         assert_eq!(rule.paths(vec2(50.0, 6.0), 8.0).len(), 1);
         assert_eq!(rule.paths(vec2(50.0, 9.0), 8.0).len(), 0);
         assert_eq!(rule.paths(vec2(120.0, 0.0), 8.0).len(), 0, "beyond its end");
-        let all = [(AssistantKind::Parallel, 1), (AssistantKind::TwoPoint, 3), (AssistantKind::ThreePoint, 3)];
+        let all = [
+            (AssistantKind::Parallel, 1),
+            (AssistantKind::TwoPoint, 3),
+            (AssistantKind::ThreePoint, 3),
+        ];
         for (kind, count) in all {
             let points = [vec2(-500.0, 10.0), vec2(700.0, 20.0), vec2(90.0, 4000.0)];
             let paths = of(kind, &points[..kind.handles()]).paths(vec2(50.0, 60.0), 8.0);
             assert_eq!(paths.len(), count, "{kind:?}");
             for path in &paths {
-                assert!(path.nearest(vec2(50.0, 60.0)).distance(vec2(50.0, 60.0)) < 1e-3, "through where it begins");
+                assert!(
+                    path.nearest(vec2(50.0, 60.0)).distance(vec2(50.0, 60.0)) < 1e-3,
+                    "through where it begins"
+                );
             }
         }
-        let toward = of(AssistantKind::OnePoint, &[vec2(10.0, 20.0)]).paths(vec2(50.0, 60.0), 8.0)[0];
+        let toward =
+            of(AssistantKind::OnePoint, &[vec2(10.0, 20.0)]).paths(vec2(50.0, 60.0), 8.0)[0];
         assert!(toward.nearest(vec2(10.0, 20.0)).distance(vec2(10.0, 20.0)) < 1e-3);
-        assert!(of(AssistantKind::OnePoint, &[Vec2::ZERO]).paths(Vec2::ZERO, 8.0).len() == 2, "at its point");
+        assert!(
+            of(AssistantKind::OnePoint, &[Vec2::ZERO]).paths(Vec2::ZERO, 8.0).len() == 2,
+            "at its point"
+        );
     }
+
     #[test]
     fn an_ellipse_goes_through_its_handles_and_stays_one_when_they_move() {
         let frame = ellipse().ellipse().unwrap();
@@ -253,24 +296,31 @@ mod tests {
         assert!(frame.nearest(vec2(400.0, 50.0)).distance(vec2(180.0, 50.0)) < 1e-3);
         let turned = ellipse().with_handle(1, vec2(20.0, 210.0));
         let moved = turned.ellipse().unwrap();
-        assert!((moved.axes[1].length() - 30.0).abs() < 1e-3 && moved.axes[0].dot(moved.axes[1]).abs() < 1e-2);
+        assert!(
+            (moved.axes[1].length() - 30.0).abs() < 1e-3
+                && moved.axes[0].dot(moved.axes[1]).abs() < 1e-2
+        );
         assert!(turned.points[2].distance(moved.nearest(turned.points[2])) < 1e-3);
         let flat = of(AssistantKind::Ellipse, &[Vec2::ZERO; 3]).ellipse().unwrap();
         assert!(flat.nearest(vec2(3.0, 4.0)).is_finite());
     }
+
     #[test]
     fn a_stroke_leans_toward_the_path_that_it_runs_along() {
-        let paths = of(AssistantKind::OnePoint, &[vec2(1000.0, 1000.0)]).paths(vec2(100.0, 100.0), 8.0);
+        let paths =
+            of(AssistantKind::OnePoint, &[vec2(1000.0, 1000.0)]).paths(vec2(100.0, 100.0), 8.0);
         let best = |to: Vec2| {
             let leaning = |path: &AssistantPath| path.leaning(vec2(100.0, 100.0), to);
             (0..3).min_by(|a, b| leaning(&paths[*a]).total_cmp(&leaning(&paths[*b]))).unwrap()
         };
         assert_eq!([vec2(106.0, 107.0), vec2(108.0, 101.0), vec2(99.0, 92.0)].map(best), [0, 1, 2]);
     }
+
     #[test]
     fn assistants_turn_with_the_canvas() {
         let map = PlaneMap::rotation(90.0, vec2(50.0, 50.0));
-        let turned = of(AssistantKind::Line, &[vec2(50.0, 0.0), vec2(50.0, 40.0)]).through(&map).unwrap();
+        let turned =
+            of(AssistantKind::Line, &[vec2(50.0, 0.0), vec2(50.0, 40.0)]).through(&map).unwrap();
         assert!(turned.points[0].distance(vec2(0.0, 50.0)) < 1e-3, "{turned:?}");
         assert!(of(AssistantKind::OnePoint, &[vec2(f32::NAN, 0.0)]).fits().is_err());
         assert!(of(AssistantKind::OnePoint, &[Vec2::ZERO; 2]).fits().is_err());

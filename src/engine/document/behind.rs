@@ -1,6 +1,7 @@
-//! The other populations of a tile's contour pixels, packed into rows: only as many pixels as there are contour pixels
-//! (MATH 10). Layers are rendered and composed on them like on a tile. Floor 4. Here: their order and their pixels. Not
-//! here: composing them (`compose`), rendering them (`content`).
+//! The other populations of a tile's contour pixels, packed into rows: only as many pixels as there
+//! are contour pixels (MATH 10). Layers are rendered and composed on them like on a tile. Floor 4.
+//! Here: their order and their pixels. Not here: composing them (`compose`), rendering them
+//! (`content`).
 
 use crate::math::srgb;
 use crate::paint::Scene;
@@ -10,7 +11,8 @@ use crate::raster::{PlanarTile, TILE, Tile, TileAt, TilePaint};
 use crate::surface::contours::{ContourPixel, TileContours, place_of};
 use std::sync::Arc;
 
-/// The other populations of one tile. Rows of those that see a surface come first; rows of those that see none follow.
+/// The other populations of one tile. Rows of those that see a surface come first; rows of those
+/// that see none follow.
 #[derive(Clone, Copy)]
 pub struct Behind<'c> {
     pub at: TileAt,
@@ -41,35 +43,43 @@ impl<'c> Behind<'c> {
     pub fn new(at: TileAt, contours: TileContours<'c>) -> Self {
         Self { at, contours }
     }
+
     fn seen_rows(&self) -> usize {
         self.contours.seen.div_ceil(TILE)
     }
+
     /// Rows of all.
     pub fn rows(&self) -> usize {
         self.seen_rows() + (self.contours.pixels.len() - self.contours.seen).div_ceil(TILE)
     }
+
     /// Every contour pixel with its place among the packed ones, row by row.
     pub fn places(&self) -> impl Iterator<Item = (usize, &'c ContourPixel)> + use<'c> {
         let (seen, first_bare) = (self.contours.seen, self.seen_rows() * TILE);
         let place = move |i: usize| if i < seen { i } else { first_bare + i - seen };
         self.contours.pixels.iter().enumerate().map(move |(i, pixel)| (place(i), pixel))
     }
+
     /// The pixel of the sheet for a place; `None` where no surface is seen.
     pub fn sheet_pixel(&self, place: usize) -> Option<(usize, usize)> {
         let (x, y) = (place < self.contours.seen).then(|| place_of(place))?;
         Some((self.contours.sheet.x0 as usize + x, self.contours.sheet.y0 as usize + y))
     }
+
     /// Some other population sees no surface.
     pub fn has_bare(&self) -> bool {
         self.contours.seen < self.contours.pixels.len()
     }
+
     /// One value for each place from its contour pixel; 0 at places that are not used.
     pub fn values(&self, value: impl Fn(usize, &ContourPixel) -> f32) -> Vec<f32> {
         let mut values = vec![0.0; self.rows() * TILE];
         self.places().for_each(|(place, pixel)| values[place] = value(place, pixel));
         values
     }
-    /// Packs pixels: those rendered on the sheet and, where no surface is seen, those of the tile itself.
+
+    /// Packs pixels: those rendered on the sheet and, where no surface is seen, those of the tile
+    /// itself.
     pub fn packed(&self, on_sheet: Option<&Tile>, bare: Option<&Tile>) -> PackedTile {
         let corner = self.at.rect();
         self.gathered(|place, pixel| {
@@ -83,8 +93,13 @@ impl<'c> Behind<'c> {
             tile.map_or([0; 4], |tile| pixel_of(tile, (x, y)))
         })
     }
+
     /// The same for pixels that are not rounded to bytes.
-    pub fn packed_deep(&self, on_sheet: Option<&PlanarTile>, bare: Option<&PlanarTile>) -> PlanarTile {
+    pub fn packed_deep(
+        &self,
+        on_sheet: Option<&PlanarTile>,
+        bare: Option<&PlanarTile>,
+    ) -> PlanarTile {
         let (mut packed, corner) = (PlanarTile::of_rows(self.rows()), self.at.rect());
         for (place, contour) in self.places() {
             let (tile, x, y) = match place < self.contours.seen {
@@ -100,10 +115,12 @@ impl<'c> Behind<'c> {
         }
         packed
     }
+
     /// Packs the pixels of a tile itself: both populations see the same.
     pub fn same(&self, tile: &Tile) -> PackedTile {
         let corner = self.at.rect();
-        let place = |pixel: &ContourPixel| ((pixel.x - corner.x0) as usize, (pixel.y - corner.y0) as usize);
+        let place =
+            |pixel: &ContourPixel| ((pixel.x - corner.x0) as usize, (pixel.y - corner.y0) as usize);
         if !tile.is_deep() {
             return self.gathered(|_, pixel| pixel_of(tile, place(pixel)));
         }
@@ -117,6 +134,7 @@ impl<'c> Behind<'c> {
         }
         PackedTile { pixels: PackedPixels::Deep(rows), opaque }
     }
+
     fn gathered(&self, pixel: impl Fn(usize, &ContourPixel) -> [u8; 4]) -> PackedTile {
         let mut bytes = vec![0; self.rows() * TILE * 4].into_boxed_slice();
         let mut opaque = true;
@@ -127,6 +145,7 @@ impl<'c> Behind<'c> {
         }
         PackedTile { pixels: PackedPixels::Bytes(bytes), opaque }
     }
+
     /// Keeps each pixel whole or removes it, as dissolving paint does at its place on the canvas.
     pub fn dissolve(&self, pixels: &mut PlanarTile) {
         for (place, contour) in self.places() {
@@ -135,8 +154,9 @@ impl<'c> Behind<'c> {
             row.set(x, spec::dissolved(row.pixel(x), [contour.x, contour.y]));
         }
     }
-    /// Mixes both populations of each contour pixel: c · own + (1 − c) · other (MATH 10). Where one of them sees no
-    /// surface, the share is an opacity, wherever the pixel's centre lies.
+
+    /// Mixes both populations of each contour pixel: c · own + (1 − c) · other (MATH 10). Where one
+    /// of them sees no surface, the share is an opacity, wherever the pixel's centre lies.
     ///
     /// * `brightest`: the straight encoded colour above which light is clipped; 1 is white.
     pub fn mix_into(&self, other: &PlanarTile, own: &mut PlanarTile, brightest: f32) {
@@ -159,7 +179,8 @@ impl<'c> Behind<'c> {
 }
 
 impl Behind<'_> {
-    /// As [`Behind::mix_into`], but where one population alone sees a surface the pixel is wholly that one's.
+    /// As [`Behind::mix_into`], but where one population alone sees a surface the pixel is wholly
+    /// that one's.
     pub fn take_surface_into(&self, other: &PlanarTile, own: &mut PlanarTile) {
         let corner = self.at.rect();
         for (place, pixel) in self.places().filter(|(_, pixel)| pixel.sees_surface()) {
@@ -189,7 +210,8 @@ fn in_light(to: [f32; 4], from: [f32; 4], share: f32, brightest: f32) -> [f32; 4
     let (a, b) = (light(to), light(from));
     let alpha = to[3] + share * (from[3] - to[3]);
     let per_alpha = 1.0 / alpha.max(f32::MIN_POSITIVE);
-    let encoded = |i: usize| srgb::encode((a[i] + share * (b[i] - a[i])) * per_alpha).min(brightest) * alpha;
+    let encoded =
+        |i: usize| srgb::encode((a[i] + share * (b[i] - a[i])) * per_alpha).min(brightest) * alpha;
     [encoded(0), encoded(1), encoded(2), alpha]
 }
 
@@ -204,6 +226,7 @@ impl PackedTile {
             PackedPixels::Deep(rows) => TilePaint::Deep(rows),
         }
     }
+
     /// Bytes that its pixels take.
     pub fn held_bytes(&self) -> u64 {
         match &self.pixels {
@@ -211,6 +234,7 @@ impl PackedTile {
             PackedPixels::Deep(rows) => size_of_val::<[DeepRow]>(rows) as u64,
         }
     }
+
     /// Every used pixel is opaque.
     pub fn is_opaque(&self) -> bool {
         self.opaque

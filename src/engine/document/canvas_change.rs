@@ -1,9 +1,10 @@
 //! Another canvas under the same drawing: crops, other borders, turns, mirrors. Floor 4.
 //!
-//! Everything follows: paint, live layers, transforms, masks, selections, the maps with their vectors, the parts of the
-//! shape. Moves of whole pixels, quarter turns and mirrors change no value of paint; a turn by another angle turns
-//! paint by its transform, so that turns that cancel out leave nothing. What lies beyond the new canvas is kept, except
-//! for masks. Not here: another size of the picture itself (`scale`).
+//! Everything follows: paint, live layers, transforms, masks, selections, the maps with their
+//! vectors, the parts of the shape. Moves of whole pixels, quarter turns and mirrors change no
+//! value of paint; a turn by another angle turns paint by its transform, so that turns that cancel
+//! out leave nothing. What lies beyond the new canvas is kept, except for masks. Not here: another
+//! size of the picture itself (`scale`).
 
 mod layers;
 mod parts;
@@ -72,16 +73,23 @@ impl CanvasChange {
     /// To a rectangle of the old canvas, which may reach beyond it; `None` for an empty one.
     pub fn crop(from: Size, to: Rect) -> Option<Self> {
         let map = PlaneMap::translation(vec2(-to.x0 as f32, -to.y0 as f32));
-        (!to.is_empty()).then(|| Self { map, from, to: Size::new(to.width() as u32, to.height() as u32) })
+        (!to.is_empty()).then(|| Self {
+            map,
+            from,
+            to: Size::new(to.width() as u32, to.height() as u32),
+        })
     }
-    /// To another size; the anchor says what stays in place. The smaller half of an odd difference comes first. `None`
-    /// for a size without pixels.
+
+    /// To another size; the anchor says what stays in place. The smaller half of an odd difference
+    /// comes first. `None` for a size without pixels.
     pub fn resized(from: Size, to: Size, anchor: CanvasAnchor) -> Option<Self> {
         let (across, down) = anchor.halves();
-        let (wider, taller) = (to.width as i32 - from.width as i32, to.height as i32 - from.height as i32);
+        let (wider, taller) =
+            (to.width as i32 - from.width as i32, to.height as i32 - from.height as i32);
         let (x0, y0) = (-(wider * across).div_euclid(2), -(taller * down).div_euclid(2));
         Self::crop(from, Rect::new(x0, y0, x0 + to.width as i32, y0 + to.height as i32))
     }
+
     /// Turned by so many quarters, counter-clockwise as seen.
     pub fn quarter_turns(from: Size, turns: i32) -> Self {
         let (w, h) = (f64::from(from.width), f64::from(from.height));
@@ -93,12 +101,16 @@ impl CanvasChange {
         };
         Self { map: PlaneMap::affine(matrix).unwrap_or_default(), from, to }
     }
-    /// Turned by an angle, degrees counter-clockwise as seen, on a canvas that holds all of the old one. Its sides are
-    /// odd if the old ones are, so that pixels turned back lie on pixels.
+
+    /// Turned by an angle, degrees counter-clockwise as seen, on a canvas that holds all of the old
+    /// one. Its sides are odd if the old ones are, so that pixels turned back lie on pixels.
     pub fn turned(from: Size, degrees: f64) -> Self {
         let quarters = (degrees / 90.0).round();
         if !degrees.is_finite() || (degrees - quarters * 90.0).abs() < 1e-6 {
-            return Self::quarter_turns(from, if degrees.is_finite() { quarters.rem_euclid(4.0) as i32 } else { 0 });
+            return Self::quarter_turns(
+                from,
+                if degrees.is_finite() { quarters.rem_euclid(4.0) as i32 } else { 0 },
+            );
         }
         let (sine, cosine) = degrees.to_radians().sin_cos();
         let (w, h) = (f64::from(from.width), f64::from(from.height));
@@ -109,9 +121,11 @@ impl CanvasChange {
         let width = side(w * cosine.abs() + h * sine.abs(), from.width);
         let height = side(w * sine.abs() + h * cosine.abs(), from.height);
         let to = Size::new(width, height);
-        let map = PlaneMap::rotation(degrees, from.center()).then(&PlaneMap::translation(to.center() - from.center()));
+        let map = PlaneMap::rotation(degrees, from.center())
+            .then(&PlaneMap::translation(to.center() - from.center()));
         Self { map, from, to }
     }
+
     pub fn mirrored(from: Size, mirror: CanvasMirror) -> Self {
         let matrix = match mirror {
             CanvasMirror::LeftRight => [-1.0, 0.0, 0.0, 1.0, f64::from(from.width), 0.0],
@@ -119,34 +133,42 @@ impl CanvasChange {
         };
         Self { map: PlaneMap::affine(matrix).unwrap_or_default(), from, to: from }
     }
+
     /// The size of the new canvas.
     pub fn size(&self) -> Size {
         self.to
     }
+
     /// Where a point of the old canvas lies on the new one.
     pub fn point(&self, p: Vec2) -> Vec2 {
         self.map.to_canvas(p).unwrap_or(p)
     }
+
     /// It changes nothing.
     pub fn is_none(&self) -> bool {
         self.from == self.to && self.map.is_identity_on(self.from)
     }
+
     /// Its move by whole pixels, if it is one.
     fn pixel_move(&self) -> Option<PixelMove> {
         self.map.pixel_move_on(self.reach())
     }
+
     /// A canvas as large as both.
     fn reach(&self) -> Size {
         Size::new(self.from.width.max(self.to.width), self.from.height.max(self.to.height))
     }
+
     /// Its matrix: orthogonal.
     fn matrix(&self) -> Mat2 {
         self.map.as_affine().map_or(Mat2::IDENTITY, |map| map.matrix2)
     }
+
     /// It moves, and neither turns nor mirrors.
     fn is_shift(&self) -> bool {
         self.matrix() == Mat2::IDENTITY
     }
+
     /// The old canvas lies wholly on the new one.
     fn holds_all(&self) -> bool {
         let (w, h) = (self.from.width as f32, self.from.height as f32);
@@ -161,8 +183,8 @@ impl CanvasChange {
 impl Document {
     /// The drawing on another canvas. Layers keep their ids.
     ///
-    /// Fails, in a sentence, where nothing of the shape would be left, and where the corners of the new canvas cannot
-    /// express a layer's perspective.
+    /// Fails, in a sentence, where nothing of the shape would be left, and where the corners of the
+    /// new canvas cannot express a layer's perspective.
     pub fn on_other_canvas(&self, change: &CanvasChange) -> Result<Document, String> {
         if change.is_none() {
             return Ok(self.clone());
@@ -177,8 +199,13 @@ impl Document {
             other => format!("The surface stays where it is: {other}."),
         })?;
         let source = self.surface_source.as_ref().zip(maps.as_ref());
-        let kept = |kept: &NamedSelection| NamedSelection { selection: carried.of(&kept.selection), ..kept.clone() };
-        let shows = |selection: &Arc<Selection>| !selection.coverage.covered().intersect(change.to.rect()).is_empty();
+        let kept = |kept: &NamedSelection| NamedSelection {
+            selection: carried.of(&kept.selection),
+            ..kept.clone()
+        };
+        let shows = |selection: &Arc<Selection>| {
+            !selection.coverage.covered().intersect(change.to.rect()).is_empty()
+        };
         let both = self.maps_surface().zip(maps.as_ref()).map(|(old, new)| [old, new]);
         let parts = parts::carried(&self.parts.list, change, both);
         let bare = Document {
@@ -189,9 +216,15 @@ impl Document {
             parts: Arc::default(),
             layers,
             selections: self.selections.iter().map(kept).collect(),
-            active_selection: self.active_selection.as_ref().map(|own| carried.of(own)).filter(shows),
+            active_selection: self
+                .active_selection
+                .as_ref()
+                .map(|own| carried.of(own))
+                .filter(shows),
             guides: Arc::new(self.guides.through(&change.map)),
-            assistants: Arc::new(self.assistants.iter().filter_map(|own| own.through(&change.map)).collect()),
+            assistants: Arc::new(
+                self.assistants.iter().filter_map(|own| own.through(&change.map)).collect(),
+            ),
         };
         let next = if parts.is_empty() { bare } else { bare.with_parts(parts).with_homes_of(self) };
         if self.surface.is_some() && next.surface.is_none() {
@@ -201,7 +234,8 @@ impl Document {
     }
 }
 
-const NOTHING_LEFT: &str = "The new canvas would hold nothing of the shape: layers could not be kept to it.";
+const NOTHING_LEFT: &str =
+    "The new canvas would hold nothing of the shape: layers could not be kept to it.";
 
 /// How turned paint is sampled, unless its layer says otherwise.
 const TURNED: Resampling = Resampling::Smooth;

@@ -1,6 +1,6 @@
-//! Composes one tile of a document: its layers from bottom to top, in f32. By the same rules it composes what the other
-//! populations of its contour pixels see (`behind`). Floor 4. `prepare` selects the layers, `content` renders them,
-//! `raster::blend` mixes the pixels.
+//! Composes one tile of a document: its layers from bottom to top, in f32. By the same rules it
+//! composes what the other populations of its contour pixels see (`behind`). Floor 4. `prepare`
+//! selects the layers, `content` renders them, `raster::blend` mixes the pixels.
 
 use super::behind::{Behind, BehindScene};
 use super::deep::DeepTiles;
@@ -33,19 +33,24 @@ impl Composer<'_> {
     pub fn stack(&self, nodes: &[PreparedLayer], onto: &mut PlanarTile) -> ComposeFlow {
         nodes[self.first_visible(nodes)..].iter().try_for_each(|node| self.node(node, onto, false))
     }
+
     /// The topmost node that hides all beneath it, else the bottom one.
     pub fn first_visible(&self, nodes: &[PreparedLayer]) -> usize {
         // The sought adjustment must be reached, so only layers beneath it may hide others.
         let end = nodes.iter().position(|node| self.is_sought_in(node)).unwrap_or(nodes.len());
         nodes[..end].iter().rposition(|node| self.hides_all_beneath(node)).unwrap_or(0)
     }
-    /// The tile of the topmost node, if nothing else is seen: it hides what lies beneath, and nothing is clipped
-    /// to it.
+
+    /// The tile of the topmost node, if nothing else is seen: it hides what lies beneath, and
+    /// nothing is clipped to it.
     pub fn only_tile(&self, nodes: &[PreparedLayer]) -> Option<Arc<Tile>> {
-        let node = nodes.last().filter(|node| node.clipped.is_empty() && self.hides_all_beneath(node))?;
+        let node =
+            nodes.last().filter(|node| node.clipped.is_empty() && self.hides_all_beneath(node))?;
         if let TileContent::Tile(tile) = self.painted(node) { Some(tile) } else { None }
     }
-    /// Composes one layer, with those clipped to it, onto a tile. `atop`: it is itself clipped to what is there.
+
+    /// Composes one layer, with those clipped to it, onto a tile. `atop`: it is itself clipped to
+    /// what is there.
     fn node(&self, node: &PreparedLayer, onto: &mut PlanarTile, atop: bool) -> ComposeFlow {
         let coverage = match &self.behind {
             Some(behind) => mask::coverage_behind(node, behind),
@@ -56,16 +61,31 @@ impl Composer<'_> {
         }
         match node.layer.content.role() {
             Role::Adjusts(_) => self.adjustment(node, onto, &coverage),
-            // Clipped to something, or with something clipped to it, a group needs pixels of its own.
-            Role::Groups(group) if group.pass_through && !atop && node.clipped.is_empty() && node.warp.is_none() => {
+            // Clipped to something, or with something clipped to it, a group needs pixels of its
+            // own.
+            Role::Groups(group)
+                if group.pass_through
+                    && !atop
+                    && node.clipped.is_empty()
+                    && node.warp.is_none() =>
+            {
                 self.pass_through(node, onto, &coverage)
             }
             _ => self.paint(node, onto, &coverage, atop),
         }
     }
+
     /// A layer with pixels of its own, or an isolated group.
-    fn paint(&self, node: &PreparedLayer, onto: &mut PlanarTile, coverage: &TileCoverage, atop: bool) -> ComposeFlow {
-        let mix = Mix { mode: node.layer.blend, linear: node.layer.blend_linear, atop, ..Mix::default() }.on(self.at);
+    fn paint(
+        &self,
+        node: &PreparedLayer,
+        onto: &mut PlanarTile,
+        coverage: &TileCoverage,
+        atop: bool,
+    ) -> ComposeFlow {
+        let mix =
+            Mix { mode: node.layer.blend, linear: node.layer.blend_linear, atop, ..Mix::default() }
+                .on(self.at);
         let painted = self.content(node)?;
         if node.clipped.is_empty() {
             if let Some(paint) = painted.as_paint() {
@@ -73,8 +93,8 @@ impl Composer<'_> {
             }
             return ComposeFlow::Continue(());
         }
-        // A clipping group: the run on the base's own pixels and in its shape, then onto the backdrop as the base's
-        // blending says.
+        // A clipping group: the run on the base's own pixels and in its shape, then onto the
+        // backdrop as the base's blending says.
         let mut own = self.blank();
         if let Some(paint) = painted.as_paint() {
             own.blend(Mix::default(), paint, &coverage.mask_only());
@@ -85,10 +105,13 @@ impl Composer<'_> {
         self.blend(onto, mix, TilePaint::Planar(&own), &coverage.opacity_only());
         ComposeFlow::Continue(())
     }
+
     /// As many transparent pixels as are composed.
     pub fn blank(&self) -> PlanarTile {
-        self.behind.map_or_else(PlanarTile::transparent, |behind| PlanarTile::of_rows(behind.rows()))
+        self.behind
+            .map_or_else(PlanarTile::transparent, |behind| PlanarTile::of_rows(behind.rows()))
     }
+
     fn blend(&self, onto: &mut PlanarTile, mix: Mix, paint: TilePaint, coverage: &TileCoverage) {
         let Some(behind) = self.behind.filter(|_| mix.mode == BlendMode::Dissolve) else {
             return match self.deep {
@@ -96,12 +119,14 @@ impl Composer<'_> {
                 None => onto.blend(mix, paint, coverage),
             };
         };
-        // Noise is fixed to the canvas, and packed pixels lie anywhere on it. Pixels that are whole or empty stay so.
+        // Noise is fixed to the canvas, and packed pixels lie anywhere on it. Pixels that are whole
+        // or empty stay so.
         let mut dissolved = self.blank();
         dissolved.blend(Mix::default(), paint, coverage);
         behind.dissolve(&mut dissolved);
         onto.blend(mix, TilePaint::Planar(&dissolved), &TileCoverage::FULL);
     }
+
     fn content(&self, node: &PreparedLayer) -> ComposeFlow<TileContent> {
         if let Role::Groups(_) = node.layer.content.role() {
             // What lies beneath an adjustment in it is measured undisplaced.
@@ -116,11 +141,13 @@ impl Composer<'_> {
         }
         ComposeFlow::Continue(self.painted(node))
     }
+
     fn painted(&self, node: &PreparedLayer) -> TileContent {
         self.displaced(node).unwrap_or_else(|| self.painted_in_place(node))
     }
-    /// What a displaced layer shows; `None` where it shows itself, and for one that is not displaced. Both populations
-    /// of a contour pixel see the same, as with paint.
+
+    /// What a displaced layer shows; `None` where it shows itself, and for one that is not
+    /// displaced. Both populations of a contour pixel see the same, as with paint.
     fn displaced(&self, node: &PreparedLayer) -> Option<TileContent> {
         let shown = node.warp.as_ref()?.shown(self.at, &|at| self.in_place(node, at))?;
         let Some(tile) = shown else { return Some(TileContent::Nothing) };
@@ -129,10 +156,12 @@ impl Composer<'_> {
             None => TileContent::Tile(tile),
         })
     }
+
     /// A tile of a layer alone, undisplaced: its contours mixed, not yet clipped to the surface.
     fn in_place(&self, node: &PreparedLayer, at: TileAt) -> Option<Arc<Tile>> {
         let composed = |behind: Option<Behind>| {
-            let composer = Composer { prepared: self.prepared, at, behind, sought: None, deep: None };
+            let composer =
+                Composer { prepared: self.prepared, at, behind, sought: None, deep: None };
             let mut pixels = composer.blank();
             match node.layer.content.role() {
                 Role::Groups(_) => drop(composer.stack(&node.children, &mut pixels)),
@@ -145,11 +174,13 @@ impl Composer<'_> {
             pixels
         };
         let mut pixels = composed(None);
-        if let Some(contours) = self.prepared.contours.as_ref().and_then(|contours| contours.on(at)) {
+        if let Some(contours) = self.prepared.contours.as_ref().and_then(|contours| contours.on(at))
+        {
             let behind = Behind::new(at, contours);
             let other = composed(Some(behind));
             match mask::clip(node) {
-                // The surface cuts what is shown, so that all of a rim's pixel is the surface's here.
+                // The surface cuts what is shown, so that all of a rim's pixel is the surface's
+                // here.
                 Some(_) => behind.take_surface_into(&other, &mut pixels),
                 None => behind.mix_into(&other, &mut pixels, 1.0),
             }
@@ -160,6 +191,7 @@ impl Composer<'_> {
         }
         .map(Arc::new)
     }
+
     fn painted_in_place(&self, node: &PreparedLayer) -> TileContent {
         if let (Some(deep), Some(marks)) = (self.deep, node.layer.content.marks()) {
             return deep.content(node, marks, self.at, self.behind);
@@ -169,11 +201,18 @@ impl Composer<'_> {
             None => node.layer.content.painted(&node.scene, self.at),
         }
     }
+
     fn clipped(&self, base: &PreparedLayer, own: &mut PlanarTile) -> ComposeFlow {
         base.clipped.iter().try_for_each(|node| self.node(node, own, true))
     }
+
     /// The children blend with the backdrop itself; opacity and mask fade between before and after.
-    fn pass_through(&self, node: &PreparedLayer, onto: &mut PlanarTile, coverage: &TileCoverage) -> ComposeFlow {
+    fn pass_through(
+        &self,
+        node: &PreparedLayer,
+        onto: &mut PlanarTile,
+        coverage: &TileCoverage,
+    ) -> ComposeFlow {
         if coverage.is_full() {
             return self.stack(&node.children, onto);
         }
@@ -182,19 +221,29 @@ impl Composer<'_> {
         onto.mix_toward(&after, coverage);
         ComposeFlow::Continue(())
     }
-    /// Changes what lies beneath; what is clipped to it is painted on the changed picture, within its mask.
-    fn adjustment(&self, node: &PreparedLayer, onto: &mut PlanarTile, coverage: &TileCoverage) -> ComposeFlow {
+
+    /// Changes what lies beneath; what is clipped to it is painted on the changed picture, within
+    /// its mask.
+    fn adjustment(
+        &self,
+        node: &PreparedLayer,
+        onto: &mut PlanarTile,
+        coverage: &TileCoverage,
+    ) -> ComposeFlow {
         let index = node.adjustments.start;
         if self.sought == Some(index) {
             return ComposeFlow::Break(std::mem::replace(onto, PlanarTile::transparent()));
         }
-        let (Role::Adjusts(adjustment), Some(&beneath)) = (node.layer.content.role(), self.prepared.beneath.get(index))
+        let (Role::Adjusts(adjustment), Some(&beneath)) =
+            (node.layer.content.role(), self.prepared.beneath.get(index))
         else {
             return ComposeFlow::Continue(());
         };
         let exactness = self.deep.map_or(Exactness::Fast, DeepTiles::exactness);
         let apply = |pixels: &mut PlanarTile| match &self.behind {
-            Some(behind) => adjust_behind(adjustment, &node.seen_behind(*behind), beneath, exactness, pixels),
+            Some(behind) => {
+                adjust_behind(adjustment, &node.seen_behind(*behind), beneath, exactness, pixels)
+            }
             None => {
                 let place = AdjustedPlace::Tile { scene: &node.scene, at: self.at };
                 adjustment.adjust(&place, beneath, exactness, pixels);
@@ -210,13 +259,16 @@ impl Composer<'_> {
         onto.mix_toward(&after, coverage);
         ComposeFlow::Continue(())
     }
+
     fn is_sought_in(&self, node: &PreparedLayer) -> bool {
         self.sought.is_some_and(|index| node.adjustments.contains(&index))
     }
+
     /// Whether this node hides everything beneath it in the tile.
     fn hides_all_beneath(&self, node: &PreparedLayer) -> bool {
         let layer = &node.layer;
-        let may_hide = layer.blend == BlendMode::Normal && layer.opacity >= 1.0 && layer.mask.is_none();
+        let may_hide =
+            layer.blend == BlendMode::Normal && layer.opacity >= 1.0 && layer.mask.is_none();
         // Groups and adjustments are never known to hide before they are composed.
         let is_whole = || match &self.behind {
             Some(behind) => mask::is_whole_behind(node, behind),
@@ -237,7 +289,9 @@ impl PreparedLayer {
         };
         own || self.children.iter().chain(&self.clipped).any(|node| node.has_deep_paint(at))
     }
-    /// Whether a placed picture of more than 8 bits shows on a tile: its own, or one of a layer in or clipped to it.
+
+    /// Whether a placed picture of more than 8 bits shows on a tile: its own, or one of a layer in
+    /// or clipped to it.
     pub(super) fn shows_deep_picture(&self, at: TileAt) -> bool {
         let own = match &self.layer.content {
             Content::Image(live) if live.params().source.picture.is_deep() => {
@@ -247,6 +301,7 @@ impl PreparedLayer {
         };
         own || self.children.iter().chain(&self.clipped).any(|node| node.shows_deep_picture(at))
     }
+
     fn seen_behind<'s>(&'s self, behind: Behind<'s>) -> BehindScene<'s> {
         BehindScene { behind, front: &self.scene, sheet: self.behind.as_ref() }
     }
@@ -263,5 +318,10 @@ fn adjust_behind(
     let surface = scene.sheet.and_then(|sheet| sheet.surface.as_deref());
     let places: Vec<Option<(usize, usize)>> =
         (0..scene.behind.rows() * TILE).map(|place| scene.behind.sheet_pixel(place)).collect();
-    adjustment.adjust(&AdjustedPlace::Packed { surface, places: &places }, beneath, exactness, pixels);
+    adjustment.adjust(
+        &AdjustedPlace::Packed { surface, places: &places },
+        beneath,
+        exactness,
+        pixels,
+    );
 }

@@ -49,8 +49,8 @@ crate::named! {
     }
 }
 
-/// `"convention"` of normals: the words `"auto"`, `"opengl"`, `"directx"`, or an object of the fields below, each of
-/// which is detected where it is absent.
+/// `"convention"` of normals: the words `"auto"`, `"opengl"`, `"directx"`, or an object of the
+/// fields below, each of which is detected where it is absent.
 ///
 /// ```json
 /// { "encoding": "unsigned", "channels": "rgb", "srgb": false, "flip_x": false, "flip_y": true, "flip_z": false,
@@ -60,7 +60,8 @@ crate::named! {
 pub struct NormalConvention {
     /// How three numbers make a normal; absent: detected.
     pub encoding: Option<NormalEncoding>,
-    /// Which channels hold x, y and z: indices 0 … 3 for red, green, blue, alpha. JSON: three of the letters `rgba`.
+    /// Which channels hold x, y and z: indices 0 … 3 for red, green, blue, alpha. JSON: three of
+    /// the letters `rgba`.
     pub channels: Option<[u8; 3]>,
     /// The numbers went through the sRGB curve by mistake: undo it.
     pub srgb: Option<bool>,
@@ -72,8 +73,8 @@ pub struct NormalConvention {
     pub flip_z: Option<bool>,
     /// What the axes are those of; absent: detected.
     pub space: Option<NormalSpace>,
-    /// Rows of the rotation n_camera = R n_world (camera: x right, y up, z to the viewer). JSON: 3 × 3 or 4 × 4, row by
-    /// row, for column vectors.
+    /// Rows of the rotation n_camera = R n_world (camera: x right, y up, z to the viewer). JSON: 3
+    /// × 3 or 4 × 4, row by row, for column vectors.
     pub world_to_camera: Option<[[f32; 3]; 3]>,
     /// Treat |xy| < 1.5/255 as 0 where an 8-bit map is flat.
     pub snap_flat: Option<bool>,
@@ -103,24 +104,28 @@ impl NormalConvention {
             _ => None,
         }
     }
+
     /// The word that means exactly this convention.
     pub fn word(&self) -> Option<&'static str> {
         Self::WORDS.into_iter().find(|w| Self::from_word(w).as_ref() == Some(self))
     }
+
     /// Reads `channels`: three different letters of `rgba`.
     pub fn channels_from_letters(letters: &str) -> Option<[u8; 3]> {
-        let at: Vec<u8> = letters.chars().map(|c| "rgba".find(c).map(|i| i as u8)).collect::<Option<_>>()?;
+        let at: Vec<u8> =
+            letters.chars().map(|c| "rgba".find(c).map(|i| i as u8)).collect::<Option<_>>()?;
         let [x, y, z] = at.try_into().ok()?;
         (x != y && y != z && x != z).then_some([x, y, z])
     }
+
     /// The letters of `channels`.
     pub fn letters(channels: [u8; 3]) -> String {
         channels.iter().filter_map(|&c| "rgba".chars().nth(c.into())).collect()
     }
 }
 
-/// How depth is to be read: `"near"`, `"encoding"`, `"fov"`, `"background"`, `"range_px"` and `"smooth_steps"`, each
-/// detected where absent.
+/// How depth is to be read: `"near"`, `"encoding"`, `"fov"`, `"background"`, `"range_px"` and
+/// `"smooth_steps"`, each detected where absent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DepthConvention {
     /// Which end of the range is near.
@@ -162,6 +167,7 @@ mod tests {
         let own = NormalConvention { flip_x: Some(true), ..NormalConvention::default() };
         assert_eq!(own.word(), None);
     }
+
     #[test]
     fn channel_letters_read_back_and_repeats_are_refused() {
         for letters in ["rgb", "gbr", "agb"] {

@@ -1,8 +1,11 @@
-//! Cutting and copying the selected part of a layer. Paint loses or keeps its pixels; strokes stay strokes, bounded by
-//! what is left or taken of their selections; all other kinds stay as they are, under a mask. Floor 4.
+//! Cutting and copying the selected part of a layer. Paint loses or keeps its pixels; strokes stay
+//! strokes, bounded by what is left or taken of their selections; all other kinds stay as they are,
+//! under a mask. Floor 4.
 
 use super::selections::picture;
-use super::{Content, Document, Layer, LayerId, LayerLock, LayerMask, Live, PixelLayer, StrokeList};
+use super::{
+    Content, Document, Layer, LayerId, LayerLock, LayerMask, Live, PixelLayer, StrokeList,
+};
 use crate::paint::{Selection, Stroke, StrokeSelection};
 use crate::raster::coverage::product;
 use crate::raster::{CoverageGrid, CoverageTile, TILE, Tile, TileGrid};
@@ -10,9 +13,11 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 impl Document {
-    /// With what is covered removed from a layer. `None` where there is no such layer, or it is locked.
+    /// With what is covered removed from a layer. `None` where there is no such layer, or it is
+    /// locked.
     ///
-    /// A stroke of which nothing is left is removed; in other live layers a mask hides what is covered.
+    /// A stroke of which nothing is left is removed; in other live layers a mask hides what is
+    /// covered.
     pub fn with_cleared(&self, layer: LayerId, covered: &CoverageGrid) -> Option<Document> {
         self.layer(layer).filter(|layer| layer.lock == LayerLock::None)?;
         // Pixels, strokes and masks lie where they show.
@@ -25,17 +30,22 @@ impl Document {
         let left = covered.inverted(self.size.rect());
         match &old.content {
             Content::Pixels(pixels) => {
-                let tiles = changed(&pixels.tiles, covered, |tile, covered| kept(tile, covered, |c| 255 - c));
+                let tiles = changed(&pixels.tiles, covered, |tile, covered| {
+                    kept(tile, covered, |c| 255 - c)
+                });
                 let next = PixelLayer { file: String::new(), tiles, ..pixels.clone() };
                 shown.with_layer(layer, |layer| layer.content = Content::Pixels(next))
             }
             Content::Strokes(_) => {
                 let scene = shown.scene_of(layer)?;
                 shown.with_strokes(layer, |strokes| {
-                    for stroke in strokes.iter_mut().filter(|stroke| stroke.meets(&scene, covered)) {
+                    for stroke in strokes.iter_mut().filter(|stroke| stroke.meets(&scene, covered))
+                    {
                         *stroke = Arc::new(narrowed(stroke, &left));
                     }
-                    strokes.retain(|stroke| stroke.selection().is_none_or(|own| !own.selection.is_empty()));
+                    strokes.retain(|stroke| {
+                        stroke.selection().is_none_or(|own| !own.selection.is_empty())
+                    });
                     Some(())
                 })
             }
@@ -45,26 +55,31 @@ impl Document {
             }
         }
     }
-    /// The covered part of a layer, as a layer of its own under a fresh id: paint with those pixels, the strokes that
-    /// meet the coverage, bounded to it, or the same live layer under a mask. `None` where nothing of the layer is
-    /// there.
+
+    /// The covered part of a layer, as a layer of its own under a fresh id: paint with those
+    /// pixels, the strokes that meet the coverage, bounded to it, or the same live layer under a
+    /// mask. `None` where nothing of the layer is there.
     pub fn copied_from(&self, layer: LayerId, covered: &CoverageGrid) -> Option<Layer> {
         let shown = self.with_transform_applied(layer)?;
         let old = shown.layer(layer)?;
         if old.is_warped() {
             return None;
         }
-        let mut next = Layer { id: LayerId::fresh(), cache: Default::default(), ..Layer::clone(old) };
+        let mut next =
+            Layer { id: LayerId::fresh(), cache: Default::default(), ..Layer::clone(old) };
         match &old.content {
             Content::Pixels(pixels) => {
                 let tiles = taken(&pixels.tiles, covered);
                 tiles.iter().next()?;
-                next.content = Content::Pixels(PixelLayer { file: String::new(), tiles, ..pixels.clone() });
+                next.content =
+                    Content::Pixels(PixelLayer { file: String::new(), tiles, ..pixels.clone() });
             }
             Content::Strokes(live) => {
                 let scene = shown.scene_of(layer)?;
-                let met = live.params().strokes.iter().filter(|stroke| stroke.meets(&scene, covered));
-                let strokes: Vec<_> = met.map(|stroke| Arc::new(narrowed(stroke, covered))).collect();
+                let met =
+                    live.params().strokes.iter().filter(|stroke| stroke.meets(&scene, covered));
+                let strokes: Vec<_> =
+                    met.map(|stroke| Arc::new(narrowed(stroke, covered))).collect();
                 let strokes: Vec<_> = strokes
                     .into_iter()
                     .filter(|s| s.selection().is_some_and(|own| !own.selection.is_empty()))
@@ -84,7 +99,9 @@ impl Document {
         }
         Some(next)
     }
-    /// A layer's mask times coverage, as a picture; a selection by the surface stays one if there was no mask.
+
+    /// A layer's mask times coverage, as a picture; a selection by the surface stays one if there
+    /// was no mask.
     fn narrowed_mask(&self, layer: &Layer, to: &CoverageGrid) -> LayerMask {
         let is_active = self.selected().is_some_and(|active| active.ptr_eq(to));
         if let Some(mask) = self.selection_as_mask().filter(|_| is_active && layer.mask.is_none()) {
@@ -98,8 +115,10 @@ impl Document {
 /// Pixels times their coverage.
 pub fn taken(tiles: &TileGrid, covered: &CoverageGrid) -> TileGrid {
     let mut out = TileGrid::for_rect(tiles.bounds().intersect(covered.bounds()));
-    let both: Vec<_> = tiles.iter().filter_map(|(at, tile)| Some((at, tile, covered.tile(at)?))).collect();
-    let made: Vec<_> = both.par_iter().map(|(at, tile, covered)| (*at, kept(tile, covered, |c| c))).collect();
+    let both: Vec<_> =
+        tiles.iter().filter_map(|(at, tile)| Some((at, tile, covered.tile(at)?))).collect();
+    let made: Vec<_> =
+        both.par_iter().map(|(at, tile, covered)| (*at, kept(tile, covered, |c| c))).collect();
     made.into_iter().for_each(|(at, tile)| out.set(at, tile));
     out
 }
@@ -111,8 +130,10 @@ fn changed(
     change: impl Fn(&Arc<Tile>, &CoverageTile) -> Option<Arc<Tile>> + Sync,
 ) -> TileGrid {
     let mut out = tiles.clone();
-    let both: Vec<_> = tiles.iter().filter_map(|(at, tile)| Some((at, tile, covered.tile(at)?))).collect();
-    let made: Vec<_> = both.par_iter().map(|(at, tile, covered)| (*at, change(tile, covered))).collect();
+    let both: Vec<_> =
+        tiles.iter().filter_map(|(at, tile)| Some((at, tile, covered.tile(at)?))).collect();
+    let made: Vec<_> =
+        both.par_iter().map(|(at, tile, covered)| (*at, change(tile, covered))).collect();
     made.into_iter().for_each(|(at, tile)| out.set(at, tile));
     out
 }
@@ -127,7 +148,9 @@ fn kept(tile: &Arc<Tile>, covered: &CoverageTile, share: impl Fn(u8) -> u8) -> O
         for (row, covered) in rows.iter_mut().zip(covered.bytes().as_chunks::<TILE>().0) {
             for channel in row {
                 // Rounded to nearest: at most 65535 · 255 + 127.
-                let part = |(v, c): (&mut u16, &u8)| *v = ((u32::from(*v) * u32::from(share(*c)) + 127) / 255) as u16;
+                let part = |(v, c): (&mut u16, &u8)| {
+                    *v = ((u32::from(*v) * u32::from(share(*c)) + 127) / 255) as u16
+                };
                 channel.iter_mut().zip(covered).for_each(part);
             }
         }
@@ -173,8 +196,10 @@ mod tests {
     fn layers() -> Document {
         let samples = |y: f32| [vec2(10.0, y), vec2(190.0, y)].map(Sample::at).to_vec();
         let brush = Brush { size: 30.0, ..Brush::default() };
-        let stroke = |y| Arc::new(Stroke::new(brush.clone(), Operator::None, Color::BLACK, samples(y)));
-        let strokes = Content::Strokes(Live::new(StrokeList { strokes: vec![stroke(30.0), stroke(120.0)] }));
+        let stroke =
+            |y| Arc::new(Stroke::new(brush.clone(), Operator::None, Color::BLACK, samples(y)));
+        let strokes =
+            Content::Strokes(Live::new(StrokeList { strokes: vec![stroke(30.0), stroke(120.0)] }));
         let rgba: Vec<u8> = (0..200 * 150 * 4).map(|i| hash::mix(i) as u8 | 1).collect();
         let tiles = TileGrid::from_straight_rgba(&rgba, 200, 150, 0, 0);
         let paint = Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() });
@@ -183,14 +208,20 @@ mod tests {
         let layers = all.map(|(name, content)| Arc::new(Layer::new(name, content))).to_vec();
         Document { layers, ..Document::empty(SIZE) }
     }
+
     /// One layer alone.
     fn shown(layer: &Layer) -> TileGrid {
         let document = Document { layers: vec![Arc::new(layer.clone())], ..Document::empty(SIZE) };
         flatten(&document, &Progress::default()).unwrap()
     }
+
     /// Soft, hard, and partly empty.
     fn covered() -> CoverageGrid {
-        let plane = Plane::from_fn(SIZE, |x, y| if y < 80 { (x as i32 * 3 - 150).clamp(0, 255) as u8 } else { 0 });
+        let plane =
+            Plane::from_fn(
+                SIZE,
+                |x, y| if y < 80 { (x as i32 * 3 - 150).clamp(0, 255) as u8 } else { 0 },
+            );
         CoverageGrid::from_plane(&plane, 0, 0)
     }
 
@@ -202,14 +233,25 @@ mod tests {
             let copied = shown(&document.copied_from(layer.id, &covered).unwrap());
             let left = document.with_cleared(layer.id, &covered).unwrap();
             let left = shown(left.layer(layer.id).unwrap());
-            for (x, y) in (0..200).step_by(3).flat_map(|x| (0..150).step_by(3).map(move |y| (x, y))) {
-                let (alpha, share) = (f32::from(whole.pixel(x, y)[3]), f32::from(covered.at(x, y)) / 255.0);
+            for (x, y) in (0..200).step_by(3).flat_map(|x| (0..150).step_by(3).map(move |y| (x, y)))
+            {
+                let (alpha, share) =
+                    (f32::from(whole.pixel(x, y)[3]), f32::from(covered.at(x, y)) / 255.0);
                 let (a, b) = (f32::from(copied.pixel(x, y)[3]), f32::from(left.pixel(x, y)[3]));
-                assert!((a - alpha * share).abs() <= 1.0, "{} at {x}, {y}: {a} copied of {alpha}", layer.name);
-                assert!((b - alpha * (1.0 - share)).abs() <= 1.0, "{} at {x}, {y}: {b} left of {alpha}", layer.name);
+                assert!(
+                    (a - alpha * share).abs() <= 1.0,
+                    "{} at {x}, {y}: {a} copied of {alpha}",
+                    layer.name
+                );
+                assert!(
+                    (b - alpha * (1.0 - share)).abs() <= 1.0,
+                    "{} at {x}, {y}: {b} left of {alpha}",
+                    layer.name
+                );
             }
         }
     }
+
     #[test]
     fn only_the_strokes_that_meet_it_are_copied_and_the_others_stay_the_very_same() {
         let document = layers();
@@ -226,6 +268,7 @@ mod tests {
         let all = CoverageGrid::filled(SIZE.rect());
         assert!(document.with_cleared(strokes.id, &all).unwrap().strokes(strokes.id).is_empty());
     }
+
     #[test]
     fn a_locked_layer_is_not_cut() {
         let document = layers();

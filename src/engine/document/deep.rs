@@ -1,5 +1,6 @@
-//! Composing without rounding to bytes: live layers are rendered again, in floats, for files of more than 8 bits.
-//! Floor 4. Not here: rendering marks (`paint`, `shading`), composing layers (`compose`).
+//! Composing without rounding to bytes: live layers are rendered again, in floats, for files of
+//! more than 8 bits. Floor 4. Not here: rendering marks (`paint`, `shading`), composing layers
+//! (`compose`).
 
 use super::behind::Behind;
 use super::layer::marks::Marks;
@@ -14,16 +15,26 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 impl Document {
-    /// Bytes that flattening it in floats takes besides the picture: the textures that images are read from.
+    /// Bytes that flattening it in floats takes besides the picture: the textures that images are
+    /// read from.
     pub fn deep_bytes(&self) -> u64 {
         let of_layer = |layer: &Arc<Layer>| layer.content.marks().map_or(0, Marks::texture_bytes);
-        self.walk().into_iter().map(|(_, layer)| layer).filter(|layer| layer.visible).map(of_layer).sum()
+        self.walk()
+            .into_iter()
+            .map(|(_, layer)| layer)
+            .filter(|layer| layer.visible)
+            .map(of_layer)
+            .sum()
     }
-    /// Whether bytes between live layers can differ from floats by more than two levels in the picture: where a steep
-    /// blend mode or radiance scaling magnifies how they were rounded.
+
+    /// Whether bytes between live layers can differ from floats by more than two levels in the
+    /// picture: where a steep blend mode or radiance scaling magnifies how they were rounded.
     pub fn shows_rounding(&self) -> bool {
-        let shown = || self.walk().into_iter().map(|(_, layer)| layer).filter(|layer| layer.visible);
-        let magnifies = |layer: &Arc<Layer>| layer.blend.is_steep() || matches!(layer.content.role(), Role::Adjusts(_));
+        let shown =
+            || self.walk().into_iter().map(|(_, layer)| layer).filter(|layer| layer.visible);
+        let magnifies = |layer: &Arc<Layer>| {
+            layer.blend.is_steep() || matches!(layer.content.role(), Role::Adjusts(_))
+        };
         shown().any(magnifies) && shown().any(|layer| layer.content.marks().is_some())
     }
 }
@@ -33,8 +44,8 @@ impl Document {
 pub enum Highlights {
     /// Each layer is clipped at white, as a screen shows it: for pictures of 16 bits.
     Clipped,
-    /// Pictures, materials and radiance scaling keep it: for files of light. Blend modes whose formula ends at white
-    /// clip what they mix.
+    /// Pictures, materials and radiance scaling keep it: for files of light. Blend modes whose
+    /// formula ends at white clip what they mix.
     Kept,
 }
 
@@ -43,7 +54,8 @@ pub(super) struct DeepTiles {
     highlights: Highlights,
     /// Kept, so that each is made once.
     _textures: Vec<Arc<DeepTexture>>,
-    /// Tiles that were rendered together, by layer and place; `true` for those behind contours, else on the canvas.
+    /// Tiles that were rendered together, by layer and place; `true` for those behind contours,
+    /// else on the canvas.
     together: HashMap<(LayerId, TileAt, bool), Option<PlanarTile>>,
 }
 
@@ -55,11 +67,13 @@ impl DeepTiles {
         });
         Self { highlights, _textures: textures, together: HashMap::new() }
     }
+
     /// How many textures are kept.
     #[cfg(test)]
     pub fn held(&self) -> usize {
         self._textures.len()
     }
+
     /// Renders what is to be rendered together on some tiles, and drops what was on others.
     pub fn render(&mut self, prepared: &PreparedDocument, tiles: &[TileAt], progress: &Progress) {
         let found = Mutex::new(HashMap::new());
@@ -68,16 +82,30 @@ impl DeepTiles {
             for scene in std::iter::once(&node.scene).chain(&node.behind) {
                 let (id, is_behind) = (node.layer.id, scene.sheet().is_some());
                 let done = |at, tile| {
-                    found.lock().unwrap_or_else(PoisonError::into_inner).insert((id, at, is_behind), tile);
+                    found
+                        .lock()
+                        .unwrap_or_else(PoisonError::into_inner)
+                        .insert((id, at, is_behind), tile);
                 };
                 marks.together(scene, tiles, progress, &done);
             }
         });
         self.together = found.into_inner().unwrap_or_else(PoisonError::into_inner);
     }
+
     /// A live layer's pixels on a tile, or behind its contours.
-    pub fn content(&self, node: &PreparedLayer, marks: &dyn Marks, at: TileAt, behind: Option<Behind>) -> TileContent {
-        let pixels = |scene: &Scene| match self.together.get(&(node.layer.id, at, scene.sheet().is_some())) {
+    pub fn content(
+        &self,
+        node: &PreparedLayer,
+        marks: &dyn Marks,
+        at: TileAt,
+        behind: Option<Behind>,
+    ) -> TileContent {
+        let pixels = |scene: &Scene| match self.together.get(&(
+            node.layer.id,
+            at,
+            scene.sheet().is_some(),
+        )) {
             Some(known) => known.clone(),
             None => marks.pixels(scene, at),
         };
@@ -85,7 +113,8 @@ impl DeepTiles {
             None => pixels(&node.scene),
             Some(behind) => {
                 let on_sheet = node.behind.as_ref().and_then(pixels);
-                let bare = if marks.stay() && behind.has_bare() { pixels(&node.scene) } else { None };
+                let bare =
+                    if marks.stay() && behind.has_bare() { pixels(&node.scene) } else { None };
                 Some(behind.packed_deep(on_sheet.as_ref(), bare.as_ref()))
             }
         };
@@ -95,6 +124,7 @@ impl DeepTiles {
         }
         TileContent::Group(found)
     }
+
     /// The straight encoded colour above which light is clipped.
     pub fn brightest(&self) -> f32 {
         match self.highlights {
@@ -102,6 +132,7 @@ impl DeepTiles {
             Highlights::Kept => BRIGHTEST,
         }
     }
+
     pub fn exactness(&self) -> Exactness {
         match self.highlights {
             Highlights::Clipped => Exactness::Exact,

@@ -1,6 +1,6 @@
-//! What must be redrawn between two versions of a document: the tiles in which they may differ, found by comparing
-//! pointers and parameters, never pixels. Floor 4. It is conservative: a tile that is not reported is the same; a
-//! reported one may differ.
+//! What must be redrawn between two versions of a document: the tiles in which they may differ,
+//! found by comparing pointers and parameters, never pixels. Floor 4. It is conservative: a tile
+//! that is not reported is the same; a reported one may differ.
 
 use super::layer::content::{Changed, Touched};
 use super::layer::on_canvas::on_canvas;
@@ -16,8 +16,13 @@ pub fn diff(old: &Document, new: &Document) -> BTreeSet<TileAt> {
     if !old.scene().is_same(&new.scene()) {
         return TileAt::covering(new.size.rect()).collect();
     }
-    let mut diff =
-        Diff { old: contexts(old), new: contexts(new), document: new, scene: new.scene(), changed: BTreeSet::new() };
+    let mut diff = Diff {
+        old: contexts(old),
+        new: contexts(new),
+        document: new,
+        scene: new.scene(),
+        changed: BTreeSet::new(),
+    };
     diff.stack(&old.layers, &new.layers, false);
     diff.changed
 }
@@ -29,8 +34,8 @@ struct LayerContext {
     base: Option<LayerId>,
     /// Whether a visible layer is clipped to it.
     is_base: bool,
-    /// The normal layers that affect it. The pointers are only compared; both documents keep the layers alive
-    /// meanwhile.
+    /// The normal layers that affect it. The pointers are only compared; both documents keep the
+    /// layers alive meanwhile.
     normals: Vec<*const Layer>,
     /// What takes the frames of the groups around it to the canvas; absent where nothing does.
     around: Option<LayerMap>,
@@ -55,7 +60,11 @@ fn place(layers: &[Arc<Layer>], around: &LayerMap, all: &mut BTreeMap<LayerId, L
     }
 }
 
-fn survey(layers: &[Arc<Layer>], normals: &mut Vec<*const Layer>, all: &mut BTreeMap<LayerId, LayerContext>) {
+fn survey(
+    layers: &[Arc<Layer>],
+    normals: &mut Vec<*const Layer>,
+    all: &mut BTreeMap<LayerId, LayerContext>,
+) {
     let (mut base, mut base_shows) = (None, false);
     for layer in layers {
         if layer.content.shapes() {
@@ -100,7 +109,8 @@ struct Diff<'d> {
 }
 
 impl Diff<'_> {
-    /// Compares two versions of a list of layers; returns whether anything changed in it, or beneath it (`beneath`).
+    /// Compares two versions of a list of layers; returns whether anything changed in it, or
+    /// beneath it (`beneath`).
     fn stack(&mut self, old: &[Arc<Layer>], new: &[Arc<Layer>], beneath: bool) -> bool {
         let mut changed = beneath;
         let kept = |among: &[Arc<Layer>]| {
@@ -111,22 +121,32 @@ impl Diff<'_> {
         for removed in old.iter().filter(|layer| !in_new(layer)) {
             changed |= self.whole(removed, Version::Old);
         }
-        let ranks: BTreeMap<LayerId, (usize, &Arc<Layer>)> =
-            old.iter().filter(in_new).enumerate().map(|(rank, layer)| (layer.id, (rank, layer))).collect();
+        let ranks: BTreeMap<LayerId, (usize, &Arc<Layer>)> = old
+            .iter()
+            .filter(in_new)
+            .enumerate()
+            .map(|(rank, layer)| (layer.id, (rank, layer)))
+            .collect();
         let mut rank = 0;
         for layer in new {
             match ranks.get(&layer.id).filter(|_| in_old(&layer)) {
                 None => changed |= self.whole(layer, Version::New),
                 // If two layers changed their order, at least one changed its rank.
                 Some(&(before, old)) => {
-                    changed |= if before == rank { self.layer(old, layer, changed) } else { self.both(old, layer) };
+                    changed |= if before == rank {
+                        self.layer(old, layer, changed)
+                    } else {
+                        self.both(old, layer)
+                    };
                     rank += 1;
                 }
             }
         }
         changed
     }
-    /// Compares two versions of a layer in its place; `beneath`: something beneath it in its scope changed.
+
+    /// Compares two versions of a layer in its place; `beneath`: something beneath it in its scope
+    /// changed.
     fn layer(&mut self, old: &Arc<Layer>, new: &Arc<Layer>, beneath: bool) -> bool {
         if !old.visible && !new.visible {
             return false;
@@ -136,7 +156,9 @@ impl Diff<'_> {
         }
         if !same_liquify(old, new) {
             let (was, is) = (self.warp(old, Version::Old), self.warp(new, Version::New));
-            let Some(tiles) = LayerWarp::changed_tiles(was.as_ref(), is.as_ref()) else { return self.both(old, new) };
+            let Some(tiles) = LayerWarp::changed_tiles(was.as_ref(), is.as_ref()) else {
+                return self.both(old, new);
+            };
             let unmoved = Arc::new(Layer { liquify: old.liquify.clone(), ..Layer::clone(new) });
             return self.tiles(tiles) | self.layer(old, &unmoved, beneath);
         }
@@ -156,7 +178,8 @@ impl Diff<'_> {
         {
             // Children of an isolated group have a scope of their own.
             let beneath = beneath && b.pass_through && !new.is_warped();
-            return self.displaced(new, Version::New, |diff| diff.stack(&a.layers, &b.layers, beneath));
+            return self
+                .displaced(new, Version::New, |diff| diff.stack(&a.layers, &b.layers, beneath));
         }
         if beneath && new.content.reads_all_beneath() {
             return self.both(old, new);
@@ -164,7 +187,8 @@ impl Diff<'_> {
         if Arc::ptr_eq(old, new) {
             return false;
         }
-        let (old_seen, new_seen) = (self.on_canvas(old, Version::Old), self.on_canvas(new, Version::New));
+        let (old_seen, new_seen) =
+            (self.on_canvas(old, Version::Old), self.on_canvas(new, Version::New));
         match new_seen.content.changed_from(&old_seen.content, &|| self.seen_by(new.id)) {
             Changed::Nowhere => false,
             Changed::Wholly => self.both(old, new),
@@ -173,69 +197,95 @@ impl Diff<'_> {
             Changed::Tiles(tiles) => self.displaced(new, Version::New, |diff| diff.tiles(tiles)),
         }
     }
+
     fn warp(&self, layer: &Layer, version: Version) -> Option<LayerWarp> {
         let contexts = if version == Version::Old { &self.old } else { &self.new };
         let around = contexts.get(&layer.id).and_then(|context| context.around);
         LayerWarp::of(layer, &around.unwrap_or(LayerMap::none(self.document.size)).within(layer))
     }
+
     /// Reports where a layer shows what `report` reports of it undisplaced.
-    fn displaced(&mut self, layer: &Layer, version: Version, report: impl FnOnce(&mut Self) -> bool) -> bool {
+    fn displaced(
+        &mut self,
+        layer: &Layer,
+        version: Version,
+        report: impl FnOnce(&mut Self) -> bool,
+    ) -> bool {
         let Some(warp) = self.warp(layer, version) else { return report(self) };
         let before = std::mem::take(&mut self.changed);
         let is_any = report(self);
         let own = std::mem::replace(&mut self.changed, before);
         self.tiles(warp.showing(&own.into_iter().collect::<Vec<_>>())) | is_any
     }
+
     /// What both versions of a layer see.
     fn seen_by(&self, layer: LayerId) -> Scene {
         let seen = if self.sees_normals(layer) { self.document.scene_of(layer) } else { None };
         seen.unwrap_or_else(|| self.scene.clone())
     }
+
     fn sees_normals(&self, layer: LayerId) -> bool {
-        [&self.old, &self.new].iter().any(|all| all.get(&layer).is_some_and(|s| !s.normals.is_empty()))
+        [&self.old, &self.new]
+            .iter()
+            .any(|all| all.get(&layer).is_some_and(|s| !s.normals.is_empty()))
     }
+
     /// A layer as it lies on the canvas in one of the documents.
     fn on_canvas(&self, layer: &Arc<Layer>, version: Version) -> Arc<Layer> {
         let contexts = if version == Version::Old { &self.old } else { &self.new };
         let around = contexts.get(&layer.id).and_then(|context| context.around);
         on_canvas(layer, &around.unwrap_or(LayerMap::none(self.document.size)))
     }
+
     /// Whether its own frame or that of a group around it is not the canvas.
     fn stands_elsewhere(&self, layer: &Layer) -> bool {
         let is_taken = self.new.get(&layer.id).is_some_and(|context| context.around.is_some());
         layer.transform.is_some() || layer.liquify.is_some() || layer.on.is_some() || is_taken
     }
+
     fn both(&mut self, old: &Arc<Layer>, new: &Arc<Layer>) -> bool {
         self.whole(old, Version::Old) | self.whole(new, Version::New)
     }
+
     /// Reports every tile that a layer can touch; returns whether there is any.
     fn whole(&mut self, layer: &Arc<Layer>, version: Version) -> bool {
         if !layer.visible {
             return false;
         }
         if let Some(group) = layer.content.group() {
-            let all = |diff: &mut Self| group.layers.iter().fold(false, |any, layer| diff.whole(layer, version) | any);
+            let all = |diff: &mut Self| {
+                group.layers.iter().fold(false, |any, layer| diff.whole(layer, version) | any)
+            };
             return self.displaced(layer, version, all);
         }
         if layer.is_warped() && !matches!(layer.content, Content::Pixels(_)) {
-            let bare = Arc::new(Layer { liquify: None, transform: unmeshed(layer), ..Layer::clone(layer) });
+            let bare = Arc::new(Layer {
+                liquify: None,
+                transform: unmeshed(layer),
+                ..Layer::clone(layer)
+            });
             return self.displaced(layer, version, |diff| diff.whole(&bare, version));
         }
         let layer = self.on_canvas(layer, version);
         let canvas = self.scene.size.rect();
         // Normal layers replace the canvas's surface.
-        let touched = layer.content.touched(Some(&self.scene).filter(|_| !self.sees_normals(layer.id)));
+        let touched =
+            layer.content.touched(Some(&self.scene).filter(|_| !self.sees_normals(layer.id)));
         match touched {
             Touched::Nowhere => false,
             Touched::Canvas => self.rect(canvas),
-            Touched::Rects(rects) => rects.into_iter().fold(false, |changed, rect| self.rect(rect) | changed),
+            Touched::Rects(rects) => {
+                rects.into_iter().fold(false, |changed, rect| self.rect(rect) | changed)
+            }
             Touched::Tiles(tiles) => self.tiles(tiles),
         }
     }
+
     fn rect(&mut self, rect: Rect) -> bool {
         let tiles = TileAt::covering(rect.intersect(self.scene.size.rect())).collect();
         self.tiles(tiles)
     }
+
     fn tiles(&mut self, tiles: Vec<TileAt>) -> bool {
         let canvas = self.scene.size.rect();
         let on_canvas = |at: &TileAt| !at.rect().intersect(canvas).is_empty();

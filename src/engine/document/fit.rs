@@ -1,6 +1,7 @@
-//! Whether a file can hold a document: every number in its range, and no more of anything than readers accept. An edit
-//! beyond these limits is refused at once, so that whatever can be set can be saved and opened. Floor 4. The ranges are
-//! those of the types that hold the numbers; readers use the same ones.
+//! Whether a file can hold a document: every number in its range, and no more of anything than
+//! readers accept. An edit beyond these limits is refused at once, so that whatever can be set can
+//! be saved and opened. Floor 4. The ranges are those of the types that hold the numbers; readers
+//! use the same ones.
 
 mod light;
 mod marks;
@@ -8,8 +9,8 @@ mod selections;
 
 use super::TransformShape;
 use super::{
-    Assistant, Content, DerivedMask, DetailSource, Document, HomeFrame, Layer, LayerMask, LayerTransform, MaskKind,
-    Part, PixelLayer, SelectionList,
+    Assistant, Content, DerivedMask, DetailSource, Document, HomeFrame, Layer, LayerMask,
+    LayerTransform, MaskKind, Part, PixelLayer, SelectionList,
 };
 use crate::math::range::{at_most, within};
 use crate::math::{COORDINATE, Size};
@@ -28,11 +29,13 @@ impl Document {
     pub const DEEPEST: usize = 50;
     /// Pen samples: days of painting.
     pub const MOST_SAMPLES: usize = 32_000_000;
-    /// Values of its description, an object counting as eight; each takes some eighty bytes while it is read.
+    /// Values of its description, an object counting as eight; each takes some eighty bytes while
+    /// it is read.
     pub const MOST_VALUES: usize = 4_000_000;
 
-    /// Refuses what files cannot hold, in a sentence that names the layer. Layers that `before` holds unchanged are
-    /// only counted, so that an opened document can be edited whatever it holds.
+    /// Refuses what files cannot hold, in a sentence that names the layer. Layers that `before`
+    /// holds unchanged are only counted, so that an opened document can be edited whatever it
+    /// holds.
     pub fn fits(&self, before: Option<&Document>) -> Result<(), String> {
         let mut known = HashSet::new();
         if let Some(before) = before {
@@ -44,7 +47,8 @@ impl Document {
             total.add(layer, depth);
             if fit.is_ok() && !known.contains(&Arc::as_ptr(layer)) {
                 let was = before.and_then(|before| before.layer(layer.id));
-                fit = layer_fits(layer, was.map(|was| &**was), self.size).map_err(|why| named(layer, &why));
+                fit = layer_fits(layer, was.map(|was| &**was), self.size)
+                    .map_err(|why| named(layer, &why));
             }
         });
         self.parts.list.iter().for_each(|part| total.add_part(part));
@@ -62,15 +66,24 @@ impl Document {
 
 impl Document {
     fn aids_fit(&self) -> Fit {
-        self.guides.fits().and_then(|()| Assistant::all_fit(&self.assistants)).map_err(|why| format!("{why}."))
+        self.guides
+            .fits()
+            .and_then(|()| Assistant::all_fit(&self.assistants))
+            .map_err(|why| format!("{why}."))
     }
+
     fn surface_fits(&self) -> Fit {
-        self.surface_source.as_ref().map_or(Ok(()), |source| source.fits().map_err(|why| format!("Surface: {why}.")))
+        self.surface_source
+            .as_ref()
+            .map_or(Ok(()), |source| source.fits().map_err(|why| format!("Surface: {why}.")))
     }
+
     /// Whether every home is the canvas or one of the parts.
     fn homes_fit(&self) -> Result<(), String> {
         let known = |home: &HomeFrame| match home.part() {
-            Some(id) if self.parts.part(id).is_none() => Err(format!("is on “{id}”, and there is no such part")),
+            Some(id) if self.parts.part(id).is_none() => {
+                Err(format!("is on “{id}”, and there is no such part"))
+            }
             _ => Ok(()),
         };
         let of_strokes = |layer: &Layer| match &layer.content {
@@ -128,8 +141,13 @@ impl Total {
         // An empty group adds no depth.
         self.deepest = self.deepest.max(depth);
         self.values += Self::A_LAYER;
-        self.values += layer.liquify.as_ref().map_or(0, |liquify| A_BLOCK * liquify.blocks().count());
-        self.values += layer.transform.as_ref().and_then(|own| own.mesh()).map_or(0, |mesh| 10 * mesh.points().len());
+        self.values +=
+            layer.liquify.as_ref().map_or(0, |liquify| A_BLOCK * liquify.blocks().count());
+        self.values += layer
+            .transform
+            .as_ref()
+            .and_then(|own| own.mesh())
+            .map_or(0, |mesh| 10 * mesh.points().len());
         match &layer.content {
             Content::Image(live) => {
                 let crate::surface::Bend { anchors, pieces, .. } = &live.params().bend;
@@ -145,23 +163,30 @@ impl Total {
             }
             Content::Shading(live) => {
                 let shading = live.params();
-                self.values += light::A_LIGHT * shading.lights.len() + light::A_SCALE * shading.features.scales.len();
+                self.values += light::A_LIGHT * shading.lights.len()
+                    + light::A_SCALE * shading.features.scales.len();
             }
-            Content::RadianceScaling(scaling) => self.values += light::A_SCALE * scaling.features.scales.len(),
+            Content::RadianceScaling(scaling) => {
+                self.values += light::A_SCALE * scaling.features.scales.len()
+            }
             Content::Fill(_) | Content::Pixels(_) | Content::Normals(_) | Content::Group(_) => {}
         }
     }
+
     fn add_part(&mut self, part: &Part) {
         let (samples, values) = part.measured();
         (self.samples, self.values) = (self.samples + samples, self.values + values);
     }
+
     fn fits(&self) -> Fit {
         at_most("Layers", self.layers, Document::MOST_LAYERS)?;
         at_most("Groups around a layer", self.deepest, Document::DEEPEST)?;
         at_most("Readings of the pen in the drawing", self.samples, Document::MOST_SAMPLES)?;
         if self.values > Document::MOST_VALUES {
             let what = "strokes, anchors, lights and parts";
-            return Err(format!("The drawing would hold more {what} than a file can hold: bake some"));
+            return Err(format!(
+                "The drawing would hold more {what} than a file can hold: bake some"
+            ));
         }
         Ok(())
     }
@@ -175,7 +200,9 @@ fn layer_fits(layer: &Layer, was: Option<&Layer>, canvas: Size) -> Fit {
     layer.mask.as_ref().map_or(Ok(()), |mask| mask_fits(mask, canvas))?;
     layer.transform.as_ref().map_or(Ok(()), |transform| transform.fits())?;
     if layer.is_warped() && !layer.content.can_be_warped() {
-        return Err("shows nothing of its own, so that no mesh and no liquify can displace it".into());
+        return Err(
+            "shows nothing of its own, so that no mesh and no liquify can displace it".into()
+        );
     }
     match &layer.content {
         Content::Fill(_) | Content::Group(_) => Ok(()),
@@ -184,7 +211,8 @@ fn layer_fits(layer: &Layer, was: Option<&Layer>, canvas: Size) -> Fit {
         Content::Gradient(live) => marks::gradient(live.params()),
         Content::Strokes(live) => {
             let old = was.map(|was| &was.content);
-            let old = if let Some(Content::Strokes(old)) = old { &old.params().strokes[..] } else { &[] };
+            let old =
+                if let Some(Content::Strokes(old)) = old { &old.params().strokes[..] } else { &[] };
             marks::strokes(old, &live.params().strokes)
         }
         Content::Shading(live) => light::shading(live.params()),
@@ -201,8 +229,9 @@ fn layer_fits(layer: &Layer, was: Option<&Layer>, canvas: Size) -> Fit {
 }
 
 fn mask_fits(mask: &LayerMask, canvas: Size) -> Fit {
-    let ramp =
-        |from, to, range| within("where the mask is 0", from, range).and(within("where the mask is 1", to, range));
+    let ramp = |from, to, range| {
+        within("where the mask is 0", from, range).and(within("where the mask is 1", to, range))
+    };
     match &mask.kind {
         MaskKind::File { coverage, .. } if coverage.size() != canvas => {
             Err(format!("the mask has {} pixels, the canvas {canvas}", coverage.size()))
@@ -228,13 +257,18 @@ fn pixels_fit(pixels: &PixelLayer, canvas: Size) -> Fit {
     if rect.is_empty() {
         return Ok(());
     }
-    [rect.x0, rect.y0, rect.x1, rect.y1].iter().try_for_each(|v| within("a pixel's place", *v as f32, &COORDINATE))?;
-    // The rectangle is that of whole tiles: the pixels' own is smaller by less than one on each side.
+    [rect.x0, rect.y0, rect.x1, rect.y1]
+        .iter()
+        .try_for_each(|v| within("a pixel's place", *v as f32, &COORDINATE))?;
+    // The rectangle is that of whole tiles: the pixels' own is smaller by less than one on each
+    // side.
     let inner = |long: usize| long.saturating_sub(2 * (TILE - 1)).max(1);
     let (width, height) = (inner(rect.width()), inner(rect.height()));
     let side = (Picture::LONGEST_SIDE_PX).max(canvas.width).max(canvas.height) as usize;
     if width.max(height) > side || width * height > Picture::MOST_PX.max(canvas.area()) {
-        return Err(format!("its pixels would cover {width} × {height} px, more than a picture can hold"));
+        return Err(format!(
+            "its pixels would cover {width} × {height} px, more than a picture can hold"
+        ));
     }
     Ok(())
 }

@@ -1,5 +1,6 @@
-//! Flattening: composes the layers of a document into one picture, tile by tile, in f32, quantised once. Floor 4. Tiles
-//! are independent, so they are composed in parallel, and the bytes do not depend on the number of threads.
+//! Flattening: composes the layers of a document into one picture, tile by tile, in f32, quantised
+//! once. Floor 4. Tiles are independent, so they are composed in parallel, and the bytes do not
+//! depend on the number of threads.
 
 use super::behind::Behind;
 use super::compose::Composer;
@@ -19,9 +20,13 @@ pub fn flatten(document: &Document, progress: &Progress) -> Option<TileGrid> {
 /// Tiles in f32 that are held besides a picture that is composed in floats.
 const DEEP_AT_A_TIME: usize = 256;
 
-/// Flattens the whole document without rounding to bytes: premultiplied, sRGB-encoded, row by row; colours are above
-/// their alpha where `highlights` are kept. `None` if cancelled.
-pub fn flatten_deep(document: &Document, highlights: Highlights, progress: &Progress) -> Option<Vec<[f32; 4]>> {
+/// Flattens the whole document without rounding to bytes: premultiplied, sRGB-encoded, row by row;
+/// colours are above their alpha where `highlights` are kept. `None` if cancelled.
+pub fn flatten_deep(
+    document: &Document,
+    highlights: Highlights,
+    progress: &Progress,
+) -> Option<Vec<[f32; 4]>> {
     let prepared = PreparedDocument::new(document, progress)?;
     let tiles = prepared.all_tiles();
     let mut deep = DeepTiles::new(&prepared, highlights);
@@ -42,8 +47,9 @@ pub fn flatten_deep(document: &Document, highlights: Highlights, progress: &Prog
     Some(pixels)
 }
 
-/// Flattens the whole document to bytes that are rounded once, at the end: live layers are composed in floats. As
-/// [`flatten`] where rounding them in between changes nothing by more than two levels. `None` if cancelled.
+/// Flattens the whole document to bytes that are rounded once, at the end: live layers are composed
+/// in floats. As [`flatten`] where rounding them in between changes nothing by more than two
+/// levels. `None` if cancelled.
 pub fn flatten_rounding_once(document: &Document, progress: &Progress) -> Option<TileGrid> {
     if !document.shows_rounding() {
         return flatten(document, progress);
@@ -72,28 +78,38 @@ fn flatten_in_floats(
     Some(grid)
 }
 
-/// Flattens the whole document to what a paint layer holds: composed without rounding live layers, with 16 bits where
-/// it is soft ([`PlanarTile::kept`]), and where placed pictures of more than 8 are seen. `None` if cancelled.
+/// Flattens the whole document to what a paint layer holds: composed without rounding live layers,
+/// with 16 bits where it is soft ([`PlanarTile::kept`]), and where placed pictures of more than 8
+/// are seen. `None` if cancelled.
 pub fn flatten_to_paint(document: &Document, progress: &Progress) -> Option<TileGrid> {
     let prepared = PreparedDocument::new(document, progress)?;
     flatten_in_floats(&prepared, document, progress, |at, deep| prepared.paint_tile(at, deep))
 }
 
-/// Flattens one layer alone, shown or not, on transparency: its own opacity and mask, not those of the groups around
-/// it. It sees the same surface as in the document. `None` if cancelled or if there is no such layer.
+/// Flattens one layer alone, shown or not, on transparency: its own opacity and mask, not those of
+/// the groups around it. It sees the same surface as in the document. `None` if cancelled or if
+/// there is no such layer.
 pub fn flatten_layer(document: &Document, id: LayerId, progress: &Progress) -> Option<TileGrid> {
     flatten_layers(document, &[id], progress)
 }
 
-/// As [`flatten_layer`], for some layers of one list composed with each other. A layer stays clipped if its base is
-/// among them.
-pub fn flatten_layers(document: &Document, ids: &[LayerId], progress: &Progress) -> Option<TileGrid> {
+/// As [`flatten_layer`], for some layers of one list composed with each other. A layer stays
+/// clipped if its base is among them.
+pub fn flatten_layers(
+    document: &Document,
+    ids: &[LayerId],
+    progress: &Progress,
+) -> Option<TileGrid> {
     flatten(&without_others(document, ids)?, progress)
 }
 
-/// The same with pixels on the surface's rim wholly covered: a mask of `Surface::shares` around it cuts it to the same
-/// picture.
-pub fn flatten_whole(document: &Document, ids: &[LayerId], progress: &Progress) -> Option<TileGrid> {
+/// The same with pixels on the surface's rim wholly covered: a mask of `Surface::shares` around it
+/// cuts it to the same picture.
+pub fn flatten_whole(
+    document: &Document,
+    ids: &[LayerId],
+    progress: &Progress,
+) -> Option<TileGrid> {
     let document = without_others(document, ids)?;
     let mut prepared = PreparedDocument::new(&document, progress)?;
     prepared.whole_rims = true;
@@ -101,20 +117,26 @@ pub fn flatten_whole(document: &Document, ids: &[LayerId], progress: &Progress) 
 }
 
 impl Document {
-    /// With some layers of one list alone, shown or not, without the opacity and masks of the groups around them;
-    /// `None` if there are none of them. They see the surface of this document, from which nothing is made again: it
-    /// has no parts.
+    /// With some layers of one list alone, shown or not, without the opacity and masks of the
+    /// groups around them; `None` if there are none of them. They see the surface of this document,
+    /// from which nothing is made again: it has no parts.
     pub fn with_only(&self, ids: &[LayerId]) -> Option<Document> {
-        Some(Document { layers: alone(&self.layers, ids, true)?, parts: Arc::default(), ..self.clone() })
+        Some(Document {
+            layers: alone(&self.layers, ids, true)?,
+            parts: Arc::default(),
+            ..self.clone()
+        })
     }
 }
 
-/// The same without the hidden ones, which parts may be made of: to be seen, not to be shaped again.
+/// The same without the hidden ones, which parts may be made of: to be seen, not to be shaped
+/// again.
 fn without_others(document: &Document, ids: &[LayerId]) -> Option<Document> {
     Some(Document { layers: alone(&document.layers, ids, false)?, ..document.clone() })
 }
 
-/// The layers with all hidden except some, or without those; `None` if none of the wanted ones is among them.
+/// The layers with all hidden except some, or without those; `None` if none of the wanted ones is
+/// among them.
 fn alone(layers: &[Arc<Layer>], ids: &[LayerId], keeps_hidden: bool) -> Option<Vec<Arc<Layer>>> {
     let (mut found, mut base_is_shown) = (false, false);
     let shown = layers.iter().filter_map(|layer| {
@@ -131,12 +153,19 @@ fn alone(layers: &[Arc<Layer>], ids: &[LayerId], keeps_hidden: bool) -> Option<V
         if let Some(layers) = inner {
             found = true;
             let content = Content::Group(Group { layers, pass_through: true });
-            let next = Layer { visible: true, opacity: 1.0, mask: None, clip_below, ..Layer::clone(layer) };
+            let next = Layer {
+                visible: true,
+                opacity: 1.0,
+                mask: None,
+                clip_below,
+                ..Layer::clone(layer)
+            };
             return Some(Arc::new(Layer { content, ..next }));
         }
         let shapes = layer.content.shapes();
-        (shapes || keeps_hidden)
-            .then(|| Arc::new(Layer { visible: layer.visible && shapes, clip_below, ..Layer::clone(layer) }))
+        (shapes || keeps_hidden).then(|| {
+            Arc::new(Layer { visible: layer.visible && shapes, clip_below, ..Layer::clone(layer) })
+        })
     });
     let shown = shown.collect();
     found.then_some(shown)
@@ -147,21 +176,32 @@ impl PreparedDocument {
     pub fn flatten_tile(&self, at: TileAt) -> Option<Arc<Tile>> {
         self.alone_in_tile(at).or_else(|| self.compose_tile(at, None).quantised().map(Arc::new))
     }
-    /// The tile of the topmost layer where nothing else is seen: what composing would give, to the byte.
+
+    /// The tile of the topmost layer where nothing else is seen: what composing would give, to the
+    /// byte.
     fn alone_in_tile(&self, at: TileAt) -> Option<Arc<Tile>> {
         if self.contours.as_ref().is_some_and(|contours| contours.on(at).is_some()) {
             return None;
         }
-        Composer { prepared: self, at, behind: None, sought: None, deep: None }.only_tile(&self.stack)
+        Composer { prepared: self, at, behind: None, sought: None, deep: None }
+            .only_tile(&self.stack)
     }
-    /// A tile as a paint layer holds it: as it shows, but with 16 bits where it is soft, or shows a picture that has
-    /// them.
+
+    /// A tile as a paint layer holds it: as it shows, but with 16 bits where it is soft, or shows a
+    /// picture that has them.
     fn paint_tile(&self, at: TileAt, deep: &DeepTiles) -> Option<Arc<Tile>> {
         let alone = self.alone_in_tile(at).filter(|tile| tile.is_deep());
-        let was_deep = || self.stack.iter().any(|node| node.has_deep_paint(at) || node.shows_deep_picture(at));
-        let soft = || self.compose_tile(at, Some(deep)).kept_after(was_deep()).filter(Tile::is_deep).map(Arc::new);
+        let was_deep =
+            || self.stack.iter().any(|node| node.has_deep_paint(at) || node.shows_deep_picture(at));
+        let soft = || {
+            self.compose_tile(at, Some(deep))
+                .kept_after(was_deep())
+                .filter(Tile::is_deep)
+                .map(Arc::new)
+        };
         alone.or_else(soft).or_else(|| self.flatten_tile(at))
     }
+
     fn compose_tile(&self, at: TileAt, deep: Option<&DeepTiles>) -> PlanarTile {
         // No adjustment is sought, so composing runs to its end.
         let composed = |behind: Option<Behind>| {
@@ -175,14 +215,22 @@ impl PreparedDocument {
             let behind = Behind::new(at, contours);
             let other = composed(Some(behind));
             match self.whole_rims {
-                false => behind.mix_into(&other, &mut pixels, deep.map_or(1.0, DeepTiles::brightest)),
+                false => {
+                    behind.mix_into(&other, &mut pixels, deep.map_or(1.0, DeepTiles::brightest))
+                }
                 true => behind.take_surface_into(&other, &mut pixels),
             }
         }
         pixels
     }
+
     /// The picture with some of its tiles composed again; `None` if cancelled.
-    pub fn flatten_tiles(&self, old: &TileGrid, tiles: &[TileAt], progress: &Progress) -> Option<TileGrid> {
+    pub fn flatten_tiles(
+        &self,
+        old: &TileGrid,
+        tiles: &[TileAt],
+        progress: &Progress,
+    ) -> Option<TileGrid> {
         let composed = in_parallel(tiles, progress, |at| self.flatten_tile(at))?;
         let mut grid = old.clone();
         grid.reserve(self.size.rect());

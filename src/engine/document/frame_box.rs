@@ -1,4 +1,5 @@
-//! The box around what a layer holds, in its own frame: what the handles of a transform surround. Floor 4.
+//! The box around what a layer holds, in its own frame: what the handles of a transform surround.
+//! Floor 4.
 
 use super::{Content, Document, Layer, LayerId, LayerMap, Live, StrokeList};
 use crate::math::{PlaneMap, Rect, Vec2, vec2};
@@ -16,24 +17,29 @@ pub struct FrameBox {
 impl FrameBox {
     fn of(rect: Rect) -> Option<Self> {
         let corner = |x: i32, y: i32| vec2(x as f32, y as f32);
-        (!rect.is_empty()).then(|| Self { low: corner(rect.x0, rect.y0), high: corner(rect.x1, rect.y1) })
+        (!rect.is_empty())
+            .then(|| Self { low: corner(rect.x0, rect.y0), high: corner(rect.x1, rect.y1) })
     }
+
     fn around(self, other: Self) -> Self {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
+
     /// Upper left, upper right, lower right, lower left.
     pub fn corners(self) -> [Vec2; 4] {
         let Self { low, high } = self;
         [low, vec2(high.x, low.y), high, vec2(low.x, high.y)]
     }
+
     pub fn center(self) -> Vec2 {
         (self.low + self.high) * 0.5
     }
 }
 
 impl Document {
-    /// The box around the content of a layer in its own frame: paint and strokes exactly, strokes on parts of the
-    /// shape in whole tiles, for unbounded content the canvas. `None` for an empty layer.
+    /// The box around the content of a layer in its own frame: paint and strokes exactly, strokes
+    /// on parts of the shape in whole tiles, for unbounded content the canvas. `None` for an empty
+    /// layer.
     pub fn frame_box(&self, id: LayerId) -> Option<FrameBox> {
         let scene = self.scene_of(id)?;
         let layer = self.layer(id)?;
@@ -79,8 +85,8 @@ fn box_of(layer: &Layer, scene: &Scene, map: &LayerMap) -> Option<FrameBox> {
     }
 }
 
-/// The pixels of a grid that are not wholly transparent. Called for every window frame that shows handles: a tile
-/// within the known box is not looked at.
+/// The pixels of a grid that are not wholly transparent. Called for every window frame that shows
+/// handles: a tile within the known box is not looked at.
 fn painted(tiles: &TileGrid) -> Rect {
     let with = |known: Rect, (at, tile): (TileAt, &Arc<Tile>)| match is_within(known, at) {
         true => known,
@@ -95,10 +101,16 @@ fn painted_by_strokes(live: &Live<StrokeList>, scene: &Scene) -> Rect {
     let all = strokes.iter().map(|stroke| stroke.bounds(scene)).fold(Rect::EMPTY, Rect::union);
     let mut tiles: Vec<(TileAt, Rect)> = TileAt::covering(all).map(|at| (at, at.rect())).collect();
     // From the outside in: what lies within the known box is not rendered.
-    tiles.sort_by_key(|(_, tile)| (tile.x0 - all.x0).min(tile.y0 - all.y0).min(all.x1 - tile.x1).min(all.y1 - tile.y1));
+    tiles.sort_by_key(|(_, tile)| {
+        (tile.x0 - all.x0).min(tile.y0 - all.y0).min(all.x1 - tile.x1).min(all.y1 - tile.y1)
+    });
     tiles.into_iter().fold(Rect::EMPTY, |known, (at, _)| {
         let render = || live.tile(scene, at, || stroke::render_tile(strokes, scene, at));
-        if is_within(known, at) { known } else { render().map_or(known, |tile| with_tile(known, at, &tile)) }
+        if is_within(known, at) {
+            known
+        } else {
+            render().map_or(known, |tile| with_tile(known, at, &tile))
+        }
     })
 }
 
@@ -112,9 +124,12 @@ fn with_tile(known: Rect, at: TileAt, tile: &Tile) -> Rect {
     (0..TILE).zip(origin.y0..).fold(known, |all, (row, y)| {
         let is_painted = |x: &usize| tile.is_painted(row * TILE + x);
         match (0..TILE).find(is_painted).zip((0..TILE).rfind(is_painted)) {
-            Some((first, last)) => {
-                all.union(Rect::new(origin.x0 + first as i32, y, origin.x0 + last as i32 + 1, y + 1))
-            }
+            Some((first, last)) => all.union(Rect::new(
+                origin.x0 + first as i32,
+                y,
+                origin.x0 + last as i32 + 1,
+                y + 1,
+            )),
             None => all,
         }
     })
@@ -137,11 +152,13 @@ mod tests {
             for i in 0..3 + seed % 4 {
                 let (x, y) = (random(2 * i, 300), random(2 * i + 1, 200));
                 rgba[((y * 300 + x) * 4 + 3) as usize] = 9;
-                expected = expected.union(Rect::new(x as i32, y as i32, x as i32 + 1, y as i32 + 1));
+                expected =
+                    expected.union(Rect::new(x as i32, y as i32, x as i32 + 1, y as i32 + 1));
             }
             assert_eq!(painted(&TileGrid::from_straight_rgba(&rgba, 300, 200, 0, 0)), expected);
         }
     }
+
     #[test]
     fn the_box_around_strokes_holds_every_pixel_of_them_and_no_row_more() {
         let stroke = |from: Vec2, to: Vec2| {
@@ -149,8 +166,10 @@ mod tests {
             let samples = [from, to].map(Sample::at).to_vec();
             Arc::new(Stroke::new(brush, Operator::None, Color::BLACK, samples))
         };
-        let strokes =
-            vec![stroke(vec2(210.0, 90.0), vec2(300.0, 130.0)), stroke(vec2(150.0, 310.0), vec2(220.0, 200.0))];
+        let strokes = vec![
+            stroke(vec2(210.0, 90.0), vec2(300.0, 130.0)),
+            stroke(vec2(150.0, 310.0), vec2(220.0, 200.0)),
+        ];
         let layer = Layer::new("Strokes", Content::Strokes(Live::new(StrokeList { strokes })));
         let document = Document::empty(Size::new(500, 400));
         let document = Document { layers: vec![Arc::new(layer)], ..document };

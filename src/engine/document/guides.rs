@@ -1,5 +1,5 @@
-//! Guides: straight lines across the canvas that what is dragged snaps to. A value of the document, not part of the
-//! picture. Floor 4. Not here: what snaps to them (`tools`).
+//! Guides: straight lines across the canvas that what is dragged snaps to. A value of the document,
+//! not part of the picture. Floor 4. Not here: what snaps to them (`tools`).
 
 use crate::math::range::{at_most, within};
 use crate::math::{COORDINATE, PlaneMap, Vec2, vec2};
@@ -20,6 +20,7 @@ impl Guides {
     pub fn is_empty(&self) -> bool {
         self.vertical.is_empty() && self.horizontal.is_empty()
     }
+
     /// Refuses what files cannot hold.
     pub fn fits(&self) -> Result<(), String> {
         for lines in [&self.vertical, &self.horizontal] {
@@ -28,7 +29,9 @@ impl Guides {
         }
         Ok(())
     }
-    /// The same lines after a map of the canvas. One that is then neither upright nor level is left out.
+
+    /// The same lines after a map of the canvas. One that is then neither upright nor level is left
+    /// out.
     pub fn through(&self, map: &PlaneMap) -> Self {
         /// Far enough apart to see how a line leans, px.
         const SPAN: f32 = 1024.0;
@@ -50,10 +53,14 @@ impl Guides {
         out.horizontal.retain(range);
         out
     }
+
     /// On a canvas `per_axis` times as large.
     pub(super) fn scaled(&self, per_axis: Vec2) -> Self {
         let by = |lines: &[f32], factor: f32| lines.iter().map(|at| at * factor).collect();
-        Self { vertical: by(&self.vertical, per_axis.x), horizontal: by(&self.horizontal, per_axis.y) }
+        Self {
+            vertical: by(&self.vertical, per_axis.x),
+            horizontal: by(&self.horizontal, per_axis.y),
+        }
     }
 }
 
@@ -76,16 +83,20 @@ mod tests {
             guides.through(&PlaneMap::affine([0.0, -1.0, 1.0, 0.0, 0.0, side]).unwrap())
         });
         assert_eq!(four, guides());
-        let mirrored = guides().through(&PlaneMap::affine([-1.0, 0.0, 0.0, 1.0, 100.0, 0.0]).unwrap());
+        let mirrored =
+            guides().through(&PlaneMap::affine([-1.0, 0.0, 0.0, 1.0, 100.0, 0.0]).unwrap());
         assert_eq!(mirrored, Guides { vertical: vec![90.0, 59.5], horizontal: vec![7.0] });
         assert!(guides().through(&PlaneMap::rotation(30.0, Vec2::ZERO)).is_empty());
     }
+
     #[test]
     fn guides_that_no_file_gives_back_are_refused() {
         assert!(guides().fits().is_ok());
         for at in [f32::NAN, f32::INFINITY, 2e6] {
             assert!(Guides { vertical: vec![at], ..Guides::default() }.fits().is_err(), "{at}");
         }
-        assert!(Guides { horizontal: vec![0.0; Guides::MOST + 1], ..Guides::default() }.fits().is_err());
+        assert!(
+            Guides { horizontal: vec![0.0; Guides::MOST + 1], ..Guides::default() }.fits().is_err()
+        );
     }
 }

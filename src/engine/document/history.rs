@@ -1,13 +1,15 @@
-//! Undo: past documents, each with the name of the edit that made it. Floor 4. A document is a value that shares what
-//! it did not change, so a step takes only the memory of what the edit touched.
+//! Undo: past documents, each with the name of the edit that made it. Floor 4. A document is a
+//! value that shares what it did not change, so a step takes only the memory of what the edit
+//! touched.
 //!
-//! What follows from a document is made before it becomes a step: whoever reads one, or goes back to it, finds the
-//! surface that its parts and layers make.
+//! What follows from a document is made before it becomes a step: whoever reads one, or goes back
+//! to it, finds the surface that its parts and layers make.
 
 use super::Document;
 
-/// The present document, the past ones and the undone ones. With each edit goes a small value of the caller's from
-/// before it and one from after it, such as what was selected: undo gives the first back, redo the second.
+/// The present document, the past ones and the undone ones. With each edit goes a small value of
+/// the caller's from before it and one from after it, such as what was selected: undo gives the
+/// first back, redo the second.
 pub struct History<T> {
     /// Oldest first; the edit of each led away from its document.
     past: Vec<HistoryStep<T>>,
@@ -54,10 +56,12 @@ impl<T> History<T> {
     pub fn new(document: Document, limit: usize) -> Self {
         Self { past: Vec::new(), present: document.reshaped(), future: Vec::new(), limit }
     }
+
     /// The document as it is now.
     pub fn present(&self) -> &Document {
         &self.present
     }
+
     /// Makes an edited document the present one; undone documents are dropped.
     ///
     /// * `before`: what undo gives back.
@@ -68,16 +72,19 @@ impl<T> History<T> {
         let excess = self.past.len().saturating_sub(self.limit);
         self.past.drain(..excess);
     }
+
     /// Whether it was said what redo gives back for the last edit.
     pub fn is_settled(&self) -> bool {
         self.past.last().is_none_or(|step| step.after.is_some())
     }
+
     /// Says what redo gives back for the last edit, unless that was said before.
     pub fn settle(&mut self, after: T) {
         if let Some(step) = self.past.last_mut() {
             step.after.get_or_insert(after);
         }
     }
+
     /// The other documents that it holds, the nearest steps first.
     pub fn others(&self) -> impl Iterator<Item = &Document> {
         let back = |steps: &'_ [HistoryStep<T>], i: usize| steps.len().checked_sub(i + 1);
@@ -86,6 +93,7 @@ impl<T> History<T> {
             past.into_iter().chain(back(&self.future, i).map(|at| &self.future[at].document))
         })
     }
+
     /// Goes back by one edit and returns what was given from before it; `None` at the beginning.
     pub fn undo(&mut self) -> Option<&T> {
         let mut step = self.past.pop()?;
@@ -93,30 +101,36 @@ impl<T> History<T> {
         self.future.push(step);
         self.future.last().map(|step| &step.before)
     }
-    /// Goes forward again by one edit and returns what was given from after it, or from before if that was never set;
-    /// `None` at the end.
+
+    /// Goes forward again by one edit and returns what was given from after it, or from before if
+    /// that was never set; `None` at the end.
     pub fn redo(&mut self) -> Option<&T> {
         let mut step = self.future.pop()?;
         std::mem::swap(&mut self.present, &mut step.document);
         self.past.push(step);
         self.past.last().map(|step| step.after.as_ref().unwrap_or(&step.before))
     }
+
     /// The names of the edits that were made, oldest first.
     pub fn past(&self) -> impl ExactSizeIterator<Item = &str> {
         self.past_labels().map(|label| label.name.as_str())
     }
+
     /// Every edit that was made, oldest first.
     pub fn past_labels(&self) -> impl ExactSizeIterator<Item = &EditLabel> {
         self.past.iter().map(|step| &step.label)
     }
+
     /// Every edit that was undone, the next to redo first.
     pub fn future_labels(&self) -> impl ExactSizeIterator<Item = &EditLabel> {
         self.future.iter().rev().map(|step| &step.label)
     }
+
     /// The edit that undo would revert.
     pub fn done(&self) -> Option<&str> {
         self.past.last().map(|step| step.label.name.as_str())
     }
+
     /// The edit that redo would repeat.
     pub fn undone(&self) -> Option<&str> {
         self.future.last().map(|step| step.label.name.as_str())
@@ -133,9 +147,13 @@ mod tests {
 
     fn painted() -> Document {
         let tiles = TileGrid::from_straight_rgba(&[255; 4 * 128 * 64], 128, 64, 0, 0);
-        let layer = Layer::new("paint", Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles }));
+        let layer = Layer::new(
+            "paint",
+            Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles }),
+        );
         Document { layers: vec![Arc::new(layer)], ..Document::empty(Size::new(128, 64)) }
     }
+
     fn tiles(document: &Document) -> &TileGrid {
         match &document.layers[0].content {
             Content::Pixels(pixels) => &pixels.tiles,
@@ -159,6 +177,7 @@ mod tests {
         assert!(tiles(history.present()).ptr_eq(tiles(&first)));
         assert!(Arc::ptr_eq(&history.present().layers[0], &first.layers[0]));
     }
+
     #[test]
     fn undo_and_redo_walk_the_edits_by_name() {
         let mut history = History::new(painted(), 10);
@@ -182,6 +201,7 @@ mod tests {
         history.commit("Other", painted(), "before Other".into());
         assert_eq!(history.redo(), None, "a new edit forgets what was undone");
     }
+
     #[test]
     fn only_so_many_steps_are_kept() {
         let mut history = History::new(painted(), 2);

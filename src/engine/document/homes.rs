@@ -1,9 +1,10 @@
-//! Edits of homes: what lies on which part of the shape. Whatever else changes, it shows where it showed. Floor 4. Not
-//! here: how homes and transforms are combined (`LayerMap`).
+//! Edits of homes: what lies on which part of the shape. Whatever else changes, it shows where it
+//! showed. Floor 4. Not here: how homes and transforms are combined (`LayerMap`).
 
 use super::layer::content::strokes::{SeenSelections, taken_along};
 use super::{
-    Content, Document, Group, Layer, LayerId, LayerMap, LayerTransform, Live, Parts, StrokeList, TransformShape,
+    Content, Document, Group, Layer, LayerId, LayerMap, LayerTransform, Live, Parts, StrokeList,
+    TransformShape,
 };
 use crate::math::{Affine2, PlaneMap};
 use crate::paint::{HomeFrame, Stroke, StrokeHome};
@@ -13,11 +14,12 @@ use std::sync::Arc;
 type Rehome<'a> = dyn Fn(&HomeFrame) -> Option<HomeFrame> + 'a;
 
 impl Parts {
-    /// Where the frame of a part is: canvas from part. What lies on another part has its frame. `None` if there is
-    /// no such part.
+    /// Where the frame of a part is: canvas from part. What lies on another part has its frame.
+    /// `None` if there is no such part.
     pub fn frame_of(&self, id: &str) -> Option<Affine2> {
         self.body_of(id).map(|part| part.matrix)
     }
+
     /// The home that a part is; `None` if there is no such part.
     pub fn home(&self, id: &str) -> Option<HomeFrame> {
         if id == HomeFrame::CANVAS {
@@ -28,9 +30,14 @@ impl Parts {
 }
 
 impl Document {
-    /// The part that carries a layer: its own home or that of the nearest group around it. `None` for the canvas.
+    /// The part that carries a layer: its own home or that of the nearest group around it. `None`
+    /// for the canvas.
     pub fn home_of(&self, id: LayerId) -> Option<&HomeFrame> {
-        fn find<'d>(layers: &'d [Arc<Layer>], id: LayerId, around: Option<&'d HomeFrame>) -> Option<&'d HomeFrame> {
+        fn find<'d>(
+            layers: &'d [Arc<Layer>],
+            id: LayerId,
+            around: Option<&'d HomeFrame>,
+        ) -> Option<&'d HomeFrame> {
             layers.iter().find_map(|layer| {
                 let home = layer.on.as_ref().or(around);
                 if layer.id == id { home } else { find(&layer.content.group()?.layers, id, home) }
@@ -38,8 +45,10 @@ impl Document {
         }
         find(&self.layers, id, None).filter(|home| !home.is_canvas())
     }
-    /// With a layer on a part of the shape, by its id, or on what is around the layer. It shows where it showed, and is
-    /// carried from there. `None` if there is no such layer or part, or the layer's place there cannot be expressed.
+
+    /// With a layer on a part of the shape, by its id, or on what is around the layer. It shows
+    /// where it showed, and is carried from there. `None` if there is no such layer or part, or the
+    /// layer's place there cannot be expressed.
     pub fn with_layer_on(&self, id: LayerId, part: Option<&str>) -> Option<Document> {
         let on = match part {
             Some(part) => Some(self.parts.home(part)?),
@@ -49,8 +58,15 @@ impl Document {
         let layer = kept_on(self.layer(id)?, on, (&around, &around), &|home| Some(home.clone()))?;
         self.with_layer(id, |old| *old = Layer::clone(&layer))
     }
-    /// With some strokes of a layer on a part, or on what their layer lies on; as [`Document::with_layer_on`].
-    pub fn with_strokes_on(&self, layer: LayerId, chosen: &[usize], part: Option<&str>) -> Option<Document> {
+
+    /// With some strokes of a layer on a part, or on what their layer lies on; as
+    /// [`Document::with_layer_on`].
+    pub fn with_strokes_on(
+        &self,
+        layer: LayerId,
+        chosen: &[usize],
+        part: Option<&str>,
+    ) -> Option<Document> {
         let home = match part {
             Some(part) => Some(self.parts.home(part)?),
             None => None,
@@ -65,8 +81,9 @@ impl Document {
             Some(())
         })
     }
-    /// With everything on the parts that it is on in another document, showing where it shows. What cannot be expressed
-    /// stays on what is around it.
+
+    /// With everything on the parts that it is on in another document, showing where it shows. What
+    /// cannot be expressed stays on what is around it.
     pub(in crate::document) fn with_homes_of(&self, other: &Document) -> Document {
         let mut next = self.clone();
         for (_, layer) in other.walk() {
@@ -78,12 +95,15 @@ impl Document {
             }
             for (i, stroke) in other.strokes(layer.id).iter().enumerate() {
                 if let Some(home) = stroke.home() {
-                    next = next.with_strokes_on(layer.id, &[i], Some(&home.frame.part)).unwrap_or(next);
+                    next = next
+                        .with_strokes_on(layer.id, &[i], Some(&home.frame.part))
+                        .unwrap_or(next);
                 }
             }
         }
         next
     }
+
     /// The map of what is around a layer.
     pub(in crate::document) fn map_around(&self, id: LayerId) -> Option<LayerMap> {
         let none = LayerMap::none(self.size);
@@ -92,6 +112,7 @@ impl Document {
             None => Some(none),
         }
     }
+
     /// With every home where its part is now; itself if nothing moved.
     pub(in crate::document) fn with_homes_placed(&self) -> Document {
         match placed(&self.layers, &self.parts) {
@@ -99,16 +120,23 @@ impl Document {
             None => self.clone(),
         }
     }
-    /// With nothing on some parts: what was on them stays where it shows, carried by what is around it.
+
+    /// With nothing on some parts: what was on them stays where it shows, carried by what is around
+    /// it.
     pub(in crate::document) fn lifted_off(&self, is_gone: impl Fn(&str) -> bool) -> Document {
         let none = LayerMap::none(self.size);
-        let rehome = |home: &HomeFrame| (home.is_canvas() || !is_gone(&home.part)).then(|| home.clone());
-        let lifted = |layer: &Arc<Layer>| kept(layer, (&none, &none), &rehome).unwrap_or_else(|| bare(layer, &rehome));
+        let rehome =
+            |home: &HomeFrame| (home.is_canvas() || !is_gone(&home.part)).then(|| home.clone());
+        let lifted = |layer: &Arc<Layer>| {
+            kept(layer, (&none, &none), &rehome).unwrap_or_else(|| bare(layer, &rehome))
+        };
         Document { layers: self.layers.iter().map(lifted).collect(), ..self.clone() }
     }
+
     /// A layer of another document: homes that do not exist here are removed.
     pub(in crate::document) fn adopted(&self, layer: Layer) -> Layer {
-        let alone = Document { layers: vec![Arc::new(layer.clone())], ..Document::empty(self.size) };
+        let alone =
+            Document { layers: vec![Arc::new(layer.clone())], ..Document::empty(self.size) };
         let known = |id: &str| self.parts.part(id).is_some();
         let all_known = alone.each_home(&mut |home| home.part().is_none_or(known));
         if all_known {
@@ -117,8 +145,12 @@ impl Document {
         let lifted = alone.lifted_off(|id| !known(id));
         lifted.layers.first().map_or(layer, |layer| Layer::clone(layer))
     }
+
     /// Whether a condition holds for every home, of layers and of strokes.
-    pub(in crate::document) fn each_home(&self, agrees: &mut dyn FnMut(&HomeFrame) -> bool) -> bool {
+    pub(in crate::document) fn each_home(
+        &self,
+        agrees: &mut dyn FnMut(&HomeFrame) -> bool,
+    ) -> bool {
         self.walk().into_iter().all(|(_, layer)| {
             layer.on.as_ref().is_none_or(&mut *agrees)
                 && match &layer.content {
@@ -132,17 +164,21 @@ impl Document {
     }
 }
 
-/// A layer and all in it without the homes that go, wherever it moves: for one whose place cannot be expressed.
+/// A layer and all in it without the homes that go, wherever it moves: for one whose place cannot
+/// be expressed.
 fn bare(layer: &Arc<Layer>, rehome: &Rehome) -> Arc<Layer> {
     let mut next = Layer { on: layer.on.as_ref().and_then(rehome), ..Layer::clone(layer) };
     match &mut next.content {
-        Content::Group(group) => group.layers = group.layers.iter().map(|layer| bare(layer, rehome)).collect(),
+        Content::Group(group) => {
+            group.layers = group.layers.iter().map(|layer| bare(layer, rehome)).collect()
+        }
         Content::Strokes(live) if layer.content.has_homes() => {
             let home = |stroke: &Arc<Stroke>| {
                 let goes = stroke.home().is_some_and(|home| rehome(&home.frame).is_none());
                 if goes { Arc::new(Stroke::clone(stroke).on(None)) } else { stroke.clone() }
             };
-            *live = Live::new(StrokeList { strokes: live.params().strokes.iter().map(home).collect() });
+            *live =
+                Live::new(StrokeList { strokes: live.params().strokes.iter().map(home).collect() });
         }
         _ => {}
     }
@@ -161,14 +197,16 @@ fn placed(layers: &[Arc<Layer>], parts: &Parts) -> Option<Vec<Arc<Layer>>> {
     for (i, layer) in layers.iter().enumerate() {
         let on = layer.on.as_ref().and_then(next);
         let content = match &layer.content {
-            Content::Group(group) => {
-                placed(&group.layers, parts).map(|layers| Content::Group(Group { layers, ..group.clone() }))
-            }
+            Content::Group(group) => placed(&group.layers, parts)
+                .map(|layers| Content::Group(Group { layers, ..group.clone() })),
             Content::Strokes(live) if layer.content.has_homes() => {
                 let strokes = &live.params().strokes;
                 let moved: Vec<Option<Arc<Stroke>>> = strokes.iter().map(stroke).collect();
                 moved.iter().any(Option::is_some).then(|| {
-                    let strokes = moved.into_iter().zip(strokes).map(|(new, old)| new.unwrap_or_else(|| old.clone()));
+                    let strokes = moved
+                        .into_iter()
+                        .zip(strokes)
+                        .map(|(new, old)| new.unwrap_or_else(|| old.clone()));
                     Content::Strokes(Live::new(StrokeList { strokes: strokes.collect() }))
                 })
             }
@@ -187,8 +225,8 @@ fn placed(layers: &[Arc<Layer>], parts: &Parts) -> Option<Vec<Arc<Layer>>> {
     out
 }
 
-/// A layer that shows what it showed though what is around it was `old` and is `new`; the same value if nothing in it
-/// has to change. `None` where that cannot be expressed.
+/// A layer that shows what it showed though what is around it was `old` and is `new`; the same
+/// value if nothing in it has to change. `None` where that cannot be expressed.
 pub(in crate::document) fn kept(
     layer: &Arc<Layer>,
     (old, new): (&LayerMap, &LayerMap),
@@ -221,7 +259,8 @@ fn kept_on(
     let now = new.within(&next);
     let content = match &layer.content {
         Content::Group(group) => {
-            let layers: Option<Vec<_>> = group.layers.iter().map(|layer| kept(layer, (&was, &now), rehome)).collect();
+            let layers: Option<Vec<_>> =
+                group.layers.iter().map(|layer| kept(layer, (&was, &now), rehome)).collect();
             let layers = layers?;
             let is_same = layers.iter().zip(&group.layers).all(|(a, b)| Arc::ptr_eq(a, b));
             (!is_same).then(|| Content::Group(Group { layers, ..group.clone() }))
@@ -233,12 +272,14 @@ fn kept_on(
                 None => Some(stroke.clone()),
             });
             let strokes: Vec<Arc<Stroke>> = strokes.collect::<Option<_>>()?;
-            let is_same = strokes.iter().zip(&live.params().strokes).all(|(a, b)| Arc::ptr_eq(a, b));
+            let is_same =
+                strokes.iter().zip(&live.params().strokes).all(|(a, b)| Arc::ptr_eq(a, b));
             (!is_same).then(|| Content::Strokes(Live::new(StrokeList { strokes })))
         }
         _ => None,
     };
-    let is_same = next.transform == layer.transform && next.liquify == layer.liquify && next.on == layer.on;
+    let is_same =
+        next.transform == layer.transform && next.liquify == layer.liquify && next.on == layer.on;
     if content.is_none() && is_same {
         return Some(layer.clone());
     }
@@ -268,9 +309,12 @@ fn stroke_on(
     }
 }
 
-/// A map as a layer's transform that files can hold, none if it moves nothing; outer `None` if there is no such
-/// transform.
-pub(in crate::document) fn transform_of(map: &PlaneMap, of: &LayerMap) -> Option<Option<LayerTransform>> {
+/// A map as a layer's transform that files can hold, none if it moves nothing; outer `None` if
+/// there is no such transform.
+pub(in crate::document) fn transform_of(
+    map: &PlaneMap,
+    of: &LayerMap,
+) -> Option<Option<LayerTransform>> {
     if map.is_identity_on(of.canvas) {
         return Some(None);
     }

@@ -1,5 +1,6 @@
-//! A layer: how it is blended with what lies beneath, and what it holds. Floor 4. A layer holds content, and the
-//! content of a group holds layers. So everything that a layer consists of is in submodules of this one.
+//! A layer: how it is blended with what lies beneath, and what it holds. Floor 4. A layer holds
+//! content, and the content of a group holds layers. So everything that a layer consists of is in
+//! submodules of this one.
 
 pub(super) mod adjustment;
 pub(super) mod cache;
@@ -33,7 +34,8 @@ use crate::raster::{BlendMode, Lattice};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// The identity of a layer: it stays the same through every edit, as long as the program runs. Not stored in files.
+/// The identity of a layer: it stays the same through every edit, as long as the program runs. Not
+/// stored in files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct LayerId(u64);
 
@@ -72,10 +74,11 @@ pub struct Layer {
     pub clip_to_surface: bool,
     /// Where the frame of content and mask lies on the canvas; absent: it is the canvas.
     pub transform: Option<LayerTransform>,
-    /// A displacement backward at each point of the list that holds it, after its own transform; never empty.
+    /// A displacement backward at each point of the list that holds it, after its own transform;
+    /// never empty.
     pub liquify: Option<Arc<Lattice>>,
-    /// The part of the shape that carries it, after its own transform; absent: what carries the group around it, or
-    /// the canvas.
+    /// The part of the shape that carries it, after its own transform; absent: what carries the
+    /// group around it, or the canvas.
     pub on: Option<HomeFrame>,
     /// What it holds.
     pub content: Content,
@@ -110,6 +113,7 @@ impl Layer {
             cache: LayerCache::default(),
         }
     }
+
     /// Its liquify on a plane moved by a map; what lies far beyond the canvas is dropped.
     pub(super) fn carried_liquify(&self, map: &PlaneMap, canvas: Size) -> Option<Arc<Lattice>> {
         let within = canvas.rect().grown(canvas.longer_side() as i32);

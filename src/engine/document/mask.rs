@@ -8,9 +8,9 @@ use super::{DerivedMask, MaskKind, Role};
 use crate::raster::{TileAt, TileCoverage};
 use crate::surface::{ContourPixel, Surface};
 
-/// The coverage of a layer in each pixel of a tile: its opacity, its mask, and the surface if it is clipped to it. A
-/// pixel that the surface covers in part counts as covered: what is clipped to the surface is missing in the rest of
-/// the pixel (`behind`), so that coverage acts once.
+/// The coverage of a layer in each pixel of a tile: its opacity, its mask, and the surface if it is
+/// clipped to it. A pixel that the surface covers in part counts as covered: what is clipped to the
+/// surface is missing in the rest of the pixel (`behind`), so that coverage acts once.
 pub(super) fn coverage(node: &PreparedLayer, at: TileAt) -> TileCoverage {
     let coverage = TileCoverage::uniform(node.layer.opacity);
     let coverage = match clip(node) {
@@ -20,7 +20,10 @@ pub(super) fn coverage(node: &PreparedLayer, at: TileAt) -> TileCoverage {
             TileCover::Whole => coverage,
             TileCover::Part => {
                 let plane = surface.coverage_plane();
-                coverage.times(tile_pixels(at, |x, y| if plane.get(x, y) > Some(0) { 1.0 } else { 0.0 }))
+                coverage.times(tile_pixels(
+                    at,
+                    |x, y| if plane.get(x, y) > Some(0) { 1.0 } else { 0.0 },
+                ))
             }
         },
     };
@@ -39,10 +42,15 @@ pub(super) fn is_whole_on_surface(node: &PreparedLayer, at: TileAt) -> bool {
 pub(super) fn coverage_behind(node: &PreparedLayer, behind: &Behind) -> TileCoverage {
     let mut coverage = TileCoverage::uniform(node.layer.opacity);
     if clip(node).is_some() && behind.has_bare() {
-        coverage = coverage.times_values(behind.values(|_, pixel| if pixel.sees_surface() { 1.0 } else { 0.0 }));
+        coverage = coverage
+            .times_values(behind.values(|_, pixel| if pixel.sees_surface() { 1.0 } else { 0.0 }));
     }
-    let Some(mask) = node.layer.mask.as_ref().filter(|mask| mask.acts_on(&node.scene)) else { return coverage };
-    if let (MaskKind::Derived(DerivedMask::Region(region)), Some(surface)) = (&mask.kind, &node.scene.surface) {
+    let Some(mask) = node.layer.mask.as_ref().filter(|mask| mask.acts_on(&node.scene)) else {
+        return coverage;
+    };
+    if let (MaskKind::Derived(DerivedMask::Region(region)), Some(surface)) =
+        (&mask.kind, &node.scene.surface)
+    {
         // Read from the other population's piece, nearby.
         let grid = surface.region(region);
         let way = |c: u8| f32::from(if mask.invert { 255 - c } else { c }) / 255.0;
@@ -52,7 +60,8 @@ pub(super) fn coverage_behind(node: &PreparedLayer, behind: &Behind) -> TileCove
         };
         return coverage.times_values(behind.values(value));
     }
-    let value = |place: usize, pixel: &ContourPixel| match (behind.sheet_pixel(place), &node.behind) {
+    let value = |place: usize, pixel: &ContourPixel| match (behind.sheet_pixel(place), &node.behind)
+    {
         // A picture lies on the canvas.
         (Some((x, y)), Some(sheet)) if !matches!(mask.kind, MaskKind::File { .. }) => {
             mask.at(sheet, node.behind_curvature.as_deref(), x as i32, y as i32)
@@ -67,8 +76,9 @@ pub(super) fn is_whole_behind(node: &PreparedLayer, behind: &Behind) -> bool {
     clip(node).is_none() || !behind.has_bare()
 }
 
-/// The surface that a layer is clipped to, if any. A group is not clipped, because its layers are themselves clipped;
-/// clipping twice would thin their rims. An adjustment changes only what is painted already.
+/// The surface that a layer is clipped to, if any. A group is not clipped, because its layers are
+/// themselves clipped; clipping twice would thin their rims. An adjustment changes only what is
+/// painted already.
 pub(super) fn clip(node: &PreparedLayer) -> Option<&Surface> {
     let paints = matches!(node.layer.content.role(), Role::Paints | Role::Shapes(_));
     node.scene.surface.as_deref().filter(|_| paints && node.layer.clip_to_surface)

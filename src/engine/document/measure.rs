@@ -1,5 +1,6 @@
-//! Measures what an adjustment must know about the whole composite beneath it before one tile can be adjusted.
-//! Floor 4. Tiles are measured in parallel and added up in their order, so the figures do not depend on the threads.
+//! Measures what an adjustment must know about the whole composite beneath it before one tile can
+//! be adjusted. Floor 4. Tiles are measured in parallel and added up in their order, so the figures
+//! do not depend on the threads.
 
 use super::compose::{ComposeFlow, Composer};
 use super::layer::adjustment::BackdropMeter;
@@ -22,10 +23,17 @@ struct Meter<'a> {
 }
 
 impl PreparedDocument {
-    /// Measures what lies beneath the next adjustment, or takes it from the cache; `None` if cancelled.
-    pub(super) fn measure(&self, adjusted: &AdjustmentLayer, progress: &Progress) -> Option<BackdropStats> {
+    /// Measures what lies beneath the next adjustment, or takes it from the cache; `None` if
+    /// cancelled.
+    pub(super) fn measure(
+        &self,
+        adjusted: &AdjustmentLayer,
+        progress: &Progress,
+    ) -> Option<BackdropStats> {
         match adjusted.layer.content.role() {
-            Role::Adjusts(adjustment) => adjustment.measure(&Meter { prepared: self, adjusted, progress }),
+            Role::Adjusts(adjustment) => {
+                adjustment.measure(&Meter { prepared: self, adjusted, progress })
+            }
             _ => Some(BackdropStats::default()),
         }
     }
@@ -36,6 +44,7 @@ impl BackdropMeter for Meter<'_> {
         let AdjustmentLayer { layer, scene, beneath } = self.adjusted;
         layer.cache.brightest.get(scene, beneath, &(), || self.measure_brightest())
     }
+
     fn gain(&self, scaling: &RadianceScaling, brightest: f32) -> Option<f32> {
         let AdjustmentLayer { layer, scene, beneath } = self.adjusted;
         layer.cache.gain.get(scene, beneath, scaling, || self.measure_gain(scaling, brightest))
@@ -44,31 +53,40 @@ impl BackdropMeter for Meter<'_> {
 
 impl Meter<'_> {
     fn measure_brightest(&self) -> Option<f32> {
-        // A tile that cannot be brighter than one already measured is skipped; the greatest is found in any order.
-        // Luminance is not negative, so floats compare like their bits.
+        // A tile that cannot be brighter than one already measured is skipped; the greatest is
+        // found in any order. Luminance is not negative, so floats compare like their bits.
         let known = AtomicU32::new(0);
         let of_tile = |at| {
             let most = f32::from_bits(known.load(Relaxed));
-            let found = self.tile(at).map_or(0.0, |pixels| brightest(&pixels, &self.adjusted.scene, at, most));
+            let found = self
+                .tile(at)
+                .map_or(0.0, |pixels| brightest(&pixels, &self.adjusted.scene, at, most));
             known.fetch_max(found.to_bits(), Relaxed);
             found
         };
         let tiles = in_parallel(&self.prepared.all_tiles(), self.progress, of_tile)?;
         Some(tiles.into_iter().fold(0.0, f32::max))
     }
+
     fn measure_gain(&self, scaling: &RadianceScaling, brightest: f32) -> Option<f32> {
         let sums = |tried: GainLadder| {
             let of_tile = |at| {
-                let means = |pixels| scaling.means_tile(&self.adjusted.scene, at, brightest, &pixels, tried);
+                let means = |pixels| {
+                    scaling.means_tile(&self.adjusted.scene, at, brightest, &pixels, tried)
+                };
                 self.tile(at).map(means).unwrap_or_default()
             };
             let tiles = in_parallel(&self.prepared.all_tiles(), self.progress, of_tile)?;
             Some(tiles.into_iter().fold(LightSums::default(), LightSums::plus))
         };
-        // What is shown is clipped, so it does not grow with the factor: coarse steps, then finer ones.
-        let Some(finer) = sums(GainLadder::whole())?.finer(GainLadder::whole()) else { return Some(1.0) };
+        // What is shown is clipped, so it does not grow with the factor: coarse steps, then finer
+        // ones.
+        let Some(finer) = sums(GainLadder::whole())?.finer(GainLadder::whole()) else {
+            return Some(1.0);
+        };
         Some(sums(finer)?.gain(finer))
     }
+
     /// One tile of it.
     fn tile(&self, at: TileAt) -> Option<PlanarTile> {
         let sought = Some(self.prepared.beneath.len());
@@ -80,10 +98,11 @@ impl Meter<'_> {
     }
 }
 
-/// The greatest luminance (Rec. 709, linear light, straight colour) of a tile, over the surface where there is one.
+/// The greatest luminance (Rec. 709, linear light, straight colour) of a tile, over the surface
+/// where there is one.
 ///
-/// Pixels less than half covered, by paint or by surface, do not count: their straight colours are mostly rounding.
-/// 0 if a quick test shows that the tile has none above `known`.
+/// Pixels less than half covered, by paint or by surface, do not count: their straight colours are
+/// mostly rounding. 0 if a quick test shows that the tile has none above `known`.
 fn brightest(pixels: &PlanarTile, scene: &Scene, at: TileAt, known: f32) -> f32 {
     if bound(pixels.rows()) <= known {
         return 0.0;
@@ -97,7 +116,10 @@ fn brightest(pixels: &PlanarTile, scene: &Scene, at: TileAt, known: f32) -> f32 
             Some(surface) => {
                 let coverage = surface.coverage_plane().row(y as usize);
                 let here = inside.x0 as usize..(inside.x1 as usize).min(coverage.len());
-                covers.iter_mut().zip(coverage.get(here).unwrap_or_default()).for_each(|(c, &coverage)| *c = coverage);
+                covers
+                    .iter_mut()
+                    .zip(coverage.get(here).unwrap_or_default())
+                    .for_each(|(c, &coverage)| *c = coverage);
             }
             None => covers[..inside.width().min(TILE)].fill(255),
         }
@@ -130,6 +152,7 @@ crate::widest! {
             }
         }
     }
+
     /// Raises each column's value to the luminance of its pixel in a row, where that counts.
     fn raise_to_brightest(row: &PixelRow, covers: &[u8; TILE], most: &mut [f32; TILE]) {
         for x in 0..TILE {

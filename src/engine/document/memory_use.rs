@@ -24,6 +24,7 @@ impl MemoryUse {
     pub fn total(self) -> u64 {
         self.painted + self.pictures + self.maps + self.kept
     }
+
     /// What was added after another count, which this one continues.
     pub fn minus(self, before: Self) -> Self {
         Self {
@@ -33,6 +34,7 @@ impl MemoryUse {
             kept: self.kept - before.kept,
         }
     }
+
     pub fn plus(self, other: Self) -> Self {
         Self {
             painted: self.painted + other.painted,
@@ -43,7 +45,8 @@ impl MemoryUse {
     }
 }
 
-/// A count over documents that share what they hold: each value is counted once, with the first that holds it.
+/// A count over documents that share what they hold: each value is counted once, with the first
+/// that holds it.
 #[derive(Default)]
 pub struct MemoryCount {
     /// Addresses of what was counted. None of it may be dropped while the count goes on.
@@ -56,10 +59,12 @@ impl MemoryCount {
     pub fn used(&self) -> MemoryUse {
         self.used
     }
+
     /// Whether a shared value was not counted yet; from now on it is.
     pub(in crate::document) fn is_new<T: ?Sized>(&mut self, shared: &Arc<T>) -> bool {
         self.seen.insert(Arc::as_ptr(shared).cast::<()>() as usize)
     }
+
     pub(in crate::document) fn add_tiles(&mut self, tiles: &TileGrid) {
         for (_, tile) in tiles.iter() {
             if self.is_new(tile) {
@@ -67,30 +72,39 @@ impl MemoryCount {
             }
         }
     }
+
     pub(in crate::document) fn add_painted(&mut self, bytes: u64) {
         self.used.painted += bytes;
     }
+
     /// Tiles that a layer was rendered to.
     pub(in crate::document) fn add_kept(&mut self, bytes: u64) {
         self.used.kept += bytes;
     }
+
     pub(in crate::document) fn add_stroke(&mut self, stroke: &Arc<Stroke>) {
         if self.is_new(stroke) {
             self.used.painted += size_of_val(stroke.samples()) as u64;
-            stroke.selection().into_iter().for_each(|selection| self.add_selection(&selection.selection));
+            stroke
+                .selection()
+                .into_iter()
+                .for_each(|selection| self.add_selection(&selection.selection));
         }
     }
+
     pub(in crate::document) fn add_picture(&mut self, source: &PictureSource) {
         if self.seen.insert(source.picture.place()) {
             self.used.pictures += source.picture.bytes() as u64;
             self.used.kept += source.texture_bytes();
         }
     }
+
     pub(in crate::document) fn add_selection(&mut self, selection: &Arc<Selection>) {
         if self.is_new(selection) {
             self.add_coverage(&selection.coverage);
         }
     }
+
     pub(in crate::document) fn add_coverage(&mut self, coverage: &CoverageGrid) {
         for (_, tile) in coverage.iter() {
             if self.is_new(tile) {
@@ -98,6 +112,7 @@ impl MemoryCount {
             }
         }
     }
+
     pub(in crate::document) fn add_surface(&mut self, surface: &Arc<Surface>, keeps: bool) {
         if self.is_new(surface) {
             if !keeps {

@@ -1,5 +1,5 @@
-//! Floor 4: the document is a value. It is cheap to clone and never changed while shared: an edit is a new document,
-//! undo is a list of them, and what differs by pointer must be redrawn.
+//! Floor 4: the document is a value. It is cheap to clone and never changed while shared: an edit
+//! is a new document, undo is a list of them, and what differs by pointer must be redrawn.
 
 mod apply_transform;
 pub mod assistants;
@@ -43,15 +43,17 @@ pub use deep::Highlights;
 pub use diff::diff;
 pub use edit::LayerSlot;
 pub use flatten::{
-    flatten, flatten_deep, flatten_layer, flatten_layers, flatten_rounding_once, flatten_to_paint, flatten_whole,
+    flatten, flatten_deep, flatten_layer, flatten_layers, flatten_rounding_once, flatten_to_paint,
+    flatten_whole,
 };
 pub use frame_box::FrameBox;
 pub use guides::Guides;
 pub use history::{EditLabel, History, LabelledLayer};
 pub use layer::{
-    AdjustedPlace, Adjustment, BackdropMeter, Content, DerivedMask, DetailSource, EncodedPixels, Group, Layer,
-    LayerCache, LayerId, LayerLabel, LayerLock, LayerMap, LayerMask, LayerTransform, LayerWarp, Live, LookKind,
-    MaskKind, Mesh, MeshFrame, NormalLayer, PixelLayer, Reach, Role, StrokeList, TransformShape,
+    AdjustedPlace, Adjustment, BackdropMeter, Content, DerivedMask, DetailSource, EncodedPixels,
+    Group, Layer, LayerCache, LayerId, LayerLabel, LayerLock, LayerMap, LayerMask, LayerTransform,
+    LayerWarp, Live, LookKind, MaskKind, Mesh, MeshFrame, NormalLayer, PixelLayer, Reach, Role,
+    StrokeList, TransformShape,
 };
 pub use memory_use::{MemoryCount, MemoryUse};
 pub use parts::{Inflation, OutlineSource, Part, PartKind, Parts};
@@ -73,7 +75,8 @@ pub struct Document {
     pub size: Size,
     /// What is painted on; absent: a flat canvas.
     pub surface: Option<Arc<Surface>>,
-    /// The maps that the surface was made from; absent if there is no surface or it came from no file.
+    /// The maps that the surface was made from; absent if there is no surface or it came from no
+    /// file.
     pub surface_source: Option<Arc<SurfaceSource>>,
     /// The files that `surface_source` names, by their names, where they are known.
     pub surface_files: Arc<BTreeMap<String, Asset>>,
@@ -107,37 +110,51 @@ impl Document {
             assistants: Arc::default(),
         }
     }
+
     /// A canvas of a surface's own size, without layers, to paint on that surface.
     pub fn over(surface: impl Into<Arc<Surface>>) -> Self {
         let surface = surface.into();
         Self { surface: Some(surface.clone()), ..Self::empty(surface.size()) }
     }
+
     /// With one more layer, on top.
     pub fn with_top(mut self, layer: impl Into<Arc<Layer>>) -> Self {
         self.layers.push(layer.into());
         self
     }
+
     /// The canvas as the bottom layer sees it.
     pub fn scene(&self) -> Scene {
         Scene { size: self.size, surface: self.surface.clone() }
     }
-    /// Where the frame of a layer lies: its own transform and those of the groups around it. `None` if there is no such
-    /// layer.
+
+    /// Where the frame of a layer lies: its own transform and those of the groups around it. `None`
+    /// if there is no such layer.
     pub fn map_of(&self, id: LayerId) -> Option<LayerMap> {
         let mut found = None;
-        layer::on_canvas::each_with_map(&self.layers, &LayerMap::none(self.size), &mut |layer, map| {
-            found = found.or((layer.id == id).then_some(map));
-        });
+        layer::on_canvas::each_with_map(
+            &self.layers,
+            &LayerMap::none(self.size),
+            &mut |layer, map| {
+                found = found.or((layer.id == id).then_some(map));
+            },
+        );
         found
     }
+
     /// The layers whose frames are not the canvas.
     pub fn moved_layers(&self) -> HashSet<LayerId> {
         let mut moved = HashSet::new();
-        layer::on_canvas::each_with_map(&self.layers, &LayerMap::none(self.size), &mut |layer, map| {
-            moved.extend((!map.is_none()).then_some(layer.id));
-        });
+        layer::on_canvas::each_with_map(
+            &self.layers,
+            &LayerMap::none(self.size),
+            &mut |layer, map| {
+                moved.extend((!map.is_none()).then_some(layer.id));
+            },
+        );
         moved
     }
+
     /// A layer by its name, groups opened, the topmost of several.
     pub fn layer_named(&self, name: &str) -> Option<&Arc<Layer>> {
         fn find<'a>(layers: &'a [Arc<Layer>], name: &str) -> Option<&'a Arc<Layer>> {
@@ -149,9 +166,11 @@ impl Document {
         }
         find(&self.layers, name)
     }
+
     /// A name that no layer has: “Strokes”, “Strokes 2”, …
     pub fn free_layer_name(&self, base: &str) -> String {
-        // Looked up once: a search of the document for each number would cost the square of the layers.
+        // Looked up once: a search of the document for each number would cost the square of the
+        // layers.
         let layers = self.walk();
         let taken: HashSet<&str> = layers.iter().map(|(_, layer)| layer.name.as_str()).collect();
         let mut name = base.to_owned();
@@ -163,9 +182,14 @@ impl Document {
         }
         name
     }
+
     /// Every layer, groups opened, bottom first, with its path such as `layers[2].layers[0]`.
     pub fn walk(&self) -> Vec<(String, &Arc<Layer>)> {
-        fn visit<'a>(prefix: &str, layers: &'a [Arc<Layer>], out: &mut Vec<(String, &'a Arc<Layer>)>) {
+        fn visit<'a>(
+            prefix: &str,
+            layers: &'a [Arc<Layer>],
+            out: &mut Vec<(String, &'a Arc<Layer>)>,
+        ) {
             for (i, layer) in layers.iter().enumerate() {
                 let path = format!("{prefix}layers[{i}]");
                 if let Some(group) = layer.content.group() {

@@ -1,5 +1,5 @@
-//! Normal layers: detail combined with the surface, for everything above in the group (SF fig. 12b–c). Floor 4. Not
-//! here: the equation (`surface::combine`).
+//! Normal layers: detail combined with the surface, for everything above in the group (SF fig.
+//! 12b–c). Floor 4. Not here: the equation (`surface::combine`).
 
 use super::layer::normals::Combination;
 use super::layer::on_canvas::on_canvas;
@@ -9,17 +9,20 @@ use crate::paint::Scene;
 use crate::surface::{Curvature, Surface};
 use std::sync::Arc;
 
-/// The scene of the layers above a normal layer. The layer caches it: the surface stays identical until an input
-/// changes.
+/// The scene of the layers above a normal layer. The layer caches it: the surface stays identical
+/// until an input changes.
 ///
 /// * `map`: what takes the groups around it to the canvas.
 pub(super) fn scene_above(layer: &Arc<Layer>, map: &LayerMap, beneath: &Scene) -> Scene {
     let layer = on_canvas(layer, map);
     let Role::Shapes(normals) = layer.content.role() else { return beneath.clone() };
-    let Some(surface) = beneath.surface.as_ref().filter(|_| normals.strength > 0.0 && layer.opacity > 0.0) else {
+    let Some(surface) =
+        beneath.surface.as_ref().filter(|_| normals.strength > 0.0 && layer.opacity > 0.0)
+    else {
         return beneath.clone();
     };
-    let combination = Combination { normals: normals.clone(), opacity: layer.opacity, mask: layer.mask.clone() };
+    let combination =
+        Combination { normals: normals.clone(), opacity: layer.opacity, mask: layer.mask.clone() };
     let combine = || {
         let curvature = layer.mask.as_ref().and_then(|mask| mask.curvature_on(beneath));
         Some(Arc::new(combination.on(surface, beneath, curvature.as_deref())))
@@ -33,9 +36,11 @@ impl Combination {
     fn on(&self, surface: &Arc<Surface>, scene: &Scene, curvature: Option<&Curvature>) -> Surface {
         let detail = PlacedDetail::of(&self.normals, scene);
         surface.combined(|x, y| {
-            let mask = self.mask.as_ref().map_or(1.0, |m| m.at(scene, curvature, x as i32, y as i32));
+            let mask =
+                self.mask.as_ref().map_or(1.0, |m| m.at(scene, curvature, x as i32, y as i32));
             let strength = self.normals.strength * self.opacity * mask;
-            let normal = detail.normal(vec2(x as f32 + 0.5, y as f32 + 0.5)).filter(|_| strength > 0.0)?;
+            let normal =
+                detail.normal(vec2(x as f32 + 0.5, y as f32 + 0.5)).filter(|_| strength > 0.0)?;
             Some((normal, strength))
         })
     }
@@ -61,8 +66,14 @@ impl<'a> PlacedDetail<'a> {
             DetailSource::Grain(_) => placement.texels_from_canvas(scene.size, scene.size),
         };
         let per_px = from_canvas.matrix2.determinant().abs().sqrt();
-        Self { normals, from_canvas, per_px, turn: Vec2::from_angle(placement.rotation.to_radians()) }
+        Self {
+            normals,
+            from_canvas,
+            per_px,
+            turn: Vec2::from_angle(placement.rotation.to_radians()),
+        }
     }
+
     /// The detail normal at a canvas point, y up.
     fn normal(&self, q: Vec2) -> Option<Vec3> {
         let (in_frame, jacobian) = self.normals.frame.from_canvas(q)?;
@@ -77,8 +88,9 @@ impl<'a> PlacedDetail<'a> {
     }
 }
 
-/// A normal (y up) of a relief whose places are moved by a map: slopes s become k A⁻ᵀ s, A how places stretch, and k =
-/// √|det A|, so that a larger relief is as steep. `jacobian`: A⁻¹, image axes.
+/// A normal (y up) of a relief whose places are moved by a map: slopes s become k A⁻ᵀ s, A how
+/// places stretch, and k = √|det A|, so that a larger relief is as steep. `jacobian`: A⁻¹, image
+/// axes.
 fn taken_along(normal: Vec3, jacobian: Mat2) -> Vec3 {
     let slope = vec2(normal.x, -normal.y) / normal.z.max(1e-3);
     let scale = jacobian.determinant().abs().sqrt().max(1e-6).recip();
@@ -90,7 +102,9 @@ fn taken_along(normal: Vec3, jacobian: Mat2) -> Vec3 {
 mod tests {
     use super::*;
     use crate::document::conventions::NormalConvention;
-    use crate::document::{Content, Document, Group, LayerMask, Live, MaskKind, PreparedDocument, Progress, flatten};
+    use crate::document::{
+        Content, Document, Group, LayerMask, Live, MaskKind, PreparedDocument, Progress, flatten,
+    };
     use crate::math::{PlaneMap, Size, srgb::Color};
     use crate::paint::{PictureSource, Placement};
     use crate::raster::{Outside, Plane};
@@ -101,10 +115,12 @@ mod tests {
 
     fn document(layers: Vec<Layer>) -> Document {
         let (depth, coverage) = (Plane::filled(SIZE, 0.5), Plane::filled(SIZE, 255));
-        let surface = Surface::new(Maps { normals: Plane::filled(SIZE, Vec3::Z), depth, coverage }).unwrap();
+        let surface =
+            Surface::new(Maps { normals: Plane::filled(SIZE, Vec3::Z), depth, coverage }).unwrap();
         let layers = layers.into_iter().map(Arc::new).collect();
         Document { surface: Some(Arc::new(surface)), layers, ..Document::empty(SIZE) }
     }
+
     /// Detail that leans everywhere to the right.
     fn leaning(strength: f32) -> NormalLayer {
         let map = Arc::new(DetailMap::new(Plane::filled(Size::new(4, 4), vec3(0.6, 0.0, 0.8))));
@@ -115,15 +131,21 @@ mod tests {
         let (placement, frame) = (Placement::covering(SIZE), PlaneMap::IDENTITY);
         NormalLayer { source, placement, outside: Outside::Repeat, strength, frame }
     }
+
     fn normals(strength: f32) -> Layer {
         Layer::new("cloth", Content::Normals(leaning(strength)))
     }
+
     fn clay() -> Layer {
         Layer::new("clay", Content::Shading(Live::new(Shading::new(Model::Phong))))
     }
+
     fn seen(layer: &Layer, document: &Document) -> Arc<Surface> {
-        scene_above(&Arc::new(layer.clone()), &LayerMap::none(SIZE), &document.scene()).surface.unwrap()
+        scene_above(&Arc::new(layer.clone()), &LayerMap::none(SIZE), &document.scene())
+            .surface
+            .unwrap()
     }
+
     /// The red of a pixel.
     fn red(document: &Document, x: i32, y: i32) -> u8 {
         flatten(document, &Progress::default()).unwrap().pixel(x, y)[0]
@@ -138,8 +160,12 @@ mod tests {
         let hidden = Layer { visible: false, ..normals(1.0) };
         assert_eq!(red(&document(vec![hidden, clay()]), 20, 20), plain);
         let group = Group { layers: vec![Arc::new(normals(1.0))], pass_through: false };
-        assert_eq!(red(&document(vec![Layer::new("g", Content::Group(group)), clay()]), 20, 20), plain);
+        assert_eq!(
+            red(&document(vec![Layer::new("g", Content::Group(group)), clay()]), 20, 20),
+            plain
+        );
     }
+
     #[test]
     fn opacity_and_mask_weigh_the_strength() {
         let coverage = Plane::from_fn(SIZE, |x, _| if x < 40 { 255 } else { 0 });
@@ -151,14 +177,19 @@ mod tests {
         assert!((n.x / n.z - 0.375).abs() < 1e-4, "{n}");
         assert_eq!(surface.normal(60, 10), Vec3::Z);
     }
+
     #[test]
     fn turned_detail_leans_where_it_was_turned_to() {
         let mut turned = leaning(1.0);
         turned.placement.rotation = 90.0;
         let surface = seen(&Layer::new("", Content::Normals(turned)), &document(vec![]));
         let n = surface.normal(10, 10);
-        assert!((n - vec3(0.0, 0.6, 0.8)).length() < 1e-4, "counter-clockwise: to the right becomes up, not {n}");
+        assert!(
+            (n - vec3(0.0, 0.6, 0.8)).length() < 1e-4,
+            "counter-clockwise: to the right becomes up, not {n}"
+        );
     }
+
     #[test]
     fn taken_along_by_a_mirror_detail_leans_the_other_way() {
         let frame = PlaneMap::affine([-1.0, 0.0, 0.0, 1.0, 80.0, 0.0]).unwrap();
@@ -166,21 +197,29 @@ mod tests {
         let n = seen(&mirrored, &document(vec![])).normal(10, 10);
         assert!((n - vec3(-0.6, 0.0, 0.8)).length() < 1e-4, "{n}");
         // Turned by 90° counter-clockwise, to the right becomes up; twice the size is as steep.
-        let turned = taken_along(vec3(0.6, 0.0, 0.8), Mat2::from_cols(vec2(0.0, 0.5), vec2(-0.5, 0.0)));
+        let turned =
+            taken_along(vec3(0.6, 0.0, 0.8), Mat2::from_cols(vec2(0.0, 0.5), vec2(-0.5, 0.0)));
         assert!((turned - vec3(0.0, 0.6, 0.8)).length() < 1e-4, "{turned}");
     }
+
     #[test]
     fn the_combined_surface_is_kept_until_what_it_is_made_from_changes() {
         let document = document(vec![]);
         let layer = normals(1.0);
         let first = seen(&layer, &document);
-        assert!(Arc::ptr_eq(&first, &seen(&Layer { name: "renamed".into(), ..layer.clone() }, &document)));
-        let stronger =
-            Layer { content: Content::Normals(NormalLayer { strength: 2.0, ..leaning(1.0) }), ..layer.clone() };
+        assert!(Arc::ptr_eq(
+            &first,
+            &seen(&Layer { name: "renamed".into(), ..layer.clone() }, &document)
+        ));
+        let stronger = Layer {
+            content: Content::Normals(NormalLayer { strength: 2.0, ..leaning(1.0) }),
+            ..layer.clone()
+        };
         assert!(!Arc::ptr_eq(&first, &seen(&stronger, &document)));
         let fainter = Layer { opacity: 0.3, ..layer };
         assert!(!Arc::ptr_eq(&first, &seen(&fainter, &document)));
     }
+
     #[test]
     fn an_edit_elsewhere_renders_nothing_above_again() {
         let before = document(vec![
@@ -200,9 +239,11 @@ mod tests {
         after.layers[2] = Arc::new(Layer { opacity: 0.2, ..Layer::clone(&before.layers[2]) });
         assert!(Arc::ptr_eq(&first, &tile(&after)));
     }
+
     #[test]
     fn grain_roughens_and_without_a_surface_there_is_nothing_to_roughen() {
-        let grain = NormalLayer { source: DetailSource::Grain(NoiseRelief::default()), ..leaning(0.5) };
+        let grain =
+            NormalLayer { source: DetailSource::Grain(NoiseRelief::default()), ..leaning(0.5) };
         let layer = Layer::new("", Content::Normals(grain));
         let surface = seen(&layer, &document(vec![]));
         assert!((0..40).any(|y| surface.normal(20, y).z < 0.98));

@@ -1,9 +1,13 @@
-//! Prepares a document for flattening: finds the visible layers, what each is clipped to, and the surface that each
-//! sees. Floor 4. Done once before the tiles. Not here: composing one tile (`compose`).
+//! Prepares a document for flattening: finds the visible layers, what each is clipped to, and the
+//! surface that each sees. Floor 4. Done once before the tiles. Not here: composing one tile
+//! (`compose`).
 
 use super::layer::on_canvas::on_canvas;
 use super::layer::warp::WarpTiles;
-use super::{Content, DerivedMask, Document, Group, Layer, LayerMap, LayerMask, LayerWarp, Progress, Role, normals};
+use super::{
+    Content, DerivedMask, Document, Group, Layer, LayerMap, LayerMask, LayerWarp, Progress, Role,
+    normals,
+};
 use crate::math::Size;
 use crate::paint::Scene;
 use crate::raster::TileAt;
@@ -12,8 +16,8 @@ use crate::surface::{Contours, Curvature};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Everything that flattening needs from a document, resolved. It holds the layers, so the document may be dropped or
-/// edited.
+/// Everything that flattening needs from a document, resolved. It holds the layers, so the document
+/// may be dropped or edited.
 pub struct PreparedDocument {
     pub(super) size: Size,
     /// Bottom first.
@@ -61,7 +65,8 @@ impl PreparedDocument {
         let scope = Scope { beneath: Beneath::NOTHING, map: LayerMap::none(document.size) };
         let stack = builder.nodes(&document.layers, &mut document.scene(), scope);
         let contours = document.surface.as_ref().map(|surface| surface.contours().clone());
-        let mut prepared = Self { size: document.size, stack, contours, whole_rims: false, beneath: Vec::new() };
+        let mut prepared =
+            Self { size: document.size, stack, contours, whole_rims: false, beneath: Vec::new() };
         for adjustment in builder.adjustments {
             // Each may depend on those beneath it, which are already measured.
             let beneath = prepared.measure(&adjustment, progress)?;
@@ -69,6 +74,7 @@ impl PreparedDocument {
         }
         Some(prepared)
     }
+
     /// Every tile of the canvas, row by row.
     pub fn all_tiles(&self) -> Vec<TileAt> {
         TileAt::covering(self.size.rect()).collect()
@@ -84,8 +90,8 @@ struct Scope<'a> {
     map: LayerMap,
 }
 
-/// Some layers of a list, and what lies beneath that list. Few layers need it, so it is gathered only for them:
-/// gathered for each layer, the cost would grow with the square of the layers.
+/// Some layers of a list, and what lies beneath that list. Few layers need it, so it is gathered
+/// only for them: gathered for each layer, the cost would grow with the square of the layers.
 #[derive(Clone, Copy)]
 struct Beneath<'a> {
     around: Option<&'a Beneath<'a>>,
@@ -120,12 +126,18 @@ enum ClipBase {
 
 impl StackBuilder<'_> {
     /// `scene` is what the first layer sees and is updated to what layers above see.
-    fn nodes(&mut self, layers: &[Arc<Layer>], scene: &mut Scene, scope: Scope) -> Vec<PreparedLayer> {
+    fn nodes(
+        &mut self,
+        layers: &[Arc<Layer>],
+        scene: &mut Scene,
+        scope: Scope,
+    ) -> Vec<PreparedLayer> {
         let mut nodes: Vec<PreparedLayer> = Vec::new();
         let mut base = ClipBase::Nothing;
         for (i, layer) in layers.iter().enumerate() {
             if layer.content.shapes() {
-                // It paints nothing, so it is no base and does not separate a base from its clipped layers.
+                // It paints nothing, so it is no base and does not separate a base from its clipped
+                // layers.
                 if layer.visible {
                     *scene = normals::scene_above(layer, &scope.map, scene);
                 }
@@ -149,6 +161,7 @@ impl StackBuilder<'_> {
         }
         nodes
     }
+
     fn node(&mut self, layer: &Arc<Layer>, scene: &mut Scene, scope: Scope) -> PreparedLayer {
         let within = Scope { map: scope.map.within(layer), ..scope };
         let warp = LayerWarp::of(layer, &within.map).filter(|_| is_composed_first(layer));
@@ -178,7 +191,9 @@ impl StackBuilder<'_> {
             curvature: curvature_on(&visible_scene),
             behind_curvature: behind.as_ref().and_then(curvature_on),
             behind,
-            warp: warp.map(|warp| layer.cache.warped.tiles(&visible_scene, &layer.content, &within.map, warp)),
+            warp: warp.map(|warp| {
+                layer.cache.warped.tiles(&visible_scene, &layer.content, &within.map, warp)
+            }),
             layer: layer.clone(),
             scene: visible_scene,
             children,
@@ -186,8 +201,15 @@ impl StackBuilder<'_> {
             adjustments: first..self.adjustments.len(),
         }
     }
+
     /// * `isolated`: the layers have nothing beneath the group, whatever it says.
-    fn children(&mut self, group: &Group, scene: &mut Scene, scope: Scope, isolated: bool) -> Vec<PreparedLayer> {
+    fn children(
+        &mut self,
+        group: &Group,
+        scene: &mut Scene,
+        scope: Scope,
+        isolated: bool,
+    ) -> Vec<PreparedLayer> {
         if group.pass_through && !isolated {
             return self.nodes(&group.layers, scene, scope);
         }
@@ -195,8 +217,8 @@ impl StackBuilder<'_> {
     }
 }
 
-/// Whether a displaced layer is composed undisplaced and then sampled: paint is sampled directly, and one colour is the
-/// same everywhere.
+/// Whether a displaced layer is composed undisplaced and then sampled: paint is sampled directly,
+/// and one colour is the same everywhere.
 fn is_composed_first(layer: &Layer) -> bool {
     layer.content.can_be_warped() && !matches!(layer.content, Content::Pixels(_) | Content::Fill(_))
 }

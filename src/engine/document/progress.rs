@@ -1,5 +1,5 @@
-//! The progress of long work, and whether it was cancelled. Floor 4. Higher floors display it; nothing here draws or
-//! waits.
+//! The progress of long work, and whether it was cancelled. Floor 4. Higher floors display it;
+//! nothing here draws or waits.
 
 #![warn(missing_docs)]
 
@@ -8,7 +8,8 @@ use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// Counters shared between those that work and those that watch. Steps have no unit; mostly they are tiles.
+/// Counters shared between those that work and those that watch. Steps have no unit; mostly they
+/// are tiles.
 #[derive(Default)]
 pub struct Progress {
     done: AtomicU64,
@@ -22,26 +23,32 @@ impl Progress {
     pub fn add_total(&self, steps: u64) {
         self.total.fetch_add(steps, Ordering::Relaxed);
     }
+
     /// One step is done.
     pub fn step(&self) {
         self.done.fetch_add(1, Ordering::Relaxed);
     }
+
     /// Steps done and steps announced so far.
     pub fn read(&self) -> (u64, u64) {
         (self.done.load(Ordering::Relaxed), self.total.load(Ordering::Relaxed))
     }
+
     /// Names what is done now, in a few words; empty: what the work itself is called.
     pub fn enter(&self, stage: &'static str) {
         *self.stage.lock().unwrap_or_else(PoisonError::into_inner) = stage;
     }
+
     /// What is done now; empty if that has no name of its own.
     pub fn stage(&self) -> &'static str {
         *self.stage.lock().unwrap_or_else(PoisonError::into_inner)
     }
+
     /// Cancels the work: it ends soon, without a result.
     pub fn cancel(&self) {
         self.cancelled.store(true, Ordering::Relaxed);
     }
+
     /// Whether the work was cancelled.
     pub fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)

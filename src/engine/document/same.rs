@@ -1,8 +1,11 @@
-//! Whether two documents hold the same, however it was made and wherever it lies in memory: a save is compared by this.
-//! Floor 4. Names of files are not part of it: a project gives them its own. Not here: what must be redrawn (`diff`).
+//! Whether two documents hold the same, however it was made and wherever it lies in memory: a save
+//! is compared by this. Floor 4. Names of files are not part of it: a project gives them its own.
+//! Not here: what must be redrawn (`diff`).
 
 use super::source::{MaskSource, SurfaceSource};
-use super::{Content, DetailSource, Document, Layer, LayerMask, MaskKind, NamedSelection, Part, StrokeList};
+use super::{
+    Content, DetailSource, Document, Layer, LayerMask, MaskKind, NamedSelection, Part, StrokeList,
+};
 use crate::paint::Stroke;
 use crate::raster::tile::TILE_AREA;
 use crate::raster::{Plane, TileGrid};
@@ -28,9 +31,12 @@ impl Document {
 /// Those kept by name, and the active one.
 fn selections(a: &Document, b: &Document) -> Option<String> {
     let same_kept = |(a, b): (&NamedSelection, &NamedSelection)| {
-        a.name == b.name && (Arc::ptr_eq(&a.selection, &b.selection) || a.selection.is_same(&b.selection))
+        a.name == b.name
+            && (Arc::ptr_eq(&a.selection, &b.selection) || a.selection.is_same(&b.selection))
     };
-    if a.selections.len() != b.selections.len() || !a.selections.iter().zip(&b.selections).all(same_kept) {
+    if a.selections.len() != b.selections.len()
+        || !a.selections.iter().zip(&b.selections).all(same_kept)
+    {
         return Some("the selections kept by name".into());
     }
     let same_active = match (&a.active_selection, &b.active_selection) {
@@ -47,8 +53,11 @@ fn surface(a: &Document, b: &Document) -> Option<String> {
         (Some(x), Some(y)) => {
             let source = a.surface_source.as_deref().filter(|source| has_files(source, a));
             match (source, b.surface_source.as_deref()) {
-                (Some(source), Some(other)) => x.size() == y.size() && same_maps(a, source, b, other),
-                // One that came from no file is stored as maps made of it, which are normalised when they are read.
+                (Some(source), Some(other)) => {
+                    x.size() == y.size() && same_maps(a, source, b, other)
+                }
+                // One that came from no file is stored as maps made of it, which are normalised
+                // when they are read.
                 (None, _) => x.size() == y.size(),
                 (Some(_), None) => false,
             }
@@ -66,7 +75,8 @@ fn parts(a: &[Arc<Part>], b: &[Arc<Part>]) -> Option<String> {
     Some(format!("“{}” among the parts of its shape", part.name))
 }
 
-/// What the same parts make of the same layers on the same maps; other maps were fitted again, which may round them.
+/// What the same parts make of the same layers on the same maps; other maps were fitted again,
+/// which may round them.
 fn shape(a: &Document, b: &Document) -> Option<String> {
     let is_same = |a: Option<&Arc<Surface>>, b: Option<&Arc<Surface>>| match (a, b) {
         (Some(a), Some(b)) => Arc::ptr_eq(a, b) || a.has_same_maps(b),
@@ -80,8 +90,8 @@ fn shape(a: &Document, b: &Document) -> Option<String> {
     (follows && !is_made).then(|| "the shape that its parts make".into())
 }
 
-/// A shape that was moved and one that was made at its place may be rounded differently, so that a few pixels at an
-/// edge are of another part: one in so many.
+/// A shape that was moved and one that was made at its place may be rounded differently, so that a
+/// few pixels at an edge are of another part: one in so many.
 const ONE_IN: usize = 1000;
 /// Less is not seen, of 1.
 const LEAST_SEEN: f32 = 1.0 / 256.0;
@@ -98,7 +108,9 @@ fn looks_alike(a: &Surface, b: &Surface) -> bool {
     let [u, v, w] = b.normal_planes();
     let planes = [apart(x, u), apart(y, v), apart(z, w), apart(a.depth_plane(), b.depth_plane())];
     let covered = a.coverage_plane().values().iter().zip(b.coverage_plane().values());
-    let differs = |(i, (a, b)): (usize, (&u8, &u8))| a.abs_diff(*b) > 1 || planes.iter().any(|plane| plane[i]);
+    let differs = |(i, (a, b)): (usize, (&u8, &u8))| {
+        a.abs_diff(*b) > 1 || planes.iter().any(|plane| plane[i])
+    };
     covered.enumerate().filter(|pixel| differs(*pixel)).count() <= a.size().area() / ONE_IN
 }
 
@@ -107,12 +119,14 @@ fn has_files(source: &SurfaceSource, document: &Document) -> bool {
     files_of(source).all(|file| document.surface_files.contains_key(file))
 }
 
-/// The same files, read in the same way: the surface follows from them. One that was scaled since is fitted again when
-/// it is read, which may round it differently.
+/// The same files, read in the same way: the surface follows from them. One that was scaled since
+/// is fitted again when it is read, which may round it differently.
 fn same_maps(a: &Document, source: &SurfaceSource, b: &Document, other: &SurfaceSource) -> bool {
     let mut files = files_of(source).zip(files_of(other));
     without_names(source) == without_names(other)
-        && files.all(|(x, y)| a.surface_files.get(x).is_some_and(|file| b.surface_files.get(y) == Some(file)))
+        && files.all(|(x, y)| {
+            a.surface_files.get(x).is_some_and(|file| b.surface_files.get(y) == Some(file))
+        })
 }
 
 fn files_of(source: &SurfaceSource) -> impl Iterator<Item = &str> {
@@ -121,7 +135,9 @@ fn files_of(source: &SurfaceSource) -> impl Iterator<Item = &str> {
         _ => None,
     };
     let (normal, depth) = (source.normal.as_ref(), source.depth.as_ref());
-    [normal.map(|map| map.file.as_str()), depth.map(|map| map.file.as_str()), mask].into_iter().flatten()
+    [normal.map(|map| map.file.as_str()), depth.map(|map| map.file.as_str()), mask]
+        .into_iter()
+        .flatten()
 }
 
 fn without_names(source: &SurfaceSource) -> SurfaceSource {
@@ -194,16 +210,27 @@ fn content(a: &Content, b: &Content) -> Option<&'static str> {
     let (what, is_same) = match (a, b) {
         (Content::Fill(a), Content::Fill(b)) => ("colour", a == b),
         (Content::Pixels(a), Content::Pixels(b)) => ("pixels", same_pixels(&a.tiles, &b.tiles)),
-        (Content::Image(a), Content::Image(b)) => ("picture or how it lies", a.ptr_eq(b) || a.params() == b.params()),
-        (Content::Gradient(a), Content::Gradient(b)) => ("gradient", a.ptr_eq(b) || a.params() == b.params()),
-        (Content::Strokes(a), Content::Strokes(b)) => ("strokes", a.ptr_eq(b) || same_strokes(a.params(), b.params())),
-        (Content::Shading(a), Content::Shading(b)) => ("material", a.ptr_eq(b) || a.params() == b.params()),
+        (Content::Image(a), Content::Image(b)) => {
+            ("picture or how it lies", a.ptr_eq(b) || a.params() == b.params())
+        }
+        (Content::Gradient(a), Content::Gradient(b)) => {
+            ("gradient", a.ptr_eq(b) || a.params() == b.params())
+        }
+        (Content::Strokes(a), Content::Strokes(b)) => {
+            ("strokes", a.ptr_eq(b) || same_strokes(a.params(), b.params()))
+        }
+        (Content::Shading(a), Content::Shading(b)) => {
+            ("material", a.ptr_eq(b) || a.params() == b.params())
+        }
         (Content::RadianceScaling(a), Content::RadianceScaling(b)) => ("scaling", a == b),
         (Content::Normals(a), Content::Normals(b)) => {
-            let alike = (a.placement, a.outside, a.strength) == (b.placement, b.outside, b.strength);
+            let alike =
+                (a.placement, a.outside, a.strength) == (b.placement, b.outside, b.strength);
             ("detail", alike && same_detail(&a.source, &b.source))
         }
-        (Content::Group(a), Content::Group(b)) => ("passing through", a.pass_through == b.pass_through),
+        (Content::Group(a), Content::Group(b)) => {
+            ("passing through", a.pass_through == b.pass_through)
+        }
         _ => ("kind", false),
     };
     (!is_same).then_some(what)
@@ -213,9 +240,10 @@ fn same_detail(a: &DetailSource, b: &DetailSource) -> bool {
     match (a, b) {
         (DetailSource::Grain(a), DetailSource::Grain(b)) => a == b,
         // The map itself follows from these.
-        (DetailSource::Map { picture: a, convention: x, .. }, DetailSource::Map { picture: b, convention: y, .. }) => {
-            a == b && x == y
-        }
+        (
+            DetailSource::Map { picture: a, convention: x, .. },
+            DetailSource::Map { picture: b, convention: y, .. },
+        ) => a == b && x == y,
         _ => false,
     }
 }

@@ -1,13 +1,13 @@
-//! Finds the scene of one layer without preparing the whole document: the canvas and the surface with the normal layers
-//! beneath it. Floor 4.
+//! Finds the scene of one layer without preparing the whole document: the canvas and the surface
+//! with the normal layers beneath it. Floor 4.
 
 use super::{Document, Layer, LayerId, LayerMap, Role, normals};
 use crate::paint::Scene;
 use std::sync::Arc;
 
 impl Document {
-    /// The scene of a layer: the document's surface with the normal layers beneath the layer in its scope. `None` if
-    /// there is no such layer.
+    /// The scene of a layer: the document's surface with the normal layers beneath the layer in its
+    /// scope. `None` if there is no such layer.
     pub fn scene_of(&self, layer: LayerId) -> Option<Scene> {
         find(&self.layers, layer, &LayerMap::none(self.size), &mut self.scene())
     }
@@ -27,7 +27,9 @@ fn find(layers: &[Arc<Layer>], id: LayerId, around: &LayerMap, scene: &mut Scene
             Role::Groups(group) if group.pass_through && layer.visible => {
                 find(&group.layers, id, &around.within(layer), scene)
             }
-            Role::Groups(group) => find(&group.layers, id, &around.within(layer), &mut scene.clone()),
+            Role::Groups(group) => {
+                find(&group.layers, id, &around.within(layer), &mut scene.clone())
+            }
             _ => None,
         };
         if found.is_some() {

@@ -1,5 +1,6 @@
-//! The selections of a document: the active one, the named ones, and those that strokes were painted in.
-//! Floor 4. Not here: what a selection is (`paint::selection`), cutting and copying by one (`cut`).
+//! The selections of a document: the active one, the named ones, and those that strokes were
+//! painted in. Floor 4. Not here: what a selection is (`paint::selection`), cutting and copying by
+//! one (`cut`).
 
 use super::{Content, DerivedMask, Document, Layer, LayerMask, Live, MaskKind, StrokeList};
 use crate::paint::{Selection, Stroke, StrokeSelection};
@@ -26,38 +27,47 @@ impl NamedSelection {
 impl Document {
     /// Selections of a document, those of strokes too.
     pub const MOST_SELECTIONS: usize = 10_000;
-    /// Pixels of the canvas for each selection that follows the surface, all together: each is looked for when the
-    /// drawing is opened. On a canvas of 4096 × 4096 there may be 1024 of them.
+    /// Pixels of the canvas for each selection that follows the surface, all together: each is
+    /// looked for when the drawing is opened. On a canvas of 4096 × 4096 there may be 1024 of them.
     pub const MOST_REGION_PX: u64 = 1 << 34;
 
     /// The coverage of the active selection; `None` where everything may be changed.
     pub fn selected(&self) -> Option<&CoverageGrid> {
         self.active_selection.as_ref().map(|selection| &selection.coverage)
     }
+
     /// With another active selection. An empty one is none.
     pub fn with_selection(&self, selection: Option<Selection>) -> Document {
         let selection = selection.filter(|selection| !selection.is_empty());
         Document { active_selection: selection.map(Arc::new), ..self.clone() }
     }
-    /// With a new selection combined with the active one. If it replaces that one, or there is none, it stays
-    /// unchanged.
+
+    /// With a new selection combined with the active one. If it replaces that one, or there is
+    /// none, it stays unchanged.
     pub fn with_combined(&self, new: Selection, how: SelectionMode) -> Document {
         let canvas = self.size.rect();
         let new = new.within(canvas);
         let all = || CoverageGrid::filled(canvas);
         let both = match (how, self.selected()) {
-            (SelectionMode::Replace, _) | (SelectionMode::Add | SelectionMode::Intersect, None) => new,
+            (SelectionMode::Replace, _) | (SelectionMode::Add | SelectionMode::Intersect, None) => {
+                new
+            }
             // Without a selection everything is covered.
-            (SelectionMode::TakeAway, None) => Selection::new(all().combined(&new.coverage, |a, b| how.of(a, b))),
+            (SelectionMode::TakeAway, None) => {
+                Selection::new(all().combined(&new.coverage, |a, b| how.of(a, b)))
+            }
             (_, Some(old)) => Selection::new(old.combined(&new.coverage, |a, b| how.of(a, b))),
         };
         self.with_selection(Some(both))
     }
+
     /// What bounds a stroke that begins now.
     pub fn stroke_selection(&self) -> Option<StrokeSelection> {
         self.active_selection.clone().map(StrokeSelection::new)
     }
-    /// With the active selection kept by a name, replacing one of that name. `None` if nothing is selected.
+
+    /// With the active selection kept by a name, replacing one of that name. `None` if nothing is
+    /// selected.
     pub fn with_kept_selection(&self, name: &str) -> Option<Document> {
         let (selection, name) = (self.active_selection.clone()?, name.to_owned());
         let mut selections = self.selections.clone();
@@ -67,12 +77,15 @@ impl Document {
         }
         Some(Document { selections, ..self.clone() })
     }
-    /// Without the selection of a name; outlines of parts that follow it keep it as a picture. `None` if there is none.
+
+    /// Without the selection of a name; outlines of parts that follow it keep it as a picture.
+    /// `None` if there is none.
     pub fn without_kept_selection(&self, name: &str) -> Option<Document> {
         let gone = self.selections.iter().find(|kept| kept.name == name)?;
         let selections = self.selections.iter().filter(|kept| kept.name != name).cloned().collect();
         Some(Document { selections, ..self.without_outlines_of(gone) })
     }
+
     /// With every selection that follows the surface found on the present one; itself if they were.
     pub fn with_selections_found(&self) -> Document {
         let scene = self.scene();
@@ -85,16 +98,25 @@ impl Document {
         if found.is_empty() {
             return self.clone();
         }
-        let next =
-            |selection: &Arc<Selection>| found.get(&(Arc::as_ptr(selection) as usize)).unwrap_or(selection).clone();
-        let kept = |kept: &NamedSelection| NamedSelection { selection: next(&kept.selection), ..kept.clone() };
+        let next = |selection: &Arc<Selection>| {
+            found.get(&(Arc::as_ptr(selection) as usize)).unwrap_or(selection).clone()
+        };
+        let kept = |kept: &NamedSelection| NamedSelection {
+            selection: next(&kept.selection),
+            ..kept.clone()
+        };
         Document {
-            active_selection: self.active_selection.as_ref().map(next).filter(|found| !found.is_empty()),
+            active_selection: self
+                .active_selection
+                .as_ref()
+                .map(next)
+                .filter(|found| !found.is_empty()),
             selections: self.selections.iter().map(kept).collect(),
             layers: self.layers.iter().map(|layer| selecting(layer, &next)).collect(),
             ..self.clone()
         }
     }
+
     /// How far a layer covers each pixel of the canvas by its mask; fully if it has none.
     pub fn mask_coverage(&self, layer: &Layer) -> CoverageGrid {
         let Some(mask) = &layer.mask else { return CoverageGrid::filled(self.size.rect()) };
@@ -107,7 +129,9 @@ impl Document {
             _ => CoverageGrid::default(),
         }
     }
-    /// The active selection as a mask: what was selected by the surface follows it, all else is a picture.
+
+    /// The active selection as a mask: what was selected by the surface follows it, all else is a
+    /// picture.
     pub fn selection_as_mask(&self) -> Option<LayerMask> {
         let selection = self.active_selection.as_deref()?;
         let kind = match selection.made {
@@ -124,7 +148,10 @@ pub(super) fn picture(coverage: &Plane<u8>) -> MaskKind {
 }
 
 /// A layer with the selections of its strokes replaced; the very same if none was.
-pub(super) fn selecting(layer: &Arc<Layer>, next: &impl Fn(&Arc<Selection>) -> Arc<Selection>) -> Arc<Layer> {
+pub(super) fn selecting(
+    layer: &Arc<Layer>,
+    next: &impl Fn(&Arc<Selection>) -> Arc<Selection>,
+) -> Arc<Layer> {
     let content = match &layer.content {
         Content::Strokes(live) => {
             let mut changed = false;
@@ -147,11 +174,12 @@ pub(super) fn selecting(layer: &Arc<Layer>, next: &impl Fn(&Arc<Selection>) -> A
         }
         _ => None,
     };
-    content.map_or_else(|| layer.clone(), |content| Arc::new(Layer { content, ..Layer::clone(layer) }))
+    content
+        .map_or_else(|| layer.clone(), |content| Arc::new(Layer { content, ..Layer::clone(layer) }))
 }
 
-/// Every selection of a document once, in a fixed order: those kept by name, the active one, those of strokes. Files
-/// refer to them by position.
+/// Every selection of a document once, in a fixed order: those kept by name, the active one, those
+/// of strokes. Files refer to them by position.
 pub struct SelectionList {
     all: Vec<(Option<String>, Arc<Selection>)>,
     places: HashMap<usize, usize>,
@@ -170,28 +198,35 @@ impl SelectionList {
         for (_, layer) in document.walk() {
             if let Content::Strokes(live) = &layer.content {
                 let strokes = live.params().strokes.iter();
-                strokes.filter_map(|stroke| stroke.selection()).for_each(|own| list.add(&own.selection));
+                strokes
+                    .filter_map(|stroke| stroke.selection())
+                    .for_each(|own| list.add(&own.selection));
             }
         }
         list
     }
+
     fn add(&mut self, selection: &Arc<Selection>) {
         let place = self.all.len();
         if *self.places.entry(Arc::as_ptr(selection) as usize).or_insert(place) == place {
             self.all.push((None, selection.clone()));
         }
     }
+
     pub fn all(&self) -> impl ExactSizeIterator<Item = &Arc<Selection>> {
         self.all.iter().map(|(_, selection)| selection)
     }
+
     /// With the names of those that have one.
     pub fn named(&self) -> impl Iterator<Item = (Option<&str>, &Arc<Selection>)> {
         self.all.iter().map(|(name, selection)| (name.as_deref(), selection))
     }
+
     /// The position of a selection among all; `None` for one of another document.
     pub fn place(&self, selection: &Arc<Selection>) -> Option<usize> {
         self.places.get(&(Arc::as_ptr(selection) as usize)).copied()
     }
+
     pub fn is_empty(&self) -> bool {
         self.all.is_empty()
     }

@@ -1,7 +1,9 @@
-//! What a document says about its surface: its files and what their numbers mean. Floor 4. Plain data with their names
-//! in JSON. Not here: reading the files (`io::maps`).
+//! What a document says about its surface: its files and what their numbers mean. Floor 4. Plain
+//! data with their names in JSON. Not here: reading the files (`io::maps`).
 
-pub use super::conventions::{DepthConvention, DepthEncoding, Near, NormalConvention, NormalEncoding, NormalSpace};
+pub use super::conventions::{
+    DepthConvention, DepthEncoding, Near, NormalConvention, NormalEncoding, NormalSpace,
+};
 
 use super::{LayerTransform, TransformShape};
 use crate::math::PlaneMap;
@@ -18,8 +20,8 @@ pub struct SurfaceSource {
     pub depth: Option<MapSource<DepthConvention>>,
     /// Where the shape is; absent: found from alpha and background values.
     pub mask: Option<MaskSource>,
-    /// `"matrix"`: canvas from the pixels of the maps, a, b, c, d, e, f: x′ = a x + c y + e, y′ = b x + d y + f.
-    /// Without one the maps are as large as the canvas allows, centred.
+    /// `"matrix"`: canvas from the pixels of the maps, a, b, c, d, e, f: x′ = a x + c y + e, y′ = b
+    /// x + d y + f. Without one the maps are as large as the canvas allows, centred.
     pub matrix: Option<[f64; 6]>,
 }
 
@@ -28,8 +30,9 @@ impl SurfaceSource {
     pub fn map(&self) -> Option<PlaneMap> {
         PlaneMap::affine(self.matrix?)
     }
-    /// The same maps where they are as a surface that was made of them: with the matrix that takes them there, or
-    /// without one if they are fitted to it.
+
+    /// The same maps where they are as a surface that was made of them: with the matrix that takes
+    /// them there, or without one if they are fitted to it.
     pub fn placed_as(&self, surface: &Arc<Surface>) -> Self {
         let origin = surface.origin();
         let (maps, canvas) = (origin.surface.size(), surface.size());
@@ -37,10 +40,12 @@ impl SurfaceSource {
         let matrix = if is_fitted { None } else { origin.map.told_coefficients() };
         SurfaceSource { matrix, ..self.clone() }
     }
+
     /// Refuses, in a sentence, a matrix that files cannot hold.
     pub fn fits(&self) -> Result<(), String> {
         let Some(matrix) = self.matrix else { return Ok(()) };
-        let transform = LayerTransform { shape: TransformShape::Matrix(matrix), filter: Resampling::default() };
+        let transform =
+            LayerTransform { shape: TransformShape::Matrix(matrix), filter: Resampling::default() };
         transform.fits().map_err(|why| format!("the matrix of the maps: {why}"))
     }
 }
@@ -50,10 +55,11 @@ impl SurfaceSource {
 pub struct MapSource<C> {
     /// `"file"`.
     pub file: String,
-    /// `"channel"`: which layer of an EXR (`"ViewLayer.Normal"`) or which single channel (`"ViewLayer.Depth.Z"`);
-    /// detected where absent.
+    /// `"channel"`: which layer of an EXR (`"ViewLayer.Normal"`) or which single channel
+    /// (`"ViewLayer.Depth.Z"`); detected where absent.
     pub channel: Option<String>,
-    /// For normals the field `"convention"`; for depth the fields `"near"`, `"encoding"`, … next to `"file"`.
+    /// For normals the field `"convention"`; for depth the fields `"near"`, `"encoding"`, … next to
+    /// `"file"`.
     pub convention: C,
 }
 
@@ -62,6 +68,7 @@ pub struct MapSource<C> {
 pub enum MaskSource {
     /// `{ "file": "m.png", "channel": "objectid.A", "invert": false }`
     File { file: String, channel: Option<String>, invert: bool },
-    /// `{ "from": "flat" }`: pixels whose normal is exactly flat and that are joined to the border are background.
+    /// `{ "from": "flat" }`: pixels whose normal is exactly flat and that are joined to the border
+    /// are background.
     Flat,
 }

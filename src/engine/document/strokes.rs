@@ -2,7 +2,8 @@
 //! Floor 4. Only tiles that an edit can change are rendered again.
 
 use super::{
-    Content, Document, Layer, LayerId, LayerLock, LayerSlot, Live, PixelLayer, Progress, StrokeList, flatten_to_paint,
+    Content, Document, Layer, LayerId, LayerLock, LayerSlot, Live, PixelLayer, Progress,
+    StrokeList, flatten_to_paint,
 };
 use crate::math::Vec2;
 use crate::paint::{Scene, Stroke};
@@ -10,8 +11,8 @@ use crate::raster::TileAt;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// The edits. Each is `None` where there is no such layer or stroke, or the layer is locked; strokes are named by
-/// position, the first painted is 0. `self` never changes.
+/// The edits. Each is `None` where there is no such layer or stroke, or the layer is locked;
+/// strokes are named by position, the first painted is 0. `self` never changes.
 impl Document {
     /// The strokes of a stroke layer, the first painted first; `None` for other layers.
     pub fn strokes(&self, layer: LayerId) -> &[Arc<Stroke>] {
@@ -20,14 +21,19 @@ impl Document {
             _ => &[],
         }
     }
+
     /// The same where they show: through the transforms and homes of the layer and of each stroke.
     pub fn strokes_on_canvas(&self, layer: LayerId) -> Vec<Arc<Stroke>> {
         let found = self.layer(layer).zip(self.map_of(layer));
-        match found.map(|(layer, map)| map.layer_on_canvas(layer)).map(|layer| layer.content.clone()) {
+        match found
+            .map(|(layer, map)| map.layer_on_canvas(layer))
+            .map(|layer| layer.content.clone())
+        {
             Some(Content::Strokes(live)) => live.params().strokes.clone(),
             _ => Vec::new(),
         }
     }
+
     /// With some strokes changed one by one.
     pub fn with_each_stroke(
         &self,
@@ -42,9 +48,16 @@ impl Document {
             Some(())
         })
     }
-    pub fn with_moved_strokes(&self, layer: LayerId, chosen: &[usize], by: Vec2) -> Option<Document> {
+
+    pub fn with_moved_strokes(
+        &self,
+        layer: LayerId,
+        chosen: &[usize],
+        by: Vec2,
+    ) -> Option<Document> {
         self.with_each_stroke(layer, chosen, |stroke| stroke.moved(by))
     }
+
     pub fn without_strokes(&self, layer: LayerId, chosen: &[usize]) -> Option<Document> {
         self.with_strokes(layer, |strokes| {
             for &index in in_order(chosen, strokes)?.iter().rev() {
@@ -53,8 +66,14 @@ impl Document {
             Some(())
         })
     }
+
     /// With a moved copy of each right above it; and the positions of the copies.
-    pub fn with_copied_strokes(&self, layer: LayerId, chosen: &[usize], by: Vec2) -> Option<(Document, Vec<usize>)> {
+    pub fn with_copied_strokes(
+        &self,
+        layer: LayerId,
+        chosen: &[usize],
+        by: Vec2,
+    ) -> Option<(Document, Vec<usize>)> {
         let mut copies = Vec::new();
         let next = self.with_strokes(layer, |strokes| {
             for (before, &index) in in_order(chosen, strokes)?.iter().enumerate() {
@@ -67,8 +86,14 @@ impl Document {
         })?;
         Some((next, copies))
     }
+
     /// With one stroke at another position, counted without it; beyond the last means on top.
-    pub fn with_reordered_stroke(&self, layer: LayerId, stroke: usize, to: usize) -> Option<Document> {
+    pub fn with_reordered_stroke(
+        &self,
+        layer: LayerId,
+        stroke: usize,
+        to: usize,
+    ) -> Option<Document> {
         self.with_strokes(layer, |strokes| {
             if stroke >= strokes.len() {
                 return None;
@@ -78,29 +103,44 @@ impl Document {
             Some(())
         })
     }
-    /// With some strokes taken out of their layer and put as pixels on a paint layer of their own; also returns its id.
+
+    /// With some strokes taken out of their layer and put as pixels on a paint layer of their own;
+    /// also returns its id.
     ///
-    /// It is beneath the stroke layer if the strokes were its lowest, else above it, and blends as that layer does.
-    pub fn with_baked_strokes(&self, layer: LayerId, chosen: &[usize]) -> Option<(Document, LayerId)> {
+    /// It is beneath the stroke layer if the strokes were its lowest, else above it, and blends as
+    /// that layer does.
+    pub fn with_baked_strokes(
+        &self,
+        layer: LayerId,
+        chosen: &[usize],
+    ) -> Option<(Document, LayerId)> {
         let all = self.strokes(layer);
         let chosen = in_order(chosen, all)?;
-        let are_lowest = chosen.iter().enumerate().all(|(i, &index)| i == index) && chosen.len() < all.len();
+        let are_lowest =
+            chosen.iter().enumerate().all(|(i, &index)| i == index) && chosen.len() < all.len();
         let strokes = chosen.iter().filter_map(|&index| all.get(index).cloned()).collect();
         let bare = self.with_layer(layer, |layer| {
             layer.content = Content::Strokes(Live::new(StrokeList { strokes }));
-            (layer.opacity, layer.mask, layer.blend, layer.clip_to_surface) = (1.0, None, Default::default(), false);
+            (layer.opacity, layer.mask, layer.blend, layer.clip_to_surface) =
+                (1.0, None, Default::default(), false);
         })?;
         let tiles = flatten_to_paint(&bare.with_only(&[layer])?, &Progress::default())?;
         let left = self.without_strokes(layer, &chosen)?;
         let old = self.layer(layer)?;
         let pixels = Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles });
         let name = format!("{} baked", old.name);
-        let baked =
-            Layer { id: LayerId::fresh(), name, cache: Default::default(), content: pixels, ..Layer::clone(old) };
+        let baked = Layer {
+            id: LayerId::fresh(),
+            name,
+            cache: Default::default(),
+            content: pixels,
+            ..Layer::clone(old)
+        };
         let (id, place) = (baked.id, self.place_of(layer)?);
         let index = if are_lowest { place.index } else { place.index + 1 };
         Some((left.with_inserted(baked, LayerSlot { index, ..place })?, id))
     }
+
     /// With the strokes of a layer edited as a list.
     pub fn with_strokes(
         &self,
@@ -166,17 +206,23 @@ mod tests {
         let id = layer.id;
         (Document { layers: vec![Arc::new(layer)], ..Document::empty(SIZE) }, id)
     }
+
     /// Premultiplied.
     fn picture(document: &Document) -> Vec<u8> {
         let grid = flatten(document, &Progress::default()).unwrap();
-        (0..200).flat_map(|y| (0..300).map(move |x| (x, y))).flat_map(|(x, y)| grid.pixel(x, y)).collect()
+        (0..200)
+            .flat_map(|y| (0..300).map(move |x| (x, y)))
+            .flat_map(|(x, y)| grid.pixel(x, y))
+            .collect()
     }
+
     /// The same layers, not rendered yet.
     fn afresh(document: &Document, id: LayerId) -> Document {
         let strokes = document.strokes(id).to_vec();
         let content = Content::Strokes(Live::new(StrokeList { strokes }));
         document.with_layer(id, |layer| layer.content = content).unwrap()
     }
+
     fn colors(document: &Document, id: LayerId) -> Vec<u8> {
         document.strokes(id).iter().map(|stroke| stroke.color().r / 60).collect()
     }
@@ -205,6 +251,7 @@ mod tests {
         }
         assert!(picture(&old) == before, "the old document is as it was");
     }
+
     #[test]
     fn moving_a_stroke_renders_no_tile_it_does_not_touch() {
         let (old, id) = document();
@@ -220,6 +267,7 @@ mod tests {
         let changed = crate::document::diff(&old, &far);
         assert!(!changed.contains(&TileAt::new(2, 0)) && changed.contains(&TileAt::new(0, 0)));
     }
+
     #[test]
     fn order_copies_and_removals_are_those_asked_for() {
         let (old, id) = document();
@@ -229,6 +277,7 @@ mod tests {
         let (copied, copies) = old.with_copied_strokes(id, &[2, 0], vec2(1.0, 0.0)).unwrap();
         assert_eq!((colors(&copied, id), copies), (vec![0, 0, 1, 2, 2, 3], vec![1, 4]));
     }
+
     #[test]
     fn what_is_not_there_or_locked_is_not_edited() {
         let (old, id) = document();
@@ -238,6 +287,7 @@ mod tests {
         let locked = old.with_layer(id, |layer| layer.lock = LayerLock::All).unwrap();
         assert!(locked.with_moved_strokes(id, &[0], Vec2::ONE).is_none());
     }
+
     #[test]
     fn baked_strokes_look_as_they_did_and_the_lowest_go_beneath() {
         let (old, id) = document();

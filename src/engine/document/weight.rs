@@ -1,5 +1,5 @@
-//! How much memory flattening a document takes in addition to the document, estimated before it begins. Floor 4. An
-//! upper bound. Not here: how much memory there is (floors above).
+//! How much memory flattening a document takes in addition to the document, estimated before it
+//! begins. Floor 4. An upper bound. Not here: how much memory there is (floors above).
 
 use super::{Content, DerivedMask, Document, Layer, LayerMask, StrokeList};
 use crate::math::Rect;
@@ -17,7 +17,8 @@ const CURVATURE_BYTES: u64 = 14;
 /// A surface with other normals, bytes a pixel.
 const SURFACE_BYTES: u64 = 18;
 
-/// What finding a region takes, bytes a pixel: how much each differs, its steps, what is covered, and their inputs.
+/// What finding a region takes, bytes a pixel: how much each differs, its steps, what is covered,
+/// and their inputs.
 fn region_bytes(kind: RegionKind) -> u64 {
     9 + match kind {
         RegionKind::Curvature => CURVATURE_BYTES,
@@ -29,23 +30,29 @@ fn region_bytes(kind: RegionKind) -> u64 {
 }
 
 impl Document {
-    /// Bytes that flattening takes at most: the picture, the tiles that live layers are rendered to, and what is
-    /// prepared of the surface for shading, scaling and masks.
+    /// Bytes that flattening takes at most: the picture, the tiles that live layers are rendered
+    /// to, and what is prepared of the surface for shading, scaling and masks.
     pub fn flattening_bytes(&self) -> u64 {
         let area = self.size.area() as u64;
         let of_all = area * TILE_BYTES + of_layers(&self.layers, self.size.rect(), area);
         of_all + self.surface.as_ref().map_or(0, |surface| self.behind_bytes(surface.contours()))
     }
-    /// Bytes that [`flatten_to_paint`](super::flatten_to_paint) takes at most: as flattening, with the textures that
-    /// images are read from, and a picture of 16 bits.
+
+    /// Bytes that [`flatten_to_paint`](super::flatten_to_paint) takes at most: as flattening, with
+    /// the textures that images are read from, and a picture of 16 bits.
     pub fn painting_bytes(&self) -> u64 {
         self.flattening_bytes() + self.deep_bytes() + self.size.area() as u64 * DEEP_TILE_BYTES
     }
-    /// What the other populations of contour pixels take: their readings, and the pixels of live layers, in whole rows
-    /// of a tile's width.
+
+    /// What the other populations of contour pixels take: their readings, and the pixels of live
+    /// layers, in whole rows of a tile's width.
     fn behind_bytes(&self, contours: &Contours) -> u64 {
         let is_live = |layer: &Layer| {
-            layer.visible && !matches!(layer.content, Content::Fill(_) | Content::Pixels(_) | Content::Group(_))
+            layer.visible
+                && !matches!(
+                    layer.content,
+                    Content::Fill(_) | Content::Pixels(_) | Content::Group(_)
+                )
         };
         let live = self.walk().into_iter().filter(|(_, layer)| is_live(layer)).count() as u64;
         contours.bytes() + 2 * TILE_BYTES * contours.pixels().len() as u64 * live
@@ -103,7 +110,8 @@ mod tests {
     #[test]
     fn live_layers_weigh_what_they_are_rendered_to() {
         let weight = |contents: Vec<Content>| {
-            let layers = contents.into_iter().map(|content| Arc::new(Layer::new("a", content))).collect();
+            let layers =
+                contents.into_iter().map(|content| Arc::new(Layer::new("a", content))).collect();
             Document { layers, ..Document::empty(Size::new(1000, 100)) }.flattening_bytes()
         };
         let (from, to) = (vec2(0.0, 0.0), vec2(9.0, 9.0));
@@ -122,7 +130,8 @@ mod tests {
         let samples = vec![Sample::at(vec2(50.0, 50.0))];
         let brush = Brush { size: 10.0, ..Brush::default() };
         let stroke = Arc::new(Stroke::new(brush, Operator::None, Color::BLACK, samples));
-        let strokes = |n: usize| Content::Strokes(Live::new(StrokeList { strokes: vec![stroke.clone(); n] }));
+        let strokes =
+            |n: usize| Content::Strokes(Live::new(StrokeList { strokes: vec![stroke.clone(); n] }));
         assert_eq!(weight(vec![strokes(1)]), 400_000 + 21 * 21 * 4);
         assert_eq!(weight(vec![strokes(1000)]), 800_000, "no more than the canvas");
     }

@@ -1,5 +1,5 @@
-//! Floor 0: numbers without pictures. Vectors are `glam`'s; a position and a direction are both `Vec2`, distinguished
-//! by name.
+//! Floor 0: numbers without pictures. Vectors are `glam`'s; a position and a direction are both
+//! `Vec2`, distinguished by name.
 
 pub mod fast;
 pub mod hash;

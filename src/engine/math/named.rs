@@ -1,7 +1,7 @@
 //! Enums whose choices have names in documents: choices and names in one place. Floor 0.
 
-/// Declares an enum of plain choices together with their names: `ALL`, `name` and `from_name`. If the window has other
-/// names for them, `label` (and `LABELS`), and if it explains them, `hint`:
+/// Declares an enum of plain choices together with their names: `ALL`, `name` and `from_name`. If
+/// the window has other names for them, `label` (and `LABELS`), and if it explains them, `hint`:
 ///
 /// ```
 /// rilievo_engine::named! {
@@ -23,6 +23,7 @@ macro_rules! named {
         $crate::named! {
             $(#[$meta])* $vis enum $type { $($(#[$row])* $choice = $name => $label),+ }
         }
+
         impl $type {
             /// What it is or does, for tooltips.
             pub const fn hint(self) -> &'static str {
@@ -52,6 +53,7 @@ macro_rules! named {
             pub const fn name(self) -> &'static str {
                 match self { $($type::$choice => $name),+ }
             }
+
             pub fn from_name(name: &str) -> Option<Self> {
                 Self::ALL.iter().find(|(_, known)| *known == name).map(|(choice, _)| *choice)
             }

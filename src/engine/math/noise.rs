@@ -1,10 +1,11 @@
-//! Noise that repeats: gradient noise over a square whose opposite sides meet, so that a texture of it has no seams.
-//! Floor 0.
+//! Noise that repeats: gradient noise over a square whose opposite sides meet, so that a texture of
+//! it has no seams. Floor 0.
 
 use super::{Vec2, hash, vec2};
 use std::f32::consts::TAU;
 
-/// Gradient noise (Perlin 2002) at `p`, a lattice cell as unit; it repeats every `period ≥ 1` cells. Within [−1, 1].
+/// Gradient noise (Perlin 2002) at `p`, a lattice cell as unit; it repeats every `period ≥ 1`
+/// cells. Within [−1, 1].
 pub fn gradient(p: Vec2, period: u32, seed: u32) -> f32 {
     let period = period.clamp(1, 1 << 16) as i32;
     let floor = p.floor();
@@ -21,7 +22,8 @@ pub fn gradient(p: Vec2, period: u32, seed: u32) -> f32 {
     lerp(rows[0], rows[1], fade.y) * std::f32::consts::SQRT_2
 }
 
-/// Octaves of [`gradient`] added up, each twice as fine as the previous one and `rough` times as strong.
+/// Octaves of [`gradient`] added up, each twice as fine as the previous one and `rough` times as
+/// strong.
 ///
 /// * `p`: in `[0, 1)²`, the square that repeats.
 /// * `cells`: of the coarsest octave along a side.
@@ -47,9 +49,12 @@ mod tests {
             assert!((at(t, 0.0) - at(t, 1.0 - 1e-6)).abs() < 1e-3);
         }
     }
+
     #[test]
     fn noise_stays_in_its_range_and_changes_with_the_seed() {
-        let values = |seed| (0..4096).map(move |i| gradient(vec2(i as f32 * 0.37, i as f32 * 0.11), 16, seed));
+        let values = |seed| {
+            (0..4096).map(move |i| gradient(vec2(i as f32 * 0.37, i as f32 * 0.11), 16, seed))
+        };
         assert!(values(1).all(|v| v.abs() <= 1.0));
         assert!(values(1).zip(values(2)).filter(|(a, b)| (a - b).abs() > 0.05).count() > 2000);
         let spread = values(1).map(|v| v * v).sum::<f32>() / 4096.0;

@@ -1,5 +1,6 @@
-//! Ranges of numbers that a document may hold: those that many types share, and how a number is checked. Floor 0. The
-//! range of a particular number is a constant of the type that holds it. Readers, panels and replays use it.
+//! Ranges of numbers that a document may hold: those that many types share, and how a number is
+//! checked. Floor 0. The range of a particular number is a constant of the type that holds it.
+//! Readers, panels and replays use it.
 
 use std::ops::RangeInclusive;
 
@@ -24,10 +25,18 @@ pub fn held(v: f32, range: &Range) -> f32 {
 pub fn within(what: &str, v: f32, range: &Range) -> Result<(), String> {
     let (least, most) = (range.start(), range.end());
     // NaN is in no range.
-    if range.contains(&v) { Ok(()) } else { Err(format!("{what} is {v}; it must be between {least} and {most}")) }
+    if range.contains(&v) {
+        Ok(())
+    } else {
+        Err(format!("{what} is {v}; it must be between {least} and {most}"))
+    }
 }
 
 /// Refuses more of something than is allowed.
 pub fn at_most(what: &str, count: usize, most: usize) -> Result<(), String> {
-    if count <= most { Ok(()) } else { Err(format!("{what} would be {count}; there may be {most}")) }
+    if count <= most {
+        Ok(())
+    } else {
+        Err(format!("{what} would be {count}; there may be {most}"))
+    }
 }

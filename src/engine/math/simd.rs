@@ -1,10 +1,12 @@
 //! SIMD width chosen at run time: one body, compiled once for the baseline and once for AVX2.
-//! Floor 0. A release binary runs on any x86-64 and is fast on a new one; other platforms get the baseline body.
+//! Floor 0. A release binary runs on any x86-64 and is fast on a new one; other platforms get the
+//! baseline body.
 //!
-//! The wide version enables AVX2 only and never contracts a multiply and an add, so both versions compute the same
-//! bits.
+//! The wide version enables AVX2 only and never contracts a multiply and an add, so both versions
+//! compute the same bits.
 
-/// Wraps functions so that their body is compiled for the baseline and for AVX2, and the processor picks.
+/// Wraps functions so that their body is compiled for the baseline and for AVX2, and the processor
+/// picks.
 ///
 /// The body must be plain loops over slices or arrays, which the compiler vectorises, and call only
 /// `#[inline(always)]` functions.
@@ -44,14 +46,18 @@ macro_rules! widest {
     )+};
 }
 
-/// Prefetches the cache lines of a slice that will be read soon. Rows of a tile lie pages apart, where the processor's
-/// own prefetching stops; a hint that has an effect only on x86-64.
+/// Prefetches the cache lines of a slice that will be read soon. Rows of a tile lie pages apart,
+/// where the processor's own prefetching stops; a hint that has an effect only on x86-64.
 #[inline(always)]
 pub fn prefetch<T>(soon: &[T]) {
     #[cfg(target_arch = "x86_64")]
     for line in soon.chunks((64 / size_of::<T>().max(1)).max(1)) {
         // SAFETY: a hint that reads nothing; SSE is in every x86-64.
-        unsafe { std::arch::x86_64::_mm_prefetch::<{ std::arch::x86_64::_MM_HINT_T0 }>(line.as_ptr().cast()) };
+        unsafe {
+            std::arch::x86_64::_mm_prefetch::<{ std::arch::x86_64::_MM_HINT_T0 }>(
+                line.as_ptr().cast(),
+            )
+        };
     }
     #[cfg(not(target_arch = "x86_64"))]
     let _ = soon;

@@ -5,7 +5,8 @@
 
 use std::sync::LazyLock;
 
-/// Linear light of an sRGB-encoded value. Odd extension below 0; 1 maps to 1 and larger values stay larger.
+/// Linear light of an sRGB-encoded value. Odd extension below 0; 1 maps to 1 and larger values stay
+/// larger.
 pub fn decode(encoded: f32) -> f32 {
     let v = encoded.abs();
     let lin = if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) };
@@ -23,23 +24,26 @@ pub fn encode(linear: f32) -> f32 {
 #[inline(always)]
 pub fn decode_fast(v: f32) -> f32 {
     let power = 8.832_52e-4
-        + v * (0.033_923_87 + v * (0.507_539_6 + v * (0.710_421_1 + v * (-0.369_025_63 + v * 0.116_626_06))));
+        + v * (0.033_923_87
+            + v * (0.507_539_6 + v * (0.710_421_1 + v * (-0.369_025_63 + v * 0.116_626_06))));
     if v <= 0.04045 { v * (1.0 / 12.92) } else { power }
 }
 
-/// Luminance in linear light of an encoded colour in `[0, 1]`: error below 3e-4 + 0.4 % of it, for weighing light
-/// rather than for showing it.
+/// Luminance in linear light of an encoded colour in `[0, 1]`: error below 3e-4 + 0.4 % of it, for
+/// weighing light rather than for showing it.
 #[inline(always)]
 pub fn luminance_fast(r: f32, g: f32, b: f32) -> f32 {
     // Through 0 and without the foot: close enough, and one expression for all values.
-    let decode = |v: f32| v * (0.051_504_187 + v * (0.436_915_07 + v * (0.752_211_9 - v * 0.244_300_74)));
+    let decode =
+        |v: f32| v * (0.051_504_187 + v * (0.436_915_07 + v * (0.752_211_9 - v * 0.244_300_74)));
     luminance(decode(r), decode(g), decode(b))
 }
 
 /// [`encode`] for `[0, 1]` by a square root: error below 0.05/255.
 #[inline(always)]
 pub fn encode_fast(linear: f32) -> f32 {
-    // In the root the curve is nearly straight. Pairs of terms, so that no step waits for all before it.
+    // In the root the curve is nearly straight. Pairs of terms, so that no step waits for all
+    // before it.
     let root = linear.sqrt();
     let squared = root * root;
     let low = (-0.042_232_01 + root * 1.575_272) + squared * (-1.899_483 + root * 3.898_457_3);
@@ -48,16 +52,18 @@ pub fn encode_fast(linear: f32) -> f32 {
     if linear <= 0.003_130_8 { linear * 12.92 } else { power }
 }
 
-/// `encode(factor · decode(v))` without leaving the encoded value, for `v` in `[0, 1]`: error below 0.25/255.
+/// `encode(factor · decode(v))` without leaving the encoded value, for `v` in `[0, 1]`: error below
+/// 0.25/255.
 ///
-/// Above the linear foot the curve is a power, so a factor of the light is a factor of v + 0.055: its 5/12th power.
-/// The rest is for values that lie on the foot or cross its end.
+/// Above the linear foot the curve is a power, so a factor of the light is a factor of v + 0.055:
+/// its 5/12th power. The rest is for values that lie on the foot or cross its end.
 ///
 /// * `root`: factor^(5/12), handed in because the three channels share it.
 #[inline(always)]
 pub fn scale_encoded(v: f32, factor: f32, root: f32) -> f32 {
     const FOOT: f32 = 0.04045;
-    // The foot's value on the power curve, 1.055 (v / 12.92)^(5/12), where a bright factor can lift it above the foot.
+    // The foot's value on the power curve, 1.055 (v / 12.92)^(5/12), where a bright factor can lift
+    // it above the foot.
     let lifted = v.sqrt();
     let lifted = 0.004_918_89 + lifted * (0.517_012_9 - lifted * 0.336_299);
     let on_power = (if v <= FOOT { lifted } else { v + 0.055 }) * root;
@@ -68,15 +74,18 @@ pub fn scale_encoded(v: f32, factor: f32, root: f32) -> f32 {
     if v <= FOOT && straight <= FOOT { straight } else { above }
 }
 
-/// [`scale_encoded`] for factors between e⁻² and e², in fewer steps and without a root: error below 0.1/255.
+/// [`scale_encoded`] for factors between e⁻² and e², in fewer steps and without a root: error below
+/// 0.1/255.
 ///
-/// The curve's power, and its inverse, are a straight line plus their deviation from it on the foot.
+/// The curve's power, and its inverse, are a straight line plus their deviation from it on the
+/// foot.
 #[inline(always)]
 pub fn scale_encoded_gently(v: f32, factor: f32, root: f32) -> f32 {
     const FOOT: f32 = 0.04045;
     const FOOT_ON_POWER: f32 = FOOT + 0.055;
     let below = super::fast::min(v - FOOT, 0.0);
-    let bend = (-0.090_288_29 - 23.222_44 * below) + (below * below) * (-935.455_8 - 22_506.5 * below);
+    let bend =
+        (-0.090_288_29 - 23.222_44 * below) + (below * below) * (-935.455_8 - 22_506.5 * below);
     let on_power = (v + 0.055 + below * bend) * root;
     let below = super::fast::min(on_power - FOOT_ON_POWER, 0.0);
     let above = on_power - 0.055 + below * (0.001_357_515_7 + below * 6.569_081);
@@ -85,7 +94,8 @@ pub fn scale_encoded_gently(v: f32, factor: f32, root: f32) -> f32 {
     if super::fast::max(v, straight) <= FOOT { straight } else { above }
 }
 
-static DECODE: LazyLock<[f32; 256]> = LazyLock::new(|| std::array::from_fn(|i| decode(i as f32 / 255.0)));
+static DECODE: LazyLock<[f32; 256]> =
+    LazyLock::new(|| std::array::from_fn(|i| decode(i as f32 / 255.0)));
 
 /// Linear light of an sRGB byte.
 #[inline(always)]
@@ -93,12 +103,14 @@ pub fn decode_u8(encoded: u8) -> f32 {
     DECODE[encoded as usize]
 }
 
-/// Nearest byte of a value in `[0, 1]`; out of range clamps, NaN becomes 0. The only quantisation to bytes.
+/// Nearest byte of a value in `[0, 1]`; out of range clamps, NaN becomes 0. The only quantisation
+/// to bytes.
 #[inline(always)]
 pub fn quantise(value: f32) -> u8 {
     // `max` first: for NaN and 0 it is 0.
     let scaled = super::fast::min(super::fast::max(value, 0.0), 1.0) * 255.0 + 0.5;
-    // SAFETY: in [0.5, 255.5] by the line above. The checked cast is not vectorised: 4 ns a pixel instead of 0.5.
+    // SAFETY: in [0.5, 255.5] by the line above. The checked cast is not vectorised: 4 ns a pixel
+    // instead of 0.5.
     unsafe { scaled.to_int_unchecked::<i32>() as u8 }
 }
 
@@ -141,6 +153,7 @@ impl Color {
     pub const fn rgb(r: u8, g: u8, b: u8) -> Self {
         Self { r, g, b, a: 255 }
     }
+
     /// Reads `#rrggbb` or `#rrggbbaa`.
     pub fn parse(text: &str) -> Option<Color> {
         let hex = text.strip_prefix('#')?;
@@ -154,15 +167,18 @@ impl Color {
             _ => None,
         }
     }
+
     /// Straight alpha, encoded, each in `[0, 1]`.
     pub fn to_f32(self) -> [f32; 4] {
         [self.r, self.g, self.b, self.a].map(|v| f32::from(v) / 255.0)
     }
+
     /// Premultiplied, encoded, each in `[0, 1]`.
     pub fn premultiplied(self) -> [f32; 4] {
         let [r, g, b, a] = self.to_f32();
         [r * a, g * a, b * a, a]
     }
+
     /// Linear light, straight, alpha dropped.
     pub fn linear(self) -> [f32; 3] {
         [self.r, self.g, self.b].map(decode_u8)
@@ -189,6 +205,7 @@ mod tests {
             assert_eq!(quantise(encode(decode_u8(b))), b);
         }
     }
+
     #[test]
     fn the_fast_curves_stay_within_a_quarter_byte() {
         for i in 0..=100_000 {
@@ -197,6 +214,7 @@ mod tests {
             assert!((encode_fast(v) - encode(v)).abs() < 0.05 / 255.0, "{v}");
         }
     }
+
     #[test]
     fn the_fast_luminance_is_close_enough_to_weigh_light() {
         for i in 0..=1000 {
@@ -205,6 +223,7 @@ mod tests {
             assert!((luminance_fast(v, v * v, 1.0 - v) - exact).abs() < 3e-4 + 4e-3 * exact, "{v}");
         }
     }
+
     #[test]
     fn scaling_an_encoded_value_is_scaling_its_light() {
         for factor in [0.05f32, 0.3, 0.7, 1.0, 1.3, 2.7, 7.0, 20.0] {
@@ -222,20 +241,26 @@ mod tests {
                 let v = i as f32 / 10_000.0;
                 let light = encode(factor * decode(v)).min(1.0);
                 let found = scale_encoded_gently(v, factor, factor.powf(5.0 / 12.0)).min(1.0);
-                assert!((found - light).abs() < 0.1 / 255.0, "{v} × {factor}: {found}, not {light}");
+                assert!(
+                    (found - light).abs() < 0.1 / 255.0,
+                    "{v} × {factor}: {found}, not {light}"
+                );
             }
         }
     }
+
     #[test]
     fn quantising_nan_gives_black_not_garbage() {
         assert_eq!(quantise(f32::NAN), 0);
         assert_eq!(quantise(7.0), 255);
     }
+
     #[test]
     fn values_of_16_bits_are_their_own() {
         assert!((0..=u16::MAX).all(|v| quantise_deep(f32::from(v) / 65535.0) == v));
         assert_eq!([f32::NAN, -1.0, 7.0].map(quantise_deep), [0, 0, 65535]);
     }
+
     #[test]
     fn colours_read_back_as_written() {
         for text in ["#c08060", "#01020304"] {

@@ -1,5 +1,5 @@
-//! A brush: the footprint of one dab and how dabs follow each other.
-//! Floor 3. Not here: how pen and surface drive it (`dynamics`), the dabs themselves (`dab_walker`).
+//! A brush: the footprint of one dab and how dabs follow each other. Floor 3. Not here: how pen and
+//! surface drive it (`dynamics`), the dabs themselves (`dab_walker`).
 
 use super::dynamics::{Dynamics, Input, Property};
 use super::grain::{BrushGrain, GrainSource};
@@ -15,17 +15,20 @@ use crate::surface::PaintLimit;
 pub struct Brush {
     /// Diameter of a dab, px, `> 0`.
     pub size: f32,
-    /// Ratio of the radius that is fully covered, `[0, 1]`; beyond it coverage falls off to 0 at the rim.
+    /// Ratio of the radius that is fully covered, `[0, 1]`; beyond it coverage falls off to 0 at
+    /// the rim.
     pub hardness: f32,
     /// Opacity of the whole stroke, `[0, 1]`.
     pub opacity: f32,
     /// Coverage that one dab adds, `[0, 1]`.
     pub flow: f32,
-    /// Distance between dabs, a ratio of the diameter, `> 0`; for a flat tip, of its width along the stroke.
+    /// Distance between dabs, a ratio of the diameter, `> 0`; for a flat tip, of its width along
+    /// the stroke.
     pub spacing: f32,
     /// What that distance, the cycle and the input distance are measured on.
     pub spacing_on: Measure,
-    /// How many dabs overlap, `≥ 1`: each adds 1 − (1 − flow)^(1/overlap), so that together they reach the flow.
+    /// How many dabs overlap, `≥ 1`: each adds 1 − (1 − flow)^(1/overlap), so that together they
+    /// reach the flow.
     pub overlap: f32,
     /// How the coverage of round, elliptic and square tips falls off.
     pub falloff: Falloff,
@@ -35,14 +38,15 @@ pub struct Brush {
     pub rotation: f32,
     /// How symmetry turned or mirrored the stroke.
     pub facing: StrokeFrame,
-    /// Blur of the footprint, `[0, 1]`: a rougher, less glossy mark. Its rim moves out by this share of the radius.
+    /// Blur of the footprint, `[0, 1]`: a rougher, less glossy mark. Its rim moves out by this
+    /// share of the radius.
     pub softness: f32,
     /// How far a dab may be from the stroke, a ratio as `spread` says, `[0, 10]`.
     pub scatter: f32,
     /// How dabs are spread within the scatter.
     pub spread: Spread,
-    /// How far sizes vary: their standard deviation in doublings. A dab that grows covers less: its paint is spread
-    /// out.
+    /// How far sizes vary: their standard deviation in doublings. A dab that grows covers less: its
+    /// paint is spread out.
     pub size_jitter: f32,
     /// How dabs are displaced from the stroke.
     pub offset: Offset,
@@ -56,7 +60,8 @@ pub struct Brush {
     pub keeps_alpha: bool,
     /// Where the stroke may paint.
     pub bounded: PaintLimit,
-    /// How far from the pen a bent mark may land, a ratio of the dab's diameter, in [`Brush::REACHES`]; 0 is no limit.
+    /// How far from the pen a bent mark may land, a ratio of the dab's diameter, in
+    /// [`Brush::REACHES`]; 0 is no limit.
     pub reach: f32,
     /// What the brush does where its footprint lands. Strokes of a stroke layer always paint.
     pub mode: BrushMode,
@@ -66,7 +71,8 @@ pub struct Brush {
     pub tip: Tip,
     /// A texture that takes paint away.
     pub grain: Option<BrushGrain>,
-    /// How the hand is smoothed. The samples of a stroke are smooth already: rendering it does not use this.
+    /// How the hand is smoothed. The samples of a stroke are smooth already: rendering it does not
+    /// use this.
     pub stabilizer: Stabilizer,
     /// What its lengths are measured on.
     pub stabilizer_on: Measure,
@@ -80,8 +86,8 @@ pub struct Brush {
     pub seed: u32,
 }
 
-/// The frame in which a stroke was drawn, relative to the canvas: first mirrored, then turned. Dabs are rotated and
-/// scattered within this frame, so that mirror images match dab by dab.
+/// The frame in which a stroke was drawn, relative to the canvas: first mirrored, then turned. Dabs
+/// are rotated and scattered within this frame, so that mirror images match dab by dab.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct StrokeFrame {
     /// Counter-clockwise as seen, degrees.
@@ -97,31 +103,36 @@ impl StrokeFrame {
         let across = if is_mirrored { -map.x_axis } else { map.x_axis };
         Self { turn: (-across.y).atan2(across.x).to_degrees(), is_mirrored }
     }
+
     /// The linear map: canvas from the stroke's frame.
     pub fn map(self) -> Mat2 {
         let mirror = Mat2::from_diagonal(Vec2::new(if self.is_mirrored { -1.0 } else { 1.0 }, 1.0));
         // Counter-clockwise as seen is clockwise where y goes down.
         Mat2::from_angle(-self.turn_rad()) * mirror
     }
-    /// The rotation on the canvas of a footprint rotated by this much within the frame; in a mirrored frame the
-    /// footprint is also mirrored left to right.
+
+    /// The rotation on the canvas of a footprint rotated by this much within the frame; in a
+    /// mirrored frame the footprint is also mirrored left to right.
     pub fn rotation_rad(self, within_rad: f32) -> f32 {
         if self.is_mirrored { self.turn_rad() - within_rad } else { self.turn_rad() + within_rad }
     }
+
     fn turn_rad(self) -> f32 {
         if self.turn.is_finite() { self.turn.to_radians() } else { 0.0 }
     }
 }
 
-/// What a brush does where its footprint lands. All modes but paint change the pixels of a paint layer.
+/// What a brush does where its footprint lands. All modes but paint change the pixels of a paint
+/// layer.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum BrushMode {
     #[default]
     Paint,
-    /// Drags existing paint; `length` in `[0, 1]`, the share of it that is left after a drag of one radius.
-    Smudge { length: f32 },
-    /// Softens the existing paint; `width` in `[0, 1]`: the standard deviation that a stroke leaves, a ratio of the
+    /// Drags existing paint; `length` in `[0, 1]`, the share of it that is left after a drag of one
     /// radius.
+    Smudge { length: f32 },
+    /// Softens the existing paint; `width` in `[0, 1]`: the standard deviation that a stroke
+    /// leaves, a ratio of the radius.
     Blur { width: f32 },
     /// Copies from elsewhere.
     Clone {
@@ -144,14 +155,18 @@ impl BrushMode {
     pub fn held(self) -> Self {
         match self {
             BrushMode::Paint | BrushMode::Clone { .. } => self,
-            BrushMode::Smudge { length } => BrushMode::Smudge { length: held(length, &Self::SHARE) },
+            BrushMode::Smudge { length } => {
+                BrushMode::Smudge { length: held(length, &Self::SHARE) }
+            }
             BrushMode::Blur { width } => BrushMode::Blur { width: held(width, &Self::SHARE) },
         }
     }
+
     /// Whether it changes existing paint.
     pub fn is_retouching(self) -> bool {
         self != BrushMode::Paint
     }
+
     /// Whether it copies from elsewhere.
     pub fn is_clone(self) -> bool {
         matches!(self, BrushMode::Clone { .. })
@@ -179,12 +194,14 @@ impl ColorJitter {
 pub enum Stabilizer {
     #[default]
     None,
-    /// The line follows the pen as a running average; `weight` in `[0, 1)` is the share of the past that is left after
-    /// the pen has moved ten px, of the canvas or of the surface ([`Brush::stabilizer_on`]).
+    /// The line follows the pen as a running average; `weight` in `[0, 1)` is the share of the past
+    /// that is left after the pen has moved ten px, of the canvas or of the surface
+    /// ([`Brush::stabilizer_on`]).
     Average { weight: f32 },
     /// The pen pulls the line on a string of this length, px: wiggles shorter than it do not show.
     String { length_px: f32 },
-    /// The line follows the pen in time: after t, e^(−t/secs) of the lag is left. It ends when the pen lifts.
+    /// The line follows the pen in time: after t, e^(−t/secs) of the lag is left. It ends when the
+    /// pen lifts.
     Lag { secs: f32 },
 }
 
@@ -201,7 +218,8 @@ impl Stabilizer {
 #[derive(Clone, PartialEq)]
 pub enum Tip {
     Round,
-    /// `ratio`: the shorter axis over the longer one, which is the diameter and lies along x; `(0, 1]`.
+    /// `ratio`: the shorter axis over the longer one, which is the diameter and lies along x; `(0,
+    /// 1]`.
     Ellipse {
         ratio: f32,
     },
@@ -211,8 +229,8 @@ pub enum Tip {
     },
     Bristles(Bristles),
     Noise(Noise),
-    /// A picture whose longer side is the diameter. An opaque grey picture is coverage, white covering fully; any other
-    /// is a stamp in its own colours.
+    /// A picture whose longer side is the diameter. An opaque grey picture is coverage, white
+    /// covering fully; any other is a stamp in its own colours.
     Picture(PictureSource),
     Hose(Hose),
 }
@@ -233,7 +251,8 @@ impl Brush {
     pub const SCATTER: Range = 0.0..=10.0;
     /// The range of a reach.
     pub const REACHES: std::ops::RangeInclusive<f32> = 0.0..=100.0;
-    /// The reach of the brushes that come with the program: on a rugged surface their marks stay near the pen.
+    /// The reach of the brushes that come with the program: on a rugged surface their marks stay
+    /// near the pen.
     pub const NEAR: f32 = 3.0;
 
     /// The pictures that it uses: its tip's, then its grain's.
@@ -249,6 +268,7 @@ impl Brush {
         });
         tip.iter().chain(grain)
     }
+
     /// The same brush with its pictures replaced, in that order.
     pub fn with_pictures<E>(
         &self,
@@ -258,7 +278,8 @@ impl Brush {
         match &self.tip {
             Tip::Picture(source) => next.tip = Tip::Picture(replace(source)?),
             Tip::Hose(hose) => {
-                let pictures = hose.pictures().iter().map(&mut replace).collect::<Result<_, E>>()?;
+                let pictures =
+                    hose.pictures().iter().map(&mut replace).collect::<Result<_, E>>()?;
                 next.tip = Tip::Hose(hose.with_pictures(pictures));
             }
             _ => {}
@@ -310,35 +331,48 @@ impl Default for Brush {
 }
 
 impl Brush {
-    /// Whether both are the same brush: only what belongs to each stroke may differ, its seed and its facing.
+    /// Whether both are the same brush: only what belongs to each stroke may differ, its seed and
+    /// its facing.
     pub fn is_alike(&self, other: &Brush) -> bool {
-        self.size == other.size && *self == Brush { seed: self.seed, facing: self.facing, ..other.clone() }
+        self.size == other.size
+            && *self == Brush { seed: self.seed, facing: self.facing, ..other.clone() }
     }
+
     /// Whether its strokes have random properties and so need a seed of their own.
     pub fn is_random(&self) -> bool {
         let ColorJitter { hue_degrees, saturation, value } = self.jitter;
-        let strays = [self.scatter, self.hand.tremor, self.size_jitter, hue_degrees, saturation, value];
-        let adds = [Property::Scatter, Property::SizeJitter].into_iter().any(|p| self.dynamics.drive(p));
-        let follows = [Input::Random, Input::Chance].into_iter().any(|input| self.dynamics.follow(input));
+        let strays =
+            [self.scatter, self.hand.tremor, self.size_jitter, hue_degrees, saturation, value];
+        let adds =
+            [Property::Scatter, Property::SizeJitter].into_iter().any(|p| self.dynamics.drive(p));
+        let follows =
+            [Input::Random, Input::Chance].into_iter().any(|input| self.dynamics.follow(input));
         strays.iter().any(|&v| v > 0.0) || adds || follows || matches!(self.tip, Tip::Hose(_))
     }
+
     /// It works on existing paint, dab by dab.
     pub fn is_wet(&self) -> bool {
         self.mode.is_retouching() || self.picks_up()
     }
+
     /// It picks up paint on its way.
     pub fn picks_up(&self) -> bool {
-        self.mode == BrushMode::Paint && (self.pickup.amount > 0.0 || self.dynamics.drive(Property::Pickup))
+        self.mode == BrushMode::Paint
+            && (self.pickup.amount > 0.0 || self.dynamics.drive(Property::Pickup))
     }
-    /// Without paint to work on it would leave next to nothing: it retouches, or paints more with what it picks up than
-    /// with its own colour.
+
+    /// Without paint to work on it would leave next to nothing: it retouches, or paints more with
+    /// what it picks up than with its own colour.
     pub fn needs_paint(&self) -> bool {
         self.mode.is_retouching() || (self.mode == BrushMode::Paint && self.pickup.amount > 0.5)
     }
+
     /// The ratio of the tip's shorter side to its longer one, before anything drives it; `(0, 1]`.
     pub fn ratio(&self) -> f32 {
         match self.tip {
-            Tip::Ellipse { ratio } | Tip::Square { ratio } => ratio.max(*Tip::RATIO.start()).min(1.0),
+            Tip::Ellipse { ratio } | Tip::Square { ratio } => {
+                ratio.max(*Tip::RATIO.start()).min(1.0)
+            }
             _ => 1.0,
         }
     }

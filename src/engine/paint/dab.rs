@@ -1,6 +1,6 @@
-//! One dab on one tile: F(A⁻¹(D(q) − q_0)) at every pixel it may touch. Floor 3. Not here: where dabs are placed
-//! (`dab_walker`), the tips (`profile`, `stamp`), rows of the round tip (`round`), how dabs add up to a stroke
-//! (`stroke`).
+//! One dab on one tile: F(A⁻¹(D(q) − q_0)) at every pixel it may touch. Floor 3. Not here: where
+//! dabs are placed (`dab_walker`), the tips (`profile`, `stamp`), rows of the round tip (`round`),
+//! how dabs add up to a stroke (`stroke`).
 
 mod coverage;
 mod round;
@@ -22,9 +22,13 @@ use crate::math::{Rect, simd::prefetch, srgb::Color};
 use crate::raster::sampler::Antialias;
 use crate::raster::{Outside, TILE, TileAt};
 use crate::surface::deformation::{Deformation, DeformedRect, OwnPlane};
-use crate::surface::support::{BLOCK, DabExtent, SupportBounds, TILE_BLOCKS, TileBlocks, is_out_of_reach};
+use crate::surface::support::{
+    BLOCK, DabExtent, SupportBounds, TILE_BLOCKS, TileBlocks, is_out_of_reach,
+};
 use crate::surface::{DabReach, Operator, Surface};
-use round::{BentPart, BlockPixels, RoundTip, RowPaint, RowZones, bent_row, bent_rows, flat_row, flat_rows};
+use round::{
+    BentPart, BlockPixels, RoundTip, RowPaint, RowZones, bent_row, bent_rows, flat_row, flat_rows,
+};
 use std::ops::Range;
 
 /// One dab on the canvas it is painted on.
@@ -81,21 +85,32 @@ impl<'s> PlacedDab<'s> {
         if surface.is_some_and(|surface| is_out_of_reach(surface, dab.operator, dab.at, extent)) {
             let deformation = Deformation::of_dab(None, scene.size, Operator::None, dab.at);
             let support = SupportBounds::nowhere(scene.size, dab.at, extent);
-            return Self { dab, scene, deformation, bent_over: None, support, sheet_blocks: TileBlocks::default() };
+            return Self {
+                dab,
+                scene,
+                deformation,
+                bent_over: None,
+                support,
+                sheet_blocks: TileBlocks::default(),
+            };
         }
         let reach = DabReach::new(dab.at, dab.reach_px, PUSH_RADII * dab.radius);
-        let deformation = Deformation::of_dab(surface, scene.size, dab.operator, dab.at).within(reach);
+        let deformation =
+            Deformation::of_dab(surface, scene.size, dab.operator, dab.at).within(reach);
         // The pixels of a sheet lie where D says, even if it is the identity.
         let is_sheet = scene.sheet().is_some();
         let bent_over = surface.filter(|_| is_sheet || !deformation.is_identity());
         let bounding = surface.filter(|_| !is_sheet);
-        let support = SupportBounds::new(bounding, scene.size, dab.operator, dab.at, extent).within(reach);
+        let support =
+            SupportBounds::new(bounding, scene.size, dab.operator, dab.at, extent).within(reach);
         Self { dab, scene, deformation, bent_over, support, sheet_blocks: TileBlocks::default() }
     }
+
     /// The same, painted on those blocks of a sheet.
     pub fn on_blocks(self, sheet_blocks: TileBlocks) -> Self {
         Self { sheet_blocks, ..self }
     }
+
     /// The blocks that the dab may touch, among the pixels that represent a tile.
     fn touched(&self, at: TileAt) -> TouchedBlocks {
         if self.scene.sheet().is_none() {
@@ -103,7 +118,8 @@ impl<'s> PlacedDab<'s> {
             let Some(judged) = self.support.judged(at) else { return TouchedBlocks::none(tile) };
             let area = touched(&judged.touched, tile).intersect(self.scene.size.rect());
             // Near its border a dab is pushed away, and pixels are longer.
-            let pixel = if self.deformation.is_limited(area.grown(1)) { ANY_LENGTH } else { judged.pixel };
+            let pixel =
+                if self.deformation.is_limited(area.grown(1)) { ANY_LENGTH } else { judged.pixel };
             return TouchedBlocks { tile, blocks: judged.touched, area, step: 1, pixel };
         }
         let whole = self.scene.area(at);
@@ -111,31 +127,40 @@ impl<'s> PlacedDab<'s> {
         let area = touched(&self.sheet_blocks, tile).intersect(whole);
         TouchedBlocks { tile, blocks: self.sheet_blocks, area, step: 2, pixel: ANY_LENGTH }
     }
+
     pub fn dab(&self) -> &Dab {
         &self.dab
     }
+
     pub fn support(&self) -> &SupportBounds<'s> {
         &self.support
     }
-    /// D over the touched blocks of a tile and the pixels around them, in rows of their area grown by one.
+
+    /// D over the touched blocks of a tile and the pixels around them, in rows of their area grown
+    /// by one.
     fn fill_touched(&self, part: &TouchedBlocks, deformed: &mut DeformedRect) {
         let TouchedBlocks { tile, ref blocks, area, .. } = *part;
-        let touched = |y: i32| if (area.y0..area.y1).contains(&y) { row_of(blocks, tile, y) } else { 0 };
+        let touched =
+            |y: i32| if (area.y0..area.y1).contains(&y) { row_of(blocks, tile, y) } else { 0 };
         let columns = |y: i32| {
             let columns = columns(touched(y - 1) | touched(y) | touched(y + 1), tile);
             columns.start - 1..columns.end + 1
         };
         self.deformation.fill_spans(area.grown(1), columns, deformed);
     }
+
     /// Its colour, from the stroke's; `None`: the stamp's own colours.
     fn paint(&self, color: Option<Color>) -> DabPaint {
         DabPaint { flow: self.dab.flow, ceiling: self.dab.ceiling, color }
     }
+
     /// For a picture, which has no rim that could be thinner.
     fn stamp_paint(&self, color: Option<Color>) -> DabPaint {
         DabPaint { flow: self.dab.flow * self.dab.thin, ..self.paint(color) }
     }
-    /// Adds a round tip to a tile, row by row: a ← a + f (c − a), f = flow · F, up to its ceiling c.
+
+    /// Adds a round tip to a tile, row by row: a ← a + f (c − a), f = flow · F, up to its ceiling
+    /// c.
     pub fn add_round(&self, at: TileAt, stroke_tile: &mut StrokeTile, scratch: &mut DabScratch) {
         let part = self.touched(at);
         if part.area.is_empty() {
@@ -145,7 +170,9 @@ impl<'s> PlacedDab<'s> {
         let tip = RoundTip::new(&self.dab);
         let (tip, field) = self.round_field(&part, tip, deformed);
         let is_flat = field.is_none();
-        let spans = part.spans().filter_map(|span| if is_flat { span.reached_by(&tip) } else { Some(span) });
+        let spans = part
+            .spans()
+            .filter_map(|span| if is_flat { span.reached_by(&tip) } else { Some(span) });
         if let Some(tile) = stroke_tile.plain() {
             let (mut rows, mut n) = ([PixelSpan::default(); TILE], 0);
             for (row, span) in rows.iter_mut().zip(spans) {
@@ -153,7 +180,13 @@ impl<'s> PlacedDab<'s> {
             }
             let (spans, corner) = (&rows[..n], (part.tile.x0, part.tile.y0));
             return match &field {
-                Some(field) => bent_rows(field, BentPart { corner, spans, pixel: &part.pixel }, &tip, row, tile),
+                Some(field) => bent_rows(
+                    field,
+                    BentPart { corner, spans, pixel: &part.pixel },
+                    &tip,
+                    row,
+                    tile,
+                ),
                 None => flat_rows(corner, spans, &tip, row, tile),
             };
         }
@@ -174,8 +207,10 @@ impl<'s> PlacedDab<'s> {
             stroke_tile.cover(part.start_of(span), CoveredRow { coverage: covered, shares }, paint);
         }
     }
-    /// What a round tip reads over a part of a tile, and the tip there: D, or the unwrapped plane itself, in which a
-    /// round tip covers the same pixels however the plane is turned. `None` where D is the identity.
+
+    /// What a round tip reads over a part of a tile, and the tip there: D, or the unwrapped plane
+    /// itself, in which a round tip covers the same pixels however the plane is turned. `None`
+    /// where D is the identity.
     fn round_field<'f>(
         &'f self,
         part: &TouchedBlocks,
@@ -189,11 +224,19 @@ impl<'s> PlacedDab<'s> {
         self.fill_touched(part, deformed);
         (tip, Some(DeformationField::new(surface, part.area.grown(1), deformed)))
     }
+
     /// Adds a picture tip to a tile: its mean over the patch of the image plane under each pixel.
-    pub fn add_stamp(&self, stamp: &TipStamp, at: TileAt, stroke_tile: &mut StrokeTile, scratch: &mut DabScratch) {
+    pub fn add_stamp(
+        &self,
+        stamp: &TipStamp,
+        at: TileAt,
+        stroke_tile: &mut StrokeTile,
+        scratch: &mut DabScratch,
+    ) {
         let part = self.touched(at);
         let area = part.area;
-        let DabScratch { deformed, stamping: StampScratch { patches, antialias, row }, .. } = scratch;
+        let DabScratch { deformed, stamping: StampScratch { patches, antialias, row }, .. } =
+            scratch;
         let texels_from_canvas = stamp.texels_from_canvas(&self.dab);
         self.deformation.fill(area.grown(1), deformed);
         transform(texels_from_canvas, &mut deformed.x, &mut deformed.y);
@@ -246,6 +289,7 @@ impl TouchedBlocks {
     fn none(tile: Rect) -> Self {
         Self { tile, blocks: TileBlocks::default(), area: Rect::EMPTY, step: 1, pixel: ANY_LENGTH }
     }
+
     /// The rows of the area, each from its first to its last touched block.
     fn spans(&self) -> impl Iterator<Item = PixelSpan> + use<> {
         let TouchedBlocks { tile, blocks, area, step, .. } = *self;
@@ -255,6 +299,7 @@ impl TouchedBlocks {
             (x0 < x1).then(|| PixelSpan { x: x0, y, n: (x1 - x0) as usize })
         })
     }
+
     /// Where a span begins among the pixels of the tile.
     fn start_of(&self, span: PixelSpan) -> usize {
         (span.y - self.tile.y0) as usize * TILE + (span.x - self.tile.x0) as usize
@@ -301,10 +346,12 @@ impl<'f> DeformationField<'f> {
         let (corner, width) = ((rect.x0, rect.y0), rect.width());
         Self { surface, corner, width, d: (&d.x, &d.y), is_plane: false }
     }
+
     fn of_plane(surface: &'f Surface, own: &OwnPlane<'f>) -> Self {
         let d = (own.x.values(), own.y.values());
         Self { surface, corner: (0, 0), width: own.x.width(), d, is_plane: true }
     }
+
     /// Prefetches the row below the one below a span.
     #[inline(always)]
     fn prefetch(&self, span: PixelSpan) {
@@ -312,17 +359,24 @@ impl<'f> DeformationField<'f> {
             let start = (span.y as usize + 2) * self.width + span.x as usize - 1;
             prefetch(&self.d.0[start..start + span.n + 2]);
             prefetch(&self.d.1[start..start + span.n + 2]);
-            prefetch(&self.surface.smooth_links_plane().row(span.y as usize + 1)[span.x as usize..][..span.n]);
+            prefetch(
+                &self.surface.smooth_links_plane().row(span.y as usize + 1)[span.x as usize..]
+                    [..span.n],
+            );
         }
     }
+
     #[inline(always)]
     fn around(&self, span: PixelSpan) -> SpanNeighbours<'f> {
-        let start = |y: i32| (y - self.corner.1) as usize * self.width + (span.x - 1 - self.corner.0) as usize;
+        let start = |y: i32| {
+            (y - self.corner.1) as usize * self.width + (span.x - 1 - self.corner.0) as usize
+        };
         let row = |y: i32| {
             let range = start(y)..start(y) + span.n + 2;
             (&self.d.0[range.clone()], &self.d.1[range])
         };
-        let linked = &self.surface.smooth_links_plane().row(span.y as usize)[span.x as usize..][..span.n];
+        let linked =
+            &self.surface.smooth_links_plane().row(span.y as usize)[span.x as usize..][..span.n];
         SpanNeighbours { above: row(span.y - 1), row: row(span.y), below: row(span.y + 1), linked }
     }
 }

@@ -1,6 +1,7 @@
-//! From the pen's samples to dabs: a smooth curve walked at even steps of arc length, sample by sample as they come.
-//! Floor 3. `walk` says where dabs are due, `rules` sets their properties, `hand` says how the pen is read. Not here:
-//! the curve (`curve`), what a dab looks like (`profile`, `stamp`), where it lands (`dab`).
+//! From the pen's samples to dabs: a smooth curve walked at even steps of arc length, sample by
+//! sample as they come. Floor 3. `walk` says where dabs are due, `rules` sets their properties,
+//! `hand` says how the pen is read. Not here: the curve (`curve`), what a dab looks like
+//! (`profile`, `stamp`), where it lands (`dab`).
 
 mod hand;
 mod rules;
@@ -38,7 +39,8 @@ pub struct Dab {
     pub softness: f32,
     /// Coverage that it adds, `(0, 1]`.
     pub flow: f32,
-    /// Its width as a ratio of the least width that is drawn, `(0, 1]`: dabs thinner than a pixel reach a part of it.
+    /// Its width as a ratio of the least width that is drawn, `(0, 1]`: dabs thinner than a pixel
+    /// reach a part of it.
     pub thin: f32,
     /// Where strokes of such dabs end.
     pub rim: Rim,
@@ -82,10 +84,10 @@ impl Dab {
 
 /// Walks along a stroke: samples go in one by one, and dabs that no later sample changes come out.
 ///
-/// The dabs do not depend on how samples are batched, nor on how densely the curve is sampled. The path is computed
-/// from the pixel of the first sample on, and dabs are on a fine grid: a stroke that is moved by whole px gives exactly
-/// the same dabs, moved by them. Samples that are not finite, lie beyond all canvases, or are earlier than the previous
-/// one are skipped.
+/// The dabs do not depend on how samples are batched, nor on how densely the curve is sampled. The
+/// path is computed from the pixel of the first sample on, and dabs are on a fine grid: a stroke
+/// that is moved by whole px gives exactly the same dabs, moved by them. Samples that are not
+/// finite, lie beyond all canvases, or are earlier than the previous one are skipped.
 #[derive(Clone)]
 pub struct DabWalker {
     rules: DabRules,
@@ -106,6 +108,7 @@ impl DabWalker {
             walk: None,
         }
     }
+
     /// Takes the next sample, and adds the dabs that are now final.
     pub fn push(&mut self, sample: &Sample, dabs: &mut Vec<Dab>) {
         let Sample { at, pressure, tilt, time_secs } = *sample;
@@ -116,7 +119,12 @@ impl DabWalker {
         let origin = *self.rules.origin.get_or_insert(at.floor());
         let Some(at) = self.tremor.shaken(at - origin) else { return };
         let tilt = if tilt.is_finite() { tilt } else { Vec2::ZERO };
-        let place = CurvePoint { at, pressure: pressure.clamp(0.0, 1.0), tilt, ..CurvePoint::at_rest(time_secs) };
+        let place = CurvePoint {
+            at,
+            pressure: pressure.clamp(0.0, 1.0),
+            tilt,
+            ..CurvePoint::at_rest(time_secs)
+        };
         let Some(last) = self.places.last_mut() else {
             self.speeds.begin(time_secs);
             self.places.push(place);
@@ -138,6 +146,7 @@ impl DabWalker {
         self.places.push(self.speeds.given_to(place));
         self.settle(dabs);
     }
+
     /// Walks the curve as far as later samples cannot change it.
     fn settle(&mut self, dabs: &mut Vec<Dab>) {
         let (before, from, to, after) = match self.places[..] {
@@ -153,6 +162,7 @@ impl DabWalker {
             self.places.remove(0);
         }
     }
+
     /// The dabs from the end of the final ones to the last sample, as if the stroke ended there.
     pub fn tail(&self) -> Vec<Dab> {
         let mut dabs = Vec::new();
@@ -160,9 +170,19 @@ impl DabWalker {
         let mut walk = self.walk.unwrap_or_else(|| Walk::from(first));
         match self.places[..] {
             [only] => walk.begin(only, Vec2::ZERO, &self.rules, &mut dabs),
-            [from, to] => walk.along(&CurveSegment::new(None, from.at, to.at, None), to, &self.rules, &mut dabs),
+            [from, to] => walk.along(
+                &CurveSegment::new(None, from.at, to.at, None),
+                to,
+                &self.rules,
+                &mut dabs,
+            ),
             [before, from, to] => {
-                walk.along(&CurveSegment::new(Some(before.at), from.at, to.at, None), to, &self.rules, &mut dabs);
+                walk.along(
+                    &CurveSegment::new(Some(before.at), from.at, to.at, None),
+                    to,
+                    &self.rules,
+                    &mut dabs,
+                );
             }
             _ => {}
         }
@@ -180,7 +200,13 @@ pub fn most_dabs(brush: &Brush, way_px: f32, secs: f32) -> usize {
 }
 
 /// All dabs of a stroke.
-pub fn dabs(brush: &Brush, operator: Operator, color: Color, samples: &[Sample], scene: &Scene) -> Vec<Dab> {
+pub fn dabs(
+    brush: &Brush,
+    operator: Operator,
+    color: Color,
+    samples: &[Sample],
+    scene: &Scene,
+) -> Vec<Dab> {
     let mut walker = DabWalker::new(brush, operator, color, scene);
     let mut dabs = Vec::new();
     samples.iter().for_each(|sample| walker.push(sample, &mut dabs));

@@ -1,17 +1,20 @@
-//! Brush dynamics: curves drive each property of a dab by inputs of the pen and of the surface. Floor 3. Not here:
-//! where dabs are placed and how the inputs are measured (`dab_walker`).
+//! Brush dynamics: curves drive each property of a dab by inputs of the pen and of the surface.
+//! Floor 3. Not here: where dabs are placed and how the inputs are measured (`dab_walker`).
 
 mod curve;
 mod inputs;
 
 pub use curve::{Curve, MAX_POINTS, MOST_ADDED};
-pub use inputs::{DabInputs, FAR_DIAMETERS, FAST_LENGTHS_PER_SEC, PACES_PX_PER_SEC, pace_of, px_per_sec_of, turns_of};
+pub use inputs::{
+    DabInputs, FAR_DIAMETERS, FAST_LENGTHS_PER_SEC, PACES_PX_PER_SEC, pace_of, px_per_sec_of,
+    turns_of,
+};
 
 use std::sync::Arc;
 
 crate::named! {
-    /// What can be driven. Curves multiply, unless [`Property::adds`]; a [`Curve::Added`] adds in the unit given here,
-    /// else in the property's own.
+    /// What can be driven. Curves multiply, unless [`Property::adds`]; a [`Curve::Added`] adds in
+    /// the unit given here, else in the property's own.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
     pub enum Property {
         /// An added 1 doubles it.
@@ -70,11 +73,11 @@ crate::named! {
         Pressure = "pressure",
         /// From upright, 0, to flat, 1: the length of (tilt x, tilt y) over 90°.
         Tilt = "tilt",
-        /// The direction in which the pen leans, in turns counter-clockwise as seen: 0 right, ¼ up. 0 for an upright
-        /// pen.
+        /// The direction in which the pen leans, in turns counter-clockwise as seen: 0 right, ¼ up.
+        /// 0 for an upright pen.
         TiltDirection = "tilt-direction",
-        /// The direction of the stroke, in turns counter-clockwise as seen: 0 right, ¼ up. 0 for a stroke of one
-        /// sample.
+        /// The direction of the stroke, in turns counter-clockwise as seen: 0 right, ¼ up. 0 for a
+        /// stroke of one sample.
         Direction = "direction",
         /// Over [`FAST_LENGTHS_PER_SEC`].
         Speed = "speed",
@@ -84,8 +87,8 @@ crate::named! {
         Random = "random",
         /// 1 − n·v: 0 faces the viewer, 1 is seen edge-on. 0 off the surface.
         Slope = "slope",
-        /// ½ + ½ κ of MATH 4, *s* a 32nd of *L*, normals blurred by 1 px: hollow 0, flat ½, raised 1. ½ off the
-        /// surface.
+        /// ½ + ½ κ of MATH 4, *s* a 32nd of *L*, normals blurred by 1 px: hollow 0, flat ½, raised
+        /// 1. ½ off the surface.
         Curvature = "curvature",
         /// From the map: 0 near, 1 far. 1 off the surface.
         Depth = "depth",
@@ -98,8 +101,8 @@ crate::named! {
         Chance = "chance",
         /// Repeats along the stroke; see [`super::Cycle`].
         Cycle = "cycle",
-        /// Where the pen leans, in turns counter-clockwise from the stroke's direction. An upright pen counts as
-        /// leaning down.
+        /// Where the pen leans, in turns counter-clockwise from the stroke's direction. An upright
+        /// pen counts as leaning down.
         Attack = "attack",
         /// The value of [`Property::Custom`] at the previous dabs.
         Custom = "custom",
@@ -119,8 +122,8 @@ pub struct Drive {
     pub curve: Curve,
 }
 
-/// All rows of a brush: for a property and an input at most one that adds and one that acts as the property's curves
-/// do.
+/// All rows of a brush: for a property and an input at most one that adds and one that acts as the
+/// property's curves do.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dynamics {
     drives: Arc<[Drive]>,
@@ -138,16 +141,24 @@ impl Dynamics {
     pub fn none() -> Self {
         Self { drives: Arc::new([]) }
     }
+
     /// All of them, in the order in which they are applied.
     pub fn drives(&self) -> &[Drive] {
         &self.drives
     }
-    /// With this row instead of the one of its kind for the same property and input. A factor that is always 1 needs no
-    /// row.
+
+    /// With this row instead of the one of its kind for the same property and input. A factor that
+    /// is always 1 needs no row.
     pub fn with(&self, property: Property, input: Input, curve: Curve) -> Self {
         let adds = curve.adds();
-        let is_row = |drive: &&Drive| drive.property == property && drive.input == input && drive.curve.adds() == adds;
-        let is_idle = if property.adds() && !curve.adds() { curve == Curve::Share(0.0) } else { curve.is_idle() };
+        let is_row = |drive: &&Drive| {
+            drive.property == property && drive.input == input && drive.curve.adds() == adds
+        };
+        let is_idle = if property.adds() && !curve.adds() {
+            curve == Curve::Share(0.0)
+        } else {
+            curve.is_idle()
+        };
         let row = (!is_idle).then_some(Drive { property, input, curve });
         // In a fixed order, whatever came first: factors multiply to the same bits.
         let others = self.drives.iter().filter(|drive| !is_row(drive)).cloned();
@@ -155,24 +166,33 @@ impl Dynamics {
         drives.sort_by_key(|drive| (drive.property as u8, drive.input as u8));
         Self { drives: drives.into() }
     }
+
     /// Without the row of a kind for a property and an input.
     pub fn without(&self, property: Property, input: Input, adds: bool) -> Self {
-        let stays = |drive: &&Drive| drive.property != property || drive.input != input || drive.curve.adds() != adds;
+        let stays = |drive: &&Drive| {
+            drive.property != property || drive.input != input || drive.curve.adds() != adds
+        };
         Self { drives: self.drives.iter().filter(stays).cloned().collect() }
     }
+
     /// The curve by which a property follows an input, unless it adds.
     pub fn curve(&self, property: Property, input: Input) -> Option<&Curve> {
         self.of_kind(property, input, false)
     }
+
     /// What an input adds to a property.
     pub fn added(&self, property: Property, input: Input) -> Option<&Curve> {
         self.of_kind(property, input, true)
     }
+
     fn of_kind(&self, property: Property, input: Input, adds: bool) -> Option<&Curve> {
-        let mut drives = self.drives.iter().filter(|drive| drive.property == property && drive.input == input);
+        let mut drives =
+            self.drives.iter().filter(|drive| drive.property == property && drive.input == input);
         drives.find(|drive| drive.curve.adds() == adds).map(|drive| &drive.curve)
     }
-    /// The share of a property that follows the pressure, `[0, 1]`: a slider shows a curve by its total fall.
+
+    /// The share of a property that follows the pressure, `[0, 1]`: a slider shows a curve by its
+    /// total fall.
     pub fn pressure_share(&self, property: Property) -> f32 {
         let curve = self.curve(property, Input::Pressure).or(self.added(property, Input::Pressure));
         let fall = |curve: &Curve| match property {
@@ -181,6 +201,7 @@ impl Dynamics {
         };
         curve.map_or(0.0, fall).max(0.0).min(1.0)
     }
+
     /// All other effects of the pressure on the property are removed.
     pub fn with_pressure(&self, property: Property, share: f32) -> Self {
         self.without(property, Input::Pressure, true).with(
@@ -189,22 +210,30 @@ impl Dynamics {
             Curve::Share(share.max(0.0).min(1.0)),
         )
     }
+
     /// Whether some property follows this input.
     pub fn follow(&self, input: Input) -> bool {
         self.drives.iter().any(|drive| drive.input == input)
     }
+
     /// Whether something drives this property.
     pub fn drive(&self, property: Property) -> bool {
         self.drives.iter().any(|drive| drive.property == property)
     }
+
     /// The sum of a property's rows that add, and the product of those that multiply.
     fn outputs(&self, property: Property, inputs: &DabInputs) -> (f32, f32) {
         let rows = self.drives.iter().filter(|drive| drive.property == property);
         rows.fold((0.0, 1.0), |(sum, product), drive| {
             let y = drive.curve.at(inputs.of(drive.input, property));
-            if drive.curve.adds() || property.adds() { (sum + y, product) } else { (sum, product * y) }
+            if drive.curve.adds() || property.adds() {
+                (sum + y, product)
+            } else {
+                (sum, product * y)
+            }
         })
     }
+
     /// A property whose value is `plain` if nothing drives it: sums first, then factors.
     pub fn value(&self, property: Property, plain: f32, inputs: &DabInputs) -> f32 {
         let (sum, product) = self.outputs(property, inputs);
@@ -214,6 +243,7 @@ impl Dynamics {
             _ => (plain + sum) * product,
         }
     }
+
     /// What is added to an angle, in turns.
     pub fn turns(&self, property: Property, inputs: &DabInputs) -> f32 {
         self.outputs(property, inputs).0
@@ -236,11 +266,18 @@ mod tests {
             .with(Property::Size, Input::Slope, through(&[(0.0, 1.0), (1.0, 0.5)]))
             .with(Property::Rotation, Input::Direction, Curve::Share(1.0))
             .with(Property::Rotation, Input::Tilt, Curve::Share(1.0));
-        let inputs = DabInputs { pressure: 0.5, slope: 1.0, direction: 0.25, tilt: 0.5, ..DabInputs::default() };
+        let inputs = DabInputs {
+            pressure: 0.5,
+            slope: 1.0,
+            direction: 0.25,
+            tilt: 0.5,
+            ..DabInputs::default()
+        };
         assert_eq!(dynamics.value(Property::Size, 1.0, &inputs), 0.25);
         assert_eq!(dynamics.turns(Property::Rotation, &inputs), 0.75);
         assert_eq!(dynamics.value(Property::Flow, 1.0, &inputs), 1.0);
     }
+
     #[test]
     fn a_row_takes_the_place_of_the_one_before_and_a_factor_of_one_is_none() {
         let plain = Dynamics::default();
@@ -248,16 +285,21 @@ mod tests {
         let twice = plain.with_pressure(Property::Flow, 0.25).with_pressure(Property::Flow, 0.5);
         assert_eq!((twice.drives().len(), twice.pressure_share(Property::Flow)), (1, 0.5));
     }
+
     #[test]
     fn what_is_random_differs_from_dab_to_dab_and_from_property_to_property() {
-        let random = |seed, property| DabInputs { seed, ..DabInputs::default() }.of(Input::Random, property);
+        let random =
+            |seed, property| DabInputs { seed, ..DabInputs::default() }.of(Input::Random, property);
         assert_eq!(random(3, Property::Size), random(3, Property::Size));
         assert_ne!(random(3, Property::Size), random(4, Property::Size));
         assert_ne!(random(3, Property::Size), random(3, Property::Hue));
     }
+
     #[test]
     fn what_adds_comes_before_what_multiplies_and_sizes_double() {
-        let added = |points: &[(f32, f32)]| Curve::added(points.iter().map(|&(x, y)| vec2(x, y)).collect()).unwrap();
+        let added = |points: &[(f32, f32)]| {
+            Curve::added(points.iter().map(|&(x, y)| vec2(x, y)).collect()).unwrap()
+        };
         let dynamics = Dynamics::none()
             .with(Property::Hardness, Input::Pressure, added(&[(0.0, -0.25), (1.0, 0.25)]))
             .with(Property::Hardness, Input::Tilt, Curve::Share(1.0))
@@ -269,12 +311,17 @@ mod tests {
         assert_eq!(dynamics.turns(Property::Rotation, &inputs), -1.0);
         assert_eq!(dynamics.pressure_share(Property::Size), 1.0 - 1.0 / 16.0);
         let none = dynamics.with(Property::Hardness, Input::Pressure, added(&[(0.0, 0.0)]));
-        assert!(none.added(Property::Hardness, Input::Pressure).is_none(), "adding nothing is no row");
+        assert!(
+            none.added(Property::Hardness, Input::Pressure).is_none(),
+            "adding nothing is no row"
+        );
         assert_eq!(dynamics.with_pressure(Property::Size, 0.5).pressure_share(Property::Size), 0.5);
     }
+
     #[test]
     fn chance_is_one_for_all_properties_of_a_dab() {
-        let of = |input, property| DabInputs { seed: 7, ..DabInputs::default() }.of(input, property);
+        let of =
+            |input, property| DabInputs { seed: 7, ..DabInputs::default() }.of(input, property);
         assert_eq!(of(Input::Chance, Property::Size), of(Input::Chance, Property::Hue));
         assert_ne!(of(Input::Random, Property::Size), of(Input::Chance, Property::Size));
     }

@@ -1,6 +1,7 @@
-//! The fill: the pixels joined to one by colours like its own, with small gaps in their border closed and its edge
-//! smoothed. Floor 3. `flood` finds the joined pixels; `gaps` excludes those that are only reached through a gap. Here:
-//! the settings and the edge. Not here: the picture that is read, and what is done with the pixels (`tools::fill`).
+//! The fill: the pixels joined to one by colours like its own, with small gaps in their border
+//! closed and its edge smoothed. Floor 3. `flood` finds the joined pixels; `gaps` excludes those
+//! that are only reached through a gap. Here: the settings and the edge. Not here: the picture that
+//! is read, and what is done with the pixels (`tools::fill`).
 
 mod flood;
 mod gaps;
@@ -19,13 +20,13 @@ use std::sync::Arc;
 /// The settings of a fill.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fill {
-    /// The largest difference to the first pixel's colour, of any channel of the premultiplied encoded colour,
-    /// `[0, 1]`.
+    /// The largest difference to the first pixel's colour, of any channel of the premultiplied
+    /// encoded colour, `[0, 1]`.
     pub tolerance: f32,
     /// Gaps up to this wide are closed, px, `[0, 64]`; 0 closes none.
     pub gap_px: f32,
-    /// How far the edge moves outward, px, `[-32, 32]`: under the softened edge of a line, so that no pale seam is
-    /// left.
+    /// How far the edge moves outward, px, `[-32, 32]`: under the softened edge of a line, so that
+    /// no pale seam is left.
     pub grow_px: f32,
     /// Whether pixels at the edge are partly covered.
     pub antialias: bool,
@@ -37,7 +38,14 @@ pub struct Fill {
 impl Default for Fill {
     fn default() -> Self {
         let bounded = PaintLimit::Free;
-        Self { tolerance: 0.1, gap_px: 0.0, grow_px: 1.0, antialias: true, layer_alone: false, bounded }
+        Self {
+            tolerance: 0.1,
+            gap_px: 0.0,
+            grow_px: 1.0,
+            antialias: true,
+            layer_alone: false,
+            bounded,
+        }
     }
 }
 
@@ -64,9 +72,10 @@ impl FilledArea {
 impl Fill {
     /// Fills from a canvas point. `None` if it is off the canvas or outside `part`.
     ///
-    /// * `part`: the part of the canvas that may be touched (`PaintLimit::from`); its border bounds the fill.
-    /// * `tile`: gives a tile of the picture that is read, premultiplied; called once for each tile that the fill
-    ///   reaches.
+    /// * `part`: the part of the canvas that may be touched (`PaintLimit::from`); its border bounds
+    ///   the fill.
+    /// * `tile`: gives a tile of the picture that is read, premultiplied; called once for each tile
+    ///   that the fill reaches.
     pub fn from(
         &self,
         start: Vec2,
@@ -83,11 +92,13 @@ impl Fill {
         let flooded = flood::joined((x, y), canvas, part, tolerance, tile)?;
         let gap_px = self.gap_px.max(0.0).min(WIDEST_GAP_PX);
         let inside = flood::pixels(&flooded);
-        let inside = if gap_px > 0.0 { gaps::closed(inside, (x, y), canvas, gap_px) } else { inside };
+        let inside =
+            if gap_px > 0.0 { gaps::closed(inside, (x, y), canvas, gap_px) } else { inside };
         Some(self.edged(inside, canvas, part))
     }
-    /// The same area as coverage on the canvas; `everywhere`: all pixels of a colour like the first one's, joined or
-    /// not, so that gaps do not matter.
+
+    /// The same area as coverage on the canvas; `everywhere`: all pixels of a colour like the first
+    /// one's, joined or not, so that gaps do not matter.
     ///
     /// `None` as for [`Fill::from`], which has the same arguments.
     pub fn selected(
@@ -115,6 +126,7 @@ impl Fill {
         let found = if moves == 0.0 { found } else { edges::grown(&found, moves, canvas.rect()) };
         Some(if part.is_whole() { found } else { limited(&found, part) })
     }
+
     /// The pixels found as coverage, the edge moved and smoothed.
     fn edged(&self, inside: PixelSet, canvas: Size, part: &CanvasPart) -> FilledArea {
         let grow_px = self.grow_px.max(-FARTHEST_GROWTH_PX).min(FARTHEST_GROWTH_PX);
@@ -127,7 +139,8 @@ impl Fill {
         }
         let allowed = |x: usize, y: usize, share: u8| match share {
             0 => 0,
-            _ => (f32::from(share) * part.coverage(x as i32 + rect.x0, y as i32 + rect.y0)).round() as u8,
+            _ => (f32::from(share) * part.coverage(x as i32 + rect.x0, y as i32 + rect.y0)).round()
+                as u8,
         };
         FilledArea { rect, coverage: coverage.updated(allowed) }
     }
@@ -138,7 +151,9 @@ fn limited(found: &CoverageGrid, part: &CanvasPart) -> CoverageGrid {
     CoverageGrid::from_tiles(found.bounds(), |at, bytes| {
         let Some(tile) = found.tile(at) else { return };
         let corner = at.rect();
-        for (i, (to, share)) in bytes.iter_mut().zip(tile.bytes()).enumerate().filter(|(_, (_, share))| **share > 0) {
+        for (i, (to, share)) in
+            bytes.iter_mut().zip(tile.bytes()).enumerate().filter(|(_, (_, share))| **share > 0)
+        {
             let (x, y) = ((i % TILE) as i32, (i / TILE) as i32);
             *to = (f32::from(*share) * part.coverage(corner.x0 + x, corner.y0 + y)).round() as u8;
         }
@@ -160,7 +175,8 @@ impl PixelSet {
         let mut pixels = Plane::filled(Size::new(rect.width() as u32, rect.height() as u32), 0u8);
         let both = rect.intersect(self.rect);
         for y in both.y0..both.y1 {
-            let from = &self.pixels.row((y - self.rect.y0) as usize)[(both.x0 - self.rect.x0) as usize..];
+            let from =
+                &self.pixels.row((y - self.rect.y0) as usize)[(both.x0 - self.rect.x0) as usize..];
             let to = &mut pixels.row_mut((y - rect.y0) as usize)[(both.x0 - rect.x0) as usize..];
             to[..both.width()].copy_from_slice(&from[..both.width()]);
         }

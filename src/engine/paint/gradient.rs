@@ -1,5 +1,5 @@
-//! The gradient tool: a colour ramp between two anchors, bent before it is applied (SF sec. 5.2, fig. 8).
-//! Floor 3. Not here: the ramp itself (`ramp`), D (`surface::deformation`).
+//! The gradient tool: a colour ramp between two anchors, bent before it is applied (SF sec. 5.2,
+//! fig. 8). Floor 3. Not here: the ramp itself (`ramp`), D (`surface::deformation`).
 
 use super::image::{BentFrame, transform};
 pub use super::ramp::GradientStop;
@@ -12,7 +12,8 @@ use crate::surface::deformation::{Deformation, DeformedRect};
 use crate::surface::plane_piece::PlanePiece;
 use crate::surface::{Anchor, Bend, Operator, Weights, links};
 
-/// ramp(t(D(q))), t the projection on the segment [from, to], clamped. Its two ends are its anchors.
+/// ramp(t(D(q))), t the projection on the segment [from, to], clamped. Its two ends are its
+/// anchors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gradient {
     /// Where the ramp begins, px of its frame.
@@ -27,7 +28,8 @@ pub struct Gradient {
     pub filter: ImageFilter,
     /// Where the frame of both ends is on the canvas.
     pub frame: PlaneMap,
-    /// Of the operator that unwraps the surface: pieces on which the ramp is turned, moved and scaled alone.
+    /// Of the operator that unwraps the surface: pieces on which the ramp is turned, moved and
+    /// scaled alone.
     pub pieces: Vec<PlanePiece>,
 }
 
@@ -35,10 +37,12 @@ impl Gradient {
     /// The stops of one ramp.
     pub const MOST_STOPS: usize = 1_000;
 
-    /// A ramp of these colours, evenly spaced from one point to the other, canvas px. It is not bent.
+    /// A ramp of these colours, evenly spaced from one point to the other, canvas px. It is not
+    /// bent.
     pub fn new(from: Vec2, to: Vec2, colors: &[Color]) -> Self {
         let steps = colors.len().saturating_sub(1).max(1) as f32;
-        let stop = |(i, color): (usize, &Color)| GradientStop { t: i as f32 / steps, color: *color };
+        let stop =
+            |(i, color): (usize, &Color)| GradientStop { t: i as f32 / steps, color: *color };
         Self {
             from,
             to,
@@ -49,20 +53,29 @@ impl Gradient {
             pieces: Vec::new(),
         }
     }
+
     /// The same ramp, bent by an operator.
     pub fn with_operator(self, operator: Operator) -> Self {
         Self { operator, ..self }
     }
+
     /// The *where*: both ends are anchors, and their weights change along the segment (MATH 2).
     pub fn bend(&self) -> Bend {
         let on_canvas = |p: Vec2| self.frame.to_canvas(p).unwrap_or(p);
         let anchors = vec![Anchor::fixed(on_canvas(self.from)), Anchor::fixed(on_canvas(self.to))];
-        Bend { operator: self.operator, anchors, weights: Weights::Segment, pieces: self.pieces.clone() }
+        Bend {
+            operator: self.operator,
+            anchors,
+            weights: Weights::Segment,
+            pieces: self.pieces.clone(),
+        }
     }
+
     /// One tile of the layer. `None` if it is transparent, without stops, or beyond the canvas.
     pub fn render_tile(&self, scene: &Scene, at: TileAt) -> Option<Tile> {
         self.render_pixels(scene, at)?.quantised()
     }
+
     /// The same before it is rounded to bytes.
     pub fn render_pixels(&self, scene: &Scene, at: TileAt) -> Option<PlanarTile> {
         let ramp = Ramp::new(&self.stops)?;
@@ -78,7 +91,9 @@ impl Gradient {
             for x in area.x0..area.x1 {
                 let color = match self.filter {
                     ImageFilter::Bilinear => ramp.at(field.at(x, y)),
-                    ImageFilter::Antialias => ramp.mean(field.at(x, y), field.footprint(x, y, scene)),
+                    ImageFilter::Antialias => {
+                        ramp.mean(field.at(x, y), field.footprint(x, y, scene))
+                    }
                 };
                 pixels[row + (x - area.x0) as usize] = color;
             }
@@ -110,28 +125,42 @@ impl RampPositions {
         let squared = along.length_squared();
         if squared > 0.0 {
             let flat = along / squared;
-            let t = d.x.iter().zip(&d.y).map(|(&x, &y)| (x - from.x) * flat.x + (y - from.y) * flat.y).collect();
+            let t =
+                d.x.iter()
+                    .zip(&d.y)
+                    .map(|(&x, &y)| (x - from.x) * flat.x + (y - from.y) * flat.y)
+                    .collect();
             Self { rect, t, flat: frame.linear.matrix2.transpose() * flat }
         } else {
             // A segment of length 0: the whole canvas lies beyond its end.
             Self { rect, t: vec![1.0; d.x.len()], flat: Vec2::ZERO }
         }
     }
+
     fn at(&self, x: i32, y: i32) -> f32 {
         self.t[(y - self.rect.y0) as usize * self.rect.width() + (x - self.rect.x0) as usize]
     }
+
     /// |∇t|: the width of a pixel along the ramp. A box of that width has the variance of the pixel's square in every
     /// direction.
     ///
-    /// Differences are taken only between neighbours of one surface; a pixel without neighbours counts as unbent.
+    /// Differences are taken only between neighbours of one surface; a pixel without neighbours
+    /// counts as unbent.
     fn footprint(&self, x: i32, y: i32, scene: &Scene) -> f32 {
-        let linked = scene.surface.as_deref().map_or(0, |s| s.smooth_links_plane().at(x as usize, y as usize));
+        let linked = scene
+            .surface
+            .as_deref()
+            .map_or(0, |s| s.smooth_links_plane().at(x as usize, y as usize));
         let slope = |before: u8, after: u8, dx: i32, dy: i32, flat: f32| {
             let back = if linked & before != 0 { 1 } else { 0 };
             let ahead = if linked & after != 0 { 1 } else { 0 };
             match back + ahead {
                 0 => flat,
-                n => (self.at(x + ahead * dx, y + ahead * dy) - self.at(x - back * dx, y - back * dy)) / n as f32,
+                n => {
+                    (self.at(x + ahead * dx, y + ahead * dy)
+                        - self.at(x - back * dx, y - back * dy))
+                        / n as f32
+                }
             }
         };
         let dx = slope(links::LEFT, links::RIGHT, 1, 0, self.flat.x);
@@ -148,6 +177,7 @@ mod tests {
     fn black_to_white(from: Vec2, to: Vec2) -> Gradient {
         Gradient::new(from, to, &[Color::BLACK, Color::WHITE])
     }
+
     fn pixel(gradient: &Gradient, x: i32, y: i32) -> [u8; 4] {
         let scene = Scene { size: Size::new(100, 100), surface: None };
         let at = TileAt::of_pixel(x, y);
@@ -166,6 +196,7 @@ mod tests {
             assert_eq!(pixel(&gradient, 49, y), [126, 126, 126, 255]);
         }
     }
+
     #[test]
     fn both_filters_agree_on_a_slow_ramp_and_differ_at_a_sharp_edge() {
         let slow = black_to_white(vec2(10.0, 20.0), vec2(90.0, 70.0));
@@ -176,11 +207,13 @@ mod tests {
         assert_eq!(pixel(&sharp, 50, 10)[0], 64);
         assert_eq!(pixel(&Gradient { filter: ImageFilter::Bilinear, ..sharp }, 50, 10)[0], 0);
     }
+
     #[test]
     fn a_segment_without_length_shows_the_last_stop() {
         let gradient = black_to_white(vec2(30.0, 30.0), vec2(30.0, 30.0));
         assert_eq!(pixel(&gradient, 5, 5), [255; 4]);
     }
+
     #[test]
     fn beyond_the_canvas_nothing_is_painted() {
         let gradient = black_to_white(vec2(10.0, 50.0), vec2(90.0, 50.0));

@@ -1,5 +1,5 @@
-//! Grain: a texture that reduces a stroke's paint in the valleys of the canvas or of the surface. Floor 3. The patterns
-//! are in `pattern`; the operators D_p and D_s place the grain on a surface.
+//! Grain: a texture that reduces a stroke's paint in the valleys of the canvas or of the surface.
+//! Floor 3. The patterns are in `pattern`; the operators D_p and D_s place the grain on a surface.
 //!
 //! ```text
 //! F′(q) = F(q) · (1 − k (1 − G(P⁻¹(T(q)))))      T(q) = q            grain on the canvas
@@ -7,9 +7,9 @@
 //!                                               T(q) = D_s(q; q_s)  grain that lies on the surface
 //! ```
 //!
-//! k is the strength, P scales and turns the texture, and q_s is where the stroke began: T(q_s) = q_s, so that the
-//! grain there has its size on the canvas; it is larger on nearer parts and smaller on farther ones. G repeats without
-//! end.
+//! k is the strength, P scales and turns the texture, and q_s is where the stroke began: T(q_s) =
+//! q_s, so that the grain there has its size on the canvas; it is larger on nearer parts and
+//! smaller on farther ones. G repeats without end.
 
 mod tile;
 
@@ -34,8 +34,8 @@ pub struct BrushGrain {
     pub rotation: f32,
     /// k, `[0, 1]`: 0 is no grain.
     pub strength: f32,
-    /// Greys up to the first take no paint, those from the second on take all; both in `[0, 1]`, the first below the
-    /// second.
+    /// Greys up to the first take no paint, those from the second on take all; both in `[0, 1]`,
+    /// the first below the second.
     pub levels: [f32; 2],
     /// What it is fixed to.
     pub lies: GrainSpace,
@@ -65,7 +65,8 @@ pub enum GrainSpace {
 }
 
 impl GrainSpace {
-    /// Every kind with its name in documents and default numbers; `named!` is for choices without numbers.
+    /// Every kind with its name in documents and default numbers; `named!` is for choices without
+    /// numbers.
     pub const ALL: [(GrainSpace, &'static str); 3] = [
         (GrainSpace::Canvas, "canvas"),
         (GrainSpace::Surface { gamma: 1.0 }, "surface"),
@@ -73,7 +74,9 @@ impl GrainSpace {
     ];
     /// The same kind with its default numbers.
     pub fn plain(self) -> Self {
-        let is_same = |(kind, _): &&(Self, &str)| std::mem::discriminant(kind) == std::mem::discriminant(&self);
+        let is_same = |(kind, _): &&(Self, &str)| {
+            std::mem::discriminant(kind) == std::mem::discriminant(&self)
+        };
         Self::ALL.iter().find(is_same).map_or(self, |(kind, _)| *kind)
     }
 }
@@ -137,8 +140,10 @@ fn of_greys(plane: &Plane<f32>, [low, high]: [f32; 2]) -> Texture {
     let mut picture = grey(&plane.map(|v| (v - low) / span));
     // The channels: red is the grey, green its square, alpha whether there is any.
     if let crate::raster::picture::Texels::Srgb8(texels) = &picture.texels {
-        let greys: Vec<[u8; 4]> =
-            texels.iter().map(|&[v, ..]| [v, square(v), 0, if v < BLACK { 0 } else { 255 }]).collect();
+        let greys: Vec<[u8; 4]> = texels
+            .iter()
+            .map(|&[v, ..]| [v, square(v), 0, if v < BLACK { 0 } else { 255 }])
+            .collect();
         picture.texels = crate::raster::picture::Texels::Srgb8(greys.into());
     }
     Texture::new(&picture)
@@ -147,8 +152,9 @@ fn of_greys(plane: &Plane<f32>, [low, high]: [f32; 2]) -> Texture {
 /// From premultiplied texels: a light but transparent texel counts as dark.
 fn luminance(texture: &Texture) -> Plane<f32> {
     let level = &texture.levels()[0];
-    let grey =
-        |&[r, g, b, _]: &[u8; 4]| (0.2126 * f32::from(r) + 0.7152 * f32::from(g) + 0.0722 * f32::from(b)) / 255.0;
+    let grey = |&[r, g, b, _]: &[u8; 4]| {
+        (0.2126 * f32::from(r) + 0.7152 * f32::from(g) + 0.0722 * f32::from(b)) / 255.0
+    };
     let values = level.texels.iter().map(grey).collect();
     Plane::from_values(level.size, values).unwrap_or_else(|| Plane::filled(level.size, 1.0))
 }

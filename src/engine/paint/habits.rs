@@ -1,5 +1,6 @@
-//! A brush's habits apart from its dab: dabs by time, scatter and offset, how the hand is read, and paint that is
-//! picked up. Floor 3. Not here: the table of their numbers (`settings`), how they are used (`dab_walker`, `retouch`).
+//! A brush's habits apart from its dab: dabs by time, scatter and offset, how the hand is read, and
+//! paint that is picked up. Floor 3. Not here: the table of their numbers (`settings`), how they
+//! are used (`dab_walker`, `retouch`).
 
 crate::named! {
     /// How coverage falls off from the middle of a dab to its rim.
@@ -8,8 +9,8 @@ crate::named! {
         /// Full up to the hardness h of the radius, then a smoothstep.
         #[default]
         Smooth = "smooth",
-        /// Two straight lines over the squared radius that meet at (h, h): a peak with a faint, wide foot. It covers
-        /// the share h of its disc.
+        /// Two straight lines over the squared radius that meet at (h, h): a peak with a faint,
+        /// wide foot. It covers the share h of its disc.
         Peaked = "peaked",
     }
 }
@@ -21,7 +22,8 @@ crate::named! {
         /// Uniformly over a disc whose radius is the scatter times the dab's diameter.
         #[default]
         Disc = "disc",
-        /// Normally: the standard deviation along each axis is the scatter times the brush's diameter.
+        /// Normally: the standard deviation along each axis is the scatter times the brush's
+        /// diameter.
         Cloud = "cloud",
     }
 }
@@ -33,7 +35,8 @@ crate::named! {
         /// On the canvas, as seen.
         #[default]
         Canvas = "canvas",
-        /// On the surface: dabs are equally far apart, and lines are equally smooth, everywhere on the form.
+        /// On the surface: dabs are equally far apart, and lines are equally smooth, everywhere on
+        /// the form.
         Surface = "surface",
     }
 }
@@ -87,8 +90,8 @@ pub struct Hand {
     /// The time over which each of the two paces is averaged.
     pub pace_secs: f32,
     pub slow_pace_secs: f32,
-    /// How many px count as one when a pace is read: more on an enlarged canvas, so that its brushes read the same
-    /// pace.
+    /// How many px count as one when a pace is read: more on an enlarged canvas, so that its
+    /// brushes read the same pace.
     pub pace_px: f32,
     /// The number of dabs over which the custom input is averaged.
     pub custom_dabs: f32,
@@ -109,8 +112,8 @@ impl Default for Hand {
     }
 }
 
-/// What drives the input *cycle*: 0 where the pen begins to press, rising to 1 along the path, held there, then
-/// repeated.
+/// What drives the input *cycle*: 0 where the pen begins to press, rising to 1 along the path, held
+/// there, then repeated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cycle {
     /// The path length over which it rises, diameters of the brush.
@@ -131,13 +134,14 @@ impl Default for Cycle {
     }
 }
 
-/// Paint that a brush picks up from its layer and mixes into its own. Strokes of a stroke layer find nothing to pick
-/// up.
+/// Paint that a brush picks up from its layer and mixes into its own. Strokes of a stroke layer
+/// find nothing to pick up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pickup {
     /// The share of a dab's paint that was picked up; the rest is the brush's own.
     pub amount: f32,
-    /// The share of the paint it holds that remains a dab later; the rest is picked up from the layer.
+    /// The share of the paint it holds that remains a dab later; the rest is picked up from the
+    /// layer.
     pub length: f32,
     /// The radius from which it picks up paint, a ratio of the dab's.
     pub radius: f32,

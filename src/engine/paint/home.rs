@@ -1,6 +1,6 @@
-//! Home frames: marks have their coordinates on the canvas or on a part of the document's shape, which carries them
-//! where it goes. Floor 3. Parts themselves are `document::parts`; `document::layer` combines homes with the transforms
-//! of layers.
+//! Home frames: marks have their coordinates on the canvas or on a part of the document's shape,
+//! which carries them where it goes. Floor 3. Parts themselves are `document::parts`;
+//! `document::layer` combines homes with the transforms of layers.
 
 use crate::math::{Affine2, PlaneMap};
 use std::sync::Arc;
@@ -22,17 +22,21 @@ impl HomeFrame {
     pub fn on(part: &str) -> Self {
         Self { part: part.into(), matrix: Affine2::IDENTITY }
     }
+
     /// On the canvas itself, whatever is around.
     pub fn canvas() -> Self {
         Self::on(Self::CANVAS)
     }
+
     pub fn is_canvas(&self) -> bool {
         &*self.part == Self::CANVAS
     }
+
     /// The part's id; `None` for the canvas.
     pub fn part(&self) -> Option<&str> {
         Some(&*self.part).filter(|_| !self.is_canvas())
     }
+
     /// Canvas from part; a matrix without area moves nothing.
     pub fn map(&self) -> PlaneMap {
         PlaneMap::affine(self.matrix.to_cols_array().map(f64::from)).unwrap_or_default()
@@ -43,7 +47,8 @@ impl HomeFrame {
 #[derive(Clone, Debug, PartialEq)]
 pub struct StrokeHome {
     pub frame: HomeFrame,
-    /// Where the stroke's own frame lies within its layer's: a, b, c, d, e, f as in a layer's transform.
+    /// Where the stroke's own frame lies within its layer's: a, b, c, d, e, f as in a layer's
+    /// transform.
     pub own: [f64; 6],
 }
 
@@ -53,6 +58,7 @@ impl StrokeHome {
     pub fn new(frame: HomeFrame) -> Self {
         Self { frame, own: Self::UNMOVED }
     }
+
     /// The stroke's own frame within its layer's.
     pub fn own_map(&self) -> PlaneMap {
         PlaneMap::affine(self.own).unwrap_or_default()

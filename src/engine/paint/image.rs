@@ -35,8 +35,9 @@ impl Placement {
     pub fn covering(canvas: Size) -> Self {
         Self { center: canvas.center(), scale: 1.0, rotation: 0.0 }
     }
-    /// Covers everything that the reflection operator looks up from anywhere on a shape that fits the canvas: `|D(q) −
-    /// c| ≤ (½ +
+
+    /// Covers everything that the reflection operator looks up from anywhere on a shape that fits
+    /// the canvas: `|D(q) − c| ≤ (½ +
     /// |α|) L`, so that an angular map, of which only the inscribed disc is painted, leaves no holes.
     ///
     /// * `alpha`: of the operator, canvas lengths. `turn`: r̄ where the picture is pinned.
@@ -46,23 +47,38 @@ impl Placement {
         let shorter = canvas.width.min(canvas.height) as f32;
         let scale = (1.0 + 2.0 * alpha.abs()) * longer / shorter.max(1.0);
         let center = canvas.center() - alpha * longer * turn;
-        Self { center, scale: scale.max(*Self::SCALE.start()).min(*Self::SCALE.end()), rotation: 0.0 }
+        Self {
+            center,
+            scale: scale.max(*Self::SCALE.start()).min(*Self::SCALE.end()),
+            rotation: 0.0,
+        }
     }
-    /// The same place on another canvas, px for px, for a picture that covers both by its own aspect.
+
+    /// The same place on another canvas, px for px, for a picture that covers both by its own
+    /// aspect.
     pub fn on_canvas_of(&self, from: Size, to: Size, picture: Size) -> Self {
         let cover = |canvas: Size| {
-            (canvas.width as f32 / picture.width as f32).max(canvas.height as f32 / picture.height as f32)
+            (canvas.width as f32 / picture.width as f32)
+                .max(canvas.height as f32 / picture.height as f32)
         };
         let scale = self.scale * (cover(from) / cover(to));
         Self { scale: scale.max(*Self::SCALE.start()).min(*Self::SCALE.end()), ..*self }
     }
-    /// P⁻¹: texels of a picture from canvas px. A picture of the canvas's own size at scale 1 maps pixel for pixel.
+
+    /// P⁻¹: texels of a picture from canvas px. A picture of the canvas's own size at scale 1 maps
+    /// pixel for pixel.
     pub fn texels_from_canvas(&self, canvas: Size, picture: Size) -> Affine2 {
-        let cover = (canvas.width as f32 / picture.width as f32).max(canvas.height as f32 / picture.height as f32);
+        let cover = (canvas.width as f32 / picture.width as f32)
+            .max(canvas.height as f32 / picture.height as f32);
         let texels_per_px = 1.0 / (cover * self.scale);
-        // Counter-clockwise as seen is clockwise in y-down coordinates, so its inverse turns by +rotation.
+        // Counter-clockwise as seen is clockwise in y-down coordinates, so its inverse turns by
+        // +rotation.
         Affine2::from_translation(picture.center())
-            * Affine2::from_scale_angle_translation(Vec2::splat(texels_per_px), self.rotation.to_radians(), Vec2::ZERO)
+            * Affine2::from_scale_angle_translation(
+                Vec2::splat(texels_per_px),
+                self.rotation.to_radians(),
+                Vec2::ZERO,
+            )
             * Affine2::from_translation(-self.center)
     }
 }
@@ -105,30 +121,37 @@ impl PictureSource {
         let (texture, deep, stamps) = (Arc::default(), Arc::default(), Arc::default());
         Self { file, picture, adjust, texture, deep, rule: TapRule::AT_REST, stamps }
     }
+
     /// The same picture, read as closely as a rule demands if it is antialiased.
     pub fn read_by(&self, rule: TapRule) -> Self {
         Self { rule, ..self.clone() }
     }
-    /// The same picture without its finest `levels` of detail: showing it that much smaller reads fewer texels.
+
+    /// The same picture without its finest `levels` of detail: showing it that much smaller reads
+    /// fewer texels.
     pub fn coarser(&self, levels: u32) -> Self {
         let texture = OnceLock::from(self.texture().coarser(levels));
         Self { texture: Arc::new(texture), ..self.clone() }
     }
+
     /// Bytes of the texture, if it was made.
     pub fn texture_bytes(&self) -> u64 {
         self.texture.get().map_or(0, Texture::bytes)
     }
+
     /// The picture as a tip, with a softness in `[0, 1]`.
     pub(super) fn stamp(&self, softness: f32) -> Arc<TipStamp> {
         self.stamps.stamp(self.texture(), softness)
     }
+
     pub(super) fn stamps(&self) -> &StampCache {
         &self.stamps
     }
+
     /// The adjusted texture.
     ///
-    /// Made by the calling thread alone: a worker that waited for others here could be given a tile that waits for this
-    /// same texture.
+    /// Made by the calling thread alone: a worker that waited for others here could be given a tile
+    /// that waits for this same texture.
     pub fn texture(&self) -> &Texture {
         self.texture.get_or_init(|| Texture::new(&self.adjust.apply(&self.picture)))
     }
@@ -177,10 +200,12 @@ impl PlacedImage {
             frame: PlaneMap::IDENTITY,
         }
     }
+
     /// The same picture, bent.
     pub fn with_bend(self, bend: Bend) -> Self {
         Self { bend, ..self }
     }
+
     /// One tile of the layer; `None` if it is transparent or beyond the canvas.
     pub fn render_tile(&self, scene: &Scene, at: TileAt) -> Option<Tile> {
         let area = scene.area(at);
@@ -190,16 +215,31 @@ impl PlacedImage {
         let texture = self.source.texture();
         SCRATCH.with_borrow_mut(|scratch| self.render_with(scratch, texture, scene, area))
     }
-    fn render_with(&self, scratch: &mut ImageScratch, texture: &Texture, scene: &Scene, area: Rect) -> Option<Tile> {
+
+    fn render_with(
+        &self,
+        scratch: &mut ImageScratch,
+        texture: &Texture,
+        scene: &Scene,
+        area: Rect,
+    ) -> Option<Tile> {
         let mut pixels = vec![[0u8; 4]; TILE_AREA];
         let ImageScratch { positions, patches, bilinear, antialias } = scratch;
-        let ImageLookup { margin, texels_from_canvas } = self.placed(scene, area, texture.size(), positions);
+        let ImageLookup { margin, texels_from_canvas } =
+            self.placed(scene, area, texture.size(), positions);
         let width = area.width();
         // Tiles begin at the canvas's corner, so an area begins at its tile's.
         let first = |y: i32| (y - area.y0) as usize * TILE;
         if margin == 0 && width == TILE {
-            // The rows of a whole tile are contiguous: the next row is prefetched while this one is read.
-            bilinear.row(texture, &positions.x, &positions.y, self.outside, &mut pixels[first(area.y0)..]);
+            // The rows of a whole tile are contiguous: the next row is prefetched while this one is
+            // read.
+            bilinear.row(
+                texture,
+                &positions.x,
+                &positions.y,
+                self.outside,
+                &mut pixels[first(area.y0)..],
+            );
             return Tile::from_pixels(pixels.into_flattened());
         }
         for y in scene.rows(area) {
@@ -216,9 +256,16 @@ impl PlacedImage {
         }
         Tile::from_pixels(pixels.into_flattened())
     }
-    /// Where each pixel of an area reads a texture of this size: `positions` in texels, of the area grown by the
-    /// margin.
-    fn placed(&self, scene: &Scene, area: Rect, texture: Size, positions: &mut DeformedRect) -> ImageLookup {
+
+    /// Where each pixel of an area reads a texture of this size: `positions` in texels, of the area
+    /// grown by the margin.
+    fn placed(
+        &self,
+        scene: &Scene,
+        area: Rect,
+        texture: Size,
+        positions: &mut DeformedRect,
+    ) -> ImageLookup {
         let texels_from_frame = self.placement.texels_from_canvas(scene.size, texture);
         let deformation = Deformation::new(scene.surface.as_deref(), scene.size, &self.bend);
         let deformation = deformation.about(BentFrame::origin(&self.frame));
@@ -252,15 +299,19 @@ pub(super) struct BentFrame {
 }
 
 impl BentFrame {
-    /// The corner of the pixels next to where the frame's own corner lies: points are relative to it, so that what was
-    /// moved by whole px is computed from the same numbers. For perspectives the corner of the canvas.
+    /// The corner of the pixels next to where the frame's own corner lies: points are relative to
+    /// it, so that what was moved by whole px is computed from the same numbers. For perspectives
+    /// the corner of the canvas.
     pub fn origin(frame: &PlaneMap) -> (i32, i32) {
         const FAR: f64 = 1e6;
         match frame.coefficients() {
-            Some([.., e, f]) if e.abs() <= FAR && f.abs() <= FAR => (e.round() as i32, f.round() as i32),
+            Some([.., e, f]) if e.abs() <= FAR && f.abs() <= FAR => {
+                (e.round() as i32, f.round() as i32)
+            }
             _ => (0, 0),
         }
     }
+
     /// * `area`: the pixels wanted.
     /// * `origin`: the point that canvas points are relative to; for a perspective (0, 0).
     pub fn of(frame: &PlaneMap, area: Rect, origin: (i32, i32)) -> Self {
@@ -269,13 +320,14 @@ impl BentFrame {
             return Self { linear, perspective: None };
         }
         let middle = vec2((area.x0 + area.x1) as f32, (area.y0 + area.y1) as f32) * 0.5;
-        let linear = frame
-            .from_canvas(middle)
-            .map_or(Affine2::IDENTITY, |(p, jacobian)| Affine2::from_mat2_translation(jacobian, p - jacobian * middle));
+        let linear = frame.from_canvas(middle).map_or(Affine2::IDENTITY, |(p, jacobian)| {
+            Affine2::from_mat2_translation(jacobian, p - jacobian * middle)
+        });
         Self { linear, perspective: Some(*frame) }
     }
-    /// Takes points of the canvas into the frame if the map is a perspective; whether it did. Points beyond the horizon
-    /// go far away.
+
+    /// Takes points of the canvas into the frame if the map is a perspective; whether it did.
+    /// Points beyond the horizon go far away.
     pub fn apply(&self, x: &mut [f32], y: &mut [f32]) -> bool {
         const FAR: f32 = 1e7;
         let Some(frame) = &self.perspective else { return false };

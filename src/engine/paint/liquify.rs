@@ -1,5 +1,6 @@
-//! Liquify: dabs that push, swell and twirl what a layer shows, as a displacement of the nodes under them. Floor 3. Not
-//! here: what a displacement is (`raster::lattice`), how layers are seen through it (`document::layer::warp`).
+//! Liquify: dabs that push, swell and twirl what a layer shows, as a displacement of the nodes
+//! under them. Floor 3. Not here: what a displacement is (`raster::lattice`), how layers are seen
+//! through it (`document::layer::warp`).
 
 use super::Scene;
 use crate::math::{COORDINATE, Mat2, PlaneMap, Range, Rect, UNIT, Vec2, vec2};
@@ -52,7 +53,13 @@ pub struct LiquifySettings {
 
 impl Default for LiquifySettings {
     fn default() -> Self {
-        Self { tool: LiquifyTool::Push, size: 120.0, strength: 0.6, one_object: false, foreshortened: false }
+        Self {
+            tool: LiquifyTool::Push,
+            size: 120.0,
+            strength: 0.6,
+            one_object: false,
+            foreshortened: false,
+        }
     }
 }
 
@@ -63,7 +70,11 @@ impl LiquifySettings {
     /// The same with numbers in range.
     pub fn held(&self) -> Self {
         let held = crate::math::range::held;
-        Self { size: held(self.size, &Self::SIZE), strength: held(self.strength, &Self::STRENGTH), ..*self }
+        Self {
+            size: held(self.size, &Self::SIZE),
+            strength: held(self.strength, &Self::STRENGTH),
+            ..*self
+        }
     }
 }
 
@@ -111,15 +122,18 @@ impl LiquifyStroke {
         });
         Self { settings: settings.held(), scene, selection, to_canvas, object, last: at, gone: 0.0 }
     }
+
     fn radius(&self) -> f32 {
         0.5 * self.settings.size
     }
+
     /// The first dab, unless it pushes.
     pub fn begin(&self, lattice: &mut Lattice, pressure: f32) {
         if self.settings.tool != LiquifyTool::Push {
             self.dab(lattice, self.last, Vec2::ZERO, pressure);
         }
     }
+
     /// Continues to a point of the canvas.
     pub fn draw_to(&mut self, lattice: &mut Lattice, at: Vec2, pressure: f32) {
         if !at.is_finite() || at.abs().max_element() > *COORDINATE.end() {
@@ -142,6 +156,7 @@ impl LiquifyStroke {
         }
         (self.last, self.gone) = (at, left.min(spacing));
     }
+
     /// One dab: the nodes under it take new displacements.
     ///
     /// * `step`: how far the pen moved since the last one, canvas px.
@@ -149,7 +164,10 @@ impl LiquifyStroke {
         let Some((center, back)) = self.to_canvas.from_canvas(at) else { return };
         let radius = self.radius() * back.determinant().abs().sqrt();
         // In a group that is scaled down to nearly nothing, a dab would hold endless nodes.
-        if radius.is_nan() || radius > MOST_RADIUS_PX || center.abs().max_element() > *COORDINATE.end() {
+        if radius.is_nan()
+            || radius > MOST_RADIUS_PX
+            || center.abs().max_element() > *COORDINATE.end()
+        {
             return;
         }
         let reach = radius + 1.0;
@@ -173,7 +191,9 @@ impl LiquifyStroke {
             }
             let by = |v: Vec2| v + old.at(q + v).by;
             match self.settings.tool {
-                LiquifyTool::Push => by(-step * (weight * stretch(here, step) / stretch(slope, step)).min(2.0)),
+                LiquifyTool::Push => {
+                    by(-step * (weight * stretch(here, step) / stretch(slope, step)).min(2.0))
+                }
                 LiquifyTool::Grow => by(-offset * (SWELL * weight / stretch(slope, offset))),
                 LiquifyTool::Shrink => by(offset * (SWELL * weight / stretch(slope, offset))),
                 LiquifyTool::TwirlLeft => by(turned(offset, TURN * weight, slope)),
@@ -183,6 +203,7 @@ impl LiquifyStroke {
             }
         });
     }
+
     /// How much of a canvas point may be displaced.
     fn share(&self, p: Vec2) -> f32 {
         let (x, y) = (p.x.floor() as i32, p.y.floor() as i32);
@@ -191,6 +212,7 @@ impl LiquifyStroke {
         }
         self.selection.as_ref().map_or(1.0, |covered| f32::from(covered.at(x, y)) / 255.0)
     }
+
     /// How the depth of the surface changes along the axes; 0 if it is not needed.
     fn slope(&self, p: Vec2) -> Vec2 {
         let surface = self.scene.surface.as_ref().filter(|_| self.settings.foreshortened);
@@ -229,7 +251,8 @@ fn mean(lattice: &Lattice, q: Vec2) -> Vec2 {
     around.map(|(dx, dy)| lattice.node(i + dx, j + dy)).sum::<Vec2>() / 9.0
 }
 
-/// A displacement reduced by a ratio, at least by the smallest step that can be held, so that it ends at 0.
+/// A displacement reduced by a ratio, at least by the smallest step that can be held, so that it
+/// ends at 0.
 fn restored(u: Vec2, share: f32) -> Vec2 {
     const LEAST_SHARE: f32 = 1.0 / 64.0;
     if share < LEAST_SHARE {
@@ -251,11 +274,13 @@ mod tests {
     fn scene() -> Scene {
         Scene { size: Size::new(400, 300), surface: None }
     }
+
     fn drawn(settings: LiquifySettings, lattice: &mut Lattice, way: &[Vec2]) {
         let mut stroke = LiquifyStroke::new(settings, scene(), None, PlaneMap::IDENTITY, way[0]);
         stroke.begin(lattice, 1.0);
         way[1..].iter().for_each(|at| stroke.draw_to(lattice, *at, 1.0));
     }
+
     fn of(tool: LiquifyTool) -> LiquifySettings {
         LiquifySettings { tool, size: 160.0, strength: 1.0, ..LiquifySettings::default() }
     }
@@ -269,6 +294,7 @@ mod tests {
         assert!((found - vec2(-40.0, 0.0)).length() < 2.0, "{found}");
         assert_eq!(lattice.at(vec2(200.0, 20.0)).by, Vec2::ZERO);
     }
+
     #[test]
     fn a_twirl_turns_its_middle_by_its_angle() {
         let mut lattice = Lattice::default();
@@ -278,7 +304,10 @@ mod tests {
             let angle = TURN * falloff(offset.length() / 80.0);
             let expected = Mat2::from_angle(angle) * offset - offset;
             let found = lattice.at(center + offset).by;
-            assert!((found - expected).length() <= 1.0 / Lattice::PER_PX, "{offset}: {found} {expected}");
+            assert!(
+                (found - expected).length() <= 1.0 / Lattice::PER_PX,
+                "{offset}: {found} {expected}"
+            );
         }
         let mut back = Lattice::default();
         drawn(of(LiquifyTool::TwirlRight), &mut back, &[center]);
@@ -286,6 +315,7 @@ mod tests {
         let there = p + lattice.at(p).by;
         assert!((there + back.at(there).by - p).length() < 0.1, "one turn undoes the other");
     }
+
     #[test]
     fn what_was_pushed_can_be_restored_until_nothing_is_left() {
         let mut lattice = Lattice::default();
@@ -297,16 +327,24 @@ mod tests {
         }
         assert!(lattice.is_empty(), "{lattice:?}");
     }
+
     #[test]
     fn what_is_not_selected_stays() {
         let selected = CoverageGrid::filled(Rect::new(0, 0, 200, 300));
         let mut lattice = Lattice::default();
         let settings = of(LiquifyTool::Grow);
-        let mut stroke = LiquifyStroke::new(settings, scene(), Some(selected), PlaneMap::IDENTITY, vec2(200.0, 150.0));
+        let mut stroke = LiquifyStroke::new(
+            settings,
+            scene(),
+            Some(selected),
+            PlaneMap::IDENTITY,
+            vec2(200.0, 150.0),
+        );
         stroke.begin(&mut lattice, 1.0);
         stroke.draw_to(&mut lattice, vec2(210.0, 150.0), 1.0);
         assert!(lattice.node(23, 19) != Vec2::ZERO && lattice.node(26, 19) == Vec2::ZERO);
     }
+
     #[test]
     fn a_direction_down_a_slope_is_longer_than_it_is_seen() {
         // At 60° a slope of √3: twice as long along it as seen, unchanged across it.
@@ -315,6 +353,7 @@ mod tests {
         assert!((stretch(slope, vec2(0.0, -3.0)) - 1.0).abs() < 1e-6);
         assert_eq!(stretch(slope, Vec2::ZERO), 1.0);
     }
+
     #[test]
     fn a_pen_without_a_place_changes_nothing() {
         let mut lattice = Lattice::default();

@@ -18,6 +18,7 @@ impl SurfaceMeasure {
         let amount = operator.unwrapping().map_or(1.0, |settings| settings.amount);
         scene.surface.clone().map(|surface| Self { surface, amount })
     }
+
     /// The length of a px of a path on the surface: |S d| of MATH 8, between pixels; 1 off it.
     ///
     /// * `at`: canvas px. `way`: only its direction matters.
@@ -27,7 +28,9 @@ impl SurfaceMeasure {
             return 1.0;
         }
         let along = way.normalize_or_zero();
-        let on = |(x, y, share): (usize, usize, f32)| share * (surface.stretch(x, y, self.amount) * along).length();
+        let on = |(x, y, share): (usize, usize, f32)| {
+            share * (surface.stretch(x, y, self.amount) * along).length()
+        };
         let length: f32 = surface.around(at).map(on).sum();
         if length.is_finite() && length > 0.0 { length } else { 1.0 }
     }

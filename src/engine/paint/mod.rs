@@ -1,5 +1,5 @@
-//! Floor 3: marks. Each mark is a footprint (*where*: operator, anchors, weights) times a source (*what*: tip, ramp,
-//! image), evaluated over tiles. This module does not know the layer tree.
+//! Floor 3: marks. Each mark is a footprint (*where*: operator, anchors, weights) times a source
+//! (*what*: tip, ramp, image), evaluated over tiles. This module does not know the layer tree.
 
 pub mod adjust;
 pub mod brush;

@@ -1,5 +1,5 @@
-//! Patches: the piece of the image plane under each pixel, from D differenced within one piece of surface.
-//! Floor 3. Not here: averaging a picture over them (`raster::sampler`).
+//! Patches: the piece of the image plane under each pixel, from D differenced within one piece of
+//! surface. Floor 3. Not here: averaging a picture over them (`raster::sampler`).
 
 use crate::math::{Affine2, Rect};
 use crate::raster::sampler::PatchRow;
@@ -20,8 +20,8 @@ impl Patches {
     /// The patches of row `y` of `rect`.
     ///
     /// * `positions`: P⁻¹(D(q)) of `rect` grown by one pixel on every side, in texels.
-    /// * `texels_from_canvas`: P⁻¹. Toward a neighbour that does not continue the surface the maps count as constant:
-    ///   the edge lies where an unbent picture's would.
+    /// * `texels_from_canvas`: P⁻¹. Toward a neighbour that does not continue the surface the maps
+    ///   count as constant: the edge lies where an unbent picture's would.
     pub fn row<'a>(
         &'a mut self,
         scene: &Scene,
@@ -54,7 +54,9 @@ impl Patches {
         let edges = self.edges.each_ref().map(|[x, y]| [&x[..], &y[..]]);
         PatchRow { x: &positions.x[here..here + n], y: &positions.y[here..here + n], edges }
     }
-    /// The edges of a row whose first pixel is at `here`, if some neighbours do not continue the surface.
+
+    /// The edges of a row whose first pixel is at `here`, if some neighbours do not continue the
+    /// surface.
     fn edges_where_linked(
         &mut self,
         positions: &DeformedRect,
@@ -64,9 +66,19 @@ impl Patches {
         let n = self.bits.len();
         for (edge, (bit, dx, dy)) in self.edges.iter_mut().zip(SIDES) {
             let there = here.wrapping_add_signed(dy as isize * stride as isize + dx as isize);
-            let still = texels_from_canvas.matrix2.mul_vec2(crate::math::vec2(dx as f32, dy as f32)) * 0.5;
-            for (axis, (plane, still)) in [(&positions.x, still.x), (&positions.y, still.y)].into_iter().enumerate() {
-                half_edges(&plane[here..here + n], &plane[there..there + n], &self.bits, bit, still, &mut edge[axis]);
+            let still =
+                texels_from_canvas.matrix2.mul_vec2(crate::math::vec2(dx as f32, dy as f32)) * 0.5;
+            for (axis, (plane, still)) in
+                [(&positions.x, still.x), (&positions.y, still.y)].into_iter().enumerate()
+            {
+                half_edges(
+                    &plane[here..here + n],
+                    &plane[there..there + n],
+                    &self.bits,
+                    bit,
+                    still,
+                    &mut edge[axis],
+                );
             }
         }
     }
@@ -76,17 +88,23 @@ impl Patches {
 fn are_linked(bits: &[u8]) -> bool {
     let (words, rest) = bits.as_chunks::<8>();
     let all = words.iter().fold(u64::MAX, |all, word| all & u64::from_ne_bytes(*word));
-    rest.iter().fold(u8::MAX, |all, bits| all & bits) & all.to_ne_bytes().into_iter().fold(u8::MAX, |a, b| a & b) & 15
+    rest.iter().fold(u8::MAX, |all, bits| all & bits)
+        & all.to_ne_bytes().into_iter().fold(u8::MAX, |a, b| a & b)
+        & 15
         == 15
 }
 
-/// The links of a row's pixels. Off the surface D is smooth too: pixels there are linked to neighbours that are also
-/// off it.
+/// The links of a row's pixels. Off the surface D is smooth too: pixels there are linked to
+/// neighbours that are also off it.
 fn links_or_outside(surface: &Surface, x0: i32, y: i32, bits: &mut [u8]) {
     let (x1, map) = (x0 + bits.len() as i32, surface.size().rect());
     if map.contains(x0, y) && map.contains(x1 - 1, y) {
         let row = x0 as usize..x1 as usize;
-        if surface.coverage_plane().row(y as usize)[row.clone()].iter().fold(u8::MAX, |least, &c| least.min(c)) > 0 {
+        if surface.coverage_plane().row(y as usize)[row.clone()]
+            .iter()
+            .fold(u8::MAX, |least, &c| least.min(c))
+            > 0
+        {
             return bits.copy_from_slice(&surface.smooth_links_plane().row(y as usize)[row]);
         }
     }
@@ -95,14 +113,17 @@ fn links_or_outside(surface: &Surface, x0: i32, y: i32, bits: &mut [u8]) {
         *bits = if covered(x, y) {
             surface.smooth_links_plane().get(x, y).unwrap_or(0)
         } else {
-            SIDES.iter().filter(|(_, dx, dy)| !covered(x + dx, y + dy)).fold(0, |bits, side| bits | side.0)
+            SIDES
+                .iter()
+                .filter(|(_, dx, dy)| !covered(x + dx, y + dy))
+                .fold(0, |bits, side| bits | side.0)
         };
     }
 }
 
 crate::widest! {
-    /// Halfway to the left, right, upper and lower neighbours of a row that is linked to all of them; `row` has one
-    /// pixel more at each end.
+    /// Halfway to the left, right, upper and lower neighbours of a row that is linked to all of
+    /// them; `row` has one pixel more at each end.
     fn linked_edges(
         row: &[f32],
         above: &[f32],
@@ -123,6 +144,7 @@ crate::widest! {
             down[k] = (below[k] - here) * 0.5;
         }
     }
+
     /// Halfway to the neighbour if it is linked, else `still`.
     fn half_edges(here: &[f32], there: &[f32], bits: &[u8], bit: u8, still: f32, out: &mut [f32]) {
         let n = out.len();

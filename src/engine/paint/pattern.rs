@@ -1,5 +1,5 @@
-//! Patterns: greys from formulas, for tips and for grain. Floor 3. They are the same bytes every time; none is drawn by
-//! hand or shipped as a file.
+//! Patterns: greys from formulas, for tips and for grain. Floor 3. They are the same bytes every
+//! time; none is drawn by hand or shipped as a file.
 
 use crate::math::{Size, Vec2, hash, noise, vec2};
 use crate::raster::Plane;
@@ -29,8 +29,8 @@ impl Pattern {
     /// Side of that square, texels: least and most.
     pub const SIDES: [u32; 2] = [512, 2048];
 
-    /// The side that has a texel for every pixel if features are this large, so that a pattern is as sharp on a large
-    /// canvas as on a small one.
+    /// The side that has a texel for every pixel if features are this large, so that a pattern is
+    /// as sharp on a large canvas as on a small one.
     pub fn side_of(feature_px: f32) -> u32 {
         let [least, most] = Self::SIDES;
         // Comparisons that NaN fails.
@@ -40,8 +40,9 @@ impl Pattern {
             .find(|side| *side as f32 >= Self::CELLS as f32 * feature_px)
             .unwrap_or(if feature_px > 0.0 { most } else { least })
     }
-    /// Greys in `[0, 1]`; opposite sides meet. In paper every grey covers the same area, so that a level is a share of
-    /// the area.
+
+    /// Greys in `[0, 1]`; opposite sides meet. In paper every grey covers the same area, so that a
+    /// level is a share of the area.
     ///
     /// `side`: texels, see [`Pattern::side_of`].
     pub fn plane(self, seed: u32, side: u32) -> Plane<f32> {
@@ -53,7 +54,9 @@ impl Pattern {
             Pattern::Weave => weave(at(x, y) * cells, seed),
             Pattern::Scales => scales(at(x, y) * cells),
             Pattern::Lines => line(at(x, y) * cells, seed),
-            Pattern::Dots => 1.0 - ((at(x, y) * cells).fract_gl() - 0.5).length() * std::f32::consts::SQRT_2,
+            Pattern::Dots => {
+                1.0 - ((at(x, y) * cells).fract_gl() - 0.5).length() * std::f32::consts::SQRT_2
+            }
         });
         if self == Pattern::Paper { equalised(&raw) } else { raw.map(|v| v.max(0.0).min(1.0)) }
     }
@@ -64,8 +67,8 @@ fn weave(p: Vec2, seed: u32) -> f32 {
     let (cell, within) = (p.floor(), p.fract_gl() - 0.5);
     let is_over = (cell.x + cell.y).rem_euclid(2.0) < 1.0;
     let (across, along) = if is_over { (within.y, within.x) } else { (within.x, within.y) };
-    // A thread's round back, dipping where it goes under the next; each thread a little different, its fibres fine
-    // lines.
+    // A thread's round back, dipping where it goes under the next; each thread a little different,
+    // its fibres fine lines.
     let back = (1.0 - (across / 0.46).powi(2)).max(0.0).sqrt();
     let dip = (PI * along).cos().max(0.0).powf(0.6);
     let thread = if is_over { vec2(0.0, cell.y) } else { vec2(1.0, cell.x) };
@@ -74,7 +77,8 @@ fn weave(p: Vec2, seed: u32) -> f32 {
     back * (0.25 + 0.75 * dip) * (0.78 + 0.14 * own + 0.08 * fibre)
 }
 
-/// Rows half a cell high, every other shifted by half a cell: each scale is a disc that covers the ones above it.
+/// Rows half a cell high, every other shifted by half a cell: each scale is a disc that covers the
+/// ones above it.
 fn scales(p: Vec2) -> f32 {
     let row = (p.y * 2.0).floor();
     // The lower rows lie below: of the discs over a point the topmost belongs to the highest row.
@@ -84,7 +88,8 @@ fn scales(p: Vec2) -> f32 {
         let center = vec2((p.x - shift).floor() + shift + 0.5, row * 0.5);
         let r = (p - center).length() / 0.56;
         if r < 1.0 && p.y >= center.y {
-            // Dark where it emerges from under its neighbour, bright toward the rim, with a thin dark edge.
+            // Dark where it emerges from under its neighbour, bright toward the rim, with a thin
+            // dark edge.
             let rim = smoothstep(1.0, 0.9, r);
             return rim * (0.25 + 0.75 * smoothstep(0.2, 0.85, r));
         }
@@ -116,7 +121,8 @@ fn equalised(plane: &Plane<f32>) -> Plane<f32> {
     out
 }
 
-/// The ends of a brush's hairs, spread over the disc that touches the square's sides: greys in `[0, 1]`.
+/// The ends of a brush's hairs, spread over the disc that touches the square's sides: greys in `[0,
+/// 1]`.
 ///
 /// * `count`: number of hairs, `≥ 1`.
 /// * `side`: of the square, texels.
@@ -177,19 +183,28 @@ mod tests {
     fn every_pattern_is_made_of_greys_light_and_dark_and_repeats_without_seams() {
         for (pattern, name) in Pattern::ALL {
             let plane = pattern.plane(3, Pattern::SIDES[0]);
-            let (low, high) = plane.values().iter().fold((1.0f32, 0.0f32), |(a, b), &v| (a.min(v), b.max(v)));
-            assert!((0.0..0.3).contains(&low) && (0.7..=1.0).contains(&high), "{name}: {low} to {high}");
+            let (low, high) =
+                plane.values().iter().fold((1.0f32, 0.0f32), |(a, b), &v| (a.min(v), b.max(v)));
+            assert!(
+                (0.0..0.3).contains(&low) && (0.7..=1.0).contains(&high),
+                "{name}: {low} to {high}"
+            );
             // Neighbours differ as much across the seam as elsewhere.
             let last = Pattern::SIDES[0] as usize - 1;
             let jump = |a: usize, b: usize| {
                 (0..=last)
-                    .map(|i| (plane.at(a, i) - plane.at(b, i)).abs() + (plane.at(i, a) - plane.at(i, b)).abs())
+                    .map(|i| {
+                        (plane.at(a, i) - plane.at(b, i)).abs()
+                            + (plane.at(i, a) - plane.at(i, b)).abs()
+                    })
                     .sum()
             };
-            let (seam, within): (f32, f32) = (jump(0, last), jump(31, 32).max(jump(32, 33)).max(jump(95, 96)));
+            let (seam, within): (f32, f32) =
+                (jump(0, last), jump(31, 32).max(jump(32, 33)).max(jump(95, 96)));
             assert!(seam <= 1.5 * within + 2.0, "{name}: {seam} at the seam, {within} within");
         }
     }
+
     #[test]
     fn a_finer_plane_is_the_same_pattern() {
         assert_eq!(
@@ -199,22 +214,30 @@ mod tests {
         for (pattern, name) in Pattern::ALL {
             let (coarse, fine) = (pattern.plane(5, 512), pattern.plane(5, 1024));
             let mean = |x: usize, y: usize| {
-                [(0, 0), (1, 0), (0, 1), (1, 1)].iter().map(|(i, j)| fine.at(2 * x + i, 2 * y + j)).sum::<f32>() / 4.0
+                [(0, 0), (1, 0), (0, 1), (1, 1)]
+                    .iter()
+                    .map(|(i, j)| fine.at(2 * x + i, 2 * y + j))
+                    .sum::<f32>()
+                    / 4.0
             };
-            let apart = (0..512 * 512).map(|i| (coarse.at(i % 512, i / 512) - mean(i % 512, i / 512)).abs());
+            let apart = (0..512 * 512)
+                .map(|i| (coarse.at(i % 512, i / 512) - mean(i % 512, i / 512)).abs());
             let mean = apart.sum::<f32>() / (512.0 * 512.0);
             // Edges within a pattern are not averaged over texels.
             assert!(mean < 0.04, "{name}: {mean}");
         }
     }
+
     #[test]
     fn every_grey_of_paper_takes_the_same_area() {
         let plane = Pattern::Paper.plane(0, Pattern::SIDES[0]);
         for level in [0.1f32, 0.4, 0.8] {
-            let below = plane.values().iter().filter(|v| **v < level).count() as f32 / plane.values().len() as f32;
+            let below = plane.values().iter().filter(|v| **v < level).count() as f32
+                / plane.values().len() as f32;
             assert!((below - level).abs() < 0.001, "{below} below {level}");
         }
     }
+
     #[test]
     fn bristles_lie_within_the_disc_and_more_of_them_are_finer() {
         let covered = |count: u32| {
@@ -236,6 +259,7 @@ mod tests {
         assert!(edges(80) > edges(12));
         assert_eq!(bristles(40, 9, 64).values(), bristles(40, 9, 64).values());
     }
+
     #[test]
     fn specks_cover_their_share() {
         for density in [0.2f32, 0.5, 0.8] {

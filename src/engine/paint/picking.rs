@@ -10,7 +10,8 @@ use crate::math::{Mat2, Vec2};
 use crate::raster::{BlendMode, CoverageGrid, TILE, Tile, TileAt, TileGrid};
 use std::sync::Arc;
 
-/// The least alpha of 255 that counts as part of a stroke: faint rims are hard to see but easy to hit.
+/// The least alpha of 255 that counts as part of a stroke: faint rims are hard to see but easy to
+/// hit.
 const LEAST_ALPHA: u8 = 16;
 
 /// The index of the topmost of some strokes that is visible at a canvas point.
@@ -23,13 +24,19 @@ impl Stroke {
     pub fn is_at(self: &Arc<Self>, scene: &Scene, at: Vec2) -> bool {
         let pixel = at.floor().as_ivec2();
         let tile = TileAt::of_pixel(pixel.x, pixel.y);
-        if !at.is_finite() || !scene.size.rect().contains(pixel.x, pixel.y) || !self.touches(scene, tile) {
+        if !at.is_finite()
+            || !scene.size.rect().contains(pixel.x, pixel.y)
+            || !self.touches(scene, tile)
+        {
             return false;
         }
         let (x, y) = ((pixel.x - tile.rect().x0) as usize, (pixel.y - tile.rect().y0) as usize);
         let rendered = render_tile(&[self.as_paint()], scene, tile);
-        rendered.is_some_and(|tile| tile.bytes().get((y * TILE + x) * 4 + 3).is_some_and(|&a| a >= LEAST_ALPHA))
+        rendered.is_some_and(|tile| {
+            tile.bytes().get((y * TILE + x) * 4 + 3).is_some_and(|&a| a >= LEAST_ALPHA)
+        })
     }
+
     /// The stroke as plain paint on transparency, also if it erases or has another blend mode.
     pub fn covered(self: &Arc<Self>, scene: &Scene) -> TileGrid {
         let paint = [self.as_paint()];
@@ -39,6 +46,7 @@ impl Stroke {
         }
         grid
     }
+
     /// Whether any of the stroke's paint lies where something is covered.
     pub fn meets(self: &Arc<Self>, scene: &Scene, covered: &CoverageGrid) -> bool {
         let paint = [self.as_paint()];
@@ -51,30 +59,36 @@ impl Stroke {
             rendered.is_some_and(painted)
         })
     }
+
     /// The stroke as it looks on a transparent layer.
     fn as_paint(self: &Arc<Self>) -> Arc<Stroke> {
         let brush = self.brush();
         if !brush.erases && !brush.keeps_alpha && brush.blend == BlendMode::Normal {
             return self.clone();
         }
-        let plain = Brush { erases: false, keeps_alpha: false, blend: BlendMode::Normal, ..brush.clone() };
+        let plain =
+            Brush { erases: false, keeps_alpha: false, blend: BlendMode::Normal, ..brush.clone() };
         Arc::new(self.with_brush(plain))
     }
+
     /// The same stroke elsewhere in its frame: every dab bends at its new position.
     pub fn moved(&self, by: Vec2) -> Stroke {
-        let samples = self.samples().iter().map(|sample| Sample { at: sample.at + by, ..*sample }).collect();
+        let samples =
+            self.samples().iter().map(|sample| Sample { at: sample.at + by, ..*sample }).collect();
         Stroke::new(self.brush().clone(), self.operator(), self.color(), samples)
             .within(self.selection().map(|selection| selection.moved(by)))
             .on(self.home().cloned())
     }
+
     /// The same stroke within another selection, or within none.
     pub fn selecting(&self, selection: Option<StrokeSelection>) -> Stroke {
         self.with_brush(self.brush().clone()).within(selection)
     }
-    /// The stroke where a map takes its samples: `place` gives the new place of a point (`None`: nowhere), `length` how
-    /// much longer lengths become there, `turn` how directions turn there (an orthogonal matrix). Its brush grows by
-    /// the mean over the remaining samples and faces as at the first of them; the pen's tilt turns too. It has no home
-    /// and no selection.
+
+    /// The stroke where a map takes its samples: `place` gives the new place of a point (`None`:
+    /// nowhere), `length` how much longer lengths become there, `turn` how directions turn there
+    /// (an orthogonal matrix). Its brush grows by the mean over the remaining samples and faces as
+    /// at the first of them; the pen's tilt turns too. It has no home and no selection.
     pub fn mapped(
         &self,
         place: &dyn Fn(Vec2) -> Option<Vec2>,
@@ -89,16 +103,28 @@ impl Stroke {
                 ..*sample
             })
         };
-        let (samples, lengths): (Vec<Sample>, Vec<f64>) =
-            self.samples().iter().filter_map(|sample| Some((placed(sample)?, f64::from(length(sample.at))))).unzip();
+        let (samples, lengths): (Vec<Sample>, Vec<f64>) = self
+            .samples()
+            .iter()
+            .filter_map(|sample| Some((placed(sample)?, f64::from(length(sample.at)))))
+            .unzip();
         let mean = lengths.iter().sum::<f64>() / lengths.len().max(1) as f64;
-        let mut brush = if samples.is_empty() { self.brush().clone() } else { self.brush().scaled(mean as f32) };
-        let turned = self.samples().iter().find(|sample| place(sample.at).is_some()).map(|sample| turn(sample.at));
+        let mut brush = if samples.is_empty() {
+            self.brush().clone()
+        } else {
+            self.brush().scaled(mean as f32)
+        };
+        let turned = self
+            .samples()
+            .iter()
+            .find(|sample| place(sample.at).is_some())
+            .map(|sample| turn(sample.at));
         if let Some(turned) = turned.filter(|turned| *turned != Mat2::IDENTITY) {
             brush.facing = StrokeFrame::of(turned * brush.facing.map());
         }
         Stroke::new(brush, self.operator(), self.color(), samples)
     }
+
     /// The same movement of the hand with another brush.
     pub fn with_brush(&self, brush: Brush) -> Stroke {
         Stroke::new(brush, self.operator(), self.color(), self.samples().to_vec())
@@ -114,14 +140,18 @@ mod tests {
     use crate::raster::Plane;
     use crate::surface::{Maps, Operator, Surface};
 
-    /// The left half faces the viewer, the right half leans to the right: marks of a normal operator do not cross.
+    /// The left half faces the viewer, the right half leans to the right: marks of a normal
+    /// operator do not cross.
     fn fold() -> Scene {
         let size = Size::new(200, 100);
-        let normals = Plane::from_fn(size, |x, _| if x < 100 { Vec3::Z } else { vec3(0.6, 0.0, 0.8) });
+        let normals =
+            Plane::from_fn(size, |x, _| if x < 100 { Vec3::Z } else { vec3(0.6, 0.0, 0.8) });
         let coverage = Plane::filled(size, 255);
-        let surface = Surface::new(Maps { normals, depth: Plane::filled(size, 0.5), coverage }).unwrap();
+        let surface =
+            Surface::new(Maps { normals, depth: Plane::filled(size, 0.5), coverage }).unwrap();
         Scene { size, surface: Some(Arc::new(surface)) }
     }
+
     fn dot(at: Vec2) -> Arc<Stroke> {
         let brush = Brush { size: 40.0, hardness: 1.0, ..Brush::default() };
         let operator = Operator::Normal { alpha: 1.0, beta: 0.0, detail: 0.0 };
@@ -137,11 +167,17 @@ mod tests {
         assert_eq!(at(105.0, 50.0), None, "the fold bends the dab away from its other side");
         assert_eq!((at(60.0, 90.0), at(-5.0, 50.0), at(f32::NAN, 50.0)), (None, None, None));
     }
+
     #[test]
     fn a_stroke_that_erases_is_picked_where_it_erases() {
-        let eraser = dot(vec2(60.0, 50.0)).with_brush(Brush { size: 40.0, erases: true, ..Brush::default() });
+        let eraser = dot(vec2(60.0, 50.0)).with_brush(Brush {
+            size: 40.0,
+            erases: true,
+            ..Brush::default()
+        });
         assert_eq!(topmost_at(&[Arc::new(eraser)], &fold(), vec2(60.0, 50.0)), Some(0));
     }
+
     #[test]
     fn a_moved_stroke_bends_at_its_new_place_as_one_painted_there() {
         let scene = fold();

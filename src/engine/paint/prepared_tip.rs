@@ -1,5 +1,5 @@
-//! A brush's tip prepared for its dabs: pictures are blurred and textures made once, then each dab is painted on its
-//! tiles. Floor 3.
+//! A brush's tip prepared for its dabs: pictures are blurred and textures made once, then each dab
+//! is painted on its tiles. Floor 3.
 
 use super::brush::{Brush, Tip};
 use super::dab::{DabScratch, Footprint, PlacedDab, SoftenedStamps, TipShape, round_extent};
@@ -28,20 +28,31 @@ pub enum PreparedTip {
 impl PreparedTip {
     pub fn of(brush: &Brush) -> Self {
         let is_driven = brush.dynamics.drive(Property::Softness);
-        let softened = |source: &PictureSource| SoftenedStamps::of(source, brush.softness, is_driven);
+        let softened =
+            |source: &PictureSource| SoftenedStamps::of(source, brush.softness, is_driven);
         let textured = |texture: TipTexture| Self::Textured(softened(&texture.source(brush.size)));
         match &brush.tip {
-            Tip::Round if brush.falloff == Falloff::Smooth && !brush.dynamics.drive(Property::Elongation) => {
+            Tip::Round
+                if brush.falloff == Falloff::Smooth
+                    && !brush.dynamics.drive(Property::Elongation) =>
+            {
                 Self::Round
             }
-            Tip::Round | Tip::Ellipse { .. } => Self::Shape(TipShape::Ellipse { ratio: brush.ratio() }, brush.falloff),
-            Tip::Square { .. } => Self::Shape(TipShape::Square { ratio: brush.ratio() }, brush.falloff),
+            Tip::Round | Tip::Ellipse { .. } => {
+                Self::Shape(TipShape::Ellipse { ratio: brush.ratio() }, brush.falloff)
+            }
+            Tip::Square { .. } => {
+                Self::Shape(TipShape::Square { ratio: brush.ratio() }, brush.falloff)
+            }
             Tip::Bristles(bristles) => textured(TipTexture::Bristles(*bristles)),
             Tip::Noise(noise) => textured(TipTexture::Noise(*noise)),
             Tip::Picture(source) => Self::Stamp(softened(source)),
-            Tip::Hose(hose) => Self::Hose(hose.clone(), hose.pictures().iter().map(softened).collect()),
+            Tip::Hose(hose) => {
+                Self::Hose(hose.clone(), hose.pictures().iter().map(softened).collect())
+            }
         }
     }
+
     /// Places a dab on the canvas, with the size and density that this tip gives it.
     pub fn place<'s>(&self, dab: Dab, scene: &'s Scene) -> PlacedDab<'s> {
         let (dab, extent) = match self {
@@ -61,15 +72,24 @@ impl PreparedTip {
         };
         PlacedDab::new(dab, scene, extent)
     }
+
     /// Paints a dab on a tile.
-    pub fn add(&self, dab: &PlacedDab, at: TileAt, stroke_tile: &mut StrokeTile, scratch: &mut DabScratch) {
+    pub fn add(
+        &self,
+        dab: &PlacedDab,
+        at: TileAt,
+        stroke_tile: &mut StrokeTile,
+        scratch: &mut DabScratch,
+    ) {
         match self {
             Self::Round => dab.add_round(at, stroke_tile, scratch),
             Self::Shape(shape, falloff) => {
                 let footprint = Footprint::Shape(shape.of_dab(dab.dab()), *falloff);
                 dab.add_covered(footprint, at, stroke_tile, scratch);
             }
-            Self::Textured(stamps) => dab.add_covered(Footprint::Textured(stamps), at, stroke_tile, scratch),
+            Self::Textured(stamps) => {
+                dab.add_covered(Footprint::Textured(stamps), at, stroke_tile, scratch)
+            }
             Self::Stamp(stamps) => dab.add_softened(stamps, at, stroke_tile, scratch),
             Self::Hose(hose, stamps) => {
                 if let Some(stamps) = stamps.get(choice(hose, dab.dab())) {
@@ -78,6 +98,7 @@ impl PreparedTip {
             }
         }
     }
+
     pub fn brings_colors(&self) -> bool {
         match self {
             Self::Stamp(stamps) => stamps.is_colored(),

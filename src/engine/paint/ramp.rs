@@ -21,16 +21,16 @@ pub struct Ramp {
     last: [f32; 4],
 }
 
-/// Between two stops, with s = (t − start) / length: straight colour and alpha are linear in s, so the premultiplied
-/// colour is a parabola a + b s + c s².
+/// Between two stops, with s = (t − start) / length: straight colour and alpha are linear in s, so
+/// the premultiplied colour is a parabola a + b s + c s².
 struct RampPiece {
     start: f32,
     length: f32,
     a: [f32; 4],
     b: [f32; 4],
     c: [f32; 4],
-    /// ∫ of the premultiplied colour from the first stop to `start`. Differences of it are divided by small widths:
-    /// f64.
+    /// ∫ of the premultiplied colour from the first stop to `start`. Differences of it are divided
+    /// by small widths: f64.
     before: [f64; 4],
 }
 
@@ -43,15 +43,19 @@ impl RampPiece {
             start: from.t,
             length: to.t - from.t,
             a: std::array::from_fn(|i| p[i] * weight(p, i)),
-            b: std::array::from_fn(|i| (q[i] - p[i]) * weight(p, i) + p[i] * (weight(q, i) - weight(p, i))),
+            b: std::array::from_fn(|i| {
+                (q[i] - p[i]) * weight(p, i) + p[i] * (weight(q, i) - weight(p, i))
+            }),
             c: std::array::from_fn(|i| (q[i] - p[i]) * (weight(q, i) - weight(p, i))),
             before,
         }
     }
+
     fn at(&self, t: f32) -> [f32; 4] {
         let s = ((t - self.start) / self.length).max(0.0).min(1.0);
         std::array::from_fn(|i| self.a[i] + s * (self.b[i] + s * self.c[i]))
     }
+
     /// ∫ of the premultiplied colour from the first stop to `t`, which lies in this piece.
     fn integral(&self, t: f32) -> [f64; 4] {
         let length = f64::from(self.length);
@@ -64,12 +68,14 @@ impl RampPiece {
 }
 
 impl Ramp {
-    /// `None` without a stop at a finite position. Stops out of order are sorted; of two at one position the later wins
-    /// there.
+    /// `None` without a stop at a finite position. Stops out of order are sorted; of two at one
+    /// position the later wins there.
     pub fn new(stops: &[GradientStop]) -> Option<Self> {
-        let mut stops: Vec<GradientStop> = stops.iter().copied().filter(|s| s.t.is_finite()).collect();
+        let mut stops: Vec<GradientStop> =
+            stops.iter().copied().filter(|s| s.t.is_finite()).collect();
         stops.sort_by(|a, b| a.t.total_cmp(&b.t));
-        let (first, last) = (stops.first()?.color.premultiplied(), stops.last()?.color.premultiplied());
+        let (first, last) =
+            (stops.first()?.color.premultiplied(), stops.last()?.color.premultiplied());
         let mut pieces: Vec<RampPiece> = Vec::new();
         for pair in stops.windows(2).filter(|pair| pair[1].t > pair[0].t) {
             let before = pieces.last().map_or([0.0; 4], |p| p.integral(p.start + p.length));
@@ -77,6 +83,7 @@ impl Ramp {
         }
         Some(Self { pieces, first, last })
     }
+
     /// The piece that holds `t`, or the colour before the first or after the last piece.
     fn piece(&self, t: f32) -> Result<&RampPiece, [f32; 4]> {
         let i = self.pieces.partition_point(|p| p.start <= t);
@@ -86,16 +93,21 @@ impl Ramp {
             Some(p) => Ok(p),
         }
     }
+
     /// The premultiplied encoded colour at `t`, clamped to `[0, 1]`.
     pub fn at(&self, t: f32) -> [f32; 4] {
         let t = t.max(0.0).min(1.0);
         self.piece(t).map_or_else(|color| color, |p| p.at(t))
     }
-    /// The mean of the premultiplied colour over `[t − width/2, t + width/2]`, positions beyond `[0, 1]` clamped.
+
+    /// The mean of the premultiplied colour over `[t − width/2, t + width/2]`, positions beyond
+    /// `[0, 1]` clamped.
     ///
-    /// In closed form, so it equals the mean of any number of samples. Widths too small to matter read the point.
+    /// In closed form, so it equals the mean of any number of samples. Widths too small to matter
+    /// read the point.
     pub fn mean(&self, t: f32, width: f32) -> [f32; 4] {
-        // A ten-thousandth of the ramp changes no byte unless two stops coincide, where the edge is equally sharp.
+        // A ten-thousandth of the ramp changes no byte unless two stops coincide, where the edge is
+        // equally sharp.
         if width.is_nan() || width < 1e-4 {
             return self.at(t);
         }
@@ -106,19 +118,25 @@ impl Ramp {
         let width = f64::from(t + half) - f64::from(t - half);
         std::array::from_fn(|i| ((high[i] - low[i]) / width) as f32)
     }
+
     /// ∫ of the premultiplied colour from some fixed position to `t`; linear beyond `[0, 1]`.
     fn integral(&self, t: f32) -> [f64; 4] {
         let inside = t.max(0.0).min(1.0);
         let from_first = |t: f32| match self.piece(t) {
             Ok(p) => p.integral(t),
             Err(color) => {
-                // Before the first piece the colour is constant and the integral negative; after the last it continues.
+                // Before the first piece the colour is constant and the integral negative; after
+                // the last it continues.
                 let (from, before) = match self.pieces.as_slice() {
                     [first, ..] if t < first.start => (first.start, [0.0; 4]),
-                    [.., last] => (last.start + last.length, last.integral(last.start + last.length)),
+                    [.., last] => {
+                        (last.start + last.length, last.integral(last.start + last.length))
+                    }
                     [] => (0.0, [0.0; 4]),
                 };
-                std::array::from_fn(|i| before[i] + f64::from(color[i]) * (f64::from(t) - f64::from(from)))
+                std::array::from_fn(|i| {
+                    before[i] + f64::from(color[i]) * (f64::from(t) - f64::from(from))
+                })
             }
         };
         let edge = self.at(inside);
@@ -135,6 +153,7 @@ mod tests {
     fn stop(t: f32, text: &str) -> GradientStop {
         GradientStop { t, color: Color::parse(text).unwrap() }
     }
+
     fn assert_near(a: [f32; 4], b: [f32; 4], tolerance: f32) {
         assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() <= tolerance), "{a:?} is not {b:?}");
     }
@@ -146,11 +165,19 @@ mod tests {
         assert_near(ramp.at(-3.0), [0.0; 4], 0.0);
         assert_near(ramp.at(3.0), [0.0, 1.0, 0.0, 1.0], 0.0);
     }
+
     #[test]
     fn the_mean_equals_many_samples() {
-        let stops = [stop(0.1, "#ff8000ff"), stop(0.4, "#0000ff20"), stop(0.4, "#ffffffff"), stop(0.9, "#10203040")];
+        let stops = [
+            stop(0.1, "#ff8000ff"),
+            stop(0.4, "#0000ff20"),
+            stop(0.4, "#ffffffff"),
+            stop(0.9, "#10203040"),
+        ];
         let ramp = Ramp::new(&stops).unwrap();
-        for (t, width) in [(0.5, 0.3), (0.05, 0.5), (0.4, 0.01), (0.95, 2.0), (-0.5, 3.0), (1.4, 0.2)] {
+        for (t, width) in
+            [(0.5, 0.3), (0.05, 0.5), (0.4, 0.01), (0.95, 2.0), (-0.5, 3.0), (1.4, 0.2)]
+        {
             let n = 20_000;
             let mut sum = [0.0f64; 4];
             for i in 0..n {
@@ -160,10 +187,13 @@ mod tests {
             assert_near(ramp.mean(t, width), sum.map(|v| v as f32), 2e-4);
         }
     }
+
     #[test]
     fn stops_out_of_order_are_sorted_and_one_stop_is_a_plain_colour() {
-        let sorted = Ramp::new(&[stop(0.0, "#000000"), stop(0.5, "#ff0000"), stop(1.0, "#ffffff")]).unwrap();
-        let mixed = Ramp::new(&[stop(1.0, "#ffffff"), stop(0.0, "#000000"), stop(0.5, "#ff0000")]).unwrap();
+        let sorted =
+            Ramp::new(&[stop(0.0, "#000000"), stop(0.5, "#ff0000"), stop(1.0, "#ffffff")]).unwrap();
+        let mixed =
+            Ramp::new(&[stop(1.0, "#ffffff"), stop(0.0, "#000000"), stop(0.5, "#ff0000")]).unwrap();
         assert_eq!(sorted.at(0.3), mixed.at(0.3));
         let one = Ramp::new(&[stop(0.7, "#336699")]).unwrap();
         assert_near(one.at(0.1), Color::parse("#336699").unwrap().premultiplied(), 1e-6);
@@ -171,12 +201,16 @@ mod tests {
         assert!(Ramp::new(&[]).is_none());
         assert!(Ramp::new(&[stop(f32::NAN, "#000000")]).is_none());
     }
+
     #[test]
     fn no_place_and_no_width_gives_a_value_that_is_not_a_colour() {
         let ramp = Ramp::new(&[stop(0.0, "#ff000000"), stop(1.0, "#00ff00ff")]).unwrap();
         for t in [f32::NAN, f32::INFINITY, -f32::INFINITY, 1e30] {
             for width in [f32::NAN, 0.0, 1.0, f32::INFINITY] {
-                assert!(ramp.mean(t, width).iter().all(|v| (-1e-6..=1.0 + 1e-6).contains(v)), "t {t}, width {width}");
+                assert!(
+                    ramp.mean(t, width).iter().all(|v| (-1e-6..=1.0 + 1e-6).contains(v)),
+                    "t {t}, width {width}"
+                );
             }
         }
     }

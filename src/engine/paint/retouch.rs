@@ -1,7 +1,8 @@
-//! Smudge, blur, clone, and brushes that pick up paint: they work on existing paint. Dab by dab through the same bent
-//! footprint as paint, each on the result of the last one, in f32, rounded when it is shown. Floor 3. `drag` says where
-//! smudge and clone take a pixel's colour from, `soften` how blur changes it, `pickup` which colour a dab paints,
-//! `pixels` holds the pixels. Not here: what the pen did (`tools`).
+//! Smudge, blur, clone, and brushes that pick up paint: they work on existing paint. Dab by dab
+//! through the same bent footprint as paint, each on the result of the last one, in f32, rounded
+//! when it is shown. Floor 3. `drag` says where smudge and clone take a pixel's colour from,
+//! `soften` how blur changes it, `pickup` which colour a dab paints, `pixels` holds the pixels. Not
+//! here: what the pen did (`tools`).
 
 mod drag;
 mod pickup;
@@ -31,7 +32,8 @@ use rayon::prelude::*;
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
 
-/// Retouching strokes that are drawn together: one, or one and its mirror images. Their dabs alternate.
+/// Retouching strokes that are drawn together: one, or one and its mirror images. Their dabs
+/// alternate.
 ///
 /// The resulting pixels do not depend on how the samples are batched.
 pub struct ActiveRetouching {
@@ -80,10 +82,21 @@ struct TileDab {
 impl ActiveRetouching {
     /// Starts strokes with the settings of these; their samples are ignored.
     ///
-    /// * `offsets`: for each stroke, from a pixel to what is cloned onto it, px; 0 if none is given.
+    /// * `offsets`: for each stroke, from a pixel to what is cloned onto it, px; 0 if none is
+    ///   given.
     /// * `base`: the layer's pixels. `source`: what clone copies from, as it was before the stroke.
-    pub fn new(strokes: &[Stroke], offsets: &[Vec2], base: TileGrid, source: TileGrid, scene: &Scene) -> Self {
-        let offsets = offsets.iter().copied().filter(|offset| offset.is_finite()).chain(std::iter::repeat(Vec2::ZERO));
+    pub fn new(
+        strokes: &[Stroke],
+        offsets: &[Vec2],
+        base: TileGrid,
+        source: TileGrid,
+        scene: &Scene,
+    ) -> Self {
+        let offsets = offsets
+            .iter()
+            .copied()
+            .filter(|offset| offset.is_finite())
+            .chain(std::iter::repeat(Vec2::ZERO));
         let stroke = |(stroke, offset): (&Stroke, Vec2)| RetouchStroke {
             brush: stroke.brush().clone(),
             color: stroke.color(),
@@ -95,18 +108,32 @@ impl ActiveRetouching {
             progress: DabQueue::default(),
         };
         let strokes = strokes.iter().zip(offsets).map(stroke).collect();
-        Self { scene: scene.clone(), source, retouched: RetouchPixels::new(base), strokes, tail: BTreeSet::new() }
+        Self {
+            scene: scene.clone(),
+            source,
+            retouched: RetouchPixels::new(base),
+            strokes,
+            tail: BTreeSet::new(),
+        }
     }
+
     /// Takes the next samples of each stroke; returns the tiles of the layer that changed.
     pub fn draw(&mut self, samples: &[Vec<Sample>]) -> Vec<(TileAt, Option<Arc<Tile>>)> {
         for (stroke, samples) in self.strokes.iter_mut().zip(samples) {
             stroke.take(samples, &self.scene);
         }
         let mut changed = std::mem::take(&mut self.tail);
-        while !self.strokes.is_empty() && self.strokes.iter().all(|stroke| !stroke.progress.waiting.is_empty()) {
+        while !self.strokes.is_empty()
+            && self.strokes.iter().all(|stroke| !stroke.progress.waiting.is_empty())
+        {
             for i in 0..self.strokes.len() {
                 let mut progress = std::mem::take(&mut self.strokes[i].progress);
-                changed.extend(self.strokes[i].rub_next(&mut progress, &mut self.retouched, &self.source, &self.scene));
+                changed.extend(self.strokes[i].rub_next(
+                    &mut progress,
+                    &mut self.retouched,
+                    &self.source,
+                    &self.scene,
+                ));
                 self.strokes[i].progress = progress;
             }
         }
@@ -116,6 +143,7 @@ impl ActiveRetouching {
         let changed: Vec<TileAt> = changed.into_iter().collect();
         changed.par_iter().map(tile).collect()
     }
+
     /// The pixels with the dabs that are due if the strokes end here.
     fn with_tail(&mut self) -> RetouchPixels {
         let mut retouched = self.retouched.clone();
@@ -139,11 +167,13 @@ impl RetouchStroke {
         samples.iter().for_each(|sample| self.walker.push(sample, &mut dabs));
         self.progress.waiting.extend(dabs);
     }
+
     fn rest(&self) -> DabQueue {
         let mut rest = self.progress.clone();
         rest.waiting.extend(self.walker.tail());
         rest
     }
+
     /// Applies the next dab, if there is one; returns the tiles that it changed.
     fn rub_next(
         &self,
@@ -157,9 +187,14 @@ impl RetouchStroke {
         let placed = self.stroke_dabs.place(dab, scene);
         let paint = match self.brush.mode {
             BrushMode::Paint if self.brush.erases => Some([0.0; 4]),
-            BrushMode::Paint => {
-                Some(pickup::mixed(&self.brush, self.own(&dab), &dab, &mut progress.held, retouched, scene))
-            }
+            BrushMode::Paint => Some(pickup::mixed(
+                &self.brush,
+                self.own(&dab),
+                &dab,
+                &mut progress.held,
+                retouched,
+                scene,
+            )),
             _ => None,
         };
         let rubbed = |scratch: &mut DabScratch, at: &TileAt| {
@@ -169,17 +204,28 @@ impl RetouchStroke {
                     let area = touch.area.width() * touch.area.height();
                     paint.map(|color| vec![color; area])
                 }
-                BrushMode::Smudge { length } => drag::smudged(&touch, &dab, before.as_ref()?, length, retouched, scene),
-                BrushMode::Blur { width } => {
-                    Some(soften::blurred(&touch, &dab, before.as_ref(), width, self.limits(), retouched, scene))
+                BrushMode::Smudge { length } => {
+                    drag::smudged(&touch, &dab, before.as_ref()?, length, retouched, scene)
                 }
-                BrushMode::Clone { .. } => Some(drag::cloned(&touch, &dab, self.offset, source, scene)),
+                BrushMode::Blur { width } => Some(soften::blurred(
+                    &touch,
+                    &dab,
+                    before.as_ref(),
+                    width,
+                    self.limits(),
+                    retouched,
+                    scene,
+                )),
+                BrushMode::Clone { .. } => {
+                    Some(drag::cloned(&touch, &dab, self.offset, source, scene))
+                }
             }?;
             let mut tile = retouched.tile(*at);
             mix(&mut tile, &touch, &colors, self.brush.keeps_alpha);
             Some((*at, tile))
         };
-        let made: Vec<_> = tiles_of(&placed).par_iter().map_init(DabScratch::default, rubbed).collect();
+        let made: Vec<_> =
+            tiles_of(&placed).par_iter().map_init(DabScratch::default, rubbed).collect();
         let mut changed = Vec::new();
         for (at, tile) in made.into_iter().flatten() {
             retouched.set(at, tile);
@@ -187,15 +233,24 @@ impl RetouchStroke {
         }
         changed
     }
+
     /// The brush's own colour, which varies only after mixing.
     fn own(&self, dab: &Dab) -> Color {
         if tint::varies(&self.brush) { self.color } else { dab.color }
     }
+
     fn limits(&self) -> &CanvasPart {
         self.part.as_ref().unwrap_or(&CanvasPart::Whole)
     }
+
     /// The part of a tile that a dab covers; `None` if it covers nothing.
-    fn touch(&self, placed: &PlacedDab, at: TileAt, scratch: &mut DabScratch, scene: &Scene) -> Option<TileDab> {
+    fn touch(
+        &self,
+        placed: &PlacedDab,
+        at: TileAt,
+        scratch: &mut DabScratch,
+        scene: &Scene,
+    ) -> Option<TileDab> {
         let selected = match &self.selection {
             None => None,
             Some(selection) => Some(selection.tile(at)?),
@@ -209,7 +264,8 @@ impl RetouchStroke {
             stroke_tile.select(&selected);
         }
         let mut coverage = Box::new(*stroke_tile.coverage()?);
-        let opaque = if self.brush.mode == BrushMode::Paint { f32::from(self.color.a) / 255.0 } else { 1.0 };
+        let opaque =
+            if self.brush.mode == BrushMode::Paint { f32::from(self.color.a) / 255.0 } else { 1.0 };
         let opacity = self.brush.opacity.max(0.0).min(1.0) * opaque;
         let (tile, part) = (at.rect(), self.limits());
         let mut area = Rect::EMPTY;
@@ -232,7 +288,8 @@ impl TileDab {
     }
 }
 
-/// Moves the covered pixels of a tile toward new colours, one for each pixel of the touched area, row by row.
+/// Moves the covered pixels of a tile toward new colours, one for each pixel of the touched area,
+/// row by row.
 fn mix(tile: &mut PlanarTile, touch: &TileDab, colors: &[[f32; 4]], keeps_alpha: bool) {
     let (corner, area) = (touch.at.rect(), touch.area);
     for (y, colors) in (area.y0..area.y1).zip(colors.chunks_exact(area.width())) {
@@ -245,7 +302,8 @@ fn mix(tile: &mut PlanarTile, touch: &TileDab, colors: &[[f32; 4]], keeps_alpha:
     }
 }
 
-/// A premultiplied pixel moved by a ratio toward a colour; if it keeps its alpha, only hue and brightness change.
+/// A premultiplied pixel moved by a ratio toward a colour; if it keeps its alpha, only hue and
+/// brightness change.
 fn toward(pixel: [f32; 4], color: [f32; 4], share: f32, keeps_alpha: bool) -> [f32; 4] {
     let mixed: [f32; 4] = std::array::from_fn(|c| pixel[c] + (color[c] - pixel[c]) * share);
     if !keeps_alpha {
@@ -257,5 +315,6 @@ fn toward(pixel: [f32; 4], color: [f32; 4], share: f32, keeps_alpha: bool) -> [f
 }
 
 fn put(row: &mut PixelRow, x: usize, pixel: [f32; 4]) {
-    (row.rgb[0][x], row.rgb[1][x], row.rgb[2][x], row.a[x]) = (pixel[0], pixel[1], pixel[2], pixel[3]);
+    (row.rgb[0][x], row.rgb[1][x], row.rgb[2][x], row.a[x]) =
+        (pixel[0], pixel[1], pixel[2], pixel[3]);
 }

@@ -1,13 +1,15 @@
-//! The rim of a stroke: the share of a pixel that its dabs may reach. Floor 3. Pure functions. Not here: a dab's own
-//! profile (`profile`), how shares add up (`stroke_tile`).
+//! The rim of a stroke: the share of a pixel that its dabs may reach. Floor 3. Pure functions. Not
+//! here: a dab's own profile (`profile`), how shares add up (`stroke_tile`).
 //!
-//! Dabs follow each other closely and their rims fall on the same pixels. If each covered a share of such a pixel at
-//! random, a dozen of them would fill it, and lines would be wider by most of a pixel on either side: much in a thin
-//! line, half as much in the same line drawn twice as large. But what one dab leaves bare, the next one leaves bare
-//! too. So a pixel on the rim has two parts: one that the stroke's dabs reach, and one that none reaches.
+//! Dabs follow each other closely and their rims fall on the same pixels. If each covered a share
+//! of such a pixel at random, a dozen of them would fill it, and lines would be wider by most of a
+//! pixel on either side: much in a thin line, half as much in the same line drawn twice as large.
+//! But what one dab leaves bare, the next one leaves bare too. So a pixel on the rim has two parts:
+//! one that the stroke's dabs reach, and one that none reaches.
 //!
-//! The edge between them follows from how dabs add up along a straight stroke: at the depth x inside the outer rim
-//! coverage reaches 1 − ∏ (1 − f P(r_i)). It counts as an edge as far as that rises within less than a pixel.
+//! The edge between them follows from how dabs add up along a straight stroke: at the depth x
+//! inside the outer rim coverage reaches 1 − ∏ (1 − f P(r_i)). It counts as an edge as far as that
+//! rises within less than a pixel.
 
 use super::brush::{Brush, Tip};
 use super::dynamics::Property;
@@ -28,12 +30,13 @@ pub struct Rim {
 impl Rim {
     /// No edge: dabs reach whole pixels.
     pub const SOFT: Rim = Rim { edge: 1.0, width: f32::INFINITY };
-    /// An edge counts fully up to a fifth of a pixel's width, and not at all from 1.2 on. This blend leaves the least
-    /// error (15 of 255 at most over tips of 2 to 64 px, 5 in the mean; without shares 170 and 99).
+    /// An edge counts fully up to a fifth of a pixel's width, and not at all from 1.2 on. This
+    /// blend leaves the least error (15 of 255 at most over tips of 2 to 64 px, 5 in the mean;
+    /// without shares 170 and 99).
     const SHARP: f32 = 1.2;
 
-    /// The share of a pixel that the stroke may reach, in `[0, 1]`. `r`: distance from the centre, `width`: the
-    /// pixel's along the radius; in radii.
+    /// The share of a pixel that the stroke may reach, in `[0, 1]`. `r`: distance from the centre,
+    /// `width`: the pixel's along the radius; in radii.
     #[inline(always)]
     pub fn share(self, r: f32, width: f32) -> f32 {
         let unit = |v: f32| {
@@ -43,18 +46,24 @@ impl Rim {
         let sharp = unit(Self::SHARP - self.width / width);
         1.0 - sharp * (1.0 - unit((self.edge - r) / width + 0.5))
     }
+
     /// Nothing within this distance is on an edge, for pixels no wider than `width` radii.
     #[inline(always)]
     pub fn inner(self, width: f32) -> f32 {
         if self.width < Self::SHARP * width { self.edge } else { f32::INFINITY }
     }
+
     /// For pixels narrower than this, in radii, the share is 1 everywhere.
     pub fn soft_below(self) -> f32 {
         self.width / Self::SHARP
     }
+
     fn between(self, to: Rim, s: f32) -> Rim {
         // Never a mean with an infinite width: that is no edge.
-        Rim { edge: self.edge + (to.edge - self.edge) * s, width: self.width + (to.width - self.width) * s }
+        Rim {
+            edge: self.edge + (to.edge - self.edge) * s,
+            width: self.width + (to.width - self.width) * s,
+        }
     }
 }
 
@@ -62,7 +71,8 @@ impl Rim {
 pub struct RimTable([Rim; STEPS + 1]);
 
 const STEPS: usize = 10;
-/// Depths at which coverage is computed, denser toward the rim, and positions along a stroke that are added up.
+/// Depths at which coverage is computed, denser toward the rim, and positions along a stroke that
+/// are added up.
 const DEPTHS: usize = 40;
 const PLACES: usize = 12;
 /// Ratios of the coverage in the middle of the stroke that count as begun, halfway and done.
@@ -73,8 +83,9 @@ const KEPT: usize = 64;
 static MADE: Mutex<Vec<([u32; 4], Arc<RimTable>)>> = Mutex::new(Vec::new());
 
 impl RimTable {
-    /// `None` if the dabs of a stroke do not end along one line: scattered dabs, pictures, profiles of other programs
-    /// (which then paint as they do there), and dabs that work on paint one by one.
+    /// `None` if the dabs of a stroke do not end along one line: scattered dabs, pictures, profiles
+    /// of other programs (which then paint as they do there), and dabs that work on paint one by
+    /// one.
     pub fn of(brush: &Brush) -> Option<Arc<Self>> {
         let is_square = match brush.tip {
             Tip::Round | Tip::Ellipse { .. } | Tip::Bristles(_) | Tip::Noise(_) => false,
@@ -82,9 +93,15 @@ impl RimTable {
             Tip::Picture(_) | Tip::Hose(_) => return None,
         };
         let strays = [brush.scatter, brush.size_jitter, brush.offset.amount, brush.hand.tremor];
-        let driven =
-            [Property::Hardness, Property::Softness, Property::Scatter, Property::SizeJitter, Property::Offset];
-        let ends_elsewhere = strays.iter().any(|&v| v != 0.0) || driven.iter().any(|&p| brush.dynamics.drive(p));
+        let driven = [
+            Property::Hardness,
+            Property::Softness,
+            Property::Scatter,
+            Property::SizeJitter,
+            Property::Offset,
+        ];
+        let ends_elsewhere =
+            strays.iter().any(|&v| v != 0.0) || driven.iter().any(|&p| brush.dynamics.drive(p));
         if ends_elsewhere || brush.falloff != Falloff::Smooth || brush.is_wet() {
             return None;
         }
@@ -93,8 +110,11 @@ impl RimTable {
         let step = (2.0 * brush.spacing).max(0.02).min(4.0);
         let (hardness, softness) = (unit(brush.hardness), unit(brush.softness));
         let key = [u32::from(is_square), hardness.to_bits(), softness.to_bits(), step.to_bits()];
-        Some(made_once(&MADE, KEPT, key, || Self::made(is_square, RoundProfile::new(hardness, softness), step)))
+        Some(made_once(&MADE, KEPT, key, || {
+            Self::made(is_square, RoundProfile::new(hardness, softness), step)
+        }))
     }
+
     /// `step`: between dabs, radii.
     fn made(is_square: bool, profile: RoundProfile, step: f32) -> Self {
         let outer = profile.outer_radius();
@@ -103,12 +123,17 @@ impl RimTable {
         // The dabs that cover a point at this depth: their coverage there, and their number.
         let over = |j: usize| {
             let across = outer - depth(j);
-            let along = if is_square { outer } else { (outer * outer - across * across).max(0.0).sqrt() };
+            let along =
+                if is_square { outer } else { (outer * outer - across * across).max(0.0).sqrt() };
             let at = |i: usize| {
                 let t = along * (i as f32 + 0.5) / PLACES as f32;
                 if is_square { coverage(across) * coverage(t) } else { coverage(across.hypot(t)) }
             };
-            (std::array::from_fn::<f32, PLACES, _>(at), coverage(across), 2.0 * along / (step * PLACES as f32))
+            (
+                std::array::from_fn::<f32, PLACES, _>(at),
+                coverage(across),
+                2.0 * along / (step * PLACES as f32),
+            )
         };
         let over: Vec<_> = (0..DEPTHS).map(over).collect();
         let of_flow = |flow: f32| {
@@ -122,13 +147,18 @@ impl RimTable {
             let [begun, half, done] = RISEN.map(|share| {
                 let j = risen.iter().position(|&v| v >= share * top).unwrap_or(DEPTHS - 1).max(1);
                 let (low, high) = (risen[j - 1], risen[j]);
-                let s = if high > low { ((share * top - low) / (high - low)).max(0.0).min(1.0) } else { 1.0 };
+                let s = if high > low {
+                    ((share * top - low) / (high - low)).max(0.0).min(1.0)
+                } else {
+                    1.0
+                };
                 depth(j - 1) + (depth(j) - depth(j - 1)) * s
             });
             Rim { edge: outer - half, width: (done - begun).max(0.0) }
         };
         Self(std::array::from_fn(|i| of_flow((i as f32 / STEPS as f32).max(0.02))))
     }
+
     /// The rim of dabs of this flow, in `[0, 1]`.
     pub fn at(&self, flow: f32) -> Rim {
         let place = flow.max(0.0).min(1.0) * STEPS as f32;
@@ -141,16 +171,21 @@ impl RimTable {
 mod tests {
     use super::*;
 
-    /// The true coverage of a pixel of a straight stroke along x, and the one computed with shares; 255 is full.
+    /// The true coverage of a pixel of a straight stroke along x, and the one computed with shares;
+    /// 255 is full.
     fn pixel(brush: &Brush, y: f32) -> (f32, f32) {
         let (radius, step) = (0.5 * brush.size, (brush.spacing * brush.size).max(0.1));
         let profile = RoundProfile::new(brush.hardness, brush.softness);
         let rim = RimTable::of(brush).unwrap().at(brush.flow);
-        let dabs = || (0..).map(|i| -radius - 2.0 + step * i as f32).take_while(|x| *x < radius + 2.0);
+        let dabs =
+            || (0..).map(|i| -radius - 2.0 + step * i as f32).take_while(|x| *x < radius + 2.0);
         const SIDE: usize = 16;
         let place = |i: usize| (i as f32 + 0.5) / SIDE as f32 - 0.5;
         let point = |(dx, dy): (f32, f32)| {
-            let left = |x: f32| 1.0 - brush.flow * profile.mean((x - dx).hypot(y + dy) / radius, 0.0).max(0.0).min(1.0);
+            let left = |x: f32| {
+                1.0 - brush.flow
+                    * profile.mean((x - dx).hypot(y + dy) / radius, 0.0).max(0.0).min(1.0)
+            };
             1.0 - dabs().map(left).product::<f32>()
         };
         let points = (0..SIDE * SIDE).map(|i| point((place(i % SIDE), place(i / SIDE))));
@@ -158,8 +193,15 @@ mod tests {
         let (mut a, mut reach) = (0.0, 0.0f32);
         for x in dabs() {
             let r = x.hypot(y) / radius;
-            let (mean, share) = (profile.mean(r, 1.0 / (radius * radius)), rim.share(r, 1.0 / radius));
-            crate::paint::stroke_tile::raise(&mut a, &mut reach, brush.flow * mean.min(share).max(0.0), share, 1.0);
+            let (mean, share) =
+                (profile.mean(r, 1.0 / (radius * radius)), rim.share(r, 1.0 / radius));
+            crate::paint::stroke_tile::raise(
+                &mut a,
+                &mut reach,
+                brush.flow * mean.min(share).max(0.0),
+                share,
+                1.0,
+            );
         }
         (255.0 * truth, 255.0 * a)
     }
@@ -188,7 +230,11 @@ mod tests {
         ] {
             for i in 0..160 {
                 let (truth, found) = pixel(&brush, brush.size * 0.5 - 2.0 + 0.025 * i as f32);
-                assert!((truth - found).abs() < 18.0, "{} px at {i}: {found}, not {truth}", brush.size);
+                assert!(
+                    (truth - found).abs() < 18.0,
+                    "{} px at {i}: {found}, not {truth}",
+                    brush.size
+                );
                 if truth > 0.5 && truth < 254.5 {
                     (sum, n) = (sum + (truth - found).abs(), n + 1);
                 }
@@ -196,15 +242,20 @@ mod tests {
         }
         assert!(sum / (n as f32) < 4.0, "mean {}", sum / n as f32);
     }
+
     #[test]
     fn soft_and_faint_dabs_reach_whole_pixels() {
         for (hardness, flow) in [(0.0, 1.0), (0.5, 0.5), (0.95, 0.1)] {
             let brush = Brush { size: 40.0, hardness, flow, ..Brush::default() };
             let rim = RimTable::of(&brush).unwrap().at(flow);
-            assert!((0..60).all(|i| rim.share(i as f32 * 0.02, 0.05) == 1.0), "{hardness} {flow}: {rim:?}");
+            assert!(
+                (0..60).all(|i| rim.share(i as f32 * 0.02, 0.05) == 1.0),
+                "{hardness} {flow}: {rim:?}"
+            );
         }
         assert_eq!((Rim::SOFT.share(0.99, 0.1), Rim::SOFT.share(f32::NAN, 0.0)), (1.0, 1.0));
     }
+
     #[test]
     fn what_strays_or_comes_from_elsewhere_has_no_edge() {
         let plain = Brush::default();

@@ -1,4 +1,5 @@
-//! The pen's samples, as strokes keep them. Floor 3. Not here: how a stroke follows from them (`dab_walker`).
+//! The pen's samples, as strokes keep them. Floor 3. Not here: how a stroke follows from them
+//! (`dab_walker`).
 
 use crate::math::{COORDINATE, Range, UNIT, Vec2, range, vec2};
 
@@ -26,8 +27,9 @@ impl Sample {
     pub const TILT: Range = -90.0..=90.0;
     /// Ten days.
     pub const TIME_SECS: Range = 0.0..=1e6;
-    /// The reading as a stroke keeps it: within what a document may hold, and on a grid finer than any pen reports
-    /// (1/256 px, 1/16384 of the pressure, 1/64°, 1/8192 s), so that a file stores each step in a byte or two.
+    /// The reading as a stroke keeps it: within what a document may hold, and on a grid finer than
+    /// any pen reports (1/256 px, 1/16384 of the pressure, 1/64°, 1/8192 s), so that a file stores
+    /// each step in a byte or two.
     pub fn settled(&self) -> Self {
         let on = |v: f32, per_unit: f32, range: &Range| {
             // As f64: every value in the range stays a whole number of steps.

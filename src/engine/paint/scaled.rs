@@ -1,19 +1,44 @@
-//! Brushes for a canvas of another size: scales all their lengths, and nothing else. Floor 3. Each type names all its
-//! fields here, so that a new one has to say whether it is a length.
+//! Brushes for a canvas of another size: scales all their lengths, and nothing else. Floor 3. Each
+//! type names all its fields here, so that a new one has to say whether it is a length.
 
 use super::brush::{Brush, Stabilizer};
 use super::grain::BrushGrain;
 use super::habits::Hand;
 
 impl Brush {
-    /// The same brush for a canvas `factor` times as large, `factor > 0` and finite: its strokes, their samples scaled
-    /// too, look the same there. Lengths in px are multiplied; ratios, angles, times and seeds do not change.
+    /// The same brush for a canvas `factor` times as large, `factor > 0` and finite: its strokes,
+    /// their samples scaled too, look the same there. Lengths in px are multiplied; ratios, angles,
+    /// times and seeds do not change.
     pub fn scaled(&self, factor: f32) -> Self {
         let Self {
-            size, hardness, opacity, flow, spacing, spacing_on, overlap, falloff, rate, rotation, facing, ..
+            size,
+            hardness,
+            opacity,
+            flow,
+            spacing,
+            spacing_on,
+            overlap,
+            falloff,
+            rate,
+            rotation,
+            facing,
+            ..
         } = *self;
-        let Self { softness, scatter, spread, size_jitter, offset, jitter, blend, erases, keeps_alpha, .. } = *self;
-        let Self { bounded, reach, mode, pickup, stabilizer, stabilizer_on, hand, cycle, seed, .. } = *self;
+        let Self {
+            softness,
+            scatter,
+            spread,
+            size_jitter,
+            offset,
+            jitter,
+            blend,
+            erases,
+            keeps_alpha,
+            ..
+        } = *self;
+        let Self {
+            bounded, reach, mode, pickup, stabilizer, stabilizer_on, hand, cycle, seed, ..
+        } = *self;
         Self {
             size: size * factor,
             hardness,
@@ -56,9 +81,13 @@ impl Stabilizer {
     pub fn scaled(self, factor: f32) -> Self {
         match self {
             Stabilizer::None => Stabilizer::None,
-            Stabilizer::String { length_px } => Stabilizer::String { length_px: length_px * factor },
+            Stabilizer::String { length_px } => {
+                Stabilizer::String { length_px: length_px * factor }
+            }
             // The same decay over a path that is this much longer.
-            Stabilizer::Average { weight } => Stabilizer::Average { weight: weight.max(0.0).powf(1.0 / factor) },
+            Stabilizer::Average { weight } => {
+                Stabilizer::Average { weight: weight.max(0.0).powf(1.0 / factor) }
+            }
             // Time is the same on every canvas.
             Stabilizer::Lag { secs } => Stabilizer::Lag { secs },
         }
@@ -68,7 +97,16 @@ impl Stabilizer {
 impl Hand {
     /// For a canvas `factor > 0` times as large.
     pub fn scaled(self, factor: f32) -> Self {
-        let Self { tremor, lag_dabs, lead_secs, direction_px, pace_secs, slow_pace_secs, pace_px, custom_dabs } = self;
+        let Self {
+            tremor,
+            lag_dabs,
+            lead_secs,
+            direction_px,
+            pace_secs,
+            slow_pace_secs,
+            pace_px,
+            custom_dabs,
+        } = self;
         Self {
             tremor,
             lag_dabs,

@@ -1,6 +1,7 @@
-//! Selections: which pixels marks may change, softly. Coverage, with what it was made of, so that a selection by
-//! surface is computed again when the surface changes. Floor 3. Coverage itself is `raster::coverage`, regions of a
-//! surface are `surface::region`. Not here: which selection a document has (`document`), how it is made (`tools`).
+//! Selections: which pixels marks may change, softly. Coverage, with what it was made of, so that a
+//! selection by surface is computed again when the surface changes. Floor 3. Coverage itself is
+//! `raster::coverage`, regions of a surface are `surface::region`. Not here: which selection a
+//! document has (`document`), how it is made (`tools`).
 
 use super::scene::Scene;
 use crate::math::{Range, Rect, Size, Vec2, vec2};
@@ -16,7 +17,8 @@ use std::sync::{Arc, Weak};
 pub struct Selection {
     /// How much of each pixel is selected.
     pub coverage: CoverageGrid,
-    /// The region of the surface that the coverage was found by; absent once the coverage was changed by hand.
+    /// The region of the surface that the coverage was found by; absent once the coverage was
+    /// changed by hand.
     pub made: Option<SurfaceRegion>,
     /// Where the region was found last; absent: the coverage was carried from elsewhere.
     found: Option<FoundOn>,
@@ -33,8 +35,10 @@ impl FoundOn {
     fn new(scene: &Scene) -> Self {
         Self { size: scene.size, surface: scene.surface.as_ref().map(Arc::downgrade) }
     }
+
     fn is_on(&self, scene: &Scene) -> bool {
-        let same = self.surface.as_ref().map(Weak::as_ptr) == scene.surface.as_ref().map(Arc::as_ptr);
+        let same =
+            self.surface.as_ref().map(Weak::as_ptr) == scene.surface.as_ref().map(Arc::as_ptr);
         self.size == scene.size && same
     }
 }
@@ -44,12 +48,14 @@ impl Selection {
     pub fn new(coverage: CoverageGrid) -> Self {
         Self { coverage, made: None, found: None }
     }
+
     /// Coverage that a region of the surface has for now, until it is found where it belongs.
     pub fn carried(coverage: CoverageGrid, made: Option<SurfaceRegion>) -> Self {
         Self { coverage, made, found: None }
     }
-    /// Everything that a region covers of a scene's surface; the whole canvas without a surface, as with masks that are
-    /// derived from a surface.
+
+    /// Everything that a region covers of a scene's surface; the whole canvas without a surface, as
+    /// with masks that are derived from a surface.
     pub fn of_region(region: SurfaceRegion, scene: &Scene) -> Self {
         let coverage = match &scene.surface {
             Some(surface) => CoverageGrid::clone(&surface.region(&region)),
@@ -57,19 +63,23 @@ impl Selection {
         };
         Self { coverage, made: Some(region), found: Some(FoundOn::new(scene)) }
     }
+
     /// The same on another surface; `None` if it follows no surface or was found on this one.
     pub fn found_on(&self, scene: &Scene) -> Option<Self> {
         let is_known = self.found.as_ref().is_some_and(|found| found.is_on(scene));
         self.made.filter(|_| !is_known).map(|region| Self::of_region(region, scene))
     }
+
     /// What of it lies in a rectangle.
     pub fn within(self, rect: Rect) -> Self {
         Self { coverage: self.coverage.within(rect), ..self }
     }
+
     /// Nothing is selected.
     pub fn is_empty(&self) -> bool {
         self.coverage.is_empty()
     }
+
     /// With the same region, or with the same coverage.
     pub fn is_same(&self, other: &Selection) -> bool {
         match (&self.made, &other.made) {
@@ -97,10 +107,13 @@ impl StrokeSelection {
     pub fn new(selection: Arc<Selection>) -> Self {
         Self { selection, moved: Vec2::ZERO }
     }
+
     pub fn moved(&self, by: Vec2) -> Self {
         Self { selection: self.selection.clone(), moved: self.moved + by }
     }
-    /// The coverage of a tile; `None` where nothing of it is selected. Between pixels it is interpolated.
+
+    /// The coverage of a tile; `None` where nothing of it is selected. Between pixels it is
+    /// interpolated.
     pub fn tile(&self, at: TileAt) -> Option<Arc<CoverageTile>> {
         let grid = &self.selection.coverage;
         if self.moved == Vec2::ZERO {
@@ -128,6 +141,7 @@ impl StrokeSelection {
         bytes.iter_mut().zip(sums).for_each(|(b, sum)| *b = (sum + 0.5) as u8);
         CoverageTile::new(bytes)
     }
+
     /// The coverage where the stroke is now.
     pub fn coverage(&self) -> CoverageGrid {
         if self.moved == Vec2::ZERO {
@@ -144,14 +158,19 @@ impl StrokeSelection {
         );
         CoverageGrid::gathered(to, |at| self.tile(at))
     }
+
     /// The same stroke, limited to this selection too.
     pub fn narrowed(&self, to: &CoverageGrid) -> Self {
         Self::new(Arc::new(Selection::new(self.coverage().combined(to, product))))
     }
+
     pub fn is_same(&self, other: &Self) -> bool {
         let same_place = self.moved == other.moved;
-        same_place && (Arc::ptr_eq(&self.selection, &other.selection) || self.selection.is_same(&other.selection))
+        same_place
+            && (Arc::ptr_eq(&self.selection, &other.selection)
+                || self.selection.is_same(&other.selection))
     }
+
     /// On a canvas of another size, with the selection scaled.
     pub fn scaled(&self, selection: Arc<Selection>, per_axis: Vec2) -> Self {
         Self { selection, moved: vec2(self.moved.x * per_axis.x, self.moved.y * per_axis.y) }
@@ -177,12 +196,16 @@ mod tests {
         let back = own.moved(vec2(12.0, -5.0)).moved(vec2(-12.0, 5.0));
         assert!(back.coverage().is_same(&selection.coverage));
         let half = own.moved(vec2(0.5, 0.0)).coverage();
-        let mean =
-            |x, y| (f32::from(own.selection.coverage.at(x, y)) + f32::from(own.selection.coverage.at(x - 1, y))) / 2.0;
+        let mean = |x, y| {
+            (f32::from(own.selection.coverage.at(x, y))
+                + f32::from(own.selection.coverage.at(x - 1, y)))
+                / 2.0
+        };
         for (x, y) in (18..115).flat_map(|x| (28..104).map(move |y| (x, y))) {
             assert!((f32::from(half.at(x, y)) - mean(x, y)).abs() <= 0.51, "{x}, {y}");
         }
     }
+
     #[test]
     fn a_region_without_a_surface_is_the_whole_canvas() {
         let scene = Scene { size: Size::new(100, 70), surface: None };

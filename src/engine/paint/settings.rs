@@ -1,5 +1,6 @@
-//! The numbers of a brush that a user sets: the range and field of each, and for habits the name and label, defined
-//! once for documents and for the window. Floor 3. Not here: what habits mean (`habits`).
+//! The numbers of a brush that a user sets: the range and field of each, and for habits the name
+//! and label, defined once for documents and for the window. Floor 3. Not here: what habits mean
+//! (`habits`).
 
 use super::brush::Brush;
 use crate::math::{Range, TURNS, UNIT, range::held};
@@ -25,9 +26,13 @@ impl BrushNumber {
             BrushNumber::Spacing => Brush::SPACING,
             BrushNumber::Rotation => TURNS,
             BrushNumber::Reach => Brush::REACHES,
-            BrushNumber::Hardness | BrushNumber::Opacity | BrushNumber::Flow | BrushNumber::Softness => UNIT,
+            BrushNumber::Hardness
+            | BrushNumber::Opacity
+            | BrushNumber::Flow
+            | BrushNumber::Softness => UNIT,
         }
     }
+
     /// Sets it, within its range.
     pub fn set(self, brush: &mut Brush, to: f32) {
         let field = match self {
@@ -62,10 +67,12 @@ impl Setting {
     pub fn of(&self, brush: &Brush) -> f32 {
         (self.get)(brush)
     }
+
     /// Within its range.
     pub fn set(&self, brush: &mut Brush, to: f32) {
         (self.set)(brush, held(to, &self.range));
     }
+
     pub fn default(&self) -> f32 {
         self.of(&Brush::default())
     }
@@ -145,17 +152,22 @@ mod tests {
             setting.set(&mut brush, to);
             assert_eq!(setting.of(&brush), to, "{}.{}", setting.group, setting.name);
             let others = SETTINGS.iter().enumerate().filter(|(j, _)| *j != i);
-            assert!(others.map(|(_, other)| other).all(|other| other.of(&brush) == other.default()));
+            assert!(
+                others.map(|(_, other)| other).all(|other| other.of(&brush) == other.default())
+            );
         }
     }
+
     #[test]
     fn defaults_lie_within_their_ranges_and_names_are_of_one_thing() {
         assert!(SETTINGS.iter().all(|setting| setting.range.contains(&setting.default())));
         assert!(SETTINGS.iter().all(|setting| GROUPS.contains(&setting.group)));
-        let names: BTreeSet<_> = SETTINGS.iter().map(|setting| (setting.group, setting.name)).collect();
+        let names: BTreeSet<_> =
+            SETTINGS.iter().map(|setting| (setting.group, setting.name)).collect();
         let labels: BTreeSet<_> = SETTINGS.iter().map(|setting| setting.label).collect();
         assert_eq!((names.len(), labels.len()), (SETTINGS.len(), SETTINGS.len()));
     }
+
     #[test]
     fn what_cannot_be_becomes_what_can() {
         let mut brush = Brush::default();

@@ -1,12 +1,13 @@
-//! Picture tips: a picture prepared as a stamp, blurred by its softness.
-//! Floor 3. Not here: placing a stamp (`dab`), reading pictures through a deformation (`raster::sampler`).
+//! Picture tips: a picture prepared as a stamp, blurred by its softness. Floor 3. Not here: placing
+//! a stamp (`dab`), reading pictures through a deformation (`raster::sampler`).
 
 use crate::math::Size;
 use crate::raster::texture::MipLevel;
 use crate::raster::{Picture, Texture, blur};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// A tip as it is sampled. Its picture covers the square of the dab's diameter; softness makes it larger.
+/// A tip as it is sampled. Its picture covers the square of the dab's diameter; softness makes it
+/// larger.
 pub struct TipStamp {
     texture: Texture,
     /// Whether it has its own colours; otherwise only its alpha counts.
@@ -24,7 +25,8 @@ pub struct StampCache {
 
 /// Cached stamps of one picture: the steps of a brush whose softness varies, and a few others.
 const KEPT: usize = STEPS as usize + 8;
-/// Softnesses in between are mixed from the two nearest of these steps; the difference to the true blur is invisible.
+/// Softnesses in between are mixed from the two nearest of these steps; the difference to the true
+/// blur is invisible.
 pub(in crate::paint) const STEPS: u32 = 12;
 
 impl StampCache {
@@ -32,11 +34,14 @@ impl StampCache {
     pub fn grains(&self) -> &Mutex<Vec<([u32; 2], Arc<Texture>)>> {
         &self.grains
     }
+
     /// The stamp of the picture, by its texture, with a softness in `[0, 1]`.
     pub fn stamp(&self, texture: &Texture, softness: f32) -> Arc<TipStamp> {
         let lock = || self.made.lock().unwrap_or_else(PoisonError::into_inner);
         let key = softness.to_bits();
-        let find = |made: &[(u32, Arc<TipStamp>)]| made.iter().find(|(k, _)| *k == key).map(|(_, s)| s.clone());
+        let find = |made: &[(u32, Arc<TipStamp>)]| {
+            made.iter().find(|(k, _)| *k == key).map(|(_, s)| s.clone())
+        };
         if let Some(stamp) = find(&lock()) {
             return stamp;
         }
@@ -51,9 +56,11 @@ impl StampCache {
     }
 }
 
-/// Standard deviation of the blur at softness 1, in radii: that of the round tip's two kernels together.
+/// Standard deviation of the blur at softness 1, in radii: that of the round tip's two kernels
+/// together.
 const SIGMA_RATIO: f32 = 0.35;
-/// A blur of this many texels is smooth when magnified; a wider one is made at a coarser level, at the same cost.
+/// A blur of this many texels is smooth when magnified; a wider one is made at a coarser level, at
+/// the same cost.
 const SIGMA_TEXELS: f32 = 8.0;
 
 impl TipStamp {
@@ -70,8 +77,13 @@ impl TipStamp {
             level = coarser;
         }
         let texels_per_radius = 0.5 * level.size.longer_side();
-        Self { texture: Texture::new(&softened(level, is_colored, sigma)), is_colored, texels_per_radius }
+        Self {
+            texture: Texture::new(&softened(level, is_colored, sigma)),
+            is_colored,
+            texels_per_radius,
+        }
     }
+
     pub fn texture(&self) -> &Texture {
         &self.texture
     }
@@ -105,7 +117,12 @@ fn softened(level: &MipLevel, is_colored: bool, sigma: f32) -> Picture {
 /// A transparent picture instead of one that cannot be made: nothing is painted.
 fn transparent() -> Picture {
     let texels: Arc<[[u8; 4]]> = Arc::new([[0; 4]]);
-    Picture { size: Size::new(1, 1), texels: crate::raster::picture::Texels::Srgb8(texels), deep: None, encoded: None }
+    Picture {
+        size: Size::new(1, 1),
+        texels: crate::raster::picture::Texels::Srgb8(texels),
+        deep: None,
+        encoded: None,
+    }
 }
 
 #[cfg(test)]
@@ -114,18 +131,30 @@ mod tests {
     use crate::paint::{Adjust, PictureSource};
 
     fn source(size: Size, texel: impl Fn(u32, u32) -> [u8; 4]) -> PictureSource {
-        let texels = (0..size.height).flat_map(|y| (0..size.width).map(move |x| (x, y))).map(|(x, y)| texel(x, y));
-        PictureSource::new("tip.png".into(), Picture::srgb8(size, texels.collect()).unwrap(), Adjust::default())
+        let texels = (0..size.height)
+            .flat_map(|y| (0..size.width).map(move |x| (x, y)))
+            .map(|(x, y)| texel(x, y));
+        PictureSource::new(
+            "tip.png".into(),
+            Picture::srgb8(size, texels.collect()).unwrap(),
+            Adjust::default(),
+        )
     }
 
     #[test]
     fn an_opaque_grey_picture_is_coverage_and_any_other_a_coloured_stamp() {
-        let grey = source(Size::new(8, 4), |x, _| [x as u8 * 30, x as u8 * 30, x as u8 * 30, 255]).stamp(0.0);
+        let grey = source(Size::new(8, 4), |x, _| [x as u8 * 30, x as u8 * 30, x as u8 * 30, 255])
+            .stamp(0.0);
         assert!(!grey.is_colored);
-        assert_eq!(grey.texture().levels()[0].texels[3], [90; 4], "premultiplied white of alpha 90");
+        assert_eq!(
+            grey.texture().levels()[0].texels[3],
+            [90; 4],
+            "premultiplied white of alpha 90"
+        );
         assert!(source(Size::new(8, 4), |_, _| [1, 2, 3, 255]).stamp(0.0).is_colored);
         assert!(source(Size::new(8, 4), |x, _| [9, 9, 9, x as u8]).stamp(0.0).is_colored);
     }
+
     #[test]
     fn softness_keeps_what_a_stamp_covers_and_costs_no_more_the_larger_the_tip() {
         for side in [64, 1024] {
@@ -143,6 +172,7 @@ mod tests {
             assert!((covered(1.0) / hard - 1.0).abs() < 0.01);
         }
     }
+
     #[test]
     fn strokes_of_one_brush_share_their_stamp() {
         let tip = source(Size::new(8, 8), |_, _| [255; 4]);

@@ -1,5 +1,5 @@
-//! The brush tool: a stroke is a list of dabs, each a footprint bent around its own centre (SF sec. 5.2, fig. 7).
-//! Floor 3. Not here: dabs from samples (`dab_walker`), one dab on a tile (`dab`).
+//! The brush tool: a stroke is a list of dabs, each a footprint bent around its own centre (SF sec.
+//! 5.2, fig. 7). Floor 3. Not here: dabs from samples (`dab_walker`), one dab on a tile (`dab`).
 
 mod active;
 pub(super) mod dabs;
@@ -24,8 +24,8 @@ use crate::surface::objects::CanvasPart;
 use dabs::{StrokeDabs, TileReach};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// One stroke of a stroke layer. It is never changed, so the tiles it touches are cached with it, and so are its dabs
-/// as long as those of all strokes stay below a ceiling.
+/// One stroke of a stroke layer. It is never changed, so the tiles it touches are cached with it,
+/// and so are its dabs as long as those of all strokes stay below a ceiling.
 #[derive(Clone)]
 pub struct Stroke {
     brush: Brush,
@@ -52,55 +52,73 @@ impl Stroke {
     /// The most samples of a stroke: over an hour of a pen that is read 240 times a second.
     pub const MOST_SAMPLES: usize = 1_000_000;
 
-    /// The stroke of a brush along the samples of a pen, each dab bent by an operator around its own centre.
+    /// The stroke of a brush along the samples of a pen, each dab bent by an operator around its
+    /// own centre.
     pub fn new(brush: Brush, operator: Operator, color: Color, samples: Vec<Sample>) -> Self {
         Self { brush, operator, color, samples, selection: None, home: None, found: Arc::default() }
     }
+
     /// The same stroke within a selection, or within none.
     pub fn within(self, selection: Option<StrokeSelection>) -> Self {
         Self { selection, ..self }
     }
+
     /// The same stroke with the same appearance, on another home.
     pub fn on(self, home: Option<Arc<StrokeHome>>) -> Self {
         Self { home, ..self }
     }
+
     /// A copy on a home in another position.
     pub fn moved_home(&self, home: Arc<StrokeHome>) -> Self {
         Self { home: Some(home), ..self.clone() }
     }
+
     /// Its own home, if that differs from its layer's.
     pub fn home(&self) -> Option<&Arc<StrokeHome>> {
         self.home.as_ref()
     }
+
     /// The brush that it was painted with.
     pub fn brush(&self) -> &Brush {
         &self.brush
     }
+
     /// How its dabs are bent.
     pub fn operator(&self) -> Operator {
         self.operator
     }
+
     /// The colour of one-colour tips; for a stamp only its alpha counts.
     pub fn color(&self) -> Color {
         self.color
     }
+
     /// The path of the pen.
     pub fn samples(&self) -> &[Sample] {
         &self.samples
     }
+
     /// The selection that it was painted in.
     pub fn selection(&self) -> Option<&StrokeSelection> {
         self.selection.as_ref()
     }
+
     /// The pixels that the stroke can touch on a canvas, in whole tiles; never fewer.
     pub fn bounds(&self, scene: &Scene) -> Rect {
-        let known = self.found().bounds.as_ref().filter(|(on, _)| on.is_same(scene)).map(|(_, bounds)| *bounds);
+        let known = self
+            .found()
+            .bounds
+            .as_ref()
+            .filter(|(on, _)| on.is_same(scene))
+            .map(|(_, bounds)| *bounds);
         known.unwrap_or_else(|| self.support(scene).bounds()).intersect(scene.size.rect())
     }
+
     /// Whether the stroke may paint on a tile.
     pub fn touches(&self, scene: &Scene, at: TileAt) -> bool {
         self.support(scene).touches(at)
     }
+
     /// The tiles of a canvas that the stroke touches, computed once.
     fn support(&self, scene: &Scene) -> Arc<TileReach> {
         if let Some(support) = self.known_support(scene) {
@@ -109,6 +127,7 @@ impl Stroke {
         let stroke_dabs = self.stroke_dabs(scene);
         self.known_support(scene).unwrap_or_else(|| Arc::new(stroke_dabs.support()))
     }
+
     /// The stroke's dabs on a canvas, computed again if they were not cached.
     fn stroke_dabs(&self, scene: &Scene) -> Arc<StrokeDabs> {
         if let Some((stroke_dabs, _)) =
@@ -121,10 +140,12 @@ impl Stroke {
         self.found().keep(&stroke_dabs);
         stroke_dabs
     }
+
     /// Where it lies, if that is known already.
     fn known_support(&self, scene: &Scene) -> Option<Arc<TileReach>> {
         self.found().support.clone().filter(|support| support.is_on(scene))
     }
+
     /// Roughly the most dabs it can have, without placing them: at the densest possible spacing.
     fn most_dabs(&self, scene: &Scene) -> usize {
         if let Some(support) = self.known_support(scene) {
@@ -132,14 +153,16 @@ impl Stroke {
         }
         let ways = self.samples.windows(2).map(|pair| pair[0].at.distance(pair[1].at));
         let way_px: f32 = ways.filter(|way| way.is_finite()).sum();
-        let secs =
-            self.samples.last().map_or(0.0, |last| last.time_secs) - self.samples.first().map_or(0.0, |s| s.time_secs);
+        let secs = self.samples.last().map_or(0.0, |last| last.time_secs)
+            - self.samples.first().map_or(0.0, |s| s.time_secs);
         dab_walker::most_dabs(&self.brush, way_px, secs)
     }
+
     /// Whether its dabs on a canvas are cached.
     fn is_laid(&self, scene: &Scene) -> bool {
         self.found().stroke_dabs.as_ref().is_some_and(|(stroke_dabs, _)| stroke_dabs.is_on(scene))
     }
+
     fn found(&self) -> MutexGuard<'_, StrokeCache> {
         self.found.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -151,12 +174,14 @@ impl StrokeCache {
         // Releases what it held before it reserves again.
         self.stroke_dabs = None;
         self.support = Some(Arc::new(stroke_dabs.support()));
-        self.stroke_dabs = DABS.reserve(stroke_dabs.bytes()).map(|kept| (stroke_dabs.clone(), kept));
+        self.stroke_dabs =
+            DABS.reserve(stroke_dabs.bytes()).map(|kept| (stroke_dabs.clone(), kept));
     }
 }
 
 impl Stroke {
-    /// Paints the stroke with the given dabs over a tile. Flow applies per dab; opacity caps the whole stroke.
+    /// Paints the stroke with the given dabs over a tile. Flow applies per dab; opacity caps the
+    /// whole stroke.
     fn paint(
         &self,
         stroke_dabs: &StrokeDabs,
@@ -188,7 +213,8 @@ impl Stroke {
                 // Which dabs are near is known for the canvas only.
                 let front = scene.front();
                 for dab in stroke_dabs.on_tile(at) {
-                    let near = sheet.blocks_under(at, &stroke_dabs.place(*dab, &front).support().blocks(at));
+                    let near = sheet
+                        .blocks_under(at, &stroke_dabs.place(*dab, &front).support().blocks(at));
                     let Some(blocks) = near else { continue };
                     let placed = stroke_dabs.place(*dab, scene).on_blocks(blocks);
                     stroke_dabs.add(&placed, at, &mut stroke_tile, scratch);
@@ -198,11 +224,13 @@ impl Stroke {
         }
         stroke_tile.blend_over(pixels, at, self.manner());
     }
+
     /// The part of the canvas that the stroke may touch.
     fn part(&self, scene: &Scene) -> CanvasPart {
         let start = self.samples.first().map_or(Vec2::ZERO, |sample| sample.at);
         self.brush.bounded.from(scene.surface.as_ref(), start)
     }
+
     fn manner(&self) -> StrokeBlend {
         StrokeBlend::of(&self.brush, self.color)
     }
@@ -221,7 +249,9 @@ pub fn render_pixels(strokes: &[Arc<Stroke>], scene: &Scene, at: TileAt) -> Opti
     let mut here = strokes.iter().filter(|s| s.touches(&front, at)).peekable();
     here.peek()?;
     let (mut pixels, mut scratch) = (PlanarTile::transparent(), DabScratch::default());
-    here.for_each(|stroke| stroke.paint(&stroke.stroke_dabs(&front), scene, at, &mut pixels, &mut scratch));
+    here.for_each(|stroke| {
+        stroke.paint(&stroke.stroke_dabs(&front), scene, at, &mut pixels, &mut scratch)
+    });
     Some(pixels)
 }
 

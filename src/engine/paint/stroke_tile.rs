@@ -1,5 +1,5 @@
-//! What one stroke has painted on one tile: its dabs accumulate in f32 before the opacity caps them and the result is
-//! blended with the layer. Floor 3.
+//! What one stroke has painted on one tile: its dabs accumulate in f32 before the opacity caps them
+//! and the result is blended with the layer. Floor 3.
 
 mod rows;
 
@@ -9,10 +9,14 @@ use super::brush::Brush;
 use super::grain::GrainTile;
 use crate::math::srgb::Color;
 use crate::raster::tile::TILE_AREA;
-use crate::raster::{BlendMode, CoverageTile, Mix, PlanarTile, TILE, TileAt, TileCoverage, TilePaint};
+use crate::raster::{
+    BlendMode, CoverageTile, Mix, PlanarTile, TILE, TileAt, TileCoverage, TilePaint,
+};
 use crate::surface::contours::{SheetOf, place_of};
 use crate::surface::objects::CanvasPart;
-use rows::{add_alpha, add_colors, add_covered, add_stamped, keep, lay_colors, lay_coverage, take_out_row};
+use rows::{
+    add_alpha, add_colors, add_covered, add_stamped, keep, lay_colors, lay_coverage, take_out_row,
+};
 use std::sync::Arc;
 
 /// The accumulated paint of a stroke on a tile.
@@ -86,27 +90,34 @@ impl PaintSheet {
     fn new(paint: Paint) -> Self {
         Self { paint, reach: Box::new([0.0; TILE_AREA]) }
     }
+
     fn cover(&mut self, start: usize, row: CoveredRow, paint: DabPaint) {
         let n = row.coverage.len();
         let Some(reach) = self.reach.get_mut(start..start + n) else { return };
         match &mut self.paint {
-            Paint::OneColor(coverage) => add_covered(row, paint, &mut coverage[start..start + n], reach),
+            Paint::OneColor(coverage) => {
+                add_covered(row, paint, &mut coverage[start..start + n], reach)
+            }
             Paint::Colors(tile) => {
                 if let Some(pixels) = tile.rows_mut().get_mut(start / TILE) {
                     let [r, g, b, _] = paint.color.unwrap_or(Color::BLACK).to_f32();
-                    let source = |i: usize| (row.coverage[i] * paint.flow, [r, g, b], row.shares[i]);
+                    let source =
+                        |i: usize| (row.coverage[i] * paint.flow, [r, g, b], row.shares[i]);
                     add_colors(source, paint.ceiling, start % TILE, pixels, reach);
                 }
             }
         }
     }
+
     fn stamp(&mut self, start: usize, stamped: &[[u8; 4]], paint: DabPaint) {
         let (n, flow) = (stamped.len(), paint.flow / 255.0);
         let Some(reach) = self.reach.get_mut(start..start + n) else { return };
         // Pictures have rims of their own: they reach whole pixels.
         reach.iter_mut().zip(stamped).filter(|(_, s)| s[3] > 0).for_each(|(reach, _)| *reach = 1.0);
         match &mut self.paint {
-            Paint::OneColor(coverage) => add_alpha(stamped, flow, paint.ceiling, &mut coverage[start..start + n]),
+            Paint::OneColor(coverage) => {
+                add_alpha(stamped, flow, paint.ceiling, &mut coverage[start..start + n])
+            }
             Paint::Colors(tile) => {
                 let Some(row) = tile.rows_mut().get_mut(start / TILE) else { return };
                 match paint.color.map(Color::to_f32) {
@@ -119,12 +130,16 @@ impl PaintSheet {
             }
         }
     }
+
     fn planes(&mut self) -> Vec<&mut [f32]> {
         match &mut self.paint {
             Paint::OneColor(coverage) => vec![&mut coverage[..]],
             Paint::Colors(tile) => {
                 let rows = tile.rows_mut().iter_mut();
-                rows.flat_map(|row| row.rgb.iter_mut().chain([&mut row.a]).map(|plane| &mut plane[..])).collect()
+                rows.flat_map(|row| {
+                    row.rgb.iter_mut().chain([&mut row.a]).map(|plane| &mut plane[..])
+                })
+                .collect()
             }
         }
     }
@@ -134,23 +149,30 @@ impl StrokeTile {
     pub fn one_color() -> Self {
         Self::of(Paint::OneColor(Box::new([0.0; TILE_AREA])))
     }
+
     pub fn colors() -> Self {
         Self::of(Paint::Colors(PlanarTile::transparent()))
     }
+
     fn of(paint: Paint) -> Self {
         Self { grain: None, sheet: PaintSheet::new(paint), dark: None }
     }
+
     /// The same, empty, under grain.
     pub fn under(self, grain: Arc<GrainTile>) -> Self {
         Self { grain: Some(grain), dark: Some(self.sheet.clone()), ..self }
     }
+
     /// Coverage and reach of every pixel, row by row, for a tile of one colour without grain.
     pub fn plain(&mut self) -> Option<(&mut [f32; TILE_AREA], &mut [f32; TILE_AREA])> {
         match &mut self.sheet.paint {
-            Paint::OneColor(coverage) if self.grain.is_none() => Some((coverage, &mut self.sheet.reach)),
+            Paint::OneColor(coverage) if self.grain.is_none() => {
+                Some((coverage, &mut self.sheet.reach))
+            }
             _ => None,
         }
     }
+
     /// Coverage of every pixel, row by row, if it has one colour.
     pub fn coverage(&mut self) -> Option<&mut [f32; TILE_AREA]> {
         self.join();
@@ -159,18 +181,25 @@ impl StrokeTile {
             Paint::Colors(_) => None,
         }
     }
+
     /// Merges the two parts of each pixel: nothing more can be painted.
     fn join(&mut self) {
         let Some((grain, mut dark)) = self.grain.take().zip(self.dark.take()) else { return };
         let is_one_color = matches!(self.sheet.paint, Paint::OneColor(_));
         for (i, (light, dark)) in self.sheet.planes().into_iter().zip(dark.planes()).enumerate() {
             // Four planes a row for a tile of colours, one plane for a tile of one colour.
-            let shares = if is_one_color { &grain.share[..] } else { &grain.share[i / 4 * TILE..][..TILE] };
-            light.iter_mut().zip(dark).zip(shares).for_each(|((a, b), share)| *a = *b + (*a - *b) * share);
+            let shares =
+                if is_one_color { &grain.share[..] } else { &grain.share[i / 4 * TILE..][..TILE] };
+            light
+                .iter_mut()
+                .zip(dark)
+                .zip(shares)
+                .for_each(|((a, b), share)| *a = *b + (*a - *b) * share);
         }
     }
-    /// Adds one colour to a row from the `start`th pixel on, as far as each is covered, up to the ceiling: see
-    /// [`raise`].
+
+    /// Adds one colour to a row from the `start`th pixel on, as far as each is covered, up to the
+    /// ceiling: see [`raise`].
     pub fn cover(&mut self, start: usize, row: CoveredRow, paint: DabPaint) {
         let Some((grain, dark)) = self.grain.as_deref().zip(self.dark.as_mut()) else {
             return self.sheet.cover(start, row, paint);
@@ -179,10 +208,16 @@ impl StrokeTile {
         for (sheet, factors) in [(&mut self.sheet, &grain.light), (dark, &grain.dark)] {
             let left = part.iter_mut().zip(row.coverage).zip(&factors[start..]);
             left.for_each(|((part, covered), factor)| *part = covered * factor);
-            sheet.cover(start, CoveredRow { coverage: &part[..row.coverage.len().min(TILE)], ..row }, paint);
+            sheet.cover(
+                start,
+                CoveredRow { coverage: &part[..row.coverage.len().min(TILE)], ..row },
+                paint,
+            );
         }
     }
-    /// Adds a row of a stamp, premultiplied bytes, from the `start`th pixel on, as [`StrokeTile::cover`] does.
+
+    /// Adds a row of a stamp, premultiplied bytes, from the `start`th pixel on, as
+    /// [`StrokeTile::cover`] does.
     pub fn stamp(&mut self, start: usize, stamped: &[[u8; 4]], paint: DabPaint) {
         let Some((grain, dark)) = self.grain.as_deref().zip(self.dark.as_mut()) else {
             return self.sheet.stamp(start, stamped, paint);
@@ -195,6 +230,7 @@ impl StrokeTile {
             sheet.stamp(start, &part[..stamped.len().min(TILE)], paint);
         }
     }
+
     /// Removes what lies outside a part of the canvas; nothing more can be painted.
     pub fn limit_to(&mut self, part: &CanvasPart, at: TileAt) {
         if part.is_whole() {
@@ -208,9 +244,16 @@ impl StrokeTile {
             }
         }
     }
-    /// The same on what represents a tile on a sheet: there the other population's piece of surface counts. `selected`:
-    /// for the tile.
-    pub fn limit_on_sheet(&mut self, part: &CanvasPart, selected: Option<&CoverageTile>, sheet: &SheetOf, at: TileAt) {
+
+    /// The same on what represents a tile on a sheet: there the other population's piece of surface
+    /// counts. `selected`: for the tile.
+    pub fn limit_on_sheet(
+        &mut self,
+        part: &CanvasPart,
+        selected: Option<&CoverageTile>,
+        sheet: &SheetOf,
+        at: TileAt,
+    ) {
         let Some(contours) = sheet.contours().on(at) else { return };
         let corner = at.rect();
         for (i, pixel) in contours.pixels[..contours.seen].iter().enumerate() {
@@ -223,6 +266,7 @@ impl StrokeTile {
             }
         }
     }
+
     fn lower(&mut self, (x, y): (usize, usize), share: f32) {
         match &mut self.sheet.paint {
             Paint::OneColor(coverage) => coverage[y * TILE + x] *= share,
@@ -232,6 +276,7 @@ impl StrokeTile {
             }
         }
     }
+
     /// Keeps the selected share of each pixel; nothing more can be painted.
     pub fn select(&mut self, selected: &CoverageTile) {
         if selected.is_whole() {
@@ -241,7 +286,12 @@ impl StrokeTile {
         let shares = selected.bytes().as_chunks::<TILE>().0;
         match &mut self.sheet.paint {
             Paint::OneColor(coverage) => {
-                coverage.as_chunks_mut::<TILE>().0.iter_mut().zip(shares).for_each(|(row, shares)| keep(shares, row));
+                coverage
+                    .as_chunks_mut::<TILE>()
+                    .0
+                    .iter_mut()
+                    .zip(shares)
+                    .for_each(|(row, shares)| keep(shares, row));
             }
             Paint::Colors(tile) => {
                 for (row, shares) in tile.rows_mut().iter_mut().zip(shares) {
@@ -250,6 +300,7 @@ impl StrokeTile {
             }
         }
     }
+
     /// Blends the finished paint with the pixels of a tile.
     pub fn blend_over(mut self, pixels: &mut PlanarTile, at: TileAt, manner: StrokeBlend) {
         self.join();
@@ -267,12 +318,14 @@ impl StrokeTile {
             pixels.blend(mix, TilePaint::Planar(&paint), &TileCoverage::FULL);
         }
     }
+
     /// Source over. For stamps only the colour's alpha counts.
     fn blend_over_normal(&self, pixels: &mut PlanarTile, color: Color, opacity: f32) {
         match &self.sheet.paint {
             Paint::OneColor(coverage) => {
                 let color = color.premultiplied().map(|c| c * opacity);
-                for (coverage, row) in coverage.as_chunks::<TILE>().0.iter().zip(pixels.rows_mut()) {
+                for (coverage, row) in coverage.as_chunks::<TILE>().0.iter().zip(pixels.rows_mut())
+                {
                     lay_coverage(coverage, color, row);
                 }
             }
@@ -284,11 +337,13 @@ impl StrokeTile {
             }
         }
     }
+
     /// Destination out.
     fn erase_from(&self, pixels: &mut PlanarTile, opacity: f32) {
         match &self.sheet.paint {
             Paint::OneColor(coverage) => {
-                for (coverage, row) in coverage.as_chunks::<TILE>().0.iter().zip(pixels.rows_mut()) {
+                for (coverage, row) in coverage.as_chunks::<TILE>().0.iter().zip(pixels.rows_mut())
+                {
                     take_out_row(coverage, opacity, row);
                 }
             }

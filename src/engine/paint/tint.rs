@@ -1,5 +1,5 @@
-//! The colour of one dab: the stroke's, turned round the wheel and jittered (HSV of the encoded values).
-//! Floor 3.
+//! The colour of one dab: the stroke's, turned round the wheel and jittered (HSV of the encoded
+//! values). Floor 3.
 
 use super::brush::Brush;
 use super::dynamics::{DabInputs, Dynamics, Property};
@@ -22,11 +22,17 @@ pub fn of(brush: &Brush, color: Color, inputs: &DabInputs) -> Color {
     let either_way = |channel: u32| 2.0 * hash::unit(inputs.seed, channel, 2) - 1.0;
     let (jitter, dynamics) = (brush.jitter, &brush.dynamics);
     let [h, s, v] = hsv(color);
-    let turns = dynamics.turns(Property::Hue, inputs) + unit(jitter.hue_degrees / 180.0) * 0.5 * either_way(0);
-    let s = dynamics.value(Property::Saturation, s, inputs) + unit(jitter.saturation) * either_way(1);
+    let turns = dynamics.turns(Property::Hue, inputs)
+        + unit(jitter.hue_degrees / 180.0) * 0.5 * either_way(0);
+    let s =
+        dynamics.value(Property::Saturation, s, inputs) + unit(jitter.saturation) * either_way(1);
     let v = dynamics.value(Property::Value, v, inputs) + unit(jitter.value) * either_way(2);
     let [h, s, v] = [h + turns, unit(s), unit(v)];
-    let lit = if dynamics.drive(Property::Lightness) { lightened([h, s, v], dynamics, inputs) } else { [h, s, v] };
+    let lit = if dynamics.drive(Property::Lightness) {
+        lightened([h, s, v], dynamics, inputs)
+    } else {
+        [h, s, v]
+    };
     let [r, g, b] = rgb(lit).map(quantise);
     Color { r, g, b, ..color }
 }
@@ -82,34 +88,50 @@ mod tests {
             assert_eq!([r, g, b], [color.r, color.g, color.b], "{text}");
         }
     }
+
     #[test]
     fn a_third_of_a_turn_makes_red_green() {
         let third = Curve::through(vec![crate::math::vec2(0.0, 1.0 / 3.0)]).unwrap();
-        let brush =
-            Brush { dynamics: Dynamics::none().with(Property::Hue, Input::Pressure, third), ..Brush::default() };
+        let brush = Brush {
+            dynamics: Dynamics::none().with(Property::Hue, Input::Pressure, third),
+            ..Brush::default()
+        };
         let red = Color::parse("#ff000080").unwrap();
         assert_eq!(of(&brush, red, &DabInputs::default()).to_string(), "#00ff0080");
     }
+
     #[test]
     fn jitter_stays_within_its_bounds_and_reaches_far_into_them() {
-        let brush =
-            Brush { jitter: ColorJitter { hue_degrees: 36.0, saturation: 0.2, value: 0.1 }, ..Brush::default() };
+        let brush = Brush {
+            jitter: ColorJitter { hue_degrees: 36.0, saturation: 0.2, value: 0.1 },
+            ..Brush::default()
+        };
         let color = Color::parse("#804040").unwrap();
-        let all: Vec<[f32; 3]> =
-            (0..500).map(|seed| hsv(of(&brush, color, &DabInputs { seed, ..DabInputs::default() }))).collect();
+        let all: Vec<[f32; 3]> = (0..500)
+            .map(|seed| hsv(of(&brush, color, &DabInputs { seed, ..DabInputs::default() })))
+            .collect();
         for (c, (middle, reach)) in [(0.0, 0.1), (0.5, 0.2), (0.502, 0.1)].into_iter().enumerate() {
-            let from_middle = |v: &[f32; 3]| if c == 0 { (v[0] + 0.5) % 1.0 - 0.5 } else { v[c] - middle };
+            let from_middle =
+                |v: &[f32; 3]| if c == 0 { (v[0] + 0.5) % 1.0 - 0.5 } else { v[c] - middle };
             let farthest = all.iter().map(|v| from_middle(v).abs()).fold(0.0, f32::max);
-            assert!(farthest > 0.9 * reach && farthest < 1.05 * reach + 0.01, "channel {c}: {farthest}");
+            assert!(
+                farthest > 0.9 * reach && farthest < 1.05 * reach + 0.01,
+                "channel {c}: {farthest}"
+            );
         }
     }
+
     #[test]
     fn lightness_goes_to_white_and_black_by_way_of_the_colour() {
         let lit = |by: f32| {
             let added = Curve::added(vec![vec2(0.0, by)]).unwrap();
             let dynamics = Dynamics::none().with(Property::Lightness, Input::Pressure, added);
-            of(&Brush { dynamics, ..Brush::default() }, Color::parse("#ff0000").unwrap(), &DabInputs::default())
-                .to_string()
+            of(
+                &Brush { dynamics, ..Brush::default() },
+                Color::parse("#ff0000").unwrap(),
+                &DabInputs::default(),
+            )
+            .to_string()
         };
         assert_eq!([0.5, 0.25, -0.25, -0.5].map(lit), ["#ffffff", "#ff8080", "#800000", "#000000"]);
         let grey = Curve::added(vec![vec2(0.0, 0.2)]).unwrap();

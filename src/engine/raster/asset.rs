@@ -12,10 +12,12 @@ impl Asset {
     pub fn bytes(&self) -> &[u8] {
         &self.0
     }
+
     /// Where the bytes are in memory: no two live assets share it.
     pub fn address(&self) -> usize {
         self.0.as_ptr() as usize
     }
+
     /// Both are the same bytes in memory.
     pub fn ptr_eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)

@@ -6,7 +6,8 @@ use super::TILE;
 /// One bit per pixel: rows of a tile, the leftmost pixel in the lowest bit.
 pub type TileBits = [u64; TILE];
 
-/// A row of bits as bytes, 1 where a bit is set; eight at a time: a product puts each bit into a byte of its own.
+/// A row of bits as bytes, 1 where a bit is set; eight at a time: a product puts each bit into a
+/// byte of its own.
 pub fn bytes_of(bits: u64) -> [u8; TILE] {
     let mut bytes = [0; TILE];
     for (eight, bits) in bytes.as_chunks_mut::<8>().0.iter_mut().zip(bits.to_le_bytes()) {

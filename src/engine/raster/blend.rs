@@ -1,6 +1,7 @@
-//! Blend modes: how a layer's colour meets the colour below it (W3C Compositing and Blending Level 1, and what painting
-//! programs have in addition). Floor 1. `modes` is the table: a mode is one row of it, one formula of `spec` and one
-//! picture of `tests/goldens`. `spec` reads like the specification; `rows` is fast.
+//! Blend modes: how a layer's colour meets the colour below it (W3C Compositing and Blending Level
+//! 1, and what painting programs have in addition). Floor 1. `modes` is the table: a mode is one
+//! row of it, one formula of `spec` and one picture of `tests/goldens`. `spec` reads like the
+//! specification; `rows` is fast.
 
 mod bright;
 mod modes;
@@ -51,7 +52,8 @@ impl<'a> TilePaint<'a> {
     }
 }
 
-/// How much of the paint arrives at each pixel of a tile: an opacity times the mask, if there is one.
+/// How much of the paint arrives at each pixel of a tile: an opacity times the mask, if there is
+/// one.
 #[derive(Clone, Debug)]
 pub struct TileCoverage {
     opacity: f32,
@@ -66,7 +68,9 @@ impl TileCoverage {
     pub fn uniform(opacity: f32) -> Self {
         Self { opacity: opacity.max(0.0).min(1.0), mask: None }
     }
-    /// Multiplies by a value for each pixel of the tile, row by row; each is clamped to `[0, 1]`, NaN is 0.
+
+    /// Multiplies by a value for each pixel of the tile, row by row; each is clamped to `[0, 1]`,
+    /// NaN is 0.
     pub fn times(mut self, value: impl Fn(usize, usize) -> f32) -> Self {
         let mask = self.mask.get_or_insert_with(|| vec![1.0; TILE_AREA].into_boxed_slice());
         for (i, m) in mask.iter_mut().enumerate() {
@@ -74,6 +78,7 @@ impl TileCoverage {
         }
         self
     }
+
     /// Multiplies by one value for each pixel of some rows; each is clamped to `[0, 1]`, NaN is 0.
     pub fn times_values(mut self, values: Vec<f32>) -> Self {
         let values = values.into_iter().map(|v| v.max(0.0).min(1.0));
@@ -83,26 +88,32 @@ impl TileCoverage {
         });
         self
     }
+
     /// Without the opacity: the mask alone.
     pub fn mask_only(&self) -> Self {
         Self { opacity: 1.0, mask: self.mask.clone() }
     }
+
     /// Without the mask: the opacity alone.
     pub fn opacity_only(&self) -> Self {
         Self { opacity: self.opacity, mask: None }
     }
+
     /// Nothing arrives anywhere.
     pub fn is_none(&self) -> bool {
         self.opacity <= 0.0 || self.mask.as_ref().is_some_and(|mask| mask.iter().all(|&m| m <= 0.0))
     }
+
     /// Everything arrives everywhere.
     pub fn is_full(&self) -> bool {
         self.opacity >= 1.0 && self.mask.as_ref().is_none_or(|mask| mask.iter().all(|&m| m >= 1.0))
     }
+
     #[inline(always)]
     fn opacity(&self) -> f32 {
         self.opacity
     }
+
     #[inline(always)]
     fn mask(&self) -> Option<&[f32]> {
         self.mask.as_deref()
@@ -118,11 +129,15 @@ impl PlanarTile {
         }
         pixels
     }
-    /// Blends paint into the tile. It gives no NaN: paint is finite, and coverage in `[0, 1]`, by construction.
+
+    /// Blends paint into the tile. It gives no NaN: paint is finite, and coverage in `[0, 1]`, by
+    /// construction.
     pub fn blend(&mut self, mix: Mix, paint: TilePaint<'_>, coverage: &TileCoverage) {
-        let paint = if let TilePaint::Solid(color) = paint { TilePaint::Solid(sane(color)) } else { paint };
+        let paint =
+            if let TilePaint::Solid(color) = paint { TilePaint::Solid(sane(color)) } else { paint };
         rows::blend_rows(self.rows_mut(), mix, &paint, coverage);
     }
+
     /// Moves the tile toward another by a coverage: none leaves it, full replaces it.
     pub fn mix_toward(&mut self, other: &PlanarTile, coverage: &TileCoverage) {
         rows::mix_rows(self.rows_mut(), other.rows(), coverage);

@@ -1,5 +1,6 @@
-//! Gaussian blur of any width: exact taps for narrow ones, a recursive filter whose cost does not grow for wide ones.
-//! Floor 1. Not here: the blur of normals along a surface, which stops at depth jumps (`surface::curvature`).
+//! Gaussian blur of any width: exact taps for narrow ones, a recursive filter whose cost does not
+//! grow for wide ones. Floor 1. Not here: the blur of normals along a surface, which stops at depth
+//! jumps (`surface::curvature`).
 
 use super::Plane;
 use crate::math::Size;
@@ -14,15 +15,16 @@ enum BlurBorder {
     Nothing,
 }
 
-/// Blurs a map; its border value is repeated beyond the border. `sigma_px`: standard deviation; 0 and below change
-/// nothing.
+/// Blurs a map; its border value is repeated beyond the border. `sigma_px`: standard deviation; 0
+/// and below change nothing.
 pub fn gaussian(plane: &Plane<f32>, sigma_px: f32) -> Plane<f32> {
     let (pixels, _) = plane.values().as_chunks::<1>();
     let blurred = gaussian_pixels(plane.size(), pixels, sigma_px);
     Plane::from_values(plane.size(), blurred.into_flattened()).expect("one value per pixel")
 }
 
-/// Blurs the values under a mask without mixing in what is outside: Σ w·m·v / Σ w·m, and 0 where the mask is far away.
+/// Blurs the values under a mask without mixing in what is outside: Σ w·m·v / Σ w·m, and 0 where
+/// the mask is far away.
 ///
 /// `mask`: weights in `[0, 1]`, of the map's size (what they do not share counts as outside).
 pub fn gaussian_masked(plane: &Plane<f32>, mask: &Plane<f32>, sigma_px: f32) -> Plane<f32> {
@@ -38,32 +40,59 @@ pub fn gaussian_masked(plane: &Plane<f32>, mask: &Plane<f32>, sigma_px: f32) -> 
     Plane::from_values(plane.size(), values).expect("one value per pixel")
 }
 
-/// Blurs pixels of `N` values each (RGBA: premultiplied), row by row; the border pixel is repeated beyond the border.
+/// Blurs pixels of `N` values each (RGBA: premultiplied), row by row; the border pixel is repeated
+/// beyond the border.
 ///
-/// Returns the pixels unchanged if `sigma_px` is not above 0 or `pixels` are not one per pixel of `size`.
-pub fn gaussian_pixels<const N: usize>(size: Size, pixels: &[[f32; N]], sigma_px: f32) -> Vec<[f32; N]> {
+/// Returns the pixels unchanged if `sigma_px` is not above 0 or `pixels` are not one per pixel of
+/// `size`.
+pub fn gaussian_pixels<const N: usize>(
+    size: Size,
+    pixels: &[[f32; N]],
+    sigma_px: f32,
+) -> Vec<[f32; N]> {
     blurred(size, pixels, sigma_px, BlurBorder::Border)
 }
 
-/// Blurs pixels by a Gaussian of a variance, px²; beyond the border there is nothing, so that sums lose weight: a
-/// weight among the values gives it back. Returns them unchanged as [`gaussian_pixels`] does.
-pub fn spread_pixels<const N: usize>(size: Size, pixels: &[[f32; N]], variance: f32) -> Vec<[f32; N]> {
-    /// Narrower Gaussians are too narrow to be sampled: three pixels of the same variance replace them.
+/// Blurs pixels by a Gaussian of a variance, px²; beyond the border there is nothing, so that sums
+/// lose weight: a weight among the values gives it back. Returns them unchanged as
+/// [`gaussian_pixels`] does.
+pub fn spread_pixels<const N: usize>(
+    size: Size,
+    pixels: &[[f32; N]],
+    variance: f32,
+) -> Vec<[f32; N]> {
+    /// Narrower Gaussians are too narrow to be sampled: three pixels of the same variance replace
+    /// them.
     const SAMPLED: f32 = 0.64;
     if variance > 0.0 && variance < SAMPLED && pixels.len() == size.area() && N > 0 {
-        return passed(size, pixels, &Gaussian::Taps(vec![1.0 - variance, 0.5 * variance]), BlurBorder::Nothing);
+        return passed(
+            size,
+            pixels,
+            &Gaussian::Taps(vec![1.0 - variance, 0.5 * variance]),
+            BlurBorder::Nothing,
+        );
     }
     blurred(size, pixels, variance.max(0.0).sqrt(), BlurBorder::Nothing)
 }
 
-fn blurred<const N: usize>(size: Size, pixels: &[[f32; N]], sigma_px: f32, beyond: BlurBorder) -> Vec<[f32; N]> {
+fn blurred<const N: usize>(
+    size: Size,
+    pixels: &[[f32; N]],
+    sigma_px: f32,
+    beyond: BlurBorder,
+) -> Vec<[f32; N]> {
     if sigma_px.is_nan() || sigma_px <= 0.0 || pixels.len() != size.area() || N == 0 {
         return pixels.to_vec();
     }
     passed(size, pixels, &Gaussian::new(sigma_px.min(4.0 * size.longer_side().max(1.0))), beyond)
 }
 
-fn passed<const N: usize>(size: Size, pixels: &[[f32; N]], filter: &Gaussian, beyond: BlurBorder) -> Vec<[f32; N]> {
+fn passed<const N: usize>(
+    size: Size,
+    pixels: &[[f32; N]],
+    filter: &Gaussian,
+    beyond: BlurBorder,
+) -> Vec<[f32; N]> {
     let (w, h) = (size.width as usize, size.height as usize);
     // Each pass blurs down the columns and transposes the result.
     let sideways = down_columns(pixels, w, h, filter, beyond);
@@ -86,7 +115,8 @@ fn down_columns<const N: usize>(
 ) -> Vec<[f32; N]> {
     let mut out = vec![[0.0; N]; pixels.len()];
     let across = (LANES / N).max(1);
-    let blur_strip = |(strip, result): &mut (ColumnStrip, ColumnStrip), (i, out): (usize, &mut [[f32; N]])| {
+    let blur_strip = |(strip, result): &mut (ColumnStrip, ColumnStrip),
+                      (i, out): (usize, &mut [[f32; N]])| {
         let columns = i * across..(i * across + across).min(width);
         for lanes in (0..N * columns.len()).step_by(LANES) {
             let lanes = lanes..(lanes + LANES).min(N * columns.len());
@@ -106,10 +136,13 @@ fn down_columns<const N: usize>(
             }
         }
     };
-    // This runs on one thread: a worker that waited for others could be given a tile that waits for this same blur.
+    // This runs on one thread: a worker that waited for others could be given a tile that waits for
+    // this same blur.
     if rayon::current_thread_index().is_some() {
         let mut buffers = (ColumnStrip::new(), ColumnStrip::new());
-        out.chunks_mut(across * height).enumerate().for_each(|strip| blur_strip(&mut buffers, strip));
+        out.chunks_mut(across * height)
+            .enumerate()
+            .for_each(|strip| blur_strip(&mut buffers, strip));
     } else {
         let strips = out.par_chunks_mut(across * height).enumerate();
         strips.for_each_init(|| (ColumnStrip::new(), ColumnStrip::new()), blur_strip);
@@ -125,8 +158,8 @@ enum Gaussian {
     Poles([GaussianPole; 2]),
 }
 
-/// One term of Deriche's fourth-order approximation of a Gaussian (INRIA report 1893, 1993): Re(a pⁿ) at distance n, a
-/// and p complex.
+/// One term of Deriche's fourth-order approximation of a Gaussian (INRIA report 1893, 1993): Re(a
+/// pⁿ) at distance n, a and p complex.
 ///
 /// Run as first-order recursions, each term keeps its accuracy in f32 however wide the Gaussian is.
 #[derive(Clone, Copy)]
@@ -142,11 +175,16 @@ impl Gaussian {
     const WIDEST_TAPS_PX: f32 = 4.0;
 
     fn new(sigma_px: f32) -> Self {
-        if sigma_px <= Self::WIDEST_TAPS_PX { Self::Taps(half_kernel(sigma_px)) } else { Self::poles(sigma_px) }
+        if sigma_px <= Self::WIDEST_TAPS_PX {
+            Self::Taps(half_kernel(sigma_px))
+        } else {
+            Self::poles(sigma_px)
+        }
     }
+
     fn poles(sigma_px: f32) -> Self {
-        // (1.68 cos(0.6318 t) + 3.735 sin(0.6318 t)) e^(−1.783 t) − (0.6803 cos(1.997 t) + 0.2598 sin(1.997 t))
-        // e^(−1.723 t)
+        // (1.68 cos(0.6318 t) + 3.735 sin(0.6318 t)) e^(−1.783 t) − (0.6803 cos(1.997 t) + 0.2598
+        // sin(1.997 t)) e^(−1.723 t)
         let terms = [((1.68, -3.735), (1.783, 0.6318)), ((-0.6803, 0.2598), (1.723, 1.997))];
         let poles = terms.map(|((re, im), (decay, frequency))| {
             let s = f64::from(sigma_px);
@@ -166,6 +204,7 @@ impl Gaussian {
             rest: narrow(rest),
         }))
     }
+
     /// Filters every lane of a strip; `out` gets as many rows.
     fn apply(&self, strip: &[[f32; LANES]], beyond: BlurBorder, out: &mut ColumnStrip) {
         out.clear();
@@ -177,11 +216,14 @@ impl Gaussian {
     }
 }
 
-/// The weights of a Gaussian at distances 0, 1, … up to four standard deviations (6e-5 of the weight lies beyond); with
-/// their mirror image they add up to 1. `sigma_px ≥ 0`; 0 gives the single weight 1.
+/// The weights of a Gaussian at distances 0, 1, … up to four standard deviations (6e-5 of the
+/// weight lies beyond); with their mirror image they add up to 1. `sigma_px ≥ 0`; 0 gives the
+/// single weight 1.
 pub fn half_kernel(sigma_px: f32) -> Vec<f32> {
     let radius = (4.0 * sigma_px).ceil() as usize;
-    let weight = |k: usize| if k == 0 { 1.0 } else { (-0.5 * (k as f64 / f64::from(sigma_px)).powi(2)).exp() };
+    let weight = |k: usize| {
+        if k == 0 { 1.0 } else { (-0.5 * (k as f64 / f64::from(sigma_px)).powi(2)).exp() }
+    };
     let sum: f64 = 1.0 + 2.0 * (1..=radius).map(weight).sum::<f64>();
     (0..=radius).map(|k| (weight(k) / sum) as f32).collect()
 }
@@ -223,7 +265,8 @@ crate::widest! {
         let mut up = poles.map(|p| RecursionState::resting(p, last, beyond));
         for (line, out) in strip.iter().zip(out.iter_mut()).rev() {
             for (state, pole) in up.iter_mut().zip(poles) {
-                // s ← p s, then the pixel itself for those above: distance 0 was counted on the way down.
+                // s ← p s, then the pixel itself for those above: distance 0 was counted on the way
+                // down.
                 state.advance(pole);
                 state.add_to(pole, out);
                 state.add(line);
@@ -251,12 +294,14 @@ impl RecursionState {
         }
         Self { re, im }
     }
+
     #[inline(always)]
     fn add(&mut self, line: &[f32; LANES]) {
         for (re, v) in self.re.iter_mut().zip(line) {
             *re += v;
         }
     }
+
     #[inline(always)]
     fn advance(&mut self, pole: &GaussianPole) {
         for l in 0..LANES {
@@ -265,6 +310,7 @@ impl RecursionState {
             self.im[l] = pole.p.0 * im + pole.p.1 * re;
         }
     }
+
     #[inline(always)]
     fn add_to(&self, pole: &GaussianPole, out: &mut [f32; LANES]) {
         for ((out, re), im) in out.iter_mut().zip(&self.re).zip(&self.im) {

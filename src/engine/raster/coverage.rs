@@ -1,6 +1,6 @@
-//! Coverage in sparse tiles of one byte a pixel, cheap to clone and shared tile by tile: what a selection holds.
-//! Floor 1. `shapes` draws exact coverage, `edges` moves and softens its edges, `contour` finds its outline. Not here:
-//! what a selection was made of (`paint::selection`).
+//! Coverage in sparse tiles of one byte a pixel, cheap to clone and shared tile by tile: what a
+//! selection holds. Floor 1. `shapes` draws exact coverage, `edges` moves and softens its edges,
+//! `contour` finds its outline. Not here: what a selection was made of (`paint::selection`).
 
 pub mod contour;
 pub mod edges;
@@ -24,7 +24,8 @@ pub struct CoverageTile {
 pub type CoverageGrid = Grid<CoverageTile>;
 
 impl CoverageTile {
-    /// A tile of coverage; `None` where nothing is covered. Wholly covered tiles are one and the same.
+    /// A tile of coverage; `None` where nothing is covered. Wholly covered tiles are one and the
+    /// same.
     pub fn new(bytes: Box<[u8; TILE_AREA]>) -> Option<Arc<Self>> {
         let (mut least, mut most) = (u8::MAX, 0);
         for &b in bytes.iter() {
@@ -36,11 +37,13 @@ impl CoverageTile {
             _ => Some(Arc::new(Self { bytes, is_whole: false })),
         }
     }
+
     /// Every pixel covered.
     pub fn whole() -> Arc<Self> {
         static WHOLE: OnceLock<Arc<CoverageTile>> = OnceLock::new();
         WHOLE.get_or_init(|| Arc::new(Self { bytes: blank(u8::MAX), is_whole: true })).clone()
     }
+
     /// From one bit per pixel, as floods give them.
     pub fn of_bits(bits: &TileBits) -> Option<Arc<Self>> {
         if bits.iter().all(|row| *row == u64::MAX) {
@@ -52,13 +55,16 @@ impl CoverageTile {
         }
         Self::new(bytes)
     }
+
     /// Bytes that it takes: none of its own if it is the shared, wholly covered tile.
     pub fn held_bytes(&self) -> u64 {
         if self.is_whole { 0 } else { TILE_AREA as u64 }
     }
+
     pub fn bytes(&self) -> &[u8; TILE_AREA] {
         &self.bytes
     }
+
     /// Every pixel is wholly covered.
     pub fn is_whole(&self) -> bool {
         self.is_whole
@@ -83,8 +89,8 @@ crate::named! {
 }
 
 impl SelectionMode {
-    /// For one pixel: the larger, what is left, the smaller. Adding or intersecting the same again changes nothing, and
-    /// subtracting the same leaves nothing, even at soft edges.
+    /// For one pixel: the larger, what is left, the smaller. Adding or intersecting the same again
+    /// changes nothing, and subtracting the same leaves nothing, even at soft edges.
     #[inline(always)]
     pub fn of(self, old: u8, new: u8) -> u8 {
         match self {
@@ -103,8 +109,8 @@ pub fn product(a: u8, b: u8) -> u8 {
 }
 
 impl Grid<CoverageTile> {
-    /// Computes the tiles of a rectangle, in parallel. `fill` gets a blank tile; what it writes beyond the rectangle
-    /// does not count.
+    /// Computes the tiles of a rectangle, in parallel. `fill` gets a blank tile; what it writes
+    /// beyond the rectangle does not count.
     pub fn from_tiles(rect: Rect, fill: impl Fn(TileAt, &mut [u8; TILE_AREA]) + Sync) -> Self {
         Self::gathered(rect, |at| {
             let mut bytes = blank(0);
@@ -113,6 +119,7 @@ impl Grid<CoverageTile> {
             CoverageTile::new(bytes)
         })
     }
+
     /// Computes the tiles that a rectangle touches, in parallel.
     pub fn gathered(rect: Rect, tile: impl Fn(TileAt) -> Option<Arc<CoverageTile>> + Sync) -> Self {
         let tiles: Vec<TileAt> = TileAt::covering(rect).collect();
@@ -123,6 +130,7 @@ impl Grid<CoverageTile> {
         }
         grid
     }
+
     /// Every pixel of a rectangle.
     pub fn filled(rect: Rect) -> Self {
         Self::gathered(rect, |at| {
@@ -134,6 +142,7 @@ impl Grid<CoverageTile> {
             CoverageTile::new(bytes)
         })
     }
+
     /// A map whose corner lies at a canvas pixel.
     pub fn from_plane(plane: &Plane<u8>, x: i32, y: i32) -> Self {
         let (width, height) = (plane.width() as i32, plane.height() as i32);
@@ -146,6 +155,7 @@ impl Grid<CoverageTile> {
             }
         })
     }
+
     /// The coverage of a rectangle as a map.
     pub fn to_plane(&self, rect: Rect) -> Plane<u8> {
         let mut plane = Plane::filled(Size::new(rect.width() as u32, rect.height() as u32), 0u8);
@@ -157,7 +167,9 @@ impl Grid<CoverageTile> {
         });
         plane
     }
-    /// Copies the coverage of a row of pixels from a canvas pixel on; pixels that no tile holds are left unchanged.
+
+    /// Copies the coverage of a row of pixels from a canvas pixel on; pixels that no tile holds are
+    /// left unchanged.
     pub fn copy_row(&self, x0: i32, y: i32, row: &mut [u8]) {
         let line = Rect::new(x0, y, x0.saturating_add(row.len() as i32), y.saturating_add(1));
         for at in TileAt::covering(line) {
@@ -167,33 +179,50 @@ impl Grid<CoverageTile> {
             row[(area.x0 - x0) as usize..][..area.width()].copy_from_slice(from);
         }
     }
+
     /// The coverage of a pixel.
     pub fn at(&self, x: i32, y: i32) -> u8 {
         let at = TileAt::of_pixel(x, y);
         self.tile(at).map_or(0, |tile| tile.bytes()[index(at.rect(), x, y)])
     }
+
     /// Nothing is covered.
     pub fn is_empty(&self) -> bool {
         self.iter().next().is_none()
     }
+
     /// The smallest rectangle that holds every pixel that is covered at all.
     pub fn covered(&self) -> Rect {
         self.iter().fold(Rect::EMPTY, |all, (at, tile)| {
             let rect = at.rect();
             // Tiles inside it need no scan.
-            if tile.is_whole() || all.intersect(rect) == rect { all.union(rect) } else { all.union(covered(at, tile)) }
+            if tile.is_whole() || all.intersect(rect) == rect {
+                all.union(rect)
+            } else {
+                all.union(covered(at, tile))
+            }
         })
     }
+
     /// The number of covered pixels, each weighted by its coverage.
     pub fn area_px(&self) -> f64 {
         let sum = |tile: &CoverageTile| tile.bytes().iter().map(|&b| u64::from(b)).sum::<u64>();
-        self.iter().map(|(_, tile)| if tile.is_whole() { TILE_AREA as f64 } else { sum(tile) as f64 / 255.0 }).sum()
+        self.iter()
+            .map(
+                |(_, tile)| {
+                    if tile.is_whole() { TILE_AREA as f64 } else { sum(tile) as f64 / 255.0 }
+                },
+            )
+            .sum()
     }
+
     /// Its bytes if nothing were shared. A wholly covered tile takes none.
     pub fn bytes(&self) -> usize {
         self.iter().filter(|(_, tile)| !tile.is_whole()).count() * (TILE_AREA + 64)
     }
-    /// Combines both by a rule for each pixel, over the tiles that either holds. `rule` of 0 and 0 must be 0.
+
+    /// Combines both by a rule for each pixel, over the tiles that either holds. `rule` of 0 and 0
+    /// must be 0.
     pub fn combined(&self, other: &Self, rule: impl Fn(u8, u8) -> u8 + Sync) -> Self {
         let rect = self.bounds().union(other.bounds());
         Self::gathered(rect, |at| {
@@ -210,7 +239,8 @@ impl Grid<CoverageTile> {
                 }
             }
             let none = blank(0);
-            let (a, b) = (a.map_or(&*none, |tile| tile.bytes()), b.map_or(&*none, |tile| tile.bytes()));
+            let (a, b) =
+                (a.map_or(&*none, |tile| tile.bytes()), b.map_or(&*none, |tile| tile.bytes()));
             let mut bytes = blank(0);
             for ((to, a), b) in bytes.iter_mut().zip(a).zip(b) {
                 *to = rule(*a, *b);
@@ -218,10 +248,12 @@ impl Grid<CoverageTile> {
             CoverageTile::new(bytes)
         })
     }
+
     /// The uncovered part of a rectangle; nothing beyond it.
     pub fn inverted(&self, rect: Rect) -> Self {
         Self::filled(rect).combined(self, |whole, own| whole.saturating_sub(own))
     }
+
     /// The part within a rectangle.
     pub fn within(&self, rect: Rect) -> Self {
         if self.bounds().intersect(rect) == self.bounds() {
@@ -229,6 +261,7 @@ impl Grid<CoverageTile> {
         }
         Self::filled(rect).combined(self, u8::min)
     }
+
     /// The same coverage elsewhere: moved by whole pixels, byte for byte.
     pub fn shifted(&self, dx: i32, dy: i32) -> Self {
         let b = self.bounds();
@@ -240,15 +273,18 @@ impl Grid<CoverageTile> {
             }
         })
     }
+
     /// Every pixel is covered alike in both.
     pub fn is_same(&self, other: &Self) -> bool {
         let holds = |a: &Self, b: &Self| {
             a.iter().all(|(at, tile)| {
-                b.tile(at).is_some_and(|other| Arc::ptr_eq(tile, other) || tile.bytes() == other.bytes())
+                b.tile(at)
+                    .is_some_and(|other| Arc::ptr_eq(tile, other) || tile.bytes() == other.bytes())
             })
         };
         self.ptr_eq(other) || holds(self, other) && holds(other, self)
     }
+
     /// How opaque the pixels of a paint layer are.
     pub fn of_alpha(pixels: &Grid<Tile>) -> Self {
         Self::gathered(pixels.bounds(), |at| {

@@ -1,5 +1,5 @@
-//! The distance of each pixel from the nearest marked one, up to a limit.
-//! Floor 1. Exact, between pixel centres (Meijster, Roerdink and Hesselink 2000: columns first, then along rows).
+//! The distance of each pixel from the nearest marked one, up to a limit. Floor 1. Exact, between
+//! pixel centres (Meijster, Roerdink and Hesselink 2000: columns first, then along rows).
 
 use super::Plane;
 use rayon::prelude::*;
@@ -7,7 +7,8 @@ use rayon::prelude::*;
 /// The farthest limit, px: its square fits the planes.
 pub const FARTHEST: u16 = 200;
 
-/// Squared distances to the nearest marked pixel (not 0), px²; `(limit + 1)²` where it is farther than `limit` px.
+/// Squared distances to the nearest marked pixel (not 0), px²; `(limit + 1)²` where it is farther
+/// than `limit` px.
 ///
 /// `limit`: at most [`FARTHEST`]; more counts as that. Nothing beyond the plane is marked.
 pub fn squared(marked: &Plane<u8>, limit: u16) -> Plane<u16> {
@@ -17,16 +18,19 @@ pub fn squared(marked: &Plane<u8>, limit: u16) -> Plane<u16> {
     let around = usize::from(limit);
     let band = (2 * around).max(LEAST_BAND);
     let mut out = Plane::filled(marked.size(), 0u16);
-    out.values_mut().par_chunks_mut(band * width).enumerate().for_each_init(Vec::new, |columns, (i, out)| {
-        let (first, rows) = (i * band, out.len() / width);
-        let from = first.saturating_sub(around);
-        let to = (first + rows + around).min(height);
-        along_columns(&marked.values()[from * width..to * width], width, limit + 1, columns);
-        let own = &columns[(first - from) * width..][..out.len()];
-        for (row, own) in out.chunks_exact_mut(width).zip(own.chunks_exact(width)) {
-            along_row(own, limit, row);
-        }
-    });
+    out.values_mut().par_chunks_mut(band * width).enumerate().for_each_init(
+        Vec::new,
+        |columns, (i, out)| {
+            let (first, rows) = (i * band, out.len() / width);
+            let from = first.saturating_sub(around);
+            let to = (first + rows + around).min(height);
+            along_columns(&marked.values()[from * width..to * width], width, limit + 1, columns);
+            let own = &columns[(first - from) * width..][..out.len()];
+            for (row, own) in out.chunks_exact_mut(width).zip(own.chunks_exact(width)) {
+                along_row(own, limit, row);
+            }
+        },
+    );
     out
 }
 
@@ -51,7 +55,8 @@ fn along_columns(marked: &[u8], width: usize, far: u16, columns: &mut Vec<u16>) 
 /// Squared distances along a row of distances along columns.
 fn along_row(columns: &[u16], limit: u16, row: &mut [u16]) {
     let far = limit + 1;
-    let (least, most) = columns.iter().fold((far, 0), |(least, most), &d| (least.min(d), most.max(d)));
+    let (least, most) =
+        columns.iter().fold((far, 0), |(least, most), &d| (least.min(d), most.max(d)));
     if least == far || most == 0 {
         return row.fill(least * least);
     }
@@ -72,6 +77,7 @@ crate::widest! {
             *d = (*d).min(b + 1).min(far);
         }
     }
+
     fn nearer(squares: &[u16], row: &mut [u16], more: u16) {
         for (d, s) in row.iter_mut().zip(squares) {
             *d = (*d).min(s.saturating_add(more));
@@ -89,17 +95,24 @@ mod tests {
         // Several bands.
         let size = Size::new(70, 145);
         for share in [0.0005, 0.05, 0.9] {
-            let marked = Plane::from_fn(size, |x, y| u8::from(hash::unit(7, x as u32, y as u32) < share));
+            let marked =
+                Plane::from_fn(size, |x, y| u8::from(hash::unit(7, x as u32, y as u32) < share));
             let found = squared(&marked, 12);
             let all = (0..145i32).flat_map(|y| (0..70i32).map(move |x| (x, y)));
-            let marks: Vec<(i32, i32)> = all.clone().filter(|&(x, y)| marked.at(x as usize, y as usize) != 0).collect();
+            let marks: Vec<(i32, i32)> =
+                all.clone().filter(|&(x, y)| marked.at(x as usize, y as usize) != 0).collect();
             for (x, y) in all {
-                let nearest = marks.iter().map(|m| (m.0 - x).pow(2) + (m.1 - y).pow(2)).min().unwrap_or(i32::MAX);
+                let nearest = marks
+                    .iter()
+                    .map(|m| (m.0 - x).pow(2) + (m.1 - y).pow(2))
+                    .min()
+                    .unwrap_or(i32::MAX);
                 let expected = if nearest <= 144 { nearest } else { 169 };
                 assert_eq!(i32::from(found.at(x as usize, y as usize)), expected, "({x}, {y})");
             }
         }
     }
+
     #[test]
     fn without_a_mark_everything_is_farther_than_the_limit() {
         let found = squared(&Plane::filled(Size::new(3, 2), 0), u16::MAX);

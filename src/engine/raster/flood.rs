@@ -1,6 +1,7 @@
-//! Floods: all pixels that are joined to one over their four neighbours, tile by tile, a row of a tile at a time.
-//! Floor 1. The caller says which pixels may be reached and which neighbours are joined; only tiles that are reached
-//! are requested. The result does not depend on the order in which pixels are found.
+//! Floods: all pixels that are joined to one over their four neighbours, tile by tile, a row of a
+//! tile at a time. Floor 1. The caller says which pixels may be reached and which neighbours are
+//! joined; only tiles that are reached are requested. The result does not depend on the order in
+//! which pixels are found.
 
 use super::bits::TileBits;
 use super::tile::{TILE, TileAt};
@@ -51,10 +52,15 @@ pub struct Flooded {
 
 impl Flooded {
     /// Everything that is joined to a pixel of the canvas.
-    pub fn from((x, y): (i32, i32), canvas: Size, opened: impl Fn(TileAt) -> OpenTile + Sync) -> Self {
+    pub fn from(
+        (x, y): (i32, i32),
+        canvas: Size,
+        opened: impl Fn(TileAt) -> OpenTile + Sync,
+    ) -> Self {
         let first = TileAt::of_pixel(x, y);
         let start = ((x - first.rect().x0) as usize, (y - first.rect().y0) as usize);
-        let (columns, rows) = (canvas.width.div_ceil(TILE as u32) as i32, canvas.height.div_ceil(TILE as u32) as i32);
+        let (columns, rows) =
+            (canvas.width.div_ceil(TILE as u32) as i32, canvas.height.div_ceil(TILE as u32) as i32);
         let index = |at: TileAt| {
             let is_there = (0..columns).contains(&at.col) && (0..rows).contains(&at.row);
             is_there.then(|| (at.row * columns + at.col) as usize)
@@ -69,8 +75,9 @@ impl Flooded {
             let spread: Vec<(TileAt, Box<FloodTile>, FloodEntry)> = taken
                 .into_par_iter()
                 .map(|(at, entry, reached)| {
-                    let mut reached =
-                        reached.unwrap_or_else(|| Box::new(FloodTile { may: opened(at), filled: [0; TILE] }));
+                    let mut reached = reached.unwrap_or_else(|| {
+                        Box::new(FloodTile { may: opened(at), filled: [0; TILE] })
+                    });
                     let before = reached.border();
                     reached.enter(entry);
                     let now = reached.border();
@@ -92,28 +99,39 @@ impl Flooded {
         }
         Self { tiles, columns, canvas }
     }
+
     /// The tiles that hold a pixel that was reached, row by row.
     pub fn tiles(&self) -> impl Iterator<Item = (TileAt, &TileBits)> {
         let place = |i: usize| TileAt::new(i as i32 % self.columns, i as i32 / self.columns);
-        let reached =
-            self.tiles.iter().enumerate().filter_map(move |(i, tile)| Some((place(i), &tile.as_ref()?.filled)));
+        let reached = self
+            .tiles
+            .iter()
+            .enumerate()
+            .filter_map(move |(i, tile)| Some((place(i), &tile.as_ref()?.filled)));
         reached.filter(|(_, bits)| bits.iter().any(|&row| row != 0))
     }
+
     /// The smallest rectangle of whole tiles that holds all pixels, on the canvas.
     pub fn rect(&self) -> Rect {
-        self.tiles().map(|(at, _)| at.rect()).fold(Rect::EMPTY, Rect::union).intersect(self.canvas.rect())
+        self.tiles()
+            .map(|(at, _)| at.rect())
+            .fold(Rect::EMPTY, Rect::union)
+            .intersect(self.canvas.rect())
     }
+
     /// The pixels as coverage, whole or none.
     pub fn coverage(&self) -> CoverageGrid {
         let mut grid = CoverageGrid::for_rect(self.rect());
         let tiles: Vec<_> = self.tiles().collect();
-        let made: Vec<_> = tiles.par_iter().map(|(at, bits)| (*at, CoverageTile::of_bits(bits))).collect();
+        let made: Vec<_> =
+            tiles.par_iter().map(|(at, bits)| (*at, CoverageTile::of_bits(bits))).collect();
         made.into_iter().for_each(|(at, tile)| grid.set(at, tile));
         grid
     }
 }
 
-/// Pixels that leave the tiles of a wave enter their neighbours: one entry per tile, in the order of the tiles.
+/// Pixels that leave the tiles of a wave enter their neighbours: one entry per tile, in the order
+/// of the tiles.
 fn next_wave(spread: &[(TileAt, Box<FloodTile>, FloodEntry)]) -> Vec<(TileAt, FloodEntry)> {
     let mut entries = std::collections::BTreeMap::<TileAt, FloodEntry>::new();
     for (at, _, left) in spread {
@@ -155,9 +173,10 @@ impl FloodTile {
         if let Some((x, y)) = entry.start {
             filled[y] |= 1 << x & self.may.open[y];
         }
-        // Rows that hold pixels which have not spread along them yet, one bit each: all others are as full as they get
-        // until something enters them.
-        let mut fresh = (0..TILE).fold(0u64, |rows, y| rows | u64::from(filled[y] != before[y]) << y);
+        // Rows that hold pixels which have not spread along them yet, one bit each: all others are
+        // as full as they get until something enters them.
+        let mut fresh =
+            (0..TILE).fold(0u64, |rows, y| rows | u64::from(filled[y] != before[y]) << y);
         let mut spread = |filled: &mut TileBits, y: usize, entering: u64| {
             let seeds = filled[y] | entering;
             if seeds == filled[y] && fresh >> y & 1 == 0 {
@@ -183,6 +202,7 @@ impl FloodTile {
             }
         }
     }
+
     fn border(&self) -> FloodEntry {
         let column = |x: usize| (0..TILE).fold(0, |bits, y| bits | (self.filled[y] >> x & 1) << y);
         FloodEntry {
@@ -198,7 +218,12 @@ impl OpenTile {
     fn joined(&self) -> JoinedSides {
         let both = |links: &TileBits| std::array::from_fn(|y| links[y] & self.open[y]);
         JoinedSides(self.links.as_ref().map(|links| {
-            [both(&links.from_left), both(&links.from_right), both(&links.from_above), both(&links.from_below)]
+            [
+                both(&links.from_left),
+                both(&links.from_right),
+                both(&links.from_above),
+                both(&links.from_below),
+            ]
         }))
     }
 }
@@ -212,8 +237,8 @@ impl JoinedSides {
     }
 }
 
-/// What seeds reach along a row: to the right over pixels that may be entered from the left, to the left over those
-/// that may be entered from the right; both by doubling steps.
+/// What seeds reach along a row: to the right over pixels that may be entered from the left, to the
+/// left over those that may be entered from the right; both by doubling steps.
 fn runs_of(from_left: u64, from_right: u64, seeds: u64) -> u64 {
     let (mut up, mut down) = (seeds, seeds);
     let (mut up_free, mut down_free) = (from_left, from_right);
@@ -241,11 +266,14 @@ mod tests {
         let inside = CANVAS.rect().contains(x, y);
         (inside && unit(0) < 0.8, unit(1) < 0.7, unit(2) < 0.7)
     }
+
     fn opened(seed: u32, at: TileAt) -> OpenTile {
         let bits = |is: &dyn Fn(i32, i32) -> bool| -> TileBits {
             let (x0, y0) = (at.rect().x0, at.rect().y0);
-            let row =
-                |y: usize| (0..TILE).fold(0u64, |bits, x| bits | u64::from(is(x0 + x as i32, y0 + y as i32)) << x);
+            let row = |y: usize| {
+                (0..TILE)
+                    .fold(0u64, |bits, x| bits | u64::from(is(x0 + x as i32, y0 + y as i32)) << x)
+            };
             std::array::from_fn(row)
         };
         OpenTile {
@@ -258,6 +286,7 @@ mod tests {
             })),
         }
     }
+
     /// The same, a pixel at a time.
     fn reference(seed: u32, start: (i32, i32)) -> BTreeSet<(i32, i32)> {
         let (mut found, mut ends) = (BTreeSet::new(), vec![start]);
@@ -283,8 +312,12 @@ mod tests {
             assert!((0..TILE).all(|x| u64::from(bytes[x]) == bits >> x & 1), "{bits:x}: {bytes:?}");
             assert_eq!(bits_of(&bytes), bits);
         }
-        assert_eq!((bytes_of(u64::MAX), bits_of(&[1; TILE]), bits_of(&[0; TILE])), ([1; TILE], u64::MAX, 0));
+        assert_eq!(
+            (bytes_of(u64::MAX), bits_of(&[1; TILE]), bits_of(&[0; TILE])),
+            ([1; TILE], u64::MAX, 0)
+        );
     }
+
     #[test]
     fn a_flood_crosses_neither_closed_pixels_nor_missing_links() {
         for seed in 0..8 {

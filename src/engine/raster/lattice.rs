@@ -1,8 +1,9 @@
-//! Displacements on a lattice: each point shows what would be seen a little away from it. Floor 1. Sparse, in blocks of
-//! a tile's size; a block in which nothing is displaced is not held, so that pixels there stay untouched.
+//! Displacements on a lattice: each point shows what would be seen a little away from it. Floor 1.
+//! Sparse, in blocks of a tile's size; a block in which nothing is displaced is not held, so that
+//! pixels there stay untouched.
 //!
-//! There is a node at every eighth pixel's upper left corner. A Catmull–Rom cubic passes through the nodes; it is
-//! smooth, and 0 where all surrounding nodes are.
+//! There is a node at every eighth pixel's upper left corner. A Catmull–Rom cubic passes through
+//! the nodes; it is smooth, and 0 where all surrounding nodes are.
 
 use super::grid::Grid;
 use super::tile::{TILE, TILE_AREA, TileAt};
@@ -37,7 +38,9 @@ pub struct Displaced {
 impl PartialEq for Lattice {
     fn eq(&self, other: &Self) -> bool {
         let holds = |a: &Self, b: &Self| {
-            a.blocks.iter().all(|(at, block)| b.blocks.tile(at).is_some_and(|o| Arc::ptr_eq(block, o) || block == o))
+            a.blocks.iter().all(|(at, block)| {
+                b.blocks.tile(at).is_some_and(|o| Arc::ptr_eq(block, o) || block == o)
+            })
         };
         self.blocks.ptr_eq(&other.blocks) || holds(self, other) && holds(other, self)
     }
@@ -60,10 +63,12 @@ impl Lattice {
     pub fn is_empty(&self) -> bool {
         self.blocks.iter().next().is_none()
     }
+
     /// The blocks that displace something, row by row.
     pub fn blocks(&self) -> impl Iterator<Item = (TileAt, &Arc<LatticeBlock>)> {
         self.blocks.iter()
     }
+
     /// Puts a block in place, rounded; one that displaces nothing is not held.
     pub fn set(&mut self, at: TileAt, mut block: LatticeBlock) {
         block.0.iter_mut().for_each(|u| *u = held(*u));
@@ -73,6 +78,7 @@ impl Lattice {
             _ => self.blocks.set(at, (!is_none).then(|| Arc::new(block))),
         }
     }
+
     /// At the node `(i, j)`, whose position is `8 (i, j)`.
     pub fn node(&self, i: i32, j: i32) -> Vec2 {
         let side = SIDE as i32;
@@ -80,13 +86,17 @@ impl Lattice {
         let place = (j.rem_euclid(side) * side + i.rem_euclid(side)) as usize;
         self.blocks.tile(at).map_or(Vec2::ZERO, |block| block.0[place])
     }
-    /// Changes every node of a rectangle of pixels: its new displacement is a function of its position and its old one.
+
+    /// Changes every node of a rectangle of pixels: its new displacement is a function of its
+    /// position and its old one.
     pub fn change(&mut self, rect: Rect, new: impl Fn(&Lattice, Vec2, Vec2) -> Vec2) {
         let old = self.clone();
         let cell = CELL as i32;
         for at in TileAt::covering(rect) {
             let corner = at.rect();
-            let place = |k: usize| ((corner.x0 + (k % SIDE) as i32 * cell), (corner.y0 + (k / SIDE) as i32 * cell));
+            let place = |k: usize| {
+                ((corner.x0 + (k % SIDE) as i32 * cell), (corner.y0 + (k / SIDE) as i32 * cell))
+            };
             let block = std::array::from_fn(|k| {
                 let (x, y) = place(k);
                 let was = old.blocks.tile(at).map_or(Vec2::ZERO, |block| block.0[k]);
@@ -95,6 +105,7 @@ impl Lattice {
             self.set(at, LatticeBlock(block));
         }
     }
+
     /// At any point.
     pub fn at(&self, q: Vec2) -> Displaced {
         let cell = q / CELL as f32;
@@ -112,6 +123,7 @@ impl Lattice {
         }
         Displaced { by, jacobian: Mat2::from_cols(right, down) }
     }
+
     /// All nodes that a tile's pixels are interpolated from, row by row; `None` if none displaces.
     fn around(&self, at: TileAt) -> Option<[[Vec2; AROUND]; AROUND]> {
         let near = |d: i32| (-1..=1).map(move |c| TileAt::new(at.col + c, at.row + d));
@@ -128,23 +140,30 @@ impl Lattice {
         }
         nodes.as_flattened().iter().any(|u| *u != Vec2::ZERO).then_some(nodes)
     }
+
     /// Whether the pixels of a tile show themselves.
     pub fn is_none_on(&self, at: TileAt) -> bool {
         self.around(at).is_none()
     }
-    /// At the middle of every pixel of a tile: which point it shows, and how that moves with the pixel; `None` if the
-    /// tile shows itself. The same as [`Lattice::at`], along rows.
+
+    /// At the middle of every pixel of a tile: which point it shows, and how that moves with the
+    /// pixel; `None` if the tile shows itself. The same as [`Lattice::at`], along rows.
     pub fn on_tile(&self, at: TileAt) -> Option<TilePoints> {
         let nodes = self.around(at)?;
-        let phases: [NodeWeights; CELL] = std::array::from_fn(|k| NodeWeights::at((k as f32 + 0.5) / CELL as f32));
+        let phases: [NodeWeights; CELL] =
+            std::array::from_fn(|k| NodeWeights::at((k as f32 + 0.5) / CELL as f32));
         // Transposed: for each weight its values in all phases, contiguous.
-        let value: [[f32; CELL]; 4] = std::array::from_fn(|i| std::array::from_fn(|k| phases[k].value[i]));
-        let slope: [[f32; CELL]; 4] = std::array::from_fn(|i| std::array::from_fn(|k| phases[k].slope[i]));
+        let value: [[f32; CELL]; 4] =
+            std::array::from_fn(|i| std::array::from_fn(|k| phases[k].value[i]));
+        let slope: [[f32; CELL]; 4] =
+            std::array::from_fn(|i| std::array::from_fn(|k| phases[k].slope[i]));
         let mut out = TilePoints::new(TILE_AREA);
         let corner = at.rect();
         for y in 0..TILE {
             let (first, phase) = (y / CELL, &phases[y % CELL]);
-            let column = |weights: &[f32; 4], i: usize| (0..4).map(|k| nodes[first + k][i] * weights[k]).sum::<Vec2>();
+            let column = |weights: &[f32; 4], i: usize| {
+                (0..4).map(|k| nodes[first + k][i] * weights[k]).sum::<Vec2>()
+            };
             let row: [Vec2; AROUND] = std::array::from_fn(|i| column(&phase.value, i));
             let steep: [Vec2; AROUND] = std::array::from_fn(|i| column(&phase.slope, i));
             let place = y * TILE..(y + 1) * TILE;
@@ -162,35 +181,46 @@ impl Lattice {
         }
         Some(out)
     }
+
     /// The tiles in which two displacements may differ.
     pub fn changed_tiles(&self, other: &Lattice) -> Vec<TileAt> {
         let mut near: Vec<TileAt> = Vec::new();
         for at in self.blocks.changed_tiles(&other.blocks) {
-            near.extend((-1..=1).flat_map(|r| (-1..=1).map(move |c| TileAt::new(at.col + c, at.row + r))));
+            near.extend(
+                (-1..=1).flat_map(|r| (-1..=1).map(move |c| TileAt::new(at.col + c, at.row + r))),
+            );
         }
         near.sort_unstable_by_key(|at| (at.row, at.col));
         near.dedup();
         near.retain(|at| self.around(*at) != other.around(*at));
         near
     }
-    /// The same displacement after a map of the plane: what was displaced is displaced in the same way in its new
-    /// place.
+
+    /// The same displacement after a map of the plane: what was displaced is displaced in the same
+    /// way in its new place.
     /// * `within`: nodes beyond it are dropped.
     pub fn carried(&self, map: &PlaneMap, within: Rect) -> Lattice {
         let held = self.blocks.bounds().grown(2 * CELL as i32);
         let corner = |x: i32, y: i32| map.to_canvas(vec2(x as f32, y as f32));
         let Rect { x0, y0, x1, y1 } = held;
-        let corners: Option<Vec<Vec2>> =
-            [(x0, y0), (x1, y0), (x1, y1), (x0, y1)].map(|(x, y)| corner(x, y)).into_iter().collect();
+        let corners: Option<Vec<Vec2>> = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
+            .map(|(x, y)| corner(x, y))
+            .into_iter()
+            .collect();
         let Some(corners) = corners.filter(|_| !self.is_empty()) else { return Lattice::default() };
         let low = corners.iter().copied().fold(Vec2::INFINITY, Vec2::min).floor();
         let high = corners.iter().copied().fold(Vec2::NEG_INFINITY, Vec2::max).ceil();
-        let area = Rect::new(low.x as i32, low.y as i32, high.x as i32, high.y as i32).intersect(within);
+        let area =
+            Rect::new(low.x as i32, low.y as i32, high.x as i32, high.y as i32).intersect(within);
         let mut out = Lattice::default();
         out.change(area, |_, q, _| {
             let Some((p, _)) = map.from_canvas(q) else { return Vec2::ZERO };
             let by = self.at(p).by;
-            if by == Vec2::ZERO { by } else { map.to_canvas(p + by).map_or(Vec2::ZERO, |to| to - q) }
+            if by == Vec2::ZERO {
+                by
+            } else {
+                map.to_canvas(p + by).map_or(Vec2::ZERO, |to| to - q)
+            }
         });
         out
     }
@@ -222,7 +252,8 @@ fn held(u: Vec2) -> Vec2 {
     vec2(side(u.x), side(u.y))
 }
 
-/// The weights of four nodes at a ratio of the way from the second to the third, and their slopes, per px.
+/// The weights of four nodes at a ratio of the way from the second to the third, and their slopes,
+/// per px.
 struct NodeWeights {
     value: [f32; 4],
     slope: [f32; 4],

@@ -1,6 +1,5 @@
-//! Line-integral convolution: noise smeared along a field of directions, so that the eye sees its lines
-//! (Cabral and Leedom 1993).
-//! Floor 1. Not here: what the directions mean (`surface::flow`).
+//! Line-integral convolution: noise smeared along a field of directions, so that the eye sees its
+//! lines (Cabral and Leedom 1993). Floor 1. Not here: what the directions mean (`surface::flow`).
 
 use super::{Plane, blur};
 use crate::math::{Size, Vec2, hash, vec2};
@@ -28,7 +27,8 @@ const CONTRAST: f32 = 0.22;
 /// Smears noise along `direction`; values in `[0, 1]` around a mean of ½.
 ///
 /// * `direction`: unit vectors, image axes; their signs do not matter; zero where there is none.
-/// * `passes`: whether a line may continue from one pixel to another that touches it at a side or a corner.
+/// * `passes`: whether a line may continue from one pixel to another that touches it at a side or a
+///   corner.
 pub fn smeared_noise(
     direction: &Plane<Vec2>,
     lines: LineStyle,
@@ -41,7 +41,9 @@ pub fn smeared_noise(
         let mut sum = NoiseSum::default();
         sum.add(window[0], noise.at(x, y));
         for sign in [1.0, -1.0] {
-            trace(direction, (x, y), sign, &window[1..], &passes, |w, (x, y)| sum.add(w, noise.at(x, y)));
+            trace(direction, (x, y), sign, &window[1..], &passes, |w, (x, y)| {
+                sum.add(w, noise.at(x, y))
+            });
         }
         sum.of_unit_variance()
     });
@@ -49,7 +51,8 @@ pub fn smeared_noise(
     smeared.map(|v| (0.5 + CONTRAST * v / deviation).max(0.0).min(1.0))
 }
 
-/// Follows the line through a pixel in steps of one pixel, one weight a step, until it leaves the field.
+/// Follows the line through a pixel in steps of one pixel, one weight a step, until it leaves the
+/// field.
 fn trace(
     direction: &Plane<Vec2>,
     start: (usize, usize),
@@ -69,7 +72,9 @@ fn trace(
             return;
         }
         at += heading;
-        let inside = at.x >= 0.0 && at.y >= 0.0 && direction.size().rect().contains(at.x as i32, at.y as i32);
+        let inside = at.x >= 0.0
+            && at.y >= 0.0
+            && direction.size().rect().contains(at.x as i32, at.y as i32);
         if !inside {
             return;
         }
@@ -94,8 +99,9 @@ impl NoiseSum {
         self.value += weight * noise;
         self.squares += weight * weight;
     }
-    /// The sum of independent values of unit variance, scaled to unit variance again: short lines have no more contrast
-    /// than long ones.
+
+    /// The sum of independent values of unit variance, scaled to unit variance again: short lines
+    /// have no more contrast than long ones.
     fn of_unit_variance(&self) -> f32 {
         self.value / self.squares.sqrt()
     }
@@ -128,7 +134,8 @@ mod tests {
     fn mean_change(plane: &Plane<f32>, dx: usize, dy: usize) -> f32 {
         let (w, h) = (plane.width() - dx, plane.height() - dy);
         let changes = (0..h).flat_map(|y| (0..w).map(move |x| (x, y)));
-        changes.map(|(x, y)| (plane.at(x + dx, y + dy) - plane.at(x, y)).abs()).sum::<f32>() / (w * h) as f32
+        changes.map(|(x, y)| (plane.at(x + dx, y + dy) - plane.at(x, y)).abs()).sum::<f32>()
+            / (w * h) as f32
     }
     const LINES: LineStyle = LineStyle { grain_px: 1.0, reach_px: 12.0 };
 
@@ -138,11 +145,13 @@ mod tests {
         let lines = smeared_noise(&field, LINES, |_, _| true);
         assert!(mean_change(&lines, 3, 4) < 0.5 * mean_change(&lines, 4, 3));
     }
+
     #[test]
     fn the_sign_of_a_direction_does_not_matter() {
         let size = Size::new(40, 40);
         let steady = smeared_noise(&Plane::filled(size, Vec2::X), LINES, |_, _| true);
-        let flipping = Plane::from_fn(size, |x, y| if (x + y) % 2 == 0 { Vec2::X } else { -Vec2::X });
+        let flipping =
+            Plane::from_fn(size, |x, y| if (x + y) % 2 == 0 { Vec2::X } else { -Vec2::X });
         assert!(
             smeared_noise(&flipping, LINES, |_, _| true)
                 .values()
@@ -151,16 +160,22 @@ mod tests {
                 .all(|(a, b)| (a - b).abs() < 1e-5)
         );
     }
+
     #[test]
     fn no_line_crosses_what_it_may_not_pass() {
-        // What lies right of the wall must not change what lies left of it, up to the common contrast.
+        // What lies right of the wall must not change what lies left of it, up to the common
+        // contrast.
         let size = Size::new(40, 20);
         let wall = |(a, _): (usize, usize), (b, _): (usize, usize)| (a < 20) == (b < 20);
         let right = |d: Vec2| Plane::from_fn(size, move |x, _| if x < 20 { Vec2::X } else { d });
-        let (a, b) = (smeared_noise(&right(Vec2::X), LINES, wall), smeared_noise(&right(Vec2::Y), LINES, wall));
+        let (a, b) = (
+            smeared_noise(&right(Vec2::X), LINES, wall),
+            smeared_noise(&right(Vec2::Y), LINES, wall),
+        );
         let shade = |p: &Plane<f32>, x: usize| (p.at(x, 10) - 0.5) / (p.at(3, 10) - 0.5);
         assert!((0..20).all(|x| (shade(&a, x) - shade(&b, x)).abs() < 1e-3));
     }
+
     #[test]
     fn the_noise_fills_the_greys_without_clipping_much() {
         let lines = smeared_noise(&Plane::filled(Size::new(128, 128), Vec2::X), LINES, |_, _| true);

@@ -1,5 +1,5 @@
-//! Floor 1: pixels that know nothing of the surface. Tiles and tile grids hold layers; planes and textures hold what
-//! is sampled and never edited; blend modes and samplers work on both.
+//! Floor 1: pixels that know nothing of the surface. Tiles and tile grids hold layers; planes and
+//! textures hold what is sampled and never edited; blend modes and samplers work on both.
 
 pub mod asset;
 pub mod bits;

@@ -12,9 +12,11 @@ pub struct Picture {
     pub size: Size,
     /// One for each pixel.
     pub texels: Texels,
-    /// What the bytes were rounded from, if a file holds 16 bits a channel: straight, encoded, one for each texel.
+    /// What the bytes were rounded from, if a file holds 16 bits a channel: straight, encoded, one
+    /// for each texel.
     pub deep: Option<Arc<[[u16; 4]]>>,
-    /// The file it was decoded from, so that a project can keep the original bytes; `None` for a picture made here.
+    /// The file it was decoded from, so that a project can keep the original bytes; `None` for a
+    /// picture made here.
     pub encoded: Option<Asset>,
 }
 
@@ -57,9 +59,12 @@ impl Picture {
 
     /// `None` unless there is one texel per pixel and at least one pixel.
     pub fn srgb8(size: Size, texels: Vec<[u8; 4]>) -> Option<Self> {
-        (size.area() > 0 && texels.len() == size.area()).then(|| Self::made(size, Texels::Srgb8(texels.into())))
+        (size.area() > 0 && texels.len() == size.area())
+            .then(|| Self::made(size, Texels::Srgb8(texels.into())))
     }
-    /// As [`Picture::srgb8`]; NaN and negative light become 0, infinite light the largest half float.
+
+    /// As [`Picture::srgb8`]; NaN and negative light become 0, infinite light the largest half
+    /// float.
     pub fn linear(size: Size, mut texels: Vec<[f32; 4]>) -> Option<Self> {
         const HALF_MAX: f32 = 65504.0;
         for [r, g, b, a] in &mut texels {
@@ -68,20 +73,26 @@ impl Picture {
             }
             *a = a.max(0.0).min(1.0);
         }
-        (size.area() > 0 && texels.len() == size.area()).then(|| Self::made(size, Texels::Linear(texels.into())))
+        (size.area() > 0 && texels.len() == size.area())
+            .then(|| Self::made(size, Texels::Linear(texels.into())))
     }
+
     fn made(size: Size, texels: Texels) -> Self {
         Self { size, texels, deep: None, encoded: None }
     }
-    /// The same picture with every texel also in 16 bits; only bytes if the number of texels differs.
+
+    /// The same picture with every texel also in 16 bits; only bytes if the number of texels
+    /// differs.
     pub fn with_deep(self, deep: Vec<[u16; 4]>) -> Self {
         let fits = matches!(self.texels, Texels::Srgb8(_)) && deep.len() == self.size.area();
         Self { deep: fits.then(|| deep.into()), ..self }
     }
+
     /// It holds more than 8 bits a channel.
     pub fn is_deep(&self) -> bool {
         self.deep.is_some() || matches!(self.texels, Texels::Linear(_))
     }
+
     /// Where its texels are in memory: the same for pictures that share them.
     pub fn place(&self) -> usize {
         match &self.texels {
@@ -89,6 +100,7 @@ impl Picture {
             Texels::Linear(texels) => texels.as_ptr() as usize,
         }
     }
+
     /// Bytes that its texels take.
     pub fn bytes(&self) -> usize {
         let texel = match &self.texels {
@@ -98,10 +110,12 @@ impl Picture {
         let deep = self.deep.as_ref().map_or(0, |_| size_of::<[u16; 4]>());
         self.size.area() * (texel + deep)
     }
+
     /// Linear light of one texel, straight alpha.
     pub fn linear_at(&self, x: usize, y: usize) -> [f32; 4] {
         self.linear_texel(y * self.size.width as usize + x)
     }
+
     /// The same by the texel's number, row by row.
     #[inline(always)]
     pub fn linear_texel(&self, i: usize) -> [f32; 4] {

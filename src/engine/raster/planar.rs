@@ -1,6 +1,6 @@
-//! Pixels in flight while a picture is flattened: one tile, f32, premultiplied, each channel of a row separate so that
-//! loops over a row need no shuffles.
-//! Floor 1. Stored pixels are `tile`; how they mix is `blend`.
+//! Pixels in flight while a picture is flattened: one tile, f32, premultiplied, each channel of a
+//! row separate so that loops over a row need no shuffles. Floor 1. Stored pixels are `tile`; how
+//! they mix is `blend`.
 
 use super::tile::deep::{self, DeepRow};
 use super::tile::{TILE, TILE_AREA, Tile, TileF32};
@@ -13,11 +13,12 @@ pub fn sane(p: [f32; 4]) -> [f32; 4] {
     [p[0].max(0.0).min(a), p[1].max(0.0).min(a), p[2].max(0.0).min(a), a]
 }
 
-/// One row of a tile, premultiplied, encoded. A KiB, so that a row and what is mixed into it stay in the first-level
-/// cache.
+/// One row of a tile, premultiplied, encoded. A KiB, so that a row and what is mixed into it stay
+/// in the first-level cache.
 #[derive(Clone, Copy)]
 pub struct PixelRow {
-    /// Red, green, blue, each in `[0, alpha]`; above alpha only if a picture keeps light that is brighter than white.
+    /// Red, green, blue, each in `[0, alpha]`; above alpha only if a picture keeps light that is
+    /// brighter than white.
     pub rgb: [[f32; TILE]; 3],
     /// Alpha, `[0, 1]`.
     pub a: [f32; TILE],
@@ -40,10 +41,12 @@ impl PlanarTile {
     pub fn transparent() -> Self {
         Self::of_rows(TILE)
     }
+
     /// Fewer or more rows than a tile has, transparent.
     pub fn of_rows(rows: usize) -> Self {
         Self { rows: vec![PixelRow::TRANSPARENT; rows] }
     }
+
     /// Reads pixels; values that are out of range or NaN are brought into range.
     pub fn from_pixels(pixels: &TileF32) -> Self {
         let mut tile = Self::transparent();
@@ -55,6 +58,7 @@ impl PlanarTile {
         }
         tile
     }
+
     /// The same, but colours may be brighter than white: above alpha.
     pub fn from_bright(pixels: &TileF32) -> Self {
         let mut tile = Self::transparent();
@@ -62,11 +66,13 @@ impl PlanarTile {
             for (x, [r, g, b, a]) in pixels.iter().enumerate() {
                 let bounded = |v: f32| v.max(0.0).min(BRIGHTEST);
                 let PixelRow { rgb: [red, green, blue], a: alpha } = row;
-                (red[x], green[x], blue[x], alpha[x]) = (bounded(*r), bounded(*g), bounded(*b), a.max(0.0).min(1.0));
+                (red[x], green[x], blue[x], alpha[x]) =
+                    (bounded(*r), bounded(*g), bounded(*b), a.max(0.0).min(1.0));
             }
         }
         tile
     }
+
     /// Lowers colours that are brighter than white to white.
     pub fn clip_to_white(&mut self) {
         for PixelRow { rgb, a } in &mut self.rows {
@@ -75,6 +81,7 @@ impl PlanarTile {
             }
         }
     }
+
     /// Writes every pixel out.
     pub fn to_pixels(&self, pixels: &mut TileF32) {
         for (row, pixels) in self.rows.iter().zip(pixels.chunks_exact_mut(TILE)) {
@@ -83,13 +90,16 @@ impl PlanarTile {
             }
         }
     }
+
     /// The rows, `TILE` for a tile, the top one first.
     pub fn rows(&self) -> &[PixelRow] {
         &self.rows
     }
+
     pub fn rows_mut(&mut self) -> &mut [PixelRow] {
         &mut self.rows
     }
+
     /// Rounds to bytes; `None` where the tile is wholly transparent.
     pub fn quantised(&self) -> Option<Tile> {
         let mut bytes = vec![0u8; TILE_AREA * 4];
@@ -99,11 +109,14 @@ impl PlanarTile {
         }
         Tile::from_bytes(bytes)
     }
-    /// As a paint layer keeps it, painted on `was`: rounded to 16 bits if it is soft ([`deep::is_soft`]) or had them
-    /// before, else to bytes. `None` if the tile is wholly transparent.
+
+    /// As a paint layer keeps it, painted on `was`: rounded to 16 bits if it is soft
+    /// ([`deep::is_soft`]) or had them before, else to bytes. `None` if the tile is wholly
+    /// transparent.
     pub fn kept(&self, was: Option<&Tile>) -> Option<Tile> {
         self.kept_after(was.is_some_and(Tile::is_deep))
     }
+
     /// The same; `was_deep`: the pixels contain paint of 16 bits.
     pub fn kept_after(&self, was_deep: bool) -> Option<Tile> {
         let put = |y: usize, deep: &mut DeepRow| {
@@ -125,6 +138,7 @@ impl PixelRow {
     pub fn pixel(&self, x: usize) -> [f32; 4] {
         [self.rgb[0][x], self.rgb[1][x], self.rgb[2][x], self.a[x]]
     }
+
     /// Writes one premultiplied pixel; `x < TILE`.
     #[inline(always)]
     pub fn set(&mut self, x: usize, pixel: [f32; 4]) {
@@ -178,6 +192,7 @@ mod tests {
         planar.to_pixels(&mut back);
         assert_eq!(back[..], pixels[..]);
     }
+
     #[test]
     fn nan_and_colours_beyond_their_alpha_do_not_get_in() {
         let mut pixels = super::super::tile::transparent_f32();

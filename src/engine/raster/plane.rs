@@ -31,10 +31,12 @@ impl<T: Copy> Plane<T> {
     pub fn filled(size: Size, value: T) -> Self {
         Self { size, values: filled_or_unwind(size.area(), value) }
     }
+
     /// `None` if `values` does not hold exactly one value per pixel.
     pub fn from_values(size: Size, values: Vec<T>) -> Option<Self> {
         (values.len() == size.area()).then_some(Self { size, values })
     }
+
     /// Computes every pixel from its column and row, rows in parallel.
     pub fn from_fn(size: Size, value: impl Fn(usize, usize) -> T + Sync) -> Self
     where
@@ -43,27 +45,34 @@ impl<T: Copy> Plane<T> {
         use rayon::prelude::*;
         let width = size.width.max(1) as usize;
         let mut values = filled_or_unwind(size.area(), T::default());
-        values.par_chunks_mut(width).enumerate().with_min_len(least_rows(width)).for_each(|(y, row)| {
-            for (x, v) in row.iter_mut().enumerate() {
-                *v = value(x, y);
-            }
-        });
+        values.par_chunks_mut(width).enumerate().with_min_len(least_rows(width)).for_each(
+            |(y, row)| {
+                for (x, v) in row.iter_mut().enumerate() {
+                    *v = value(x, y);
+                }
+            },
+        );
         Self { size, values }
     }
-    /// Computes every pixel again from its column, row and value, rows in parallel, in the same memory.
+
+    /// Computes every pixel again from its column, row and value, rows in parallel, in the same
+    /// memory.
     pub fn updated(mut self, value: impl Fn(usize, usize, T) -> T + Sync) -> Self
     where
         T: Send + Sync,
     {
         use rayon::prelude::*;
         let width = self.size.width.max(1) as usize;
-        self.values.par_chunks_mut(width).enumerate().with_min_len(least_rows(width)).for_each(|(y, row)| {
-            for (x, v) in row.iter_mut().enumerate() {
-                *v = value(x, y, *v);
-            }
-        });
+        self.values.par_chunks_mut(width).enumerate().with_min_len(least_rows(width)).for_each(
+            |(y, row)| {
+                for (x, v) in row.iter_mut().enumerate() {
+                    *v = value(x, y, *v);
+                }
+            },
+        );
         self
     }
+
     /// Another map, computed value by value, rows in parallel.
     pub fn map<U: Copy + Send + Sync + Default>(&self, f: impl Fn(T) -> U + Sync) -> Plane<U>
     where
@@ -78,57 +87,69 @@ impl<T: Copy> Plane<T> {
         });
         Plane { size: self.size, values }
     }
+
     /// Its sides, px.
     pub fn size(&self) -> Size {
         self.size
     }
+
     /// Pixels in a row.
     pub fn width(&self) -> usize {
         self.size.width as usize
     }
+
     /// The number of rows.
     pub fn height(&self) -> usize {
         self.size.height as usize
     }
+
     /// The value at column `x`, row `y`, both inside the map.
     #[inline(always)]
     pub fn at(&self, x: usize, y: usize) -> T {
         self.values[y * self.size.width as usize + x]
     }
+
     /// The value at a column and row, or `None` beyond the map.
     pub fn get(&self, x: i32, y: i32) -> Option<T> {
         self.size.rect().contains(x, y).then(|| self.at(x as usize, y as usize))
     }
+
     /// The nearest value inside the map.
     #[inline(always)]
     pub fn clamped(&self, x: i32, y: i32) -> T {
         let (w, h) = (self.size.width as i32, self.size.height as i32);
         self.at(x.clamp(0, w - 1) as usize, y.clamp(0, h - 1) as usize)
     }
+
     /// Sets the value at column `x`, row `y`, both inside the map.
     #[inline(always)]
     pub fn set(&mut self, x: usize, y: usize, value: T) {
         self.values[y * self.size.width as usize + x] = value;
     }
+
     /// The values of a row inside the map.
     #[inline(always)]
     pub fn row(&self, y: usize) -> &[T] {
         let w = self.size.width as usize;
         &self.values[y * w..(y + 1) * w]
     }
+
     /// As [`Plane::row`], to change them.
     pub fn row_mut(&mut self, y: usize) -> &mut [T] {
         let w = self.size.width as usize;
         &mut self.values[y * w..(y + 1) * w]
     }
+
     /// All values, row by row.
     pub fn values(&self) -> &[T] {
         &self.values
     }
+
     /// As [`Plane::values`], to change them.
     pub fn values_mut(&mut self) -> &mut [T] {
         &mut self.values
     }
+
     /// All values, row by row, in the same memory.
     pub fn into_values(self) -> Vec<T> {
         self.values

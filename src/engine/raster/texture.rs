@@ -1,5 +1,6 @@
-//! A texture: a picture ready to be sampled, premultiplied sRGB with its mip levels: usually bytes, floats for pictures
-//! of more than 8 bits a channel. Floor 1. Never edited; shared by `Arc`. Sampling is `sampler`.
+//! A texture: a picture ready to be sampled, premultiplied sRGB with its mip levels: usually bytes,
+//! floats for pictures of more than 8 bits a channel. Floor 1. Never edited; shared by `Arc`.
+//! Sampling is `sampler`.
 
 use super::picture::{Picture, Texels};
 use crate::math::{Size, srgb};
@@ -54,6 +55,7 @@ impl Texel for [u8; 4] {
     fn value(self) -> [f32; 4] {
         self.map(f32::from)
     }
+
     fn of(value: [f32; 4]) -> Self {
         value.map(|v| (v + 0.5) as u8)
     }
@@ -64,6 +66,7 @@ impl Texel for [f32; 4] {
     fn value(self) -> [f32; 4] {
         self
     }
+
     fn of(value: [f32; 4]) -> Self {
         value
     }
@@ -92,7 +95,9 @@ impl Texture {
     /// Encodes scene-referred pictures (clipped at 1), premultiplies, and builds the mip chain.
     pub fn new(picture: &Picture) -> Self {
         let texels = match &picture.texels {
-            Texels::Srgb8(t) => t.iter().map(|&[r, g, b, a]| premultiplied_u8([r, g, b, a])).collect(),
+            Texels::Srgb8(t) => {
+                t.iter().map(|&[r, g, b, a]| premultiplied_u8([r, g, b, a])).collect()
+            }
             Texels::Linear(t) => t
                 .par_iter()
                 .map(|&[r, g, b, a]| {
@@ -108,7 +113,10 @@ impl Texture {
 impl DeepTexture {
     /// From straight encoded texels, one for each pixel.
     pub fn deep(size: Size, straight: Vec<[f32; 4]>) -> Self {
-        Self::of_texels(size, straight.into_iter().map(|[r, g, b, a]| [r * a, g * a, b * a, a]).collect())
+        Self::of_texels(
+            size,
+            straight.into_iter().map(|[r, g, b, a]| [r * a, g * a, b * a, a]).collect(),
+        )
     }
 }
 
@@ -120,18 +128,23 @@ impl<T: Texel> Texture<T> {
         }
         Self { levels: levels.into(), first: 0 }
     }
+
     /// Bytes that its levels take.
     pub fn bytes(&self) -> u64 {
         self.levels.iter().map(|level| size_of_val(&level.texels[..]) as u64).sum()
     }
-    /// The same texture without its finest levels, as if the picture were that much smaller; one level is always left.
+
+    /// The same texture without its finest levels, as if the picture were that much smaller; one
+    /// level is always left.
     pub fn coarser(&self, levels: u32) -> Self {
         let first = self.first.saturating_add(levels as usize).min(self.levels.len() - 1);
         Self { levels: self.levels.clone(), first }
     }
+
     pub fn size(&self) -> Size {
         self.levels[self.first].size
     }
+
     /// Level 0 is the picture; there is always at least one.
     pub fn levels(&self) -> &[MipLevel<T>] {
         &self.levels[self.first..]
@@ -144,8 +157,8 @@ fn premultiplied_u8(straight: [u8; 4]) -> [u8; 4] {
     out
 }
 
-/// The next mip level: each texel the mean of the texels it covers (2 × 2, or 3 wide where the side is odd, weighted by
-/// area).
+/// The next mip level: each texel the mean of the texels it covers (2 × 2, or 3 wide where the side
+/// is odd, weighted by area).
 fn halved<T: Texel>(level: &MipLevel<T>) -> Option<MipLevel<T>> {
     let Size { width: w, height: h } = level.size;
     if w == 1 && h == 1 {
@@ -195,6 +208,7 @@ mod tests {
         assert_eq!(Outside::None.index(-1, 3), None);
         assert_eq!(Outside::Repeat.index(-1, 3), Some(2));
     }
+
     #[test]
     fn the_last_level_is_the_mean_colour() {
         let texels = (0..15).map(|i| [i * 16, 0, 0, 255]).collect();

@@ -1,5 +1,6 @@
-//! A tile: 64 × 64 pixels of a layer, premultiplied sRGB with 8 bits, and with 16 if something soft was painted; shared
-//! and never edited while shared. Floor 1. Pixels of 16 bits, and what is soft, are in `deep`.
+//! A tile: 64 × 64 pixels of a layer, premultiplied sRGB with 8 bits, and with 16 if something soft
+//! was painted; shared and never edited while shared. Floor 1. Pixels of 16 bits, and what is soft,
+//! are in `deep`.
 
 pub mod deep;
 
@@ -7,7 +8,8 @@ use crate::math::{Rect, srgb::quantise};
 use deep::DeepRow;
 use tiny_skia::Pixmap;
 
-/// Side of a tile, in pixels. 64² f32 RGBA is 64 KiB: one layer of a flattening stays in the second-level cache.
+/// Side of a tile, in pixels. 64² f32 RGBA is 64 KiB: one layer of a flattening stays in the
+/// second-level cache.
 pub const TILE: usize = 64;
 /// Pixels of a tile.
 pub const TILE_AREA: usize = TILE * TILE;
@@ -17,10 +19,14 @@ pub type TileF32 = [[f32; 4]; TILE_AREA];
 
 /// A fresh transparent [`TileF32`] on the heap.
 pub fn transparent_f32() -> Box<TileF32> {
-    vec![[0.0f32; 4]; TILE_AREA].into_boxed_slice().try_into().expect("a vector of TILE_AREA pixels")
+    vec![[0.0f32; 4]; TILE_AREA]
+        .into_boxed_slice()
+        .try_into()
+        .expect("a vector of TILE_AREA pixels")
 }
 
-/// Which tile of the canvas lattice: tile (0, 0) holds canvas pixel (0, 0); negative tiles lie left of and above it.
+/// Which tile of the canvas lattice: tile (0, 0) holds canvas pixel (0, 0); negative tiles lie left
+/// of and above it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct TileAt {
     /// From the left, in tiles.
@@ -34,15 +40,18 @@ impl TileAt {
     pub const fn new(col: i32, row: i32) -> Self {
         Self { col, row }
     }
+
     /// The tile that holds a canvas pixel.
     pub fn of_pixel(x: i32, y: i32) -> Self {
         Self { col: x.div_euclid(TILE as i32), row: y.div_euclid(TILE as i32) }
     }
+
     /// The canvas pixels of the tile.
     pub fn rect(self) -> Rect {
         let t = TILE as i32;
         Rect::new(self.col * t, self.row * t, (self.col + 1) * t, (self.row + 1) * t)
     }
+
     /// All tiles that a pixel rectangle touches, row by row.
     pub fn covering(rect: Rect) -> impl Iterator<Item = TileAt> {
         let r = if rect.is_empty() { Rect::EMPTY } else { rect };
@@ -71,8 +80,9 @@ impl Tile {
         let size = tiny_skia::IntSize::from_wh(TILE as u32, TILE as u32)?;
         Some(Tile { pixmap: Pixmap::from_vec(rgba, size)?, opaque, deep: None })
     }
-    /// A tile of [`TILE`] rows of 16 bits, colours no greater than alpha; one of bytes if these hold it exactly. `None`
-    /// if it is wholly transparent.
+
+    /// A tile of [`TILE`] rows of 16 bits, colours no greater than alpha; one of bytes if these
+    /// hold it exactly. `None` if it is wholly transparent.
     pub fn from_deep(rows: Box<[DeepRow]>) -> Option<Tile> {
         if rows.len() != TILE || rows.iter().all(|row| row[3] == [0; TILE]) {
             return None;
@@ -83,37 +93,45 @@ impl Tile {
         let opaque = tile.opaque && rows.iter().all(|row| row[3] == [u16::MAX; TILE]);
         Some(if is_of_bytes { tile } else { Tile { opaque, deep: Some(rows), ..tile } })
     }
+
     /// Quantises a tile; `None` if it is wholly transparent.
     pub fn quantised(pixels: &TileF32) -> Option<Tile> {
         let mut bytes = vec![0u8; TILE_AREA * 4];
         quantise_pixels(pixels, &mut bytes);
         Tile::from_pixels(bytes)
     }
+
     /// As [`Tile::from_bytes`]; `None` if it is wholly transparent.
     pub fn from_pixels(rgba: Vec<u8>) -> Option<Tile> {
         let is_transparent = rgba.chunks_exact(4).all(|p| p[3] == 0);
         if is_transparent { None } else { Tile::from_bytes(rgba) }
     }
+
     /// Bytes that a pixel takes at most; `deep`: tiles may have 16 bits.
     pub const fn most_bytes_a_pixel(deep: bool) -> u64 {
         if deep { 12 } else { 4 }
     }
+
     /// Bytes that its pixels take.
     pub fn held_bytes(&self) -> u64 {
         TILE_AREA as u64 * Self::most_bytes_a_pixel(self.is_deep())
     }
+
     /// Every pixel is wholly covered.
     pub fn is_opaque(&self) -> bool {
         self.opaque
     }
+
     /// Its rows of 16 bits, if bytes do not hold all of it.
     pub fn deep(&self) -> Option<&[DeepRow]> {
         self.deep.as_deref()
     }
+
     /// It holds more than bytes can.
     pub fn is_deep(&self) -> bool {
         self.deep.is_some()
     }
+
     /// Its rows in 16 bits, whatever it holds.
     pub fn deep_rows(&self) -> Box<[DeepRow]> {
         self.deep.clone().unwrap_or_else(|| {
@@ -122,31 +140,39 @@ impl Tile {
             rows
         })
     }
-    /// A premultiplied pixel in 16 bits, whatever it holds; `x`, `y` below [`TILE`], transparent beyond.
+
+    /// A premultiplied pixel in 16 bits, whatever it holds; `x`, `y` below [`TILE`], transparent
+    /// beyond.
     pub fn deep_pixel(&self, x: usize, y: usize) -> [u16; 4] {
         match &self.deep {
             Some(rows) => deep::pixel_of(rows, x, y),
             None => {
-                let byte = self.bytes().as_chunks::<4>().0.get(y * TILE + x).copied().unwrap_or_default();
+                let byte =
+                    self.bytes().as_chunks::<4>().0.get(y * TILE + x).copied().unwrap_or_default();
                 byte.map(|v| u16::from(v) * deep::LEVEL)
             }
         }
     }
-    /// There is some paint on a pixel, even fainter than a byte can hold; `i`: its index, row by row.
+
+    /// There is some paint on a pixel, even fainter than a byte can hold; `i`: its index, row by
+    /// row.
     pub fn is_painted(&self, i: usize) -> bool {
         match &self.deep {
             Some(rows) => rows[i / TILE][3][i % TILE] > 0,
             None => self.bytes()[4 * i + 3] > 0,
         }
     }
+
     /// Both hold the same pixels.
     pub fn is_same(&self, other: &Tile) -> bool {
         self.deep == other.deep && self.bytes() == other.bytes()
     }
+
     /// Premultiplied RGBA bytes, row by row; 16 bits are rounded.
     pub fn bytes(&self) -> &[u8] {
         self.pixmap.data()
     }
+
     /// Its premultiplied pixels.
     pub fn pixmap(&self) -> &Pixmap {
         &self.pixmap
@@ -188,6 +214,7 @@ mod tests {
         assert_eq!(TileAt::covering(Rect::new(-1, 0, 65, 1)).count(), 3);
         assert_eq!(TileAt::covering(Rect::EMPTY).count(), 0);
     }
+
     #[test]
     fn colours_never_exceed_their_alpha() {
         let tile = Tile::from_bytes([200, 100, 0, 128].repeat(TILE_AREA)).unwrap();

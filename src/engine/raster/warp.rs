@@ -1,10 +1,11 @@
 //! Pixels seen through a map: each pixel of the canvas from the pixels that it shows, sampled once.
 //! Floor 1. Maps are in `math`; this uses only their inverse.
 //!
-//! A map that moves whole pixels copies them. Otherwise a pixel is a weighted mean of the source around the point that
-//! it shows. Where the source is magnified along an axis of the pixel, the weights are a cubic's; where it is reduced,
-//! they are the share of each source pixel's tent in the pixel's own piece of the source. `Linear` takes the four
-//! nearest pixels instead, as long as this skips none. A tile that shows part of a 16-bit tile has 16 bits.
+//! A map that moves whole pixels copies them. Otherwise a pixel is a weighted mean of the source
+//! around the point that it shows. Where the source is magnified along an axis of the pixel, the
+//! weights are a cubic's; where it is reduced, they are the share of each source pixel's tent in
+//! the pixel's own piece of the source. `Linear` takes the four nearest pixels instead, as long as
+//! this skips none. A tile that shows part of a 16-bit tile has 16 bits.
 
 mod linear;
 mod points;
@@ -38,8 +39,8 @@ crate::named! {
         Smooth = "smooth",
         /// Catmull and Rom's cubic: sharp, with faint rings.
         Sharp = "sharp",
-        /// The four nearest pixels, where a pixel shows no more than two of the source along a side: quick. Shown
-        /// while a hand drags.
+        /// The four nearest pixels, where a pixel shows no more than two of the source along a
+        /// side: quick. Shown while a hand drags.
         Linear = "linear",
         /// The nearest pixel, for pixel art.
         Nearest = "nearest",
@@ -48,22 +49,30 @@ crate::named! {
 
 /// The map that pixels are seen through.
 pub trait PixelMap: Sync {
-    /// The point of the source that a point of the canvas shows, and how it moves with that point; `None` if there is
-    /// none.
+    /// The point of the source that a point of the canvas shows, and how it moves with that point;
+    /// `None` if there is none.
     fn source_of(&self, q: Vec2) -> Option<(Vec2, Mat2)>;
     /// The same for the centres of `count` pixels from `(x, y)` on, at most a tile's side.
     fn source_row(&self, x: i32, y: i32, count: usize, row: &mut PointRow) {
         row.fill_by_points(self, x, y, count);
     }
+
     /// The move of whole pixels that it is, if it is one.
     fn pixel_move(&self) -> Option<PixelMove>;
-    /// A rectangle of the source that holds everything a rectangle of the canvas shows; it may be larger.
+    /// A rectangle of the source that holds everything a rectangle of the canvas shows; it may be
+    /// larger.
     fn source_rect(&self, canvas: Rect) -> Rect;
 }
 
 /// The tiles of a grid seen through a map, only those in `wanted`.
-pub fn warped(grid: &TileGrid, map: &dyn PixelMap, filter: Resampling, wanted: &[TileAt]) -> TileGrid {
-    let tiles: Vec<Option<Arc<Tile>>> = wanted.par_iter().map(|&at| warped_tile(grid, map, filter, at)).collect();
+pub fn warped(
+    grid: &TileGrid,
+    map: &dyn PixelMap,
+    filter: Resampling,
+    wanted: &[TileAt],
+) -> TileGrid {
+    let tiles: Vec<Option<Arc<Tile>>> =
+        wanted.par_iter().map(|&at| warped_tile(grid, map, filter, at)).collect();
     let mut out = TileGrid::default();
     if let Some(all) = wanted.iter().map(|at| at.rect()).reduce(Rect::union) {
         out.reserve(all);
@@ -73,7 +82,12 @@ pub fn warped(grid: &TileGrid, map: &dyn PixelMap, filter: Resampling, wanted: &
 }
 
 /// One tile of a grid seen through a map; `None` if it is transparent.
-pub fn warped_tile(grid: &TileGrid, map: &dyn PixelMap, filter: Resampling, at: TileAt) -> Option<Arc<Tile>> {
+pub fn warped_tile(
+    grid: &TileGrid,
+    map: &dyn PixelMap,
+    filter: Resampling,
+    at: TileAt,
+) -> Option<Arc<Tile>> {
     warped_tile_within(grid, None, map, filter, at)
 }
 
@@ -89,7 +103,11 @@ pub fn warped_tile_within(
         return moved_tile(grid, by, at);
     }
     let mut pixels = transparent_f32();
-    let source = GridSource { grid, bounds: border.unwrap_or_else(|| grid.bounds()), continues: border.is_some() };
+    let source = GridSource {
+        grid,
+        bounds: border.unwrap_or_else(|| grid.bounds()),
+        continues: border.is_some(),
+    };
     let wanted = source.held(map.source_rect(at.rect()));
     Warp { source: &source, map, filter }.block_of(at.rect(), wanted, &mut |x, y, row| {
         let (x, y) = ((x - at.rect().x0) as usize, (y - at.rect().y0) as usize);
@@ -104,7 +122,10 @@ pub fn warped_tile_within(
 fn deep_rows(pixels: &TileF32) -> Box<[DeepRow]> {
     let mut rows = deep::clear_rows();
     for (row, pixels) in rows.iter_mut().zip(pixels.chunks_exact(TILE)) {
-        pixels.iter().enumerate().for_each(|(x, pixel)| deep::put(row, x, pixel.map(quantise_deep)));
+        pixels
+            .iter()
+            .enumerate()
+            .for_each(|(x, pixel)| deep::put(row, x, pixel.map(quantise_deep)));
     }
     rows
 }
@@ -149,13 +170,19 @@ fn moved_tile(grid: &TileGrid, by: PixelMove, at: TileAt) -> Option<Arc<Tile>> {
     Tile::from_pixels(bytes).map(Arc::new)
 }
 
-/// A map of the canvas, such as a mask's coverage, seen through a map; its border continues beyond it.
+/// A map of the canvas, such as a mask's coverage, seen through a map; its border continues beyond
+/// it.
 pub fn warped_plane(plane: &Plane<u8>, map: &dyn PixelMap, filter: Resampling) -> Plane<u8> {
     warped_plane_onto(plane, map, filter, plane.size())
 }
 
 /// The same on a canvas of another size.
-pub fn warped_plane_onto(plane: &Plane<u8>, map: &dyn PixelMap, filter: Resampling, size: Size) -> Plane<u8> {
+pub fn warped_plane_onto(
+    plane: &Plane<u8>,
+    map: &dyn PixelMap,
+    filter: Resampling,
+    size: Size,
+) -> Plane<u8> {
     if let Some(by) = map.pixel_move() {
         return Plane::from_fn(size, |x, y| {
             let (x, y) = by.source(x as i32, y as i32);
@@ -174,7 +201,12 @@ pub fn warped_plane_onto(plane: &Plane<u8>, map: &dyn PixelMap, filter: Resampli
 }
 
 /// The pixels of a rectangle of such a map, each with its position.
-pub fn warped_block(plane: &Plane<u8>, map: &dyn PixelMap, filter: Resampling, rect: Rect) -> Vec<(i32, i32, u8)> {
+pub fn warped_block(
+    plane: &Plane<u8>,
+    map: &dyn PixelMap,
+    filter: Resampling,
+    rect: Rect,
+) -> Vec<(i32, i32, u8)> {
     if let Some(by) = map.pixel_move() {
         let places = (rect.y0..rect.y1).flat_map(|y| (rect.x0..rect.x1).map(move |x| (x, y)));
         let moved = |(x, y): (i32, i32)| {
@@ -204,12 +236,15 @@ impl<S: PixelSource> Warp<'_, S> {
         });
         out
     }
-    /// The pixels of a block no wider than a tile, in rows from a position on, if it shows any of the source.
+
+    /// The pixels of a block no wider than a tile, in rows from a position on, if it shows any of
+    /// the source.
     fn block(&self, block: Rect, put: &mut impl FnMut(i32, i32, &[[f32; 4]])) {
         if !block.is_empty() {
             self.block_of(block, self.source.held(self.map.source_rect(block)), put);
         }
     }
+
     /// The same of a block of which it is known what of the source it shows.
     fn block_of(&self, block: Rect, wanted: Rect, put: &mut impl FnMut(i32, i32, &[[f32; 4]])) {
         if wanted.is_empty() {
@@ -225,9 +260,13 @@ impl<S: PixelSource> Warp<'_, S> {
             }
             return;
         }
-        let window =
-            SourceWindow { rect: wanted, pixels: self.source.read(wanted), continues: self.source.continues() };
-        let (mut points, mut scratch) = (Box::<PointRow>::default(), Box::<rows::WarpScratch>::default());
+        let window = SourceWindow {
+            rect: wanted,
+            pixels: self.source.read(wanted),
+            continues: self.source.continues(),
+        };
+        let (mut points, mut scratch) =
+            (Box::<PointRow>::default(), Box::<rows::WarpScratch>::default());
         let mut out = [[0.0; 4]; TILE];
         for y in block.y0..block.y1 {
             self.map.source_row(block.x0, y, block.width(), &mut points);

@@ -1,5 +1,5 @@
-//! Which features of the surface are enhanced: the scales of curvature, their weights and their direction (RS sec. 4).
-//! Floor 3. Not here: curvature itself (`surface`), applying κ (`scaling`).
+//! Which features of the surface are enhanced: the scales of curvature, their weights and their
+//! direction (RS sec. 4). Floor 3. Not here: curvature itself (`surface`), applying κ (`scaling`).
 
 use crate::math::{Range, Vec3, fast, simd::prefetch};
 use crate::surface::{
@@ -55,7 +55,8 @@ impl Features {
     /// What λ may be.
     pub const LAMBDA: Range = -1.0..=1.0;
 
-    /// The features of a surface. Its curvature is computed here unless it is cached: call this before going parallel.
+    /// The features of a surface. Its curvature is computed here unless it is cached: call this
+    /// before going parallel.
     pub fn on(&self, surface: &Surface) -> FeatureMap {
         let total: f32 = self.scales.iter().map(|s| s.weight).sum();
         let share = |s: &FeatureScale| if total > 0.0 { s.weight / total } else { 0.0 };
@@ -64,14 +65,19 @@ impl Features {
                 let FeatureScale { curvature_scale_px, blur_px, .. } = *s;
                 KappaScale { blur_px, curvature_scale_px, share: share(s) }
             };
-            return FeatureMap::Isotropic(surface.kappa(&self.scales.iter().map(scale).collect::<Vec<_>>()));
+            return FeatureMap::Isotropic(
+                surface.kappa(&self.scales.iter().map(scale).collect::<Vec<_>>()),
+            );
         }
         let part = |s: &FeatureScale| ScalePart {
             curvature: surface.curvature(s.blur_px),
             curvature_scale_px: s.curvature_scale_px,
             share: share(s),
         };
-        FeatureMap::Directional { parts: self.scales.iter().map(part).collect(), lambda: self.lambda }
+        FeatureMap::Directional {
+            parts: self.scales.iter().map(part).collect(),
+            lambda: self.lambda,
+        }
     }
 }
 
@@ -94,21 +100,25 @@ pub struct ScalePart {
 }
 
 impl FeatureMap {
-    /// κ(ℓ) of one pixel (MATH 4): the reference of the rows below. `light`: ℓ, camera space, any length.
+    /// κ(ℓ) of one pixel (MATH 4): the reference of the rows below. `light`: ℓ, camera space, any
+    /// length.
     pub fn at(&self, x: usize, y: usize, light: Vec3) -> f32 {
         match self {
             Self::Isotropic(kappa) => kappa.at(x, y),
             Self::Directional { parts, lambda } => {
-                let kappa =
-                    |p: &ScalePart| p.share * p.curvature.kappa_along(x, y, p.curvature_scale_px, *lambda, light);
+                let kappa = |p: &ScalePart| {
+                    p.share * p.curvature.kappa_along(x, y, p.curvature_scale_px, *lambda, light)
+                };
                 parts.iter().map(kappa).sum()
             }
         }
     }
+
     /// Whether κ depends on the direction of the light.
     pub fn is_directional(&self) -> bool {
         matches!(self, Self::Directional { .. })
     }
+
     /// Prefetches a row for the functions below.
     pub fn prefetch(&self, x0: usize, y: usize, width: usize) {
         match self {
@@ -120,14 +130,15 @@ impl FeatureMap {
             }
         }
     }
+
     /// κ toward one direction, for the `kappa.len()` pixels of row `y` from column `x0` on.
     pub fn row_toward(&self, x0: usize, y: usize, light: Vec3, kappa: &mut [f32]) {
         match self {
             Self::Isotropic(map) => map.row(x0, y, kappa),
             Self::Directional { parts, lambda } => {
                 let l = light.normalize_or(Vec3::Z);
-                // A (ℓ_u² − ℓ_v²) = (h_xx − h_yy)(ℓ_x² − ℓ_y²) + 4 h_xy ℓ_x ℓ_y: no eigenvectors, see
-                // `Curvature::kappa_along`.
+                // A (ℓ_u² − ℓ_v²) = (h_xx − h_yy)(ℓ_x² − ℓ_y²) + 4 h_xy ℓ_x ℓ_y: no eigenvectors,
+                // see `Curvature::kappa_along`.
                 let (along, across) = (lambda * (l.x * l.x - l.y * l.y), lambda * 4.0 * l.x * l.y);
                 kappa.fill(0.0);
                 for p in parts {
@@ -138,14 +149,21 @@ impl FeatureMap {
             }
         }
     }
-    /// κ toward each pixel's own direction: `light_x`, `light_y` are ℓ of unit length, as long as `kappa`.
+
+    /// κ toward each pixel's own direction: `light_x`, `light_y` are ℓ of unit length, as long as
+    /// `kappa`.
     pub fn row_along(&self, x0: usize, y: usize, light: [&[f32]; 2], kappa: &mut [f32]) {
         match self {
             Self::Isotropic(map) => map.row(x0, y, kappa),
             Self::Directional { parts, lambda } => {
                 kappa.fill(0.0);
                 for p in parts {
-                    add_along(p.row(x0, y, kappa.len()), light, [p.curvature_scale_px, *lambda, p.share], kappa);
+                    add_along(
+                        p.row(x0, y, kappa.len()),
+                        light,
+                        [p.curvature_scale_px, *lambda, p.share],
+                        kappa,
+                    );
                 }
             }
         }
@@ -176,6 +194,7 @@ crate::widest! {
             *kappa += share * fast::tanh(fxx * hxx + fxy * hxy + fyy * hyy);
         }
     }
+
     /// As `add_toward`, with a direction for each pixel; `factors`: s, λ, share.
     fn add_along(tensor: TensorRow, light: [&[f32]; 2], factors: [f32; 3], kappa: &mut [f32]) {
         let [s, lambda, share] = factors;
@@ -198,13 +217,26 @@ mod tests {
     /// An egg: convex everywhere, more across than along.
     fn egg() -> Surface {
         let size = Size::new(70, 40);
-        let normals = Plane::from_fn(size, |x, y| vec3((x as f32 - 35.0) / 90.0, (20.0 - y as f32) / 30.0, 1.0));
-        Surface::new(Maps { normals, depth: Plane::filled(size, 0.5), coverage: Plane::filled(size, 255) }).unwrap()
+        let normals = Plane::from_fn(size, |x, y| {
+            vec3((x as f32 - 35.0) / 90.0, (20.0 - y as f32) / 30.0, 1.0)
+        });
+        Surface::new(Maps {
+            normals,
+            depth: Plane::filled(size, 0.5),
+            coverage: Plane::filled(size, 255),
+        })
+        .unwrap()
     }
+
     fn features(lambda: f32) -> Features {
-        let scale = |curvature_scale_px, blur_px, weight| FeatureScale { curvature_scale_px, blur_px, weight };
+        let scale = |curvature_scale_px, blur_px, weight| FeatureScale {
+            curvature_scale_px,
+            blur_px,
+            weight,
+        };
         Features { scales: vec![scale(8.0, 0.0, 1.0), scale(20.0, 2.0, 3.0)], lambda }
     }
+
     #[test]
     fn rows_hold_what_the_single_pixel_does() {
         let (surface, light) = (egg(), vec3(0.5, -0.3, 0.7));
@@ -215,7 +247,8 @@ mod tests {
             let exact = |x: usize| -> f32 {
                 let kappa = |s: &FeatureScale| {
                     let curvature = surface.curvature(s.blur_px);
-                    s.weight / 4.0 * curvature.kappa_along(x, 11, s.curvature_scale_px, lambda, light)
+                    s.weight / 4.0
+                        * curvature.kappa_along(x, 11, s.curvature_scale_px, lambda, light)
                 };
                 scales.iter().map(kappa).sum()
             };
@@ -225,18 +258,28 @@ mod tests {
             for i in 0..33 {
                 let expected = exact(20 + i);
                 let is_near = |kappa: f32| (kappa - expected).abs() < 1.6e-5;
-                assert!(is_near(toward[i]) && is_near(along[i]) && is_near(map.at(20 + i, 11, light)), "{lambda} {i}");
+                assert!(
+                    is_near(toward[i]) && is_near(along[i]) && is_near(map.at(20 + i, 11, light)),
+                    "{lambda} {i}"
+                );
             }
         }
     }
+
     #[test]
     fn the_weights_of_scales_are_a_mean() {
         let surface = egg();
-        let one =
-            |i: usize| Features { scales: vec![features(0.0).scales[i]], lambda: 0.0 }.on(&surface).at(35, 20, Vec3::Z);
+        let one = |i: usize| {
+            Features { scales: vec![features(0.0).scales[i]], lambda: 0.0 }.on(&surface).at(
+                35,
+                20,
+                Vec3::Z,
+            )
+        };
         let both = features(0.0).on(&surface).at(35, 20, Vec3::Z);
         assert!((both - (one(0) + 3.0 * one(1)) / 4.0).abs() < 4e-5);
     }
+
     #[test]
     fn anisotropy_follows_the_light() {
         let surface = egg();
@@ -244,6 +287,9 @@ mod tests {
         let iso = kappa(0.0, Vec3::X);
         assert!(kappa(1.0, Vec3::Y) > iso && kappa(1.0, Vec3::X) < iso, "it curves more along y");
         assert_eq!(kappa(-1.0, Vec3::X), kappa(1.0, Vec3::Y));
-        assert!((kappa(1.0, Vec3::Z) - iso).abs() < 1.6e-5, "toward the viewer only the mean is left");
+        assert!(
+            (kappa(1.0, Vec3::Z) - iso).abs() < 1.6e-5,
+            "toward the viewer only the mean is left"
+        );
     }
 }

@@ -22,7 +22,8 @@ pub struct Light {
 pub enum LightKind {
     /// Infinitely far. `direction` points toward the light, camera space (y up), any length but 0.
     Directional { direction: Vec3 },
-    /// At a point of the canvas (px, y down) and a height above the surface's nearest point (px, toward the viewer).
+    /// At a point of the canvas (px, y down) and a height above the surface's nearest point (px,
+    /// toward the viewer).
     Point { position: Vec3 },
 }
 
@@ -63,35 +64,58 @@ impl RowLight {
     /// From one direction, of any length; `radiance` linear.
     pub fn directional(direction: Vec3, radiance: [f32; 3]) -> Self {
         let l = direction.normalize_or(Vec3::Z);
-        Self { direction: l.to_array().map(|v| [v; TILE]), radiance, stands: RowLightPosition::Afar(l) }
+        Self {
+            direction: l.to_array().map(|v| [v; TILE]),
+            radiance,
+            stands: RowLightPosition::Afar(l),
+        }
     }
+
     fn point(position: Vec3, radiance: [f32; 3]) -> Self {
-        Self { direction: [[0.0; TILE], [0.0; TILE], [1.0; TILE]], radiance, stands: RowLightPosition::At(position) }
+        Self {
+            direction: [[0.0; TILE], [0.0; TILE], [1.0; TILE]],
+            radiance,
+            stands: RowLightPosition::At(position),
+        }
     }
+
     /// Moves on to a row.
     pub fn turn(&mut self, surface_row: &SurfaceRow) {
         let RowLightPosition::At(position) = self.stands else { return };
-        let (surface, columns) = (surface_row.surface, surface_row.x0..surface_row.x0 + surface_row.width);
-        // The first pixel from the light, x right, y up; heights are counted from the surface's nearest point.
-        let first =
-            vec3(position.x - (surface_row.x0 as f32 + 0.5), surface_row.y as f32 + 0.5 - position.y, position.z);
+        let (surface, columns) =
+            (surface_row.surface, surface_row.x0..surface_row.x0 + surface_row.width);
+        // The first pixel from the light, x right, y up; heights are counted from the surface's
+        // nearest point.
+        let first = vec3(
+            position.x - (surface_row.x0 as f32 + 0.5),
+            surface_row.y as f32 + 0.5 - position.y,
+            position.z,
+        );
         let depth = &surface.depth_plane().row(surface_row.y)[columns];
         if let Some(sheet) = surface.sheet_of() {
             return self.turn_on_sheet(surface_row, sheet, position);
         }
         turn_to_point(first, surface.depth_range_px(), depth, &mut self.direction);
     }
+
     /// As `turn`, for a row of a sheet: its pixels lie anywhere on the canvas.
     fn turn_on_sheet(&mut self, surface_row: &SurfaceRow, sheet: &SheetOf, position: Vec3) {
         let SurfaceRow { surface, x0, y, width, .. } = *surface_row;
         for x in 0..width {
             let (px, py) = sheet.canvas_pixel((x0 + x) as i32, y as i32);
-            let first = vec3(position.x - (px as f32 + 0.5), py as f32 + 0.5 - position.y, position.z);
+            let first =
+                vec3(position.x - (px as f32 + 0.5), py as f32 + 0.5 - position.y, position.z);
             let mut direction = [[0.0; TILE]; 3];
-            turn_to_point(first, surface.depth_range_px(), &[surface.depth(x0 + x, y)], &mut direction);
+            turn_to_point(
+                first,
+                surface.depth_range_px(),
+                &[surface.depth(x0 + x, y)],
+                &mut direction,
+            );
             self.direction.iter_mut().zip(direction).for_each(|(to, from)| to[x] = from[0]);
         }
     }
+
     /// The direction for κ(ℓ).
     pub fn toward(&self) -> LightDirection<'_> {
         match self.stands {
@@ -113,8 +137,8 @@ impl Light {
 }
 
 crate::widest! {
-    /// ℓ of each pixel of a row: toward a point at `from_first` from the first pixel as if that were at height 0; the
-    /// surface recedes from there by its depth.
+    /// ℓ of each pixel of a row: toward a point at `from_first` from the first pixel as if that
+    /// were at height 0; the surface recedes from there by its depth.
     fn turn_to_point(from_first: Vec3, depth_range_px: f32, depth: &[f32], direction: &mut [RowValues; 3]) {
         let [lx, ly, lz] = direction;
         for (x, (&depth, ((lx, ly), lz))) in depth.iter().zip(lx.iter_mut().zip(ly).zip(lz)).enumerate() {

@@ -1,7 +1,9 @@
-//! Floor 3: light. Materials lit by lights or environments, and radiance scaling, on the document's normals.
+//! Floor 3: light. Materials lit by lights or environments, and radiance scaling, on the document's
+//! normals.
 //!
-//! [`scaling`] is the paper's function σ; [`radiance`] applies it to the layers beneath, [`material`] to each term of a
-//! lit material. [`features`] selects the curvature that drives it. Colours are linear light inside.
+//! [`scaling`] is the paper's function σ; [`radiance`] applies it to the layers beneath,
+//! [`material`] to each term of a lit material. [`features`] selects the curvature that drives it.
+//! Colours are linear light inside.
 
 pub mod environment;
 pub mod features;

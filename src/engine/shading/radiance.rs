@@ -1,5 +1,5 @@
-//! The radiance-scaling layer: enhances everything beneath it in its group (RS eq. 3, MATH 5). Floor 3. Not here:
-//! composing what lies beneath (`document::compose`).
+//! The radiance-scaling layer: enhances everything beneath it in its group (RS eq. 3, MATH 5).
+//! Floor 3. Not here: composing what lies beneath (`document::compose`).
 
 mod row;
 
@@ -15,7 +15,8 @@ use row::RowScaler;
 
 /// The parameters of a radiance-scaling layer, an adjustment of what lies beneath it in its group.
 ///
-/// δ = Y / Y*, Y the luminance of the composite in linear light; the linear colour is multiplied by σ(κ, δ).
+/// δ = Y / Y*, Y the luminance of the composite in linear light; the linear colour is multiplied by
+/// σ(κ, δ).
 #[derive(Clone, Debug, PartialEq)]
 pub struct RadianceScaling {
     /// σ: how strongly, and around which light.
@@ -26,8 +27,8 @@ pub struct RadianceScaling {
     pub light: Vec3,
     /// Y*.
     pub reference: Reference,
-    /// Multiply by one more factor, the same everywhere, so that the mean luminance over the surface stays: a strong γ
-    /// then alters the material less (RS sec. 6.2).
+    /// Multiply by one more factor, the same everywhere, so that the mean luminance over the
+    /// surface stays: a strong γ then alters the material less (RS sec. 6.2).
     pub keep_mean: bool,
 }
 
@@ -48,7 +49,8 @@ impl Default for RadianceScaling {
 pub struct BackdropStats {
     /// Its greatest luminance over the surface, linear light.
     pub brightest: f32,
-    /// The factor that restores its mean luminance: [`LightSums::gain`]; 1 if the mean is not to be kept.
+    /// The factor that restores its mean luminance: [`LightSums::gain`]; 1 if the mean is not to be
+    /// kept.
     pub gain: f32,
 }
 
@@ -82,13 +84,14 @@ impl GainLadder {
     pub fn whole() -> Self {
         Self::between(1.0 / 64.0, 64.0)
     }
+
     fn between(low: f32, high: f32) -> Self {
         Self(std::array::from_fn(|k| low * (high / low).powf(k as f32 / (GAINS - 1) as f32)))
     }
 }
 
-/// Luminance of a part of the composite, added up before scaling, and after it for each factor, as shown: every channel
-/// clipped at 1. Add the parts in a fixed order.
+/// Luminance of a part of the composite, added up before scaling, and after it for each factor, as
+/// shown: every channel clipped at 1. Add the parts in a fixed order.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LightSums {
     pub before: f64,
@@ -97,32 +100,48 @@ pub struct LightSums {
 
 impl LightSums {
     pub fn plus(self, other: LightSums) -> LightSums {
-        LightSums { before: self.before + other.before, after: std::array::from_fn(|k| self.after[k] + other.after[k]) }
+        LightSums {
+            before: self.before + other.before,
+            after: std::array::from_fn(|k| self.after[k] + other.after[k]),
+        }
     }
-    /// The steps between which the light after equals that before: the index of the lower one, and how far beyond it.
+
+    /// The steps between which the light after equals that before: the index of the lower one, and
+    /// how far beyond it.
     fn bracket(&self) -> Option<(usize, f32)> {
         let over = self.after.iter().position(|&after| after >= self.before)?;
         let low = over.checked_sub(1)?;
         let share = (self.before - self.after[low]) / (self.after[over] - self.after[low]);
         share.is_finite().then_some((low, share as f32))
     }
+
     /// Finer steps around the factor that keeps the light; `None` if none of these does.
     pub fn finer(&self, tried: GainLadder) -> Option<GainLadder> {
         let (low, _) = self.bracket()?;
         Some(GainLadder::between(tried.0[low], tried.0[low + 1]))
     }
+
     /// The factor that keeps the light as it was; 1 if none of these does.
     pub fn gain(&self, tried: GainLadder) -> f32 {
-        let between = |(low, share): (usize, f32)| tried.0[low] + (tried.0[low + 1] - tried.0[low]) * share;
+        let between =
+            |(low, share): (usize, f32)| tried.0[low] + (tried.0[low + 1] - tried.0[low]) * share;
         self.bracket().map_or(1.0, between)
     }
 }
 
 impl RadianceScaling {
-    /// Scales one tile of the composite. Alpha and hue stay, as does what is off the surface; γ = 0 changes nothing.
-    pub fn apply_tile(&self, scene: &Scene, at: TileAt, beneath: BackdropStats, pixels: &mut PlanarTile) {
+    /// Scales one tile of the composite. Alpha and hue stay, as does what is off the surface; γ = 0
+    /// changes nothing.
+    pub fn apply_tile(
+        &self,
+        scene: &Scene,
+        at: TileAt,
+        beneath: BackdropStats,
+        pixels: &mut PlanarTile,
+    ) {
         self.apply_at(scene, at, beneath, Exactness::Fast, pixels);
     }
+
     /// The same, as exactly as requested.
     pub fn apply_at(
         &self,
@@ -139,15 +158,20 @@ impl RadianceScaling {
             if gain != 1.0 {
                 // Off the surface the factor is 1.
                 let mut gains = [1.0; TILE];
-                gains.iter_mut().zip(coverage).filter(|(_, c)| **c > 0).for_each(|(g, _)| *g = gain);
+                gains
+                    .iter_mut()
+                    .zip(coverage)
+                    .filter(|(_, c)| **c > 0)
+                    .for_each(|(g, _)| *g = gain);
                 scaler.apply_with_gains(row, kappa, &gains);
             } else {
                 scaler.apply(row, kappa);
             }
         });
     }
-    /// The same for rows of pixels that lie anywhere on a surface: `places` holds the place of each pixel, or that it
-    /// is off it.
+
+    /// The same for rows of pixels that lie anywhere on a surface: `places` holds the place of each
+    /// pixel, or that it is off it.
     pub fn apply_packed(
         &self,
         surface: &Surface,
@@ -166,9 +190,14 @@ impl RadianceScaling {
                     gains[x] = gain;
                 }
             }
-            if gain == 1.0 { scaler.apply(row, &kappa) } else { scaler.apply_with_gains(row, &kappa, &gains) }
+            if gain == 1.0 {
+                scaler.apply(row, &kappa)
+            } else {
+                scaler.apply_with_gains(row, &kappa, &gains)
+            }
         }
     }
+
     /// What scales rows, and the factor that keeps the mean; `None` if nothing would change.
     fn scaler(&self, beneath: BackdropStats, exactness: Exactness) -> Option<(RowScaler, f32)> {
         let gain = if self.keep_mean { beneath.gain } else { 1.0 };
@@ -183,8 +212,9 @@ impl RadianceScaling {
         };
         Some((scaler, gain))
     }
-    /// Luminance of one tile before scaling, and after it with each factor, weighted by alpha and by how far the
-    /// surface covers each pixel.
+
+    /// Luminance of one tile before scaling, and after it with each factor, weighted by alpha and
+    /// by how far the surface covers each pixel.
     pub fn means_tile(
         &self,
         scene: &Scene,
@@ -200,18 +230,29 @@ impl RadianceScaling {
             let Some(row) = pixels.rows().get(y) else { return };
             light_of_row(row, kappa, self.scaling, 1.0 / y_star, &tried.0, &mut light);
             let sum = |values: &[f32; TILE]| -> f64 {
-                values.iter().zip(coverage).map(|(&v, &coverage)| f64::from(coverage) * f64::from(v)).sum()
+                values
+                    .iter()
+                    .zip(coverage)
+                    .map(|(&v, &coverage)| f64::from(coverage) * f64::from(v))
+                    .sum()
             };
             sums.before += sum(&light.before);
             sums.after.iter_mut().zip(&light.after).for_each(|(all, row)| *all += sum(row));
         });
         sums
     }
-    /// Calls with each row of the tile that meets the surface, κ along it (0 off the surface) and the surface's
-    /// coverage.
-    fn for_rows(&self, scene: &Scene, at: TileAt, mut with: impl FnMut(usize, &[f32; TILE], &[u8])) {
+
+    /// Calls with each row of the tile that meets the surface, κ along it (0 off the surface) and
+    /// the surface's coverage.
+    fn for_rows(
+        &self,
+        scene: &Scene,
+        at: TileAt,
+        mut with: impl FnMut(usize, &[f32; TILE], &[u8]),
+    ) {
         let Some(surface) = scene.surface.as_deref() else { return };
-        // The lattice of tiles begins at the canvas's corner, so a tile meets it from its own left and top side on.
+        // The lattice of tiles begins at the canvas's corner, so a tile meets it from its own left
+        // and top side on.
         let inside = at.rect().intersect(surface.size().rect());
         let columns = inside.x0 as usize..inside.x1 as usize;
         let features = self.features.on(surface);
@@ -237,7 +278,8 @@ struct RowLuminance {
 }
 
 crate::widest! {
-    /// Alpha × luminance of each pixel, before scaling and after it with each factor, clipped as it is shown.
+    /// Alpha × luminance of each pixel, before scaling and after it with each factor, clipped as it
+    /// is shown.
     fn light_of_row(
         row: &PixelRow,
         kappa: &[f32; TILE],

@@ -1,15 +1,17 @@
-//! The scaling function σ: how much reflected light is raised or lowered on a feature (RS sec. 4, MATH 5).
-//! Floor 3. Not here: which curvature (`features`), which reflectance (`radiance`, `material`).
+//! The scaling function σ: how much reflected light is raised or lowered on a feature (RS sec. 4,
+//! MATH 5). Floor 3. Not here: which curvature (`features`), which reflectance (`radiance`,
+//! `material`).
 
 use crate::math::{Range, fast};
 
 /// How a term is scaled: the scaling-invariant point and the magnitude.
 ///
-/// RS names separate strengths for convex and concave features as future work; with both equal it is the paper's γ.
+/// RS names separate strengths for convex and concave features as future work; with both equal it
+/// is the paper's γ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scaling {
-    /// α in (0, 1): light of this reflectance is unchanged; on a convex feature brighter light rises, dimmer light
-    /// falls.
+    /// α in (0, 1): light of this reflectance is unchanged; on a convex feature brighter light
+    /// rises, dimmer light falls.
     pub alpha: f32,
     /// γ on convex features (κ > 0), `≥ 0`.
     pub gamma_convex: f32,
@@ -30,7 +32,8 @@ pub fn sigma(kappa: f32, delta: f32, alpha: f32, gamma: f32) -> f32 {
     ratio((-gamma * kappa).exp(), delta, alpha)
 }
 
-/// RS eq. 2 for a given E, sorted so that every summand is positive: no cancellation, no zero below the line.
+/// RS eq. 2 for a given E, sorted so that every summand is positive: no cancellation, no zero below
+/// the line.
 #[inline(always)]
 fn ratio(e: f32, delta: f32, alpha: f32) -> f32 {
     let (dim, bright) = (alpha * (1.0 - delta), delta * (1.0 - alpha));
@@ -51,20 +54,24 @@ impl Scaling {
     pub const fn new(alpha: f32, gamma: f32) -> Self {
         Self { alpha, gamma_convex: gamma, gamma_concave: gamma }
     }
+
     /// Whether σ is 1 everywhere.
     pub fn is_none(&self) -> bool {
         self.gamma_convex == 0.0 && self.gamma_concave == 0.0
     }
+
     /// σ(κ, δ); δ is clamped to `[0, 1]`.
     pub fn sigma(&self, kappa: f32, delta: f32) -> f32 {
         let gamma = if kappa > 0.0 { self.gamma_convex } else { self.gamma_concave };
         sigma(kappa, delta.max(0.0).min(1.0), self.alpha, gamma)
     }
+
     /// [`Scaling::sigma`] for inner loops, relative error below 1e-5.
     #[inline(always)]
     pub fn sigma_fast(self, kappa: f32, delta: f32) -> f32 {
         self.sigma_of(self.exponential(kappa), delta)
     }
+
     /// E = e^(−γκ) of [`Scaling::sigma_fast`].
     #[inline(always)]
     pub fn exponential(self, kappa: f32) -> f32 {
@@ -73,6 +80,7 @@ impl Scaling {
         let gamma = if kappa > 0.0 { gamma_convex } else { gamma_concave };
         fast::exp(-gamma * kappa)
     }
+
     /// The rest of [`Scaling::sigma_fast`].
     #[inline(always)]
     pub fn sigma_of(self, exponential: f32, delta: f32) -> f32 {
@@ -111,8 +119,12 @@ mod tests {
     use proptest::prelude::*;
 
     fn assert_near(found: f32, expected: f32, ratio: f32) {
-        assert!((found - expected).abs() <= ratio * expected.abs().max(1e-3), "{found} is not {expected}");
+        assert!(
+            (found - expected).abs() <= ratio * expected.abs().max(1e-3),
+            "{found} is not {expected}"
+        );
     }
+
     #[test]
     #[expect(clippy::approx_constant, reason = "the table is written as it stands")]
     fn sigma_has_the_values_of_the_table() {
@@ -128,18 +140,21 @@ mod tests {
             }
         }
     }
+
     #[test]
     fn convex_features_brighten_above_the_invariant_point_and_darken_below_it() {
         let s = Scaling::new(0.3, 1.5);
         assert!(s.sigma(0.7, 0.6) > 1.0 && s.sigma(0.7, 0.1) < 1.0);
         assert!(s.sigma(-0.7, 0.6) < 1.0 && s.sigma(-0.7, 0.1) > 1.0);
     }
+
     #[test]
     fn convex_and_concave_features_can_be_scaled_apart() {
         let s = Scaling { alpha: 0.2, gamma_convex: 0.0, gamma_concave: 2.0 };
         assert_eq!(s.sigma(0.8, 0.9), 1.0);
         assert_near(s.sigma(-0.8, 0.9), sigma(-0.8, 0.9, 0.2, 2.0), 1e-6);
     }
+
     #[test]
     fn a_black_reference_does_not_divide_by_zero() {
         assert_eq!(Reference::Auto.resolve(0.0), 1.0);
@@ -158,6 +173,7 @@ mod tests {
             assert_near(sigma(kappa, 1.0, alpha, gamma), (gamma * kappa).exp(), 1e-5);
             assert_near(sigma(kappa, 0.0, alpha, gamma), (-gamma * kappa).exp(), 1e-5);
         }
+
         #[test]
         fn convex_and_concave_are_reciprocal(
             kappa in -1.0f32..1.0, delta in 0.0f32..=1.0, alpha in 0.01f32..0.99, gamma in 0.0f32..6.0
@@ -165,6 +181,7 @@ mod tests {
             assert_near(sigma(-kappa, delta, alpha, gamma), 1.0 / sigma(kappa, delta, alpha, gamma), 1e-4);
             assert_near(sigma(kappa, delta, alpha, gamma), 1.0 / sigma(kappa, 1.0 - delta, 1.0 - alpha, gamma), 1e-4);
         }
+
         #[test]
         fn sigma_is_monotonic_and_convex_features_gain_no_new_extremum(
             kappa in 0.0f32..1.0, a in 0.0f32..=1.0, b in 0.0f32..=1.0, alpha in 0.01f32..0.99, gamma in 0.0f32..6.0
@@ -176,6 +193,7 @@ mod tests {
             prop_assert!(concave(low) >= concave(high) * (1.0 - 1e-5));
             prop_assert!(low * convex(low) <= high * convex(high) * (1.0 + 1e-5));
         }
+
         #[test]
         fn the_fast_sigma_is_the_same_function(
             kappa in -1.0f32..1.0, delta in -0.5f32..1.5, alpha in 0.01f32..0.99, gamma in 0.0f32..6.0

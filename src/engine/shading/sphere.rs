@@ -1,5 +1,5 @@
-//! A lit sphere (Sloan et al. 2001; "matcap"): a painted sphere that gives the colour of every normal.
-//! Floor 3.
+//! A lit sphere (Sloan et al. 2001; "matcap"): a painted sphere that gives the colour of every
+//! normal. Floor 3.
 
 use crate::math::{Size, Vec2, Vec3, Vec3A, fast, srgb, vec2, vec3};
 use crate::raster::{Picture, TILE};
@@ -30,10 +30,12 @@ impl LitSphere {
     pub fn new(file: String, picture: Picture) -> Self {
         Self { file, picture, light: Arc::default() }
     }
+
     /// The sphere's light, ready to be looked up.
     pub fn light(&self) -> &SphereLight {
         crate::memory::once(&self.light, || SphereLight::new(&self.picture))
     }
+
     /// Grey clay under a window at the upper left: the sphere of a layer that names none.
     pub fn clay() -> &'static LitSphere {
         static CLAY: LazyLock<LitSphere> = LazyLock::new(|| LitSphere::new(String::new(), clay()));
@@ -44,9 +46,8 @@ impl LitSphere {
 /// Linear light of a sphere by its projected normal.
 pub struct SphereLight {
     size: Size,
-    /// Beyond the disc the nearest colour inside is repeated, so that lookups at the rim never read the picture's
-    /// background.
-    /// Each takes 16 bytes, so that one instruction reads it.
+    /// Beyond the disc the nearest colour inside is repeated, so that lookups at the rim never read
+    /// the picture's background. Each takes 16 bytes, so that one instruction reads it.
     texels: Vec<Vec3A>,
     /// The greatest luminance on the disc.
     brightest: f32,
@@ -55,8 +56,8 @@ pub struct SphereLight {
 impl SphereLight {
     fn new(picture: &Picture) -> Self {
         let (width, height) = (picture.size.width as usize, picture.size.height as usize);
-        // This runs on one thread: a worker that waited for others could be given a tile that waits for this same
-        // sphere.
+        // This runs on one thread: a worker that waited for others could be given a tile that waits
+        // for this same sphere.
         let texel = |i: usize| Vec3A::from(nearest_inside(picture, i % width, i / width));
         let texels: Vec<Vec3A> = match rayon::current_thread_index() {
             Some(_) => (0..width * height).map(texel).collect(),
@@ -65,16 +66,20 @@ impl SphereLight {
         let brightest = texels.iter().map(|t| srgb::luminance(t.x, t.y, t.z)).fold(0.0, f32::max);
         Self { size: picture.size, texels, brightest }
     }
-    /// The colour at ½ + ½ n̄ of the picture, bilinear, linear light (MATH 5). `nbar`: image axes (y down), length ≤ 1.
+
+    /// The colour at ½ + ½ n̄ of the picture, bilinear, linear light (MATH 5). `nbar`: image axes
+    /// (y down), length ≤ 1.
     #[inline(always)]
     pub fn at(&self, nbar: Vec2) -> [f32; 3] {
         let SphereSpot { index, across, along } = self.spot(nbar);
         self.between(index, across, along).to_array()
     }
+
     /// The same for a row of normals, camera space (y up).
     pub fn at_row(&self, normal: &[RowValues; 3], light: &mut Light3) {
         read_row(self, normal, light);
     }
+
     #[inline(always)]
     fn spot(&self, nbar: Vec2) -> SphereSpot {
         let (w, h) = (self.size.width as i32, self.size.height as i32);
@@ -85,6 +90,7 @@ impl SphereLight {
         let index = [index(i, j), index(i + 1, j), index(i, j + 1), index(i + 1, j + 1)];
         SphereSpot { index, across: x - left, along: y - top }
     }
+
     /// Of four texels, by their numbers.
     #[inline(always)]
     fn between(&self, index: [i32; 4], across: f32, along: f32) -> Vec3A {
@@ -93,6 +99,7 @@ impl SphereLight {
         let below = texel(index[2]).lerp(texel(index[3]), across);
         above.lerp(below, along)
     }
+
     /// The greatest luminance on the sphere.
     pub fn brightest(&self) -> f32 {
         self.brightest
@@ -167,16 +174,24 @@ mod tests {
             }
         };
         let size = Size::new(side, side);
-        LitSphere::new("disc".into(), Picture::linear(size, (0..side * side).map(color).collect()).unwrap())
+        LitSphere::new(
+            "disc".into(),
+            Picture::linear(size, (0..side * side).map(color).collect()).unwrap(),
+        )
     }
+
     #[test]
     fn a_normal_finds_its_place_on_the_disc() {
         let sphere = disc(200);
         for nbar in [vec2(0.0, 0.0), vec2(0.5, -0.3), vec2(-0.6, 0.7)] {
             let [r, g, _] = sphere.light().at(nbar);
-            assert!((r - (0.5 + 0.5 * nbar.x)).abs() < 1e-4 && (g - (0.5 + 0.5 * nbar.y)).abs() < 1e-4, "{r} {g}");
+            assert!(
+                (r - (0.5 + 0.5 * nbar.x)).abs() < 1e-4 && (g - (0.5 + 0.5 * nbar.y)).abs() < 1e-4,
+                "{r} {g}"
+            );
         }
     }
+
     #[test]
     fn a_row_reads_the_same_bits_as_single_normals() {
         let sphere = disc(57);
@@ -187,6 +202,7 @@ mod tests {
         let read = |x: usize| light.map(|row| row[x]);
         (0..TILE).for_each(|x| assert_eq!(read(x), sphere.light().at(at(x)), "{x}"));
     }
+
     #[test]
     fn the_ground_around_the_sphere_is_never_seen() {
         for side in [1, 2, 3, 17, 256] {
@@ -199,6 +215,7 @@ mod tests {
             assert!(sphere.light().brightest() <= 1.0);
         }
     }
+
     #[test]
     fn clay_is_brightest_at_the_upper_left() {
         let light = LitSphere::clay().light();

@@ -32,8 +32,8 @@ impl BevelCurve {
     /// Points of a custom curve.
     pub const MOST_POINTS: usize = 64;
 
-    /// Height at t and the direction of the curve there as (run, rise), `[0, 1]` each except for custom curves, which
-    /// may fall.
+    /// Height at t and the direction of the curve there as (run, rise), `[0, 1]` each except for
+    /// custom curves, which may fall.
     pub fn at(&self, t: f32) -> (f32, Vec2) {
         if t >= 1.0 {
             let last = match self {
@@ -97,7 +97,9 @@ pub fn beveled(outline: &Outline, bevel: &Bevel) -> Form {
     let inside = outline.inside();
     let steep = bevel.height / bevel.width;
     let at = |x: usize, y: usize| bevel.curve.at(distance.at(x, y) / bevel.width);
-    let height = Plane::from_fn(outline.size(), |x, y| if inside.at(x, y) { at(x, y).0 * bevel.height } else { 0.0 });
+    let height = Plane::from_fn(outline.size(), |x, y| {
+        if inside.at(x, y) { at(x, y).0 * bevel.height } else { 0.0 }
+    });
     let normals = Plane::from_fn(outline.size(), |x, y| {
         let (way, along) = if inside.at(x, y) {
             (inward.at(x, y), at(x, y).1)
@@ -120,26 +122,44 @@ mod tests {
     fn curves_begin_at_the_rim_and_end_at_their_height_and_tell_their_slope() {
         let own = BevelCurve::Points(vec![vec2(0.0, 0.0), vec2(0.3, 0.8), vec2(1.0, 1.0)]);
         for curve in [BevelCurve::Round, BevelCurve::Chisel, BevelCurve::Cove, own] {
-            assert!(curve.at(0.0).0.abs() < 1e-6 && (curve.at(1.0).0 - 1.0).abs() < 1e-6, "{curve:?}");
+            assert!(
+                curve.at(0.0).0.abs() < 1e-6 && (curve.at(1.0).0 - 1.0).abs() < 1e-6,
+                "{curve:?}"
+            );
             for t in [0.1f32, 0.25, 0.5, 0.9] {
                 let slope = (curve.at(t + 1e-3).0 - curve.at(t - 1e-3).0) / 2e-3;
                 let along = curve.at(t).1;
-                assert!((along.y / along.x - slope).abs() < 0.01 * (1.0 + slope.abs()), "{curve:?} at {t}");
+                assert!(
+                    (along.y / along.x - slope).abs() < 0.01 * (1.0 + slope.abs()),
+                    "{curve:?} at {t}"
+                );
             }
         }
         assert_eq!(BevelCurve::Step.at(0.0).0, 1.0);
     }
+
     #[test]
     fn a_chiselled_square_has_four_straight_slopes_and_a_level_top() {
-        let outline =
-            Outline::of_path(&[vec2(5.0, 5.0), vec2(105.0, 5.0), vec2(105.0, 105.0), vec2(5.0, 105.0)], 1 << 20)
-                .unwrap();
+        let outline = Outline::of_path(
+            &[vec2(5.0, 5.0), vec2(105.0, 5.0), vec2(105.0, 105.0), vec2(5.0, 105.0)],
+            1 << 20,
+        )
+        .unwrap();
         let bevel = Bevel { width: 20.0, height: 10.0, curve: BevelCurve::Chisel };
         let form = beveled(&outline, &bevel);
         let at = |x: i32, y: i32| ((x - form.corner.0) as usize, (y - form.corner.1) as usize);
         let (left, middle) = (at(12, 55), at(55, 55));
-        assert!((form.height.at(left.0, left.1) - 3.75).abs() < 0.02, "{}", form.height.at(left.0, left.1));
-        assert!((form.normals.at(left.0, left.1) - vec3(-0.5, 0.0, 1.0).normalize()).length() < 1e-3);
-        assert_eq!((form.height.at(middle.0, middle.1), form.normals.at(middle.0, middle.1)), (10.0, Vec3::Z));
+        assert!(
+            (form.height.at(left.0, left.1) - 3.75).abs() < 0.02,
+            "{}",
+            form.height.at(left.0, left.1)
+        );
+        assert!(
+            (form.normals.at(left.0, left.1) - vec3(-0.5, 0.0, 1.0).normalize()).length() < 1e-3
+        );
+        assert_eq!(
+            (form.height.at(middle.0, middle.1), form.normals.at(middle.0, middle.1)),
+            (10.0, Vec3::Z)
+        );
     }
 }

@@ -1,5 +1,5 @@
-//! Forms in order, the farthest first, as one surface: over, smooth union, add, cut. Floor 3. Order gives depth; the
-//! part that is seen at a pixel is its object.
+//! Forms in order, the farthest first, as one surface: over, smooth union, add, cut. Floor 3. Order
+//! gives depth; the part that is seen at a pixel is its object.
 
 use super::Form;
 use crate::math::{Range, Size, Vec3, vec3};
@@ -40,7 +40,8 @@ impl Combine {
 
     /// Its name in documents.
     pub fn name(self) -> &'static str {
-        let is_same = |(way, _): &&(Self, &str)| std::mem::discriminant(way) == std::mem::discriminant(&self);
+        let is_same =
+            |(way, _): &&(Self, &str)| std::mem::discriminant(way) == std::mem::discriminant(&self);
         Self::ALL.iter().find(is_same).map_or("over", |(_, name)| name)
     }
 }
@@ -55,11 +56,13 @@ pub struct Relief {
     pub coverage: Plane<u8>,
     /// Which part is seen, from 1 on; 0 where there is none.
     pub ids: Plane<u32>,
-    /// For each part, the one whose piece of surface it belongs to: itself, or one that it is merged or level with.
+    /// For each part, the one whose piece of surface it belongs to: itself, or one that it is
+    /// merged or level with.
     pub piece_of: Vec<u32>,
 }
 
-/// The least distance of a part before another, as a share of the canvas's longer side: enough for a depth jump.
+/// The least distance of a part before another, as a share of the canvas's longer side: enough for
+/// a depth jump.
 const GAP: f32 = 0.004;
 
 impl Relief {
@@ -72,13 +75,16 @@ impl Relief {
             piece_of: vec![0],
         }
     }
+
     /// With one more part in front; `id` from 1 on. Its share off the canvas is left out.
     pub fn add(&mut self, form: &Form, combine: Combine, id: u32) {
         // Nothing lies beneath the first part.
         let is_first = self.coverage.values().par_iter().all(|c| *c == 0);
         let piece = match combine {
             _ if is_first => None,
-            Combine::Union { .. } | Combine::Join => self.mostly_beneath(form).map(|other| self.piece(other)),
+            Combine::Union { .. } | Combine::Join => {
+                self.mostly_beneath(form).map(|other| self.piece(other))
+            }
             Combine::Over | Combine::Add | Combine::Cut => None,
         };
         let known = self.piece_of.len() as u32;
@@ -111,18 +117,26 @@ impl Relief {
                         coverage: form.coverage.at(fx, fy),
                         id,
                     };
-                    let beneath = FormTexel { height: heights[x], normal: normals[x], coverage: covers[x], id: ids[x] };
+                    let beneath = FormTexel {
+                        height: heights[x],
+                        normal: normals[x],
+                        coverage: covers[x],
+                        id: ids[x],
+                    };
                     if above.coverage > 0 {
                         let met = beneath.met_by(above, combine);
-                        (heights[x], normals[x], covers[x], ids[x]) = (met.height, met.normal, met.coverage, met.id);
+                        (heights[x], normals[x], covers[x], ids[x]) =
+                            (met.height, met.normal, met.coverage, met.id);
                     }
                 }
             },
         );
     }
+
     fn piece(&self, id: u32) -> u32 {
         self.piece_of.get(id as usize).copied().unwrap_or(id)
     }
+
     /// The part beneath most of a form.
     fn mostly_beneath(&self, form: &Form) -> Option<u32> {
         let mut counts = BTreeMap::new();
@@ -130,14 +144,21 @@ impl Relief {
             let at = (x as i32 + form.corner.0, y as i32 + form.corner.1);
             *counts.entry(self.ids.at(at.0 as usize, at.1 as usize)).or_insert(0u32) += 1;
         }
-        counts.into_iter().filter(|(id, _)| *id > 0).max_by_key(|(_, count)| *count).map(|(id, _)| id)
+        counts
+            .into_iter()
+            .filter(|(id, _)| *id > 0)
+            .max_by_key(|(_, count)| *count)
+            .map(|(id, _)| id)
     }
+
     /// The rows of the canvas that a form reaches.
     fn shared_rows(&self, form: &Form) -> std::ops::Range<i32> {
         let rect = form.rect().intersect(self.height.size().rect());
         rect.y0..rect.y1.max(rect.y0)
     }
-    /// Pairs of a form's covered pixels in some rows and those beneath them: heights, and the place in the form.
+
+    /// Pairs of a form's covered pixels in some rows and those beneath them: heights, and the place
+    /// in the form.
     fn pairs<'a>(
         &'a self,
         form: &'a Form,
@@ -154,8 +175,9 @@ impl Relief {
             })
         })
     }
-    /// The greatest height of anything beneath above a form where they overlap or touch, plus a gap; 0 where they do
-    /// not.
+
+    /// The greatest height of anything beneath above a form where they overlap or touch, plus a
+    /// gap; 0 where they do not.
     fn offset(&self, form: &Form) -> f32 {
         let more = |a: Option<f32>, b: Option<f32>| a.zip(b).map(|(a, b)| a.max(b)).or(a).or(b);
         let of_row = |y: i32| {
@@ -165,35 +187,47 @@ impl Relief {
         let rise = self.shared_rows(form).into_par_iter().map(of_row).reduce(|| None, more);
         rise.map_or(0.0, |rise| (rise + GAP * self.height.size().longer_side()).max(0.0))
     }
-    /// The height of what lies next to a form's rim in a row above that rim: flats of a drawing touch and do not
-    /// overlap.
+
+    /// The height of what lies next to a form's rim in a row above that rim: flats of a drawing
+    /// touch and do not overlap.
     fn touching<'a>(&'a self, form: &'a Form, y: i32) -> impl Iterator<Item = f32> + 'a {
         const FAR: i32 = 2;
-        let own = |x: i32, y: i32| form.coverage.get(x - form.corner.0, y - form.corner.1).unwrap_or(0) >= 128;
+        let own = |x: i32, y: i32| {
+            form.coverage.get(x - form.corner.0, y - form.corner.1).unwrap_or(0) >= 128
+        };
         let rect = form.rect().intersect(self.height.size().rect());
-        let rim = (rect.x0..rect.x1)
-            .map(move |x| (x, y))
-            .filter(move |&(x, y)| own(x, y) && !(own(x - 1, y) && own(x + 1, y) && own(x, y - 1) && own(x, y + 1)));
+        let rim = (rect.x0..rect.x1).map(move |x| (x, y)).filter(move |&(x, y)| {
+            own(x, y) && !(own(x - 1, y) && own(x + 1, y) && own(x, y - 1) && own(x, y + 1))
+        });
         rim.flat_map(move |(x, y)| {
             let height = form.height.at((x - form.corner.0) as usize, (y - form.corner.1) as usize);
-            let around = (-FAR..=FAR).flat_map(move |dy| (-FAR..=FAR).map(move |dx| (x + dx, y + dy)));
-            let beside = around.filter(move |&(x, y)| !own(x, y) && self.coverage.get(x, y).unwrap_or(0) >= 128);
+            let around =
+                (-FAR..=FAR).flat_map(move |dy| (-FAR..=FAR).map(move |dx| (x + dx, y + dy)));
+            let beside = around
+                .filter(move |&(x, y)| !own(x, y) && self.coverage.get(x, y).unwrap_or(0) >= 128);
             beside.map(move |(x, y)| self.height.at(x as usize, y as usize) - height)
         })
     }
+
     /// What brings the rim of a form to the mean height of what lies beneath that rim.
     fn level(&self, form: &Form) -> f32 {
         let at_rim = |&(_, _, (x, y)): &(f32, f32, (usize, usize))| {
-            let bare = |dx: i32, dy: i32| form.coverage.get(x as i32 + dx, y as i32 + dy).is_none_or(|c| c < 128);
+            let bare = |dx: i32, dy: i32| {
+                form.coverage.get(x as i32 + dx, y as i32 + dy).is_none_or(|c| c < 128)
+            };
             bare(1, 0) || bare(-1, 0) || bare(0, 1) || bare(0, -1)
         };
         let (sum, count) = self
             .pairs(form, self.shared_rows(form))
             .filter(at_rim)
-            .fold((0.0f64, 0u32), |(sum, n), (beneath, own, _)| (sum + f64::from(beneath - own), n + 1));
+            .fold((0.0f64, 0u32), |(sum, n), (beneath, own, _)| {
+                (sum + f64::from(beneath - own), n + 1)
+            });
         if count == 0 { 0.0 } else { (sum / f64::from(count)) as f32 }
     }
-    /// The surface, whose objects are the parts: heights become depths, 0 near … 1 far over all that is covered.
+
+    /// The surface, whose objects are the parts: heights become depths, 0 near … 1 far over all
+    /// that is covered.
     ///
     /// * `known`: from the previous surface, so that the same need not be found again.
     pub fn into_surface(self, known: &mut KnownNearest) -> Result<Surface, SurfaceError> {
@@ -202,7 +236,8 @@ impl Relief {
         let wider = |(a, b): (f32, f32), (c, d): (f32, f32)| (a.min(c), b.max(d));
         let (low, high) = covered.map(|(z, _)| (*z, *z)).reduce(|| (f32::MAX, f32::MIN), wider);
         let range = if high > low { high - low } else { 1.0 };
-        let depth = height.updated(|x, y, z| if coverage.at(x, y) == 0 { f32::NAN } else { (high - z) / range });
+        let depth = height
+            .updated(|x, y, z| if coverage.at(x, y) == 0 { f32::NAN } else { (high - z) / range });
         Surface::with_parts(Maps { normals, depth, coverage }, ids, &piece_of, known)
     }
 }
@@ -233,18 +268,25 @@ impl FormTexel {
             Combine::Union { smooth } => {
                 let (height, share) = smooth_max(self.height, above.height, smooth);
                 let id = if share < 0.5 { above.id } else { self.id };
-                FormTexel { height, normal: between(self.normal, above.normal, share), coverage, id }
+                FormTexel {
+                    height,
+                    normal: between(self.normal, above.normal, share),
+                    coverage,
+                    id,
+                }
             }
             Combine::Add => self.sum(above, 1.0),
             Combine::Cut => self.sum(above, -1.0),
         }
     }
+
     /// Heights and slopes added, the part's times `sign`.
     fn sum(self, above: FormTexel, sign: f32) -> FormTexel {
         let (a, b) = (self.normal, above.normal);
         // An added wall stays steep, but not so steep that nothing else is seen.
         let (az, bz) = (a.z.max(0.02), b.z.max(0.02));
-        let normal = vec3(a.x * bz + sign * b.x * az, a.y * bz + sign * b.y * az, az * bz).normalize_or(Vec3::Z);
+        let normal = vec3(a.x * bz + sign * b.x * az, a.y * bz + sign * b.y * az, az * bz)
+            .normalize_or(Vec3::Z);
         FormTexel { height: self.height + sign * above.height, normal, ..self }
     }
 }
@@ -270,7 +312,11 @@ fn between(a: Vec3, b: Vec3, share: f32) -> Vec3 {
     if share <= 0.0 {
         return b;
     }
-    vec3(a.x * wa + b.x * wb, a.y * wa + b.y * wb, a.z * b.z).normalize_or(if share > 0.5 { a } else { b })
+    vec3(a.x * wa + b.x * wb, a.y * wa + b.y * wb, a.z * b.z).normalize_or(if share > 0.5 {
+        a
+    } else {
+        b
+    })
 }
 
 #[cfg(test)]
@@ -295,7 +341,8 @@ mod tests {
         let mut alone = Relief::empty(SIZE);
         alone.add(&back, Combine::Over, 1);
         for (x, y) in (0..120).flat_map(|y| (0..200).map(move |x| (x, y))) {
-            if relief.ids.at(x, y) == 2 && alone.ids.at(x, y) == 1 && alone.coverage.at(x, y) >= 128 {
+            if relief.ids.at(x, y) == 2 && alone.ids.at(x, y) == 1 && alone.coverage.at(x, y) >= 128
+            {
                 assert!(relief.height.at(x, y) > alone.height.at(x, y), "({x}, {y})");
             }
         }
@@ -305,6 +352,7 @@ mod tests {
         assert_ne!(object(60, 60), object(120, 60));
         assert_eq!(object(60, 60), object(80, 20));
     }
+
     #[test]
     fn a_part_beside_the_others_keeps_its_height_and_one_off_the_canvas_adds_nothing() {
         let mut relief = Relief::empty(SIZE);
@@ -313,11 +361,16 @@ mod tests {
         assert!((relief.height.at(150, 60) - 20.0).abs() < 0.1);
         let before = relief.clone();
         relief.add(&ball(vec2(-400.0, 900.0), 20.0), Combine::Over, 3);
-        assert!(relief.height == before.height && relief.ids == before.ids && relief.coverage == before.coverage);
+        assert!(
+            relief.height == before.height
+                && relief.ids == before.ids
+                && relief.coverage == before.coverage
+        );
         // Half of it is on the canvas.
         relief.add(&ball(vec2(0.0, 0.0), 20.0), Combine::Over, 4);
         assert_eq!(relief.ids.at(0, 0), 4);
     }
+
     #[test]
     fn a_smooth_union_is_smooth_and_never_below_either() {
         for i in 0..100 {
@@ -329,6 +382,7 @@ mod tests {
         }
         assert_eq!(smooth_max(3.0, 5.0, 0.0), (5.0, 0.0));
     }
+
     #[test]
     fn what_is_added_and_cut_changes_heights_and_leaves_the_object() {
         let mut relief = Relief::empty(SIZE);

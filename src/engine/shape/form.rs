@@ -1,5 +1,5 @@
-//! Forms: heights and normals of one part, the result of every algorithm of this floor. Floor 3. Not here: how forms
-//! are combined (`combine`).
+//! Forms: heights and normals of one part, the result of every algorithm of this floor. Floor 3.
+//! Not here: how forms are combined (`combine`).
 
 use super::{Outline, OutlineRim};
 use crate::math::{Affine2, Mat2, Rect, Size, Vec2, Vec3, vec2, vec3};
@@ -31,10 +31,15 @@ pub struct Roundness {
 impl Form {
     /// Heights √q and their normals of a squared height q, px², that is 0 at the rim.
     ///
-    /// With puff p and a constant k that flattens the rim, n ∝ (−p² ∂q/∂x, p² ∂q/∂y, 2 p √q + k): exact at the rim,
-    /// where n_z = 0 for k = 0. k makes the rim turn by `rim_deg` in the mean. The heights whose slopes these
-    /// are: p√q − k/2 ln(1 + 2p√q / k).
-    pub fn of_squares(outline: &Outline, squares: &Plane<f32>, rim: &OutlineRim, round: Roundness) -> Self {
+    /// With puff p and a constant k that flattens the rim, n ∝ (−p² ∂q/∂x, p² ∂q/∂y, 2 p √q + k):
+    /// exact at the rim, where n_z = 0 for k = 0. k makes the rim turn by `rim_deg` in the mean.
+    /// The heights whose slopes these are: p√q − k/2 ln(1 + 2p√q / k).
+    pub fn of_squares(
+        outline: &Outline,
+        squares: &Plane<f32>,
+        rim: &OutlineRim,
+        round: Roundness,
+    ) -> Self {
         let flat = flattening(outline, squares, rim, round);
         let (sin, cos) = round.rim_deg.to_radians().sin_cos();
         let (size, inside) = (outline.size(), outline.inside());
@@ -42,13 +47,20 @@ impl Form {
         let mut height = Plane::filled(size, 0.0);
         let mut normals = Plane::filled(size, Vec3::Z);
         let width = size.width as usize;
-        let rows = height.values_mut().par_chunks_mut(width).zip(normals.values_mut().par_chunks_mut(width));
+        let rows = height
+            .values_mut()
+            .par_chunks_mut(width)
+            .zip(normals.values_mut().par_chunks_mut(width));
         rows.enumerate().for_each(|(y, (heights, normals))| {
             for (x, (height, normal)) in heights.iter_mut().zip(normals).enumerate() {
                 if inside.at(x, y) {
                     let root = puff * squares.at(x, y).max(0.0).sqrt();
                     let slope = rim.slope(squares, x, y) * (puff * puff);
-                    *height = if flat > 0.0 { root - 0.5 * flat * (2.0 * root / flat).ln_1p() } else { root };
+                    *height = if flat > 0.0 {
+                        root - 0.5 * flat * (2.0 * root / flat).ln_1p()
+                    } else {
+                        root
+                    };
                     *normal = vec3(-slope.x, slope.y, 2.0 * root + flat).normalize_or(Vec3::Z);
                 } else if let Some(line) = outline.rim_line(x, y) {
                     // The covered part of a pixel whose centre is outside lies at the rim.
@@ -63,25 +75,30 @@ impl Form {
             coverage: outline.coverage().clone(),
         }
     }
+
     /// The pixels of the canvas that the planes hold.
     pub fn rect(&self) -> Rect {
         let (size, (x, y)) = (self.height.size(), self.corner);
         Rect::new(x, y, x.saturating_add(size.width as i32), y.saturating_add(size.height as i32))
     }
+
     /// The same form, moved.
     pub fn moved(&self, by: (i32, i32)) -> Self {
         self.clone().shifted(by)
     }
+
     /// The same, in the same memory.
     pub fn shifted(self, by: (i32, i32)) -> Self {
         let corner = (self.corner.0.saturating_add(by.0), self.corner.1.saturating_add(by.1));
         Self { corner, ..self }
     }
-    /// The form as it is seen through a map of its plane; `None` where the map flattens it, or its picture would have
-    /// more than `most_px` pixels. Whole pixels are moved as they are.
+
+    /// The form as it is seen through a map of its plane; `None` where the map flattens it, or its
+    /// picture would have more than `most_px` pixels. Whole pixels are moved as they are.
     ///
-    /// Slopes s become k A^−T s and heights k z, with k = √|det A|, like those of an object that is turned and scaled
-    /// with its picture (MATH 1). Between pixels normals and heights are those of the covered ones.
+    /// Slopes s become k A^−T s and heights k z, with k = √|det A|, like those of an object that is
+    /// turned and scaled with its picture (MATH 1). Between pixels normals and heights are those of
+    /// the covered ones.
     pub fn through(&self, map: Affine2, most_px: usize) -> Option<Self> {
         let area = map.matrix2.determinant().abs();
         if !map.is_finite() || area < 1e-6 {
@@ -92,8 +109,8 @@ impl Form {
             return Some(self.moved((shift.x as i32, shift.y as i32)));
         }
         let Rect { x0, y0, x1, y1 } = self.rect();
-        let seen =
-            [(x0, y0), (x1, y0), (x0, y1), (x1, y1)].map(|(x, y)| map.transform_point2(vec2(x as f32, y as f32)));
+        let seen = [(x0, y0), (x1, y0), (x0, y1), (x1, y1)]
+            .map(|(x, y)| map.transform_point2(vec2(x as f32, y as f32)));
         let low = seen.iter().fold(Vec2::MAX, |a, b| a.min(*b)).floor();
         let extent = (seen.iter().fold(Vec2::MIN, |a, b| a.max(*b)).ceil() - low).max(Vec2::ONE);
         let pixels = f64::from(extent.x) * f64::from(extent.y);
@@ -118,6 +135,7 @@ impl Form {
             coverage: read.map(|(_, _, coverage)| coverage.round() as u8).into(),
         })
     }
+
     /// Height, normal and coverage at a place relative to the centre of the first pixel.
     fn between(&self, p: Vec2) -> (f32, Vec3, f32) {
         let whole = p.floor();
@@ -136,10 +154,15 @@ impl Form {
             height += share * self.height.at(x as usize, y as usize);
             normal += share * self.normals.at(x as usize, y as usize);
         }
-        if sum > 0.0 { (height / sum, normal.normalize_or(Vec3::Z), coverage) } else { (0.0, Vec3::Z, 0.0) }
+        if sum > 0.0 {
+            (height / sum, normal.normalize_or(Vec3::Z), coverage)
+        } else {
+            (0.0, Vec3::Z, 0.0)
+        }
     }
-    /// Leaned about its middle: a plane is added that rises by `tan(tilt)` toward the right (x) and the bottom (y).
-    /// A silhouette stays one. Degrees, between −90 and 90.
+
+    /// Leaned about its middle: a plane is added that rises by `tan(tilt)` toward the right (x) and
+    /// the bottom (y). A silhouette stays one. Degrees, between −90 and 90.
     pub fn tilted(mut self, tilt_deg: Vec2) -> Self {
         let slope = vec2(tilt_deg.x.to_radians().tan(), tilt_deg.y.to_radians().tan());
         if slope == Vec2::ZERO || !slope.is_finite() {
@@ -158,14 +181,17 @@ impl Form {
         });
         self
     }
+
     /// Nearer to the viewer by so many px.
     pub fn raised(mut self, by_px: f32) -> Self {
         let coverage = &self.coverage;
         if by_px != 0.0 && by_px.is_finite() {
-            self.height = updated(self.height, |x, y, z| if coverage.at(x, y) > 0 { z + by_px } else { z });
+            self.height =
+                updated(self.height, |x, y, z| if coverage.at(x, y) > 0 { z + by_px } else { z });
         }
         self
     }
+
     /// With a height layer added, px, and the normals that follow: slopes add.
     pub fn with_added(mut self, added: &Plane<f32>) -> Self {
         if added.size() != self.height.size() {
@@ -180,19 +206,31 @@ impl Form {
             let slope = slope_within(added, &covered, x as i32, y as i32);
             vec3(n.x - slope.x * n.z, n.y + slope.y * n.z, n.z).normalize_or(Vec3::Z)
         });
-        self.height = updated(self.height, |x, y, z| if coverage.at(x, y) > 0 { z + added.at(x, y) } else { z });
+        self.height =
+            updated(
+                self.height,
+                |x, y, z| if coverage.at(x, y) > 0 { z + added.at(x, y) } else { z },
+            );
         self
     }
 }
 
 /// A plane computed again pixel by pixel, in the same memory if nobody else holds it.
-fn updated<T: Copy + Send + Sync>(plane: Arc<Plane<T>>, value: impl Fn(usize, usize, T) -> T + Sync) -> Arc<Plane<T>> {
+fn updated<T: Copy + Send + Sync>(
+    plane: Arc<Plane<T>>,
+    value: impl Fn(usize, usize, T) -> T + Sync,
+) -> Arc<Plane<T>> {
     Arc::new(Arc::unwrap_or_clone(plane).updated(value))
 }
 
 /// The slope of a plane at a pixel by differences that do not leave what is covered.
 #[inline(always)]
-pub fn slope_within(plane: &Plane<f32>, covered: &impl Fn(i32, i32) -> bool, x: i32, y: i32) -> Vec2 {
+pub fn slope_within(
+    plane: &Plane<f32>,
+    covered: &impl Fn(i32, i32) -> bool,
+    x: i32,
+    y: i32,
+) -> Vec2 {
     let here = plane.at(x as usize, y as usize);
     let along = |dx: i32, dy: i32| {
         let at = |s: i32| {
@@ -209,7 +247,8 @@ pub fn slope_within(plane: &Plane<f32>, covered: &impl Fn(i32, i32) -> bool, x: 
     vec2(along(1, 0), along(0, 1))
 }
 
-/// k of [`Form::of_squares`]: 0 for a silhouette, else what gives the mean slope of the rim its angle.
+/// k of [`Form::of_squares`]: 0 for a silhouette, else what gives the mean slope of the rim its
+/// angle.
 fn flattening(outline: &Outline, squares: &Plane<f32>, rim: &OutlineRim, round: Roundness) -> f32 {
     if round.rim_deg >= 90.0 {
         return 0.0;
@@ -218,7 +257,9 @@ fn flattening(outline: &Outline, squares: &Plane<f32>, rim: &OutlineRim, round: 
     let (w, h) = (inside.width(), inside.height());
     let (mut sum, mut count) = (0.0f64, 0u32);
     for (x, y) in (1..h - 1).flat_map(|y| (1..w - 1).map(move |x| (x, y))) {
-        let whole = || inside.at(x - 1, y) && inside.at(x + 1, y) && inside.at(x, y - 1) && inside.at(x, y + 1);
+        let whole = || {
+            inside.at(x - 1, y) && inside.at(x + 1, y) && inside.at(x, y - 1) && inside.at(x, y + 1)
+        };
         if inside.at(x, y) && !whole() {
             sum += f64::from(rim.slope(squares, x, y).length());
             count += 1;

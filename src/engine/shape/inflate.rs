@@ -1,14 +1,17 @@
-//! Inflation: the pillow over an outline, z = √u with −∇²u = 4 inside and u = 0 at the rim. Floor 3. Not here: what is
-//! made of u (puff, rim, normals) (`form`); limbs that should not be fat (`tube`).
+//! Inflation: the pillow over an outline, z = √u with −∇²u = 4 inside and u = 0 at the rim.
+//! Floor 3. Not here: what is made of u (puff, rim, normals) (`form`); limbs that should not be fat
+//! (`tube`).
 
 use super::{Outline, OutlineRim};
 use crate::math::Size;
 use crate::raster::Plane;
 
-/// A residual of 3e-3 of the right-hand side, squared: on a creature of 1 Mpx normals are then within 0.0001° of the
-/// solution in the mean and 0.01° everywhere, since the error is rough and small.
+/// A residual of 3e-3 of the right-hand side, squared: on a creature of 1 Mpx normals are then
+/// within 0.0001° of the solution in the mean and 0.01° everywhere, since the error is rough and
+/// small.
 const GOAL: f64 = 1e-5;
-/// Beyond this many pixels the equation is solved at half the resolution: it would take too many seconds and gigabytes.
+/// Beyond this many pixels the equation is solved at half the resolution: it would take too many
+/// seconds and gigabytes.
 pub const MOST_UNKNOWNS: usize = 1 << 24;
 
 /// u, px², over the planes of an outline: 0 outside, −∇²u = 4 inside (SHAPE: inflation).
@@ -18,7 +21,11 @@ pub const MOST_UNKNOWNS: usize = 1 << 24;
 /// * `start`: the u of a nearly identical outline of the same size.
 ///
 /// `≥ 0`, finite.
-pub fn inflate(outline: &Outline, joined: Option<&Plane<bool>>, start: Option<&Plane<f32>>) -> Plane<f32> {
+pub fn inflate(
+    outline: &Outline,
+    joined: Option<&Plane<bool>>,
+    start: Option<&Plane<f32>>,
+) -> Plane<f32> {
     if outline.size().area() > MOST_UNKNOWNS && joined.is_none() {
         return doubled(&inflate_halved(outline), outline);
     }
@@ -33,7 +40,8 @@ pub fn inflate(outline: &Outline, joined: Option<&Plane<bool>>, start: Option<&P
 fn inflate_halved(outline: &Outline) -> Plane<f32> {
     let fine = outline.size();
     let size = Size::new(fine.width.div_ceil(2), fine.height.div_ceil(2));
-    let at = |x: usize, y: usize| u32::from(outline.coverage().get(x as i32, y as i32).unwrap_or(0));
+    let at =
+        |x: usize, y: usize| u32::from(outline.coverage().get(x as i32, y as i32).unwrap_or(0));
     let mean = Plane::from_fn(size, |x, y| {
         let (x, y) = (2 * x, 2 * y);
         ((at(x, y) + at(x + 1, y) + at(x, y + 1) + at(x + 1, y + 1) + 2) / 4) as u8
@@ -44,7 +52,8 @@ fn inflate_halved(outline: &Outline) -> Plane<f32> {
     Plane::from_fn(size, |x, y| u.get(x as i32 - corner.0, y as i32 - corner.1).unwrap_or(0.0))
 }
 
-/// A field of half the resolution over the inside of an outline, read between its pixels; px² become four.
+/// A field of half the resolution over the inside of an outline, read between its pixels; px²
+/// become four.
 fn doubled(half: &Plane<f32>, outline: &Outline) -> Plane<f32> {
     Plane::from_fn(outline.size(), |x, y| {
         if !outline.inside().at(x, y) {

@@ -1,9 +1,10 @@
-//! Floor 3: shapes for drawings that have no maps. An outline, a few numbers or a few touches become heights and
-//! normals, which `combine` makes into one surface.
+//! Floor 3: shapes for drawings that have no maps. An outline, a few numbers or a few touches
+//! become heights and normals, which `combine` makes into one surface.
 //!
-//! [`Outline`] is what is known about a drawing, [`Form`] what is made of it: pillows (`inflate`), tubes, bevels,
-//! primitives, lathes, sweeps. `touches`, `sculpt`, `relief` and `lines` change an existing form. Not here: where
-//! outlines come from and how parts are kept (`document::parts`), files (`io`).
+//! [`Outline`] is what is known about a drawing, [`Form`] what is made of it: pillows (`inflate`),
+//! tubes, bevels, primitives, lathes, sweeps. `touches`, `sculpt`, `relief` and `lines` change an
+//! existing form. Not here: where outlines come from and how parts are kept (`document::parts`),
+//! files (`io`).
 
 pub mod bevel;
 pub mod combine;

@@ -1,5 +1,5 @@
-//! The distance of each pixel inside from the sub-pixel rim, and the direction inward. Floor 3. Lower envelopes of
-//! parabolas (Felzenszwalb and Huttenlocher 2012), which `tube` uses as well.
+//! The distance of each pixel inside from the sub-pixel rim, and the direction inward. Floor 3.
+//! Lower envelopes of parabolas (Felzenszwalb and Huttenlocher 2012), which `tube` uses as well.
 
 use super::Outline;
 use crate::math::{Size, Vec2, vec2};
@@ -15,15 +15,17 @@ pub struct RimDistance {
 }
 
 impl RimDistance {
-    /// Exact to where the rim crosses the links between pixels, and near it to the line between those crossings.
+    /// Exact to where the rim crosses the links between pixels, and near it to the line between
+    /// those crossings.
     pub fn of(outline: &Outline) -> Self {
         let both = measured(outline, None, |distance, inward| (distance, inward));
         Self { distance: both.map(|v| v.0), inward: both.map(|v| v.1) }
     }
 }
 
-/// The distance as in [`RimDistance::of`], from the rim that is not toward pixels of `joined` (as in
-/// `OutlineRim::joined`). If there is no such rim, no pixel is farther from it than the plane is long.
+/// The distance as in [`RimDistance::of`], from the rim that is not toward pixels of `joined` (as
+/// in `OutlineRim::joined`). If there is no such rim, no pixel is farther from it than the plane is
+/// long.
 pub fn silhouette_distance(outline: &Outline, joined: Option<&Plane<bool>>) -> Plane<f32> {
     measured(outline, joined, |distance, _| distance)
 }
@@ -52,17 +54,21 @@ fn measured<T: Copy + Default + Send + Sync>(
     })
 }
 
-/// Beyond this distance the line between crossings is no nearer than they are, to a fiftieth of a pixel.
+/// Beyond this distance the line between crossings is no nearer than they are, to a fiftieth of a
+/// pixel.
 const FAR_PX: f32 = 8.0;
 
-/// Distance and direction from a crossing of the rim, or from the straight rim through it if its foot is near.
+/// Distance and direction from a crossing of the rim, or from the straight rim through it if its
+/// foot is near.
 fn toward(outline: &Outline, here: Vec2, crossing: Vec2) -> (f32, Vec2) {
     let from = here - crossing;
     let plain = from.length();
     if plain < FAR_PX {
         let pixel = crossing.round();
         let corners = [pixel, crossing.floor(), crossing.ceil()];
-        let line = corners.iter().find_map(|p| outline.rim_line(p.x.max(0.0) as usize, p.y.max(0.0) as usize));
+        let line = corners
+            .iter()
+            .find_map(|p| outline.rim_line(p.x.max(0.0) as usize, p.y.max(0.0) as usize));
         if let Some(line) = line {
             let straight = -from.dot(line.outward);
             let beside = (from + straight * line.outward).length();
@@ -74,18 +80,23 @@ fn toward(outline: &Outline, here: Vec2, crossing: Vec2) -> (f32, Vec2) {
     (plain, from.try_normalize().unwrap_or(Vec2::ZERO))
 }
 
-/// For each pixel the nearest crossing of the rim with a link up or down (`swapped`: left or right; then the plane is
-/// the outline's mirrored at its diagonal). Points in px from the centre of the first pixel; far away where there is
-/// none.
-fn nearest_crossings(outline: &Outline, joined: Option<&Plane<bool>>, swapped: bool) -> Plane<Vec2> {
+/// For each pixel the nearest crossing of the rim with a link up or down (`swapped`: left or right;
+/// then the plane is the outline's mirrored at its diagonal). Points in px from the centre of the
+/// first pixel; far away where there is none.
+fn nearest_crossings(
+    outline: &Outline,
+    joined: Option<&Plane<bool>>,
+    swapped: bool,
+) -> Plane<Vec2> {
     let size = outline.size();
     let size = if swapped { Size::new(size.height, size.width) } else { size };
     let (w, h) = (size.width as usize, size.height as usize);
     let inside = |x: usize, y: usize| {
         if swapped { outline.inside().at(y, x) } else { outline.inside().at(x, y) }
     };
-    let is_free =
-        |x: usize, y: usize| joined.is_some_and(|joined| if swapped { joined.at(y, x) } else { joined.at(x, y) });
+    let is_free = |x: usize, y: usize| {
+        joined.is_some_and(|joined| if swapped { joined.at(y, x) } else { joined.at(x, y) })
+    };
     // Where the rim crosses the link from a pixel to the one beneath it.
     let crossing = |x: usize, y: usize| -> Option<f32> {
         let (a, b) = (inside(x, y), inside(x, y + 1));
@@ -137,11 +148,11 @@ fn nearest_crossings(outline: &Outline, joined: Option<&Plane<bool>>, swapped: b
     out
 }
 
-/// For each place q of a line the v with the least (q − v)² + f(v), passed to `found`; not called where all f are
-/// infinite.
+/// For each place q of a line the v with the least (q − v)² + f(v), passed to `found`; not called
+/// where all f are infinite.
 ///
-/// Felzenszwalb and Huttenlocher 2012: parabolas of the same shape cross once, so those that are ever lowest are in
-/// order.
+/// Felzenszwalb and Huttenlocher 2012: parabolas of the same shape cross once, so those that are
+/// ever lowest are in order.
 pub fn lower_envelope(f: &[f64], mut found: impl FnMut(usize, usize)) {
     let (mut lowest, mut from): (Vec<usize>, Vec<f64>) = (Vec::new(), Vec::new());
     for q in (0..f.len()).filter(|q| f[*q].is_finite()) {
@@ -181,7 +192,8 @@ mod tests {
     fn the_envelope_is_the_least_of_all_parabolas() {
         for seed in 0..20 {
             let value = |i: usize| f64::from(hash::unit(seed, i as u32, 3)) * 200.0 - 100.0;
-            let f: Vec<f64> = (0..50).map(|i| if i % 7 == 3 { f64::INFINITY } else { value(i) }).collect();
+            let f: Vec<f64> =
+                (0..50).map(|i| if i % 7 == 3 { f64::INFINITY } else { value(i) }).collect();
             let at = |q: usize, v: usize| (q as f64 - v as f64).powi(2) + f[v];
             let mut seen = 0;
             lower_envelope(&f, |q, v| {
@@ -193,28 +205,42 @@ mod tests {
         }
         lower_envelope(&[f64::INFINITY; 4], |_, _| panic!("nothing is lowest"));
     }
+
     #[test]
     fn distances_in_a_disc_and_a_turned_strip_are_exact_to_a_hundredth() {
-        let disc = Outline::of_path(&ellipse(vec2(60.3, 60.8), Vec2::splat(50.0), 0.0, 4000), 1 << 20).unwrap();
+        let disc =
+            Outline::of_path(&ellipse(vec2(60.3, 60.8), Vec2::splat(50.0), 0.0, 4000), 1 << 20)
+                .unwrap();
         let found = RimDistance::of(&disc);
         let (mut worst, mut turned) = (0.0f32, 0.0f32);
-        for (x, y) in (0..disc.inside().height()).flat_map(|y| (0..disc.inside().width()).map(move |x| (x, y))) {
-            let from = vec2(x as f32 + 0.5 + disc.corner().0 as f32, y as f32 + 0.5 + disc.corner().1 as f32)
-                - vec2(60.3, 60.8);
+        for (x, y) in (0..disc.inside().height())
+            .flat_map(|y| (0..disc.inside().width()).map(move |x| (x, y)))
+        {
+            let from = vec2(
+                x as f32 + 0.5 + disc.corner().0 as f32,
+                y as f32 + 0.5 + disc.corner().1 as f32,
+            ) - vec2(60.3, 60.8);
             if disc.inside().at(x, y) && from.length() > 5.0 {
-                worst = worst.max((found.distance.at(x, y) - (50.0 - from.length()).max(0.0)).abs());
+                worst =
+                    worst.max((found.distance.at(x, y) - (50.0 - from.length()).max(0.0)).abs());
                 turned = turned.max((found.inward.at(x, y) + from.normalize()).length());
             }
         }
         assert!(worst < 0.06, "{worst} px off");
         assert!(turned < 0.1, "{turned} turned");
-        let strip: Vec<Vec2> = [vec2(-90.0, -20.0), vec2(90.0, -20.0), vec2(90.0, 20.0), vec2(-90.0, 20.0)]
-            .map(|p| Vec2::from_angle(0.5).rotate(p) + 100.0)
-            .into();
+        let strip: Vec<Vec2> =
+            [vec2(-90.0, -20.0), vec2(90.0, -20.0), vec2(90.0, 20.0), vec2(-90.0, 20.0)]
+                .map(|p| Vec2::from_angle(0.5).rotate(p) + 100.0)
+                .into();
         let outline = Outline::of_path(&strip, 1 << 20).unwrap();
         let found = RimDistance::of(&outline);
-        for (x, y) in (0..outline.inside().height()).flat_map(|y| (0..outline.inside().width()).map(move |x| (x, y))) {
-            let p = vec2(x as f32 + 0.5 + outline.corner().0 as f32, y as f32 + 0.5 + outline.corner().1 as f32);
+        for (x, y) in (0..outline.inside().height())
+            .flat_map(|y| (0..outline.inside().width()).map(move |x| (x, y)))
+        {
+            let p = vec2(
+                x as f32 + 0.5 + outline.corner().0 as f32,
+                y as f32 + 0.5 + outline.corner().1 as f32,
+            );
             let local = Vec2::from_angle(-0.5).rotate(p - 100.0);
             if outline.inside().at(x, y) && local.x.abs() < 60.0 {
                 let off = found.distance.at(x, y) - (20.0 - local.y.abs());

@@ -63,15 +63,20 @@ impl Primitive {
         let (length, tube, round) = (2.0 * radius, 0.3 * radius, 0.1 * radius);
         Self { body, center, radius, half, length, tube, round, turn_deg: Vec3::ZERO }
     }
-    /// Visible height (px, toward the viewer, 0 at the body's middle) and unit normal (camera space) at a canvas point;
-    /// `None` off the body.
+
+    /// Visible height (px, toward the viewer, 0 at the body's middle) and unit normal (camera
+    /// space) at a canvas point; `None` off the body.
     pub fn seen_at(&self, p: Vec2) -> Option<(f32, Vec3)> {
         self.seen(self.turn(), p)
     }
+
     fn turn(&self) -> Mat3 {
         let turn = self.turn_deg * std::f32::consts::PI / 180.0;
-        Mat3::from_rotation_z(turn.z) * Mat3::from_rotation_y(turn.y) * Mat3::from_rotation_x(turn.x)
+        Mat3::from_rotation_z(turn.z)
+            * Mat3::from_rotation_y(turn.y)
+            * Mat3::from_rotation_x(turn.x)
     }
+
     fn seen(&self, turn: Mat3, p: Vec2) -> Option<(f32, Vec3)> {
         let from = vec3(p.x - self.center.x, self.center.y - p.y, 0.0);
         let ray = Ray { origin: turn.transpose() * from, way: turn.transpose() * Vec3::Z };
@@ -81,7 +86,9 @@ impl Primitive {
             Body::Cylinder => ray.cylinder(self.radius, 0.5 * self.length),
             Body::Cone => ray.cone(self.radius, 0.5 * self.length),
             Body::Capsule => ray.capsule(self.radius, 0.5 * self.length),
-            Body::Torus => ray.traced(self.radius + self.tube, |p| torus(p, self.radius, self.tube)),
+            Body::Torus => {
+                ray.traced(self.radius + self.tube, |p| torus(p, self.radius, self.tube))
+            }
             Body::Box => {
                 let round = self.round.min(self.half.min_element());
                 ray.traced(self.half.length(), |p| rounded_box(p, self.half, round))
@@ -90,6 +97,7 @@ impl Primitive {
         let normal = (turn * normal).normalize_or(Vec3::Z);
         Some((z, vec3(normal.x, normal.y, normal.z.max(0.0)).normalize_or(Vec3::Z)))
     }
+
     /// The greatest distance from the middle, px.
     pub fn reach(&self) -> f32 {
         match self.body {
@@ -100,12 +108,16 @@ impl Primitive {
             Body::Torus => self.radius + self.tube,
         }
     }
-    /// The body over the pixels that it covers; `None` where it is not finite or has more than `most_px` pixels.
+
+    /// The body over the pixels that it covers; `None` where it is not finite or has more than
+    /// `most_px` pixels.
     pub fn form(&self, most_px: usize) -> Option<Form> {
         let reach = self.reach() + 1.0;
         let (low, high) = ((self.center - reach).floor(), (self.center + reach).ceil());
         let size = high - low;
-        if !(f64::from(size.x) * f64::from(size.y) <= most_px as f64 && low.abs().max_element() <= 1e6) {
+        if !(f64::from(size.x) * f64::from(size.y) <= most_px as f64
+            && low.abs().max_element() <= 1e6)
+        {
             return None;
         }
         let turn = self.turn();
@@ -118,6 +130,7 @@ impl Primitive {
             coverage: texels.map(|t| t.coverage).into(),
         })
     }
+
     /// What one pixel shows: its centre, or the mean of its covered part.
     fn texel(&self, turn: Mat3, corner: Vec2) -> PrimitiveTexel {
         const SIDE: usize = 8;
@@ -185,11 +198,13 @@ impl Ray {
     fn at(&self, z: f32) -> Vec3 {
         self.origin + z * self.way
     }
+
     fn ellipsoid(&self, half: Vec3) -> Hit {
         let (o, d) = (self.origin / half, self.way / half);
         let z = root(d.dot(d), o.dot(d), o.dot(o) - 1.0)?;
         Some((z, self.at(z) / (half * half)))
     }
+
     /// The disc of a radius across the axis at y, seen from its side.
     fn cap(&self, y: f32, radius: f32) -> Hit {
         let faces = self.way.y * y.signum();
@@ -200,12 +215,14 @@ impl Ray {
         let p = self.at(z);
         (p.x.hypot(p.z) <= radius).then_some((z, vec3(0.0, y.signum(), 0.0)))
     }
+
     fn cylinder(&self, radius: f32, half: f32) -> Hit {
         let (o, d) = (vec2(self.origin.x, self.origin.z), vec2(self.way.x, self.way.z));
         let side = root(d.dot(d), o.dot(d), o.dot(o) - radius * radius).map(|z| (z, self.at(z)));
         let side = side.filter(|(_, p)| p.y.abs() <= half).map(|(z, p)| (z, vec3(p.x, 0.0, p.z)));
         nearer(side, nearer(self.cap(half, radius), self.cap(-half, radius)))
     }
+
     /// x² + z² = (slope (half − y))², the tip up.
     fn cone(&self, radius: f32, half: f32) -> Hit {
         let slope = radius / (2.0 * half);
@@ -217,7 +234,8 @@ impl Ray {
         let c = o.x * o.x + o.z * o.z - k * above * above;
         let under = b * b - a * c;
         let side = (under >= 0.0 && a.abs() > 1e-9).then(|| under.sqrt()).and_then(|s| {
-            // Where the cone opens toward the viewer the nearer root may lie on its mirror image beyond the tip.
+            // Where the cone opens toward the viewer the nearer root may lie on its mirror image
+            // beyond the tip.
             let both = [(-b + s) / a, (-b - s) / a].map(|z| (z, self.at(z)));
             let on = both.iter().filter(|(_, p)| p.y.abs() <= half);
             on.max_by(|x, y| x.0.total_cmp(&y.0)).copied()
@@ -225,6 +243,7 @@ impl Ray {
         let side = side.map(|(z, p)| (z, vec3(p.x, k * (half - p.y), p.z)));
         nearer(side, self.cap(-half, radius))
     }
+
     fn capsule(&self, radius: f32, half: f32) -> Hit {
         let (o, d) = (vec2(self.origin.x, self.origin.z), vec2(self.way.x, self.way.z));
         let side = root(d.dot(d), o.dot(d), o.dot(o) - radius * radius).map(|z| (z, self.at(z)));
@@ -235,7 +254,9 @@ impl Ray {
         };
         nearer(side, nearer(end(half), end(-half)))
     }
-    /// The first place where a distance (and its gradient) becomes 0, starting `reach` in front of the middle.
+
+    /// The first place where a distance (and its gradient) becomes 0, starting `reach` in front of
+    /// the middle.
     fn traced(&self, reach: f32, distance: impl Fn(Vec3) -> (f32, Vec3)) -> Hit {
         let mut z = reach;
         for _ in 0..200 {

@@ -1,5 +1,5 @@
-//! Lighting profiles: normals from one drawing shaded several times by hand, each with the light elsewhere.
-//! Floor 3. Photometric stereo (Woodham 1980): I_k = ρ n·ℓ_k.
+//! Lighting profiles: normals from one drawing shaded several times by hand, each with the light
+//! elsewhere. Floor 3. Photometric stereo (Woodham 1980): I_k = ρ n·ℓ_k.
 
 use super::lines::filled;
 use super::touches::{lifted, with_normals};
@@ -27,16 +27,19 @@ pub struct ProfileNormals {
 
 /// How many shadings there may be.
 pub const MOST_PROFILES: usize = 5;
-/// A shading darker or lighter than this is clipped and gives nothing: half a step of 8 bits, and as much below white.
+/// A shading darker or lighter than this is clipped and gives nothing: half a step of 8 bits, and
+/// as much below white.
 const CLIPPED: (f32, f32) = (0.0016, 0.9984);
 
 /// ρn = (Σ w ℓℓᵀ)⁻¹ Σ w I ℓ at every pixel, w = 0 where a shading is clipped.
 ///
-/// With two shadings, n is the one nearest to the viewer's direction that both allow (the third equation is n·z ≥ 0,
-/// held faintly). `None` where the planes differ in size or there are fewer than two or more than five.
+/// With two shadings, n is the one nearest to the viewer's direction that both allow (the third
+/// equation is n·z ≥ 0, held faintly). `None` where the planes differ in size or there are fewer
+/// than two or more than five.
 pub fn normals_from_profiles(profiles: &[ShadedDrawing]) -> Option<ProfileNormals> {
     let size = profiles.first()?.grey.size();
-    let fits = (2..=MOST_PROFILES).contains(&profiles.len()) && profiles.iter().all(|p| p.grey.size() == size);
+    let fits = (2..=MOST_PROFILES).contains(&profiles.len())
+        && profiles.iter().all(|p| p.grey.size() == size);
     if !fits {
         return None;
     }
@@ -79,8 +82,9 @@ fn solved(profiles: &[ShadedDrawing], x: usize, y: usize) -> (Vec3, f32) {
     (found, (left / used.len() as f32).sqrt())
 }
 
-/// The form that shadings give within an outline: their normals, and heights with these slopes. Where they give nothing
-/// (all but two are clipped) the form continues from its neighbourhood. `None` as for [`normals_from_profiles`].
+/// The form that shadings give within an outline: their normals, and heights with these slopes.
+/// Where they give nothing (all but two are clipped) the form continues from its neighbourhood.
+/// `None` as for [`normals_from_profiles`].
 ///
 /// The planes of the shadings are those of the outline.
 pub fn formed(profiles: &[ShadedDrawing], outline: &Outline) -> Option<Form> {
@@ -88,7 +92,9 @@ pub fn formed(profiles: &[ShadedDrawing], outline: &Outline) -> Option<Form> {
     if found.normals.size() != inside.size() {
         return None;
     }
-    let told = Plane::from_fn(inside.size(), |x, y| inside.at(x, y) && found.normals.at(x, y) != Vec3::ZERO);
+    let told = Plane::from_fn(inside.size(), |x, y| {
+        inside.at(x, y) && found.normals.at(x, y) != Vec3::ZERO
+    });
     let untold = Plane::from_fn(inside.size(), |x, y| inside.at(x, y) && !told.at(x, y));
     let bar = Plane::from_fn(inside.size(), |x, y| {
         let n = found.normals.at(x, y);
@@ -97,7 +103,11 @@ pub fn formed(profiles: &[ShadedDrawing], outline: &Outline) -> Option<Form> {
         vec2(n.x, -n.y)
     });
     let bar = filled(bar, &untold, inside);
-    let normals = Plane::from_fn(inside.size(), |x, y| if inside.at(x, y) { lifted(bar.at(x, y)) } else { Vec3::Z });
+    let normals =
+        Plane::from_fn(
+            inside.size(),
+            |x, y| if inside.at(x, y) { lifted(bar.at(x, y)) } else { Vec3::Z },
+        );
     let flat = Form {
         corner: outline.corner(),
         height: Plane::filled(inside.size(), 0.0).into(),
@@ -106,7 +116,8 @@ pub fn formed(profiles: &[ShadedDrawing], outline: &Outline) -> Option<Form> {
     };
     let form = with_normals(&flat, outline, normals);
     // Its lowest point is at 0.
-    let covered = || form.height.values().iter().zip(inside.values()).filter(|(_, i)| **i).map(|(z, _)| *z);
+    let covered =
+        || form.height.values().iter().zip(inside.values()).filter(|(_, i)| **i).map(|(z, _)| *z);
     let low = covered().fold(f32::MAX, f32::min);
     Some(if low < f32::MAX { form.raised(-low) } else { form })
 }
@@ -128,11 +139,14 @@ mod tests {
         };
         (0..4).map(around).chain([Vec3::Z]).collect()
     }
+
     #[test]
     fn five_shadings_of_a_ball_give_its_normals_back_and_shadows_hardly_harm_them() {
         let ball = Primitive::new(Body::Sphere, vec2(60.0, 60.0), 55.0).form(1 << 16).unwrap();
-        let shaded =
-            |light: Vec3| ShadedDrawing { grey: ball.normals.map(|n| (0.8 * n.dot(light)).max(0.0).min(1.0)), light };
+        let shaded = |light: Vec3| ShadedDrawing {
+            grey: ball.normals.map(|n| (0.8 * n.dot(light)).max(0.0).min(1.0)),
+            light,
+        };
         let profiles: Vec<ShadedDrawing> = lights().into_iter().map(shaded).collect();
         let found = normals_from_profiles(&profiles).unwrap();
         let (mut clear, mut shadowed) = (Vec::new(), Vec::new());
@@ -145,10 +159,16 @@ mod tests {
             }
         }
         let mean = |v: &[f32]| v.iter().sum::<f32>() / v.len() as f32;
-        assert!(mean(&clear) < 0.5 && mean(&shadowed) < 3.0, "{}°, {}°", mean(&clear), mean(&shadowed));
+        assert!(
+            mean(&clear) < 0.5 && mean(&shadowed) < 3.0,
+            "{}°, {}°",
+            mean(&clear),
+            mean(&shadowed)
+        );
         assert!(shadowed.len() > 100);
         assert!(found.residual.values().iter().all(|r| *r < 1e-3));
     }
+
     #[test]
     fn a_shading_that_contradicts_the_others_shows_in_the_residual() {
         let size = Size::new(4, 4);

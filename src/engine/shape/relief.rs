@@ -1,5 +1,6 @@
 //! Relief from a picture: its detail as height over a form, never its brightness as the form.
-//! Floor 3. Edge-preserving smoothing is the guided filter (He, Sun and Tang 2013), inside the outline only.
+//! Floor 3. Edge-preserving smoothing is the guided filter (He, Sun and Tang 2013), inside the outline
+//! only.
 
 use super::Outline;
 use crate::math::Range;
@@ -33,7 +34,8 @@ impl Default for Detail {
     }
 }
 
-/// The height layer of a picture's detail, px: each scale is what its base removes from the one before.
+/// The height layer of a picture's detail, px: each scale is what its base removes from the one
+/// before.
 ///
 /// `luminance`: `[0, 1]`, as large as the outline's planes.
 pub fn relief(outline: &Outline, luminance: &Plane<f32>, detail: Detail) -> Plane<f32> {
@@ -53,7 +55,8 @@ pub fn relief(outline: &Outline, luminance: &Plane<f32>, detail: Detail) -> Plan
     })
 }
 
-/// The guided filter of a plane by itself: q = a p + b with a = var/(var + ε), both averaged over the window.
+/// The guided filter of a plane by itself: q = a p + b with a = var/(var + ε), both averaged over
+/// the window.
 pub fn guided(plane: &Plane<f32>, inside: &Plane<bool>, radius: usize, epsilon: f32) -> Plane<f32> {
     let mean = mean_within(plane, inside, radius);
     let square = mean_within(&plane.map(|v| v * v), inside, radius);
@@ -66,7 +69,8 @@ pub fn guided(plane: &Plane<f32>, inside: &Plane<bool>, radius: usize, epsilon: 
     Plane::from_fn(plane.size(), |x, y| share.at(x, y) * plane.at(x, y) + rest.at(x, y))
 }
 
-/// The mean over a square window of what is inside; 0 where nothing is. Running sums along rows, then columns.
+/// The mean over a square window of what is inside; 0 where nothing is. Running sums along rows,
+/// then columns.
 fn mean_within(plane: &Plane<f32>, inside: &Plane<bool>, radius: usize) -> Plane<f32> {
     let (w, h) = (plane.width(), plane.height());
     let along = |value: &dyn Fn(usize) -> (f64, f64), n: usize| -> Vec<(f64, f64)> {
@@ -80,7 +84,8 @@ fn mean_within(plane: &Plane<f32>, inside: &Plane<bool>, radius: usize) -> Plane
     };
     let mut rows = Vec::with_capacity(w * h);
     for y in 0..h {
-        let value = |x: usize| if inside.at(x, y) { (f64::from(plane.at(x, y)), 1.0) } else { (0.0, 0.0) };
+        let value =
+            |x: usize| if inside.at(x, y) { (f64::from(plane.at(x, y)), 1.0) } else { (0.0, 0.0) };
         rows.extend(along(&value, w));
     }
     let mut out = Plane::filled(plane.size(), 0.0);
@@ -100,6 +105,7 @@ mod tests {
     fn square() -> Outline {
         Outline::new((0, 0), &Plane::filled(Size::new(80, 80), 255)).unwrap()
     }
+
     #[test]
     fn ripples_become_relief_while_a_step_of_paint_does_not() {
         let outline = square();
@@ -107,12 +113,17 @@ mod tests {
             let step = if x < 41 { 0.1 } else { 0.8 };
             step + 0.05 * (x as f32 * 1.4).sin()
         });
-        let found = relief(&outline, &picture, Detail { coarse: 0.0, fine: 10.0, radius: 16.0, edge: 0.2 });
-        let most = |from: usize, to: usize| (from..to).map(|x| found.at(x, 40).abs()).fold(0.0f32, f32::max);
+        let found =
+            relief(&outline, &picture, Detail { coarse: 0.0, fine: 10.0, radius: 16.0, edge: 0.2 });
+        let most = |from: usize, to: usize| {
+            (from..to).map(|x| found.at(x, 40).abs()).fold(0.0f32, f32::max)
+        };
         assert!(most(10, 30) > 0.2, "{}", most(10, 30));
-        // The step is fourteen times as high as the ripples; in the relief it is not even three times.
+        // The step is fourteen times as high as the ripples; in the relief it is not even three
+        // times.
         assert!(most(36, 46) < 3.0 * most(10, 30), "{} beside {}", most(36, 46), most(10, 30));
     }
+
     #[test]
     fn an_even_picture_has_no_relief() {
         let outline = square();

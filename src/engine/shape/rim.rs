@@ -1,5 +1,5 @@
-//! The condition on a height field at the rim of an outline: held at 0 between pixels, or free where it is joined.
-//! Floor 3. It makes the equations that `solver` solves.
+//! The condition on a height field at the rim of an outline: held at 0 between pixels, or free
+//! where it is joined. Floor 3. It makes the equations that `solver` solves.
 
 use super::Outline;
 use super::solver::Solver;
@@ -26,19 +26,25 @@ impl<'a> OutlineRim<'a> {
     pub fn silhouette(outline: &'a Outline) -> Self {
         Self { outline, joined: None }
     }
-    /// A silhouette except toward the pixels of `joined`, a plane as large as the outline's: there the link is left out
-    /// (Neumann), so that the field joins its neighbour level. A plane of another size joins nothing.
+
+    /// A silhouette except toward the pixels of `joined`, a plane as large as the outline's: there
+    /// the link is left out (Neumann), so that the field joins its neighbour level. A plane of
+    /// another size joins nothing.
     pub fn joined(outline: &'a Outline, joined: &'a Plane<bool>) -> Self {
         Self { outline, joined: (joined.size() == outline.size()).then_some(joined) }
     }
+
     /// A silhouette, or one that is joined in part.
     pub fn of(outline: &'a Outline, joined: Option<&'a Plane<bool>>) -> Self {
         joined.map_or_else(|| Self::silhouette(outline), |joined| Self::joined(outline, joined))
     }
+
     fn is_free(&self, x: i32, y: i32) -> bool {
         self.joined.is_some_and(|joined| joined.get(x, y).unwrap_or(false))
     }
-    /// The rim from an inside pixel toward a neighbour: none if that is inside too or joined, else θ.
+
+    /// The rim from an inside pixel toward a neighbour: none if that is inside too or joined, else
+    /// θ.
     fn toward(&self, (x, y): (usize, usize), step: (i32, i32)) -> Side {
         let other = (x as i32 + step.0, y as i32 + step.1);
         if self.outline.inside().get(other.0, other.1).unwrap_or(false) {
@@ -49,21 +55,23 @@ impl<'a> OutlineRim<'a> {
             Side::Rim(self.outline.crossing((x, y), step))
         }
     }
-    /// The springs of −∇²v + s v: 1 between inside pixels, 1/θ toward the rim (Gibou et al. 2002, symmetric), and `s`,
-    /// px⁻², `≥ 0`.
+
+    /// The springs of −∇²v + s v: 1 between inside pixels, 1/θ toward the rim (Gibou et al. 2002,
+    /// symmetric), and `s`, px⁻², `≥ 0`.
     pub fn equation(&self, screen: impl Fn(usize, usize) -> f32 + Sync) -> Equation {
         let (inside, size) = (self.outline.inside(), self.outline.size());
         let held = Plane::from_fn(size, |x, y| self.held((x, y), &screen));
         Equation { solver: Solver::new(inside, held) }
     }
+
     /// The spring of a pixel toward 0.
     fn held(&self, (x, y): (usize, usize), screen: &impl Fn(usize, usize) -> f32) -> f32 {
         let inside = self.outline.inside();
         if !inside.at(x, y) {
             return 0.0;
         }
-        // A piece that is free all around would rise without limit: it is held weakly, with the plane's length as its
-        // reach.
+        // A piece that is free all around would rise without limit: it is held weakly, with the
+        // plane's length as its reach.
         let faint = if self.joined.is_some() { inside.size().longer_side().powi(-2) } else { 0.0 };
         let sides = STEPS.map(|step| match self.toward((x, y), step) {
             Side::Rim(theta) => 1.0 / theta,
@@ -71,13 +79,15 @@ impl<'a> OutlineRim<'a> {
         });
         sides.iter().sum::<f32>() + screen(x, y) + faint
     }
-    /// The slope of a field at an inside pixel, image axes, a px: central differences, of unequal steps at the rim,
-    /// where the field is 0.
+
+    /// The slope of a field at an inside pixel, image axes, a px: central differences, of unequal
+    /// steps at the rim, where the field is 0.
     #[inline(always)]
     pub fn slope(&self, field: &Plane<f32>, x: usize, y: usize) -> Vec2 {
         let inside = self.outline.inside();
         // Inside pixels are a margin away from the border.
-        if inside.at(x - 1, y) && inside.at(x + 1, y) && inside.at(x, y - 1) && inside.at(x, y + 1) {
+        if inside.at(x - 1, y) && inside.at(x + 1, y) && inside.at(x, y - 1) && inside.at(x, y + 1)
+        {
             let across = field.at(x + 1, y) - field.at(x - 1, y);
             return vec2(across, field.at(x, y + 1) - field.at(x, y - 1)) * 0.5;
         }
@@ -86,7 +96,9 @@ impl<'a> OutlineRim<'a> {
             let side = |sign: i32| {
                 let step = (sign * step.0, sign * step.1);
                 match self.toward((x, y), step) {
-                    Side::Inside => (1.0, field.at((x as i32 + step.0) as usize, (y as i32 + step.1) as usize)),
+                    Side::Inside => {
+                        (1.0, field.at((x as i32 + step.0) as usize, (y as i32 + step.1) as usize))
+                    }
                     Side::Free => (1.0, here),
                     Side::Rim(theta) => (theta, 0.0),
                 }
@@ -108,17 +120,27 @@ enum Side {
 
 impl Equation {
     /// With another `s` at some pixels.
-    pub fn hold(&mut self, rim: &OutlineRim, pixels: &[(usize, usize)], screen: impl Fn(usize, usize) -> f32) {
+    pub fn hold(
+        &mut self,
+        rim: &OutlineRim,
+        pixels: &[(usize, usize)],
+        screen: impl Fn(usize, usize) -> f32,
+    ) {
         self.solver.hold(pixels, |x, y| rim.held((x, y), &screen));
     }
-    /// A field of the right-hand side's size that is nearly right, nearer to the solution ([`Solver::approach`]).
+
+    /// A field of the right-hand side's size that is nearly right, nearer to the solution
+    /// ([`Solver::approach`]).
     pub fn approach(&self, b: &Plane<f32>, start: Plane<f32>, near: Rect) -> Plane<f32> {
         let found = self.solver.approach(b.values(), start.into_values(), near);
         Plane::from_values(b.size(), found).unwrap_or_else(|| Plane::filled(b.size(), 0.0))
     }
-    /// The field for a right-hand side, row by row; `start`: the field that the search begins at, nearly right.
+
+    /// The field for a right-hand side, row by row; `start`: the field that the search begins at,
+    /// nearly right.
     pub fn solve(&self, b: &Plane<f32>, start: Option<&Plane<f32>>, goal: f64) -> Plane<f32> {
-        let start = start.filter(|start| start.size() == b.size()).map(|start| start.values().to_vec());
+        let start =
+            start.filter(|start| start.size() == b.size()).map(|start| start.values().to_vec());
         let found = self.solver.solve(b.values(), start, goal);
         Plane::from_values(b.size(), found).unwrap_or_else(|| Plane::filled(b.size(), 0.0))
     }

@@ -41,7 +41,8 @@ pub struct SculptStroke {
     pub size: f32,
     /// The part of the dab with full strength.
     pub hardness: f32,
-    /// For raise, lower and crease: px per dab; for the others: the share of the way that a dab goes, at most 1.
+    /// For raise, lower and crease: px per dab; for the others: the share of the way that a dab
+    /// goes, at most 1.
     pub strength: f32,
     /// Canvas px, and pressure.
     pub samples: Vec<(Vec2, f32)>,
@@ -80,12 +81,14 @@ impl SculptStroke {
     }
 }
 
-/// The height layer that strokes make over a form, px, as large as its planes; 0 where no dab lands.
+/// The height layer that strokes make over a form, px, as large as its planes; 0 where no dab
+/// lands.
 pub fn sculpted(form: &Form, strokes: &[SculptStroke]) -> Plane<f32> {
     Sculpting::of(form).go_on(form, strokes).layer
 }
 
-/// How far strokes came over a form: more samples of the last one, and more strokes, continue from there.
+/// How far strokes came over a form: more samples of the last one, and more strokes, continue from
+/// there.
 pub struct Sculpting {
     /// The strokes that are done, the last one up to its end at that time.
     strokes: Vec<SculptStroke>,
@@ -98,12 +101,19 @@ pub struct Sculpting {
 impl Sculpting {
     /// Nothing done yet.
     pub fn of(form: &Form) -> Self {
-        Self { strokes: Vec::new(), layer: Plane::filled(form.height.size(), 0.0), dabs: 0, first: None }
+        Self {
+            strokes: Vec::new(),
+            layer: Plane::filled(form.height.size(), 0.0),
+            dabs: 0,
+            first: None,
+        }
     }
+
     /// The heights, px, as large as the form's planes.
     pub fn layer(&self) -> &Plane<f32> {
         &self.layer
     }
+
     /// Whether strokes begin as those that are done.
     pub fn goes_on(&self, strokes: &[SculptStroke]) -> bool {
         let Some((last, before)) = self.strokes.split_last() else { return true };
@@ -113,10 +123,13 @@ impl Sculpting {
             };
             same(last, now) && now.samples.starts_with(&last.samples)
         };
-        strokes.len() > before.len() && strokes.starts_with(before) && begins(&strokes[before.len()])
+        strokes.len() > before.len()
+            && strokes.starts_with(before)
+            && begins(&strokes[before.len()])
     }
-    /// With what the strokes have beyond those that are done, which must be their beginning. Bit-identical to doing all
-    /// of them again.
+
+    /// With what the strokes have beyond those that are done, which must be their beginning.
+    /// Bit-identical to doing all of them again.
     pub fn go_on(mut self, form: &Form, strokes: &[SculptStroke]) -> Self {
         let done = self.strokes.len().saturating_sub(1);
         let corner = vec2(form.corner.0 as f32, form.corner.1 as f32);
@@ -129,10 +142,16 @@ impl Sculpting {
             }
             let dabs = stroke.dabs();
             if let Some(dab) = dabs.first().filter(|_| self.dabs == 0) {
-                self.first = SculptPlane::under(form, &self.layer, dab.0 - corner, 0.5 * stroke.size);
+                self.first =
+                    SculptPlane::under(form, &self.layer, dab.0 - corner, 0.5 * stroke.size);
             }
             for (at, pressure) in &dabs[self.dabs.min(dabs.len())..] {
-                let dab = SculptDab { center: *at - corner, radius: 0.5 * stroke.size, stroke, pressure: *pressure };
+                let dab = SculptDab {
+                    center: *at - corner,
+                    radius: 0.5 * stroke.size,
+                    stroke,
+                    pressure: *pressure,
+                };
                 dab.press(form, &mut self.layer, self.first);
             }
             self.dabs = dabs.len();
@@ -163,14 +182,24 @@ impl SculptPlane {
             squares += from * from;
             products += from * z;
         }
-        (n > 0.0).then(|| Self { at: middle, height: sum / n, slope: products / squares.max(Vec2::splat(1e-3)) })
+        (n > 0.0).then(|| Self {
+            at: middle,
+            height: sum / n,
+            slope: products / squares.max(Vec2::splat(1e-3)),
+        })
     }
 }
 
 /// The covered pixels under a dab: their centres in px of the planes, column and row.
-fn pixels_of(form: &Form, center: Vec2, radius: f32) -> impl Iterator<Item = (Vec2, usize, usize)> + '_ {
+fn pixels_of(
+    form: &Form,
+    center: Vec2,
+    radius: f32,
+) -> impl Iterator<Item = (Vec2, usize, usize)> + '_ {
     let (w, h) = (form.height.width(), form.height.height());
-    let side = |low: f32, high: f32, n: usize| low.floor().max(0.0) as usize..(high.ceil().max(0.0) as usize).min(n);
+    let side = |low: f32, high: f32, n: usize| {
+        low.floor().max(0.0) as usize..(high.ceil().max(0.0) as usize).min(n)
+    };
     let columns = side(center.x - radius, center.x + radius, w);
     side(center.y - radius, center.y + radius, h).flat_map(move |y| {
         columns.clone().filter_map(move |x| {
@@ -195,6 +224,7 @@ impl SculptDab<'_> {
         let left = 1.0 - t * t;
         left * left * self.pressure
     }
+
     fn press(&self, form: &Form, layer: &mut Plane<f32>, first: Option<SculptPlane>) {
         let strength = self.stroke.strength;
         let share = |coverage: f32| (strength * coverage).min(1.0);
@@ -203,14 +233,17 @@ impl SculptDab<'_> {
             .map(|(p, x, y)| {
                 let from = p - self.center;
                 let coverage = self.coverage(from.length());
-                let toward_plane = || first.map_or(0.0, |f| f.height + f.slope.dot(p - f.at) - total(layer, x, y));
+                let toward_plane =
+                    || first.map_or(0.0, |f| f.height + f.slope.dot(p - f.at) - total(layer, x, y));
                 let change = match self.stroke.tool {
                     SculptTool::Raise => strength * coverage,
                     SculptTool::Lower => -strength * coverage,
                     SculptTool::Crease => -strength * coverage.powi(4),
                     SculptTool::Flatten => share(coverage) * toward_plane(),
                     SculptTool::Scrape => share(coverage) * toward_plane().min(0.0),
-                    SculptTool::Smooth => share(coverage) * (self.around(form, layer, x, y) - total(layer, x, y)),
+                    SculptTool::Smooth => {
+                        share(coverage) * (self.around(form, layer, x, y) - total(layer, x, y))
+                    }
                     SculptTool::Pinch => {
                         let out = p + from * (0.25 * share(coverage));
                         height_at(form, layer, out).map_or(0.0, |z| z - total(layer, x, y))
@@ -223,11 +256,13 @@ impl SculptDab<'_> {
             layer.set(x, y, layer.at(x, y) + change);
         }
     }
+
     /// The mean height of a pixel and eight places around it, an eighth of the dab away.
     fn around(&self, form: &Form, layer: &Plane<f32>, x: usize, y: usize) -> f32 {
         let p = vec2(x as f32 + 0.5, y as f32 + 0.5);
         let far = (0.25 * self.radius).max(1.0);
-        let around = (0..8).map(|i| p + far * Vec2::from_angle(i as f32 * std::f32::consts::FRAC_PI_4));
+        let around =
+            (0..8).map(|i| p + far * Vec2::from_angle(i as f32 * std::f32::consts::FRAC_PI_4));
         let (mut sum, mut count) = (form.height.at(x, y) + layer.at(x, y), 1.0);
         for z in around.filter_map(|q| height_at(form, layer, q)) {
             sum += z;
@@ -244,7 +279,8 @@ fn height_at(form: &Form, layer: &Plane<f32>, p: Vec2) -> Option<f32> {
     let at = |dx: i32, dy: i32| {
         let covered = form.coverage.get(x + dx, y + dy).is_some_and(|c| c > 0);
         covered.then(|| {
-            form.height.at((x + dx) as usize, (y + dy) as usize) + layer.at((x + dx) as usize, (y + dy) as usize)
+            form.height.at((x + dx) as usize, (y + dy) as usize)
+                + layer.at((x + dx) as usize, (y + dy) as usize)
         })
     };
     let (fx, fy) = (q.x - x as f32, q.y - y as f32);
@@ -266,23 +302,29 @@ mod tests {
             coverage: Plane::filled(size, 255).into(),
         }
     }
+
     fn stroke(tool: SculptTool, strength: f32, samples: &[(f32, f32)]) -> SculptStroke {
         let samples = samples.iter().map(|s| (vec2(s.0, s.1), 1.0)).collect();
         SculptStroke { tool, size: 40.0, hardness: 0.5, strength, samples }
     }
+
     #[test]
     fn a_dab_raises_by_its_strength_and_nothing_beyond_its_size() {
-        let layer = sculpted(&plate(|_, _| 0.0), &[stroke(SculptTool::Raise, 3.0, &[(70.0, 60.0)])]);
+        let layer =
+            sculpted(&plate(|_, _| 0.0), &[stroke(SculptTool::Raise, 3.0, &[(70.0, 60.0)])]);
         assert!((layer.at(60, 40) - 3.0).abs() < 1e-4);
         assert_eq!(layer.at(60 + 21, 40), 0.0);
-        let lowered = sculpted(&plate(|_, _| 0.0), &[stroke(SculptTool::Lower, 3.0, &[(70.0, 60.0)])]);
+        let lowered =
+            sculpted(&plate(|_, _| 0.0), &[stroke(SculptTool::Lower, 3.0, &[(70.0, 60.0)])]);
         assert!((lowered.at(60, 40) + 3.0).abs() < 1e-4);
     }
+
     #[test]
     fn smoothing_calms_flattening_levels_and_scraping_only_lowers() {
         let rough = plate(|x, y| 8.0 * hash::unit(3, x as u32, y as u32));
         let spread = |layer: &Plane<f32>| {
-            let values: Vec<f32> = (50..70).map(|x| rough.height.at(x, 40) + layer.at(x, 40)).collect();
+            let values: Vec<f32> =
+                (50..70).map(|x| rough.height.at(x, 40) + layer.at(x, 40)).collect();
             let mean = values.iter().sum::<f32>() / values.len() as f32;
             values.iter().map(|v| (v - mean).powi(2)).sum::<f32>() / values.len() as f32
         };
@@ -294,6 +336,7 @@ mod tests {
             assert!(tool != SculptTool::Scrape || layer.values().iter().all(|h| *h <= 0.0));
         }
     }
+
     #[test]
     fn strokes_that_go_on_are_to_the_bit_what_they_are_at_once() {
         let rough = plate(|x, y| 8.0 * hash::unit(3, x as u32, y as u32));
@@ -313,6 +356,7 @@ mod tests {
             assert!(!going.goes_on(&other));
         }
     }
+
     #[test]
     fn dabs_stand_as_far_apart_however_many_samples_there_are() {
         let far = stroke(SculptTool::Raise, 1.0, &[(0.0, 0.0), (100.0, 0.0)]);

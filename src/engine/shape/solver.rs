@@ -1,7 +1,7 @@
-//! Poisson equations over outlines: conjugate gradients, preconditioned by one multigrid V-cycle, starting from the
-//! solution of the coarser grid. Floor 3. Springs are mostly 1 or 0 here. Not here: exact solutions with springs of any
-//! stiffness (`surface`). Sums are formed band by band and added in order, so that the bits do not
-//! depend on the number of threads.
+//! Poisson equations over outlines: conjugate gradients, preconditioned by one multigrid V-cycle,
+//! starting from the solution of the coarser grid. Floor 3. Springs are mostly 1 or 0 here. Not
+//! here: exact solutions with springs of any stiffness (`surface`). Sums are formed band by band
+//! and added in order, so that the bits do not depend on the number of threads.
 
 mod level;
 
@@ -11,8 +11,8 @@ use crate::raster::Plane;
 use level::*;
 use rayon::prelude::*;
 
-/// Two sweeps of Jacobi with these steps damp best the errors from half a grid's highest frequency on: Chebyshev's
-/// polynomial over [½, 2].
+/// Two sweeps of Jacobi with these steps damp best the errors from half a grid's highest frequency
+/// on: Chebyshev's polynomial over [½, 2].
 const STEPS: [f32; 2] = [0.561_7, 1.389_5];
 /// The most steps of conjugate gradients.
 const MOST_STEPS: usize = 60;
@@ -31,20 +31,27 @@ impl Solver {
         let Size { width, height } = inside.size();
         let (w, h) = (width as usize, height as usize);
         let linked = |a: bool, b: bool| if a && b { 1.0 } else { 0.0 };
-        let right = Plane::from_fn(inside.size(), |x, y| linked(inside.at(x, y), x + 1 < w && inside.at(x + 1, y)));
-        let down = Plane::from_fn(inside.size(), |x, y| linked(inside.at(x, y), y + 1 < h && inside.at(x, y + 1)));
+        let right = Plane::from_fn(inside.size(), |x, y| {
+            linked(inside.at(x, y), x + 1 < w && inside.at(x + 1, y))
+        });
+        let down = Plane::from_fn(inside.size(), |x, y| {
+            linked(inside.at(x, y), y + 1 < h && inside.at(x, y + 1))
+        });
         Self::of_springs(right, down, held)
     }
+
     /// The same with springs of any stiffness to the right and down, none of them at the border.
     pub fn of_springs(right: Plane<f32>, down: Plane<f32>, held: Plane<f32>) -> Self {
         let (w, h) = (held.width(), held.height());
-        let mut levels = vec![Level::new(w, h, right.into_values(), down.into_values(), held.into_values())];
+        let mut levels =
+            vec![Level::new(w, h, right.into_values(), down.into_values(), held.into_values())];
         while let Some(last) = levels.last().filter(|level| level.w > 5 || level.h > 5) {
             let coarser = last.coarser();
             levels.push(coarser);
         }
         Self { levels }
     }
+
     /// Gives some pixels another spring toward 0: as if the solver had been made with it.
     pub fn hold(&mut self, pixels: &[(usize, usize)], held: impl Fn(usize, usize) -> f32) {
         let mut changed = pixels.to_vec();
@@ -61,30 +68,38 @@ impl Solver {
             }
         }
     }
-    /// A field that is nearly right, nearer to the solution of A v = b, in a fourth of the time of [`Self::solve`].
+
+    /// A field that is nearly right, nearer to the solution of A v = b, in a fourth of the time of
+    /// [`Self::solve`].
     ///
-    /// `near`: where much has changed. It is settled by itself; what varies slowly is corrected on the next coarser
-    /// grid, and a few sweeps smooth the rest.
+    /// `near`: where much has changed. It is settled by itself; what varies slowly is corrected on
+    /// the next coarser grid, and a few sweeps smooth the rest.
     pub fn approach(&self, b: &[f32], mut v: Vec<f32>, near: Rect) -> Vec<f32> {
         const GOAL: f64 = 1e-3;
         let grid = &self.levels[0];
         let mut other = filled_or_unwind(b.len(), 0.0);
         self.settle(b, &mut v, near, 30);
         if let Some(below) = self.levels.get(1) {
-            grid.fill(&mut other, |y, out| left_over(grid.springs(y), grid.around(&v, y), grid.row(b, y), out));
+            grid.fill(&mut other, |y, out| {
+                left_over(grid.springs(y), grid.around(&v, y), grid.row(b, y), out)
+            });
             let mut rest = filled_or_unwind(below.w * below.h, 0.0);
             restrict(grid, below, &other, &mut rest);
             let nothing = filled_or_unwind(rest.len(), 0.0);
             let coarse = self.conjugated(1, &rest, nothing, GOAL);
             grid.fill(&mut other, |y, out| between_blocks(grid, below, &coarse, y, out));
-            v.par_chunks_mut(grid.w * BAND).zip(other.par_chunks(grid.w * BAND)).for_each(|(v, c)| add(v, 1.0, c));
+            v.par_chunks_mut(grid.w * BAND)
+                .zip(other.par_chunks(grid.w * BAND))
+                .for_each(|(v, c)| add(v, 1.0, c));
         }
         grid.relax(&v, b, STEPS[1], &mut other);
         grid.relax(&other, b, STEPS[0], &mut v);
         self.settle(b, &mut v, near, 10);
         v
     }
-    /// Sweeps of successive over-relaxation over some pixels, the others held; fewer over many pixels.
+
+    /// Sweeps of successive over-relaxation over some pixels, the others held; fewer over many
+    /// pixels.
     fn settle(&self, b: &[f32], v: &mut [f32], near: Rect, most_sweeps: usize) {
         const OVER: f32 = 1.7;
         const MOST_PX: usize = 200_000;
@@ -102,19 +117,24 @@ impl Solver {
             }
         }
     }
-    /// Solves A v = b until the squared residual, relative to b's, is as small as `goal`, or for 60 steps.
+
+    /// Solves A v = b until the squared residual, relative to b's, is as small as `goal`, or for 60
+    /// steps.
     ///
     /// `start`: where the search begins; if absent, at the solution of the coarser grids.
     pub fn solve(&self, b: &[f32], start: Option<Vec<f32>>, goal: f64) -> Vec<f32> {
         let start = start.unwrap_or_else(|| self.nested(0, b));
         self.conjugated(0, b, start, goal)
     }
+
     /// The same on any level.
     fn conjugated(&self, at: usize, b: &[f32], mut v: Vec<f32>, goal: f64) -> Vec<f32> {
         let (grid, w) = (&self.levels[at], self.levels[at].w);
         let buffer = || filled_or_unwind(b.len(), 0.0);
         let mut residual = buffer();
-        grid.fill(&mut residual, |y, out| left_over(grid.springs(y), grid.around(&v, y), grid.row(b, y), out));
+        grid.fill(&mut residual, |y, out| {
+            left_over(grid.springs(y), grid.around(&v, y), grid.row(b, y), out)
+        });
         let goal = dots(w, b, b) * goal;
         let (mut direction, mut pulled, mut rz_before) = (buffer(), buffer(), 0.0);
         let mut scratch = SolverBuffers::default();
@@ -131,7 +151,9 @@ impl Solver {
                 d.iter_mut().zip(z).for_each(|(d, z)| *d = z + turn * *d);
             });
             scratch.keep(z);
-            grid.fill(&mut pulled, |y, out| applied(grid.springs(y), grid.around(&direction, y), out));
+            grid.fill(&mut pulled, |y, out| {
+                applied(grid.springs(y), grid.around(&direction, y), out)
+            });
             let energy = dots(w, &direction, &pulled);
             if energy.is_nan() || energy <= 0.0 || rz <= 0.0 {
                 break;
@@ -147,8 +169,9 @@ impl Solver {
         }
         v
     }
-    /// The coarser grid's solution, itself started from the next coarser one, read between its blocks and corrected
-    /// once.
+
+    /// The coarser grid's solution, itself started from the next coarser one, read between its
+    /// blocks and corrected once.
     fn nested(&self, at: usize, b: &[f32]) -> Vec<f32> {
         let mut scratch = SolverBuffers::default();
         let grid = &self.levels[at];
@@ -159,17 +182,22 @@ impl Solver {
         let mut v = filled_or_unwind(b.len(), 0.0);
         grid.fill(&mut v, |y, out| between_blocks(grid, below, &coarse, y, out));
         let mut left = filled_or_unwind(b.len(), 0.0);
-        grid.fill(&mut left, |y, out| left_over(grid.springs(y), grid.around(&v, y), grid.row(b, y), out));
+        grid.fill(&mut left, |y, out| {
+            left_over(grid.springs(y), grid.around(&v, y), grid.row(b, y), out)
+        });
         let z = self.cycle(at, &left, &mut scratch);
         add(&mut v, 1.0, &z);
         v
     }
+
     /// One symmetric V-cycle: an approximate solution of A v = b on a level.
     fn cycle(&self, at: usize, b: &[f32], scratch: &mut SolverBuffers) -> Vec<f32> {
         let grid = &self.levels[at];
         let (mut v, mut twin) = (scratch.take(b.len()), scratch.take(b.len()));
         grid.fill(&mut twin, |y, out| {
-            for ((v, b), inverse) in out.iter_mut().zip(grid.row(b, y)).zip(grid.row(&grid.inverse, y)) {
+            for ((v, b), inverse) in
+                out.iter_mut().zip(grid.row(b, y)).zip(grid.row(&grid.inverse, y))
+            {
                 *v = STEPS[0] * b * inverse;
             }
         });
@@ -184,14 +212,17 @@ impl Solver {
                 }
             }
             Some(below) => {
-                grid.fill(&mut twin, |y, out| left_over(grid.springs(y), grid.around(&v, y), grid.row(b, y), out));
+                grid.fill(&mut twin, |y, out| {
+                    left_over(grid.springs(y), grid.around(&v, y), grid.row(b, y), out)
+                });
                 let mut rest = scratch.take(below.w * below.h);
                 restrict(grid, below, &twin, &mut rest);
                 let correction = self.cycle(at + 1, &rest, scratch);
                 scratch.keep(rest);
                 let inner = &correction;
                 grid.fill(&mut v, |y, out| {
-                    let (row, inverse) = (below.row(inner, y.div_ceil(2)), grid.row(&grid.inverse, y));
+                    let (row, inverse) =
+                        (below.row(inner, y.div_ceil(2)), grid.row(&grid.inverse, y));
                     for (x, (v, inverse)) in out.iter_mut().zip(inverse).enumerate() {
                         *v += if *inverse > 0.0 { row[x.div_ceil(2)] } else { 0.0 };
                     }
@@ -223,7 +254,8 @@ fn restrict(grid: &Level, below: &Level, fine: &[f32], out: &mut [f32]) {
 /// A field of blocks read between their middles, at the unknowns of one row.
 fn between_blocks(grid: &Level, below: &Level, coarse: &[f32], y: usize, out: &mut [f32]) {
     // The middle of a pixel lies a quarter of a block from that of its own.
-    let beside = |i: usize| if i % 2 == 1 { (i.div_ceil(2), i.div_ceil(2) - 1) } else { (i / 2, i / 2 + 1) };
+    let beside =
+        |i: usize| if i % 2 == 1 { (i.div_ceil(2), i.div_ceil(2) - 1) } else { (i / 2, i / 2 + 1) };
     let (own, other) = beside(y);
     let rows = [below.row(coarse, own), below.row(coarse, other.min(below.h - 1))];
     let inverse = grid.row(&grid.inverse, y);
@@ -248,6 +280,7 @@ impl SolverBuffers {
             None => filled_or_unwind(len, 0.0),
         }
     }
+
     fn keep(&mut self, buffer: Vec<f32>) {
         self.0.push(buffer);
     }

@@ -1,5 +1,5 @@
-//! Drawn bodies: sweeps (balls along a pen's stroke, joined by round cones) and lathes (an outline turned about an
-//! axis). Both give squared heights, of which `form` makes forms. Floor 3.
+//! Drawn bodies: sweeps (balls along a pen's stroke, joined by round cones) and lathes (an outline
+//! turned about an axis). Both give squared heights, of which `form` makes forms. Floor 3.
 
 use super::Outline;
 use crate::math::{Range, Size, Vec2, vec2};
@@ -23,8 +23,8 @@ impl Ball {
 
 /// The ball between two that reaches highest above a point: its place and radius.
 ///
-/// g(t) = (r₀ + t Δr)² − |p − a − t e|² is greatest at t = (r₀ Δr + e·(p − a)) / (|e|² − Δr²): round cones in closed
-/// form. If one ball contains the other, the larger ball.
+/// g(t) = (r₀ + t Δr)² − |p − a − t e|² is greatest at t = (r₀ Δr + e·(p − a)) / (|e|² − Δr²):
+/// round cones in closed form. If one ball contains the other, the larger ball.
 pub fn highest_between(a: Ball, b: Ball, p: Vec2) -> Ball {
     let (e, dr) = (b.at - a.at, b.radius - a.radius);
     let bend = e.length_squared() - dr * dr;
@@ -35,10 +35,11 @@ pub fn highest_between(a: Ball, b: Ball, p: Vec2) -> Ball {
     Ball { at: a.at + t * e, radius: a.radius + t * dr }
 }
 
-/// The outline and squared height (px²) of balls along a line; `None` if there is nothing to see, a number is not
-/// finite or the rectangle has more than `most_px` pixels.
+/// The outline and squared height (px²) of balls along a line; `None` if there is nothing to see, a
+/// number is not finite or the rectangle has more than `most_px` pixels.
 pub fn swept(balls: &[Ball], most_px: usize) -> Option<(Outline, Plane<f32>)> {
-    let is_finite = |b: &Ball| b.at.is_finite() && b.at.abs().max_element() < 1e6 && b.radius.is_finite();
+    let is_finite =
+        |b: &Ball| b.at.is_finite() && b.at.abs().max_element() < 1e6 && b.radius.is_finite();
     if balls.is_empty() || !balls.iter().all(is_finite) {
         return None;
     }
@@ -72,16 +73,17 @@ pub fn swept(balls: &[Ball], most_px: usize) -> Option<(Outline, Plane<f32>)> {
     let coverage = depth.map(|d| ((d + 0.5).max(0.0).min(1.0) * 255.0).round() as u8);
     let outline = Outline::new((low.x as i32, low.y as i32), &coverage)?;
     let shift = (outline.corner().0 - low.x as i32, outline.corner().1 - low.y as i32);
-    let square =
-        Plane::from_fn(outline.size(), |x, y| square.get(x as i32 + shift.0, y as i32 + shift.1).unwrap_or(0.0));
+    let square = Plane::from_fn(outline.size(), |x, y| {
+        square.get(x as i32 + shift.0, y as i32 + shift.1).unwrap_or(0.0)
+    });
     Some((outline, square))
 }
 
-/// The squared height (px²) of an outline turned about an axis: z² = r(s)² − (d − c(s))², s along the axis, r half of
-/// the outline's width there and c its middle.
+/// The squared height (px²) of an outline turned about an axis: z² = r(s)² − (d − c(s))², s along
+/// the axis, r half of the outline's width there and c its middle.
 ///
-/// `axis`: two points, canvas px; without one it is upright. Across each place of the axis, all between the first and
-/// the last place inside counts.
+/// `axis`: two points, canvas px; without one it is upright. Across each place of the axis, all
+/// between the first and the last place inside counts.
 pub fn turned(outline: &Outline, axis: Option<[Vec2; 2]>) -> Plane<f32> {
     let size = outline.size();
     let corner = vec2(outline.corner().0 as f32, outline.corner().1 as f32);
@@ -91,7 +93,8 @@ pub fn turned(outline: &Outline, axis: Option<[Vec2; 2]>) -> Plane<f32> {
     let along = (to - from).try_normalize().unwrap_or(Vec2::Y);
     let across = vec2(-along.y, along.x);
     let far = extent.length().ceil();
-    let ends = [Vec2::ZERO, vec2(extent.x, 0.0), vec2(0.0, extent.y), extent].map(|p| (p - from).dot(along));
+    let ends = [Vec2::ZERO, vec2(extent.x, 0.0), vec2(0.0, extent.y), extent]
+        .map(|p| (p - from).dot(along));
     let first = ends.iter().copied().fold(f32::MAX, f32::min).floor();
     let count = (2.0 * far) as usize + 2;
     // The outline's two sides at every pixel along the axis.
@@ -125,20 +128,21 @@ pub fn turned(outline: &Outline, axis: Option<[Vec2; 2]>) -> Plane<f32> {
     })
 }
 
-/// How far along the axis sides are compared, px either way, and how far off a side read from coverage may be: larger
-/// differences are drawn on purpose.
+/// How far along the axis sides are compared, px either way, and how far off a side read from
+/// coverage may be: larger differences are drawn on purpose.
 const CALM_PX: usize = 5;
 const READ_WITHIN_PX: f32 = 0.4;
 
-/// Sides without their reading error of a tenth of a pixel, which would show as ripples in the light: each is replaced
-/// by the value of the parabola nearest to those around it. Drawn steps are kept.
+/// Sides without their reading error of a tenth of a pixel, which would show as ripples in the
+/// light: each is replaced by the value of the parabola nearest to those around it. Drawn steps are
+/// kept.
 fn calmed(sides: &[Option<(f32, f32)>]) -> Vec<Option<(f32, f32)>> {
     let calm = |i: usize| {
         let own = sides[i]?;
         let is_there = |i: &usize| sides.get(*i).is_some_and(Option::is_some);
         // As many on both sides, and fewer near the ends, where sides turn inward.
-        let reach =
-            (1..=2 * CALM_PX).take_while(|k| i.checked_sub(*k).is_some_and(|i| is_there(&i)) && is_there(&(i + k)));
+        let reach = (1..=2 * CALM_PX)
+            .take_while(|k| i.checked_sub(*k).is_some_and(|i| is_there(&i)) && is_there(&(i + k)));
         let reach = reach.count() / 2;
         let side = |of: fn((f32, f32)) -> f32| {
             let at = |i: usize| sides[i].map_or(0.0, of);
@@ -150,8 +154,8 @@ fn calmed(sides: &[Option<(f32, f32)>]) -> Vec<Option<(f32, f32)>> {
     (0..sides.len()).map(calm).collect()
 }
 
-/// The middle value of the parabola that is nearest to the values from `-reach` to `reach`, by least squares
-/// (Savitzky and Golay 1964).
+/// The middle value of the parabola that is nearest to the values from `-reach` to `reach`, by
+/// least squares (Savitzky and Golay 1964).
 fn parabola(reach: usize, value: impl Fn(isize) -> f32) -> f32 {
     if reach < 2 {
         return value(0);
@@ -164,7 +168,13 @@ fn parabola(reach: usize, value: impl Fn(isize) -> f32) -> f32 {
 }
 
 /// The first and the last place along a line that are inside, to a fraction of a pixel.
-fn span_across(outline: &Outline, from: Vec2, way: Vec2, low: f32, high: f32) -> Option<(f32, f32)> {
+fn span_across(
+    outline: &Outline,
+    from: Vec2,
+    way: Vec2,
+    low: f32,
+    high: f32,
+) -> Option<(f32, f32)> {
     const STEP: f32 = 0.5;
     let at = |d: f32| outline.between(from + d * way) - 0.5;
     let steps = ((high - low) / STEP) as usize;
@@ -185,7 +195,10 @@ mod tests {
 
     #[test]
     fn a_sweep_is_as_high_as_the_highest_of_all_balls_between() {
-        let (a, b) = (Ball { at: vec2(20.0, 30.0), radius: 12.0 }, Ball { at: vec2(60.0, 40.0), radius: 5.0 });
+        let (a, b) = (
+            Ball { at: vec2(20.0, 30.0), radius: 12.0 },
+            Ball { at: vec2(60.0, 40.0), radius: 5.0 },
+        );
         for i in 0..200 {
             let p = vec2(5.0 + (i % 20) as f32 * 3.5, 15.0 + (i / 20) as f32 * 4.0);
             let height = |ball: Ball| ball.radius.powi(2) - p.distance_squared(ball.at);
@@ -204,13 +217,16 @@ mod tests {
         assert!(swept(&[Ball { at: vec2(f32::NAN, 0.0), radius: 3.0 }], 1000).is_none());
         assert!(swept(&[Ball { at: Vec2::ZERO, radius: 3000.0 }], 1000).is_none());
     }
+
     #[test]
     fn a_turned_vase_has_no_ripples() {
         let radius = |s: f32| 60.0 + 22.0 * (s / 37.0).sin();
         let side = |sign: f32| (0..=2400).map(move |i| (sign, 20.0 + 0.1 * i as f32));
         let at = |(sign, s): (f32, f32)| vec2(120.3 + sign * radius(s), s);
-        let way: Vec<Vec2> =
-            side(1.0).map(at).chain(side(-1.0).collect::<Vec<_>>().into_iter().rev().map(at)).collect();
+        let way: Vec<Vec2> = side(1.0)
+            .map(at)
+            .chain(side(-1.0).collect::<Vec<_>>().into_iter().rev().map(at))
+            .collect();
         let outline = Outline::of_path(&way, 1 << 20).unwrap();
         let square = turned(&outline, Some([vec2(120.3, 0.0), vec2(120.3, 1.0)]));
         let (left, top) = outline.corner();
@@ -222,8 +238,13 @@ mod tests {
             assert!((height(s) - radius(s as f32 + 0.5)).abs() < 0.15, "{} at {s}", height(s));
             (sum, most) = (sum + (slope - wanted).abs(), most.max((slope - wanted).abs()));
         }
-        assert!(sum / 220.0 < 0.01 && most < 0.05, "slopes are off by {} in the mean, {most} at most", sum / 220.0);
+        assert!(
+            sum / 220.0 < 0.01 && most < 0.05,
+            "slopes are off by {} in the mean, {most} at most",
+            sum / 220.0
+        );
     }
+
     #[test]
     fn a_step_that_is_drawn_stays() {
         let sides: Vec<Option<(f32, f32)>> =
@@ -231,9 +252,13 @@ mod tests {
         let calm = calmed(&sides);
         for (i, (was, now)) in sides.iter().zip(&calm).enumerate() {
             let (was, now) = (was.unwrap(), now.unwrap());
-            assert!((was.0 - now.0).abs() <= READ_WITHIN_PX && (was.1 - now.1).abs() <= READ_WITHIN_PX, "{i}: {now:?}");
+            assert!(
+                (was.0 - now.0).abs() <= READ_WITHIN_PX && (was.1 - now.1).abs() <= READ_WITHIN_PX,
+                "{i}: {now:?}"
+            );
         }
     }
+
     #[test]
     fn an_ellipse_turned_about_its_long_axis_is_an_ellipsoid() {
         let (a, b, turn) = (70.0f32, 30.0f32, 0.4f32);

@@ -1,4 +1,5 @@
-//! What is known about inflated shapes: values on discs, ellipses and strips, and what must not change them.
+//! What is known about inflated shapes: values on discs, ellipses and strips, and what must not
+//! change them.
 
 use super::inflate::inflate;
 use super::path::ellipse;
@@ -10,7 +11,12 @@ use crate::raster::Plane;
 const SILHOUETTE: Roundness = Roundness { puff: 1.0, rim_deg: 90.0 };
 
 fn pillow(outline: &Outline) -> Form {
-    Form::of_squares(outline, &inflate(outline, None, None), &OutlineRim::silhouette(outline), SILHOUETTE)
+    Form::of_squares(
+        outline,
+        &inflate(outline, None, None),
+        &OutlineRim::silhouette(outline),
+        SILHOUETTE,
+    )
 }
 
 /// Canvas px of the centre of a pixel of a form.
@@ -56,12 +62,14 @@ fn a_disc_becomes_a_half_sphere() {
 #[test]
 fn an_ellipse_rises_to_its_apex_and_a_strip_to_root_two_or_as_a_tube_to_its_half_width() {
     let (a, b) = (120.0f32, 50.0f32);
-    let outline = Outline::of_path(&ellipse(vec2(130.0, 60.0), vec2(a, b), 0.0, 6000), 1 << 20).unwrap();
+    let outline =
+        Outline::of_path(&ellipse(vec2(130.0, 60.0), vec2(a, b), 0.0, 6000), 1 << 20).unwrap();
     let top = pillow(&outline).height.values().iter().fold(0.0f32, |m, z| m.max(*z));
     let apex = (2.0 / (1.0 / (a * a) + 1.0 / (b * b))).sqrt();
     assert!((top / apex - 1.0).abs() < 0.01, "{top} and not {apex}");
     let w = 30.3f32;
-    let corners = [vec2(5.0, 5.0), vec2(805.0, 5.0), vec2(805.0, 5.0 + 2.0 * w), vec2(5.0, 5.0 + 2.0 * w)];
+    let corners =
+        [vec2(5.0, 5.0), vec2(805.0, 5.0), vec2(805.0, 5.0 + 2.0 * w), vec2(5.0, 5.0 + 2.0 * w)];
     let strip = Outline::of_path(&corners, 1 << 20).unwrap();
     let across = |form: &Form| {
         let x = form.height.width() / 2;
@@ -69,8 +77,12 @@ fn an_ellipse_rises_to_its_apex_and_a_strip_to_root_two_or_as_a_tube_to_its_half
     };
     let fat = across(&pillow(&strip));
     assert!((fat / (2.0f32.sqrt() * w) - 1.0).abs() < 0.005, "{fat}");
-    let limb =
-        across(&Form::of_squares(&strip, &tube(&strip, None, None), &OutlineRim::silhouette(&strip), SILHOUETTE));
+    let limb = across(&Form::of_squares(
+        &strip,
+        &tube(&strip, None, None),
+        &OutlineRim::silhouette(&strip),
+        SILHOUETTE,
+    ));
     println!("strip of half width {w}: pillow {fat}, tube {limb}");
     assert!((limb / w - 1.0).abs() < 0.015, "{limb} and not {w}");
 }
@@ -95,19 +107,20 @@ fn normal_at(form: &Form, p: Vec2) -> Vec3 {
     (row(0) * (1.0 - fy) + row(1) * fy).normalize_or(Vec3::Z)
 }
 
-/// How far the normals of one form are from those of another, seen through a map of the canvas and a turn; mean, px
-/// within 2 px of the rim left out.
+/// How far the normals of one form are from those of another, seen through a map of the canvas and
+/// a turn; mean, px within 2 px of the rim left out.
 fn apart(a: &Form, b: &Form, b_from_a: impl Fn(Vec2) -> Vec2, turn_rad: f32) -> f32 {
     let deep = |x: i32, y: i32| {
         let r = 2;
         (-r..=r).all(|dy| (-r..=r).all(|dx| a.coverage.get(x + dx, y + dy) == Some(255)))
     };
     let turn = Vec2::from_angle(-turn_rad);
-    let angles = pixels(a.coverage.size()).filter(|&(x, y)| deep(x as i32, y as i32)).map(|(x, y)| {
-        let n = a.normals.at(x, y);
-        let turned = turn.rotate(n.truncate()).extend(n.z);
-        angle_deg(turned, normal_at(b, b_from_a(place(a, x, y))))
-    });
+    let angles =
+        pixels(a.coverage.size()).filter(|&(x, y)| deep(x as i32, y as i32)).map(|(x, y)| {
+            let n = a.normals.at(x, y);
+            let turned = turn.rotate(n.truncate()).extend(n.z);
+            angle_deg(turned, normal_at(b, b_from_a(place(a, x, y))))
+        });
     mean_and_p99(angles.collect()).0
 }
 
@@ -121,7 +134,9 @@ fn a_tube_over_the_outline_of_a_capsule_a_cone_or_a_ball_is_nearly_that_body() {
     ];
     for (name, balls) in bodies {
         let (outline, squares) = sweep::swept(&balls, 1 << 20).unwrap();
-        let form = |h: &Plane<f32>| Form::of_squares(&outline, h, &OutlineRim::silhouette(&outline), SILHOUETTE);
+        let form = |h: &Plane<f32>| {
+            Form::of_squares(&outline, h, &OutlineRim::silhouette(&outline), SILHOUETTE)
+        };
         let off = apart(&form(&tube(&outline, None, None)), &form(&squares), |p| p, 0.0);
         println!("{name}: {off:.3}°");
         assert!(off < 0.45, "{name}: {off}°");
@@ -135,34 +150,48 @@ fn turning_shifting_and_scaling_an_outline_does_so_to_its_normals() {
     let (still, turned) = (creature(300.0, 0.0, Vec2::ZERO), creature(300.0, turn, shift));
     let map = |p: Vec2| Vec2::from_angle(turn).rotate(p - 150.0) + 150.0 + shift;
     let (small, large) = (creature(256.0, 0.0, Vec2::ZERO), creature(1024.0, 0.0, Vec2::ZERO));
-    let tubes = |o: &Outline| Form::of_squares(o, &tube(o, None, None), &OutlineRim::silhouette(o), SILHOUETTE);
+    let tubes = |o: &Outline| {
+        Form::of_squares(o, &tube(o, None, None), &OutlineRim::silhouette(o), SILHOUETTE)
+    };
     let by_turn = apart(&pillow(&still), &pillow(&turned), map, turn);
     let by_scale = apart(&pillow(&small), &pillow(&large), |p| p * 4.0, 0.0);
     let of_tubes = apart(&tubes(&still), &tubes(&turned), map, turn);
-    println!("turned and shifted {by_turn:.3}° (tubes {of_tubes:.3}°), four times as large {by_scale:.3}°");
+    println!(
+        "turned and shifted {by_turn:.3}° (tubes {of_tubes:.3}°), four times as large {by_scale:.3}°"
+    );
     assert!(by_turn < 0.3 && by_scale < 0.3, "{by_turn}° turned, {by_scale}° scaled");
     let tubes_by_scale = apart(&tubes(&small), &tubes(&large), |p| p * 4.0, 0.0);
-    assert!(of_tubes < 0.3 && tubes_by_scale < 0.3, "tubes {of_tubes}° turned, {tubes_by_scale}° scaled");
+    assert!(
+        of_tubes < 0.3 && tubes_by_scale < 0.3,
+        "tubes {of_tubes}° turned, {tubes_by_scale}° scaled"
+    );
 }
 
 #[test]
 fn normals_are_the_slopes_of_heights() {
     let outline = creature(300.0, 0.2, Vec2::ZERO);
     let u = inflate(&outline, None, None);
-    for round in [SILHOUETTE, Roundness { puff: 0.5, rim_deg: 90.0 }, Roundness { puff: 1.3, rim_deg: 40.0 }] {
-        let form = Form::of_squares(&outline, &u, &OutlineRim::silhouette(&outline), round).tilted(vec2(5.0, -9.0));
+    for round in
+        [SILHOUETTE, Roundness { puff: 0.5, rim_deg: 90.0 }, Roundness { puff: 1.3, rim_deg: 40.0 }]
+    {
+        let form = Form::of_squares(&outline, &u, &OutlineRim::silhouette(&outline), round)
+            .tilted(vec2(5.0, -9.0));
         let mut angles = Vec::new();
         let (mut curl, mut count) = (0.0f64, 0);
         for (x, y) in pixels(outline.size()).filter(|&(x, y)| u.at(x, y) > 400.0) {
             let across = form.height.at(x + 1, y) - form.height.at(x - 1, y);
             let down = form.height.at(x, y + 1) - form.height.at(x, y - 1);
-            angles.push(angle_deg(form.normals.at(x, y), vec3(-0.5 * across, 0.5 * down, 1.0).normalize()));
+            angles.push(angle_deg(
+                form.normals.at(x, y),
+                vec3(-0.5 * across, 0.5 * down, 1.0).normalize(),
+            ));
             // The curl of the slopes, around a pixel.
             let slope = |x: usize, y: usize| {
                 let n = form.normals.at(x, y);
                 vec2(-n.x, n.y) / n.z
             };
-            let turning = (slope(x + 1, y).y - slope(x - 1, y).y) - (slope(x, y + 1).x - slope(x, y - 1).x);
+            let turning =
+                (slope(x + 1, y).y - slope(x - 1, y).y) - (slope(x, y + 1).x - slope(x, y - 1).x);
             curl += f64::from(turning.abs() * 0.5);
             count += 1;
         }
@@ -176,13 +205,20 @@ fn normals_are_the_slopes_of_heights() {
 
 #[test]
 fn a_low_rim_turns_by_its_angle_in_the_mean() {
-    let outline = Outline::of_path(&ellipse(vec2(70.0, 70.0), Vec2::splat(60.0), 0.0, 4000), 1 << 20).unwrap();
+    let outline =
+        Outline::of_path(&ellipse(vec2(70.0, 70.0), Vec2::splat(60.0), 0.0, 4000), 1 << 20)
+            .unwrap();
     let u = inflate(&outline, None, None);
-    let form =
-        Form::of_squares(&outline, &u, &OutlineRim::silhouette(&outline), Roundness { puff: 0.8, rim_deg: 35.0 });
+    let form = Form::of_squares(
+        &outline,
+        &u,
+        &OutlineRim::silhouette(&outline),
+        Roundness { puff: 0.8, rim_deg: 35.0 },
+    );
     let at_rim = pixels(outline.size())
         .filter(|&(x, y)| outline.inside().at(x, y) && (place(&form, x, y) - 70.0).length() > 59.5);
-    let (mean, _) = mean_and_p99(at_rim.map(|(x, y)| angle_deg(form.normals.at(x, y), Vec3::Z)).collect());
+    let (mean, _) =
+        mean_and_p99(at_rim.map(|(x, y)| angle_deg(form.normals.at(x, y), Vec3::Z)).collect());
     assert!((mean - 35.0).abs() < 3.0, "{mean}°");
 }
 
@@ -213,7 +249,8 @@ fn a_thousand_outlines_give_unit_normals_and_the_same_bytes_on_one_and_two_threa
     for seed in 0..1000 {
         let Some(outline) = Outline::new((3, -2), &random_mask(seed)) else { continue };
         let form = || {
-            let squares = tube::blend(&inflate(&outline, None, None), &tube(&outline, None, None), 0.4);
+            let squares =
+                tube::blend(&inflate(&outline, None, None), &tube(&outline, None, None), 0.4);
             Form::of_squares(
                 &outline,
                 &squares,
@@ -242,7 +279,8 @@ fn a_form_moves_with_its_outline_byte_for_byte() {
 #[test]
 fn a_part_that_is_joined_runs_level_into_its_neighbour() {
     let w = 20.0f32;
-    let corners = [vec2(2.0, 2.0), vec2(202.0, 2.0), vec2(202.0, 2.0 + 2.0 * w), vec2(2.0, 2.0 + 2.0 * w)];
+    let corners =
+        [vec2(2.0, 2.0), vec2(202.0, 2.0), vec2(202.0, 2.0 + 2.0 * w), vec2(2.0, 2.0 + 2.0 * w)];
     let strip = Outline::of_path(&corners, 1 << 20).unwrap();
     // Joined at its right end: there it is as high as in its middle.
     let joined = Plane::from_fn(strip.size(), |x, _| x + 1 == strip.size().width as usize);
@@ -255,6 +293,7 @@ fn a_part_that_is_joined_runs_level_into_its_neighbour() {
     let everywhere = Plane::filled(strip.size(), true);
     assert!(inflate(&strip, Some(&everywhere), None).values().iter().all(|v| v.is_finite()));
 }
+
 #[test]
 fn thousands_of_holes_combs_and_specks_make_a_form_without_nan() {
     let size = Size::new(480, 420);
@@ -268,26 +307,41 @@ fn thousands_of_holes_combs_and_specks_make_a_form_without_nan() {
         ("a line across", |_, y| y == 200),
         ("all of it", |_, _| true),
     ];
-    let holes = [(5, 1), (5, 4), (9, 3)].map(|(step, side)| (step, side, move |x, y| !hole(x, y, step, side)));
-    let planes = drawings
-        .iter()
-        .map(|(name, is)| (name.to_string(), Plane::from_fn(size, |x, y| if is(x, y) { 255 } else { 0 })));
+    let holes = [(5, 1), (5, 4), (9, 3)]
+        .map(|(step, side)| (step, side, move |x, y| !hole(x, y, step, side)));
+    let planes = drawings.iter().map(|(name, is)| {
+        (name.to_string(), Plane::from_fn(size, |x, y| if is(x, y) { 255 } else { 0 }))
+    });
     let holed = holes.iter().map(|(step, side, is)| {
-        (format!("holes of {side} every {step}"), Plane::from_fn(size, |x, y| if is(x, y) { 255 } else { 0 }))
+        (
+            format!("holes of {side} every {step}"),
+            Plane::from_fn(size, |x, y| if is(x, y) { 255 } else { 0 }),
+        )
     });
     for (name, plane) in planes.chain(holed) {
         let outline = Outline::new((0, 0), &plane).unwrap_or_else(|| panic!("{name}"));
         for profile in [0.0, 1.0] {
-            let squares = if profile == 0.0 { inflate(&outline, None, None) } else { tube(&outline, None, None) };
-            let form = Form::of_squares(&outline, &squares, &OutlineRim::silhouette(&outline), SILHOUETTE);
+            let squares = if profile == 0.0 {
+                inflate(&outline, None, None)
+            } else {
+                tube(&outline, None, None)
+            };
+            let form =
+                Form::of_squares(&outline, &squares, &OutlineRim::silhouette(&outline), SILHOUETTE);
             assert!(form.height.values().iter().all(|z| z.is_finite()), "{name}, {profile}");
-            assert!(form.normals.values().iter().all(|n| (n.length() - 1.0).abs() < 1e-5), "{name}, {profile}");
+            assert!(
+                form.normals.values().iter().all(|n| (n.length() - 1.0).abs() < 1e-5),
+                "{name}, {profile}"
+            );
             let mut relief = Relief::empty(size);
             relief.add(&form, Combine::Over, 1);
             let surface = relief
                 .into_surface(&mut crate::surface::KnownNearest::default())
                 .unwrap_or_else(|error| panic!("{name}: {error}"));
-            assert!(surface.depth_plane().values().iter().all(|z| (0.0..=1.0).contains(z)), "{name}, {profile}");
+            assert!(
+                surface.depth_plane().values().iter().all(|z| (0.0..=1.0).contains(z)),
+                "{name}, {profile}"
+            );
         }
     }
 }

@@ -1,5 +1,6 @@
-//! Touches: normals placed by hand, spread over a form. Floor 3. They are soft constraints on δ = n̄ wanted − n̄
-//! present: ∇²δ = 0 between them and δ = 0 at the rim, or within a reach ρ of each −∇²δ + δ/ρ² = 0.
+//! Touches: normals placed by hand, spread over a form. Floor 3. They are soft constraints on δ =
+//! n̄ wanted − n̄ present: ∇²δ = 0 between them and δ = 0 at the rim, or within a reach ρ of each
+//! −∇²δ + δ/ρ² = 0.
 
 use super::following::Following;
 use super::rim::Equation;
@@ -11,8 +12,8 @@ use rayon::prelude::*;
 
 /// How firmly a touch holds, relative to the springs between pixels, which are 1.
 const FIRM: f32 = 1e3;
-/// The squared residual, relative to the right-hand side, which the firm springs dominate: a ten thousandth of the
-/// residual at the start.
+/// The squared residual, relative to the right-hand side, which the firm springs dominate: a ten
+/// thousandth of the residual at the start.
 const GOAL: f64 = 1e-14;
 
 /// One touch of the normal brush.
@@ -40,8 +41,8 @@ impl Touch {
 /// The same for the first frame of a draft: the search need only come close.
 const ROUGH_GOAL: f64 = 1e-11;
 
-/// How far touches came on a form while the user edits them: the next search begins there. Only for drafts, since the
-/// result depends on the steps before.
+/// How far touches came on a form while the user edits them: the next search begins there. Only for
+/// drafts, since the result depends on the steps before.
 #[derive(Default)]
 pub struct Touching {
     /// By reach.
@@ -64,12 +65,17 @@ struct TouchingStep {
 
 /// A form with touches: the normals nearest to the requested ones, and the heights that follow.
 ///
-/// Where touches overlap, the last one holds. Those with the same reach are spread together, the farthest first; nearer
-/// ones then change only what remains. Inside a touch the form keeps its own curvature: its mean normal there becomes
-/// the touch's.
+/// Where touches overlap, the last one holds. Those with the same reach are spread together, the
+/// farthest first; nearer ones then change only what remains. Inside a touch the form keeps its own
+/// curvature: its mean normal there becomes the touch's.
 ///
 /// * `last`: in a draft, how far it came, and then how far it comes.
-pub fn touched(form: &Form, outline: &Outline, touches: &[Touch], mut last: Option<&mut Touching>) -> Form {
+pub fn touched(
+    form: &Form,
+    outline: &Outline,
+    touches: &[Touch],
+    mut last: Option<&mut Touching>,
+) -> Form {
     let inside = outline.inside();
     if form.normals.size() != inside.size() || touches.is_empty() {
         return form.clone();
@@ -79,7 +85,8 @@ pub fn touched(form: &Form, outline: &Outline, touches: &[Touch], mut last: Opti
         last.near = Rect::EMPTY;
     }
     let bar = form.normals.map(|n| vec2(n.x, -n.y));
-    let mut reaches: Vec<f32> = touches.iter().map(|t| if t.reach > 0.0 { t.reach } else { f32::INFINITY }).collect();
+    let mut reaches: Vec<f32> =
+        touches.iter().map(|t| if t.reach > 0.0 { t.reach } else { f32::INFINITY }).collect();
     reaches.sort_by(|a, b| b.total_cmp(a));
     reaches.dedup();
     let mut delta = Plane::filled(inside.size(), Vec2::ZERO);
@@ -109,10 +116,20 @@ impl Touching {
             *self = Self { outline: Some(outline.clone()), ..Self::default() };
         }
     }
+
     /// As [`spread`], approximately, begun where the last one of this reach ended.
-    fn spread(&mut self, outline: &Outline, (held, wanted): (&Plane<bool>, &Plane<Vec2>), reach: f32) -> Plane<Vec2> {
+    fn spread(
+        &mut self,
+        outline: &Outline,
+        (held, wanted): (&Plane<bool>, &Plane<Vec2>),
+        reach: f32,
+    ) -> Plane<Vec2> {
         let rim = OutlineRim::silhouette(outline);
-        let known = self.steps.iter().position(|step| step.reach == reach).map(|at| self.steps.swap_remove(at));
+        let known = self
+            .steps
+            .iter()
+            .position(|step| step.reach == reach)
+            .map(|at| self.steps.swap_remove(at));
         let step = match known {
             Some(known) => {
                 let (step, near) = known.gone_on(&rim, (held, wanted));
@@ -129,10 +146,12 @@ impl Touching {
         self.steps.push(step);
         spread
     }
+
     /// As [`with_normals`], approximately.
     fn with_normals(&mut self, form: &Form, outline: &Outline, normals: Plane<Vec3>) -> Form {
         let inside = outline.inside();
-        let Some(mut following) = self.heights.take().or_else(|| Following::of(&normals, inside)) else {
+        let Some(mut following) = self.heights.take().or_else(|| Following::of(&normals, inside))
+        else {
             return with_normals(form, outline, normals);
         };
         let (far, width) = (following.go_on(&normals, inside, self.near), inside.width());
@@ -144,7 +163,11 @@ impl Touching {
 
 impl TouchingStep {
     /// One more frame, and the pixels around what changed in it.
-    fn gone_on(mut self, rim: &OutlineRim, (held, wanted): (&Plane<bool>, &Plane<Vec2>)) -> (Self, Rect) {
+    fn gone_on(
+        mut self,
+        rim: &OutlineRim,
+        (held, wanted): (&Plane<bool>, &Plane<Vec2>),
+    ) -> (Self, Rect) {
         /// As far as a touch is felt strongly, px.
         const FELT: i32 = 12;
         const SMALL: f32 = 0.01;
@@ -153,8 +176,10 @@ impl TouchingStep {
             held.values()[*i] != self.held.values()[*i]
                 || wanted.values()[*i].distance_squared(self.wanted.values()[*i]) > SMALL * SMALL
         };
-        let changed: Vec<_> = (0..held.values().len()).filter(is_other).map(|i| (i % width, i / width)).collect();
-        let pixel = |p: &(usize, usize)| Rect::new(p.0 as i32, p.1 as i32, p.0 as i32 + 1, p.1 as i32 + 1);
+        let changed: Vec<_> =
+            (0..held.values().len()).filter(is_other).map(|i| (i % width, i / width)).collect();
+        let pixel =
+            |p: &(usize, usize)| Rect::new(p.0 as i32, p.1 as i32, p.0 as i32 + 1, p.1 as i32 + 1);
         let near = changed.iter().fold(Rect::EMPTY, |all, p| all.union(pixel(p)));
         let near = if near.is_empty() { near } else { near.grown(FELT) };
         self.equation.hold(rim, &changed, stiffness(held, self.reach));
@@ -177,7 +202,12 @@ pub fn lifted(bar: Vec2) -> Vec3 {
 }
 
 /// Which pixels are held, and δ there: own touches set their normal, others no change.
-fn constraints(outline: &Outline, bar: &Plane<Vec2>, touches: &[Touch], reach: f32) -> (Plane<bool>, Plane<Vec2>) {
+fn constraints(
+    outline: &Outline,
+    bar: &Plane<Vec2>,
+    touches: &[Touch],
+    reach: f32,
+) -> (Plane<bool>, Plane<Vec2>) {
     let (inside, corner) = (outline.inside(), outline.corner());
     let mut held = Plane::filled(inside.size(), false);
     let mut wanted = Plane::filled(inside.size(), Vec2::ZERO);
@@ -185,7 +215,8 @@ fn constraints(outline: &Outline, bar: &Plane<Vec2>, touches: &[Touch], reach: f
         let own = if touch.reach > 0.0 { touch.reach == reach } else { reach.is_infinite() };
         let center = touch.at - vec2(corner.0 as f32, corner.1 as f32);
         let pixels: Vec<(usize, usize)> = disc(inside, center, touch.radius).collect();
-        let mean = pixels.iter().map(|p| bar.at(p.0, p.1)).sum::<Vec2>() / pixels.len().max(1) as f32;
+        let mean =
+            pixels.iter().map(|p| bar.at(p.0, p.1)).sum::<Vec2>() / pixels.len().max(1) as f32;
         let delta = if own { vec2(touch.normal.x, -touch.normal.y) - mean } else { Vec2::ZERO };
         for (x, y) in pixels {
             held.set(x, y, true);
@@ -196,9 +227,15 @@ fn constraints(outline: &Outline, bar: &Plane<Vec2>, touches: &[Touch], reach: f
 }
 
 /// The inside pixels whose centres lie within a radius; at least the one that holds the centre.
-fn disc(inside: &Plane<bool>, center: Vec2, radius: f32) -> impl Iterator<Item = (usize, usize)> + '_ {
+fn disc(
+    inside: &Plane<bool>,
+    center: Vec2,
+    radius: f32,
+) -> impl Iterator<Item = (usize, usize)> + '_ {
     let (w, h) = (inside.width(), inside.height());
-    let side = |low: f32, high: f32, n: usize| low.floor().max(0.0) as usize..(high.ceil().max(0.0) as usize).min(n);
+    let side = |low: f32, high: f32, n: usize| {
+        low.floor().max(0.0) as usize..(high.ceil().max(0.0) as usize).min(n)
+    };
     let columns = side(center.x - radius, center.x + radius, w);
     side(center.y - radius, center.y + radius, h).flat_map(move |y| {
         columns.clone().filter_map(move |x| {
@@ -210,16 +247,27 @@ fn disc(inside: &Plane<bool>, center: Vec2, radius: f32) -> impl Iterator<Item =
 }
 
 /// δ over the outline: the wanted value where it is held, 0 at the rim, smooth between.
-pub fn spread(outline: &Outline, held: &Plane<bool>, wanted: &Plane<Vec2>, reach: f32) -> Plane<Vec2> {
+pub fn spread(
+    outline: &Outline,
+    held: &Plane<bool>,
+    wanted: &Plane<Vec2>,
+    reach: f32,
+) -> Plane<Vec2> {
     spread_within(&OutlineRim::silhouette(outline), held, wanted, reach)
 }
 
 /// The same within a partly free rim.
-pub fn spread_within(rim: &OutlineRim, held: &Plane<bool>, wanted: &Plane<Vec2>, reach: f32) -> Plane<Vec2> {
+pub fn spread_within(
+    rim: &OutlineRim,
+    held: &Plane<bool>,
+    wanted: &Plane<Vec2>,
+    reach: f32,
+) -> Plane<Vec2> {
     side_by_side(&solved(&touching(rim, held, reach), (held, wanted), GOAL))
 }
 
-/// How firmly each pixel is held: by touches, and by a reach, px; one that is infinite does not hold.
+/// How firmly each pixel is held: by touches, and by a reach, px; one that is infinite does not
+/// hold.
 fn stiffness(held: &Plane<bool>, reach: f32) -> impl Fn(usize, usize) -> f32 + Sync + '_ {
     let screen = if reach.is_finite() { 1.0 / (reach * reach).max(0.25) } else { 0.0 };
     move |x, y| if held.at(x, y) { FIRM } else { screen }
@@ -232,14 +280,25 @@ fn touching(rim: &OutlineRim, held: &Plane<bool>, reach: f32) -> Equation {
 
 /// The right-hand side of one component of δ.
 fn source(held: &Plane<bool>, wanted: &Plane<Vec2>, component: usize) -> Plane<f32> {
-    Plane::from_fn(held.size(), |x, y| if held.at(x, y) { FIRM * wanted.at(x, y)[component] } else { 0.0 })
+    Plane::from_fn(
+        held.size(),
+        |x, y| if held.at(x, y) { FIRM * wanted.at(x, y)[component] } else { 0.0 },
+    )
 }
 
 /// The components of δ.
-fn solved(equation: &Equation, (held, wanted): (&Plane<bool>, &Plane<Vec2>), goal: f64) -> [Plane<f32>; 2] {
+fn solved(
+    equation: &Equation,
+    (held, wanted): (&Plane<bool>, &Plane<Vec2>),
+    goal: f64,
+) -> [Plane<f32>; 2] {
     [0, 1].map(|c| {
         // Where a touch holds, δ is known to a thousandth.
-        let start = Plane::from_fn(held.size(), |x, y| if held.at(x, y) { wanted.at(x, y)[c] } else { 0.0 });
+        let start =
+            Plane::from_fn(
+                held.size(),
+                |x, y| if held.at(x, y) { wanted.at(x, y)[c] } else { 0.0 },
+            );
         equation.solve(&source(held, wanted, c), Some(&start), goal)
     })
 }
@@ -263,7 +322,8 @@ fn raised_to(
     rise: impl Fn(usize, usize) -> f32 + Sync,
 ) -> Form {
     let rows = 0..inside.height();
-    let risen = Plane::from_fn(inside.size(), |x, y| if inside.at(x, y) { rise(x, y) } else { 0.0 });
+    let risen =
+        Plane::from_fn(inside.size(), |x, y| if inside.at(x, y) { rise(x, y) } else { 0.0 });
     let mean = |plane: &Plane<f32>| {
         let of_row = |y: usize| {
             let held = plane.row(y).iter().zip(inside.row(y)).filter(|(_, is)| **is);
@@ -274,8 +334,14 @@ fn raised_to(
         (sum / f64::from(count.max(1))) as f32
     };
     let shift = mean(&form.height) - mean(&risen);
-    let height = risen.updated(|x, y, z| if inside.at(x, y) { z + shift } else { form.height.at(x, y) });
-    Form { height: height.into(), normals: normals.into(), corner: form.corner, coverage: form.coverage.clone() }
+    let height =
+        risen.updated(|x, y, z| if inside.at(x, y) { z + shift } else { form.height.at(x, y) });
+    Form {
+        height: height.into(),
+        normals: normals.into(),
+        corner: form.corner,
+        coverage: form.coverage.clone(),
+    }
 }
 
 #[cfg(test)]
@@ -292,7 +358,12 @@ mod tests {
         });
         let outline = Outline::new((0, 0), &disc).unwrap();
         let round = Roundness { puff: 0.7, rim_deg: 90.0 };
-        let form = Form::of_squares(&outline, &inflate(&outline, None, None), &OutlineRim::silhouette(&outline), round);
+        let form = Form::of_squares(
+            &outline,
+            &inflate(&outline, None, None),
+            &OutlineRim::silhouette(&outline),
+            round,
+        );
         let touch = |i: usize| Touch {
             at: vec2(60.0 + 9.0 * i as f32, 80.0 + 5.0 * (i % 3) as f32),
             radius: 4.0,
@@ -306,7 +377,8 @@ mod tests {
                 touched(&form, &outline, &touches[..n], Some(&mut last)),
                 touched(&form, &outline, &touches[..n], None),
             );
-            let inside = outline.inside().values().iter().enumerate().filter(|(_, is)| **is).map(|(i, _)| i);
+            let inside =
+                outline.inside().values().iter().enumerate().filter(|(_, is)| **is).map(|(i, _)| i);
             let (mut turned, mut off) = (0.0f32, 0.0f32);
             for i in inside {
                 turned = turned.max(draft.normals.values()[i].distance(whole.normals.values()[i]));

@@ -1,5 +1,5 @@
-//! Tubes: the union of the largest balls inside an outline, smoothed across its ridges. Floor 3. A strip rises to its
-//! half width here, not to √2 of it as in `inflate`.
+//! Tubes: the union of the largest balls inside an outline, smoothed across its ridges. Floor 3. A
+//! strip rises to its half width here, not to √2 of it as in `inflate`.
 
 use super::nearest::{lower_envelope, silhouette_distance};
 use super::{Outline, OutlineRim};
@@ -18,13 +18,19 @@ const LEAST_SMOOTHING_PX: f32 = 0.5;
 /// −∇²h of a straight limb, h = w² − x²; and of a ball, h = r² − x² − y².
 const BENDS: [f32; 2] = [2.0, 4.0];
 
-/// h, px², over the planes of an outline: the squared height of its maximal balls, smoothed, 0 at the rim.
+/// h, px², over the planes of an outline: the squared height of its maximal balls, smoothed, 0 at
+/// the rim.
 ///
-/// Unsmoothed it is h₀ = max_c (r²(c) − |x − c|²), r the distance to the rim. Smoothed: h − t∇²h = h₀ + t b, √t about a
-/// quarter of the height. Smoothing lowers what is bent by t times its −∇²h; b makes up for that: it is −∇² of the
-/// field that was smoothed with b = 2, in `[2, 4]`, so that limbs and balls stay as high as they are and only ridges
-/// between balls are levelled. `joined` and `start` as for `inflate`.
-pub fn tube(outline: &Outline, joined: Option<&Plane<bool>>, start: Option<&Plane<f32>>) -> Plane<f32> {
+/// Unsmoothed it is h₀ = max_c (r²(c) − |x − c|²), r the distance to the rim. Smoothed: h − t∇²h =
+/// h₀ + t b, √t about a quarter of the height. Smoothing lowers what is bent by t times its −∇²h; b
+/// makes up for that: it is −∇² of the field that was smoothed with b = 2, in `[2, 4]`, so that
+/// limbs and balls stay as high as they are and only ridges between balls are levelled. `joined`
+/// and `start` as for `inflate`.
+pub fn tube(
+    outline: &Outline,
+    joined: Option<&Plane<bool>>,
+    start: Option<&Plane<f32>>,
+) -> Plane<f32> {
     let reach = silhouette_distance(outline, joined);
     let rim = OutlineRim::of(outline, joined);
     let raw = balls(outline, &reach);
@@ -34,17 +40,18 @@ pub fn tube(outline: &Outline, joined: Option<&Plane<bool>>, start: Option<&Plan
         1.0 / (length * length)
     };
     let equation = rim.equation(screen);
-    let smoothed =
-        |bend: &(dyn Fn(usize, usize) -> f32 + Sync), start: &Plane<f32>, goal: f64| {
-            let source = Plane::from_fn(raw.size(), |x, y| {
-                if inside.at(x, y) { raw.at(x, y) * screen(x, y) + bend(x, y) } else { 0.0 }
-            });
-            equation.solve(&source, Some(start), goal)
-        };
+    let smoothed = |bend: &(dyn Fn(usize, usize) -> f32 + Sync), start: &Plane<f32>, goal: f64| {
+        let source = Plane::from_fn(raw.size(), |x, y| {
+            if inside.at(x, y) { raw.at(x, y) * screen(x, y) + bend(x, y) } else { 0.0 }
+        });
+        equation.solve(&source, Some(start), goal)
+    };
     let [limb, ball] = BENDS;
     let first = smoothed(&|_, _| limb, start.unwrap_or(&raw), ROUGH_GOAL);
     // What the equation leaves as −∇² of its solution.
-    let bend = |x: usize, y: usize| ((raw.at(x, y) - first.at(x, y)) * screen(x, y) + limb).max(limb).min(ball);
+    let bend = |x: usize, y: usize| {
+        ((raw.at(x, y) - first.at(x, y)) * screen(x, y) + limb).max(limb).min(ball)
+    };
     // Where the bend hardly varies, this is the solution.
     let raised = Plane::from_fn(raw.size(), |x, y| {
         if inside.at(x, y) { first.at(x, y) + (bend(x, y) - limb) / screen(x, y) } else { 0.0 }
@@ -53,7 +60,8 @@ pub fn tube(outline: &Outline, joined: Option<&Plane<bool>>, start: Option<&Plan
     h.updated(|x, y, h| if inside.at(x, y) && h.is_finite() { h.max(0.0) } else { 0.0 })
 }
 
-/// max_c (r²(c) − |x − c|²) over the inside: rows first, then columns, each an upper envelope of parabolas.
+/// max_c (r²(c) − |x − c|²) over the inside: rows first, then columns, each an upper envelope of
+/// parabolas.
 pub fn balls(outline: &Outline, reach: &Plane<f32>) -> Plane<f32> {
     let (size, inside) = (outline.size(), outline.inside());
     let (w, h) = (size.width as usize, size.height as usize);

@@ -65,7 +65,8 @@ pub struct Bend {
     pub anchors: Vec<Anchor>,
     /// How the anchors share their influence.
     pub weights: Weights,
-    /// Of the operator that unwraps the surface: pieces whose picture is turned, moved and scaled alone.
+    /// Of the operator that unwraps the surface: pieces whose picture is turned, moved and scaled
+    /// alone.
     pub pieces: Vec<PlanePiece>,
 }
 
@@ -80,6 +81,7 @@ impl Weights {
             Weights::Segment => segment(anchors, q),
         }
     }
+
     /// ∇w_i(q) of every anchor, per px; they add up to 0.
     pub fn gradients(self, anchors: &[Anchor], q: Vec2) -> Vec<Vec2> {
         match self {
@@ -89,9 +91,11 @@ impl Weights {
     }
 }
 
-/// Inverse-distance weights (Shepard 1968; MATH 2): `w_i(q) = |q − q_i|^−p / Σ_j |q − q_j|^−p`, exactly 1 at `q = q_i`.
+/// Inverse-distance weights (Shepard 1968; MATH 2): `w_i(q) = |q − q_i|^−p / Σ_j |q − q_j|^−p`,
+/// exactly 1 at `q = q_i`.
 ///
-/// Distances are taken relative to the nearest anchor's, so that no power overflows; anchors at the same place share.
+/// Distances are taken relative to the nearest anchor's, so that no power overflows; anchors at the
+/// same place share.
 pub fn shepard(anchors: &[Anchor], q: Vec2, power: f32) -> Vec<f32> {
     let distance = |a: &Anchor| q.distance(a.at);
     let nearest = anchors.iter().map(distance).fold(f32::INFINITY, f32::min);
@@ -103,8 +107,8 @@ pub fn shepard(anchors: &[Anchor], q: Vec2, power: f32) -> Vec<f32> {
     anchors.iter().map(|a| closeness(a) / sum).collect()
 }
 
-/// ∇w_i of [`shepard`]: `w_i (ℓ_i − Σ_j w_j ℓ_j)`, with `ℓ_i = −p (q − q_i) / |q − q_i|²` the gradient of the
-/// logarithm. 0 at an anchor (its limit for `p > 1`).
+/// ∇w_i of [`shepard`]: `w_i (ℓ_i − Σ_j w_j ℓ_j)`, with `ℓ_i = −p (q − q_i) / |q − q_i|²` the
+/// gradient of the logarithm. 0 at an anchor (its limit for `p > 1`).
 fn shepard_gradients(anchors: &[Anchor], q: Vec2, power: f32) -> Vec<Vec2> {
     let weights = shepard(anchors, q, power);
     let logarithmic = |a: &Anchor| {
@@ -115,10 +119,11 @@ fn shepard_gradients(anchors: &[Anchor], q: Vec2, power: f32) -> Vec<Vec2> {
     anchors.iter().zip(&weights).map(|(a, &w)| w * (logarithmic(a) - mean)).collect()
 }
 
-/// The gradient tool's weights (MATH 2): `w_0 = 1 − clamp(((q − q_0)·(q_1 − q_0)) / |q_1 − q_0|², 0, 1)`,
-/// `w_1 = 1 − w_0`.
+/// The gradient tool's weights (MATH 2): `w_0 = 1 − clamp(((q − q_0)·(q_1 − q_0)) / |q_1 − q_0|²,
+/// 0, 1)`, `w_1 = 1 − w_0`.
 ///
-/// Anchors beyond the second have no weight; a single one, or two at the same place, leave all of it to the first.
+/// Anchors beyond the second have no weight; a single one, or two at the same place, leave all of
+/// it to the first.
 pub fn segment(anchors: &[Anchor], q: Vec2) -> Vec<f32> {
     let along = along_segment(anchors, q).max(0.0).min(1.0);
     (0..anchors.len()).map(|i| [1.0 - along, along].get(i).copied().unwrap_or(0.0)).collect()
@@ -163,17 +168,20 @@ mod tests {
         assert_eq!(Weights::Shepard { power: 2.0 }.at(&three, three[1].at), [0.0, 1.0, 0.0]);
         assert_eq!(Weights::Shepard { power: 0.5 }.at(&three, three[2].at), [0.0, 0.0, 1.0]);
     }
+
     #[test]
     fn inverse_squares_share_the_weight() {
         let two = anchors(&[(0.0, 0.0), (30.0, 0.0)]);
         let w = shepard(&two, vec2(10.0, 0.0), 2.0);
         assert!((w[0] - 0.8).abs() < 1e-6 && (w[1] - 0.2).abs() < 1e-6, "1/100 to 1/400: {w:?}");
     }
+
     #[test]
     fn anchors_at_one_place_share_its_weight() {
         let w = shepard(&anchors(&[(5.0, 5.0), (5.0, 5.0)]), vec2(5.0, 5.0), 2.0);
         assert_eq!(w, [0.5, 0.5]);
     }
+
     #[test]
     fn segment_weights_run_from_the_first_anchor_to_the_second_and_stop() {
         let two = anchors(&[(10.0, 0.0), (20.0, 0.0)]);
@@ -191,6 +199,7 @@ mod tests {
                 prop_assert!((w.iter().sum::<f32>() - 1.0).abs() < 1e-5 && w.iter().all(|w| (0.0..=1.0).contains(w)));
             }
         }
+
         #[test]
         fn gradients_of_weights_are_their_derivatives(x in -40.0f32..40.0, y in -40.0f32..40.0) {
             let many = anchors(&[(0.0, 0.0), (17.0, 3.0), (-20.0, 44.0)]);

@@ -30,25 +30,38 @@ impl<K: PartialEq, V> RecentCache<K, V> {
     fn lock(&self) -> MutexGuard<'_, Vec<(K, Arc<V>)>> {
         self.entries.lock().unwrap_or_else(PoisonError::into_inner)
     }
+
     /// The value of a key, if it is held.
     pub fn known(&self, key: &K) -> Option<Arc<V>> {
         self.lock().iter().find(|(known, _)| known == key).map(|(_, value)| value.clone())
     }
+
     /// The sum of a figure over all values that are held.
     pub fn sum(&self, figure: impl Fn(&V) -> u64) -> u64 {
         self.lock().iter().map(|(_, value)| figure(value)).sum()
     }
+
     /// Drops all values.
     pub fn clear(&self) {
         self.lock().clear();
     }
-    /// The value of a key. It never computes while holding the lock: a thread that waits for work of its own pool would
-    /// deadlock. Threads that call it at the same time may each compute it; the results are equal.
+
+    /// The value of a key. It never computes while holding the lock: a thread that waits for work
+    /// of its own pool would deadlock. Threads that call it at the same time may each compute it;
+    /// the results are equal.
     ///
     /// * `keep`: how many are held, `≥ 1`.
-    /// * `compute`: receives an evicted value that nobody else holds, so that its memory can be reused.
-    pub fn get_or_compute(&self, key: K, keep: usize, compute: impl FnOnce(Option<V>) -> V) -> Arc<V> {
-        let find = |entries: &[(K, Arc<V>)]| entries.iter().find(|(k, _)| *k == key).map(|(_, v)| v.clone());
+    /// * `compute`: receives an evicted value that nobody else holds, so that its memory can be
+    ///   reused.
+    pub fn get_or_compute(
+        &self,
+        key: K,
+        keep: usize,
+        compute: impl FnOnce(Option<V>) -> V,
+    ) -> Arc<V> {
+        let find = |entries: &[(K, Arc<V>)]| {
+            entries.iter().find(|(k, _)| *k == key).map(|(_, v)| v.clone())
+        };
         let recycled = {
             let mut entries = self.lock();
             if let Some(found) = find(&entries) {

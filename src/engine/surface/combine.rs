@@ -1,20 +1,21 @@
-//! Normal layers: detail normals combined onto a surface (SF fig. 12b–c). Depth, coverage and links stay as they are.
-//! Floor 2. Here: the equation, and a map of detail read at any scale. Noise as detail is in `grain`, its placement on
-//! the canvas in `document::normals`.
+//! Normal layers: detail normals combined onto a surface (SF fig. 12b–c). Depth, coverage and links
+//! stay as they are. Floor 2. Here: the equation, and a map of detail read at any scale. Noise as
+//! detail is in `grain`, its placement on the canvas in `document::normals`.
 
 use crate::math::{Size, Vec2, Vec3, vec2};
 use crate::raster::{Outside, Plane};
 use std::sync::Arc;
 
-/// Combines a detail normal with a base normal: the detail is rotated so that its z axis becomes the base normal.
+/// Combines a detail normal with a base normal: the detail is rotated so that its z axis becomes
+/// the base normal.
 ///
-/// Reoriented normal mapping (Barré-Brisebois and Hill 2012): t = base + z, u = (−d_x, −d_y, d_z), r = t (t·u) / t_z −
-/// u.
+/// Reoriented normal mapping (Barré-Brisebois and Hill 2012): t = base + z, u = (−d_x, −d_y, d_z),
+/// r = t (t·u) / t_z − u.
 ///
 /// * `base`, `detail`: unit, y up, `base.z > −1`.
 ///
-/// The result is a unit vector: the base where the detail is flat, the detail where the base is flat. A result that
-/// would face away from the viewer is stopped at the silhouette.
+/// The result is a unit vector: the base where the detail is flat, the detail where the base is
+/// flat. A result that would face away from the viewer is stopped at the silhouette.
 pub fn reoriented(base: Vec3, detail: Vec3) -> Vec3 {
     let t = base + Vec3::Z;
     let u = Vec3::new(-detail.x, -detail.y, detail.z);
@@ -38,7 +39,8 @@ pub fn strengthened(detail: Vec3, strength: f32) -> Vec3 {
     Vec3::new(detail.x * strength, detail.y * strength, upright).normalize_or(Vec3::Z)
 }
 
-/// A tangent-space normal map with its mip levels: means of normals, so that detail too fine to be seen flattens.
+/// A tangent-space normal map with its mip levels: means of normals, so that detail too fine to be
+/// seen flattens.
 pub struct DetailMap {
     levels: Vec<Plane<Vec3>>,
 }
@@ -53,10 +55,12 @@ impl DetailMap {
         }
         Self { levels }
     }
+
     /// Its sides, px.
     pub fn size(&self) -> Size {
         self.levels[0].size()
     }
+
     /// The mean normal around a texel, not of unit length; `None` beyond a map that ends there.
     ///
     /// * `texel`: of the map, its corner (0, 0).
@@ -72,6 +76,7 @@ impl DetailMap {
         let far = if t > 0.0 { self.bilinear(fine + 1, texel, outside) } else { None };
         Some(far.map_or(near, |far| near.lerp(far, t)))
     }
+
     fn bilinear(&self, level: usize, texel: Vec2, outside: Outside) -> Option<Vec3> {
         let plane = &self.levels[level];
         let (w, h) = (plane.width() as f32, plane.height() as f32);
@@ -85,9 +90,16 @@ impl DetailMap {
             let row = outside.index(j, plane.height() as i32)?;
             let n = plane.at(column as usize, row as usize);
             // A mirrored detail tilts the other way.
-            let mirrored = |at: i32, n: usize| outside == Outside::Mirror && at.div_euclid(n as i32) % 2 != 0;
+            let mirrored =
+                |at: i32, n: usize| outside == Outside::Mirror && at.div_euclid(n as i32) % 2 != 0;
             let sign = |is: bool| if is { -1.0 } else { 1.0 };
-            Some(n * Vec3::new(sign(mirrored(i, plane.width())), sign(mirrored(j, plane.height())), 1.0))
+            Some(
+                n * Vec3::new(
+                    sign(mirrored(i, plane.width())),
+                    sign(mirrored(j, plane.height())),
+                    1.0,
+                ),
+            )
         };
         // Beyond the map's end the surface is as it was.
         let flat = |i, j| there(i, j).unwrap_or(Vec3::ZERO);
@@ -97,7 +109,11 @@ impl DetailMap {
             return Some(mean);
         }
         let edge = [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)];
-        if edge.iter().all(|&(i, j)| there(i, j).is_none()) { None } else { Some(mean.normalize_or(Vec3::Z)) }
+        if edge.iter().all(|&(i, j)| there(i, j).is_none()) {
+            None
+        } else {
+            Some(mean.normalize_or(Vec3::Z))
+        }
     }
 }
 
@@ -115,10 +131,16 @@ fn halved(plane: &Plane<Vec3>) -> Option<Plane<Vec3>> {
 impl super::Surface {
     /// The surface with its normals combined with detail. Depth, coverage and links are the same.
     ///
-    /// `detail`: the detail normal (y up, any length) and how strongly it counts at a pixel; `None` leaves the base.
-    pub fn combined(self: &Arc<Self>, detail: impl Fn(usize, usize) -> Option<(Vec3, f32)> + Sync) -> Self {
+    /// `detail`: the detail normal (y up, any length) and how strongly it counts at a pixel; `None`
+    /// leaves the base.
+    pub fn combined(
+        self: &Arc<Self>,
+        detail: impl Fn(usize, usize) -> Option<(Vec3, f32)> + Sync,
+    ) -> Self {
         let combined = |base: Vec3, x: usize, y: usize| match detail(x, y) {
-            Some((detail, strength)) if strength > 0.0 => reoriented(base, strengthened(detail, strength)),
+            Some((detail, strength)) if strength > 0.0 => {
+                reoriented(base, strengthened(detail, strength))
+            }
             _ => base,
         };
         let normals = Plane::from_fn(self.size(), |x, y| combined(self.normal(x, y), x, y));
@@ -145,12 +167,14 @@ mod tests {
     fn near(a: Vec3, b: Vec3) -> bool {
         (a - b).length() < 1e-5
     }
+
     #[test]
     fn flat_detail_keeps_the_base_and_a_flat_base_shows_the_detail() {
         let lean = vec3(0.4, -0.3, 0.8).normalize();
         assert!(near(reoriented(lean, Vec3::Z), lean));
         assert!(near(reoriented(Vec3::Z, lean), lean));
     }
+
     #[test]
     fn detail_keeps_its_angle_to_the_base() {
         let detail = vec3(0.3, 0.2, 0.9).normalize();
@@ -164,6 +188,7 @@ mod tests {
         let right = vec3(0.6, 0.0, 0.8);
         assert!((reoriented(right, vec3(0.0, 0.28, 0.96)).y - 0.28).abs() < 1e-5);
     }
+
     #[test]
     fn nothing_turns_away_from_the_viewer() {
         let grazing = vec3(0.995, 0.0, 0.0999).normalize();
@@ -173,15 +198,20 @@ mod tests {
             assert!(reoriented(base, vec3(0.5, 0.5, 0.7)).is_finite());
         }
     }
+
     #[test]
     fn strength_multiplies_slopes() {
         let n = strengthened(vec3(0.3, -0.1, 0.9).normalize(), 3.0);
         assert!((n.x / n.z - 1.0).abs() < 1e-5 && (n.y / n.z + 1.0 / 3.0).abs() < 1e-5);
         assert_eq!(strengthened(n, 0.0), Vec3::Z);
     }
+
     fn slanted() -> DetailMap {
-        DetailMap::new(Plane::from_fn(Size::new(8, 4), |x, _| vec3(if x < 4 { 0.6 } else { -0.6 }, 0.0, 0.8)))
+        DetailMap::new(Plane::from_fn(Size::new(8, 4), |x, _| {
+            vec3(if x < 4 { 0.6 } else { -0.6 }, 0.0, 0.8)
+        }))
     }
+
     #[test]
     fn detail_flattens_where_it_is_too_fine_to_be_seen() {
         let near = slanted().at(vec2(2.0, 2.0), 1.0, Outside::Repeat).unwrap();
@@ -189,26 +219,38 @@ mod tests {
         let far = slanted().at(vec2(2.0, 2.0), 8.0, Outside::Repeat).unwrap();
         assert!(far.x.abs() < 1e-5 && far.z > 0.5, "{far}");
     }
+
     #[test]
     fn mirrored_detail_leans_the_other_way() {
         let at = |x: f32, outside| slanted().at(vec2(x, 2.0), 1.0, outside).map(|n| n.x);
         assert!((at(10.0, Outside::Repeat).unwrap() - 0.6).abs() < 1e-5);
-        assert!((at(10.0, Outside::Mirror).unwrap() - 0.6).abs() < 1e-5, "the second half, turned over");
+        assert!(
+            (at(10.0, Outside::Mirror).unwrap() - 0.6).abs() < 1e-5,
+            "the second half, turned over"
+        );
         assert!((at(-2.0, Outside::Mirror).unwrap() + 0.6).abs() < 1e-5);
         assert_eq!(at(20.0, Outside::None), None);
         assert_eq!(slanted().at(Vec2::NAN, f32::NAN, Outside::Repeat), None);
     }
+
     #[test]
     fn combining_changes_normals_alone() {
         let size = Size::new(20, 10);
         let depth = Plane::from_fn(size, |x, _| x as f32 / 19.0);
-        let maps = Maps { normals: Plane::filled(size, Vec3::Z), depth, coverage: Plane::filled(size, 255) };
+        let maps = Maps {
+            normals: Plane::filled(size, Vec3::Z),
+            depth,
+            coverage: Plane::filled(size, 255),
+        };
         let base = Arc::new(Surface::new(maps).unwrap());
         let lean = vec3(0.6, 0.0, 0.8);
         let next = base.combined(|x, _| (x >= 10).then_some((lean, 1.0)));
         assert!(near(next.normal(4, 3), Vec3::Z) && near(next.normal(14, 3), lean));
         assert_eq!(next.depth_plane(), base.depth_plane());
         assert_eq!(next.links_plane(), base.links_plane());
-        assert!(Arc::ptr_eq(&next.occlusion(9.0), &base.occlusion(9.0)), "occlusion is told by depth");
+        assert!(
+            Arc::ptr_eq(&next.occlusion(9.0), &base.occlusion(9.0)),
+            "occlusion is told by depth"
+        );
     }
 }

@@ -1,6 +1,5 @@
-//! Creases: where the surface goes on but its direction turns within a pixel, as at an edge of a cube. Nothing that
-//! changes smoothly over a surface is differenced across one.
-//! Floor 2.
+//! Creases: where the surface goes on but its direction turns within a pixel, as at an edge of a
+//! cube. Nothing that changes smoothly over a surface is differenced across one. Floor 2.
 
 use super::links;
 use crate::math::{Vec2, vec2};
@@ -8,14 +7,16 @@ use crate::raster::Plane;
 use rayon::prelude::*;
 use std::collections::HashSet;
 
-/// A step of n̄ of at least this length turns at a crease where it is this many times as long as the steps before and
-/// after it, and these are short: detail of a pixel or two is no crease. One that touches such a step is one from the
-/// second row on. n̄ changes steadily up to a smooth silhouette, where n_z falls ever faster.
+/// A step of n̄ of at least this length turns at a crease where it is this many times as long as
+/// the steps before and after it, and these are short: detail of a pixel or two is no crease. One
+/// that touches such a step is one from the second row on. n̄ changes steadily up to a smooth
+/// silhouette, where n_z falls ever faster.
 const CERTAIN: Sharpness = Sharpness { least: 0.3, times: 4.0 };
 const LIKELY: Sharpness = Sharpness { least: 0.12, times: 2.5 };
 /// The longest that the steps before and after may be.
 const MOST_BESIDE: f32 = 0.1;
-/// A renderer may have mixed both sides in a pixel: the way over it is at most this much longer than past it.
+/// A renderer may have mixed both sides in a pixel: the way over it is at most this much longer
+/// than past it.
 const DETOUR: f32 = 1.15;
 /// Fewer steps side by side are noise.
 const LEAST_STEPS: usize = 6;
@@ -39,7 +40,11 @@ pub fn smooth_links(links: &Plane<u8>, nbar: [&Plane<f32>; 2]) -> Option<Plane<u
     let maps = NormalSteps { links, nbar };
     let mut steps = Plane::filled(links.size(), 0u8);
     let width = links.width().max(1);
-    steps.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| maps.flags_of_row(y, row));
+    steps
+        .values_mut()
+        .par_chunks_mut(width)
+        .enumerate()
+        .for_each(|(y, row)| maps.flags_of_row(y, row));
     keep_chains(&mut steps, links);
     if steps.values().iter().all(|&flags| flags & ANY_CREASE == 0) {
         return None;
@@ -56,7 +61,8 @@ pub fn smooth_links(links: &Plane<u8>, nbar: [&Plane<f32>; 2]) -> Option<Plane<u
     }))
 }
 
-/// Flags of the step from a pixel to its right neighbour; those of the step to the pixel below follow.
+/// Flags of the step from a pixel to its right neighbour; those of the step to the pixel below
+/// follow.
 const CREASE: u8 = 1;
 const LIKELY_CREASE: u8 = 2;
 const ANY_CREASE: u8 = CREASE | CREASE << 2;
@@ -74,12 +80,14 @@ impl Axis {
     }
 }
 
-/// Turns likely creases into creases where they touch one, over the eight neighbours of a pixel, and drops what is too
-/// short, unless it closes a gap in the line of a jump: that fades where two bodies run into each other.
+/// Turns likely creases into creases where they touch one, over the eight neighbours of a pixel,
+/// and drops what is too short, unless it closes a gap in the line of a jump: that fades where two
+/// bodies run into each other.
 fn keep_chains(steps: &mut Plane<u8>, links: &Plane<u8>) {
     let width = steps.width();
     let at = |i: usize| ((i % width) as i32, (i / width) as i32);
-    let mut seeds: Vec<usize> = (0..steps.values().len()).filter(|&i| steps.values()[i] != 0).collect();
+    let mut seeds: Vec<usize> =
+        (0..steps.values().len()).filter(|&i| steps.values()[i] != 0).collect();
     let mut seen = HashSet::new();
     while let Some(seed) = seeds.pop() {
         if !seen.insert(seed) {
@@ -138,8 +146,8 @@ struct NormalSteps<'m> {
 }
 
 crate::widest! {
-    /// Which steps of n̄ from pixels to those after them may be as long as a likely crease's: the others
-    /// certainly are not.
+    /// Which steps of n̄ from pixels to those after them may be as long as a likely crease's: the
+    /// others certainly are not.
     fn may_turn(from: [&[f32]; 2], to: [&[f32]; 2], out: &mut [u8]) {
         let n = out.len();
         let ([ax, ay], [bx, by]) = (from.map(|row| &row[..n]), to.map(|row| &row[..n]));
@@ -169,19 +177,24 @@ impl NormalSteps<'_> {
             judge(Axis::Down, &may, row);
         }
     }
+
     fn nbar(&self, (x, y): (usize, usize)) -> Vec2 {
         vec2(self.nbar[0].at(x, y), self.nbar[1].at(x, y))
     }
+
     fn after(&self, (x, y): (usize, usize), axis: Axis) -> Option<(usize, usize)> {
         let bit = if axis == Axis::Across { links::RIGHT } else { links::DOWN };
         let next = if axis == Axis::Across { (x + 1, y) } else { (x, y + 1) };
         (self.links.at(x, y) & bit != 0).then_some(next)
     }
+
     fn before(&self, (x, y): (usize, usize), axis: Axis) -> Option<(usize, usize)> {
         let bit = if axis == Axis::Across { links::LEFT } else { links::UP };
-        let last = if axis == Axis::Across { (x.wrapping_sub(1), y) } else { (x, y.wrapping_sub(1)) };
+        let last =
+            if axis == Axis::Across { (x.wrapping_sub(1), y) } else { (x, y.wrapping_sub(1)) };
         (self.links.at(x, y) & bit != 0).then_some(last)
     }
+
     /// Whether the step after a pixel crosses a crease, or is likely to.
     fn flags(&self, at: (usize, usize), axis: Axis) -> u8 {
         let Some(next) = self.after(at, axis) else { return 0 };
@@ -201,8 +214,10 @@ impl NormalSteps<'_> {
                 _ => 0,
             }
         };
-        let alone = sharp(step, [before.map(|b| b.1.distance(here)), after.map(|a| a.1.distance(there))]);
-        // Over a mixed pixel at the step's end, or at its start: its longer half is where the crease is.
+        let alone =
+            sharp(step, [before.map(|b| b.1.distance(here)), after.map(|a| a.1.distance(there))]);
+        // Over a mixed pixel at the step's end, or at its start: its longer half is where the
+        // crease is.
         let over = |from: Vec2, mixed: Vec2, to: Vec2, beside: [Option<f32>; 2]| {
             let (whole, halves) = (from.distance(to), [from.distance(mixed), mixed.distance(to)]);
             let is_between = halves[0] + halves[1] < DETOUR * whole;
@@ -233,6 +248,7 @@ mod tests {
     fn cut(normal: impl Fn(usize, usize) -> Vec3 + Sync) -> Vec<(usize, usize)> {
         cut_beside(|_, _| false, normal)
     }
+
     /// The same, with jumps after some pixels.
     fn cut_beside(
         jumps: impl Fn(usize, usize) -> bool + Sync,
@@ -241,7 +257,10 @@ mod tests {
         let all = Plane::from_fn(SIZE, |x, y| {
             let side = |bit: u8, is: bool| if is { bit } else { 0 };
             let (left, right) = (x > 0 && !jumps(x - 1, y), x < 39 && !jumps(x, y));
-            side(links::LEFT, left) | side(links::RIGHT, right) | side(links::UP, y > 0) | side(links::DOWN, y < 29)
+            side(links::LEFT, left)
+                | side(links::RIGHT, right)
+                | side(links::UP, y > 0)
+                | side(links::DOWN, y < 29)
         });
         let of = |axis: usize| Plane::from_fn(SIZE, |x, y| normal(x, y).normalize()[axis]);
         let [x, y] = [of(0), of(1)];
@@ -255,7 +274,8 @@ mod tests {
         let value = |seed: u32| {
             Plane::from_fn(SIZE, move |x, y| {
                 let (x, y) = (x as u32 / 3, y as u32 / 4);
-                0.5 * crate::math::hash::unit(seed, x, y) + if (x + y) % 3 == 0 { 0.12 } else { 0.0 }
+                0.5 * crate::math::hash::unit(seed, x, y)
+                    + if (x + y) % 3 == 0 { 0.12 } else { 0.0 }
             })
         };
         let (links, nx, ny) = (Plane::filled(SIZE, 15u8), value(1), value(2));
@@ -272,18 +292,21 @@ mod tests {
             let mut row = [0; 40];
             maps.flags_of_row(y, &mut row);
             for (x, found) in row.into_iter().enumerate() {
-                let flags = maps.flags((x, y), Axis::Across) | maps.flags((x, y), Axis::Down) << Axis::Down.shift();
+                let flags = maps.flags((x, y), Axis::Across)
+                    | maps.flags((x, y), Axis::Down) << Axis::Down.shift();
                 assert_eq!(found, flags, "{x} {y}");
                 seen += u32::from(flags != 0);
             }
         }
         assert!(seen > 50, "{seen}");
     }
+
     #[test]
     fn a_roof_is_cut_at_its_ridge_alone() {
         let roof = |x: usize, _| vec3(if x < 20 { -0.5 } else { 0.5 }, 0.0, 1.0);
         assert_eq!(cut(roof), (0..30).map(|y| (19, y)).collect::<Vec<_>>());
     }
+
     #[test]
     fn a_gap_in_the_line_of_a_jump_is_cut_however_slight_the_turn() {
         let roof = |x: usize, _: usize| vec3(if x < 20 { -0.08 } else { 0.08 }, 0.0, 1.0);
@@ -292,11 +315,13 @@ mod tests {
         let ending = |x: usize, y: usize| x == 19 && y < 10;
         assert_eq!(cut_beside(ending, roof), [], "nothing so slight goes on beyond the jump");
     }
+
     #[test]
     fn a_ridge_that_a_renderer_mixed_in_a_pixel_is_cut_at_its_longer_half() {
         let roof = |x: usize, _| vec3([-0.5, -0.2, 0.5][(x + 1).clamp(19, 21) - 19], 0.0, 1.0);
         assert_eq!(cut(roof), (0..30).map(|y| (19, y)).collect::<Vec<_>>());
     }
+
     #[test]
     fn round_bodies_and_noise_have_no_creases() {
         let ball = |x: usize, y: usize| {

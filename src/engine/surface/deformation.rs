@@ -1,6 +1,7 @@
-//! Evaluates D: the operator, its anchors and weights applied to a surface. Floor 2. [`Deformation::at`] and
-//! [`Deformation::jacobian`] read like the paper; [`Deformation::fill`] is the same over whole rows (`fill`), tested
-//! against it. `plane` is the operator that unwraps the surface. Not here: looking up a picture at D(q) (`paint`).
+//! Evaluates D: the operator, its anchors and weights applied to a surface. Floor 2.
+//! [`Deformation::at`] and [`Deformation::jacobian`] read like the paper; [`Deformation::fill`] is
+//! the same over whole rows (`fill`), tested against it. `plane` is the operator that unwraps the
+//! surface. Not here: looking up a picture at D(q) (`paint`).
 
 mod fill;
 mod plane;
@@ -18,8 +19,8 @@ use std::sync::Arc;
 
 /// A map from canvas points to image-plane points, ready to be evaluated.
 ///
-/// Outside the surface (coverage 0, or beyond the maps) the operator is the identity; anchors whose content was moved
-/// still move it there.
+/// Outside the surface (coverage 0, or beyond the maps) the operator is the identity; anchors whose
+/// content was moved still move it there.
 pub struct Deformation<'a> {
     surface: Option<&'a Surface>,
     /// *L*, canvas px.
@@ -46,46 +47,64 @@ struct Pin {
 
 /// Positions beyond this are pulled in, so that no product of distances leaves f32.
 const FARTHEST_PX: f32 = 1e7;
-/// Detail enhancement reads the curvature at this scale *s*: features a few pixels wide count in full.
+/// Detail enhancement reads the curvature at this scale *s*: features a few pixels wide count in
+/// full.
 pub const DETAIL_SCALE_PX: f32 = 4.0;
 /// Blur of the normals before that, so that the steps of 8-bit maps are not taken for detail.
 pub const DETAIL_BLUR_PX: f32 = 1.0;
 
 impl<'a> Deformation<'a> {
-    /// Reads the maps at the anchors, for a sheet those of its surface; an anchor off the surface reads the background:
-    /// facing the viewer, farthest.
+    /// Reads the maps at the anchors, for a sheet those of its surface; an anchor off the surface
+    /// reads the background: facing the viewer, farthest.
     ///
     /// * `surface`: of the canvas's size; without one only moved anchors move anything.
     /// * `size`: the canvas; its longer side is *L*.
     ///
-    /// Anchors that are not finite are dropped, and parameters that are not finite count as 0: D is finite everywhere.
+    /// Anchors that are not finite are dropped, and parameters that are not finite count as 0: D is
+    /// finite everywhere.
     pub fn new(surface: Option<&'a Surface>, size: Size, bend: &Bend) -> Self {
-        let deformation = Self::pinned(surface, size, (bend.operator, bend.weights, &bend.anchors), at_anchor);
+        let deformation =
+            Self::pinned(surface, size, (bend.operator, bend.weights, &bend.anchors), at_anchor);
         deformation.laid(|surface, settings, anchors| {
-            LaidPlanes::pinned(surface, settings, &Bend { anchors: anchors.to_vec(), ..bend.clone() })
+            LaidPlanes::pinned(
+                surface,
+                settings,
+                &Bend { anchors: anchors.to_vec(), ..bend.clone() },
+            )
         })
     }
-    /// D of a dab, its one anchor at the centre `at` with weight 1. Off the surface it reads the nearest surface
-    /// values, so that a stroke continues over the silhouette.
+
+    /// D of a dab, its one anchor at the centre `at` with weight 1. Off the surface it reads the
+    /// nearest surface values, so that a stroke continues over the silhouette.
     pub fn of_dab(surface: Option<&'a Surface>, size: Size, operator: Operator, at: Vec2) -> Self {
         // The many dabs that nothing bends allocate no memory.
         let pinned = [Anchor::fixed(at)];
         let anchors = if surface.is_none() || operator.is_identity() { &[][..] } else { &pinned };
-        Self::pinned(surface, size, (operator, Weights::default(), anchors), Surface::near_point).laid(
-            |surface, settings, anchors| LaidPlanes::of_dab(surface, settings, anchors.first().map_or(at, |a| a.at)),
-        )
+        Self::pinned(surface, size, (operator, Weights::default(), anchors), Surface::near_point)
+            .laid(|surface, settings, anchors| {
+                LaidPlanes::of_dab(surface, settings, anchors.first().map_or(at, |a| a.at))
+            })
     }
+
     /// The same for a pattern that begins at a point and lies everywhere: grain.
-    pub fn of_pattern(surface: Option<&'a Surface>, size: Size, operator: Operator, at: Vec2) -> Self {
+    pub fn of_pattern(
+        surface: Option<&'a Surface>,
+        size: Size,
+        operator: Operator,
+        at: Vec2,
+    ) -> Self {
         let dab = Self::of_dab(surface, size, operator, at);
         Self { planes: dab.planes.map(LaidPlanes::unbounded), ..dab }
     }
-    /// With the planes of the unwrapped surface laid under the anchors, where the operator needs them.
+
+    /// With the planes of the unwrapped surface laid under the anchors, where the operator needs
+    /// them.
     fn laid(self, lay: impl FnOnce(&'a Surface, UnwrapSettings, &[Anchor]) -> LaidPlanes) -> Self {
         let planes = self.surface.zip(self.operator.unwrapping());
         let planes = planes.map(|(surface, settings)| lay(surface, settings, &self.anchors()));
         Self { planes, ..self }
     }
+
     fn pinned(
         surface: Option<&'a Surface>,
         size: Size,
@@ -101,11 +120,15 @@ impl<'a> Deformation<'a> {
             .filter(|a| a.at.is_finite() && a.source.is_finite())
             .map(|a| {
                 let anchor = Anchor { at: near(a.at), source: near(a.source) };
-                Pin { anchor, map_values: pinned.map_or(MapValues::default(), |s| read(s, anchor.at)) }
+                Pin {
+                    anchor,
+                    map_values: pinned.map_or(MapValues::default(), |s| read(s, anchor.at)),
+                }
             })
             .collect();
         let operator = operator.finite();
-        let curvature = surface.filter(|_| operator.detail() != 0.0).map(|s| s.curvature(DETAIL_BLUR_PX));
+        let curvature =
+            surface.filter(|_| operator.detail() != 0.0).map(|s| s.curvature(DETAIL_BLUR_PX));
         let weights = sane(weights);
         Self {
             surface,
@@ -119,8 +142,10 @@ impl<'a> Deformation<'a> {
             origin: (0, 0),
         }
     }
-    /// The same, counted from another corner of the pixels: q, anchors and D. What moved with its surface by whole px
-    /// then gives the same bits as before. Where the surface is unwrapped the origin stays.
+
+    /// The same, counted from another corner of the pixels: q, anchors and D. What moved with its
+    /// surface by whole px then gives the same bits as before. Where the surface is unwrapped the
+    /// origin stays.
     pub fn about(mut self, origin: (i32, i32)) -> Self {
         if self.planes.is_some() {
             return self;
@@ -131,24 +156,30 @@ impl<'a> Deformation<'a> {
         }
         Self { origin, ..self }
     }
+
     /// What points are counted from, canvas px.
     pub fn origin(&self) -> (i32, i32) {
         self.origin
     }
+
     /// The centre of a pixel of the canvas.
     fn centre(&self, x: i32, y: i32) -> Vec2 {
         vec2(x.wrapping_sub(self.origin.0) as f32, y.wrapping_sub(self.origin.1) as f32) + 0.5
     }
+
     /// The same, of a dab that lands within a reach; where D is the identity it does so anyway.
     pub fn within(self, reach: Option<DabReach>) -> Self {
         Self { reach: reach.filter(|_| !self.is_identity()), ..self }
     }
+
     /// D(q) = q for every q: nothing is moved anywhere.
     pub fn is_identity(&self) -> bool {
         let bends = self.surface.is_some() && !self.operator.is_identity();
         self.planes.is_none()
-            && (self.pins.is_empty() || !bends && self.pins.iter().all(|p| p.anchor.source == p.anchor.at))
+            && (self.pins.is_empty()
+                || !bends && self.pins.iter().all(|p| p.anchor.source == p.anchor.at))
     }
+
     /// D(q) at the centre of a pixel: the reference that reads like the paper.
     ///
     /// MATH 2 (SF eq. 13, 15): `D(q) = q + Σ_i w_i(q) [ offset_i(q) + (s_i − q_i) ]`. Canvas px.
@@ -166,11 +197,13 @@ impl<'a> Deformation<'a> {
             .sum();
         self.within_reach(q, q + moved)
     }
+
     fn within_reach(&self, q: Vec2, d: Vec2) -> Vec2 {
         self.reach.map_or(d, |reach| reach.limit(q, d))
     }
-    /// ∂D/∂q at the centre of a pixel, columns along x and y; a plain ratio. The maps are differenced within the piece
-    /// of surface that holds the pixel, the weights analytically.
+
+    /// ∂D/∂q at the centre of a pixel, columns along x and y; a plain ratio. The maps are
+    /// differenced within the piece of surface that holds the pixel, the weights analytically.
     ///
     /// `J = I + Σ_i [ w_i ∂offset_i/∂q + (offset_i + s_i − q_i) ∇w_iᵀ ]`.
     pub fn jacobian(&self, x: i32, y: i32) -> Mat2 {
@@ -190,17 +223,31 @@ impl<'a> Deformation<'a> {
         }
         jacobian
     }
-    /// D at every pixel centre of `rect`, which may reach beyond the canvas; within 10⁻⁴ px of [`Deformation::at`] on
-    /// canvases up to 1024 px, and to f32's precision beyond.
+
+    /// D at every pixel centre of `rect`, which may reach beyond the canvas; within 10⁻⁴ px of
+    /// [`Deformation::at`] on canvases up to 1024 px, and to f32's precision beyond.
     pub fn fill(&self, rect: Rect, out: &mut DeformedRect) {
         self.fill_rows(rect, |_| rect.x0..rect.x1, false, out);
     }
-    /// The same in some columns of each row of `rect`, for the short rows of dabs; what `out` holds elsewhere is
-    /// anything.
-    pub fn fill_spans(&self, rect: Rect, columns: impl Fn(i32) -> Range<i32>, out: &mut DeformedRect) {
+
+    /// The same in some columns of each row of `rect`, for the short rows of dabs; what `out` holds
+    /// elsewhere is anything.
+    pub fn fill_spans(
+        &self,
+        rect: Rect,
+        columns: impl Fn(i32) -> Range<i32>,
+        out: &mut DeformedRect,
+    ) {
         self.fill_rows(rect, columns, true, out);
     }
-    fn fill_rows(&self, rect: Rect, columns: impl Fn(i32) -> Range<i32>, are_short: bool, out: &mut DeformedRect) {
+
+    fn fill_rows(
+        &self,
+        rect: Rect,
+        columns: impl Fn(i32) -> Range<i32>,
+        are_short: bool,
+        out: &mut DeformedRect,
+    ) {
         let n = rect.width() * rect.height();
         out.rect = Some(rect);
         out.x.resize(n, 0.0);
@@ -214,13 +261,15 @@ impl<'a> Deformation<'a> {
                     let i = y * rect.width() + (x - rect.x0) as usize;
                     let (mut q_x, mut q_y) = ([0.0], [0.0]);
                     self.place(x, row, &mut q_x, &mut q_y);
-                    (out.x[i], out.y[i]) = reach.limit(vec2(q_x[0], q_y[0]), vec2(out.x[i], out.y[i])).into();
+                    (out.x[i], out.y[i]) =
+                        reach.limit(vec2(q_x[0], q_y[0]), vec2(out.x[i], out.y[i])).into();
                 }
             }
         }
     }
-    /// Of a dab that the surface is unwrapped under: the plane itself, where D is that, turned, over a rectangle and
-    /// one more pixel around it.
+
+    /// Of a dab that the surface is unwrapped under: the plane itself, where D is that, turned,
+    /// over a rectangle and one more pixel around it.
     pub fn own_plane(&self, rect: Rect) -> Option<OwnPlane<'_>> {
         let planes = self.planes.as_ref()?;
         if self.sheet().is_some() || self.is_limited(rect.grown(1)) {
@@ -228,13 +277,16 @@ impl<'a> Deformation<'a> {
         }
         planes.own(rect)
     }
+
     /// Whether a reach changes D anywhere in a rectangle.
     pub fn is_limited(&self, rect: Rect) -> bool {
         self.reach.is_some_and(|reach| self.sheet().is_some() || reach.is_near(rect))
     }
+
     fn sheet(&self) -> Option<&'a SheetOf> {
         self.surface.and_then(Surface::sheet_of)
     }
+
     /// The centres q of a row's pixels from column `x` on, canvas px; for a sheet, of its readings.
     fn place(&self, x: i32, y: i32, q_x: &mut [f32], q_y: &mut [f32]) {
         match self.sheet() {
@@ -255,29 +307,46 @@ impl<'a> Deformation<'a> {
     fn anchors(&self) -> Vec<Anchor> {
         self.pins.iter().map(|p| p.anchor).collect()
     }
+
     /// offset_i(q), 0 outside the surface.
     fn offset(&self, pin: &Pin, q: Vec2, x: i32, y: i32) -> Vec2 {
         let Some((surface, x, y)) = self.on_surface(x, y) else { return Vec2::ZERO };
-        let offset = self.operator.offset(q - pin.anchor.at, map_values(surface, x, y), pin.map_values, self.unit_px);
+        let offset = self.operator.offset(
+            q - pin.anchor.at,
+            map_values(surface, x, y),
+            pin.map_values,
+            self.unit_px,
+        );
         self.detail_gain(x, y) * offset
     }
+
     fn offset_jacobian(&self, pin: &Pin, q: Vec2, x: i32, y: i32) -> Mat2 {
         let Some((surface, x, y)) = self.on_surface(x, y) else { return Mat2::ZERO };
         let (from_anchor, here) = (q - pin.anchor.at, map_values(surface, x, y));
         let offset = self.operator.offset(from_anchor, here, pin.map_values, self.unit_px);
-        let jacobian =
-            self.operator.offset_jacobian(from_anchor, here, slopes(surface, x, y), pin.map_values, self.unit_px);
+        let jacobian = self.operator.offset_jacobian(
+            from_anchor,
+            here,
+            slopes(surface, x, y),
+            pin.map_values,
+            self.unit_px,
+        );
         let near = DifferencePairs::linked(surface, x, y);
         jacobian * self.detail_gain(x, y) + outer(offset, near.slope(|x, y| self.detail_gain(x, y)))
     }
+
     /// 1 + μ κ(q): how much curvature scales the magnitude α (SF sec. 6, fig. 10).
     #[inline(always)]
     fn detail_gain(&self, x: usize, y: usize) -> f32 {
-        self.curvature.as_ref().map_or(1.0, |c| 1.0 + self.operator.detail() * c.kappa(x, y, DETAIL_SCALE_PX))
+        self.curvature
+            .as_ref()
+            .map_or(1.0, |c| 1.0 + self.operator.detail() * c.kappa(x, y, DETAIL_SCALE_PX))
     }
+
     /// The surface and the pixel on it, if there is any surface at the pixel.
     fn on_surface(&self, x: i32, y: i32) -> Option<(&'a Surface, usize, usize)> {
-        let surface = self.surface.filter(|s| s.coverage_plane().get(x, y).is_some_and(|c| c > 0))?;
+        let surface =
+            self.surface.filter(|s| s.coverage_plane().get(x, y).is_some_and(|c| c > 0))?;
         Some((surface, x as usize, y as usize))
     }
 }

@@ -1,5 +1,5 @@
-//! D over a rectangle of the canvas: what `deformation` fills, and pictures of the plane read (`unwrap`).
-//! Floor 2.
+//! D over a rectangle of the canvas: what `deformation` fills, and pictures of the plane read
+//! (`unwrap`). Floor 2.
 
 use crate::math::Rect;
 

@@ -1,5 +1,6 @@
-//! What is computed from a surface's maps and cached, and the memory that a surface uses.
-//! Floor 2. Not here: how each value is computed. The module of the value does that, and asks the cache first.
+//! What is computed from a surface's maps and cached, and the memory that a surface uses. Floor 2.
+//! Not here: how each value is computed. The module of the value does that, and asks the cache
+//! first.
 
 use super::Surface;
 use super::cache::{Cache, HeapSize, RecentCache};
@@ -16,7 +17,8 @@ use std::sync::{Arc, OnceLock};
 /// Declares the caches, so that all of them are counted and cleared: a row for each.
 macro_rules! caches {
     ($($(#[doc = $doc:literal])+ $name:ident: $cache:ty,)+) => {
-        /// What was computed from the maps of a surface. A surface with other maps begins with none of it.
+        /// What was computed from the maps of a surface. A surface with other maps begins with none
+        /// of it.
         #[derive(Default)]
         pub(in crate::surface) struct DerivedCaches {
             $($(#[doc = $doc])+ pub $name: $cache,)+
@@ -75,12 +77,17 @@ impl Surface {
     pub fn map_bytes(&self) -> u64 {
         let smooth_links = self.smooth_links.as_ref().map_or(0, |plane| plane.heap_bytes());
         let parts = self.parts.as_ref().map_or(0, |plane| plane.heap_bytes());
-        (self.size().area() * Self::BYTES_PER_PX) as u64 + smooth_links + parts + self.contours().bytes()
+        (self.size().area() * Self::BYTES_PER_PX) as u64
+            + smooth_links
+            + parts
+            + self.contours().bytes()
     }
+
     /// Bytes of what was computed from the maps and can be computed again.
     pub fn cached_bytes(&self) -> u64 {
         self.derived.heap_bytes()
     }
+
     /// Drops what can be computed again.
     pub fn clear_caches(&self) {
         self.derived.clear();
@@ -141,6 +148,10 @@ mod tests {
         surface.plane_layout(settings).unwrap();
         grew("layout", &mut last);
         surface.clear_caches();
-        assert_eq!(surface.cached_bytes(), surface.derived.bounds.bytes(), "only the pyramids stay");
+        assert_eq!(
+            surface.cached_bytes(),
+            surface.derived.bounds.bytes(),
+            "only the pyramids stay"
+        );
     }
 }

@@ -49,7 +49,8 @@ impl SideSteps {
     }
 }
 
-/// The mean of both sides where they agree; the smoother side where the other is a jump; 0 where there is neither.
+/// The mean of both sides where they agree; the smoother side where the other is a jump; 0 where
+/// there is neither.
 fn edge_aware(before: SideSteps, after: SideSteps) -> f32 {
     match (before.near, after.near) {
         (Some(a), Some(b)) => {
@@ -70,8 +71,8 @@ fn edge_aware(before: SideSteps, after: SideSteps) -> f32 {
     }
 }
 
-/// The pixels that a derivative at a pixel differences: both neighbours where they continue the surface, the pixel
-/// itself in place of one that does not.
+/// The pixels that a derivative at a pixel differences: both neighbours where they continue the
+/// surface, the pixel itself in place of one that does not.
 pub(super) struct DifferencePairs {
     /// Left and right, up and down.
     pairs: [[(usize, usize); 2]; 2],
@@ -88,9 +89,11 @@ impl DifferencePairs {
         let per_px = [(right - left).max(1), (down - up).max(1)].map(|d| 1.0 / d as f32);
         Self { pairs: [[(left, y), (right, y)], [(x, up), (x, down)]], per_px }
     }
+
     /// ∇ of a map, per px.
     pub fn slope(&self, map: impl Fn(usize, usize) -> f32) -> Vec2 {
-        let along = |[a, b]: [(usize, usize); 2], per_px: f32| (map(b.0, b.1) - map(a.0, a.1)) * per_px;
+        let along =
+            |[a, b]: [(usize, usize); 2], per_px: f32| (map(b.0, b.1) - map(a.0, a.1)) * per_px;
         vec2(along(self.pairs[0], self.per_px[0]), along(self.pairs[1], self.per_px[1]))
     }
 }
@@ -120,9 +123,11 @@ mod tests {
         }
         assert_eq!(normals.at(0, 0), Vec3::ZERO);
     }
+
     #[test]
     fn nothing_is_differenced_across_a_jump() {
-        let depth = Plane::from_fn(Size::new(20, 9), |x, _| if x < 10 { x as f32 * 0.01 } else { 0.9 });
+        let depth =
+            Plane::from_fn(Size::new(20, 9), |x, _| if x < 10 { x as f32 * 0.01 } else { 0.9 });
         let normals = normals_from_depth(&depth, 100.0);
         for x in 1..19 {
             let expected = if x < 10 { vec3(1.0, 0.0, 1.0).normalize() } else { Vec3::Z };

@@ -1,6 +1,7 @@
-//! Fitting a surface to a canvas of another size: another object under a finished painting, or a painting at another
-//! scale. Floor 2. Values are averaged over what one new pixel covers, never across a depth jump or the mask's edge; at
-//! contours of a larger canvas, by the side of their line (`contours::enlarged`).
+//! Fitting a surface to a canvas of another size: another object under a finished painting, or a
+//! painting at another scale. Floor 2. Values are averaged over what one new pixel covers, never
+//! across a depth jump or the mask's edge; at contours of a larger canvas, by the side of their
+//! line (`contours::enlarged`).
 
 use super::contours::{ContourMaps, EnlargedContours};
 use super::{Maps, Surface, SurfaceError};
@@ -9,28 +10,35 @@ use crate::raster::Plane;
 use rayon::prelude::*;
 
 impl Surface {
-    /// The whole surface as large as `canvas` allows, its aspect kept, centred; what is left of the canvas has no
-    /// surface.
+    /// The whole surface as large as `canvas` allows, its aspect kept, centred; what is left of the
+    /// canvas has no surface.
     ///
     /// Fails where nothing is left of a surface thinner than the new pixels.
     pub fn fitted(&self, canvas: Size) -> Result<Surface, SurfaceError> {
         let (from, to) = (self.size(), canvas);
-        let scale = (to.width as f32 / from.width as f32).min(to.height as f32 / from.height as f32);
+        let scale =
+            (to.width as f32 / from.width as f32).min(to.height as f32 / from.height as f32);
         self.resampled(canvas, Vec2::splat(scale))
     }
-    /// The surface at another resolution: the whole map over the whole canvas, a side that rounded taking the
-    /// difference.
+
+    /// The surface at another resolution: the whole map over the whole canvas, a side that rounded
+    /// taking the difference.
     pub fn stretched(&self, canvas: Size) -> Result<Surface, SurfaceError> {
         let (from, to) = (self.size(), canvas);
-        let scale = vec2(to.width as f32 / from.width as f32, to.height as f32 / from.height as f32);
+        let scale =
+            vec2(to.width as f32 / from.width as f32, to.height as f32 / from.height as f32);
         self.resampled(canvas, scale)
     }
+
     /// Centred on each other, `scale` canvas px per map px.
     fn resampled(&self, canvas: Size, scale: Vec2) -> Result<Surface, SurfaceError> {
         let map_from_canvas = |q: Vec2| (q - canvas.center()) / scale + self.size().center();
         let read = self.texels(canvas, scale.recip() * 0.5, map_from_canvas);
-        let maps =
-            Maps { normals: read.map(|v| v.normal), depth: read.map(|v| v.depth), coverage: read.map(|v| v.coverage) };
+        let maps = Maps {
+            normals: read.map(|v| v.normal),
+            depth: read.map(|v| v.depth),
+            coverage: read.map(|v| v.coverage),
+        };
         let range_px = self.depth_range_px() * scale.element_product().sqrt();
         let mut made = Surface::with_depth_range(maps, Some(range_px))?;
         if scale.min_element() >= 1.0 {
@@ -38,8 +46,9 @@ impl Surface {
         }
         Ok(made.seen_by(self.eye().scaled(scale.x)))
     }
-    /// Where there is no surface, the same values as beside the one that this one was made of: what starts there, such
-    /// as a stroke, reads the same at any size.
+
+    /// Where there is no surface, the same values as beside the one that this one was made of: what
+    /// starts there, such as a stroke, reads the same at any size.
     fn repeat_beside(&mut self, of: &Surface, map_from_canvas: impl Fn(Vec2) -> Vec2 + Sync) {
         let coverage = &self.coverage;
         let last = vec2(of.size().width as f32, of.size().height as f32) - 1.0;
@@ -48,12 +57,15 @@ impl Surface {
             let width = plane.width();
             plane.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
                 for (x, v) in row.iter_mut().enumerate().filter(|(x, _)| coverage.at(*x, y) == 0) {
-                    let at = map_from_canvas(vec2(x as f32 + 0.5, y as f32 + 0.5)).max(Vec2::ZERO).min(last);
+                    let at = map_from_canvas(vec2(x as f32 + 0.5, y as f32 + 0.5))
+                        .max(Vec2::ZERO)
+                        .min(last);
                     *v = from.at(at.x as usize, at.y as usize);
                 }
             });
         }
     }
+
     /// What the pixels of a canvas read.
     ///
     /// * `half`: half the sides of the box of the map that one covers, px.
@@ -65,7 +77,8 @@ impl Surface {
         map_from_canvas: impl Fn(Vec2) -> Vec2 + Sync,
     ) -> Plane<MeanTexel> {
         let at = |x: usize, y: usize| map_from_canvas(vec2(x as f32 + 0.5, y as f32 + 0.5));
-        // A new pixel covers at least one old one: averaging over that box is then bilinear interpolation.
+        // A new pixel covers at least one old one: averaging over that box is then bilinear
+        // interpolation.
         let widened = half.max(Vec2::splat(0.5));
         if half.max_element() > 0.5 + 1e-4 {
             return Plane::from_fn(canvas, |x, y| self.mean_over(at(x, y), widened));
@@ -75,8 +88,9 @@ impl Surface {
             Plane::from_fn(canvas, |x, y| self.enlarged(&contours, at(x, y), half))
         })
     }
-    /// What a pixel reads that covers at most one old one: interpolated, but at contours by the side of their line
-    /// that its middle lies on; and how much of it is covered.
+
+    /// What a pixel reads that covers at most one old one: interpolated, but at contours by the
+    /// side of their line that its middle lies on; and how much of it is covered.
     fn enlarged(&self, contours: &EnlargedContours, center: Vec2, half: Vec2) -> MeanTexel {
         let border = vec2(self.size().width as f32, self.size().height as f32);
         if center.min_element() < 0.0 || center.x >= border.x || center.y >= border.y {
@@ -93,8 +107,9 @@ impl Surface {
             None => MeanTexel { coverage, ..smooth },
         }
     }
-    /// The mean over the box of half sides `half` around a point of the map, cut at its border; beyond there is no
-    /// surface.
+
+    /// The mean over the box of half sides `half` around a point of the map, cut at its border;
+    /// beyond there is no surface.
     pub(super) fn mean_over(&self, center: Vec2, half: Vec2) -> MeanTexel {
         let border = vec2(self.size().width as f32, self.size().height as f32);
         if center.min_element() < 0.0 || center.x >= border.x || center.y >= border.y {
@@ -104,14 +119,19 @@ impl Surface {
         let (x0, x1) = (low.x.floor() as i32, high.x.ceil() as i32);
         let (y0, y1) = (low.y.floor() as i32, high.y.ceil() as i32);
         let covered = (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y))).filter_map(|(x, y)| {
-            let side = |low: f32, high: f32, i: i32| (high.min(i as f32 + 1.0) - low.max(i as f32)).max(0.0);
+            let side = |low: f32, high: f32, i: i32| {
+                (high.min(i as f32 + 1.0) - low.max(i as f32)).max(0.0)
+            };
             let area = side(low.x, high.x, x) * side(low.y, high.y, y);
             let coverage = self.coverage(x as usize, y as usize);
             (area > 0.0 && coverage > 0).then_some((x, y, area * f32::from(coverage)))
         });
         // The covered pixel nearest to the centre decides which piece of surface this is.
-        let distance = |&(x, y, _): &(i32, i32, f32)| (vec2(x as f32 + 0.5, y as f32 + 0.5) - center).length_squared();
-        let Some((rx, ry, _)) = covered.clone().min_by(|a, b| distance(a).total_cmp(&distance(b))) else {
+        let distance = |&(x, y, _): &(i32, i32, f32)| {
+            (vec2(x as f32 + 0.5, y as f32 + 0.5) - center).length_squared()
+        };
+        let Some((rx, ry, _)) = covered.clone().min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        else {
             return MeanTexel::default();
         };
         let (mut normal, mut depth, mut joined, mut all) = (Vec3::ZERO, 0.0, 0.0, 0.0);
@@ -126,8 +146,10 @@ impl Surface {
         let area = (high - low).element_product();
         MeanTexel { normal, depth: depth / joined, coverage: (all / area).min(255.0).round() as u8 }
     }
-    /// Whether two pixels near each other lie on one smooth piece: the step in depth is no larger than the steeper of
-    /// the two slopes implies, plus a tolerance of a pixel and a half for coarse depth (as in `links`).
+
+    /// Whether two pixels near each other lie on one smooth piece: the step in depth is no larger
+    /// than the steeper of the two slopes implies, plus a tolerance of a pixel and a half for
+    /// coarse depth (as in `links`).
     fn is_same_piece(&self, a: (i32, i32), b: (i32, i32)) -> bool {
         let at = |(x, y): (i32, i32)| {
             let (x, y) = (x as usize, y as usize);

@@ -1,5 +1,6 @@
-//! Surface flows: the direction and the amount by which a picture on the surface is compressed (SF sec. 4.3; MATH 3).
-//! Floor 2. For viewing: no operator reads them. Not here: their colours on screen (`document::view`).
+//! Surface flows: the direction and the amount by which a picture on the surface is compressed (SF
+//! sec. 4.3; MATH 3). Floor 2. For viewing: no operator reads them. Not here: their colours on
+//! screen (`document::view`).
 
 use super::differentiate::DifferencePairs;
 use super::{Bend, Deformation, Surface};
@@ -28,12 +29,17 @@ impl StructureTensor {
     pub fn of_columns(dx: Vec3, dy: Vec3) -> Self {
         Self { xx: dx.dot(dx), xy: dx.dot(dy), yy: dy.dot(dy) }
     }
+
     /// λ₁ ≥ λ₂ and the direction of λ₁, in closed form.
     pub fn eigen(self) -> Eigen {
         let (mean, half) = (0.5 * (self.xx + self.yy), 0.5 * (self.xx - self.yy));
         let radius = half.hypot(self.xy);
         let angle = 0.5 * self.xy.atan2(half);
-        Eigen { larger: mean + radius, smaller: mean - radius, direction: vec2(angle.cos(), angle.sin()) }
+        Eigen {
+            larger: mean + radius,
+            smaller: mean - radius,
+            direction: vec2(angle.cos(), angle.sin()),
+        }
     }
 }
 
@@ -44,10 +50,13 @@ pub struct FlowField {
     unbent: f32,
 }
 
-/// T_p = JᵀJ, J = [∂x p, ∂y p], p = (x, y, z·Z): the first-order flow (SF sec. 4.3; MATH 3). Derivatives per px, z·Z in
-/// px.
+/// T_p = JᵀJ, J = [∂x p, ∂y p], p = (x, y, z·Z): the first-order flow (SF sec. 4.3; MATH 3).
+/// Derivatives per px, z·Z in px.
 pub fn position_tensor(depth_slope_px: Vec2) -> StructureTensor {
-    StructureTensor::of_columns(Vec3::new(1.0, 0.0, depth_slope_px.x), Vec3::new(0.0, 1.0, depth_slope_px.y))
+    StructureTensor::of_columns(
+        Vec3::new(1.0, 0.0, depth_slope_px.x),
+        Vec3::new(0.0, 1.0, depth_slope_px.y),
+    )
 }
 
 /// T_n = JᵀJ, J = [∂x n, ∂y n]: the second-order flow (SF sec. 4.3; MATH 3). Derivatives per px.
@@ -65,10 +74,13 @@ impl FlowField {
     pub fn of_depth(surface: &Surface) -> Self {
         let range_px = surface.depth_range_px();
         let tensors = Plane::from_fn(surface.size(), |x, y| {
-            position_tensor(DifferencePairs::linked(surface, x, y).slope(|x, y| surface.depth(x, y)) * range_px)
+            position_tensor(
+                DifferencePairs::linked(surface, x, y).slope(|x, y| surface.depth(x, y)) * range_px,
+            )
         });
         Self { tensors, unbent: 1.0 }
     }
+
     /// T_n of every pixel, from the normals.
     pub fn of_normals(surface: &Surface) -> Self {
         let tensors = Plane::from_fn(surface.size(), |x, y| {
@@ -78,13 +90,18 @@ impl FlowField {
         });
         Self { tensors, unbent: 0.0 }
     }
+
     /// ∂D/∂q of every pixel.
     pub fn of_deformation(surface: Option<&Surface>, size: Size, bend: &Bend) -> Self {
         let deformation = Deformation::new(surface, size, bend);
-        let tensors = Plane::from_fn(size, |x, y| deformation_tensor(deformation.jacobian(x as i32, y as i32)));
+        let tensors = Plane::from_fn(size, |x, y| {
+            deformation_tensor(deformation.jacobian(x as i32, y as i32))
+        });
         Self { tensors, unbent: 1.0 }
     }
-    /// The flow with its tensors blurred within the covered pixels, which averages the noise of coarse maps away.
+
+    /// The flow with its tensors blurred within the covered pixels, which averages the noise of
+    /// coarse maps away.
     pub fn smoothed(&self, coverage: Option<&Plane<u8>>, sigma_px: f32) -> Self {
         let covered = |i: usize| coverage.is_none_or(|c| c.values().get(i).is_some_and(|&c| c > 0));
         let weighted = |(i, t): (usize, &StructureTensor)| {
@@ -92,7 +109,8 @@ impl FlowField {
             [m * t.xx, m * t.xy, m * t.yy, m]
         };
         let size = self.tensors.size();
-        let pixels: Vec<[f32; 4]> = self.tensors.values().iter().enumerate().map(weighted).collect();
+        let pixels: Vec<[f32; 4]> =
+            self.tensors.values().iter().enumerate().map(weighted).collect();
         let blurred = blur::gaussian_pixels(size, &pixels, sigma_px);
         let tensors = blurred.iter().map(|&[xx, xy, yy, m]| {
             let scale = if m > 1e-3 { 1.0 / m } else { 0.0 };
@@ -101,14 +119,17 @@ impl FlowField {
         let tensors = Plane::from_values(size, tensors.collect()).expect("one tensor per pixel");
         Self { tensors, unbent: self.unbent }
     }
+
     /// Its sides, px.
     pub fn size(&self) -> Size {
         self.tensors.size()
     }
+
     /// The tensor of a pixel.
     pub fn at(&self, x: usize, y: usize) -> StructureTensor {
         self.tensors.at(x, y)
     }
+
     /// How much a pixel's flow differs from that on a flat surface: |√λ₁ − 1|, or √λ₁ for normals.
     pub fn magnitude(&self, x: usize, y: usize) -> f32 {
         (self.at(x, y).eigen().larger.max(0.0).sqrt() - self.unbent).abs()
@@ -135,6 +156,7 @@ mod tests {
         let coverage = normals.map(|n| if n == Vec3::ZERO { 0 } else { 255 });
         Surface::new(Maps { normals, depth, coverage }).unwrap()
     }
+
     fn assert_near(found: f32, expected: f32, within: f32) {
         assert!((found - expected).abs() <= within, "{found} is not {expected} ± {within}");
     }
@@ -149,6 +171,7 @@ mod tests {
         assert_near(eigen.smaller * RADIUS_PX * RADIUS_PX, 1.0, 5e-3);
         assert_near(eigen.direction.x.abs(), 1.0, 1e-2);
     }
+
     #[test]
     fn the_flow_of_depth_is_the_slope_of_the_surface() {
         // λ₁ = 1 + |∇h|², of a sphere 1 / z², along the slope; nothing changes across it.
@@ -160,17 +183,20 @@ mod tests {
         assert_near(eigen.direction.y.abs(), 1.0, 1e-2);
         assert_near(flow.magnitude(49, 70), 1.0 / z - 1.0, 0.03);
     }
+
     #[test]
     fn an_operator_that_moves_nothing_flows_nowhere() {
         let surface = sphere();
         let anchors = vec![Anchor::fixed(vec2(50.5, 50.5))];
         let bend = |operator| Bend { operator, anchors: anchors.clone(), ..Bend::default() };
-        let still = FlowField::of_deformation(Some(&surface), surface.size(), &bend(Operator::None));
+        let still =
+            FlowField::of_deformation(Some(&surface), surface.size(), &bend(Operator::None));
         assert_near(still.magnitude(70, 49), 0.0, 1e-6);
         let bent = Operator::Normal { alpha: 1.0, beta: 0.0, detail: 0.0 };
         let flow = FlowField::of_deformation(Some(&surface), surface.size(), &bend(bent));
         assert!(flow.magnitude(70, 49) > 0.5);
     }
+
     #[test]
     fn smoothing_stays_within_the_surface() {
         let surface = sphere();

@@ -35,8 +35,8 @@ impl NoiseRelief {
     /// What a stretch may be.
     pub const STRETCH: crate::math::Range = 0.01..=1000.0;
 
-    /// The normal of the relief (y up, not of unit length), at a place in px from its origin (y down), seen through a
-    /// pixel `px` wide: bumps too small for it fade away.
+    /// The normal of the relief (y up, not of unit length), at a place in px from its origin (y
+    /// down), seen through a pixel `px` wide: bumps too small for it fade away.
     pub fn normal(&self, at: Vec2, px: f32) -> Vec3 {
         let mut slope = Vec2::ZERO;
         let (mut size, mut share) = (self.size_px, 1.0);
@@ -45,7 +45,8 @@ impl NoiseRelief {
             // A bump below two pixels cannot be resolved; from four pixels on it counts in full.
             let visibility = ((bump.min_element() / px.max(1e-6) - 2.0) / 2.0).clamp(0.0, 1.0);
             if visibility > 0.0 {
-                // The height scales with the bump, so its slope is that of the noise, smaller along a stretched bump.
+                // The height scales with the bump, so its slope is that of the noise, smaller along
+                // a stretched bump.
                 let lean = gradient(at / bump, hash::mix(self.seed ^ hash::mix(octave)));
                 slope += lean * vec2(1.0 / self.stretch.max(1e-6), 1.0) * share * visibility;
             }
@@ -55,8 +56,8 @@ impl NoiseRelief {
     }
 }
 
-/// The gradient of gradient noise (Perlin 1985, with his quintic of 2002): derivative by x and y, a lattice cell as
-/// unit.
+/// The gradient of gradient noise (Perlin 1985, with his quintic of 2002): derivative by x and y, a
+/// lattice cell as unit.
 fn gradient(p: Vec2, seed: u32) -> Vec2 {
     let floor = p.floor();
     let f = p - floor;
@@ -92,6 +93,7 @@ mod tests {
         assert_eq!(grain.normal(at(77), 1.0), NoiseRelief::default().normal(at(77), 1.0));
         assert_ne!(grain.normal(at(77), 1.0), NoiseRelief { seed: 1, ..grain }.normal(at(77), 1.0));
     }
+
     #[test]
     fn the_gradient_is_that_of_one_continuous_relief() {
         // The slopes around any closed loop add up to zero.
@@ -102,21 +104,29 @@ mod tests {
         let sum: f32 = side
             .iter()
             .map(|&t| {
-                let along = gradient(corner + vec2(t, 0.0), 9).x + gradient(corner + vec2(length, t), 9).y;
-                along - gradient(corner + vec2(t, length), 9).x - gradient(corner + vec2(0.0, t), 9).y
+                let along =
+                    gradient(corner + vec2(t, 0.0), 9).x + gradient(corner + vec2(length, t), 9).y;
+                along
+                    - gradient(corner + vec2(t, length), 9).x
+                    - gradient(corner + vec2(0.0, t), 9).y
             })
             .sum();
         assert!((sum * step).abs() < 0.01, "{}", sum * step);
     }
+
     #[test]
     fn bumps_too_small_to_be_seen_fade_and_stretched_ones_lean_across() {
         let grain = NoiseRelief { size_px: 8.0, octaves: 1, ..NoiseRelief::default() };
         assert_eq!(grain.normal(vec2(5.3, 1.1), 8.0), Vec3::Z);
         let brushed = NoiseRelief { size_px: 8.0, stretch: 20.0, ..NoiseRelief::default() };
         let sum = |f: fn(Vec3) -> f32| {
-            (0..900).map(|i| f(brushed.normal(vec2(i as f32 * 3.7, i as f32 * 0.9), 1.0)).abs()).sum::<f32>()
+            (0..900)
+                .map(|i| f(brushed.normal(vec2(i as f32 * 3.7, i as f32 * 0.9), 1.0)).abs())
+                .sum::<f32>()
         };
         assert!(sum(|n| n.y) > 8.0 * sum(|n| n.x));
-        assert!(NoiseRelief { size_px: f32::NAN, ..brushed }.normal(vec2(1.0, 1.0), 1.0).is_finite());
+        assert!(
+            NoiseRelief { size_px: f32::NAN, ..brushed }.normal(vec2(1.0, 1.0), 1.0).is_finite()
+        );
     }
 }

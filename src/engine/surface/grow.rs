@@ -4,7 +4,8 @@
 use crate::raster::Plane;
 use rayon::prelude::*;
 
-/// A pixel, column and row; [`NONE`] where none is known. Sides of maps are shorter than this holds.
+/// A pixel, column and row; [`NONE`] where none is known. Sides of maps are shorter than this
+/// holds.
 type Place = [u16; 2];
 const NONE: Place = [u16::MAX; 2];
 
@@ -19,10 +20,13 @@ impl Nearest {
     fn of(at: Place, place: Place) -> Self {
         Self { at, place, squared: Self::squared(at, place) }
     }
+
     fn squared(at: Place, place: Place) -> i64 {
-        let (dx, dy) = (i64::from(at[0]) - i64::from(place[0]), i64::from(at[1]) - i64::from(place[1]));
+        let (dx, dy) =
+            (i64::from(at[0]) - i64::from(place[0]), i64::from(at[1]) - i64::from(place[1]));
         if place == NONE { i64::MAX } else { dx * dx + dy * dy }
     }
+
     /// The nearer of the two; if equal, the one that was known first.
     fn or(self, place: Place) -> Self {
         let squared = Self::squared(self.at, place);
@@ -30,10 +34,11 @@ impl Nearest {
     }
 }
 
-/// For each pixel the index of a nearest valid pixel (itself where valid); `None` where nothing is valid.
+/// For each pixel the index of a nearest valid pixel (itself where valid); `None` where nothing is
+/// valid.
 ///
-/// Two sweeps that pass the nearest candidate on (Danielsson's 8-neighbour scheme: exact but for rare ties within a
-/// pixel). Sides are at most 65,534 px; for longer ones the result is `None`.
+/// Two sweeps that pass the nearest candidate on (Danielsson's 8-neighbour scheme: exact but for
+/// rare ties within a pixel). Sides are at most 65,534 px; for longer ones the result is `None`.
 pub fn nearest(valid: &Plane<bool>) -> Option<Plane<u32>> {
     let (w, h) = (valid.width(), valid.height());
     let own = |x: usize, y: usize| [x as u16, y as u16];
@@ -44,7 +49,8 @@ pub fn nearest(valid: &Plane<bool>) -> Option<Plane<u32>> {
     if valid.values().iter().all(|&v| v) {
         return Some(Plane::from_fn(valid.size(), |x, y| index(own(x, y))));
     }
-    let mut near = Plane::from_fn(valid.size(), |x, y| if valid.at(x, y) { own(x, y) } else { NONE });
+    let mut near =
+        Plane::from_fn(valid.size(), |x, y| if valid.at(x, y) { own(x, y) } else { NONE });
     let beyond = vec![NONE; w];
     for y in 0..h {
         let (above, here) = near.values_mut().split_at_mut(y * w);
@@ -56,7 +62,8 @@ pub fn nearest(valid: &Plane<bool>) -> Option<Plane<u32>> {
     }
     for y in (0..h).rev() {
         let (here, below) = near.values_mut().split_at_mut((y + 1) * w);
-        let (here, below) = (&mut here[y * w..], if y + 1 == h { &beyond[..] } else { &below[..w] });
+        let (here, below) =
+            (&mut here[y * w..], if y + 1 == h { &beyond[..] } else { &below[..w] });
         sweep_left(here, below, y);
         for x in 1..w {
             here[x] = Nearest::of(own(x, y), here[x]).or(here[x - 1]).place;
@@ -65,7 +72,8 @@ pub fn nearest(valid: &Plane<bool>) -> Option<Plane<u32>> {
     near.values().iter().all(|&place| place != NONE).then(|| near.map(index))
 }
 
-/// The nearest valid pixels that were found last: maps made one after another are mostly valid in the same ones.
+/// The nearest valid pixels that were found last: maps made one after another are mostly valid in
+/// the same ones.
 #[derive(Default)]
 pub struct KnownNearest(Option<(Plane<bool>, Plane<u32>)>);
 
@@ -80,6 +88,7 @@ impl KnownNearest {
             _ => nearest(valid),
         }
     }
+
     /// Keeps it for the next map.
     pub fn keep(&mut self, valid: &Plane<bool>, nearest: Plane<u32>) {
         self.0 = (valid.size().area() <= Self::MOST_PX).then(|| (valid.clone(), nearest));
@@ -123,11 +132,12 @@ pub fn fill<T: Copy>(values: &mut Plane<T>, nearest: &Plane<u32>) {
     }
 }
 
-/// Removes the coverage of pixels without valid values, except within two pixels of a valid one at a partly covered
-/// rim.
+/// Removes the coverage of pixels without valid values, except within two pixels of a valid one at
+/// a partly covered rim.
 pub fn punch_holes(coverage: &mut Plane<u8>, valid: &Plane<bool>) {
     let near_valid = |x: usize, y: usize| {
-        (-2..=2).any(|dy| (-2..=2).any(|dx| valid.get(x as i32 + dx, y as i32 + dy).unwrap_or(false)))
+        (-2..=2)
+            .any(|dy| (-2..=2).any(|dx| valid.get(x as i32 + dx, y as i32 + dy).unwrap_or(false)))
     };
     let width = valid.width().max(1);
     coverage.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
@@ -154,10 +164,14 @@ mod tests {
         assert_eq!(near.at(8, 6), 5 * 9 + 7);
         assert!(nearest(&Plane::filled(size, false)).is_none());
     }
+
     #[test]
     fn what_is_known_of_a_map_is_given_back_for_the_same_one_alone() {
-        let valid =
-            |seed: u32| Plane::from_fn(Size::new(30, 20), move |x, y| hash::unit(seed, x as u32, y as u32) < 0.1);
+        let valid = |seed: u32| {
+            Plane::from_fn(Size::new(30, 20), move |x, y| {
+                hash::unit(seed, x as u32, y as u32) < 0.1
+            })
+        };
         let mut known = KnownNearest::default();
         for seed in [1, 1, 2, 1] {
             let found = known.take(&valid(seed)).unwrap();
@@ -169,6 +183,7 @@ mod tests {
         assert!(known.take(&valid(1)) == Some(marked), "it is not sought again");
         assert!(known.take(&Plane::filled(Size::new(3, 2), false)).is_none());
     }
+
     /// The same sweeps pixel by pixel.
     fn nearest_as_told(valid: &Plane<bool>) -> Option<Plane<u32>> {
         const NONE: u32 = u32::MAX;
@@ -208,12 +223,16 @@ mod tests {
         }
         near.values().iter().all(|&i| i != NONE).then_some(near)
     }
+
     #[test]
     fn sweeps_by_rows_find_what_sweeps_by_pixels_find() {
-        for (k, size) in [Size::new(1, 1), Size::new(1, 9), Size::new(13, 1), Size::new(64, 47)].into_iter().enumerate()
+        for (k, size) in [Size::new(1, 1), Size::new(1, 9), Size::new(13, 1), Size::new(64, 47)]
+            .into_iter()
+            .enumerate()
         {
             for share in [0.0, 0.003, 0.05, 0.5, 1.0] {
-                let valid = Plane::from_fn(size, |x, y| hash::unit(k as u32, x as u32, y as u32) < share);
+                let valid =
+                    Plane::from_fn(size, |x, y| hash::unit(k as u32, x as u32, y as u32) < share);
                 assert!(nearest(&valid) == nearest_as_told(&valid), "{size} {share}");
             }
         }

@@ -1,6 +1,7 @@
-//! Depth from normals: the height field whose slopes best match the normals (a Poisson equation over the mask), solved
-//! by conjugate gradients with a multigrid preconditioner. Floor 2. The reverse is `differentiate`. Normals do not say
-//! how far apart two pieces of surface are across an occluding contour; that stays unknown.
+//! Depth from normals: the height field whose slopes best match the normals (a Poisson equation
+//! over the mask), solved by conjugate gradients with a multigrid preconditioner. Floor 2. The
+//! reverse is `differentiate`. Normals do not say how far apart two pieces of surface are across an
+//! occluding contour; that stays unknown.
 
 mod slopes;
 
@@ -18,17 +19,22 @@ pub struct IntegratedDepth {
     pub range_px: f32,
 }
 
-/// Integrates unit normals (camera space, y up) over the pixels where `inside` holds; `None` where there are none.
+/// Integrates unit normals (camera space, y up) over the pixels where `inside` holds; `None` where
+/// there are none.
 ///
-/// Minimises Σ w (z_j − z_i − s_ij)² over neighbours i, j: s_ij = (n̄_i + n̄_j)/(n_z,i + n_z,j) is exact on circles,
-/// and w = ((n_z,i + n_z,j)/2)² gives more weight to what faces the viewer. Separate pieces are each centred on the
-/// same depth.
+/// Minimises Σ w (z_j − z_i − s_ij)² over neighbours i, j: s_ij = (n̄_i + n̄_j)/(n_z,i + n_z,j) is
+/// exact on circles, and w = ((n_z,i + n_z,j)/2)² gives more weight to what faces the viewer.
+/// Separate pieces are each centred on the same depth.
 pub fn depth_from_normals(normals: &Plane<Vec3>, inside: &Plane<bool>) -> Option<IntegratedDepth> {
     depth_from_normals_while(normals, inside, &|| true)
 }
 
 /// The same while `go_on` says so; `None` also once it says no.
-pub fn depth_from_normals_while(normals: &Plane<Vec3>, inside: &Plane<bool>, go_on: GoOn) -> Option<IntegratedDepth> {
+pub fn depth_from_normals_while(
+    normals: &Plane<Vec3>,
+    inside: &Plane<bool>,
+    go_on: GoOn,
+) -> Option<IntegratedDepth> {
     let slopes = Slopes { normals, inside };
     let mut heights = heights(&solver(&slopes), &slopes, go_on);
     if !go_on() {
@@ -36,11 +42,13 @@ pub fn depth_from_normals_while(normals: &Plane<Vec3>, inside: &Plane<bool>, go_
     }
     centre_pieces(&mut heights, inside);
     let held = || heights.iter().zip(inside.values()).filter(|(_, i)| **i).map(|(z, _)| *z);
-    let (near, far) =
-        held().fold(None, |r: Option<(f32, f32)>, z| Some(r.map_or((z, z), |(a, b)| (a.min(z), b.max(z)))))?;
+    let (near, far) = held().fold(None, |r: Option<(f32, f32)>, z| {
+        Some(r.map_or((z, z), |(a, b)| (a.min(z), b.max(z))))
+    })?;
     let range_px = if far > near { far - near } else { 1.0 };
     let depth = Plane::from_values(normals.size(), heights)?;
-    let depth = depth.updated(|x, y, z| if inside.at(x, y) { (z - near) / range_px } else { f32::NAN });
+    let depth =
+        depth.updated(|x, y, z| if inside.at(x, y) { (z - near) / range_px } else { f32::NAN });
     Some(IntegratedDepth { depth, range_px })
 }
 
@@ -63,7 +71,8 @@ fn heights(solver: &SpringSolver, slopes: &Slopes, go_on: GoOn) -> Vec<f32> {
 fn centre_pieces(heights: &mut [f32], inside: &Plane<bool>) {
     let (w, n) = (inside.width(), heights.len());
     let mut seen: Vec<bool> = inside.values().iter().map(|i| !i).collect();
-    // Room for the largest piece there can be, so that it does not grow in steps; 32 bits count the pixels of any map.
+    // Room for the largest piece there can be, so that it does not grow in steps; 32 bits count the
+    // pixels of any map.
     let mut piece: Vec<u32> = Vec::with_capacity(seen.iter().filter(|seen| !**seen).count());
     for start in 0..n {
         if seen[start] {
@@ -77,8 +86,12 @@ fn centre_pieces(heights: &mut [f32], inside: &Plane<bool>) {
             let i = piece[next] as usize;
             next += 1;
             let x = i % w;
-            let near =
-                [(x > 0, i.wrapping_sub(1)), (x + 1 < w, i + 1), (i >= w, i.wrapping_sub(w)), (i + w < n, i + w)];
+            let near = [
+                (x > 0, i.wrapping_sub(1)),
+                (x + 1 < w, i + 1),
+                (i >= w, i.wrapping_sub(w)),
+                (i + w < n, i + w),
+            ];
             for (there, j) in near {
                 if there && !seen[j] {
                     seen[j] = true;
@@ -86,7 +99,8 @@ fn centre_pieces(heights: &mut [f32], inside: &Plane<bool>) {
                 }
             }
         }
-        let mean = piece.iter().map(|&i| f64::from(heights[i as usize])).sum::<f64>() / piece.len() as f64;
+        let mean =
+            piece.iter().map(|&i| f64::from(heights[i as usize])).sum::<f64>() / piece.len() as f64;
         piece.iter().for_each(|&i| heights[i as usize] -= mean as f32);
     }
 }
@@ -99,12 +113,18 @@ mod tests {
     #[test]
     fn nothing_is_made_of_what_is_given_up() {
         let size = Size::new(64, 48);
-        let normals = Plane::from_fn(size, |x, y| vec3(x as f32 - 31.5, 23.5 - y as f32, 40.0).normalize());
+        let normals =
+            Plane::from_fn(size, |x, y| vec3(x as f32 - 31.5, 23.5 - y as f32, 40.0).normalize());
         let asked = std::cell::Cell::new(0);
         let go_on = || asked.replace(asked.get() + 1) < 2;
         assert!(depth_from_normals_while(&normals, &Plane::filled(size, true), &go_on).is_none());
-        assert_eq!(asked.get(), 4, "it ends at the first no, and asks once more whether it was told to");
+        assert_eq!(
+            asked.get(),
+            4,
+            "it ends at the first no, and asks once more whether it was told to"
+        );
     }
+
     #[test]
     fn a_sphere_gets_its_depth_back() {
         let (size, r) = (Size::new(201, 181), 80.0f32);
@@ -127,6 +147,7 @@ mod tests {
             }
         }
     }
+
     #[test]
     fn flat_normals_and_holes_give_flat_finite_depth() {
         let size = Size::new(40, 30);
@@ -136,6 +157,9 @@ mod tests {
             assert_eq!(z.is_nan(), !i);
             assert!(!i || z.abs() < 1e-5);
         }
-        assert!(depth_from_normals(&Plane::filled(size, Vec3::Z), &Plane::filled(size, false)).is_none());
+        assert!(
+            depth_from_normals(&Plane::filled(size, Vec3::Z), &Plane::filled(size, false))
+                .is_none()
+        );
     }
 }

@@ -1,6 +1,5 @@
-//! Links: which neighbouring pixels belong to the same piece of surface, so that nothing is differenced across a depth
-//! jump or the mask's edge.
-//! Floor 2.
+//! Links: which neighbouring pixels belong to the same piece of surface, so that nothing is
+//! differenced across a depth jump or the mask's edge. Floor 2.
 
 use crate::math::fast::{max, min};
 use crate::raster::Plane;
@@ -22,8 +21,8 @@ fn slope(nbar: f32, nz: f32) -> f32 {
     nbar / nz.max(0.05)
 }
 
-/// Z in pixels: the median ratio between the slope of the normals and the step of the depth, over gently sloped pixels.
-/// One canvas length where the maps do not allow an estimate.
+/// Z in pixels: the median ratio between the slope of the normals and the step of the depth, over
+/// gently sloped pixels. One canvas length where the maps do not allow an estimate.
 pub fn depth_range_px(
     nbar_x: &Plane<f32>,
     nbar_y: &Plane<f32>,
@@ -42,9 +41,11 @@ pub fn depth_range_px(
             if x == 0 || y == 0 || x + 1 >= depth.width() || y + 1 >= depth.height() {
                 return None;
             }
-            let inside =
-                [(x - 1, y), (x + 1, y), (x, y - 1), (x, y + 1)].iter().all(|&(x, y)| coverage.at(x, y) == 255);
-            let told = length(slope(nbar_x.at(x, y), nz.at(x, y)), slope(nbar_y.at(x, y), nz.at(x, y)));
+            let inside = [(x - 1, y), (x + 1, y), (x, y - 1), (x, y + 1)]
+                .iter()
+                .all(|&(x, y)| coverage.at(x, y) == 255);
+            let told =
+                length(slope(nbar_x.at(x, y), nz.at(x, y)), slope(nbar_y.at(x, y), nz.at(x, y)));
             let dx = (depth.at(x + 1, y) - depth.at(x - 1, y)) * 0.5;
             let dy = (depth.at(x, y + 1) - depth.at(x, y - 1)) * 0.5;
             let seen = length(dx, dy);
@@ -66,8 +67,8 @@ fn length(x: f32, y: f32) -> f32 {
 
 /// Excess over the tolerance, as a ratio of it, from which a step is a jump on its own.
 const CERTAIN: f32 = 1.0;
-/// Excess from which a step next to a jump is a jump too: the contour of an occluder fades where it nears what is
-/// behind it, and must not break into dots.
+/// Excess from which a step next to a jump is a jump too: the contour of an occluder fades where it
+/// nears what is behind it, and must not break into dots.
 const LIKELY: f32 = 0.2;
 
 /// Finds the links of every pixel.
@@ -82,13 +83,18 @@ pub fn find(
     let maps = StepMaps { nbar: [nbar_x, nbar_y], nz, depth, coverage, depth_range_px };
     let mut jumps = Plane::filled(depth.size(), 0u8);
     let width = depth.width().max(1);
-    jumps.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| maps.jumps_of_row(y, row));
+    jumps
+        .values_mut()
+        .par_chunks_mut(width)
+        .enumerate()
+        .for_each(|(y, row)| maps.jumps_of_row(y, row));
     spread(&mut jumps);
     Plane::from_fn(depth.size(), |x, y| {
         // A step is stored at its left or upper pixel.
         let joined = |at: Option<(usize, usize)>, axis: usize| {
             at.is_some_and(|at| {
-                maps.are_covered(at, axis) && jumps.at(at.0, at.1) >> (DOWNWARD * axis as u8) & JUMP == 0
+                maps.are_covered(at, axis)
+                    && jumps.at(at.0, at.1) >> (DOWNWARD * axis as u8) & JUMP == 0
             })
         };
         let bit = |bit: u8, is: bool| if is { bit } else { 0 };
@@ -105,7 +111,9 @@ pub fn cut(links: &mut Plane<u8>, piece: impl Fn(usize, usize) -> u32 + Sync) {
     let (w, h) = (whole.width(), whole.height());
     *links = whole.updated(|x, y, linked| {
         let here = piece(x, y);
-        let other = |bit: u8, there: bool, at: (usize, usize)| if there && piece(at.0, at.1) != here { bit } else { 0 };
+        let other = |bit: u8, there: bool, at: (usize, usize)| {
+            if there && piece(at.0, at.1) != here { bit } else { 0 }
+        };
         linked
             & !(other(LEFT, x > 0, (x.wrapping_sub(1), y))
                 | other(RIGHT, x + 1 < w, (x + 1, y))
@@ -114,7 +122,8 @@ pub fn cut(links: &mut Plane<u8>, piece: impl Fn(usize, usize) -> u32 + Sync) {
     });
 }
 
-/// Flags of the step from a pixel to its right neighbour: it is a jump; it is one if it touches another.
+/// Flags of the step from a pixel to its right neighbour: it is a jump; it is one if it touches
+/// another.
 const JUMP: u8 = 1;
 const LIKELY_JUMP: u8 = 2;
 /// The same flags for the step to the pixel below, shifted by this many bits.
@@ -125,11 +134,14 @@ fn spread(jumps: &mut Plane<u8>) {
     const ANY_JUMP: u8 = JUMP | JUMP << DOWNWARD;
     const ANY_LIKELY: u8 = LIKELY_JUMP | LIKELY_JUMP << DOWNWARD;
     let width = jumps.width();
-    let mut ends: Vec<usize> = (0..jumps.values().len()).filter(|&i| jumps.values()[i] & ANY_JUMP != 0).collect();
+    let mut ends: Vec<usize> =
+        (0..jumps.values().len()).filter(|&i| jumps.values()[i] & ANY_JUMP != 0).collect();
     while let Some(i) = ends.pop() {
         let (x, y) = ((i % width) as i32, (i / width) as i32);
         for (x, y) in (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (x + dx, y + dy))) {
-            let Some(bits) = jumps.get(x, y).filter(|bits| bits & ANY_LIKELY != 0) else { continue };
+            let Some(bits) = jumps.get(x, y).filter(|bits| bits & ANY_LIKELY != 0) else {
+                continue;
+            };
             jumps.set(x as usize, y as usize, bits & !ANY_LIKELY | (bits & ANY_LIKELY) >> 1);
             ends.push(y as usize * width + x as usize);
         }
@@ -146,7 +158,8 @@ struct StepMaps<'a> {
 }
 
 crate::widest! {
-    /// Which steps from pixels to those after them may exceed what normals say: the others certainly do not.
+    /// Which steps from pixels to those after them may exceed what normals say: the others
+    /// certainly do not.
     ///
     /// * `ends`: of both pixels n̄ along the step, n_z and depth.
     fn may_jump(ends: [[&[f32]; 3]; 2], range_px: f32, out: &mut [u8]) {
@@ -167,7 +180,8 @@ impl StepMaps<'_> {
     /// The jumps and likely jumps of the steps after the pixels of a row.
     fn jumps_of_row(&self, y: usize, row: &mut [u8]) {
         let w = row.len();
-        let rows = |axis: usize, y: usize| [self.nbar[axis].row(y), self.nz.row(y), self.depth.row(y)];
+        let rows =
+            |axis: usize, y: usize| [self.nbar[axis].row(y), self.nz.row(y), self.depth.row(y)];
         let mut may = vec![0; w];
         let judge = |axis: usize, may: &[u8], row: &mut [u8]| {
             for x in (0..may.len()).filter(|&x| may[x] != 0) {
@@ -187,34 +201,44 @@ impl StepMaps<'_> {
             judge(1, &may, row);
         }
     }
+
     /// The pixel after one, to the right (axis 0) or below (1).
     fn after(&self, (x, y): (usize, usize), axis: usize) -> Option<(usize, usize)> {
         let next = if axis == 0 { (x + 1, y) } else { (x, y + 1) };
         (next.0 < self.depth.width() && next.1 < self.depth.height()).then_some(next)
     }
+
     fn before(&self, (x, y): (usize, usize), axis: usize) -> Option<(usize, usize)> {
         if axis == 0 { Some((x.checked_sub(1)?, y)) } else { Some((x, y.checked_sub(1)?)) }
     }
+
     /// Both ends of the step after a pixel are on a surface.
     fn are_covered(&self, at: (usize, usize), axis: usize) -> bool {
         let covered = |(x, y): (usize, usize)| self.coverage.at(x, y) > 0;
         covered(at) && self.after(at, axis).is_some_and(covered)
     }
+
     /// The step of depth after a pixel, px; `None` where one of its ends is no surface.
     fn step(&self, at: (usize, usize), axis: usize) -> Option<f32> {
         let next = self.after(at, axis).filter(|_| self.are_covered(at, axis))?;
         Some((self.depth.at(next.0, next.1) - self.depth.at(at.0, at.1)) * self.depth_range_px)
     }
+
     fn slope(&self, (x, y): (usize, usize), axis: usize) -> f32 {
         slope(self.nbar[axis].at(x, y), self.nz.at(x, y))
     }
-    /// How far the step after a pixel is from that of a smooth surface, as a ratio of the tolerance; 0 where it is one.
+
+    /// How far the step after a pixel is from that of a smooth surface, as a ratio of the
+    /// tolerance; 0 where it is one.
     ///
-    /// Between two neighbours of a smooth surface the step lies between the slopes of their normals (the mean value
-    /// theorem). Normals may have detail that the depth lacks, so the depth must also jump relative to the steps before
-    /// and after. The tolerance is half a slope plus 1.5 px, for curvature and coarse depth.
+    /// Between two neighbours of a smooth surface the step lies between the slopes of their normals
+    /// (the mean value theorem). Normals may have detail that the depth lacks, so the depth must
+    /// also jump relative to the steps before and after. The tolerance is half a slope plus 1.5 px,
+    /// for curvature and coarse depth.
     fn excess(&self, at: (usize, usize), axis: usize) -> f32 {
-        let (Some(step), Some(next)) = (self.step(at, axis), self.after(at, axis)) else { return 0.0 };
+        let (Some(step), Some(next)) = (self.step(at, axis), self.after(at, axis)) else {
+            return 0.0;
+        };
         let (here, there) = (self.slope(at, axis), self.slope(next, axis));
         let by_normals = beyond(step, here, there) / (1.5 + 0.5 * here.abs().max(there.abs()));
         if by_normals <= LIKELY {
@@ -222,7 +246,9 @@ impl StepMaps<'_> {
         }
         let before = self.before(at, axis).and_then(|at| self.step(at, axis));
         let after = self.step(next, axis);
-        let Some((before, after)) = before.or(after).zip(after.or(before)) else { return by_normals };
+        let Some((before, after)) = before.or(after).zip(after.or(before)) else {
+            return by_normals;
+        };
         // The tolerance of the flatter side counts: the other may itself be a jump.
         by_normals.min(beyond(step, before, after) / (1.5 + 0.5 * before.abs().min(after.abs())))
     }
@@ -242,11 +268,20 @@ mod tests {
     #[test]
     fn rows_are_judged_as_each_of_their_steps() {
         let size = Size::new(37, 23);
-        let value =
-            |seed: u32| Plane::from_fn(size, move |x, y| crate::math::hash::unit(seed, x as u32 / 4, y as u32 / 3));
+        let value = |seed: u32| {
+            Plane::from_fn(size, move |x, y| {
+                crate::math::hash::unit(seed, x as u32 / 4, y as u32 / 3)
+            })
+        };
         let [nx, ny, nz, depth] = [1, 2, 3, 4].map(value);
         let coverage = value(5).map(|v| if v < 0.9 { 255 } else { 0 });
-        let maps = StepMaps { nbar: [&nx, &ny], nz: &nz, depth: &depth, coverage: &coverage, depth_range_px: 9.0 };
+        let maps = StepMaps {
+            nbar: [&nx, &ny],
+            nz: &nz,
+            depth: &depth,
+            coverage: &coverage,
+            depth_range_px: 9.0,
+        };
         let mut seen = 0;
         for y in 0..size.height as usize {
             let mut row = [0; 37];
@@ -263,18 +298,24 @@ mod tests {
         }
         assert!(seen > 50, "{seen}");
     }
+
     /// Maps of 60 × 40 pixels from a height in pixels and the normal that the map gives.
-    fn surface(height: impl Fn(f32, f32) -> f32 + Sync, normal: impl Fn(f32, f32) -> Vec3 + Sync) -> Surface {
+    fn surface(
+        height: impl Fn(f32, f32) -> f32 + Sync,
+        normal: impl Fn(f32, f32) -> Vec3 + Sync,
+    ) -> Surface {
         let size = Size::new(60, 40);
         let at = |x: usize, y: usize| (x as f32 + 0.5, y as f32 + 0.5);
         let [low, high] = [f32::min, f32::max].map(|pick| {
             let all = (0..40).flat_map(|y| (0..60).map(move |x| (x, y)));
             all.map(|(x, y)| height(at(x, y).0, at(x, y).1)).reduce(pick).unwrap()
         });
-        let depth = Plane::from_fn(size, |x, y| (high - height(at(x, y).0, at(x, y).1)) / (high - low));
+        let depth =
+            Plane::from_fn(size, |x, y| (high - height(at(x, y).0, at(x, y).1)) / (high - low));
         let normals = Plane::from_fn(size, |x, y| normal(at(x, y).0, at(x, y).1));
         Surface::new(Maps { normals, depth, coverage: Plane::filled(size, 255) }).unwrap()
     }
+
     /// Rows of which the link from column 29 to column 30 is broken.
     fn broken_rows(surface: &Surface) -> Vec<usize> {
         (0..40).filter(|&y| surface.links_plane().at(29, y) & RIGHT == 0).collect()
@@ -286,6 +327,7 @@ mod tests {
         let surface = surface(|x, _| 0.5 * x, wavy);
         assert!((1..39).all(|y| (1..59).all(|x| surface.links_plane().at(x, y) == 15)));
     }
+
     #[test]
     fn a_jump_breaks_links_across_it_and_none_along_it() {
         let cliff = |x: f32, _: f32| 0.5 * x + if x < 30.0 { 0.0 } else { 20.0 };
@@ -294,6 +336,7 @@ mod tests {
         assert_eq!(surface.links_plane().at(29, 20), LEFT | UP | DOWN);
         assert_eq!(surface.links_plane().at(28, 20), 15);
     }
+
     #[test]
     fn a_jump_that_shrinks_goes_on_until_it_ends() {
         // From 12 px at the top to nothing at the bottom: below 1.75 px it is no jump by itself.

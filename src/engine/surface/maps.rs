@@ -1,5 +1,5 @@
-//! Maps made from one of them alone, as a program has them in memory. Floor 2. Not here: files and their conventions
-//! (`io::maps`), which know better what is background.
+//! Maps made from one of them alone, as a program has them in memory. Floor 2. Not here: files and
+//! their conventions (`io::maps`), which know better what is background.
 
 use super::Maps;
 use super::differentiate::normals_from_depth;
@@ -10,13 +10,15 @@ use crate::raster::Plane;
 impl Maps {
     /// Normals alone: their depth is the height field whose slopes match them best (MATH 1).
     ///
-    /// * `normals`: camera space, +x right, +y up, +z to the viewer, any length; zero, NaN or infinite where there is
-    ///   no surface.
+    /// * `normals`: camera space, +x right, +y up, +z to the viewer, any length; zero, NaN or
+    ///   infinite where there is no surface.
     ///
-    /// Solves an equation over the whole map: about a second for 4 million pixels. How far apart two pieces of surface
-    /// are at a silhouette is not in their normals; each piece is centred on the same depth.
+    /// Solves an equation over the whole map: about a second for 4 million pixels. How far apart
+    /// two pieces of surface are at a silhouette is not in their normals; each piece is centred on
+    /// the same depth.
     pub fn from_normals(normals: Plane<Vec3>) -> Self {
-        let unit = normals.updated(|_, _, n| if n.is_finite() { n.normalize_or_zero() } else { Vec3::ZERO });
+        let unit = normals
+            .updated(|_, _, n| if n.is_finite() { n.normalize_or_zero() } else { Vec3::ZERO });
         let inside = unit.map(|n| n != Vec3::ZERO);
         let depth = depth_from_normals(&unit, &inside).map(|found| found.depth);
         let depth = depth.unwrap_or_else(|| Plane::filled(unit.size(), f32::NAN));
@@ -48,8 +50,10 @@ mod tests {
         let squared = 24.0 * 24.0 - dx * dx - dy * dy;
         (squared > 0.0).then(|| squared.sqrt())
     }
+
     fn normals() -> Plane<Vec3> {
-        let normal = |x: usize, y: usize| height(x, y).map(|z| vec3(x as f32 - 31.5, 31.5 - y as f32, z));
+        let normal =
+            |x: usize, y: usize| height(x, y).map(|z| vec3(x as f32 - 31.5, 31.5 - y as f32, z));
         Plane::from_fn(SIZE, |x, y| normal(x, y).unwrap_or(Vec3::ZERO))
     }
 
@@ -63,6 +67,7 @@ mod tests {
         let found = maps.depth.at(43, 31) / maps.depth.at(52, 31);
         assert!((found - rise).abs() < 0.05, "{found}, not {rise}");
     }
+
     #[test]
     fn depth_alone_gives_the_normals_of_a_ball() {
         let depth = Plane::from_fn(SIZE, |x, y| height(x, y).map_or(f32::NAN, |z| 1.0 - z / 24.0));
@@ -71,6 +76,7 @@ mod tests {
         assert!(maps.normals.at(40, 22).distance(expected) < 0.02, "{}", maps.normals.at(40, 22));
         assert_eq!((maps.coverage.at(2, 2), maps.coverage.at(32, 32)), (0, 255));
     }
+
     #[test]
     fn maps_without_a_surface_are_refused_by_it() {
         let bad = [Vec3::ZERO, Vec3::NAN, Vec3::INFINITY];

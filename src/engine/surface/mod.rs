@@ -1,8 +1,9 @@
 //! Floor 2: the surface that is painted on, and how an image bends over it.
 //!
-//! [`Surface`] holds the maps in one convention (camera space, image axes for n̄, depth 0 near … 1 far); other
-//! conventions exist only inside the readers of files (`io::maps`). [`operator`] holds the equations, [`anchor`] the
-//! points where an image is pinned, and [`deformation`] evaluates them over tiles.
+//! [`Surface`] holds the maps in one convention (camera space, image axes for n̄, depth 0 near … 1
+//! far); other conventions exist only inside the readers of files (`io::maps`). [`operator`] holds
+//! the equations, [`anchor`] the points where an image is pinned, and [`deformation`] evaluates
+//! them over tiles.
 
 pub mod anchor;
 mod cache;
@@ -62,10 +63,11 @@ use std::sync::Arc;
 use through::Origin;
 use view::Eye;
 
-/// What a surface is made from. At least one of normals and depth must be there; the importer derives the other.
+/// What a surface is made from. At least one of normals and depth must be there; the importer
+/// derives the other.
 pub struct Maps {
-    /// Camera space: +x right, +y **up**, +z to the viewer. Zero, NaN or infinite where there is no surface; any
-    /// length.
+    /// Camera space: +x right, +y **up**, +z to the viewer. Zero, NaN or infinite where there is no
+    /// surface; any length.
     pub normals: Plane<Vec3>,
     /// 0 near … 1 far over the surface; not finite where there is none.
     pub depth: Plane<f32>,
@@ -88,8 +90,8 @@ pub enum SurfaceError {
     Perspective,
 }
 
-/// A picture of an object's shape. Every value is finite; where coverage is 0, the nearest surface values are repeated,
-/// so that filters may read across the silhouette.
+/// A picture of an object's shape. Every value is finite; where coverage is 0, the nearest surface
+/// values are repeated, so that filters may read across the silhouette.
 pub struct Surface {
     size: Size,
     /// n̄ = (n_x, −n_y): image axes, y down.
@@ -106,7 +108,8 @@ pub struct Surface {
     smooth_links: Option<Arc<Plane<u8>>>,
     depth_range_px: f32,
     derived: DerivedCaches,
-    /// The surface that detail was combined onto, if any; what depends on depth alone is computed there.
+    /// The surface that detail was combined onto, if any; what depends on depth alone is computed
+    /// there.
     base: Option<Arc<Surface>>,
     /// Which part each pixel shows, where the surface was made of parts; their objects are these.
     parts: Option<Arc<Plane<u32>>>,
@@ -122,8 +125,8 @@ pub struct Surface {
     points: Option<PointSource>,
 }
 
-/// n̄_x, n̄_y and n_z of normals. These are freed from their end on as they are taken apart, so that both are never
-/// whole in memory.
+/// n̄_x, n̄_y and n_z of normals. These are freed from their end on as they are taken apart, so
+/// that both are never whole in memory.
 fn apart(normals: Plane<Vec3>) -> [Plane<f32>; 3] {
     const AT_A_TIME: usize = 1 << 22;
     let size = normals.size();
@@ -143,15 +146,22 @@ fn apart(normals: Plane<Vec3>) -> [Plane<f32>; 3] {
 }
 
 impl Surface {
-    /// Normalises the normals, drops what is not finite, grows the valid values outward and finds the depth jumps.
+    /// Normalises the normals, drops what is not finite, grows the valid values outward and finds
+    /// the depth jumps.
     pub fn new(maps: Maps) -> Result<Self, SurfaceError> {
         Self::with_depth_range(maps, None)
     }
+
     /// The same of maps whose depth range is known, px.
     fn with_depth_range(maps: Maps, range_px: Option<f32>) -> Result<Self, SurfaceError> {
         Self::made(maps, range_px, &mut KnownNearest::default())
     }
-    fn made(maps: Maps, range_px: Option<f32>, known: &mut KnownNearest) -> Result<Self, SurfaceError> {
+
+    fn made(
+        maps: Maps,
+        range_px: Option<f32>,
+        known: &mut KnownNearest,
+    ) -> Result<Self, SurfaceError> {
         let Maps { mut normals, mut depth, mut coverage } = maps;
         let size = normals.size();
         for (other, s) in [("depth", depth.size()), ("mask", coverage.size())] {
@@ -161,9 +171,13 @@ impl Surface {
         }
         let valid = Plane::from_fn(size, |x, y| {
             let n = normals.at(x, y);
-            coverage.at(x, y) > 0 && depth.at(x, y).is_finite() && n.is_finite() && n.length() > 1e-6
+            coverage.at(x, y) > 0
+                && depth.at(x, y).is_finite()
+                && n.is_finite()
+                && n.length() > 1e-6
         });
-        // A partly covered pixel at the rim without a normal takes its neighbour's; further inside it is a hole.
+        // A partly covered pixel at the rim without a normal takes its neighbour's; further inside
+        // it is a hole.
         grow::punch_holes(&mut coverage, &valid);
         if valid.values().iter().any(|valid| !valid) {
             let nearest = known.take(&valid).ok_or(SurfaceError::Empty)?;
@@ -176,10 +190,12 @@ impl Surface {
         let estimated = || links::depth_range_px(&nbar_x, &nbar_y, &nz, &depth, &coverage);
         let depth_range_px = range_px.unwrap_or_else(estimated);
         let links = links::find(&nbar_x, &nbar_y, &nz, &depth, &coverage, depth_range_px);
-        let mut surface = Self::of_planes([nbar_x, nbar_y, nz, depth], [coverage, links], depth_range_px);
+        let mut surface =
+            Self::of_planes([nbar_x, nbar_y, nz, depth], [coverage, links], depth_range_px);
         surface.find_contours(&valid);
         Ok(surface)
     }
+
     /// n̄_x, n̄_y, n_z and depth; coverage and links.
     fn of_planes(reading: [Plane<f32>; 4], bytes: [Plane<u8>; 2], depth_range_px: f32) -> Self {
         let ([nbar_x, nbar_y, nz, depth], [coverage, links]) = (reading, bytes);
@@ -204,11 +220,12 @@ impl Surface {
             points: None,
         }
     }
+
     /// A surface made of parts, whose objects are known: no depth jump is needed to separate them.
     ///
     /// * `parts`: for each pixel which part it shows, from 1 on; 0 where there is none.
-    /// * `piece_of`: for each part the piece of surface that it belongs to: parts grown into one share it. One that is
-    ///   not listed is a piece of its own.
+    /// * `piece_of`: for each part the piece of surface that it belongs to: parts grown into one
+    ///   share it. One that is not listed is a piece of its own.
     /// * `known`: of the surface made before, so that the same need not be found again.
     pub fn with_parts(
         maps: Maps,
@@ -218,7 +235,11 @@ impl Surface {
     ) -> Result<Self, SurfaceError> {
         let mut surface = Self::made(maps, None, known)?;
         if parts.size() != surface.size {
-            return Err(SurfaceError::SizesDiffer { normals: surface.size, other: "parts", size: parts.size() });
+            return Err(SurfaceError::SizesDiffer {
+                normals: surface.size,
+                other: "parts",
+                size: parts.size(),
+            });
         }
         links::cut(&mut surface.links, |x, y| {
             let part = parts.at(x, y);
@@ -230,6 +251,7 @@ impl Surface {
         surface.contours = Arc::new(surface.with_contour_maps(None, contours::find).contours);
         Ok(surface)
     }
+
     /// Finds the contours, and puts readings of one side where the maps hold some of neither.
     fn find_contours(&mut self, valid: &Plane<bool>) {
         self.find_creases();
@@ -240,8 +262,12 @@ impl Surface {
             let z = &mut self.depth.values_mut()[i];
             moved |= (*z - reading.depth).abs() * self.depth_range_px > 1.0;
             *z = reading.depth;
-            let normal = [&mut self.nbar_x, &mut self.nbar_y, &mut self.nz].map(|plane| &mut plane.values_mut()[i]);
-            normal.into_iter().zip([reading.nbar.x, reading.nbar.y, reading.nz]).for_each(|(to, from)| *to = from);
+            let normal = [&mut self.nbar_x, &mut self.nbar_y, &mut self.nz]
+                .map(|plane| &mut plane.values_mut()[i]);
+            normal
+                .into_iter()
+                .zip([reading.nbar.x, reading.nbar.y, reading.nz])
+                .for_each(|(to, from)| *to = from);
         }
         if moved {
             let [nx, ny, nz] = [&self.nbar_x, &self.nbar_y, &self.nz];
@@ -249,23 +275,55 @@ impl Surface {
             self.find_creases();
         }
     }
+
     fn find_creases(&mut self) {
-        self.smooth_links = creases::smooth_links(&self.links, [&self.nbar_x, &self.nbar_y]).map(Arc::new);
+        self.smooth_links =
+            creases::smooth_links(&self.links, [&self.nbar_x, &self.nbar_y]).map(Arc::new);
     }
-    /// Calls with the maps that contours are found in. `valid`: where the maps held values, if it is known.
-    fn with_contour_maps<T>(&self, valid: Option<&Plane<bool>>, with: impl FnOnce(&ContourMaps) -> T) -> T {
+
+    /// Calls with the maps that contours are found in. `valid`: where the maps held values, if it
+    /// is known.
+    fn with_contour_maps<T>(
+        &self,
+        valid: Option<&Plane<bool>>,
+        with: impl FnOnce(&ContourMaps) -> T,
+    ) -> T {
         let Self { size, nbar_x, nbar_y, depth, coverage, links: all_links, .. } = self;
         let links = self.smooth_links_plane();
-        with(&ContourMaps { size: *size, nbar: [nbar_x, nbar_y], depth, coverage, links, all_links, valid })
+        with(&ContourMaps {
+            size: *size,
+            nbar: [nbar_x, nbar_y],
+            depth,
+            coverage,
+            links,
+            all_links,
+            valid,
+        })
     }
+
     /// The sheet of a surface from its planes.
-    fn sheet_of_planes(&self, reading: [Plane<f32>; 4], bytes: [Plane<u8>; 2], of: SheetOf) -> Self {
-        Self { eye: self.eye, sheet_of: Some(of), ..Self::of_planes(reading, bytes, self.depth_range_px) }
+    fn sheet_of_planes(
+        &self,
+        reading: [Plane<f32>; 4],
+        bytes: [Plane<u8>; 2],
+        of: SheetOf,
+    ) -> Self {
+        Self {
+            eye: self.eye,
+            sheet_of: Some(of),
+            ..Self::of_planes(reading, bytes, self.depth_range_px)
+        }
     }
-    /// The same surface with other unit normals (y up), one for each pixel, and for each of its sheet; what depends on
-    /// depth alone is shared.
-    fn with_normals(self: &Arc<Self>, normals: &Plane<Vec3>, of_sheet: Option<Plane<Vec3>>) -> Self {
-        let reading = [normals.map(|n| n.x), normals.map(|n| -n.y), normals.map(|n| n.z), self.depth.clone()];
+
+    /// The same surface with other unit normals (y up), one for each pixel, and for each of its
+    /// sheet; what depends on depth alone is shared.
+    fn with_normals(
+        self: &Arc<Self>,
+        normals: &Plane<Vec3>,
+        of_sheet: Option<Plane<Vec3>>,
+    ) -> Self {
+        let reading =
+            [normals.map(|n| n.x), normals.map(|n| -n.y), normals.map(|n| n.z), self.depth.clone()];
         Self {
             base: Some(self.base.as_ref().unwrap_or(self).clone()),
             eye: self.eye,
@@ -273,7 +331,11 @@ impl Surface {
             smooth_links: self.smooth_links.clone(),
             parts: self.parts.clone(),
             sheet_normals: of_sheet,
-            ..Self::of_planes(reading, [self.coverage.clone(), self.links.clone()], self.depth_range_px)
+            ..Self::of_planes(
+                reading,
+                [self.coverage.clone(), self.links.clone()],
+                self.depth_range_px,
+            )
         }
     }
 }

@@ -1,5 +1,5 @@
-//! Objects: the pieces into which silhouette and depth jumps split a surface, and the limits they set to marks.
-//! Floor 2. Which neighbouring pixels belong together is found by `links`.
+//! Objects: the pieces into which silhouette and depth jumps split a surface, and the limits they
+//! set to marks. Floor 2. Which neighbouring pixels belong together is found by `links`.
 
 use super::cache::HeapSize;
 use super::pyramid::BLOCK;
@@ -10,8 +10,9 @@ use crate::raster::Plane;
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
-/// Pieces smaller than this are fragments of a ragged edge, not objects: they join the neighbour nearest in depth. The
-/// area is relative to the longer side squared, so that a picture splits the same way at any size.
+/// Pieces smaller than this are fragments of a ragged edge, not objects: they join the neighbour
+/// nearest in depth. The area is relative to the longer side squared, so that a picture splits the
+/// same way at any size.
 const CRUMB_SIDE: (f32, f32) = (0.006, 4.0);
 
 /// Which object each pixel of a surface belongs to.
@@ -28,14 +29,17 @@ pub struct Objects {
 pub struct ObjectId(u32);
 
 impl Objects {
-    /// Splits a surface: pixels belong to one object if they show the same part, or, where no parts are known, if a
-    /// path of linked neighbours joins them.
+    /// Splits a surface: pixels belong to one object if they show the same part, or, where no parts
+    /// are known, if a path of linked neighbours joins them.
     fn new(surface: &Surface) -> Self {
         if let Some(sheet) = surface.sheet_of() {
             // Those of the other populations: nobody needs to know where they lie.
             let whole = sheet.surface().map(|whole| whole.objects());
-            let label = |x: usize, y: usize| whole.as_ref().map_or(0, |whole| whole.labels.at(x, y));
-            let of = |pixel: &ContourPixel| pixel.nearest_other().map_or(0, |(x, y)| label(x as usize, y as usize));
+            let label =
+                |x: usize, y: usize| whole.as_ref().map_or(0, |whole| whole.labels.at(x, y));
+            let of = |pixel: &ContourPixel| {
+                pixel.nearest_other().map_or(0, |(x, y)| label(x as usize, y as usize))
+            };
             return Self::of_labels(sheet.map(surface.size(), of), Vec::new());
         }
         if let Some(parts) = surface.parts_plane() {
@@ -45,6 +49,7 @@ impl Objects {
         pieces.join_crumbs(surface);
         pieces.numbered(surface)
     }
+
     /// One object for each part that is seen.
     fn of_parts(surface: &Surface, parts: &Plane<u32>) -> Self {
         let mut numbers = BTreeMap::new();
@@ -63,14 +68,18 @@ impl Objects {
         }
         Self::of_labels(labels, rects)
     }
+
     fn of_labels(labels: Plane<u32>, rects: Vec<Rect>) -> Self {
         Self { labels, rects, blocks: OnceLock::new() }
     }
+
     /// The object that covers a pixel; `None` off the surface and off the canvas.
     pub fn at(&self, x: i32, y: i32) -> Option<ObjectId> {
         self.labels.get(x, y).filter(|label| *label > 0).map(ObjectId)
     }
-    /// The object that covers all pixels of each block of the canvas and the ring around it; 0 where there is none.
+
+    /// The object that covers all pixels of each block of the canvas and the ring around it; 0
+    /// where there is none.
     pub(in crate::surface) fn around_blocks(&self) -> &Plane<u32> {
         once(&self.blocks, || {
             let (w, h) = (self.labels.width(), self.labels.height());
@@ -81,19 +90,24 @@ impl Objects {
                     return 0;
                 }
                 let object = self.labels.at(x, y);
-                let is_own = |y: usize| self.labels.row(y)[x - 1..=x + BLOCK].iter().all(|label| *label == object);
+                let is_own = |y: usize| {
+                    self.labels.row(y)[x - 1..=x + BLOCK].iter().all(|label| *label == object)
+                };
                 if (y - 1..=y + BLOCK).all(is_own) { object } else { 0 }
             })
         })
     }
+
     /// How many there are.
     pub fn count(&self) -> usize {
         self.rects.len()
     }
+
     /// The smallest rectangle that holds an object; empty for one of another surface.
     pub fn rect(&self, object: ObjectId) -> Rect {
         self.rects.get(object.0 as usize - 1).copied().unwrap_or(Rect::EMPTY)
     }
+
     /// For each pixel the number of its object, from 1 on; 0 where there is no surface.
     pub fn labels(&self) -> &Plane<u32> {
         &self.labels
@@ -111,8 +125,11 @@ struct PieceForest {
 impl PieceForest {
     fn of(surface: &Surface) -> Self {
         let size = surface.size();
-        let mut pieces =
-            Self { parent: (0..size.area() as u32).collect(), area: vec![1; size.area()], width: size.width as usize };
+        let mut pieces = Self {
+            parent: (0..size.area() as u32).collect(),
+            area: vec![1; size.area()],
+            width: size.width as usize,
+        };
         for (i, &linked) in surface.links_plane().values().iter().enumerate() {
             if linked & links::LEFT != 0 {
                 pieces.join(i - 1, i);
@@ -123,6 +140,7 @@ impl PieceForest {
         }
         pieces
     }
+
     /// The first pixel of a pixel's piece.
     fn first(&mut self, mut i: usize) -> usize {
         while self.parent[i] as usize != i {
@@ -132,6 +150,7 @@ impl PieceForest {
         }
         i
     }
+
     fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.first(a), self.first(b));
         if a != b {
@@ -140,7 +159,9 @@ impl PieceForest {
             self.area[first] += self.area[later];
         }
     }
-    /// Merges pieces that are too small into their neighbours, across the smallest depth steps first.
+
+    /// Merges pieces that are too small into their neighbours, across the smallest depth steps
+    /// first.
     fn join_crumbs(&mut self, surface: &Surface) {
         let side = (CRUMB_SIDE.0 * surface.size().longer_side()).max(CRUMB_SIDE.1);
         let crumb_px = (side * side) as u32;
@@ -149,7 +170,8 @@ impl PieceForest {
         let mut torn = Vec::new();
         for (i, &linked) in surface.links_plane().values().iter().enumerate() {
             let (has_left, has_above) = (i % self.width > 0, i >= self.width);
-            for (bit, has, step) in [(links::LEFT, has_left, 1), (links::UP, has_above, self.width)] {
+            for (bit, has, step) in [(links::LEFT, has_left, 1), (links::UP, has_above, self.width)]
+            {
                 if has && linked & bit == 0 && covered(i) && covered(i - step) {
                     let (a, b) = (self.first(i), self.first(i - step));
                     if self.area[a].min(self.area[b]) < crumb_px {
@@ -166,6 +188,7 @@ impl PieceForest {
             }
         }
     }
+
     fn numbered(mut self, surface: &Surface) -> Objects {
         let mut labels = Plane::filled(surface.size(), 0);
         let mut rects: Vec<Rect> = Vec::new();
@@ -196,7 +219,8 @@ impl HeapSize for Objects {
 }
 
 impl Surface {
-    /// The objects of the surface, cached. Normal layers do not change them: jumps depend on depth alone.
+    /// The objects of the surface, cached. Normal layers do not change them: jumps depend on depth
+    /// alone.
     pub fn objects(&self) -> Arc<Objects> {
         let base = self.base();
         base.derived.objects.get_or_compute((), 1, |_| Objects::new(base))
@@ -212,13 +236,15 @@ crate::named! {
         Free = "free",
         /// Where the surface is.
         Surface = "surface",
-        /// Only on the object on which the mark begins; a mark that begins off the surface stays off it.
+        /// Only on the object on which the mark begins; a mark that begins off the surface stays
+        /// off it.
         Object = "object",
     }
 }
 
 impl PaintLimit {
-    /// The part of the canvas that a mark beginning at `start` (canvas px) may touch: all of it without a surface.
+    /// The part of the canvas that a mark beginning at `start` (canvas px) may touch: all of it
+    /// without a surface.
     pub fn from(self, surface: Option<&Arc<Surface>>, start: Vec2) -> CanvasPart {
         let Some(surface) = surface else { return CanvasPart::Whole };
         match self {
@@ -255,20 +281,19 @@ pub enum CanvasPart {
 impl CanvasPart {
     /// The share of a pixel that is in the part, `[0, 1]`; off the canvas there is no surface.
     pub fn coverage(&self, x: i32, y: i32) -> f32 {
-        let covered = |surface: &Surface| surface.coverage_plane().get(x, y).map_or(0.0, |c| f32::from(c) / 255.0);
+        let covered = |surface: &Surface| {
+            surface.coverage_plane().get(x, y).map_or(0.0, |c| f32::from(c) / 255.0)
+        };
         match self {
             CanvasPart::Whole => 1.0,
             CanvasPart::Surface(surface) => covered(surface),
             CanvasPart::Backdrop(surface) => 1.0 - covered(surface),
             CanvasPart::Object { surface, objects, object } => {
-                if objects.at(x, y) == Some(*object) {
-                    covered(surface)
-                } else {
-                    0.0
-                }
+                if objects.at(x, y) == Some(*object) { covered(surface) } else { 0.0 }
             }
         }
     }
+
     /// Whether it is all of the canvas.
     pub fn is_whole(&self) -> bool {
         matches!(self, CanvasPart::Whole)

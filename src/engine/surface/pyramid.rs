@@ -1,5 +1,5 @@
-//! Min–max pyramids of the maps: the range of values in each block of pixels, and how fast they change there. Floor 2.
-//! `support` uses them to bound an operator.
+//! Min–max pyramids of the maps: the range of values in each block of pixels, and how fast they
+//! change there. Floor 2. `support` uses them to bound an operator.
 
 use super::operator::reflection;
 use super::{Surface, links};
@@ -11,15 +11,16 @@ use std::sync::OnceLock;
 pub const BLOCK: usize = 8;
 /// Blocks along the side of a tile.
 pub const TILE_BLOCKS: usize = TILE / BLOCK;
-/// The part of a tile that may be touched: bit `c` of row `r` is the block of 8 × 8 px in column `c`.
+/// The part of a tile that may be touched: bit `c` of row `r` is the block of 8 × 8 px in column
+/// `c`.
 pub type TileBlocks = [u8; TILE_BLOCKS];
 /// The level of the pyramid whose blocks are tiles.
 pub(super) const TILE_LEVEL: usize = TILE_BLOCKS.ilog2() as usize;
 
 /// The maps' pyramids, each built when an operator first needs it.
 ///
-/// Built by the calling thread alone: a worker that waited for others here could be given a tile that waits for the
-/// same pyramid.
+/// Built by the calling thread alone: a worker that waited for others here could be given a tile
+/// that waits for the same pyramid.
 #[derive(Default)]
 pub struct MapPyramids {
     cover: OnceLock<Pyramid<BlockCover>>,
@@ -82,12 +83,15 @@ impl<T: Join> Pyramid<T> {
         levels.drain(..TILE_LEVEL.min(levels.len()));
         Self { levels, tiles, tile_columns: level_size(size, TILE_LEVEL).width as usize }
     }
-    /// The figures of a tile's smallest blocks, as many rows as a block has figures; `None` beyond the map.
+
+    /// The figures of a tile's smallest blocks, as many rows as a block has figures; `None` beyond
+    /// the map.
     pub(super) fn tile<const N: usize>(&self, at: TileAt) -> Option<&[BlockFigures; N]> {
         let (col, row) = (usize::try_from(at.col).ok()?, usize::try_from(at.row).ok()?);
         let start = (col < self.tile_columns).then(|| (row * self.tile_columns + col) * N)?;
         self.tiles.get(start..start + N)?.try_into().ok()
     }
+
     /// Of a tile or a larger block.
     pub(super) fn at(&self, block: PyramidBlock) -> Option<T> {
         self.levels.get(block.level.checked_sub(TILE_LEVEL)?)?.get(block.col, block.row)
@@ -103,8 +107,12 @@ impl Pyramid<TurnSpan> {
 
 fn by_tiles<T: Join>(leaves: &Plane<T>) -> Vec<BlockFigures> {
     let across = leaves.width().div_ceil(TILE_BLOCKS);
-    let figures = if leaves.size().area() > 0 { leaves.at(0, 0).figures().as_ref().len() } else { 0 };
-    let mut tiles = vec![[0.0; TILE_BLOCKS * TILE_BLOCKS]; across * leaves.height().div_ceil(TILE_BLOCKS) * figures];
+    let figures =
+        if leaves.size().area() > 0 { leaves.at(0, 0).figures().as_ref().len() } else { 0 };
+    let mut tiles = vec![
+        [0.0; TILE_BLOCKS * TILE_BLOCKS];
+        across * leaves.height().div_ceil(TILE_BLOCKS) * figures
+    ];
     for row in 0..leaves.height() {
         for col in 0..leaves.width() {
             let tile = row / TILE_BLOCKS * across + col / TILE_BLOCKS;
@@ -156,6 +164,7 @@ impl Join for BlockCover {
     fn figures(self) -> [f32; 2] {
         [self.some, self.all].map(|is| if is { 1.0 } else { 0.0 })
     }
+
     fn join(self, o: Self) -> Self {
         Self { some: self.some || o.some, all: self.all && o.all }
     }
@@ -174,13 +183,18 @@ impl Join for DepthSpan {
     fn figures(self) -> [f32; 3] {
         [self.low, self.high, self.slope]
     }
+
     fn join(self, o: Self) -> Self {
-        Self { low: self.low.min(o.low), high: self.high.max(o.high), slope: self.slope.max(o.slope) }
+        Self {
+            low: self.low.min(o.low),
+            high: self.high.max(o.high),
+            slope: self.slope.max(o.slope),
+        }
     }
 }
 
-/// n̄, r̄ or a point of the unwrapped plane over a block and the pixels around it, and the largest norm of its
-/// derivative in it.
+/// n̄, r̄ or a point of the unwrapped plane over a block and the pixels around it, and the largest
+/// norm of its derivative in it.
 #[derive(Clone, Copy)]
 pub(super) struct TurnSpan {
     pub(super) low: Vec2,
@@ -193,8 +207,13 @@ impl Join for TurnSpan {
     fn figures(self) -> [f32; 5] {
         [self.low.x, self.low.y, self.high.x, self.high.y, self.slope]
     }
+
     fn join(self, o: Self) -> Self {
-        Self { low: self.low.min(o.low), high: self.high.max(o.high), slope: self.slope.max(o.slope) }
+        Self {
+            low: self.low.min(o.low),
+            high: self.high.max(o.high),
+            slope: self.slope.max(o.slope),
+        }
     }
 }
 
@@ -233,9 +252,11 @@ impl BlockRing {
         }
         Self { block, rect, values }
     }
+
     fn at(&self, x: usize, y: usize) -> Vec2 {
         self.values[(y - self.rect.y0 as usize) * RING + x - self.rect.x0 as usize]
     }
+
     /// The range of the values over the surface.
     fn range(&self, surface: &Surface) -> (Vec2, Vec2) {
         let Rect { x0, y0, x1, y1 } = self.rect;
@@ -248,7 +269,9 @@ impl BlockRing {
         }
         (low, high)
     }
-    /// The longest derivative over the block's surface: differences between linked neighbours, per px.
+
+    /// The longest derivative over the block's surface: differences between linked neighbours, per
+    /// px.
     fn longest_slope(&self, surface: &Surface) -> f32 {
         let Rect { x0, y0, x1, y1 } = self.block;
         let mut longest = 0.0f32;
@@ -256,7 +279,8 @@ impl BlockRing {
             for x in x0 as usize..x1 as usize {
                 let linked = surface.smooth_links_plane().at(x, y);
                 let step = |bit: u8| usize::from(linked & bit != 0);
-                let (l, r, u, d) = (step(links::LEFT), step(links::RIGHT), step(links::UP), step(links::DOWN));
+                let (l, r, u, d) =
+                    (step(links::LEFT), step(links::RIGHT), step(links::UP), step(links::DOWN));
                 let dx = (self.at(x + r, y) - self.at(x - l, y)) / (l + r).max(1) as f32;
                 let dy = (self.at(x, y + d) - self.at(x, y - u)) / (u + d).max(1) as f32;
                 longest = longest.max(dx.length_squared() + dy.length_squared());
@@ -278,7 +302,8 @@ impl MapPyramids {
             Pyramid::new(surface.size(), |block| {
                 let mut cover = BlockCover { some: false, all: true };
                 for y in block.y0 as usize..block.y1 as usize {
-                    for &c in &surface.coverage_plane().row(y)[block.x0 as usize..block.x1 as usize] {
+                    for &c in &surface.coverage_plane().row(y)[block.x0 as usize..block.x1 as usize]
+                    {
                         cover = BlockCover { some: cover.some || c > 0, all: cover.all && c > 0 };
                     }
                 }
@@ -286,17 +311,21 @@ impl MapPyramids {
             })
         })
     }
+
     pub(super) fn depth(&self, surface: &Surface) -> &Pyramid<DepthSpan> {
         self.depth.get_or_init(|| {
             Pyramid::new(surface.size(), |block| {
-                let TurnSpan { low, high, slope } = turn_span(surface, block, |x, y| vec2(surface.depth(x, y), 0.0));
+                let TurnSpan { low, high, slope } =
+                    turn_span(surface, block, |x, y| vec2(surface.depth(x, y), 0.0));
                 DepthSpan { low: low.x, high: high.x, slope }
             })
         })
     }
+
     pub(super) fn nbar(&self, surface: &Surface) -> &Pyramid<TurnSpan> {
         self.nbar.get_or_init(|| Pyramid::of_points(surface, |x, y| surface.nbar(x, y)))
     }
+
     pub(super) fn mirrored(&self, surface: &Surface) -> &Pyramid<TurnSpan> {
         let value = |x, y| reflection::mirrored(surface.nbar(x, y), surface.normal(x, y).z);
         self.mirrored.get_or_init(|| Pyramid::of_points(surface, value))
@@ -314,9 +343,11 @@ pub(super) struct PyramidBlock {
 impl PyramidBlock {
     /// The one that holds a whole map.
     pub(super) fn whole(size: Size) -> Self {
-        let level = (TILE_LEVEL..).find(|level| level_size(size, *level).area() <= 1).unwrap_or(TILE_LEVEL);
+        let level =
+            (TILE_LEVEL..).find(|level| level_size(size, *level).area() <= 1).unwrap_or(TILE_LEVEL);
         Self { level, col: 0, row: 0 }
     }
+
     /// The four blocks one level below.
     pub(super) fn quarters(self) -> [PyramidBlock; 4] {
         let PyramidBlock { level, col, row } = self;

@@ -1,6 +1,6 @@
-//! Regions of a surface: all that faces the same way as a point, lies as deep, bends as it does, belongs to its object,
-//! would shine with it, or flows along it (MATH 7). Floor 2. A region is computed again when its surface changes. Not
-//! here: selections and masks, which use it.
+//! Regions of a surface: all that faces the same way as a point, lies as deep, bends as it does,
+//! belongs to its object, would shine with it, or flows along it (MATH 7). Floor 2. A region is
+//! computed again when its surface changes. Not here: selections and masks, which use it.
 
 mod deviation;
 
@@ -46,6 +46,7 @@ impl RegionKind {
             RegionKind::Curvature => 0.0..=2.0,
         }
     }
+
     /// The tolerance where none is given.
     pub const fn tolerance(self) -> f32 {
         match self {
@@ -77,9 +78,11 @@ impl SurfaceRegion {
     pub const fn new(kind: RegionKind, at: Vec2) -> Self {
         Self { kind, at, tolerance: kind.tolerance(), softness: 0.0, contiguous: true }
     }
+
     /// What it covers of a surface; nothing where its point is off the surface.
     pub fn on(&self, surface: &Arc<Surface>) -> CoverageGrid {
-        RegionField::new(surface, self.kind, self.at).map_or_else(CoverageGrid::default, |field| field.region(self))
+        RegionField::new(surface, self.kind, self.at)
+            .map_or_else(CoverageGrid::default, |field| field.region(self))
     }
 }
 
@@ -87,8 +90,8 @@ impl SurfaceRegion {
 const KEPT: usize = 8;
 
 impl Surface {
-    /// The coverage of a region, cached. Call it once before going parallel: threads that call it at the same time may
-    /// each compute it.
+    /// The coverage of a region, cached. Call it once before going parallel: threads that call it
+    /// at the same time may each compute it.
     pub fn region(self: &Arc<Self>, region: &SurfaceRegion) -> Arc<CoverageGrid> {
         self.derived.regions.get_or_compute(*region, KEPT, |_| region.on(self))
     }
@@ -124,8 +127,15 @@ impl RegionField {
         let deviation = deviation::of(surface, kind, at);
         let half_step = half_steps(surface, &deviation);
         let joined = links_of(surface);
-        Some(Self { surface: surface.clone(), at: (pixel.x, pixel.y), deviation, half_step, joined })
+        Some(Self {
+            surface: surface.clone(),
+            at: (pixel.x, pixel.y),
+            deviation,
+            half_step,
+            joined,
+        })
     }
+
     /// The region of this field's point and kind with a tolerance, softness and contiguity.
     pub fn region(&self, told: &SurfaceRegion) -> CoverageGrid {
         let is_object = told.kind == RegionKind::Object;
@@ -134,7 +144,8 @@ impl RegionField {
         let soft = told.softness.max(0.0).min(1.0) * t;
         // An object is joined as it is, fragments of its edge across jumps among it.
         let is_joined = told.contiguous && !is_object;
-        let reached = is_joined.then(|| Flooded::from(self.at, self.surface.size(), |at| self.opened(at, t, soft)));
+        let reached = is_joined
+            .then(|| Flooded::from(self.at, self.surface.size(), |at| self.opened(at, t, soft)));
         let all = self.surface.size().rect();
         match reached {
             None => CoverageGrid::from_tiles(all, |at, bytes| self.fill(at, t, soft, None, bytes)),
@@ -149,21 +160,27 @@ impl RegionField {
             }
         }
     }
+
     fn fill(&self, at: TileAt, t: f32, soft: f32, only: Option<&TileBits>, bytes: &mut [u8]) {
         let (tile, area) = (at.rect(), at.rect().intersect(self.surface.size().rect()));
         let columns = area.x0 as usize..area.x1 as usize;
         for y in area.y0..area.y1 {
             let row = (y - tile.y0) as usize;
             let to = &mut bytes[row * TILE..][..area.width()];
-            let (v, step) = (&self.deviation.row(y as usize)[columns.clone()], self.half_step.row(y as usize));
+            let (v, step) =
+                (&self.deviation.row(y as usize)[columns.clone()], self.half_step.row(y as usize));
             let covered = &self.surface.coverage_plane().row(y as usize)[columns.clone()];
             fill_row(v, &step[columns.clone()], covered, t, soft, to);
             if let Some(bits) = only {
                 let bits = bits[row];
-                to.iter_mut().enumerate().filter(|(x, _)| bits >> x & 1 == 0).for_each(|(_, b)| *b = 0);
+                to.iter_mut()
+                    .enumerate()
+                    .filter(|(x, _)| bits >> x & 1 == 0)
+                    .for_each(|(_, b)| *b = 0);
             }
         }
     }
+
     /// The pixels of a tile that are covered at all, and how the surface joins them.
     fn opened(&self, at: TileAt, t: f32, soft: f32) -> OpenTile {
         let (tile, area) = (at.rect(), at.rect().intersect(self.surface.size().rect()));
@@ -175,7 +192,13 @@ impl RegionField {
             open[(y - tile.y0) as usize] = open_row(v, step, t, soft);
         }
         let columns = self.surface.size().width.div_ceil(TILE as u32) as i32;
-        OpenTile { open, links: self.joined.get((at.row * columns + at.col) as usize).map(|joined| Box::new(*joined)) }
+        OpenTile {
+            open,
+            links: self
+                .joined
+                .get((at.row * columns + at.col) as usize)
+                .map(|joined| Box::new(*joined)),
+        }
     }
 }
 
@@ -185,7 +208,8 @@ fn links_of(surface: &Surface) -> Vec<TileLinks> {
     let of_tile = |at: &TileAt| {
         let (tile, area) = (at.rect(), at.rect().intersect(surface.size().rect()));
         let none = [0; TILE];
-        let mut joined = TileLinks { from_left: none, from_right: none, from_above: none, from_below: none };
+        let mut joined =
+            TileLinks { from_left: none, from_right: none, from_above: none, from_below: none };
         for y in area.y0..area.y1 {
             let row = (y - tile.y0) as usize;
             let linked = &surface.links_plane().row(y as usize)[area.x0 as usize..area.x1 as usize];
@@ -214,6 +238,7 @@ crate::widest! {
         }
         open.iter().rev().fold(0, |bits, open| bits << 1 | u64::from(*open))
     }
+
     fn fill_row(v: &[f32], step: &[f32], covered: &[u8], t: f32, soft: f32, to: &mut [u8]) {
         let n = to.len();
         let (v, step, covered) = (&v[..n], &step[..n], &covered[..n]);

@@ -1,10 +1,12 @@
-//! Weighted Laplace equations on a grid of any shape: conjugate gradients, preconditioned by one multigrid V-cycle.
-//! Floor 2. Sums are formed row by row and added in order, so that the bits do not depend on the number of threads.
-//! `rows` holds the loops over the grid, `graph` the coarser levels, `merge` which unknowns these join. Not here: what
-//! the springs mean (`integrate`, `unwrap`).
+//! Weighted Laplace equations on a grid of any shape: conjugate gradients, preconditioned by one
+//! multigrid V-cycle. Floor 2. Sums are formed row by row and added in order, so that the bits do
+//! not depend on the number of threads. `rows` holds the loops over the grid, `graph` the coarser
+//! levels, `merge` which unknowns these join. Not here: what the springs mean (`integrate`,
+//! `unwrap`).
 //!
-//! Coarser levels are graphs, not grids: the pixels of a block of 2 × 2 become one unknown only where strong
-//! springs join them. So no level mixes what a cut or a row of weak springs separates, and cuts cost no convergence.
+//! Coarser levels are graphs, not grids: the pixels of a block of 2 × 2 become one unknown only
+//! where strong springs join them. So no level mixes what a cut or a row of weak springs separates,
+//! and cuts cost no convergence.
 
 mod graph;
 mod held;
@@ -25,30 +27,39 @@ pub struct SpringGrid {
 }
 
 impl SpringGrid {
-    /// `right` and `down`: the stiffness, `≥ 0`, of the spring from each unknown to the next in its row and its column,
-    /// `w` a row. Springs that would leave the grid are dropped.
+    /// `right` and `down`: the stiffness, `≥ 0`, of the spring from each unknown to the next in its
+    /// row and its column, `w` a row. Springs that would leave the grid are dropped.
     pub fn new(w: usize, mut right: Vec<f32>, mut down: Vec<f32>) -> Self {
-        right.iter_mut().skip(w.saturating_sub(1)).step_by(w.max(1)).for_each(|spring| *spring = 0.0);
+        right
+            .iter_mut()
+            .skip(w.saturating_sub(1))
+            .step_by(w.max(1))
+            .for_each(|spring| *spring = 0.0);
         let last = down.len().saturating_sub(w);
         down[last..].fill(0.0);
         Self { w, right, down }
     }
+
     pub fn width(&self) -> usize {
         self.w
     }
+
     /// The springs from each unknown to the right, and down.
     pub fn springs(&self) -> [&[f32]; 2] {
         [&self.right, &self.down]
     }
+
     fn height(&self) -> usize {
         self.right.len() / self.w.max(1)
     }
+
     /// The springs of a row of unknowns.
     fn row(&self, y: usize) -> GridRow<'_> {
         let at = y * self.w..(y + 1) * self.w;
         let up = if y == 0 { &[][..] } else { &self.down[at.start - self.w..at.start] };
         GridRow { right: &self.right[at.clone()], up, down: &self.down[at] }
     }
+
     /// Σ_j w_ij of an unknown, and Σ_j w_ij v_j: what reads like the equation.
     fn pull(&self, v: &[f32], i: usize) -> (f32, f32) {
         let w = self.w;
@@ -63,8 +74,8 @@ impl SpringGrid {
 /// Rows that one task works on: enough that the rows around them, read by two tasks, weigh little.
 const BAND: usize = 16;
 
-/// Two sweeps of Jacobi with these steps leave at most 0.22 of every error between half the steepest and the steepest
-/// that a grid holds: Chebyshev's polynomial over [½, 2].
+/// Two sweeps of Jacobi with these steps leave at most 0.22 of every error between half the
+/// steepest and the steepest that a grid holds: Chebyshev's polynomial over [½, 2].
 const STEPS: [f32; 2] = [0.561_7, 1.389_5];
 
 /// Steps without a smaller residual after which f32 is too coarse to go on.
@@ -73,7 +84,8 @@ const PATIENCE: usize = 3;
 /// Springs with all their coarser levels, ready to be solved for many right-hand sides.
 pub struct SpringSolver {
     grid: SpringGrid,
-    /// For each unknown of the grid, its unknown on the first coarser level; [`graph::NONE`] without springs.
+    /// For each unknown of the grid, its unknown on the first coarser level; [`graph::NONE`]
+    /// without springs.
     parent: Vec<u32>,
     graphs: Vec<SpringGraph>,
 }
@@ -113,17 +125,20 @@ impl SpringSolver {
         }
         Self { grid, parent, graphs }
     }
+
     /// Bytes that it holds.
     pub fn bytes(&self) -> u64 {
         let [right, down] = self.grid.springs();
         let levels: usize = self.graphs.iter().map(SpringGraph::bytes).sum();
         (size_of_val(right) + size_of_val(down) + size_of_val(&self.parent[..]) + levels) as u64
     }
+
     pub fn grid(&self) -> &SpringGrid {
         &self.grid
     }
-    /// For each unknown the number of its piece (unknowns that springs join); [`u32::MAX`] without springs. And the
-    /// number of pieces.
+
+    /// For each unknown the number of its piece (unknowns that springs join); [`u32::MAX`] without
+    /// springs. And the number of pieces.
     pub fn pieces(&self) -> (Vec<u32>, usize) {
         let Some((last, finer)) = self.graphs.split_last() else { return (Vec::new(), 0) };
         let (mut labels, count) = last.pieces().clone();
@@ -133,17 +148,27 @@ impl SpringSolver {
         let of = |&p: &u32| if p == graph::NONE { u32::MAX } else { labels[p as usize] };
         (self.parent.par_iter().map(of).collect(), count)
     }
+
     /// Moves `v` toward A v = b, (A v)_i = Σ_j w_ij (v_i − v_j), and returns the steps it took.
     ///
     /// * `b`: adds up to 0 over every piece.
     /// * `v`: where to begin; a constant a piece stays free.
-    pub fn solve(&self, b: &[f32], v: &mut [f32], effort: Effort, scratch: &mut SolveScratch) -> usize {
+    pub fn solve(
+        &self,
+        b: &[f32],
+        v: &mut [f32],
+        effort: Effort,
+        scratch: &mut SolveScratch,
+    ) -> usize {
         self.solve_held(&PinStiffness::default(), b, v, effort, scratch)
     }
-    /// The same, but `go_on` is called before each step; once it returns false, the result is of no use.
+
+    /// The same, but `go_on` is called before each step; once it returns false, the result is of no
+    /// use.
     pub fn solve_while(&self, b: &[f32], v: &mut [f32], effort: Effort, go_on: GoOn) -> usize {
         self.steps(&PinStiffness::default(), b, v, effort, &mut SolveScratch::default(), go_on)
     }
+
     /// The same with some unknowns held: (A + K) v = b, K the stiffness of what holds them.
     ///
     /// * `b`: adds up to 0 over every piece without a held unknown.
@@ -157,6 +182,7 @@ impl SpringSolver {
     ) -> usize {
         self.steps(held, b, v, effort, scratch, &|| true)
     }
+
     fn steps(
         &self,
         held: &PinStiffness,
@@ -196,12 +222,15 @@ impl SpringSolver {
         }
         effort.most_steps
     }
+
     /// Σ a b, folded row by row.
     fn dot(&self, a: &[f32], b: &[f32]) -> f64 {
         let w = self.grid.w * BAND;
-        let bands: Vec<f64> = a.par_chunks(w).zip(b.par_chunks(w)).map(|(a, b)| rows::dot(a, b)).collect();
+        let bands: Vec<f64> =
+            a.par_chunks(w).zip(b.par_chunks(w)).map(|(a, b)| rows::dot(a, b)).collect();
         bands.iter().sum()
     }
+
     /// `out` = b − A v; returns its length, squared.
     fn residual(&self, held: &PinStiffness, v: &[f32], b: &[f32], out: &mut [f32]) -> f64 {
         let w = self.grid.w;
@@ -214,35 +243,64 @@ impl SpringSolver {
         });
         bands.collect::<Vec<f64>>().iter().sum()
     }
+
     /// `direction` = z + turn · direction and `pulled` = A direction; returns the two's product.
-    fn turned(&self, held: &PinStiffness, z: &[f32], turn: f32, direction: &mut [f32], pulled: &mut [f32]) -> f64 {
+    fn turned(
+        &self,
+        held: &PinStiffness,
+        z: &[f32],
+        turn: f32,
+        direction: &mut [f32],
+        pulled: &mut [f32],
+    ) -> f64 {
         let w = self.grid.w;
-        direction.par_chunks_mut(w * BAND).zip(z.par_chunks(w * BAND)).for_each(|(d, z)| rows::turn(z, turn, d));
+        direction
+            .par_chunks_mut(w * BAND)
+            .zip(z.par_chunks(w * BAND))
+            .for_each(|(d, z)| rows::turn(z, turn, d));
         let direction = &*direction;
         let bands = pulled.par_chunks_mut(w * BAND).enumerate().map(|(band, out)| {
             let mut sum = 0.0;
             for (y, out) in (band * BAND..).zip(out.chunks_mut(w)) {
                 rows::apply_row(self.grid.row(y), around(direction, w, y), out);
-                held.each_in(y * w..(y + 1) * w, |i, stiffness| out[i - y * w] += stiffness * direction[i]);
+                held.each_in(y * w..(y + 1) * w, |i, stiffness| {
+                    out[i - y * w] += stiffness * direction[i]
+                });
                 sum += rows::dot(&direction[y * w..(y + 1) * w], out);
             }
             sum
         });
         bands.collect::<Vec<f64>>().iter().sum()
     }
+
     /// v += step · direction and residual −= step · pulled; returns the residual's length, squared.
-    fn walked(&self, step: f32, (direction, pulled): (&[f32], &[f32]), v: &mut [f32], residual: &mut [f32]) -> f64 {
+    fn walked(
+        &self,
+        step: f32,
+        (direction, pulled): (&[f32], &[f32]),
+        v: &mut [f32],
+        residual: &mut [f32],
+    ) -> f64 {
         let w = self.grid.w * BAND;
         let ways = direction.par_chunks(w).zip(pulled.par_chunks(w));
-        let bands = v.par_chunks_mut(w).zip(residual.par_chunks_mut(w)).zip(ways).map(|((v, r), (d, p))| {
-            rows::walk(step, d, v);
-            rows::walk(-step, p, r);
-            rows::dot(r, r)
-        });
+        let bands = v.par_chunks_mut(w).zip(residual.par_chunks_mut(w)).zip(ways).map(
+            |((v, r), (d, p))| {
+                rows::walk(step, d, v);
+                rows::walk(-step, p, r);
+                rows::dot(r, r)
+            },
+        );
         bands.collect::<Vec<f64>>().iter().sum()
     }
+
     /// One symmetric V-cycle: `z[0]` becomes an approximate solution of A z = b.
-    fn cycle(&self, held: &PinStiffness, b: &[f32], [z, twin]: &mut [Vec<f32>; 2], levels: &mut [graph::GraphScratch]) {
+    fn cycle(
+        &self,
+        held: &PinStiffness,
+        b: &[f32],
+        [z, twin]: &mut [Vec<f32>; 2],
+        levels: &mut [graph::GraphScratch],
+    ) {
         let w = self.grid.w;
         let rows_of = |out: &mut [f32], each: &(dyn Fn(usize, &mut [f32]) + Sync)| {
             out.par_chunks_mut(w * BAND).enumerate().for_each(|(band, out)| {
@@ -251,7 +309,13 @@ impl SpringSolver {
         };
         let relax = |step: f32, from: &[f32], to: &mut [f32]| {
             rows_of(to, &|y, out| {
-                relaxed_row(self.grid.row(y), around(from, w, y), &b[y * w..(y + 1) * w], step, out);
+                relaxed_row(
+                    self.grid.row(y),
+                    around(from, w, y),
+                    &b[y * w..(y + 1) * w],
+                    step,
+                    out,
+                );
                 held.each_in(y * w..(y + 1) * w, |i, stiffness| {
                     let (sum, pull) = self.grid.pull(from, i);
                     out[i - y * w] = from[i] + step * ((b[i] + pull) / (sum + stiffness) - from[i]);
@@ -270,7 +334,9 @@ impl SpringSolver {
         graph::cycle(&self.graphs, levels, held.coarser());
         if let Some(coarse) = levels.first() {
             let parents = self.parent.par_chunks(w * BAND);
-            z.par_chunks_mut(w * BAND).zip(parents).for_each(|(z, parents)| graph::spread(parents, coarse, z));
+            z.par_chunks_mut(w * BAND)
+                .zip(parents)
+                .for_each(|(z, parents)| graph::spread(parents, coarse, z));
         }
         relax(STEPS[0], z, twin);
         relax(STEPS[1], twin, z);

@@ -1,7 +1,7 @@
-//! Support bounds: the blocks of the canvas that a dab may touch. Interval arithmetic on D_p, D_n, D_r and D_s over the
-//! maps' pyramids finds them without reading pixels. Floor 2. `images` is what operators make of a block, `blocks`
-//! tests all blocks of a tile at once, `runs` many dabs. The bounds are conservative: `deformation` decides about
-//! pixels.
+//! Support bounds: the blocks of the canvas that a dab may touch. Interval arithmetic on D_p, D_n,
+//! D_r and D_s over the maps' pyramids finds them without reading pixels. Floor 2. `images` is what
+//! operators make of a block, `blocks` tests all blocks of a tile at once, `runs` many dabs. The
+//! bounds are conservative: `deformation` decides about pixels.
 
 mod blocks;
 mod images;
@@ -40,9 +40,10 @@ impl DabExtent {
     }
 }
 
-/// Whether an anchor lies so far beyond the canvas that its mark touches nothing, whatever the surface is like. Off the
-/// surface the plane of an unwrapping goes on flat, so no pixel is nearer to the anchor there than the canvas is, less
-/// what the plane extends. Other operators are quick to judge.
+/// Whether an anchor lies so far beyond the canvas that its mark touches nothing, whatever the
+/// surface is like. Off the surface the plane of an unwrapping goes on flat, so no pixel is nearer
+/// to the anchor there than the canvas is, less what the plane extends. Other operators are quick
+/// to judge.
 ///
 /// Conservative, as [`SupportBounds`] is.
 pub fn is_out_of_reach(surface: &Surface, operator: Operator, at: Vec2, extent: DabExtent) -> bool {
@@ -72,7 +73,8 @@ pub struct SupportBounds<'s> {
     flow: OperatorBounds<'s>,
     /// Nothing lands farther from the anchor than this; infinite where anything may.
     border_px: f32,
-    /// For a run of dabs (`runs`): the greatest distance of their anchors from `at`, in each direction.
+    /// For a run of dabs (`runs`): the greatest distance of their anchors from `at`, in each
+    /// direction.
     spread: Vec2,
     /// And of the map's values there from the one that `flow` holds.
     turned: Vec2,
@@ -80,64 +82,97 @@ pub struct SupportBounds<'s> {
 
 impl<'s> SupportBounds<'s> {
     /// `at` is q_0; `surface`, where there is one, has the canvas's size.
-    pub fn new(surface: Option<&'s Surface>, size: Size, operator: Operator, at: Vec2, extent: DabExtent) -> Self {
+    pub fn new(
+        surface: Option<&'s Surface>,
+        size: Size,
+        operator: Operator,
+        at: Vec2,
+        extent: DabExtent,
+    ) -> Self {
         let operator = operator.finite();
         let flow = surface
             .filter(|_| !operator.is_identity())
             .map_or(OperatorBounds::Still, |s| OperatorBounds::new(s, operator, at));
         let cover = surface.map(|s| s.bounds().cover(s));
-        Self { size, at, extent, cover, flow, border_px: f32::INFINITY, spread: Vec2::ZERO, turned: Vec2::ZERO }
+        Self {
+            size,
+            at,
+            extent,
+            cover,
+            flow,
+            border_px: f32::INFINITY,
+            spread: Vec2::ZERO,
+            turned: Vec2::ZERO,
+        }
     }
-    /// Of a mark that touches nothing: it lies beyond the canvas, farther than its operator brings it.
+
+    /// Of a mark that touches nothing: it lies beyond the canvas, farther than its operator brings
+    /// it.
     pub fn nowhere(size: Size, at: Vec2, extent: DabExtent) -> Self {
         Self { border_px: 0.0, ..Self::new(None, size, Operator::None, at, extent) }
     }
+
     /// The same, of a mark that stays within a reach.
     pub fn within(self, reach: Option<DabReach>) -> Self {
         Self { border_px: reach.map_or(f32::INFINITY, |reach| reach.border_px()), ..self }
     }
+
     /// Visits every tile of the canvas that may be touched.
     pub fn for_each_tile(&self, mut visit: impl FnMut(TileAt)) {
         if let (OperatorBounds::Still, Some(rect)) = (&self.flow, self.flat_rect()) {
             // An operator that moves nothing touches only tiles about the anchor.
             let is_touched = |at: &TileAt| {
-                self.judge(PyramidBlock { level: TILE_LEVEL, col: at.col, row: at.row }) != BlockOverlap::Nowhere
+                self.judge(PyramidBlock { level: TILE_LEVEL, col: at.col, row: at.row })
+                    != BlockOverlap::Nowhere
             };
             return TileAt::covering(rect).filter(is_touched).for_each(visit);
         }
-        self.descend(PyramidBlock::whole(self.size), TILE_LEVEL, &mut |b| visit(TileAt::new(b.col, b.row)));
+        self.descend(PyramidBlock::whole(self.size), TILE_LEVEL, &mut |b| {
+            visit(TileAt::new(b.col, b.row))
+        });
     }
+
     /// The blocks of a tile that may be touched.
     pub fn blocks(&self, at: TileAt) -> TileBlocks {
         self.judged(at).map_or(TileBlocks::default(), |judged| judged.touched)
     }
+
     /// The same, and how long pixels are there; `None` where nothing may be touched.
     pub fn judged(&self, at: TileAt) -> Option<JudgedBlocks> {
         match self.judge(PyramidBlock { level: TILE_LEVEL, col: at.col, row: at.row }) {
             BlockOverlap::Nowhere => None,
-            BlockOverlap::Everywhere => Some(JudgedBlocks { touched: self.on_canvas(at), ..blocks::judged(self, at) }),
+            BlockOverlap::Everywhere => {
+                Some(JudgedBlocks { touched: self.on_canvas(at), ..blocks::judged(self, at) })
+            }
             BlockOverlap::Perhaps => Some(blocks::judged(self, at)),
         }
     }
-    /// A rectangle of the canvas that holds all that an extent may reach where D is the identity; `None` where its
-    /// numbers are not finite or too large.
+
+    /// A rectangle of the canvas that holds all that an extent may reach where D is the identity;
+    /// `None` where its numbers are not finite or too large.
     fn flat_rect(&self) -> Option<Rect> {
         // A little more than `DabExtent::may_hold` allows for.
         let reach = 1.001 * (self.extent.radius_px + self.extent.filter_px + ROUNDING_PX) + 1.0;
-        let is_told = self.at.is_finite() && self.at.abs().max_element() < 1e7 && (0.0..1e7).contains(&reach);
+        let is_told =
+            self.at.is_finite() && self.at.abs().max_element() < 1e7 && (0.0..1e7).contains(&reach);
         is_told.then(|| {
             let (low, high) = (self.at - reach, self.at + reach);
-            let rect = Rect::new(low.x as i32 - 1, low.y as i32 - 1, high.x as i32 + 1, high.y as i32 + 1);
+            let rect =
+                Rect::new(low.x as i32 - 1, low.y as i32 - 1, high.x as i32 + 1, high.y as i32 + 1);
             rect.intersect(self.size.rect())
         })
     }
+
     /// The blocks of a tile that hold pixels.
     fn on_canvas(&self, at: TileAt) -> TileBlocks {
         let all = level_size(self.size, 0);
-        let there = |first: i32, all: u32| (all as i32 - first * TILE_BLOCKS as i32).clamp(0, TILE_BLOCKS as i32);
+        let there = |first: i32, all: u32| {
+            (all as i32 - first * TILE_BLOCKS as i32).clamp(0, TILE_BLOCKS as i32)
+        };
         let (columns, rows) = (there(at.col, all.width), there(at.row, all.height) as usize);
         std::array::from_fn(|row| if row < rows { ((1u16 << columns) - 1) as u8 } else { 0 })
     }
+
     fn descend(&self, block: PyramidBlock, to: usize, visit: &mut impl FnMut(PyramidBlock)) {
         match self.judge(block) {
             BlockOverlap::Nowhere => {}
@@ -147,6 +182,7 @@ impl<'s> SupportBounds<'s> {
             _ => self.visit_all(block, to, visit),
         }
     }
+
     fn visit_all(&self, block: PyramidBlock, to: usize, visit: &mut impl FnMut(PyramidBlock)) {
         if block_rect(self.size, block.level, block.col, block.row).is_empty() {
             return;
@@ -156,6 +192,7 @@ impl<'s> SupportBounds<'s> {
         }
         block.quarters().into_iter().for_each(|b| self.visit_all(b, to, visit));
     }
+
     fn judge(&self, block: PyramidBlock) -> BlockOverlap {
         let rect = block_rect(self.size, block.level, block.col, block.row);
         if rect.is_empty() {
@@ -171,12 +208,20 @@ impl<'s> SupportBounds<'s> {
             // On the surface and off it alike.
             return self.touch(flat);
         }
-        let cover = self.cover.and_then(|c| c.at(block)).unwrap_or(BlockCover { some: false, all: false });
+        let cover =
+            self.cover.and_then(|c| c.at(block)).unwrap_or(BlockCover { some: false, all: false });
         let outside = if cover.all { None } else { Some(flat) };
-        let inside = if cover.some { Some(self.flow.image(block, (low, high), flat, self.turned)) } else { None };
+        let inside = if cover.some {
+            Some(self.flow.image(block, (low, high), flat, self.turned))
+        } else {
+            None
+        };
         let parts = [outside, inside].into_iter().flatten().map(|image| self.touch(image));
-        parts.reduce(|a, b| if a == b { a } else { BlockOverlap::Perhaps }).unwrap_or(BlockOverlap::Nowhere)
+        parts
+            .reduce(|a, b| if a == b { a } else { BlockOverlap::Perhaps })
+            .unwrap_or(BlockOverlap::Nowhere)
     }
+
     fn touch(&self, image: BlockImage) -> BlockOverlap {
         if !self.extent.may_hold(image) {
             BlockOverlap::Nowhere

@@ -1,6 +1,8 @@
-//! A surface seen through a map of the plane: turned, mirrored, scaled, cut, with its vectors. Floor 2.
+//! A surface seen through a map of the plane: turned, mirrored, scaled, cut, with its vectors.
+//! Floor 2.
 //!
-//! What was made of the maps stays linked to them: a surface that is turned ten times is sampled once.
+//! What was made of the maps stays linked to them: a surface that is turned ten times is sampled
+//! once.
 
 use super::view::Eye;
 use super::{Maps, Surface, SurfaceError, grow, links};
@@ -18,12 +20,13 @@ pub struct Origin {
 }
 
 impl Surface {
-    /// What this surface was made of by [`Surface::through`] and [`Surface::onto`], the whole way; itself, if it was
-    /// not.
+    /// What this surface was made of by [`Surface::through`] and [`Surface::onto`], the whole way;
+    /// itself, if it was not.
     pub fn origin(self: &Arc<Self>) -> Origin {
         let own = || Origin { surface: self.clone(), map: PlaneMap::IDENTITY };
         self.origin.clone().unwrap_or_else(own)
     }
+
     /// The map by which [`Surface::fitted`] puts maps on a canvas: as large as it allows, centred.
     pub fn fit_map(maps: Size, canvas: Size) -> PlaneMap {
         let side = |of: u32, to: u32| f64::from(to) / f64::from(of);
@@ -32,14 +35,24 @@ impl Surface {
         let (x, y) = (shift(maps.width, canvas.width), shift(maps.height, canvas.height));
         PlaneMap::affine([scale, 0.0, 0.0, scale, x, y]).unwrap_or_default()
     }
-    /// Maps on a canvas: through a map, or fitted to it without one. Where either leaves every pixel in place, it is
-    /// the very same surface.
-    pub fn onto(self: &Arc<Self>, canvas: Size, map: Option<&PlaneMap>) -> Result<Arc<Surface>, SurfaceError> {
+
+    /// Maps on a canvas: through a map, or fitted to it without one. Where either leaves every
+    /// pixel in place, it is the very same surface.
+    pub fn onto(
+        self: &Arc<Self>,
+        canvas: Size,
+        map: Option<&PlaneMap>,
+    ) -> Result<Arc<Surface>, SurfaceError> {
         let fit = Self::fit_map(self.size(), canvas);
         // To the last digit of what files hold, so that the same surface is read back.
-        let map =
-            map.map_or(Some(fit), |map| PlaneMap::affine(map.told_coefficients()?)).ok_or(SurfaceError::Perspective)?;
-        let by = map.pixel_move_on(if self.size().area() > canvas.area() { self.size() } else { canvas });
+        let map = map
+            .map_or(Some(fit), |map| PlaneMap::affine(map.told_coefficients()?))
+            .ok_or(SurfaceError::Perspective)?;
+        let by = map.pixel_move_on(if self.size().area() > canvas.area() {
+            self.size()
+        } else {
+            canvas
+        });
         if by == Some(PixelMove::NONE) && canvas == self.size() {
             return Ok(self.clone());
         }
@@ -51,17 +64,24 @@ impl Surface {
         made.origin = Some(Origin { surface: self.clone(), map });
         Ok(Arc::new(made))
     }
+
     /// The surface where an affine map of the canvas takes it, on a canvas of another size.
     ///
-    /// Slopes s = n̄ / n_z become s′ = k A^−T s, where A is the map's matrix and k = √|det A| the scale of depth: the
-    /// normals of a turned map are those of the turned object. Moves of whole pixels, quarter turns and mirrors change
-    /// no value; all else is sampled once, from what the surface was first made of. MATH 1.
+    /// Slopes s = n̄ / n_z become s′ = k A^−T s, where A is the map's matrix and k = √|det A| the
+    /// scale of depth: the normals of a turned map are those of the turned object. Moves of whole
+    /// pixels, quarter turns and mirrors change no value; all else is sampled once, from what the
+    /// surface was first made of. MATH 1.
     ///
     /// Fails where nothing of the surface is left, and for a perspective.
-    pub fn through(self: &Arc<Self>, canvas: Size, map: &PlaneMap) -> Result<Arc<Surface>, SurfaceError> {
+    pub fn through(
+        self: &Arc<Self>,
+        canvas: Size,
+        map: &PlaneMap,
+    ) -> Result<Arc<Surface>, SurfaceError> {
         let Origin { surface, map: own } = self.origin();
         surface.onto(canvas, Some(&own.then(map)))
     }
+
     /// Every pixel where a move of whole pixels takes it.
     fn moved(&self, canvas: Size, by: PixelMove) -> Result<Surface, SurfaceError> {
         let source = |x: usize, y: usize| {
@@ -69,7 +89,8 @@ impl Surface {
             self.size().rect().contains(x, y).then_some((x as usize, y as usize))
         };
         let held = Plane::from_fn(canvas, |x, y| source(x, y).is_some());
-        let coverage = Plane::from_fn(canvas, |x, y| source(x, y).map_or(0, |(x, y)| self.coverage(x, y)));
+        let coverage =
+            Plane::from_fn(canvas, |x, y| source(x, y).map_or(0, |(x, y)| self.coverage(x, y)));
         if coverage.values().iter().all(|&c| c == 0) {
             return Err(SurfaceError::Empty);
         }
@@ -105,12 +126,13 @@ impl Surface {
         let mut next = Self::of_planes(readings, [coverage, linked], self.depth_range_px());
         next.smooth_links = self.smooth_links.as_deref().map(moved_links).map(Arc::new);
         next.contours = Arc::new(self.contours().moved(by, canvas));
-        next.parts = self
-            .parts_plane()
-            .map(|parts| Arc::new(Plane::from_fn(canvas, |x, y| source(x, y).map_or(0, |(x, y)| parts.at(x, y)))));
+        next.parts = self.parts_plane().map(|parts| {
+            Arc::new(Plane::from_fn(canvas, |x, y| source(x, y).map_or(0, |(x, y)| parts.at(x, y))))
+        });
         let matrix = Mat2::from_cols(as_vec(by.right), as_vec(by.down));
         Ok(next.seen_by(self.eye_through(canvas, 1.0, |p| matrix * p + as_vec(by.origin))))
     }
+
     /// Every pixel as the mean of what it shows.
     fn sampled(&self, canvas: Size, map: &PlaneMap) -> Result<Surface, SurfaceError> {
         let affine = map.as_affine().ok_or(SurfaceError::Perspective)?;
@@ -119,12 +141,14 @@ impl Surface {
         let (across, back) = (inverse.matrix2.transpose(), inverse.matrix2);
         let scale = affine.matrix2.determinant().abs().sqrt();
         let half = vec2(back.row(0).length(), back.row(1).length()) * 0.5;
-        let read = self.texels(canvas, half, |q| map.from_canvas(q).map_or(Vec2::splat(-1.0), |(p, _)| p));
+        let read =
+            self.texels(canvas, half, |q| map.from_canvas(q).map_or(Vec2::splat(-1.0), |(p, _)| p));
         let normals = read.map(|v| {
             let nbar = scale * (across * vec2(v.normal.x, -v.normal.y));
             vec3(nbar.x, -nbar.y, v.normal.z).normalize_or(Vec3::ZERO)
         });
-        let maps = Maps { normals, depth: read.map(|v| v.depth), coverage: read.map(|v| v.coverage) };
+        let maps =
+            Maps { normals, depth: read.map(|v| v.depth), coverage: read.map(|v| v.coverage) };
         let mut made = Self::with_depth_range(maps, Some(self.depth_range_px() * scale))?;
         made.parts = self.parts_plane().map(|parts| {
             Arc::new(Plane::from_fn(canvas, |x, y| {
@@ -136,6 +160,7 @@ impl Surface {
         let eye = self.eye_through(canvas, scale, |p| affine.transform_point2(p));
         Ok(made.seen_by(eye))
     }
+
     fn eye_through(&self, canvas: Size, scale: f32, map: impl Fn(Vec2) -> Vec2) -> Eye {
         self.eye().moved(scale, |beside| map(self.size().center() + beside) - canvas.center())
     }
@@ -147,10 +172,17 @@ fn as_vec((x, y): (i32, i32)) -> Vec2 {
 
 /// Links of a pixel after a move; those to neighbours that are not there are gone.
 fn turned_links(linked: u8, by: PixelMove, is_there: impl Fn(i32, i32) -> bool) -> u8 {
-    const STEPS: [(u8, (i32, i32)); 4] =
-        [(links::LEFT, (-1, 0)), (links::RIGHT, (1, 0)), (links::UP, (0, -1)), (links::DOWN, (0, 1))];
-    let bit_of = |step: (i32, i32)| STEPS.iter().find(|(_, other)| *other == step).map_or(0, |(bit, _)| *bit);
-    let turned = STEPS.iter().filter(|(bit, _)| linked & bit != 0).map(|(_, (dx, dy))| by.turned(*dx, *dy));
+    const STEPS: [(u8, (i32, i32)); 4] = [
+        (links::LEFT, (-1, 0)),
+        (links::RIGHT, (1, 0)),
+        (links::UP, (0, -1)),
+        (links::DOWN, (0, 1)),
+    ];
+    let bit_of = |step: (i32, i32)| {
+        STEPS.iter().find(|(_, other)| *other == step).map_or(0, |(bit, _)| *bit)
+    };
+    let turned =
+        STEPS.iter().filter(|(bit, _)| linked & bit != 0).map(|(_, (dx, dy))| by.turned(*dx, *dy));
     turned.filter(|(dx, dy)| is_there(*dx, *dy)).fold(0, |set, step| set | bit_of(step))
 }
 

@@ -1,6 +1,7 @@
-//! A surface unwrapped: a map of it onto a plane that changes lengths as little as can be, from its normals (MATH 8).
-//! Floor 2. `metric` holds the equations, `steps` the local and global steps over rows, `smooth` the blur before them.
-//! Not here: the linear systems (`springs`), anchors, and how marks use the plane (`deformation`).
+//! A surface unwrapped: a map of it onto a plane that changes lengths as little as can be, from its
+//! normals (MATH 8). Floor 2. `metric` holds the equations, `steps` the local and global steps over
+//! rows, `smooth` the blur before them. Not here: the linear systems (`springs`), anchors, and how
+//! marks use the plane (`deformation`).
 
 mod layout;
 pub mod metric;
@@ -32,9 +33,11 @@ use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
 use steps::Metric;
 
-/// Where each pixel of a surface lies in the plane it is unwrapped to, canvas px: D_s without anchors.
+/// Where each pixel of a surface lies in the plane it is unwrapped to, canvas px: D_s without
+/// anchors.
 ///
-/// Each piece lies as near to where it is in the picture as a shift brings it. Off the surface the identity.
+/// Each piece lies as near to where it is in the picture as a shift brings it. Off the surface the
+/// identity.
 pub struct Unwrapping {
     x: Plane<f32>,
     y: Plane<f32>,
@@ -61,44 +64,59 @@ impl Unwrapping {
     pub fn new(surface: &Surface, settings: UnwrapSettings) -> Self {
         Self::telling(surface, settings, &|| true).expect("nobody gives it up")
     }
+
     /// The same, calling `go_on` after each solve: `None` if it says no.
     pub fn telling(surface: &Surface, settings: UnwrapSettings, go_on: GoOn) -> Option<Self> {
         let size = surface.size();
-        let mut planes = [Plane::from_fn(size, |x, _| x as f32 + 0.5), Plane::from_fn(size, |_, y| y as f32 + 0.5)];
+        let mut planes = [
+            Plane::from_fn(size, |x, _| x as f32 + 0.5),
+            Plane::from_fn(size, |_, y| y as f32 + 0.5),
+        ];
         let rect = covered(surface);
         if settings.amount > 0.0 && !rect.is_empty() {
             let moved = solved(surface, rect, settings, go_on)?;
             for (plane, moved) in planes.iter_mut().zip(&moved) {
                 let w = size.width as usize;
-                let rows = plane.values_mut()[rect.y0 as usize * w..rect.y1 as usize * w].chunks_mut(w);
+                let rows =
+                    plane.values_mut()[rect.y0 as usize * w..rect.y1 as usize * w].chunks_mut(w);
                 for (row, moved) in rows.zip(moved.chunks(rect.width())) {
-                    row[rect.x0 as usize..rect.x1 as usize].iter_mut().zip(moved).for_each(|(v, d)| *v += d);
+                    row[rect.x0 as usize..rect.x1 as usize]
+                        .iter_mut()
+                        .zip(moved)
+                        .for_each(|(v, d)| *v += d);
                 }
             }
         }
         let [x, y] = planes;
         Some(Self { x, y, bounds: OnceLock::new() })
     }
+
     /// What the other populations of contour pixels lie on.
     fn on_sheet(size: Size, sheet: &SheetOf, settings: UnwrapSettings) -> Self {
         let whole = sheet.surface().map(|surface| surface.unwrapped(settings));
         let [x, y] = [0, 1].map(|axis| {
-            sheet.continued(size, |x, y| whole.as_ref().map_or(0.0, |whole| whole.planes()[axis].at(x, y)))
+            sheet.continued(size, |x, y| {
+                whole.as_ref().map_or(0.0, |whole| whole.planes()[axis].at(x, y))
+            })
         });
         Self { x, y, bounds: OnceLock::new() }
     }
+
     pub fn size(&self) -> Size {
         self.x.size()
     }
+
     /// Where a pixel's centre lies.
     #[inline(always)]
     pub fn at(&self, x: usize, y: usize) -> Vec2 {
         vec2(self.x.at(x, y), self.y.at(x, y))
     }
+
     /// x and y as planes, for loops over rows.
     pub fn planes(&self) -> [&Plane<f32>; 2] {
         [&self.x, &self.y]
     }
+
     /// Built by the calling thread alone: see `pyramid`.
     pub(super) fn bounds(&self, surface: &Surface) -> &Pyramid<TurnSpan> {
         self.bounds.get_or_init(|| Pyramid::of_points(surface, |x, y| self.at(x, y)))
@@ -118,7 +136,12 @@ fn covered(surface: &Surface) -> Rect {
 }
 
 /// δ = D − q over a rectangle, x and y: the steps of MATH 8; `None` where it is given up.
-fn solved(surface: &Surface, rect: Rect, settings: UnwrapSettings, go_on: GoOn) -> Option<[Vec<f32>; 2]> {
+fn solved(
+    surface: &Surface,
+    rect: Rect,
+    settings: UnwrapSettings,
+    go_on: GoOn,
+) -> Option<[Vec<f32>; 2]> {
     let normals = smooth::normals(surface, rect, settings.smooth_px);
     let metric = Metric::of(surface, rect, &normals, settings.amount);
     let solver = SpringSolver::new(springs(surface, rect, &normals));
@@ -155,17 +178,25 @@ impl Metric {
                 None => metric::stretch(nbar, nz, amount),
                 Some(near) => {
                     let (x, y) = (rect.x0 as usize + i % w, rect.y0 as usize + i / w);
-                    metric::stretch_from_near(nbar, nz, near.beside(x, y), near.farness(surface.depth(x, y)), amount)
+                    metric::stretch_from_near(
+                        nbar,
+                        nz,
+                        near.beside(x, y),
+                        near.farness(surface.depth(x, y)),
+                        amount,
+                    )
                 }
             };
             (s.x_axis.x - 1.0, (s.x_axis.y, s.y_axis.y - 1.0))
         };
-        let (xx, (xy, yy)) = nx.par_iter().zip(ny.par_iter().zip(nz)).enumerate().map(entries).unzip();
+        let (xx, (xy, yy)) =
+            nx.par_iter().zip(ny.par_iter().zip(nz)).enumerate().map(entries).unzip();
         Self { xx, xy, yy }
     }
 }
 
-/// The links of MATH 8 as springs: `w = the mean of n_z × c_ij`, nothing across depth jumps and the mask's edge.
+/// The links of MATH 8 as springs: `w = the mean of n_z × c_ij`, nothing across depth jumps and the
+/// mask's edge.
 fn springs(surface: &Surface, rect: Rect, normals: &smooth::Normals) -> SpringGrid {
     let (w, n) = (rect.width(), rect.width() * rect.height());
     let [nx, ny, nz] = &normals.0;
@@ -182,7 +213,8 @@ fn springs(surface: &Surface, rect: Rect, normals: &smooth::Normals) -> SpringGr
         let mut plane = filled_or_unwind(n, 0.0f32);
         plane.par_chunks_mut(w).enumerate().for_each(|(y, row)| {
             let linked = surface.links_plane().row(y + rect.y0 as usize);
-            for (x, (spring, linked)) in row.iter_mut().zip(&linked[rect.x0 as usize..]).enumerate() {
+            for (x, (spring, linked)) in row.iter_mut().zip(&linked[rect.x0 as usize..]).enumerate()
+            {
                 let i = y * w + x;
                 if linked & bit != 0 && i + step < n {
                     let hollow = metric::hollow(normal(i), normal(i + step), along);
@@ -199,28 +231,43 @@ fn springs(surface: &Surface, rect: Rect, normals: &smooth::Normals) -> SpringGr
 const KEPT_PX: usize = 32 << 20;
 
 impl Surface {
-    /// The surface unwrapped, cached. Call it once before going parallel: threads that call it at the same time may
-    /// each compute it. Settings that are not finite count as 0. For a sheet it is that of its surface, continued.
+    /// The surface unwrapped, cached. Call it once before going parallel: threads that call it at
+    /// the same time may each compute it. Settings that are not finite count as 0. For a sheet it
+    /// is that of its surface, continued.
     pub fn unwrapped(&self, settings: UnwrapSettings) -> Arc<Unwrapping> {
         let settings = settings.held(self.size());
-        self.derived.unwrappings.get_or_compute(settings.key(), self.kept_unwrappings(), |_| match self.sheet_of() {
-            Some(sheet) => Unwrapping::on_sheet(self.size(), sheet, settings),
-            None => Unwrapping::new(self, settings),
+        self.derived.unwrappings.get_or_compute(settings.key(), self.kept_unwrappings(), |_| {
+            match self.sheet_of() {
+                Some(sheet) => Unwrapping::on_sheet(self.size(), sheet, settings),
+                None => Unwrapping::new(self, settings),
+            }
         })
     }
-    /// The same, calling `go_on` after each solve: `None` if it says no. It is not called for what is cached.
-    pub fn unwrapped_telling(&self, settings: UnwrapSettings, go_on: GoOn) -> Option<Arc<Unwrapping>> {
+
+    /// The same, calling `go_on` after each solve: `None` if it says no. It is not called for what
+    /// is cached.
+    pub fn unwrapped_telling(
+        &self,
+        settings: UnwrapSettings,
+        go_on: GoOn,
+    ) -> Option<Arc<Unwrapping>> {
         if self.is_unwrapped(settings) || self.sheet_of().is_some() {
             return Some(self.unwrapped(settings));
         }
         let settings = settings.held(self.size());
         let unwrapped = Unwrapping::telling(self, settings, go_on)?;
-        Some(self.derived.unwrappings.get_or_compute(settings.key(), self.kept_unwrappings(), |_| unwrapped))
+        Some(self.derived.unwrappings.get_or_compute(
+            settings.key(),
+            self.kept_unwrappings(),
+            |_| unwrapped,
+        ))
     }
+
     /// Whether it is unwrapped with these settings already.
     pub fn is_unwrapped(&self, settings: UnwrapSettings) -> bool {
         self.derived.unwrappings.known(&settings.held(self.size()).key()).is_some()
     }
+
     fn kept_unwrappings(&self) -> usize {
         (KEPT_PX / self.size().area().max(1)).clamp(2, 8)
     }

@@ -1,6 +1,6 @@
-//! How many passes a JPEG makes over its picture, counted before it is decoded: progressive ones may do so any number
-//! of times in a few bytes each. Floor 5. Not here: JPEGs in the strips of a TIFF (`tiff/within`), which are counted
-//! one by one.
+//! How many passes a JPEG makes over its picture, counted before it is decoded: progressive ones
+//! may do so any number of times in a few bytes each. Floor 5. Not here: JPEGs in the strips of a
+//! TIFF (`tiff/within`), which are counted one by one.
 
 use crate::Budget;
 use crate::math::Size;
@@ -20,7 +20,8 @@ pub struct JpegWork {
 }
 
 impl JpegWork {
-    /// Pixels that decoding visits, those of each pass counted again; a small frame still takes a header's time.
+    /// Pixels that decoding visits, those of each pass counted again; a small frame still takes a
+    /// header's time.
     pub fn visits(self) -> u64 {
         self.frame_px.max(64).saturating_mul(self.passes)
     }
@@ -36,7 +37,8 @@ pub fn check(file: &Path, bytes: &[u8], size: Size, budget: &Budget) -> Result<(
     let most = most_visits(budget) / size.area().max(64) as u64;
     let passes = work(bytes).passes;
     if passes > most {
-        let reason = format!("the JPEG has {passes} passes over its {size} pixels; {most} are allowed");
+        let reason =
+            format!("the JPEG has {passes} passes over its {size} pixels; {most} are allowed");
         return Err(Error::too_large(file, reason).with_remedy(Remedy::MorePixels));
     }
     Ok(())
@@ -50,10 +52,14 @@ pub fn work(bytes: &[u8]) -> JpegWork {
         let kind = bytes[marker + 1];
         at = marker + 2;
         match kind {
-            // A frame: its length, bits, height, width. Not tables (c4, cc) and what is reserved (c8).
+            // A frame: its length, bits, height, width. Not tables (c4, cc) and what is reserved
+            // (c8).
             0xc0..=0xcf if !matches!(kind, 0xc4 | 0xc8 | 0xcc) => {
-                let side =
-                    |i: usize| bytes.get(at + i..at + i + 2).map_or(0, |b| u64::from(b[0]) << 8 | u64::from(b[1]));
+                let side = |i: usize| {
+                    bytes
+                        .get(at + i..at + i + 2)
+                        .map_or(0, |b| u64::from(b[0]) << 8 | u64::from(b[1]))
+                };
                 work.frame_px = work.frame_px.max(side(3) * side(5));
             }
             0xda => work.passes += 1,
@@ -61,7 +67,8 @@ pub fn work(bytes: &[u8]) -> JpegWork {
         }
         // Markers without a length: starts, ends, restarts.
         if !matches!(kind, 0x01 | 0xd0..=0xd9) {
-            let length = bytes.get(at..at + 2).map_or(2, |b| usize::from(b[0]) << 8 | usize::from(b[1]));
+            let length =
+                bytes.get(at..at + 2).map_or(2, |b| usize::from(b[0]) << 8 | usize::from(b[1]));
             at += length.max(2);
         }
     }
@@ -86,6 +93,7 @@ mod tests {
         RgbImage::new(side, side).write_to(&mut bytes, ImageFormat::Jpeg).unwrap();
         bytes.into_inner()
     }
+
     /// With its only scan so often.
     fn repeated(bytes: &[u8], times: usize) -> Vec<u8> {
         let scan = bytes.windows(2).position(|pair| pair == [0xff, 0xda]).unwrap();
@@ -100,13 +108,17 @@ mod tests {
         assert_eq!(work(&repeated(&plain, 70)), JpegWork { frame_px: 576, passes: 70 });
         assert_eq!(work(&plain[..9]), JpegWork::default());
     }
+
     #[test]
     fn a_jpeg_that_goes_over_its_picture_without_end_is_refused_by_its_headers() {
         let budget = Budget { area_px: 64 * 64, ..Budget::default() };
-        let read = |bytes: &[u8]| crate::bitmap::decode(Path::new("a.jpg"), bytes, &budget).map(|b| b.format);
+        let read = |bytes: &[u8]| {
+            crate::bitmap::decode(Path::new("a.jpg"), bytes, &budget).map(|b| b.format)
+        };
         assert_eq!(read(&jpeg(64)).unwrap(), "JPEG");
         let said = read(&repeated(&jpeg(64), 33)).unwrap_err();
-        let expected = "a.jpg: too large: the JPEG has 33 passes over its 64 × 64 pixels; 32 are allowed";
+        let expected =
+            "a.jpg: too large: the JPEG has 33 passes over its 64 × 64 pixels; 32 are allowed";
         assert_eq!(said.to_string(), expected);
         assert_eq!(said.remedy(), Some(Remedy::MorePixels));
     }

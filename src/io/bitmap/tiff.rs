@@ -1,6 +1,7 @@
-//! TIFF as scanners, renderers and painting programs store it: grey, palettes, RGB, YCbCr and CMYK, with and without
-//! alpha, 1 to 64 bits, integers and floats, in planes or pixel by pixel. Floor 5. Strips, tiles and compressions are
-//! the `tiff` crate's; `image` reads only part of what that decodes.
+//! TIFF as scanners, renderers and painting programs store it: grey, palettes, RGB, YCbCr and CMYK,
+//! with and without alpha, 1 to 64 bits, integers and floats, in planes or pixel by pixel. Floor 5.
+//! Strips, tiles and compressions are the `tiff` crate's; `image` reads only part of what that
+//! decodes.
 
 mod directory;
 mod sample;
@@ -45,6 +46,7 @@ impl ColorModel {
             _ => return None,
         })
     }
+
     fn colours(self) -> usize {
         match self {
             ColorModel::Grey | ColorModel::Ink | ColorModel::Palette => 1,
@@ -66,12 +68,14 @@ enum AlphaKind {
 /// Decodes the first picture of a TIFF.
 pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
     let entry = photometric(bytes);
-    let entry =
-        entry.ok_or_else(|| Error::decode(file, "the TIFF does not tell its colours; it is damaged or cut short"))?;
+    let entry = entry.ok_or_else(|| {
+        Error::decode(file, "the TIFF does not tell its colours; it is damaged or cut short")
+    })?;
     let meaning = ColorModel::of(entry.value);
     let others = "its colours are neither grey, indexed, RGB, YCbCr nor CMYK";
     let meaning = meaning.ok_or_else(|| Error::unsupported(file, others))?;
-    // The crate reads palettes and white-is-zero with alpha as plain grey. Their meaning is restored here.
+    // The crate reads palettes and white-is-zero with alpha as plain grey. Their meaning is
+    // restored here.
     let as_grey = match meaning {
         ColorModel::Palette | ColorModel::Ink => Some(entry.with_value(bytes, 1)),
         _ => None,
@@ -88,8 +92,11 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
     let compression = decoder.find_tag_unsigned::<u16>(Tag::Compression).ok().flatten();
     let values = size.area() as u64 * samples(color) as u64;
     let is_fax = compression.is_some_and(|compression| FAX.contains(&compression));
-    let row_bits =
-        if is_fax { 1 } else { u64::from(color.bit_depth()) * samples(color) as u64 * u64::from(size.width) };
+    let row_bits = if is_fax {
+        1
+    } else {
+        u64::from(color.bit_depth()) * samples(color) as u64 * u64::from(size.width)
+    };
     weight::plausible(file, size, row_bits.saturating_mul(size.height.into()), bytes.len())?;
     // The decoded samples, the sorted samples, and the picture made from them.
     room(file, size, values.saturating_mul(2 * u64::from(color.bit_depth()).div_ceil(8)), budget)?;
@@ -97,11 +104,13 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
         within::check(file, &mut decoder, bytes, budget)?;
     }
     parts(file, &mut decoder)?;
-    let unpacked = unpack::readable(file, as_grey.as_deref().unwrap_or(bytes), &mut decoder, budget)?;
+    let unpacked =
+        unpack::readable(file, as_grey.as_deref().unwrap_or(bytes), &mut decoder, budget)?;
     if let Some(unpacked) = &unpacked {
         decoder = Decoder::new(Cursor::new(&unpacked[..])).map_err(failed)?.with_limits(limits);
     }
-    let extra = decoder.find_tag_unsigned_vec::<u16>(Tag::ExtraSamples).ok().flatten().unwrap_or_default();
+    let extra =
+        decoder.find_tag_unsigned_vec::<u16>(Tag::ExtraSamples).ok().flatten().unwrap_or_default();
     let alpha = match extra.first() {
         _ if samples(color) <= meaning.colours() => AlphaKind::None,
         Some(1) => AlphaKind::Associated,
@@ -109,28 +118,45 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
         None if meaning == ColorModel::Rgb => AlphaKind::Straight,
         _ => AlphaKind::None,
     };
-    let map = decoder.find_tag_unsigned_vec::<u16>(Tag::ColorMap).ok().flatten().unwrap_or_default();
+    let map =
+        decoder.find_tag_unsigned_vec::<u16>(Tag::ColorMap).ok().flatten().unwrap_or_default();
     let icc = decoder.get_tag_u8_vec(Tag::IccProfile).ok();
-    let turned = decoder.find_tag_unsigned::<u8>(Tag::Orientation).ok().flatten().and_then(Orientation::from_exif);
+    let turned = decoder
+        .find_tag_unsigned::<u8>(Tag::Orientation)
+        .ok()
+        .flatten()
+        .and_then(Orientation::from_exif);
     let mut values = DecodingResult::U8(Vec::new());
     let layout = decoder.read_image_to_buffer(&mut values).map_err(failed)?;
-    let stored = TiffLayout { size, samples: samples(color), bits: color.bit_depth(), layout, meaning, alpha, map };
+    let stored = TiffLayout {
+        size,
+        samples: samples(color),
+        bits: color.bit_depth(),
+        layout,
+        meaning,
+        alpha,
+        map,
+    };
     let image = stored.image(values).map_err(|reason| Error::unsupported(file, reason))?;
     let orientation = turned.unwrap_or(Orientation::NoTransforms);
     Ok(Bitmap { image, icc, orientation, format: "TIFF", warning: None })
 }
 
-/// Strips and tiles of one picture; each takes some fifty microseconds, however small. The longest side in strips of a
-/// row and four planes has as many.
+/// Strips and tiles of one picture; each takes some fifty microseconds, however small. The longest
+/// side in strips of a row and four planes has as many.
 const MOST_PARTS: u64 = 4 << 15;
 
 /// Refuses a picture in more pieces than can be read in a few seconds.
 fn parts(file: &Path, decoder: &mut Decoder<Cursor<&[u8]>>) -> Result<()> {
     let (size, part) = (decoder.dimensions(), decoder.chunk_dimensions());
     let (width, height) = size.map_err(|e| failure(file, &e))?;
-    let planes = decoder.find_tag_unsigned::<u16>(Tag::PlanarConfiguration).ok().flatten() == Some(2);
-    let planes = if planes { decoder.colortype().map_or(1, |color| samples(color) as u64) } else { 1 };
-    let count = u64::from(width.div_ceil(part.0.max(1))) * u64::from(height.div_ceil(part.1.max(1))) * planes;
+    let planes =
+        decoder.find_tag_unsigned::<u16>(Tag::PlanarConfiguration).ok().flatten() == Some(2);
+    let planes =
+        if planes { decoder.colortype().map_or(1, |color| samples(color) as u64) } else { 1 };
+    let count = u64::from(width.div_ceil(part.0.max(1)))
+        * u64::from(height.div_ceil(part.1.max(1)))
+        * planes;
     if count > MOST_PARTS {
         let reason = format!("the TIFF is in {count} pieces; {MOST_PARTS} are allowed");
         return Err(Error::too_large(file, reason));
@@ -158,7 +184,8 @@ fn samples(color: ColorType) -> usize {
 fn failure(file: &Path, error: &TiffError) -> Error {
     match error {
         TiffError::LimitsExceeded => {
-            Error::too_large(file, "the TIFF needs more memory than allowed").with_remedy(Remedy::MorePixels)
+            Error::too_large(file, "the TIFF needs more memory than allowed")
+                .with_remedy(Remedy::MorePixels)
         }
         TiffError::UnsupportedError(e) => Error::unsupported(file, format!("TIFF: {e}")),
         e => Error::decode(file, format!("the TIFF data is damaged or cut short ({e})")),
@@ -220,26 +247,37 @@ impl TiffLayout {
             _ => Err("the samples of this TIFF have a sign; those of a picture have none"),
         }
     }
-    /// Unpacks samples of less than a byte to a byte each, scaled to its range unless they are palette indices.
+
+    /// Unpacks samples of less than a byte to a byte each, scaled to its range unless they are
+    /// palette indices.
     fn unpacked(&self, packed: &[u8]) -> Vec<u8> {
         let bits = usize::from(self.bits);
         let most = (1u32 << bits) - 1;
-        let in_row = self.size.width as usize * if self.layout.planes > 1 { 1 } else { self.samples };
+        let in_row =
+            self.size.width as usize * if self.layout.planes > 1 { 1 } else { self.samples };
         let stride = self.layout.row_stride.map_or(1, usize::from);
         let value = |row: &[u8], i: usize| {
             let byte = row.get(i * bits / 8).copied().unwrap_or(0);
             let value = u32::from(byte) >> (8 - bits - i * bits % 8) & most;
-            if self.meaning == ColorModel::Palette { value as u8 } else { (value * 255 / most) as u8 }
+            if self.meaning == ColorModel::Palette {
+                value as u8
+            } else {
+                (value * 255 / most) as u8
+            }
         };
         packed.chunks(stride).flat_map(|row| (0..in_row).map(move |i| value(row, i))).collect()
     }
+
     fn picture<T: TiffSample>(&self, values: Vec<T>) -> Result<DynamicImage, TiffRefusal> {
-        let pixels = self.gathered(&values).ok_or("this TIFF holds fewer samples than it promises")?;
+        let pixels =
+            self.gathered(&values).ok_or("this TIFF holds fewer samples than it promises")?;
         drop(values);
         let channels = self.channels();
         match self.meaning {
             ColorModel::Palette => self.looked_up(&pixels),
-            ColorModel::YCbCr => T::rgb_of_ycbcr(pixels).and_then(|rgb| T::image(self.size, channels, rgb)),
+            ColorModel::YCbCr => {
+                T::rgb_of_ycbcr(pixels).and_then(|rgb| T::image(self.size, channels, rgb))
+            }
             ColorModel::Cmyk => T::image(self.size, channels - 1, self.printed(pixels)),
             ColorModel::Grey | ColorModel::Ink | ColorModel::Rgb => {
                 T::image(self.size, channels, self.straight(pixels))
@@ -247,18 +285,27 @@ impl TiffLayout {
         }
         .ok_or("this TIFF stores its colours in a way that is not read")
     }
+
     fn channels(&self) -> usize {
         self.meaning.colours() + usize::from(self.alpha != AlphaKind::None)
     }
-    /// The colours and the alpha of each pixel in turn, further samples left out; `None` where there are too few.
+
+    /// The colours and the alpha of each pixel in turn, further samples left out; `None` where
+    /// there are too few.
     fn gathered<T: TiffSample>(&self, values: &[T]) -> Option<Vec<T>> {
         let (area, channels) = (self.size.area(), self.channels());
         let values = values.get(..area.checked_mul(self.samples)?)?;
-        let at = |i: usize, c: usize| if self.layout.planes > 1 { c * area + i } else { i * self.samples + c };
+        let at = |i: usize, c: usize| {
+            if self.layout.planes > 1 { c * area + i } else { i * self.samples + c }
+        };
         (channels <= self.samples).then(|| {
-            (0..area).flat_map(|i| (0..channels).map(move |c| (i, c))).map(|(i, c)| values[at(i, c)]).collect()
+            (0..area)
+                .flat_map(|i| (0..channels).map(move |c| (i, c)))
+                .map(|(i, c)| values[at(i, c)])
+                .collect()
         })
     }
+
     /// Converts to additive colours that are not multiplied by alpha.
     fn straight<T: TiffSample>(&self, mut pixels: Vec<T>) -> Vec<T> {
         for pixel in pixels.chunks_exact_mut(self.channels()) {
@@ -274,26 +321,33 @@ impl TiffLayout {
         }
         pixels
     }
+
     /// RGB of cyan, magenta, yellow and black, with ideal inks.
     fn printed<T: TiffSample>(&self, pixels: Vec<T>) -> Vec<T> {
         let rgb = |pixel: &[T]| {
-            let [c, m, y] = [pixel[0], pixel[1], pixel[2]].map(|ink| ink.inverted().times(pixel[3].inverted()));
+            let [c, m, y] =
+                [pixel[0], pixel[1], pixel[2]].map(|ink| ink.inverted().times(pixel[3].inverted()));
             [Some(c), Some(m), Some(y), pixel.get(4).copied()]
         };
         self.straight(pixels).chunks_exact(self.channels()).flat_map(rgb).flatten().collect()
     }
+
     /// The colours of palette indices.
     fn looked_up<T: TiffSample>(&self, pixels: &[T]) -> Option<DynamicImage> {
         let count = self.map.len() / 3;
         // Some programs wrote bytes where 16 bits are meant.
         let shift = if self.map.iter().any(|v| *v > 255) { 8 } else { 0 };
-        let colour = |i: usize, c: usize| self.map.get(c * count + i.min(count - 1)).map_or(0, |v| (v >> shift) as u8);
+        let colour = |i: usize, c: usize| {
+            self.map.get(c * count + i.min(count - 1)).map_or(0, |v| (v >> shift) as u8)
+        };
         let rgba = |pixel: &[T]| {
-            let (index, alpha) = (pixel[0].index(), pixel.get(1).map_or(255, |a| a.index().min(255) as u8));
+            let (index, alpha) =
+                (pixel[0].index(), pixel.get(1).map_or(255, |a| a.index().min(255) as u8));
             [colour(index, 0), colour(index, 1), colour(index, 2), alpha]
         };
-        let out =
-            pixels.chunks_exact(self.channels()).flat_map(|pixel| rgba(pixel).into_iter().take(self.channels() + 2));
+        let out = pixels
+            .chunks_exact(self.channels())
+            .flat_map(|pixel| rgba(pixel).into_iter().take(self.channels() + 2));
         (count > 0).then(|| u8::image(self.size, self.channels() + 2, out.collect())).flatten()
     }
 }

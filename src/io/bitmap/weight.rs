@@ -1,5 +1,5 @@
-//! Memory limits for files of rows of numbers, before their pixels are decoded: how much their own bits could hold, and
-//! what a PNG keeps besides its pixels. Floor 5.
+//! Memory limits for files of rows of numbers, before their pixels are decoded: how much their own
+//! bits could hold, and what a PNG keeps besides its pixels. Floor 5.
 
 use crate::math::Size;
 use crate::{Error, Result};
@@ -13,7 +13,8 @@ use std::path::Path;
 pub fn plausible(file: &Path, size: Size, bits: u64, file_bytes: usize) -> Result<()> {
     const GRANTED: u64 = 8 << 20;
     if bits > GRANTED && bits / 8 / 4096 > file_bytes as u64 {
-        let reason = format!("the header promises {size} pixels, far more than {file_bytes} bytes can hold");
+        let reason =
+            format!("the header promises {size} pixels, far more than {file_bytes} bytes can hold");
         return Err(Error::decode(file, reason));
     }
     Ok(())
@@ -39,7 +40,9 @@ pub fn has_png_profile(bytes: &[u8]) -> bool {
         match kind {
             b"iCCP" => return true,
             b"IDAT" => return false,
-            _ => at = at.saturating_add(u32::from_be_bytes([a, b, c, d]) as usize).saturating_add(12),
+            _ => {
+                at = at.saturating_add(u32::from_be_bytes([a, b, c, d]) as usize).saturating_add(12)
+            }
         }
     }
     false

@@ -1,5 +1,6 @@
-//! Photoshop's brushes: sampled tips of versions 1 and 2, and of 6 and later, and computed round ones.
-//! Floor 5. What the descriptions of later versions say of a brush is carried over by `presets` and `dynamics`.
+//! Photoshop's brushes: sampled tips of versions 1 and 2, and of 6 and later, and computed round
+//! ones. Floor 5. What the descriptions of later versions say of a brush is carried over by
+//! `presets` and `dynamics`.
 
 mod dynamics;
 mod presets;
@@ -21,7 +22,8 @@ const MOST: usize = 4096;
 /// Photoshop's default, if the file does not say.
 const SPACING: f32 = 0.25;
 
-/// Reads every brush of a collection. Damaged ones are left out; the notes of the first intact one mention them.
+/// Reads every brush of a collection. Damaged ones are left out; the notes of the first intact one
+/// mention them.
 pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<ImportedBrush>> {
     let mut cursor = ByteCursor::new(bytes);
     let cut = || Error::decode(file, "the collection is cut short");
@@ -39,11 +41,17 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<ImportedBr
     match version {
         1 | 2 => reading.old(&mut cursor, version, usize::from(second))?,
         6 | 7 | 9 | 10 => reading.later(&mut cursor, second)?,
-        _ => return Err(Error::unsupported(file, format!("version {version} of Photoshop's brushes"))),
+        _ => {
+            return Err(Error::unsupported(
+                file,
+                format!("version {version} of Photoshop's brushes"),
+            ));
+        }
     }
     let AbrReader { mut brushes, damaged, .. } = reading;
     let Some(first) = brushes.first_mut() else {
-        let reason = if damaged > 0 { "its brushes are damaged" } else { "it holds no sampled tips" };
+        let reason =
+            if damaged > 0 { "its brushes are damaged" } else { "it holds no sampled tips" };
         return Err(Error::decode(file, reason));
     };
     if damaged > 0 {
@@ -82,6 +90,7 @@ impl AbrReader<'_> {
         }
         Ok(())
     }
+
     /// A computed round or elliptic tip.
     fn computed(&mut self, mut record: ByteCursor) {
         let mut number = || {
@@ -89,8 +98,12 @@ impl AbrReader<'_> {
             Some(f32::from(value))
         };
         let Some(_) = number().zip(number()) else { return self.damaged += 1 };
-        let Some(values) = (0..5).map(|_| number()).collect::<Option<Vec<f32>>>() else { return self.damaged += 1 };
-        let [spacing, diameter, roundness, angle, hardness] = values[..] else { return self.damaged += 1 };
+        let Some(values) = (0..5).map(|_| number()).collect::<Option<Vec<f32>>>() else {
+            return self.damaged += 1;
+        };
+        let [spacing, diameter, roundness, angle, hardness] = values[..] else {
+            return self.damaged += 1;
+        };
         let ratio = (roundness / 100.0).clamp(0.05, 1.0);
         let tip = if ratio < 1.0 { Tip::Ellipse { ratio } } else { Tip::Round };
         let brush = Brush {
@@ -104,6 +117,7 @@ impl AbrReader<'_> {
         let name = format!("Round {diameter}");
         self.brushes.push(ImportedBrush { name, brush, notes: Vec::new() });
     }
+
     fn old_sample(&mut self, mut record: ByteCursor, version: u16) -> Result<()> {
         let Some((spacing, name)) = old_header(&mut record, version) else {
             self.damaged += 1;
@@ -111,6 +125,7 @@ impl AbrReader<'_> {
         };
         self.sample(&mut record, name, spacing)
     }
+
     /// Versions 6 and later: blocks; one holds all sampled tips, another their names.
     fn later(&mut self, cursor: &mut ByteCursor, subversion: u16) -> Result<()> {
         // A key of 37 letters, followed by undocumented data.
@@ -129,7 +144,8 @@ impl AbrReader<'_> {
                 b"desc" => said = descriptor::read(&mut block),
                 b"patt" => {
                     let (file, budget, used_px) = (self.file, self.budget, &mut self.used_px);
-                    self.patterns = pattern::of_block(block, |px| spend(file, budget, used_px, px))?;
+                    self.patterns =
+                        pattern::of_block(block, |px| spend(file, budget, used_px, px))?;
                 }
                 _ => {}
             }
@@ -137,6 +153,7 @@ impl AbrReader<'_> {
         self.call(&said.unwrap_or_default());
         Ok(())
     }
+
     fn samples(&mut self, mut block: ByteCursor, before: usize) -> Result<()> {
         while !block.rest().is_empty() && self.brushes.len() < MOST {
             let Some(mut record) = padded_section(&mut block) else {
@@ -147,7 +164,8 @@ impl AbrReader<'_> {
                 self.damaged += 1;
                 continue;
             };
-            let (index, key) = (self.brushes.len(), ByteCursor::new(head).pascal(1).map(super::text_of));
+            let (index, key) =
+                (self.brushes.len(), ByteCursor::new(head).pascal(1).map(super::text_of));
             self.sample(&mut record, None, SPACING)?;
             if let Some(key) = key.filter(|key| !key.is_empty() && self.brushes.len() > index) {
                 self.keys.push((key, index));
@@ -155,13 +173,21 @@ impl AbrReader<'_> {
         }
         Ok(())
     }
+
     /// The brushes by their names in the collection, in its order; tips without a name come last.
     fn call(&mut self, said: &DescriptorObject) {
         let tips = std::mem::take(&mut self.brushes);
         let mut is_called = vec![false; tips.len()];
-        let mut pictures = presets::AbrPictures { file: self.file, patterns: &self.patterns, tips: &mut self.tips };
+        let mut pictures = presets::AbrPictures {
+            file: self.file,
+            patterns: &self.patterns,
+            tips: &mut self.tips,
+        };
         for said in presets::read(said) {
-            let at = said.sample.as_ref().map(|key| self.keys.iter().find(|(known, _)| known == key).map(|(_, i)| *i));
+            let at = said
+                .sample
+                .as_ref()
+                .map(|key| self.keys.iter().find(|(known, _)| known == key).map(|(_, i)| *i));
             match at {
                 // Its tip is damaged or missing.
                 Some(None) => {}
@@ -175,10 +201,18 @@ impl AbrReader<'_> {
         let rest = tips.into_iter().zip(is_called).filter(|(_, is_called)| !is_called);
         self.brushes.extend(rest.map(|(tip, _)| tip));
     }
+
     /// Bounds, depth, compression, values: 0 is bare, the largest covers wholly.
-    fn sample(&mut self, record: &mut ByteCursor, name: Option<String>, spacing: f32) -> Result<()> {
+    fn sample(
+        &mut self,
+        record: &mut ByteCursor,
+        name: Option<String>,
+        spacing: f32,
+    ) -> Result<()> {
         let header = record.rect().zip(record.u16()).zip(record.u8());
-        let Some(((bounds, bits), compression)) = header.filter(|((_, bits), _)| [8, 16].contains(bits)) else {
+        let Some(((bounds, bits), compression)) =
+            header.filter(|((_, bits), _)| [8, 16].contains(bits))
+        else {
             self.damaged += 1;
             return Ok(());
         };
@@ -200,6 +234,7 @@ impl AbrReader<'_> {
         }
         Ok(())
     }
+
     /// The name of a tip that the file does not name.
     fn next_name(&self) -> String {
         let stem = self.file.file_stem().unwrap_or_default().to_string_lossy();
@@ -244,8 +279,13 @@ fn padded_section<'a>(block: &mut ByteCursor<'a>) -> Option<ByteCursor<'a>> {
 }
 
 fn sampled(record: &mut ByteCursor, size: Size, bits: u16, compression: u8) -> Option<Picture> {
-    let shape =
-        ChannelLayout { width: size.width as usize, height: size.height as usize, bits, is_colour: true, large: false };
+    let shape = ChannelLayout {
+        width: size.width as usize,
+        height: size.height as usize,
+        bits,
+        is_colour: true,
+        large: false,
+    };
     // Of Photoshop's compressions, tips use only plain rows and run lengths.
     let values = (compression < 2).then(|| decode_as(record, shape, u16::from(compression)))??;
     Picture::srgb8(size, values.into_iter().map(|v| [v, v, v, 255]).collect())

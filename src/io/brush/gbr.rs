@@ -39,7 +39,8 @@ pub fn next(file: &Path, cursor: &mut ByteCursor, budget: &Budget) -> Result<Gbr
     let cut = || Error::decode(file, "the brush is cut short");
     let start = cursor.rest().len();
     let mut number = || cursor.u32().ok_or_else(cut);
-    let [header, version, width, height, kind] = [number()?, number()?, number()?, number()?, number()?];
+    let [header, version, width, height, kind] =
+        [number()?, number()?, number()?, number()?, number()?];
     let spacing = match version {
         1 => SPACING,
         2 | 3 => {
@@ -52,10 +53,14 @@ pub fn next(file: &Path, cursor: &mut ByteCursor, budget: &Budget) -> Result<Gbr
         _ => return Err(Error::unsupported(file, format!("version {version} of GIMP's brushes"))),
     };
     let size = budget.size(file, u64::from(width), u64::from(height))?;
-    let name = (header as usize).checked_sub(start - cursor.rest().len()).and_then(|n| cursor.take(n));
+    let name =
+        (header as usize).checked_sub(start - cursor.rest().len()).and_then(|n| cursor.take(n));
     let name = text_of(name.ok_or_else(cut)?);
     let depth = GbrDepth::of(version, kind).ok_or_else(|| {
-        Error::unsupported(file, format!("a GIMP brush of version {version} with {kind} bytes a pixel"))
+        Error::unsupported(
+            file,
+            format!("a GIMP brush of version {version} with {kind} bytes a pixel"),
+        )
     })?;
     let texels = texels(cursor.take(size.area() * depth.bytes()).ok_or_else(cut)?, depth);
     let texels = colored(cursor, size, &texels).unwrap_or(texels);
@@ -83,6 +88,7 @@ impl GbrDepth {
             _ => None,
         }
     }
+
     fn bytes(self) -> usize {
         match self {
             GbrDepth::Grey => 1,
@@ -110,7 +116,8 @@ fn texels(bytes: &[u8], depth: GbrDepth) -> Vec<[u8; 4]> {
 fn colored(cursor: &mut ByteCursor, size: Size, coverage: &[[u8; 4]]) -> Option<Vec<[u8; 4]>> {
     let mut ahead = *cursor;
     let start = ahead.rest().len();
-    let [header, _, width, height, channels] = [ahead.u32()?, ahead.u32()?, ahead.u32()?, ahead.u32()?, ahead.u32()?];
+    let [header, _, width, height, channels] =
+        [ahead.u32()?, ahead.u32()?, ahead.u32()?, ahead.u32()?, ahead.u32()?];
     if ahead.key()? != PATTERN || (width, height, channels) != (size.width, size.height, 3) {
         return None;
     }

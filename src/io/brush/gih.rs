@@ -19,12 +19,15 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ImportedBrush>
     let (name, description) = (text_of(name), text_of(description));
     let mut words = description.split_whitespace();
     let count = words.next().and_then(|n| n.parse::<usize>().ok()).filter(|n| *n > 0);
-    let count = count.ok_or_else(|| Error::decode(file, "its second line does not say how many pictures it holds"))?;
+    let count = count.ok_or_else(|| {
+        Error::decode(file, "its second line does not say how many pictures it holds")
+    })?;
     if count > MOST {
         return Err(Error::too_large(file, format!("{count} pictures; a hose may have {MOST}")));
     }
     let mut cursor = ByteCursor::new(lines.next().unwrap_or_default());
-    let (mut tips, mut pictures, mut spacing, mut used) = (TipNames::default(), Vec::new(), 0.0f32, 0);
+    let (mut tips, mut pictures, mut spacing, mut used) =
+        (TipNames::default(), Vec::new(), 0.0f32, 0);
     for i in 0..count {
         let stamp = gbr::next(file, &mut cursor, budget)?;
         used += stamp.picture.size.area() as u64;
@@ -40,11 +43,18 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ImportedBrush>
     Ok(ImportedBrush { notes, ..ImportedBrush::hose(name, Hose::new(pictures, ranks), spacing) })
 }
 
-/// `rank0:4 sel0:angular rank1:2 sel1:random …`; without usable words the pictures are used in order.
-fn ranks<'a>(words: impl Iterator<Item = &'a str>, count: usize, notes: &mut Vec<String>) -> Vec<HoseRank> {
+/// `rank0:4 sel0:angular rank1:2 sel1:random …`; without usable words the pictures are used in
+/// order.
+fn ranks<'a>(
+    words: impl Iterator<Item = &'a str>,
+    count: usize,
+    notes: &mut Vec<String>,
+) -> Vec<HoseRank> {
     let mut ranks = [HoseRank { count: 0, select: RankSelect::Incremental }; MOST_RANKS];
     for (key, value) in words.filter_map(|word| word.split_once(':')) {
-        let place = |key: &str, stem: &str| key.strip_prefix(stem)?.parse::<usize>().ok().filter(|i| *i < MOST_RANKS);
+        let place = |key: &str, stem: &str| {
+            key.strip_prefix(stem)?.parse::<usize>().ok().filter(|i| *i < MOST_RANKS)
+        };
         if let Some(i) = place(key, "rank") {
             ranks[i].count = value.parse().unwrap_or(0);
         } else if let Some(i) = place(key, "sel") {
@@ -58,7 +68,9 @@ fn ranks<'a>(words: impl Iterator<Item = &'a str>, count: usize, notes: &mut Vec
     let product = ranks.iter().try_fold(1usize, |n, rank| n.checked_mul(rank.count as usize));
     if ranks.is_empty() || product.is_none_or(|n| n > count) {
         if !ranks.is_empty() {
-            notes.push("Its ranks need more pictures than it holds; the pictures are used in turn".into());
+            notes.push(
+                "Its ranks need more pictures than it holds; the pictures are used in turn".into(),
+            );
         }
         return vec![HoseRank { count: count as u32, select: RankSelect::Incremental }];
     }

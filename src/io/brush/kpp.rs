@@ -1,6 +1,7 @@
-//! Krita's presets: a PNG whose text holds the settings as XML, and within them the tip as XML again. Floor 5. Reads
-//! presets of the pixel, colour smudge and clone brushes with generated tips; a tip that is one of Krita's own files is
-//! not in the preset, and becomes a round one with a note.
+//! Krita's presets: a PNG whose text holds the settings as XML, and within them the tip as XML
+//! again. Floor 5. Reads presets of the pixel, colour smudge and clone brushes with generated tips;
+//! a tip that is one of Krita's own files is not in the preset, and becomes a round one with a
+//! note.
 
 mod sensors;
 
@@ -30,9 +31,11 @@ impl KppPreset {
     fn text(&self, name: &str) -> &str {
         self.settings.get(name).map_or("", String::as_str)
     }
+
     fn is(&self, name: &str) -> bool {
         self.text(name) == "true"
     }
+
     /// Finite.
     fn number(&self, name: &str) -> Option<f32> {
         number(self.text(name))
@@ -55,7 +58,9 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ImportedBrush>
         "duplicate" => BrushMode::Clone { aligned: true, picture: false },
         other => {
             let other = text_of(other.as_bytes());
-            let reason = format!("Krita's brush engine “{other}”; pixel, colour smudge and clone presets are read");
+            let reason = format!(
+                "Krita's brush engine “{other}”; pixel, colour smudge and clone presets are read"
+            );
             return Err(Error::unsupported(file, reason));
         }
     };
@@ -69,7 +74,9 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ImportedBrush>
         ..brush
     };
     let brush = driven(&preset, brush, &mut notes);
-    for (key, what) in [("Texture/Pattern/Enabled", "texture"), ("MaskingBrush/Enabled", "masked brush")] {
+    for (key, what) in
+        [("Texture/Pattern/Enabled", "texture"), ("MaskingBrush/Enabled", "masked brush")]
+    {
         if preset.is(key) {
             notes.push(format!("its {what} has no counterpart"));
         }
@@ -83,7 +90,9 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ImportedBrush>
 fn preset_text(file: &Path, bytes: &[u8]) -> Result<String> {
     let limits = png::Limits { bytes: 4 * MOST_BYTES };
     let decoder = png::Decoder::new_with_limits(std::io::Cursor::new(bytes), limits);
-    let reader = decoder.read_info().map_err(|e| Error::decode(file, format!("it is no Krita preset: {e}")))?;
+    let reader = decoder
+        .read_info()
+        .map_err(|e| Error::decode(file, format!("it is no Krita preset: {e}")))?;
     let info = reader.info();
     let is_preset = |keyword: &str| keyword == KEYWORD;
     let mut found = None;
@@ -105,7 +114,8 @@ fn preset_text(file: &Path, bytes: &[u8]) -> Result<String> {
 }
 
 fn preset(file: &Path, text: &str) -> Result<KppPreset> {
-    let broken = |e: &dyn std::fmt::Display| Error::decode(file, format!("the settings are damaged: {e}"));
+    let broken =
+        |e: &dyn std::fmt::Display| Error::decode(file, format!("the settings are damaged: {e}"));
     let mut reader = Reader::from_str(text);
     let mut preset = KppPreset::default();
     let mut param: Option<String> = None;
@@ -166,7 +176,8 @@ fn tip(preset: &KppPreset, brush: Brush, notes: &mut Vec<String>) -> Brush {
         return brush;
     };
     let of = |name: &str| attribute(&outer, name).and_then(|text| number(&text));
-    let mut brush = Brush { rotation: of("angle").unwrap_or(0.0).to_degrees().rem_euclid(360.0), ..brush };
+    let mut brush =
+        Brush { rotation: of("angle").unwrap_or(0.0).to_degrees().rem_euclid(360.0), ..brush };
     if let Some(mask) = element(definition, "MaskGenerator") {
         let of = |name: &str| attribute(&mask, name).and_then(|text| number(&text));
         let fade = |name: &str| of(name).unwrap_or(1.0).max(0.0).min(1.0);
@@ -188,10 +199,12 @@ fn tip(preset: &KppPreset, brush: Brush, notes: &mut Vec<String>) -> Brush {
             notes.push("the spikes of its tip have no counterpart".to_owned());
         }
     } else {
-        let name = attribute(&outer, "filename").map(|name| text_of(name.as_bytes())).unwrap_or_default();
+        let name =
+            attribute(&outer, "filename").map(|name| text_of(name.as_bytes())).unwrap_or_default();
         notes.push(format!("its tip “{name}” is not in the file; it is round here"));
     }
-    let is_auto = attribute(&outer, "useAutoSpacing").is_some_and(|text| text == "1" || text == "true");
+    let is_auto =
+        attribute(&outer, "useAutoSpacing").is_some_and(|text| text == "1" || text == "true");
     let spacing = if is_auto {
         // So many roots of the diameter.
         of("autoSpacingCoeff").unwrap_or(1.0) / brush.size.sqrt()
@@ -224,7 +237,9 @@ const OPTIONS: [(&str, Property); 6] = [
 fn driven(preset: &KppPreset, brush: Brush, notes: &mut Vec<String>) -> Brush {
     let mut brush = brush;
     let mut follow = |brush: &mut Brush, option: &str, property: Property| {
-        if !preset.is(&format!("Pressure{option}")) || preset.text(&format!("{option}UseCurve")) == "false" {
+        if !preset.is(&format!("Pressure{option}"))
+            || preset.text(&format!("{option}UseCurve")) == "false"
+        {
             return;
         }
         for (input, curve) in sensors::read(preset.text(&format!("{option}Sensor")), notes) {

@@ -63,8 +63,8 @@ pub const EXTENSIONS: [(&str, BrushFormat); 6] = [
 ];
 
 impl BrushFormat {
-    /// Recognises the format by the content if possible, else by the extension: most of these formats have no
-    /// signature.
+    /// Recognises the format by the content if possible, else by the extension: most of these
+    /// formats have no signature.
     pub fn of(file: &Path, bytes: &[u8]) -> Option<Self> {
         if gbr::is_gbr(bytes) {
             return Some(BrushFormat::GimpBrush);
@@ -75,6 +75,7 @@ impl BrushFormat {
         let extension = file.extension()?.to_string_lossy().to_lowercase();
         EXTENSIONS.iter().find(|(known, _)| *known == extension).map(|(_, kind)| *kind)
     }
+
     /// The name of the format.
     pub fn name(self) -> &'static str {
         match self {
@@ -88,8 +89,8 @@ impl BrushFormat {
     }
 }
 
-/// The brushes of a file, in its order; at least one. Fails with a sentence if the file has none of these formats, is
-/// damaged beyond use, or is larger than the budget allows.
+/// The brushes of a file, in its order; at least one. Fails with a sentence if the file has none of
+/// these formats, is damaged beyond use, or is larger than the budget allows.
 pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<ImportedBrush>> {
     match BrushFormat::of(file, bytes) {
         Some(BrushFormat::GimpBrush) => gbr::read(file, bytes, budget).map(|brush| vec![brush]),
@@ -98,7 +99,10 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<ImportedBr
         Some(BrushFormat::Krita) => kpp::read(file, bytes, budget).map(|brush| vec![brush]),
         Some(BrushFormat::MyPaint) => myb::read(file, bytes, budget).map(|brush| vec![brush]),
         Some(BrushFormat::Photoshop) => abr::read(file, bytes, budget),
-        None => Err(Error::unsupported(file, "it ends in none of .gbr, .gih, .vbr, .kpp, .myb and .abr")),
+        None => Err(Error::unsupported(
+            file,
+            "it ends in none of .gbr, .gih, .vbr, .kpp, .myb and .abr",
+        )),
     }
 }
 
@@ -108,10 +112,16 @@ impl ImportedBrush {
         let size = tip.picture.size.longer_side();
         Self::with_tip(name, Tip::Picture(tip), size, spacing)
     }
+
     fn hose(name: String, hose: Hose, spacing: f32) -> Self {
-        let size = hose.pictures().iter().map(|source| source.picture.size.longer_side()).fold(1.0, f32::max);
+        let size = hose
+            .pictures()
+            .iter()
+            .map(|source| source.picture.size.longer_side())
+            .fold(1.0, f32::max);
         Self::with_tip(name, Tip::Hose(hose), size, spacing)
     }
+
     fn with_tip(name: String, tip: Tip, size: f32, spacing: f32) -> Self {
         let brush = Brush { size, spacing: spacing.max(0.01).min(10.0), tip, ..Brush::default() };
         let name = if name.is_empty() { "Brush".to_owned() } else { name };
@@ -119,7 +129,8 @@ impl ImportedBrush {
     }
 }
 
-/// Names for the pictures of tips: each once, plain letters only, so that every system can hold such a file.
+/// Names for the pictures of tips: each once, plain letters only, so that every system can hold
+/// such a file.
 #[derive(Default)]
 struct TipNames {
     taken: BTreeSet<String>,
@@ -131,7 +142,8 @@ impl TipNames {
         let of_file = || plain(&file.file_stem().unwrap_or_default().to_string_lossy());
         let stem = Some(plain(name)).filter(|n| !n.is_empty()).unwrap_or_else(of_file);
         let stem = if stem.is_empty() { "tip".to_owned() } else { stem };
-        let numbered = |n: usize| if n == 1 { format!("{stem}.png") } else { format!("{stem}-{n}.png") };
+        let numbered =
+            |n: usize| if n == 1 { format!("{stem}.png") } else { format!("{stem}-{n}.png") };
         let free = (1..).map(numbered).find(|name| !self.taken.contains(name)).unwrap_or_default();
         self.taken.insert(free.clone());
         PictureSource::new(free, picture, Adjust::default())

@@ -1,6 +1,7 @@
-//! MyPaint's brushes: settings, each a base value and curves over what the hand does that add to it. JSON of version
-//! 3, and the text of versions 1 and 2 (`old`). Floor 5. `settings` are what a file says, `curves` how inputs run here,
-//! `dab` what a dab looks like and `small` how large it is, `hand` how dabs follow the pen.
+//! MyPaint's brushes: settings, each a base value and curves over what the hand does that add to
+//! it. JSON of version 3, and the text of versions 1 and 2 (`old`). Floor 5. `settings` are what a
+//! file says, `curves` how inputs run here, `dab` what a dab looks like and `small` how large it
+//! is, `hand` how dabs follow the pen.
 
 mod added;
 mod curves;
@@ -42,7 +43,10 @@ fn newer(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Map<String, Value
     let version = value.get("version").and_then(Value::as_f64);
     if version != Some(3.0) {
         let found = version.map_or("no version".to_owned(), |v| format!("version {v}"));
-        return Err(Error::unsupported(file, format!("{found} of MyPaint's brushes; JSON of version 3 is read")));
+        return Err(Error::unsupported(
+            file,
+            format!("{found} of MyPaint's brushes; JSON of version 3 is read"),
+        ));
     }
     match value.get_mut("settings").map(Value::take) {
         Some(Value::Object(settings)) => Ok(settings),
@@ -93,7 +97,8 @@ fn brush(settings: &mut MyPaintSettings) -> Brush {
 /// With the rows of a setting.
 fn with(brush: Brush, property: Property, added: &Added) -> Brush {
     let curves = added.rows.iter().filter_map(|row| Some((row.input, row.curve()?)));
-    let dynamics = curves.fold(brush.dynamics, |dynamics, (input, curve)| dynamics.with(property, input, curve));
+    let dynamics = curves
+        .fold(brush.dynamics, |dynamics, (input, curve)| dynamics.with(property, input, curve));
     Brush { dynamics, ..brush }
 }
 
@@ -101,7 +106,9 @@ fn with(brush: Brush, property: Property, added: &Added) -> Brush {
 fn with_constant(brush: Brush, property: Property, value: f32) -> Brush {
     let curve = Curve::added(vec![crate::math::vec2(0.0, value)]).filter(|_| value != 0.0);
     match curve {
-        Some(curve) => Brush { dynamics: brush.dynamics.with(property, Input::Pressure, curve), ..brush },
+        Some(curve) => {
+            Brush { dynamics: brush.dynamics.with(property, Input::Pressure, curve), ..brush }
+        }
         None => brush,
     }
 }

@@ -14,24 +14,29 @@ use photoshop::{named_abr, new_abr, old_abr};
 fn budget() -> Budget {
     Budget::default()
 }
+
 fn only(file: &str, bytes: &[u8]) -> ImportedBrush {
     let mut brushes = read(Path::new(file), bytes, &budget()).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(brushes.len(), 1);
     brushes.remove(0)
 }
+
 fn said(file: &str, bytes: &[u8]) -> String {
     read(Path::new(file), bytes, &budget()).map(|_| ()).unwrap_err().to_string()
 }
+
 fn texels(source: &PictureSource) -> Vec<[u8; 4]> {
     match &source.picture.texels {
         Texels::Srgb8(texels) => texels.to_vec(),
         Texels::Linear(_) => panic!("tips hold bytes"),
     }
 }
+
 /// The pictures of its tip.
 fn tips(imported: &ImportedBrush) -> Vec<PictureSource> {
     imported.brush.pictures().cloned().collect()
 }
+
 fn words(numbers: &[u32]) -> Vec<u8> {
     numbers.iter().flat_map(|n| n.to_be_bytes()).collect()
 }
@@ -41,6 +46,7 @@ fn gbr(name: &str, width: u32, height: u32, bytes: u32, spacing: u32, pixels: &[
     let header = words(&[28 + name.len() as u32 + 1, 2, width, height, bytes]);
     [&header[..], b"GIMP", &words(&[spacing]), name.as_bytes(), &[0], pixels].concat()
 }
+
 fn ramp(n: usize) -> Vec<u8> {
     (0..n).map(|i| (i * 7) as u8).collect()
 }
@@ -55,6 +61,7 @@ fn a_grey_gimp_brush_is_coverage_as_large_as_it_is() {
     assert_eq!(texels(tip)[..3], [[0, 0, 0, 255], [10, 10, 10, 255], [20, 20, 20, 255]]);
     assert!(brush.notes.is_empty());
 }
+
 #[test]
 fn colours_and_older_and_newer_versions_are_read_too() {
     let colored = only("b.gbr", &gbr("Pepper", 1, 2, 4, 100, &[1, 2, 3, 4, 5, 6, 7, 8]));
@@ -64,13 +71,25 @@ fn colours_and_older_and_newer_versions_are_read_too() {
     assert_eq!((first.name.as_str(), first.brush.spacing), ("Old", 0.25));
     assert_eq!(texels(&tips(&first)[0]), [[9, 9, 9, 255], [200, 200, 200, 255]]);
     // CinePaint's: the upper halves of the floats 0.5 and 1.
-    let half = [&words(&[28 + 2, 3, 2, 1, 18])[..], b"GIMP", &words(&[30]), b"C\0", &[0x3f, 0x00, 0x3f, 0x80]].concat();
-    assert_eq!(texels(&tips(&only("b.gbr", &half))[0]), [[128, 128, 128, 255], [255, 255, 255, 255]]);
+    let half = [
+        &words(&[28 + 2, 3, 2, 1, 18])[..],
+        b"GIMP",
+        &words(&[30]),
+        b"C\0",
+        &[0x3f, 0x00, 0x3f, 0x80],
+    ]
+    .concat();
+    assert_eq!(
+        texels(&tips(&only("b.gbr", &half))[0]),
+        [[128, 128, 128, 255], [255, 255, 255, 255]]
+    );
 }
+
 #[test]
 fn a_grey_brush_before_a_pattern_takes_its_colours() {
     let brush = gbr("P", 2, 1, 1, 10, &[100, 200]);
-    let pattern = [&words(&[24 + 2, 1, 2, 1, 3])[..], b"GPAT", b"x\0", &[1, 2, 3, 4, 5, 6]].concat();
+    let pattern =
+        [&words(&[24 + 2, 1, 2, 1, 3])[..], b"GPAT", b"x\0", &[1, 2, 3, 4, 5, 6]].concat();
     let both = [brush, pattern].concat();
     assert_eq!(texels(&tips(&only("b.gpb.gbr", &both))[0]), [[1, 2, 3, 100], [4, 5, 6, 200]]);
 }
@@ -91,7 +110,8 @@ fn a_hose_keeps_its_pictures_and_its_rule() {
     assert_eq!(ranks, [(2, RankSelect::Angular), (2, RankSelect::Random)]);
     assert_eq!(hose.pictures()[3].file, "leaves-4.png");
     assert_eq!(texels(&hose.pictures()[2])[0], [120, 120, 120, 255]);
-    let bare = [b"x\n2\n".to_vec(), gbr("a", 1, 1, 1, 9, &[1]), gbr("b", 1, 1, 1, 9, &[2])].concat();
+    let bare =
+        [b"x\n2\n".to_vec(), gbr("a", 1, 1, 1, 9, &[1]), gbr("b", 1, 1, 1, 9, &[2])].concat();
     let Tip::Hose(hose) = only("b.gih", &bare).brush.tip else { panic!("a hose") };
     assert_eq!((hose.ranks()[0].count, hose.ranks()[0].select), (2, RankSelect::Incremental));
 }
@@ -125,7 +145,9 @@ fn a_mypaint_brush_becomes_numbers_and_what_is_added_to_them() {
         assert!((size / (2.0 * log.exp()) - 1.0).abs() < 0.01, "{pressure}: {size}");
     }
     for (pressure, opaque) in [(0.25f32, 0.05f32), (0.5, 0.1), (0.75, 0.55), (1.0, 1.0)] {
-        assert!((driven(&brush, Property::Flow, brush.flow, pressed(pressure)) - opaque).abs() < 0.01);
+        assert!(
+            (driven(&brush, Property::Flow, brush.flow, pressed(pressure)) - opaque).abs() < 0.01
+        );
     }
     assert_eq!((brush.spacing, brush.rate.per_diameter), (0.125, 2.0), "4 and 1 in a radius");
     assert!((brush.overlap - 9.1).abs() < 1e-3, "10 in a diameter, to nine tenths");
@@ -133,11 +155,14 @@ fn a_mypaint_brush_becomes_numbers_and_what_is_added_to_them() {
     assert_eq!((brush.hardness, brush.falloff), (0.5, Falloff::Peaked));
     assert!(matches!(brush.tip, Tip::Ellipse { ratio } if ratio == 0.25));
     assert_eq!(brush.rotation, 270.0, "upright");
-    assert!((brush.dynamics.added(Property::Hue, Input::Chance).unwrap().at(1.0) - 0.1).abs() < 1e-6);
+    assert!(
+        (brush.dynamics.added(Property::Hue, Input::Chance).unwrap().at(1.0) - 0.1).abs() < 1e-6
+    );
     assert_eq!(brush.stabilizer, Stabilizer::Lag { secs: 0.015 });
     assert_eq!((brush.pickup.amount, brush.pickup.length), (0.7, 0.5));
     assert!(notes.is_empty(), "{notes:?}");
 }
+
 #[test]
 fn a_mypaint_brush_that_follows_several_inputs_follows_them_all() {
     let text = r#"{ "version": 3, "settings": {
@@ -152,11 +177,15 @@ fn a_mypaint_brush_that_follows_several_inputs_follows_them_all() {
     let random = (0..=100).map(|i| chance.at(i as f32 / 100.0)).fold(0.0, f32::max);
     assert!((random - 0.1).abs() < 1e-5);
     let flow = driven(&brush, Property::Flow, brush.flow, inputs);
-    assert!((0.12..=0.38).contains(&flow), "between 0.5 (0.4 + 0.25 − 0.4) and 0.5 (0.4 + 0.25 + 0.1): {flow}");
+    assert!(
+        (0.12..=0.38).contains(&flow),
+        "between 0.5 (0.4 + 0.25 − 0.4) and 0.5 (0.4 + 0.25 + 0.1): {flow}"
+    );
     assert!((driven(&brush, Property::Elongation, 1.0, inputs) - 6.0).abs() < 1e-3);
     assert_eq!((brush.rate.per_sec, brush.cycle.hold), (80.0, 10.0));
     assert!(notes.is_empty(), "{notes:?}");
 }
+
 #[test]
 fn a_mypaint_brush_tells_what_it_uses_and_loses_and_nothing_else() {
     let text = r#"{ "version": 3, "settings": {
@@ -167,12 +196,14 @@ fn a_mypaint_brush_tells_what_it_uses_and_loses_and_nothing_else() {
     let notes = only("b.myb", text.as_bytes()).notes;
     assert_eq!(notes, ["“hardness” does not follow “gridmap_x”", "“posterize” has no counterpart"]);
 }
+
 #[test]
 fn a_key_given_twice_counts_as_it_does_in_mypaint() {
     let text = r#"{ "version": 3, "settings": { "radius_logarithmic": { "base_value": 1, "inputs": {} },
         "radius_logarithmic": { "base_value": 2, "inputs": {} } } }"#;
     assert!((only("b.myb", text.as_bytes()).brush.size - 2.0 * 2f32.exp()).abs() < 1e-3);
 }
+
 #[test]
 fn a_mypaint_brush_of_an_older_version_is_read_and_of_another_is_named() {
     let old = only("b.myb", b"radius_logarithmic 1.0 | pressure (0.0 0.0), (1.0 1.0)\nversion 2\n");
@@ -200,6 +231,7 @@ fn what_is_no_brush_gets_a_sentence() {
         assert!(said(file, bytes).contains(part), "{file}: {}", said(file, bytes));
     }
 }
+
 #[test]
 fn a_damaged_tip_is_left_out_and_the_others_stay() {
     let mut bytes = new_abr(1);
@@ -210,6 +242,7 @@ fn a_damaged_tip_is_left_out_and_the_others_stay() {
     assert_eq!(left.len(), 1);
     assert_eq!(left[0].notes, ["1 damaged brushes of the collection were left out"]);
 }
+
 #[test]
 fn damaged_files_never_panic_and_what_they_give_is_a_brush_within_its_ranges() {
     let files = [
@@ -221,10 +254,12 @@ fn damaged_files_never_panic_and_what_they_give_is_a_brush_within_its_ranges() {
         ("b.abr", new_abr(2)),
         ("c.abr", named_abr()),
     ];
-    let small = Budget { side_px: 4096, area_px: 1 << 20, document_px: 1 << 22, ..Budget::default() };
+    let small =
+        Budget { side_px: 4096, area_px: 1 << 20, document_px: 1 << 22, ..Budget::default() };
     for (seed, (file, whole)) in files.into_iter().enumerate() {
         for round in 0..3000u32 {
-            let chance = |what: u32| hash::mix(hash::mix(seed as u32 * 7919 + round) ^ hash::mix(what));
+            let chance =
+                |what: u32| hash::mix(hash::mix(seed as u32 * 7919 + round) ^ hash::mix(what));
             let mut bytes = whole.clone();
             for change in 0..1 + chance(0) % 4 {
                 let at = chance(10 + change) as usize % bytes.len();
@@ -238,14 +273,26 @@ fn damaged_files_never_panic_and_what_they_give_is_a_brush_within_its_ranges() {
                     bytes.push(0);
                 }
             }
-            for ImportedBrush { name, brush, .. } in read(Path::new(file), &bytes, &small).into_iter().flatten() {
+            for ImportedBrush { name, brush, .. } in
+                read(Path::new(file), &bytes, &small).into_iter().flatten()
+            {
                 assert!(!name.is_empty());
-                let habits = SETTINGS.iter().all(|setting| setting.range.contains(&setting.of(&brush)));
+                let habits =
+                    SETTINGS.iter().all(|setting| setting.range.contains(&setting.of(&brush)));
                 assert!(habits, "{file}, round {round}");
-                let numbers = [brush.size, brush.hardness, brush.flow, brush.spacing, brush.rotation, brush.scatter];
+                let numbers = [
+                    brush.size,
+                    brush.hardness,
+                    brush.flow,
+                    brush.spacing,
+                    brush.rotation,
+                    brush.scatter,
+                ];
                 assert!(numbers.iter().all(|v| v.is_finite()), "{file}, round {round}");
                 assert!(
-                    brush.size > 0.0 && (0.01..=100.0).contains(&brush.spacing) && (0.0..=1.0).contains(&brush.flow)
+                    brush.size > 0.0
+                        && (0.01..=100.0).contains(&brush.spacing)
+                        && (0.0..=1.0).contains(&brush.flow)
                 );
             }
         }

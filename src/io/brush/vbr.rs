@@ -20,8 +20,12 @@ struct VbrLines<'a> {
 
 impl<'a> VbrLines<'a> {
     fn next(&mut self, what: &str) -> Result<&'a str> {
-        self.lines.next().map(str::trim).ok_or_else(|| Error::decode(self.file, format!("its {what} is missing")))
+        self.lines
+            .next()
+            .map(str::trim)
+            .ok_or_else(|| Error::decode(self.file, format!("its {what} is missing")))
     }
+
     fn number(&mut self, what: &str) -> Result<f32> {
         let text = self.next(what)?;
         let number = text.parse().ok().filter(|v: &f32| v.is_finite());
@@ -39,7 +43,10 @@ pub fn read(file: &Path, bytes: &[u8]) -> Result<ImportedBrush> {
         "1.5" => true,
         _ => {
             let version: String = version.chars().filter(|c| !c.is_control()).take(20).collect();
-            return Err(Error::unsupported(file, format!("version {version} of GIMP's parametric brushes")));
+            return Err(Error::unsupported(
+                file,
+                format!("version {version} of GIMP's parametric brushes"),
+            ));
         }
     };
     let name = text_of(lines.next("name")?.as_bytes());
@@ -83,21 +90,28 @@ mod tests {
     #[test]
     fn both_versions_are_read_to_the_same_brush() {
         let first = read_text("GIMP-VBR\n1.0\nFuzzy\n25.0\n4.5\n0.5\n2.0\n30.0\n").unwrap();
-        let later = read_text("GIMP-VBR\n1.5\nFuzzy\ncircle\n25.0\n4.5\n2\n0.5\n2.0\n30.0\n").unwrap();
+        let later =
+            read_text("GIMP-VBR\n1.5\nFuzzy\ncircle\n25.0\n4.5\n2\n0.5\n2.0\n30.0\n").unwrap();
         for ImportedBrush { name, brush, notes } in [first, later] {
             assert_eq!((name.as_str(), brush.size, brush.hardness), ("Fuzzy", 9.0, 0.5));
             assert_eq!((brush.spacing, brush.rotation), (0.25, 30.0));
             assert!(matches!(brush.tip, Tip::Ellipse { ratio: 0.5 }) && notes.is_empty());
         }
     }
+
     #[test]
     fn squares_and_diamonds_have_their_corners() {
-        let shaped = |shape: &str| read_text(&format!("GIMP-VBR\n1.5\nx\n{shape}\n10\n10\n5\n1\n1\n0\n")).unwrap();
+        let shaped = |shape: &str| {
+            read_text(&format!("GIMP-VBR\n1.5\nx\n{shape}\n10\n10\n5\n1\n1\n0\n")).unwrap()
+        };
         let (square, diamond) = (shaped("square"), shaped("diamond"));
-        assert!(matches!(square.brush.tip, Tip::Square { ratio: 1.0 }) && square.brush.size == 20.0);
+        assert!(
+            matches!(square.brush.tip, Tip::Square { ratio: 1.0 }) && square.brush.size == 20.0
+        );
         assert!((diamond.brush.size - 14.142).abs() < 1e-3 && diamond.brush.rotation == 45.0);
         assert_eq!(square.notes, ["its spikes have no counterpart"]);
     }
+
     #[test]
     fn damage_is_named() {
         let said = |text: &str| read_text(text).map(|_| ()).unwrap_err().to_string();

@@ -19,19 +19,26 @@ pub struct Encoded {
     files: Vec<(PathBuf, Asset)>,
 }
 
-/// A preset as it is written to `file`; its pictures become `STEM.png`, `STEM.2.png` … in the same folder.
+/// A preset as it is written to `file`; its pictures become `STEM.png`, `STEM.2.png` … in the same
+/// folder.
 pub fn encode(file: &Path, preset: &BrushPreset) -> Result<Encoded> {
     let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let mut files: Vec<(PathBuf, Asset)> = Vec::new();
     let brush = preset.brush.with_pictures(|source| {
         let (bytes, extension) = encoded(file, source)?;
         let number = files.len() + 1;
-        let name = if number == 1 { format!("{stem}.{extension}") } else { format!("{stem}.{number}.{extension}") };
+        let name = if number == 1 {
+            format!("{stem}.{extension}")
+        } else {
+            format!("{stem}.{number}.{extension}")
+        };
         files.push((file.with_file_name(&name), bytes));
         Ok::<_, Error>(PictureSource::new(name, source.picture.clone(), source.adjust))
     })?;
     let preset = BrushPreset { brush, ..preset.clone() };
-    let text = serde_json::to_string_pretty(&write_preset(&preset)).map_err(|e| Error::unsupported(file, e))? + "\n";
+    let text = serde_json::to_string_pretty(&write_preset(&preset))
+        .map_err(|e| Error::unsupported(file, e))?
+        + "\n";
     files.push((file.into(), text.into_bytes().into()));
     Ok(Encoded { preset, files })
 }
@@ -41,11 +48,14 @@ impl Encoded {
     pub fn check(&self, terms: &Terms) -> Result<()> {
         self.files.iter().try_for_each(|(file, _)| check(&Disk, file, terms))
     }
+
     /// Writes them; none where `terms` do not allow all of them.
     pub fn write(&self, terms: &Terms) -> Result<()> {
         self.check(terms)?;
         // Never cancelled.
-        let put = |(file, bytes): &(PathBuf, Asset)| replace(&Disk, file, bytes.bytes(), terms, &Progress::default());
+        let put = |(file, bytes): &(PathBuf, Asset)| {
+            replace(&Disk, file, bytes.bytes(), terms, &Progress::default())
+        };
         self.files.iter().try_for_each(|file| put(file).map(drop))
     }
 }
@@ -53,7 +63,9 @@ impl Encoded {
 /// The pictures that a preset's file names, which are next to it.
 pub fn pictures_beside(file: &Path, preset: &BrushPreset) -> impl Iterator<Item = PathBuf> {
     let names = preset.brush.pictures().map(|source| Path::new(&source.file));
-    names.filter(|name| name.file_name() == Some(name.as_os_str())).map(|name| file.with_file_name(name))
+    names
+        .filter(|name| name.file_name() == Some(name.as_os_str()))
+        .map(|name| file.with_file_name(name))
 }
 
 /// Removes a preset's file and the pictures that it names. A missing file is no failure.
@@ -61,7 +73,9 @@ pub fn remove(file: &Path, preset: &BrushPreset) -> Result<()> {
     // The preset first: what is left then is named by nobody.
     for file in std::iter::once(file.to_owned()).chain(pictures_beside(file, preset)) {
         match std::fs::remove_file(&file) {
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(Error::io(file, error)),
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                return Err(Error::io(file, error));
+            }
             _ => {}
         }
     }
@@ -72,7 +86,11 @@ pub fn remove(file: &Path, preset: &BrushPreset) -> Result<()> {
 fn encoded(file: &Path, source: &PictureSource) -> Result<(Asset, &'static str)> {
     let picture = &source.picture;
     match &picture.texels {
-        Texels::Srgb8(texels) => pixels::encode_texels(file, texels, picture.size).map(|png| (png, "png")),
-        Texels::Linear(texels) => exr::encode_light(file, picture.size, texels).map(|exr| (exr.into(), "exr")),
+        Texels::Srgb8(texels) => {
+            pixels::encode_texels(file, texels, picture.size).map(|png| (png, "png"))
+        }
+        Texels::Linear(texels) => {
+            exr::encode_light(file, picture.size, texels).map(|exr| (exr.into(), "exr"))
+        }
     }
 }

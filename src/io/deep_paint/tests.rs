@@ -17,25 +17,30 @@ const STEPS: u32 = 4096;
 fn step(i: u32) -> u16 {
     (i * 65535 / (STEPS - 1)) as u16
 }
+
 fn encoded(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
     let mut out = Cursor::new(Vec::new());
     image.write_to(&mut out, format).unwrap();
     out.into_inner()
 }
+
 /// A ramp whose steps a byte cannot tell apart, rising in red and falling in green.
 fn ramp() -> DynamicImage {
     let pixel = |x: u32, _| Rgba([step(x), step(STEPS - 1 - x), 0, 65535]);
     DynamicImage::ImageRgba16(ImageBuffer::from_fn(STEPS, 3, pixel))
 }
+
 fn linear_ramp() -> Vec<f32> {
     (0..STEPS * 3).map(|i| srgb::decode(f32::from(step(i % STEPS)) / 65535.0)).collect()
 }
+
 fn pixels(document: &Document, layer: usize) -> &TileGrid {
     match &document.layers[layer].content {
         Content::Pixels(pixels) => &pixels.tiles,
         _ => panic!("a paint layer"),
     }
 }
+
 /// The reds of the upper row, as a picture of 16 bits that is exported.
 fn exported(document: &Document, file: &Path) -> Vec<u16> {
     let options = ExportOptions { bits: Some(16), ..ExportOptions::default() };
@@ -44,6 +49,7 @@ fn exported(document: &Document, file: &Path) -> Vec<u16> {
     let image = image::open(file).unwrap().to_rgba16();
     image.pixels().take(image.width() as usize).map(|pixel| pixel.0[0]).collect()
 }
+
 #[track_caller]
 fn assert_ramp(found: &[u16], what: &str) {
     assert_eq!(found.len(), STEPS as usize, "{what}");
@@ -82,6 +88,7 @@ fn a_ramp_of_4096_steps_is_the_same_in_every_format_and_in_a_project() {
         assert!(bits(&again.document) == bits(&opened.document), "{name} in a project");
     }
 }
+
 #[test]
 fn a_picture_of_8_bits_takes_no_more_than_its_bytes() {
     let folder = tempfile::tempdir().unwrap();
@@ -95,7 +102,8 @@ fn a_picture_of_8_bits_takes_no_more_than_its_bytes() {
     assert!(found.to_straight_rgba(rect) == wanted.to_straight_rgba(rect));
     assert_eq!(found.bytes(), wanted.bytes());
     // Values in 16 bits that bytes hold too.
-    let opaque = ImageBuffer::from_fn(200, 130, |x, y| Rgb([257 * (x as u16), 257 * (y as u16), 0]));
+    let opaque =
+        ImageBuffer::from_fn(200, 130, |x, y| Rgb([257 * (x as u16), 257 * (y as u16), 0]));
     let file = folder.path().join("c.png");
     std::fs::write(&file, encoded(&DynamicImage::ImageRgb16(opaque), ImageFormat::Png)).unwrap();
     assert_eq!(deep_tiles(&open(&file, &Budget::default()).unwrap().document), [0]);
@@ -104,7 +112,9 @@ fn a_picture_of_8_bits_takes_no_more_than_its_bytes() {
 /// Files of 512 × 512 pixels of noise, whose 16 bits take 3.1 MB and whose bytes take 1.0 MB.
 fn noise() -> Vec<(&'static str, Vec<u8>)> {
     let value = |x: u32, y: u32, c: u32| (hash::unit(x, y, c) * 65536.0) as u16;
-    let noise = ImageBuffer::from_fn(512, 512, |x, y| Rgb([value(x, y, 0), value(x, y, 1), value(x, y, 2)]));
+    let noise = ImageBuffer::from_fn(512, 512, |x, y| {
+        Rgb([value(x, y, 0), value(x, y, 1), value(x, y, 2)])
+    });
     let noise = DynamicImage::ImageRgb16(noise);
     let channel = |c: u32| (0..512 * 512).map(|i| hash::unit(i, c, 5)).collect::<Vec<f32>>();
     let light = |names: [[&'static str; 3]; 2], several: usize| {
@@ -120,13 +130,15 @@ fn noise() -> Vec<(&'static str, Vec<u8>)> {
         ("two.exr", light(names, 2)),
     ]
 }
+
 #[test]
 fn what_does_not_fit_in_16_bits_is_read_with_8_and_a_note_says_so() {
     let folder = tempfile::tempdir().unwrap();
     for (name, bytes) in noise() {
         let file = folder.path().join(name);
         std::fs::write(&file, bytes).unwrap();
-        let OpenedDocument { document: whole, notes, is_whole, .. } = open(&file, &Budget::default()).unwrap();
+        let OpenedDocument { document: whole, notes, is_whole, .. } =
+            open(&file, &Budget::default()).unwrap();
         assert!(is_whole && notes.iter().all(|note| !note.contains("memory")), "{name}: {notes:?}");
         let held: usize = (0..whole.layers.len()).map(|i| pixels(&whole, i).bytes()).sum();
         assert!(held > 3_140_000 * whole.layers.len(), "{name}: {held} bytes");
@@ -134,13 +146,17 @@ fn what_does_not_fit_in_16_bits_is_read_with_8_and_a_note_says_so() {
         let decoded = if name.ends_with("tif") { 1_200_000 } else { 0 };
         for free in [held as u64 - 1 + decoded, held as u64 + 1_000_000 + decoded / 4] {
             let little = Budget { memory_bytes: free, ..Budget::default() };
-            let opened = open(&file, &little).unwrap_or_else(|e| panic!("{name}, {free} bytes: {e}"));
+            let opened =
+                open(&file, &little).unwrap_or_else(|e| panic!("{name}, {free} bytes: {e}"));
             assert_eq!(opened.notes.last().map(String::as_str), Some(NOTE), "{name}, {free} bytes");
             assert!(!opened.is_whole);
             for i in 0..whole.layers.len() {
                 let (found, wanted) = (pixels(&opened.document, i), pixels(&whole, i));
                 assert!(!found.is_deep_in(found.bounds()), "{name}");
-                assert!(wanted.iter().all(|(at, tile)| found.tile(at).unwrap().bytes() == tile.bytes()), "{name}");
+                assert!(
+                    wanted.iter().all(|(at, tile)| found.tile(at).unwrap().bytes() == tile.bytes()),
+                    "{name}"
+                );
             }
         }
         let less = Budget { memory_bytes: 700_000, ..Budget::default() };
@@ -148,6 +164,7 @@ fn what_does_not_fit_in_16_bits_is_read_with_8_and_a_note_says_so() {
         assert_eq!(said.remedy(), Some(Remedy::MoreMemory), "{name}: {said}");
     }
 }
+
 #[test]
 fn a_project_whose_16_bits_do_not_fit_opens_with_8_and_is_not_whole() {
     let folder = tempfile::tempdir().unwrap();
@@ -159,12 +176,19 @@ fn a_project_whose_16_bits_do_not_fit_opens_with_8_and_is_not_whole() {
     // Too little to flatten it, and too little to hold it.
     for free in [held.used().total(), held.used().total() / 2] {
         let opened = open(&file, &Budget { memory_bytes: free, ..Budget::default() }).unwrap();
-        assert_eq!((opened.notes.as_slice(), opened.is_whole), (&[NOTE.to_owned()][..], false), "{free} bytes");
+        assert_eq!(
+            (opened.notes.as_slice(), opened.is_whole),
+            (&[NOTE.to_owned()][..], false),
+            "{free} bytes"
+        );
         assert_eq!(deep_tiles(&opened.document), [0; 4], "{free} bytes");
         for (layer, was) in opened.document.layers.iter().zip(&document.layers) {
             if let (Content::Pixels(now), Content::Pixels(was)) = (&layer.content, &was.content) {
                 let rect = was.tiles.bounds().union(now.tiles.bounds());
-                assert!(now.tiles.to_straight_rgba(rect) == was.tiles.to_straight_rgba(rect), "{free} bytes");
+                assert!(
+                    now.tiles.to_straight_rgba(rect) == was.tiles.to_straight_rgba(rect),
+                    "{free} bytes"
+                );
             }
         }
     }

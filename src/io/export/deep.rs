@@ -1,8 +1,10 @@
-//! Pictures of more than 8 bits: PNG and TIFF of 16, EXR of half floats or whole ones, from what was composed without
-//! rounding. Floor 5.
+//! Pictures of more than 8 bits: PNG and TIFF of 16, EXR of half floats or whole ones, from what
+//! was composed without rounding. Floor 5.
 
 use super::{ExportFormat, ExportOptions, png};
-use crate::document::{Document, Highlights, Progress, flatten, flatten_deep, flatten_rounding_once};
+use crate::document::{
+    Document, Highlights, Progress, flatten, flatten_deep, flatten_rounding_once,
+};
 use crate::math::{Size, srgb};
 use crate::project::Cancellable;
 use crate::{Budget, Error, Result};
@@ -10,8 +12,8 @@ use image::DynamicImage;
 use std::io::Cursor;
 use std::path::Path;
 
-/// The bytes of a picture file of a document, with 8 bits or more as requested; `None` if cancelled. `file` is for
-/// messages.
+/// The bytes of a picture file of a document, with 8 bits or more as requested; `None` if
+/// cancelled. `file` is for messages.
 pub fn encode_document(
     file: &Path,
     document: &Document,
@@ -21,16 +23,27 @@ pub fn encode_document(
 ) -> Cancellable<Vec<u8>> {
     let format = ExportFormat::of(file)?;
     if format.bits(file, options.bits)? == 8 {
-        // Without room for textures of floats, layers are rounded to bytes one by one, as on the screen.
-        let is_exact = budget.room(file, "a picture that is rounded once", document.deep_bytes()).is_ok();
-        let pixels = if is_exact { flatten_rounding_once(document, progress) } else { flatten(document, progress) };
-        return pixels.map(|pixels| super::encode(file, format, &pixels, document.size, options)).transpose();
+        // Without room for textures of floats, layers are rounded to bytes one by one, as on the
+        // screen.
+        let is_exact =
+            budget.room(file, "a picture that is rounded once", document.deep_bytes()).is_ok();
+        let pixels = if is_exact {
+            flatten_rounding_once(document, progress)
+        } else {
+            flatten(document, progress)
+        };
+        return pixels
+            .map(|pixels| super::encode(file, format, &pixels, document.size, options))
+            .transpose();
     }
-    let Some(pixels) = flattened(file, document, highlights(format), budget, progress)? else { return Ok(None) };
+    let Some(pixels) = flattened(file, document, highlights(format), budget, progress)? else {
+        return Ok(None);
+    };
     encode(file, format, &pixels, document.size, options).map(Some)
 }
 
-/// A document flattened without rounding, if there is memory for it and for its file; `None` if cancelled.
+/// A document flattened without rounding, if there is memory for it and for its file; `None` if
+/// cancelled.
 pub(super) fn flattened(
     file: &Path,
     document: &Document,
@@ -38,7 +51,8 @@ pub(super) fn flattened(
     budget: &Budget,
     progress: &Progress,
 ) -> Cancellable<Vec<[f32; 4]>> {
-    let asked = document.size.area() as u64 * 2 * size_of::<[f32; 4]>() as u64 + document.deep_bytes();
+    let asked =
+        document.size.area() as u64 * 2 * size_of::<[f32; 4]>() as u64 + document.deep_bytes();
     budget.room(file, "a picture of more than 8 bits", asked)?;
     Ok(flatten_deep(document, highlights, progress))
 }
@@ -48,7 +62,8 @@ fn highlights(format: ExportFormat) -> Highlights {
     if format == ExportFormat::Exr { Highlights::Kept } else { Highlights::Clipped }
 }
 
-/// The bytes of a picture file, of pixels as [`crate::document::flatten_deep`] gives them; `file` is for messages.
+/// The bytes of a picture file, of pixels as [`crate::document::flatten_deep`] gives them; `file`
+/// is for messages.
 ///
 /// Fails for formats of 8 bits.
 pub fn encode(
@@ -63,14 +78,17 @@ pub fn encode(
         return Err(Error::unsupported(file, "the part to be written holds no pixels"));
     }
     let size = Size::new(rect.width() as u32, rect.height() as u32);
-    let rows = pixels.chunks_exact(canvas.width as usize).skip(rect.y0 as usize).take(rect.height());
+    let rows =
+        pixels.chunks_exact(canvas.width as usize).skip(rect.y0 as usize).take(rect.height());
     let part = rows.flat_map(|row| row.iter().skip(rect.x0 as usize).take(rect.width()));
     let under = options.background.map_or([0.0; 4], |color| color.premultiplied());
     let part: Vec<[f32; 4]> = part.map(|&[r, g, b, a]| over([r, g, b, a], under)).collect();
     match format {
         ExportFormat::Png => {
-            let values: Vec<u8> = part.iter().flat_map(straight16).flat_map(u16::to_be_bytes).collect();
-            png([values].into_iter(), size, png::BitDepth::Sixteen, options).map_err(|e| Error::unsupported(file, e))
+            let values: Vec<u8> =
+                part.iter().flat_map(straight16).flat_map(u16::to_be_bytes).collect();
+            png([values].into_iter(), size, png::BitDepth::Sixteen, options)
+                .map_err(|e| Error::unsupported(file, e))
         }
         ExportFormat::Tiff => {
             let values = part.iter().flat_map(straight16).collect();
@@ -81,9 +99,10 @@ pub fn encode(
             let bits = format.bits(file, options.bits)?;
             exr(size, bits, |i| light(&part[i])).map_err(|e| Error::unsupported(file, e))
         }
-        ExportFormat::Jpeg | ExportFormat::WebP => {
-            Err(Error::unsupported(file, "this format has 8 bits a channel; PNG, TIFF and EXR have more"))
-        }
+        ExportFormat::Jpeg | ExportFormat::WebP => Err(Error::unsupported(
+            file,
+            "this format has 8 bits a channel; PNG, TIFF and EXR have more",
+        )),
     }
 }
 
@@ -103,7 +122,9 @@ fn straight16(&[r, g, b, a]: &[f32; 4]) -> [u16; 4] {
 pub(super) fn tiff(file: &Path, image: Option<DynamicImage>) -> Result<Vec<u8>> {
     let mut bytes = Cursor::new(Vec::new());
     let image = image.ok_or_else(|| Error::unsupported(file, "the picture holds no pixels"))?;
-    image.write_to(&mut bytes, image::ImageFormat::Tiff).map_err(|e| Error::unsupported(file, e))?;
+    image
+        .write_to(&mut bytes, image::ImageFormat::Tiff)
+        .map_err(|e| Error::unsupported(file, e))?;
     Ok(bytes.into_inner())
 }
 
@@ -117,26 +138,37 @@ pub(super) fn exr(
 ) -> Result<Vec<u8>, exr::error::Error> {
     use exr::prelude::*;
     // Lines are written in order, so that the bytes do not depend on the threads.
-    let encoding =
-        Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
-    let (extent, attributes) = ((size.width as usize, size.height as usize), LayerAttributes::default());
+    let encoding = Encoding {
+        compression: Compression::ZIP16,
+        blocks: Blocks::ScanLines,
+        line_order: LineOrder::Increasing,
+    };
+    let (extent, attributes) =
+        ((size.width as usize, size.height as usize), LayerAttributes::default());
     let light = |at: Vec2<usize>| light(at.y() * extent.0 + at.x());
     let mut bytes = Cursor::new(Vec::new());
     if bits == 32 {
-        let channels = SpecificChannels::rgba(|at: Vec2<usize>| <(f32, f32, f32, f32)>::from(light(at)));
-        Image::from_layer(Layer::new(extent, attributes, encoding, channels)).write().to_buffered(&mut bytes)?;
+        let channels =
+            SpecificChannels::rgba(|at: Vec2<usize>| <(f32, f32, f32, f32)>::from(light(at)));
+        Image::from_layer(Layer::new(extent, attributes, encoding, channels))
+            .write()
+            .to_buffered(&mut bytes)?;
     } else {
         let half = |at: Vec2<usize>| <(f16, f16, f16, f16)>::from(light(at).map(f16::from_f32));
         let channels = SpecificChannels::rgba(half);
-        Image::from_layer(Layer::new(extent, attributes, encoding, channels)).write().to_buffered(&mut bytes)?;
+        Image::from_layer(Layer::new(extent, attributes, encoding, channels))
+            .write()
+            .to_buffered(&mut bytes)?;
     }
     Ok(bytes.into_inner())
 }
 
-/// Linear light, multiplied by alpha, of an encoded premultiplied pixel; limited to what a half float can hold.
+/// Linear light, multiplied by alpha, of an encoded premultiplied pixel; limited to what a half
+/// float can hold.
 pub(super) fn light(&[r, g, b, a]: &[f32; 4]) -> [f32; 4] {
     const HALF_MAX: f32 = 65504.0;
-    let light = |v: f32| if a > 0.0 { (srgb::decode((v / a).max(0.0)) * a).min(HALF_MAX) } else { 0.0 };
+    let light =
+        |v: f32| if a > 0.0 { (srgb::decode((v / a).max(0.0)) * a).min(HALF_MAX) } else { 0.0 };
     [light(r), light(g), light(b), a]
 }
 
@@ -154,53 +186,83 @@ mod tests {
         let size = Size::new(512, 2);
         ((0..1024).map(|i| [(i % 512) as f32 / 1022.0, 0.25, 0.0, 0.5]).collect(), size)
     }
+
     #[test]
     fn sixteen_bits_keep_what_eight_would_round() {
         let (pixels, size) = ramp();
         for (format, name) in [(ExportFormat::Png, "a.png"), (ExportFormat::Tiff, "a.tif")] {
-            let bytes = encode(Path::new(name), format, &pixels, size, &ExportOptions::default()).unwrap();
+            let bytes =
+                encode(Path::new(name), format, &pixels, size, &ExportOptions::default()).unwrap();
             let image = image::load_from_memory(&bytes).unwrap().to_rgba16();
             let [r, g, b, a] = image.get_pixel(100, 1).0;
-            assert_eq!([r, g, b, a], [(100.0 / 511.0 * 65535.0f32).round() as u16, 32768, 0, 32768], "{name}");
+            assert_eq!(
+                [r, g, b, a],
+                [(100.0 / 511.0 * 65535.0f32).round() as u16, 32768, 0, 32768],
+                "{name}"
+            );
         }
     }
+
     #[test]
     fn a_gradient_of_4096_pixels_has_4000_levels_in_every_deep_file() {
         let document = gradient_4096();
-        let distinct = |values: Vec<u32>| values.into_iter().collect::<std::collections::BTreeSet<u32>>().len();
+        let distinct = |values: Vec<u32>| {
+            values.into_iter().collect::<std::collections::BTreeSet<u32>>().len()
+        };
         let written = |name: &str, bits| {
             let options = ExportOptions { bits: Some(bits), ..ExportOptions::default() };
             let (file, budget) = (Path::new(name), Budget::default());
-            encode_document(file, &document, &options, &budget, &Progress::default()).unwrap().unwrap()
+            encode_document(file, &document, &options, &budget, &Progress::default())
+                .unwrap()
+                .unwrap()
         };
         for name in ["a.png", "a.tif"] {
             let image = image::load_from_memory(&written(name, 16)).unwrap().to_rgba16();
             let found = distinct(image.pixels().take(4096).map(|p| p.0[0].into()).collect());
             assert!(found >= 4000, "{name}: {found}");
-            assert_eq!(image::load_from_memory(&written(name, 8)).unwrap().color(), image::ColorType::Rgba8);
+            assert_eq!(
+                image::load_from_memory(&written(name, 8)).unwrap().color(),
+                image::ColorType::Rgba8
+            );
         }
         for bits in [16, 32] {
-            let read = picture::decode(Path::new("a.exr"), &written("a.exr", bits), &Budget::default()).unwrap();
+            let read =
+                picture::decode(Path::new("a.exr"), &written("a.exr", bits), &Budget::default())
+                    .unwrap();
             let found = distinct((0..4096).map(|x| read.linear_at(x, 0)[0].to_bits()).collect());
             assert!(found >= 4000, "EXR of {bits} bits: {found}");
         }
         let options = ExportOptions { bits: Some(32), ..ExportOptions::default() };
-        let said = encode_document(Path::new("a.png"), &document, &options, &Budget::default(), &Progress::default());
+        let said = encode_document(
+            Path::new("a.png"),
+            &document,
+            &options,
+            &Budget::default(),
+            &Progress::default(),
+        );
         assert!(said.unwrap_err().to_string().contains("has 8 or 16 bits a channel, not 32"));
     }
+
     #[test]
     fn an_airbrush_over_sixty_strokes_has_ten_times_the_levels_in_16_bits() {
         let document = crate::project::sample::softly_painted();
         let written = |bits| {
             let options = ExportOptions { bits: Some(bits), ..ExportOptions::default() };
             let (file, budget) = (Path::new("a.png"), Budget::default());
-            let bytes = encode_document(file, &document, &options, &budget, &Progress::default()).unwrap().unwrap();
+            let bytes = encode_document(file, &document, &options, &budget, &Progress::default())
+                .unwrap()
+                .unwrap();
             let image = image::load_from_memory(&bytes).unwrap().to_rgba16();
-            image.pixels().map(|pixel| pixel.0[0]).collect::<std::collections::BTreeSet<u16>>().len()
+            image
+                .pixels()
+                .map(|pixel| pixel.0[0])
+                .collect::<std::collections::BTreeSet<u16>>()
+                .len()
         };
         let (of_16, of_8) = (written(16), written(8));
         assert!(of_16 >= 10 * of_8, "{of_16} levels, and {of_8} in bytes");
     }
+
     fn gradient_4096() -> Document {
         let stop = |t, color| GradientStop { t, color };
         let gradient = Gradient {
@@ -215,23 +277,27 @@ mod tests {
         let layer = Layer::new("gradient", Content::Gradient(Live::new(gradient)));
         Document { layers: vec![layer.into()], ..Document::empty(Size::new(4096, 2)) }
     }
+
     #[test]
     fn an_exr_keeps_light_that_is_brighter_than_white() {
         let size = Size::new(2, 1);
         let pixels = [[srgb::encode(9.0), 0.5, 0.0, 1.0], [srgb::encode(9.0) * 0.5, 0.0, 0.0, 0.5]];
         for bits in [16, 32] {
             let options = ExportOptions { bits: Some(bits), ..ExportOptions::default() };
-            let bytes = encode(Path::new("a.exr"), ExportFormat::Exr, &pixels, size, &options).unwrap();
+            let bytes =
+                encode(Path::new("a.exr"), ExportFormat::Exr, &pixels, size, &options).unwrap();
             let read = picture::decode(Path::new("a.exr"), &bytes, &Budget::default()).unwrap();
             for x in 0..2 {
                 assert!((read.linear_at(x, 0)[0] - 9.0).abs() < 0.01, "{:?}", read.linear_at(x, 0));
             }
         }
     }
+
     #[test]
     fn an_exr_holds_linear_light_of_the_part_that_was_asked_for() {
         let (pixels, size) = ramp();
-        let options = ExportOptions { crop: Some(Rect::new(100, 1, 200, 9)), ..ExportOptions::default() };
+        let options =
+            ExportOptions { crop: Some(Rect::new(100, 1, 200, 9)), ..ExportOptions::default() };
         let bytes = encode(Path::new("a.exr"), ExportFormat::Exr, &pixels, size, &options).unwrap();
         let read = picture::decode(Path::new("a.exr"), &bytes, &Budget::default()).unwrap();
         assert_eq!(read.size, Size::new(100, 1));

@@ -1,5 +1,6 @@
-//! A document as a multilayer EXR: one group of channels a layer, and the surface's normals and depth.
-//! Floor 5. Names and conventions are those that compositing programs expect: `LAYER.R`, `normal.X`, `depth.Z`.
+//! A document as a multilayer EXR: one group of channels a layer, and the surface's normals and
+//! depth. Floor 5. Names and conventions are those that compositing programs expect: `LAYER.R`,
+//! `normal.X`, `depth.Z`.
 
 use super::deep::{flattened, light};
 use crate::document::{Document, Highlights, Progress};
@@ -11,8 +12,9 @@ use std::collections::BTreeSet;
 use std::io::Cursor;
 use std::path::Path;
 
-/// The bytes of the EXR; `None` if cancelled. The whole picture is in R, G, B and A; colours are linear floats of 16
-/// or 32 `bits`, multiplied by alpha, each layer with its own opacity and mask; normals and depth have 32 bits.
+/// The bytes of the EXR; `None` if cancelled. The whole picture is in R, G, B and A; colours are
+/// linear floats of 16 or 32 `bits`, multiplied by alpha, each layer with its own opacity and mask;
+/// normals and depth have 32 bits.
 pub fn encode(
     file: &Path,
     document: &Document,
@@ -29,14 +31,23 @@ pub fn encode(
     let mut taken = BTreeSet::from(["normal".to_owned(), "depth".to_owned()]);
     for (_, layer) in document.walk() {
         if layer.visible && layer.content.paints() {
-            let Some(pixels) = document.with_only(&[layer.id]).map_or(Ok(None), |alone| seen(&alone))? else {
+            let Some(pixels) =
+                document.with_only(&[layer.id]).map_or(Ok(None), |alone| seen(&alone))?
+            else {
                 return Ok(None);
             };
-            push_picture(&mut channels, &format!("{}.", free_name(&layer.name, &mut taken)), pixels, bits);
+            push_picture(
+                &mut channels,
+                &format!("{}.", free_name(&layer.name, &mut taken)),
+                pixels,
+                bits,
+            );
         }
     }
     if let Some(surface) = document.surface.as_deref() {
-        let pixels = || (0..size.height as usize).flat_map(|y| (0..size.width as usize).map(move |x| (x, y)));
+        let pixels = || {
+            (0..size.height as usize).flat_map(|y| (0..size.width as usize).map(move |x| (x, y)))
+        };
         for (c, name) in ["normal.X", "normal.Y", "normal.Z"].into_iter().enumerate() {
             let values = pixels().map(|(x, y)| surface.normal(x, y)[c]).collect();
             channels.push(AnyChannel::new(name, FlatSamples::F32(values)));
@@ -47,7 +58,12 @@ pub fn encode(
     written(size, channels).map(Some).map_err(|e| Error::unsupported(file, e))
 }
 
-fn push_picture(channels: &mut Vec<AnyChannel<FlatSamples>>, prefix: &str, mut pixels: Vec<[f32; 4]>, bits: u8) {
+fn push_picture(
+    channels: &mut Vec<AnyChannel<FlatSamples>>,
+    prefix: &str,
+    mut pixels: Vec<[f32; 4]>,
+    bits: u8,
+) {
     pixels.iter_mut().for_each(|pixel| *pixel = light(pixel));
     for (c, name) in ["R", "G", "B", "A"].into_iter().enumerate() {
         let values = pixels.iter().map(|p| p[c]);
@@ -69,11 +85,22 @@ fn free_name(name: &str, taken: &mut BTreeSet<String>) -> String {
     free.unwrap_or(plain)
 }
 
-fn written(size: Size, channels: Vec<AnyChannel<FlatSamples>>) -> Result<Vec<u8>, exr::error::Error> {
-    let encoding =
-        Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
+fn written(
+    size: Size,
+    channels: Vec<AnyChannel<FlatSamples>>,
+) -> Result<Vec<u8>, exr::error::Error> {
+    let encoding = Encoding {
+        compression: Compression::ZIP16,
+        blocks: Blocks::ScanLines,
+        line_order: LineOrder::Increasing,
+    };
     let extent = (size.width as usize, size.height as usize);
-    let layer = Layer::new(extent, LayerAttributes::default(), encoding, AnyChannels::sort(channels.into()));
+    let layer = Layer::new(
+        extent,
+        LayerAttributes::default(),
+        encoding,
+        AnyChannels::sort(channels.into()),
+    );
     let mut bytes = Cursor::new(Vec::new());
     Image::from_layer(layer).write().to_buffered(&mut bytes)?;
     Ok(bytes.into_inner())
@@ -88,15 +115,19 @@ mod tests {
     fn every_visible_layer_and_the_surface_have_channels() {
         let document = everything(32);
         let bytes =
-            encode(Path::new("a.exr"), &document, 16, &Budget::default(), &Progress::default()).unwrap().unwrap();
+            encode(Path::new("a.exr"), &document, 16, &Budget::default(), &Progress::default())
+                .unwrap()
+                .unwrap();
         let budget = Budget::default();
         let file = ExrFile::open(Path::new("a.exr"), &bytes, &budget).unwrap();
-        let names: Vec<&str> = file.channels().iter().map(|channel| channel.name.as_str()).collect();
+        let names: Vec<&str> =
+            file.channels().iter().map(|channel| channel.name.as_str()).collect();
         for name in ["R", "A", "ground.R", "photo.B", "lit.A", "normal.X", "normal.Z", "depth.Z"] {
             assert!(names.contains(&name), "{name} in {names:?}");
         }
         assert!(!names.iter().any(|name| name.starts_with("hidden")));
     }
+
     #[test]
     fn names_are_told_apart() {
         let mut taken = BTreeSet::new();

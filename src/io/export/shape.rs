@@ -1,5 +1,5 @@
-//! The maps of a shape as files for engines and other programs: normals, depth, height, mask and parts.
-//! Floor 5. PNG keeps the coverage as alpha; EXR holds the numbers as they are.
+//! The maps of a shape as files for engines and other programs: normals, depth, height, mask and
+//! parts. Floor 5. PNG keeps the coverage as alpha; EXR holds the numbers as they are.
 
 use super::OutputFile;
 use crate::Terms;
@@ -35,11 +35,20 @@ pub struct ShapeFiles {
 }
 
 impl ShapeFiles {
-    /// `base`: the folder and the name that the suffixes are added to; an ending that pictures have is left out.
-    pub fn new(base: &Path, maps: &[ShapeMap], options: ShapeOptions, terms: &Terms) -> Result<Self> {
+    /// `base`: the folder and the name that the suffixes are added to; an ending that pictures have
+    /// is left out.
+    pub fn new(
+        base: &Path,
+        maps: &[ShapeMap],
+        options: ShapeOptions,
+        terms: &Terms,
+    ) -> Result<Self> {
         let extension = if options.is_exr { "exr" } else { "png" };
-        let known = |ending: &std::ffi::OsStr| ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known));
-        let stem = if base.extension().is_some_and(known) { base.file_stem() } else { base.file_name() };
+        let known = |ending: &std::ffi::OsStr| {
+            ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known))
+        };
+        let stem =
+            if base.extension().is_some_and(known) { base.file_stem() } else { base.file_name() };
         let stem = stem.unwrap_or_default().to_string_lossy();
         let target = |map: &ShapeMap| {
             let file = base.with_file_name(format!("{stem}{}.{extension}", map.name()));
@@ -47,6 +56,7 @@ impl ShapeFiles {
         };
         Ok(Self { targets: maps.iter().map(target).collect::<Result<_>>()?, options })
     }
+
     /// Writes them; their paths.
     pub fn write(&self, surface: &Surface) -> Result<Vec<PathBuf>> {
         let write = |(map, file, target): &(ShapeMap, PathBuf, OutputFile)| {
@@ -58,7 +68,8 @@ impl ShapeFiles {
 }
 
 /// Extensions of the files that shapes are made from and written to.
-const ENDINGS: [&str; 10] = ["png", "exr", "ora", "psd", "jpg", "jpeg", "webp", "tif", "tiff", "json"];
+const ENDINGS: [&str; 10] =
+    ["png", "exr", "ora", "psd", "jpg", "jpeg", "webp", "tif", "tiff", "json"];
 
 /// How maps are written.
 #[derive(Clone, Copy, Debug)]
@@ -72,7 +83,12 @@ pub struct ShapeOptions {
 }
 
 /// The bytes of one map; `file` is for messages.
-pub fn encode(file: &Path, surface: &Surface, map: ShapeMap, options: &ShapeOptions) -> Result<Vec<u8>> {
+pub fn encode(
+    file: &Path,
+    surface: &Surface,
+    map: ShapeMap,
+    options: &ShapeOptions,
+) -> Result<Vec<u8>> {
     if options.is_exr {
         return exr(file, surface, map, options);
     }
@@ -106,7 +122,8 @@ pub fn encode(file: &Path, surface: &Surface, map: ShapeMap, options: &ShapeOpti
         }
         ShapeMap::Normals if options.is_deep => {
             let texels = (0..count).map(texel);
-            let bytes = texels.flat_map(|([r, g, b], a)| [r, g, b, a].into_iter().flat_map(sixteen));
+            let bytes =
+                texels.flat_map(|([r, g, b], a)| [r, g, b, a].into_iter().flat_map(sixteen));
             png(file, &bytes.collect::<Vec<u8>>(), surface.size(), ExtendedColorType::Rgba16)
         }
         ShapeMap::Normals => {
@@ -114,7 +131,8 @@ pub fn encode(file: &Path, surface: &Surface, map: ShapeMap, options: &ShapeOpti
             png(file, &bytes.collect::<Vec<u8>>(), surface.size(), ExtendedColorType::Rgba8)
         }
         ShapeMap::Depth | ShapeMap::Height if options.is_deep => {
-            let bytes = (0..count).map(texel).flat_map(|([v, ..], a)| [v, a].into_iter().flat_map(sixteen));
+            let bytes =
+                (0..count).map(texel).flat_map(|([v, ..], a)| [v, a].into_iter().flat_map(sixteen));
             png(file, &bytes.collect::<Vec<u8>>(), surface.size(), ExtendedColorType::La16)
         }
         ShapeMap::Depth | ShapeMap::Height => {
@@ -145,7 +163,9 @@ fn sixteen(v: f32) -> [u8; 2] {
 fn png(file: &Path, bytes: &[u8], size: Size, color: ExtendedColorType) -> Result<Vec<u8>> {
     let mut out = Cursor::new(Vec::new());
     let encoder = PngEncoder::new(&mut out);
-    encoder.write_image(bytes, size.width, size.height, color).map_err(|e| Error::unsupported(file, e))?;
+    encoder
+        .write_image(bytes, size.width, size.height, color)
+        .map_err(|e| Error::unsupported(file, e))?;
     Ok(out.into_inner())
 }
 
@@ -164,7 +184,9 @@ fn exr(file: &Path, surface: &Surface, map: ShapeMap, options: &ShapeOptions) ->
             ("N.Z", plane(&|x, y| surface.normal(x, y).z)),
         ],
         ShapeMap::Depth => vec![("Z", plane(&|x, y| surface.depth(x, y)))],
-        ShapeMap::Height => vec![("Y", plane(&|x, y| (1.0 - surface.depth(x, y)) * surface.depth_range_px()))],
+        ShapeMap::Height => {
+            vec![("Y", plane(&|x, y| (1.0 - surface.depth(x, y)) * surface.depth_range_px()))]
+        }
         ShapeMap::Mask => vec![("Y", alpha.clone())],
         ShapeMap::Parts => vec![("Y", plane(&|x, y| part(surface, x, y) as f32))],
     };
@@ -184,10 +206,13 @@ mod tests {
         relief.add(&form, Combine::Over, 7);
         relief.into_surface(&mut crate::surface::KnownNearest::default()).unwrap()
     }
+
     fn written(map: ShapeMap, is_directx: bool, is_deep: bool) -> image::DynamicImage {
         let options = ShapeOptions { is_directx, is_deep, is_exr: false };
-        image::load_from_memory(&encode(Path::new("a.png"), &ball(), map, &options).unwrap()).unwrap()
+        image::load_from_memory(&encode(Path::new("a.png"), &ball(), map, &options).unwrap())
+            .unwrap()
     }
+
     #[test]
     fn normals_have_their_green_where_the_engine_wants_it_and_keep_alpha() {
         for (is_directx, above) in [(false, 191u8..=220), (true, 35..=64)] {
@@ -199,6 +224,7 @@ mod tests {
         let deep = written(ShapeMap::Normals, false, true).into_rgba16();
         assert_eq!(deep.get_pixel(32, 24).0[3], 65535);
     }
+
     #[test]
     fn depth_is_low_where_height_is_high_and_parts_keep_their_numbers() {
         let depth = written(ShapeMap::Depth, false, true).into_luma_alpha16();
@@ -207,6 +233,7 @@ mod tests {
         assert_eq!(written(ShapeMap::Parts, false, false).into_luma16().get_pixel(32, 24).0[0], 7);
         assert_eq!(written(ShapeMap::Mask, false, false).into_luma8().get_pixel(32, 24).0[0], 255);
     }
+
     #[test]
     fn files_are_named_after_the_drawing_and_none_is_written_where_one_is_in_the_way() {
         let folder = tempfile::tempdir().unwrap();
@@ -214,7 +241,8 @@ mod tests {
         let maps = ShapeMap::ALL.map(|(map, _)| map);
         let terms = Terms::export(crate::Overwrite::Nothing, Vec::new());
         let names = |base: &str| {
-            let files = ShapeFiles::new(&folder.path().join(base), &maps, options, &terms)?.write(&ball())?;
+            let files = ShapeFiles::new(&folder.path().join(base), &maps, options, &terms)?
+                .write(&ball())?;
             let name = |file: &PathBuf| file.file_name().unwrap().to_string_lossy().into_owned();
             Ok::<Vec<String>, crate::Error>(files.iter().map(name).collect())
         };
@@ -225,6 +253,7 @@ mod tests {
         std::fs::remove_file(folder.path().join("snail_id.png")).unwrap();
         assert_eq!(names("snail.png").unwrap(), all);
     }
+
     #[test]
     fn an_exr_holds_normals_that_are_read_back() {
         let options = ShapeOptions { is_directx: false, is_deep: false, is_exr: true };

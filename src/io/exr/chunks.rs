@@ -1,11 +1,15 @@
-//! The chunks of an EXR: found by walking the file, checked, then decoded in parallel. Floor 5. The walk does not trust
-//! the file's numbers: it finds every chunk and verifies that none is missing before any pixel is allocated.
+//! The chunks of an EXR: found by walking the file, checked, then decoded in parallel. Floor 5. The
+//! walk does not trust the file's numbers: it finds every chunk and verifies that none is missing
+//! before any pixel is allocated.
 
 use super::guarded;
 use crate::{Error, Result};
 use exr::block::{
     UncompressedBlock,
-    chunk::{Chunk as CrateChunk, CompressedBlock, CompressedScanLineBlock, CompressedTileBlock, TileCoordinates},
+    chunk::{
+        Chunk as CrateChunk, CompressedBlock, CompressedScanLineBlock, CompressedTileBlock,
+        TileCoordinates,
+    },
 };
 use exr::math::Vec2;
 use exr::meta::{BlockDescription, MetaData, header::Header};
@@ -24,13 +28,20 @@ pub struct Chunk {
 impl Chunk {
     /// The rows of the display window that it holds some of, those of a whole block.
     pub fn rows(&self, header: &Header) -> Range<i64> {
-        let (data, display) = (header.own_attributes.layer_position, header.shared_attributes.display_window.position);
+        let (data, display) = (
+            header.own_attributes.layer_position,
+            header.shared_attributes.display_window.position,
+        );
         let (top, rows) = match (self.place, header.blocks) {
-            (ChunkPlace::Rows { y }, _) => (i64::from(y), header.compression.scan_lines_per_block()),
+            (ChunkPlace::Rows { y }, _) => {
+                (i64::from(y), header.compression.scan_lines_per_block())
+            }
             (ChunkPlace::Tile { y, .. }, BlockDescription::Tiles(tiles)) => {
                 (i64::from(data.y()) + (y * tiles.tile_size.y()) as i64, tiles.tile_size.y())
             }
-            (ChunkPlace::Tile { .. }, BlockDescription::ScanLines) => (i64::from(data.y()), header.layer_size.y()),
+            (ChunkPlace::Tile { .. }, BlockDescription::ScanLines) => {
+                (i64::from(data.y()), header.layer_size.y())
+            }
         };
         let top = top - i64::from(display.y());
         top..top + rows as i64
@@ -66,19 +77,31 @@ pub fn walk(file: &Path, bytes: &[u8], header_end: usize, meta: &MetaData) -> Re
     let total: usize = meta.headers.iter().fold(0, |sum, h| h.chunk_count.saturating_add(sum));
     let tables = total.saturating_mul(8).saturating_add(header_end);
     if tables > bytes.len() {
-        return Err(Error::decode(file, format!("the EXR promises {total} chunks but ends at byte {}", bytes.len())));
+        return Err(Error::decode(
+            file,
+            format!("the EXR promises {total} chunks but ends at byte {}", bytes.len()),
+        ));
     }
     let mut words = WordReader { bytes, at: tables };
-    let mut seen: Vec<Vec<bool>> = meta.headers.iter().map(|h| vec![false; full_blocks(h)]).collect();
+    let mut seen: Vec<Vec<bool>> =
+        meta.headers.iter().map(|h| vec![false; full_blocks(h)]).collect();
     let mut chunks = Vec::new();
     for number in 0..total {
         // Smaller copies of the picture are not read; some programs promise them and write none.
         if words.at == bytes.len() && seen.iter().flatten().all(|&s| s) {
             break;
         }
-        let cut = || Error::decode(file, format!("the EXR ends in chunk {} of {total}; it is cut short", number + 1));
-        let bad = || Error::decode(file, format!("chunk {} of {total} of the EXR is damaged", number + 1));
-        let part = if meta.requirements.has_multiple_layers { words.next().ok_or_else(cut)? } else { 0 };
+        let cut = || {
+            Error::decode(
+                file,
+                format!("the EXR ends in chunk {} of {total}; it is cut short", number + 1),
+            )
+        };
+        let bad = || {
+            Error::decode(file, format!("chunk {} of {total} of the EXR is damaged", number + 1))
+        };
+        let part =
+            if meta.requirements.has_multiple_layers { words.next().ok_or_else(cut)? } else { 0 };
         let part = usize::try_from(part).map_err(|_| bad())?;
         let header = meta.headers.get(part).ok_or_else(bad)?;
         let (place, block) = match header.blocks {
@@ -102,8 +125,13 @@ pub fn walk(file: &Path, bytes: &[u8], header_end: usize, meta: &MetaData) -> Re
         let body = bytes.get(range.clone()).ok_or_else(cut)?;
         words.at = range.end;
         let Some(place) = place else { continue };
-        if matches!(header.compression, Compression::DWAA(_) | Compression::DWAB(_)) && !dwa_is_sane(header, body) {
-            return Err(Error::decode(file, format!("chunk {} of {total} claims impossible DWA sizes", number + 1)));
+        if matches!(header.compression, Compression::DWAA(_) | Compression::DWAB(_))
+            && !dwa_is_sane(header, body)
+        {
+            return Err(Error::decode(
+                file,
+                format!("chunk {} of {total} claims impossible DWA sizes", number + 1),
+            ));
         }
         let first_time = seen.get_mut(part).and_then(|s| s.get_mut(block)).ok_or_else(bad)?;
         *first_time = true;
@@ -115,7 +143,8 @@ pub fn walk(file: &Path, bytes: &[u8], header_end: usize, meta: &MetaData) -> Re
     Ok(chunks)
 }
 
-/// Blocks that make up the full resolution. Bounded by the chunk count the file has proved to have room for.
+/// Blocks that make up the full resolution. Bounded by the chunk count the file has proved to have
+/// room for.
 fn full_blocks(header: &Header) -> usize {
     let size = header.layer_size;
     match header.blocks {
@@ -127,7 +156,8 @@ fn full_blocks(header: &Header) -> usize {
 }
 
 fn scan_block(header: &Header, y: i32) -> Option<usize> {
-    let row = usize::try_from(i64::from(y) - i64::from(header.own_attributes.layer_position.y())).ok()?;
+    let row =
+        usize::try_from(i64::from(y) - i64::from(header.own_attributes.layer_position.y())).ok()?;
     let rows = header.compression.scan_lines_per_block();
     (row < header.layer_size.y() && row % rows == 0).then_some(row / rows)
 }
@@ -141,17 +171,25 @@ fn tile_block(header: &Header, x: usize, y: usize) -> Option<usize> {
 
 /// Whether a DWA chunk's counters are plausible: the decoder sizes its memory by them.
 ///
-/// No section holds more than a few times the block's raw bytes, and the compressed sections fit into the chunk.
+/// No section holds more than a few times the block's raw bytes, and the compressed sections fit
+/// into the chunk.
 fn dwa_is_sane(header: &Header, body: &[u8]) -> bool {
     let block = header.max_block_pixel_size();
-    let raw = (block.x() as u64 * block.y() as u64).saturating_mul(header.channels.bytes_per_pixel as u64);
+    let raw = (block.x() as u64 * block.y() as u64)
+        .saturating_mul(header.channels.bytes_per_pixel as u64);
     if body.is_empty() || body.len() as u64 == raw {
         return true;
     }
-    let counter =
-        |i: usize| body.get(i * 8..).and_then(|b| b.first_chunk::<8>()).map_or(u64::MAX, |b| u64::from_le_bytes(*b));
-    // Padding to 8 × 8 blocks can make a thin block's sections many times its raw bytes: 64 samples at least a channel.
-    let room = raw.saturating_mul(4).saturating_add(64 * 16 * header.channels.list.len() as u64 * 8) + (1 << 16);
+    let counter = |i: usize| {
+        body.get(i * 8..)
+            .and_then(|b| b.first_chunk::<8>())
+            .map_or(u64::MAX, |b| u64::from_le_bytes(*b))
+    };
+    // Padding to 8 × 8 blocks can make a thin block's sections many times its raw bytes: 64 samples
+    // at least a channel.
+    let room =
+        raw.saturating_mul(4).saturating_add(64 * 16 * header.channels.list.len() as u64 * 8)
+            + (1 << 16);
     let inflated = [counter(1), counter(6), counter(7), counter(8), counter(9)];
     let stored = [counter(2), counter(3), counter(4), counter(5)];
     inflated.iter().all(|&v| v <= room) && stored.iter().all(|&v| v <= body.len() as u64)
@@ -171,7 +209,9 @@ pub fn decode(
             .par_iter()
             .map(|chunk| {
                 let chunk = crate_chunk(chunk, bytes.get(chunk.bytes.clone()).unwrap_or_default());
-                guarded(file, "pixel data", || UncompressedBlock::decompress_chunk(chunk, meta, false))
+                guarded(file, "pixel data", || {
+                    UncompressedBlock::decompress_chunk(chunk, meta, false)
+                })
             })
             .collect();
         for block in blocks {
@@ -184,9 +224,10 @@ pub fn decode(
 fn crate_chunk(chunk: &Chunk, body: &[u8]) -> CrateChunk {
     let compressed_pixels_le = body.to_vec();
     let compressed_block = match chunk.place {
-        ChunkPlace::Rows { y } => {
-            CompressedBlock::ScanLine(CompressedScanLineBlock { y_coordinate: y, compressed_pixels_le })
-        }
+        ChunkPlace::Rows { y } => CompressedBlock::ScanLine(CompressedScanLineBlock {
+            y_coordinate: y,
+            compressed_pixels_le,
+        }),
         ChunkPlace::Tile { x, y } => CompressedBlock::Tile(CompressedTileBlock {
             coordinates: TileCoordinates { tile_index: Vec2(x, y), level_index: Vec2(0, 0) },
             compressed_pixels_le,

@@ -38,9 +38,11 @@ pub struct ExrPass {
 impl ExrPass {
     /// The channels with these lower-case letters, or `None` where one is missing.
     pub fn letters(&self, letters: &str) -> Option<Vec<usize>> {
-        let find = |c: char| self.suffixes.iter().position(|s| *s == Some(c)).map(|i| self.channels[i]);
+        let find =
+            |c: char| self.suffixes.iter().position(|s| *s == Some(c)).map(|i| self.channels[i]);
         letters.chars().map(find).collect()
     }
+
     /// The pass's name without the prefixes of view layers, lower case, letters and digits only.
     pub fn key(&self) -> String {
         let last = self.name.rsplit('.').next().unwrap_or("");
@@ -53,8 +55,8 @@ fn text(name: &Text) -> String {
     String::from_utf8_lossy(name.bytes()).into_owned()
 }
 
-/// Every channel of every part. A part's name leads a channel's where the channel alone has no layer, or where two
-/// parts have a channel of that name.
+/// Every channel of every part. A part's name leads a channel's where the channel alone has no
+/// layer, or where two parts have a channel of that name.
 pub fn channels(meta: &MetaData) -> Vec<ExrChannel> {
     let several = meta.headers.len() > 1;
     let all = || meta.headers.iter().flat_map(|h| h.channels.list.iter().map(|c| text(&c.name)));
@@ -63,8 +65,10 @@ pub fn channels(meta: &MetaData) -> Vec<ExrChannel> {
         let part_name = header.own_attributes.layer_name.as_ref().map(text).unwrap_or_default();
         for (index, channel) in header.channels.list.iter().enumerate() {
             let own = text(&channel.name);
-            let ambiguous = several && (!own.contains('.') || all().filter(|n| *n == own).count() > 1);
-            let name = if ambiguous && !part_name.is_empty() { format!("{part_name}.{own}") } else { own };
+            let ambiguous =
+                several && (!own.contains('.') || all().filter(|n| *n == own).count() > 1);
+            let name =
+                if ambiguous && !part_name.is_empty() { format!("{part_name}.{own}") } else { own };
             let kind = match channel.sample_type {
                 SampleType::F16 => "half",
                 SampleType::F32 => "float",
@@ -76,19 +80,23 @@ pub fn channels(meta: &MetaData) -> Vec<ExrChannel> {
     out
 }
 
-/// Groups channels by the text before the last dot; a name without a known suffix is a pass by itself.
+/// Groups channels by the text before the last dot; a name without a known suffix is a pass by
+/// itself.
 pub fn passes(channels: &[ExrChannel]) -> Vec<ExrPass> {
     let mut out: Vec<ExrPass> = Vec::new();
     for (i, channel) in channels.iter().enumerate() {
         let (layer, end) = channel.name.rsplit_once('.').unwrap_or(("", &channel.name));
-        let letter = SUFFIXES.iter().find(|(name, _)| end.eq_ignore_ascii_case(name)).map(|(_, c)| *c);
+        let letter =
+            SUFFIXES.iter().find(|(name, _)| end.eq_ignore_ascii_case(name)).map(|(_, c)| *c);
         let name = if letter.is_some() { layer } else { &channel.name };
         match out.iter_mut().find(|p| p.name == name) {
             Some(pass) => {
                 pass.suffixes.push(letter);
                 pass.channels.push(i);
             }
-            None => out.push(ExrPass { name: name.into(), suffixes: vec![letter], channels: vec![i] }),
+            None => {
+                out.push(ExrPass { name: name.into(), suffixes: vec![letter], channels: vec![i] })
+            }
         }
     }
     out

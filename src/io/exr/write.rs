@@ -9,20 +9,36 @@ use std::path::Path;
 
 /// Straight linear light as R, G, B and A; colours are stored multiplied by alpha, as EXR has them.
 pub fn encode_light(file: &Path, size: Size, texels: &[[f32; 4]]) -> Result<Vec<u8>> {
-    let channel = |c: usize| texels.iter().map(move |t| if c < 3 { t[c] * t[3] } else { t[3] }).collect();
-    encode_channels(file, size, vec![("R", channel(0)), ("G", channel(1)), ("B", channel(2)), ("A", channel(3))])
+    let channel =
+        |c: usize| texels.iter().map(move |t| if c < 3 { t[c] * t[3] } else { t[3] }).collect();
+    encode_channels(
+        file,
+        size,
+        vec![("R", channel(0)), ("G", channel(1)), ("B", channel(2)), ("A", channel(3))],
+    )
 }
 
 /// Any channels of 32 bits, one value a pixel, row by row.
-pub fn encode_channels(file: &Path, size: Size, channels: Vec<(&str, Vec<f32>)>) -> Result<Vec<u8>> {
-    let channels = channels.into_iter().map(|(name, values)| AnyChannel::new(name, FlatSamples::F32(values)));
+pub fn encode_channels(
+    file: &Path,
+    size: Size,
+    channels: Vec<(&str, Vec<f32>)>,
+) -> Result<Vec<u8>> {
+    let channels =
+        channels.into_iter().map(|(name, values)| AnyChannel::new(name, FlatSamples::F32(values)));
     // Lines in order: the bytes do not depend on which thread is done first.
-    let encoding =
-        Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
+    let encoding = Encoding {
+        compression: Compression::ZIP16,
+        blocks: Blocks::ScanLines,
+        line_order: LineOrder::Increasing,
+    };
     let extent = (size.width as usize, size.height as usize);
     let channels = AnyChannels::sort(channels.collect());
     let layer = Layer::new(extent, LayerAttributes::default(), encoding, channels);
     let mut bytes = Cursor::new(Vec::new());
-    Image::from_layer(layer).write().to_buffered(&mut bytes).map_err(|e| Error::unsupported(file, e))?;
+    Image::from_layer(layer)
+        .write()
+        .to_buffered(&mut bytes)
+        .map_err(|e| Error::unsupported(file, e))?;
     Ok(bytes.into_inner())
 }

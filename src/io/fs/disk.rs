@@ -16,6 +16,7 @@ impl FileHandle for File {
     fn sync(&mut self) -> io::Result<()> {
         self.sync_all()
     }
+
     fn hold(&mut self) -> io::Result<bool> {
         match self.try_lock() {
             Ok(()) => Ok(true),
@@ -31,25 +32,32 @@ impl Fs for Disk {
     fn create_new(&self, path: &Path) -> io::Result<Box<dyn FileHandle>> {
         Ok(Box::new(OpenOptions::new().write(true).create_new(true).open(path)?))
     }
+
     fn open(&self, path: &Path) -> io::Result<Box<dyn FileHandle>> {
         Ok(Box::new(File::open(path)?))
     }
+
     fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
         std::fs::rename(from, to)
     }
+
     fn link(&self, from: &Path, to: &Path) -> io::Result<()> {
         std::fs::hard_link(from, to)
     }
+
     fn remove(&self, path: &Path) -> io::Result<()> {
         std::fs::remove_file(path)
     }
+
     fn sync_dir(&self, folder: &Path) -> io::Result<()> {
         // Elsewhere a folder cannot be opened, and its entries are written through.
         if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
     }
+
     fn resolve(&self, path: &Path) -> io::Result<PathBuf> {
         std::fs::canonicalize(path)
     }
+
     fn found(&self, path: &Path) -> io::Result<Option<EntryKind>> {
         let kind = match std::fs::symlink_metadata(path) {
             Ok(data) => data.file_type(),
@@ -63,24 +71,30 @@ impl Fs for Disk {
             _ => EntryKind::Other,
         }))
     }
+
     fn list(&self, folder: &Path) -> io::Result<Vec<PathBuf>> {
         let entries: io::Result<Vec<_>> = std::fs::read_dir(folder)?.collect();
         let mut paths: Vec<PathBuf> = entries?.into_iter().map(|entry| entry.path()).collect();
         paths.sort();
         Ok(paths)
     }
+
     fn create_folder(&self, folder: &Path) -> io::Result<()> {
         std::fs::create_dir_all(folder)
     }
+
     fn copy_ownership(&self, from: &Path, to: &Path) -> io::Result<()> {
         ownership::copy(from, to)
     }
+
     fn is_same_owner(&self, one: &Path, other: &Path) -> io::Result<bool> {
         ownership::is_same(one, other)
     }
+
     fn identity(&self, path: &Path) -> io::Result<Option<Identity>> {
         ownership::identity(path)
     }
+
     fn is_read_only(&self, path: &Path) -> io::Result<bool> {
         if std::fs::metadata(path)?.permissions().readonly() {
             return Ok(true);
@@ -89,15 +103,20 @@ impl Fs for Disk {
         let tried = OpenOptions::new().write(true).open(path);
         Ok(tried.is_err_and(|e| e.kind() == io::ErrorKind::PermissionDenied))
     }
+
     fn token(&self) -> u64 {
         static COUNT: AtomicU64 = AtomicU64::new(0);
         // A hasher's keys come from the system's own randomness.
-        RandomState::new().hash_one((COUNT.fetch_add(1, Ordering::Relaxed), std::time::SystemTime::now()))
+        RandomState::new()
+            .hash_one((COUNT.fetch_add(1, Ordering::Relaxed), std::time::SystemTime::now()))
     }
+
     fn lock(&self, path: &Path) -> io::Result<Option<Box<dyn FileLock>>> {
-        let mut file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
+        let mut file =
+            OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
         Ok(if file.hold()? { Some(Box::new(file)) } else { None })
     }
+
     fn pause(&self, time: Duration) {
         std::thread::sleep(time);
     }
@@ -121,13 +140,16 @@ mod ownership {
         let has_owner = old.uid() == new.uid() || chown(to, Some(old.uid()), None).is_ok();
         let has_group = old.gid() == new.gid() || chown(to, None, Some(old.gid())).is_ok();
         let rights = old.mode() & RIGHTS;
-        // A different group gets no more than everybody; a different owner keeps what is needed to read back the file.
+        // A different group gets no more than everybody; a different owner keeps what is needed to
+        // read back the file.
         let rights = if has_group { rights } else { rights & !GROUP | (rights & 0o007) << 3 };
         set_permissions(to, Permissions::from_mode(if has_owner { rights } else { rights | 0o400 }))
     }
+
     pub fn is_same(one: &Path, other: &Path) -> io::Result<bool> {
         Ok(metadata(one)?.uid() == metadata(other)?.uid())
     }
+
     pub fn identity(path: &Path) -> io::Result<Option<Identity>> {
         let found = metadata(path)?;
         Ok(Some(Identity { device: found.dev(), number: found.ino() }))
@@ -144,10 +166,12 @@ mod ownership {
     pub fn copy(from: &Path, to: &Path) -> io::Result<()> {
         set_permissions(to, metadata(from)?.permissions())
     }
+
     /// Folders there do not keep everybody to their own files.
     pub fn is_same(_: &Path, _: &Path) -> io::Result<bool> {
         Ok(true)
     }
+
     /// Only the resolved paths can be compared.
     pub fn identity(_: &Path) -> io::Result<Option<Identity>> {
         Ok(None)

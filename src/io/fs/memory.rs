@@ -1,7 +1,7 @@
 //! A disk in memory for tests: it can fail at any operation, and lose power at any moment.
 //!
-//! Power cut, harsher than any real disk: bytes written since a file's last sync may be lost from any point on; of a
-//! folder's changes since its last sync any may be missing, each by itself.
+//! Power cut, harsher than any real disk: bytes written since a file's last sync may be lost from
+//! any point on; of a folder's changes since its last sync any may be missing, each by itself.
 
 mod handles;
 mod power;
@@ -36,7 +36,8 @@ pub struct DiskState {
     held: BTreeSet<usize>,
     operations: usize,
     has_no_links: bool,
-    /// Another user's files, which in a folder where everybody keeps their own nobody else may rename or remove.
+    /// Another user's files, which in a folder where everybody keeps their own nobody else may
+    /// rename or remove.
     others: BTreeSet<usize>,
     read_only: BTreeSet<PathBuf>,
     tokens: u64,
@@ -69,6 +70,7 @@ impl MemoryFs {
     fn state(&self) -> MutexGuard<'_, DiskState> {
         self.0.lock().unwrap()
     }
+
     /// A disk that has these files for certain.
     pub fn with(files: &[(&str, &[u8])]) -> Self {
         let memory = MemoryFs::default();
@@ -82,35 +84,44 @@ impl MemoryFs {
         drop(state);
         memory
     }
+
     pub fn fail(&self, failure: InjectedFailure) {
         self.state().failing = Some(failure);
     }
+
     /// From now on a file has one name.
     pub fn refuse_links(&self) {
         self.state().has_no_links = true;
     }
+
     /// Gives a file to another user.
     pub fn give_away(&self, name: &str) {
         let mut state = self.state();
         let inode = state.names[Path::new(name)];
         state.others.insert(inode);
     }
+
     pub fn set_read_only(&self, name: &str) {
         self.state().read_only.insert(name.into());
     }
+
     /// As another process would count that began as this one did.
     pub fn repeat_tokens(&self) {
         self.state().tokens = 0;
     }
+
     pub fn heal(&self) {
         self.state().failing = None;
     }
+
     pub fn operations(&self) -> usize {
         self.state().operations
     }
+
     pub fn record(&self) {
         self.state().history = Some(Vec::new());
     }
+
     /// The disk as it was before each operation since [`MemoryFs::record`], and as it is.
     pub fn moments(&self) -> Vec<DiskState> {
         let mut state = self.state();
@@ -118,13 +129,16 @@ impl MemoryFs {
         moments.push(state.clone());
         moments
     }
+
     pub fn file(&self, name: &str) -> Option<Vec<u8>> {
         let state = self.state();
         state.names.get(Path::new(name)).map(|inode| state.inodes[*inode].bytes.clone())
     }
+
     pub fn names(&self) -> Vec<String> {
         self.state().names.keys().map(|name| name.display().to_string()).collect()
     }
+
     /// Counts one more operation, which fails if it is its turn.
     fn turn(&self) -> io::Result<Option<InjectedError>> {
         let mut state = self.state();
@@ -142,22 +156,27 @@ impl MemoryFs {
             _ => Ok(None),
         }
     }
+
     fn handle(&self, inode: usize) -> Box<dyn FileHandle> {
         Box::new(OpenInode { memory: self.clone(), inode, at: 0, holds: false })
     }
+
     fn inode(&self, path: &Path) -> io::Result<usize> {
         self.state().names.get(path).copied().ok_or_else(|| io::ErrorKind::NotFound.into())
     }
+
     /// Fails where nobody but a file's owner may take its name away.
     fn may_move(&self, inode: usize) -> io::Result<()> {
         let is_others = self.state().others.contains(&inode);
         if is_others { Err(io::ErrorKind::PermissionDenied.into()) } else { Ok(()) }
     }
+
     /// Fails where a name is too long for a disk.
     fn may_name(path: &Path) -> io::Result<()> {
         let length = path.file_name().map_or(0, |name| name.len());
         if length > 255 { Err(io::ErrorKind::InvalidFilename.into()) } else { Ok(()) }
     }
+
     fn change(&self, change: NameChange) {
         let mut state = self.state();
         apply(&mut state.names, &change);
@@ -189,10 +208,12 @@ impl Fs for MemoryFs {
         self.change(vec![(path.into(), Some(inode))]);
         Ok(self.handle(inode))
     }
+
     fn open(&self, path: &Path) -> io::Result<Box<dyn FileHandle>> {
         self.turn()?;
         Ok(self.handle(self.inode(path)?))
     }
+
     fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
         self.turn()?;
         Self::may_name(to)?;
@@ -206,6 +227,7 @@ impl Fs for MemoryFs {
         self.change(vec![(from.into(), None), (to.into(), Some(inode))]);
         Ok(())
     }
+
     fn link(&self, from: &Path, to: &Path) -> io::Result<()> {
         self.turn()?;
         if self.state().has_no_links {
@@ -219,6 +241,7 @@ impl Fs for MemoryFs {
         self.change(vec![(to.into(), Some(inode))]);
         Ok(())
     }
+
     fn remove(&self, path: &Path) -> io::Result<()> {
         self.turn()?;
         let inode = self.inode(path)?;
@@ -226,6 +249,7 @@ impl Fs for MemoryFs {
         self.change(vec![(path.into(), None)]);
         Ok(())
     }
+
     fn sync_dir(&self, folder: &Path) -> io::Result<()> {
         self.turn()?;
         let mut state = self.state();
@@ -236,6 +260,7 @@ impl Fs for MemoryFs {
         state.pending = kept;
         Ok(())
     }
+
     fn resolve(&self, path: &Path) -> io::Result<PathBuf> {
         self.turn()?;
         let is_folder = self.state().names.keys().any(|name| name.parent() == Some(path));
@@ -244,45 +269,66 @@ impl Fs for MemoryFs {
         }
         self.inode(path).map(|_| path.into())
     }
+
     fn found(&self, path: &Path) -> io::Result<Option<EntryKind>> {
         self.turn()?;
-        let is_folder = self.state().names.keys().any(|name| name != path && name.starts_with(path));
-        Ok(if is_folder { Some(EntryKind::Folder) } else { self.inode(path).ok().map(|_| EntryKind::File) })
+        let is_folder =
+            self.state().names.keys().any(|name| name != path && name.starts_with(path));
+        Ok(if is_folder {
+            Some(EntryKind::Folder)
+        } else {
+            self.inode(path).ok().map(|_| EntryKind::File)
+        })
     }
+
     fn list(&self, folder: &Path) -> io::Result<Vec<PathBuf>> {
         self.turn()?;
-        Ok(self.state().names.keys().filter(|name| name.parent() == Some(folder)).cloned().collect())
+        Ok(self
+            .state()
+            .names
+            .keys()
+            .filter(|name| name.parent() == Some(folder))
+            .cloned()
+            .collect())
     }
+
     fn create_folder(&self, _: &Path) -> io::Result<()> {
         self.turn().map(drop)
     }
+
     fn copy_ownership(&self, _: &Path, _: &Path) -> io::Result<()> {
         self.turn().map(drop)
     }
+
     fn is_same_owner(&self, one: &Path, other: &Path) -> io::Result<bool> {
         self.turn()?;
         let [one, other] = [self.inode(one)?, self.inode(other)?];
         let state = self.state();
         Ok(state.others.contains(&one) == state.others.contains(&other))
     }
+
     fn identity(&self, path: &Path) -> io::Result<Option<Identity>> {
         self.turn()?;
         self.inode(path).map(|inode| Some(Identity { device: 0, number: inode as u64 }))
     }
+
     fn is_read_only(&self, path: &Path) -> io::Result<bool> {
         self.turn()?;
         self.inode(path)?;
         Ok(self.state().read_only.contains(path))
     }
+
     fn token(&self) -> u64 {
         let mut state = self.state();
         state.tokens += 1;
         state.tokens
     }
+
     fn lock(&self, path: &Path) -> io::Result<Option<Box<dyn FileLock>>> {
         self.turn()?;
         let is_free = self.state().locked.insert(path.into());
         Ok(if is_free { Some(Box::new(MemoryLock(self.clone(), path.into()))) } else { None })
     }
+
     fn pause(&self, _: Duration) {}
 }

@@ -1,5 +1,6 @@
-//! The operations that saving and recovery need from a disk, as a trait, so that failing disks and power cuts can be
-//! tested. Floor 5. [`Disk`] is the real one. Tests have one in memory that fails, or forgets what was not synced.
+//! The operations that saving and recovery need from a disk, as a trait, so that failing disks and
+//! power cuts can be tested. Floor 5. [`Disk`] is the real one. Tests have one in memory that
+//! fails, or forgets what was not synced.
 
 mod disk;
 #[cfg(test)]
@@ -32,11 +33,13 @@ pub trait Fs: Send + Sync {
     fn list(&self, folder: &Path) -> io::Result<Vec<PathBuf>>;
     /// Makes a folder, and those around it.
     fn create_folder(&self, folder: &Path) -> io::Result<()>;
-    /// Gives a file the owner, the group and the permissions of another, as far as the system allows.
+    /// Gives a file the owner, the group and the permissions of another, as far as the system
+    /// allows.
     fn copy_ownership(&self, from: &Path, to: &Path) -> io::Result<()>;
     /// Both files belong to the same user.
     fn is_same_owner(&self, one: &Path, other: &Path) -> io::Result<bool>;
-    /// Identity of the file at a path, links followed: the same for each of its names. `None` if the system cannot say.
+    /// Identity of the file at a path, links followed: the same for each of its names. `None` if
+    /// the system cannot say.
     fn identity(&self, path: &Path) -> io::Result<Option<Identity>>;
     /// Nobody, or not this user, may write to the file.
     fn is_read_only(&self, path: &Path) -> io::Result<bool>;
@@ -49,10 +52,11 @@ pub trait Fs: Send + Sync {
 
 /// An open file.
 pub trait FileHandle: Read + Write + Send {
-    /// Returns once the file's bytes are on the disk. It is never retried after a failure: the system may have dropped
-    /// the bytes.
+    /// Returns once the file's bytes are on the disk. It is never retried after a failure: the
+    /// system may have dropped the bytes.
     fn sync(&mut self) -> io::Result<()>;
-    /// Holds the file as long as the handle and the process live; false where another handle holds it.
+    /// Holds the file as long as the handle and the process live; false where another handle holds
+    /// it.
     fn hold(&mut self) -> io::Result<bool>;
 }
 

@@ -25,47 +25,59 @@ impl<'a> JsonNode<'a> {
     pub fn root(file: &'a Path, value: &'a Value) -> Self {
         Self { file, path: String::new(), value, ranged: true }
     }
-    /// A value that is not from a file, whose numbers need only be finite: `Document::fits` refuses later what does not
-    /// fit.
+
+    /// A value that is not from a file, whose numbers need only be finite: `Document::fits` refuses
+    /// later what does not fit.
     pub fn unranged(value: &'a Value) -> Self {
         Self { file: Path::new(""), path: String::new(), value, ranged: false }
     }
+
     pub fn is_ranged(&self) -> bool {
         self.ranged
     }
+
     fn holds(&self, range: &RangeInclusive<f32>, number: f32) -> bool {
         if self.ranged { range.contains(&number) } else { number.is_finite() }
     }
+
     /// Path of the value, such as `layers[2].operator.gamma`.
     pub fn path(&self) -> &str {
         &self.path
     }
+
     pub fn value(&self) -> &'a Value {
         self.value
     }
+
     /// A refusal of this value.
     pub fn refused(&self, reason: impl ToString) -> Error {
         Error::invalid(self.file, self.field(), reason)
     }
+
     /// Whether a refusal with this field is of the value itself, not of one within it.
     pub fn is_at(&self, field: &str) -> bool {
         field == self.field()
     }
+
     fn field(&self) -> &str {
         if self.path.is_empty() { "the document" } else { &self.path }
     }
+
     /// A refusal of more than there may be.
     pub fn too_large(&self, reason: impl ToString) -> Error {
         Error::too_large(self.file, format!("{} {}", self.path, reason.to_string()))
     }
+
     /// The path of a list item that is stored in another form than as a JSON value.
     pub fn item(&self, i: usize) -> JsonNode<'a> {
         JsonNode { path: format!("{}[{i}]", self.path), value: &Value::Null, ..*self }
     }
+
     /// Names this value in a failure that it led to.
     pub fn led_to(&self, error: Error) -> Error {
         Error::At { file: self.file.into(), field: self.path.clone(), error: Box::new(error) }
     }
+
     fn wrong_kind(&self, wanted: &str) -> Error {
         let is = match self.value {
             Value::Null => "null",
@@ -77,11 +89,13 @@ impl<'a> JsonNode<'a> {
         };
         self.refused(format!("is {is}; it must be {wanted}"))
     }
+
     /// An object, field by field.
     pub fn fields(&self) -> Result<Fields<'a>> {
         let map = self.value.as_object().ok_or_else(|| self.wrong_kind("an object"))?;
         Ok(Fields { node: self.clone(), map, known: Vec::new() })
     }
+
     /// A list of at most `most` items.
     pub fn list(&self, most: usize) -> Result<Vec<JsonNode<'a>>> {
         let items = self.value.as_array().ok_or_else(|| self.wrong_kind("a list"))?;
@@ -92,20 +106,30 @@ impl<'a> JsonNode<'a> {
         let item = |(i, value)| JsonNode { path: format!("{}[{i}]", self.path), value, ..*self };
         Ok(items.iter().enumerate().map(item).collect())
     }
+
     /// A list of `least` to `most` numbers, as one point, vector or reading.
-    pub fn numbers(&self, least: usize, most: usize, range: RangeInclusive<f32>) -> Result<Vec<f32>> {
+    pub fn numbers(
+        &self,
+        least: usize,
+        most: usize,
+        range: RangeInclusive<f32>,
+    ) -> Result<Vec<f32>> {
         let items = self.value.as_array().ok_or_else(|| self.wrong_kind("a list of numbers"))?;
         if !(least..=most).contains(&items.len()) {
-            let wanted = if least == most { format!("{most}") } else { format!("{least} to {most}") };
+            let wanted =
+                if least == most { format!("{most}") } else { format!("{least} to {most}") };
             return Err(self.refused(format!("has {} items; it must have {wanted}", items.len())));
         }
-        let quick = items.iter().map(|item| item.as_f64().map(|v| v as f32).filter(|v| self.holds(&range, *v)));
+        let quick = items
+            .iter()
+            .map(|item| item.as_f64().map(|v| v as f32).filter(|v| self.holds(&range, *v)));
         if let Some(values) = quick.collect() {
             return Ok(values);
         }
         // Only a refusal needs the path of each number.
         self.list(most)?.iter().map(|item| item.number(range.clone())).collect()
     }
+
     pub fn number(&self, range: RangeInclusive<f32>) -> Result<f32> {
         let number = self.value.as_f64().ok_or_else(|| self.wrong_kind("a number"))?;
         let (low, high) = (*range.start(), *range.end());
@@ -115,43 +139,57 @@ impl<'a> JsonNode<'a> {
         }
         Ok(number as f32)
     }
+
     /// A number as it is written, not rounded to f32.
     pub fn exact_number(&self, range: RangeInclusive<f32>) -> Result<f64> {
         self.number(range).map(|rounded| self.value.as_f64().unwrap_or(f64::from(rounded)))
     }
+
     pub fn integer(&self, range: RangeInclusive<i64>) -> Result<i64> {
         let number = self.value.as_f64().ok_or_else(|| self.wrong_kind("a whole number"))?;
         // 12.0 is a whole number too: other programs write it so.
         let whole = (number.fract() == 0.0).then_some(number as i64);
-        let whole = whole.ok_or_else(|| self.refused(format!("is {number}; it must be a whole number")))?;
+        let whole =
+            whole.ok_or_else(|| self.refused(format!("is {number}; it must be a whole number")))?;
         if self.ranged && !range.contains(&whole) {
             let (low, high) = (range.start(), range.end());
             return Err(self.refused(format!("is {number}; it must be between {low} and {high}")));
         }
         Ok(whole)
     }
+
     /// A whole number from 0.
     pub fn whole(&self, range: RangeInclusive<u32>) -> Result<u32> {
         let number = self.integer(i64::from(*range.start())..=i64::from(*range.end()))?;
-        u32::try_from(number).map_err(|_| self.refused(format!("is {number}; it must be between 0 and {}", u32::MAX)))
+        u32::try_from(number).map_err(|_| {
+            self.refused(format!("is {number}; it must be between 0 and {}", u32::MAX))
+        })
     }
+
     pub fn boolean(&self) -> Result<bool> {
         self.value.as_bool().ok_or_else(|| self.wrong_kind("true or false"))
     }
+
     pub fn text(&self) -> Result<&'a str> {
         self.value.as_str().ok_or_else(|| self.wrong_kind("a text"))
     }
+
     /// Canvas px.
     pub fn point(&self) -> Result<Vec2> {
         self.numbers(2, 2, COORDINATE).map(|v| vec2(v[0], v[1]))
     }
+
     pub fn vector(&self, range: RangeInclusive<f32>) -> Result<Vec3> {
         self.numbers(3, 3, range).map(|v| vec3(v[0], v[1], v[2]))
     }
+
     pub fn color(&self) -> Result<Color> {
         let text = self.text()?;
-        Color::parse(text).ok_or_else(|| self.refused(format!("is “{text}”; a colour reads #rrggbb or #rrggbbaa")))
+        Color::parse(text).ok_or_else(|| {
+            self.refused(format!("is “{text}”; a colour reads #rrggbb or #rrggbbaa"))
+        })
     }
+
     /// One of the names of a table.
     pub fn one_of<T: Copy>(&self, table: &[(T, &str)]) -> Result<T> {
         let text = self.text()?;
@@ -163,7 +201,8 @@ impl<'a> JsonNode<'a> {
     }
 }
 
-/// The fields of one object. Each is read by name; [`Fields::finish`] refuses those that were never read.
+/// The fields of one object. Each is read by name; [`Fields::finish`] refuses those that were never
+/// read.
 pub struct Fields<'a> {
     node: JsonNode<'a>,
     map: &'a Map<String, Value>,
@@ -175,40 +214,62 @@ impl<'a> Fields<'a> {
     pub fn node(&self) -> &JsonNode<'a> {
         &self.node
     }
+
     /// A field, where it is there.
     pub fn get(&mut self, name: &'static str) -> Option<JsonNode<'a>> {
         self.known.push(name);
         self.map.get(name).map(|value| self.below(name, value))
     }
+
     /// A field that has no default.
     pub fn required(&mut self, name: &'static str) -> Result<JsonNode<'a>> {
         let found = self.get(name);
         found.ok_or_else(|| self.below(name, &Value::Null).refused("is missing"))
     }
+
     fn below(&self, name: &str, value: &'a Value) -> JsonNode<'a> {
         JsonNode { path: below(&self.node.path, name), value, ..self.node }
     }
-    pub fn number(&mut self, name: &'static str, default: f32, range: RangeInclusive<f32>) -> Result<f32> {
+
+    pub fn number(
+        &mut self,
+        name: &'static str,
+        default: f32,
+        range: RangeInclusive<f32>,
+    ) -> Result<f32> {
         self.get(name).map_or(Ok(default), |node| node.number(range))
     }
+
     pub fn boolean(&mut self, name: &'static str, default: bool) -> Result<bool> {
         self.get(name).map_or(Ok(default), |node| node.boolean())
     }
+
     pub fn color(&mut self, name: &'static str, default: Color) -> Result<Color> {
         self.get(name).map_or(Ok(default), |node| node.color())
     }
+
     pub fn point(&mut self, name: &'static str, default: Vec2) -> Result<Vec2> {
         self.get(name).map_or(Ok(default), |node| node.point())
     }
-    pub fn one_of<T: Copy>(&mut self, name: &'static str, table: &[(T, &str)], default: T) -> Result<T> {
+
+    pub fn one_of<T: Copy>(
+        &mut self,
+        name: &'static str,
+        table: &[(T, &str)],
+        default: T,
+    ) -> Result<T> {
         self.get(name).map_or(Ok(default), |node| node.one_of(table))
     }
+
     /// Refuses a field that was never read, naming its path and the most similar known name.
     pub fn finish(self) -> Result<()> {
-        let Some((name, value)) = self.map.iter().find(|(name, _)| !self.known.contains(&name.as_str())) else {
+        let Some((name, value)) =
+            self.map.iter().find(|(name, _)| !self.known.contains(&name.as_str()))
+        else {
             return Ok(());
         };
-        let near = self.known.iter().filter(|known| differences(known, name) <= 1 + known.len() / 4);
+        let near =
+            self.known.iter().filter(|known| differences(known, name) <= 1 + known.len() / 4);
         let reason = match near.min_by_key(|known| differences(known, name)) {
             Some(known) => format!("is unknown; did you mean “{known}”?"),
             None => format!("is unknown; known here are {}", self.known.join(", ")),
@@ -240,6 +301,7 @@ mod tests {
     fn root(value: &Value) -> Fields<'_> {
         JsonNode::root(Path::new("r.json"), value).fields().unwrap()
     }
+
     #[test]
     fn an_unknown_field_is_named_with_the_one_that_was_meant() {
         let value = json!({ "operator": { "gama": 1 } });
@@ -252,6 +314,7 @@ mod tests {
         fields.boolean("visible", true).unwrap();
         assert!(fields.finish().unwrap_err().to_string().contains("known here are visible"));
     }
+
     #[test]
     fn values_out_of_range_or_of_the_wrong_kind_are_named() {
         let value = json!({ "a": 2, "b": "x", "c": [1], "d": 1e300, "e": "#12", "f": 1.5 });
@@ -265,6 +328,7 @@ mod tests {
         says(f.get("f").unwrap().integer(0..=9).map(|_| 0.0), "a whole number");
         says(f.required("g").map(|_| 0.0), "g: is missing");
     }
+
     #[test]
     fn words_differ_by_the_letters_to_change() {
         assert_eq!(differences("gamma", "gama"), 1);

@@ -1,5 +1,6 @@
-//! JSON as documents use it: text checked before it is parsed, values read by fields that know their own path,
-//! objects written without their defaults. Floor 5. Not here: what the fields mean (`recipe`).
+//! JSON as documents use it: text checked before it is parsed, values read by fields that know
+//! their own path, objects written without their defaults. Floor 5. Not here: what the fields mean
+//! (`recipe`).
 
 pub mod fields;
 pub mod object;

@@ -1,4 +1,5 @@
-//! Writes JSON objects: the counterpart of [`super::Fields`]. Floor 5. A field with its default value is left out.
+//! Writes JSON objects: the counterpart of [`super::Fields`]. Floor 5. A field with its default
+//! value is left out.
 
 use crate::math::{Vec2, Vec3, srgb::Color};
 use serde_json::{Map, Value};
@@ -11,53 +12,69 @@ impl JsonObject {
     pub fn set(&mut self, name: &str, value: Value) {
         self.0.insert(name.to_owned(), value);
     }
+
     /// Sets a field unless it is its default; so do the next ones.
     pub fn number(&mut self, name: &str, value: f32, default: f32) {
         if value != default {
             self.set(name, number(value));
         }
     }
+
     pub fn flag(&mut self, name: &str, value: bool, default: bool) {
         if value != default {
             self.set(name, value.into());
         }
     }
+
     pub fn text(&mut self, name: &str, value: &str, default: &str) {
         if value != default {
             self.set(name, value.into());
         }
     }
+
     pub fn color(&mut self, name: &str, value: Color, default: Color) {
         if value != default {
             self.set(name, color(value));
         }
     }
+
     /// The word of a table for a value.
-    pub fn word<T: PartialEq>(&mut self, name: &str, table: &[(T, &'static str)], value: T, default: T) {
+    pub fn word<T: PartialEq>(
+        &mut self,
+        name: &str,
+        table: &[(T, &'static str)],
+        value: T,
+        default: T,
+    ) {
         if value != default
             && let Some((_, word)) = table.iter().find(|(v, _)| *v == value)
         {
             self.set(name, (*word).into());
         }
     }
+
     /// Sets a field if there is a value.
     pub fn said<T>(&mut self, name: &str, value: Option<T>, write: impl Fn(T) -> Value) {
         if let Some(value) = value {
             self.set(name, write(value));
         }
     }
+
     /// Sets an object unless it is empty.
     pub fn object(&mut self, name: &str, value: JsonObject) {
         if !value.0.is_empty() {
             self.set(name, value.done());
         }
     }
+
     pub fn fields(&self) -> &Map<String, Value> {
         &self.0
     }
+
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
+
     pub fn done(self) -> Value {
         Value::Object(self.0)
     }

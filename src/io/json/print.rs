@@ -1,14 +1,13 @@
-//! JSON as it is written to be read: an object's fields a line each, what is short on one line, so that a list of
-//! numbers takes a line and not one for each.
-//! Floor 5.
+//! JSON as it is written to be read: an object's fields a line each, what is short on one line, so
+//! that a list of numbers takes a line and not one for each. Floor 5.
 
 use serde_json::Value;
 
 /// Longest line without its indent, characters.
 const LINE: usize = 110;
 
-/// Text being built. Long lists and objects are opened, filled piece by piece and closed, so that they are never in
-/// memory as values.
+/// Text being built. Long lists and objects are opened, filled piece by piece and closed, so that
+/// they are never in memory as values.
 #[derive(Default)]
 pub struct Printer {
     text: String,
@@ -22,22 +21,27 @@ impl Printer {
         self.text.push('\n');
         self.text
     }
+
     pub fn open_object(&mut self, key: Option<&str>) {
         self.begin(key);
         self.text.push('{');
         self.open.push(false);
     }
+
     pub fn open_list(&mut self, key: Option<&str>) {
         self.begin(key);
         self.text.push('[');
         self.open.push(false);
     }
+
     pub fn close_object(&mut self) {
         self.close('}');
     }
+
     pub fn close_list(&mut self) {
         self.close(']');
     }
+
     /// A value, as a field of the object that is open, or without a key as an item of the list.
     pub fn value(&mut self, key: Option<&str>, value: &Value) {
         if let Some(line) = one_line(value) {
@@ -63,6 +67,7 @@ impl Printer {
             }
         }
     }
+
     /// Starts a new line for what comes next.
     fn begin(&mut self, key: Option<&str>) {
         if let Some(holds) = self.open.last_mut() {
@@ -75,6 +80,7 @@ impl Printer {
             self.text.push_str(": ");
         }
     }
+
     fn close(&mut self, bracket: char) {
         if self.open.pop() == Some(true) {
             self.text.push('\n');
@@ -82,6 +88,7 @@ impl Printer {
         }
         self.text.push(bracket);
     }
+
     fn indent(&mut self) {
         self.text.extend(std::iter::repeat_n("  ", self.open.len()));
     }
@@ -90,11 +97,12 @@ impl Printer {
 /// A value on one line; `None` where it is too long, or lists things that deserve a line each.
 fn one_line(value: &Value) -> Option<String> {
     let holds_more = |value: &Value| value.is_object() || value.is_array();
-    let lists_objects = value.as_array().is_some_and(|items| items.len() > 1 && items.iter().any(Value::is_object));
+    let lists_objects =
+        value.as_array().is_some_and(|items| items.len() > 1 && items.iter().any(Value::is_object));
     let is_deep = match value {
-        Value::Object(fields) => {
-            fields.values().any(|v| v.is_object() || v.as_array().is_some_and(|v| v.iter().any(holds_more)))
-        }
+        Value::Object(fields) => fields
+            .values()
+            .any(|v| v.is_object() || v.as_array().is_some_and(|v| v.iter().any(holds_more))),
         Value::Array(items) => items.iter().flat_map(children).any(holds_more),
         _ => false,
     };
@@ -160,6 +168,7 @@ mod tests {
                     { \"x\": [1] },\n    {  }\n  ]\n}\n";
         assert_eq!(printed(&value), text);
     }
+
     #[test]
     fn what_is_printed_reads_back_whatever_its_length() {
         let rows: Vec<Value> = (0..50).map(|i| json!([i, i * 2, 0.5])).collect();
@@ -169,6 +178,7 @@ mod tests {
         assert_eq!(serde_json::from_str::<Value>(&text).unwrap(), value);
         assert!(text.lines().count() < 80, "a row takes a line: {text}");
     }
+
     #[test]
     fn what_is_printed_piece_by_piece_is_what_is_printed_at_once() {
         let value = json!({ "a": [[1, 2], { "b": { "c": {} } }], "d": "e" });

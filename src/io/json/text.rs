@@ -1,12 +1,13 @@
-//! JSON text to values: bounded in size, nesting and count before anything is built, and no key given twice.
-//! Floor 5.
+//! JSON text to values: bounded in size, nesting and count before anything is built, and no key
+//! given twice. Floor 5.
 
 use crate::Budget;
 use crate::{Error, Result};
 use serde_json::Value;
 use std::{collections::HashSet, path::Path};
 
-/// Parses a whole text. The sentence of a failure names line and column, or the path of a key given twice.
+/// Parses a whole text. The sentence of a failure names line and column, or the path of a key given
+/// twice.
 pub fn parse(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Value> {
     let (text, value) = parsed(file, bytes, budget)?;
     if let Some(path) = first_key_given_twice(text) {
@@ -22,23 +23,29 @@ pub fn parse_foreign(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Value
 
 fn parsed<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<(&'a str, Value)> {
     if bytes.len() as u64 > budget.json_bytes {
-        let reason = format!("the text has {} bytes; it may have {}", bytes.len(), budget.json_bytes);
+        let reason =
+            format!("the text has {} bytes; it may have {}", bytes.len(), budget.json_bytes);
         return Err(Error::too_large(file, reason));
     }
     if is_utf16(bytes) {
-        return Err(Error::decode(file, "it is a text in UTF-16; JSON is written in UTF-8: save it as that"));
+        return Err(Error::decode(
+            file,
+            "it is a text in UTF-16; JSON is written in UTF-8: save it as that",
+        ));
     }
-    let text = std::str::from_utf8(bytes)
-        .map_err(|e| Error::decode(file, format!("it is not UTF-8 text (at byte {})", e.valid_up_to())))?;
+    let text = std::str::from_utf8(bytes).map_err(|e| {
+        Error::decode(file, format!("it is not UTF-8 text (at byte {})", e.valid_up_to()))
+    })?;
     // Some editors open a text with a byte-order mark.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     measure(file, text, budget)?;
-    let value = serde_json::from_str(text).map_err(|e| Error::decode(file, format!("it is not JSON: {e}")))?;
+    let value = serde_json::from_str(text)
+        .map_err(|e| Error::decode(file, format!("it is not JSON: {e}")))?;
     Ok((text, value))
 }
 
-/// A text of two bytes a character that begins like an object, with or without a byte-order mark: some editors and
-/// shells write such.
+/// A text of two bytes a character that begins like an object, with or without a byte-order mark:
+/// some editors and shells write such.
 pub fn is_utf16(bytes: &[u8]) -> bool {
     let begins = |bytes: &[u8], of: fn([u8; 2]) -> u16| {
         let mut units = bytes.as_chunks().0.iter().take(LONGEST_INDENT).map(|pair| of(*pair));
@@ -54,8 +61,9 @@ const LONGEST_INDENT: usize = 1 << 10;
 /// As how many values an object counts: its table of keys takes that much.
 const OBJECT: usize = 8;
 
-/// Holds nesting and the number of values to the budget without building anything: a text of brackets and commas would
-/// take fifty times its size as values. It tolerates what is not JSON: the parser refuses that with a better message.
+/// Holds nesting and the number of values to the budget without building anything: a text of
+/// brackets and commas would take fifty times its size as values. It tolerates what is not JSON:
+/// the parser refuses that with a better message.
 fn measure(file: &Path, text: &str, budget: &Budget) -> Result<()> {
     let (mut depth, mut values, mut in_string, mut escaped) = (0usize, 1usize, false, false);
     for b in text.bytes() {
@@ -78,7 +86,10 @@ fn measure(file: &Path, text: &str, budget: &Budget) -> Result<()> {
         }
     }
     if values > budget.json_values {
-        return Err(Error::too_large(file, format!("it holds more than {} values", budget.json_values)));
+        return Err(Error::too_large(
+            file,
+            format!("it holds more than {} values", budget.json_values),
+        ));
     }
     Ok(())
 }
@@ -89,7 +100,8 @@ enum OpenBracket {
     Object { keys: HashSet<String>, key: String, awaits_key: bool },
 }
 
-/// The path of the first key that its object holds twice. The text must be valid JSON; the parser would keep the last.
+/// The path of the first key that its object holds twice. The text must be valid JSON; the parser
+/// would keep the last.
 fn first_key_given_twice(text: &str) -> Option<String> {
     let bytes = text.as_bytes();
     let mut open: Vec<OpenBracket> = Vec::new();
@@ -97,7 +109,11 @@ fn first_key_given_twice(text: &str) -> Option<String> {
     while i < bytes.len() {
         match bytes[i] {
             b'[' => open.push(OpenBracket::List { index: 0 }),
-            b'{' => open.push(OpenBracket::Object { keys: HashSet::new(), key: String::new(), awaits_key: true }),
+            b'{' => open.push(OpenBracket::Object {
+                keys: HashSet::new(),
+                key: String::new(),
+                awaits_key: true,
+            }),
             b']' | b'}' => drop(open.pop()),
             b',' => match open.last_mut() {
                 Some(OpenBracket::List { index }) => *index += 1,
@@ -151,17 +167,23 @@ mod tests {
     fn said(text: &str) -> String {
         parse(Path::new("r.json"), text.as_bytes(), &Budget::default()).unwrap_err().to_string()
     }
+
     #[test]
     fn syntax_errors_name_line_and_column() {
         assert!(said("{\n \"a\": ,\n}").contains("line 2 column 7"), "{}", said("{\n \"a\": ,\n}"));
         assert!(parse(Path::new("r.json"), &[b'"', 0xff, b'"'], &Budget::default()).is_err());
     }
+
     #[test]
     fn a_key_given_twice_is_named_by_its_path() {
-        assert_eq!(said(r#"{"layers": [1, {"a": {}, "\u0061": 2}]}"#), "r.json: layers[1].a: is given twice");
+        assert_eq!(
+            said(r#"{"layers": [1, {"a": {}, "\u0061": 2}]}"#),
+            "r.json: layers[1].a: is given twice"
+        );
         let apart = r#"{"a": {"x": 1}, "b": [{"x": "{\"x\": 1,"}, {"x": 2}]}"#;
         assert!(parse(Path::new("r.json"), apart.as_bytes(), &Budget::default()).is_ok());
     }
+
     #[test]
     fn deep_and_crowded_texts_are_refused_before_they_are_parsed() {
         assert!(said(&"[".repeat(1_000_000)).contains("nested deeper than 120"));
@@ -170,10 +192,12 @@ mod tests {
         assert!(said(&format!("[{}0]", "{},".repeat(600_000))).contains("values"));
         assert!(said(&" ".repeat(257 << 20)).contains("bytes"));
     }
+
     #[test]
     fn numbers_beyond_every_float_are_refused() {
         assert!(said("1e999").contains("out of range"));
     }
+
     #[test]
     fn a_text_in_utf16_is_called_so() {
         for mark in ["", "\u{feff}", " \n"] {
@@ -182,12 +206,14 @@ mod tests {
                 units.iter().flat_map(|unit| unit.to_le_bytes()).collect::<Vec<u8>>(),
                 units.iter().flat_map(|unit| unit.to_be_bytes()).collect(),
             ] {
-                let said = parse(Path::new("r.json"), &bytes, &Budget::default()).unwrap_err().to_string();
+                let said =
+                    parse(Path::new("r.json"), &bytes, &Budget::default()).unwrap_err().to_string();
                 assert!(said.contains("UTF-16"), "{said}");
             }
         }
         assert!(!is_utf16(b"{}") && !is_utf16(b"\x89PNG") && !is_utf16(b"{ {") && !is_utf16(b""));
     }
+
     #[test]
     fn a_byte_order_mark_is_no_error() {
         assert!(parse(Path::new("r.json"), "\u{feff}{}".as_bytes(), &Budget::default()).is_ok());

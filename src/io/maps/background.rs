@@ -1,20 +1,23 @@
-//! Finds the background of maps: the value that fills the outside of the surface, and the values that renderers write
-//! there. Floor 5.
+//! Finds the background of maps: the value that fills the outside of the surface, and the values
+//! that renderers write there. Floor 5.
 
 use super::stored::StoredMap;
 use crate::math::{Size, Vec3};
 use crate::raster::Plane;
 use std::collections::HashMap;
 
-/// The one texel that fills the outside: outside the mask if there is one, else along the border. `None` if no texel
-/// fills a third of it.
+/// The one texel that fills the outside: outside the mask if there is one, else along the border.
+/// `None` if no texel fills a third of it.
 pub fn constant(stored: &StoredMap, coverage: Option<&Plane<u8>>) -> Option<[f32; 4]> {
     let size = stored.size;
     // A value that fills a third of the outside fills a third of evenly spread samples.
     let outside: Vec<usize> = match coverage {
         Some(c) => {
             let bare = c.values().iter().filter(|c| **c == 0).count();
-            (0..size.area()).filter(|&i| c.values()[i] == 0).step_by((bare / 50_000).max(1)).collect()
+            (0..size.area())
+                .filter(|&i| c.values()[i] == 0)
+                .step_by((bare / 50_000).max(1))
+                .collect()
         }
         None => {
             let all = border(size);
@@ -70,7 +73,8 @@ pub fn joined_to_border(size: Size, is: impl Fn(usize) -> bool) -> Plane<bool> {
     let (w, h) = (size.width as usize, size.height as usize);
     let mut found = Plane::filled(size, false);
     // No file has more pixels than 32 bits count.
-    let mut front: Vec<u32> = border(size).into_iter().filter(|&i| is(i)).map(|i| i as u32).collect();
+    let mut front: Vec<u32> =
+        border(size).into_iter().filter(|&i| is(i)).map(|i| i as u32).collect();
     front.iter().for_each(|&i| found.values_mut()[i as usize] = true);
     // Ring after ring, so that only two rings are in memory.
     while !front.is_empty() {
@@ -101,18 +105,22 @@ pub fn joined_to_border(size: Size, is: impl Fn(usize) -> bool) -> Plane<bool> {
     found
 }
 
-/// Whether a decoded vector cannot be a normal: not finite, nearly zero, or far too long (black or white read as
-/// biased).
+/// Whether a decoded vector cannot be a normal: not finite, nearly zero, or far too long (black or
+/// white read as biased).
 pub fn is_degenerate(n: Vec3) -> bool {
     !n.is_finite() || n.length() < 0.15
 }
 
-/// Where the surface is, judged by the normals alone: not where they are degenerate or equal a constant border that
-/// decodes to no unit vector.
+/// Where the surface is, judged by the normals alone: not where they are degenerate or equal a
+/// constant border that decodes to no unit vector.
 ///
-/// Within a pixel of a zero-length background, lengths below 1 are coverage (averaged with zero) if `unit` says that
-/// normals have length 1 elsewhere.
-pub fn coverage_of_normals(vectors: &Plane<Vec3>, outside: impl Fn(usize) -> bool + Sync, unit: bool) -> Plane<u8> {
+/// Within a pixel of a zero-length background, lengths below 1 are coverage (averaged with zero) if
+/// `unit` says that normals have length 1 elsewhere.
+pub fn coverage_of_normals(
+    vectors: &Plane<Vec3>,
+    outside: impl Fn(usize) -> bool + Sync,
+    unit: bool,
+) -> Plane<u8> {
     let size = vectors.size();
     let w = size.width as usize;
     let bare = Plane::from_fn(size, |x, y| is_degenerate(vectors.at(x, y)) || outside(y * w + x));

@@ -24,18 +24,27 @@ impl Channel {
             Channel::Float(plane) => plane.values()[i],
         }
     }
+
     /// The number of each pixel turned into something.
     pub fn map<T: Copy + Send + Sync + Default>(&self, f: impl Fn(f32) -> T + Sync) -> Plane<T> {
         let size = self.size();
         Plane::from_fn(size, |x, y| f(self.at(y * size.width as usize + x)))
     }
-    /// Removes the pixels from a set whose numbers `is` rejects; `is` is called once per number of an integer file.
+
+    /// Removes the pixels from a set whose numbers `is` rejects; `is` is called once per number of
+    /// an integer file.
     pub fn keep_where(&self, set: &mut Plane<bool>, is: impl Fn(f32) -> bool + Sync) {
-        fn keep<T: Copy + Sync>(set: &mut Plane<bool>, plane: &Plane<T>, is: impl Fn(T) -> bool + Sync) {
+        fn keep<T: Copy + Sync>(
+            set: &mut Plane<bool>,
+            plane: &Plane<T>,
+            is: impl Fn(T) -> bool + Sync,
+        ) {
             let rows = plane.values().par_chunks(plane.width().max(1));
-            set.values_mut().par_chunks_mut(plane.width().max(1)).zip(rows).for_each(|(set, row)| {
-                set.iter_mut().zip(row).for_each(|(kept, v)| *kept &= is(*v));
-            });
+            set.values_mut().par_chunks_mut(plane.width().max(1)).zip(rows).for_each(
+                |(set, row)| {
+                    set.iter_mut().zip(row).for_each(|(kept, v)| *kept &= is(*v));
+                },
+            );
         }
         match self {
             Channel::Byte(plane) => {
@@ -49,6 +58,7 @@ impl Channel {
             Channel::Float(plane) => keep(set, plane, is),
         }
     }
+
     fn size(&self) -> Size {
         match self {
             Channel::Byte(plane) => plane.size(),
@@ -56,6 +66,7 @@ impl Channel {
             Channel::Float(plane) => plane.size(),
         }
     }
+
     /// Some number is below 1.
     pub fn is_below_one(&self) -> bool {
         match self {
@@ -79,7 +90,9 @@ pub fn channels(image: DynamicImage) -> Vec<Channel> {
         DynamicImage::ImageRgb16(v) => apart(size, &v.into_raw(), 3, Channel::Word),
         DynamicImage::ImageRgba16(v) => apart(size, &v.into_raw(), 4, Channel::Word),
         DynamicImage::ImageRgb32F(v) => apart(size, &v.into_raw(), 3, Channel::Float),
-        image if image.color().has_alpha() => apart(size, &image.into_rgba32f().into_raw(), 4, Channel::Float),
+        image if image.color().has_alpha() => {
+            apart(size, &image.into_rgba32f().into_raw(), 4, Channel::Float)
+        }
         image => apart(size, &image.into_rgb32f().into_raw(), 3, Channel::Float),
     }
 }
@@ -102,8 +115,11 @@ mod tests {
     #[test]
     fn numbers_are_those_that_floats_of_the_image_have() {
         let words: Vec<u16> = (0..65536).map(|v| v as u16).collect();
-        let wide = DynamicImage::ImageRgba16(image::ImageBuffer::from_raw(128, 128, words).unwrap());
-        let narrow = DynamicImage::ImageLumaA8(image::ImageBuffer::from_raw(128, 1, (0..=255).collect()).unwrap());
+        let wide =
+            DynamicImage::ImageRgba16(image::ImageBuffer::from_raw(128, 128, words).unwrap());
+        let narrow = DynamicImage::ImageLumaA8(
+            image::ImageBuffer::from_raw(128, 1, (0..=255).collect()).unwrap(),
+        );
         for image in [wide, narrow] {
             let held = channels(image.clone());
             let floats = image.to_rgba32f().into_raw();
@@ -111,7 +127,10 @@ mod tests {
             for (i, texel) in floats.as_chunks::<4>().0.iter().enumerate() {
                 // The image library rounds once more.
                 let is_near = |a: f32, b: f32| (a - b).abs() <= f32::EPSILON;
-                assert!(is_near(first.at(i), texel[0]) && is_near(last.at(i), texel[3]), "{i}: {texel:?}");
+                assert!(
+                    is_near(first.at(i), texel[0]) && is_near(last.at(i), texel[3]),
+                    "{i}: {texel:?}"
+                );
             }
         }
     }

@@ -11,7 +11,8 @@ use crate::math::{Vec3, srgb};
 use crate::raster::Plane;
 use crate::{Budget, Error, Files, Result, picture};
 
-/// The mask that the document names, and its name for messages; `maps` are its normals and its depth.
+/// The mask that the document names, and its name for messages; `maps` are its normals and its
+/// depth.
 pub fn given_mask(
     source: &SurfaceSource,
     maps: [Option<&StoredMap>; 2],
@@ -26,7 +27,8 @@ pub fn given_mask(
             let plane = match channel {
                 None => picture::decode_coverage(&path, &bytes, budget)?,
                 Some(_) => {
-                    let stored = stored::load(&path, &bytes, channel.as_deref(), MapRole::Mask, budget)?;
+                    let stored =
+                        stored::load(&path, &bytes, channel.as_deref(), MapRole::Mask, budget)?;
                     stored.channels[0].map(srgb::quantise)
                 }
             };
@@ -36,7 +38,11 @@ pub fn given_mask(
         }
         Some(MaskSource::Flat) => {
             let [Some(normal), depth] = maps else {
-                return Err(Error::invalid(files.path(""), "surface.mask.from", "“flat” needs a normal map"));
+                return Err(Error::invalid(
+                    files.path(""),
+                    "surface.mask.from",
+                    "“flat” needs a normal map",
+                ));
             };
             findings.given("mask", "flat");
             Ok(Some((normal.file.display().to_string(), not_flat(normal, depth))))
@@ -44,21 +50,27 @@ pub fn given_mask(
     }
 }
 
-/// The share of a flat border that has one depth if that depth stands for “nothing”. The rest may be a wall or a plate.
+/// The share of a flat border that has one depth if that depth stands for “nothing”. The rest may
+/// be a wall or a plate.
 const SHARE_OF_ONE_DEPTH: f32 = 0.5;
 
 /// 0 where the border's value continues inward from the border, 255 elsewhere.
 ///
-/// If the border has one depth as well, only pixels of that depth are background; and all of them that have its normal
-/// are, also within a ring or a handle.
+/// If the border has one depth as well, only pixels of that depth are background; and all of them
+/// that have its normal are, also within a ring or a handle.
 fn not_flat(normal: &StoredMap, depth: Option<&StoredMap>) -> Plane<u8> {
     let holds_edge = |map: &StoredMap| FilledEdge::of(map, None).map(|edge| edge.holds);
     let Some(flat) = holds_edge(normal) else { return Plane::filled(normal.size, 255) };
     let outside = background::joined_to_border(normal.size, |i| flat.values()[i]);
     let far = depth.filter(|depth| depth.size == normal.size).and_then(holds_edge);
-    let count = |is: &dyn Fn(usize) -> bool| (0..normal.size.area()).filter(|&i| outside.values()[i] && is(i)).count();
+    let count = |is: &dyn Fn(usize) -> bool| {
+        (0..normal.size.area()).filter(|&i| outside.values()[i] && is(i)).count()
+    };
     let background = match far {
-        Some(far) if count(&|i| far.values()[i]) as f32 > SHARE_OF_ONE_DEPTH * count(&|_| true) as f32 => {
+        Some(far)
+            if count(&|i| far.values()[i]) as f32
+                > SHARE_OF_ONE_DEPTH * count(&|_| true) as f32 =>
+        {
             flat.updated(|x, y, flat| flat && far.at(x, y))
         }
         _ => outside,
@@ -67,17 +79,23 @@ fn not_flat(normal: &StoredMap, depth: Option<&StoredMap>) -> Plane<u8> {
 }
 
 /// The files' own coverage.
-pub fn alpha(maps: &[&StoredMap], overrides: &ConventionOverrides, findings: &mut Findings) -> Option<Plane<u8>> {
+pub fn alpha(
+    maps: &[&StoredMap],
+    overrides: &ConventionOverrides,
+    findings: &mut Findings,
+) -> Option<Plane<u8>> {
     use crate::document::source::NormalEncoding::Dxt5nm;
     if overrides.normal.encoding == Some(Dxt5nm) {
         return None;
     }
-    let alpha = maps.iter().find_map(|m| m.alpha.as_ref().filter(|_| !encoding::holds_x_in_alpha(m)))?;
+    let alpha =
+        maps.iter().find_map(|m| m.alpha.as_ref().filter(|_| !encoding::holds_x_in_alpha(m)))?;
     findings.found("mask", "alpha", 0.95);
     Some(alpha.map(srgb::quantise))
 }
 
-/// Notes where the mask came from, and a border that looks like background but does not count as such.
+/// Notes where the mask came from, and a border that looks like background but does not count as
+/// such.
 pub fn report_mask(
     [normal, depth]: [Option<&StoredMap>; 2],
     is_found_in_depth: bool,
@@ -104,10 +122,18 @@ pub fn report_mask(
     }
 }
 
-/// Notes holes: covered pixels without normals of their own that the surface will leave out or borrow.
+/// Notes holes: covered pixels without normals of their own that the surface will leave out or
+/// borrow.
 pub fn drop_unknown(coverage: &mut Plane<u8>, normals: &Plane<Vec3>, findings: &mut Findings) {
-    let holes = coverage.values().iter().zip(normals.values()).filter(|(c, n)| **c == 255 && **n == Vec3::ZERO).count();
+    let holes = coverage
+        .values()
+        .iter()
+        .zip(normals.values())
+        .filter(|(c, n)| **c == 255 && **n == Vec3::ZERO)
+        .count();
     if holes > 0 {
-        findings.note(format!("{holes} covered pixels have no usable normal or depth; they count as holes"));
+        findings.note(format!(
+            "{holes} covered pixels have no usable normal or depth; they count as holes"
+        ));
     }
 }

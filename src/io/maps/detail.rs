@@ -1,5 +1,5 @@
-//! Reads a detail normal map in tangent space. Floor 5. The surface that it will lie on is unknown, so its convention
-//! is detected from its own numbers alone.
+//! Reads a detail normal map in tangent space. Floor 5. The surface that it will lie on is unknown,
+//! so its convention is detected from its own numbers alone.
 
 use super::encoding;
 use super::findings::Findings;
@@ -14,11 +14,19 @@ use crate::raster::Plane;
 use crate::{Error, Result};
 use std::path::Path;
 
-/// Reads a file as tangent-space normals: x right, y up, z out of the map. What the convention leaves open is detected
-/// from the numbers.
-pub fn read(file: &Path, bytes: &[u8], overrides: &NormalConvention, budget: &Budget) -> Result<Plane<Vec3>> {
+/// Reads a file as tangent-space normals: x right, y up, z out of the map. What the convention
+/// leaves open is detected from the numbers.
+pub fn read(
+    file: &Path,
+    bytes: &[u8],
+    overrides: &NormalConvention,
+    budget: &Budget,
+) -> Result<Plane<Vec3>> {
     if overrides.space == Some(NormalSpace::World) {
-        return Err(Error::unsupported(file, "a detail map is in the space of the surface, not of the world"));
+        return Err(Error::unsupported(
+            file,
+            "a detail map is in the space of the surface, not of the world",
+        ));
     }
     let stored = stored::load(file, bytes, None, MapRole::Normals, budget)?;
     let area = stored.size.area();
@@ -32,7 +40,8 @@ pub fn read(file: &Path, bytes: &[u8], overrides: &NormalConvention, budget: &Bu
     });
     let order = overrides.channels.map_or([0, 1, 2], |c| order_of(c, reading.encoding));
     // Only the green axis is in doubt: the better fit to a relief decides.
-    let flip = [overrides.flip_x.or(Some(false)), overrides.flip_y, overrides.flip_z.or(Some(false))];
+    let flip =
+        [overrides.flip_x.or(Some(false)), overrides.flip_y, overrides.flip_z.or(Some(false))];
     let fixed = FixedAxes { order: Some(order), flip, ..FixedAxes::default() };
     let everywhere = Plane::filled(stored.size, true);
     let axes = orientation::find(&vectors, &everywhere, None, &fixed).axes;

@@ -1,5 +1,5 @@
-//! Detects how stored numbers encode the components of normals: the right decoding gives vectors of length 1.
-//! Floor 5. Not here: which way the axes point (`orientation`).
+//! Detects how stored numbers encode the components of normals: the right decoding gives vectors of
+//! length 1. Floor 5. Not here: which way the axes point (`orientation`).
 
 use super::{findings::Findings, stored::StoredMap};
 use crate::document::source::{NormalConvention, NormalEncoding};
@@ -62,8 +62,8 @@ pub fn choose(
     for &encoding in &encodings {
         for &srgb in &curves {
             let reading = TexelReading { encoding, srgb, signed_pair };
-            // Rebuilt normals always have length 1; the curve shows in how often x and y leave the unit circle: it does
-            // not.
+            // Rebuilt normals always have length 1; the curve shows in how often x and y leave the
+            // unit circle: it does not.
             let rebuilt = matches!(encoding, NormalEncoding::TwoChannel | NormalEncoding::Dxt5nm);
             if rebuilt && srgb && overrides.srgb.is_none() {
                 continue;
@@ -82,7 +82,13 @@ pub fn choose(
     Ok(reading)
 }
 
-fn report(overrides: &NormalConvention, reading: &TexelReading, confidence: f32, error: f32, findings: &mut Findings) {
+fn report(
+    overrides: &NormalConvention,
+    reading: &TexelReading,
+    confidence: f32,
+    error: f32,
+    findings: &mut Findings,
+) {
     match overrides.encoding {
         Some(encoding) => findings.given("normal.encoding", encoding.name()),
         None => findings.found("normal.encoding", reading.encoding.name(), confidence),
@@ -96,8 +102,9 @@ fn report(overrides: &NormalConvention, reading: &TexelReading, confidence: f32,
     }
     findings.length_error = error;
     if findings.is_doubtful() {
-        findings
-            .note(format!("the normals are not of length 1 (off by {error:.2} on average); they were renormalised"));
+        findings.note(format!(
+            "the normals are not of length 1 (off by {error:.2} on average); they were renormalised"
+        ));
     }
 }
 
@@ -114,7 +121,9 @@ struct TexelStats {
 
 impl TexelStats {
     fn of(stored: &StoredMap, texels: &[[f32; 4]]) -> Self {
-        let fold = |c: usize, start: f32, pick: fn(f32, f32) -> f32| texels.iter().map(|t| t[c]).fold(start, pick);
+        let fold = |c: usize, start: f32, pick: fn(f32, f32) -> f32| {
+            texels.iter().map(|t| t[c]).fold(start, pick)
+        };
         let low: [f32; 4] = std::array::from_fn(|c| fold(c, f32::INFINITY, f32::min));
         let high: [f32; 4] = std::array::from_fn(|c| fold(c, f32::NEG_INFINITY, f32::max));
         let channels = stored.colours().clamp(1, 3);
@@ -123,11 +132,16 @@ impl TexelStats {
             least: low[..channels].iter().copied().fold(f32::INFINITY, f32::min),
             most: high[..channels].iter().copied().fold(f32::NEG_INFINITY, f32::max),
             spread: std::array::from_fn(|c| high[c] - low[c]),
-            grey_alpha: if stored.channels.len() == 4 { between as f32 / texels.len().max(1) as f32 } else { 0.0 },
+            grey_alpha: if stored.channels.len() == 4 {
+                between as f32 / texels.len().max(1) as f32
+            } else {
+                0.0
+            },
             grey: stored.colours() == 1
                 || (stored.colours() == 3 && stored.is_grey(if stored.lossy { 0.02 } else { 0.0 })),
         }
     }
+
     /// x in alpha, y in green, nothing in red and blue (or green repeated in them).
     fn is_dxt5nm(&self) -> bool {
         let still = |c: usize| self.spread[c] < 0.01;
@@ -146,7 +160,8 @@ fn plausible(stored: &StoredMap, shape: &TexelStats) -> Vec<NormalEncoding> {
     if shape.least < -0.05 {
         return vec![Signed];
     }
-    // Blue that is constant while red and green vary has no meaning, unless it is the 1 of a flat map.
+    // Blue that is constant while red and green vary has no meaning, unless it is the 1 of a flat
+    // map.
     let blue_is_empty = shape.spread[2] < 0.008 && shape.spread[0].max(shape.spread[1]) > 0.05;
     if blue_is_empty {
         return vec![TwoChannel];
@@ -170,7 +185,8 @@ fn refuse_grey(stored: &StoredMap, overrides: &NormalConvention, shape: &TexelSt
 
 /// Mean of | |n| − 1 |, each capped at 1 so that a few wild pixels do not decide.
 fn length_error(reading: &TexelReading, texels: &[[f32; 4]]) -> f32 {
-    let errors = texels.iter().map(|&t| (reading.vector(t).length() - 1.0).abs()).filter(|e| e.is_finite());
+    let errors =
+        texels.iter().map(|&t| (reading.vector(t).length() - 1.0).abs()).filter(|e| e.is_finite());
     let (sum, count) = errors.fold((0.0f64, 0u32), |(s, n), e| (s + f64::from(e.min(1.0)), n + 1));
     if count == 0 { 1.0 } else { (sum / f64::from(count)) as f32 }
 }
@@ -181,6 +197,7 @@ pub fn holds_x_in_alpha(stored: &StoredMap) -> bool {
         return false;
     }
     let step = (stored.size.area() / 20_000).max(1);
-    let texels: Vec<[f32; 4]> = (0..stored.size.area()).step_by(step).map(|i| stored.texel(i)).collect();
+    let texels: Vec<[f32; 4]> =
+        (0..stored.size.area()).step_by(step).map(|i| stored.texel(i)).collect();
     TexelStats::of(stored, &texels).is_dxt5nm()
 }

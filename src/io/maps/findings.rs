@@ -3,7 +3,8 @@
 
 use crate::document::source::{DepthConvention, NormalConvention};
 
-/// Normal maps are nearer to length 1 than this, in the mean; colours of drawings and photos are not.
+/// Normal maps are nearer to length 1 than this, in the mean; colours of drawings and photos are
+/// not.
 const MOST_LENGTH_ERROR: f32 = 0.1;
 
 /// How a choice was made.
@@ -43,15 +44,19 @@ pub struct Findings {
     pub choices: Vec<Finding>,
     /// Sentences for people: what was derived, filled, clipped or looks odd.
     pub notes: Vec<String>,
-    /// The complete convention by which the normals were read; with it they are read the same way again.
+    /// The complete convention by which the normals were read; with it they are read the same way
+    /// again.
     pub normal: Option<NormalConvention>,
     /// The same for depth.
     pub depth: Option<DepthConvention>,
-    /// Planar depth (in the file's unit) at z = 0 and z = 1, so that anchors keep their meaning when maps are replaced.
+    /// Planar depth (in the file's unit) at z = 0 and z = 1, so that anchors keep their meaning
+    /// when maps are replaced.
     pub depth_range: Option<(f32, f32)>,
-    /// How far the vectors that were read as normals are from length 1, in the mean, each at most 1.
+    /// How far the vectors that were read as normals are from length 1, in the mean, each at most
+    /// 1.
     pub length_error: f32,
-    /// The share of pixels, joined to the border, that look like background and are taken for surface.
+    /// The share of pixels, joined to the border, that look like background and are taken for
+    /// surface.
     pub flat_border: f32,
 }
 
@@ -60,20 +65,40 @@ impl Findings {
     pub fn is_doubtful(&self) -> bool {
         self.length_error > MOST_LENGTH_ERROR
     }
+
     pub fn note(&mut self, sentence: impl Into<String>) {
         self.notes.push(sentence.into());
     }
+
     pub fn given(&mut self, field: &'static str, value: impl ToString) {
-        self.choices.push(Finding { field, value: value.to_string(), confidence: 1.0, how: ChoiceOrigin::Given });
+        self.choices.push(Finding {
+            field,
+            value: value.to_string(),
+            confidence: 1.0,
+            how: ChoiceOrigin::Given,
+        });
     }
+
     pub fn found(&mut self, field: &'static str, value: impl ToString, confidence: f32) {
         let confidence = confidence.max(0.0).min(1.0);
-        self.choices.push(Finding { field, value: value.to_string(), confidence, how: ChoiceOrigin::Found });
+        self.choices.push(Finding {
+            field,
+            value: value.to_string(),
+            confidence,
+            how: ChoiceOrigin::Found,
+        });
     }
+
     pub fn assumed(&mut self, field: &'static str, value: impl ToString, confidence: f32) {
         let confidence = confidence.max(0.0).min(1.0);
-        self.choices.push(Finding { field, value: value.to_string(), confidence, how: ChoiceOrigin::Assumed });
+        self.choices.push(Finding {
+            field,
+            value: value.to_string(),
+            confidence,
+            how: ChoiceOrigin::Assumed,
+        });
     }
+
     /// The choice made for a field.
     pub fn choice(&self, field: &str) -> Option<&Finding> {
         self.choices.iter().find(|c| c.field == field)

@@ -1,5 +1,5 @@
-//! Finds the layer of an EXR that holds the normals, the depth or the coverage, by the names that renderers use.
-//! Floor 5.
+//! Finds the layer of an EXR that holds the normals, the depth or the coverage, by the names that
+//! renderers use. Floor 5.
 
 use crate::exr::{ExrFile, ExrPass};
 use crate::math::vec3;
@@ -23,7 +23,12 @@ pub struct ChannelChoice {
 }
 
 /// Chooses by the given name, else by the usual names of layers.
-pub fn choose(file: &Path, exr: &ExrFile, told: Option<&str>, role: MapRole) -> Result<ChannelChoice> {
+pub fn choose(
+    file: &Path,
+    exr: &ExrFile,
+    told: Option<&str>,
+    role: MapRole,
+) -> Result<ChannelChoice> {
     let alpha = coverage(exr);
     let (channels, name) = match (told, role) {
         (Some(told), _) => named(exr, told, role).ok_or_else(|| missing(file, exr, told))?,
@@ -31,10 +36,13 @@ pub fn choose(file: &Path, exr: &ExrFile, told: Option<&str>, role: MapRole) -> 
             let rank = |pass: &ExrPass| normal_rank(pass).filter(|_| may_hold_normals(exr, pass));
             best(exr, rank, vector_channels).ok_or_else(|| none(file, exr, "normals"))?
         }
-        (None, MapRole::Depth) => best(exr, depth_rank, depth_channels).ok_or_else(|| none(file, exr, "depth"))?,
+        (None, MapRole::Depth) => {
+            best(exr, depth_rank, depth_channels).ok_or_else(|| none(file, exr, "depth"))?
+        }
         (None, MapRole::Mask) => match alpha {
             Some(a) => (vec![a], exr.channels()[a].name.clone()),
-            None => best(exr, |p| Some(p.channels.len()), vec_of_first).ok_or_else(|| none(file, exr, "a mask"))?,
+            None => best(exr, |p| Some(p.channels.len()), vec_of_first)
+                .ok_or_else(|| none(file, exr, "a mask"))?,
         },
     };
     let alpha = alpha.filter(|a| role != MapRole::Mask && !channels.contains(a));
@@ -44,7 +52,9 @@ pub fn choose(file: &Path, exr: &ExrFile, told: Option<&str>, role: MapRole) -> 
 /// The layers that fit a role, best first: the window lists them for the user to choose.
 pub fn fitting(exr: &ExrFile, role: MapRole) -> Vec<String> {
     let rank = |p: &ExrPass| match role {
-        MapRole::Normals => normal_rank(p).filter(|_| vector_channels(p).is_some() && may_hold_normals(exr, p)),
+        MapRole::Normals => {
+            normal_rank(p).filter(|_| vector_channels(p).is_some() && may_hold_normals(exr, p))
+        }
         MapRole::Depth => depth_rank(p).filter(|_| depth_channels(p).is_some()),
         MapRole::Mask => p.letters("a").map(|_| 0),
     };
@@ -54,15 +64,20 @@ pub fn fitting(exr: &ExrFile, role: MapRole) -> Vec<String> {
     found.into_iter().map(|(_, name)| name).collect()
 }
 
-/// Parts of a picture that are looked at, and how far their vectors may be from length 1 in the mean.
+/// Parts of a picture that are looked at, and how far their vectors may be from length 1 in the
+/// mean.
 const MOST_BANDS: usize = 8;
 const MOST_LENGTH_ERROR: f64 = 0.1;
 
-/// Colours whose name does not mention normals may be anything, such as the finished picture: whether they are vectors
-/// of length 1, as stored or about ½. Other layers are judged by their names.
+/// Colours whose name does not mention normals may be anything, such as the finished picture:
+/// whether they are vectors of length 1, as stored or about ½. Other layers are judged by their
+/// names.
 fn may_hold_normals(exr: &ExrFile, pass: &ExrPass) -> bool {
     let colours = pass.letters("rgb").filter(|_| pass.letters("xyz").is_none());
-    let Some(colours) = colours.filter(|_| normal_rank(pass).is_some_and(|rank| rank > SURE_RANK)) else { return true };
+    let Some(colours) = colours.filter(|_| normal_rank(pass).is_some_and(|rank| rank > SURE_RANK))
+    else {
+        return true;
+    };
     let bands: Vec<_> = exr.bands().collect();
     let step = bands.len().div_ceil(MOST_BANDS).max(1);
     let (mut signed, mut biased, mut count) = (0.0, 0.0, 0u32);
@@ -122,15 +137,21 @@ fn normal_rank(pass: &ExrPass) -> Option<usize> {
         "n" | "normal" | "normals" | "nn" | "shnormal" | "shadingnormal" => Some(0),
         "nworld" | "ncam" | "ncamera" | "vraynormals" | "worldnormal" | "worldnormals" => Some(1),
         k if k.contains("normal") || k.contains("nrm") => Some(2),
-        k if ["position", "p", "pworld", "vector", "uv", "combined", "beauty", "albedo", "motion"].contains(&k) => None,
+        k if [
+            "position", "p", "pworld", "vector", "uv", "combined", "beauty", "albedo", "motion",
+        ]
+        .contains(&k) =>
+        {
+            None
+        }
         k if k.contains("crypto") || k.contains("diff") || k.contains("gloss") => None,
         "" => Some(4),
         _ => Some(3 + 2 * usize::from(pass.letters("xyz").is_none())),
     }
 }
 
-/// How likely a layer holds depth by its name, 0 surest. A bare `Z` is depth by EXR's own convention, a bare `Y`
-/// luminance.
+/// How likely a layer holds depth by its name, 0 surest. A bare `Z` is depth by EXR's own
+/// convention, a bare `Y` luminance.
 fn depth_rank(pass: &ExrPass) -> Option<usize> {
     let key = pass.key();
     match key.as_str() {
@@ -142,7 +163,9 @@ fn depth_rank(pass: &ExrPass) -> Option<usize> {
         "mist" => Some(5),
         "" if pass.letters("y").is_some() => Some(6),
         "" if pass.letters("r").is_some() && pass.letters("g").is_none() => Some(8),
-        k if k.contains("id") || k == "alpha" || k == "a" || k.contains("normal") || k == "n" => None,
+        k if k.contains("id") || k == "alpha" || k == "a" || k.contains("normal") || k == "n" => {
+            None
+        }
         _ if pass.channels.len() == 1 || pass.letters("t").is_some() => Some(7),
         _ => None,
     }
@@ -178,10 +201,17 @@ fn listing(exr: &ExrFile) -> String {
 }
 
 fn missing(file: &Path, exr: &ExrFile, told: &str) -> Error {
-    Error::invalid(file, "channel", format!("this EXR has no layer “{told}” that fits; it has {}", listing(exr)))
+    Error::invalid(
+        file,
+        "channel",
+        format!("this EXR has no layer “{told}” that fits; it has {}", listing(exr)),
+    )
 }
 
 fn none(file: &Path, exr: &ExrFile, what: &str) -> Error {
-    let reason = format!("no layer of this EXR looks like {what}; name one with “channel” (it has {})", listing(exr));
+    let reason = format!(
+        "no layer of this EXR looks like {what}; name one with “channel” (it has {})",
+        listing(exr)
+    );
     Error::decode(file, reason)
 }

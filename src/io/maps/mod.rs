@@ -1,6 +1,6 @@
-//! Imports normal, depth and mask maps of any convention into the program's own: camera space, y up; depth 0 near … 1
-//! far; coverage. Floor 5. The rest of the program knows no other convention. What is not given is detected, with a
-//! confidence.
+//! Imports normal, depth and mask maps of any convention into the program's own: camera space, y
+//! up; depth 0 near … 1 far; coverage. Floor 5. The rest of the program knows no other convention.
+//! What is not given is detected, with a confidence.
 
 mod axes;
 mod background;
@@ -55,9 +55,14 @@ const DERIVED_DEPTH_BYTES_PER_PX: u64 = 100;
 
 /// Reads a document's maps.
 ///
-/// Fails with a sentence where a file is missing, damaged or too large, where the maps' sizes differ, and where there
-/// is no surface at all. Where one of normals and depth is missing it is derived from the other, with a note.
-pub fn import(source: &SurfaceSource, files: &dyn Files, budget: &Budget) -> Result<ImportedSurface> {
+/// Fails with a sentence where a file is missing, damaged or too large, where the maps' sizes
+/// differ, and where there is no surface at all. Where one of normals and depth is missing it is
+/// derived from the other, with a note.
+pub fn import(
+    source: &SurfaceSource,
+    files: &dyn Files,
+    budget: &Budget,
+) -> Result<ImportedSurface> {
     let whole = import_watched(source, files, budget, &Progress::default())?;
     Ok(whole.expect("nobody cancels it"))
 }
@@ -74,7 +79,8 @@ pub fn import_watched(
     read.map_err(|refused| Error::out_of_memory(files.path(""), refused))?
 }
 
-/// The steps that reading reports: the files, the meaning of their numbers, what is missing, the surface.
+/// The steps that reading reports: the files, the meaning of their numbers, what is missing, the
+/// surface.
 const STEPS: u64 = 4;
 
 fn read(
@@ -90,8 +96,16 @@ fn read(
     let files = &CachedFiles::new(files);
     let mut findings = Findings::default();
     let [normal, depth] = [
-        source.normal.as_ref().map(|map| MapFile::read(map, MapRole::Normals, files, budget)).transpose()?,
-        source.depth.as_ref().map(|map| MapFile::read(map, MapRole::Depth, files, budget)).transpose()?,
+        source
+            .normal
+            .as_ref()
+            .map(|map| MapFile::read(map, MapRole::Normals, files, budget))
+            .transpose()?,
+        source
+            .depth
+            .as_ref()
+            .map(|map| MapFile::read(map, MapRole::Depth, files, budget))
+            .transpose()?,
     ];
     let decoded = |file: Option<MapFile>| file.map(|file| file.decoded(budget)).transpose();
     let (normal, depth) = rayon::join(|| decoded(normal), || decoded(depth));
@@ -105,7 +119,11 @@ fn read(
         budget.room(&normal.file, &what, normal.size.area() as u64 * DERIVED_DEPTH_BYTES_PER_PX)?;
     }
     let Some(first) = maps.first() else {
-        return Err(Error::invalid(files.path(""), "surface", "it names neither normals nor depth"));
+        return Err(Error::invalid(
+            files.path(""),
+            "surface",
+            "it names neither normals nor depth",
+        ));
     };
     let file = first.file.clone();
     for (map, warning) in maps.iter().filter_map(|m| Some((m, m.warning?))) {
@@ -113,12 +131,17 @@ fn read(
     }
     let mask = given_mask(source, [normal.as_ref(), depth.as_ref()], files, budget, &mut findings)?;
     let of = |m: &StoredMap| (m.file.display().to_string(), m.size);
-    let sizes = maps.iter().copied().map(of).chain(mask.iter().map(|(name, m)| (name.clone(), m.size())));
+    let sizes =
+        maps.iter().copied().map(of).chain(mask.iter().map(|(name, m)| (name.clone(), m.size())));
     same_size(&file, sizes)?;
     let overrides = ConventionOverrides::of(source);
     let coverage = mask.map(|(_, m)| m).or_else(|| alpha(&maps, &overrides, &mut findings));
-    let loaded =
-        LoadedMaps { normal: normal.as_ref(), depth: depth.as_ref(), overrides: &overrides, findings: &mut findings };
+    let loaded = LoadedMaps {
+        normal: normal.as_ref(),
+        depth: depth.as_ref(),
+        overrides: &overrides,
+        findings: &mut findings,
+    };
     let understood = loaded.understood(coverage)?;
     // The remaining work takes the most memory, and the stored maps are no longer needed.
     drop((normal, depth));
@@ -144,10 +167,16 @@ struct MapFile<'s> {
 }
 
 impl<'s> MapFile<'s> {
-    fn read<C>(map: &'s MapSource<C>, role: MapRole, files: &dyn Files, budget: &Budget) -> Result<Self> {
+    fn read<C>(
+        map: &'s MapSource<C>,
+        role: MapRole,
+        files: &dyn Files,
+        budget: &Budget,
+    ) -> Result<Self> {
         let bytes = files.read(&map.file, budget)?;
         Ok(Self { file: files.path(&map.file), bytes, channel: map.channel.as_deref(), role })
     }
+
     fn decoded(self, budget: &Budget) -> Result<StoredMap> {
         stored::load(&self.file, &self.bytes, self.channel, self.role, budget)
     }
@@ -185,6 +214,7 @@ mod tests {
             flat.write_to(&mut bytes, ImageFormat::Png).expect("memory holds it");
             Ok(bytes.into_inner())
         }
+
         fn path(&self, name: &str) -> PathBuf {
             name.into()
         }
@@ -199,7 +229,8 @@ mod tests {
         assert!(matches!(read, Ok(None)), "it went on");
         assert_eq!(progress.read(), (1, STEPS));
         let watched = Progress::default();
-        let read = import_watched(&source, &GivenUp(&Progress::default()), &Budget::default(), &watched);
+        let read =
+            import_watched(&source, &GivenUp(&Progress::default()), &Budget::default(), &watched);
         assert!(matches!(read, Ok(Some(_))));
         assert_eq!(watched.read(), (STEPS, STEPS));
     }

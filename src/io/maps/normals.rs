@@ -57,11 +57,15 @@ pub fn read(
     });
     let strange = edge.filter(|edge| {
         let n = reading.vector(edge.texel);
-        let rebuilt = matches!(reading.encoding, NormalEncoding::TwoChannel | NormalEncoding::Dxt5nm);
-        is_degenerate(n) || (n.length() - 1.0).abs() > 0.3 || (rebuilt && n.truncate().length() > 1.2)
+        let rebuilt =
+            matches!(reading.encoding, NormalEncoding::TwoChannel | NormalEncoding::Dxt5nm);
+        is_degenerate(n)
+            || (n.length() - 1.0).abs() > 0.3
+            || (rebuilt && n.truncate().length() > 1.2)
     });
     let outside = |i: usize| strange.is_some_and(|edge| edge.holds.values()[i]);
-    let interior = at.iter().map(|&i| (vectors.values()[i].length() - 1.0).abs()).sum::<f32>() / at.len().max(1) as f32;
+    let interior = at.iter().map(|&i| (vectors.values()[i].length() - 1.0).abs()).sum::<f32>()
+        / at.len().max(1) as f32;
     let coverage = background::coverage_of_normals(&vectors, outside, interior < 0.05);
     Ok(RawNormals { vectors, reading, coverage })
 }
@@ -73,16 +77,26 @@ fn smooth_if_asked<'a>(
     inside: &Plane<bool>,
     findings: &mut Findings,
 ) -> (&'a StoredMap, Option<StoredMap>) {
-    let (Some(true), Some(step)) = (overrides.smooth_steps, stored.step) else { return (stored, None) };
-    findings.note("the steps of the normals' numbers were smoothed, each within the half step it stands for");
+    let (Some(true), Some(step)) = (overrides.smooth_steps, stored.step) else {
+        return (stored, None);
+    };
+    findings.note(
+        "the steps of the normals' numbers were smoothed, each within the half step it stands for",
+    );
     let smooth = |c: &Channel| Channel::Float(steps::smooth(&c.map(|v| v), step, inside));
     let channels = stored.channels.iter().map(smooth).collect();
-    let copy = StoredMap { channels, alpha: None, file: stored.file.clone(), layer: stored.layer.clone(), ..*stored };
+    let copy = StoredMap {
+        channels,
+        alpha: None,
+        file: stored.file.clone(),
+        layer: stored.layer.clone(),
+        ..*stored
+    };
     (stored, Some(copy))
 }
 
-/// Turns vectors into camera space; returns them with unit length (zero where there are none), and whether higher
-/// stored depth is nearer.
+/// Turns vectors into camera space; returns them with unit length (zero where there are none), and
+/// whether higher stored depth is nearer.
 ///
 /// * `depth`: as stored, NaN where there is none.
 pub fn orient(
@@ -95,7 +109,8 @@ pub fn orient(
     findings: &mut Findings,
 ) -> (Plane<Vec3>, bool) {
     let RawNormals { vectors, reading, .. } = raw;
-    let unit = vectors.updated(|_, _, n| if is_degenerate(n) { Vec3::ZERO } else { n.normalize_or_zero() });
+    let unit = vectors
+        .updated(|_, _, n| if is_degenerate(n) { Vec3::ZERO } else { n.normalize_or_zero() });
     let at = samples::spread(inside);
     let turn = space(&unit, stored, overrides, inside, &at, depth, near, findings);
     let turned = match turn {
@@ -104,8 +119,13 @@ pub fn orient(
     };
     // Rotated normals are already in camera space: only the user can flip them.
     let fixed = FixedAxes {
-        order: overrides.channels.map(|c| order_of(c, reading.encoding)).or(turn.map(|_| [0, 1, 2])),
-        flip: [0, 1, 2].map(|k| [overrides.flip_x, overrides.flip_y, overrides.flip_z][k].or(turn.map(|_| false))),
+        order: overrides
+            .channels
+            .map(|c| order_of(c, reading.encoding))
+            .or(turn.map(|_| [0, 1, 2])),
+        flip: [0, 1, 2].map(|k| {
+            [overrides.flip_x, overrides.flip_y, overrides.flip_z][k].or(turn.map(|_| false))
+        }),
         ..*near
     };
     let found = orientation::find(&turned, inside, depth, &fixed);
@@ -123,7 +143,10 @@ pub fn orient(
         smooth_steps: overrides.smooth_steps,
     });
     let axes = found.axes;
-    (if axes == AxisMapping::PLAIN { turned } else { turned.updated(|_, _, n| axes.apply(n)) }, found.near_high)
+    (
+        if axes == AxisMapping::PLAIN { turned } else { turned.updated(|_, _, n| axes.apply(n)) },
+        found.near_high,
+    )
 }
 
 /// Two-channel maps rebuild z themselves, so that no other order makes sense.
@@ -150,8 +173,11 @@ fn report(
         Some(c) => findings.given("normal.channels", NormalConvention::letters(c)),
         None => findings.found("normal.channels", letters, found.order_confidence),
     }
-    let flips =
-        [("normal.flip_x", overrides.flip_x), ("normal.flip_y", overrides.flip_y), ("normal.flip_z", overrides.flip_z)];
+    let flips = [
+        ("normal.flip_x", overrides.flip_x),
+        ("normal.flip_y", overrides.flip_y),
+        ("normal.flip_z", overrides.flip_z),
+    ];
     for (k, (field, given)) in flips.into_iter().enumerate() {
         match (given, fixed.flip[k]) {
             (Some(flip), _) => findings.given(field, flip),
@@ -194,7 +220,8 @@ fn space(
             None
         });
     }
-    let sampled: Vec<Vec3> = at.iter().map(|&i| unit.values()[i]).filter(|n| *n != Vec3::ZERO).collect();
+    let sampled: Vec<Vec3> =
+        at.iter().map(|&i| unit.values()[i]).filter(|n| *n != Vec3::ZERO).collect();
     let away = world::share_away(Mat3::IDENTITY, &sampled);
     let toward = world::share_away(Mat3::from_diagonal(Vec3::NEG_ONE), &sampled);
     let sided = orientation::one_sided(&sampled);
@@ -203,9 +230,9 @@ fn space(
     let attribute = stored.world_to_camera.and_then(world::from_attribute).and_then(|m| {
         // Renderers disagree on where their camera's z points.
         let looks_back = Mat3::from_diagonal(Vec3::new(1.0, 1.0, -1.0)) * m;
-        let pick = [m, looks_back]
-            .into_iter()
-            .min_by(|a, b| world::share_away(*a, &sampled).total_cmp(&world::share_away(*b, &sampled)))?;
+        let pick = [m, looks_back].into_iter().min_by(|a, b| {
+            world::share_away(*a, &sampled).total_cmp(&world::share_away(*b, &sampled))
+        })?;
         Some((pick, world::share_away(pick, &sampled)))
     });
     if let Some((matrix, share)) = attribute
@@ -215,11 +242,15 @@ fn space(
         findings.note("the normals were turned by the file's worldToCamera");
         return Some(matrix);
     }
-    let planar = depth.map(|d| if near.near_high == Some(true) { d.map(|v| -v) } else { d.clone() });
+    let planar =
+        depth.map(|d| if near.near_high == Some(true) { d.map(|v| -v) } else { d.clone() });
     let aligned = planar.as_ref().and_then(|d| world::from_depth(unit, d, at));
-    let angle = |m: Mat3| ((m.col(0).x + m.col(1).y + m.col(2).z - 1.0) * 0.5).max(-1.0).min(1.0).acos().to_degrees();
+    let angle = |m: Mat3| {
+        ((m.col(0).x + m.col(1).y + m.col(2).z - 1.0) * 0.5).max(-1.0).min(1.0).acos().to_degrees()
+    };
     let mixed = !sided.iter().any(|&s| s) && away.min(toward) > 0.01;
-    let turned = aligned.is_some_and(|a| a.free.fit > 0.9 && a.is_turned() && angle(a.free.matrix) > 3.0);
+    let turned =
+        aligned.is_some_and(|a| a.free.fit > 0.9 && a.is_turned() && angle(a.free.matrix) > 3.0);
     if !wanted && !named && !mixed && !turned {
         findings.found("normal.space", "camera", if sided[2] { 0.95 } else { 0.6 });
         return None;
@@ -227,7 +258,8 @@ fn space(
     let by_rim = world::from_rim(unit, inside);
     let sound = |r: &world::FittedRotation| world::share_away(r.matrix, &sampled) < 0.1;
     if let Some(found) = aligned.map(|a| a.free).filter(|r| r.fit > 0.8 && sound(r)) {
-        // Depth of unknown polarity leaves half a turn about the view axis open; the rim settles it.
+        // Depth of unknown polarity leaves half a turn about the view axis open; the rim settles
+        // it.
         let matrix = upright(found.matrix, by_rim.as_ref());
         findings.found("normal.space", "world", (found.fit * 2.0 - 1.0).max(0.1));
         findings.note(format!(
@@ -254,7 +286,8 @@ fn space(
 /// The matrix or its half turn about the view axis, whichever fits the silhouette better.
 fn upright(matrix: Mat3, by_rim: Option<&world::FittedRotation>) -> Mat3 {
     let Some(rim) = by_rim else { return matrix };
-    let likeness = |m: Mat3| (m.transpose() * rim.matrix).to_cols_array().iter().step_by(4).sum::<f32>();
+    let likeness =
+        |m: Mat3| (m.transpose() * rim.matrix).to_cols_array().iter().step_by(4).sum::<f32>();
     let turned = Mat3::from_diagonal(Vec3::new(-1.0, -1.0, 1.0)) * matrix;
     if likeness(turned) > likeness(matrix) { turned } else { matrix }
 }

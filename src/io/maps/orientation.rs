@@ -1,5 +1,5 @@
-//! Detects the orientation of the stored axes: flips of x, y and z, channel order and the polarity of depth, judged
-//! together. Floor 5. What speaks for each is gathered in `evidence`.
+//! Detects the orientation of the stored axes: flips of x, y and z, channel order and the polarity
+//! of depth, judged together. Floor 5. What speaks for each is gathered in `evidence`.
 
 use super::axes::AxisMapping;
 use super::evidence::{AxisEvidence, ReducedMap};
@@ -29,17 +29,26 @@ pub struct FoundAxes {
     pub near_confidence: f32,
 }
 
-/// Which stored components have one sign all over the surface: candidates for the one toward the viewer.
+/// Which stored components have one sign all over the surface: candidates for the one toward the
+/// viewer.
 pub fn one_sided(vectors: &[Vec3]) -> [bool; 3] {
     std::array::from_fn(|c| {
-        let share = |s: f32| vectors.iter().filter(|v| v[c] * s < -0.02).count() as f32 / vectors.len().max(1) as f32;
+        let share = |s: f32| {
+            vectors.iter().filter(|v| v[c] * s < -0.02).count() as f32 / vectors.len().max(1) as f32
+        };
         let mean = vectors.iter().map(|v| v[c].abs()).sum::<f32>() / vectors.len().max(1) as f32;
         share(1.0).min(share(-1.0)) < 0.01 && mean > 0.15
     })
 }
 
-/// Weighs every order and flip. `vectors` are as stored, unit length; `depth` as stored, finite over the surface.
-pub fn find(vectors: &Plane<Vec3>, inside: &Plane<bool>, depth: Option<&Plane<f32>>, fixed: &FixedAxes) -> FoundAxes {
+/// Weighs every order and flip. `vectors` are as stored, unit length; `depth` as stored, finite
+/// over the surface.
+pub fn find(
+    vectors: &Plane<Vec3>,
+    inside: &Plane<bool>,
+    depth: Option<&Plane<f32>>,
+    fixed: &FixedAxes,
+) -> FoundAxes {
     let at: Vec<usize> = samples::spread(inside);
     let sampled: Vec<Vec3> = at.iter().map(|&i| vectors.values()[i]).collect();
     let sided = one_sided(&sampled);
@@ -61,14 +70,19 @@ pub fn find(vectors: &Plane<Vec3>, inside: &Plane<bool>, depth: Option<&Plane<f3
                 let score = evidence.score(flip_x, flip_y, near_high, depth.is_some())
                     + if near_high { fixed.near_high_leaning } else { -fixed.near_high_leaning }
                     - if order == [0, 1, 2] { 0.0 } else { 0.4 };
-                tried.push((score, AxisMapping { order, flip: [flip_x, flip_y, flip_z] }, near_high));
+                tried.push((
+                    score,
+                    AxisMapping { order, flip: [flip_x, flip_y, flip_z] },
+                    near_high,
+                ));
             }
         }
     }
     decide(&tried, &sampled)
 }
 
-/// The orders of channels worth trying: the plain one where blue can be z, else each channel that can.
+/// The orders of channels worth trying: the plain one where blue can be z, else each channel that
+/// can.
 fn orders(fixed: &FixedAxes, sided: [bool; 3]) -> Vec<[usize; 3]> {
     if let Some(order) = fixed.order {
         return vec![order];
@@ -85,11 +99,13 @@ fn decide(tried: &[(f32, AxisMapping, bool)], sampled: &[Vec3]) -> FoundAxes {
     let best = *tried.iter().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or(&plain);
     // How much worse the best mapping with the other choice is.
     let sure = |other: &dyn Fn(&(f32, AxisMapping, bool)) -> bool| {
-        let rival = tried.iter().filter(|t| other(t)).map(|t| t.0).fold(f32::NEG_INFINITY, f32::max);
+        let rival =
+            tried.iter().filter(|t| other(t)).map(|t| t.0).fold(f32::NEG_INFINITY, f32::max);
         1.0 - (-1.5 * (best.0 - rival)).exp()
     };
     let z = best.1.order[2];
-    let away = sampled.iter().filter(|v| (v[z] < 0.0) != best.1.flip[2]).count() as f32 / sampled.len().max(1) as f32;
+    let away = sampled.iter().filter(|v| (v[z] < 0.0) != best.1.flip[2]).count() as f32
+        / sampled.len().max(1) as f32;
     FoundAxes {
         axes: best.1,
         near_high: best.2,
@@ -98,7 +114,11 @@ fn decide(tried: &[(f32, AxisMapping, bool)], sampled: &[Vec3]) -> FoundAxes {
             sure(&|t| t.1.flip[1] != best.1.flip[1]),
             1.0 - 2.0 * away.min(0.5),
         ],
-        order_confidence: if best.1.order == [0, 1, 2] { 0.95 } else { sure(&|t| t.1.order != best.1.order) },
+        order_confidence: if best.1.order == [0, 1, 2] {
+            0.95
+        } else {
+            sure(&|t| t.1.order != best.1.order)
+        },
         near_confidence: sure(&|t| t.2 != best.2),
     }
 }

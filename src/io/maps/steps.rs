@@ -1,25 +1,30 @@
-//! The steps of 8 bits: the missing exact zero of normals, and staircases that make curvature noisy.
-//! Floor 5.
+//! The steps of 8 bits: the missing exact zero of normals, and staircases that make curvature
+//! noisy. Floor 5.
 
 use crate::math::{Vec3, vec3};
 use crate::raster::Plane;
 
-/// x and y below this (a byte has no exact 0: 127 and 128 are next to it) are 0 where a map is flat.
+/// x and y below this (a byte has no exact 0: 127 and 128 are next to it) are 0 where a map is
+/// flat.
 const NEARLY_FLAT: f32 = 1.5 / 255.0;
 
-/// Makes flat parts exactly flat: pixels all of whose neighbours within two pixels are nearly flat too. Returns how
-/// many.
+/// Makes flat parts exactly flat: pixels all of whose neighbours within two pixels are nearly flat
+/// too. Returns how many.
 ///
 /// A dome's top is not flat: its normals leave the zero within two pixels.
 pub fn snap_flat(normals: &mut Plane<Vec3>) -> usize {
     let flat = normals.map(|n| n.x.abs() < NEARLY_FLAT && n.y.abs() < NEARLY_FLAT && n.z > 0.5);
     let (w, h) = (flat.width(), flat.height());
     let whole = Plane::from_fn(flat.size(), |x, y| {
-        flat.at(x, y) && (-2..=2).all(|dy| (-2..=2).all(|dx| flat.clamped(x as i32 + dx, y as i32 + dy)))
+        flat.at(x, y)
+            && (-2..=2).all(|dy| (-2..=2).all(|dx| flat.clamped(x as i32 + dx, y as i32 + dy)))
     });
     // A pixel next to a wholly flat one belongs to the flat part if it is nearly flat itself.
     let snapped = Plane::from_fn(flat.size(), |x, y| {
-        flat.at(x, y) && (-2..=2).any(|dy| (-2..=2).any(|dx| whole.get(x as i32 + dx, y as i32 + dy).unwrap_or(false)))
+        flat.at(x, y)
+            && (-2..=2).any(|dy| {
+                (-2..=2).any(|dx| whole.get(x as i32 + dx, y as i32 + dy).unwrap_or(false))
+            })
     });
     let mut count = 0;
     for y in 0..h {
@@ -33,8 +38,8 @@ pub fn snap_flat(normals: &mut Plane<Vec3>) -> usize {
     count
 }
 
-/// Smooths a plane of quantised numbers: the flattest one whose every number still rounds to the stored one, joining
-/// neighbours at most a step and a half apart, so that edges stay.
+/// Smooths a plane of quantised numbers: the flattest one whose every number still rounds to the
+/// stored one, joining neighbours at most a step and a half apart, so that edges stay.
 pub fn smooth(stored: &Plane<f32>, step: f32, inside: &Plane<bool>) -> Plane<f32> {
     // Steps as wide as this many pixels are smoothed; each pass reaches one pixel further.
     const PASSES: usize = 48;
@@ -48,7 +53,9 @@ pub fn smooth(stored: &Plane<f32>, step: f32, inside: &Plane<bool>) -> Plane<f32
             let (mut sum, mut weight) = (now.at(x, y), 1.0f32);
             for (dx, dy) in [(-1, 0), (1, 0), (0, -1), (0, 1)] {
                 let (nx, ny) = (x as i32 + dx, y as i32 + dy);
-                if inside.get(nx, ny) == Some(true) && (stored.clamped(nx, ny) - told).abs() <= 1.5 * step {
+                if inside.get(nx, ny) == Some(true)
+                    && (stored.clamped(nx, ny) - told).abs() <= 1.5 * step
+                {
                     sum += now.clamped(nx, ny);
                     weight += 1.0;
                 }
@@ -70,14 +77,20 @@ mod tests {
         let ramp = |x: usize| x as f32 / 640.0 + if x >= 32 { 0.5 } else { 0.0 };
         let stored = Plane::from_fn(size, |x, _| (ramp(x) * 255.0).round() / 255.0);
         let smooth = smooth(&stored, 1.0 / 255.0, &Plane::filled(size, true));
-        let worst = |p: &Plane<f32>| (4..60).map(|x| (p.at(x, 1) - ramp(x)).abs()).fold(0.0, f32::max);
-        assert!(worst(&smooth) <= 1.01 / 255.0 && worst(&stored) > 1.4 * mean_error(&smooth, ramp), "no better");
+        let worst =
+            |p: &Plane<f32>| (4..60).map(|x| (p.at(x, 1) - ramp(x)).abs()).fold(0.0, f32::max);
+        assert!(
+            worst(&smooth) <= 1.01 / 255.0 && worst(&stored) > 1.4 * mean_error(&smooth, ramp),
+            "no better"
+        );
         assert!(mean_error(&smooth, ramp) < 0.6 * mean_error(&stored, ramp));
         assert!(smooth.at(32, 1) - smooth.at(31, 1) > 0.49);
     }
+
     fn mean_error(p: &Plane<f32>, ramp: impl Fn(usize) -> f32) -> f32 {
         (0..64).map(|x| (p.at(x, 1) - ramp(x)).abs()).sum::<f32>() / 64.0
     }
+
     #[test]
     fn a_flat_part_becomes_exactly_flat_but_a_slope_does_not() {
         let byte = |v: f32| (v * 255.0).round() / 255.0 * 2.0 - 1.0;

@@ -1,5 +1,5 @@
-//! Maps as their files store them: numbers per channel. Only the layer of an EXR is chosen; nothing else is
-//! interpreted. Floor 5. Colour tags (sRGB, gAMA, iCCP) are ignored here: maps are data.
+//! Maps as their files store them: numbers per channel. Only the layer of an EXR is chosen; nothing
+//! else is interpreted. Floor 5. Colour tags (sRGB, gAMA, iCCP) are ignored here: maps are data.
 
 use super::channel::{Channel, channels};
 use super::layers::{self, MapRole};
@@ -12,13 +12,15 @@ use std::path::{Path, PathBuf};
 pub struct StoredMap {
     pub file: PathBuf,
     pub size: Size,
-    /// One to four channels: red, green, blue, alpha of a picture; x, y, z of an EXR layer. `[0, 1]` in integer files.
+    /// One to four channels: red, green, blue, alpha of a picture; x, y, z of an EXR layer. `[0,
+    /// 1]` in integer files.
     pub channels: Vec<Channel>,
     /// Coverage stored in the file, `[0, 1]`; absent if it is 1 everywhere.
     pub alpha: Option<Channel>,
     /// The step between two neighbouring numbers of an integer file: 1/255 or 1/65535.
     pub step: Option<f32>,
-    /// JPEG, or EXR's B44: equal pixels may differ a little, and the background bleeds into the rim.
+    /// JPEG, or EXR's B44: equal pixels may differ a little, and the background bleeds into the
+    /// rim.
     pub lossy: bool,
     /// The EXR layer, for messages; empty otherwise.
     pub layer: String,
@@ -29,7 +31,13 @@ pub struct StoredMap {
 }
 
 /// Reads one map; `channel` names an EXR layer or channel, or one of `r g b a` of a picture.
-pub fn load(file: &Path, bytes: &[u8], channel: Option<&str>, role: MapRole, budget: &Budget) -> Result<StoredMap> {
+pub fn load(
+    file: &Path,
+    bytes: &[u8],
+    channel: Option<&str>,
+    role: MapRole,
+    budget: &Budget,
+) -> Result<StoredMap> {
     if ExrFile::is_exr(bytes) {
         load_exr(file, bytes, channel, role, budget)
     } else {
@@ -37,12 +45,22 @@ pub fn load(file: &Path, bytes: &[u8], channel: Option<&str>, role: MapRole, bud
     }
 }
 
-fn load_exr(file: &Path, bytes: &[u8], channel: Option<&str>, role: MapRole, budget: &Budget) -> Result<StoredMap> {
+fn load_exr(
+    file: &Path,
+    bytes: &[u8],
+    channel: Option<&str>,
+    role: MapRole,
+    budget: &Budget,
+) -> Result<StoredMap> {
     let exr = ExrFile::open(file, bytes, budget)?;
     let choice = layers::choose(file, &exr, channel, role)?;
     let wanted: Vec<usize> = choice.channels.iter().chain(&choice.alpha).copied().collect();
     let stored = wanted.len() as u64 * size_of::<f32>() as u64;
-    budget.room(file, &surface_of(exr.size()), exr.size().area() as u64 * (PEAK_BYTES_PER_PX + stored))?;
+    budget.room(
+        file,
+        &surface_of(exr.size()),
+        exr.size().area() as u64 * (PEAK_BYTES_PER_PX + stored),
+    )?;
     let mut channels = exr.read(&wanted)?;
     let alpha = if choice.alpha.is_some() { channels.pop() } else { None };
     // Beyond the data window there is nothing: alpha 0, and NaN in every other channel.
@@ -61,7 +79,12 @@ fn load_exr(file: &Path, bytes: &[u8], channel: Option<&str>, role: MapRole, bud
     })
 }
 
-fn load_bitmap(file: &Path, bytes: &[u8], channel: Option<&str>, budget: &Budget) -> Result<StoredMap> {
+fn load_bitmap(
+    file: &Path,
+    bytes: &[u8],
+    channel: Option<&str>,
+    budget: &Budget,
+) -> Result<StoredMap> {
     let bitmap = bitmap::decode(file, bytes, budget)?;
     let image = bitmap.image;
     let size = Size::new(image.width(), image.height());
@@ -70,7 +93,8 @@ fn load_bitmap(file: &Path, bytes: &[u8], channel: Option<&str>, budget: &Budget
         2 => Some(1.0 / 65535.0),
         _ => None,
     };
-    let (colours, has_alpha) = (if image.color().has_color() { 3 } else { 1 }, image.color().has_alpha());
+    let (colours, has_alpha) =
+        (if image.color().has_color() { 3 } else { 1 }, image.color().has_alpha());
     let stored = u64::from(image.color().bytes_per_pixel());
     budget.room(file, &surface_of(size), size.area() as u64 * (PEAK_BYTES_PER_PX + stored))?;
     let mut stored = StoredMap {
@@ -94,7 +118,8 @@ fn load_bitmap(file: &Path, bytes: &[u8], channel: Option<&str>, budget: &Budget
             _ => None,
         };
         let plane = at.and_then(|i| stored.channels.get(i).cloned());
-        let reason = format!("this picture has no channel “{name}”; its channels are called r, g, b and a");
+        let reason =
+            format!("this picture has no channel “{name}”; its channels are called r, g, b and a");
         stored.channels = vec![plane.ok_or_else(|| Error::invalid(file, "channel", reason))?];
     } else if has_alpha {
         stored.alpha = stored.channels.last().filter(|alpha| alpha.is_below_one()).cloned();
@@ -102,7 +127,8 @@ fn load_bitmap(file: &Path, bytes: &[u8], channel: Option<&str>, budget: &Budget
     Ok(stored)
 }
 
-/// Memory of the largest step from maps to a surface, besides the stored maps, measured on one of 8192².
+/// Memory of the largest step from maps to a surface, besides the stored maps, measured on one of
+/// 8192².
 const PEAK_BYTES_PER_PX: u64 = 28;
 
 fn surface_of(size: Size) -> String {
@@ -110,10 +136,12 @@ fn surface_of(size: Size) -> String {
 }
 
 impl StoredMap {
-    /// The first three channels at a pixel, 0 where there are fewer; the fourth is alpha or a fourth channel.
+    /// The first three channels at a pixel, 0 where there are fewer; the fourth is alpha or a
+    /// fourth channel.
     pub fn texel(&self, i: usize) -> [f32; 4] {
         std::array::from_fn(|c| self.channels.get(c).map_or(0.0, |channel| channel.at(i)))
     }
+
     /// The number of the file's colour channels, alpha not counted.
     pub fn colours(&self) -> usize {
         match self.channels.len() {
@@ -122,6 +150,7 @@ impl StoredMap {
             n => n,
         }
     }
+
     /// Whether all colour channels are equal at every pixel, as in a grey picture stored as RGB.
     pub fn is_grey(&self, tolerance: f32) -> bool {
         let first = &self.channels[0];

@@ -1,5 +1,5 @@
-//! Loaded maps become maps in the program's convention, and then a surface: step by step, since each map needs findings
-//! of the other. Floor 5.
+//! Loaded maps become maps in the program's convention, and then a surface: step by step, since
+//! each map needs findings of the other. Floor 5.
 
 use super::background::{self, FilledEdge};
 use super::coverage::{drop_unknown, report_mask};
@@ -38,23 +38,36 @@ pub struct UnderstoodMaps {
 }
 
 impl LoadedMaps<'_> {
-    /// Converts the maps to the program's convention; the coverage is the one that is given, if any.
+    /// Converts the maps to the program's convention; the coverage is the one that is given, if
+    /// any.
     pub fn understood(mut self, given_coverage: Option<Plane<u8>>) -> Result<UnderstoodMaps> {
         let Self { normal, depth, overrides, .. } = self;
-        let raw_depth =
-            depth.map(|d| depth::read(d, &overrides.depth, given_coverage.as_ref(), self.findings)).transpose()?;
+        let raw_depth = depth
+            .map(|d| depth::read(d, &overrides.depth, given_coverage.as_ref(), self.findings))
+            .transpose()?;
         let edge_of = |map: &StoredMap| FilledEdge::of(map, given_coverage.as_ref());
         let (edge_n, edge_d) = (normal.and_then(edge_of), depth.and_then(edge_of));
         let bare = |i: usize| raw_depth.as_ref().is_some_and(|d| d.values.values()[i].is_nan());
         let raw_normals = normal
-            .map(|n| normals::read(n, &overrides.normal, given_coverage.as_ref(), edge_n.as_ref(), bare, self.findings))
+            .map(|n| {
+                normals::read(
+                    n,
+                    &overrides.normal,
+                    given_coverage.as_ref(),
+                    edge_n.as_ref(),
+                    bare,
+                    self.findings,
+                )
+            })
             .transpose()?;
         let size = normal.or(depth).map_or(Size::new(1, 1), |m| m.size);
         let w = size.width as usize;
         let explicit = given_coverage.is_some();
         let mut coverage = given_coverage.unwrap_or_else(|| {
             let by_normals = raw_normals.as_ref().map(|r| &r.coverage);
-            Plane::from_fn(size, |x, y| if bare(y * w + x) { 0 } else { by_normals.map_or(255, |c| c.at(x, y)) })
+            Plane::from_fn(size, |x, y| {
+                if bare(y * w + x) { 0 } else { by_normals.map_or(255, |c| c.at(x, y)) }
+            })
         });
         if !explicit {
             let is_found_in_depth = raw_depth.as_ref().is_some_and(|depth| depth.has_background);
@@ -62,21 +75,33 @@ impl LoadedMaps<'_> {
         }
         // A partly covered rim pixel with the background's value has no value of its own.
         let borrowed = |edge: &Option<FilledEdge>, i: usize| {
-            explicit && coverage.values()[i] < 255 && edge.as_ref().is_some_and(|edge| edge.holds.values()[i])
+            explicit
+                && coverage.values()[i] < 255
+                && edge.as_ref().is_some_and(|edge| edge.holds.values()[i])
         };
         let inside = Plane::from_fn(size, |x, y| {
             let i = y * w + x;
-            let zero = raw_normals.as_ref().is_some_and(|r| background::is_degenerate(r.vectors.values()[i]));
-            coverage.values()[i] > 0 && !bare(i) && !zero && !borrowed(&edge_n, i) && !borrowed(&edge_d, i)
+            let zero = raw_normals
+                .as_ref()
+                .is_some_and(|r| background::is_degenerate(r.vectors.values()[i]));
+            coverage.values()[i] > 0
+                && !bare(i)
+                && !zero
+                && !borrowed(&edge_n, i)
+                && !borrowed(&edge_d, i)
         });
-        // A constant border does not help to detect conventions, and its edge may be the silhouette.
-        let fills = |i: usize| !explicit && edge_n.as_ref().is_some_and(|edge| edge.holds.values()[i]);
+        // A constant border does not help to detect conventions, and its edge may be the
+        // silhouette.
+        let fills =
+            |i: usize| !explicit && edge_n.as_ref().is_some_and(|edge| edge.holds.values()[i]);
         let judged = Plane::from_fn(size, |x, y| inside.at(x, y) && !fills(y * w + x));
         let enough = judged.values().iter().filter(|j| **j).count() >= 16;
         let judged = if enough { &judged } else { &inside };
         let (mut unit, planar) = self.joined(raw_normals, raw_depth, judged);
-        let turned_away =
-            (0..size.area()).find(|&i| fills(i)).zip(unit.as_ref()).is_some_and(|(i, n)| n.values()[i].z < -0.5);
+        let turned_away = (0..size.area())
+            .find(|&i| fills(i))
+            .zip(unit.as_ref())
+            .is_some_and(|(i, n)| n.values()[i].z < -0.5);
         if turned_away && enough {
             self.findings.note("the border's normals point away from the viewer, unlike the rest: they are background");
             (0..size.area()).filter(|&i| fills(i)).for_each(|i| coverage.values_mut()[i] = 0);
@@ -87,11 +112,14 @@ impl LoadedMaps<'_> {
             steps::snap_flat(normals);
         }
         let inside = inside.updated(|x, y, is| is && coverage.at(x, y) > 0);
-        let normals = unit.map(|n| n.updated(|x, y, n| if inside.at(x, y) { n } else { Vec3::ZERO }));
+        let normals =
+            unit.map(|n| n.updated(|x, y, n| if inside.at(x, y) { n } else { Vec3::ZERO }));
         let fov_degrees = overrides.depth.fov_degrees.or(depth.and_then(|s| s.fov_degrees));
         Ok(UnderstoodMaps { normals, planar, inside, coverage, is_masked: explicit, fov_degrees })
     }
-    /// Settles axes and polarity together; unit normals and planar depth that grows away from the viewer.
+
+    /// Settles axes and polarity together; unit normals and planar depth that grows away from the
+    /// viewer.
     fn joined(
         &mut self,
         raw_normals: Option<normals::RawNormals>,
@@ -99,18 +127,33 @@ impl LoadedMaps<'_> {
         inside: &Plane<bool>,
     ) -> (Option<Plane<Vec3>>, Option<Plane<f32>>) {
         let Self { normal, depth, overrides, .. } = *self;
-        let near_override = raw_depth.as_ref().and_then(|d| depth::near_override(&overrides.depth, d));
+        let near_override =
+            raw_depth.as_ref().and_then(|d| depth::near_override(&overrides.depth, d));
         let leaning = raw_depth.as_ref().map_or(0.0, |d| d.near_high_leaning);
-        let near =
-            orientation::FixedAxes { near_high: near_override, near_high_leaning: leaning, ..Default::default() };
-        let values = raw_depth.map(|d| match (overrides.depth.smooth_steps, depth.and_then(|s| s.step)) {
-            (Some(true), Some(step)) => steps::smooth(&d.values, step, inside),
-            _ => d.values,
-        });
+        let near = orientation::FixedAxes {
+            near_high: near_override,
+            near_high_leaning: leaning,
+            ..Default::default()
+        };
+        let values =
+            raw_depth.map(|d| match (overrides.depth.smooth_steps, depth.and_then(|s| s.step)) {
+                (Some(true), Some(step)) => steps::smooth(&d.values, step, inside),
+                _ => d.values,
+            });
         let oriented = normal.zip(raw_normals).map(|(stored, raw)| {
-            normals::orient(raw, stored, &overrides.normal, inside, values.as_ref(), &near, self.findings)
+            normals::orient(
+                raw,
+                stored,
+                &overrides.normal,
+                inside,
+                values.as_ref(),
+                &near,
+                self.findings,
+            )
         });
-        let Some((stored, values)) = depth.zip(values) else { return (oriented.map(|o| o.0), None) };
+        let Some((stored, values)) = depth.zip(values) else {
+            return (oriented.map(|o| o.0), None);
+        };
         let near_high = match &oriented {
             Some((_, near_high)) => *near_high,
             None => depth_alone(near_override, leaning, self.findings),
@@ -119,9 +162,11 @@ impl LoadedMaps<'_> {
         let encoding = self.depth_encoding(stored, &values, unit.as_ref(), inside, near_high);
         let planar = depth::planar(stored, values, &overrides.depth, near_high, encoding);
         let near = if near_high { Near::High } else { Near::Low };
-        self.findings.depth = Some(DepthConvention { near, encoding: Some(encoding), ..overrides.depth.clone() });
+        self.findings.depth =
+            Some(DepthConvention { near, encoding: Some(encoding), ..overrides.depth.clone() });
         (unit, Some(planar))
     }
+
     /// The meaning of a depth map's numbers.
     fn depth_encoding(
         &mut self,
@@ -134,7 +179,9 @@ impl LoadedMaps<'_> {
         let (told, findings) = (&self.overrides.depth, &mut *self.findings);
         if let Some(encoding) = told.encoding {
             findings.given("depth.encoding", encoding.name());
-            if encoding == DepthEncoding::RayDistance && told.fov_degrees.or(stored.fov_degrees).is_none() {
+            if encoding == DepthEncoding::RayDistance
+                && told.fov_degrees.or(stored.fov_degrees).is_none()
+            {
                 findings.note("depth is measured along the ray; without the field of view (“fov”) it is used as it is");
             }
             return encoding;
@@ -163,8 +210,14 @@ fn depth_alone(overrides: Option<bool>, leaning: f32, findings: &mut Findings) -
 }
 
 impl UnderstoodMaps {
-    /// Normalises depth and derives the map that is missing. If cancelled meanwhile, the result is of no use.
-    pub fn completed(self, overrides: &ConventionOverrides, findings: &mut Findings, progress: &Progress) -> Maps {
+    /// Normalises depth and derives the map that is missing. If cancelled meanwhile, the result is
+    /// of no use.
+    pub fn completed(
+        self,
+        overrides: &ConventionOverrides,
+        findings: &mut Findings,
+        progress: &Progress,
+    ) -> Maps {
         let UnderstoodMaps { normals, planar, inside, mut coverage, is_masked, fov_degrees } = self;
         let size = inside.size();
         let nothing = || Plane::filled(size, f32::NAN);
@@ -175,11 +228,15 @@ impl UnderstoodMaps {
             (Some(normals), None) => {
                 findings.note("depth was made from the normals; a true depth map is better at occluding contours");
                 let go_on = || !progress.is_cancelled();
-                let depth = integrate::depth_from_normals_while(&normals, &inside, &go_on).map(|i| i.depth);
+                let depth =
+                    integrate::depth_from_normals_while(&normals, &inside, &go_on).map(|i| i.depth);
                 (normals, depth.unwrap_or_else(nothing))
             }
             (None, Some(n)) => {
-                let range_px = overrides.depth.range_px.unwrap_or_else(|| depth_range_px(&n, &inside, fov_degrees));
+                let range_px = overrides
+                    .depth
+                    .range_px
+                    .unwrap_or_else(|| depth_range_px(&n, &inside, fov_degrees));
                 findings
                     .note(format!("normals were made from depth, taken to be {range_px:.0} pixels deep (“range_px”)"));
                 (differentiate::normals_from_depth(&n.depth, range_px), n.depth)
@@ -193,9 +250,13 @@ impl UnderstoodMaps {
     }
 }
 
-/// The depth of a surface in pixels: from the camera if depth is metric and the field of view known, else half the
-/// longer side of the surface, as for a ball.
-fn depth_range_px(depth: &depth::NormalizedDepth, inside: &Plane<bool>, fov_degrees: Option<f32>) -> f32 {
+/// The depth of a surface in pixels: from the camera if depth is metric and the field of view
+/// known, else half the longer side of the surface, as for a ball.
+fn depth_range_px(
+    depth: &depth::NormalizedDepth,
+    inside: &Plane<bool>,
+    fov_degrees: Option<f32>,
+) -> f32 {
     if let Some(fov) = fov_degrees.filter(|_| depth.near > 0.0) {
         let middle = 0.5 * (depth.near + depth.far);
         let width = 2.0 * middle * (fov.to_radians() * 0.5).tan();

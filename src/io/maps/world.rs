@@ -1,11 +1,12 @@
-//! Normals stored in world space: the rotation that brings them into the camera's. Floor 5. The user or the file gives
-//! it; otherwise the best fit to depth or silhouette is used.
+//! Normals stored in world space: the rotation that brings them into the camera's. Floor 5. The
+//! user or the file gives it; otherwise the best fit to depth or silhouette is used.
 
 use super::samples;
 use crate::math::{Mat3, Vec2, Vec3, vec3};
 use crate::raster::Plane;
 
-/// A rotation (or a reflection) and how well it fits: the mean cosine between turned and expected normals.
+/// A rotation (or a reflection) and how well it fits: the mean cosine between turned and expected
+/// normals.
 #[derive(Clone, Copy, Debug)]
 pub struct FittedRotation {
     pub matrix: Mat3,
@@ -24,9 +25,9 @@ pub fn to_rows(matrix: Mat3) -> [[f32; 3]; 3] {
 
 /// The rotation part of an EXR's `worldToCamera`.
 ///
-/// Stored for row vectors (translation in the last row); some writers store it for column vectors (in the last column).
-/// Renderers disagree on whether their camera looks along +z or −z: `None` where the matrix is no rotation; the caller
-/// tries both signs of z.
+/// Stored for row vectors (translation in the last row); some writers store it for column vectors
+/// (in the last column). Renderers disagree on whether their camera looks along +z or −z: `None`
+/// where the matrix is no rotation; the caller tries both signs of z.
 pub fn from_attribute(m: [f32; 16]) -> Option<Mat3> {
     let rows = [[m[0], m[1], m[2]], [m[4], m[5], m[6]], [m[8], m[9], m[10]]];
     let for_columns = [m[3], m[7], m[11]].iter().any(|v| v.abs() > 1e-6);
@@ -57,21 +58,29 @@ pub struct WorldAlignment {
 }
 
 impl WorldAlignment {
-    /// Whether the normals are in world space: a rotation fits clearly better than an exchange of axes.
+    /// Whether the normals are in world space: a rotation fits clearly better than an exchange of
+    /// axes.
     pub fn is_turned(&self) -> bool {
         let (free, axes) = (1.0 - self.free.fit, 1.0 - self.axes_fit);
         axes > 1.5 * free + 0.004
     }
 }
 
-/// Finds the rotation from depth: slopes of depth, at the scale that fits best, give camera-space normals.
+/// Finds the rotation from depth: slopes of depth, at the scale that fits best, give camera-space
+/// normals.
 ///
 /// `depth` grows away from the viewer, in any unit.
-pub fn from_depth(vectors: &Plane<Vec3>, depth: &Plane<f32>, at: &[usize]) -> Option<WorldAlignment> {
+pub fn from_depth(
+    vectors: &Plane<Vec3>,
+    depth: &Plane<f32>,
+    at: &[usize],
+) -> Option<WorldAlignment> {
     let w = vectors.width();
     let mut pairs: Vec<(Vec3, Vec2)> = at
         .iter()
-        .filter_map(|&i| Some((vectors.values()[i].try_normalize()?, samples::slope(depth, i % w, i / w, 1)?)))
+        .filter_map(|&i| {
+            Some((vectors.values()[i].try_normalize()?, samples::slope(depth, i % w, i / w, 1)?))
+        })
         .collect();
     if pairs.len() < 64 {
         return None;
@@ -109,11 +118,14 @@ fn axes_fit(s: &[[f64; 3]; 3]) -> f32 {
     orders.iter().map(sum).fold(0.0, f64::max) as f32
 }
 
-/// Finds the rotation from the silhouette: there, normals lie in the picture plane and point outward.
+/// Finds the rotation from the silhouette: there, normals lie in the picture plane and point
+/// outward.
 pub fn from_rim(vectors: &Plane<Vec3>, inside: &Plane<bool>) -> Option<FittedRotation> {
     let rim = samples::rim(inside);
-    let pairs: Vec<(Vec3, Vec3)> =
-        rim.iter().filter_map(|&(i, d)| Some((vectors.values()[i].try_normalize()?, d.extend(0.0)))).collect();
+    let pairs: Vec<(Vec3, Vec3)> = rim
+        .iter()
+        .filter_map(|&(i, d)| Some((vectors.values()[i].try_normalize()?, d.extend(0.0))))
+        .collect();
     (pairs.len() >= 24).then(|| best_fit(pairs.iter().copied()))
 }
 
@@ -137,7 +149,8 @@ fn correlation_matrix(pairs: impl Iterator<Item = (Vec3, Vec3)>) -> [[f64; 3]; 3
     s.map(|row| row.map(|v| v / count.max(1.0)))
 }
 
-/// Horn (1987): the largest eigenvector of a 4 × 4 matrix of the correlations is the rotation's quaternion.
+/// Horn (1987): the largest eigenvector of a 4 × 4 matrix of the correlations is the rotation's
+/// quaternion.
 fn rotation_of(s: &[[f64; 3]; 3]) -> FittedRotation {
     let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = *s;
     let n = [
@@ -188,15 +201,22 @@ mod tests {
     #[test]
     fn the_rotation_between_two_sets_of_directions_is_found() {
         let truth = Mat3::from_rotation_y(1.9) * Mat3::from_rotation_x(-0.7);
-        let directions = (0..40).map(|i| vec3((i as f32).sin(), (i as f32 * 2.3).cos(), 0.4).normalize());
+        let directions =
+            (0..40).map(|i| vec3((i as f32).sin(), (i as f32 * 2.3).cos(), 0.4).normalize());
         let found = best_fit(directions.map(|d| (d, truth * d)));
         assert!((found.fit - 1.0).abs() < 1e-5);
-        assert!((found.matrix * vec3(0.3, -0.5, 0.8) - truth * vec3(0.3, -0.5, 0.8)).length() < 1e-5);
+        assert!(
+            (found.matrix * vec3(0.3, -0.5, 0.8) - truth * vec3(0.3, -0.5, 0.8)).length() < 1e-5
+        );
     }
+
     #[test]
     fn a_matrix_is_read_for_row_and_for_column_vectors() {
         let r = to_rows(Mat3::from_rotation_z(0.4));
-        let columns = [r[0][0], r[0][1], r[0][2], 5.0, r[1][0], r[1][1], r[1][2], 6.0, r[2][0], r[2][1], r[2][2], 7.0];
+        let columns = [
+            r[0][0], r[0][1], r[0][2], 5.0, r[1][0], r[1][1], r[1][2], 6.0, r[2][0], r[2][1],
+            r[2][2], 7.0,
+        ];
         let mut m = [0.0; 16];
         m[..12].copy_from_slice(&columns);
         m[15] = 1.0;

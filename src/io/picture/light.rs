@@ -16,16 +16,26 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
     picture(file, &exr, chosen(file, &exr)?, budget)
 }
 
-/// The finished picture that a renderer stored with its maps, and its layer's name; `None` if there is none.
+/// The finished picture that a renderer stored with its maps, and its layer's name; `None` if there
+/// is none.
 ///
 /// * `maps`: the layer that was read as normals, which is no picture.
-pub fn finished(file: &Path, bytes: &[u8], maps: &str, budget: &Budget) -> Result<Option<(String, Picture)>> {
+pub fn finished(
+    file: &Path,
+    bytes: &[u8],
+    maps: &str,
+    budget: &Budget,
+) -> Result<Option<(String, Picture)>> {
     if !ExrFile::is_exr(bytes) {
         return Ok(None);
     }
     let exr = ExrFile::open(file, bytes, budget)?;
-    let is_finished = |pass: &&ExrPass| pass.letters("rgb").is_some() && rank(pass) < WHOLE.len() && pass.name != maps;
-    let Some(pass) = exr.passes().iter().filter(is_finished).min_by_key(|pass| rank(pass)) else { return Ok(None) };
+    let is_finished = |pass: &&ExrPass| {
+        pass.letters("rgb").is_some() && rank(pass) < WHOLE.len() && pass.name != maps
+    };
+    let Some(pass) = exr.passes().iter().filter(is_finished).min_by_key(|pass| rank(pass)) else {
+        return Ok(None);
+    };
     Ok(Some((pass.name.clone(), picture(file, &exr, pass, budget)?)))
 }
 
@@ -39,7 +49,8 @@ fn picture(file: &Path, exr: &ExrFile, pass: &ExrPass, budget: &Budget) -> Resul
         texels.extend(band.iter().map(|&texel| straight(texel)));
         Ok(())
     })?;
-    Picture::linear(exr.size(), texels).ok_or_else(|| Error::decode(file, "the picture has no pixels"))
+    Picture::linear(exr.size(), texels)
+        .ok_or_else(|| Error::decode(file, "the picture has no pixels"))
 }
 
 /// EXR's alpha is associated: colours are stored multiplied by it.
@@ -53,21 +64,27 @@ pub(super) fn rank(pass: &ExrPass) -> usize {
     WHOLE.iter().position(|known| *known == last).unwrap_or(WHOLE.len())
 }
 
-/// The colour layer of an EXR: the unnamed one, else one called colour or beauty, else the first with R, G and B, else
-/// a lone grey channel.
+/// The colour layer of an EXR: the unnamed one, else one called colour or beauty, else the first
+/// with R, G and B, else a lone grey channel.
 pub fn chosen<'e>(file: &Path, exr: &'e ExrFile) -> Result<&'e ExrPass> {
     let colour = |pass: &&ExrPass| pass.letters("rgb").is_some();
-    let grey = |pass: &&ExrPass| pass.letters("y").or(pass.letters("a")).is_some() || pass.channels.len() == 1;
+    let grey = |pass: &&ExrPass| {
+        pass.letters("y").or(pass.letters("a")).is_some() || pass.channels.len() == 1
+    };
     let passes = exr.passes();
     let found = passes.iter().filter(colour).min_by_key(|p| rank(p));
     found.or_else(|| passes.iter().filter(grey).min_by_key(|p| rank(p))).ok_or_else(|| {
         let names: Vec<&str> = passes.iter().map(|p| p.name.as_str()).collect();
-        Error::unsupported(file, format!("no layer of this EXR has R, G and B; it has {}", names.join(", ")))
+        Error::unsupported(
+            file,
+            format!("no layer of this EXR has R, G and B; it has {}", names.join(", ")),
+        )
     })
 }
 
-/// Passes on the colours of a layer as stored (grey repeated in all three, alpha 1 if absent): whole rows from the top,
-/// a multiple of the height of tiles at a time, so that only these are in memory.
+/// Passes on the colours of a layer as stored (grey repeated in all three, alpha 1 if absent):
+/// whole rows from the top, a multiple of the height of tiles at a time, so that only these are in
+/// memory.
 pub fn in_bands(
     file: &Path,
     exr: &ExrFile,
@@ -75,7 +92,10 @@ pub fn in_bands(
     mut take: impl FnMut(&[[f32; 4]]) -> Result<()>,
 ) -> Result<()> {
     let rgb = pass.letters("rgb").or(pass.letters("y").map(|y| vec![y[0]; 3]));
-    let only = pass.channels.first().ok_or_else(|| Error::decode(file, "a layer of the EXR has no channels"))?;
+    let only = pass
+        .channels
+        .first()
+        .ok_or_else(|| Error::decode(file, "a layer of the EXR has no channels"))?;
     let rgb = rgb.unwrap_or_else(|| vec![*only; 3]);
     let alpha = pass.letters("a").filter(|a| a[0] != rgb[0]);
     let wanted: Vec<usize> = rgb.iter().chain(alpha.iter().flatten()).copied().collect();
@@ -83,7 +103,9 @@ pub fn in_bands(
     let mut texels = Vec::new();
     for rows in exr.bands() {
         let planes = exr.read_rows(&wanted, rows.clone())?;
-        let texel = |i: usize| std::array::from_fn(|c| planes.get(c).map_or(1.0, |plane| finite(plane.values()[i])));
+        let texel = |i: usize| {
+            std::array::from_fn(|c| planes.get(c).map_or(1.0, |plane| finite(plane.values()[i])))
+        };
         texels.clear();
         texels.extend((0..rows.len() * exr.size().width as usize).map(texel));
         take(&texels)?;

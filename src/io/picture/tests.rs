@@ -10,18 +10,22 @@ fn encoded(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
     image.write_to(&mut out, format).unwrap();
     out.into_inner()
 }
+
 fn sample() -> RgbaImage {
     RgbaImage::from_fn(9, 5, |x, y| image::Rgba([x as u8 * 20, y as u8 * 40, 90, 255 - x as u8]))
 }
+
 fn opaque() -> DynamicImage {
     DynamicImage::ImageRgb8(DynamicImage::ImageRgba8(sample()).to_rgb8())
 }
+
 fn texels(bytes: &[u8], name: &str) -> Vec<[u8; 4]> {
     match decode(Path::new(name), bytes, &Budget::default()).unwrap().texels {
         Texels::Srgb8(t) => t.to_vec(),
         Texels::Linear(_) => panic!("{name} should hold bytes"),
     }
 }
+
 #[test]
 fn lossless_formats_keep_their_bytes() {
     let image = sample();
@@ -38,11 +42,14 @@ fn lossless_formats_keep_their_bytes() {
         assert_eq!(texels(&encoded(&image, format), name), expected, "{name}");
     }
 }
+
 #[test]
 fn pictures_of_16_bits_become_paint_of_16_bits_whatever_way_they_are_read() {
     let value = |x: u32, y: u32| (x * 911 + y * 77) as u16;
-    let pixel = |x: u32, y: u32| image::Rgba([value(x, y), 65535 - value(x, y), 300, 65000 - x as u16]);
-    let picture: image::ImageBuffer<image::Rgba<u16>, Vec<u16>> = image::ImageBuffer::from_fn(70, 130, pixel);
+    let pixel =
+        |x: u32, y: u32| image::Rgba([value(x, y), 65535 - value(x, y), 300, 65000 - x as u16]);
+    let picture: image::ImageBuffer<image::Rgba<u16>, Vec<u16>> =
+        image::ImageBuffer::from_fn(70, 130, pixel);
     let deep: Vec<[u16; 4]> = picture.pixels().map(|p| p.0).collect();
     let image = DynamicImage::ImageRgba16(picture);
     let wanted = TileGrid::from_straight_deep(&deep, 70, 130, -9, 20);
@@ -59,14 +66,22 @@ fn pictures_of_16_bits_become_paint_of_16_bits_whatever_way_they_are_read() {
     for (file, name) in files.iter().zip(["a.png", "a.tif", "profiled.png"]) {
         let found = painted(Path::new(name), file, -9, 20, &Budget::default()).unwrap();
         assert_eq!(found.size, Size::new(70, 130));
-        assert!(wanted.iter().all(|(at, tile)| found.tiles.tile(at).is_some_and(|own| own.is_same(tile))), "{name}");
+        assert!(
+            wanted
+                .iter()
+                .all(|(at, tile)| found.tiles.tile(at).is_some_and(|own| own.is_same(tile))),
+            "{name}"
+        );
     }
     let short = Budget { memory_bytes: 200_000, ..Budget::default() };
     assert!(painted(Path::new("profiled.png"), &files[2], 0, 0, &short).is_err());
 }
+
 #[test]
 fn sixteen_bits_are_kept_beside_the_bytes_that_they_round_to() {
-    let deep = image::ImageBuffer::from_fn(300, 2, |x, y| image::Rgba([x as u16 * 211, 7, 40000, 65535 - y as u16]));
+    let deep = image::ImageBuffer::from_fn(300, 2, |x, y| {
+        image::Rgba([x as u16 * 211, 7, 40000, 65535 - y as u16])
+    });
     for (format, name) in [(ImageFormat::Png, "a.png"), (ImageFormat::Tiff, "a.tif")] {
         let bytes = encoded(&DynamicImage::ImageRgba16(deep.clone()), format);
         let picture = decode(Path::new(name), &bytes, &Budget::default()).unwrap();
@@ -74,19 +89,28 @@ fn sixteen_bits_are_kept_beside_the_bytes_that_they_round_to() {
         assert!(kept.iter().zip(deep.pixels()).all(|(kept, pixel)| *kept == pixel.0), "{name}");
         let Texels::Srgb8(texels) = &picture.texels else { panic!("bytes") };
         let nearest = |v: u16| (f32::from(v) / 257.0).round() as u8;
-        assert!(kept.iter().zip(texels.iter()).all(|(deep, byte)| deep.map(nearest) == *byte), "{name}");
+        assert!(
+            kept.iter().zip(texels.iter()).all(|(deep, byte)| deep.map(nearest) == *byte),
+            "{name}"
+        );
     }
     assert!(
-        decode(Path::new("b.png"), &encoded(&opaque(), ImageFormat::Png), &Budget::default()).unwrap().deep.is_none()
+        decode(Path::new("b.png"), &encoded(&opaque(), ImageFormat::Png), &Budget::default())
+            .unwrap()
+            .deep
+            .is_none()
     );
 }
+
 #[test]
 fn a_mask_is_luminance_times_alpha() {
-    let image = RgbaImage::from_fn(2, 1, |x, _| image::Rgba([255, 255, 255, [255, 128][x as usize]]));
+    let image =
+        RgbaImage::from_fn(2, 1, |x, _| image::Rgba([255, 255, 255, [255, 128][x as usize]]));
     let bytes = encoded(&DynamicImage::ImageRgba8(image), ImageFormat::Png);
     let plane = decode_coverage(Path::new("m.png"), &bytes, &Budget::default()).unwrap();
     assert_eq!(plane.values(), [255, 128]);
 }
+
 #[test]
 fn what_is_no_picture_gets_a_sentence() {
     let mut bomb = encoded(&DynamicImage::ImageRgba8(sample()), ImageFormat::Png);
@@ -103,6 +127,7 @@ fn what_is_no_picture_gets_a_sentence() {
         assert!(said.contains(part), "{said}");
     }
 }
+
 #[test]
 fn our_own_profile_is_one_that_strict_readers_take() {
     let profile = own_srgb();
@@ -113,6 +138,7 @@ fn our_own_profile_is_one_that_strict_readers_take() {
     assert!(ColorProfile::new_from_slice(&profile).unwrap().description.is_some());
     assert!(through_profile(&opaque(), &profile).is_none());
 }
+
 #[test]
 fn a_wide_profile_is_applied_and_srgb_changes_nothing() {
     let image = opaque();
@@ -129,7 +155,8 @@ fn a_wide_profile_is_applied_and_srgb_changes_nothing() {
     };
     let (plain, wide) = (texels(&encode(None), "a.png"), texels(&encode(Some(profile)), "b.png"));
     assert_eq!(texels(&encode(Some(ColorProfile::new_srgb().encode().unwrap())), "c.png"), plain);
-    // Display P3's primaries are more saturated: a reddish pixel's red grows, the others shrink or stay.
+    // Display P3's primaries are more saturated: a reddish pixel's red grows, the others shrink or
+    // stay.
     let (p, w) = (plain[8], wide[8]);
     assert!(w[0] > p[0] && w[1] <= p[1] && w[3] == p[3], "{p:?} became {w:?}");
 }

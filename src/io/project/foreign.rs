@@ -1,5 +1,5 @@
-//! Reads OpenRaster files that other programs wrote or changed: every picture becomes a paint layer, and layers that
-//! are still as we wrote them become live again. Floor 5.
+//! Reads OpenRaster files that other programs wrote or changed: every picture becomes a paint
+//! layer, and layers that are still as we wrote them become live again. Floor 5.
 
 use super::MERGED;
 use super::manifest::Manifest;
@@ -22,7 +22,8 @@ use std::sync::Arc;
 pub fn document(reading: &mut ProjectReader, stack: StackXml) -> Result<Document> {
     let size = size(reading, &stack)?;
     fit_together(reading, &stack.layers, None)?;
-    let mut reader = ForeignReader { reading, used_px: 0, used_bytes: 0, known: HashMap::new(), live: None };
+    let mut reader =
+        ForeignReader { reading, used_px: 0, used_bytes: 0, known: HashMap::new(), live: None };
     let layers = reader.layers(stack.layers)?;
     Ok(Document { layers, ..Document::empty(size) })
 }
@@ -32,17 +33,28 @@ fn size(reading: &ProjectReader, stack: &StackXml) -> Result<Size> {
     if let Some(size) = stack.size {
         return Ok(size);
     }
-    let merged = reading.archive.bytes(MERGED, reading.budget.file_bytes).ok().and_then(|bytes| png_size(&bytes));
-    let merged = merged.ok_or_else(|| Error::decode(reading.file, "stack.xml: <image> has no width and height"))?;
+    let merged = reading
+        .archive
+        .bytes(MERGED, reading.budget.file_bytes)
+        .ok()
+        .and_then(|bytes| png_size(&bytes));
+    let merged = merged
+        .ok_or_else(|| Error::decode(reading.file, "stack.xml: <image> has no width and height"))?;
     reading.budget.size(reading.file, merged.width.into(), merged.height.into())
 }
 
-/// Counts the pixels of the pictures by their headers, before the first is decoded: an empty picture packs a
-/// thousandfold, and decoding many of them takes long before the limit is reached.
+/// Counts the pixels of the pictures by their headers, before the first is decoded: an empty
+/// picture packs a thousandfold, and decoding many of them takes long before the limit is reached.
 ///
 /// * `ours`: pictures that may show layers as we saved them are not decoded, and not counted.
-fn fit_together(reading: &ProjectReader, elements: &[StackElement], ours: Option<&Manifest>) -> Result<()> {
-    let is_ours = |src: &str| ours.is_some_and(|manifest| manifest.pictures.iter().any(|shown| shown.name == src));
+fn fit_together(
+    reading: &ProjectReader,
+    elements: &[StackElement],
+    ours: Option<&Manifest>,
+) -> Result<()> {
+    let is_ours = |src: &str| {
+        ours.is_some_and(|manifest| manifest.pictures.iter().any(|shown| shown.name == src))
+    };
     let (mut sizes, mut used_px) = (HashMap::new(), 0u64);
     let mut left: Vec<&StackElement> = elements.iter().collect();
     while let Some(element) = left.pop() {
@@ -51,9 +63,12 @@ fn fit_together(reading: &ProjectReader, elements: &[StackElement], ours: Option
             ElementContent::Picture { src, .. } if is_ours(src) => {}
             ElementContent::Picture { src, .. } => {
                 // Pictures other than PNGs are counted when they are decoded.
-                let begun = || reading.archive.beginning(src, PNG_HEADER).and_then(|bytes| png_size(&bytes));
+                let begun = || {
+                    reading.archive.beginning(src, PNG_HEADER).and_then(|bytes| png_size(&bytes))
+                };
                 let area = |size: Size| u64::from(size.width) * u64::from(size.height);
-                used_px = used_px.saturating_add(*sizes.entry(src).or_insert_with(|| begun().map_or(0, area)));
+                used_px = used_px
+                    .saturating_add(*sizes.entry(src).or_insert_with(|| begun().map_or(0, area)));
                 within(reading, used_px)?;
             }
         }
@@ -64,15 +79,21 @@ fn fit_together(reading: &ProjectReader, elements: &[StackElement], ours: Option
 /// Refuses more pixels than the pictures of a document may have together.
 fn within(reading: &ProjectReader, used_px: u64) -> Result<()> {
     if used_px > reading.budget.document_px {
-        let reason = format!("its layers hold more than {} pixels together", reading.budget.document_px);
+        let reason =
+            format!("its layers hold more than {} pixels together", reading.budget.document_px);
         return Err(Error::too_large(reading.file, reason));
     }
     Ok(())
 }
 
-/// A document that another program saved but left our entries in: its layers are those of `stack.xml`, and those whose
-/// pictures are unchanged are as we saved them.
-pub fn restored(reading: &mut ProjectReader, text: &[u8], value: &Value, manifest: &Manifest) -> Result<Document> {
+/// A document that another program saved but left our entries in: its layers are those of
+/// `stack.xml`, and those whose pictures are unchanged are as we saved them.
+pub fn restored(
+    reading: &mut ProjectReader,
+    text: &[u8],
+    value: &Value,
+    manifest: &Manifest,
+) -> Result<Document> {
     let stack = stack::read(reading.file, text, reading.budget)?;
     let size = size(reading, &stack)?;
     fit_together(reading, &stack.layers, Some(manifest))?;
@@ -100,7 +121,8 @@ pub fn restored(reading: &mut ProjectReader, text: &[u8], value: &Value, manifes
 /// The list of layers is lost: each readable picture becomes a layer, else the merged picture.
 pub fn leftovers(reading: &mut ProjectReader, error: Error) -> Result<Document> {
     let names: Vec<String> = reading.archive.names().into_iter().map(str::to_owned).collect();
-    let is_layer = |name: &&String| name.starts_with("data/") && name.to_lowercase().ends_with(".png");
+    let is_layer =
+        |name: &&String| name.starts_with("data/") && name.to_lowercase().ends_with(".png");
     let mut layers = Vec::new();
     let mut size: Option<Size> = None;
     let mut used_bytes = 0;
@@ -122,13 +144,17 @@ pub fn leftovers(reading: &mut ProjectReader, error: Error) -> Result<Document> 
         used_bytes += tiles.bytes() as u64;
         reading.budget.room(reading.file, "what its layers hold", used_bytes)?;
         let content = Content::Pixels(PixelLayer { file: name.clone(), x: 0, y: 0, tiles });
-        layers.push(Arc::new(Layer { clip_to_surface: false, ..Layer::new(name.as_str(), content) }));
+        layers
+            .push(Arc::new(Layer { clip_to_surface: false, ..Layer::new(name.as_str(), content) }));
         if layers.len() >= reading.budget.layers {
             break;
         }
     }
     let Some(size) = size else { return Err(error) };
-    reading.lost(format!("{error}; {} of its pictures could be read, their order and places are lost", layers.len()));
+    reading.lost(format!(
+        "{error}; {} of its pictures could be read, their order and places are lost",
+        layers.len()
+    ));
     Ok(Document { layers, ..Document::empty(size) })
 }
 
@@ -163,10 +189,14 @@ impl ForeignReader<'_, '_> {
         }
         Ok(layers)
     }
+
     fn layer(&mut self, element: StackElement) -> Result<Layer> {
         let StackElement { mut layer, shows, kind, unknown_op, .. } = element;
         if let Some(op) = unknown_op {
-            self.reading.note(format!("“{}” is blended by “{op}” elsewhere; here it is blended normally", layer.name));
+            self.reading.note(format!(
+                "“{}” is blended by “{op}” elsewhere; here it is blended normally",
+                layer.name
+            ));
         }
         match shows {
             ElementContent::Stack { isolated, layers } => {
@@ -186,6 +216,7 @@ impl ForeignReader<'_, '_> {
         }
         Ok(layer)
     }
+
     /// The layer as we saved it, if its picture is still the same and where it was.
     fn live(&mut self, src: &str, x: i32, y: i32) -> Option<Layer> {
         let saved = self.live.as_mut()?;
@@ -201,6 +232,7 @@ impl ForeignReader<'_, '_> {
             }
         }
     }
+
     fn picture(&mut self, name: &str, src: String, x: i32, y: i32) -> Result<PixelLayer> {
         let key = (src, x, y);
         if let Some(tiles) = self.known.get(&key).cloned() {
@@ -208,7 +240,8 @@ impl ForeignReader<'_, '_> {
         }
         let path = self.reading.archive_path(&key.0);
         let read = self.reading.archive.bytes(&key.0, self.reading.budget.file_bytes);
-        let decoded = read.and_then(|bytes| picture::painted(&path, &bytes, x, y, self.reading.budget));
+        let decoded =
+            read.and_then(|bytes| picture::painted(&path, &bytes, x, y, self.reading.budget));
         let decoded = match decoded {
             Ok(decoded) => decoded,
             Err(error @ Error::TooLarge { .. }) => return Err(error),
@@ -226,15 +259,19 @@ impl ForeignReader<'_, '_> {
     }
 }
 
-/// Makes one base of the layers beneath an “atop” layer, so that it can be clipped: the layers themselves if only the
-/// lowest is not clipped, else a group of them.
+/// Makes one base of the layers beneath an “atop” layer, so that it can be clipped: the layers
+/// themselves if only the lowest is not clipped, else a group of them.
 fn as_one_base(layers: Vec<Arc<Layer>>) -> Vec<Arc<Layer>> {
-    let is_set_apart = |layer: &Layer| !matches!(&layer.content, Content::Group(group) if group.pass_through);
-    let is_base = |(i, layer): (usize, &Arc<Layer>)| (i == 0) != layer.clip_below && (i > 0 || is_set_apart(layer));
+    let is_set_apart =
+        |layer: &Layer| !matches!(&layer.content, Content::Group(group) if group.pass_through);
+    let is_base = |(i, layer): (usize, &Arc<Layer>)| {
+        (i == 0) != layer.clip_below && (i > 0 || is_set_apart(layer))
+    };
     if layers.iter().enumerate().all(is_base) {
         return layers;
     }
-    let name = layers.last().map_or_else(String::new, |layer| format!("{} and beneath", layer.name));
+    let name =
+        layers.last().map_or_else(String::new, |layer| format!("{} and beneath", layer.name));
     let group = Content::Group(Group { layers, pass_through: false });
     vec![Arc::new(Layer { clip_to_surface: false, ..Layer::new(name, group) })]
 }
@@ -242,6 +279,8 @@ fn as_one_base(layers: Vec<Arc<Layer>>) -> Vec<Arc<Layer>> {
 fn became_pixels(name: &str, kind: &str) -> String {
     match kind {
         "composed" => format!("“{name}” is pixels: it shows several layers composed by Rilievo"),
-        kind => format!("“{name}” became pixels: another program saved the file without its {kind} settings"),
+        kind => format!(
+            "“{name}” became pixels: another program saved the file without its {kind} settings"
+        ),
     }
 }

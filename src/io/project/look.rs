@@ -1,5 +1,5 @@
-//! Renders and encodes the pictures of a plan, each once: an unchanged layer is taken from the cache. Floor 5. Encoding
-//! is in `pixels`, composing in `document::flatten`.
+//! Renders and encodes the pictures of a plan, each once: an unchanged layer is taken from the
+//! cache. Floor 5. Encoding is in `pixels`, composing in `document::flatten`.
 
 use super::plan::{ItemContent, PlanItem};
 use crate::Result;
@@ -15,7 +15,8 @@ use std::sync::Arc;
 /// Work that may be cancelled, or fail.
 pub type Cancellable<T> = Result<Option<T>>;
 
-/// The picture of each item that shows one, in the order [`pictures_of`] lists them; `None` if cancelled.
+/// The picture of each item that shows one, in the order [`pictures_of`] lists them; `None` if
+/// cancelled.
 pub fn render(
     file: &Path,
     document: &Document,
@@ -30,9 +31,11 @@ pub fn render(
                 let kind = LookKind { masked: item.mask.is_none(), whole_rim: item.whole_rim };
                 look(file, &seen, layer, kind, progress)?
             }
-            ItemContent::Composed { document, layers } => flattened(document, layers, item.whole_rim, progress)
-                .map(|tiles| pixels::encode(file, &tiles, None))
-                .transpose()?,
+            ItemContent::Composed { document, layers } => {
+                flattened(document, layers, item.whole_rim, progress)
+                    .map(|tiles| pixels::encode(file, &tiles, None))
+                    .transpose()?
+            }
             ItemContent::Nothing(_) | ItemContent::Stack { .. } => {
                 Some(pixels::encode(file, &TileGrid::default(), None)?)
             }
@@ -64,8 +67,8 @@ struct SeenLayers<'d> {
     document: &'d Document,
     /// Those whose frames are not the canvas.
     moved: HashSet<LayerId>,
-    /// What a layer's look depends on besides the scene and the layer itself: normal layers, and groups that move
-    /// those within.
+    /// What a layer's look depends on besides the scene and the layer itself: normal layers, and
+    /// groups that move those within.
     others: Vec<Arc<Layer>>,
 }
 
@@ -74,17 +77,21 @@ impl<'d> SeenLayers<'d> {
         let is_taken = |layer: &Layer| layer.transform.is_some() || layer.on.is_some();
         let takes_along = |layer: &Layer| is_taken(layer) && layer.content.group().is_some();
         let all = document.walk().into_iter().map(|(_, layer)| layer);
-        let others = all.filter(|layer| layer.content.shapes() || takes_along(layer)).cloned().collect();
+        let others =
+            all.filter(|layer| layer.content.shapes() || takes_along(layer)).cloned().collect();
         Self { document, moved: document.moved_layers(), others }
     }
+
     fn by(&self, layer: &Arc<Layer>) -> Vec<Arc<Layer>> {
         std::iter::once(layer).chain(&self.others).cloned().collect()
     }
+
     /// A paint layer's pixels, where nothing hides any of them from other programs.
     fn bare<'a>(&self, layer: &'a Layer, masked: bool) -> Option<&'a TileGrid> {
         let is_moved = self.moved.contains(&layer.id);
         let has_surface = self.document.surface.is_some();
-        let is_cut = is_moved || (masked && layer.mask.is_some()) || (has_surface && layer.clip_to_surface);
+        let is_cut =
+            is_moved || (masked && layer.mask.is_some()) || (has_surface && layer.clip_to_surface);
         match &layer.content {
             Content::Pixels(pixels) if !is_cut => Some(&pixels.tiles),
             _ => None,
@@ -92,7 +99,8 @@ impl<'d> SeenLayers<'d> {
     }
 }
 
-/// The look of a layer alone: wholly opaque, the surface's edge and its mask in its pixels, if requested.
+/// The look of a layer alone: wholly opaque, the surface's edge and its mask in its pixels, if
+/// requested.
 fn look(
     file: &Path,
     seen: &SeenLayers,
@@ -109,7 +117,8 @@ fn look(
             (layer.opacity, layer.blend, layer.blend_linear) = (1.0, BlendMode::Normal, false);
             layer.mask = layer.mask.take().filter(|_| kind.masked);
         });
-        let tiles = plain.and_then(|plain| flattened(&plain, &[layer.id], kind.whole_rim, progress));
+        let tiles =
+            plain.and_then(|plain| flattened(&plain, &[layer.id], kind.whole_rim, progress));
         tiles.map(|tiles| pixels::encode(file, &tiles, Some(document.size.rect()))).transpose()
     };
     let mut failed = None;
@@ -123,15 +132,25 @@ fn look(
 }
 
 /// Some layers composed with each other.
-fn flattened(document: &Document, layers: &[LayerId], whole_rim: bool, progress: &Progress) -> Option<TileGrid> {
-    if whole_rim { flatten_whole(document, layers, progress) } else { flatten_layers(document, layers, progress) }
+fn flattened(
+    document: &Document,
+    layers: &[LayerId],
+    whole_rim: bool,
+    progress: &Progress,
+) -> Option<TileGrid> {
+    if whole_rim {
+        flatten_whole(document, layers, progress)
+    } else {
+        flatten_layers(document, layers, progress)
+    }
 }
 
 fn is_deep(tiles: &TileGrid) -> bool {
     tiles.is_deep_in(tiles.bounds())
 }
 
-/// Stores the pictures that were read with a document as the looks of its layers, so that saving copies them.
+/// Stores the pictures that were read with a document as the looks of its layers, so that saving
+/// copies them.
 pub fn remember(document: &Document, looks: &BTreeMap<LayerId, EncodedPixels>) {
     let (scene, seen) = (document.scene(), SeenLayers::of(document));
     for (_, layer) in document.walk() {
@@ -145,7 +164,10 @@ pub fn remember(document: &Document, looks: &BTreeMap<LayerId, EncodedPixels>) {
             layer.cache.look.get(&scene, &seen.by(layer), &kind, || Some(encoded.clone()));
             // Nothing hides any of its pixels, so they are its look.
             if bare.is_some() {
-                layer.cache.pixels.get(&scene, std::slice::from_ref(layer), &(), || Some(encoded.clone()));
+                layer
+                    .cache
+                    .pixels
+                    .get(&scene, std::slice::from_ref(layer), &(), || Some(encoded.clone()));
             }
         }
     }
@@ -162,7 +184,12 @@ pub fn paint(file: &Path, document: &Document) -> Result<BTreeMap<LayerId, Encod
     Ok(all?.into_iter().flatten().collect())
 }
 
-fn pixels_of(file: &Path, document: &Document, layer: &Arc<Layer>, tiles: &TileGrid) -> Result<EncodedPixels> {
+fn pixels_of(
+    file: &Path,
+    document: &Document,
+    layer: &Arc<Layer>,
+    tiles: &TileGrid,
+) -> Result<EncodedPixels> {
     let mut failed = None;
     let known = layer.cache.pixels.get(&document.scene(), std::slice::from_ref(layer), &(), || {
         pixels::encode(file, tiles, None).map_err(|error| failed = Some(error)).ok()

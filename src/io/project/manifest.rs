@@ -1,5 +1,5 @@
-//! Records which picture of `data/` shows which layer, with checksums, so that changes by other programs are detected.
-//! Floor 5.
+//! Records which picture of `data/` shows which layer, with checksums, so that changes by other
+//! programs are detected. Floor 5.
 
 use crate::document::EncodedPixels;
 use crate::document::{Document, LayerId};
@@ -45,16 +45,26 @@ impl Manifest {
             let (name, look) = shown.get(&layer.id)?;
             let crc = crc32fast::hash(look.file.bytes());
             let whole_rim = whole_rims.contains(&layer.id);
-            Some(ManifestPicture { layer: path, name: name.clone(), crc, x: look.x, y: look.y, whole_rim })
+            Some(ManifestPicture {
+                layer: path,
+                name: name.clone(),
+                crc,
+                x: look.x,
+                y: look.y,
+                whole_rim,
+            })
         });
         Self { program: PROGRAM.into(), stack, pictures: pictures.collect() }
     }
+
     pub fn is_of_this_program(&self) -> bool {
         self.program == PROGRAM
     }
+
     pub fn write(&self) -> Value {
         let picture = |p: &ManifestPicture| {
-            let mut told = json!({ "layer": p.layer, "picture": p.name, "crc32": p.crc, "x": p.x, "y": p.y });
+            let mut told =
+                json!({ "layer": p.layer, "picture": p.name, "crc32": p.crc, "x": p.x, "y": p.y });
             if p.whole_rim {
                 told["whole_rim"] = true.into();
             }
@@ -68,6 +78,7 @@ impl Manifest {
             "pictures": self.pictures.iter().map(picture).collect::<Vec<_>>(),
         })
     }
+
     /// `None` for anything that this program would not have written.
     pub fn read(value: &Value) -> Option<Self> {
         let crc = |value: &Value| value.as_u64().and_then(|v| u32::try_from(v).ok());
@@ -102,7 +113,8 @@ mod tests {
             let (layer, name) = ("layers[0]".into(), "data/000.png".into());
             ManifestPicture { layer, name, crc: u32::MAX, x: -4, y: 5, whole_rim }
         };
-        let manifest = Manifest { program: "1".into(), stack: 7, pictures: vec![shown(false), shown(true)] };
+        let manifest =
+            Manifest { program: "1".into(), stack: 7, pictures: vec![shown(false), shown(true)] };
         assert_eq!(Manifest::read(&manifest.write()), Some(manifest));
         assert_eq!(Manifest::read(&json!({ "format": "rilievo-project", "pictures": 3 })), None);
     }

@@ -1,5 +1,6 @@
-//! Projects: a zip that is a valid OpenRaster file and also holds Rilievo's own document (docs/PROJECTS.md). Floor 5.
-//! It reads and writes bytes in memory; `io::save` handles files on the disk.
+//! Projects: a zip that is a valid OpenRaster file and also holds Rilievo's own document
+//! (docs/PROJECTS.md). Floor 5. It reads and writes bytes in memory; `io::save` handles files on
+//! the disk.
 //!
 //! | file | |
 //! |---|---|
@@ -94,12 +95,14 @@ impl ZipEntry {
     fn text(name: &str, bytes: Vec<u8>) -> Self {
         Self { name: name.into(), bytes: bytes.into(), is_text: name != MIMETYPE }
     }
+
     fn bytes(name: &str, bytes: Asset) -> Self {
         Self { name: name.into(), bytes, is_text: false }
     }
 }
 
-/// Rilievo's own entries: the document, the manifest, and every file they name except the pictures in `shown`.
+/// Rilievo's own entries: the document, the manifest, and every file they name except the pictures
+/// in `shown`.
 ///
 /// * `paint`: all pixels of the paint layers.
 /// * `shown`: the pictures that show one layer alone, with their names.
@@ -116,7 +119,8 @@ pub fn documents(
     let shared = shown.iter().filter(|(id, (_, look))| paint.get(id) == Some(look));
     let shared = shared.map(|(id, (name, _))| (*id, name.clone())).collect();
     let mut assets = AssetList::default();
-    let renamed = assets.rename(file, document, &StoredPixels { pixels: paint, shared: &shared })?;
+    let renamed =
+        assets.rename(file, document, &StoredPixels { pixels: paint, shared: &shared })?;
     let manifest = format!("{:#}\n", Manifest::new(document, stack, shown, whole_rims).write());
     let mut entries = vec![
         ZipEntry::text(DOCUMENT, recipe::print(&renamed).into_bytes()),
@@ -131,7 +135,11 @@ pub fn packed(file: &Path, entries: &[ZipEntry]) -> Result<Vec<u8>> {
     let pack = || {
         let mut packer = ZipPacker::default();
         for ZipEntry { name, bytes, is_text } in entries {
-            if *is_text { packer.deflate(name, bytes.bytes())? } else { packer.store(name, bytes.bytes())? }
+            if *is_text {
+                packer.deflate(name, bytes.bytes())?
+            } else {
+                packer.store(name, bytes.bytes())?
+            }
         }
         packer.finish()
     };
@@ -147,7 +155,8 @@ fn thumbnail(rgba: &[u8], size: Size) -> (Vec<u8>, Size) {
     if longer <= THUMBNAIL_PX {
         return (picture.into_raw(), size);
     }
-    let side = |n: u32| ((u64::from(n) * u64::from(THUMBNAIL_PX) / u64::from(longer)) as u32).max(1);
+    let side =
+        |n: u32| ((u64::from(n) * u64::from(THUMBNAIL_PX) / u64::from(longer)) as u32).max(1);
     let size = Size::new(side(size.width), side(size.height));
     (image::imageops::thumbnail(&picture, size.width, size.height).into_raw(), size)
 }

@@ -26,7 +26,8 @@ pub struct ProjectContents {
     pub document: Document,
     /// What differs from the saved state, a sentence each, for the user.
     pub notes: Vec<String>,
-    /// Whether nothing was lost. A document that is not whole must not overwrite its file without asking.
+    /// Whether nothing was lost. A document that is not whole must not overwrite its file without
+    /// asking.
     pub is_whole: bool,
     /// The merged picture that the file holds besides the layers, as a PNG.
     pub picture: Option<Asset>,
@@ -36,7 +37,8 @@ pub struct ProjectContents {
 pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContents> {
     let archive = Archive::open(file, bytes, budget)?;
     let (notes, known) = (Vec::new(), Vec::new());
-    let mut reading = ProjectReader { file, archive: &archive, budget, notes, is_whole: true, known };
+    let mut reading =
+        ProjectReader { file, archive: &archive, budget, notes, is_whole: true, known };
     if archive.is_damaged() {
         reading.lost("the file's table of contents is damaged; its entries were found without it");
     }
@@ -44,17 +46,20 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
     let ProjectReader { mut notes, is_whole, .. } = reading;
     notes.extend(document.note_of_lost(None).into_iter().chain(document.note_of_astray()));
     // Without it the layers are painted before anything is seen.
-    let picture = archive.has(MERGED).then(|| archive.bytes(MERGED, budget.file_bytes).ok()).flatten();
+    let picture =
+        archive.has(MERGED).then(|| archive.bytes(MERGED, budget.file_bytes).ok()).flatten();
     Ok(ProjectContents { document, notes, is_whole, picture: picture.map(Asset::from) })
 }
 
-/// Reads a project that was just made from a document, and compares the two; everything saved must come back unchanged.
+/// Reads a project that was just made from a document, and compares the two; everything saved must
+/// come back unchanged.
 ///
-/// Pixels whose bytes were already decoded and compared after encoding are not decoded again. Fails with a sentence
-/// that says what would not come back.
+/// Pixels whose bytes were already decoded and compared after encoding are not decoded again. Fails
+/// with a sentence that says what would not come back.
 pub fn read_back(file: &Path, bytes: &[u8], document: &Document, budget: &Budget) -> Result<()> {
-    let lost =
-        |what: String| Err(Error::unsupported(file, format!("the drawing would not come back as it is: {what}")));
+    let lost = |what: String| {
+        Err(Error::unsupported(file, format!("the drawing would not come back as it is: {what}")))
+    };
     let archive = Archive::open(file, bytes, budget)?;
     let paint = paint(file, document)?;
     let known = document.walk().into_iter().filter_map(|(_, layer)| match &layer.content {
@@ -62,7 +67,8 @@ pub fn read_back(file: &Path, bytes: &[u8], document: &Document, budget: &Budget
         _ => None,
     });
     let known = known.collect();
-    let mut reading = ProjectReader { file, archive: &archive, budget, notes: Vec::new(), is_whole: true, known };
+    let mut reading =
+        ProjectReader { file, archive: &archive, budget, notes: Vec::new(), is_whole: true, known };
     match reading.document() {
         Err(error) => lost(error.to_string()),
         Ok(_) if !reading.notes.is_empty() => lost(reading.notes.join("; ")),
@@ -73,7 +79,8 @@ pub fn read_back(file: &Path, bytes: &[u8], document: &Document, budget: &Budget
 impl ProjectReader<'_> {
     fn document(&mut self) -> Result<Document> {
         let manifest = self.manifest();
-        let stack = self.archive.has(STACK).then(|| self.archive.bytes(STACK, self.budget.json_bytes));
+        let stack =
+            self.archive.has(STACK).then(|| self.archive.bytes(STACK, self.budget.json_bytes));
         let parsed = match self.archive.has(DOCUMENT) {
             false => None,
             true => match self.value(DOCUMENT) {
@@ -85,7 +92,8 @@ impl ProjectReader<'_> {
             },
         };
         let Some(value) = parsed else { return self.pictures_only(stack) };
-        let stack_crc = stack.as_ref().and_then(|text| text.as_ref().ok()).map(|text| crc32fast::hash(text));
+        let stack_crc =
+            stack.as_ref().and_then(|text| text.as_ref().ok()).map(|text| crc32fast::hash(text));
         match (&manifest, stack) {
             (Some(manifest), Some(Ok(text))) if stack_crc != Some(manifest.stack) => {
                 let restored = foreign::restored(self, &text, &value, manifest);
@@ -100,10 +108,12 @@ impl ProjectReader<'_> {
             _ => self.own(value, manifest.as_ref()),
         }
     }
+
     fn value(&self, name: &str) -> Result<Value> {
         let text = self.archive.bytes(name, self.budget.json_bytes)?;
         recipe::parse(&self.archive_path(name), &text, self.budget)
     }
+
     fn manifest(&mut self) -> Option<Manifest> {
         if !self.archive.has(MANIFEST) {
             if self.archive.has(DOCUMENT) {
@@ -117,16 +127,23 @@ impl ProjectReader<'_> {
         }
         read
     }
+
     /// The document as it was saved, with what another program changed and without what is damaged.
     fn own(&mut self, mut value: Value, manifest: Option<&Manifest>) -> Result<Document> {
-        let intact = manifest.map(|manifest| repair::check_pictures(self, &mut value, manifest)).unwrap_or_default();
+        let intact = manifest
+            .map(|manifest| repair::check_pictures(self, &mut value, manifest))
+            .unwrap_or_default();
         let path = self.archive_path(DOCUMENT);
-        let source = RecipeSource { file: &path, files: self.archive, budget: self.budget, onto: None };
+        let source =
+            RecipeSource { file: &path, files: self.archive, budget: self.budget, onto: None };
         let document = match recipe::read_with_tiles(&value, source, self.decoded_ahead(&value)) {
             Ok(document) => document,
             Err(error) => {
-                // A newer version or a field out of range is no damage: leaving something out would not help.
-                if self.fits_if_rounded(&error) || !repair::leave_out_damaged(self, &mut value, manifest) {
+                // A newer version or a field out of range is no damage: leaving something out would
+                // not help.
+                if self.fits_if_rounded(&error)
+                    || !repair::leave_out_damaged(self, &mut value, manifest)
+                {
                     return Err(error);
                 }
                 self.read_value(&value)?
@@ -140,6 +157,7 @@ impl ProjectReader<'_> {
         }
         Ok(document)
     }
+
     /// The pixels of the paint layers, decoded in parallel; failures are reported later, in order.
     fn decoded_ahead(&self, value: &Value) -> TileGrids {
         let mut wanted = BTreeSet::new();
@@ -151,26 +169,40 @@ impl ProjectReader<'_> {
             let size = png_size(&bytes)?;
             self.budget.size(self.file, size.width.into(), size.height.into()).ok()?;
             let known = self.known.iter().find(|(known, _)| {
-                (known.x, known.y, known.size) == (key.1, key.2, size) && known.file.bytes() == bytes
+                (known.x, known.y, known.size) == (key.1, key.2, size)
+                    && known.file.bytes() == bytes
             });
             let known = known.map(|(_, tiles)| tiles.clone());
-            let read = || picture::painted(Path::new(&key.0), &bytes, key.1, key.2, self.budget).ok();
+            let read =
+                || picture::painted(Path::new(&key.0), &bytes, key.1, key.2, self.budget).ok();
             let tiles = known.or_else(|| Some(read()?.tiles))?;
             // Pixels in memory count, not the rectangle around them.
             let px = (tiles.iter().count() * TILE_AREA) as u64;
-            left_px.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left: u64| left.checked_sub(px)).ok()?;
+            left_px
+                .fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left: u64| {
+                    left.checked_sub(px)
+                })
+                .ok()?;
             let bytes = tiles.bytes() as u64;
-            left_bytes.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left: u64| left.checked_sub(bytes)).ok()?;
+            left_bytes
+                .fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left: u64| {
+                    left.checked_sub(bytes)
+                })
+                .ok()?;
             Some((key.clone(), tiles))
         };
         wanted.into_par_iter().filter_map(one).collect()
     }
+
     /// Without a document: what any program sees.
     fn pictures_only(&mut self, stack: Option<Result<Vec<u8>>>) -> Result<Document> {
         let layers = match stack {
             Some(Ok(text)) => stack::read(self.file, &text, self.budget),
             Some(Err(error)) => Err(error),
-            None => Err(Error::decode(self.file, "it is no OpenRaster file: there is no stack.xml in it")),
+            None => Err(Error::decode(
+                self.file,
+                "it is no OpenRaster file: there is no stack.xml in it",
+            )),
         };
         match layers {
             Ok(layers) => foreign::document(self, layers),
@@ -184,7 +216,9 @@ fn list_paint(layers: &Value, out: &mut BTreeSet<(String, i32, i32)>) {
     for layer in layers.as_array().into_iter().flatten() {
         let corner = |name: &str| match layer.get(name) {
             None => Some(0),
-            Some(value) => value.as_i64().and_then(|v| i32::try_from(v).ok()).filter(|v| v.abs() <= 1_000_000),
+            Some(value) => {
+                value.as_i64().and_then(|v| i32::try_from(v).ok()).filter(|v| v.abs() <= 1_000_000)
+            }
         };
         if let (Some("pixels"), Some(file)) = (layer["kind"].as_str(), layer["file"].as_str())
             && let (Some(x), Some(y)) = (corner("x"), corner("y"))
@@ -204,7 +238,9 @@ fn looks(
     let mut by_path: BTreeMap<String, EncodedPixels> = intact
         .into_iter()
         .filter(|(shown, ..)| !shown.whole_rim)
-        .map(|(shown, file, size)| (shown.layer, EncodedPixels { file, size, x: shown.x, y: shown.y }))
+        .map(|(shown, file, size)| {
+            (shown.layer, EncodedPixels { file, size, x: shown.x, y: shown.y })
+        })
         .collect();
     let is_whole = |layer: &Layer| has_masks_in_pixels || layer.mask.is_none();
     let walk = document.walk().into_iter().filter(|(_, layer)| is_whole(layer));

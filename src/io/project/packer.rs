@@ -6,8 +6,8 @@ use zip::result::ZipResult;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-/// Entries in the order they are added. Entries have no date, and the header of each has its size and checksum, so that
-/// entries can be found without the table of contents.
+/// Entries in the order they are added. Entries have no date, and the header of each has its size
+/// and checksum, so that entries can be found without the table of contents.
 pub struct ZipPacker {
     zip: ZipWriter<Cursor<Vec<u8>>>,
 }
@@ -23,13 +23,16 @@ impl ZipPacker {
     pub fn store(&mut self, name: &str, bytes: &[u8]) -> ZipResult<()> {
         self.add(name, bytes, CompressionMethod::Stored)
     }
+
     /// Adds text.
     pub fn deflate(&mut self, name: &str, bytes: &[u8]) -> ZipResult<()> {
         self.add(name, bytes, CompressionMethod::Deflated)
     }
+
     pub fn finish(self) -> ZipResult<Vec<u8>> {
         Ok(self.zip.finish()?.into_inner())
     }
+
     fn add(&mut self, name: &str, bytes: &[u8], method: CompressionMethod) -> ZipResult<()> {
         let options = SimpleFileOptions::default()
             .compression_method(method)

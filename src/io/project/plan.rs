@@ -1,21 +1,24 @@
-//! Plans what other programs see of a document: nested stacks of pictures, as far as the format can express them.
-//! Floor 5. It only lists the pictures; `look` renders them and `stack` writes the XML.
+//! Plans what other programs see of a document: nested stacks of pictures, as far as the format can
+//! express them. Floor 5. It only lists the pictures; `look` renders them and `stack` writes the
+//! XML.
 //!
-//! OpenRaster has no masks, no clipping, no adjustments, and not every blend mode; Photoshop's format has more. What
-//! the format cannot express is composed:
+//! OpenRaster has no masks, no clipping, no adjustments, and not every blend mode; Photoshop's
+//! format has more. What the format cannot express is composed:
 //!
 //! * a mask, and clipping to the surface, go into the layer's own picture;
-//! * layers clipped to one beneath become a stack with one composed picture, the layers themselves hidden next to it:
-//!   also in Photoshop's format, whose clipping Krita does not read and others do not apply at the edge; there the
-//!   hidden layers are clipped as here;
+//! * layers clipped to one beneath become a stack with one composed picture, the layers themselves
+//!   hidden next to it: also in Photoshop's format, whose clipping Krita does not read and others
+//!   do not apply at the edge; there the hidden layers are clipped as here;
 //! * an isolated group with a mask becomes one too;
-//! * where several layers keep to the surface and the format has masks, its edge is the mask of a group around them, so
-//!   that it cuts them once;
-//! * a layer that changes or reads what is beneath in a way that cannot be expressed (radiance scaling, exclusion,
-//!   plus, blending in linear light, a pass-through group with a mask or opacity) is composed with all that lies
-//!   beneath it in its scope.
+//! * where several layers keep to the surface and the format has masks, its edge is the mask of a
+//!   group around them, so that it cuts them once;
+//! * a layer that changes or reads what is beneath in a way that cannot be expressed (radiance
+//!   scaling, exclusion, plus, blending in linear light, a pass-through group with a mask or
+//!   opacity) is composed with all that lies beneath it in its scope.
 
-use crate::document::{Content, Document, Group, Layer, LayerId, LayerLabel, LayerLock, LayerMask, MaskKind, Role};
+use crate::document::{
+    Content, Document, Group, Layer, LayerId, LayerLabel, LayerLock, LayerMask, MaskKind, Role,
+};
 use crate::raster::{BlendMode, Plane};
 use crate::surface::Surface;
 use std::sync::Arc;
@@ -60,7 +63,8 @@ pub enum ItemContent {
     Nothing(Arc<Layer>),
     /// A layer alone, wholly opaque, its mask in its pixels.
     Layer(Arc<Layer>),
-    /// Some layers composed on transparency, in a document where the first layer's opacity and blend mode are reset.
+    /// Some layers composed on transparency, in a document where the first layer's opacity and
+    /// blend mode are reset.
     Composed { document: Document, layers: Vec<LayerId> },
     /// Bottom first.
     Stack { isolated: bool, items: Vec<PlanItem> },
@@ -70,7 +74,8 @@ pub enum ItemContent {
 pub fn plan(document: &Document, words: FormatSupport) -> Vec<PlanItem> {
     let edge = document.surface.as_deref().filter(|_| words.masks).map(Surface::shares);
     let is_soft = |edge: &Plane<u8>| edge.values().iter().any(|share| (1..255).contains(share));
-    let mask = |edge| LayerMask::new(MaskKind::File { file: String::new(), coverage: Arc::new(edge) });
+    let mask =
+        |edge| LayerMask::new(MaskKind::File { file: String::new(), coverage: Arc::new(edge) });
     Planner { document, words, edge: edge.filter(is_soft).map(mask) }.scope(&document.layers)
 }
 
@@ -80,7 +85,8 @@ const ON_SURFACE: &str = "On the surface";
 struct Planner<'a> {
     document: &'a Document,
     words: FormatSupport,
-    /// The surface's edge as a mask, if it is soft, the format has masks, and no group around has it.
+    /// The surface's edge as a mask, if it is soft, the format has masks, and no group around has
+    /// it.
     edge: Option<LayerMask>,
 }
 
@@ -95,32 +101,47 @@ impl Planner<'_> {
         }
         let above = last.map_or(0, |last| last + 1);
         for runs in runs[above..].chunk_by(|a, b| keep_to_surface(a) == keep_to_surface(b)) {
-            items.extend(self.within_edge(runs).unwrap_or_else(|| runs.iter().flat_map(|run| self.run(run)).collect()));
+            items.extend(
+                self.within_edge(runs)
+                    .unwrap_or_else(|| runs.iter().flat_map(|run| self.run(run)).collect()),
+            );
         }
         items
     }
-    /// Runs of layers on the surface in a group whose mask is its edge; `None` where each layer may as well have the
-    /// edge itself.
+
+    /// Runs of layers on the surface in a group whose mask is its edge; `None` where each layer may
+    /// as well have the edge itself.
     fn within_edge(&self, runs: &[&[Arc<Layer>]]) -> Option<Vec<PlanItem>> {
         let edge = self.edge.clone().filter(|_| runs.iter().all(|run| keep_to_surface(run)))?;
         let bare = Planner { edge: None, ..*self };
-        let items: Vec<PlanItem> = runs.iter().flat_map(|run| bare.run(run)).map(with_whole_rim).collect();
+        let items: Vec<PlanItem> =
+            runs.iter().flat_map(|run| bare.run(run)).map(with_whole_rim).collect();
         // A single picture has its own edge.
         (pictures_seen(&items) > 1).then(|| {
             let shows = ItemContent::Stack { isolated: false, items };
             vec![PlanItem { mask: Some(edge), ..picture(ON_SURFACE.into(), shows) }]
         })
     }
+
     /// A layer that reads what lies beneath it, and all that lies beneath it, as one picture.
     fn composed_with_beneath(&self, runs: &[&[Arc<Layer>]]) -> [PlanItem; 2] {
         let parts = runs.iter().flat_map(|run| self.run(run)).collect();
         let top = runs.last().and_then(|run| run.first());
         let name = top.map_or(String::new(), |layer| layer.name.clone());
         // Without a base, what is clipped paints nothing.
-        let visible = runs.iter().filter(|run| run.first().is_some_and(|base| base.visible && is_base(base)));
-        let layers = visible.flat_map(|run| run.iter()).filter(|l| l.visible).map(|layer| layer.id).collect();
-        [hidden_parts(&name, parts), picture(name, ItemContent::Composed { document: self.document.clone(), layers })]
+        let visible =
+            runs.iter().filter(|run| run.first().is_some_and(|base| base.visible && is_base(base)));
+        let layers = visible
+            .flat_map(|run| run.iter())
+            .filter(|l| l.visible)
+            .map(|layer| layer.id)
+            .collect();
+        [
+            hidden_parts(&name, parts),
+            picture(name, ItemContent::Composed { document: self.document.clone(), layers }),
+        ]
     }
+
     /// A layer and those clipped to it.
     fn run(&self, run: &[Arc<Layer>]) -> Vec<PlanItem> {
         let Some((base, rest)) = run.split_first() else { return Vec::new() };
@@ -139,14 +160,22 @@ impl Planner<'_> {
         }
         items
     }
+
     /// A layer and those clipped to it as the format clips; `None` where it cannot.
     fn clipped_by_format(&self, run: &[Arc<Layer>]) -> Option<Vec<PlanItem>> {
         let (base, rest) = run.split_first()?;
-        let is_said = |layer: &Arc<Layer>| !layer.clip_below || !layer.visible || self.says_how_it_meets(layer);
-        let can = self.words.clipping && is_base(base) && base.content.group().is_none() && rest.iter().all(is_said);
-        let item = |layer: &Arc<Layer>| PlanItem { clipped: layer.clip_below, ..self.single(layer) };
+        let is_said = |layer: &Arc<Layer>| {
+            !layer.clip_below || !layer.visible || self.says_how_it_meets(layer)
+        };
+        let can = self.words.clipping
+            && is_base(base)
+            && base.content.group().is_none()
+            && rest.iter().all(is_said);
+        let item =
+            |layer: &Arc<Layer>| PlanItem { clipped: layer.clip_below, ..self.single(layer) };
         can.then(|| run.iter().map(item).collect())
     }
+
     fn clipping_stack(&self, base: &Arc<Layer>, run: &[Arc<Layer>]) -> Vec<PlanItem> {
         let single = || run.iter().map(|layer| self.single(layer)).collect();
         let parts = self.clipped_by_format(run).unwrap_or_else(single);
@@ -154,11 +183,15 @@ impl Planner<'_> {
         let composed = ItemContent::Composed { document: self.plain(base.id), layers };
         if self.words.clipping {
             // No group around both: some programs take a group of such a file for opaque.
-            return vec![hidden_parts(&base.name, parts), PlanItem { shows: composed, ..item(base) }];
+            return vec![
+                hidden_parts(&base.name, parts),
+                PlanItem { shows: composed, ..item(base) },
+            ];
         }
         let items = vec![hidden_parts(&base.name, parts), picture(base.name.clone(), composed)];
         vec![PlanItem { shows: ItemContent::Stack { isolated: true, items }, ..item(base) }]
     }
+
     /// The document with one layer's opacity and blend mode reset.
     fn plain(&self, id: LayerId) -> Document {
         let plain = self.document.with_layer(id, |layer| {
@@ -166,6 +199,7 @@ impl Planner<'_> {
         });
         plain.unwrap_or_else(|| self.document.clone())
     }
+
     fn single(&self, layer: &Arc<Layer>) -> PlanItem {
         let shows = match layer.content.role() {
             Role::Adjusts(_) | Role::Shapes(_) => ItemContent::Nothing(layer.clone()),
@@ -175,9 +209,11 @@ impl Planner<'_> {
         let mask = layer.mask.clone().filter(|mask| self.has_word_for(mask));
         PlanItem { shows, mask, ..item(layer) }
     }
+
     fn has_word_for(&self, mask: &LayerMask) -> bool {
         self.words.masks && matches!(mask.kind, MaskKind::File { .. })
     }
+
     fn group(&self, layer: &Arc<Layer>, group: &Group) -> PlanItem {
         let parts = self.scope(&group.layers);
         if group.pass_through {
@@ -189,7 +225,10 @@ impl Planner<'_> {
             _ if mask.is_some() => parts,
             None => parts,
             Some(_) => {
-                let composed = ItemContent::Composed { document: self.plain(layer.id), layers: vec![layer.id] };
+                let composed = ItemContent::Composed {
+                    document: self.plain(layer.id),
+                    layers: vec![layer.id],
+                };
                 vec![hidden_parts(&layer.name, parts), picture(layer.name.clone(), composed)]
             }
         };
@@ -213,8 +252,11 @@ impl Planner<'_> {
             _ => !self.says_how_it_meets(base),
         }
     }
+
     fn says_how_it_meets(&self, layer: &Layer) -> bool {
-        !layer.blend_linear && (self.words.says)(layer.blend) && !matches!(layer.content, Content::RadianceScaling(_))
+        !layer.blend_linear
+            && (self.words.says)(layer.blend)
+            && !matches!(layer.content, Content::RadianceScaling(_))
     }
 }
 

@@ -1,5 +1,5 @@
-//! A project while it is read, and the notes about it. Floor 5. `open` reads what was saved, `foreign` what another
-//! program made of it, `repair` leaves out what is damaged.
+//! A project while it is read, and the notes about it. Floor 5. `open` reads what was saved,
+//! `foreign` what another program made of it, `repair` leaves out what is damaged.
 
 use super::png_header::{PNG_HEADER, is_deep_png};
 use super::{Archive, DOCUMENT};
@@ -27,25 +27,34 @@ impl ProjectReader<'_> {
     pub fn note(&mut self, sentence: impl Into<String>) {
         self.notes.push(sentence.into());
     }
+
     /// Notes a loss.
     pub fn lost(&mut self, sentence: impl Into<String>) {
         self.is_whole = false;
         self.notes.push(sentence.into());
     }
-    /// Whether something was refused that may fit once paint has 8 bits: then nothing is left out, and the file is read
-    /// again (`deep_paint`).
+
+    /// Whether something was refused that may fit once paint has 8 bits: then nothing is left out,
+    /// and the file is read again (`deep_paint`).
     pub fn fits_if_rounded(&self, error: &Error) -> bool {
-        let is_deep = |name: &str| self.archive.beginning(name, PNG_HEADER).is_some_and(|bytes| is_deep_png(&bytes));
+        let is_deep = |name: &str| {
+            self.archive.beginning(name, PNG_HEADER).is_some_and(|bytes| is_deep_png(&bytes))
+        };
         self.budget.deep_paint
             && error.remedy() == Some(Remedy::MoreMemory)
             && self.archive.names().into_iter().filter(|name| name.ends_with(".png")).any(is_deep)
     }
+
     pub fn archive_path(&self, name: &str) -> std::path::PathBuf {
         use crate::Files;
         self.archive.path(name)
     }
+
     pub fn read_value(&self, value: &Value) -> Result<Document> {
         let path = self.archive_path(DOCUMENT);
-        recipe::read_value(value, RecipeSource { file: &path, files: self.archive, budget: self.budget, onto: None })
+        recipe::read_value(
+            value,
+            RecipeSource { file: &path, files: self.archive, budget: self.budget, onto: None },
+        )
     }
 }

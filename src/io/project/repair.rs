@@ -1,5 +1,5 @@
-//! Repairs a project that is damaged or was changed elsewhere: every intact layer is kept, the others are reported.
-//! Floor 5. Works on the document's JSON, before it is read.
+//! Repairs a project that is damaged or was changed elsewhere: every intact layer is kept, the
+//! others are reported. Floor 5. Works on the document's JSON, before it is read.
 
 use super::manifest::{Manifest, ManifestPicture};
 use super::png_header::png_size;
@@ -8,8 +8,8 @@ use crate::math::Size;
 use crate::raster::Asset;
 use serde_json::{Map, Value, json};
 
-/// Compares the layers' pictures with the manifest. A layer whose picture another program changed becomes that picture.
-/// Returns the intact pictures.
+/// Compares the layers' pictures with the manifest. A layer whose picture another program changed
+/// becomes that picture. Returns the intact pictures.
 pub fn check_pictures(
     reading: &mut ProjectReader,
     document: &mut Value,
@@ -22,7 +22,11 @@ pub fn check_pictures(
         match reading.archive.bytes(&shown.name, reading.budget.file_bytes) {
             Ok(bytes) if crc32fast::hash(&bytes) == shown.crc => {
                 let Some(size) = png_size(&bytes) else { continue };
-                let shown = ManifestPicture { layer: shown.layer.clone(), name: shown.name.clone(), ..*shown };
+                let shown = ManifestPicture {
+                    layer: shown.layer.clone(),
+                    name: shown.name.clone(),
+                    ..*shown
+                };
                 intact.push((shown, bytes.into(), size));
             }
             Ok(_) if layer["kind"] == "group" => {}
@@ -42,9 +46,13 @@ pub fn check_pictures(
     intact
 }
 
-/// Replaces every layer that cannot be read by its picture, or by an empty one, and leaves out maps that cannot be
-/// read; whether there was any.
-pub fn leave_out_damaged(reading: &mut ProjectReader, document: &mut Value, manifest: Option<&Manifest>) -> bool {
+/// Replaces every layer that cannot be read by its picture, or by an empty one, and leaves out maps
+/// that cannot be read; whether there was any.
+pub fn leave_out_damaged(
+    reading: &mut ProjectReader,
+    document: &mut Value,
+    manifest: Option<&Manifest>,
+) -> bool {
     let mut left_out = leave_out_selections(reading, document);
     if let Some(surface) = document.get("surface").cloned() {
         let mut alone = around(document);
@@ -86,7 +94,9 @@ pub fn leave_out_damaged(reading: &mut ProjectReader, document: &mut Value, mani
 /// Takes the masks of selections that cannot be read away; whether there was any.
 fn leave_out_selections(reading: &mut ProjectReader, document: &mut Value) -> bool {
     let (mut left_out, canvas) = (false, document["canvas"].clone());
-    for selection in document.get_mut("selections").and_then(Value::as_array_mut).into_iter().flatten() {
+    for selection in
+        document.get_mut("selections").and_then(Value::as_array_mut).into_iter().flatten()
+    {
         let alone = json!({ "format": "rilievo", "canvas": canvas, "selections": [selection] });
         let Err(error) = reading.read_value(&alone) else { continue };
         reading.lost(format!("a selection is lost: {error}"));
@@ -98,8 +108,8 @@ fn leave_out_selections(reading: &mut ProjectReader, document: &mut Value) -> bo
     left_out
 }
 
-/// A document without layers in which each of them can be read alone: its canvas and its selections, and parts of the
-/// same ids that hold nothing.
+/// A document without layers in which each of them can be read alone: its canvas and its
+/// selections, and parts of the same ids that hold nothing.
 pub fn around(document: &Value) -> Value {
     let mut out = json!({ "format": "rilievo", "version": document["version"], "layers": [] });
     for field in ["canvas", "selections"] {
@@ -108,7 +118,8 @@ pub fn around(document: &Value) -> Value {
         }
     }
     let part = |part: &Value| Some(json!({ "id": part.get("id")?, "kind": "sweep", "balls": [] }));
-    let parts: Vec<Value> = document["surface"]["parts"].as_array().into_iter().flatten().filter_map(part).collect();
+    let parts: Vec<Value> =
+        document["surface"]["parts"].as_array().into_iter().flatten().filter_map(part).collect();
     if !parts.is_empty() {
         out["surface"] = json!({ "parts": parts });
     }
@@ -118,8 +129,10 @@ pub fn around(document: &Value) -> Value {
 /// A document of one layer alone, with the selections that its strokes name.
 pub fn alone(around: &Value, layer: &Value) -> Value {
     let strokes = || layer["strokes"].as_array().into_iter().flatten();
-    let is_named = |selection: &&Value| strokes().any(|stroke| stroke.get("selection") == selection.get("id"));
-    let selections = around["selections"].as_array().into_iter().flatten().filter(is_named).cloned().collect();
+    let is_named =
+        |selection: &&Value| strokes().any(|stroke| stroke.get("selection") == selection.get("id"));
+    let selections =
+        around["selections"].as_array().into_iter().flatten().filter(is_named).cloned().collect();
     let mut out = around.clone();
     out["selections"] = Value::Array(selections);
     out["layers"] = json!([layer]);
@@ -140,7 +153,9 @@ fn trouble(reading: &ProjectReader, around: &Value, layer: &Value) -> Option<cra
 /// Replaces a layer by its picture, or by an empty one; its blending stays.
 fn as_picture(layer: &Value, shown: Option<&ManifestPicture>) -> Value {
     let mut out = Map::new();
-    for field in ["name", "kind", "visible", "opacity", "blend", "blend_space", "clip_below", "lock"] {
+    for field in
+        ["name", "kind", "visible", "opacity", "blend", "blend_space", "clip_below", "lock"]
+    {
         if let Some(value) = layer.get(field) {
             out.insert(field.into(), value.clone());
         }

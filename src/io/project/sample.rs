@@ -23,6 +23,7 @@ impl Files for MemoryFiles {
         let missing = || Error::io(name, std::io::Error::from(std::io::ErrorKind::NotFound));
         self.0.get(name).cloned().ok_or_else(missing)
     }
+
     fn path(&self, name: &str) -> PathBuf {
         name.into()
     }
@@ -57,7 +58,10 @@ pub fn files(side: u32) -> MemoryFiles {
         ("m.png", png(side, side, |x, _| [(x * 255 / side) as u8, 0, 90, 255])),
         ("photo.png", png(20, 13, |x, y| [noise(x, y), x as u8 * 9, y as u8 * 17, 200 + x as u8])),
         ("paint.png", png(30, 25, |x, y| [noise(x, y), 40, 200, noise(y, x)])),
-        ("tip.png", png(9, 9, |x, y| [if (x + y) % 3 == 0 { 255 } else { 30 }; 4].map(|v| v.max(1)))),
+        (
+            "tip.png",
+            png(9, 9, |x, y| [if (x + y) % 3 == 0 { 255 } else { 30 }; 4].map(|v| v.max(1))),
+        ),
         ("sky.png", png(16, 8, |x, y| [x as u8 * 15, y as u8 * 30, 220, 255])),
     ];
     MemoryFiles(files.map(|(name, bytes)| (name.to_owned(), bytes)).into())
@@ -66,16 +70,19 @@ pub fn files(side: u32) -> MemoryFiles {
 pub fn read(json: &Value, files: &dyn Files) -> Document {
     let text = json.to_string();
     let budget = Budget::default();
-    let source = RecipeSource { file: Path::new("sample.json"), files, budget: &budget, onto: None };
+    let source =
+        RecipeSource { file: Path::new("sample.json"), files, budget: &budget, onto: None };
     recipe::read(text.as_bytes(), source).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// A level surface that is covered by 0, a quarter, a half, three quarters and the whole, column after column.
+/// A level surface that is covered by 0, a quarter, a half, three quarters and the whole, column
+/// after column.
 pub fn soft_surface(size: Size) -> Arc<Surface> {
     let coverage = Plane::from_fn(size, |x, _| [0, 64, 128, 191, 255][x % 5]);
     let normals = Plane::filled(size, vec3(0.6, 0.0, 0.8));
     Arc::new(
-        Surface::new(Maps { normals, depth: Plane::filled(size, 0.5), coverage }).unwrap_or_else(|e| panic!("{e}")),
+        Surface::new(Maps { normals, depth: Plane::filled(size, 0.5), coverage })
+            .unwrap_or_else(|e| panic!("{e}")),
     )
 }
 
@@ -115,7 +122,8 @@ pub fn everything(side: u32) -> Document {
     read(&everything_json(side), &files(side))
 }
 
-/// Paint that was airbrushed by 60 strokes over paper, once more under a mask, too faint for bytes, and an inked line.
+/// Paint that was airbrushed by 60 strokes over paper, once more under a mask, too faint for bytes,
+/// and an inked line.
 pub fn softly_painted() -> Document {
     let size = Size::new(150, 100);
     let scene = Scene { size, surface: None };
@@ -123,13 +131,19 @@ pub fn softly_painted() -> Document {
         let mut tiles = TileGrid::default();
         for i in 0..strokes {
             let at = [vec2(20.0 + i as f32, -20.0), vec2(30.0, 120.0)].map(Sample::at).to_vec();
-            let stroke = Stroke::new(brush.clone(), Operator::None, Color { r: 90, g: 30, b: 4, a: 255 }, Vec::new());
+            let stroke = Stroke::new(
+                brush.clone(),
+                Operator::None,
+                Color { r: 90, g: 30, b: 4, a: 255 },
+                Vec::new(),
+            );
             let mut active = ActiveStrokes::new(&[stroke], Backdrop::Pixels(tiles.clone()), &scene);
             active.draw(&[at]).into_iter().for_each(|(at, tile)| tiles.set(at, tile));
         }
         Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() })
     };
-    let airy = |flow: f32| Brush { size: 90.0, hardness: 0.0, flow, spacing: 0.2, ..Brush::default() };
+    let airy =
+        |flow: f32| Brush { size: 90.0, hardness: 0.0, flow, spacing: 0.2, ..Brush::default() };
     let coverage = Arc::new(Plane::from_fn(size, |x, _| (x + 90) as u8));
     let mask = LayerMask::new(MaskKind::File { file: "m.png".into(), coverage });
     let layers = [
@@ -145,7 +159,9 @@ pub fn softly_painted() -> Document {
 /// How many tiles of each paint layer hold 16 bits, bottom first.
 pub fn deep_tiles(document: &Document) -> Vec<usize> {
     let of = |layer: &Arc<Layer>| match &layer.content {
-        Content::Pixels(pixels) => Some(pixels.tiles.iter().filter(|(_, tile)| tile.is_deep()).count()),
+        Content::Pixels(pixels) => {
+            Some(pixels.tiles.iter().filter(|(_, tile)| tile.is_deep()).count())
+        }
         _ => None,
     };
     document.walk().into_iter().filter_map(|(_, layer)| of(layer)).collect()
@@ -159,15 +175,23 @@ pub fn assert_same(a: &Document, b: &Document) {
     for ((path, x), (_, y)) in a.walk().iter().zip(b.walk()) {
         if let (Content::Pixels(x), Content::Pixels(y)) = (&x.content, &y.content) {
             let rect = x.tiles.bounds().union(y.tiles.bounds());
-            assert!(x.tiles.to_straight_deep(rect) == y.tiles.to_straight_deep(rect), "the pixels of {path}");
+            assert!(
+                x.tiles.to_straight_deep(rect) == y.tiles.to_straight_deep(rect),
+                "the pixels of {path}"
+            );
         }
         let masks = (x.mask.as_ref().map(|m| &m.kind), y.mask.as_ref().map(|m| &m.kind));
-        if let (Some(MaskKind::File { coverage: x, .. }), Some(MaskKind::File { coverage: y, .. })) = masks {
+        if let (
+            Some(MaskKind::File { coverage: x, .. }),
+            Some(MaskKind::File { coverage: y, .. }),
+        ) = masks
+        {
             assert!(x.values() == y.values(), "the mask of {path}");
         }
     }
     let rect = a.size.rect();
-    let picture = |document| flatten(document, &Progress::default()).unwrap().to_straight_rgba(rect);
+    let picture =
+        |document| flatten(document, &Progress::default()).unwrap().to_straight_rgba(rect);
     assert!(picture(a) == picture(b), "the pictures differ");
 }
 

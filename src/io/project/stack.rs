@@ -1,5 +1,5 @@
-//! `stack.xml` of OpenRaster: written from a plan, and read from any program's file into layers. Floor 5. `look` and
-//! `open` handle the pixels.
+//! `stack.xml` of OpenRaster: written from a plan, and read from any program's file into layers.
+//! Floor 5. `look` and `open` handle the pixels.
 
 mod read;
 
@@ -14,7 +14,8 @@ use crate::math::Size;
 const NAMESPACE: &str = "xmlns:rilievo=\"urn:rilievo:project\"";
 const KIND: &str = "rilievo:kind";
 
-/// The XML of a plan; `pictures` are those of [`super::look::pictures_of`] with their names, in that order.
+/// The XML of a plan; `pictures` are those of [`super::look::pictures_of`] with their names, in
+/// that order.
 pub fn write(size: Size, items: &[PlanItem], pictures: &[(String, EncodedPixels)]) -> String {
     let mut xml = format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
@@ -26,13 +27,20 @@ pub fn write(size: Size, items: &[PlanItem], pictures: &[(String, EncodedPixels)
 }
 
 /// The topmost first, as OpenRaster has them; `pictures` come bottom first.
-fn write_items(xml: &mut String, items: &[PlanItem], pictures: &mut dyn Iterator<Item = &(String, EncodedPixels)>) {
+fn write_items(
+    xml: &mut String,
+    items: &[PlanItem],
+    pictures: &mut dyn Iterator<Item = &(String, EncodedPixels)>,
+) {
     let mut parts: Vec<String> = items.iter().map(|item| write_item(item, pictures)).collect();
     parts.reverse();
     xml.push_str(&parts.concat());
 }
 
-fn write_item(item: &PlanItem, pictures: &mut dyn Iterator<Item = &(String, EncodedPixels)>) -> String {
+fn write_item(
+    item: &PlanItem,
+    pictures: &mut dyn Iterator<Item = &(String, EncodedPixels)>,
+) -> String {
     let op = item.blend.openraster();
     let visibility = if item.visible { "visible" } else { "hidden" };
     let mut common = format!(

@@ -1,5 +1,6 @@
-//! Whether the layers of a group look the same composed alone as on what is beneath the group. Krita ignores the mask
-//! of a pass-through group, so one with a mask is isolated if this loses nothing. Floor 5.
+//! Whether the layers of a group look the same composed alone as on what is beneath the group.
+//! Krita ignores the mask of a pass-through group, so one with a mask is isolated if this loses
+//! nothing. Floor 5.
 
 use super::{LayerRecord, RecordSection};
 use crate::math::{Rect, Size};
@@ -7,12 +8,14 @@ use crate::math::{Rect, Size};
 /// Blended normally.
 const NORMAL: [u8; 4] = *b"norm";
 
-/// True if all are blended normally, or are on opaque layers of the same group wherever they paint. Bottom first.
+/// True if all are blended normally, or are on opaque layers of the same group wherever they paint.
+/// Bottom first.
 pub fn stands_alone(size: Size, records: &[LayerRecord]) -> bool {
     let mut ground = OpaqueGround { size, solid: vec![false; size.area()] };
     let mut rest = records.iter();
     while let Some(record) = rest.next() {
-        let whole = if record.section == RecordSection::End { closing(&mut rest) } else { Some(record) };
+        let whole =
+            if record.section == RecordSection::End { closing(&mut rest) } else { Some(record) };
         let Some(record) = whole else { return false };
         if !record.visible || record.opacity == 0 {
             continue;
@@ -55,22 +58,27 @@ impl OpaqueGround {
     fn holds(&self, record: &LayerRecord) -> bool {
         self.pixels(record).all(|(at, alpha)| alpha == 0 || self.solid[at])
     }
+
     fn add(&mut self, record: &LayerRecord) {
         let is_whole = record.blend == NORMAL && record.opacity == 255 && record.mask.is_none();
         if is_whole {
-            let opaque: Vec<usize> = self.pixels(record).filter(|(_, alpha)| *alpha == 255).map(|(at, _)| at).collect();
+            let opaque: Vec<usize> =
+                self.pixels(record).filter(|(_, alpha)| *alpha == 255).map(|(at, _)| at).collect();
             opaque.into_iter().for_each(|at| self.solid[at] = true);
         }
     }
+
     /// Places on the canvas, and how opaque a record is there.
     fn pixels<'a>(&self, record: &'a LayerRecord) -> impl Iterator<Item = (usize, u8)> + use<'a> {
         let (rect, width) = (record.rect, self.size.width as usize);
         let seen: Rect = rect.intersect(self.size.rect());
-        (seen.y0..seen.y1).flat_map(move |y| (seen.x0..seen.x1).map(move |x| (x, y))).map(move |(x, y)| {
-            let within = (y - rect.y0) as usize * rect.width() + (x - rect.x0) as usize;
-            let alpha = record.rgba.get(4 * within + 3).copied().unwrap_or(0);
-            (y as usize * width + x as usize, alpha)
-        })
+        (seen.y0..seen.y1).flat_map(move |y| (seen.x0..seen.x1).map(move |x| (x, y))).map(
+            move |(x, y)| {
+                let within = (y - rect.y0) as usize * rect.width() + (x - rect.x0) as usize;
+                let alpha = record.rgba.get(4 * within + 3).copied().unwrap_or(0);
+                (y as usize * width + x as usize, alpha)
+            },
+        )
     }
 }
 
@@ -82,11 +90,14 @@ mod tests {
         let rgba = [9, 9, 9, alpha].repeat(rect.width() * rect.height());
         LayerRecord { rect, blend: *blend, rgba, ..LayerRecord::default() }
     }
+
     fn group(blend: &[u8; 4], layers: &[LayerRecord]) -> Vec<LayerRecord> {
         let end = LayerRecord { section: RecordSection::End, ..LayerRecord::default() };
-        let head = LayerRecord { section: RecordSection::Group, blend: *blend, ..LayerRecord::default() };
+        let head =
+            LayerRecord { section: RecordSection::Group, blend: *blend, ..LayerRecord::default() };
         [&[end], layers, &[head]].concat()
     }
+
     fn alone(records: &[LayerRecord]) -> bool {
         stands_alone(Size::new(8, 8), records)
     }
@@ -98,12 +109,16 @@ mod tests {
         assert!(alone(&[layer(all, b"norm", 120), layer(left, b"norm", 7)]));
         assert!(alone(&[fill.clone(), glaze.clone()]));
         assert!(alone(&[layer(left, b"norm", 255), glaze.clone()]));
-        assert!(!alone(std::slice::from_ref(&glaze)) && !alone(&[layer(all, b"norm", 254), glaze.clone()]));
+        assert!(
+            !alone(std::slice::from_ref(&glaze))
+                && !alone(&[layer(all, b"norm", 254), glaze.clone()])
+        );
         assert!(!alone(&[layer(left, b"norm", 255), layer(all, b"scrn", 1)]));
         assert!(!alone(&[LayerRecord { opacity: 254, ..fill.clone() }, glaze.clone()]));
         assert!(!alone(&[LayerRecord { visible: false, ..fill }, glaze.clone()]));
         assert!(alone(&[LayerRecord { visible: false, ..glaze }]));
     }
+
     #[test]
     fn a_group_within_counts_by_how_it_is_blended() {
         let glaze = layer(Rect::new(0, 0, 8, 8), b"mul ", 90);

@@ -11,8 +11,8 @@ use crate::math::srgb::Color;
 
 /// Blocks of a layer that say what is left out, or what only its pixels show.
 const ADJUSTMENTS: [[u8; 4]; 17] = [
-    *b"levl", *b"curv", *b"brit", *b"hue2", *b"hue ", *b"blnc", *b"blwh", *b"phfl", *b"mixr", *b"clrL", *b"nvrt",
-    *b"post", *b"thrs", *b"selc", *b"grdm", *b"expA", *b"vibA",
+    *b"levl", *b"curv", *b"brit", *b"hue2", *b"hue ", *b"blnc", *b"blwh", *b"phfl", *b"mixr",
+    *b"clrL", *b"nvrt", *b"post", *b"thrs", *b"selc", *b"grdm", *b"expA", *b"vibA",
 ];
 
 /// The ground of an artboard, which also cuts off what is beyond it.
@@ -26,8 +26,8 @@ pub struct ArtboardBackground {
 /// A block. Some programs pad them to four bytes, some to two, some not at all.
 pub fn block<'a>(rest: &mut ByteCursor<'a>, large: bool) -> Option<([u8; 4], ByteCursor<'a>)> {
     const LONG: [[u8; 4]; 13] = [
-        *b"LMsk", *b"Lr16", *b"Lr32", *b"Layr", *b"Mt16", *b"Mt32", *b"Mtrn", *b"Alph", *b"FMsk", *b"lnk2", *b"FEid",
-        *b"FXid", *b"PxSD",
+        *b"LMsk", *b"Lr16", *b"Lr32", *b"Layr", *b"Mt16", *b"Mt32", *b"Mtrn", *b"Alph", *b"FMsk",
+        *b"lnk2", *b"FEid", *b"FXid", *b"PxSD",
     ];
     let is_signature = |key: [u8; 4]| key == *b"8BIM" || key == *b"8B64";
     for _ in 0..4 {
@@ -91,7 +91,8 @@ fn section(record: &mut LayerRecord, mut data: ByteCursor) {
 
 /// Effects count where one is switched on.
 fn effects(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor) {
-    let said = if key == *b"lrFX" { None } else { data.u32().and_then(|_| descriptor::read(&mut data)) };
+    let said =
+        if key == *b"lrFX" { None } else { data.u32().and_then(|_| descriptor::read(&mut data)) };
     let is_off = |effects: &DescriptorObject| {
         let is_there = |object: &DescriptorObject| object.flag("enab");
         effects.is_false("masterFXSwitch") || !effects.any(&is_there)
@@ -115,13 +116,21 @@ fn stroked(record: &mut LayerRecord, data: &mut ByteCursor) {
 /// Ways to blend that this program has not.
 fn blending(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor) {
     match &key {
-        b"knko" if data.u8().is_some_and(|v| v != 0) => record.leave_out("its knockout is left out"),
-        b"clbl" if data.u8() == Some(0) => {
-            record.leave_out("elsewhere the layers clipped to it are blended with what is beneath it");
+        b"knko" if data.u8().is_some_and(|v| v != 0) => {
+            record.leave_out("its knockout is left out")
         }
-        b"brst" if !data.rest().is_empty() => record.leave_out("the channels that it leaves alone are painted too"),
+        b"clbl" if data.u8() == Some(0) => {
+            record.leave_out(
+                "elsewhere the layers clipped to it are blended with what is beneath it",
+            );
+        }
+        b"brst" if !data.rest().is_empty() => {
+            record.leave_out("the channels that it leaves alone are painted too")
+        }
         b"tsly" if data.u8() == Some(0) => {
-            record.leave_out("elsewhere its effects and the layers clipped to it ignore its transparency");
+            record.leave_out(
+                "elsewhere its effects and the layers clipped to it ignore its transparency",
+            );
         }
         _ => {}
     }

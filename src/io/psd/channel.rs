@@ -1,5 +1,5 @@
-//! One channel's values, row by row: plain, run lengths (PackBits), or ZIP with and without prediction; as bytes, or as
-//! 16 bits. Floor 5.
+//! One channel's values, row by row: plain, run lengths (PackBits), or ZIP with and without
+//! prediction; as bytes, or as 16 bits. Floor 5.
 
 use super::cursor::ByteCursor;
 use crate::math::srgb;
@@ -25,6 +25,7 @@ impl ChannelLayout {
     fn row_bytes(self) -> usize {
         (self.width * usize::from(self.bits)).div_ceil(8)
     }
+
     fn bytes(self) -> usize {
         self.row_bytes() * self.height
     }
@@ -45,6 +46,7 @@ impl ChannelValue for u8 {
     fn all_of(stored: &[u8], shape: ChannelLayout) -> Vec<Self> {
         to_bytes(stored, shape)
     }
+
     fn byte(self) -> u8 {
         self
     }
@@ -55,10 +57,16 @@ impl ChannelValue for u16 {
     fn all_of(stored: &[u8], shape: ChannelLayout) -> Vec<Self> {
         match shape.bits {
             16 => stored.as_chunks().0.iter().map(|v| u16::from_be_bytes(*v)).collect(),
-            32 => stored.as_chunks().0.iter().map(|v| srgb::quantise_deep(encoded(*v, shape))).collect(),
+            32 => stored
+                .as_chunks()
+                .0
+                .iter()
+                .map(|v| srgb::quantise_deep(encoded(*v, shape)))
+                .collect(),
             _ => to_bytes(stored, shape).into_iter().map(|v| u16::from(v) * LEVEL).collect(),
         }
     }
+
     fn byte(self) -> u8 {
         byte_of(self)
     }
@@ -70,15 +78,19 @@ fn encoded(stored: [u8; 4], shape: ChannelLayout) -> f32 {
     if shape.is_colour { srgb::encode(value.max(0.0).min(1.0)) } else { value }
 }
 
-/// The values of a channel: its compression, then its data. `None` where the data is damaged, or too short to hold what
-/// the shape promises.
+/// The values of a channel: its compression, then its data. `None` where the data is damaged, or
+/// too short to hold what the shape promises.
 pub fn decode<T: ChannelValue>(data: &mut ByteCursor, shape: ChannelLayout) -> Option<Vec<T>> {
     let compression = data.u16()?;
     decode_as(data, shape, compression)
 }
 
 /// As [`decode`], for data whose compression is already known; leaves the cursor after the channel.
-pub fn decode_as<T: ChannelValue>(data: &mut ByteCursor, shape: ChannelLayout, compression: u16) -> Option<Vec<T>> {
+pub fn decode_as<T: ChannelValue>(
+    data: &mut ByteCursor,
+    shape: ChannelLayout,
+    compression: u16,
+) -> Option<Vec<T>> {
     match compression {
         0 => Some(T::all_of(data.take(shape.bytes())?, shape)),
         1 => {
@@ -97,7 +109,8 @@ pub fn decode_as<T: ChannelValue>(data: &mut ByteCursor, shape: ChannelLayout, c
     }
 }
 
-/// Several channels in one zlib stream, as in a merged picture; `shape` is that of each, all of one size.
+/// Several channels in one zlib stream, as in a merged picture; `shape` is that of each, all of one
+/// size.
 pub fn inflate_planes<T: ChannelValue>(
     zlib: &[u8],
     count: usize,
@@ -109,7 +122,13 @@ pub fn inflate_planes<T: ChannelValue>(
     if is_predicted {
         undo_prediction(&mut values, shape(0));
     }
-    Some(values.chunks_exact(bytes.max(1)).enumerate().map(|(c, plane)| T::all_of(plane, shape(c))).collect())
+    Some(
+        values
+            .chunks_exact(bytes.max(1))
+            .enumerate()
+            .map(|(c, plane)| T::all_of(plane, shape(c)))
+            .collect(),
+    )
 }
 
 /// How long each packed row is.
@@ -117,11 +136,17 @@ pub fn row_lengths(data: &mut ByteCursor, shape: ChannelLayout, rows: usize) -> 
     // The table must be complete before memory is allocated for it.
     let width = if shape.large { 4 } else { 2 };
     let mut table = ByteCursor::new(data.take(rows.checked_mul(width)?)?);
-    (0..rows).map(|_| if shape.large { table.length(false) } else { table.u16().map(usize::from) }).collect()
+    (0..rows)
+        .map(|_| if shape.large { table.length(false) } else { table.u16().map(usize::from) })
+        .collect()
 }
 
 /// Rows of run lengths.
-pub fn unpack_rows<T: ChannelValue>(data: &mut ByteCursor, shape: ChannelLayout, lengths: &[usize]) -> Option<Vec<T>> {
+pub fn unpack_rows<T: ChannelValue>(
+    data: &mut ByteCursor,
+    shape: ChannelLayout,
+    lengths: &[usize],
+) -> Option<Vec<T>> {
     let packed: usize = lengths.iter().sum();
     // Two bytes hold at most 128.
     if shape.bytes() / 64 > packed + shape.height {
@@ -134,8 +159,8 @@ pub fn unpack_rows<T: ChannelValue>(data: &mut ByteCursor, shape: ChannelLayout,
     Some(T::all_of(&values, shape))
 }
 
-/// One row of PackBits; `None` where it holds fewer than `wanted` bytes. What runs beyond them is cut off: some
-/// programs write such rows.
+/// One row of PackBits; `None` where it holds fewer than `wanted` bytes. What runs beyond them is
+/// cut off: some programs write such rows.
 fn unpack(mut packed: &[u8], wanted: usize, out: &mut Vec<u8>) -> Option<()> {
     let end = out.len() + wanted;
     while out.len() < end {
@@ -200,8 +225,8 @@ fn inflate(zlib: &[u8], wanted: usize) -> Option<Vec<u8>> {
     (values.len() == wanted).then_some(values)
 }
 
-/// Each value was stored as what it differs by from its left neighbour. Of floats all first bytes come first, then all
-/// second ones, and it is the bytes that differ.
+/// Each value was stored as what it differs by from its left neighbour. Of floats all first bytes
+/// come first, then all second ones, and it is the bytes that differ.
 fn undo_prediction(values: &mut [u8], shape: ChannelLayout) {
     for row in values.chunks_exact_mut(shape.row_bytes().max(1)) {
         if shape.bits == 16 {
@@ -217,7 +242,9 @@ fn undo_prediction(values: &mut [u8], shape: ChannelLayout) {
         }
         if shape.bits == 32 {
             let planes = row.to_vec();
-            row.iter_mut().enumerate().for_each(|(i, byte)| *byte = planes[i % 4 * shape.width + i / 4]);
+            row.iter_mut()
+                .enumerate()
+                .for_each(|(i, byte)| *byte = planes[i % 4 * shape.width + i / 4]);
         }
     }
 }
@@ -226,7 +253,8 @@ fn undo_prediction(values: &mut [u8], shape: ChannelLayout) {
 fn to_bytes(values: &[u8], shape: ChannelLayout) -> Vec<u8> {
     match shape.bits {
         1 => {
-            let bit = |row: &[u8], x: usize| if row[x / 8] >> (7 - x % 8) & 1 == 0 { 255 } else { 0 };
+            let bit =
+                |row: &[u8], x: usize| if row[x / 8] >> (7 - x % 8) & 1 == 0 { 255 } else { 0 };
             let rows = values.chunks_exact(shape.row_bytes().max(1));
             rows.flat_map(|row| (0..shape.width).map(move |x| bit(row, x))).collect()
         }
@@ -258,6 +286,7 @@ mod tests {
             }
         }
     }
+
     #[test]
     fn sixteen_bits_with_prediction_come_back_whole_and_rounded() {
         let values: [u16; 4] = [0, 257 * 100, 257 * 100 + 129, 65535];
@@ -275,13 +304,20 @@ mod tests {
         assert_eq!(decoded, [0, 100, 101, 255]);
         assert_eq!(decode::<u16>(&mut ByteCursor::new(&data), shape(4, 1, 16)).unwrap(), values);
     }
+
     #[test]
     fn damaged_rows_are_refused_before_room_is_made_for_them() {
         let mut out = Vec::new();
         assert_eq!(unpack(&[5, 1, 2], 6, &mut out), None);
         unpack(&[129, 7], 3, &mut out).unwrap();
         assert_eq!(out[out.len() - 3..], [7; 3], "a run beyond the row");
-        let huge = ChannelLayout { width: 300_000, height: 300_000, bits: 8, is_colour: true, large: true };
+        let huge = ChannelLayout {
+            width: 300_000,
+            height: 300_000,
+            bits: 8,
+            is_colour: true,
+            large: true,
+        };
         for compression in 0..5 {
             assert_eq!(decode_as::<u16>(&mut ByteCursor::new(&[0; 100]), huge, compression), None);
         }

@@ -1,5 +1,5 @@
-//! A file's channels of colour, in any colour mode, as straight sRGB. Floor 5. Not here: reading the channels
-//! (`channel`), profiles of RGB and grey (`picture`).
+//! A file's channels of colour, in any colour mode, as straight sRGB. Floor 5. Not here: reading
+//! the channels (`channel`), profiles of RGB and grey (`picture`).
 
 use super::channel::ChannelValue;
 use crate::math::{Size, srgb};
@@ -30,6 +30,7 @@ impl Mode {
             _ => modes.get(usize::from(number)).copied(),
         }
     }
+
     /// Channels of colour, at least.
     pub fn channels(self) -> u16 {
         match self {
@@ -67,17 +68,32 @@ pub struct StraightPixels {
 /// A channel's value whose colours are known.
 pub trait ColourValue: ChannelValue {
     /// As [`Colours::to_srgb`].
-    fn pixels(colours: Colours, size: Size, planes: &[Option<Vec<Self>>; 4], alpha: Option<&[Self]>) -> StraightPixels;
+    fn pixels(
+        colours: Colours,
+        size: Size,
+        planes: &[Option<Vec<Self>>; 4],
+        alpha: Option<&[Self]>,
+    ) -> StraightPixels;
 }
 
 impl ColourValue for u8 {
-    fn pixels(colours: Colours, size: Size, planes: &[Option<Vec<u8>>; 4], alpha: Option<&[u8]>) -> StraightPixels {
+    fn pixels(
+        colours: Colours,
+        size: Size,
+        planes: &[Option<Vec<u8>>; 4],
+        alpha: Option<&[u8]>,
+    ) -> StraightPixels {
         StraightPixels { rgba: colours.to_srgb(size, planes, alpha), deep: Vec::new() }
     }
 }
 
 impl ColourValue for u16 {
-    fn pixels(colours: Colours, size: Size, planes: &[Option<Vec<u16>>; 4], alpha: Option<&[u16]>) -> StraightPixels {
+    fn pixels(
+        colours: Colours,
+        size: Size,
+        planes: &[Option<Vec<u16>>; 4],
+        alpha: Option<&[u16]>,
+    ) -> StraightPixels {
         let deep = colours.to_srgb_deep(size, planes, alpha);
         StraightPixels { rgba: deep.as_flattened().iter().map(|v| v.byte()).collect(), deep }
     }
@@ -85,14 +101,24 @@ impl ColourValue for u16 {
 
 impl Colours<'_> {
     /// As [`to_srgb`](Self::to_srgb), of RGB and grey, in 16 bits.
-    fn to_srgb_deep(self, size: Size, planes: &[Option<Vec<u16>>; 4], alpha: Option<&[u16]>) -> Vec<[u16; 4]> {
+    fn to_srgb_deep(
+        self,
+        size: Size,
+        planes: &[Option<Vec<u16>>; 4],
+        alpha: Option<&[u16]>,
+    ) -> Vec<[u16; 4]> {
         if planes.iter().all(Option::is_none) && alpha.is_none() {
             return vec![[0; 4]; size.area()];
         }
-        let value = |c: usize, i: usize| planes[c].as_ref().and_then(|plane| plane.get(i)).copied().unwrap_or(0);
-        let opacity = |i: usize| alpha.map_or(u16::WHOLE, |alpha| alpha.get(i).copied().unwrap_or(u16::WHOLE));
+        let value = |c: usize, i: usize| {
+            planes[c].as_ref().and_then(|plane| plane.get(i)).copied().unwrap_or(0)
+        };
+        let opacity = |i: usize| {
+            alpha.map_or(u16::WHOLE, |alpha| alpha.get(i).copied().unwrap_or(u16::WHOLE))
+        };
         let is_grey = self.mode == Mode::Grey;
-        let colour = |i: usize| if is_grey { [value(0, i); 3] } else { [0, 1, 2].map(|c| value(c, i)) };
+        let colour =
+            |i: usize| if is_grey { [value(0, i); 3] } else { [0, 1, 2].map(|c| value(c, i)) };
         let texel = |i: usize| {
             let [r, g, b] = colour(i);
             [r, g, b, opacity(i)]
@@ -103,13 +129,22 @@ impl Colours<'_> {
             None => texels,
         }
     }
-    /// Straight sRGB of planes; without alpha opaque, without a colour channel black, without any transparent.
-    pub fn to_srgb(self, size: Size, planes: &[Option<Vec<u8>>; 4], alpha: Option<&[u8]>) -> Vec<u8> {
+
+    /// Straight sRGB of planes; without alpha opaque, without a colour channel black, without any
+    /// transparent.
+    pub fn to_srgb(
+        self,
+        size: Size,
+        planes: &[Option<Vec<u8>>; 4],
+        alpha: Option<&[u8]>,
+    ) -> Vec<u8> {
         let area = size.area();
         if planes.iter().all(Option::is_none) && alpha.is_none() {
             return vec![0; area * 4];
         }
-        let value = |c: usize, i: usize| planes[c].as_ref().and_then(|plane| plane.get(i)).copied().unwrap_or(0);
+        let value = |c: usize, i: usize| {
+            planes[c].as_ref().and_then(|plane| plane.get(i)).copied().unwrap_or(0)
+        };
         let opacity = |i: usize| alpha.map_or(255, |alpha| alpha.get(i).copied().unwrap_or(255));
         let pixels = |colour: &dyn Fn(usize) -> [u8; 3]| -> Vec<u8> {
             let mut rgba = Vec::with_capacity(area * 4);
@@ -123,7 +158,9 @@ impl Colours<'_> {
             Mode::Bitmap | Mode::Duotone => pixels(&|i| [value(0, i); 3]),
             Mode::Multichannel if self.channels < 3 => pixels(&|i| [value(0, i); 3]),
             Mode::Grey => self.through_profile(size, pixels(&|i| [value(0, i); 3])),
-            Mode::Rgb => self.through_profile(size, pixels(&|i| [value(0, i), value(1, i), value(2, i)])),
+            Mode::Rgb => {
+                self.through_profile(size, pixels(&|i| [value(0, i), value(1, i), value(2, i)]))
+            }
             Mode::Indexed => {
                 let mut rgba = pixels(&|i| self.looked_up(value(0, i)));
                 let gone = |i: usize| self.nothing == Some(value(0, i));
@@ -139,7 +176,12 @@ impl Colours<'_> {
             Mode::Cmyk | Mode::Multichannel => {
                 // Stored as light: 255 is no ink.
                 let ink = |i: usize| {
-                    [value(0, i), value(1, i), value(2, i), if self.channels < 4 { 255 } else { value(3, i) }]
+                    [
+                        value(0, i),
+                        value(1, i),
+                        value(2, i),
+                        if self.channels < 4 { 255 } else { value(3, i) },
+                    ]
                 };
                 let press = self.icc.filter(|_| self.mode == Mode::Cmyk).and_then(Press::new);
                 let mut rgba = pixels(&|i| ideal_press(ink(i)));
@@ -150,24 +192,30 @@ impl Colours<'_> {
             }
         }
     }
+
     /// The profile that RGB and grey go through.
     fn profile(&self) -> Option<&[u8]> {
         self.icc.filter(|icc| !self.is_light && !crate::srgb_profile::is_own_srgb(icc))
     }
+
     fn through_profile(&self, size: Size, rgba: Vec<u8>) -> Vec<u8> {
         match self.profile() {
             Some(icc) => picture::to_srgb(size, rgba, self.mode == Mode::Grey, icc),
             None => rgba,
         }
     }
+
     /// A colour of the table by its number; a number beyond the table is black.
     fn looked_up(&self, number: u8) -> [u8; 3] {
         let (count, number) = (self.table.len() / 3, usize::from(number));
-        [0, 1, 2].map(|c| self.table.get(c * count + number).filter(|_| number < count).copied().unwrap_or(0))
+        [0, 1, 2].map(|c| {
+            self.table.get(c * count + number).filter(|_| number < count).copied().unwrap_or(0)
+        })
     }
 }
 
-/// Ink on white, as if it were printed by an ideal press; each value is the light that the ink lets through.
+/// Ink on white, as if it were printed by an ideal press; each value is the light that the ink lets
+/// through.
 fn ideal_press([c, m, y, k]: [u8; 4]) -> [u8; 3] {
     [c, m, y].map(|ink| ((u32::from(ink) * u32::from(k) + 127) / 255) as u8)
 }
@@ -177,38 +225,57 @@ fn lab_to_srgb([l, a, b]: [u8; 3]) -> [u8; 3] {
     /// The connection space's white.
     const WHITE: [f32; 3] = [0.9642, 1.0, 0.8249];
     /// XYZ of D50 to linear sRGB, adapted by Bradford's matrix.
-    const TO_SRGB: [[f32; 3]; 3] =
-        [[3.133_856, -1.616_867, -0.490_615], [-0.978_768, 1.916_142, 0.033_454], [0.071_945, -0.228_991, 1.405_243]];
+    const TO_SRGB: [[f32; 3]; 3] = [
+        [3.133_856, -1.616_867, -0.490_615],
+        [-0.978_768, 1.916_142, 0.033_454],
+        [0.071_945, -0.228_991, 1.405_243],
+    ];
     let y = (f32::from(l) * 100.0 / 255.0 + 16.0) / 116.0;
     let (x, z) = (y + (f32::from(a) - 128.0) / 500.0, y - (f32::from(b) - 128.0) / 200.0);
-    let linear = |t: f32| if t > 6.0 / 29.0 { t * t * t } else { 3.0 * (6.0f32 / 29.0).powi(2) * (t - 4.0 / 29.0) };
+    let linear = |t: f32| {
+        if t > 6.0 / 29.0 { t * t * t } else { 3.0 * (6.0f32 / 29.0).powi(2) * (t - 4.0 / 29.0) }
+    };
     let xyz = [linear(x) * WHITE[0], linear(y) * WHITE[1], linear(z) * WHITE[2]];
-    TO_SRGB.map(|row| srgb::quantise(srgb::encode((row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2]).max(0.0))))
+    TO_SRGB.map(|row| {
+        srgb::quantise(srgb::encode((row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2]).max(0.0)))
+    })
 }
 
 /// A profile of four inks, made ready.
 struct Press {
     transform: std::sync::Arc<moxcms::Transform16BitExecutor>,
-    /// The light that the press's black still reflects: it becomes none, as Photoshop shows it (black point
-    /// compensation).
+    /// The light that the press's black still reflects: it becomes none, as Photoshop shows it
+    /// (black point compensation).
     black: f32,
 }
 
 impl Press {
     /// `None` where the profile is of other colours, or cannot be used.
     fn new(icc: &[u8]) -> Option<Self> {
-        let profile = ColorProfile::new_from_slice(icc).ok().filter(|p| p.color_space == DataColorSpace::Cmyk)?;
+        let profile = ColorProfile::new_from_slice(icc)
+            .ok()
+            .filter(|p| p.color_space == DataColorSpace::Cmyk)?;
         let screen = ColorProfile::new_srgb();
-        let by = |rendering_intent| TransformOptions { rendering_intent, ..TransformOptions::default() };
+        let by =
+            |rendering_intent| TransformOptions { rendering_intent, ..TransformOptions::default() };
         let seen = by(RenderingIntent::RelativeColorimetric);
-        let transform = profile.create_transform_16bit(Layout::Rgba, &screen, Layout::Rgb, seen).ok()?;
+        let transform =
+            profile.create_transform_16bit(Layout::Rgba, &screen, Layout::Rgb, seen).ok()?;
         let mut press = Self { transform, black: 0.0 };
-        press.black = press.blackest(&profile, &screen, by(RenderingIntent::Perceptual)).unwrap_or(0.0);
+        press.black =
+            press.blackest(&profile, &screen, by(RenderingIntent::Perceptual)).unwrap_or(0.0);
         Some(press)
     }
+
     /// The light of what the profile prints for black.
-    fn blackest(&self, profile: &ColorProfile, screen: &ColorProfile, options: TransformOptions) -> Option<f32> {
-        let printed = screen.create_transform_16bit(Layout::Rgb, profile, Layout::Rgba, options).ok()?;
+    fn blackest(
+        &self,
+        profile: &ColorProfile,
+        screen: &ColorProfile,
+        options: TransformOptions,
+    ) -> Option<f32> {
+        let printed =
+            screen.create_transform_16bit(Layout::Rgb, profile, Layout::Rgba, options).ok()?;
         let (mut inks, mut rgb) = ([0; 4], [0; 3]);
         printed.transform(&[0; 3], &mut inks).ok()?;
         self.transform.transform(&inks, &mut rgb).ok()?;
@@ -216,6 +283,7 @@ impl Press {
         // Beyond this it is not black.
         Some(srgb::luminance(r, g, b).max(0.0).min(0.18))
     }
+
     /// Puts the inks' colours into straight pixels, some thousand at a time.
     fn print(&self, rgba: &mut [u8], ink: impl Fn(usize) -> [u8; 4]) {
         const AT_ONCE: usize = 4096;
@@ -226,10 +294,13 @@ impl Press {
         for (part, pixels) in rgba.chunks_mut(AT_ONCE * 4).enumerate() {
             let count = pixels.len() / 4;
             let share = |light: u8| u16::from(255 - light) * 257;
-            let inks: Vec<u16> = (0..count).flat_map(|i| ink(part * AT_ONCE + i).map(share)).collect();
+            let inks: Vec<u16> =
+                (0..count).flat_map(|i| ink(part * AT_ONCE + i).map(share)).collect();
             let mut rgb = vec![0; count * 3];
             if self.transform.transform(&inks, &mut rgb).is_ok() {
-                for (pixel, colour) in pixels.as_chunks_mut::<4>().0.iter_mut().zip(rgb.as_chunks::<3>().0) {
+                for (pixel, colour) in
+                    pixels.as_chunks_mut::<4>().0.iter_mut().zip(rgb.as_chunks::<3>().0)
+                {
                     pixel[..3].copy_from_slice(&colour.map(light));
                 }
             }
@@ -244,6 +315,7 @@ mod tests {
     fn colours(mode: Mode, channels: usize) -> Colours<'static> {
         Colours { mode, channels, is_light: false, table: &[], nothing: None, icc: None }
     }
+
     fn one(colours: &Colours, values: [u8; 4]) -> [u8; 4] {
         let planes = values.map(|v| Some(vec![v]));
         colours.to_srgb(Size::new(1, 1), &planes, Some(&[200])).try_into().unwrap()
@@ -253,13 +325,23 @@ mod tests {
     fn every_mode_gives_the_colours_it_means() {
         assert_eq!(one(&colours(Mode::Bitmap, 1), [255, 0, 0, 0]), [255, 255, 255, 200]);
         assert_eq!(one(&colours(Mode::Rgb, 3), [1, 2, 3, 0]), [1, 2, 3, 200]);
-        assert_eq!(one(&colours(Mode::Cmyk, 4), [255, 0, 255, 128]), [128, 0, 128, 200], "magenta and half black");
-        assert_eq!(one(&colours(Mode::Multichannel, 3), [255, 0, 255, 0]), [255, 0, 255, 200], "no black ink");
-        let table = Colours { table: &[9, 8, 7, 6, 5, 4], nothing: Some(1), ..colours(Mode::Indexed, 1) };
+        assert_eq!(
+            one(&colours(Mode::Cmyk, 4), [255, 0, 255, 128]),
+            [128, 0, 128, 200],
+            "magenta and half black"
+        );
+        assert_eq!(
+            one(&colours(Mode::Multichannel, 3), [255, 0, 255, 0]),
+            [255, 0, 255, 200],
+            "no black ink"
+        );
+        let table =
+            Colours { table: &[9, 8, 7, 6, 5, 4], nothing: Some(1), ..colours(Mode::Indexed, 1) };
         assert_eq!(one(&table, [0; 4]), [9, 7, 5, 200]);
         assert_eq!(one(&table, [1; 4])[3], 0, "the colour that stands for nothing");
         assert_eq!(one(&table, [2; 4])[..3], [0; 3], "beyond the table");
     }
+
     #[test]
     fn lab_is_read_in_the_connection_space_s_white() {
         assert_eq!(one(&colours(Mode::Lab, 3), [255, 128, 128, 0])[..3], [255; 3]);

@@ -1,5 +1,5 @@
-//! Photoshop's descriptors: nested lists of named values; names, numbers, texts and lists are kept. Floor 5. Not here:
-//! what the names mean (readers of presets, fills and effects).
+//! Photoshop's descriptors: nested lists of named values; names, numbers, texts and lists are kept.
+//! Floor 5. Not here: what the names mean (readers of presets, fills and effects).
 
 use super::cursor::ByteCursor;
 
@@ -31,29 +31,37 @@ impl DescriptorObject {
     pub fn of(values: Vec<(&str, DescriptorValue)>) -> Self {
         Self(values.into_iter().map(|(name, value)| (name.into(), value)).collect())
     }
+
     fn get(&self, name: &str) -> Option<&DescriptorValue> {
         self.0.iter().find(|(known, _)| known == name.as_bytes()).map(|(_, value)| value)
     }
+
     /// Finite.
     pub fn number(&self, name: &str) -> Option<f32> {
         match self.get(name)? {
-            DescriptorValue::Number(number) => Some(*number as f32).filter(|number| number.is_finite()),
+            DescriptorValue::Number(number) => {
+                Some(*number as f32).filter(|number| number.is_finite())
+            }
             _ => None,
         }
     }
+
     pub fn flag(&self, name: &str) -> bool {
         self.get(name) == Some(&DescriptorValue::Flag(true))
     }
+
     /// It is there and says no.
     pub fn is_false(&self, name: &str) -> bool {
         self.get(name) == Some(&DescriptorValue::Flag(false))
     }
+
     pub fn text(&self, name: &str) -> Option<&str> {
         match self.get(name)? {
             DescriptorValue::Text(text) => Some(text),
             _ => None,
         }
     }
+
     /// The name of a choice.
     pub fn word(&self, name: &str) -> Option<&[u8]> {
         match self.get(name)? {
@@ -61,23 +69,26 @@ impl DescriptorObject {
             _ => None,
         }
     }
+
     pub fn object(&self, name: &str) -> Option<&DescriptorObject> {
         match self.get(name)? {
             DescriptorValue::Object(object) => Some(object),
             _ => None,
         }
     }
+
     /// This, or an object anywhere within it, is so.
     pub fn any(&self, is_so: &impl Fn(&DescriptorObject) -> bool) -> bool {
         let within = |value: &DescriptorValue| match value {
             DescriptorValue::Object(object) => object.any(is_so),
-            DescriptorValue::List(list) => {
-                list.iter().any(|value| matches!(value, DescriptorValue::Object(object) if object.any(is_so)))
-            }
+            DescriptorValue::List(list) => list
+                .iter()
+                .any(|value| matches!(value, DescriptorValue::Object(object) if object.any(is_so))),
             _ => false,
         };
         is_so(self) || self.0.iter().any(|(_, value)| within(value))
     }
+
     /// The objects of a list.
     pub fn objects(&self, name: &str) -> impl Iterator<Item = &DescriptorObject> {
         let list = match self.get(name) {

@@ -2,7 +2,9 @@
 //! Floor 5.
 
 use super::channel::pack;
-use super::{ICC_PROFILE, LayerRecord, MAGIC, OURS, RESOLUTION, RecordMask, RecordSection, VERSION_INFO};
+use super::{
+    ICC_PROFILE, LayerRecord, MAGIC, OURS, RESOLUTION, RecordMask, RecordSection, VERSION_INFO,
+};
 use super::{kept, marks};
 use crate::document::{Guides, LayerLabel, NamedSelection};
 use crate::math::{Rect, Size};
@@ -10,8 +12,8 @@ use crate::math::{Rect, Size};
 /// The default print resolution.
 const DOTS_PER_INCH: u32 = 72;
 
-/// The whole file. `merged` is RGBA of the canvas [on white](on_white), `selections` follow it as channels, `ours` is
-/// our own resource.
+/// The whole file. `merged` is RGBA of the canvas [on white](on_white), `selections` follow it as
+/// channels, `ours` is our own resource.
 pub fn emit(
     size: Size,
     records: &[LayerRecord],
@@ -35,32 +37,46 @@ pub fn emit(
     // No mask of all layers.
     long(&mut layers, 0);
     section(&mut out, &layers);
-    let coverage = |kept: &NamedSelection| kept.selection.coverage.to_plane(size.rect()).into_values();
-    let planes: Vec<Vec<u8>> = (0..4).map(|c| plane(merged, c)).chain(selections.iter().map(coverage)).collect();
+    let coverage =
+        |kept: &NamedSelection| kept.selection.coverage.to_plane(size.rect()).into_values();
+    let planes: Vec<Vec<u8>> =
+        (0..4).map(|c| plane(merged, c)).chain(selections.iter().map(coverage)).collect();
     packed(&mut out, &planes, size.width as usize);
     out
 }
 
-/// The merged picture's colours are blended with white where it is transparent; readers remove the white again.
+/// The merged picture's colours are blended with white where it is transparent; readers remove the
+/// white again.
 pub fn on_white(straight: &[u8]) -> Vec<u8> {
-    let mixed = |c: u8, a: u8| ((u32::from(c) * u32::from(a) + 255 * (255 - u32::from(a)) + 127) / 255) as u8;
-    straight.as_chunks().0.iter().flat_map(|&[r, g, b, a]| [mixed(r, a), mixed(g, a), mixed(b, a), a]).collect()
+    let mixed = |c: u8, a: u8| {
+        ((u32::from(c) * u32::from(a) + 255 * (255 - u32::from(a)) + 127) / 255) as u8
+    };
+    straight
+        .as_chunks()
+        .0
+        .iter()
+        .flat_map(|&[r, g, b, a]| [mixed(r, a), mixed(g, a), mixed(b, a), a])
+        .collect()
 }
 
 fn short(out: &mut Vec<u8>, value: u16) {
     out.extend(value.to_be_bytes());
 }
+
 fn long(out: &mut Vec<u8>, value: u32) {
     out.extend(value.to_be_bytes());
 }
+
 /// A section preceded by its length.
 fn section(out: &mut Vec<u8>, bytes: &[u8]) {
     long(out, bytes.len() as u32);
     out.extend(bytes);
 }
+
 fn rect(out: &mut Vec<u8>, rect: Rect) {
     [rect.y0, rect.x0, rect.y1, rect.x1].iter().for_each(|side| out.extend(side.to_be_bytes()));
 }
+
 /// Text of 16-bit units behind their number.
 fn unicode(out: &mut Vec<u8>, text: &str) {
     let units: Vec<u16> = text.encode_utf16().collect();
@@ -87,7 +103,12 @@ fn resources(selections: &[NamedSelection], guides: &Guides, ours: &[u8]) -> Vec
     let profile = crate::srgb_profile::own_srgb();
     let mut named = kept::resources(selections);
     named.extend(marks::guides_resource(guides));
-    let own = [(RESOLUTION, &resolution[..]), (ICC_PROFILE, &profile), (VERSION_INFO, &version), (OURS, ours)];
+    let own = [
+        (RESOLUTION, &resolution[..]),
+        (ICC_PROFILE, &profile),
+        (VERSION_INFO, &version),
+        (OURS, ours),
+    ];
     for (id, data) in named.iter().map(|(id, data)| (*id, &data[..])).chain(own) {
         out.extend(b"8BIM");
         short(&mut out, id);
@@ -123,8 +144,10 @@ fn channels(record: &LayerRecord) -> Vec<(i16, Vec<u8>)> {
         out
     };
     let width = record.rect.width();
-    let mut all: Vec<(i16, Vec<u8>)> =
-        [(-1, 3), (0, 0), (1, 1), (2, 2)].into_iter().map(|(id, c)| (id, one(plane(&record.rgba, c), width))).collect();
+    let mut all: Vec<(i16, Vec<u8>)> = [(-1, 3), (0, 0), (1, 1), (2, 2)]
+        .into_iter()
+        .map(|(id, c)| (id, one(plane(&record.rgba, c), width)))
+        .collect();
     if let Some(mask) = &record.mask {
         all.push((-2, one(mask.values.clone(), mask.rect.width())));
     }
@@ -135,7 +158,8 @@ fn plane(rgba: &[u8], channel: usize) -> Vec<u8> {
     rgba.iter().skip(channel).step_by(4).copied().collect()
 }
 
-/// Planes in run lengths: the lengths of all rows, then the rows. An empty plane is stored uncompressed.
+/// Planes in run lengths: the lengths of all rows, then the rows. An empty plane is stored
+/// uncompressed.
 fn packed(out: &mut Vec<u8>, planes: &[Vec<u8>], width: usize) {
     if planes.iter().all(Vec::is_empty) || width == 0 {
         return short(out, 0);
@@ -163,7 +187,12 @@ fn header(out: &mut Vec<u8>, record: &LayerRecord, channels: &[(i16, Vec<u8>)], 
     let hidden = if record.visible { 0 } else { 2 };
     // Bit 3: bit 4 says whether a record has its own pixels; a group has none.
     let no_pixels = if record.section == RecordSection::Layer { 8 } else { 24 };
-    out.extend([record.opacity, u8::from(record.clipped), u8::from(record.lock_alpha) | hidden | no_pixels, 0]);
+    out.extend([
+        record.opacity,
+        u8::from(record.clipped),
+        u8::from(record.lock_alpha) | hidden | no_pixels,
+        0,
+    ]);
     let mut extra = Vec::new();
     mask_data(&mut extra, record.mask.as_ref());
     // No ranges of blending.
@@ -211,8 +240,11 @@ fn mask_data(out: &mut Vec<u8>, mask: Option<&RecordMask>) {
 
 /// A short name for programs that know no other.
 fn pascal_name(out: &mut Vec<u8>, name: &str) {
-    let plain: Vec<u8> =
-        name.chars().take(31).map(|c| if c.is_ascii() && !c.is_control() { c as u8 } else { b'?' }).collect();
+    let plain: Vec<u8> = name
+        .chars()
+        .take(31)
+        .map(|c| if c.is_ascii() && !c.is_control() { c as u8 } else { b'?' })
+        .collect();
     let start = out.len();
     out.push(plain.len() as u8);
     out.extend(plain);

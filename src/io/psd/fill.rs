@@ -1,5 +1,5 @@
-//! Fill layers: one colour, a gradient or a pattern, read from descriptors. Floor 5. Not here: the pictures of patterns
-//! (`pattern`).
+//! Fill layers: one colour, a gradient or a pattern, read from descriptors. Floor 5. Not here: the
+//! pictures of patterns (`pattern`).
 
 use super::colours::{Colours, Mode};
 use super::cursor::ByteCursor;
@@ -50,7 +50,8 @@ pub struct PatternFill {
     pub phase: Vec2,
 }
 
-/// Stops from one that the file names to the next: colours and opacities have middles of their own, where ramps bend.
+/// Stops from one that the file names to the next: colours and opacities have middles of their own,
+/// where ramps bend.
 const BETWEEN: usize = 8;
 /// No real gradient has more stops.
 const MOST_STOPS: usize = 1000;
@@ -81,10 +82,17 @@ fn share(object: &DescriptorObject, name: &str, absent: f32) -> f32 {
 /// A colour in any of the ways that descriptors say one.
 pub fn colour(said: &DescriptorObject, colours: &Colours) -> Option<Color> {
     let byte = |v: f32, full: f32| srgb::quantise(v / full);
-    let all = |names: [&str; 3]| Some([said.number(names[0])?, said.number(names[1])?, said.number(names[2])?]);
+    let all = |names: [&str; 3]| {
+        Some([said.number(names[0])?, said.number(names[1])?, said.number(names[2])?])
+    };
     let in_mode = |mode: Mode, values: [u8; 4]| {
         let channels = usize::from(mode.channels());
-        let own = Colours { mode, channels, icc: colours.icc.filter(|_| colours.mode == mode), ..*colours };
+        let own = Colours {
+            mode,
+            channels,
+            icc: colours.icc.filter(|_| colours.mode == mode),
+            ..*colours
+        };
         let planes = values.map(|v| Some(vec![v]));
         let rgba = own.to_srgb(Size::new(1, 1), &planes, None);
         Color { r: rgba[0], g: rgba[1], b: rgba[2], a: 255 }
@@ -102,7 +110,10 @@ pub fn colour(said: &DescriptorObject, colours: &Colours) -> Option<Color> {
         return Some(in_mode(Mode::Cmyk, [c, m, y, byte(100.0 - k, 100.0)]));
     }
     if let Some([l, a, b]) = all(["Lmnc", "A   ", "B   "]) {
-        return Some(in_mode(Mode::Lab, [byte(l, 100.0), byte(a + 128.0, 255.0), byte(b + 128.0, 255.0), 0]));
+        return Some(in_mode(
+            Mode::Lab,
+            [byte(l, 100.0), byte(a + 128.0, 255.0), byte(b + 128.0, 255.0), 0],
+        ));
     }
     let grey = byte(100.0 - said.number("Gry ")?, 100.0);
     Some(in_mode(Mode::Grey, [grey, 0, 0, 0]))
@@ -169,7 +180,8 @@ fn stops(ramp: &DescriptorObject, colours: &Colours) -> Option<Vec<GradientStop>
     inks.sort_by(|a, b| a.t.total_cmp(&b.t));
     opacities.sort_by(|a, b| a.t.total_cmp(&b.t));
     inks.first()?;
-    let mut places: Vec<f32> = [0.0, 1.0].into_iter().chain(inks.iter().map(|mark| mark.t)).collect();
+    let mut places: Vec<f32> =
+        [0.0, 1.0].into_iter().chain(inks.iter().map(|mark| mark.t)).collect();
     places.extend(opacities.iter().map(|mark| mark.t));
     places.sort_by(f32::total_cmp);
     places.dedup();
@@ -194,12 +206,17 @@ fn at<const N: usize>(marks: &[Mark<[f32; N]>], t: f32) -> Option<[f32; N]> {
         return if next == 0 { marks.first() } else { marks.last() }.map(|mark| mark.value);
     };
     let s = (t - from.t) / (to.t - from.t);
-    let s = if s < from.middle { 0.5 * s / from.middle } else { 0.5 + 0.5 * (s - from.middle) / (1.0 - from.middle) };
+    let s = if s < from.middle {
+        0.5 * s / from.middle
+    } else {
+        0.5 + 0.5 * (s - from.middle) / (1.0 - from.middle)
+    };
     Some(std::array::from_fn(|i| from.value[i] + (to.value[i] - from.value[i]) * s))
 }
 
 impl GradientFill {
-    /// As a gradient of this program, on the rectangle that it fills; `None` where it is not straight.
+    /// As a gradient of this program, on the rectangle that it fills; `None` where it is not
+    /// straight.
     pub fn live(&self, rect: Rect) -> Option<Gradient> {
         if self.way != GradientStyle::Linear {
             return None;
@@ -215,15 +232,18 @@ impl GradientFill {
             pieces: Vec::new(),
         })
     }
+
     /// Its middle, and from there to its end.
     fn line(&self, rect: Rect) -> (Vec2, Vec2) {
         let (w, h) = (rect.width() as f32, rect.height() as f32);
-        let middle = vec2(rect.x0 as f32 + w / 2.0, rect.y0 as f32 + h / 2.0) + self.offset * vec2(w, h);
+        let middle =
+            vec2(rect.x0 as f32 + w / 2.0, rect.y0 as f32 + h / 2.0) + self.offset * vec2(w, h);
         let (sin, cos) = self.degrees.to_radians().sin_cos();
         // The line ends where it meets the rectangle's border.
         let reach = (w / 2.0 / cos.abs().max(1e-6)).min(h / 2.0 / sin.abs().max(1e-6));
         (middle, vec2(cos, -sin) * reach * self.scale)
     }
+
     /// Straight RGBA of the canvas.
     pub fn pixels(&self, size: Size, rect: Rect) -> Vec<u8> {
         let line = self.line(rect);
@@ -235,11 +255,14 @@ impl GradientFill {
         }
         out
     }
+
     /// The colour of a pixel.
     pub fn colour_at(&self, rect: Rect, [x, y]: [i32; 2]) -> Option<Color> {
-        let [r, g, b, a] = self.at(self.place(self.line(rect), vec2(x as f32 + 0.5, y as f32 + 0.5)));
+        let [r, g, b, a] =
+            self.at(self.place(self.line(rect), vec2(x as f32 + 0.5, y as f32 + 0.5)));
         Some(Color { r, g, b, a })
     }
+
     /// Position of a point on the ramp; `line`: the middle, and from there to the end.
     fn place(&self, (middle, half): (Vec2, Vec2), at: Vec2) -> f32 {
         let reach = half.length().max(1e-6);
@@ -254,10 +277,12 @@ impl GradientFill {
             GradientStyle::Angle => (-v.atan2(u) / std::f32::consts::TAU).rem_euclid(1.0),
         }
     }
+
     fn at(&self, t: f32) -> [u8; 4] {
         let t = t.max(0.0).min(1.0);
         let next = self.stops.partition_point(|stop| stop.t <= t);
-        let colour = |stop: Option<&GradientStop>| stop.map_or([0.0; 4], |stop| stop.color.to_f32());
+        let colour =
+            |stop: Option<&GradientStop>| stop.map_or([0.0; 4], |stop| stop.color.to_f32());
         match (next.checked_sub(1), self.stops.get(next)) {
             (Some(i), Some(to)) => {
                 let from = self.stops[i];

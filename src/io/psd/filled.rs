@@ -27,7 +27,12 @@ pub fn content(record: &mut LayerRecord, size: Size, patterns: &[PatternResource
 }
 
 /// A fill whose pixels the file does not hold.
-fn drawn(record: &mut LayerRecord, fill: LayerFill, size: Size, patterns: &[PatternResource]) -> Content {
+fn drawn(
+    record: &mut LayerRecord,
+    fill: LayerFill,
+    size: Size,
+    patterns: &[PatternResource],
+) -> Content {
     if record.stroked {
         record.leave_out("the line around its shape is left out");
     }
@@ -44,16 +49,18 @@ fn drawn(record: &mut LayerRecord, fill: LayerFill, size: Size, patterns: &[Patt
             record.tell("its gradient became pixels");
             pixels(gradient.pixels(size, rect), size.rect())
         }
-        LayerFill::Pattern(fill) => match patterns.iter().find_map(|pattern| pattern.pixels(&fill, size)) {
-            Some(drawn) => {
-                record.tell("its pattern became pixels");
-                pixels(drawn, size.rect())
+        LayerFill::Pattern(fill) => {
+            match patterns.iter().find_map(|pattern| pattern.pixels(&fill, size)) {
+                Some(drawn) => {
+                    record.tell("its pattern became pixels");
+                    pixels(drawn, size.rect())
+                }
+                None => {
+                    record.leave_out("its pattern is not in the file, or cannot be read");
+                    pixels(Vec::new(), Rect::EMPTY)
+                }
             }
-            None => {
-                record.leave_out("its pattern is not in the file, or cannot be read");
-                pixels(Vec::new(), Rect::EMPTY)
-            }
-        },
+        }
     }
 }
 
@@ -61,7 +68,9 @@ fn drawn(record: &mut LayerRecord, fill: LayerFill, size: Size, patterns: &[Patt
 fn shown(record: &mut LayerRecord, fill: LayerFill, size: Size) -> Content {
     let is_plain = !record.stroked && !record.unfilled;
     let live = match fill {
-        LayerFill::Solid(colour) if is_plain && is_of(record, |_| Some(colour)) => Some(Content::Fill(colour)),
+        LayerFill::Solid(colour) if is_plain && is_of(record, |_| Some(colour)) => {
+            Some(Content::Fill(colour))
+        }
         LayerFill::Gradient(gradient) if is_plain => straight(record, &gradient, size),
         _ => None,
     };
@@ -70,7 +79,8 @@ fn shown(record: &mut LayerRecord, fill: LayerFill, size: Size) -> Content {
         return own_pixels(record);
     };
     let values: Vec<u8> = record.rgba.iter().skip(3).step_by(4).copied().collect();
-    let covers_all = record.rect.intersect(size.rect()) == size.rect() && values.iter().all(|v| *v == 255);
+    let covers_all =
+        record.rect.intersect(size.rect()) == size.rect() && values.iter().all(|v| *v == 255);
     if !covers_all {
         let shape = RecordMask { rect: record.rect, outside: 0, values, disabled: false };
         record.mask = Some(match record.mask.take().filter(|mask| !mask.disabled) {
@@ -85,7 +95,8 @@ fn shown(record: &mut LayerRecord, fill: LayerFill, size: Size) -> Content {
 /// A straight, opaque gradient whose colours the pixels have.
 fn straight(record: &LayerRecord, gradient: &GradientFill, size: Size) -> Option<Content> {
     let rect = filled_rect(record, gradient, size);
-    let live = gradient.live(rect).filter(|live| live.stops.iter().all(|stop| stop.color.a == 255))?;
+    let live =
+        gradient.live(rect).filter(|live| live.stops.iter().all(|stop| stop.color.a == 255))?;
     is_of(record, |at| gradient.colour_at(rect, at)).then(|| Content::Gradient(Live::new(live)))
 }
 
@@ -105,7 +116,10 @@ fn is_of(record: &LayerRecord, colour: impl Fn([i32; 2]) -> Option<Color>) -> bo
     record.rgba.as_chunks::<4>().0.iter().enumerate().all(|(i, &[r, g, b, a])| {
         // A faint pixel keeps too little of its colour.
         let at = [record.rect.x0 + (i % width) as i32, record.rect.y0 + (i / width) as i32];
-        a < 64 || colour(at).is_some_and(|c| [(r, c.r), (g, c.g), (b, c.b)].iter().all(|(x, y)| x.abs_diff(*y) <= SAME))
+        a < 64
+            || colour(at).is_some_and(|c| {
+                [(r, c.r), (g, c.g), (b, c.b)].iter().all(|(x, y)| x.abs_diff(*y) <= SAME)
+            })
     })
 }
 

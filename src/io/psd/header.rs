@@ -17,8 +17,8 @@ pub struct PsdHeader {
     pub channels: u16,
     pub bits: u16,
     pub mode: Mode,
-    /// Its pixels are read as 16 bits: it has more than 8, of colours that are kept as they are, and the budget allows
-    /// deep paint.
+    /// Its pixels are read as 16 bits: it has more than 8, of colours that are kept as they are,
+    /// and the budget allows deep paint.
     pub is_deep: bool,
 }
 
@@ -33,12 +33,16 @@ impl PsdHeader {
             large: self.large,
         }
     }
-    /// Memory of the merged picture while it is read: RGBA, a plane of values per channel, and the stored data.
+
+    /// Memory of the merged picture while it is read: RGBA, a plane of values per channel, and the
+    /// stored data.
     pub fn merged_bytes(&self) -> u64 {
         let planes = self.colours() as u64 + 1;
         let (rgba, value) = if self.is_deep { (12, 2) } else { (4, 1) };
-        self.size.area() as u64 * (rgba + planes * value + planes * u64::from(self.bits.div_ceil(8)))
+        self.size.area() as u64
+            * (rgba + planes * value + planes * u64::from(self.bits.div_ceil(8)))
     }
+
     /// Channels of colour, at most four.
     pub fn colours(&self) -> usize {
         match self.mode {
@@ -61,10 +65,14 @@ pub fn header(file: &Path, rest: &mut ByteCursor, budget: &Budget) -> Result<Psd
         return Err(Error::decode(file, "it does not begin like a Photoshop file"));
     }
     let size = budget.size(file, width.into(), height.into())?;
-    let unknown = || Error::unsupported(file, format!("its colours are of the unknown kind {mode}"));
+    let unknown =
+        || Error::unsupported(file, format!("its colours are of the unknown kind {mode}"));
     let mode = Mode::of(mode).ok_or_else(unknown)?;
     if ![8, 16, 32].contains(&bits) && (bits, mode) != (1, Mode::Bitmap) {
-        return Err(Error::unsupported(file, format!("it has {bits} bits a channel; 1, 8, 16 and 32 can be read")));
+        return Err(Error::unsupported(
+            file,
+            format!("it has {bits} bits a channel; 1, 8, 16 and 32 can be read"),
+        ));
     }
     if channels < mode.channels() || channels > 56 {
         return Err(Error::decode(file, format!("it has {channels} channels")));

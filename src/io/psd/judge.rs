@@ -1,7 +1,8 @@
-//! Whether the layers look like the file's picture of them, and what is done if they do not. Floor 5.
+//! Whether the layers look like the file's picture of them, and what is done if they do not. Floor
+//! 5.
 //!
-//! Photoshop has features that this program cannot express. What is left out may or may not show, so the pictures are
-//! compared:
+//! Photoshop has features that this program cannot express. What is left out may or may not show,
+//! so the pictures are compared:
 //!
 //! * alike, and nothing left out: the layers alone;
 //! * alike, though something was left out: the file's picture is hidden above them;
@@ -15,7 +16,8 @@ use crate::raster::tile::TILE;
 use crate::raster::{TileAt, TileGrid};
 use std::sync::Arc;
 
-/// Largest differences of pictures that count as alike, of 255: in the mean, and in all but a hundredth of the pixels.
+/// Largest differences of pictures that count as alike, of 255: in the mean, and in all but a
+/// hundredth of the pixels.
 const ALIKE_MEAN: f64 = 1.0;
 const ALIKE_P99: usize = 8;
 /// Names of what is added.
@@ -34,6 +36,7 @@ impl Difference {
     fn is_alike(self) -> bool {
         self.mean <= ALIKE_MEAN && self.p99 <= ALIKE_P99
     }
+
     /// How many pixels differ by how much.
     fn of(counts: &[u64; 256]) -> Self {
         let all: u64 = counts.iter().sum::<u64>().max(1);
@@ -50,8 +53,14 @@ impl Difference {
     }
 }
 
-/// The document with the file's own picture if needed; the notes say what was done. `is_less`: something was left out.
-pub fn judged(document: Document, merged: Option<Merged>, is_less: bool, notes: &mut Vec<String>) -> Document {
+/// The document with the file's own picture if needed; the notes say what was done. `is_less`:
+/// something was left out.
+pub fn judged(
+    document: Document,
+    merged: Option<Merged>,
+    is_less: bool,
+    notes: &mut Vec<String>,
+) -> Document {
     let without = |notes: &mut Vec<String>, why: &str| {
         if is_less {
             notes.push(format!("{why}, so what is left out cannot be seen"));
@@ -79,7 +88,8 @@ pub fn judged(document: Document, merged: Option<Merged>, is_less: bool, notes: 
     }
     let Difference { mean, most, .. } = difference;
     if is_blank(&merged.pixels.rgba) {
-        notes.push("the file's own picture is empty, so it was not compared with the layers".into());
+        notes
+            .push("the file's own picture is empty, so it was not compared with the layers".into());
         return document;
     }
     notes.push(format!(
@@ -87,13 +97,21 @@ pub fn judged(document: Document, merged: Option<Merged>, is_less: bool, notes: 
          is shown, and the layers are hidden below it in the group “{LAYERS}”"
     ));
     let group = Group { layers: document.layers, pass_through: true };
-    let layers = Layer { visible: false, clip_to_surface: false, ..Layer::new(LAYERS, Content::Group(group)) };
+    let layers = Layer {
+        visible: false,
+        clip_to_surface: false,
+        ..Layer::new(LAYERS, Content::Group(group))
+    };
     with_picture(Document { layers: vec![Arc::new(layers)], ..document }, &merged, true)
 }
 
 fn with_picture(mut document: Document, merged: &Merged, visible: bool) -> Document {
     let pixels = filled::paint(&merged.pixels.rgba, &merged.pixels.deep, document.size.rect());
-    document.layers.push(Arc::new(Layer { visible, clip_to_surface: false, ..Layer::new(PICTURE, pixels) }));
+    document.layers.push(Arc::new(Layer {
+        visible,
+        clip_to_surface: false,
+        ..Layer::new(PICTURE, pixels)
+    }));
     document
 }
 
@@ -111,10 +129,19 @@ fn compared(size: Size, shown: &TileGrid, merged: &Merged) -> Difference {
         let tile = shown.tile(at).map(|tile| tile.bytes());
         for y in inside.y0..inside.y1 {
             for x in inside.x0..inside.x1 {
-                let in_tile = ((y - at.rect().y0) as usize * TILE + (x - at.rect().x0) as usize) * 4;
-                let own = tile.and_then(|bytes| bytes.get(in_tile..)?.first_chunk()).copied().unwrap_or([0; 4]);
+                let in_tile =
+                    ((y - at.rect().y0) as usize * TILE + (x - at.rect().x0) as usize) * 4;
+                let own = tile
+                    .and_then(|bytes| bytes.get(in_tile..)?.first_chunk())
+                    .copied()
+                    .unwrap_or([0; 4]);
                 let in_picture = (y as usize * size.width as usize + x as usize) * 4;
-                let other = merged.pixels.rgba.get(in_picture..).and_then(|rest| rest.first_chunk()).copied();
+                let other = merged
+                    .pixels
+                    .rgba
+                    .get(in_picture..)
+                    .and_then(|rest| rest.first_chunk())
+                    .copied();
                 counts[usize::from(apart(own, other.unwrap_or([0; 4]), merged.has_alpha))] += 1;
             }
         }
@@ -126,7 +153,8 @@ fn compared(size: Size, shown: &TileGrid, merged: &Merged) -> Difference {
 fn apart(own: [u8; 4], straight: [u8; 4], with_alpha: bool) -> u8 {
     let alpha = u32::from(straight[3]);
     let on_white = |c: u8| ((u32::from(c) * alpha + 255 * (255 - alpha) + 127) / 255) as u8;
-    let colour = (0..3).map(|c| own[c].saturating_add(255 - own[3]).abs_diff(on_white(straight[c]))).max();
+    let colour =
+        (0..3).map(|c| own[c].saturating_add(255 - own[3]).abs_diff(on_white(straight[c]))).max();
     let alpha = if with_alpha { own[3].abs_diff(straight[3]) } else { 0 };
     colour.unwrap_or(0).max(alpha)
 }
@@ -139,14 +167,23 @@ mod tests {
 
     fn grey(value: u8) -> Document {
         let fill = Content::Fill(Color { r: value, g: value, b: value, a: 255 });
-        Document { layers: vec![Arc::new(Layer::new("grey", fill))], ..Document::empty(Size::new(10, 20)) }
+        Document {
+            layers: vec![Arc::new(Layer::new("grey", fill))],
+            ..Document::empty(Size::new(10, 20))
+        }
     }
+
     /// One grey except for one black pixel.
     fn picture(value: u8) -> Option<Merged> {
         let mut rgba = [value, value, value, 255].repeat(200);
         rgba[..3].fill(0);
-        Some(Merged { pixels: StraightPixels { rgba, deep: Vec::new() }, is_real: true, ..Merged::default() })
+        Some(Merged {
+            pixels: StraightPixels { rgba, deep: Vec::new() },
+            is_real: true,
+            ..Merged::default()
+        })
     }
+
     fn judged_as(merged: Option<Merged>, is_less: bool) -> (Vec<(String, bool)>, Vec<String>) {
         let mut notes = Vec::new();
         let document = judged(grey(100), merged, is_less, &mut notes);
@@ -157,12 +194,16 @@ mod tests {
     fn the_file_s_picture_is_shown_where_the_layers_look_otherwise() {
         let (layers, notes) = judged_as(picture(120), false);
         assert_eq!(layers, [(LAYERS.to_owned(), false), (PICTURE.to_owned(), true)]);
-        assert!(notes.len() == 1 && notes[0].contains("20.4 of 255 on average, 100 at most"), "{notes:?}");
+        assert!(
+            notes.len() == 1 && notes[0].contains("20.4 of 255 on average, 100 at most"),
+            "{notes:?}"
+        );
         assert_eq!(judged_as(picture(100), false), (vec![("grey".to_owned(), true)], vec![]));
         let (layers, notes) = judged_as(picture(100), true);
         assert_eq!(layers, [("grey".to_owned(), true), (PICTURE.to_owned(), false)]);
         assert!(notes[0].contains("is hidden above"), "{notes:?}");
     }
+
     #[test]
     fn a_picture_that_is_none_is_not_believed() {
         let white = || StraightPixels { rgba: vec![255; 800], deep: Vec::new() };
@@ -178,6 +219,7 @@ mod tests {
         }
         assert_eq!(judged_as(plain(false), false).1, [""; 0]);
     }
+
     #[test]
     fn the_hundredth_part_that_differs_most_does_not_count() {
         let mut counts = [0; 256];

@@ -1,5 +1,5 @@
-//! Selections that a Photoshop file keeps: channels beyond the colours of the merged picture, with their names.
-//! Floor 5. Not here: the channels themselves (`merged`, `emit`).
+//! Selections that a Photoshop file keeps: channels beyond the colours of the merged picture, with
+//! their names. Floor 5. Not here: the channels themselves (`merged`, `emit`).
 
 use super::cursor::{ByteCursor, shown_text};
 use super::header::resource;
@@ -9,7 +9,8 @@ use crate::raster::CoverageGrid;
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// Names of the channels beyond the colours, with 8 and 16 bits per letter; the identifier of each; how each is shown.
+/// Names of the channels beyond the colours, with 8 and 16 bits per letter; the identifier of each;
+/// how each is shown.
 const NAMES: u16 = 1006;
 const UNICODE_NAMES: u16 = 1045;
 pub const NUMBERS: u16 = 1053;
@@ -27,7 +28,13 @@ pub fn written(document: &Document) -> Vec<NamedSelection> {
         name: kept.name.clone(),
         selection: Arc::new(Selection::new(kept.selection.coverage.within(canvas))),
     };
-    document.selections.iter().map(within).filter(|kept| !kept.selection.is_empty()).take(MOST).collect()
+    document
+        .selections
+        .iter()
+        .map(within)
+        .filter(|kept| !kept.selection.is_empty())
+        .take(MOST)
+        .collect()
 }
 
 /// The resources that name them: their numbers and data. Empty if there are none.
@@ -35,10 +42,14 @@ pub fn resources(kept: &[NamedSelection]) -> Vec<(u16, Vec<u8>)> {
     if kept.is_empty() {
         return Vec::new();
     }
-    let names: Vec<&str> = std::iter::once(TRANSPARENCY).chain(kept.iter().map(|kept| &*kept.name)).collect();
+    let names: Vec<&str> =
+        std::iter::once(TRANSPARENCY).chain(kept.iter().map(|kept| &*kept.name)).collect();
     let (mut short, mut long) = (Vec::new(), Vec::new());
     for name in &names {
-        let plain = name.chars().take(255).map(|c| if c.is_ascii() && !c.is_control() { c as u8 } else { b'?' });
+        let plain = name
+            .chars()
+            .take(255)
+            .map(|c| if c.is_ascii() && !c.is_control() { c as u8 } else { b'?' });
         let plain: Vec<u8> = plain.collect();
         short.push(plain.len() as u8);
         short.extend(plain);
@@ -51,8 +62,13 @@ pub fn resources(kept: &[NamedSelection]) -> Vec<(u16, Vec<u8>)> {
     vec![(NAMES, short), (UNICODE_NAMES, long), (NUMBERS, numbers)]
 }
 
-/// The channels beyond colours and transparency as selections, and how many of them are inks instead.
-pub fn selections(channels: Vec<CoverageGrid>, has_alpha: bool, resources: ByteCursor) -> (Vec<NamedSelection>, usize) {
+/// The channels beyond colours and transparency as selections, and how many of them are inks
+/// instead.
+pub fn selections(
+    channels: Vec<CoverageGrid>,
+    has_alpha: bool,
+    resources: ByteCursor,
+) -> (Vec<NamedSelection>, usize) {
     let names = names(resources, has_alpha, channels.len());
     let inks = inks(resources, channels.len());
     let mut known = HashSet::new();
@@ -62,7 +78,10 @@ pub fn selections(channels: Vec<CoverageGrid>, has_alpha: bool, resources: ByteC
         let given = given.unwrap_or_else(|| format!("Alpha {}", i + 1));
         let given: String = given.chars().take(NamedSelection::LONGEST_NAME - 4).collect();
         let numbered = (2..).map(|n| format!("{given} {n}"));
-        let name = std::iter::once(given.clone()).chain(numbered).find(|name| !known.contains(name)).unwrap_or(given);
+        let name = std::iter::once(given.clone())
+            .chain(numbered)
+            .find(|name| !known.contains(name))
+            .unwrap_or(given);
         if !coverage.is_empty() {
             known.insert(name.clone());
             kept.push(NamedSelection { name, selection: Arc::new(Selection::new(coverage)) });
@@ -83,7 +102,8 @@ fn names(resources: ByteCursor, has_alpha: bool, count: usize) -> Vec<String> {
     };
     let mut names: Vec<String> = long.unwrap_or_else(short);
     // Some programs name the transparency too.
-    if has_alpha && (names.len() > count || names.first().is_some_and(|name| name == TRANSPARENCY)) {
+    if has_alpha && (names.len() > count || names.first().is_some_and(|name| name == TRANSPARENCY))
+    {
         names.remove(0);
     }
     names
@@ -95,7 +115,8 @@ fn inks(resources: ByteCursor, count: usize) -> HashSet<usize> {
     const KIND: usize = 12;
     const INK: u8 = 2;
     let newer = resource(resources, SHOWN).and_then(|data| Some((data.get(4..)?, 13)));
-    let Some((data, bytes)) = newer.or(resource(resources, SHOWN_BEFORE).map(|data| (data, 14))) else {
+    let Some((data, bytes)) = newer.or(resource(resources, SHOWN_BEFORE).map(|data| (data, 14)))
+    else {
         return HashSet::new();
     };
     let kinds: Vec<u8> = data.chunks_exact(bytes).map(|channel| channel[KIND]).collect();

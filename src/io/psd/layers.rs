@@ -1,5 +1,5 @@
-//! Reads the layers of a Photoshop file as records: their fields, the blocks after them, their channels and masks.
-//! Floor 5. `parse` finds their position in the file.
+//! Reads the layers of a Photoshop file as records: their fields, the blocks after them, their
+//! channels and masks. Floor 5. `parse` finds their position in the file.
 
 use super::blocks::{self, block};
 use super::channel;
@@ -19,7 +19,8 @@ const FARTHEST: i32 = 1_000_000;
 /// Pixels that vector masks may draw together: some seconds.
 const DRAWN_PX: u64 = 1 << 33;
 /// Modes in which a fill's opacity and a layer's differ.
-const FILLED_OTHERWISE: [[u8; 4]; 8] = [*b"idiv", *b"lbrn", *b"div ", *b"lddg", *b"vLit", *b"lLit", *b"hMix", *b"diff"];
+const FILLED_OTHERWISE: [[u8; 4]; 8] =
+    [*b"idiv", *b"lbrn", *b"div ", *b"lddg", *b"vLit", *b"lLit", *b"hMix", *b"diff"];
 
 /// A record whose channels are still to be read.
 struct PendingRecord {
@@ -44,9 +45,24 @@ pub struct RecordReader<'a> {
 }
 
 impl<'a> RecordReader<'a> {
-    pub fn new(file: &'a Path, budget: &'a Budget, header: &'a PsdHeader, colours: &'a Colours<'a>) -> Self {
-        Self { file, budget, header, colours, used_px: 0, deep_bytes: 0, drawn_px: 0, damage: Vec::new() }
+    pub fn new(
+        file: &'a Path,
+        budget: &'a Budget,
+        header: &'a PsdHeader,
+        colours: &'a Colours<'a>,
+    ) -> Self {
+        Self {
+            file,
+            budget,
+            header,
+            colours,
+            used_px: 0,
+            deep_bytes: 0,
+            drawn_px: 0,
+            damage: Vec::new(),
+        }
     }
+
     /// All of them, bottom first; unreadable ones are reported.
     pub fn records(&mut self, mut rest: ByteCursor) -> Result<Vec<LayerRecord>> {
         let count = usize::from(rest.i16().map_or(0, i16::unsigned_abs));
@@ -57,7 +73,10 @@ impl<'a> RecordReader<'a> {
         let mut pending = Vec::new();
         for i in 0..count {
             let Some(record) = self.record(&mut rest) else {
-                self.damage.push(format!("{} of {count} layers are lost: the file is cut short or damaged", count - i));
+                self.damage.push(format!(
+                    "{} of {count} layers are lost: the file is cut short or damaged",
+                    count - i
+                ));
                 break;
             };
             pending.push(record);
@@ -69,11 +88,13 @@ impl<'a> RecordReader<'a> {
         };
         pending.into_iter().map(filled).collect()
     }
+
     fn record(&self, rest: &mut ByteCursor) -> Option<PendingRecord> {
         let rect = rest.rect()?;
         let count = rest.u16().filter(|count| *count <= 64)?;
         let large = self.header.large;
-        let channels = (0..count).map(|_| Some((rest.i16()?, rest.length(large)?))).collect::<Option<_>>()?;
+        let channels =
+            (0..count).map(|_| Some((rest.i16()?, rest.length(large)?))).collect::<Option<_>>()?;
         rest.key().filter(|signature| *signature == *b"8BIM")?;
         let (blend, opacity, clipping, flags) = (rest.key()?, rest.u8()?, rest.u8()?, rest.u8()?);
         rest.u8()?;
@@ -91,10 +112,11 @@ impl<'a> RecordReader<'a> {
             lock_alpha: flags & 1 == 1,
             ..LayerRecord::default()
         };
-        // Blending ranges from black to white of this layer and those beneath, for all channels and each: everything
-        // passes.
+        // Blending ranges from black to white of this layer and those beneath, for all channels and
+        // each: everything passes.
         if ranges.rest().chunks(4).any(|range| range != [0, 0, 255, 255]) {
-            record.leave_out("it is blended only where its “blend if” lets it be, which is left out");
+            record
+                .leave_out("it is blended only where its “blend if” lets it be, which is left out");
         }
         while let Some((key, data)) = block(&mut extra, large) {
             blocks::take(&mut record, key, data, self.colours);
@@ -111,8 +133,13 @@ impl<'a> RecordReader<'a> {
         }
         Some(PendingRecord { record, channels, masks })
     }
+
     /// Reads a record's channels.
-    fn filled<T: ColourValue>(&mut self, pending: PendingRecord, rest: &mut ByteCursor) -> Result<LayerRecord> {
+    fn filled<T: ColourValue>(
+        &mut self,
+        pending: PendingRecord,
+        rest: &mut ByteCursor,
+    ) -> Result<LayerRecord> {
         let PendingRecord { mut record, channels, masks } = pending;
         record.rect = self.affordable(&record.name, record.rect)?.unwrap_or(Rect::EMPTY);
         let size = Size::new(record.rect.width() as u32, record.rect.height() as u32);
@@ -134,7 +161,8 @@ impl<'a> RecordReader<'a> {
                 let placed = if id == -2 { Some(masks.shown) } else { masks.painted };
                 if let Some(placed) = placed {
                     let read = self.mask(&record.name, &mut data, placed.rect)?;
-                    drawn[(-2 - id) as usize] = read.map(|(rect, values)| placed.with(rect, values));
+                    drawn[(-2 - id) as usize] =
+                        read.map(|(rect, values)| placed.with(rect, values));
                 }
                 continue;
             }
@@ -149,12 +177,14 @@ impl<'a> RecordReader<'a> {
         if is_damaged {
             self.damage.push(format!("“{}” is damaged or cut short", record.name));
         }
-        let StraightPixels { rgba, deep } = T::pixels(*self.colours, size, &planes, alpha.as_deref());
+        let StraightPixels { rgba, deep } =
+            T::pixels(*self.colours, size, &planes, alpha.as_deref());
         (record.rgba, record.deep) = (rgba, deep);
         self.masked(&mut record, masks, drawn)?;
         self.spend_for_canvas(&record)?;
         Ok(record)
     }
+
     /// The mask that a layer's masks are together. `drawn`: channels −2 and −3.
     fn masked(
         &mut self,
@@ -165,7 +195,8 @@ impl<'a> RecordReader<'a> {
         let size = self.header.size;
         let [shown, painted] = drawn;
         // A shape's pixels show its outline already.
-        let is_shape = (record.fill.is_some() || record.stroked || record.is_shape) && !record.rgba.is_empty();
+        let is_shape =
+            (record.fill.is_some() || record.stroked || record.is_shape) && !record.rgba.is_empty();
         let softness = masks.map(|masks| masks.softness);
         let is_drawn = masks.is_some_and(|masks| masks.shown.is_drawn);
         let has_both = painted.is_some();
@@ -176,7 +207,8 @@ impl<'a> RecordReader<'a> {
             (Some(shown), _) => Some(self.softened(shown, softness.map(|[soft, _]| soft))?),
             (None, _) => None,
         };
-        let Some(outline) = record.outline.take().filter(|_| !is_shape && !has_both && !is_drawn) else {
+        let Some(outline) = record.outline.take().filter(|_| !is_shape && !has_both && !is_drawn)
+        else {
             return Ok(());
         };
         if outline.disabled {
@@ -197,6 +229,7 @@ impl<'a> RecordReader<'a> {
         });
         Ok(())
     }
+
     fn softened(&mut self, mask: RecordMask, softness: Option<Softness>) -> Result<RecordMask> {
         let Some(softness) = softness else { return Ok(mask) };
         if softness.feather_px > 0.0 {
@@ -205,10 +238,13 @@ impl<'a> RecordReader<'a> {
         }
         Ok(mask.softened(self.header.size, softness))
     }
+
     /// Reserves memory for what will cover the whole canvas, however small it is in the file.
     fn spend_for_canvas(&mut self, record: &LayerRecord) -> Result<()> {
         let area = self.header.size.area() as u64;
-        if record.rgba.is_empty() && matches!(record.fill, Some(LayerFill::Gradient(_) | LayerFill::Pattern(_))) {
+        if record.rgba.is_empty()
+            && matches!(record.fill, Some(LayerFill::Gradient(_) | LayerFill::Pattern(_)))
+        {
             self.spend(area)?;
         }
         if record.ground.is_some() || (record.fill.is_some() && !record.rgba.is_empty()) {
@@ -216,6 +252,7 @@ impl<'a> RecordReader<'a> {
         }
         Ok(())
     }
+
     /// The rectangle if it is valid and within the budget; `None` if it is empty.
     fn affordable(&mut self, name: &str, rect: Rect) -> Result<Option<Rect>> {
         if rect.is_empty() {
@@ -223,30 +260,44 @@ impl<'a> RecordReader<'a> {
         }
         let [x0, y0, x1, y1] = [rect.x0, rect.y0, rect.x1, rect.y1].map(i64::from);
         if [x0, y0, x1, y1].iter().any(|v| v.abs() > FARTHEST.into()) {
-            return Err(Error::decode(self.file, format!("“{name}” is {x0}, {y0} pixels away from the canvas")));
+            return Err(Error::decode(
+                self.file,
+                format!("“{name}” is {x0}, {y0} pixels away from the canvas"),
+            ));
         }
         let size = self.budget.size(self.file, (x1 - x0) as u64, (y1 - y0) as u64)?;
         self.spend(size.area() as u64)?;
         Ok(Some(rect))
     }
+
     /// Counts pixels of four bytes that will be in memory.
     pub fn spend(&mut self, px: u64) -> Result<()> {
         self.used_px += px;
         if self.used_px > self.budget.document_px {
-            let reason = format!("its layers hold more than {} pixels together", self.budget.document_px);
+            let reason =
+                format!("its layers hold more than {} pixels together", self.budget.document_px);
             return Err(Error::too_large(self.file, reason));
         }
         self.budget.room(self.file, "reading its layers", self.held_bytes())
     }
+
     /// Memory of the layers that were read.
     pub fn held_bytes(&self) -> u64 {
         self.used_px.saturating_mul(4).saturating_add(self.deep_bytes)
     }
+
     /// A mask's rectangle and its values; `None` where they are damaged.
-    fn mask(&mut self, name: &str, data: &mut ByteCursor, rect: Rect) -> Result<Option<(Rect, Vec<u8>)>> {
+    fn mask(
+        &mut self,
+        name: &str,
+        data: &mut ByteCursor,
+        rect: Rect,
+    ) -> Result<Option<(Rect, Vec<u8>)>> {
         // Here it will cover the canvas, a byte a pixel, however small it is in the file.
         self.spend(self.header.size.area() as u64 / 4)?;
-        let Some(rect) = self.affordable(name, rect)? else { return Ok(Some((Rect::EMPTY, Vec::new()))) };
+        let Some(rect) = self.affordable(name, rect)? else {
+            return Ok(Some((Rect::EMPTY, Vec::new())));
+        };
         let size = Size::new(rect.width() as u32, rect.height() as u32);
         let values = channel::decode(data, self.header.shape(size, false));
         if values.is_none() {

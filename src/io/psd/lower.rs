@@ -1,12 +1,16 @@
-//! Converts a document to records: what Photoshop can express is kept, the rest becomes pixels; the document itself is
-//! stored with them. Floor 5. `emit` writes the records as bytes, `verify` reads them again.
+//! Converts a document to records: what Photoshop can express is kept, the rest becomes pixels; the
+//! document itself is stored with them. Floor 5. `emit` writes the records as bytes, `verify` reads
+//! them again.
 
 use super::alone::stands_alone;
 use super::{
-    LayerRecord, MOST_RECORDS, PASS_THROUGH, RecordMask, RecordSection, cursor, emit, kept, marks, signature, verify,
+    LayerRecord, MOST_RECORDS, PASS_THROUGH, RecordMask, RecordSection, cursor, emit, kept, marks,
+    signature, verify,
 };
 use crate::document::EncodedPixels;
-use crate::document::{Content, Document, LayerId, LayerLock, LayerMask, MaskKind, Progress, flatten};
+use crate::document::{
+    Content, Document, LayerId, LayerLock, LayerMask, MaskKind, Progress, flatten,
+};
 use crate::math::{Rect, Size};
 use crate::memory;
 use crate::project::look::{self, Cancellable};
@@ -30,40 +34,60 @@ pub struct WrittenPsd {
 
 /// The bytes of a Photoshop file, 8 bits a channel; `None` if cancelled. `file` is for messages.
 ///
-/// They are read again as any file is, and compared: every record and pixel, the merged picture, and the document that
-/// comes back live. Fails with a sentence that says what would not come back, or which limit of the format is passed.
+/// They are read again as any file is, and compared: every record and pixel, the merged picture,
+/// and the document that comes back live. Fails with a sentence that says what would not come back,
+/// or which limit of the format is passed.
 pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancellable<WrittenPsd> {
     if document.size.width.max(document.size.height) > LONGEST_PX {
-        let reason = format!("a Photoshop file has at most {LONGEST_PX} pixels a side, not {}", document.size);
+        let reason = format!(
+            "a Photoshop file has at most {LONGEST_PX} pixels a side, not {}",
+            document.size
+        );
         return Err(Error::unsupported(file, reason));
     }
     let items = plan(document, FormatSupport::PHOTOSHOP);
     let paint = look::paint(file, document)?;
     let Some(looks) = look::render(file, document, &items, progress)? else { return Ok(None) };
     let Some(merged) = flatten(document, progress) else { return Ok(None) };
-    let mut lowering = RecordBuilder { size: document.size, looks: looks.into_iter(), ..RecordBuilder::default() };
+    let mut lowering =
+        RecordBuilder { size: document.size, looks: looks.into_iter(), ..RecordBuilder::default() };
     lowering.items(file, &items)?;
     let RecordBuilder { records, shown, whole_rims, mut notes, .. } = lowering;
     if records.len() > MOST_RECORDS {
-        let reason = format!("its layers would be {} for Photoshop, which may be {MOST_RECORDS}", records.len());
+        let reason = format!(
+            "its layers would be {} for Photoshop, which may be {MOST_RECORDS}",
+            records.len()
+        );
         return Err(Error::unsupported(file, reason));
     }
-    let shown: BTreeMap<LayerId, &(String, EncodedPixels)> = shown.iter().map(|(id, picture)| (*id, picture)).collect();
-    let ours = project::documents(file, document, &paint, &shown, signature(&records), &whole_rims)?;
+    let shown: BTreeMap<LayerId, &(String, EncodedPixels)> =
+        shown.iter().map(|(id, picture)| (*id, picture)).collect();
+    let ours =
+        project::documents(file, document, &paint, &shown, signature(&records), &whole_rims)?;
     let ours = project::packed(file, &ours)?;
     let merged = merged.to_straight_rgba(document.size.rect());
     let merged = emit::on_white(&merged);
     let selections = kept::written(document);
     if selections.len() < document.selections.len() {
-        notes.push("selections beyond the first 52, and empty ones, are kept for this program alone".into());
+        notes.push(
+            "selections beyond the first 52, and empty ones, are kept for this program alone"
+                .into(),
+        );
     }
     let guides = marks::written(document);
     let bytes = emit::emit(document.size, &records, &merged, (&selections, &guides), &ours);
     if bytes.len() > LONGEST_BYTES {
-        let reason = format!("a Photoshop file has at most 2 GB, not {}", memory::spoken(bytes.len() as u64));
+        let reason = format!(
+            "a Photoshop file has at most 2 GB, not {}",
+            memory::spoken(bytes.len() as u64)
+        );
         return Err(Error::unsupported(file, reason));
     }
-    verify::read_back(file, &bytes, verify::Meant { document, records: &records, merged, selections, guides })?;
+    verify::read_back(
+        file,
+        &bytes,
+        verify::Meant { document, records: &records, merged, selections, guides },
+    )?;
     Ok(Some(WrittenPsd { bytes, notes }))
 }
 
@@ -101,6 +125,7 @@ impl RecordBuilder {
     fn items(&mut self, file: &Path, items: &[PlanItem]) -> Result<()> {
         items.iter().try_for_each(|item| self.item(file, item))
     }
+
     fn item(&mut self, file: &Path, item: &PlanItem) -> Result<()> {
         self.tell_of_blending(item);
         if let ItemContent::Stack { isolated, items } = &item.shows {
@@ -115,30 +140,48 @@ impl RecordBuilder {
             self.items(file, items)?;
             self.is_hidden = around;
             let mask = item.mask.as_ref().and_then(|mask| self.mask(mask));
-            let alone = *isolated || (mask.is_some() && stands_alone(self.size, &self.records[first..]));
+            let alone =
+                *isolated || (mask.is_some() && stands_alone(self.size, &self.records[first..]));
             if mask.is_some() && !alone && item.visible && !self.is_hidden {
-                self.notes.push(format!("“{}” passes through, and Krita leaves its mask out", item.name));
+                self.notes
+                    .push(format!("“{}” passes through, and Krita leaves its mask out", item.name));
             }
             let blend = if alone { key(item.blend) } else { PASS_THROUGH };
-            self.records.push(LayerRecord { blend, mask, section: RecordSection::Group, ..record(item) });
+            self.records.push(LayerRecord {
+                blend,
+                mask,
+                section: RecordSection::Group,
+                ..record(item)
+            });
             return Ok(());
         }
-        let damaged = || Error::unsupported(file, "a layer could not be encoded; nothing was saved");
+        let damaged =
+            || Error::unsupported(file, "a layer could not be encoded; nothing was saved");
         let mut look = self.looks.next().ok_or_else(damaged)?;
         let rgba = pixels::decoded(look.file.bytes()).ok_or_else(damaged)?;
         if pixels::is_deep(look.file.bytes()) {
             // Our part of the file says what the record holds; it has all of the paint, too.
             look = in_bytes(file, look, &rgba)?;
-            self.notes.push(format!("“{}” has 16 bits per channel here and 8 for other programs", item.name));
+            self.notes.push(format!(
+                "“{}” has 16 bits per channel here and 8 for other programs",
+                item.name
+            ));
         }
         let is_empty = rgba.chunks_exact(4).all(|pixel| pixel[3] == 0);
         let (x1, y1) = (look.x + look.size.width as i32, look.y + look.size.height as i32);
-        let (rect, rgba) = if is_empty { (Rect::EMPTY, Vec::new()) } else { (Rect::new(look.x, look.y, x1, y1), rgba) };
+        let (rect, rgba) = if is_empty {
+            (Rect::EMPTY, Vec::new())
+        } else {
+            (Rect::new(look.x, look.y, x1, y1), rgba)
+        };
         let mask = item.mask.as_ref().and_then(|mask| self.mask(mask));
         match &item.shows {
             ItemContent::Layer(layer) | ItemContent::Nothing(layer) => {
                 if !matches!(layer.content, Content::Pixels(_)) {
-                    self.notes.push(format!("“{}” is live here and pixels for other programs", item.name));
+                    self.notes.push(format!(
+                        "“{}” is live here and pixels for other programs",
+                        item.name
+                    ));
                 }
                 let name = format!("data/{:03}.png", self.records.len());
                 self.shown.push((layer.id, (name, look)));
@@ -146,18 +189,25 @@ impl RecordBuilder {
                     self.whole_rims.insert(layer.id);
                 }
             }
-            _ => self.notes.push(format!("“{}” is composed of several layers for other programs", item.name)),
+            _ => self
+                .notes
+                .push(format!("“{}” is composed of several layers for other programs", item.name)),
         }
         self.records.push(LayerRecord { rect, rgba, mask, ..record(item) });
         Ok(())
     }
+
     /// What other programs read but compute differently.
     fn tell_of_blending(&mut self, item: &PlanItem) {
         if let Some(programs) = differs_in(item.blend).filter(|_| item.visible && !self.is_hidden) {
             let blend = item.blend.label().to_lowercase();
-            self.notes.push(format!("“{}” is blended by “{blend}”, shown otherwise by {programs}", item.name));
+            self.notes.push(format!(
+                "“{}” is blended by “{blend}”, shown otherwise by {programs}",
+                item.name
+            ));
         }
     }
+
     /// A mask of a picture; derived ones are in the layer's pixels.
     fn mask(&self, mask: &LayerMask) -> Option<RecordMask> {
         let MaskKind::File { coverage, .. } = &mask.kind else { return None };
@@ -182,11 +232,14 @@ fn in_bytes(file: &Path, look: EncodedPixels, rgba: &[u8]) -> Result<EncodedPixe
     Ok(EncodedPixels { file: pixels::encode_texels(file, rgba.as_chunks().0, look.size)?, ..look })
 }
 
-/// Programs that read the format's word for a mode and compute it otherwise, as was measured (docs/PROJECTS.md).
+/// Programs that read the format's word for a mode and compute it otherwise, as was measured
+/// (docs/PROJECTS.md).
 fn differs_in(blend: BlendMode) -> Option<&'static str> {
     match blend {
         BlendMode::SoftLight => Some("Krita and GIMP"),
-        BlendMode::Hue | BlendMode::Saturation | BlendMode::Color | BlendMode::Luminosity => Some("GIMP 2.10"),
+        BlendMode::Hue | BlendMode::Saturation | BlendMode::Color | BlendMode::Luminosity => {
+            Some("GIMP 2.10")
+        }
         BlendMode::DarkerColor | BlendMode::LighterColor => Some("GIMP 2.10"),
         _ => None,
     }

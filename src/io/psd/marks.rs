@@ -42,14 +42,19 @@ pub fn label(mut data: ByteCursor) -> LayerLabel {
 
 /// The guides as the format holds them: to a 32nd of a pixel.
 pub fn written(document: &Document) -> Guides {
-    let near = |lines: &[f32]| lines.iter().map(|at| (at * STEPS_A_PX).round() / STEPS_A_PX).collect();
-    Guides { vertical: near(&document.guides.vertical), horizontal: near(&document.guides.horizontal) }
+    let near =
+        |lines: &[f32]| lines.iter().map(|at| (at * STEPS_A_PX).round() / STEPS_A_PX).collect();
+    Guides {
+        vertical: near(&document.guides.vertical),
+        horizontal: near(&document.guides.horizontal),
+    }
 }
 
 /// The resource that holds them; `None` where there are none.
 pub fn guides_resource(guides: &Guides) -> Option<(u16, Vec<u8>)> {
     let count = guides.vertical.len() + guides.horizontal.len();
-    let mut out: Vec<u8> = [1, GRID, GRID, count as u32].into_iter().flat_map(u32::to_be_bytes).collect();
+    let mut out: Vec<u8> =
+        [1, GRID, GRID, count as u32].into_iter().flat_map(u32::to_be_bytes).collect();
     for (lines, is_level) in [(&guides.vertical, 0), (&guides.horizontal, 1)] {
         for at in lines {
             out.extend(((at * STEPS_A_PX).round() as i32).to_be_bytes());

@@ -1,5 +1,5 @@
-//! A layer's masks as a file holds them: their place, density and softness, and how they combine. Floor 5. Not here:
-//! reading their channels (`layers`), paths (`outline`).
+//! A layer's masks as a file holds them: their place, density and softness, and how they combine.
+//! Floor 5. Not here: reading their channels (`layers`), paths (`outline`).
 
 use super::RecordMask;
 use super::cursor::ByteCursor;
@@ -76,6 +76,7 @@ impl MaskRecord {
         let [disabled, inverted, is_drawn] = [2, 4, 8].map(|bit| flags & bit != 0);
         Self { rect, outside, disabled, inverted, is_drawn }
     }
+
     /// The mask that its channel's values make.
     pub fn with(&self, rect: Rect, mut values: Vec<u8>) -> RecordMask {
         let mut outside = self.outside;
@@ -92,6 +93,7 @@ impl RecordMask {
     pub fn of_canvas(size: Size, values: Vec<u8>) -> Self {
         RecordMask { rect: size.rect(), outside: 0, values, disabled: false }
     }
+
     pub fn at(&self, x: i32, y: i32) -> u8 {
         if !self.rect.contains(x, y) {
             return self.outside;
@@ -99,18 +101,26 @@ impl RecordMask {
         let at = (y - self.rect.y0) as usize * self.rect.width() + (x - self.rect.x0) as usize;
         self.values.get(at).copied().unwrap_or(self.outside)
     }
+
     /// The least rectangle around what is covered within its own.
     pub fn covered(&self) -> Rect {
         let width = self.rect.width().max(1);
-        let covered = self.values.iter().enumerate().filter(|(_, v)| **v > 0).map(|(i, _)| (i % width, i / width));
+        let covered = self
+            .values
+            .iter()
+            .enumerate()
+            .filter(|(_, v)| **v > 0)
+            .map(|(i, _)| (i % width, i / width));
         covered.fold(Rect::EMPTY, |all, (x, y)| {
             let (x, y) = (self.rect.x0 + x as i32, self.rect.y0 + y as i32);
             all.union(Rect::new(x, y, x + 1, y + 1))
         })
     }
+
     pub fn plane(&self, size: Size) -> Plane<u8> {
         Plane::from_fn(size, |x, y| self.at(x as i32, y as i32))
     }
+
     /// Where both cover, on the canvas.
     pub fn times(&self, size: Size, other: &RecordMask) -> RecordMask {
         let product = |a: u8, b: u8| ((u32::from(a) * u32::from(b) + 127) / 255) as u8;
@@ -120,13 +130,15 @@ impl RecordMask {
         });
         RecordMask::of_canvas(size, both.into_values())
     }
+
     /// The mask as it counts, once its edge is smoothed and its density taken.
     pub fn softened(self, size: Size, softness: Softness) -> RecordMask {
         let mut mask = self;
         if softness.feather_px > 0.0 {
             let sharp = mask.plane(size).map(|v| f32::from(v) / 255.0);
             let soft = blur::gaussian(&sharp, softness.feather_px * SIGMA_OF_FEATHER);
-            let values = soft.values().iter().map(|v| (v.max(0.0).min(1.0) * 255.0 + 0.5) as u8).collect();
+            let values =
+                soft.values().iter().map(|v| (v.max(0.0).min(1.0) * 255.0 + 0.5) as u8).collect();
             mask = RecordMask { disabled: mask.disabled, ..RecordMask::of_canvas(size, values) };
         }
         let density = u32::from(softness.density);
@@ -146,24 +158,40 @@ mod tests {
     #[test]
     fn density_lets_through_what_a_mask_hides_and_feather_smooths_its_edge() {
         let size = Size::new(8, 1);
-        let mask = || RecordMask { rect: Rect::new(0, 0, 4, 1), outside: 0, values: vec![255; 4], disabled: false };
+        let mask = || RecordMask {
+            rect: Rect::new(0, 0, 4, 1),
+            outside: 0,
+            values: vec![255; 4],
+            disabled: false,
+        };
         let half = mask().softened(size, Softness { density: 128, feather_px: 0.0 });
         assert_eq!([half.at(0, 0), half.at(7, 0), half.at(-50, 9)], [255, 127, 127]);
         let soft = mask().softened(size, Softness { density: 255, feather_px: 2.0 });
-        assert!(soft.at(3, 0) > 128 && soft.at(3, 0) < 255 && soft.at(4, 0) < 128 && soft.at(4, 0) > 0);
+        assert!(
+            soft.at(3, 0) > 128 && soft.at(3, 0) < 255 && soft.at(4, 0) < 128 && soft.at(4, 0) > 0
+        );
     }
+
     #[test]
     fn what_stands_before_masks_is_read_in_each_of_its_lengths() {
         let rect = [[0u8, 0, 0, 1], [0, 0, 0, 2], [0, 0, 0, 3], [0, 0, 0, 4]].concat();
         let short = [rect.clone(), vec![255, 2 | 4, 0, 0]].concat();
         let read = MaskData::read(ByteCursor::new(&short)).unwrap();
-        assert_eq!((read.shown.rect, read.shown.outside, read.painted), (Rect::new(2, 1, 4, 3), 255, None));
+        assert_eq!(
+            (read.shown.rect, read.shown.outside, read.painted),
+            (Rect::new(2, 1, 4, 3), 255, None)
+        );
         assert!(read.shown.disabled && read.shown.inverted && !read.shown.is_drawn);
         let feather = 3.5f64.to_be_bytes();
-        let long = [rect.clone(), vec![0, 8 | 16, 0, 255], rect, vec![1 | 8, 100], feather.to_vec()].concat();
+        let long =
+            [rect.clone(), vec![0, 8 | 16, 0, 255], rect, vec![1 | 8, 100], feather.to_vec()]
+                .concat();
         let read = MaskData::read(ByteCursor::new(&long)).unwrap();
         assert!(read.shown.is_drawn && read.painted.is_some_and(|painted| painted.outside == 255));
-        assert_eq!(read.softness, [Softness { density: 100, ..HARD }, Softness { feather_px: 3.5, ..HARD }]);
+        assert_eq!(
+            read.softness,
+            [Softness { density: 100, ..HARD }, Softness { feather_px: 3.5, ..HARD }]
+        );
         assert_eq!(MaskData::read(ByteCursor::new(&[])), None);
     }
 }

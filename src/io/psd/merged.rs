@@ -1,5 +1,5 @@
-//! The merged picture that a Photoshop file holds for programs that read nothing else. Floor 5. Not here: its use
-//! (`judge`).
+//! The merged picture that a Photoshop file holds for programs that read nothing else. Floor 5. Not
+//! here: its use (`judge`).
 
 use super::VERSION_INFO;
 use super::channel::{self, ChannelValue};
@@ -25,8 +25,8 @@ pub struct Merged {
     pub inks: usize,
 }
 
-/// Reads the picture; `None` if it is damaged. `count`: the number before the layers, if there are any; `has_room`:
-/// there is memory for selections too.
+/// Reads the picture; `None` if it is damaged. `count`: the number before the layers, if there are
+/// any; `has_room`: there is memory for selections too.
 pub fn merged<T: ColourValue>(
     rest: &mut ByteCursor,
     header: &PsdHeader,
@@ -35,9 +35,14 @@ pub fn merged<T: ColourValue>(
     count: Option<i16>,
     has_room: bool,
 ) -> Option<Merged> {
-    let has_alpha = usize::from(header.channels) > header.colours() && has_alpha(resources, header.mode, count);
+    let has_alpha =
+        usize::from(header.channels) > header.colours() && has_alpha(resources, header.mode, count);
     let own = header.colours() + usize::from(has_alpha);
-    let wanted = if has_room && header.mode != Mode::Multichannel { usize::from(header.channels) } else { own };
+    let wanted = if has_room && header.mode != Mode::Multichannel {
+        usize::from(header.channels)
+    } else {
+        own
+    };
     let mut planes = planes::<T>(rest, header, own, wanted)?;
     let coverage = |values: Vec<T>| {
         let bytes = values.into_iter().map(ChannelValue::byte).collect();
@@ -60,7 +65,8 @@ pub fn merged<T: ColourValue>(
     Some(Merged { pixels, has_alpha, is_real, selections, inks })
 }
 
-/// A channel beyond the colours is the transparency of all layers, not a selection that somebody kept.
+/// A channel beyond the colours is the transparency of all layers, not a selection that somebody
+/// kept.
 fn has_alpha(resources: ByteCursor, mode: Mode, count: Option<i16>) -> bool {
     let names = resource(resources, kept::NUMBERS).unwrap_or_default();
     let is_named = !names.is_empty() && names.as_chunks::<4>().0.iter().all(|name| *name != [0; 4]);
@@ -85,7 +91,8 @@ fn planes<T: ChannelValue>(
             rows.map_while(|(c, lengths)| channel::unpack_rows(rest, shape(c), lengths)).collect()
         }
         2 | 3 => {
-            let inflated = |count| channel::inflate_planes(rest.rest(), count, shape, compression == 3);
+            let inflated =
+                |count| channel::inflate_planes(rest.rest(), count, shape, compression == 3);
             inflated(wanted).or_else(|| inflated(own))?
         }
         _ => return None,
@@ -95,10 +102,14 @@ fn planes<T: ChannelValue>(
 
 /// No colour is darker than it can be on white.
 fn is_on_white(rgba: &[u8]) -> bool {
-    rgba.as_chunks::<4>().0.iter().all(|[r, g, b, a]| [r, g, b].iter().all(|c| c.saturating_add(3) >= 255 - a))
+    rgba.as_chunks::<4>()
+        .0
+        .iter()
+        .all(|[r, g, b, a]| [r, g, b].iter().all(|c| c.saturating_add(3) >= 255 - a))
 }
 
-/// Removes the white beneath colours as far as they are transparent; fully transparent pixels keep no colour.
+/// Removes the white beneath colours as far as they are transparent; fully transparent pixels keep
+/// no colour.
 pub fn off_white<T: ChannelValue + TryFrom<i64>>(texels: &mut [[T; 4]])
 where
     i64: From<T>,
@@ -119,13 +130,20 @@ mod tests {
 
     #[test]
     fn white_beneath_what_is_transparent_is_taken_away() {
-        let mut rgba: Vec<u8> = [[255, 127, 127, 128], [9, 9, 9, 255], [255, 255, 255, 0], [0, 0, 0, 10]].concat();
+        let mut rgba: Vec<u8> =
+            [[255, 127, 127, 128], [9, 9, 9, 255], [255, 255, 255, 0], [0, 0, 0, 10]].concat();
         off_white(rgba.as_chunks_mut().0);
-        assert_eq!(rgba, [[255, 0, 0, 128], [9, 9, 9, 255], [255, 255, 255, 0], [0, 0, 0, 10]].concat());
+        assert_eq!(
+            rgba,
+            [[255, 0, 0, 128], [9, 9, 9, 255], [255, 255, 255, 0], [0, 0, 0, 10]].concat()
+        );
         let mut deep: [[u16; 4]; 3] =
             [[65535, 32767, 32767, 32768], [65535, 60000, 59999, 6000], [65535, 65535, 65535, 0]];
         off_white(&mut deep);
-        assert_eq!(deep, [[65535, 0, 0, 32768], [65535, 5079, 5068, 6000], [65535, 65535, 65535, 0]]);
+        assert_eq!(
+            deep,
+            [[65535, 0, 0, 32768], [65535, 5079, 5068, 6000], [65535, 65535, 65535, 0]]
+        );
         assert!(is_on_white(&[[255, 127, 127, 128], [0, 0, 0, 255]].concat()));
         assert!(!is_on_white(&[100, 100, 100, 20]));
     }

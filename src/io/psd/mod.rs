@@ -1,5 +1,6 @@
-//! Photoshop documents, in and out: the format that illustrators exchange (docs/PROJECTS.md says what is carried).
-//! Floor 5. Every kind of colours in, PSD and PSB, RGB and grey with up to 16 bits; 8-bit RGB out.
+//! Photoshop documents, in and out: the format that illustrators exchange (docs/PROJECTS.md says
+//! what is carried). Floor 5. Every kind of colours in, PSD and PSB, RGB and grey with up to 16
+//! bits; 8-bit RGB out.
 //!
 //! | file | |
 //! |---|---|
@@ -114,6 +115,7 @@ impl LayerRecord {
             self.lost.push(what);
         }
     }
+
     pub fn tell(&mut self, what: &'static str) {
         if !self.told.contains(&what) {
             self.told.push(what);
@@ -176,7 +178,10 @@ fn signature(records: &[LayerRecord]) -> u32 {
     let mut hasher = crc32fast::Hasher::new();
     for r in records {
         let flags = [r.clipped, r.visible, r.lock_alpha, r.lock_all].map(u8::from);
-        hasher.update(format!("{:?}{:?}{:?}{}{flags:?}{:?}", r.name, r.rect, r.blend, r.opacity, r.section).as_bytes());
+        hasher.update(
+            format!("{:?}{:?}{:?}{}{flags:?}{:?}", r.name, r.rect, r.blend, r.opacity, r.section)
+                .as_bytes(),
+        );
         if let Some(mask) = &r.mask {
             hasher.update(format!("{:?}{}", mask.rect, mask.outside).as_bytes());
             hasher.update(&mask.values);

@@ -39,14 +39,19 @@ impl VectorPaths {
     pub fn read(mut data: ByteCursor) -> Option<Self> {
         data.u32()?;
         let flags = data.u32()?;
-        let mut outline =
-            Self { shapes: Vec::new(), inverted: flags & 1 != 0, begins_full: false, disabled: flags & 4 != 0 };
+        let mut outline = Self {
+            shapes: Vec::new(),
+            inverted: flags & 1 != 0,
+            begins_full: false,
+            disabled: flags & 4 != 0,
+        };
         // Each record takes 26 bytes.
         while let Some(record) = data.take(26) {
             outline.record(ByteCursor::new(record))?;
         }
         Some(outline)
     }
+
     fn record(&mut self, mut record: ByteCursor) -> Option<()> {
         match record.u16()? {
             0 | 3 => {
@@ -61,9 +66,10 @@ impl VectorPaths {
                 };
                 match (way, self.shapes.last_mut()) {
                     (None, Some(shape)) => shape.paths.push(Vec::new()),
-                    (way, _) => self
-                        .shapes
-                        .push(FilledPaths { way: way.unwrap_or(PathOperation::Add), paths: vec![Vec::new()] }),
+                    (way, _) => self.shapes.push(FilledPaths {
+                        way: way.unwrap_or(PathOperation::Add),
+                        paths: vec![Vec::new()],
+                    }),
                 }
             }
             1 | 2 | 4 | 5 => {
@@ -77,10 +83,12 @@ impl VectorPaths {
         }
         Some(())
     }
+
     /// Each takes a look at every pixel of the canvas.
     pub fn shapes(&self) -> usize {
         self.shapes.len()
     }
+
     /// Coverage of every pixel of the canvas, row by row.
     pub fn coverage(&self, size: Size) -> Vec<u8> {
         let mut coverage = vec![if self.begins_full { 255 } else { 0 }; size.area()];
@@ -105,6 +113,7 @@ impl FilledPaths {
         mask.fill_path(&path, FillRule::EvenOdd, true, Transform::identity());
         Some(mask)
     }
+
     fn path(&self, size: Size) -> Option<Path> {
         let mut builder = PathBuilder::new();
         let place = |[y, x]: [f32; 2]| (x * size.width as f32, y * size.height as f32);
@@ -129,7 +138,9 @@ impl PathOperation {
             PathOperation::Add => 255 - product(255 - before, 255 - shape),
             PathOperation::Subtract => product(before, 255 - shape),
             PathOperation::Intersect => product(before, shape),
-            PathOperation::Exclude => product(before, 255 - shape).saturating_add(product(255 - before, shape)),
+            PathOperation::Exclude => {
+                product(before, 255 - shape).saturating_add(product(255 - before, shape))
+            }
         }
     }
 }
@@ -149,8 +160,10 @@ mod tests {
         }
         out
     }
+
     fn drawn(flags: u32, records: &[Vec<u8>]) -> Vec<u8> {
-        let bytes = [3u32.to_be_bytes().to_vec(), flags.to_be_bytes().to_vec(), records.concat()].concat();
+        let bytes =
+            [3u32.to_be_bytes().to_vec(), flags.to_be_bytes().to_vec(), records.concat()].concat();
         VectorPaths::read(ByteCursor::new(&bytes)).unwrap().coverage(Size::new(4, 1))
     }
 
@@ -169,17 +182,22 @@ mod tests {
         full.resize(26, 0);
         assert_eq!(drawn(0, &[full, right(2)]), [255, 0, 0, 0], "begins with all");
     }
+
     #[test]
     fn edges_within_a_pixel_cover_a_part_of_it() {
         let half = drawn(0, &[rectangle(1, [0.0, 0.0, 0.125, 1.0])]);
         assert!(half[0].abs_diff(128) <= 8 && half[1..] == [0; 3], "{half:?}");
     }
+
     #[test]
     fn knots_without_a_path_and_paths_without_knots_are_borne() {
         let knot = rectangle(1, [0.0, 0.0, 1.0, 1.0])[26..52].to_vec();
         let bytes = [vec![0; 8], knot].concat();
         assert_eq!(VectorPaths::read(ByteCursor::new(&bytes)), None);
-        assert_eq!(drawn(0, &[rectangle(1, [-120.0, -120.0, 120.0, 120.0])[..26].to_vec()]), [0; 4]);
+        assert_eq!(
+            drawn(0, &[rectangle(1, [-120.0, -120.0, 120.0, 120.0])[..26].to_vec()]),
+            [0; 4]
+        );
         assert_eq!(drawn(0, &[rectangle(1, [-120.0, -120.0, 120.0, 120.0])]), [255; 4]);
     }
 }

@@ -1,5 +1,5 @@
-//! Splits a Photoshop file into its parts: header, resources, layers, merged picture. Floor 5. `layers` reads the
-//! records, `tree` builds the document.
+//! Splits a Photoshop file into its parts: header, resources, layers, merged picture. Floor 5.
+//! `layers` reads the records, `tree` builds the document.
 
 use super::blocks::block;
 use super::colours::Colours;
@@ -70,7 +70,9 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
     let has_room = budget.room(file, "its layers, its picture and its selections", with_channels);
     let has_room = if header.is_deep { has_room.map(|()| true)? } else { has_room.is_ok() };
     if !has_room {
-        damage.push("the selections that it keeps are left out: there is too little memory for them".into());
+        damage.push(
+            "the selections that it keeps are left out: there is too little memory for them".into(),
+        );
     }
     let merged = match (is_there, header.is_deep) {
         (false, _) => None,
@@ -78,10 +80,22 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
         (true, false) => merged::<u8>(&mut rest, &header, &colours, resources, count, has_room),
     };
     if merged.is_none() && records.is_empty() {
-        return Err(Error::decode(file, "it holds no layers, and its picture is damaged or cut short"));
+        return Err(Error::decode(
+            file,
+            "it holds no layers, and its picture is damaged or cut short",
+        ));
     }
     let guides = marks::guides(resources);
-    Ok(ParsedPsd { header, ours: resource(resources, OURS), records, merged, patterns, guides, damage, held_bytes })
+    Ok(ParsedPsd {
+        header,
+        ours: resource(resources, OURS),
+        records,
+        merged,
+        patterns,
+        guides,
+        damage,
+        held_bytes,
+    })
 }
 
 /// Where the layers are: in their own section, or in deep files in a block after it.
@@ -96,7 +110,10 @@ fn layer_info(mut section: ByteCursor<'_>, large: bool) -> Option<ByteCursor<'_>
 }
 
 /// The blocks behind the layers, which belong to the whole file.
-fn global_blocks(mut section: ByteCursor<'_>, large: bool) -> impl Iterator<Item = ([u8; 4], ByteCursor<'_>)> {
+fn global_blocks(
+    mut section: ByteCursor<'_>,
+    large: bool,
+) -> impl Iterator<Item = ([u8; 4], ByteCursor<'_>)> {
     let is_there = section.section(large).and_then(|_| section.section(false)).is_some();
     std::iter::from_fn(move || if is_there { block(&mut section, large) } else { None })
 }

@@ -1,5 +1,5 @@
-//! Patterns: the pictures that a file keeps for its fills, and a collection of brushes for their textures.
-//! Floor 5.
+//! Patterns: the pictures that a file keeps for its fills, and a collection of brushes for their
+//! textures. Floor 5.
 
 use super::channel;
 use super::colours::{Colours, Mode};
@@ -22,7 +22,8 @@ pub struct PatternResource {
 /// More channels no pattern has.
 const MOST_CHANNELS: u32 = 32;
 
-/// The patterns of a file's blocks; those that cannot be read are left out, and what they fill is reported.
+/// The patterns of a file's blocks; those that cannot be read are left out, and what they fill is
+/// reported.
 pub fn read<'a>(
     blocks: impl Iterator<Item = ([u8; 4], ByteCursor<'a>)>,
     layers: &mut RecordReader,
@@ -36,8 +37,12 @@ pub fn read<'a>(
     Ok(patterns)
 }
 
-/// The patterns of one block. `spend`: called with each one's pixels; refuses when they exceed the limit for all.
-pub fn of_block(mut data: ByteCursor, mut spend: impl FnMut(u64) -> Result<()>) -> Result<Vec<PatternResource>> {
+/// The patterns of one block. `spend`: called with each one's pixels; refuses when they exceed the
+/// limit for all.
+pub fn of_block(
+    mut data: ByteCursor,
+    mut spend: impl FnMut(u64) -> Result<()>,
+) -> Result<Vec<PatternResource>> {
     let mut patterns = Vec::new();
     // Each is filled up to four bytes.
     while let Some(one) = data.section(false).filter(|one| !one.rest().is_empty()) {
@@ -48,7 +53,10 @@ pub fn of_block(mut data: ByteCursor, mut spend: impl FnMut(u64) -> Result<()>) 
     Ok(patterns)
 }
 
-fn pattern(data: ByteCursor, spend: &mut impl FnMut(u64) -> Result<()>) -> Result<Option<PatternResource>> {
+fn pattern(
+    data: ByteCursor,
+    spend: &mut impl FnMut(u64) -> Result<()>,
+) -> Result<Option<PatternResource>> {
     let Some((id, mode, size, body)) = head(data) else { return Ok(None) };
     spend(size.area() as u64)?;
     Ok(rgba(body, mode, size).map(|rgba| PatternResource { id, size, rgba }))
@@ -112,7 +120,8 @@ fn channel_of(list: &mut ByteCursor, mode: Mode, size: Size) -> Option<Option<Ve
     let compression = u16::from(data.u8()?);
     // For any numbers: their difference may overflow their type.
     let side = |from: i32, to: i32| i64::from(to) - i64::from(from);
-    let fits = [side(rect.x0, rect.x1), side(rect.y0, rect.y1)] == [i64::from(size.width), i64::from(size.height)];
+    let fits = [side(rect.x0, rect.x1), side(rect.y0, rect.y1)]
+        == [i64::from(size.width), i64::from(size.height)];
     let header = PsdHeader { large: false, size, channels: 1, bits, mode, is_deep: false };
     Some(if fits && [8, 16, 32].contains(&bits) {
         channel::decode_as(&mut data, header.shape(size, true), compression)
@@ -126,14 +135,17 @@ impl PatternResource {
     pub fn grey(id: &str, size: Size, values: &[u8]) -> Self {
         Self { id: id.into(), size, rgba: values.iter().flat_map(|v| [*v, *v, *v, 255]).collect() }
     }
+
     /// Its name in fills and brushes.
     pub fn id(&self) -> &str {
         &self.id
     }
+
     /// `(size, straight sRGB)`.
     pub fn picture(&self) -> (Size, &[u8]) {
         (self.size, &self.rgba)
     }
+
     /// Straight RGBA of a canvas filled with it; `None` if the fill names another pattern.
     pub fn pixels(&self, fill: &PatternFill, size: Size) -> Option<Vec<u8>> {
         if self.id != fill.id {

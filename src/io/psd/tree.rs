@@ -1,5 +1,5 @@
-//! Builds a document from a Photoshop file's records: ours as it was written, others as far as both programs agree.
-//! Floor 5. Parsing is in `parse`.
+//! Builds a document from a Photoshop file's records: ours as it was written, others as far as both
+//! programs agree. Floor 5. Parsing is in `parse`.
 
 use super::blocks::ArtboardBackground;
 use super::colours::{Mode, StraightPixels};
@@ -33,23 +33,34 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
                 let is_whole = contents.is_whole && damage.is_empty();
                 return Ok(ProjectContents { document, is_whole, notes, ..contents });
             }
-            Ok(None) => notes.push("the layers were changed by another program: live layers became pixels".into()),
+            Ok(None) => notes.push(
+                "the layers were changed by another program: live layers became pixels".into(),
+            ),
             // Read again with paint of 8 bits, it may fit.
-            Err(error) if budget.deep_paint && error.remedy() == Some(Remedy::MoreMemory) => return Err(error),
+            Err(error) if budget.deep_paint && error.remedy() == Some(Remedy::MoreMemory) => {
+                return Err(error);
+            }
             Err(error) => notes.push(format!("live layers became pixels: {error}")),
         }
     }
     notes.extend(colour_notes(&parsed));
     let size = parsed.header.size;
-    let kept = parsed.merged.as_mut().map(|merged| (std::mem::take(&mut merged.selections), merged.inks));
+    let kept =
+        parsed.merged.as_mut().map(|merged| (std::mem::take(&mut merged.selections), merged.inks));
     let kept = kept.unwrap_or_default();
     if parsed.records.is_empty() {
         flattened(&mut parsed);
     }
     // One level is kept for the group that the layers may be hidden in.
     let deepest = budget.group_depth.saturating_sub(1);
-    let mut builder =
-        TreeBuilder { size, deepest, patterns: &parsed.patterns, open: vec![Vec::new()], is_less: false, notes };
+    let mut builder = TreeBuilder {
+        size,
+        deepest,
+        patterns: &parsed.patterns,
+        open: vec![Vec::new()],
+        is_less: false,
+        notes,
+    };
     std::mem::take(&mut parsed.records).into_iter().for_each(|record| builder.add(record));
     let (layers, is_less, mut notes) = builder.done();
     let (selections, inks) = kept;
@@ -58,20 +69,26 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
     }
     let (guides, lost) = parsed.guides;
     if lost > 0 {
-        notes.push(format!("{lost} of its guides are left out: they are too many, or too far away"));
+        notes
+            .push(format!("{lost} of its guides are left out: they are too many, or too far away"));
     }
     let document = Document { layers, selections, guides: guides.into(), ..Document::empty(size) };
     if parsed.merged.is_some() {
         let compared = parsed.held_bytes.saturating_add(document.flattening_bytes());
         budget.room(file, "comparing its layers with its own picture", compared)?;
     }
-    let document = judged(document, parsed.merged.take(), is_less || !damage.is_empty(), &mut notes);
+    let document =
+        judged(document, parsed.merged.take(), is_less || !damage.is_empty(), &mut notes);
     Ok(ProjectContents { document, notes, is_whole: damage.is_empty(), picture: None })
 }
 
 /// Ours keep their places to the last digit, unless another program moved them.
 fn with_guides_of(document: Document, found: Guides) -> Document {
-    if marks::written(&document) == found { document } else { Document { guides: found.into(), ..document } }
+    if marks::written(&document) == found {
+        document
+    } else {
+        Document { guides: found.into(), ..document }
+    }
 }
 
 /// What the file's colours were converted to.
@@ -80,7 +97,9 @@ fn colour_notes(parsed: &ParsedPsd) -> Option<String> {
     let what = match header.mode {
         Mode::Cmyk => "its CMYK colours became sRGB; layers blend in those",
         Mode::Lab => "its Lab colours became sRGB; layers blend in those",
-        Mode::Multichannel => "its inks were taken for cyan, magenta, yellow and black; others are left out",
+        Mode::Multichannel => {
+            "its inks were taken for cyan, magenta, yellow and black; others are left out"
+        }
         Mode::Duotone => "its inks are left out: it became grey",
         _ if header.is_deep && header.bits == 32 => {
             "its 32 bits a channel became 16, and values brighter than white are lost; a Photoshop file that is saved \
@@ -89,7 +108,9 @@ fn colour_notes(parsed: &ParsedPsd) -> Option<String> {
         _ if header.is_deep => {
             "its 16 bits a channel are kept here; a Photoshop file that is saved here has 8 for other programs"
         }
-        _ if header.bits == 32 => "its 32 bits per channel became 8, and values brighter than white are lost",
+        _ if header.bits == 32 => {
+            "its 32 bits per channel became 8, and values brighter than white are lost"
+        }
         _ if header.bits == 16 => "its 16 bits a channel became 8",
         _ => return None,
     };
@@ -99,18 +120,33 @@ fn colour_notes(parsed: &ParsedPsd) -> Option<String> {
 /// The picture of a file without layers becomes one.
 fn flattened(parsed: &mut ParsedPsd) {
     let rect = parsed.header.size.rect();
-    let StraightPixels { rgba, deep } = parsed.merged.take().map(|merged| merged.pixels).unwrap_or_default();
-    parsed.records.push(LayerRecord { name: "Background".into(), rect, rgba, deep, ..LayerRecord::default() });
+    let StraightPixels { rgba, deep } =
+        parsed.merged.take().map(|merged| merged.pixels).unwrap_or_default();
+    parsed.records.push(LayerRecord {
+        name: "Background".into(),
+        rect,
+        rgba,
+        deep,
+        ..LayerRecord::default()
+    });
 }
 
-/// The document that our own resource holds, the layers' pixels taken from the file; `None` where the layers are
-/// others.
-pub fn restored(file: &Path, ours: &[u8], records: &[LayerRecord], budget: &Budget) -> Result<Option<ProjectContents>> {
+/// The document that our own resource holds, the layers' pixels taken from the file; `None` where
+/// the layers are others.
+pub fn restored(
+    file: &Path,
+    ours: &[u8],
+    records: &[LayerRecord],
+    budget: &Budget,
+) -> Result<Option<ProjectContents>> {
     let archive = Archive::open(file, ours, budget)?;
-    let damaged = |e: zip::result::ZipError| Error::decode(file, format!("our part of the file is damaged ({e})"));
+    let damaged = |e: zip::result::ZipError| {
+        Error::decode(file, format!("our part of the file is damaged ({e})"))
+    };
     let text = archive.bytes(project::MANIFEST, budget.json_bytes)?;
     let manifest = serde_json::from_slice(&text).ok().as_ref().and_then(Manifest::read);
-    let manifest = manifest.ok_or_else(|| Error::decode(file, "our part of the file is damaged"))?;
+    let manifest =
+        manifest.ok_or_else(|| Error::decode(file, "our part of the file is damaged"))?;
     if manifest.stack != signature(records) {
         return Ok(None);
     }
@@ -154,10 +190,16 @@ impl TreeBuilder<'_> {
             RecordSection::End => return self.open.push(Vec::new()),
             RecordSection::Group => {
                 // Without a beginning, a group holds nothing.
-                let mut layers = if self.open.len() > 1 { self.open.pop().unwrap_or_default() } else { Vec::new() };
+                let mut layers = if self.open.len() > 1 {
+                    self.open.pop().unwrap_or_default()
+                } else {
+                    Vec::new()
+                };
                 if self.open.len() > self.deepest {
-                    self.notes
-                        .push(format!("“{}” is nested too deep: its layers are in the group around it", record.name));
+                    self.notes.push(format!(
+                        "“{}” is nested too deep: its layers are in the group around it",
+                        record.name
+                    ));
                     return self.open.last_mut().map_or((), |list| list.extend(layers));
                 }
                 if let Some(ground) = record.ground {
@@ -175,8 +217,14 @@ impl TreeBuilder<'_> {
             list.push(Arc::new(layer));
         }
     }
+
     /// An artboard's ground is beneath its layers, and what is beyond it is cut off.
-    fn lay_ground(&self, record: &mut LayerRecord, ground: ArtboardBackground, layers: &mut Vec<Arc<Layer>>) {
+    fn lay_ground(
+        &self,
+        record: &mut LayerRecord,
+        ground: ArtboardBackground,
+        layers: &mut Vec<Arc<Layer>>,
+    ) {
         let rect = ground.rect.intersect(self.size.rect());
         let values = vec![255; rect.width() * rect.height()];
         let board = RecordMask { rect, outside: 0, values, disabled: false };
@@ -193,13 +241,17 @@ impl TreeBuilder<'_> {
             None => board,
         });
     }
+
     fn layer(&mut self, mut record: LayerRecord, content: Content) -> Layer {
         let known = BlendMode::from_photoshop(record.blend);
         if known.is_none() && record.blend != PASS_THROUGH {
             let key = String::from_utf8_lossy(&record.blend).into_owned();
             let key: String = key.chars().filter(|c| !c.is_control()).collect();
-            let reason =
-                format!("“{}” is blended by “{}” elsewhere; here it is blended normally", record.name, key.trim());
+            let reason = format!(
+                "“{}” is blended by “{}” elsewhere; here it is blended normally",
+                record.name,
+                key.trim()
+            );
             self.notes.push(reason);
             self.is_less = true;
         }
@@ -226,10 +278,13 @@ impl TreeBuilder<'_> {
             ..Layer::new(record.name, content)
         }
     }
+
     fn mask(&self, mask: &RecordMask) -> LayerMask {
-        let kind = MaskKind::File { file: String::new(), coverage: Arc::new(mask.plane(self.size)) };
+        let kind =
+            MaskKind::File { file: String::new(), coverage: Arc::new(mask.plane(self.size)) };
         LayerMask { disabled: mask.disabled, ..LayerMask::new(kind) }
     }
+
     /// Groups that were never closed end with the file.
     fn done(mut self) -> (Vec<Arc<Layer>>, bool, Vec<String>) {
         while self.open.len() > 1 {

@@ -1,5 +1,5 @@
-//! Reads a Photoshop file that was just made, like any file, and compares it with its source. Floor 5. Not here: the
-//! check of projects (`project::read_back`).
+//! Reads a Photoshop file that was just made, like any file, and compares it with its source.
+//! Floor 5. Not here: the check of projects (`project::read_back`).
 
 use super::merged::off_white;
 use super::parse::{ParsedPsd, parse};
@@ -22,8 +22,9 @@ pub struct Meant<'a> {
 
 /// Fails with a sentence that says what would not come back: to other programs, or here.
 pub fn read_back(file: &Path, bytes: &[u8], meant: Meant) -> Result<()> {
-    let lost =
-        |what: String| Err(Error::unsupported(file, format!("the drawing would not come back as it is: {what}")));
+    let lost = |what: String| {
+        Err(Error::unsupported(file, format!("the drawing would not come back as it is: {what}")))
+    };
     let budget = Budget::holding(meant.document);
     let mut parsed = match parse(file, bytes, &budget) {
         Ok(parsed) => parsed,
@@ -50,7 +51,11 @@ fn difference(parsed: &mut ParsedPsd, meant: &Meant) -> Option<String> {
         return Some(format!("the canvas is {}", parsed.header.size));
     }
     if parsed.records.len() != meant.records.len() {
-        return Some(format!("of {} layers and groups {} are there", meant.records.len(), parsed.records.len()));
+        return Some(format!(
+            "of {} layers and groups {} are there",
+            meant.records.len(),
+            parsed.records.len()
+        ));
     }
     let differs = parsed.records.iter().zip(meant.records).find_map(|(read, meant)| {
         let what = differing_field(read, meant)?;
@@ -72,9 +77,11 @@ fn difference(parsed: &mut ParsedPsd, meant: &Meant) -> Option<String> {
     if !read.is_real || read.pixels.rgba != expected {
         return Some("the picture of all layers".into());
     }
-    let is_kept = |(a, b): (&NamedSelection, &NamedSelection)| a.selection.coverage.is_same(&b.selection.coverage);
-    let are_kept =
-        read.selections.len() == meant.selections.len() && read.selections.iter().zip(&meant.selections).all(is_kept);
+    let is_kept = |(a, b): (&NamedSelection, &NamedSelection)| {
+        a.selection.coverage.is_same(&b.selection.coverage)
+    };
+    let are_kept = read.selections.len() == meant.selections.len()
+        && read.selections.iter().zip(&meant.selections).all(is_kept);
     (!are_kept).then(|| "the selections that are kept by name".into())
 }
 
@@ -110,7 +117,11 @@ mod tests {
     const FILE: &str = "a.psd";
 
     /// The message if a file was meant to hold something else.
-    fn said(bytes: &[u8], document: &Document, change: impl FnOnce(&mut Vec<LayerRecord>, &mut Vec<u8>)) -> String {
+    fn said(
+        bytes: &[u8],
+        document: &Document,
+        change: impl FnOnce(&mut Vec<LayerRecord>, &mut Vec<u8>),
+    ) -> String {
         let file = Path::new(FILE);
         let written = lower::write(file, document, &Progress::default()).unwrap().unwrap().bytes;
         let mut records = parse(file, &written, &Budget::default()).unwrap().records;
@@ -121,18 +132,23 @@ mod tests {
         let meant = Meant { document, records: &records, merged, selections, guides };
         read_back(file, bytes, meant).err().map(|error| error.to_string()).unwrap_or_default()
     }
+
     #[test]
     fn nothing_is_called_saved_that_other_programs_would_see_otherwise() {
         type Change = fn(&mut Vec<LayerRecord>, &mut Vec<u8>);
         let document = everything(32);
-        let bytes = lower::write(Path::new(FILE), &document, &Progress::default()).unwrap().unwrap().bytes;
+        let bytes =
+            lower::write(Path::new(FILE), &document, &Progress::default()).unwrap().unwrap().bytes;
         assert_eq!(said(&bytes, &document, |_, _| ()), "");
         let changes: [(Change, &str); 10] = [
             (|records, _| records[1].name.push('x'), "the name of"),
             (|records, _| records[1].opacity ^= 1, "the opacity of"),
             (|records, _| records[1].blend = *b"scrn", "the blend mode of"),
             (|records, _| records[1].rect = Rect::new(1, 2, 3, 4), "the place of"),
-            (|records, _| records.iter_mut().find(|r| !r.rgba.is_empty()).unwrap().rgba[0] ^= 1, "the pixels of"),
+            (
+                |records, _| records.iter_mut().find(|r| !r.rgba.is_empty()).unwrap().rgba[0] ^= 1,
+                "the pixels of",
+            ),
             (|records, _| records[1].visible ^= true, "whether it is seen"),
             (|records, _| records[1].lock_all ^= true, "the lock of"),
             (|records, _| records[1].label = LayerLabel::Purple, "the label of"),
@@ -141,17 +157,26 @@ mod tests {
         ];
         for (change, expected) in changes {
             let said = said(&bytes, &document, change);
-            assert!(said.contains("would not come back") && said.contains(expected), "{expected}: {said}");
+            assert!(
+                said.contains("would not come back") && said.contains(expected),
+                "{expected}: {said}"
+            );
         }
     }
+
     #[test]
     fn nothing_is_called_saved_that_is_cut_short_or_no_longer_live() {
         let document = everything(32);
-        let bytes = lower::write(Path::new(FILE), &document, &Progress::default()).unwrap().unwrap().bytes;
+        let bytes =
+            lower::write(Path::new(FILE), &document, &Progress::default()).unwrap().unwrap().bytes;
         for length in [0, 30, bytes.len() / 2, bytes.len() - 1] {
-            assert!(said(&bytes[..length], &document, |_, _| ()).contains("would not come back"), "{length}");
+            assert!(
+                said(&bytes[..length], &document, |_, _| ()).contains("would not come back"),
+                "{length}"
+            );
         }
-        let other = document.with_layer(document.layers[0].id, |layer| layer.opacity *= 0.999).unwrap();
+        let other =
+            document.with_layer(document.layers[0].id, |layer| layer.opacity *= 0.999).unwrap();
         let meant = |document| {
             let records = parse(Path::new(FILE), &bytes, &Budget::default()).unwrap().records;
             let shown = flatten(&everything(32), &Progress::default()).unwrap();

@@ -8,7 +8,9 @@ use crate::Result;
 use crate::json::{Fields, JsonNode, JsonObject, object};
 use crate::math::{TURNS, UNIT, Vec2, vec2};
 use crate::paint::dynamics::{MAX_POINTS, MOST_ADDED};
-use crate::paint::{Brush, BrushMode, ColorJitter, Curve, Dynamics, Input, Property, Stabilizer, StrokeFrame};
+use crate::paint::{
+    Brush, BrushMode, ColorJitter, Curve, Dynamics, Input, Property, Stabilizer, StrokeFrame,
+};
 use crate::raster::BlendMode;
 use crate::surface::PaintLimit;
 use serde_json::{Value, json};
@@ -32,7 +34,9 @@ pub fn settings(fields: &mut Fields, base: Brush) -> Result<Brush> {
         bounded: fields.one_of("bounded", &PaintLimit::ALL, base.bounded)?,
         reach: fields.number("reach", base.reach, Brush::REACHES)?,
         mode: fields.get("mark").map_or(Ok(base.mode), |node| BrushMode::from_json(&node))?,
-        stabilizer: fields.get("stabilizer").map_or(Ok(base.stabilizer), |node| stabilizer(&node))?,
+        stabilizer: fields
+            .get("stabilizer")
+            .map_or(Ok(base.stabilizer), |node| stabilizer(&node))?,
         dynamics: fields
             .get("dynamics")
             .map_or(Ok(base.dynamics.clone()), |node| dynamics(&node, base.dynamics.clone()))?,
@@ -42,16 +46,20 @@ pub fn settings(fields: &mut Fields, base: Brush) -> Result<Brush> {
     habits::read(fields, brush)
 }
 
-/// `{ "turn": 0, "mirrored": false }`: how symmetry turned the stroke, degrees counter-clockwise as seen.
+/// `{ "turn": 0, "mirrored": false }`: how symmetry turned the stroke, degrees counter-clockwise as
+/// seen.
 fn facing(node: &JsonNode) -> Result<StrokeFrame> {
     let mut fields = node.fields()?;
-    let facing =
-        StrokeFrame { turn: fields.number("turn", 0.0, TURNS)?, is_mirrored: fields.boolean("mirrored", false)? };
+    let facing = StrokeFrame {
+        turn: fields.number("turn", 0.0, TURNS)?,
+        is_mirrored: fields.boolean("mirrored", false)?,
+    };
     fields.finish()?;
     Ok(facing)
 }
 
-/// `{ "hue": 0, "saturation": 0, "value": 0 }`: how far a dab's colour may be from the stroke's, hue in degrees.
+/// `{ "hue": 0, "saturation": 0, "value": 0 }`: how far a dab's colour may be from the stroke's,
+/// hue in degrees.
 fn jitter(node: &JsonNode, base: ColorJitter) -> Result<ColorJitter> {
     let mut fields = node.fields()?;
     let jitter = ColorJitter {
@@ -73,13 +81,18 @@ impl RecipeValue for BrushMode {
         }
         out.done()
     }
+
     fn from_json(node: &JsonNode) -> Result<Self> {
         const KINDS: [(usize, &str); 4] = [(0, "paint"), (1, "smudge"), (2, "blur"), (3, "clone")];
         let mut fields = node.fields()?;
         let mode = match fields.one_of("kind", &KINDS, 0)? {
             0 => BrushMode::Paint,
-            1 => BrushMode::Smudge { length: fields.number("length", BrushMode::SMUDGE_LENGTH, BrushMode::SHARE)? },
-            2 => BrushMode::Blur { width: fields.number("width", BrushMode::BLUR_WIDTH, BrushMode::SHARE)? },
+            1 => BrushMode::Smudge {
+                length: fields.number("length", BrushMode::SMUDGE_LENGTH, BrushMode::SHARE)?,
+            },
+            2 => BrushMode::Blur {
+                width: fields.number("width", BrushMode::BLUR_WIDTH, BrushMode::SHARE)?,
+            },
             _ => BrushMode::Clone {
                 aligned: fields.boolean("aligned", true)?,
                 picture: fields.boolean("picture", false)?,
@@ -114,8 +127,10 @@ fn write_mode(mode: BrushMode) -> JsonObject {
 /// `{ "average": 0.8 }`, `{ "string": 20 }`, `{ "lag": 0.1 }`, or `{}` for none.
 fn stabilizer(node: &JsonNode) -> Result<Stabilizer> {
     let mut fields = node.fields()?;
-    let average = fields.get("average").map(|weight| weight.number(Stabilizer::WEIGHT)).transpose()?;
-    let string = fields.get("string").map(|length| length.number(Stabilizer::LENGTH_PX)).transpose()?;
+    let average =
+        fields.get("average").map(|weight| weight.number(Stabilizer::WEIGHT)).transpose()?;
+    let string =
+        fields.get("string").map(|length| length.number(Stabilizer::LENGTH_PX)).transpose()?;
     let lag = fields.get("lag").map(|secs| secs.number(Stabilizer::SECS)).transpose()?;
     fields.finish()?;
     match (average, string, lag) {
@@ -123,7 +138,10 @@ fn stabilizer(node: &JsonNode) -> Result<Stabilizer> {
         (None, Some(length_px), None) => Ok(Stabilizer::String { length_px }),
         (None, None, Some(secs)) => Ok(Stabilizer::Lag { secs }),
         (None, None, None) => Ok(Stabilizer::None),
-        _ => Err(node.refused("is several of an average, a string and a lag; it must be one of them")),
+        _ => {
+            Err(node
+                .refused("is several of an average, a string and a lag; it must be one of them"))
+        }
     }
 }
 
@@ -131,8 +149,8 @@ fn seed(node: &JsonNode) -> Result<u32> {
     node.integer(0..=i64::from(u32::MAX)).map(|seed| seed as u32)
 }
 
-/// `{ "size": { "pressure": 0.5, "speed": [[0, 1], [1, 0.3]], "tilt": { "add": [[0, 0], [1, 2]] } } }`: what each
-/// property follows, and how. A number p is the line from 1 − p to 1.
+/// `{ "size": { "pressure": 0.5, "speed": [[0, 1], [1, 0.3]], "tilt": { "add": [[0, 0], [1, 2]] } }
+/// }`: what each property follows, and how. A number p is the line from 1 − p to 1.
 fn dynamics(node: &JsonNode, base: Dynamics) -> Result<Dynamics> {
     let mut fields = node.fields()?;
     let mut dynamics = base;
@@ -177,12 +195,17 @@ fn curve(node: &JsonNode) -> Result<Curve> {
         return node.number(UNIT).map(Curve::Share);
     }
     let curve = Curve::through(points(node, UNIT)?);
-    curve.ok_or_else(|| node.refused("is no curve; it must have points whose first numbers do not fall"))
+    curve.ok_or_else(|| {
+        node.refused("is no curve; it must have points whose first numbers do not fall")
+    })
 }
 
 fn points(node: &JsonNode, range: std::ops::RangeInclusive<f32>) -> Result<Vec<Vec2>> {
     let points = node.list(MAX_POINTS)?;
-    points.iter().map(|point| point.numbers(2, 2, range.clone()).map(|p| vec2(p[0], p[1]))).collect()
+    points
+        .iter()
+        .map(|point| point.numbers(2, 2, range.clone()).map(|p| vec2(p[0], p[1])))
+        .collect()
 }
 
 pub fn write_brush(brush: &Brush) -> JsonObject {
@@ -215,8 +238,12 @@ pub fn write_brush(brush: &Brush) -> JsonObject {
     tips::write_grain(&mut out, brush.grain.as_ref());
     match brush.stabilizer {
         Stabilizer::None => {}
-        Stabilizer::Average { weight } => out.set("stabilizer", json!({ "average": object::number(weight) })),
-        Stabilizer::String { length_px } => out.set("stabilizer", json!({ "string": object::number(length_px) })),
+        Stabilizer::Average { weight } => {
+            out.set("stabilizer", json!({ "average": object::number(weight) }))
+        }
+        Stabilizer::String { length_px } => {
+            out.set("stabilizer", json!({ "string": object::number(length_px) }))
+        }
         Stabilizer::Lag { secs } => out.set("stabilizer", json!({ "lag": object::number(secs) })),
     }
     habits::write(&mut out, brush);
@@ -235,7 +262,8 @@ fn write_dynamics(dynamics: &Dynamics) -> JsonObject {
         let mut inputs = JsonObject::default();
         for (input, name) in Input::ALL {
             let own = dynamics.curve(property, input);
-            let times = (own != plain.curve(property, input)).then(|| own.map_or(0.into(), write_curve));
+            let times =
+                (own != plain.curve(property, input)).then(|| own.map_or(0.into(), write_curve));
             match (dynamics.added(property, input).map(write_curve), times) {
                 (None, None) => {}
                 (None, Some(times)) => inputs.set(name, times),
@@ -255,7 +283,9 @@ fn write_dynamics(dynamics: &Dynamics) -> JsonObject {
 fn write_curve(curve: &Curve) -> Value {
     match curve {
         Curve::Share(p) => object::number(*p),
-        Curve::Points(points) | Curve::Added(points) => points.iter().map(|p| object::point(*p)).collect(),
+        Curve::Points(points) | Curve::Added(points) => {
+            points.iter().map(|p| object::point(*p)).collect()
+        }
     }
 }
 
@@ -292,6 +322,7 @@ mod tests {
         let average = json!({ "stabilizer": { "average": 0.5 } });
         assert_eq!(write_brush(&read(&average).unwrap()).done(), average);
     }
+
     #[test]
     fn what_cannot_be_is_refused_in_a_sentence() {
         let says = |value: Value, what: &str| {
@@ -301,7 +332,10 @@ mod tests {
         says(json!({ "scatter": 11 }), "scatter: is 11; it must be between 0 and 10");
         says(json!({ "dynamics": { "size": { "presure": 1 } } }), "did you mean “pressure”?");
         says(json!({ "dynamics": { "sise": {} } }), "did you mean “size”?");
-        says(json!({ "dynamics": { "size": { "tilt": [[1, 0], [0, 1]] } } }), "dynamics.size.tilt: is no curve");
+        says(
+            json!({ "dynamics": { "size": { "tilt": [[1, 0], [0, 1]] } } }),
+            "dynamics.size.tilt: is no curve",
+        );
         says(json!({ "dynamics": { "size": { "tilt": [] } } }), "is no curve");
         says(json!({ "dynamics": { "size": { "tilt": [[0, 2]] } } }), "must be between 0 and 1");
         says(json!({ "stabilizer": { "string": 3, "average": 0.5 } }), "must be one of them");

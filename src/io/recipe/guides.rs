@@ -10,7 +10,9 @@ use serde_json::Value;
 /// `{ "vertical": [x …], "horizontal": [y …] }`.
 pub fn read(node: &JsonNode) -> Result<Guides> {
     let mut fields = node.fields()?;
-    let mut lines = |name| fields.get(name).map_or(Ok(Vec::new()), |node| node.numbers(0, Guides::MOST, COORDINATE));
+    let mut lines = |name| {
+        fields.get(name).map_or(Ok(Vec::new()), |node| node.numbers(0, Guides::MOST, COORDINATE))
+    };
     let guides = Guides { vertical: lines("vertical")?, horizontal: lines("horizontal")? };
     fields.finish()?;
     Ok(guides)
@@ -26,7 +28,10 @@ fn read_assistant(node: &JsonNode) -> Result<Assistant> {
     let kind = fields.required("kind")?.one_of(&AssistantKind::ALL)?;
     let points = fields.required("points")?;
     fields.finish()?;
-    let assistant = Assistant { kind, points: points.list(3)?.iter().map(JsonNode::point).collect::<Result<_>>()? };
+    let assistant = Assistant {
+        kind,
+        points: points.list(3)?.iter().map(JsonNode::point).collect::<Result<_>>()?,
+    };
     assistant.fits().map_err(|why| points.refused(why))?;
     Ok(assistant)
 }
@@ -72,8 +77,12 @@ mod tests {
     use std::sync::Arc;
 
     fn back(text: &str) -> Result<Document> {
-        let (file, files, budget) = (Path::new("r.json"), RecipeFolder::beside(Path::new("r.json")), Budget::default());
-        recipe::read(text.as_bytes(), recipe::RecipeSource { file, files: &files, budget: &budget, onto: None })
+        let (file, files, budget) =
+            (Path::new("r.json"), RecipeFolder::beside(Path::new("r.json")), Budget::default());
+        recipe::read(
+            text.as_bytes(),
+            recipe::RecipeSource { file, files: &files, budget: &budget, onto: None },
+        )
     }
 
     #[test]
@@ -82,7 +91,10 @@ mod tests {
         assert!(recipe::print(&plain).contains(r#""version": 1"#));
         let guides = Arc::new(Guides { vertical: vec![12.5, 0.1], horizontal: vec![-3.0] });
         let kind = AssistantKind::TwoPoint;
-        let assistants = Arc::new(vec![Assistant { kind, points: vec![vec2(-900.0, 12.0), vec2(1200.5, 13.0)] }]);
+        let assistants = Arc::new(vec![Assistant {
+            kind,
+            points: vec![vec2(-900.0, 12.0), vec2(1200.5, 13.0)],
+        }]);
         let document = Document { guides, assistants, ..plain };
         let text = recipe::print(&document);
         assert!(text.contains(r#""version": 2"#), "{text}");
@@ -93,15 +105,23 @@ mod tests {
             Some("the assistants")
         );
     }
+
     #[test]
     fn what_is_no_guide_or_assistant_is_refused_by_its_path() {
         let with = |what: &str| {
-            let text = format!(r#"{{"format":"rilievo","version":2,"canvas":{{"width":4,"height":4}},{what}}}"#);
+            let text = format!(
+                r#"{{"format":"rilievo","version":2,"canvas":{{"width":4,"height":4}},{what}}}"#
+            );
             back(&text).err().map(|error| error.to_string()).unwrap_or_default()
         };
         assert!(with(r#""guides":{"vertical":[1,"x"]}"#).contains("guides.vertical[1]"));
         assert!(with(r#""guides":{"diagonal":[1]}"#).contains("diagonal"));
-        assert!(with(r#""assistants":[{"kind":"line","points":[[1,2]]}]"#).contains("assistants[0].points"));
-        assert!(with(r#""assistants":[{"kind":"curve","points":[]}]"#).contains("assistants[0].kind"));
+        assert!(
+            with(r#""assistants":[{"kind":"line","points":[[1,2]]}]"#)
+                .contains("assistants[0].points")
+        );
+        assert!(
+            with(r#""assistants":[{"kind":"curve","points":[]}]"#).contains("assistants[0].kind")
+        );
     }
 }

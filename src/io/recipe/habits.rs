@@ -1,5 +1,5 @@
-//! A brush's habits: the numbers of [`SETTINGS`], and the other choices. Read and written. Floor 5. Not here: ranges
-//! and defaults (`paint::habits`).
+//! A brush's habits: the numbers of [`SETTINGS`], and the other choices. Read and written. Floor 5.
+//! Not here: ranges and defaults (`paint::habits`).
 
 use crate::Result;
 use crate::json::{Fields, JsonObject};
@@ -73,6 +73,7 @@ mod tests {
         fields.finish()?;
         Ok(brush)
     }
+
     fn written(brush: &Brush) -> Value {
         let mut out = JsonObject::default();
         write(&mut out, brush);
@@ -86,12 +87,14 @@ mod tests {
                 let mut brush = Brush::default();
                 setting.set(&mut brush, end);
                 let text = written(&brush);
-                let back = read_text(&text).unwrap_or_else(|error| panic!("{}: {error}", setting.label));
+                let back =
+                    read_text(&text).unwrap_or_else(|error| panic!("{}: {error}", setting.label));
                 assert_eq!(setting.of(&back), end, "{text}");
             }
         }
         assert_eq!(written(&Brush::default()), json!({}));
     }
+
     #[test]
     fn choices_are_written_as_they_were_read_and_what_is_no_setting_is_refused() {
         let text = json!({
@@ -99,7 +102,8 @@ mod tests {
             "offset": { "amount": 0.5, "from": "stroke", "alternates": true },
         });
         assert_eq!(written(&read_text(&text).unwrap()), text);
-        let said = |text: Value| read_text(&text).err().map(|error| error.to_string()).unwrap_or_default();
+        let said =
+            |text: Value| read_text(&text).err().map(|error| error.to_string()).unwrap_or_default();
         assert!(said(json!({ "pickup": { "amount": 2 } })).contains("pickup.amount"));
         assert!(said(json!({ "hand": { "tremors": 1 } })).contains("tremors"));
     }

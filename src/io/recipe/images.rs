@@ -1,5 +1,5 @@
-//! Reads and writes placed images and gradients, and the fields they share with others: operator, anchors, placement,
-//! source. Floor 5.
+//! Reads and writes placed images and gradients, and the fields they share with others: operator,
+//! anchors, placement, source. Floor 5.
 
 use super::LayerReader;
 use super::value::RecipeValue;
@@ -7,7 +7,9 @@ use crate::Result;
 use crate::json::{Fields, JsonNode, JsonObject, object};
 use crate::math::range::STOPS;
 use crate::math::{Size, TURNS, UNIT, Vec2, srgb::Color, vec2};
-use crate::paint::{Adjust, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement};
+use crate::paint::{
+    Adjust, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement,
+};
 use crate::raster::Outside;
 use crate::surface::plane_piece::PlanePiece;
 use crate::surface::{Anchor, Bend, Operator, Weights};
@@ -26,11 +28,16 @@ impl LayerReader<'_> {
             frame: Default::default(),
         })
     }
+
     /// By default from the middle of the left side to the middle of the right one, black to white.
     pub fn gradient(&mut self, fields: &mut Fields) -> Result<Gradient> {
         let (w, h) = (self.size.width as f32, self.size.height as f32);
-        let black_to_white =
-            || vec![GradientStop { t: 0.0, color: Color::BLACK }, GradientStop { t: 1.0, color: Color::WHITE }];
+        let black_to_white = || {
+            vec![
+                GradientStop { t: 0.0, color: Color::BLACK },
+                GradientStop { t: 1.0, color: Color::WHITE },
+            ]
+        };
         Ok(Gradient {
             from: fields.point("from", vec2(0.0, h / 2.0))?,
             to: fields.point("to", vec2(w, h / 2.0))?,
@@ -41,23 +48,29 @@ impl LayerReader<'_> {
             pieces: pieces(fields)?,
         })
     }
-    /// Operator, anchors and weights. An operator without a list of anchors is pinned at `center`; an empty list pins
-    /// nothing.
+
+    /// Operator, anchors and weights. An operator without a list of anchors is pinned at `center`;
+    /// an empty list pins nothing.
     fn bend(&self, fields: &mut Fields, center: Vec2) -> Result<Bend> {
         let operator = operator(fields)?.unwrap_or_default();
         let anchors = match fields.get("anchors") {
-            Some(node) => {
-                node.list(self.source.budget.anchors)?.iter().map(Anchor::from_json).collect::<Result<_>>()?
-            }
+            Some(node) => node
+                .list(self.source.budget.anchors)?
+                .iter()
+                .map(Anchor::from_json)
+                .collect::<Result<_>>()?,
             None => default_anchors(operator, center),
         };
-        let weights = fields.get("weights").map_or(Ok(Weights::default()), |node| weights(&node))?;
+        let weights =
+            fields.get("weights").map_or(Ok(Weights::default()), |node| weights(&node))?;
         Ok(Bend { operator, anchors, weights, pieces: pieces(fields)? })
     }
+
     pub fn placement(&self, fields: &mut Fields) -> Result<Placement> {
         let covering = Placement::covering(self.size);
         fields.get("placement").map_or(Ok(covering), |node| placement(&node, covering))
     }
+
     pub fn picture_source(&mut self, node: &JsonNode) -> Result<PictureSource> {
         let mut fields = node.fields()?;
         let file = fields.required("file")?;
@@ -77,7 +90,8 @@ pub fn default_anchors(operator: Operator, center: Vec2) -> Vec<Anchor> {
 
 /// The field `pieces`; none by default.
 fn pieces(fields: &mut Fields) -> Result<Vec<PlanePiece>> {
-    let read = |node: JsonNode| node.list(PlanePiece::MOST)?.iter().map(RecipeValue::from_json).collect();
+    let read =
+        |node: JsonNode| node.list(PlanePiece::MOST)?.iter().map(RecipeValue::from_json).collect();
     fields.get("pieces").map_or(Ok(Vec::new()), read)
 }
 
@@ -95,10 +109,12 @@ impl RecipeValue for Operator {
         }
         out.done()
     }
+
     fn from_json(node: &JsonNode) -> Result<Self> {
         let mut fields = node.fields()?;
         let operator = fields.one_of("kind", &Operator::KINDS, Operator::None)?;
-        let operator = operator.try_map(|number, default| fields.number(number.key, default, number.range.clone()))?;
+        let operator = operator
+            .try_map(|number, default| fields.number(number.key, default, number.range.clone()))?;
         fields.finish()?;
         Ok(operator)
     }
@@ -114,6 +130,7 @@ impl RecipeValue for Anchor {
         }
         out.done()
     }
+
     fn from_json(node: &JsonNode) -> Result<Self> {
         let mut fields = node.fields()?;
         let at = fields.required("at")?.point()?;
@@ -135,6 +152,7 @@ impl RecipeValue for PlanePiece {
         out.number("rotation", self.rotation, still.rotation);
         out.done()
     }
+
     fn from_json(node: &JsonNode) -> Result<Self> {
         let mut fields = node.fields()?;
         let still = PlanePiece::at(fields.required("at")?.point()?);
@@ -154,8 +172,11 @@ impl RecipeValue for GradientStop {
     fn to_json(&self) -> Value {
         Value::Array(vec![object::number(self.t), object::color(self.color)])
     }
+
     fn from_json(node: &JsonNode) -> Result<Self> {
-        let [t, color] = &node.list(2)?[..] else { return Err(node.refused("must be [t, colour]")) };
+        let [t, color] = &node.list(2)?[..] else {
+            return Err(node.refused("must be [t, colour]"));
+        };
         Ok(GradientStop { t: t.number(UNIT)?, color: color.color()? })
     }
 }
@@ -167,6 +188,7 @@ impl RecipeValue for Placement {
         out.set("center", object::point(self.center));
         out.done()
     }
+
     fn from_json(node: &JsonNode) -> Result<Self> {
         let center = node.fields()?.required("center")?.point()?;
         placement(node, unscaled(center))
@@ -179,6 +201,7 @@ impl RecipeValue for Adjust {
         write_adjust(&mut out, self);
         out.done()
     }
+
     fn from_json(node: &JsonNode) -> Result<Self> {
         let mut fields = node.fields()?;
         let adjust = adjust(&mut fields)?;
@@ -231,7 +254,9 @@ fn stops(node: &JsonNode) -> Result<Vec<GradientStop>> {
     for item in &items {
         let stop = GradientStop::from_json(item)?;
         if stops.last().is_some_and(|before| before.t > stop.t) {
-            return Err(item.list(2)?[0].refused("is less than the stop before it; stops go from 0 to 1"));
+            return Err(
+                item.list(2)?[0].refused("is less than the stop before it; stops go from 0 to 1")
+            );
         }
         stops.push(stop);
     }

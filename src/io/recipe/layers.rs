@@ -3,7 +3,9 @@
 
 use super::LayerReader;
 use super::{images, liquify, masks, normals, shading, strokes, transforms};
-use crate::document::{Content, Group, HomeFrame, Layer, LayerLabel, LayerLock, Live, PixelLayer, SelectionList};
+use crate::document::{
+    Content, Group, HomeFrame, Layer, LayerLabel, LayerLock, Live, PixelLayer, SelectionList,
+};
 use crate::json::{Fields, JsonNode, JsonObject, Printer, object};
 use crate::math::Size;
 use crate::math::srgb::Color;
@@ -15,7 +17,8 @@ use std::sync::Arc;
 /// Whether a layer blends linear light.
 const BLEND_SPACES: [(bool, &str); 2] = [(false, "srgb"), (true, "linear")];
 
-/// Reads what a kind of layer has in addition to every layer; the number says how many groups are around it.
+/// Reads what a kind of layer has in addition to every layer; the number says how many groups are
+/// around it.
 type ReadContent = fn(&mut LayerReader<'_>, &mut Fields<'_>, usize) -> Result<Content>;
 
 /// Every kind of layer as it is read, with its name in documents ([`Content::kind_name`]).
@@ -26,7 +29,10 @@ const KINDS: [(ReadContent, &str); 9] = [
     (|reader, fields, _| Ok(Content::Gradient(Live::new(reader.gradient(fields)?))), "gradient"),
     (|reader, fields, _| Ok(Content::Strokes(Live::new(reader.strokes(fields)?))), "strokes"),
     (|reader, fields, _| Ok(Content::Shading(Live::new(reader.shading(fields)?))), "shading"),
-    (|_, fields, _| Ok(Content::RadianceScaling(shading::radiance_scaling(fields)?)), "radiance-scaling"),
+    (
+        |_, fields, _| Ok(Content::RadianceScaling(shading::radiance_scaling(fields)?)),
+        "radiance-scaling",
+    ),
     (|reader, fields, _| Ok(Content::Normals(reader.normals(fields)?)), "normals"),
     (|reader, fields, depth| Ok(Content::Group(reader.group(fields, depth)?)), "group"),
 ];
@@ -38,6 +44,7 @@ impl LayerReader<'_> {
         self.layers_left -= items.len();
         items.iter().map(|item| self.layer(item, depth).map(Arc::new)).collect()
     }
+
     fn layer(&mut self, node: &JsonNode, depth: usize) -> Result<Layer> {
         let mut fields = node.fields()?;
         let read_content = fields.required("kind")?.one_of(&KINDS)?;
@@ -51,14 +58,18 @@ impl LayerReader<'_> {
         let label = fields.one_of("label", &LayerLabel::ALL, LayerLabel::None)?;
         let clip_to_surface = fields.boolean("clip_to_surface", true)?;
         let mask = fields.get("mask").map(|mask| self.mask(&mask)).transpose()?;
-        let transform = fields.get("transform").map(|node| transforms::read(&node, Some(self.size))).transpose()?;
+        let transform = fields
+            .get("transform")
+            .map(|node| transforms::read(&node, Some(self.size)))
+            .transpose()?;
         let warped = fields.get("liquify");
         let liquify = warped.as_ref().map(liquify::read).transpose()?.flatten();
         let on = fields.get("on").map(|node| self.home(&node)).transpose()?;
         let content = read_content(self, &mut fields, depth)?;
         fields.finish()?;
         let layer = Layer::new(name, content);
-        let is_warped = liquify.is_some() || transform.as_ref().is_some_and(|own| own.mesh().is_some());
+        let is_warped =
+            liquify.is_some() || transform.as_ref().is_some_and(|own| own.mesh().is_some());
         if is_warped && !layer.content.can_be_warped() {
             let why = "shows nothing of its own, so that no mesh and no liquify can displace it";
             return Err(warped.as_ref().unwrap_or(node).refused(why));
@@ -66,6 +77,7 @@ impl LayerReader<'_> {
         let layer = Layer { visible, opacity, blend, blend_linear, clip_below, lock, ..layer };
         Ok(Layer { label, mask, clip_to_surface, transform, liquify, on, ..layer })
     }
+
     /// The home of a layer or a stroke.
     pub fn home(&self, node: &JsonNode) -> Result<HomeFrame> {
         let id = node.text()?;
@@ -74,8 +86,10 @@ impl LayerReader<'_> {
         }
         Ok(HomeFrame::on(id))
     }
+
     fn pixels(&mut self, fields: &mut Fields) -> Result<PixelLayer> {
-        let mut offset = |name| fields.get(name).map_or(Ok(0), |node| node.integer(-1_000_000..=1_000_000));
+        let mut offset =
+            |name| fields.get(name).map_or(Ok(0), |node| node.integer(-1_000_000..=1_000_000));
         let (x, y) = (offset("x")? as i32, offset("y")? as i32);
         let Some(node) = fields.get("file") else {
             return Ok(PixelLayer { file: String::new(), x, y, tiles: TileGrid::default() });
@@ -83,14 +97,17 @@ impl LayerReader<'_> {
         let (file, tiles) = self.pictures.tiles(self.source, &node, x, y)?;
         Ok(PixelLayer { file, x, y, tiles })
     }
+
     fn group(&mut self, fields: &mut Fields, depth: usize) -> Result<Group> {
         let deepest = self.source.budget.group_depth;
         if depth >= deepest {
-            let reason = format!("{} is nested in more than {deepest} groups", fields.node().path());
+            let reason =
+                format!("{} is nested in more than {deepest} groups", fields.node().path());
             return Err(Error::too_large(self.source.file, reason));
         }
         let pass_through = fields.boolean("pass_through", false)?;
-        let layers = fields.get("layers").map_or(Ok(Vec::new()), |node| self.layers(&node, depth + 1))?;
+        let layers =
+            fields.get("layers").map_or(Ok(Vec::new()), |node| self.layers(&node, depth + 1))?;
         Ok(Group { layers, pass_through })
     }
 }
@@ -101,7 +118,9 @@ pub fn write(layers: &[Arc<Layer>], canvas: Size, list: &SelectionList) -> Value
         let mut out = bare(layer, canvas);
         match &layer.content {
             Content::Group(group) => out.set("layers", write(&group.layers, canvas, list)),
-            Content::Strokes(live) => out.set("strokes", strokes::written(live.params(), list).collect()),
+            Content::Strokes(live) => {
+                out.set("strokes", strokes::written(live.params(), list).collect())
+            }
             _ => {}
         }
         out.done()

@@ -1,5 +1,5 @@
-//! Reads and writes what is lit and by what: lights, terms of materials, scalings and the features that they follow.
-//! Floor 5. Not here: the layers that have them (`shading`).
+//! Reads and writes what is lit and by what: lights, terms of materials, scalings and the features
+//! that they follow. Floor 5. Not here: the layers that have them (`shading`).
 
 use super::value::RecipeValue;
 use crate::Result;
@@ -35,6 +35,7 @@ impl RecipeValue for Light {
         out.number("intensity", self.intensity, base.intensity);
         out.done()
     }
+
     fn from_json(node: &JsonNode) -> Result<Self> {
         let mut fields = node.fields()?;
         let base = Light::default();
@@ -44,7 +45,9 @@ impl RecipeValue for Light {
                 Some(node) => LightKind::Directional { direction: direction(&node)? },
                 None => base.kind,
             },
-            RecipeLightKind::Here => LightKind::Point { position: fields.required("position")?.vector(COORDINATE)? },
+            RecipeLightKind::Here => {
+                LightKind::Point { position: fields.required("position")?.vector(COORDINATE)? }
+            }
         };
         let color = fields.color("color", base.color)?;
         let intensity = fields.number("intensity", base.intensity, Light::INTENSITY)?;
@@ -59,6 +62,7 @@ impl RecipeValue for Scaling {
         write_scaling(&mut out, self, &Scaling::NONE);
         out.done()
     }
+
     fn from_json(node: &JsonNode) -> Result<Self> {
         of_object(node, |fields| scaling(fields, Scaling::NONE))
     }
@@ -68,6 +72,7 @@ impl RecipeValue for Term {
     fn to_json(&self) -> Value {
         write_term(self, &PLAIN).done()
     }
+
     fn from_json(node: &JsonNode) -> Result<Self> {
         of_object(node, |fields| term(fields, PLAIN))
     }
@@ -79,6 +84,7 @@ impl RecipeValue for Features {
         write_features(&mut out, self);
         out.done()
     }
+
     fn from_json(node: &JsonNode) -> Result<Self> {
         of_object(node, features)
     }
@@ -92,6 +98,7 @@ impl RecipeValue for Reference {
             Reference::Value(value) => object::number(*value),
         }
     }
+
     fn from_json(node: &JsonNode) -> Result<Self> {
         if node.value().is_string() {
             return node.one_of(&[(Reference::Auto, "auto")]);
@@ -114,12 +121,21 @@ pub fn scaling(fields: &mut Fields, base: Scaling) -> Result<Scaling> {
     let gamma = fields.get("gamma").map(|node| node.number(Scaling::GAMMA)).transpose()?;
     Ok(Scaling {
         alpha,
-        gamma_convex: fields.number("gamma_convex", gamma.unwrap_or(base.gamma_convex), Scaling::GAMMA)?,
-        gamma_concave: fields.number("gamma_concave", gamma.unwrap_or(base.gamma_concave), Scaling::GAMMA)?,
+        gamma_convex: fields.number(
+            "gamma_convex",
+            gamma.unwrap_or(base.gamma_convex),
+            Scaling::GAMMA,
+        )?,
+        gamma_concave: fields.number(
+            "gamma_concave",
+            gamma.unwrap_or(base.gamma_concave),
+            Scaling::GAMMA,
+        )?,
     })
 }
 
-/// `curvature_scale`, `blur` and `lambda`; or `lambda` and a list of `scales`, each with its `weight`.
+/// `curvature_scale`, `blur` and `lambda`; or `lambda` and a list of `scales`, each with its
+/// `weight`.
 pub fn features(fields: &mut Fields) -> Result<Features> {
     let lambda = fields.number("lambda", 0.0, Features::LAMBDA)?;
     let Some(node) = fields.get("scales") else {
@@ -142,7 +158,11 @@ pub fn features(fields: &mut Fields) -> Result<Features> {
 fn feature_scale(fields: &mut Fields) -> Result<FeatureScale> {
     let base = FeatureScale::default();
     Ok(FeatureScale {
-        curvature_scale_px: fields.number("curvature_scale", base.curvature_scale_px, FeatureScale::CURVATURE_PX)?,
+        curvature_scale_px: fields.number(
+            "curvature_scale",
+            base.curvature_scale_px,
+            FeatureScale::CURVATURE_PX,
+        )?,
         blur_px: fields.number("blur", base.blur_px, FeatureScale::BLUR_PX)?,
         weight: base.weight,
     })
@@ -157,8 +177,9 @@ pub fn reference(fields: &mut Fields) -> Result<Reference> {
 pub fn term(fields: &mut Fields, base: Term) -> Result<Term> {
     let color = fields.color("color", base.color)?;
     let weight = fields.number("weight", base.weight, Term::WEIGHT)?;
-    let scaling =
-        fields.get("scaling").map_or(Ok(base.scaling), |node| of_object(&node, |f| scaling(f, base.scaling)))?;
+    let scaling = fields
+        .get("scaling")
+        .map_or(Ok(base.scaling), |node| of_object(&node, |f| scaling(f, base.scaling)))?;
     Ok(Term { color, weight, scaling })
 }
 

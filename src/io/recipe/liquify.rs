@@ -15,8 +15,9 @@ const NODES: usize = SIDE * SIDE;
 /// Most blocks of a layer: as many as a description with nothing else can hold.
 const MOST_BLOCKS: usize = Document::MOST_VALUES / 150;
 
-/// `{ "blocks": [{ "at": [column, row], "x": [64 numbers], "y": [64 numbers] }, …] }`: for each 64 px wide block the
-/// displacements of its nodes, row by row, in 64ths of a pixel. `None` if nothing is displaced.
+/// `{ "blocks": [{ "at": [column, row], "x": [64 numbers], "y": [64 numbers] }, …] }`: for each 64
+/// px wide block the displacements of its nodes, row by row, in 64ths of a pixel. `None` if nothing
+/// is displaced.
 pub fn read(node: &JsonNode) -> Result<Option<Arc<Lattice>>> {
     let mut fields = node.fields()?;
     let mut lattice = Lattice::default();
@@ -75,6 +76,7 @@ mod tests {
         assert_eq!(*parsed(&write(&lattice)).unwrap().unwrap(), lattice);
         assert_eq!(parsed(&json!({ "blocks": [] })).unwrap(), None);
     }
+
     #[test]
     fn what_is_no_displacement_is_refused_by_its_path() {
         let block = |x: Value| json!({ "blocks": [{ "at": [0, 0], "x": x, "y": vec![0; 64] }] });

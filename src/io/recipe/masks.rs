@@ -12,7 +12,8 @@ use crate::shading::FeatureScale;
 use crate::surface::region::{RegionKind, SurfaceRegion};
 use serde_json::Value;
 
-/// The kinds, each with what it leaves unsaid. Regions by depth and curvature are known by their point.
+/// The kinds, each with what it leaves unsaid. Regions by depth and curvature are known by their
+/// point.
 const DERIVED: [(DerivedMask, &str); 7] = [
     (DerivedMask::FRESNEL, "fresnel"),
     (DerivedMask::CURVATURE, "curvature"),
@@ -34,6 +35,7 @@ impl RecipeValue for DerivedMask {
         write_derived(&mut out, *self);
         out.done()
     }
+
     fn from_json(node: &JsonNode) -> Result<Self> {
         let mut fields = node.fields()?;
         let mask = derived(&mut fields)?.ok_or_else(|| node.refused("has no “kind”"))?;
@@ -45,12 +47,16 @@ impl RecipeValue for DerivedMask {
 impl LayerReader<'_> {
     pub fn mask(&mut self, node: &JsonNode) -> Result<LayerMask> {
         let mut fields = node.fields()?;
-        let (invert, disabled) = (fields.boolean("invert", false)?, fields.boolean("disabled", false)?);
+        let (invert, disabled) =
+            (fields.boolean("invert", false)?, fields.boolean("disabled", false)?);
         let kind = match derived(&mut fields)? {
             Some(derived) => derived.into(),
             None => {
-                let (file, coverage) =
-                    self.pictures.coverage(self.source, &fields.required("file")?, Some(self.size))?;
+                let (file, coverage) = self.pictures.coverage(
+                    self.source,
+                    &fields.required("file")?,
+                    Some(self.size),
+                )?;
                 MaskKind::File { file, coverage }
             }
         };
@@ -65,8 +71,12 @@ fn derived(fields: &mut Fields) -> Result<Option<DerivedMask>> {
     let has_point = fields.get("at").is_some();
     Ok(Some(match kind.one_of(&DERIVED)? {
         // An object with a point is the region around it.
-        DerivedMask::Curvature { .. } if has_point => DerivedMask::Region(region(RegionKind::Curvature, fields)?),
-        DerivedMask::Depth { .. } if has_point => DerivedMask::Region(region(RegionKind::Depth, fields)?),
+        DerivedMask::Curvature { .. } if has_point => {
+            DerivedMask::Region(region(RegionKind::Curvature, fields)?)
+        }
+        DerivedMask::Depth { .. } if has_point => {
+            DerivedMask::Region(region(RegionKind::Depth, fields)?)
+        }
         DerivedMask::Region(plain) => DerivedMask::Region(region(plain.kind, fields)?),
         DerivedMask::Fresnel { f0, power } => DerivedMask::Fresnel {
             f0: fields.number("f0", f0, DerivedMask::F0)?,

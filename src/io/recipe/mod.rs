@@ -1,5 +1,5 @@
-//! Recipes: a document as JSON that names files next to it. Floor 5. The schema is `docs/RECIPES.md`; a project's zip
-//! holds the same JSON and is read through the same [`Files`].
+//! Recipes: a document as JSON that names files next to it. Floor 5. The schema is
+//! `docs/RECIPES.md`; a project's zip holds the same JSON and is read through the same [`Files`].
 //!
 //! | file | reads and writes |
 //! |---|---|
@@ -46,8 +46,8 @@ pub mod value;
 mod version;
 
 pub use presets::{
-    BrushPreset, PresetGroup, load_preset, preset, preset_brush, preset_names, presets, read_brush, write_preset,
-    written_brush,
+    BrushPreset, PresetGroup, load_preset, preset, preset_brush, preset_names, presets, read_brush,
+    write_preset, written_brush,
 };
 pub use samples::parse;
 pub use selections::{file as selection_file, with_selection, write_of_stroke};
@@ -117,12 +117,17 @@ pub fn read_value(value: &Value, source: RecipeSource) -> Result<Document> {
     read_with_tiles(value, source, TileGrids::new())
 }
 
-/// As [`read_value`], with the pixels of some paint layers known already; they were within the budget.
+/// As [`read_value`], with the pixels of some paint layers known already; they were within the
+/// budget.
 pub fn read_with_tiles(value: &Value, source: RecipeSource, tiles: TileGrids) -> Result<Document> {
     read_parts(value, source, tiles).map(|(document, _)| document)
 }
 
-fn read_parts(value: &Value, source: RecipeSource, tiles: TileGrids) -> Result<(Document, Vec<String>)> {
+fn read_parts(
+    value: &Value,
+    source: RecipeSource,
+    tiles: TileGrids,
+) -> Result<(Document, Vec<String>)> {
     let mut root = JsonNode::root(source.file, value).fields()?;
     check_version(&mut root)?;
     let canvas = root.get("canvas").map(|node| canvas(&node, source)).transpose()?;
@@ -134,21 +139,39 @@ fn read_parts(value: &Value, source: RecipeSource, tiles: TileGrids) -> Result<(
     let layers = root.get("layers");
     let (selections, active) = (root.get("selections"), root.get("active_selection"));
     let guides = root.get("guides").map_or(Ok(Guides::default()), |node| guides::read(&node))?;
-    let assistants = root.get("assistants").map_or(Ok(Vec::new()), |node| guides::read_assistants(&node))?;
+    let assistants =
+        root.get("assistants").map_or(Ok(Vec::new()), |node| guides::read_assistants(&node))?;
     root.finish()?;
 
-    let CanvasAndSurface { size, surface, files, notes: of_maps } = shape(canvas, own.as_ref(), source)?;
+    let CanvasAndSurface { size, surface, files, notes: of_maps } =
+        shape(canvas, own.as_ref(), source)?;
     let surface_source = source.onto.map(fitted_source).or(own.map(|(own, _)| own)).map(Arc::new);
     let Budget { layers: layers_left, document_samples: samples_left, .. } = *source.budget;
     let pictures = PictureCache::knowing(tiles);
     let (known, homes, notes) = (HashMap::new(), Vec::new(), of_maps);
-    let mut reader = LayerReader { source, size, layers_left, samples_left, pictures, selections: known, homes, notes };
+    let mut reader = LayerReader {
+        source,
+        size,
+        layers_left,
+        samples_left,
+        pictures,
+        selections: known,
+        homes,
+        notes,
+    };
     let scene = Scene { size, surface: surface.clone() };
-    // Those that follow the surface are found on the maps, and again once the parts have made theirs.
-    let mut selections = selections.map_or(Ok(Vec::new()), |node| reader.selections(&node, &scene))?;
+    // Those that follow the surface are found on the maps, and again once the parts have made
+    // theirs.
+    let mut selections =
+        selections.map_or(Ok(Vec::new()), |node| reader.selections(&node, &scene))?;
     let active_selection = active.map(|node| reader.selection_of(&node)).transpose()?;
     let parts = match surface_node {
-        Some(node) => node.fields()?.get("parts").map(|node| reader.parts(&node)).transpose()?.unwrap_or_default(),
+        Some(node) => node
+            .fields()?
+            .get("parts")
+            .map(|node| reader.parts(&node))
+            .transpose()?
+            .unwrap_or_default(),
         None => Vec::new(),
     };
     selections.extend(reader.outlined(&parts, &selections));
@@ -171,7 +194,12 @@ fn read_parts(value: &Value, source: RecipeSource, tiles: TileGrids) -> Result<(
         // Another object takes the place of the document's own, parts and all.
         Some(_) => bare.off_parts(parts),
         None => {
-            source.budget.room_for_shape(source.file, &bare, &parts, reader.pictures.used_bytes())?;
+            source.budget.room_for_shape(
+                source.file,
+                &bare,
+                &parts,
+                reader.pictures.used_bytes(),
+            )?;
             bare.with_parts(parts).with_selections_found()
         }
     };
@@ -185,7 +213,8 @@ fn check_version(root: &mut Fields) -> Result<()> {
     let Some(version) = root.get("version") else { return Ok(()) };
     let number = version.integer(1..=i64::MAX)?;
     if number > VERSION {
-        let reason = format!("is {number}; this program reads up to {VERSION}, a newer one is needed");
+        let reason =
+            format!("is {number}; this program reads up to {VERSION}, a newer one is needed");
         return Err(version.refused(reason));
     }
     Ok(())
@@ -200,9 +229,16 @@ fn canvas(node: &JsonNode, source: RecipeSource) -> Result<Size> {
 }
 
 /// Puts a document on another object; the canvas stays, the maps are fitted to it.
-pub fn put_onto(document: &Document, file: &Path, onto: OtherSurface, budget: &Budget) -> Result<Document> {
-    let maps::ImportedSurface { surface, files, .. } = maps::import(onto.surface, onto.files, budget)?;
-    let surface = Arc::new(surface).onto(document.size, None).map_err(|e| Error::unsupported(file, e))?;
+pub fn put_onto(
+    document: &Document,
+    file: &Path,
+    onto: OtherSurface,
+    budget: &Budget,
+) -> Result<Document> {
+    let maps::ImportedSurface { surface, files, .. } =
+        maps::import(onto.surface, onto.files, budget)?;
+    let surface =
+        Arc::new(surface).onto(document.size, None).map_err(|e| Error::unsupported(file, e))?;
     let surface_source = Some(Arc::new(fitted_source(onto)));
     let surface_files = Arc::new(files);
     let bare = document.with_parts(Vec::new());
@@ -218,17 +254,20 @@ struct CanvasAndSurface {
     notes: Vec<String>,
 }
 
-/// The size of the canvas (by default that of the document's own maps), and the surface fitted to it.
+/// The size of the canvas (by default that of the document's own maps), and the surface fitted to
+/// it.
 fn shape(
     canvas: Option<Size>,
     own: Option<&(SurfaceSource, JsonNode)>,
     source: RecipeSource,
 ) -> Result<CanvasAndSurface> {
     let own_map = own.and_then(|(own, _)| own.map());
-    // Another object keeps the document's canvas, so its own maps are read only if they determine the size.
+    // Another object keeps the document's canvas, so its own maps are read only if they determine
+    // the size.
     let own = match own {
         Some((own, node)) if canvas.is_none() || source.onto.is_none() => {
-            let import = maps::import(own, source.files, source.budget).map_err(|e| node.led_to(e))?;
+            let import =
+                maps::import(own, source.files, source.budget).map_err(|e| node.led_to(e))?;
             Some((import, node))
         }
         _ => None,
@@ -242,7 +281,14 @@ fn shape(
     let (import, node) = match (other, own) {
         (Some(other), _) => (other, None),
         (None, Some((own, node))) => (own, Some(node)),
-        (None, None) => return Ok(CanvasAndSurface { size, surface: None, files: BTreeMap::new(), notes: Vec::new() }),
+        (None, None) => {
+            return Ok(CanvasAndSurface {
+                size,
+                surface: None,
+                files: BTreeMap::new(),
+                notes: Vec::new(),
+            });
+        }
     };
     let maps::ImportedSurface { surface, findings, files } = import;
     let refused = |e: SurfaceError| match node {
@@ -276,8 +322,8 @@ struct LayerReader<'a> {
     notes: Vec<String>,
 }
 
-/// The JSON that [`read`] reads back to an equal document. Files are named, not written: a project stores its pixels
-/// next to it under the same names.
+/// The JSON that [`read`] reads back to an equal document. Files are named, not written: a project
+/// stores its pixels next to it under the same names.
 pub fn write(document: &Document) -> Value {
     write_naming(document, &SelectionList::of(document))
 }

@@ -33,7 +33,12 @@ impl LayerReader<'_> {
             strength: fields.number("strength", 1.0, NormalLayer::STRENGTH)?,
         })
     }
-    fn detail_map(&mut self, node: &JsonNode, convention: NormalConvention) -> Result<DetailSource> {
+
+    fn detail_map(
+        &mut self,
+        node: &JsonNode,
+        convention: NormalConvention,
+    ) -> Result<DetailSource> {
         let picture = self.picture_source(node)?;
         let file = node.fields()?.required("file")?;
         let map = self.pictures.detail(self.source, &file, &convention, picture.adjust.blur)?;
@@ -54,11 +59,14 @@ impl RecipeValue for NoiseRelief {
         }
         out.done()
     }
+
     fn from_json(node: &JsonNode) -> Result<Self> {
         let (mut fields, base) = (node.fields()?, NoiseRelief::default());
         let grain = NoiseRelief {
             size_px: fields.number("size", base.size_px, NoiseRelief::SIZE_PX)?,
-            octaves: fields.get("octaves").map_or(Ok(base.octaves), |node| node.whole(NoiseRelief::OCTAVES))?,
+            octaves: fields
+                .get("octaves")
+                .map_or(Ok(base.octaves), |node| node.whole(NoiseRelief::OCTAVES))?,
             roughness: fields.number("roughness", base.roughness, NoiseRelief::ROUGHNESS)?,
             stretch: fields.number("stretch", base.stretch, NoiseRelief::STRETCH)?,
             seed: fields.get("seed").map_or(Ok(0), |node| node.whole(0..=u32::MAX))?,

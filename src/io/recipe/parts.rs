@@ -9,7 +9,8 @@ pub use write::{write, write_part};
 use super::pictures::PictureCache;
 use super::{LayerReader, RecipeSource, maps, samples, surface};
 use crate::document::parts::{
-    CoverageFile, FlatColor, Inflation, OutlineSource, Part, PartKind, PartMaps, Parts, ProfilePicture,
+    CoverageFile, FlatColor, Inflation, OutlineSource, Part, PartKind, PartMaps, Parts,
+    ProfilePicture,
 };
 use crate::document::{Document, NamedSelection, SurfaceSource};
 use crate::files::UserFiles;
@@ -17,7 +18,8 @@ use crate::json::{Fields, JsonNode, JsonObject};
 use crate::math::{Affine2, COORDINATE, Range, Size, Vec2, Vec3, vec2};
 use crate::shape::profiles::MOST_PROFILES;
 use crate::shape::{
-    Ball, Bevel, BevelCurve, Body, Combine, Detail, LineForm, Lines, Primitive, SculptStroke, SculptTool, Touch,
+    Ball, Bevel, BevelCurve, Body, Combine, Detail, LineForm, Lines, Primitive, SculptStroke,
+    SculptTool, Touch,
 };
 use crate::surface::Surface;
 use crate::{Budget, Result};
@@ -32,8 +34,8 @@ const DAB_SIZE: f32 = 40.0;
 const DAB_HARDNESS: f32 = 0.5;
 const DAB_STRENGTH: f32 = 2.0;
 
-/// One part as an edit of a document describes it. The pictures that it names are those of the document's parts, or the
-/// user's own. `file`: for messages.
+/// One part as an edit of a document describes it. The pictures that it names are those of the
+/// document's parts, or the user's own. `file`: for messages.
 pub fn read_part(file: &Path, value: &Value, document: &Document, budget: &Budget) -> Result<Part> {
     let files = UserFiles::default();
     let source = RecipeSource { file, files: &files, budget, onto: None };
@@ -49,10 +51,13 @@ pub fn read_part(file: &Path, value: &Value, document: &Document, budget: &Budge
     let Budget { layers: layers_left, document_samples: samples_left, .. } = *budget;
     let size = document.size;
     // Edits call selections by their names.
-    let by_name = |kept: &NamedSelection| (kept.name.clone(), (kept.selection.clone(), Some(kept.name.clone())));
+    let by_name = |kept: &NamedSelection| {
+        (kept.name.clone(), (kept.selection.clone(), Some(kept.name.clone())))
+    };
     let selections = document.selections.iter().map(by_name).collect();
     let (homes, notes) = (Vec::new(), Vec::new());
-    let mut reader = LayerReader { source, size, layers_left, samples_left, pictures, selections, homes, notes };
+    let mut reader =
+        LayerReader { source, size, layers_left, samples_left, pictures, selections, homes, notes };
     reader.part(&JsonNode::root(file, value), document.parts.list.len())
 }
 
@@ -64,32 +69,39 @@ impl LayerReader<'_> {
         for (i, item) in items.iter().enumerate() {
             let part = self.part(item, i)?;
             if list.iter().any(|other| other.id == part.id) {
-                return Err(item.refused(format!("has the id “{}”, which another part has", part.id)));
+                return Err(
+                    item.refused(format!("has the id “{}”, which another part has", part.id))
+                );
             }
             list.push(Arc::new(part));
         }
         Ok(list)
     }
+
     fn part(&mut self, node: &JsonNode, index: usize) -> Result<Part> {
         let mut fields = node.fields()?;
         let kind = self.part_kind(&mut fields)?;
         let id = fields.get("id").map_or(Ok(None), |id| id.text().map(|id| Some(id.to_owned())))?;
         let id = id.unwrap_or_else(|| format!("part-{}", index + 1));
         let plain = Part::new(id, kind);
-        let name = fields.get("name").map_or(Ok(None), |name| name.text().map(|name| Some(name.to_owned())))?;
+        let name = fields
+            .get("name")
+            .map_or(Ok(None), |name| name.text().map(|name| Some(name.to_owned())))?;
         let mut combine = fields.one_of("combine", &Combine::ALL, Combine::Over)?;
         let smooth = fields.get("smooth").map(|node| node.number(Combine::SMOOTH)).transpose()?;
         if let (Combine::Union { smooth: own }, Some(smooth)) = (&mut combine, smooth) {
             *own = smooth;
         }
         let tilt = fields.get("tilt").map(|node| node.numbers(2, 2, Part::TILT)).transpose()?;
-        let matrix = fields.get("matrix").map(|node| node.numbers(6, 6, Part::MATRIX)).transpose()?;
+        let matrix =
+            fields.get("matrix").map(|node| node.numbers(6, 6, Part::MATRIX)).transpose()?;
         let part = Part {
             visible: fields.boolean("visible", true)?,
             raise: fields.number("raise", 0.0, Part::RAISE)?,
             tilt_deg: tilt.map_or(Vec2::ZERO, |v| vec2(v[0], v[1])),
-            matrix: matrix
-                .map_or(Affine2::IDENTITY, |m| Affine2::from_cols_array(&[m[0], m[1], m[2], m[3], m[4], m[5]])),
+            matrix: matrix.map_or(Affine2::IDENTITY, |m| {
+                Affine2::from_cols_array(&[m[0], m[1], m[2], m[3], m[4], m[5]])
+            }),
             name: name.unwrap_or_else(|| plain.name.clone()),
             combine,
             ..plain
@@ -98,6 +110,7 @@ impl LayerReader<'_> {
         part.fits().map_err(|why| node.refused(why))?;
         Ok(part)
     }
+
     fn part_kind(&mut self, fields: &mut Fields) -> Result<PartKind> {
         type ReadKind = fn(&mut LayerReader<'_>, &mut Fields<'_>) -> Result<PartKind>;
         const KINDS: [(ReadKind, &str); 11] = [
@@ -115,6 +128,7 @@ impl LayerReader<'_> {
         ];
         fields.required("kind")?.one_of(&KINDS)?(self, fields)
     }
+
     fn inflate(&mut self, fields: &mut Fields) -> Result<PartKind> {
         let plain = Inflation::default();
         let inflation = Inflation {
@@ -124,6 +138,7 @@ impl LayerReader<'_> {
         };
         Ok(PartKind::Inflate { outline: self.outline(fields)?, inflation })
     }
+
     fn bevel(&mut self, fields: &mut Fields) -> Result<PartKind> {
         let plain = Bevel::default();
         let bevel = Bevel {
@@ -133,6 +148,7 @@ impl LayerReader<'_> {
         };
         Ok(PartKind::Bevel { outline: self.outline(fields)?, bevel })
     }
+
     fn lathe(&mut self, fields: &mut Fields) -> Result<PartKind> {
         let axis = fields.get("axis").map(|node| points(&node, 2)).transpose()?;
         let axis = match axis.as_deref() {
@@ -143,6 +159,7 @@ impl LayerReader<'_> {
         let puff = fields.number("puff", 1.0, Inflation::PUFF)?;
         Ok(PartKind::Lathe { outline: self.outline(fields)?, axis, puff })
     }
+
     fn relief(&mut self, fields: &mut Fields) -> Result<PartKind> {
         let plain = Detail::default();
         let detail = Detail {
@@ -151,9 +168,11 @@ impl LayerReader<'_> {
             radius: fields.number("radius", plain.radius, Detail::RADIUS)?,
             edge: fields.number("edge", plain.edge, Detail::EDGE)?,
         };
-        let (file, coverage) = self.pictures.coverage(self.source, &fields.required("file")?, None)?;
+        let (file, coverage) =
+            self.pictures.coverage(self.source, &fields.required("file")?, None)?;
         Ok(PartKind::Relief { on: on(fields)?, picture: CoverageFile { file, coverage }, detail })
     }
+
     fn lines(&mut self, fields: &mut Fields) -> Result<PartKind> {
         let plain = Lines::default();
         let lines = Lines {
@@ -163,11 +182,13 @@ impl LayerReader<'_> {
         };
         Ok(PartKind::Lines { on: on(fields)?, ink: self.outline(fields)?, lines })
     }
+
     fn profiles(&mut self, fields: &mut Fields) -> Result<PartKind> {
         let outline = fields.get("outline").map(|node| self.outline_of(&node)).transpose()?;
         let mut shading = |item: &JsonNode| {
             let mut fields = item.fields()?;
-            let (file, coverage) = self.pictures.coverage(self.source, &fields.required("file")?, None)?;
+            let (file, coverage) =
+                self.pictures.coverage(self.source, &fields.required("file")?, None)?;
             let light = fields.required("light")?.vector(ProfilePicture::LIGHT)?;
             fields.finish()?;
             Ok(ProfilePicture { picture: CoverageFile { file, coverage }, light })
@@ -176,16 +197,21 @@ impl LayerReader<'_> {
         let shadings = items.iter().map(&mut shading).collect::<Result<_>>()?;
         Ok(PartKind::Profiles { outline, shadings })
     }
+
     fn maps(&mut self, fields: &mut Fields) -> Result<PartKind> {
         let node = fields.node().clone();
         let frame = fields.get("frame").map(|node| self.frame(&node)).transpose()?;
         let (size, matrix) = frame.unwrap_or((self.size, None));
-        // The pictures of an edit are known, wherever they came from: their files are not read again.
+        // The pictures of an edit are known, wherever they came from: their files are not read
+        // again.
         let is_told = |known: &PartMaps| {
             let mut written = JsonObject::default();
             write_maps(&mut written, known, Some(known.surface.size()));
-            let is_same = |(name, value): (&String, &Value)| name == "frame" || node.value().get(name) == Some(value);
-            (known.surface.size(), known.source.matrix) == (size, matrix) && written.fields().iter().all(is_same)
+            let is_same = |(name, value): (&String, &Value)| {
+                name == "frame" || node.value().get(name) == Some(value)
+            };
+            (known.surface.size(), known.source.matrix) == (size, matrix)
+                && written.fields().iter().all(is_same)
         };
         if let Some(known) = self.pictures.known_maps(is_told) {
             for name in ["normal", "depth", "mask"] {
@@ -197,12 +223,18 @@ impl LayerReader<'_> {
         if source.normal.is_none() && source.depth.is_none() {
             return Err(node.refused("names neither a normal map nor a depth map"));
         }
-        let found = maps::import(&source, self.source.files, self.source.budget).map_err(|error| node.led_to(error))?;
+        let found = maps::import(&source, self.source.files, self.source.budget)
+            .map_err(|error| node.led_to(error))?;
         let made = Arc::new(found.surface).onto(size, source.map().as_ref());
         let surface = made.map_err(|error| node.refused(error))?;
         self.notes.extend(found.findings.notes);
-        Ok(PartKind::Maps(PartMaps { source: Arc::new(source), files: Arc::new(found.files), surface }))
+        Ok(PartKind::Maps(PartMaps {
+            source: Arc::new(source),
+            files: Arc::new(found.files),
+            surface,
+        }))
     }
+
     /// The frame that maps are put on, and how, if they are not fitted to it.
     fn frame(&mut self, node: &JsonNode) -> Result<(Size, Option<[f64; 6]>)> {
         let mut fields = node.fields()?;
@@ -214,6 +246,7 @@ impl LayerReader<'_> {
         self.pictures.hold(self.source, size.area() * Surface::BYTES_PER_PX)?;
         Ok((size, matrix))
     }
+
     fn sculpt(&mut self, fields: &mut Fields) -> Result<PartKind> {
         let mut stroke = |item: &JsonNode| {
             let mut fields = item.fields()?;
@@ -223,7 +256,11 @@ impl LayerReader<'_> {
                 size: fields.number("size", DAB_SIZE, SculptStroke::SIZE)?,
                 hardness: fields.number("hardness", DAB_HARDNESS, SculptStroke::HARDNESS)?,
                 strength: fields.number("strength", DAB_STRENGTH, SculptStroke::STRENGTH)?,
-                samples: samples::read_pressed(&samples, SculptStroke::MOST, &mut self.samples_left)?,
+                samples: samples::read_pressed(
+                    &samples,
+                    SculptStroke::MOST,
+                    &mut self.samples_left,
+                )?,
             };
             fields.finish()?;
             Ok(stroke)
@@ -232,10 +269,12 @@ impl LayerReader<'_> {
         let strokes = items.iter().map(&mut stroke).collect::<Result<_>>()?;
         Ok(PartKind::Sculpt { on: on(fields)?, strokes })
     }
+
     fn outline(&mut self, fields: &mut Fields) -> Result<OutlineSource> {
         let node = fields.required("outline")?;
         self.outline_of(&node)
     }
+
     fn outline_of(&mut self, node: &JsonNode) -> Result<OutlineSource> {
         let mut fields = node.fields()?;
         let color = fields.get("color").map(|node| node.color()).transpose()?;
@@ -277,12 +316,15 @@ fn points(node: &JsonNode, most: usize) -> Result<Vec<Vec2>> {
 /// A word, or points (t, f).
 fn curve(node: &JsonNode) -> Result<BevelCurve> {
     if node.value().is_string() {
-        let words: Vec<(usize, &str)> = BevelCurve::NAMED.iter().enumerate().map(|(i, (_, name))| (i, *name)).collect();
+        let words: Vec<(usize, &str)> =
+            BevelCurve::NAMED.iter().enumerate().map(|(i, (_, name))| (i, *name)).collect();
         return Ok(BevelCurve::NAMED[node.one_of(&words)?].0.clone());
     }
     let points = points(node, BevelCurve::MOST_POINTS)?;
     if points.len() < 2 || points.windows(2).any(|pair| pair[0].x > pair[1].x) {
-        return Err(node.refused("must have two points or more, each farther in than the one before"));
+        return Err(
+            node.refused("must have two points or more, each farther in than the one before")
+        );
     }
     Ok(BevelCurve::Points(points))
 }
@@ -292,7 +334,9 @@ fn primitive(fields: &mut Fields) -> Result<Primitive> {
     let center = fields.required("center")?.point()?;
     let radius = fields.number("radius", BODY_RADIUS, Primitive::LENGTH)?;
     let plain = Primitive::new(body, center, radius);
-    let vector = |node: Option<JsonNode>, plain: Vec3, range: Range| node.map_or(Ok(plain), |node| node.vector(range));
+    let vector = |node: Option<JsonNode>, plain: Vec3, range: Range| {
+        node.map_or(Ok(plain), |node| node.vector(range))
+    };
     Ok(Primitive {
         half: vector(fields.get("half"), plain.half, Primitive::LENGTH)?,
         length: fields.number("length", plain.length, Primitive::LENGTH)?,
@@ -308,7 +352,8 @@ fn sweep(fields: &mut Fields) -> Result<PartKind> {
         let v = item.numbers(3, 3, COORDINATE)?;
         Ok(Ball { at: vec2(v[0], v[1]), radius: v[2] })
     };
-    let balls = fields.required("balls")?.list(Ball::MOST)?.iter().map(ball).collect::<Result<_>>()?;
+    let balls =
+        fields.required("balls")?.list(Ball::MOST)?.iter().map(ball).collect::<Result<_>>()?;
     Ok(PartKind::Sweep { balls, puff: fields.number("puff", 1.0, Inflation::PUFF)? })
 }
 
@@ -324,7 +369,8 @@ fn touches(fields: &mut Fields) -> Result<PartKind> {
         fields.finish()?;
         Ok(touch)
     };
-    let touches = fields.required("touches")?.list(Touch::MOST)?.iter().map(touch).collect::<Result<_>>()?;
+    let touches =
+        fields.required("touches")?.list(Touch::MOST)?.iter().map(touch).collect::<Result<_>>()?;
     Ok(PartKind::Touches { on: on(fields)?, touches })
 }
 

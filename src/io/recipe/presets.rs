@@ -1,5 +1,5 @@
-//! Presets: brushes with a name, a group and a sentence. Those in `brushes/` are built into the program.
-//! Floor 5. The file has the fields of a stroke, and what a list shows.
+//! Presets: brushes with a name, a group and a sentence. Those in `brushes/` are built into the
+//! program. Floor 5. The file has the fields of a stroke, and what a list shows.
 
 use super::brush::{settings, write_brush};
 use super::images::{operator, write_operator};
@@ -62,8 +62,8 @@ pub fn presets() -> impl Iterator<Item = BrushPreset> {
     preset_names().filter_map(preset)
 }
 
-/// A brush that comes with the program, as a hand takes it: its marks stay near the pen. A recipe that names it says so
-/// itself ([`Brush::reach`]), so that older ones paint as they did.
+/// A brush that comes with the program, as a hand takes it: its marks stay near the pen. A recipe
+/// that names it says so itself ([`Brush::reach`]), so that older ones paint as they did.
 pub fn preset(key: &str) -> Option<BrushPreset> {
     let (_, text) = BRUSHES.iter().find(|(known, _)| *known == key)?;
     let mut preset = built_in(key, text).ok()?;
@@ -88,11 +88,13 @@ pub(super) fn named(key: &JsonNode) -> Result<(Brush, Operator)> {
 }
 
 fn built_in(key: &str, text: &str) -> Result<BrushPreset> {
-    let mut none = |node: &JsonNode| Err(node.refused("is a file; the brushes of the program have none"));
+    let mut none =
+        |node: &JsonNode| Err(node.refused("is a file; the brushes of the program have none"));
     read(Path::new("brushes"), key, text.as_bytes(), &Budget::default(), &mut none)
 }
 
-/// A brush as [`written_brush`] writes it, with the pictures of `like`, because a value can only name them.
+/// A brush as [`written_brush`] writes it, with the pictures of `like`, because a value can only
+/// name them.
 ///
 /// Fails with a sentence that names the field.
 pub fn read_brush(value: &Value, like: &Brush) -> Result<Brush> {
@@ -101,7 +103,9 @@ pub fn read_brush(value: &Value, like: &Brush) -> Result<Brush> {
     let mut picture = |node: &JsonNode| {
         let named = node.text()?;
         let found = like.pictures().find(|source| source.file == named).cloned();
-        found.ok_or_else(|| node.refused(format!("is “{named}”; the current brush has no such picture")))
+        found.ok_or_else(|| {
+            node.refused(format!("is “{named}”; the current brush has no such picture"))
+        })
     };
     tips::read(&mut fields, &mut brush, &mut picture)?;
     fields.finish()?;
@@ -134,7 +138,8 @@ fn read(
 ) -> Result<BrushPreset> {
     let value = json::parse(file, text, budget)?;
     let mut root = JsonNode::root(file, &value).fields()?;
-    let mut text = |name| root.get(name).map_or(Ok(String::new()), |node| node.text().map(str::to_owned));
+    let mut text =
+        |name| root.get(name).map_or(Ok(String::new()), |node| node.text().map(str::to_owned));
     let (name, about) = (text("name")?, text("about")?);
     let name = if name.is_empty() { key.to_owned() } else { name };
     let group = root.one_of("group", &PresetGroup::ALL, PresetGroup::Imported)?;
@@ -176,13 +181,17 @@ mod tests {
             assert!(!preset.name.is_empty() && preset.group != PresetGroup::Imported, "{key}");
             assert!(preset.about.ends_with('.') && preset.about.len() > 20, "{key}");
             assert_eq!(*key, crate::brush::plain(key));
-            assert_eq!(built_in(key, &write_preset(&preset).to_string()).map(|p| p.name).ok(), Some(preset.name));
+            assert_eq!(
+                built_in(key, &write_preset(&preset).to_string()).map(|p| p.name).ok(),
+                Some(preset.name)
+            );
         }
         let mut groups: Vec<PresetGroup> = presets().map(|preset| preset.group).collect();
         assert!(groups.is_sorted(), "a group's presets stand together");
         groups.dedup();
         assert_eq!(groups.len(), PresetGroup::ALL.len() - 1);
     }
+
     #[test]
     fn there_are_thirty_presets_and_more_and_no_two_share_a_name() {
         let mut names: Vec<String> = presets().map(|preset| preset.name).collect();

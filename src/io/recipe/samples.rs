@@ -1,5 +1,6 @@
-//! Readings of the pen in a document, of every kind of stroke: rows of numbers where they are few, one text where they
-//! are many. Floor 5. What the numbers of a reading may be is `paint::Sample`'s own.
+//! Readings of the pen in a document, of every kind of stroke: rows of numbers where they are few,
+//! one text where they are many. Floor 5. What the numbers of a reading may be is `paint::Sample`'s
+//! own.
 //!
 //! | file | |
 //! |---|---|
@@ -21,7 +22,8 @@ use serde_json::Value;
 use std::borrow::Cow;
 use std::path::Path;
 
-/// Readings of a stroke that are still written as rows: a touch or a short hatch, which a person may want to read.
+/// Readings of a stroke that are still written as rows: a touch or a short hatch, which a person
+/// may want to read.
 const ROWS: usize = 32;
 /// A reading whose last fields are absent.
 const UNSAID: [f32; 4] = [1.0, 0.0, 0.0, 0.0];
@@ -49,8 +51,12 @@ pub fn read(node: &JsonNode, most: usize, left: &mut usize) -> Result<Vec<Sample
     let samples = match node.value() {
         Value::String(text) => {
             let read = unpack(text, most).map_err(|why| match why {
-                Unreadable::TooMany => node.too_large(format!("has more than {most} readings of the pen")),
-                Unreadable::Damaged => node.refused("is no text of readings as Rilievo writes them"),
+                Unreadable::TooMany => {
+                    node.too_large(format!("has more than {most} readings of the pen"))
+                }
+                Unreadable::Damaged => {
+                    node.refused("is no text of readings as Rilievo writes them")
+                }
             })?;
             match read.iter().enumerate().find_map(|(i, sample)| Some((i, trouble(sample)?))) {
                 Some((i, reason)) => return Err(node.item(i).refused(reason)),
@@ -65,7 +71,12 @@ pub fn read(node: &JsonNode, most: usize, left: &mut usize) -> Result<Vec<Sample
 
 /// The same of strokes that have no more than places and pressures.
 pub fn write_pressed(samples: &[(Vec2, f32)]) -> Value {
-    write(&samples.iter().map(|(at, pressure)| Sample { pressure: *pressure, ..Sample::at(*at) }).collect::<Vec<_>>())
+    write(
+        &samples
+            .iter()
+            .map(|(at, pressure)| Sample { pressure: *pressure, ..Sample::at(*at) })
+            .collect::<Vec<_>>(),
+    )
 }
 
 /// What [`write_pressed`] writes. A reading with a tilt or a time is refused.
@@ -73,7 +84,9 @@ pub fn read_pressed(node: &JsonNode, most: usize, left: &mut usize) -> Result<Ve
     let pressed = |(i, sample): (usize, Sample)| {
         let Sample { at, pressure, tilt, time_secs } = sample;
         let is_pressed = tilt == Vec2::ZERO && time_secs == 0.0;
-        is_pressed.then_some((at, pressure)).ok_or_else(|| node.item(i).refused("has more than a place and a pressure"))
+        is_pressed
+            .then_some((at, pressure))
+            .ok_or_else(|| node.item(i).refused("has more than a place and a pressure"))
     };
     read(node, most, left)?.into_iter().enumerate().map(pressed).collect()
 }
@@ -90,7 +103,11 @@ fn read_row(node: &JsonNode) -> Result<Sample> {
 fn trouble(sample: &Sample) -> Option<String> {
     let Sample { at, pressure, tilt, time_secs } = *sample;
     if !(COORDINATE.contains(&at.x) && COORDINATE.contains(&at.y)) {
-        return Some(format!("is at {at}; a place lies between {} and {}", COORDINATE.start(), COORDINATE.end()));
+        return Some(format!(
+            "is at {at}; a place lies between {} and {}",
+            COORDINATE.start(),
+            COORDINATE.end()
+        ));
     }
     if !Sample::PRESSURE.contains(&pressure) {
         return Some(format!("has the pressure {pressure}; it must be between 0 and 1"));

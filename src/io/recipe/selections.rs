@@ -1,5 +1,6 @@
-//! Selections of a document: those kept by name, the active one, and those that strokes were painted in. Read and
-//! written. Floor 5. Each is stored once, under an id; strokes name it. Not here: masks of layers (`masks`).
+//! Selections of a document: those kept by name, the active one, and those that strokes were
+//! painted in. Read and written. Floor 5. Each is stored once, under an id; strokes name it. Not
+//! here: masks of layers (`masks`).
 
 use super::LayerReader;
 use super::value::RecipeValue;
@@ -27,14 +28,17 @@ pub fn file(place: usize) -> String {
 }
 
 impl LayerReader<'_> {
-    /// The list of selections; those with a name are returned, all can be named by their ids from now on.
+    /// The list of selections; those with a name are returned, all can be named by their ids from
+    /// now on.
     pub fn selections(&mut self, node: &JsonNode, scene: &Scene) -> Result<Vec<NamedSelection>> {
         let mut kept: Vec<NamedSelection> = Vec::new();
         for item in node.list(Document::MOST_SELECTIONS)? {
             let mut fields = item.fields()?;
             let id = fields.required("id")?;
-            let name =
-                fields.get("name").map(|name| Ok::<_, crate::Error>((name.text()?.to_owned(), name))).transpose()?;
+            let name = fields
+                .get("name")
+                .map(|name| Ok::<_, crate::Error>((name.text()?.to_owned(), name)))
+                .transpose()?;
             let selection = match fields.get("mask") {
                 Some(mask) => Arc::new(self.selection(&mask, scene)?),
                 // A selection without bounds.
@@ -54,14 +58,16 @@ impl LayerReader<'_> {
         }
         Ok(kept)
     }
+
     /// The selection of an id.
     pub fn selection_of(&self, node: &JsonNode) -> Result<Arc<Selection>> {
         let id = node.text()?;
         let known = self.selections.get(id).map(|(selection, _)| selection.clone());
         known.ok_or_else(|| node.refused(format!("is “{id}”; there is no selection of that id")))
     }
-    /// The kept selection that an outline names, by its id or, in an edit, by its name; one that has no name is called
-    /// by its id.
+
+    /// The kept selection that an outline names, by its id or, in an edit, by its name; one that
+    /// has no name is called by its id.
     pub fn outline_selection(&self, node: &JsonNode) -> Result<String> {
         let id = node.text()?;
         match self.selections.get(id) {
@@ -69,6 +75,7 @@ impl LayerReader<'_> {
             None => Err(node.refused(format!("is “{id}”; there is no selection of that id"))),
         }
     }
+
     /// The selections that have no name and are outlines of parts, kept by their ids.
     pub fn outlined(&self, parts: &[Arc<Part>], kept: &[NamedSelection]) -> Vec<NamedSelection> {
         let mut new: Vec<NamedSelection> = Vec::new();
@@ -81,25 +88,37 @@ impl LayerReader<'_> {
         }
         new
     }
+
     fn selection(&mut self, node: &JsonNode, scene: &Scene) -> Result<Selection> {
         let mut fields = node.fields()?;
         let selection = match fields.get("kind") {
             // Each takes as long as a picture of the canvas.
             Some(kind) => {
                 self.pictures.search(self.source, self.size)?;
-                let found = Selection::of_region(region(kind.one_of(&RegionKind::ALL)?, &mut fields)?, scene);
+                let found = Selection::of_region(
+                    region(kind.one_of(&RegionKind::ALL)?, &mut fields)?,
+                    scene,
+                );
                 self.pictures.hold(self.source, found.coverage.bytes())?;
                 found
             }
             None => {
-                let mut side = |name| fields.get(name).map_or(Ok(0), |node| node.integer(-1_000_000..=1_000_000));
+                let mut side = |name| {
+                    fields.get(name).map_or(Ok(0), |node| node.integer(-1_000_000..=1_000_000))
+                };
                 let (x, y) = (side("x")? as i32, side("y")? as i32);
-                Selection::new(self.pictures.selection(self.source, &fields.required("file")?, x, y)?)
+                Selection::new(self.pictures.selection(
+                    self.source,
+                    &fields.required("file")?,
+                    x,
+                    y,
+                )?)
             }
         };
         fields.finish()?;
         Ok(selection)
     }
+
     /// The selection that a stroke was painted in, and how far it was moved since.
     pub fn stroke_selection(&self, fields: &mut Fields) -> Result<Option<StrokeSelection>> {
         let moved = fields.point("selection_moved", Vec2::ZERO)?;
@@ -114,6 +133,7 @@ impl RecipeValue for SurfaceRegion {
         write_region(&mut out, self);
         out.done()
     }
+
     fn from_json(node: &JsonNode) -> Result<Self> {
         let mut fields = node.fields()?;
         let kind = fields.required("kind")?.one_of(&RegionKind::ALL)?;
@@ -173,7 +193,9 @@ pub fn write(out: &mut JsonObject, document: &Document, list: &SelectionList) {
 /// The fields of a stroke that was painted in a selection.
 pub fn write_of_stroke(stroke: &Stroke, list: &SelectionList) -> JsonObject {
     let mut out = JsonObject::default();
-    if let Some((own, place)) = stroke.selection().and_then(|own| Some((own, list.place(&own.selection)?))) {
+    if let Some((own, place)) =
+        stroke.selection().and_then(|own| Some((own, list.place(&own.selection)?)))
+    {
         out.set("selection", id(place).into());
         if own.moved != vec2(0.0, 0.0) {
             out.set("selection_moved", object::point(own.moved));
@@ -198,8 +220,11 @@ pub fn with_selection(mut stroke: Value, fields: &JsonObject) -> Value {
 /// Version 1 cannot express these.
 pub fn is_needed(document: &Document, list: &SelectionList) -> bool {
     use crate::document::{DerivedMask, MaskKind};
-    let follows = |mask: &crate::document::LayerMask| matches!(mask.kind, MaskKind::Derived(DerivedMask::Region(_)));
-    !list.is_empty() || document.walk().iter().any(|(_, layer)| layer.mask.as_ref().is_some_and(follows))
+    let follows = |mask: &crate::document::LayerMask| {
+        matches!(mask.kind, MaskKind::Derived(DerivedMask::Region(_)))
+    };
+    !list.is_empty()
+        || document.walk().iter().any(|(_, layer)| layer.mask.as_ref().is_some_and(follows))
 }
 
 #[cfg(test)]
@@ -216,6 +241,7 @@ mod tests {
     fn square(x0: i32) -> Selection {
         Selection::new(CoverageGrid::filled(Rect::new(x0, 20, 90, 110)))
     }
+
     /// Two kept, one of them active, and strokes in another, in the active one moved, and in none.
     fn document() -> Document {
         let document = Document::empty(Size::new(200, 130)).with_selection(Some(square(10)));
@@ -224,16 +250,26 @@ mod tests {
         let samples = [vec2(10.0, 50.0), vec2(190.0, 50.0)].map(Sample::at).to_vec();
         let plain = Stroke::new(Brush::default(), Operator::None, Color::BLACK, samples);
         let moved = first.stroke_selection().map(|own| own.moved(vec2(3.5, -2.0)));
-        let strokes = [Some(other.clone()), moved, None, Some(other)].map(|own| Arc::new(plain.selecting(own)));
+        let strokes = [Some(other.clone()), moved, None, Some(other)]
+            .map(|own| Arc::new(plain.selecting(own)));
         let content = Content::Strokes(Live::new(StrokeList { strokes: strokes.to_vec() }));
-        let region = SurfaceRegion { softness: 0.25, ..SurfaceRegion::new(RegionKind::Shine, vec2(3.0, 4.5)) };
+        let region = SurfaceRegion {
+            softness: 0.25,
+            ..SurfaceRegion::new(RegionKind::Shine, vec2(3.0, 4.5))
+        };
         let mask = Some(LayerMask::new(DerivedMask::Region(region)));
         let layers = vec![
             Arc::new(Layer { mask, ..Layer::new("fill", Content::Fill(Color::WHITE)) }),
             Arc::new(Layer::new("strokes", content)),
         ];
-        let found = Selection::of_region(SurfaceRegion::new(RegionKind::Depth, vec2(9.0, 9.0)), &first.scene());
-        let both = Document { layers, ..first }.with_selection(Some(found)).with_kept_selection("Near").unwrap();
+        let found = Selection::of_region(
+            SurfaceRegion::new(RegionKind::Depth, vec2(9.0, 9.0)),
+            &first.scene(),
+        );
+        let both = Document { layers, ..first }
+            .with_selection(Some(found))
+            .with_kept_selection("Near")
+            .unwrap();
         both.with_selection(Some(square(10)))
     }
 
@@ -251,16 +287,23 @@ mod tests {
         assert!(strokes[2].selection().is_none());
         let again = project::write(file, &read.document, &Default::default()).unwrap().unwrap();
         assert!(written == again, "the same document gives the same bytes");
-        let bare = document.with_each_stroke(document.layers[1].id, &[0], |stroke| stroke.selecting(None)).unwrap();
+        let bare = document
+            .with_each_stroke(document.layers[1].id, &[0], |stroke| stroke.selecting(None))
+            .unwrap();
         assert_eq!(bare.difference(&read.document).as_deref(), Some("“strokes”: its strokes"));
-        assert_eq!(document.with_selection(None).difference(&read.document).as_deref(), Some("the selection"));
+        assert_eq!(
+            document.with_selection(None).difference(&read.document).as_deref(),
+            Some("the selection")
+        );
     }
+
     #[test]
     fn only_a_document_with_selections_is_one_of_version_2() {
         let version = |document: &Document| crate::recipe::write(document)["version"].clone();
         assert_eq!(version(&document()), 2);
         assert_eq!(version(&Document::empty(Size::new(8, 8))), 1);
     }
+
     #[test]
     fn what_names_no_selection_or_a_wrong_number_is_refused_by_its_path() {
         let said = |more: Value| {
@@ -268,8 +311,16 @@ mod tests {
             text.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
             let budget = Budget::default();
             let files = &crate::UserFiles::default();
-            let source = crate::recipe::RecipeSource { file: Path::new("r.json"), files, budget: &budget, onto: None };
-            crate::recipe::read_value(&text, source).err().map(|e| e.to_string()).unwrap_or_default()
+            let source = crate::recipe::RecipeSource {
+                file: Path::new("r.json"),
+                files,
+                budget: &budget,
+                onto: None,
+            };
+            crate::recipe::read_value(&text, source)
+                .err()
+                .map(|e| e.to_string())
+                .unwrap_or_default()
         };
         let stroke = json!({ "selection": "s9" });
         assert_eq!(
@@ -279,9 +330,13 @@ mod tests {
         let mask = json!({ "kind": "direction", "at": [1, 1], "tolerance": 200 });
         let list = json!([{ "id": "a", "mask": mask }]);
         assert!(
-            said(json!({ "selections": list })).contains("selections[0].mask.tolerance: is 200; it must be between")
+            said(json!({ "selections": list }))
+                .contains("selections[0].mask.tolerance: is 200; it must be between")
         );
-        assert!(said(json!({ "selections": [{ "id": "a" }, { "id": "a" }] })).contains("another selection too"));
+        assert!(
+            said(json!({ "selections": [{ "id": "a" }, { "id": "a" }] }))
+                .contains("another selection too")
+        );
         assert_eq!(said(json!({ "selections": [{ "id": "a" }], "active_selection": "a" })), "");
     }
 }

@@ -3,23 +3,31 @@
 
 use super::LayerReader;
 use super::light::{
-    self, direction, features, reference, scaling, write_features, write_reference, write_scaling, write_term,
+    self, direction, features, reference, scaling, write_features, write_reference, write_scaling,
+    write_term,
 };
 use super::value::RecipeValue;
 use crate::Result;
 use crate::json::{Fields, JsonNode, JsonObject, object};
 use crate::math::TURNS;
 use crate::math::range::STOPS;
-use crate::shading::{Environment, Light, LitSphere, Model, Projection, RadianceScaling, Shading, Term};
+use crate::shading::{
+    Environment, Light, LitSphere, Model, Projection, RadianceScaling, Shading, Term,
+};
 use serde_json::{Value, json};
 
 impl LayerReader<'_> {
     /// Missing fields have the defaults of the model ([`Shading::new`]).
     pub fn shading(&mut self, fields: &mut Fields) -> Result<Shading> {
         let base = Shading::new(fields.one_of("model", &Model::ALL, Model::Phong)?);
-        let environment = fields.get("environment").map(|node| self.environment(&node)).transpose()?;
+        let environment =
+            fields.get("environment").map(|node| self.environment(&node)).transpose()?;
         let lights = match fields.get("lights") {
-            Some(node) => node.list(Shading::MOST_LIGHTS)?.iter().map(Light::from_json).collect::<Result<_>>()?,
+            Some(node) => node
+                .list(Shading::MOST_LIGHTS)?
+                .iter()
+                .map(Light::from_json)
+                .collect::<Result<_>>()?,
             None => lights_unsaid(&base, environment.as_ref()),
         };
         let (specular, shininess) = specular(fields, &base)?;
@@ -45,24 +53,31 @@ impl LayerReader<'_> {
                 base.occlusion_radius_px,
                 Shading::OCCLUSION_RADIUS_PX,
             )?,
-            bounces: fields.get("bounces").map_or(Ok(base.bounces), |node| node.whole(Shading::BOUNCES))?,
+            bounces: fields
+                .get("bounces")
+                .map_or(Ok(base.bounces), |node| node.whole(Shading::BOUNCES))?,
         })
     }
+
     fn environment(&mut self, node: &JsonNode) -> Result<Environment> {
         let mut fields = node.fields()?;
         let file = fields.required("file")?;
-        let mut environment = Environment::new(file.text()?.to_owned(), self.pictures.picture(self.source, &file)?);
-        environment.projection = fields.one_of("projection", &Projection::ALL, environment.projection)?;
+        let mut environment =
+            Environment::new(file.text()?.to_owned(), self.pictures.picture(self.source, &file)?);
+        environment.projection =
+            fields.one_of("projection", &Projection::ALL, environment.projection)?;
         environment.rotation = fields.number("rotation", environment.rotation, TURNS)?;
         environment.exposure = fields.number("exposure", environment.exposure, STOPS)?;
         fields.finish()?;
         Ok(environment)
     }
+
     fn sphere(&mut self, fields: &mut Fields, name: &'static str) -> Result<Option<LitSphere>> {
         let Some(node) = fields.get(name) else { return Ok(None) };
         let mut fields = node.fields()?;
         let file = fields.required("file")?;
-        let sphere = LitSphere::new(file.text()?.to_owned(), self.pictures.picture(self.source, &file)?);
+        let sphere =
+            LitSphere::new(file.text()?.to_owned(), self.pictures.picture(self.source, &file)?);
         fields.finish()?;
         Ok(Some(sphere))
     }
@@ -101,13 +116,20 @@ fn term(fields: &mut Fields, name: &'static str, base: Term) -> Result<Term> {
 
 /// The glossy term and its shininess.
 fn specular(fields: &mut Fields, base: &Shading) -> Result<(Term, f32)> {
-    let shininess = |fields: &mut Fields| fields.number("shininess", base.shininess, Shading::SHININESS);
-    Ok(term_and(fields, "specular", base.specular, shininess)?.unwrap_or((base.specular, base.shininess)))
+    let shininess =
+        |fields: &mut Fields| fields.number("shininess", base.shininess, Shading::SHININESS);
+    Ok(term_and(fields, "specular", base.specular, shininess)?
+        .unwrap_or((base.specular, base.shininess)))
 }
 
-/// The lights where none are named. Lit by its environment, such a material needs none; those that are named are added.
+/// The lights where none are named. Lit by its environment, such a material needs none; those that
+/// are named are added.
 fn lights_unsaid(base: &Shading, environment: Option<&Environment>) -> Vec<Light> {
-    if base.model == Model::Ashikhmin && environment.is_some() { Vec::new() } else { base.lights.clone() }
+    if base.model == Model::Ashikhmin && environment.is_some() {
+        Vec::new()
+    } else {
+        base.lights.clone()
+    }
 }
 
 pub fn write(out: &mut JsonObject, shading: &Shading) {
@@ -130,7 +152,8 @@ pub fn write(out: &mut JsonObject, shading: &Shading) {
     if let Some(environment) = &shading.environment {
         out.set("environment", write_environment(environment));
     }
-    for (name, sphere) in [("sphere", &shading.sphere), ("sphere_concave", &shading.sphere_concave)] {
+    for (name, sphere) in [("sphere", &shading.sphere), ("sphere_concave", &shading.sphere_concave)]
+    {
         if let Some(sphere) = sphere {
             out.set(name, json!({ "file": sphere.file }));
         }

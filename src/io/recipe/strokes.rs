@@ -1,6 +1,6 @@
 //! Strokes: readings of the pen, each stroke with its brush, operator and colour. Read and written.
-//! Floor 5. Not here: the readings (`samples`), brushes (`brush`, `tips`), the ones that come with the program
-//! (`presets`).
+//! Floor 5. Not here: the readings (`samples`), brushes (`brush`, `tips`), the ones that come with
+//! the program (`presets`).
 
 use super::LayerReader;
 use super::brush::{settings, write_brush};
@@ -30,12 +30,15 @@ impl LayerReader<'_> {
         }
         Ok(StrokeList { strokes })
     }
+
     fn stroke(&mut self, node: &JsonNode, before: Option<Brush>) -> Result<Stroke> {
         let mut fields = node.fields()?;
         let brush = fields.get("brush").map(|brush| self.brush(&brush, before)).transpose()?;
         let (brush, preset) = brush.unwrap_or_default();
         if brush.mode.is_retouching() {
-            return Err(node.refused("has a brush that smudges, blurs or clones; strokes of a stroke layer paint"));
+            return Err(node.refused(
+                "has a brush that smudges, blurs or clones; strokes of a stroke layer paint",
+            ));
         }
         let operator = operator(&mut fields)?.unwrap_or(preset);
         let color = fields.color("color", Color::BLACK)?;
@@ -49,7 +52,9 @@ impl LayerReader<'_> {
         fields.finish()?;
         Ok(Stroke::new(brush, operator, color, samples).within(selection).on(home))
     }
-    /// The home of a stroke, if it is not that of its layer, and the place of its frame in the layer's.
+
+    /// The home of a stroke, if it is not that of its layer, and the place of its frame in the
+    /// layer's.
     fn stroke_home(&self, fields: &mut Fields) -> Result<Option<Arc<StrokeHome>>> {
         let (on, transform) = (fields.get("on"), fields.get("transform"));
         let Some(on) = on else {
@@ -62,24 +67,33 @@ impl LayerReader<'_> {
         if let Some(node) = transform {
             home.own = match transforms::read(&node, None)?.shape {
                 TransformShape::Matrix(coefficients) => coefficients,
-                TransformShape::Quad(_) | TransformShape::Mesh(_) => return Err(node.refused("must be a matrix")),
+                TransformShape::Quad(_) | TransformShape::Mesh(_) => {
+                    return Err(node.refused("must be a matrix"));
+                }
             };
         }
         Ok(Some(Arc::new(home)))
     }
-    /// A preset, an inline brush, or a preset or the brush of the stroke before with some of its fields changed.
+
+    /// A preset, an inline brush, or a preset or the brush of the stroke before with some of its
+    /// fields changed.
     fn brush(&mut self, node: &JsonNode, before: Option<Brush>) -> Result<(Brush, Operator)> {
         let mut fields = node.fields()?;
         let (base, operator) = match fields.get("preset") {
             Some(name) => presets::named(&name)?,
             None if fields.boolean("same", false)? => match before {
                 Some(before) => (before, Operator::None),
-                None => return Err(node.refused("is the same as before, but there is no stroke before it")),
+                None => {
+                    return Err(
+                        node.refused("is the same as before, but there is no stroke before it")
+                    );
+                }
             },
             None => Default::default(),
         };
         let mut brush = settings(&mut fields, base)?;
-        let mut picture = |node: &JsonNode| self.pictures.source(self.source, node, Adjust::default());
+        let mut picture =
+            |node: &JsonNode| self.pictures.source(self.source, node, Adjust::default());
         tips::read(&mut fields, &mut brush, &mut picture)?;
         fields.finish()?;
         Ok((brush, operator))
@@ -87,7 +101,10 @@ impl LayerReader<'_> {
 }
 
 /// The strokes of a layer as in its `strokes`, one after the other.
-pub fn written<'a>(list: &'a StrokeList, selections: &'a SelectionList) -> impl Iterator<Item = Value> + 'a {
+pub fn written<'a>(
+    list: &'a StrokeList,
+    selections: &'a SelectionList,
+) -> impl Iterator<Item = Value> + 'a {
     let mut before: Option<JsonObject> = None;
     list.strokes.iter().map(move |stroke| {
         let brush = write_brush(stroke.brush());
@@ -120,7 +137,8 @@ fn write(stroke: &Stroke, brush: &JsonObject) -> Value {
     out.done()
 }
 
-/// The difference of a brush from the one before it, if it is only that; a plain brush needs no fields.
+/// The difference of a brush from the one before it, if it is only that; a plain brush needs no
+/// fields.
 fn as_before(brush: &JsonObject, before: &JsonObject) -> Option<JsonObject> {
     let shared = |brush: &JsonObject| -> Vec<(String, Value)> {
         let fields = brush.fields().iter().filter(|(name, _)| !OWN.contains(&name.as_str()));
@@ -147,7 +165,8 @@ mod tests {
 
     #[test]
     fn a_brush_that_stays_is_said_once() {
-        let brush = Brush { size: 30.0, tip: Tip::Square { ratio: 0.5 }, seed: 7, ..Brush::default() };
+        let brush =
+            Brush { size: 30.0, tip: Tip::Square { ratio: 0.5 }, seed: 7, ..Brush::default() };
         let turned = StrokeFrame { turn: 90.0, is_mirrored: true };
         let brushes = [
             brush.clone(),
@@ -163,8 +182,10 @@ mod tests {
             Arc::new(Stroke::new(brush.clone(), Operator::None, Color::BLACK, samples))
         };
         let list = StrokeList { strokes: brushes.iter().map(stroke).collect() };
-        let none = SelectionList::of(&crate::document::Document::empty(crate::math::Size::new(4, 4)));
-        let told: Vec<Value> = written(&list, &none).map(|stroke| stroke["brush"].clone()).collect();
+        let none =
+            SelectionList::of(&crate::document::Document::empty(crate::math::Size::new(4, 4)));
+        let told: Vec<Value> =
+            written(&list, &none).map(|stroke| stroke["brush"].clone()).collect();
         assert_eq!(
             told[1..3],
             [
@@ -184,6 +205,7 @@ mod tests {
             assert!(stroke.brush() == brush);
         }
     }
+
     #[test]
     fn the_same_as_nothing_is_refused() {
         let text = r#"{ "canvas": { "width": 4, "height": 4 },
@@ -195,7 +217,10 @@ mod tests {
             budget: &budget,
             onto: None,
         };
-        let said = super::super::read(text.as_bytes(), source).err().map(|e| e.to_string()).unwrap_or_default();
+        let said = super::super::read(text.as_bytes(), source)
+            .err()
+            .map(|e| e.to_string())
+            .unwrap_or_default();
         assert!(said.contains("layers[0].strokes[0].brush: is the same as before"), "{said}");
     }
 }

@@ -1,10 +1,11 @@
-//! Reads and writes the surface: its maps and what their numbers mean. Floor 5. `io::maps` detects what is not given.
+//! Reads and writes the surface: its maps and what their numbers mean. Floor 5. `io::maps` detects
+//! what is not given.
 
 use super::transforms;
 use crate::Result;
 use crate::document::source::{
-    DepthConvention, DepthEncoding, MapSource, MaskSource, Near, NormalConvention, NormalEncoding, NormalSpace,
-    SurfaceSource,
+    DepthConvention, DepthEncoding, MapSource, MaskSource, Near, NormalConvention, NormalEncoding,
+    NormalSpace, SurfaceSource,
 };
 use crate::files;
 use crate::json::{Fields, JsonNode, JsonObject, object};
@@ -52,7 +53,9 @@ fn normal(node: &JsonNode) -> Result<MapSource<NormalConvention>> {
     let map = MapSource {
         file: file(&mut fields)?,
         channel: channel(&mut fields)?,
-        convention: fields.get("convention").map_or(Ok(NormalConvention::default()), |c| normal_convention(&c))?,
+        convention: fields
+            .get("convention")
+            .map_or(Ok(NormalConvention::default()), |c| normal_convention(&c))?,
     };
     fields.finish()?;
     Ok(map)
@@ -73,7 +76,10 @@ pub fn normal_convention(node: &JsonNode) -> Result<NormalConvention> {
         flip_z: flag("flip_z")?,
         snap_flat: flag("snap_flat")?,
         smooth_steps: flag("smooth_steps")?,
-        encoding: fields.get("encoding").map(|node| node.one_of(&NormalEncoding::ALL)).transpose()?,
+        encoding: fields
+            .get("encoding")
+            .map(|node| node.one_of(&NormalEncoding::ALL))
+            .transpose()?,
         channels: fields.get("channels").map(|node| channels(&node)).transpose()?,
         space: fields.get("space").map(|node| node.one_of(&NormalSpace::ALL)).transpose()?,
         world_to_camera: fields.get("world_to_camera").map(|node| rotation(&node)).transpose()?,
@@ -85,7 +91,9 @@ pub fn normal_convention(node: &JsonNode) -> Result<NormalConvention> {
 fn channels(node: &JsonNode) -> Result<[u8; 3]> {
     let letters = node.text()?;
     let read = NormalConvention::channels_from_letters(letters);
-    read.ok_or_else(|| node.refused(format!("is “{letters}”; it must be three different letters of rgba")))
+    read.ok_or_else(|| {
+        node.refused(format!("is “{letters}”; it must be three different letters of rgba"))
+    })
 }
 
 /// The upper left 3 × 3 of a matrix of three or four rows. Its translation moves no normal.
@@ -108,7 +116,10 @@ fn depth(node: &JsonNode) -> Result<MapSource<DepthConvention>> {
     let plain = DepthConvention::default();
     let convention = DepthConvention {
         near: fields.one_of("near", &Near::ALL, plain.near)?,
-        encoding: fields.get("encoding").map(|node| node.one_of(&DepthEncoding::ALL)).transpose()?,
+        encoding: fields
+            .get("encoding")
+            .map(|node| node.one_of(&DepthEncoding::ALL))
+            .transpose()?,
         fov_degrees: fields.get("fov").map(|node| node.number(1.0..=179.0)).transpose()?,
         background: match fields.get("background") {
             Some(node) => node.numbers(0, MOST_BACKGROUNDS, f32::MIN..=f32::MAX)?,
@@ -189,7 +200,9 @@ pub fn write_normal_convention(into: &mut JsonObject, c: &NormalConvention) {
     let mut out = JsonObject::default();
     out.said("encoding", c.encoding, |e| e.name().into());
     out.said("channels", c.channels, |c| NormalConvention::letters(c).into());
-    for (name, flag) in [("srgb", c.srgb), ("flip_x", c.flip_x), ("flip_y", c.flip_y), ("flip_z", c.flip_z)] {
+    for (name, flag) in
+        [("srgb", c.srgb), ("flip_x", c.flip_x), ("flip_y", c.flip_y), ("flip_z", c.flip_z)]
+    {
         out.said(name, flag, Value::from);
     }
     out.said("space", c.space, |s| s.name().into());

@@ -46,8 +46,8 @@ pub fn read(fields: &mut Fields, brush: &mut Brush, picture: &mut PictureReader)
     Ok(())
 }
 
-/// `{ "file": "leaf.png" }`, `{ "kind": "ellipse", "ratio": 0.5 }`, `{ "kind": "hose", "files": […], "ranks": […] }`
-/// and so on.
+/// `{ "file": "leaf.png" }`, `{ "kind": "ellipse", "ratio": 0.5 }`, `{ "kind": "hose", "files":
+/// […], "ranks": […] }` and so on.
 fn tip(node: &JsonNode, picture: &mut PictureReader) -> Result<Tip> {
     let mut fields = node.fields()?;
     let kind = match fields.get("kind") {
@@ -61,7 +61,10 @@ fn tip(node: &JsonNode, picture: &mut PictureReader) -> Result<Tip> {
         TipKind::Bristles => {
             let plain = Bristles::default();
             let count = whole(&mut fields, "count", plain.count, Bristles::COUNT)?;
-            Tip::Bristles(Bristles { count, seed: whole(&mut fields, "seed", plain.seed, 0..=u32::MAX)? })
+            Tip::Bristles(Bristles {
+                count,
+                seed: whole(&mut fields, "seed", plain.seed, 0..=u32::MAX)?,
+            })
         }
         TipKind::Noise => {
             let plain = Noise::default();
@@ -77,13 +80,19 @@ fn tip(node: &JsonNode, picture: &mut PictureReader) -> Result<Tip> {
     Ok(tip)
 }
 
-fn whole(fields: &mut Fields, name: &'static str, default: u32, range: std::ops::RangeInclusive<u32>) -> Result<u32> {
+fn whole(
+    fields: &mut Fields,
+    name: &'static str,
+    default: u32,
+    range: std::ops::RangeInclusive<u32>,
+) -> Result<u32> {
     fields.get(name).map_or(Ok(default), |node| node.whole(range))
 }
 
 fn hose(fields: &mut Fields, picture: &mut PictureReader) -> Result<Hose> {
     let files = fields.required("files")?;
-    let pictures = files.list(Hose::MOST_PICTURES)?.iter().map(picture).collect::<Result<Vec<_>>>()?;
+    let pictures =
+        files.list(Hose::MOST_PICTURES)?.iter().map(picture).collect::<Result<Vec<_>>>()?;
     if pictures.is_empty() {
         return Err(files.refused("is empty; a hose has at least one picture"));
     }
@@ -127,7 +136,11 @@ fn grain(node: &JsonNode, picture: &mut PictureReader) -> Result<BrushGrain> {
         rotation: fields.number("rotation", plain.rotation, TURNS)?,
         strength: fields.number("strength", plain.strength, UNIT)?,
         levels,
-        lies: if let GrainSpace::Surface { .. } = lies { GrainSpace::Surface { gamma } } else { lies },
+        lies: if let GrainSpace::Surface { .. } = lies {
+            GrainSpace::Surface { gamma }
+        } else {
+            lies
+        },
     };
     fields.finish()?;
     Ok(grain)
@@ -160,7 +173,8 @@ pub fn write_tip(out: &mut JsonObject, tip: &Tip) {
         Tip::Picture(source) => written.set("file", source.file.as_str().into()),
         Tip::Hose(hose) => {
             kind("hose");
-            written.set("files", hose.pictures().iter().map(|source| source.file.as_str()).collect());
+            written
+                .set("files", hose.pictures().iter().map(|source| source.file.as_str()).collect());
             written.set("ranks", hose.ranks().iter().map(write_rank).collect());
         }
     }
@@ -168,8 +182,10 @@ pub fn write_tip(out: &mut JsonObject, tip: &Tip) {
 }
 
 fn write_rank(rank: &HoseRank) -> Value {
-    let word =
-        RankSelect::ALL.iter().find(|(select, _)| *select == rank.select).map_or("incremental", |(_, word)| word);
+    let word = RankSelect::ALL
+        .iter()
+        .find(|(select, _)| *select == rank.select)
+        .map_or("incremental", |(_, word)| word);
     json!({ "count": rank.count, "select": word })
 }
 
@@ -179,7 +195,10 @@ pub fn write_grain(out: &mut JsonObject, grain: Option<&BrushGrain>) {
     let mut written = JsonObject::default();
     match &grain.source {
         GrainSource::Pattern { pattern, seed } => {
-            let word = Pattern::ALL.iter().find(|(known, _)| known == pattern).map_or("paper", |(_, word)| word);
+            let word = Pattern::ALL
+                .iter()
+                .find(|(known, _)| known == pattern)
+                .map_or("paper", |(_, word)| word);
             written.set("kind", word.into());
             if *seed != 0 {
                 written.set("seed", (*seed).into());
@@ -244,18 +263,25 @@ mod tests {
             assert_eq!(out.done(), text);
         }
     }
+
     #[test]
     fn what_cannot_be_is_refused_in_a_sentence() {
         let says = |value: Value, what: &str| {
             let said = read_brush(&value).err().map(|e| e.to_string()).unwrap_or_default();
             assert!(said.contains(what), "{said}");
         };
-        says(json!({ "tip": { "kind": "elipse" } }), "tip.kind: is “elipse”; it must be one of round, ellipse");
+        says(
+            json!({ "tip": { "kind": "elipse" } }),
+            "tip.kind: is “elipse”; it must be one of round, ellipse",
+        );
         says(json!({ "tip": { "kind": "ellipse", "ratio": 2 } }), "tip.ratio: is 2");
         says(json!({ "tip": {} }), "tip.file: is missing");
         says(json!({ "tip": { "kind": "round", "ratio": 1 } }), "tip.ratio: is unknown");
         says(json!({ "tip": { "kind": "hose", "files": [] } }), "tip.files: is empty");
-        says(json!({ "grain": { "levels": [0.5, 0.5] } }), "grain.levels: must hold the lower level first");
+        says(
+            json!({ "grain": { "levels": [0.5, 0.5] } }),
+            "grain.levels: must hold the lower level first",
+        );
         says(json!({ "grain": { "lies": "floor" } }), "must be one of canvas, surface");
     }
 }

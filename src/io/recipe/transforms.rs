@@ -9,7 +9,8 @@ use crate::raster::Resampling;
 use serde_json::{Value, json};
 use std::sync::Arc;
 
-/// `{ "matrix": [a, b, c, d, e, f] }`, `{ "quad": [[x, y] × 4] }` or `{ "mesh": … }`, with a `filter`.
+/// `{ "matrix": [a, b, c, d, e, f] }`, `{ "quad": [[x, y] × 4] }` or `{ "mesh": … }`, with a
+/// `filter`.
 ///
 /// * `canvas`: the frame of a mesh that states none; without it a mesh must state one.
 pub fn read(node: &JsonNode, canvas: Option<Size>) -> Result<LayerTransform> {
@@ -20,8 +21,12 @@ pub fn read(node: &JsonNode, canvas: Option<Size>) -> Result<LayerTransform> {
         (Some(node), None, None) => TransformShape::Matrix(matrix_of(node)?),
         (None, Some(node), None) => TransformShape::Quad(corners(node)?),
         (None, None, Some(node)) => TransformShape::Mesh(Arc::new(mesh_of(node, canvas)?)),
-        (None, None, None) => return Err(node.refused("has neither “matrix” nor “quad” nor “mesh”")),
-        (Some(_), Some(_), _) => return Err(node.refused("has both “matrix” and “quad”; it must have one")),
+        (None, None, None) => {
+            return Err(node.refused("has neither “matrix” nor “quad” nor “mesh”"));
+        }
+        (Some(_), Some(_), _) => {
+            return Err(node.refused("has both “matrix” and “quad”; it must have one"));
+        }
         _ => return Err(node.refused("has “mesh” and another shape; it must have one")),
     };
     fields.finish()?;
@@ -34,14 +39,17 @@ pub fn read(node: &JsonNode, canvas: Option<Size>) -> Result<LayerTransform> {
 pub fn matrix_of(node: &JsonNode) -> Result<[f64; 6]> {
     let items = node.list(6)?;
     let [a, b, c, d, e, f] = &items[..] else {
-        return Err(node.refused(format!("has {} numbers; it must have 6: a, b, c, d, e, f", items.len())));
+        return Err(
+            node.refused(format!("has {} numbers; it must have 6: a, b, c, d, e, f", items.len()))
+        );
     };
     let [a, b, c, d] = [a, b, c, d].map(|item| item.exact_number(LayerTransform::FACTOR));
     let [e, f] = [e, f].map(|item| item.exact_number(COORDINATE));
     Ok([a?, b?, c?, d?, e?, f?])
 }
 
-/// `{ "columns": 4, "rows": 4, "frame": [x, y, width, height], "points": [[x, y], …] }`, points row by row.
+/// `{ "columns": 4, "rows": 4, "frame": [x, y, width, height], "points": [[x, y], …] }`, points row
+/// by row.
 fn mesh_of(node: &JsonNode, canvas: Option<Size>) -> Result<Mesh> {
     let mut fields = node.fields()?;
     let side = *Mesh::SIDE.start() as i64..=*Mesh::SIDE.end() as i64;
@@ -50,7 +58,9 @@ fn mesh_of(node: &JsonNode, canvas: Option<Size>) -> Result<Mesh> {
     let frame = match (fields.get("frame"), canvas) {
         (Some(node), _) => {
             let items = node.list(4)?;
-            let [x, y, w, h] = &items[..] else { return Err(node.refused("is no frame [x, y, width, height]")) };
+            let [x, y, w, h] = &items[..] else {
+                return Err(node.refused("is no frame [x, y, width, height]"));
+            };
             let side = |node: &JsonNode| node.number(MeshFrame::SIDE_PX);
             let corner = vec2(x.number(COORDINATE)?, y.number(COORDINATE)?);
             MeshFrame { corner, size: vec2(side(w)?, side(h)?) }
@@ -82,20 +92,27 @@ fn corners(node: &JsonNode) -> Result<[DVec2; 4]> {
     };
     let items = node.list(4)?;
     let corners: Vec<DVec2> = items.iter().map(corner).collect::<Result<_>>()?;
-    corners.try_into().map_err(|_| node.refused(format!("has {} points; it must have 4", items.len())))
+    corners
+        .try_into()
+        .map_err(|_| node.refused(format!("has {} points; it must have 4", items.len())))
 }
 
 pub fn write(transform: &LayerTransform) -> Value {
     let mut out = JsonObject::default();
     match &transform.shape {
         TransformShape::Matrix(coefficients) => out.set("matrix", json!(coefficients)),
-        TransformShape::Quad(corners) => out.set("quad", json!(corners.map(|corner| [corner.x, corner.y]))),
+        TransformShape::Quad(corners) => {
+            out.set("quad", json!(corners.map(|corner| [corner.x, corner.y])))
+        }
         TransformShape::Mesh(mesh) => {
             let MeshFrame { corner, size } = mesh.frame();
             let frame = [corner.x, corner.y, size.x, size.y].map(object::number);
             let points: Vec<Value> = mesh.points().iter().map(|p| object::point(*p)).collect();
             let (columns, rows) = (mesh.columns(), mesh.rows());
-            out.set("mesh", json!({ "columns": columns, "rows": rows, "frame": frame, "points": points }));
+            out.set(
+                "mesh",
+                json!({ "columns": columns, "rows": rows, "frame": frame, "points": points }),
+            );
         }
     }
     out.word("filter", &Resampling::ALL, transform.filter, Resampling::default());
@@ -124,6 +141,7 @@ mod tests {
             assert_eq!(parsed(&write(&transform).to_string()).unwrap(), transform);
         }
     }
+
     #[test]
     fn what_is_no_map_is_refused_by_its_path() {
         for (text, why) in [
@@ -135,9 +153,18 @@ mod tests {
             (r#"{"quad":[[0,0],[9,0],[9,9],[0,9]],"matrix":[1,0,0,1,0,0]}"#, "has both"),
             (r#"{"mesh":{"columns":1,"rows":2,"points":[]}}"#, "mesh.columns"),
             (r#"{"mesh":{"columns":2,"rows":34,"points":[]}}"#, "mesh.rows"),
-            (r#"{"mesh":{"columns":2,"rows":2,"points":[[0,0],[1,0],[0,1]]}}"#, "has 3 points; 2 × 2 make 4"),
-            (r#"{"mesh":{"columns":2,"rows":2,"points":[[0,0],[1,0],[0,1],[1,null]]}}"#, "mesh.points[3][1]"),
-            (r#"{"mesh":{"columns":2,"rows":2,"points":[[0,0],[1,0],[0,1],[1,1e9]]}}"#, "mesh.points[3][1]"),
+            (
+                r#"{"mesh":{"columns":2,"rows":2,"points":[[0,0],[1,0],[0,1]]}}"#,
+                "has 3 points; 2 × 2 make 4",
+            ),
+            (
+                r#"{"mesh":{"columns":2,"rows":2,"points":[[0,0],[1,0],[0,1],[1,null]]}}"#,
+                "mesh.points[3][1]",
+            ),
+            (
+                r#"{"mesh":{"columns":2,"rows":2,"points":[[0,0],[1,0],[0,1],[1,1e9]]}}"#,
+                "mesh.points[3][1]",
+            ),
             (
                 r#"{"mesh":{"columns":2,"rows":2,"frame":[0,0,0,9],"points":[[0,0],[1,0],[0,1],[1,1]]}}"#,
                 "mesh.frame[2]",

@@ -1,5 +1,5 @@
-//! Values that are read the same way everywhere: in recipes, in projects and in the lines of replays. Floor 5. Each
-//! is read and written in the file of its subject.
+//! Values that are read the same way everywhere: in recipes, in projects and in the lines of
+//! replays. Floor 5. Each is read and written in the file of its subject.
 
 use crate::json::JsonNode;
 use crate::{Error, Result};
@@ -10,8 +10,8 @@ pub trait RecipeValue: Sized {
     fn to_json(&self) -> Value;
     fn from_json(node: &JsonNode) -> Result<Self>;
 
-    /// Reads a value that is not from a file, its numbers in their ranges or not; a refusal is the rest of a sentence
-    /// that begins with its name.
+    /// Reads a value that is not from a file, its numbers in their ranges or not; a refusal is the
+    /// rest of a sentence that begins with its name.
     fn from_value(value: &Value) -> Result<Self, String> {
         let node = JsonNode::unranged(value);
         Self::from_json(&node).map_err(|error| match error {

@@ -6,10 +6,12 @@ use crate::paint::Measure;
 use crate::paint::grain::GrainSpace;
 use crate::surface::Operator;
 
-/// The newest schema this program reads. A document that needs nothing newer is written as the first.
+/// The newest schema this program reads. A document that needs nothing newer is written as the
+/// first.
 pub const VERSION: i64 = 2;
 
-/// Whether a layer is on the unwrapped surface, or sees itself, which the first version does not know.
+/// Whether a layer is on the unwrapped surface, or sees itself, which the first version does not
+/// know.
 pub fn unwraps(document: &Document) -> bool {
     let is_print = |operator: Operator| matches!(operator, Operator::Surface { .. });
     let is_new = |layer: &Layer| match &layer.content {
@@ -17,7 +19,9 @@ pub fn unwraps(document: &Document) -> bool {
             let bend = &live.params().bend;
             is_print(bend.operator) || !bend.pieces.is_empty()
         }
-        Content::Gradient(live) => is_print(live.params().operator) || !live.params().pieces.is_empty(),
+        Content::Gradient(live) => {
+            is_print(live.params().operator) || !live.params().pieces.is_empty()
+        }
         Content::Strokes(live) => live.params().strokes.iter().any(|stroke| {
             let (brush, grain) = (stroke.brush(), stroke.brush().grain.as_ref());
             is_print(stroke.operator())
@@ -35,7 +39,12 @@ pub fn needs_second_version(document: &Document) -> bool {
     let has_matrix = document.surface_source.as_ref().is_some_and(|source| source.matrix.is_some());
     let is_new = |layer: &Layer| {
         let is_carried = layer.on.is_some() || layer.content.has_homes();
-        is_carried || layer.transform.is_some() || layer.liquify.is_some() || layer.label != LayerLabel::None
+        is_carried
+            || layer.transform.is_some()
+            || layer.liquify.is_some()
+            || layer.label != LayerLabel::None
     };
-    has_matrix || !document.parts.is_empty() || document.walk().iter().any(|(_, layer)| is_new(layer))
+    has_matrix
+        || !document.parts.is_empty()
+        || document.walk().iter().any(|(_, layer)| is_new(layer))
 }

@@ -1,5 +1,5 @@
-//! One drawing's recovery log on a disk: appended to after every edit, and rewritten when it has grown to twice the
-//! needed size. Floor 5. It is used from one thread, which `mod` owns.
+//! One drawing's recovery log on a disk: appended to after every edit, and rewritten when it has
+//! grown to twice the needed size. Floor 5. It is used from one thread, which `mod` owns.
 
 use super::DrawingVersion;
 use super::log::{self, RecordKind};
@@ -37,7 +37,8 @@ pub struct Journal {
 impl Journal {
     /// Nothing is written before the first document.
     pub fn new(fs: Arc<dyn Fs>, path: PathBuf, title: &str, file: Option<&Path>) -> Self {
-        let head = json!({ "format": "rilievo-recovery", "version": 1, "title": title, "file": file });
+        let head =
+            json!({ "format": "rilievo-recovery", "version": 1, "title": title, "file": file });
         Self {
             fs,
             path,
@@ -51,10 +52,17 @@ impl Journal {
             given_up: Arc::default(),
         }
     }
-    /// The version recorded last is what a file holds, or with no file what the drawing was made as.
+
+    /// The version recorded last is what a file holds, or with no file what the drawing was made
+    /// as.
     ///
     /// If this cannot be written, the drawing is offered for recovery once more than necessary.
-    pub fn saved(&mut self, title: &str, file: Option<&Path>, stamp: Option<FileStamp>) -> Result<()> {
+    pub fn saved(
+        &mut self,
+        title: &str,
+        file: Option<&Path>,
+        stamp: Option<FileStamp>,
+    ) -> Result<()> {
         (self.head["title"], self.head["file"]) = (json!(title), json!(file));
         let stamp = stamp.map(|stamp| json!([stamp.bytes, stamp.crc]));
         let said = json!({ "title": title, "file": file, "stamp": stamp }).to_string();
@@ -63,6 +71,7 @@ impl Journal {
         debug_assert!(is_short, "it has a few hundred bytes");
         self.append(&out)
     }
+
     /// Appends a version of the drawing.
     pub fn record(&mut self, version: impl Into<DrawingVersion>) -> Result<()> {
         let version = &version.into();
@@ -71,13 +80,16 @@ impl Journal {
             return self.write_anew(version);
         }
         let mut out = Vec::new();
-        if let Err(error) = state::write(&self.path, version, &mut self.known, &mut out, &self.given_up) {
+        if let Err(error) =
+            state::write(&self.path, version, &mut self.known, &mut out, &self.given_up)
+        {
             // The state it remembers no longer matches the log.
             self.handle = None;
             return Err(error);
         }
         self.append(&out)
     }
+
     fn append(&mut self, out: &[u8]) -> Result<()> {
         let Some(handle) = &mut self.handle else { return Ok(()) };
         if let Err(e) = handle.write_all(out) {
@@ -88,6 +100,7 @@ impl Journal {
         self.unsynced = true;
         Ok(())
     }
+
     /// Makes sure that what was appended outlives a power cut.
     pub fn sync(&mut self) -> Result<()> {
         if !std::mem::take(&mut self.unsynced) {
@@ -100,6 +113,7 @@ impl Journal {
             Error::io(&self.path, e)
         })
     }
+
     /// Writes a log of only this version next to the old one, and replaces that.
     fn write_anew(&mut self, version: &DrawingVersion) -> Result<()> {
         let failed = |e| Error::io(&self.path, e);

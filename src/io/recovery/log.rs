@@ -18,7 +18,8 @@ pub enum RecordKind {
     Blob = 2,
     /// JSON: the whole document after an edit, its large parts by their keys.
     State = 3,
-    /// JSON: at this point the document equals its file, or is as it was created; nothing would be lost.
+    /// JSON: at this point the document equals its file, or is as it was created; nothing would be
+    /// lost.
     Saved = 4,
 }
 
@@ -35,7 +36,9 @@ impl RecordKind {
 /// A payload is shorter than 4 GiB; a longer one is not written, and the result is `false`.
 #[must_use]
 pub fn push(log: &mut Vec<u8>, kind: RecordKind, payload: &[&[u8]]) -> bool {
-    let Ok(length) = u32::try_from(payload.iter().map(|part| part.len()).sum::<usize>()) else { return false };
+    let Ok(length) = u32::try_from(payload.iter().map(|part| part.len()).sum::<usize>()) else {
+        return false;
+    };
     log.extend(length.to_le_bytes());
     log.push(kind as u8);
     let mut crc = crc32fast::Hasher::new();
@@ -77,8 +80,8 @@ impl<'a> Iterator for Records<'a> {
     }
 }
 
-/// The end of a log, if all of it is valid: the kind of its last record, and the contents of the last
-/// [`RecordKind::Saved`].
+/// The end of a log, if all of it is valid: the kind of its last record, and the contents of the
+/// last [`RecordKind::Saved`].
 ///
 /// Reads piece by piece: a broken log may be long.
 pub fn end(log: &mut dyn Read) -> Option<(RecordKind, Option<Vec<u8>>)> {
@@ -139,6 +142,7 @@ mod tests {
         assert_eq!(kinds, [RecordKind::Head, RecordKind::Blob, RecordKind::State]);
         assert_eq!(records(&log).nth(1).unwrap().1[8..], *b"pixels");
     }
+
     #[test]
     fn the_end_is_known_only_of_a_log_that_is_whole() {
         let mut log = log();
@@ -147,7 +151,10 @@ mod tests {
         assert_eq!(end(&mut &log[..]), Some((RecordKind::Saved, Some(b"{}".to_vec()))));
         for n in 0..log.len() {
             let seen = end(&mut &log[..n]);
-            assert!(seen.is_none_or(|(kind, saved)| kind != RecordKind::Saved && saved.is_none()), "cut at {n}");
+            assert!(
+                seen.is_none_or(|(kind, saved)| kind != RecordKind::Saved && saved.is_none()),
+                "cut at {n}"
+            );
         }
         for bit in 0..log.len() * 8 {
             let mut broken = log.clone();
@@ -155,11 +162,13 @@ mod tests {
             assert_eq!(end(&mut &broken[..]), None, "bit {bit}");
         }
     }
+
     #[test]
     fn a_log_cut_anywhere_or_with_any_bit_flipped_gives_a_prefix() {
         let whole = log();
         let all: Vec<_> = records(&whole).collect();
-        let is_prefix = |bytes: &[u8]| records(bytes).zip(&all).all(|(found, known)| found == *known);
+        let is_prefix =
+            |bytes: &[u8]| records(bytes).zip(&all).all(|(found, known)| found == *known);
         for end in 0..whole.len() {
             assert!(is_prefix(&whole[..end]) && records(&whole[..end]).count() < all.len());
         }

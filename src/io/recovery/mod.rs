@@ -1,6 +1,6 @@
-//! Recovery: after every edit the drawing is written to a log next to the settings, so that a crash or a power cut
-//! loses only the last moments (docs/PROJECTS.md). Floor 5. Saving is `io::save`; the log is for accidents only, and is
-//! gone once the drawing is closed.
+//! Recovery: after every edit the drawing is written to a log next to the settings, so that a crash
+//! or a power cut loses only the last moments (docs/PROJECTS.md). Floor 5. Saving is `io::save`;
+//! the log is for accidents only, and is gone once the drawing is closed.
 //!
 //! | file | |
 //! |---|---|
@@ -31,10 +31,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-/// Appended edits are flushed after this time at the latest; with the flush itself it stays below five seconds.
+/// Appended edits are flushed after this time at the latest; with the flush itself it stays below
+/// five seconds.
 const FLUSH_AFTER: Duration = Duration::from_secs(3);
 
-/// The recovery log of one open drawing: a worker that writes it, and a lock that marks the session as alive.
+/// The recovery log of one open drawing: a worker that writes it, and a lock that marks the session
+/// as alive.
 ///
 /// Dropped without [`RecoveryLog::close`], it leaves the log, as a crash does.
 pub struct RecoveryLog {
@@ -73,7 +75,8 @@ impl RecoveryLog {
     ///
     /// * `file`: where it was opened from or saved to; `None` for an untitled one.
     ///
-    /// Fails where the folder cannot be made or no lock can be had: then the drawing goes on without recovery.
+    /// Fails where the folder cannot be made or no lock can be had: then the drawing goes on
+    /// without recovery.
     pub fn start(
         fs: Arc<dyn Fs>,
         folder: &Path,
@@ -89,37 +92,54 @@ impl RecoveryLog {
         let trouble = Arc::default();
         let worker = std::thread::Builder::new().name("recovery".into());
         let told = Arc::clone(&trouble);
-        let worker = worker.spawn(move || work(journal, &received, &told)).map_err(|e| Error::io(folder, e))?;
-        let recovery = Self { tasks: Some(tasks), given_up, worker: Some(worker), trouble, fs, path, lock: Some(lock) };
+        let worker = worker
+            .spawn(move || work(journal, &received, &told))
+            .map_err(|e| Error::io(folder, e))?;
+        let recovery = Self {
+            tasks: Some(tasks),
+            given_up,
+            worker: Some(worker),
+            trouble,
+            fs,
+            path,
+            lock: Some(lock),
+        };
         recovery.record(version);
         Ok(recovery)
     }
+
     /// Writes a version of the drawing; called after every edit, undo and redo. Returns at once.
     pub fn record(&self, version: impl Into<DrawingVersion>) {
         self.send(RecoveryTask::Record(version.into()));
     }
-    /// The version recorded last equals the file; without a file, the drawing as created. Nothing would be lost.
+
+    /// The version recorded last equals the file; without a file, the drawing as created. Nothing
+    /// would be lost.
     pub fn saved(&self, title: &str, file: Option<&Path>, stamp: Option<FileStamp>) {
         self.send(RecoveryTask::Saved(title.into(), file.map(Path::to_owned), stamp));
     }
-    /// Waits until everything recorded has reached the system, where a crash or `kill -9` cannot lose it; no longer
-    /// than `patience`. Returns whether it has.
+
+    /// Waits until everything recorded has reached the system, where a crash or `kill -9` cannot
+    /// lose it; no longer than `patience`. Returns whether it has.
     pub fn settle(&self, patience: Duration) -> bool {
         let (done, is_done) = channel();
         self.send(RecoveryTask::Tell(done, false));
         // The worker signals by dropping the sender, which also happens if it ends.
         !matches!(is_done.recv_timeout(patience), Err(RecvTimeoutError::Timeout))
     }
+
     /// Waits until everything recorded is on the disk, where a power cut cannot lose it.
     pub fn flush(&self) {
         let (done, is_done) = channel();
         self.send(RecoveryTask::Tell(done, true));
         let _ = is_done.recv();
     }
+
     /// Why the last version could not be written, until one can.
     pub fn trouble(&self) -> Option<String> {
         self.trouble.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
+
     /// Ends the session and deletes its log: the drawing is saved, or the user discarded it.
     pub fn close(mut self) -> Result<()> {
         self.given_up.store(true, Ordering::Relaxed);
@@ -127,18 +147,22 @@ impl RecoveryLog {
         for extension in ["new", "log", "lock"] {
             let path = self.path.with_extension(extension);
             match self.fs.remove(&path) {
-                Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(Error::io(path, e)),
+                Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
+                    return Err(Error::io(path, e));
+                }
                 _ => {}
             }
         }
         Ok(())
     }
+
     fn send(&self, task: RecoveryTask) {
         if let Some(tasks) = &self.tasks {
             // A worker that has ended has reported its error.
             let _ = tasks.send(task);
         }
     }
+
     /// The worker writes everything recorded, and ends.
     fn stop(&mut self) {
         self.tasks = None;
@@ -155,7 +179,8 @@ impl Drop for RecoveryLog {
     }
 }
 
-/// The folder of sessions: `rilievo/recovery` in the user's folder for state; `None` if the system has none.
+/// The folder of sessions: `rilievo/recovery` in the user's folder for state; `None` if the system
+/// has none.
 pub fn folder() -> Option<PathBuf> {
     use etcetera::BaseStrategy;
     let base = etcetera::choose_base_strategy().ok()?;
@@ -163,13 +188,15 @@ pub fn folder() -> Option<PathBuf> {
     Some(state.join("rilievo").join("recovery"))
 }
 
-/// A name that no session has, and the lock that makes it ours. The name begins with the time, so that sessions sort.
+/// A name that no session has, and the lock that makes it ours. The name begins with the time, so
+/// that sessions sort.
 fn fresh_session(fs: &dyn Fs, folder: &Path) -> Result<(PathBuf, Box<dyn FileLock>)> {
     let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_micros();
     for attempt in 0..1000 {
         let path = folder.join(format!("{now:016x}-{}-{attempt}.log", std::process::id()));
         let is_free = fs.found(&path).map_err(|e| Error::io(&path, e))?.is_none();
-        if let Some(lock) = fs.lock(&path.with_extension("lock")).map_err(|e| Error::io(&path, e))?
+        if let Some(lock) =
+            fs.lock(&path.with_extension("lock")).map_err(|e| Error::io(&path, e))?
             && is_free
         {
             return Ok((path, lock));
@@ -178,13 +205,14 @@ fn fresh_session(fs: &dyn Fs, folder: &Path) -> Result<(PathBuf, Box<dyn FileLoc
     Err(Error::io(folder, std::io::Error::other("no name for a recovery log is free")))
 }
 
-/// Writes versions as they come, and flushes them in time. Of versions that came while one was written only the last
-/// counts.
+/// Writes versions as they come, and flushes them in time. Of versions that came while one was
+/// written only the last counts.
 fn work(mut journal: Journal, tasks: &Receiver<RecoveryTask>, trouble: &Mutex<Option<String>>) {
     let mut waiting_since: Option<Instant> = None;
     let mut next = None;
     let say = |what: Option<Error>| {
-        *trouble.lock().unwrap_or_else(PoisonError::into_inner) = what.map(|error| error.to_string());
+        *trouble.lock().unwrap_or_else(PoisonError::into_inner) =
+            what.map(|error| error.to_string());
     };
     // Only a successfully written version clears an error.
     let tell = |result: Result<()>| {
@@ -193,7 +221,8 @@ fn work(mut journal: Journal, tasks: &Receiver<RecoveryTask>, trouble: &Mutex<Op
         }
     };
     loop {
-        let patience = waiting_since.map_or(Duration::MAX, |since| FLUSH_AFTER.saturating_sub(since.elapsed()));
+        let patience = waiting_since
+            .map_or(Duration::MAX, |since| FLUSH_AFTER.saturating_sub(since.elapsed()));
         match next.take().map_or_else(|| tasks.recv_timeout(patience), Ok) {
             Ok(RecoveryTask::Record(version)) => {
                 next = tasks.try_recv().ok();
@@ -203,7 +232,9 @@ fn work(mut journal: Journal, tasks: &Receiver<RecoveryTask>, trouble: &Mutex<Op
                 say(journal.record(version).err());
                 waiting_since.get_or_insert_with(Instant::now);
             }
-            Ok(RecoveryTask::Saved(title, file, stamp)) => tell(journal.saved(&title, file.as_deref(), stamp)),
+            Ok(RecoveryTask::Saved(title, file, stamp)) => {
+                tell(journal.saved(&title, file.as_deref(), stamp))
+            }
             Ok(RecoveryTask::Tell(done, flushed)) => {
                 if flushed {
                     tell(journal.sync());

@@ -1,5 +1,5 @@
-//! Lost sessions: what sessions that ended without being closed left, and how it is recovered. Floor 5. Nothing is
-//! deleted without asking, and nothing here can keep the program from starting.
+//! Lost sessions: what sessions that ended without being closed left, and how it is recovered.
+//! Floor 5. Nothing is deleted without asking, and nothing here can keep the program from starting.
 
 use super::DrawingVersion;
 use super::log::{self, RecordKind};
@@ -24,7 +24,8 @@ pub struct LostSession {
     pub title: String,
     /// Where it was last saved, if it was. The recovered drawing is untitled all the same.
     pub file: Option<PathBuf>,
-    /// Recovery was started once and did not finish: it is tried again only if the user chooses this one.
+    /// Recovery was started once and did not finish: it is tried again only if the user chooses
+    /// this one.
     pub has_failed: bool,
     _lock: Box<dyn FileLock>,
 }
@@ -37,21 +38,32 @@ pub struct RecoveredDocument {
     pub versions: usize,
 }
 
-/// The sessions below a folder that are not alive, oldest first. Unreadable ones are left where they are.
+/// The sessions below a folder that are not alive, oldest first. Unreadable ones are left where
+/// they are.
 pub fn sessions(fs: &Arc<dyn Fs>, folder: &Path) -> Vec<LostSession> {
     let paths = fs.list(folder).unwrap_or_default();
-    let logs = paths.into_iter().filter(|path| path.extension().is_some_and(|extension| extension == "log"));
+    let logs = paths
+        .into_iter()
+        .filter(|path| path.extension().is_some_and(|extension| extension == "log"));
     logs.filter_map(|path| session(fs, path)).collect()
 }
 
-/// How many sessions below a folder other processes hold: open windows, and for a moment a killed one, whose locks the
-/// system releases only when its last thread has ended.
+/// How many sessions below a folder other processes hold: open windows, and for a moment a killed
+/// one, whose locks the system releases only when its last thread has ended.
 pub fn held_by_others(fs: &Arc<dyn Fs>, folder: &Path) -> usize {
     let ours = format!("-{}-", std::process::id());
     let is_log = |path: &&PathBuf| path.extension().is_some_and(|extension| extension == "log");
-    let is_theirs = |path: &&PathBuf| path.file_name().is_some_and(|name| !name.to_string_lossy().contains(&ours));
+    let is_theirs = |path: &&PathBuf| {
+        path.file_name().is_some_and(|name| !name.to_string_lossy().contains(&ours))
+    };
     let is_held = |path: &&PathBuf| matches!(fs.lock(&path.with_extension("lock")), Ok(None));
-    fs.list(folder).unwrap_or_default().iter().filter(is_log).filter(is_theirs).filter(is_held).count()
+    fs.list(folder)
+        .unwrap_or_default()
+        .iter()
+        .filter(is_log)
+        .filter(is_theirs)
+        .filter(is_held)
+        .count()
 }
 
 /// `None` while its own process, or another window, holds it.
@@ -74,14 +86,25 @@ fn named(head: &Value) -> (String, Option<PathBuf>) {
     (title, head["file"].as_str().map(PathBuf::from))
 }
 
-/// The last whole version in the bytes of a log, with the surface that its parts make; `None` if cancelled.
-pub fn read(file: &Path, log: &[u8], budget: &Budget, progress: &Progress) -> Cancellable<RecoveredDocument> {
+/// The last whole version in the bytes of a log, with the surface that its parts make; `None` if
+/// cancelled.
+pub fn read(
+    file: &Path,
+    log: &[u8],
+    budget: &Budget,
+    progress: &Progress,
+) -> Cancellable<RecoveredDocument> {
     let last = LastState::of(log);
     let version = last.version(file, budget)?;
-    let version = version.ok_or_else(|| Error::decode(file, "it holds no whole version of the drawing"))?;
+    let version =
+        version.ok_or_else(|| Error::decode(file, "it holds no whole version of the drawing"))?;
     let Some(document) = version.document.reshaped_telling(progress) else { return Ok(None) };
     let (title, _) = named(&last.head.unwrap_or_default());
-    Ok(Some(RecoveredDocument { version: DrawingVersion { document, ..version }, title, versions: last.states }))
+    Ok(Some(RecoveredDocument {
+        version: DrawingVersion { document, ..version },
+        title,
+        versions: last.states,
+    }))
 }
 
 impl LostSession {
@@ -91,10 +114,16 @@ impl LostSession {
         let micros = u64::from_str_radix(name.split('-').next()?, 16).ok()?;
         UNIX_EPOCH.checked_add(Duration::from_micros(micros))
     }
+
     /// The last whole version in the log; `None` if cancelled.
     ///
-    /// It leaves a mark file while it works: if it crashes the program, `has_failed` is true the next time.
-    pub fn recover(&mut self, budget: &Budget, progress: &Progress) -> Cancellable<RecoveredDocument> {
+    /// It leaves a mark file while it works: if it crashes the program, `has_failed` is true the
+    /// next time.
+    pub fn recover(
+        &mut self,
+        budget: &Budget,
+        progress: &Progress,
+    ) -> Cancellable<RecoveredDocument> {
         let mark = self.path.with_extension("trying");
         // Without the mark nothing would be lost but the warning.
         let _ = self.fs.create_new(&mark).and_then(|mut mark| mark.sync());
@@ -104,8 +133,9 @@ impl LostSession {
         self.has_failed = false;
         Ok(recovered)
     }
-    /// Whether the last version equals its file, or the drawing as created: then nothing was lost. Reads the whole log,
-    /// piece by piece, and with it the last name of the drawing.
+
+    /// Whether the last version equals its file, or the drawing as created: then nothing was lost.
+    /// Reads the whole log, piece by piece, and with it the last name of the drawing.
     pub fn is_safe(&mut self) -> bool {
         let end = self.fs.open(&self.path).ok().and_then(|mut handle| log::end(&mut handle));
         let Some((last, Some(saved))) = end else { return false };
@@ -118,6 +148,7 @@ impl LostSession {
         let is_held = |found| held.is_none_or(|(bytes, crc)| found == FileStamp { bytes, crc });
         last == RecordKind::Saved && found.is_ok_and(is_held)
     }
+
     fn read(&self, budget: &Budget, progress: &Progress) -> Cancellable<RecoveredDocument> {
         let io = |e| Error::io(&self.path, e);
         let mut log = Vec::new();
@@ -125,12 +156,16 @@ impl LostSession {
         handle.take(budget.unpacked_bytes).read_to_end(&mut log).map_err(io)?;
         read(&self.path, &log, budget, progress)
     }
-    /// Deletes what the session left: only if the user says so, or once the drawing is safe in another session.
+
+    /// Deletes what the session left: only if the user says so, or once the drawing is safe in
+    /// another session.
     pub fn discard(self) -> Result<()> {
         for extension in ["trying", "new", "log", "lock"] {
             let path = self.path.with_extension(extension);
             match self.fs.remove(&path) {
-                Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(Error::io(path, e)),
+                Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
+                    return Err(Error::io(path, e));
+                }
                 _ => {}
             }
         }

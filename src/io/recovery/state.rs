@@ -1,5 +1,5 @@
-//! A document in a recovery log: small JSON after every edit, and each large part once, by key. Floor 5. The schema is
-//! that of recipes; tiles, strokes and files are replaced by keys of blobs.
+//! A document in a recovery log: small JSON after every edit, and each large part once, by key.
+//! Floor 5. The schema is that of recipes; tiles, strokes and files are replaced by keys of blobs.
 
 use super::DrawingVersion;
 use super::log::{self, RecordKind};
@@ -35,7 +35,8 @@ enum LoggedPart {
 
 /// Appends what a document needs and the log does not hold yet, then the document itself.
 ///
-/// It also fails when the log was given up; after a failure neither `known` nor the appended bytes are usable.
+/// It also fails when the log was given up; after a failure neither `known` nor the appended bytes
+/// are usable.
 pub fn write(
     file: &Path,
     version: &DrawingVersion,
@@ -46,8 +47,12 @@ pub fn write(
     let DrawingVersion { document, aside } = version;
     let (pixels, shared) = (BTreeMap::new(), BTreeMap::new());
     let mut assets = AssetList::again(std::mem::take(&mut known.made));
-    let renamed = assets.rename(file, document, &StoredPixels { pixels: &pixels, shared: &shared })?;
-    let bare = Document { layers: renamed.layers.iter().map(without_large_parts).collect(), ..renamed.clone() };
+    let renamed =
+        assets.rename(file, document, &StoredPixels { pixels: &pixels, shared: &shared })?;
+    let bare = Document {
+        layers: renamed.layers.iter().map(without_large_parts).collect(),
+        ..renamed.clone()
+    };
     let list = SelectionList::of(document);
     let mut writer = StateWriter { file, list: &list, known, used: HashMap::new(), out, given_up };
     let mut value = recipe::write_naming(&bare, &list);
@@ -74,7 +79,9 @@ fn without_large_parts(layer: &Arc<Layer>) -> Arc<Layer> {
     match &mut next.content {
         Content::Strokes(live) => *live = Live::new(StrokeList::default()),
         Content::Pixels(pixels) => *pixels = PixelLayer { file: String::new(), ..pixels.clone() },
-        Content::Group(group) => group.layers = group.layers.iter().map(without_large_parts).collect(),
+        Content::Group(group) => {
+            group.layers = group.layers.iter().map(without_large_parts).collect()
+        }
         _ => {}
     }
     Arc::new(next)
@@ -93,7 +100,9 @@ impl StateWriter<'_> {
     /// Puts keys in the places of tiles and strokes; `value` holds `layers` as JSON.
     fn layers(&mut self, layers: &[Arc<Layer>], value: &mut Value) -> Result<()> {
         for (i, layer) in layers.iter().enumerate() {
-            let Some(value) = value.get_mut("layers").and_then(|layers| layers.get_mut(i)) else { continue };
+            let Some(value) = value.get_mut("layers").and_then(|layers| layers.get_mut(i)) else {
+                continue;
+            };
             match &layer.content {
                 Content::Group(group) => self.layers(&group.layers, value)?,
                 Content::Pixels(pixels) => value["tiles"] = self.tiles(&pixels.tiles)?,
@@ -106,6 +115,7 @@ impl StateWriter<'_> {
         }
         Ok(())
     }
+
     fn tiles(&mut self, tiles: &TileGrid) -> Result<Value> {
         let file = self.file;
         let one = |(at, tile): (TileAt, &Arc<Tile>)| {
@@ -115,16 +125,27 @@ impl StateWriter<'_> {
         };
         tiles.iter().map(one).collect()
     }
+
     fn stroke(&mut self, stroke: &Arc<Stroke>) -> Result<Value> {
         let held = LoggedPart::Stroke { _stroke: stroke.clone() };
         let bytes = || Ok(recipe::write_stroke(stroke).to_string().into_bytes());
         let key = self.key(Arc::as_ptr(stroke) as usize, held, bytes)?;
         // The ids of selections are those of this version of the document; the blob stays.
         let selection = recipe::write_of_stroke(stroke, self.list);
-        Ok(if selection.is_empty() { key.into() } else { recipe::with_selection(json!({ "stroke": key }), &selection) })
+        Ok(if selection.is_empty() {
+            key.into()
+        } else {
+            recipe::with_selection(json!({ "stroke": key }), &selection)
+        })
     }
+
     /// The key of a part in memory; its bytes are written if the log does not have them yet.
-    fn key(&mut self, address: usize, held: LoggedPart, bytes: impl FnOnce() -> Result<Vec<u8>>) -> Result<u64> {
+    fn key(
+        &mut self,
+        address: usize,
+        held: LoggedPart,
+        bytes: impl FnOnce() -> Result<Vec<u8>>,
+    ) -> Result<u64> {
         if let Some((key, _)) = self.used.get(&address) {
             return Ok(*key);
         }
@@ -137,7 +158,10 @@ impl StateWriter<'_> {
                 let key = self.known.next;
                 self.known.next += 1;
                 if !log::push(self.out, RecordKind::Blob, &[&key.to_le_bytes(), &bytes()?]) {
-                    return Err(Error::too_large(self.file, "a part of the drawing has more than 4 GiB"));
+                    return Err(Error::too_large(
+                        self.file,
+                        "a part of the drawing has more than 4 GiB",
+                    ));
                 }
                 key
             }
@@ -168,7 +192,9 @@ impl<'a> LastState<'a> {
         let mut last = LastState { head: None, states: 0, state: None, blobs: HashMap::new() };
         for (kind, payload) in log::records(log) {
             match kind {
-                RecordKind::Head | RecordKind::Saved => last.head = serde_json::from_slice(payload).ok().or(last.head),
+                RecordKind::Head | RecordKind::Saved => {
+                    last.head = serde_json::from_slice(payload).ok().or(last.head)
+                }
                 RecordKind::State => (last.state, last.states) = (Some(payload), last.states + 1),
                 RecordKind::Blob => {
                     if let Some((key, bytes)) = payload.split_first_chunk() {
@@ -179,6 +205,7 @@ impl<'a> LastState<'a> {
         }
         last
     }
+
     /// The drawing; `None` where the log holds none.
     pub fn version(&self, file: &Path, budget: &Budget) -> Result<Option<DrawingVersion>> {
         let Some(state) = self.state else { return Ok(None) };
@@ -187,9 +214,16 @@ impl<'a> LastState<'a> {
         self.fill_in(file, budget, &mut state["document"], ("", &mut tiles))?;
         let document = state["document"].take();
         let blobs = BlobFiles { file, names: &state["files"], last: self };
-        let mut document = recipe::read_value(&document, RecipeSource { file, files: &blobs, budget, onto: None })?;
+        let mut document = recipe::read_value(
+            &document,
+            RecipeSource { file, files: &blobs, budget, onto: None },
+        )?;
         for (path, grid) in tiles {
-            let id = document.walk().into_iter().find(|(known, _)| *known == path).map(|(_, layer)| layer.id);
+            let id = document
+                .walk()
+                .into_iter()
+                .find(|(known, _)| *known == path)
+                .map(|(_, layer)| layer.id);
             let put = |layer: &mut Layer| {
                 if let Content::Pixels(pixels) = &mut layer.content {
                     pixels.tiles = grid;
@@ -199,7 +233,9 @@ impl<'a> LastState<'a> {
         }
         Ok(Some(DrawingVersion { document, aside: state["aside"].take() }))
     }
-    /// Puts strokes back in the places of their keys, and takes the tiles out, by the paths of their layers.
+
+    /// Puts strokes back in the places of their keys, and takes the tiles out, by the paths of
+    /// their layers.
     fn fill_in(
         &self,
         file: &Path,
@@ -216,7 +252,11 @@ impl<'a> LastState<'a> {
                 for key in keys {
                     let mut told = key.take();
                     let blob = told.as_object_mut().and_then(|told| told.shift_remove("stroke"));
-                    *key = recipe::parse(file, self.blob(file, blob.as_ref().unwrap_or(&told))?, budget)?;
+                    *key = recipe::parse(
+                        file,
+                        self.blob(file, blob.as_ref().unwrap_or(&told))?,
+                        budget,
+                    )?;
                     if let (Value::Object(stroke), Value::Object(told)) = (&mut *key, told) {
                         stroke.extend(told);
                     }
@@ -229,10 +269,13 @@ impl<'a> LastState<'a> {
         }
         Ok(())
     }
+
     fn grid(&self, file: &Path, tiles: &[Value]) -> Result<TileGrid> {
         let mut grid = TileGrid::default();
         for tile in tiles {
-            let side = |i: usize| tile[i].as_i64().and_then(|n| i32::try_from(n).ok()).filter(|n| n.abs() < 1 << 14);
+            let side = |i: usize| {
+                tile[i].as_i64().and_then(|n| i32::try_from(n).ok()).filter(|n| n.abs() < 1 << 14)
+            };
             let (Some(col), Some(row)) = (side(0), side(1)) else {
                 return Err(Error::decode(file, "a tile of the drawing has no place"));
             };
@@ -246,6 +289,7 @@ impl<'a> LastState<'a> {
         }
         Ok(grid)
     }
+
     fn blob(&self, file: &Path, key: &Value) -> Result<&'a [u8]> {
         let found = key.as_u64().and_then(|key| self.blobs.get(&key).copied());
         found.ok_or_else(|| Error::decode(file, "a part of the drawing is missing"))
@@ -263,10 +307,14 @@ impl Files for BlobFiles<'_> {
     fn read(&self, name: &str, budget: &Budget) -> Result<Vec<u8>> {
         let bytes = self.last.blob(&self.path(name), &self.names[name])?;
         if bytes.len() as u64 > budget.file_bytes {
-            return Err(Error::too_large(self.path(name), format!("it has more than {} bytes", budget.file_bytes)));
+            return Err(Error::too_large(
+                self.path(name),
+                format!("it has more than {} bytes", budget.file_bytes),
+            ));
         }
         Ok(bytes.to_vec())
     }
+
     fn path(&self, name: &str) -> PathBuf {
         self.file.join(name)
     }

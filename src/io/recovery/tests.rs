@@ -19,16 +19,23 @@ fn dotted(strokes: usize) -> Document {
         rgba[(i * 37 % (130 * 70)) * 4..][..4].copy_from_slice(&[i as u8, 200, 7, 255]);
     }
     let tiles = TileGrid::from_straight_rgba(&rgba, 130, 70, 0, 0);
-    let layer = Layer::new("dots", Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles }));
+    let layer =
+        Layer::new("dots", Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles }));
     Document { layers: vec![Arc::new(layer)], ..base }
 }
+
 fn journal(fs: &MemoryFs) -> Journal {
     Journal::new(Arc::new(fs.clone()), LOG.into(), "dots", None)
 }
+
 fn read(log: &[u8]) -> (usize, Option<Document>) {
     let last = LastState::of(log);
-    (last.states, last.version(Path::new(LOG), &Budget::default()).unwrap().map(|version| version.document))
+    (
+        last.states,
+        last.version(Path::new(LOG), &Budget::default()).unwrap().map(|version| version.document),
+    )
 }
+
 fn disk() -> Arc<dyn Fs> {
     Arc::new(Disk)
 }
@@ -43,6 +50,7 @@ fn every_kind_of_layer_comes_back() {
     assert_eq!(states, 1);
     assert_same(&document, &back.unwrap());
 }
+
 #[test]
 fn soft_paint_comes_back_in_16_bits() {
     let fs = MemoryFs::with(&[("/r/other", b"")]);
@@ -53,6 +61,7 @@ fn soft_paint_comes_back_in_16_bits() {
     assert_same(&document, &back);
     assert_eq!(deep_tiles(&back), deep_tiles(&document));
 }
+
 /// A line of so many readings of the pen.
 fn drawn(count: usize) -> Arc<crate::paint::Stroke> {
     use crate::paint::{Brush, Sample, Stroke};
@@ -61,8 +70,14 @@ fn drawn(count: usize) -> Arc<crate::paint::Stroke> {
         let at = crate::math::vec2(24.0 + 18.0 * t.sin(), 20.0 + 15.0 * (0.3 * t).cos());
         Sample { pressure: 0.5 + 0.4 * t.sin(), time_secs: t, ..Sample::at(at) }.settled()
     };
-    Arc::new(Stroke::new(Brush::default(), Default::default(), Color::BLACK, (0..count).map(one).collect()))
+    Arc::new(Stroke::new(
+        Brush::default(),
+        Default::default(),
+        Color::BLACK,
+        (0..count).map(one).collect(),
+    ))
 }
+
 #[test]
 fn strokes_of_an_hour_come_back_and_take_little() {
     use crate::document::{Live, StrokeList};
@@ -76,6 +91,7 @@ fn strokes_of_an_hour_come_back_and_take_little() {
     assert!(log.len() < 900_000 * 14, "{} bytes", log.len());
     assert_eq!(document.difference(&read(&log).1.unwrap()), None);
 }
+
 #[test]
 fn selections_come_back_with_the_strokes_in_them_and_selecting_writes_no_stroke_again() {
     use crate::document::{Live, StrokeList};
@@ -87,7 +103,11 @@ fn selections_come_back_with_the_strokes_in_them_and_selecting_writes_no_stroke_
     let empty = Document::empty(Size::new(48, 40)).with_selection(Some(square(5)));
     let own = empty.stroke_selection().map(|own| own.moved(crate::math::vec2(1.5, 0.0)));
     let other = StrokeSelection::new(Arc::new(square(20)));
-    let strokes = vec![Arc::new(drawn(9).selecting(own)), Arc::new(drawn(50_000).selecting(Some(other))), drawn(7)];
+    let strokes = vec![
+        Arc::new(drawn(9).selecting(own)),
+        Arc::new(drawn(50_000).selecting(Some(other))),
+        drawn(7),
+    ];
     let layer = Layer::new("Ink", Content::Strokes(Live::new(StrokeList { strokes })));
     let document = Document { layers: vec![Arc::new(layer)], ..empty };
     journal.record(&document).unwrap();
@@ -100,6 +120,7 @@ fn selections_come_back_with_the_strokes_in_them_and_selecting_writes_no_stroke_
     assert!((log.len() - whole) * 10 < whole, "{} of {whole}", log.len() - whole);
     assert_eq!(next.difference(&read(&log).1.unwrap()), None);
 }
+
 #[test]
 fn a_log_of_an_older_version_with_a_number_a_value_opens() {
     let fs = MemoryFs::with(&[("/r/other", b"")]);
@@ -108,15 +129,24 @@ fn a_log_of_an_older_version_with_a_number_a_value_opens() {
     let rows: Vec<[f32; 3]> = (0..200_000).map(|i| [i as f32 / 8.0, 7.0, 0.5]).collect();
     let mut log = fs.file(LOG).unwrap();
     let blob = serde_json::json!({ "color": "#102030", "samples": rows }).to_string();
-    assert!(super::log::push(&mut log, super::log::RecordKind::Blob, &[&99_999u64.to_le_bytes(), blob.as_bytes()]));
+    assert!(super::log::push(
+        &mut log,
+        super::log::RecordKind::Blob,
+        &[&99_999u64.to_le_bytes(), blob.as_bytes()]
+    ));
     let state = serde_json::json!({
         "document": { "canvas": { "width": 8, "height": 8 }, "layers": [{ "kind": "strokes", "strokes": [99_999] }] },
         "files": {},
     });
-    assert!(super::log::push(&mut log, super::log::RecordKind::State, &[state.to_string().as_bytes()]));
+    assert!(super::log::push(
+        &mut log,
+        super::log::RecordKind::State,
+        &[state.to_string().as_bytes()]
+    ));
     let back = read(&log).1.unwrap();
     assert_eq!(back.strokes(back.layers[0].id)[0].samples().len(), 200_000);
 }
+
 #[test]
 fn an_edit_adds_what_it_changed_and_no_more() {
     let fs = MemoryFs::with(&[("/r/other", b"")]);
@@ -125,12 +155,14 @@ fn an_edit_adds_what_it_changed_and_no_more() {
     journal.record(&document).unwrap();
     let whole = fs.file(LOG).unwrap().len();
     let id = document.layer_named("ground").unwrap().id;
-    let edited = document.with_layer(id, |layer| layer.content = Content::Fill(Color::WHITE)).unwrap();
+    let edited =
+        document.with_layer(id, |layer| layer.content = Content::Fill(Color::WHITE)).unwrap();
     journal.record(&edited).unwrap();
     let log = fs.file(LOG).unwrap();
     assert!((log.len() - whole) * 3 < whole, "{} of {whole}", log.len() - whole);
     assert_same(&edited, &read(&log).1.unwrap());
 }
+
 #[test]
 fn a_log_cut_anywhere_loses_the_last_edit_at_most() {
     let fs = MemoryFs::with(&[("/r/other", b"")]);
@@ -154,6 +186,7 @@ fn a_log_cut_anywhere_loses_the_last_edit_at_most() {
         }
     }
 }
+
 #[test]
 fn a_log_with_any_bit_flipped_gives_a_version_that_was() {
     let fs = MemoryFs::with(&[("/r/other", b"")]);
@@ -177,10 +210,12 @@ fn a_log_with_any_bit_flipped_gives_a_version_that_was() {
     }
     assert_eq!(least, 0, "the first record's bits count");
 }
+
 fn pixels_of(document: &Document) -> Vec<u8> {
     let Content::Pixels(pixels) = &document.layers[0].content else { panic!("pixels") };
     pixels.tiles.to_straight_rgba(document.size.rect())
 }
+
 #[test]
 fn a_log_that_has_grown_is_written_anew() {
     let fs = MemoryFs::with(&[("/r/other", b"")]);
@@ -196,7 +231,9 @@ fn a_log_that_has_grown_is_written_anew() {
     assert!(pixels_of(&back.unwrap()) == pixels_of(&dotted(59)));
     assert_eq!(fs.names(), [LOG, "/r/other"]);
 }
-/// Every operation of three records fails with every error, once and for ever: what was recorded before stays.
+
+/// Every operation of three records fails with every error, once and for ever: what was recorded
+/// before stays.
 #[test]
 fn a_failing_disk_costs_at_most_what_could_not_be_written() {
     let run = |fs: &MemoryFs| {
@@ -207,7 +244,9 @@ fn a_failing_disk_costs_at_most_what_could_not_be_written() {
     let whole = MemoryFs::with(&[("/r/other", b"")]);
     assert_eq!(run(&whole), Some(11));
     for at in 0..whole.operations() {
-        for error in [28, 5, 30, 13, 24].map(InjectedError::Code).into_iter().chain([InjectedError::Short]) {
+        for error in
+            [28, 5, 30, 13, 24].map(InjectedError::Code).into_iter().chain([InjectedError::Short])
+        {
             for sticky in [false, true] {
                 let fs = MemoryFs::with(&[("/r/other", b"")]);
                 fs.fail(InjectedFailure { at, error, sticky });
@@ -218,13 +257,15 @@ fn a_failing_disk_costs_at_most_what_could_not_be_written() {
                 // The last one itself may have been the one that failed.
                 assert!(sticky || last >= Some(10), "{what}: it goes on after one failure");
                 if let Some(last) = last {
-                    let found = pixels_of(&back.unwrap_or_else(|| panic!("{what}: nothing is left")));
+                    let found =
+                        pixels_of(&back.unwrap_or_else(|| panic!("{what}: nothing is left")));
                     assert!((last..12).any(|i| found == pixels_of(&dotted(i))), "{what}");
                 }
             }
         }
     }
 }
+
 #[test]
 fn a_power_cut_takes_nothing_that_was_flushed() {
     let fs = MemoryFs::with(&[("/r/other", b"")]);
@@ -241,10 +282,12 @@ fn a_power_cut_takes_nothing_that_was_flushed() {
         }
     }
 }
+
 #[test]
 fn sessions_that_live_are_left_alone_and_those_that_died_come_back() {
     let folder = tempfile::tempdir().unwrap();
-    let start = |i, title| RecoveryLog::start(disk(), folder.path(), &dotted(i), title, None).unwrap();
+    let start =
+        |i, title| RecoveryLog::start(disk(), folder.path(), &dotted(i), title, None).unwrap();
     let (first, second) = (start(1, "one"), start(2, "two"));
     assert!(sessions(&disk(), folder.path()).is_empty(), "both live");
     assert!(second.settle(Duration::from_secs(60)));
@@ -256,23 +299,29 @@ fn sessions_that_live_are_left_alone_and_those_that_died_come_back() {
     assert_eq!(titles, ["one", "two"]);
     assert!(sessions(&disk(), folder.path()).is_empty(), "another window holds them");
     let recovered = left[1].recover(&Budget::default(), &Progress::default()).unwrap().unwrap();
-    assert!(recovered.versions == 2 && pixels_of(&recovered.version.document) == pixels_of(&dotted(5)));
+    assert!(
+        recovered.versions == 2 && pixels_of(&recovered.version.document) == pixels_of(&dotted(5))
+    );
     drop(left);
     for session in sessions(&disk(), folder.path()) {
         session.discard().unwrap();
     }
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }
+
 #[test]
 fn a_closed_session_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
-    let recovery = RecoveryLog::start(disk(), folder.path(), &dotted(3), "one", Some(Path::new("/a.ora"))).unwrap();
+    let recovery =
+        RecoveryLog::start(disk(), folder.path(), &dotted(3), "one", Some(Path::new("/a.ora")))
+            .unwrap();
     recovery.flush();
     assert_eq!(recovery.trouble(), None);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
     recovery.close().unwrap();
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }
+
 #[test]
 fn a_session_that_failed_once_says_so_and_garbage_keeps_nobody_from_starting() {
     let folder = tempfile::tempdir().unwrap();
@@ -281,24 +330,27 @@ fn a_session_that_failed_once_says_so_and_garbage_keeps_nobody_from_starting() {
     }
     let mut left = sessions(&disk(), folder.path());
     assert_eq!(left.len(), 3);
-    assert!(
-        left.iter_mut()
-            .all(|session| !session.has_failed && session.recover(&Budget::default(), &Progress::default()).is_err())
-    );
+    assert!(left.iter_mut().all(|session| !session.has_failed
+        && session.recover(&Budget::default(), &Progress::default()).is_err()));
     drop(left);
     let again = sessions(&disk(), folder.path());
     assert!(again.iter().all(|session| session.has_failed), "they are opened by hand only");
     assert!(folder.path().join("c.log").exists(), "nothing is deleted unasked");
     assert!(sessions(&disk(), Path::new("/no/such/folder")).is_empty());
 }
+
 /// Processes are recognised by the locks they hold, not by their ids, which are reused.
 #[test]
 fn a_process_number_that_came_again_hides_nothing() {
     let folder = tempfile::tempdir().unwrap();
     drop(RecoveryLog::start(disk(), folder.path(), &dotted(3), "one", None).unwrap());
     let paths = std::fs::read_dir(folder.path()).unwrap().flatten().map(|entry| entry.path());
-    let log = paths.into_iter().find(|path| path.extension().is_some_and(|extension| extension == "log")).unwrap();
-    // The test can fail: a check of the process id in the name finds a live process and hides the drawing.
+    let log = paths
+        .into_iter()
+        .find(|path| path.extension().is_some_and(|extension| extension == "log"))
+        .unwrap();
+    // The test can fail: a check of the process id in the name finds a live process and hides the
+    // drawing.
     let number = log.file_name().unwrap().to_string_lossy().split('-').nth(1).unwrap().to_owned();
     assert_eq!(number, std::process::id().to_string());
     assert_eq!(sessions(&disk(), folder.path()).len(), 1);

@@ -1,6 +1,6 @@
-//! Replaces a file: all or nothing, read back and compared before it counts. Projects, exports, brushes and settings
-//! are all written this way. Floor 5. Every step prevents a loss that somebody had (docs/PROJECTS.md). Not here: the
-//! bytes themselves.
+//! Replaces a file: all or nothing, read back and compared before it counts. Projects, exports,
+//! brushes and settings are all written this way. Floor 5. Every step prevents a loss that somebody
+//! had (docs/PROJECTS.md). Not here: the bytes themselves.
 
 mod part;
 mod previous;
@@ -19,7 +19,8 @@ pub use target::{check, is_same_file};
 
 /// Bytes written or compared between two looks at whether the file is still wanted.
 const CHUNK: usize = 1 << 20;
-/// Programs that synchronise folders hold a file for some milliseconds; waited for, twice as long each time.
+/// Programs that synchronise folders hold a file for some milliseconds; waited for, twice as long
+/// each time.
 const RENAME_TRIES: u32 = 6;
 const FIRST_PAUSE: Duration = Duration::from_millis(10);
 
@@ -35,6 +36,7 @@ impl FileStamp {
     pub fn of(bytes: &[u8]) -> Self {
         Self { bytes: bytes.len() as u64, crc: crc32fast::hash(bytes) }
     }
+
     /// The stamp of a file, read piece by piece.
     pub(crate) fn read(handle: &mut dyn FileHandle) -> io::Result<Self> {
         let (mut buffer, mut hasher, mut bytes) = (vec![0; CHUNK], crc32fast::Hasher::new(), 0);
@@ -54,7 +56,8 @@ impl FileStamp {
 pub enum Overwrite {
     /// Nothing: no file of that name may exist, up to the moment when it is created.
     Nothing,
-    /// The file as it was when it was opened or last saved; another program's change is not overwritten.
+    /// The file as it was when it was opened or last saved; another program's change is not
+    /// overwritten.
     This(FileStamp),
     /// Whatever is there, unless it is set read-only: the user agreed to lose what has this name.
     Anything,
@@ -87,10 +90,18 @@ impl From<Overwrite> for Terms {
     }
 }
 
-/// Replaces a file by bytes with the mechanism of docs/PROJECTS.md; true if it was done, false if cancelled.
+/// Replaces a file by bytes with the mechanism of docs/PROJECTS.md; true if it was done, false if
+/// cancelled.
 ///
-/// Fails with [`Error::Changed`] if `terms` do not allow the replacement. Whatever fails, the old file is unchanged.
-pub fn replace(fs: &dyn Fs, file: &Path, bytes: &[u8], terms: &Terms, progress: &Progress) -> Result<bool> {
+/// Fails with [`Error::Changed`] if `terms` do not allow the replacement. Whatever fails, the old
+/// file is unchanged.
+pub fn replace(
+    fs: &dyn Fs,
+    file: &Path,
+    bytes: &[u8],
+    terms: &Terms,
+    progress: &Progress,
+) -> Result<bool> {
     ReplaceJob { fs, named: file, bytes, terms, progress }.run()
 }
 
@@ -125,14 +136,15 @@ impl ReplaceJob<'_> {
         self.flush_folder(&target)?;
         Ok(true)
     }
+
     /// Writes the new file under another name and verifies it; false if cancelled meanwhile.
     fn write_part(&self, part: &mut PartFile, target: &Path) -> Result<bool> {
         let chunks = self.bytes.len().div_ceil(CHUNK) as u64;
         self.progress.add_total(2 * chunks);
         let failed = |e| self.failed("it could not be written there; choose another place", e);
         if self.fs.found(target).map_err(failed)?.is_some() {
-            // Before there is anything to read in it. A disk without owners and permissions must not keep anybody from
-            // saving.
+            // Before there is anything to read in it. A disk without owners and permissions must
+            // not keep anybody from saving.
             let _ = self.fs.copy_ownership(target, &part.path);
         }
         for chunk in self.bytes.chunks(CHUNK) {
@@ -145,10 +157,13 @@ impl ReplaceJob<'_> {
         part.handle.sync().map_err(failed)?;
         self.compare(&part.path)
     }
+
     /// The written file is read back.
     fn compare(&self, part: &Path) -> Result<bool> {
-        let failed = |e| self.failed("what was written could not be read back; choose another place", e);
-        let differs = || failed(io::Error::new(ErrorKind::InvalidData, "the disk gave back other bytes"));
+        let failed =
+            |e| self.failed("what was written could not be read back; choose another place", e);
+        let differs =
+            || failed(io::Error::new(ErrorKind::InvalidData, "the disk gave back other bytes"));
         let mut handle = self.fs.open(part).map_err(failed)?;
         let mut buffer = vec![0; CHUNK];
         let mut rest = self.bytes;
@@ -168,28 +183,38 @@ impl ReplaceJob<'_> {
             self.progress.step();
         }
     }
+
     /// Keeps the old file, where that is wanted, and puts the new one in its place.
     fn place(&self, part: &PartFile, target: &Path) -> Result<()> {
         self.allowed(target)?;
         if self.terms.over == Overwrite::Nothing && self.link_new(part, target)? {
             return Ok(());
         }
-        let is_kept = self.terms.keeps_previous && self.fs.found(target).map_err(|e| self.failed("", e))?.is_some();
+        let is_kept = self.terms.keeps_previous
+            && self.fs.found(target).map_err(|e| self.failed("", e))?.is_some();
         let previous = is_kept.then(|| Previous::keep(self.fs, part, target)).transpose();
-        let previous = previous.map_err(|e| self.failed("the previous version could not be kept next to it", e))?;
+        let previous = previous
+            .map_err(|e| self.failed("the previous version could not be kept next to it", e))?;
         let renamed = self.rename(part, target);
         if let Some(previous) = previous {
             if renamed.is_ok() { previous.forget(self.fs) } else { previous.undo(self.fs) }
         }
         renamed
     }
+
     /// Puts the new file in the old one's place.
     fn rename(&self, part: &PartFile, target: &Path) -> Result<()> {
         let mut pause = FIRST_PAUSE;
         for last in (0..RENAME_TRIES).rev() {
             match self.fs.rename(&part.path, target) {
                 Ok(()) => return Ok(()),
-                Err(e) if last > 0 && matches!(e.kind(), ErrorKind::PermissionDenied | ErrorKind::ResourceBusy) => {
+                Err(e)
+                    if last > 0
+                        && matches!(
+                            e.kind(),
+                            ErrorKind::PermissionDenied | ErrorKind::ResourceBusy
+                        ) =>
+                {
                     self.fs.pause(pause);
                     pause *= 2;
                 }
@@ -198,8 +223,9 @@ impl ReplaceJob<'_> {
         }
         Ok(())
     }
-    /// Gives the new file its name if no file has it: of two programs that do so at once, one fails. False if the disk
-    /// has no hard links.
+
+    /// Gives the new file its name if no file has it: of two programs that do so at once, one
+    /// fails. False if the disk has no hard links.
     fn link_new(&self, part: &PartFile, target: &Path) -> Result<bool> {
         match self.fs.link(&part.path, target) {
             Ok(()) => {
@@ -211,16 +237,21 @@ impl ReplaceJob<'_> {
             Err(_) => Ok(false),
         }
     }
+
     /// Without this a power cut brings the old file back.
     fn flush_folder(&self, target: &Path) -> Result<()> {
         match self.fs.sync_dir(folder_of(target)) {
             // Some disks cannot; they have no later moment either.
             Err(e) if !matches!(e.kind(), ErrorKind::InvalidInput | ErrorKind::Unsupported) => {
-                Err(self.failed("the file was written, but whether it stays after a power cut is unknown", e))
+                Err(self.failed(
+                    "the file was written, but whether it stays after a power cut is unknown",
+                    e,
+                ))
             }
             _ => Ok(()),
         }
     }
+
     fn failed(&self, what: &str, error: io::Error) -> Error {
         if what.is_empty() {
             return Error::io(self.named, error);

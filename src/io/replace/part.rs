@@ -1,5 +1,5 @@
-//! The new file while it is being written: next to its target, under a temporary name, locked so that others know it is
-//! in use. Floor 5.
+//! The new file while it is being written: next to its target, under a temporary name, locked so
+//! that others know it is in use. Floor 5.
 
 use crate::fs::{EntryKind, FileHandle, Fs};
 use std::io;
@@ -31,7 +31,8 @@ impl PartFile {
                 Err(e) if e.kind() == io::ErrorKind::AlreadyExists => continue,
                 made => made?,
             };
-            // A disk that cannot hold files is not swept either. One that is swept may have been so before it was held.
+            // A disk that cannot hold files is not swept either. One that is swept may have been so
+            // before it was held.
             let is_ours = handle.hold().unwrap_or(true);
             match fs.found(&path) {
                 Ok(Some(_)) if is_ours => return Ok(Self { path, handle }),
@@ -42,12 +43,16 @@ impl PartFile {
                 Ok(_) => {}
             }
         }
-        Err(io::Error::new(io::ErrorKind::AlreadyExists, "every name for a temporary file is taken"))
+        Err(io::Error::new(
+            io::ErrorKind::AlreadyExists,
+            "every name for a temporary file is taken",
+        ))
     }
 }
 
-/// Removes what killed saves and exports left in a folder: files with our names that no process has locked. Process
-/// numbers are not used, since they are reused. Whatever fails is left for the next time.
+/// Removes what killed saves and exports left in a folder: files with our names that no process has
+/// locked. Process numbers are not used, since they are reused. Whatever fails is left for the next
+/// time.
 pub fn sweep(fs: &dyn Fs, folder: &Path) {
     for path in fs.list(folder).unwrap_or_default().into_iter().filter(|path| is_ours(path)) {
         // Only a regular file: opening a pipe would wait for ever.
@@ -69,13 +74,18 @@ pub fn sweep(fs: &dyn Fs, folder: &Path) {
     }
 }
 
-/// `.rilievo-TOKEN.part`, `.old` or `.older`, and nothing else. A token was a process's number and a count before 1.0.
+/// `.rilievo-TOKEN.part`, `.old` or `.older`, and nothing else. A token was a process's number and
+/// a count before 1.0.
 fn is_ours(path: &Path) -> bool {
-    let name = path.file_name().and_then(|name| name.to_str()).and_then(|name| name.strip_prefix(PREFIX));
+    let name =
+        path.file_name().and_then(|name| name.to_str()).and_then(|name| name.strip_prefix(PREFIX));
     let Some((token, extension)) = name.and_then(|name| name.split_once('.')) else { return false };
-    let is_token = token.len() == DIGITS && token.bytes().all(|b| b.is_ascii_digit() || (b'a'..=b'f').contains(&b));
+    let is_token = token.len() == DIGITS
+        && token.bytes().all(|b| b.is_ascii_digit() || (b'a'..=b'f').contains(&b));
     let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
-    let is_pair = token.split_once('-').is_some_and(|(process, number)| is_number(process) && is_number(number));
+    let is_pair = token
+        .split_once('-')
+        .is_some_and(|(process, number)| is_number(process) && is_number(number));
     (is_token || is_pair) && [PART, SPARE, OLDER].contains(&extension)
 }
 
@@ -109,6 +119,7 @@ mod tests {
         sweep(&fs, Path::new("/d"));
         assert_eq!(fs.names(), others);
     }
+
     #[test]
     fn two_processes_that_would_take_the_same_name_take_two() {
         let fs = MemoryFs::with(&[("/d/other", b"")]);

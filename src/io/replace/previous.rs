@@ -5,7 +5,8 @@ use crate::fs::{EntryKind, Fs};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-/// The previous version next to the file, and the version before that, until the new file is in place.
+/// The previous version next to the file, and the version before that, until the new file is in
+/// place.
 pub struct Previous {
     name: PathBuf,
     /// The version before, under a passing name.
@@ -13,22 +14,25 @@ pub struct Previous {
 }
 
 impl Previous {
-    /// Keeps the file at `target` as `name~`, or under a shorter name if that is too long for the disk. A file of that
-    /// name exists at every moment, and is never half written.
+    /// Keeps the file at `target` as `name~`, or under a shorter name if that is too long for the
+    /// disk. A file of that name exists at every moment, and is never half written.
     pub fn keep(fs: &dyn Fs, part: &PartFile, target: &Path) -> io::Result<Self> {
         let mut name = target.as_os_str().to_owned();
         name.push("~");
         match Self::keep_as(fs, part, target, name.into()) {
-            Err(e) if e.kind() == ErrorKind::InvalidFilename => Self::keep_as(fs, part, target, shortened(target)),
+            Err(e) if e.kind() == ErrorKind::InvalidFilename => {
+                Self::keep_as(fs, part, target, shortened(target))
+            }
             kept => kept,
         }
     }
+
     fn keep_as(fs: &dyn Fs, part: &PartFile, target: &Path, name: PathBuf) -> io::Result<Self> {
         let spare = part.path.with_extension(SPARE);
         let previous = Self { older: set_aside(fs, part, &name)?, name };
         let kept = take(fs, part, target, &spare).and_then(|()| fs.rename(&spare, &previous.name));
-        // The spare name is still there after a failure, and if both names belonged to one file: then nothing is
-        // renamed.
+        // The spare name is still there after a failure, and if both names belonged to one file:
+        // then nothing is renamed.
         let _ = fs.remove(&spare);
         match kept {
             Ok(()) => Ok(previous),
@@ -38,17 +42,21 @@ impl Previous {
             }
         }
     }
-    /// The new file did not get its place: restores the previous version that was next to the old one.
+
+    /// The new file did not get its place: restores the previous version that was next to the old
+    /// one.
     pub fn undo(self, fs: &dyn Fs) {
         let put_back = match &self.older {
             Some(older) => fs.rename(older, &self.name),
             None => fs.remove(&self.name),
         };
-        // A version that cannot be restored keeps its temporary name; none of this touches the old file itself.
+        // A version that cannot be restored keeps its temporary name; none of this touches the old
+        // file itself.
         if put_back.is_ok() {
             self.forget(fs);
         }
     }
+
     /// The new file is in place, and the version before the previous one no longer needed.
     pub fn forget(self, fs: &dyn Fs) {
         self.older.iter().for_each(|older| drop(fs.remove(older)));
@@ -67,8 +75,8 @@ fn set_aside(fs: &dyn Fs, part: &PartFile, name: &Path) -> io::Result<Option<Pat
 
 /// A file under a passing name: a second name where the disk knows such, else a copy.
 fn take(fs: &dyn Fs, part: &PartFile, file: &Path, spare: &Path) -> io::Result<()> {
-    // In a folder where users may remove only their own files, a second name of another user's file could not be
-    // removed.
+    // In a folder where users may remove only their own files, a second name of another user's file
+    // could not be removed.
     let is_ours = fs.is_same_owner(file, &part.path).unwrap_or(false);
     if is_ours && fs.link(file, spare).is_ok() {
         return Ok(());
@@ -85,8 +93,8 @@ fn take(fs: &dyn Fs, part: &PartFile, file: &Path, spare: &Path) -> io::Result<(
     copied
 }
 
-/// A name for the previous version that is no longer than the file's own, used if `name~` does not fit. Its checksum
-/// distinguishes files whose names begin alike.
+/// A name for the previous version that is no longer than the file's own, used if `name~` does not
+/// fit. Its checksum distinguishes files whose names begin alike.
 fn shortened(target: &Path) -> PathBuf {
     let name = target.file_name().unwrap_or_default();
     let extension = format!("-{:08x}~", crc32fast::hash(name.as_encoded_bytes()));
@@ -101,7 +109,8 @@ mod tests {
 
     #[test]
     fn a_shortened_name_fits_and_tells_files_apart() {
-        let of = |name: &str| shortened(&Path::new("/d").join(name)).file_name().unwrap().to_owned();
+        let of =
+            |name: &str| shortened(&Path::new("/d").join(name)).file_name().unwrap().to_owned();
         let (a, b) = (format!("{}a.ora", "ü".repeat(125)), format!("{}b.ora", "ü".repeat(125)));
         assert_eq!(a.len(), 255);
         assert!(of(&a).len() <= 255 && of(&a).to_string_lossy().ends_with('~'));

@@ -10,7 +10,8 @@ use std::path::{Path, PathBuf};
 
 /// Whether [`super::replace`] would begin: for a look before the work that makes the bytes.
 pub fn check(fs: &dyn Fs, file: &Path, terms: &Terms) -> Result<()> {
-    let replacing = ReplaceJob { fs, named: file, bytes: &[], terms, progress: &Progress::default() };
+    let replacing =
+        ReplaceJob { fs, named: file, bytes: &[], terms, progress: &Progress::default() };
     replacing.allowed(&replacing.target()?)
 }
 
@@ -31,11 +32,13 @@ impl ReplaceJob<'_> {
     /// The file itself: where a link leads to, not the link.
     pub(super) fn target(&self) -> Result<PathBuf> {
         let io = |e| self.failed("", e);
-        let irregular = || Error::unsupported(self.named, "it is not a regular file, so it cannot be replaced");
+        let irregular =
+            || Error::unsupported(self.named, "it is not a regular file, so it cannot be replaced");
         match self.fs.found(self.named).map_err(io)? {
             Some(EntryKind::File) | Some(EntryKind::Link) => {
                 let target = self.fs.resolve(self.named);
-                let target = target.map_err(|e| self.failed("it is a link that leads nowhere", e))?;
+                let target =
+                    target.map_err(|e| self.failed("it is a link that leads nowhere", e))?;
                 match self.fs.found(&target).map_err(io)? {
                     Some(EntryKind::File) => Ok(target),
                     _ => Err(irregular()),
@@ -44,18 +47,23 @@ impl ReplaceJob<'_> {
             Some(EntryKind::Folder) => Err(Error::unsupported(self.named, "it is a folder")),
             Some(EntryKind::Other) => Err(irregular()),
             None => {
-                let name = self.named.file_name().ok_or_else(|| Error::unsupported(self.named, "it has no name"))?;
+                let name = self
+                    .named
+                    .file_name()
+                    .ok_or_else(|| Error::unsupported(self.named, "it has no name"))?;
                 let folder = self.fs.resolve(folder_of(self.named));
                 let unreached = |e: io::Error| {
                     let is_absent = e.kind() == ErrorKind::NotFound;
                     let what = "its folder cannot be reached";
-                    let told = format!("{what}: there is no folder {}", folder_of(self.named).display());
+                    let told =
+                        format!("{what}: there is no folder {}", folder_of(self.named).display());
                     self.failed(if is_absent { &told } else { what }, e)
                 };
                 Ok(folder.map_err(unreached)?.join(name))
             }
         }
     }
+
     /// Checks that the existing file may be replaced.
     pub(super) fn allowed(&self, target: &Path) -> Result<()> {
         let io = |e| self.failed("", e);
@@ -64,9 +72,13 @@ impl ReplaceJob<'_> {
             return Ok(());
         }
         if self.is_read(target)? {
-            return Err(Error::unsupported(self.named, "an open document is made from it; write to another file"));
+            return Err(Error::unsupported(
+                self.named,
+                "an open document is made from it; write to another file",
+            ));
         }
-        let changed = |reason: &str| Err(Error::Changed { file: self.named.into(), reason: reason.into() });
+        let changed =
+            |reason: &str| Err(Error::Changed { file: self.named.into(), reason: reason.into() });
         match self.terms.over {
             Overwrite::Forced => return Ok(()),
             Overwrite::Nothing => return Err(self.taken()),
@@ -75,11 +87,20 @@ impl ReplaceJob<'_> {
             }
             Overwrite::This(_) | Overwrite::Anything => {}
         }
-        if self.fs.is_read_only(target).map_err(io)? { changed("it is set read-only") } else { Ok(()) }
+        if self.fs.is_read_only(target).map_err(io)? {
+            changed("it is set read-only")
+        } else {
+            Ok(())
+        }
     }
+
     pub(super) fn taken(&self) -> Error {
-        Error::Changed { file: self.named.into(), reason: "there is a file of this name already".into() }
+        Error::Changed {
+            file: self.named.into(),
+            reason: "there is a file of this name already".into(),
+        }
     }
+
     /// The document is made from this very file, whatever its names.
     fn is_read(&self, target: &Path) -> Result<bool> {
         if self.terms.reads.is_empty() {
@@ -89,6 +110,7 @@ impl ReplaceJob<'_> {
         let is_it = |file: &PathBuf| is_named(self.fs, file, target, identity);
         Ok(self.terms.reads.iter().any(is_it))
     }
+
     fn stamp_of(&self, target: &Path) -> Result<FileStamp> {
         let failed = |e| self.failed("it cannot be compared with what was opened", e);
         FileStamp::read(&mut *self.fs.open(target).map_err(failed)?).map_err(failed)

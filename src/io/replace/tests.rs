@@ -10,12 +10,15 @@ const NEW: &[u8] = &[b'n'; 300];
 fn on(fs: &MemoryFs, terms: &Terms) -> Result<bool> {
     replace(fs, Path::new(FILE), NEW, terms, &Progress::default())
 }
+
 fn save_on(fs: &MemoryFs, over: Overwrite) -> Result<bool> {
     on(fs, &over.into())
 }
+
 fn this() -> Overwrite {
     Overwrite::This(FileStamp::of(OLD))
 }
+
 fn disk() -> MemoryFs {
     MemoryFs::with(&[(FILE, OLD), (KEPT, b"older still")])
 }
@@ -29,6 +32,7 @@ fn the_new_file_stands_in_the_old_ones_place_and_the_old_one_is_kept() {
         assert_eq!(fs.names(), [FILE, KEPT], "nothing else is left");
     }
 }
+
 #[test]
 fn a_file_that_is_not_what_was_opened_is_not_replaced() {
     let fs = MemoryFs::with(&[(FILE, b"somebody else's")]);
@@ -40,6 +44,7 @@ fn a_file_that_is_not_what_was_opened_is_not_replaced() {
     let gone = MemoryFs::with(&[("/d/other", b"")]);
     assert!(save_on(&gone, this()).unwrap(), "a file that is gone can be saved again");
 }
+
 #[test]
 fn a_cancelled_save_changes_nothing() {
     let fs = disk();
@@ -52,8 +57,8 @@ fn a_cancelled_save_changes_nothing() {
 /// The disk, what is written, and the previous version that is kept.
 type Situation = (fn() -> MemoryFs, Terms, Option<&'static [u8]>);
 
-/// The situations in which a disk fails or loses power: the existing files, how the new one is written, and what is
-/// kept.
+/// The situations in which a disk fails or loses power: the existing files, how the new one is
+/// written, and what is kept.
 fn situations() -> Vec<Situation> {
     let older: Option<&[u8]> = Some(b"older still");
     vec![
@@ -66,12 +71,15 @@ fn situations() -> Vec<Situation> {
         (empty_disk, Terms::export(Overwrite::Nothing, vec!["/d/other".into()]), None),
     ]
 }
+
 fn empty_disk() -> MemoryFs {
     MemoryFs::with(&[("/d/other", b"")])
 }
+
 fn left_over(fs: &MemoryFs) -> Vec<String> {
     fs.names().into_iter().filter(|name| name.contains(".rilievo-")).collect()
 }
+
 /// Every operation of a save or an export fails with every error, once and for ever.
 #[test]
 fn a_failing_disk_costs_neither_the_old_file_nor_a_panic() {
@@ -88,14 +96,19 @@ fn a_failing_disk_costs_neither_the_old_file_nor_a_panic() {
         assert!(whole.operations() > 12, "{}", whole.operations());
         let old = made().file(FILE);
         for at in 0..whole.operations() {
-            for (error, sticky) in codes.into_iter().chain([InjectedError::Short]).flat_map(|e| [(e, false), (e, true)])
+            for (error, sticky) in codes
+                .into_iter()
+                .chain([InjectedError::Short])
+                .flat_map(|e| [(e, false), (e, true)])
             {
                 let fs = made();
                 fs.fail(InjectedFailure { at, error, sticky });
                 let result = on(&fs, &terms);
                 fs.heal();
                 let now = fs.file(FILE);
-                let what = format!("situation {which}, operation {at}, {error:?}, sticky {sticky}: {result:?}");
+                let what = format!(
+                    "situation {which}, operation {at}, {error:?}, sticky {sticky}: {result:?}"
+                );
                 match &result {
                     Ok(is_done) => {
                         assert!(*is_done && now.as_deref() == Some(NEW), "{what}");
@@ -103,14 +116,19 @@ fn a_failing_disk_costs_neither_the_old_file_nor_a_panic() {
                     }
                     // Only the folder's flush comes after the new file is in place.
                     Err(said) => {
-                        let is_late = now.as_deref() == Some(NEW) && said.to_string().contains("power cut");
+                        let is_late =
+                            now.as_deref() == Some(NEW) && said.to_string().contains("power cut");
                         assert!(now == old || is_late, "{what}");
                         // After a single failure the previous version is back.
                         let is_as_before = fs.file(KEPT) == made().file(KEPT);
                         assert!(sticky || is_late || is_as_before, "{what}: {:?}", fs.file(KEPT));
                         assert!(said.to_string().contains(FILE), "{what}");
                         // If only one operation fails, the unfinished file is removed.
-                        assert!(sticky || left_over(&fs).is_empty(), "{what}: {:?}", left_over(&fs));
+                        assert!(
+                            sticky || left_over(&fs).is_empty(),
+                            "{what}: {:?}",
+                            left_over(&fs)
+                        );
                     }
                 }
                 cases += 1;
@@ -119,6 +137,7 @@ fn a_failing_disk_costs_neither_the_old_file_nor_a_panic() {
     }
     eprintln!("{cases} failures");
 }
+
 #[test]
 fn a_file_held_for_a_moment_is_waited_for() {
     let whole = disk();
@@ -131,6 +150,7 @@ fn a_file_held_for_a_moment_is_waited_for() {
     });
     assert!(saved.count() >= 1, "the rename is tried again");
 }
+
 #[test]
 fn where_files_cannot_have_two_names_the_old_one_is_copied() {
     let whole = disk();
@@ -139,13 +159,19 @@ fn where_files_cannot_have_two_names_the_old_one_is_copied() {
     let kept_by_copy = (0..whole.operations()).any(|at| {
         let fs = disk();
         fs.fail(InjectedFailure { at, error: InjectedError::Code(EPERM), sticky: false });
-        save_on(&fs, this()).is_ok() && fs.operations() > whole.operations() && fs.file(KEPT).unwrap() == OLD
+        save_on(&fs, this()).is_ok()
+            && fs.operations() > whole.operations()
+            && fs.file(KEPT).unwrap() == OLD
     });
     assert!(kept_by_copy);
 }
 
-/// Power cuts before every operation of a save, with every combination of what may be lost; the number of states.
-fn power_cuts(fs: MemoryFs, save: impl Fn(&MemoryFs) -> bool) -> std::result::Result<usize, String> {
+/// Power cuts before every operation of a save, with every combination of what may be lost; the
+/// number of states.
+fn power_cuts(
+    fs: MemoryFs,
+    save: impl Fn(&MemoryFs) -> bool,
+) -> std::result::Result<usize, String> {
     let is_new = fs.file(FILE).is_none();
     fs.record();
     let saved = save(&fs);
@@ -156,9 +182,12 @@ fn power_cuts(fs: MemoryFs, save: impl Fn(&MemoryFs) -> bool) -> std::result::Re
             let after = moment.after_power_cut(luck);
             states += 1;
             let now = after.file(FILE).or_else(|| is_new.then(|| OLD.to_vec()));
-            let now = now.ok_or_else(|| format!("no file at all after operation {i}, luck {luck}"))?;
+            let now =
+                now.ok_or_else(|| format!("no file at all after operation {i}, luck {luck}"))?;
             if now != OLD && now != NEW {
-                return Err(format!("neither old nor new after operation {i}, luck {luck}: {now:?}"));
+                return Err(format!(
+                    "neither old nor new after operation {i}, luck {luck}: {now:?}"
+                ));
             }
             if saved && i == moments.len() - 1 && now != NEW {
                 return Err(format!("“saved”, yet the old file is back (luck {luck})"));
@@ -167,24 +196,30 @@ fn power_cuts(fs: MemoryFs, save: impl Fn(&MemoryFs) -> bool) -> std::result::Re
     }
     Ok(states)
 }
+
 /// A disk that knows no second names, so that the old file is copied.
 fn disk_without_links() -> MemoryFs {
     let fs = disk();
     fs.refuse_links();
     fs
 }
+
 #[test]
 fn a_power_cut_leaves_the_old_file_or_the_new_one() {
-    let swept = || MemoryFs::with(&[(FILE, OLD), ("/d/.rilievo-1-2.part", b"left by a killed save")]);
+    let swept =
+        || MemoryFs::with(&[(FILE, OLD), ("/d/.rilievo-1-2.part", b"left by a killed save")]);
     let mut states = 0;
-    for (made, terms, _) in
-        situations().into_iter().chain([(swept as fn() -> MemoryFs, Overwrite::Anything.into(), None)])
-    {
+    for (made, terms, _) in situations().into_iter().chain([(
+        swept as fn() -> MemoryFs,
+        Overwrite::Anything.into(),
+        None,
+    )]) {
         states += power_cuts(made(), |fs| on(fs, &terms).is_ok()).unwrap();
     }
     eprintln!("{states} states after power cuts");
     assert!(states >= 20_000, "{states}");
 }
+
 /// The proof can fail: saving without any one of its steps is caught.
 #[test]
 fn the_power_cuts_catch_a_save_that_leaves_out_a_step() {
@@ -206,13 +241,20 @@ fn the_power_cuts_catch_a_save_that_leaves_out_a_step() {
         fs.rename(Path::new("/d/part"), Path::new(FILE)).unwrap();
         fs.sync_dir(Path::new("/d")).is_ok()
     });
-    assert!(unsynced.unwrap_err().contains("neither old nor new"), "renaming without flushing the file");
+    assert!(
+        unsynced.unwrap_err().contains("neither old nor new"),
+        "renaming without flushing the file"
+    );
     let folder_unsynced = power_cuts(disk(), |fs| {
         write(fs, "/d/part", true);
         fs.rename(Path::new("/d/part"), Path::new(FILE)).is_ok()
     });
-    assert!(folder_unsynced.unwrap_err().contains("the old file is back"), "without flushing the folder");
+    assert!(
+        folder_unsynced.unwrap_err().contains("the old file is back"),
+        "without flushing the folder"
+    );
 }
+
 #[test]
 fn a_file_set_read_only_is_replaced_only_by_who_insists() {
     for over in [this(), Overwrite::Anything] {
@@ -221,13 +263,17 @@ fn a_file_set_read_only_is_replaced_only_by_who_insists() {
             fs.set_read_only(FILE);
             let terms = Terms { over, keeps_previous, reads: Vec::new() };
             let said = on(&fs, &terms).unwrap_err();
-            assert!(matches!(said, Error::Changed { .. }) && said.to_string().contains("read-only"), "{said}");
+            assert!(
+                matches!(said, Error::Changed { .. }) && said.to_string().contains("read-only"),
+                "{said}"
+            );
             assert_eq!((fs.file(FILE).unwrap(), fs.names().len()), (OLD.to_vec(), 2));
             assert!(on(&fs, &Terms { over: Overwrite::Forced, ..terms }).unwrap());
             assert_eq!(fs.file(FILE).unwrap(), NEW);
         }
     }
 }
+
 #[test]
 fn what_the_document_is_made_from_is_never_replaced_whatever_its_name() {
     let fs = disk();
@@ -240,14 +286,19 @@ fn what_the_document_is_made_from_is_never_replaced_whatever_its_name() {
     }
     assert_eq!(fs.file(FILE).unwrap(), OLD);
 }
+
 #[test]
 fn a_failed_save_among_other_peoples_files_leaves_nothing_behind() {
     let fs = disk();
     fs.give_away(FILE);
     let said = save_on(&fs, Overwrite::Forced).unwrap_err().to_string();
     assert!(said.contains("could not be replaced"), "{said}");
-    assert_eq!((fs.file(FILE).unwrap(), fs.names()), (OLD.to_vec(), vec![FILE.to_owned(), KEPT.to_owned()]));
+    assert_eq!(
+        (fs.file(FILE).unwrap(), fs.names()),
+        (OLD.to_vec(), vec![FILE.to_owned(), KEPT.to_owned()])
+    );
 }
+
 #[test]
 fn a_failed_save_leaves_the_version_before_as_it_was() {
     for links in [true, false] {
@@ -267,6 +318,7 @@ fn a_failed_save_leaves_the_version_before_as_it_was() {
         }
     }
 }
+
 #[test]
 fn a_save_after_one_that_failed_late_leaves_nothing_behind() {
     let fs = disk();
@@ -277,6 +329,7 @@ fn a_save_after_one_that_failed_late_leaves_nothing_behind() {
     assert_eq!(fs.names(), [FILE, KEPT]);
     assert_eq!((fs.file(FILE).unwrap(), fs.file(KEPT).unwrap()), (NEW.to_vec(), OLD.to_vec()));
 }
+
 #[test]
 fn a_name_as_long_as_a_disk_allows_is_saved_again_and_again() {
     let name = format!("/d/{}.ora", "n".repeat(251));
@@ -284,7 +337,16 @@ fn a_name_as_long_as_a_disk_allows_is_saved_again_and_again() {
     let mut before = OLD.to_vec();
     for round in 0..3u8 {
         let bytes = vec![round; 40];
-        assert!(replace(&fs, Path::new(&name), &bytes, &Overwrite::Anything.into(), &Progress::default()).unwrap());
+        assert!(
+            replace(
+                &fs,
+                Path::new(&name),
+                &bytes,
+                &Overwrite::Anything.into(),
+                &Progress::default()
+            )
+            .unwrap()
+        );
         let kept: Vec<String> = fs.names().into_iter().filter(|name| name.ends_with('~')).collect();
         assert_eq!((fs.file(&name).unwrap(), kept.len()), (bytes.clone(), 1));
         assert_eq!(fs.file(&kept[0]).unwrap(), before);
@@ -292,6 +354,7 @@ fn a_name_as_long_as_a_disk_allows_is_saved_again_and_again() {
     }
     assert_eq!(fs.names().len(), 2);
 }
+
 #[test]
 fn a_save_leaves_alone_what_an_export_beside_it_is_writing() {
     let fs = disk();

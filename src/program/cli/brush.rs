@@ -1,5 +1,5 @@
-//! `rilievo brush`: brushes of other programs as files of this one, and pictures of what a brush paints.
-//! Floor 7.
+//! `rilievo brush`: brushes of other programs as files of this one, and pictures of what a brush
+//! paints. Floor 7.
 
 use super::force::Force;
 use super::{LimitArgs, told};
@@ -14,14 +14,15 @@ use std::path::{Path, PathBuf};
 
 /// Convert brushes of GIMP, MyPaint and Photoshop, or show what a brush paints
 ///
-/// FROM is a .gbr, .gih, .myb or .abr, a preset's .json, or the name of a brush that comes with the program.
+/// FROM is a .gbr, .gih, .myb or .abr, a preset's .json, or the name of a brush that comes with the
+/// program.
 #[derive(clap::Args)]
 pub struct BrushArgs {
     /// The brush, or the collection of brushes, to read
     #[arg(value_name = "FROM")]
     from: PathBuf,
-    /// A .json to write the brush to, with its pictures next to it; or a .png of a stroke over a ball. Each brush of a
-    /// collection goes to a numbered file of its own
+    /// A .json to write the brush to, with its pictures next to it; or a .png of a stroke over a
+    /// ball. Each brush of a collection goes to a numbered file of its own
     #[arg(value_name = "TO")]
     to: PathBuf,
     /// Side of the picture, in pixels
@@ -40,7 +41,9 @@ pub fn run(args: &BrushArgs) -> Result<()> {
             Some(preset) => (vec![(preset, Vec::new())], Vec::new()),
             None => {
                 let brushes = brushes::read(&args.from, &args.limits.budget())?;
-                let reads = brushes.iter().flat_map(|(preset, _)| brush::pictures_beside(&args.from, preset));
+                let reads = brushes
+                    .iter()
+                    .flat_map(|(preset, _)| brush::pictures_beside(&args.from, preset));
                 let reads = std::iter::once(args.from.clone()).chain(reads).collect();
                 (brushes, reads)
             }
@@ -82,14 +85,18 @@ impl ConvertedBrush {
         }
         let target = OutputFile::new(to, terms.clone())?;
         let none = || Error::unsupported(to, "the brush cannot be shown");
-        let (pixels, size) = (swatch::painted(preset, side).ok_or_else(none)?, Size::new(side, side));
+        let (pixels, size) =
+            (swatch::painted(preset, side).ok_or_else(none)?, Size::new(side, side));
         let picture = Picture::srgb8(size, pixels.as_chunks().0.to_vec()).ok_or_else(none)?;
         Ok(ConvertedBrush::Picture(target, picture::to_tiles(&picture, 0, 0), size))
     }
+
     fn write(self, terms: &Terms) -> Result<()> {
         match self {
             ConvertedBrush::Preset(encoded) => encoded.write(terms),
-            ConvertedBrush::Picture(target, tiles, size) => target.write(&tiles, size, &ExportOptions::default()),
+            ConvertedBrush::Picture(target, tiles, size) => {
+                target.write(&tiles, size, &ExportOptions::default())
+            }
         }
     }
 }

@@ -16,14 +16,16 @@ use std::path::{Path, PathBuf};
 
 /// Convert between projects, Photoshop files, recipes and pictures
 ///
-/// Files that are read are never written over: neither FROM nor any picture, map or tip that it names. Another file is
-/// replaced only with --force; the previous version of a project is kept as TO~.
+/// Files that are read are never written over: neither FROM nor any picture, map or tip that it
+/// names. Another file is replaced only with --force; the previous version of a project is kept as
+/// TO~.
 #[derive(clap::Args)]
 pub struct ConvertArgs {
     /// What to read: .ora, .psd, .json, or a picture
     #[arg(value_name = "FROM")]
     from: PathBuf,
-    /// What to write: .ora, .psd, or a picture (.png, .exr, .jpg, .webp, .tif) of all that is visible
+    /// What to write: .ora, .psd, or a picture (.png, .exr, .jpg, .webp, .tif) of all that is
+    /// visible
     #[arg(value_name = "TO")]
     to: PathBuf,
     /// Size of the result relative to the canvas
@@ -32,8 +34,8 @@ pub struct ConvertArgs {
     /// Only the part of a picture that the surface covers
     #[arg(long)]
     crop_to_surface: bool,
-    /// Each layer to a picture of its own, its number and name added to TO; of an .exr: each layer to channels of its
-    /// own
+    /// Each layer to a picture of its own, its number and name added to TO; of an .exr: each layer
+    /// to channels of its own
     #[arg(long)]
     layers: bool,
     /// Bits per channel: 8 or 16 for a .png or .tif (default 8), 16 or 32 for an .exr (default 16)
@@ -63,7 +65,8 @@ fn dots_per_inch(text: &str) -> std::result::Result<f32, String> {
 pub fn run(args: &ConvertArgs) -> Result<()> {
     args.limits.install(|| {
         let output = Output::of(&args.to)?;
-        let OpenedDocument { document, notes, reads, .. } = open(&args.from, &args.limits.budget())?;
+        let OpenedDocument { document, notes, reads, .. } =
+            open(&args.from, &args.limits.budget())?;
         let terms = terms(args, output, reads);
         let document = scaled(&args.from, args.scale, &args.limits, document)?;
         args.limits.room_to_paint(&args.from, &document)?;
@@ -101,7 +104,12 @@ fn whole(to: &Path, document: &Document, terms: &Terms) -> Result<()> {
     })
 }
 
-fn picture(args: &ConvertArgs, document: &Document, format: ExportFormat, terms: Terms) -> Result<()> {
+fn picture(
+    args: &ConvertArgs,
+    document: &Document,
+    format: ExportFormat,
+    terms: Terms,
+) -> Result<()> {
     let crop = args.crop_to_surface.then(|| covered(document)).flatten();
     let options = ExportOptions {
         background: args.background,
@@ -119,15 +127,22 @@ fn picture(args: &ConvertArgs, document: &Document, format: ExportFormat, terms:
     }
     let target = OutputFile::new(&args.to, terms)?;
     if args.layers {
-        let bytes = progress::shown(|progress| layers::encode(&args.to, document, bits, &budget, progress))?;
+        let bytes = progress::shown(|progress| {
+            layers::encode(&args.to, document, bits, &budget, progress)
+        })?;
         return target.replace(&bytes.unwrap_or_default());
     }
     progress::shown(|progress| target.write_document(document, &options, &budget, progress))
 }
 
-/// Every layer with pixels, hidden ones too, by a name made from the requested one: `out-00-sky.png`. None if one of
-/// them would replace a file that must stay.
-fn each_layer(args: &ConvertArgs, document: &Document, options: &ExportOptions, terms: &Terms) -> Result<()> {
+/// Every layer with pixels, hidden ones too, by a name made from the requested one:
+/// `out-00-sky.png`. None if one of them would replace a file that must stay.
+fn each_layer(
+    args: &ConvertArgs,
+    document: &Document,
+    options: &ExportOptions,
+    terms: &Terms,
+) -> Result<()> {
     let stem = args.to.file_stem().unwrap_or_default().to_string_lossy();
     let extension = args.to.extension().unwrap_or_default().to_string_lossy();
     let mut targets = Vec::new();
@@ -142,7 +157,9 @@ fn each_layer(args: &ConvertArgs, document: &Document, options: &ExportOptions, 
     }
     for (target, layer) in targets {
         let Some(alone) = document.with_only(&[layer]) else { continue };
-        progress::shown(|progress| target.write_document(&alone, options, &args.limits.budget(), progress))?;
+        progress::shown(|progress| {
+            target.write_document(&alone, options, &args.limits.budget(), progress)
+        })?;
     }
     Ok(())
 }
@@ -154,7 +171,9 @@ fn covered(document: &Document) -> Option<Rect> {
     for y in 0..document.size.height as usize {
         let row = coverage.row(y);
         let is_covered = |c: &u8| *c > 0;
-        if let (Some(first), Some(last)) = (row.iter().position(is_covered), row.iter().rposition(is_covered)) {
+        if let (Some(first), Some(last)) =
+            (row.iter().position(is_covered), row.iter().rposition(is_covered))
+        {
             rect = rect.union(Rect::new(first as i32, y as i32, last as i32 + 1, y as i32 + 1));
         }
     }

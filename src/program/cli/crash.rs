@@ -12,7 +12,8 @@ static LAST: Mutex<Option<String>> = Mutex::new(None);
 /// The message of any failure, including a panic.
 pub fn caught(work: impl FnOnce() -> Result<()>) -> std::result::Result<(), String> {
     set_hook(Box::new(|panic| {
-        let place = panic.location().map_or_else(String::new, |l| format!(" ({}:{})", l.file(), l.line()));
+        let place =
+            panic.location().map_or_else(String::new, |l| format!(" ({}:{})", l.file(), l.line()));
         let what = panic.payload_as_str().unwrap_or("unknown");
         *LAST.lock().unwrap_or_else(PoisonError::into_inner) = Some(format!("{what}{place}"));
     }));
@@ -23,7 +24,8 @@ pub fn caught(work: impl FnOnce() -> Result<()>) -> std::result::Result<(), Stri
             Err(format!("{refused}; close other programs, or make the picture smaller"))
         }
         Err(_) => {
-            let what = LAST.lock().unwrap_or_else(PoisonError::into_inner).take().unwrap_or_default();
+            let what =
+                LAST.lock().unwrap_or_else(PoisonError::into_inner).take().unwrap_or_default();
             Err(format!("internal error: {what}; this is a defect of Rilievo, please report it"))
         }
     }
@@ -38,22 +40,32 @@ mod tests {
         static TURN: Mutex<()> = Mutex::new(());
         TURN.lock().unwrap_or_else(PoisonError::into_inner)
     }
+
     #[test]
     fn what_finds_no_memory_becomes_a_sentence_that_helps() {
         let _turn = turn();
-        let said = caught(|| std::panic::panic_any(OutOfMemory { bytes: 4_000_000_000 })).unwrap_err();
+        let said =
+            caught(|| std::panic::panic_any(OutOfMemory { bytes: 4_000_000_000 })).unwrap_err();
         let _ = std::panic::take_hook();
-        assert!(said.starts_with("there is no memory for 4.0 GB more; close other programs"), "{said}");
-        let asked = || crate::io::Budget::default().within(1).room(std::path::Path::new("a.png"), "it", 2);
+        assert!(
+            said.starts_with("there is no memory for 4.0 GB more; close other programs"),
+            "{said}"
+        );
+        let asked =
+            || crate::io::Budget::default().within(1).room(std::path::Path::new("a.png"), "it", 2);
         let said = caught(asked).unwrap_err();
         let _ = std::panic::take_hook();
         assert!(said.contains("--max-memory"), "{said}");
     }
+
     #[test]
     fn a_panic_becomes_a_sentence() {
         let _turn = turn();
         let said = caught(|| panic!("a {} went missing", "tile")).unwrap_err();
         let _ = std::panic::take_hook();
-        assert!(said.starts_with("internal error: a tile went missing (src/program/cli/crash.rs:"), "{said}");
+        assert!(
+            said.starts_with("internal error: a tile went missing (src/program/cli/crash.rs:"),
+            "{said}"
+        );
     }
 }

@@ -1,5 +1,5 @@
-//! What a command may write over: an option of every subcommand that writes. Floor 7. Not here: that no command writes
-//! over what it reads (`io::replace`).
+//! What a command may write over: an option of every subcommand that writes. Floor 7. Not here:
+//! that no command writes over what it reads (`io::replace`).
 
 use crate::io::{Overwrite, Terms};
 use crate::{Error, Result};
@@ -8,7 +8,8 @@ use std::path::PathBuf;
 /// Whether existing files may be replaced.
 #[derive(clap::Args, Clone, Copy)]
 pub struct Force {
-    /// Replace existing files, read-only ones too; files that the command reads are never written over
+    /// Replace existing files, read-only ones too; files that the command reads are never written
+    /// over
     #[arg(long)]
     force: bool,
 }
@@ -18,10 +19,12 @@ impl Force {
     pub fn export(self, reads: Vec<PathBuf>) -> Terms {
         Terms::export(self.or(Overwrite::Nothing), reads)
     }
+
     /// For a project: the same, and the previous version is kept next to it.
     pub fn project(self, reads: Vec<PathBuf>) -> Terms {
         Terms { keeps_previous: true, ..self.export(reads) }
     }
+
     pub fn or(self, usual: Overwrite) -> Overwrite {
         if self.force { Overwrite::Forced } else { usual }
     }
@@ -30,7 +33,9 @@ impl Force {
 /// A refusal that the flag would overrule says so.
 pub fn naming_the_flag(done: Result<()>) -> Result<()> {
     done.map_err(|error| match error {
-        Error::Changed { file, reason } => Error::Changed { file, reason: reason + "; --force replaces it" },
+        Error::Changed { file, reason } => {
+            Error::Changed { file, reason: reason + "; --force replaces it" }
+        }
         error => error,
     })
 }

@@ -23,8 +23,8 @@
 //!                   "notes": [ "…" ] } ] }
 //! ```
 //!
-//! `role` is normal, depth, mask, layers (an EXR of several) or picture. `how` is given, found or assumed. `surface`
-//! can be pasted into a recipe: it states what was detected.
+//! `role` is normal, depth, mask, layers (an EXR of several) or picture. `how` is given, found or
+//! assumed. `surface` can be pasted into a recipe: it states what was detected.
 
 mod brushes;
 mod documents;
@@ -41,7 +41,8 @@ use documents::DocumentReport;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
-/// Describe files: documents with their layers, pictures and how they would be read as normal and depth maps
+/// Describe files: documents with their layers, pictures and how they would be read as normal and
+/// depth maps
 #[derive(clap::Args)]
 pub struct InfoArgs {
     /// Projects, recipes, normal maps, depth maps, masks, EXR files, pictures
@@ -63,7 +64,9 @@ pub fn run(args: &InfoArgs) -> Result<()> {
         for path in &args.files {
             let name = given.add(path);
             let bytes = given.read(&name, &budget);
-            if let Some(found) = bytes.as_ref().ok().and_then(|bytes| BrushReport::of(&name, path, bytes, &budget)) {
+            if let Some(found) =
+                bytes.as_ref().ok().and_then(|bytes| BrushReport::of(&name, path, bytes, &budget))
+            {
                 report.brushes.push(found);
                 continue;
             }
@@ -138,21 +141,25 @@ impl PictureReport {
 impl InfoReport {
     /// The surfaces made by these files: sets by name, then single files.
     fn sources(&self) -> Vec<MapFiles> {
-        let readable: Vec<&PictureReport> = self.files.iter().filter(|f| f.described.is_ok()).collect();
+        let readable: Vec<&PictureReport> =
+            self.files.iter().filter(|f| f.described.is_ok()).collect();
         let paths: Vec<PathBuf> = readable.iter().map(|f| f.path.clone()).collect();
-        let name_of = |path: &PathBuf| readable.iter().find(|f| f.path == *path).map(|f| f.name.clone());
+        let name_of =
+            |path: &PathBuf| readable.iter().find(|f| f.path == *path).map(|f| f.name.clone());
         let sets = pairs::sets(&paths);
         let mut out: Vec<MapFiles> = Vec::new();
         for set in &sets {
-            let [normal, depth, mask] = [&set.normal, &set.depth, &set.mask].map(|p| p.as_ref().and_then(&name_of));
+            let [normal, depth, mask] =
+                [&set.normal, &set.depth, &set.mask].map(|p| p.as_ref().and_then(&name_of));
             if normal.is_some() || depth.is_some() {
                 out.push(MapFiles::new(&set.name, normal, depth, mask));
             }
         }
         // A single normal map and a single depth map belong together, whatever their names.
         let only = |role: &str| {
-            let mut left =
-                readable.iter().filter(|f| f.role() == role && !out.iter().any(|s| s.files.contains(&f.name)));
+            let mut left = readable
+                .iter()
+                .filter(|f| f.role() == role && !out.iter().any(|s| s.files.contains(&f.name)));
             left.next().filter(|_| left.next().is_none()).map(|f| f.name.clone())
         };
         if let (Some(normal), Some(depth)) = (only("normal"), only("depth")) {
@@ -161,7 +168,10 @@ impl InfoReport {
         }
         for file in readable {
             let used = out.iter().any(|s| s.files.contains(&file.name));
-            let (own, name) = (|| Some(file.name.clone()), file.path.file_stem().unwrap_or_default().to_string_lossy());
+            let (own, name) = (
+                || Some(file.name.clone()),
+                file.path.file_stem().unwrap_or_default().to_string_lossy(),
+            );
             match file.role() {
                 _ if used => {}
                 "layers" => out.push(MapFiles::new(&name, own(), own(), None)),
@@ -172,12 +182,14 @@ impl InfoReport {
         }
         out
     }
+
     fn first_error(self) -> Option<Error> {
         let brushes = self.brushes.into_iter().filter_map(|b| b.read.err());
         let documents = brushes.chain(self.documents.into_iter().filter_map(|d| d.opened.err()));
         let files = documents.chain(self.files.into_iter().filter_map(|f| f.described.err()));
         files.chain(self.surfaces.into_iter().filter_map(|s| s.import.err())).next()
     }
+
     fn json(&self) -> String {
         let value = json!({
             "format": "rilievo-info",
@@ -189,6 +201,7 @@ impl InfoReport {
         });
         format!("{value:#}\n")
     }
+
     fn text(&self) -> String {
         let brushes: String = self.brushes.iter().map(BrushReport::text).collect();
         let documents: String = self.documents.iter().map(DocumentReport::text).collect();
@@ -199,8 +212,14 @@ impl InfoReport {
 }
 
 impl MapFiles {
-    fn new(name: &str, normal: Option<String>, depth: Option<String>, mask: Option<String>) -> Self {
-        let mut files: Vec<String> = [&normal, &depth, &mask].into_iter().flatten().cloned().collect();
+    fn new(
+        name: &str,
+        normal: Option<String>,
+        depth: Option<String>,
+        mask: Option<String>,
+    ) -> Self {
+        let mut files: Vec<String> =
+            [&normal, &depth, &mask].into_iter().flatten().cloned().collect();
         files.dedup();
         fn map<C: Default>(file: String) -> MapSource<C> {
             MapSource { file, ..MapSource::default() }
@@ -213,6 +232,7 @@ impl MapFiles {
         };
         Self { name: name.into(), files, source }
     }
+
     /// The source with all detected conventions stated.
     fn spelled(&self, findings: &Findings) -> SurfaceSource {
         let mut source = self.source.clone();
@@ -249,6 +269,7 @@ impl PictureReport {
         }
         out
     }
+
     fn text(&self) -> String {
         let d = match &self.described {
             Ok(d) => d,
@@ -258,9 +279,14 @@ impl PictureReport {
             Some(compression) => compression.to_owned(),
             None => format!("{} bits, {}", d.bits, d.channels.concat()),
         };
-        let mut out = format!("{}: {}, {} pixels, {kind}; {}\n", self.name, d.format, d.size, self.role());
+        let mut out =
+            format!("{}: {}, {} pixels, {kind}; {}\n", self.name, d.format, d.size, self.role());
         for layer in &d.layers {
-            let channels = layer.channels.iter().map(|(name, kind)| format!("{name} ({kind})")).collect::<Vec<_>>();
+            let channels = layer
+                .channels
+                .iter()
+                .map(|(name, kind)| format!("{name} ({kind})"))
+                .collect::<Vec<_>>();
             let name = if layer.name.is_empty() { "no layer" } else { &layer.name };
             out += &format!("  {name}: {}\n", channels.join(", "));
         }
@@ -274,6 +300,7 @@ impl SurfaceReport {
         let coverage = import.surface.coverage_plane().values();
         coverage.iter().map(|c| f64::from(*c)).sum::<f64>() / 255.0 / coverage.len().max(1) as f64
     }
+
     fn json(&self) -> Value {
         let mut out = json!({ "name": self.source.name, "files": self.source.files });
         let import = match &self.import {
@@ -286,7 +313,10 @@ impl SurfaceReport {
         let (size, findings) = (import.surface.size(), &import.findings);
         let found = findings.choices.iter().map(|c| {
             let confidence = (f64::from(c.confidence) * 1000.0).round() / 1000.0;
-            (c.field.to_owned(), json!({ "value": c.value, "confidence": confidence, "how": c.how.name() }))
+            (
+                c.field.to_owned(),
+                json!({ "value": c.value, "confidence": confidence, "how": c.how.name() }),
+            )
         });
         out["width"] = json!(size.width);
         out["height"] = json!(size.height);
@@ -298,6 +328,7 @@ impl SurfaceReport {
         out["notes"] = json!(findings.notes);
         out
     }
+
     fn text(&self) -> String {
         let name = if self.source.name.is_empty() { "surface" } else { &self.source.name };
         let import = match &self.import {
@@ -311,7 +342,13 @@ impl SurfaceReport {
             self.source.files.join(" and ")
         );
         for c in &import.findings.choices {
-            out += &format!("  {:<18} {:<14} {} ({:.0} %)\n", c.field, c.value, c.how.name(), c.confidence * 100.0);
+            out += &format!(
+                "  {:<18} {:<14} {} ({:.0} %)\n",
+                c.field,
+                c.value,
+                c.how.name(),
+                c.confidence * 100.0
+            );
         }
         import.findings.notes.iter().for_each(|note| out += &format!("  {note}\n"));
         out

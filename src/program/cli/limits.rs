@@ -30,7 +30,9 @@ fn bytes(text: &str) -> std::result::Result<u64, String> {
     let found = units.into_iter().find_map(|(name, unit)| Some((short.strip_suffix(name)?, unit)));
     let (digits, unit) = found.unwrap_or((short, 1.0));
     let number = digits.trim().parse::<f64>().ok().filter(|n| (0.0..1e18).contains(n));
-    number.map(|n| (n * unit) as u64).ok_or_else(|| "a size is a number such as 800M or 6G".to_owned())
+    number
+        .map(|n| (n * unit) as u64)
+        .ok_or_else(|| "a size is a number such as 800M or 6G".to_owned())
 }
 
 impl LimitArgs {
@@ -45,11 +47,13 @@ impl LimitArgs {
             ..usual
         }
     }
+
     /// Checks, before painting a document, that its memory is available.
     pub fn room_to_paint(&self, file: &Path, document: &Document) -> Result<()> {
         let what = format!("painting {} pixels", document.size);
         self.budget().room(file, &what, document.flattening_bytes())
     }
+
     /// Does the work with the requested number of threads.
     pub fn install<T: Send>(&self, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
         let Some(threads) = self.threads else { return work() };

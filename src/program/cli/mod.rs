@@ -1,8 +1,8 @@
-//! Floor 7: the command line. Each subcommand is one file; this one parses, dispatches and turns errors into exit
-//! codes.
+//! Floor 7: the command line. Each subcommand is one file; this one parses, dispatches and turns
+//! errors into exit codes.
 //!
-//! Exit code 0; 1 with one sentence on standard error, `rilievo: FILE: field: reason`; 2 for wrong usage of the command
-//! line.
+//! Exit code 0; 1 with one sentence on standard error, `rilievo: FILE: field: reason`; 2 for wrong
+//! usage of the command line.
 
 mod brush;
 mod convert;
@@ -27,11 +27,12 @@ use clap::{CommandFactory, Parser, Subcommand};
 use std::io::{ErrorKind, Write};
 use std::{ffi::OsString, path::PathBuf, process::ExitCode};
 
-/// Opens the window on some files and returns when it is closed. It is passed in because the window is on the same
-/// floor.
+/// Opens the window on some files and returns when it is closed. It is passed in because the window
+/// is on the same floor.
 pub type OpenWindow = fn(Vec<PathBuf>) -> Result<()>;
 
-/// Paint over normal and depth maps: brushes, gradients and photos that bend over the shape they are put on.
+/// Paint over normal and depth maps: brushes, gradients and photos that bend over the shape they
+/// are put on.
 #[derive(Parser)]
 #[command(name = "rilievo", version, max_term_width = 100)]
 struct Arguments {
@@ -56,11 +57,15 @@ pub fn command() -> clap::Command {
     Arguments::command()
 }
 
-/// Runs the program on its arguments. Exit code 0; 1 with a sentence on standard error; 2 for wrong usage.
+/// Runs the program on its arguments. Exit code 0; 1 with a sentence on standard error; 2 for wrong
+/// usage.
 ///
 /// `window` opens the window on these files, if the build has one.
 pub fn run(arguments: impl IntoIterator<Item = OsString>, window: Option<OpenWindow>) -> ExitCode {
-    let parsed = match Arguments::try_parse_from(with_command(arguments.into_iter().collect(), window.is_some())) {
+    let parsed = match Arguments::try_parse_from(with_command(
+        arguments.into_iter().collect(),
+        window.is_some(),
+    )) {
         Ok(parsed) => parsed,
         Err(refusal) => {
             // A closed pipe while printing help is no failure.
@@ -71,7 +76,11 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, window: Option<OpenWin
     crate::memory::DABS.set_ceiling(crate::io::machine::kept_bytes());
     // A document that is read once is made once.
     let is_edited = matches!(parsed.command, Some(CliCommand::Open(_) | CliCommand::Replay(_)));
-    crate::memory::FORMS.set_ceiling(if is_edited { crate::io::machine::whole_bytes() / 8 } else { 0 });
+    crate::memory::FORMS.set_ceiling(if is_edited {
+        crate::io::machine::whole_bytes() / 8
+    } else {
+        0
+    });
     let done = crash::caught(|| force::naming_the_flag(dispatched(parsed.command, window)));
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -99,7 +108,8 @@ fn dispatched(command: Option<CliCommand>, window: Option<OpenWindow>) -> Result
 /// Files alone, or no arguments at all, open the window: `open` may be left out.
 fn with_command(mut arguments: Vec<OsString>, has_window: bool) -> Vec<OsString> {
     let is_file = |word: &OsString| {
-        let is_command = Arguments::command().get_subcommands().any(|command| *word == *command.get_name());
+        let is_command =
+            Arguments::command().get_subcommands().any(|command| *word == *command.get_name());
         !is_command && std::path::Path::new(word).is_file()
     };
     if has_window && arguments.get(1).is_none_or(is_file) {
@@ -134,11 +144,12 @@ pub fn print_lines(text: &str) -> Result<()> {
     print(&text.split('\n').map(printable).collect::<Vec<_>>().join("\n"))
 }
 
-/// One line without control characters and without those that reverse the direction of text: the name of a file or a
-/// layer must not control the terminal.
+/// One line without control characters and without those that reverse the direction of text: the
+/// name of a file or a layer must not control the terminal.
 fn printable(sentence: &str) -> String {
     let steers = |c: char| {
-        c.is_control() || matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+        c.is_control()
+            || matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
     };
     sentence.chars().map(|c| if steers(c) { '\u{fffd}' } else { c }).collect()
 }
@@ -151,15 +162,19 @@ mod tests {
     fn the_command_line_is_consistent() {
         Arguments::command().debug_assert();
     }
+
     #[test]
     fn files_alone_open_the_window_and_commands_stay_commands() {
-        let said = |words: &[&str]| -> Vec<OsString> { with_command(words.iter().map(Into::into).collect(), true) };
+        let said = |words: &[&str]| -> Vec<OsString> {
+            with_command(words.iter().map(Into::into).collect(), true)
+        };
         assert_eq!(said(&["rilievo"]), ["rilievo", "open"]);
         assert_eq!(said(&["rilievo", "Cargo.toml"]), ["rilievo", "open", "Cargo.toml"]);
         assert_eq!(said(&["rilievo", "render", "Cargo.toml"]), ["rilievo", "render", "Cargo.toml"]);
         assert_eq!(said(&["rilievo", "--help"]), ["rilievo", "--help"]);
         assert_eq!(said(&["rilievo", "no such file"]), ["rilievo", "no such file"]);
     }
+
     #[test]
     fn control_characters_are_not_printed() {
         assert_eq!(printable("a\u{1b}[31m\nb"), "a\u{fffd}[31m\u{fffd}b");

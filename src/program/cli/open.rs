@@ -14,7 +14,8 @@ pub struct OpenArgs {
 }
 
 pub fn run(args: OpenArgs, window: Option<OpenWindow>) -> Result<()> {
-    let none = || Error::unsupported("window", "this build has none; “rilievo render” paints without one");
+    let none =
+        || Error::unsupported("window", "this build has none; “rilievo render” paints without one");
     window.ok_or_else(none)?(args.files.into_iter().map(whole).collect())
 }
 

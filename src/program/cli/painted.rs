@@ -1,5 +1,5 @@
-//! What every command that paints a document does: the document must be complete, and may get another size.
-//! Floor 7.
+//! What every command that paints a document does: the document must be complete, and may get
+//! another size. Floor 7.
 
 use super::LimitArgs;
 use crate::document::Document;
@@ -17,7 +17,12 @@ pub fn refuse_incomplete(file: &Path, document: &Document) -> Result<()> {
 }
 
 /// The document at another size, within the limits.
-pub fn scaled(file: &Path, factor: f32, limits: &LimitArgs, document: Document) -> Result<Document> {
+pub fn scaled(
+    file: &Path,
+    factor: f32,
+    limits: &LimitArgs,
+    document: Document,
+) -> Result<Document> {
     if factor == 1.0 {
         return Ok(document);
     }

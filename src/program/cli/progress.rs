@@ -20,7 +20,9 @@ pub fn shown<T>(work: impl FnOnce(&Progress) -> T) -> T {
     let (over, is_over) = channel::<()>();
     std::thread::scope(|scope| {
         let watched = &progress;
-        scope.spawn(move || draw(watched, || is_over.recv_timeout(REDRAW) == Err(RecvTimeoutError::Timeout)));
+        scope.spawn(move || {
+            draw(watched, || is_over.recv_timeout(REDRAW) == Err(RecvTimeoutError::Timeout))
+        });
         let result = work(&progress);
         // Dropping it wakes the drawing thread; a panic drops it, too.
         drop(over);

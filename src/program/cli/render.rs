@@ -24,7 +24,8 @@ pub struct RenderArgs {
     /// The project (.ora), or the recipe: a JSON file, next to the files that it names
     #[arg(value_name = "DOC")]
     document: PathBuf,
-    /// Where the picture goes: .png, .exr, .jpg, .webp or .tif; an existing one is replaced only with --force
+    /// Where the picture goes: .png, .exr, .jpg, .webp or .tif; an existing one is replaced only
+    /// with --force
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Put the painting on another object: its normal map
@@ -65,12 +66,14 @@ pub struct RenderArgs {
 }
 
 fn convention(word: &str) -> std::result::Result<NormalConvention, String> {
-    NormalConvention::from_word(word).ok_or_else(|| format!("one of {}", NormalConvention::WORDS.join(", ")))
+    NormalConvention::from_word(word)
+        .ok_or_else(|| format!("one of {}", NormalConvention::WORDS.join(", ")))
 }
 
 fn near(word: &str) -> std::result::Result<Near, String> {
-    Near::from_name(word)
-        .ok_or_else(|| format!("one of {}", Near::ALL.iter().map(|(_, name)| *name).collect::<Vec<_>>().join(", ")))
+    Near::from_name(word).ok_or_else(|| {
+        format!("one of {}", Near::ALL.iter().map(|(_, name)| *name).collect::<Vec<_>>().join(", "))
+    })
 }
 
 pub fn run(args: &RenderArgs) -> Result<()> {
@@ -90,7 +93,9 @@ pub fn run(args: &RenderArgs) -> Result<()> {
             bits: args.bits,
             ..ExportOptions::default()
         };
-        progress::shown(|progress| target.write_document(&shown, &options, &args.limits.budget(), progress))?;
+        progress::shown(|progress| {
+            target.write_document(&shown, &options, &args.limits.budget(), progress)
+        })?;
         // Notes would only hide an error.
         tell(&args.document, &notes);
         Ok(())
@@ -116,7 +121,10 @@ fn load(args: &RenderArgs) -> Result<LoadedDocument> {
     let (document, notes) = match FileKind::of(&bytes) {
         FileKind::Recipe => {
             let read = |budget: &Budget| {
-                recipe::read_noting(&bytes, RecipeSource { file: &args.document, files: &files, budget, onto })
+                recipe::read_noting(
+                    &bytes,
+                    RecipeSource { file: &args.document, files: &files, budget, onto },
+                )
             };
             let ((document, mut notes), rounded) =
                 deep_paint::fitted(&args.document, &budget, read, |(document, _)| document)?;
@@ -141,7 +149,11 @@ fn other_object(args: &RenderArgs, given: &mut UserFiles) -> Option<SurfaceSourc
     let mut name = |path: &Option<PathBuf>| path.as_deref().map(|path: &Path| given.add(path));
     let (normal, depth, mask) = (name(&args.normal), name(&args.depth), name(&args.mask));
     (normal.is_some() || depth.is_some()).then(|| SurfaceSource {
-        normal: normal.map(|file| MapSource { file, channel: None, convention: args.convention.clone() }),
+        normal: normal.map(|file| MapSource {
+            file,
+            channel: None,
+            convention: args.convention.clone(),
+        }),
         depth: depth.map(|file| MapSource {
             file,
             channel: None,
@@ -154,7 +166,8 @@ fn other_object(args: &RenderArgs, given: &mut UserFiles) -> Option<SurfaceSourc
 
 fn named(args: &RenderArgs, document: &Document, name: &str) -> Result<crate::document::LayerId> {
     document.layer_named(name).map(|layer| layer.id).ok_or_else(|| {
-        let names: Vec<_> = document.walk().iter().map(|(_, layer)| format!("“{}”", layer.name)).collect();
+        let names: Vec<_> =
+            document.walk().iter().map(|(_, layer)| format!("“{}”", layer.name)).collect();
         Error::invalid(
             &args.document,
             "--layer",

@@ -9,13 +9,15 @@ use crate::session::{Autosave, Session, is_same};
 use crate::{Error, Result};
 use std::path::PathBuf;
 
-/// Perform a replay file line by line: the same actions as in the window, with file names as the replay gives them
+/// Perform a replay file line by line: the same actions as in the window, with file names as the
+/// replay gives them
 #[derive(clap::Args)]
 pub struct ReplayArgs {
     /// The replay: one JSON object per line
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Keep recovery logs in this folder as the window does, and print every step once it is in its log
+    /// Keep recovery logs in this folder as the window does, and print every step once it is in its
+    /// log
     #[arg(long, value_name = "FOLDER")]
     recover_in: Option<PathBuf>,
     #[command(flatten)]
@@ -30,7 +32,9 @@ pub fn run(args: &ReplayArgs) -> Result<()> {
     session.autosave = args.recover_in.clone().map(Autosave::new);
     let (mut steps, mut last) = (0, None);
     session.replay_telling(&args.file, &text, |session| {
-        let Session { autosave: Some(autosave), open_documents, tool, .. } = session else { return Ok(()) };
+        let Session { autosave: Some(autosave), open_documents, tool, .. } = session else {
+            return Ok(());
+        };
         if let Some(trouble) = autosave.follow(open_documents, *tool) {
             return Err(Error::unsupported(&args.file, trouble));
         }

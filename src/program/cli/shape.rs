@@ -1,5 +1,5 @@
-//! `rilievo shape`: maps for a drawing that has none. Floor 7. Not here: what a shape is made of (`document::parts`),
-//! the files (`io::export::shape`).
+//! `rilievo shape`: maps for a drawing that has none. Floor 7. Not here: what a shape is made of
+//! (`document::parts`), the files (`io::export::shape`).
 
 use super::force::Force;
 use super::told::tell;
@@ -20,9 +20,10 @@ use std::sync::Arc;
 
 /// Make normals, depth and parts for a drawing that has no maps
 ///
-/// The drawing's alpha is its outline; a ground of one colour all around is left out. With --flats each flat colour is
-/// a part of its own, and parts that interrupt the outline of others lie in front of them. FOLDER gets DRAWING_n
-/// (normals), _d (depth, near is 0), _h (height), _mask and _id (the number of the part).
+/// The drawing's alpha is its outline; a ground of one colour all around is left out. With --flats
+/// each flat colour is a part of its own, and parts that interrupt the outline of others lie in
+/// front of them. FOLDER gets DRAWING_n (normals), _d (depth, near is 0), _h (height), _mask and
+/// _id (the number of the part).
 #[derive(clap::Args)]
 pub struct ShapeArgs {
     /// The drawing, on a ground that is transparent or of one colour
@@ -67,7 +68,10 @@ pub struct ShapeArgs {
 fn presets() -> impl TypedValueParser<Value = Inflation> {
     let names = Inflation::PRESETS.iter().map(|(_, name)| PossibleValue::new(*name));
     PossibleValuesParser::new(names).map(|word| {
-        Inflation::PRESETS.iter().find(|(_, name)| *name == word).map_or(Inflation::default(), |(preset, _)| *preset)
+        Inflation::PRESETS
+            .iter()
+            .find(|(_, name)| *name == word)
+            .map_or(Inflation::default(), |(preset, _)| *preset)
     })
 }
 
@@ -91,11 +95,13 @@ fn rim(text: &str) -> std::result::Result<f32, String> {
 pub fn run(args: &ShapeArgs) -> Result<()> {
     args.limits.install(|| {
         let (document, note) = shaped(args)?;
-        let nothing = || Error::unsupported(&args.drawing, "nothing in it is opaque enough to have a shape");
+        let nothing =
+            || Error::unsupported(&args.drawing, "nothing in it is opaque enough to have a shape");
         let surface = document.surface.as_ref().ok_or_else(nothing)?;
         std::fs::create_dir_all(&args.output).map_err(|e| Error::io(&args.output, e))?;
         let stem = args.drawing.file_stem().unwrap_or_default().to_string_lossy();
-        let reads: Vec<PathBuf> = [Some(args.drawing.clone()), args.flats.clone()].into_iter().flatten().collect();
+        let reads: Vec<PathBuf> =
+            [Some(args.drawing.clone()), args.flats.clone()].into_iter().flatten().collect();
         let options = ShapeOptions {
             is_directx: args.convention == "directx",
             is_deep: args.bits == 16,
@@ -121,7 +127,11 @@ fn shaped(args: &ShapeArgs) -> Result<(Document, Option<String>)> {
     let (size, drawing) = tiles(&args.drawing, &budget)?;
     // Flats are found through so much, and no surface takes less.
     const BYTES_A_PIXEL: u64 = 64;
-    budget.room(&args.drawing, &format!("the shape of {size} pixels"), size.area() as u64 * BYTES_A_PIXEL)?;
+    budget.room(
+        &args.drawing,
+        &format!("the shape of {size} pixels"),
+        size.area() as u64 * BYTES_A_PIXEL,
+    )?;
     let held = drawing.bytes() as u64;
     let (parts, layers) = match &args.flats {
         None => {
@@ -132,7 +142,10 @@ fn shaped(args: &ShapeArgs) -> Result<(Document, Option<String>)> {
         Some(file) => {
             let (other, flats) = tiles(file, &budget)?;
             if other != size {
-                return Err(Error::unsupported(file, format!("it has {other} pixels, the drawing {size}")));
+                return Err(Error::unsupported(
+                    file,
+                    format!("it has {other} pixels, the drawing {size}"),
+                ));
             }
             let each = if args.places { PartFor::Place } else { PartFor::Color };
             let flats = match FigureBackground::of(&flats, size) {
@@ -142,7 +155,10 @@ fn shaped(args: &ShapeArgs) -> Result<(Document, Option<String>)> {
             };
             let parts = flats::parts_of_flats(&flats, "Flats", inflation, each);
             if parts.parts.is_empty() {
-                return Err(Error::unsupported(file, "no flat colour in it covers enough to be a part"));
+                return Err(Error::unsupported(
+                    file,
+                    "no flat colour in it covers enough to be a part",
+                ));
             }
             (parts, vec![layer("Flats", flats), layer("Drawing", drawing)])
         }
@@ -155,7 +171,10 @@ fn shaped(args: &ShapeArgs) -> Result<(Document, Option<String>)> {
 }
 
 fn layer(name: &str, tiles: TileGrid) -> Arc<Layer> {
-    Arc::new(Layer::new(name, Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles })))
+    Arc::new(Layer::new(
+        name,
+        Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles }),
+    ))
 }
 
 fn tiles(file: &Path, budget: &Budget) -> Result<(Size, TileGrid)> {
@@ -173,9 +192,12 @@ fn figure(file: &Path, drawing: TileGrid, size: Size) -> Result<TileGrid> {
             "it is opaque everywhere, so it has no outline; give it a transparent ground, or name its flats \
              with --flats",
         )),
-        FigureBackground::Bare(_) => {
-            Err(Error::unsupported(file, "it has one colour all over, so there is no figure in it to have a shape"))
+        FigureBackground::Bare(_) => Err(Error::unsupported(
+            file,
+            "it has one colour all over, so there is no figure in it to have a shape",
+        )),
+        FigureBackground::Empty => {
+            Err(Error::unsupported(file, "nothing in it is opaque enough to have a shape"))
         }
-        FigureBackground::Empty => Err(Error::unsupported(file, "nothing in it is opaque enough to have a shape")),
     }
 }

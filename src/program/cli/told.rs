@@ -7,7 +7,8 @@ pub fn tell(file: &Path, notes: &[String]) {
     for note in notes {
         // A note that repeats an error already names its file.
         let named = format!("{}", file.display());
-        let sentence = if note.starts_with(&named) { note.clone() } else { format!("{named}: {note}") };
+        let sentence =
+            if note.starts_with(&named) { note.clone() } else { format!("{named}: {note}") };
         say(&format!("rilievo: {sentence}"));
     }
 }

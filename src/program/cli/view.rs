@@ -23,7 +23,8 @@ use std::sync::Arc;
 /// Show maps, curvature, weights and flows as pictures
 #[derive(clap::Args)]
 pub struct ViewArgs {
-    /// A recipe, or normal, depth and mask maps recognised by their names (pot_n.png, pot_depth.exr, pot_mask.png)
+    /// A recipe, or normal, depth and mask maps recognised by their names (pot_n.png,
+    /// pot_depth.exr, pot_mask.png)
     #[arg(value_name = "FILES")]
     files: Vec<PathBuf>,
     /// What to show; “sheet” shows all views side by side
@@ -32,8 +33,8 @@ pub struct ViewArgs {
     /// Where the picture goes; a folder gets one picture for every view
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// The layer whose anchors or operator are shown, else the topmost that has any; with “unwrapped”, the layer that
-    /// is shown, else the whole painting
+    /// The layer whose anchors or operator are shown, else the topmost that has any; with
+    /// “unwrapped”, the layer that is shown, else the whole painting
     #[arg(long, value_name = "NAME")]
     layer: Option<String>,
     /// The normal map, whatever its name
@@ -72,8 +73,12 @@ enum ShowArg {
 }
 
 fn shown() -> impl TypedValueParser<Value = ShowArg> {
-    let names = SurfaceView::ALL.iter().map(|(_, name)| PossibleValue::new(*name)).chain([PossibleValue::new("sheet")]);
-    PossibleValuesParser::new(names).map(|name| SurfaceView::from_name(&name).map_or(ShowArg::Sheet, ShowArg::One))
+    let names = SurfaceView::ALL
+        .iter()
+        .map(|(_, name)| PossibleValue::new(*name))
+        .chain([PossibleValue::new("sheet")]);
+    PossibleValuesParser::new(names)
+        .map(|name| SurfaceView::from_name(&name).map_or(ShowArg::Sheet, ShowArg::One))
 }
 
 fn not_negative(text: &str) -> std::result::Result<f32, String> {
@@ -87,23 +92,28 @@ fn not_negative(text: &str) -> std::result::Result<f32, String> {
 pub fn run(args: &ViewArgs) -> Result<()> {
     args.limits.install(|| {
         let (document, reads) = match args.show {
-            ShowArg::One(view) if view.is_of_nothing() => (Document::empty(Size::new(1, 1)), Vec::new()),
+            ShowArg::One(view) if view.is_of_nothing() => {
+                (Document::empty(Size::new(1, 1)), Vec::new())
+            }
             _ => opened(args)?,
         };
         let layer = args.layer.as_deref().map(|name| named(args, &document, name)).transpose()?;
         let options = ViewOptions { curvature_scale_px: args.curvature_scale, blur_px: args.blur };
         let draw = |view: SurfaceView| {
-            view::draw(&document, layer, view, &options)
-                .map_err(|why| Error::invalid(named_file(args), format!("--show {}", view.name()), why))
+            view::draw(&document, layer, view, &options).map_err(|why| {
+                Error::invalid(named_file(args), format!("--show {}", view.name()), why)
+            })
         };
-        let write = |target: &OutputFile, picture: &Picture| write(target, picture, args.background);
+        let write =
+            |target: &OutputFile, picture: &Picture| write(target, picture, args.background);
         if args.output.is_dir() {
             let target = |view: SurfaceView| {
                 let file = args.output.join(view.name()).with_extension("png");
                 Ok((view, OutputFile::new(&file, args.force.export(reads.clone()))?))
             };
             // Either all are possible, or none is drawn.
-            let targets: Vec<_> = view::available(&document, layer).into_iter().map(target).collect::<Result<_>>()?;
+            let targets: Vec<_> =
+                view::available(&document, layer).into_iter().map(target).collect::<Result<_>>()?;
             return targets.into_iter().try_for_each(|(view, target)| write(&target, &draw(view)?));
         }
         let target = OutputFile::new(&args.output, args.force.export(reads.clone()))?;
@@ -111,7 +121,8 @@ pub fn run(args: &ViewArgs) -> Result<()> {
             ShowArg::One(SurfaceView::Unwrapped) => {
                 let refused = |why| Error::invalid(named_file(args), "--show unwrapped", why);
                 let options = view::UnwrapOptions { scale: args.scale, ..Default::default() };
-                let seen = view::unwrapped(&document, layer, options, &Progress::default()).map_err(refused)?;
+                let seen = view::unwrapped(&document, layer, options, &Progress::default())
+                    .map_err(refused)?;
                 let picture = seen.picture().ok_or_else(|| refused(ViewUnavailable::NoMemory))?;
                 write(&target, &picture)?;
                 // What puts the picture back.
@@ -120,8 +131,12 @@ pub fn run(args: &ViewArgs) -> Result<()> {
             }
             ShowArg::One(view) => write(&target, &draw(view)?),
             ShowArg::Sheet => {
-                let views = view::available(&document, layer).into_iter().map(draw).collect::<Result<Vec<_>>>()?;
-                let nothing = || Error::invalid(named_file(args), "--show", "there is nothing to show");
+                let views = view::available(&document, layer)
+                    .into_iter()
+                    .map(draw)
+                    .collect::<Result<Vec<_>>>()?;
+                let nothing =
+                    || Error::invalid(named_file(args), "--show", "there is nothing to show");
                 write(&target, &view::sheet(&views).ok_or_else(nothing)?)
             }
         }
@@ -129,7 +144,12 @@ pub fn run(args: &ViewArgs) -> Result<()> {
 }
 
 /// The layer of a recipe that puts a picture of the unwrapped surface where it was seen.
-fn layer_line(document: &Document, file: &Path, seen: &UnwrappedPicture, picture: Picture) -> String {
+fn layer_line(
+    document: &Document,
+    file: &Path,
+    seen: &UnwrappedPicture,
+    picture: Picture,
+) -> String {
     let name = file.file_name().unwrap_or_default().to_string_lossy();
     let image = PlacedImage {
         source: PictureSource::new(name.into_owned(), picture, Adjust::default()),
@@ -139,9 +159,19 @@ fn layer_line(document: &Document, file: &Path, seen: &UnwrappedPicture, picture
         filter: ImageFilter::Antialias,
         frame: Default::default(),
     };
-    let layer = Layer::new(file.file_stem().unwrap_or_default().to_string_lossy(), Content::Image(Live::new(image)));
-    let recipe = recipe::write(&Document { layers: vec![Arc::new(layer)], ..Document::empty(document.size) });
-    recipe.get("layers").and_then(|layers| layers.get(0)).map(ToString::to_string).unwrap_or_default()
+    let layer = Layer::new(
+        file.file_stem().unwrap_or_default().to_string_lossy(),
+        Content::Image(Live::new(image)),
+    );
+    let recipe = recipe::write(&Document {
+        layers: vec![Arc::new(layer)],
+        ..Document::empty(document.size)
+    });
+    recipe
+        .get("layers")
+        .and_then(|layers| layers.get(0))
+        .map(ToString::to_string)
+        .unwrap_or_default()
 }
 
 /// The file named in errors about the whole command.
@@ -161,12 +191,19 @@ fn opened(args: &ViewArgs) -> Result<(Document, Vec<PathBuf>)> {
     let budget = args.limits.budget();
     let loose = args.normal.is_some() || args.depth.is_some() || args.mask.is_some();
     match args.files.as_slice() {
-        [recipe] if !loose && recipe.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) => {
+        [recipe]
+            if !loose && recipe.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) =>
+        {
             let files = TrackedFiles::new(RecipeFolder::beside(recipe));
             let text = read_file(recipe, budget.json_bytes)?;
-            let read =
-                |budget: &Budget| recipe::read(&text, RecipeSource { file: recipe, files: &files, budget, onto: None });
-            let (document, rounded) = deep_paint::fitted(recipe, &budget, read, |document| document)?;
+            let read = |budget: &Budget| {
+                recipe::read(
+                    &text,
+                    RecipeSource { file: recipe, files: &files, budget, onto: None },
+                )
+            };
+            let (document, rounded) =
+                deep_paint::fitted(recipe, &budget, read, |document| document)?;
             tell(recipe, rounded.as_slice());
             Ok((document, [vec![recipe.clone()], files.read_paths()].concat()))
         }
@@ -181,10 +218,15 @@ fn of_maps(args: &ViewArgs, budget: &Budget) -> Result<(Document, Vec<PathBuf>)>
     let files = TrackedFiles::new(files);
     let mut imports = sources.iter().map(|source| maps::import(source, &files, budget));
     // The first successful reading counts; if none succeeds, the first error is reported.
-    let first = imports.next().unwrap_or_else(|| Err(Error::invalid(named_file(args), "FILES", "no map is named")));
+    let first = imports
+        .next()
+        .unwrap_or_else(|| Err(Error::invalid(named_file(args), "FILES", "no map is named")));
     let import = first.or_else(|refused| imports.find_map(Result::ok).ok_or(refused))?;
     let surface = Arc::new(import.surface);
-    Ok((Document { surface: Some(surface.clone()), ..Document::empty(surface.size()) }, files.read_paths()))
+    Ok((
+        Document { surface: Some(surface.clone()), ..Document::empty(surface.size()) },
+        files.read_paths(),
+    ))
 }
 
 /// The possible roles of the files, in the order in which they are tried.
@@ -216,7 +258,10 @@ fn sources(args: &ViewArgs, files: &mut UserFiles) -> Result<Vec<SurfaceSource>>
             }
         };
         if let Some(other) = parts[part].replace(file.clone()) {
-            let reason = format!("it is the same kind of map as {}; view one surface at a time", other.display());
+            let reason = format!(
+                "it is the same kind of map as {}; view one surface at a time",
+                other.display()
+            );
             return Err(Error::invalid(file, "FILES", reason));
         }
     }
@@ -235,9 +280,13 @@ fn source(parts: [Option<PathBuf>; 3], files: &mut UserFiles) -> SurfaceSource {
 
 fn named<'a>(args: &ViewArgs, document: &'a Document, name: &str) -> Result<&'a Layer> {
     document.layer_named(name).map(|layer| &**layer).ok_or_else(|| {
-        let names: Vec<_> = document.walk().iter().map(|(_, layer)| format!("“{}”", layer.name)).collect();
-        let known =
-            if names.is_empty() { "there are no layers".into() } else { format!("there are {}", names.join(", ")) };
+        let names: Vec<_> =
+            document.walk().iter().map(|(_, layer)| format!("“{}”", layer.name)).collect();
+        let known = if names.is_empty() {
+            "there are no layers".into()
+        } else {
+            format!("there are {}", names.join(", "))
+        };
         Error::invalid(named_file(args), "--layer", format!("no layer is called “{name}”; {known}"))
     })
 }

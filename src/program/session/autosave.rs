@@ -1,6 +1,6 @@
-//! Recovery of the open documents: each has a log that follows its edits and is deleted when it is closed. After an
-//! accident, lost documents are recovered. Floor 6. Not here: the logs and their workers (`io::recovery`,
-//! docs/PROJECTS.md).
+//! Recovery of the open documents: each has a log that follows its edits and is deleted when it is
+//! closed. After an accident, lost documents are recovered. Floor 6. Not here: the logs and their
+//! workers (`io::recovery`, docs/PROJECTS.md).
 
 use super::replay::ReplayValue;
 use super::{OpenDocument, is_same};
@@ -17,10 +17,11 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// The longest wait until an edit is written. The record of a stroke takes a fraction of this; that of a large drawing
-/// continues in the background.
+/// The longest wait until an edit is written. The record of a stroke takes a fraction of this; that
+/// of a large drawing continues in the background.
 const PATIENCE: Duration = Duration::from_millis(8);
-/// How long a killed program may take to end: on a busy computer it may still hold its logs when it is started again.
+/// How long a killed program may take to end: on a busy computer it may still hold its logs when it
+/// is started again.
 const DYING: Duration = Duration::from_secs(5);
 const LOOK_AGAIN: Duration = Duration::from_millis(200);
 
@@ -44,15 +45,27 @@ struct FollowedDocument {
 
 impl FollowedDocument {
     /// The first record is the whole document; `saved` follows separately.
-    fn begin(fs: &Arc<dyn Fs>, folder: &Path, tab: &OpenDocument, tool: ToolKind) -> (Self, Option<String>) {
+    fn begin(
+        fs: &Arc<dyn Fs>,
+        folder: &Path,
+        tab: &OpenDocument,
+        tool: ToolKind,
+    ) -> (Self, Option<String>) {
         let document = tab.document().clone();
-        let begun = RecoveryLog::start(fs.clone(), folder, version(tab, tool), &tab.title(), tab.file.as_deref());
+        let begun = RecoveryLog::start(
+            fs.clone(),
+            folder,
+            version(tab, tool),
+            &tab.title(),
+            tab.file.as_deref(),
+        );
         let (recovery, trouble) = match begun {
             Ok(recovery) => (Some(recovery), None),
             Err(error) => (None, Some(error.to_string())),
         };
         (Self { recovery, document, held: None }, trouble)
     }
+
     /// Records changes of the document in the log; returns whether there were any.
     fn follow(&mut self, tab: &OpenDocument, tool: ToolKind) -> bool {
         let Some(recovery) = &self.recovery else { return false };
@@ -62,7 +75,8 @@ impl FollowedDocument {
             recovery.record(version(tab, tool));
         }
         let held = (!tab.is_dirty()).then(|| (tab.title(), tab.file.clone(), tab.stamp));
-        if let Some((title, file, stamp)) = held.as_ref().filter(|_| is_edited || held != self.held) {
+        if let Some((title, file, stamp)) = held.as_ref().filter(|_| is_edited || held != self.held)
+        {
             recovery.saved(title, file.as_deref(), *stamp);
         }
         self.held = held;
@@ -75,28 +89,36 @@ impl Autosave {
     pub fn new(folder: PathBuf) -> Self {
         Self { fs: Arc::new(Disk), folder, followed: BTreeMap::new(), told: None }
     }
-    /// Updates the logs to the open documents; called after every change. Returns a new error as a sentence.
+
+    /// Updates the logs to the open documents; called after every change. Returns a new error as a
+    /// sentence.
     ///
     /// * `tool`: the one in hand, which a recovered drawing brings back.
     ///
-    /// It waits a few milliseconds for an edit to be written, so that what the user sees is safe from `kill -9`.
+    /// It waits a few milliseconds for an edit to be written, so that what the user sees is safe
+    /// from `kill -9`.
     pub fn follow(&mut self, open_documents: &[OpenDocument], tool: ToolKind) -> Option<String> {
         let mut trouble = None;
         for tab in open_documents {
             let is_edited = match self.followed.get_mut(&tab.key) {
-                Some(followed) if followed.recovery.is_some() || is_same(&followed.document, tab.document()) => {
+                Some(followed)
+                    if followed.recovery.is_some()
+                        || is_same(&followed.document, tab.document()) =>
+                {
                     followed.follow(tab, tool)
                 }
                 // Not known yet, or edited since its log could not be created: try again.
                 _ => {
-                    let (mut followed, why) = FollowedDocument::begin(&self.fs, &self.folder, tab, tool);
+                    let (mut followed, why) =
+                        FollowedDocument::begin(&self.fs, &self.folder, tab, tool);
                     trouble = trouble.or(why);
                     followed.follow(tab, tool);
                     self.followed.insert(tab.key, followed);
                     false
                 }
             };
-            let recovery = self.followed.get(&tab.key).and_then(|followed| followed.recovery.as_ref());
+            let recovery =
+                self.followed.get(&tab.key).and_then(|followed| followed.recovery.as_ref());
             if let Some(recovery) = recovery {
                 if is_edited {
                     recovery.settle(PATIENCE);
@@ -105,7 +127,8 @@ impl Autosave {
             }
         }
         let is_open = |key: &usize| open_documents.iter().any(|tab| tab.key == *key);
-        let closed: Vec<usize> = self.followed.keys().copied().filter(|key| !is_open(key)).collect();
+        let closed: Vec<usize> =
+            self.followed.keys().copied().filter(|key| !is_open(key)).collect();
         for key in closed {
             trouble = self.end(key).err().map(|error| error.to_string()).or(trouble);
         }
@@ -114,18 +137,23 @@ impl Autosave {
         let sentence = |why| format!("Not safe from a crash until it is saved: {why}");
         trouble.filter(|_| is_new).map(sentence)
     }
+
     /// Takes over a document that already has a log, such as a recovered one.
     pub fn adopt(&mut self, tab: &OpenDocument, recovery: RecoveryLog) {
         let document = tab.document().clone();
-        self.followed.insert(tab.key, FollowedDocument { recovery: Some(recovery), document, held: None });
+        self.followed
+            .insert(tab.key, FollowedDocument { recovery: Some(recovery), document, held: None });
     }
+
     /// Waits until all edits are written.
     pub fn settle(&self) {
         for recovery in self.followed.values().filter_map(|followed| followed.recovery.as_ref()) {
             while !recovery.settle(Duration::from_secs(1)) {}
         }
     }
-    /// The program ends normally: saved or untouched documents need no log. Other logs stay, to be offered.
+
+    /// The program ends normally: saved or untouched documents need no log. Other logs stay, to be
+    /// offered.
     pub fn close(&mut self, open_documents: &[OpenDocument], tool: ToolKind) {
         self.follow(open_documents, tool);
         for tab in open_documents.iter().filter(|tab| !tab.is_dirty()) {
@@ -133,10 +161,12 @@ impl Autosave {
             let _ = self.end(tab.key);
         }
     }
+
     fn end(&mut self, key: usize) -> Result<()> {
         let recovery = self.followed.remove(&key).and_then(|followed| followed.recovery);
         recovery.map_or(Ok(()), RecoveryLog::close)
     }
+
     /// For a thread that finds or recovers lost sessions.
     pub fn lost(&self) -> LostSessions {
         LostSessions { fs: self.fs.clone(), folder: self.folder.clone() }
@@ -166,7 +196,8 @@ fn version(tab: &OpenDocument, tool: ToolKind) -> DrawingVersion {
 impl LostSessions {
     /// The drawings to offer, oldest first. Logs whose last version is saved in a file are deleted.
     ///
-    /// If there are none, it retries for some seconds while other processes hold logs: one may be just ending.
+    /// If there are none, it retries for some seconds while other processes hold logs: one may be
+    /// just ending.
     pub fn list(&self) -> Vec<recovery::LostSession> {
         for _ in 0..DYING.as_millis() / LOOK_AGAIN.as_millis() {
             let lost = self.list_now();
@@ -177,6 +208,7 @@ impl LostSessions {
         }
         self.list_now()
     }
+
     fn list_now(&self) -> Vec<recovery::LostSession> {
         let mut lost = Vec::new();
         for mut session in recovery::sessions(&self.fs, &self.folder) {
@@ -190,10 +222,17 @@ impl LostSessions {
         }
         lost
     }
-    /// Recovers a drawing: untitled and unsaved. Its old log is deleted once a new one holds it. `None` if cancelled:
-    /// it is offered again.
-    pub fn bring_back(&self, mut session: recovery::LostSession, progress: &Progress) -> Result<Option<RecoveredTab>> {
-        let Some(recovered) = session.recover(&Budget::of_this_machine(), progress)? else { return Ok(None) };
+
+    /// Recovers a drawing: untitled and unsaved. Its old log is deleted once a new one holds it.
+    /// `None` if cancelled: it is offered again.
+    pub fn bring_back(
+        &self,
+        mut session: recovery::LostSession,
+        progress: &Progress,
+    ) -> Result<Option<RecoveredTab>> {
+        let Some(recovered) = session.recover(&Budget::of_this_machine(), progress)? else {
+            return Ok(None);
+        };
         let name = Path::new(&recovered.title).file_stem().unwrap_or_default().to_string_lossy();
         let DrawingVersion { document, aside } = recovered.version;
         let mut tab = OpenDocument::new(format!("{name} (recovered)"), document, None);

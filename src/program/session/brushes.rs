@@ -1,5 +1,6 @@
-//! The available brushes: those of the program, and the user's own, which were imported from files or saved by the
-//! user. Floor 6. The user's own are in a folder, one preset file each. Not here: the formats (`io`).
+//! The available brushes: those of the program, and the user's own, which were imported from files
+//! or saved by the user. Floor 6. The user's own are in a folder, one preset file each. Not here:
+//! the formats (`io`).
 
 use super::Session;
 use crate::io::brush::{self, ImportedBrush, plain};
@@ -15,7 +16,8 @@ use std::path::{Path, PathBuf};
 pub const EXTENSIONS: [&str; 12] =
     ["gbr", "gih", "myb", "abr", "json", "png", "jpg", "jpeg", "webp", "tif", "tiff", "bmp"];
 
-/// Reads the brushes of a file: another program's, a preset's own, or a picture as a tip. At least one.
+/// Reads the brushes of a file: another program's, a preset's own, or a picture as a tip. At least
+/// one.
 pub fn read(file: &Path, budget: &Budget) -> Result<Vec<(BrushPreset, Vec<String>)>> {
     let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     if extension == "json" {
@@ -35,7 +37,18 @@ fn preset_of(file: &Path, imported: ImportedBrush) -> (BrushPreset, Vec<String>)
     let about = format!("From {}.", file.file_name().unwrap_or_default().to_string_lossy());
     let key = Some(plain(&name)).filter(|key| !key.is_empty()).unwrap_or_else(|| "brush".into());
     let color = Color { r: 0xf4, g: 0xee, b: 0xe0, a: 255 };
-    (BrushPreset { key, name, group: PresetGroup::Imported, about, color, brush, operator: Operator::None }, notes)
+    (
+        BrushPreset {
+            key,
+            name,
+            group: PresetGroup::Imported,
+            about,
+            color,
+            brush,
+            operator: Operator::None,
+        },
+        notes,
+    )
 }
 
 /// Adds the brushes of a file to the list, and selects the first.
@@ -59,7 +72,15 @@ pub fn keep(session: &mut Session, name: &str) -> Result<()> {
     let name = if name.is_empty() { "My brush".to_owned() } else { name };
     let key = Some(plain(&name)).filter(|key| !key.is_empty()).unwrap_or_else(|| "brush".into());
     let (brush, color, operator) = (session.brush.clone(), session.color, session.operator);
-    let preset = BrushPreset { key, name, group: PresetGroup::Imported, about: String::new(), color, brush, operator };
+    let preset = BrushPreset {
+        key,
+        name,
+        group: PresetGroup::Imported,
+        about: String::new(),
+        color,
+        brush,
+        operator,
+    };
     session.preset = add(session, preset)?;
     Ok(())
 }
@@ -98,8 +119,10 @@ fn file_of(folder: &Path, key: &str) -> PathBuf {
 /// The user's own brushes in a folder, by name, and a sentence for each that cannot be read.
 pub fn kept(folder: &Path) -> (Vec<BrushPreset>, Vec<String>) {
     // A folder that does not exist yet holds none.
-    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
-    let mut files: Vec<PathBuf> = entries.filter(|file| file.extension().is_some_and(|e| e == "json")).collect();
+    let entries =
+        std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let mut files: Vec<PathBuf> =
+        entries.filter(|file| file.extension().is_some_and(|e| e == "json")).collect();
     files.sort();
     let (mut presets, mut notes) = (Vec::new(), Vec::new());
     for file in files {
@@ -118,7 +141,9 @@ pub fn adopt(session: &mut Session, presets: Vec<BrushPreset>) {
             session.presets.push(preset);
         } else {
             let key = &preset.key;
-            session.notes.push(format!("{key}.json: a brush is called so already; the file wants another name."));
+            session.notes.push(format!(
+                "{key}.json: a brush is called so already; the file wants another name."
+            ));
         }
     }
 }
@@ -137,7 +162,8 @@ fn picture_tip(file: &Path, bytes: &[u8], budget: &Budget) -> Result<BrushPreset
 /// A key that no other brush has, and no file of the folder, such as one that could not be read.
 fn free_key(session: &Session, key: &str) -> String {
     let entries = session.brush_folder.iter().flat_map(std::fs::read_dir).flatten().flatten();
-    let stem = |name: std::ffi::OsString| name.to_string_lossy().split('.').next().map(str::to_owned);
+    let stem =
+        |name: std::ffi::OsString| name.to_string_lossy().split('.').next().map(str::to_owned);
     let files: Vec<String> = entries.filter_map(|entry| stem(entry.file_name())).collect();
     let is_known = |key: &str| session.presets.iter().any(|preset| preset.key == key);
     let is_taken = |key: &str| is_known(key) || files.iter().any(|file| file == key);
@@ -167,7 +193,14 @@ mod tests {
     /// A GIMP brush of two pixels.
     fn gbr() -> Vec<u8> {
         let numbers = |n: &[u32]| -> Vec<u8> { n.iter().flat_map(|n| n.to_be_bytes()).collect() };
-        [numbers(&[32, 2, 2, 1, 1]), b"GIMP".to_vec(), numbers(&[40]), b"Pen\0".to_vec(), vec![255, 90]].concat()
+        [
+            numbers(&[32, 2, 2, 1, 1]),
+            b"GIMP".to_vec(),
+            numbers(&[40]),
+            b"Pen\0".to_vec(),
+            vec![255, 90],
+        ]
+        .concat()
     }
 
     #[test]
@@ -178,7 +211,9 @@ mod tests {
         let mut session = Session::default();
         let known = session.presets.len();
         for key in ["pen", "pen-2"] {
-            Action::File(FileAction::ImportBrush { file: file.clone() }).apply(&mut session).unwrap();
+            Action::File(FileAction::ImportBrush { file: file.clone() })
+                .apply(&mut session)
+                .unwrap();
             assert_eq!(session.preset, key);
             assert!(matches!(session.brush.tip, Tip::Picture(_)));
         }
@@ -187,15 +222,18 @@ mod tests {
         Action::Hand(HandAction::Preset { name: "pen".into() }).apply(&mut session).unwrap();
         assert_eq!((session.preset.as_str(), session.brush.spacing), ("pen", 0.4));
     }
+
     #[test]
     fn a_search_finds_brushes_by_name_group_and_sentence() {
         let session = Session::default();
-        let found = |search: &str| session.presets.iter().filter(|preset| is_found(preset, search)).count();
+        let found =
+            |search: &str| session.presets.iter().filter(|preset| is_found(preset, search)).count();
         assert_eq!(found(""), session.presets.len());
         assert!(found("pencil") >= 3 && found("PENCIL") == found("pencil"));
         assert!(found("light highlight") >= 3);
         assert_eq!(found("no brush is called so"), 0);
     }
+
     #[test]
     fn the_users_own_brushes_lie_in_their_folder_from_one_run_to_the_next_until_they_are_removed() {
         let folder = tempfile::tempdir().unwrap();
@@ -204,18 +242,28 @@ mod tests {
         let mut session = Session { brush_folder: Some(own.clone()), ..Session::default() };
         import(&mut session, &file).unwrap();
         session.brush.spacing = 0.7;
-        Action::File(FileAction::KeepBrush { name: " Wide pen ".into() }).apply(&mut session).unwrap();
+        Action::File(FileAction::KeepBrush { name: " Wide pen ".into() })
+            .apply(&mut session)
+            .unwrap();
         assert_eq!(session.preset, "wide-pen");
         let (presets, notes) = kept(&own);
-        let told = |preset: &BrushPreset| (preset.key.clone(), preset.brush.spacing, preset.brush.pictures().count());
+        let told = |preset: &BrushPreset| {
+            (preset.key.clone(), preset.brush.spacing, preset.brush.pictures().count())
+        };
         let told: Vec<_> = presets.iter().map(told).collect();
-        assert_eq!((told, notes), (vec![("pen".into(), 0.4, 1), ("wide-pen".into(), 0.7, 1)], Vec::new()));
+        assert_eq!(
+            (told, notes),
+            (vec![("pen".into(), 0.4, 1), ("wide-pen".into(), 0.7, 1)], Vec::new())
+        );
         for name in ["pen", "wide-pen", "ink", "nobody"] {
-            Action::File(FileAction::RemoveBrush { name: name.into() }).apply(&mut session).unwrap();
+            Action::File(FileAction::RemoveBrush { name: name.into() })
+                .apply(&mut session)
+                .unwrap();
         }
         assert_eq!(std::fs::read_dir(&own).unwrap().count(), 0, "nothing is left of them");
         assert!(session.presets.iter().any(|preset| preset.key == "ink"), "the program's own stay");
     }
+
     #[test]
     fn a_picture_becomes_a_tip_and_a_broken_file_of_the_folder_is_told_of() {
         let folder = tempfile::tempdir().unwrap();
@@ -226,12 +274,16 @@ mod tests {
         assert_eq!((session.preset.as_str(), session.brush.size), ("leaf-3", 30.0));
         std::fs::write(folder.path().join("broken.json"), "{").unwrap();
         let (presets, notes) = kept(folder.path());
-        assert!(presets.is_empty() && notes.len() == 1 && notes[0].contains("broken.json"), "{notes:?}");
+        assert!(
+            presets.is_empty() && notes.len() == 1 && notes[0].contains("broken.json"),
+            "{notes:?}"
+        );
         let ink = session.presets.iter().find(|preset| preset.key == "ink").cloned().unwrap();
         let known = session.presets.len();
         adopt(&mut session, vec![ink.clone(), BrushPreset { key: "my-ink".into(), ..ink }]);
         assert_eq!((session.presets.len(), session.notes.len()), (known + 1, 1));
     }
+
     #[test]
     fn the_brush_in_hand_is_changed_by_what_a_recipe_would_say_and_keeps_its_pictures() {
         use crate::io::recipe::written_brush;
@@ -241,7 +293,9 @@ mod tests {
         let mut session = Session::default();
         import(&mut session, &file).unwrap();
         let scattered = Brush { scatter: 2.0, ..session.brush.clone() };
-        Action::Hand(HandAction::Brush { brush: written_brush(&scattered) }).apply(&mut session).unwrap();
+        Action::Hand(HandAction::Brush { brush: written_brush(&scattered) })
+            .apply(&mut session)
+            .unwrap();
         assert_eq!((session.brush.scatter, session.brush.spacing), (2.0, 0.4));
         assert!(matches!(session.brush.tip, Tip::Picture(_)));
         let unknown = serde_json::json!({ "tip": { "file": "else.png" } });

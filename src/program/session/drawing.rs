@@ -1,5 +1,5 @@
-//! A layer as a drawing: what it paints by itself, and its look. Floor 6. Not here: what a drawing is
-//! (`document::parts::drawing`).
+//! A layer as a drawing: what it paints by itself, and its look. Floor 6. Not here: what a drawing
+//! is (`document::parts::drawing`).
 
 use crate::document::parts::drawing::DrawingLook;
 use crate::document::{Document, LayerId, Progress, flatten_layer};
@@ -12,7 +12,11 @@ pub fn painted(document: &Document, layer: LayerId) -> Option<TileGrid> {
 }
 
 /// The same; `None` also if cancelled.
-pub fn painted_telling(document: &Document, layer: LayerId, progress: &Progress) -> Option<TileGrid> {
+pub fn painted_telling(
+    document: &Document,
+    layer: LayerId,
+    progress: &Progress,
+) -> Option<TileGrid> {
     let flat = Document { surface: None, parts: Arc::default(), ..document.clone() };
     let flat = flat.with_layer(layer, |layer| (layer.visible, layer.opacity) = (true, 1.0))?;
     flatten_layer(&flat, layer, progress)

@@ -1,4 +1,5 @@
-//! The picture that a project holds of itself, which the window's canvas shows until its layers are painted. Floor 6.
+//! The picture that a project holds of itself, which the window's canvas shows until its layers are
+//! painted. Floor 6.
 
 use crate::io::{Budget, picture};
 use crate::math::Size;
@@ -21,6 +22,7 @@ impl FirstLook {
         };
         Self(Mutex::new(read()))
     }
+
     pub fn take(&self) -> Option<TileGrid> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
     }

@@ -1,11 +1,13 @@
-//! The memory that the open documents take, and its ceiling. Floor 6. Not here: the counting (`document::memory_use`).
+//! The memory that the open documents take, and its ceiling. Floor 6. Not here: the counting
+//! (`document::memory_use`).
 
 use super::Session;
 use crate::document::{Document, MemoryCount, MemoryUse};
 
 /// The open documents with their histories, to be counted on a thread of their own.
 pub struct HeldDocuments {
-    /// The one in front, its history with the nearest steps first, and then the others in the same way.
+    /// The one in front, its history with the nearest steps first, and then the others in the same
+    /// way.
     presents: Vec<Document>,
     pasts: Vec<Vec<Document>>,
 }
@@ -40,11 +42,13 @@ impl Session {
 }
 
 impl HeldDocuments {
-    /// Counts them. Once they keep more than `ceiling` bytes for speed, steps of the history free what they keep: the
-    /// farthest first, and those of the document in front last.
+    /// Counts them. Once they keep more than `ceiling` bytes for speed, steps of the history free
+    /// what they keep: the farthest first, and those of the document in front last.
     pub fn count(&self, ceiling: u64) -> DocumentMemory {
         let mut count = MemoryCount::default();
-        let Some((front, others)) = self.presents.split_first() else { return DocumentMemory::default() };
+        let Some((front, others)) = self.presents.split_first() else {
+            return DocumentMemory::default();
+        };
         let mut add = |document: &Document, is_shown: bool| {
             let before = count.used();
             let keeps = is_shown || before.kept < ceiling;
@@ -90,6 +94,7 @@ mod tests {
             pieces: Vec::new(),
         }))
     }
+
     /// A session whose gradient was dragged so often, each time rendered whole.
     fn dragged(times: usize) -> Session {
         let mut session = Session::default();
@@ -100,7 +105,8 @@ mod tests {
         flatten(&document, &Progress::default()).unwrap();
         let mut tab = OpenDocument::new("ramp", document, None);
         for i in 1..=times {
-            let next = tab.document().with_layer(id, |layer| layer.content = gradient(i as f32)).unwrap();
+            let next =
+                tab.document().with_layer(id, |layer| layer.content = gradient(i as f32)).unwrap();
             flatten(&next, &Progress::default()).unwrap();
             tab.commit("Drag", next);
         }
@@ -120,6 +126,7 @@ mod tests {
         assert_eq!(used.front, used.all);
         assert_eq!(held.count(u64::MAX), used);
     }
+
     #[test]
     fn what_the_file_holds_is_counted_after_the_history_has_dropped_it() {
         let mut session = dragged(5);
@@ -128,21 +135,31 @@ mod tests {
         tab.history = History::new(last, 10);
         assert_eq!(session.held_documents().unwrap().count(u64::MAX).all.kept, 2 * RENDERED);
     }
+
     #[test]
     fn beyond_the_ceiling_the_farthest_steps_let_go_and_the_picture_stays() {
         let mut session = dragged(5);
         let before = flatten(session.active().unwrap().document(), &Progress::default()).unwrap();
         let used = session.held_documents().unwrap().count(3 * RENDERED);
         assert_eq!(used.all.kept, 3 * RENDERED);
-        assert_eq!(session.held_documents().unwrap().count(u64::MAX), used, "what was let go of is gone");
-        assert_eq!(session.held_documents().unwrap().count(0).all.kept, RENDERED, "what is shown is kept");
+        assert_eq!(
+            session.held_documents().unwrap().count(u64::MAX),
+            used,
+            "what was let go of is gone"
+        );
+        assert_eq!(
+            session.held_documents().unwrap().count(0).all.kept,
+            RENDERED,
+            "what is shown is kept"
+        );
         // It is rendered again to the same picture.
         let tab = &mut session.open_documents[session.current];
         tab.history.undo();
         tab.history.redo();
         let again = flatten(tab.document(), &Progress::default()).unwrap();
         assert!(before.changed_tiles(&again).iter().all(|at| {
-            let bytes = |grid: &crate::raster::TileGrid| grid.tile(*at).map(|tile| tile.bytes().to_vec());
+            let bytes =
+                |grid: &crate::raster::TileGrid| grid.tile(*at).map(|tile| tile.bytes().to_vec());
             bytes(&before) == bytes(&again)
         }));
     }

@@ -1,5 +1,6 @@
-//! Floor 6: the program without its window. It holds the open documents and the current tool settings, and performs
-//! everything as [`Action`]s, so that a replay file, a test and the window behave the same.
+//! Floor 6: the program without its window. It holds the open documents and the current tool
+//! settings, and performs everything as [`Action`]s, so that a replay file, a test and the window
+//! behave the same.
 
 pub mod actions;
 pub mod autosave;
@@ -120,7 +121,8 @@ impl Default for Session {
     fn default() -> Self {
         let preset = "soft-round";
         let presets: Vec<BrushPreset> = presets().collect();
-        let brush = presets.iter().find(|known| known.key == preset).map(|known| known.brush.clone());
+        let brush =
+            presets.iter().find(|known| known.key == preset).map(|known| known.brush.clone());
         Self {
             open_documents: Vec::new(),
             current: 0,
@@ -167,53 +169,66 @@ impl Session {
     pub fn with_aids(self, aids: ViewAids) -> Self {
         Self { aids, ..self }
     }
+
     /// The document in front.
     pub fn active(&self) -> Option<&OpenDocument> {
         self.open_documents.get(self.current)
     }
+
     pub fn active_mut(&mut self) -> Option<&mut OpenDocument> {
         self.open_documents.get_mut(self.current)
     }
+
     /// The document in front as shown, with the preview.
     pub fn shown(&self) -> Option<&Document> {
         self.active().map(OpenDocument::shown)
     }
+
     /// The selected layer as shown.
     pub fn layer(&self) -> Option<&Arc<Layer>> {
         let tab = self.active()?;
         tab.shown().layer(tab.selected?)
     }
+
     /// The path of the selected layer.
     pub fn layer_path(&self) -> Option<LayerPath> {
         let tab = self.active()?;
         LayerPath::of(tab.document(), tab.selected?)
     }
+
     /// The paths of the chosen layers, without those in a group that is chosen.
     pub fn layer_paths(&self) -> LayerPaths {
-        let chosen = self.active().map(|tab| LayerPaths::of(tab.document(), &tab.outermost_chosen()));
+        let chosen =
+            self.active().map(|tab| LayerPaths::of(tab.document(), &tab.outermost_chosen()));
         chosen.unwrap_or_default()
     }
+
     /// How surfaces are unwrapped: as the current operator says, else by default.
     pub fn unwrap_settings(&self) -> UnwrapSettings {
         self.operator.unwrapping().unwrap_or(UnwrapSettings { amount: 1.0, smooth_px: 0.0 })
     }
+
     /// Whether a tool is between press and release.
     pub fn is_drawing(&self) -> bool {
         self.gesture.is_some()
     }
+
     /// The lines that what is dragged snapped to.
     pub fn snap_lines(&self) -> SnapLines {
         self.gesture.as_ref().map_or_else(SnapLines::default, |gesture| gesture.snap_lines())
     }
+
     /// Whether a guide is being dragged.
     pub fn drags_guide(&self) -> bool {
         self.gesture.as_ref().is_some_and(|gesture| gesture.is_guide())
     }
+
     pub fn add_document(&mut self, tab: OpenDocument) {
         self.drop_gesture();
         self.open_documents.push(tab);
         self.current = self.open_documents.len() - 1;
     }
+
     /// A document that was opened elsewhere, perhaps on another thread.
     pub fn adopt(&mut self, opened: OpenedTab) {
         let OpenedTab { mut tab, notes, .. } = opened;
@@ -223,17 +238,26 @@ impl Session {
         self.add_document(tab);
         self.notes.extend(notes);
     }
+
     /// A file was put into the document in front.
     pub fn note_read(&mut self, file: &Path) {
         if let Some(tab) = self.active_mut() {
             tab.reads.push(file.into());
         }
     }
+
     /// Every file that an open document or a brush was made from: none of them may be written over.
     pub fn reads(&self) -> Vec<PathBuf> {
-        self.open_documents.iter().flat_map(|tab| &tab.reads).chain(&self.brush_files).cloned().collect()
+        self.open_documents
+            .iter()
+            .flat_map(|tab| &tab.reads)
+            .chain(&self.brush_files)
+            .cloned()
+            .collect()
     }
-    /// What saving the document in front to a file may replace. `elsewhere`: for a file that is not its own.
+
+    /// What saving the document in front to a file may replace. `elsewhere`: for a file that is not
+    /// its own.
     pub fn saving(&self, file: &Path, elsewhere: Overwrite) -> Terms {
         let own = self.active().and_then(|tab| Some((tab, tab.file.as_deref()?)));
         let own = own.filter(|(_, own)| is_same_file(&Disk, own, file));
@@ -241,7 +265,8 @@ impl Session {
         let over = match own {
             Some((tab, own)) => {
                 reads.retain(|read| !is_same_file(&Disk, read, own));
-                // A document that was incomplete when opened must not replace its file without asking.
+                // A document that was incomplete when opened must not replace its file without
+                // asking.
                 if elsewhere == Overwrite::Forced {
                     elsewhere
                 } else {
@@ -252,6 +277,7 @@ impl Session {
         };
         Terms { reads, ..over.into() }
     }
+
     pub fn close_document(&mut self, index: usize) {
         if index < self.open_documents.len() {
             self.open_documents.remove(index);
@@ -260,12 +286,15 @@ impl Session {
             }
         }
     }
+
     /// A name for a document that has none.
     pub fn untitled(&mut self) -> String {
         self.untitled += 1;
         format!("Untitled {}", self.untitled)
     }
-    /// Selects a brush by its key. A brush made for an operator selects it too; others leave the operator as it is.
+
+    /// Selects a brush by its key. A brush made for an operator selects it too; others leave the
+    /// operator as it is.
     pub fn take_preset(&mut self, key: &str) {
         let Some(preset) = self.presets.iter().find(|preset| preset.key == key) else { return };
         if preset.operator != Operator::None {
@@ -275,10 +304,12 @@ impl Session {
         self.preset = preset.key.clone();
         self.tool = ToolKind::Brush;
     }
+
     /// Tells the user something of little importance.
     pub fn say(&mut self, sentence: &str) {
         self.said.push(sentence.into());
     }
+
     /// Drops the current gesture and its preview.
     pub fn drop_gesture(&mut self) {
         if self.gesture.take().is_some()
@@ -287,6 +318,7 @@ impl Session {
             tab.forget_preview();
         }
     }
+
     /// Moves the current colour to the front of the recent ones.
     fn remember_color(&mut self) {
         let color = self.color;
@@ -294,31 +326,42 @@ impl Session {
         self.recent_colors.insert(0, color);
         self.recent_colors.truncate(RECENT);
     }
-    /// The last steps are over: what is chosen now is what redo goes back to. Called before whatever may choose.
+
+    /// The last steps are over: what is chosen now is what redo goes back to. Called before
+    /// whatever may choose.
     fn settle(&mut self) {
         self.open_documents.iter_mut().for_each(OpenDocument::settle);
     }
+
     /// Notes why edits were not kept, and what they did to parts.
     fn tell_refusals(&mut self) {
         let told = |tab: &mut OpenDocument| [tab.refused.take(), tab.noted.take()];
         self.notes.extend(self.open_documents.iter_mut().flat_map(told).flatten());
     }
+
     /// Updates the recovery logs to the documents; called after whatever may have changed them.
     pub fn keep(&mut self) {
         self.tell_refusals();
-        let trouble = self.autosave.as_mut().and_then(|autosave| autosave.follow(&self.open_documents, self.tool));
+        let trouble = self
+            .autosave
+            .as_mut()
+            .and_then(|autosave| autosave.follow(&self.open_documents, self.tool));
         self.notes.extend(trouble);
     }
+
     /// Called when the program ends: see [`Autosave::close`].
     pub fn close(&mut self) {
         if let Some(autosave) = &mut self.autosave {
             autosave.close(&self.open_documents, self.tool);
         }
     }
-    /// Performs the actions of a replay file line by line; stops with an error at the first that fails.
+
+    /// Performs the actions of a replay file line by line; stops with an error at the first that
+    /// fails.
     pub fn replay(&mut self, file: &Path, text: &str) -> Result<()> {
         self.replay_telling(file, text, |_| Ok(()))
     }
+
     /// The same, and calls back after each line.
     pub fn replay_telling(
         &mut self,

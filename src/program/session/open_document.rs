@@ -132,18 +132,22 @@ impl OpenDocument {
             chosen: None,
         }
     }
+
     /// The document after the last step.
     pub fn document(&self) -> &Document {
         self.history.present()
     }
+
     /// The document as shown: with the preview.
     pub fn shown(&self) -> &Document {
         self.preview.as_ref().map_or(self.history.present(), |preview| &preview.document)
     }
+
     /// How the surface is unwrapped, while it is shown so.
     pub fn unwrapped(&self) -> Option<UnwrapSettings> {
         self.unwrapped
     }
+
     /// Shows the surface unwrapped, or the picture again; each has a view of its own.
     pub fn show_unwrapped(&mut self, settings: Option<UnwrapSettings>) {
         if self.unwrapped.is_some() != settings.is_some() {
@@ -151,31 +155,38 @@ impl OpenDocument {
         }
         self.unwrapped = settings;
     }
+
     /// The sheet that is shown, if it is laid out already: see [`OpenDocument::layout`].
     pub fn known_layout(&self) -> Option<Arc<PlaneLayout>> {
         self.document().surface.as_ref()?.known_plane_layout(self.unwrapped?)
     }
+
     /// The sheet that is shown, laid out now if necessary.
     pub fn layout(&self) -> Option<Arc<PlaneLayout>> {
         self.document().surface.as_ref()?.plane_layout(self.unwrapped?)
     }
+
     /// The size of what the view shows: the picture, or the sheet.
     pub fn shown_size(&self) -> Size {
         self.known_layout().map_or(self.document().size, |layout| layout.size())
     }
+
     /// The file's name, or the one given.
     pub fn title(&self) -> String {
         let name = self.file.as_ref().and_then(|file| file.file_name());
         name.map_or_else(|| self.name.clone(), |name| name.to_string_lossy().into_owned())
     }
+
     /// Whether there are unsaved changes.
     pub fn is_dirty(&self) -> bool {
         !is_same(&self.saved, self.document())
     }
+
     /// The document as its file holds it.
     pub fn saved(&self) -> &Document {
         &self.saved
     }
+
     pub fn mark_saved(&mut self, document: Document, file: PathBuf, stamp: FileStamp) {
         self.saved = document;
         // The file that it was saved to before is now like any other.
@@ -183,18 +194,23 @@ impl OpenDocument {
         self.reads.push(file.clone());
         (self.file, self.stamp) = (Some(file), Some(stamp));
     }
+
     /// Marks a document that did not come from its own file, such as a recovered one, as unsaved.
     pub fn mark_unsaved(&mut self) {
         self.saved = Document::empty(self.document().size);
     }
+
     pub fn is_previewing(&self) -> bool {
         self.preview.is_some()
     }
+
     /// Shows a document as preview.
     pub fn show(&mut self, label: impl Into<String>, document: Document) {
         self.preview = Some(Preview { label: label.into(), document });
     }
-    /// Keeps a document as a step; returns whether it did. What files cannot hold is refused: `refused` says why.
+
+    /// Keeps a document as a step; returns whether it did. What files cannot hold is refused:
+    /// `refused` says why.
     pub fn commit(&mut self, label: impl Into<String>, document: Document) -> bool {
         self.preview = None;
         self.settle();
@@ -221,6 +237,7 @@ impl OpenDocument {
         self.repair();
         is_kept
     }
+
     /// Adds an edit as a step.
     pub fn take(&mut self, edit: Edit) {
         let Edit { label, document, select } = edit;
@@ -228,43 +245,52 @@ impl OpenDocument {
             self.choose_layers(select);
         }
     }
+
     /// Adds the preview as a step.
     pub fn keep_preview(&mut self) {
         if let Some(Preview { label, document }) = self.preview.take() {
             self.commit(label, document);
         }
     }
+
     /// Drops the preview.
     pub fn forget_preview(&mut self) {
         self.preview = None;
     }
+
     /// The chosen part as shown.
     pub fn chosen_part(&self) -> Option<&Arc<Part>> {
         self.shown().parts.part(self.part.as_deref()?)
     }
+
     /// The selected strokes of the selected layer that exist, in rising order.
     pub fn chosen_strokes(&self) -> Vec<usize> {
-        let Some((layer, chosen)) = self.chosen.as_ref().filter(|(layer, _)| Some(*layer) == self.selected) else {
+        let Some((layer, chosen)) =
+            self.chosen.as_ref().filter(|(layer, _)| Some(*layer) == self.selected)
+        else {
             return Vec::new();
         };
         let count = self.shown().strokes(*layer).len();
         chosen.iter().copied().filter(|&index| index < count).collect()
     }
-    /// From a pixel to the one that a clone stroke that begins at `start` copies onto it; `None` before a source was
-    /// set.
+
+    /// From a pixel to the one that a clone stroke that begins at `start` copies onto it; `None`
+    /// before a source was set.
     pub fn begin_clone(&mut self, start: Vec2, aligned: bool) -> Option<Vec2> {
         let source = self.clone_source.as_mut()?;
         let kept = source.offset.filter(|_| aligned);
         source.offset = Some(kept.unwrap_or(source.at - start));
         source.offset
     }
+
     pub fn choose_strokes(&mut self, layer: LayerId, mut strokes: Vec<usize>) {
         strokes.sort_unstable();
         strokes.dedup();
         self.chosen = Some((layer, strokes));
     }
-    /// Goes back (negative) or forward by steps, to what was chosen before the last one undone, or after the last one
-    /// redone.
+
+    /// Goes back (negative) or forward by steps, to what was chosen before the last one undone, or
+    /// after the last one redone.
     pub fn walk(&mut self, steps: i32) {
         self.preview = None;
         self.settle();
@@ -279,12 +305,14 @@ impl OpenDocument {
             None => self.repair(),
         }
     }
+
     /// Selects the topmost layer if the selected one is gone.
     pub(super) fn repair(&mut self) {
         let has_mask = |layer: &Arc<crate::document::Layer>| {
             layer.mask.as_ref().is_some_and(|mask| matches!(mask.kind, MaskKind::File { .. }))
         };
-        self.on_mask &= self.selected.and_then(|id| self.document().layer(id)).is_some_and(has_mask);
+        self.on_mask &=
+            self.selected.and_then(|id| self.document().layer(id)).is_some_and(has_mask);
         let document = self.history.present();
         let is_there = |id: LayerId| document.layer(id).is_some();
         if !self.selected.is_some_and(is_there) {
@@ -326,8 +354,8 @@ pub fn is_same(a: &Document, b: &Document) -> bool {
 
 /// Whether both show the same picture, whatever is selected.
 pub fn looks_same(a: &Document, b: &Document) -> bool {
-    let same_layers =
-        a.layers.len() == b.layers.len() && a.layers.iter().zip(&b.layers).all(|(a, b)| Arc::ptr_eq(a, b));
+    let same_layers = a.layers.len() == b.layers.len()
+        && a.layers.iter().zip(&b.layers).all(|(a, b)| Arc::ptr_eq(a, b));
     let (old, new) = (&a.parts.list, &b.parts.list);
     let same_parts = old.len() == new.len() && old.iter().zip(new).all(|(a, b)| Arc::ptr_eq(a, b));
     same_layers && same_parts && a.scene().is_same(&b.scene())

@@ -1,6 +1,6 @@
-//! Actions as text: one JSON object per line, so that recorded actions can be replayed without the window. Floor 6.
-//! [`ReplayValue`] writes and reads a value; `actions!`, `record!`, `names!` and `as_in_recipes!` derive it. Values
-//! that documents hold are written as there.
+//! Actions as text: one JSON object per line, so that recorded actions can be replayed without the
+//! window. Floor 6. [`ReplayValue`] writes and reads a value; `actions!`, `record!`, `names!` and
+//! `as_in_recipes!` derive it. Values that documents hold are written as there.
 
 use crate::math::{Vec2, Vec3, srgb::Color, vec2, vec3};
 use crate::{Error, Result};
@@ -22,6 +22,7 @@ impl ReplayValue for bool {
     fn written(&self) -> Value {
         (*self).into()
     }
+
     fn read(value: &Value) -> std::result::Result<Self, String> {
         value.as_bool().ok_or_else(|| "must be true or false".into())
     }
@@ -32,6 +33,7 @@ impl ReplayValue for f32 {
         // Through its shortest decimal form: 0.1 reads 0.1, not 0.10000000149.
         self.to_string().parse::<f64>().map_or(Value::Null, Value::from)
     }
+
     fn read(value: &Value) -> std::result::Result<Self, String> {
         let number = value.as_f64().map(|v| v as f32).filter(|v| v.is_finite());
         number.ok_or_else(|| "must be a number".into())
@@ -42,6 +44,7 @@ impl ReplayValue for f64 {
     fn written(&self) -> Value {
         json!(self)
     }
+
     fn read(value: &Value) -> std::result::Result<Self, String> {
         value.as_f64().filter(|v| v.is_finite()).ok_or_else(|| "must be a number".into())
     }
@@ -51,6 +54,7 @@ impl<const N: usize> ReplayValue for [f64; N] {
     fn written(&self) -> Value {
         json!(self.as_slice())
     }
+
     fn read(value: &Value) -> std::result::Result<Self, String> {
         let wrong = |_| format!("must be {N} numbers");
         Vec::<f64>::read(value)?.try_into().map_err(wrong)
@@ -63,6 +67,7 @@ macro_rules! whole {
         fn written(&self) -> Value {
             json!(self)
         }
+
         fn read(value: &Value) -> std::result::Result<Self, String> {
             let number = value.as_i64().and_then(|v| <$ty>::try_from(v).ok());
             number.ok_or_else(|| "must be a whole number".into())
@@ -75,6 +80,7 @@ impl ReplayValue for String {
     fn written(&self) -> Value {
         self.as_str().into()
     }
+
     fn read(value: &Value) -> std::result::Result<Self, String> {
         value.as_str().map(Into::into).ok_or_else(|| "must be a text".into())
     }
@@ -85,6 +91,7 @@ impl ReplayValue for Value {
     fn written(&self) -> Value {
         self.clone()
     }
+
     fn read(value: &Value) -> std::result::Result<Self, String> {
         if value.is_null() { Err("must be there".into()) } else { Ok(value.clone()) }
     }
@@ -94,6 +101,7 @@ impl ReplayValue for PathBuf {
     fn written(&self) -> Value {
         self.to_string_lossy().into()
     }
+
     fn read(value: &Value) -> std::result::Result<Self, String> {
         String::read(value).map(Into::into)
     }
@@ -103,8 +111,12 @@ impl ReplayValue for Color {
     fn written(&self) -> Value {
         self.to_string().into()
     }
+
     fn read(value: &Value) -> std::result::Result<Self, String> {
-        value.as_str().and_then(Color::parse).ok_or_else(|| "must be a colour such as #c08060".into())
+        value
+            .as_str()
+            .and_then(Color::parse)
+            .ok_or_else(|| "must be a colour such as #c08060".into())
     }
 }
 
@@ -112,6 +124,7 @@ impl ReplayValue for Vec2 {
     fn written(&self) -> Value {
         Value::Array(self.to_array().iter().map(ReplayValue::written).collect())
     }
+
     fn read(value: &Value) -> std::result::Result<Self, String> {
         match Vec::<f32>::read(value)?[..] {
             [x, y] => Ok(vec2(x, y)),
@@ -124,6 +137,7 @@ impl ReplayValue for Vec3 {
     fn written(&self) -> Value {
         Value::Array(self.to_array().iter().map(ReplayValue::written).collect())
     }
+
     fn read(value: &Value) -> std::result::Result<Self, String> {
         match Vec::<f32>::read(value)?[..] {
             [x, y, z] => Ok(vec3(x, y, z)),
@@ -136,6 +150,7 @@ impl<T: ReplayValue> ReplayValue for Vec<T> {
     fn written(&self) -> Value {
         Value::Array(self.iter().map(ReplayValue::written).collect())
     }
+
     fn read(value: &Value) -> std::result::Result<Self, String> {
         value.as_array().ok_or("must be a list")?.iter().map(T::read).collect()
     }
@@ -145,6 +160,7 @@ impl<T: ReplayValue> ReplayValue for Option<T> {
     fn written(&self) -> Value {
         self.as_ref().map_or(Value::Null, ReplayValue::written)
     }
+
     fn read(value: &Value) -> std::result::Result<Self, String> {
         if value.is_null() { Ok(None) } else { T::read(value).map(Some) }
     }
@@ -163,6 +179,7 @@ macro_rules! actions {
             #[cfg(test)]
             pub const WORDS: &'static [&'static str] = &[$($word),+];
         }
+
         #[cfg(test)]
         impl $crate::session::tests::stories::Drawn for $name {
             fn drawn(dice: &mut $crate::session::tests::stories::Dice) -> Self {
@@ -172,6 +189,7 @@ macro_rules! actions {
                 all[dice.variant(Self::WORDS, stringify!($name))](dice)
             }
         }
+
         impl $crate::session::replay::ReplayValue for $name {
             fn written(&self) -> serde_json::Value {
                 let mut object = serde_json::Map::new();
@@ -181,6 +199,7 @@ macro_rules! actions {
                 })+ }
                 serde_json::Value::Object(object)
             }
+
             fn read(value: &serde_json::Value) -> std::result::Result<Self, String> {
                 match value.get("do").and_then(|word| word.as_str()) {
                     $(Some($word) => Ok(Self::$variant {
@@ -204,11 +223,13 @@ macro_rules! record {
                 $(object.insert(stringify!($field).into(), self.$field.written());)+
                 serde_json::Value::Object(object)
             }
+
             fn read(value: &serde_json::Value) -> std::result::Result<Self, String> {
                 $(let $field = $crate::session::replay::field(value, stringify!($field))?;)+
                 Ok(Self { $($field),+ })
             }
         }
+
         #[cfg(test)]
         impl $crate::session::tests::stories::Drawn for $name {
             fn drawn(dice: &mut $crate::session::tests::stories::Dice) -> Self {
@@ -225,6 +246,7 @@ macro_rules! as_in_recipes {
         fn written(&self) -> serde_json::Value {
             $crate::io::recipe::value::RecipeValue::to_json(self)
         }
+
         fn read(value: &serde_json::Value) -> std::result::Result<Self, String> {
             $crate::io::recipe::value::RecipeValue::from_value(value)
         }
@@ -239,11 +261,13 @@ macro_rules! names {
             fn written(&self) -> serde_json::Value {
                 self.name().into()
             }
+
             fn read(value: &serde_json::Value) -> std::result::Result<Self, String> {
                 let found = value.as_str().and_then(<$name>::from_name);
                 found.ok_or_else(|| format!("is {value}, which is not known here"))
             }
         }
+
         #[cfg(test)]
         impl $crate::session::tests::stories::Drawn for $name {
             fn drawn(dice: &mut $crate::session::tests::stories::Dice) -> Self {
@@ -256,7 +280,10 @@ pub(crate) use names;
 
 /// The lines of a replay as values. Empty lines and lines that begin with `#` are skipped.
 pub fn lines<T: ReplayValue>(file: &Path, text: &str) -> Result<Vec<T>> {
-    let told = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'));
+    let told = text
+        .lines()
+        .enumerate()
+        .filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'));
     told.map(|(i, line)| {
         let value: std::result::Result<Value, _> = serde_json::from_str(line);
         let read = value.map_err(|e| format!("is not JSON: {e}")).and_then(|value| T::read(&value));

@@ -1,5 +1,5 @@
-//! Opens and saves documents: projects, recipes, pictures, maps. Floor 6. Here a file's format and use are recognised.
-//! Not here: the formats (`io`).
+//! Opens and saves documents: projects, recipes, pictures, maps. Floor 6. Here a file's format and
+//! use are recognised. Not here: the formats (`io`).
 
 mod endings;
 mod maps;
@@ -8,7 +8,9 @@ pub use endings::{
     DOCUMENTS, PICTURES, SAVED, exported, holds_everything, is_document, is_openable, is_saved_to,
     with_document_extension, without_ending,
 };
-pub use maps::{SortedFiles, finished_picture, import, import_watched, map_files, maps_beside, maps_of, sorted};
+pub use maps::{
+    SortedFiles, finished_picture, import, import_watched, map_files, maps_beside, maps_of, sorted,
+};
 
 use super::first_look::FirstLook;
 use super::{OpenDocument, drawing};
@@ -21,7 +23,9 @@ use crate::io::maps::pairs::{self, MapPart};
 use crate::io::replace::{FileStamp, Terms};
 use crate::io::{self, Budget, files::read_file, inspect};
 use crate::math::{Size, Vec2, srgb::Color};
-use crate::paint::{Adjust, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement};
+use crate::paint::{
+    Adjust, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement,
+};
 use crate::raster::{Outside, Picture};
 use crate::surface::{Bend, Operator};
 use maps::with_own_depth;
@@ -58,13 +62,18 @@ pub fn kind_of(file: &Path) -> Result<FileUse> {
     let bytes = read_file(file, budget.file_bytes)?;
     let found = inspect::describe(file, &bytes, &budget)?;
     let named = pairs::part_of(file).map(|(_, part)| part);
-    Ok(if found.looks_like_normals || !found.normals.is_empty() || (named == Some(MapPart::Normal) && !found.is_grey) {
-        FileUse::Normals
-    } else if !found.depths.is_empty() || (found.is_grey && named == Some(MapPart::Depth)) {
-        FileUse::Depth
-    } else {
-        FileUse::Picture
-    })
+    Ok(
+        if found.looks_like_normals
+            || !found.normals.is_empty()
+            || (named == Some(MapPart::Normal) && !found.is_grey)
+        {
+            FileUse::Normals
+        } else if !found.depths.is_empty() || (found.is_grey && named == Some(MapPart::Depth)) {
+            FileUse::Depth
+        } else {
+            FileUse::Picture
+        },
+    )
 }
 
 /// Opens a document, a map, or a picture as a document of its own.
@@ -78,7 +87,10 @@ pub fn open(file: &Path) -> Result<OpenedTab> {
             Budget::of_this_machine().room(file, "painting it", document.flattening_bytes())?;
             let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
             // A Photoshop file of which everything was taken over is also saved to.
-            let is_taken_over = kind == io::open::FileKind::Psd && is_whole && notes.is_empty() && is_saved_to(file);
+            let is_taken_over = kind == io::open::FileKind::Psd
+                && is_whole
+                && notes.is_empty()
+                && is_saved_to(file);
             let is_project = kind == io::open::FileKind::Project || is_taken_over;
             let mut tab = OpenDocument::new(name, document, is_project.then(|| file.into()));
             // An incomplete document must not overwrite its file without asking.
@@ -105,7 +117,8 @@ pub fn open_maps(source: &SurfaceSource) -> Result<OpenedTab> {
 pub fn of_import(source: &SurfaceSource, import: ImportedSurface) -> OpenedTab {
     let ImportedSurface { surface, findings, files } = import;
     let size = surface.size();
-    let background = Layer { clip_to_surface: false, ..Layer::new("Background", Content::Fill(BACKGROUND)) };
+    let background =
+        Layer { clip_to_surface: false, ..Layer::new("Background", Content::Fill(BACKGROUND)) };
     let clay = Layer::new("Base", Content::Gradient(Live::new(clay(size))));
     let document = Document {
         surface: Some(Arc::new(surface)),
@@ -114,7 +127,8 @@ pub fn of_import(source: &SurfaceSource, import: ImportedSurface) -> OpenedTab {
         layers: vec![Arc::new(background), Arc::new(clay)],
         ..Document::empty(size)
     };
-    let file = source.normal.as_ref().map(|map| &map.file).or(source.depth.as_ref().map(|map| &map.file));
+    let file =
+        source.normal.as_ref().map(|map| &map.file).or(source.depth.as_ref().map(|map| &map.file));
     let name = file.map(|file| pairs::object_of(Path::new(file))).unwrap_or_default();
     let mut tab = OpenDocument::new(name, document, None);
     tab.reads = map_files(source);
@@ -134,27 +148,33 @@ pub fn flat_image(name: &str, file: &str, picture: Picture, canvas: Size) -> Lay
     Layer::new(name, Content::Image(Live::new(image)))
 }
 
-/// A picture that covers the canvas, flat, as a layer at the top: one from a renderer, to be painted over.
+/// A picture that covers the canvas, flat, as a layer at the top: one from a renderer, to be
+/// painted over.
 pub fn with_picture(mut opened: OpenedTab, name: &str, picture: Picture) -> OpenedTab {
     let document = opened.tab.document();
     let mut layers = document.layers.clone();
     layers.push(Arc::new(flat_image(name, &format!("{name}.exr"), picture, document.size)));
-    let mut tab = OpenDocument::new(opened.tab.name.clone(), Document { layers, ..document.clone() }, None);
+    let mut tab =
+        OpenDocument::new(opened.tab.name.clone(), Document { layers, ..document.clone() }, None);
     tab.reads = std::mem::take(&mut opened.tab.reads);
     OpenedTab { tab, ..opened }
 }
 
 const BACKGROUND: Color = Color { r: 0x26, g: 0x28, b: 0x2c, a: 255 };
 
-/// The fill of a new surface: a gradient from light to dark, bent by the normals, so that the shape is visible before
-/// the first stroke.
+/// The fill of a new surface: a gradient from light to dark, bent by the normals, so that the shape
+/// is visible before the first stroke.
 fn clay(size: Size) -> Gradient {
     let side = Vec2::new(size.width as f32, size.height as f32);
     let stop = |t: f32, [r, g, b]: [u8; 3]| GradientStop { t, color: Color { r, g, b, a: 255 } };
     Gradient {
         from: side * Vec2::new(0.30, 0.22),
         to: side * Vec2::new(0.66, 0.78),
-        stops: vec![stop(0.0, [0xee, 0xe9, 0xe2]), stop(0.55, [0xb4, 0xad, 0xa5]), stop(1.0, [0x6a, 0x65, 0x61])],
+        stops: vec![
+            stop(0.0, [0xee, 0xe9, 0xe2]),
+            stop(0.55, [0xb4, 0xad, 0xa5]),
+            stop(1.0, [0x6a, 0x65, 0x61]),
+        ],
         operator: Operator::Normal { alpha: 0.6, beta: 1.0, detail: 0.0 },
         filter: ImageFilter::Antialias,
         frame: Default::default(),

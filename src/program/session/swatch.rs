@@ -1,5 +1,5 @@
-//! Preview pictures of brushes: one stroke over a ball, bent by the brush's operator. Floor 6. The window caches the
-//! pictures.
+//! Preview pictures of brushes: one stroke over a ball, bent by the brush's operator. Floor 6. The
+//! window caches the pictures.
 
 mod retouched;
 
@@ -20,7 +20,8 @@ const SIZES: [f32; 2] = [0.022, 0.3];
 /// Radius of the ball, a share of the side.
 const RADIUS: f32 = 0.43;
 
-/// A preset's picture, straight RGBA bytes, `side` px square. `None` if `side` is 0 or far too large.
+/// A preset's picture, straight RGBA bytes, `side` px square. `None` if `side` is 0 or far too
+/// large.
 pub fn painted(preset: &BrushPreset, side: u32) -> Option<Vec<u8>> {
     if !(1..=4096).contains(&side) {
         return None;
@@ -35,7 +36,8 @@ pub fn painted_on(preset: &BrushPreset, surface: Arc<Surface>) -> Option<Vec<u8>
     let size = surface.size();
     let side = size.width.min(size.height) as f32;
     let BrushPreset { operator, brush, .. } = preset;
-    let background = if is_dark(preset.color) || brush.blend == BlendMode::Multiply { PLASTER } else { SLATE };
+    let background =
+        if is_dark(preset.color) || brush.blend == BlendMode::Multiply { PLASTER } else { SLATE };
     if brush.needs_paint() {
         let drawn = retouched::drawn(preset, surface, side / NATURAL_SIDE, SLATE)?;
         return Some(flatten(&drawn, &Progress::default())?.to_straight_rgba(size.rect()));
@@ -63,9 +65,15 @@ fn clay(background: Color, size: Size) -> Gradient {
     let (middle, side) = (size.center(), size.width.min(size.height) as f32);
     let lit = |factor: f32| {
         let channel = |c: u8| (f32::from(c) * factor).min(255.0) as u8;
-        Color { r: channel(background.r), g: channel(background.g), b: channel(background.b), a: 255 }
+        Color {
+            r: channel(background.r),
+            g: channel(background.g),
+            b: channel(background.b),
+            a: 255,
+        }
     };
-    let stops = [(0.0, 1.3), (0.45, 1.0), (1.0, 0.62)].map(|(t, factor)| GradientStop { t, color: lit(factor) });
+    let stops = [(0.0, 1.3), (0.45, 1.0), (1.0, 0.62)]
+        .map(|(t, factor)| GradientStop { t, color: lit(factor) });
     Gradient {
         from: middle - 0.36 * side,
         to: middle + 0.36 * side,
@@ -92,18 +100,20 @@ fn is_dark(color: Color) -> bool {
     2 * u32::from(color.r) + 5 * u32::from(color.g) + u32::from(color.b) < 8 * 0x80
 }
 
-/// A brush at the scale of a small picture: its sizes shrink with it, as far as they stay recognisable.
+/// A brush at the scale of a small picture: its sizes shrink with it, as far as they stay
+/// recognisable.
 pub fn scaled(brush: &Brush, scale: f32, side: f32) -> Brush {
     let size = (brush.size * scale).max(SIZES[0] * side).min(SIZES[1] * side);
     let shrunk = size / brush.size;
-    let grain = brush
-        .grain
-        .clone()
-        .map(|grain| BrushGrain { size_px: (grain.size_px * shrunk.max(0.5 * scale)).max(1.6), ..grain });
+    let grain = brush.grain.clone().map(|grain| BrushGrain {
+        size_px: (grain.size_px * shrunk.max(0.5 * scale)).max(1.6),
+        ..grain
+    });
     Brush { size, grain, ..brush.clone() }
 }
 
-/// A ball in the middle of a square, facing the viewer. `relief`: height of the grooves around it, of its radius.
+/// A ball in the middle of a square, facing the viewer. `relief`: height of the grooves around it,
+/// of its radius.
 pub fn ball(side: usize, relief: f32) -> Option<Surface> {
     let middle = Vec2::splat(0.5 * side as f32);
     let radius = RADIUS * side as f32;
@@ -121,7 +131,9 @@ pub fn ball(side: usize, relief: f32) -> Option<Surface> {
             return vec3(p.x, -p.y, height(p).max(0.02)).normalize_or_zero();
         }
         let step = 0.5 / radius;
-        let slope = |d: Vec2| ((height(p + d * step) - height(p - d * step)) / (2.0 * step)).clamp(-20.0, 20.0);
+        let slope = |d: Vec2| {
+            ((height(p + d * step) - height(p - d * step)) / (2.0 * step)).clamp(-20.0, 20.0)
+        };
         vec3(-slope(Vec2::X), slope(Vec2::Y), 1.0).normalize_or_zero()
     };
     let highest = 1.0 + relief;

@@ -29,9 +29,18 @@ fn told(lines: &str) -> Session {
     session.replay(Path::new("story"), lines).unwrap_or_else(|e| panic!("{e}"));
     session
 }
+
 fn names(session: &Session) -> Vec<String> {
-    session.active().unwrap().document().walk().iter().map(|(_, layer)| layer.name.clone()).collect()
+    session
+        .active()
+        .unwrap()
+        .document()
+        .walk()
+        .iter()
+        .map(|(_, layer)| layer.name.clone())
+        .collect()
 }
+
 fn pixel(session: &Session, x: i32, y: i32) -> [u8; 4] {
     flatten(&session.active().unwrap().drawn(), &Progress::default()).unwrap().pixel(x, y)
 }
@@ -54,22 +63,34 @@ fn a_stroke_on_paper_is_one_named_step_that_can_be_undone() {
     assert!(session.active().unwrap().is_dirty());
     session.replay(Path::new("story"), r#"{"in":"edit","do":"undo"}"#).unwrap();
     assert_eq!(pixel(&session, 100, 70), [255; 4]);
-    assert!(!session.active().unwrap().is_dirty(), "back to what was opened, there is nothing to save");
+    assert!(
+        !session.active().unwrap().is_dirty(),
+        "back to what was opened, there is nothing to save"
+    );
     assert_eq!(session.recent_colors, [session.color]);
 }
+
 #[test]
 fn a_slider_shows_as_it_moves_and_is_one_step_when_it_is_let_go() {
     let mut session = told(&format!("{PAPER}{STROKE}"));
     let set = |to: f32, done: bool| {
-        format!(r#"{{"in":"layer","do":"set","layer":"1","to":{{"do":"opacity","to":{to}}},"done":{done}}}"#)
+        format!(
+            r#"{{"in":"layer","do":"set","layer":"1","to":{{"do":"opacity","to":{to}}},"done":{done}}}"#
+        )
     };
     session.replay(Path::new("story"), &set(0.2, false)).unwrap();
     assert_eq!(session.layer().unwrap().opacity, 0.2);
     assert_eq!(session.active().unwrap().document().layers[1].opacity, 1.0);
-    session.replay(Path::new("story"), &format!("{}\n{}", set(0.4, false), set(0.5, true))).unwrap();
-    assert_eq!(session.active().unwrap().history.past().collect::<Vec<_>>(), ["Brush stroke", "Opacity"]);
+    session
+        .replay(Path::new("story"), &format!("{}\n{}", set(0.4, false), set(0.5, true)))
+        .unwrap();
+    assert_eq!(
+        session.active().unwrap().history.past().collect::<Vec<_>>(),
+        ["Brush stroke", "Opacity"]
+    );
     assert_eq!(session.active().unwrap().document().layers[1].opacity, 0.5);
 }
+
 #[test]
 fn layers_are_made_grouped_moved_and_merged() {
     let session = told(&format!(
@@ -91,6 +112,7 @@ fn layers_are_made_grouped_moved_and_merged() {
         .unwrap();
     assert_eq!(names(&session), ["Picture"]);
 }
+
 #[test]
 fn baking_changes_what_a_layer_is_and_no_pixel() {
     let mut session = told(&format!("{PAPER}{STROKE}"));
@@ -103,15 +125,20 @@ fn baking_changes_what_a_layer_is_and_no_pixel() {
     let rect = crate::math::Rect::new(0, 0, 200, 150);
     assert_eq!(before.to_straight_rgba(rect), after.to_straight_rgba(rect));
 }
+
 #[test]
 fn a_layer_alone_hides_the_others_until_it_is_no_longer() {
     let mut session = told(&format!("{PAPER}{STROKE}"));
     let solo = r#"{"in":"layer","do":"solo","layer":"1"}"#;
     session.replay(Path::new("story"), solo).unwrap();
-    assert_eq!((pixel(&session, 5, 5), pixel(&session, 100, 70)), ([0; 4], [0xc0, 0x20, 0x10, 255]));
+    assert_eq!(
+        (pixel(&session, 5, 5), pixel(&session, 100, 70)),
+        ([0; 4], [0xc0, 0x20, 0x10, 255])
+    );
     session.replay(Path::new("story"), solo).unwrap();
     assert_eq!(pixel(&session, 5, 5), [255; 4]);
 }
+
 #[test]
 fn what_cannot_be_done_changes_nothing() {
     let mut session = told(PAPER);
@@ -126,9 +153,15 @@ fn what_cannot_be_done_changes_nothing() {
     session.replay(Path::new("story"), hopeless).unwrap();
     assert!(is_same(&before, session.active().unwrap().document()));
     assert_eq!(session.active().unwrap().history.past().len(), 0);
-    let wrong = session.replay(Path::new("story"), "{\"in\":\"layer\",\"do\":\"paint it black\"}").unwrap_err();
-    assert_eq!(wrong.to_string(), "story: line 1: “do” is “paint it black”, which is not known here");
+    let wrong = session
+        .replay(Path::new("story"), "{\"in\":\"layer\",\"do\":\"paint it black\"}")
+        .unwrap_err();
+    assert_eq!(
+        wrong.to_string(),
+        "story: line 1: “do” is “paint it black”, which is not known here"
+    );
 }
+
 #[test]
 fn actions_read_back_as_they_were_written() {
     let story = format!("{PAPER}{STROKE}");
@@ -138,6 +171,7 @@ fn actions_read_back_as_they_were_written() {
         assert_eq!(Action::read(&written).unwrap().written(), written);
     }
 }
+
 #[test]
 fn strokes_are_chosen_restyled_ordered_copied_and_baked_by_replay() {
     let mut session = told(&format!(
@@ -147,7 +181,10 @@ fn strokes_are_chosen_restyled_ordered_copied_and_baked_by_replay() {
         {{"in":"stroke","do":"move","layer":"1","strokes":[1],"by":[0,40]}}"##
     ));
     assert_eq!(session.active().unwrap().chosen_strokes(), [1]);
-    assert_eq!((pixel(&session, 100, 70), pixel(&session, 112, 123)), ([0xc0, 0x20, 0x10, 255], [0, 0, 255, 255]));
+    assert_eq!(
+        (pixel(&session, 100, 70), pixel(&session, 112, 123)),
+        ([0xc0, 0x20, 0x10, 255], [0, 0, 255, 255])
+    );
     let past: Vec<&str> = session.active().unwrap().history.past().collect();
     assert_eq!(past[1..], ["Duplicate stroke", "Restyle stroke", "Move stroke"]);
     let rest = r#"
@@ -161,6 +198,7 @@ fn strokes_are_chosen_restyled_ordered_copied_and_baked_by_replay() {
     assert_eq!(names(&session), ["Background", "Strokes baked", "Strokes"]);
     assert_eq!((pixel(&session, 100, 70), pixel(&session, 112, 123)), ([255; 4], [0, 0, 255, 255]));
 }
+
 #[test]
 fn a_fill_stops_at_a_stroke_and_is_one_step() {
     let fill = r#"{"tolerance":0.2,"gap_px":0,"grow_px":1,"antialias":true,"layer_alone":false,"bounded":"free"}"#;
@@ -173,6 +211,9 @@ fn a_fill_stops_at_a_stroke_and_is_one_step() {
     ));
     assert_eq!(names(&session), ["Background", "Strokes", "Paint"]);
     assert_eq!(session.active().unwrap().history.done(), Some("Fill"));
-    assert_eq!((pixel(&session, 100, 20), pixel(&session, 100, 70)), ([0, 255, 0, 255], [0xc0, 0x20, 0x10, 255]));
+    assert_eq!(
+        (pixel(&session, 100, 20), pixel(&session, 100, 70)),
+        ([0, 255, 0, 255], [0xc0, 0x20, 0x10, 255])
+    );
     assert_eq!(pixel(&session, 5, 140), [0, 255, 0, 255], "around the stroke's ends");
 }

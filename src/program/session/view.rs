@@ -1,6 +1,6 @@
-//! The view: position, zoom and rotation of the canvas under the window. Screen points are measured from the middle of
-//! the canvas's area of the window, y down; canvas px as everywhere else. Floor 6. Pure arithmetic; the window draws
-//! with it.
+//! The view: position, zoom and rotation of the canvas under the window. Screen points are measured
+//! from the middle of the canvas's area of the window, y down; canvas px as everywhere else.
+//! Floor 6. Pure arithmetic; the window draws with it.
 
 use super::replay::record;
 use crate::math::{Affine2, Mat2, Size, Vec2, vec2};
@@ -29,27 +29,32 @@ impl CanvasView {
         let zoom = (window_pt / side).min_element() * 0.94;
         Self { center: canvas.center(), zoom: clamped(zoom), turn_rad: 0.0, mirrored: false }
     }
+
     /// Screen points from canvas px.
     pub fn screen_from_canvas(&self) -> Affine2 {
         let mirror = Mat2::from_diagonal(vec2(if self.mirrored { -1.0 } else { 1.0 }, 1.0));
         let matrix = mirror * Mat2::from_angle(self.turn_rad) * self.zoom;
         Affine2::from_mat2(matrix) * Affine2::from_translation(-self.center)
     }
+
     /// Canvas px from screen points.
     pub fn canvas_from_screen(&self) -> Affine2 {
         self.screen_from_canvas().inverse()
     }
+
     /// Zoomed about a screen point, which stays fixed on the canvas.
     pub fn zoomed(&self, factor: f32, about: Vec2) -> Self {
         let zoom = clamped(self.zoom * factor);
         let still = self.canvas_from_screen().transform_point2(about);
         Self { zoom, center: still + (self.center - still) * (self.zoom / zoom), ..*self }
     }
+
     /// Moved by screen points, as by dragging.
     pub fn panned(&self, by: Vec2) -> Self {
         let inverse = self.canvas_from_screen();
         Self { center: self.center - inverse.transform_vector2(by), ..*self }
     }
+
     /// Turned about the middle of the window, clockwise as seen.
     pub fn turned(&self, by_rad: f32) -> Self {
         let by = if self.mirrored { -by_rad } else { by_rad };
@@ -70,27 +75,32 @@ mod tests {
 
     #[test]
     fn zooming_leaves_the_point_under_the_cursor_where_it_is() {
-        let view = CanvasView { center: vec2(300.0, 200.0), zoom: 1.5, turn_rad: 0.7, mirrored: true };
+        let view =
+            CanvasView { center: vec2(300.0, 200.0), zoom: 1.5, turn_rad: 0.7, mirrored: true };
         let about = vec2(-120.0, 45.0);
         let before = view.canvas_from_screen().transform_point2(about);
         let after = view.zoomed(3.0, about).canvas_from_screen().transform_point2(about);
         assert!(before.distance(after) < 1e-3);
     }
+
     #[test]
     fn panning_moves_the_canvas_with_the_hand() {
-        let view = CanvasView { center: vec2(300.0, 200.0), zoom: 2.0, turn_rad: 0.4, mirrored: false };
+        let view =
+            CanvasView { center: vec2(300.0, 200.0), zoom: 2.0, turn_rad: 0.4, mirrored: false };
         let by = vec2(30.0, -8.0);
         let held = vec2(310.0, 190.0);
         let before = view.screen_from_canvas().transform_point2(held);
         let after = view.panned(by).screen_from_canvas().transform_point2(held);
         assert!((after - before).distance(by) < 1e-3);
     }
+
     #[test]
     fn a_mirrored_view_turns_the_way_it_is_asked() {
         let view = CanvasView { center: Vec2::ZERO, zoom: 1.0, turn_rad: 0.0, mirrored: true };
         let turned = view.turned(0.1).screen_from_canvas().transform_vector2(vec2(0.0, -1.0));
         assert!(turned.x > 0.0, "clockwise as seen: what was up leans right");
     }
+
     #[test]
     fn the_fitted_view_shows_every_corner() {
         let view = CanvasView::fitting(Size::new(4000, 100), vec2(800.0, 600.0));

@@ -1,5 +1,5 @@
-//! The anchor tool: edits where an image is pinned to the surface, and which of its points is pinned there. Floor 5.
-//! Not here: the effect of anchors (`surface::deformation`).
+//! The anchor tool: edits where an image is pinned to the surface, and which of its points is
+//! pinned there. Floor 5. Not here: the effect of anchors (`surface::deformation`).
 
 use super::gradient::{self, GradientEnd};
 use super::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext, closed, lights};
@@ -32,23 +32,31 @@ pub fn handles(layer: &Layer, canvas: Size) -> Vec<Vec2> {
     }
 }
 
-/// The handle that the pen grabs: from twice as far as other handles, because a near miss would add an anchor, which
-/// would bend the whole image differently.
+/// The handle that the pen grabs: from twice as far as other handles, because a near miss would add
+/// an anchor, which would bend the whole image differently.
 pub fn handle_at(layer: &Layer, canvas: Size, at: Vec2, px_per_pt: f32) -> Option<usize> {
     let near = handles(layer, canvas).into_iter().map(|handle| handle.distance(at)).enumerate();
-    near.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, d)| *d <= 2.0 * GRAB_PT * px_per_pt).map(|(i, _)| i)
+    near.min_by(|a, b| a.1.total_cmp(&b.1))
+        .filter(|(_, d)| *d <= 2.0 * GRAB_PT * px_per_pt)
+        .map(|(i, _)| i)
 }
 
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
-    let Some(layer) = context.layer.and_then(|id| context.document.layer(id)) else { return (None, Outcome::Idle) };
+    let Some(layer) = context.layer.and_then(|id| context.document.layer(id)) else {
+        return (None, Outcome::Idle);
+    };
     if let Some(why) = closed::locked(layer) {
         return (None, Outcome::Refused(why.into()));
     }
     let taken = handle_at(layer, context.document.size, pen.place(), context.px_per_pt);
     let document = context.document.clone();
     match (&layer.content, taken) {
-        (Content::Image(live), None) if !pen.keys.alt => add(document, layer, live.params().clone(), pen),
-        (Content::Image(live), Some(index)) if pen.keys.alt => (None, remove(&document, layer, live.params(), index)),
+        (Content::Image(live), None) if !pen.keys.alt => {
+            add(document, layer, live.params().clone(), pen)
+        }
+        (Content::Image(live), Some(index)) if pen.keys.alt => {
+            (None, remove(&document, layer, live.params(), index))
+        }
         (Content::Image(live), Some(index)) => {
             let how = match pen.keys {
                 keys if keys.ctrl => AnchorDrag::Content,
@@ -79,13 +87,25 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         }
         (Content::Shading(live), Some(index)) => {
             let (layer, shading) = (layer.id, live.params().clone());
-            (Some(Box::new(lights::LightGesture { document, layer, shading, index, moved: false })), Outcome::Idle)
+            (
+                Some(Box::new(lights::LightGesture {
+                    document,
+                    layer,
+                    shading,
+                    index,
+                    moved: false,
+                })),
+                Outcome::Idle,
+            )
         }
         (Content::Image(_) | Content::Gradient(_), None) => (None, Outcome::Idle),
         (Content::Strokes(_), _) => {
             (None, Outcome::Refused("Strokes have no anchors: the Strokes tool moves them".into()))
         }
-        _ => (None, Outcome::Refused("This layer has no anchors: images, gradients and lights do".into())),
+        _ => (
+            None,
+            Outcome::Refused("This layer has no anchors: images, gradients and lights do".into()),
+        ),
     }
 }
 
@@ -97,8 +117,17 @@ fn add(document: Document, layer: &Layer, mut image: PlacedImage, pen: PenSample
     image.bend.anchors.push(Anchor { at, source });
     let index = image.bend.anchors.len() - 1;
     let (before, how, from) = (image.clone(), AnchorDrag::Carry, at);
-    let mut dragged =
-        AnchorGesture { document, layer: layer.id, image, before, index, how, from, moved: true, label: "Add anchor" };
+    let mut dragged = AnchorGesture {
+        document,
+        layer: layer.id,
+        image,
+        before,
+        index,
+        how,
+        from,
+        moved: true,
+        label: "Add anchor",
+    };
     let outcome = dragged.show();
     (Some(Box::new(dragged)), outcome)
 }
@@ -138,6 +167,7 @@ impl AnchorGesture {
         let content = Content::Image(Live::new(self.image.clone()));
         self.document.with_layer(self.layer, |layer| layer.content = content)
     }
+
     fn show(&mut self) -> Outcome {
         self.with().map_or(Outcome::Idle, Outcome::Preview)
     }
@@ -155,7 +185,10 @@ impl Gesture for AnchorGesture {
             AnchorDrag::Repin => {
                 let at = start.at + by;
                 let surface: Option<Arc<Surface>> = self.document.surface.clone();
-                Anchor { at, source: shown_at(&self.before, surface.as_deref(), &self.document, at) }
+                Anchor {
+                    at,
+                    source: shown_at(&self.before, surface.as_deref(), &self.document, at),
+                }
             }
         };
         if let Some(slot) = self.image.bend.anchors.get_mut(self.index) {
@@ -164,6 +197,7 @@ impl Gesture for AnchorGesture {
         self.moved = true;
         self.show()
     }
+
     fn release(&mut self) -> Outcome {
         let label = match self.how {
             AnchorDrag::Content => "Move content under anchor",
@@ -171,7 +205,9 @@ impl Gesture for AnchorGesture {
             AnchorDrag::Carry => self.label,
         };
         match self.with() {
-            Some(document) if self.moved => Outcome::Commit { label: label.into(), document, select: None },
+            Some(document) if self.moved => {
+                Outcome::Commit { label: label.into(), document, select: None }
+            }
             _ => Outcome::Cancel,
         }
     }
@@ -200,7 +236,13 @@ mod tests {
         let layers = vec![Arc::new(Layer::new("image", Content::Image(Live::new(image))))];
         Document { layers, ..Document::empty(size) }
     }
-    fn dragged(document: &Document, keys: ModifierKeys, from: Vec2, to: Vec2) -> Option<Vec<Anchor>> {
+
+    fn dragged(
+        document: &Document,
+        keys: ModifierKeys,
+        from: Vec2,
+        to: Vec2,
+    ) -> Option<Vec<Anchor>> {
         let (brush, layer) = (Brush::default(), Some(document.layers[0].id));
         let context = ToolContext { layer, ..ToolContext::new(document, &brush) };
         let (gesture, begun) = press(&context, PenSample { keys, ..PenSample::at(from) });
@@ -219,24 +261,31 @@ mod tests {
     #[test]
     fn a_near_miss_takes_the_anchor_and_adds_none() {
         let pinned = document(vec![Anchor::fixed(vec2(30.0, 30.0))]);
-        let anchors = dragged(&pinned, ModifierKeys::default(), vec2(46.0, 30.0), vec2(56.0, 40.0)).unwrap();
+        let anchors =
+            dragged(&pinned, ModifierKeys::default(), vec2(46.0, 30.0), vec2(56.0, 40.0)).unwrap();
         assert_eq!(anchors, [Anchor { at: vec2(40.0, 40.0), source: vec2(30.0, 30.0) }]);
     }
+
     #[test]
     fn a_layer_without_anchors_says_so() {
-        let document =
-            Document { layers: vec![Arc::new(Layer::new("a", Content::Fill(Color::BLACK)))], ..document(vec![]) };
+        let document = Document {
+            layers: vec![Arc::new(Layer::new("a", Content::Fill(Color::BLACK)))],
+            ..document(vec![])
+        };
         let brush = Brush::default();
         let layer = Some(document.layers[0].id);
         let context = ToolContext { layer, ..ToolContext::new(&document, &brush) };
         assert!(matches!(press(&context, PenSample::at(vec2(30.0, 30.0))).1, Outcome::Refused(_)));
     }
+
     #[test]
     fn dragging_an_anchor_takes_its_content_along() {
         let pinned = document(vec![Anchor::fixed(vec2(30.0, 30.0))]);
-        let anchors = dragged(&pinned, ModifierKeys::default(), vec2(33.0, 30.0), vec2(53.0, 40.0)).unwrap();
+        let anchors =
+            dragged(&pinned, ModifierKeys::default(), vec2(33.0, 30.0), vec2(53.0, 40.0)).unwrap();
         assert_eq!(anchors, [Anchor { at: vec2(50.0, 40.0), source: vec2(30.0, 30.0) }]);
     }
+
     #[test]
     fn dragging_content_leaves_the_anchor_where_it_is() {
         let pinned = document(vec![Anchor::fixed(vec2(30.0, 30.0))]);
@@ -244,19 +293,28 @@ mod tests {
         let anchors = dragged(&pinned, keys, vec2(30.0, 30.0), vec2(35.0, 32.0)).unwrap();
         assert_eq!(anchors, [Anchor { at: vec2(30.0, 30.0), source: vec2(25.0, 28.0) }]);
     }
+
     #[test]
     fn a_new_or_repinned_anchor_changes_no_pixel() {
         let moved = Anchor { at: vec2(30.0, 30.0), source: vec2(20.0, 30.0) };
-        let anchors =
-            dragged(&document(vec![moved]), ModifierKeys::default(), vec2(80.0, 60.5), vec2(80.0, 60.5)).unwrap();
+        let anchors = dragged(
+            &document(vec![moved]),
+            ModifierKeys::default(),
+            vec2(80.0, 60.5),
+            vec2(80.0, 60.5),
+        )
+        .unwrap();
         assert_eq!(anchors[1], Anchor { at: vec2(80.0, 60.5), source: vec2(70.0, 60.5) });
         let keys = ModifierKeys { shift: true, ..ModifierKeys::default() };
-        let anchors = dragged(&document(vec![moved]), keys, vec2(30.0, 30.0), vec2(50.0, 30.0)).unwrap();
+        let anchors =
+            dragged(&document(vec![moved]), keys, vec2(30.0, 30.0), vec2(50.0, 30.0)).unwrap();
         assert_eq!(anchors, [Anchor { at: vec2(50.0, 30.0), source: vec2(40.0, 30.0) }]);
     }
+
     #[test]
     fn alt_takes_an_anchor_away_and_nothing_else() {
-        let pinned = document(vec![Anchor::fixed(vec2(30.0, 30.0)), Anchor::fixed(vec2(60.0, 30.0))]);
+        let pinned =
+            document(vec![Anchor::fixed(vec2(30.0, 30.0)), Anchor::fixed(vec2(60.0, 30.0))]);
         let keys = ModifierKeys { alt: true, ..ModifierKeys::default() };
         assert_eq!(dragged(&pinned, keys, vec2(61.0, 30.0), vec2(61.0, 30.0)).unwrap().len(), 1);
         assert_eq!(dragged(&pinned, keys, vec2(10.0, 70.0), vec2(10.0, 70.0)), None);

@@ -15,12 +15,15 @@ use std::sync::Arc;
 /// The handle within a distance in px of a point: the number of its assistant, and its own.
 pub fn handle_at(assistants: &[Assistant], at: Vec2, near_px: f32) -> Option<(usize, usize)> {
     let all = assistants.iter().enumerate();
-    let all = all.flat_map(|(i, one)| one.points.iter().enumerate().map(move |(k, p)| (p.distance(at), (i, k))));
+    let all = all.flat_map(|(i, one)| {
+        one.points.iter().enumerate().map(move |(k, p)| (p.distance(at), (i, k)))
+    });
     let near = all.filter(|(far, _)| *far <= near_px);
     near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, found)| found)
 }
 
-/// The pen comes down with the tool: a drag moves a handle or sets a new assistant, Alt removes one.
+/// The pen comes down with the tool: a drag moves a handle or sets a new assistant, Alt removes
+/// one.
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let (document, near_px) = (context.document, GRAB_PT * context.px_per_pt);
     if !pen.place().is_finite() {
@@ -37,12 +40,17 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         let moving = Moving { index, handle: Some(handle), from: pen.place(), is_new: false };
         return begin(context, Vec::clone(&document.assistants), moving);
     }
-    if let Some(handle) = context.axes.handle_at(context.symmetry, document.size, pen.place(), context.px_per_pt) {
+    if let Some(handle) =
+        context.axes.handle_at(context.symmetry, document.size, pen.place(), context.px_per_pt)
+    {
         let (canvas, axes) = (document.size, context.axes);
         return (Some(Box::new(AxisGesture { handle, axes, canvas })), Outcome::Idle);
     }
     if document.assistants.len() >= Assistant::MOST {
-        return (None, Outcome::Refused("There are as many assistants as a document holds.".into()));
+        return (
+            None,
+            Outcome::Refused("There are as many assistants as a document holds.".into()),
+        );
     }
     let from = context.snap.point(pen.place()).at;
     let mut all = Vec::clone(&document.assistants);
@@ -71,8 +79,15 @@ fn committed(document: &Document, label: &str, assistants: Vec<Assistant>) -> Ou
 fn begin(context: &ToolContext, all: Vec<Assistant>, moving: Moving) -> GestureStart {
     let (document, snap) = (context.document.clone(), context.snap.clone());
     let slop_px = 2.0 * context.px_per_pt;
-    let gesture =
-        AssistantGesture { document, all, moving, snap, slop_px, has_moved: false, lines: SnapLines::default() };
+    let gesture = AssistantGesture {
+        document,
+        all,
+        moving,
+        snap,
+        slop_px,
+        has_moved: false,
+        lines: SnapLines::default(),
+    };
     (Some(Box::new(gesture)), Outcome::Idle)
 }
 
@@ -103,7 +118,9 @@ impl AssistantGesture {
 
 impl Gesture for AssistantGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
-        let Some(pen) = pens.last().filter(|pen| pen.place().is_finite()) else { return Outcome::Idle };
+        let Some(pen) = pens.last().filter(|pen| pen.place().is_finite()) else {
+            return Outcome::Idle;
+        };
         let found = self.snap.point(pen.place());
         self.lines = found.lines;
         self.has_moved |= found.at.distance(self.moving.from) > self.slop_px;
@@ -114,6 +131,7 @@ impl Gesture for AssistantGesture {
         };
         Outcome::Preview(self.with())
     }
+
     fn release(&mut self) -> Outcome {
         let one = self.all.get(self.moving.index).map(|one| one.kind);
         // One vanishing point is set by a click.
@@ -124,6 +142,7 @@ impl Gesture for AssistantGesture {
         let label = if self.moving.is_new { "Add assistant" } else { "Move assistant" };
         committed(&self.document, label, self.all.clone())
     }
+
     fn snap_lines(&self) -> SnapLines {
         self.lines
     }
@@ -138,10 +157,13 @@ struct AxisGesture {
 
 impl Gesture for AxisGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
-        let Some(pen) = pens.last().filter(|pen| pen.place().is_finite()) else { return Outcome::Idle };
+        let Some(pen) = pens.last().filter(|pen| pen.place().is_finite()) else {
+            return Outcome::Idle;
+        };
         self.axes = self.axes.dragged(self.handle, self.canvas, pen.place(), pen.keys.shift);
         Outcome::Axes(self.axes)
     }
+
     fn release(&mut self) -> Outcome {
         Outcome::Axes(self.axes)
     }

@@ -1,5 +1,5 @@
-//! The brush and the eraser: the pen's samples become one stroke, live on a stroke layer, pixels on a paint layer.
-//! Floor 5. Not here: dabs and tiles (`paint`).
+//! The brush and the eraser: the pen's samples become one stroke, live on a stroke layer, pixels on
+//! a paint layer. Floor 5. Not here: dabs and tiles (`paint`).
 
 mod erase;
 mod stroke;
@@ -11,14 +11,17 @@ use super::retouch::{self, ActiveWork};
 use super::settings::StrokePurpose;
 use super::symmetry::SymmetryImage;
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
-use crate::document::{Content, Document, Layer, LayerId, LayerLock, LayerSlot, Live, PixelLayer, StrokeList};
+use crate::document::{
+    Content, Document, Layer, LayerId, LayerLock, LayerSlot, Live, PixelLayer, StrokeList,
+};
 use crate::math::{hash, srgb::Color};
 use crate::paint::{ActiveStrokes, Backdrop, BrushMode, Sample, StabilizedPen, Stroke};
 use crate::raster::TileAt;
 use erase::EraseStrokesGesture;
 use stroke::{StrokeGesture, StrokeTarget};
 
-/// The pen comes down with the brush. A selected layer that cannot hold strokes gets a stroke layer above it.
+/// The pen comes down with the brush. A selected layer that cannot hold strokes gets a stroke layer
+/// above it.
 pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> GestureStart {
     if let Some(refused) = retouch::refused(context, pen, purpose) {
         return (None, refused);
@@ -42,7 +45,9 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
         (Content::Strokes(list), _) => {
             let strokes = list.params().strokes.clone();
             // The tiles of an empty layer are known.
-            let blank = TileAt::covering(scene.size.rect()).filter(|_| strokes.is_empty()).map(|at| (at, None));
+            let blank = TileAt::covering(scene.size.rect())
+                .filter(|_| strokes.is_empty())
+                .map(|at| (at, None));
             let shown = list.with_tiles(list.params().clone(), &scene, blank);
             (StrokeTarget::Strokes { beneath: strokes.clone(), shown }, Backdrop::Strokes(strokes))
         }
@@ -73,12 +78,15 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
     };
     let strokes: Vec<Stroke> = images.iter().map(like).collect();
     let work = retouch::begun(context, &images, pen, layer, &strokes, &scene);
-    // With Shift a straight line from where the last stroke ended, with the pressure of this sample.
+    // With Shift a straight line from where the last stroke ended, with the pressure of this
+    // sample.
     let start = context.last_end.filter(|_| pen.keys.shift).into_iter();
     let line = start.flat_map(|last| (0..8).map(move |i| last.lerp(pen.place(), i as f32 / 8.0)));
     let painting = StrokeGesture {
         lead: line.map(|at| Sample { at, ..pen.sample }).collect(),
-        active: Some(work.unwrap_or_else(|| ActiveWork::Strokes(ActiveStrokes::new(&strokes, backdrop, &scene)))),
+        active: Some(work.unwrap_or_else(|| {
+            ActiveWork::Strokes(ActiveStrokes::new(&strokes, backdrop, &scene))
+        })),
         stabilized: StabilizedPen::of_brush(&brush, context.operator, &scene),
         room: Some(Stroke::MOST_SAMPLES),
         label: if is_eraser { "Erase" } else { "Brush stroke" },
@@ -96,14 +104,19 @@ fn begin(mut gesture: impl Gesture + 'static, pen: PenSample) -> GestureStart {
     (Some(Box::new(gesture)), outcome)
 }
 
-/// The document with a layer that can take a stroke; or why the selected layer cannot be painted on; `None` if there
-/// is nothing to erase.
-fn paintable(context: &ToolContext, purpose: StrokePurpose) -> Result<(Document, LayerId), Option<String>> {
+/// The document with a layer that can take a stroke; or why the selected layer cannot be painted
+/// on; `None` if there is nothing to erase.
+fn paintable(
+    context: &ToolContext,
+    purpose: StrokePurpose,
+) -> Result<(Document, LayerId), Option<String>> {
     let document = context.document;
     let selected = context.layer.and_then(|id| document.layer(id));
     if let Some(layer) = selected {
         let holds = match &layer.content {
-            Content::Strokes(list) => purpose == StrokePurpose::Paint || !list.params().strokes.is_empty(),
+            Content::Strokes(list) => {
+                purpose == StrokePurpose::Paint || !list.params().strokes.is_empty()
+            }
             content => matches!(content, Content::Pixels(_)),
         };
         let why = match holds {
@@ -120,10 +133,14 @@ fn paintable(context: &ToolContext, purpose: StrokePurpose) -> Result<(Document,
     if purpose == StrokePurpose::Erase {
         return Err(None);
     }
-    let place = selected
-        .and_then(|layer| document.place_of(layer.id))
-        .map_or(LayerSlot::top_level(usize::MAX), |place| LayerSlot { index: place.index + 1, ..place });
-    let layer = Layer::new(document.free_layer_name("Strokes"), Content::Strokes(Live::new(StrokeList::default())));
+    let place = selected.and_then(|layer| document.place_of(layer.id)).map_or(
+        LayerSlot::top_level(usize::MAX),
+        |place| LayerSlot { index: place.index + 1, ..place },
+    );
+    let layer = Layer::new(
+        document.free_layer_name("Strokes"),
+        Content::Strokes(Live::new(StrokeList::default())),
+    );
     let id = layer.id;
     Ok((document.with_inserted(layer, place).ok_or(None)?, id))
 }

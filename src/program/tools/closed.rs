@@ -1,12 +1,18 @@
-//! Layers that the pen cannot change: locked ones, and ones that are not shown, where the user would not see what
-//! happens. Floor 5. Each reason is a sentence that names the layer and what to do.
+//! Layers that the pen cannot change: locked ones, and ones that are not shown, where the user
+//! would not see what happens. Floor 5. Each reason is a sentence that names the layer and what to
+//! do.
 
 use crate::document::{Document, Layer, LayerId, LayerLock};
 
 /// Why nothing can be done to the content of a layer: it is locked.
 pub fn locked(layer: &Layer) -> Option<String> {
     let is_locked = layer.lock == LayerLock::All;
-    is_locked.then(|| format!("“{}” is locked. Unlock it (Layer, Lock layer), or choose another layer.", layer.name))
+    is_locked.then(|| {
+        format!(
+            "“{}” is locked. Unlock it (Layer, Lock layer), or choose another layer.",
+            layer.name
+        )
+    })
 }
 
 /// Why nothing can be painted on a layer: it is locked, or it or a group around it is hidden.

@@ -14,7 +14,8 @@ pub struct ToolContext<'a> {
     pub document: &'a Document,
     /// The selected layer.
     pub layer: Option<LayerId>,
-    /// All chosen layers, those in a chosen group left out, bottom first; tools that make no marks work on all of them.
+    /// All chosen layers, those in a chosen group left out, bottom first; tools that make no marks
+    /// work on all of them.
     pub layers: &'a [LayerId],
     pub brush: &'a Brush,
     /// What brush and eraser change.
@@ -96,6 +97,7 @@ impl<'a> ToolContext<'a> {
             clone_offset: None,
         }
     }
+
     /// The chosen layers: if none are given, the selected one.
     pub fn chosen(&self) -> &[LayerId] {
         if self.layers.is_empty() { self.layer.as_slice() } else { self.layers }
@@ -134,7 +136,9 @@ struct PlainContext {
 
 impl KeptContext {
     pub fn of(context: &ToolContext) -> Self {
-        let ToolContext { color, second_color, operator, px_per_pt, last_end, symmetry, axes, .. } = *context;
+        let ToolContext {
+            color, second_color, operator, px_per_pt, last_end, symmetry, axes, ..
+        } = *context;
         let ToolContext { target, fill, select, shape, aids, clone_offset, .. } = *context;
         let colors = [color, second_color];
         let plain = PlainContext {
@@ -163,13 +167,16 @@ impl KeptContext {
             plain,
         }
     }
+
     /// Canvas px per screen point.
     pub fn px_per_pt(&self) -> f32 {
         self.plain.px_per_pt
     }
+
     /// The context of the press.
     pub fn lend<T>(&self, to: impl FnOnce(&ToolContext) -> T) -> T {
-        let PlainContext { colors, operator, px_per_pt, last_end, symmetry, axes, fill, .. } = self.plain;
+        let PlainContext { colors, operator, px_per_pt, last_end, symmetry, axes, fill, .. } =
+            self.plain;
         let PlainContext { target, select, shape, aids, clone_offset, .. } = self.plain;
         to(&ToolContext {
             document: &self.document,

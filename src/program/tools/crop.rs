@@ -1,5 +1,5 @@
-//! The crop tool: a frame that is dragged over the canvas, or beyond it, until it is applied or cancelled. Floor 5.
-//! Not here: what a document becomes within it (`document::canvas_change`).
+//! The crop tool: a frame that is dragged over the canvas, or beyond it, until it is applied or
+//! cancelled. Floor 5. Not here: what a document becomes within it (`document::canvas_change`).
 
 use super::frame::FrameHandle;
 use super::snap::{SnapLines, SnapTargets};
@@ -29,13 +29,18 @@ pub fn handle_at(frame: Rect, at: Vec2, grab_px: f32) -> FrameHandle {
     if let Some(side) = (0..4).find(|&i| near(edge(frame, i))) {
         return FrameHandle::Edge(side);
     }
-    let inside = at.x >= corners[0].x && at.x <= corners[2].x && at.y >= corners[0].y && at.y <= corners[2].y;
+    let inside = at.x >= corners[0].x
+        && at.x <= corners[2].x
+        && at.y >= corners[0].y
+        && at.y <= corners[2].y;
     if inside { FrameHandle::Inside } else { FrameHandle::Outside }
 }
 
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let at = pen.place();
-    let handle = context.crop.map_or(FrameHandle::Outside, |frame| handle_at(frame, at, GRAB_PT * context.px_per_pt));
+    let handle = context
+        .crop
+        .map_or(FrameHandle::Outside, |frame| handle_at(frame, at, GRAB_PT * context.px_per_pt));
     let gesture = CropGesture {
         frame: context.crop,
         handle,
@@ -72,7 +77,8 @@ impl CropGesture {
             let ratio = self.ratio.or(pen.keys.shift.then_some(1.0));
             return between(self.from, at, ratio);
         };
-        let ratio = self.ratio.or(pen.keys.shift.then(|| frame.width() as f32 / frame.height() as f32));
+        let ratio =
+            self.ratio.or(pen.keys.shift.then(|| frame.width() as f32 / frame.height() as f32));
         match self.handle {
             FrameHandle::Corner(corner) => between(corners(frame)[(corner + 2) % 4], at, ratio),
             FrameHandle::Edge(side) => with_side(frame, side, at, ratio),
@@ -89,7 +95,8 @@ fn place(at: Vec2) -> (i32, i32) {
     (held(at.x, &COORDINATE).round() as i32, held(at.y, &COORDINATE).round() as i32)
 }
 
-/// The frame from a fixed corner to the pen, at least a pixel; with an aspect it is as large as the farther side needs.
+/// The frame from a fixed corner to the pen, at least a pixel; with an aspect it is as large as the
+/// farther side needs.
 fn between(fixed: Vec2, at: Vec2, ratio: Option<f32>) -> Rect {
     let by = at - fixed;
     let (mut w, mut h) = (by.x.abs().max(1.0), by.y.abs().max(1.0));
@@ -119,14 +126,19 @@ fn with_side(frame: Rect, side: usize, at: Vec2, ratio: Option<f32>) -> Rect {
     let middle = (low + high) * 0.5;
     let is_upright = side.is_multiple_of(2);
     let size = if is_upright { vec2(size.y * ratio, size.y) } else { vec2(size.x, size.x / ratio) };
-    let low = if is_upright { vec2(middle.x - 0.5 * size.x, low.y) } else { vec2(low.x, middle.y - 0.5 * size.y) };
+    let low = if is_upright {
+        vec2(middle.x - 0.5 * size.x, low.y)
+    } else {
+        vec2(low.x, middle.y - 0.5 * size.y)
+    };
     between(low.round(), low.round() + size.round(), None)
 }
 
 impl Gesture for CropGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let Some(pen) = pens.last() else { return Outcome::Idle };
-        self.is_begun |= pen.place().distance(self.from) > self.slop_px || self.handle != FrameHandle::Outside;
+        self.is_begun |=
+            pen.place().distance(self.from) > self.slop_px || self.handle != FrameHandle::Outside;
         if !self.is_begun {
             return Outcome::Idle;
         }
@@ -138,9 +150,11 @@ impl Gesture for CropGesture {
         }
         Outcome::Frame(self.dragged(&snapped))
     }
+
     fn release(&mut self) -> Outcome {
         Outcome::Idle
     }
+
     fn snap_lines(&self) -> SnapLines {
         self.lines
     }
@@ -157,7 +171,8 @@ mod tests {
     /// The frame after a drag; `None` if it was left unchanged.
     fn dragged(crop: Option<Rect>, aspect: CropAspect, from: Vec2, to: Vec2) -> Option<Rect> {
         let (document, brush) = (Document::empty(Size::new(200, 100)), Brush::default());
-        let context = ToolContext { crop, crop_aspect: aspect, ..ToolContext::new(&document, &brush) };
+        let context =
+            ToolContext { crop, crop_aspect: aspect, ..ToolContext::new(&document, &brush) };
         let mut gesture = press(&context, PenSample::at(from)).0.unwrap();
         match gesture.drag(&[PenSample::at(to)]) {
             Outcome::Frame(frame) => Some(frame),
@@ -170,10 +185,14 @@ mod tests {
     fn a_drag_draws_a_frame_and_a_click_beside_one_does_nothing() {
         let drawn = dragged(None, CropAspect::Free, vec2(90.2, 70.0), vec2(-10.0, 20.4));
         assert_eq!(drawn, Some(Rect::new(-10, 20, 90, 70)));
-        assert_eq!(dragged(Some(FRAME), CropAspect::Free, vec2(10.0, 90.0), vec2(11.0, 90.0)), None);
+        assert_eq!(
+            dragged(Some(FRAME), CropAspect::Free, vec2(10.0, 90.0), vec2(11.0, 90.0)),
+            None
+        );
         let anew = dragged(Some(FRAME), CropAspect::Free, vec2(10.0, 95.0), vec2(30.0, 5.0));
         assert_eq!(anew, Some(Rect::new(10, 5, 30, 95)));
     }
+
     #[test]
     fn corners_sides_and_the_inside_are_held() {
         let to = |from, to| dragged(Some(FRAME), CropAspect::Free, from, to).unwrap();
@@ -184,10 +203,14 @@ mod tests {
         assert_eq!(to(vec2(50.0, 50.0), vec2(170.0, 50.0)), Rect::new(150, 20, 170, 80));
         assert_eq!(to(vec2(50.0, 50.0), vec2(150.0, 50.0)).width(), 1);
     }
+
     #[test]
     fn an_aspect_is_kept_by_every_handle() {
-        for (aspect, ratio) in [(CropAspect::Canvas, 2.0), (CropAspect::Square, 1.0), (CropAspect::ThreeToTwo, 1.5)] {
-            for from in [vec2(50.0, 20.0), vec2(150.0, 80.0), vec2(100.0, 20.0), vec2(150.0, 50.0)] {
+        for (aspect, ratio) in
+            [(CropAspect::Canvas, 2.0), (CropAspect::Square, 1.0), (CropAspect::ThreeToTwo, 1.5)]
+        {
+            for from in [vec2(50.0, 20.0), vec2(150.0, 80.0), vec2(100.0, 20.0), vec2(150.0, 50.0)]
+            {
                 let frame = dragged(Some(FRAME), aspect, from, from + vec2(17.0, -31.0)).unwrap();
                 let off = (frame.width() as f32 - ratio * frame.height() as f32).abs();
                 assert!(off <= 0.5 + 0.5 * ratio, "{aspect:?} {from}: {frame:?}");
@@ -195,6 +218,7 @@ mod tests {
         }
         assert_eq!(CropAspect::Square.given(FRAME, Size::new(9, 9)), Rect::new(50, 0, 150, 100));
     }
+
     #[test]
     fn what_is_no_place_is_held() {
         let frame = dragged(None, CropAspect::Free, vec2(0.0, 0.0), vec2(f32::MAX, f32::NAN));

@@ -22,6 +22,7 @@ impl Gesture for EyedropperGesture {
         let color = pens.last().and_then(|pen| color_at(&self.document, pen.place()));
         color.map_or(Outcome::Idle, Outcome::Picked)
     }
+
     fn release(&mut self) -> Outcome {
         Outcome::Cancel
     }

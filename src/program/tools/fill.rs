@@ -1,5 +1,5 @@
-//! The fill tool: a click fills the area connected to the pixel under the pen, on a paint layer. Floor 5. Not here:
-//! finding the area (`paint::fill`).
+//! The fill tool: a click fills the area connected to the pixel under the pen, on a paint layer.
+//! Floor 5. Not here: finding the area (`paint::fill`).
 
 use super::{GestureStart, Outcome, PenSample, ToolContext, closed};
 use crate::document::{
@@ -8,19 +8,26 @@ use crate::document::{
 use crate::math::srgb::Color;
 use crate::paint::fill::FilledArea;
 use crate::raster::{
-    CoverageGrid, CoverageTile, Mix, PlanarTile, TILE, Tile, TileAt, TileCoverage, TileGrid, TilePaint,
+    CoverageGrid, CoverageTile, Mix, PlanarTile, TILE, Tile, TileAt, TileCoverage, TileGrid,
+    TilePaint,
 };
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// The pen comes down: all is done at once. A selected layer that holds no pixels gets a paint layer above it.
+/// The pen comes down: all is done at once. A selected layer that holds no pixels gets a paint
+/// layer above it.
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let selected = context.layer.and_then(|id| context.document.layer(id));
     let why = selected.and_then(|layer| match layer.content {
         Content::Pixels(_) => closed::unpaintable(context.document, layer),
         _ => closed::hidden_around(context.document, layer.id),
     });
-    (None, why.map(|why| Outcome::Refused(why.into())).or_else(|| filled(context, pen)).unwrap_or(Outcome::Idle))
+    (
+        None,
+        why.map(|why| Outcome::Refused(why.into()))
+            .or_else(|| filled(context, pen))
+            .unwrap_or(Outcome::Idle),
+    )
 }
 
 fn filled(context: &ToolContext, pen: PenSample) -> Option<Outcome> {
@@ -48,9 +55,10 @@ fn fillable(context: &ToolContext) -> Option<(Document, LayerId)> {
     if let Some(layer) = selected.filter(|layer| matches!(layer.content, Content::Pixels(_))) {
         return Some((document.clone(), layer.id));
     }
-    let place = selected
-        .and_then(|layer| document.place_of(layer.id))
-        .map_or(LayerSlot::top_level(usize::MAX), |place| LayerSlot { index: place.index + 1, ..place });
+    let place = selected.and_then(|layer| document.place_of(layer.id)).map_or(
+        LayerSlot::top_level(usize::MAX),
+        |place| LayerSlot { index: place.index + 1, ..place },
+    );
     let pixels = PixelLayer { file: String::new(), x: 0, y: 0, tiles: TileGrid::default() };
     let layer = Layer::new(document.free_layer_name("Paint"), Content::Pixels(pixels));
     let id = layer.id;
@@ -58,7 +66,13 @@ fn fillable(context: &ToolContext) -> Option<(Document, LayerId)> {
 }
 
 /// The layer's pixels with a colour over the filled area.
-fn painted(base: &TileGrid, filled: &FilledArea, selected: Option<&CoverageGrid>, color: Color, mix: Mix) -> TileGrid {
+fn painted(
+    base: &TileGrid,
+    filled: &FilledArea,
+    selected: Option<&CoverageGrid>,
+    color: Color,
+    mix: Mix,
+) -> TileGrid {
     let tiles: Vec<TileAt> = TileAt::covering(filled.rect).collect();
     let one = |&at: &TileAt| match selected.map(|grid| grid.tile(at)) {
         // Nothing of the tile is selected.
@@ -115,6 +129,7 @@ mod tests {
         ];
         Document { layers, ..Document::empty(Size::new(120, 80)) }
     }
+
     fn click(document: &Document, layer: usize, fill: Fill, at: Vec2) -> Option<Document> {
         let (brush, white) = (Brush::default(), Color::WHITE);
         let context = ToolContext {
@@ -128,6 +143,7 @@ mod tests {
             _ => None,
         }
     }
+
     fn pixel(document: &Document, layer: usize, x: i32, y: i32) -> [u8; 4] {
         let Content::Pixels(pixels) = &document.layers[layer].content else { panic!("paint") };
         pixels.tiles.pixel(x, y)
@@ -144,20 +160,27 @@ mod tests {
     #[test]
     fn what_the_picture_shows_tells_where_the_fill_ends() {
         let filled = click(&document(), 1, SHARP, vec2(90.0, 40.0)).unwrap();
-        assert_eq!([59, 60, 119].map(|x| pixel(&filled, 1, x, 79)), [[255, 0, 0, 255], [255; 4], [255; 4]]);
+        assert_eq!(
+            [59, 60, 119].map(|x| pixel(&filled, 1, x, 79)),
+            [[255, 0, 0, 255], [255; 4], [255; 4]]
+        );
         let Content::Pixels(pixels) = &filled.layers[1].content else { panic!("paint") };
         assert!(pixels.file.is_empty(), "these are no longer the file's pixels");
     }
+
     #[test]
     fn a_layer_that_holds_no_pixels_gets_a_paint_layer_above_it() {
         let filled = click(&document(), 0, SHARP, vec2(10.0, 40.0)).unwrap();
         assert_eq!(filled.layers.len(), 3);
         assert_eq!((pixel(&filled, 1, 30, 30), pixel(&filled, 1, 90, 30)), ([255; 4], [0; 4]));
     }
+
     #[test]
     fn locked_alpha_fills_only_what_is_painted_and_a_locked_layer_nothing() {
         let document = document();
-        let lock = |lock: LayerLock| document.with_layer(document.layers[1].id, |layer| layer.lock = lock).unwrap();
+        let lock = |lock: LayerLock| {
+            document.with_layer(document.layers[1].id, |layer| layer.lock = lock).unwrap()
+        };
         let all = Fill { tolerance: 1.0, ..SHARP };
         let filled = click(&lock(LayerLock::Alpha), 1, all, vec2(10.0, 40.0)).unwrap();
         assert_eq!((pixel(&filled, 1, 30, 30), pixel(&filled, 1, 90, 30)), ([255; 4], [0; 4]));

@@ -1,5 +1,5 @@
-//! The frame of the transform tool and its handles: a box around the chosen layers, its place on the canvas, and its
-//! pivot. Floor 5.
+//! The frame of the transform tool and its handles: a box around the chosen layers, its place on
+//! the canvas, and its pivot. Floor 5.
 
 use super::pen::GRAB_PT;
 use crate::document::FrameBox;
@@ -11,7 +11,8 @@ use std::sync::Arc;
 /// The frame of a layer, or of several, on the canvas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransformFrame {
-    /// In the layer's own frame; that of several is the canvas at the time when they were first held.
+    /// In the layer's own frame; that of several is the canvas at the time when they were first
+    /// held.
     pub inner: FrameBox,
     /// From there to the canvas, groups included.
     pub plane: PlaneMap,
@@ -50,6 +51,7 @@ impl<'a> Framed<'a> {
             _ => Framed::Layers(chosen),
         }
     }
+
     fn layers(self) -> &'a [LayerId] {
         match self {
             Framed::Layers(layers) => layers,
@@ -72,9 +74,11 @@ pub enum FrameHandle {
     Outside,
 }
 
-/// The pivot is grabbed from nearer than other handles, screen points: around it the inside is dragged.
+/// The pivot is grabbed from nearer than other handles, screen points: around it the inside is
+/// dragged.
 const PIVOT_GRAB_PT: f32 = 6.0;
-/// The pivot of a frame whose shorter side is less than this, screen points, is only grabbed with Alt.
+/// The pivot of a frame whose shorter side is less than this, screen points, is only grabbed with
+/// Alt.
 const PIVOT_ROOM_PT: f32 = 56.0;
 
 impl TransformFrame {
@@ -83,15 +87,19 @@ impl TransformFrame {
         let [a, b, c, d] = inner.corners().map(|corner| plane.to_canvas(corner));
         Some(Self { inner, plane, filter, corners: [a?, b?, c?, d?], pivot_share: MIDDLE })
     }
+
     /// For a layer; `None` if it is empty or lies beyond the horizon.
     pub fn of(document: &Document, layer: LayerId) -> Option<Self> {
         let map = document.map_of(layer)?;
-        let is_mesh = document.layer(layer)?.transform.as_ref().is_some_and(|own| own.mesh().is_some());
+        let is_mesh =
+            document.layer(layer)?.transform.as_ref().is_some_and(|own| own.mesh().is_some());
         // The points of a mesh lie where the mesh moved them.
         let plane = if is_mesh { map.outside_own() } else { map.plane };
         Self::new(document.frame_box(layer)?, plane, map.filter)
     }
-    /// Around layers: for one its own frame, for several a box on the canvas. `None` if all are empty.
+
+    /// Around layers: for one its own frame, for several a box on the canvas. `None` if all are
+    /// empty.
     pub fn around(document: &Document, layers: &[LayerId]) -> Option<Self> {
         if let [layer] = layers {
             return Self::of(document, *layer);
@@ -103,45 +111,59 @@ impl TransformFrame {
         let filter = document.map_of(*layers.first()?)?.filter;
         Self::new(FrameBox { low, high }, PlaneMap::IDENTITY, filter)
     }
+
     /// Around the shape: for maps the frame that turned with them, for parts a box on the canvas.
     pub fn of_shape(document: &Document) -> Option<Self> {
         let surface = document.surface.as_ref()?;
         let origin = surface.origin();
         match document.parts.is_empty() && !Arc::ptr_eq(&origin.surface, surface) {
-            true => Self::new(FrameBox::of_surface(&origin.surface)?, origin.map, Resampling::default()),
-            false => Self::new(FrameBox::of_surface(surface)?, PlaneMap::IDENTITY, Resampling::default()),
+            true => {
+                Self::new(FrameBox::of_surface(&origin.surface)?, origin.map, Resampling::default())
+            }
+            false => {
+                Self::new(FrameBox::of_surface(surface)?, PlaneMap::IDENTITY, Resampling::default())
+            }
         }
     }
+
     /// The upper left and the lower right corner of the box around it, canvas px.
     pub fn bounds(&self) -> [Vec2; 2] {
         let [a, b, c, d] = self.corners;
         [a.min(b).min(c).min(d), a.max(b).max(c).max(d)]
     }
+
     /// The middle of the side from a corner to the next.
     pub fn edge(&self, index: usize) -> Vec2 {
         (self.corners[index % 4] + self.corners[(index + 1) % 4]) * 0.5
     }
+
     /// A point of the frame by shares of its sides, canvas px.
     pub fn point(&self, share: Vec2) -> Vec2 {
         let FrameBox { low, high } = self.inner;
         let middle = || self.corners.iter().sum::<Vec2>() * 0.25;
         self.plane.to_canvas(low + share * (high - low)).unwrap_or_else(middle)
     }
+
     /// Its pivot, canvas px.
     pub fn pivot(&self) -> Vec2 {
         self.point(self.pivot_share)
     }
+
     /// The same in the frame's own px.
     pub fn inner_pivot(&self) -> Vec2 {
         self.inner.low + self.pivot_share * (self.inner.high - self.inner.low)
     }
-    /// A canvas point as shares of its sides; `None` beyond the horizon, and for a frame without area.
+
+    /// A canvas point as shares of its sides; `None` beyond the horizon, and for a frame without
+    /// area.
     pub fn share_of(&self, at: Vec2) -> Option<Vec2> {
         let (inner, _) = self.plane.from_canvas(at)?;
         let share = (inner - self.inner.low) / (self.inner.high - self.inner.low);
         share.is_finite().then_some(share)
     }
-    /// What lies at a canvas point; `px_per_pt`: canvas px per screen point. With `alt` the inside is the pivot.
+
+    /// What lies at a canvas point; `px_per_pt`: canvas px per screen point. With `alt` the inside
+    /// is the pivot.
     pub fn handle_at(&self, at: Vec2, px_per_pt: f32, alt: bool) -> FrameHandle {
         let near = |p: Vec2, pt: f32| p.distance(at) <= pt * px_per_pt;
         if let Some(corner) = (0..4).find(|&i| near(self.corners[i], GRAB_PT)) {
@@ -155,7 +177,8 @@ impl TransformFrame {
         if is_roomy && near(self.pivot(), PIVOT_GRAB_PT) {
             return FrameHandle::Pivot;
         }
-        let sides = (0..4).map(|i| (self.corners[(i + 1) % 4] - self.corners[i]).perp_dot(at - self.corners[i]));
+        let sides = (0..4)
+            .map(|i| (self.corners[(i + 1) % 4] - self.corners[i]).perp_dot(at - self.corners[i]));
         let sides: Vec<f32> = sides.collect();
         let inside = sides.iter().all(|s| *s >= 0.0) || sides.iter().all(|s| *s <= 0.0);
         match inside {
@@ -169,8 +192,8 @@ impl TransformFrame {
 /// The first pivot of a frame.
 pub const MIDDLE: Vec2 = Vec2::splat(0.5);
 
-/// What the transform tool keeps about the layers in its frame until others are chosen: the pivot, and for several
-/// layers their first box, so that their frame turns with them.
+/// What the transform tool keeps about the layers in its frame until others are chosen: the pivot,
+/// and for several layers their first box, so that their frame turns with them.
 #[derive(Clone, Debug)]
 pub struct KeptFrame {
     /// None: for the shape.
@@ -192,7 +215,8 @@ struct FirstFrame {
 type PlacedBox = (FrameBox, LayerMap);
 
 /// Nothing is kept.
-static NOTHING: KeptFrame = KeptFrame { layers: Vec::new(), of_shape: false, pivot_share: MIDDLE, first: None };
+static NOTHING: KeptFrame =
+    KeptFrame { layers: Vec::new(), of_shape: false, pivot_share: MIDDLE, first: None };
 
 impl Default for KeptFrame {
     fn default() -> Self {
@@ -204,25 +228,34 @@ impl KeptFrame {
     pub fn nothing() -> &'static Self {
         &NOTHING
     }
+
     fn is_of(&self, framed: Framed) -> bool {
         self.of_shape == (framed == Framed::Shape) && self.layers == framed.layers()
     }
-    /// What is kept about these layers in their places: for others than the last, everything is new.
+
+    /// What is kept about these layers in their places: for others than the last, everything is
+    /// new.
     pub fn hold(&mut self, document: &Document, framed: Framed) {
         let layers = framed.layers();
         if !self.is_of(framed) {
-            *self = Self { layers: layers.to_vec(), of_shape: framed == Framed::Shape, ..Self::default() };
+            *self = Self {
+                layers: layers.to_vec(),
+                of_shape: framed == Framed::Shape,
+                ..Self::default()
+            };
         }
         if layers.len() > 1 && self.taken_along(document).is_none() {
             let inner = TransformFrame::around(document, layers).map(|frame| frame.inner);
             self.first = inner.map(|inner| FirstFrame { inner, each: each(document, layers) });
         }
     }
+
     /// The frame around layers or the shape, with what is kept if they are the same ones.
     pub fn around(&self, document: &Document, framed: Framed) -> Option<TransformFrame> {
         let known = Some(self).filter(|kept| kept.is_of(framed));
         let layers = framed.layers();
-        let turned = known.and_then(|kept| Some((kept.first.as_ref()?.inner, kept.taken_along(document)?)));
+        let turned =
+            known.and_then(|kept| Some((kept.first.as_ref()?.inner, kept.taken_along(document)?)));
         let plain = || match framed {
             Framed::Layers(layers) => TransformFrame::around(document, layers),
             Framed::Shape => TransformFrame::of_shape(document),
@@ -237,6 +270,7 @@ impl KeptFrame {
         let pivot_share = known.map_or(MIDDLE, |kept| kept.pivot_share);
         frame.map(|frame| TransformFrame { pivot_share, ..frame })
     }
+
     /// The pivot of some layers from now on, as shares of the sides of their frame.
     pub fn set_pivot(&mut self, document: &Document, framed: Framed, share: Vec2) {
         self.hold(document, framed);
@@ -244,18 +278,21 @@ impl KeptFrame {
             self.pivot_share = share.clamp(-FARTHEST_PIVOT, FARTHEST_PIVOT);
         }
     }
-    /// The map by which several layers were moved since they were first held; `None` if it is not the same for all, or
-    /// something else was done to them.
+
+    /// The map by which several layers were moved since they were first held; `None` if it is not
+    /// the same for all, or something else was done to them.
     fn taken_along(&self, document: &Document) -> Option<PlaneMap> {
         let first = self.first.as_ref()?;
         let now = each(document, &self.layers);
-        let mut moves = first.each.iter().zip(now).filter(|(then, now)| then.is_some() || now.is_some());
+        let mut moves =
+            first.each.iter().zip(now).filter(|(then, now)| then.is_some() || now.is_some());
         let by = |(then, now): (&Option<PlacedBox>, Option<PlacedBox>)| {
             let ((old_box, old), (new_box, new)) = (then.as_ref()?, now.as_ref()?);
             (old_box == new_box).then(|| old.plane.inverse().then(&new.plane))
         };
         let all = by(moves.next()?)?;
-        let agrees = moves.all(|both| by(both).is_some_and(|other| other.is_same_on(&all, document.size)));
+        let agrees =
+            moves.all(|both| by(both).is_some_and(|other| other.is_same_on(&all, document.size)));
         agrees.then_some(all)
     }
 }

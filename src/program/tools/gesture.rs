@@ -1,5 +1,5 @@
-//! What tools return: a gesture between the pen coming down and lifting, and the outcome of each of its events.
-//! Floor 5.
+//! What tools return: a gesture between the pen coming down and lifting, and the outcome of each of
+//! its events. Floor 5.
 
 use super::pen::PenSample;
 use super::settings::SelectSettings;
@@ -41,7 +41,8 @@ pub enum Outcome {
     CloneFrom(Vec2),
     /// Nothing was started; the reason is to be shown.
     Refused(Cow<'static, str>),
-    /// The frame of the chosen layers is turned about this point, by shares of its sides, from now on.
+    /// The frame of the chosen layers is turned about this point, by shares of its sides, from now
+    /// on.
     Pivot(Vec2),
     /// These points of the layer's mesh are chosen from now on.
     MeshPoints(Vec<usize>),
@@ -53,7 +54,8 @@ pub enum Outcome {
     Cancel,
 }
 
-/// A tool between the pen coming down and lifting. It holds a clone of the document it began with, which is cheap.
+/// A tool between the pen coming down and lifting. It holds a clone of the document it began with,
+/// which is cheap.
 pub trait Gesture: Send {
     /// The pen's samples since the last call, in order.
     fn drag(&mut self, pens: &[PenSample]) -> Outcome;
@@ -62,10 +64,12 @@ pub trait Gesture: Send {
     fn snap_lines(&self) -> SnapLines {
         SnapLines::default()
     }
+
     /// The last point that it was drawn to, if that is not at the pen.
     fn end(&self) -> Option<Vec2> {
         None
     }
+
     /// Whether it moves a guide, which is removed if it is dropped on a ruler.
     fn is_guide(&self) -> bool {
         false

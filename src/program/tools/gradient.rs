@@ -25,14 +25,17 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         }
         let gradient = live.params().clone();
         let near = |end: Vec2| end.distance(at) <= GRAB_PT * context.px_per_pt;
-        let end =
-            [(GradientEnd::To, gradient.to), (GradientEnd::From, gradient.from)].into_iter().find(|(_, p)| near(*p));
+        let end = [(GradientEnd::To, gradient.to), (GradientEnd::From, gradient.from)]
+            .into_iter()
+            .find(|(_, p)| near(*p));
         if let Some((end, _)) = end {
             return drag_end(context, layer.id, gradient, end);
         }
     }
-    let stops =
-        vec![GradientStop { t: 0.0, color: context.color }, GradientStop { t: 1.0, color: context.second_color }];
+    let stops = vec![
+        GradientStop { t: 0.0, color: context.color },
+        GradientStop { t: 1.0, color: context.second_color },
+    ];
     let from = context.snap.point(at).at;
     let gradient = Gradient {
         from,
@@ -44,7 +47,8 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         pieces: Vec::new(),
     };
     let place = selected.and_then(|layer| context.document.place_of(layer.id));
-    let (document, snap, lines) = (context.document.clone(), context.snap.clone(), SnapLines::default());
+    let (document, snap, lines) =
+        (context.document.clone(), context.snap.clone(), SnapLines::default());
     let laid = NewGradientGesture { document, place, gradient, layer: None, snap, lines };
     (Some(Box::new(laid)), Outcome::Idle)
 }
@@ -65,9 +69,12 @@ impl NewGradientGesture {
         let name = self.document.free_layer_name("Gradient");
         let content = Content::Gradient(Live::new(self.gradient.clone()));
         let mask = self.document.selection_as_mask();
-        let layer = self.layer.get_or_insert_with(|| Layer { mask, ..Layer::new(name, content.clone()) });
+        let layer =
+            self.layer.get_or_insert_with(|| Layer { mask, ..Layer::new(name, content.clone()) });
         layer.content = content;
-        let place = self.place.map_or(LayerSlot::top_level(usize::MAX), |p| LayerSlot { index: p.index + 1, ..p });
+        let place = self
+            .place
+            .map_or(LayerSlot::top_level(usize::MAX), |p| LayerSlot { index: p.index + 1, ..p });
         self.document.with_inserted(layer.clone(), place)
     }
 }
@@ -82,13 +89,19 @@ impl Gesture for NewGradientGesture {
         };
         self.with().map_or(Outcome::Idle, Outcome::Preview)
     }
+
     fn release(&mut self) -> Outcome {
         if self.gradient.from.distance(self.gradient.to) < 2.0 {
             return Outcome::Cancel;
         }
         let Some(document) = self.with() else { return Outcome::Cancel };
-        Outcome::Commit { label: "Gradient".into(), document, select: self.layer.as_ref().map(|layer| layer.id) }
+        Outcome::Commit {
+            label: "Gradient".into(),
+            document,
+            select: self.layer.as_ref().map(|layer| layer.id),
+        }
     }
+
     fn snap_lines(&self) -> SnapLines {
         self.lines
     }
@@ -102,9 +115,26 @@ fn upright(from: Vec2, to: Vec2) -> Vec2 {
 }
 
 /// Starts dragging one end of a gradient.
-pub(super) fn drag_end(context: &ToolContext, layer: LayerId, gradient: Gradient, end: GradientEnd) -> GestureStart {
-    let (document, snap, lines) = (context.document.clone(), context.snap.clone(), SnapLines::default());
-    (Some(Box::new(GradientEndGesture { document, layer, gradient, end, moved: false, snap, lines })), Outcome::Idle)
+pub(super) fn drag_end(
+    context: &ToolContext,
+    layer: LayerId,
+    gradient: Gradient,
+    end: GradientEnd,
+) -> GestureStart {
+    let (document, snap, lines) =
+        (context.document.clone(), context.snap.clone(), SnapLines::default());
+    (
+        Some(Box::new(GradientEndGesture {
+            document,
+            layer,
+            gradient,
+            end,
+            moved: false,
+            snap,
+            lines,
+        })),
+        Outcome::Idle,
+    )
 }
 
 /// One end of a gradient being dragged.
@@ -128,7 +158,8 @@ impl GradientEndGesture {
 impl Gesture for GradientEndGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let Some(pen) = pens.last() else { return Outcome::Idle };
-        let fixed = if self.end == GradientEnd::From { self.gradient.to } else { self.gradient.from };
+        let fixed =
+            if self.end == GradientEnd::From { self.gradient.to } else { self.gradient.from };
         let found = self.snap.point(pen.place());
         let (at, lines) = match pen.keys.shift {
             true => (upright(fixed, pen.place()), SnapLines::default()),
@@ -142,6 +173,7 @@ impl Gesture for GradientEndGesture {
         self.moved = true;
         self.with().map_or(Outcome::Idle, Outcome::Preview)
     }
+
     fn release(&mut self) -> Outcome {
         match self.with() {
             Some(document) if self.moved => {
@@ -150,6 +182,7 @@ impl Gesture for GradientEndGesture {
             _ => Outcome::Cancel,
         }
     }
+
     fn snap_lines(&self) -> SnapLines {
         self.lines
     }
@@ -170,15 +203,21 @@ mod tests {
             gesture.drag(&[PenSample::at(to)]);
             gesture.release()
         };
-        let Outcome::Commit { document, select, .. } = drag(&context, vec2(10.0, 10.0), vec2(80.0, 20.0)) else {
+        let Outcome::Commit { document, select, .. } =
+            drag(&context, vec2(10.0, 10.0), vec2(80.0, 20.0))
+        else {
             panic!("laid")
         };
         let context = ToolContext { document: &document, layer: select, ..context };
-        let Outcome::Commit { document, .. } = drag(&context, vec2(82.0, 21.0), vec2(50.0, 90.0)) else {
+        let Outcome::Commit { document, .. } = drag(&context, vec2(82.0, 21.0), vec2(50.0, 90.0))
+        else {
             panic!("moved")
         };
         let Content::Gradient(live) = &document.layers[0].content else { panic!("a gradient") };
         assert_eq!((live.params().from, live.params().to), (vec2(10.0, 10.0), vec2(50.0, 90.0)));
-        assert!(matches!(drag(&context, vec2(40.0, 40.0), vec2(40.5, 40.0)), Outcome::Cancel), "a click lays nothing");
+        assert!(
+            matches!(drag(&context, vec2(40.0, 40.0), vec2(40.5, 40.0)), Outcome::Cancel),
+            "a click lays nothing"
+        );
     }
 }

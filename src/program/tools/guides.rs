@@ -1,4 +1,5 @@
-//! Guides under the pen: pulled out of a ruler, dragged over the canvas, and removed by dragging off it. Floor 5.
+//! Guides under the pen: pulled out of a ruler, dragged over the canvas, and removed by dragging
+//! off it. Floor 5.
 
 use super::snap::{SnapLines, SnapTargets};
 use super::{Gesture, GestureStart, Outcome, PenSample};
@@ -16,8 +17,10 @@ pub struct GuideAt {
 /// The nearest guide within a distance in px of a point.
 pub fn guide_at(guides: &Guides, at: Vec2, near_px: f32) -> Option<GuideAt> {
     let of = |lines: &[f32], place: f32, is_vertical: bool| {
-        let all =
-            lines.iter().enumerate().map(move |(index, line)| ((line - place).abs(), GuideAt { is_vertical, index }));
+        let all = lines
+            .iter()
+            .enumerate()
+            .map(move |(index, line)| ((line - place).abs(), GuideAt { is_vertical, index }));
         all.min_by(|a, b| a.0.total_cmp(&b.0))
     };
     let both = [of(&guides.vertical, at.x, true), of(&guides.horizontal, at.y, false)];
@@ -33,11 +36,19 @@ pub fn hold(document: &Document, guide: GuideAt, targets: SnapTargets) -> Gestur
         return (None, Outcome::Idle);
     }
     lines.remove(guide.index);
-    (Some(Box::new(GuideGesture::new(document, rest, guide.is_vertical, targets, true))), Outcome::Idle)
+    (
+        Some(Box::new(GuideGesture::new(document, rest, guide.is_vertical, targets, true))),
+        Outcome::Idle,
+    )
 }
 
 /// A new guide that follows the pen.
-pub fn pull(document: &Document, is_vertical: bool, targets: SnapTargets, pen: PenSample) -> GestureStart {
+pub fn pull(
+    document: &Document,
+    is_vertical: bool,
+    targets: SnapTargets,
+    pen: PenSample,
+) -> GestureStart {
     if document.guides.vertical.len().max(document.guides.horizontal.len()) >= Guides::MOST {
         return (None, Outcome::Refused("There are as many guides as a document holds.".into()));
     }
@@ -62,10 +73,17 @@ struct GuideGesture {
 }
 
 impl GuideGesture {
-    fn new(document: &Document, rest: Guides, is_vertical: bool, targets: SnapTargets, is_old: bool) -> Self {
+    fn new(
+        document: &Document,
+        rest: Guides,
+        is_vertical: bool,
+        targets: SnapTargets,
+        is_old: bool,
+    ) -> Self {
         let (document, lines) = (document.clone(), SnapLines::default());
         Self { document, rest, is_vertical, targets, is_old, at: None, has_moved: false, lines }
     }
+
     fn with(&self) -> Document {
         let mut guides = self.rest.clone();
         if let Some(at) = self.at {
@@ -77,7 +95,9 @@ impl GuideGesture {
 
 impl Gesture for GuideGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
-        let Some(pen) = pens.last().filter(|pen| pen.place().is_finite()) else { return Outcome::Idle };
+        let Some(pen) = pens.last().filter(|pen| pen.place().is_finite()) else {
+            return Outcome::Idle;
+        };
         self.has_moved = true;
         let found = self.targets.point(pen.place());
         let axis = usize::from(!self.is_vertical);
@@ -92,6 +112,7 @@ impl Gesture for GuideGesture {
         };
         Outcome::Preview(self.with())
     }
+
     fn release(&mut self) -> Outcome {
         let label = match (self.is_old, self.at) {
             (true, _) if !self.has_moved => return Outcome::Cancel,
@@ -102,9 +123,11 @@ impl Gesture for GuideGesture {
         };
         Outcome::Commit { label: label.into(), document: self.with(), select: None }
     }
+
     fn snap_lines(&self) -> SnapLines {
         self.lines
     }
+
     fn is_guide(&self) -> bool {
         true
     }
@@ -120,37 +143,62 @@ mod tests {
         let guides = Arc::new(Guides { vertical: vec![40.0, 90.0], horizontal: vec![33.5] });
         Document { guides, ..Document::empty(Size::new(200, 100)) }
     }
+
     fn dragged(start: GestureStart, to: Vec2) -> Option<(String, Guides)> {
         let mut gesture = start.0?;
         gesture.drag(&[PenSample::at(to)]);
         match gesture.release() {
-            Outcome::Commit { label, document, .. } => Some((label, Guides::clone(&document.guides))),
+            Outcome::Commit { label, document, .. } => {
+                Some((label, Guides::clone(&document.guides)))
+            }
             _ => None,
         }
     }
+
     fn targets() -> SnapTargets {
-        SnapTargets::of(&document(), &ViewAids { to_guides: false, ..ViewAids::default() }, &[], 1.0)
+        SnapTargets::of(
+            &document(),
+            &ViewAids { to_guides: false, ..ViewAids::default() },
+            &[],
+            1.0,
+        )
     }
 
     #[test]
     fn the_nearest_guide_is_held() {
         let guides = document().guides;
-        assert_eq!(guide_at(&guides, vec2(43.0, 80.0), 4.0), Some(GuideAt { is_vertical: true, index: 0 }));
-        assert_eq!(guide_at(&guides, vec2(87.0, 34.0), 4.0), Some(GuideAt { is_vertical: false, index: 0 }));
+        assert_eq!(
+            guide_at(&guides, vec2(43.0, 80.0), 4.0),
+            Some(GuideAt { is_vertical: true, index: 0 })
+        );
+        assert_eq!(
+            guide_at(&guides, vec2(87.0, 34.0), 4.0),
+            Some(GuideAt { is_vertical: false, index: 0 })
+        );
         assert_eq!(guide_at(&guides, vec2(60.0, 60.0), 4.0), None);
         assert_eq!(guide_at(&Guides::default(), Vec2::NAN, 4.0), None);
     }
+
     #[test]
     fn guides_are_pulled_out_moved_and_taken_away() {
         let document = document();
-        let new = dragged(pull(&document, true, targets(), PenSample::at(Vec2::ZERO)), vec2(60.4, 9.0)).unwrap();
+        let new =
+            dragged(pull(&document, true, targets(), PenSample::at(Vec2::ZERO)), vec2(60.4, 9.0))
+                .unwrap();
         assert_eq!((new.0.as_str(), &new.1.vertical[..]), ("Add guide", &[40.0, 90.0, 60.0][..]));
         let held = GuideAt { is_vertical: true, index: 0 };
         let moved = dragged(hold(&document, held, targets()), vec2(105.0, 3.0)).unwrap();
-        assert_eq!((moved.0.as_str(), &moved.1.vertical[..]), ("Move guide", &[90.0, 100.0][..]), "to the middle");
+        assert_eq!(
+            (moved.0.as_str(), &moved.1.vertical[..]),
+            ("Move guide", &[90.0, 100.0][..]),
+            "to the middle"
+        );
         let gone = dragged(hold(&document, held, targets()), vec2(-40.0, 3.0)).unwrap();
         assert_eq!((gone.0.as_str(), gone.1.vertical.len()), ("Remove guide", 1));
-        assert!(dragged(pull(&document, false, targets(), PenSample::at(Vec2::ZERO)), vec2(9.0, -30.0)).is_none());
+        assert!(
+            dragged(pull(&document, false, targets(), PenSample::at(Vec2::ZERO)), vec2(9.0, -30.0))
+                .is_none()
+        );
         let lost = GuideAt { is_vertical: false, index: 7 };
         assert!(hold(&document, lost, targets()).0.is_none());
     }

@@ -1,5 +1,5 @@
-//! The image tool: moves, scales and turns the selected image before it is bent. Floor 5. Not here: anchors
-//! (`anchors`).
+//! The image tool: moves, scales and turns the selected image before it is bent. Floor 5. Not here:
+//! anchors (`anchors`).
 
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext, closed};
 use crate::document::{Content, Document, LayerId, Live};
@@ -23,7 +23,15 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let placement = image.placement;
     let (document, layer) = (context.document.clone(), layer.id);
     (
-        Some(Box::new(ImageGesture { document, layer, image, placement, how, from: pen.place(), moved: false })),
+        Some(Box::new(ImageGesture {
+            document,
+            layer,
+            image,
+            placement,
+            how,
+            from: pen.place(),
+            moved: false,
+        })),
         Outcome::Idle,
     )
 }
@@ -60,6 +68,7 @@ impl Gesture for ImageGesture {
         self.moved = true;
         self.with().map_or(Outcome::Idle, Outcome::Preview)
     }
+
     fn release(&mut self) -> Outcome {
         let label = match self.how {
             ImageDrag::Move => "Move image",
@@ -67,7 +76,9 @@ impl Gesture for ImageGesture {
             ImageDrag::Turn => "Turn image",
         };
         match self.with() {
-            Some(document) if self.moved => Outcome::Commit { label: label.into(), document, select: None },
+            Some(document) if self.moved => {
+                Outcome::Commit { label: label.into(), document, select: None }
+            }
             _ => Outcome::Cancel,
         }
     }
@@ -85,7 +96,10 @@ fn placed(placement: Placement, how: ImageDrag, from: Vec2, to: Vec2) -> Placeme
         // Counter-clockwise as seen is clockwise in y-down coordinates.
         ImageDrag::Turn => {
             let turn = (before.to_angle() - after.to_angle()).to_degrees();
-            Placement { rotation: (placement.rotation + turn + 540.0).rem_euclid(360.0) - 180.0, ..placement }
+            Placement {
+                rotation: (placement.rotation + turn + 540.0).rem_euclid(360.0) - 180.0,
+                ..placement
+            }
         }
     }
 }
@@ -102,6 +116,10 @@ mod tests {
         assert_eq!(moved.center, vec2(55.0, 70.0));
         assert_eq!(placed(start, ImageDrag::Scale, vec2(60.0, 50.0), vec2(50.0, 70.0)).scale, 2.0);
         let turned = placed(start, ImageDrag::Turn, vec2(60.0, 50.0), vec2(50.0, 40.0));
-        assert!((turned.rotation - 100.0).abs() < 1e-3, "upward is a quarter turn as seen: {}", turned.rotation);
+        assert!(
+            (turned.rotation - 100.0).abs() < 1e-3,
+            "upward is a quarter turn as seen: {}",
+            turned.rotation
+        );
     }
 }

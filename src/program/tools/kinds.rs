@@ -1,9 +1,9 @@
-//! The list of tools: the name, key and description of each. Floor 5. Not here: what they do (the files of their
-//! names).
+//! The list of tools: the name, key and description of each. Floor 5. Not here: what they do (the
+//! files of their names).
 
 rilievo_engine::named! {
-    /// The tools, each with its name in replays, its label on buttons, and what it does, for tooltips and the status
-    /// bar.
+    /// The tools, each with its name in replays, its label on buttons, and what it does, for
+    /// tooltips and the status bar.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
     pub enum ToolKind {
         #[default]
@@ -125,16 +125,24 @@ impl ToolKind {
             ToolKind::Zoom => 'Z',
         }
     }
+
     /// Whether the pen snaps to guides, the grid and edges in all uses.
     pub fn snaps(self) -> bool {
-        use ToolKind::{Assistants, Crop, Gradient, Move, SelectEllipse, SelectRectangle, Transform};
-        matches!(self, Assistants | Crop | Gradient | Move | SelectEllipse | SelectRectangle | Transform)
+        use ToolKind::{
+            Assistants, Crop, Gradient, Move, SelectEllipse, SelectRectangle, Transform,
+        };
+        matches!(
+            self,
+            Assistants | Crop | Gradient | Move | SelectEllipse | SelectRectangle | Transform
+        )
     }
+
     /// Whether it makes selections.
     pub fn selects(self) -> bool {
         use ToolKind::{Lasso, SelectEllipse, SelectRectangle, SurfaceWand, Wand};
         matches!(self, SelectRectangle | SelectEllipse | Lasso | Wand | SurfaceWand)
     }
+
     /// Whether it works on the parts of the shape.
     pub fn shapes(self) -> bool {
         matches!(self, ToolKind::Shape | ToolKind::Touch | ToolKind::Sculpt)

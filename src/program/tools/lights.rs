@@ -1,6 +1,6 @@
-//! The lights of a shading layer on the canvas: each is a handle. A distant light has its handle on a disc around the
-//! middle, which is the half sphere of directions seen from the front; a point light has it at its position. Floor 5.
-//! Not here: the effect of light (`shading`).
+//! The lights of a shading layer on the canvas: each is a handle. A distant light has its handle on
+//! a disc around the middle, which is the half sphere of directions seen from the front; a point
+//! light has it at its position. Floor 5. Not here: the effect of light (`shading`).
 
 use super::{Gesture, Outcome, PenSample};
 use crate::document::{Content, Document, LayerId, Live};
@@ -26,7 +26,8 @@ pub fn handles(lights: &[Light], canvas: Size) -> Vec<Vec2> {
     lights.iter().map(place).collect()
 }
 
-/// The light whose handle was dragged to a point of the canvas. Directions stay in front of the surface.
+/// The light whose handle was dragged to a point of the canvas. Directions stay in front of the
+/// surface.
 fn dragged(light: Light, to: Vec2, canvas: Size) -> Light {
     let kind = match light.kind {
         LightKind::Directional { .. } => {
@@ -65,9 +66,12 @@ impl Gesture for LightGesture {
         self.moved = true;
         self.with().map_or(Outcome::Idle, Outcome::Preview)
     }
+
     fn release(&mut self) -> Outcome {
         match self.with() {
-            Some(document) if self.moved => Outcome::Commit { label: "Move light".into(), document, select: None },
+            Some(document) if self.moved => {
+                Outcome::Commit { label: "Move light".into(), document, select: None }
+            }
             _ => Outcome::Cancel,
         }
     }

@@ -1,5 +1,5 @@
-//! The liquify tool: strokes that displace what the selected layer or group shows. The layer itself stays as it is.
-//! Floor 5. Not here: what a dab does (`paint::liquify`).
+//! The liquify tool: strokes that displace what the selected layer or group shows. The layer itself
+//! stays as it is. Floor 5. Not here: what a dab does (`paint::liquify`).
 
 use super::symmetry::SymmetryImage;
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext, closed};
@@ -18,7 +18,9 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     }
     let why = match &layer.content {
         Content::Fill(_) => Some("A layer of one colour looks the same when it is displaced."),
-        content if !content.can_be_warped() => Some("This layer shows nothing of its own that could be displaced."),
+        content if !content.can_be_warped() => {
+            Some("This layer shows nothing of its own that could be displaced.")
+        }
         _ => None,
     };
     let map = document.map_of(layer.id);
@@ -40,14 +42,24 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let of_image = |image: SymmetryImage| {
         let tool = if image.is_mirrored() { tool.mirrored() } else { tool };
         let (settings, at) = (LiquifySettings { tool, ..settings }, image.sample(&pen.sample).at);
-        (image, LiquifyStroke::new(settings, document.scene(), selection.clone(), map.outside_own(), at))
+        (
+            image,
+            LiquifyStroke::new(
+                settings,
+                document.scene(),
+                selection.clone(),
+                map.outside_own(),
+                at,
+            ),
+        )
     };
     let images = context.symmetry.images_about(document.size, context.axes);
     let strokes: Vec<(SymmetryImage, LiquifyStroke)> = images.into_iter().map(of_image).collect();
     let old = layer.liquify.clone();
     let mut lattice = old.as_deref().cloned().unwrap_or_default();
     strokes.iter().for_each(|(_, stroke)| stroke.begin(&mut lattice, pen.sample.pressure));
-    let gesture = LiquifyGesture { document: document.clone(), layer: layer.id, old, lattice, strokes };
+    let gesture =
+        LiquifyGesture { document: document.clone(), layer: layer.id, old, lattice, strokes };
     let outcome = gesture.shown();
     (Some(Box::new(gesture)), outcome)
 }
@@ -66,6 +78,7 @@ impl LiquifyGesture {
         let next = (!self.lattice.is_empty()).then(|| Arc::new(self.lattice.clone()));
         self.document.with_layer(self.layer, |layer| layer.liquify = next)
     }
+
     fn shown(&self) -> Outcome {
         self.with().map_or(Outcome::Idle, Outcome::Preview)
     }
@@ -75,11 +88,16 @@ impl Gesture for LiquifyGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         for pen in pens {
             for (image, stroke) in &mut self.strokes {
-                stroke.draw_to(&mut self.lattice, image.sample(&pen.sample).at, pen.sample.pressure);
+                stroke.draw_to(
+                    &mut self.lattice,
+                    image.sample(&pen.sample).at,
+                    pen.sample.pressure,
+                );
             }
         }
         self.shown()
     }
+
     fn release(&mut self) -> Outcome {
         let is_same = match &self.old {
             Some(old) => **old == self.lattice,

@@ -1,6 +1,6 @@
-//! The brush and the eraser on a layer's mask: light colours show the layer, dark ones and the eraser hide it. The
-//! strokes are those of the brush, on a temporary paint layer with the mask's greys. Floor 5. Not here: the strokes
-//! (`brush`).
+//! The brush and the eraser on a layer's mask: light colours show the layer, dark ones and the
+//! eraser hide it. The strokes are those of the brush, on a temporary paint layer with the mask's
+//! greys. Floor 5. Not here: the strokes (`brush`).
 
 use super::brush;
 use super::closed;
@@ -15,7 +15,9 @@ use std::sync::Arc;
 
 /// The pen comes down. Nothing starts if the layer is locked or hidden, or has no paintable mask.
 pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> GestureStart {
-    let Some(layer) = context.layer.and_then(|id| context.document.layer(id)) else { return (None, Outcome::Idle) };
+    let Some(layer) = context.layer.and_then(|id| context.document.layer(id)) else {
+        return (None, Outcome::Idle);
+    };
     if let Some(why) = closed::unpaintable(context.document, layer) {
         return (None, Outcome::Refused(why.into()));
     }
@@ -23,14 +25,22 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
         return (None, Outcome::Idle);
     };
     // The strokes bend over what the layer itself sees: the surface with the detail beneath it.
-    let surface = context.document.scene_of(layer.id).map_or(context.document.surface.clone(), |scene| scene.surface);
+    let surface = context
+        .document
+        .scene_of(layer.id)
+        .map_or(context.document.surface.clone(), |scene| scene.surface);
     let active_selection = context.document.active_selection.clone();
     let sees = Document { surface, active_selection, ..Document::empty(context.document.size) };
     painted(context, (pen, purpose), MaskTarget::Layer(layer.id), coverage.clone(), sees)
 }
 
-/// The pen comes down on the selection itself: light colours select, dark ones and the eraser deselect.
-pub fn press_on_selection(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> GestureStart {
+/// The pen comes down on the selection itself: light colours select, dark ones and the eraser
+/// deselect.
+pub fn press_on_selection(
+    context: &ToolContext,
+    pen: PenSample,
+    purpose: StrokePurpose,
+) -> GestureStart {
     let size = context.document.size;
     let mask = match context.document.selected() {
         Some(selected) => selected.to_plane(size.rect()),
@@ -60,8 +70,11 @@ fn painted(
         document: &Document { layers: vec![Arc::new(sheet)], ..sees },
         ..*context
     };
-    let (Some(stroke), first) = brush::press(&on_sheet, pen, purpose) else { return (None, Outcome::Idle) };
-    let mut painting = MaskGesture { document: context.document.clone(), target, mask, shown, stroke };
+    let (Some(stroke), first) = brush::press(&on_sheet, pen, purpose) else {
+        return (None, Outcome::Idle);
+    };
+    let mut painting =
+        MaskGesture { document: context.document.clone(), target, mask, shown, stroke };
     let outcome = painting.took(first);
     (Some(Box::new(painting)), outcome)
 }
@@ -102,6 +115,7 @@ impl MaskGesture {
             other => other,
         }
     }
+
     fn with(&mut self, sheet: &Document) -> Option<Document> {
         let Content::Pixels(pixels) = &sheet.layers.first()?.content else { return None };
         let mask = Arc::make_mut(&mut self.mask);
@@ -115,7 +129,8 @@ impl MaskGesture {
             return Some(self.document.with_selection(Some(selection)));
         };
         self.document.with_layer(layer, |layer| {
-            if let Some(LayerMask { kind: MaskKind::File { file, coverage }, .. }) = &mut layer.mask {
+            if let Some(LayerMask { kind: MaskKind::File { file, coverage }, .. }) = &mut layer.mask
+            {
                 // Painted pixels no longer match the file.
                 file.clear();
                 *coverage = now;
@@ -129,6 +144,7 @@ impl Gesture for MaskGesture {
         let outcome = self.stroke.drag(pens);
         self.took(outcome)
     }
+
     fn release(&mut self) -> Outcome {
         let outcome = self.stroke.release();
         self.took(outcome)
@@ -144,8 +160,8 @@ fn greys(mask: &Plane<u8>) -> TileGrid {
         let (rect, inside) = (at.rect(), at.rect().intersect(canvas));
         let columns = inside.x0 as usize..inside.x1 as usize;
         let first = mask.at(columns.start, inside.y0 as usize);
-        let is_plain =
-            (inside.y0..inside.y1).all(|y| mask.row(y as usize)[columns.clone()].iter().all(|&v| v == first));
+        let is_plain = (inside.y0..inside.y1)
+            .all(|y| mask.row(y as usize)[columns.clone()].iter().all(|&v| v == first));
         let made = |grey: &dyn Fn(i32, i32) -> u8| {
             let place = |i: usize| (rect.x0 + (i % TILE) as i32, rect.y0 + (i / TILE) as i32);
             let pixel = |i: usize| {
@@ -189,13 +205,16 @@ mod tests {
 
     fn masked(value: u8) -> Document {
         let size = Size::new(200, 130);
-        let kind = MaskKind::File { file: "m.png".into(), coverage: Arc::new(Plane::filled(size, value)) };
+        let kind =
+            MaskKind::File { file: "m.png".into(), coverage: Arc::new(Plane::filled(size, value)) };
         let fill = Layer::new("fill", Content::Fill(Color { r: 200, g: 10, b: 10, a: 255 }));
         let layer = Layer { mask: Some(LayerMask::new(kind)), ..fill };
         Document { layers: vec![Arc::new(layer)], ..Document::empty(size) }
     }
+
     fn drawn(document: &Document, color: Color, purpose: StrokePurpose) -> Document {
-        let (brush, layer) = (Brush { size: 20.0, hardness: 1.0, ..Brush::default() }, Some(document.layers[0].id));
+        let (brush, layer) =
+            (Brush { size: 20.0, hardness: 1.0, ..Brush::default() }, Some(document.layers[0].id));
         let context = ToolContext { layer, color, ..ToolContext::new(document, &brush) };
         let mut gesture = press(&context, PenSample::at(vec2(40.0, 40.0)), purpose).0.unwrap();
         gesture.drag(&[PenSample::at(vec2(90.0, 40.0))]);
@@ -205,6 +224,7 @@ mod tests {
             _ => panic!("kept"),
         }
     }
+
     fn alpha(document: &Document, x: i32, y: i32) -> u8 {
         flatten(document, &Progress::default()).unwrap().pixel(x, y)[3]
     }
@@ -215,18 +235,25 @@ mod tests {
         let shown = drawn(&hidden, Color::WHITE, StrokePurpose::Paint);
         assert_eq!((alpha(&shown, 80, 40), alpha(&shown, 80, 80)), (255, 0));
         let whole = masked(255);
-        for (color, purpose) in [(Color::BLACK, StrokePurpose::Paint), (Color::WHITE, StrokePurpose::Erase)] {
+        for (color, purpose) in
+            [(Color::BLACK, StrokePurpose::Paint), (Color::WHITE, StrokePurpose::Erase)]
+        {
             let cut = drawn(&whole, color, purpose);
             assert_eq!((alpha(&cut, 80, 40), alpha(&cut, 80, 80)), (0, 255));
         }
     }
+
     #[test]
     fn only_the_tiles_of_the_stroke_are_drawn_again() {
         let hidden = masked(0);
         let changed = diff(&hidden, &drawn(&hidden, Color::WHITE, StrokePurpose::Paint));
         let expected = [TileAt::new(0, 0), TileAt::new(1, 0), TileAt::new(2, 0)];
-        assert!(!changed.is_empty() && changed.iter().all(|at| expected.contains(at)), "{changed:?}");
+        assert!(
+            !changed.is_empty() && changed.iter().all(|at| expected.contains(at)),
+            "{changed:?}"
+        );
     }
+
     #[test]
     fn a_layer_without_such_a_mask_takes_no_paint() {
         let mut document = masked(0);

@@ -1,6 +1,6 @@
-//! Floor 5: tools. A tool turns the pen's events on the canvas into documents: a preview while the pen moves, and a
-//! result when it lifts. Each tool is a file and a row of [`ToolKind`] (`kinds`). Not here: the current tool and
-//! the history (`session`), screen coordinates (`window`).
+//! Floor 5: tools. A tool turns the pen's events on the canvas into documents: a preview while the
+//! pen moves, and a result when it lifts. Each tool is a file and a row of [`ToolKind`] (`kinds`).
+//! Not here: the current tool and the history (`session`), screen coordinates (`window`).
 
 pub mod anchors;
 pub mod assistants;

@@ -43,8 +43,8 @@ pub enum MoveTarget {
     Layer,
 }
 
-/// What a press at a canvas point would hold: the topmost stroke there, or the whole layer; nothing if it is locked.
-/// `whole`: the layer in any case.
+/// What a press at a canvas point would hold: the topmost stroke there, or the whole layer; nothing
+/// if it is locked. `whole`: the layer in any case.
 pub fn held(document: &Document, layer: &Layer, at: Vec2, whole: bool) -> Option<MoveTarget> {
     if layer.lock == LayerLock::All {
         return None;
@@ -73,17 +73,28 @@ struct MoveGesture {
 }
 
 impl MoveGesture {
-    fn begin(context: &ToolContext, layers: Vec<LayerId>, stroke: Option<usize>, pen: PenSample) -> Self {
+    fn begin(
+        context: &ToolContext,
+        layers: Vec<LayerId>,
+        stroke: Option<usize>,
+        pen: PenSample,
+    ) -> Self {
         let (document, snap) = (context.document.clone(), context.snap.clone());
         let snaps = stroke.is_none() && !snap.is_empty();
-        let frame = snaps.then(|| TransformFrame::around(&document, &layers)).flatten().map(|frame| frame.bounds());
+        let frame = snaps
+            .then(|| TransformFrame::around(&document, &layers))
+            .flatten()
+            .map(|frame| frame.bounds());
         let (from, by, lines) = (pen.place(), Vec2::ZERO, SnapLines::default());
         Self { document, layers, stroke, from, by, frame, snap, lines }
     }
+
     fn with(&self) -> Option<Document> {
         match (self.stroke, &self.layers[..]) {
             (Some(index), [layer]) => self.document.with_moved_strokes(*layer, &[index], self.by),
-            (_, layers) => layers.iter().try_fold(self.document.clone(), |next, id| with_moved(&next, *id, self.by)),
+            (_, layers) => layers
+                .iter()
+                .try_fold(self.document.clone(), |next, id| with_moved(&next, *id, self.by)),
         }
     }
 }
@@ -110,6 +121,7 @@ impl Gesture for MoveGesture {
         self.by = by.round();
         self.with().map_or(Outcome::Idle, Outcome::Preview)
     }
+
     fn release(&mut self) -> Outcome {
         match self.with() {
             Some(document) if self.by != Vec2::ZERO => {
@@ -123,12 +135,14 @@ impl Gesture for MoveGesture {
             _ => Outcome::Cancel,
         }
     }
+
     fn snap_lines(&self) -> SnapLines {
         self.lines
     }
 }
 
-/// The layer with its content moved; `by` in whole pixels. Content that covers the whole canvas stays as it is.
+/// The layer with its content moved; `by` in whole pixels. Content that covers the whole canvas
+/// stays as it is.
 pub fn moved(layer: &Layer, by: Vec2) -> Layer {
     Layer { content: layer.content.moved(by), ..layer.clone() }
 }
@@ -153,8 +167,12 @@ mod tests {
             _ => panic!("moved"),
         }
     }
+
     fn one(content: Content) -> Document {
-        Document { layers: vec![Arc::new(Layer::new("one", content))], ..Document::empty(Size::new(100, 100)) }
+        Document {
+            layers: vec![Arc::new(Layer::new("one", content))],
+            ..Document::empty(Size::new(100, 100))
+        }
     }
 
     #[test]
@@ -163,32 +181,53 @@ mod tests {
         let document = one(Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles }));
         let moved = dragged(&document, vec2(5.0, 5.0), vec2(67.6, -3.2));
         let Content::Pixels(pixels) = &moved.layers[0].content else { panic!("paint") };
-        assert_eq!((pixels.tiles.pixel(73, 12), pixels.tiles.pixel(10, 20)), ([7, 8, 9, 255], [0; 4]));
+        assert_eq!(
+            (pixels.tiles.pixel(73, 12), pixels.tiles.pixel(10, 20)),
+            ([7, 8, 9, 255], [0; 4])
+        );
     }
+
     #[test]
     fn a_stroke_under_the_pen_moves_alone() {
         let stroke = |y: f32| {
             let samples = [vec2(10.0, y), vec2(90.0, y)].map(Sample::at).to_vec();
-            Arc::new(Stroke::new(Brush { size: 6.0, ..Brush::default() }, Operator::None, Color::BLACK, samples))
+            Arc::new(Stroke::new(
+                Brush { size: 6.0, ..Brush::default() },
+                Operator::None,
+                Color::BLACK,
+                samples,
+            ))
         };
-        let document = one(Content::Strokes(Live::new(StrokeList { strokes: vec![stroke(20.0), stroke(60.0)] })));
+        let document = one(Content::Strokes(Live::new(StrokeList {
+            strokes: vec![stroke(20.0), stroke(60.0)],
+        })));
         let moved = dragged(&document, vec2(50.0, 21.0), vec2(50.0, 31.0));
         let Content::Strokes(live) = &moved.layers[0].content else { panic!("strokes") };
-        let tops: Vec<f32> = live.params().strokes.iter().map(|stroke| stroke.samples()[0].at.y).collect();
+        let tops: Vec<f32> =
+            live.params().strokes.iter().map(|stroke| stroke.samples()[0].at.y).collect();
         assert_eq!(tops, [30.0, 60.0]);
     }
+
     #[test]
     fn a_press_holds_the_stroke_under_it_or_the_layer_and_nothing_of_a_locked_one() {
         let stroke = |x: f32| {
             let brush = Brush { size: 10.0, ..Brush::default() };
-            Arc::new(Stroke::new(brush, Operator::None, Color::BLACK, vec![Sample::at(vec2(x, 20.0))]))
+            Arc::new(Stroke::new(
+                brush,
+                Operator::None,
+                Color::BLACK,
+                vec![Sample::at(vec2(x, 20.0))],
+            ))
         };
         let list = StrokeList { strokes: vec![stroke(10.0), stroke(60.0)] };
         let layers = vec![Arc::new(Layer::new("ink", Content::Strokes(Live::new(list))))];
         let document = Document { layers, ..Document::empty(Size::new(80, 40)) };
         let layer = &document.layers[0];
         let at = |x: f32, whole| held(&document, layer, vec2(x, 20.0), whole);
-        assert_eq!([at(10.0, false), at(60.0, false)], [Some(MoveTarget::Stroke(0)), Some(MoveTarget::Stroke(1))]);
+        assert_eq!(
+            [at(10.0, false), at(60.0, false)],
+            [Some(MoveTarget::Stroke(0)), Some(MoveTarget::Stroke(1))]
+        );
         assert_eq!([at(35.0, false), at(60.0, true)], [Some(MoveTarget::Layer); 2]);
         let locked = Layer { lock: LayerLock::All, ..Layer::clone(layer) };
         assert_eq!(held(&document, &locked, vec2(10.0, 20.0), false), None);

@@ -1,5 +1,6 @@
-//! Outlines: of the next dab, bent by the surface, as the brush's cursor, and of a stroke. Floor 5. The curve on which
-//! D(q) is one radius from the anchor, or on which paint begins, found on a grid.
+//! Outlines: of the next dab, bent by the surface, as the brush's cursor, and of a stroke. Floor 5.
+//! The curve on which D(q) is one radius from the anchor, or on which paint begins, found on a
+//! grid.
 
 use crate::document::Document;
 use crate::math::{Rect, Vec2, vec2};
@@ -8,12 +9,19 @@ use crate::surface::support::{DabExtent, SupportBounds};
 use crate::surface::{DabReach, Deformation, Operator};
 use std::sync::Arc;
 
-/// Cells along the longer side of the grid: fine enough for a cursor, and fast enough for every frame.
+/// Cells along the longer side of the grid: fine enough for a cursor, and fast enough for every
+/// frame.
 const CELLS: i32 = 72;
 
-/// The outline of a dab of `radius_px` at `at` that lands within `reach_px` (0: anywhere), as pairs of points to be
-/// joined by lines; canvas px.
-pub fn outline(document: &Document, operator: Operator, at: Vec2, radius_px: f32, reach_px: f32) -> Vec<[Vec2; 2]> {
+/// The outline of a dab of `radius_px` at `at` that lands within `reach_px` (0: anywhere), as pairs
+/// of points to be joined by lines; canvas px.
+pub fn outline(
+    document: &Document,
+    operator: Operator,
+    at: Vec2,
+    radius_px: f32,
+    reach_px: f32,
+) -> Vec<[Vec2; 2]> {
     let surface = document.surface.as_deref();
     let reach = DabReach::new(at, reach_px, 2.0 * radius_px);
     let deformation = Deformation::of_dab(surface, document.size, operator, at).within(reach);
@@ -53,15 +61,16 @@ pub fn outline(document: &Document, operator: Operator, at: Vec2, radius_px: f32
     let mut lines = Vec::new();
     for r in 0..rows - 1 {
         for c in 0..cols - 1 {
-            let corners = [(c, r), (c + 1, r), (c + 1, r + 1), (c, r + 1)].map(|(c, r)| (point(c, r), node(c, r)));
+            let corners = [(c, r), (c + 1, r), (c + 1, r + 1), (c, r + 1)]
+                .map(|(c, r)| (point(c, r), node(c, r)));
             cell(&corners, &mut lines);
         }
     }
     lines
 }
 
-/// Which nodes of a grid lie in pieces too small to matter: under a twentieth of the largest. On a detailed surface a
-/// dab lands in dozens of specks, and a cursor of dozens of loops shows nothing.
+/// Which nodes of a grid lie in pieces too small to matter: under a twentieth of the largest. On a
+/// detailed surface a dab lands in dozens of specks, and a cursor of dozens of loops shows nothing.
 fn specks(inside: &[bool], cols: usize) -> Vec<bool> {
     const SHARE: usize = 20;
     let mut piece_of: Vec<Option<usize>> = vec![None; inside.len()];
@@ -78,7 +87,12 @@ fn specks(inside: &[bool], cols: usize) -> Vec<bool> {
         while let Some(i) = open.pop() {
             sizes[piece] += 1;
             let x = i % cols;
-            let beside = [(x > 0).then(|| i - 1), (x + 1 < cols).then_some(i + 1), i.checked_sub(cols), Some(i + cols)];
+            let beside = [
+                (x > 0).then(|| i - 1),
+                (x + 1 < cols).then_some(i + 1),
+                i.checked_sub(cols),
+                Some(i + cols),
+            ];
             for j in beside.into_iter().flatten().filter(|&j| j < inside.len()) {
                 if inside[j] && piece_of[j].is_none() {
                     piece_of[j] = Some(piece);
@@ -127,7 +141,9 @@ fn cell(corners: &[(Vec2, f32); 4], lines: &mut Vec<[Vec2; 2]>) {
 
 pub fn circle(at: Vec2, radius_px: f32) -> Vec<[Vec2; 2]> {
     const SIDES: usize = 64;
-    let on = |i: usize| at + radius_px * Vec2::from_angle(i as f32 * std::f32::consts::TAU / SIDES as f32);
+    let on = |i: usize| {
+        at + radius_px * Vec2::from_angle(i as f32 * std::f32::consts::TAU / SIDES as f32)
+    };
     (0..SIDES).map(|i| [on(i), on(i + 1)]).collect()
 }
 
@@ -156,13 +172,15 @@ mod tests {
         let scene = Scene { size: Size::new(200, 100), surface: None };
         let samples = [vec2(50.0, 50.0), vec2(150.0, 50.0)].map(Sample::at).to_vec();
         let brush = Brush { size: 30.0, hardness: 1.0, spacing: 0.05, ..Brush::default() };
-        let lines = of_stroke(&Arc::new(Stroke::new(brush, Operator::None, Color::BLACK, samples)), &scene);
+        let lines =
+            of_stroke(&Arc::new(Stroke::new(brush, Operator::None, Color::BLACK, samples)), &scene);
         assert!(lines.len() > 100);
         for p in lines.iter().flatten() {
             let to_line = p.distance(vec2(p.x.clamp(50.0, 150.0), 50.0));
             assert!((to_line - 15.0).abs() < 1.0, "{p}");
         }
     }
+
     #[test]
     fn specks_beside_a_large_piece_are_left_out() {
         let size = 40;
@@ -176,22 +194,28 @@ mod tests {
             .collect();
         let specks = specks(&inside, size);
         assert!(specks[35 * size + 35], "one node");
-        assert_eq!(specks.iter().filter(|&&speck| speck).count(), 1, "the second largest piece stays");
+        assert_eq!(
+            specks.iter().filter(|&&speck| speck).count(),
+            1,
+            "the second largest piece stays"
+        );
     }
+
     #[test]
     fn without_a_surface_the_footprint_is_a_circle() {
         let flat = Document::empty(Size::new(100, 100));
         let lines = outline(&flat, Operator::Depth { gamma: 2.0 }, vec2(50.0, 40.0), 12.0, 0.0);
         assert!(lines.iter().flatten().all(|p| (p.distance(vec2(50.0, 40.0)) - 12.0).abs() < 1e-3));
     }
+
     #[test]
     fn on_a_ball_a_reflecting_dab_is_smaller_and_its_outline_is_where_d_is_its_radius() {
         let (ball, at) = (ball(), vec2(64.0, 64.0));
         let operator = Operator::Normal { alpha: 0.5, beta: 0.0, detail: 0.0 };
         let lines = outline(&ball, operator, at, 20.0, 0.0);
         assert!(lines.len() > 8);
-        // n̄ = (q − q_0) / 60 on the ball and f_n(u) = α u at β = 0: a point r px away is moved to a distance of r + α
-        // L (r / 60)².
+        // n̄ = (q − q_0) / 60 on the ball and f_n(u) = α u at β = 0: a point r px away is moved to
+        // a distance of r + α L (r / 60)².
         let a = 0.5 * 128.0 / (60.0 * 60.0);
         let expected = ((1.0f32 + 4.0 * a * 20.0).sqrt() - 1.0) / (2.0 * a);
         for point in lines.iter().flatten() {

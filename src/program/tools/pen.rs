@@ -28,6 +28,7 @@ impl PenSample {
     pub fn at(at: Vec2) -> Self {
         Self { sample: Sample::at(at), keys: ModifierKeys::default() }
     }
+
     pub fn place(&self) -> Vec2 {
         self.sample.at
     }

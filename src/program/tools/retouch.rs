@@ -1,5 +1,6 @@
-//! The brush as smudge, blur, clone, and one that picks paint up: what it needs before it begins, and what it holds.
-//! Floor 5. Not here: what it does to pixels (`paint::retouch`), samples from the pen (`brush`).
+//! The brush as smudge, blur, clone, and one that picks paint up: what it needs before it begins,
+//! and what it holds. Floor 5. Not here: what it does to pixels (`paint::retouch`), samples from
+//! the pen (`brush`).
 
 use super::settings::StrokePurpose;
 use super::symmetry::SymmetryImage;
@@ -24,6 +25,7 @@ impl ActiveWork {
             ActiveWork::Retouching(retouching) => retouching.draw(samples),
         }
     }
+
     /// The strokes so far, for a layer that keeps strokes.
     pub fn strokes(&self) -> Vec<Stroke> {
         match self {
@@ -31,6 +33,7 @@ impl ActiveWork {
             ActiveWork::Retouching(_) => Vec::new(),
         }
     }
+
     pub fn finish(self) -> Vec<Stroke> {
         match self {
             ActiveWork::Strokes(active) => active.finish(),
@@ -39,9 +42,13 @@ impl ActiveWork {
     }
 }
 
-/// The outcome of a press that starts no stroke: a source point for clones, or the reason; `None` if a stroke can
-/// start.
-pub(super) fn refused(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> Option<Outcome> {
+/// The outcome of a press that starts no stroke: a source point for clones, or the reason; `None`
+/// if a stroke can start.
+pub(super) fn refused(
+    context: &ToolContext,
+    pen: PenSample,
+    purpose: StrokePurpose,
+) -> Option<Outcome> {
     let mode = context.brush.mode;
     if purpose != StrokePurpose::Paint || !context.brush.needs_paint() {
         return None;
@@ -60,7 +67,9 @@ pub(super) fn refused(context: &ToolContext, pen: PenSample, purpose: StrokePurp
         }));
     }
     let has_source = !mode.is_clone() || context.clone_offset.is_some();
-    (!has_source).then_some(Outcome::Refused("Alt-click where the clone brush should copy from, then paint.".into()))
+    (!has_source).then_some(Outcome::Refused(
+        "Alt-click where the clone brush should copy from, then paint.".into(),
+    ))
 }
 
 /// What works on the pixels of a layer; `None` where the strokes only add paint.
@@ -79,8 +88,10 @@ pub(super) fn begun(
     let offset = context.clone_offset.unwrap_or(Vec2::ZERO);
     // An image of the stroke copies from the image of its source.
     let there = |image: &SymmetryImage, at: Vec2| image.sample(&Sample::at(at)).at;
-    let offsets: Vec<Vec2> =
-        images.iter().map(|image| there(image, pen.place() + offset) - there(image, pen.place())).collect();
+    let offsets: Vec<Vec2> = images
+        .iter()
+        .map(|image| there(image, pen.place() + offset) - there(image, pen.place()))
+        .collect();
     let source = match mode {
         BrushMode::Clone { picture: true, .. } => flatten(context.document, &Progress::default())?,
         BrushMode::Clone { .. } => pixels.tiles.clone(),
@@ -107,9 +118,11 @@ mod tests {
         let layers = vec![Arc::new(ground), Arc::new(Layer::new("Paint", Content::Pixels(pixels)))];
         Document { layers, ..Document::empty(Size::new(200, 120)) }
     }
+
     fn brush(mode: BrushMode) -> Brush {
         Brush { size: 20.0, hardness: 1.0, mode, ..Brush::default() }
     }
+
     /// The paint layer after a stroke.
     fn drawn(context: &ToolContext, from: Vec2, to: Vec2) -> TileGrid {
         let mut gesture = press(ToolKind::Brush, context, PenSample::at(from)).0.unwrap();
@@ -118,6 +131,7 @@ mod tests {
         let Content::Pixels(pixels) = &document.layers[1].content else { panic!("paint") };
         pixels.tiles.clone()
     }
+
     fn on_paint<'a>(document: &'a Document, brush: &'a Brush) -> ToolContext<'a> {
         ToolContext { layer: Some(document.layers[1].id), ..ToolContext::new(document, brush) }
     }
@@ -131,16 +145,21 @@ mod tests {
         // The image drags transparency onto transparency, from the right.
         assert_eq!(tiles.pixel(120, 60), [0; 4]);
     }
+
     #[test]
     fn a_clone_copies_the_layer_or_the_picture_from_so_far_away() {
         let document = document();
         for (picture, outside) in [(false, [0; 4]), (true, [0, 0, 255, 255])] {
             let brush = brush(BrushMode::Clone { aligned: true, picture });
-            let context = ToolContext { clone_offset: Some(vec2(-100.0, 0.0)), ..on_paint(&document, &brush) };
+            let context = ToolContext {
+                clone_offset: Some(vec2(-100.0, 0.0)),
+                ..on_paint(&document, &brush)
+            };
             let tiles = drawn(&context, vec2(140.0, 60.0), vec2(175.0, 60.0));
             assert_eq!((tiles.pixel(140, 60), tiles.pixel(175, 60)), ([255, 0, 0, 255], outside));
         }
     }
+
     #[test]
     fn what_cannot_begin_says_why_and_alt_sets_the_source() {
         let document = document();
@@ -150,7 +169,9 @@ mod tests {
             press(ToolKind::Brush, context, pen).1
         };
         let plain = on_paint(&document, &clone);
-        assert!(matches!(begun(&plain, ModifierKeys::default()), Outcome::Refused(why) if why.contains("Alt-click")));
+        assert!(
+            matches!(begun(&plain, ModifierKeys::default()), Outcome::Refused(why) if why.contains("Alt-click"))
+        );
         let alt = ModifierKeys { alt: true, ..ModifierKeys::default() };
         assert!(matches!(begun(&plain, alt), Outcome::CloneFrom(at) if at == vec2(30.0, 50.0)));
         let on_fill = ToolContext { layer: Some(document.layers[0].id), ..plain };
@@ -158,11 +179,15 @@ mod tests {
             matches!(begun(&on_fill, ModifierKeys::default()), Outcome::Refused(why) if why.contains("paint layers"))
         );
     }
+
     #[test]
     fn a_brush_that_picks_up_mixes_on_paint_layers_and_says_why_not_elsewhere() {
         let document = document();
         let plain = Brush { size: 20.0, hardness: 1.0, ..Brush::default() };
-        let mixing = |amount: f32| Brush { pickup: Pickup { amount, length: 0.9, radius: 1.0 }, ..plain.clone() };
+        let mixing = |amount: f32| Brush {
+            pickup: Pickup { amount, length: 0.9, radius: 1.0 },
+            ..plain.clone()
+        };
         let green = Color { r: 0, g: 255, b: 0, a: 255 };
         let drawn_with = |brush: &Brush| {
             let context = ToolContext { color: green, ..on_paint(&document, brush) };
@@ -173,7 +198,8 @@ mod tests {
         assert!(r > 20 && g > 100 && a > 150, "red and green: {r} {g} {a}");
         let smearing = mixing(1.0);
         assert_eq!(drawn_with(&smearing)[1], 0, "nothing of its own");
-        let on_fill = ToolContext { layer: Some(document.layers[0].id), ..on_paint(&document, &smearing) };
+        let on_fill =
+            ToolContext { layer: Some(document.layers[0].id), ..on_paint(&document, &smearing) };
         let (_, outcome) = press(ToolKind::Brush, &on_fill, PenSample::at(vec2(30.0, 50.0)));
         assert!(matches!(outcome, Outcome::Refused(why) if why.contains("picks up")));
     }

@@ -1,5 +1,5 @@
-//! The settings of the tools. Floor 5. Not here: those of the brush (`paint`), snapping (`snap`), what a frame moves
-//! (`frame`).
+//! The settings of the tools. Floor 5. Not here: those of the brush (`paint`), snapping (`snap`),
+//! what a frame moves (`frame`).
 
 use super::pen::ModifierKeys;
 use crate::math::range::held;
@@ -60,6 +60,7 @@ impl SelectSettings {
     pub fn with_kind(self, kind: RegionKind) -> Self {
         Self { region: SurfaceRegion { kind, tolerance: kind.tolerance(), ..self.region }, ..self }
     }
+
     /// How a selection is combined with the present one: Shift adds, Alt subtracts, both intersect.
     pub fn how(&self, keys: ModifierKeys) -> SelectionMode {
         match (keys.shift, keys.alt) {
@@ -110,7 +111,8 @@ impl Default for ShapeSettings {
 impl ShapeSettings {
     /// The same with numbers that a part may hold.
     pub fn held(&self) -> Self {
-        let normal = vec3(self.normal.x, self.normal.y, self.normal.z.max(0.0)).normalize_or(Vec3::Z);
+        let normal =
+            vec3(self.normal.x, self.normal.y, self.normal.z.max(0.0)).normalize_or(Vec3::Z);
         Self {
             tool: self.tool,
             size: held(self.size, &SculptStroke::SIZE),
@@ -122,6 +124,7 @@ impl ShapeSettings {
             reach: held(self.reach, &Touch::REACH),
         }
     }
+
     /// The strength of a dab of the current tool.
     pub fn strength(&self) -> f32 {
         if self.tool.is_by_height() { self.height } else { self.share }
@@ -155,6 +158,7 @@ impl CropAspect {
             CropAspect::ThreeToTwo => Some(1.5),
         }
     }
+
     /// A frame with this aspect about the middle of another one, with its width.
     pub fn given(self, frame: Rect, canvas: Size) -> Rect {
         let Some(ratio) = self.ratio(canvas) else { return frame };

@@ -1,5 +1,6 @@
-//! Snapping: points and boxes that the user drags go to guides, the grid, the canvas and the boxes of layers when near.
-//! Floor 5. Pure functions. Not here: which tools snap (their files), what is drawn (the window).
+//! Snapping: points and boxes that the user drags go to guides, the grid, the canvas and the boxes
+//! of layers when near. Floor 5. Pure functions. Not here: which tools snap (their files), what is
+//! drawn (the window).
 
 use super::frame::TransformFrame;
 use crate::document::{AssistantKind, Content, Document, LayerId};
@@ -51,14 +52,18 @@ impl CanvasGrid {
     pub fn held(self) -> Self {
         Self {
             spacing: held(self.spacing, &Self::SPACING),
-            subdivisions: self.subdivisions.clamp(*Self::SUBDIVISIONS.start(), *Self::SUBDIVISIONS.end()),
+            subdivisions: self
+                .subdivisions
+                .clamp(*Self::SUBDIVISIONS.start(), *Self::SUBDIVISIONS.end()),
             offset: vec2(held(self.offset.x, &COORDINATE), held(self.offset.y, &COORDINATE)),
         }
     }
+
     /// Between two lines, subdivisions counted, px; never less than a pixel.
     pub fn step(&self) -> f32 {
         (self.spacing / self.subdivisions as f32).max(1.0)
     }
+
     /// The line nearest to a coordinate; `axis`: 0 for upright lines, 1 for level ones.
     fn nearest(&self, at: f32, axis: usize) -> f32 {
         let offset = self.offset[axis];
@@ -116,9 +121,11 @@ const MOST_STROKES: usize = 400;
 impl SnapTargets {
     /// No lines: nothing snaps.
     pub fn none() -> &'static Self {
-        static NONE: SnapTargets = SnapTargets { lines: [Vec::new(), Vec::new()], grid: None, radius_px: 0.0 };
+        static NONE: SnapTargets =
+            SnapTargets { lines: [Vec::new(), Vec::new()], grid: None, radius_px: 0.0 };
         &NONE
     }
+
     /// The lines of a document; `moving`: layers that are no targets, because they move themselves.
     pub fn of(document: &Document, aids: &ViewAids, moving: &[LayerId], px_per_pt: f32) -> Self {
         let mut targets = Self { radius_px: SNAP_PT * px_per_pt, ..Self::default() };
@@ -139,13 +146,17 @@ impl SnapTargets {
             edges(Vec2::ZERO, document.size.center() * 2.0);
         }
         if aids.to_layers {
-            for layer in document.layers.iter().filter(|layer| layer.visible && !moving.contains(&layer.id)) {
+            for layer in
+                document.layers.iter().filter(|layer| layer.visible && !moving.contains(&layer.id))
+            {
                 let has_end = match &layer.content {
                     Content::Pixels(_) => true,
                     Content::Strokes(live) => live.params().strokes.len() <= MOST_STROKES,
                     _ => false,
                 };
-                if let Some(frame) = has_end.then(|| TransformFrame::of(document, layer.id)).flatten() {
+                if let Some(frame) =
+                    has_end.then(|| TransformFrame::of(document, layer.id)).flatten()
+                {
                     let [a, b, c, d] = frame.corners;
                     edges(a.min(b).min(c).min(d), a.max(b).max(c).max(d));
                 }
@@ -154,13 +165,16 @@ impl SnapTargets {
         targets.grid = Some(aids.grid.held()).filter(|_| aids.to_grid && aids.grid_shown);
         targets
     }
+
     pub fn is_empty(&self) -> bool {
         self.grid.is_none() && self.lines.iter().all(Vec::is_empty)
     }
+
     /// A point after snapping.
     pub fn point(&self, at: Vec2) -> Snapped {
         snapped(at, self, self.radius_px)
     }
+
     /// The further move of a dragged box that makes its edges or its middle snap.
     pub fn shift(&self, low: Vec2, high: Vec2) -> Snapped {
         let mut shift = Snapped::default();
@@ -177,9 +191,11 @@ impl SnapTargets {
         }
         shift
     }
+
     /// The nearest line of an axis within a radius.
     fn nearest(&self, axis: usize, at: f32, radius_px: f32) -> Option<f32> {
-        let lines = self.lines[axis].iter().copied().chain(self.grid.map(|grid| grid.nearest(at, axis)));
+        let lines =
+            self.lines[axis].iter().copied().chain(self.grid.map(|grid| grid.nearest(at, axis)));
         let near = lines.filter(|line| (line - at).abs() <= radius_px);
         near.min_by(|a, b| (a - at).abs().total_cmp(&(b - at).abs()))
     }
@@ -191,7 +207,8 @@ impl SnapLines {
     }
 }
 
-/// A point moved to the nearest upright and the nearest level line within a radius, px; each separately.
+/// A point moved to the nearest upright and the nearest level line within a radius, px; each
+/// separately.
 ///
 /// Total: an invalid point is returned unchanged.
 pub fn snapped(point: Vec2, candidates: &SnapTargets, radius_px: f32) -> Snapped {
@@ -218,15 +235,19 @@ mod tests {
 
     fn document() -> Document {
         let tiles = TileGrid::from_straight_rgba(&[200; 20 * 10 * 4], 20, 10, 130, 61);
-        let paint = Layer::new("paint", Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }));
+        let paint =
+            Layer::new("paint", Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }));
         let guides = Arc::new(Guides { vertical: vec![40.0], horizontal: vec![33.5] });
         Document { layers: vec![Arc::new(paint)], guides, ..Document::empty(Size::new(200, 100)) }
     }
+
     fn to(aids: ViewAids) -> SnapTargets {
         SnapTargets::of(&document(), &aids, &[], 1.0)
     }
+
     fn only(change: impl FnOnce(&mut ViewAids)) -> SnapTargets {
-        let none = ViewAids { to_guides: false, to_grid: false, to_canvas: false, ..ViewAids::default() };
+        let none =
+            ViewAids { to_guides: false, to_grid: false, to_canvas: false, ..ViewAids::default() };
         let mut aids = none;
         change(&mut aids);
         to(aids)
@@ -247,11 +268,15 @@ mod tests {
             aids.grid = CanvasGrid { spacing: 30.0, subdivisions: 2, offset: vec2(1.0, 0.0) };
         });
         assert_eq!(near(&grid, 48.0, -13.0), vec2(46.0, -15.0));
-        assert_eq!(near(&to(ViewAids { snaps: false, ..ViewAids::default() }), 41.0, 33.0), vec2(41.0, 33.0));
+        assert_eq!(
+            near(&to(ViewAids { snaps: false, ..ViewAids::default() }), 41.0, 33.0),
+            vec2(41.0, 33.0)
+        );
         assert!(near(&guides, f32::NAN, 33.0).x.is_nan(), "and nothing else happens");
         let found = guides.point(vec2(41.0, 90.0));
         assert_eq!(found.lines, SnapLines { x: Some(40.0), y: None }, "the line to show");
     }
+
     #[test]
     fn a_box_snaps_by_its_edges_and_its_middle() {
         let guides = only(|aids| aids.to_guides = true);
@@ -260,10 +285,12 @@ mod tests {
         assert_eq!(shift(vec2(10.0, 30.0), vec2(45.0, 38.0)), vec2(-5.0, -0.5));
         assert_eq!(shift(vec2(0.0, 0.0), vec2(82.0, 9.0)), vec2(-1.0, 0.0));
     }
+
     #[test]
     fn what_moves_is_no_target_of_itself() {
         let document = document();
-        let aids = ViewAids { to_guides: false, to_canvas: false, to_layers: true, ..ViewAids::default() };
+        let aids =
+            ViewAids { to_guides: false, to_canvas: false, to_layers: true, ..ViewAids::default() };
         let moving = [document.layers[0].id];
         assert!(SnapTargets::of(&document, &aids, &moving, 1.0).is_empty());
         assert!(!SnapTargets::of(&document, &aids, &[], 1.0).is_empty());

@@ -1,15 +1,18 @@
-//! The stroke tool: selects strokes of a stroke layer on the canvas and moves them along the surface. Floor 5. The
-//! session keeps the selection. Not here: the edits (`document::strokes`).
+//! The stroke tool: selects strokes of a stroke layer on the canvas and moves them along the
+//! surface. Floor 5. The session keeps the selection. Not here: the edits (`document::strokes`).
 
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext, closed};
 use crate::document::{Content, Document, LayerId};
 use crate::math::Vec2;
 use crate::paint::picking;
 
-/// The pen comes down: on a stroke it selects it (with Shift it toggles it), off all strokes it deselects them.
+/// The pen comes down: on a stroke it selects it (with Shift it toggles it), off all strokes it
+/// deselects them.
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let nothing = (None, Outcome::Idle);
-    let Some(layer) = context.layer.and_then(|id| context.document.layer(id)) else { return nothing };
+    let Some(layer) = context.layer.and_then(|id| context.document.layer(id)) else {
+        return nothing;
+    };
     if !matches!(layer.content, Content::Strokes(_)) {
         return nothing;
     }
@@ -67,6 +70,7 @@ impl Gesture for MoveStrokesGesture {
         self.moves |= self.by.length() > self.slop_px;
         if self.moves { self.with().map_or(Outcome::Idle, Outcome::Preview) } else { Outcome::Idle }
     }
+
     fn release(&mut self) -> Outcome {
         match self.with().filter(|_| self.moves) {
             Some(document) => {
@@ -92,14 +96,25 @@ mod tests {
     fn document() -> Document {
         let line = |y: f32| {
             let samples = [vec2(10.0, y), vec2(190.0, y)].map(Sample::at).to_vec();
-            Arc::new(Stroke::new(Brush { size: 12.0, ..Brush::default() }, Operator::None, Color::BLACK, samples))
+            Arc::new(Stroke::new(
+                Brush { size: 12.0, ..Brush::default() },
+                Operator::None,
+                Color::BLACK,
+                samples,
+            ))
         };
         let list = StrokeList { strokes: [20.0, 60.0, 100.0].map(line).to_vec() };
         let layers = vec![Arc::new(Layer::new("Lines", Content::Strokes(Live::new(list))))];
         Document { layers, ..Document::empty(Size::new(200, 150)) }
     }
+
     /// The selection after a press, and the result of the drag.
-    fn dragged(strokes: &[usize], shift: bool, from: Vec2, to: Vec2) -> (Option<Vec<usize>>, Option<Vec<f32>>) {
+    fn dragged(
+        strokes: &[usize],
+        shift: bool,
+        from: Vec2,
+        to: Vec2,
+    ) -> (Option<Vec<usize>>, Option<Vec<f32>>) {
         let (document, brush) = (document(), Brush::default());
         let layer = Some(document.layers[0].id);
         let context = ToolContext { layer, strokes, ..ToolContext::new(&document, &brush) };
@@ -124,11 +139,13 @@ mod tests {
         let (chosen, moved) = dragged(&[2], false, vec2(50.0, 61.0), vec2(50.0, 71.5));
         assert_eq!((chosen, moved), (Some(vec![1]), Some(vec![20.0, 70.5, 100.0])));
     }
+
     #[test]
     fn strokes_chosen_together_move_together() {
         let (chosen, moved) = dragged(&[0, 2], false, vec2(50.0, 100.0), vec2(50.0, 110.0));
         assert_eq!((chosen, moved), (Some(vec![0, 2]), Some(vec![30.0, 60.0, 110.0])));
     }
+
     #[test]
     fn shift_chooses_more_or_fewer_and_a_click_beside_all_lets_go() {
         let still = |strokes: &[usize], shift: bool, at: Vec2| dragged(strokes, shift, at, at);
@@ -137,6 +154,7 @@ mod tests {
         assert_eq!(still(&[0, 1], false, vec2(50.0, 140.0)), (Some(vec![]), None));
         assert_eq!(still(&[0, 1], true, vec2(50.0, 140.0)), (Some(vec![0, 1]), None));
     }
+
     #[test]
     fn a_trembling_hand_moves_nothing() {
         assert_eq!(dragged(&[], false, vec2(50.0, 60.0), vec2(51.0, 62.0)).1, None);

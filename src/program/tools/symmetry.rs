@@ -1,5 +1,5 @@
-//! Symmetry: every stroke of the brush with its mirror images, each a stroke of its own over its own part of the
-//! surface. Floor 5.
+//! Symmetry: every stroke of the brush with its mirror images, each a stroke of its own over its
+//! own part of the surface. Floor 5.
 
 use crate::math::range::held;
 use crate::math::{COORDINATE, Mat2, Size, TURNS, Vec2, vec2};
@@ -49,33 +49,47 @@ impl SymmetryAxes {
     pub fn middle(&self, canvas: Size) -> Vec2 {
         self.center.unwrap_or(canvas.center())
     }
+
     /// With its numbers within their ranges.
     pub fn held(self) -> Self {
         let place = |p: Vec2| vec2(held(p.x, &COORDINATE), held(p.y, &COORDINATE));
         Self { center: self.center.map(place), turn: held(self.turn, &TURNS) }
     }
+
     fn rotation(&self) -> Mat2 {
         // y points down, so counter-clockwise as seen is a negative angle.
         if self.turn == 0.0 { Mat2::IDENTITY } else { Mat2::from_angle(-self.turn.to_radians()) }
     }
+
     /// The middle, and the end of the upright axis, canvas px.
     pub fn handles(&self, canvas: Size, px_per_pt: f32) -> [Vec2; 2] {
         let middle = self.middle(canvas);
         [middle, middle - self.rotation() * Vec2::Y * HANDLE_PT * px_per_pt]
     }
+
     /// The handle at a point, if there are axes.
-    pub fn handle_at(&self, symmetry: Symmetry, canvas: Size, at: Vec2, px_per_pt: f32) -> Option<AxisHandle> {
+    pub fn handle_at(
+        &self,
+        symmetry: Symmetry,
+        canvas: Size,
+        at: Vec2,
+        px_per_pt: f32,
+    ) -> Option<AxisHandle> {
         let [middle, end] = self.handles(canvas, px_per_pt);
-        let near = |handle: Vec2| symmetry != Symmetry::None && handle.distance(at) <= super::pen::GRAB_PT * px_per_pt;
+        let near = |handle: Vec2| {
+            symmetry != Symmetry::None && handle.distance(at) <= super::pen::GRAB_PT * px_per_pt
+        };
         if near(end) { Some(AxisHandle::End) } else { near(middle).then_some(AxisHandle::Middle) }
     }
+
     /// The axes with a handle at a point; `steps`: only turns by whole steps.
     pub fn dragged(&self, handle: AxisHandle, canvas: Size, at: Vec2, steps: bool) -> Self {
         let next = match handle {
             AxisHandle::Middle => Self { center: Some(at), ..*self },
             AxisHandle::End => {
                 let by = at - self.middle(canvas);
-                let turn = if by.length() < 1.0 { self.turn } else { (-by.x).atan2(-by.y).to_degrees() };
+                let turn =
+                    if by.length() < 1.0 { self.turn } else { (-by.x).atan2(-by.y).to_degrees() };
                 let turn = if steps { (turn / STEP_DEGREES).round() * STEP_DEGREES } else { turn };
                 Self { turn, ..*self }
             }
@@ -97,17 +111,27 @@ impl Symmetry {
     pub fn images_about(self, canvas: Size, axes: SymmetryAxes) -> Vec<SymmetryImage> {
         let (center, rotation) = (axes.middle(canvas), axes.rotation());
         let turned = |image: SymmetryImage| {
-            let turn = if axes.turn == 0.0 { image.turn } else { rotation * image.turn * rotation.transpose() };
-            SymmetryImage { center, turn: if image.turn == Mat2::IDENTITY { image.turn } else { turn } }
+            let turn = if axes.turn == 0.0 {
+                image.turn
+            } else {
+                rotation * image.turn * rotation.transpose()
+            };
+            SymmetryImage {
+                center,
+                turn: if image.turn == Mat2::IDENTITY { image.turn } else { turn },
+            }
         };
         self.images(canvas).into_iter().map(turned).collect()
     }
-    /// The lines across which strokes repeat, or between the turns; canvas px, as long as the canvas.
+
+    /// The lines across which strokes repeat, or between the turns; canvas px, as long as the
+    /// canvas.
     pub fn lines_about(self, canvas: Size, axes: SymmetryAxes) -> Vec<[Vec2; 2]> {
         let (center, rotation) = (axes.middle(canvas), axes.rotation());
         let moved = |point: Vec2| center + rotation * (point - canvas.center());
         self.axes(canvas).into_iter().map(|line| line.map(moved)).collect()
     }
+
     /// About the middle of the canvas.
     fn images(self, canvas: Size) -> Vec<SymmetryImage> {
         let mirror = |x: f32, y: f32| Mat2::from_diagonal(Vec2::new(x, y));
@@ -115,18 +139,25 @@ impl Symmetry {
             Symmetry::None => vec![Mat2::IDENTITY],
             Symmetry::Vertical => vec![Mat2::IDENTITY, mirror(-1.0, 1.0)],
             Symmetry::Horizontal => vec![Mat2::IDENTITY, mirror(1.0, -1.0)],
-            Symmetry::Both => vec![Mat2::IDENTITY, mirror(-1.0, 1.0), mirror(1.0, -1.0), mirror(-1.0, -1.0)],
+            Symmetry::Both => {
+                vec![Mat2::IDENTITY, mirror(-1.0, 1.0), mirror(1.0, -1.0), mirror(-1.0, -1.0)]
+            }
             Symmetry::Radial(n) => {
                 let n = n.clamp(1, MOST_ROUND);
-                (0..n).map(|i| Mat2::from_angle(std::f32::consts::TAU * i as f32 / n as f32)).collect()
+                (0..n)
+                    .map(|i| Mat2::from_angle(std::f32::consts::TAU * i as f32 / n as f32))
+                    .collect()
             }
         };
         turns.into_iter().map(|turn| SymmetryImage { center: canvas.center(), turn }).collect()
     }
+
     /// The lines about the middle of the canvas.
     fn axes(self, canvas: Size) -> Vec<[Vec2; 2]> {
         let (middle, reach) = (canvas.center(), canvas.center().length());
-        let across = |direction: Vec2| [middle - direction * canvas.center(), middle + direction * canvas.center()];
+        let across = |direction: Vec2| {
+            [middle - direction * canvas.center(), middle + direction * canvas.center()]
+        };
         match self {
             Symmetry::None => Vec::new(),
             Symmetry::Vertical => vec![across(Vec2::Y)],
@@ -134,7 +165,8 @@ impl Symmetry {
             Symmetry::Both => vec![across(Vec2::Y), across(Vec2::X)],
             Symmetry::Radial(n) => {
                 let n = n.clamp(1, MOST_ROUND);
-                let ray = |i: u32| Vec2::from_angle(std::f32::consts::TAU * (i as f32 / n as f32 - 0.25));
+                let ray =
+                    |i: u32| Vec2::from_angle(std::f32::consts::TAU * (i as f32 / n as f32 - 0.25));
                 (0..n).map(|i| [middle, middle + ray(i) * reach]).collect()
             }
         }
@@ -146,12 +178,14 @@ impl SymmetryImage {
     pub fn is_mirrored(&self) -> bool {
         self.turn.determinant() < 0.0
     }
+
     pub fn sample(&self, sample: &Sample) -> Sample {
         let at = self.center + self.turn * (sample.at - self.center);
         // The stroke itself, to the bit.
         let at = if self.turn == Mat2::IDENTITY { sample.at } else { at };
         Sample { at, tilt: self.turn * sample.tilt, ..*sample }
     }
+
     /// The brush that paints the image: its dabs are rotated and scattered in the mirrored frame.
     pub fn brush(&self, brush: &Brush) -> Brush {
         Brush { facing: StrokeFrame::of(self.turn * brush.facing.map()), ..brush.clone() }
@@ -163,7 +197,9 @@ mod tests {
     use super::*;
     use crate::math::{srgb::Color, vec2};
     use crate::paint::stroke::render_tile;
-    use crate::paint::{Adjust, Curve, Dynamics, Input, PictureSource, Property, Scene, Stroke, Tip};
+    use crate::paint::{
+        Adjust, Curve, Dynamics, Input, PictureSource, Property, Scene, Stroke, Tip,
+    };
     use crate::raster::{Picture, TileAt, TileGrid};
     use crate::surface::Operator;
     use std::sync::Arc;
@@ -182,9 +218,13 @@ mod tests {
         assert_eq!(places(Symmetry::Horizontal), [vec2(120.0, 40.0), vec2(120.0, 60.0)]);
         assert_eq!(places(Symmetry::Both)[3], vec2(80.0, 60.0));
         let quarter = places(Symmetry::Radial(4));
-        assert_eq!(quarter, [vec2(120.0, 40.0), vec2(110.0, 70.0), vec2(80.0, 60.0), vec2(90.0, 30.0)]);
+        assert_eq!(
+            quarter,
+            [vec2(120.0, 40.0), vec2(110.0, 70.0), vec2(80.0, 60.0), vec2(90.0, 30.0)]
+        );
         assert_eq!(Symmetry::Radial(u32::MAX).images(CANVAS).len(), MOST_ROUND as usize);
     }
+
     #[test]
     fn axes_run_through_the_middle_and_part_the_images() {
         assert_eq!(Symmetry::None.axes(CANVAS).len(), 0);
@@ -194,33 +234,46 @@ mod tests {
         assert!(rays.len() == 5 && rays.iter().all(|ray| ray[0] == vec2(100.0, 50.0)));
         assert!((rays[0][1].x - 100.0).abs() < 1e-3 && rays[0][1].y < 0.0, "the first goes up");
     }
+
     #[test]
     fn the_pen_leans_the_other_way_in_a_mirror() {
         let image = Symmetry::Vertical.images(CANVAS)[1];
-        assert_eq!(image.sample(&Sample { tilt: vec2(30.0, 10.0), ..Sample::at(Vec2::ONE) }).tilt, vec2(-30.0, 10.0));
+        assert_eq!(
+            image.sample(&Sample { tilt: vec2(30.0, 10.0), ..Sample::at(Vec2::ONE) }).tilt,
+            vec2(-30.0, 10.0)
+        );
     }
+
     #[test]
     fn brushes_face_as_their_image_does() {
-        let facing = |symmetry: Symmetry| symmetry.images(CANVAS)[1].brush(&Brush::default()).facing;
+        let facing =
+            |symmetry: Symmetry| symmetry.images(CANVAS)[1].brush(&Brush::default()).facing;
         assert_eq!(facing(Symmetry::Vertical), StrokeFrame { turn: 0.0, is_mirrored: true });
         assert_eq!(facing(Symmetry::Horizontal), StrokeFrame { turn: 180.0, is_mirrored: true });
         // A quarter turn to the right, in image axes, is one clockwise as seen.
         assert_eq!(facing(Symmetry::Radial(4)), StrokeFrame { turn: -90.0, is_mirrored: false });
     }
+
     /// Paint on a level canvas of 200 × 100 px, row by row.
     fn painted(brush: &Brush, samples: &[Sample]) -> Vec<[u8; 4]> {
         let scene = Scene { size: CANVAS, surface: None };
-        let stroke = [Arc::new(Stroke::new(brush.clone(), Operator::None, Color::BLACK, samples.to_vec()))];
+        let stroke =
+            [Arc::new(Stroke::new(brush.clone(), Operator::None, Color::BLACK, samples.to_vec()))];
         let mut tiles = TileGrid::default();
         tiles.reserve(CANVAS.rect());
         for at in TileAt::covering(CANVAS.rect()) {
             tiles.set(at, render_tile(&stroke, &scene, at).map(Arc::new));
         }
-        (0..100).flat_map(|y| (0..200).map(move |x| (x, y))).map(|(x, y)| tiles.pixel(x, y)).collect()
+        (0..100)
+            .flat_map(|y| (0..200).map(move |x| (x, y)))
+            .map(|(x, y)| tiles.pixel(x, y))
+            .collect()
     }
+
     #[test]
     fn scattered_stamps_that_turn_with_the_stroke_are_mirrored_pixel_by_pixel() {
-        let texel = |x: i32, y: i32| if x < 16 && y < 8 { [255, 0, 0, 255] } else { [0, 90, 200, 255] };
+        let texel =
+            |x: i32, y: i32| if x < 16 && y < 8 { [255, 0, 0, 255] } else { [0, 90, 200, 255] };
         let texels = (0..16).flat_map(|y| (0..32).map(move |x| texel(x, y))).collect();
         let picture = Picture::srgb8(Size::new(32, 16), texels).unwrap();
         let brush = Brush {
@@ -230,7 +283,11 @@ mod tests {
             spacing: 1.5,
             seed: 7,
             tip: Tip::Picture(PictureSource::new("flag.png".into(), picture, Adjust::default())),
-            dynamics: Dynamics::none().with(Property::Rotation, Input::Direction, Curve::Share(1.0)),
+            dynamics: Dynamics::none().with(
+                Property::Rotation,
+                Input::Direction,
+                Curve::Share(1.0),
+            ),
             ..Brush::default()
         };
         let samples: Vec<Sample> =

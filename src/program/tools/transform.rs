@@ -1,5 +1,6 @@
-//! The transform tool: a frame with handles around the chosen layers and groups, which stay live until it is
-//! applied. Floor 5. Not here: what a layer becomes under its transform (`document::layer`).
+//! The transform tool: a frame with handles around the chosen layers and groups, which stay live
+//! until it is applied. Floor 5. Not here: what a layer becomes under its transform
+//! (`document::layer`).
 
 mod corner;
 mod gesture;
@@ -25,7 +26,8 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let framed = Framed::new(context.carried, document, context.chosen());
     let of_shape = framed == Framed::Shape;
     let chosen = if of_shape { &[] } else { context.chosen() };
-    let layers: Vec<&Layer> = chosen.iter().filter_map(|id| document.layer(*id)).map(|l| &**l).collect();
+    let layers: Vec<&Layer> =
+        chosen.iter().filter_map(|id| document.layer(*id)).map(|l| &**l).collect();
     if layers.is_empty() && !of_shape {
         return (None, Outcome::Refused("Choose a layer first.".into()));
     }
@@ -36,24 +38,47 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         return begun;
     }
     let Some(frame) = context.frame.around(document, framed) else {
-        return (None, Outcome::Refused("The layer is empty: there is nothing to transform.".into()));
+        return (
+            None,
+            Outcome::Refused("The layer is empty: there is nothing to transform.".into()),
+        );
     };
     let handle = frame.handle_at(pen.place(), context.px_per_pt, pen.keys.alt);
     if handle == FrameHandle::Pivot {
-        let (snap, snaps, px_per_pt) = (context.snap.clone(), context.aids.snaps, context.px_per_pt);
+        let (snap, snaps, px_per_pt) =
+            (context.snap.clone(), context.aids.snaps, context.px_per_pt);
         let gesture = PivotGesture { frame, snap, snaps, px_per_pt, lines: SnapLines::default() };
         return (Some(Box::new(gesture)), Outcome::Idle);
     }
     if of_shape && pen.keys.ctrl && matches!(handle, FrameHandle::Corner(_)) {
-        return (None, Outcome::Refused("A shape has no perspective: its depth would not fit. Drag its sides.".into()));
+        return (
+            None,
+            Outcome::Refused(
+                "A shape has no perspective: its depth would not fit. Drag its sides.".into(),
+            ),
+        );
     }
     let held = |layer: &&Layer| {
-        Some(HeldLayer { id: layer.id, own: LayerPlacement::of(layer), map: document.map_of(layer.id)? })
+        Some(HeldLayer {
+            id: layer.id,
+            own: LayerPlacement::of(layer),
+            map: document.map_of(layer.id)?,
+        })
     };
     let layers = layers.iter().filter_map(held).collect();
     let (document, snap) = (document.clone(), context.snap.clone());
     let (from, lines) = (pen.place(), SnapLines::default());
-    let gesture = TransformGesture { document, layers, of_shape, frame, handle, from, found: None, snap, lines };
+    let gesture = TransformGesture {
+        document,
+        layers,
+        of_shape,
+        frame,
+        handle,
+        from,
+        found: None,
+        snap,
+        lines,
+    };
     (Some(Box::new(gesture)), Outcome::Idle)
 }
 
@@ -68,7 +93,8 @@ pub fn turn(degrees: f64) -> Option<PlaneMap> {
     degrees.is_finite().then(|| PlaneMap::rotation(degrees, Vec2::ZERO))
 }
 
-/// Layers with what they show mapped about its middle. `None` for empty layers, or where that cannot be expressed.
+/// Layers with what they show mapped about its middle. `None` for empty layers, or where that
+/// cannot be expressed.
 pub fn about_middle(document: &Document, layers: &[LayerId], map: PlaneMap) -> Option<Document> {
     let pivot = TransformFrame::around(document, layers)?.pivot();
     // A middle between pixels along only one axis would move pixels by halves when they are turned.
@@ -81,7 +107,8 @@ pub fn about_middle(document: &Document, layers: &[LayerId], map: PlaneMap) -> O
 pub fn about_shape(document: &Document, map: PlaneMap) -> Option<[f64; 6]> {
     let [low, high] = TransformFrame::of_shape(document)?.bounds();
     let middle = (low + high) * 0.5;
-    let pivot = if map.coefficients().is_some_and(|c| c[1] != 0.0) { middle.round() } else { middle };
+    let pivot =
+        if map.coefficients().is_some_and(|c| c[1] != 0.0) { middle.round() } else { middle };
     PlaneMap::translation(-pivot).then(&map).then(&PlaneMap::translation(pivot)).coefficients()
 }
 

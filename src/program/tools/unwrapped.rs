@@ -1,5 +1,6 @@
-//! Painting flat: the pen on the unwrapped sheet is mapped to the canvas, so that a straight line drawn flat lies bent
-//! on the form. Floor 5. The tools know nothing of this. Not here: the sheet (`surface::unwrap`).
+//! Painting flat: the pen on the unwrapped sheet is mapped to the canvas, so that a straight line
+//! drawn flat lies bent on the form. Floor 5. The tools know nothing of this. Not here: the sheet
+//! (`surface::unwrap`).
 
 pub mod pieces;
 
@@ -23,7 +24,8 @@ const CUT_PX: f32 = 6.0 * STEP_PX;
 /// Whether a tool works on the sheet; others need what they hold to lie as in the picture.
 pub fn works(tool: ToolKind) -> bool {
     use ToolKind::{Brush, Eraser, Eyedropper, Fill, Hand, SurfaceWand, Wand, Zoom};
-    moves_pieces(tool) || matches!(tool, Brush | Eraser | Eyedropper | Fill | Hand | SurfaceWand | Wand | Zoom)
+    moves_pieces(tool)
+        || matches!(tool, Brush | Eraser | Eyedropper | Fill | Hand | SurfaceWand | Wand | Zoom)
 }
 
 /// Whether a tool moves, scales and turns what the selected layer shows on one piece of the sheet.
@@ -31,17 +33,30 @@ pub fn moves_pieces(tool: ToolKind) -> bool {
     matches!(tool, ToolKind::Image | ToolKind::Gradient)
 }
 
-/// The pen comes down on the sheet with a brush: strokes are stabilised and spaced there, painted with the operator
-/// that unwrapped it, and cut where they leave a piece. All of them are one step.
+/// The pen comes down on the sheet with a brush: strokes are stabilised and spaced there, painted
+/// with the operator that unwrapped it, and cut where they leave a piece. All of them are one step.
 ///
 /// `pen` is on the sheet; the context's points are on the canvas.
-pub fn paint(context: &ToolContext, pen: PenSample, layout: Arc<PlaneLayout>, start: StrokeStart) -> GestureStart {
+pub fn paint(
+    context: &ToolContext,
+    pen: PenSample,
+    layout: Arc<PlaneLayout>,
+    start: StrokeStart,
+) -> GestureStart {
     let Some(surface) = context.document.surface.clone() else { return (None, Outcome::Idle) };
-    let brush = Brush { stabilizer: Stabilizer::None, spacing_on: Measure::Surface, ..context.brush.clone() };
+    let brush = Brush {
+        stabilizer: Stabilizer::None,
+        spacing_on: Measure::Surface,
+        ..context.brush.clone()
+    };
     // The line that Shift draws is drawn on the sheet.
-    let hand = ToolContext { brush: &brush, operator: layout.bend().operator, last_end: None, ..*context };
+    let hand =
+        ToolContext { brush: &brush, operator: layout.bend().operator, last_end: None, ..*context };
     let sheet = Sheet { layout, surface };
-    let lead = context.last_end.filter(|_| pen.keys.shift).and_then(|at| sheet.layout.sheet_at(&sheet.surface, at));
+    let lead = context
+        .last_end
+        .filter(|_| pen.keys.shift)
+        .and_then(|at| sheet.layout.sheet_at(&sheet.surface, at));
     let mut stroke = FlatStroke {
         sheet,
         document: context.document.clone(),
@@ -63,8 +78,14 @@ pub fn paint(context: &ToolContext, pen: PenSample, layout: Arc<PlaneLayout>, st
     (Some(Box::new(stroke)), outcome)
 }
 
-/// The pen comes down on the sheet with a tool that is not a brush: it gets the points of the canvas under the pen.
-pub fn point(context: &ToolContext, pen: PenSample, layout: Arc<PlaneLayout>, tool: ToolKind) -> GestureStart {
+/// The pen comes down on the sheet with a tool that is not a brush: it gets the points of the
+/// canvas under the pen.
+pub fn point(
+    context: &ToolContext,
+    pen: PenSample,
+    layout: Arc<PlaneLayout>,
+    tool: ToolKind,
+) -> GestureStart {
     let Some(surface) = context.document.surface.clone() else { return (None, Outcome::Idle) };
     if moves_pieces(tool) {
         return pieces::press(context, pen, &layout);
@@ -99,9 +120,11 @@ struct LedGesture {
 
 impl Gesture for LedGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
-        let led: Vec<PenSample> = pens.iter().filter_map(|pen| Some(self.sheet.led(*pen)?.0)).collect();
+        let led: Vec<PenSample> =
+            pens.iter().filter_map(|pen| Some(self.sheet.led(*pen)?.0)).collect();
         if led.is_empty() { Outcome::Idle } else { self.tool.drag(&led) }
     }
+
     fn release(&mut self) -> Outcome {
         self.tool.release()
     }
@@ -135,7 +158,8 @@ impl FlatStroke {
     /// Continues to a sample on the sheet, in steps short enough to follow the form.
     fn go(&mut self, pen: PenSample) {
         let Some(last) = self.last.replace(pen) else { return self.step(pen) };
-        let steps = (last.place().distance(pen.place()) / STEP_PX).ceil().max(1.0).min(MOST_STEPS) as usize;
+        let steps =
+            (last.place().distance(pen.place()) / STEP_PX).ceil().max(1.0).min(MOST_STEPS) as usize;
         for step in 1..=steps {
             let t = step as f32 / steps as f32;
             let (a, b) = (last.sample, pen.sample);
@@ -148,16 +172,22 @@ impl FlatStroke {
             self.step(PenSample { sample: if step == steps { b } else { sample }, ..pen });
         }
     }
+
     fn step(&mut self, pen: PenSample) {
-        let Some((led, object)) = self.sheet.led(pen).filter(|_| !self.is_refused) else { return self.cut() };
-        let goes_on =
-            self.active.as_ref().is_some_and(|(_, on, at)| *on == object && at.distance(led.place()) < CUT_PX);
+        let Some((led, object)) = self.sheet.led(pen).filter(|_| !self.is_refused) else {
+            return self.cut();
+        };
+        let goes_on = self
+            .active
+            .as_ref()
+            .is_some_and(|(_, on, at)| *on == object && at.distance(led.place()) < CUT_PX);
         if goes_on {
             self.run.push(led);
         } else {
             self.cut();
             let (document, layer, start) = (&self.document, self.layer, self.start);
-            let (gesture, outcome) = self.hand.lend(|hand| start(&ToolContext { document, layer, ..*hand }, led));
+            let (gesture, outcome) =
+                self.hand.lend(|hand| start(&ToolContext { document, layer, ..*hand }, led));
             if !matches!(outcome, Outcome::Preview(_) | Outcome::Idle) {
                 self.said = Some(outcome);
             }
@@ -168,12 +198,14 @@ impl FlatStroke {
             *at = led.place();
         }
     }
+
     /// Passes on the samples so far; returns what shows then.
     fn flush(&mut self) -> Option<Outcome> {
         let run = std::mem::take(&mut self.run);
         let (gesture, ..) = self.active.as_mut()?;
         Some(gesture.drag(&run))
     }
+
     /// Finishes the stroke on the canvas.
     fn cut(&mut self) {
         self.flush();
@@ -204,13 +236,16 @@ impl Gesture for FlatStroke {
             (None, None, None) => Outcome::Idle,
         }
     }
+
     fn release(&mut self) -> Outcome {
         if let Some((sample, last)) = self.stabilized.finish().zip(self.last) {
             self.go(PenSample { sample, ..last });
         }
         self.cut();
         match (self.kept.take(), self.said.take()) {
-            (Some(label), _) => Outcome::Commit { label, document: self.document.clone(), select: self.layer },
+            (Some(label), _) => {
+                Outcome::Commit { label, document: self.document.clone(), select: self.layer }
+            }
             (None, Some(said)) => said,
             (None, None) => Outcome::Cancel,
         }

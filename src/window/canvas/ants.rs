@@ -1,5 +1,6 @@
-//! The outline of the selection: dashes that march, one screen point wide at any zoom. Floor 7. The outline is found
-//! tile by tile (`raster::coverage::contour`) and cached; only tiles in view are drawn.
+//! The outline of the selection: dashes that march, one screen point wide at any zoom. Floor 7. The
+//! outline is found tile by tile (`raster::coverage::contour`) and cached; only tiles in view are
+//! drawn.
 
 use super::unwrapped::OnSheet;
 use crate::math::{Affine2, Rect, Vec2, vec2};
@@ -7,7 +8,8 @@ use crate::raster::coverage::contour::{self, Run, RunsKey};
 use crate::raster::{CoverageGrid, TileAt};
 use crate::session::Session;
 use eframe::egui::{
-    self, Color32, ColorImage, Mesh, Painter, Shape, TextureHandle, TextureOptions, TextureWrapMode, pos2,
+    self, Color32, ColorImage, Mesh, Painter, Shape, TextureHandle, TextureOptions,
+    TextureWrapMode, pos2,
 };
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -44,14 +46,22 @@ impl Ants {
     pub fn covered(&self) -> Option<Rect> {
         self.covered
     }
+
     /// Draws the outline of the selection as shown. `visible`: the canvas pixels in view.
-    pub fn draw(&mut self, painter: &Painter, session: &Session, screen_from_canvas: Affine2, visible: Rect) {
+    pub fn draw(
+        &mut self,
+        painter: &Painter,
+        session: &Session,
+        screen_from_canvas: Affine2,
+        visible: Rect,
+    ) {
         let scale = screen_from_canvas.matrix2.x_axis.length();
         self.draw_runs(painter, session, scale, visible, |mesh, run, phase| {
             let ends = ends(run).map(|p| screen_from_canvas.transform_point2(p));
             line(mesh, ends, phase);
         });
     }
+
     /// The same on the unwrapped sheet.
     pub fn draw_unwrapped(
         &mut self,
@@ -61,13 +71,20 @@ impl Ants {
         screen_from_sheet: Affine2,
     ) {
         let scale = screen_from_sheet.matrix2.x_axis.length();
-        self.draw_runs(painter, session, scale, on_sheet.surface.size().rect(), |mesh, run, phase| {
-            let [from, to] = ends(run);
-            for piece in on_sheet.line(from, to) {
-                line(mesh, piece.map(|p| screen_from_sheet.transform_point2(p)), phase);
-            }
-        });
+        self.draw_runs(
+            painter,
+            session,
+            scale,
+            on_sheet.surface.size().rect(),
+            |mesh, run, phase| {
+                let [from, to] = ends(run);
+                for piece in on_sheet.line(from, to) {
+                    line(mesh, piece.map(|p| screen_from_sheet.transform_point2(p)), phase);
+                }
+            },
+        );
     }
+
     /// `scale`: screen points per canvas pixel.
     fn draw_runs(
         &mut self,
@@ -106,8 +123,9 @@ impl Ants {
         painter.add(Shape::mesh(mesh));
         painter.ctx().request_repaint_after(FRAME);
     }
-    /// Switches to another selection, and drops what is not part of it. The old one lives until then, so that tiles of
-    /// both have different addresses.
+
+    /// Switches to another selection, and drops what is not part of it. The old one lives until
+    /// then, so that tiles of both have different addresses.
     fn follow(&mut self, selected: Option<&CoverageGrid>) {
         let Some(grid) = selected else {
             return *self = Self { dashes: self.dashes.take(), ..Self::default() };
@@ -118,6 +136,7 @@ impl Ants {
         self.runs.retain(|key, _| key.is_of(grid));
         (self.grid, self.covered, self.coarser) = (grid.clone(), Some(grid.covered()), 0);
     }
+
     fn runs_of(&mut self, grid: &CoverageGrid, at: TileAt, level: u32) -> Arc<Vec<Run>> {
         if self.runs.len() > KEPT {
             self.runs.clear();
@@ -125,11 +144,13 @@ impl Ants {
         let key = contour::key(grid, at, level);
         self.runs.entry(key).or_insert_with(|| Arc::new(contour::runs(grid, at, level))).clone()
     }
+
     fn dashes(&mut self, ctx: &egui::Context) -> egui::TextureId {
         let texture = self.dashes.get_or_insert_with(|| {
             let pixel = |i: usize| if i < 4 { Color32::WHITE } else { Color32::BLACK };
             let image = ColorImage::new([8, 1], (0..8).map(pixel).collect());
-            let options = TextureOptions { wrap_mode: TextureWrapMode::Repeat, ..TextureOptions::NEAREST };
+            let options =
+                TextureOptions { wrap_mode: TextureWrapMode::Repeat, ..TextureOptions::NEAREST };
             ctx.load_texture("dashes", image, options)
         });
         texture.id()
@@ -139,12 +160,13 @@ impl Ants {
 /// Where a piece of the outline begins and ends, canvas px.
 fn ends(run: &Run) -> [Vec2; 2] {
     let from = vec2(run.x as f32, run.y as f32);
-    let along = if run.is_vertical { vec2(0.0, run.length as f32) } else { vec2(run.length as f32, 0.0) };
+    let along =
+        if run.is_vertical { vec2(0.0, run.length as f32) } else { vec2(run.length as f32, 0.0) };
     [from, from + along]
 }
 
-/// A piece of the outline as a band of one screen point. Its dashes follow its place on the screen, so that they
-/// continue from piece to piece.
+/// A piece of the outline as a band of one screen point. Its dashes follow its place on the screen,
+/// so that they continue from piece to piece.
 fn line(mesh: &mut Mesh, [a, b]: [Vec2; 2], phase: f32) {
     let way = (b - a).normalize_or_zero();
     // Half a point longer at both ends, so that corners are closed.

@@ -1,5 +1,5 @@
-//! Assistants over the picture: their lines and, with the tool, their handles and those of the symmetry's axes.
-//! Floor 7. Not here: strokes along them (`tools::assistants`).
+//! Assistants over the picture: their lines and, with the tool, their handles and those of the
+//! symmetry's axes. Floor 7. Not here: strokes along them (`tools::assistants`).
 
 use crate::document::{Assistant, AssistantKind};
 use crate::math::{Vec2, vec2};
@@ -14,13 +14,20 @@ const RAYS: u32 = 24;
 const SEGMENTS: u32 = 96;
 
 /// Draws them, faintly while another tool is current.
-pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2, is_tool: bool) {
+pub fn draw(
+    painter: &Painter,
+    session: &Session,
+    to_screen: &impl Fn(Vec2) -> Pos2,
+    is_tool: bool,
+) {
     let Some(document) = session.shown() else { return };
     // Far enough that its ends are out of sight.
     let reach = 4.0 * document.size.center().length();
     let alpha = if is_tool { 200 } else { 90 };
-    let look = Stroke::new(1.2, Color32::from_rgba_unmultiplied(LINE.r(), LINE.g(), LINE.b(), alpha));
-    let faint = Stroke::new(1.0, Color32::from_rgba_unmultiplied(LINE.r(), LINE.g(), LINE.b(), alpha / 4));
+    let look =
+        Stroke::new(1.2, Color32::from_rgba_unmultiplied(LINE.r(), LINE.g(), LINE.b(), alpha));
+    let faint =
+        Stroke::new(1.0, Color32::from_rgba_unmultiplied(LINE.r(), LINE.g(), LINE.b(), alpha / 4));
     for assistant in document.assistants.iter() {
         for [from, to] in lines(assistant, document.size.center(), reach) {
             painter.line_segment([to_screen(from), to_screen(to)], faint);
@@ -46,7 +53,8 @@ fn outline(assistant: &Assistant) -> Vec<Vec2> {
     match assistant.ellipse() {
         Some(ellipse) => {
             let at = |i: u32| Vec2::from_angle(std::f32::consts::TAU * i as f32 / SEGMENTS as f32);
-            let point = |i: u32| ellipse.center + ellipse.axes[0] * at(i).x + ellipse.axes[1] * at(i).y;
+            let point =
+                |i: u32| ellipse.center + ellipse.axes[0] * at(i).x + ellipse.axes[1] * at(i).y;
             (0..=SEGMENTS).map(point).collect()
         }
         None => assistant.points.clone(),
@@ -62,10 +70,14 @@ fn lines(assistant: &Assistant, middle: Vec2, reach: f32) -> Vec<[Vec2; 2]> {
         }
         (AssistantKind::Parallel, [a, b]) => {
             let along = (*b - *a).normalize_or(Vec2::X);
-            (-4..=4).map(|i| through(middle + along.perp() * (i as f32 * 0.05 * reach), along)).collect()
+            (-4..=4)
+                .map(|i| through(middle + along.perp() * (i as f32 * 0.05 * reach), along))
+                .collect()
         }
         (AssistantKind::OnePoint | AssistantKind::TwoPoint | AssistantKind::ThreePoint, points) => {
-            let ray = |v: Vec2| (0..RAYS).map(move |i| (v, std::f32::consts::TAU * i as f32 / RAYS as f32));
+            let ray = |v: Vec2| {
+                (0..RAYS).map(move |i| (v, std::f32::consts::TAU * i as f32 / RAYS as f32))
+            };
             let far = |v: Vec2| reach + v.distance(middle);
             let end = |(v, angle): (Vec2, f32)| [v, v + vec2(angle.cos(), angle.sin()) * far(v)];
             points.iter().flat_map(|v| ray(*v)).map(end).collect()

@@ -1,15 +1,16 @@
-//! The picture on the graphics card: blocks below any driver's texture limit; only changed parts are uploaded.
-//! Floor 7.
+//! The picture on the graphics card: blocks below any driver's texture limit; only changed parts
+//! are uploaded. Floor 7.
 
 use crate::math::{Affine2, Rect, Size, vec2};
 use crate::raster::{TILE, TileAt, TileGrid};
 use eframe::egui::{
-    self, Color32, ColorImage, Mesh, Painter, Pos2, Shape, TextureFilter, TextureHandle, TextureOptions,
-    TextureWrapMode, pos2,
+    self, Color32, ColorImage, Mesh, Painter, Pos2, Shape, TextureFilter, TextureHandle,
+    TextureOptions, TextureWrapMode, pos2,
 };
 use std::collections::BTreeMap;
 
-/// Side of a block, px: eight tiles. A driver's limit is at least 2048; a smaller block is cheaper to shrink again.
+/// Side of a block, px: eight tiles. A driver's limit is at least 2048; a smaller block is cheaper
+/// to shrink again.
 pub const BLOCK: i32 = 512;
 
 /// How pixels of the picture become pixels of the screen.
@@ -51,8 +52,14 @@ impl TextureBlocks {
         }
         self.textures.clear();
     }
+
     /// Uploads tiles that changed.
-    pub fn update(&mut self, ctx: &egui::Context, grid: &TileGrid, tiles: impl Iterator<Item = TileAt>) {
+    pub fn update(
+        &mut self,
+        ctx: &egui::Context,
+        grid: &TileGrid,
+        tiles: impl Iterator<Item = TileAt>,
+    ) {
         let Some(size) = self.size else { return };
         let mut changed: BTreeMap<(i32, i32), Rect> = BTreeMap::new();
         for at in tiles {
@@ -61,7 +68,11 @@ impl TextureBlocks {
             // One pixel more, where the canvas ends within the block: see `image`.
             let Rect { x0, y0, x1, y1 } = at.rect();
             let reached = Rect::new(x0, y0, x1 + 1, y1 + 1).intersect(block_rect(block));
-            *area = area.union(if x1 < size.width as i32 && y1 < size.height as i32 { at.rect() } else { reached });
+            *area = area.union(if x1 < size.width as i32 && y1 < size.height as i32 {
+                at.rect()
+            } else {
+                reached
+            });
         }
         for (block, area) in changed {
             let options = self.options();
@@ -72,13 +83,18 @@ impl TextureBlocks {
                     texture.set_partial(at, image(grid, area, size), options);
                 }
                 None if !whole.intersect(size.rect()).is_empty() => {
-                    let texture = ctx.load_texture(format!("canvas {block:?}"), image(grid, whole, size), options);
+                    let texture = ctx.load_texture(
+                        format!("canvas {block:?}"),
+                        image(grid, whole, size),
+                        options,
+                    );
                     self.textures.insert(block, texture);
                 }
                 None => {}
             }
         }
     }
+
     /// The filter belongs to the texture, so one pixel of each is sent again.
     pub fn magnify(&mut self, magnification: Magnification, grid: &TileGrid) {
         let Some(size) = self.size.filter(|_| self.magnification != magnification) else { return };
@@ -90,23 +106,33 @@ impl TextureBlocks {
             texture.set_partial([0, 0], image(grid, tile, size), options);
         }
     }
+
     fn options(&self) -> TextureOptions {
         let is_in_squares = self.magnification == Magnification::Squares;
         TextureOptions {
-            magnification: if is_in_squares { TextureFilter::Nearest } else { TextureFilter::Linear },
+            magnification: if is_in_squares {
+                TextureFilter::Nearest
+            } else {
+                TextureFilter::Linear
+            },
             minification: TextureFilter::Linear,
             wrap_mode: TextureWrapMode::ClampToEdge,
-            mipmap_mode: (self.magnification == Magnification::Reduced).then_some(TextureFilter::Linear),
+            mipmap_mode: (self.magnification == Magnification::Reduced)
+                .then_some(TextureFilter::Linear),
         }
     }
+
     /// Draws the blocks; `screen_from_canvas` in the window's points.
     pub fn draw(&self, painter: &Painter, screen_from_canvas: Affine2) {
         let Some(size) = self.size else { return };
         for (&block, texture) in &self.textures {
             let whole = block_rect(block);
             let shown = whole.intersect(size.rect());
-            let uv = |x: i32, y: i32| pos2((x - whole.x0) as f32 / BLOCK as f32, (y - whole.y0) as f32 / BLOCK as f32);
-            let corners = corners(shown).map(|(x, y)| (on_screen(screen_from_canvas, x, y), uv(x, y)));
+            let uv = |x: i32, y: i32| {
+                pos2((x - whole.x0) as f32 / BLOCK as f32, (y - whole.y0) as f32 / BLOCK as f32)
+            };
+            let corners =
+                corners(shown).map(|(x, y)| (on_screen(screen_from_canvas, x, y), uv(x, y)));
             painter.add(quad(texture.id(), corners, Color32::WHITE));
         }
     }
@@ -135,8 +161,9 @@ fn block_rect((col, row): (i32, i32)) -> Rect {
     Rect::new(col * BLOCK, row * BLOCK, (col + 1) * BLOCK, (row + 1) * BLOCK)
 }
 
-/// Premultiplied pixels of a rectangle, as the graphics card takes them. Beyond the canvas's right and lower edge its
-/// last pixels are repeated once, so that interpolation mixes nothing else into the rim.
+/// Premultiplied pixels of a rectangle, as the graphics card takes them. Beyond the canvas's right
+/// and lower edge its last pixels are repeated once, so that interpolation mixes nothing else into
+/// the rim.
 fn image(grid: &TileGrid, rect: Rect, canvas: Size) -> ColorImage {
     let (width, height) = (rect.width(), rect.height());
     let mut pixels = vec![Color32::TRANSPARENT; width * height];
@@ -152,7 +179,9 @@ fn image(grid: &TileGrid, rect: Rect, canvas: Size) -> ColorImage {
             }
         }
     }
-    let within = |end: i32, begin: i32, n: usize| usize::try_from(end - begin).ok().filter(|&at| at > 0 && at < n);
+    let within = |end: i32, begin: i32, n: usize| {
+        usize::try_from(end - begin).ok().filter(|&at| at > 0 && at < n)
+    };
     if let Some(x) = within(canvas.width as i32, rect.x0, width) {
         (0..height).for_each(|y| pixels[y * width + x] = pixels[y * width + x - 1]);
     }
@@ -173,6 +202,9 @@ mod tests {
         let grid = TileGrid::from_straight_rgba(&bytes, 3, 2, 0, 0);
         let image = image(&grid, Rect::new(0, 0, 5, 4), canvas);
         let reds: Vec<u8> = image.pixels.iter().map(|pixel| pixel.r()).collect();
-        assert_eq!(reds, [0, 40, 80, 80, 0, 120, 160, 200, 200, 0, 120, 160, 200, 200, 0, 0, 0, 0, 0, 0]);
+        assert_eq!(
+            reds,
+            [0, 40, 80, 80, 0, 120, 160, 200, 200, 0, 120, 160, 200, 200, 0, 0, 0, 0, 0, 0]
+        );
     }
 }

@@ -30,12 +30,22 @@ pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> P
     for handle in seen.into_iter().chain((0..4).map(|i| to_screen(crop::edge(frame, i)))) {
         let square = egui::Rect::from_center_size(handle, egui::vec2(HANDLE_PT, HANDLE_PT));
         painter.rect_filled(square, 1.0, Color32::WHITE);
-        painter.rect_stroke(square, 1.0, look(1.2, Color32::from_black_alpha(190)), StrokeKind::Outside);
+        painter.rect_stroke(
+            square,
+            1.0,
+            look(1.2, Color32::from_black_alpha(190)),
+            StrokeKind::Outside,
+        );
     }
 }
 
 /// Darkens the canvas outside the frame: four pieces around it, however the view is turned.
-fn outside(painter: &Painter, session: &Session, frame: [Vec2; 4], to_screen: &impl Fn(Vec2) -> Pos2) {
+fn outside(
+    painter: &Painter,
+    session: &Session,
+    frame: [Vec2; 4],
+    to_screen: &impl Fn(Vec2) -> Pos2,
+) {
     let Some(document) = session.shown() else { return };
     let canvas = crop::corners(document.size.rect());
     let (low, high) = (canvas[0].min(frame[0]), canvas[2].max(frame[2]));
@@ -47,7 +57,11 @@ fn outside(painter: &Painter, session: &Session, frame: [Vec2; 4], to_screen: &i
     ];
     for [a, b] in pieces.into_iter().filter(|[a, b]| b.x > a.x && b.y > a.y) {
         let corners = [a, vec2(b.x, a.y), b, vec2(a.x, b.y)].map(to_screen);
-        painter.add(Shape::convex_polygon(corners.to_vec(), Color32::from_black_alpha(120), Stroke::NONE));
+        painter.add(Shape::convex_polygon(
+            corners.to_vec(),
+            Color32::from_black_alpha(120),
+            Stroke::NONE,
+        ));
     }
 }
 

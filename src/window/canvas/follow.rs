@@ -1,4 +1,5 @@
-//! Follows the document: requests its picture from the render thread, and takes what was painted. Floor 7.
+//! Follows the document: requests its picture from the render thread, and takes what was painted.
+//! Floor 7.
 
 use super::sheet::TileSheet;
 use super::{Canvas, visible_rect};
@@ -12,15 +13,24 @@ use std::time::Duration;
 
 /// How long a frame waits for what is being painted before it is drawn without it.
 const SOON: Duration = Duration::from_millis(12);
-/// After this time the sign that a picture is done is drawn again, unless something else causes a frame sooner.
+/// After this time the sign that a picture is done is drawn again, unless something else causes a
+/// frame sooner.
 const SETTLED: Duration = Duration::from_millis(100);
 
 impl Canvas {
     /// Requests the picture to show, and takes the tiles that were painted.
-    pub(super) fn follow(&mut self, ctx: &egui::Context, session: &Session, view: &CanvasView, area: egui::Rect) {
+    pub(super) fn follow(
+        &mut self,
+        ctx: &egui::Context,
+        session: &Session,
+        view: &CanvasView,
+        area: egui::Rect,
+    ) {
         let Some(tab) = session.active() else { return };
         let drawn = tab.drawn();
-        if self.tab != Some(tab.key) || self.wanted.as_ref().is_some_and(|(old, _)| old.size != drawn.size) {
+        if self.tab != Some(tab.key)
+            || self.wanted.as_ref().is_some_and(|(old, _)| old.size != drawn.size)
+        {
             self.tab = Some(tab.key);
             self.picture += 1;
             self.whole.begin(drawn.size);
@@ -31,9 +41,17 @@ impl Canvas {
             (self.wanted, self.is_draft_in_front, self.draft) = (None, false, TileSheet::default());
         }
         let is_dragged = is_dragged(session);
-        if !self.wanted.as_ref().is_some_and(|(old, dragged)| *dragged == is_dragged && looks_same(old, &drawn)) {
+        if !self
+            .wanted
+            .as_ref()
+            .is_some_and(|(old, dragged)| *dragged == is_dragged && looks_same(old, &drawn))
+        {
             // Any part of the picture may be in sight on the sheet.
-            let visible = if tab.unwrapped().is_some() { drawn.size.rect() } else { visible_rect(view, area) };
+            let visible = if tab.unwrapped().is_some() {
+                drawn.size.rect()
+            } else {
+                visible_rect(view, area)
+            };
             let (picture, document) = (self.picture, drawn.clone());
             if let Some(thread) = &self.render_thread {
                 thread.want(RenderRequest { picture, document, visible, is_dragged });
@@ -43,7 +61,10 @@ impl Canvas {
         }
         let was_busy = self.is_busy;
         // What the user did is shown in the same frame, if it is painted soon.
-        let is_soon = self.is_busy && session.is_drawing() && ctx.current_pass_index() > 0 && self.took < SOON;
+        let is_soon = self.is_busy
+            && session.is_drawing()
+            && ctx.current_pass_index() > 0
+            && self.took < SOON;
         let wait = if is_soon { SOON } else { Duration::ZERO };
         let painted = self.render_thread.iter().flat_map(|thread| thread.painted(wait));
         let painted = painted.filter(|painted| painted.picture == self.picture);
@@ -75,31 +96,42 @@ impl Canvas {
         self.is_draft_in_front = is_draft_next;
         self.small_is_old |= is_sent;
     }
-    /// The small picture for the navigator, of the sheet while that is shown; updated when the render thread is idle.
+
+    /// The small picture for the navigator, of the sheet while that is shown; updated when the
+    /// render thread is idle.
     pub fn small(&mut self, ctx: &egui::Context, canvas: Size) -> Option<egui::TextureId> {
         const SIDE: u32 = 200;
         if self.small.is_none() || (self.small_is_old && !self.is_busy) {
             self.small_is_old = false;
             let step = canvas.width.max(canvas.height).div_ceil(SIDE).max(1);
             let (width, height) = (canvas.width.div_ceil(step), canvas.height.div_ceil(step));
-            let shown = if self.sheet.shown.size() == Some(canvas) { &self.sheet.shown } else { &self.whole };
+            let shown = if self.sheet.shown.size() == Some(canvas) {
+                &self.sheet.shown
+            } else {
+                &self.whole
+            };
             let pixel = |i: u32| {
                 let (x, y) = (i % width * step + step / 2, i / width * step + step / 2);
                 let at = |v: u32, n: u32| v.min(n - 1) as i32;
                 let [r, g, b, a] = shown.grid.pixel(at(x, canvas.width), at(y, canvas.height));
                 Color32::from_rgba_premultiplied(r, g, b, a)
             };
-            let image = ColorImage::new([width as usize, height as usize], (0..width * height).map(pixel).collect());
+            let image = ColorImage::new(
+                [width as usize, height as usize],
+                (0..width * height).map(pixel).collect(),
+            );
             self.small = Some(ctx.load_texture("navigator", image, TextureOptions::LINEAR));
         }
         self.small.as_ref().map(TextureHandle::id)
     }
 }
 
-/// Whether a slider, a handle or a layer is being dragged. A brush does not count: its strokes change few tiles, and
-/// the user looks at them closely. Nor does selecting, which changes nothing in the picture.
+/// Whether a slider, a handle or a layer is being dragged. A brush does not count: its strokes
+/// change few tiles, and the user looks at them closely. Nor does selecting, which changes nothing
+/// in the picture.
 fn is_dragged(session: &Session) -> bool {
-    let paints = matches!(session.tool, ToolKind::Brush | ToolKind::Eraser) || session.tool.selects();
+    let paints =
+        matches!(session.tool, ToolKind::Brush | ToolKind::Eraser) || session.tool.selects();
     let paints = session.is_drawing() && paints;
     !paints && session.active().is_some_and(|tab| tab.is_previewing())
 }

@@ -1,4 +1,5 @@
-//! The frame of the transform tool on the picture. Floor 7. Not here: what a drag of it does (`tools::transform`).
+//! The frame of the transform tool on the picture. Floor 7. Not here: what a drag of it does
+//! (`tools::transform`).
 
 use crate::document::Mesh;
 use crate::math::Vec2;
@@ -16,7 +17,8 @@ pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> P
     let chosen = tab.outermost_chosen();
     if session.carried == TransformTarget::Paint
         && let [one] = chosen[..]
-        && let Some((mesh, points)) = tab.shown().layer(one).and_then(|layer| mesh::points_of(tab.shown(), layer))
+        && let Some((mesh, points)) =
+            tab.shown().layer(one).and_then(|layer| mesh::points_of(tab.shown(), layer))
     {
         let Some(map) = tab.shown().map_of(one) else { return };
         let at = |p: Vec2| to_screen(map.outside_own().to_canvas(mesh.at(p).0).unwrap_or(p));
@@ -24,7 +26,12 @@ pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> P
         for (k, point) in points.into_iter().enumerate() {
             let is_chosen = session.mesh_points.contains(&k);
             let color = if is_chosen { Color32::from_rgb(255, 200, 80) } else { Color32::WHITE };
-            painter.circle(to_screen(point), 0.5 * HANDLE_PT, color, Stroke::new(1.2, Color32::from_black_alpha(190)));
+            painter.circle(
+                to_screen(point),
+                0.5 * HANDLE_PT,
+                color,
+                Stroke::new(1.2, Color32::from_black_alpha(190)),
+            );
         }
     }
     let Some(frame) = tab.frame(session.carried) else { return };
@@ -45,7 +52,12 @@ pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> P
     for at in corners.into_iter().chain(edges) {
         let handle = Rect::from_center_size(at, vec2(HANDLE_PT, HANDLE_PT));
         painter.rect_filled(handle, 1.0, Color32::WHITE);
-        painter.rect_stroke(handle, 1.0, Stroke::new(1.2, Color32::from_black_alpha(190)), StrokeKind::Outside);
+        painter.rect_stroke(
+            handle,
+            1.0,
+            Stroke::new(1.2, Color32::from_black_alpha(190)),
+            StrokeKind::Outside,
+        );
     }
 }
 
@@ -59,9 +71,11 @@ fn grid(painter: &Painter, mesh: &Mesh, at: &impl Fn(Vec2) -> Pos2) {
         at(frame.corner + frame.size * crate::math::vec2(x, y) / cells)
     };
     let share = |i: usize| i as f32 / PIECES as f32;
-    let level = (0..rows).map(|j| (0..=(columns - 1) * PIECES).map(|i| place(share(i), j as f32)).collect::<Vec<_>>());
-    let upright =
-        (0..columns).map(|i| (0..=(rows - 1) * PIECES).map(|j| place(i as f32, share(j))).collect::<Vec<_>>());
+    let level = (0..rows).map(|j| {
+        (0..=(columns - 1) * PIECES).map(|i| place(share(i), j as f32)).collect::<Vec<_>>()
+    });
+    let upright = (0..columns)
+        .map(|i| (0..=(rows - 1) * PIECES).map(|j| place(i as f32, share(j))).collect::<Vec<_>>());
     for line in level.chain(upright) {
         painter.add(Shape::line(line.clone(), Stroke::new(2.4, Color32::from_black_alpha(100))));
         painter.add(Shape::line(line, Stroke::new(1.0, Color32::from_rgb(120, 200, 255))));

@@ -22,12 +22,15 @@ impl FrameInput<'_> {
     fn about_view_center(&self, pos: Pos2) -> Vec2 {
         vec2(pos.x - self.middle.x, pos.y - self.middle.y)
     }
+
     pub fn on_canvas(&self, pos: Pos2) -> Vec2 {
         self.view.canvas_from_screen().transform_point2(self.about_view_center(pos))
     }
+
     pub fn view(&mut self, action: ViewAction) {
         self.actions.push(Action::View(action));
     }
+
     pub fn zoom(&mut self, factor: f32, about: Pos2) {
         if factor.is_finite() && factor > 0.0 && factor != 1.0 {
             let about = self.about_view_center(about);
@@ -35,6 +38,7 @@ impl FrameInput<'_> {
             self.view(ViewAction::Zoom { factor, about });
         }
     }
+
     pub fn flush(&mut self) {
         let pens = std::mem::take(&mut self.pens);
         if !pens.is_empty() {
@@ -43,7 +47,8 @@ impl FrameInput<'_> {
     }
 }
 
-/// The wheel zooms to the pointer; with Shift it pans sideways, with Alt up and down; a trackpad's fingers pan.
+/// The wheel zooms to the pointer; with Shift it pans sideways, with Alt up and down; a trackpad's
+/// fingers pan.
 pub(super) fn wheel(
     unit: eframe::egui::MouseWheelUnit,
     delta: eframe::egui::Vec2,

@@ -1,5 +1,5 @@
-//! Guides, the grid, and the lines that what is dragged snapped to, over the picture. Floor 7. Not here: what snaps
-//! (`tools::snap`).
+//! Guides, the grid, and the lines that what is dragged snapped to, over the picture. Floor 7. Not
+//! here: what snaps (`tools::snap`).
 
 use super::unwrapped::OnSheet;
 use crate::math::{Rect, Vec2, vec2};
@@ -12,7 +12,12 @@ const GUIDE: Color32 = Color32::from_rgb(40, 170, 240);
 const SNAPPED: Color32 = Color32::from_rgb(255, 70, 190);
 
 /// The document's guides on the unwrapped sheet.
-pub fn draw_unwrapped(painter: &Painter, session: &Session, on_sheet: OnSheet, to_screen: &impl Fn(Vec2) -> Pos2) {
+pub fn draw_unwrapped(
+    painter: &Painter,
+    session: &Session,
+    on_sheet: OnSheet,
+    to_screen: &impl Fn(Vec2) -> Pos2,
+) {
     let Some(document) = session.shown().filter(|_| session.aids.guides) else { return };
     let (w, h) = (document.size.width as f32, document.size.height as f32);
     let upright = document.guides.vertical.iter().map(|&x| [vec2(x, 0.0), vec2(x, h)]);
@@ -24,7 +29,13 @@ pub fn draw_unwrapped(painter: &Painter, session: &Session, on_sheet: OnSheet, t
 }
 
 /// `visible`: the canvas px in sight; `zoom`: points per canvas px.
-pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2, visible: Rect, zoom: f32) {
+pub fn draw(
+    painter: &Painter,
+    session: &Session,
+    to_screen: &impl Fn(Vec2) -> Pos2,
+    visible: Rect,
+    zoom: f32,
+) {
     let Some(document) = session.shown() else { return };
     let aids = &session.aids;
     let low = vec2(visible.x0 as f32, visible.y0 as f32);

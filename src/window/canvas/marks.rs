@@ -16,7 +16,13 @@ use eframe::egui::{Color32, Painter, Pos2, Shape, Stroke, pos2, vec2};
 use std::sync::Arc;
 
 /// Draws the overlays of the current tool; `under`: the canvas point under the pointer.
-pub fn draw(painter: &Painter, session: &Session, screen_from_canvas: Affine2, under: Option<Vec2>, tool: ToolKind) {
+pub fn draw(
+    painter: &Painter,
+    session: &Session,
+    screen_from_canvas: Affine2,
+    under: Option<Vec2>,
+    tool: ToolKind,
+) {
     let to_screen = |p: Vec2| {
         let p = screen_from_canvas.transform_point2(p);
         pos2(p.x, p.y)
@@ -41,7 +47,9 @@ pub fn draw(painter: &Painter, session: &Session, screen_from_canvas: Affine2, u
         let line: Vec<Pos2> = session.lasso.iter().copied().chain(under).map(to_screen).collect();
         painter.circle_filled(line[0], 4.0, Color32::from_black_alpha(160));
         painter.circle_filled(line[0], 2.6, Color32::WHITE);
-        for stroke in [Stroke::new(2.4, Color32::from_black_alpha(130)), Stroke::new(1.1, Color32::WHITE)] {
+        for stroke in
+            [Stroke::new(2.4, Color32::from_black_alpha(130)), Stroke::new(1.1, Color32::WHITE)]
+        {
             painter.add(Shape::line(line.clone(), stroke));
         }
     }
@@ -67,7 +75,8 @@ pub fn draw(painter: &Painter, session: &Session, screen_from_canvas: Affine2, u
     }
 }
 
-/// The same over the sheet of the unwrapped surface, where dabs have the brush's own shape; `under`: on the sheet.
+/// The same over the sheet of the unwrapped surface, where dabs have the brush's own shape;
+/// `under`: on the sheet.
 pub fn draw_unwrapped(
     painter: &Painter,
     session: &Session,
@@ -87,7 +96,12 @@ pub fn draw_unwrapped(
     let Some(at) = under else { return };
     match tool {
         ToolKind::Brush | ToolKind::Eraser => {
-            footprint(painter, outline::circle(at, (0.5 * session.brush.size).max(0.5)), at, &to_screen);
+            footprint(
+                painter,
+                outline::circle(at, (0.5 * session.brush.size).max(0.5)),
+                at,
+                &to_screen,
+            );
         }
         ToolKind::Eyedropper => picked(painter, session, to_screen(at)),
         _ => {}
@@ -95,10 +109,18 @@ pub fn draw_unwrapped(
 }
 
 /// The outline of a dab and its centre.
-fn footprint(painter: &Painter, lines: Vec<[Vec2; 2]>, at: Vec2, to_screen: &impl Fn(Vec2) -> Pos2) {
+fn footprint(
+    painter: &Painter,
+    lines: Vec<[Vec2; 2]>,
+    at: Vec2,
+    to_screen: &impl Fn(Vec2) -> Pos2,
+) {
     let lines: Vec<[Pos2; 2]> = lines.into_iter().map(|line| line.map(to_screen)).collect();
     // Dark beneath light, so that it is visible on any picture.
-    for stroke in [Stroke::new(2.4, Color32::from_black_alpha(120)), Stroke::new(1.1, Color32::from_white_alpha(230))] {
+    for stroke in [
+        Stroke::new(2.4, Color32::from_black_alpha(120)),
+        Stroke::new(1.1, Color32::from_white_alpha(230)),
+    ] {
         painter.extend(lines.iter().map(|&line| Shape::line_segment(line, stroke)));
     }
     let center = to_screen(at);
@@ -124,12 +146,18 @@ fn axes(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2)
 }
 
 /// A cross where a clone brush would copy from.
-fn clone_source(painter: &Painter, session: &Session, under: Vec2, to_screen: &impl Fn(Vec2) -> Pos2) {
+fn clone_source(
+    painter: &Painter,
+    session: &Session,
+    under: Vec2,
+    to_screen: &impl Fn(Vec2) -> Pos2,
+) {
     let BrushMode::Clone { aligned, .. } = session.brush.mode else { return };
     let Some(source) = session.active().and_then(|tab| tab.clone_source) else { return };
     let offset = source.offset.filter(|_| aligned || session.is_drawing());
     let at = to_screen(offset.map_or(source.at, |offset| under + offset));
-    for look in [Stroke::new(3.0, Color32::from_black_alpha(140)), Stroke::new(1.2, Color32::WHITE)] {
+    for look in [Stroke::new(3.0, Color32::from_black_alpha(140)), Stroke::new(1.2, Color32::WHITE)]
+    {
         for arm in [vec2(7.0, 0.0), vec2(0.0, 7.0)] {
             painter.line_segment([at - arm, at + arm], look);
         }
@@ -150,7 +178,8 @@ fn chosen(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos
     let Some((tab, layer)) = session.active().zip(session.layer()) else { return };
     let document = tab.shown();
     let strokes = document.strokes_on_canvas(layer.id);
-    let chosen: Vec<&Arc<PaintStroke>> = tab.chosen_strokes().iter().filter_map(|&index| strokes.get(index)).collect();
+    let chosen: Vec<&Arc<PaintStroke>> =
+        tab.chosen_strokes().iter().filter_map(|&index| strokes.get(index)).collect();
     if tab.is_previewing() {
         return chosen.into_iter().for_each(|stroke| line_through(painter, stroke, to_screen));
     }
@@ -171,13 +200,24 @@ fn line_through(painter: &Painter, stroke: &PaintStroke, to_screen: &impl Fn(Vec
 }
 
 /// The outlines of strokes, kept while they do not change.
-fn outlined(painter: &Painter, strokes: Vec<&Arc<PaintStroke>>, scene: &Scene, to_screen: &impl Fn(Vec2) -> Pos2) {
+fn outlined(
+    painter: &Painter,
+    strokes: Vec<&Arc<PaintStroke>>,
+    scene: &Scene,
+    to_screen: &impl Fn(Vec2) -> Pos2,
+) {
     let id = eframe::egui::Id::unique("outlines of strokes");
     let old: OutlineCache = painter.ctx().data_mut(|data| data.get_temp(id).unwrap_or_default());
-    let kept = |stroke: &Arc<PaintStroke>| old.cache.iter().find(|(known, _)| Arc::ptr_eq(known, stroke)).cloned();
-    let made = |stroke: &Arc<PaintStroke>| (stroke.clone(), Arc::new(outline::of_stroke(stroke, scene)));
+    let kept = |stroke: &Arc<PaintStroke>| {
+        old.cache.iter().find(|(known, _)| Arc::ptr_eq(known, stroke)).cloned()
+    };
+    let made =
+        |stroke: &Arc<PaintStroke>| (stroke.clone(), Arc::new(outline::of_stroke(stroke, scene)));
     let now = OutlineCache {
-        cache: strokes.into_iter().map(|stroke| kept(stroke).unwrap_or_else(|| made(stroke))).collect(),
+        cache: strokes
+            .into_iter()
+            .map(|stroke| kept(stroke).unwrap_or_else(|| made(stroke)))
+            .collect(),
     };
     for look in LOOKS {
         let lines = now.cache.iter().flat_map(|(_, lines)| lines.iter());
@@ -206,7 +246,9 @@ fn handles(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Po
             }
         }
         Content::Image(live) => {
-            for anchor in live.params().bend.anchors.iter().filter(|anchor| anchor.at != anchor.source) {
+            for anchor in
+                live.params().bend.anchors.iter().filter(|anchor| anchor.at != anchor.source)
+            {
                 let (from, to) = (to_screen(anchor.at), to_screen(anchor.source));
                 painter.extend(Shape::dashed_line(
                     &[from, to],
@@ -230,6 +272,7 @@ fn handles(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Po
 
 /// The colours that distinguish anchors, here and in their insets (SF fig. 9).
 pub fn anchor_color(index: usize) -> Color32 {
-    let [r, g, b] = crate::document::view::anchor_color(index).to_array().map(crate::math::srgb::quantise);
+    let [r, g, b] =
+        crate::document::view::anchor_color(index).to_array().map(crate::math::srgb::quantise);
     Color32::from_rgb(r, g, b)
 }

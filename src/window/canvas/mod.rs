@@ -1,6 +1,6 @@
-//! The canvas: the picture in its view, and the pen on it. Floor 7. `sheet` holds the picture and its copy on the
-//! graphics card, `pointer` turns events into actions, `marks` and `overlay` draw what lies over the picture. Pixels
-//! come from the render thread.
+//! The canvas: the picture in its view, and the pen on it. Floor 7. `sheet` holds the picture and
+//! its copy on the graphics card, `pointer` turns events into actions, `marks` and `overlay` draw
+//! what lies over the picture. Pixels come from the render thread.
 
 mod ants;
 mod assistants;
@@ -34,7 +34,8 @@ use crate::tools::ToolKind;
 use ants::Ants;
 use blocks::{corners, on_screen, quad};
 use eframe::egui::{
-    self, Color32, ColorImage, Sense, Stroke, TextureHandle, TextureOptions, TextureWrapMode, Ui, pos2,
+    self, Color32, ColorImage, Sense, Stroke, TextureHandle, TextureOptions, TextureWrapMode, Ui,
+    pos2,
 };
 use overlay::{Insets, Overlay};
 use parts::PartMarks;
@@ -116,14 +117,19 @@ impl Canvas {
             trouble,
         }
     }
+
     /// The tablet that the window's pointer may belong to.
     pub fn draw_on(&mut self, tablet: SharedTablet) {
         self.hand.draw_on(tablet);
     }
+
     /// Draws the canvas and requests what the pen does.
     pub fn show(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         let whole = ui.available_rect_before_wrap();
-        let rect = egui::Rect::from_min_max(whole.min + egui::Vec2::splat(rulers::room_pt(session)), whole.max);
+        let rect = egui::Rect::from_min_max(
+            whole.min + egui::Vec2::splat(rulers::room_pt(session)),
+            whole.max,
+        );
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Canvas"));
         self.area_pt = vec2(rect.width(), rect.height());
@@ -148,8 +154,11 @@ impl Canvas {
             ui.ctx().request_repaint();
         }
         // So it does when its own size changes.
-        let last = self.wanted.as_ref().filter(|_| self.tab == Some(tab.key)).map(|(last, _)| last.size);
-        if last.is_some_and(|last| last != tab.document().size && view == CanvasView::fitting(last, self.area_pt)) {
+        let last =
+            self.wanted.as_ref().filter(|_| self.tab == Some(tab.key)).map(|(last, _)| last.size);
+        if last.is_some_and(|last| {
+            last != tab.document().size && view == CanvasView::fitting(last, self.area_pt)
+        }) {
             actions.push(Action::View(ViewAction::Fit { window_pt: self.area_pt }));
             ui.ctx().request_repaint();
         }
@@ -184,7 +193,10 @@ impl Canvas {
         if layout.is_none() {
             self.draw_overlay(ui.ctx(), session, &painter, screen_from_canvas);
         }
-        painter.add(egui::Shape::closed_line(shadow.to_vec(), Stroke::new(1.0, Color32::from_black_alpha(110))));
+        painter.add(egui::Shape::closed_line(
+            shadow.to_vec(),
+            Stroke::new(1.0, Color32::from_black_alpha(110)),
+        ));
 
         self.hand.listen(ui, &response, session, &view, middle, actions);
         let pointer = response.hover_pos().filter(|_| !self.hand.is_looking());
@@ -219,28 +231,35 @@ impl Canvas {
             ui.ctx().set_cursor_icon(self.hand.cursor(session, under.is_some()));
         }
     }
+
     /// Starts or stops swaying the picture by its depth.
     pub fn wobble(&mut self, ctx: &egui::Context, session: &Session) {
         self.wobble = match self.wobble {
             Some(_) => None,
-            None => session.shown().and_then(|document| Wobble::new(ctx, document, &self.whole.grid)),
+            None => {
+                session.shown().and_then(|document| Wobble::new(ctx, document, &self.whole.grid))
+            }
         };
     }
+
     /// What is selected, as last drawn.
     pub fn selected(&self) -> Option<Rect> {
         self.ants.covered()
     }
+
     fn draw_checker(&mut self, ui: &Ui, painter: &egui::Painter, canvas: [egui::Pos2; 4]) {
         let [light, dark] = theme::CHECKER;
         let texture = self.checker.get_or_insert_with(|| {
             let image = ColorImage::new([2, 2], vec![light, dark, dark, light]);
-            let options = TextureOptions { wrap_mode: TextureWrapMode::Repeat, ..TextureOptions::NEAREST };
+            let options =
+                TextureOptions { wrap_mode: TextureWrapMode::Repeat, ..TextureOptions::NEAREST };
             ui.ctx().load_texture("checker", image, options)
         });
         const SQUARES_PT: f32 = 16.0;
         let uv = canvas.map(|p| (p, pos2(p.x / SQUARES_PT, p.y / SQUARES_PT)));
         painter.add(quad(texture.id(), uv, Color32::WHITE));
     }
+
     fn draw_overlay(
         &mut self,
         ctx: &egui::Context,
@@ -255,9 +274,14 @@ impl Canvas {
         };
         let Some(tab) = session.active() else { return };
         let uv = [pos2(0.0, 0.0), pos2(1.0, 0.0), pos2(1.0, 1.0), pos2(0.0, 1.0)];
-        let at = corners(tab.document().size.rect()).map(|(x, y)| on_screen(screen_from_canvas, x, y));
+        let at =
+            corners(tab.document().size.rect()).map(|(x, y)| on_screen(screen_from_canvas, x, y));
         let corners = [0, 1, 2, 3].map(|i| (at[i], uv[i]));
-        painter.add(quad(texture, corners, Color32::from_white_alpha((session.overlay_opacity * 255.0) as u8)));
+        painter.add(quad(
+            texture,
+            corners,
+            Color32::from_white_alpha((session.overlay_opacity * 255.0) as u8),
+        ));
     }
 }
 
@@ -281,16 +305,31 @@ fn visible_rect(view: &CanvasView, area: egui::Rect) -> Rect {
     let at = corners.map(|c| inverse.transform_point2(c * half));
     let low = at.iter().fold(Vec2::INFINITY, |low, p| low.min(*p));
     let high = at.iter().fold(Vec2::NEG_INFINITY, |high, p| high.max(*p));
-    Rect::new(low.x.floor() as i32, low.y.floor() as i32, high.x.ceil() as i32, high.y.ceil() as i32)
+    Rect::new(
+        low.x.floor() as i32,
+        low.y.floor() as i32,
+        high.x.ceil() as i32,
+        high.y.ceil() as i32,
+    )
 }
 
 /// The text of an empty window.
 fn invite(ui: &Ui, area: egui::Rect) {
-    said(ui, area, "Drop a picture, a normal map or a project here, or open one from the File menu");
+    said(
+        ui,
+        area,
+        "Drop a picture, a normal map or a project here, or open one from the File menu",
+    );
 }
 
 /// A sentence in place of a picture.
 fn said(ui: &Ui, area: egui::Rect, text: &str) {
     let font = egui::TextStyle::Heading.resolve(ui.style());
-    ui.painter().text(area.center(), egui::Align2::CENTER_CENTER, text, font, ui.visuals().weak_text_color());
+    ui.painter().text(
+        area.center(),
+        egui::Align2::CENTER_CENTER,
+        text,
+        font,
+        ui.visuals().weak_text_color(),
+    );
 }

@@ -1,5 +1,5 @@
-//! Views of the surface over the picture, drawn on a thread of their own: one over all of it, and the anchors' weights
-//! in a corner (SF fig. 9). Floor 7. Not here: the views (`document::view`).
+//! Views of the surface over the picture, drawn on a thread of their own: one over all of it, and
+//! the anchors' weights in a corner (SF fig. 9). Floor 7. Not here: the views (`document::view`).
 
 use super::marks::anchor_color;
 use crate::document::view::{SurfaceView, draw};
@@ -9,8 +9,8 @@ use crate::raster::Picture;
 use crate::session::Session;
 use crate::{Error, Result};
 use eframe::egui::{
-    self, Align2, Color32, ColorImage, FontId, Painter, Rect, Stroke, StrokeKind, TextureHandle, TextureOptions, pos2,
-    vec2,
+    self, Align2, Color32, ColorImage, FontId, Painter, Rect, Stroke, StrokeKind, TextureHandle,
+    TextureOptions, pos2, vec2,
 };
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
@@ -29,13 +29,18 @@ impl ViewInputs {
         let layer = session.layer().cloned().filter(|_| view.is_of_layer());
         Some(Self { view, document: session.shown()?.clone(), layer })
     }
+
     fn is_same(&self, other: &ViewInputs) -> bool {
         let layers = [&self.layer, &other.layer].map(|layer| layer.as_ref().map(Arc::as_ptr));
-        self.view == other.view && layers[0] == layers[1] && self.document.scene().is_same(&other.document.scene())
+        self.view == other.view
+            && layers[0] == layers[1]
+            && self.document.scene().is_same(&other.document.scene())
     }
+
     fn picture(&self) -> Option<Picture> {
         draw(&self.document, self.layer.as_deref(), self.view, &Default::default()).ok()
     }
+
     /// The same, no side longer than this.
     fn small(self, side_px: f32) -> Option<Picture> {
         let layers = self.layer.iter().cloned().collect();
@@ -90,15 +95,22 @@ pub struct Overlay {
 
 impl Overlay {
     /// The requested view, once it is drawn.
-    pub fn texture(&mut self, ctx: &egui::Context, session: &Session) -> Result<Option<egui::TextureId>> {
+    pub fn texture(
+        &mut self,
+        ctx: &egui::Context,
+        session: &Session,
+    ) -> Result<Option<egui::TextureId>> {
         let view = session.overlay.as_deref().and_then(SurfaceView::from_name);
-        let Some(shows) = view.and_then(|view| ViewInputs::of(session, view)) else { return Ok(None) };
+        let Some(shows) = view.and_then(|view| ViewInputs::of(session, view)) else {
+            return Ok(None);
+        };
         let make: fn(ViewInputs) -> Option<Picture> = |shows| shows.picture();
         Ok(self.drawn.texture(ctx, shows, make)?.map(TextureHandle::id))
     }
 }
 
-/// How the anchors of the selected image share the surface, small, in a corner, each in its colour (SF fig. 9).
+/// How the anchors of the selected image share the surface, small, in a corner, each in its colour
+/// (SF fig. 9).
 #[derive(Default)]
 pub struct Insets {
     drawn: DrawnView,
@@ -134,8 +146,18 @@ fn inset(painter: &Painter, texture: &TextureHandle, anchors: usize) {
     let corner = painter.clip_rect().left_bottom() + vec2(12.0, -12.0 - side.y);
     let rect = Rect::from_min_size(corner, side);
     painter.rect_filled(rect.expand(1.0), 3.0, Color32::from_black_alpha(170));
-    painter.image(texture.id(), rect, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), Color32::WHITE);
-    painter.rect_stroke(rect, 3.0, Stroke::new(1.0, Color32::from_black_alpha(120)), StrokeKind::Outside);
+    painter.image(
+        texture.id(),
+        rect,
+        Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)),
+        Color32::WHITE,
+    );
+    painter.rect_stroke(
+        rect,
+        3.0,
+        Stroke::new(1.0, Color32::from_black_alpha(120)),
+        StrokeKind::Outside,
+    );
     let name = painter.text(
         rect.left_top() + vec2(5.0, 3.0),
         Align2::LEFT_TOP,
@@ -156,7 +178,9 @@ pub fn loaded(ctx: &egui::Context, name: &str, picture: &Picture) -> Option<Text
     let step = longer.div_ceil(LARGEST).max(1) as usize;
     let (width, height) = (picture.size.width as usize / step, picture.size.height as usize / step);
     let texel = |x: usize, y: usize| match &picture.texels {
-        crate::raster::picture::Texels::Srgb8(texels) => texels[y * picture.size.width as usize + x],
+        crate::raster::picture::Texels::Srgb8(texels) => {
+            texels[y * picture.size.width as usize + x]
+        }
         crate::raster::picture::Texels::Linear(_) => {
             let encode = |v: f32| crate::math::srgb::quantise(crate::math::srgb::encode(v));
             let [r, g, b, a] = picture.linear_at(x, y);
@@ -170,5 +194,9 @@ pub fn loaded(ctx: &egui::Context, name: &str, picture: &Picture) -> Option<Text
         let [r, g, b, a] = texel(i % width * step, i / width * step);
         Color32::from_rgba_unmultiplied(r, g, b, a)
     });
-    Some(ctx.load_texture(name, ColorImage::new([width, height], pixels.collect()), TextureOptions::LINEAR))
+    Some(ctx.load_texture(
+        name,
+        ColorImage::new([width, height], pixels.collect()),
+        TextureOptions::LINEAR,
+    ))
 }

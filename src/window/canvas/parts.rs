@@ -1,5 +1,6 @@
-//! The shape's parts on the picture: the outline of the chosen one with its handles, touches as arrows, the dab of
-//! the sculpting tool. Floor 7. Not here: what a drag of them does (`tools::shape`).
+//! The shape's parts on the picture: the outline of the chosen one with its handles, touches as
+//! arrows, the dab of the sculpting tool. Floor 7. Not here: what a drag of them does
+//! (`tools::shape`).
 
 use crate::document::Part;
 use crate::document::parts::FormArea;
@@ -42,10 +43,12 @@ struct PartOutline {
 impl PartOutline {
     /// `level`: blocks of 2^level pixels a side are one.
     fn runs(&mut self, area: &Arc<FormArea>, level: u32) -> &[Run] {
-        let is_known = self.of.as_ref().is_some_and(|(known, at)| Arc::ptr_eq(known, area) && *at == level);
+        let is_known =
+            self.of.as_ref().is_some_and(|(known, at)| Arc::ptr_eq(known, area) && *at == level);
         if !is_known {
             let grid = area.coverage();
-            self.runs = contour::tiles(&grid).flat_map(|at| contour::runs(&grid, at, level)).collect();
+            self.runs =
+                contour::tiles(&grid).flat_map(|at| contour::runs(&grid, at, level)).collect();
             self.of = Some((area.clone(), level));
         }
         &self.runs
@@ -70,11 +73,14 @@ impl PartMarks {
         };
         let scale = screen_from_canvas.matrix2.x_axis.length().max(1e-6);
         let level = (1.0 / scale).log2().floor().max(0.0) as u32;
-        let chosen =
-            session.active().and_then(|tab| tab.part.as_deref()).map(|id| on_form(document.parts.part(id), id));
+        let chosen = session
+            .active()
+            .and_then(|tab| tab.part.as_deref())
+            .map(|id| on_form(document.parts.part(id), id));
         let area_of = |id: &str| areas.iter().find(|(part, _)| part.id == id);
         let at = under.filter(|_| !session.is_drawing()).and_then(|at| nearest_at(&areas, at));
-        if let Some((_, area)) = at.as_ref().filter(|part| chosen != Some(&*part.id)).and_then(|part| area_of(&part.id))
+        if let Some((_, area)) =
+            at.as_ref().filter(|part| chosen != Some(&*part.id)).and_then(|part| area_of(&part.id))
         {
             outline(
                 painter,
@@ -108,7 +114,11 @@ impl PartMarks {
                 painter.circle_stroke(to_screen(at), radius, Stroke::new(width, color));
             }
             if inner > 3.0 {
-                painter.circle_stroke(to_screen(at), inner, Stroke::new(1.0, Color32::from_white_alpha(90)));
+                painter.circle_stroke(
+                    to_screen(at),
+                    inner,
+                    Stroke::new(1.0, Color32::from_white_alpha(90)),
+                );
             }
         }
     }
@@ -122,7 +132,11 @@ fn on_form<'a>(part: Option<&'a Arc<Part>>, id: &'a str) -> &'a str {
 fn outline(painter: &Painter, runs: &[Run], to_screen: &impl Fn(Vec2) -> Pos2, look: Stroke) {
     let ends = |run: &Run| {
         let from = vec2(run.x as f32, run.y as f32);
-        let along = if run.is_vertical { vec2(0.0, run.length as f32) } else { vec2(run.length as f32, 0.0) };
+        let along = if run.is_vertical {
+            vec2(0.0, run.length as f32)
+        } else {
+            vec2(run.length as f32, 0.0)
+        };
         [to_screen(from), to_screen(from + along)]
     };
     for stroke in [Stroke::new(look.width + 1.4, DARK), look] {
@@ -134,7 +148,12 @@ fn outline(painter: &Painter, runs: &[Run], to_screen: &impl Fn(Vec2) -> Pos2, l
 fn handles(painter: &Painter, part: &Part, frame: &PartFrame, to_screen: &impl Fn(Vec2) -> Pos2) {
     let corners = frame.corners().map(to_screen);
     let closed = [0, 1, 2, 3, 0].map(|i| corners[i]);
-    painter.extend(Shape::dashed_line(&closed, Stroke::new(1.0, Color32::from_white_alpha(170)), 5.0, 4.0));
+    painter.extend(Shape::dashed_line(
+        &closed,
+        Stroke::new(1.0, Color32::from_white_alpha(170)),
+        5.0,
+        4.0,
+    ));
     let (top, turn) = (to_screen(vec2(frame.middle().x, frame.low.y)), to_screen(frame.turn()));
     painter.line_segment([top, turn], Stroke::new(1.0, Color32::from_white_alpha(170)));
     painter.circle(turn, 0.55 * HANDLE_PT, Color32::WHITE, Stroke::new(1.2, DARK));
@@ -147,7 +166,8 @@ fn handles(painter: &Painter, part: &Part, frame: &PartFrame, to_screen: &impl F
         // An arrow with two heads: up and down.
         let (r, h) = (5.0, 11.0);
         let up = vec![pos2(at.x - r, at.y - 3.0), pos2(at.x, at.y - h), pos2(at.x + r, at.y - 3.0)];
-        let down = vec![pos2(at.x - r, at.y + 3.0), pos2(at.x + r, at.y + 3.0), pos2(at.x, at.y + h)];
+        let down =
+            vec![pos2(at.x - r, at.y + 3.0), pos2(at.x + r, at.y + 3.0), pos2(at.x, at.y + h)];
         for points in [up, down] {
             painter.add(Shape::convex_polygon(points, Color32::WHITE, Stroke::new(1.2, DARK)));
         }
@@ -210,7 +230,12 @@ pub fn ball(painter: &Painter, at: Pos2, radius: f32, normal: Vec3) {
 }
 
 /// Touches as arrows, longer the more they lean.
-fn arrows(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2, screen_from_canvas: Affine2) {
+fn arrows(
+    painter: &Painter,
+    session: &Session,
+    to_screen: &impl Fn(Vec2) -> Pos2,
+    screen_from_canvas: Affine2,
+) {
     let Some(document) = session.shown() else { return };
     for touch in touches(document).into_iter().take(MOST_TOUCHES) {
         let at = to_screen(touch.at);

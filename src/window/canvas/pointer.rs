@@ -1,15 +1,19 @@
-//! Turns events of pen and mouse on the canvas into actions. Strokes are made of events, one sample each, never of the
-//! pointer's position when a frame is drawn. Floor 7.
+//! Turns events of pen and mouse on the canvas into actions. Strokes are made of events, one sample
+//! each, never of the pointer's position when a frame is drawn. Floor 7.
 
 use super::frame_input::{FrameInput, wheel};
 use super::rulers;
 use crate::math::{COORDINATE, Vec2, vec2};
 use crate::paint::Sample;
-use crate::pen::{FilteredReport, PenPhase, PenReport, PenSource, ReportFilter, SharedTablet, WindowPen};
+use crate::pen::{
+    FilteredReport, PenPhase, PenReport, PenSource, ReportFilter, SharedTablet, WindowPen,
+};
 use crate::session::actions::{EditAction, GuideAction, HandAction, PointerAction, ViewAction};
 use crate::session::{Action, CanvasView, Session};
 use crate::tools::{ModifierKeys, PenSample, ToolKind};
-use eframe::egui::{CursorIcon, Event, Key, Modifiers, PointerButton, Popup, Pos2, Rect, Response, TouchPhase, Ui};
+use eframe::egui::{
+    CursorIcon, Event, Key, Modifiers, PointerButton, Popup, Pos2, Rect, Response, TouchPhase, Ui,
+};
 
 /// What the pointer is doing between press and release.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -73,11 +77,15 @@ impl PointerState {
     pub fn draw_on(&mut self, tablet: SharedTablet) {
         self.pen.on(tablet);
     }
+
     /// Whether the view is being moved: then nothing is painted, and no brush cursor is shown.
     pub fn is_looking(&self) -> bool {
-        matches!(self.holding, PointerGesture::Panning | PointerGesture::Zooming { .. } | PointerGesture::Turning)
-            || self.space
+        matches!(
+            self.holding,
+            PointerGesture::Panning | PointerGesture::Zooming { .. } | PointerGesture::Turning
+        ) || self.space
     }
+
     /// The current tool, or the one selected by a held key.
     pub fn tool(&self, session: &Session) -> ToolKind {
         // Alt sets the source point of a clone brush.
@@ -89,6 +97,7 @@ impl PointerState {
             _ => session.tool,
         }
     }
+
     pub fn cursor(&self, session: &Session, on_canvas: bool) -> CursorIcon {
         match (self.holding, self.tool(session)) {
             (PointerGesture::Panning | PointerGesture::Turning, _) => CursorIcon::Grabbing,
@@ -100,12 +109,15 @@ impl PointerState {
             (_, ToolKind::Zoom) => CursorIcon::ZoomIn,
             (_, ToolKind::Move | ToolKind::Image) => CursorIcon::Move,
             // The footprint's outline is the cursor.
-            (_, ToolKind::Brush | ToolKind::Eraser | ToolKind::Sculpt | ToolKind::Liquify) if on_canvas => {
+            (_, ToolKind::Brush | ToolKind::Eraser | ToolKind::Sculpt | ToolKind::Liquify)
+                if on_canvas =>
+            {
                 CursorIcon::None
             }
             _ => CursorIcon::Crosshair,
         }
     }
+
     /// Processes the events of a frame in order.
     pub fn listen(
         &mut self,
@@ -116,7 +128,8 @@ impl PointerState {
         middle: Pos2,
         actions: &mut Vec<Action>,
     ) {
-        let (events, now_secs, space) = ui.input(|i| (i.events.clone(), i.time, i.key_down(Key::Space)));
+        let (events, now_secs, space) =
+            ui.input(|i| (i.events.clone(), i.time, i.key_down(Key::Space)));
         self.space = space
             && (canvas.contains_pointer() || self.holding != PointerGesture::Nothing)
             && !ui.ctx().egui_wants_keyboard_input();
@@ -125,7 +138,9 @@ impl PointerState {
         let is_in_front = |pos: Pos2| ui.ctx().layer_id_at(pos) == Some(canvas.layer_id);
         let ours = |pos: Pos2| canvas.rect.contains(pos) && is_in_front(pos);
         self.area = canvas.rect;
-        if let Some(touch) = ui.input(|i| i.multi_touch()).filter(|touch| canvas.rect.contains(touch.center_pos)) {
+        if let Some(touch) =
+            ui.input(|i| i.multi_touch()).filter(|touch| canvas.rect.contains(touch.center_pos))
+        {
             self.two_fingers(
                 touch.translation_delta,
                 touch.zoom_delta,
@@ -142,12 +157,15 @@ impl PointerState {
             while let Some(report) = self.pen.next() {
                 match report.phase {
                     // A press outside an open menu closes it, and does nothing else.
-                    PenPhase::Down(_) if ours(report.at) && Popup::is_any_open(ui.ctx()) => Popup::close_all(ui.ctx()),
+                    PenPhase::Down(_) if ours(report.at) && Popup::is_any_open(ui.ctx()) => {
+                        Popup::close_all(ui.ctx())
+                    }
                     PenPhase::Down(button) if ours(report.at) && self.pen.touches() < 2 => {
                         self.press(&report, button, &mut listening);
                     }
                     PenPhase::Down(PointerButton::Primary)
-                        if rulers::is_on(canvas.rect, session, report.at) && is_in_front(report.at) =>
+                        if rulers::is_on(canvas.rect, session, report.at)
+                            && is_in_front(report.at) =>
                     {
                         self.pull(&report, canvas.rect, &mut listening);
                     }
@@ -157,12 +175,16 @@ impl PointerState {
                         self.moved(&report, &mut listening);
                         self.release(&mut listening);
                     }
-                    PenPhase::Lost if self.holding == PointerGesture::Drawing => self.release(&mut listening),
+                    PenPhase::Lost if self.holding == PointerGesture::Drawing => {
+                        self.release(&mut listening)
+                    }
                     PenPhase::Lost => self.holding = PointerGesture::Nothing,
                 }
             }
             match event {
-                Event::Key { key: Key::Escape, pressed: true, .. } if self.holding == PointerGesture::Drawing => {
+                Event::Key { key: Key::Escape, pressed: true, .. }
+                    if self.holding == PointerGesture::Drawing =>
+                {
                     self.holding = PointerGesture::Nothing;
                     listening.pens.clear();
                     listening.actions.push(Action::Pointer(PointerAction::Cancel {}));
@@ -170,15 +192,24 @@ impl PointerState {
                 Event::MouseWheel { unit, delta, modifiers, .. } if canvas.contains_pointer() => {
                     wheel(unit, delta, modifiers, self.last, &mut listening);
                 }
-                Event::Zoom(factor) if canvas.contains_pointer() => listening.zoom(factor, self.last),
+                Event::Zoom(factor) if canvas.contains_pointer() => {
+                    listening.zoom(factor, self.last)
+                }
                 _ => {}
             }
         }
         self.pen.settle();
         listening.flush();
     }
+
     /// A finger, or a pen that reports itself as one. A tap with two fingers is undo.
-    fn touched(&mut self, phase: TouchPhase, is_here: bool, now_secs: f64, listening: &mut FrameInput) {
+    fn touched(
+        &mut self,
+        phase: TouchPhase,
+        is_here: bool,
+        now_secs: f64,
+        listening: &mut FrameInput,
+    ) {
         let touches = self.pen.touches();
         match phase {
             TouchPhase::Start => self.tap = (touches == 2 && is_here).then_some((now_secs, 0.0)),
@@ -193,6 +224,7 @@ impl PointerState {
             TouchPhase::End | TouchPhase::Move => {}
         }
     }
+
     fn press(&mut self, report: &PenReport, button: PointerButton, listening: &mut FrameInput) {
         if self.holding != PointerGesture::Nothing {
             return;
@@ -213,23 +245,36 @@ impl PointerState {
             (PointerButton::Secondary, ToolKind::Liquify) => {
                 PointerGesture::Sizing { from: pos, size: session.liquify.size }
             }
-            (PointerButton::Secondary, _) if is_brush => PointerGesture::Sizing { from: pos, size: session.brush.size },
+            (PointerButton::Secondary, _) if is_brush => {
+                PointerGesture::Sizing { from: pos, size: session.brush.size }
+            }
             (PointerButton::Primary, ToolKind::Hand) if self.space && self.keys.command => {
                 PointerGesture::Zooming { about: pos, moved: false }
             }
             (PointerButton::Primary, ToolKind::Hand) if self.keys.shift => PointerGesture::Turning,
             (PointerButton::Primary, ToolKind::Hand) => PointerGesture::Panning,
-            (PointerButton::Primary, ToolKind::Zoom) => PointerGesture::Zooming { about: pos, moved: false },
+            (PointerButton::Primary, ToolKind::Zoom) => {
+                PointerGesture::Zooming { about: pos, moved: false }
+            }
             (PointerButton::Primary, _) => {
-                let Some((watch, reading)) = ReportFilter::begin(report, session.presses_by_speed) else { return };
+                let Some((watch, reading)) = ReportFilter::begin(report, session.presses_by_speed)
+                else {
+                    return;
+                };
                 self.watch = Some(watch);
-                let (pen, px_per_pt) = (self.reading(reading, listening), 1.0 / listening.view.zoom);
-                listening.actions.push(Action::Pointer(PointerAction::Press { tool, pen, px_per_pt }));
+                let (pen, px_per_pt) =
+                    (self.reading(reading, listening), 1.0 / listening.view.zoom);
+                listening.actions.push(Action::Pointer(PointerAction::Press {
+                    tool,
+                    pen,
+                    px_per_pt,
+                }));
                 PointerGesture::Drawing
             }
             _ => PointerGesture::Nothing,
         };
     }
+
     /// A guide is pulled out of a ruler.
     fn pull(&mut self, report: &PenReport, area: Rect, listening: &mut FrameInput) {
         if self.holding != PointerGesture::Nothing {
@@ -242,6 +287,7 @@ impl PointerState {
         listening.actions.push(Action::Guide(GuideAction::Pull { vertical, pen, px_per_pt }));
         self.holding = PointerGesture::Drawing;
     }
+
     fn moved(&mut self, report: &PenReport, listening: &mut FrameInput) {
         let (pos, by) = (report.at, report.at - self.last);
         if by == eframe::egui::Vec2::ZERO {
@@ -251,7 +297,8 @@ impl PointerState {
             PointerGesture::Nothing => {}
             PointerGesture::Drawing => {
                 // A pen with invalid reports ends its stroke at the last good one.
-                let Some(reading) = self.watch.as_mut().and_then(|watch| watch.follow(report)) else {
+                let Some(reading) = self.watch.as_mut().and_then(|watch| watch.follow(report))
+                else {
                     return self.release(listening);
                 };
                 listening.pens.push(self.reading(reading, listening));
@@ -272,6 +319,7 @@ impl PointerState {
         }
         self.last = pos;
     }
+
     fn release(&mut self, listening: &mut FrameInput) {
         match self.holding {
             PointerGesture::Drawing => {
@@ -291,6 +339,7 @@ impl PointerState {
         }
         self.holding = PointerGesture::Nothing;
     }
+
     fn two_fingers(
         &mut self,
         by: eframe::egui::Vec2,
@@ -312,6 +361,7 @@ impl PointerState {
             listening.view(ViewAction::Turn { by_rad: turn_rad });
         }
     }
+
     fn reading(&self, reading: FilteredReport, listening: &FrameInput) -> PenSample {
         let sample = Sample {
             at: listening.on_canvas(reading.at),
@@ -319,7 +369,8 @@ impl PointerState {
             tilt: vec2(reading.tilt.0, reading.tilt.1),
             time_secs: reading.secs,
         };
-        let keys = ModifierKeys { shift: self.keys.shift, ctrl: self.keys.command, alt: self.keys.alt };
+        let keys =
+            ModifierKeys { shift: self.keys.shift, ctrl: self.keys.command, alt: self.keys.alt };
         PenSample { sample, keys }
     }
 }

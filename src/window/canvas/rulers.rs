@@ -1,5 +1,5 @@
-//! Rulers along the upper and the left edge of the view: they show canvas px, and guides are pulled out of them.
-//! Floor 7. Not here: the guides themselves (the session).
+//! Rulers along the upper and the left edge of the view: they show canvas px, and guides are pulled
+//! out of them. Floor 7. Not here: the guides themselves (the session).
 
 use crate::math::{Affine2, Vec2, vec2};
 use crate::session::{CanvasView, Session};
@@ -11,7 +11,8 @@ pub const RULER_PT: f32 = 18.0;
 const LABELS_PT: f32 = 56.0;
 const MARKS_PT: f32 = 6.0;
 
-/// The room of rulers at the upper and the left edge, points; they measure the picture, not the unwrapped sheet.
+/// The room of rulers at the upper and the left edge, points; they measure the picture, not the
+/// unwrapped sheet.
 pub fn room_pt(session: &Session) -> f32 {
     let is_picture = session.active().is_some_and(|tab| tab.unwrapped().is_none());
     if session.aids.rulers && is_picture { RULER_PT } else { 0.0 }
@@ -47,12 +48,25 @@ fn axis_along(view: &CanvasView) -> Option<usize> {
 fn step_px(zoom: f32, least_pt: f32) -> f32 {
     let least = (least_pt / zoom.max(1e-6)).max(1.0);
     let power = 10f32.powf(least.log10().floor());
-    [1.0, 2.0, 5.0, 10.0].map(|k| k * power).into_iter().find(|step| *step >= least).unwrap_or(10.0 * power)
+    [1.0, 2.0, 5.0, 10.0]
+        .map(|k| k * power)
+        .into_iter()
+        .find(|step| *step >= least)
+        .unwrap_or(10.0 * power)
 }
 
 /// Draws both at the edges of the canvas's area; `under`: the canvas point under the pointer.
-pub fn draw(ui: &Ui, session: &Session, area: Rect, screen_from_canvas: Affine2, under: Option<Vec2>) {
-    let Some(view) = session.active().and_then(|tab| tab.view).filter(|_| room_pt(session) > 0.0) else { return };
+pub fn draw(
+    ui: &Ui,
+    session: &Session,
+    area: Rect,
+    screen_from_canvas: Affine2,
+    under: Option<Vec2>,
+) {
+    let Some(view) = session.active().and_then(|tab| tab.view).filter(|_| room_pt(session) > 0.0)
+    else {
+        return;
+    };
     let upper = Rect::from_min_max(pos2(area.left(), area.top() - RULER_PT), area.right_top());
     let left = Rect::from_min_max(pos2(area.left() - RULER_PT, area.top()), area.left_bottom());
     let corner = Rect::from_min_max(pos2(left.left(), upper.top()), area.left_top());
@@ -78,17 +92,27 @@ pub fn draw(ui: &Ui, session: &Session, area: Rect, screen_from_canvas: Affine2,
 }
 
 /// The marks and numbers of one ruler.
-fn marks(ui: &Ui, strip: Rect, is_upper: bool, axis: usize, view: &CanvasView, screen_from_canvas: Affine2) {
+fn marks(
+    ui: &Ui,
+    strip: Rect,
+    is_upper: bool,
+    axis: usize,
+    view: &CanvasView,
+    screen_from_canvas: Affine2,
+) {
     let inverse = screen_from_canvas.inverse();
     let canvas_at = |p: Pos2| inverse.transform_point2(vec2(p.x, p.y))[axis];
     let ends = [strip.left_top(), if is_upper { strip.right_top() } else { strip.left_bottom() }];
     let [from, to] = ends.map(canvas_at);
     let long = if is_upper { strip.width() } else { strip.height() };
-    let place = |at: f32| (at - from) / (to - from) * long + if is_upper { strip.left() } else { strip.top() };
+    let place = |at: f32| {
+        (at - from) / (to - from) * long + if is_upper { strip.left() } else { strip.top() }
+    };
     let painter = ui.painter_at(strip);
     let color = ui.visuals().weak_text_color();
     let label_px = step_px(view.zoom, LABELS_PT);
-    let mark_px = [10.0, 5.0, 2.0].map(|k| label_px / k).into_iter().find(|px| px * view.zoom >= MARKS_PT);
+    let mark_px =
+        [10.0, 5.0, 2.0].map(|k| label_px / k).into_iter().find(|px| px * view.zoom >= MARKS_PT);
     let line = |at: f32, high: f32, color: Color32| {
         let look = Stroke::new(1.0, color);
         if is_upper {
@@ -127,11 +151,15 @@ mod tests {
 
     #[test]
     fn labels_stand_at_round_numbers_and_never_too_close() {
-        assert_eq!([1.0, 0.1, 3.0, 64.0].map(|zoom| step_px(zoom, 56.0)), [100.0, 1000.0, 20.0, 1.0]);
+        assert_eq!(
+            [1.0, 0.1, 3.0, 64.0].map(|zoom| step_px(zoom, 56.0)),
+            [100.0, 1000.0, 20.0, 1.0]
+        );
         for zoom in [0.01, 0.07, 0.3, 1.7, 9.0, 33.0] {
             assert!(step_px(zoom, 56.0) * zoom >= 55.9, "{zoom}");
         }
     }
+
     #[test]
     fn guides_come_out_of_rulers_as_the_view_is_turned() {
         let area = Rect::from_min_max(pos2(100.0, 100.0), pos2(500.0, 400.0));

@@ -1,5 +1,5 @@
-//! A picture as far as it is painted, and its copy on the graphics card. The canvas has two: the full one, and a
-//! smaller one during drags. Floor 7.
+//! A picture as far as it is painted, and its copy on the graphics card. The canvas has two: the
+//! full one, and a smaller one during drags. Floor 7.
 
 use super::blocks::{Magnification, TextureBlocks};
 use crate::math::{Affine2, Size, vec2};
@@ -35,19 +35,23 @@ impl TileSheet {
         self.unsent.clear();
         (self.unsent_since, self.is_urgent) = (None, false);
     }
+
     /// Shows a whole picture at once, until its tiles are painted.
     pub fn show(&mut self, picture: TileGrid) {
         self.unsent.extend(picture.iter().map(|(at, _)| at));
         self.grid = picture;
         self.is_urgent = true;
     }
+
     pub fn size(&self) -> Option<Size> {
         self.size
     }
+
     /// Takes painted tiles.
     pub fn take(&mut self, painted: RenderedTileBatch) {
         self.put(painted.tiles);
     }
+
     /// Takes tiles that must be shown at once.
     pub fn put(&mut self, tiles: Vec<(TileAt, Option<Arc<Tile>>)>) {
         for (at, tile) in tiles {
@@ -55,8 +59,9 @@ impl TileSheet {
             self.unsent.push(at);
         }
     }
-    /// Uploads tiles to the graphics card; returns whether there were any. A drag shows complete pictures, never the
-    /// tiles of two; a long redraw is shown in progress.
+
+    /// Uploads tiles to the graphics card; returns whether there were any. A drag shows complete
+    /// pictures, never the tiles of two; a long redraw is shown in progress.
     pub fn send(&mut self, ctx: &egui::Context, is_busy: bool) -> bool {
         if self.unsent.is_empty() {
             return false;
@@ -69,21 +74,27 @@ impl TileSheet {
         self.blocks.update(ctx, &self.grid, self.unsent.drain(..));
         true
     }
+
     /// * `scale`: pixels of the screen per pixel of the canvas.
     /// * `canvas`: the size that the picture is drawn at.
     pub fn magnify(&mut self, scale: f32, canvas: Size) {
         let Some(size) = self.size else { return };
         // A smaller picture represents the canvas: its own pixels must not be visible.
-        let magnification = match Magnification::of(scale * canvas.width as f32 / size.width.max(1) as f32) {
-            Magnification::Squares if size != canvas => Magnification::Smooth,
-            own => own,
-        };
+        let magnification =
+            match Magnification::of(scale * canvas.width as f32 / size.width.max(1) as f32) {
+                Magnification::Squares if size != canvas => Magnification::Smooth,
+                own => own,
+            };
         self.blocks.magnify(magnification, &self.grid);
     }
+
     /// Draws it where the canvas lies, as large as the canvas.
     pub fn draw(&self, painter: &egui::Painter, screen_from_canvas: Affine2, canvas: Size) {
         let Some(size) = self.size else { return };
-        let scale = vec2(canvas.width as f32 / size.width as f32, canvas.height as f32 / size.height as f32);
+        let scale = vec2(
+            canvas.width as f32 / size.width as f32,
+            canvas.height as f32 / size.height as f32,
+        );
         self.blocks.draw(painter, screen_from_canvas * Affine2::from_scale(scale));
     }
 }

@@ -1,5 +1,6 @@
-//! The unwrapped surface on the screen: its sheet, pulled from the painted tiles of the picture as they come.
-//! Floor 7. Not here: which point of the picture lies at each of its pixels (`surface::unwrap`).
+//! The unwrapped surface on the screen: its sheet, pulled from the painted tiles of the picture as
+//! they come. Floor 7. Not here: which point of the picture lies at each of its pixels
+//! (`surface::unwrap`).
 
 use super::Canvas;
 use super::sheet::TileSheet;
@@ -30,18 +31,26 @@ impl UnwrappedSheet {
             *self = Self::default();
         }
     }
+
     /// The picture is another one.
     pub fn begin(&mut self) {
         self.changed = None;
     }
+
     /// Tiles of the picture were painted.
     pub fn changed(&mut self, tiles: impl Iterator<Item = TileAt>) {
         if let Some(changed) = &mut self.changed {
             changed.extend(tiles);
         }
     }
+
     /// Samples what changed in the picture; returns whether anything did.
-    pub fn follow(&mut self, ctx: &egui::Context, layout: &Arc<PlaneLayout>, picture: &TileGrid) -> bool {
+    pub fn follow(
+        &mut self,
+        ctx: &egui::Context,
+        layout: &Arc<PlaneLayout>,
+        picture: &TileGrid,
+    ) -> bool {
         if !self.layout.as_ref().is_some_and(|known| Arc::ptr_eq(known, layout)) {
             self.shown.begin(layout.size());
             let tiles: Vec<TileAt> = TileAt::covering(layout.size().rect()).collect();
@@ -52,10 +61,13 @@ impl UnwrappedSheet {
         if changed.as_ref().is_some_and(BTreeSet::is_empty) {
             return self.shown.send(ctx, false);
         }
-        let is_due =
-            |feeds: &[TileAt]| changed.as_ref().is_none_or(|changed| feeds.iter().any(|at| changed.contains(at)));
-        let due: Vec<TileAt> = self.feeds.iter().filter(|(_, feeds)| is_due(feeds)).map(|(at, _)| *at).collect();
-        let pulled: Vec<_> = due.into_par_iter().map(|at| (at, pulled(layout, picture, at))).collect();
+        let is_due = |feeds: &[TileAt]| {
+            changed.as_ref().is_none_or(|changed| feeds.iter().any(|at| changed.contains(at)))
+        };
+        let due: Vec<TileAt> =
+            self.feeds.iter().filter(|(_, feeds)| is_due(feeds)).map(|(at, _)| *at).collect();
+        let pulled: Vec<_> =
+            due.into_par_iter().map(|at| (at, pulled(layout, picture, at))).collect();
         self.shown.put(pulled);
         self.shown.send(ctx, false)
     }
@@ -74,16 +86,22 @@ const STEP_PX: f32 = 3.0;
 const CUT_PX: f32 = 6.0 * STEP_PX;
 
 impl OnSheet<'_> {
-    /// The place of a point of the picture; `None` off the surface. A corner of pixels lies where one of them does.
+    /// The place of a point of the picture; `None` off the surface. A corner of pixels lies where
+    /// one of them does.
     pub fn point(&self, p: Vec2) -> Option<Vec2> {
         let sides = [(0.25, 0.25), (-0.25, 0.25), (0.25, -0.25), (-0.25, -0.25)];
         let pixels = sides.map(|(x, y)| (p + vec2(x, y)).floor());
-        let is_covered =
-            |at: &Vec2| self.surface.coverage_plane().get(at.x as i32, at.y as i32).is_some_and(|covered| covered > 0);
+        let is_covered = |at: &Vec2| {
+            self.surface
+                .coverage_plane()
+                .get(at.x as i32, at.y as i32)
+                .is_some_and(|covered| covered > 0)
+        };
         let middle = pixels.into_iter().find(is_covered)? + 0.5;
         let within = (p - middle).clamp(Vec2::splat(-0.499), Vec2::splat(0.499));
         self.layout.sheet_at(self.surface, middle + within)
     }
+
     /// A straight line of the picture, in short pieces, without those off the sheet.
     pub fn line(&self, from: Vec2, to: Vec2) -> impl Iterator<Item = [Vec2; 2]> {
         /// A line across the largest canvas needs fewer.
@@ -102,7 +120,11 @@ impl OnSheet<'_> {
 
 impl Canvas {
     /// Updates the sheet of the unwrapped surface to the picture, if it is shown.
-    pub(super) fn follow_unwrapped(&mut self, ctx: &egui::Context, layout: Option<&Arc<PlaneLayout>>) {
+    pub(super) fn follow_unwrapped(
+        &mut self,
+        ctx: &egui::Context,
+        layout: Option<&Arc<PlaneLayout>>,
+    ) {
         let was_shown = self.sheet.shown.size().is_some();
         match layout {
             Some(layout) => self.small_is_old |= self.sheet.follow(ctx, layout, &self.whole.grid),
@@ -118,7 +140,8 @@ fn feeding(layout: &PlaneLayout, at: TileAt) -> Vec<TileAt> {
     let pixels = (rect.y0..rect.y1).flat_map(|y| (rect.x0..rect.x1).map(move |x| (x, y)));
     let seen = pixels.filter_map(|(x, y)| layout.sheet().at(x, y)).flat_map(|point| {
         let corner = point - 0.5;
-        [corner, corner + Vec2::ONE].map(|p| TileAt::of_pixel(p.x.floor() as i32, p.y.floor() as i32))
+        [corner, corner + Vec2::ONE]
+            .map(|p| TileAt::of_pixel(p.x.floor() as i32, p.y.floor() as i32))
     });
     seen.collect::<BTreeSet<TileAt>>().into_iter().collect()
 }
@@ -132,8 +155,8 @@ fn pulled(layout: &PlaneLayout, picture: &TileGrid, at: TileAt) -> Option<Arc<Ti
         let Some(point) = layout.sheet().at(x, y) else { continue };
         let corner = (point - 0.5).floor();
         let (share, x, y) = (point - 0.5 - corner, corner.x as i32, corner.y as i32);
-        let [a, b, c, d] =
-            [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(dx, dy)| picture.pixel(x + dx, y + dy).map(f32::from));
+        let [a, b, c, d] = [(0, 0), (1, 0), (0, 1), (1, 1)]
+            .map(|(dx, dy)| picture.pixel(x + dx, y + dy).map(f32::from));
         for k in 0..4 {
             let (above, below) = (a[k] + share.x * (b[k] - a[k]), c[k] + share.x * (d[k] - c[k]));
             pixel[k] = (above + share.y * (below - above) + 0.5) as u8;
@@ -170,6 +193,7 @@ mod tests {
         let beyond: Vec<[Vec2; 2]> = on_sheet.line(vec2(-400.0, 50.0), vec2(-10.0, 50.0)).collect();
         assert!(beyond.is_empty() && on_sheet.point(vec2(199.9, 100.0)).is_some());
     }
+
     #[test]
     fn the_sheet_shows_the_picture_and_follows_the_tiles_that_change() {
         let surface = board();

@@ -1,13 +1,14 @@
-//! Pictures in the clipboard of an X server, as the files that their owner offers: a JPEG stays one, 16 bits stay 16
-//! bits. Wayland's clipboard is reached through XWayland. Floor 7. X11 only. Not here: decoding them (`io::picture`).
+//! Pictures in the clipboard of an X server, as the files that their owner offers: a JPEG stays
+//! one, 16 bits stay 16 bits. Wayland's clipboard is reached through XWayland. Floor 7. X11 only.
+//! Not here: decoding them (`io::picture`).
 
 use crate::{Error, Result};
 use std::time::{Duration, Instant};
 use x11rb::connection::Connection;
 use x11rb::protocol::Event;
 use x11rb::protocol::xproto::{
-    Atom, AtomEnum, ChangeWindowAttributesAux, ConnectionExt as _, CreateWindowAux, EventMask, GetPropertyReply,
-    Property, Window, WindowClass,
+    Atom, AtomEnum, ChangeWindowAttributesAux, ConnectionExt as _, CreateWindowAux, EventMask,
+    GetPropertyReply, Property, Window, WindowClass,
 };
 use x11rb::rust_connection::RustConnection;
 use x11rb::{COPY_DEPTH_FROM_PARENT, COPY_FROM_PARENT, CURRENT_TIME, NONE};
@@ -32,14 +33,15 @@ const LOOK_AGAIN: Duration = Duration::from_millis(2);
 /// The bytes of a picture's file, and its ending.
 pub type PictureFile = (&'static str, Vec<u8>);
 
-/// The picture in the clipboard; `None` if there is none, or no server. Fails if it has more than `most_bytes`, or its
-/// owner does not answer.
+/// The picture in the clipboard; `None` if there is none, or no server. Fails if it has more than
+/// `most_bytes`, or its owner does not answer.
 pub fn picture(most_bytes: u64) -> Result<Option<PictureFile>> {
     let Ok((connection, screen)) = x11rb::connect(None) else { return Ok(None) };
     let reader = SelectionReader::new(connection, screen, most_bytes)?;
     let target = reader.atom("TARGETS")?;
     let Some(offered) = reader.read(target)? else { return Ok(None) };
-    let offered: Vec<Atom> = offered.as_chunks().0.iter().map(|atom| Atom::from_ne_bytes(*atom)).collect();
+    let offered: Vec<Atom> =
+        offered.as_chunks().0.iter().map(|atom| Atom::from_ne_bytes(*atom)).collect();
     for (name, ending) in TARGETS {
         let target = reader.atom(name)?;
         if offered.contains(&target)
@@ -55,7 +57,8 @@ fn failed(error: impl ToString) -> Error {
     Error::unsupported("clipboard", error)
 }
 
-/// Asks the owner of the clipboard for its content, which it puts into a property of a window of ours.
+/// Asks the owner of the clipboard for its content, which it puts into a property of a window of
+/// ours.
 struct SelectionReader {
     connection: RustConnection,
     window: Window,
@@ -68,7 +71,12 @@ struct SelectionReader {
 
 impl SelectionReader {
     fn new(connection: RustConnection, screen: usize, most_bytes: u64) -> Result<Self> {
-        let root = connection.setup().roots.get(screen).ok_or_else(|| failed("the display has no screen"))?.root;
+        let root = connection
+            .setup()
+            .roots
+            .get(screen)
+            .ok_or_else(|| failed("the display has no screen"))?
+            .root;
         let window = connection.generate_id().map_err(failed)?;
         let kind = WindowClass::INPUT_ONLY;
         let made = connection.create_window(
@@ -87,23 +95,36 @@ impl SelectionReader {
         made.map_err(failed)?;
         let hears = ChangeWindowAttributesAux::new().event_mask(EventMask::PROPERTY_CHANGE);
         connection.change_window_attributes(window, &hears).map_err(failed)?;
-        let mut reader = Self { connection, window, selection: 0, property: 0, in_pieces: 0, most_bytes };
+        let mut reader =
+            Self { connection, window, selection: 0, property: 0, in_pieces: 0, most_bytes };
         reader.selection = reader.atom("CLIPBOARD")?;
         reader.property = reader.atom("RILIEVO_PASTED")?;
         reader.in_pieces = reader.atom("INCR")?;
         Ok(reader)
     }
+
     fn atom(&self, name: &str) -> Result<Atom> {
         let asked = self.connection.intern_atom(false, name.as_bytes()).map_err(failed)?;
         Ok(asked.reply().map_err(failed)?.atom)
     }
+
     /// The content as a target; `None` if there is none.
     fn read(&self, target: Atom) -> Result<Option<Vec<u8>>> {
         let (window, property) = (self.window, self.property);
-        let asked = self.connection.convert_selection(window, self.selection, target, property, CURRENT_TIME);
+        let asked = self.connection.convert_selection(
+            window,
+            self.selection,
+            target,
+            property,
+            CURRENT_TIME,
+        );
         asked.map_err(failed)?;
         let answer = self.awaited(|event| match event {
-            Event::SelectionNotify(answer) if answer.requestor == window && answer.target == target => Some(answer),
+            Event::SelectionNotify(answer)
+                if answer.requestor == window && answer.target == target =>
+            {
+                Some(answer)
+            }
             _ => None,
         })?;
         if answer.property == NONE {
@@ -130,17 +151,32 @@ impl SelectionReader {
             bytes.extend(piece);
         }
     }
+
     /// Takes what the property holds; that it is deleted tells the owner to go on.
     fn take(&self) -> Result<GetPropertyReply> {
-        let asked = self.connection.get_property(false, self.window, self.property, AtomEnum::ANY, 0, 0);
+        let asked =
+            self.connection.get_property(false, self.window, self.property, AtomEnum::ANY, 0, 0);
         self.check(asked.map_err(failed)?.reply().map_err(failed)?.bytes_after.into())?;
-        let asked = self.connection.get_property(true, self.window, self.property, AtomEnum::ANY, 0, u32::MAX / 4);
+        let asked = self.connection.get_property(
+            true,
+            self.window,
+            self.property,
+            AtomEnum::ANY,
+            0,
+            u32::MAX / 4,
+        );
         asked.map_err(failed)?.reply().map_err(failed)
     }
+
     fn check(&self, bytes: u64) -> Result<()> {
         let most = self.most_bytes;
-        if bytes > most { Err(failed(format!("its picture has more than {most} bytes"))) } else { Ok(()) }
+        if bytes > most {
+            Err(failed(format!("its picture has more than {most} bytes")))
+        } else {
+            Ok(())
+        }
     }
+
     /// The first event that is meant; others are passed over.
     fn awaited<T>(&self, meant: impl Fn(Event) -> Option<T>) -> Result<T> {
         self.connection.flush().map_err(failed)?;

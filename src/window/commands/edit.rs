@@ -1,7 +1,9 @@
 //! The Edit menu.
 //! Floor 7.
 
-use super::row::{LINE, MenuCommand, always, ctrl, ctrl_alt, ctrl_shift, has_document, has_layer, key, row};
+use super::row::{
+    LINE, MenuCommand, always, ctrl, ctrl_alt, ctrl_shift, has_document, has_layer, key, row,
+};
 use crate::requests::WindowRequest;
 use crate::session::Action;
 use crate::session::actions::{ClipboardAction, EditAction, HandAction, LayerAction, PasteTo};
@@ -24,9 +26,13 @@ pub const COMMANDS: &[MenuCommand] = &[
         |_, requests| requests.act(Action::Edit(EditAction::Redo {})),
     ),
     LINE,
-    row("Cut", &[ctrl(Key::X)], "Takes what is selected out of the layer, to be pasted", always, |_, requests| {
-        requests.act(Action::Clipboard(ClipboardAction::Cut {}))
-    }),
+    row(
+        "Cut",
+        &[ctrl(Key::X)],
+        "Takes what is selected out of the layer, to be pasted",
+        always,
+        |_, requests| requests.act(Action::Clipboard(ClipboardAction::Cut {})),
+    ),
     row(
         "Copy",
         &[ctrl(Key::C)],
@@ -76,6 +82,8 @@ pub const COMMANDS: &[MenuCommand] = &[
         &[key(Key::Delete)],
         "Removes the paint or the strokes of the chosen layers where you selected; without a selection all of them",
         has_document,
-        |session, requests| requests.act(Action::Layer(LayerAction::Clear { layer: session.layer_paths() })),
+        |session, requests| {
+            requests.act(Action::Layer(LayerAction::Clear { layer: session.layer_paths() }))
+        },
     ),
 ];

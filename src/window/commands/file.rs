@@ -1,7 +1,9 @@
 //! The File menu.
 //! Floor 7.
 
-use super::row::{LINE, MenuCommand, always, ctrl, ctrl_alt, ctrl_shift, has_document, has_surface, row};
+use super::row::{
+    LINE, MenuCommand, always, ctrl, ctrl_alt, ctrl_shift, has_document, has_surface, row,
+};
 use crate::file_purpose::FilePurpose;
 use crate::requests::WindowRequest;
 use eframe::egui::Key;
@@ -29,9 +31,13 @@ pub const COMMANDS: &[MenuCommand] = &[
         |_, requests| requests.request(WindowRequest::OpenMapsDialog),
     ),
     LINE,
-    row("Save", &[ctrl(Key::S)], "Saves to the file it was opened from", has_document, |_, requests| {
-        requests.request(WindowRequest::Save)
-    }),
+    row(
+        "Save",
+        &[ctrl(Key::S)],
+        "Saves to the file it was opened from",
+        has_document,
+        |_, requests| requests.request(WindowRequest::Save),
+    ),
     row(
         "Save as…",
         &[ctrl_shift(Key::S)],

@@ -24,13 +24,21 @@ pub const COMMANDS: &[MenuCommand] = &[
         |session, requests| set(session, requests, |aids| aids.rulers ^= true),
     )
     .ticked(|session, _| session.aids.rulers),
-    row("Show guides", &[ctrl(Key::Semicolon)], "Hidden guides are not snapped to", always, |session, requests| {
-        set(session, requests, |aids| aids.guides ^= true)
-    })
+    row(
+        "Show guides",
+        &[ctrl(Key::Semicolon)],
+        "Hidden guides are not snapped to",
+        always,
+        |session, requests| set(session, requests, |aids| aids.guides ^= true),
+    )
     .ticked(|session, _| session.aids.guides),
-    row("Lock guides", &[ctrl_alt(Key::Semicolon)], "Guides stay where they are", always, |session, requests| {
-        set(session, requests, |aids| aids.locked ^= true)
-    })
+    row(
+        "Lock guides",
+        &[ctrl_alt(Key::Semicolon)],
+        "Guides stay where they are",
+        always,
+        |session, requests| set(session, requests, |aids| aids.locked ^= true),
+    )
     .ticked(|session, _| session.aids.locked),
     row("Clear guides", &[], "Removes all guides", has_document, |_, requests| {
         requests.act(Action::Guide(GuideAction::Clear {}))
@@ -44,9 +52,13 @@ pub const COMMANDS: &[MenuCommand] = &[
         |session, requests| set(session, requests, |aids| aids.grid_shown ^= true),
     )
     .ticked(|session, _| session.aids.grid_shown),
-    row("Grid and snapping…", &[], "Spacing of the grid, and what the pen snaps to", always, |_, requests| {
-        requests.request(WindowRequest::GridDialog)
-    }),
+    row(
+        "Grid and snapping…",
+        &[],
+        "Spacing of the grid, and what the pen snaps to",
+        always,
+        |_, requests| requests.request(WindowRequest::GridDialog),
+    ),
     row(
         "Snap",
         &[ctrl_shift(Key::Semicolon)],
@@ -62,7 +74,9 @@ pub const COMMANDS: &[MenuCommand] = &[
         "Strokes follow the lines of assistants, or nothing",
         always,
         |session, requests| {
-            set(session, requests, |aids| aids.magnetism = if aids.magnetism > 0.0 { 0.0 } else { 1.0 })
+            set(session, requests, |aids| {
+                aids.magnetism = if aids.magnetism > 0.0 { 0.0 } else { 1.0 }
+            })
         },
     )
     .ticked(|session, _| session.aids.magnetism > 0.0),

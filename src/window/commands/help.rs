@@ -5,12 +5,18 @@ use super::row::{LINE, MenuCommand, always, row};
 use crate::requests::WindowRequest;
 
 pub const COMMANDS: &[MenuCommand] = &[
-    row("Open the sample", &[], "A ball with everything on it, to try things out", always, |_, requests| {
-        requests.request(WindowRequest::OpenSample)
-    }),
+    row(
+        "Open the sample",
+        &[],
+        "A ball with everything on it, to try things out",
+        always,
+        |_, requests| requests.request(WindowRequest::OpenSample),
+    ),
     row("Keyboard shortcuts…", &[], "Every command and its keys", always, |_, requests| {
         requests.request(WindowRequest::Shortcuts)
     }),
     LINE,
-    row("About Rilievo…", &[], "About this program", always, |_, requests| requests.request(WindowRequest::About)),
+    row("About Rilievo…", &[], "About this program", always, |_, requests| {
+        requests.request(WindowRequest::About)
+    }),
 ];

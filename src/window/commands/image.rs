@@ -13,9 +13,13 @@ fn act(requests: &mut UiRequests, action: CanvasAction) {
 }
 
 pub const COMMANDS: &[MenuCommand] = &[
-    row("Crop to selection", &[], "The canvas becomes the rectangle around all that is selected", always, |_, r| {
-        act(r, CanvasAction::CropToSelection {})
-    }),
+    row(
+        "Crop to selection",
+        &[],
+        "The canvas becomes the rectangle around all that is selected",
+        always,
+        |_, r| act(r, CanvasAction::CropToSelection {}),
+    ),
     row("Trim canvas", &[], "Removes borders that hold no paint", always, |_, requests| {
         act(requests, CanvasAction::Trim {})
     }),
@@ -41,15 +45,27 @@ pub const COMMANDS: &[MenuCommand] = &[
         always,
         |_, requests| act(requests, CanvasAction::Turn { degrees: 90.0 }),
     ),
-    row("Turn canvas right", &[], "By a quarter, clockwise, with everything on it", always, |_, requests| {
-        act(requests, CanvasAction::Turn { degrees: -90.0 })
-    }),
-    row("Turn canvas upside down", &[], "By a half, with everything on it", always, |_, requests| {
-        act(requests, CanvasAction::Turn { degrees: 180.0 })
-    }),
-    row("Turn canvas…", &[], "By any angle; the canvas grows to hold it", has_document, |_, requests| {
-        requests.request(WindowRequest::TurnDialog)
-    }),
+    row(
+        "Turn canvas right",
+        &[],
+        "By a quarter, clockwise, with everything on it",
+        always,
+        |_, requests| act(requests, CanvasAction::Turn { degrees: -90.0 }),
+    ),
+    row(
+        "Turn canvas upside down",
+        &[],
+        "By a half, with everything on it",
+        always,
+        |_, requests| act(requests, CanvasAction::Turn { degrees: 180.0 }),
+    ),
+    row(
+        "Turn canvas…",
+        &[],
+        "By any angle; the canvas grows to hold it",
+        has_document,
+        |_, requests| requests.request(WindowRequest::TurnDialog),
+    ),
     LINE,
     row(
         "Mirror canvas left and right",
@@ -58,7 +74,11 @@ pub const COMMANDS: &[MenuCommand] = &[
         always,
         |_, requests| act(requests, CanvasAction::Mirror { mirror: CanvasMirror::LeftRight }),
     ),
-    row("Mirror canvas up and down", &[], "The picture itself, with everything on it", always, |_, requests| {
-        act(requests, CanvasAction::Mirror { mirror: CanvasMirror::UpDown })
-    }),
+    row(
+        "Mirror canvas up and down",
+        &[],
+        "The picture itself, with everything on it",
+        always,
+        |_, requests| act(requests, CanvasAction::Mirror { mirror: CanvasMirror::UpDown }),
+    ),
 ];

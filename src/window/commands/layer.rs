@@ -1,7 +1,9 @@
 //! The Layer menu.
 //! Floor 7.
 
-use super::row::{LINE, MenuCommand, ctrl, ctrl_alt, ctrl_shift, has_document, has_layer, key, row, shift};
+use super::row::{
+    LINE, MenuCommand, ctrl, ctrl_alt, ctrl_shift, has_document, has_layer, key, row, shift,
+};
 use crate::document::{Content, Layer, LayerLock, LayerMask, MaskKind};
 use crate::file_purpose::FilePurpose;
 use crate::requests::{UiRequests, WindowRequest};
@@ -12,21 +14,33 @@ use crate::session::{Action, LayerPath, LayerPaths, Property, Session};
 use eframe::egui::Key;
 
 /// Does something with all chosen layers; if there are none, says so.
-fn with_chosen(session: &Session, requests: &mut UiRequests, action: impl FnOnce(LayerPaths) -> LayerAction) {
+fn with_chosen(
+    session: &Session,
+    requests: &mut UiRequests,
+    action: impl FnOnce(LayerPaths) -> LayerAction,
+) {
     if session.active().is_some() {
         requests.act(Action::Layer(action(session.layer_paths())));
     }
 }
+
 /// Does something with the selected layer.
-fn with_selected(session: &Session, requests: &mut UiRequests, action: impl FnOnce(LayerPath) -> LayerAction) {
+fn with_selected(
+    session: &Session,
+    requests: &mut UiRequests,
+    action: impl FnOnce(LayerPath) -> LayerAction,
+) {
     requests.actions.extend(session.layer_path().map(action).map(Action::Layer));
 }
+
 fn set(session: &Session, requests: &mut UiRequests, to: Property) {
     with_chosen(session, requests, |layer| LayerAction::Set { layer, to, done: true });
 }
+
 fn add(requests: &mut UiRequests, kind: NewLayer) {
     requests.act(Action::Layer(LayerAction::Add { kind }));
 }
+
 fn toggle_lock(session: &Session, requests: &mut UiRequests, lock: LayerLock) {
     let lock = if is_locked(session, lock) { LayerLock::None } else { lock };
     set(session, requests, Property::Locked { lock });
@@ -34,7 +48,9 @@ fn toggle_lock(session: &Session, requests: &mut UiRequests, lock: LayerLock) {
 
 /// Moves to the next layer, or adds it.
 fn step(session: &Session, requests: &mut UiRequests, by: i32, extends: bool) {
-    let Some((tab, primary)) = session.active().and_then(|tab| Some((tab, tab.selected?))) else { return };
+    let Some((tab, primary)) = session.active().and_then(|tab| Some((tab, tab.selected?))) else {
+        return;
+    };
     let to = neighbour(tab.document(), primary, by);
     let anchor = tab.range_start().filter(|_| extends);
     let listed: Vec<_> = tab.document().walk().iter().map(|(_, layer)| layer.id).collect();
@@ -46,27 +62,37 @@ fn step(session: &Session, requests: &mut UiRequests, by: i32, extends: bool) {
 fn layer_is(session: &Session, is: impl FnOnce(&Layer) -> bool) -> bool {
     session.layer().is_some_and(|layer| is(layer))
 }
+
 fn is_live(session: &Session) -> bool {
-    layer_is(session, |layer| !matches!(layer.content, Content::Pixels(_) | Content::RadianceScaling(_)))
+    layer_is(session, |layer| {
+        !matches!(layer.content, Content::Pixels(_) | Content::RadianceScaling(_))
+    })
 }
+
 fn is_shown(session: &Session) -> bool {
     layer_is(session, |layer| layer.visible)
 }
+
 fn is_clipped(session: &Session) -> bool {
     layer_is(session, |layer| layer.clip_below)
 }
+
 fn is_locked(session: &Session, lock: LayerLock) -> bool {
     layer_is(session, |layer| layer.lock == lock)
 }
+
 fn is_alone(session: &Session) -> bool {
     session.active().is_some_and(|tab| tab.solo.is_some() && tab.solo == tab.selected)
 }
+
 fn has_mask(session: &Session) -> bool {
     layer_is(session, |layer| layer.mask.is_some())
 }
+
 fn mask_is(session: &Session, is: impl FnOnce(&LayerMask) -> bool) -> bool {
     layer_is(session, |layer| layer.mask.as_ref().is_some_and(is))
 }
+
 fn is_on_mask(session: &Session) -> bool {
     session.active().is_some_and(|tab| tab.on_mask)
 }

@@ -1,5 +1,5 @@
-//! The commands of the menus: one row per command, with its keys. Menus, keyboard, palette and the list of shortcuts
-//! are made from the same rows. Floor 7.
+//! The commands of the menus: one row per command, with its keys. Menus, keyboard, palette and the
+//! list of shortcuts are made from the same rows. Floor 7.
 
 mod edit;
 mod file;
@@ -42,7 +42,12 @@ pub use transform::REMOVE_LIQUIFY;
 pub fn all() -> impl Iterator<Item = &'static MenuCommand> {
     const EVERY: [(&str, &[MenuCommand]); 8] = MENUS;
     let menus = EVERY.into_iter().flat_map(|(_, commands)| commands);
-    menus.chain(SHADING).chain(PARTS).chain(TRANSFORMS).chain(GUIDES).filter(|command| !command.is_line())
+    menus
+        .chain(SHADING)
+        .chain(PARTS)
+        .chain(TRANSFORMS)
+        .chain(GUIDES)
+        .filter(|command| !command.is_line())
 }
 
 /// A command by its name.

@@ -12,13 +12,18 @@ use eframe::egui::Key;
 fn hand(requests: &mut UiRequests, action: HandAction) {
     requests.act(Action::Hand(action));
 }
+
 fn resize(session: &Session, requests: &mut UiRequests, factor: f32) {
     let size = match session.tool {
         ToolKind::Sculpt => session.shape.size,
         ToolKind::Liquify => session.liquify.size,
         _ => session.brush.size,
     };
-    let to = if factor > 1.0 { (size * factor).max(size + 1.0) } else { (size * factor).min(size - 1.0) };
+    let to = if factor > 1.0 {
+        (size * factor).max(size + 1.0)
+    } else {
+        (size * factor).min(size - 1.0)
+    };
     hand(requests, HandAction::Size { to: to.round() });
 }
 
@@ -37,16 +42,32 @@ pub const COMMANDS: &[MenuCommand] = &[
         always,
         |session, requests| resize(session, requests, 1.0 / 1.2),
     ),
-    row("Harder brush", &[shift(Key::CloseBracket)], "A sharper rim", always, |session, requests| {
-        hand(requests, HandAction::Hardness { to: session.brush.hardness + 0.1 })
-    }),
-    row("Softer brush", &[shift(Key::OpenBracket)], "A smoother rim", always, |session, requests| {
-        hand(requests, HandAction::Hardness { to: session.brush.hardness - 0.1 })
-    }),
+    row(
+        "Harder brush",
+        &[shift(Key::CloseBracket)],
+        "A sharper rim",
+        always,
+        |session, requests| {
+            hand(requests, HandAction::Hardness { to: session.brush.hardness + 0.1 })
+        },
+    ),
+    row(
+        "Softer brush",
+        &[shift(Key::OpenBracket)],
+        "A smoother rim",
+        always,
+        |session, requests| {
+            hand(requests, HandAction::Hardness { to: session.brush.hardness - 0.1 })
+        },
+    ),
     LINE,
-    row("Swap colours", &[key(Key::X)], "Exchanges the first and the second colour", always, |_, requests| {
-        hand(requests, HandAction::SwapColors {})
-    }),
+    row(
+        "Swap colours",
+        &[key(Key::X)],
+        "Exchanges the first and the second colour",
+        always,
+        |_, requests| hand(requests, HandAction::SwapColors {}),
+    ),
     row("Default colours", &[key(Key::D)], "Sets black and white", always, |_, requests| {
         hand(requests, HandAction::DefaultColors {})
     }),
@@ -55,20 +76,36 @@ pub const COMMANDS: &[MenuCommand] = &[
         operators::give(session, requests, operators::FLAT.begins)
     })
     .ticked(|session, _| operators::has(session, operators::FLAT.begins)),
-    row("Operator: texture", &[key(Key::F2)], operators::TEXTURE.hint, always, |session, requests| {
-        operators::give(session, requests, operators::TEXTURE.begins)
-    })
+    row(
+        "Operator: texture",
+        &[key(Key::F2)],
+        operators::TEXTURE.hint,
+        always,
+        |session, requests| operators::give(session, requests, operators::TEXTURE.begins),
+    )
     .ticked(|session, _| operators::has(session, operators::TEXTURE.begins)),
-    row("Operator: depth texture", &[], operators::DEPTH_TEXTURE.hint, always, |session, requests| {
-        operators::give(session, requests, operators::DEPTH_TEXTURE.begins)
-    })
+    row(
+        "Operator: depth texture",
+        &[],
+        operators::DEPTH_TEXTURE.hint,
+        always,
+        |session, requests| operators::give(session, requests, operators::DEPTH_TEXTURE.begins),
+    )
     .ticked(|session, _| operators::has(session, operators::DEPTH_TEXTURE.begins)),
-    row("Operator: shading", &[key(Key::F3)], operators::SHADING.hint, always, |session, requests| {
-        operators::give(session, requests, operators::SHADING.begins)
-    })
+    row(
+        "Operator: shading",
+        &[key(Key::F3)],
+        operators::SHADING.hint,
+        always,
+        |session, requests| operators::give(session, requests, operators::SHADING.begins),
+    )
     .ticked(|session, _| operators::has(session, operators::SHADING.begins)),
-    row("Operator: reflection", &[key(Key::F4)], operators::REFLECTION.hint, always, |session, requests| {
-        operators::give(session, requests, operators::REFLECTION.begins)
-    })
+    row(
+        "Operator: reflection",
+        &[key(Key::F4)],
+        operators::REFLECTION.hint,
+        always,
+        |session, requests| operators::give(session, requests, operators::REFLECTION.begins),
+    )
     .ticked(|session, _| operators::has(session, operators::REFLECTION.begins)),
 ];

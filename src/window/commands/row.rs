@@ -1,5 +1,5 @@
-//! One row of the menus: a command with its keys, and the short functions that rows are written with.
-//! Floor 7.
+//! One row of the menus: a command with its keys, and the short functions that rows are written
+//! with. Floor 7.
 
 use crate::panel_layout::PanelLayout;
 use crate::requests::UiRequests;
@@ -36,6 +36,7 @@ impl MenuCommand {
     pub const fn ticked(self, is_on: fn(&Session, &PanelLayout) -> bool) -> Self {
         Self { is_on: Some(is_on), ..self }
     }
+
     /// Why it cannot be done now, for the user; its hint says what it would do.
     pub fn refusal(&self, session: &Session) -> String {
         let why = match (session.active(), session.layer()) {
@@ -45,6 +46,7 @@ impl MenuCommand {
         };
         format!("{}: {why}.", self.name)
     }
+
     pub const fn is_line(&self) -> bool {
         self.name.is_empty()
     }
@@ -56,15 +58,19 @@ pub const LINE: MenuCommand = row("", &[], "", always, |_, _| {});
 pub const fn key(key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(Modifiers::NONE, key)
 }
+
 pub const fn ctrl(key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(Modifiers::COMMAND, key)
 }
+
 pub const fn shift(key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(Modifiers::SHIFT, key)
 }
+
 pub const fn ctrl_alt(key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::ALT), key)
 }
+
 pub const fn ctrl_shift(key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key)
 }
@@ -72,12 +78,15 @@ pub const fn ctrl_shift(key: Key) -> KeyboardShortcut {
 pub fn always(_: &Session) -> bool {
     true
 }
+
 pub fn has_document(session: &Session) -> bool {
     session.active().is_some()
 }
+
 pub fn has_surface(session: &Session) -> bool {
     session.shown().is_some_and(|document| document.surface.is_some())
 }
+
 pub fn has_layer(session: &Session) -> bool {
     session.layer().is_some()
 }

@@ -10,10 +10,16 @@ use eframe::egui::Key;
 fn act(requests: &mut UiRequests, action: SelectionAction) {
     requests.act(Action::Selection(action));
 }
+
 fn ask(requests: &mut UiRequests, change: EdgeChange) {
     requests.request(WindowRequest::EdgeDialog(change));
 }
-fn of_layer(session: &Session, requests: &mut UiRequests, action: impl FnOnce(LayerPath) -> SelectionAction) {
+
+fn of_layer(
+    session: &Session,
+    requests: &mut UiRequests,
+    action: impl FnOnce(LayerPath) -> SelectionAction,
+) {
     if let Some(layer) = session.layer_path() {
         act(requests, action(layer));
     }

@@ -15,10 +15,16 @@ pub const COMMANDS: &[MenuCommand] = &[
     row("New Phong layer", &[], "Matt and glossy under lights", has_document, |_, requests| {
         add(requests, Model::Phong)
     }),
-    row("New toon layer", &[], "The same in flat bands", has_document, |_, requests| add(requests, Model::Toon)),
-    row("New sub-Lambertian layer", &[], "Flatter than matt, like the moon", has_document, |_, requests| {
-        add(requests, Model::SubLambertian)
+    row("New toon layer", &[], "The same in flat bands", has_document, |_, requests| {
+        add(requests, Model::Toon)
     }),
+    row(
+        "New sub-Lambertian layer",
+        &[],
+        "Flatter than matt, like the moon",
+        has_document,
+        |_, requests| add(requests, Model::SubLambertian),
+    ),
     row(
         "New Ashikhmin layer",
         &[],
@@ -26,18 +32,34 @@ pub const COMMANDS: &[MenuCommand] = &[
         has_document,
         |_, requests| add(requests, Model::Ashikhmin),
     ),
-    row("New lit-sphere layer", &[], "A painted ball gives the colour of every normal", has_document, |_, requests| {
-        add(requests, Model::LitSphere)
-    }),
-    row("New mirror layer", &[], "An environment mirrored in the surface", has_document, |_, requests| {
-        add(requests, Model::Mirror)
-    }),
-    row("New glass layer", &[], "An environment seen through the surface", has_document, |_, requests| {
-        add(requests, Model::Refraction)
-    }),
-    row("New layer lit by an environment", &[], "Matt, lit from all around", has_document, |_, requests| {
-        add(requests, Model::DiffuseEnvironment)
-    }),
+    row(
+        "New lit-sphere layer",
+        &[],
+        "A painted ball gives the colour of every normal",
+        has_document,
+        |_, requests| add(requests, Model::LitSphere),
+    ),
+    row(
+        "New mirror layer",
+        &[],
+        "An environment mirrored in the surface",
+        has_document,
+        |_, requests| add(requests, Model::Mirror),
+    ),
+    row(
+        "New glass layer",
+        &[],
+        "An environment seen through the surface",
+        has_document,
+        |_, requests| add(requests, Model::Refraction),
+    ),
+    row(
+        "New layer lit by an environment",
+        &[],
+        "Matt, lit from all around",
+        has_document,
+        |_, requests| add(requests, Model::DiffuseEnvironment),
+    ),
     row(
         "New ambient occlusion layer",
         &[],

@@ -19,14 +19,22 @@ pub const COMMANDS: &[MenuCommand] = &[
         &[key(Key::Enter)],
         "The layer stays as it shows: its pixels are sampled for good, strokes and placements take new numbers",
         is_transformed,
-        |session, requests| with_chosen(session, requests, |layer| LayerAction::ApplyTransform { layer }),
+        |session, requests| {
+            with_chosen(session, requests, |layer| LayerAction::ApplyTransform { layer })
+        },
     ),
-    row("Remove transform", &[], "Moves the layer back to where it was made", is_transformed, |session, requests| {
-        with_chosen(session, requests, |layer| {
-            let to = Property::Transformed { transform: None };
-            LayerAction::Set { layer, to, done: true }
-        })
-    }),
+    row(
+        "Remove transform",
+        &[],
+        "Moves the layer back to where it was made",
+        is_transformed,
+        |session, requests| {
+            with_chosen(session, requests, |layer| {
+                let to = Property::Transformed { transform: None };
+                LayerAction::Set { layer, to, done: true }
+            })
+        },
+    ),
     LINE,
     row(
         "Mirror left and right",
@@ -35,9 +43,13 @@ pub const COMMANDS: &[MenuCommand] = &[
         has_layer,
         |session, requests| mirror(session, requests, false),
     ),
-    row("Mirror up and down", &[], "Mirrors the chosen layers about their middle", has_layer, |session, requests| {
-        mirror(session, requests, true)
-    }),
+    row(
+        "Mirror up and down",
+        &[],
+        "Mirrors the chosen layers about their middle",
+        has_layer,
+        |session, requests| mirror(session, requests, true),
+    ),
     row(
         "Turn layer left",
         &[],
@@ -45,9 +57,13 @@ pub const COMMANDS: &[MenuCommand] = &[
         has_layer,
         |session, requests| turn(session, requests, 90.0),
     ),
-    row("Turn layer right", &[], "Turns the chosen layers by a quarter, clockwise", has_layer, |session, requests| {
-        turn(session, requests, -90.0)
-    }),
+    row(
+        "Turn layer right",
+        &[],
+        "Turns the chosen layers by a quarter, clockwise",
+        has_layer,
+        |session, requests| turn(session, requests, -90.0),
+    ),
     LINE,
     row(
         REMOVE_LIQUIFY,
@@ -65,7 +81,8 @@ pub const COMMANDS: &[MenuCommand] = &[
 
 /// There is a transform, and Enter neither closes a lasso nor crops.
 fn is_transformed(session: &Session) -> bool {
-    let Some(tab) = session.active().filter(|_| session.lasso.is_empty() && session.crop.is_none()) else {
+    let Some(tab) = session.active().filter(|_| session.lasso.is_empty() && session.crop.is_none())
+    else {
         return false;
     };
     // While a brush is current, Enter does not turn live layers into paint.
@@ -99,12 +116,17 @@ fn turn(session: &Session, requests: &mut UiRequests, degrees: f32) {
 
 /// The shape mapped about its middle, while the transform tool moves it.
 fn shape_by(session: &Session, map: Option<PlaneMap>) -> Option<Action> {
-    let takes_shape = session.tool == ToolKind::Transform && session.carried == TransformTarget::Shape;
+    let takes_shape =
+        session.tool == ToolKind::Transform && session.carried == TransformTarget::Shape;
     let tab = session.active().filter(|_| takes_shape)?;
     let by = transform::about_shape(tab.document(), map?)?;
     Some(Action::Part(PartAction::TakeAlong { by, done: true }))
 }
 
-fn with_chosen(session: &Session, requests: &mut UiRequests, action: impl FnOnce(LayerPaths) -> LayerAction) {
+fn with_chosen(
+    session: &Session,
+    requests: &mut UiRequests,
+    action: impl FnOnce(LayerPaths) -> LayerAction,
+) {
     requests.act(Action::Layer(action(session.layer_paths())));
 }

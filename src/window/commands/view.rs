@@ -1,7 +1,9 @@
 //! The View menu.
 //! Floor 7.
 
-use super::row::{LINE, MenuCommand, always, ctrl, ctrl_alt, ctrl_shift, has_document, has_surface, key, row};
+use super::row::{
+    LINE, MenuCommand, always, ctrl, ctrl_alt, ctrl_shift, has_document, has_surface, key, row,
+};
 use crate::math::Vec2;
 use crate::panel_layout::PanelKind;
 use crate::panel_layout::PanelSide;
@@ -13,18 +15,26 @@ use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 fn view(requests: &mut UiRequests, action: ViewAction) {
     requests.act(Action::View(action));
 }
+
 fn overlay(session: &Session, requests: &mut UiRequests, name: &str) {
-    view(requests, ViewAction::Overlay { view: (!is_over(session, name)).then(|| name.to_owned()) });
+    view(
+        requests,
+        ViewAction::Overlay { view: (!is_over(session, name)).then(|| name.to_owned()) },
+    );
 }
+
 fn is_over(session: &Session, name: &str) -> bool {
     session.overlay.as_deref() == Some(name)
 }
+
 fn is_unwrapped(session: &Session) -> bool {
     session.active().is_some_and(|tab| tab.unwrapped().is_some())
 }
+
 const fn alt(key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(Modifiers::ALT, key)
 }
+
 /// The tab so many to the right of the one in front, around the end.
 fn tab_beside(session: &Session, requests: &mut UiRequests, by: usize) {
     let index = (session.current + by) % session.open_documents.len().max(1);

@@ -37,9 +37,11 @@ impl CanvasSides {
     fn of(from: Size, keeps_aspect: bool) -> Self {
         Self { from, width: from.width, height: from.height, keeps_aspect }
     }
+
     fn size(&self) -> Size {
         Size::new(self.width, self.height)
     }
+
     fn show(&mut self, ui: &mut Ui) {
         let (w, h) = (self.from.width as f32, self.from.height as f32);
         let held = |v: f32| (v.round() as u32).clamp(*SIDE.start(), *SIDE.end());
@@ -55,8 +57,10 @@ impl CanvasSides {
                     begin_with(&px);
                 }
                 let mut is_other = px.changed();
-                let share = DragValue::new(&mut percent[i]).range(0.1..=10_000.0).speed(0.5).suffix(" %");
-                let share = ui.add(share).on_hover_text(format!("{name} as a share of what it was"));
+                let share =
+                    DragValue::new(&mut percent[i]).range(0.1..=10_000.0).speed(0.5).suffix(" %");
+                let share =
+                    ui.add(share).on_hover_text(format!("{name} as a share of what it was"));
                 if share.changed() {
                     *side = held([w, h][i] * percent[i] / 100.0);
                     is_other = true;
@@ -66,7 +70,8 @@ impl CanvasSides {
             }
         });
         let hint = "Changing one side changes the other";
-        let locked = ui.checkbox(&mut self.keeps_aspect, "Keep the aspect").on_hover_text(hint).changed();
+        let locked =
+            ui.checkbox(&mut self.keeps_aspect, "Keep the aspect").on_hover_text(hint).changed();
         if self.keeps_aspect && (wider || locked) {
             self.height = held(self.width as f32 * h / w);
         } else if self.keeps_aspect && taller {
@@ -81,7 +86,9 @@ fn about(from: Size, to: Size) -> String {
     let cm = |px: u32| px as f32 / PRINT_PPI * 2.54;
     let millions = to.area() as f32 / 1e6;
     let (w, h) = (cm(to.width), cm(to.height));
-    format!("{from} to {to} px, {millions:.1} megapixels; {w:.1} × {h:.1} cm printed at {PRINT_PPI} px an inch")
+    format!(
+        "{from} to {to} px, {millions:.1} megapixels; {w:.1} × {h:.1} cm printed at {PRINT_PPI} px an inch"
+    )
 }
 
 /// Borders that move.
@@ -107,6 +114,7 @@ impl CanvasSizeDialog {
     pub fn of(size: Size) -> Self {
         Self { sides: CanvasSides::of(size, false), anchor: CanvasAnchor::Center }
     }
+
     pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
         ui.set_width(360.0);
         ui.heading("Canvas size");
@@ -114,11 +122,17 @@ impl CanvasSizeDialog {
         self.sides.show(ui);
         Grid::new("anchor").spacing([2.0, 2.0]).show(ui, |ui| {
             for (i, (anchor, hint)) in ANCHORS.into_iter().enumerate() {
-                let button = Button::selectable(self.anchor == anchor, "").min_size([30.0, 26.0].into());
+                let button =
+                    Button::selectable(self.anchor == anchor, "").min_size([30.0, 26.0].into());
                 let response = ui.add(button).on_hover_text(hint);
                 let is_on = self.anchor == anchor;
                 response.widget_info(|| {
-                    eframe::egui::WidgetInfo::selected(eframe::egui::Role::RadioButton, true, is_on, hint)
+                    eframe::egui::WidgetInfo::selected(
+                        eframe::egui::Role::RadioButton,
+                        true,
+                        is_on,
+                        hint,
+                    )
                 });
                 if response.clicked() {
                     self.anchor = anchor;
@@ -143,6 +157,7 @@ impl ImageSizeDialog {
     pub fn of(size: Size) -> Self {
         Self { sides: CanvasSides::of(size, true), filter: Resampling::Sharp }
     }
+
     pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
         ui.set_width(360.0);
         ui.heading("Image size");
@@ -150,7 +165,8 @@ impl ImageSizeDialog {
         self.sides.show(ui);
         ui.horizontal(|ui| {
             ui.label("Paint is sampled");
-            self.filter = choice(ui, "How paint is sampled", self.filter, &Resampling::ALL).unwrap_or(self.filter);
+            self.filter = choice(ui, "How paint is sampled", self.filter, &Resampling::ALL)
+                .unwrap_or(self.filter);
         });
         let Size { width, height } = self.sides.size();
         answer(ui, requests, "Resize", CanvasAction::Scale { width, height, filter: self.filter })
@@ -167,13 +183,15 @@ impl TurnDialog {
     pub fn of(size: Size) -> Self {
         Self { size, degrees: 15.0 }
     }
+
     pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
         ui.set_width(360.0);
         ui.heading("Turn canvas");
         ui.weak("Counter-clockwise. Paint turns by its transform, so that it can be turned back without a loss.");
         ui.horizontal(|ui| {
             let label = ui.label("Angle");
-            let angle = DragValue::new(&mut self.degrees).range(-360.0..=360.0).speed(0.5).suffix("°");
+            let angle =
+                DragValue::new(&mut self.degrees).range(-360.0..=360.0).speed(0.5).suffix("°");
             begin_with(&ui.add(angle).labelled_by(label.id));
         });
         ui.weak(about(self.size, CanvasChange::turned(self.size, f64::from(self.degrees)).size()));

@@ -16,6 +16,7 @@ impl EdgeDialog {
     pub fn new(change: EdgeChange) -> Self {
         Self { change, px: 5.0 }
     }
+
     pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
         ui.set_width(300.0);
         ui.heading(self.change.label());
@@ -28,7 +29,10 @@ impl EdgeDialog {
         });
         match buttons(ui, "Change", true) {
             Some(true) => {
-                requests.act(Action::Selection(SelectionAction::Change { change: self.change, px: self.px }));
+                requests.act(Action::Selection(SelectionAction::Change {
+                    change: self.change,
+                    px: self.px,
+                }));
                 DialogAnswer::Close
             }
             Some(false) => DialogAnswer::Close,
@@ -45,10 +49,17 @@ pub struct KeepDialog {
 }
 
 impl KeepDialog {
-    pub fn show(&mut self, ui: &mut Ui, kept: &[String], requests: &mut UiRequests) -> DialogAnswer {
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        kept: &[String],
+        requests: &mut UiRequests,
+    ) -> DialogAnswer {
         ui.set_width(320.0);
         ui.heading("Keep selection");
-        ui.weak("Under a name, with the document. A name that is there already gets the new selection.");
+        ui.weak(
+            "Under a name, with the document. A name that is there already gets the new selection.",
+        );
         ui.horizontal(|ui| {
             let label = ui.label("Name of selection");
             let field = ui.text_edit_singleline(&mut self.name).labelled_by(label.id);

@@ -7,7 +7,9 @@ use crate::math::{Size, srgb::Color};
 use crate::requests::WindowRequest;
 use crate::session::Session;
 use crate::theme;
-use eframe::egui::{Color32, Rect, Role, Sense, Slider, TextureId, Ui, Vec2, WidgetInfo, pos2, vec2};
+use eframe::egui::{
+    Color32, Rect, Role, Sense, Slider, TextureId, Ui, Vec2, WidgetInfo, pos2, vec2,
+};
 use std::path::Path;
 
 /// The choices, kept for the next time.
@@ -37,7 +39,12 @@ const FORMATS: [(&str, &str); 6] = [
 
 impl ExportDialog {
     /// `preview`: the picture, small.
-    pub fn show(&mut self, ui: &mut Ui, session: &Session, preview: Option<TextureId>) -> DialogAnswer {
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        session: &Session,
+        preview: Option<TextureId>,
+    ) -> DialogAnswer {
         ui.set_width(320.0);
         ui.heading("Export the picture");
         if let (Some(preview), Some(document)) = (preview, session.shown()) {
@@ -63,11 +70,13 @@ impl ExportDialog {
             None => DialogAnswer::Open,
         }
     }
+
     /// The bits per channel for a file of this name, if they are not the format's default.
     pub fn bits_for(&self, file: &Path) -> Option<u8> {
         let format = ExportFormat::of(file).ok()?;
         self.bits.filter(|bits| format.depths().contains(bits))
     }
+
     /// Shown if the format can have more than one depth.
     fn depth(&mut self, ui: &mut Ui) {
         let format = ExportFormat::ALL.iter().find(|(_, extension)| *extension == self.extension);
@@ -77,7 +86,8 @@ impl ExportDialog {
             ui.horizontal(|ui| {
                 ui.label("Bits a channel");
                 for &depth in depths {
-                    let is_chosen = self.bits.filter(|bits| depths.contains(bits)).or(usual) == Some(depth);
+                    let is_chosen =
+                        self.bits.filter(|bits| depths.contains(bits)).or(usual) == Some(depth);
                     if ui.radio(is_chosen, format!("{depth} bits")).clicked() {
                         self.bits = Some(depth);
                     }
@@ -85,6 +95,7 @@ impl ExportDialog {
             });
         });
     }
+
     /// The picture on its background: white or none.
     fn preview(&self, ui: &mut Ui, preview: TextureId, canvas: Size) {
         const ROOM_PT: Vec2 = vec2(320.0, 180.0);
@@ -94,15 +105,32 @@ impl ExportDialog {
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Preview of the export"));
         let rect = Rect::from_center_size(room.center(), side);
         let painter = ui.painter_at(rect);
-        painter.rect_filled(rect, 0.0, if self.background.is_some() { Color32::WHITE } else { theme::CHECKER[0] });
+        painter.rect_filled(
+            rect,
+            0.0,
+            if self.background.is_some() { Color32::WHITE } else { theme::CHECKER[0] },
+        );
         if self.background.is_none() {
             const SQUARE_PT: f32 = 8.0;
-            let (columns, rows) = ((side.x / SQUARE_PT).ceil() as u32, (side.y / SQUARE_PT).ceil() as u32);
-            for (x, y) in (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y))).filter(|(x, y)| (x + y) % 2 == 0) {
+            let (columns, rows) =
+                ((side.x / SQUARE_PT).ceil() as u32, (side.y / SQUARE_PT).ceil() as u32);
+            for (x, y) in (0..rows)
+                .flat_map(|y| (0..columns).map(move |x| (x, y)))
+                .filter(|(x, y)| (x + y) % 2 == 0)
+            {
                 let corner = rect.min + vec2(x as f32, y as f32) * SQUARE_PT;
-                painter.rect_filled(Rect::from_min_size(corner, Vec2::splat(SQUARE_PT)), 0.0, theme::CHECKER[1]);
+                painter.rect_filled(
+                    Rect::from_min_size(corner, Vec2::splat(SQUARE_PT)),
+                    0.0,
+                    theme::CHECKER[1],
+                );
             }
         }
-        painter.image(preview, rect, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), Color32::WHITE);
+        painter.image(
+            preview,
+            rect,
+            Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)),
+            Color32::WHITE,
+        );
     }
 }

@@ -45,7 +45,8 @@ fn grid(ui: &mut Ui, grid: &mut CanvasGrid) {
     let mut number = |label: &str, value: &mut f32, range: std::ops::RangeInclusive<f32>| {
         let row = ui.horizontal(|ui| {
             let label = ui.label(label);
-            ui.add(DragValue::new(value).range(range).speed(0.5).suffix(" px")).labelled_by(label.id)
+            ui.add(DragValue::new(value).range(range).speed(0.5).suffix(" px"))
+                .labelled_by(label.id)
         });
         row.inner
     };

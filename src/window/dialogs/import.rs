@@ -1,5 +1,6 @@
-//! The import dialog: choose the maps, check their detected conventions and their look under a light, and correct them
-//! before the first stroke. Floor 7. Not here: reading the maps, on another thread (`io::maps`).
+//! The import dialog: choose the maps, check their detected conventions and their look under a
+//! light, and correct them before the first stroke. Floor 7. Not here: reading the maps, on another
+//! thread (`io::maps`).
 
 mod findings;
 mod ways;
@@ -16,7 +17,9 @@ use crate::jobs::MapsRead;
 use crate::raster::Picture;
 use crate::session::storage::{self, OpenedTab};
 use crate::widgets::{choice_row, named, sentence};
-use eframe::egui::{self, Color32, Context, RichText, ScrollArea, Sense, StrokeKind, TextureHandle, Ui, pos2, vec2};
+use eframe::egui::{
+    self, Color32, Context, RichText, ScrollArea, Sense, StrokeKind, TextureHandle, Ui, pos2, vec2,
+};
 use std::path::{Path, PathBuf};
 use ways::{FLIPS, ReadingWay, SIDES, lit, xor};
 
@@ -28,7 +31,8 @@ pub struct ImportDialog {
     read: Option<SurfaceSource>,
     is_reading: bool,
     found: Option<Result<maps::ImportedSurface>>,
-    /// The finished picture next to the maps, the name of its layer, and whether the document begins with it.
+    /// The finished picture next to the maps, the name of its layer, and whether the document
+    /// begins with it.
     picture: Option<(String, Picture)>,
     takes_picture: bool,
     /// Whether the user confirmed that a file which looks like no normal map is one.
@@ -37,8 +41,8 @@ pub struct ImportDialog {
     lit: Vec<TextureHandle>,
     /// Which of them is chosen.
     clicked: usize,
-    /// The file that they show, and which of its axes were flipped when first detected: the ways keep their positions
-    /// while the user tries them.
+    /// The file that they show, and which of its axes were flipped when first detected: the ways
+    /// keep their positions while the user tries them.
     first: Option<(String, [bool; 2])>,
     becomes: MapsBecome,
 }
@@ -59,6 +63,7 @@ impl ImportDialog {
     pub fn of(source: SurfaceSource) -> Self {
         Self { source, ..Self::default() }
     }
+
     /// Opens the dialog to replace the maps of a document, showing the present ones.
     pub fn replacing(source: Option<&SurfaceSource>) -> Self {
         // Maps from inside a project have no file to read again.
@@ -68,19 +73,29 @@ impl ImportDialog {
             file.is_some_and(|file| Path::new(file).is_file())
         };
         let becomes = MapsBecome::ItsMaps;
-        Self { source: source.filter(is_there).cloned().unwrap_or_default(), becomes, ..Self::default() }
+        Self {
+            source: source.filter(is_there).cloned().unwrap_or_default(),
+            becomes,
+            ..Self::default()
+        }
     }
+
     /// Opens the dialog for a part of the document in front.
     pub fn for_part() -> Self {
         Self { becomes: MapsBecome::ItsPart, ..Self::default() }
     }
+
     /// A file was chosen for one of the maps.
     pub fn take_file(&mut self, purpose: FilePurpose, file: PathBuf) {
         let file = file.to_string_lossy().into_owned();
         self.is_sure &= matches!(purpose, FilePurpose::DepthMap | FilePurpose::MaskMap);
         match purpose {
-            FilePurpose::DepthMap => self.source.depth = Some(MapSource { file, ..MapSource::default() }),
-            FilePurpose::MaskMap => self.source.mask = Some(MaskSource::File { file, channel: None, invert: false }),
+            FilePurpose::DepthMap => {
+                self.source.depth = Some(MapSource { file, ..MapSource::default() })
+            }
+            FilePurpose::MaskMap => {
+                self.source.mask = Some(MaskSource::File { file, channel: None, invert: false })
+            }
             // The first file adds the maps that belong to it.
             _ if self.source == SurfaceSource::default() => {
                 self.source = storage::maps_beside(Path::new(&file), storage::FileUse::Normals);
@@ -88,7 +103,9 @@ impl ImportDialog {
             _ => self.source.normal = Some(MapSource { file, ..MapSource::default() }),
         }
     }
-    /// Maps were read; those requested by another dialog, or replaced by a new choice since, are ignored.
+
+    /// Maps were read; those requested by another dialog, or replaced by a new choice since, are
+    /// ignored.
     pub fn take(&mut self, ctx: &Context, read: MapsRead) {
         let MapsRead { source, found, picture } = read;
         if self.read.as_ref() != Some(&source) {
@@ -96,7 +113,8 @@ impl ImportDialog {
         }
         (self.is_reading, self.takes_picture) = (false, picture.is_some());
         self.picture = picture;
-        // A flat border counts as background unless the user decides otherwise; then all is read again.
+        // A flat border counts as background unless the user decides otherwise; then all is read
+        // again.
         let is_first = self.found.is_none() && self.source.mask.is_none();
         if is_first && found.as_ref().is_ok_and(|import| import.findings.flat_border > 0.0) {
             self.source.mask = Some(MaskSource::Flat);
@@ -114,20 +132,24 @@ impl ImportDialog {
             let chosen = xor(now, first);
             self.clicked = self.ways().iter().position(|(_, flips)| *flips == chosen).unwrap_or(0);
             let shown = |flips: [bool; 2]| lit(&import.surface, xor(flips, chosen));
-            let pictures = self.ways().iter().filter_map(|&(name, flips)| loaded(ctx, name, &shown(flips)?));
+            let pictures =
+                self.ways().iter().filter_map(|&(name, flips)| loaded(ctx, name, &shown(flips)?));
             self.lit = pictures.collect();
         }
         self.found = Some(found);
     }
+
     /// The possible meanings of these maps.
     fn ways(&self) -> &'static [ReadingWay] {
         if self.source.normal.is_some() { &FLIPS } else { &SIDES }
     }
+
     /// The file whose ways are shown.
     fn shown_file(&self) -> Option<&str> {
         let map = self.source.normal.as_ref().map(|map| &map.file);
         map.or(self.source.depth.as_ref().map(|map| &map.file)).map(String::as_str)
     }
+
     /// Which axes were read flipped; for depth alone, both if near is bright.
     fn flipped(&self, findings: &maps::Findings) -> [bool; 2] {
         if self.source.normal.is_some() {
@@ -136,6 +158,7 @@ impl ImportDialog {
         }
         [findings.depth.as_ref().is_some_and(|depth| depth.near == Near::High); 2]
     }
+
     pub fn show(&mut self, ui: &mut Ui) -> DialogAnswer {
         ui.set_width(560.0);
         ui.heading(match self.becomes {
@@ -150,7 +173,8 @@ impl ImportDialog {
         }
         let is_some = self.source.normal.is_some() || self.source.depth.is_some();
         if self.read.as_ref().is_some_and(|read| *read != self.source) {
-            // What the user set for other files no longer holds; what was found about them stays visible.
+            // What the user set for other files no longer holds; what was found about them stays
+            // visible.
             self.found = self.found.take().filter(|found| found.is_ok() && is_some);
         }
         if is_some && self.read.as_ref() != Some(&self.source) {
@@ -165,7 +189,9 @@ impl ImportDialog {
         }
         match &self.found {
             None => {}
-            Some(Err(error)) => drop(ui.colored_label(ui.visuals().error_fg_color, with_advice(error))),
+            Some(Err(error)) => {
+                drop(ui.colored_label(ui.visuals().error_fg_color, with_advice(error)))
+            }
             Some(Ok(_)) => self.understood(ui),
         }
         let is_doubtful = matches!(&self.found, Some(Ok(import)) if import.findings.is_doubtful());
@@ -182,7 +208,8 @@ impl ImportDialog {
             let text = format!("Begin with the picture in the file, “{name}”");
             ui.checkbox(&mut self.takes_picture, text);
         }
-        let is_ready = !self.is_reading && matches!(self.found, Some(Ok(_))) && (!is_doubtful || self.is_sure);
+        let is_ready =
+            !self.is_reading && matches!(self.found, Some(Ok(_))) && (!is_doubtful || self.is_sure);
         let yes = match self.becomes {
             MapsBecome::Document => "Create",
             MapsBecome::ItsMaps => "Replace",
@@ -194,16 +221,27 @@ impl ImportDialog {
             None => DialogAnswer::Open,
         }
     }
+
     /// The three files, each of which may be left out.
     fn files(&mut self, ui: &mut Ui, ask: &mut Option<FilePurpose>) {
-        let name = |file: &str| Path::new(file).file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let name = |file: &str| {
+            Path::new(file).file_name().unwrap_or_default().to_string_lossy().into_owned()
+        };
         let mask = match &self.source.mask {
             Some(MaskSource::File { file, .. }) => Some(file.clone()),
             _ => None,
         };
         let rows = [
-            ("Normal map", FilePurpose::NormalMap, self.source.normal.as_ref().map(|map| map.file.clone())),
-            ("Depth map", FilePurpose::DepthMap, self.source.depth.as_ref().map(|map| map.file.clone())),
+            (
+                "Normal map",
+                FilePurpose::NormalMap,
+                self.source.normal.as_ref().map(|map| map.file.clone()),
+            ),
+            (
+                "Depth map",
+                FilePurpose::DepthMap,
+                self.source.depth.as_ref().map(|map| map.file.clone()),
+            ),
             ("Mask", FilePurpose::MaskMap, mask),
         ];
         for (label, purpose, file) in rows {
@@ -236,6 +274,7 @@ impl ImportDialog {
             });
         }
     }
+
     /// Shows what was detected, and lets the user correct it.
     fn understood(&mut self, ui: &mut Ui) {
         self.pictures(ui);
@@ -253,14 +292,26 @@ impl ImportDialog {
             map.convention.near = near;
         }
         let is_flat_out = self.source.mask == Some(MaskSource::Flat);
-        let has_border = matches!(&self.found, Some(Ok(import)) if import.findings.flat_border > 0.0);
+        let has_border =
+            matches!(&self.found, Some(Ok(import)) if import.findings.flat_border > 0.0);
         if (is_flat_out || has_border)
-            && let Some(out) = choice_row(ui, "Flat border", is_flat_out, &[(true, "left out"), (false, "surface")])
+            && let Some(out) = choice_row(
+                ui,
+                "Flat border",
+                is_flat_out,
+                &[(true, "left out"), (false, "surface")],
+            )
         {
             self.source.mask = out.then_some(MaskSource::Flat);
         }
-        let Some(Ok(maps::ImportedSurface { surface, findings: found, .. })) = &self.found else { return };
-        ui.weak(format!("{} pixels, about {:.0} px deep", surface.size(), surface.depth_range_px()));
+        let Some(Ok(maps::ImportedSurface { surface, findings: found, .. })) = &self.found else {
+            return;
+        };
+        ui.weak(format!(
+            "{} pixels, about {:.0} px deep",
+            surface.size(),
+            surface.depth_range_px()
+        ));
         ui.collapsing("What was found", |ui| {
             ScrollArea::vertical().max_height(150.0).show(ui, |ui| {
                 egui::Grid::new("findings").num_columns(3).striped(true).show(ui, |ui| {
@@ -268,7 +319,11 @@ impl ImportDialog {
                         let (name, words) = findings::told(choice);
                         ui.label(name);
                         ui.label(words);
-                        ui.weak(format!("{}, {:.0} %", choice.how.name(), choice.confidence * 100.0));
+                        ui.weak(format!(
+                            "{}, {:.0} %",
+                            choice.how.name(),
+                            choice.confidence * 100.0
+                        ));
                         ui.end_row();
                     }
                 });
@@ -278,6 +333,7 @@ impl ImportDialog {
             });
         });
     }
+
     /// The surface lit from above left, each way; a click corrects the map.
     fn pictures(&mut self, ui: &mut Ui) {
         ui.label("Lit from above left. Choose the one whose bumps stand out:");
@@ -285,9 +341,12 @@ impl ImportDialog {
         ui.horizontal(|ui| {
             for (i, (texture, (name, _))) in self.lit.iter().zip(self.ways()).enumerate() {
                 ui.vertical(|ui| {
-                    let (rect, response) = ui.allocate_exact_size(vec2(124.0, 124.0), Sense::click());
+                    let (rect, response) =
+                        ui.allocate_exact_size(vec2(124.0, 124.0), Sense::click());
                     let is_chosen = i == self.clicked;
-                    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_chosen, *name));
+                    response.widget_info(|| {
+                        egui::WidgetInfo::selected(egui::Role::Button, true, is_chosen, *name)
+                    });
                     let side = texture.size_vec2();
                     let scale = (rect.width() / side.x).min(rect.height() / side.y);
                     let at = egui::Rect::from_center_size(rect.center(), side * scale);
@@ -299,7 +358,12 @@ impl ImportDialog {
                     let rim = if is_chosen { chosen_rim } else { ui.visuals().window_stroke };
                     ui.painter().rect_stroke(rect, 4.0, rim, StrokeKind::Inside);
                     if response.hovered() && !is_chosen {
-                        ui.painter().rect_stroke(rect, 4.0, ui.visuals().widgets.hovered.bg_stroke, StrokeKind::Inside);
+                        ui.painter().rect_stroke(
+                            rect,
+                            4.0,
+                            ui.visuals().widgets.hovered.bg_stroke,
+                            StrokeKind::Inside,
+                        );
                     }
                     let text = RichText::new(sentence(name));
                     ui.label(if is_chosen { text.strong() } else { text });
@@ -318,6 +382,7 @@ impl ImportDialog {
             map.convention.near = if x { Near::High } else { Near::Low };
         }
     }
+
     fn create(&mut self) -> DialogAnswer {
         match self.found.take() {
             Some(Ok(import)) if self.becomes == MapsBecome::ItsMaps => {
@@ -328,10 +393,12 @@ impl ImportDialog {
             }
             Some(Ok(import)) => {
                 let opened = storage::of_import(&self.source, import);
-                DialogAnswer::Imported(Box::new(match self.picture.take().filter(|_| self.takes_picture) {
-                    Some((name, picture)) => storage::with_picture(opened, &name, picture),
-                    None => opened,
-                }))
+                DialogAnswer::Imported(Box::new(
+                    match self.picture.take().filter(|_| self.takes_picture) {
+                        Some((name, picture)) => storage::with_picture(opened, &name, picture),
+                        None => opened,
+                    },
+                ))
             }
             _ => DialogAnswer::Open,
         }

@@ -1,5 +1,5 @@
-//! What a Photoshop file cannot hold, before a document is saved as one. Floor 7. Not here: what is lost
-//! (`io::psd`).
+//! What a Photoshop file cannot hold, before a document is saved as one. Floor 7. Not here: what is
+//! lost (`io::psd`).
 
 use super::{DialogAnswer, buttons};
 use crate::pending::Saving;
@@ -15,6 +15,7 @@ impl Losses {
     pub fn new(saving: Box<Saving>) -> Self {
         Self { saving: Some(saving) }
     }
+
     pub fn show(&mut self, ui: &mut Ui) -> DialogAnswer {
         let Some(saving) = &self.saving else { return DialogAnswer::Close };
         ui.set_width(420.0);

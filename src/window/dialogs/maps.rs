@@ -1,5 +1,5 @@
-//! Exports the shape as maps for engines and other programs: which, and how they are written. Floor 7. Not here: the
-//! files (`io::export::shape`).
+//! Exports the shape as maps for engines and other programs: which, and how they are written.
+//! Floor 7. Not here: the files (`io::export::shape`).
 
 use super::{DialogAnswer, buttons};
 use crate::io::export::shape::{ShapeMap, ShapeOptions};
@@ -25,8 +25,14 @@ impl Default for MapsDialog {
 impl MapsDialog {
     /// The maps to write.
     pub fn maps(&self) -> Vec<ShapeMap> {
-        ShapeMap::ALL.iter().zip(self.chosen).filter(|(_, on)| *on).map(|((map, _), _)| *map).collect()
+        ShapeMap::ALL
+            .iter()
+            .zip(self.chosen)
+            .filter(|(_, on)| *on)
+            .map(|((map, _), _)| *map)
+            .collect()
     }
+
     pub fn show(&mut self, ui: &mut Ui, session: &Session) -> DialogAnswer {
         ui.set_width(340.0);
         ui.heading("Export maps of the shape");

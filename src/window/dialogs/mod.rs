@@ -1,5 +1,5 @@
-//! Dialogs: one at a time, over the window. Each is a struct that holds the input and a function that shows it.
-//! Floor 7.
+//! Dialogs: one at a time, over the window. Each is a struct that holds the input and a function
+//! that shows it. Floor 7.
 
 pub mod canvas;
 pub mod edge;
@@ -86,7 +86,8 @@ pub enum DialogAnswer {
 }
 
 impl Dialog {
-    /// Shows the dialog; escape and a click outside close it. `preview`: the picture of the document in front, small.
+    /// Shows the dialog; escape and a click outside close it. `preview`: the picture of the
+    /// document in front, small.
     pub fn show(
         &mut self,
         ctx: &egui::Context,
@@ -153,7 +154,8 @@ fn answers(ui: &mut Ui, yes: &str, no: &str, can: bool) -> Option<bool> {
     let row = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(row, egui::Layout::right_to_left(egui::Align::Center), |ui| {
         let enter = ui.input(|i| i.key_pressed(egui::Key::Enter));
-        let strong = egui::Button::new(egui::RichText::new(yes).strong()).fill(ui.visuals().selection.bg_fill);
+        let strong = egui::Button::new(egui::RichText::new(yes).strong())
+            .fill(ui.visuals().selection.bg_fill);
         if ui.add_enabled(can, strong).clicked() || (enter && can) {
             answer = Some(true);
         }

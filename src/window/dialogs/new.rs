@@ -38,7 +38,10 @@ impl NewDialog {
             if ui.button("From maps…").clicked() {
                 begins = Some(WindowRequest::OpenMapsDialog);
             }
-            if ui.button("From a picture…").on_hover_text("As large as the picture, which is its first layer").clicked()
+            if ui
+                .button("From a picture…")
+                .on_hover_text("As large as the picture, which is its first layer")
+                .clicked()
             {
                 begins = Some(WindowRequest::OpenDialog);
             }
@@ -53,7 +56,8 @@ impl NewDialog {
             let width = DragValue::new(&mut self.width).range(1..=16384).suffix(" px");
             begin_with(&ui.add(width).labelled_by(label.id));
             let label = ui.label("Height");
-            ui.add(DragValue::new(&mut self.height).range(1..=16384).suffix(" px")).labelled_by(label.id);
+            ui.add(DragValue::new(&mut self.height).range(1..=16384).suffix(" px"))
+                .labelled_by(label.id);
         });
         ui.horizontal(|ui| {
             for (width, height) in [(1024, 1024), (1920, 1080), (2048, 2048), (4096, 4096)] {
@@ -79,7 +83,11 @@ impl NewDialog {
                     CanvasBackground::Dark => Some(Color { r: 0x26, g: 0x28, b: 0x2c, a: 255 }),
                     CanvasBackground::Transparent => None,
                 };
-                requests.act(Action::File(FileAction::New { width: self.width, height: self.height, background }));
+                requests.act(Action::File(FileAction::New {
+                    width: self.width,
+                    height: self.height,
+                    background,
+                }));
                 DialogAnswer::Close
             }
             Some(false) => DialogAnswer::Close,

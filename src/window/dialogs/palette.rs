@@ -17,10 +17,19 @@ pub struct CommandPalette {
 }
 
 impl CommandPalette {
-    pub fn show(&mut self, ui: &mut Ui, session: &Session, keymap: &Keymap, requests: &mut UiRequests) -> DialogAnswer {
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        session: &Session,
+        keymap: &Keymap,
+        requests: &mut UiRequests,
+    ) -> DialogAnswer {
         ui.set_width(420.0);
-        let field =
-            ui.add(TextEdit::singleline(&mut self.typed).hint_text("Type a command").desired_width(f32::INFINITY));
+        let field = ui.add(
+            TextEdit::singleline(&mut self.typed)
+                .hint_text("Type a command")
+                .desired_width(f32::INFINITY),
+        );
         named(&field, "Command");
         field.request_focus();
         if field.changed() {
@@ -31,8 +40,9 @@ impl CommandPalette {
         // Commands that begin with it come first; otherwise in the order of the menus.
         let typed = self.typed.trim().to_lowercase();
         found.sort_by_key(|command| !command.name.to_lowercase().starts_with(&typed));
-        let (up, down, enter) =
-            ui.input(|i| (i.key_pressed(Key::ArrowUp), i.key_pressed(Key::ArrowDown), i.key_pressed(Key::Enter)));
+        let (up, down, enter) = ui.input(|i| {
+            (i.key_pressed(Key::ArrowUp), i.key_pressed(Key::ArrowDown), i.key_pressed(Key::Enter))
+        });
         if down {
             self.at += 1;
         }
@@ -50,7 +60,8 @@ impl CommandPalette {
                 if let Some(keys) = keymap.first(command) {
                     button = button.shortcut_text(shown(ui.ctx(), keys));
                 }
-                let response = ui.add_enabled((command.can)(session), button.min_size([400.0, 0.0].into()));
+                let response =
+                    ui.add_enabled((command.can)(session), button.min_size([400.0, 0.0].into()));
                 if (up || down) && i == self.at {
                     response.scroll_to_me(None);
                 }

@@ -43,6 +43,7 @@ impl PathDialog {
             extension,
         }
     }
+
     pub fn show(&mut self, ui: &mut Ui) -> DialogAnswer {
         ui.set_width(460.0);
         ui.heading(self.purpose.title());
@@ -75,7 +76,9 @@ impl PathDialog {
         });
         ui.horizontal(|ui| {
             let label = ui.label("File");
-            let field = ui.add(TextEdit::singleline(&mut self.name).desired_width(f32::INFINITY)).labelled_by(label.id);
+            let field = ui
+                .add(TextEdit::singleline(&mut self.name).desired_width(f32::INFINITY))
+                .labelled_by(label.id);
             named(&field, "File name");
             if !std::mem::replace(&mut self.is_begun, true) {
                 field.request_focus();
@@ -100,6 +103,7 @@ impl PathDialog {
             (None, None) => DialogAnswer::Open,
         }
     }
+
     /// Overwriting a file needs a second confirmation.
     fn choose(&mut self, file: PathBuf) -> DialogAnswer {
         // With its final name, so that the question is about the file that would be lost.
@@ -116,7 +120,8 @@ impl PathDialog {
 
 impl FolderListing {
     fn of(folder: &Path, purpose: FilePurpose) -> Self {
-        let extensions: Vec<&str> = purpose.filters().into_iter().flat_map(|(_, extensions)| extensions).collect();
+        let extensions: Vec<&str> =
+            purpose.filters().into_iter().flat_map(|(_, extensions)| extensions).collect();
         let mut listed = Self { folder: folder.into(), ..Self::default() };
         for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
             let (name, path) = (entry.file_name().to_string_lossy().into_owned(), entry.path());

@@ -1,5 +1,5 @@
-//! The recovery dialog, shown once at the start: lost drawings can be recovered, deleted, or left for later.
-//! Floor 7.
+//! The recovery dialog, shown once at the start: lost drawings can be recovered, deleted, or left
+//! for later. Floor 7.
 
 use super::DialogAnswer;
 use crate::io::recovery::LostSession;
@@ -16,9 +16,11 @@ impl RecoveryDialog {
     pub fn new(lost: Vec<LostSession>) -> Self {
         Self { lost: lost.into_iter().map(|lost| (lost, false)).collect() }
     }
+
     pub fn is_empty(&self) -> bool {
         self.lost.is_empty()
     }
+
     /// Closing it leaves everything for the next start.
     pub fn show(&mut self, ui: &mut Ui) -> DialogAnswer {
         ui.set_width(460.0);
@@ -48,10 +50,14 @@ impl RecoveryDialog {
         ui.horizontal(|ui| {
             let can = self.lost.iter().any(|(lost, _)| !lost.has_failed);
             // Enter recovers, as long as no button of the dialog has the focus.
-            let enter = ui.input(|i| i.key_pressed(eframe::egui::Key::Enter)) && ui.memory(|m| m.focused().is_none());
-            if ui.add_enabled(can, eframe::egui::Button::new("Recover all")).clicked() || (can && enter) {
-                answer =
-                    DialogAnswer::Recover(self.lost.extract_if(.., |(lost, _)| !lost.has_failed).map(first).collect());
+            let enter = ui.input(|i| i.key_pressed(eframe::egui::Key::Enter))
+                && ui.memory(|m| m.focused().is_none());
+            if ui.add_enabled(can, eframe::egui::Button::new("Recover all")).clicked()
+                || (can && enter)
+            {
+                answer = DialogAnswer::Recover(
+                    self.lost.extract_if(.., |(lost, _)| !lost.has_failed).map(first).collect(),
+                );
             }
             if ui.button("Later").clicked() {
                 answer = DialogAnswer::Close;
@@ -72,7 +78,10 @@ fn first((lost, _): (LostSession, bool)) -> LostSession {
 fn described(lost: &LostSession) -> String {
     let age = lost.begun().and_then(|begun| SystemTime::now().duration_since(begun).ok());
     let begun = age.map(|age| format!("Begun {} ago", spoken(age)));
-    let place = lost.file.as_ref().map_or("never saved".into(), |file| format!("last saved as {}", file.display()));
+    let place = lost
+        .file
+        .as_ref()
+        .map_or("never saved".into(), |file| format!("last saved as {}", file.display()));
     let failed = lost.has_failed.then(|| "recovering it failed before".into());
     begun.into_iter().chain([place]).chain(failed).collect::<Vec<String>>().join(" · ")
 }
@@ -98,6 +107,9 @@ mod tests {
     #[test]
     fn times_are_spoken_in_the_largest_unit_they_fill() {
         let said = [0, 119, 120, 7199, 7200, 172_800].map(|secs| spoken(Duration::from_secs(secs)));
-        assert_eq!(said, ["0 seconds", "119 seconds", "2 minutes", "119 minutes", "2 hours", "2 days"]);
+        assert_eq!(
+            said,
+            ["0 seconds", "119 seconds", "2 minutes", "119 minutes", "2 hours", "2 days"]
+        );
     }
 }

@@ -16,6 +16,7 @@ impl Replace {
     pub fn new(pending: Pending, reason: String) -> Self {
         Self { pending: Some(pending), reason }
     }
+
     pub fn show(&mut self, ui: &mut Ui) -> DialogAnswer {
         let Some(pending) = &self.pending else { return DialogAnswer::Close };
         ui.set_width(380.0);

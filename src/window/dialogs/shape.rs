@@ -1,5 +1,5 @@
-//! Gives a drawing its first shape: one part, or one per colour or place, as a pillow, tube, relief or coin. Floor 7.
-//! Not here: what becomes of it (`session::actions::parts::first`).
+//! Gives a drawing its first shape: one part, or one per colour or place, as a pillow, tube, relief
+//! or coin. Floor 7. Not here: what becomes of it (`session::actions::parts::first`).
 
 use super::{DialogAnswer, answers};
 use crate::document::parts::drawing::{DrawingLook, FigureBackground};
@@ -26,10 +26,12 @@ pub struct ShapeDialog {
     is_first: bool,
 }
 
-/// The drawing of a document: the selected layer, or the topmost that has an outline. Takes long on large canvases.
+/// The drawing of a document: the selected layer, or the topmost that has an outline. Takes long on
+/// large canvases.
 pub fn looked(document: &Document, selected: Option<LayerId>) -> Option<(LayerId, DrawingLook)> {
     let others = document.walk().into_iter().rev().map(|(_, layer)| layer);
-    let others = others.filter(|layer| layer.visible && layer.content.paints()).map(|layer| layer.id);
+    let others =
+        others.filter(|layer| layer.visible && layer.content.paints()).map(|layer| layer.id);
     let mut first = None;
     for id in selected.into_iter().chain(others).take(MOST_LOOKS) {
         let Some(look) = drawing::look(document, id) else { continue };
@@ -47,27 +49,41 @@ impl ShapeDialog {
         let layer = tab.document().layers.last().map(|layer| layer.id);
         Self { is_first: true, ..Self::new(tab, layer, look) }
     }
+
     /// For the drawing that was found in a document.
     pub fn of(tab: &OpenDocument, found: Option<(LayerId, DrawingLook)>) -> Self {
         match found {
             Some((id, look)) => Self::new(tab, Some(id), look),
-            None => {
-                Self::new(tab, None, DrawingLook { background: FigureBackground::Empty, colors: 0, flat_share: 0.0 })
-            }
+            None => Self::new(
+                tab,
+                None,
+                DrawingLook { background: FigureBackground::Empty, colors: 0, flat_share: 0.0 },
+            ),
         }
     }
+
     fn new(tab: &OpenDocument, layer: Option<LayerId>, look: DrawingLook) -> Self {
         let preset = Inflation::PRESETS[0].0;
         let each = if look.is_of_flats() { PartFor::Color } else { PartFor::Layer };
         Self { tab: tab.key, layer, look, preset, each, is_first: false }
     }
-    pub fn show(&mut self, ui: &mut Ui, session: &Session, requests: &mut UiRequests) -> DialogAnswer {
+
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        session: &Session,
+        requests: &mut UiRequests,
+    ) -> DialogAnswer {
         ui.set_width(380.0);
         let tab = session.open_documents.iter().position(|tab| tab.key == self.tab);
         let Some((index, tab)) = tab.map(|index| (index, &session.open_documents[index])) else {
             return DialogAnswer::Close;
         };
-        ui.heading(if self.is_first { "A drawing without a shape" } else { "A shape for this drawing" });
+        ui.heading(if self.is_first {
+            "A drawing without a shape"
+        } else {
+            "A shape for this drawing"
+        });
         if let Some(why) = self.refusal() {
             ui.label(why);
             return super::close(ui);
@@ -81,10 +97,14 @@ impl ShapeDialog {
             0 | 1 => "A part for each colour".to_owned(),
             n => format!("A part for each colour ({n})"),
         };
-        ui.add_enabled_ui(self.look.colors > 1, |ui| ui.radio_value(&mut self.each, PartFor::Color, text));
+        ui.add_enabled_ui(self.look.colors > 1, |ui| {
+            ui.radio_value(&mut self.each, PartFor::Color, text)
+        });
         ui.add_enabled_ui(self.look.colors > 0, |ui| {
-            let hint = "Areas of one colour that are apart, such as two eyes, become parts of their own";
-            ui.radio_value(&mut self.each, PartFor::Place, "A part for each place").on_hover_text(hint);
+            let hint =
+                "Areas of one colour that are apart, such as two eyes, become parts of their own";
+            ui.radio_value(&mut self.each, PartFor::Place, "A part for each place")
+                .on_hover_text(hint);
         });
         self.preset = presets(ui, self.preset).unwrap_or(self.preset);
         if matches!(self.look.background, FigureBackground::Flat(_)) {
@@ -100,10 +120,13 @@ impl ShapeDialog {
             None => DialogAnswer::Open,
         }
     }
+
     /// Why there is nothing to give a shape to.
     fn refusal(&self) -> Option<&'static str> {
         match self.look.background {
-            FigureBackground::Transparent | FigureBackground::Flat(_) if self.layer.is_some() => None,
+            FigureBackground::Transparent | FigureBackground::Flat(_) if self.layer.is_some() => {
+                None
+            }
             FigureBackground::Painted => Some(
                 "No layer has an outline: this one is opaque all over, and its background has many colours. Select the \
                  figure (W or L), then Layer, New part, Inflate selection.",
@@ -114,8 +137,11 @@ impl ShapeDialog {
             ),
         }
     }
+
     fn ask(&self, tab: usize, document: &Document, requests: &mut UiRequests) {
-        let Some(layer) = self.layer.and_then(|layer| LayerPath::of(document, layer)) else { return };
+        let Some(layer) = self.layer.and_then(|layer| LayerPath::of(document, layer)) else {
+            return;
+        };
         requests.act(Action::File(crate::session::actions::FileAction::Tab { index: tab }));
         let (preset, flats) = (InflationPreset(self.preset), self.each);
         requests.act(Action::Part(PartAction::Shape { layer, preset, flats }));

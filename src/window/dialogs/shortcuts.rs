@@ -1,5 +1,5 @@
-//! The keyboard shortcuts: every command and tool with its keys, which can be changed; conflicts are shown before a key
-//! is reassigned. Floor 7.
+//! The keyboard shortcuts: every command and tool with its keys, which can be changed; conflicts
+//! are shown before a key is reassigned. Floor 7.
 
 use super::{DialogAnswer, close};
 use crate::keymap::{KeyTarget, Keymap, shown};
@@ -35,42 +35,50 @@ impl ShortcutsDialog {
     pub fn show(&mut self, ui: &mut Ui, keymap: &mut Keymap) -> DialogAnswer {
         ui.set_width(520.0);
         ui.heading("Keyboard shortcuts");
-        let field = ui.add(TextEdit::singleline(&mut self.filter).hint_text("Find").desired_width(f32::INFINITY));
+        let field = ui.add(
+            TextEdit::singleline(&mut self.filter).hint_text("Find").desired_width(f32::INFINITY),
+        );
         named(&field, "Find a shortcut");
         self.listen(ui, keymap);
         self.request(ui, keymap);
         let wanted = self.filter.to_lowercase();
         let shown = |name: &str| name.to_lowercase().contains(&wanted);
         list(ui, 460.0).auto_shrink([false, false]).show(ui, |ui| {
-            Grid::new("shortcuts").num_columns(2).striped(true).spacing([24.0, 4.0]).show(ui, |ui| {
-                for keyed in KeyTarget::all().filter(|keyed| shown(keyed.name())) {
-                    ui.label(keyed.name()).on_hover_text(keyed.hint());
-                    ui.horizontal(|ui| self.keys(ui, keymap, keyed));
-                    ui.end_row();
-                }
-                for (what, how) in ON_CANVAS.iter().filter(|(what, _)| shown(what)) {
-                    ui.label(*what);
-                    ui.label(*how);
-                    ui.end_row();
-                }
-            });
+            Grid::new("shortcuts").num_columns(2).striped(true).spacing([24.0, 4.0]).show(
+                ui,
+                |ui| {
+                    for keyed in KeyTarget::all().filter(|keyed| shown(keyed.name())) {
+                        ui.label(keyed.name()).on_hover_text(keyed.hint());
+                        ui.horizontal(|ui| self.keys(ui, keymap, keyed));
+                        ui.end_row();
+                    }
+                    for (what, how) in ON_CANVAS.iter().filter(|(what, _)| shown(what)) {
+                        ui.label(*what);
+                        ui.label(*how);
+                        ui.end_row();
+                    }
+                },
+            );
         });
         close(ui)
     }
+
     /// The keys of one command or tool, and the buttons to change them.
     fn keys(&mut self, ui: &mut Ui, keymap: &mut Keymap, keyed: KeyTarget) {
         let name = keyed.name();
         let keys = keymap.of(keyed);
         for &one in &keys {
             let text = shown(ui.ctx(), one);
-            let response = ui.button(RichText::new(&text).monospace()).on_hover_text("Click to remove it");
+            let response =
+                ui.button(RichText::new(&text).monospace()).on_hover_text("Click to remove it");
             named(&response, &format!("{text} of {name}"));
             if response.clicked() {
                 keymap.set(keyed, keys.iter().copied().filter(|known| *known != one).collect());
             }
         }
         let is_waiting = self.waiting == Some(name);
-        let response = ui.selectable_label(is_waiting, if is_waiting { "Press a key…" } else { "+" });
+        let response =
+            ui.selectable_label(is_waiting, if is_waiting { "Press a key…" } else { "+" });
         named(&response, &format!("Add a key to {name}"));
         if response.on_hover_text("Then press the key; Escape cancels").clicked() {
             (self.waiting, self.conflict) = (Some(name), None);
@@ -83,11 +91,15 @@ impl ShortcutsDialog {
             }
         }
     }
+
     /// Takes the key that is being waited for.
     fn listen(&mut self, ui: &Ui, keymap: &mut Keymap) {
         let Some(keyed) = self.waiting.and_then(keyed) else { return };
         let pressed = ui.input_mut(|i| {
-            let at = i.events.iter().position(|event| matches!(event, Event::Key { pressed: true, .. }))?;
+            let at = i
+                .events
+                .iter()
+                .position(|event| matches!(event, Event::Key { pressed: true, .. }))?;
             // Escape must not close the dialog, nor Tab move the focus.
             let Event::Key { key, modifiers, .. } = i.events.remove(at) else { return None };
             i.events.retain(|event| !matches!(event, Event::Text(_)));
@@ -99,9 +111,11 @@ impl ShortcutsDialog {
             return;
         }
         let mut modifiers = Modifiers::NONE;
-        for (is_held, modifier) in
-            [(held.command, Modifiers::COMMAND), (held.alt, Modifiers::ALT), (held.shift, Modifiers::SHIFT)]
-        {
+        for (is_held, modifier) in [
+            (held.command, Modifiers::COMMAND),
+            (held.alt, Modifiers::ALT),
+            (held.shift, Modifiers::SHIFT),
+        ] {
             modifiers = if is_held { modifiers.plus(modifier) } else { modifiers };
         }
         let keys = KeyboardShortcut::new(modifiers, key);
@@ -110,6 +124,7 @@ impl ShortcutsDialog {
             None => keymap.take(keys, keyed),
         }
     }
+
     /// Asks whether a key may be reassigned.
     fn request(&mut self, ui: &mut Ui, keymap: &mut Keymap) {
         let Some((name, keys)) = self.conflict else { return };

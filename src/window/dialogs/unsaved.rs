@@ -15,7 +15,8 @@ pub struct UnsavedDialog {
 impl UnsavedDialog {
     pub fn show(&self, ui: &mut Ui, session: &Session) -> DialogAnswer {
         ui.set_width(360.0);
-        let title = session.open_documents.get(self.tab).map_or_else(String::new, |tab| tab.title());
+        let title =
+            session.open_documents.get(self.tab).map_or_else(String::new, |tab| tab.title());
         ui.heading(format!("Save the changes to “{title}”?"));
         ui.label("What is not saved is lost when the document is closed.");
         ui.add_space(4.0);

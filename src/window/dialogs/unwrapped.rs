@@ -24,8 +24,13 @@ impl Default for UnwrappedDialog {
 impl UnwrappedDialog {
     /// What was chosen, for a surface unwrapped with these settings.
     pub fn options(&self, settings: UnwrapSettings) -> UnwrapOptions {
-        UnwrapOptions { scale: self.scale, settings, deep: self.is_deep.then_some(Highlights::Clipped) }
+        UnwrapOptions {
+            scale: self.scale,
+            settings,
+            deep: self.is_deep.then_some(Highlights::Clipped),
+        }
     }
+
     pub fn show(&mut self, ui: &mut Ui, session: &Session) -> DialogAnswer {
         ui.set_width(320.0);
         ui.heading("Export the unwrapped surface");

@@ -1,5 +1,5 @@
-//! The options of the assistants' tool: what it places, and how strongly assistants attract strokes.
-//! Floor 7.
+//! The options of the assistants' tool: what it places, and how strongly assistants attract
+//! strokes. Floor 7.
 
 use crate::document::AssistantKind;
 use crate::requests::UiRequests;
@@ -14,16 +14,32 @@ const KINDS: [(AssistantKind, &str, &str); 6] = [
     (AssistantKind::Line, "Line", "Drag from end to end; strokes that begin near it are straight"),
     (AssistantKind::Parallel, "Parallel lines", "Drag the direction that strokes have everywhere"),
     (AssistantKind::Ellipse, "Ellipse", "Drag one axis; its third handle sets the other"),
-    (AssistantKind::OnePoint, "1-point perspective", "Click the vanishing point; level and upright lines go too"),
-    (AssistantKind::TwoPoint, "2-point perspective", "Drag the horizon from one vanishing point to the other"),
-    (AssistantKind::ThreePoint, "3-point perspective", "Drag between two vanishing points; then move the third"),
+    (
+        AssistantKind::OnePoint,
+        "1-point perspective",
+        "Click the vanishing point; level and upright lines go too",
+    ),
+    (
+        AssistantKind::TwoPoint,
+        "2-point perspective",
+        "Drag the horizon from one vanishing point to the other",
+    ),
+    (
+        AssistantKind::ThreePoint,
+        "3-point perspective",
+        "Drag between two vanishing points; then move the third",
+    ),
 ];
 
 pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let aids = session.aids;
     let mut set = |aids: ViewAids| requests.act(Action::Guide(GuideAction::Aids { aids }));
     for (assistant, label, hint) in KINDS {
-        if ui.add(Button::selectable(aids.assistant == assistant, label)).on_hover_text(hint).clicked() {
+        if ui
+            .add(Button::selectable(aids.assistant == assistant, label))
+            .on_hover_text(hint)
+            .clicked()
+        {
             set(ViewAids { assistant, ..aids });
         }
     }

@@ -1,5 +1,5 @@
-//! The editor of the current brush: tip, spread, grain, stabiliser and dynamics. Floor 7. Not here: the list of brushes
-//! (`brushes`), the curve widget (`curve`).
+//! The editor of the current brush: tip, spread, grain, stabiliser and dynamics. Floor 7. Not here:
+//! the list of brushes (`brushes`), the curve widget (`curve`).
 
 use super::curve;
 use crate::io::recipe::written_brush;
@@ -70,20 +70,24 @@ fn tip(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
         TipChoice::Bristles => Tip::Bristles(Bristles::default()),
         TipChoice::Noise => Tip::Noise(Noise::default()),
     });
-    let ratios = || NumberField::new("Ratio", 0.01..=1.0, "Ratio of the shorter side to the longer one");
+    let ratios =
+        || NumberField::new("Ratio", 0.01..=1.0, "Ratio of the shorter side to the longer one");
     let whole = |v: f32| v.round().max(1.0) as u32;
     let numbers = match &brush.tip {
         Tip::Round => None,
         Tip::Ellipse { ratio } => ratios().row(ui, *ratio).map(|c| Tip::Ellipse { ratio: c.to }),
         Tip::Square { ratio } => ratios().row(ui, *ratio).map(|c| Tip::Square { ratio: c.to }),
         Tip::Bristles(bristles) => {
-            let number = NumberField::new("Hairs", 1.0..=400.0, "How many hairs the brush has").decimals(0);
+            let number =
+                NumberField::new("Hairs", 1.0..=400.0, "How many hairs the brush has").decimals(0);
             let count = number.row(ui, bristles.count as f32).map(|c| whole(c.to));
             count.map(|count| Tip::Bristles(Bristles { count, ..*bristles }))
         }
         Tip::Noise(noise) => {
-            let cells = NumberField::new("Specks", 1.0..=100.0, "Number along the diameter").decimals(0);
-            let cells = cells.row(ui, noise.cells as f32).map(|c| Noise { cells: whole(c.to), ..*noise });
+            let cells =
+                NumberField::new("Specks", 1.0..=100.0, "Number along the diameter").decimals(0);
+            let cells =
+                cells.row(ui, noise.cells as f32).map(|c| Noise { cells: whole(c.to), ..*noise });
             let density = NumberField::new("Density", 0.0..=1.0, "How much of the tip they cover");
             let density = density.row(ui, noise.density).map(|c| Noise { density: c.to, ..*noise });
             cells.or(density).map(Tip::Noise)
@@ -106,18 +110,31 @@ fn spread(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     };
     number(
         ui,
-        NumberField::new("Scatter", 0.0..=4.0, "Greatest distance of a dab from the stroke, in diameters"),
+        NumberField::new(
+            "Scatter",
+            0.0..=4.0,
+            "Greatest distance of a dab from the stroke, in diameters",
+        ),
         &mut to.scatter,
     );
     let jitter = &mut to.jitter;
-    let hues = NumberField::new("Hue ±", 0.0..=180.0, "Greatest random difference of a dab's hue").degrees();
+    let hues = NumberField::new("Hue ±", 0.0..=180.0, "Greatest random difference of a dab's hue")
+        .degrees();
     number(ui, hues, &mut jitter.hue_degrees);
     number(
         ui,
-        NumberField::new("Saturation ±", 0.0..=1.0, "Greatest random difference of a dab's saturation"),
+        NumberField::new(
+            "Saturation ±",
+            0.0..=1.0,
+            "Greatest random difference of a dab's saturation",
+        ),
         &mut jitter.saturation,
     );
-    number(ui, NumberField::new("Value ±", 0.0..=1.0, "How much lighter or darker a dab may be"), &mut jitter.value);
+    number(
+        ui,
+        NumberField::new("Value ±", 0.0..=1.0, "How much lighter or darker a dab may be"),
+        &mut jitter.value,
+    );
     changed.then_some(to)
 }
 
@@ -138,7 +155,8 @@ fn grain(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     };
     let chosen = choice_row(ui, "Pattern", pattern, &PATTERNS).map(|pattern| {
         let like = brush.grain.clone().unwrap_or_default();
-        pattern.map(|pattern| BrushGrain { source: GrainSource::Pattern { pattern, seed: 0 }, ..like })
+        pattern
+            .map(|pattern| BrushGrain { source: GrainSource::Pattern { pattern, seed: 0 }, ..like })
     });
     let of_grain = |grain: Option<BrushGrain>| Brush { grain, ..brush.clone() };
     let Some(grain) = &brush.grain else { return chosen.map(of_grain) };
@@ -149,13 +167,33 @@ fn grain(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
             (*value, changed) = (c.to, true);
         }
     };
-    number(ui, NumberField::new("Size", 1.0..=400.0, "Size of one feature of the pattern").px(), &mut to.size_px);
-    number(ui, NumberField::new("Strength", 0.0..=1.0, "How much paint its valleys lose"), &mut to.strength);
-    number(ui, NumberField::new("Turn", -180.0..=180.0, "Counter-clockwise").degrees(), &mut to.rotation);
+    number(
+        ui,
+        NumberField::new("Size", 1.0..=400.0, "Size of one feature of the pattern").px(),
+        &mut to.size_px,
+    );
+    number(
+        ui,
+        NumberField::new("Strength", 0.0..=1.0, "How much paint its valleys lose"),
+        &mut to.strength,
+    );
+    number(
+        ui,
+        NumberField::new("Turn", -180.0..=180.0, "Counter-clockwise").degrees(),
+        &mut to.rotation,
+    );
     const SPACES: [(&str, GrainSpace, &str); 3] = [
         ("On the canvas", GrainSpace::Canvas, "The grain is flat on the canvas"),
-        ("On the surface", GrainSpace::Unwrapped, "The grain follows the surface, at the same size everywhere"),
-        ("By depth", GrainSpace::Surface { gamma: 1.0 }, "The grain is larger where the surface is nearer"),
+        (
+            "On the surface",
+            GrainSpace::Unwrapped,
+            "The grain follows the surface, at the same size everywhere",
+        ),
+        (
+            "By depth",
+            GrainSpace::Surface { gamma: 1.0 },
+            "The grain is larger where the surface is nearer",
+        ),
     ];
     ui.horizontal_wrapped(|ui| {
         for (label, lies, hint) in SPACES {
@@ -166,7 +204,8 @@ fn grain(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
         }
     });
     if let GrainSpace::Surface { gamma } = &mut to.lies {
-        let gammas = NumberField::new("Depth γ", 0.0..=4.0, "How strongly the grain follows the depth");
+        let gammas =
+            NumberField::new("Depth γ", 0.0..=4.0, "How strongly the grain follows the depth");
         if let Some(c) = gammas.row(ui, *gamma) {
             (*gamma, changed) = (c.to, true);
         }
@@ -206,27 +245,41 @@ fn stroke(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     let amount = match brush.stabilizer {
         Stabilizer::None => None,
         Stabilizer::Average { weight } => {
-            let number = NumberField::new("Weight", 0.0..=0.98, "Share of the past that is left after ten pixels");
+            let number = NumberField::new(
+                "Weight",
+                0.0..=0.98,
+                "Share of the past that is left after ten pixels",
+            );
             number.row(ui, weight).map(|c| Stabilizer::Average { weight: c.to })
         }
         Stabilizer::String { length_px } => {
-            let number = NumberField::new("Length", 1.0..=300.0, "The pen pulls the line on a string this long").px();
+            let number = NumberField::new(
+                "Length",
+                1.0..=300.0,
+                "The pen pulls the line on a string this long",
+            )
+            .px();
             number.row(ui, length_px).map(|c| Stabilizer::String { length_px: c.to })
         }
         Stabilizer::Lag { secs } => {
-            let number = NumberField::new("Seconds", 0.0..=1.0, "How late the line comes after the pen");
+            let number =
+                NumberField::new("Seconds", 0.0..=1.0, "How late the line comes after the pen");
             number.row(ui, secs).map(|c| Stabilizer::Lag { secs: c.to })
         }
     };
-    let has_length = matches!(brush.stabilizer, Stabilizer::Average { .. } | Stabilizer::String { .. });
-    let measured = has_length.then(|| choice_row(ui, "Smooth on", brush.stabilizer_on, &Measure::ALL)).flatten();
+    let has_length =
+        matches!(brush.stabilizer, Stabilizer::Average { .. } | Stabilizer::String { .. });
+    let measured = has_length
+        .then(|| choice_row(ui, "Smooth on", brush.stabilizer_on, &Measure::ALL))
+        .flatten();
     let calmed = chosen.or(amount).map(|stabilizer| Brush { stabilizer, ..brush.clone() });
     let calmed = calmed.or(measured.map(|stabilizer_on| Brush { stabilizer_on, ..brush.clone() }));
-    let blended =
-        choice_row(ui, "Blend", brush.blend, &BlendMode::LABELS).map(|blend| Brush { blend, ..brush.clone() });
+    let blended = choice_row(ui, "Blend", brush.blend, &BlendMode::LABELS)
+        .map(|blend| Brush { blend, ..brush.clone() });
     let erases = check(ui, "Erases", "The stroke erases", brush.erases);
     let erases = erases.map(|erases| Brush { erases, ..brush.clone() });
-    let keeps = check(ui, "Keeps alpha", "The stroke shows only where there is paint", brush.keeps_alpha);
+    let keeps =
+        check(ui, "Keeps alpha", "The stroke shows only where there is paint", brush.keeps_alpha);
     let keeps = keeps.map(|keeps_alpha| Brush { keeps_alpha, ..brush.clone() });
     calmed.or(blended).or(erases).or(keeps)
 }
@@ -247,7 +300,8 @@ fn habits(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     let chosen = choice_row(ui, "Offset from", to.offset.from, &Bearing::ALL);
     took(chosen.is_some());
     to.offset.from = chosen.unwrap_or(to.offset.from);
-    let chosen = check(ui, "Sides take turns", "Every other dab is on the other side", to.offset.alternates);
+    let chosen =
+        check(ui, "Sides take turns", "Every other dab is on the other side", to.offset.alternates);
     took(chosen.is_some());
     to.offset.alternates = chosen.unwrap_or(to.offset.alternates);
     let chosen = choice_row(ui, "Scatter as", to.spread, &Spread::ALL);
@@ -266,7 +320,11 @@ fn dynamics(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     let mut to: Option<Dynamics> = None;
     for Drive { property, input, curve: shape } in brush.dynamics.drives() {
         let plus = if shape.adds() { " plus" } else { "" };
-        let label = format!("{}{plus} by {}", word(&Property::ALL, property), word(&Input::ALL, input).to_lowercase());
+        let label = format!(
+            "{}{plus} by {}",
+            word(&Property::ALL, property),
+            word(&Input::ALL, input).to_lowercase()
+        );
         ui.horizontal(|ui| {
             ui.label(&label);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -293,12 +351,15 @@ fn dynamics(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
             });
         }
     });
-    menu.response
-        .on_hover_text("Choose a property of the brush, then what it follows: the pen, chance, or the surface");
+    menu.response.on_hover_text(
+        "Choose a property of the brush, then what it follows: the pen, chance, or the surface",
+    );
     to.map(|dynamics| Brush { dynamics, ..brush.clone() })
 }
 
 /// The display name of a property or an input.
 fn word<T: PartialEq>(all: &[(T, &str)], wanted: &T) -> String {
-    all.iter().find(|(known, _)| known == wanted).map_or_else(String::new, |(_, word)| sentence(word))
+    all.iter()
+        .find(|(known, _)| known == wanted)
+        .map_or_else(String::new, |(_, word)| sentence(word))
 }

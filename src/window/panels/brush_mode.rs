@@ -46,25 +46,41 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     match mode {
         BrushMode::Paint => {}
         BrushMode::Smudge { length } => {
-            let number =
-                NumberField::new("Length", 0.0..=1.0, "Share of the paint that is left after a drag of one radius");
+            let number = NumberField::new(
+                "Length",
+                0.0..=1.0,
+                "Share of the paint that is left after a drag of one radius",
+            );
             give(number.inline(ui, length, 60.0).map(|c| BrushMode::Smudge { length: c.to }));
         }
         BrushMode::Blur { width } => {
-            let number =
-                NumberField::new("Width", 0.0..=1.0, "How much a stroke softens an edge, as a share of the radius");
+            let number = NumberField::new(
+                "Width",
+                0.0..=1.0,
+                "How much a stroke softens an edge, as a share of the radius",
+            );
             give(number.inline(ui, width, 60.0).map(|c| BrushMode::Blur { width: c.to }));
         }
         BrushMode::Clone { aligned, picture } => {
-            let hint =
-                "Keeps the offset to the source from stroke to stroke; otherwise every stroke begins at the source";
-            give(check(ui, "Aligned", hint, aligned).map(|aligned| BrushMode::Clone { aligned, picture }));
+            let hint = "Keeps the offset to the source from stroke to stroke; otherwise every stroke \
+                        begins at the source";
+            give(
+                check(ui, "Aligned", hint, aligned)
+                    .map(|aligned| BrushMode::Clone { aligned, picture }),
+            );
             let hint = "Copies from the whole picture, not from the layer alone";
-            give(check(ui, "From the picture", hint, picture).map(|picture| BrushMode::Clone { aligned, picture }));
+            give(
+                check(ui, "From the picture", hint, picture)
+                    .map(|picture| BrushMode::Clone { aligned, picture }),
+            );
         }
     }
     let hint = "How far from the pen a bent mark may land, in diameters; 0 is anywhere. The cursor shows it";
-    let reach = NumberField::new("Reach", 0.0..=20.0, hint).decimals(1).inline(ui, session.brush.reach, 60.0);
+    let reach = NumberField::new("Reach", 0.0..=20.0, hint).decimals(1).inline(
+        ui,
+        session.brush.reach,
+        60.0,
+    );
     requests.actions.extend(reach.map(|c| Action::Hand(HandAction::Reach { to: c.to })));
     let bounded = choice(ui, "Brush where", session.brush.bounded, &BOUNDS);
     requests.actions.extend(bounded.map(|bounded| Action::Hand(HandAction::Bounded { bounded })));

@@ -1,5 +1,5 @@
-//! The brushes: presets in groups, each with a picture of its stroke on a ball, and the sliders of the current one.
-//! Floor 7.
+//! The brushes: presets in groups, each with a picture of its stroke on a ball, and the sliders of
+//! the current one. Floor 7.
 
 use super::{brush, colors};
 use crate::file_purpose::FilePurpose;
@@ -12,7 +12,9 @@ use crate::session::{Action, Session};
 use crate::swatches::Swatches;
 use crate::widgets::{NumberField, named, title};
 use eframe::egui::text::{LayoutJob, TextWrapping};
-use eframe::egui::{self, Align, Color32, Id, Rect, Response, Sense, StrokeKind, TextEdit, Ui, pos2, vec2};
+use eframe::egui::{
+    self, Align, Color32, Id, Rect, Response, Sense, StrokeKind, TextEdit, Ui, pos2, vec2,
+};
 
 pub fn show(ui: &mut Ui, session: &Session, swatches: &mut Swatches, requests: &mut UiRequests) {
     colors::strip(ui, session, requests);
@@ -20,7 +22,8 @@ pub fn show(ui: &mut Ui, session: &Session, swatches: &mut Swatches, requests: &
     let mut edits = ui.data(|data| data.get_temp::<bool>(id)).unwrap_or_default();
     ui.horizontal(|ui| {
         ui.selectable_value(&mut edits, false, "Presets").on_hover_text("Brushes to choose from");
-        ui.selectable_value(&mut edits, true, "Brush in hand").on_hover_text("Settings of the current brush");
+        ui.selectable_value(&mut edits, true, "Brush in hand")
+            .on_hover_text("Settings of the current brush");
     });
     ui.data_mut(|data| data.insert_temp(id, edits));
     if edits {
@@ -38,7 +41,10 @@ fn presets(ui: &mut Ui, session: &Session, swatches: &mut Swatches, requests: &m
         ui.weak(format!("No brush is called “{}”", search.trim()));
     }
     for (group, name) in PresetGroup::ALL {
-        let presets = session.presets.iter().filter(|preset| preset.group == group && is_found(preset, &search));
+        let presets = session
+            .presets
+            .iter()
+            .filter(|preset| preset.group == group && is_found(preset, &search));
         let presets: Vec<&BrushPreset> = presets.collect();
         if presets.is_empty() {
             continue;
@@ -75,7 +81,9 @@ fn keep(ui: &mut Ui, requests: &mut UiRequests) {
     let mut name = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_default();
     ui.add_space(4.0);
     ui.horizontal(|ui| {
-        let field = TextEdit::singleline(&mut name).hint_text("Name").desired_width(ui.available_width() - 96.0);
+        let field = TextEdit::singleline(&mut name)
+            .hint_text("Name")
+            .desired_width(ui.available_width() - 96.0);
         named(&ui.add(field), "Name of the brush to keep");
         let button = ui.add_enabled(!name.trim().is_empty(), egui::Button::new("Keep brush"));
         if button.on_hover_text("Adds the current brush to the list").clicked() {
@@ -112,24 +120,42 @@ const SWATCH_PT: f32 = 44.0;
 fn preset(ui: &mut Ui, preset: &BrushPreset, is_on: bool, swatches: &mut Swatches) -> Response {
     let (rect, response) = ui.allocate_exact_size(CELL_PT, Sense::click());
     let label = &preset.name;
-    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_on, format!("Brush {label}")));
+    response.widget_info(|| {
+        egui::WidgetInfo::selected(egui::Role::Button, true, is_on, format!("Brush {label}"))
+    });
     if !ui.is_rect_visible(rect) {
         return response;
     }
     let look = ui.style().interact_selectable(&response, is_on);
     ui.painter().rect(rect, 5.0, look.weak_bg_fill, look.bg_stroke, StrokeKind::Inside);
-    let at = Rect::from_min_size(rect.min + vec2(0.5 * (CELL_PT.x - SWATCH_PT), 3.0), vec2(SWATCH_PT, SWATCH_PT));
+    let at = Rect::from_min_size(
+        rect.min + vec2(0.5 * (CELL_PT.x - SWATCH_PT), 3.0),
+        vec2(SWATCH_PT, SWATCH_PT),
+    );
     if let Some(texture) = swatches.of(ui.ctx(), preset) {
-        ui.painter().image(texture, at, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), Color32::WHITE);
+        ui.painter().image(
+            texture,
+            at,
+            Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)),
+            Color32::WHITE,
+        );
     }
     let font = egui::TextStyle::Small.resolve(ui.style());
     let mut job = LayoutJob::simple(label.clone(), font, look.text_color(), rect.width() - 4.0);
     // A name takes two lines; a longer one ends in an ellipsis, and the tooltip shows all of it.
-    job.wrap = TextWrapping { max_rows: 2, break_anywhere: false, ..TextWrapping::wrap_at_width(rect.width() - 4.0) };
+    job.wrap = TextWrapping {
+        max_rows: 2,
+        break_anywhere: false,
+        ..TextWrapping::wrap_at_width(rect.width() - 4.0)
+    };
     job.halign = Align::Center;
     let text = ui.fonts_mut(|fonts| fonts.layout_job(job));
     let middle = 0.5 * (at.bottom() + rect.bottom());
-    ui.painter().galley(pos2(rect.center().x, middle - 0.5 * text.size().y), text, look.text_color());
+    ui.painter().galley(
+        pos2(rect.center().x, middle - 0.5 * text.size().y),
+        text,
+        look.text_color(),
+    );
     response.on_hover_text(format!("{label}\n{}", preset.about))
 }
 
@@ -138,20 +164,28 @@ fn numbers(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let mut push = |action: Option<HandAction>| requests.actions.extend(action.map(Action::Hand));
     let size = NumberField::new("Size", Brush::HAND_SIZE, "Diameter of a dab").px();
     push(size.row(ui, brush.size).map(|c| HandAction::Size { to: c.to }));
-    let hardness = NumberField::new("Hardness", 0.0..=1.0, "Share of the radius that is fully covered");
+    let hardness =
+        NumberField::new("Hardness", 0.0..=1.0, "Share of the radius that is fully covered");
     push(hardness.row(ui, brush.hardness).map(|c| HandAction::Hardness { to: c.to }));
-    let softness = NumberField::new("Softness", 0.0..=1.0, "Blur of the footprint: a rougher, less glossy mark");
+    let softness = NumberField::new(
+        "Softness",
+        0.0..=1.0,
+        "Blur of the footprint: a rougher, less glossy mark",
+    );
     push(softness.row(ui, brush.softness).map(|c| HandAction::Softness { to: c.to }));
     let opacity = NumberField::new("Opacity", 0.0..=1.0, "Of the whole stroke");
     push(opacity.row(ui, brush.opacity).map(|c| HandAction::Opacity { to: c.to }));
     let flow = NumberField::new("Flow", 0.0..=1.0, "What one dab adds");
     push(flow.row(ui, brush.flow).map(|c| HandAction::Flow { to: c.to }));
-    let spacing = NumberField::new("Spacing", 0.01..=4.0, "Distance between dabs, in diameters").logarithmic();
+    let spacing = NumberField::new("Spacing", 0.01..=4.0, "Distance between dabs, in diameters")
+        .logarithmic();
     push(spacing.row(ui, brush.spacing).map(|c| HandAction::Spacing { to: c.to }));
-    let rotation = NumberField::new("Rotation", -180.0..=180.0, "Of the tip, counter-clockwise").degrees();
+    let rotation =
+        NumberField::new("Rotation", -180.0..=180.0, "Of the tip, counter-clockwise").degrees();
     push(rotation.row(ui, brush.rotation).map(|c| HandAction::Rotation { to: c.to }));
     title(ui, "Pen pressure");
-    let [size, flow] = [Property::Size, Property::Flow].map(|property| brush.dynamics.pressure_share(property));
+    let [size, flow] =
+        [Property::Size, Property::Flow].map(|property| brush.dynamics.pressure_share(property));
     let drives = NumberField::new("Size", 0.0..=1.0, "How much the size follows the pressure");
     push(drives.row(ui, size).map(|c| HandAction::Pressure { size: c.to, flow }));
     let drives = NumberField::new("Flow", 0.0..=1.0, "How much the flow follows the pressure");

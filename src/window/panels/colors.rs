@@ -14,8 +14,14 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         requests.act(Action::Hand(HandAction::Color { color: changed.to }));
     }
     let recent = session.recent_colors.iter().enumerate();
-    swatches(ui, "Recent", recent.map(|(i, &color)| (format!("Recent colour {}", i + 1), color)), requests);
-    let palette = PALETTE.iter().map(|&[r, g, b]| ("Palette".to_owned(), Color { r, g, b, a: 255 }));
+    swatches(
+        ui,
+        "Recent",
+        recent.map(|(i, &color)| (format!("Recent colour {}", i + 1), color)),
+        requests,
+    );
+    let palette =
+        PALETTE.iter().map(|&[r, g, b]| ("Palette".to_owned(), Color { r, g, b, a: 255 }));
     swatches(ui, "Palette", palette, requests);
 }
 
@@ -29,7 +35,9 @@ pub fn strip(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         }
         ui.spacing_mut().item_spacing.x = 3.0;
         for (i, &color) in session.recent_colors.iter().take(RECENT).enumerate() {
-            if swatch(ui, &format!("Paint with recent colour {}", i + 1), color, vec2(18.0, 18.0)).clicked() {
+            if swatch(ui, &format!("Paint with recent colour {}", i + 1), color, vec2(18.0, 18.0))
+                .clicked()
+            {
                 requests.act(Action::Hand(HandAction::Color { color }));
             }
         }
@@ -123,33 +131,45 @@ pub fn picker(ui: &mut Ui, label: &str, color: Color) -> Option<ValueChange<Colo
         }
     });
     // The salt distinguishes the panel's picker from one in a popup.
-    egui::Grid::new(("numbers", label)).num_columns(6).min_col_width(0.0).spacing([5.0, 4.0]).show(ui, |ui| {
-        for (i, (letter, name, scale)) in
-            [("H", "Hue", 360.0), ("S", "Saturation", 100.0), ("V", "Value", 100.0)].into_iter().enumerate()
-        {
-            ui.weak(letter);
-            if let Some(changed) = NumberField::new(name, 0.0..=scale, name).decimals(0).field(ui, now[i] * scale) {
-                let mut hsv = now;
-                hsv[i] = changed.to / scale;
-                let to = srgb(hsv, color.a);
-                ui.data_mut(|data| data.insert_temp(kept, (to, hsv)));
-                out = Some(ValueChange { to, done: changed.done });
-            }
-        }
-        ui.end_row();
-        let bytes = [color.r, color.g, color.b];
-        for (i, (letter, name)) in [("R", "Red"), ("G", "Green"), ("B", "Blue")].into_iter().enumerate() {
-            ui.weak(letter);
-            if let Some(changed) = NumberField::new(name, 0.0..=255.0, name).decimals(0).field(ui, f32::from(bytes[i]))
+    egui::Grid::new(("numbers", label)).num_columns(6).min_col_width(0.0).spacing([5.0, 4.0]).show(
+        ui,
+        |ui| {
+            for (i, (letter, name, scale)) in
+                [("H", "Hue", 360.0), ("S", "Saturation", 100.0), ("V", "Value", 100.0)]
+                    .into_iter()
+                    .enumerate()
             {
-                let mut next = bytes;
-                next[i] = changed.to as u8;
-                let [r, g, b] = next;
-                out = Some(ValueChange { to: Color { r, g, b, a: color.a }, done: changed.done });
+                ui.weak(letter);
+                if let Some(changed) =
+                    NumberField::new(name, 0.0..=scale, name).decimals(0).field(ui, now[i] * scale)
+                {
+                    let mut hsv = now;
+                    hsv[i] = changed.to / scale;
+                    let to = srgb(hsv, color.a);
+                    ui.data_mut(|data| data.insert_temp(kept, (to, hsv)));
+                    out = Some(ValueChange { to, done: changed.done });
+                }
             }
-        }
-        ui.end_row();
-    });
+            ui.end_row();
+            let bytes = [color.r, color.g, color.b];
+            for (i, (letter, name)) in
+                [("R", "Red"), ("G", "Green"), ("B", "Blue")].into_iter().enumerate()
+            {
+                ui.weak(letter);
+                if let Some(changed) = NumberField::new(name, 0.0..=255.0, name)
+                    .decimals(0)
+                    .field(ui, f32::from(bytes[i]))
+                {
+                    let mut next = bytes;
+                    next[i] = changed.to as u8;
+                    let [r, g, b] = next;
+                    out =
+                        Some(ValueChange { to: Color { r, g, b, a: color.a }, done: changed.done });
+                }
+            }
+            ui.end_row();
+        },
+    );
     ui.horizontal(|ui| {
         ui.weak("Hex");
         if let Some(to) = hex(ui, color) {
@@ -160,7 +180,12 @@ pub fn picker(ui: &mut Ui, label: &str, color: Color) -> Option<ValueChange<Colo
 }
 
 /// Saturation to the right, value upward.
-fn square(ui: &mut Ui, label: &str, [h, s, v]: [f32; 3], side: f32) -> Option<ValueChange<[f32; 3]>> {
+fn square(
+    ui: &mut Ui,
+    label: &str,
+    [h, s, v]: [f32; 3],
+    side: f32,
+) -> Option<ValueChange<[f32; 3]>> {
     let (rect, response) = ui.allocate_exact_size(vec2(side, side * 0.62), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ColorWell, true, label));
     let mut mesh = Mesh::default();
@@ -182,7 +207,9 @@ fn square(ui: &mut Ui, label: &str, [h, s, v]: [f32; 3], side: f32) -> Option<Va
 /// The hues from top to bottom.
 fn hues(ui: &mut Ui, label: &str, [h, s, v]: [f32; 3], side: f32) -> Option<ValueChange<[f32; 3]>> {
     let (rect, response) = ui.allocate_exact_size(vec2(18.0, side * 0.62), Sense::click_and_drag());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, format!("Hue of {label}")));
+    response.widget_info(|| {
+        egui::WidgetInfo::labeled(egui::Role::Slider, true, format!("Hue of {label}"))
+    });
     let mut mesh = Mesh::default();
     const CELLS: u32 = 24;
     for j in 0..=CELLS {
@@ -194,9 +221,20 @@ fn hues(ui: &mut Ui, label: &str, [h, s, v]: [f32; 3], side: f32) -> Option<Valu
     grid(&mut mesh, 1, CELLS);
     ui.painter().add(Shape::mesh(mesh));
     let y = rect.top() + h * rect.height();
-    let mark = Rect::from_min_max(pos2(rect.left() - 1.0, y - 2.5), pos2(rect.right() + 1.0, y + 2.5));
-    ui.painter().rect_stroke(mark, 2.0, Stroke::new(2.5, Color32::from_black_alpha(150)), egui::StrokeKind::Outside);
-    ui.painter().rect_stroke(mark, 2.0, Stroke::new(1.4, Color32::WHITE), egui::StrokeKind::Outside);
+    let mark =
+        Rect::from_min_max(pos2(rect.left() - 1.0, y - 2.5), pos2(rect.right() + 1.0, y + 2.5));
+    ui.painter().rect_stroke(
+        mark,
+        2.0,
+        Stroke::new(2.5, Color32::from_black_alpha(150)),
+        egui::StrokeKind::Outside,
+    );
+    ui.painter().rect_stroke(
+        mark,
+        2.0,
+        Stroke::new(1.4, Color32::WHITE),
+        egui::StrokeKind::Outside,
+    );
     picked(&response, rect).map(|changed| changed.map(|[_, y]| [y.min(0.9999), s, v]))
 }
 
@@ -213,10 +251,14 @@ fn grid(mesh: &mut Mesh, cols: u32, rows: u32) {
 
 /// Where a rectangle was pressed or dragged, each side in `[0, 1]`.
 fn picked(response: &egui::Response, rect: Rect) -> Option<ValueChange<[f32; 2]>> {
-    let is_held = response.is_pointer_button_down_on() || response.clicked() || response.drag_stopped();
+    let is_held =
+        response.is_pointer_button_down_on() || response.clicked() || response.drag_stopped();
     let pos = response.interact_pointer_pos().filter(|_| is_held)?;
     let along = ((pos - rect.min) / rect.size()).clamp(vec2(0.0, 0.0), vec2(1.0, 1.0));
-    Some(ValueChange { to: [along.x, along.y], done: response.drag_stopped() || response.clicked() })
+    Some(ValueChange {
+        to: [along.x, along.y],
+        done: response.drag_stopped() || response.clicked(),
+    })
 }
 
 /// `#rrggbb`, read when the field is left.
@@ -240,10 +282,12 @@ fn hex(ui: &mut Ui, color: Color) -> Option<Color> {
 pub fn button(ui: &mut Ui, label: &str, color: Color) -> Option<ValueChange<Color>> {
     let response = swatch(ui, label, color, vec2(44.0, 19.0));
     let mut out = None;
-    egui::Popup::menu(&response).close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside).show(|ui| {
-        ui.set_width(220.0);
-        out = picker(ui, label, color);
-    });
+    egui::Popup::menu(&response)
+        .close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside)
+        .show(|ui| {
+            ui.set_width(220.0);
+            out = picker(ui, label, color);
+        });
     out
 }
 

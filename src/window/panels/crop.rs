@@ -21,7 +21,9 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let (mut width, mut height) = (frame.width() as i32, frame.height() as i32);
     let number = |ui: &mut Ui, label: &str, value: &mut i32, range| {
         let label = ui.label(label);
-        ui.add(DragValue::new(value).range(range).speed(1.0).suffix(" px")).labelled_by(label.id).changed()
+        ui.add(DragValue::new(value).range(range).speed(1.0).suffix(" px"))
+            .labelled_by(label.id)
+            .changed()
     };
     let mut is_other = number(ui, "X", &mut x, PLACE);
     is_other |= number(ui, "Y", &mut y, PLACE);
@@ -40,7 +42,9 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         requests.act(Action::Canvas(CanvasAction::Frame { frame }));
     }
     ui.add_space(6.0);
-    if let Some(aspect) = choice(ui, "Aspect of the frame", session.crop_aspect, &CropAspect::LABELS) {
+    if let Some(aspect) =
+        choice(ui, "Aspect of the frame", session.crop_aspect, &CropAspect::LABELS)
+    {
         requests.act(Action::Canvas(CanvasAction::Aspect { aspect }));
     }
     ui.add_space(6.0);

@@ -1,5 +1,5 @@
-//! A curve widget: points in a square with straight lines between them. Floor 7. Not here: what the curve drives (the
-//! brush editor).
+//! A curve widget: points in a square with straight lines between them. Floor 7. Not here: what the
+//! curve drives (the brush editor).
 
 use crate::math::{Vec2, vec2};
 use crate::paint::Curve;
@@ -13,11 +13,12 @@ const NEAR_PT: f32 = 12.0;
 /// The least distance between two points, in the unit square.
 const APART: f32 = 0.01;
 
-/// How far the square of a curve that adds extends beyond its values, so that the user can make it add more.
+/// How far the square of a curve that adds extends beyond its values, so that the user can make it
+/// add more.
 const ROOM: f32 = 1.25;
 
-/// A curve's points in the square, as the user moves them: a share is shown as it is; for one that adds, the middle is
-/// 0 and the edges are ± `span`.
+/// A curve's points in the square, as the user moves them: a share is shown as it is; for one that
+/// adds, the middle is 0 and the edges are ± `span`.
 pub fn points(curve: &Curve, span: f32) -> Vec<Vec2> {
     match curve {
         Curve::Share(_) => vec![vec2(0.0, curve.at(0.0)), vec2(1.0, curve.at(1.0))],
@@ -44,10 +45,12 @@ fn span_of(curve: &Curve) -> f32 {
 
 /// Shows a curve and bends it: a click adds a point, a drag moves one, a right click removes one.
 pub fn show(ui: &mut Ui, label: &str, curve: &Curve, height_pt: f32) -> Option<ValueChange<Curve>> {
-    let (rect, response) = ui.allocate_exact_size(egui::vec2(ui.available_width(), height_pt), Sense::click_and_drag());
+    let (rect, response) = ui
+        .allocate_exact_size(egui::vec2(ui.available_width(), height_pt), Sense::click_and_drag());
     named(&response, label);
     let inner = rect.shrink(5.0);
-    let on_screen = |p: Vec2| pos2(inner.left() + p.x * inner.width(), inner.bottom() - p.y * inner.height());
+    let on_screen =
+        |p: Vec2| pos2(inner.left() + p.x * inner.width(), inner.bottom() - p.y * inner.height());
     let in_square = |p: Pos2| {
         let p = vec2((p.x - inner.left()) / inner.width(), (inner.bottom() - p.y) / inner.height());
         p.max(Vec2::ZERO).min(Vec2::ONE)
@@ -80,7 +83,10 @@ pub fn show(ui: &mut Ui, label: &str, curve: &Curve, height_pt: f32) -> Option<V
         ui.data_mut(|data| data.insert_temp(held, i));
     }
     let moves = response.dragged() || response.clicked();
-    let i = ui.data(|data| data.get_temp::<Option<usize>>(held)).flatten().filter(|i| moves && *i < points.len())?;
+    let i = ui
+        .data(|data| data.get_temp::<Option<usize>>(held))
+        .flatten()
+        .filter(|i| moves && *i < points.len())?;
     let to = in_square(at?);
     // A point stays between its neighbours.
     let least = i.checked_sub(1).map_or(0.0, |before| points[before].x);
@@ -103,7 +109,13 @@ fn add(points: &mut Vec<Vec2>, point: Vec2) -> Option<usize> {
 fn paint(ui: &Ui, rect: Rect, inner: Rect, points: &[Vec2], on_screen: impl Fn(Vec2) -> Pos2) {
     let painter = ui.painter();
     let visuals = ui.visuals();
-    painter.rect(rect, 3.0, visuals.extreme_bg_color, visuals.widgets.noninteractive.bg_stroke, StrokeKind::Inside);
+    painter.rect(
+        rect,
+        3.0,
+        visuals.extreme_bg_color,
+        visuals.widgets.noninteractive.bg_stroke,
+        StrokeKind::Inside,
+    );
     let faint = Stroke::new(1.0, visuals.widgets.noninteractive.bg_stroke.color);
     for quarter in [0.25, 0.5, 0.75] {
         painter.vline(inner.left() + quarter * inner.width(), inner.y_range(), faint);
@@ -112,7 +124,8 @@ fn paint(ui: &Ui, rect: Rect, inner: Rect, points: &[Vec2], on_screen: impl Fn(V
     // Level beyond the first and the last.
     let first = points.first().map(|p| vec2(0.0, p.y));
     let last = points.last().map(|p| vec2(1.0, p.y));
-    let line: Vec<Pos2> = first.into_iter().chain(points.iter().copied()).chain(last).map(&on_screen).collect();
+    let line: Vec<Pos2> =
+        first.into_iter().chain(points.iter().copied()).chain(last).map(&on_screen).collect();
     painter.line(line, Stroke::new(1.5, ACCENT));
     for point in points {
         painter.circle(on_screen(*point), 3.5, visuals.window_fill, Stroke::new(1.5, ACCENT));
@@ -131,12 +144,15 @@ mod tests {
         assert_eq!(add(&mut line, vec2(0.405, 0.1)), None);
         assert!(Curve::through(line).is_some());
     }
+
     #[test]
     fn a_curve_that_adds_stands_in_the_square_around_its_middle_and_comes_back() {
         let curve = Curve::added(vec![vec2(0.0, -2.0), vec2(1.0, 4.0)]).unwrap();
         let span = span_of(&curve);
         assert_eq!((span, points(&curve, span)), (5.0, vec![vec2(0.0, 0.3), vec2(1.0, 0.9)]));
-        let Some(Curve::Added(back)) = through(&curve, points(&curve, span), span) else { panic!("it adds") };
+        let Some(Curve::Added(back)) = through(&curve, points(&curve, span), span) else {
+            panic!("it adds")
+        };
         assert!(back.iter().zip([-2.0f32, 4.0]).all(|(p, y)| (p.y - y).abs() < 1e-5), "{back:?}");
     }
 }

@@ -12,16 +12,30 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     };
     let done = tab.history.past().len() as i32;
     let opened = std::iter::once(("Opened".to_owned(), -done));
-    let past = tab.history.past_labels().enumerate().map(|(i, label)| (labels::sentence(label), i as i32 + 1 - done));
-    let future = tab.history.future_labels().enumerate().map(|(i, label)| (labels::sentence(label), i as i32 + 1));
-    egui::ScrollArea::vertical().id_salt("history").auto_shrink([false, false]).stick_to_bottom(true).show(ui, |ui| {
-        ui.spacing_mut().item_spacing.y = 1.0;
-        for (label, steps) in opened.chain(past).chain(future) {
-            let text = if steps > 0 { RichText::new(label).weak() } else { RichText::new(label) };
-            let row = Button::selectable(steps == 0, text).min_size(egui::vec2(ui.available_width(), 0.0));
-            if ui.add(row).clicked() && steps != 0 {
-                requests.act(Action::Edit(EditAction::Walk { steps }));
+    let past = tab
+        .history
+        .past_labels()
+        .enumerate()
+        .map(|(i, label)| (labels::sentence(label), i as i32 + 1 - done));
+    let future = tab
+        .history
+        .future_labels()
+        .enumerate()
+        .map(|(i, label)| (labels::sentence(label), i as i32 + 1));
+    egui::ScrollArea::vertical()
+        .id_salt("history")
+        .auto_shrink([false, false])
+        .stick_to_bottom(true)
+        .show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 1.0;
+            for (label, steps) in opened.chain(past).chain(future) {
+                let text =
+                    if steps > 0 { RichText::new(label).weak() } else { RichText::new(label) };
+                let row = Button::selectable(steps == 0, text)
+                    .min_size(egui::vec2(ui.available_width(), 0.0));
+                if ui.add(row).clicked() && steps != 0 {
+                    requests.act(Action::Edit(EditAction::Walk { steps }));
+                }
             }
-        }
-    });
+        });
 }

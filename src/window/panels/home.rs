@@ -5,11 +5,17 @@ use crate::document::{Document, HomeFrame};
 use crate::widgets::choice_row;
 use eframe::egui::Ui;
 
-/// A row with the parts to choose from, if there are any; returns what was chosen, `None` for what is around.
+/// A row with the parts to choose from, if there are any; returns what was chosen, `None` for what
+/// is around.
 ///
 /// * `own`: its own home.
 /// * `around`: the name of the choice of none.
-pub fn choice(ui: &mut Ui, document: &Document, own: Option<&HomeFrame>, around: &str) -> Option<Option<String>> {
+pub fn choice(
+    ui: &mut Ui,
+    document: &Document,
+    own: Option<&HomeFrame>,
+    around: &str,
+) -> Option<Option<String>> {
     let forms = document.parts.list.iter().filter(|part| part.on().is_none());
     let mut choices: Vec<(Option<&str>, &str)> = vec![(None, around)];
     if around != CANVAS {
@@ -19,7 +25,8 @@ pub fn choice(ui: &mut Ui, document: &Document, own: Option<&HomeFrame>, around:
     if choices.len() < 2 && own.is_none() {
         return None;
     }
-    let now = own.map(|home| &*home.part).filter(|part| around != CANVAS || *part != HomeFrame::CANVAS);
+    let now =
+        own.map(|home| &*home.part).filter(|part| around != CANVAS || *part != HomeFrame::CANVAS);
     // What lies on touches or sculpting is carried by the part beneath these.
     let body = now.map(|part| document.parts.body_of(part).map_or(part, |body| body.id.as_str()));
     choice_row(ui, "Lies on", body, &choices).map(|part| part.map(str::to_owned))

@@ -18,11 +18,20 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         }
     }
     ui.add_space(6.0);
-    let field = NumberField::new("Size", LiquifySettings::SIZE, "Diameter of a dab ([ and ], or the right button)");
-    to = field.px().inline(ui, now.size, 70.0).map(|c| LiquifySettings { size: c.to, ..now }).or(to);
-    let hint = "How much a dab does; a push at 1 goes as far as the pen. Lighter pressure does less";
+    let field = NumberField::new(
+        "Size",
+        LiquifySettings::SIZE,
+        "Diameter of a dab ([ and ], or the right button)",
+    );
+    to =
+        field.px().inline(ui, now.size, 70.0).map(|c| LiquifySettings { size: c.to, ..now }).or(to);
+    let hint =
+        "How much a dab does; a push at 1 goes as far as the pen. Lighter pressure does less";
     let field = NumberField::new("Strength", LiquifySettings::STRENGTH, hint);
-    to = field.inline(ui, now.strength, 60.0).map(|c| LiquifySettings { strength: c.to, ..now }).or(to);
+    to = field
+        .inline(ui, now.strength, 60.0)
+        .map(|c| LiquifySettings { strength: c.to, ..now })
+        .or(to);
     let mut next = now;
     let hint = "Nothing but the object under the first dab is displaced";
     if ui.checkbox(&mut next.one_object, "Keep to one object").on_hover_text(hint).changed() {
@@ -33,7 +42,9 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         to = Some(LiquifySettings { foreshortened: next.foreshortened, ..now });
     }
     if let Some(command) = TRANSFORMS.iter().find(|command| command.name == REMOVE_LIQUIFY) {
-        let button = ui.add_enabled((command.can)(session), Button::new(command.name)).on_hover_text(command.hint);
+        let button = ui
+            .add_enabled((command.can)(session), Button::new(command.name))
+            .on_hover_text(command.hint);
         if button.clicked() {
             (command.run)(session, requests);
         }

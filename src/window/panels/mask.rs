@@ -42,11 +42,14 @@ pub fn show(ui: &mut Ui, layer: &Layer, on_mask: bool, setter: &mut LayerSetter)
         (MaskChoice::Region, "region"),
     ];
     let own = all.iter().copied().filter(|(choice, _)| *choice == current);
-    let offered: Vec<_> = all[..4].iter().copied().chain(own.filter(|(choice, _)| is_made(*choice))).collect();
+    let offered: Vec<_> =
+        all[..4].iter().copied().chain(own.filter(|(choice, _)| is_made(*choice))).collect();
     if let Some(to) = choice_row(ui, "Made of", current, &offered) {
         let mask = match to {
             MaskChoice::Fresnel => Some(DerivedMask::FRESNEL),
-            MaskChoice::Curvature => Some(DerivedMask::Curvature { scale: 4.0, blur: 1.0, from: 0.0, to: 1.0 }),
+            MaskChoice::Curvature => {
+                Some(DerivedMask::Curvature { scale: 4.0, blur: 1.0, from: 0.0, to: 1.0 })
+            }
             MaskChoice::Depth => Some(DerivedMask::RAMP_OF_DEPTH),
             MaskChoice::None | MaskChoice::File | MaskChoice::Region => None,
         };
@@ -89,7 +92,9 @@ pub fn show(ui: &mut Ui, layer: &Layer, on_mask: bool, setter: &mut LayerSetter)
     if let Some(on) = check(ui, "Invert mask", "Paint where the mask is dark", mask.invert) {
         setter.set(Property::MaskInverted { on }, true);
     }
-    if let Some(on) = check(ui, "Use mask", "If off, the layer is shown without its mask", !mask.disabled) {
+    if let Some(on) =
+        check(ui, "Use mask", "If off, the layer is shown without its mask", !mask.disabled)
+    {
         setter.set(Property::MaskDisabled { on: !on }, true);
     }
 }
@@ -105,27 +110,36 @@ fn mask_numbers(ui: &mut Ui, mask: DerivedMask) -> Option<ValueChange<DerivedMas
             let a = tolerance(region).row(ui, region.tolerance);
             let b = softness().row(ui, region.softness);
             a.map(|c| c.map(|tolerance| DerivedMask::Region(SurfaceRegion { tolerance, ..region })))
-                .or(b.map(|c| c.map(|softness| DerivedMask::Region(SurfaceRegion { softness, ..region }))))
+                .or(b.map(|c| {
+                    c.map(|softness| DerivedMask::Region(SurfaceRegion { softness, ..region }))
+                }))
         }
         DerivedMask::Fresnel { f0, power } => {
-            let a = NumberField::new("Facing", 0.0..=1.0, "Coverage where the surface faces you").row(ui, f0);
-            let b = NumberField::new("Power", 0.2..=10.0, "How closely it follows the rim").row(ui, power);
+            let a = NumberField::new("Facing", 0.0..=1.0, "Coverage where the surface faces you")
+                .row(ui, f0);
+            let b = NumberField::new("Power", 0.2..=10.0, "How closely it follows the rim")
+                .row(ui, power);
             a.map(|c| c.map(|f0| DerivedMask::Fresnel { f0, power }))
                 .or(b.map(|c| c.map(|power| DerivedMask::Fresnel { f0, power })))
         }
         DerivedMask::Curvature { scale, blur, from, to } => {
-            let a = NumberField::new("Scale", 0.0..=40.0, "Features this wide count in full, px").row(ui, scale);
+            let a = NumberField::new("Scale", 0.0..=40.0, "Features this wide count in full, px")
+                .row(ui, scale);
             let b = NumberField::new("Blur", 0.0..=20.0, "Blur of the normals, px").row(ui, blur);
-            let c = NumberField::new("From", -1.0..=1.0, "Curvature at which nothing is painted").row(ui, from);
-            let d = NumberField::new("To", -1.0..=1.0, "Curvature at which everything is painted").row(ui, to);
+            let c = NumberField::new("From", -1.0..=1.0, "Curvature at which nothing is painted")
+                .row(ui, from);
+            let d = NumberField::new("To", -1.0..=1.0, "Curvature at which everything is painted")
+                .row(ui, to);
             a.map(|v| v.map(|scale| DerivedMask::Curvature { scale, blur, from, to }))
                 .or(b.map(|v| v.map(|blur| DerivedMask::Curvature { scale, blur, from, to })))
                 .or(c.map(|v| v.map(|from| DerivedMask::Curvature { scale, blur, from, to })))
                 .or(d.map(|v| v.map(|to| DerivedMask::Curvature { scale, blur, from, to })))
         }
         DerivedMask::Depth { from, to } => {
-            let a = NumberField::new("From", 0.0..=1.0, "Depth at which nothing is painted").row(ui, from);
-            let b = NumberField::new("To", 0.0..=1.0, "Depth at which everything is painted").row(ui, to);
+            let a = NumberField::new("From", 0.0..=1.0, "Depth at which nothing is painted")
+                .row(ui, from);
+            let b = NumberField::new("To", 0.0..=1.0, "Depth at which everything is painted")
+                .row(ui, to);
             a.map(|c| c.map(|from| DerivedMask::Depth { from, to }))
                 .or(b.map(|c| c.map(|to| DerivedMask::Depth { from, to })))
         }

@@ -7,7 +7,8 @@ use crate::math::{Vec2, Vec3, vec2, vec3};
 use crate::session::PicturePart;
 use crate::session::Property;
 use crate::shading::{
-    Environment, FeatureScale, Features, Light, LightKind, Model, Projection, RadianceScaling, Scaling, Shading, Term,
+    Environment, FeatureScale, Features, Light, LightKind, Model, Projection, RadianceScaling,
+    Scaling, Shading, Term,
 };
 use crate::widgets::{NumberField, ValueChange, check, choice_row, title};
 use eframe::egui::{self, Color32, Sense, Shape, Stroke, Ui};
@@ -22,43 +23,70 @@ pub fn shading(ui: &mut Ui, shading: &Shading, canvas: Vec2, setter: &mut LayerS
     term(ui, "Specular", shading.specular, setter, |term| Property::Specular { term });
     match shading.model {
         Model::Phong | Model::Toon => {
-            let number =
-                NumberField::new("Shininess", 1.0..=400.0, "How small the highlight is").logarithmic().decimals(0);
-            setter.take(number.row(ui, shading.shininess).map(|c| c.map(|to| Property::Shininess { to })));
+            let number = NumberField::new("Shininess", 1.0..=400.0, "How small the highlight is")
+                .logarithmic()
+                .decimals(0);
+            setter.take(
+                number.row(ui, shading.shininess).map(|c| c.map(|to| Property::Shininess { to })),
+            );
         }
         Model::SubLambertian => {
             let number = NumberField::new("Flatness", 0.0..=1.0, "1 is matt, 0 flat like the moon");
-            setter.take(number.row(ui, shading.exponent).map(|c| c.map(|to| Property::Exponent { to })));
+            setter.take(
+                number.row(ui, shading.exponent).map(|c| c.map(|to| Property::Exponent { to })),
+            );
         }
         Model::Ashikhmin => {
             let (nu, nv) = (shading.nu, shading.nv);
-            let a = NumberField::new("Along x", 1.0..=1000.0, "How narrow the highlight is").logarithmic().row(ui, nu);
+            let a = NumberField::new("Along x", 1.0..=1000.0, "How narrow the highlight is")
+                .logarithmic()
+                .row(ui, nu);
             setter.take(a.map(|c| c.map(|nu| Property::Anisotropy { nu, nv })));
-            let b = NumberField::new("Along y", 1.0..=1000.0, "How narrow the highlight is").logarithmic().row(ui, nv);
+            let b = NumberField::new("Along y", 1.0..=1000.0, "How narrow the highlight is")
+                .logarithmic()
+                .row(ui, nv);
             setter.take(b.map(|c| c.map(|nv| Property::Anisotropy { nu, nv })));
         }
         Model::Refraction => {
             let number = NumberField::new("Index", 1.0..=3.0, "Glass is 1.5");
-            setter.take(number.row(ui, shading.index).map(|c| c.map(|to| Property::RefractiveIndex { to })));
+            setter.take(
+                number.row(ui, shading.index).map(|c| c.map(|to| Property::RefractiveIndex { to })),
+            );
         }
         _ => {}
     }
     if shading.model == Model::Toon {
         let number = NumberField::new("Tones", 2.0..=12.0, "Flat bands of light").decimals(0);
-        setter.take(number.row(ui, shading.bands as f32).map(|c| c.map(|to| Property::Bands { to: to as u32 })));
+        setter.take(
+            number
+                .row(ui, shading.bands as f32)
+                .map(|c| c.map(|to| Property::Bands { to: to as u32 })),
+        );
     }
     if matches!(shading.model, Model::AmbientOcclusion | Model::DiffuseEnvironment) {
-        let number = NumberField::new("Reach", 0.0..=400.0, "Distance up to which occluders count, px").decimals(0);
-        setter.take(number.row(ui, shading.occlusion_radius_px).map(|c| c.map(|to| Property::Occlusion { to })));
+        let number =
+            NumberField::new("Reach", 0.0..=400.0, "Distance up to which occluders count, px")
+                .decimals(0);
+        setter.take(
+            number
+                .row(ui, shading.occlusion_radius_px)
+                .map(|c| c.map(|to| Property::Occlusion { to })),
+        );
     }
     if shading.model.bounces() {
         let hint = "How often rays that meet the surface itself are sent on; 0 looks at the environment at once";
         let most = *Shading::BOUNCES.end() as f32;
         let number = NumberField::new("Bounces", 0.0..=most, hint).decimals(0);
-        setter.take(number.row(ui, shading.bounces as f32).map(|c| c.map(|to| Property::Bounces { to: to as u32 })));
+        setter.take(
+            number
+                .row(ui, shading.bounces as f32)
+                .map(|c| c.map(|to| Property::Bounces { to: to as u32 })),
+        );
     }
     pictures(ui, shading, setter);
-    if !shading.model.needs_environment() && !matches!(shading.model, Model::LitSphere | Model::AmbientOcclusion) {
+    if !shading.model.needs_environment()
+        && !matches!(shading.model, Model::LitSphere | Model::AmbientOcclusion)
+    {
         lights(ui, &shading.lights, canvas, setter);
     }
     features(ui, &shading.features, setter);
@@ -83,13 +111,22 @@ fn pictures(ui: &mut Ui, shading: &Shading, setter: &mut LayerSetter) {
     };
     if shading.model.needs_environment() || shading.model == Model::Ashikhmin {
         let file = shading.environment.as_ref().map(|environment| &*environment.file);
-        let none = if shading.lacks_environment() { "None yet: the layer is black" } else { "None: lit by the lights" };
+        let none = if shading.lacks_environment() {
+            "None yet: the layer is black"
+        } else {
+            "None: lit by the lights"
+        };
         picture(ui, PicturePart::Environment, file, none);
         if let Some(environment) = &shading.environment {
             surroundings(ui, environment, setter);
         }
     } else if shading.model == Model::LitSphere {
-        picture(ui, PicturePart::Sphere, shading.sphere.as_ref().map(|sphere| &*sphere.file), "Grey clay");
+        picture(
+            ui,
+            PicturePart::Sphere,
+            shading.sphere.as_ref().map(|sphere| &*sphere.file),
+            "Grey clay",
+        );
         picture(
             ui,
             PicturePart::ConcaveSphere,
@@ -104,23 +141,33 @@ fn surroundings(ui: &mut Ui, environment: &Environment, setter: &mut LayerSetter
     if let Some(projection) = choice_row(ui, "Lies as", projection, &Projection::ALL) {
         setter.set(Property::Surrounded { projection, rotation, exposure }, true);
     }
-    let turn = NumberField::new("Turn", -180.0..=180.0, "About the vertical axis").degrees().row(ui, rotation);
-    setter.take(turn.map(|c| c.map(|rotation| Property::Surrounded { projection, rotation, exposure })));
+    let turn = NumberField::new("Turn", -180.0..=180.0, "About the vertical axis")
+        .degrees()
+        .row(ui, rotation);
+    setter.take(
+        turn.map(|c| c.map(|rotation| Property::Surrounded { projection, rotation, exposure })),
+    );
     let stops = NumberField::new("Exposure", -8.0..=8.0, "In stops").row(ui, exposure);
-    setter.take(stops.map(|c| c.map(|exposure| Property::Surrounded { projection, rotation, exposure })));
+    setter.take(
+        stops.map(|c| c.map(|exposure| Property::Surrounded { projection, rotation, exposure })),
+    );
 }
 
 fn term(ui: &mut Ui, label: &str, term: Term, setter: &mut LayerSetter, put: fn(Term) -> Property) {
     ui.horizontal(|ui| {
         let color = colors::button(ui, &format!("{label} colour"), term.color);
         setter.take(color.map(|c| c.map(|color| put(Term { color, ..term }))));
-        let weight = NumberField::new(label, 0.0..=2.0, "Weight of the term; 0 turns it off").row(ui, term.weight);
+        let weight = NumberField::new(label, 0.0..=2.0, "Weight of the term; 0 turns it off")
+            .row(ui, term.weight);
         setter.take(weight.map(|c| c.map(|weight| put(Term { weight, ..term }))));
     });
     let gamma = format!("{label} relief");
-    let number = NumberField::new(&gamma, 0.0..=8.0, "How strongly features are enhanced in this term (γ)");
+    let number =
+        NumberField::new(&gamma, 0.0..=8.0, "How strongly features are enhanced in this term (γ)");
     let changed = number.row(ui, term.scaling.gamma_convex);
-    setter.take(changed.map(|c| c.map(|gamma| put(Term { scaling: Scaling::new(term.scaling.alpha, gamma), ..term }))));
+    setter.take(changed.map(|c| {
+        c.map(|gamma| put(Term { scaling: Scaling::new(term.scaling.alpha, gamma), ..term }))
+    }));
 }
 
 fn lights(ui: &mut Ui, lights: &[Light], canvas: Vec2, setter: &mut LayerSetter) {
@@ -143,11 +190,14 @@ fn lights(ui: &mut Ui, lights: &[Light], canvas: Vec2, setter: &mut LayerSetter)
                 (ball(ui, &format!("Direction of light {}", i + 1), direction), light.kind)
             {
                 let kind = |direction| LightKind::Directional { direction };
-                setter.take(Some(changed.map(|direction| with(i, Light { kind: kind(direction), ..*light }))));
+                setter.take(Some(
+                    changed.map(|direction| with(i, Light { kind: kind(direction), ..*light })),
+                ));
             }
             ui.vertical(|ui| {
                 ui.horizontal(|ui| {
-                    let color = colors::button(ui, &format!("Colour of light {}", i + 1), light.color);
+                    let color =
+                        colors::button(ui, &format!("Colour of light {}", i + 1), light.color);
                     setter.take(color.map(|c| c.map(|color| with(i, Light { color, ..*light }))));
                     if lights.len() > 1 && ui.small_button("Remove").clicked() {
                         let mut left = lights.to_vec();
@@ -156,25 +206,40 @@ fn lights(ui: &mut Ui, lights: &[Light], canvas: Vec2, setter: &mut LayerSetter)
                     }
                 });
                 let label = format!("Light {}", i + 1);
-                let number = NumberField::new(&label, 0.0..=4.0, "Intensity").row(ui, light.intensity);
-                setter.take(number.map(|c| c.map(|intensity| with(i, Light { intensity, ..*light }))));
+                let number =
+                    NumberField::new(&label, 0.0..=4.0, "Intensity").row(ui, light.intensity);
+                setter.take(
+                    number.map(|c| c.map(|intensity| with(i, Light { intensity, ..*light }))),
+                );
                 if let LightKind::Point { position } = light.kind {
                     let label = format!("Height {}", i + 1);
-                    let height =
-                        NumberField::new(&label, 0.0..=4000.0, "Height above the nearest point, px").decimals(0);
+                    let height = NumberField::new(
+                        &label,
+                        0.0..=4000.0,
+                        "Height above the nearest point, px",
+                    )
+                    .decimals(0);
                     let kind = |z| LightKind::Point { position: vec3(position.x, position.y, z) };
                     let height = height.row(ui, position.z);
-                    setter.take(height.map(|c| c.map(|z| with(i, Light { kind: kind(z), ..*light }))));
+                    setter.take(
+                        height.map(|c| c.map(|z| with(i, Light { kind: kind(z), ..*light }))),
+                    );
                 }
             });
         });
     }
     ui.horizontal_wrapped(|ui| {
         let far = LightKind::Directional { direction: vec3(-0.6, 0.2, 0.5) };
-        let near = LightKind::Point { position: vec3(canvas.x * 0.3, canvas.y * 0.3, canvas.max_element() * 0.3) };
+        let near = LightKind::Point {
+            position: vec3(canvas.x * 0.3, canvas.y * 0.3, canvas.max_element() * 0.3),
+        };
         for (text, kind) in [("Add light", far), ("Add light at a point", near)] {
             if ui.button(text).clicked() {
-                let more = lights.iter().copied().chain([Light { kind, intensity: 0.5, ..Light::default() }]);
+                let more = lights.iter().copied().chain([Light {
+                    kind,
+                    intensity: 0.5,
+                    ..Light::default()
+                }]);
                 setter.set(Property::Lights { lights: more.collect() }, true);
             }
         }
@@ -202,8 +267,13 @@ fn ball(ui: &mut Ui, label: &str, direction: Vec3) -> Option<ValueChange<Vec3>> 
     }
     painter.add(Shape::circle_stroke(center, radius, Stroke::new(1.0, Color32::from_gray(0x70))));
     let handle = center + egui::vec2(l.x, -l.y) * radius;
-    painter.circle_filled(handle, 4.0, if l.z >= 0.0 { Color32::WHITE } else { Color32::from_gray(0x90) });
-    let is_held = response.is_pointer_button_down_on() || response.drag_stopped() || response.clicked();
+    painter.circle_filled(
+        handle,
+        4.0,
+        if l.z >= 0.0 { Color32::WHITE } else { Color32::from_gray(0x90) },
+    );
+    let is_held =
+        response.is_pointer_button_down_on() || response.drag_stopped() || response.clicked();
     let response = response.on_hover_text("Drag: the middle faces you, the rim grazes");
     let pos = response.interact_pointer_pos().filter(|_| is_held)?;
     let at = (pos - center) / radius;
@@ -222,30 +292,39 @@ fn features(ui: &mut Ui, features: &Features, setter: &mut LayerSetter) {
         }
         Property::Features { features }
     };
-    let number = NumberField::new("Width", 0.0..=40.0, "Features this many pixels wide count in full");
+    let number =
+        NumberField::new("Width", 0.0..=40.0, "Features this many pixels wide count in full");
     let changed = number.row(ui, scale.curvature_scale_px);
-    setter.take(changed.map(|c| c.map(|curvature_scale_px| with(FeatureScale { curvature_scale_px, ..scale }))));
-    let changed = NumberField::new("Blur", 0.0..=20.0, "Blur of the normals, px").row(ui, scale.blur_px);
+    setter.take(
+        changed.map(|c| {
+            c.map(|curvature_scale_px| with(FeatureScale { curvature_scale_px, ..scale }))
+        }),
+    );
+    let changed =
+        NumberField::new("Blur", 0.0..=20.0, "Blur of the normals, px").row(ui, scale.blur_px);
     setter.take(changed.map(|c| c.map(|blur_px| with(FeatureScale { blur_px, ..scale }))));
     let hint = "0 all features, 1 those along the light, −1 those across it";
     let changed = NumberField::new("Direction", -1.0..=1.0, hint).row(ui, features.lambda);
-    setter.take(
-        changed.map(|c| c.map(|lambda| Property::Features { features: Features { lambda, ..features.clone() } })),
-    );
+    setter.take(changed.map(|c| {
+        c.map(|lambda| Property::Features { features: Features { lambda, ..features.clone() } })
+    }));
 }
 
 pub fn radiance_scaling(ui: &mut Ui, scaling: &RadianceScaling, setter: &mut LayerSetter) {
     let now = scaling.scaling;
-    let gamma =
-        NumberField::new("Strength", 0.0..=12.0, "How strongly relief is enhanced (γ)").row(ui, now.gamma_convex);
-    setter.take(gamma.map(|c| c.map(|gamma| Property::Scaled { scaling: Scaling::new(now.alpha, gamma) })));
-    let concave =
-        NumberField::new("In hollows", 0.0..=12.0, "The strength on concave features").row(ui, now.gamma_concave);
+    let gamma = NumberField::new("Strength", 0.0..=12.0, "How strongly relief is enhanced (γ)")
+        .row(ui, now.gamma_convex);
+    setter.take(
+        gamma.map(|c| c.map(|gamma| Property::Scaled { scaling: Scaling::new(now.alpha, gamma) })),
+    );
+    let concave = NumberField::new("In hollows", 0.0..=12.0, "The strength on concave features")
+        .row(ui, now.gamma_concave);
     let with = |gamma_concave| Property::Scaled { scaling: Scaling { gamma_concave, ..now } };
     setter.take(concave.map(|c| c.map(with)));
     let hint = "Light of this brightness stays as it is (α)";
     let alpha = NumberField::new("Still tone", 0.02..=0.98, hint).row(ui, now.alpha);
-    setter.take(alpha.map(|c| c.map(|alpha| Property::Scaled { scaling: Scaling { alpha, ..now } })));
+    setter
+        .take(alpha.map(|c| c.map(|alpha| Property::Scaled { scaling: Scaling { alpha, ..now } })));
     let hint = "Keep the mean brightness over the surface";
     if let Some(on) = check(ui, "Keep brightness", hint, scaling.keep_mean) {
         setter.set(Property::KeepMean { on }, true);

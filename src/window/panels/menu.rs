@@ -19,28 +19,41 @@ pub fn show(ui: &mut Ui, session: &Session, settings: &Settings, requests: &mut 
                 ui.set_min_width(220.0);
                 // A low window scrolls the menu.
                 let room = ui.ctx().content_rect().bottom() - ui.cursor().top() - 12.0;
-                egui::ScrollArea::vertical().max_height(room).min_scrolled_height(room).show(ui, |ui| {
-                    for command in commands {
-                        entry(ui, session, settings, command, requests);
-                        match command.name {
-                            "New gradient layer" => drop(ui.menu_button("New shading layer", |ui| {
-                                SHADING.iter().for_each(|command| entry(ui, session, settings, command, requests));
-                            })),
-                            "Give it a shape…" => drop(ui.menu_button("New part", |ui| {
-                                PARTS.iter().for_each(|command| entry(ui, session, settings, command, requests));
-                            })),
-                            "Transform" => drop(ui.menu_button("Transform layer", |ui| {
-                                TRANSFORMS.iter().for_each(|command| entry(ui, session, settings, command, requests));
-                            })),
-                            "Mirror view" => drop(ui.menu_button("Guides and grid", |ui| {
-                                GUIDES.iter().for_each(|command| entry(ui, session, settings, command, requests));
-                            })),
-                            "Open…" => recent_files(ui, &settings.recent, requests),
-                            "Keep selection…" => kept_selections(ui, session, requests),
-                            _ => {}
+                egui::ScrollArea::vertical().max_height(room).min_scrolled_height(room).show(
+                    ui,
+                    |ui| {
+                        for command in commands {
+                            entry(ui, session, settings, command, requests);
+                            match command.name {
+                                "New gradient layer" => {
+                                    drop(ui.menu_button("New shading layer", |ui| {
+                                        SHADING.iter().for_each(|command| {
+                                            entry(ui, session, settings, command, requests)
+                                        });
+                                    }))
+                                }
+                                "Give it a shape…" => drop(ui.menu_button("New part", |ui| {
+                                    PARTS.iter().for_each(|command| {
+                                        entry(ui, session, settings, command, requests)
+                                    });
+                                })),
+                                "Transform" => drop(ui.menu_button("Transform layer", |ui| {
+                                    TRANSFORMS.iter().for_each(|command| {
+                                        entry(ui, session, settings, command, requests)
+                                    });
+                                })),
+                                "Mirror view" => drop(ui.menu_button("Guides and grid", |ui| {
+                                    GUIDES.iter().for_each(|command| {
+                                        entry(ui, session, settings, command, requests)
+                                    });
+                                })),
+                                "Open…" => recent_files(ui, &settings.recent, requests),
+                                "Keep selection…" => kept_selections(ui, session, requests),
+                                _ => {}
+                            }
                         }
-                    }
-                });
+                    },
+                );
             });
         }
     });
@@ -106,12 +119,16 @@ pub fn tabs(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             let is_front = index == session.current;
             let title = format!("{}{}", if tab.is_dirty() { "• " } else { "" }, tab.title());
             let text = if is_front { RichText::new(title).strong() } else { RichText::new(title) };
-            let path = tab.file.as_ref().map_or_else(|| "Not saved yet".to_owned(), |file| file.display().to_string());
+            let path = tab
+                .file
+                .as_ref()
+                .map_or_else(|| "Not saved yet".to_owned(), |file| file.display().to_string());
             let response = ui.add(Button::selectable(is_front, text)).on_hover_text(path);
             if response.clicked() {
                 requests.act(Action::File(FileAction::Tab { index }));
             }
-            let close = sized_button(ui, Icon::Close, &format!("Close {}", tab.title()), false, 18.0);
+            let close =
+                sized_button(ui, Icon::Close, &format!("Close {}", tab.title()), false, 18.0);
             if close.clicked() || response.middle_clicked() {
                 requests.request(WindowRequest::Close(index));
             }

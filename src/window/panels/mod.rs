@@ -1,5 +1,5 @@
-//! Panels: functions `(ui, &session, &mut requests)`. egui stores the state of a panel itself (an open row, a text
-//! being typed). Floor 7.
+//! Panels: functions `(ui, &session, &mut requests)`. egui stores the state of a panel itself (an
+//! open row, a text being typed). Floor 7.
 
 mod assistants;
 mod brush;

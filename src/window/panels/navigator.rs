@@ -1,5 +1,5 @@
-//! The navigator: the whole picture with a frame around the visible part; a click moves the view there.
-//! Floor 7.
+//! The navigator: the whole picture with a frame around the visible part; a click moves the view
+//! there. Floor 7.
 
 use crate::canvas::Canvas;
 use crate::math::{Vec2, vec2};
@@ -24,7 +24,12 @@ pub fn show(ui: &mut Ui, session: &Session, canvas: &mut Canvas, requests: &mut 
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Navigator"));
         ui.painter().rect_filled(rect, 0.0, Color32::from_gray(0x78));
         if let Some(texture) = canvas.small(ui.ctx(), size) {
-            ui.painter().image(texture, rect, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), Color32::WHITE);
+            ui.painter().image(
+                texture,
+                rect,
+                Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)),
+                Color32::WHITE,
+            );
         }
         let inverse = view.canvas_from_screen();
         let half = canvas.area_pt * 0.5;
@@ -36,10 +41,15 @@ pub fn show(ui: &mut Ui, session: &Session, canvas: &mut Canvas, requests: &mut 
         // If everything is visible, there is no frame.
         if !Rect::from_points(&frame).contains_rect(rect.shrink(1.0)) {
             let painter = ui.painter_at(rect);
-            painter.add(Shape::closed_line(frame.to_vec(), Stroke::new(3.0, Color32::from_black_alpha(120))));
+            painter.add(Shape::closed_line(
+                frame.to_vec(),
+                Stroke::new(3.0, Color32::from_black_alpha(120)),
+            ));
             painter.add(Shape::closed_line(frame.to_vec(), Stroke::new(1.4, Color32::WHITE)));
         }
-        if let Some(pos) = response.interact_pointer_pos().filter(|_| response.is_pointer_button_down_on()) {
+        if let Some(pos) =
+            response.interact_pointer_pos().filter(|_| response.is_pointer_button_down_on())
+        {
             let at = (pos - rect.min) / scale;
             requests.act(Action::View(ViewAction::LookAt { center: vec2(at.x, at.y) }));
         }
@@ -47,11 +57,16 @@ pub fn show(ui: &mut Ui, session: &Session, canvas: &mut Canvas, requests: &mut 
     ui.horizontal(|ui| {
         let per_point = ui.ctx().pixels_per_point();
         let [least, most] = ZOOMS.map(|zoom| zoom * 100.0);
-        let zoom = NumberField::new("Zoom", least..=most, "Screen pixels per hundred pixels of the canvas")
-            .percent()
-            .logarithmic();
+        let zoom = NumberField::new(
+            "Zoom",
+            least..=most,
+            "Screen pixels per hundred pixels of the canvas",
+        )
+        .percent()
+        .logarithmic();
         if let Some(changed) = zoom.inline(ui, view.zoom * per_point * 100.0, 90.0) {
-            requests.act(Action::View(ViewAction::ZoomTo { zoom: changed.to / (100.0 * per_point) }));
+            requests
+                .act(Action::View(ViewAction::ZoomTo { zoom: changed.to / (100.0 * per_point) }));
         }
     });
     ui.horizontal(|ui| {
@@ -61,10 +76,18 @@ pub fn show(ui: &mut Ui, session: &Session, canvas: &mut Canvas, requests: &mut 
         if ui.button("100 %").on_hover_text("Actual pixels").clicked() {
             requests.request(WindowRequest::Scale(1.0));
         }
-        if ui.selectable_label(view.mirrored, "Mirror").on_hover_text("See the picture mirrored (M)").clicked() {
+        if ui
+            .selectable_label(view.mirrored, "Mirror")
+            .on_hover_text("See the picture mirrored (M)")
+            .clicked()
+        {
             requests.act(Action::View(ViewAction::Mirror {}));
         }
-        if ui.selectable_label(view.turn_rad != 0.0, "Upright").on_hover_text("Turn the canvas back (5)").clicked() {
+        if ui
+            .selectable_label(view.turn_rad != 0.0, "Upright")
+            .on_hover_text("Turn the canvas back (5)")
+            .clicked()
+        {
             requests.act(Action::View(ViewAction::Upright {}));
         }
     });

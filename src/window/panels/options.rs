@@ -1,5 +1,5 @@
-//! The options bar above the canvas: the operator with its sliders, and the options of the current tool.
-//! Floor 7.
+//! The options bar above the canvas: the operator with its sliders, and the options of the current
+//! tool. Floor 7.
 
 use super::{assistants, brush_mode, crop, fill, liquify, select, shaping, transform};
 use crate::operators::{OPERATORS, OfferedOperator, OperatorOwner, give, has, hint_of, set, whose};
@@ -25,7 +25,9 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
 fn row(ui: &mut Ui, name: &str, show: impl FnOnce(&mut Ui)) {
     // A plain wheel scrolls it: nothing here goes up or down.
     ui.style_mut().always_scroll_the_only_direction = true;
-    let area = ScrollArea::horizontal().id_salt(name).scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden);
+    let area = ScrollArea::horizontal()
+        .id_salt(name)
+        .scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden);
     area.show(ui, |ui| {
         ui.horizontal(|ui| {
             ui.set_min_height(ui.spacing().interact_size.y);
@@ -40,7 +42,9 @@ fn bending(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         return drop(ui.weak("Fills are not bent: they colour the pixels that they cover"));
     }
     if session.tool.shapes() {
-        return drop(ui.weak("The shape is what everything bends over: parts, nearest first, are in the panel Shape"));
+        return drop(ui.weak(
+            "The shape is what everything bends over: parts, nearest first, are in the panel Shape",
+        ));
     }
     if session.tool == ToolKind::Transform {
         return transform::ways(ui, session, requests);
@@ -117,7 +121,8 @@ fn symmetry(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         (Symmetry::Radial(6), "6 times round"),
         (Symmetry::Radial(8), "8 times round"),
     ];
-    let known = CHOICES.iter().find(|(choice, _)| *choice == session.symmetry).map(|(_, label)| *label);
+    let known =
+        CHOICES.iter().find(|(choice, _)| *choice == session.symmetry).map(|(_, label)| *label);
     let menu = ui.menu_button(known.unwrap_or("Symmetry"), |ui| {
         for (choice, label) in CHOICES {
             if ui.selectable_label(choice == session.symmetry, label).clicked() {
@@ -160,12 +165,20 @@ fn numbers_by(
 fn brush(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let brush = &session.brush;
     let mut push = |action: Option<HandAction>| requests.actions.extend(action.map(Action::Hand));
-    let size =
-        NumberField::new("Size", Brush::HAND_SIZE, "Diameter of a dab ([ and ], or drag with the right button)").px();
+    let size = NumberField::new(
+        "Size",
+        Brush::HAND_SIZE,
+        "Diameter of a dab ([ and ], or drag with the right button)",
+    )
+    .px();
     push(size.inline(ui, brush.size, 90.0).map(|c| HandAction::Size { to: c.to }));
     let opacity = NumberField::new("Opacity", 0.0..=1.0, "Of the whole stroke");
     push(opacity.inline(ui, brush.opacity, 60.0).map(|c| HandAction::Opacity { to: c.to }));
-    let hardness = NumberField::new("Hardness", 0.0..=1.0, "How much of the dab is fully covered (Shift with [ and ])");
+    let hardness = NumberField::new(
+        "Hardness",
+        0.0..=1.0,
+        "How much of the dab is fully covered (Shift with [ and ])",
+    );
     push(hardness.inline(ui, brush.hardness, 60.0).map(|c| HandAction::Hardness { to: c.to }));
     if session.tool == ToolKind::Brush {
         brush_mode::options(ui, session, requests);

@@ -1,5 +1,5 @@
-//! Properties of the selected layer: its content, placement and bending. Floor 7. Not here: materials and lights
-//! (`material`).
+//! Properties of the selected layer: its content, placement and bending. Floor 7. Not here:
+//! materials and lights (`material`).
 
 use super::setter::LayerSetter;
 use super::{colors, home, mask, material, options, strokes};
@@ -43,7 +43,8 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         Content::RadianceScaling(scaling) => material::radiance_scaling(ui, scaling, &mut setter),
         Content::Normals(normals) => normal_layer(ui, normals, &mut setter),
         Content::Group(group) => {
-            let hint = "Blend each layer with what is below the group, as if the group were not there";
+            let hint =
+                "Blend each layer with what is below the group, as if the group were not there";
             if let Some(on) = check(ui, "Pass through", hint, group.pass_through) {
                 setter.set(Property::PassThrough { on }, true);
             }
@@ -102,7 +103,11 @@ fn image(ui: &mut Ui, image: &PlacedImage, setter: &mut LayerSetter) {
     if let Weights::Shepard { power } = image.bend.weights
         && n > 1
     {
-        let number = NumberField::new("Sharpness", 0.5..=8.0, "How sharply the influence of the anchors is separated");
+        let number = NumberField::new(
+            "Sharpness",
+            0.5..=8.0,
+            "How sharply the influence of the anchors is separated",
+        );
         setter.take(number.row(ui, power).map(|c| c.map(|to| Property::Power { to })));
     }
     title(ui, "Adjust");
@@ -116,7 +121,9 @@ fn normal_layer(ui: &mut Ui, normals: &NormalLayer, setter: &mut LayerSetter) {
     setter.take(number.row(ui, normals.strength).map(|c| c.map(|to| Property::Strength { to })));
     ui.horizontal_wrapped(|ui| {
         let source = match &normals.source {
-            DetailSource::Map { picture, .. } => format!("{} · {}", picture.file, picture.picture.size),
+            DetailSource::Map { picture, .. } => {
+                format!("{} · {}", picture.file, picture.picture.size)
+            }
             DetailSource::Grain(_) => "Grain, made of noise".into(),
         };
         ui.weak(source);
@@ -126,12 +133,22 @@ fn normal_layer(ui: &mut Ui, normals: &NormalLayer, setter: &mut LayerSetter) {
         }
     });
     if let DetailSource::Grain(grain) = normals.source {
-        let size = NumberField::new("Bump size", 1.0..=400.0, "Of the largest bumps, px").logarithmic().decimals(0);
-        let size = size.row(ui, grain.size_px).map(|c| c.map(|size_px| NoiseRelief { size_px, ..grain }));
-        let rough = NumberField::new("Roughness", 0.0..=1.5, "0 is smooth, 1 rough").row(ui, grain.roughness);
-        let stretch = NumberField::new("Stretch", 0.05..=40.0, "How much longer the bumps are along x").logarithmic();
-        let stretch = stretch.row(ui, grain.stretch).map(|c| c.map(|stretch| NoiseRelief { stretch, ..grain }));
-        let changed = size.or(rough.map(|c| c.map(|roughness| NoiseRelief { roughness, ..grain }))).or(stretch);
+        let size = NumberField::new("Bump size", 1.0..=400.0, "Of the largest bumps, px")
+            .logarithmic()
+            .decimals(0);
+        let size =
+            size.row(ui, grain.size_px).map(|c| c.map(|size_px| NoiseRelief { size_px, ..grain }));
+        let rough = NumberField::new("Roughness", 0.0..=1.5, "0 is smooth, 1 rough")
+            .row(ui, grain.roughness);
+        let stretch =
+            NumberField::new("Stretch", 0.05..=40.0, "How much longer the bumps are along x")
+                .logarithmic();
+        let stretch = stretch
+            .row(ui, grain.stretch)
+            .map(|c| c.map(|stretch| NoiseRelief { stretch, ..grain }));
+        let changed = size
+            .or(rough.map(|c| c.map(|roughness| NoiseRelief { roughness, ..grain })))
+            .or(stretch);
         setter.take(changed.map(|c| c.map(|grain| Property::Grained { grain })));
     }
     placement(ui, normals.placement, setter);
@@ -152,32 +169,63 @@ fn operator(ui: &mut Ui, operator: crate::surface::Operator, setter: &mut LayerS
 }
 
 fn placement(ui: &mut Ui, placement: Placement, setter: &mut LayerSetter) {
-    let scale = NumberField::new("Scale", 0.05..=10.0, "1 covers the canvas").logarithmic().row(ui, placement.scale);
-    setter.take(scale.map(|c| c.map(|scale| Property::Place { placement: Placement { scale, ..placement } })));
-    let turn = NumberField::new("Rotation", -180.0..=180.0, "Counter-clockwise").degrees().row(ui, placement.rotation);
-    setter.take(turn.map(|c| c.map(|rotation| Property::Place { placement: Placement { rotation, ..placement } })));
+    let scale = NumberField::new("Scale", 0.05..=10.0, "1 covers the canvas")
+        .logarithmic()
+        .row(ui, placement.scale);
+    setter.take(
+        scale.map(|c| {
+            c.map(|scale| Property::Place { placement: Placement { scale, ..placement } })
+        }),
+    );
+    let turn = NumberField::new("Rotation", -180.0..=180.0, "Counter-clockwise")
+        .degrees()
+        .row(ui, placement.rotation);
+    setter.take(turn.map(|c| {
+        c.map(|rotation| Property::Place { placement: Placement { rotation, ..placement } })
+    }));
     ui.horizontal(|ui| {
         crate::widgets::name(ui, "Centre");
         let at = placement.center;
-        let x = NumberField::new("Centre x", -20000.0..=20000.0, "Canvas px").decimals(0).field(ui, at.x);
-        let y = NumberField::new("Centre y", -20000.0..=20000.0, "Canvas px").decimals(0).field(ui, at.y);
+        let x = NumberField::new("Centre x", -20000.0..=20000.0, "Canvas px")
+            .decimals(0)
+            .field(ui, at.x);
+        let y = NumberField::new("Centre y", -20000.0..=20000.0, "Canvas px")
+            .decimals(0)
+            .field(ui, at.y);
         let center = x.map(|c| c.map(|x| vec2(x, at.y))).or(y.map(|c| c.map(|y| vec2(at.x, y))));
-        setter.take(center.map(|c| c.map(|center| Property::Place { placement: Placement { center, ..placement } })));
+        setter.take(center.map(|c| {
+            c.map(|center| Property::Place { placement: Placement { center, ..placement } })
+        }));
     });
 }
 
 fn adjust(ui: &mut Ui, adjust: Adjust, setter: &mut LayerSetter) {
     type Put = fn(Adjust, f32) -> Adjust;
     let rows: [(&str, f32, std::ops::RangeInclusive<f32>, &str, Put); 6] = [
-        ("Blur", adjust.blur, 0.0..=80.0, "Blur in pixels of the picture: a rougher material", |a, blur| Adjust {
-            blur,
+        (
+            "Blur",
+            adjust.blur,
+            0.0..=80.0,
+            "Blur in pixels of the picture: a rougher material",
+            |a, blur| Adjust { blur, ..a },
+        ),
+        ("Exposure", adjust.exposure, -4.0..=4.0, "In stops", |a, exposure| Adjust {
+            exposure,
             ..a
         }),
-        ("Exposure", adjust.exposure, -4.0..=4.0, "In stops", |a, exposure| Adjust { exposure, ..a }),
         ("Hue", adjust.hue, -180.0..=180.0, "In degrees", |a, hue| Adjust { hue, ..a }),
-        ("Saturation", adjust.saturation, 0.0..=2.0, "1 leaves it", |a, saturation| Adjust { saturation, ..a }),
-        ("Brightness", adjust.brightness, 0.0..=2.0, "1 leaves it", |a, brightness| Adjust { brightness, ..a }),
-        ("Contrast", adjust.contrast, 0.0..=2.0, "1 leaves it", |a, contrast| Adjust { contrast, ..a }),
+        ("Saturation", adjust.saturation, 0.0..=2.0, "1 leaves it", |a, saturation| Adjust {
+            saturation,
+            ..a
+        }),
+        ("Brightness", adjust.brightness, 0.0..=2.0, "1 leaves it", |a, brightness| Adjust {
+            brightness,
+            ..a
+        }),
+        ("Contrast", adjust.contrast, 0.0..=2.0, "1 leaves it", |a, contrast| Adjust {
+            contrast,
+            ..a
+        }),
     ];
     for (label, value, range, hint, put) in rows {
         let changed = NumberField::new(label, range, hint).row(ui, value);
@@ -202,7 +250,8 @@ fn gradient(ui: &mut Ui, gradient: &Gradient, setter: &mut LayerSetter) {
             let color = colors::button(ui, &format!("Colour of stop {}", i + 1), stop.color);
             setter.take(color.map(|c| c.map(|color| with(i, GradientStop { color, ..*stop }))));
             let place = format!("Place of stop {}", i + 1);
-            let t = NumberField::new(&place, 0.0..=1.0, "0 at the first end, 1 at the second").field(ui, stop.t);
+            let t = NumberField::new(&place, 0.0..=1.0, "0 at the first end, 1 at the second")
+                .field(ui, stop.t);
             setter.take(t.map(|c| c.map(|t| with(i, GradientStop { t, ..*stop }))));
             if gradient.stops.len() > 1 && ui.small_button("Remove").clicked() {
                 gone = Some(i);

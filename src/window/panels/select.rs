@@ -34,7 +34,9 @@ pub const KINDS: [(RegionKind, &str); 6] = [
 pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let select = session.select;
     let mut push = |to: Option<SelectSettings>| {
-        requests.actions.extend(to.map(|select| Action::Selection(SelectionAction::Settings { select })));
+        requests
+            .actions
+            .extend(to.map(|select| Action::Selection(SelectionAction::Settings { select })));
     };
     for (way, label, hint) in WAYS {
         let button = Button::selectable(select.combine == way, label);
@@ -53,31 +55,52 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
 fn wand(ui: &mut Ui, select: SelectSettings) -> Option<SelectSettings> {
     let mut to = None;
     let fill = select.wand;
-    let mut set = |wand: Option<Fill>| to = wand.map(|wand| SelectSettings { wand, ..select }).or(to);
+    let mut set =
+        |wand: Option<Fill>| to = wand.map(|wand| SelectSettings { wand, ..select }).or(to);
     let hint = "How different a colour may be from the one you click; a drag to the right or left changes it too";
     let tolerance = NumberField::new("Tolerance", SelectSettings::TOLERANCE, hint);
     set(tolerance.inline(ui, fill.tolerance, 60.0).map(|c| Fill { tolerance: c.to, ..fill }));
-    let gap = NumberField::new("Close gaps", 0.0..=WIDEST_GAP_PX, "Gaps in the border up to this wide are closed");
+    let gap = NumberField::new(
+        "Close gaps",
+        0.0..=WIDEST_GAP_PX,
+        "Gaps in the border up to this wide are closed",
+    );
     set(gap.pixels().inline(ui, fill.gap_px, 60.0).map(|c| Fill { gap_px: c.to, ..fill }));
-    let grow = NumberField::new("Grow", -FARTHEST_GROWTH_PX..=FARTHEST_GROWTH_PX, "Moves the edge outward or inward");
+    let grow = NumberField::new(
+        "Grow",
+        -FARTHEST_GROWTH_PX..=FARTHEST_GROWTH_PX,
+        "Moves the edge outward or inward",
+    );
     set(grow.pixels().inline(ui, fill.grow_px, 60.0).map(|c| Fill { grow_px: c.to, ..fill }));
     let hint = "Reads the selected layer alone, not the whole picture";
-    set(check(ui, "This layer only", hint, fill.layer_alone).map(|layer_alone| Fill { layer_alone, ..fill }));
+    set(check(ui, "This layer only", hint, fill.layer_alone)
+        .map(|layer_alone| Fill { layer_alone, ..fill }));
     set(choice(ui, "Select where", fill.bounded, &BOUNDS).map(|bounded| Fill { bounded, ..fill }));
-    let joined =
-        check(ui, "Joined", "Only what is joined to the pixel; else all of its colour, everywhere", select.joined);
+    let joined = check(
+        ui,
+        "Joined",
+        "Only what is joined to the pixel; else all of its colour, everywhere",
+        select.joined,
+    );
     joined.map(|joined| SelectSettings { joined, ..select }).or(to)
 }
 
 fn region(ui: &mut Ui, region: SurfaceRegion, select: SelectSettings) -> Option<SelectSettings> {
     let kind = choice(ui, "Select what", region.kind, &KINDS).map(|kind| select.with_kind(kind));
     let mut to = None;
-    let mut set = |region: Option<SurfaceRegion>| to = region.map(|region| SelectSettings { region, ..select }).or(to);
+    let mut set = |region: Option<SurfaceRegion>| {
+        to = region.map(|region| SelectSettings { region, ..select }).or(to)
+    };
     if region.kind != RegionKind::Object {
-        set(tolerance(region).inline(ui, region.tolerance, 90.0).map(|c| SurfaceRegion { tolerance: c.to, ..region }));
-        set(softness().inline(ui, region.softness, 60.0).map(|c| SurfaceRegion { softness: c.to, ..region }));
+        set(tolerance(region)
+            .inline(ui, region.tolerance, 90.0)
+            .map(|c| SurfaceRegion { tolerance: c.to, ..region }));
+        set(softness()
+            .inline(ui, region.softness, 60.0)
+            .map(|c| SurfaceRegion { softness: c.to, ..region }));
         let hint = "Only what is joined to the point; depth jumps part what they cross";
-        set(check(ui, "Joined", hint, region.contiguous).map(|contiguous| SurfaceRegion { contiguous, ..region }));
+        set(check(ui, "Joined", hint, region.contiguous)
+            .map(|contiguous| SurfaceRegion { contiguous, ..region }));
     }
     kind.or(to)
 }
@@ -94,5 +117,9 @@ pub fn tolerance(region: SurfaceRegion) -> NumberField<'static> {
 
 /// The softness of a region's edge.
 pub fn softness() -> NumberField<'static> {
-    NumberField::new("Softness", SurfaceRegion::SOFTNESS, "How soft the edge is, as a share of the tolerance")
+    NumberField::new(
+        "Softness",
+        SurfaceRegion::SOFTNESS,
+        "How soft the edge is, as a share of the tolerance",
+    )
 }

@@ -16,12 +16,18 @@ pub struct LayerSetter<'a> {
 
 impl LayerSetter<'_> {
     pub fn set(&mut self, to: Property, done: bool) {
-        self.requests.act(Action::Layer(LayerAction::Set { layer: self.layer.clone().into(), to, done }));
+        self.requests.act(Action::Layer(LayerAction::Set {
+            layer: self.layer.clone().into(),
+            to,
+            done,
+        }));
     }
+
     /// Does something else to the layer.
     pub fn act(&mut self, action: impl FnOnce(LayerPath) -> LayerAction) {
         self.requests.act(Action::Layer(action(self.layer.clone())));
     }
+
     /// A button that requests a picture for the layer.
     pub fn choose(&mut self, ui: &mut Ui, part: PicturePart, text: &str) {
         let response = ui.button(text);
@@ -30,6 +36,7 @@ impl LayerSetter<'_> {
             self.requests.request(WindowRequest::Choose(FilePurpose::Part(part)));
         }
     }
+
     pub fn take(&mut self, changed: Option<ValueChange<Property>>) {
         if let Some(ValueChange { to, done }) = changed {
             self.set(to, done);

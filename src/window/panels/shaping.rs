@@ -39,7 +39,8 @@ fn leaning(normal: Vec3) -> [f32; 2] {
 
 /// The direction that leans this far; at most a silhouette.
 fn leaned([right, up]: [f32; 2]) -> Vec3 {
-    let flat = crate::math::vec2(right.to_radians().sin(), up.to_radians().sin()).clamp_length_max(0.999);
+    let flat =
+        crate::math::vec2(right.to_radians().sin(), up.to_radians().sin()).clamp_length_max(0.999);
     vec3(flat.x, flat.y, (1.0 - flat.length_squared()).max(0.0).sqrt())
 }
 
@@ -53,15 +54,19 @@ fn touching(ui: &mut Ui, now: ShapeSettings) -> Option<ShapeSettings> {
         // Points of a drag that leans it over.
         const POINTS: f32 = 60.0;
         let by = response.drag_delta() / POINTS;
-        let flat = crate::math::vec2(now.normal.x + by.x, now.normal.y - by.y).clamp_length_max(0.98);
+        let flat =
+            crate::math::vec2(now.normal.x + by.x, now.normal.y - by.y).clamp_length_max(0.98);
         let normal = vec3(flat.x, flat.y, (1.0 - flat.length_squared()).max(0.0).sqrt());
         to = Some(ShapeSettings { normal, ..now });
     }
-    response.on_hover_text("The way that touches turn the surface: drag the ball. Alt-click takes it from the surface");
+    response.on_hover_text(
+        "The way that touches turn the surface: drag the ball. Alt-click takes it from the surface",
+    );
     let [right, up] = leaning(now.normal);
     let number = |label, hint| NumberField::new(label, -88.0..=88.0, hint).degrees();
     ui.label("right");
-    let changed = number("Lean right", "How far it leans to the right; below 0 to the left").field(ui, right);
+    let changed =
+        number("Lean right", "How far it leans to the right; below 0 to the left").field(ui, right);
     to = changed.map(|c| ShapeSettings { normal: leaned([c.to, up]), ..now }).or(to);
     ui.label("up");
     let changed = number("Lean up", "How far it leans up; below 0 down").field(ui, up);
@@ -86,14 +91,28 @@ fn sculpting(ui: &mut Ui, now: ShapeSettings) -> Option<ShapeSettings> {
         }
     }
     ui.add_space(6.0);
-    let field =
-        NumberField::new("Size", SculptStroke::SIZE, "Diameter of a dab ([ and ], or drag with the right button)");
+    let field = NumberField::new(
+        "Size",
+        SculptStroke::SIZE,
+        "Diameter of a dab ([ and ], or drag with the right button)",
+    );
     to = field.px().inline(ui, now.size, 70.0).map(|c| ShapeSettings { size: c.to, ..now }).or(to);
-    let field = NumberField::new("Hardness", SculptStroke::HARDNESS, "How much of the dab is fully covered");
-    to = field.inline(ui, now.hardness, 50.0).map(|c| ShapeSettings { hardness: c.to, ..now }).or(to);
+    let field = NumberField::new(
+        "Hardness",
+        SculptStroke::HARDNESS,
+        "How much of the dab is fully covered",
+    );
+    to = field
+        .inline(ui, now.hardness, 50.0)
+        .map(|c| ShapeSettings { hardness: c.to, ..now })
+        .or(to);
     let changed = match now.tool.is_by_height() {
         true => {
-            let field = NumberField::new("Strength", SculptStroke::STRENGTH, "How far a dab raises or lowers");
+            let field = NumberField::new(
+                "Strength",
+                SculptStroke::STRENGTH,
+                "How far a dab raises or lowers",
+            );
             let changed = field.pixels().logarithmic().inline(ui, now.height, 60.0);
             changed.map(|c| ShapeSettings { height: c.to, ..now })
         }
@@ -126,7 +145,10 @@ mod tests {
     fn a_direction_leans_as_far_as_its_numbers_say() {
         for told in [[0.0, 0.0], [30.0, -40.0], [-60.0, 10.0]] {
             let back = leaning(leaned(told));
-            assert!((back[0] - told[0]).abs() < 1e-3 && (back[1] - told[1]).abs() < 1e-3, "{told:?} {back:?}");
+            assert!(
+                (back[0] - told[0]).abs() < 1e-3 && (back[1] - told[1]).abs() < 1e-3,
+                "{told:?} {back:?}"
+            );
         }
         let beyond = leaned([80.0, 80.0]);
         assert!(beyond.is_normalized() && beyond.z > 0.0);

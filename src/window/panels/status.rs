@@ -1,5 +1,5 @@
-//! The status bar: zoom, the point under the pointer with the map values there, memory, the time of the last redraw,
-//! and a hint for the current tool. Floor 7.
+//! The status bar: zoom, the point under the pointer with the map values there, memory, the time of
+//! the last redraw, and a hint for the current tool. Floor 7.
 
 use crate::canvas::Canvas;
 use crate::document::MemoryUse;
@@ -22,7 +22,9 @@ pub fn show(
     requests: &mut UiRequests,
 ) {
     ui.horizontal(|ui| {
-        let is_shown = |job: &RunningJob| matches!(job.kind, JobKind::Working | JobKind::Looking) && job.is_long();
+        let is_shown = |job: &RunningJob| {
+            matches!(job.kind, JobKind::Working | JobKind::Looking) && job.is_long()
+        };
         for job in jobs.under_way.iter().filter(|job| is_shown(job)) {
             ui.label(job.title());
             bar(ui, job.share(), 90.0);
@@ -41,7 +43,8 @@ pub fn show(
             return;
         };
         let document = tab.shown();
-        let percent = tab.view.map_or(100.0, |view| view.zoom * ui.ctx().pixels_per_point() * 100.0);
+        let percent =
+            tab.view.map_or(100.0, |view| view.zoom * ui.ctx().pixels_per_point() * 100.0);
         if ui
             .add(Button::new(format!("{percent:.0} %")).frame(false))
             .on_hover_text("Click for actual pixels")
@@ -51,12 +54,19 @@ pub fn show(
         }
         ui.weak(document.size.to_string());
         if tab.unwrapped().is_some() {
-            ui.label("Unwrapped")
-                .on_hover_text("You are painting on the unwrapped surface; View, Unwrapped shows the picture");
+            ui.label("Unwrapped").on_hover_text(
+                "You are painting on the unwrapped surface; View, Unwrapped shows the picture",
+            );
         }
         ui.separator();
         if let Some(rect) = canvas.selected().filter(|_| document.active_selection.is_some()) {
-            let about = format!("Selected {} × {} at {}, {}", rect.width(), rect.height(), rect.x0, rect.y0);
+            let about = format!(
+                "Selected {} × {} at {}, {}",
+                rect.width(),
+                rect.height(),
+                rect.x0,
+                rect.y0
+            );
             ui.label(about).on_hover_text("The rectangle around all that is selected");
             ui.separator();
         }
@@ -64,13 +74,15 @@ pub fn show(
             ui.separator();
         }
         // The canvas is drawn later: its state may still belong to the previous document.
-        let is_here = |at: &Vec2| document.size.rect().contains(at.x.floor() as i32, at.y.floor() as i32);
+        let is_here =
+            |at: &Vec2| document.size.rect().contains(at.x.floor() as i32, at.y.floor() as i32);
         if let Some(at) = canvas.under.filter(is_here) {
             let (x, y) = (at.x.floor() as usize, at.y.floor() as usize);
             ui.label(RichText::new(format!("{x}, {y}")).monospace());
             if let Some(surface) = document.surface.as_deref().filter(|s| s.coverage(x, y) > 0) {
                 let n = surface.normal(x, y);
-                let about = format!("n {:+.2} {:+.2} {:+.2}  z {:.3}", n.x, n.y, n.z, surface.depth(x, y));
+                let about =
+                    format!("n {:+.2} {:+.2} {:+.2}  z {:.3}", n.x, n.y, n.z, surface.depth(x, y));
                 ui.label(RichText::new(about).monospace())
                     .on_hover_text("The surface's normal and depth under the pointer");
             }
@@ -79,7 +91,11 @@ pub fn show(
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let took = format!("{:.0} ms", canvas.took.as_secs_f32() * 1000.0);
-            let text = if canvas.is_busy { RichText::new("Painting…").weak() } else { RichText::new(took).weak() };
+            let text = if canvas.is_busy {
+                RichText::new("Painting…").weak()
+            } else {
+                RichText::new(took).weak()
+            };
             ui.label(text).on_hover_text("Time of the last redraw");
             let is_idle = !canvas.is_busy && !ui.input(|input| input.pointer.any_down());
             let used = memory.documents(session, kept_share, is_idle);

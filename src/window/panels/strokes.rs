@@ -17,7 +17,13 @@ use std::sync::Arc;
 const ROWS: usize = 6;
 
 /// The list, and the actions on the selected strokes.
-pub fn show(ui: &mut Ui, session: &Session, layer: &LayerPath, strokes: &[Arc<Stroke>], requests: &mut UiRequests) {
+pub fn show(
+    ui: &mut Ui,
+    session: &Session,
+    layer: &LayerPath,
+    strokes: &[Arc<Stroke>],
+    requests: &mut UiRequests,
+) {
     let n = strokes.len();
     ui.label(format!("{n} {}", if n == 1 { "stroke" } else { "strokes" }));
     let chosen = session.active().map(|tab| tab.chosen_strokes()).unwrap_or_default();
@@ -29,7 +35,8 @@ pub fn show(ui: &mut Ui, session: &Session, layer: &LayerPath, strokes: &[Arc<St
     buttons(ui, layer, n, &chosen, requests);
     title(ui, if chosen.len() == 1 { "Stroke" } else { "Strokes" });
     if let Some(document) = session.shown()
-        && let Some(part) = home::choice(ui, document, first.home().map(|home| &home.frame), "As its layer")
+        && let Some(part) =
+            home::choice(ui, document, first.home().map(|home| &home.frame), "As its layer")
     {
         let (layer, strokes) = (layer.clone(), chosen.clone());
         requests.act(Action::Stroke(StrokeAction::Home { layer, strokes, part }));
@@ -41,7 +48,13 @@ pub fn show(ui: &mut Ui, session: &Session, layer: &LayerPath, strokes: &[Arc<St
 }
 
 /// The topmost stroke first.
-fn list(ui: &mut Ui, layer: &LayerPath, strokes: &[Arc<Stroke>], chosen: &[usize], requests: &mut UiRequests) {
+fn list(
+    ui: &mut Ui,
+    layer: &LayerPath,
+    strokes: &[Arc<Stroke>],
+    chosen: &[usize],
+    requests: &mut UiRequests,
+) {
     let height = ui.spacing().interact_size.y;
     let area = ScrollArea::vertical().id_salt("strokes").max_height((height + 2.0) * ROWS as f32);
     ui.spacing_mut().item_spacing.y = 2.0;
@@ -50,13 +63,21 @@ fn list(ui: &mut Ui, layer: &LayerPath, strokes: &[Arc<Stroke>], chosen: &[usize
             let Some(stroke) = strokes.get(index) else { continue };
             let is_on = chosen.contains(&index);
             ui.horizontal(|ui| {
-                swatch(ui, &format!("Colour of stroke {}", index + 1), stroke.color(), vec2(18.0, height - 4.0));
+                swatch(
+                    ui,
+                    &format!("Colour of stroke {}", index + 1),
+                    stroke.color(),
+                    vec2(18.0, height - 4.0),
+                );
                 let name = format!("Stroke {} · {:.0} px", index + 1, stroke.brush().size);
                 let row = Button::selectable(is_on, name).min_size(vec2(ui.available_width(), 0.0));
                 if ui.add(row).clicked() {
                     let adds = ui.input(|i| i.modifiers.shift || i.modifiers.command);
                     let strokes = toggled(chosen, index, adds);
-                    requests.act(Action::Stroke(StrokeAction::Choose { layer: layer.clone(), strokes }));
+                    requests.act(Action::Stroke(StrokeAction::Choose {
+                        layer: layer.clone(),
+                        strokes,
+                    }));
                     requests.act(Action::Hand(HandAction::Tool { tool: ToolKind::Strokes }));
                 }
             });
@@ -73,7 +94,13 @@ fn toggled(chosen: &[usize], index: usize, adds: bool) -> Vec<usize> {
     }
 }
 
-fn buttons(ui: &mut Ui, layer: &LayerPath, count: usize, chosen: &[usize], requests: &mut UiRequests) {
+fn buttons(
+    ui: &mut Ui,
+    layer: &LayerPath,
+    count: usize,
+    chosen: &[usize],
+    requests: &mut UiRequests,
+) {
     let (layer, strokes) = (|| layer.clone(), || chosen.to_vec());
     let mut act = |action: StrokeAction| requests.act(Action::Stroke(action));
     ui.horizontal(|ui| {
@@ -85,24 +112,38 @@ fn buttons(ui: &mut Ui, layer: &LayerPath, count: usize, chosen: &[usize], reque
                 act(StrokeAction::Order { layer: layer(), stroke, to: stroke - 1 });
             }
             let hint = "Takes over its brush, operator and colour";
-            if icon_button(ui, Icon::Tool(ToolKind::Eyedropper), "Take its brush", false).on_hover_text(hint).clicked()
+            if icon_button(ui, Icon::Tool(ToolKind::Eyedropper), "Take its brush", false)
+                .on_hover_text(hint)
+                .clicked()
             {
                 act(StrokeAction::Take { layer: layer(), stroke });
             }
         }
-        if icon_button(ui, Icon::Duplicate, "Duplicate strokes", false).on_hover_text("Duplicate").clicked() {
+        if icon_button(ui, Icon::Duplicate, "Duplicate strokes", false)
+            .on_hover_text("Duplicate")
+            .clicked()
+        {
             act(StrokeAction::Duplicate { layer: layer(), strokes: strokes() });
         }
         let hint = "Bake: turns them into pixels on a paint layer of their own";
         if icon_button(ui, Icon::Bake, "Bake strokes", false).on_hover_text(hint).clicked() {
             act(StrokeAction::Bake { layer: layer(), strokes: strokes() });
         }
-        if icon_button(ui, Icon::Delete, "Delete strokes", false).on_hover_text("Delete").clicked() {
+        if icon_button(ui, Icon::Delete, "Delete strokes", false).on_hover_text("Delete").clicked()
+        {
             act(StrokeAction::Delete { layer: layer(), strokes: strokes() });
         }
         let hint = "Paints them with the current brush";
-        let restyle = StrokeAction::Restyle { layer: layer(), strokes: strokes(), to: Style::Brush {}, done: true };
-        if icon_button(ui, Icon::Tool(ToolKind::Brush), "Give brush in hand", false).on_hover_text(hint).clicked() {
+        let restyle = StrokeAction::Restyle {
+            layer: layer(),
+            strokes: strokes(),
+            to: Style::Brush {},
+            done: true,
+        };
+        if icon_button(ui, Icon::Tool(ToolKind::Brush), "Give brush in hand", false)
+            .on_hover_text(hint)
+            .clicked()
+        {
             act(restyle);
         }
     });
@@ -123,7 +164,8 @@ fn styles(ui: &mut Ui, stroke: &Stroke, mut set: impl FnMut(Style, bool)) {
     give(opacity.map(|c| c.map(|to| Style::Opacity { to })));
     let flow = unit("Flow", "What one dab adds").row(ui, brush.flow);
     give(flow.map(|c| c.map(|to| Style::Flow { to })));
-    let hardness = unit("Hardness", "Share of the radius that is fully covered").row(ui, brush.hardness);
+    let hardness =
+        unit("Hardness", "Share of the radius that is fully covered").row(ui, brush.hardness);
     give(hardness.map(|c| c.map(|to| Style::Hardness { to })));
     let softness = unit("Softness", "A rougher, less glossy mark").row(ui, brush.softness);
     give(softness.map(|c| c.map(|to| Style::Softness { to })));

@@ -17,7 +17,8 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         if ui.button("Give it a shape…").on_hover_text("Of what the drawing covers").clicked() {
             requests.request(WindowRequest::ShapeDialog);
         }
-        if ui.button("Give it maps…").on_hover_text("Normals, depth or both, from files").clicked() {
+        if ui.button("Give it maps…").on_hover_text("Normals, depth or both, from files").clicked()
+        {
             requests.request(WindowRequest::ReplaceMapsDialog);
         }
         return;
@@ -31,12 +32,17 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         let views = available(document, session.layer().map(|layer| &**layer));
         for &view in &views {
             let is_on = session.overlay.as_deref() == Some(view.name());
-            if ui.add(Button::selectable(is_on, sentence(view.name()))).on_hover_text(about(view)).clicked() {
+            if ui
+                .add(Button::selectable(is_on, sentence(view.name())))
+                .on_hover_text(about(view))
+                .clicked()
+            {
                 requests.act(Action::View(ViewAction::Overlay { view: Some(view.name().into()) }));
             }
         }
     });
-    let hint = "The picture sways by its depth, as if you moved your head; any key or click stops it";
+    let hint =
+        "The picture sways by its depth, as if you moved your head; any key or click stops it";
     if ui.button("Wobble").on_hover_text(hint).clicked() {
         requests.request(WindowRequest::Wobble);
     }
@@ -53,12 +59,16 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             ("Normals", source.normal.as_ref().map(|map| name(&map.file))),
             ("Depth", source.depth.as_ref().map(|map| name(&map.file))),
         ] {
-            ui.label(format!("{part}: {}", file.unwrap_or_else(|| "derived from the other".into())));
+            ui.label(format!(
+                "{part}: {}",
+                file.unwrap_or_else(|| "derived from the other".into())
+            ));
         }
     }
     ui.weak(format!("{} pixels, {:.0} px deep", surface.size(), surface.depth_range_px()));
     ui.horizontal_wrapped(|ui| {
-        let hint = "Live layers bend over the new shape: a painting on another object, or in another pose";
+        let hint =
+            "Live layers bend over the new shape: a painting on another object, or in another pose";
         if ui.button("Replace maps…").on_hover_text(hint).clicked() {
             requests.request(WindowRequest::ReplaceMapsDialog);
         }
@@ -86,7 +96,11 @@ fn about(view: SurfaceView) -> &'static str {
             "Radiance scaling: how much light of each brightness is raised on convex and lowered on concave parts"
         }
         SurfaceView::Clay => "Unpainted, in even light: the form alone",
-        SurfaceView::Contours => "Lines of equal depth, as on a map: where they are close the surface is steep",
-        SurfaceView::Lit => "The surface and a ball under one light: if they agree, the maps are the right way round",
+        SurfaceView::Contours => {
+            "Lines of equal depth, as on a map: where they are close the surface is steep"
+        }
+        SurfaceView::Lit => {
+            "The surface and a ball under one light: if they agree, the maps are the right way round"
+        }
     }
 }

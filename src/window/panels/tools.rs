@@ -21,19 +21,24 @@ const GAP_PT: f32 = 2.0;
 const COLOURS_PT: f32 = 124.0;
 
 pub fn show(ui: &mut Ui, session: &Session, keymap: &Keymap, requests: &mut UiRequests) {
-    let beneath = Panel::bottom("current colours").resizable(false).show_separator_line(false).frame(Frame::NONE);
+    let beneath = Panel::bottom("current colours")
+        .resizable(false)
+        .show_separator_line(false)
+        .frame(Frame::NONE);
     beneath.show(ui, |ui| ui.vertical_centered(|ui| colours(ui, session, requests)));
     // In a very low window tools scroll; the colours stay visible.
     let area = ScrollArea::vertical().scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden);
     let columns = if ui.available_width() > LARGEST_PT + 1.0 { 2 } else { 1 };
     let side = side_pt(ui, ui.available_height(), columns).max(SMALLEST_PT);
-    let beside_pt = 0.5 * (ui.available_width() - columns as f32 * side - (columns - 1) as f32 * GAP_PT);
+    let beside_pt =
+        0.5 * (ui.available_width() - columns as f32 * side - (columns - 1) as f32 * GAP_PT);
     area.show(ui, |ui| {
         for row in ToolKind::ALL.chunks(columns) {
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = GAP_PT;
                 ui.add_space((beside_pt - GAP_PT).max(0.0));
-                row.iter().for_each(|(tool, _)| button(ui, session, keymap, (*tool, side), requests));
+                row.iter()
+                    .for_each(|(tool, _)| button(ui, session, keymap, (*tool, side), requests));
             });
         }
     });
@@ -52,7 +57,13 @@ fn side_pt(ui: &Ui, height_pt: f32, columns: usize) -> f32 {
     (height_pt / rows - ui.spacing().item_spacing.y).min(largest)
 }
 
-fn button(ui: &mut Ui, session: &Session, keymap: &Keymap, (tool, side): (ToolKind, f32), requests: &mut UiRequests) {
+fn button(
+    ui: &mut Ui,
+    session: &Session,
+    keymap: &Keymap,
+    (tool, side): (ToolKind, f32),
+    requests: &mut UiRequests,
+) {
     let response = sized_button(ui, Icon::Tool(tool), tool.label(), session.tool == tool, side);
     let keys = keymap
         .of(KeyTarget::Tool(tool))
@@ -69,10 +80,16 @@ fn colours(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     if swatch(ui, "Second colour", session.second_color, vec2(32.0, 16.0)).clicked() {
         requests.act(Action::Hand(HandAction::SwapColors {}));
     }
-    if icon_button(ui, Icon::Swap, "Swap colours", false).on_hover_text("Swap colours (X)").clicked() {
+    if icon_button(ui, Icon::Swap, "Swap colours", false)
+        .on_hover_text("Swap colours (X)")
+        .clicked()
+    {
         requests.act(Action::Hand(HandAction::SwapColors {}));
     }
-    if icon_button(ui, Icon::Reset, "Default colours", false).on_hover_text("Black and white (D)").clicked() {
+    if icon_button(ui, Icon::Reset, "Default colours", false)
+        .on_hover_text("Black and white (D)")
+        .clicked()
+    {
         requests.act(Action::Hand(HandAction::DefaultColors {}));
     }
 }

@@ -1,5 +1,5 @@
-//! The options of the transform tool: its commands, how pixels are sampled, and its frame in numbers.
-//! Floor 7.
+//! The options of the transform tool: its commands, how pixels are sampled, and its frame in
+//! numbers. Floor 7.
 
 use crate::commands::{MenuCommand, TRANSFORMS};
 use crate::document::LayerLock;
@@ -17,20 +17,25 @@ use std::ops::RangeInclusive;
 /// The upper row: commands, sampling, pivot.
 pub fn ways(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     if session.shown().is_some_and(|document| document.surface.is_some())
-        && let Some(carried) = choice(ui, "What is transformed", session.carried, &TransformTarget::LABELS)
+        && let Some(carried) =
+            choice(ui, "What is transformed", session.carried, &TransformTarget::LABELS)
     {
         requests.act(Action::Hand(HandAction::Carried { carried }));
     }
     let mut commands = TRANSFORMS.split(MenuCommand::is_line);
     for command in commands.next().unwrap_or_default() {
-        let button = ui.add_enabled((command.can)(session), Button::new(command.name)).on_hover_text(command.hint);
+        let button = ui
+            .add_enabled((command.can)(session), Button::new(command.name))
+            .on_hover_text(command.hint);
         if button.clicked() {
             (command.run)(session, requests);
         }
     }
     ui.menu_button("Mirror and turn", |ui| {
         for command in commands.next().unwrap_or_default() {
-            let entry = ui.add_enabled((command.can)(session), Button::new(command.name)).on_hover_text(command.hint);
+            let entry = ui
+                .add_enabled((command.can)(session), Button::new(command.name))
+                .on_hover_text(command.hint);
             if entry.clicked() {
                 (command.run)(session, requests);
                 ui.close();
@@ -44,15 +49,22 @@ pub fn ways(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let transforms = chosen.iter().filter_map(|id| tab.document().layer(*id)?.transform.as_ref());
     if let Some(transform) = transforms.last() {
         ui.label("Pixels");
-        if let Some(filter) = choice(ui, "How pixels are sampled", transform.filter, &Resampling::ALL) {
+        if let Some(filter) =
+            choice(ui, "How pixels are sampled", transform.filter, &Resampling::ALL)
+        {
             let to = Property::Sampled { filter };
-            requests.act(Action::Layer(LayerAction::Set { layer: session.layer_paths(), to, done: true }));
+            requests.act(Action::Layer(LayerAction::Set {
+                layer: session.layer_paths(),
+                to,
+                done: true,
+            }));
         }
     }
     if let Some(frame) = tab.frame(session.carried) {
         ui.label("Pivot");
         let choices = PIVOTS.map(|(share, name)| (Some(share), name));
-        let known = PIVOTS.iter().map(|(share, _)| *share).find(|share| *share == frame.pivot_share);
+        let known =
+            PIVOTS.iter().map(|(share, _)| *share).find(|share| *share == frame.pivot_share);
         let mut all: Vec<(Option<Vec2>, &str)> = choices.into();
         all.extend(known.is_none().then_some((None, "set by hand")));
         if let Some(Some(at)) = choice(ui, "Pivot", known, &all) {
@@ -64,11 +76,18 @@ pub fn ways(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
 /// A mesh over the layer, by the number of points along a side.
 fn meshes(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let Some(layer) = session.layer().filter(|layer| layer.lock != LayerLock::All) else { return };
-    let now = layer.transform.as_ref().and_then(|own| own.mesh()).map(|mesh| [mesh.columns(), mesh.rows()]);
+    let now = layer
+        .transform
+        .as_ref()
+        .and_then(|own| own.mesh())
+        .map(|mesh| [mesh.columns(), mesh.rows()]);
     let known = now.map_or("Mesh".to_owned(), |[columns, rows]| format!("Mesh {columns} × {rows}"));
     let menu = ui.menu_button(known, |ui| {
         for side in [2, 3, 4, 5, 6, 8, 12] {
-            if ui.selectable_label(now == Some([side, side]), format!("{side} × {side} points")).clicked() {
+            if ui
+                .selectable_label(now == Some([side, side]), format!("{side} × {side} points"))
+                .clicked()
+            {
                 let layer = session.layer_paths();
                 requests.act(Action::Layer(LayerAction::Mesh { layer, columns: side, rows: side }));
                 ui.close();
@@ -91,11 +110,15 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     if !of_shape && chosen.iter().any(|id| locked(*id)) {
         return drop(ui.weak("What is locked cannot be transformed"));
     }
-    let (Some(frame), Some(before)) = (tab.frame(session.carried), tab.frame_before(session.carried)) else {
+    let (Some(frame), Some(before)) =
+        (tab.frame(session.carried), tab.frame_before(session.carried))
+    else {
         return drop(ui.weak("There is nothing on this layer to transform"));
     };
     let (Some(was), Some(before)) = (FrameNumbers::of(&frame), FrameNumbers::of(&before)) else {
-        return drop(ui.weak("In perspective: drag its corners with Ctrl, or remove the transform for numbers"));
+        return drop(ui.weak(
+            "In perspective: drag its corners with Ctrl, or remove the transform for numbers",
+        ));
     };
     let Some(edited) = numbers(ui, was) else { return };
     let to = if edited.keeps_pivot { edited.to.about(frame.pivot_share, &was) } else { edited.to };
@@ -120,18 +143,20 @@ struct EditedNumbers {
 fn numbers(ui: &mut Ui, was: FrameNumbers) -> Option<EditedNumbers> {
     let mut to = was;
     let (mut moved, mut changed, mut done) = (false, false, false);
-    let mut number = |ui: &mut Ui, name: &str, value: &mut f64, range: RangeInclusive<f64>, suffix: &str| {
-        // The share of a side follows it, without a name of its own for screen readers.
-        let is_share = suffix == " %";
-        if !is_share {
-            ui.label(name);
-        }
-        let field = DragValue::new(value).range(range).max_decimals(2).speed(0.5).suffix(suffix);
-        let response = ui.add(field);
-        named(&response, name);
-        done |= response.changed() && !response.dragged() || response.drag_stopped();
-        response.changed() || response.drag_stopped()
-    };
+    let mut number =
+        |ui: &mut Ui, name: &str, value: &mut f64, range: RangeInclusive<f64>, suffix: &str| {
+            // The share of a side follows it, without a name of its own for screen readers.
+            let is_share = suffix == " %";
+            if !is_share {
+                ui.label(name);
+            }
+            let field =
+                DragValue::new(value).range(range).max_decimals(2).speed(0.5).suffix(suffix);
+            let response = ui.add(field);
+            named(&response, name);
+            done |= response.changed() && !response.dragged() || response.drag_stopped();
+            response.changed() || response.drag_stopped()
+        };
     moved |= number(ui, "X", &mut to.at.x, FrameNumbers::SIDE, " px");
     moved |= number(ui, "Y", &mut to.at.y, FrameNumbers::SIDE, " px");
     ui.add_space(4.0);

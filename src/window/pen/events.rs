@@ -1,5 +1,6 @@
-//! The window's own events as a pen: a mouse, a touch with the force that it reports (pens on Windows, phones and the
-//! web), or a pointer whose tablet reports pressure and tilt separately (pens on X11). Floor 7.
+//! The window's own events as a pen: a mouse, a touch with the force that it reports (pens on
+//! Windows, phones and the web), or a pointer whose tablet reports pressure and tilt separately
+//! (pens on X11). Floor 7.
 
 use super::tablet::PenState;
 use super::{PenPhase, PenReport, PenSource, SharedTablet};
@@ -26,13 +27,16 @@ impl WindowPen {
     pub fn on(&mut self, tablet: SharedTablet) {
         self.tablet = Some(tablet);
     }
+
     /// Takes an event of a frame (`px_per_pt`: px per point) and turns it into reports.
     pub fn hear(&mut self, event: &Event, px_per_pt: f32, now_secs: f64) {
         let phase = match *event {
             Event::Touch { phase, force, .. } => {
                 match phase {
                     TouchPhase::Start => self.touches += 1,
-                    TouchPhase::End | TouchPhase::Cancel => self.touches = self.touches.saturating_sub(1),
+                    TouchPhase::End | TouchPhase::Cancel => {
+                        self.touches = self.touches.saturating_sub(1)
+                    }
                     TouchPhase::Move => {}
                 }
                 self.force = force.filter(|_| self.touches > 0);
@@ -55,17 +59,20 @@ impl WindowPen {
         let report = phase.map(|phase| self.report(phase, now_secs));
         self.reports.extend(report);
     }
+
     /// All events of a frame are processed.
     pub fn settle(&mut self) {
         if let Some(tablet) = &self.tablet {
             tablet.borrow_mut().settle();
         }
     }
+
     fn moved(&mut self, at: Pos2, px_per_pt: f32, now_secs: f64) {
         let at_px = [at.x * px_per_pt, at.y * px_per_pt].map(f64::from);
-        if let Some(held) = self.tablet.as_ref().and_then(|tablet| tablet.borrow_mut().take(at_px)) {
-            // Another device took the pointer: a pen's stroke ends at its last place. With several mice this may be
-            // reported late.
+        if let Some(held) = self.tablet.as_ref().and_then(|tablet| tablet.borrow_mut().take(at_px))
+        {
+            // Another device took the pointer: a pen's stroke ends at its last place. With several
+            // mice this may be reported late.
             if self.is_down && self.held.pressure.is_some() && held.device != self.held.device {
                 self.is_down = false;
                 self.reports.push_back(self.report(PenPhase::Lost, now_secs));
@@ -74,10 +81,12 @@ impl WindowPen {
         }
         self.at = at;
     }
+
     fn report(&self, phase: PenPhase, secs: f64) -> PenReport {
         let PenState { pressure, tilt, is_eraser, .. } = self.held;
         PenReport { phase, at: self.at, pressure: self.force.or(pressure), tilt, secs, is_eraser }
     }
+
     /// The number of fingers and pens on the glass: two or more move the view instead of painting.
     pub fn touches(&self) -> usize {
         self.touches
@@ -97,15 +106,24 @@ mod tests {
     use eframe::egui::{Modifiers, PointerButton, TouchDeviceId, TouchId, pos2};
 
     fn touch(phase: TouchPhase, force: Option<f32>) -> Event {
-        Event::Touch { device_id: TouchDeviceId(1), id: TouchId(1), phase, pos: pos2(3.0, 4.0), force }
+        Event::Touch {
+            device_id: TouchDeviceId(1),
+            id: TouchId(1),
+            phase,
+            pos: pos2(3.0, 4.0),
+            force,
+        }
     }
+
     fn reports(events: &[Event]) -> Vec<(PenPhase, Option<f32>)> {
         let mut pen = WindowPen::default();
         events.iter().for_each(|event| pen.hear(event, 1.0, 0.0));
         std::iter::from_fn(|| pen.next()).map(|report| (report.phase, report.pressure)).collect()
     }
+
     fn button(pressed: bool) -> Event {
-        let (pos, button, modifiers) = (pos2(3.0, 4.0), PointerButton::Primary, Modifiers::default());
+        let (pos, button, modifiers) =
+            (pos2(3.0, 4.0), PointerButton::Primary, Modifiers::default());
         Event::PointerButton { pos, button, pressed, modifiers }
     }
 
@@ -120,19 +138,29 @@ mod tests {
             button(false),
         ];
         let down = PenPhase::Down(PointerButton::Primary);
-        assert_eq!(reports(&events), [(down, Some(0.25)), (PenPhase::Move, Some(0.5)), (PenPhase::Up, None)]);
+        assert_eq!(
+            reports(&events),
+            [(down, Some(0.25)), (PenPhase::Move, Some(0.5)), (PenPhase::Up, None)]
+        );
     }
+
     #[test]
     fn a_touch_that_is_taken_away_is_lost_and_a_mouse_has_no_pressure() {
-        let events = [touch(TouchPhase::Start, Some(1.0)), button(true), touch(TouchPhase::Cancel, None)];
+        let events =
+            [touch(TouchPhase::Start, Some(1.0)), button(true), touch(TouchPhase::Cancel, None)];
         assert_eq!(reports(&events).last(), Some(&(PenPhase::Lost, None)));
         assert_eq!(reports(&[button(true)]), [(PenPhase::Down(PointerButton::Primary), None)]);
     }
+
     #[test]
     fn a_tablets_pressure_is_that_of_its_motion_at_any_scale_of_the_screen() {
         let tablet = SharedTablet::default();
         let axes = PenAxis::new(2, AxisMeaning::Pressure, (0.0, 1000.0), 0.0);
-        tablet.borrow_mut().follow(PenAxes { device: 7, axes: axes.into_iter().collect(), is_eraser: true });
+        tablet.borrow_mut().follow(PenAxes {
+            device: 7,
+            axes: axes.into_iter().collect(),
+            is_eraser: true,
+        });
         let mut pen = WindowPen::default();
         pen.on(tablet.clone());
         for (at_px, pressure) in [([33.25, 10.5], 250.0), ([36.0, 12.0], 500.0)] {
@@ -141,16 +169,22 @@ mod tests {
         }
         pen.hear(&Event::PointerMoved(pos2(33.25 / 1.5, 7.0)), 1.5, 0.0);
         pen.hear(&Event::PointerMoved(pos2(24.0, 8.0)), 1.5, 0.0);
-        let reports: Vec<_> = std::iter::from_fn(|| pen.next()).map(|r| (r.pressure, r.is_eraser)).collect();
+        let reports: Vec<_> =
+            std::iter::from_fn(|| pen.next()).map(|r| (r.pressure, r.is_eraser)).collect();
         assert_eq!(reports, [(Some(0.25), true), (Some(0.5), true)]);
     }
+
     #[test]
     fn another_device_that_takes_the_pointer_ends_a_pens_stroke_and_no_mouses() {
         let ends = |first: Option<PenAxis>| {
             let tablet = SharedTablet::default();
             let mut pen = WindowPen::default();
             pen.on(tablet.clone());
-            tablet.borrow_mut().follow(PenAxes { device: 7, axes: first.into_iter().collect(), is_eraser: false });
+            tablet.borrow_mut().follow(PenAxes {
+                device: 7,
+                axes: first.into_iter().collect(),
+                is_eraser: false,
+            });
             tablet.borrow_mut().moved([3.0, 4.0]);
             pen.hear(&Event::PointerMoved(pos2(3.0, 4.0)), 1.0, 0.0);
             pen.hear(&button(true), 1.0, 0.0);

@@ -1,7 +1,8 @@
-//! The pen as the platform reports it: a [`PenSource`] gives its reports, and [`ReportFilter`] passes the good ones on
-//! and ends a stroke whose reports become invalid. Floor 7. Sources: `events`, the window's own (mouse, touch with its
-//! force, pens that come as touch, pens that come as a pointer with a `tablet`'s axes); `recorded`, for tests. A
-//! platform's [`PenDevices`] give the meaning of the axes: `x11`. Not here: the use of the reports (`canvas::pointer`).
+//! The pen as the platform reports it: a [`PenSource`] gives its reports, and [`ReportFilter`]
+//! passes the good ones on and ends a stroke whose reports become invalid. Floor 7. Sources:
+//! `events`, the window's own (mouse, touch with its force, pens that come as touch, pens that come
+//! as a pointer with a `tablet`'s axes); `recorded`, for tests. A platform's [`PenDevices`] give
+//! the meaning of the axes: `x11`. Not here: the use of the reports (`canvas::pointer`).
 
 mod events;
 #[cfg(test)]
@@ -43,7 +44,8 @@ pub enum PenPhase {
     /// It moved, above the canvas or on it.
     Move,
     Up,
-    /// It left the tablet, was unplugged, or was cancelled by the platform: its stroke ends where it last was.
+    /// It left the tablet, was unplugged, or was cancelled by the platform: its stroke ends where
+    /// it last was.
     Lost,
 }
 
@@ -66,6 +68,7 @@ pub fn devices<T>(events: &winit::event_loop::EventLoop<T>) -> Option<Box<dyn Pe
     let server = is_x11.then(x11::X11Server::connect).flatten()?;
     Some(Box::new(server))
 }
+
 /// What the platform of the window knows about pens beyond its events.
 #[cfg(not(all(unix, not(target_os = "macos"))))]
 pub fn devices<T>(_: &winit::event_loop::EventLoop<T>) -> Option<Box<dyn PenDevices>> {

@@ -1,5 +1,5 @@
-//! A recorded pen, for tests: one report per line, `[x, y, pressure, secs]`, `null` for a missing pressure and `"nan"`
-//! for an invalid number. Floor 7.
+//! A recorded pen, for tests: one report per line, `[x, y, pressure, secs]`, `null` for a missing
+//! pressure and `"nan"` for an invalid number. Floor 7.
 
 use super::{PenPhase, PenReport, PenSource};
 use eframe::egui::{PointerButton, pos2};

@@ -1,5 +1,6 @@
-//! A pen that moves the pointer like a mouse and reports pressure and tilt on separate axes: keeps their values at each
-//! motion. Floor 7. Not here: which axes they are ([`Devices`](super::PenDevices)).
+//! A pen that moves the pointer like a mouse and reports pressure and tilt on separate axes: keeps
+//! their values at each motion. Floor 7. Not here: which axes they are
+//! ([`Devices`](super::PenDevices)).
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -8,7 +9,8 @@ use std::rc::Rc;
 /// Updated by the event loop and read by the window, both on one thread.
 pub type SharedTablet = Rc<RefCell<Tablet>>;
 
-/// The most motions kept for a window that does not read them: more than a second of the fastest pen.
+/// The most motions kept for a window that does not read them: more than a second of the fastest
+/// pen.
 const MOST_MOTIONS: usize = 4096;
 /// Places within this distance are the same, px: the window rounds them to points and back.
 const SAME_PX: f64 = 0.02;
@@ -41,14 +43,21 @@ impl PenAxis {
     pub fn new(number: u32, reads: AxisMeaning, range: (f64, f64), value: f64) -> Option<Self> {
         (range.1 > range.0).then_some(Self { number, reads, range, value })
     }
+
     /// As a share of the range, `[0, 1]`. NaN stays NaN, and ends the stroke.
     fn ratio(&self, value: f64) -> f64 {
         ((value - self.range.0) / (self.range.1 - self.range.0)).clamp(0.0, 1.0)
     }
-    /// The common drivers report degrees; any other range is taken to go from one side to the other.
+
+    /// The common drivers report degrees; any other range is taken to go from one side to the
+    /// other.
     fn degrees(&self, value: f64) -> f64 {
         let is_degrees = self.range.0 < 0.0 && self.range.0 >= -90.0 && self.range.1 <= 90.0;
-        if is_degrees { value.clamp(-90.0, 90.0) } else { (2.0 * self.ratio(value) - 1.0) * FARTHEST_DEGREES }
+        if is_degrees {
+            value.clamp(-90.0, 90.0)
+        } else {
+            (2.0 * self.ratio(value) - 1.0) * FARTHEST_DEGREES
+        }
     }
 }
 
@@ -85,12 +94,14 @@ pub struct Tablet {
 impl Tablet {
     /// Another device moves the pointer from now on.
     pub fn follow(&mut self, axes: PenAxes) {
-        self.held = PenState { device: axes.device, is_eraser: axes.is_eraser, ..PenState::default() };
+        self.held =
+            PenState { device: axes.device, is_eraser: axes.is_eraser, ..PenState::default() };
         self.axes = axes;
         for axis in self.axes.axes.clone() {
             self.read(&axis, axis.value);
         }
     }
+
     /// The pointer moved to a place of the window, px; its axes follow.
     pub fn moved(&mut self, at_px: [f64; 2]) {
         if self.motions.len() == MOST_MOTIONS {
@@ -98,6 +109,7 @@ impl Tablet {
         }
         self.motions.push_back((at_px, self.held));
     }
+
     /// Sets an axis of the last motion.
     pub fn axis(&mut self, number: u32, value: f64) {
         if let Some(axis) = self.axes.axes.iter().find(|axis| axis.number == number).copied() {
@@ -107,6 +119,7 @@ impl Tablet {
             *held = self.held;
         }
     }
+
     fn read(&mut self, axis: &PenAxis, value: f64) {
         match axis.reads {
             AxisMeaning::Pressure => self.held.pressure = Some(axis.ratio(value) as f32),
@@ -114,12 +127,16 @@ impl Tablet {
             AxisMeaning::TiltY => self.held.tilt.1 = axis.degrees(value) as f32,
         }
     }
-    /// The state at the window's next motion, which went to this place, px; `None` if no device reported it.
+
+    /// The state at the window's next motion, which went to this place, px; `None` if no device
+    /// reported it.
     pub fn take(&mut self, at_px: [f64; 2]) -> Option<PenState> {
-        let is_here = |at: [f64; 2]| (at[0] - at_px[0]).abs() < SAME_PX && (at[1] - at_px[1]).abs() < SAME_PX;
+        let is_here =
+            |at: [f64; 2]| (at[0] - at_px[0]).abs() < SAME_PX && (at[1] - at_px[1]).abs() < SAME_PX;
         let found = self.motions.iter().position(|&(at, _)| is_here(at))?;
         self.motions.drain(..=found).next_back().map(|(_, held)| held)
     }
+
     /// The window has read all motions.
     pub fn settle(&mut self) {
         self.motions.clear();
@@ -139,7 +156,11 @@ mod tests {
             axis(5, AxisMeaning::Pressure, (7.0, 7.0)),
         ];
         let mut tablet = Tablet::default();
-        tablet.follow(PenAxes { device: 9, axes: axes.into_iter().flatten().collect(), is_eraser: false });
+        tablet.follow(PenAxes {
+            device: 9,
+            axes: axes.into_iter().flatten().collect(),
+            is_eraser: false,
+        });
         tablet
     }
 
@@ -159,6 +180,7 @@ mod tests {
         assert_eq!((last.pressure, last.tilt, last.device), (Some(1.0), (30.0, 30.0), 9));
         assert_eq!(pen.take([2.0, 0.0]), None);
     }
+
     #[test]
     fn a_mouse_has_no_pressure_after_a_pen_had() {
         let mut tablet = pen();
@@ -168,6 +190,7 @@ mod tests {
         tablet.axis(3, 120.0);
         assert_eq!(tablet.take([5.0, 5.0]), Some(PenState::default()));
     }
+
     #[test]
     fn what_is_no_number_stays_none_and_an_empty_range_is_no_axis() {
         let mut pen = pen();
@@ -176,6 +199,7 @@ mod tests {
         assert!(pen.take([0.0, 0.0]).unwrap().pressure.unwrap().is_nan());
         assert_eq!(PenAxis::new(1, AxisMeaning::Pressure, (f64::NAN, 1.0), 0.0), None);
     }
+
     #[test]
     fn motions_that_nobody_reads_do_not_pile_up() {
         let mut pen = pen();

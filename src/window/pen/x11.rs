@@ -1,12 +1,14 @@
-//! Pens on X11, XWayland's too: finds which device moves the pointer now, and which of its axes are pressure and tilt,
-//! by querying the server. The values of the axes come with the window's own events. Floor 7. X11 only. If the server
-//! does not reply, everything is a mouse.
+//! Pens on X11, XWayland's too: finds which device moves the pointer now, and which of its axes are
+//! pressure and tilt, by querying the server. The values of the axes come with the window's own
+//! events. Floor 7. X11 only. If the server does not reply, everything is a mouse.
 
 use super::{AxisMeaning, PenAxes, PenAxis, PenDevices};
 use x11rb::connection::Connection;
 use x11rb::errors::ReplyError;
 use x11rb::protocol::Event;
-use x11rb::protocol::xinput::{self, ConnectionExt, DeviceClass, DeviceClassData, DeviceId, Fp3232, XIEventMask};
+use x11rb::protocol::xinput::{
+    self, ConnectionExt, DeviceClass, DeviceClassData, DeviceId, Fp3232, XIEventMask,
+};
 use x11rb::protocol::xproto::{Atom, ConnectionExt as _};
 use x11rb::rust_connection::RustConnection;
 
@@ -37,9 +39,11 @@ impl X11Server {
         let root = connection.setup().roots.get(screen)?.root;
         Self::listen(connection, root).ok()
     }
+
     fn listen(connection: RustConnection, root: u32) -> Result<Self, ReplyError> {
         connection.xinput_xi_query_version(2, 2)?.reply()?;
-        let changes = xinput::EventMask { deviceid: ALL_MASTERS, mask: vec![XIEventMask::DEVICE_CHANGED] };
+        let changes =
+            xinput::EventMask { deviceid: ALL_MASTERS, mask: vec![XIEventMask::DEVICE_CHANGED] };
         connection.xinput_xi_select_events(root, &[changes])?.check()?;
         let mut labels = Vec::new();
         for (name, reads) in LABELS {
@@ -47,13 +51,15 @@ impl X11Server {
         }
         let mut server = Self { connection, labels, first: None, is_gone: false };
         let masters = server.connection.xinput_xi_query_device(ALL_MASTERS)?.reply()?.infos;
-        let pointer = masters.iter().find(|device| device.type_ == xinput::DeviceType::MASTER_POINTER);
+        let pointer =
+            masters.iter().find(|device| device.type_ == xinput::DeviceType::MASTER_POINTER);
         server.first = pointer.map(|pointer| {
             let source = pointer.classes.first().map_or(pointer.deviceid, |class| class.sourceid);
             server.axes(source, &pointer.classes)
         });
         Ok(server)
     }
+
     fn axes(&self, source: DeviceId, classes: &[DeviceClass]) -> PenAxes {
         let axis = |class: &DeviceClass| match class.data {
             DeviceClassData::Valuator(valuator) => {
@@ -68,11 +74,15 @@ impl X11Server {
         let is_eraser = !axes.is_empty() && self.name(source).to_lowercase().contains("eraser");
         PenAxes { device: source.into(), axes, is_eraser }
     }
+
     /// Empty for a device that was removed.
     fn name(&self, device: DeviceId) -> String {
         let asked = self.connection.xinput_xi_query_device(device).map_err(ReplyError::from);
-        let known = asked.and_then(|asked| asked.reply()).map(|reply| reply.infos).unwrap_or_default();
-        known.first().map_or_else(String::new, |device| String::from_utf8_lossy(&device.name).into_owned())
+        let known =
+            asked.and_then(|asked| asked.reply()).map(|reply| reply.infos).unwrap_or_default();
+        known
+            .first()
+            .map_or_else(String::new, |device| String::from_utf8_lossy(&device.name).into_owned())
     }
 }
 

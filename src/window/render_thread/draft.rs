@@ -6,7 +6,8 @@ use super::{COARSEST, DRAFT_SHARE, FINE, FRAME};
 use crate::document::{Document, DocumentReducer};
 use crate::math::Rect;
 
-/// A smaller picture, or one of all pixels that is read more coarsely, for this drag and the next ones.
+/// A smaller picture, or one of all pixels that is read more coarsely, for this drag and the next
+/// ones.
 pub struct DraftRender {
     /// Canvas pixels per pixel of its own, along a side.
     pub step: u32,
@@ -30,6 +31,7 @@ impl DraftRender {
         let reduced = DocumentReducer::new(1.0 / step as f32);
         Self { step, reduced, surface: None, pass: RenderPass::default() }
     }
+
     /// Scales down one more layer, or starts on the surface on another thread.
     pub fn prepare(&mut self, document: &Document) -> Readiness {
         let missing = self.reduced.missing_surface(document);
@@ -60,6 +62,7 @@ impl DraftRender {
             (false, None) => Readiness::Ready,
         }
     }
+
     /// Half-done work on the other thread is waited for: starting again would take longer.
     pub fn wait_for_surface(&mut self, document: &Document) {
         let missing = self.reduced.missing_surface(document);
@@ -68,20 +71,30 @@ impl DraftRender {
             self.reduced.take_surface(made);
         }
     }
+
     /// The visible pixels of the small picture.
     pub fn in_sight(&self, canvas: Rect) -> Rect {
         let step = self.step as i32;
         let Rect { x0, y0, x1, y1 } = canvas;
-        Rect::new(x0.div_euclid(step), y0.div_euclid(step), x1.div_euclid(step) + 1, y1.div_euclid(step) + 1)
+        Rect::new(
+            x0.div_euclid(step),
+            y0.div_euclid(step),
+            x1.div_euclid(step) + 1,
+            y1.div_euclid(step) + 1,
+        )
     }
-    /// Its passes take too long, and a coarser one is possible. The first does not count: it scaled everything down.
+
+    /// Its passes take too long, and a coarser one is possible. The first does not count: it scaled
+    /// everything down.
     pub fn is_slow(&self) -> bool {
         self.step < COARSEST && self.pass.passes() > 1 && self.pass.took() > FRAME.mul_f32(1.6)
     }
+
     /// It was prepared, but no drag has used it.
     pub fn is_unused(&self) -> bool {
         self.pass.passes() == 0
     }
+
     pub fn would_be_quick_in_whole_pixels(&self) -> bool {
         let whole = (self.step * self.step) as f32 / DRAFT_SHARE;
         self.pass.passes() > 1 && self.pass.took().mul_f32(whole) < FINE

@@ -43,6 +43,7 @@ impl PassBatch {
     pub fn share_left(&self) -> f32 {
         self.left as f32 / self.painted.max(1) as f32
     }
+
     pub fn painted(self, picture: u64, size: Size) -> RenderedTileBatch {
         let Self { tiles, is_settled, took, .. } = self;
         RenderedTileBatch { picture, is_draft: false, size, tiles, is_settled, took, refused: None }
@@ -59,22 +60,28 @@ impl RenderPass {
         self.document = Some(next);
         self.passes = self.passes.saturating_add(1);
     }
+
     pub fn has_more(&self) -> bool {
         !self.dirty.is_empty()
     }
+
     pub fn size(&self) -> Option<Size> {
         self.document.as_ref().map(|document| document.size)
     }
+
     pub fn passes(&self) -> u32 {
         self.passes
     }
+
     pub fn took(&self) -> Duration {
         self.took
     }
+
     /// The longest that a document took.
     pub fn slowest(&self) -> Duration {
         self.slowest
     }
+
     /// Paints at most so many tiles, visible ones first; `None` if nothing is left.
     pub fn paint(&mut self, visible: Rect, most: usize) -> Option<PassBatch> {
         let document = self.document.as_ref()?;
@@ -86,7 +93,8 @@ impl RenderPass {
         }
         let prepared = self.prepared.as_ref()?;
         let in_sight = |at: &TileAt| !at.rect().intersect(visible).is_empty();
-        let mut batch: Vec<TileAt> = self.dirty.iter().copied().filter(in_sight).take(most).collect();
+        let mut batch: Vec<TileAt> =
+            self.dirty.iter().copied().filter(in_sight).take(most).collect();
         if batch.is_empty() {
             batch = self.dirty.iter().copied().take(most).collect();
         }

@@ -26,7 +26,8 @@ impl SurfaceJob {
         let (sender, made) = channel();
         let work = of.clone();
         let job = move || {
-            // Threads of its own: those that paint tiles finish what they have begun before they start anything new.
+            // Threads of its own: those that paint tiles finish what they have begun before they
+            // start anything new.
             let own = rayon::ThreadPoolBuilder::new().num_threads(1).build();
             let make = || memory::caught(|| work.make());
             let made = own.map_or_else(|_| make(), |own| own.install(make));
@@ -37,10 +38,12 @@ impl SurfaceJob {
         std::thread::Builder::new().name("small surface".into()).spawn(job).ok()?;
         Some(Self { of, made })
     }
+
     /// Whether this is the work that it does.
     pub fn is_of(&self, work: &SurfaceReduction) -> bool {
         self.of.is_same(work)
     }
+
     pub fn state(&self) -> JobState {
         match self.made.try_recv() {
             Ok(made) => JobState::Done(made),
@@ -48,6 +51,7 @@ impl SurfaceJob {
             Err(TryRecvError::Disconnected) => JobState::Failed,
         }
     }
+
     /// Waits for the end.
     pub fn wait(self) -> Option<ReducedSurface> {
         self.made.recv().ok()

@@ -24,16 +24,23 @@ fn without_memory_the_picture_waits_and_the_next_one_is_painted_whole() {
     let size = Size::new(100, 80);
     let fill = Layer::new("fill", Content::Fill(Color { r: 9, g: 90, b: 200, a: 255 }));
     let document = Document { layers: vec![Arc::new(fill)], ..Document::empty(size) };
-    let wanted = || RenderRequest { picture: 3, document: document.clone(), visible: size.rect(), is_dragged: false };
+    let wanted = || RenderRequest {
+        picture: 3,
+        document: document.clone(),
+        visible: size.rect(),
+        is_dragged: false,
+    };
     let mut work = RenderWork::default();
     work.if_there_is_memory(|work| work.take_up(wanted())).unwrap();
-    let none: Result<Vec<u8>, _> = work.if_there_is_memory(|_| memory::filled_or_unwind(usize::MAX / 2, 0u8));
+    let none: Result<Vec<u8>, _> =
+        work.if_there_is_memory(|_| memory::filled_or_unwind(usize::MAX / 2, 0u8));
     assert!(none.is_err() && !work.has_more(), "the thread does not try again at once");
     assert!(work.nothing().is_settled);
     work.if_there_is_memory(|work| work.take_up(wanted())).unwrap();
     let painted = work.if_there_is_memory(RenderWork::paint).unwrap().unwrap();
     assert_eq!((painted.tiles.len(), painted.refused), (4, None));
 }
+
 #[test]
 fn the_painter_shows_what_flattening_gives_and_repaints_only_what_changed() {
     let size = Size::new(300, 200);
@@ -42,7 +49,12 @@ fn the_painter_shows_what_flattening_gives_and_repaints_only_what_changed() {
     let render_thread = RenderThread::new(|| {}).unwrap();
     let mut grid = TileGrid::default();
     let visible = size.rect();
-    render_thread.want(RenderRequest { picture: 1, document: document.clone(), visible, is_dragged: false });
+    render_thread.want(RenderRequest {
+        picture: 1,
+        document: document.clone(),
+        visible,
+        is_dragged: false,
+    });
     assert_eq!(settled(&render_thread, &mut grid), 5 * 4);
     let whole = flatten(&document, &Progress::default()).unwrap();
     assert!(grid.to_straight_rgba(visible) == whole.to_straight_rgba(visible));
@@ -50,7 +62,12 @@ fn the_painter_shows_what_flattening_gives_and_repaints_only_what_changed() {
     let pixels = crate::document::PixelLayer { file: String::new(), x: 0, y: 0, tiles: dot };
     let mut next = document.clone();
     next.layers.push(Arc::new(Layer::new("dot", Content::Pixels(pixels))));
-    render_thread.want(RenderRequest { picture: 1, document: next.clone(), visible, is_dragged: false });
+    render_thread.want(RenderRequest {
+        picture: 1,
+        document: next.clone(),
+        visible,
+        is_dragged: false,
+    });
     assert_eq!(settled(&render_thread, &mut grid), 1);
     assert_eq!(grid.pixel(100, 100), [255, 0, 0, 255]);
     render_thread.want(RenderRequest { picture: 1, document: next, visible, is_dragged: false });
@@ -98,7 +115,8 @@ fn a_drag_is_shown_in_all_pixels_and_painted_anew_once_the_hand_rests() {
     work.take_up(wanted(&document, false));
     paint(&mut work);
     work.take_up(wanted(&document, true));
-    let dragged = document.with_layer(layers[1].id, |layer| layer.content = photo(size, 3.3)).unwrap();
+    let dragged =
+        document.with_layer(layers[1].id, |layer| layer.content = photo(size, 3.3)).unwrap();
     work.take_up(wanted(&dragged, true));
     // As if whole pixels had been found to take longer than a frame.
     work.begin_draft(1);
@@ -111,6 +129,7 @@ fn a_drag_is_shown_in_all_pixels_and_painted_anew_once_the_hand_rests() {
     let (is_draft, whole) = paint(&mut work);
     assert!(is_draft == Some(false) && whole == fine);
 }
+
 #[test]
 fn pixels_grow_only_where_a_draft_of_all_of_them_would_take_longer_than_a_frame() {
     let steps = [16, 42, 44, 170, 180, 900].map(|ms| step_for(Duration::from_millis(ms)));

@@ -1,4 +1,5 @@
-//! Menus and commands by their names, for tests and recordings. Floor 7. Not here: the commands (`commands`).
+//! Menus and commands by their names, for tests and recordings. Floor 7. Not here: the commands
+//! (`commands`).
 
 use super::MainWindow;
 use crate::commands;
@@ -8,15 +9,20 @@ use eframe::egui;
 impl MainWindow {
     /// The menus' titles, and the commands of each.
     pub fn menus() -> impl Iterator<Item = (&'static str, Vec<&'static str>)> {
-        let names =
-            |commands: &[commands::MenuCommand]| commands.iter().map(|command| command.name).collect::<Vec<_>>();
+        let names = |commands: &[commands::MenuCommand]| {
+            commands.iter().map(|command| command.name).collect::<Vec<_>>()
+        };
         let menus = commands::MENUS.map(|(title, commands)| (title, names(commands)));
-        menus.into_iter().map(|(title, names)| (title, names.into_iter().filter(|name| !name.is_empty()).collect()))
+        menus.into_iter().map(|(title, names)| {
+            (title, names.into_iter().filter(|name| !name.is_empty()).collect())
+        })
     }
+
     /// Runs a command by its name, as a menu would.
     pub fn command(&mut self, ctx: &egui::Context, name: &str) {
         let mut requests = UiRequests::default();
-        if let Some(command) = commands::named(name).filter(|command| (command.can)(&self.session)) {
+        if let Some(command) = commands::named(name).filter(|command| (command.can)(&self.session))
+        {
             (command.run)(&self.session, &mut requests);
         }
         self.do_requests(ctx, requests);

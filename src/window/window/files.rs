@@ -33,9 +33,12 @@ impl MainWindow {
             self.finish(ctx, done);
         }
     }
+
     fn finish(&mut self, ctx: &egui::Context, done: JobResult) {
         match done {
-            JobResult::Several(several) => several.into_iter().for_each(|done| self.finish(ctx, done)),
+            JobResult::Several(several) => {
+                several.into_iter().for_each(|done| self.finish(ctx, done))
+            }
             JobResult::Opened(file, opened) => match *opened {
                 Ok(opened) => {
                     self.recent_is(opened.tab.file.clone());
@@ -91,14 +94,18 @@ impl MainWindow {
             JobResult::Unwrapped(tab) => self.unwrapped(tab),
             JobResult::Part(read) => {
                 let PartResult { tab, layer, part, file, read } = *read;
-                if let Some(tab) = self.session.open_documents.iter_mut().find(|other| other.key == tab) {
+                if let Some(tab) =
+                    self.session.open_documents.iter_mut().find(|other| other.key == tab)
+                {
                     pictures::put(tab, layer, read);
                     tab.reads.push(file.clone());
                     self.did(|| Action::File(FileAction::Use { part, file }));
                 }
             }
             JobResult::Saved(saving, stamp) => self.saved(ctx, *saving, stamp),
-            JobResult::Loses(saving) => self.dialogs.push(Dialog::Losses(losses::Losses::new(saving))),
+            JobResult::Loses(saving) => {
+                self.dialogs.push(Dialog::Losses(losses::Losses::new(saving)))
+            }
             JobResult::Exported(file, notes) => self.exported(&file, notes),
             JobResult::ExportedMaps(files) => {
                 let folder = files.first().and_then(|file| file.parent()).unwrap_or(Path::new(""));
@@ -112,21 +119,28 @@ impl MainWindow {
             JobResult::Shaped(shaped) => self.shaped(*shaped),
             JobResult::Declined(why) => self.messages.push(why.into()),
             JobResult::Looked(tab, found) => {
-                if let Some(tab) = self.session.open_documents.iter().find(|other| other.key == tab) {
+                if let Some(tab) = self.session.open_documents.iter().find(|other| other.key == tab)
+                {
                     self.dialogs.push(Dialog::Shape(shape::ShapeDialog::of(tab, found)));
                 }
             }
             JobResult::Said(why) => self.jobs.say(why),
-            JobResult::Pasted(PastedContent::Picture(picture), place) => self.pasted(picture, place),
+            JobResult::Pasted(PastedContent::Picture(picture), place) => {
+                self.pasted(picture, place)
+            }
             JobResult::Pasted(PastedContent::Files(files), place) => match place.to {
                 PasteTo::Document => self.jobs.open(files, None),
-                PasteTo::Paint | PasteTo::Image => self.take_files(files, PictureUse::Pasted(place)),
+                PasteTo::Paint | PasteTo::Image => {
+                    self.take_files(files, PictureUse::Pasted(place))
+                }
             },
-            JobResult::PastedOwn(PastePlace { to, at }) => self.apply(&Action::Clipboard(match to {
-                PasteTo::Paint => ClipboardAction::Paste {},
-                PasteTo::Image => ClipboardAction::PasteImage { at },
-                PasteTo::Document => ClipboardAction::PasteNew {},
-            })),
+            JobResult::PastedOwn(PastePlace { to, at }) => {
+                self.apply(&Action::Clipboard(match to {
+                    PasteTo::Paint => ClipboardAction::Paste {},
+                    PasteTo::Image => ClipboardAction::PasteImage { at },
+                    PasteTo::Document => ClipboardAction::PasteNew {},
+                }))
+            }
             JobResult::Copied(clipboard) => {
                 self.clipboard = Some(clipboard);
                 self.jobs.say("The picture is in the clipboard".into());
@@ -135,6 +149,7 @@ impl MainWindow {
             JobResult::Nothing => {}
         }
     }
+
     /// The user's own brushes are kept here from now on; existing ones are added to the list.
     pub fn keep_brushes_in(&mut self, folder: PathBuf) {
         self.session.brush_folder = Some(folder.clone());
@@ -143,9 +158,14 @@ impl MainWindow {
             JobResult::Brushes(presets, notes)
         });
     }
+
     /// Reads a picture for the selected layer.
     fn read_part(&mut self, part: PicturePart, file: PathBuf) {
-        let Some((tab, layer)) = self.session.active().and_then(|tab| Some((tab.key, tab.selected?))) else { return };
+        let Some((tab, layer)) =
+            self.session.active().and_then(|tab| Some((tab.key, tab.selected?)))
+        else {
+            return;
+        };
         self.jobs.start(format!("Reading {}", short(&file)), JobKind::Working, move |_| {
             match pictures::read(part, &file) {
                 Ok(read) => JobResult::Part(Box::new(PartResult { tab, layer, part, file, read })),
@@ -153,18 +173,21 @@ impl MainWindow {
             }
         });
     }
-    /// A picture becomes a layer. It goes to the pointer's place once it was read: the system does not report positions
-    /// of dragged files. Returns the position.
+
+    /// A picture becomes a layer. It goes to the pointer's place once it was read: the system does
+    /// not report positions of dragged files. Returns the position.
     pub(super) fn pictured(&mut self, name: &str, picture: Picture, at: PinPosition) -> Vec2 {
         let center = self.session.shown().map_or(Vec2::ZERO, |document| document.size.center());
         let at = self.canvas.under.filter(|_| at == PinPosition::Pointer).unwrap_or(center);
         place(&mut self.session, name, picture, at);
         at
     }
+
     /// A picture of another program is pasted.
     fn pasted(&mut self, picture: PastedPicture, PastePlace { to, at }: PastePlace) {
         self.apply(&Action::Clipboard(ClipboardAction::PastePicture { picture, to, at }));
     }
+
     /// A file was chosen in a dialog.
     pub(super) fn chosen(&mut self, purpose: FilePurpose, file: PathBuf) {
         match purpose {
@@ -188,13 +211,19 @@ impl MainWindow {
             }
         }
     }
-    /// A file was chosen to be written. Where it is there the dialog asked about it, unless it gets another name here.
-    /// Gives the document in front maps, as another dialog asked.
-    pub(super) fn take_maps(&mut self, (source, import): (SurfaceSource, ImportedSurface), give: GiveMaps) {
+
+    /// A file was chosen to be written. Where it is there the dialog asked about it, unless it gets
+    /// another name here. Gives the document in front maps, as another dialog asked.
+    pub(super) fn take_maps(
+        &mut self,
+        (source, import): (SurfaceSource, ImportedSurface),
+        give: GiveMaps,
+    ) {
         let done = give(&mut self.session, &source, import);
         self.messages.extend(done.err().map(|error| with_advice(&error)));
         self.tell_notes();
     }
+
     fn chosen_to_write(&mut self, purpose: FilePurpose, file: PathBuf) {
         let named = purpose.named(file.clone(), self.export.extension);
         let was_asked = named == file && named.exists();
@@ -206,6 +235,7 @@ impl MainWindow {
             self.export_to(named, over, purpose == FilePurpose::ExportUnwrapped);
         }
     }
+
     /// The import dialog, if it is open.
     pub(super) fn import(&mut self) -> Option<&mut import::ImportDialog> {
         self.dialogs.iter_mut().rev().find_map(|dialog| match dialog {
@@ -213,13 +243,16 @@ impl MainWindow {
             _ => None,
         })
     }
+
     pub(super) fn ask_where(&mut self, purpose: FilePurpose) {
         let name = self.proposed(purpose);
         self.ask_for(purpose, &name);
     }
+
     pub(super) fn ask_for(&mut self, purpose: FilePurpose, name: &str) {
         files::request(&mut self.jobs, purpose, name, self.asks_itself);
     }
+
     /// The proposed name of a file.
     pub(super) fn proposed(&self, purpose: FilePurpose) -> String {
         let title = self.session.active().map_or_else(String::new, |tab| tab.title());
@@ -240,6 +273,7 @@ impl MainWindow {
         };
         format!("{stem}{suffix}.{extension}")
     }
+
     /// The folder to begin in.
     pub(super) fn folder(&self) -> PathBuf {
         let beside = self.session.active().and_then(|tab| tab.file.as_deref()).or(self
@@ -247,9 +281,11 @@ impl MainWindow {
             .recent
             .first()
             .map(PathBuf::as_path));
-        let folder = beside.and_then(Path::parent).filter(|folder| folder.is_dir()).map(Path::to_owned);
+        let folder =
+            beside.and_then(Path::parent).filter(|folder| folder.is_dir()).map(Path::to_owned);
         folder.or_else(|| std::env::current_dir().ok()).unwrap_or_default()
     }
+
     pub(super) fn recent_is(&mut self, file: Option<PathBuf>) {
         if let Some(file) = file {
             // An absolute path, which is also valid in the next run.

@@ -1,4 +1,5 @@
-//! The look of the window: light or dark, and the size of its controls. Floor 7. Not here: the colours (`theme`).
+//! The look of the window: light or dark, and the size of its controls. Floor 7. Not here: the
+//! colours (`theme`).
 
 use super::MainWindow;
 use crate::session::Action;
@@ -20,10 +21,12 @@ impl MainWindow {
         let fitting = if screen.is_some_and(|size| size.y >= DENSE_PT) { 1.5 } else { 1.0 };
         self.show_at(ctx, self.settings.scale.unwrap_or(fitting));
     }
+
     pub(super) fn toggle_theme(&mut self, ctx: &egui::Context) {
         self.settings.is_light = !self.settings.is_light;
         ctx.set_theme(if self.settings.is_light { Theme::Light } else { Theme::Dark });
     }
+
     /// Selects and stores the next larger or smaller size.
     pub(super) fn resize_interface(&mut self, ctx: &egui::Context, is_larger: bool) {
         let now = ctx.zoom_factor();
@@ -37,6 +40,7 @@ impl MainWindow {
             self.show_at(ctx, next);
         }
     }
+
     /// The picture keeps its size on screen: only the controls change.
     fn show_at(&mut self, ctx: &egui::Context, scale: f32) {
         let kept = ctx.zoom_factor() / scale;
@@ -45,6 +49,7 @@ impl MainWindow {
             view.zoom *= kept;
         }
     }
+
     /// 0 fits the canvas; 1 is one pixel of the screen per pixel of the canvas.
     pub(super) fn scale(&mut self, ctx: &egui::Context, scale: f32) {
         let action = if scale > 0.0 {

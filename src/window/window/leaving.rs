@@ -14,11 +14,15 @@ impl MainWindow {
     pub(super) fn close(&mut self, ctx: &egui::Context, tab: usize) {
         if self.session.open_documents.get(tab).is_some_and(|tab| tab.is_dirty()) {
             self.session.current = tab;
-            self.dialogs.push(Dialog::Unsaved(unsaved::UnsavedDialog { tab, then: AfterUnsaved::Close(tab) }));
+            self.dialogs.push(Dialog::Unsaved(unsaved::UnsavedDialog {
+                tab,
+                then: AfterUnsaved::Close(tab),
+            }));
         } else {
             self.proceed(ctx, AfterUnsaved::Close(tab), false);
         }
     }
+
     /// After the question about unsaved work. `discarding`: the changes of the tab are discarded.
     pub(super) fn proceed(&mut self, ctx: &egui::Context, then: AfterUnsaved, discarding: bool) {
         match then {
@@ -31,6 +35,7 @@ impl MainWindow {
             }
         }
     }
+
     /// The window is about to close: it stays open while there is unsaved work.
     pub(super) fn guard_leaving(&mut self, ctx: &egui::Context) {
         if self.leaving || !ctx.input(|i| i.viewport().close_requested()) {
@@ -40,18 +45,24 @@ impl MainWindow {
             Some(tab) => {
                 ctx.send_viewport_cmd(ViewportCommand::CancelClose);
                 self.session.current = tab;
-                self.dialogs.push(Dialog::Unsaved(unsaved::UnsavedDialog { tab, then: AfterUnsaved::Quit }));
+                self.dialogs.push(Dialog::Unsaved(unsaved::UnsavedDialog {
+                    tab,
+                    then: AfterUnsaved::Quit,
+                }));
             }
             None => self.leaving = true,
         }
     }
+
     /// Files dropped on the window: pictures go where they were dropped, all else is opened.
     pub(super) fn take_dropped(&mut self, ctx: &egui::Context) {
-        let dropped: Vec<_> = ctx.input(|i| i.raw.dropped_files.iter().map(|file| file.path().to_path_buf()).collect());
+        let dropped: Vec<_> = ctx
+            .input(|i| i.raw.dropped_files.iter().map(|file| file.path().to_path_buf()).collect());
         if !dropped.is_empty() {
             self.take_files(dropped, PictureUse::Placed(PinPosition::Pointer));
         }
     }
+
     /// Opens files; pictures become layers of the document in front, if there is one.
     pub(super) fn take_files(&mut self, files: Vec<PathBuf>, use_of: PictureUse) {
         self.jobs.open(files, self.session.active().map(|_| use_of));

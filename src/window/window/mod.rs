@@ -1,5 +1,5 @@
-//! The main window: shows the panels, performs their requests, and reports errors. Floor 7. `layout` arranges the
-//! panels; `files` and `leaving` handle files.
+//! The main window: shows the panels, performs their requests, and reports errors. Floor 7.
+//! `layout` arranges the panels; `files` and `leaving` handle files.
 
 mod by_name;
 mod files;
@@ -90,6 +90,7 @@ impl MainWindow {
     pub fn new(ctx: &egui::Context) -> Self {
         Self::remembering(ctx, None)
     }
+
     /// A window with the settings of a file, which it updates.
     pub fn remembering(ctx: &egui::Context, file: Option<PathBuf>) -> Self {
         let (settings, keeper, trouble) = SettingsFile::new(file);
@@ -123,14 +124,17 @@ impl MainWindow {
             recorded: None,
         }
     }
+
     /// A window that always uses its own file dialogs.
     pub fn asking_itself(self) -> Self {
         Self { asks_itself: true, ..self }
     }
+
     /// A window that pastes what this returns, not what is in the system's clipboard.
     pub fn pasting_from(self, clipboard_source: ClipboardSource) -> Self {
         Self { clipboard_source, ..self }
     }
+
     /// A window that records its actions, see [`MainWindow::recorded`].
     pub fn recording(self) -> Self {
         // Snapping settings were stored, and are no action of this window.
@@ -138,21 +142,25 @@ impl MainWindow {
         let is_plain = self.session.aids == ViewAids::default();
         Self { recorded: Some(Some(aids).filter(|_| !is_plain).into_iter().collect()), ..self }
     }
-    /// The recorded actions as a replay file, one line each. Documents with corrected maps and recovered drawings do
-    /// not come from files, and are not in it.
+
+    /// The recorded actions as a replay file, one line each. Documents with corrected maps and
+    /// recovered drawings do not come from files, and are not in it.
     pub fn recorded(&self) -> String {
         self.recorded.iter().flatten().map(|action| format!("{}\n", action.written())).collect()
     }
+
     /// Records an action.
     fn did(&mut self, action: impl FnOnce() -> Action) {
         if let Some(recorded) = &mut self.recorded {
             recorded.push(action());
         }
     }
+
     /// The tablet that the pointer may belong to.
     pub fn draw_on(&mut self, tablet: SharedTablet) {
         self.canvas.draw_on(tablet);
     }
+
     /// Opens what the program was started with.
     pub fn begin(&mut self, files: Vec<PathBuf>) {
         self.is_first_start = files.is_empty();
@@ -163,11 +171,13 @@ impl MainWindow {
             self.jobs.open(files, None);
         }
     }
+
     fn open_sample(&mut self) {
         self.jobs.start("Opening the sample".into(), JobKind::Working, |_| {
             JobResult::Opened(None, Box::new(sample::open()))
         });
     }
+
     /// One frame.
     pub fn show(&mut self, ui: &mut Ui) {
         let mut requests = UiRequests::default();
@@ -191,11 +201,15 @@ impl MainWindow {
         self.settings.aids = self.session.aids;
         self.keeper.keep(&self.settings);
     }
+
     /// Collects the errors of the window's threads.
     fn tell_troubles(&mut self) {
-        let troubles = [&mut self.canvas.trouble, &mut self.thumbnails.trouble, &mut self.swatches.trouble];
-        self.messages.extend(troubles.into_iter().filter_map(Option::take).map(|error| with_advice(&error)));
+        let troubles =
+            [&mut self.canvas.trouble, &mut self.thumbnails.trouble, &mut self.swatches.trouble];
+        self.messages
+            .extend(troubles.into_iter().filter_map(Option::take).map(|error| with_advice(&error)));
     }
+
     /// Shows what the session has to say, once: a stroke tried again says nothing new.
     fn tell_notes(&mut self) {
         for note in std::mem::take(&mut self.session.notes) {
@@ -204,6 +218,7 @@ impl MainWindow {
             }
         }
     }
+
     fn show_dialog(&mut self, ctx: &egui::Context, requests: &mut UiRequests) {
         let Some(dialog) = self.dialogs.last_mut() else { return };
         let size = self.session.shown().map(|document| document.size);
@@ -253,7 +268,9 @@ impl MainWindow {
             DialogAnswer::Discard(then) => self.proceed(ctx, then, true),
             DialogAnswer::SaveThen(then) => self.save(Some(then)),
             DialogAnswer::Replace(pending) => self.put(pending.forced()),
-            DialogAnswer::Lose(saving) => self.put(Pending::Save(Box::new(Saving { knows_losses: true, ..*saving }))),
+            DialogAnswer::Lose(saving) => {
+                self.put(Pending::Save(Box::new(Saving { knows_losses: true, ..*saving })))
+            }
             DialogAnswer::Ask(ask) => requests.request(ask),
             // The parts are next to their numbers.
             DialogAnswer::Shaped => self.settings.layout.below = PanelKind::Shape,
@@ -264,6 +281,7 @@ impl MainWindow {
             | DialogAnswer::Delete(_) => {}
         }
     }
+
     /// Performs a request.
     fn do_requests(&mut self, ctx: &egui::Context, requests: UiRequests) {
         if !requests.actions.is_empty() {
@@ -282,6 +300,7 @@ impl MainWindow {
             self.do_request(ctx, ask);
         }
     }
+
     fn apply(&mut self, action: &Action) {
         match action.apply(&mut self.session) {
             Ok(()) => self.did(|| action.clone()),
@@ -289,6 +308,7 @@ impl MainWindow {
         }
         self.tell_notes();
     }
+
     fn set_title(&mut self, ctx: &egui::Context) {
         let title = self.session.active().map_or_else(
             || "Rilievo".to_owned(),
@@ -306,9 +326,11 @@ impl eframe::App for MainWindow {
         self.show(ui);
         self.clipboard = clipboard::take_text(ui.ctx()).or(self.clipboard.take());
     }
+
     fn raw_input_hook(&mut self, ctx: &egui::Context, raw: &mut egui::RawInput) {
         clipboard::hear(ctx, &mut raw.events);
     }
+
     fn on_exit(&mut self, _gl: Option<&eframe::glow::Context>) {
         self.session.close();
         if let Err(error) = self.keeper.finish(&self.settings) {

@@ -1,5 +1,5 @@
-//! Requests of panels and menus to the window alone: dialogs, the layout of panels, the size of the interface.
-//! Floor 7.
+//! Requests of panels and menus to the window alone: dialogs, the layout of panels, the size of the
+//! interface. Floor 7.
 
 use super::MainWindow;
 use crate::dialogs::{Dialog, canvas, edge, import, new, palette, shortcuts};
@@ -15,11 +15,14 @@ impl MainWindow {
             WindowRequest::OpenDialog => self.ask_for(FilePurpose::Open, ""),
             WindowRequest::OpenMapsDialog => self.dialogs.push(Dialog::Import(Box::default())),
             WindowRequest::ReplaceMapsDialog => {
-                let source = self.session.active().and_then(|tab| tab.document().surface_source.clone());
+                let source =
+                    self.session.active().and_then(|tab| tab.document().surface_source.clone());
                 let import = import::ImportDialog::replacing(source.as_deref());
                 self.dialogs.push(Dialog::Import(Box::new(import)));
             }
-            WindowRequest::PartMapsDialog => self.dialogs.push(Dialog::Import(import::ImportDialog::for_part().into())),
+            WindowRequest::PartMapsDialog => {
+                self.dialogs.push(Dialog::Import(import::ImportDialog::for_part().into()))
+            }
             WindowRequest::ShapeDialog => self.look_for_drawing(),
             WindowRequest::Choose(purpose) => self.ask_for(purpose, ""),
             WindowRequest::PlaceDialog => self.ask_for(FilePurpose::Place, ""),
@@ -37,35 +40,53 @@ impl MainWindow {
                 self.export.extension = extension;
                 self.ask_where(FilePurpose::Export);
             }
-            WindowRequest::ExportUnwrappedDialog => self.dialogs.push(Dialog::Unwrapped(self.unwrapped.clone())),
+            WindowRequest::ExportUnwrappedDialog => {
+                self.dialogs.push(Dialog::Unwrapped(self.unwrapped.clone()))
+            }
             WindowRequest::ExportUnwrapped => self.ask_where(FilePurpose::ExportUnwrapped),
             WindowRequest::Unwrap => self.unwrap_surface(),
             WindowRequest::Close(tab) => self.close(ctx, tab),
             WindowRequest::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
-            WindowRequest::CanvasSizeDialog | WindowRequest::ImageSizeDialog | WindowRequest::TurnDialog => {
+            WindowRequest::CanvasSizeDialog
+            | WindowRequest::ImageSizeDialog
+            | WindowRequest::TurnDialog => {
                 let size = self.session.active().map(|tab| tab.document().size);
                 self.dialogs.extend(size.map(|size| canvas::asked(&ask, size)));
             }
-            WindowRequest::EdgeDialog(change) => self.dialogs.push(Dialog::Edge(edge::EdgeDialog::new(change))),
-            WindowRequest::KeepDialog => self.dialogs.push(Dialog::Keep(edge::KeepDialog::default())),
+            WindowRequest::EdgeDialog(change) => {
+                self.dialogs.push(Dialog::Edge(edge::EdgeDialog::new(change)))
+            }
+            WindowRequest::KeepDialog => {
+                self.dialogs.push(Dialog::Keep(edge::KeepDialog::default()))
+            }
             WindowRequest::GridDialog => self.dialogs.push(Dialog::Grid),
             WindowRequest::Paste(to) => self.paste(to),
-            WindowRequest::Palette => self.dialogs.push(Dialog::Palette(palette::CommandPalette::default())),
-            WindowRequest::Shortcuts => self.dialogs.push(Dialog::Shortcuts(shortcuts::ShortcutsDialog::default())),
+            WindowRequest::Palette => {
+                self.dialogs.push(Dialog::Palette(palette::CommandPalette::default()))
+            }
+            WindowRequest::Shortcuts => {
+                self.dialogs.push(Dialog::Shortcuts(shortcuts::ShortcutsDialog::default()))
+            }
             WindowRequest::About => self.dialogs.push(Dialog::About),
             WindowRequest::TogglePanels => {
                 self.settings.layout.is_hidden = !self.settings.layout.is_hidden;
                 // The tab key that requested it also moved the focus to the next button.
                 ctx.memory_mut(|memory| memory.stop_text_input());
             }
-            WindowRequest::OtherSide => self.settings.layout.side = self.settings.layout.side.other(),
+            WindowRequest::OtherSide => {
+                self.settings.layout.side = self.settings.layout.side.other()
+            }
             WindowRequest::PanelsApart => {
                 let side = &mut self.settings.layout.side;
                 *side = if *side == PanelSide::Apart { PanelSide::Right } else { PanelSide::Apart };
             }
             WindowRequest::Float(front) => {
                 let apart = &mut self.settings.layout.apart;
-                if apart.contains(&front) { apart.retain(|other| *other != front) } else { apart.push(front) }
+                if apart.contains(&front) {
+                    apart.retain(|other| *other != front)
+                } else {
+                    apart.push(front)
+                }
             }
             WindowRequest::ToggleTheme => self.toggle_theme(ctx),
             WindowRequest::ResizeInterface { is_larger } => self.resize_interface(ctx, is_larger),

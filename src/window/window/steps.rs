@@ -11,21 +11,41 @@ use eframe::egui::{Align2, Area, Frame, Id, RichText, Ui, vec2};
 type HintStep = (&'static str, &'static str, fn(&Session) -> bool);
 
 const STEPS: [HintStep; 3] = [
-    ("Drop a photo on the shape", "It bends over it like a reflection. Or File, Place image…", has_image),
-    ("Paint highlights", "Brush (B), operator Shading (F3): strokes follow the form", has_bent_stroke),
-    ("Move what you made", "Anchors (A) move the photo along the surface, Move (V) a stroke", has_moved),
+    (
+        "Drop a photo on the shape",
+        "It bends over it like a reflection. Or File, Place image…",
+        has_image,
+    ),
+    (
+        "Paint highlights",
+        "Brush (B), operator Shading (F3): strokes follow the form",
+        has_bent_stroke,
+    ),
+    (
+        "Move what you made",
+        "Anchors (A) move the photo along the surface, Move (V) a stroke",
+        has_moved,
+    ),
 ];
 
 fn any(session: &Session, is: impl Fn(&Content) -> bool) -> bool {
-    session.shown().is_some_and(|document| document.walk().iter().any(|(_, layer)| is(&layer.content)))
+    session
+        .shown()
+        .is_some_and(|document| document.walk().iter().any(|(_, layer)| is(&layer.content)))
 }
+
 fn has_image(session: &Session) -> bool {
     any(session, |content| matches!(content, Content::Image(_)))
 }
+
 fn has_bent_stroke(session: &Session) -> bool {
     let bent = |stroke: &crate::paint::Stroke| stroke.operator() != Operator::None;
-    any(session, |content| matches!(content, Content::Strokes(live) if live.params().strokes.iter().any(|s| bent(s))))
+    any(
+        session,
+        |content| matches!(content, Content::Strokes(live) if live.params().strokes.iter().any(|s| bent(s))),
+    )
 }
+
 fn has_moved(session: &Session) -> bool {
     let moves = ["Move anchor", "Add anchor", "Move stroke", "Move layer"];
     session.active().is_some_and(|tab| tab.history.past().any(|label| moves.contains(&label)))
@@ -34,8 +54,8 @@ fn has_moved(session: &Session) -> bool {
 impl MainWindow {
     /// Shows them until all are completed or they are dismissed.
     pub(super) fn show_steps(&mut self, ui: &mut Ui) {
-        let is_over =
-            self.settings.is_hint_done || self.session.active().is_none_or(|tab| tab.document().surface.is_none());
+        let is_over = self.settings.is_hint_done
+            || self.session.active().is_none_or(|tab| tab.document().surface.is_none());
         if is_over || !self.is_first_start {
             return;
         }

@@ -1,5 +1,5 @@
-//! Keys that are pressed while the window is busy: they are neither lost nor taken by something that they were not
-//! meant for. Floor 7. Not here: what keys do (`keys`).
+//! Keys that are pressed while the window is busy: they are neither lost nor taken by something
+//! that they were not meant for. Floor 7. Not here: what keys do (`keys`).
 //!
 //! | pressed | goes |
 //! |---|---|
@@ -33,9 +33,11 @@ pub(super) struct BusyInput {
     actions: Vec<(Action, usize, Vec<LayerId>)>,
     /// A text field of a panel has the keyboard, and nothing that the user did ends that.
     is_typing: bool,
-    /// What had the keyboard in a dialog: it may seem to have it for a moment after the dialog is closed.
+    /// What had the keyboard in a dialog: it may seem to have it for a moment after the dialog is
+    /// closed.
     of_dialog: Option<Id>,
-    /// The field that was being typed in is gone: until when, in seconds of the window, its text goes nowhere.
+    /// The field that was being typed in is gone: until when, in seconds of the window, its text
+    /// goes nowhere.
     gone_until: Option<f64>,
     /// What came while a text was being typed.
     results: Vec<JobResult>,
@@ -67,6 +69,7 @@ impl BusyInput {
             input.events.retain(|event| !is_typed(event));
         });
     }
+
     /// Gives back all that was typed.
     fn give(&mut self, ctx: &Context) {
         if !self.typed.is_empty() {
@@ -75,26 +78,31 @@ impl BusyInput {
             ctx.input_mut(|input| input.events.extend(self.typed.drain(..)));
         }
     }
-    /// Gives back the next key that was pressed, with what belongs to it: the one after it may mean what it makes.
+
+    /// Gives back the next key that was pressed, with what belongs to it: the one after it may mean
+    /// what it makes.
     fn give_next(&mut self, ctx: &Context) {
         if self.typed.is_empty() {
             return;
         }
         self.hold(ctx);
         let is_pressed = |event: &Event| matches!(event, Event::Key { pressed: true, .. });
-        let next = self.typed.iter().skip(1).position(is_pressed).map_or(self.typed.len(), |at| at + 1);
+        let next =
+            self.typed.iter().skip(1).position(is_pressed).map_or(self.typed.len(), |at| at + 1);
         ctx.input_mut(|input| input.events.extend(self.typed.drain(..next)));
         ctx.request_repaint();
     }
-    /// Drops what is typed on after a field is gone, such as that of a layer that an edit merged away; until a pause,
-    /// or a click. Returns whether it did.
+
+    /// Drops what is typed on after a field is gone, such as that of a layer that an edit merged
+    /// away; until a pause, or a click. Returns whether it did.
     fn drops_rest(&mut self, ctx: &Context) -> bool {
         let ended = |input: &InputState| {
             let keys = [Key::Enter, Key::Escape, Key::Tab];
             input.pointer.any_pressed() || keys.into_iter().any(|key| input.key_pressed(key))
         };
         let (is_ended, now) = ctx.input(|input| (ended(input), input.time));
-        let of_panel = ctx.text_edit_focused() && ctx.memory(|memory| memory.focused()) != self.of_dialog;
+        let of_panel =
+            ctx.text_edit_focused() && ctx.memory(|memory| memory.focused()) != self.of_dialog;
         let was_typing = std::mem::replace(&mut self.is_typing, of_panel && !is_ended);
         if was_typing && !ctx.text_edit_focused() {
             self.gone_until = Some(now + PAUSE_SECS);
@@ -111,9 +119,12 @@ impl BusyInput {
         }
         true
     }
+
     /// Whether a dialog came a moment ago, whose text field is not ready.
     fn awaits_field(&mut self, ctx: &Context) -> bool {
-        let Some(frames) = self.is_new_for.filter(|frames| *frames < READY_FRAMES && !ctx.text_edit_focused()) else {
+        let Some(frames) =
+            self.is_new_for.filter(|frames| *frames < READY_FRAMES && !ctx.text_edit_focused())
+        else {
             self.is_new_for = None;
             return false;
         };
@@ -126,7 +137,8 @@ impl MainWindow {
     /// Hears the keys of a frame, before anything is laid out.
     pub(super) fn hear_keys(&mut self, ctx: &Context, requests: &mut UiRequests) {
         if !self.dialogs.is_empty() {
-            (self.busy.is_typing, self.busy.of_dialog) = (false, ctx.memory(|memory| memory.focused()));
+            (self.busy.is_typing, self.busy.of_dialog) =
+                (false, ctx.memory(|memory| memory.focused()));
             return match self.busy.awaits_field(ctx) {
                 true => self.busy.hold(ctx),
                 false => self.busy.give(ctx),
@@ -143,7 +155,8 @@ impl MainWindow {
                 return self.busy.hold(ctx);
             }
         }
-        (self.busy.went_on, self.busy.is_new_for) = (self.busy.went_on && self.jobs.awaits_dialog(), None);
+        (self.busy.went_on, self.busy.is_new_for) =
+            (self.busy.went_on && self.jobs.awaits_dialog(), None);
         if self.jobs.editing().is_some() {
             if !ctx.egui_wants_keyboard_input() {
                 self.busy.meant = TypedFor::Canvas(front);
@@ -158,14 +171,16 @@ impl MainWindow {
         self.busy.give_next(ctx);
         keys::listen(ctx, &self.session, &self.settings.keymap, requests);
     }
+
     /// After the requests of a frame: whether a dialog came, or will.
     pub(super) fn expect_dialog(&mut self, dialogs_before: usize) {
         if self.jobs.awaits_dialog() || self.dialogs.len() > dialogs_before {
             self.busy.is_new_for = Some(0);
         }
     }
-    /// During an edit the document can be viewed but not changed. What is set meanwhile waits; strokes are not begun.
-    /// Returns whether the action is done with.
+
+    /// During an edit the document can be viewed but not changed. What is set meanwhile waits;
+    /// strokes are not begun. Returns whether the action is done with.
     pub(super) fn holds(&mut self, action: &Action) -> bool {
         if self.jobs.editing().is_none() || matches!(action, Action::View(_)) {
             return false;
@@ -175,6 +190,7 @@ impl MainWindow {
         }
         true
     }
+
     /// Does what waited, once no edit is under way.
     pub(super) fn do_held(&mut self, requests: &mut UiRequests) {
         if self.jobs.editing().is_some() {
@@ -185,16 +201,21 @@ impl MainWindow {
             let is_meant = |tab: &OpenDocument| tab.key == key && layers(tab.document()) == meant;
             match self.session.active().is_some_and(is_meant) {
                 true => requests.act(action),
-                false => self.jobs.say("What was set meanwhile was not done, since the layers are others now.".into()),
+                false => self.jobs.say(
+                    "What was set meanwhile was not done, since the layers are others now.".into(),
+                ),
             }
         }
     }
+
     /// What was meant for an edit that was cancelled is dropped with it.
     pub(super) fn forget_held(&mut self) {
         self.busy.typed.clear();
         self.busy.actions.clear();
     }
-    /// The results of jobs that may be shown now: while a text is being typed in a panel, nothing comes in front of it.
+
+    /// The results of jobs that may be shown now: while a text is being typed in a panel, nothing
+    /// comes in front of it.
     pub(super) fn results(&mut self, ctx: &Context) -> Vec<JobResult> {
         let mut results = std::mem::take(&mut self.busy.results);
         results.extend(self.jobs.finished());

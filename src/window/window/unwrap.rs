@@ -1,5 +1,5 @@
-//! The unwrapped surface: laid flat on a thread, shown once that is done, and pictures of it put back.
-//! Floor 7.
+//! The unwrapped surface: laid flat on a thread, shown once that is done, and pictures of it put
+//! back. Floor 7.
 
 use super::MainWindow;
 use crate::document::Progress;
@@ -36,31 +36,40 @@ impl MainWindow {
         }
         self.jobs.start(UNWRAPPING.into(), JobKind::Working, move |progress| {
             match surface.unwrapped_telling(settings, &|| is_to_go_on(progress)) {
-                Some(_) => surface.plane_layout(settings).map_or(JobResult::Nothing, |_| JobResult::Unwrapped(key)),
+                Some(_) => surface
+                    .plane_layout(settings)
+                    .map_or(JobResult::Nothing, |_| JobResult::Unwrapped(key)),
                 None => JobResult::Nothing,
             }
         });
     }
+
     /// A surface was laid flat; if its tab is still in front, it is shown so.
     pub(super) fn unwrapped(&mut self, tab: usize) {
         if self.session.active().is_some_and(|front| front.key == tab) {
             self.apply(&Action::View(ViewAction::Unwrapped { on: true }));
         }
     }
-    /// Unwraps ahead, on a thread, what will be needed: the surface that is shown unwrapped, if it was replaced, and
-    /// the one that the current brush prints on. The user does not wait for what is not needed yet.
+
+    /// Unwraps ahead, on a thread, what will be needed: the surface that is shown unwrapped, if it
+    /// was replaced, and the one that the current brush prints on. The user does not wait for what
+    /// is not needed yet.
     pub(super) fn unwrap_ahead(&mut self) {
         let Some(tab) = self.session.active() else { return };
         let Some(surface) = tab.document().surface.clone() else { return };
-        let shown = tab.unwrapped().filter(|settings| surface.known_plane_layout(*settings).is_none());
+        let shown =
+            tab.unwrapped().filter(|settings| surface.known_plane_layout(*settings).is_none());
         let is_shown = shown.is_some();
-        let printed = || self.session.operator.unwrapping().filter(|settings| !surface.is_unwrapped(*settings));
+        let printed = || {
+            self.session.operator.unwrapping().filter(|settings| !surface.is_unwrapped(*settings))
+        };
         let Some(settings) = shown.or_else(printed) else { return };
         if self.jobs.under_way.iter().any(|job| job.name == UNWRAPPING) {
             return;
         }
-        let is_asked =
-            |(asked, with): &(Arc<Surface>, UnwrapSettings)| Arc::ptr_eq(asked, &surface) && *with == settings;
+        let is_asked = |(asked, with): &(Arc<Surface>, UnwrapSettings)| {
+            Arc::ptr_eq(asked, &surface) && *with == settings
+        };
         if self.unwrapping.as_ref().is_some_and(is_asked) {
             // It was cancelled.
             if is_shown {
@@ -77,17 +86,20 @@ impl MainWindow {
             JobResult::Nothing
         });
     }
+
     /// Reads a picture of the surface laid flat.
     pub(super) fn import_unwrapped(&mut self, file: PathBuf) {
         let settings = self.session.unwrap_settings();
         let surface = self.session.active().and_then(|tab| tab.document().surface.clone());
-        self.jobs.start(format!("Reading {}", short(&file)), JobKind::Working, move |_| match read_picture(&file) {
-            Ok((name, picture)) => {
-                // The window must not wait for it.
-                surface.and_then(|surface| surface.plane_layout(settings));
-                JobResult::Flat(file, name, picture)
+        self.jobs.start(format!("Reading {}", short(&file)), JobKind::Working, move |_| {
+            match read_picture(&file) {
+                Ok((name, picture)) => {
+                    // The window must not wait for it.
+                    surface.and_then(|surface| surface.plane_layout(settings));
+                    JobResult::Flat(file, name, picture)
+                }
+                Err(error) => JobResult::Failed(error),
             }
-            Err(error) => JobResult::Failed(error),
         });
     }
 }

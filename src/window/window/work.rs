@@ -1,5 +1,5 @@
-//! Long work of the window: saving, exporting, flattening edits. It is started here. Not here: handling the results
-//! (`files`). Floor 7.
+//! Long work of the window: saving, exporting, flattening edits. It is started here. Not here:
+//! handling the results (`files`). Floor 7.
 
 use super::MainWindow;
 use crate::clipboard::{self, PastedContent};
@@ -25,7 +25,12 @@ use std::sync::Arc;
 impl MainWindow {
     /// Saves the document in front to its file, or asks where to. `then` is done once it is saved.
     pub(super) fn save(&mut self, then: Option<AfterUnsaved>) {
-        match self.session.active().and_then(|tab| tab.file.clone()).filter(|file| storage::is_saved_to(file)) {
+        match self
+            .session
+            .active()
+            .and_then(|tab| tab.file.clone())
+            .filter(|file| storage::is_saved_to(file))
+        {
             Some(file) => {
                 let knows_losses = self.session.active().is_some_and(|tab| tab.knows_losses);
                 self.save_to(file, Overwrite::Nothing, knows_losses, then);
@@ -33,35 +38,59 @@ impl MainWindow {
             None => self.save_as(then),
         }
     }
+
     /// Asks where to.
     pub(super) fn save_as(&mut self, then: Option<AfterUnsaved>) {
         self.after_saving = then;
         self.ask_where(FilePurpose::Save);
     }
+
     /// `over`: what may be replaced, if that is not the document's own file.
-    pub(super) fn save_to(&mut self, file: PathBuf, over: Overwrite, knows_losses: bool, then: Option<AfterUnsaved>) {
+    pub(super) fn save_to(
+        &mut self,
+        file: PathBuf,
+        over: Overwrite,
+        knows_losses: bool,
+        then: Option<AfterUnsaved>,
+    ) {
         self.session.drop_gesture();
         let Some(tab) = self.session.active() else { return };
         let (tab, document) = (tab.key, tab.document().clone());
         let knows_losses = knows_losses || storage::holds_everything(&file);
         let terms = self.session.saving(&file, over);
-        self.put(Pending::Save(Box::new(Saving { tab, file, document, terms, knows_losses, then, encoded: None })));
+        self.put(Pending::Save(Box::new(Saving {
+            tab,
+            file,
+            document,
+            terms,
+            knows_losses,
+            then,
+            encoded: None,
+        })));
     }
+
     /// Writes it, on a thread.
     pub(super) fn put(&mut self, pending: Pending) {
         let name = short(pending.file());
         match pending {
             Pending::Save(saving) => {
-                self.jobs.start(format!("Saving {name}"), JobKind::Working, move |progress| saving.run(progress));
+                self.jobs.start(format!("Saving {name}"), JobKind::Working, move |progress| {
+                    saving.run(progress)
+                });
             }
             Pending::Maps(exporting) => {
-                self.jobs.start(format!("Exporting maps {name}"), JobKind::Working, move |_| exporting.run());
+                self.jobs.start(format!("Exporting maps {name}"), JobKind::Working, move |_| {
+                    exporting.run()
+                });
             }
             Pending::Export(exporting) => {
-                self.jobs.start(format!("Exporting {name}"), JobKind::Working, move |progress| exporting.run(progress));
+                self.jobs.start(format!("Exporting {name}"), JobKind::Working, move |progress| {
+                    exporting.run(progress)
+                });
             }
         }
     }
+
     pub(super) fn saved(&mut self, ctx: &egui::Context, saving: Saving, stamp: FileStamp) {
         let Saving { tab, file, document, then, .. } = saving;
         if let Some(tab) = self.session.open_documents.iter_mut().find(|other| other.key == tab) {
@@ -74,6 +103,7 @@ impl MainWindow {
             self.proceed(ctx, then, false);
         }
     }
+
     /// `over`: what may be replaced. `is_flat`: as on the unwrapped surface.
     pub(super) fn export_to(&mut self, file: PathBuf, over: Overwrite, is_flat: bool) {
         let Some(tab) = self.session.active() else { return };
@@ -86,27 +116,42 @@ impl MainWindow {
             ..ExportOptions::default()
         };
         let terms = Terms::export(over, self.session.reads());
-        self.put(Pending::Export(Box::new(Exporting { document, file, options, unwrapped, terms })));
+        self.put(Pending::Export(Box::new(Exporting {
+            document,
+            file,
+            options,
+            unwrapped,
+            terms,
+        })));
     }
+
     /// Files whose names begin with this one.
     pub(super) fn export_maps_to(&mut self, file: PathBuf) {
-        let Some(document) = self.session.active().map(|tab| tab.document().clone()) else { return };
+        let Some(document) = self.session.active().map(|tab| tab.document().clone()) else {
+            return;
+        };
         let terms = Terms::export(Overwrite::Nothing, self.session.reads());
         let (maps, options) = (self.maps.maps(), self.maps.options);
         // The name was proposed, and perhaps kept, as that of the first.
         let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let first = maps.first().map_or("", |map| map.name());
         let stem = stem.strip_suffix(first).filter(|stem| !stem.is_empty()).unwrap_or(&stem);
-        let file = file.with_file_name(format!("{stem}.{}", if options.is_exr { "exr" } else { "png" }));
+        let file =
+            file.with_file_name(format!("{stem}.{}", if options.is_exr { "exr" } else { "png" }));
         self.put(Pending::Maps(Box::new(ExportingMaps { document, file, maps, options, terms })));
     }
+
     pub(super) fn exported(&mut self, file: &Path, notes: Vec<String>) {
         self.jobs.say(format!("Exported {}", file.display()));
         self.messages.extend(notes);
     }
+
     /// Puts what was copied last into the system's clipboard, for other programs.
     pub(super) fn hand_out(&mut self) {
-        let Some(copied) = self.session.copied.as_ref().filter(|copied| !copied.rect.is_empty()) else { return };
+        let Some(copied) = self.session.copied.as_ref().filter(|copied| !copied.rect.is_empty())
+        else {
+            return;
+        };
         if self.handed_out.as_ref().is_some_and(|known| Arc::ptr_eq(known, &copied.rgba)) {
             return;
         }
@@ -114,11 +159,14 @@ impl MainWindow {
         let rgba = copied.rgba.clone();
         self.handed_out = Some(rgba.clone());
         // Without a clipboard it can still be pasted here.
-        let put = move |_: &Progress| clipboard::put(size, &rgba).map_or(JobResult::Nothing, JobResult::Copied);
+        let put = move |_: &Progress| {
+            clipboard::put(size, &rgba).map_or(JobResult::Nothing, JobResult::Copied)
+        };
         self.jobs.start("Copying".into(), JobKind::Working, put);
     }
-    /// Pastes the system's picture, or what was copied here if that is the same, or there is none; at the pointer, if
-    /// that is on the canvas.
+
+    /// Pastes the system's picture, or what was copied here if that is the same, or there is none;
+    /// at the pointer, if that is on the canvas.
     pub(super) fn paste(&mut self, to: PasteTo) {
         let own = self.session.copied.as_ref().map(|copied| copied.rgba.clone());
         let (place, read) = (PastePlace { to, at: self.canvas.under }, self.clipboard_source);
@@ -131,6 +179,7 @@ impl MainWindow {
             (Err(error), None) => JobResult::Failed(error),
         });
     }
+
     /// Whether an action takes long and was therefore started on a thread.
     pub(super) fn begin_edit(&mut self, action: &Action) -> bool {
         if let Action::Part(action) = action {
@@ -163,23 +212,32 @@ impl MainWindow {
                 Action::Canvas(action) => action.long_step(&from, progress),
                 _ => None,
             };
-            // What follows from it is made here, where it can be cancelled, and not when the edit is kept.
-            let shaped = |edit: Edit| Some(Edit { document: edit.document.reshaped_telling(progress)?, ..edit });
+            // What follows from it is made here, where it can be cancelled, and not when the edit
+            // is kept.
+            let shaped = |edit: Edit| {
+                Some(Edit { document: edit.document.reshaped_telling(progress)?, ..edit })
+            };
             let edit = match edit {
                 Some(Ok(edit)) => shaped(edit).map(Ok),
                 other => other,
             };
             match edit {
-                Some(Ok(edit)) => JobResult::Edited(Box::new(EditResult { tab: key, action, from, edit })),
+                Some(Ok(edit)) => {
+                    JobResult::Edited(Box::new(EditResult { tab: key, action, from, edit }))
+                }
                 Some(Err(why)) => JobResult::Said(why),
                 None => JobResult::Nothing,
             }
         });
         true
     }
+
     pub(super) fn edited(&mut self, edited: EditResult) {
         let EditResult { tab, action, from, edit } = edited;
-        let Some(tab) = self.session.open_documents.iter_mut().find(|other| other.key == tab) else { return };
+        let Some(tab) = self.session.open_documents.iter_mut().find(|other| other.key == tab)
+        else {
+            return;
+        };
         // No other edits are possible meanwhile; an edit that happened anyway must not be lost.
         if crate::session::is_same(tab.document(), &from) {
             tab.take(edit);
@@ -190,6 +248,7 @@ impl MainWindow {
             self.did(|| action);
         }
     }
+
     /// The same for parts.
     fn begin_shape(&mut self, action: &PartAction) -> bool {
         let Some(name) = action.takes_long() else { return false };
@@ -197,13 +256,18 @@ impl MainWindow {
         let Some(tab) = self.session.active_mut() else { return true };
         tab.forget_preview();
         let (tab, from, action) = (tab.key, tab.document().clone(), action.clone());
-        self.jobs.start(name.into(), JobKind::Editing, move |progress| match action.shaped(&from, progress) {
-            Ok(Some(shape)) => JobResult::Shaped(Box::new(ShapedResult { tab, action, from, shape })),
-            Ok(None) => JobResult::Nothing,
-            Err(why) => JobResult::Declined(why),
+        self.jobs.start(name.into(), JobKind::Editing, move |progress| {
+            match action.shaped(&from, progress) {
+                Ok(Some(shape)) => {
+                    JobResult::Shaped(Box::new(ShapedResult { tab, action, from, shape }))
+                }
+                Ok(None) => JobResult::Nothing,
+                Err(why) => JobResult::Declined(why),
+            }
         });
         true
     }
+
     /// Looks for the drawing that will get a shape; then a dialog asks which.
     pub(super) fn look_for_drawing(&mut self) {
         let Some(tab) = self.session.active() else { return };
@@ -211,15 +275,20 @@ impl MainWindow {
         let look = move |_: &Progress| JobResult::Looked(key, shape::looked(&document, selected));
         self.jobs.start("Looking at the drawing".into(), JobKind::Looking, look);
     }
+
     pub(super) fn shaped(&mut self, shaped: ShapedResult) {
         let ShapedResult { tab, action, from, shape } = shaped;
-        let Some(tab) = self.session.open_documents.iter_mut().find(|other| other.key == tab) else { return };
+        let Some(tab) = self.session.open_documents.iter_mut().find(|other| other.key == tab)
+        else {
+            return;
+        };
         // As for other long edits.
         if crate::session::is_same(tab.document(), &from) {
             shape.put(tab);
             self.did(|| Action::Part(action));
         }
     }
+
     /// Shows the edit that blocks others once it takes long.
     pub(super) fn show_editing(&mut self, ctx: &egui::Context) {
         let Some(job) = self.jobs.editing() else { return };
@@ -238,7 +307,9 @@ impl MainWindow {
         let is_cancelled = match ctx.text_edit_focused() {
             true => {
                 let area = egui::Area::new(egui::Id::unique("editing while typing"));
-                let area = area.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO).order(egui::Order::Foreground);
+                let area = area
+                    .anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO)
+                    .order(egui::Order::Foreground);
                 area.show(ctx, |ui| egui::Frame::popup(ui.style()).show(ui, content).inner).inner
             }
             false => Modal::new(egui::Id::unique("editing")).show(ctx, content).inner,

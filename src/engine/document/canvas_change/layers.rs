@@ -1,13 +1,14 @@
-//! Layers on another canvas. Each is carried by a map N of its own frame, and its transform T becomes M T N⁻¹, where M
-//! is the change's own map: the picture is moved by M, whatever N does to the frame. Floor 4.
+//! Layers on another canvas. Each is carried by a map N of its own frame, and its transform T
+//! becomes M T N⁻¹, where M is the change's own map: the picture is moved by M, whatever N does to
+//! the frame. Floor 4.
 
 use super::selections::{CarriedSelections, moved_rect, turned_rect};
 use super::{CanvasChange, TURNED};
 use crate::document::apply_transform::{in_place, placed};
 use crate::document::layer::on_canvas::on_canvas;
 use crate::document::{
-    Content, DerivedMask, DetailSource, Group, Layer, LayerId, LayerMap, LayerMask, LayerTransform, Live, MaskKind,
-    NormalLayer, PixelLayer, StrokeList, TransformShape,
+    Content, DerivedMask, DetailSource, Group, Layer, LayerId, LayerMap, LayerMask, LayerTransform,
+    Live, MaskKind, NormalLayer, PixelLayer, StrokeList, TransformShape,
 };
 use crate::math::{Mat2, PlaneMap, Size, Vec2, vec2, vec3};
 use crate::paint::{Gradient, PlacedImage, Stroke};
@@ -28,10 +29,16 @@ impl Carrier<'_> {
     pub fn layers(&self, layers: &[Arc<Layer>]) -> Result<Vec<Arc<Layer>>, String> {
         layers.iter().map(|layer| self.layer(layer).map(Arc::new)).collect()
     }
+
     fn layer(&self, layer: &Arc<Layer>) -> Result<Layer, String> {
-        let has_picture = matches!(&layer.mask, Some(LayerMask { kind: MaskKind::File { .. }, .. }));
-        // A mask has the size of the canvas: what a transform brings back from beyond it would be lost.
-        if has_picture && (layer.transform.is_some() || layer.is_warped()) && !self.change.holds_all() {
+        let has_picture =
+            matches!(&layer.mask, Some(LayerMask { kind: MaskKind::File { .. }, .. }));
+        // A mask has the size of the canvas: what a transform brings back from beyond it would be
+        // lost.
+        if has_picture
+            && (layer.transform.is_some() || layer.is_warped())
+            && !self.change.holds_all()
+        {
             let shown = in_place(layer, &LayerMap::none(self.change.from));
             if shown.transform.is_none() && !shown.is_warped() {
                 return self.carried(&shown, &self.frame_of(&shown));
@@ -42,10 +49,15 @@ impl Carrier<'_> {
         }
         self.carried(layer, &self.frame_of(layer))
     }
+
     /// N: where a layer's frame goes.
     fn frame_of(&self, layer: &Layer) -> PlaneMap {
         let map = self.change.map;
-        let own = layer.transform.as_ref().and_then(|transform| transform.map(self.change.from)).unwrap_or_default();
+        let own = layer
+            .transform
+            .as_ref()
+            .and_then(|transform| transform.map(self.change.from))
+            .unwrap_or_default();
         let whole = own.then(&map);
         match &layer.content {
             // A mesh works only where its frame stays a rectangle: `carried` ensures this.
@@ -66,16 +78,23 @@ impl Carrier<'_> {
             _ => map,
         }
     }
+
     /// A layer whose frame is moved by `frame`.
     fn carried(&self, layer: &Layer, frame: &PlaneMap) -> Result<Layer, String> {
         let CanvasChange { map, from, to } = self.change;
-        let own = layer.transform.as_ref().and_then(|transform| transform.map(*from)).unwrap_or_default();
+        let own =
+            layer.transform.as_ref().and_then(|transform| transform.map(*from)).unwrap_or_default();
         let next = frame.inverse().then(&own).then(map);
-        let mesh = layer.transform.as_ref().filter(|_| layer.is_warped()).and_then(|own| own.mesh());
+        let mesh =
+            layer.transform.as_ref().filter(|_| layer.is_warped()).and_then(|own| own.mesh());
         let transform = if let Some(mesh) = mesh {
             let carried = mesh.carried(map).map(|mesh| TransformShape::Mesh(Arc::new(mesh)));
-            let why =
-                || format!("“{}” is warped by a mesh, which cannot be turned like this. Apply it first.", layer.name);
+            let why = || {
+                format!(
+                    "“{}” is warped by a mesh, which cannot be turned like this. Apply it first.",
+                    layer.name
+                )
+            };
             let filter = layer.transform.as_ref().map_or(TURNED, |transform| transform.filter);
             Some(LayerTransform { shape: carried.ok_or_else(why)?, filter })
         } else if next.is_identity_on(*to) {
@@ -100,42 +119,58 @@ impl Carrier<'_> {
             ..layer.clone()
         })
     }
+
     fn layer_map(&self, plane: &PlaneMap) -> LayerMap {
         LayerMap::of_plane(*plane, TURNED, self.change.reach())
     }
+
     fn mask(&self, mask: &LayerMask, frame: &PlaneMap) -> LayerMask {
         let kind = match &mask.kind {
             MaskKind::File { file, coverage } => {
-                let coverage = warped_plane_onto(coverage, &self.layer_map(frame), TURNED, self.change.to);
+                let coverage =
+                    warped_plane_onto(coverage, &self.layer_map(frame), TURNED, self.change.to);
                 MaskKind::File { file: file.clone(), coverage: Arc::new(coverage) }
             }
             // Regions lie on the canvas.
             MaskKind::Derived(DerivedMask::Region(region)) => {
-                DerivedMask::Region(SurfaceRegion { at: self.change.point(region.at), ..*region }).into()
+                DerivedMask::Region(SurfaceRegion { at: self.change.point(region.at), ..*region })
+                    .into()
             }
             same => same.clone(),
         };
         LayerMask { kind, ..mask.clone() }
     }
+
     /// How much longer *L*, the unit of bends, was.
     fn ratio(&self) -> f32 {
         self.change.from.longer_side() / self.change.to.longer_side()
     }
+
     fn content(&self, content: &Content, frame: &PlaneMap) -> Result<Content, String> {
         Ok(match content {
             Content::Fill(_) | Content::RadianceScaling(_) => content.clone(),
             Content::Pixels(pixels) => Content::Pixels(self.pixels(pixels, frame)),
             Content::Image(live) => Content::Image(Live::new(self.image(live.params(), frame))),
-            Content::Gradient(live) => Content::Gradient(Live::new(self.gradient(live.params(), frame))),
+            Content::Gradient(live) => {
+                Content::Gradient(Live::new(self.gradient(live.params(), frame)))
+            }
             Content::Strokes(live) => {
-                let strokes = live.params().strokes.iter().map(|stroke| Arc::new(self.stroke(stroke))).collect();
+                let strokes = live
+                    .params()
+                    .strokes
+                    .iter()
+                    .map(|stroke| Arc::new(self.stroke(stroke)))
+                    .collect();
                 Content::Strokes(Live::new(StrokeList { strokes }))
             }
             Content::Shading(live) => Content::Shading(Live::new(self.shading(live.params()))),
             Content::Normals(normals) => Content::Normals(self.normals(normals, frame)),
-            Content::Group(group) => Content::Group(Group { layers: self.layers(&group.layers)?, ..*group }),
+            Content::Group(group) => {
+                Content::Group(Group { layers: self.layers(&group.layers)?, ..*group })
+            }
         })
     }
+
     /// Pixels beyond the canvas are moved too.
     fn pixels(&self, pixels: &PixelLayer, frame: &PlaneMap) -> PixelLayer {
         let map = self.layer_map(frame);
@@ -149,36 +184,51 @@ impl Carrier<'_> {
                 file: pixels.file.clone(),
             },
             by => {
-                let area = by.map_or_else(|| turned_rect(bounds, frame), |by| moved_rect(bounds, by));
+                let area =
+                    by.map_or_else(|| turned_rect(bounds, frame), |by| moved_rect(bounds, by));
                 let wanted: Vec<TileAt> = TileAt::covering(area).collect();
-                PixelLayer { tiles: warped(&pixels.tiles, &map, TURNED, &wanted), ..PixelLayer::default() }
+                PixelLayer {
+                    tiles: warped(&pixels.tiles, &map, TURNED, &wanted),
+                    ..PixelLayer::default()
+                }
             }
         }
     }
+
     fn image(&self, image: &PlacedImage, frame: &PlaneMap) -> PlacedImage {
         let mut next = image.clone();
-        let placement = image.placement.on_canvas_of(self.change.from, self.change.to, image.source.picture.size);
+        let placement = image.placement.on_canvas_of(
+            self.change.from,
+            self.change.to,
+            image.source.picture.size,
+        );
         next.placement = placed(&placement, frame).unwrap_or(placement);
         let at = |p: Vec2| frame.to_canvas(p).unwrap_or(p);
         next.bend.go_along(at, |p| frame.stretch_at(p).unwrap_or(Mat2::IDENTITY));
         next.bend.operator = image.bend.operator.on_canvas_of(self.ratio());
         next
     }
+
     fn gradient(&self, gradient: &Gradient, frame: &PlaneMap) -> Gradient {
         let at = |p: Vec2| frame.to_canvas(p).unwrap_or(p);
         let (from, to) = (at(gradient.from), at(gradient.to));
         let operator = gradient.operator.on_canvas_of(self.ratio());
         let mut next = Gradient { from, to, operator, ..gradient.clone() };
-        PlanePiece::go_along(&mut next.pieces, at, |p| frame.stretch_at(p).unwrap_or(Mat2::IDENTITY));
+        PlanePiece::go_along(&mut next.pieces, at, |p| {
+            frame.stretch_at(p).unwrap_or(Mat2::IDENTITY)
+        });
         next
     }
+
     fn stroke(&self, stroke: &Stroke) -> Stroke {
         let matrix = self.change.matrix();
         let moved = stroke.mapped(&|p| self.change.map.to_canvas(p), |_| 1.0, |_| matrix);
         let operator = stroke.operator().on_canvas_of(self.ratio());
-        let next = Stroke::new(moved.brush().clone(), operator, stroke.color(), moved.samples().to_vec());
+        let next =
+            Stroke::new(moved.brush().clone(), operator, stroke.color(), moved.samples().to_vec());
         next.within(stroke.selection().map(|own| self.selections.of_stroke(own)))
     }
+
     fn shading(&self, shading: &Shading) -> Shading {
         let (mut next, matrix) = (shading.clone(), self.change.matrix());
         for light in &mut next.lights {
@@ -194,6 +244,7 @@ impl Carrier<'_> {
         }
         next
     }
+
     fn normals(&self, normals: &NormalLayer, frame: &PlaneMap) -> NormalLayer {
         let (from, to) = (self.change.from, self.change.to);
         let placement = match &normals.source {
@@ -212,14 +263,31 @@ impl Carrier<'_> {
 
 /// A mesh that is not a matrix displaces it.
 fn is_mesh(layer: &Layer) -> bool {
-    layer.transform.as_ref().and_then(|own| own.mesh()).is_some_and(|mesh| mesh.as_affine().is_none())
+    layer
+        .transform
+        .as_ref()
+        .and_then(|own| own.mesh())
+        .is_some_and(|mesh| mesh.as_affine().is_none())
 }
 
 /// A layer without its mask, in a group whose mask is that one as it lies on the canvas.
 fn under_its_mask(layer: &Arc<Layer>, canvas: Size) -> Layer {
-    let bare = Layer { mask: None, opacity: 1.0, blend: BlendMode::Normal, clip_below: false, ..Layer::clone(layer) };
+    let bare = Layer {
+        mask: None,
+        opacity: 1.0,
+        blend: BlendMode::Normal,
+        clip_below: false,
+        ..Layer::clone(layer)
+    };
     let inner = Layer { id: LayerId::fresh(), visible: true, cache: Default::default(), ..bare };
     let content = Content::Group(Group { layers: vec![Arc::new(inner)], pass_through: false });
     let mask = on_canvas(layer, &LayerMap::none(canvas)).mask.clone();
-    Layer { content, mask, transform: None, liquify: None, cache: Default::default(), ..Layer::clone(layer) }
+    Layer {
+        content,
+        mask,
+        transform: None,
+        liquify: None,
+        cache: Default::default(),
+        ..Layer::clone(layer)
+    }
 }

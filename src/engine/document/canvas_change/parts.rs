@@ -1,8 +1,9 @@
 //! Parts of a shape on another canvas.
 //! Floor 4.
 //!
-//! A part that follows what it names (a layer, an object of the maps) is carried with that. Any other part keeps its
-//! own frame, or a frame turned in place, and its matrix says where that went; what lies on it is in the same frame.
+//! A part that follows what it names (a layer, an object of the maps) is carried with that. Any
+//! other part keeps its own frame, or a frame turned in place, and its matrix says where that went;
+//! what lies on it is in the same frame.
 
 use super::CanvasChange;
 use super::selections::turned_rect;
@@ -20,10 +21,16 @@ use std::sync::Arc;
 /// Every part of a list where the change takes it.
 ///
 /// * `maps`: the surface of the document's maps before and after; objects get new numbers.
-pub fn carried(list: &[Arc<Part>], change: &CanvasChange, maps: Option<[&Arc<Surface>; 2]>) -> Vec<Arc<Part>> {
+pub fn carried(
+    list: &[Arc<Part>],
+    change: &CanvasChange,
+    maps: Option<[&Arc<Surface>; 2]>,
+) -> Vec<Arc<Part>> {
     let one = |part: &Arc<Part>| {
         let mut next = Frame::of(list, part.on().unwrap_or(&part.id), change).part(part, change);
-        if let (Some(OutlineSource::Object(object)), Some([old, new])) = (outline_mut(&mut next.kind), maps) {
+        if let (Some(OutlineSource::Object(object)), Some([old, new])) =
+            (outline_mut(&mut next.kind), maps)
+        {
             *object = same_object(*object, old, new, |p| change.point(p));
         }
         Arc::new(next)
@@ -33,15 +40,21 @@ pub fn carried(list: &[Arc<Part>], change: &CanvasChange, maps: Option<[&Arc<Sur
 
 pub(super) fn outline_mut(kind: &mut PartKind) -> Option<&mut OutlineSource> {
     match kind {
-        PartKind::Inflate { outline, .. } | PartKind::Bevel { outline, .. } | PartKind::Lathe { outline, .. } => {
-            Some(outline)
-        }
+        PartKind::Inflate { outline, .. }
+        | PartKind::Bevel { outline, .. }
+        | PartKind::Lathe { outline, .. } => Some(outline),
         _ => None,
     }
 }
 
-/// The number of the object that most pixels of another one became; for one that is gone, a number that no object has.
-pub(super) fn same_object(object: u32, old: &Arc<Surface>, new: &Arc<Surface>, to: impl Fn(Vec2) -> Vec2) -> u32 {
+/// The number of the object that most pixels of another one became; for one that is gone, a number
+/// that no object has.
+pub(super) fn same_object(
+    object: u32,
+    old: &Arc<Surface>,
+    new: &Arc<Surface>,
+    to: impl Fn(Vec2) -> Vec2,
+) -> u32 {
     let (before, now) = (old.objects(), new.objects());
     let labels = before.labels();
     let mut counts: BTreeMap<u32, usize> = BTreeMap::new();
@@ -70,23 +83,33 @@ impl Frame {
     fn of(list: &[Arc<Part>], id: &str, change: &CanvasChange) -> Self {
         let base = list.iter().find(|part| part.id == id);
         let follows = |part: &Arc<Part>| match part.outline() {
-            Some(OutlineSource::Layer { .. } | OutlineSource::Object(_) | OutlineSource::Selection(_)) => true,
+            Some(
+                OutlineSource::Layer { .. }
+                | OutlineSource::Object(_)
+                | OutlineSource::Selection(_),
+            ) => true,
             Some(OutlineSource::File(_) | OutlineSource::Path(_)) | None => false,
         };
         if base.is_none_or(follows) {
             return Self { map: change.map, pictures: Some(change.to) };
         }
         // Lights and normals that were made elsewhere turn by the matrix.
-        let is_made = |part: &Arc<Part>| matches!(part.kind, PartKind::Maps(_) | PartKind::Profiles { .. });
+        let is_made =
+            |part: &Arc<Part>| matches!(part.kind, PartKind::Maps(_) | PartKind::Profiles { .. });
         if change.is_shift() || base.is_some_and(is_made) {
             return Self { map: PlaneMap::IDENTITY, pictures: None };
         }
         // Turned in place, then moved so that pictures begin at its corner again.
         let own = list.iter().filter(|part| part.id == id || part.on() == Some(id));
         let sizes = own.flat_map(|part| {
-            Part::clone(part).files_mut().into_iter().map(|file| file.coverage.size()).collect::<Vec<_>>()
+            Part::clone(part)
+                .files_mut()
+                .into_iter()
+                .map(|file| file.coverage.size())
+                .collect::<Vec<_>>()
         });
-        let held = sizes.fold(change.from, |a, b| Size::new(a.width.max(b.width), a.height.max(b.height)));
+        let held =
+            sizes.fold(change.from, |a, b| Size::new(a.width.max(b.width), a.height.max(b.height)));
         let turned = match change.pixel_move() {
             Some(by) => super::selections::moved_rect(held.rect(), by),
             None => turned_rect(held.rect(), &change.map),
@@ -95,12 +118,15 @@ impl Frame {
         let map = change.map.then(&PlaneMap::translation(vec2(-x0 as f32, -y0 as f32)));
         Self { map, pictures: Some(Size::new(turned.width() as u32, turned.height() as u32)) }
     }
+
     fn part(&self, part: &Part, change: &CanvasChange) -> Part {
         let mut next = part.clone();
-        let [here, back] = [self.map, self.map.inverse()].map(|map| map.as_affine().unwrap_or(Affine2::IDENTITY));
+        let [here, back] =
+            [self.map, self.map.inverse()].map(|map| map.as_affine().unwrap_or(Affine2::IDENTITY));
         next.matrix = change.map.as_affine().unwrap_or(Affine2::IDENTITY) * part.matrix * back;
         // It leans as it is seen, wherever its frame is.
-        let slope = change.matrix() * vec2(part.tilt_deg.x.to_radians().tan(), part.tilt_deg.y.to_radians().tan());
+        let slope = change.matrix()
+            * vec2(part.tilt_deg.x.to_radians().tan(), part.tilt_deg.y.to_radians().tan());
         if part.tilt_deg != Vec2::ZERO && !change.is_shift() {
             next.tilt_deg = vec2(slope.x.atan().to_degrees(), slope.y.atan().to_degrees());
         }
@@ -111,11 +137,13 @@ impl Frame {
         }
         next
     }
+
     fn picture(&self, plane: &Plane<u8>, to: Size) -> Plane<u8> {
         // What is beyond a picture is not covered: its border is not continued.
         let edged = |v: u32| v.saturating_add(4);
         let wide = Size::new(edged(plane.size().width), edged(plane.size().height));
-        let bordered = Plane::from_fn(wide, |x, y| plane.get(x as i32 - 2, y as i32 - 2).unwrap_or(0));
+        let bordered =
+            Plane::from_fn(wide, |x, y| plane.get(x as i32 - 2, y as i32 - 2).unwrap_or(0));
         let reach = Size::new(wide.width.max(to.width), wide.height.max(to.height));
         let map = PlaneMap::translation(vec2(-2.0, -2.0)).then(&self.map);
         let map = LayerMap::of_plane(map, Resampling::Smooth, reach);
@@ -142,7 +170,10 @@ pub(super) fn carry(kind: &mut PartKind, map: Affine2) {
             touch.normal = vec3(bar.x, -bar.y, touch.normal.z);
         }),
         PartKind::Sculpt { strokes, .. } => {
-            strokes.iter_mut().flat_map(|stroke| &mut stroke.samples).for_each(|sample| at(&mut sample.0));
+            strokes
+                .iter_mut()
+                .flat_map(|stroke| &mut stroke.samples)
+                .for_each(|sample| at(&mut sample.0));
         }
         PartKind::Lines { ink, .. } => path(ink),
         PartKind::Profiles { outline, .. } => outline.iter_mut().for_each(path),
@@ -150,7 +181,8 @@ pub(super) fn carry(kind: &mut PartKind, map: Affine2) {
     }
 }
 
-/// A body turned in the plane, and mirrored: every body is its own mirror image before it is turned.
+/// A body turned in the plane, and mirrored: every body is its own mirror image before it is
+/// turned.
 fn turned(body: &Primitive, map: Affine2) -> Primitive {
     let mut next = *body;
     next.center = map.transform_point2(body.center);

@@ -27,17 +27,28 @@ impl<'c> CarriedSelections<'c> {
     pub fn new(change: &'c CanvasChange) -> Self {
         Self { change, known: RefCell::default() }
     }
+
     pub fn of(&self, selection: &Arc<Selection>) -> Arc<Selection> {
         let mut known = self.known.borrow_mut();
         let (_, carried) = known.entry(Arc::as_ptr(selection)).or_insert_with(|| {
-            let made = selection.made.map(|region| SurfaceRegion { at: self.change.point(region.at), ..region });
-            (selection.clone(), Arc::new(Selection::carried(self.coverage(&selection.coverage), made)))
+            let made = selection
+                .made
+                .map(|region| SurfaceRegion { at: self.change.point(region.at), ..region });
+            (
+                selection.clone(),
+                Arc::new(Selection::carried(self.coverage(&selection.coverage), made)),
+            )
         });
         carried.clone()
     }
+
     pub fn of_stroke(&self, own: &StrokeSelection) -> StrokeSelection {
-        StrokeSelection { selection: self.of(&own.selection), moved: self.change.matrix() * own.moved }
+        StrokeSelection {
+            selection: self.of(&own.selection),
+            moved: self.change.matrix() * own.moved,
+        }
     }
+
     fn coverage(&self, grid: &CoverageGrid) -> CoverageGrid {
         let rect = grid.covered();
         if rect.is_empty() {
@@ -56,11 +67,13 @@ impl<'c> CarriedSelections<'c> {
             None => self.turned(grid, rect.grown(2)),
         }
     }
+
     /// Coverage of a rectangle, sampled once.
     fn turned(&self, grid: &CoverageGrid, rect: Rect) -> CoverageGrid {
         let bounds = turned_rect(rect, &self.change.map);
         let shift = |x: i32, y: i32| PlaneMap::translation(vec2(x as f32, y as f32));
-        let plane = shift(rect.x0, rect.y0).then(&self.change.map).then(&shift(-bounds.x0, -bounds.y0));
+        let plane =
+            shift(rect.x0, rect.y0).then(&self.change.map).then(&shift(-bounds.x0, -bounds.y0));
         let size = Size::new(bounds.width() as u32, bounds.height() as u32);
         let filter = Resampling::Smooth;
         let map = LayerMap::of_plane(plane, filter, size);
@@ -78,7 +91,8 @@ pub fn moved_rect(rect: Rect, by: PixelMove) -> Rect {
 /// The pixels that a map takes a rectangle to, or a few more.
 pub fn turned_rect(rect: Rect, map: &PlaneMap) -> Rect {
     let corners = [(rect.x0, rect.y0), (rect.x1, rect.y0), (rect.x1, rect.y1), (rect.x0, rect.y1)];
-    let corners = corners.map(|(x, y)| map.to_canvas(vec2(x as f32, y as f32)).unwrap_or(Vec2::ZERO));
+    let corners =
+        corners.map(|(x, y)| map.to_canvas(vec2(x as f32, y as f32)).unwrap_or(Vec2::ZERO));
     let low = corners.into_iter().fold(Vec2::INFINITY, Vec2::min).floor() - 1.0;
     let high = corners.into_iter().fold(Vec2::NEG_INFINITY, Vec2::max).ceil() + 1.0;
     Rect::new(low.x as i32, low.y as i32, high.x as i32, high.y as i32)

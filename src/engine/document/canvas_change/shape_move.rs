@@ -1,6 +1,6 @@
-//! The shape moved, turned, mirrored or scaled on its canvas, with the paint that lies on it. Floor 4. Not here:
-//! changes of the canvas under the shape (the module above), and paint that slides over the shape (a transform of its
-//! layer).
+//! The shape moved, turned, mirrored or scaled on its canvas, with the paint that lies on it.
+//! Floor 4. Not here: changes of the canvas under the shape (the module above), and paint that slides
+//! over the shape (a transform of its layer).
 
 use super::parts::{carry, outline_mut, same_object};
 use crate::document::FrameBox;
@@ -8,8 +8,8 @@ use crate::document::homes::transform_of;
 use crate::document::parts::{OutlineSource, Part};
 use crate::document::selections::selecting;
 use crate::document::{
-    Content, DerivedMask, Document, Group, Layer, LayerMap, LayerMask, LayerTransform, MaskKind, NamedSelection,
-    SurfaceSource, TransformShape,
+    Content, DerivedMask, Document, Group, Layer, LayerMap, LayerMask, LayerTransform, MaskKind,
+    NamedSelection, SurfaceSource, TransformShape,
 };
 use crate::math::{Affine2, PlaneMap, Vec2, vec2};
 use crate::paint::Selection;
@@ -24,7 +24,9 @@ impl FrameBox {
         let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
         for y in 0..coverage.height() {
             let row = coverage.row(y);
-            let Some((first, last)) = row.iter().position(|c| *c > 0).zip(row.iter().rposition(|c| *c > 0)) else {
+            let Some((first, last)) =
+                row.iter().position(|c| *c > 0).zip(row.iter().rposition(|c| *c > 0))
+            else {
                 continue;
             };
             low = low.min(vec2(first as f32, y as f32));
@@ -35,20 +37,25 @@ impl FrameBox {
 }
 
 impl Document {
-    /// The drawing with its whole shape moved by an affine map of the canvas: maps and parts with their normals, and
-    /// the layers that are clipped to the surface, except light and fills. Selections by the surface are found at the
-    /// new place of their point.
+    /// The drawing with its whole shape moved by an affine map of the canvas: maps and parts with
+    /// their normals, and the layers that are clipped to the surface, except light and fills.
+    /// Selections by the surface are found at the new place of their point.
     ///
-    /// Maps are sampled once from what they were made of, layers keep a transform: turning back restores them.
+    /// Maps are sampled once from what they were made of, layers keep a transform: turning back
+    /// restores them.
     ///
-    /// Fails, in a sentence, where there is no shape, nothing of it would be left, or the map does not suit it.
+    /// Fails, in a sentence, where there is no shape, nothing of it would be left, or the map does
+    /// not suit it.
     pub fn with_shape_through(&self, map: &PlaneMap) -> Result<Document, String> {
-        let affine = map.as_affine().ok_or("A shape cannot be put in perspective: its depth would not fit.")?;
+        let affine = map
+            .as_affine()
+            .ok_or("A shape cannot be put in perspective: its depth would not fit.")?;
         self.surface.as_ref().ok_or("There is no shape to move.")?;
         // What lies on parts is carried as it shows, and put on them again at their new places.
         let lifted = self.lifted_off(|_| true);
         let around = LayerMap::none(self.size);
-        let layers = carried(&lifted.layers, &around, map).ok_or("A layer cannot follow the shape there.")?;
+        let layers = carried(&lifted.layers, &around, map)
+            .ok_or("A layer cannot follow the shape there.")?;
         let maps = self.maps_surface().map(|maps| maps.through(self.size, map)).transpose();
         let maps = maps.map_err(|error| match error {
             SurfaceError::Empty => "Nothing of the shape would be left on the canvas.".to_owned(),
@@ -57,7 +64,12 @@ impl Document {
         let source = self.surface_source.as_ref().zip(maps.as_ref());
         let source: Option<SurfaceSource> = source.map(|(source, maps)| source.placed_as(maps));
         let both = self.maps_surface().zip(maps.as_ref());
-        let parts = self.parts.list.iter().map(|part| Arc::new(self.carried_part(part, affine, both))).collect();
+        let parts = self
+            .parts
+            .list
+            .iter()
+            .map(|part| Arc::new(self.carried_part(part, affine, both)))
+            .collect();
         let found = |selection: &Arc<Selection>| match selection.made {
             Some(region) => {
                 let made = Some(SurfaceRegion { at: affine.transform_point2(region.at), ..region });
@@ -65,7 +77,10 @@ impl Document {
             }
             None => selection.clone(),
         };
-        let kept = |kept: &NamedSelection| NamedSelection { selection: found(&kept.selection), ..kept.clone() };
+        let kept = |kept: &NamedSelection| NamedSelection {
+            selection: found(&kept.selection),
+            ..kept.clone()
+        };
         let bare = Document {
             surface_source: source.map(Arc::new),
             surface: maps,
@@ -82,17 +97,26 @@ impl Document {
         }
         Ok(next.with_selections_found())
     }
-    /// A part moved with the shape. One whose outline moves by itself follows that; all others move by their matrix,
-    /// and what lies on them with them.
-    fn carried_part(&self, part: &Part, map: Affine2, maps: Option<(&Arc<Surface>, &Arc<Surface>)>) -> Part {
+
+    /// A part moved with the shape. One whose outline moves by itself follows that; all others move
+    /// by their matrix, and what lies on them with them.
+    fn carried_part(
+        &self,
+        part: &Part,
+        map: Affine2,
+        maps: Option<(&Arc<Surface>, &Arc<Surface>)>,
+    ) -> Part {
         let body = self.parts.body_of(&part.id).map_or(part, |body| body);
         let follows = match body.outline() {
             Some(OutlineSource::Object(_)) => true,
-            Some(OutlineSource::Layer { layer, .. }) => self.layer_named(layer).is_some_and(|layer| goes(layer)),
+            Some(OutlineSource::Layer { layer, .. }) => {
+                self.layer_named(layer).is_some_and(|layer| goes(layer))
+            }
             _ => false,
         };
         let length = map.matrix2.determinant().abs().sqrt();
-        let mut next = if follows { part.scaled(Vec2::ONE, length, Clone::clone) } else { part.clone() };
+        let mut next =
+            if follows { part.scaled(Vec2::ONE, length, Clone::clone) } else { part.clone() };
         match follows {
             true => {
                 next.matrix = map * part.matrix * map.inverse();
@@ -109,18 +133,22 @@ impl Document {
             let slope = length * (map.matrix2.inverse().transpose() * slope);
             next.tilt_deg = vec2(slope.x.atan().to_degrees(), slope.y.atan().to_degrees());
         }
-        if let (Some(OutlineSource::Object(object)), Some((old, new))) = (outline_mut(&mut next.kind), maps) {
+        if let (Some(OutlineSource::Object(object)), Some((old, new))) =
+            (outline_mut(&mut next.kind), maps)
+        {
             *object = same_object(*object, old, new, |p| map.transform_point2(p));
         }
         next
     }
 }
 
-/// Whether a layer moves with the shape: it is clipped to the surface and is no light, or has a painted mask; for a
-/// group, whether all in it does.
+/// Whether a layer moves with the shape: it is clipped to the surface and is no light, or has a
+/// painted mask; for a group, whether all in it does.
 fn goes(layer: &Layer) -> bool {
     match &layer.content {
-        Content::Group(group) => !group.layers.is_empty() && group.layers.iter().all(|layer| goes(layer)),
+        Content::Group(group) => {
+            !group.layers.is_empty() && group.layers.iter().all(|layer| goes(layer))
+        }
         content => layer.clip_to_surface && (content.goes_with_shape() || has_painted_mask(layer)),
     }
 }
@@ -129,7 +157,8 @@ fn has_painted_mask(layer: &Layer) -> bool {
     layer.mask.as_ref().is_some_and(|mask| matches!(mask.kind, MaskKind::File { .. }))
 }
 
-/// Layers, those that move with the shape moved by a map of the canvas; `None` where that cannot be expressed.
+/// Layers, those that move with the shape moved by a map of the canvas; `None` where that cannot be
+/// expressed.
 fn carried(layers: &[Arc<Layer>], around: &LayerMap, map: &PlaneMap) -> Option<Vec<Arc<Layer>>> {
     let one = |layer: &Arc<Layer>| {
         let own = around.within(layer);
@@ -141,7 +170,8 @@ fn carried(layers: &[Arc<Layer>], around: &LayerMap, map: &PlaneMap) -> Option<V
         }
         // The map in the list that holds the layer.
         let outer = around.plane.then(map).then(&around.plane.inverse());
-        // Selections by the surface that strokes were painted in lie in their frame, and move with it unchanged.
+        // Selections by the surface that strokes were painted in lie in their frame, and move with
+        // it unchanged.
         let bound = |selection: &Arc<Selection>| match selection.made {
             Some(_) => Arc::new(Selection::new(selection.coverage.clone())),
             None => selection.clone(),
@@ -181,6 +211,7 @@ mod tests {
         document.layers.push(Arc::new(ramp(bent())));
         document
     }
+
     fn turned(document: &Document, degrees: f64) -> Document {
         document.with_shape_through(&PlaneMap::rotation(degrees, document.size.center())).unwrap()
     }
@@ -196,10 +227,12 @@ mod tests {
         assert_eq!(picture(&round), before);
         let tens = (0..36).fold(start.clone(), |next, _| turned(&next, 10.0));
         assert_eq!(picture(&tens), before, "36 turns of 10° are none");
-        let mirror = PlaneMap::affine([-1.0, 0.0, 0.0, 1.0, f64::from(start.size.width), 0.0]).unwrap();
+        let mirror =
+            PlaneMap::affine([-1.0, 0.0, 0.0, 1.0, f64::from(start.size.width), 0.0]).unwrap();
         let twice = start.with_shape_through(&mirror).unwrap().with_shape_through(&mirror).unwrap();
         assert_eq!(picture(&twice), before);
     }
+
     #[test]
     fn the_normals_turn_with_the_shape_and_the_paint_goes_along() {
         let start = on_dome();
@@ -219,11 +252,18 @@ mod tests {
             assert_eq!(pixel(&before, x, y), pixel(&after, w - 1 - x, h - 1 - y));
         }
     }
+
     #[test]
     fn what_cannot_be_done_is_a_sentence() {
         let start = on_dome();
         let away = PlaneMap::translation(vec2(5000.0, 0.0));
-        assert!(start.with_shape_through(&away).is_err_and(|why| why.contains("Nothing of the shape")));
-        assert!(under(paint()).with_shape_through(&PlaneMap::IDENTITY).is_err_and(|why| why.contains("no shape")));
+        assert!(
+            start.with_shape_through(&away).is_err_and(|why| why.contains("Nothing of the shape"))
+        );
+        assert!(
+            under(paint())
+                .with_shape_through(&PlaneMap::IDENTITY)
+                .is_err_and(|why| why.contains("no shape"))
+        );
     }
 }

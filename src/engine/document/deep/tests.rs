@@ -1,4 +1,5 @@
-//! Composing in floats: as fine as the layers are, and equal to the picture of bytes before it is rounded.
+//! Composing in floats: as fine as the layers are, and equal to the picture of bytes before it is
+//! rounded.
 
 use super::super::prepare::PreparedDocument;
 use super::*;
@@ -6,7 +7,10 @@ use crate::document::{Content, Group, Layer, Live, StrokeList, flatten};
 use crate::document::{flatten_deep, flatten_rounding_once, flatten_to_paint};
 use crate::math::srgb::{self, Color};
 use crate::math::{Size, Vec2, hash, vec2, vec3};
-use crate::paint::{Adjust, Brush, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement, Sample};
+use crate::paint::{
+    Adjust, Brush, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement,
+    Sample,
+};
 use crate::paint::{Stroke, stroke};
 use crate::raster::{BlendMode, Outside, Picture, Plane};
 use crate::shading::{Model, RadianceScaling, Shading};
@@ -18,13 +22,23 @@ const BENT: Operator = Operator::Normal { alpha: 0.3, beta: 1.0, detail: 0.0 };
 fn document(size: Size, layers: Vec<Layer>) -> Document {
     Document { layers: layers.into_iter().map(Arc::new).collect(), ..Document::empty(size) }
 }
+
 fn gradient(from: Vec2, to: Vec2, operator: Operator) -> Layer {
     let stop = |t, color| GradientStop { t, color };
     let stops = vec![stop(0.0, Color::BLACK), stop(1.0, Color::WHITE)];
     let filter = ImageFilter::Antialias;
-    let gradient = Gradient { from, to, stops, operator, filter, frame: Default::default(), pieces: Vec::new() };
+    let gradient = Gradient {
+        from,
+        to,
+        stops,
+        operator,
+        filter,
+        frame: Default::default(),
+        pieces: Vec::new(),
+    };
     Layer::new("gradient", Content::Gradient(Live::new(gradient)))
 }
+
 fn image(picture: Picture, size: Size, operator: Operator) -> Layer {
     let image = PlacedImage {
         source: PictureSource::new("a.png".into(), picture, Adjust::default()),
@@ -36,15 +50,25 @@ fn image(picture: Picture, size: Size, operator: Operator) -> Layer {
     };
     Layer::new("image", Content::Image(Live::new(image)))
 }
+
 fn strokes(n: u32) -> Layer {
     let brush = Brush { size: 40.0, hardness: 0.3, flow: 0.4, ..Brush::default() };
     let one = |i: u32| {
         let at = |j: u32| vec2(140.0 * hash::unit(i, j, 0), 120.0 * hash::unit(i, j, 1));
         let color = Color { r: 40 * i as u8, g: 200, b: 90, a: 255 };
-        Arc::new(Stroke::new(brush.clone(), BENT, color, (0..4).map(|j| Sample::at(at(j))).collect()))
+        Arc::new(Stroke::new(
+            brush.clone(),
+            BENT,
+            color,
+            (0..4).map(|j| Sample::at(at(j))).collect(),
+        ))
     };
-    Layer::new("strokes", Content::Strokes(Live::new(StrokeList { strokes: (0..n).map(one).collect() })))
+    Layer::new(
+        "strokes",
+        Content::Strokes(Live::new(StrokeList { strokes: (0..n).map(one).collect() })),
+    )
 }
+
 /// A ball before another before nothing: contours of both kinds.
 fn balls(size: Size) -> Arc<Surface> {
     let ball = |x: usize, y: usize, c: Vec2, r: f32| {
@@ -62,6 +86,7 @@ fn balls(size: Size) -> Arc<Surface> {
     };
     Arc::new(Surface::new(maps).unwrap())
 }
+
 fn levels(values: impl Iterator<Item = f32>) -> usize {
     values.map(f32::to_bits).collect::<BTreeSet<u32>>().len()
 }
@@ -74,6 +99,7 @@ fn a_gradient_of_4096_pixels_has_4096_levels() {
     let found = levels(deep[..4096].iter().map(|p| (p[0] * 65535.0).round()));
     assert!(found >= 4090, "{found} levels of 16 bits");
 }
+
 #[test]
 fn every_kind_of_layer_is_the_picture_of_bytes_before_it_is_rounded() {
     let size = Size::new(140, 120);
@@ -107,13 +133,20 @@ fn every_kind_of_layer_is_the_picture_of_bytes_before_it_is_rounded() {
         let deep = flatten_deep(&document, Highlights::Clipped, &Progress::default()).unwrap();
         let apart = |(i, float): (usize, &[f32; 4])| {
             let byte = bytes.pixel(i as i32 % 140, i as i32 / 140);
-            byte.iter().zip(float).map(|(b, f)| (f32::from(*b) - f * 255.0).abs()).fold(0.0, f32::max)
+            byte.iter()
+                .zip(float)
+                .map(|(b, f)| (f32::from(*b) - f * 255.0).abs())
+                .fold(0.0, f32::max)
         };
         let farthest = deep.iter().enumerate().map(apart).fold(0.0, f32::max);
         // Layers of bytes are rounded one by one; scaling multiplies the error.
-        assert!(farthest < if n == layers.len() { 3.0 } else { 2.5 }, "{n} layers: {farthest} of 255");
+        assert!(
+            farthest < if n == layers.len() { 3.0 } else { 2.5 },
+            "{n} layers: {farthest} of 255"
+        );
     }
 }
+
 #[test]
 fn a_picture_that_is_rounded_once_is_the_one_of_floats_whatever_the_blend_mode() {
     let size = Size::new(256, 64);
@@ -121,7 +154,8 @@ fn a_picture_that_is_rounded_once_is_the_one_of_floats_whatever_the_blend_mode()
     let ramp = |from: Vec2, to: Vec2, stops: [GradientStop; 2], blend: BlendMode| {
         let filter = ImageFilter::Antialias;
         let (operator, frame, pieces) = (Operator::None, Default::default(), Vec::new());
-        let gradient = Gradient { from, to, stops: stops.to_vec(), operator, filter, frame, pieces };
+        let gradient =
+            Gradient { from, to, stops: stops.to_vec(), operator, filter, frame, pieces };
         Layer { blend, ..Layer::new("ramp", Content::Gradient(Live::new(gradient))) }
     };
     let mut farthest_of_bytes = 0.0f32;
@@ -132,14 +166,21 @@ fn a_picture_that_is_rounded_once_is_the_one_of_floats_whatever_the_blend_mode()
             [stop(0.0, 20, 90, 60, 255), stop(1.0, 60, 40, 200, 90)],
             BlendMode::Normal,
         );
-        let above =
-            ramp(vec2(0.0, 64.0), vec2(30.0, 0.0), [stop(0.0, 250, 200, 30, 40), stop(1.0, 40, 80, 90, 255)], mode);
+        let above = ramp(
+            vec2(0.0, 64.0),
+            vec2(30.0, 0.0),
+            [stop(0.0, 250, 200, 30, 40), stop(1.0, 40, 80, 90, 255)],
+            mode,
+        );
         let document = document(size, vec![below, above]);
         let deep = flatten_deep(&document, Highlights::Clipped, &Progress::default()).unwrap();
         let apart = |bytes: crate::raster::TileGrid| {
             let of_pixel = |(i, float): (usize, &[f32; 4])| {
                 let byte = bytes.pixel(i as i32 % 256, i as i32 / 256);
-                byte.iter().zip(float).map(|(b, f)| (f32::from(*b) - f * 255.0).abs()).fold(0.0, f32::max)
+                byte.iter()
+                    .zip(float)
+                    .map(|(b, f)| (f32::from(*b) - f * 255.0).abs())
+                    .fold(0.0, f32::max)
             };
             deep.iter().enumerate().map(of_pixel).fold(0.0, f32::max)
         };
@@ -151,6 +192,7 @@ fn a_picture_that_is_rounded_once_is_the_one_of_floats_whatever_the_blend_mode()
     }
     assert!(farthest_of_bytes > 4.0, "bytes between show: {farthest_of_bytes}");
 }
+
 #[test]
 fn light_beyond_white_stays_in_files_of_light_alone() {
     let size = Size::new(64, 64);
@@ -162,11 +204,13 @@ fn light_beyond_white_stays_in_files_of_light_alone() {
     };
     let bright = shown(vec![image(sun.clone(), size, Operator::None)], Highlights::Kept);
     assert!((srgb::decode(bright[0]) - 9.0).abs() < 1e-3, "{bright:?}");
-    let veiled = shown(vec![image(sun.clone(), size, Operator::None), veil.clone()], Highlights::Kept);
+    let veiled =
+        shown(vec![image(sun.clone(), size, Operator::None), veil.clone()], Highlights::Kept);
     assert!((veiled[0] - bright[0] / 2.0).abs() < 1e-6, "{veiled:?}");
     let clipped = shown(vec![image(sun, size, Operator::None), veil], Highlights::Clipped);
     assert_eq!(clipped[0], 0.5);
 }
+
 #[test]
 fn tiles_rendered_together_are_taken_and_those_of_other_places_are_rendered() {
     let size = Size::new(140, 120);
@@ -179,7 +223,12 @@ fn tiles_rendered_together_are_taken_and_those_of_other_places_are_rendered() {
     let mut red = PlanarTile::transparent();
     red.rows_mut()[3].set(4, [1.0, 0.0, 0.0, 1.0]);
     deep.together.insert((node.layer.id, known, false), Some(red));
-    let pixel = |at, x: usize, y: usize| match deep.content(node, node.layer.content.marks().unwrap(), at, None) {
+    let pixel = |at, x: usize, y: usize| match deep.content(
+        node,
+        node.layer.content.marks().unwrap(),
+        at,
+        None,
+    ) {
         TileContent::Group(tile) => tile.rows()[y].pixel(x),
         _ => panic!("pixels"),
     };
@@ -187,6 +236,7 @@ fn tiles_rendered_together_are_taken_and_those_of_other_places_are_rendered() {
     let rendered = stroke::render_pixels(&list, &node.scene, other).unwrap();
     assert_eq!(pixel(other, 20, 9), rendered.rows()[9].pixel(20));
 }
+
 #[test]
 fn textures_of_floats_are_held_while_tiles_are_composed() {
     let size = Size::new(64, 64);
@@ -195,15 +245,20 @@ fn textures_of_floats_are_held_while_tiles_are_composed() {
     let prepared = PreparedDocument::new(&document, &Progress::default()).unwrap();
     assert_eq!(DeepTiles::new(&prepared, Highlights::Kept).held(), 1);
 }
+
 #[test]
 fn a_placed_picture_of_more_than_8_bits_becomes_paint_of_16_even_if_nothing_is_soft() {
     let size = Size::new(100, 70);
     let value = |i: usize, c: u32| (hash::unit(i as u32, c, 4) * 65536.0) as u16;
-    let deep: Vec<[u16; 4]> = (0..size.area()).map(|i| [value(i, 0), value(i, 1), value(i, 2), 65535]).collect();
-    let bytes = Picture::srgb8(size, deep.iter().map(|t| t.map(|v| (v / 257) as u8)).collect()).unwrap();
+    let deep: Vec<[u16; 4]> =
+        (0..size.area()).map(|i| [value(i, 0), value(i, 1), value(i, 2), 65535]).collect();
+    let bytes =
+        Picture::srgb8(size, deep.iter().map(|t| t.map(|v| (v / 257) as u8)).collect()).unwrap();
     let light = deep.iter().map(|t| t.map(|v| srgb::decode(f32::from(v) / 65535.0))).collect();
     let wide = bytes.clone().with_deep(deep.clone());
-    for (picture, is_deep) in [(wide, true), (Picture::linear(size, light).unwrap(), true), (bytes.clone(), false)] {
+    for (picture, is_deep) in
+        [(wide, true), (Picture::linear(size, light).unwrap(), true), (bytes.clone(), false)]
+    {
         // One is in a group and clipped, as a layer may be.
         let alone = image(picture, size, Operator::None);
         let clipped = Layer { clip_below: true, ..alone.clone() };
@@ -214,10 +269,16 @@ fn a_placed_picture_of_more_than_8_bits_becomes_paint_of_16_even_if_nothing_is_s
         let tiles = flatten_to_paint(&document(size, vec![alone]), &Progress::default()).unwrap();
         assert_eq!(tiles.is_deep_in(size.rect()), is_deep);
         let found = tiles.to_straight_deep(size.rect());
-        let apart = found.iter().zip(&deep).flat_map(|(a, b)| a.iter().zip(b)).map(|(a, b)| a.abs_diff(*b)).max();
+        let apart = found
+            .iter()
+            .zip(&deep)
+            .flat_map(|(a, b)| a.iter().zip(b))
+            .map(|(a, b)| a.abs_diff(*b))
+            .max();
         assert!(!is_deep || apart <= Some(1), "{apart:?}");
     }
 }
+
 fn is_kept_deep(layer: Layer, size: Size) -> bool {
     let tiles = flatten_to_paint(&document(size, vec![layer]), &Progress::default()).unwrap();
     tiles.is_deep_in(size.rect())

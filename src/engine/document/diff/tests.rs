@@ -1,7 +1,9 @@
 //! Redrawing only what differs must give what drawing everything gives.
 
 use super::*;
-use crate::document::{Content, Group, LayerSlot, Live, PixelLayer, PreparedDocument, Progress, StrokeList, flatten};
+use crate::document::{
+    Content, Group, LayerSlot, Live, PixelLayer, PreparedDocument, Progress, StrokeList, flatten,
+};
 use crate::math::{Size, hash, srgb::Color, vec2, vec3};
 use crate::paint::{Brush, Gradient, GradientStop, Stroke};
 use crate::raster::{BlendMode, Plane, TileGrid};
@@ -21,16 +23,20 @@ impl RandomNumbers {
         self.count += 1;
         hash::unit(self.seed, self.count, 0)
     }
+
     fn below(&mut self, n: usize) -> usize {
         (self.unit() * n as f32) as usize
     }
+
     fn chance(&mut self, p: f32) -> bool {
         self.unit() < p
     }
+
     fn color(&mut self) -> Color {
         let mut byte = || (self.unit() * 256.0) as u8;
         Color { r: byte(), g: byte(), b: byte(), a: byte() }
     }
+
     /// A paint layer that holds a patch somewhere, perhaps beyond the canvas.
     fn pixels(&mut self) -> PixelLayer {
         let Color { r, g, b, a } = self.color();
@@ -44,28 +50,42 @@ impl RandomNumbers {
             tiles: TileGrid::from_straight_rgba(&[r, g, b, a].repeat(w * h), w, h, x, y),
         }
     }
+
     fn stroke(&mut self) -> Arc<Stroke> {
         let at = |d: &mut Self| vec2(d.unit() * 250.0, d.unit() * 190.0);
-        let sample = |at| crate::paint::Sample { at, pressure: 1.0, tilt: vec2(0.0, 0.0), time_secs: 0.0 };
+        let sample =
+            |at| crate::paint::Sample { at, pressure: 1.0, tilt: vec2(0.0, 0.0), time_secs: 0.0 };
         let start = at(self);
         let samples = vec![sample(start), sample(start + vec2(30.0, 20.0))];
         let operator = Operator::Normal { alpha: 0.3, beta: 1.0, detail: 0.0 };
-        Arc::new(Stroke::new(Brush { size: 30.0, ..Brush::default() }, operator, self.color(), samples))
+        Arc::new(Stroke::new(
+            Brush { size: 30.0, ..Brush::default() },
+            operator,
+            self.color(),
+            samples,
+        ))
     }
+
     fn content(&mut self, depth: usize) -> Content {
         match self.below(8) {
             0 => Content::Fill(self.color()),
-            1 => Content::Strokes(Live::new(StrokeList { strokes: (0..3).map(|_| self.stroke()).collect() })),
+            1 => Content::Strokes(Live::new(StrokeList {
+                strokes: (0..3).map(|_| self.stroke()).collect(),
+            })),
             2 if depth < 2 => {
-                let layers = (0..1 + self.below(3)).map(|_| Arc::new(self.layer(depth + 1))).collect();
+                let layers =
+                    (0..1 + self.below(3)).map(|_| Arc::new(self.layer(depth + 1))).collect();
                 Content::Group(Group { layers, pass_through: self.chance(0.5) })
             }
-            3 => {
-                Content::RadianceScaling(RadianceScaling { keep_mean: self.chance(0.3), ..RadianceScaling::default() })
-            }
+            3 => Content::RadianceScaling(RadianceScaling {
+                keep_mean: self.chance(0.3),
+                ..RadianceScaling::default()
+            }),
             4 => {
-                let stops =
-                    vec![GradientStop { t: 0.0, color: self.color() }, GradientStop { t: 1.0, color: self.color() }];
+                let stops = vec![
+                    GradientStop { t: 0.0, color: self.color() },
+                    GradientStop { t: 1.0, color: self.color() },
+                ];
                 let (from, to) = (vec2(10.0, 10.0), vec2(200.0, 150.0));
                 let gradient = Gradient {
                     from,
@@ -81,6 +101,7 @@ impl RandomNumbers {
             _ => Content::Pixels(self.pixels()),
         }
     }
+
     fn layer(&mut self, depth: usize) -> Layer {
         let mut layer = Layer::new("", self.content(depth));
         layer.visible = self.chance(0.85);
@@ -92,11 +113,16 @@ impl RandomNumbers {
         }
         layer
     }
+
     /// One edit such as a painter makes.
     fn edit(&mut self, document: &Document) -> Option<Document> {
         let ids: Vec<LayerId> = document.walk().iter().map(|(_, layer)| layer.id).collect();
         let id = ids[self.below(ids.len())];
-        let group = document.walk().iter().find(|(_, l)| matches!(l.content, Content::Group(_))).map(|(_, l)| l.id);
+        let group = document
+            .walk()
+            .iter()
+            .find(|(_, l)| matches!(l.content, Content::Group(_)))
+            .map(|(_, l)| l.id);
         let place = LayerSlot { group: group.filter(|_| self.chance(0.5)), index: self.below(5) };
         match self.below(8) {
             0 => document.with_inserted(self.layer(1), place),
@@ -125,11 +151,13 @@ impl RandomNumbers {
 fn dome() -> Arc<Surface> {
     let at = |x: usize, y: usize| vec2(x as f32 - 120.0, y as f32 - 90.0) / 80.0;
     let coverage = Plane::from_fn(SIZE, |x, y| if at(x, y).length() < 1.0 { 255 } else { 0 });
-    let normals =
-        Plane::from_fn(SIZE, |x, y| vec3(at(x, y).x, -at(x, y).y, (1.0 - at(x, y).length_squared()).max(0.0).sqrt()));
+    let normals = Plane::from_fn(SIZE, |x, y| {
+        vec3(at(x, y).x, -at(x, y).y, (1.0 - at(x, y).length_squared()).max(0.0).sqrt())
+    });
     let depth = normals.map(|n| 1.0 - n.z);
     Arc::new(Surface::new(Maps { normals, depth, coverage }).unwrap())
 }
+
 fn differing(a: &TileGrid, b: &TileGrid) -> Vec<TileAt> {
     let bytes = |grid: &TileGrid, at| grid.tile(at).map(|tile| tile.bytes().to_vec());
     TileAt::covering(SIZE.rect()).filter(|&at| bytes(a, at) != bytes(b, at)).collect()
@@ -142,7 +170,8 @@ fn redrawing_what_differs_gives_what_redrawing_everything_gives() {
     for seed in 0..30 {
         let mut draw = RandomNumbers { seed, count: 0 };
         let layers = (0..6).map(|_| Arc::new(draw.layer(0))).collect();
-        let mut document = Document { surface: Some(surface.clone()), layers, ..Document::empty(SIZE) };
+        let mut document =
+            Document { surface: Some(surface.clone()), layers, ..Document::empty(SIZE) };
         let mut picture = flatten(&document, &Progress::default()).unwrap();
         for step in 0..7 {
             let Some(next) = draw.edit(&document) else { continue };
@@ -150,13 +179,18 @@ fn redrawing_what_differs_gives_what_redrawing_everything_gives() {
             let prepared = PreparedDocument::new(&next, &Progress::default()).unwrap();
             let redrawn = prepared.flatten_tiles(&picture, &changed, &Progress::default()).unwrap();
             let anew = flatten(&next, &Progress::default()).unwrap();
-            assert_eq!(differing(&redrawn, &anew), [], "seed {seed}, step {step}; {changed:?} were redrawn");
+            assert_eq!(
+                differing(&redrawn, &anew),
+                [],
+                "seed {seed}, step {step}; {changed:?} were redrawn"
+            );
             (named, differ) = (named + changed.len(), differ + differing(&picture, &anew).len());
             (document, picture) = (next, anew);
         }
     }
     assert!(named < 3 * differ, "{named} tiles were named, {differ} differ: too many to be of use");
 }
+
 #[test]
 fn a_document_does_not_differ_from_its_clone() {
     let mut draw = RandomNumbers { seed: 3, count: 0 };
@@ -164,13 +198,16 @@ fn a_document_does_not_differ_from_its_clone() {
     let document = Document { layers, ..Document::empty(SIZE) };
     assert!(diff(&document, &document.clone()).is_empty());
 }
+
 #[test]
 fn a_name_changes_nothing_and_a_dab_only_its_tile() {
     let mut draw = RandomNumbers { seed: 4, count: 0 };
     let layer = Layer::new("paint", Content::Pixels(draw.pixels()));
     let id = layer.id;
     let old = Document { layers: vec![Arc::new(layer)], ..Document::empty(SIZE) };
-    assert!(diff(&old, &old.with_layer(id, |layer| layer.name = "other".into()).unwrap()).is_empty());
+    assert!(
+        diff(&old, &old.with_layer(id, |layer| layer.name = "other".into()).unwrap()).is_empty()
+    );
     let dabbed = old.with_layer(id, |layer| {
         if let Content::Pixels(pixels) = &mut layer.content {
             let patch = TileGrid::from_straight_rgba(&[255; 4], 1, 1, 130, 70);
@@ -179,6 +216,7 @@ fn a_name_changes_nothing_and_a_dab_only_its_tile() {
     });
     assert_eq!(diff(&old, &dabbed.unwrap()).into_iter().collect::<Vec<_>>(), [TileAt::new(2, 1)]);
 }
+
 #[test]
 fn another_surface_changes_everything() {
     let mut draw = RandomNumbers { seed: 5, count: 0 };

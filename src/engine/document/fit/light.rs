@@ -5,7 +5,8 @@ use super::Fit;
 use crate::math::range::{STOPS, at_most, within};
 use crate::math::{COORDINATE, TURNS};
 use crate::shading::{
-    Environment, FeatureScale, Features, Light, LightKind, RadianceScaling, Reference, Scaling, Shading, Term,
+    Environment, FeatureScale, Features, Light, LightKind, RadianceScaling, Reference, Scaling,
+    Shading, Term,
 };
 
 /// The most values that things take in a description.
@@ -20,7 +21,11 @@ pub fn shading(shading: &Shading) -> Fit {
     features(&shading.features)?;
     reference(shading.reference)?;
     if !Shading::BANDS.contains(&shading.bands) {
-        return Err(format!("the tones are {}; there may be 2 to {}", shading.bands, Shading::BANDS.end()));
+        return Err(format!(
+            "the tones are {}; there may be 2 to {}",
+            shading.bands,
+            Shading::BANDS.end()
+        ));
     }
     within("the flatness", shading.exponent, &Shading::EXPONENT)?;
     within("the highlight along x", shading.nu, &Shading::SHININESS)?;
@@ -28,7 +33,11 @@ pub fn shading(shading: &Shading) -> Fit {
     within("the refractive index", shading.index, &Shading::INDEX)?;
     within("the reach of occlusion", shading.occlusion_radius_px, &Shading::OCCLUSION_RADIUS_PX)?;
     if !Shading::BOUNCES.contains(&shading.bounces) {
-        return Err(format!("the bounces are {}; there may be 0 to {}", shading.bounces, Shading::BOUNCES.end()));
+        return Err(format!(
+            "the bounces are {}; there may be 0 to {}",
+            shading.bounces,
+            Shading::BOUNCES.end()
+        ));
     }
     shading.environment.as_ref().map_or(Ok(()), environment)
 }
@@ -81,8 +90,9 @@ fn light(light: &Light) -> Fit {
     match light.kind {
         LightKind::Directional { direction } if Light::points(direction) => Ok(()),
         LightKind::Directional { .. } => Err("a light points nowhere".into()),
-        LightKind::Point { position } => {
-            position.to_array().iter().try_for_each(|v| within("the place of a light", *v, &COORDINATE))
-        }
+        LightKind::Point { position } => position
+            .to_array()
+            .iter()
+            .try_for_each(|v| within("the place of a light", *v, &COORDINATE)),
     }
 }

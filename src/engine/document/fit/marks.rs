@@ -8,8 +8,8 @@ use crate::paint::grain::{BrushGrain, GrainSpace};
 use crate::paint::settings::SETTINGS;
 use crate::paint::tip::{Bristles, Hose, Noise};
 use crate::paint::{
-    Adjust, Brush, BrushMode, ColorJitter, Gradient, PlacedImage, Placement, Sample, Stabilizer, Stroke,
-    StrokeSelection, Tip,
+    Adjust, Brush, BrushMode, ColorJitter, Gradient, PlacedImage, Placement, Sample, Stabilizer,
+    Stroke, StrokeSelection, Tip,
 };
 use crate::surface::plane_piece::PlanePiece;
 use crate::surface::{Bend, Operator, Weights};
@@ -31,9 +31,15 @@ pub fn measured(strokes: &[Arc<Stroke>]) -> (usize, usize) {
         values += A_STROKE;
         // A brush like the one before is not written again.
         if !before.is_some_and(|before| before.brush().is_alike(stroke.brush())) {
-            let points: usize =
-                stroke.brush().dynamics.drives().iter().map(|drive| 20 + 3 * drive.curve.points()).sum();
-            let pictures = if let Tip::Hose(hose) = &stroke.brush().tip { hose.pictures().len() } else { 0 };
+            let points: usize = stroke
+                .brush()
+                .dynamics
+                .drives()
+                .iter()
+                .map(|drive| 20 + 3 * drive.curve.points())
+                .sum();
+            let pictures =
+                if let Tip::Hose(hose) = &stroke.brush().tip { hose.pictures().len() } else { 0 };
             values += A_BRUSH + points + pictures;
         }
         before = Some(stroke);
@@ -47,7 +53,9 @@ pub fn strokes(old: &[Arc<Stroke>], new: &[Arc<Stroke>]) -> Fit {
     let start = old.iter().zip(new).take_while(same).count();
     let end = old[start..].iter().rev().zip(new[start..].iter().rev()).take_while(same).count();
     let changed = new.iter().enumerate().take(new.len() - end).skip(start);
-    changed.into_iter().try_for_each(|(i, new)| stroke(new).map_err(|why| format!("stroke {}: {why}", i + 1)))
+    changed
+        .into_iter()
+        .try_for_each(|(i, new)| stroke(new).map_err(|why| format!("stroke {}: {why}", i + 1)))
 }
 
 fn stroke(stroke: &Stroke) -> Fit {
@@ -65,7 +73,11 @@ fn stroke(stroke: &Stroke) -> Fit {
     stroke.samples().iter().try_for_each(|sample| {
         point("a reading of the pen", sample.at)?;
         within("the pressure", sample.pressure, &Sample::PRESSURE)?;
-        within("the tilt", sample.tilt.x, &Sample::TILT).and(within("the tilt", sample.tilt.y, &Sample::TILT))?;
+        within("the tilt", sample.tilt.x, &Sample::TILT).and(within(
+            "the tilt",
+            sample.tilt.y,
+            &Sample::TILT,
+        ))?;
         within("the time", sample.time_secs, &Sample::TIME_SECS)
     })
 }
@@ -88,8 +100,12 @@ pub fn brush(brush: &Brush) -> Fit {
     mode(brush.mode)?;
     match brush.stabilizer {
         Stabilizer::None => Ok(()),
-        Stabilizer::Average { weight } => within("the weight of the stabiliser", weight, &Stabilizer::WEIGHT),
-        Stabilizer::String { length_px } => within("the string of the stabiliser", length_px, &Stabilizer::LENGTH_PX),
+        Stabilizer::Average { weight } => {
+            within("the weight of the stabiliser", weight, &Stabilizer::WEIGHT)
+        }
+        Stabilizer::String { length_px } => {
+            within("the string of the stabiliser", length_px, &Stabilizer::LENGTH_PX)
+        }
         Stabilizer::Lag { secs } => within("the lag of the stabiliser", secs, &Stabilizer::SECS),
     }?;
     for setting in &SETTINGS {
@@ -102,7 +118,9 @@ pub fn brush(brush: &Brush) -> Fit {
 fn mode(mode: BrushMode) -> Fit {
     match mode {
         BrushMode::Paint | BrushMode::Clone { .. } => Ok(()),
-        BrushMode::Smudge { length } => within("the length of the smudge", length, &BrushMode::SHARE),
+        BrushMode::Smudge { length } => {
+            within("the length of the smudge", length, &BrushMode::SHARE)
+        }
         BrushMode::Blur { width } => within("the width of the blur", width, &BrushMode::SHARE),
     }
 }
@@ -113,7 +131,9 @@ fn tip(tip: &Tip) -> Fit {
     };
     match tip {
         Tip::Round | Tip::Picture(_) => Ok(()),
-        Tip::Ellipse { ratio } | Tip::Square { ratio } => within("the ratio of the tip", *ratio, &Tip::RATIO),
+        Tip::Ellipse { ratio } | Tip::Square { ratio } => {
+            within("the ratio of the tip", *ratio, &Tip::RATIO)
+        }
         Tip::Bristles(bristles) => whole("the number of hairs", bristles.count, &Bristles::COUNT),
         Tip::Noise(noise) => {
             whole("the number of specks", noise.cells, &Noise::CELLS)?;
@@ -153,7 +173,10 @@ fn grain(grain: &BrushGrain) -> Fit {
 }
 
 pub fn operator(operator: Operator) -> Fit {
-    operator.numbers().into_iter().try_for_each(|(number, value)| within(number.label, value, &number.range))
+    operator
+        .numbers()
+        .into_iter()
+        .try_for_each(|(number, value)| within(number.label, value, &number.range))
 }
 
 pub fn image(image: &PlacedImage) -> Fit {
@@ -161,14 +184,14 @@ pub fn image(image: &PlacedImage) -> Fit {
     placement(&image.placement)?;
     operator(image.bend.operator)?;
     at_most("anchors", image.bend.anchors.len(), Bend::MOST_ANCHORS)?;
-    image
-        .bend
-        .anchors
-        .iter()
-        .try_for_each(|anchor| point("an anchor", anchor.at).and(point("an anchor", anchor.source)))?;
+    image.bend.anchors.iter().try_for_each(|anchor| {
+        point("an anchor", anchor.at).and(point("an anchor", anchor.source))
+    })?;
     pieces(&image.bend.pieces)?;
     match image.bend.weights {
-        Weights::Shepard { power } => within("the sharpness of the anchors", power, &Weights::POWER),
+        Weights::Shepard { power } => {
+            within("the sharpness of the anchors", power, &Weights::POWER)
+        }
         Weights::Segment => Err("the anchors of an image share by their distances".into()),
     }
 }
@@ -181,13 +204,16 @@ fn pieces(list: &[PlanePiece]) -> Fit {
 fn piece(piece: &PlanePiece) -> Fit {
     point("a piece", piece.at)?;
     let moved = [piece.moved.x, piece.moved.y];
-    moved.into_iter().try_for_each(|v| within("how far a piece is moved", v, &PlanePiece::MOVED))?;
+    moved
+        .into_iter()
+        .try_for_each(|v| within("how far a piece is moved", v, &PlanePiece::MOVED))?;
     within("the size of a piece", piece.scale, &PlanePiece::SCALE)?;
     within("the turn of a piece", piece.rotation, &PlanePiece::ROTATION)
 }
 
 pub fn gradient(gradient: &Gradient) -> Fit {
-    point("an end of the gradient", gradient.from).and(point("an end of the gradient", gradient.to))?;
+    point("an end of the gradient", gradient.from)
+        .and(point("an end of the gradient", gradient.to))?;
     operator(gradient.operator)?;
     pieces(&gradient.pieces)?;
     at_most("stops of the gradient", gradient.stops.len(), Gradient::MOST_STOPS)?;
@@ -220,7 +246,11 @@ pub fn relief(grain: &crate::surface::NoiseRelief) -> Fit {
     within("the roughness", grain.roughness, &NoiseRelief::ROUGHNESS)?;
     within("the stretch", grain.stretch, &NoiseRelief::STRETCH)?;
     if !NoiseRelief::OCTAVES.contains(&grain.octaves) {
-        return Err(format!("the octaves are {}; there may be {}", grain.octaves, NoiseRelief::OCTAVES.end()));
+        return Err(format!(
+            "the octaves are {}; there may be {}",
+            grain.octaves,
+            NoiseRelief::OCTAVES.end()
+        ));
     }
     Ok(())
 }

@@ -19,11 +19,16 @@ pub fn fit(document: &Document, before: Option<&Document>) -> Fit {
     if list.is_empty() {
         return Ok(());
     }
-    at_most("Selections", list.all().len(), Document::MOST_SELECTIONS).map_err(|why| format!("{why}."))?;
+    at_most("Selections", list.all().len(), Document::MOST_SELECTIONS)
+        .map_err(|why| format!("{why}."))?;
     let regions = list.all().filter(|selection| selection.made.is_some()).count();
     let most = Document::MOST_REGION_PX / document.size.area().max(1) as u64;
-    at_most("Selections that follow the surface", regions, usize::try_from(most).unwrap_or(usize::MAX).max(1))
-        .map_err(|why| format!("{why}."))?;
+    at_most(
+        "Selections that follow the surface",
+        regions,
+        usize::try_from(most).unwrap_or(usize::MAX).max(1),
+    )
+    .map_err(|why| format!("{why}."))?;
     let mut known = HashSet::new();
     if let Some(before) = before {
         known.extend(SelectionList::of(before).all().map(Arc::as_ptr));
@@ -31,10 +36,16 @@ pub fn fit(document: &Document, before: Option<&Document>) -> Fit {
     let mut names = HashSet::new();
     for (name, selection) in list.named() {
         if let Some(name) = name {
-            let letters = at_most("letters of a selection's name", name.chars().count(), NamedSelection::LONGEST_NAME);
+            let letters = at_most(
+                "letters of a selection's name",
+                name.chars().count(),
+                NamedSelection::LONGEST_NAME,
+            );
             letters.map_err(|why| format!("{why}."))?;
             if name.is_empty() || !names.insert(name) {
-                return Err(format!("Two selections would be called “{name}”, or one nothing at all."));
+                return Err(format!(
+                    "Two selections would be called “{name}”, or one nothing at all."
+                ));
             }
         }
         if !known.contains(&Arc::as_ptr(selection)) {
@@ -49,7 +60,9 @@ fn selected(selection: &Selection, canvas: Size) -> Fit {
         return region(told);
     }
     let rect = selection.coverage.covered();
-    [rect.x0, rect.y0, rect.x1, rect.y1].iter().try_for_each(|v| within("its place", *v as f32, &COORDINATE))?;
+    [rect.x0, rect.y0, rect.x1, rect.y1]
+        .iter()
+        .try_for_each(|v| within("its place", *v as f32, &COORDINATE))?;
     let side = Picture::LONGEST_SIDE_PX.max(canvas.width).max(canvas.height) as usize;
     let (width, height) = (rect.width(), rect.height());
     if width.max(height) > side || width * height > Picture::MOST_PX.max(canvas.area()) {

@@ -1,5 +1,5 @@
-//! What a layer that adjusts the picture beneath it implements: composed pixels in, changed colours out.
-//! Floor 4. Not here: composing what lies beneath (`compose`), measuring it (`measure`).
+//! What a layer that adjusts the picture beneath it implements: composed pixels in, changed colours
+//! out. Floor 4. Not here: composing what lies beneath (`compose`), measuring it (`measure`).
 
 use crate::paint::Scene;
 use crate::raster::{PlanarTile, TileAt};
@@ -13,14 +13,23 @@ pub trait Adjustment {
     fn reach(&self) -> Reach {
         Reach::Pixel
     }
-    /// What must be known of the whole picture beneath before a part of it can be adjusted; `None` if cancelled.
+
+    /// What must be known of the whole picture beneath before a part of it can be adjusted; `None`
+    /// if cancelled.
     fn measure(&self, _beneath: &dyn BackdropMeter) -> Option<BackdropStats> {
         Some(BackdropStats::default())
     }
+
     /// Changes pixels in place: premultiplied sRGB of those that `place` names.
     ///
     /// * `beneath`: what [`Adjustment::measure`] found.
-    fn adjust(&self, place: &AdjustedPlace, beneath: BackdropStats, exactness: Exactness, pixels: &mut PlanarTile);
+    fn adjust(
+        &self,
+        place: &AdjustedPlace,
+        beneath: BackdropStats,
+        exactness: Exactness,
+        pixels: &mut PlanarTile,
+    );
 }
 
 /// Measures the picture beneath an adjustment. Every figure is `None` if that is cancelled.
@@ -44,7 +53,7 @@ pub enum Reach {
 pub enum AdjustedPlace<'a> {
     /// A tile of the canvas.
     Tile { scene: &'a Scene, at: TileAt },
-    /// Rows of pixels as the other populations of contour pixels see them: for each its place on the surface that is
-    /// seen there, or that it is off it.
+    /// Rows of pixels as the other populations of contour pixels see them: for each its place on
+    /// the surface that is seen there, or that it is off it.
     Packed { surface: Option<&'a Surface>, places: &'a [Option<(usize, usize)>] },
 }

@@ -1,5 +1,5 @@
-//! The cache of a layer: values that stay valid until their inputs change. Floor 4. Rendered tiles are cached in
-//! `live`.
+//! The cache of a layer: values that stay valid until their inputs change. Floor 4. Rendered tiles
+//! are cached in `live`.
 
 use super::{Layer, normals::Combination, on_canvas::CanvasCache, warp::WarpCache};
 use crate::math::Size;
@@ -46,7 +46,8 @@ pub struct EncodedPixels {
     pub y: i32,
 }
 
-/// A value that depends on the scene, on some layers (most often all beneath a layer), and on a key.
+/// A value that depends on the scene, on some layers (most often all beneath a layer), and on a
+/// key.
 #[derive(Clone)]
 pub struct Memo<K, V = f32> {
     last: Arc<Mutex<Option<MemoEntry<K, V>>>>,
@@ -67,10 +68,11 @@ impl<K, V> Default for Memo<K, V> {
 }
 
 impl<K: Clone + PartialEq, V: Clone> Memo<K, V> {
-    /// The value for a scene, the identical layers beneath and an equal key; computed again if any differs. `None` if
-    /// `measure` is cancelled.
+    /// The value for a scene, the identical layers beneath and an equal key; computed again if any
+    /// differs. `None` if `measure` is cancelled.
     ///
-    /// It never computes while holding the lock: a thread that waits for work in its own pool would deadlock.
+    /// It never computes while holding the lock: a thread that waits for work in its own pool would
+    /// deadlock.
     pub fn get(
         &self,
         scene: &Scene,
@@ -80,7 +82,10 @@ impl<K: Clone + PartialEq, V: Clone> Memo<K, V> {
     ) -> Option<V> {
         let holds = |m: &MemoEntry<K, V>| {
             let same_layers = m.beneath.len() == beneath.len()
-                && m.beneath.iter().zip(beneath).all(|(kept, now)| kept.as_ptr() == Arc::as_ptr(now));
+                && m.beneath
+                    .iter()
+                    .zip(beneath)
+                    .all(|(kept, now)| kept.as_ptr() == Arc::as_ptr(now));
             same_layers && m.scene.is_same(scene) && m.key == *key
         };
         if let Some(value) = self.lock().as_ref().filter(|m| holds(m)).map(|m| m.value.clone()) {
@@ -88,9 +93,15 @@ impl<K: Clone + PartialEq, V: Clone> Memo<K, V> {
         }
         let value = measure()?;
         let beneath = beneath.iter().map(Arc::downgrade).collect();
-        *self.lock() = Some(MemoEntry { scene: scene.clone(), beneath, key: key.clone(), value: value.clone() });
+        *self.lock() = Some(MemoEntry {
+            scene: scene.clone(),
+            beneath,
+            key: key.clone(),
+            value: value.clone(),
+        });
         Some(value)
     }
+
     fn lock(&self) -> MutexGuard<'_, Option<MemoEntry<K, V>>> {
         self.last.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -1,6 +1,6 @@
-//! What a layer holds, and the trait that every kind of layer implements. Floor 4. Each kind has a file that implements
-//! `LayerKind`, so that composing, walking and comparing layers name no kinds. Not here: rendering marks (`paint`,
-//! `shading`).
+//! What a layer holds, and the trait that every kind of layer implements. Floor 4. Each kind has a
+//! file that implements `LayerKind`, so that composing, walking and comparing layers name no kinds.
+//! Not here: rendering marks (`paint`, `shading`).
 
 mod fill;
 mod from;
@@ -36,7 +36,10 @@ use crate::surface::Bend;
 
 /// What a layer holds. Live content keeps its parameters and the tiles rendered from them.
 #[derive(Clone)]
-#[expect(clippy::large_enum_variant, reason = "one stands in each layer, and layers stand behind `Arc`")]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one stands in each layer, and layers stand behind `Arc`"
+)]
 pub enum Content {
     /// One colour everywhere.
     Fill(Color),
@@ -58,7 +61,8 @@ pub enum Content {
     Group(Group),
 }
 
-/// What a layer is in its stack: all that composing, planning and walking need to know about a kind.
+/// What a layer is in its stack: all that composing, planning and walking need to know about a
+/// kind.
 #[derive(Clone, Copy)]
 pub enum Role<'a> {
     /// It has pixels of its own.
@@ -74,7 +78,8 @@ pub enum Role<'a> {
 /// Gives a file its name elsewhere: called with the name of a picture, and the picture.
 pub type NameFile<'a> = dyn FnMut(&str, &Picture) -> Result<String> + 'a;
 
-/// What each kind of layer implements. The defaults are those of a live mark that covers the canvas.
+/// What each kind of layer implements. The defaults are those of a live mark that covers the
+/// canvas.
 trait LayerKind {
     /// Its name in documents.
     fn name(&self) -> &'static str;
@@ -83,73 +88,92 @@ trait LayerKind {
     fn role(&self) -> Role<'_> {
         Role::Paints
     }
+
     /// Renders one tile, or finds it rendered.
     fn painted(&self, _scene: &Scene, _at: TileAt) -> TileContent {
         TileContent::Nothing
     }
+
     /// What the other populations of a tile's contour pixels see of it.
     fn painted_behind(&self, _scene: &BehindScene) -> TileContent {
         TileContent::Nothing
     }
+
     /// What it is rendered from, if it is live.
     fn marks(&self) -> Option<&dyn Marks> {
         None
     }
+
     /// Computes now what many tiles would otherwise compute at the same time.
     /// Ends soon once it is cancelled.
     fn warm(&self, _scene: &Scene, _progress: &Progress) {}
     /// On a canvas of another size.
     fn scaled(&self, scale: &CanvasScale) -> Content;
-    /// The same on a canvas of another aspect, where that stretches it more than its numbers can express; `None` if
-    /// they can, and for what is resampled. Its transform expresses the rest.
+    /// The same on a canvas of another aspect, where that stretches it more than its numbers can
+    /// express; `None` if they can, and for what is resampled. Its transform expresses the rest.
     fn stretched(&self, _scale: &CanvasScale) -> Option<Content> {
         None
     }
-    /// The same for a moment while the user drags, cheaper to render; `None` if it is the same then.
+
+    /// The same for a moment while the user drags, cheaper to render; `None` if it is the same
+    /// then.
     fn drafted(&self) -> Option<Content> {
         None
     }
+
     /// Elsewhere on the canvas; `None` for what has no place.
     fn moved(&self, _by: Vec2) -> Option<Content> {
         None
     }
-    /// As it lies on the canvas, its frame taken there by `map`; `None` for what has no place. `last`: other content,
-    /// and what became of it under the same map.
+
+    /// As it lies on the canvas, its frame taken there by `map`; `None` for what has no place.
+    /// `last`: other content, and what became of it under the same map.
     fn on_canvas(&self, _map: &LayerMap, _last: Option<(&Content, &Content)>) -> Option<Content> {
         None
     }
-    /// Whether it moves with the shape that it lies on: light does not, nor what is the same everywhere.
+
+    /// Whether it moves with the shape that it lies on: light does not, nor what is the same
+    /// everywhere.
     fn goes_with_shape(&self) -> bool {
         true
     }
+
     /// Whether marks of it have homes of their own.
     fn has_homes(&self) -> bool {
         false
     }
+
     /// Without what was painted; `None` for what is not painted on.
     fn emptied(&self) -> Option<Content> {
         None
     }
+
     /// Operator, anchors and weights, if it is bent as a whole.
     fn bend(&self) -> Option<Bend> {
         None
     }
+
     /// The files that it names.
     fn files(&self) -> Vec<&str> {
         Vec::new()
     }
-    /// With its pictures under other names; `None` if it names none. A paint layer's pixels are not among them.
+
+    /// With its pictures under other names; `None` if it names none. A paint layer's pixels are not
+    /// among them.
     fn with_files(&self, _name: &mut NameFile) -> Result<Option<Content>> {
         Ok(None)
     }
+
     /// What it lacks but needs to be painted: the field, and why.
     fn lacks(&self) -> Option<(&'static str, String)> {
         None
     }
+
     /// Where it can be seen; `scene`: what it sees, if that is the same before and after an edit.
     fn touched(&self, _scene: Option<&Scene>) -> Touched {
         Touched::Canvas
     }
+
     /// Where it may look different from `old`, of the same kind; `scene`: what both see.
     fn changed_from(&self, old: &Content, scene: &dyn Fn() -> Scene) -> Changed;
     /// Counts what it holds, as [`MemoryCount::add`] does.
@@ -176,6 +200,7 @@ impl Changed {
     fn wholly_if(is_other: bool) -> Self {
         if is_other { Changed::Wholly } else { Changed::Nowhere }
     }
+
     /// For live content that is either the very same or another.
     fn of_live<T>(new: &Live<T>, old: Option<&Live<T>>) -> Self {
         Self::wholly_if(old.is_none_or(|old| !new.ptr_eq(old)))
@@ -196,35 +221,43 @@ impl Content {
             Content::Group(group) => group,
         }
     }
+
     /// The name of its kind in documents.
     pub fn kind_name(&self) -> &'static str {
         self.kind().name()
     }
+
     /// The name of its kind in the window.
     pub fn label(&self) -> &'static str {
         self.kind().label()
     }
+
     /// What it is in its stack.
     pub fn role(&self) -> Role<'_> {
         self.kind().role()
     }
+
     /// It has pixels of its own.
     pub fn paints(&self) -> bool {
         matches!(self.role(), Role::Paints)
     }
+
     /// It changes the surface for layers above.
     pub fn shapes(&self) -> bool {
         matches!(self.role(), Role::Shapes(_))
     }
-    /// Whether a layer of it can be displaced: what shapes the surface or adjusts the picture beneath shows nothing of
-    /// its own.
+
+    /// Whether a layer of it can be displaced: what shapes the surface or adjusts the picture
+    /// beneath shows nothing of its own.
     pub fn can_be_warped(&self) -> bool {
         matches!(self.role(), Role::Paints | Role::Groups(_))
     }
+
     /// It moves with the shape that it lies on.
     pub(in crate::document) fn goes_with_shape(&self) -> bool {
         self.kind().goes_with_shape()
     }
+
     /// The group that it is, if it is one.
     pub fn group(&self) -> Option<&Group> {
         match self {
@@ -232,6 +265,7 @@ impl Content {
             _ => None,
         }
     }
+
     /// As [`Content::group`], to change it.
     pub fn group_mut(&mut self) -> Option<&mut Group> {
         match self {
@@ -239,68 +273,86 @@ impl Content {
             _ => None,
         }
     }
+
     /// The same content elsewhere on the canvas; what has no place stays as it is.
     pub fn moved(&self, by: Vec2) -> Content {
         self.kind().moved(by).unwrap_or_else(|| self.clone())
     }
+
     /// The same content, its frame moved by a map.
     ///
-    /// * `last`: other content of the layer and the result under this map: what did not change is not made again.
+    /// * `last`: other content of the layer and the result under this map: what did not change is
+    ///   not made again.
     pub fn on_canvas(&self, map: &LayerMap, last: Option<(&Content, &Content)>) -> Content {
         match last {
             Some((own, seen)) if self.is_identical(own) => seen.clone(),
             _ => self.kind().on_canvas(map, last).unwrap_or_else(|| self.clone()),
         }
     }
+
     /// Whether marks of it have homes that differ from the layer's.
     pub fn has_homes(&self) -> bool {
         self.kind().has_homes()
     }
+
     /// The same kind without what was painted; `None` for what is not painted on.
     pub fn emptied(&self) -> Option<Content> {
         self.kind().emptied()
     }
+
     /// Operator, anchors and weights, if it is bent as a whole.
     pub fn bend(&self) -> Option<Bend> {
         self.kind().bend()
     }
+
     /// The files that it names.
     pub fn files(&self) -> Vec<&str> {
         self.kind().files()
     }
+
     /// The same content with its pictures under other names.
     pub fn with_files(&self, name: &mut NameFile) -> Result<Content> {
         Ok(self.kind().with_files(name)?.unwrap_or_else(|| self.clone()))
     }
+
     /// What it lacks but needs to be painted: the field, and why.
     pub fn lacks(&self) -> Option<(&'static str, String)> {
         self.kind().lacks()
     }
+
     pub(in crate::document) fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
         self.kind().painted(scene, at)
     }
+
     pub(in crate::document) fn painted_behind(&self, scene: &BehindScene) -> TileContent {
         self.kind().painted_behind(scene)
     }
+
     /// What it is rendered from without rounding to bytes; `None` for what is not live.
     pub(in crate::document) fn marks(&self) -> Option<&dyn Marks> {
         self.kind().marks()
     }
+
     pub(in crate::document) fn warm(&self, scene: &Scene, progress: &Progress) {
         self.kind().warm(scene, progress);
     }
+
     pub(in crate::document) fn scaled(&self, scale: &CanvasScale) -> Content {
         self.kind().scaled(scale)
     }
+
     pub(in crate::document) fn stretched(&self, scale: &CanvasScale) -> Option<Content> {
         self.kind().stretched(scale)
     }
+
     pub(in crate::document) fn drafted(&self) -> Option<Content> {
         self.kind().drafted()
     }
+
     pub(in crate::document) fn touched(&self, scene: Option<&Scene>) -> Touched {
         self.kind().touched(scene)
     }
+
     /// Whether it is the very same value in memory, or the same number.
     pub(in crate::document) fn is_identical(&self, other: &Content) -> bool {
         match (self, other) {
@@ -315,12 +367,19 @@ impl Content {
             _ => false,
         }
     }
-    pub(in crate::document) fn changed_from(&self, old: &Content, scene: &dyn Fn() -> Scene) -> Changed {
+
+    pub(in crate::document) fn changed_from(
+        &self,
+        old: &Content,
+        scene: &dyn Fn() -> Scene,
+    ) -> Changed {
         self.kind().changed_from(old, scene)
     }
+
     pub(in crate::document) fn count(&self, count: &mut MemoryCount, keeps: bool) {
         self.kind().count(count, keeps);
     }
+
     /// Its appearance depends on the whole picture beneath it.
     pub(in crate::document) fn reads_all_beneath(&self) -> bool {
         matches!(self.role(), Role::Adjusts(adjustment) if adjustment.reach() == Reach::Picture)

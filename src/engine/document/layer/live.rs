@@ -1,5 +1,5 @@
-//! Live content: parameters together with the tiles rendered from them, valid until a parameter changes. Floor 4. Not
-//! here: rendering marks (`paint`, `shading`).
+//! Live content: parameters together with the tiles rendered from them, valid until a parameter
+//! changes. Floor 4. Not here: rendering marks (`paint`, `shading`).
 
 use super::tile_content::TileContent;
 use crate::document::behind::{BehindPixels, BehindScene};
@@ -50,13 +50,16 @@ impl TileCells {
             behind: (0..behind).map(|_| OnceLock::new()).collect(),
         }
     }
+
     fn index(&self, at: TileAt) -> Option<usize> {
         let inside = (0..self.cols).contains(&at.col) && (0..self.rows).contains(&at.row);
         inside.then_some((at.row * self.cols + at.col) as usize)
     }
+
     fn cell(&self, at: TileAt) -> Option<&OnceLock<Option<Arc<Tile>>>> {
         self.cells.get(self.index(at)?)
     }
+
     fn behind_cell(&self, at: TileAt) -> Option<&OnceLock<BehindPixels>> {
         self.behind.get(self.index(at)?)
     }
@@ -72,18 +75,26 @@ impl<T> Live<T> {
             painted_box: Arc::default(),
         }
     }
+
     /// What the tiles are rendered from.
     pub fn params(&self) -> &T {
         &self.params
     }
+
     /// What was once found about the parameters is kept.
     pub(in crate::document) fn has_homes(&self, sought: impl FnOnce(&T) -> bool) -> bool {
         *self.has_homes.get_or_init(|| sought(&self.params))
     }
+
     /// The box around what is painted on a scene, computed once.
-    pub(in crate::document) fn painted_box(&self, scene: &Scene, seek: impl FnOnce() -> Rect) -> Rect {
+    pub(in crate::document) fn painted_box(
+        &self,
+        scene: &Scene,
+        seek: impl FnOnce() -> Rect,
+    ) -> Rect {
         let lock = || self.painted_box.lock().unwrap_or_else(PoisonError::into_inner);
-        let known = lock().as_ref().filter(|(on, _)| on.is_same(scene)).map(|(_, painted)| *painted);
+        let known =
+            lock().as_ref().filter(|(on, _)| on.is_same(scene)).map(|(_, painted)| *painted);
         known.unwrap_or_else(|| {
             // Without the lock: seeking lays strokes, and other threads take part in that.
             let painted = seek();
@@ -91,17 +102,23 @@ impl<T> Live<T> {
             painted
         })
     }
-    /// New parameters that change only some tiles: the rendered tiles for which `keeps` is true are taken over.
+
+    /// New parameters that change only some tiles: the rendered tiles for which `keeps` is true are
+    /// taken over.
     pub fn with(&self, params: T, keeps: impl Fn(TileAt) -> bool) -> Self {
         let next = Self::new(params);
         let current = self.lock().clone();
         if let Some((scene, old)) = current {
             let cells = TileCells::for_scene(&scene);
             for at in TileAt::covering(scene.size.rect()).filter(|&at| keeps(at)) {
-                if let (Some(from), Some(to)) = (old.cell(at).and_then(OnceLock::get), cells.cell(at)) {
+                if let (Some(from), Some(to)) =
+                    (old.cell(at).and_then(OnceLock::get), cells.cell(at))
+                {
                     let _ = to.set(from.clone());
                 }
-                if let (Some(from), Some(to)) = (old.behind_cell(at).and_then(OnceLock::get), cells.behind_cell(at)) {
+                if let (Some(from), Some(to)) =
+                    (old.behind_cell(at).and_then(OnceLock::get), cells.behind_cell(at))
+                {
                     let _ = to.set(from.clone());
                 }
             }
@@ -109,8 +126,9 @@ impl<T> Live<T> {
         }
         next
     }
-    /// New parameters whose tiles differ from these only in `tiles`, which are rendered already. Behind contours they
-    /// count as the same until they are [`Live::settled`].
+
+    /// New parameters whose tiles differ from these only in `tiles`, which are rendered already.
+    /// Behind contours they count as the same until they are [`Live::settled`].
     ///
     /// * `scene`: what the layer sees. If it is not the rendered one, nothing is taken over.
     pub fn with_tiles(
@@ -138,9 +156,11 @@ impl<T> Live<T> {
         *next.lock() = Some((scene.clone(), Arc::new(cells)));
         next
     }
+
     /// The same, to be rendered behind contours where it only counted as the same.
     pub fn settled(&self) -> Self {
-        let (params, has_homes, painted_box) = (self.params.clone(), self.has_homes.clone(), self.painted_box.clone());
+        let (params, has_homes, painted_box) =
+            (self.params.clone(), self.has_homes.clone(), self.painted_box.clone());
         let next = Self { params, rendered: Arc::default(), has_homes, painted_box };
         if let Some((scene, old)) = self.lock().clone() {
             let mut cells = TileCells::for_scene(&scene);
@@ -154,7 +174,9 @@ impl<T> Live<T> {
         }
         next
     }
-    /// Whether a tile is known to look the same in both on this scene: rendered, and with the very same pixels.
+
+    /// Whether a tile is known to look the same in both on this scene: rendered, and with the very
+    /// same pixels.
     pub fn same_tiles(&self, other: &Self, scene: &Scene) -> impl Fn(TileAt) -> bool {
         let rendered = |live: &Self| {
             let current = live.lock();
@@ -162,25 +184,40 @@ impl<T> Live<T> {
         };
         let both = rendered(self).zip(rendered(other));
         move |at| {
-            let tile = |cells: &TileCells| cells.cell(at)?.get().map(|tile| tile.as_ref().map(Arc::as_ptr));
-            let (Some(a), Some(b)) = (both.as_ref().map(|both| &both.0), both.as_ref().map(|both| &both.1)) else {
+            let tile = |cells: &TileCells| {
+                cells.cell(at)?.get().map(|tile| tile.as_ref().map(Arc::as_ptr))
+            };
+            let (Some(a), Some(b)) =
+                (both.as_ref().map(|both| &both.0), both.as_ref().map(|both| &both.1))
+            else {
                 return false;
             };
             let behind = |cells: &TileCells| cells.behind_cell(at).and_then(OnceLock::get).cloned();
             let same_behind = match (behind(a), behind(b)) {
                 (Some(a), Some(b)) => a.is_same(&b),
                 // Both are yet to be rendered, or one only counts as the same as its tile.
-                (a, b) => !matches!((a, b), (Some(BehindPixels::Same), None) | (None, Some(BehindPixels::Same))),
+                (a, b) => !matches!(
+                    (a, b),
+                    (Some(BehindPixels::Same), None) | (None, Some(BehindPixels::Same))
+                ),
             };
             same_behind && tile(a).is_some_and(|tile_a| Some(tile_a) == tile(b))
         }
     }
+
     /// A tile of the layer on a scene, rendered by `render` if it is not cached.
-    pub fn tile(&self, scene: &Scene, at: TileAt, render: impl FnOnce() -> Option<Tile>) -> Option<Arc<Tile>> {
+    pub fn tile(
+        &self,
+        scene: &Scene,
+        at: TileAt,
+        render: impl FnOnce() -> Option<Tile>,
+    ) -> Option<Arc<Tile>> {
         let cells = self.cells(scene);
         once(cells.cell(at)?, || render().map(Arc::new)).clone()
     }
-    /// The layer as the other populations of a tile's contour pixels see it, rendered by `render` if it is not cached.
+
+    /// The layer as the other populations of a tile's contour pixels see it, rendered by `render`
+    /// if it is not cached.
     ///
     /// * `stays`: where they see no surface the tile's own pixels stay; else there are none.
     pub(in crate::document) fn behind(
@@ -199,32 +236,42 @@ impl<T> Live<T> {
         };
         match once(cell, packed) {
             BehindPixels::Packed(packed) => TileContent::Packed(packed.clone()),
-            BehindPixels::Same => {
-                own().map_or(TileContent::Nothing, |tile| TileContent::Packed(Arc::new(behind.same(&tile))))
-            }
+            BehindPixels::Same => own().map_or(TileContent::Nothing, |tile| {
+                TileContent::Packed(Arc::new(behind.same(&tile)))
+            }),
         }
     }
+
     /// Takes in what was rendered behind the contours of a tile.
     pub(in crate::document) fn set_behind(&self, scene: &BehindScene, on_sheet: Option<Tile>) {
-        let bare = if scene.behind.has_bare() { self.known(scene.front, scene.behind.at) } else { None };
-        let packed = BehindPixels::Packed(Arc::new(scene.behind.packed(on_sheet.as_ref(), bare.as_deref())));
+        let bare =
+            if scene.behind.has_bare() { self.known(scene.front, scene.behind.at) } else { None };
+        let packed =
+            BehindPixels::Packed(Arc::new(scene.behind.packed(on_sheet.as_ref(), bare.as_deref())));
         self.cells(scene.front).behind_cell(scene.behind.at).map(|cell| cell.set(packed));
     }
+
     fn known(&self, scene: &Scene, at: TileAt) -> Option<Arc<Tile>> {
         self.cells(scene).cell(at)?.get().cloned().flatten()
     }
-    /// The tiles of the canvas that were not rendered behind their contours, of those with a surface there.
+
+    /// The tiles of the canvas that were not rendered behind their contours, of those with a
+    /// surface there.
     pub fn missing_behind(&self, scene: &Scene) -> Vec<TileAt> {
-        let (cells, contours) = (self.cells(scene), scene.surface.as_ref().map(|surface| surface.contours().clone()));
-        let is_missing = |at: &TileAt| cells.behind_cell(*at).is_some_and(|cell| cell.get().is_none());
+        let (cells, contours) =
+            (self.cells(scene), scene.surface.as_ref().map(|surface| surface.contours().clone()));
+        let is_missing =
+            |at: &TileAt| cells.behind_cell(*at).is_some_and(|cell| cell.get().is_none());
         contours.map_or(Vec::new(), |contours| contours.seen_tiles().filter(is_missing).collect())
     }
+
     /// The tiles of the canvas that were not rendered on a scene, row by row.
     pub fn missing(&self, scene: &Scene) -> Vec<TileAt> {
         let cells = self.cells(scene);
         let is_missing = |at: &TileAt| cells.cell(*at).is_some_and(|cell| cell.get().is_none());
         TileAt::covering(scene.size.rect()).filter(is_missing).collect()
     }
+
     /// Counts the rendered tiles, unless they were; `keeps`: otherwise they are freed.
     pub(in crate::document) fn count_rendered(&self, count: &mut MemoryCount, keeps: bool) {
         if !count.is_new(&self.rendered) {
@@ -248,10 +295,12 @@ impl<T> Live<T> {
             }
         }
     }
+
     /// Both are the same value with the same rendered tiles.
     pub fn ptr_eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.params, &other.params)
     }
+
     fn cells(&self, scene: &Scene) -> Arc<TileCells> {
         let mut current = self.lock();
         match &*current {
@@ -263,6 +312,7 @@ impl<T> Live<T> {
             }
         }
     }
+
     fn lock(&self) -> std::sync::MutexGuard<'_, Option<(Scene, Arc<TileCells>)>> {
         self.rendered.current.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
     }
@@ -282,8 +332,12 @@ mod tests {
         let first = live.tile(&scene, at, blank).unwrap();
         let again = live.clone().tile(&scene, at, || unreachable!()).unwrap();
         assert!(Arc::ptr_eq(&first, &again));
-        assert!(live.tile(&scene, TileAt::new(2, 0), blank).is_none(), "beyond the canvas there are no tiles");
+        assert!(
+            live.tile(&scene, TileAt::new(2, 0), blank).is_none(),
+            "beyond the canvas there are no tiles"
+        );
     }
+
     #[test]
     fn tiles_that_come_rendered_are_taken_and_the_others_stay() {
         let scene = Scene { size: Size::new(128, 64), surface: None };
@@ -299,6 +353,7 @@ mod tests {
         let elsewhere = Scene { size: Size::new(128, 65), surface: None };
         assert!(!next.same_tiles(&live, &elsewhere)(left), "on another canvas nothing is known");
     }
+
     #[test]
     fn new_parameters_keep_the_tiles_they_do_not_touch() {
         let scene = Scene { size: Size::new(128, 64), surface: None };

@@ -1,5 +1,5 @@
-//! How live layers are rendered without rounding to bytes. Floor 4. Not here: composing the results (`deep`), rendering
-//! marks (`paint`, `shading`).
+//! How live layers are rendered without rounding to bytes. Floor 4. Not here: composing the results
+//! (`deep`), rendering marks (`paint`, `shading`).
 
 use crate::document::Progress;
 use crate::paint::Scene;
@@ -8,20 +8,24 @@ use std::sync::Arc;
 
 /// What a live layer is rendered from.
 pub(in crate::document) trait Marks {
-    /// One tile, not rounded to bytes; `None` where there is nothing. Colours may be brighter than white.
+    /// One tile, not rounded to bytes; `None` where there is nothing. Colours may be brighter than
+    /// white.
     fn pixels(&self, scene: &Scene, at: TileAt) -> Option<PlanarTile>;
     /// Where another population of a contour pixel sees no surface the tile's own pixels stay.
     fn stay(&self) -> bool {
         true
     }
+
     /// The texture that tiles are read from, to be kept meanwhile.
     fn texture(&self) -> Option<Arc<DeepTexture>> {
         None
     }
+
     /// The memory that it takes.
     fn texture_bytes(&self) -> u64 {
         0
     }
+
     /// Renders tiles that cost less together than one by one, if they do.
     fn together(&self, _scene: &Scene, _tiles: &[TileAt], _progress: &Progress, _done: &Done) {}
 }

@@ -47,6 +47,7 @@ impl LayerMask {
     pub fn new(kind: impl Into<MaskKind>) -> Self {
         Self { kind: kind.into(), invert: false, disabled: false }
     }
+
     /// The mask that follows the surface, if it is one.
     pub fn derived(&self) -> Option<DerivedMask> {
         match self.kind {
@@ -54,10 +55,13 @@ impl LayerMask {
             MaskKind::File { .. } => None,
         }
     }
+
     /// Whether both have the same coverage: the same picture by pointer, or the same numbers.
     pub(in crate::document) fn is_same(&self, other: &LayerMask) -> bool {
         let same_kind = match (&self.kind, &other.kind) {
-            (MaskKind::File { coverage: a, .. }, MaskKind::File { coverage: b, .. }) => Arc::ptr_eq(a, b),
+            (MaskKind::File { coverage: a, .. }, MaskKind::File { coverage: b, .. }) => {
+                Arc::ptr_eq(a, b)
+            }
             (MaskKind::Derived(a), MaskKind::Derived(b)) => a == b,
             _ => false,
         };
@@ -85,7 +89,8 @@ impl DerivedMask {
     /// Stronger toward the silhouette, as most materials reflect.
     pub const FRESNEL: Self = Self::Fresnel { f0: Self::PLAIN_F0, power: Self::PLAIN_POWER };
     /// From hollow to raised.
-    pub const CURVATURE: Self = Self::Curvature { scale: Self::PLAIN_SCALE_PX, blur: 0.0, from: -1.0, to: 1.0 };
+    pub const CURVATURE: Self =
+        Self::Curvature { scale: Self::PLAIN_SCALE_PX, blur: 0.0, from: -1.0, to: 1.0 };
     /// From near to far.
     pub const RAMP_OF_DEPTH: Self = Self::Depth { from: 0.0, to: 1.0 };
 }
@@ -97,8 +102,8 @@ impl From<DerivedMask> for MaskKind {
 }
 
 impl LayerMask {
-    /// The same mask as a picture that can be painted on; it looks the same. A derived mask covers everything where
-    /// there is no surface.
+    /// The same mask as a picture that can be painted on; it looks the same. A derived mask covers
+    /// everything where there is no surface.
     pub fn as_picture(&self, scene: &Scene) -> LayerMask {
         let plain = LayerMask { invert: false, disabled: false, ..self.clone() };
         let curvature = self.curvature_on(scene);
@@ -109,6 +114,7 @@ impl LayerMask {
         let coverage = Arc::new(Plane::from_fn(scene.size, cover));
         LayerMask { kind: MaskKind::File { file: String::new(), coverage }, ..self.clone() }
     }
+
     /// The curvature that it is derived from, of the surface that a layer sees.
     pub(in crate::document) fn curvature_on(&self, scene: &Scene) -> Option<Arc<Curvature>> {
         match self.derived()? {
@@ -116,7 +122,9 @@ impl LayerMask {
             _ => None,
         }
     }
-    /// Multiplies a coverage by the mask. One derived from a surface changes nothing where there is none.
+
+    /// Multiplies a coverage by the mask. One derived from a surface changes nothing where there is
+    /// none.
     pub(in crate::document) fn multiply(
         &self,
         coverage: TileCoverage,
@@ -127,7 +135,9 @@ impl LayerMask {
         if !self.acts_on(scene) {
             return coverage;
         }
-        if let (MaskKind::Derived(DerivedMask::Region(region)), Some(surface)) = (&self.kind, &scene.surface) {
+        if let (MaskKind::Derived(DerivedMask::Region(region)), Some(surface)) =
+            (&self.kind, &scene.surface)
+        {
             let grid = surface.region(region);
             let way = |c: u8| f32::from(if self.invert { 255 - c } else { c }) / 255.0;
             return coverage.times(tile_pixels(at, |x, y| way(grid.at(x, y))));
@@ -141,28 +151,42 @@ impl LayerMask {
             self.at_facing(scene, curvature, (x, y), own)
         }))
     }
-    /// Of a mask that follows the view: n·v in the middle of what a tile's contour pixels see themselves, else NaN.
+
+    /// Of a mask that follows the view: n·v in the middle of what a tile's contour pixels see
+    /// themselves, else NaN.
     fn own_facings(&self, scene: &Scene, at: TileAt) -> Option<Vec<f32>> {
         let Some(DerivedMask::Fresnel { .. }) = self.derived() else { return None };
         let surface = scene.surface.as_ref()?;
         let contours = surface.contours().on(at)?;
         let mut own = vec![f32::NAN; TILE_AREA];
         for pixel in contours.pixels {
-            own[pixel.y as usize % TILE * TILE + pixel.x as usize % TILE] = surface.own_facing(pixel);
+            own[pixel.y as usize % TILE * TILE + pixel.x as usize % TILE] =
+                surface.own_facing(pixel);
         }
         Some(own)
     }
+
     /// It is shown, and what it is derived from is there.
     pub(in crate::document) fn acts_on(&self, scene: &Scene) -> bool {
         let needs_surface = !matches!(self.kind, MaskKind::File { .. });
         !(self.disabled || needs_surface && scene.surface.is_none())
     }
-    /// The mask at a pixel of the canvas, `[0, 1]`; `curvature`: the surface's, for a mask derived from it.
-    pub(in crate::document) fn at(&self, scene: &Scene, curvature: Option<&Curvature>, x: i32, y: i32) -> f32 {
+
+    /// The mask at a pixel of the canvas, `[0, 1]`; `curvature`: the surface's, for a mask derived
+    /// from it.
+    pub(in crate::document) fn at(
+        &self,
+        scene: &Scene,
+        curvature: Option<&Curvature>,
+        x: i32,
+        y: i32,
+    ) -> f32 {
         let own = |surface: &Surface| Some(surface.own_facing(surface.contours().at(x, y)?));
         self.at_facing(scene, curvature, (x, y), own)
     }
-    /// The same, where it is known what n·v of a contour pixel is in the middle of what it sees itself.
+
+    /// The same, where it is known what n·v of a contour pixel is in the middle of what it sees
+    /// itself.
     fn at_facing(
         &self,
         scene: &Scene,
@@ -175,7 +199,9 @@ impl LayerMask {
         }
         let way = |v: f32| if self.invert { 1.0 - v } else { v };
         let derived = match &self.kind {
-            MaskKind::File { coverage, .. } => return way(coverage.get(x, y).map_or(0.0, |c| f32::from(c) / 255.0)),
+            MaskKind::File { coverage, .. } => {
+                return way(coverage.get(x, y).map_or(0.0, |c| f32::from(c) / 255.0));
+            }
             MaskKind::Derived(derived) => *derived,
         };
         let Some(surface) = &scene.surface else { return 1.0 };
@@ -184,7 +210,9 @@ impl LayerMask {
         }
         let (x, y) = (x as usize, y as usize);
         match (derived, curvature) {
-            (DerivedMask::Region(region), _) => way(f32::from(surface.region(&region).at(x as i32, y as i32)) / 255.0),
+            (DerivedMask::Region(region), _) => {
+                way(f32::from(surface.region(&region).at(x as i32, y as i32)) / 255.0)
+            }
             (DerivedMask::Fresnel { f0, power }, _) => {
                 let facing = on_contour(surface).unwrap_or_else(|| surface.facing(x, y));
                 way(fresnel(facing, f0, power))
@@ -196,9 +224,13 @@ impl LayerMask {
             (DerivedMask::Curvature { .. }, None) => 1.0,
         }
     }
-    /// The tiles in which another version differs, where both are pictures of one size, used alike; otherwise `None`.
+
+    /// The tiles in which another version differs, where both are pictures of one size, used alike;
+    /// otherwise `None`.
     pub(in crate::document) fn changed_tiles(&self, new: &LayerMask) -> Option<Vec<TileAt>> {
-        let (MaskKind::File { coverage: a, .. }, MaskKind::File { coverage: b, .. }) = (&self.kind, &new.kind) else {
+        let (MaskKind::File { coverage: a, .. }, MaskKind::File { coverage: b, .. }) =
+            (&self.kind, &new.kind)
+        else {
             return None;
         };
         if a.size() != b.size() || self.invert != new.invert || self.disabled != new.disabled {
@@ -208,7 +240,8 @@ impl LayerMask {
         let differs = |at: &TileAt| {
             let inside = at.rect().intersect(canvas);
             let columns = inside.x0 as usize..inside.x1 as usize;
-            (inside.y0 as usize..inside.y1 as usize).any(|y| a.row(y)[columns.clone()] != b.row(y)[columns.clone()])
+            (inside.y0 as usize..inside.y1 as usize)
+                .any(|y| a.row(y)[columns.clone()] != b.row(y)[columns.clone()])
         };
         Some(TileAt::covering(canvas).filter(differs).collect())
     }
@@ -228,7 +261,10 @@ fn ramp(v: f32, from: f32, to: f32) -> f32 {
 }
 
 /// A function of canvas pixels as one of tile pixels.
-pub(in crate::document) fn tile_pixels(at: TileAt, value: impl Fn(i32, i32) -> f32) -> impl Fn(usize, usize) -> f32 {
+pub(in crate::document) fn tile_pixels(
+    at: TileAt,
+    value: impl Fn(i32, i32) -> f32,
+) -> impl Fn(usize, usize) -> f32 {
     let rect = at.rect();
     move |x, y| value(rect.x0 + x as i32, rect.y0 + y as i32)
 }

@@ -1,5 +1,5 @@
-//! What a normal layer holds: detail, and where it lies. Floor 4. Not here: combining it with the surface
-//! (`document::normals`).
+//! What a normal layer holds: detail, and where it lies. Floor 4. Not here: combining it with the
+//! surface (`document::normals`).
 
 use super::mask::LayerMask;
 use crate::document::conventions::NormalConvention;
@@ -9,8 +9,8 @@ use crate::raster::Outside;
 use crate::surface::{DetailMap, NoiseRelief};
 use std::sync::Arc;
 
-/// Detail combined with the surface: layers above it in its group see the combined normals. The layer's opacity and
-/// mask weight its strength; its blend mode has no effect.
+/// Detail combined with the surface: layers above it in its group see the combined normals. The
+/// layer's opacity and mask weight its strength; its blend mode has no effect.
 #[derive(Clone)]
 pub struct NormalLayer {
     /// Where the detail comes from.
@@ -49,7 +49,9 @@ impl PartialEq for NormalLayer {
     /// Whether both have the same detail, by pointer.
     fn eq(&self, other: &Self) -> bool {
         let same_source = match (&self.source, &other.source) {
-            (DetailSource::Map { map: a, .. }, DetailSource::Map { map: b, .. }) => Arc::ptr_eq(a, b),
+            (DetailSource::Map { map: a, .. }, DetailSource::Map { map: b, .. }) => {
+                Arc::ptr_eq(a, b)
+            }
             (DetailSource::Grain(a), DetailSource::Grain(b)) => a == b,
             _ => false,
         };

@@ -10,14 +10,16 @@ use crate::raster::warp::warped_plane;
 use std::sync::{Arc, Mutex, PoisonError};
 
 impl LayerMap {
-    /// A layer of which this is the map, as it lies on the canvas: content and mask taken there, no transform, no home.
+    /// A layer of which this is the map, as it lies on the canvas: content and mask taken there, no
+    /// transform, no home.
     pub fn layer_on_canvas(&self, layer: &Arc<Layer>) -> Arc<Layer> {
         let seen = seen(layer, self);
         Arc::new(Layer { transform: None, liquify: None, on: None, ..Layer::clone(&seen) })
     }
 }
 
-/// A layer as it lies on the canvas: content and mask taken there. The layers of a group are taken one by one.
+/// A layer as it lies on the canvas: content and mask taken there. The layers of a group are taken
+/// one by one.
 pub(in crate::document) fn on_canvas(layer: &Arc<Layer>, map: &LayerMap) -> Arc<Layer> {
     seen(layer, &map.within(layer))
 }
@@ -29,7 +31,14 @@ pub(in crate::document) fn seen(layer: &Arc<Layer>, map: &LayerMap) -> Arc<Layer
         return layer.clone();
     }
     let (content, mask) = layer.cache.on_canvas.get(layer, map, warp.as_ref());
-    Arc::new(Layer { content, mask, transform: None, liquify: None, on: None, ..Layer::clone(layer) })
+    Arc::new(Layer {
+        content,
+        mask,
+        transform: None,
+        liquify: None,
+        on: None,
+        ..Layer::clone(layer)
+    })
 }
 
 /// Visits the layers of a list with the map of each, groups opened, bottom first.
@@ -105,7 +114,9 @@ impl CanvasCache {
         });
         (content, mask)
     }
-    /// The same for a displaced layer: its paint and its mask are displaced here, all else when it is composed.
+
+    /// The same for a displaced layer: its paint and its mask are displaced here, all else when it
+    /// is composed.
     fn warped(
         &self,
         layer: &Layer,
@@ -113,7 +124,12 @@ impl CanvasCache {
         warp: &LayerWarp,
         entries: &[CanvasEntry],
     ) -> (Content, Option<LayerMask>) {
-        let alike = || entries.iter().rev().filter(|entry| entry.map == *map && entry.own.is_identical(&layer.content));
+        let alike = || {
+            entries
+                .iter()
+                .rev()
+                .filter(|entry| entry.map == *map && entry.own.is_identical(&layer.content))
+        };
         let same = alike().find(|entry| entry.warp.as_ref() == Some(warp));
         let last = same.or_else(|| alike().next());
         let content = match (&layer.content, last) {
@@ -153,15 +169,19 @@ impl CanvasCache {
         });
         (content, mask)
     }
+
     fn keep(&self, entry: CanvasEntry) {
         let mut entries = self.lock();
         entries.retain(|other| {
-            !(other.map == entry.map && other.warp == entry.warp && other.own.is_identical(&entry.own))
+            !(other.map == entry.map
+                && other.warp == entry.warp
+                && other.own.is_identical(&entry.own))
         });
         entries.push(entry);
         let surplus = entries.len().saturating_sub(Self::KEPT);
         entries.drain(..surplus);
     }
+
     fn lock(&self) -> std::sync::MutexGuard<'_, Vec<CanvasEntry>> {
         self.entries.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -170,7 +190,10 @@ impl CanvasCache {
 fn mask_on_canvas(mask: &LayerMask, map: &LayerMap) -> LayerMask {
     let MaskKind::File { file, coverage } = &mask.kind else { return mask.clone() };
     let coverage: Plane<u8> = warped_plane(coverage, map, map.filter);
-    LayerMask { kind: MaskKind::File { file: file.clone(), coverage: Arc::new(coverage) }, ..mask.clone() }
+    LayerMask {
+        kind: MaskKind::File { file: file.clone(), coverage: Arc::new(coverage) },
+        ..mask.clone()
+    }
 }
 
 #[cfg(test)]

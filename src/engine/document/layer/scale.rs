@@ -1,6 +1,6 @@
-//! Layers on a canvas of another size: live ones change their coordinates and stay as sharp as the new canvas, pixels
-//! and masks are resampled.
-//! Floor 4. Not here: the rest of a document (`document::scale`).
+//! Layers on a canvas of another size: live ones change their coordinates and stay as sharp as the
+//! new canvas, pixels and masks are resampled. Floor 4. Not here: the rest of a document
+//! (`document::scale`).
 
 mod resample;
 
@@ -45,48 +45,70 @@ impl CanvasScale {
         if !(factor.is_finite() && factor > 0.0) || to == from {
             return None;
         }
-        let per_axis = vec2(to.width as f32 / from.width as f32, to.height as f32 / from.height as f32);
-        Some(Self { per_axis, length: factor, from, to, is_draft: false, filter: None, selections: Mutex::default() })
+        let per_axis =
+            vec2(to.width as f32 / from.width as f32, to.height as f32 / from.height as f32);
+        Some(Self {
+            per_axis,
+            length: factor,
+            from,
+            to,
+            is_draft: false,
+            filter: None,
+            selections: Mutex::default(),
+        })
     }
+
     /// The same for a document that is seen for a moment only.
     pub fn for_a_moment(self) -> Self {
         Self { is_draft: true, ..self }
     }
-    /// The placement of a picture of a given size, the same on the new canvas except for the aspect.
+
+    /// The placement of a picture of a given size, the same on the new canvas except for the
+    /// aspect.
     pub fn on_new_canvas(&self, placement: &Placement, picture: Size) -> Placement {
         placement.on_canvas_of(self.from, self.to, picture)
     }
-    /// How many of the finest levels of a picture need not be read, from the number of its texels under a new pixel.
+
+    /// How many of the finest levels of a picture need not be read, from the number of its texels
+    /// under a new pixel.
     ///
-    /// Antialiasing spends up to sixteen taps on a pixel before it reads a coarser level. So a pixel that covered four
-    /// took twice as long as a pixel that covered one, and a pixel that covered sixteen three times.
+    /// Antialiasing spends up to sixteen taps on a pixel before it reads a coarser level. So a
+    /// pixel that covered four took twice as long as a pixel that covered one, and a pixel that
+    /// covered sixteen three times.
     pub fn levels_to_skip(&self, texels_per_px: f32) -> u32 {
         // A canvas of an odd size shrinks slightly less.
         let (smaller, covered) = ((1.0 / self.length).log2(), texels_per_px.log2() + 0.1);
         // NaN and what is negative become 0.
         if self.is_draft { smaller.min(covered) as u32 } else { 0 }
     }
+
     pub fn onto(from: Size, to: Size, filter: Resampling) -> Option<Self> {
-        let per_axis = vec2(to.width as f32 / from.width as f32, to.height as f32 / from.height as f32);
+        let per_axis =
+            vec2(to.width as f32 / from.width as f32, to.height as f32 / from.height as f32);
         let length = per_axis.element_product().sqrt();
         let is_some = to != from && to.area() > 0;
         let (filter, selections) = (Some(filter), Mutex::default());
         is_some.then_some(Self { per_axis, length, from, to, is_draft: false, filter, selections })
     }
+
     pub fn map(&self) -> PlaneMap {
         PlaneMap::scaling(self.from, self.to)
     }
+
     /// The sampler of pixels, if there is one, and the map that they are seen through.
     fn sampler(&self) -> Option<LayerMap> {
-        let reach = Size::new(self.from.width.max(self.to.width), self.from.height.max(self.to.height));
+        let reach =
+            Size::new(self.from.width.max(self.to.width), self.from.height.max(self.to.height));
         Some(LayerMap::of_plane(self.map(), self.filter?, reach))
     }
-    /// An image that the change of the aspect stretches: its transform says so, as its placement cannot. `None` for
-    /// other layers, and where a mask lies in the layer's frame.
+
+    /// An image that the change of the aspect stretches: its transform says so, as its placement
+    /// cannot. `None` for other layers, and where a mask lies in the layer's frame.
     fn stretched(&self, layer: &Layer) -> Option<Layer> {
         let filter = self.filter?;
         let off_px = (self.per_axis.x / self.per_axis.y - 1.0).abs() * self.to.longer_side();
-        let has_picture = layer.mask.as_ref().is_some_and(|mask| matches!(mask.kind, MaskKind::File { .. }));
+        let has_picture =
+            layer.mask.as_ref().is_some_and(|mask| matches!(mask.kind, MaskKind::File { .. }));
         if off_px <= 1.5 || has_picture {
             return None;
         }
@@ -94,17 +116,21 @@ impl CanvasScale {
         if layer.is_warped() {
             return None;
         }
-        let own = layer.transform.as_ref().map_or(Some(PlaneMap::IDENTITY), |own| own.map(self.from))?;
+        let own =
+            layer.transform.as_ref().map_or(Some(PlaneMap::IDENTITY), |own| own.map(self.from))?;
         let filter = layer.transform.as_ref().map_or(filter, |own| own.filter);
         let transform = Some(LayerTransform::of_map(&own.then(&self.map()), filter, self.to)?);
         Some(Layer { content, transform, cache: Default::default(), ..layer.clone() })
     }
+
     pub fn layers(&self, layers: &[Arc<Layer>]) -> Vec<Arc<Layer>> {
         layers.iter().map(|layer| Arc::new(self.layer(layer))).collect()
     }
+
     pub fn layer(&self, layer: &Layer) -> Layer {
         self.layer_showing(layer, None)
     }
+
     /// The same with the content of another small layer, if it was scaled before.
     pub fn layer_showing(&self, layer: &Layer, known: Option<&Layer>) -> Layer {
         if let Some(stretched) = self.stretched(layer) {
@@ -117,7 +143,8 @@ impl CanvasScale {
         let content = known.map_or_else(scaled, |known| known.content.clone());
         let mut next = Layer { content, cache: Default::default(), ..layer.clone() };
         let transform = layer.transform.as_ref().map(|transform| transform.scaled(self.per_axis));
-        next.transform = transform.map(|transform| if self.is_draft { transform.drafted() } else { transform });
+        next.transform =
+            transform.map(|transform| if self.is_draft { transform.drafted() } else { transform });
         next.liquify = layer.carried_liquify(&self.map(), self.to);
         match next.mask.as_mut().map(|mask| &mut mask.kind) {
             Some(MaskKind::File { coverage, .. }) => *coverage = Arc::new(self.plane(coverage)),
@@ -125,10 +152,12 @@ impl CanvasScale {
                 (*scale, *blur) = (*scale * self.length, *blur * self.length)
             }
             Some(MaskKind::Derived(DerivedMask::Region(region))) => region.at *= self.per_axis,
-            Some(MaskKind::Derived(DerivedMask::Fresnel { .. } | DerivedMask::Depth { .. })) | None => {}
+            Some(MaskKind::Derived(DerivedMask::Fresnel { .. } | DerivedMask::Depth { .. }))
+            | None => {}
         }
         next
     }
+
     /// Curvature is per pixel, so the factor it is multiplied by is a length.
     pub fn features(&self, features: &mut Features) {
         for scale in &mut features.scales {
@@ -136,22 +165,30 @@ impl CanvasScale {
             scale.blur_px *= self.length;
         }
     }
+
     pub fn stroke(&self, stroke: &Stroke) -> Stroke {
-        let samples = stroke.samples().iter().map(|s| Sample { at: s.at * self.per_axis, ..*s }).collect();
-        let selection = stroke.selection().map(|own| own.scaled(self.selection(&own.selection), self.per_axis));
+        let samples =
+            stroke.samples().iter().map(|s| Sample { at: s.at * self.per_axis, ..*s }).collect();
+        let selection =
+            stroke.selection().map(|own| own.scaled(self.selection(&own.selection), self.per_axis));
         let brush = stroke.brush().scaled(self.length);
         let home = |home: &Arc<StrokeHome>| {
-            Arc::new(StrokeHome { own: scaled_matrix(home.own, self.per_axis), ..StrokeHome::clone(home) })
+            Arc::new(StrokeHome {
+                own: scaled_matrix(home.own, self.per_axis),
+                ..StrokeHome::clone(home)
+            })
         };
         Stroke::new(brush, stroke.operator().scaled(self.length), stroke.color(), samples)
             .within(selection)
             .on(stroke.home().map(home))
     }
+
     pub fn grid(&self, grid: &TileGrid) -> TileGrid {
         let (mut next, tiles) = self.blank_grid(grid);
         self.fill_tiles(grid, &tiles, &mut next);
         next
     }
+
     /// The grid without its tiles, and which there may be.
     pub fn blank_grid(&self, grid: &TileGrid) -> (TileGrid, Vec<TileAt>) {
         let Rect { x0, y0, x1, y1 } = grid.bounds();
@@ -164,6 +201,7 @@ impl CanvasScale {
         );
         (TileGrid::for_rect(bounds), TileAt::covering(bounds).collect())
     }
+
     /// Resamples some of the tiles.
     pub fn fill_tiles(&self, grid: &TileGrid, tiles: &[TileAt], next: &mut TileGrid) {
         let sampler = self.sampler();
@@ -174,6 +212,7 @@ impl CanvasScale {
         let resampled: Vec<Option<Arc<Tile>>> = tiles.par_iter().map(tile).collect();
         tiles.iter().zip(resampled).for_each(|(&at, tile)| next.set(at, tile));
     }
+
     /// One tile of a grid resampled: premultiplied values as they are stored, averaged.
     fn tile(&self, grid: &TileGrid, at: TileAt) -> Option<Tile> {
         let rect = at.rect();
@@ -208,11 +247,15 @@ impl CanvasScale {
         }
         bytes.chunks_exact(4).any(|p| p[3] > 0).then(|| Tile::from_bytes(bytes)).flatten()
     }
+
     /// A map of the canvas, resampled; its border is continued beyond it.
     pub fn plane(&self, plane: &Plane<u8>) -> Plane<u8> {
         // Pictures of parts may have a size of their own.
         let side = |v: u32, s: f32| ((f64::from(v) * f64::from(s)).ceil() as u32).max(1);
-        let own = Size::new(side(plane.size().width, self.per_axis.x), side(plane.size().height, self.per_axis.y));
+        let own = Size::new(
+            side(plane.size().width, self.per_axis.x),
+            side(plane.size().height, self.per_axis.y),
+        );
         let to = if plane.size() == self.from { self.to } else { own };
         if let Some(sampler) = self.sampler() {
             return warped_plane_onto(plane, &sampler, sampler.filter, to);
@@ -221,15 +264,18 @@ impl CanvasScale {
         let rows: Vec<_> = (0..to.height as i32).map(|y| covered(y, self.per_axis.y)).collect();
         Plane::from_fn(to, |x, y| {
             let of_row = |&(py, wy): &(i32, f32)| {
-                columns[x].iter().map(|&(px, wx)| wx * wy * f32::from(plane.clamped(px, py))).sum::<f32>()
+                columns[x]
+                    .iter()
+                    .map(|&(px, wx)| wx * wy * f32::from(plane.clamped(px, py)))
+                    .sum::<f32>()
             };
             quantise(rows[y].iter().map(of_row).sum::<f32>() / 255.0)
         })
     }
 }
 
-/// The old pixels under a new one along one axis, and their weights, which add up to 1: the mean over what it covers,
-/// at least one old pixel wide, which is linear interpolation when scaling up.
+/// The old pixels under a new one along one axis, and their weights, which add up to 1: the mean
+/// over what it covers, at least one old pixel wide, which is linear interpolation when scaling up.
 pub(in crate::document) fn covered(i: i32, scale: f32) -> Vec<(i32, f32)> {
     let center = (f64::from(i) + 0.5) / f64::from(scale);
     let half = (0.5 / f64::from(scale)).max(0.5);

@@ -1,4 +1,5 @@
-//! The pixels of a layer in one tile, in the form that its kind has. Floor 4. Not here: composing layers (`compose`).
+//! The pixels of a layer in one tile, in the form that its kind has. Floor 4. Not here: composing
+//! layers (`compose`).
 
 use crate::document::behind::PackedTile;
 use crate::raster::{PlanarTile, Tile, TilePaint};
@@ -18,6 +19,7 @@ impl TileContent {
     pub fn of_tile(tile: Option<Arc<Tile>>) -> Self {
         tile.map_or(TileContent::Nothing, TileContent::Tile)
     }
+
     pub fn as_paint(&self) -> Option<TilePaint<'_>> {
         match self {
             TileContent::Nothing => None,
@@ -27,6 +29,7 @@ impl TileContent {
             TileContent::Group(pixels) => Some(TilePaint::Planar(pixels)),
         }
     }
+
     /// Whether it is known to cover every pixel fully.
     pub fn is_opaque(&self) -> bool {
         match self {

@@ -1,9 +1,10 @@
 //! Warps of layers: what a layer shows, seen through its mesh and its liquify. Floor 4.
 //!
-//! Both are one displacement backward, evaluated a tile at a time: a pixel of the canvas shows what the layer would
-//! show elsewhere. Paint and masks are sampled once through it and their transforms. Live layers and groups are
-//! composed undisplaced, both populations of a contour pixel mixed, and seen through it; what was composed is kept
-//! while only the displacement changes. Tiles that show themselves are composed as if there were no warp.
+//! Both are one displacement backward, evaluated a tile at a time: a pixel of the canvas shows what
+//! the layer would show elsewhere. Paint and masks are sampled once through it and their
+//! transforms. Live layers and groups are composed undisplaced, both populations of a contour pixel
+//! mixed, and seen through it; what was composed is kept while only the displacement changes. Tiles
+//! that show themselves are composed as if there were no warp.
 
 mod cache;
 
@@ -52,6 +53,7 @@ impl Layer {
     pub fn is_warped(&self) -> bool {
         self.liquify.is_some() || self.mesh_warp().is_some()
     }
+
     /// Its mesh, unless that is a matrix.
     fn mesh_warp(&self) -> Option<&Arc<Mesh>> {
         match self.transform.as_ref().map(|transform| &transform.shape) {
@@ -62,14 +64,17 @@ impl Layer {
 }
 
 impl Document {
-    /// What displaces the list that holds a layer: the warps of the groups around it, the outermost first.
+    /// What displaces the list that holds a layer: the warps of the groups around it, the outermost
+    /// first.
     pub fn warps_around(&self, id: LayerId) -> Vec<LayerWarp> {
         let group = self.place_of(id).and_then(|place| place.group);
         group.map_or_else(Vec::new, |group| self.warps_of(group))
     }
+
     /// What displaces a layer: the warps of the groups around it, the outermost first, and its own.
     pub fn warps_of(&self, id: LayerId) -> Vec<LayerWarp> {
-        let own = self.layer(id).zip(self.map_of(id)).and_then(|(layer, map)| LayerWarp::of(layer, &map));
+        let own =
+            self.layer(id).zip(self.map_of(id)).and_then(|(layer, map)| LayerWarp::of(layer, &map));
         self.warps_around(id).into_iter().chain(own).collect()
     }
 }
@@ -77,12 +82,13 @@ impl Document {
 impl LayerWarp {
     /// For a layer with its map; `None` where nothing displaces it.
     pub(in crate::document) fn of(layer: &Layer, map: &LayerMap) -> Option<Self> {
-        let (mesh, liquify) = (layer.mesh_warp(), layer.liquify.clone().filter(|lattice| !lattice.is_empty()));
+        let (mesh, liquify) =
+            (layer.mesh_warp(), layer.liquify.clone().filter(|lattice| !lattice.is_empty()));
         if mesh.is_none() && liquify.is_none() {
             return None;
         }
-        // What stays in place must look as it did, so the cubic must pass through the pixels, which Mitchell's does
-        // not.
+        // What stays in place must look as it did, so the cubic must pass through the pixels, which
+        // Mitchell's does not.
         let is_kept = mesh.is_none()
             && map.pixel_move().is_some()
             && !matches!(map.filter, Resampling::Linear | Resampling::Nearest);
@@ -90,14 +96,17 @@ impl LayerWarp {
         let mesh = mesh.map(|mesh| mesh.backward(map.canvas()));
         Some(Self { canvas: map.canvas(), outside: map.outside_own(), mesh, liquify, filter })
     }
+
     /// What a mesh takes from beyond the canvas is nothing; liquify continues the picture's border.
     pub(in crate::document) fn continues(&self) -> bool {
         self.mesh.is_none()
     }
-    /// Which point of the unwarped layer shows at each pixel of a tile, seen through one more map; `None` where the
-    /// tile shows itself.
+
+    /// Which point of the unwarped layer shows at each pixel of a tile, seen through one more map;
+    /// `None` where the tile shows itself.
     ///
-    /// * `own`: what takes the layer's frame to the canvas; the identity for what is composed on the canvas.
+    /// * `own`: what takes the layer's frame to the canvas; the identity for what is composed on
+    ///   the canvas.
     pub(in crate::document) fn tile_map(&self, at: TileAt, own: &PlaneMap) -> Option<TileMap> {
         let rect = at.rect();
         let middle = |k: usize| {
@@ -112,7 +121,10 @@ impl LayerWarp {
             let is_still = |of: &Option<Arc<Lattice>>| {
                 of.as_ref().is_none_or(|lattice| {
                     lattice.blocks().all(|(b, _)| {
-                        b.rect().grown(2 * crate::raster::lattice::CELL as i32).intersect(shown).is_empty()
+                        b.rect()
+                            .grown(2 * crate::raster::lattice::CELL as i32)
+                            .intersect(shown)
+                            .is_empty()
                     })
                 })
             };
@@ -138,9 +150,11 @@ impl LayerWarp {
         }
         Some(TileMap::new(rect, points))
     }
+
     /// The same for a list that is the canvas, along rows.
     fn on_list(&self, at: TileAt) -> Option<TilePoints> {
-        let on_tile = |of: &Option<Arc<Lattice>>| of.as_ref().and_then(|lattice| lattice.on_tile(at));
+        let on_tile =
+            |of: &Option<Arc<Lattice>>| of.as_ref().and_then(|lattice| lattice.on_tile(at));
         let Some(mut points) = on_tile(&self.liquify) else { return on_tile(&self.mesh) };
         if let Some(mesh) = &self.mesh {
             for k in 0..points.len() {
@@ -151,6 +165,7 @@ impl LayerWarp {
         }
         Some(points)
     }
+
     /// The point that shows at a point of the list, and its derivative.
     fn aside(&self, q: Vec2) -> (Vec2, Mat2) {
         let (mut p, mut jacobian) = (q, Mat2::IDENTITY);
@@ -160,11 +175,14 @@ impl LayerWarp {
         }
         (p, jacobian)
     }
+
     /// The point of the unwarped layer that shows at a point of the canvas.
     pub fn source_of(&self, q: Vec2) -> Vec2 {
-        let source = self.outside.from_canvas(q).and_then(|(q, _)| self.outside.to_canvas(self.aside(q).0));
+        let source =
+            self.outside.from_canvas(q).and_then(|(q, _)| self.outside.to_canvas(self.aside(q).0));
         source.unwrap_or(q)
     }
+
     /// The tiles that show some of the unwarped layer's tiles.
     pub(in crate::document) fn showing(&self, source: &[TileAt]) -> Vec<TileAt> {
         if source.is_empty() {
@@ -182,6 +200,7 @@ impl LayerWarp {
         let all: Vec<TileAt> = TileAt::covering(self.canvas.rect()).collect();
         all.into_par_iter().filter(shows).collect()
     }
+
     /// What is read for a rectangle: where the border is continued, the border.
     fn within(&self, rect: Rect) -> Rect {
         if !self.continues() {
@@ -191,14 +210,21 @@ impl LayerWarp {
         let (x0, y0) = (rect.x0.clamp(0, w - 1), rect.y0.clamp(0, h - 1));
         Rect::new(x0, y0, rect.x1.clamp(x0 + 1, w), rect.y1.clamp(y0 + 1, h))
     }
+
     /// The tiles in which two displacements of one layer may differ; `None`: anywhere.
-    pub(in crate::document) fn changed_tiles(old: Option<&Self>, new: Option<&Self>) -> Option<Vec<TileAt>> {
+    pub(in crate::document) fn changed_tiles(
+        old: Option<&Self>,
+        new: Option<&Self>,
+    ) -> Option<Vec<TileAt>> {
         let any = old.or(new)?;
-        let alike = |a: &Self| a.mesh.is_none() && a.outside == PlaneMap::IDENTITY && a.canvas == any.canvas;
+        let alike = |a: &Self| {
+            a.mesh.is_none() && a.outside == PlaneMap::IDENTITY && a.canvas == any.canvas
+        };
         if ![old, new].into_iter().flatten().all(alike) {
             return None;
         }
-        let lattice = |warp: Option<&Self>| warp.and_then(|warp| warp.liquify.clone()).unwrap_or_default();
+        let lattice =
+            |warp: Option<&Self>| warp.and_then(|warp| warp.liquify.clone()).unwrap_or_default();
         let canvas = any.canvas.rect();
         let is_seen = |at: &TileAt| !at.rect().intersect(canvas).is_empty();
         Some(lattice(old).changed_tiles(&lattice(new)).into_iter().filter(is_seen).collect())
@@ -270,7 +296,10 @@ pub(in crate::document) fn displaced_mask(
     };
     let values: Vec<Vec<(i32, i32, u8)>> = wanted.par_iter().map(one).collect();
     values.into_iter().flatten().for_each(|(x, y, value)| out.set(x as usize, y as usize, value));
-    LayerMask { kind: MaskKind::File { file: file.clone(), coverage: Arc::new(out) }, ..mask.clone() }
+    LayerMask {
+        kind: MaskKind::File { file: file.clone(), coverage: Arc::new(out) },
+        ..mask.clone()
+    }
 }
 
 impl Document {

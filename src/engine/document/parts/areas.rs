@@ -16,7 +16,11 @@ pub fn least_area(size: Size) -> usize {
 }
 
 /// Goes from a pixel to those beside it, and on from each that `enters`.
-pub fn walk(start: (usize, usize), size: (usize, usize), mut enters: impl FnMut(usize, usize) -> bool) {
+pub fn walk(
+    start: (usize, usize),
+    size: (usize, usize),
+    mut enters: impl FnMut(usize, usize) -> bool,
+) {
     let mut ahead = Vec::new();
     if enters(start.0, start.1) {
         ahead.push(start);
@@ -27,7 +31,10 @@ pub fn walk(start: (usize, usize), size: (usize, usize), mut enters: impl FnMut(
 }
 
 /// The pixels at the four sides of one.
-pub fn beside((x, y): (usize, usize), (w, h): (usize, usize)) -> impl Iterator<Item = (usize, usize)> {
+pub fn beside(
+    (x, y): (usize, usize),
+    (w, h): (usize, usize),
+) -> impl Iterator<Item = (usize, usize)> {
     let all = [(x.wrapping_sub(1), y), (x + 1, y), (x, y.wrapping_sub(1)), (x, y + 1)];
     all.into_iter().filter(move |(x, y)| *x < w && *y < h)
 }
@@ -50,7 +57,10 @@ pub fn around_all<T: Copy>(plane: &Plane<T>, counts: impl Fn(T) -> bool) -> Rect
 }
 
 /// A plane over an area of a larger one, of each pixel's place there and its index in the plane.
-pub fn over<T: Copy + Send + Sync + Default>(area: Rect, value: impl Fn(usize, usize, usize) -> T + Sync) -> Plane<T> {
+pub fn over<T: Copy + Send + Sync + Default>(
+    area: Rect,
+    value: impl Fn(usize, usize, usize) -> T + Sync,
+) -> Plane<T> {
     let size = Size::new(area.width() as u32, area.height() as u32);
     let (x0, y0) = (area.x0 as usize, area.y0 as usize);
     Plane::from_fn(size, |x, y| value(x + x0, y + y0, y * area.width() + x))
@@ -75,12 +85,19 @@ pub fn rim(
 /// Gives pixels without a label that of the nearest one, by steps over such pixels.
 pub fn spread(labels: &mut Plane<u32>, may: impl Fn(usize, usize) -> bool) {
     // Side by side before corner to corner.
-    const STEPS: [(i32, i32); 8] = [(1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, 1), (1, -1), (-1, -1)];
-    let may_take = |labels: &Plane<u32>, x: i32, y: i32| labels.get(x, y) == Some(0) && may(x as usize, y as usize);
+    const STEPS: [(i32, i32); 8] =
+        [(1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, 1), (1, -1), (-1, -1)];
+    let may_take = |labels: &Plane<u32>, x: i32, y: i32| {
+        labels.get(x, y) == Some(0) && may(x as usize, y as usize)
+    };
     let size = (labels.width(), labels.height());
     let is_labelled = |x: i32, y: i32| labels.get(x, y).is_some_and(|label| label > 0);
-    let mut ahead: VecDeque<(usize, usize)> =
-        rim(pixels(size).filter(|(x, y)| labels.at(*x, *y) == 0 && may(*x, *y)), STEPS, is_labelled).into();
+    let mut ahead: VecDeque<(usize, usize)> = rim(
+        pixels(size).filter(|(x, y)| labels.at(*x, *y) == 0 && may(*x, *y)),
+        STEPS,
+        is_labelled,
+    )
+    .into();
     while let Some((x, y)) = ahead.pop_front() {
         let label = labels.at(x, y);
         for (dx, dy) in STEPS {

@@ -1,5 +1,5 @@
-//! What a flat colour covers unseen: its area goes on beneath nearer colours, as a face does beneath its eyes.
-//! Floor 4. Not here: which share of a visible pixel a colour takes (`shares`).
+//! What a flat colour covers unseen: its area goes on beneath nearer colours, as a face does
+//! beneath its eyes. Floor 4. Not here: which share of a visible pixel a colour takes (`shares`).
 
 use super::areas::{self, around_all, beside, least_area, over, pixels, walk};
 use super::shares::{FlatOwner, Flats, MOSTLY, REACH};
@@ -8,16 +8,18 @@ use crate::math::srgb::Color;
 use crate::raster::Plane;
 use std::collections::BTreeMap;
 
-/// A glint in a pupil is painted on it and no hole through which the white of the eye is seen: a flat area of a farther
-/// colour that is at most so many times as large as the smallest part, and at most this share of what the colour around
-/// it covers.
+/// A glint in a pupil is painted on it and no hole through which the white of the eye is seen: a
+/// flat area of a farther colour that is at most so many times as large as the smallest part, and
+/// at most this share of what the colour around it covers.
 const LARGEST_GLINT: usize = 10;
 const GLINT_SHARE: f32 = 0.125;
 
-/// An area that goes on beyond the colour by more than this share of the colour's longer side is open.
+/// An area that goes on beyond the colour by more than this share of the colour's longer side is
+/// open.
 const LOOKED_BEYOND: f32 = 0.5;
 
-/// What is seen at a pixel, from far to near: this, the nearer colours in their order, glints, and the colour itself.
+/// What is seen at a pixel, from far to near: this, the nearer colours in their order, glints, and
+/// the colour itself.
 const OPEN: u16 = 0;
 /// Of a farther colour: open, or a glint.
 const FARTHER: u16 = u16::MAX - 3;
@@ -26,10 +28,12 @@ const GLINT: u16 = u16::MAX - 2;
 const UNKNOWN: u16 = u16::MAX - 1;
 const OWN: u16 = u16::MAX;
 
-/// Gives a colour the areas that nearer colours cover inside of it; `nearer`: the farthest of them first.
+/// Gives a colour the areas that nearer colours cover inside of it; `nearer`: the farthest of them
+/// first.
 ///
-/// A nearer area is inside of the colour if it meets nothing but the colour itself, areas nearer than itself, which may
-/// hide how it goes on, and other areas inside of it. A hole, through which nothing or a farther colour is seen, stays.
+/// A nearer area is inside of the colour if it meets nothing but the colour itself, areas nearer
+/// than itself, which may hide how it goes on, and other areas inside of it. A hole, through which
+/// nothing or a farther colour is seen, stays.
 pub fn fill_beneath(share: &mut Plane<u8>, flats: &Flats, nearer: &[Color], farther: &[Color]) {
     let own = around_all(share, |share| share >= MOSTLY);
     let beyond = (LOOKED_BEYOND * own.width().max(own.height()) as f32) as i32 + 1;
@@ -43,7 +47,8 @@ pub fn fill_beneath(share: &mut Plane<u8>, flats: &Flats, nearer: &[Color], fart
     let is_inside = |x: usize, y: usize| seen.at(x, y) != OWN && !open.at(x, y);
     for start in pixels(size) {
         let touches = || beside(start, size).any(|(x, y)| seen.at(x, y) == OWN);
-        if is_inside(start.0, start.1) && share.at(start.0 + x0, start.1 + y0) < MOSTLY && touches() {
+        if is_inside(start.0, start.1) && share.at(start.0 + x0, start.1 + y0) < MOSTLY && touches()
+        {
             walk(start, size, |x, y| {
                 let at = (x + x0, y + y0);
                 if seen.at(x, y) == OWN {
@@ -60,9 +65,15 @@ pub fn fill_beneath(share: &mut Plane<u8>, flats: &Flats, nearer: &[Color], fart
 }
 
 /// In an area of the flats.
-fn what_is_seen(share: &Plane<u8>, area: Rect, flats: &Flats, nearer: &[Color], farther: &[Color]) -> Plane<u16> {
-    let [nearer, farther] =
-        [nearer, farther].map(|colors| colors.iter().map(|color| flats.number_of(*color)).collect::<Vec<_>>());
+fn what_is_seen(
+    share: &Plane<u8>,
+    area: Rect,
+    flats: &Flats,
+    nearer: &[Color],
+    farther: &[Color],
+) -> Plane<u16> {
+    let [nearer, farther] = [nearer, farther]
+        .map(|colors| colors.iter().map(|color| flats.number_of(*color)).collect::<Vec<_>>());
     let of = |number: u16| match nearer.iter().position(|color| *color == Some(number)) {
         Some(place) => (place as u16).saturating_add(1).min(FARTHER - 1),
         None if farther.contains(&Some(number)) => FARTHER,
@@ -77,7 +88,8 @@ fn what_is_seen(share: &Plane<u8>, area: Rect, flats: &Flats, nearer: &[Color], 
     })
 }
 
-/// Decides for areas of farther colours whether they are glints or open; `least`: the pixels of the smallest part.
+/// Decides for areas of farther colours whether they are glints or open; `least`: the pixels of the
+/// smallest part.
 fn turn_small_areas_to_glints(seen: &mut Plane<u16>, least: usize) {
     let own = seen.values().iter().filter(|seen| **seen == OWN).count();
     let largest = (LARGEST_GLINT * least).min((GLINT_SHARE * own as f32) as usize);
@@ -105,13 +117,16 @@ fn turn_small_areas_to_glints(seen: &mut Plane<u16>, least: usize) {
 /// Gives pixels between areas what is seen at the nearest one, by steps over such pixels.
 fn spread(seen: &mut Plane<u16>) {
     let size = (seen.width(), seen.height());
-    let is_known = |x: i32, y: i32| seen.get(x, y).is_some_and(|seen| seen != UNKNOWN && seen != OWN);
+    let is_known =
+        |x: i32, y: i32| seen.get(x, y).is_some_and(|seen| seen != UNKNOWN && seen != OWN);
     let unknown = pixels(size).filter(|(x, y)| seen.at(*x, *y) == UNKNOWN);
     let mut rim = areas::rim(unknown, [(-1, 0), (1, 0), (0, -1), (0, 1)], is_known);
     while !rim.is_empty() {
         let mut next = Vec::new();
         for at in rim {
-            for (x, y) in beside(at, size).filter(|(x, y)| seen.at(*x, *y) == UNKNOWN).collect::<Vec<_>>() {
+            for (x, y) in
+                beside(at, size).filter(|(x, y)| seen.at(*x, *y) == UNKNOWN).collect::<Vec<_>>()
+            {
                 seen.set(x, y, seen.at(at.0, at.1));
                 next.push((x, y));
             }
@@ -160,7 +175,8 @@ fn is_border((x, y): (usize, usize), (w, h): (usize, usize)) -> bool {
 fn fill_mixed_around(share: &mut Plane<u8>, x: usize, y: usize) {
     let reach = REACH - 1;
     let (x, y) = (x as i32, y as i32);
-    for (x, y) in (y - reach..=y + reach).flat_map(|y| (x - reach..=x + reach).map(move |x| (x, y))) {
+    for (x, y) in (y - reach..=y + reach).flat_map(|y| (x - reach..=x + reach).map(move |x| (x, y)))
+    {
         if share.get(x, y).is_some_and(|share| share >= MOSTLY) {
             share.set(x as usize, y as usize, 255);
         }

@@ -1,5 +1,5 @@
-//! The forms of single parts: fields that take long to solve, and what is made of them. Floor 4. Not here: which of
-//! them are made again (`derive`).
+//! The forms of single parts: fields that take long to solve, and what is made of them. Floor 4.
+//! Not here: which of them are made again (`derive`).
 
 use super::{Inflation, Part, PartMaps, ProfilePicture};
 use crate::math::srgb::decode;
@@ -32,7 +32,8 @@ pub fn inflated(
     let tube = known.and_then(|body| body.tube.clone());
     let needs_pillow = profile < 1.0 && pillow.is_none();
     let needs_tube = profile > 0.0 && tube.is_none();
-    let pillow = if needs_pillow { Some(Arc::new(inflate::inflate(&outline, free, None))) } else { pillow };
+    let pillow =
+        if needs_pillow { Some(Arc::new(inflate::inflate(&outline, free, None))) } else { pillow };
     let tube = if needs_tube { Some(Arc::new(tube::tube(&outline, free, None))) } else { tube };
     SolvedOutline { outline, joined, pillow, tube }
 }
@@ -52,7 +53,9 @@ pub struct StandingOutline {
 }
 
 /// The parts, by their ids, whose outlines are not of the area that was meant.
-pub fn lost<'a>(outlines: impl Iterator<Item = (&'a Arc<Part>, &'a Option<StandingOutline>)>) -> Vec<String> {
+pub fn lost<'a>(
+    outlines: impl Iterator<Item = (&'a Arc<Part>, &'a Option<StandingOutline>)>,
+) -> Vec<String> {
     let of_lost = |(part, outline): (&Arc<Part>, &Option<StandingOutline>)| {
         outline.as_ref().is_some_and(|outline| outline.is_lost).then(|| part.id.clone())
     };
@@ -71,23 +74,30 @@ impl StandingOutline {
         let (x, y) = self.outline.corner();
         (x.saturating_add(self.moved.0), y.saturating_add(self.moved.1))
     }
+
     fn rect(&self) -> Rect {
         let ((x, y), size) = (self.corner(), self.outline.size());
         Rect::new(x, y, x.saturating_add(size.width as i32), y.saturating_add(size.height as i32))
     }
+
     /// Those of some outlines whose planes overlap this one's, relative to this one.
     pub fn met_by(&self, others: &[Option<StandingOutline>]) -> Vec<StandingOutline> {
-        let met = others.iter().flatten().filter(|other| !other.rect().intersect(self.rect()).is_empty());
+        let met =
+            others.iter().flatten().filter(|other| !other.rect().intersect(self.rect()).is_empty());
         let beside = |other: &StandingOutline| {
-            let moved = (other.moved.0.saturating_sub(self.moved.0), other.moved.1.saturating_sub(self.moved.1));
+            let moved = (
+                other.moved.0.saturating_sub(self.moved.0),
+                other.moved.1.saturating_sub(self.moved.1),
+            );
             StandingOutline { outline: other.outline.clone(), moved, is_lost: other.is_lost }
         };
         met.map(beside).collect()
     }
 }
 
-/// Where the rim of an outline is no silhouette: outside pixels in which a part in front begins. `None` where there are
-/// none. A rim hidden under such a part stays a silhouette: what is inside it is covered as well.
+/// Where the rim of an outline is no silhouette: outside pixels in which a part in front begins.
+/// `None` where there are none. A rim hidden under such a part stays a silhouette: what is inside
+/// it is covered as well.
 pub fn joined(own: &Outline, met: &[StandingOutline]) -> Option<Plane<bool>> {
     if met.is_empty() {
         return None;
@@ -99,11 +109,13 @@ pub fn joined(own: &Outline, met: &[StandingOutline]) -> Option<Plane<bool>> {
     };
     let free = Plane::from_fn(own.size(), |x, y| {
         let (x, y) = (x as i32, y as i32);
-        // What lies behind continues beneath the edge of what lies over it, as far as that edge is blurred.
+        // What lies behind continues beneath the edge of what lies over it, as far as that edge is
+        // blurred.
         let begins = |other: &StandingOutline| {
             let is_in = |x: i32, y: i32| inside.get(x, y).unwrap_or(false);
             let opens = |(dx, dy): (i32, i32)| {
-                let mut way = (1..=EDGE_PX).map(|k| (x + k * dx, y + k * dy)).take_while(|p| is_in(p.0, p.1));
+                let mut way =
+                    (1..=EDGE_PX).map(|k| (x + k * dx, y + k * dy)).take_while(|p| is_in(p.0, p.1));
                 way.any(|p| !covers(other, p.0, p.1))
             };
             covers(other, x, y) && [(1, 0), (-1, 0), (0, 1), (0, -1)].into_iter().any(opens)
@@ -135,8 +147,12 @@ pub fn cut_to(form: &Form, outline: &Outline) -> Form {
     let size = outline.size();
     Form {
         corner: outline.corner(),
-        height: Plane::from_fn(size, |x, y| form.height.get(at(x, y).0, at(x, y).1).unwrap_or(0.0)).into(),
-        normals: Plane::from_fn(size, |x, y| form.normals.get(at(x, y).0, at(x, y).1).unwrap_or(Vec3::Z)).into(),
+        height: Plane::from_fn(size, |x, y| form.height.get(at(x, y).0, at(x, y).1).unwrap_or(0.0))
+            .into(),
+        normals: Plane::from_fn(size, |x, y| {
+            form.normals.get(at(x, y).0, at(x, y).1).unwrap_or(Vec3::Z)
+        })
+        .into(),
         coverage: outline.coverage().clone(),
     }
 }
@@ -158,7 +174,12 @@ pub fn of_maps(maps: &PartMaps, still: Affine2, most_px: usize) -> Option<Form> 
 }
 
 /// A form of hand-made shadings over an outline, both on the canvas, moved by a matrix.
-pub fn of_profiles(shadings: &[ProfilePicture], outline: &Outline, still: Affine2, most_px: usize) -> Option<Form> {
+pub fn of_profiles(
+    shadings: &[ProfilePicture],
+    outline: &Outline,
+    still: Affine2,
+    most_px: usize,
+) -> Option<Form> {
     let (x0, y0) = outline.corner();
     let profile = |shading: &ProfilePicture| {
         let grey = Plane::from_fn(outline.size(), |x, y| {

@@ -1,4 +1,5 @@
-//! What is painted and of no flat colour, such as lines and specks, is given to the areas beside it. Floor 4.
+//! What is painted and of no flat colour, such as lines and specks, is given to the areas beside
+//! it. Floor 4.
 
 use super::areas::{pixels, spread};
 use super::palette::NOTHING;
@@ -22,8 +23,9 @@ pub struct Given {
 
 /// Gives opaque pixels that no area takes to the nearest one.
 pub fn complete(owner: &mut Plane<u16>, picture: &FlatPicture, between: &[Between]) -> Given {
-    let mut is_missing =
-        Plane::from_fn(owner.size(), |x, y| owner.at(x, y) > NOTHING && picture.pixels.at(x, y)[3] == 255);
+    let mut is_missing = Plane::from_fn(owner.size(), |x, y| {
+        owner.at(x, y) > NOTHING && picture.pixels.at(x, y)[3] == 255
+    });
     between.iter().for_each(|mixed| is_missing.values_mut()[mixed.index] = false);
     let mut labels = owner.map(|of| if of < NOTHING { u32::from(of) + 1 } else { 0 });
     // On the way are pixels that are mixed of the lines and what is beside them.
@@ -45,14 +47,25 @@ pub fn complete(owner: &mut Plane<u16>, picture: &FlatPicture, between: &[Betwee
     Given { is_given: is_missing, mixed, nearest: labels }
 }
 
-/// The other area in a pixel of a line through which a border goes, and its share: as if the border were straight.
-fn border_through(labels: &Plane<u32>, is_missing: &Plane<bool>, x: usize, y: usize) -> Option<(u32, u8)> {
+/// The other area in a pixel of a line through which a border goes, and its share: as if the border
+/// were straight.
+fn border_through(
+    labels: &Plane<u32>,
+    is_missing: &Plane<bool>,
+    x: usize,
+    y: usize,
+) -> Option<(u32, u8)> {
     let (own, (x, y)) = (labels.at(x, y), (x as i32, y as i32));
-    let around = |reach: i32| (-reach..=reach).flat_map(move |dy| (-reach..=reach).map(move |dx| (x + dx, y + dy)));
-    let is_other = |(x, y): &(i32, i32)| labels.get(*x, *y).is_some_and(|label| label > 0 && label != own);
-    let (x1, y1) = around(1).filter(is_other).find(|(x, y)| is_missing.get(*x, *y) == Some(true))?;
+    let around = |reach: i32| {
+        (-reach..=reach).flat_map(move |dy| (-reach..=reach).map(move |dx| (x + dx, y + dy)))
+    };
+    let is_other =
+        |(x, y): &(i32, i32)| labels.get(*x, *y).is_some_and(|label| label > 0 && label != own);
+    let (x1, y1) =
+        around(1).filter(is_other).find(|(x, y)| is_missing.get(*x, *y) == Some(true))?;
     let other = labels.get(x1, y1)?;
-    let count = |of: u32| around(AROUND).filter(|(x, y)| labels.get(*x, *y) == Some(of)).count() as f32;
+    let count =
+        |of: u32| around(AROUND).filter(|(x, y)| labels.get(*x, *y) == Some(of)).count() as f32;
     let (of_own, of_other) = (count(own), count(other));
     let from_border_px = (of_own / (of_own + of_other) - 0.5) * (2 * AROUND + 1) as f32;
     Some((other, ((0.5 - from_border_px / EDGE_PX).clamp(0.0, 1.0) * 255.0).round() as u8))

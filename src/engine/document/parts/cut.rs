@@ -1,7 +1,8 @@
-//! A drawing cut by its parts: each part carries its piece, so that a part that is moved takes its paint along.
-//! Floor 4.
+//! A drawing cut by its parts: each part carries its piece, so that a part that is moved takes its
+//! paint along. Floor 4.
 //!
-//! `owners` says whose each pixel is, `lines` who takes a line between two, and `pieces` what each part carries.
+//! `owners` says whose each pixel is, `lines` who takes a line between two, and `pieces` what each
+//! part carries.
 
 mod lines;
 mod owners;
@@ -17,15 +18,20 @@ use std::sync::Arc;
 const NO_LAYER: &str = "There is no such layer.";
 
 impl Document {
-    /// With a drawing cut into a paint layer for each part that has its outline from it, in one group above it; the
-    /// drawing is hidden, and the outlines still follow it. While no part is moved, the picture is the same within 1 of
-    /// 255; a part that was moved before takes its paint to where it is. The drawing's mask stays in place, on the
-    /// group. Returns the group as well. `Err`: why it cannot be cut.
+    /// With a drawing cut into a paint layer for each part that has its outline from it, in one
+    /// group above it; the drawing is hidden, and the outlines still follow it. While no part is
+    /// moved, the picture is the same within 1 of 255; a part that was moved before takes its paint
+    /// to where it is. The drawing's mask stays in place, on the group. Returns the group as well.
+    /// `Err`: why it cannot be cut.
     pub fn cut_by_parts(&self, layer: LayerId) -> Result<(Document, LayerId), &'static str> {
         let drawing = self.layer(layer).ok_or(NO_LAYER)?;
         self.can_be_cut(drawing)?;
-        let of_it: Vec<(&Arc<Part>, PieceOutline)> =
-            self.parts.list.iter().filter_map(|part| Some((part, self.piece_outline(part, &drawing.name)?))).collect();
+        let of_it: Vec<(&Arc<Part>, PieceOutline)> = self
+            .parts
+            .list
+            .iter()
+            .filter_map(|part| Some((part, self.piece_outline(part, &drawing.name)?)))
+            .collect();
         self.parts.forget_drawn();
         let drawn = match &drawing.content {
             Content::Pixels(pixels) => self.map_of(layer).map(|map| pixels.taken_along(&map).tiles),
@@ -46,34 +52,47 @@ impl Document {
             inner.push(Arc::new(paint("Rest".into(), rest)));
         }
         for (part, tiles) in parts.into_iter().zip(pieces) {
-            inner.push(Arc::new(Layer { on: self.parts.home(&part.id), ..paint(part.name.clone(), tiles) }));
+            inner.push(Arc::new(Layer {
+                on: self.parts.home(&part.id),
+                ..paint(part.name.clone(), tiles)
+            }));
         }
         let group = Content::Group(Group { layers: inner, pass_through: false });
         let name = self.free_layer_name(&format!("{} by parts", drawing.name));
-        let Layer { opacity, blend, blend_linear, clip_below, clip_to_surface, mask, label, .. } =
-            drawing.as_ref().clone();
+        let Layer {
+            opacity, blend, blend_linear, clip_below, clip_to_surface, mask, label, ..
+        } = drawing.as_ref().clone();
         let look = Layer { opacity, blend, blend_linear, clip_below, ..Layer::new(name, group) };
         let group = Layer { clip_to_surface, mask, label, ..look };
         let id = group.id;
         let place = self.place_of(layer).ok_or(NO_LAYER)?;
         let above = LayerSlot { index: place.index + 1, ..place };
-        let next =
-            self.with_inserted(group, above).and_then(|next| next.with_layer(layer, |layer| layer.visible = false));
+        let next = self
+            .with_inserted(group, above)
+            .and_then(|next| next.with_layer(layer, |layer| layer.visible = false));
         Ok((next.ok_or(NO_LAYER)?.reshaped(), id))
     }
+
     /// The drawing that a part has a colour of, if it can be cut by parts.
     pub fn drawing_to_cut(&self, part: &Part) -> Option<LayerId> {
-        let OutlineSource::Layer { layer, color: Some(_) } = part.outline().filter(|_| part.on().is_none())? else {
+        let OutlineSource::Layer { layer, color: Some(_) } =
+            part.outline().filter(|_| part.on().is_none())?
+        else {
             return None;
         };
-        self.layer_named(layer).filter(|drawing| self.can_be_cut(drawing).is_ok()).map(|drawing| drawing.id)
+        self.layer_named(layer)
+            .filter(|drawing| self.can_be_cut(drawing).is_ok())
+            .map(|drawing| drawing.id)
     }
+
     /// `Err`: why a layer cannot be cut, whatever its parts.
     fn can_be_cut(&self, drawing: &Layer) -> Result<(), &'static str> {
         let is_paint = matches!(drawing.content, Content::Pixels(_)) && !drawing.is_warped();
         let is_grouped = !self.layers.iter().any(|layer| layer.id == drawing.id);
         match () {
-            _ if self.home_of(drawing.id).is_some() => Err("This layer lies on a part already, and goes with it."),
+            _ if self.home_of(drawing.id).is_some() => {
+                Err("This layer lies on a part already, and goes with it.")
+            }
             _ if !is_paint => Err("Only a paint layer can be cut: bake this one first."),
             _ if is_grouped => Err("This layer is in a group: take it out first."),
             _ if drawing.mask.is_some() && drawing.transform.is_some() => {
@@ -83,9 +102,13 @@ impl Document {
             _ => Ok(()),
         }
     }
-    /// The outline that a part has from a layer, before the part was moved. `None` if it has none from there.
+
+    /// The outline that a part has from a layer, before the part was moved. `None` if it has none
+    /// from there.
     fn piece_outline(&self, part: &Part, layer: &str) -> Option<PieceOutline> {
-        let OutlineSource::Layer { layer: of, color } = part.outline().filter(|_| part.on().is_none())? else {
+        let OutlineSource::Layer { layer: of, color } =
+            part.outline().filter(|_| part.on().is_none())?
+        else {
             return None;
         };
         if of != layer {

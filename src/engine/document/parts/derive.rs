@@ -1,5 +1,6 @@
-//! The surface of a document from its parts and its maps; only what changed in a part is made again. Floor 4. Not here:
-//! how one kind of part is made (`make`), what is kept (`made`), how forms are combined (`whole`).
+//! The surface of a document from its parts and its maps; only what changed in a part is made
+//! again. Floor 4. Not here: how one kind of part is made (`make`), what is kept (`made`), how
+//! forms are combined (`whole`).
 
 use super::body::{SolvedOutline, StandingOutline, joined, lost};
 use super::made::{MadePart, NewForm, Stages};
@@ -17,7 +18,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 const MOST_KEPT_PX: usize = 1 << 24;
 
 impl Document {
-    /// As [`Document::reshaped_telling`], made even if nothing changed: then what is known costs nothing.
+    /// As [`Document::reshaped_telling`], made even if nothing changed: then what is known costs
+    /// nothing.
     pub(super) fn derived(&self, progress: &Progress) -> Option<Document> {
         let shown = || self.parts.list.iter().filter(|part| part.visible && part.on().is_none());
         progress.add_total(shown().count() as u64);
@@ -29,7 +31,8 @@ impl Document {
             if progress.is_cancelled() {
                 return None;
             }
-            if let Some((made, form)) = self.made_now(part, outlines[i].clone(), &outlines[i + 1..]) {
+            if let Some((made, form)) = self.made_now(part, outlines[i].clone(), &outlines[i + 1..])
+            {
                 whole.add(made, form);
             }
             progress.step();
@@ -42,11 +45,19 @@ impl Document {
         let parts = Arc::new(Parts { is_ahead: false, lost, made_of, ..Parts::clone(&self.parts) });
         Some(Document { parts, ..next })
     }
+
     /// The visible parts that lie on another.
     pub(super) fn upon(&self, part: &Part) -> Vec<Arc<Part>> {
-        self.parts.list.iter().filter(|p| p.visible && p.on() == Some(part.id.as_str())).cloned().collect()
+        self.parts
+            .list
+            .iter()
+            .filter(|p| p.visible && p.on() == Some(part.id.as_str()))
+            .cloned()
+            .collect()
     }
-    /// One part as it is now, with what lies on it, and its form where that was made just now; `None` if it has none.
+
+    /// One part as it is now, with what lies on it, and its form where that was made just now;
+    /// `None` if it has none.
     ///
     /// * `standing`: its outline in its place, if it has one.
     /// * `in_front`: those of the parts nearer to the viewer.
@@ -61,7 +72,8 @@ impl Document {
         let known = cache.known(&part.id);
         let is_edited = known.is_some();
         let source = OutlineKey::of_part(self, part)?;
-        let inks: Vec<OutlineKey> = upon.iter().filter_map(|part| OutlineKey::of_part(self, part)?).collect();
+        let inks: Vec<OutlineKey> =
+            upon.iter().filter_map(|part| OutlineKey::of_part(self, part)?).collect();
         let (still, moved) = apart(part.matrix);
         let is_unchanged = |made: &MadePart| match (&made.source, &source) {
             (Some(a), Some(b)) => a.is_same(b),
@@ -70,7 +82,8 @@ impl Document {
         // Paint may change without the outline.
         let same_outline = |made: &MadePart| {
             let both = standing.as_ref().map(|own| &own.outline).zip(made.outline.as_ref());
-            matches!(source, Some(OutlineKey::Layer(..))) && both.is_some_and(|(a, b)| Arc::ptr_eq(a, b))
+            matches!(source, Some(OutlineKey::Layer(..)))
+                && both.is_some_and(|(a, b)| Arc::ptr_eq(a, b))
         };
         let same_source = |made: &MadePart| is_unchanged(made) || same_outline(made);
         let same_place = |made: &MadePart| apart(made.part.matrix).0 == still;
@@ -87,20 +100,24 @@ impl Document {
             }
             known => {
                 let free = found();
-                let is_same = |made: &MadePart| made.kept.as_ref().is_some_and(|kept| kept.body.joined == free);
+                let is_same = |made: &MadePart| {
+                    made.kept.as_ref().is_some_and(|kept| kept.body.joined == free)
+                };
                 (known.filter(is_same), Some(free))
             }
         };
         let is_lost = standing.as_ref().is_some_and(|own| own.is_lost);
-        if let Some(made) = known
-            .as_ref()
-            .filter(|made| same_shape(&made.part, part) && same_list(&made.upon, &upon) && same_inks(&made.inks, &inks))
-        {
+        if let Some(made) = known.as_ref().filter(|made| {
+            same_shape(&made.part, part)
+                && same_list(&made.upon, &upon)
+                && same_inks(&made.inks, &inks)
+        }) {
             if made.moved == moved && Arc::ptr_eq(&made.part, part) && is_unchanged(made) {
                 return Some((made.clone(), None));
             }
             let by = (moved.0 - made.moved.0, moved.1 - made.moved.1);
-            let next = MadePart { part: part.clone(), moved, source, met, is_lost, ..made.clone() }.moved_by(by);
+            let next = MadePart { part: part.clone(), moved, source, met, is_lost, ..made.clone() }
+                .moved_by(by);
             cache.remember(next.clone());
             return Some((next, None));
         }
@@ -108,12 +125,14 @@ impl Document {
         let outline = standing.map(|own| own.outline);
         let is_kind = known.as_ref().is_some_and(|made| same_kind(&made.part.kind, &part.kind));
         let kept = known.as_ref().and_then(|made| made.kept.clone());
-        let staged = kept.as_ref().filter(|_| is_kind).and_then(|kept| Some((kept, kept.stages.as_ref()?)));
+        let staged =
+            kept.as_ref().filter(|_| is_kind).and_then(|kept| Some((kept, kept.stages.as_ref()?)));
         let (body, plain) = match staged {
             Some((kept, stages)) => (kept.body.clone(), stages.plain.clone()),
             None => {
                 let body = kept.as_ref().map(|kept| kept.body.clone());
-                let (body, form) = self.made(part, (outline.clone(), source.as_ref()), free, still, body)?;
+                let (body, form) =
+                    self.made(part, (outline.clone(), source.as_ref()), free, still, body)?;
                 (body, Arc::new(form))
             }
         };
@@ -121,15 +140,19 @@ impl Document {
         let last = upon.len().saturating_sub(1);
         let stages = kept.and_then(|kept| kept.stages.clone());
         let beneath = known.zip(stages).and_then(|(made, stages)| {
-            let as_many = made.upon.len() == upon.len() && same_list(&made.upon[..last], &upon[..last]);
-            let is_same = as_many && Arc::ptr_eq(&stages.plain, &plain) && same_inks(&made.inks, &inks);
-            let came = std::mem::take(&mut *made.came.lock().unwrap_or_else(PoisonError::into_inner));
+            let as_many =
+                made.upon.len() == upon.len() && same_list(&made.upon[..last], &upon[..last]);
+            let is_same =
+                as_many && Arc::ptr_eq(&stages.plain, &plain) && same_inks(&made.inks, &inks);
+            let came =
+                std::mem::take(&mut *made.came.lock().unwrap_or_else(PoisonError::into_inner));
             is_same.then_some((stages.before_last, came))
         });
         let is_small = plain.height.size().area() <= MOST_KEPT_PX;
         let nowhere = || Came::nowhere(is_small && cache.is_draft);
-        let (before_last, mut came) =
-            beneath.unwrap_or_else(|| (self.with_all_upon(plain.clone(), &body, &upon[..last], still), nowhere()));
+        let (before_last, mut came) = beneath.unwrap_or_else(|| {
+            (self.with_all_upon(plain.clone(), &body, &upon[..last], still), nowhere())
+        });
         let form = match upon.last() {
             Some(other) => self.with_upon(&before_last, &body, other, still, &mut came),
             None => Form::clone(&before_last),
@@ -139,37 +162,70 @@ impl Document {
         let came = if is_small { came } else { Came::default() };
         let new = NewForm { body, stages, form: form.clone() };
         let (area, part, came) = (new.area(), part.clone(), Arc::new(Mutex::new(came)));
-        let mut made = MadePart { part, upon, inks, source, outline, met, is_lost, moved, area, kept: None, came };
+        let mut made = MadePart {
+            part,
+            upon,
+            inks,
+            source,
+            outline,
+            met,
+            is_lost,
+            moved,
+            area,
+            kept: None,
+            came,
+        };
         cache.remember_form(&mut made, new, is_edited);
         Some((made, Some(form)))
     }
+
     /// The form of a part that was made before and not kept.
     pub(super) fn remade(&self, made: &MadePart) -> Option<Arc<Form>> {
         let (part, (still, moved)) = (&made.part, apart(made.part.matrix));
         let own = made.outline.as_ref().filter(|_| matches!(part.kind, PartKind::Inflate { .. }));
         let free = own.and_then(|own| joined(own, &made.met)).map(Arc::new);
-        let (body, plain) = self.made(part, (made.outline.clone(), made.source.as_ref()), free, still, None)?;
+        let (body, plain) =
+            self.made(part, (made.outline.clone(), made.source.as_ref()), free, still, None)?;
         let form = self.with_all_upon(Arc::new(plain), &body, &made.upon, still);
         drop(body);
         Some(Arc::new(in_place(Arc::unwrap_or_clone(form), part, moved)))
     }
+
     /// A form changed by some parts that lie on it.
-    fn with_all_upon(&self, form: Arc<Form>, body: &SolvedOutline, upon: &[Arc<Part>], still: Affine2) -> Arc<Form> {
+    fn with_all_upon(
+        &self,
+        form: Arc<Form>,
+        body: &SolvedOutline,
+        upon: &[Arc<Part>],
+        still: Affine2,
+    ) -> Arc<Form> {
         let on = |form: Arc<Form>, other: &Arc<Part>| {
             Arc::new(self.with_upon(&form, body, other, still, &mut Came::default()))
         };
         upon.iter().fold(form, on)
     }
+
     /// A form changed by one more part that lies on it.
-    fn with_upon(&self, form: &Form, body: &SolvedOutline, other: &Part, still: Affine2, came: &mut Came) -> Form {
+    fn with_upon(
+        &self,
+        form: &Form,
+        body: &SolvedOutline,
+        other: &Part,
+        still: Affine2,
+        came: &mut Came,
+    ) -> Form {
         let PartKind::Lines { lines, .. } = &other.kind else {
             return changed(form, &body.outline, other, still, came);
         };
-        let ink = OutlineKey::of_part(self, other).flatten().and_then(|ink| ink.outline(self, self.most_px()));
+        let ink = OutlineKey::of_part(self, other)
+            .flatten()
+            .and_then(|ink| ink.outline(self, self.most_px()));
         let ink = ink.and_then(|ink| ink.through(still, self.most_px()));
         ink.map_or_else(|| form.clone(), |ink| lined(form, &body.outline, &ink, *lines))
     }
-    /// The area that a part may take: four canvases, so that one that reaches beyond the canvas keeps its shape.
+
+    /// The area that a part may take: four canvases, so that one that reaches beyond the canvas
+    /// keeps its shape.
     pub(super) fn most_px(&self) -> usize {
         self.size.area().saturating_mul(4).max(1 << 20)
     }

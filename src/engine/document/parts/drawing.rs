@@ -1,5 +1,5 @@
-//! What a drawing is before it has a shape: whether its background is transparent or of one colour, and whether it has
-//! flat colours. Floor 4. Not here: which parts are made of it (`flats`).
+//! What a drawing is before it has a shape: whether its background is transparent or of one colour,
+//! and whether it has flat colours. Floor 4. Not here: which parts are made of it (`flats`).
 
 use super::flats::LEAST_FLAT;
 use super::near::{is_near, share_on_the_way};
@@ -39,7 +39,8 @@ pub struct DrawingLook {
 const OPAQUE: u8 = 128;
 /// The share of the border that must have the colour of a flat background.
 const LEAST_BORDER: f32 = 0.9;
-/// The share of the picture that must be transparent, so that the rest is a figure; and the share that must be figure.
+/// The share of the picture that must be transparent, so that the rest is a figure; and the share
+/// that must be figure.
 const LEAST_SHARE: f32 = 0.004;
 
 impl FigureBackground {
@@ -80,10 +81,12 @@ impl DrawingLook {
         };
         Self { background, colors: flats.colors().len(), flat_share: flats.flat_share() }
     }
+
     /// Whether it can be given a shape as it is.
     pub fn has_outline(&self) -> bool {
         matches!(self.background, FigureBackground::Transparent | FigureBackground::Flat(_))
     }
+
     /// Whether its colours are worth a part each.
     pub fn is_of_flats(&self) -> bool {
         self.colors > 1 && self.flat_share >= LEAST_FLAT
@@ -119,11 +122,14 @@ fn flat_ground(tiles: &TileGrid, canvas: Size) -> Option<Color> {
     is_most.then_some(Color { r, g, b, a })
 }
 
-/// A picture without its flat background, as far as that is joined to the border. Over the background's colour it looks
-/// as before: pixels at its edge lose just the background's share in them.
+/// A picture without its flat background, as far as that is joined to the border. Over the
+/// background's colour it looks as before: pixels at its edge lose just the background's share in
+/// them.
 pub fn without_background(tiles: &TileGrid, canvas: Size, background: Color) -> TileGrid {
     let color = bytes(background);
-    let open = joined_to_border(&Plane::from_fn(canvas, |x, y| is_near(tiles.pixel(x as i32, y as i32), color)));
+    let open = joined_to_border(&Plane::from_fn(canvas, |x, y| {
+        is_near(tiles.pixel(x as i32, y as i32), color)
+    }));
     let pixel = |x: usize, y: usize| {
         let (x, y) = (x as i32, y as i32);
         let here = tiles.pixel(x, y);
@@ -189,7 +195,9 @@ mod tests {
             if away < 4.0 {
                 return [background[0], background[1], background[2], 255];
             }
-            let mixed = |c: usize| (disc[c] * share + f32::from(background[c]) * (1.0 - share)).round() as u8;
+            let mixed = |c: usize| {
+                (disc[c] * share + f32::from(background[c]) * (1.0 - share)).round() as u8
+            };
             match background[3] {
                 0 => [disc[0] as u8, disc[1] as u8, disc[2] as u8, (255.0 * share).round() as u8],
                 _ => [mixed(0), mixed(1), mixed(2), 255],
@@ -198,25 +206,52 @@ mod tests {
         let rgba: Vec<u8> = (0..3000).flat_map(pixel).collect();
         TileGrid::from_straight_rgba(&rgba, 60, 50, 0, 0)
     }
+
     #[test]
     fn a_ground_is_told_from_the_figure_by_alpha_or_by_its_one_colour() {
         let cut_out = DrawingLook::of(&drawn([255, 255, 255, 0], [200.0, 60.0, 20.0]), CANVAS);
-        assert_eq!((cut_out.background, cut_out.is_of_flats()), (FigureBackground::Transparent, true));
+        assert_eq!(
+            (cut_out.background, cut_out.is_of_flats()),
+            (FigureBackground::Transparent, true)
+        );
         let white = Color { r: 255, g: 255, b: 255, a: 255 };
         let on_white = DrawingLook::of(&drawn([255; 4], [200.0, 60.0, 20.0]), CANVAS);
-        assert_eq!((on_white.background, on_white.has_outline()), (FigureBackground::Flat(white), true));
+        assert_eq!(
+            (on_white.background, on_white.has_outline()),
+            (FigureBackground::Flat(white), true)
+        );
         assert_eq!(on_white.colors, 2, "the hole is no background: it is not joined to the border");
         let noise = |i: u32| crate::math::hash::unit(5, i, 3).mul_add(255.0, 0.0) as u8;
-        let photo: Vec<u8> = (0..3000u32).flat_map(|i| [noise(i), noise(i + 9000), noise(i + 20_000), 255]).collect();
+        let photo: Vec<u8> = (0..3000u32)
+            .flat_map(|i| [noise(i), noise(i + 9000), noise(i + 20_000), 255])
+            .collect();
         let photo = DrawingLook::of(&TileGrid::from_straight_rgba(&photo, 60, 50, 0, 0), CANVAS);
         assert_eq!((photo.background, photo.is_of_flats()), (FigureBackground::Painted, false));
-        assert_eq!(DrawingLook::of(&TileGrid::default(), CANVAS).background, FigureBackground::Empty);
+        assert_eq!(
+            DrawingLook::of(&TileGrid::default(), CANVAS).background,
+            FigureBackground::Empty
+        );
         let paper = TileGrid::from_straight_rgba(&[255; 12_000], 60, 50, 0, 0);
-        assert_eq!(DrawingLook::of(&paper, CANVAS).background, FigureBackground::Bare(white), "paper is no figure");
+        assert_eq!(
+            DrawingLook::of(&paper, CANVAS).background,
+            FigureBackground::Bare(white),
+            "paper is no figure"
+        );
         let speck = |i: usize| if i == 1500 { [0, 0, 0, 255] } else { [255; 4] };
-        let speck = TileGrid::from_straight_rgba(&(0..3000).flat_map(speck).collect::<Vec<u8>>(), 60, 50, 0, 0);
-        assert_eq!(DrawingLook::of(&speck, CANVAS).background, FigureBackground::Bare(white), "nor is a speck on it");
+        let speck = TileGrid::from_straight_rgba(
+            &(0..3000).flat_map(speck).collect::<Vec<u8>>(),
+            60,
+            50,
+            0,
+            0,
+        );
+        assert_eq!(
+            DrawingLook::of(&speck, CANVAS).background,
+            FigureBackground::Bare(white),
+            "nor is a speck on it"
+        );
     }
+
     #[test]
     fn a_drawing_without_its_ground_over_that_ground_is_what_it_was() {
         let background = Color { r: 240, g: 235, b: 220, a: 255 };
@@ -230,7 +265,11 @@ mod tests {
             soft += usize::from(over[3] > 0 && over[3] < 255);
             for (c, under) in [240.0f32, 235.0, 220.0].into_iter().enumerate() {
                 let seen = f32::from(over[c]) + under * (1.0 - f32::from(over[3]) / 255.0);
-                assert!((seen - f32::from(was[c])).abs() < 3.0, "{x} {y} {c}: {seen} for {}", was[c]);
+                assert!(
+                    (seen - f32::from(was[c])).abs() < 3.0,
+                    "{x} {y} {c}: {seen} for {}",
+                    was[c]
+                );
             }
         }
         assert!(soft > 60, "the edge is soft: {soft}");

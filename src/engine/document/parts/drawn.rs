@@ -1,9 +1,9 @@
-//! What a layer draws, as parts take their outlines from it, and all that it depends on. Floor 4. Not here: the
-//! outlines in it (`outlines`).
+//! What a layer draws, as parts take their outlines from it, and all that it depends on. Floor 4.
+//! Not here: the outlines in it (`outlines`).
 //!
-//! A paint layer draws its paint, whatever its mask and its opacity; any other what it shows alone. Both are seen
-//! through the layer's transform and liquify and those of the groups around it, and without any surface: that depends
-//! on the outlines.
+//! A paint layer draws its paint, whatever its mask and its opacity; any other what it shows alone.
+//! Both are seen through the layer's transform and liquify and those of the groups around it, and
+//! without any surface: that depends on the outlines.
 
 use super::{Part, Parts};
 use crate::document::layer::content::{Content, Group};
@@ -26,8 +26,8 @@ pub struct DrawnLayer {
     map: LayerMap,
     /// Only if something displaces it.
     warped: Option<Box<WarpedLayer>>,
-    /// The maps beneath all parts, if its strokes have selections that follow the surface: they are found on these,
-    /// since what they are on the surface of the parts depends on the outlines.
+    /// The maps beneath all parts, if its strokes have selections that follow the surface: they are
+    /// found on these, since what they are on the surface of the parts depends on the outlines.
     maps: Option<Scene>,
 }
 
@@ -56,22 +56,31 @@ impl DrawnLayer {
         let maps = || Scene { size: document.size, surface: document.maps_surface().cloned() };
         Some(Self { layer: layer.clone(), map, warped, maps: follows_surface(layer).then(maps) })
     }
+
     /// Where the layer's pixels are.
     pub fn map(&self) -> &LayerMap {
         &self.map
     }
-    /// Whether both draw the same for certain: a name, and of paint a mask or an opacity, change nothing.
+
+    /// Whether both draw the same for certain: a name, and of paint a mask or an opacity, change
+    /// nothing.
     pub fn is_same(&self, other: &Self) -> bool {
         let same_maps = match (&self.maps, &other.maps) {
             (Some(a), Some(b)) => a.is_same(b),
             (a, b) => a.is_none() && b.is_none(),
         };
-        same_maps && self.map == other.map && self.warps() == other.warps() && is_same_paint(&self.layer, &other.layer)
+        same_maps
+            && self.map == other.map
+            && self.warps() == other.warps()
+            && is_same_paint(&self.layer, &other.layer)
     }
+
     fn warps(&self) -> &[LayerWarp] {
         self.warped.as_ref().map_or(&[], |warped| &warped.warps)
     }
-    /// The pixels, in tiles that hold some paint: where erased ones were does not show. The last ones are kept.
+
+    /// The pixels, in tiles that hold some paint: where erased ones were does not show. The last
+    /// ones are kept.
     pub fn pixels(&self, document: &Document) -> Option<TileGrid> {
         let kept = &document.parts.cache.drawn;
         kept.get(self).or_else(|| {
@@ -80,6 +89,7 @@ impl DrawnLayer {
             Some(drawn)
         })
     }
+
     fn draw(&self, document: &Document) -> Option<TileGrid> {
         if let Some(warped) = &self.warped {
             return self.flattened(warped.alone.clone());
@@ -87,13 +97,15 @@ impl DrawnLayer {
         let layer = match &self.layer.content {
             Content::Pixels(pixels) => return Some(pixels.taken_along(&self.map).tiles),
             Content::Group(_) => {
-                let transform = LayerTransform::of_map(&self.map.plane, self.map.filter, document.size);
+                let transform =
+                    LayerTransform::of_map(&self.map.plane, self.map.filter, document.size);
                 Layer { on: None, transform, ..Layer::clone(&self.layer) }
             }
             _ => Layer::clone(&self.map.layer_on_canvas(&self.layer)),
         };
         self.flattened(Document { layers: vec![Arc::new(layer)], ..Document::empty(document.size) })
     }
+
     /// The layer as a document shows it that holds nothing else.
     fn flattened(&self, alone: Document) -> Option<TileGrid> {
         let found = |selection: &Arc<Selection>| {
@@ -109,7 +121,8 @@ impl DrawnLayer {
 /// Without tiles that are wholly transparent: files have none.
 fn painted(mut tiles: TileGrid) -> TileGrid {
     let is_blank = |tile: &Tile| !(0..TILE_AREA).any(|i| tile.is_painted(i));
-    let blank: Vec<TileAt> = tiles.iter().filter(|(_, tile)| is_blank(tile)).map(|(at, _)| at).collect();
+    let blank: Vec<TileAt> =
+        tiles.iter().filter(|(_, tile)| is_blank(tile)).map(|(at, _)| at).collect();
     blank.into_iter().for_each(|at| tiles.set(at, None));
     tiles
 }
@@ -141,7 +154,8 @@ impl Document {
 
 /// Whether strokes of a layer, or in it, were painted in selections by the surface.
 fn follows_surface(layer: &Layer) -> bool {
-    let is_of_surface = |stroke: &Arc<Stroke>| stroke.selection().is_some_and(|own| own.selection.made.is_some());
+    let is_of_surface =
+        |stroke: &Arc<Stroke>| stroke.selection().is_some_and(|own| own.selection.made.is_some());
     match &layer.content {
         Content::Strokes(live) => live.params().strokes.iter().any(is_of_surface),
         Content::Group(group) => group.layers.iter().any(|layer| follows_surface(layer)),
@@ -149,7 +163,8 @@ fn follows_surface(layer: &Layer) -> bool {
     }
 }
 
-/// A layer alone in the groups that it is in, which show nothing else of themselves; `None` if it is not in this list.
+/// A layer alone in the groups that it is in, which show nothing else of themselves; `None` if it
+/// is not in this list.
 ///
 /// * `is_home`: what is seen of it is where it would be if no part carried it.
 fn alone(layers: &[Arc<Layer>], id: LayerId, is_home: bool) -> Option<Arc<Layer>> {
@@ -165,7 +180,11 @@ fn alone(layers: &[Arc<Layer>], id: LayerId, is_home: bool) -> Option<Arc<Layer>
         };
         if layer.id == id {
             let is_paint = matches!(layer.content, Content::Pixels(_));
-            return Some(Arc::new(if is_paint { bare() } else { Layer { on: on.clone(), ..Layer::clone(layer) } }));
+            return Some(Arc::new(if is_paint {
+                bare()
+            } else {
+                Layer { on: on.clone(), ..Layer::clone(layer) }
+            }));
         }
         let inner = alone(&layer.content.group()?.layers, id, is_home)?;
         let content = Content::Group(Group { layers: vec![inner], pass_through: true });
@@ -185,9 +204,11 @@ impl LastDrawn {
     fn lock(&self) -> MutexGuard<'_, Vec<(DrawnLayer, TileGrid)>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
+
     fn get(&self, drawn: &DrawnLayer) -> Option<TileGrid> {
         self.lock().iter().find(|(known, _)| known.is_same(drawn)).map(|(_, tiles)| tiles.clone())
     }
+
     fn keep(&self, drawn: &DrawnLayer, tiles: &TileGrid) {
         let mut known = self.lock();
         if known.len() >= Self::MOST {
@@ -195,13 +216,15 @@ impl LastDrawn {
         }
         known.push((drawn.clone(), tiles.clone()));
     }
+
     fn forget(&self) {
         self.lock().clear();
     }
 }
 
 impl Parts {
-    /// Drops what was found while outlines were: it is large, and an edit of the drawing needs it anew.
+    /// Drops what was found while outlines were: it is large, and an edit of the drawing needs it
+    /// anew.
     pub(super) fn forget_drawn(&self) {
         self.forget_flats();
         self.cache.drawn.forget();

@@ -1,5 +1,5 @@
-//! Edits of the list of parts. Each gives a new document with the surface that follows from it; what lies on a part
-//! is carried by it. Floor 4. Not here: what lies where (`document::homes`).
+//! Edits of the list of parts. Each gives a new document with the surface that follows from it;
+//! what lies on a part is carried by it. Floor 4. Not here: what lies where (`document::homes`).
 
 use super::{CoverageFile, OutlineSource, Part, Parts};
 use crate::document::{Document, LayerId, NamedSelection, Progress};
@@ -11,14 +11,22 @@ impl Document {
     pub fn maps_surface(&self) -> Option<&Arc<Surface>> {
         if self.parts.is_empty() { self.surface.as_ref() } else { self.parts.maps.as_ref() }
     }
-    /// With other parts, and the surface that follows from them. What lies on parts that go stays where it shows.
+
+    /// With other parts, and the surface that follows from them. What lies on parts that go stays
+    /// where it shows.
     pub fn with_parts(&self, list: Vec<Arc<Part>>) -> Document {
         self.with_list(list).reshaped()
     }
+
     /// The same, a step for each part; `None` if cancelled.
-    pub fn with_parts_telling(&self, list: Vec<Arc<Part>>, progress: &Progress) -> Option<Document> {
+    pub fn with_parts_telling(
+        &self,
+        list: Vec<Arc<Part>>,
+        progress: &Progress,
+    ) -> Option<Document> {
         self.with_list(list).reshaped_telling(progress)
     }
+
     /// With other parts, but not yet with their surface.
     fn with_list(&self, list: Vec<Arc<Part>>) -> Document {
         let maps = self.maps_surface().cloned();
@@ -33,13 +41,16 @@ impl Document {
         }
         // Those that stay lost are found again with the surface.
         let lost = self.parts.lost.iter().filter(|id| stays(id)).cloned().collect();
-        next.parts = Arc::new(Parts { list, maps, lost, is_ahead: false, ..Parts::clone(&self.parts) });
+        next.parts =
+            Arc::new(Parts { list, maps, lost, is_ahead: false, ..Parts::clone(&self.parts) });
         next
     }
+
     /// With a part in the place of the one of its id, or in front of all.
     pub fn with_part(&self, part: Part) -> Document {
         self.with_parts(self.list_with(part))
     }
+
     fn list_with(&self, part: Part) -> Vec<Arc<Part>> {
         let mut list = self.parts.list.clone();
         match list.iter_mut().find(|known| known.id == part.id) {
@@ -48,8 +59,9 @@ impl Document {
         }
         list
     }
-    /// With other parts while the user drags: what lies on parts follows at once, the surface stays that of the parts
-    /// before until [`Document::reshaped`], which takes too long for a drag.
+
+    /// With other parts while the user drags: what lies on parts follows at once, the surface stays
+    /// that of the parts before until [`Document::reshaped`], which takes too long for a drag.
     pub fn with_parts_ahead(&self, list: Vec<Arc<Part>>) -> Document {
         let next = self.with_list(list);
         if next.parts.is_empty() {
@@ -58,35 +70,45 @@ impl Document {
         let parts = Arc::new(Parts { is_ahead: true, ..Parts::clone(&next.parts) });
         Document { parts, ..next }.with_homes_placed()
     }
+
     /// The same with one part, as [`Document::with_part`] does it.
     pub fn with_part_ahead(&self, part: Part) -> Document {
         self.with_parts_ahead(self.list_with(part))
     }
-    /// The user drags its parts: they are where the hand is, and its surface follows when it is asked for.
+
+    /// The user drags its parts: they are where the hand is, and its surface follows when it is
+    /// asked for.
     pub fn is_ahead(&self) -> bool {
         self.parts.is_ahead
     }
-    /// Without a part and those that change it. What lies on it stays where it shows, no longer carried. `None` if
-    /// there is no such part.
+
+    /// Without a part and those that change it. What lies on it stays where it shows, no longer
+    /// carried. `None` if there is no such part.
     pub fn without_part(&self, id: &str) -> Option<Document> {
         self.parts.part(id)?;
-        let stays = |part: &&Arc<Part>| part.id != id && self.parts.body_of(&part.id).is_none_or(|body| body.id != id);
+        let stays = |part: &&Arc<Part>| {
+            part.id != id && self.parts.body_of(&part.id).is_none_or(|body| body.id != id)
+        };
         Some(self.with_parts(self.parts.list.iter().filter(stays).cloned().collect()))
     }
-    /// With a part at another place, counted without it, the farthest 0; beyond the last means in front of all. `None`
-    /// if there is no such part.
+
+    /// With a part at another place, counted without it, the farthest 0; beyond the last means in
+    /// front of all. `None` if there is no such part.
     pub fn with_part_at(&self, id: &str, index: usize) -> Option<Document> {
         let mut list = self.parts.list.clone();
         let part = list.remove(list.iter().position(|part| part.id == id)?);
         list.insert(index.min(list.len()), part);
         Some(self.with_parts(list))
     }
-    /// Without the parts that its layers lie on, which are those of `list`: what lies on them stays where it shows.
+
+    /// Without the parts that its layers lie on, which are those of `list`: what lies on them stays
+    /// where it shows.
     pub fn off_parts(&self, list: Vec<Arc<Part>>) -> Document {
         let parts = Arc::new(Parts { list, ..Parts::default() });
         let placed = Document { parts, ..self.clone() }.with_homes_placed();
         Document { parts: Arc::default(), ..placed.lifted_off(|_| true) }
     }
+
     /// With the outlines that follow a kept selection keeping it as a picture.
     pub(in crate::document) fn without_outlines_of(&self, selection: &NamedSelection) -> Document {
         let names = |part: &Arc<Part>| match part.outline() {
@@ -101,7 +123,10 @@ impl Document {
             let mut own = Part::clone(part);
             match own.outline_mut().filter(|_| names(part)) {
                 Some(outline) => {
-                    *outline = OutlineSource::File(CoverageFile { file: String::new(), coverage: coverage.clone() })
+                    *outline = OutlineSource::File(CoverageFile {
+                        file: String::new(),
+                        coverage: coverage.clone(),
+                    })
                 }
                 None => return part.clone(),
             }
@@ -109,6 +134,7 @@ impl Document {
         };
         self.with_parts(self.parts.list.iter().map(next).collect())
     }
+
     /// With other maps beneath its parts.
     pub fn with_maps(&self, surface: Option<Arc<Surface>>) -> Document {
         let mut next = self.clone();
@@ -119,9 +145,18 @@ impl Document {
         next.parts = Arc::new(Parts { maps: surface, ..Parts::clone(&self.parts) });
         next.reshaped()
     }
-    /// With outlines naming layers by their present names; `before`: the document in which a layer had another name.
-    pub(in crate::document) fn with_outlines_renamed(self, before: &Document, id: LayerId) -> Document {
-        let names = before.layer(id).zip(self.layer(id)).map(|(old, new)| (old.name.clone(), new.name.clone()));
+
+    /// With outlines naming layers by their present names; `before`: the document in which a layer
+    /// had another name.
+    pub(in crate::document) fn with_outlines_renamed(
+        self,
+        before: &Document,
+        id: LayerId,
+    ) -> Document {
+        let names = before
+            .layer(id)
+            .zip(self.layer(id))
+            .map(|(old, new)| (old.name.clone(), new.name.clone()));
         let Some((old, new)) = names.filter(|(old, new)| old != new) else { return self };
         // If several layers have a name, outlines name the topmost.
         let is_named = before.layer_named(&old).is_some_and(|layer| layer.id == id);

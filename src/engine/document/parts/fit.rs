@@ -8,11 +8,14 @@ use crate::math::{COORDINATE, PlaneMap, UNIT, Vec2, Vec3};
 use crate::paint::HomeFrame;
 use crate::shading::Light;
 use crate::shape::profiles::MOST_PROFILES;
-use crate::shape::{Ball, Bevel, BevelCurve, Combine, Detail, Lines, Primitive, SculptStroke, Touch};
+use crate::shape::{
+    Ball, Bevel, BevelCurve, Combine, Detail, Lines, Primitive, SculptStroke, Touch,
+};
 use std::sync::Arc;
 
 impl Document {
-    /// Whether files can hold the parts. Those that lie on the same in `before` may lie on anything: so it was opened.
+    /// Whether files can hold the parts. Those that lie on the same in `before` may lie on
+    /// anything: so it was opened.
     pub(in crate::document) fn parts_fit(&self, before: Option<&Document>) -> Result<(), String> {
         at_most("Parts", self.parts.list.len(), Parts::MOST)?;
         for (i, part) in self.parts.list.iter().enumerate() {
@@ -28,7 +31,9 @@ impl Document {
             if let Some(OutlineSource::Selection(name)) = part.outline()
                 && !self.selections.iter().any(|kept| kept.name == *name)
             {
-                return Err(format!("“{shown}”: its outline is the selection “{name}”, which is not kept."));
+                return Err(format!(
+                    "“{shown}”: its outline is the selection “{name}”, which is not kept."
+                ));
             }
         }
         Ok(())
@@ -36,7 +41,8 @@ impl Document {
 }
 
 impl Document {
-    /// A sentence about the parts that lie on none with a form of its own, so that they change nothing.
+    /// A sentence about the parts that lie on none with a form of its own, so that they change
+    /// nothing.
     pub fn note_of_astray(&self) -> Option<String> {
         let one = |part: &Arc<Part>| Some(format!("“{}” {}", part.name, self.parts.astray(part)?));
         let all: Vec<String> = self.parts.list.iter().filter_map(one).collect();
@@ -45,8 +51,8 @@ impl Document {
 }
 
 impl Parts {
-    /// Why a part lies on none with a form of its own, if it lies on another: the rest of a sentence that begins with
-    /// its name.
+    /// Why a part lies on none with a form of its own, if it lies on another: the rest of a
+    /// sentence that begins with its name.
     fn astray(&self, part: &Part) -> Option<String> {
         let on = part.on()?;
         if on == part.id {
@@ -56,7 +62,9 @@ impl Parts {
             return Some(format!("lies on “{on}”, and there is no such part"));
         }
         let body = self.body_of(on)?;
-        body.on().is_some().then(|| format!("lies on “{on}”, which lies on no part with a form of its own"))
+        body.on()
+            .is_some()
+            .then(|| format!("lies on “{on}”, which lies on no part with a form of its own"))
     }
 }
 
@@ -89,6 +97,7 @@ impl Part {
         };
         (samples, A_PART + lists + self.outline().map_or(0, path))
     }
+
     /// Whether a file can hold it: every number in its range; else a sentence.
     pub fn fits(&self) -> Result<(), String> {
         at_most("letters of the id", self.id.chars().count(), Self::LONGEST_NAME)?;
@@ -105,7 +114,10 @@ impl Part {
         within("the tilt", self.tilt_deg.x, &Self::TILT)?;
         within("the tilt", self.tilt_deg.y, &Self::TILT)?;
         within("how far it is raised", self.raise, &Self::RAISE)?;
-        self.matrix.to_cols_array().iter().try_for_each(|v| within("the matrix", *v, &Self::MATRIX))?;
+        self.matrix
+            .to_cols_array()
+            .iter()
+            .try_for_each(|v| within("the matrix", *v, &Self::MATRIX))?;
         if PlaneMap::affine(self.matrix.to_cols_array().map(f64::from)).is_none() {
             return Err("the matrix cannot be inverted: it leaves no area".into());
         }
@@ -125,11 +137,15 @@ impl OutlineSource {
             }
             OutlineSource::Layer { layer, color } => {
                 at_most("letters of the layer's name", layer.chars().count(), Part::LONGEST_NAME)?;
-                color.and_then(|flat| flat.at).map_or(Ok(()), |at| place("the place of a colour", at))
+                color
+                    .and_then(|flat| flat.at)
+                    .map_or(Ok(()), |at| place("the place of a colour", at))
             }
-            OutlineSource::Selection(name) => {
-                at_most("letters of the selection's name", name.chars().count(), NamedSelection::LONGEST_NAME)
-            }
+            OutlineSource::Selection(name) => at_most(
+                "letters of the selection's name",
+                name.chars().count(),
+                NamedSelection::LONGEST_NAME,
+            ),
             OutlineSource::File(_) | OutlineSource::Object(_) => Ok(()),
         }
     }
@@ -165,7 +181,10 @@ impl PartKind {
                     .iter()
                     .try_for_each(|side| within("a side of the body", *side, &Primitive::LENGTH))?;
                 within("the radius of its edges", body.round, &Primitive::ROUND)?;
-                body.turn_deg.to_array().iter().try_for_each(|turn| within("its turn", *turn, &Primitive::TURN))
+                body.turn_deg
+                    .to_array()
+                    .iter()
+                    .try_for_each(|turn| within("its turn", *turn, &Primitive::TURN))
             }
             PartKind::Lathe { axis, puff, .. } => {
                 within("the puff", *puff, &Inflation::PUFF)?;
@@ -185,7 +204,11 @@ impl PartKind {
                     place("a touch", touch.at)?;
                     within("the radius of a touch", touch.radius, &Touch::RADIUS)?;
                     within("the reach of a touch", touch.reach, &Touch::REACH)?;
-                    touch.normal.to_array().iter().try_for_each(|v| within("a touch's normal", *v, &(-1.0..=1.0)))
+                    touch
+                        .normal
+                        .to_array()
+                        .iter()
+                        .try_for_each(|v| within("a touch's normal", *v, &(-1.0..=1.0)))
                 })
             }
             PartKind::Sculpt { strokes, .. } => {
@@ -207,11 +230,17 @@ impl PartKind {
             }
             PartKind::Profiles { shadings, .. } => {
                 if !(2..=MOST_PROFILES).contains(&shadings.len()) {
-                    return Err(format!("it has {} shadings; there must be 2 to {MOST_PROFILES}", shadings.len()));
+                    return Err(format!(
+                        "it has {} shadings; there must be 2 to {MOST_PROFILES}",
+                        shadings.len()
+                    ));
                 }
                 shadings.iter().try_for_each(|shading| {
                     let light = shading.light;
-                    light.to_array().iter().try_for_each(|v| within("a light", *v, &ProfilePicture::LIGHT))?;
+                    light
+                        .to_array()
+                        .iter()
+                        .try_for_each(|v| within("a light", *v, &ProfilePicture::LIGHT))?;
                     if Light::points(light) { Ok(()) } else { Err("a light points nowhere".into()) }
                 })
             }

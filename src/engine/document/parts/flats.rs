@@ -1,5 +1,6 @@
-//! Parts of a layer of flat colours: one for each colour, or for each place of one, ordered by who interrupts whose
-//! outline. Floor 4. Not here: what the colours are (`palette`, `shares`), and their order (`order`).
+//! Parts of a layer of flat colours: one for each colour, or for each place of one, ordered by who
+//! interrupts whose outline. Floor 4. Not here: what the colours are (`palette`, `shares`), and
+//! their order (`order`).
 
 use super::areas::{LEAST_SHARE, spread};
 use super::order::farthest_first;
@@ -12,8 +13,8 @@ use crate::raster::{Plane, TileGrid};
 
 pub use super::shares::MOST_COLOURS;
 
-/// From this share of a figure in flat areas on, its colours are worth a part each: shaded paint has few pixels of any
-/// one colour.
+/// From this share of a figure in flat areas on, its colours are worth a part each: shaded paint
+/// has few pixels of any one colour.
 pub const LEAST_FLAT: f32 = 0.7;
 
 /// What becomes a part of its own.
@@ -44,6 +45,7 @@ impl FlatParts {
     pub fn of_one(part: Part) -> Self {
         Self { parts: vec![part], left_out: 0, flat_share: 1.0 }
     }
+
     /// What the user is told about colours without a part.
     pub fn note(&self) -> Option<String> {
         if self.flat_share < LEAST_FLAT {
@@ -69,7 +71,12 @@ impl FlatParts {
 /// The parts of the flats in a layer called `layer`, a part for each colour or each place.
 ///
 /// `tiles`: what the layer shows on the canvas. Nothing makes no parts.
-pub fn parts_of_flats(tiles: &TileGrid, layer: &str, inflation: Inflation, each: PartFor) -> FlatParts {
+pub fn parts_of_flats(
+    tiles: &TileGrid,
+    layer: &str,
+    inflation: Inflation,
+    each: PartFor,
+) -> FlatParts {
     let rect = tiles.bounds();
     let Some(flats) = Flats::of(tiles, rect, &[]) else { return FlatParts::default() };
     let FlatAreas { of, labels, left_out } = match each {
@@ -83,7 +90,10 @@ pub fn parts_of_flats(tiles: &TileGrid, layer: &str, inflation: Inflation, each:
     let part = |(place, index): (usize, usize)| {
         let outline = OutlineSource::Layer { layer: layer.into(), color: Some(of[index]) };
         let id = format!("part-{}", place + 1);
-        Part { name: format!("Part {}", place + 1), ..Part::new(id, PartKind::Inflate { outline, inflation }) }
+        Part {
+            name: format!("Part {}", place + 1),
+            ..Part::new(id, PartKind::Inflate { outline, inflation })
+        }
     };
     let parts = order.into_iter().enumerate().map(part).collect();
     FlatParts { parts, left_out, flat_share: flats.flat_share() }
@@ -109,7 +119,10 @@ fn places(flats: &Flats, rect: Rect) -> FlatAreas {
         let large = found.large();
         left_out += found.small();
         for place in &large {
-            all.push((found.pixels(*place), FlatColor { color, at: Some(corner + found.middle(*place)) }));
+            all.push((
+                found.pixels(*place),
+                FlatColor { color, at: Some(corner + found.middle(*place)) },
+            ));
             found.mark(*place, &mut labels, all.len() as u32);
         }
     }
@@ -123,9 +136,17 @@ fn places(flats: &Flats, rect: Rect) -> FlatAreas {
     largest.iter().zip(1..).for_each(|(i, new)| number[*i + 1] = new);
     labels = labels.map(|label| number[label as usize]);
     spread(&mut labels, |x, y| mostly.at(x, y) != NOTHING);
-    let is_alone = |i: usize| all.iter().filter(|(_, other)| other.color == all[i].1.color).count() == 1;
-    let of = largest.into_iter().map(|i| if is_alone(i) { all[i].1.color.into() } else { all[i].1 }).collect();
-    FlatAreas { of, labels: labels.map(|label| (label as u16).wrapping_sub(1).min(NOTHING)), left_out }
+    let is_alone =
+        |i: usize| all.iter().filter(|(_, other)| other.color == all[i].1.color).count() == 1;
+    let of = largest
+        .into_iter()
+        .map(|i| if is_alone(i) { all[i].1.color.into() } else { all[i].1 })
+        .collect();
+    FlatAreas {
+        of,
+        labels: labels.map(|label| (label as u16).wrapping_sub(1).min(NOTHING)),
+        left_out,
+    }
 }
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
-//! The forms of a document's parts in their places: what a pointer hits, and what a list shows. Floor 4. The surface
-//! was made of the same forms.
+//! The forms of a document's parts in their places: what a pointer hits, and what a list shows.
+//! Floor 4. The surface was made of the same forms.
 
 use super::{FormArea, Part};
 use crate::document::{Document, Progress};
@@ -7,13 +7,19 @@ use crate::math::{Affine2, Vec2};
 use std::sync::Arc;
 
 impl Document {
-    /// Where the visible forms lie, with their parts, the farthest first. Nothing of the shape that was made last is
-    /// made again. Parts that make no form, such as an empty outline, are left out.
+    /// Where the visible forms lie, with their parts, the farthest first. Nothing of the shape that
+    /// was made last is made again. Parts that make no form, such as an empty outline, are left
+    /// out.
     ///
-    /// While the user drags parts, their forms are those that were made last, where the parts were then.
+    /// While the user drags parts, their forms are those that were made last, where the parts were
+    /// then.
     pub fn part_areas(&self) -> Vec<(Arc<Part>, Arc<FormArea>)> {
         if self.is_ahead() {
-            return self.last_part_areas().into_iter().map(|(part, area, _)| (part, area)).collect();
+            return self
+                .last_part_areas()
+                .into_iter()
+                .map(|(part, area, _)| (part, area))
+                .collect();
         }
         let shown = || self.parts.list.iter().filter(|part| part.visible && part.on().is_none());
         if shown().any(|part| self.made_area(part).is_none()) {
@@ -22,8 +28,9 @@ impl Document {
         }
         shown().filter_map(|part| Some((part.clone(), self.made_area(part)?))).collect()
     }
-    /// Where the forms lie that were made last, with their parts as they are now, and the map of each form from where
-    /// it was made to where its part is.
+
+    /// Where the forms lie that were made last, with their parts as they are now, and the map of
+    /// each form from where it was made to where its part is.
     pub fn last_part_areas(&self) -> Vec<(Arc<Part>, Arc<FormArea>, Affine2)> {
         let shown = self.parts.list.iter().filter(|part| part.visible && part.on().is_none());
         let last = |part: &Arc<Part>| {
@@ -32,6 +39,7 @@ impl Document {
         };
         shown.filter_map(last).collect()
     }
+
     /// The nearest part whose form covers a canvas point by half or more.
     pub fn part_at(&self, at: Vec2) -> Option<Arc<Part>> {
         nearest_at(&self.part_areas(), at)

@@ -1,5 +1,5 @@
-//! Lines of a drawing that separate its areas, such as ink: they belong to what they run along. Floor 4.
-//! Not here: which of two areas takes a pixel of a line (`complete`).
+//! Lines of a drawing that separate its areas, such as ink: they belong to what they run along.
+//! Floor 4. Not here: which of two areas takes a pixel of a line (`complete`).
 
 use super::areas::{beside, least_area, over, pixels, walk};
 use super::palette::{NONE, NOTHING};
@@ -7,16 +7,20 @@ use crate::math::{Rect, Size};
 use crate::raster::{Plane, distance};
 use rayon::prelude::*;
 
-/// Half of the widest line, as a share of the longer side of a picture; and the share that it may be up to 2 px wide.
+/// Half of the widest line, as a share of the longer side of a picture; and the share that it may
+/// be up to 2 px wide.
 const HALF_WIDTH: f32 = 0.005;
 const HALF_WIDTH_SMALL: f32 = 0.01;
 const SMALL_PX: f32 = 2.0;
-/// The share of a colour that must be in lines, and the share of these that must have two areas on their sides.
+/// The share of a colour that must be in lines, and the share of these that must have two areas on
+/// their sides.
 const LEAST_THIN: f32 = 0.3;
 const LEAST_BETWEEN: f32 = 0.4;
-/// A line is long for its width: the least square of its rim, px, for each of its pixels; 13 for a disc.
+/// A line is long for its width: the least square of its rim, px, for each of its pixels; 13 for a
+/// disc.
 const LEAST_LONG: usize = 32;
-/// An area is no corner in which lines meet: the least of it, in squares of half of the widest line.
+/// An area is no corner in which lines meet: the least of it, in squares of half of the widest
+/// line.
 const LEAST_THICK: usize = 24;
 /// How far beyond a line's border an area begins, px: the border is soft.
 const SOFT: usize = 4;
@@ -95,12 +99,14 @@ pub fn lines(of: &Plane<u16>, color: u16, count: ColorPixels) -> Option<Vec<(usi
         }
     }
     let between = lines.iter().filter(|at| is_between_areas(of, **at, reach)).count();
-    let is_ink = lines.len() as f32 >= LEAST_THIN * all as f32 && between as f32 >= LEAST_BETWEEN * lines.len() as f32;
+    let is_ink = lines.len() as f32 >= LEAST_THIN * all as f32
+        && between as f32 >= LEAST_BETWEEN * lines.len() as f32;
     let (x0, y0) = (area.x0 as usize, area.y0 as usize);
     is_ink.then(|| lines.into_iter().map(|(x, y)| (x + x0, y + y0)).collect())
 }
 
-/// The pixels of a colour that are in none of its areas that are wider than lines and large enough to be parts.
+/// The pixels of a colour that are in none of its areas that are wider than lines and large enough
+/// to be parts.
 ///
 /// `least`: the pixels of the smallest of these.
 fn thin_pixels(of: &Plane<u16>, color: u16, half: usize, least: usize) -> Plane<bool> {

@@ -1,8 +1,10 @@
-//! What a document's surface was made of: while all of it is the same, the surface is that of its parts. Floor 4.
+//! What a document's surface was made of: while all of it is the same, the surface is that of its
+//! parts. Floor 4.
 //!
-//! The surface of a document with parts is kept, not computed wherever it is read, since it takes seconds. That it is
-//! the right one is a fact of the document, and no edit has to say so: [`Document::is_shaped`] compares what the
-//! surface was made of with what it would be made of now, by the same keys by which outlines are known again.
+//! The surface of a document with parts is kept, not computed wherever it is read, since it takes
+//! seconds. That it is the right one is a fact of the document, and no edit has to say so:
+//! [`Document::is_shaped`] compares what the surface was made of with what it would be made of now,
+//! by the same keys by which outlines are known again.
 
 use super::Part;
 use super::outlines::OutlineKey;
@@ -24,7 +26,8 @@ pub struct SurfaceInputs {
 }
 
 impl Document {
-    /// Whether its surface is what its parts, its layers and its maps make. If not, [`Document::reshaped`] makes it.
+    /// Whether its surface is what its parts, its layers and its maps make. If not,
+    /// [`Document::reshaped`] makes it.
     pub fn is_shaped(&self) -> bool {
         let Some(made) = &self.parts.made_of else { return self.parts.is_empty() };
         let of = made.made.as_ref().map(Weak::as_ptr);
@@ -36,13 +39,16 @@ impl Document {
                 && same_list(&made.list, &self.parts.list)
                 && same_outlines(&made.outlines, &self.outline_keys())
     }
-    /// The document with the surface that its parts, layers and maps make now, with what lies on parts at their places,
-    /// and with what follows the surface; itself, at once, if it is so already ([`Document::is_shaped`]). Every step
-    /// of a [`History`](crate::document::History) and every document that was read is so.
+
+    /// The document with the surface that its parts, layers and maps make now, with what lies on
+    /// parts at their places, and with what follows the surface; itself, at once, if it is so
+    /// already ([`Document::is_shaped`]). Every step of a [`History`](crate::document::History) and
+    /// every document that was read is so.
     pub fn reshaped(&self) -> Document {
         // Nobody cancels it, so it is complete.
         self.reshaped_telling(&Progress::default()).unwrap_or_else(|| self.clone())
     }
+
     /// The same, a step for each part; `None` if cancelled.
     pub fn reshaped_telling(&self, progress: &Progress) -> Option<Document> {
         let placed = self.with_homes_placed();
@@ -50,18 +56,20 @@ impl Document {
             return Some(placed.with_selections_found());
         }
         progress.enter("making the shape");
-        // On a thread of the pool: handed over one by one, the many small steps of small parts would take longer than
-        // they need.
+        // On a thread of the pool: handed over one by one, the many small steps of small parts
+        // would take longer than they need.
         let made = rayon::scope(|_| placed.derived(progress));
         progress.enter("");
         made
     }
+
     /// What its surface is made of, once it is.
     pub(super) fn surface_inputs(&self) -> SurfaceInputs {
         let (maps, list) = (self.parts.maps.clone(), self.parts.list.clone());
         let made = self.surface.as_ref().map(Arc::downgrade);
         SurfaceInputs { size: self.size, maps, list, outlines: self.outline_keys(), made }
     }
+
     /// What each visible part is made of; `None` for what does not exist.
     fn outline_keys(&self) -> Vec<Option<OutlineKey>> {
         let shown = self.parts.list.iter().filter(|part| part.visible);

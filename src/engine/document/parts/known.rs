@@ -1,5 +1,5 @@
-//! What was found in the flats that parts are made of, kept while they are made: many parts ask for one picture.
-//! Floor 4.
+//! What was found in the flats that parts are made of, kept while they are made: many parts ask for
+//! one picture. Floor 4.
 
 use super::Parts;
 use super::places::ColorPlaces;
@@ -30,11 +30,16 @@ fn lock<T>(value: &Mutex<T>) -> MutexGuard<'_, T> {
 impl KnownFlats {
     /// The places of a colour.
     pub fn places_of(&self, color: Color) -> Arc<ColorPlaces> {
-        let known = lock(&self.places).iter().find(|(of, _)| *of == color).map(|(_, places)| places.clone());
+        let known = lock(&self.places)
+            .iter()
+            .find(|(of, _)| *of == color)
+            .map(|(_, places)| places.clone());
         known.unwrap_or_else(|| {
             let found = Arc::new(ColorPlaces::of(&self.flats, color));
             let mut places = lock(&self.places);
-            if places.iter().map(|(_, places)| places.pixels_held()).sum::<usize>() + found.pixels_held() > MOST_KEPT_PX
+            if places.iter().map(|(_, places)| places.pixels_held()).sum::<usize>()
+                + found.pixels_held()
+                > MOST_KEPT_PX
             {
                 places.clear();
             }
@@ -45,19 +50,26 @@ impl KnownFlats {
 }
 
 impl Parts {
-    /// The flats of a picture, `None` if it is empty; `asked`: colours that are looked for however small their areas
-    /// are.
+    /// The flats of a picture, `None` if it is empty; `asked`: colours that are looked for however
+    /// small their areas are.
     pub(super) fn flats_of(&self, tiles: &TileGrid, asked: &[Color]) -> Option<Arc<KnownFlats>> {
         let last = &self.cache.flats.0;
-        let known = lock(last).clone().filter(|known| known.tiles.ptr_eq(tiles) && known.asked == asked);
+        let known =
+            lock(last).clone().filter(|known| known.tiles.ptr_eq(tiles) && known.asked == asked);
         known.or_else(|| {
             // What is no longer needed is let go of first.
             *lock(last) = None;
             let flats = Flats::of(tiles, tiles.bounds(), asked)?;
-            let known = KnownFlats { flats, tiles: tiles.clone(), asked: asked.to_vec(), places: Mutex::default() };
+            let known = KnownFlats {
+                flats,
+                tiles: tiles.clone(),
+                asked: asked.to_vec(),
+                places: Mutex::default(),
+            };
             Some(lock(last).insert(Arc::new(known)).clone())
         })
     }
+
     /// Drops them: they are large, and an edit of the picture needs others.
     pub(super) fn forget_flats(&self) {
         *lock(&self.cache.flats.0) = None;

@@ -1,5 +1,6 @@
-//! What was made of parts, kept for speed: what each of them was made from, where its form lies, and, as long as the
-//! forms of all documents stay below a ceiling, the form itself. Floor 4. Not here: what is made again (`derive`).
+//! What was made of parts, kept for speed: what each of them was made from, where its form lies,
+//! and, as long as the forms of all documents stay below a ceiling, the form itself. Floor 4. Not
+//! here: what is made again (`derive`).
 
 use super::Part;
 use super::body::{SolvedOutline, StandingOutline};
@@ -28,7 +29,8 @@ pub struct PartCache {
     pub(super) whole: Arc<Mutex<Option<MadeSurface>>>,
 }
 
-/// The pixels that a form covers: a few bytes a pixel of its rim. The very same value stands for the very same form.
+/// The pixels that a form covers: a few bytes a pixel of its rim. The very same value stands for
+/// the very same form.
 pub struct FormArea {
     /// Canvas px of the form's first pixel.
     corner: (i32, i32),
@@ -44,22 +46,31 @@ impl FormArea {
             let row = form.coverage.row(y);
             let Some(first) = row.iter().position(|c| *c > 0) else { continue };
             let last = row.iter().rposition(|c| *c > 0).unwrap_or(first);
-            covered = covered.union(Rect::new(first as i32, y as i32, last as i32 + 1, y as i32 + 1));
+            covered =
+                covered.union(Rect::new(first as i32, y as i32, last as i32 + 1, y as i32 + 1));
         }
-        Arc::new(Self { corner: form.corner, coverage: CoverageGrid::from_plane(&form.coverage, 0, 0), covered })
+        Arc::new(Self {
+            corner: form.corner,
+            coverage: CoverageGrid::from_plane(&form.coverage, 0, 0),
+            covered,
+        })
     }
+
     fn moved(&self, by: (i32, i32)) -> Arc<Self> {
         let corner = (self.corner.0.saturating_add(by.0), self.corner.1.saturating_add(by.1));
         Arc::new(Self { corner, coverage: self.coverage.clone(), covered: self.covered })
     }
+
     /// Coverage at a canvas pixel.
     pub fn at(&self, x: i32, y: i32) -> u8 {
         self.coverage.at(x.saturating_sub(self.corner.0), y.saturating_sub(self.corner.1))
     }
+
     /// Coverage on the canvas.
     pub fn coverage(&self) -> CoverageGrid {
         self.coverage.shifted(self.corner.0, self.corner.1)
     }
+
     /// The corners of the box around what is covered, canvas px.
     pub fn covered(&self) -> (Vec2, Vec2) {
         let side = |v: i32, from: i32| v.saturating_add(from) as f32;
@@ -129,6 +140,7 @@ impl NewForm {
     pub fn area(&self) -> Arc<FormArea> {
         FormArea::of(&self.form)
     }
+
     /// Bytes of all its planes, shared ones once.
     fn bytes(&self) -> u64 {
         fn of<T>(plane: &Arc<Plane<T>>) -> (usize, usize)
@@ -137,12 +149,20 @@ impl NewForm {
         {
             (Arc::as_ptr(plane).cast::<()>() as usize, plane.size().area() * size_of::<T>())
         }
-        let forms = self.stages.iter().flat_map(|stages| [&stages.plain, &stages.before_last]).chain([&self.form]);
-        let mut planes: Vec<(usize, usize)> =
-            forms.flat_map(|form| [of(&form.height), of(&form.normals), of(&form.coverage)]).collect();
+        let forms = self
+            .stages
+            .iter()
+            .flat_map(|stages| [&stages.plain, &stages.before_last])
+            .chain([&self.form]);
+        let mut planes: Vec<(usize, usize)> = forms
+            .flat_map(|form| [of(&form.height), of(&form.normals), of(&form.coverage)])
+            .collect();
         let SolvedOutline { outline, joined, pillow, tube } = &*self.body;
         // Its coverage, and what is inside.
-        planes.extend([of(outline.coverage()), (Arc::as_ptr(outline) as usize, outline.size().area())]);
+        planes.extend([
+            of(outline.coverage()),
+            (Arc::as_ptr(outline) as usize, outline.size().area()),
+        ]);
         planes.extend(joined.iter().map(of));
         planes.extend([pillow, tube].into_iter().flatten().map(of));
         planes.sort_unstable();
@@ -157,10 +177,12 @@ impl MadePart {
         if by == (0, 0) {
             return self;
         }
-        let moved =
-            |kept: Arc<KeptForm>| Arc::new(KeptForm { form: kept.form.moved(by).into(), ..KeptForm::clone(&kept) });
+        let moved = |kept: Arc<KeptForm>| {
+            Arc::new(KeptForm { form: kept.form.moved(by).into(), ..KeptForm::clone(&kept) })
+        };
         Self { area: self.area.moved(by), kept: self.kept.map(moved), ..self }
     }
+
     pub fn form(&self) -> Option<Arc<Form>> {
         self.kept.as_ref().map(|kept| kept.form.clone())
     }
@@ -170,22 +192,27 @@ impl PartCache {
     fn lock(&self) -> MutexGuard<'_, Vec<MadePart>> {
         self.made.lock().unwrap_or_else(PoisonError::into_inner)
     }
+
     pub fn known(&self, id: &str) -> Option<MadePart> {
         self.lock().iter().find(|made| made.part.id == id).cloned()
     }
+
     /// Drops what was made of other parts.
     pub fn keep_only(&self, is_there: impl Fn(&str) -> bool) {
         self.lock().retain(|made| is_there(&made.part.id));
     }
+
     /// Takes the place of what was made of the part before.
     pub fn remember(&self, made: MadePart) {
         let mut all = self.lock();
         all.retain(|other| other.part.id != made.part.id);
         all.push(made);
     }
+
     /// The same with a new form, if there is room for it.
     ///
-    /// * `is_edited`: the user works on this part, so the forms of others make room, those made longest ago first.
+    /// * `is_edited`: the user works on this part, so the forms of others make room, those made
+    ///   longest ago first.
     pub fn remember_form(&self, made: &mut MadePart, new: NewForm, is_edited: bool) {
         let bytes = new.bytes();
         // What it held before is free now.
@@ -204,28 +231,46 @@ impl PartCache {
 }
 
 impl Document {
-    /// The outline of a part that was found last, as far as that was not moved, and whether its place was lost; `None`
-    /// if what it is made of has changed.
-    pub(super) fn known_outline(&self, part: &Part, source: &OutlineKey) -> Option<(Arc<Outline>, bool)> {
-        let made = self.parts.cache.known(&part.id).filter(|made| apart(made.part.matrix).0 == apart(part.matrix).0)?;
+    /// The outline of a part that was found last, as far as that was not moved, and whether its
+    /// place was lost; `None` if what it is made of has changed.
+    pub(super) fn known_outline(
+        &self,
+        part: &Part,
+        source: &OutlineKey,
+    ) -> Option<(Arc<Outline>, bool)> {
+        let made = self
+            .parts
+            .cache
+            .known(&part.id)
+            .filter(|made| apart(made.part.matrix).0 == apart(part.matrix).0)?;
         let is_same = made.source.as_ref().is_some_and(|known| known.is_same(source));
         made.outline.filter(|_| is_same).map(|outline| (outline, made.is_lost))
     }
+
     /// The outline of a part that was found last and not moved since, whatever it was made of.
     pub(super) fn last_outline(&self, part: &Part) -> Option<Arc<Outline>> {
-        let made = self.parts.cache.known(&part.id).filter(|made| apart(made.part.matrix).0 == apart(part.matrix).0)?;
+        let made = self
+            .parts
+            .cache
+            .known(&part.id)
+            .filter(|made| apart(made.part.matrix).0 == apart(part.matrix).0)?;
         made.outline
     }
-    /// Where the form of a part lies that was made last, if neither the part nor what lies on it was changed since.
+
+    /// Where the form of a part lies that was made last, if neither the part nor what lies on it
+    /// was changed since.
     pub(super) fn made_area(&self, part: &Arc<Part>) -> Option<Arc<FormArea>> {
         let made = self.parts.cache.known(&part.id)?;
-        (Arc::ptr_eq(&made.part, part) && same_list(&made.upon, &self.upon(part))).then_some(made.area)
+        (Arc::ptr_eq(&made.part, part) && same_list(&made.upon, &self.upon(part)))
+            .then_some(made.area)
     }
-    /// Where the form of a part lies that was made last, whatever changed in the part since, and the part as it was
-    /// then.
+
+    /// Where the form of a part lies that was made last, whatever changed in the part since, and
+    /// the part as it was then.
     pub(super) fn last_area(&self, id: &str) -> Option<(Arc<Part>, Arc<FormArea>)> {
         self.parts.cache.known(id).map(|made| (made.part, made.area))
     }
+
     /// The form of a part as it was made last; made again if it was not kept.
     pub fn form_of(&self, id: &str) -> Option<Arc<Form>> {
         let made = self.parts.cache.known(id)?;

@@ -10,8 +10,8 @@ use crate::shape::{Form, Outline, OutlineRim, Roundness, bevel, sweep};
 use std::sync::Arc;
 
 impl Document {
-    /// A part made again, except known fields of its body; without what lies on it, not leaned and not yet moved by
-    /// whole px.
+    /// A part made again, except known fields of its body; without what lies on it, not leaned and
+    /// not yet moved by whole px.
     pub(super) fn made(
         &self,
         part: &Part,
@@ -21,7 +21,12 @@ impl Document {
         known: Option<Arc<SolvedOutline>>,
     ) -> Option<(Arc<SolvedOutline>, Form)> {
         let most_px = self.most_px();
-        let bare = |outline: Arc<Outline>| SolvedOutline { outline, joined: None, pillow: None, tube: None };
+        let bare = |outline: Arc<Outline>| SolvedOutline {
+            outline,
+            joined: None,
+            pillow: None,
+            tube: None,
+        };
         let silhouette = |puff: f32| Roundness { puff, rim_deg: 90.0 };
         let (body, form) = match &part.kind {
             PartKind::Inflate { inflation, .. } => {
@@ -38,15 +43,27 @@ impl Document {
                 let outline = own?;
                 let axis = axis.map(|axis| axis.map(|p| still.transform_point2(p)));
                 let squares = sweep::turned(&outline, axis);
-                let form = Form::of_squares(&outline, &squares, &OutlineRim::silhouette(&outline), silhouette(*puff));
+                let form = Form::of_squares(
+                    &outline,
+                    &squares,
+                    &OutlineRim::silhouette(&outline),
+                    silhouette(*puff),
+                );
                 (bare(outline), form)
             }
             PartKind::Sweep { balls, puff } => {
                 let length = still.matrix2.determinant().abs().sqrt();
-                let through =
-                    balls.iter().map(|b| sweep::Ball { at: still.transform_point2(b.at), radius: b.radius * length });
+                let through = balls.iter().map(|b| sweep::Ball {
+                    at: still.transform_point2(b.at),
+                    radius: b.radius * length,
+                });
                 let (outline, squares) = sweep::swept(&through.collect::<Vec<_>>(), most_px)?;
-                let form = Form::of_squares(&outline, &squares, &OutlineRim::silhouette(&outline), silhouette(*puff));
+                let form = Form::of_squares(
+                    &outline,
+                    &squares,
+                    &OutlineRim::silhouette(&outline),
+                    silhouette(*puff),
+                );
                 (bare(Arc::new(outline)), form)
             }
             PartKind::Primitive(body) => {
@@ -71,7 +88,10 @@ impl Document {
                 let form = body::of_maps(maps, still, most_px)?;
                 (bare(Arc::new(Outline::new(form.corner, &form.coverage)?)), form)
             }
-            PartKind::Touches { .. } | PartKind::Sculpt { .. } | PartKind::Relief { .. } | PartKind::Lines { .. } => {
+            PartKind::Touches { .. }
+            | PartKind::Sculpt { .. }
+            | PartKind::Relief { .. }
+            | PartKind::Lines { .. } => {
                 return None;
             }
         };

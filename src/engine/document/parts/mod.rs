@@ -1,18 +1,19 @@
-//! Parts: the shape of a drawing as a list of values, the farthest first, from which the document's surface follows.
-//! Floor 4. Not here: what each kind of part computes (`shape`).
+//! Parts: the shape of a drawing as a list of values, the farthest first, from which the document's
+//! surface follows. Floor 4. Not here: what each kind of part computes (`shape`).
 //!
-//! `part` is one of them and `edit` changes the list. `derive` makes the surface again where it changed; it uses
-//! `standing` for outlines in their places, `make` and `body` for one form, `upon` for what is on a form, `whole` for
-//! all together, `made` for what is kept, and `unchanged` to compare versions. `inputs` says whether a surface is
-//! still the right one, `weight` what memory it takes. `outlines` finds outlines, `drawn` what layers draw for them;
-//! `drawing` says what can be made of a layer, and `flats` makes parts of one in flat colours, for which `order` finds
-//! who lies in front; `cut` makes a drawing go with its parts. `forms` has the forms that were made, `scale` changes
-//! the canvas, and `fit` holds parts to what files can hold.
+//! `part` is one of them and `edit` changes the list. `derive` makes the surface again where it
+//! changed; it uses `standing` for outlines in their places, `make` and `body` for one form, `upon`
+//! for what is on a form, `whole` for all together, `made` for what is kept, and `unchanged` to
+//! compare versions. `inputs` says whether a surface is still the right one, `weight` what memory
+//! it takes. `outlines` finds outlines, `drawn` what layers draw for them; `drawing` says what can
+//! be made of a layer, and `flats` makes parts of one in flat colours, for which `order` finds who
+//! lies in front; `cut` makes a drawing go with its parts. `forms` has the forms that were made,
+//! `scale` changes the canvas, and `fit` holds parts to what files can hold.
 //!
-//! `shares` says what each pixel of flats is of: `picture` reads its areas and mixed pixels, `palette` finds its
-//! colours, `ink` takes lines out, and `complete` gives what is left to the areas beside it. `places` tells the areas
-//! of one colour apart, `beneath` continues them under nearer ones, `known` keeps what was found, and `areas` has walks
-//! over pixels.
+//! `shares` says what each pixel of flats is of: `picture` reads its areas and mixed pixels,
+//! `palette` finds its colours, `ink` takes lines out, and `complete` gives what is left to the
+//! areas beside it. `places` tells the areas of one colour apart, `beneath` continues them under
+//! nearer ones, `known` keeps what was found, and `areas` has walks over pixels.
 
 mod areas;
 mod beneath;
@@ -66,9 +67,11 @@ use std::sync::Arc;
 pub struct Parts {
     /// The farthest first.
     pub list: Vec<Arc<Part>>,
-    /// The surface of the document's maps, beneath all parts; while there are none it is the document's own.
+    /// The surface of the document's maps, beneath all parts; while there are none it is the
+    /// document's own.
     pub maps: Option<Arc<Surface>>,
-    /// The parts, by their ids, whose place no longer has their colour, so that they take the nearest area of it.
+    /// The parts, by their ids, whose place no longer has their colour, so that they take the
+    /// nearest area of it.
     pub lost: Vec<String>,
     /// The document's surface is still that of the parts as they were, while the user drags them.
     is_ahead: bool,
@@ -86,23 +89,29 @@ impl Parts {
     pub fn new(list: Vec<Part>) -> Self {
         Self { list: list.into_iter().map(Arc::new).collect(), ..Self::default() }
     }
+
     /// No parts, but what is kept for speed.
     pub(in crate::document) fn emptied(&self) -> Self {
         Self { cache: self.cache.clone(), ..Self::default() }
     }
+
     /// No parts yet, for a document of another size than one whose surface is given.
     pub(in crate::document) fn pointing_on(points: Option<Arc<Surface>>) -> Self {
         Self { points, ..Self::default() }
     }
-    /// No parts, for documents that are shown for a moment while the user drags: what is made may be slightly off.
+
+    /// No parts, for documents that are shown for a moment while the user drags: what is made may
+    /// be slightly off.
     pub(in crate::document) fn for_drafts() -> Self {
         let mut parts = Self::default();
         parts.cache.is_draft = true;
         parts
     }
+
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
+
     /// The part that a part finally changes, or itself; `None` if there is no such part.
     pub fn body_of(&self, id: &str) -> Option<&Arc<Part>> {
         let mut part = self.part(id)?;
@@ -113,6 +122,7 @@ impl Parts {
         }
         Some(part)
     }
+
     pub fn part(&self, id: &str) -> Option<&Arc<Part>> {
         self.list.iter().find(|part| part.id == id)
     }
@@ -174,8 +184,8 @@ pub enum PartKind {
         ink: OutlineSource,
         lines: Lines,
     },
-    /// Several shadings of one drawing by hand, each with the light elsewhere, within an outline or wherever they hold
-    /// anything.
+    /// Several shadings of one drawing by hand, each with the light elsewhere, within an outline or
+    /// wherever they hold anything.
     Profiles {
         outline: Option<OutlineSource>,
         shadings: Vec<ProfilePicture>,
@@ -204,8 +214,8 @@ pub struct ProfilePicture {
     pub light: Vec3,
 }
 
-/// Maps as a part, with the surface that they are. Its size is that of their frame: the canvas on which they were put,
-/// whatever became of that since.
+/// Maps as a part, with the surface that they are. Its size is that of their frame: the canvas on
+/// which they were put, whatever became of that since.
 #[derive(Clone)]
 pub struct PartMaps {
     /// With the matrix that takes them to their frame, if they are not fitted to it.
@@ -265,7 +275,8 @@ pub enum OutlineSource {
     Layer { layer: String, color: Option<FlatColor> },
     /// A picture of coverage; its upper left corner is the frame's.
     File(CoverageFile),
-    /// A selection kept by name. One that follows the surface is found on the document's maps, without parts.
+    /// A selection kept by name. One that follows the surface is found on the document's maps,
+    /// without parts.
     Selection(String),
     /// A closed polygon, canvas px.
     Path(Vec<Vec2>),
@@ -277,8 +288,8 @@ pub enum OutlineSource {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlatColor {
     pub color: Color,
-    /// A point of the area that is meant, px of the part's frame, which is the canvas before the part's matrix. If the
-    /// colour is not there, the nearest area of it is meant.
+    /// A point of the area that is meant, px of the part's frame, which is the canvas before the
+    /// part's matrix. If the colour is not there, the nearest area of it is meant.
     pub at: Option<Vec2>,
 }
 

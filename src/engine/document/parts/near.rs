@@ -12,7 +12,8 @@ pub fn away(a: [u8; 4], b: [u8; 4]) -> u8 {
     a.iter().zip(b).map(|(a, b)| a.abs_diff(b)).max().unwrap_or(0)
 }
 
-/// How far a pixel lies from one colour toward another, 255 at the other; 0 if it is off the line between them.
+/// How far a pixel lies from one colour toward another, 255 at the other; 0 if it is off the line
+/// between them.
 pub fn share_on_the_way(pixel: [u8; 4], from: [u8; 4], to: [u8; 4]) -> u8 {
     let way: [f32; 4] = std::array::from_fn(|c| f32::from(to[c]) - f32::from(from[c]));
     let gone: [f32; 4] = std::array::from_fn(|c| f32::from(pixel[c]) - f32::from(from[c]));

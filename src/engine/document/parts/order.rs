@@ -1,4 +1,5 @@
-//! The order of areas by depth, from who interrupts whose outline. Floor 4. Not here: which areas there are (`flats`).
+//! The order of areas by depth, from who interrupts whose outline. Floor 4. Not here: which areas
+//! there are (`flats`).
 
 use super::palette::NOTHING;
 use crate::math::Size;
@@ -6,7 +7,8 @@ use crate::raster::Plane;
 
 /// How far around a common border areas are compared, as a share of the longer side.
 const LOOKED_AROUND: f32 = 0.02;
-/// Areas are compared in a picture whose longer side is about this, px: the order is one of large shapes.
+/// Areas are compared in a picture whose longer side is about this, px: the order is one of large
+/// shapes.
 const COMPARED_PX: f32 = 1024.0;
 /// A border that is a smaller share of all that an area borders on is left over from mixed pixels.
 const LEAST_BORDER: f32 = 0.05;
@@ -15,9 +17,10 @@ const LEAST_BORDER: f32 = 0.05;
 ///
 /// `labels`: the number of the area of each pixel, [`NOTHING`] or more where there is none.
 ///
-/// An area that is all around another, so that nothing leads from that to the outside but over it, lies behind it. What
-/// each pixel of another common border says about two areas is added up (`in_front_by`). The clearest decisions count
-/// most: the next farthest is always the area that is least in front of the remaining ones.
+/// An area that is all around another, so that nothing leads from that to the outside but over it,
+/// lies behind it. What each pixel of another common border says about two areas is added up
+/// (`in_front_by`). The clearest decisions count most: the next farthest is always the area that is
+/// least in front of the remaining ones.
 pub fn farthest_first(labels: &Plane<u16>, n: usize) -> Vec<usize> {
     let labels = smaller(labels);
     let radius = (LOOKED_AROUND * labels.size().longer_side()).max(2.0) as usize;
@@ -28,8 +31,9 @@ pub fn farthest_first(labels: &Plane<u16>, n: usize) -> Vec<usize> {
         in_front[*area][*within] = *border_px as f64;
         in_front[*within][*area] = -(*border_px as f64);
     }
-    let is_known =
-        |a: usize, b: usize| islands.iter().any(|island| [(a, b), (b, a)].contains(&(island.area, island.within)));
+    let is_known = |a: usize, b: usize| {
+        islands.iter().any(|island| [(a, b), (b, a)].contains(&(island.area, island.within)))
+    };
     for site in sites(&labels, radius, &islands, n) {
         let [a, b] = site.areas;
         if !is_known(a, b) {
@@ -43,7 +47,8 @@ pub fn farthest_first(labels: &Plane<u16>, n: usize) -> Vec<usize> {
     while !left.is_empty() {
         // What lies over an area says nothing about what the area lies over.
         let over = |a: usize| left.iter().map(|b| in_front[a][*b].max(0.0)).sum::<f64>();
-        let first = (0..left.len()).min_by(|a, b| over(left[*a]).total_cmp(&over(left[*b]))).unwrap_or(0);
+        let first =
+            (0..left.len()).min_by(|a, b| over(left[*a]).total_cmp(&over(left[*b]))).unwrap_or(0);
         order.push(left.remove(first));
     }
     order
@@ -62,7 +67,9 @@ fn smaller(labels: &Plane<u16>) -> Plane<u16> {
 fn borders(labels: &Plane<u16>, n: usize) -> Vec<Vec<usize>> {
     let mut borders = vec![vec![0usize; n + 1]; n + 1];
     let of = |x: i32, y: i32| labels.get(x, y).map_or(n, |label| usize::from(label).min(n));
-    for (x, y) in (-1..labels.height() as i32).flat_map(|y| (-1..labels.width() as i32).map(move |x| (x, y))) {
+    for (x, y) in
+        (-1..labels.height() as i32).flat_map(|y| (-1..labels.width() as i32).map(move |x| (x, y)))
+    {
         for (x1, y1) in [(x + 1, y), (x, y + 1)] {
             let (a, b) = (of(x, y), of(x1, y1));
             if a != b {
@@ -138,10 +145,12 @@ fn sites(labels: &Plane<u16>, radius: usize, islands: &[Island], n: usize) -> Ve
             continue;
         }
         let is_own = |label: u16| {
-            usize::from(label) == area || islands.iter().any(|i| i.within == area && i.area == usize::from(label))
+            usize::from(label) == area
+                || islands.iter().any(|i| i.within == area && i.area == usize::from(label))
         };
         let own: Vec<bool> = (0..n as u16).map(is_own).collect();
-        let around = share_around(labels, radius, |label| own.get(usize::from(label)) == Some(&true));
+        let around =
+            share_around(labels, radius, |label| own.get(usize::from(label)) == Some(&true));
         for site in &mut sites {
             for side in (0..2).filter(|side| site.areas[*side] == area) {
                 // Measured on the border itself: each of the two pixels lies on one side of it.
@@ -153,12 +162,12 @@ fn sites(labels: &Plane<u16>, radius: usize, islands: &[Island], n: usize) -> Ve
     sites
 }
 
-/// How clearly an area lies in front of another at a pixel of their border, from their shares of the neighbourhood;
-/// below 0 it lies behind.
+/// How clearly an area lies in front of another at a pixel of their border, from their shares of
+/// the neighbourhood; below 0 it lies behind.
 ///
 /// * With only the two, the one whose side bulges lies in front: it has the smaller share.
-/// * Where a third meets them, the outline of the one in front continues, so that it has half of the neighbourhood; the
-///   others end at it. If that is the third, nothing is known about the two.
+/// * Where a third meets them, the outline of the one in front continues, so that it has half of
+///   the neighbourhood; the others end at it. If that is the third, nothing is known about the two.
 fn in_front_by(own: f32, other: f32) -> f32 {
     const ALONE: f32 = 0.98;
     const HALF: std::ops::RangeInclusive<f32> = 0.4..=0.6;
@@ -171,18 +180,24 @@ fn in_front_by(own: f32, other: f32) -> f32 {
     }
 }
 
-/// The share of an area in a square around each pixel, `[0, 1]`: running sums along rows, then columns.
+/// The share of an area in a square around each pixel, `[0, 1]`: running sums along rows, then
+/// columns.
 fn share_around(labels: &Plane<u16>, radius: usize, is_own: impl Fn(u16) -> bool) -> Plane<f32> {
     let (w, h) = (labels.width(), labels.height());
     let window = |values: &dyn Fn(usize) -> f32, n: usize| -> Vec<f32> {
         let mut sums = vec![0.0f64; n + 1];
         (0..n).for_each(|i| sums[i + 1] = sums[i] + f64::from(values(i)));
         let side = (2 * radius + 1) as f64;
-        (0..n).map(|i| ((sums[(i + radius + 1).min(n)] - sums[i.saturating_sub(radius)]) / side) as f32).collect()
+        (0..n)
+            .map(|i| {
+                ((sums[(i + radius + 1).min(n)] - sums[i.saturating_sub(radius)]) / side) as f32
+            })
+            .collect()
     };
     let mut rows = Plane::filled(labels.size(), 0.0f32);
     for y in 0..h {
-        rows.row_mut(y).copy_from_slice(&window(&|x| f32::from(u8::from(is_own(labels.at(x, y)))), w));
+        rows.row_mut(y)
+            .copy_from_slice(&window(&|x| f32::from(u8::from(is_own(labels.at(x, y)))), w));
     }
     let mut out = Plane::filled(labels.size(), 0.0f32);
     for x in 0..w {
@@ -200,7 +215,8 @@ mod tests {
     fn seen(discs: &[([f32; 2], f32)], scale: f32) -> Plane<u16> {
         let size = Size::new((320.0 * scale) as u32, (400.0 * scale) as u32);
         let holds = |disc: &([f32; 2], f32), x: usize, y: usize| {
-            vec2(x as f32 + 0.5, y as f32 + 0.5).distance(vec2(disc.0[0], disc.0[1]) * scale) < disc.1 * scale
+            vec2(x as f32 + 0.5, y as f32 + 0.5).distance(vec2(disc.0[0], disc.0[1]) * scale)
+                < disc.1 * scale
         };
         let front = |x, y| discs.iter().rposition(|disc| holds(disc, x, y));
         Plane::from_fn(size, |x, y| front(x, y).map_or(NOTHING, |i| i as u16))
@@ -208,18 +224,37 @@ mod tests {
 
     #[test]
     fn who_interrupts_the_outline_of_another_lies_in_front() {
-        let (head, body, hand) = (([160.0, 120.0], 80.0), ([160.0, 260.0], 110.0), ([250.0, 200.0], 30.0));
+        let (head, body, hand) =
+            (([160.0, 120.0], 80.0), ([160.0, 260.0], 110.0), ([250.0, 200.0], 30.0));
         for scale in [0.5, 1.0, 2.0, 8.0] {
-            assert_eq!(farthest_first(&seen(&[body, head], scale), 2), [0, 1], "the head over the body, {scale}");
-            assert_eq!(farthest_first(&seen(&[head, body], scale), 2), [0, 1], "the body over the head, {scale}");
-            assert_eq!(farthest_first(&seen(&[body, head, hand], scale), 3), [0, 1, 2], "a hand over both, {scale}");
-            assert_eq!(farthest_first(&seen(&[head, body, hand], scale), 3), [0, 1, 2], "and the other way, {scale}");
+            assert_eq!(
+                farthest_first(&seen(&[body, head], scale), 2),
+                [0, 1],
+                "the head over the body, {scale}"
+            );
+            assert_eq!(
+                farthest_first(&seen(&[head, body], scale), 2),
+                [0, 1],
+                "the body over the head, {scale}"
+            );
+            assert_eq!(
+                farthest_first(&seen(&[body, head, hand], scale), 3),
+                [0, 1, 2],
+                "a hand over both, {scale}"
+            );
+            assert_eq!(
+                farthest_first(&seen(&[head, body, hand], scale), 3),
+                [0, 1, 2],
+                "and the other way, {scale}"
+            );
         }
     }
+
     #[test]
     fn what_is_only_reached_over_another_area_lies_on_it() {
         // The pupil touches the eye and the face, the eye the pupil and the face.
-        let (face, eye, pupil) = (([160.0, 200.0], 120.0), ([120.0, 160.0], 40.0), ([150.0, 170.0], 24.0));
+        let (face, eye, pupil) =
+            (([160.0, 200.0], 120.0), ([120.0, 160.0], 40.0), ([150.0, 170.0], 24.0));
         assert_eq!(farthest_first(&seen(&[face, eye, pupil], 1.0), 3), [0, 1, 2]);
         let on: Vec<(usize, usize)> = islands(&borders(&seen(&[face, eye, pupil], 1.0), 3), 3)
             .iter()

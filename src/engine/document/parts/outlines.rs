@@ -37,8 +37,8 @@ pub struct FlatArea {
     flat: FlatColor,
     /// The colours of the parts that lie over it, beneath whose edges it continues.
     over: Vec<Color>,
-    /// The colours of all nearer parts of the same layer, the farthest first, moved and hidden ones too: it continues
-    /// beneath what they cover inside of it.
+    /// The colours of all nearer parts of the same layer, the farthest first, moved and hidden ones
+    /// too: it continues beneath what they cover inside of it.
     nearer: Vec<Color>,
     /// The other colours of parts of that layer.
     farther: Vec<Color>,
@@ -47,13 +47,15 @@ pub struct FlatArea {
 impl FlatArea {
     /// The colours of all parts of the layer, in an order that is the same for each of them.
     fn asked(&self) -> Vec<Color> {
-        let mut all: Vec<Color> = [&self.nearer[..], &self.farther[..], &[self.flat.color]].concat();
+        let mut all: Vec<Color> =
+            [&self.nearer[..], &self.farther[..], &[self.flat.color]].concat();
         all.sort_unstable_by_key(|color| [color.r, color.g, color.b, color.a]);
         all.dedup();
         all
     }
-    /// The share of each pixel that it takes, and whether its place has its colour no longer, so that this is the
-    /// nearest one; `corner`: of the flats. `None` where the colour is nowhere.
+
+    /// The share of each pixel that it takes, and whether its place has its colour no longer, so
+    /// that this is the nearest one; `corner`: of the flats. `None` where the colour is nowhere.
     fn share(&self, known: &KnownFlats, corner: Vec2) -> Option<(Plane<u8>, bool)> {
         let flats = &known.flats;
         let mut share = flats.share_of(self.flat.color, &self.over);
@@ -75,7 +77,9 @@ impl Document {
     /// What a part takes of the colour of a layer, among the other parts of the same layer.
     fn area_of(&self, part: &Part, flat: FlatColor) -> FlatArea {
         let mut area = FlatArea { flat, over: Vec::new(), nearer: Vec::new(), farther: Vec::new() };
-        let Some(OutlineSource::Layer { layer: own, .. }) = part.outline().filter(|_| part.on().is_none()) else {
+        let Some(OutlineSource::Layer { layer: own, .. }) =
+            part.outline().filter(|_| part.on().is_none())
+        else {
             return area;
         };
         // Several parts may take one colour in different places.
@@ -110,10 +114,12 @@ impl Document {
 }
 
 impl Document {
-    /// The places of the colour that a part takes of a layer, wherever it is; `None` for any other part, and for one
-    /// that has a place already.
+    /// The places of the colour that a part takes of a layer, wherever it is; `None` for any other
+    /// part, and for one that has a place already.
     pub fn places_of(&self, part: &Part) -> Option<SplitPlaces> {
-        let OutlineSource::Layer { layer, color: Some(FlatColor { color, at: None }) } = part.outline()? else {
+        let OutlineSource::Layer { layer, color: Some(FlatColor { color, at: None }) } =
+            part.outline()?
+        else {
             return None;
         };
         let layer = self.layer_named(layer)?;
@@ -122,24 +128,30 @@ impl Document {
         let area = self.area_of(part, (*color).into());
         Flats::of(&tiles, rect, &area.asked()).map(|flats| SplitPlaces::of(&flats, *color, rect))
     }
-    /// What the user is told when parts take another area than the one that was meant, which no longer has their
-    /// colour; `before`: of those parts nothing is said again.
+
+    /// What the user is told when parts take another area than the one that was meant, which no
+    /// longer has their colour; `before`: of those parts nothing is said again.
     pub fn note_of_lost(&self, before: Option<&Document>) -> Option<String> {
         let known = |id: &String| before.is_some_and(|before| before.parts.lost.contains(id));
         let part = |id: &String| self.parts.part(id).map(|part| format!("“{}”", part.name));
-        let names: Vec<String> = self.parts.lost.iter().filter(|id| !known(id)).filter_map(part).collect();
+        let names: Vec<String> =
+            self.parts.lost.iter().filter(|id| !known(id)).filter_map(part).collect();
         let is = if names.len() == 1 {
             "takes the area of its colour that is"
         } else {
             "take the areas of their colours that are"
         };
-        (!names.is_empty())
-            .then(|| format!("{} {is} nearest: the place it had has another colour now.", names.join(", ")))
+        (!names.is_empty()).then(|| {
+            format!("{} {is} nearest: the place it had has another colour now.", names.join(", "))
+        })
     }
-    /// With the places of colours in layers that were moved since `before`, paint unchanged, moved as well.
+
+    /// With the places of colours in layers that were moved since `before`, paint unchanged, moved
+    /// as well.
     pub(in crate::document) fn with_places_carried(self, before: &Document) -> Document {
         let carried = |part: &Arc<Part>| {
-            let Some(OutlineSource::Layer { layer, color: Some(FlatColor { at: Some(at), .. }) }) = part.outline()
+            let Some(OutlineSource::Layer { layer, color: Some(FlatColor { at: Some(at), .. }) }) =
+                part.outline()
             else {
                 return None;
             };
@@ -157,22 +169,29 @@ impl Document {
         if self.parts.list.iter().all(|part| part.place().is_none()) {
             return self;
         }
-        let list = self.parts.list.iter().map(|part| carried(part).unwrap_or_else(|| part.clone())).collect();
+        let list = self
+            .parts
+            .list
+            .iter()
+            .map(|part| carried(part).unwrap_or_else(|| part.clone()))
+            .collect();
         Document { parts: Arc::new(Parts { list, ..Parts::clone(&self.parts) }), ..self }
     }
 }
 
 impl OutlineKey {
-    /// What a part is made of, if it is made of anything; outer `None` if what it names does not exist.
+    /// What a part is made of, if it is made of anything; outer `None` if what it names does not
+    /// exist.
     pub fn of_part(document: &Document, part: &Part) -> Option<Option<Self>> {
         match (&part.kind, part.outline()) {
             (_, Some(outline)) => Self::of(document, part, outline).map(Some),
-            (PartKind::Profiles { shadings, .. }, None) => {
-                Some(Some(Self::Told(shadings.iter().map(|shading| shading.picture.coverage.clone()).collect())))
-            }
+            (PartKind::Profiles { shadings, .. }, None) => Some(Some(Self::Told(
+                shadings.iter().map(|shading| shading.picture.coverage.clone()).collect(),
+            ))),
             (_, None) => Some(None),
         }
     }
+
     fn of(document: &Document, part: &Part, source: &OutlineSource) -> Option<Self> {
         Some(match source {
             OutlineSource::Layer { layer, color } => {
@@ -189,9 +208,12 @@ impl OutlineKey {
                 }
             }
             OutlineSource::Path(_) => Self::Path(source.clone()),
-            OutlineSource::Object(object) => Self::Object(document.maps_surface()?.clone(), *object),
+            OutlineSource::Object(object) => {
+                Self::Object(document.maps_surface()?.clone(), *object)
+            }
         })
     }
+
     pub fn is_same(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Layer(a, x), Self::Layer(b, y)) => x == y && a.is_same(b),
@@ -202,60 +224,67 @@ impl OutlineKey {
                 a == b && same
             }
             (Self::Path(a), Self::Path(b)) => a == b,
-            (Self::Told(a), Self::Told(b)) => a.len() == b.len() && a.iter().zip(b).all(|(a, b)| Arc::ptr_eq(a, b)),
+            (Self::Told(a), Self::Told(b)) => {
+                a.len() == b.len() && a.iter().zip(b).all(|(a, b)| Arc::ptr_eq(a, b))
+            }
             (Self::Object(a, x), Self::Object(b, y)) => Arc::ptr_eq(a, b) && x == y,
             _ => false,
         }
     }
+
     /// The outline; `None` where nothing is covered.
     pub fn outline(&self, document: &Document, most_px: usize) -> Option<Outline> {
         self.placed_outline(document, most_px).map(|(outline, _)| outline)
     }
+
     /// The same, and whether it is of another area because its place no longer has its colour.
     pub fn placed_outline(&self, document: &Document, most_px: usize) -> Option<(Outline, bool)> {
         let mut is_lost = false;
-        let outline =
-            match self {
-                Self::Layer(drawn, color) => {
-                    let tiles = drawn.pixels(document)?;
-                    let rect = tiles.bounds();
-                    if rect.is_empty() || rect.width().checked_mul(rect.height()).is_none_or(|px| px > most_px) {
-                        return None;
+        let outline = match self {
+            Self::Layer(drawn, color) => {
+                let tiles = drawn.pixels(document)?;
+                let rect = tiles.bounds();
+                if rect.is_empty()
+                    || rect.width().checked_mul(rect.height()).is_none_or(|px| px > most_px)
+                {
+                    return None;
+                }
+                let coverage = match color {
+                    None => alpha(&tiles, rect),
+                    Some(area) => {
+                        let corner = vec2(rect.x0 as f32, rect.y0 as f32);
+                        let flats = document.parts.flats_of(&tiles, &area.asked())?;
+                        let (share, is_beside) = area.share(&flats, corner)?;
+                        is_lost = is_beside;
+                        share
                     }
-                    let coverage = match color {
-                        None => alpha(&tiles, rect),
-                        Some(area) => {
-                            let corner = vec2(rect.x0 as f32, rect.y0 as f32);
-                            let flats = document.parts.flats_of(&tiles, &area.asked())?;
-                            let (share, is_beside) = area.share(&flats, corner)?;
-                            is_lost = is_beside;
-                            share
-                        }
-                    };
-                    Outline::new((rect.x0, rect.y0), &coverage)
-                }
-                Self::Coverage(coverage) => Outline::new((0, 0), coverage),
-                Self::Selection(selection) => covered(&selection.coverage, most_px),
-                Self::Region(region, surface) => {
-                    let scene = Scene { size: document.size, surface: surface.clone() };
-                    covered(&Selection::of_region(*region, &scene).coverage, most_px)
-                }
-                Self::Told(pictures) => {
-                    let size = pictures.first()?.size();
-                    let told = |x: usize, y: usize| pictures.iter().any(|p| p.get(x as i32, y as i32).unwrap_or(0) > 0);
-                    Outline::new((0, 0), &Plane::from_fn(size, |x, y| if told(x, y) { 255 } else { 0 }))
-                }
-                Self::Path(OutlineSource::Path(points)) => Outline::of_path(points, most_px),
-                Self::Path(_) => None,
-                Self::Object(surface, object) => {
-                    let objects = surface.objects();
-                    let labels = objects.labels();
-                    let coverage = Plane::from_fn(surface.size(), |x, y| {
-                        if labels.at(x, y) == *object { surface.coverage(x, y) } else { 0 }
-                    });
-                    Outline::new((0, 0), &coverage)
-                }
-            };
+                };
+                Outline::new((rect.x0, rect.y0), &coverage)
+            }
+            Self::Coverage(coverage) => Outline::new((0, 0), coverage),
+            Self::Selection(selection) => covered(&selection.coverage, most_px),
+            Self::Region(region, surface) => {
+                let scene = Scene { size: document.size, surface: surface.clone() };
+                covered(&Selection::of_region(*region, &scene).coverage, most_px)
+            }
+            Self::Told(pictures) => {
+                let size = pictures.first()?.size();
+                let told = |x: usize, y: usize| {
+                    pictures.iter().any(|p| p.get(x as i32, y as i32).unwrap_or(0) > 0)
+                };
+                Outline::new((0, 0), &Plane::from_fn(size, |x, y| if told(x, y) { 255 } else { 0 }))
+            }
+            Self::Path(OutlineSource::Path(points)) => Outline::of_path(points, most_px),
+            Self::Path(_) => None,
+            Self::Object(surface, object) => {
+                let objects = surface.objects();
+                let labels = objects.labels();
+                let coverage = Plane::from_fn(surface.size(), |x, y| {
+                    if labels.at(x, y) == *object { surface.coverage(x, y) } else { 0 }
+                });
+                Outline::new((0, 0), &coverage)
+            }
+        };
         Some((outline?, is_lost))
     }
 }

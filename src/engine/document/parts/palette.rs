@@ -1,5 +1,5 @@
-//! The colours of flats: one is all that an area shows, also where it is shaded, as long as nothing in it is an edge.
-//! Floor 4. Not here: which share of a pixel a colour takes (`shares`).
+//! The colours of flats: one is all that an area shows, also where it is shaded, as long as nothing
+//! in it is an edge. Floor 4. Not here: which share of a pixel a colour takes (`shares`).
 
 use super::areas::LEAST_SEEN;
 use super::near::{away, is_near};
@@ -10,17 +10,21 @@ use std::collections::{BTreeMap, HashMap};
 
 /// The most shades of which colours are made.
 const MOST_SHADES: usize = 256;
-/// Neighbouring pixels that differ by no more, in any channel of 8 bits, are shaded; others are an edge.
+/// Neighbouring pixels that differ by no more, in any channel of 8 bits, are shaded; others are an
+/// edge.
 const SOFT_STEP: u8 = 4;
 /// Two shades lie on the two sides of so many pixels, or of one edge, px.
 const ACROSS: usize = 3;
 /// The share of a common border without an edge, from which two shades are one colour.
 const LEAST_SOFT: f32 = 0.3;
-/// Shades no farther apart than this, in any channel of 8 bits, are one colour if they lie mingled: noise.
+/// Shades no farther apart than this, in any channel of 8 bits, are one colour if they lie mingled:
+/// noise.
 const MINGLED: u8 = 32;
-/// The least length of their border, px for each pixel of the rarer one, from which two shades lie mingled.
+/// The least length of their border, px for each pixel of the rarer one, from which two shades lie
+/// mingled.
 const LEAST_MINGLED: f32 = 0.5;
-/// The share of a shade's pixels that have it all around, from which it covers areas and is no noise.
+/// The share of a shade's pixels that have it all around, from which it covers areas and is no
+/// noise.
 const LEAST_SOLID: f32 = 0.05;
 
 /// In a plane of colours: none is known.
@@ -48,14 +52,16 @@ pub struct Palette {
 }
 
 impl Palette {
-    /// `asked`: colours that are looked for however small their areas are, and never joined with each other.
+    /// `asked`: colours that are looked for however small their areas are, and never joined with
+    /// each other.
     pub fn of(picture: &FlatPicture, asked: &[Pixel]) -> Self {
         let FlatPicture { pixels, is_flat, .. } = picture;
         let shades = shades(pixels, is_flat, asked);
         let of = shade_of_each(pixels, is_flat, &shades);
         let solid = solid(&of, shades.len());
         let joined = joined(&borders(pixels, &of), &shades, &solid, asked.len());
-        // Shades of one colour have the number of the first of them: it was asked for, or is the most frequent.
+        // Shades of one colour have the number of the first of them: it was asked for, or is the
+        // most frequent.
         let mut firsts: Vec<usize> = joined.clone();
         firsts.sort_unstable();
         firsts.dedup();
@@ -66,7 +72,9 @@ impl Palette {
         };
         let all: Vec<PaletteColor> = firsts.iter().map(|first| color(*first)).collect();
         let mut order: Vec<usize> = (0..all.len()).collect();
-        order.sort_by_key(|i| (!all[*i].is_asked, if all[*i].is_asked { 0 } else { usize::MAX - all[*i].pixels }, *i));
+        order.sort_by_key(|i| {
+            (!all[*i].is_asked, if all[*i].is_asked { 0 } else { usize::MAX - all[*i].pixels }, *i)
+        });
         let mut number = vec![NONE; shades.len()];
         for (place, i) in order.iter().enumerate() {
             let own = (0..shades.len()).filter(|shade| joined[*shade] == firsts[*i]);
@@ -80,7 +88,8 @@ impl Palette {
     }
 }
 
-/// The shades of flat areas with their pixels: those asked for, then the most frequent. Near ones are one.
+/// The shades of flat areas with their pixels: those asked for, then the most frequent. Near ones
+/// are one.
 fn shades(pixels: &Plane<Pixel>, is_flat: &Plane<bool>, asked: &[Pixel]) -> Vec<(Pixel, usize)> {
     let width = pixels.width().max(1);
     let rows = pixels.values().par_chunks(width).zip(is_flat.values().par_chunks(width));
@@ -114,7 +123,11 @@ pub fn nearest(colors: impl Iterator<Item = Pixel>, pixel: Pixel) -> Option<usiz
     near.min_by_key(|(i, color)| (away(*color, pixel), *i)).map(|(i, _)| i)
 }
 
-fn shade_of_each(pixels: &Plane<Pixel>, is_flat: &Plane<bool>, shades: &[(Pixel, usize)]) -> Plane<u16> {
+fn shade_of_each(
+    pixels: &Plane<Pixel>,
+    is_flat: &Plane<bool>,
+    shades: &[(Pixel, usize)],
+) -> Plane<u16> {
     let mut of = Plane::filled(pixels.size(), NONE);
     let width = pixels.width().max(1);
     let rows = of.values_mut().par_chunks_mut(width).zip(pixels.values().par_chunks(width));
@@ -133,15 +146,20 @@ fn shade_of_each(pixels: &Plane<Pixel>, is_flat: &Plane<bool>, shades: &[(Pixel,
     of
 }
 
-/// For each shade the first one that is the same colour: shading leads from one to the other, and no edge parts them,
-/// or it lies mingled with it.
+/// For each shade the first one that is the same colour: shading leads from one to the other, and
+/// no edge parts them, or it lies mingled with it.
 ///
 /// * `solid`: how many pixels of each shade have it all around.
 /// * `asked`: how many shades were asked for; they are never joined with each other.
-fn joined(borders: &ShadeBorders, shades: &[(Pixel, usize)], solid: &[usize], asked: usize) -> Vec<usize> {
-    let soft = borders
-        .iter()
-        .filter(|(_, border)| border.soft >= LEAST_SEEN && border.soft as f32 >= LEAST_SOFT * border.across as f32);
+fn joined(
+    borders: &ShadeBorders,
+    shades: &[(Pixel, usize)],
+    solid: &[usize],
+    asked: usize,
+) -> Vec<usize> {
+    let soft = borders.iter().filter(|(_, border)| {
+        border.soft >= LEAST_SEEN && border.soft as f32 >= LEAST_SOFT * border.across as f32
+    });
     let mut joins: Vec<(usize, usize, usize)> =
         soft.map(|((a, b), border)| (border.soft, usize::from(*a), usize::from(*b))).collect();
     // Noise has one colour only; two areas are not joined by what lies between them.
@@ -151,9 +169,14 @@ fn joined(borders: &ShadeBorders, shades: &[(Pixel, usize)], solid: &[usize], as
             let other = if a == shade { b } else { a };
             let is_mingled = away(shades[a].0, shades[b].0) <= MINGLED
                 && border.beside as f32 >= LEAST_MINGLED * shades[shade].1 as f32;
-            ((a == shade || b == shade) && other < shade && is_mingled).then_some((border.beside, other))
+            ((a == shade || b == shade) && other < shade && is_mingled)
+                .then_some((border.beside, other))
         });
-        joins.extend(beside.max_by_key(|(px, other)| (*px, usize::MAX - other)).map(|(px, other)| (px, other, shade)));
+        joins.extend(
+            beside
+                .max_by_key(|(px, other)| (*px, usize::MAX - other))
+                .map(|(px, other)| (px, other, shade)),
+        );
     }
     joins.sort_by(|x, y| y.0.cmp(&x.0).then((x.1, x.2).cmp(&(y.1, y.2))));
     let mut first: Vec<usize> = (0..shades.len()).collect();
@@ -186,8 +209,12 @@ type ShadeBorders = BTreeMap<(u16, u16), ShadeBorder>;
 fn borders(pixels: &Plane<Pixel>, of: &Plane<u16>) -> ShadeBorders {
     let add = |mut borders: ShadeBorders, y: usize| {
         for (x, (dx, dy)) in (0..of.width()).flat_map(|x| [(x, (1, 0)), (x, (0, 1))]) {
-            let shade = |k: usize| of.get((x + k * dx) as i32, (y + k * dy) as i32).filter(|shade| *shade != NONE);
-            let shades = |k: usize| shade(0).zip(shade(k)).filter(|(a, b)| a != b).map(|(a, b)| (a.min(b), a.max(b)));
+            let shade = |k: usize| {
+                of.get((x + k * dx) as i32, (y + k * dy) as i32).filter(|shade| *shade != NONE)
+            };
+            let shades = |k: usize| {
+                shade(0).zip(shade(k)).filter(|(a, b)| a != b).map(|(a, b)| (a.min(b), a.max(b)))
+            };
             if let Some(pair) = shades(1) {
                 borders.entry(pair).or_default().beside += 1;
             }
@@ -195,7 +222,8 @@ fn borders(pixels: &Plane<Pixel>, of: &Plane<u16>) -> ShadeBorders {
                 let at = |k: usize| pixels.at(x + k * dx, y + k * dy);
                 let border = borders.entry(pair).or_default();
                 border.across += 1;
-                border.soft += usize::from((0..ACROSS).all(|k| away(at(k), at(k + 1)) <= SOFT_STEP));
+                border.soft +=
+                    usize::from((0..ACROSS).all(|k| away(at(k), at(k + 1)) <= SOFT_STEP));
             }
         }
         borders
@@ -219,7 +247,9 @@ fn solid(of: &Plane<u16>, n: usize) -> Vec<usize> {
     let count = |mut counts: Vec<usize>, y: usize| {
         for x in 0..of.width() {
             let here = of.at(x, y);
-            let like = |dx: i32, dy: i32| of.get(x as i32 + dx, y as i32 + dy).is_none_or(|other| other == here);
+            let like = |dx: i32, dy: i32| {
+                of.get(x as i32 + dx, y as i32 + dy).is_none_or(|other| other == here)
+            };
             if here != NONE && (-1..=1).all(|dy| (-1..=1).all(|dx| like(dx, dy))) {
                 counts[usize::from(here)] += 1;
             }

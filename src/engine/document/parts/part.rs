@@ -34,11 +34,13 @@ impl Part {
         let (tilt_deg, raise, matrix) = (Vec2::ZERO, 0.0, Affine2::IDENTITY);
         Self { name: id.clone(), id, visible: true, combine, tilt_deg, raise, matrix, kind }
     }
+
     /// The whole alpha of a layer, inflated.
     pub fn of_layer(id: impl Into<String>, layer: impl Into<String>, inflation: Inflation) -> Self {
         let outline = OutlineSource::Layer { layer: layer.into(), color: None };
         Self::new(id, PartKind::Inflate { outline, inflation })
     }
+
     /// The part that this one changes, if it is no form of its own.
     pub fn on(&self) -> Option<&str> {
         match &self.kind {
@@ -49,6 +51,7 @@ impl Part {
             _ => None,
         }
     }
+
     /// Lets it change another part, if it is no form of its own.
     pub fn lie_on(&mut self, part: &str) {
         match &mut self.kind {
@@ -59,27 +62,30 @@ impl Part {
             _ => {}
         }
     }
+
     /// What it is made of; for lines, their ink.
     pub fn outline(&self) -> Option<&OutlineSource> {
         match &self.kind {
-            PartKind::Inflate { outline, .. } | PartKind::Bevel { outline, .. } | PartKind::Lathe { outline, .. } => {
-                Some(outline)
-            }
+            PartKind::Inflate { outline, .. }
+            | PartKind::Bevel { outline, .. }
+            | PartKind::Lathe { outline, .. } => Some(outline),
             PartKind::Lines { ink, .. } => Some(ink),
             PartKind::Profiles { outline, .. } => outline.as_ref(),
             _ => None,
         }
     }
+
     pub(super) fn outline_mut(&mut self) -> Option<&mut OutlineSource> {
         match &mut self.kind {
-            PartKind::Inflate { outline, .. } | PartKind::Bevel { outline, .. } | PartKind::Lathe { outline, .. } => {
-                Some(outline)
-            }
+            PartKind::Inflate { outline, .. }
+            | PartKind::Bevel { outline, .. }
+            | PartKind::Lathe { outline, .. } => Some(outline),
             PartKind::Lines { ink, .. } => Some(ink),
             PartKind::Profiles { outline, .. } => outline.as_mut(),
             _ => None,
         }
     }
+
     /// The one place of a colour that it takes, if it takes one.
     pub fn place(&self) -> Option<Vec2> {
         match self.outline() {
@@ -87,16 +93,19 @@ impl Part {
             _ => None,
         }
     }
+
     /// Takes only the area of its colour at a point of its frame, if it takes a colour.
     pub fn set_place(&mut self, at: Vec2) {
         if let Some(OutlineSource::Layer { color: Some(flat), .. }) = self.outline_mut() {
             flat.at = Some(at);
         }
     }
+
     /// Whether it takes a colour wherever that is.
     pub fn is_of_color(&self) -> bool {
         matches!(self.outline(), Some(OutlineSource::Layer { color: Some(flat), .. }) if flat.at.is_none())
     }
+
     /// The pictures that it names, to be renamed. Maps have names of their own.
     pub fn files_mut(&mut self) -> Vec<&mut CoverageFile> {
         fn of_outline(outline: &mut OutlineSource) -> Option<&mut CoverageFile> {
@@ -109,7 +118,9 @@ impl Part {
             | PartKind::Lines { ink: outline, .. } => of_outline(outline).into_iter().collect(),
             PartKind::Profiles { outline, shadings } => {
                 let own = outline.as_mut().and_then(of_outline);
-                own.into_iter().chain(shadings.iter_mut().map(|shading| &mut shading.picture)).collect()
+                own.into_iter()
+                    .chain(shadings.iter_mut().map(|shading| &mut shading.picture))
+                    .collect()
             }
             PartKind::Relief { picture, .. } => vec![picture],
             _ => Vec::new(),

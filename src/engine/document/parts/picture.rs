@@ -1,4 +1,5 @@
-//! A picture of flats as it was painted: its flat areas, and between which of them each mixed pixel lies. Floor 4.
+//! A picture of flats as it was painted: its flat areas, and between which of them each mixed pixel
+//! lies. Floor 4.
 
 use super::near::{NEAR, is_near, share_on_the_way};
 use crate::math::{Rect, Size};
@@ -10,14 +11,16 @@ pub type Pixel = [u8; 4];
 
 /// A pixel is mostly of a colour that takes this share of it.
 pub const MOSTLY: u8 = 128;
-/// How far from a mixed pixel the areas that it lies between are sought, px: edges are rarely blurred more.
+/// How far from a mixed pixel the areas that it lies between are sought, px: edges are rarely
+/// blurred more.
 pub const REACH: i32 = 3;
-/// A pixel in a flat area has its colour in this many of its eight neighbours; along a straight edge two have it.
+/// A pixel in a flat area has its colour in this many of its eight neighbours; along a straight
+/// edge two have it.
 const LEAST_ALIKE: usize = 3;
 /// One in the thinnest line has it in so many.
 const LEAST_ALIKE_ALONG: usize = 2;
-/// A pixel farther than this from the line between two colours is no mixture of them, a sum of squares over the
-/// channels.
+/// A pixel farther than this from the line between two colours is no mixture of them, a sum of
+/// squares over the channels.
 const FARTHEST: i32 = (4 * NEAR) * (4 * NEAR);
 /// The longest side of pixel art, px, in which every pixel is meant.
 const PIXEL_ART_PX: u32 = 256;
@@ -55,7 +58,8 @@ impl FlatPicture {
     /// The pixels of a rectangle.
     pub fn of(tiles: &TileGrid, rect: Rect) -> Self {
         let size = Size::new(rect.width() as u32, rect.height() as u32);
-        let pixels: Plane<Pixel> = Plane::from_fn(size, |x, y| tiles.pixel(rect.x0 + x as i32, rect.y0 + y as i32));
+        let pixels: Plane<Pixel> =
+            Plane::from_fn(size, |x, y| tiles.pixel(rect.x0 + x as i32, rect.y0 + y as i32));
         let is_flat = Plane::from_fn(size, |x, y| alike(&pixels, x, y) >= LEAST_ALIKE);
         let is_hard = || pixels.values().iter().all(|pixel| [0, 255].contains(&pixel[3]));
         let is_pixel_art = size.width.max(size.height) <= PIXEL_ART_PX && is_hard();
@@ -65,11 +69,13 @@ impl FlatPicture {
         }
         picture
     }
+
     /// Whether nothing is painted at a pixel.
     pub fn is_nothing(&self, x: usize, y: usize) -> bool {
         let here = self.pixels.at(x, y);
         here[3] == 0 || (self.is_flat.at(x, y) && is_near(here, [0; 4]))
     }
+
     /// The mixed pixels that lie between two areas, row by row.
     pub fn between_areas(&self) -> Vec<Between> {
         let row = |y: usize| {
@@ -79,6 +85,7 @@ impl FlatPicture {
         let rows: Vec<Vec<Between>> = (0..self.pixels.height()).into_par_iter().map(row).collect();
         rows.into_iter().flatten().collect()
     }
+
     /// The pixels of the thinnest lines: opaque, in no flat area, and between none.
     pub fn of_thin_lines(&self, between: &[Between]) -> Vec<usize> {
         let mut known = between.iter().map(|between| between.index).peekable();
@@ -87,9 +94,16 @@ impl FlatPicture {
             let (x, y) = (i % width, i / width);
             self.pixels.at(x, y)[3] == 255 && alike(&self.pixels, x, y) >= LEAST_ALIKE_ALONG
         };
-        let mixed = self.is_flat.values().iter().enumerate().filter(|(_, is_flat)| !**is_flat).map(|(i, _)| i);
+        let mixed = self
+            .is_flat
+            .values()
+            .iter()
+            .enumerate()
+            .filter(|(_, is_flat)| !**is_flat)
+            .map(|(i, _)| i);
         mixed.filter(|i| known.next_if_eq(i).is_none()).filter(is_line).collect()
     }
+
     fn between(&self, x: usize, y: usize) -> Option<Between> {
         let width = self.pixels.width();
         let mut beside: Vec<(Pixel, Option<usize>)> = Vec::new();
@@ -113,6 +127,7 @@ impl FlatPicture {
         }
         None
     }
+
     /// Gives the pixels of a seam that two areas left open between them to the nearer one.
     fn close_seams(&mut self) {
         let side = |x: i32, y: i32, (dx, dy): (i32, i32)| {
@@ -136,7 +151,8 @@ impl FlatPicture {
             let open = (0..pixels.width()).filter(|x| pixels.at(*x, y)[3] < 255);
             open.filter_map(|x| Some((x, y, closed(x as i32, y as i32)?))).collect::<Vec<_>>()
         };
-        let closed: Vec<Vec<(usize, usize, Pixel)>> = (0..pixels.height()).into_par_iter().map(row).collect();
+        let closed: Vec<Vec<(usize, usize, Pixel)>> =
+            (0..pixels.height()).into_par_iter().map(row).collect();
         for (x, y, pixel) in closed.into_iter().flatten() {
             self.pixels.set(x, y, pixel);
             self.is_flat.set(x, y, true);
@@ -144,12 +160,14 @@ impl FlatPicture {
     }
 }
 
-const AROUND: [(i32, i32); 8] = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
+const AROUND: [(i32, i32); 8] =
+    [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
 
 /// How many of a pixel's neighbours have its colour.
 fn alike(pixels: &Plane<Pixel>, x: usize, y: usize) -> usize {
     let here = pixels.at(x, y);
-    let beside = |&(dx, dy): &(i32, i32)| pixels.get(x as i32 + dx, y as i32 + dy).unwrap_or_default();
+    let beside =
+        |&(dx, dy): &(i32, i32)| pixels.get(x as i32 + dx, y as i32 + dy).unwrap_or_default();
     AROUND.iter().filter(|step| is_near(beside(step), here)).count()
 }
 
@@ -168,8 +186,10 @@ fn nearest_way(pixel: Pixel, colors: &[(Pixel, Option<usize>)]) -> Option<(usize
     let off = |(i, j): (usize, usize)| {
         let (a, b) = (colors[i].0, colors[j].0);
         let share = share_on_the_way(pixel, a, b);
-        let mixed =
-            |c: usize| (i32::from(a[c]) * (255 - i32::from(share)) + i32::from(b[c]) * i32::from(share) + 127) / 255;
+        let mixed = |c: usize| {
+            (i32::from(a[c]) * (255 - i32::from(share)) + i32::from(b[c]) * i32::from(share) + 127)
+                / 255
+        };
         let off = (0..4).map(|c| (i32::from(pixel[c]) - mixed(c)).pow(2)).sum::<i32>();
         (off, i, j, share)
     };

@@ -1,5 +1,6 @@
-//! The places of a flat colour: its areas that nothing joins, or only a passage too narrow to be meant.
-//! Floor 4. Not here: which share of a pixel a colour takes (`shares`), the gap closing (`paint::fill`).
+//! The places of a flat colour: its areas that nothing joins, or only a passage too narrow to be
+//! meant. Floor 4. Not here: which share of a pixel a colour takes (`shares`), the gap closing
+//! (`paint::fill`).
 
 use super::areas::{LEAST_SEEN, around_all, least_area, over, spread};
 use super::shares::{Flats, MOSTLY};
@@ -47,28 +48,34 @@ impl ColorPlaces {
         let areas = self::areas(&labels);
         Self { size, area, labels, areas }
     }
+
     /// How many pixels it takes.
     pub fn pixels_held(&self) -> usize {
         self.labels.size().area()
     }
+
     /// The places large enough for parts of their own, the largest first.
     pub fn large(&self) -> Vec<u32> {
         let least = least_area(self.size);
-        let mut large: Vec<u32> = (1..=self.areas.len() as u32).filter(|place| self.pixels(*place) >= least).collect();
+        let mut large: Vec<u32> =
+            (1..=self.areas.len() as u32).filter(|place| self.pixels(*place) >= least).collect();
         large.sort_by_key(|place| (std::cmp::Reverse(self.pixels(*place)), *place));
         large
     }
+
     /// How many places are seen that are too small for parts of their own.
     pub fn small(&self) -> usize {
         let least = least_area(self.size);
         self.areas.iter().filter(|(_, pixels)| (LEAST_SEEN..least).contains(pixels)).count()
     }
+
     /// How many pixels a place has.
     pub fn pixels(&self, place: u32) -> usize {
         self.areas.get((place as usize).wrapping_sub(1)).map_or(0, |(_, pixels)| *pixels)
     }
-    /// The place at a point of the plane, px, or else the nearest one, and whether it is only that; `None` if there is
-    /// none at all.
+
+    /// The place at a point of the plane, px, or else the nearest one, and whether it is only that;
+    /// `None` if there is none at all.
     pub fn nearest(&self, at: Vec2) -> Option<(u32, bool)> {
         let at = at - self.corner();
         let (x, y) = (at.x.floor(), at.y.floor());
@@ -89,16 +96,25 @@ impl ColorPlaces {
         }
         best.map(|(_, place)| (place, true))
     }
-    /// A point of a place, as far from its rim as one can be (of several such points, the one nearest to its centre of
-    /// gravity): the centre of a pixel, px of the plane.
+
+    /// A point of a place, as far from its rim as one can be (of several such points, the one
+    /// nearest to its centre of gravity): the centre of a pixel, px of the plane.
     pub fn middle(&self, place: u32) -> Vec2 {
-        let Some((rect, pixels)) = self.areas.get((place as usize).wrapping_sub(1)) else { return Vec2::ZERO };
+        let Some((rect, pixels)) = self.areas.get((place as usize).wrapping_sub(1)) else {
+            return Vec2::ZERO;
+        };
         let around = rect.grown(1);
         let size = Size::new(around.width() as u32, around.height() as u32);
-        let is_own = |x: usize, y: usize| self.labels.get(x as i32 + around.x0, y as i32 + around.y0) == Some(place);
+        let is_own = |x: usize, y: usize| {
+            self.labels.get(x as i32 + around.x0, y as i32 + around.y0) == Some(place)
+        };
         let rim = Plane::from_fn(size, |x, y| u8::from(!is_own(x, y)));
         let deep = distance::squared(&rim, distance::FARTHEST);
-        let own = || (0..size.area()).map(|i| (i % rim.width(), i / rim.width())).filter(|(x, y)| rim.at(*x, *y) == 0);
+        let own = || {
+            (0..size.area())
+                .map(|i| (i % rim.width(), i / rim.width()))
+                .filter(|(x, y)| rim.at(*x, *y) == 0)
+        };
         let sum = own().fold([0u64; 2], |sum, (x, y)| [sum[0] + x as u64, sum[1] + y as u64]);
         let mean = sum.map(|sum| sum as f32 / (*pixels).max(1) as f32);
         let away = |(x, y): (usize, usize)| vec2(x as f32, y as f32).distance_squared(mean.into());
@@ -106,13 +122,16 @@ impl ColorPlaces {
             let order = deep.at(b.0, b.1).cmp(&deep.at(a.0, a.1)).then(away(a).total_cmp(&away(b)));
             if order.is_gt() { b } else { a }
         });
-        let middle = |(x, y)| vec2((x as i32 + around.x0) as f32 + 0.5, (y as i32 + around.y0) as f32 + 0.5);
+        let middle =
+            |(x, y)| vec2((x as i32 + around.x0) as f32 + 0.5, (y as i32 + around.y0) as f32 + 0.5);
         best.map_or(Vec2::ZERO, |at| self.corner() + middle(at))
     }
+
     /// Where its planes begin in the flats, px.
     fn corner(&self) -> Vec2 {
         vec2(self.area.x0 as f32, self.area.y0 as f32)
     }
+
     /// Writes a number to the pixels of a place.
     pub fn mark(&self, place: u32, numbers: &mut Plane<u32>, number: u32) {
         let columns = self.area.x0 as usize..self.area.x1 as usize;
@@ -122,14 +141,18 @@ impl ColorPlaces {
             both.filter(|(_, label)| **label == place).for_each(|(to, _)| *to = number);
         }
     }
-    /// The share of each pixel that each of some places takes of what the colour takes: mixed pixels go to the nearest
-    /// place.
+
+    /// The share of each pixel that each of some places takes of what the colour takes: mixed
+    /// pixels go to the nearest place.
     pub fn shares(&self, places: &[u32], share: &Plane<u8>) -> Vec<Plane<u8>> {
         let mut labels = self.labels.clone();
         let (x0, y0) = (self.area.x0 as usize, self.area.y0 as usize);
         spread(&mut labels, |x, y| share.at(x + x0, y + y0) > 0);
-        let label = |x: usize, y: usize| labels.get(x as i32 - self.area.x0, y as i32 - self.area.y0);
-        let of = |x: usize, y: usize, place: u32| if label(x, y) == Some(place) { share.at(x, y) } else { 0 };
+        let label =
+            |x: usize, y: usize| labels.get(x as i32 - self.area.x0, y as i32 - self.area.y0);
+        let of = |x: usize, y: usize, place: u32| {
+            if label(x, y) == Some(place) { share.at(x, y) } else { 0 }
+        };
         places.iter().map(|place| Plane::from_fn(share.size(), |x, y| of(x, y, *place))).collect()
     }
 }
@@ -148,10 +171,12 @@ impl SplitPlaces {
         let places = ColorPlaces::of(flats, color);
         Self { large: places.large(), places, corner: vec2(rect.x0 as f32, rect.y0 as f32) }
     }
+
     /// A point of each place, px of the part's frame, the largest place first.
     pub fn points(&self) -> Vec<Vec2> {
         self.large.iter().map(|place| self.corner + self.places.middle(*place)).collect()
     }
+
     /// Which of these places is at a point or nearest to it.
     pub fn nearest(&self, at: Vec2) -> usize {
         let found = self.places.nearest(at - self.corner).map(|(place, _)| place);

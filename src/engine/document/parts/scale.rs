@@ -30,7 +30,12 @@ impl Part {
             PartKind::Primitive(primitive) => {
                 primitive.center *= scale;
                 primitive.half *= length;
-                for side in [&mut primitive.radius, &mut primitive.length, &mut primitive.tube, &mut primitive.round] {
+                for side in [
+                    &mut primitive.radius,
+                    &mut primitive.length,
+                    &mut primitive.tube,
+                    &mut primitive.round,
+                ] {
                     *side *= length;
                 }
             }
@@ -77,18 +82,24 @@ impl Part {
 }
 
 impl PartMaps {
-    /// The same maps in a frame with other sides. Where nothing would be left of what is thinner than a pixel there,
-    /// they stay unchanged.
+    /// The same maps in a frame with other sides. Where nothing would be left of what is thinner
+    /// than a pixel there, they stay unchanged.
     fn scaled(&self, scale: Vec2) -> PartMaps {
         let Size { width, height } = self.surface.size();
         let side = |v: u32, s: f32| ((f64::from(v) * f64::from(s)).round() as u32).max(1);
         let frame = Size::new(side(width, scale.x), side(height, scale.y));
-        let map = PlaneMap::affine([scale.x.into(), 0.0, 0.0, scale.y.into(), 0.0, 0.0]).unwrap_or_default();
+        let map = PlaneMap::affine([scale.x.into(), 0.0, 0.0, scale.y.into(), 0.0, 0.0])
+            .unwrap_or_default();
         self.surface.through(frame, &map).map_or_else(|_| self.clone(), |surface| self.on(surface))
     }
+
     /// These maps as another surface made of them.
     fn on(&self, surface: Arc<Surface>) -> PartMaps {
-        PartMaps { source: Arc::new(self.source.placed_as(&surface)), files: self.files.clone(), surface }
+        PartMaps {
+            source: Arc::new(self.source.placed_as(&surface)),
+            files: self.files.clone(),
+            surface,
+        }
     }
 }
 

@@ -1,6 +1,7 @@
-//! Which share of each pixel a flat colour takes: all of a pixel in a flat area, and a part of those that were mixed at
-//! edges between two areas. Shares add up to the whole pixel, so that areas that touch leave no rim between them.
-//! Floor 4. Not here: which colours are parts (`flats`).
+//! Which share of each pixel a flat colour takes: all of a pixel in a flat area, and a part of
+//! those that were mixed at edges between two areas. Shares add up to the whole pixel, so that
+//! areas that touch leave no rim between them. Floor 4. Not here: which colours are parts
+//! (`flats`).
 
 use super::areas::{LEAST_SEEN, beside, least_area, pixels, walk};
 use super::complete::{Given, complete};
@@ -13,16 +14,19 @@ use crate::raster::{Plane, TileGrid};
 
 pub use super::picture::{MOSTLY, Pixel, REACH};
 
-/// The most colours of one layer that become parts, besides those that are asked for; the largest are chosen.
+/// The most colours of one layer that become parts, besides those that are asked for; the largest
+/// are chosen.
 pub const MOST_COLOURS: usize = 64;
-/// Areas that are joined by nothing wider than this are separate places, px: the gap closing of the fill.
+/// Areas that are joined by nothing wider than this are separate places, px: the gap closing of the
+/// fill.
 const GAP_PX: f32 = 2.0;
 
 /// What each pixel of a flat picture is of.
 pub struct Flats {
     /// Those that were asked for, then the most frequent first.
     colors: Vec<PaletteColor>,
-    /// The number of the colour of each pixel; [`NOTHING`], or [`NONE`] where several share it or none is known.
+    /// The number of the colour of each pixel; [`NOTHING`], or [`NONE`] where several share it or
+    /// none is known.
     owner: Plane<u16>,
     /// The pixels that two areas share, row by row.
     mixed: Vec<MixedPixel>,
@@ -47,8 +51,8 @@ pub enum FlatOwner {
 }
 
 impl Flats {
-    /// The pixels of a rectangle, `None` if it holds none; `asked`: colours that are looked for however small their
-    /// areas are.
+    /// The pixels of a rectangle, `None` if it holds none; `asked`: colours that are looked for
+    /// however small their areas are.
     pub fn of(tiles: &TileGrid, rect: Rect, asked: &[Color]) -> Option<Self> {
         if rect.is_empty() {
             return None;
@@ -63,7 +67,8 @@ impl Flats {
                 owner.values_mut()[index] = number as u16;
             }
         }
-        let in_areas = |owner: &Plane<u16>| owner.values().iter().filter(|of| **of < NOTHING).count();
+        let in_areas =
+            |owner: &Plane<u16>| owner.values().iter().filter(|of| **of < NOTHING).count();
         let with_lines = in_areas(&owner);
         let is_line = take_out_lines(&mut owner, &between, &mut colors);
         let of_lines = with_lines - in_areas(&owner);
@@ -84,14 +89,18 @@ impl Flats {
         flats.add_mixed(between, &nearest);
         Some(flats)
     }
-    /// Adds the pixels between areas; `nearest`: the number of the nearest area of each pixel, one more.
+
+    /// Adds the pixels between areas; `nearest`: the number of the nearest area of each pixel, one
+    /// more.
     fn add_mixed(&mut self, between: Vec<Between>, nearest: &Plane<u32>) {
         for Between { index, sides, share } in between {
             let is_of_line = |side: &usize| self.is_given.values()[*side];
             let is_beside_line = sides.iter().flatten().any(is_of_line);
             let sides = sides.map(|side| match side {
                 // A line is of the area that is nearest here; farther along it may be of another.
-                Some(side) if is_of_line(&side) => nearest.values()[index].checked_sub(1).map_or(NONE, |of| of as u16),
+                Some(side) if is_of_line(&side) => {
+                    nearest.values()[index].checked_sub(1).map_or(NONE, |of| of as u16)
+                }
                 Some(side) => self.owner.values()[side],
                 None => NOTHING,
             });
@@ -103,6 +112,7 @@ impl Flats {
         }
         self.mixed.sort_unstable_by_key(|mixed| mixed.index);
     }
+
     /// Its colours, by their numbers.
     pub fn colors(&self) -> Vec<Color> {
         self.colors
@@ -110,26 +120,33 @@ impl Flats {
             .map(|PaletteColor { color: [r, g, b, a], .. }| Color { r: *r, g: *g, b: *b, a: *a })
             .collect()
     }
+
     /// The number of a colour.
     pub fn number_of(&self, color: Color) -> Option<u16> {
-        nearest(self.colors.iter().map(|color| color.color), bytes(color)).map(|number| number as u16)
+        nearest(self.colors.iter().map(|color| color.color), bytes(color))
+            .map(|number| number as u16)
     }
+
     /// How many colours are seen that are too small, or too many, to be parts.
     pub fn left_out(&self) -> usize {
         self.left_out
     }
+
     /// The share of what is painted that lies in flat areas of its colours, `[0, 1]`.
     pub fn flat_share(&self) -> f32 {
         self.flat_share
     }
+
     /// Areas that are joined by nothing wider than this are separate places, px.
     pub fn gap_px(&self) -> f32 {
         self.gap_px
     }
+
     /// Whether a pixel is of a line or a speck that is given to the areas beside it.
     pub fn is_given(&self, x: usize, y: usize) -> bool {
         self.is_given.at(x, y)
     }
+
     pub fn owner(&self, x: usize, y: usize) -> FlatOwner {
         match self.owner.at(x, y) {
             NONE => FlatOwner::Unknown,
@@ -137,6 +154,7 @@ impl Flats {
             number => FlatOwner::Color(number),
         }
     }
+
     /// The number of the colour that takes the most of each pixel; [`NOTHING`] or [`NONE`].
     pub fn mostly(&self) -> Plane<u16> {
         let mut mostly = self.owner.clone();
@@ -145,11 +163,13 @@ impl Flats {
         }
         mostly
     }
+
     /// The share of each pixel that a colour takes together with others, 255 the whole.
     pub fn share_of(&self, color: Color, with: &[Color]) -> Plane<u8> {
         let Some(own) = self.number_of(color) else { return Plane::filled(self.owner.size(), 0) };
-        let all: Vec<u16> =
-            std::iter::once(own).chain(with.iter().filter_map(|color| self.number_of(*color))).collect();
+        let all: Vec<u16> = std::iter::once(own)
+            .chain(with.iter().filter_map(|color| self.number_of(*color)))
+            .collect();
         let mut shares = self.owner.map(|of| if of == own { 255 } else { 0 });
         // The others lie over it only where it has a share itself.
         for MixedPixel { index, sides: [from, to], share } in &self.mixed {
@@ -160,20 +180,32 @@ impl Flats {
         }
         // In a line, areas need not share any pixel where they meet.
         let is_beneath = |x: usize, y: usize| {
-            let is_others = self.is_given.at(x, y) && self.owner.at(x, y) != own && all.contains(&self.owner.at(x, y));
+            let is_others = self.is_given.at(x, y)
+                && self.owner.at(x, y) != own
+                && all.contains(&self.owner.at(x, y));
             let is_own = |x: usize, y: usize| self.owner.at(x, y) == own && self.is_given.at(x, y);
-            is_others && beside((x, y), (shares.width(), shares.height())).any(|(x, y)| is_own(x, y))
+            is_others
+                && beside((x, y), (shares.width(), shares.height())).any(|(x, y)| is_own(x, y))
         };
         match all.len() {
             1 => shares,
-            _ => Plane::from_fn(shares.size(), |x, y| if is_beneath(x, y) { 255 } else { shares.at(x, y) }),
+            _ => {
+                Plane::from_fn(
+                    shares.size(),
+                    |x, y| if is_beneath(x, y) { 255 } else { shares.at(x, y) },
+                )
+            }
         }
     }
 }
 
-/// Takes lines out of each colour; which colours were mostly that. One that was asked for keeps them if it is nothing
-/// else.
-fn take_out_lines(owner: &mut Plane<u16>, between: &[Between], colors: &mut [PaletteColor]) -> Vec<bool> {
+/// Takes lines out of each colour; which colours were mostly that. One that was asked for keeps
+/// them if it is nothing else.
+fn take_out_lines(
+    owner: &mut Plane<u16>,
+    between: &[Between],
+    colors: &mut [PaletteColor],
+) -> Vec<bool> {
     let mut mostly = owner.clone();
     for Between { index, sides, share } in between {
         let side = sides[usize::from(*share >= MOSTLY)];
@@ -199,7 +231,8 @@ fn take_out_lines(owner: &mut Plane<u16>, between: &[Between], colors: &mut [Pal
     colors.iter_mut().enumerate().map(take_out).collect()
 }
 
-/// Takes out areas too small to be seen: compression leaves such specks. The pixels of each colour are counted again.
+/// Takes out areas too small to be seen: compression leaves such specks. The pixels of each colour
+/// are counted again.
 fn take_out_specks(owner: &mut Plane<u16>, colors: &mut [PaletteColor]) {
     let size = (owner.width(), owner.height());
     let mut seen = Plane::filled(owner.size(), false);

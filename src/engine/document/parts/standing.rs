@@ -1,5 +1,5 @@
-//! Outlines of parts in their places, found once and known while what they are made of is the same. Floor 4. Not here:
-//! what they are made of (`outlines`).
+//! Outlines of parts in their places, found once and known while what they are made of is the same.
+//! Floor 4. Not here: what they are made of (`outlines`).
 
 use super::body::StandingOutline;
 use super::outlines::OutlineKey;
@@ -12,7 +12,8 @@ use crate::shape::Outline;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Each outline needs several planes of the canvas while it is found; on larger canvases they are found one by one, px.
+/// Each outline needs several planes of the canvas while it is found; on larger canvases they are
+/// found one by one, px.
 const MOST_AT_ONCE_PX: usize = 1 << 24;
 
 /// A part, and the room for its outline.
@@ -22,8 +23,8 @@ struct Sought<'a> {
 }
 
 impl Document {
-    /// The outlines of parts in their places, side by side: but one after the other where parts are of one colour,
-    /// whose places are found once, and after the first, which finds what all share.
+    /// The outlines of parts in their places, side by side: but one after the other where parts are
+    /// of one colour, whose places are found once, and after the first, which finds what all share.
     pub(super) fn standing_outlines(&self, parts: &[&Arc<Part>]) -> Vec<Option<StandingOutline>> {
         let mut found: Vec<Option<StandingOutline>> = vec![None; parts.len()];
         let Some((first, rest)) = found.split_first_mut() else { return found };
@@ -41,7 +42,9 @@ impl Document {
             }
         }
         let find = |(_, group): (Option<Color>, Vec<Sought>)| {
-            group.into_iter().for_each(|Sought { part, found }| *found = self.standing_outline(part));
+            group
+                .into_iter()
+                .for_each(|Sought { part, found }| *found = self.standing_outline(part));
         };
         match self.size.area() <= MOST_AT_ONCE_PX {
             true => groups.into_par_iter().for_each(find),
@@ -49,15 +52,18 @@ impl Document {
         }
         found
     }
+
     /// The outline of a part before it was moved; `None` if it has none.
     pub(super) fn own_outline(&self, part: &Part) -> Option<Arc<Outline>> {
         let source = OutlineKey::of_part(self, part)??;
-        let known = self.known_outline(part, &source).filter(|_| apart(part.matrix).0 == Affine2::IDENTITY);
+        let known =
+            self.known_outline(part, &source).filter(|_| apart(part.matrix).0 == Affine2::IDENTITY);
         match known {
             Some((outline, _)) => Some(outline),
             None => source.outline(self, usize::MAX).map(Arc::new),
         }
     }
+
     /// The outline of a part in its place; `None` if it has none.
     fn standing_outline(&self, part: &Arc<Part>) -> Option<StandingOutline> {
         let source = OutlineKey::of_part(self, part)??;

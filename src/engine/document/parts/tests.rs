@@ -26,7 +26,8 @@ fn discs(name: &str, discs: &[(Vec2, f32, [u8; 3])]) -> Layer {
             pixel[3] = (sum[3] / 16.0 * 255.0).round() as u8;
         }
     }
-    let tiles = TileGrid::from_straight_rgba(&rgba, SIZE.width as usize, SIZE.height as usize, 0, 0);
+    let tiles =
+        TileGrid::from_straight_rgba(&rgba, SIZE.width as usize, SIZE.height as usize, 0, 0);
     Layer::new(name, Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles }))
 }
 
@@ -56,12 +57,19 @@ fn the_part_follows_its_layer_and_what_did_not_change_is_kept() {
         discs("B", &[(vec2(110.0, 60.0), 30.0, [20, 90, 40])]),
     ]);
     let shaped = flat.with_parts(vec![inflated("a", "A"), inflated("b", "B")]);
-    assert!(Arc::ptr_eq(shaped.surface.as_ref().unwrap(), shaped.reshaped().surface.as_ref().unwrap()));
+    assert!(Arc::ptr_eq(
+        shaped.surface.as_ref().unwrap(),
+        shaped.reshaped().surface.as_ref().unwrap()
+    ));
     // A layer's name and opacity change no shape.
-    let dimmed = shaped.with_layer(shaped.layers[0].id, |layer| layer.opacity = 0.3).unwrap().reshaped();
+    let dimmed =
+        shaped.with_layer(shaped.layers[0].id, |layer| layer.opacity = 0.3).unwrap().reshaped();
     assert!(Arc::ptr_eq(shaped.surface.as_ref().unwrap(), dimmed.surface.as_ref().unwrap()));
     let other = discs("B", &[(vec2(110.0, 60.0), 15.0, [20, 90, 40])]);
-    let painted = shaped.with_layer(shaped.layers[1].id, |layer| layer.content = other.content).unwrap().reshaped();
+    let painted = shaped
+        .with_layer(shaped.layers[1].id, |layer| layer.content = other.content)
+        .unwrap()
+        .reshaped();
     let surface = painted.surface.as_ref().unwrap();
     assert_eq!((surface.coverage(90, 60), surface.coverage(110, 60)), (0, 255));
     assert!(surface.normal(100, 60).x < -0.5);
@@ -80,7 +88,10 @@ fn paint_that_changes_one_outline_leaves_the_forms_of_the_others() {
     let shaped = document(vec![drawn(&[])]).with_parts(vec![of("a", orange), of("b", green)]);
     let painted = |more: &[(Vec2, f32, [u8; 3])]| {
         let id = shaped.layers[0].id;
-        shaped.with_layer(id, |layer| layer.content = drawn(more).content.clone()).unwrap().reshaped()
+        shaped
+            .with_layer(id, |layer| layer.content = drawn(more).content.clone())
+            .unwrap()
+            .reshaped()
     };
     let form = |document: &Document, id: &str| document.last_area(id).unwrap().1;
     let before = ["a", "b"].map(|id| form(&shaped, id));
@@ -89,18 +100,32 @@ fn paint_that_changes_one_outline_leaves_the_forms_of_the_others() {
     assert!(Arc::ptr_eq(spot.surface.as_ref().unwrap(), shaped.surface.as_ref().unwrap()));
     assert!(Arc::ptr_eq(&before[0], &form(&spot, "a")));
     let larger = painted(&[(vec2(118.0, 60.0), 28.0, green)]);
-    assert!(Arc::ptr_eq(&before[0], &form(&larger, "a")) && !Arc::ptr_eq(&before[1], &form(&larger, "b")));
+    assert!(
+        Arc::ptr_eq(&before[0], &form(&larger, "a"))
+            && !Arc::ptr_eq(&before[1], &form(&larger, "b"))
+    );
     let anew = larger.with_parts(Vec::new()).with_parts(larger.parts.list.clone());
-    assert_eq!(anew.surface.unwrap().coverage_plane().values(), larger.surface.unwrap().coverage_plane().values());
+    assert_eq!(
+        anew.surface.unwrap().coverage_plane().values(),
+        larger.surface.unwrap().coverage_plane().values()
+    );
 }
 
 #[test]
 fn colours_become_parts_and_what_bulges_into_another_lies_in_front() {
     let (body, eye, ear) = ([200, 120, 60], [250, 250, 250], [120, 60, 30]);
-    let flats =
-        discs("Flats", &[(vec2(40.0, 30.0), 18.0, ear), (vec2(80.0, 65.0), 45.0, body), (vec2(95.0, 55.0), 9.0, eye)]);
+    let flats = discs(
+        "Flats",
+        &[
+            (vec2(40.0, 30.0), 18.0, ear),
+            (vec2(80.0, 65.0), 45.0, body),
+            (vec2(95.0, 55.0), 9.0, eye),
+        ],
+    );
     let Content::Pixels(pixels) = &flats.content else { panic!("paint") };
-    let parts = flats::parts_of_flats(&pixels.tiles, "Flats", Inflation::default(), flats::PartFor::Color).parts;
+    let parts =
+        flats::parts_of_flats(&pixels.tiles, "Flats", Inflation::default(), flats::PartFor::Color)
+            .parts;
     let colors: Vec<String> = parts
         .iter()
         .map(|part| match part.outline() {
@@ -109,7 +134,8 @@ fn colours_become_parts_and_what_bulges_into_another_lies_in_front() {
         })
         .collect();
     assert_eq!(colors, ["#783c1e", "#c8783c", "#fafafa"]);
-    let shaped = document(vec![flats.clone()]).with_parts(parts.into_iter().map(Arc::new).collect());
+    let shaped =
+        document(vec![flats.clone()]).with_parts(parts.into_iter().map(Arc::new).collect());
     let surface = shaped.surface.as_ref().unwrap();
     assert_eq!(surface.objects().count(), 3);
     // The eye sticks out of the body, and its rim is its own.
@@ -140,12 +166,18 @@ fn every_kind_makes_a_surface() {
     let path = vec![vec2(20.0, 20.0), vec2(90.0, 25.0), vec2(60.0, 90.0)];
     let disc = flat.with_parts(vec![inflated("a", "A")]);
     let kinds = [
-        PartKind::Inflate { outline: OutlineSource::Path(path), inflation: Inflation::PRESETS[2].0 },
+        PartKind::Inflate {
+            outline: OutlineSource::Path(path),
+            inflation: Inflation::PRESETS[2].0,
+        },
         PartKind::Bevel { outline: layer(), bevel: Bevel::default() },
         PartKind::Primitive(Primitive::new(Body::Torus, vec2(70.0, 60.0), 30.0)),
         PartKind::Lathe { outline: layer(), axis: None, puff: 1.0 },
         PartKind::Sweep {
-            balls: vec![Ball { at: vec2(30.0, 60.0), radius: 15.0 }, Ball { at: vec2(120.0, 70.0), radius: 6.0 }],
+            balls: vec![
+                Ball { at: vec2(30.0, 60.0), radius: 15.0 },
+                Ball { at: vec2(120.0, 70.0), radius: 6.0 },
+            ],
             puff: 1.0,
         },
     ];
@@ -163,10 +195,15 @@ fn every_kind_makes_a_surface() {
         ProfilePicture { picture: CoverageFile { file: "s.png".into(), coverage }, light }
     };
     let lights = [vec3(0.4, 0.0, 1.0), vec3(-0.3, 0.4, 1.0), vec3(0.0, -0.5, 1.0)];
-    let maps = PartMaps { source: Arc::default(), files: Arc::default(), surface: disc.surface.clone().unwrap() };
-    let kinds = kinds
-        .into_iter()
-        .chain([PartKind::Profiles { outline: None, shadings: lights.map(shading).to_vec() }, PartKind::Maps(maps)]);
+    let maps = PartMaps {
+        source: Arc::default(),
+        files: Arc::default(),
+        surface: disc.surface.clone().unwrap(),
+    };
+    let kinds = kinds.into_iter().chain([
+        PartKind::Profiles { outline: None, shadings: lights.map(shading).to_vec() },
+        PartKind::Maps(maps),
+    ]);
     for kind in kinds {
         let name = kind.name();
         let shaped = flat.with_parts(vec![Arc::new(Part::new("p", kind))]);
@@ -183,7 +220,8 @@ fn every_kind_makes_a_surface() {
         }
     }
     // What lies on another part changes it.
-    let touch = Touch { at: vec2(80.0, 60.0), radius: 4.0, normal: vec3(0.6, 0.0, 0.8), reach: 0.0 };
+    let touch =
+        Touch { at: vec2(80.0, 60.0), radius: 4.0, normal: vec3(0.6, 0.0, 0.8), reach: 0.0 };
     let stroke = SculptStroke {
         tool: Default::default(),
         size: 20.0,
@@ -203,7 +241,12 @@ fn every_kind_makes_a_surface() {
         },
         PartKind::Lines {
             on: on(),
-            ink: OutlineSource::Path(vec![vec2(79.0, 45.0), vec2(81.0, 45.0), vec2(81.0, 75.0), vec2(79.0, 75.0)]),
+            ink: OutlineSource::Path(vec![
+                vec2(79.0, 45.0),
+                vec2(81.0, 45.0),
+                vec2(81.0, 75.0),
+                vec2(79.0, 75.0),
+            ]),
             lines: Lines::default(),
         },
     ];
@@ -211,10 +254,16 @@ fn every_kind_makes_a_surface() {
         let name = kind.name();
         let with = flat.with_parts(vec![inflated("a", "A"), Arc::new(Part::new("b", kind))]);
         let (before, after) = (disc.surface.as_ref().unwrap(), with.surface.unwrap());
-        let changed = (60..100).filter(|x| before.normal(*x, 60).distance(after.normal(*x, 60)) > 0.01).count();
+        let changed = (60..100)
+            .filter(|x| before.normal(*x, 60).distance(after.normal(*x, 60)) > 0.01)
+            .count();
         assert!(changed > 5, "{name} changed {changed} of 40 pixels");
         if name == "touches" {
-            assert!((after.normal(80, 60) - vec3(0.6, 0.0, 0.8)).length() < 0.05, "{}", after.normal(80, 60));
+            assert!(
+                (after.normal(80, 60) - vec3(0.6, 0.0, 0.8)).length() < 0.05,
+                "{}",
+                after.normal(80, 60)
+            );
         }
     }
 }
@@ -234,7 +283,10 @@ fn maps_lie_beneath_all_parts() {
     assert_eq!((surface.coverage(20, 60), surface.coverage(80, 60)), (255, 255));
     assert!(surface.depth(80, 60) < surface.depth(20, 60));
     assert_eq!(surface.objects().count(), 2);
-    assert!(Arc::ptr_eq(on_maps.with_parts(Vec::new()).surface.as_ref().unwrap(), plate.surface.as_ref().unwrap()));
+    assert!(Arc::ptr_eq(
+        on_maps.with_parts(Vec::new()).surface.as_ref().unwrap(),
+        plate.surface.as_ref().unwrap()
+    ));
 }
 
 #[test]
@@ -243,19 +295,33 @@ fn numbers_beyond_their_range_and_ids_that_stand_twice_are_refused() {
     let wide = Inflation { puff: f32::NAN, ..Inflation::default() };
     let refused = |part: Part| flat.with_parts(vec![Arc::new(part)]).fits(None).unwrap_err();
     assert!(refused(Part::of_layer("a", "A", wide)).contains("puff"));
-    assert!(refused(Part { raise: 1e9, ..Part::of_layer("a", "A", Inflation::default()) }).contains("raised"));
-    assert!(flat.with_parts(vec![inflated("a", "A"), inflated("a", "B")]).fits(None).unwrap_err().contains("id"));
+    assert!(
+        refused(Part { raise: 1e9, ..Part::of_layer("a", "A", Inflation::default()) })
+            .contains("raised")
+    );
+    assert!(
+        flat.with_parts(vec![inflated("a", "A"), inflated("a", "B")])
+            .fits(None)
+            .unwrap_err()
+            .contains("id")
+    );
     assert_eq!(flat.with_parts(vec![inflated("a", "A")]).fits(None), Ok(()));
 }
 
 #[test]
 fn maps_that_are_turned_show_the_turned_object_and_come_back_where_they_lay() {
     let ball = |at: Vec2, radius: f32| {
-        let body =
-            Primitive { half: vec3(radius, 0.6 * radius, radius), ..Primitive::new(Body::Ellipsoid, at, radius) };
+        let body = Primitive {
+            half: vec3(radius, 0.6 * radius, radius),
+            ..Primitive::new(Body::Ellipsoid, at, radius)
+        };
         document(Vec::new()).with_part(Part::new("b", PartKind::Primitive(body))).surface.unwrap()
     };
-    let maps = PartMaps { source: Arc::default(), files: Arc::default(), surface: ball(vec2(70.0, 60.0), 30.0) };
+    let maps = PartMaps {
+        source: Arc::default(),
+        files: Arc::default(),
+        surface: ball(vec2(70.0, 60.0), 30.0),
+    };
     let part = |matrix: Affine2| Part { matrix, ..Part::new("m", PartKind::Maps(maps.clone())) };
     let seen = |matrix| document(Vec::new()).with_part(part(matrix)).surface.unwrap();
     // By a quarter turn about the middle, and half as large again.
@@ -280,11 +346,16 @@ fn maps_that_are_turned_show_the_turned_object_and_come_back_where_they_lay() {
     let moved = seen(Affine2::from_translation(vec2(21.0, -7.0)));
     assert_eq!(moved.normal(91, 53), was.normal(70, 60));
 }
+
 #[test]
 fn a_share_of_the_way_stays_one_on_a_larger_canvas() {
-    let stroke = |tool| SculptStroke { tool, size: 20.0, hardness: 0.5, strength: 0.3, samples: Vec::new() };
+    let stroke =
+        |tool| SculptStroke { tool, size: 20.0, hardness: 0.5, strength: 0.3, samples: Vec::new() };
     let strokes = [SculptTool::Raise, SculptTool::Smooth].map(stroke).to_vec();
     let part = Part::new("s", PartKind::Sculpt { on: "a".into(), strokes });
-    let PartKind::Sculpt { strokes, .. } = part.scaled(Vec2::splat(2.0), 2.0, Plane::clone).kind else { panic!() };
+    let PartKind::Sculpt { strokes, .. } = part.scaled(Vec2::splat(2.0), 2.0, Plane::clone).kind
+    else {
+        panic!()
+    };
     assert_eq!(strokes.iter().map(|stroke| stroke.strength).collect::<Vec<_>>(), [0.6, 0.3]);
 }

@@ -23,7 +23,8 @@ pub fn same_inks(a: &[OutlineKey], b: &[OutlineKey]) -> bool {
 
 /// Whether two versions of a part have the same form, wherever it is.
 pub fn same_shape(a: &Arc<Part>, b: &Arc<Part>) -> bool {
-    Arc::ptr_eq(a, b) || (same_kind(&a.kind, &b.kind) && a.tilt_deg == b.tilt_deg && a.raise == b.raise)
+    Arc::ptr_eq(a, b)
+        || (same_kind(&a.kind, &b.kind) && a.tilt_deg == b.tilt_deg && a.raise == b.raise)
 }
 
 /// Whether two kinds make the same of one outline, whatever its name.
@@ -31,7 +32,9 @@ pub fn same_kind(a: &PartKind, b: &PartKind) -> bool {
     match (a, b) {
         (PartKind::Inflate { inflation: a, .. }, PartKind::Inflate { inflation: b, .. }) => a == b,
         (PartKind::Bevel { bevel: a, .. }, PartKind::Bevel { bevel: b, .. }) => a == b,
-        (PartKind::Lathe { axis: a, puff: x, .. }, PartKind::Lathe { axis: b, puff: y, .. }) => a == b && x == y,
+        (PartKind::Lathe { axis: a, puff: x, .. }, PartKind::Lathe { axis: b, puff: y, .. }) => {
+            a == b && x == y
+        }
         _ => a == b,
     }
 }

@@ -1,5 +1,5 @@
-//! What parts that lie on another do: lines, touches, sculpting, reliefs. Floor 4. Not here: which of them are made
-//! again (`derive`).
+//! What parts that lie on another do: lines, touches, sculpting, reliefs. Floor 4. Not here: which
+//! of them are made again (`derive`).
 
 use super::body::cut_to;
 use super::{Part, PartKind, turned};
@@ -11,11 +11,16 @@ use crate::shape::{Form, Lines, Outline, Sculpting, Touch, Touching, lines, reli
 pub fn lined(form: &Form, outline: &Outline, ink: &Outline, lines: Lines) -> Form {
     if form.height.size() != outline.size() {
         let cut = cut_to(form, outline);
-        return if cut.height.size() == outline.size() { lined(&cut, outline, ink, lines) } else { form.clone() };
+        return if cut.height.size() == outline.size() {
+            lined(&cut, outline, ink, lines)
+        } else {
+            form.clone()
+        };
     }
     let shift = (outline.corner().0 - ink.corner().0, outline.corner().1 - ink.corner().1);
-    let inked =
-        Plane::from_fn(outline.size(), |x, y| ink.coverage().get(x as i32 + shift.0, y as i32 + shift.1).unwrap_or(0));
+    let inked = Plane::from_fn(outline.size(), |x, y| {
+        ink.coverage().get(x as i32 + shift.0, y as i32 + shift.1).unwrap_or(0)
+    });
     lines::lined(form, outline, &inked, lines)
 }
 
@@ -37,13 +42,23 @@ impl Came {
 /// A form changed by another part. Its marks lie in the frame of the part that they are on.
 ///
 /// * `came`: how far it came on this very form, and then on the new one.
-pub fn changed(form: &Form, outline: &Outline, part: &Part, still: Affine2, came: &mut Came) -> Form {
+pub fn changed(
+    form: &Form,
+    outline: &Outline,
+    part: &Part,
+    still: Affine2,
+    came: &mut Came,
+) -> Form {
     let known = came.sculpting.take();
     if form.height.size() != outline.size() {
         // A primitive's planes reach beyond its outline; cut to it they fit.
         let cut = cut_to(form, outline);
         let fits = cut.height.size() == outline.size();
-        return if fits { changed(&cut, outline, part, still, &mut Came::default()) } else { form.clone() };
+        return if fits {
+            changed(&cut, outline, part, still, &mut Came::default())
+        } else {
+            form.clone()
+        };
     }
     match &part.kind {
         PartKind::Touches { touches: list, .. } => {
@@ -66,7 +81,9 @@ pub fn changed(form: &Form, outline: &Outline, part: &Part, still: Affine2, came
             for sample in through.iter_mut().flat_map(|stroke| &mut stroke.samples) {
                 sample.0 = still.transform_point2(sample.0);
             }
-            let made = known.filter(|known| known.goes_on(&through)).unwrap_or_else(|| Sculpting::of(form));
+            let made = known
+                .filter(|known| known.goes_on(&through))
+                .unwrap_or_else(|| Sculpting::of(form));
             let made = made.go_on(form, &through);
             let form = form.clone().with_added(made.layer());
             came.sculpting = Some(made);

@@ -1,5 +1,5 @@
-//! How much memory it takes to make the surface of parts, estimated before it begins. Floor 4. An upper bound. Not
-//! here: how much memory there is (floors above).
+//! How much memory it takes to make the surface of parts, estimated before it begins. Floor 4. An
+//! upper bound. Not here: how much memory there is (floors above).
 
 use super::unchanged::apart;
 use super::{OutlineSource, Part, PartKind};
@@ -17,13 +17,15 @@ const SURFACE_BYTES: u64 = 60;
 const FORM_BYTES: u64 = 17;
 /// Coverage of an outline, and what is inside.
 const OUTLINE_BYTES: u64 = 2;
-/// What flats are found through, bytes a pixel of their picture; and what each thread finds an outline through.
+/// What flats are found through, bytes a pixel of their picture; and what each thread finds an
+/// outline through.
 const FLATS_BYTES: u64 = 64;
 const SOUGHT_BYTES: u64 = 8;
 
 /// The equation of a pillow on its grids, and the vectors of its search.
 const PILLOW_BYTES: u64 = 90;
-/// A pillow that fills so many pixels is found at half their resolution, if nothing in front frees its rim.
+/// A pillow that fills so many pixels is found at half their resolution, if nothing in front frees
+/// its rim.
 const HALVED_PX: u64 = inflate::MOST_UNKNOWNS as u64;
 const HALVED_BYTES: u64 = 50;
 
@@ -70,8 +72,8 @@ fn through(map: Affine2, [w, h]: Sides) -> Sides {
 }
 
 impl Document {
-    /// Bytes that making the surface of some parts takes at most, what is kept of them included; the layers and maps
-    /// that they are made of are the document's.
+    /// Bytes that making the surface of some parts takes at most, what is kept of them included;
+    /// the layers and maps that they are made of are the document's.
     pub fn shape_bytes(&self, list: &[Arc<Part>]) -> u64 {
         let canvas = self.size.area() as u64;
         let shown = || list.iter().filter(|part| part.visible && part.on().is_none());
@@ -83,8 +85,10 @@ impl Document {
                 PILLOW_BYTES if px > HALVED_PX && nearest == Some(&part.id) => HALVED_BYTES,
                 bytes => bytes,
             };
-            let upon = list.iter().filter(|other| other.visible && other.on() == Some(part.id.as_str()));
-            let upon = upon.map(|other| making_bytes(&other.kind) + 2 * FORM_BYTES).max().unwrap_or(0);
+            let upon =
+                list.iter().filter(|other| other.visible && other.on() == Some(part.id.as_str()));
+            let upon =
+                upon.map(|other| making_bytes(&other.kind) + 2 * FORM_BYTES).max().unwrap_or(0);
             most = most.max(px * (FORM_BYTES + making.max(upon)));
             forms = forms.saturating_add(px * 2 * FORM_BYTES);
             if let Some(source) = part.outline() {
@@ -92,7 +96,9 @@ impl Document {
                 let sought = self.outline_sides(source).map_or(0, |sides| self.within_reach(sides));
                 let threads = rayon::current_num_threads() as u64;
                 let of_flats = matches!(source, OutlineSource::Layer { color: Some(_), .. });
-                flats = flats.max(sought * (SOUGHT_BYTES * threads + if of_flats { FLATS_BYTES } else { 0 }));
+                flats = flats.max(
+                    sought * (SOUGHT_BYTES * threads + if of_flats { FLATS_BYTES } else { 0 }),
+                );
             }
         }
         if shown().next().is_none() {
@@ -102,11 +108,16 @@ impl Document {
         let made = (canvas * RELIEF_BYTES + most.max(maps)).max(canvas * SURFACE_BYTES);
         outlines.saturating_add(flats.max(made)).saturating_add(forms.min(FORMS.ceiling()))
     }
+
     /// Pixels of the box around a part, 0 if it is so large that none is made of it.
     fn box_px(&self, part: &Part) -> u64 {
         let own = match &part.kind {
-            PartKind::Primitive(body) => Some(around([(body.center, body.reach() + 2.0)].into_iter())),
-            PartKind::Sweep { balls, .. } => Some(around(balls.iter().map(|ball| (ball.at, ball.radius + 2.0)))),
+            PartKind::Primitive(body) => {
+                Some(around([(body.center, body.reach() + 2.0)].into_iter()))
+            }
+            PartKind::Sweep { balls, .. } => {
+                Some(around(balls.iter().map(|ball| (ball.at, ball.radius + 2.0))))
+            }
             PartKind::Maps(_) => Some(sides_of(self.size)),
             PartKind::Profiles { outline: None, shadings } => {
                 shadings.first().map(|shading| sides_of(shading.picture.coverage.size()))
@@ -115,11 +126,13 @@ impl Document {
         };
         own.map_or(0, |sides| self.within_reach(through(apart(part.matrix).0, sides)))
     }
+
     fn within_reach(&self, [w, h]: Sides) -> u64 {
         let px = (w + 3.0) * (h + 3.0);
         // Rounded up where it is made.
         if px <= 1.1 * self.most_px() as f64 { px as u64 } else { 0 }
     }
+
     /// The sides of the box around what an outline is found in.
     fn outline_sides(&self, source: &OutlineSource) -> Option<Sides> {
         let canvas = sides_of(self.size);
@@ -130,8 +143,11 @@ impl Document {
                     Content::Pixels(pixels) if !layer.is_warped() => {
                         let map = self.map_of(layer.id)?.plane;
                         let Rect { x0, y0, x1, y1 } = pixels.tiles.bounds();
-                        let corner = |x: i32, y: i32| map.to_canvas(vec2(x as f32, y as f32)).map(|p| (p, 2.0));
-                        let corners = [corner(x0, y0), corner(x1, y0), corner(x1, y1), corner(x0, y1)];
+                        let corner = |x: i32, y: i32| {
+                            map.to_canvas(vec2(x as f32, y as f32)).map(|p| (p, 2.0))
+                        };
+                        let corners =
+                            [corner(x0, y0), corner(x1, y0), corner(x1, y1), corner(x0, y1)];
                         match corners.into_iter().collect::<Option<Vec<_>>>() {
                             Some(corners) => around(corners.into_iter()),
                             None => canvas,
@@ -161,7 +177,8 @@ mod tests {
     fn a_part_weighs_by_its_box_and_those_that_are_never_made_nothing() {
         let document = Document::empty(Size::new(1000, 800));
         let ball = |radius: f32, matrix: Affine2| {
-            let body = PartKind::Primitive(Primitive::new(Body::Sphere, vec2(300.0, 300.0), radius));
+            let body =
+                PartKind::Primitive(Primitive::new(Body::Sphere, vec2(300.0, 300.0), radius));
             Arc::new(Part { matrix, ..Part::new(format!("{radius}"), body) })
         };
         let weight = |list: &[Arc<Part>]| document.shape_bytes(list);

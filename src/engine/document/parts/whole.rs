@@ -1,5 +1,5 @@
-//! The forms of a document combined, the farthest first. While they are those of the last surface, nothing is combined
-//! again. Floor 4.
+//! The forms of a document combined, the farthest first. While they are those of the last surface,
+//! nothing is combined again. Floor 4.
 
 use super::body::of_surface;
 use super::made::{FormArea, MadePart, MadeSurface};
@@ -24,21 +24,28 @@ pub struct Whole<'d> {
 
 impl<'d> Whole<'d> {
     pub fn new(document: &'d Document) -> Self {
-        let is_same =
-            |made: &&MadeSurface| made.size == document.size && same_surface(&made.maps, &document.parts.maps);
-        let last = lock(document).as_ref().filter(is_same).map(|made| (made.forms.clone(), made.surface.clone()));
+        let is_same = |made: &&MadeSurface| {
+            made.size == document.size && same_surface(&made.maps, &document.parts.maps)
+        };
+        let last = lock(document)
+            .as_ref()
+            .filter(is_same)
+            .map(|made| (made.forms.clone(), made.surface.clone()));
         Self { document, last, added: Vec::new(), relief: None }
     }
+
     /// One more form in front; `form`: where it was made just now or is kept.
     pub fn add(&mut self, made: MadePart, form: Option<Arc<Form>>) {
         let known = self.last.as_ref().and_then(|(forms, _)| forms.get(self.added.len()));
-        let is_same = known.is_some_and(|(area, way)| Arc::ptr_eq(area, &made.area) && *way == made.part.combine);
+        let is_same = known
+            .is_some_and(|(area, way)| Arc::ptr_eq(area, &made.area) && *way == made.part.combine);
         if !is_same {
             self.begin();
         }
         self.put(&made, form.or_else(|| made.form()));
         self.added.push(MadePart { kept: None, ..made });
     }
+
     fn put(&mut self, made: &MadePart, form: Option<Arc<Form>>) {
         let Some(relief) = &mut self.relief else { return };
         let form = form.or_else(|| self.document.remade(made));
@@ -47,23 +54,28 @@ impl<'d> Whole<'d> {
             relief.add(&form, made.part.combine, id);
         }
     }
+
     /// Combines those that were added.
     fn begin(&mut self) {
         if self.relief.is_some() {
             return;
         }
         let mut relief = Relief::empty(self.document.size);
-        if let Some(maps) = self.document.parts.maps.as_ref().filter(|maps| maps.size() == self.document.size) {
+        if let Some(maps) =
+            self.document.parts.maps.as_ref().filter(|maps| maps.size() == self.document.size)
+        {
             relief.add(&of_surface(maps), Combine::Over, 1);
         }
         self.relief = Some(relief);
         let cache = &self.document.parts.cache;
         for made in std::mem::take(&mut self.added) {
-            let known = cache.known(&made.part.id).filter(|known| Arc::ptr_eq(&known.area, &made.area));
+            let known =
+                cache.known(&made.part.id).filter(|known| Arc::ptr_eq(&known.area, &made.area));
             self.put(&made, known.and_then(|known| known.form()));
             self.added.push(made);
         }
     }
+
     /// The surface; the last one if it is the same.
     pub fn done(mut self) -> Option<Arc<Surface>> {
         if let (None, Some((forms, surface))) = (&self.relief, &self.last)
@@ -74,10 +86,12 @@ impl<'d> Whole<'d> {
         self.begin();
         let mut known = lock(self.document).take().map(|made| made.nearest).unwrap_or_default();
         let made = self.relief.and_then(|relief| relief.into_surface(&mut known).ok());
-        let surface = made.map(|made| Arc::new(made.pointing_on(self.document.parts.points.as_ref())));
+        let surface =
+            made.map(|made| Arc::new(made.pointing_on(self.document.parts.points.as_ref())));
         let forms = self.added.into_iter().map(|made| (made.area, made.part.combine)).collect();
         let (maps, size) = (self.document.parts.maps.clone(), self.document.size);
-        *lock(self.document) = Some(MadeSurface { forms, maps, size, surface: surface.clone(), nearest: known });
+        *lock(self.document) =
+            Some(MadeSurface { forms, maps, size, surface: surface.clone(), nearest: known });
         surface
     }
 }

@@ -1,5 +1,5 @@
-//! Views of flows: hue is the direction in which a picture is compressed most, saturation the amount, and the lines run
-//! along the direction of least change (SF fig. 2, 3). Floor 4.
+//! Views of flows: hue is the direction in which a picture is compressed most, saturation the
+//! amount, and the lines run along the direction of least change (SF fig. 2, 3). Floor 4.
 
 use super::{ViewOptions, painted};
 use crate::math::{Size, Vec2, Vec3, vec2, vec3};
@@ -26,7 +26,12 @@ pub(super) fn of_normals(surface: &Surface, options: &ViewOptions) -> Picture {
     of_flow(FlowField::of_normals(surface), Some(surface), options)
 }
 
-pub(super) fn of_operator(surface: Option<&Surface>, size: Size, bend: &Bend, options: &ViewOptions) -> Picture {
+pub(super) fn of_operator(
+    surface: Option<&Surface>,
+    size: Size,
+    bend: &Bend,
+    options: &ViewOptions,
+) -> Picture {
     of_flow(FlowField::of_deformation(surface, size, bend), surface, options)
 }
 
@@ -44,7 +49,8 @@ pub(super) fn directions(surface: &Surface, options: &ViewOptions) -> Picture {
     let curvature = surface.curvature(options.blur_px);
     let marks = Plane::from_fn(surface.size(), |x, y| {
         let (ku, kv, u) = curvature.principal(x, y);
-        // The direction in which the surface turns most, either way: for a groove this is across it, where k_v < 0.
+        // The direction in which the surface turns most, either way: for a groove this is across
+        // it, where k_v < 0.
         let u = if ku.abs() >= kv.abs() { u } else { u.perp() };
         let u = vec2(u.x, -u.y);
         FlowPixel { line: u, hue_of: u, magnitude: (ku.abs() - kv.abs()).abs() }
@@ -67,7 +73,8 @@ fn shown(marks: &Plane<FlowPixel>, surface: Option<&Surface>) -> Picture {
     })
 }
 
-/// Whether a line may go from a pixel to the next without leaving the surface; at a corner, along both sides.
+/// Whether a line may go from a pixel to the next without leaving the surface; at a corner, along
+/// both sides.
 fn passes(plane: &Plane<u8>, from: (usize, usize), to: (usize, usize)) -> bool {
     let linked = |(x, y): (usize, usize), bit: u8| plane.at(x, y) & bit != 0;
     let across = if to.0 > from.0 { links::RIGHT } else { links::LEFT };
@@ -99,8 +106,8 @@ fn strong(marks: &Plane<FlowPixel>, covered: impl Fn(usize, usize) -> bool) -> f
     sample.select_nth_unstable_by(at, f32::total_cmp).1.max(1e-4)
 }
 
-/// The colour of a direction; opposite directions have the same. Horizontal is red, and hues run counter-clockwise as
-/// seen.
+/// The colour of a direction; opposite directions have the same. Horizontal is red, and hues run
+/// counter-clockwise as seen.
 fn hue(direction: Vec2) -> Vec3 {
     let turn = (-direction.y).atan2(direction.x) / std::f32::consts::PI;
     let channel = |offset: f32| {

@@ -43,7 +43,9 @@ pub(super) fn curvature(surface: &Surface, options: &ViewOptions) -> Picture {
 
 pub(super) fn curvature_grey(surface: &Surface, options: &ViewOptions) -> Picture {
     let curvature = surface.curvature(options.blur_px);
-    painted(surface.size(), Some(surface), |x, y| [0.5 + 0.5 * curvature.kappa(x, y, options.curvature_scale_px); 3])
+    painted(surface.size(), Some(surface), |x, y| {
+        [0.5 + 0.5 * curvature.kappa(x, y, options.curvature_scale_px); 3]
+    })
 }
 
 /// From the upper left, toward the viewer.
@@ -57,7 +59,8 @@ fn lit_by(normal: Vec3) -> f32 {
     srgb::encode((0.04 + 0.55 * diffuse + 0.35 * glossy).min(1.0))
 }
 
-/// Behind a lit surface: between its light and its dark side, so that the outlines of both are visible.
+/// Behind a lit surface: between its light and its dark side, so that the outlines of both are
+/// visible.
 const BACKDROP: f32 = 0.40;
 
 pub(super) fn lit(surface: &Surface) -> Picture {
@@ -80,7 +83,8 @@ pub(super) fn lit(surface: &Surface) -> Picture {
     })
 }
 
-/// A matt surface in a lamp's light and, from the other side, in a faint one, so that nothing is fully black; encoded.
+/// A matt surface in a lamp's light and, from the other side, in a faint one, so that nothing is
+/// fully black; encoded.
 pub(super) fn clay(surface: &Surface) -> Picture {
     let (lamp, fill) = (LIGHT.normalize_or_zero(), vec3(0.7, -0.3, 0.5).normalize_or_zero());
     painted(surface.size(), Some(surface), |x, y| {
@@ -92,7 +96,8 @@ pub(super) fn clay(surface: &Surface) -> Picture {
 
 /// Linear.
 const CLAY: [f32; 3] = [0.92, 0.86, 0.80];
-/// Lines of equal depth from the nearest to the farthest point, the strong ones among them, and how wide they are, px.
+/// Lines of equal depth from the nearest to the farthest point, the strong ones among them, and how
+/// wide they are, px.
 const LINES: f32 = 20.0;
 const STRONG_EACH: i32 = 4;
 const LINE_PX: [f32; 2] = [0.55, 1.1];
@@ -102,7 +107,8 @@ pub(super) fn contours(surface: &Surface) -> Picture {
     painted(surface.size(), Some(surface), |x, y| {
         let (xi, yi) = (x as i32, y as i32);
         let here = depth.at(x, y) * LINES;
-        // The steepest of the differences to both sides that are no jump: lines are equally wide on every slope.
+        // The steepest of the differences to both sides that are no jump: lines are equally wide on
+        // every slope.
         let slope = |dx: i32, dy: i32| {
             let side = |s: i32| (depth.clamped(xi + s * dx, yi + s * dy) * LINES - here).abs();
             side(1).min(side(-1))

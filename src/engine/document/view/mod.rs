@@ -1,5 +1,5 @@
-//! Views: pictures of a document's maps and of what is derived from them.
-//! Floor 4. Not here: the maps and flows themselves (`surface`), files (`io`), the command (`cli::view`).
+//! Views: pictures of a document's maps and of what is derived from them. Floor 4. Not here: the
+//! maps and flows themselves (`surface`), files (`io`), the command (`cli::view`).
 
 mod flows;
 mod maps;
@@ -46,9 +46,11 @@ crate::named! {
         FlowOperator = "flow-operator",
         /// σ over δ for several κ, at α = 0.2 and 0.8 (RS fig. 2): needs no document.
         Scaling = "scaling",
-        /// The painting, or one layer, as it lies in the plane of the surface unwrapped: what D_s prints from.
+        /// The painting, or one layer, as it lies in the plane of the surface unwrapped: what D_s
+        /// prints from.
         Unwrapped = "unwrapped",
-        /// The surface and a ball next to it under one light: if they agree, the maps are read the right way round.
+        /// The surface and a ball next to it under one light: if they agree, the maps are read the
+        /// right way round.
         Lit = "lit",
         /// Unpainted, in even light from above left.
         Clay = "clay",
@@ -62,6 +64,7 @@ impl SurfaceView {
     pub fn is_of_nothing(self) -> bool {
         self == SurfaceView::Scaling
     }
+
     /// Whether it shows a layer's anchors or operator, and so needs a layer that has them.
     pub fn is_of_layer(self) -> bool {
         matches!(self, SurfaceView::Weights | SurfaceView::FlowOperator)
@@ -73,7 +76,8 @@ impl SurfaceView {
 pub struct ViewOptions {
     /// *s* of κ, px.
     pub curvature_scale_px: f32,
-    /// Standard deviation of the blur of normals and flows, px. One pixel suppresses the noise of 8-bit maps.
+    /// Standard deviation of the blur of normals and flows, px. One pixel suppresses the noise of
+    /// 8-bit maps.
     pub blur_px: f32,
 }
 
@@ -98,7 +102,8 @@ pub enum ViewUnavailable {
     NoAnchors(String),
 }
 
-/// Draws a view. `layer`: the layer whose anchors or operator are shown; by default the topmost that has them.
+/// Draws a view. `layer`: the layer whose anchors or operator are shown; by default the topmost
+/// that has them.
 pub fn draw(
     document: &Document,
     layer: Option<&Layer>,
@@ -124,10 +129,15 @@ pub fn draw(
         SurfaceView::Directions => flows::directions(surface()?, options),
         SurfaceView::FlowDepth => flows::of_depth(surface()?, options),
         SurfaceView::FlowNormals => flows::of_normals(surface()?, options),
-        SurfaceView::FlowOperator => {
-            flows::of_operator(document.surface.as_deref(), document.size, &bend(document, layer)?, options)
+        SurfaceView::FlowOperator => flows::of_operator(
+            document.surface.as_deref(),
+            document.size,
+            &bend(document, layer)?,
+            options,
+        ),
+        SurfaceView::Weights => {
+            weights::weights(document.surface.as_deref(), document.size, &bend(document, layer)?)
         }
-        SurfaceView::Weights => weights::weights(document.surface.as_deref(), document.size, &bend(document, layer)?),
     })
 }
 
@@ -136,7 +146,8 @@ pub fn available(document: &Document, layer: Option<&Layer>) -> Vec<SurfaceView>
     let can = |view: SurfaceView| match view {
         SurfaceView::Weights => bend(document, layer).is_ok(),
         SurfaceView::FlowOperator => bend(document, layer).is_ok(),
-        // One shows nothing of this document, the other has a size of its own: they are shown alone.
+        // One shows nothing of this document, the other has a size of its own: they are shown
+        // alone.
         SurfaceView::Scaling | SurfaceView::Unwrapped => false,
         _ => document.surface.is_some(),
     };
@@ -148,19 +159,28 @@ fn bend(document: &Document, layer: Option<&Layer>) -> Result<Bend, ViewUnavaila
     let of = |layer: &Layer| layer.content.bend().filter(|bend| !bend.anchors.is_empty());
     match layer {
         Some(layer) => of(layer).ok_or_else(|| ViewUnavailable::NoAnchors(layer.name.clone())),
-        None => {
-            document.walk().into_iter().rev().find_map(|(_, layer)| of(layer)).ok_or(ViewUnavailable::NoAnchoredLayer)
-        }
+        None => document
+            .walk()
+            .into_iter()
+            .rev()
+            .find_map(|(_, layer)| of(layer))
+            .ok_or(ViewUnavailable::NoAnchoredLayer),
     }
 }
 
-/// A picture from a colour per pixel, encoded, each in `[0, 1]`; transparent where the surface does not cover.
-fn painted(size: Size, coverage: Option<&Surface>, color: impl Fn(usize, usize) -> [f32; 3] + Sync) -> Picture {
+/// A picture from a colour per pixel, encoded, each in `[0, 1]`; transparent where the surface does
+/// not cover.
+fn painted(
+    size: Size,
+    coverage: Option<&Surface>,
+    color: impl Fn(usize, usize) -> [f32; 3] + Sync,
+) -> Picture {
     let texels = Plane::from_fn(size, |x, y| {
         let [r, g, b] = color(x, y).map(quantise);
         [r, g, b, coverage.map_or(255, |s| s.coverage(x, y))]
     });
-    Picture::srgb8(size, texels.into_values()).expect("a canvas has pixels, and each got its colour")
+    Picture::srgb8(size, texels.into_values())
+        .expect("a canvas has pixels, and each got its colour")
 }
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
-//! The view of the scaling function: σ over δ for several κ, at a low and at a high scaling-invariant point (RS fig.
-//! 2). Floor 4. It needs no document.
+//! The view of the scaling function: σ over δ for several κ, at a low and at a high
+//! scaling-invariant point (RS fig. 2). Floor 4. It needs no document.
 
 use crate::math::{Size, Vec2, Vec3, vec2};
 use crate::raster::Picture;
@@ -18,12 +18,15 @@ const MARGIN: f32 = 20.0;
 /// The largest σ shown: e, which is σ(1, 1) for γ = 1.
 const MOST: f32 = std::f32::consts::E;
 
-/// Draws the plots: δ from 0 to 1 rightward, σ from 0 to e upward, a line across at σ = 1 and one down at δ = α, and
-/// every curve passes through their crossing. Blue is convex, red concave, grey flat; the stronger the colour the
-/// larger
+/// Draws the plots: δ from 0 to 1 rightward, σ from 0 to e upward, a line across at σ = 1 and one
+/// down at δ = α, and every curve passes through their crossing. Blue is convex, red concave, grey
+/// flat; the stronger the colour the larger
 /// |κ|.
 pub(super) fn plots() -> Option<Picture> {
-    let size = Size::new((ALPHAS.len() as f32 * (SIDE + MARGIN) + MARGIN) as u32, (SIDE + 2.0 * MARGIN) as u32);
+    let size = Size::new(
+        (ALPHAS.len() as f32 * (SIDE + MARGIN) + MARGIN) as u32,
+        (SIDE + 2.0 * MARGIN) as u32,
+    );
     let mut pixmap = Pixmap::new(size.width, size.height)?;
     pixmap.fill(Color::WHITE);
     for (i, alpha) in ALPHAS.into_iter().enumerate() {
@@ -32,11 +35,18 @@ pub(super) fn plots() -> Option<Picture> {
         let grey = Vec3::splat(0.55);
         let dashes = StrokeDash::new(vec![4.0, 4.0], 0.0);
         for guide in [[place(0.0, 1.0), place(1.0, 1.0)], [place(alpha, 0.0), place(alpha, MOST)]] {
-            draw(&mut pixmap, &guide, grey, Stroke { width: 1.0, dash: dashes.clone(), ..Stroke::default() });
+            draw(
+                &mut pixmap,
+                &guide,
+                grey,
+                Stroke { width: 1.0, dash: dashes.clone(), ..Stroke::default() },
+            );
         }
         for kappa in KAPPAS {
             let scaling = Scaling::new(alpha, GAMMA);
-            let curve = (0..=160).map(|i| i as f32 / 160.0).map(|delta| place(delta, scaling.sigma(kappa, delta)));
+            let curve = (0..=160)
+                .map(|i| i as f32 / 160.0)
+                .map(|delta| place(delta, scaling.sigma(kappa, delta)));
             let points: Vec<Vec2> = curve.collect();
             draw(&mut pixmap, &points, color_of(kappa), Stroke { width: 2.5, ..Stroke::default() });
         }

@@ -10,7 +10,8 @@ const GAP_PX: u32 = 8;
 /// A middle grey: dark and light views are both visible against it.
 const BACKGROUND: f32 = 0.32;
 
-/// Arranges pictures of one size in rows of four, in order, scaled down to fit. `None` without pictures.
+/// Arranges pictures of one size in rows of four, in order, scaled down to fit. `None` without
+/// pictures.
 pub fn sheet(pictures: &[Picture]) -> Option<Picture> {
     let size = pictures.first()?.size;
     let cell = size.scaled((CELL_PX / size.longer_side()).min(1.0));

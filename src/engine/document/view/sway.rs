@@ -1,5 +1,6 @@
-//! A picture seen from slightly to the right or to the left of where it was painted, by its depth: the relief shows.
-//! Floor 4. What is hidden from the front is not known; what lies behind is drawn over it.
+//! A picture seen from slightly to the right or to the left of where it was painted, by its depth:
+//! the relief shows. Floor 4. What is hidden from the front is not known; what lies behind is drawn
+//! over it.
 
 use crate::math::Size;
 use crate::raster::{Plane, TileGrid};
@@ -15,7 +16,8 @@ pub struct SwayScene {
     heights: Plane<f32>,
 }
 
-/// Pixels next to each other that differ less in height than this, times their distance, are one piece.
+/// Pixels next to each other that differ less in height than this, times their distance, are one
+/// piece.
 const JUMP: f32 = 3.0;
 
 impl SwayScene {
@@ -41,10 +43,13 @@ impl SwayScene {
         });
         Self { size, pixels, heights }
     }
+
     pub fn size(&self) -> Size {
         self.size
     }
-    /// Premultiplied pixels, row by row, as seen from an angle to the right (positive) or to the left, radians.
+
+    /// Premultiplied pixels, row by row, as seen from an angle to the right (positive) or to the
+    /// left, radians.
     pub fn seen_from(&self, angle_rad: f32) -> Vec<[u8; 4]> {
         let lean = -angle_rad.max(-1.0).min(1.0).tan();
         let width = self.size.width as usize;
@@ -52,7 +57,9 @@ impl SwayScene {
         out.par_chunks_mut(width).enumerate().for_each(|(y, row)| self.row(y, lean, row));
         out
     }
-    /// One row: every pixel drawn where it is seen, the nearest on top; holes get what lies behind next to them.
+
+    /// One row: every pixel drawn where it is seen, the nearest on top; holes get what lies behind
+    /// next to them.
     fn row(&self, y: usize, lean: f32, row: &mut [[u8; 4]]) {
         let n = row.len();
         let mut near = vec![f32::NEG_INFINITY; n];
@@ -62,7 +69,8 @@ impl SwayScene {
             // As far as the next pixel of its piece, so that a stretched slope has no gaps.
             let is_joined = x + 1 < n && (self.heights.at(x + 1, y) - height).abs() < JUMP;
             let to = if is_joined { seen(x + 1) } else { from + 1.0 };
-            let (first, last) = (from.min(to).round().max(0.0), from.max(to).round().max(from.round() + 1.0));
+            let (first, last) =
+                (from.min(to).round().max(0.0), from.max(to).round().max(from.round() + 1.0));
             for i in first as usize..(last.max(0.0) as usize).min(n) {
                 if height > near[i] {
                     (near[i], row[i]) = (height, self.pixels.at(x, y));
@@ -103,11 +111,16 @@ mod tests {
         let surface = relief.into_surface(&mut crate::surface::KnownNearest::default()).unwrap();
         let pixel = |i: usize| {
             let (x, y) = ((i % 96) as f32 - 47.5, (i / 96) as f32 - 39.5);
-            if x.hypot(y) < 24.0 { [255, if x.hypot(y) < 4.0 { 255 } else { 0 }, 0, 255] } else { [0, 0, 255, 255] }
+            if x.hypot(y) < 24.0 {
+                [255, if x.hypot(y) < 4.0 { 255 } else { 0 }, 0, 255]
+            } else {
+                [0, 0, 255, 255]
+            }
         };
         let rgba: Vec<u8> = (0..size.area()).flat_map(pixel).collect();
         SwayScene::new(&TileGrid::from_straight_rgba(&rgba, 96, 80, 0, 0), &surface, 96)
     }
+
     #[test]
     fn from_the_front_the_picture_is_what_it_is_and_without_gaps_from_aside() {
         let scene = scene();
@@ -116,6 +129,7 @@ mod tests {
             assert!(scene.seen_from(angle).iter().all(|pixel| pixel[3] == 255), "{angle}");
         }
     }
+
     #[test]
     fn from_the_right_what_is_near_goes_to_the_left() {
         let scene = scene();

@@ -30,12 +30,18 @@ fn ball() -> Document {
         pieces: Vec::new(),
     };
     let layer = Layer::new("ramp", Content::Gradient(Live::new(gradient)));
-    Document { surface: Some(Arc::new(surface)), layers: vec![Arc::new(layer)], ..Document::empty(size) }
+    Document {
+        surface: Some(Arc::new(surface)),
+        layers: vec![Arc::new(layer)],
+        ..Document::empty(size)
+    }
 }
+
 fn pixel(picture: &Picture, x: usize, y: usize) -> [u8; 4] {
     let Texels::Srgb8(texels) = &picture.texels else { panic!("views are encoded bytes") };
     texels[y * picture.size.width as usize + x]
 }
+
 fn drawn(view: SurfaceView) -> Picture {
     draw(&ball(), None, view, &ViewOptions::default()).unwrap()
 }
@@ -49,8 +55,13 @@ fn every_view_has_a_name_of_its_own_and_a_picture_of_the_canvas() {
             assert_eq!(drawn(view).size, Size::new(160, 160), "{name}");
         }
     }
-    assert_eq!(available(&ball(), None).len(), SurfaceView::ALL.len() - 2, "all but those that stand alone");
+    assert_eq!(
+        available(&ball(), None).len(),
+        SurfaceView::ALL.len() - 2,
+        "all but those that stand alone"
+    );
 }
+
 #[test]
 fn the_top_of_a_ball_shows_green_in_the_normals_and_is_near_in_the_middle() {
     let [r, g, ..] = pixel(&drawn(SurfaceView::Normals), 79, 25);
@@ -60,32 +71,49 @@ fn the_top_of_a_ball_shows_green_in_the_normals_and_is_near_in_the_middle() {
     assert_eq!(pixel(&drawn(SurfaceView::Normals), 3, 3)[3], 0);
     assert_eq!(pixel(&drawn(SurfaceView::Mask), 3, 3), [0, 0, 0, 255]);
 }
+
 #[test]
 fn a_ball_is_convex_blue_and_light_and_lit_from_the_upper_left() {
     let options = ViewOptions { curvature_scale_px: 60.0, ..ViewOptions::default() };
-    let [r, _, b, _] = pixel(&draw(&ball(), None, SurfaceView::Curvature, &options).unwrap(), 80, 80);
+    let [r, _, b, _] =
+        pixel(&draw(&ball(), None, SurfaceView::Curvature, &options).unwrap(), 80, 80);
     assert!(b > r, "{r} {b}");
-    assert!(pixel(&draw(&ball(), None, SurfaceView::CurvatureGrey, &options).unwrap(), 80, 80)[0] > 200);
+    assert!(
+        pixel(&draw(&ball(), None, SurfaceView::CurvatureGrey, &options).unwrap(), 80, 80)[0] > 200
+    );
     let lit = drawn(SurfaceView::Lit);
     assert!(pixel(&lit, 55, 50)[0] > pixel(&lit, 105, 110)[0]);
 }
+
 #[test]
 fn each_anchor_has_the_colour_of_what_it_holds() {
     let weights = drawn(SurfaceView::Weights);
     let ([r0, _, b0, _], [_, g1, b1, _]) = (pixel(&weights, 30, 80), pixel(&weights, 130, 80));
     assert!(b0 > r0 && g1 > b1, "the first anchor is blue, the second green");
 }
+
 #[test]
 fn what_cannot_be_shown_says_why() {
     let empty = Document::empty(Size::new(8, 8));
     let options = ViewOptions::default();
-    assert_eq!(draw(&empty, None, SurfaceView::Depth, &options).err(), Some(ViewUnavailable::NoSurface));
-    assert_eq!(draw(&empty, None, SurfaceView::Weights, &options).err(), Some(ViewUnavailable::NoAnchoredLayer));
+    assert_eq!(
+        draw(&empty, None, SurfaceView::Depth, &options).err(),
+        Some(ViewUnavailable::NoSurface)
+    );
+    assert_eq!(
+        draw(&empty, None, SurfaceView::Weights, &options).err(),
+        Some(ViewUnavailable::NoAnchoredLayer)
+    );
     let fill = Layer::new("ground", Content::Fill(Color::BLACK));
-    let refused = draw(&ball(), Some(&fill), SurfaceView::Weights, &options).err().map(|e| e.to_string());
-    assert_eq!(refused.as_deref(), Some("the layer “ground” has no anchors; image and gradient layers have them"));
+    let refused =
+        draw(&ball(), Some(&fill), SurfaceView::Weights, &options).err().map(|e| e.to_string());
+    assert_eq!(
+        refused.as_deref(),
+        Some("the layer “ground” has no anchors; image and gradient layers have them")
+    );
     assert!(available(&empty, None).is_empty());
 }
+
 #[test]
 fn a_sheet_holds_every_picture_in_order() {
     let pictures = [
@@ -101,6 +129,7 @@ fn a_sheet_holds_every_picture_in_order() {
     assert_eq!(pixel(&sheet, 8 + 80, 8 + 168 + 80), [255; 4]);
     assert!(super::sheet(&[]).is_none());
 }
+
 /// The document with the picture of its planes as its only layer.
 fn laid_back(document: &Document, seen: &UnwrappedPicture, filter: ImageFilter) -> Document {
     let source = PictureSource::new("plane.png".into(), seen.picture().unwrap(), Adjust::default());
@@ -115,9 +144,11 @@ fn laid_back(document: &Document, seen: &UnwrappedPicture, filter: ImageFilter) 
     let layers = vec![Arc::new(Layer::new("print", Content::Image(Live::new(image))))];
     Document { layers, ..document.clone() }
 }
+
 /// The mean and the largest difference of two paintings inside the surface, of 255.
 fn differences(a: &Document, b: &Document) -> (f64, u8) {
-    let [a_pixels, b_pixels] = [a, b].map(|d| crate::document::flatten(d, &Progress::default()).unwrap());
+    let [a_pixels, b_pixels] =
+        [a, b].map(|d| crate::document::flatten(d, &Progress::default()).unwrap());
     let surface = a.surface.as_deref().unwrap();
     let (mut sum, mut count, mut most) = (0.0, 0.0, 0);
     for (x, y) in (0..a.size.height).flat_map(|y| (0..a.size.width).map(move |x| (x, y))) {
@@ -132,16 +163,29 @@ fn differences(a: &Document, b: &Document) -> (f64, u8) {
     }
     (sum / count, most)
 }
+
 #[test]
 fn a_picture_of_the_unwrapped_plane_lies_on_the_surface_as_what_it_was_taken_from() {
     let document = ball();
     for scale in [1, 2, 4] {
-        let seen = unwrapped(&document, None, UnwrapOptions { scale, ..Default::default() }, &Progress::default());
+        let seen = unwrapped(
+            &document,
+            None,
+            UnwrapOptions { scale, ..Default::default() },
+            &Progress::default(),
+        );
         let seen = seen.unwrap();
-        assert!(seen.size.width > 150 * scale, "a ball of 120 px is longer along its surface: {}", seen.size);
+        assert!(
+            seen.size.width > 150 * scale,
+            "a ball of 120 px is longer along its surface: {}",
+            seen.size
+        );
         for filter in [ImageFilter::Bilinear, ImageFilter::Antialias] {
             let (mean, most) = differences(&document, &laid_back(&document, &seen, filter));
-            assert!(mean < 2.0, "scale {scale}, {filter:?}: {mean} of 255 in the mean, {most} at most");
+            assert!(
+                mean < 2.0,
+                "scale {scale}, {filter:?}: {mean} of 255 in the mean, {most} at most"
+            );
         }
     }
 }

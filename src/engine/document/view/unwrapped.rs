@@ -1,8 +1,10 @@
-//! The unwrapped view: a painting as it lies in the planes of the surface. A picture painted there, placed where the
-//! view says and bent by D_s, lies on the surface where it was seen. Floor 4.
+//! The unwrapped view: a painting as it lies in the planes of the surface. A picture painted there,
+//! placed where the view says and bent by D_s, lies on the surface where it was seen. Floor 4.
 
 use super::ViewUnavailable;
-use crate::document::{Document, Highlights, Layer, Progress, flatten, flatten_deep, flatten_layer};
+use crate::document::{
+    Document, Highlights, Layer, Progress, flatten, flatten_deep, flatten_layer,
+};
 use crate::math::{Rect, Size, Vec2, srgb::quantise, vec2};
 use crate::memory::filled_or_unwind;
 use crate::paint::Placement;
@@ -20,7 +22,8 @@ pub struct UnwrapOptions {
     pub scale: u32,
     /// How the surface is unwrapped, unless the layer has settings of its own.
     pub settings: UnwrapSettings,
-    /// If given, the painting is composed without rounding to 8 bits, and its highlights are treated this way.
+    /// If given, the painting is composed without rounding to 8 bits, and its highlights are
+    /// treated this way.
     pub deep: Option<Highlights>,
 }
 
@@ -34,12 +37,12 @@ impl Default for UnwrapOptions {
     }
 }
 
-/// A painting in the planes of its surface, and what puts the same picture back: an image layer with this placement and
-/// this bend shows it where it was.
+/// A painting in the planes of its surface, and what puts the same picture back: an image layer
+/// with this placement and this bend shows it where it was.
 pub struct UnwrappedPicture {
     pub size: Size,
-    /// Premultiplied, encoded, row by row. A few pixels around the pieces continue their rims, so that nothing shines
-    /// through where a rim is looked up.
+    /// Premultiplied, encoded, row by row. A few pixels around the pieces continue their rims, so
+    /// that nothing shines through where a rim is looked up.
     pub pixels: Vec<[f32; 4]>,
     pub placement: Placement,
     pub bend: Bend,
@@ -61,7 +64,8 @@ const BLEED_PX: u32 = 6;
 
 /// The painting in the planes of its surface, the objects laid out next to each other.
 ///
-/// `layer`: shows that layer alone; if it is bent by D_s, in the plane as its own operator and anchors lay it.
+/// `layer`: shows that layer alone; if it is bent by D_s, in the plane as its own operator and
+/// anchors lay it.
 pub fn unwrapped(
     document: &Document,
     layer: Option<&Layer>,
@@ -69,21 +73,33 @@ pub fn unwrapped(
     progress: &Progress,
 ) -> Result<UnwrappedPicture, ViewUnavailable> {
     let surface = document.surface.as_deref().ok_or(ViewUnavailable::NoSurface)?;
-    let own = layer.and_then(|layer| layer.content.bend()).filter(|bend| bend.operator.unwrapping().is_some());
+    let own = layer
+        .and_then(|layer| layer.content.bend())
+        .filter(|bend| bend.operator.unwrapping().is_some());
     let layout = match own {
         Some(_) => None,
-        None => Some(surface.plane_layout(options.settings).ok_or(ViewUnavailable::NothingUnwrapped)?),
+        None => {
+            Some(surface.plane_layout(options.settings).ok_or(ViewUnavailable::NothingUnwrapped)?)
+        }
     };
     let (view, bend) = match (&layout, own) {
         (None, Some(bend)) => (Some(laid_by(document, &bend)?), bend),
         (layout, _) => (None, layout.as_ref().map(|layout| layout.bend()).unwrap_or_default()),
     };
-    let view =
-        view.as_ref().or(layout.as_ref().map(|layout| layout.sheet())).ok_or(ViewUnavailable::NothingUnwrapped)?;
-    let painting = Painting::of(document, layer, options.deep, progress).ok_or(ViewUnavailable::NoMemory)?;
+    let view = view
+        .as_ref()
+        .or(layout.as_ref().map(|layout| layout.sheet()))
+        .ok_or(ViewUnavailable::NothingUnwrapped)?;
+    let painting =
+        Painting::of(document, layer, options.deep, progress).ok_or(ViewUnavailable::NoMemory)?;
     let scale = options.scale.clamp(*UnwrapOptions::SCALE.start(), *UnwrapOptions::SCALE.end());
     let (size, pixels) = pulled(&painting, view, scale);
-    Ok(UnwrappedPicture { size, pixels, placement: placed_over(view.rect, size, document.size), bend })
+    Ok(UnwrappedPicture {
+        size,
+        pixels,
+        placement: placed_over(view.rect, size, document.size),
+        bend,
+    })
 }
 
 /// The plane as an operator and anchors lay it.
@@ -100,7 +116,10 @@ pub fn placed_over(rect: Rect, picture: Size, canvas: Size) -> Placement {
     let cover = (canvas.width as f32 / w).max(canvas.height as f32 / h);
     let px_per_texel = rect.width() as f32 / w;
     Placement {
-        center: vec2(rect.x0 as f32 + 0.5 * rect.width() as f32, rect.y0 as f32 + 0.5 * rect.height() as f32),
+        center: vec2(
+            rect.x0 as f32 + 0.5 * rect.width() as f32,
+            rect.y0 as f32 + 0.5 * rect.height() as f32,
+        ),
         scale: (px_per_texel / cover).max(*Placement::SCALE.start()).min(*Placement::SCALE.end()),
         rotation: 0.0,
     }
@@ -113,13 +132,23 @@ enum Painting {
 }
 
 impl Painting {
-    fn of(document: &Document, layer: Option<&Layer>, deep: Option<Highlights>, progress: &Progress) -> Option<Self> {
+    fn of(
+        document: &Document,
+        layer: Option<&Layer>,
+        deep: Option<Highlights>,
+        progress: &Progress,
+    ) -> Option<Self> {
         Some(match (layer, deep) {
-            (Some(layer), _) => Painting::Tiles(flatten_layer(document, layer.id, progress)?, document.size),
-            (None, Some(highlights)) => Painting::Deep(flatten_deep(document, highlights, progress)?, document.size),
+            (Some(layer), _) => {
+                Painting::Tiles(flatten_layer(document, layer.id, progress)?, document.size)
+            }
+            (None, Some(highlights)) => {
+                Painting::Deep(flatten_deep(document, highlights, progress)?, document.size)
+            }
             (None, None) => Painting::Tiles(flatten(document, progress)?, document.size),
         })
     }
+
     /// Premultiplied; the canvas's rim is continued beyond it.
     fn pixel(&self, x: i32, y: i32) -> [f32; 4] {
         let (Painting::Tiles(_, size) | Painting::Deep(_, size)) = self;
@@ -129,11 +158,13 @@ impl Painting {
             Painting::Deep(pixels, size) => pixels[y as usize * size.width as usize + x as usize],
         }
     }
+
     /// Between four pixels.
     fn between(&self, point: Vec2) -> [f32; 4] {
         let corner = (point - 0.5).floor();
         let (share, x, y) = (point - 0.5 - corner, corner.x as i32, corner.y as i32);
-        let [a, b, c, d] = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(dx, dy)| self.pixel(x + dx, y + dy));
+        let [a, b, c, d] =
+            [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(dx, dy)| self.pixel(x + dx, y + dy));
         std::array::from_fn(|i| {
             let (above, below) = (a[i] + share.x * (b[i] - a[i]), c[i] + share.x * (d[i] - c[i]));
             above + share.y * (below - above)
@@ -159,14 +190,19 @@ fn pulled(painting: &Painting, view: &PlaneView, scale: u32) -> (Size, Vec<[f32;
     (size, pixels)
 }
 
-/// Continues what is known into what is not (NaN), pixel by pixel from the rims; what stays unknown is transparent.
+/// Continues what is known into what is not (NaN), pixel by pixel from the rims; what stays unknown
+/// is transparent.
 fn bleed(pixels: &mut [[f32; 4]], size: Size, steps: u32) {
     let (w, h) = (size.width as i32, size.height as i32);
     let sides = [(-1, 0), (1, 0), (0, -1), (0, 1)];
     let beside = |i: usize| {
         let (x, y) = (i as i32 % w, i as i32 / w);
         let inside = move |(x, y): &(i32, i32)| *x >= 0 && *y >= 0 && *x < w && *y < h;
-        sides.into_iter().map(move |(dx, dy)| (x + dx, y + dy)).filter(inside).map(move |(x, y)| (y * w + x) as usize)
+        sides
+            .into_iter()
+            .map(move |(dx, dy)| (x + dx, y + dy))
+            .filter(inside)
+            .map(move |(x, y)| (y * w + x) as usize)
     };
     let is_known = |pixel: &[f32; 4]| !pixel[3].is_nan();
     let mut rim: Vec<usize> = (0..pixels.len())
@@ -176,13 +212,15 @@ fn bleed(pixels: &mut [[f32; 4]], size: Size, steps: u32) {
     for _ in 0..steps {
         let mean = |&i: &usize| {
             let known = beside(i).map(|j| pixels[j]).filter(is_known);
-            let (sum, n) =
-                known.fold(([0.0f32; 4], 0.0f32), |(s, n), p| (std::array::from_fn(|c| s[c] + p[c]), n + 1.0));
+            let (sum, n) = known.fold(([0.0f32; 4], 0.0f32), |(s, n), p| {
+                (std::array::from_fn(|c| s[c] + p[c]), n + 1.0)
+            });
             (i, sum.map(|v| v / n.max(1.0)))
         };
         let filled: Vec<(usize, [f32; 4])> = rim.iter().map(mean).collect();
         filled.iter().for_each(|&(i, pixel)| pixels[i] = pixel);
-        let mut next: Vec<usize> = rim.iter().flat_map(|&i| beside(i)).filter(|&j| !is_known(&pixels[j])).collect();
+        let mut next: Vec<usize> =
+            rim.iter().flat_map(|&i| beside(i)).filter(|&j| !is_known(&pixels[j])).collect();
         next.sort_unstable();
         next.dedup();
         rim = next;

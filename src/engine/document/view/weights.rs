@@ -14,7 +14,8 @@ pub(super) fn weights(surface: Option<&Surface>, size: Size, bend: &Bend) -> Pic
     let shared = painted(size, surface, |x, y| {
         let q = crate::math::vec2(x as f32, y as f32) + 0.5;
         let weights = bend.weights.at(&bend.anchors, q);
-        let blended = weights.iter().zip(&colors).fold(Vec3::ZERO, |sum, (&w, &color)| sum + w * color);
+        let blended =
+            weights.iter().zip(&colors).fold(Vec3::ZERO, |sum, (&w, &color)| sum + w * color);
         // The surface is shaded, so that the parts that an anchor influences can be recognised.
         let light = surface.map_or(1.0, |s| 0.45 + 0.55 * s.normal(x, y).z.max(0.0));
         (blended * light).to_array()
@@ -24,7 +25,8 @@ pub(super) fn weights(surface: Option<&Surface>, size: Size, bend: &Bend) -> Pic
 
 /// Blue, green and red as in the paper, then distinct hues.
 pub fn color_of(anchor: usize) -> Vec3 {
-    const FIRST: [Vec3; 3] = [vec3(0.20, 0.40, 1.00), vec3(0.15, 0.80, 0.25), vec3(1.00, 0.25, 0.20)];
+    const FIRST: [Vec3; 3] =
+        [vec3(0.20, 0.40, 1.00), vec3(0.15, 0.80, 0.25), vec3(1.00, 0.25, 0.20)];
     if let Some(&color) = FIRST.get(anchor) {
         return color;
     }

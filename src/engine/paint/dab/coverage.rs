@@ -1,5 +1,6 @@
-//! A dab of any footprint, evaluated row by row as coverage before it is added, so that a texture or grain can be
-//! applied to it. Floor 3. Not here: the plain round tip (`dab`), which adds its coverage directly.
+//! A dab of any footprint, evaluated row by row as coverage before it is added, so that a texture
+//! or grain can be applied to it. Floor 3. Not here: the plain round tip (`dab`), which adds its
+//! coverage directly.
 
 use super::round::{RoundTip, RowPaint, bent_row, flat_row};
 use super::shape::{self, TipShape};
@@ -24,9 +25,11 @@ pub enum Footprint<'t> {
 impl TouchedBlocks {
     /// Where a span lies among the pixels of the area, row by row.
     fn range(&self, span: PixelSpan) -> std::ops::Range<usize> {
-        let start = (span.y - self.area.y0) as usize * self.area.width() + (span.x - self.area.x0) as usize;
+        let start =
+            (span.y - self.area.y0) as usize * self.area.width() + (span.x - self.area.x0) as usize;
         start..start + span.n
     }
+
     fn pixels(&self) -> usize {
         self.area.width() * self.area.height()
     }
@@ -53,21 +56,31 @@ impl PlacedDab<'_> {
             plane.resize(part.pixels(), 0.0);
         }
         match footprint {
-            Footprint::Shape(shape, falloff) => {
-                self.cover_shape((shape, falloff), &part, &mut scratch.deformed, (&mut covered, &mut shares))
-            }
+            Footprint::Shape(shape, falloff) => self.cover_shape(
+                (shape, falloff),
+                &part,
+                &mut scratch.deformed,
+                (&mut covered, &mut shares),
+            ),
             Footprint::Textured(stamps) => {
                 self.cover_round(&part, scratch, (&mut covered, &mut shares));
                 self.read(stamps, &part, scratch);
-                covered.iter_mut().zip(&scratch.stamped).for_each(|(c, s)| *c *= f32::from(s[3]) / 255.0);
+                covered
+                    .iter_mut()
+                    .zip(&scratch.stamped)
+                    .for_each(|(c, s)| *c *= f32::from(s[3]) / 255.0);
             }
         }
         for span in part.spans() {
-            let row = CoveredRow { coverage: &covered[part.range(span)], shares: &shares[part.range(span)] };
+            let row = CoveredRow {
+                coverage: &covered[part.range(span)],
+                shares: &shares[part.range(span)],
+            };
             stroke_tile.cover(part.start_of(span), row, self.paint(Some(self.dab.color)));
         }
         (scratch.covered, scratch.shares) = (covered, shares);
     }
+
     /// Adds a picture tip to a tile at the dab's own softness.
     pub fn add_softened(
         &self,
@@ -90,19 +103,32 @@ impl PlacedDab<'_> {
             stroke_tile.stamp(part.start_of(span), &scratch.stamped[part.range(span)], paint);
         }
     }
-    /// The round tip over a part; D over the part and the pixels around it is in `scratch.deformed`.
-    fn cover_round(&self, part: &TouchedBlocks, scratch: &mut DabScratch, (covered, shares): (&mut [f32], &mut [f32])) {
+
+    /// The round tip over a part; D over the part and the pixels around it is in
+    /// `scratch.deformed`.
+    fn cover_round(
+        &self,
+        part: &TouchedBlocks,
+        scratch: &mut DabScratch,
+        (covered, shares): (&mut [f32], &mut [f32]),
+    ) {
         let DabScratch { deformed, row, .. } = scratch;
         let tip = RoundTip::plain(&self.dab);
-        let field = self.bent_over.map(|surface| DeformationField::new(surface, part.area.grown(1), deformed));
+        let field = self
+            .bent_over
+            .map(|surface| DeformationField::new(surface, part.area.grown(1), deformed));
         for span in part.spans() {
-            let out = RowPaint { coverage: &mut covered[part.range(span)], reach: &mut shares[part.range(span)] };
+            let out = RowPaint {
+                coverage: &mut covered[part.range(span)],
+                reach: &mut shares[part.range(span)],
+            };
             match &field {
                 Some(field) => bent_row(field.around(span), &tip, row, out),
                 None => flat_row(span.x as f32 + 0.5, span.y as f32 + 0.5, &tip, row, out),
             }
         }
     }
+
     /// An ellipse or a square over a part; `deformed` becomes tip space.
     fn cover_shape(
         &self,
@@ -115,9 +141,16 @@ impl PlacedDab<'_> {
         transform(tip_from_canvas, &mut deformed.x, &mut deformed.y);
         for span in part.spans() {
             let around = self.around(span, part.area.grown(1), deformed, tip_from_canvas.matrix2);
-            shape.row(falloff, &self.dab, around, &mut covered[part.range(span)], &mut shares[part.range(span)]);
+            shape.row(
+                falloff,
+                &self.dab,
+                around,
+                &mut covered[part.range(span)],
+                &mut shares[part.range(span)],
+            );
         }
     }
+
     fn around<'f>(
         &'f self,
         span: PixelSpan,
@@ -129,12 +162,14 @@ impl PlacedDab<'_> {
         const UNLINKED: [u8; TILE] = [0; TILE];
         match self.bent_over {
             Some(surface) => {
-                let SpanNeighbours { above, row, below, linked } = DeformationField::new(surface, rect, d).around(span);
+                let SpanNeighbours { above, row, below, linked } =
+                    DeformationField::new(surface, rect, d).around(span);
                 shape::TipSpanNeighbours { above, row, below, linked, flat }
             }
             None => {
                 let row = |y: i32| {
-                    let start = (y - rect.y0) as usize * rect.width() + (span.x - 1 - rect.x0) as usize;
+                    let start =
+                        (y - rect.y0) as usize * rect.width() + (span.x - 1 - rect.x0) as usize;
                     (&d.x[start..start + span.n + 2], &d.y[start..start + span.n + 2])
                 };
                 shape::TipSpanNeighbours {
@@ -147,8 +182,9 @@ impl PlacedDab<'_> {
             }
         }
     }
-    /// Reads the picture of a part at the dab's softness into `scratch.stamped`; `scratch.deformed` is converted to
-    /// texels.
+
+    /// Reads the picture of a part at the dab's softness into `scratch.stamped`; `scratch.deformed`
+    /// is converted to texels.
     fn read(&self, stamps: &SoftenedStamps, part: &TouchedBlocks, scratch: &mut DabScratch) {
         let (stamp, above) = stamps.at(self.dab.softness);
         scratch.stamped.clear();
@@ -157,14 +193,17 @@ impl PlacedDab<'_> {
         self.read_stamp(stamp, texels_from_canvas, part, scratch, |_, read| read);
         if let Some((above, share)) = above {
             let next = above.texels_from_canvas(&self.dab) * texels_from_canvas.inverse();
-            let mix =
-                |known: u8, read: u8| (f32::from(known) + (f32::from(read) - f32::from(known)) * share + 0.5) as u8;
-            let mixed = |known: [u8; 4], read: [u8; 4]| std::array::from_fn(|c| mix(known[c], read[c]));
+            let mix = |known: u8, read: u8| {
+                (f32::from(known) + (f32::from(read) - f32::from(known)) * share + 0.5) as u8
+            };
+            let mixed =
+                |known: [u8; 4], read: [u8; 4]| std::array::from_fn(|c| mix(known[c], read[c]));
             self.read_stamp(above, next, part, scratch, mixed);
         }
     }
-    /// `map`: to this stamp's texels from what is in `scratch.deformed`. `mix`: combines the old values with those
-    /// read.
+
+    /// `map`: to this stamp's texels from what is in `scratch.deformed`. `mix`: combines the old
+    /// values with those read.
     fn read_stamp(
         &self,
         stamp: &TipStamp,
@@ -180,7 +219,8 @@ impl PlacedDab<'_> {
         row.resize(part.area.width(), [0; 4]);
         let texels_from_canvas = stamp.texels_from_canvas(&self.dab);
         for span in part.spans() {
-            let patches = stamping.patches.row(self.scene, part.area, span.y, deformed, texels_from_canvas);
+            let patches =
+                stamping.patches.row(self.scene, part.area, span.y, deformed, texels_from_canvas);
             antialias.row(stamp.texture(), patches, Outside::None, row);
             let from = (span.x - part.area.x0) as usize;
             for (known, read) in stamped[part.range(span)].iter_mut().zip(&row[from..]) {

@@ -1,5 +1,6 @@
-//! The round tip over rows of pixels. Pixels are sorted into zones, and each zone is computed no more precisely than
-//! necessary. Floor 3. The loops over rows are in `rows`, the profile is in `profile`, D in `surface`.
+//! The round tip over rows of pixels. Pixels are sorted into zones, and each zone is computed no
+//! more precisely than necessary. Floor 3. The loops over rows are in `rows`, the profile is in
+//! `profile`, D in `surface`.
 
 mod rows;
 
@@ -23,14 +24,15 @@ pub(super) struct RoundTip {
     at: Vec2,
     per_radius: f32,
     profile: RoundProfile,
-    /// The radii between which coverage falls off, and the bound of half the width of the profile's box.
+    /// The radii between which coverage falls off, and the bound of half the width of the profile's
+    /// box.
     falloff: (f32, f32),
     half_width: (f32, f32),
     rim: Rim,
     /// Nothing within this distance is on the stroke's edge.
     inner: f32,
-    /// Pixels whose squared widths add up to less, in radii, count whole: the stroke's edge does not affect them, and
-    /// the tip fills them.
+    /// Pixels whose squared widths add up to less, in radii, count whole: the stroke's edge does
+    /// not affect them, and the tip fills them.
     soft: f32,
     pub(super) flow: f32,
     thin: f32,
@@ -53,7 +55,8 @@ pub(super) struct RowZones {
     /// |J|²: the sum of both squared widths of the pixel, in radii.
     wide: [f32; TILE],
     zones: [u32; TILE],
-    /// The zone by distance alone, before the pixel's widths are known: `BEYOND`, `WITHIN` or nothing.
+    /// The zone by distance alone, before the pixel's widths are known: `BEYOND`, `WITHIN` or
+    /// nothing.
     near: [u32; TILE],
 }
 
@@ -64,7 +67,8 @@ const FALLOFF: u32 = 4;
 /// In addition to the zone: the pixel counts whole.
 const SOFT: u32 = 8;
 
-/// Sum of a pixel's squared widths, in radii, below which its second dimension does not matter in the falloff.
+/// Sum of a pixel's squared widths, in radii, below which its second dimension does not matter in
+/// the falloff.
 const NARROW_SQUARED: f32 = 2.0 / (12.0 * 12.0);
 
 /// Added to squared distances, px²: the centre itself has no direction toward it.
@@ -72,7 +76,13 @@ const AT_CENTER: f32 = 1e-12;
 
 impl Default for RowZones {
     fn default() -> Self {
-        Self { r: [0.0; TILE], toward: [0.0; TILE], wide: [0.0; TILE], zones: [0; TILE], near: [0; TILE] }
+        Self {
+            r: [0.0; TILE],
+            toward: [0.0; TILE],
+            wide: [0.0; TILE],
+            zones: [0; TILE],
+            near: [0; TILE],
+        }
     }
 }
 
@@ -98,16 +108,20 @@ impl RoundTip {
             ceiling: dab.ceiling,
         }
     }
+
     /// The same footprint elsewhere.
     pub(super) fn about(self, at: Vec2) -> Self {
         Self { at, ..self }
     }
+
     /// The same footprint with full flow and ceiling: gives plain coverage.
     pub(super) fn plain(dab: &Dab) -> Self {
         Self { flow: 1.0, ceiling: 1.0, ..Self::new(dab) }
     }
-    /// The chunks of a row of `n` pixels from the pixel at (x, y) on that an unbent dab may reach: all others lie
-    /// beyond it according to [`RoundTip::zone`]. Small dabs touch few rows of their blocks.
+
+    /// The chunks of a row of `n` pixels from the pixel at (x, y) on that an unbent dab may reach:
+    /// all others lie beyond it according to [`RoundTip::zone`]. Small dabs touch few rows of their
+    /// blocks.
     pub(super) fn flat_chunks(&self, x: i32, y: i32, n: usize) -> Range<usize> {
         // Distances are rounded.
         const ROUNDING: (f32, f32) = (1.0005, 0.05);
@@ -120,10 +134,14 @@ impl RoundTip {
         let chord = (limit * limit - dy * dy).sqrt();
         let middle = self.at.x - (x as f32 + 0.5);
         // NaN gives the whole row.
-        let place = |v: f32, otherwise: usize| if v.is_nan() { otherwise } else { (v.max(0.0) as usize).min(n) };
-        let (first, last) = (place((middle - chord).floor(), 0), place((middle + chord).ceil() + 1.0, n));
+        let place = |v: f32, otherwise: usize| {
+            if v.is_nan() { otherwise } else { (v.max(0.0) as usize).min(n) }
+        };
+        let (first, last) =
+            (place((middle - chord).floor(), 0), place((middle + chord).ceil() + 1.0, n));
         first / CHUNK * CHUNK..last.next_multiple_of(CHUNK).min(n)
     }
+
     /// The zone of a pixel at distance r whose width's square is at most `widest`, both in radii.
     #[inline(always)]
     fn zone(&self, r: f32, widest: f32) -> u32 {
@@ -135,25 +153,31 @@ impl RoundTip {
         let first = if start > 0.0 { start } else { 0.0 };
         let beyond = if inner > self.falloff.1 { BEYOND } else { 0 };
         let within = if outer < start { WITHIN } else { 0 };
-        // In the falloff a pixel counts as narrow across the radius: for a wider one that is off by more than a third
-        // of a byte.
+        // In the falloff a pixel counts as narrow across the radius: for a wider one that is off by
+        // more than a third of a byte.
         let is_narrow = widest < NARROW_SQUARED;
         let falls = if (inner > first) & (outer < end) & is_narrow { FALLOFF } else { 0 };
         // A dab thinner than a pixel reaches only a part of it anywhere.
         if self.thin < 1.0 { beyond } else { beyond | within | falls }
     }
-    /// Whether pixels whose squared widths add up to `wide` count whole, as a bit in addition to the zone.
+
+    /// Whether pixels whose squared widths add up to `wide` count whole, as a bit in addition to
+    /// the zone.
     #[inline(always)]
     fn softness(&self, wide: f32) -> u32 {
         if wide < self.soft { SOFT } else { 0 }
     }
-    /// For pixels at most this long, px: the squared distances beyond which and within which all are in that zone.
+
+    /// For pixels at most this long, px: the squared distances beyond which and within which all
+    /// are in that zone.
     #[inline(always)]
     fn sure(&self, pixel: f32) -> (f32, f32) {
         // Distances are rounded.
         const ROUNDING: (f32, f32) = (1.0005, 0.05);
         let square = pixel * pixel * (self.per_radius * self.per_radius);
-        let beyond = (self.falloff.1 + self.profile.half_width(square)) / self.per_radius * ROUNDING.0 + ROUNDING.1;
+        let beyond = (self.falloff.1 + self.profile.half_width(square)) / self.per_radius
+            * ROUNDING.0
+            + ROUNDING.1;
         // Both widths of a pixel are at most this long.
         let half = self.half_width.0 + self.half_width.1 * 2.0 * square;
         let within = (self.falloff.0 - half) / self.per_radius / ROUNDING.0 - ROUNDING.1;
@@ -161,7 +185,9 @@ impl RoundTip {
         // NaN excludes nothing.
         (beyond * beyond, if is_sure { within * within } else { 0.0 })
     }
-    /// A pixel at p from the centre, J's columns `across` and `along`; canvas px. Gives r, |Jᵀ p|², |J|² and the zone.
+
+    /// A pixel at p from the centre, J's columns `across` and `along`; canvas px. Gives r, |Jᵀ p|²,
+    /// |J|² and the zone.
     #[inline(always)]
     fn judge(&self, p: (f32, f32), across: (f32, f32), along: (f32, f32)) -> (f32, f32, f32, u32) {
         let square = self.per_radius * self.per_radius;
@@ -172,6 +198,7 @@ impl RoundTip {
         let widest = (across + (along.0 * along.0 + along.1 * along.1)) * square;
         (r, (a * a + b * b) * square * square, widest, self.zone(r, widest) | self.softness(widest))
     }
+
     /// a ← a + f (c − a), f = flow · F, up to the ceiling c, for dabs that reach whole pixels.
     #[inline(always)]
     fn raise(&self, coverage: &mut f32, mean: f32) {
@@ -182,10 +209,18 @@ impl RoundTip {
         let room = self.ceiling - *coverage;
         *coverage += f * if room > 0.0 { room } else { 0.0 };
     }
-    /// On the rim: [`raise`] with the share that the stroke may reach. The squares are the pixel's widths along the
-    /// radius and across it.
+
+    /// On the rim: [`raise`] with the share that the stroke may reach. The squares are the pixel's
+    /// widths along the radius and across it.
     #[inline(always)]
-    fn raise_share(&self, coverage: &mut f32, reach: &mut f32, r: f32, width_squared: f32, across_squared: f32) {
+    fn raise_share(
+        &self,
+        coverage: &mut f32,
+        reach: &mut f32,
+        r: f32,
+        width_squared: f32,
+        across_squared: f32,
+    ) {
         let mean = self.profile.mean_over(r, width_squared, across_squared);
         let share = self.rim.share(r, width_squared.sqrt());
         // Comparisons turn NaN into 0.
@@ -193,9 +228,17 @@ impl RoundTip {
         let covered = if mean < share { mean } else { share };
         raise(coverage, reach, self.flow * self.thin * covered, self.thin * share, self.ceiling);
     }
+
     /// The same, to the bit, for a pixel that counts whole: its share is 1, and the tip fills it.
     #[inline(always)]
-    fn raise_whole(&self, coverage: &mut f32, reach: &mut f32, r: f32, width_squared: f32, across_squared: f32) {
+    fn raise_whole(
+        &self,
+        coverage: &mut f32,
+        reach: &mut f32,
+        r: f32,
+        width_squared: f32,
+        across_squared: f32,
+    ) {
         let mean = self.profile.mean_over_narrow(r, width_squared, across_squared);
         let mean = if mean > 0.0 { mean } else { 0.0 };
         let g = self.flow * if mean < 1.0 { mean } else { 1.0 };
@@ -203,8 +246,10 @@ impl RoundTip {
         *coverage += g * if room > 0.0 { room } else { 0.0 };
         *reach = if g > 0.0 { 1.0 } else { *reach };
     }
-    /// Adds to classified pixels of a row, chunks of one zone at a time: the mean takes an extra root and division only
-    /// if a pixel's box crosses a zone's border, and beyond the rim it costs nothing.
+
+    /// Adds to classified pixels of a row, chunks of one zone at a time: the mean takes an extra
+    /// root and division only if a pixel's box crosses a zone's border, and beyond the rim it costs
+    /// nothing.
     #[inline(always)]
     fn add(&self, row: &RowZones, pixels: Range<usize>, paint: RowPaint) {
         let RowPaint { coverage, reach } = paint;
@@ -217,7 +262,8 @@ impl RoundTip {
                 end += CHUNK;
             }
             let end = end.min(n);
-            let (r, toward, wide) = (&row.r[start..end], &row.toward[start..end], &row.wide[start..end]);
+            let (r, toward, wide) =
+                (&row.r[start..end], &row.toward[start..end], &row.wide[start..end]);
             let (part, reached) = (&mut coverage[start..end], &mut reach[start..end]);
             match zone & !SOFT {
                 BEYOND => {}
@@ -249,16 +295,28 @@ fn add_falloff(tip: RoundTip, r: &[f32], toward: &[f32], coverage: &mut [f32]) {
 }
 
 #[inline(always)]
-fn add_rim(tip: RoundTip, (r, toward, wide): (&[f32], &[f32], &[f32]), coverage: &mut [f32], reach: &mut [f32]) {
-    for ((((a, m), r), toward), wide) in coverage.iter_mut().zip(reach).zip(r).zip(toward).zip(wide) {
+fn add_rim(
+    tip: RoundTip,
+    (r, toward, wide): (&[f32], &[f32], &[f32]),
+    coverage: &mut [f32],
+    reach: &mut [f32],
+) {
+    for ((((a, m), r), toward), wide) in coverage.iter_mut().zip(reach).zip(r).zip(toward).zip(wide)
+    {
         let width_squared = toward / (r * r);
         tip.raise_share(a, m, *r, width_squared, wide - width_squared);
     }
 }
 
 #[inline(always)]
-fn add_soft_rim(tip: RoundTip, (r, toward, wide): (&[f32], &[f32], &[f32]), coverage: &mut [f32], reach: &mut [f32]) {
-    for ((((a, m), r), toward), wide) in coverage.iter_mut().zip(reach).zip(r).zip(toward).zip(wide) {
+fn add_soft_rim(
+    tip: RoundTip,
+    (r, toward, wide): (&[f32], &[f32], &[f32]),
+    coverage: &mut [f32],
+    reach: &mut [f32],
+) {
+    for ((((a, m), r), toward), wide) in coverage.iter_mut().zip(reach).zip(r).zip(toward).zip(wide)
+    {
         let width_squared = toward / (r * r);
         tip.raise_whole(a, m, *r, width_squared, wide - width_squared);
     }

@@ -1,5 +1,6 @@
-//! Tips in closed form that are not round: ellipses and squares, averaged over each pixel's piece of the image plane.
-//! Floor 3. They are evaluated in *tip space*, where the dab's centre is the origin and its half-axes have length 1.
+//! Tips in closed form that are not round: ellipses and squares, averaged over each pixel's piece
+//! of the image plane. Floor 3. They are evaluated in *tip space*, where the dab's centre is the
+//! origin and its half-axes have length 1.
 
 use super::round::slope;
 use crate::math::{Affine2, Mat2, Vec2};
@@ -32,24 +33,30 @@ impl TipShape {
             TipShape::Square { .. } => TipShape::Square { ratio: dab.ratio },
         }
     }
-    /// The shorter half-axis relative to the longer one, as a dab is drawn; and the factor by which the dab's flow is
-    /// reduced.
+
+    /// The shorter half-axis relative to the longer one, as a dab is drawn; and the factor by which
+    /// the dab's flow is reduced.
     fn ratio(self, radius: f32) -> (f32, f32) {
         let (TipShape::Ellipse { ratio } | TipShape::Square { ratio }) = self;
         let ratio = ratio.max(*Tip::RATIO.start()).min(1.0);
         let drawn = ratio.max((LEAST_HALF_PX / radius).min(1.0));
         (drawn, ratio / drawn)
     }
+
     /// The ratio of a pixel's width that a dab reaches: below 1 if it is thinner than a pixel.
     pub fn thinness(self, dab: &Dab) -> f32 {
         self.ratio(dab.radius).1
     }
+
     /// Tip space from canvas px. The footprint is turned counter-clockwise as seen.
     pub fn tip_from_canvas(self, dab: &Dab) -> Affine2 {
         let (ratio, _) = self.ratio(dab.radius);
         let per_axis = Vec2::new(1.0, 1.0 / ratio) / dab.radius;
-        Affine2::from_scale(per_axis) * Affine2::from_angle(dab.rotation_rad) * Affine2::from_translation(-dab.at)
+        Affine2::from_scale(per_axis)
+            * Affine2::from_angle(dab.rotation_rad)
+            * Affine2::from_translation(-dab.at)
     }
+
     /// How far a dab reaches.
     pub fn extent(self, falloff: Falloff, dab: &Dab) -> DabExtent {
         let (ratio, _) = self.ratio(dab.radius);
@@ -67,7 +74,8 @@ impl TipShape {
     }
 }
 
-/// D at a span's pixels, at one more at each end, and in the rows above and below, in tip space; (x, y) each.
+/// D at a span's pixels, at one more at each end, and in the rows above and below, in tip space;
+/// (x, y) each.
 #[derive(Clone, Copy)]
 pub struct TipSpanNeighbours<'f> {
     pub above: (&'f [f32], &'f [f32]),
@@ -79,8 +87,8 @@ pub struct TipSpanNeighbours<'f> {
     pub flat: Mat2,
 }
 
-/// Coverage of an ellipse at (x, y) in tip space, J's columns `across` and `along`: F(|p|) over a width |Jᵀ p̂|; and
-/// the share of the pixel that a stroke with this rim may reach.
+/// Coverage of an ellipse at (x, y) in tip space, J's columns `across` and `along`: F(|p|) over a
+/// width |Jᵀ p̂|; and the share of the pixel that a stroke with this rim may reach.
 #[inline(always)]
 pub fn ellipse<P: Profile>(
     profile: &P,
@@ -97,7 +105,8 @@ pub fn ellipse<P: Profile>(
     (profile.mean_over(r, width_squared, wide - width_squared), rim.share(r, width_squared.sqrt()))
 }
 
-/// Coverage of a square: F(|x|) F(|y|), each over the pixel's width along its own axis; and the share.
+/// Coverage of a square: F(|x|) F(|y|), each over the pixel's width along its own axis; and the
+/// share.
 #[inline(always)]
 pub fn square<P: Profile>(
     profile: &P,
@@ -108,16 +117,24 @@ pub fn square<P: Profile>(
 ) -> (f32, f32) {
     let width_x = across.0 * across.0 + along.0 * along.0;
     let width_y = across.1 * across.1 + along.1 * along.1;
-    let of =
-        |v: f32, width_squared: f32| (profile.mean(v.abs(), width_squared), rim.share(v.abs(), width_squared.sqrt()));
+    let of = |v: f32, width_squared: f32| {
+        (profile.mean(v.abs(), width_squared), rim.share(v.abs(), width_squared.sqrt()))
+    };
     let (of_x, of_y) = (of(x, width_x), of(y, width_y));
     (of_x.0 * of_y.0, of_x.1 * of_y.1)
 }
 
 impl TipShape {
-    /// Coverage of each pixel of a span, in `[0, 1]`, and the share that the stroke may reach; 0 where D is NaN. `d`:
-    /// in the tip space of this dab.
-    pub fn row(self, falloff: Falloff, dab: &Dab, d: TipSpanNeighbours, coverage: &mut [f32], shares: &mut [f32]) {
+    /// Coverage of each pixel of a span, in `[0, 1]`, and the share that the stroke may reach; 0
+    /// where D is NaN. `d`: in the tip space of this dab.
+    pub fn row(
+        self,
+        falloff: Falloff,
+        dab: &Dab,
+        d: TipSpanNeighbours,
+        coverage: &mut [f32],
+        shares: &mut [f32],
+    ) {
         let Dab { hardness, softness, rim, thin, .. } = *dab;
         let out = (coverage, shares);
         match (self, falloff) {
@@ -144,18 +161,22 @@ crate::widest! {
     fn ellipse_row(d: TipSpanNeighbours, profile: &RoundProfile, rim: (Rim, f32), out: Covered) {
         for_each(d, rim.1, out, |p, across, along| ellipse(profile, rim.0, p, across, along));
     }
+
     fn square_row(d: TipSpanNeighbours, profile: &RoundProfile, rim: (Rim, f32), out: Covered) {
         for_each(d, rim.1, out, |p, across, along| square(profile, rim.0, p, across, along));
     }
+
     fn peaked_ellipse_row(d: TipSpanNeighbours, profile: &PeakedProfile, rim: (Rim, f32), out: Covered) {
         for_each(d, rim.1, out, |p, across, along| ellipse(profile, rim.0, p, across, along));
     }
+
     fn peaked_square_row(d: TipSpanNeighbours, profile: &PeakedProfile, rim: (Rim, f32), out: Covered) {
         for_each(d, rim.1, out, |p, across, along| square(profile, rim.0, p, across, along));
     }
 }
 
-/// Visits the pixels of a span with J by differences toward linked neighbours. `thin`: the dab's own.
+/// Visits the pixels of a span with J by differences toward linked neighbours. `thin`: the dab's
+/// own.
 #[inline(always)]
 fn for_each(
     d: TipSpanNeighbours,
@@ -174,9 +195,14 @@ fn for_each(
         let (x, y) = (cx[i + 1], cy[i + 1]);
         let has = |bit: u8| linked[i] & bit != 0;
         let (l, r, u, d) = (has(links::LEFT), has(links::RIGHT), has(links::UP), has(links::DOWN));
-        let across = (slope(l, r, cx[i], x, cx[i + 2], flat_across.x), slope(l, r, cy[i], y, cy[i + 2], flat_across.y));
-        let along =
-            (slope(u, d, ax[i + 1], x, bx[i + 1], flat_along.x), slope(u, d, ay[i + 1], y, by[i + 1], flat_along.y));
+        let across = (
+            slope(l, r, cx[i], x, cx[i + 2], flat_across.x),
+            slope(l, r, cy[i], y, cy[i + 2], flat_across.y),
+        );
+        let along = (
+            slope(u, d, ax[i + 1], x, bx[i + 1], flat_along.x),
+            slope(u, d, ay[i + 1], y, by[i + 1], flat_along.y),
+        );
         let (value, share) = f((x, y), across, along);
         // The comparisons turn NaN into 0 and keep rounding errors within the range.
         let value = if value > 0.0 { value } else { 0.0 };
@@ -191,12 +217,19 @@ mod tests {
     use crate::math::vec2;
 
     fn dab(radius: f32, rotation_deg: f32, hardness: f32, softness: f32) -> Dab {
-        Dab { rotation_rad: rotation_deg.to_radians(), hardness, softness, ..Dab::plain(vec2(50.0, 60.0), radius) }
+        Dab {
+            rotation_rad: rotation_deg.to_radians(),
+            hardness,
+            softness,
+            ..Dab::plain(vec2(50.0, 60.0), radius)
+        }
     }
+
     /// Coverage at a point of a flat canvas.
     fn at(shape: TipShape, dab: &Dab, place: Vec2) -> f32 {
         let map = shape.tip_from_canvas(dab);
-        let (p, across, along) = (map.transform_point2(place), map.matrix2.x_axis, map.matrix2.y_axis);
+        let (p, across, along) =
+            (map.transform_point2(place), map.matrix2.x_axis, map.matrix2.y_axis);
         let profile = RoundProfile::new(dab.hardness, dab.softness);
         let of = match shape {
             TipShape::Ellipse { .. } => ellipse::<RoundProfile>,
@@ -221,6 +254,7 @@ mod tests {
         assert!(at(ellipse, &leaning, vec2(60.0, 50.0)) > 0.99);
         assert!(at(ellipse, &leaning, vec2(60.0, 70.0)) < 0.01);
     }
+
     #[test]
     fn a_round_ellipse_is_the_round_tip_and_a_square_has_its_corners() {
         let dab = dab(12.0, 30.0, 0.4, 0.3);
@@ -229,12 +263,16 @@ mod tests {
             let place = dab.at + Vec2::from_angle(i as f32) * 0.5 * i as f32;
             let r = (place - dab.at).length() / 12.0;
             let round = profile.mean(r, 1.0 / 144.0);
-            assert!((at(TipShape::Ellipse { ratio: 1.0 }, &dab, place) - round).abs() < 1e-3, "{place}");
+            assert!(
+                (at(TipShape::Ellipse { ratio: 1.0 }, &dab, place) - round).abs() < 1e-3,
+                "{place}"
+            );
         }
         let upright = self::dab(10.0, 0.0, 1.0, 0.0);
         assert!(at(TipShape::Square { ratio: 1.0 }, &upright, upright.at + 9.0) > 0.99);
         assert!(at(TipShape::Ellipse { ratio: 1.0 }, &upright, upright.at + 9.0) < 0.01);
     }
+
     #[test]
     fn coverage_adds_up_to_the_tips_area_however_it_is_turned() {
         for (shape, area) in [
@@ -245,8 +283,10 @@ mod tests {
         ] {
             for turn in [0.0, 17.0, 45.0, 80.0] {
                 let dab = dab(16.0, turn, 1.0, 0.0);
-                let pixels = (20..80).flat_map(|x| (30..90).map(move |y| vec2(x as f32, y as f32) + 0.5));
-                let sum: f32 = pixels.map(|place| at(shape, &dab, place)).sum::<f32>() * shape.thinness(&dab);
+                let pixels =
+                    (20..80).flat_map(|x| (30..90).map(move |y| vec2(x as f32, y as f32) + 0.5));
+                let sum: f32 =
+                    pixels.map(|place| at(shape, &dab, place)).sum::<f32>() * shape.thinness(&dab);
                 assert!(
                     (sum / area - 1.0).abs() < if area > 50.0 { 0.04 } else { 0.12 },
                     "{shape:?} turned {turn}: {sum} for {area}"
@@ -254,17 +294,24 @@ mod tests {
             }
         }
     }
+
     #[test]
     fn softness_changes_coverage_without_jumps_and_nothing_lies_beyond_the_extent() {
         for shape in [TipShape::Ellipse { ratio: 0.4 }, TipShape::Square { ratio: 0.4 }] {
             for place in [vec2(50.0, 60.0), vec2(62.0, 62.0), vec2(66.0, 63.0)] {
-                let values: Vec<f32> =
-                    (0..=100).map(|i| at(shape, &dab(16.0, 20.0, 0.8, i as f32 / 100.0), place)).collect();
-                assert!(values.windows(2).all(|v| (v[1] - v[0]).abs() < 0.04), "{shape:?} at {place}");
+                let values: Vec<f32> = (0..=100)
+                    .map(|i| at(shape, &dab(16.0, 20.0, 0.8, i as f32 / 100.0), place))
+                    .collect();
+                assert!(
+                    values.windows(2).all(|v| (v[1] - v[0]).abs() < 0.04),
+                    "{shape:?} at {place}"
+                );
             }
             let dab = dab(16.0, 20.0, 0.8, 0.5);
             let DabExtent { radius_px, filter_px } = shape.extent(Falloff::Smooth, &dab);
-            let beyond = (0..360).map(|i| dab.at + Vec2::from_angle((i as f32).to_radians()) * (radius_px + filter_px));
+            let beyond = (0..360).map(|i| {
+                dab.at + Vec2::from_angle((i as f32).to_radians()) * (radius_px + filter_px)
+            });
             assert!(beyond.map(|place| at(shape, &dab, place)).all(|v| v < 1e-3));
         }
     }

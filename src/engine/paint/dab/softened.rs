@@ -25,7 +25,9 @@ impl SoftenedStamps {
         }
         SoftenedStamps::One(source.stamp(softness.max(0.0).min(1.0)))
     }
-    /// The stamp just below a softness, and the one above with its weight if the dab is between them.
+
+    /// The stamp just below a softness, and the one above with its weight if the dab is between
+    /// them.
     pub fn at(&self, softness: f32) -> (&TipStamp, Option<(&TipStamp, f32)>) {
         match self {
             SoftenedStamps::One(stamp) => (stamp, None),
@@ -38,9 +40,11 @@ impl SoftenedStamps {
             }
         }
     }
+
     pub fn is_colored(&self) -> bool {
         self.at(0.0).0.is_colored
     }
+
     /// The extent of a dab with the widest of its stamps.
     pub fn extent(&self, dab: &Dab) -> DabExtent {
         let (below, above) = self.at(dab.softness);
@@ -49,22 +53,25 @@ impl SoftenedStamps {
 }
 
 impl TipStamp {
-    /// A⁻¹ after the shift to the dab's centre: texels from canvas px. The footprint is turned counter-clockwise as
-    /// seen.
+    /// A⁻¹ after the shift to the dab's centre: texels from canvas px. The footprint is turned
+    /// counter-clockwise as seen.
     pub fn texels_from_canvas(&self, dab: &Dab) -> Affine2 {
         let texels_per_px = Vec2::splat(self.texels_per_radius / dab.radius);
-        // Counter-clockwise as seen is clockwise in y-down coordinates, so the inverse turns by +rotation.
+        // Counter-clockwise as seen is clockwise in y-down coordinates, so the inverse turns by
+        // +rotation.
         let mirror = Vec2::new(if dab.is_mirrored { -1.0 } else { 1.0 }, 1.0);
         Affine2::from_translation(self.texture().size().center())
             * Affine2::from_scale(mirror)
             * Affine2::from_scale_angle_translation(texels_per_px, dab.rotation_rad, Vec2::ZERO)
             * Affine2::from_translation(-dab.at)
     }
+
     /// The distance of the picture's corners, plus a texel.
     pub fn extent(&self, dab: &Dab) -> DabExtent {
         let px_per_texel = dab.radius / self.texels_per_radius;
         let corner = self.texture().size().center().length() + 1.0;
-        // Two pixels' lengths on either side, which one-sided differences may double: the grid of taps and their cells.
+        // Two pixels' lengths on either side, which one-sided differences may double: the grid of
+        // taps and their cells.
         DabExtent { radius_px: corner * px_per_texel, filter_px: 4.0 }
     }
 }

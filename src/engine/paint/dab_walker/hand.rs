@@ -5,7 +5,8 @@ use crate::math::{Vec2, hash};
 use crate::paint::brush::Brush;
 use crate::paint::habits::Hand;
 
-/// Within this time a speed covers two thirds of the way to a new one: single readings of a pen jump.
+/// Within this time a speed covers two thirds of the way to a new one: single readings of a pen
+/// jump.
 const SPEED_SECS: f32 = 0.05;
 
 /// The hand at one point of the curve.
@@ -28,6 +29,7 @@ impl CurvePoint {
         let (at, tilt) = (Vec2::ZERO, Vec2::ZERO);
         Self { at, pressure: 0.0, tilt, px_per_sec: 0.0, paces: [0.0; 2], secs, until_secs: secs }
     }
+
     /// Between two points, never at rest.
     pub fn lerp(self, to: CurvePoint, s: f32) -> CurvePoint {
         let between = |from: f32, to: f32| from + (to - from) * s;
@@ -62,18 +64,23 @@ impl Speeds {
         let over_secs = [hand.pace_secs, hand.slow_pace_secs];
         Self { px_per_sec: None, paces: [0.0; 2], over_secs, at_secs: f32::MIN, since_px: 0.0 }
     }
+
     pub fn begin(&mut self, secs: f32) {
         self.at_secs = secs;
     }
+
     pub fn at_secs(&self) -> f32 {
         self.at_secs
     }
+
     pub fn are_known(&self) -> bool {
         self.px_per_sec.is_some()
     }
+
     pub fn px_per_sec(&self) -> f32 {
         self.px_per_sec.unwrap_or(0.0)
     }
+
     /// The hand has moved this far by then. Samples with the same time count together.
     pub fn moved(&mut self, px: f32, secs: f32) {
         self.since_px += px;
@@ -81,13 +88,15 @@ impl Speeds {
         if elapsed > 0.0 {
             let now = self.since_px / elapsed;
             let share = 1.0 - (-elapsed / SPEED_SECS).exp();
-            self.px_per_sec = Some(self.px_per_sec.map_or(now, |before| before + (now - before) * share));
+            self.px_per_sec =
+                Some(self.px_per_sec.map_or(now, |before| before + (now - before) * share));
             for (pace, over_secs) in self.paces.iter_mut().zip(self.over_secs) {
                 *pace += (now - *pace) * settled(elapsed, over_secs);
             }
             (self.at_secs, self.since_px) = (secs, 0.0);
         }
     }
+
     pub fn given_to(&self, place: CurvePoint) -> CurvePoint {
         CurvePoint { px_per_sec: self.px_per_sec(), paces: self.paces, ..place }
     }
@@ -104,7 +113,8 @@ pub(super) fn gauss(seed: u32, channel: u32) -> f32 {
     (sum - 2.0) * 3f32.sqrt()
 }
 
-/// A hand that shakes: the more it shakes, the less often it is read, at random positions around its own.
+/// A hand that shakes: the more it shakes, the less often it is read, at random positions around
+/// its own.
 #[derive(Clone, Copy)]
 pub(super) struct Tremor {
     seed: u32,
@@ -119,9 +129,17 @@ impl Tremor {
     pub fn new(brush: &Brush) -> Self {
         let deviation_px = brush.hand.tremor * brush.size;
         // Comparisons that NaN fails.
-        let deviation_px = if deviation_px > 1e-3 && deviation_px < super::FAR_PX { deviation_px } else { 0.0 };
-        Self { seed: hash::mix(brush.seed ^ 0x7e3a), deviation_px, last: None, left_px: 0.0, number: 0 }
+        let deviation_px =
+            if deviation_px > 1e-3 && deviation_px < super::FAR_PX { deviation_px } else { 0.0 };
+        Self {
+            seed: hash::mix(brush.seed ^ 0x7e3a),
+            deviation_px,
+            last: None,
+            left_px: 0.0,
+            number: 0,
+        }
     }
+
     /// Where a pen at a point is read; `None` if it is not.
     pub fn shaken(&mut self, at: Vec2) -> Option<Vec2> {
         if self.deviation_px <= 0.0 {
@@ -153,11 +171,14 @@ mod tests {
         assert!(mean.abs() < 0.06 && (variance - 1.0).abs() < 0.08, "{mean} {variance}");
         assert!(values.iter().any(|v| *v > 2.0) && values.iter().all(|v| v.abs() < 3.5));
     }
+
     #[test]
     fn a_hand_that_shakes_is_read_once_in_half_its_tremor() {
-        let brush = Brush { size: 40.0, hand: Hand { tremor: 0.5, ..Hand::default() }, ..Brush::default() };
+        let brush =
+            Brush { size: 40.0, hand: Hand { tremor: 0.5, ..Hand::default() }, ..Brush::default() };
         let mut tremor = Tremor::new(&brush);
-        let read: Vec<Vec2> = (0..=1000).filter_map(|x| tremor.shaken(vec2(x as f32, 0.0))).collect();
+        let read: Vec<Vec2> =
+            (0..=1000).filter_map(|x| tremor.shaken(vec2(x as f32, 0.0))).collect();
         assert!((99..=101).contains(&read.len()), "{}", read.len());
         assert!(read.iter().any(|at| at.y.abs() > 20.0) && read.iter().all(|at| at.y.abs() < 70.0));
         let mut still = Tremor::new(&Brush::default());

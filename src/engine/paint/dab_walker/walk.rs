@@ -1,4 +1,5 @@
-//! Along the curve of a stroke: where dabs are due. Floor 3. Not here: their properties there (`rules`).
+//! Along the curve of a stroke: where dabs are due. Floor 3. Not here: their properties there
+//! (`rules`).
 
 use super::hand::{CurvePoint, settled};
 use super::rules::{DabRules, Due, Moment};
@@ -6,9 +7,11 @@ use super::{CurveSegment, Dab};
 use crate::math::Vec2;
 use crate::paint::habits::Cycle;
 
-/// A dab due this soon after the end of a piece of the curve is placed on its end: sums of lengths are rounded.
+/// A dab due this soon after the end of a piece of the curve is placed on its end: sums of lengths
+/// are rounded.
 const ROUNDING_PX: f64 = 1e-3;
-/// The most steps along a stroke, so that a hostile one ends: the smallest steps over a hundred canvas widths.
+/// The most steps along a stroke, so that a hostile one ends: the smallest steps over a hundred
+/// canvas widths.
 pub(super) const MAX_STEPS: u32 = 1 << 20;
 
 /// How far a stroke has been walked.
@@ -43,12 +46,20 @@ impl Walk {
             custom: None,
         }
     }
+
     /// The first dab.
-    pub fn begin(&mut self, from: CurvePoint, direction: Vec2, rules: &DabRules, dabs: &mut Vec<Dab>) {
+    pub fn begin(
+        &mut self,
+        from: CurvePoint,
+        direction: Vec2,
+        rules: &DabRules,
+        dabs: &mut Vec<Dab>,
+    ) {
         self.direction = direction.normalize_or_zero();
         self.turn_cycle(&from, 0.0, rules);
         self.stand(from, rules, dabs);
     }
+
     /// A dab at a point; the next one is due a step farther.
     fn stand(&mut self, place: CurvePoint, rules: &DabRules, dabs: &mut Vec<Dab>) {
         let lag = settled(1.0, rules.brush.hand.lag_dabs);
@@ -72,15 +83,19 @@ impl Walk {
         self.left = 1.0;
         self.number += 1;
     }
+
     fn cycle_reading(&self) -> f32 {
         if self.cycle >= 0.0 { self.cycle.min(1.0) } else { 1.0 }
     }
-    /// The cycle advances by a path length; it begins where the pen presses, and each time it presses again.
+
+    /// The cycle advances by a path length; it begins where the pen presses, and each time it
+    /// presses again.
     fn turn_cycle(&mut self, place: &CurvePoint, px: f32, rules: &DabRules) {
         /// The pen has let go below this ratio of the pressure at which the cycle began.
         const LET_GO: f32 = 0.9;
         let Cycle { length, hold, pressure } = rules.brush.cycle;
-        let (is_begun, least) = (self.cycle >= 0.0, if self.cycle >= 0.0 { LET_GO * pressure } else { pressure });
+        let (is_begun, least) =
+            (self.cycle >= 0.0, if self.cycle >= 0.0 { LET_GO * pressure } else { pressure });
         if place.pressure <= least {
             // A cycle without a pressure continues.
             if pressure > 0.0 || !is_begun {
@@ -101,8 +116,15 @@ impl Walk {
             next % whole
         };
     }
+
     /// Along the curve from one sample to the next.
-    pub fn along(&mut self, curve: &CurveSegment, to: CurvePoint, rules: &DabRules, dabs: &mut Vec<Dab>) {
+    pub fn along(
+        &mut self,
+        curve: &CurveSegment,
+        to: CurvePoint,
+        rules: &DabRules,
+        dabs: &mut Vec<Dab>,
+    ) {
         if self.number == 0 {
             self.begin(self.from, curve.out(), rules, dabs);
         }
@@ -112,7 +134,11 @@ impl Walk {
         for piece in 1..=pieces {
             let s = piece as f32 / pieces as f32;
             let at = curve.at(s);
-            let place = if piece == pieces { CurvePoint { at, ..to } } else { CurvePoint { at, ..from.lerp(to, s) } };
+            let place = if piece == pieces {
+                CurvePoint { at, ..to }
+            } else {
+                CurvePoint { at, ..from.lerp(to, s) }
+            };
             let begin = self.from;
             let parts = rules.parts(begin.at, at);
             for part in 1..parts {
@@ -121,6 +147,7 @@ impl Walk {
             self.straight(place, rules, dabs);
         }
     }
+
     /// While the pen rests.
     pub fn rest(&mut self, rules: &DabRules, dabs: &mut Vec<Dab>) {
         let from = self.from;
@@ -140,6 +167,7 @@ impl Walk {
         self.left -= (secs - rested) * self.due.per_sec;
         self.from.secs = from.until_secs;
     }
+
     fn straight(&mut self, to: CurvePoint, rules: &DabRules, dabs: &mut Vec<Dab>) {
         let from = self.from;
         let way = to.at - from.at;
@@ -148,10 +176,13 @@ impl Walk {
         let stretch = rules.stretch(from.at.midpoint(to.at), way);
         let mut walked = 0.0;
         loop {
-            let per_px =
-                self.due.per_px(way) * stretch + if length > 0.0 { self.due.per_sec * secs / length } else { 0.0 };
+            let per_px = self.due.per_px(way) * stretch
+                + if length > 0.0 { self.due.per_sec * secs / length } else { 0.0 };
             let to_next = self.left / per_px;
-            if walked + to_next > length + ROUNDING_PX || to_next.is_nan() || self.number > MAX_STEPS {
+            if walked + to_next > length + ROUNDING_PX
+                || to_next.is_nan()
+                || self.number > MAX_STEPS
+            {
                 self.left = (self.left - (length - walked) * per_px).max(0.0);
                 self.go(&to, way, [length - walked, (length - walked) * stretch], rules);
                 break;
@@ -163,10 +194,12 @@ impl Walk {
         }
         self.from = to;
     }
+
     /// Advances by a piece of the path, with its length as seen and as measured.
     fn go(&mut self, place: &CurvePoint, way: Vec2, [px, measured_px]: [f64; 2], rules: &DabRules) {
         let ahead = way.normalize_or_zero();
-        self.direction += (ahead - self.direction) * settled(px as f32, rules.brush.hand.direction_px);
+        self.direction +=
+            (ahead - self.direction) * settled(px as f32, rules.brush.hand.direction_px);
         self.travelled_px += measured_px;
         self.turn_cycle(place, measured_px as f32, rules);
     }

@@ -1,4 +1,5 @@
-//! The readings at a dab, as the inputs that drive brushes. Floor 3. Not here: where they are read (`dab_walker`).
+//! The readings at a dab, as the inputs that drive brushes. Floor 3. Not here: where they are read
+//! (`dab_walker`).
 
 use super::{Input, Property};
 use crate::math::{Vec2, hash};
@@ -11,8 +12,8 @@ pub const FAR_DIAMETERS: f32 = 10.0;
 /// The pace up to which the scale is nearly linear, and the one that reads 1, px a second.
 pub const PACES_PX_PER_SEC: [f32; 2] = [50.0, 5000.0];
 
-/// A speed as a pace, `[0, 1]`: `ln(1 + v / 50) / ln(1 + 5000 / 50)`. Slow hands are distinguished as well as fast
-/// ones.
+/// A speed as a pace, `[0, 1]`: `ln(1 + v / 50) / ln(1 + 5000 / 50)`. Slow hands are distinguished
+/// as well as fast ones.
 pub fn pace_of(px_per_sec: f32) -> f32 {
     let [even, most] = PACES_PX_PER_SEC;
     ((px_per_sec.max(0.0) / even).ln_1p() / (most / even).ln_1p()).min(1.0)
@@ -93,7 +94,8 @@ impl DabInputs {
     }
 }
 
-/// The direction of a vector in image axes (y down), in turns counter-clockwise as seen, `[0, 1)`; 0 for a zero vector.
+/// The direction of a vector in image axes (y down), in turns counter-clockwise as seen, `[0, 1)`;
+/// 0 for a zero vector.
 pub fn turns_of(v: Vec2) -> f32 {
     let turns = if v == Vec2::ZERO { 0.0 } else { (-v.y).atan2(v.x) / TAU };
     // A turn just below 0 rounds up to 1.
@@ -107,13 +109,18 @@ mod tests {
 
     #[test]
     fn directions_turn_counter_clockwise_as_seen() {
-        let turns = [vec2(1.0, 0.0), vec2(0.0, -2.0), vec2(-1.0, 0.0), vec2(0.0, 3.0), Vec2::ZERO].map(turns_of);
+        let turns = [vec2(1.0, 0.0), vec2(0.0, -2.0), vec2(-1.0, 0.0), vec2(0.0, 3.0), Vec2::ZERO]
+            .map(turns_of);
         assert_eq!(turns, [0.0, 0.25, 0.5, 0.75, 0.0]);
         assert!(turns_of(vec2(1.0, 1e-9)) < 1.0);
     }
+
     #[test]
     fn a_pace_tells_slow_hands_apart_and_goes_back() {
-        assert_eq!((pace_of(0.0), pace_of(5000.0), pace_of(1e9), pace_of(f32::NAN)), (0.0, 1.0, 1.0, 0.0));
+        assert_eq!(
+            (pace_of(0.0), pace_of(5000.0), pace_of(1e9), pace_of(f32::NAN)),
+            (0.0, 1.0, 1.0, 0.0)
+        );
         assert!(pace_of(100.0) - pace_of(50.0) > pace_of(1100.0) - pace_of(1050.0));
         for v in [3.0f32, 80.0, 900.0] {
             assert!((px_per_sec_of(pace_of(v)) / v - 1.0).abs() < 1e-3, "{v}");

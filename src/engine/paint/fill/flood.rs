@@ -1,5 +1,5 @@
-//! Which pixels are joined to one by colours like its own, over their four neighbours. Floor 3. Finds which pixels may
-//! be filled, a row of a tile at a time; `raster::flood` spreads.
+//! Which pixels are joined to one by colours like its own, over their four neighbours. Floor 3.
+//! Finds which pixels may be filled, a row of a tile at a time; `raster::flood` spreads.
 
 use super::PixelSet;
 use crate::math::Size;
@@ -9,7 +9,8 @@ use crate::raster::{CoverageGrid, CoverageTile, Plane, TILE, Tile, TileAt};
 use crate::surface::objects::CanvasPart;
 use std::sync::Arc;
 
-/// Everything that is joined to a pixel of the canvas; `None` if that pixel may not be touched. `tolerance` in bytes.
+/// Everything that is joined to a pixel of the canvas; `None` if that pixel may not be touched.
+/// `tolerance` in bytes.
 pub(super) fn joined(
     (x, y): (i32, i32),
     canvas: Size,
@@ -18,8 +19,10 @@ pub(super) fn joined(
     tile: impl Fn(TileAt) -> Option<Arc<Tile>> + Sync,
 ) -> Option<Flooded> {
     let like = color_at((x, y), part, &tile)?;
-    let opened =
-        |at: TileAt| OpenTile { open: opened(at, tile(at).as_deref(), like, tolerance, canvas, part), links: None };
+    let opened = |at: TileAt| OpenTile {
+        open: opened(at, tile(at).as_deref(), like, tolerance, canvas, part),
+        links: None,
+    };
     Some(Flooded::from((x, y), canvas, opened))
 }
 
@@ -32,11 +35,17 @@ pub(super) fn alike(
     tile: impl Fn(TileAt) -> Option<Arc<Tile>> + Sync,
 ) -> Option<CoverageGrid> {
     let like = color_at(start, part, &tile)?;
-    let found = |at: TileAt| CoverageTile::of_bits(&opened(at, tile(at).as_deref(), like, tolerance, canvas, part));
+    let found = |at: TileAt| {
+        CoverageTile::of_bits(&opened(at, tile(at).as_deref(), like, tolerance, canvas, part))
+    };
     Some(CoverageGrid::gathered(canvas.rect(), found))
 }
 
-fn color_at((x, y): (i32, i32), part: &CanvasPart, tile: impl Fn(TileAt) -> Option<Arc<Tile>>) -> Option<[u8; 4]> {
+fn color_at(
+    (x, y): (i32, i32),
+    part: &CanvasPart,
+    tile: impl Fn(TileAt) -> Option<Arc<Tile>>,
+) -> Option<[u8; 4]> {
     if part.coverage(x, y) <= 0.0 {
         return None;
     }
@@ -51,7 +60,14 @@ fn pixel(tile: Option<&Tile>, (x, y): (usize, usize)) -> [u8; 4] {
 }
 
 /// The pixels of a tile that may be filled.
-fn opened(at: TileAt, tile: Option<&Tile>, like: [u8; 4], tolerance: u8, canvas: Size, part: &CanvasPart) -> TileBits {
+fn opened(
+    at: TileAt,
+    tile: Option<&Tile>,
+    like: [u8; 4],
+    tolerance: u8,
+    canvas: Size,
+    part: &CanvasPart,
+) -> TileBits {
     let area = at.rect().intersect(canvas.rect());
     let mut open = [0; TILE];
     let blank_is_open = is_like([0; 4], like, tolerance);
@@ -87,7 +103,8 @@ fn opened(at: TileAt, tile: Option<&Tile>, like: [u8; 4], tolerance: u8, canvas:
 }
 
 crate::widest! {
-    /// 1 for each of a row's pixels whose bytes are all similar, 0 for the others: [`is_like`], byte by byte.
+    /// 1 for each of a row's pixels whose bytes are all similar, 0 for the others: [`is_like`],
+    /// byte by byte.
     fn row_like(row: &[u8], like: [u8; 4], tolerance: u8, alike: &mut [u8; TILE]) {
         let mut near = [[0u8; 4]; TILE];
         for (near, pixel) in near.iter_mut().zip(row.as_chunks::<4>().0) {
@@ -115,7 +132,8 @@ pub(super) fn pixels(flooded: &Flooded) -> PixelSet {
         let area = at.rect().intersect(rect);
         for y in area.y0..area.y1 {
             let bits = tile[(y - at.rect().y0) as usize];
-            let row = &mut pixels.row_mut((y - rect.y0) as usize)[(area.x0 - rect.x0) as usize..][..area.width()];
+            let row = &mut pixels.row_mut((y - rect.y0) as usize)[(area.x0 - rect.x0) as usize..]
+                [..area.width()];
             row.copy_from_slice(&bytes_of(bits)[..area.width()]);
         }
     }

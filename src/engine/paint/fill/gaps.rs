@@ -1,26 +1,26 @@
-//! Gap closing: removes what a fill reached only through a narrow passage, up to the narrowest point of the passage.
-//! Floor 3.
+//! Gap closing: removes what a fill reached only through a narrow passage, up to the narrowest
+//! point of the passage. Floor 3.
 //!
-//! Every pixel inside has a distance to the border. Rooms are hills of that distance, passages between them are
-//! saddles; a watershed (Vincent and Soille 1991, by a union of pixels in falling order) assigns each pixel to the hill
-//! it lies on. Two hills are one room unless the saddle between them is a gap: low enough, and clearly lower than both
-//! tops.
+//! Every pixel inside has a distance to the border. Rooms are hills of that distance, passages
+//! between them are saddles; a watershed (Vincent and Soille 1991, by a union of pixels in falling
+//! order) assigns each pixel to the hill it lies on. Two hills are one room unless the saddle
+//! between them is a gap: low enough, and clearly lower than both tops.
 
 use super::PixelSet;
 use crate::math::Size;
 use crate::raster::{Plane, distance};
 use rayon::prelude::*;
 
-/// How much lower than both tops a saddle must be to be a gap, px: more than the roughness of a straight corridor drawn
-/// in pixels.
+/// How much lower than both tops a saddle must be to be a gap, px: more than the roughness of a
+/// straight corridor drawn in pixels.
 const CLEARLY_PX: f32 = 1.0;
 /// Levels of distance to a pixel.
 const LEVELS_PER_PX: f32 = 4.0;
 
 /// The room that contains `start`, of what was joined to it.
 pub(super) fn closed(inside: PixelSet, start: (i32, i32), canvas: Size, gap_px: f32) -> PixelSet {
-    // From the middle of a gap w px wide to the centre of the border's nearest pixel: at most (w + 1)/2. Tops are
-    // capped at the height that makes a saddle of that distance a gap.
+    // From the middle of a gap w px wide to the centre of the border's nearest pixel: at most (w +
+    // 1)/2. Tops are capped at the height that makes a saddle of that distance a gap.
     let top_px = 0.5 * (gap_px + 1.0) + CLEARLY_PX;
     let limit = top_px.ceil() as u16;
     // The surroundings of the rectangle count as border; the edge of the canvas does not.
@@ -33,20 +33,22 @@ pub(super) fn closed(inside: PixelSet, start: (i32, i32), canvas: Size, gap_px: 
     let first = (start.1 - rect.y0) as usize * width + (start.0 - rect.x0) as usize;
     let (room, parents) = (rooms.top_of(first), rooms.parent);
     // Runs of a row mostly share their hill: each is looked up once.
-    pixels.values_mut().par_chunks_mut(width).zip(parents.par_chunks(width)).for_each(|(row, ups)| {
-        let mut last = (NONE, false);
-        for (pixel, &up) in row.iter_mut().zip(ups).filter(|(pixel, _)| **pixel != 0) {
-            if up != last.0 {
-                last = (up, root_of(&parents, up) == room);
+    pixels.values_mut().par_chunks_mut(width).zip(parents.par_chunks(width)).for_each(
+        |(row, ups)| {
+            let mut last = (NONE, false);
+            for (pixel, &up) in row.iter_mut().zip(ups).filter(|(pixel, _)| **pixel != 0) {
+                if up != last.0 {
+                    last = (up, root_of(&parents, up) == room);
+                }
+                *pixel = u8::from(last.1);
             }
-            *pixel = u8::from(last.1);
-        }
-    });
+        },
+    );
     PixelSet { rect, pixels }
 }
 
-/// The rooms of some pixels, numbered from 1 in the order of their first pixels; 0 outside. Passages up to `gap_px`
-/// wide divide them; the border of the plane is a wall.
+/// The rooms of some pixels, numbered from 1 in the order of their first pixels; 0 outside.
+/// Passages up to `gap_px` wide divide them; the border of the plane is a wall.
 pub fn rooms(inside: &Plane<bool>, gap_px: f32) -> Plane<u32> {
     let top_px = 0.5 * (gap_px.max(0.0).min(super::WIDEST_GAP_PX) + 1.0) + CLEARLY_PX;
     let limit = top_px.ceil() as u16;
@@ -80,7 +82,8 @@ fn levels(pixels: &Plane<u8>, limit: u16, top_px: f32) -> Plane<u8> {
     let farthest = (usize::from(limit) + 1).pow(2);
     let level = |squared: usize| (((squared as f32).sqrt() * LEVELS_PER_PX) as u8).min(top);
     let levels: Vec<u8> = (0..=farthest).map(level).collect();
-    distance::squared(&pixels.map(|p| u8::from(p == 0)), limit).map(|d| levels[usize::from(d).min(farthest)])
+    distance::squared(&pixels.map(|p| u8::from(p == 0)), limit)
+        .map(|d| levels[usize::from(d).min(farthest)])
 }
 
 /// The top of the hill that a pixel with this parent lies on.
@@ -107,6 +110,7 @@ impl<'a> DistanceHills<'a> {
     fn new(pixels: &'a Plane<u8>, levels: &'a Plane<u8>, top: u8) -> Self {
         Self { pixels, levels, top, parent: vec![NONE; pixels.values().len()] }
     }
+
     fn top_of(&mut self, mut i: usize) -> usize {
         while let Some(&up) = self.parent.get(i).filter(|&&up| up != NONE && up as usize != i) {
             self.parent[i] = self.parent[up as usize];
@@ -114,9 +118,11 @@ impl<'a> DistanceHills<'a> {
         }
         i
     }
+
     fn level(&self, i: usize) -> u8 {
         self.levels.values()[i]
     }
+
     /// The pixels from the tops downward, those of one level in their order.
     fn rise(&mut self) {
         let width = self.pixels.width().max(1);
@@ -132,11 +138,13 @@ impl<'a> DistanceHills<'a> {
             self.stand(i as usize, width);
         }
     }
+
     fn is_top(&self, i: usize) -> bool {
         self.pixels.values()[i] != 0 && self.level(i) >= self.top
     }
-    /// Joins the tops, a run of a row at a time: most inside pixels are at the capped distance. Tops that touch form
-    /// one hill, whose root is its first pixel.
+
+    /// Joins the tops, a run of a row at a time: most inside pixels are at the capped distance.
+    /// Tops that touch form one hill, whose root is its first pixel.
     fn stand_tops(&mut self, width: usize) {
         let count = self.parent.len();
         let mut i = 0;
@@ -162,6 +170,7 @@ impl<'a> DistanceHills<'a> {
             }
         }
     }
+
     /// A pixel joins the highest adjacent hill, and merges hills that are one room.
     fn stand(&mut self, i: usize, width: usize) {
         self.parent[i] = i as u32;
@@ -177,7 +186,9 @@ impl<'a> DistanceHills<'a> {
             *top = stands.map(|j| self.top_of(j));
         }
         let rank = |rooms: &Self, top: usize| (rooms.level(top), std::cmp::Reverse(top));
-        let Some(highest) = tops.into_iter().flatten().max_by_key(|&top| rank(self, top)) else { return };
+        let Some(highest) = tops.into_iter().flatten().max_by_key(|&top| rank(self, top)) else {
+            return;
+        };
         self.parent[i] = highest as u32;
         let clearly = (CLEARLY_PX * LEVELS_PER_PX) as u8;
         let mut room = highest;
@@ -185,7 +196,8 @@ impl<'a> DistanceHills<'a> {
             let (top, one) = (self.top_of(top), self.top_of(room));
             let lower = self.level(top).min(self.level(one));
             if top != one && lower - self.level(i).min(lower) < clearly {
-                let (above, below) = if rank(self, top) > rank(self, one) { (top, one) } else { (one, top) };
+                let (above, below) =
+                    if rank(self, top) > rank(self, one) { (top, one) } else { (one, top) };
                 self.parent[below] = above as u32;
                 room = above;
             }

@@ -14,9 +14,10 @@ use crate::surface::Operator;
 use crate::surface::deformation::{Deformation, DeformedRect};
 use std::sync::Arc;
 
-/// What grain leaves of each pixel of a tile. A pixel may hold light and dark grain finer than itself: a stroke's dabs
-/// fill the light part sooner than the dark one, so a mean of both would be filled too soon. So a pixel has two parts,
-/// chosen so that mean and variance are right; where grain is black and white, so are the parts.
+/// What grain leaves of each pixel of a tile. A pixel may hold light and dark grain finer than
+/// itself: a stroke's dabs fill the light part sooner than the dark one, so a mean of both would be
+/// filled too soon. So a pixel has two parts, chosen so that mean and variance are right; where
+/// grain is black and white, so are the parts.
 pub struct GrainTile {
     /// The factor of F in either part, `[0, 1]`.
     pub light: [f32; TILE_AREA],
@@ -59,6 +60,7 @@ impl StrokeGrain {
             strength: grain.strength.max(0.0).min(1.0),
         }
     }
+
     /// The factors of F over a tile, row by row; 1 beyond the canvas.
     pub fn tile(&self, scene: &Scene, at: TileAt) -> Box<GrainTile> {
         let whole = [1.0; TILE_AREA];
@@ -69,7 +71,12 @@ impl StrokeGrain {
         }
         let (mut deformed, mut patches) = (DeformedRect::default(), Patches::default());
         let (mut antialias, mut row) = (Antialias::default(), vec![[0; 4]; area.width()]);
-        let deformation = Deformation::of_pattern(scene.surface.as_deref(), scene.size, self.operator, self.start);
+        let deformation = Deformation::of_pattern(
+            scene.surface.as_deref(),
+            scene.size,
+            self.operator,
+            self.start,
+        );
         deformation.fill(area.grown(1), &mut deformed);
         transform(self.texels_from_canvas, &mut deformed.x, &mut deformed.y);
         for y in scene.rows(area) {
@@ -79,7 +86,8 @@ impl StrokeGrain {
             for (i, texel) in (start..).zip(&row) {
                 let [grey, square, _, bare] = texel.map(|v| f32::from(v) / 255.0);
                 let [light, dark, share] = parts(grey, square, bare);
-                (out.light[i], out.dark[i]) = (factor_of(self.strength, light), factor_of(self.strength, dark));
+                (out.light[i], out.dark[i]) =
+                    (factor_of(self.strength, light), factor_of(self.strength, dark));
                 out.share[i] = share;
             }
         }
@@ -87,8 +95,9 @@ impl StrokeGrain {
     }
 }
 
-/// Two greys and the share of the first, for a mean grey m, the mean of its square and the share p that is not black,
-/// all in `[0, 1]`. If some is black, that is one part, since paint never fills it; else with σ² = ⟨G²⟩ − m²:
+/// Two greys and the share of the first, for a mean grey m, the mean of its square and the share p
+/// that is not black, all in `[0, 1]`. If some is black, that is one part, since paint never fills
+/// it; else with σ² = ⟨G²⟩ − m²:
 ///
 /// ```text
 /// p < 1:   light = m / p,                    dark = 0,                        share = p
@@ -107,7 +116,8 @@ pub fn parts(mean: f32, square: f32, share: f32) -> [f32; 3] {
     [(mean + sigma / ratio).min(1.0), (mean - sigma * ratio).max(0.0), mean]
 }
 
-/// 1 − k (1 − G): the share of a dab's coverage that the grain leaves. `strength` k and `grey` G in `[0, 1]`.
+/// 1 − k (1 − G): the share of a dab's coverage that the grain leaves. `strength` k and `grey` G in
+/// `[0, 1]`.
 pub fn factor_of(strength: f32, grey: f32) -> f32 {
     1.0 - strength * (1.0 - grey)
 }

@@ -15,11 +15,13 @@ fn rendered(image: &PlacedImage, scene: &Scene) -> Vec<u8> {
     }
     grid.to_straight_rgba(scene.size.rect())
 }
+
 fn noise(size: Size) -> Picture {
     let byte = |i: u32, c: u32| (hash::unit(3, i, c) * 256.0) as u8;
     let texel = |i| [byte(i, 0), byte(i, 1), byte(i, 2), 255];
     Picture::srgb8(size, (0..size.area() as u32).map(texel).collect()).unwrap()
 }
+
 fn placed(picture: Picture, canvas: Size) -> PlacedImage {
     PlacedImage {
         source: PictureSource::new("noise.png".into(), picture, Adjust::default()),
@@ -43,6 +45,7 @@ fn an_unbent_picture_of_the_canvas_size_equals_its_file_byte_for_byte() {
         assert!(rendered(&image, &scene) == texels, "{filter:?}");
     }
 }
+
 #[test]
 fn a_tile_beyond_the_canvas_or_the_picture_is_nothing() {
     let size = Size::new(100, 100);
@@ -53,6 +56,7 @@ fn a_tile_beyond_the_canvas_or_the_picture_is_nothing() {
     image.placement.center = vec2(-400.0, 50.0);
     assert!(image.render_tile(&scene, TileAt::new(0, 0)).is_none());
 }
+
 #[test]
 fn dragged_content_shows_its_source_point_at_the_anchor() {
     let size = Size::new(64, 64);
@@ -71,7 +75,9 @@ fn an_angular_map_that_covers_the_mirror_leaves_no_holes() {
     let on = |x: usize, y: usize| (vec2(x as f32, y as f32) + 0.5 - size.center()) / 38.0;
     let z = |x: usize, y: usize| (1.0 - on(x, y).length_squared()).max(0.0).sqrt();
     let maps = Maps {
-        normals: Plane::from_fn(size, |x, y| crate::math::vec3(on(x, y).x, -on(x, y).y, z(x, y).max(0.01))),
+        normals: Plane::from_fn(size, |x, y| {
+            crate::math::vec3(on(x, y).x, -on(x, y).y, z(x, y).max(0.01))
+        }),
         depth: Plane::from_fn(size, |x, y| 1.0 - z(x, y)),
         coverage: Plane::from_fn(size, |x, y| if on(x, y).length() < 1.0 { 255 } else { 0 }),
     };
@@ -84,7 +90,8 @@ fn an_angular_map_that_covers_the_mirror_leaves_no_holes() {
     let map = Picture::srgb8(Size::new(64, 64), (0..64 * 64).map(disc).collect()).unwrap();
     let at = vec2(62.0, 33.0);
     let (x, y) = (at.x as usize, at.y as usize);
-    let turn = crate::surface::operator::reflection::mirrored(vec2(on(x, y).x, on(x, y).y), z(x, y));
+    let turn =
+        crate::surface::operator::reflection::mirrored(vec2(on(x, y).x, on(x, y).y), z(x, y));
     let holes = |placement: Placement| {
         let bend = Bend {
             operator: Operator::Reflection { alpha: 1.0, detail: 0.0 },
@@ -99,12 +106,14 @@ fn an_angular_map_that_covers_the_mirror_leaves_no_holes() {
     assert_eq!(holes(Placement::covering_mirror(size, 1.0, turn)), 0);
     assert!(holes(Placement::covering(size)) > 400, "or else the test says nothing");
 }
+
 #[test]
 fn a_picture_of_the_canvas_size_maps_pixel_for_pixel() {
     let size = Size::new(300, 200);
     let m = Placement::covering(size).texels_from_canvas(size, size);
     assert!((m.transform_point2(vec2(12.5, 7.5)) - vec2(12.5, 7.5)).length() < 1e-4);
 }
+
 #[test]
 fn rotation_is_counter_clockwise_as_seen() {
     let size = Size::new(200, 200);
@@ -115,7 +124,11 @@ fn rotation_is_counter_clockwise_as_seen() {
 }
 
 /// The document's surface from its n̄ (image axes) and depth at a pixel's column and row.
-fn scene(size: Size, nbar: impl Fn(Vec2) -> Vec2 + Sync, depth: impl Fn(usize) -> f32 + Sync) -> Scene {
+fn scene(
+    size: Size,
+    nbar: impl Fn(Vec2) -> Vec2 + Sync,
+    depth: impl Fn(usize) -> f32 + Sync,
+) -> Scene {
     let maps = Maps {
         normals: Plane::from_fn(size, |x, y| {
             let n = nbar(vec2(x as f32 + 0.5, y as f32 + 0.5));
@@ -133,7 +146,9 @@ fn antialiasing_removes_three_quarters_of_the_error_against_64_samples_a_pixel()
     let nbar = |q: Vec2| vec2((q.x / 13.0).sin() * (q.y / 17.0).cos(), (q.y / 11.0).sin()) * 0.35;
     let scene = scene(size, nbar, |_| 0.5);
     // A checkerboard of 3 × 3 texels, two texels a pixel.
-    let check = |i: usize| if (i % 192 / 3 + i / 192 / 3).is_multiple_of(2) { [255; 4] } else { [0, 0, 0, 255] };
+    let check = |i: usize| {
+        if (i % 192 / 3 + i / 192 / 3).is_multiple_of(2) { [255; 4] } else { [0, 0, 0, 255] }
+    };
     let picture = Picture::srgb8(Size::new(192, 192), (0..192 * 192).map(check).collect()).unwrap();
     let (alpha, beta, center) = (0.5, 1.0, vec2(48.5, 48.5));
     let mut image = placed(picture, size);
@@ -144,27 +159,34 @@ fn antialiasing_removes_three_quarters_of_the_error_against_64_samples_a_pixel()
     let map = image.placement.texels_from_canvas(size, Size::new(192, 192));
     let sample = |q: Vec2| {
         let offset = 96.0 * second_order::offset(nbar(q) - nbar(center), alpha, beta);
-        sampler::bilinear(image.source.texture(), map.transform_point2(q + offset), image.outside)[0] * 255.0
+        sampler::bilinear(image.source.texture(), map.transform_point2(q + offset), image.outside)
+            [0]
+            * 255.0
     };
     let supersampled = |x: usize, y: usize| {
         let at = |k: usize| (k as f32 + 0.5) / 8.0;
-        let sum: f32 = (0..64).map(|k| sample(vec2(x as f32 + at(k % 8), y as f32 + at(k / 8)))).sum();
+        let sum: f32 =
+            (0..64).map(|k| sample(vec2(x as f32 + at(k % 8), y as f32 + at(k / 8)))).sum();
         sum / 64.0
     };
     let pixels: Vec<(usize, usize)> = (2..94).flat_map(|y| (2..94).map(move |x| (x, y))).collect();
     let reference: Vec<f32> = pixels.iter().map(|&(x, y)| supersampled(x, y)).collect();
     let error = |filter| {
         let bytes = rendered(&PlacedImage { filter, ..image.clone() }, &scene);
-        let squares =
-            pixels.iter().zip(&reference).map(|(&(x, y), r)| (f32::from(bytes[(y * 96 + x) * 4]) - r).powi(2));
+        let squares = pixels
+            .iter()
+            .zip(&reference)
+            .map(|(&(x, y), r)| (f32::from(bytes[(y * 96 + x) * 4]) - r).powi(2));
         (squares.sum::<f32>() / pixels.len() as f32).sqrt()
     };
     let (filtered, unfiltered) = (error(ImageFilter::Antialias), error(ImageFilter::Bilinear));
     assert!(filtered < 0.25 * unfiltered, "{filtered} of {unfiltered}");
 }
+
 #[test]
 fn nothing_bleeds_across_a_silhouette() {
-    // Two plates, the right one far behind and turned: on each plate D is a translation, so no pixel needs filtering.
+    // Two plates, the right one far behind and turned: on each plate D is a translation, so no
+    // pixel needs filtering.
     let size = Size::new(64, 64);
     let plates = scene(
         size,
@@ -179,7 +201,8 @@ fn nothing_bleeds_across_a_silhouette() {
     image.filter = ImageFilter::Antialias;
     let antialias = rendered(&image, &plates);
     assert!(
-        bilinear[(30 * 64 + 40) * 4..][..3] != rendered(&placed(noise(size), size), &plates)[(30 * 64 + 40) * 4..][..3]
+        bilinear[(30 * 64 + 40) * 4..][..3]
+            != rendered(&placed(noise(size), size), &plates)[(30 * 64 + 40) * 4..][..3]
     );
     assert!(antialias == bilinear, "a pixel at the jump was blurred over both plates");
 }

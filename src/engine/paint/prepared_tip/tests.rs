@@ -1,4 +1,5 @@
-//! Strokes of every tip compared with their definitions, pixel by pixel, on a ball and on a flat canvas.
+//! Strokes of every tip compared with their definitions, pixel by pixel, on a ball and on a flat
+//! canvas.
 
 use super::TipShape;
 use crate::math::{Size, Vec2, srgb::Color, vec2, vec3};
@@ -22,15 +23,18 @@ const AT: Vec2 = vec2(66.0, 62.0);
 fn ball() -> Scene {
     let at = |x: usize, y: usize| (vec2(x as f32, y as f32) + 0.5 - SIZE.center()) / 58.0;
     let height = |x: usize, y: usize| (1.0 - at(x, y).length_squared()).max(0.0).sqrt();
-    let normals = Plane::from_fn(SIZE, |x, y| vec3(at(x, y).x, -at(x, y).y, height(x, y).max(0.02)));
+    let normals =
+        Plane::from_fn(SIZE, |x, y| vec3(at(x, y).x, -at(x, y).y, height(x, y).max(0.02)));
     let depth = Plane::from_fn(SIZE, |x, y| 1.0 - height(x, y));
     let coverage = Plane::from_fn(SIZE, |x, y| if at(x, y).length() < 1.0 { 255 } else { 0 });
     let surface = Surface::new(Maps { normals, depth, coverage }).unwrap();
     Scene { size: SIZE, surface: Some(Arc::new(surface)) }
 }
+
 fn flat() -> Scene {
     Scene { size: SIZE, surface: None }
 }
+
 fn painted(brush: Brush, operator: Operator, samples: Vec<Sample>, scene: &Scene) -> TileGrid {
     let stroke = [Arc::new(Stroke::new(brush, operator, Color::WHITE, samples))];
     let mut grid = TileGrid::default();
@@ -39,18 +43,27 @@ fn painted(brush: Brush, operator: Operator, samples: Vec<Sample>, scene: &Scene
     }
     grid
 }
+
 fn dab(brush: &Brush, operator: Operator, scene: &Scene) -> TileGrid {
     painted(brush.clone(), operator, vec![Sample::at(AT)], scene)
 }
+
 fn pixels() -> impl Iterator<Item = (i32, i32)> {
     (0..SIZE.height as i32).flat_map(|y| (0..SIZE.width as i32).map(move |x| (x, y)))
 }
+
 fn alpha(grid: &TileGrid) -> Vec<u8> {
     pixels().map(|(x, y)| grid.pixel(x, y)[3]).collect()
 }
 
 /// A shape's coverage at a pixel by the definition, one pixel at a time.
-fn defined(shape: TipShape, brush: &Brush, operator: Operator, scene: &Scene, (x, y): (i32, i32)) -> f32 {
+fn defined(
+    shape: TipShape,
+    brush: &Brush,
+    operator: Operator,
+    scene: &Scene,
+    (x, y): (i32, i32),
+) -> f32 {
     let dab = Dab {
         rotation_rad: brush.rotation.to_radians(),
         hardness: brush.hardness,
@@ -60,7 +73,8 @@ fn defined(shape: TipShape, brush: &Brush, operator: Operator, scene: &Scene, (x
     let d = Deformation::of_dab(scene.surface.as_deref(), scene.size, operator, dab.at);
     let map = shape.tip_from_canvas(&dab);
     let at = |x: i32, y: i32| map.transform_point2(d.at(x, y));
-    let linked = scene.surface.as_ref().map_or(0, |s| s.smooth_links_plane().at(x as usize, y as usize));
+    let linked =
+        scene.surface.as_ref().map_or(0, |s| s.smooth_links_plane().at(x as usize, y as usize));
     let difference = |before: u8, after: u8, dx: i32, dy: i32, flat: Vec2| {
         let (l, r) = (i32::from(linked & before != 0), i32::from(linked & after != 0));
         match l + r {
@@ -82,26 +96,43 @@ fn defined(shape: TipShape, brush: &Brush, operator: Operator, scene: &Scene, (x
 
 #[test]
 fn ellipses_and_squares_over_tile_borders_equal_their_definition_pixel_by_pixel() {
-    let operators =
-        [Operator::None, Operator::Depth { gamma: 1.5 }, Operator::Normal { alpha: 0.5, beta: 1.0, detail: 0.0 }];
+    let operators = [
+        Operator::None,
+        Operator::Depth { gamma: 1.5 },
+        Operator::Normal { alpha: 0.5, beta: 1.0, detail: 0.0 },
+    ];
     for operator in operators {
         for (tip, shape) in [
             (Tip::Ellipse { ratio: 0.3 }, TipShape::Ellipse { ratio: 0.3 }),
             (Tip::Square { ratio: 0.6 }, TipShape::Square { ratio: 0.6 }),
         ] {
-            let brush = Brush { size: 46.0, hardness: 0.6, softness: 0.2, rotation: 25.0, tip, ..Brush::default() };
+            let brush = Brush {
+                size: 46.0,
+                hardness: 0.6,
+                softness: 0.2,
+                rotation: 25.0,
+                tip,
+                ..Brush::default()
+            };
             let scene = ball();
             let grid = dab(&brush, operator, &scene);
             let mut touched = 0;
             for (x, y) in pixels() {
-                let (a, b) = (f32::from(grid.pixel(x, y)[3]), 255.0 * defined(shape, &brush, operator, &scene, (x, y)));
-                assert!((a - b).abs() <= 1.0, "{shape:?} {operator:?} ({x}, {y}): {a}, by the definition {b}");
+                let (a, b) = (
+                    f32::from(grid.pixel(x, y)[3]),
+                    255.0 * defined(shape, &brush, operator, &scene, (x, y)),
+                );
+                assert!(
+                    (a - b).abs() <= 1.0,
+                    "{shape:?} {operator:?} ({x}, {y}): {a}, by the definition {b}"
+                );
                 touched += i32::from(a > 0.0);
             }
             assert!(touched > 100);
         }
     }
 }
+
 #[test]
 fn a_textured_tip_is_never_more_than_the_round_one_and_has_its_gaps() {
     let operator = Operator::Normal { alpha: 0.3, beta: 1.0, detail: 0.0 };
@@ -116,19 +147,27 @@ fn a_textured_tip_is_never_more_than_the_round_one_and_has_its_gaps() {
         assert!(gaps > full / 12 && marks > full / 12, "{gaps} gaps and {marks} marks of {full}");
     }
 }
+
 #[test]
 fn grain_multiplies_each_dab() {
     let operator = Operator::Normal { alpha: 0.3, beta: 1.0, detail: 0.0 };
     let scene = ball();
     let source = GrainSource::Pattern { pattern: Pattern::Weave, seed: 1 };
     for lies in [GrainSpace::Canvas, GrainSpace::Surface { gamma: 1.2 }] {
-        let grain = BrushGrain { source: source.clone(), size_px: 12.0, strength: 0.8, lies, ..BrushGrain::default() };
+        let grain = BrushGrain {
+            source: source.clone(),
+            size_px: 12.0,
+            strength: 0.8,
+            lies,
+            ..BrushGrain::default()
+        };
         for tip in [Tip::Round, Tip::Ellipse { ratio: 0.5 }, Tip::Bristles(Bristles::default())] {
             let plain = Brush { size: 70.0, tip, ..Brush::default() };
             let grained = Brush { grain: Some(grain.clone()), ..plain.clone() };
             let (without, with) = (dab(&plain, operator, &scene), dab(&grained, operator, &scene));
             let laid = StrokeGrain::new(&grain, AT);
-            let tiles: Vec<_> = TileAt::covering(SIZE.rect()).map(|at| (at, laid.tile(&scene, at))).collect();
+            let tiles: Vec<_> =
+                TileAt::covering(SIZE.rect()).map(|at| (at, laid.tile(&scene, at))).collect();
             for (x, y) in pixels() {
                 let (_, tile) = tiles.iter().find(|(at, _)| at.rect().contains(x, y)).unwrap();
                 let i = y as usize % TILE * TILE + x as usize % TILE;
@@ -142,7 +181,11 @@ fn grain_multiplies_each_dab() {
 
 fn picture(side: u32, texel: [u8; 4]) -> PictureSource {
     let texels = vec![texel; (side * side) as usize];
-    PictureSource::new("p.png".into(), Picture::srgb8(Size::new(side, side), texels).unwrap(), Adjust::default())
+    PictureSource::new(
+        "p.png".into(),
+        Picture::srgb8(Size::new(side, side), texels).unwrap(),
+        Adjust::default(),
+    )
 }
 
 #[test]
@@ -160,6 +203,7 @@ fn a_hose_stamps_its_pictures_in_turn_in_their_own_colours_and_sizes() {
     let empty = dab(&Brush { tip: Tip::Hose(none), ..Brush::default() }, Operator::None, &flat());
     assert!(empty.iter().next().is_none());
 }
+
 #[test]
 fn a_softness_that_follows_the_pen_blurs_every_tip_without_popping() {
     let tips = [
@@ -169,10 +213,17 @@ fn a_softness_that_follows_the_pen_blurs_every_tip_without_popping() {
         Tip::Picture(picture(32, [255; 4])),
     ];
     for tip in tips {
-        let dynamics = Dynamics::none().with(Property::Softness, Input::Pressure, Curve::Share(1.0));
-        let brush = Brush { size: 50.0, hardness: 0.9, softness: 1.0, tip, dynamics, ..Brush::default() };
+        let dynamics =
+            Dynamics::none().with(Property::Softness, Input::Pressure, Curve::Share(1.0));
+        let brush =
+            Brush { size: 50.0, hardness: 0.9, softness: 1.0, tip, dynamics, ..Brush::default() };
         let at = |pressure: f32| {
-            alpha(&painted(brush.clone(), Operator::None, vec![Sample { pressure, ..Sample::at(AT) }], &flat()))
+            alpha(&painted(
+                brush.clone(),
+                Operator::None,
+                vec![Sample { pressure, ..Sample::at(AT) }],
+                &flat(),
+            ))
         };
         let steps: Vec<Vec<u8>> = (0..=60).map(|i| at(0.002 + i as f32 * 0.016)).collect();
         for (i, pair) in steps.windows(2).enumerate() {
@@ -183,6 +234,7 @@ fn a_softness_that_follows_the_pen_blurs_every_tip_without_popping() {
         assert!(spread(&steps[60]) > spread(&steps[0]) + 300);
     }
 }
+
 #[test]
 fn hostile_tips_paint_something_or_nothing_and_never_fail() {
     let nan = f32::NAN;
@@ -199,7 +251,14 @@ fn hostile_tips_paint_something_or_nothing_and_never_fail() {
             lies: GrainSpace::Surface { gamma: nan },
             ..BrushGrain::default()
         };
-        let brush = Brush { size: 40.0, rotation: nan, softness: nan, tip, grain: Some(grain), ..Brush::default() };
+        let brush = Brush {
+            size: 40.0,
+            rotation: nan,
+            softness: nan,
+            tip,
+            grain: Some(grain),
+            ..Brush::default()
+        };
         dab(&brush, Operator::Depth { gamma: nan }, &ball());
     }
 }

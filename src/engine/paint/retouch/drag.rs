@@ -1,5 +1,5 @@
-//! Where smudge and clone take the colour of a pixel from: what a dab drags or copies is bent like its footprint.
-//! Floor 3.
+//! Where smudge and clone take the colour of a pixel from: what a dab drags or copies is bent like
+//! its footprint. Floor 3.
 
 use super::TileDab;
 use super::pixels::{PixelReader, RetouchPixels};
@@ -11,21 +11,24 @@ use crate::raster::TileGrid;
 use crate::surface::Deformation;
 use crate::surface::deformation::DeformedRect;
 
-/// A smudge takes no colour from farther than this many steps: where the surface turns away, D hardly changes and its
-/// inverse would reach arbitrarily far.
+/// A smudge takes no colour from farther than this many steps: where the surface turns away, D
+/// hardly changes and its inverse would reach arbitrarily far.
 const FARTHEST_STEPS: f32 = 3.0;
 
-/// The colours that a smudge drags onto the pixels of a touched area, row by row; `None` if it did not move.
+/// The colours that a smudge drags onto the pixels of a touched area, row by row; `None` if it did
+/// not move.
 ///
-/// What was under the previous dab is under this one, at the same point of the image plane relative to its centre. With
-/// F_k(q) = D_k(q) − q_k, a pixel q takes the colour of the point p with F_{k−1}(p) = F_k(q), found by one step of
-/// Newton's method from q:
+/// What was under the previous dab is under this one, at the same point of the image plane relative
+/// to its centre. With F_k(q) = D_k(q) − q_k, a pixel q takes the colour of the point p with
+/// F_{k−1}(p) = F_k(q), found by one step of Newton's method from q:
 ///
 /// `p = q − (∂D_{k−1}/∂q)⁻¹ (F_{k−1}(q) − F_k(q))`.
 ///
-/// On a flat canvas, and wherever n̄ changes evenly, that is the dab's movement, p = q − (q_k − q_{k−1}).
+/// On a flat canvas, and wherever n̄ changes evenly, that is the dab's movement, p = q − (q_k −
+/// q_{k−1}).
 ///
-/// * `length`: the share of the colour that is left after a drag of one radius, `[0, 1]`, however many dabs it took.
+/// * `length`: the share of the colour that is left after a drag of one radius, `[0, 1]`, however
+///   many dabs it took.
 pub(super) fn smudged(
     touch: &TileDab,
     dab: &Dab,
@@ -59,9 +62,16 @@ pub(super) fn smudged(
 
 /// The colours that a clone copies onto the pixels of a touched area, row by row.
 ///
-/// Pixel q takes the colour at `q_0 + offset + (D(q) − q_0)`: what is copied bends around the dab like its footprint.
-/// Where a pixel covers several of the picture, it is the mean of a grid of points in the patch under it.
-pub(super) fn cloned(touch: &TileDab, dab: &Dab, offset: Vec2, source: &TileGrid, scene: &Scene) -> Vec<[f32; 4]> {
+/// Pixel q takes the colour at `q_0 + offset + (D(q) − q_0)`: what is copied bends around the dab
+/// like its footprint. Where a pixel covers several of the picture, it is the mean of a grid of
+/// points in the patch under it.
+pub(super) fn cloned(
+    touch: &TileDab,
+    dab: &Dab,
+    offset: Vec2,
+    source: &TileGrid,
+    scene: &Scene,
+) -> Vec<[f32; 4]> {
     /// The most points along a side of the grid.
     const MOST: f32 = 6.0;
     let mut field = DragField::of(dab, touch.area, scene);
@@ -96,6 +106,7 @@ impl SourceBounds {
     fn of(scene: &Scene) -> Self {
         Self { last: vec2(scene.size.width as f32, scene.size.height as f32) - 0.5 }
     }
+
     fn clamped(&self, at: Vec2) -> Vec2 {
         at.max(Vec2::splat(0.5)).min(self.last)
     }
@@ -110,14 +121,18 @@ struct DragField {
 
 impl DragField {
     fn of(dab: &Dab, area: Rect, scene: &Scene) -> Self {
-        let mut field = Self { area, deformed: DeformedRect::default(), patches: Patches::default() };
+        let mut field =
+            Self { area, deformed: DeformedRect::default(), patches: Patches::default() };
         field.fill(dab, scene);
         field
     }
+
     fn fill(&mut self, dab: &Dab, scene: &Scene) {
-        let deformation = Deformation::of_dab(scene.surface.as_deref(), scene.size, dab.operator, dab.at);
+        let deformation =
+            Deformation::of_dab(scene.surface.as_deref(), scene.size, dab.operator, dab.at);
         deformation.fill(self.area.grown(1), &mut self.deformed);
     }
+
     /// D(q) of every pixel of the area.
     fn points(&self) -> Vec<Vec2> {
         let stride = self.area.width() + 2;
@@ -126,6 +141,7 @@ impl DragField {
             .map(|i| vec2(self.deformed.x[i], self.deformed.y[i]))
             .collect()
     }
+
     /// Every pixel of the area with D(q) and ∂D/∂q, differenced within its piece of surface.
     fn for_each(&mut self, scene: &Scene, mut visit: impl FnMut((i32, i32), Vec2, Mat2)) {
         for y in self.area.y0..self.area.y1 {

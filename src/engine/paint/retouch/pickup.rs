@@ -1,5 +1,5 @@
-//! Paint that a brush picks up on its way, and the colour of its dabs: its own mixed with what it holds.
-//! Floor 3. Colours are premultiplied, so that transparent pixels add nothing.
+//! Paint that a brush picks up on its way, and the colour of its dabs: its own mixed with what it
+//! holds. Floor 3. Colours are premultiplied, so that transparent pixels add nothing.
 
 use super::pixels::RetouchPixels;
 use crate::math::srgb::Color;
@@ -23,10 +23,11 @@ const LOOKS: f32 = 1024.0;
 /// What a brush holds of the paint that it picked up; `None` before its first dab.
 pub(super) type PickedUpPaint = Option<[f32; 4]>;
 
-/// The colour that a dab paints, premultiplied: less than opaque if it picked up transparency. The held paint changes.
+/// The colour that a dab paints, premultiplied: less than opaque if it picked up transparency. The
+/// held paint changes.
 ///
-/// With the paint there, c, and the length l: h ← l h + (1 − l) c, at the first dab h ← c. With the amount a and the
-/// brush's own colour b: a h + (1 − a) b.
+/// With the paint there, c, and the length l: h ← l h + (1 − l) c, at the first dab h ← c. With the
+/// amount a and the brush's own colour b: a h + (1 − a) b.
 pub(super) fn mixed(
     brush: &Brush,
     own: Color,
@@ -58,14 +59,20 @@ pub(super) fn mixed(
 /// The mixed colour, varied as the brush varies a dab's.
 fn tinted(brush: &Brush, mixed: [f32; 4], dab: &Dab) -> [f32; 4] {
     let alpha = mixed[3];
-    let straight = |v: f32| if alpha > 0.0 { (255.0 * (v / alpha).max(0.0).min(1.0) + 0.5) as u8 } else { 0 };
+    let straight =
+        |v: f32| if alpha > 0.0 { (255.0 * (v / alpha).max(0.0).min(1.0) + 0.5) as u8 } else { 0 };
     let [r, g, b] = [mixed[0], mixed[1], mixed[2]].map(straight);
     let [r, g, b, _] = tint::of(brush, Color { r, g, b, a: 255 }, &dab.inputs).to_f32();
     [r * alpha, g * alpha, b * alpha, alpha]
 }
 
 /// The mean of what lies under a dab; `None` if it is off the canvas.
-fn taken_up(brush: &Brush, dab: &Dab, retouched: &RetouchPixels, scene: &Scene) -> Option<[f32; 4]> {
+fn taken_up(
+    brush: &Brush,
+    dab: &Dab,
+    retouched: &RetouchPixels,
+    scene: &Scene,
+) -> Option<[f32; 4]> {
     let radius = (dab.radius * brush.pickup.radius).max(1.0);
     let plain = Dab { hardness: SOFT, softness: 0.0, thin: 1.0, rim: Rim::SOFT, ..*dab };
     let dab = Dab { radius, ratio: 1.0, flow: 1.0, ceiling: 1.0, ..plain };
@@ -77,7 +84,9 @@ fn taken_up(brush: &Brush, dab: &Dab, retouched: &RetouchPixels, scene: &Scene) 
         let mut sum = [0.0f32; 5];
         let Some(coverage) = stroke_tile.coverage() else { return sum };
         let (mut reader, corner) = (retouched.reader(), at.rect());
-        for (y, x) in (0..TILE).step_by(stride).flat_map(|y| (0..TILE).step_by(stride).map(move |x| (y, x))) {
+        for (y, x) in
+            (0..TILE).step_by(stride).flat_map(|y| (0..TILE).step_by(stride).map(move |x| (y, x)))
+        {
             let weight = coverage[y * TILE + x];
             if weight > 0.0 {
                 let [r, g, b, a] = reader.pixel(corner.x0 + x as i32, corner.y0 + y as i32);
@@ -87,7 +96,8 @@ fn taken_up(brush: &Brush, dab: &Dab, retouched: &RetouchPixels, scene: &Scene) 
         }
         sum
     };
-    let sums: Vec<[f32; 5]> = tiles_of(&placed).par_iter().map_init(DabScratch::default, seen).collect();
+    let sums: Vec<[f32; 5]> =
+        tiles_of(&placed).par_iter().map_init(DabScratch::default, seen).collect();
     // In the tiles' order, whichever thread added them up.
     let sum = sums.iter().fold([0.0f32; 5], |all, sum| std::array::from_fn(|c| all[c] + sum[c]));
     (sum[4] > 0.0).then(|| [0, 1, 2, 3].map(|c| sum[c] / sum[4]))

@@ -1,5 +1,5 @@
-//! The pixels of a layer while they are retouched: f32 where they changed, the layer's own elsewhere.
-//! Floor 3.
+//! The pixels of a layer while they are retouched: f32 where they changed, the layer's own
+//! elsewhere. Floor 3.
 
 use crate::math::{Vec2, vec2};
 use crate::raster::{PlanarTile, TILE, Tile, TileAt, TileGrid};
@@ -17,6 +17,7 @@ impl RetouchPixels {
     pub fn new(base: TileGrid) -> Self {
         Self { base, tiles: HashMap::new() }
     }
+
     /// A tile to be worked on.
     pub fn tile(&self, at: TileAt) -> PlanarTile {
         if let Some(tile) = self.tiles.get(&at) {
@@ -24,9 +25,11 @@ impl RetouchPixels {
         }
         PlanarTile::of_tile(self.base.tile(at).map(|tile| &**tile))
     }
+
     pub fn set(&mut self, at: TileAt, tile: PlanarTile) {
         self.tiles.insert(at, Arc::new(tile));
     }
+
     /// A tile as the layer stores it.
     pub fn stored(&self, at: TileAt) -> Option<Arc<Tile>> {
         match self.tiles.get(&at) {
@@ -34,6 +37,7 @@ impl RetouchPixels {
             None => self.base.tile(at).cloned(),
         }
     }
+
     pub fn reader(&self) -> PixelReader<'_> {
         PixelReader { retouched: Some(self), base: &self.base, tile: None }
     }
@@ -57,6 +61,7 @@ impl<'p> PixelReader<'p> {
     pub fn of(base: &'p TileGrid) -> Self {
         Self { retouched: None, base, tile: None }
     }
+
     /// A premultiplied pixel; transparent if there is none.
     pub fn pixel(&mut self, x: i32, y: i32) -> [f32; 4] {
         let at = TileAt::of_pixel(x, y);
@@ -67,16 +72,23 @@ impl<'p> PixelReader<'p> {
         let (x, y) = (x.rem_euclid(TILE as i32) as usize, y.rem_euclid(TILE as i32) as usize);
         match held {
             TileSource::Nothing => [0.0; 4],
-            TileSource::Dry(tile) if tile.is_deep() => tile.deep_pixel(x, y).map(|v| f32::from(v) / 65535.0),
+            TileSource::Dry(tile) if tile.is_deep() => {
+                tile.deep_pixel(x, y).map(|v| f32::from(v) / 65535.0)
+            }
             TileSource::Dry(tile) => {
-                let bytes = tile.bytes().as_chunks::<4>().0.get(y * TILE + x).copied().unwrap_or_default();
+                let bytes =
+                    tile.bytes().as_chunks::<4>().0.get(y * TILE + x).copied().unwrap_or_default();
                 bytes.map(|b| f32::from(b) / 255.0)
             }
             TileSource::Wet(tile) => tile.rows().get(y).map_or([0.0; 4], |row| row.pixel(x)),
         }
     }
+
     fn hold(&mut self, at: TileAt) -> TileSource<'p> {
-        let held = match (self.retouched.and_then(|retouched| retouched.tiles.get(&at)), self.base.tile(at)) {
+        let held = match (
+            self.retouched.and_then(|retouched| retouched.tiles.get(&at)),
+            self.base.tile(at),
+        ) {
             (Some(tile), _) => TileSource::Wet(tile),
             (None, Some(tile)) => TileSource::Dry(tile),
             (None, None) => TileSource::Nothing,
@@ -84,14 +96,19 @@ impl<'p> PixelReader<'p> {
         self.tile = Some((at, held));
         held
     }
+
     /// The colour at a canvas point, interpolated from the four pixels around it.
     pub fn between(&mut self, at: Vec2) -> [f32; 4] {
         let corner = (at - 0.5).floor();
         let t = at - 0.5 - corner;
         let (x, y) = (corner.x as i32, corner.y as i32);
         let mut sum = [0.0; 4];
-        let weights =
-            [(0, 0, vec2(1.0 - t.x, 1.0 - t.y)), (1, 0, vec2(t.x, 1.0 - t.y)), (0, 1, vec2(1.0 - t.x, t.y)), (1, 1, t)];
+        let weights = [
+            (0, 0, vec2(1.0 - t.x, 1.0 - t.y)),
+            (1, 0, vec2(t.x, 1.0 - t.y)),
+            (0, 1, vec2(1.0 - t.x, t.y)),
+            (1, 1, t),
+        ];
         for (dx, dy, weight) in weights {
             let weight = weight.x * weight.y;
             if weight > 0.0 {

@@ -13,26 +13,32 @@ fn layer(color: impl Fn(i32, i32) -> [u8; 4]) -> TileGrid {
     let rgba: Vec<u8> = all.flat_map(|(x, y)| color(x, y)).collect();
     TileGrid::from_straight_rgba(&rgba, 200, 150, 0, 0)
 }
+
 /// Each pixel's colour encodes its position.
 fn places() -> TileGrid {
     layer(|x, y| [x as u8, y as u8, 0, 255])
 }
+
 /// n̄ = 0.5 (sin 0.02 x, sin 0.03 y), around the middle: it turns smoothly but not evenly.
 fn nbar(at: Vec2) -> Vec2 {
     0.5 * vec2((0.02 * at.x).sin(), (0.03 * at.y).sin())
 }
+
 fn waves() -> Scene {
     let normals = Plane::from_fn(SIZE, |x, y| {
         let n = nbar(vec2(x as f32 + 0.5, y as f32 + 0.5));
         vec3(n.x, -n.y, (1.0 - n.length_squared()).sqrt())
     });
-    let maps = Maps { normals, depth: Plane::filled(SIZE, 0.5), coverage: Plane::filled(SIZE, 255) };
+    let maps =
+        Maps { normals, depth: Plane::filled(SIZE, 0.5), coverage: Plane::filled(SIZE, 255) };
     Scene { size: SIZE, surface: Some(Arc::new(Surface::new(maps).unwrap())) }
 }
+
 /// Two plates: the right one, from column 100 on, far behind the left one.
 fn plates() -> Scene {
     let depth = Plane::from_fn(SIZE, |x, _| if x < 100 { 0.1 } else { 0.9 });
-    let maps = Maps { normals: Plane::filled(SIZE, Vec3::Z), depth, coverage: Plane::filled(SIZE, 255) };
+    let maps =
+        Maps { normals: Plane::filled(SIZE, Vec3::Z), depth, coverage: Plane::filled(SIZE, 255) };
     Scene { size: SIZE, surface: Some(Arc::new(Surface::new(maps).unwrap())) }
 }
 const BEND: Operator = Operator::Normal { alpha: 0.3, beta: 0.0, detail: 0.0 };
@@ -43,11 +49,20 @@ fn bent(q: Vec2, center: Vec2) -> Vec2 {
     // f_n(u) = α u at β = 0 (SF eq. 14).
     q + 200.0 * 0.3 * turn.length() * turn
 }
+
 fn brush(mode: BrushMode) -> Brush {
     Brush { size: 30.0, hardness: 1.0, spacing: 0.1, mode, ..Brush::default() }
 }
+
 /// A layer after a stroke.
-fn rubbed(brush: Brush, operator: Operator, points: &[Vec2], offset: Vec2, base: &TileGrid, scene: &Scene) -> TileGrid {
+fn rubbed(
+    brush: Brush,
+    operator: Operator,
+    points: &[Vec2],
+    offset: Vec2,
+    base: &TileGrid,
+    scene: &Scene,
+) -> TileGrid {
     let like = [Stroke::new(brush, operator, Color::BLACK, Vec::new())];
     let mut retouching = ActiveRetouching::new(&like, &[offset], base.clone(), base.clone(), scene);
     let samples = points.iter().map(|&at| Sample::at(at)).collect();
@@ -55,12 +70,15 @@ fn rubbed(brush: Brush, operator: Operator, points: &[Vec2], offset: Vec2, base:
     retouching.draw(&[samples]).into_iter().for_each(|(at, tile)| grid.set(at, tile));
     grid
 }
+
 fn dab(at: Vec2) -> Dab {
     Dab { operator: BEND, ..Dab::plain(at, 20.0) }
 }
+
 fn touch(area: Rect) -> TileDab {
     TileDab { at: TileAt::of_pixel(area.x0, area.y0), area, coverage: Box::new([1.0; TILE_AREA]) }
 }
+
 /// The position that a colour of [`places`] encodes.
 fn told(color: [f32; 4]) -> Vec2 {
     vec2(color[0], color[1]) * 255.0 + 0.5
@@ -88,14 +106,20 @@ fn a_smudge_drags_paint_along_and_touches_nothing_else() {
         &half,
         &FLAT,
     );
-    assert!(short.pixel(100, 70)[3] < 60 && short.pixel(64, 70)[3] > 100, "a short one lets go of it");
+    assert!(
+        short.pixel(100, 70)[3] < 60 && short.pixel(64, 70)[3] > 100,
+        "a short one lets go of it"
+    );
 }
+
 #[test]
 fn what_a_smudge_drags_lies_at_the_same_place_of_the_image_plane_under_both_dabs() {
     let scene = waves();
     let (before, now) = (dab(vec2(80.5, 70.5)), dab(vec2(84.5, 72.5)));
     let area = Rect::new(70, 64, 100, 84);
-    let colors = drag::smudged(&touch(area), &now, &before, 1.0, &RetouchPixels::new(places()), &scene).unwrap();
+    let colors =
+        drag::smudged(&touch(area), &now, &before, 1.0, &RetouchPixels::new(places()), &scene)
+            .unwrap();
     let mut farthest: f32 = 0.0;
     for (i, color) in colors.into_iter().enumerate() {
         let q = vec2((70 + i as i32 % 30) as f32 + 0.5, (64 + i as i32 / 30) as f32 + 0.5);
@@ -104,8 +128,12 @@ fn what_a_smudge_drags_lies_at_the_same_place_of_the_image_plane_under_both_dabs
         assert!(there.distance(here) < 0.12, "{q} takes {p}: {there} is not {here}");
         farthest = farthest.max((q - p - vec2(4.0, 2.0)).length());
     }
-    assert!(farthest > 0.1, "where normals turn unevenly that is not the way the dab went: {farthest}");
+    assert!(
+        farthest > 0.1,
+        "where normals turn unevenly that is not the way the dab went: {farthest}"
+    );
 }
+
 #[test]
 fn a_clone_copies_whole_pixels_as_they_are_and_bends_what_it_copies_over_a_surface() {
     let base = places();
@@ -129,13 +157,21 @@ fn a_clone_copies_whole_pixels_as_they_are_and_bends_what_it_copies_over_a_surfa
         assert!(told(color).distance(expected) < 0.1, "{q}: {} is not {expected}", told(color));
     }
 }
+
 #[test]
 fn a_blurred_edge_is_as_soft_as_said_whatever_the_spacing() {
     let half = layer(|x, _| if x < 100 { [0, 0, 0, 255] } else { [255; 4] });
     for spacing in [0.05, 0.25] {
         let mode = BrushMode::Blur { width: 0.4 };
         let brush = Brush { size: 60.0, spacing, ..brush(mode) };
-        let soft = rubbed(brush, Operator::None, &[vec2(100.0, 10.0), vec2(100.0, 140.0)], Vec2::ZERO, &half, &FLAT);
+        let soft = rubbed(
+            brush,
+            Operator::None,
+            &[vec2(100.0, 10.0), vec2(100.0, 140.0)],
+            Vec2::ZERO,
+            &half,
+            &FLAT,
+        );
         // The slope of the edge is the Gaussian: its standard deviation should be 0.4 · 30 px.
         let value = |x: i32| f32::from(soft.pixel(x, 75)[0]) / 255.0;
         let slope = |x: i32| value(x) - value(x - 1);
@@ -143,27 +179,44 @@ fn a_blurred_edge_is_as_soft_as_said_whatever_the_spacing() {
         assert!((variance.sqrt() - 12.0).abs() < 3.0, "{} at {spacing}", variance.sqrt());
     }
 }
+
 #[test]
 fn what_a_blur_makes_of_one_colour_is_that_colour_up_to_the_canvas_s_edge() {
     for (color, size) in [([200, 90, 30, 255], 24.0), ([10, 220, 130, 100], 400.0)] {
         let even = layer(|_, _| color);
         let brush = Brush { size, ..brush(BrushMode::Blur { width: 1.0 }) };
-        let blurred = rubbed(brush, Operator::None, &[vec2(-5.0, 3.0), vec2(80.0, 70.0)], Vec2::ZERO, &even, &FLAT);
+        let blurred = rubbed(
+            brush,
+            Operator::None,
+            &[vec2(-5.0, 3.0), vec2(80.0, 70.0)],
+            Vec2::ZERO,
+            &even,
+            &FLAT,
+        );
         for (x, y) in (0..150).flat_map(|y| (0..200).map(move |x| (x, y))) {
             assert_eq!(blurred.pixel(x, y), even.pixel(x, y), "({x}, {y}) at {size}");
         }
     }
 }
+
 #[test]
 fn a_mark_bounded_to_an_object_neither_leaves_it_nor_takes_from_others() {
     let scene = plates();
     let two = layer(|x, _| if x < 100 { [255, 0, 0, 255] } else { [0, 0, 255, 255] });
     let brush = Brush { bounded: PaintLimit::Object, ..brush(BrushMode::Blur { width: 0.5 }) };
-    let blurred = rubbed(brush, Operator::None, &[vec2(95.0, 40.0), vec2(105.0, 90.0)], Vec2::ZERO, &two, &scene);
+    let blurred = rubbed(
+        brush,
+        Operator::None,
+        &[vec2(95.0, 40.0), vec2(105.0, 90.0)],
+        Vec2::ZERO,
+        &two,
+        &scene,
+    );
     for (x, y) in (0..150).flat_map(|y| (0..200).map(move |x| (x, y))) {
         assert_eq!(blurred.pixel(x, y), two.pixel(x, y), "({x}, {y})");
     }
 }
+
 #[test]
 fn kept_alpha_keeps_the_shape_of_the_paint() {
     let disc = layer(|x, y| {
@@ -172,21 +225,37 @@ fn kept_alpha_keeps_the_shape_of_the_paint() {
     });
     for mode in [BrushMode::Smudge { length: 0.9 }, BrushMode::Blur { width: 0.5 }] {
         let brush = Brush { keeps_alpha: true, ..brush(mode) };
-        let kept = rubbed(brush, Operator::None, &[vec2(60.0, 70.0), vec2(140.0, 70.0)], Vec2::ZERO, &disc, &FLAT);
+        let kept = rubbed(
+            brush,
+            Operator::None,
+            &[vec2(60.0, 70.0), vec2(140.0, 70.0)],
+            Vec2::ZERO,
+            &disc,
+            &FLAT,
+        );
         for (x, y) in (0..150).flat_map(|y| (0..200).map(move |x| (x, y))) {
             assert_eq!(kept.pixel(x, y)[3], disc.pixel(x, y)[3], "({x}, {y})");
         }
         assert_ne!(kept.pixel(84, 70), disc.pixel(84, 70));
     }
 }
+
 #[test]
 fn batches_of_samples_leave_the_same_pixels_as_all_at_once() {
     let scene = waves();
-    let base =
-        layer(|x, y| [(x * 7 % 251) as u8, (y * 11 % 241) as u8, 80, if (x / 9 + y / 7) % 3 == 0 { 0 } else { 255 }]);
-    let samples: Vec<Sample> =
-        (0..14).map(|i| Sample::at(vec2(20.0 + 11.0 * i as f32, 70.0 + 30.0 * (0.7 * i as f32).sin()))).collect();
-    let mirrored: Vec<Sample> = samples.iter().map(|s| Sample { at: vec2(200.0 - s.at.x, s.at.y), ..*s }).collect();
+    let base = layer(|x, y| {
+        [
+            (x * 7 % 251) as u8,
+            (y * 11 % 241) as u8,
+            80,
+            if (x / 9 + y / 7) % 3 == 0 { 0 } else { 255 },
+        ]
+    });
+    let samples: Vec<Sample> = (0..14)
+        .map(|i| Sample::at(vec2(20.0 + 11.0 * i as f32, 70.0 + 30.0 * (0.7 * i as f32).sin())))
+        .collect();
+    let mirrored: Vec<Sample> =
+        samples.iter().map(|s| Sample { at: vec2(200.0 - s.at.x, s.at.y), ..*s }).collect();
     for mode in [
         BrushMode::Smudge { length: 0.8 },
         BrushMode::Blur { width: 0.3 },
@@ -195,13 +264,16 @@ fn batches_of_samples_leave_the_same_pixels_as_all_at_once() {
         let like = [(); 2].map(|_| Stroke::new(brush(mode), BEND, Color::BLACK, Vec::new()));
         let left = |batch: usize| {
             let offsets = [vec2(-30.0, 12.0), vec2(30.0, 12.0)];
-            let mut retouching = ActiveRetouching::new(&like, &offsets, base.clone(), base.clone(), &scene);
+            let mut retouching =
+                ActiveRetouching::new(&like, &offsets, base.clone(), base.clone(), &scene);
             let mut shown: HashMap<TileAt, Option<Arc<Tile>>> = HashMap::new();
             for (a, b) in samples.chunks(batch).zip(mirrored.chunks(batch)) {
                 shown.extend(retouching.draw(&[a.to_vec(), b.to_vec()]));
             }
-            let mut tiles: Vec<_> =
-                shown.into_iter().map(|(at, tile)| (at, tile.map(|t| t.bytes().to_vec()))).collect();
+            let mut tiles: Vec<_> = shown
+                .into_iter()
+                .map(|(at, tile)| (at, tile.map(|t| t.bytes().to_vec())))
+                .collect();
             tiles.sort_unstable_by_key(|(at, _)| *at);
             tiles
         };
@@ -210,9 +282,16 @@ fn batches_of_samples_leave_the_same_pixels_as_all_at_once() {
         assert!(left(1) == whole && left(3) == whole, "{mode:?}");
     }
 }
+
 #[test]
 fn hostile_samples_and_settings_end_in_finite_pixels() {
-    let points = [vec2(f32::NAN, 3.0), vec2(40.0, 50.0), vec2(1e30, 0.0), vec2(60.0, 55.0), vec2(-40.0, -90.0)];
+    let points = [
+        vec2(f32::NAN, 3.0),
+        vec2(40.0, 50.0),
+        vec2(1e30, 0.0),
+        vec2(60.0, 55.0),
+        vec2(-40.0, -90.0),
+    ];
     for hostile in [f32::NAN, f32::INFINITY, -1.0, 1e30] {
         for mode in [
             BrushMode::Smudge { length: hostile },
@@ -227,21 +306,34 @@ fn hostile_samples_and_settings_end_in_finite_pixels() {
 
 /// A brush of one colour that picks up paint.
 fn picking(amount: f32, length: f32) -> Brush {
-    Brush { pickup: crate::paint::Pickup { amount, length, radius: 1.0 }, ..brush(BrushMode::Paint) }
+    Brush {
+        pickup: crate::paint::Pickup { amount, length, radius: 1.0 },
+        ..brush(BrushMode::Paint)
+    }
 }
+
 #[test]
 fn a_brush_carries_paint_along_and_loses_it_as_fast_as_its_length_says() {
     let halves = layer(|x, _| if x < 100 { [255, 0, 0, 255] } else { [0, 0, 255, 255] });
     let along = [vec2(40.0, 70.0), vec2(180.0, 70.0)];
     let at = |length: f32, x: i32| {
-        let after = rubbed(picking(1.0, length), Operator::None, &along, Vec2::ZERO, &halves, &FLAT);
+        let after =
+            rubbed(picking(1.0, length), Operator::None, &along, Vec2::ZERO, &halves, &FLAT);
         after.pixel(x, 70)
     };
     assert_eq!(at(0.0, 60), [255, 0, 0, 255]);
     let (short, long) = (at(0.0, 125), at(0.95, 125));
-    assert!(long[0] > short[0].max(60) && long[3] == 255, "red is carried into blue: {long:?}, not {short:?}");
-    assert_eq!(at(1.0, 170)[0], 255, "what was taken up first and is never renewed is carried to the end");
+    assert!(
+        long[0] > short[0].max(60) && long[3] == 255,
+        "red is carried into blue: {long:?}, not {short:?}"
+    );
+    assert_eq!(
+        at(1.0, 170)[0],
+        255,
+        "what was taken up first and is never renewed is carried to the end"
+    );
 }
+
 #[test]
 fn a_brush_that_picks_nothing_up_paints_as_plain_paint_does() {
     let ground = layer(|_, _| [200, 100, 50, 255]);
@@ -251,21 +343,32 @@ fn a_brush_that_picks_nothing_up_paints_as_plain_paint_does() {
     let half = rubbed(picking(0.5, 0.0), Operator::None, &[along[0]], Vec2::ZERO, &ground, &FLAT);
     assert_eq!(half.pixel(40, 70), [100, 50, 25, 255]);
 }
+
 #[test]
 fn paint_that_is_taken_up_from_nothing_leaves_less_than_paint() {
-    let half = rubbed(picking(0.5, 0.0), Operator::None, &[vec2(40.0, 70.0)], Vec2::ZERO, &TileGrid::default(), &FLAT);
+    let half = rubbed(
+        picking(0.5, 0.0),
+        Operator::None,
+        &[vec2(40.0, 70.0)],
+        Vec2::ZERO,
+        &TileGrid::default(),
+        &FLAT,
+    );
     let [_, _, _, a] = half.pixel(40, 70);
     assert!((127..=128).contains(&a), "{a}");
 }
+
 #[test]
 fn what_is_picked_up_is_the_same_in_every_batch() {
     let ground = places();
-    let points: Vec<Vec2> =
-        (0..40).map(|i| vec2(20.0 + 4.0 * i as f32, 70.0 + 10.0 * (0.3 * i as f32).sin())).collect();
+    let points: Vec<Vec2> = (0..40)
+        .map(|i| vec2(20.0 + 4.0 * i as f32, 70.0 + 10.0 * (0.3 * i as f32).sin()))
+        .collect();
     let like = [Stroke::new(picking(0.7, 0.8), BEND, Color::BLACK, Vec::new())];
     let scene = waves();
     let drawn = |batch: usize| {
-        let mut active = ActiveRetouching::new(&like, &[], ground.clone(), TileGrid::default(), &scene);
+        let mut active =
+            ActiveRetouching::new(&like, &[], ground.clone(), TileGrid::default(), &scene);
         let mut grid = ground.clone();
         for points in points.chunks(batch) {
             let samples = points.iter().map(|&at| Sample::at(at)).collect();

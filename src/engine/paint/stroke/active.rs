@@ -1,6 +1,6 @@
-//! Active strokes: samples go in, and the tiles that they change come out. Each dab is placed and painted once, over
-//! what the stroke has painted so far; only the end of the curve, which the next sample may change, is painted again.
-//! Floor 3. Not here: the pen (`tools`).
+//! Active strokes: samples go in, and the tiles that they change come out. Each dab is placed and
+//! painted once, over what the stroke has painted so far; only the end of the curve, which the next
+//! sample may change, is painted again. Floor 3. Not here: the pen (`tools`).
 
 use super::dabs::{StrokeDabs, TOGETHER, for_each_tile_of};
 use super::{Sample, Stroke, StrokeCache, render_pixels};
@@ -29,9 +29,9 @@ pub enum Backdrop {
 
 /// Strokes that are drawn together, the first lowest: one, or one and its mirror images.
 ///
-/// Their pixels do not depend on how the samples are batched: they equal those of the finished strokes painted at once.
-/// They take 16 KiB for every tile that a stroke touches (64 if its dabs vary in colour), and 64 more if there are
-/// strokes below.
+/// Their pixels do not depend on how the samples are batched: they equal those of the finished
+/// strokes painted at once. They take 16 KiB for every tile that a stroke touches (64 if its dabs
+/// vary in colour), and 64 more if there are strokes below.
 pub struct ActiveStrokes {
     scene: Scene,
     backdrop: Backdrop,
@@ -88,6 +88,7 @@ impl ActiveStroke {
             bounds: Rect::EMPTY,
         }
     }
+
     /// Places the dabs that the samples settle, and the tail behind them.
     fn take<'s>(&mut self, samples: &[Sample], scene: &'s Scene) -> NewDabs<'s> {
         self.samples.extend_from_slice(samples);
@@ -105,7 +106,8 @@ impl ActiveStroke {
         };
         let placed: Vec<_> = dabs.par_chunks(TOGETHER).flat_map_iter(place).collect();
         self.tail.clear();
-        let mut fresh = NewDabs { dabs: Vec::with_capacity(placed.len()), settled, tiles: BTreeMap::new() };
+        let mut fresh =
+            NewDabs { dabs: Vec::with_capacity(placed.len()), settled, tiles: BTreeMap::new() };
         for (i, (placed, tiles)) in placed.into_iter().enumerate() {
             for &at in &tiles {
                 fresh.tiles.entry(at).or_default().push(i);
@@ -119,7 +121,9 @@ impl ActiveStroke {
         }
         fresh
     }
-    /// The stroke tile to be shown: with the tail. Settled dabs are added to `stroke_tile` for good.
+
+    /// The stroke tile to be shown: with the tail. Settled dabs are added to `stroke_tile` for
+    /// good.
     fn shown(
         &self,
         fresh: &NewDabs,
@@ -134,7 +138,8 @@ impl ActiveStroke {
         }
         let empty = || self.stroke_dabs.stroke_tile(grain.clone());
         let mut add = |dabs: &[usize], stroke_tile: &mut StrokeTile| {
-            dabs.iter().for_each(|&i| self.stroke_dabs.add(&fresh.dabs[i], at, stroke_tile, scratch));
+            dabs.iter()
+                .for_each(|&i| self.stroke_dabs.add(&fresh.dabs[i], at, stroke_tile, scratch));
         };
         if !settled.is_empty() {
             add(settled, stroke_tile.get_or_insert_with(empty));
@@ -146,13 +151,16 @@ impl ActiveStroke {
         add(tail, &mut shown);
         Some(shown)
     }
+
     fn part(&self, scene: &Scene) -> CanvasPart {
         let start = self.samples.first().map_or(Vec2::ZERO, |sample| sample.at);
         self.brush.bounded.from(scene.surface.as_ref(), start)
     }
+
     /// The stroke as drawn so far.
     fn stroke(&self, scene: &Scene) -> Stroke {
-        let found = StrokeCache { bounds: Some((scene.clone(), self.bounds)), ..StrokeCache::default() };
+        let found =
+            StrokeCache { bounds: Some((scene.clone(), self.bounds)), ..StrokeCache::default() };
         let Self { brush, operator, color, samples, selection, .. } = self;
         let (brush, samples, selection) = (brush.clone(), samples.clone(), selection.clone());
         Stroke {
@@ -165,13 +173,22 @@ impl ActiveStroke {
             found: Arc::new(Mutex::new(found)),
         }
     }
+
     /// The finished stroke, its dabs known already.
     fn finished(mut self, scene: &Scene) -> Stroke {
         self.stroke_dabs.lay(&self.walker.tail(), scene);
         let mut found = StrokeCache::default();
         found.keep(&Arc::new(self.stroke_dabs));
         let Self { brush, operator, color, samples, selection, .. } = self;
-        Stroke { brush, operator, color, samples, selection, home: None, found: Arc::new(Mutex::new(found)) }
+        Stroke {
+            brush,
+            operator,
+            color,
+            samples,
+            selection,
+            home: None,
+            found: Arc::new(Mutex::new(found)),
+        }
     }
 }
 
@@ -181,14 +198,19 @@ impl ActiveStrokes {
         let strokes = strokes.iter().map(|stroke| ActiveStroke::new(stroke, scene)).collect();
         Self { scene: scene.clone(), backdrop, strokes, tiles: HashMap::new() }
     }
+
     /// Takes the next samples of each stroke; returns the tiles of the layer that changed.
     pub fn draw(&mut self, samples: &[Vec<Sample>]) -> Vec<(TileAt, Option<Arc<Tile>>)> {
         let Self { scene, backdrop, strokes, tiles } = self;
-        let mut changed: Vec<TileAt> = strokes.iter().flat_map(|stroke| stroke.tail.iter().copied()).collect();
+        let mut changed: Vec<TileAt> =
+            strokes.iter().flat_map(|stroke| stroke.tail.iter().copied()).collect();
         let none = Vec::new();
         let samples = samples.iter().chain(std::iter::repeat(&none));
-        let fresh: Vec<NewDabs> =
-            strokes.iter_mut().zip(samples).map(|(stroke, samples)| stroke.take(samples, scene)).collect();
+        let fresh: Vec<NewDabs> = strokes
+            .iter_mut()
+            .zip(samples)
+            .map(|(stroke, samples)| stroke.take(samples, scene))
+            .collect();
         changed.extend(fresh.iter().flat_map(|fresh| fresh.tiles.keys()));
         changed.sort_unstable();
         changed.dedup();
@@ -197,7 +219,8 @@ impl ActiveStrokes {
             stroke_tiles: strokes.iter().map(|_| None).collect(),
             grains: strokes.iter().map(|_| None).collect(),
         };
-        let mut active_tiles: Vec<_> = changed.iter().map(|at| (*at, tiles.remove(at).unwrap_or_else(dry))).collect();
+        let mut active_tiles: Vec<_> =
+            changed.iter().map(|at| (*at, tiles.remove(at).unwrap_or_else(dry))).collect();
         let paint = |scratch: &mut DabScratch, (at, tile): &mut (TileAt, ActiveTile)| {
             let mut pixels = backdrop.pixels(scene, *at, &mut tile.beneath);
             let cached = tile.stroke_tiles.iter_mut().zip(&mut tile.grains);
@@ -211,7 +234,11 @@ impl ActiveStrokes {
                     if let Some(selected) = selected.flatten() {
                         shown.select(&selected);
                     }
-                    shown.blend_over(&mut pixels, *at, StrokeBlend::of(&stroke.brush, stroke.color));
+                    shown.blend_over(
+                        &mut pixels,
+                        *at,
+                        StrokeBlend::of(&stroke.brush, stroke.color),
+                    );
                 }
             }
             (*at, backdrop.kept(*at, &pixels).map(Arc::new))
@@ -220,10 +247,12 @@ impl ActiveStrokes {
         tiles.extend(active_tiles);
         painted
     }
+
     /// The strokes as drawn so far. Their bounds are known; their dabs would be computed again.
     pub fn strokes(&self) -> Vec<Stroke> {
         self.strokes.iter().map(|stroke| stroke.stroke(&self.scene)).collect()
     }
+
     /// The finished strokes. Their dabs are known.
     pub fn finish(self) -> Vec<Stroke> {
         let Self { scene, strokes, .. } = self;
@@ -232,20 +261,24 @@ impl ActiveStrokes {
 }
 
 impl Backdrop {
-    /// A painted tile as the layer holds it: paint as [`PlanarTile::kept`], what is rendered from strokes in bytes.
+    /// A painted tile as the layer holds it: paint as [`PlanarTile::kept`], what is rendered from
+    /// strokes in bytes.
     fn kept(&self, at: TileAt, pixels: &PlanarTile) -> Option<Tile> {
         match self {
             Backdrop::Pixels(grid) => pixels.kept(grid.tile(at).map(|tile| &**tile)),
             Backdrop::Strokes(_) => pixels.quantised(),
         }
     }
-    /// The pixels below a tile's active strokes, f32. `cached`: those of the strokes below, painted once.
+
+    /// The pixels below a tile's active strokes, f32. `cached`: those of the strokes below, painted
+    /// once.
     fn pixels(&self, scene: &Scene, at: TileAt, cached: &mut Option<PlanarTile>) -> PlanarTile {
         match self {
             Backdrop::Pixels(grid) => PlanarTile::of_tile(grid.tile(at).map(|tile| &**tile)),
             Backdrop::Strokes(strokes) if strokes.is_empty() => PlanarTile::transparent(),
             Backdrop::Strokes(strokes) => {
-                let paint = || render_pixels(strokes, scene, at).unwrap_or_else(PlanarTile::transparent);
+                let paint =
+                    || render_pixels(strokes, scene, at).unwrap_or_else(PlanarTile::transparent);
                 cached.get_or_insert_with(paint).clone()
             }
         }

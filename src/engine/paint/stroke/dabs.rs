@@ -34,7 +34,8 @@ pub(in crate::paint) struct StrokeDabs {
 const RUN_GAP: u32 = 8;
 /// Dabs that are placed at a time.
 pub(in crate::paint) const TOGETHER: usize = 32;
-/// The most runs per tile: after that the last one grows. This bounds the memory of a hostile stroke.
+/// The most runs per tile: after that the last one grows. This bounds the memory of a hostile
+/// stroke.
 const MAX_RUNS: usize = 1024;
 
 impl StrokeDabs {
@@ -49,14 +50,17 @@ impl StrokeDabs {
             tiles: HashMap::new(),
         }
     }
+
     pub fn of(stroke: &Stroke, scene: &Scene) -> Self {
         let mut stroke_dabs = Self::empty(&stroke.brush, scene);
         stroke_dabs.begin(&stroke.brush, &stroke.samples);
-        let dabs = dab_walker::dabs(&stroke.brush, stroke.operator, stroke.color, &stroke.samples, scene);
+        let dabs =
+            dab_walker::dabs(&stroke.brush, stroke.operator, stroke.color, &stroke.samples, scene);
         stroke_dabs.dabs.reserve_exact(dabs.len());
         dabs.chunks(TOGETHER).for_each(|dabs| stroke_dabs.lay(dabs, scene));
         stroke_dabs
     }
+
     /// Adds successive dabs.
     pub fn lay(&mut self, dabs: &[Dab], scene: &Scene) {
         let placed: Vec<PlacedDab> = dabs.iter().map(|dab| self.place(*dab, scene)).collect();
@@ -64,34 +68,44 @@ impl StrokeDabs {
         self.dabs.extend_from_slice(dabs);
         for_each_tile_of(&placed, |i, at| self.touch((first + i) as u32, at));
     }
+
     /// The approximate memory it takes.
     pub fn bytes(&self) -> u64 {
         let runs: usize = self.tiles.values().map(Vec::capacity).sum();
         let tiles = self.tiles.capacity() * size_of::<(TileAt, Vec<Range<u32>>)>();
-        (self.dabs.capacity() * size_of::<Dab>() + runs * size_of::<Range<u32>>() + tiles + size_of::<Self>()) as u64
+        (self.dabs.capacity() * size_of::<Dab>()
+            + runs * size_of::<Range<u32>>()
+            + tiles
+            + size_of::<Self>()) as u64
     }
+
     /// The tiles it touches, without its dabs.
     pub fn support(&self) -> TileReach {
         TileReach::new(self.scene.clone(), self.dabs.len(), self.tiles.keys().copied())
     }
+
     /// Anchors the grain, if any, at the start of the stroke; later samples do not change it.
     pub fn begin(&mut self, brush: &Brush, samples: &[Sample]) {
         let start = samples.iter().map(|sample| sample.at).find(|at| at.is_finite());
-        let grain = brush.grain.as_ref().filter(|grain| grain.strength > 0.0 && self.grain.is_none());
+        let grain =
+            brush.grain.as_ref().filter(|grain| grain.strength > 0.0 && self.grain.is_none());
         if let Some((grain, start)) = grain.zip(start) {
             self.grain = Some(StrokeGrain::new(grain, start));
         }
     }
+
     /// What the grain leaves of each pixel of a tile, or of what represents it on a sheet.
     pub fn grain(&self, scene: &Scene, at: TileAt) -> Option<Arc<GrainTile>> {
         self.grain.as_ref().map(|grain| grain.tile(scene, at).into())
     }
+
     /// Adds a dab that may touch these tiles.
     pub fn push(&mut self, dab: Dab, tiles: &[TileAt]) {
         let i = self.dabs.len() as u32;
         self.dabs.push(dab);
         tiles.iter().for_each(|&at| self.touch(i, at));
     }
+
     /// The `i`th dab may touch a tile; for each tile dabs are added in order.
     fn touch(&mut self, i: u32, at: TileAt) {
         let runs = self.tiles.entry(at).or_default();
@@ -101,30 +115,37 @@ impl StrokeDabs {
             _ => runs.push(i..i + 1),
         }
     }
+
     pub fn is_on(&self, scene: &Scene) -> bool {
         self.scene.is_same(scene)
     }
+
     /// The number of dabs.
     #[cfg(test)]
     pub fn dabs(&self) -> usize {
         self.dabs.len()
     }
+
     /// The tiles that they may touch, in no order; some may be beyond the canvas.
     pub fn tiles(&self) -> impl Iterator<Item = TileAt> {
         self.tiles.keys().copied()
     }
+
     /// The scene that they were laid on.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
+
     /// The dabs that may touch a tile, in order.
     pub fn on_tile(&self, at: TileAt) -> impl Iterator<Item = &Dab> {
         let runs = self.tiles.get(&at).into_iter().flatten();
         runs.flat_map(|run| &self.dabs[run.start as usize..run.end as usize])
     }
+
     pub fn place<'s>(&self, dab: Dab, scene: &'s Scene) -> PlacedDab<'s> {
         self.tip.place(dab, scene)
     }
+
     /// An empty stroke tile for the stroke's dabs. `grain`: the tile's.
     pub fn stroke_tile(&self, grain: Option<Arc<GrainTile>>) -> StrokeTile {
         let has_colors = self.varies_in_color || self.tip.brings_colors();
@@ -134,8 +155,15 @@ impl StrokeDabs {
             None => tile,
         }
     }
+
     /// Adds a dab to a tile.
-    pub fn add(&self, dab: &PlacedDab, at: TileAt, stroke_tile: &mut StrokeTile, scratch: &mut DabScratch) {
+    pub fn add(
+        &self,
+        dab: &PlacedDab,
+        at: TileAt,
+        stroke_tile: &mut StrokeTile,
+        scratch: &mut DabScratch,
+    ) {
         self.tip.add(dab, at, stroke_tile, scratch);
     }
 }
@@ -165,26 +193,35 @@ impl TileReach {
         support.bits = bits.into();
         support
     }
+
     fn index(&self, at: TileAt) -> Option<usize> {
         let corner = at.rect();
         let (x, y) = (corner.x0, corner.y0);
         let place = |v: i32, from: i32| (v - from) as usize / TILE;
         let inside = self.bounds.contains(x, y);
-        inside.then(|| place(y, self.bounds.y0) * (self.bounds.width() / TILE) + place(x, self.bounds.x0))
+        inside.then(|| {
+            place(y, self.bounds.y0) * (self.bounds.width() / TILE) + place(x, self.bounds.x0)
+        })
     }
+
     pub fn is_on(&self, scene: &Scene) -> bool {
         self.scene.is_same(scene)
     }
+
     pub fn touches(&self, at: TileAt) -> bool {
-        self.index(at).and_then(|i| self.bits.get(i / 64).map(|word| word >> (i % 64) & 1 == 1)).unwrap_or(false)
+        self.index(at)
+            .and_then(|i| self.bits.get(i / 64).map(|word| word >> (i % 64) & 1 == 1))
+            .unwrap_or(false)
     }
+
     /// Whole tiles of the canvas.
     pub fn bounds(&self) -> Rect {
         self.bounds
     }
 }
 
-/// Visits the tiles that each of some dabs may touch, with the dab's number; for each tile in order.
+/// Visits the tiles that each of some dabs may touch, with the dab's number; for each tile in
+/// order.
 pub(in crate::paint) fn for_each_tile_of(dabs: &[PlacedDab], visit: impl FnMut(usize, TileAt)) {
     let bounds: Vec<&SupportBounds> = dabs.iter().map(PlacedDab::support).collect();
     support::for_each_tile_of(&bounds, visit);

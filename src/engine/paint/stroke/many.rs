@@ -1,6 +1,7 @@
-//! Many strokes on many tiles, with a bounded number of dabs in flight: the dabs of each stroke are placed once for all
-//! the tiles that wait for it, painted on them, and dropped. Floor 3. The same pixels as tile by tile (`render_tile`),
-//! which places the dabs of a stroke that are not cached once for each tile.
+//! Many strokes on many tiles, with a bounded number of dabs in flight: the dabs of each stroke are
+//! placed once for all the tiles that wait for it, painted on them, and dropped. Floor 3. The same
+//! pixels as tile by tile (`render_tile`), which places the dabs of a stroke that are not cached
+//! once for each tile.
 
 use super::Stroke;
 use super::dabs::{StrokeDabs, TileReach};
@@ -16,8 +17,9 @@ const DABS_IN_FLIGHT: usize = 1 << 18;
 /// Tiles that are held at a time, in f32: 64 MB.
 const TILES_IN_FLIGHT: usize = 1 << 10;
 
-/// Whether [`render_tiles`] is better for this many tiles: some strokes cannot be cached, or there are so many that
-/// looking up the strokes of each tile would take long. `None` if it is no longer wanted.
+/// Whether [`render_tiles`] is better for this many tiles: some strokes cannot be cached, or there
+/// are so many that looking up the strokes of each tile would take long. `None` if it is no longer
+/// wanted.
 pub fn are_heavy(
     strokes: &[Arc<Stroke>],
     scene: &Scene,
@@ -40,7 +42,8 @@ pub fn are_heavy(
     strokes.par_iter().try_for_each(lay).map_or_else(|end| end, |()| Some(false))
 }
 
-/// Renders tiles of a list of strokes, the first lowest, and hands each to `done`; `None` if it is no longer wanted.
+/// Renders tiles of a list of strokes, the first lowest, and hands each to `done`; `None` if it is
+/// no longer wanted.
 pub fn render_tiles(
     strokes: &[Arc<Stroke>],
     scene: &Scene,
@@ -48,7 +51,9 @@ pub fn render_tiles(
     is_wanted: impl Fn() -> bool,
     done: impl Fn(TileAt, Option<Tile>) + Sync,
 ) -> Option<()> {
-    render_many(strokes, scene, tiles, is_wanted, |at, pixels| done(at, pixels.and_then(|pixels| pixels.quantised())))
+    render_many(strokes, scene, tiles, is_wanted, |at, pixels| {
+        done(at, pixels.and_then(|pixels| pixels.quantised()))
+    })
 }
 
 /// The same before they are quantised.
@@ -61,22 +66,32 @@ pub fn render_many(
 ) -> Option<()> {
     let front = scene.front();
     for part in tiles.chunks(TILES_IN_FLIGHT) {
-        let places: HashMap<TileAt, usize> = part.iter().enumerate().map(|(i, &at)| (at, i)).collect();
-        let mut active_tiles: Vec<Wet> = part.iter().map(|&at| Wet { at, pixels: None, here: Vec::new() }).collect();
+        let places: HashMap<TileAt, usize> =
+            part.iter().enumerate().map(|(i, &at)| (at, i)).collect();
+        let mut active_tiles: Vec<Wet> =
+            part.iter().map(|&at| Wet { at, pixels: None, here: Vec::new() }).collect();
         for batch in batches(strokes, |stroke| stroke.most_dabs(&front)) {
             is_wanted().then_some(())?;
             let laid: Vec<Option<Arc<StrokeDabs>>> =
                 batch.par_iter().map(|stroke| laid(stroke, &front, part)).collect();
             for (i, stroke_dabs) in laid.iter().enumerate() {
-                for place in stroke_dabs.iter().flat_map(|dabs| dabs.tiles()).filter_map(|at| places.get(&at)) {
+                for place in stroke_dabs
+                    .iter()
+                    .flat_map(|dabs| dabs.tiles())
+                    .filter_map(|at| places.get(&at))
+                {
                     active_tiles[*place].here.push(i);
                 }
             }
-            active_tiles.par_iter_mut().for_each_init(DabScratch::default, |scratch, active_tile| {
-                active_tile.paint(batch, &laid, scene, scratch)
-            });
+            active_tiles
+                .par_iter_mut()
+                .for_each_init(DabScratch::default, |scratch, active_tile| {
+                    active_tile.paint(batch, &laid, scene, scratch)
+                });
         }
-        active_tiles.into_par_iter().for_each(|active_tiles| done(active_tiles.at, active_tiles.pixels));
+        active_tiles
+            .into_par_iter()
+            .for_each(|active_tiles| done(active_tiles.at, active_tiles.pixels));
     }
     Some(())
 }
@@ -142,10 +157,14 @@ mod tests {
     const SIZE: Size = Size::new(300, 200);
 
     fn waves() -> Scene {
-        let normals = Plane::from_fn(SIZE, |x, y| vec3((0.05 * x as f32).sin(), (0.07 * y as f32).cos(), 1.0));
-        let maps = Maps { normals, depth: Plane::filled(SIZE, 0.5), coverage: Plane::filled(SIZE, 255) };
+        let normals = Plane::from_fn(SIZE, |x, y| {
+            vec3((0.05 * x as f32).sin(), (0.07 * y as f32).cos(), 1.0)
+        });
+        let maps =
+            Maps { normals, depth: Plane::filled(SIZE, 0.5), coverage: Plane::filled(SIZE, 255) };
         Scene { size: SIZE, surface: Some(Arc::new(Surface::new(maps).unwrap())) }
     }
+
     /// Strokes across the canvas and beyond it that paint, erase, mix and have grain in turn.
     fn strokes(n: u32) -> Vec<Arc<Stroke>> {
         let plain = Brush { size: 12.0, hardness: 0.4, flow: 0.6, ..Brush::default() };
@@ -156,7 +175,9 @@ mod tests {
             Brush { grain: Some(BrushGrain::default()), ..plain },
         ];
         let stroke = |i: u32| {
-            let at = |j: u32| vec2(360.0 * hash::unit(i, j, 0) - 30.0, 260.0 * hash::unit(i, j, 1) - 30.0);
+            let at = |j: u32| {
+                vec2(360.0 * hash::unit(i, j, 0) - 30.0, 260.0 * hash::unit(i, j, 1) - 30.0)
+            };
             let color = Color { r: (i * 40) as u8, g: 90, b: 255 - (i * 30) as u8, a: 255 };
             let operator = Operator::Normal { alpha: 0.2, beta: 1.0, detail: 0.0 };
             let operator = if i.is_multiple_of(2) { Operator::None } else { operator };
@@ -171,7 +192,9 @@ mod tests {
         let scene = waves();
         let (strokes, tiles) = (strokes(23), TileAt::covering(SIZE.rect()).collect::<Vec<_>>());
         let found = Mutex::new(BTreeMap::new());
-        let done = |at, tile: Option<Tile>| drop(found.lock().unwrap().insert(at, tile.map(|t| t.bytes().to_vec())));
+        let done = |at, tile: Option<Tile>| {
+            drop(found.lock().unwrap().insert(at, tile.map(|t| t.bytes().to_vec())))
+        };
         render_tiles(&strokes, &scene, &tiles, || true, done).unwrap();
         let found = found.into_inner().unwrap();
         assert_eq!(found.len(), tiles.len());
@@ -180,11 +203,13 @@ mod tests {
             assert!(tile == one, "{at:?}");
         }
     }
+
     #[test]
     fn batches_hold_every_stroke_once_and_few_dabs() {
         let dabs = [1, DABS_IN_FLIGHT, 5, DABS_IN_FLIGHT / 2, DABS_IN_FLIGHT / 2, 7];
         assert_eq!(batches(&dabs, |dabs| *dabs).map(<[_]>::len).collect::<Vec<_>>(), [2, 3, 1]);
     }
+
     #[test]
     fn no_stroke_has_more_dabs_than_are_allowed_for() {
         let scene = waves();
@@ -193,10 +218,13 @@ mod tests {
             assert!(is > 10 && is <= most, "{is} of {most}");
         }
     }
+
     #[test]
     fn work_that_is_no_longer_wanted_ends() {
         let scene = Scene { size: SIZE, surface: None };
-        assert!(render_tiles(&strokes(3), &scene, &[TileAt::new(0, 0)], || false, |_, _| ()).is_none());
+        assert!(
+            render_tiles(&strokes(3), &scene, &[TileAt::new(0, 0)], || false, |_, _| ()).is_none()
+        );
         assert!(are_heavy(&strokes(3), &scene, 1, || false).is_none());
     }
 }

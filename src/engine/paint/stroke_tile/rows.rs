@@ -1,17 +1,19 @@
-//! Rows of a stroke tile: how a dab adds to each pixel, and how the result is laid on a layer. Floor 3.
+//! Rows of a stroke tile: how a dab adds to each pixel, and how the result is laid on a layer.
+//! Floor 3.
 
 use super::{CoveredRow, DabPaint};
 use crate::raster::TILE;
 use crate::raster::planar::PixelRow;
 
-/// Adds a dab to a pixel's coverage a: with g its coverage of the pixel and p the share that it reaches,
+/// Adds a dab to a pixel's coverage a: with g its coverage of the pixel and p the share that it
+/// reaches,
 ///
 /// ```text
 /// M ← max(M, p),    a ← a + g / M · (c M − a)
 /// ```
 ///
-/// up to the ceiling c. What earlier dabs left bare beyond M stays bare; what they reached they covered evenly. For p =
-/// 1 that is a ← a + g (c − a). Coverage above the ceiling does not change.
+/// up to the ceiling c. What earlier dabs left bare beyond M stays bare; what they reached they
+/// covered evenly. For p = 1 that is a ← a + g (c − a). Coverage above the ceiling does not change.
 #[inline(always)]
 pub fn raise(coverage: &mut f32, reach: &mut f32, g: f32, share: f32, ceiling: f32) {
     let most = if g > 0.0 && share > *reach { share } else { *reach };
@@ -28,15 +30,17 @@ fn raised(coverage: f32, f: f32, ceiling: f32) -> f32 {
     coverage + f * if room > 0.0 { room } else { 0.0 }
 }
 
-/// One premultiplied pixel with a colour over it that covers g of it, k of what is there; up to a ceiling: colours mix
-/// as in source over, coverage rises no higher than the ceiling.
+/// One premultiplied pixel with a colour over it that covers g of it, k of what is there; up to a
+/// ceiling: colours mix as in source over, coverage rises no higher than the ceiling.
 #[inline(always)]
 fn mixed(p: [f32; 4], (g, k): (f32, f32), source: [f32; 3], ceiling: f32) -> [f32; 4] {
     let over = |c: usize| p[c] * (1.0 - k) + source[c];
     let a_over = p[3] * (1.0 - k) + g;
     let a = raised(p[3], k, ceiling);
-    let (part, whole) = if ceiling < 1.0 && a_over > 0.0 && a < a_over { (a, a_over) } else { (1.0, 1.0) };
-    // Multiplied first: a channel equal to the coverage stays equal to the bit, however often dabs mix.
+    let (part, whole) =
+        if ceiling < 1.0 && a_over > 0.0 && a < a_over { (a, a_over) } else { (1.0, 1.0) };
+    // Multiplied first: a channel equal to the coverage stays equal to the bit, however often dabs
+    // mix.
     [over(0), over(1), over(2), a_over].map(|v| v * part / whole)
 }
 
@@ -46,16 +50,19 @@ crate::widest! {
             *v *= f32::from(*share) * (1.0 / 255.0);
         }
     }
+
     pub(super) fn add_covered(row: CoveredRow, paint: DabPaint, coverage: &mut [f32], reach: &mut [f32]) {
         for (((a, m), g), p) in coverage.iter_mut().zip(reach).zip(row.coverage).zip(row.shares) {
             raise(a, m, paint.flow * g, *p, paint.ceiling);
         }
     }
+
     pub(super) fn add_alpha(stamped: &[[u8; 4]], flow: f32, ceiling: f32, coverage: &mut [f32]) {
         for (a, s) in coverage.iter_mut().zip(stamped) {
             *a = raised(*a, flow * f32::from(s[3]), ceiling);
         }
     }
+
     /// `x`: column of the first pixel.
     pub(super) fn add_stamped(stamped: &[[u8; 4]], flow: f32, ceiling: f32, x: usize, row: &mut PixelRow) {
         let PixelRow { rgb: [r, g, b], a } = row;
@@ -66,6 +73,7 @@ crate::widest! {
             [r[i], g[i], b[i], a[i]] = mixed([r[i], g[i], b[i], a[i]], (f, f), source, ceiling);
         }
     }
+
     /// Blends one premultiplied colour over a row, weighted by each pixel's coverage.
     pub(super) fn lay_coverage(coverage: &[f32; TILE], color: [f32; 4], row: &mut PixelRow) {
         for (plane, c) in row.rgb.iter_mut().chain([&mut row.a]).zip(color) {
@@ -74,6 +82,7 @@ crate::widest! {
             }
         }
     }
+
     pub(super) fn lay_colors(from: &PixelRow, opacity: f32, row: &mut PixelRow) {
         for (plane, over) in row.rgb.iter_mut().chain([&mut row.a]).zip(from.rgb.iter().chain([&from.a])) {
             for ((p, s), a) in plane.iter_mut().zip(over).zip(&from.a) {
@@ -81,6 +90,7 @@ crate::widest! {
             }
         }
     }
+
     pub(super) fn take_out_row(coverage: &[f32; TILE], opacity: f32, row: &mut PixelRow) {
         for plane in row.rgb.iter_mut().chain([&mut row.a]) {
             for (p, a) in plane.iter_mut().zip(coverage) {
@@ -90,8 +100,8 @@ crate::widest! {
     }
 }
 
-/// Adds colours to a row from column `x` on, as many as `reach` has pixels; `source`: the coverage of each pixel, the
-/// straight colour, and the share that is reached.
+/// Adds colours to a row from column `x` on, as many as `reach` has pixels; `source`: the coverage
+/// of each pixel, the straight colour, and the share that is reached.
 pub(super) fn add_colors(
     source: impl Fn(usize) -> (f32, [f32; 3], f32),
     ceiling: f32,

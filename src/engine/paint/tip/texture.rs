@@ -1,5 +1,6 @@
 //! Textured tips: bristles and specks, made once as a picture that a round tip shines through.
-//! Floor 3. The round tip keeps the meaning of hardness and softness; the picture blurs with the softness too.
+//! Floor 3. The round tip keeps the meaning of hardness and softness; the picture blurs with the
+//! softness too.
 
 use crate::math::Size;
 use crate::paint::Adjust;
@@ -58,7 +59,8 @@ const KEPT: usize = 32;
 static MADE: Mutex<Vec<((TipTexture, u32), PictureSource)>> = Mutex::new(Vec::new());
 
 impl TipTexture {
-    /// The picture for dabs of a diameter in px: coverage, opaque and grey. Every brush gets the same one.
+    /// The picture for dabs of a diameter in px: coverage, opaque and grey. Every brush gets the
+    /// same one.
     pub fn source(self, diameter_px: f32) -> PictureSource {
         // For NaN the comparisons give the smallest.
         let side = if diameter_px > 400.0 {
@@ -87,9 +89,12 @@ impl TipTexture {
         made.push(((self, side), source.clone()));
         source
     }
+
     fn picture(self, side: u32) -> Picture {
         grey(&match self {
-            TipTexture::Bristles(Bristles { count, seed }) => pattern::bristles(count.min(1000), seed, side),
+            TipTexture::Bristles(Bristles { count, seed }) => {
+                pattern::bristles(count.min(1000), seed, side)
+            }
             TipTexture::Noise(Noise { cells, density, seed }) => {
                 pattern::specks(cells.min(200), density.max(0.0).min(1.0), seed, side)
             }

@@ -13,8 +13,9 @@ impl BlendMode {
 }
 
 impl PlanarTile {
-    /// As [`PlanarTile::blend`], where colours may be above their alpha. Formulas that hold only up to white see both
-    /// sides clipped; the backdrop's light beyond white then shows through as far as the paint leaves it.
+    /// As [`PlanarTile::blend`], where colours may be above their alpha. Formulas that hold only up
+    /// to white see both sides clipped; the backdrop's light beyond white then shows through as far
+    /// as the paint leaves it.
     pub fn blend_bright(&mut self, mix: Mix, paint: TilePaint<'_>, coverage: &TileCoverage) {
         if mix.mode.keeps_light() && !mix.linear {
             return self.blend(mix, paint, coverage);
@@ -22,7 +23,9 @@ impl PlanarTile {
         let mut excess = self.clone();
         self.clip_to_white();
         for (excess, clipped) in excess.rows_mut().iter_mut().zip(self.rows()) {
-            for (v, clipped) in excess.rgb.as_flattened_mut().iter_mut().zip(clipped.rgb.as_flattened()) {
+            for (v, clipped) in
+                excess.rgb.as_flattened_mut().iter_mut().zip(clipped.rgb.as_flattened())
+            {
                 *v -= clipped;
             }
         }
@@ -73,9 +76,12 @@ mod tests {
             }
         }
     }
+
     #[test]
     fn light_beyond_white_stays_beneath_nothing_and_fades_beneath_paint_of_every_mode() {
-        for (mode, ..) in BlendMode::ALL.into_iter().filter(|(mode, ..)| *mode != BlendMode::Dissolve) {
+        for (mode, ..) in
+            BlendMode::ALL.into_iter().filter(|(mode, ..)| *mode != BlendMode::Dissolve)
+        {
             let mix = Mix { mode, ..Mix::default() };
             let after = |alpha: f32| {
                 let mut sun = tile([4.0, 2.0, 1.5, 1.0]);
@@ -85,7 +91,10 @@ mod tests {
             };
             assert_eq!(after(0.0), [4.0, 2.0, 1.5, 1.0], "{mode:?}");
             let (little, more) = (after(0.1), after(0.6));
-            assert!(little[0] > 3.0 && little[0] >= more[0] && more.iter().all(|v| v.is_finite()), "{mode:?} {more:?}");
+            assert!(
+                little[0] > 3.0 && little[0] >= more[0] && more.iter().all(|v| v.is_finite()),
+                "{mode:?} {more:?}"
+            );
         }
     }
 }

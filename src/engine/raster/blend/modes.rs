@@ -1,14 +1,15 @@
-//! The table of blend modes: one row says everything about a mode. Its formula is in `spec`. Floor 1. To add a
-//! mode, add a row and its formula (the table has more columns than `named!`); `rows` computes it from the formula
-//! until it has a faster twin there.
+//! The table of blend modes: one row says everything about a mode. Its formula is in `spec`.
+//! Floor 1. To add a mode, add a row and its formula (the table has more columns than `named!`);
+//! `rows` computes it from the formula until it has a faster twin there.
 
 use super::spec::{self, BlendFunction};
 
-/// Hands the table to a macro. The last column is how the mode is computed and by which function of `spec`.
+/// Hands the table to a macro. The last column is how the mode is computed and by which function of
+/// `spec`.
 macro_rules! blend_modes {
     ($with:ident) => {
         $with! {
-            // mode       documents        window            OpenRaster             Photoshop B(cb, cs)
+            // mode       documents        window            OpenRaster             Photoshop  B(cb, cs)
             #[default]
             Normal,       "normal",        "Normal",         "svg:src-over",        b"norm", separable(normal);
             Multiply,     "multiply",      "Multiply",       "svg:multiply",        b"mul ", separable(multiply);
@@ -38,7 +39,8 @@ macro_rules! blend_modes {
             LighterColor, "lighter-color", "Lighter colour", "krita:lighter color", b"lgCl", non_separable(lighter);
             Subtract,     "subtract",      "Subtract",       "krita:subtract",      b"fsub", separable(subtract);
             Divide,       "divide",        "Divide",         "krita:divide",        b"fdiv", separable(divide);
-            /// Each pixel wholly or not at all, by noise fixed to the canvas, with its alpha as the probability.
+            /// Each pixel wholly or not at all, by noise fixed to the canvas, with its alpha as the
+            /// probability.
             Dissolve,     "dissolve",      "Dissolve",       "krita:dissolve",      b"diss", separable(normal);
         }
     };
@@ -71,8 +73,9 @@ macro_rules! declare {
         $(#[$meta:meta])*
         $mode:ident, $name:literal, $label:literal, $ora:literal, $psd:literal, $kind:ident($b:ident);
     )+) => {
-        /// How a layer's colour meets the colour below: a function `B(cb, cs)` mixed source-over as W3C mixes its own,
-        /// except for [`BlendMode::Plus`]; what [`BlendMode::Dissolve`] leaves of a layer is mixed this way.
+        /// How a layer's colour meets the colour below: a function `B(cb, cs)` mixed source-over as
+        /// W3C mixes its own, except for [`BlendMode::Plus`]; what [`BlendMode::Dissolve`] leaves
+        /// of a layer is mixed this way.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
         pub enum BlendMode {
             $($(#[$meta])* $mode,)+
@@ -102,7 +105,8 @@ macro_rules! declare {
 }
 blend_modes!(declare);
 
-/// One premultiplied pixel over another by the formula of a mode, which the fast rows are tested against.
+/// One premultiplied pixel over another by the formula of a mode, which the fast rows are tested
+/// against.
 pub fn blend_pixel(mode: BlendMode, backdrop: [f32; 4], source: [f32; 4]) -> [f32; 4] {
     mode.function().composited(backdrop, source)
 }
@@ -112,39 +116,48 @@ impl BlendMode {
     pub fn name(self) -> &'static str {
         self.row().name
     }
+
     /// Its name in the window.
     pub fn label(self) -> &'static str {
         self.row().label
     }
+
     /// OpenRaster's word, or if it has none, that of a program which has one.
     pub fn openraster(self) -> &'static str {
         self.row().openraster
     }
+
     /// Photoshop's key; for a mode that it lacks, one that no file contains.
     pub fn photoshop(self) -> [u8; 4] {
         self.row().photoshop
     }
+
     /// Its formula.
     pub fn function(self) -> BlendFunction {
         self.row().function
     }
+
     /// The mode with this name in documents.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::find(|row| row.name == name)
     }
+
     /// The mode with this name in OpenRaster.
     pub fn from_openraster(word: &str) -> Option<Self> {
         Self::find(|row| row.openraster == word)
     }
+
     /// The mode of a key of Photoshop's.
     pub fn from_photoshop(key: [u8; 4]) -> Option<Self> {
         Self::find(|row| row.photoshop == key)
     }
-    /// OpenRaster can express it, and other programs read it as this one does: most read its `plus` as a sum of colours
-    /// alone, whatever the alpha.
+
+    /// OpenRaster can express it, and other programs read it as this one does: most read its `plus`
+    /// as a sum of colours alone, whatever the alpha.
     pub fn is_said_by_openraster(self) -> bool {
         self.openraster().starts_with("svg:") && self != BlendMode::Plus
     }
+
     /// A step of one colour may change the result by more than a step.
     pub fn is_steep(self) -> bool {
         use BlendMode as Mode;
@@ -153,10 +166,12 @@ impl BlendMode {
             || matches!(self, Mode::Plus | Mode::LinearDodge | Mode::LinearBurn | Mode::Subtract);
         !is_even
     }
+
     /// Photoshop can express it, and dissolves the same pixels.
     pub fn is_said_by_photoshop(self) -> bool {
         !matches!(self, BlendMode::Plus | BlendMode::Dissolve)
     }
+
     fn find(is: impl Fn(&ModeRow) -> bool) -> Option<Self> {
         Self::ALL.into_iter().map(|(mode, _)| mode).find(|mode| is(&mode.row()))
     }

@@ -1,9 +1,10 @@
-//! Blending by rows: the fast twin of `spec`, premultiplied, eight pixels an instruction where the processor can.
-//! Floor 1. Tested against `spec` for every mode.
+//! Blending by rows: the fast twin of `spec`, premultiplied, eight pixels an instruction where the
+//! processor can. Floor 1. Tested against `spec` for every mode.
 //!
-//! With S, D the premultiplied source and backdrop, the result is `S (1 − αb) + T + D (1 − αs)`, T = αs αb B(D/αb,
-//! S/αs). For most modes T needs no division. Which pixels dissolving leaves is decided before the paint is mixed.
-//! *Atop* omits the first term and keeps the backdrop's alpha: a clipped layer.
+//! With S, D the premultiplied source and backdrop, the result is `S (1 − αb) + T + D (1 − αs)`, T
+//! = αs αb B(D/αb, S/αs). For most modes T needs no division. Which pixels dissolving leaves is
+//! decided before the paint is mixed. *Atop* omits the first term and keeps the backdrop's alpha: a
+//! clipped layer.
 
 mod formulas;
 
@@ -48,7 +49,8 @@ crate::widest! {
         }
     }
 
-    /// Moves every row toward another by its coverage: a pass-through group or an adjustment, faded.
+    /// Moves every row toward another by its coverage: a pass-through group or an adjustment,
+    /// faded.
     pub fn mix_rows(rows: &mut [PixelRow], toward: &[PixelRow], coverage: &TileCoverage) {
         for (y, (row, toward)) in rows.iter_mut().zip(toward).enumerate() {
             let mut t = [coverage.opacity(); TILE];
@@ -173,23 +175,32 @@ fn blend_row(d: &mut PixelRow, s: &PixelRow, mix: Mix) {
         BlendMode::HardLight => separable(d, s, mix, hard_light),
         BlendMode::SoftLight => separable(d, s, mix, soft_light),
         BlendMode::Difference => separable(d, s, mix, |s, d, as_, ab| (s * ab - d * as_).abs()),
-        BlendMode::Exclusion => separable(d, s, mix, |s, d, as_, ab| s * ab + d * as_ - 2.0 * s * d),
+        BlendMode::Exclusion => {
+            separable(d, s, mix, |s, d, as_, ab| s * ab + d * as_ - 2.0 * s * d)
+        }
         BlendMode::Hue => non_separable(d, s, mix, hue),
         BlendMode::Saturation => non_separable(d, s, mix, saturation),
         BlendMode::Color => non_separable(d, s, mix, color),
         BlendMode::Luminosity => non_separable(d, s, mix, luminosity),
-        BlendMode::LinearDodge => separable(d, s, mix, |s, d, as_, ab| least(s * ab + d * as_, as_ * ab)),
-        BlendMode::LinearBurn => separable(d, s, mix, |s, d, as_, ab| greatest(s * ab + d * as_ - as_ * ab, 0.0)),
+        BlendMode::LinearDodge => {
+            separable(d, s, mix, |s, d, as_, ab| least(s * ab + d * as_, as_ * ab))
+        }
+        BlendMode::LinearBurn => {
+            separable(d, s, mix, |s, d, as_, ab| greatest(s * ab + d * as_ - as_ * ab, 0.0))
+        }
         BlendMode::LinearLight => separable(d, s, mix, linear_light),
         BlendMode::VividLight => separable(d, s, mix, vivid_light),
         BlendMode::PinLight => separable(d, s, mix, pin_light),
-        BlendMode::Subtract => separable(d, s, mix, |s, d, as_, ab| greatest(d * as_ - s * ab, 0.0)),
+        BlendMode::Subtract => {
+            separable(d, s, mix, |s, d, as_, ab| greatest(d * as_ - s * ab, 0.0))
+        }
         BlendMode::Dissolve => separable(d, s, mix, |s, _, _, ab| s * ab),
         _ => by_formula(d, s, mix),
     }
 }
 
-/// Leaves each pixel of the source wholly, or nothing of it; `[x, y]` is the row's place on the canvas.
+/// Leaves each pixel of the source wholly, or nothing of it; `[x, y]` is the row's place on the
+/// canvas.
 #[inline(always)]
 fn dissolve(source: &mut PixelRow, [x, y]: [i32; 2]) {
     for i in 0..TILE {
@@ -236,7 +247,12 @@ fn straight(d: &mut PixelRow, s: &PixelRow, mix: Mix, b: impl Fn(f32, f32) -> f3
 
 /// `term(S, D, αs, αb)` is T.
 #[inline(always)]
-fn separable(d: &mut PixelRow, s: &PixelRow, mix: Mix, term: impl Fn(f32, f32, f32, f32) -> f32 + Copy) {
+fn separable(
+    d: &mut PixelRow,
+    s: &PixelRow,
+    mix: Mix,
+    term: impl Fn(f32, f32, f32, f32) -> f32 + Copy,
+) {
     let outside = if mix.atop { 0.0 } else { 1.0 };
     let (ab, as_) = (&mut d.a, &s.a);
     for (d, s) in d.rgb.iter_mut().zip(&s.rgb) {
@@ -251,14 +267,22 @@ fn separable(d: &mut PixelRow, s: &PixelRow, mix: Mix, term: impl Fn(f32, f32, f
 }
 
 #[inline(always)]
-fn non_separable(d: &mut PixelRow, s: &PixelRow, mix: Mix, b: impl Fn([f32; 3], [f32; 3]) -> [f32; 3] + Copy) {
+fn non_separable(
+    d: &mut PixelRow,
+    s: &PixelRow,
+    mix: Mix,
+    b: impl Fn([f32; 3], [f32; 3]) -> [f32; 3] + Copy,
+) {
     let outside = if mix.atop { 0.0 } else { 1.0 };
     let PixelRow { rgb: [dr, dg, db], a: ab } = d;
     let PixelRow { rgb: [sr, sg, sb], a: as_ } = s;
     for x in 0..TILE {
         let (ab, as_) = (&mut ab[x], as_[x]);
         let (inv_b, inv_s) = (reciprocal(*ab), reciprocal(as_));
-        let mixed = b([dr[x] * inv_b, dg[x] * inv_b, db[x] * inv_b], [sr[x] * inv_s, sg[x] * inv_s, sb[x] * inv_s]);
+        let mixed = b(
+            [dr[x] * inv_b, dg[x] * inv_b, db[x] * inv_b],
+            [sr[x] * inv_s, sg[x] * inv_s, sb[x] * inv_s],
+        );
         let (both, beyond, rest) = (as_ * *ab, outside * (1.0 - *ab), 1.0 - as_);
         dr[x] = sr[x] * beyond + mixed[0] * both + dr[x] * rest;
         dg[x] = sg[x] * beyond + mixed[1] * both + dg[x] * rest;
@@ -284,7 +308,8 @@ fn sum(d: &mut PixelRow, s: &PixelRow, mix: Mix, sum: impl Fn(f32, f32) -> f32 +
     }
 }
 
-/// Decodes both, blends linear light, encodes again; without paint the backdrop does not change by a bit.
+/// Decodes both, blends linear light, encodes again; without paint the backdrop does not change by
+/// a bit.
 #[inline(always)]
 fn in_linear_light(d: &mut PixelRow, s: &mut PixelRow, mix: Mix) {
     let before = *d;
@@ -312,8 +337,8 @@ fn through_straight(row: &mut PixelRow, curve: impl Fn(f32) -> f32) {
 /// One pixel of [`by_formula`], for modes that otherwise take another path.
 #[cfg(test)]
 pub(super) fn pixel_by_formula(mix: Mix, backdrop: [f32; 4], source: [f32; 4]) -> [f32; 4] {
-    let [mut d, s] =
-        [backdrop, source].map(|[r, g, b, a]| PixelRow { rgb: [[r; TILE], [g; TILE], [b; TILE]], a: [a; TILE] });
+    let [mut d, s] = [backdrop, source]
+        .map(|[r, g, b, a]| PixelRow { rgb: [[r; TILE], [g; TILE], [b; TILE]], a: [a; TILE] });
     by_formula(&mut d, &s, mix);
     d.pixel(TILE - 1)
 }

@@ -1,11 +1,13 @@
-//! The blend functions as the specification writes them: straight colours in [0, 1], one function a mode.
-//! Floor 1. The reference that reads like W3C Compositing and Blending Level 1, sec. 9; `rows` is the fast twin. Modes
-//! that W3C does not define follow Photoshop, compared with files that it saved.
+//! The blend functions as the specification writes them: straight colours in [0, 1], one function a
+//! mode. Floor 1. The reference that reads like W3C Compositing and Blending Level 1, sec. 9;
+//! `rows` is the fast twin. Modes that W3C does not define follow Photoshop, compared with files
+//! that it saved.
 
 use crate::math::hash;
 use crate::raster::planar::sane;
 
-/// One mode's B(cb, cs), backdrop first as in the specification: for a component, or for a whole colour.
+/// One mode's B(cb, cs), backdrop first as in the specification: for a component, or for a whole
+/// colour.
 #[derive(Clone, Copy)]
 pub enum BlendFunction {
     /// Each component on its own (sec. 9.1).
@@ -17,10 +19,11 @@ pub enum BlendFunction {
 }
 
 impl BlendFunction {
-    /// Composites one premultiplied pixel over another (sec. 5.8): the backdrop's share, the source's share outside the
-    /// backdrop, and B where both are.
+    /// Composites one premultiplied pixel over another (sec. 5.8): the backdrop's share, the
+    /// source's share outside the backdrop, and B where both are.
     ///
-    /// Total: every component is brought into `[0, 1]` first, colours to at most their alpha, NaN to 0.
+    /// Total: every component is brought into `[0, 1]` first, colours to at most their alpha, NaN
+    /// to 0.
     pub fn composited(self, backdrop: [f32; 4], source: [f32; 4]) -> [f32; 4] {
         let (backdrop, source) = (sane(backdrop), sane(source));
         let (ab, as_) = (backdrop[3], source[3]);
@@ -31,48 +34,60 @@ impl BlendFunction {
             BlendFunction::NonSeparable(b) => b(cb, cs),
             BlendFunction::Sum(sum) => return [0, 1, 2, 3].map(|c| sum(backdrop[c], source[c])),
         };
-        let [r, g, b] = [0, 1, 2].map(|c| as_ * (1.0 - ab) * cs[c] + as_ * ab * mixed[c] + (1.0 - as_) * ab * cb[c]);
+        let [r, g, b] = [0, 1, 2]
+            .map(|c| as_ * (1.0 - ab) * cs[c] + as_ * ab * mixed[c] + (1.0 - as_) * ab * cb[c]);
         [r, g, b, as_ + ab - as_ * ab]
     }
 }
 
 /// Any number: a layer dissolves the same way on every run.
 const DISSOLVE_SEED: u32 = 0x0d15_5017;
-/// Where a sum counts as full: half a step of a byte lower than 1, so that rounding decides nothing.
+/// Where a sum counts as full: half a step of a byte lower than 1, so that rounding decides
+/// nothing.
 pub const FULL: f32 = 1.0 - 0.5 / 255.0;
 
-/// What dissolving leaves of a premultiplied pixel at a point of the canvas: all of it, with its alpha as the
-/// probability, or nothing.
+/// What dissolving leaves of a premultiplied pixel at a point of the canvas: all of it, with its
+/// alpha as the probability, or nothing.
 #[inline(always)]
 pub fn dissolved(source: [f32; 4], [x, y]: [i32; 2]) -> [f32; 4] {
     let alpha = source[3];
-    if hash::unit(DISSOLVE_SEED, x as u32, y as u32) < alpha { source.map(|v| (v / alpha).min(1.0)) } else { [0.0; 4] }
+    if hash::unit(DISSOLVE_SEED, x as u32, y as u32) < alpha {
+        source.map(|v| (v / alpha).min(1.0))
+    } else {
+        [0.0; 4]
+    }
 }
 
 #[inline(always)]
 pub fn normal(_cb: f32, cs: f32) -> f32 {
     cs
 }
+
 #[inline(always)]
 pub fn multiply(cb: f32, cs: f32) -> f32 {
     cb * cs
 }
+
 #[inline(always)]
 pub fn screen(cb: f32, cs: f32) -> f32 {
     cb + cs - cb * cs
 }
+
 #[inline(always)]
 pub fn overlay(cb: f32, cs: f32) -> f32 {
     hard_light(cs, cb)
 }
+
 #[inline(always)]
 pub fn darken(cb: f32, cs: f32) -> f32 {
     cb.min(cs)
 }
+
 #[inline(always)]
 pub fn lighten(cb: f32, cs: f32) -> f32 {
     cb.max(cs)
 }
+
 #[inline(always)]
 pub fn color_dodge(cb: f32, cs: f32) -> f32 {
     if cb == 0.0 {
@@ -83,6 +98,7 @@ pub fn color_dodge(cb: f32, cs: f32) -> f32 {
         (cb / (1.0 - cs)).min(1.0)
     }
 }
+
 #[inline(always)]
 pub fn color_burn(cb: f32, cs: f32) -> f32 {
     if cb == 1.0 {
@@ -93,55 +109,72 @@ pub fn color_burn(cb: f32, cs: f32) -> f32 {
         1.0 - ((1.0 - cb) / cs).min(1.0)
     }
 }
+
 #[inline(always)]
 pub fn hard_light(cb: f32, cs: f32) -> f32 {
     if cs <= 0.5 { multiply(cb, 2.0 * cs) } else { screen(cb, 2.0 * cs - 1.0) }
 }
+
 #[inline(always)]
 pub fn soft_light(cb: f32, cs: f32) -> f32 {
     let d = if cb <= 0.25 { ((16.0 * cb - 12.0) * cb + 4.0) * cb } else { cb.sqrt() };
-    if cs <= 0.5 { cb - (1.0 - 2.0 * cs) * cb * (1.0 - cb) } else { cb + (2.0 * cs - 1.0) * (d - cb) }
+    if cs <= 0.5 {
+        cb - (1.0 - 2.0 * cs) * cb * (1.0 - cb)
+    } else {
+        cb + (2.0 * cs - 1.0) * (d - cb)
+    }
 }
+
 #[inline(always)]
 pub fn difference(cb: f32, cs: f32) -> f32 {
     (cb - cs).abs()
 }
+
 #[inline(always)]
 pub fn exclusion(cb: f32, cs: f32) -> f32 {
     cb + cs - 2.0 * cb * cs
 }
+
 #[inline(always)]
 pub fn linear_dodge(cb: f32, cs: f32) -> f32 {
     (cb + cs).min(1.0)
 }
+
 #[inline(always)]
 pub fn linear_burn(cb: f32, cs: f32) -> f32 {
     (cb + cs - 1.0).max(0.0)
 }
+
 #[inline(always)]
 pub fn linear_light(cb: f32, cs: f32) -> f32 {
     (cb + 2.0 * cs - 1.0).max(0.0).min(1.0)
 }
+
 #[inline(always)]
 pub fn vivid_light(cb: f32, cs: f32) -> f32 {
     if cs <= 0.5 { color_burn(cb, 2.0 * cs) } else { color_dodge(cb, 2.0 * cs - 1.0) }
 }
+
 #[inline(always)]
 pub fn pin_light(cb: f32, cs: f32) -> f32 {
     if cs <= 0.5 { darken(cb, 2.0 * cs) } else { lighten(cb, 2.0 * cs - 1.0) }
 }
+
 #[inline(always)]
 pub fn hard_mix(cb: f32, cs: f32) -> f32 {
     if cb + cs > FULL { 1.0 } else { 0.0 }
 }
+
 #[inline(always)]
 pub fn subtract(cb: f32, cs: f32) -> f32 {
     (cb - cs).max(0.0)
 }
+
 #[inline(always)]
 pub fn divide(cb: f32, cs: f32) -> f32 {
     if cs > 0.0 { (cb / cs).min(1.0) } else { 1.0 }
 }
+
 /// Of premultiplied values, and of the alphas.
 #[inline(always)]
 pub fn plus(backdrop: f32, source: f32) -> f32 {
@@ -153,23 +186,28 @@ pub fn plus(backdrop: f32, source: f32) -> f32 {
 pub fn darker(cb: [f32; 3], cs: [f32; 3]) -> [f32; 3] {
     if lum(cs) < lum(cb) { cs } else { cb }
 }
+
 /// The lighter of both, as a whole.
 #[inline(always)]
 pub fn lighter(cb: [f32; 3], cs: [f32; 3]) -> [f32; 3] {
     if lum(cs) > lum(cb) { cs } else { cb }
 }
+
 #[inline(always)]
 pub fn hue(cb: [f32; 3], cs: [f32; 3]) -> [f32; 3] {
     set_lum(set_sat(cs, sat(cb)), lum(cb))
 }
+
 #[inline(always)]
 pub fn saturation(cb: [f32; 3], cs: [f32; 3]) -> [f32; 3] {
     set_lum(set_sat(cb, sat(cs)), lum(cb))
 }
+
 #[inline(always)]
 pub fn color(cb: [f32; 3], cs: [f32; 3]) -> [f32; 3] {
     set_lum(cs, lum(cb))
 }
+
 #[inline(always)]
 pub fn luminosity(cb: [f32; 3], cs: [f32; 3]) -> [f32; 3] {
     set_lum(cb, lum(cs))
@@ -180,6 +218,7 @@ pub fn luminosity(cb: [f32; 3], cs: [f32; 3]) -> [f32; 3] {
 pub fn lum([r, g, b]: [f32; 3]) -> f32 {
     0.3 * r + 0.59 * g + 0.11 * b
 }
+
 /// Brings a colour back into [0, 1] along the line to its grey.
 #[inline(always)]
 pub fn clip_color(c: [f32; 3]) -> [f32; 3] {
@@ -189,15 +228,18 @@ pub fn clip_color(c: [f32; 3]) -> [f32; 3] {
     let c = if n < 0.0 { c.map(|v| l + (v - l) * l / (l - n)) } else { c };
     if x > 1.0 { c.map(|v| l + (v - l) * (1.0 - l) / (x - l)) } else { c }
 }
+
 #[inline(always)]
 pub fn set_lum(c: [f32; 3], l: f32) -> [f32; 3] {
     let d = l - lum(c);
     clip_color(c.map(|v| v + d))
 }
+
 #[inline(always)]
 pub fn sat([r, g, b]: [f32; 3]) -> f32 {
     r.max(g).max(b) - r.min(g).min(b)
 }
+
 /// The least component becomes 0, the greatest `s`; the middle one keeps its ratio between them.
 #[inline(always)]
 pub fn set_sat(c: [f32; 3], s: f32) -> [f32; 3] {

@@ -14,12 +14,15 @@ fn separable(mode: BlendMode) -> fn(f32, f32) -> f32 {
         _ => panic!("{} is not separable", mode.name()),
     }
 }
+
 fn close(a: &[f32], b: &[f32], tolerance: f32) -> bool {
     a.iter().zip(b).all(|(a, b)| (a - b).abs() <= tolerance)
 }
+
 fn one_pixel(p: [f32; 4]) -> Box<TileF32> {
     vec![p; TILE_AREA].into_boxed_slice().try_into().unwrap()
 }
+
 /// The fast path's result for one pixel.
 fn fast(mix: Mix, backdrop: [f32; 4], source: [f32; 4]) -> [f32; 4] {
     let mut tile = PlanarTile::from_pixels(&one_pixel(backdrop));
@@ -75,9 +78,14 @@ fn separable_modes_give_the_values_computed_by_hand() {
     ];
     for (mode, cb, cs, expected) in table {
         let got = separable(mode)(cb, cs);
-        assert!((got - expected).abs() < 1e-6, "{}({cb}, {cs}) is {got}, not {expected}", mode.name());
+        assert!(
+            (got - expected).abs() < 1e-6,
+            "{}({cb}, {cs}) is {got}, not {expected}",
+            mode.name()
+        );
     }
 }
+
 #[test]
 fn non_separable_modes_give_the_values_computed_by_hand() {
     let (cb, cs) = ([0.6, 0.4, 0.2], [0.2, 0.2, 0.7]);
@@ -100,16 +108,24 @@ fn non_separable_modes_give_the_values_computed_by_hand() {
     assert_eq!((spec::darker(cs, cb), spec::lighter(cs, cb)), (cs, cb));
     // Too bright a colour is drawn back toward its grey, which stays.
     let clipped = spec::clip_color([1.2, 0.6, 0.4]);
-    assert!((spec::lum(clipped) - spec::lum([1.2, 0.6, 0.4])).abs() < 1e-6 && (clipped[0] - 1.0).abs() < 1e-6);
+    assert!(
+        (spec::lum(clipped) - spec::lum([1.2, 0.6, 0.4])).abs() < 1e-6
+            && (clipped[0] - 1.0).abs() < 1e-6
+    );
 }
+
 #[test]
 fn half_transparent_paint_mixes_as_the_specification_says() {
-    // Red at half alpha multiplied onto blue at half alpha: a quarter is both (black), a quarter is each alone, a
-    // quarter is neither.
+    // Red at half alpha multiplied onto blue at half alpha: a quarter is both (black), a quarter is
+    // each alone, a quarter is neither.
     let got = blend_pixel(BlendMode::Multiply, [0.0, 0.0, 0.5, 0.5], [0.5, 0.0, 0.0, 0.5]);
     assert!(close(&got, &[0.25, 0.0, 0.25, 0.75], 1e-6), "{got:?}");
-    assert_eq!(blend_pixel(BlendMode::Plus, [0.7, 0.2, 0.0, 0.8], [0.5, 0.1, 0.0, 0.5]), [1.0, 0.3, 0.0, 1.0]);
+    assert_eq!(
+        blend_pixel(BlendMode::Plus, [0.7, 0.2, 0.0, 0.8], [0.5, 0.1, 0.0, 0.5]),
+        [1.0, 0.3, 0.0, 1.0]
+    );
 }
+
 #[test]
 fn the_fast_rows_agree_with_the_specification_in_every_mode() {
     for (mode, name) in BlendMode::ALL {
@@ -117,24 +133,35 @@ fn the_fast_rows_agree_with_the_specification_in_every_mode() {
             for as_ in ALPHAS {
                 for (i, cb) in VALUES.into_iter().enumerate() {
                     for (j, cs) in VALUES.into_iter().enumerate() {
-                        let backdrop = [cb * ab, VALUES[(i + 4) % 9] * ab, VALUES[(i + 7) % 9] * ab, ab];
-                        let source = [cs * as_, VALUES[(j + 2) % 9] * as_, VALUES[(j + 5) % 9] * as_, as_];
+                        let backdrop =
+                            [cb * ab, VALUES[(i + 4) % 9] * ab, VALUES[(i + 7) % 9] * ab, ab];
+                        let source =
+                            [cs * as_, VALUES[(j + 2) % 9] * as_, VALUES[(j + 5) % 9] * as_, as_];
                         // `fast` reads this pixel of the tile.
-                        let left = if mode == BlendMode::Dissolve { spec::dissolved(source, [23, 17]) } else { source };
+                        let left = if mode == BlendMode::Dissolve {
+                            spec::dissolved(source, [23, 17])
+                        } else {
+                            source
+                        };
                         let expected = blend_pixel(mode, backdrop, left);
                         let got = fast(Mix { mode, ..Mix::default() }, backdrop, source);
-                        assert!(close(&got, &expected, 2e-6), "{name}: {backdrop:?} {source:?}: {got:?} {expected:?}");
+                        assert!(
+                            close(&got, &expected, 2e-6),
+                            "{name}: {backdrop:?} {source:?}: {got:?} {expected:?}"
+                        );
                     }
                 }
             }
         }
     }
 }
+
 #[test]
 fn separable_modes_and_plus_agree_with_tiny_skia_within_two_steps() {
     for (mode, name) in BlendMode::ALL {
         // Its non-separable modes are less precise, and it does not have every mode.
-        let oracle = tiny_skia_mode(mode).filter(|_| !matches!(mode.function(), BlendFunction::NonSeparable(_)));
+        let oracle = tiny_skia_mode(mode)
+            .filter(|_| !matches!(mode.function(), BlendFunction::NonSeparable(_)));
         let Some(oracle) = oracle else { continue };
         for k in 0..4000u32 {
             let byte = |i: u32| (crate::math::hash::unit(9, k, i) * 256.0) as u8;
@@ -145,12 +172,17 @@ fn separable_modes_and_plus_agree_with_tiny_skia_within_two_steps() {
             let (backdrop, source) = (color(0), color(4));
             let expected = tiny_skia_blend(oracle, backdrop, source);
             let unit = |p: [u8; 4]| p.map(|v| f32::from(v) / 255.0);
-            let got = blend_pixel(mode, unit(backdrop), unit(source)).map(crate::math::srgb::quantise);
+            let got =
+                blend_pixel(mode, unit(backdrop), unit(source)).map(crate::math::srgb::quantise);
             let far = got.iter().zip(expected).map(|(a, b)| a.abs_diff(b)).max();
-            assert!(far <= Some(2), "{name}: {source:?} on {backdrop:?} is {got:?}, tiny-skia says {expected:?}");
+            assert!(
+                far <= Some(2),
+                "{name}: {source:?} on {backdrop:?} is {got:?}, tiny-skia says {expected:?}"
+            );
         }
     }
 }
+
 #[test]
 fn dissolving_leaves_as_many_pixels_as_its_alpha_says_and_the_same_ones_wherever_tiles_begin() {
     let mix = Mix { mode: BlendMode::Dissolve, ..Mix::default() };
@@ -174,6 +206,7 @@ fn dissolving_leaves_as_many_pixels_as_its_alpha_says_and_the_same_ones_wherever
     }
     assert!(kept.abs_diff(TILE_AREA / 4) < TILE_AREA / 50, "{kept} of {TILE_AREA}");
 }
+
 #[test]
 fn every_mode_leaves_the_backdrop_alone_where_nothing_is_painted() {
     let backdrop = [0.1, 0.4, 0.3, 0.6];
@@ -184,6 +217,7 @@ fn every_mode_leaves_the_backdrop_alone_where_nothing_is_painted() {
         }
     }
 }
+
 #[test]
 fn atop_keeps_the_alpha_of_what_it_is_painted_on() {
     for (mode, name) in BlendMode::ALL {
@@ -194,9 +228,14 @@ fn atop_keeps_the_alpha_of_what_it_is_painted_on() {
         assert_eq!(fast(mix, [0.0; 4], [0.3, 0.6, 0.0, 0.6]), [0.0; 4], "{name}");
     }
     // Normal: 0.6 of the colour (0.5, 1, 0) and 0.4 of the previous one.
-    let got = fast(Mix { atop: true, ..Mix::default() }, [0.2, 0.1, 0.0, 0.4], [0.3, 0.6, 0.0, 0.6]);
-    assert!(close(&got, &[0.3 * 0.4 + 0.2 * 0.4, 0.6 * 0.4 + 0.1 * 0.4, 0.0, 0.4], 1e-6), "{got:?}");
+    let got =
+        fast(Mix { atop: true, ..Mix::default() }, [0.2, 0.1, 0.0, 0.4], [0.3, 0.6, 0.0, 0.6]);
+    assert!(
+        close(&got, &[0.3 * 0.4 + 0.2 * 0.4, 0.6 * 0.4 + 0.1 * 0.4, 0.0, 0.4], 1e-6),
+        "{got:?}"
+    );
 }
+
 #[test]
 fn linear_light_mixes_black_and_white_to_the_grey_that_emits_half() {
     let got = fast(Mix { linear: true, ..Mix::default() }, [0.0, 0.0, 0.0, 1.0], [0.5; 4]);
@@ -204,6 +243,7 @@ fn linear_light_mixes_black_and_white_to_the_grey_that_emits_half() {
     let encoded = fast(Mix::default(), [0.0, 0.0, 0.0, 1.0], [0.5; 4]);
     assert!((encoded[0] - 0.5).abs() < 1e-6, "{encoded:?}");
 }
+
 #[test]
 fn coverage_is_opacity_times_mask_for_every_kind_of_paint() {
     let color = [0.5, 0.25, 0.0, 0.5];
@@ -211,7 +251,12 @@ fn coverage_is_opacity_times_mask_for_every_kind_of_paint() {
     let bytes = tile.quantised().unwrap();
     let deep = tile.kept(None).unwrap();
     let coverage = TileCoverage::uniform(0.5).times(|x, _| if x < 32 { 1.0 } else { 0.5 });
-    for paint in [TilePaint::Solid(color), TilePaint::of(&bytes), TilePaint::of(&deep), TilePaint::Planar(&tile)] {
+    for paint in [
+        TilePaint::Solid(color),
+        TilePaint::of(&bytes),
+        TilePaint::of(&deep),
+        TilePaint::Planar(&tile),
+    ] {
         let mut onto = PlanarTile::transparent();
         onto.blend(Mix::default(), paint, &coverage);
         assert!(close(&onto.rows()[5].pixel(0), &[0.25, 0.125, 0.0, 0.25], 0.003));
@@ -224,6 +269,7 @@ fn coverage_is_opacity_times_mask_for_every_kind_of_paint() {
     assert!(TileCoverage::uniform(1.0).times(|_, _| f32::NAN).is_none());
     assert!(TileCoverage::uniform(7.0).is_full());
 }
+
 #[test]
 fn paint_of_16_bits_blends_as_the_floats_that_it_holds() {
     let value = |i: usize, c: u32| (crate::math::hash::unit(i as u32, c, 7) * 65536.0) as u16;
@@ -238,7 +284,9 @@ fn paint_of_16_bits_blends_as_the_floats_that_it_holds() {
         floats.rows_mut()[y].set(x, tile.deep_pixel(x, y).map(|v| f32::from(v) / 65535.0));
     }
     let same = |a: &PlanarTile, b: &PlanarTile| {
-        (0..TILE_AREA).all(|i| close(&a.rows()[i / TILE].pixel(i % TILE), &b.rows()[i / TILE].pixel(i % TILE), 1e-5))
+        (0..TILE_AREA).all(|i| {
+            close(&a.rows()[i / TILE].pixel(i % TILE), &b.rows()[i / TILE].pixel(i % TILE), 1e-5)
+        })
     };
     assert!(same(&PlanarTile::of_tile(Some(&tile)), &floats));
     assert!(floats.kept(Some(&tile)).unwrap().is_same(&tile), "what is loaded is kept as it was");
@@ -246,7 +294,11 @@ fn paint_of_16_bits_blends_as_the_floats_that_it_holds() {
     for (mode, _) in BlendMode::ALL {
         for coverage in [&TileCoverage::FULL, &TileCoverage::uniform(0.3), &masked] {
             let mut under = PlanarTile::transparent();
-            under.blend(Mix::default(), TilePaint::Solid([0.3, 0.5, 0.1, 0.8]), &TileCoverage::FULL);
+            under.blend(
+                Mix::default(),
+                TilePaint::Solid([0.3, 0.5, 0.1, 0.8]),
+                &TileCoverage::FULL,
+            );
             let (mut a, mut b) = (under.clone(), under);
             let mix = Mix { mode, ..Mix::default() };
             a.blend(mix, TilePaint::of(&tile), coverage);
@@ -255,6 +307,7 @@ fn paint_of_16_bits_blends_as_the_floats_that_it_holds() {
         }
     }
 }
+
 #[test]
 fn nothing_out_of_range_comes_out_of_any_mode() {
     let wild = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -3.0, 0.0, 1e-30, 0.5, 1.0, 2.0];
@@ -276,6 +329,7 @@ fn nothing_out_of_range_comes_out_of_any_mode() {
         }
     }
 }
+
 #[test]
 fn every_row_of_the_table_is_found_by_each_of_its_names() {
     for (mode, name) in BlendMode::ALL {
@@ -287,6 +341,7 @@ fn every_row_of_the_table_is_found_by_each_of_its_names() {
     }
     assert_eq!(BlendMode::from_photoshop(*b"????"), None);
 }
+
 #[test]
 fn a_mode_without_a_twin_is_computed_from_its_formula_alike() {
     // Those that have one, both ways.
@@ -300,7 +355,10 @@ fn a_mode_without_a_twin_is_computed_from_its_formula_alike() {
             let (backdrop, source) = (color(0), color(4));
             let expected = blend_pixel(mode, backdrop, source);
             let got = rows::pixel_by_formula(Mix { mode, ..Mix::default() }, backdrop, source);
-            assert!(close(&got, &expected, 2e-6), "{name}: {backdrop:?} {source:?}: {got:?} {expected:?}");
+            assert!(
+                close(&got, &expected, 2e-6),
+                "{name}: {backdrop:?} {source:?}: {got:?} {expected:?}"
+            );
         }
     }
 }
@@ -324,9 +382,15 @@ fn tiny_skia_mode(mode: BlendMode) -> Option<tiny_skia::BlendMode> {
         _ => return None,
     })
 }
-fn tiny_skia_blend(blend_mode: tiny_skia::BlendMode, backdrop: [u8; 4], source: [u8; 4]) -> [u8; 4] {
-    let pixmap =
-        |p: [u8; 4]| tiny_skia::Pixmap::from_vec(p.to_vec(), tiny_skia::IntSize::from_wh(1, 1).unwrap()).unwrap();
+
+fn tiny_skia_blend(
+    blend_mode: tiny_skia::BlendMode,
+    backdrop: [u8; 4],
+    source: [u8; 4],
+) -> [u8; 4] {
+    let pixmap = |p: [u8; 4]| {
+        tiny_skia::Pixmap::from_vec(p.to_vec(), tiny_skia::IntSize::from_wh(1, 1).unwrap()).unwrap()
+    };
     let mut onto = pixmap(backdrop);
     let paint = tiny_skia::PixmapPaint { blend_mode, ..Default::default() };
     onto.draw_pixmap(0, 0, pixmap(source).as_ref(), &paint, tiny_skia::Transform::identity(), None);

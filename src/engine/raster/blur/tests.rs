@@ -5,6 +5,7 @@ fn impulse(size: Size) -> Plane<f32> {
     plane.set(size.width as usize / 2, size.height as usize / 2, 1.0);
     plane
 }
+
 #[test]
 fn what_is_spread_keeps_its_sum_and_has_the_variance_asked_for() {
     let size = Size::new(121, 121);
@@ -13,13 +14,15 @@ fn what_is_spread_keeps_its_sum_and_has_the_variance_asked_for() {
         point[60 * 121 + 60] = [1.0, 2.0];
         let spread = spread_pixels(size, &point, variance);
         let sum: f32 = spread.iter().map(|p| p[0]).sum();
-        let wide: f32 = spread.iter().enumerate().map(|(i, p)| p[1] * ((i % 121) as f32 - 60.0).powi(2)).sum();
+        let wide: f32 =
+            spread.iter().enumerate().map(|(i, p)| p[1] * ((i % 121) as f32 - 60.0).powi(2)).sum();
         assert!((sum - 1.0).abs() < 5e-3, "{variance}: {sum}");
         assert!((0.5 * wide / variance - 1.0).abs() < 0.06, "{variance}: {}", 0.5 * wide);
     }
     let same = vec![[0.5f32]; size.area()];
     assert_eq!(spread_pixels(size, &same, f32::NAN), same);
 }
+
 #[test]
 fn a_point_spreads_to_a_gaussian_of_either_kind() {
     for (side, sigma) in [(41, 0.7f32), (41, 3.9), (101, 4.1), (301, 25.0)] {
@@ -29,15 +32,25 @@ fn a_point_spreads_to_a_gaussian_of_either_kind() {
         for d in 0..(3.0 * sigma) as usize {
             let expected = peak * (-0.5 * (d as f32 / sigma).powi(2)).exp();
             let tolerance = if sigma < 1.0 { 0.03 } else { 2e-3 };
-            for found in [blurred.at(c + d, c), blurred.at(c - d, c), blurred.at(c, c + d), blurred.at(c, c - d)] {
-                assert!((found - expected).abs() < tolerance * peak, "σ {sigma}, {d}: {found}, {expected}");
+            for found in [
+                blurred.at(c + d, c),
+                blurred.at(c - d, c),
+                blurred.at(c, c + d),
+                blurred.at(c, c - d),
+            ] {
+                assert!(
+                    (found - expected).abs() < tolerance * peak,
+                    "σ {sigma}, {d}: {found}, {expected}"
+                );
             }
         }
     }
 }
+
 #[test]
 fn a_step_blurs_to_the_normal_distribution_within_a_byte_step() {
-    // Odd σ, so that half and one and a half deviations from the border of two pixels lie on pixel centres.
+    // Odd σ, so that half and one and a half deviations from the border of two pixels lie on pixel
+    // centres.
     for sigma in [3usize, 5, 9, 61] {
         let step = Plane::from_fn(Size::new(600, 3), |x, _| if x < 300 { 0.0 } else { 1.0 });
         let blurred = gaussian(&step, sigma as f32);
@@ -48,6 +61,7 @@ fn a_step_blurs_to_the_normal_distribution_within_a_byte_step() {
         }
     }
 }
+
 #[test]
 fn what_is_even_stays_even_up_to_the_border() {
     for sigma in [0.0, 1.5, 7.0, 900.0] {
@@ -59,17 +73,23 @@ fn what_is_even_stays_even_up_to_the_border() {
         }
     }
 }
+
 #[test]
 fn interleaved_pixels_blur_as_their_planes_do() {
     let size = Size::new(53, 19);
     let value = |i: usize, c: u32| crate::math::hash::unit(9, i as u32, c);
-    let pixels: Vec<[f32; 3]> = (0..size.area()).map(|i| [value(i, 0), value(i, 1), value(i, 2)]).collect();
+    let pixels: Vec<[f32; 3]> =
+        (0..size.area()).map(|i| [value(i, 0), value(i, 1), value(i, 2)]).collect();
     for sigma in [1.1, 6.0] {
         let together = gaussian_pixels(size, &pixels, sigma);
-        let alone = gaussian(&Plane::from_values(size, pixels.iter().map(|p| p[2]).collect()).unwrap(), sigma);
+        let alone = gaussian(
+            &Plane::from_values(size, pixels.iter().map(|p| p[2]).collect()).unwrap(),
+            sigma,
+        );
         assert!(together.iter().zip(alone.values()).all(|(p, &v)| p[2] == v), "σ {sigma}");
     }
 }
+
 #[test]
 fn nothing_outside_the_mask_comes_in() {
     let size = Size::new(80, 40);

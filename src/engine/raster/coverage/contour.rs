@@ -1,5 +1,5 @@
-//! The outline of coverage: the sides of pixels between those covered by half or more and the others, tile by tile, so
-//! that it can be cached. Floor 1. Not here: how it is drawn (`window`).
+//! The outline of coverage: the sides of pixels between those covered by half or more and the
+//! others, tile by tile, so that it can be cached. Floor 1. Not here: how it is drawn (`window`).
 
 use super::CoverageGrid;
 use crate::raster::bits::{TileBits, bits_of};
@@ -34,11 +34,15 @@ impl RunsKey {
     }
 }
 
-/// The tiles in which a grid may have an outline: each holds the sides left of and above its pixels.
+/// The tiles in which a grid may have an outline: each holds the sides left of and above its
+/// pixels.
 pub fn tiles(grid: &CoverageGrid) -> impl Iterator<Item = TileAt> {
     let bounds = grid.bounds();
-    let reach =
-        if bounds.is_empty() { bounds } else { crate::math::Rect { x1: bounds.x1 + 1, y1: bounds.y1 + 1, ..bounds } };
+    let reach = if bounds.is_empty() {
+        bounds
+    } else {
+        crate::math::Rect { x1: bounds.x1 + 1, y1: bounds.y1 + 1, ..bounds }
+    };
     TileAt::covering(reach)
 }
 
@@ -50,7 +54,8 @@ pub fn key(grid: &CoverageGrid, at: TileAt, level: u32) -> RunsKey {
 
 /// The outline left of and above the pixels of a tile.
 ///
-/// * `level`: blocks of 2^level pixels a side, at most [`COARSEST`], count as covered if one of their pixels is.
+/// * `level`: blocks of 2^level pixels a side, at most [`COARSEST`], count as covered if one of
+///   their pixels is.
 pub fn runs(grid: &CoverageGrid, at: TileAt, level: u32) -> Vec<Run> {
     let level = level.min(COARSEST);
     let n = TILE >> level;
@@ -84,9 +89,11 @@ pub fn runs(grid: &CoverageGrid, at: TileAt, level: u32) -> Vec<Run> {
 fn left_of(at: TileAt) -> TileAt {
     TileAt::new(at.col - 1, at.row)
 }
+
 fn above(at: TileAt) -> TileAt {
     TileAt::new(at.col, at.row - 1)
 }
+
 fn mask(n: usize) -> u64 {
     if n >= 64 { u64::MAX } else { (1 << n) - 1 }
 }
@@ -99,7 +106,9 @@ fn bits(grid: &CoverageGrid, at: TileAt, level: u32, from: usize) -> TileBits {
         None => {}
         Some(tile) if tile.is_whole() => out[from..n].fill(mask(n)),
         Some(tile) => {
-            for (y, row) in tile.bytes().as_chunks::<TILE>().0.iter().enumerate().skip(from << level) {
+            for (y, row) in
+                tile.bytes().as_chunks::<TILE>().0.iter().enumerate().skip(from << level)
+            {
                 out[y >> level] |= row_bits(row);
             }
             out[from..n].iter_mut().for_each(|row| *row = in_blocks(*row, level));
@@ -116,7 +125,9 @@ fn last_column(grid: &CoverageGrid, at: TileAt, level: u32) -> u64 {
     }
     let block = TILE - (1 << level);
     let rows = tile.bytes().as_chunks::<TILE>().0.iter().enumerate();
-    rows.fold(0, |bits, (y, row)| bits | u64::from(row[block..].iter().any(|&c| c >= 128)) << (y >> level))
+    rows.fold(0, |bits, (y, row)| {
+        bits | u64::from(row[block..].iter().any(|&c| c >= 128)) << (y >> level)
+    })
 }
 
 /// A bit for every block of a row of pixels in which one is set.
@@ -159,7 +170,9 @@ mod tests {
 
     #[test]
     fn the_outline_is_every_side_between_covered_and_not_once() {
-        let plane = Plane::from_fn(Size::new(150, 130), |x, y| hash::mix((x / 3 * 77 + y / 2) as u32) as u8);
+        let plane = Plane::from_fn(Size::new(150, 130), |x, y| {
+            hash::mix((x / 3 * 77 + y / 2) as u32) as u8
+        });
         let grid = CoverageGrid::from_plane(&plane, -40, 0);
         let is_in = |x: i32, y: i32| grid.at(x, y) >= 128;
         let mut expected = BTreeSet::new();
@@ -175,11 +188,15 @@ mod tests {
         for run in all(&grid, 0) {
             for i in 0..run.length {
                 let (dx, dy) = if run.is_vertical { (0, i) } else { (i, 0) };
-                assert!(found.insert((run.x + dx, run.y + dy, run.is_vertical)), "{run:?} comes twice");
+                assert!(
+                    found.insert((run.x + dx, run.y + dy, run.is_vertical)),
+                    "{run:?} comes twice"
+                );
             }
         }
         assert!(found == expected);
     }
+
     #[test]
     fn coarser_outlines_go_round_the_blocks_that_hold_something() {
         let mut plane = Plane::filled(Size::new(130, 130), 0u8);
@@ -192,12 +209,17 @@ mod tests {
         let length: i32 = all(&whole, COARSEST + 3).iter().map(|run| run.length).sum();
         assert_eq!(length, 4 * 128);
     }
+
     #[test]
     fn the_outline_of_a_tile_is_known_again_while_the_tiles_about_it_stay() {
         let grid = CoverageGrid::filled(Rect::new(0, 0, 300, 300));
         let (far, near) = (TileAt::new(4, 4), TileAt::new(1, 1));
-        let cut = grid.combined(&CoverageGrid::filled(Rect::new(64, 64, 70, 70)), u8::saturating_sub);
-        assert!(key(&grid, far, 0) == key(&cut, far, 0) || grid.tile(far).is_some_and(|tile| !tile.is_whole()));
+        let cut =
+            grid.combined(&CoverageGrid::filled(Rect::new(64, 64, 70, 70)), u8::saturating_sub);
+        assert!(
+            key(&grid, far, 0) == key(&cut, far, 0)
+                || grid.tile(far).is_some_and(|tile| !tile.is_whole())
+        );
         assert!(key(&grid, near, 0) != key(&cut, near, 0));
     }
 }

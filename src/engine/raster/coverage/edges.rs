@@ -1,5 +1,5 @@
-//! Edges of coverage moved, drawn, softened and rounded. Floor 1. Edges run where coverage passes ½; beyond the canvas
-//! a selection continues as at the border, so that the border is no edge.
+//! Edges of coverage moved, drawn, softened and rounded. Floor 1. Edges run where coverage passes
+//! ½; beyond the canvas a selection continues as at the border, so that the border is no edge.
 
 use super::CoverageGrid;
 use crate::math::{Range, Rect};
@@ -10,9 +10,9 @@ pub const DISTANCE_PX: Range = 0.0..=distance::FARTHEST as f32 - 2.0;
 /// The standard deviation of the blur that softens or rounds an edge, px.
 pub const SOFTNESS_PX: Range = 0.0..=500.0;
 
-/// Coverage of marked pixels with their edge moved outward by g: ½ + g − d, clamped, with d how far a pixel's centre
-/// lies beyond the edge, which runs midway between marked and unmarked pixels: a step across an axis stays sharp, a
-/// slanted one is smoothed.
+/// Coverage of marked pixels with their edge moved outward by g: ½ + g − d, clamped, with d how far
+/// a pixel's centre lies beyond the edge, which runs midway between marked and unmarked pixels: a
+/// step across an axis stays sharp, a slanted one is smoothed.
 ///
 /// * `marked`: not 0. Beyond the plane nothing is marked, and nothing ends.
 /// * `grow_px`: g, either way; its amount counts up to [`distance::FARTHEST`] − 1.
@@ -23,7 +23,8 @@ pub fn moved(marked: &Plane<u8>, grow_px: f32, antialias: bool) -> Plane<u8> {
     let to_outside = distance::squared(&marked.map(|p| u8::from(p == 0)), limit);
     let share = |beyond: f32| {
         let share = 0.5 + grow_px - beyond;
-        let share = if antialias { share.clamp(0.0, 1.0) } else { f32::from(u8::from(share > 0.5)) };
+        let share =
+            if antialias { share.clamp(0.0, 1.0) } else { f32::from(u8::from(share > 0.5)) };
         (share * 255.0).round() as u8
     };
     // A pixel's coverage depends only on its squared distance.
@@ -41,7 +42,9 @@ pub fn moved(marked: &Plane<u8>, grow_px: f32, antialias: bool) -> Plane<u8> {
 /// Its edge moved outward (negative: inward), px.
 pub fn grown(grid: &CoverageGrid, px: f32, canvas: Rect) -> CoverageGrid {
     let px = px.max(-*DISTANCE_PX.end()).min(*DISTANCE_PX.end());
-    let Some((rect, plane)) = around(grid, px.abs().ceil() as i32 + 2, canvas) else { return CoverageGrid::default() };
+    let Some((rect, plane)) = around(grid, px.abs().ceil() as i32 + 2, canvas) else {
+        return CoverageGrid::default();
+    };
     let marked = plane.map(|c| u8::from(c >= 128));
     CoverageGrid::from_plane(&moved(&marked, px, true), rect.x0, rect.y0)
 }
@@ -57,15 +60,21 @@ pub fn feathered(grid: &CoverageGrid, sigma_px: f32, canvas: Rect) -> CoverageGr
     blurred(grid, sigma_px, canvas, |share| share)
 }
 
-/// Its corners rounded: blurred by a Gaussian of this standard deviation σ, and made as steep as an edge again. A
-/// straight edge rises by 1 / (σ √2π) a px under the blur, so that times σ √2π it rises within one px.
+/// Its corners rounded: blurred by a Gaussian of this standard deviation σ, and made as steep as an
+/// edge again. A straight edge rises by 1 / (σ √2π) a px under the blur, so that times σ √2π it
+/// rises within one px.
 pub fn smoothed(grid: &CoverageGrid, sigma_px: f32, canvas: Rect) -> CoverageGrid {
     let sigma_px = sigma_px.max(0.0).min(*SOFTNESS_PX.end());
     let steep = (sigma_px * std::f32::consts::TAU.sqrt()).max(1.0);
     blurred(grid, sigma_px, canvas, |share| 0.5 + (share - 0.5) * steep)
 }
 
-fn blurred(grid: &CoverageGrid, sigma_px: f32, canvas: Rect, share: impl Fn(f32) -> f32 + Sync) -> CoverageGrid {
+fn blurred(
+    grid: &CoverageGrid,
+    sigma_px: f32,
+    canvas: Rect,
+    share: impl Fn(f32) -> f32 + Sync,
+) -> CoverageGrid {
     /// This many standard deviations away less than half a 255th is left.
     const REACH: f32 = 3.0;
     let sigma_px = sigma_px.max(0.0).min(*SOFTNESS_PX.end());
@@ -76,7 +85,8 @@ fn blurred(grid: &CoverageGrid, sigma_px: f32, canvas: Rect, share: impl Fn(f32)
     CoverageGrid::from_plane(&bytes, rect.x0, rect.y0)
 }
 
-/// The covered rectangle with this margin, within the canvas, and its coverage; `None` if it is empty.
+/// The covered rectangle with this margin, within the canvas, and its coverage; `None` if it is
+/// empty.
 fn around(grid: &CoverageGrid, reach: i32, canvas: Rect) -> Option<(Rect, Plane<u8>)> {
     let rect = grid.covered().grown(reach).intersect(canvas);
     (!rect.is_empty()).then(|| (rect, grid.to_plane(rect)))
@@ -91,8 +101,13 @@ mod tests {
     const CANVAS: Rect = Rect::new(0, 0, 220, 180);
 
     fn disc(radius: f32) -> CoverageGrid {
-        shapes::ellipse(vec2(100.0 - radius, 90.0 - radius), vec2(100.0 + radius, 90.0 + radius), CANVAS)
+        shapes::ellipse(
+            vec2(100.0 - radius, 90.0 - radius),
+            vec2(100.0 + radius, 90.0 + radius),
+            CANVAS,
+        )
     }
+
     /// The radius of the disc of that area.
     fn radius(grid: &CoverageGrid) -> f32 {
         (grid.area_px() / std::f64::consts::PI).sqrt() as f32
@@ -106,6 +121,7 @@ mod tests {
         }
         assert!(grown(&disc(10.0), -12.0, CANVAS).is_empty());
     }
+
     #[test]
     fn a_border_is_as_wide_as_said_on_both_sides_of_the_edge() {
         let found = border(&disc(40.0), 6.0, CANVAS);
@@ -114,6 +130,7 @@ mod tests {
         assert!((width - 6.0).abs() < 0.5, "{width}");
         assert_eq!((found.at(100, 90), found.at(140, 90), found.at(145, 90)), (0, 255, 0));
     }
+
     #[test]
     fn feathering_keeps_the_edge_at_one_half_and_the_amount() {
         let half = shapes::rectangle(vec2(0.0, 0.0), vec2(100.0, 180.0), CANVAS);
@@ -126,6 +143,7 @@ mod tests {
         let soft = feathered(&disc, 5.0, CANVAS);
         assert!((soft.area_px() / disc.area_px() - 1.0).abs() < 0.005);
     }
+
     #[test]
     fn smoothing_rounds_corners_and_leaves_straight_edges() {
         let square = shapes::rectangle(vec2(40.0, 40.0), vec2(120.0, 120.0), CANVAS);
@@ -134,10 +152,13 @@ mod tests {
         assert_eq!(round.at(40, 40), 0, "the corner is gone");
         assert_eq!(round.at(48, 48), 255);
     }
+
     #[test]
     fn all_of_the_canvas_has_no_edge() {
         let all = CoverageGrid::filled(CANVAS);
-        for changed in [grown(&all, -9.0, CANVAS), feathered(&all, 9.0, CANVAS), smoothed(&all, 9.0, CANVAS)] {
+        for changed in
+            [grown(&all, -9.0, CANVAS), feathered(&all, 9.0, CANVAS), smoothed(&all, 9.0, CANVAS)]
+        {
             assert!(changed.is_same(&all));
         }
         assert!(border(&all, 9.0, CANVAS).is_empty());

@@ -1,5 +1,5 @@
-//! Rectangles, ellipses and polygons as exact coverage: each pixel holds the share of it that lies inside. Floor 1.
-//! Not here: who draws them (`tools`).
+//! Rectangles, ellipses and polygons as exact coverage: each pixel holds the share of it that lies
+//! inside. Floor 1. Not here: who draws them (`tools`).
 
 use super::{CoverageGrid, CoverageTile, blank, clip};
 use crate::math::{Rect, Vec2, vec2};
@@ -15,19 +15,29 @@ pub fn rectangle(a: Vec2, b: Vec2, within: Rect) -> CoverageGrid {
     let (first, last) = (low.floor().as_ivec2(), high.ceil().as_ivec2());
     let area = Rect::new(first.x, first.y, last.x, last.y).intersect(within);
     // How much of a pixel's column or row lies between two ends.
-    let share = |v: i32, low: f32, high: f32| (high.min(v as f32 + 1.0) - low.max(v as f32)).max(0.0).min(1.0);
-    let inner = Rect::new(low.x.ceil() as i32, low.y.ceil() as i32, high.x.floor() as i32, high.y.floor() as i32);
+    let share = |v: i32, low: f32, high: f32| {
+        (high.min(v as f32 + 1.0) - low.max(v as f32)).max(0.0).min(1.0)
+    };
+    let inner = Rect::new(
+        low.x.ceil() as i32,
+        low.y.ceil() as i32,
+        high.x.floor() as i32,
+        high.y.floor() as i32,
+    );
     let whole = inner.intersect(within);
     CoverageGrid::gathered(area, |at| {
         let tile = at.rect();
         if tile.intersect(whole) == tile {
             return Some(CoverageTile::whole());
         }
-        let columns: [f32; TILE] = std::array::from_fn(|x| share(tile.x0 + x as i32, low.x, high.x));
+        let columns: [f32; TILE] =
+            std::array::from_fn(|x| share(tile.x0 + x as i32, low.x, high.x));
         let mut bytes = blank(0);
         for (y, row) in (tile.y0..).zip(bytes.as_chunks_mut::<TILE>().0) {
             let height = share(y, low.y, high.y);
-            row.iter_mut().zip(columns).for_each(|(to, width)| *to = (width * height * 255.0 + 0.5) as u8);
+            row.iter_mut()
+                .zip(columns)
+                .for_each(|(to, width)| *to = (width * height * 255.0 + 0.5) as u8);
         }
         clip(&mut bytes, at, within);
         CoverageTile::new(bytes)
@@ -50,8 +60,8 @@ pub fn ellipse(a: Vec2, b: Vec2, within: Rect) -> CoverageGrid {
     polygon(&(0..sides).map(corner).collect::<Vec<_>>(), within)
 }
 
-/// The inside of a closed polygon within a rectangle of pixels. Where it runs round a point more than once, that counts
-/// once. A polygon with a corner that is not finite covers nothing.
+/// The inside of a closed polygon within a rectangle of pixels. Where it runs round a point more
+/// than once, that counts once. A polygon with a corner that is not finite covers nothing.
 pub fn polygon(corners: &[Vec2], within: Rect) -> CoverageGrid {
     if corners.len() < 3 || !corners.iter().all(|p| p.is_finite()) {
         return CoverageGrid::default();
@@ -71,12 +81,19 @@ pub fn polygon(corners: &[Vec2], within: Rect) -> CoverageGrid {
 
 /// A rectangle in rows of tiles.
 fn bands(area: Rect) -> impl Iterator<Item = Rect> {
-    let rows = if area.is_empty() { 0..0 } else { area.y0.div_euclid(64)..(area.y1 - 1).div_euclid(64) + 1 };
+    let rows = if area.is_empty() {
+        0..0
+    } else {
+        area.y0.div_euclid(64)..(area.y1 - 1).div_euclid(64) + 1
+    };
     rows.map(move |row| Rect::new(area.x0, row * 64, area.x1, row * 64 + 64).intersect(area))
 }
 
 /// One row of tiles.
-fn band_tiles(edges: &[[Vec2; 2]], band: Rect) -> Vec<(TileAt, Option<std::sync::Arc<CoverageTile>>)> {
+fn band_tiles(
+    edges: &[[Vec2; 2]],
+    band: Rect,
+) -> Vec<(TileAt, Option<std::sync::Arc<CoverageTile>>)> {
     let width = band.width();
     let mut turned = vec![0.0f32; (width + 2) * band.height()];
     for &[a, b] in edges {
@@ -93,7 +110,8 @@ fn band_tiles(edges: &[[Vec2; 2]], band: Rect) -> Vec<(TileAt, Option<std::sync:
         for (at, bytes) in &mut tiles {
             let (tile, area) = (at.rect(), at.rect().intersect(band));
             let to = (y - tile.y0) as usize * TILE + (area.x0 - tile.x0) as usize;
-            bytes[to..to + area.width()].copy_from_slice(&row[(area.x0 - band.x0) as usize..][..area.width()]);
+            bytes[to..to + area.width()]
+                .copy_from_slice(&row[(area.x0 - band.x0) as usize..][..area.width()]);
         }
     }
     tiles
@@ -105,9 +123,9 @@ fn band_tiles(edges: &[[Vec2; 2]], band: Rect) -> Vec<(TileAt, Option<std::sync:
         .collect()
 }
 
-/// Adds what an edge changes along each row of a band, so that the running sum along a row is the winding number,
-/// averaged over each pixel: an edge that falls by h within a pixel changes it by h times the part of the pixel right
-/// of it, and the next pixel by the rest.
+/// Adds what an edge changes along each row of a band, so that the running sum along a row is the
+/// winding number, averaged over each pixel: an edge that falls by h within a pixel changes it by h
+/// times the part of the pixel right of it, and the next pixel by the rest.
 fn add_edge(turned: &mut [f32], band: Rect, a: Vec2, b: Vec2) {
     let (down, top, bottom) = if a.y < b.y { (1.0, a, b) } else { (-1.0, b, a) };
     let (corner, end) = (vec2(band.x0 as f32, band.y0 as f32), band.height() as f32);
@@ -173,8 +191,9 @@ mod tests {
             }
             winding != 0
         };
-        let points =
-            (0..1024).map(|i| vec2(x as f32, y as f32) + (vec2((i % 32) as f32, (i / 32) as f32) + 0.5) / 32.0);
+        let points = (0..1024).map(|i| {
+            vec2(x as f32, y as f32) + (vec2((i % 32) as f32, (i / 32) as f32) + 0.5) / 32.0
+        });
         points.filter(|p| inside(*p)).count() as f32 / 1024.0
     }
 
@@ -182,22 +201,33 @@ mod tests {
     fn a_rectangle_covers_the_very_part_of_each_pixel() {
         let grid = rectangle(vec2(70.25, 90.5), vec2(10.5, 20.0), CANVAS);
         assert_eq!(grid.at(40, 60), 255);
-        assert_eq!([grid.at(10, 60), grid.at(70, 60), grid.at(40, 90), grid.at(70, 90)], [128, 64, 128, 32]);
+        assert_eq!(
+            [grid.at(10, 60), grid.at(70, 60), grid.at(40, 90), grid.at(70, 90)],
+            [128, 64, 128, 32]
+        );
         assert_eq!([grid.at(9, 60), grid.at(40, 19), grid.at(40, 91)], [0; 3]);
         assert!((grid.area_px() - 59.75 * 70.5).abs() < 0.5);
     }
+
     #[test]
     fn polygons_cover_what_sampling_says_also_beyond_the_canvas() {
         for seed in 0..12 {
-            let corner = |i: u32| vec2(280.0 * hash::unit(seed, i, 0) - 40.0, 230.0 * hash::unit(seed, i, 1) - 40.0);
+            let corner = |i: u32| {
+                vec2(280.0 * hash::unit(seed, i, 0) - 40.0, 230.0 * hash::unit(seed, i, 1) - 40.0)
+            };
             let corners: Vec<Vec2> = (0..3).map(corner).collect();
             let grid = polygon(&corners, CANVAS);
-            for (x, y) in (0..200).step_by(3).flat_map(|x| (0..150).step_by(3).map(move |y| (x, y))) {
+            for (x, y) in (0..200).step_by(3).flat_map(|x| (0..150).step_by(3).map(move |y| (x, y)))
+            {
                 let (found, sampled) = (f32::from(grid.at(x, y)) / 255.0, sampled(&corners, x, y));
-                assert!((found - sampled).abs() < 0.04, "{seed} at {x}, {y}: {found} is not {sampled}");
+                assert!(
+                    (found - sampled).abs() < 0.04,
+                    "{seed} at {x}, {y}: {found} is not {sampled}"
+                );
             }
         }
     }
+
     #[test]
     fn an_ellipse_has_its_area_and_a_lasso_that_runs_round_twice_counts_once() {
         let grid = ellipse(vec2(20.0, 30.0), vec2(120.5, 95.25), CANVAS);
@@ -207,6 +237,7 @@ mod tests {
         let twice: Vec<Vec2> = square.iter().chain(&square).copied().collect();
         assert!(polygon(&twice, CANVAS).is_same(&polygon(&square, CANVAS)));
     }
+
     #[test]
     fn what_is_no_polygon_covers_nothing() {
         assert!(polygon(&[Vec2::ZERO, Vec2::ONE], CANVAS).is_empty());

@@ -4,12 +4,13 @@ use proptest::prelude::*;
 
 /// Blots of every coverage, some tiles whole, some empty, beyond the corner too.
 fn blots(seed: u32) -> CoverageGrid {
-    let plane =
-        Plane::from_fn(Size::new(200, 150), |x, y| match hash::mix(seed ^ (x / 64 + 4 * (y / 64)) as u32) % 3 {
+    let plane = Plane::from_fn(Size::new(200, 150), |x, y| {
+        match hash::mix(seed ^ (x / 64 + 4 * (y / 64)) as u32) % 3 {
             0 => 0,
             1 => 255,
             _ => hash::mix(seed ^ (x * 977 + y) as u32) as u8,
-        });
+        }
+    });
     CoverageGrid::from_plane(&plane, -30, 7)
 }
 
@@ -32,6 +33,7 @@ proptest! {
         prop_assert_eq!(a.shifted(37, -101).at(60 + 37, 60 - 101), a.at(60, 60));
     }
 }
+
 #[test]
 fn the_whole_canvas_takes_no_memory_but_at_its_border() {
     let whole = CoverageGrid::filled(Rect::new(0, 0, 4096, 4096));
@@ -40,9 +42,14 @@ fn the_whole_canvas_takes_no_memory_but_at_its_border() {
     assert_eq!((odd.covered(), odd.area_px()), (Rect::new(0, 0, 1920, 1080), 1920.0 * 1080.0));
     assert_eq!(odd.bytes(), 30 * (TILE_AREA + 64));
 }
+
 #[test]
 fn a_map_cut_into_tiles_comes_back_and_its_bounds_are_tight() {
-    let plane = Plane::from_fn(Size::new(150, 90), |x, y| if (70..80).contains(&x) && y > 40 { 9 } else { 0 });
+    let plane =
+        Plane::from_fn(
+            Size::new(150, 90),
+            |x, y| if (70..80).contains(&x) && y > 40 { 9 } else { 0 },
+        );
     let grid = CoverageGrid::from_plane(&plane, -5, 3);
     assert_eq!(grid.to_plane(Rect::new(-5, 3, 145, 93)), plane);
     assert_eq!(grid.covered(), Rect::new(65, 44, 75, 93));

@@ -7,7 +7,8 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 impl TileGrid {
-    /// Cuts straight-alpha RGBA bytes (`width · height · 4`, row by row) into premultiplied tiles, at a canvas offset.
+    /// Cuts straight-alpha RGBA bytes (`width · height · 4`, row by row) into premultiplied tiles,
+    /// at a canvas offset.
     pub fn from_straight_rgba(rgba: &[u8], width: usize, height: usize, x: i32, y: i32) -> Self {
         let rect = Rect::new(x, y, x.saturating_add(width as i32), y.saturating_add(height as i32));
         let mut grid = Self::for_rect(rect);
@@ -16,7 +17,8 @@ impl TileGrid {
             let mut bytes = vec![0u8; TILE * TILE * 4];
             for py in area.y0..area.y1 {
                 let from = ((py - y) as usize * width + (area.x0 - x) as usize) * 4;
-                let to = ((py - at.rect().y0) as usize * TILE + (area.x0 - at.rect().x0) as usize) * 4;
+                let to =
+                    ((py - at.rect().y0) as usize * TILE + (area.x0 - at.rect().x0) as usize) * 4;
                 let n = area.width() * 4;
                 premultiply(&rgba[from..from + n], &mut bytes[to..to + n]);
             }
@@ -26,11 +28,21 @@ impl TileGrid {
         }
         grid
     }
-    /// The same for straight values of 16 bits; tiles that bytes hold exactly become tiles of bytes.
-    pub fn from_straight_deep(rgba: &[[u16; 4]], width: usize, height: usize, x: i32, y: i32) -> Self {
+
+    /// The same for straight values of 16 bits; tiles that bytes hold exactly become tiles of
+    /// bytes.
+    pub fn from_straight_deep(
+        rgba: &[[u16; 4]],
+        width: usize,
+        height: usize,
+        x: i32,
+        y: i32,
+    ) -> Self {
         Self::from_deep_rows(rgba, [width, height], [x, y], deep::premultiplied)
     }
-    /// The same for straight linear light, which is clipped to white, encoded and premultiplied before it is rounded.
+
+    /// The same for straight linear light, which is clipped to white, encoded and premultiplied
+    /// before it is rounded.
     pub fn from_light(light: &[[f32; 4]], width: usize, height: usize, x: i32, y: i32) -> Self {
         Self::from_deep_rows(light, [width, height], [x, y], |[r, g, b, a]| {
             // In this order NaN becomes 0.
@@ -40,6 +52,7 @@ impl TileGrid {
             [encoded(r), encoded(g), encoded(b), srgb::quantise_deep(a)]
         })
     }
+
     /// `of`: a pixel's premultiplied 16 bits; colours above alpha are lowered to it.
     fn from_deep_rows<T: Copy + Sync>(
         pixels: &[T],
@@ -54,7 +67,8 @@ impl TileGrid {
             for py in area.y0..area.y1 {
                 let from = (py - y) as usize * width + (area.x0 - x) as usize;
                 let row = &mut rows[(py - corner.y0) as usize];
-                let pixels = pixels[from..from + area.width()].iter().zip((area.x0 - corner.x0) as usize..);
+                let pixels =
+                    pixels[from..from + area.width()].iter().zip((area.x0 - corner.x0) as usize..);
                 pixels.for_each(|(pixel, x)| deep::put(row, x, of(*pixel)));
             }
             (at, Tile::from_deep(rows).map(Arc::new))
@@ -65,6 +79,7 @@ impl TileGrid {
         tiles.into_iter().for_each(|(at, tile)| grid.set(at, tile));
         grid
     }
+
     /// Straight-alpha RGBA bytes of a pixel rectangle, row by row.
     pub fn to_straight_rgba(&self, rect: Rect) -> Vec<u8> {
         let mut out = vec![0u8; rect.width() * rect.height() * 4];
@@ -72,15 +87,19 @@ impl TileGrid {
             let Some(tile) = self.tile(at) else { continue };
             let area = at.rect().intersect(rect);
             for py in area.y0..area.y1 {
-                let from = ((py - at.rect().y0) as usize * TILE + (area.x0 - at.rect().x0) as usize) * 4;
-                let to = ((py - rect.y0) as usize * rect.width() + (area.x0 - rect.x0) as usize) * 4;
+                let from =
+                    ((py - at.rect().y0) as usize * TILE + (area.x0 - at.rect().x0) as usize) * 4;
+                let to =
+                    ((py - rect.y0) as usize * rect.width() + (area.x0 - rect.x0) as usize) * 4;
                 let n = area.width() * 4;
                 unpremultiply(&tile.bytes()[from..from + n], &mut out[to..to + n]);
             }
         }
         out
     }
-    /// The same in 16 bits, whatever the tiles hold; [`TileGrid::from_straight_deep`] is the exact inverse.
+
+    /// The same in 16 bits, whatever the tiles hold; [`TileGrid::from_straight_deep`] is the exact
+    /// inverse.
     pub fn to_straight_deep(&self, rect: Rect) -> Vec<[u16; 4]> {
         let mut out = vec![[0; 4]; rect.width() * rect.height()];
         for at in TileAt::covering(rect) {
@@ -89,7 +108,8 @@ impl TileGrid {
             for py in area.y0..area.y1 {
                 let to = (py - rect.y0) as usize * rect.width() + (area.x0 - rect.x0) as usize;
                 let y = (py - corner.y0) as usize;
-                let pixels = out[to..to + area.width()].iter_mut().zip((area.x0 - corner.x0) as usize..);
+                let pixels =
+                    out[to..to + area.width()].iter_mut().zip((area.x0 - corner.x0) as usize..);
                 pixels.for_each(|(pixel, x)| *pixel = deep::straight(tile.deep_pixel(x, y)));
             }
         }
@@ -109,7 +129,8 @@ crate::widest! {
         }
     }
 
-    /// Premultiplied bytes to straight bytes, rounded to nearest; transparent pixels become transparent black.
+    /// Premultiplied bytes to straight bytes, rounded to nearest; transparent pixels become
+    /// transparent black.
     pub fn unpremultiply(premultiplied: &[u8], straight: &mut [u8]) {
         let (premultiplied, straight) = (premultiplied.as_chunks::<4>().0, straight.as_chunks_mut::<4>().0);
         for (p, s) in premultiplied.iter().zip(straight) {
@@ -131,39 +152,55 @@ mod tests {
     #[test]
     fn a_picture_cut_into_tiles_comes_back_whole() {
         let (w, h) = (130, 70);
-        let rgba: Vec<u8> = (0..w * h).flat_map(|i| [(i % 251) as u8, (i % 83) as u8, (i % 7) as u8, 255]).collect();
+        let rgba: Vec<u8> = (0..w * h)
+            .flat_map(|i| [(i % 251) as u8, (i % 83) as u8, (i % 7) as u8, 255])
+            .collect();
         let grid = TileGrid::from_straight_rgba(&rgba, w, h, -5, 3);
         assert_eq!(grid.to_straight_rgba(Rect::new(-5, 3, 125, 73)), rgba);
         assert_eq!(grid.pixel(-6, 3), [0; 4]);
     }
+
     #[test]
     fn straight_and_premultiplied_bytes_are_rounded_to_nearest() {
-        let all: Vec<[u8; 4]> = (0..=255u8).flat_map(|a| (0..=255u8).map(move |c| [c, 255 - c, c / 2, a])).collect();
+        let all: Vec<[u8; 4]> =
+            (0..=255u8).flat_map(|a| (0..=255u8).map(move |c| [c, 255 - c, c / 2, a])).collect();
         let (mut premultiplied, mut straight) = (vec![0; all.len() * 4], vec![0; all.len() * 4]);
         premultiply(all.as_flattened(), &mut premultiplied);
         unpremultiply(all.as_flattened(), &mut straight);
-        for ((of, p), s) in all.iter().zip(premultiplied.as_chunks::<4>().0).zip(straight.as_chunks::<4>().0) {
+        for ((of, p), s) in
+            all.iter().zip(premultiplied.as_chunks::<4>().0).zip(straight.as_chunks::<4>().0)
+        {
             let a = u32::from(of[3]);
             for c in 0..3 {
                 let v = u32::from(of[c]);
                 assert_eq!(u32::from(p[c]), (v * a + 127) / 255, "{of:?}");
-                assert_eq!(u32::from(s[c]), if a == 0 { 0 } else { ((v * 255 + a / 2) / a).min(255) }, "{of:?}");
+                assert_eq!(
+                    u32::from(s[c]),
+                    if a == 0 { 0 } else { ((v * 255 + a / 2) / a).min(255) },
+                    "{of:?}"
+                );
             }
             assert_eq!((p[3], s[3]), (of[3], of[3]));
         }
     }
+
     #[test]
     fn light_becomes_16_bits_that_round_to_the_bytes_of_a_texture() {
         use crate::math::Size;
         use crate::raster::{Picture, Texture};
         let (w, h) = (70, 66);
         let light = |i: usize, c: u32| hash::unit(i as u32, c, 7) * 1.3 - 0.1;
-        let mut texels: Vec<[f32; 4]> = (0..w * h).map(|i| [0, 1, 2, 3].map(|c| light(i, c))).collect();
+        let mut texels: Vec<[f32; 4]> =
+            (0..w * h).map(|i| [0, 1, 2, 3].map(|c| light(i, c))).collect();
         texels[0] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1.0];
         texels[1] = [1.0, 1.0, 1.0, f32::NAN];
         let grid = TileGrid::from_light(&texels, w, h, -3, 5);
-        assert_eq!((grid.deep_pixel(-3, 5), grid.deep_pixel(-2, 5)), ([0, 65535, 0, 65535], [0; 4]));
-        let texture = Texture::new(&Picture::linear(Size::new(w as u32, h as u32), texels.clone()).unwrap());
+        assert_eq!(
+            (grid.deep_pixel(-3, 5), grid.deep_pixel(-2, 5)),
+            ([0, 65535, 0, 65535], [0; 4])
+        );
+        let texture =
+            Texture::new(&Picture::linear(Size::new(w as u32, h as u32), texels.clone()).unwrap());
         for (i, bytes) in texture.levels()[0].texels.iter().enumerate().skip(2) {
             let (x, y) = ((i % w) as i32 - 3, (i / w) as i32 + 5);
             let deep = grid.deep_pixel(x, y);
@@ -178,27 +215,35 @@ mod tests {
         }
         assert!(grid.is_deep_in(grid.bounds()));
         // Light that bytes hold exactly takes no more than bytes.
-        let plain: Vec<[f32; 4]> = (0..w * h).map(|i| [srgb::decode_u8((i % 256) as u8), 0.0, 1.0, 1.0]).collect();
+        let plain: Vec<[f32; 4]> =
+            (0..w * h).map(|i| [srgb::decode_u8((i % 256) as u8), 0.0, 1.0, 1.0]).collect();
         let plain = TileGrid::from_light(&plain, w, h, 0, 0);
         assert!(!plain.is_deep_in(plain.bounds()));
     }
+
     #[test]
     fn rounded_pixels_are_the_bytes_that_were_seen() {
         let value = |i: usize, c: u32| (hash::unit(i as u32, c, 0) * 65536.0) as u16;
-        let pixels: Vec<[u16; 4]> = (0..130 * 70).map(|i| [0, 1, 2, 3].map(|c| value(i, c))).collect();
+        let pixels: Vec<[u16; 4]> =
+            (0..130 * 70).map(|i| [0, 1, 2, 3].map(|c| value(i, c))).collect();
         let grid = TileGrid::from_straight_deep(&pixels, 130, 70, 0, 0);
         let rounded = grid.rounded();
         assert!(grid.is_deep_in(grid.bounds()) && !rounded.is_deep_in(rounded.bounds()));
         assert!(grid.iter().all(|(at, tile)| rounded.tile(at).unwrap().bytes() == tile.bytes()));
-        assert_eq!(TileGrid::from_straight_deep(&[[9, 9, 9, 100]; 4], 2, 2, 0, 0).rounded().iter().count(), 0);
+        assert_eq!(
+            TileGrid::from_straight_deep(&[[9, 9, 9, 100]; 4], 2, 2, 0, 0).rounded().iter().count(),
+            0
+        );
     }
+
     #[test]
     fn pixels_of_16_bits_come_back_and_take_more_only_where_bytes_do_not_hold_them() {
         let (w, h) = (130, 70);
         let value = |i: usize, c: u32| (hash::unit(i as u32, c, 0) * 65536.0) as u16;
         let soft = |i: usize| [value(i, 0), value(i, 1), value(i, 2), value(i, 3)];
-        let pixels: Vec<[u16; 4]> =
-            (0..w * h).map(|i| if i % w < 59 { [257 * (i % 97) as u16, 257, 0, 65535] } else { soft(i) }).collect();
+        let pixels: Vec<[u16; 4]> = (0..w * h)
+            .map(|i| if i % w < 59 { [257 * (i % 97) as u16, 257, 0, 65535] } else { soft(i) })
+            .collect();
         let grid = TileGrid::from_straight_deep(&pixels, w, h, -59, 3);
         let rect = Rect::new(-59, 3, 71, 73);
         let straight = grid.to_straight_deep(rect);

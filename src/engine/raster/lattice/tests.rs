@@ -16,7 +16,8 @@ fn between_nodes_rows_say_what_the_readable_one_says() {
     for at in TileAt::covering(Rect::new(-64, -64, 192, 192)) {
         let Some(row) = lattice.on_tile(at) else { continue };
         for k in 0..row.len() {
-            let (x, y) = (at.rect().x0 as f32 + (k % TILE) as f32, at.rect().y0 as f32 + (k / TILE) as f32);
+            let (x, y) =
+                (at.rect().x0 as f32 + (k % TILE) as f32, at.rect().y0 as f32 + (k / TILE) as f32);
             let q = vec2(x + 0.5, y + 0.5);
             let ((p, jacobian), expected) = (row.at(k), lattice.at(q));
             assert!((p - q - expected.by).length() < 1e-4, "{x} {y}: {p} {expected:?}");
@@ -31,9 +32,13 @@ fn between_nodes_rows_say_what_the_readable_one_says() {
 #[test]
 fn a_linear_displacement_is_linear_between_nodes_and_its_slope_is_known() {
     let mut lattice = Lattice::default();
-    lattice.change(Rect::new(0, 0, 256, 256), |_, q, _| vec2(q.x * 0.25, q.y * -0.125 + q.x * 0.0625));
+    lattice
+        .change(Rect::new(0, 0, 256, 256), |_, q, _| vec2(q.x * 0.25, q.y * -0.125 + q.x * 0.0625));
     let found = lattice.at(vec2(101.5, 93.25));
-    assert!((found.by - vec2(101.5 * 0.25, 93.25 * -0.125 + 101.5 * 0.0625)).length() < 1e-3, "{found:?}");
+    assert!(
+        (found.by - vec2(101.5 * 0.25, 93.25 * -0.125 + 101.5 * 0.0625)).length() < 1e-3,
+        "{found:?}"
+    );
     assert!((found.jacobian.x_axis - vec2(0.25, 0.0625)).length() < 1e-5);
     assert!((found.jacobian.y_axis - vec2(0.0, -0.125)).length() < 1e-5);
 }
@@ -66,7 +71,10 @@ fn only_tiles_around_changed_nodes_differ() {
     let mut both = far.clone();
     both.change(Rect::new(40, 40, 90, 90), |_, _, _| vec2(1.0, 0.0));
     let changed = both.changed_tiles(&far);
-    assert!(changed.contains(&TileAt::new(0, 0)) && changed.contains(&TileAt::new(1, 1)), "{changed:?}");
+    assert!(
+        changed.contains(&TileAt::new(0, 0)) && changed.contains(&TileAt::new(1, 1)),
+        "{changed:?}"
+    );
     assert!(changed.iter().all(|at| at.col <= 2 && at.row <= 2), "{changed:?}");
     assert!(far.changed_tiles(&far.clone()).is_empty());
 }

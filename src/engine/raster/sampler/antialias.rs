@@ -1,13 +1,15 @@
 //! Antialiasing: the mean of a texture over the piece of the image plane that a pixel covers.
 //! Floor 1. Not here: where that piece lies (`surface`, `paint`).
 //!
-//! The piece is a curved quadrilateral: each of the pixel's four half-edges is differenced separately, because on real
-//! maps (8 bits, fine detail) the two sides of a pixel often stretch differently, and a single ellipse then misses a
-//! third of the error (docs/OPERATORS.md has the figures). A grid of bilinear taps covers it, each for a cell of about
-//! two texels of the mip level, which is the coarsest that the taps can still resolve.
+//! The piece is a curved quadrilateral: each of the pixel's four half-edges is differenced
+//! separately, because on real maps (8 bits, fine detail) the two sides of a pixel often stretch
+//! differently, and a single ellipse then misses a third of the error (docs/OPERATORS.md has the
+//! figures). A grid of bilinear taps covers it, each for a cell of about two texels of the mip
+//! level, which is the coarsest that the taps can still resolve.
 //!
-//! Eight neighbours whose patches are alike share a grid, and their taps are placed and read together; a pixel unlike
-//! its neighbours (a crease, a silhouette) has its own grid and is read alone.
+//! Eight neighbours whose patches are alike share a grid, and their taps are placed and read
+//! together; a pixel unlike its neighbours (a crease, a silhouette) has its own grid and is read
+//! alone.
 
 mod grid;
 mod lattice;
@@ -24,7 +26,8 @@ pub struct PatchRow<'a> {
     /// The image of the pixel's centre.
     pub x: &'a [f32],
     pub y: &'a [f32],
-    /// From there to the image of the middle of the left, right, upper and lower edge of the pixel: `[x, y]` each.
+    /// From there to the image of the middle of the left, right, upper and lower edge of the pixel:
+    /// `[x, y]` each.
     pub edges: [[&'a [f32]; 2]; 4],
 }
 
@@ -54,7 +57,8 @@ pub struct Antialias {
 
 impl Default for Antialias {
     fn default() -> Self {
-        // As many taps as a patch may have are written at once; the surplus is overwritten by the next.
+        // As many taps as a patch may have are written at once; the surplus is overwritten by the
+        // next.
         let room = vec![0.0; SPAN * LANES + LANES];
         Self {
             x: room.clone(),
@@ -70,10 +74,18 @@ impl Default for Antialias {
 }
 
 impl Antialias {
-    /// The picture's premultiplied bytes, averaged over each patch and rounded: one pixel of `out` for each.
-    pub fn row(&mut self, texture: &Texture, patches: PatchRow, outside: Outside, out: &mut [[u8; 4]]) {
+    /// The picture's premultiplied bytes, averaged over each patch and rounded: one pixel of `out`
+    /// for each.
+    pub fn row(
+        &mut self,
+        texture: &Texture,
+        patches: PatchRow,
+        outside: Outside,
+        out: &mut [[u8; 4]],
+    ) {
         self.row_by(TapRule::AT_REST, texture, patches, outside, out);
     }
+
     /// The same, covered as closely as a rule demands.
     pub fn row_by(
         &mut self,
@@ -89,8 +101,15 @@ impl Antialias {
             self.span(texture, patches.part(from, n), outside, &mut out[from..from + n]);
         }
     }
+
     /// A span whose cells are counted.
-    fn span(&mut self, texture: &Texture, patches: PatchRow, outside: Outside, out: &mut [[u8; 4]]) {
+    fn span(
+        &mut self,
+        texture: &Texture,
+        patches: PatchRow,
+        outside: Outside,
+        out: &mut [[u8; 4]],
+    ) {
         if self.cells.are_single() {
             let (x, y) = (&mut self.x[..out.len()], &mut self.y[..out.len()]);
             place_singles(patches, x, y);
@@ -99,8 +118,13 @@ impl Antialias {
             return self.taps.singles(at, out);
         }
         self.choose_grids(out.len(), texture.levels().len() as u32 - 1);
-        let levels = self.groups.iter().map(|(_, grid)| grid.level).chain(self.lone.iter().map(|(_, grid)| grid.level));
-        let (first, last) = levels.fold((u32::MAX, 0), |(a, b), level| (a.min(level), b.max(level)));
+        let levels = self
+            .groups
+            .iter()
+            .map(|(_, grid)| grid.level)
+            .chain(self.lone.iter().map(|(_, grid)| grid.level));
+        let (first, last) =
+            levels.fold((u32::MAX, 0), |(a, b), level| (a.min(level), b.max(level)));
         for index in first..=last {
             let level = &texture.levels()[index as usize];
             let scale = [
@@ -108,14 +132,30 @@ impl Antialias {
                 level.size.height as f32 / texture.size().height as f32,
             ];
             self.placed.clear();
-            let len = place_groups(patches, &self.groups, index, scale, &mut self.x, &mut self.y, &mut self.placed);
+            let len = place_groups(
+                patches,
+                &self.groups,
+                index,
+                scale,
+                &mut self.x,
+                &mut self.y,
+                &mut self.placed,
+            );
             if len > 0 {
                 let at = TapPositions { level, x: &self.x[..len], y: &self.y[..len], outside };
                 self.taps.find(at);
                 self.taps.group_means(at, &self.placed, out);
             }
             self.runs.clear();
-            let len = place_lone(patches, &self.lone, index, scale, &mut self.x, &mut self.y, &mut self.runs);
+            let len = place_lone(
+                patches,
+                &self.lone,
+                index,
+                scale,
+                &mut self.x,
+                &mut self.y,
+                &mut self.runs,
+            );
             if len > 0 {
                 let at = TapPositions { level, x: &self.x[..len], y: &self.y[..len], outside };
                 self.taps.find(at);
@@ -123,6 +163,7 @@ impl Antialias {
             }
         }
     }
+
     /// Reports each patch's number, its mip level and its taps, in texels of level 0; in any order.
     pub(super) fn for_each_grid(
         &mut self,
@@ -149,11 +190,13 @@ impl Antialias {
                         + (a[i] * left[axis][k] + b[i] * right[axis][k])
                         + (c[i] * up[axis][k] + d[i] * down[axis][k])
                 };
-                let taps: [[f32; 2]; LANES] = std::array::from_fn(|i| [place(0, part.x[k], i), place(1, part.y[k], i)]);
+                let taps: [[f32; 2]; LANES] =
+                    std::array::from_fn(|i| [place(0, part.x[k], i), place(1, part.y[k], i)]);
                 tell(from + k, grid.level, &taps[..grid.taps().min(LANES)]);
             }
         }
     }
+
     /// Fills `groups` and `lone` by the cells that were counted: every pixel is in one of them.
     fn choose_grids(&mut self, n: usize, last_level: u32) {
         self.groups.clear();
@@ -162,8 +205,12 @@ impl Antialias {
             let pixels = first..(first + GROUP).min(n);
             let is_whole = pixels.len() == GROUP;
             match is_whole.then(|| self.cells.shared_grid(first / GROUP, last_level)).flatten() {
-                Some(grid) => self.groups.push((TapGroup { first: first as u16, taps: grid.taps() as u16 }, grid)),
-                None => self.lone.extend(pixels.map(|k| (k as u16, self.cells.grid(k, last_level)))),
+                Some(grid) => self
+                    .groups
+                    .push((TapGroup { first: first as u16, taps: grid.taps() as u16 }, grid)),
+                None => {
+                    self.lone.extend(pixels.map(|k| (k as u16, self.cells.grid(k, last_level))))
+                }
             }
         }
     }
@@ -183,8 +230,10 @@ crate::widest! {
             }
         }
     }
-    /// Places the taps of the groups that read level `index`, whose texels are `scale` of level 0's: group after group,
-    /// tap after tap, the [`GROUP`] pixels side by side. Returns their number.
+
+    /// Places the taps of the groups that read level `index`, whose texels are `scale` of level
+    /// 0's: group after group, tap after tap, the [`GROUP`] pixels side by side. Returns their
+    /// number.
     fn place_groups(
         patches: PatchRow,
         groups: &[(TapGroup, TapGrid)],
@@ -207,7 +256,9 @@ crate::widest! {
         }
         len
     }
-    /// The same for lone pixels, one patch after the other. `x`, `y` have room for all taps and [`LANES`] more.
+
+    /// The same for lone pixels, one patch after the other. `x`, `y` have room for all taps and
+    /// [`LANES`] more.
     fn place_lone(
         patches: PatchRow,
         lone: &[(u16, TapGrid)],
@@ -234,7 +285,14 @@ crate::widest! {
 
 /// One coordinate of the taps of a group whose patches begin at `first`, pixel by pixel.
 #[inline(always)]
-fn spread_group(lattice: &TapLattice, center: &[f32], edges: [&[f32]; 4], first: usize, scale: f32, out: &mut [f32]) {
+fn spread_group(
+    lattice: &TapLattice,
+    center: &[f32],
+    edges: [&[f32]; 4],
+    first: usize,
+    scale: f32,
+    out: &mut [f32],
+) {
     let part = first..first + GROUP;
     let center = &center[part.clone()];
     let (left, right) = (&edges[0][part.clone()], &edges[1][part.clone()]);
@@ -242,7 +300,10 @@ fn spread_group(lattice: &TapLattice, center: &[f32], edges: [&[f32]; 4], first:
     let [a, b, c, d] = lattice;
     for (out, tap) in out.as_chunks_mut::<GROUP>().0.iter_mut().zip(0..LANES) {
         for k in 0..GROUP {
-            out[k] = (center[k] + (a[tap] * left[k] + b[tap] * right[k]) + (c[tap] * up[k] + d[tap] * down[k])) * scale;
+            out[k] = (center[k]
+                + (a[tap] * left[k] + b[tap] * right[k])
+                + (c[tap] * up[k] + d[tap] * down[k]))
+                * scale;
         }
     }
 }
@@ -262,7 +323,8 @@ fn spread(
     for from in [0, 8] {
         if from < count {
             for i in from..from + 8 {
-                out[i] = (center + (a[i] * left + b[i] * right) + (c[i] * up + d[i] * down)) * scale;
+                out[i] =
+                    (center + (a[i] * left + b[i] * right) + (c[i] * up + d[i] * down)) * scale;
             }
         }
     }
@@ -276,9 +338,12 @@ mod tests {
     use crate::raster::{Picture, sampler};
 
     fn stripes(size: Size, period: usize) -> Texture {
-        let texel = |i: usize| if (i % size.width as usize) % period < period / 2 { [255; 4] } else { [0, 0, 0, 255] };
+        let texel = |i: usize| {
+            if (i % size.width as usize) % period < period / 2 { [255; 4] } else { [0, 0, 0, 255] }
+        };
         Texture::new(&Picture::srgb8(size, (0..size.area()).map(texel).collect()).unwrap())
     }
+
     /// One straight patch with the given sides.
     fn patch(texture: &Texture, at: [f32; 2], across: f32, along: f32) -> [u8; 4] {
         let [x, y] = at.map(|v| [v]);
@@ -287,7 +352,12 @@ mod tests {
         let (minus_a, minus_b) = (half(-across), half(-along));
         let edges = [[&minus_a[..], &zero], [&a, &zero], [&zero, &minus_b], [&zero, &b]];
         let mut out = [[0; 4]];
-        Antialias::default().row(texture, PatchRow { x: &x, y: &y, edges }, Outside::Repeat, &mut out);
+        Antialias::default().row(
+            texture,
+            PatchRow { x: &x, y: &y, edges },
+            Outside::Repeat,
+            &mut out,
+        );
         out[0]
     }
 
@@ -301,20 +371,29 @@ mod tests {
             }
         }
     }
+
     #[test]
     fn a_patch_within_a_texel_is_one_bilinear_tap() {
         let texture = stripes(Size::new(64, 64), 8);
         for x in [7.3, 8.0, 8.4, 20.5] {
             let tap = sampler::bilinear(&texture, vec2(x, 30.0), Outside::Repeat);
-            assert!((f32::from(patch(&texture, [x, 30.0], 1.0, 0.2)[0]) - tap[0] * 255.0).abs() <= 0.52);
+            assert!(
+                (f32::from(patch(&texture, [x, 30.0], 1.0, 0.2)[0]) - tap[0] * 255.0).abs() <= 0.52
+            );
         }
     }
+
     #[test]
     fn a_patch_stretched_along_the_stripes_keeps_them_sharp() {
         let texture = stripes(Size::new(256, 256), 16);
-        assert_eq!(patch(&texture, [20.0, 100.0], 1.0, 60.0)[0], 255, "the middle of a white stripe");
+        assert_eq!(
+            patch(&texture, [20.0, 100.0], 1.0, 60.0)[0],
+            255,
+            "the middle of a white stripe"
+        );
         assert_eq!(patch(&texture, [28.0, 100.0], 1.0, 60.0)[0], 0, "the middle of a black one");
     }
+
     #[test]
     fn grids_spend_no_more_taps_than_allowed_and_hold_every_side() {
         let grid = |across: f32, along: f32| {
@@ -328,7 +407,10 @@ mod tests {
         for across in [0.0, 0.9, 2.0, 7.0, 33.0, 1e9, f32::INFINITY, f32::NAN] {
             for along in [0.0, 1.6, 5.0, 40.0, f32::INFINITY, f32::NAN] {
                 let grid = grid(across, along);
-                assert!((1..=MAX_TAPS).contains(&(grid.across * grid.along)), "{across} × {along}: {grid:?}");
+                assert!(
+                    (1..=MAX_TAPS).contains(&(grid.across * grid.along)),
+                    "{across} × {along}: {grid:?}"
+                );
                 assert!(grid.level <= 9);
             }
         }

@@ -11,8 +11,16 @@ pub struct Bilinear {
 }
 
 impl Bilinear {
-    /// The picture's premultiplied bytes at each position (`x`, `y`; texels), rounded: one pixel of `out` for each.
-    pub fn row(&mut self, texture: &Texture, x: &[f32], y: &[f32], outside: Outside, out: &mut [[u8; 4]]) {
+    /// The picture's premultiplied bytes at each position (`x`, `y`; texels), rounded: one pixel of
+    /// `out` for each.
+    pub fn row(
+        &mut self,
+        texture: &Texture,
+        x: &[f32],
+        y: &[f32],
+        outside: Outside,
+        out: &mut [[u8; 4]],
+    ) {
         // Pixels in flight: their taps stay in the first-level cache.
         const SPAN: usize = 256;
         for ((x, y), out) in x.chunks(SPAN).zip(y.chunks(SPAN)).zip(out.chunks_mut(SPAN)) {
@@ -52,12 +60,18 @@ mod tests {
                     let reference = super::super::bilinear(&texture, vec2(x[i], y[i]), outside);
                     for c in 0..4 {
                         let difference = (f32::from(pixel[c]) - reference[c] * 255.0).abs();
-                        assert!(difference <= 0.52, "{outside:?} {size} at {}, {}: {difference}", x[i], y[i]);
+                        assert!(
+                            difference <= 0.52,
+                            "{outside:?} {size} at {}, {}: {difference}",
+                            x[i],
+                            y[i]
+                        );
                     }
                 }
             }
         }
     }
+
     #[test]
     fn texel_centres_give_the_texels_themselves() {
         let texture = noise(Size::new(300, 2));
@@ -68,6 +82,7 @@ mod tests {
             assert_eq!(bytes, texture.levels()[0].texels[300..]);
         }
     }
+
     #[test]
     fn positions_without_bound_read_something_without_panicking() {
         let texture = noise(Size::new(7, 5));

@@ -1,6 +1,7 @@
-//! Many bilinear taps at once: the fast version of `bilinear`. Floor 1. Two passes: positions to texels and weights,
-//! several taps an instruction; then the texels, one tap at a time with its texels' channels side by side, in AVX2
-//! where the processor has it (`wide`): LLVM does not vectorise that on its own. Both versions give the same bits.
+//! Many bilinear taps at once: the fast version of `bilinear`. Floor 1. Two passes: positions to
+//! texels and weights, several taps an instruction; then the texels, one tap at a time with its
+//! texels' channels side by side, in AVX2 where the processor has it (`wide`): LLVM does not
+//! vectorise that on its own. Both versions give the same bits.
 
 mod find;
 #[cfg(target_arch = "x86_64")]
@@ -14,7 +15,8 @@ use find::find;
 /// Where taps read. Scratch, kept from row to row.
 #[derive(Default)]
 pub struct Taps {
-    /// Of the upper left texel; negative at a seam, where the four texels are not adjacent inside the picture.
+    /// Of the upper left texel; negative at a seam, where the four texels are not adjacent inside
+    /// the picture.
     index: Vec<i32>,
     /// Weights of the left texels (low half) and the right ones (high half), in [`ONE`]-ths.
     across: Vec<u32>,
@@ -62,6 +64,7 @@ impl Taps {
         }
         self.range = find(at, &mut self.index, &mut self.across, &mut self.down);
     }
+
     /// Writes every tap's rounded colour to a pixel of its own.
     pub fn singles(&self, at: TapPositions, out: &mut [[u8; 4]]) {
         #[cfg(target_arch = "x86_64")]
@@ -70,6 +73,7 @@ impl Taps {
         }
         self.singles_portably(at, 0, out);
     }
+
     /// Writes the rounded mean of the next `count` taps to each run's pixel of `out`.
     pub fn means(&self, at: TapPositions, runs: &[TapRun], out: &mut [[u8; 4]]) {
         #[cfg(target_arch = "x86_64")]
@@ -78,6 +82,7 @@ impl Taps {
         }
         self.means_portably(at, runs, out);
     }
+
     /// Writes the rounded means of the next taps to each group's pixels of `out`.
     pub fn group_means(&self, at: TapPositions, groups: &[TapGroup], out: &mut [[u8; 4]]) {
         #[cfg(target_arch = "x86_64")]
@@ -86,6 +91,7 @@ impl Taps {
         }
         self.group_means_portably(at, groups, out);
     }
+
     fn group_means_portably(&self, at: TapPositions, groups: &[TapGroup], out: &mut [[u8; 4]]) {
         let mut first = 0;
         for group in groups {
@@ -96,6 +102,7 @@ impl Taps {
             }
         }
     }
+
     /// The mean of pixel `k` of a group.
     fn group_mean(&self, at: TapPositions, taps: std::ops::Range<usize>, k: usize) -> [u8; 4] {
         let mut sum = [0.0; 4];
@@ -106,11 +113,13 @@ impl Taps {
         }
         sum.map(|v| round(v * share))
     }
+
     fn singles_portably(&self, at: TapPositions, from: usize, out: &mut [[u8; 4]]) {
         for (tap, out) in (from..self.index.len()).zip(out) {
             *out = self.color(at, tap).map(|v| round(v * (1.0 / ONE)));
         }
     }
+
     fn means_portably(&self, at: TapPositions, runs: &[TapRun], out: &mut [[u8; 4]]) {
         let mut first = 0;
         for run in runs {
@@ -121,6 +130,7 @@ impl Taps {
             }
         }
     }
+
     /// Even and odd taps are added up separately, as in the wide version.
     fn mean(&self, at: TapPositions, taps: std::ops::Range<usize>, share: f32) -> [u8; 4] {
         let mut sums = [[0.0; 4]; 2];
@@ -130,6 +140,7 @@ impl Taps {
         }
         std::array::from_fn(|c| round((sums[0][c] + sums[1][c]) * share))
     }
+
     /// One tap, in `[0, 255 ONE]`.
     #[inline(always)]
     fn color(&self, at: TapPositions, tap: usize) -> [f32; 4] {
@@ -142,6 +153,7 @@ impl Taps {
             None => bilinear_in(at.level, vec2(at.x[tap], at.y[tap]), at.outside).map(|v| v * ONE),
         }
     }
+
     /// The upper and the lower pair of texels of a tap; `None` at a seam.
     #[inline(always)]
     fn texels<'l>(&self, level: &'l MipLevel, tap: usize) -> Option<[&'l [[u8; 4]; 2]; 2]> {
@@ -157,7 +169,9 @@ const ONE: f32 = 16384.0;
 /// Two texels side by side, mixed; `[0, 255 ONE]`.
 #[inline(always)]
 fn mix_pair([left, right]: &[[u8; 4]; 2], across: u32) -> [f32; 4] {
-    std::array::from_fn(|c| (u32::from(left[c]) * (across & 0xffff) + u32::from(right[c]) * (across >> 16)) as f32)
+    std::array::from_fn(|c| {
+        (u32::from(left[c]) * (across & 0xffff) + u32::from(right[c]) * (across >> 16)) as f32
+    })
 }
 
 impl TapRun {
@@ -179,7 +193,8 @@ const SHARES: [f32; 32] = {
     shares
 };
 
-/// The nearest byte of a value in `[0, 255]`, ties to even: adding 2²³ leaves the integer in the low bits.
+/// The nearest byte of a value in `[0, 255]`, ties to even: adding 2²³ leaves the integer in the
+/// low bits.
 #[inline(always)]
 fn round(value: f32) -> u8 {
     (value + 8_388_608.0).to_bits() as u8
@@ -205,7 +220,8 @@ mod tests {
             taps.means(at, &runs, &mut wide);
             taps.means_portably(at, &runs, &mut portable);
             assert_eq!(wide, portable, "means, {outside:?}");
-            let groups = [(0, 3), (16, 1), (8, 16), (40, 7)].map(|(first, taps)| TapGroup { first, taps });
+            let groups =
+                [(0, 3), (16, 1), (8, 16), (40, 7)].map(|(first, taps)| TapGroup { first, taps });
             taps.group_means(at, &groups, &mut wide);
             taps.group_means_portably(at, &groups, &mut portable);
             assert_eq!(wide, portable, "groups, {outside:?}");

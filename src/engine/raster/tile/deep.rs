@@ -1,5 +1,6 @@
-//! Pixels of 16 bits, which a tile holds in addition to its bytes if something soft was painted: premultiplied, 65535
-//! is full. Floor 1. Each channel of a row is separate, so that loading a row takes no shuffles.
+//! Pixels of 16 bits, which a tile holds in addition to its bytes if something soft was painted:
+//! premultiplied, 65535 is full. Floor 1. Each channel of a row is separate, so that loading a row
+//! takes no shuffles.
 
 use super::TILE;
 use crate::math::srgb::quantise_deep;
@@ -13,10 +14,12 @@ pub const CLEAR_ROW: DeepRow = [[0; TILE]; 4];
 /// One level of 8 bits in 16 bits.
 pub const LEVEL: u16 = 257;
 
-/// This many pixels of a tile must be soft for it to be kept in 16 bits. Edges of ink leave one or two by chance.
+/// This many pixels of a tile must be soft for it to be kept in 16 bits. Edges of ink leave one or
+/// two by chance.
 const LEAST_SOFT: u32 = 8;
 
-/// A value nearer to a byte than a sixteenth of a level counts as that byte: strokes leave such residues.
+/// A value nearer to a byte than a sixteenth of a level counts as that byte: strokes leave such
+/// residues.
 const TRACE: u16 = LEVEL / 16;
 
 /// A tile of transparent rows.
@@ -117,12 +120,12 @@ crate::widest! {
     }
 }
 
-/// Whether bytes would lose what was painted: some pixels are soft. A pixel is soft if bytes cannot hold it, and all
-/// four neighbours differ by less than a level of 8 bits in every channel.
+/// Whether bytes would lose what was painted: some pixels are soft. A pixel is soft if bytes cannot
+/// hold it, and all four neighbours differ by less than a level of 8 bits in every channel.
 ///
-/// In soft pixels rounding makes steps that are wider than a pixel, which show as bands, and faint paint that builds up
-/// stroke by stroke is rounded away. At an edge, where neighbours are levels apart, neither shows: so ink, including
-/// its rims, stays in bytes.
+/// In soft pixels rounding makes steps that are wider than a pixel, which show as bands, and faint
+/// paint that builds up stroke by stroke is rounded away. At an edge, where neighbours are levels
+/// apart, neither shows: so ink, including its rims, stays in bytes.
 ///
 /// * `row`: puts a row in place, the top one first; each is requested once.
 pub fn is_soft(mut row: impl FnMut(usize, &mut DeepRow)) -> bool {
@@ -151,7 +154,8 @@ pub fn premultiplied([r, g, b, a]: [u16; 4]) -> [u16; 4] {
     [times(r), times(g), times(b), a]
 }
 
-/// Premultiplied values to straight ones, rounded to nearest: [`premultiplied`] is the exact inverse.
+/// Premultiplied values to straight ones, rounded to nearest: [`premultiplied`] is the exact
+/// inverse.
 ///
 /// The straight value is at most ½ off, and less than that after multiplication by α / 65535 < 1.
 #[inline(always)]
@@ -178,6 +182,7 @@ mod tests {
         };
         (0..TILE_AREA).filter(|&i| is_soft(i)).count()
     }
+
     fn painted(value: impl Fn(usize, usize) -> [u16; 4]) -> Box<[DeepRow]> {
         let mut rows = clear_rows();
         (0..TILE_AREA).for_each(|i| put(&mut rows[i / TILE], i % TILE, value(i % TILE, i / TILE)));
@@ -191,6 +196,7 @@ mod tests {
             assert_eq!(off_byte(v), v.abs_diff(u16::from(byte_of(v)) * 257), "{v}");
         }
     }
+
     #[test]
     fn premultiplied_values_come_back_as_they_were_from_straight_ones() {
         let check = |c: u16, a: u16| {
@@ -203,10 +209,13 @@ mod tests {
         let random = |i: u32, j: u32| (hash::unit(i, j, 0) * 65536.0) as u16;
         (0..200_000).for_each(|i| check(random(i, 0), random(i, 1)));
     }
+
     #[test]
     fn what_is_soft_is_what_the_definition_says() {
         let ramp = |per_px: usize| painted(|x, _| [0, 0, 0, (20_003 + x * per_px) as u16]);
-        let dots = |n: usize| painted(|x, y| if x % 9 == 4 && y == 5 && x / 9 < n { [0, 0, 0, 100] } else { [0; 4] });
+        let dots = |n: usize| {
+            painted(|x, y| if x % 9 == 4 && y == 5 && x / 9 < n { [0, 0, 0, 100] } else { [0; 4] })
+        };
         let cases = [
             (clear_rows(), 0),
             (ramp(256), 4096),
@@ -214,20 +223,34 @@ mod tests {
             (painted(|_, _| [0, 257, 514, 65535]), 0),
             (painted(|_, _| [0, 0, 300, 65535]), 4096),
             (dots(7), 7),
-            (painted(|x, y| if x < 30 && y < 30 { [65535; 4] } else { [(x * 700 + y) as u16, 0, 0, 65535] }), 0),
+            (
+                painted(|x, y| {
+                    if x < 30 && y < 30 { [65535; 4] } else { [(x * 700 + y) as u16, 0, 0, 65535] }
+                }),
+                0,
+            ),
         ];
         for (i, (rows, soft)) in cases.iter().enumerate() {
             assert_eq!(soft_pixels(rows), *soft, "case {i}");
-            assert_eq!(is_soft(|y, row| *row = rows[y]), soft_pixels(rows) >= LEAST_SOFT as usize, "case {i}");
+            assert_eq!(
+                is_soft(|y, row| *row = rows[y]),
+                soft_pixels(rows) >= LEAST_SOFT as usize,
+                "case {i}"
+            );
         }
         for seed in 0..40u32 {
             let noise = painted(|x, y| {
                 let gentle = (hash::unit(seed, x as u32 / 8, y as u32) * 600.0) as u16;
                 [gentle / 2, gentle, 0, gentle.saturating_mul(1 + (seed as u16) % 3)]
             });
-            assert_eq!(is_soft(|y, row| *row = noise[y]), soft_pixels(&noise) >= LEAST_SOFT as usize, "seed {seed}");
+            assert_eq!(
+                is_soft(|y, row| *row = noise[y]),
+                soft_pixels(&noise) >= LEAST_SOFT as usize,
+                "seed {seed}"
+            );
         }
     }
+
     #[test]
     fn bytes_go_in_and_out_and_are_known_as_such() {
         let bytes: Vec<u8> = (0..TILE_AREA * 4).map(|i| (i * 37 % 256) as u8).collect();
@@ -238,6 +261,7 @@ mod tests {
         rows[63][2][63] ^= 1;
         assert!(!to_bytes(&rows, &mut back));
     }
+
     #[test]
     fn floats_are_rounded_and_colours_lowered_to_alpha() {
         let [r, g, b, a] = [0.9, 0.25, f32::NAN, 0.5].map(|v| [v; TILE]);

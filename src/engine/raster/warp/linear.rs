@@ -6,7 +6,8 @@ use super::window::SourceWindow;
 use crate::math::Vec2;
 use crate::raster::TILE;
 
-/// The upper left of the four pixels around each point of a row, and how far each point is from its middle, px.
+/// The upper left of the four pixels around each point of a row, and how far each point is from its
+/// middle, px.
 pub(super) struct LinearRow {
     left: [i32; TILE],
     top: [i32; TILE],
@@ -30,6 +31,7 @@ impl SourceWindow {
         let (left, top) = (x.floor(), y.floor());
         self.of_four(left as i32, top as i32, x - left, y - top)
     }
+
     /// The same of the pixels of a row that take it, to the bit.
     pub(super) fn linear_row(&self, points: &PointRow, row: &mut LinearRow, out: &mut [[f32; 4]]) {
         let n = out.len();
@@ -39,21 +41,27 @@ impl SourceWindow {
             *out = self.of_four(row.left[k], row.top[k], row.right_by[k], row.down_by[k]);
         }
     }
+
     #[inline(always)]
     fn of_four(&self, x: i32, y: i32, s: f32, t: f32) -> [f32; 4] {
         let width = self.rect.width();
-        let (i, j) = (i64::from(x) - i64::from(self.rect.x0), i64::from(y) - i64::from(self.rect.y0));
-        let is_within = i >= 0 && j >= 0 && i + 1 < width as i64 && j + 1 < self.rect.height() as i64;
+        let (i, j) =
+            (i64::from(x) - i64::from(self.rect.x0), i64::from(y) - i64::from(self.rect.y0));
+        let is_within =
+            i >= 0 && j >= 0 && i + 1 < width as i64 && j + 1 < self.rect.height() as i64;
         let [a, b, c, d] = if is_within {
             let first = j as usize * width + i as usize;
-            let (upper, lower) = (&self.pixels[first..first + 2], &self.pixels[first + width..first + width + 2]);
+            let (upper, lower) =
+                (&self.pixels[first..first + 2], &self.pixels[first + width..first + width + 2]);
             [upper[0], upper[1], lower[0], lower[1]]
         } else {
             let (right, below) = (x.saturating_add(1), y.saturating_add(1));
             [self.pixel(x, y), self.pixel(right, y), self.pixel(x, below), self.pixel(right, below)]
         };
         let weights = [(1.0 - s) * (1.0 - t), s * (1.0 - t), (1.0 - s) * t, s * t];
-        std::array::from_fn(|i| weights[0] * a[i] + weights[1] * b[i] + weights[2] * c[i] + weights[3] * d[i])
+        std::array::from_fn(|i| {
+            weights[0] * a[i] + weights[1] * b[i] + weights[2] * c[i] + weights[3] * d[i]
+        })
     }
 }
 

@@ -1,12 +1,15 @@
-//! Pixels of a warp computed together: to the bit as [`SourceWindow::sample`] gives them one by one. Floor 1.
+//! Pixels of a warp computed together: to the bit as [`SourceWindow::sample`] gives them one by
+//! one. Floor 1.
 //!
-//! Weights of a row of pixels are computed tap by tap (`weights`); then each pixel adds up what it reads, in the order
-//! of the taps.
+//! Weights of a row of pixels are computed tap by tap (`weights`); then each pixel adds up what it
+//! reads, in the order of the taps.
 
 use super::Resampling;
 use super::linear::LinearRow;
 use super::points::PointRow;
-use super::weights::{SideKind, TileRow, WarpPatchRow, cubic_weights, extents, sides, steps, turned_about, weigh};
+use super::weights::{
+    SideKind, TileRow, WarpPatchRow, cubic_weights, extents, sides, steps, turned_about, weigh,
+};
 use super::window::{LEAST_LINEAR_TENT, MOST_READ_ALONG, SourceWindow};
 use crate::raster::TILE;
 
@@ -54,15 +57,24 @@ impl Default for SideRow {
 impl SideRow {
     fn fill(&mut self, x: &[f32], y: &[f32]) {
         let n = x.len();
-        sides(x, y, (&mut self.x[..n], &mut self.y[..n]), &mut self.reach[..n], &mut self.tent[..n]);
+        sides(
+            x,
+            y,
+            (&mut self.x[..n], &mut self.y[..n]),
+            &mut self.reach[..n],
+            &mut self.tent[..n],
+        );
     }
+
     fn reduces(&self, k: usize) -> bool {
         self.tent[k] < 1.0
     }
+
     /// Short enough for four pixels to leave none out.
     fn is_linear(&self, k: usize) -> bool {
         self.tent[k] >= LEAST_LINEAR_TENT
     }
+
     fn kind(&self, n: usize) -> SideKind {
         match self.tent[..n].iter().filter(|tent| **tent < 1.0).count() {
             0 => SideKind::Cubic,
@@ -74,12 +86,27 @@ impl SideRow {
 
 impl SourceWindow {
     /// What the first pixels of a row show; transparent where they show no point.
-    pub fn row(&self, points: &PointRow, filter: Resampling, scratch: &mut WarpScratch, out: &mut [[f32; 4]]) {
+    pub fn row(
+        &self,
+        points: &PointRow,
+        filter: Resampling,
+        scratch: &mut WarpScratch,
+        out: &mut [[f32; 4]],
+    ) {
         let n = out.len();
-        let shown = || points.shows[..n].iter().copied().enumerate().filter(|(_, shows)| *shows).map(|(k, _)| k);
+        let shown = || {
+            points.shows[..n]
+                .iter()
+                .copied()
+                .enumerate()
+                .filter(|(_, shows)| *shows)
+                .map(|(k, _)| k)
+        };
         out.fill([0.0; 4]);
         if filter == Resampling::Nearest {
-            shown().for_each(|k| out[k] = self.pixel(points.x[k].floor() as i32, points.y[k].floor() as i32));
+            shown().for_each(|k| {
+                out[k] = self.pixel(points.x[k].floor() as i32, points.y[k].floor() as i32)
+            });
             return;
         }
         let WarpScratch { sides: [right, down], linear, .. } = scratch;
@@ -90,7 +117,8 @@ impl SourceWindow {
         let (mut some_cubic, mut some_reduced) = (false, false);
         for k in shown() {
             let reduces = right.reduces(k) || down.reduces(k);
-            linear.takes[k] = filter == Resampling::Linear && right.is_linear(k) && down.is_linear(k);
+            linear.takes[k] =
+                filter == Resampling::Linear && right.is_linear(k) && down.is_linear(k);
             some_cubic |= !reduces && !linear.takes[k];
             some_reduced |= reduces && !linear.takes[k];
         }
@@ -113,9 +141,11 @@ impl SourceWindow {
             };
         }
     }
+
     /// Like [`SourceWindow::cubic`], with known weights.
     fn under_cubic(&self, points: &PointRow, k: usize, weights: &[[TileRow; 4]; 2]) -> [f32; 4] {
-        let (x, y) = ((points.x[k] - 0.5).floor() as i32 - 1, (points.y[k] - 0.5).floor() as i32 - 1);
+        let (x, y) =
+            ((points.x[k] - 0.5).floor() as i32 - 1, (points.y[k] - 0.5).floor() as i32 - 1);
         let mut sum = [0.0; 4];
         if let Some(first) = self.place_within(x, y, [4, 4]) {
             let wx: [f32; 4] = std::array::from_fn(|i| weights[0][i][k]);
@@ -139,6 +169,7 @@ impl SourceWindow {
         }
         sum
     }
+
     /// Like [`SourceWindow::reduced`], with known weights if there are any.
     fn patch(
         &self,
@@ -150,7 +181,8 @@ impl SourceWindow {
     ) -> [f32; 4] {
         let patches = &scratch.patches;
         let taps = patches.taps(k);
-        let is_plain = patches.determinant[k].abs() > 1e-3 && patches.reach[k] < 2.0 * MOST_READ_ALONG;
+        let is_plain =
+            patches.determinant[k].abs() > 1e-3 && patches.reach[k] < 2.0 * MOST_READ_ALONG;
         let (Some([nx, ny]), true) = (taps, is_plain) else {
             let (p, jacobian) = points.at(k);
             return self.sample(p, jacobian, filter);
@@ -178,13 +210,18 @@ impl SourceWindow {
         }
         if total > 0.0 { sum.map(|v| v / total) } else { [0.0; 4] }
     }
+
     /// The index of the pixel at a corner, if the whole rectangle is held.
     fn place_within(&self, x: i32, y: i32, [nx, ny]: [usize; 2]) -> Option<usize> {
-        let (x, y) = (i64::from(x) - i64::from(self.rect.x0), i64::from(y) - i64::from(self.rect.y0));
-        let is_within =
-            x >= 0 && y >= 0 && x + nx as i64 <= self.rect.width() as i64 && y + ny as i64 <= self.rect.height() as i64;
+        let (x, y) =
+            (i64::from(x) - i64::from(self.rect.x0), i64::from(y) - i64::from(self.rect.y0));
+        let is_within = x >= 0
+            && y >= 0
+            && x + nx as i64 <= self.rect.width() as i64
+            && y + ny as i64 <= self.rect.height() as i64;
         is_within.then(|| y as usize * self.rect.width() + x as usize)
     }
+
     /// Whether nothing of a rectangle is held and no border is repeated there.
     fn is_beyond(&self, x: i32, y: i32, [nx, ny]: [usize; 2]) -> bool {
         let apart = |low: i32, n: usize, from: i32, to: i32| {
@@ -203,12 +240,14 @@ impl WarpPatchRow {
         let [nx, ny] = [count(0), count(1)];
         // NaN, and positions so far away that neighbours are the same number, are not counted.
         let is_near = self.low[0][k].abs() < 1e6 && self.low[1][k].abs() < 1e6;
-        (nx >= 0.0 && ny >= 0.0 && nx <= most && ny <= most && is_near).then_some([nx as usize, ny as usize])
+        (nx >= 0.0 && ny >= 0.0 && nx <= most && ny <= most && is_near)
+            .then_some([nx as usize, ny as usize])
     }
 }
 
 impl WarpScratch {
-    /// Finds the taps of a row of pixels and weights them; returns the greatest number of taps along each axis.
+    /// Finds the taps of a row of pixels and weights them; returns the greatest number of taps
+    /// along each axis.
     fn patches_of(&mut self, points: &PointRow, n: usize, filter: Resampling) -> [usize; 2] {
         let Self { sides: [right, down], patches, weights, .. } = self;
         turned_about([&right.x[..n], &right.y[..n], &down.x[..n], &down.y[..n]], patches);
@@ -217,18 +256,29 @@ impl WarpScratch {
             let (a, b) = (of(right), of(down));
             let (low, high) = (&mut patches.low[axis][..n], &mut patches.high[axis][..n]);
             let reach = &mut patches.reach[..n];
-            extents(&p[..n], [&a[..n], &b[..n]], [&right.reach[..n], &down.reach[..n]], axis == 0, (low, high, reach));
+            extents(
+                &p[..n],
+                [&a[..n], &b[..n]],
+                [&right.reach[..n], &down.reach[..n]],
+                axis == 0,
+                (low, high, reach),
+            );
         }
         let counted = (0..n).filter(|k| points.shows[*k]).filter_map(|k| patches.taps(k));
-        let taps = counted.fold([0; 2], |most: [usize; 2], taps| [most[0].max(taps[0]), most[1].max(taps[1])]);
+        let taps = counted
+            .fold([0; 2], |most: [usize; 2], taps| [most[0].max(taps[0]), most[1].max(taps[1])]);
         let kinds = [right.kind(n), down.kind(n)];
-        let (mut s, mut t, mut along, mut across) = ([0.0; TILE], [0.0; TILE], [0.0; TILE], [0.0; TILE]);
+        let (mut s, mut t, mut along, mut across) =
+            ([0.0; TILE], [0.0; TILE], [0.0; TILE], [0.0; TILE]);
         for (tap, out) in weights[..taps[0] * taps[1]].iter_mut().enumerate() {
             let step = [(tap % taps[0]) as f32, (tap / taps[0]) as f32];
             steps(patches, [&points.x[..n], &points.y[..n]], step, (&mut s[..n], &mut t[..n]));
             weigh(kinds[0], &s[..n], &right.tent[..n], filter, &mut along[..n]);
             weigh(kinds[1], &t[..n], &down.tent[..n], filter, &mut across[..n]);
-            out[..n].iter_mut().zip(along.iter().zip(&across)).for_each(|(out, (a, b))| *out = a * b);
+            out[..n]
+                .iter_mut()
+                .zip(along.iter().zip(&across))
+                .for_each(|(out, (a, b))| *out = a * b);
         }
         taps
     }

@@ -8,9 +8,11 @@ impl PixelMap for Through {
     fn source_of(&self, q: Vec2) -> Option<(Vec2, Mat2)> {
         self.0.from_canvas(q)
     }
+
     fn pixel_move(&self) -> Option<PixelMove> {
         self.0.pixel_move_on(self.1)
     }
+
     fn source_rect(&self, canvas: Rect) -> Rect {
         self.0.source_rect(canvas)
     }
@@ -22,24 +24,30 @@ const CANVAS: Size = Size::new(SIDE as u32, SIDE as u32);
 fn tiles() -> Vec<TileAt> {
     TileAt::covering(CANVAS.rect()).collect()
 }
+
 /// An opaque grey picture.
 fn picture(value: impl Fn(f32, f32) -> f32) -> TileGrid {
     let grey = |i: i32| quantise(value((i % SIDE) as f32 + 0.5, (i / SIDE) as f32 + 0.5));
     let rgba: Vec<u8> = (0..SIDE * SIDE).flat_map(|i| [grey(i), grey(i), grey(i), 255]).collect();
     TileGrid::from_straight_rgba(&rgba, SIDE as usize, SIDE as usize, 0, 0)
 }
+
 fn noise() -> TileGrid {
     let byte = |i: u32| (hash::unit(9, i, 0) * 256.0) as u8;
     let rgba: Vec<u8> = (0..(SIDE * SIDE * 4) as u32).map(byte).collect();
     TileGrid::from_straight_rgba(&rgba, SIDE as usize, SIDE as usize, 0, 0)
 }
+
 fn seen(grid: &TileGrid, map: PlaneMap, filter: Resampling) -> TileGrid {
     warped(grid, &Through(map, CANVAS), filter, &tiles())
 }
+
 fn affine(c: [f64; 6]) -> PlaneMap {
     PlaneMap::affine(c).unwrap()
 }
-/// 1 at the middle, ever finer rings toward the corners: at half size those beyond 64 px cannot be shown.
+
+/// 1 at the middle, ever finer rings toward the corners: at half size those beyond 64 px cannot be
+/// shown.
 fn rings(x: f32, y: f32) -> f32 {
     let (dx, dy) = (x - 128.0, y - 128.0);
     0.5 + 0.5 * ((dx * dx + dy * dy) * std::f32::consts::PI / 256.0).cos()
@@ -52,23 +60,32 @@ fn mirrors_quarter_turns_and_shifts_there_and_back_give_the_same_bytes() {
     let mirror = affine([-1.0, 0.0, 0.0, 1.0, 256.0, 0.0]);
     let shift = |dx: f32| PlaneMap::translation(vec2(dx, 0.0));
     for steps in [vec![mirror, mirror], vec![PlaneMap::rotation(90.0, middle); 4]] {
-        let back = steps.iter().fold(picture.clone(), |grid, step| seen(&grid, *step, Resampling::Smooth));
-        assert!(tiles().iter().all(|&at| back.tile(at).unwrap().bytes() == picture.tile(at).unwrap().bytes()));
+        let back =
+            steps.iter().fold(picture.clone(), |grid, step| seen(&grid, *step, Resampling::Smooth));
+        assert!(
+            tiles()
+                .iter()
+                .all(|&at| back.tile(at).unwrap().bytes() == picture.tile(at).unwrap().bytes())
+        );
     }
     let moved = seen(&picture, shift(7.0), Resampling::Smooth);
     assert_eq!(moved.pixel(17, 5), picture.pixel(10, 5));
     assert_eq!(moved.pixel(3, 5), [0; 4]);
 }
+
 #[test]
 fn a_flat_colour_stays_one_however_it_is_turned_or_reduced() {
     let grid = picture(|_, _| 0.6);
-    for map in [PlaneMap::rotation(17.0, vec2(128.0, 128.0)), affine([0.31, 0.1, -0.2, 0.4, 90.0, 80.0])] {
+    for map in
+        [PlaneMap::rotation(17.0, vec2(128.0, 128.0)), affine([0.31, 0.1, -0.2, 0.4, 90.0, 80.0])]
+    {
         for (filter, _) in Resampling::ALL {
             let out = seen(&grid, map, filter);
             assert_eq!(out.pixel(128, 128), [153, 153, 153, 255], "{filter:?}");
         }
     }
 }
+
 #[test]
 fn a_zone_plate_at_half_size_is_what_supersampling_gives() {
     let half = affine([0.5, 0.0, 0.0, 0.5, 0.0, 0.0]);
@@ -77,7 +94,9 @@ fn a_zone_plate_at_half_size_is_what_supersampling_gives() {
     for y in 0..SIDE / 2 {
         for x in 0..SIDE / 2 {
             let at = |k: i32| (k as f32 + 0.5) / 4.0;
-            let truth: f32 = (0..64).map(|k| rings(2.0 * x as f32 + at(k % 8), 2.0 * y as f32 + at(k / 8))).sum();
+            let truth: f32 = (0..64)
+                .map(|k| rings(2.0 * x as f32 + at(k % 8), 2.0 * y as f32 + at(k / 8)))
+                .sum();
             let truth = truth / 64.0;
             // What one sample without a filter gives.
             let point = rings(2.0 * x as f32 + 0.5, 2.0 * y as f32 + 0.5);
@@ -88,6 +107,7 @@ fn a_zone_plate_at_half_size_is_what_supersampling_gives() {
     let ratio = (own / unfiltered).sqrt();
     assert!(ratio < 0.17, "{ratio} of unfiltered");
 }
+
 #[test]
 fn a_sharp_turn_there_and_back_loses_little() {
     let soft = |x: f32, y: f32| 0.5 + 0.3 * (x * 0.15).sin() * (y * 0.11).cos();
@@ -96,9 +116,11 @@ fn a_sharp_turn_there_and_back_loses_little() {
     let there = seen(&grid, turn(30.0), Resampling::Sharp);
     let back = seen(&there, turn(-30.0), Resampling::Sharp);
     let off = |x: i32, y: i32| i32::from(back.pixel(x, y)[0]) - i32::from(grid.pixel(x, y)[0]);
-    let worst = (64..192).flat_map(|y| (64..192).map(move |x| (x, y))).map(|(x, y)| off(x, y).abs()).max();
+    let worst =
+        (64..192).flat_map(|y| (64..192).map(move |x| (x, y))).map(|(x, y)| off(x, y).abs()).max();
     assert!(worst.unwrap() <= 2, "{worst:?}");
 }
+
 #[test]
 fn a_horizon_and_a_speck_of_a_picture_are_shown_without_stalling() {
     use glam::dvec2;
@@ -109,6 +131,7 @@ fn a_horizon_and_a_speck_of_a_picture_are_shown_without_stalling() {
     let speck = affine([1e-4, 0.0, 0.0, 1e-4, 40.0, 40.0]);
     assert!(seen(&grid, speck, Resampling::Smooth).pixel(200, 200)[3] == 0);
 }
+
 #[test]
 fn a_mask_moves_with_its_border_going_on() {
     let mask = Plane::from_fn(CANVAS, |x, _| if x < 100 { 255u8 } else { 0 });
@@ -117,6 +140,7 @@ fn a_mask_moves_with_its_border_going_on() {
     assert_eq!((moved.at(0, 9), moved.at(110, 9), moved.at(130, 9)), (255, 255, 0));
     assert!((100..155).contains(&moved.at(120, 9)), "half of both, not {}", moved.at(120, 9));
 }
+
 #[test]
 fn rows_of_pixels_are_to_the_bit_what_each_is_alone() {
     use glam::dvec2;
@@ -126,8 +150,11 @@ fn rows_of_pixels_are_to_the_bit_what_each_is_alone() {
         Through(PlaneMap::rotation(degrees, about).then(&scaled), CANVAS)
     };
     let corners = [dvec2(9.0, 3.0), dvec2(240.0, 40.0), dvec2(190.0, 250.0), dvec2(30.0, 180.0)];
-    let mut maps: Vec<Box<dyn PixelMap>> = vec![Box::new(Through(PlaneMap::quad(CANVAS, corners).unwrap(), CANVAS))];
-    for (degrees, scale) in [(0.0, 1.0), (17.0, 1.0), (3.0, 0.93), (45.0, 0.4), (80.0, 0.11), (10.0, 2.5)] {
+    let mut maps: Vec<Box<dyn PixelMap>> =
+        vec![Box::new(Through(PlaneMap::quad(CANVAS, corners).unwrap(), CANVAS))];
+    for (degrees, scale) in
+        [(0.0, 1.0), (17.0, 1.0), (3.0, 0.93), (45.0, 0.4), (80.0, 0.11), (10.0, 2.5)]
+    {
         maps.push(Box::new(turn(degrees, scale)));
     }
     // One that squeezes in one place, stretches in another, and has nothing in between.
@@ -136,18 +163,24 @@ fn rows_of_pixels_are_to_the_bit_what_each_is_alone() {
     for k in 0..points.len() {
         let q = vec2((k % TILE) as f32, (k / TILE) as f32) + 64.5;
         let by = vec2(9.0 * (q.x * 0.13).sin(), 5.0 * (q.y * 0.31).cos());
-        let jacobian = Mat2::from_cols(vec2(1.0 + 1.17 * (q.x * 0.13).cos(), 0.1), vec2(0.0, 1.0 - (q.y * 0.31).sin()));
+        let jacobian = Mat2::from_cols(
+            vec2(1.0 + 1.17 * (q.x * 0.13).cos(), 0.1),
+            vec2(0.0, 1.0 - (q.y * 0.31).sin()),
+        );
         points.set(k, if k % 97 == 0 { (Vec2::splat(-1e6), jacobian) } else { (q + by, jacobian) });
     }
     points.x[70] = f32::NAN;
     maps.push(Box::new(TileMap::new(rect, points)));
     let grid = noise();
     let mut seen = 0;
-    for (map, filter) in maps.iter().flat_map(|map| Resampling::ALL.map(|(filter, _)| (map.as_ref(), filter))) {
+    for (map, filter) in
+        maps.iter().flat_map(|map| Resampling::ALL.map(|(filter, _)| (map.as_ref(), filter)))
+    {
         for continues in [false, true] {
             let source = GridSource { grid: &grid, bounds: Rect::new(0, 0, 200, 256), continues };
             let wanted = source.held(map.source_rect(rect));
-            let window = window::SourceWindow { rect: wanted, pixels: source.read(wanted), continues };
+            let window =
+                window::SourceWindow { rect: wanted, pixels: source.read(wanted), continues };
             let (mut points, mut scratch) = (PointRow::default(), rows::WarpScratch::default());
             for y in rect.y0..rect.y1 {
                 // Also rows that do not fill a tile.
@@ -156,7 +189,8 @@ fn rows_of_pixels_are_to_the_bit_what_each_is_alone() {
                 window.row(&points, filter, &mut scratch, &mut row);
                 for (x, found) in (rect.x0..).zip(row) {
                     let point = map.source_of(vec2(x as f32 + 0.5, y as f32 + 0.5));
-                    let alone = point.map_or([0.0; 4], |(p, jacobian)| window.sample(p, jacobian, filter));
+                    let alone =
+                        point.map_or([0.0; 4], |(p, jacobian)| window.sample(p, jacobian, filter));
                     assert!(found == alone, "{filter:?} {x} {y}: {found:?} {alone:?}");
                     seen += usize::from(alone[3] > 0.0);
                 }

@@ -5,12 +5,14 @@ use super::{PixelMap, PointRow};
 use crate::math::plane_map::PixelMove;
 use crate::math::{Mat2, Rect, Vec2, vec2};
 
-/// The points of the source that the pixels of a rectangle show, row by row, each coordinate in its own row.
+/// The points of the source that the pixels of a rectangle show, row by row, each coordinate in its
+/// own row.
 #[derive(Clone, Debug, Default)]
 pub struct TilePoints {
     pub x: Vec<f32>,
     pub y: Vec<f32>,
-    /// How the points move with the pixel: with a step to the right (x, y), and with one down (x, y).
+    /// How the points move with the pixel: with a step to the right (x, y), and with one down (x,
+    /// y).
     pub jacobian: [Vec<f32>; 4],
 }
 
@@ -29,23 +31,31 @@ impl TilePoints {
         let row = || vec![0.0; count];
         Self { x: row(), y: row(), jacobian: std::array::from_fn(|_| row()) }
     }
+
     pub fn len(&self) -> usize {
         self.x.len()
     }
+
     pub fn is_empty(&self) -> bool {
         self.x.is_empty()
     }
+
     pub fn at(&self, k: usize) -> (Vec2, Mat2) {
         let [a, b, c, d] = &self.jacobian;
         (vec2(self.x[k], self.y[k]), Mat2::from_cols_array(&[a[k], b[k], c[k], d[k]]))
     }
+
     pub fn set(&mut self, k: usize, (p, jacobian): (Vec2, Mat2)) {
         (self.x[k], self.y[k]) = (p.x, p.y);
         self.jacobian.iter_mut().zip(jacobian.to_cols_array()).for_each(|(row, v)| row[k] = v);
     }
+
     /// Whether a pixel shows a point: its numbers are finite, as is their sum.
     fn is_known(&self, k: usize) -> bool {
-        let sum = self.jacobian.iter().fold(self.x[k].abs() + self.y[k].abs(), |sum, row| sum + row[k].abs());
+        let sum = self
+            .jacobian
+            .iter()
+            .fold(self.x[k].abs() + self.y[k].abs(), |sum, row| sum + row[k].abs());
         sum < f32::INFINITY
     }
 }
@@ -55,6 +65,7 @@ impl TileMap {
     pub fn new(rect: Rect, points: TilePoints) -> Self {
         Self { rect, points }
     }
+
     /// The index of a pixel of the rectangle.
     fn place(&self, x: i32, y: i32) -> usize {
         (y - self.rect.y0) as usize * self.rect.width() + (x - self.rect.x0) as usize
@@ -67,6 +78,7 @@ impl PixelMap for TileMap {
         let place = self.rect.contains(x, y).then(|| self.place(x, y))?;
         self.points.is_known(place).then(|| self.points.at(place))
     }
+
     fn source_row(&self, x: i32, y: i32, count: usize, row: &mut PointRow) {
         let is_within = self.rect.contains(x, y) && self.rect.contains(x + count as i32 - 1, y);
         if !is_within {
@@ -84,11 +96,17 @@ impl PixelMap for TileMap {
         let [a, b, c, d] = [a, b, c, d].map(|row| &row[within.clone()]);
         known(&points.x[within.clone()], &points.y[within], [a, b, c, d], &mut row.shows[..count]);
     }
+
     fn pixel_move(&self) -> Option<PixelMove> {
         None
     }
+
     fn source_rect(&self, canvas: Rect) -> Rect {
-        let mut extent = PointBounds { low: [f32::INFINITY; 2], high: [f32::NEG_INFINITY; 2], sides_squared: [0.0; 2] };
+        let mut extent = PointBounds {
+            low: [f32::INFINITY; 2],
+            high: [f32::NEG_INFINITY; 2],
+            sides_squared: [0.0; 2],
+        };
         let area = canvas.intersect(self.rect);
         for y in area.y0..area.y1 {
             let row = self.place(area.x0, y)..self.place(area.x0, y) + area.width();
@@ -104,7 +122,12 @@ impl PixelMap for TileMap {
         let side = |v: f32| v.max(-FAR).min(FAR) as i32;
         let longest = |squared: f32| squared.sqrt().min(WIDEST_PX);
         let reach = 2.0 + (longest(right) + longest(down)).max(1.0);
-        Rect::new(side(low[0] - reach), side(low[1] - reach), side(high[0] + reach) + 1, side(high[1] + reach) + 1)
+        Rect::new(
+            side(low[0] - reach),
+            side(low[1] - reach),
+            side(high[0] + reach) + 1,
+            side(high[1] + reach) + 1,
+        )
     }
 }
 
@@ -146,6 +169,7 @@ crate::widest! {
             }
         }
     }
+
     /// As [`TilePoints::is_known`], of a row.
     fn known(x: &[f32], y: &[f32], jacobian: [&[f32]; 4], out: &mut [bool]) {
         let n = out.len();

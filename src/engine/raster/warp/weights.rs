@@ -1,5 +1,5 @@
-//! The weights of a row of pixels of a warp, in plain loops over rows of numbers that the compiler vectorises. Floor 1.
-//! Their twins for one pixel are in `window`.
+//! The weights of a row of pixels of a warp, in plain loops over rows of numbers that the compiler
+//! vectorises. Floor 1. Their twins for one pixel are in `window`.
 
 use super::Resampling;
 use super::window::{LONGEST_KEPT_PX, WIDEST_PX, cubic_of};
@@ -58,8 +58,12 @@ impl Cubic {
     fn of(filter: Resampling) -> Self {
         let (b, c) = cubic_of(filter);
         let near = [12.0 - 9.0 * b - 6.0 * c, -18.0 + 12.0 * b + 6.0 * c, 6.0 - 2.0 * b];
-        Self { near, far: [-b - 6.0 * c, 6.0 * b + 30.0 * c, -12.0 * b - 48.0 * c, 8.0 * b + 24.0 * c] }
+        Self {
+            near,
+            far: [-b - 6.0 * c, 6.0 * b + 30.0 * c, -12.0 * b - 48.0 * c, 8.0 * b + 24.0 * c],
+        }
     }
+
     /// In the order of the scalar twin.
     #[inline(always)]
     fn weight(self, d: f32) -> f32 {
@@ -98,6 +102,7 @@ crate::widest! {
             (sx[k], sy[k]) = (dx * length, dy * length);
         }
     }
+
     /// The inverses of two sides.
     pub fn turned_about(sides: [&[f32]; 4], out: &mut WarpPatchRow) {
         let n = sides[0].len();
@@ -114,6 +119,7 @@ crate::widest! {
             s[k] = a[k] * recip;
         }
     }
+
     /// The first and the last tap along an axis, and how far they reach.
     pub fn extents(
         p: &[f32],
@@ -132,6 +138,7 @@ crate::widest! {
             farther[k] = if is_first || reach > farther[k] { reach } else { farther[k] };
         }
     }
+
     /// The distance of a tap from each point, in ratios of the two sides.
     pub fn steps(patches: &WarpPatchRow, points: [&[f32]; 2], step: [f32; 2], out: (&mut [f32], &mut [f32])) {
         let n = points[0].len();
@@ -146,22 +153,26 @@ crate::widest! {
             across[k] = q[k] * dx + s[k] * dy;
         }
     }
+
     fn cubic_steps(t: &[f32], cubic: Cubic, out: &mut [f32]) {
         for (out, t) in out.iter_mut().zip(t) {
             *out = cubic.weight(*t);
         }
     }
+
     fn shares(t: &[f32], tent: &[f32], out: &mut [f32]) {
         for (out, (t, tent)) in out.iter_mut().zip(t.iter().zip(tent)) {
             *out = share(*t, *tent);
         }
     }
+
     fn shares_or_cubic(t: &[f32], tent: &[f32], cubic: Cubic, out: &mut [f32]) {
         for (out, (t, tent)) in out.iter_mut().zip(t.iter().zip(tent)) {
             let (share, weight) = (share(*t, *tent), cubic.weight(*t));
             *out = if *tent < 1.0 { share } else { weight };
         }
     }
+
     /// The weights of the four pixels around each point along one axis.
     pub fn cubic_weights(p: &[f32], filter: Resampling, out: &mut [TileRow; 4]) {
         let n = p.len();

@@ -1,4 +1,5 @@
-//! A part of the source of a warp, and what pixels show of it, one by one. Floor 1. Not here: rows of pixels (`rows`).
+//! A part of the source of a warp, and what pixels show of it, one by one. Floor 1. Not here: rows
+//! of pixels (`rows`).
 
 use super::Resampling;
 use crate::math::{Mat2, Rect, Vec2, vec2};
@@ -9,7 +10,8 @@ pub(super) const MOST_READ_ALONG: f32 = 24.0;
 pub(super) const WIDEST_PX: f32 = 512.0;
 /// A side hardly longer than a pixel belongs to a turned picture.
 pub(super) const LONGEST_KEPT_PX: f32 = 1.0 + 1e-3;
-/// Half the tent of a source pixel, in sides, of the longest side that [`Resampling::Linear`] leaves no pixel out of.
+/// Half the tent of a source pixel, in sides, of the longest side that [`Resampling::Linear`]
+/// leaves no pixel out of.
 pub(super) const LEAST_LINEAR_TENT: f32 = 0.5;
 
 /// A part of the source.
@@ -21,25 +23,34 @@ pub(super) struct SourceWindow {
 }
 
 impl SourceWindow {
-    /// The mean of the source about a point: what [`SourceWindow::rows`](super::rows) compute together, pixel by pixel.
+    /// The mean of the source about a point: what [`SourceWindow::rows`](super::rows) compute
+    /// together, pixel by pixel.
     pub fn sample(&self, p: Vec2, jacobian: Mat2, filter: Resampling) -> [f32; 4] {
-        let (right, down) = (PatchSide::of(jacobian.x_axis, filter), PatchSide::of(jacobian.y_axis, filter));
+        let (right, down) =
+            (PatchSide::of(jacobian.x_axis, filter), PatchSide::of(jacobian.y_axis, filter));
         match filter {
             Resampling::Nearest => self.pixel(p.x.floor() as i32, p.y.floor() as i32),
-            Resampling::Linear if [right, down].iter().all(|side| side.tent >= LEAST_LINEAR_TENT) => self.linear(p),
+            Resampling::Linear
+                if [right, down].iter().all(|side| side.tent >= LEAST_LINEAR_TENT) =>
+            {
+                self.linear(p)
+            }
             _ if !right.reduces && !down.reduces => self.cubic(p, filter),
             _ => self.reduced(p, [right, down]),
         }
     }
+
     /// One pixel of the source.
     pub fn pixel(&self, x: i32, y: i32) -> [f32; 4] {
         let Rect { x0, y0, x1, y1 } = self.rect;
-        let (x, y) = if self.continues { (x.clamp(x0, x1 - 1), y.clamp(y0, y1 - 1)) } else { (x, y) };
+        let (x, y) =
+            if self.continues { (x.clamp(x0, x1 - 1), y.clamp(y0, y1 - 1)) } else { (x, y) };
         if !self.rect.contains(x, y) {
             return [0.0; 4];
         }
         self.pixels[(y - self.rect.y0) as usize * self.rect.width() + (x - self.rect.x0) as usize]
     }
+
     /// 4 × 4 pixels under a cubic along the source's axes.
     pub fn cubic(&self, p: Vec2, filter: Resampling) -> [f32; 4] {
         let (x, y) = (p.x - 0.5, p.y - 0.5);
@@ -55,6 +66,7 @@ impl SourceWindow {
         }
         sum
     }
+
     /// The pixels under a parallelogram, weighted along its two sides.
     pub fn reduced(&self, p: Vec2, axes: [PatchSide; 2]) -> [f32; 4] {
         let sides = Mat2::from_cols(axes[0].side, axes[1].side);
@@ -106,6 +118,7 @@ impl PatchSide {
         let (length, reach) = if reduces { (length, 0.5 + 1.0 / length) } else { (1.0, 2.0) };
         Self { side: direction * length, reduces, filter, reach, tent: 1.0 / length }
     }
+
     fn weight(&self, t: f32) -> f32 {
         if self.reduces { share(t, self.tent) } else { cubic_weight(t, self.filter) }
     }
@@ -130,9 +143,15 @@ pub(super) fn cubic_of(filter: Resampling) -> (f32, f32) {
 fn cubic_weight(d: f32, filter: Resampling) -> f32 {
     let (d, (b, c)) = (d.abs(), cubic_of(filter));
     if d < 1.0 {
-        ((12.0 - 9.0 * b - 6.0 * c) * d * d * d + (-18.0 + 12.0 * b + 6.0 * c) * d * d + (6.0 - 2.0 * b)) / 6.0
+        ((12.0 - 9.0 * b - 6.0 * c) * d * d * d
+            + (-18.0 + 12.0 * b + 6.0 * c) * d * d
+            + (6.0 - 2.0 * b))
+            / 6.0
     } else if d < 2.0 {
-        ((-b - 6.0 * c) * d * d * d + (6.0 * b + 30.0 * c) * d * d + (-12.0 * b - 48.0 * c) * d + (8.0 * b + 24.0 * c))
+        ((-b - 6.0 * c) * d * d * d
+            + (6.0 * b + 30.0 * c) * d * d
+            + (-12.0 * b - 48.0 * c) * d
+            + (8.0 * b + 24.0 * c))
             / 6.0
     } else {
         0.0

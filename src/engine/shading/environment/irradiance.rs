@@ -1,6 +1,6 @@
-//! Irradiance: an environment integrated over the hemisphere around every direction, which lights matt surfaces (RS
-//! sec. 5.3.1). Floor 3. It is a small prefiltered map instead of spherical harmonics: nine of those ring around a sun,
-//! a map does not.
+//! Irradiance: an environment integrated over the hemisphere around every direction, which lights
+//! matt surfaces (RS sec. 5.3.1). Floor 3. It is a small prefiltered map instead of spherical
+//! harmonics: nine of those ring around a sun, a map does not.
 
 use super::level::SphereLevel;
 use super::map::EnvironmentMap;
@@ -9,8 +9,9 @@ use crate::math::{Vec3, Vec3A, srgb};
 use rayon::prelude::*;
 use std::f32::consts::PI;
 
-/// Rows of the parcels of light that are summed (2.8° each) and of the resulting map: a cosine lobe is so wide that a
-/// bilinear lookup stays close to the sum over every texel (`the_small_map_is_the_sum_over_every_texel`).
+/// Rows of the parcels of light that are summed (2.8° each) and of the resulting map: a cosine lobe
+/// is so wide that a bilinear lookup stays close to the sum over every texel
+/// (`the_small_map_is_the_sum_over_every_texel`).
 const ROWS: usize = 64;
 
 /// L̄(n): the cosine-weighted mean of the light around n. An environment of light 1 has the mean 1.
@@ -39,14 +40,17 @@ impl Irradiance {
         let brightest = texels.iter().map(|t| srgb::luminance(t.x, t.y, t.z)).fold(0.0, f32::max);
         Self { level: SphereLevel::new(ROWS, texels), brightest }
     }
+
     /// max L̄.
     pub fn brightest(&self) -> f32 {
         self.brightest
     }
+
     /// The map, in the picture's own space.
     pub fn level(&self) -> &SphereLevel {
         &self.level
     }
+
     /// L̄ around a unit direction of the picture's own space.
     pub fn at(&self, n: Vec3) -> Vec3 {
         self.level.at(n)

@@ -1,12 +1,13 @@
-//! A level of an environment's pyramid: a latitude-longitude map of means, without visible seam or poles. Floor 3.
+//! A level of an environment's pyramid: a latitude-longitude map of means, without visible seam or
+//! poles. Floor 3.
 
 use super::projection::lat_long_place;
 use crate::math::{Vec2, Vec3, Vec3A, fast};
 use rayon::prelude::*;
 use std::f32::consts::{PI, TAU};
 
-/// Means over about equally large parts of the sphere, twice as many columns as rows. Texels take 16 bytes, so that
-/// each is read by one instruction.
+/// Means over about equally large parts of the sphere, twice as many columns as rows. Texels take
+/// 16 bytes, so that each is read by one instruction.
 pub struct SphereLevel {
     /// A power of two.
     rows: usize,
@@ -21,7 +22,8 @@ pub struct Spot {
 }
 
 impl Spot {
-    /// `place` in `[0, 1]²`: columns wrap around, and beyond a pole the rows come back on the other side.
+    /// `place` in `[0, 1]²`: columns wrap around, and beyond a pole the rows come back on the other
+    /// side.
     #[inline(always)]
     pub fn around(place: Vec2, columns: i32, rows: i32) -> Self {
         let (x, y) = (place.x * columns as f32 - 0.5, place.y * rows as f32 - 0.5);
@@ -39,11 +41,15 @@ impl Spot {
             weight: [(1.0 - tx) * (1.0 - ty), tx * (1.0 - ty), (1.0 - tx) * ty, tx * ty],
         }
     }
+
     /// The weighted mean of its texels.
     #[inline(always)]
     pub fn mean(&self, texel: impl Fn(usize) -> Vec3A) -> Vec3A {
         let ([i, j, k, l], [a, b, c, d]) = (self.index, self.weight);
-        texel(i as usize) * a + texel(j as usize) * b + texel(k as usize) * c + texel(l as usize) * d
+        texel(i as usize) * a
+            + texel(j as usize) * b
+            + texel(k as usize) * c
+            + texel(l as usize) * d
     }
 }
 
@@ -52,56 +58,67 @@ impl SphereLevel {
     pub fn new(rows: usize, texels: Vec<Vec3A>) -> Self {
         Self { rows, texels }
     }
+
     pub fn rows(&self) -> usize {
         self.rows
     }
+
     pub fn columns(&self) -> usize {
         2 * self.rows
     }
+
     /// Row by row.
     pub fn texels(&self) -> &[Vec3A] {
         &self.texels
     }
+
     /// Light from a direction, bilinear.
     pub fn at(&self, e: Vec3) -> Vec3 {
         self.at_place(lat_long_place(e.x, e.y, e.z)).into()
     }
+
     /// The same at a place in `[0, 1]²`.
     #[inline(always)]
     pub fn at_place(&self, place: Vec2) -> Vec3A {
         let spot = Spot::around(place, self.columns() as i32, self.rows as i32);
         spot.mean(|i| self.texels[i])
     }
+
     /// A texel by its number; an invalid number finds the first.
     #[inline(always)]
     pub fn texel(&self, i: usize) -> Vec3A {
         self.texels[if i < self.texels.len() { i } else { 0 }]
     }
+
     /// Solid angle of a texel in a row, steradians.
     pub fn solid_angle(&self, row: usize) -> f32 {
         let edge = |row: usize| (row as f32 / self.rows as f32 * PI).cos();
         TAU / self.columns() as f32 * (edge(row) - edge(row + 1))
     }
+
     /// Half as many rows and columns: means weighted by solid angle.
     pub fn halved(&self) -> Option<SphereLevel> {
         let rows = self.rows / 2;
         let columns = 2 * rows;
         let texel = |i: usize| {
             let (x, y) = (2 * (i % columns), 2 * (i / columns));
-            let pair = |y: usize| self.texels[y * self.columns() + x] + self.texels[y * self.columns() + x + 1];
+            let pair = |y: usize| {
+                self.texels[y * self.columns() + x] + self.texels[y * self.columns() + x + 1]
+            };
             let (above, below) = (self.solid_angle(y), self.solid_angle(y + 1));
             (pair(y) * above + pair(y + 1) * below) / (2.0 * (above + below))
         };
         (rows > 0).then(|| SphereLevel::new(rows, (0..rows * columns).map(texel).collect()))
     }
-    /// Averages each row over as many texels as fit one texel's height: near the poles texels are slivers, and a lookup
-    /// must not read a single one.
+
+    /// Averages each row over as many texels as fit one texel's height: near the poles texels are
+    /// slivers, and a lookup must not read a single one.
     pub fn rounded_at_the_poles(self) -> SphereLevel {
         let columns = self.columns();
         let of_row = |row: usize| {
             let texels = &self.texels[row * columns..][..columns];
-            // The outermost row is a cap around the pole, one texel across: it gets one value, so that the pole is
-            // unique.
+            // The outermost row is a cap around the pole, one texel across: it gets one value, so
+            // that the pole is unique.
             let is_cap = row == 0 || row + 1 == self.rows;
             let sin = ((row as f32 + 0.5) / self.rows as f32 * PI).sin();
             around_row(texels, if is_cap { columns as f32 } else { 1.0 / sin })
@@ -121,13 +138,15 @@ fn around_row(texels: &[Vec3A], width: f32) -> Vec<Vec3A> {
     let whole = ((width - 1.0) / 2.0) as usize;
     let part = (width - 1.0) / 2.0 - whole as f32;
     let mean = |i: usize| {
-        let texel = |offset: usize, back: bool| texels[if back { i + n - offset } else { i + offset } % n];
+        let texel =
+            |offset: usize, back: bool| texels[if back { i + n - offset } else { i + offset } % n];
         let mut sum = texels[i];
         for k in 1..=whole {
             sum += texel(k, true) + texel(k, false);
         }
         let next = whole + 1;
-        (sum + (texel(next, true) + texel(next, false)) * part) / (1.0 + 2.0 * (whole as f32 + part))
+        (sum + (texel(next, true) + texel(next, false)) * part)
+            / (1.0 + 2.0 * (whole as f32 + part))
     };
     (0..n).map(mean).collect()
 }

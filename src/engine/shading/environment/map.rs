@@ -1,6 +1,7 @@
-//! Reads an environment over a footprint: from the picture itself for small footprints, else from a pyramid of
-//! latitude-longitude maps without visible seam or poles. Floor 3. Directions are the picture's own space, light is
-//! linear. Not here: the levels of the pyramid (`level`), many footprints side by side (`rows`).
+//! Reads an environment over a footprint: from the picture itself for small footprints, else from a
+//! pyramid of latitude-longitude maps without visible seam or poles. Floor 3. Directions are the
+//! picture's own space, light is linear. Not here: the levels of the pyramid (`level`), many
+//! footprints side by side (`rows`).
 
 use super::level::{SphereLevel, Spot};
 use super::projection::{Projection, lat_long_direction, lat_long_place};
@@ -14,8 +15,8 @@ pub struct EnvironmentMap {
     picture: Picture,
     projection: Projection,
     brightest: f32,
-    /// Each half as high as the one before, down to one row. Whatever the picture's projection, these are
-    /// latitude-longitude, twice as wide as high.
+    /// Each half as high as the one before, down to one row. Whatever the picture's projection,
+    /// these are latitude-longitude, twice as wide as high.
     levels: Vec<SphereLevel>,
 }
 
@@ -25,7 +26,8 @@ const MOST_TAPS: f32 = 16.0;
 /// The fewest rows of the finest level: even a picture of one pixel is integrated over hemispheres.
 const FEWEST_ROWS: usize = 64;
 
-/// Which layer of an environment shows so wide a cone: 0 is the finest level of the pyramid, −1 the picture.
+/// Which layer of an environment shows so wide a cone: 0 is the finest level of the pyramid, −1 the
+/// picture.
 #[derive(Clone, Copy)]
 pub(super) struct Layers {
     /// The angle of one texel of the picture.
@@ -65,7 +67,8 @@ impl TapLine {
         let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
         let radius = (half * half + xy * xy).sqrt();
         let (longer, shorter) = ((mean + radius).sqrt(), fast::max(mean - radius, 0.0).sqrt());
-        // The direction of the longer axis, from its doubled angle: the larger of sine and cosine first.
+        // The direction of the longer axis, from its doubled angle: the larger of sine and cosine
+        // first.
         let larger = (0.5 + 0.5 * (half.abs() / fast::max(radius, f32::MIN_POSITIVE))).sqrt();
         let smaller = 0.5 * xy / fast::max(radius * larger, f32::MIN_POSITIVE);
         let (cos, sin) = if half >= 0.0 { (larger, smaller) } else { (smaller, larger) };
@@ -79,6 +82,7 @@ impl TapLine {
             taps: if is_wide { taps } else { 1.0 },
         }
     }
+
     /// The direction of a tap; it has about the length of `e`.
     #[inline(always)]
     pub fn direction(&self, e: Vec3, i: usize) -> Vec3 {
@@ -101,10 +105,12 @@ impl EnvironmentMap {
             }
         }
     }
+
     /// The greatest luminance of any texel: max L_env of MATH 5.
     pub fn brightest(&self) -> f32 {
         self.brightest
     }
+
     fn find_brightest(&self) -> f32 {
         let (w, h) = (self.picture.size.width as i32, self.picture.size.height as i32);
         let luminance = |i: i32, j: i32| {
@@ -115,7 +121,9 @@ impl EnvironmentMap {
         // A maximum does not depend on its order.
         (0..h).into_par_iter().map(of_row).reduce(|| 0.0, f32::max)
     }
-    /// The angle that one texel of the picture spans where its projection does not stretch it, radians.
+
+    /// The angle that one texel of the picture spans where its projection does not stretch it,
+    /// radians.
     fn texel_rad(&self) -> f32 {
         let Size { width, height } = self.picture.size;
         match self.projection {
@@ -125,6 +133,7 @@ impl EnvironmentMap {
             Projection::MirrorBall => 4.0 / width as f32,
         }
     }
+
     /// Light from a unit direction: the picture, bilinear.
     pub fn at(&self, e: Vec3) -> Vec3 {
         let place = self.projection.place(e);
@@ -136,11 +145,13 @@ impl EnvironmentMap {
         bilinear(width as i32, height as i32, place, texel).unwrap_or_else(|| {
             // If all four texels lie beyond the disc: the nearest one on it.
             let inward = 1.0 - 3.0 / width.max(4) as f32;
-            bilinear(width as i32, height as i32, 0.5 + (place - 0.5) * inward, texel).unwrap_or_default()
+            bilinear(width as i32, height as i32, 0.5 + (place - 0.5) * inward, texel)
+                .unwrap_or_default()
         })
     }
-    /// A texel of the picture by column and row; a latitude-longitude map wraps around, and beyond a disc there are
-    /// none.
+
+    /// A texel of the picture by column and row; a latitude-longitude map wraps around, and beyond
+    /// a disc there are none.
     fn texel(&self, i: i32, j: i32) -> Option<Vec3> {
         let (w, h) = (self.picture.size.width as i32, self.picture.size.height as i32);
         let (i, j) = match self.projection {
@@ -154,13 +165,17 @@ impl EnvironmentMap {
         let [r, g, b, _] = self.picture.linear_at(i as usize, j as usize);
         Some(Vec3::new(r, g, b))
     }
+
     /// The mean light over a cone of about `width_rad` across.
     pub fn around(&self, e: Vec3, width_rad: f32) -> Vec3 {
         self.at_layer(e, lat_long_place(e.x, e.y, e.z), self.layers().layer(width_rad)).into()
     }
-    /// The mean light over the footprint of a pixel in which the direction changes by `dx` and by `dy`.
+
+    /// The mean light over the footprint of a pixel in which the direction changes by `dx` and by
+    /// `dy`.
     ///
-    /// The footprint is the ellipse with J = [dx, dy]: taps along its major axis, each as wide as the minor one.
+    /// The footprint is the ellipse with J = [dx, dy]: taps along its major axis, each as wide as
+    /// the minor one.
     pub fn over(&self, e: Vec3, dx: Vec3, dy: Vec3) -> Vec3 {
         let layers = self.layers();
         let line = TapLine::of(dx, dy, layers);
@@ -170,15 +185,23 @@ impl EnvironmentMap {
         };
         ((0..line.taps as usize).map(tap).sum::<Vec3A>() / line.taps).into()
     }
+
     pub(super) fn layers(&self) -> Layers {
         let texel_rad = self.texel_rad();
         let finest_rad = PI / self.levels[0].rows() as f32;
         let picture_rad = texel_rad.min(finest_rad * 0.99);
         let per_octave = 1.0 / (finest_rad / picture_rad).log2();
-        Layers { texel_rad, picture_rad, finest_rad, per_octave, coarsest: (self.levels.len() - 1) as f32 }
+        Layers {
+            texel_rad,
+            picture_rad,
+            finest_rad,
+            per_octave,
+            coarsest: (self.levels.len() - 1) as f32,
+        }
     }
-    /// Light from a direction of any length, and its place in a latitude-longitude map; between two layers where
-    /// `layer` is not whole.
+
+    /// Light from a direction of any length, and its place in a latitude-longitude map; between two
+    /// layers where `layer` is not whole.
     #[inline(always)]
     pub(super) fn at_layer(&self, e: Vec3, place: Vec2, layer: f32) -> Vec3A {
         let fine = layer.floor();
@@ -191,35 +214,42 @@ impl EnvironmentMap {
         let coarser = || self.level_at((fine + 1.0) as usize).at_place(place);
         if t > 0.0 { near * (1.0 - t) + coarser() * t } else { near }
     }
+
     /// A picture that is a disc, from a direction of any length.
     pub(super) fn disc_at(&self, e: Vec3) -> Vec3A {
         self.at(e.normalize_or_zero()).into()
     }
+
     /// A latitude-longitude picture, bilinear.
     #[inline(always)]
     fn at_place(&self, place: Vec2) -> Vec3A {
         let Size { width, height } = self.picture.size;
         Spot::around(place, width as i32, height as i32).mean(|i| self.picture_texel(i))
     }
+
     /// A texel of the picture by its number.
     #[inline(always)]
     pub(super) fn picture_texel(&self, i: usize) -> Vec3A {
         let [r, g, b, _] = self.picture.linear_texel(i);
         Vec3A::new(r, g, b)
     }
+
     /// A level of the pyramid, 0 the finest.
     #[inline(always)]
     pub(super) fn level_at(&self, layer: usize) -> &SphereLevel {
         &self.levels[layer.min(self.levels.len() - 1)]
     }
+
     /// Of a latitude-longitude picture; `None` for a disc, which is read pixel by pixel.
     pub(super) fn lat_long_size(&self) -> Option<Size> {
         (self.projection == Projection::LatLong).then_some(self.picture.size)
     }
+
     /// The level with `rows` rows, or the finest if the picture has fewer.
     pub(super) fn level(&self, rows: usize) -> &SphereLevel {
         self.levels.iter().find(|level| level.rows() <= rows).unwrap_or(&self.levels[0])
     }
+
     /// The picture as a latitude-longitude map, each texel the mean of several look-ups.
     fn resampled(&self, rows: usize) -> SphereLevel {
         // A disc stretches what lies behind, so that more of its texels fall into one.
@@ -230,8 +260,10 @@ impl EnvironmentMap {
             let place = |k: usize| (k as f32 + 0.5) / per_side as f32;
             let mut sum = Vec3::ZERO;
             for k in 0..per_side * per_side {
-                let (u, v) =
-                    ((column + place(k % per_side)) / columns as f32, (row + place(k / per_side)) / rows as f32);
+                let (u, v) = (
+                    (column + place(k % per_side)) / columns as f32,
+                    (row + place(k / per_side)) / rows as f32,
+                );
                 sum += self.at(lat_long_direction(u, v));
             }
             Vec3A::from(sum / (per_side * per_side) as f32)
@@ -240,8 +272,8 @@ impl EnvironmentMap {
     }
 }
 
-/// The texel of a latitude-longitude map at a column and row that may lie beyond it: columns wrap around, and beyond a
-/// pole the rows come back on the other side.
+/// The texel of a latitude-longitude map at a column and row that may lie beyond it: columns wrap
+/// around, and beyond a pole the rows come back on the other side.
 #[inline(always)]
 fn across_the_poles(i: i32, j: i32, w: i32, h: i32) -> (i32, i32) {
     let (i, j) = match j {
@@ -252,7 +284,8 @@ fn across_the_poles(i: i32, j: i32, w: i32, h: i32) -> (i32, i32) {
     (i.rem_euclid(w), j.clamp(0, h - 1))
 }
 
-/// Interpolates between the existing ones of the four texels around `place` in `[0, 1]²`; `None` if there are none.
+/// Interpolates between the existing ones of the four texels around `place` in `[0, 1]²`; `None` if
+/// there are none.
 #[inline(always)]
 fn bilinear(w: i32, h: i32, place: Vec2, texel: impl Fn(i32, i32) -> Option<Vec3>) -> Option<Vec3> {
     let p = place * vec2(w as f32, h as f32) - 0.5;

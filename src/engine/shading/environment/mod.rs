@@ -1,6 +1,7 @@
-//! An environment: the light that arrives from every direction, as a picture fixed to the camera. Floor 3. Here: its
-//! parameters, and light by camera direction. Not here: how directions lie in a picture (`projection`), reading it over
-//! a footprint (`map`, `rows`), gathering it over a hemisphere (`irradiance`).
+//! An environment: the light that arrives from every direction, as a picture fixed to the camera.
+//! Floor 3. Here: its parameters, and light by camera direction. Not here: how directions lie in a
+//! picture (`projection`), reading it over a footprint (`map`, `rows`), gathering it over a
+//! hemisphere (`irradiance`).
 
 pub mod irradiance;
 pub mod level;
@@ -48,14 +49,15 @@ struct PreparedCache {
     prepared: Arc<PreparedEnvironment>,
 }
 
-/// A picture prepared for lookups. It does not depend on rotation and exposure, which may be dragged.
+/// A picture prepared for lookups. It does not depend on rotation and exposure, which may be
+/// dragged.
 struct PreparedEnvironment {
     map: EnvironmentMap,
     irradiance: OnceLock<Irradiance>,
 }
 
-/// The light of an environment as the surface receives it: all lookups go through this. Directions are camera space (y
-/// up), light is linear; rotation and exposure are applied.
+/// The light of an environment as the surface receives it: all lookups go through this. Directions
+/// are camera space (y up), light is linear; rotation and exposure are applied.
 #[derive(Clone)]
 pub struct EnvironmentLight {
     prepared: Arc<PreparedEnvironment>,
@@ -80,16 +82,25 @@ impl Environment {
         let projection = Projection::default();
         Self { file, picture, projection, rotation: 0.0, exposure: 0.0, cache: Arc::default() }
     }
-    /// The light, prepared for lookups. The costly part is cached and shared by copies of this environment, whatever
-    /// their rotation and exposure. Call it before going parallel.
+
+    /// The light, prepared for lookups. The costly part is cached and shared by copies of this
+    /// environment, whatever their rotation and exposure. Call it before going parallel.
     pub fn environment_light(&self) -> EnvironmentLight {
         let (sin, cos) = self.rotation.to_radians().sin_cos();
-        EnvironmentLight { prepared: self.prepared(), turn: YRotation { sin, cos }, gain: self.exposure.exp2() }
+        EnvironmentLight {
+            prepared: self.prepared(),
+            turn: YRotation { sin, cos },
+            gain: self.exposure.exp2(),
+        }
     }
-    /// It never computes while holding the lock: a thread that waits for work in its own pool would deadlock.
+
+    /// It never computes while holding the lock: a thread that waits for work in its own pool would
+    /// deadlock.
     fn prepared(&self) -> Arc<PreparedEnvironment> {
         let lock = || self.cache.lock().unwrap_or_else(PoisonError::into_inner);
-        let holds = |k: &PreparedCache| k.projection == self.projection && is_same(&k.picture, &self.picture);
+        let holds = |k: &PreparedCache| {
+            k.projection == self.projection && is_same(&k.picture, &self.picture)
+        };
         if let Some(kept) = lock().as_ref().filter(|k| holds(k)) {
             return kept.prepared.clone();
         }
@@ -114,53 +125,80 @@ impl EnvironmentLight {
     pub fn along(&self, d: Vec3) -> Vec3 {
         self.prepared.map.at(self.turn.apply(d)) * self.gain
     }
+
     /// The mean light over a cone of about `width_rad` across.
     pub fn around(&self, d: Vec3, width_rad: f32) -> Vec3 {
         self.prepared.map.around(self.turn.apply(d), width_rad) * self.gain
     }
-    /// The mean light over the footprint of a pixel from which the direction changes by `dx` to the next in its row and
-    /// by `dy` to the next in its column.
+
+    /// The mean light over the footprint of a pixel from which the direction changes by `dx` to the
+    /// next in its row and by `dy` to the next in its column.
     pub fn over(&self, d: Vec3, dx: Vec3, dy: Vec3) -> Vec3 {
         let turn = self.turn;
         self.prepared.map.over(turn.apply(d), turn.apply(dx), turn.apply(dy)) * self.gain
     }
+
     /// [`EnvironmentLight::over`] at the covered pixels of a row; elsewhere it is black.
-    pub fn over_row(&self, d: &Directions, dx: &Directions, dy: &Directions, covered: &[u8], light: &mut Light3) {
+    pub fn over_row(
+        &self,
+        d: &Directions,
+        dx: &Directions,
+        dy: &Directions,
+        covered: &[u8],
+        light: &mut Light3,
+    ) {
         let [d, dx, dy] = [d, dx, dy].map(|directions| self.turned(directions));
         self.prepared.map.over_row(&d, &dx, &dy, covered, light);
         self.expose(light);
     }
-    /// [`EnvironmentLight::around`] at the pixels of a row that `wanted` is not 0 at; elsewhere it is black.
-    pub fn around_row(&self, d: &Directions, width_rad: &RowValues, wanted: &RowValues, light: &mut Light3) {
+
+    /// [`EnvironmentLight::around`] at the pixels of a row that `wanted` is not 0 at; elsewhere it
+    /// is black.
+    pub fn around_row(
+        &self,
+        d: &Directions,
+        width_rad: &RowValues,
+        wanted: &RowValues,
+        light: &mut Light3,
+    ) {
         self.prepared.map.around_row(&self.turned(d), width_rad, wanted, light);
         self.expose(light);
     }
+
     /// [`EnvironmentLight::matt`] at every pixel of a row.
     pub fn matt_row(&self, n: &Directions, light: &mut Light3) {
         rows::read_level(self.irradiance().level(), &self.turned(n), light);
         self.expose(light);
     }
+
     fn turned(&self, d: &Directions) -> Directions {
         let mut turned = [[0.0; TILE]; 3];
         turn_row(self.turn, d, &mut turned);
         turned
     }
+
     fn expose(&self, light: &mut Light3) {
         light.iter_mut().flatten().for_each(|light| *light *= self.gain);
     }
-    /// L̄(n): the cosine-weighted mean of the light over the hemisphere around a unit normal (RS sec. 5.3.1).
+
+    /// L̄(n): the cosine-weighted mean of the light over the hemisphere around a unit normal (RS
+    /// sec. 5.3.1).
     pub fn matt(&self, n: Vec3) -> Vec3 {
         self.irradiance().at(self.turn.apply(n)) * self.gain
     }
+
     /// max L_env: the greatest luminance of any texel.
     pub fn brightest(&self) -> f32 {
         self.prepared.map.brightest() * self.gain
     }
+
     /// max L̄.
     pub fn brightest_matt(&self) -> f32 {
         self.irradiance().brightest() * self.gain
     }
-    /// `count` directions spread evenly over the sphere (a Fibonacci spiral), each with the light around it.
+
+    /// `count` directions spread evenly over the sphere (a Fibonacci spiral), each with the light
+    /// around it.
     pub fn parcels(&self, count: usize) -> Vec<Parcel> {
         let solid_angle = 4.0 * std::f32::consts::PI / count.max(1) as f32;
         let parcel = |i: usize| {
@@ -169,6 +207,7 @@ impl EnvironmentLight {
         };
         (0..count).map(parcel).collect()
     }
+
     /// Cached; the first caller computes it.
     fn irradiance(&self) -> &Irradiance {
         crate::memory::once(&self.prepared.irradiance, || Irradiance::of(&self.prepared.map))

@@ -11,7 +11,8 @@ crate::named! {
         /// u = atan2(e_x, −e_z) / 2π, v = acos(e_y) / π from the top.
         #[default]
         LatLong = "lat-long",
-        /// The centre is toward the viewer, the radius proportional to the angle from it, the rim directly away.
+        /// The centre is toward the viewer, the radius proportional to the angle from it, the rim
+        /// directly away.
         Angular = "angular",
         /// A photographed mirror ball: the picture is the ball, seen orthographically.
         MirrorBall = "mirror-ball",
@@ -19,13 +20,15 @@ crate::named! {
 }
 
 impl Projection {
-    /// Where in the picture a unit direction of its own space (y up) lies: `[0, 1]²`, from the left and the top.
+    /// Where in the picture a unit direction of its own space (y up) lies: `[0, 1]²`, from the left
+    /// and the top.
     #[inline(always)]
     pub fn place(self, e: Vec3) -> Vec2 {
         match self {
             Projection::LatLong => lat_long_place(e.x, e.y, e.z),
             Projection::Angular => {
-                // The whole rim is one direction, directly away from the viewer: any point of it is right.
+                // The whole rim is one direction, directly away from the viewer: any point of it is
+                // right.
                 let around = vec2(e.x, -e.y).normalize_or(Vec2::X);
                 // atan2 keeps the digits that acos loses near the centre and the rim.
                 0.5 + 0.5 * around * (e.truncate().length().atan2(e.z) / PI)
@@ -37,13 +40,15 @@ impl Projection {
             }
         }
     }
+
     /// The picture is a disc; beyond it there is nothing.
     pub fn is_disc(self) -> bool {
         self != Projection::LatLong
     }
 }
 
-/// Where a direction lies in a latitude-longitude map; one without direction, or NaN, at some place within.
+/// Where a direction lies in a latitude-longitude map; one without direction, or NaN, at some place
+/// within.
 #[inline(always)]
 pub fn lat_long_place(x: f32, y: f32, z: f32) -> Vec2 {
     let u = fast::atan2(x, -z) * (1.0 / TAU);
@@ -59,8 +64,8 @@ pub fn lat_long_direction(u: f32, v: f32) -> Vec3 {
     vec3(sin_u * sin_v, cos_v, -cos_u * sin_v)
 }
 
-/// The `i`-th of `count` directions spread evenly over the sphere: a spiral of equal areas that turns by the golden
-/// angle.
+/// The `i`-th of `count` directions spread evenly over the sphere: a spiral of equal areas that
+/// turns by the golden angle.
 pub fn spread(i: usize, count: usize) -> Vec3 {
     const GOLDEN_TURN: f32 = 0.618_034;
     let y = 1.0 - (2.0 * i as f32 + 1.0) / count.max(1) as f32;
@@ -76,6 +81,7 @@ mod tests {
     fn assert_at(found: Vec2, x: f32, y: f32) {
         assert!((found - vec2(x, y)).length() < 1e-5, "{found} is not ({x}, {y})");
     }
+
     #[test]
     fn directions_lie_where_the_documents_say() {
         assert_at(Projection::LatLong.place(Vec3::NEG_Z), 0.0, 0.5);
@@ -90,12 +96,14 @@ mod tests {
         assert_at(Projection::MirrorBall.place(Vec3::X), 0.5 + 0.5 * 0.5f32.sqrt(), 0.5);
         assert_at(Projection::MirrorBall.place(Vec3::Z), 0.5, 0.5);
     }
+
     #[test]
     fn places_and_directions_are_each_others_reverse() {
         for (u, v) in [(0.1, 0.2), (0.5, 0.5), (0.99, 0.97), (0.3, 0.04)] {
             assert_at(Projection::LatLong.place(lat_long_direction(u, v)), u, v);
         }
     }
+
     #[test]
     fn spread_directions_leave_no_hole() {
         let all: Vec<Vec3> = (0..500).map(|i| spread(i, 500)).collect();

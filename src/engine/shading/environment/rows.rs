@@ -1,5 +1,5 @@
-//! Reads an environment for a row of pixels: the taps of many footprints side by side. Floor 3. The readable twin is
-//! `EnvironmentMap::over`; both compute the same bits.
+//! Reads an environment for a row of pixels: the taps of many footprints side by side. Floor 3. The
+//! readable twin is `EnvironmentMap::over`; both compute the same bits.
 
 use super::level::{SphereLevel, Spot};
 use super::map::{EnvironmentMap, Layers, TapLine};
@@ -29,7 +29,14 @@ struct LightTaps {
 
 impl EnvironmentMap {
     /// [`EnvironmentMap::over`] at the covered pixels of a row.
-    pub fn over_row(&self, e: &Directions, dx: &Directions, dy: &Directions, covered: &[u8], light: &mut Light3) {
+    pub fn over_row(
+        &self,
+        e: &Directions,
+        dx: &Directions,
+        dy: &Directions,
+        covered: &[u8],
+        light: &mut Light3,
+    ) {
         let mut lines = TapLines { along: [[0.0; TILE]; 3], layer: [0.0; TILE], taps: [1.0; TILE] };
         find_lines(dx, dy, self.layers(), &mut lines);
         let mut sums = [Vec3A::ZERO; TILE];
@@ -51,8 +58,15 @@ impl EnvironmentMap {
             [light[0][x], light[1][x], light[2][x]] = (*sum / taps).to_array();
         }
     }
+
     /// [`EnvironmentMap::around`] at the pixels of a row that `wanted` is not 0 at.
-    pub fn around_row(&self, e: &Directions, width_rad: &RowValues, wanted: &RowValues, light: &mut Light3) {
+    pub fn around_row(
+        &self,
+        e: &Directions,
+        width_rad: &RowValues,
+        wanted: &RowValues,
+        light: &mut Light3,
+    ) {
         let mut layer = [0.0; TILE];
         find_layers(width_rad, self.layers(), &mut layer);
         let mut run = LightTaps::default();
@@ -95,11 +109,13 @@ crate::widest! {
             (lines.layer[x], lines.taps[x]) = (line.layer, line.taps);
         }
     }
+
     fn find_layers(width_rad: &RowValues, layers: Layers, layer: &mut RowValues) {
         for x in 0..TILE {
             layer[x] = layers.layer(width_rad[x]);
         }
     }
+
     /// Adds a run's taps to the sums of their pixels.
     fn add_run(map: &EnvironmentMap, run: &LightTaps, sums: &mut [Vec3A; TILE]) {
         let [mut u, mut v, mut t] = [[0.0; TILE]; 3];
@@ -127,6 +143,7 @@ crate::widest! {
             sums[run.pixel[k] as usize % TILE] += light;
         }
     }
+
     /// Light of one level from the directions of a row.
     pub fn read_level(level: &SphereLevel, e: &Directions, light: &mut Light3) {
         let [mut u, mut v] = [[0.0; TILE]; 2];
@@ -163,11 +180,13 @@ impl SpotRow {
             }
         }
     }
+
     #[inline(always)]
     fn spot(&self, k: usize) -> Spot {
         let ([i, j, l, m], [a, b, c, d]) = (&self.index, &self.weight);
         Spot { index: [i[k], j[k], l[k], m[k]], weight: [a[k], b[k], c[k], d[k]] }
     }
+
     /// The light of a tap in its level of the pyramid.
     #[inline(always)]
     fn mean(&self, map: &EnvironmentMap, k: usize) -> Vec3A {

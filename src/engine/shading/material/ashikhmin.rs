@@ -1,8 +1,9 @@
-//! The anisotropic Phong material of Ashikhmin and Shirley (2000) under lights (RS sec. 5.2, MATH 5). Floor 3. The
-//! functions for one pixel come first and read like the paper; rows are computed by the same functions.
+//! The anisotropic Phong material of Ashikhmin and Shirley (2000) under lights (RS sec. 5.2, MATH
+//! 5). Floor 3. The functions for one pixel come first and read like the paper; rows are computed
+//! by the same functions.
 //!
-//! Light has no factor 1/π, as everywhere here: ρ is π times the paper's reflectance, times n·ℓ. R_s is the colour
-//! × weight of the `specular` term, R_d that of `diffuse`.
+//! Light has no factor 1/π, as everywhere here: ρ is π times the paper's reflectance, times n·ℓ.
+//! R_s is the colour × weight of the `specular` term, R_d that of `diffuse`.
 
 use super::{Shading, lobes};
 use crate::math::{Vec3, fast};
@@ -15,8 +16,8 @@ use crate::shading::surface_row::{Light3, LightDirection, RowRelief, RowValues, 
 /// Pixels whose sums are kept in registers.
 const CHUNK: usize = 16;
 
-/// Adds each light's matt and glossy term, with δ_d = n·ℓ and δ_s = n·h. `lights`: those of the material, turned to
-/// the row.
+/// Adds each light's matt and glossy term, with δ_d = n·ℓ and δ_s = n·h. `lights`: those of the
+/// material, turned to the row.
 pub fn shade(
     shading: &Shading,
     surface_row: &SurfaceRow,
@@ -54,14 +55,25 @@ pub fn add_matt(
     lobes::add(light, lobes::tint(kept, lit.radiance), &rho);
 }
 
-fn add_glossy(shading: &Shading, surface_row: &SurfaceRow, lit: &RowLight, relief: &mut RowRelief, light: &mut Light3) {
+fn add_glossy(
+    shading: &Shading,
+    surface_row: &SurfaceRow,
+    lit: &RowLight,
+    relief: &mut RowRelief,
+    light: &mut Light3,
+) {
     let mut row = GlossyRow { rho: [0.0; TILE], white: [0.0; TILE], delta: [0.0; TILE] };
     let (normal, direction) = (surface_row.seen_normal(), surface_row.seen(&lit.direction));
     glossy_row(normal, &direction, shading.nu, shading.nv, &mut row);
     let specular = &shading.specular;
     if specular.is_scaled() {
         relief.turn(surface_row, lit.toward());
-        lobes::scale(&mut row.rho, specular.scaling, relief.exponentials(specular.scaling), &row.delta);
+        lobes::scale(
+            &mut row.rho,
+            specular.scaling,
+            relief.exponentials(specular.scaling),
+            &row.delta,
+        );
     }
     // R_s + (1 − R_s) f = R_s + f (1 − R_s): a coloured part and a whiter one.
     let rs = mirrored_color(shading);
@@ -94,11 +106,21 @@ pub fn add_matt_of(
     } else if surface_row.features.is_directional() {
         for lit in lights {
             relief.turn(surface_row, LightDirection::One(lit.direction));
-            add_lit(normal, &[*lit], Some((diffuse.scaling, relief.exponentials(diffuse.scaling))), &mut sums);
+            add_lit(
+                normal,
+                &[*lit],
+                Some((diffuse.scaling, relief.exponentials(diffuse.scaling))),
+                &mut sums,
+            );
         }
     } else {
         relief.turn(surface_row, LightDirection::VIEWER);
-        add_lit(normal, lights, Some((diffuse.scaling, relief.exponentials(diffuse.scaling))), &mut sums);
+        add_lit(
+            normal,
+            lights,
+            Some((diffuse.scaling, relief.exponentials(diffuse.scaling))),
+            &mut sums,
+        );
     }
     let (rd, rs) = (diffuse.linear(), mirrored_color(shading));
     let kept: [f32; 3] = std::array::from_fn(|c| rd[c] * (1.0 - rs[c]));
@@ -110,7 +132,8 @@ fn mirrored_color(shading: &Shading) -> [f32; 3] {
     shading.specular.linear().map(|c| c.min(1.0))
 }
 
-/// ρ_d / (R_d (1 − R_s)) = 28/23 (1 − (1 − n·ℓ/2)⁵) (1 − (1 − n·e/2)⁵) (n·ℓ)₊ (Ashikhmin and Shirley 2000, eq. 5).
+/// ρ_d / (R_d (1 − R_s)) = 28/23 (1 − (1 − n·ℓ/2)⁵) (1 − (1 − n·e/2)⁵) (n·ℓ)₊ (Ashikhmin and
+/// Shirley 2000, eq. 5).
 #[inline(always)]
 pub fn matt(n_l: f32, n_e: f32) -> f32 {
     lit(n_l) * lifted(fast::max(n_e, 0.0))
@@ -123,15 +146,15 @@ fn lit(n_l: f32) -> f32 {
     28.0 / 23.0 * lifted(n_l) * n_l
 }
 
-/// 1 − (1 − cos/2)⁵: the matt term's part of either direction. Under even light of 1 the whole term is that of the
-/// view, times R_d (1 − R_s): the integral over the other one is 23/28.
+/// 1 − (1 − cos/2)⁵: the matt term's part of either direction. Under even light of 1 the whole term
+/// is that of the view, times R_d (1 − R_s): the integral over the other one is 23/28.
 #[inline(always)]
 pub fn lifted(cosine: f32) -> f32 {
     1.0 - power_5(1.0 - 0.5 * cosine)
 }
 
-/// ρ_s / F = √((ν_u + 1)(ν_v + 1)) / 8 · (n·h)^((ν_u (h·u)² + ν_v (h·v)²) / (1 − (n·h)²)) (n·ℓ)₊ / ((h·e) max(n·ℓ,
-/// n·e)) (Ashikhmin and Shirley 2000, eq. 4).
+/// ρ_s / F = √((ν_u + 1)(ν_v + 1)) / 8 · (n·h)^((ν_u (h·u)² + ν_v (h·v)²) / (1 − (n·h)²)) (n·ℓ)₊ /
+/// ((h·e) max(n·ℓ, n·e)) (Ashikhmin and Shirley 2000, eq. 4).
 ///
 /// * `h_uvn`: the half vector, unit, in the frame of the surface.
 #[inline(always)]
@@ -158,7 +181,8 @@ fn power_5(x: f32) -> f32 {
     x2 * x2 * x
 }
 
-/// A unit vector in the frame of the surface: u runs along the picture's x, v along its y (up), then the normal.
+/// A unit vector in the frame of the surface: u runs along the picture's x, v along its y (up),
+/// then the normal.
 ///
 /// u = (x − (x·n) n) / |…|, v = n × u; where the normal is ±x, any u is valid.
 #[inline(always)]
@@ -188,6 +212,7 @@ crate::widest! {
             delta[x] = fast::max(n_l, 0.0);
         }
     }
+
     /// Adds up the light of many directions, each by its share of [`matt`].
     fn add_lit(normal: &Directions, lights: &[DirectedLight], scale: Option<(Scaling, &RowValues)>, sums: &mut Light3) {
         match scale {
@@ -195,6 +220,7 @@ crate::widest! {
             Some((scaling, e)) => add_lit_by(normal, lights, |x, n_l| scaling.sigma_of(e[x], n_l), sums),
         }
     }
+
     /// Adds what a row shows of such sums, by its own share of [`matt`].
     fn add_seen(n_e: &RowValues, tint: [f32; 3], sums: &Light3, light: &mut Light3) {
         for c in 0..3 {
@@ -203,11 +229,13 @@ crate::widest! {
             }
         }
     }
+
     fn glossy_row(normal: &[RowValues; 3], direction: &[RowValues; 3], nu: f32, nv: f32, row: &mut GlossyRow) {
         for x in 0..TILE {
             let n = [normal[0][x], normal[1][x], normal[2][x]];
             let l = [direction[0][x], direction[1][x], direction[2][x]];
-            // h = (ℓ + e) / |ℓ + e| with e = (0, 0, 1); |ℓ + e|² = 2 + 2 ℓ_z, and h·e = |ℓ + e| / 2.
+            // h = (ℓ + e) / |ℓ + e| with e = (0, 0, 1); |ℓ + e|² = 2 + 2 ℓ_z, and h·e = |ℓ + e| /
+            // 2.
             let length = fast::max(2.0 + 2.0 * l[2], 1e-12).sqrt();
             let half = [l[0] / length, l[1] / length, (l[2] + 1.0) / length];
             let h_uvn = in_frame(n, half);
@@ -218,9 +246,15 @@ crate::widest! {
         }
     }
 }
+
 /// `sigma`: of a pixel and its n·ℓ.
 #[inline(always)]
-fn add_lit_by(normal: &Directions, lights: &[DirectedLight], sigma: impl Fn(usize, f32) -> f32, sums: &mut Light3) {
+fn add_lit_by(
+    normal: &Directions,
+    lights: &[DirectedLight],
+    sigma: impl Fn(usize, f32) -> f32,
+    sums: &mut Light3,
+) {
     for first in (0..TILE).step_by(CHUNK) {
         // The sums stay in registers.
         let [mut r, mut g, mut b] = [[0.0; CHUNK]; 3];

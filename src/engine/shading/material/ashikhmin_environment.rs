@@ -1,8 +1,9 @@
-//! The material of Ashikhmin and Shirley under an environment: sampled in the directions it reflects, with the same
-//! samples at every pixel (RS sec. 5.2, MATH 5). Floor 3. Not here: the lobes (`ashikhmin`).
+//! The material of Ashikhmin and Shirley under an environment: sampled in the directions it
+//! reflects, with the same samples at every pixel (RS sec. 5.2, MATH 5). Floor 3. Not here: the
+//! lobes (`ashikhmin`).
 //!
-//! Each sample represents a part of the lobe and reads the mean of the environment over that part, so that a small sun
-//! makes no fireflies and single samples are invisible.
+//! Each sample represents a part of the lobe and reads the mean of the environment over that part,
+//! so that a small sun makes no fireflies and single samples are invisible.
 
 mod bounced;
 
@@ -45,7 +46,8 @@ impl EnvironmentSamples {
     /// `None` without an environment.
     pub fn new(shading: &Shading) -> Option<Self> {
         let environment_light = shading.environment.as_ref()?.environment_light();
-        // Light from a solid angle Ω counts Ω / π: matt white is as bright as an even environment around it.
+        // Light from a solid angle Ω counts Ω / π: matt white is as bright as an even environment
+        // around it.
         let light = |p: &crate::shading::environment::Parcel| DirectedLight {
             direction: p.direction,
             radiance: (p.radiance * (p.solid_angle / PI)).to_array(),
@@ -56,8 +58,15 @@ impl EnvironmentSamples {
         let lobe_rad = (8.0 * PI / ((shading.nu + 1.0) * (shading.nv + 1.0)).sqrt()).sqrt();
         Some(Self { environment_light, lights, halves, lobe_rad, bounced: None })
     }
+
     /// Adds both terms along a row.
-    pub fn shade(&self, shading: &Shading, surface_row: &SurfaceRow, relief: &mut RowRelief, light: &mut Light3) {
+    pub fn shade(
+        &self,
+        shading: &Shading,
+        surface_row: &SurfaceRow,
+        relief: &mut RowRelief,
+        light: &mut Light3,
+    ) {
         if shading.diffuse.weight > 0.0 {
             ashikhmin::add_matt_of(shading, surface_row, &self.lights, relief, light);
         }
@@ -65,11 +74,18 @@ impl EnvironmentSamples {
             self.add_glossy(shading, surface_row, relief, light);
         }
     }
+
     /// Adds the glossy term along a row.
     ///
-    /// With half vectors drawn in proportion to the lobe, light arrives weighted by F (n·ℓ)₊ / max(n·ℓ, n·e), never
-    /// above 1.
-    fn add_glossy(&self, shading: &Shading, surface_row: &SurfaceRow, relief: &mut RowRelief, light: &mut Light3) {
+    /// With half vectors drawn in proportion to the lobe, light arrives weighted by F (n·ℓ)₊ /
+    /// max(n·ℓ, n·e), never above 1.
+    fn add_glossy(
+        &self,
+        shading: &Shading,
+        surface_row: &SurfaceRow,
+        relief: &mut RowRelief,
+        light: &mut Light3,
+    ) {
         let scaling = shading.specular.scaling;
         let rs = shading.specular.linear().map(|c| c.min(1.0));
         // In the frame of each pixel's view, where that is (0, 0, 1).
@@ -91,17 +107,28 @@ impl EnvironmentSamples {
             find_widths(&h_e, half.density, &mut width_rad);
             let toward = surface_row.from_seen(&toward);
             match &second {
-                Some(second) => {
-                    self.follow(shading, surface_row, second, (&toward, &width_rad, &weight), &mut incoming)
+                Some(second) => self.follow(
+                    shading,
+                    surface_row,
+                    second,
+                    (&toward, &width_rad, &weight),
+                    &mut incoming,
+                ),
+                None => {
+                    self.environment_light.around_row(&toward, &width_rad, &weight, &mut incoming)
                 }
-                None => self.environment_light.around_row(&toward, &width_rad, &weight, &mut incoming),
             }
             add_row(&weight, &mut weights);
             if shading.specular.is_scaled() {
                 if surface_row.features.is_directional() {
                     relief.turn(surface_row, LightDirection::Each(&toward[0], &toward[1]));
                 }
-                lobes::scale(&mut weight, scaling, relief.exponentials(scaling), &[half.uvn.z; TILE]);
+                lobes::scale(
+                    &mut weight,
+                    scaling,
+                    relief.exponentials(scaling),
+                    &[half.uvn.z; TILE],
+                );
             }
             add_row(&weight, &mut scaled);
             add_weighed(&incoming, &weight, &h_e, rs, light);
@@ -127,8 +154,8 @@ fn frame(n: Vec3) -> (Vec3, Vec3) {
     (u, n.cross(u))
 }
 
-/// How wide a part of the lobe a half vector represents, radians. For ℓ: dω_h / dω_ℓ = 1 / (4 h·e). Slightly more than
-/// its share, so that neighbours overlap.
+/// How wide a part of the lobe a half vector represents, radians. For ℓ: dω_h / dω_ℓ = 1 / (4 h·e).
+/// Slightly more than its share, so that neighbours overlap.
 #[inline(always)]
 fn width_rad(h_e: f32, density: f32) -> f32 {
     1.5 * (4.0 * fast::max(h_e, 0.0) / (density * HALVES as f32)).sqrt()
@@ -143,6 +170,7 @@ crate::widest! {
             (v[0][x], v[1][x], v[2][x]) = (b.x, b.y, b.z);
         }
     }
+
     /// The viewer mirrored at a half vector, and h·e.
     fn mirror_at(frame: [&Directions; 3], half: &HalfVector, toward: &mut Directions, h_e: &mut RowValues) {
         let [u, v, n] = frame;
@@ -153,6 +181,7 @@ crate::widest! {
             h_e[x] = h(2);
         }
     }
+
     /// (n·ℓ)₊ / max(n·ℓ, n·e) of the covered pixels.
     fn weigh(n: &Directions, toward: &Directions, h_e: &RowValues, covered: &[u8], weight: &mut RowValues) {
         let mut is_covered = [0; TILE];
@@ -164,17 +193,20 @@ crate::widest! {
             weight[x] = if arrives { share } else { 0.0 };
         }
     }
+
     /// How wide a part of the lobe each sample represents, radians.
     fn find_widths(h_e: &RowValues, density: f32, widths_rad: &mut RowValues) {
         for x in 0..TILE {
             widths_rad[x] = width_rad(h_e[x], density);
         }
     }
+
     fn add_row(row: &RowValues, sums: &mut RowValues) {
         for x in 0..TILE {
             sums[x] += row[x];
         }
     }
+
     /// Adds a sample: F times its light and weight.
     fn add_weighed(incoming: &Light3, weight: &RowValues, h_e: &RowValues, rs: [f32; 3], light: &mut Light3) {
         for c in 0..3 {
@@ -186,7 +218,8 @@ crate::widest! {
     }
 }
 
-/// The `i`th of [`HALVES`] half vectors in proportion to the lobe (Ashikhmin and Shirley 2000, eq. 9 and 10).
+/// The `i`th of [`HALVES`] half vectors in proportion to the lobe (Ashikhmin and Shirley 2000, eq.
+/// 9 and 10).
 ///
 /// tan φ = √((ν_u + 1)/(ν_v + 1)) tan(2π ξ₁) and cos θ = (1 − ξ₂)^(1/(ν_u cos²φ + ν_v sin²φ + 1)).
 fn half(i: usize, nu: f32, nv: f32) -> HalfVector {
@@ -201,7 +234,10 @@ fn half(i: usize, nu: f32, nv: f32) -> HalfVector {
     let cos_theta = (1.0 - second).max(1e-6).powf(1.0 / (exponent + 1.0));
     let sin_theta = (1.0 - cos_theta * cos_theta).max(0.0).sqrt();
     let density = ((nu + 1.0) * (nv + 1.0)).sqrt() / (2.0 * PI) * cos_theta.powf(exponent);
-    HalfVector { uvn: vec3(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta), density: density.max(1e-6) }
+    HalfVector {
+        uvn: vec3(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta),
+        density: density.max(1e-6),
+    }
 }
 
 #[cfg(test)]
@@ -213,9 +249,13 @@ mod tests {
     use crate::shading::{Environment, Model, Scaling, Term};
 
     fn environment(light: impl Fn(usize, usize) -> f32) -> Environment {
-        let texels = (0..128 * 64).map(|i| [light(i % 128, i / 128); 3]).map(|[r, g, b]| [r, g, b, 1.0]).collect();
+        let texels = (0..128 * 64)
+            .map(|i| [light(i % 128, i / 128); 3])
+            .map(|[r, g, b]| [r, g, b, 1.0])
+            .collect();
         Environment::new("sky.hdr".into(), Picture::linear(Size::new(128, 64), texels).unwrap())
     }
+
     fn material(environment: Environment) -> Shading {
         Shading {
             environment: Some(environment),
@@ -225,11 +265,14 @@ mod tests {
             ..Shading::new(Model::Ashikhmin)
         }
     }
+
     #[test]
     fn half_vectors_have_the_mean_that_their_lobe_has() {
         for (nu, nv) in [(10.0f32, 10.0f32), (5.0, 200.0), (1000.0, 1000.0)] {
             let halves: Vec<HalfVector> = (0..HALVES).map(|i| half(i, nu, nv)).collect();
-            let mean = |of: &dyn Fn(&HalfVector) -> f32| halves.iter().map(of).sum::<f32>() / HALVES as f32;
+            let mean = |of: &dyn Fn(&HalfVector) -> f32| {
+                halves.iter().map(of).sum::<f32>() / HALVES as f32
+            };
             assert!(mean(&|h| h.uvn.x).abs() < 0.03 && mean(&|h| h.uvn.y).abs() < 0.03);
             if nu == nv {
                 // E[cos θ] = (ν + 1)/(ν + 2).
@@ -239,6 +282,7 @@ mod tests {
             }
         }
     }
+
     #[test]
     fn under_even_light_a_perfect_mirror_is_as_bright_as_the_light() {
         let mut sharp = material(environment(|_, _| 0.5));
@@ -249,21 +293,25 @@ mod tests {
         let red = f32::from(tile.bytes()[(60 * TILE + 60) * 4]) / 255.0;
         assert!((crate::math::srgb::decode(red) - 0.5).abs() < 0.01, "{red}");
     }
+
     #[test]
     fn a_matt_material_sees_what_a_hemisphere_gathers() {
         let mut matt = material(environment(|_, y| if y < 32 { 0.9 } else { 0.1 }));
         (matt.diffuse, matt.specular) = (term(Color::WHITE, 0.6, 0.2, 0.0), Term::NONE);
         // The sum over two thousand directions instead of the usual number.
-        let all: Vec<Vec3> = (0..2000).map(|i| crate::shading::environment::projection::spread(i, 2000)).collect();
+        let all: Vec<Vec3> =
+            (0..2000).map(|i| crate::shading::environment::projection::spread(i, 2000)).collect();
         assert_shows(&matt, 3.0, |surface, x, y| {
             let n = surface.normal(x, y);
             let from = |l: &Vec3| if l.y > 0.0 { 0.9 } else { 0.1 } * ashikhmin::matt(n.dot(*l), surface.facing(x, y));
             Vec3::splat(0.6 * 4.0 * all.iter().map(from).sum::<f32>() / 2000.0)
         });
     }
+
     #[test]
     fn a_small_sun_makes_no_fireflies() {
-        let mut glossy = material(environment(|x, y| if (x, y) == (40, 12) { 4000.0 } else { 0.02 }));
+        let mut glossy =
+            material(environment(|x, y| if (x, y) == (40, 12) { 4000.0 } else { 0.02 }));
         (glossy.nu, glossy.nv, glossy.specular.weight) = (30.0, 30.0, 0.05);
         glossy.specular.scaling = Scaling::new(0.5, 1.0);
         let scene = ball();
@@ -274,7 +322,8 @@ mod tests {
             for x in 30..62 {
                 let turned = (surface.normal(x, y) - surface.normal(x + 1, y)).length();
                 let step = (red(x, y) - red(x + 1, y)).abs();
-                // The lobe is about 0.2 wide: brightness may not jump where the surface hardly turns.
+                // The lobe is about 0.2 wide: brightness may not jump where the surface hardly
+                // turns.
                 assert!(step < 12 + (700.0 * turned) as i32, "({x}, {y}): {step} over {turned}");
             }
         }

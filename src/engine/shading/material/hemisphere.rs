@@ -1,13 +1,14 @@
-//! Light from the whole hemisphere: matt under an environment, and ambient occlusion alone (RS sec. 5.3.1, MATH 5).
-//! Floor 3. Not here: occlusion itself (`surface`), the mean light of the hemisphere (`environment::irradiance`).
+//! Light from the whole hemisphere: matt under an environment, and ambient occlusion alone (RS sec.
+//! 5.3.1, MATH 5). Floor 3. Not here: occlusion itself (`surface`), the mean light of the
+//! hemisphere (`environment::irradiance`).
 
 use super::{Shading, lobes};
 use crate::math::srgb;
 use crate::raster::TILE;
 use crate::shading::surface_row::{Light3, LightDirection, RowValues, SurfaceRow};
 
-/// Adds ρ_d A(p) L̄(n) as the diffuse term, scaled with δ = L̄(n) / max L̄. The scaling of the ambient term, if it has
-/// one, scales the occlusion A on its own, with δ = A.
+/// Adds ρ_d A(p) L̄(n) as the diffuse term, scaled with δ = L̄(n) / max L̄. The scaling of the
+/// ambient term, if it has one, scales the occlusion A on its own, with δ = A.
 pub fn diffuse(shading: &Shading, surface_row: &SurfaceRow, light: &mut Light3) {
     let (Some(environment), term) = (&shading.environment, &shading.diffuse) else { return };
     let environment_light = environment.environment_light();
@@ -25,7 +26,8 @@ pub fn diffuse(shading: &Shading, surface_row: &SurfaceRow, light: &mut Light3) 
         return lobes::add_incoming(light, &incoming, None);
     }
     // The normal is the direction that contributes most (RS sec. 5.3.1).
-    let kappa = surface_row.kappa(LightDirection::Each(&surface_row.normal[0], &surface_row.normal[1]));
+    let kappa =
+        surface_row.kappa(LightDirection::Each(&surface_row.normal[0], &surface_row.normal[1]));
     lobes::add_incoming(light, &incoming, Some((term.scaling, &kappa, &delta)));
 }
 
@@ -40,13 +42,16 @@ fn scaled_occlusion(shading: &Shading, surface_row: &SurfaceRow) -> RowValues {
     let mut open = [1.0; TILE];
     if shading.occlusion_radius_px > 0.0 {
         let map = surface_row.surface.occlusion(shading.occlusion_radius_px);
-        open[..surface_row.width]
-            .copy_from_slice(&map.row(surface_row.y)[surface_row.x0..surface_row.x0 + surface_row.width]);
+        open[..surface_row.width].copy_from_slice(
+            &map.row(surface_row.y)[surface_row.x0..surface_row.x0 + surface_row.width],
+        );
     }
     let term = &shading.ambient;
     if term.is_scaled() {
         let kappa = surface_row.kappa(LightDirection::VIEWER);
-        open.iter_mut().zip(&kappa).for_each(|(a, &kappa)| *a *= term.scaling.sigma_fast(kappa, *a));
+        open.iter_mut()
+            .zip(&kappa)
+            .for_each(|(a, &kappa)| *a *= term.scaling.sigma_fast(kappa, *a));
     }
     open
 }
@@ -93,6 +98,7 @@ mod tests {
             });
         }
     }
+
     #[test]
     fn occlusion_alone_is_the_scaled_open_part() {
         let shading = Shading {
@@ -106,6 +112,7 @@ mod tests {
             Vec3::from(shading.ambient.linear()) * open * shading.ambient.scaling.sigma(kappa, open)
         });
     }
+
     #[test]
     fn without_a_radius_nothing_is_hidden() {
         let shading = Shading { occlusion_radius_px: 0.0, ..Shading::new(Model::AmbientOcclusion) };

@@ -1,5 +1,6 @@
-//! Lit sphere: each pixel gets the colour of a painted sphere at the same normal; or of two spheres, one for convex and
-//! one for concave features, blended by κ (RS sec. 5.3.1, MATH 5). Floor 3.
+//! Lit sphere: each pixel gets the colour of a painted sphere at the same normal; or of two
+//! spheres, one for convex and one for concave features, blended by κ (RS sec. 5.3.1, MATH 5).
+//! Floor 3.
 
 use super::{Shading, lobes};
 use crate::math::srgb;
@@ -8,10 +9,16 @@ use crate::shading::LitSphere;
 use crate::shading::sphere::SphereLight;
 use crate::shading::surface_row::{Light3, LightDirection, RowRelief, RowValues, SurfaceRow};
 
-/// Adds the sphere's light, the `specular` term: δ is its luminance over the greatest on the spheres.
+/// Adds the sphere's light, the `specular` term: δ is its luminance over the greatest on the
+/// spheres.
 ///
 /// Of two spheres, the convex one has the weight (1 + κ) / 2, so that flat parts show half of each.
-pub fn shade(shading: &Shading, surface_row: &SurfaceRow, relief: &mut RowRelief, light: &mut Light3) {
+pub fn shade(
+    shading: &Shading,
+    surface_row: &SurfaceRow,
+    relief: &mut RowRelief,
+    light: &mut Light3,
+) {
     let term = &shading.specular;
     if term.weight <= 0.0 {
         return;

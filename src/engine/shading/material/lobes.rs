@@ -1,5 +1,5 @@
-//! Adds up the terms of a material along a row: σ(κ, δ) ρ times a colour (RS sec. 5). Floor 3. Not here: ρ and δ (each
-//! model's own file).
+//! Adds up the terms of a material along a row: σ(κ, δ) ρ times a colour (RS sec. 5). Floor 3. Not
+//! here: ρ and δ (each model's own file).
 
 use crate::math::fast;
 use crate::raster::TILE;
@@ -15,11 +15,16 @@ pub fn tint(color: [f32; 3], radiance: [f32; 3]) -> [f32; 3] {
 }
 
 /// Adds σ times light that was looked up, one colour per pixel.
-pub fn add_incoming(light: &mut Light3, incoming: &Light3, scale: Option<(Scaling, &RowValues, &RowValues)>) {
+pub fn add_incoming(
+    light: &mut Light3,
+    incoming: &Light3,
+    scale: Option<(Scaling, &RowValues, &RowValues)>,
+) {
     for (light, incoming) in light.iter_mut().zip(incoming) {
         for (x, (light, &incoming)) in light.iter_mut().zip(incoming).enumerate() {
-            *light +=
-                scale.map_or(incoming, |(scaling, kappa, delta)| incoming * scaling.sigma_fast(kappa[x], delta[x]));
+            *light += scale.map_or(incoming, |(scaling, kappa, delta)| {
+                incoming * scaling.sigma_fast(kappa[x], delta[x])
+            });
         }
     }
 }
@@ -31,12 +36,14 @@ crate::widest! {
             *rho *= scaling.sigma_of(exponentials[x], delta[x]);
         }
     }
+
     /// As [`scale`] with δ = ρ.
     pub fn scale_by_itself(rho: &mut RowValues, scaling: Scaling, exponentials: &RowValues) {
         for (x, rho) in rho.iter_mut().enumerate() {
             *rho *= scaling.sigma_of(exponentials[x], *rho);
         }
     }
+
     /// Σ ρ tint of several terms, a tint and a row for each.
     pub fn sum(light: &mut Light3, tints: &[[f32; 3]], terms: &[RowValues]) {
         let [red, green, blue] = light;
@@ -56,6 +63,7 @@ crate::widest! {
             (*red, *green, *blue) = (r, g, b);
         }
     }
+
     /// Adds ρ tint to the light of a row.
     pub fn add(light: &mut Light3, tint: [f32; 3], rho: &RowValues) {
         for (light, tint) in light.iter_mut().zip(tint) {
@@ -64,6 +72,7 @@ crate::widest! {
             }
         }
     }
+
     /// Adds light of a different colour at each pixel: tint · σ · shown.
     pub fn add_shown(light: &mut Light3, tint: [f32; 3], shown: &Light3, sigma: &RowValues) {
         for c in 0..3 {
@@ -72,14 +81,16 @@ crate::widest! {
             }
         }
     }
+
     /// (n·ℓ)₊ of each pixel.
     pub fn lambert(normal: &[RowValues; 3], direction: &[RowValues; 3], rho: &mut RowValues) {
         for (x, rho) in rho.iter_mut().enumerate() {
             *rho = fast::max(dot(normal, direction, x), 0.0);
         }
     }
-    /// Phong's ρ_s = (r·ℓ)₊^η with r = 2(n·e)n − e the mirrored view, e = (0, 0, 1) (RS sec. 5.1). Normals and
-    /// directions are those of each pixel's view.
+
+    /// Phong's ρ_s = (r·ℓ)₊^η with r = 2(n·e)n − e the mirrored view, e = (0, 0, 1) (RS sec. 5.1).
+    /// Normals and directions are those of each pixel's view.
     pub fn glossy(normal: &[RowValues; 3], direction: &[RowValues; 3], shininess: f32, rho: &mut RowValues) {
         for (x, rho) in rho.iter_mut().enumerate() {
             // r·ℓ = 2 n_z (n·ℓ) − ℓ_z.
@@ -89,13 +100,15 @@ crate::widest! {
         }
         raise(rho, shininess);
     }
+
     /// ρ ← ρ^ζ, 0 where ρ is (RS sec. 5.1: sub-Lambertian).
     pub fn flatten(rho: &mut RowValues, exponent: f32) {
         raise(rho, exponent);
     }
 }
 
-/// v^p, 0 where v is not above 0: `fast::pow` in two short loops, so that no pixel waits for another's logarithm.
+/// v^p, 0 where v is not above 0: `fast::pow` in two short loops, so that no pixel waits for
+/// another's logarithm.
 #[inline(always)]
 fn raise(values: &mut RowValues, p: f32) {
     let mut exponents = [0.0; TILE];

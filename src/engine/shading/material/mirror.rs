@@ -1,6 +1,6 @@
-//! Mirror and refraction: the environment seen along one ray (RS sec. 5.3.2, MATH 5).
-//! Floor 3. One interface: a refracted ray does not leave its object by a second one. Not here: what a ray meets on
-//! its way (`second_look`).
+//! Mirror and refraction: the environment seen along one ray (RS sec. 5.3.2, MATH 5). Floor 3. One
+//! interface: a refracted ray does not leave its object by a second one. Not here: what a ray meets
+//! on its way (`second_look`).
 
 use super::second_look::{PixelRay, SecondLook};
 use super::{Model, Shading, lobes};
@@ -16,7 +16,8 @@ pub fn mirrored(n: Vec3, v: Vec3) -> Vec3 {
     2.0 * n.dot(v) * n - v
 }
 
-/// The refracted view: Snell's law for the view ray −v entering a medium of refractive index `index` > 0 (MATH 5).
+/// The refracted view: Snell's law for the view ray −v entering a medium of refractive index
+/// `index` > 0 (MATH 5).
 ///
 /// Total internal reflection (`index` < 1 at a grazing angle) mirrors it.
 #[inline(always)]
@@ -40,7 +41,13 @@ pub fn shade(shading: &Shading, surface_row: &SurfaceRow, light: &mut Light3) {
     let rays = RayRow::new(surface_row, index);
     let toward = [rays.ray[0], rays.ray[1]];
     let mut incoming: Light3 = [[0.0; TILE]; 3];
-    environment_light.over_row(&rays.ray, &rays.dx, &rays.dy, surface_row.coverage(), &mut incoming);
+    environment_light.over_row(
+        &rays.ray,
+        &rays.dx,
+        &rays.dy,
+        surface_row.coverage(),
+        &mut incoming,
+    );
     if let Some(second) = SecondLook::on(surface_row.surface, shading.bounces_made()) {
         // No surface returns more than it receives.
         let once = Vec3::from(term.linear()).min(Vec3::ONE);
@@ -82,22 +89,34 @@ impl RayRow {
         for c in 0..3 {
             row.ray[c].copy_from_slice(&here[c][1..=TILE]);
             let (before, after) = (&here[c][..TILE], &here[c][2..]);
-            differences(&joined, (links::LEFT, links::RIGHT), [before, &row.ray[c], after], &mut row.dx[c]);
+            differences(
+                &joined,
+                (links::LEFT, links::RIGHT),
+                [before, &row.ray[c], after],
+                &mut row.dx[c],
+            );
             let (before, after) = (&above[c][1..=TILE], &below[c][1..=TILE]);
-            differences(&joined, (links::UP, links::DOWN), [before, &row.ray[c], after], &mut row.dy[c]);
+            differences(
+                &joined,
+                (links::UP, links::DOWN),
+                [before, &row.ray[c], after],
+                &mut row.dy[c],
+            );
         }
         row
     }
 }
 
 /// Where the rays of a pixel that is followed lie in it, px from its middle: even along both axes.
-const PARTS: [Vec2; 4] = [vec2(-0.125, -0.375), vec2(0.375, -0.125), vec2(0.125, 0.375), vec2(-0.375, 0.125)];
+const PARTS: [Vec2; 4] =
+    [vec2(-0.125, -0.375), vec2(0.375, -0.125), vec2(0.125, 0.375), vec2(-0.375, 0.125)];
 /// The sides of what each of them stands for, px.
 const PART_PX: f32 = 0.5;
 
 impl RayRow {
-    /// Follows the rays over the surface, and replaces the light of pixels where they meet it: by the mean over several
-    /// rays, since what curved surfaces mirror of each other changes within a pixel.
+    /// Follows the rays over the surface, and replaces the light of pixels where they meet it: by
+    /// the mean over several rays, since what curved surfaces mirror of each other changes within a
+    /// pixel.
     ///
     /// * `index`, `once`: how a ray is bent, as [`RayRow::new`], and what one bounce keeps.
     fn follow(
@@ -108,11 +127,16 @@ impl RayRow {
         environment_light: &EnvironmentLight,
         incoming: &mut Light3,
     ) {
-        let bend = |n: Vec3, v: Vec3| index.map_or_else(|| mirrored(n, v), |index| refracted(n, v, index));
+        let bend =
+            |n: Vec3, v: Vec3| index.map_or_else(|| mirrored(n, v), |index| refracted(n, v, index));
         let of = |row: &Directions, x: usize| vec3(row[0][x], row[1][x], row[2][x]);
         for x in (0..surface_row.width).filter(|&x| surface_row.coverage()[x] > 0) {
-            let start =
-                second.start(surface_row.x0 + x, surface_row.y, surface_row.normal_at(x), surface_row.view_at(x));
+            let start = second.start(
+                surface_row.x0 + x,
+                surface_row.y,
+                surface_row.normal_at(x),
+                surface_row.view_at(x),
+            );
             let (ray, dx, dy) = (of(&self.ray, x), of(&self.dx, x), of(&self.dy, x));
             let follow = |at: Vec2| {
                 let direction = (ray + dx * at.x + dy * at.y).normalize_or(ray);
@@ -128,10 +152,13 @@ impl RayRow {
             if first.iter().all(|(_, _, is_met)| !is_met) {
                 continue;
             }
-            let seen = |(PixelRay { direction, changes: [dx, dy] }, kept, _): (PixelRay, Vec3, bool)| {
-                kept * environment_light.over(direction, dx, dy)
-            };
-            let mean = (first.into_iter().chain([follow(PARTS[1]), follow(PARTS[3])])).map(seen).sum::<Vec3>()
+            let seen =
+                |(PixelRay { direction, changes: [dx, dy] }, kept, _): (PixelRay, Vec3, bool)| {
+                    kept * environment_light.over(direction, dx, dy)
+                };
+            let mean = (first.into_iter().chain([follow(PARTS[1]), follow(PARTS[3])]))
+                .map(seen)
+                .sum::<Vec3>()
                 / PARTS.len() as f32;
             (incoming[0][x], incoming[1][x], incoming[2][x]) = mean.into();
         }
@@ -151,7 +178,10 @@ fn rays(surface_row: &SurfaceRow, y: usize, index: Option<f32>) -> Span {
     // Camera space has y up.
     normal[1].iter_mut().for_each(|y| *y = -*y);
     if y == surface_row.y {
-        normal.iter_mut().zip(&surface_row.normal).for_each(|(to, own)| to[1..=width].copy_from_slice(&own[..width]));
+        normal
+            .iter_mut()
+            .zip(&surface_row.normal)
+            .for_each(|(to, own)| to[1..=width].copy_from_slice(&own[..width]));
     }
     if surface.eye() != Eye::Afar {
         for (i, x) in held.zip(first..end) {
@@ -173,13 +203,16 @@ crate::widest! {
             put(rays, i, r);
         }
     }
+
     fn refract_span(normal: &Span, view: &Span, index: f32, rays: &mut Span) {
         for i in 0..SPAN {
             let r = refracted(at(normal, i), at(view, i), index);
             put(rays, i, r);
         }
     }
-    /// How a value changes from pixel to pixel, of those before, here and after; only linked ones count.
+
+    /// How a value changes from pixel to pixel, of those before, here and after; only linked ones
+    /// count.
     fn differences(joined: &[u8; TILE], sides: (u8, u8), values: [&[f32]; 3], to: &mut RowValues) {
         let [before, here, after] = values.map(|row| &row[..TILE]);
         for x in 0..TILE {
@@ -189,6 +222,7 @@ crate::widest! {
             to[x] = (b - a) * if to_back & to_forth { 0.5 } else { 1.0 };
         }
     }
+
     /// Tints light, after δ of each pixel was computed from it.
     fn tint(light: &mut Light3, by: [f32; 3], per_brightest: f32, delta: &mut RowValues) {
         let [red, green, blue] = light;
@@ -229,10 +263,13 @@ mod tests {
             assert!((r.dot(n) - n.dot(v)).abs() < 1e-6 && n.cross(v).dot(r).abs() < 1e-6, "{v}");
         }
     }
+
     #[test]
     fn refracted_rays_obey_snell() {
         assert_eq!(refracted(Vec3::Z, Vec3::Z, 1.5), Vec3::NEG_Z);
-        for (n, index) in [(vec3(0.3, -0.5, 0.7), 1.5), (vec3(-0.2, 0.1, 0.9), 0.8), (vec3(0.9, 0.0, 0.1), 2.4)] {
+        for (n, index) in
+            [(vec3(0.3, -0.5, 0.7), 1.5), (vec3(-0.2, 0.1, 0.9), 0.8), (vec3(0.9, 0.0, 0.1), 2.4)]
+        {
             let n = n.normalize();
             for v in [Vec3::Z, vec3(0.1, -0.2, 0.9).normalize()] {
                 let r = refracted(n, v, index);
@@ -243,10 +280,18 @@ mod tests {
             }
         }
         let n = vec3(0.6, 0.0, 0.8);
-        assert!((refracted(n, Vec3::Z, 1.0) - Vec3::NEG_Z).length() < 1e-6, "nothing bends without another matter");
-        assert_eq!(refracted(n, Vec3::Z, 0.5), mirrored(n, Vec3::Z), "past the critical angle it is a mirror");
+        assert!(
+            (refracted(n, Vec3::Z, 1.0) - Vec3::NEG_Z).length() < 1e-6,
+            "nothing bends without another matter"
+        );
+        assert_eq!(
+            refracted(n, Vec3::Z, 0.5),
+            mirrored(n, Vec3::Z),
+            "past the critical angle it is a mirror"
+        );
         assert!(refracted(vec3(0.999, 0.0, -0.04), Vec3::Z, 1.5).is_finite());
     }
+
     /// Bright above, dim below, and red at the right.
     fn environment_light() -> Environment {
         let texel = |i: u32| {
@@ -256,17 +301,24 @@ mod tests {
             );
             [0.5 + 0.4 * e.y + 0.1 * e.x, 0.5 + 0.4 * e.y, 0.5 + 0.3 * e.y - 0.1 * e.z, 1.0]
         };
-        let picture = Picture::linear(Size::new(128, 64), (0..128 * 64).map(texel).collect()).unwrap();
+        let picture =
+            Picture::linear(Size::new(128, 64), (0..128 * 64).map(texel).collect()).unwrap();
         let mut environment = Environment::new("sky.hdr".into(), picture);
         (environment.rotation, environment.exposure) = (30.0, -0.5);
         environment
     }
+
     #[test]
     fn what_is_seen_is_the_scaled_environment_along_the_ray() {
         for model in [Model::Mirror, Model::Refraction] {
             let shading = Shading {
                 environment: Some(environment_light()),
-                specular: term(crate::math::srgb::Color { r: 250, g: 230, b: 200, a: 255 }, 0.9, 0.4, 1.5),
+                specular: term(
+                    crate::math::srgb::Color { r: 250, g: 230, b: 200, a: 255 },
+                    0.9,
+                    0.4,
+                    1.5,
+                ),
                 features: crate::shading::Features { lambda: 0.6, ..Default::default() },
                 ..Shading::new(model)
             };
@@ -275,21 +327,29 @@ mod tests {
                 let r = if model == Model::Mirror { mirrored(n, v) } else { refracted(n, v, 1.5) };
                 let incoming = environment_light().environment_light();
                 let radiance = incoming.along(r);
-                let delta = srgb::luminance(radiance.x, radiance.y, radiance.z) / incoming.brightest();
-                let sigma = shading.specular.scaling.sigma(shading.features.on(surface).at(x, y, r), delta);
+                let delta =
+                    srgb::luminance(radiance.x, radiance.y, radiance.z) / incoming.brightest();
+                let sigma =
+                    shading.specular.scaling.sigma(shading.features.on(surface).at(x, y, r), delta);
                 Vec3::from(shading.specular.linear()) * radiance * sigma
             });
         }
     }
+
     #[test]
     fn a_mirror_that_faces_up_shows_the_sky() {
-        let shading = Shading { environment: Some(environment_light()), ..Shading::new(Model::Mirror) };
+        let shading =
+            Shading { environment: Some(environment_light()), ..Shading::new(Model::Mirror) };
         let scene = crate::shading::material::tests::ball();
         let column = |at| shading.render_tile(&scene, crate::raster::TileAt::new(0, at)).unwrap();
         // The ball's middle is at (60, 66): row 30 faces up, row 100 down.
-        let (above, below) = (column(0).bytes()[(30 * TILE + 60) * 4 + 1], column(1).bytes()[(36 * TILE + 60) * 4 + 1]);
+        let (above, below) = (
+            column(0).bytes()[(30 * TILE + 60) * 4 + 1],
+            column(1).bytes()[(36 * TILE + 60) * 4 + 1],
+        );
         assert!(above > below + 40, "{above} {below}");
     }
+
     #[test]
     fn without_an_environment_a_mirror_is_black() {
         assert_shows(&Shading::new(Model::Mirror), 0.0, |_, _, _| Vec3::ZERO);

@@ -1,5 +1,5 @@
-//! A shading layer's material: its model, its terms, and its lights (MATH 5). Floor 3. There is one file per model;
-//! `render` makes the tiles.
+//! A shading layer's material: its model, its terms, and its lights (MATH 5). Floor 3. There is one
+//! file per model; `render` makes the tiles.
 
 mod ashikhmin;
 mod ashikhmin_environment;
@@ -48,6 +48,7 @@ impl Model {
     pub fn needs_environment(self) -> bool {
         matches!(self, Model::DiffuseEnvironment | Model::Mirror | Model::Refraction)
     }
+
     /// Whether its rays can meet the surface itself before they reach the environment.
     pub fn bounces(self) -> bool {
         matches!(self, Model::Mirror | Model::Refraction | Model::Ashikhmin)
@@ -73,10 +74,12 @@ impl Term {
     pub const fn plain(color: Color, weight: f32) -> Self {
         Self { color, weight, scaling: Scaling::NONE }
     }
+
     /// Whether its σ is not 1 everywhere.
     pub fn is_scaled(&self) -> bool {
         !self.scaling.is_none()
     }
+
     /// Weight × colour in linear light.
     pub fn linear(&self) -> [f32; 3] {
         self.color.linear().map(|c| c * self.weight)
@@ -92,8 +95,8 @@ pub struct Shading {
     pub model: Model,
     /// What it is lit by.
     pub lights: Vec<Light>,
-    /// Light from everywhere; the occlusion of [`Model::AmbientOcclusion`]. For [`Model::DiffuseEnvironment`] only its
-    /// scaling counts, which scales the occlusion.
+    /// Light from everywhere; the occlusion of [`Model::AmbientOcclusion`]. For
+    /// [`Model::DiffuseEnvironment`] only its scaling counts, which scales the occlusion.
     pub ambient: Term,
     /// The matt term.
     pub diffuse: Term,
@@ -115,7 +118,8 @@ pub struct Shading {
     pub nv: f32,
     /// Light from all directions; absent: none.
     pub environment: Option<Environment>,
-    /// Lit sphere; if there is a concave one too, this one is for convex features. `None`: grey clay.
+    /// Lit sphere; if there is a concave one too, this one is for convex features. `None`: grey
+    /// clay.
     pub sphere: Option<LitSphere>,
     /// The lit sphere of concave features.
     pub sphere_concave: Option<LitSphere>,
@@ -123,8 +127,8 @@ pub struct Shading {
     pub index: f32,
     /// The distance up to which occluders count, px; 0 turns occlusion off.
     pub occlusion_radius_px: f32,
-    /// How often a ray that meets the surface itself is sent on before it looks at the environment: inter-reflection.
-    /// 0: never, each ray looks at the environment at once.
+    /// How often a ray that meets the surface itself is sent on before it looks at the environment:
+    /// inter-reflection. 0: never, each ray looks at the environment at once.
     pub bounces: u32,
 }
 
@@ -149,17 +153,21 @@ impl Shading {
     fn bounces_made(&self) -> u32 {
         if self.model.bounces() && self.environment.is_some() { self.bounces } else { 0 }
     }
+
     /// Whether its model needs an environment but has none: it paints black.
     pub fn lacks_environment(&self) -> bool {
         self.model.needs_environment() && self.environment.is_none()
     }
-    /// The model with its default material: no environment, no sphere, and one light if it needs one.
+
+    /// The model with its default material: no environment, no sphere, and one light if it needs
+    /// one.
     pub fn new(model: Model) -> Self {
         let clay = Term::plain(Color { r: 0xc0, g: 0x80, b: 0x60, a: 255 }, 0.7);
         let gloss = Term::plain(Color::WHITE, 0.3);
         let (ambient, diffuse, specular) = match model {
             Model::Phong | Model::Toon => (Term::plain(Color::WHITE, 0.1), clay, gloss),
-            // These models have no ambient term of their own, the sub-Lambertian one no highlight either.
+            // These models have no ambient term of their own, the sub-Lambertian one no highlight
+            // either.
             Model::SubLambertian => (Term::NONE, clay, Term::NONE),
             Model::Ashikhmin => (Term::NONE, clay, gloss),
             Model::DiffuseEnvironment => (Term::NONE, Term::plain(Color::WHITE, 1.0), Term::NONE),

@@ -1,15 +1,16 @@
-//! Phong, and the sub-Lambertian material that is Phong with a flatter matt term (RS sec. 5.1, MATH 5).
-//! Floor 3. Toon quantises the same terms into bands.
+//! Phong, and the sub-Lambertian material that is Phong with a flatter matt term (RS sec. 5.1, MATH
+//! 5). Floor 3. Toon quantises the same terms into bands.
 
 use super::{Model, Shading, lobes};
 use crate::raster::TILE;
 use crate::shading::light::RowLight;
 use crate::shading::surface_row::{Light3, LightDirection, RowRelief, RowValues, SurfaceRow};
 
-/// A material's terms along a row: the ambient one, and two for every light; those of weight 0 are left out.
+/// A material's terms along a row: the ambient one, and two for every light; those of weight 0 are
+/// left out.
 ///
-/// `L′ = Σ_j Σ_lights σ_j(κ, δ_j) ρ_j L` with δ_j = ρ_j; ρ_a = 1 has no light of its own: scaled, it is mean-curvature
-/// shading, e^(γκ).
+/// `L′ = Σ_j Σ_lights σ_j(κ, δ_j) ρ_j L` with δ_j = ρ_j; ρ_a = 1 has no light of its own: scaled,
+/// it is mean-curvature shading, e^(γκ).
 pub struct PhongTerms {
     lobes: Vec<Lobe>,
     /// Colour × weight of each, times its light's, linear.
@@ -33,7 +34,10 @@ impl PhongTerms {
     pub fn new(shading: &Shading, lights: &[RowLight]) -> Self {
         let ambient = [(Lobe::Ambient, &shading.ambient, [1.0; 3])];
         let lit = lights.iter().enumerate().flat_map(|(i, light)| {
-            [(Lobe::Matt(i), &shading.diffuse, light.radiance), (Lobe::Glossy(i), &shading.specular, light.radiance)]
+            [
+                (Lobe::Matt(i), &shading.diffuse, light.radiance),
+                (Lobe::Glossy(i), &shading.specular, light.radiance),
+            ]
         });
         let (lobes, tints): (Vec<_>, Vec<_>) = ambient
             .into_iter()
@@ -45,8 +49,15 @@ impl PhongTerms {
         let exponent = (shading.model == Model::SubLambertian).then_some(shading.exponent);
         Self { lobes, tints, scaled, exponent }
     }
+
     /// Finds σρ of every term. `lights`: turned to the row; `relief`: left the row before.
-    pub fn find(&mut self, shading: &Shading, surface_row: &SurfaceRow, lights: &[RowLight], relief: &mut RowRelief) {
+    pub fn find(
+        &mut self,
+        shading: &Shading,
+        surface_row: &SurfaceRow,
+        lights: &[RowLight],
+        relief: &mut RowRelief,
+    ) {
         for (lobe, rho) in self.lobes.iter().zip(&mut self.scaled) {
             let (term, toward) = match *lobe {
                 Lobe::Ambient => {
@@ -72,6 +83,7 @@ impl PhongTerms {
             }
         }
     }
+
     /// The light of the row: the terms added up.
     pub fn sum(&self, light: &mut Light3) {
         lobes::sum(light, &self.tints, &self.scaled);

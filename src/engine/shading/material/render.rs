@@ -2,8 +2,8 @@
 //! Floor 3.
 
 use super::{
-    Model, Shading, ashikhmin, ashikhmin_environment::EnvironmentSamples, hemisphere, lit_sphere, mirror,
-    phong::PhongTerms, second_look::SecondLook, toon,
+    Model, Shading, ashikhmin, ashikhmin_environment::EnvironmentSamples, hemisphere, lit_sphere,
+    mirror, phong::PhongTerms, second_look::SecondLook, toon,
 };
 use crate::math::{fast, srgb};
 use crate::raster::planar::{BRIGHTEST, PixelRow};
@@ -14,16 +14,18 @@ use crate::shading::surface_row::{Light3, RowRelief, SurfaceRow};
 use crate::surface::Scene;
 
 impl Shading {
-    /// One tile of the material on a scene, opaque wherever there is any surface; `None` where there is none.
+    /// One tile of the material on a scene, opaque wherever there is any surface; `None` where
+    /// there is none.
     ///
-    /// What many tiles share (curvature, prefiltered environments, occlusion) is computed by the first and cached:
-    /// [`Shading::warm`] does so in advance.
+    /// What many tiles share (curvature, prefiltered environments, occlusion) is computed by the
+    /// first and cached: [`Shading::warm`] does so in advance.
     pub fn render_tile(&self, scene: &Scene, at: TileAt) -> Option<Tile> {
         let mut bytes = vec![0; 4 * TILE_AREA];
         let rows = bytes.as_chunks_mut::<{ 4 * TILE }>().0;
         self.shade_rows(scene, at, |y, light, coverage| show(light, coverage, &mut rows[y]))?;
         Tile::from_pixels(bytes)
     }
+
     /// The same without rounding to bytes; light may be brighter than white.
     pub fn render_pixels(&self, scene: &Scene, at: TileAt) -> Option<PlanarTile> {
         let mut pixels = PlanarTile::transparent();
@@ -38,13 +40,21 @@ impl Shading {
         })?;
         Some(pixels)
     }
-    /// Passes on the linear light of each wanted row of a tile, and the surface's coverage of it; `None` without a
-    /// surface.
-    fn shade_rows(&self, scene: &Scene, at: TileAt, mut tell: impl FnMut(usize, &Light3, &[u8])) -> Option<()> {
+
+    /// Passes on the linear light of each wanted row of a tile, and the surface's coverage of it;
+    /// `None` without a surface.
+    fn shade_rows(
+        &self,
+        scene: &Scene,
+        at: TileAt,
+        mut tell: impl FnMut(usize, &Light3, &[u8]),
+    ) -> Option<()> {
         let surface = scene.surface.as_deref()?;
         let inside = scene.area(at);
         let features = self.features.on(surface);
-        let surface_row = |y: i32| SurfaceRow::new(surface, &features, inside.x0 as usize, y as usize, inside.width());
+        let surface_row = |y: i32| {
+            SurfaceRow::new(surface, &features, inside.x0 as usize, y as usize, inside.width())
+        };
         let rows = (0..TILE).zip(inside.y0..inside.y1);
         if self.model == Model::Toon {
             let surface_rows: Vec<SurfaceRow> = (inside.y0..inside.y1).map(surface_row).collect();
@@ -68,12 +78,14 @@ impl Shading {
         }
         Some(())
     }
+
     /// Fills the caches that many tiles would otherwise compute at the same time.
     pub fn warm(&self, scene: &Scene) {
         if let Some(surface) = scene.surface.as_deref() {
             self.features.on(surface);
             let environment_light = self.environment.as_ref().map(Environment::environment_light);
-            let shows_occlusion = matches!(self.model, Model::DiffuseEnvironment | Model::AmbientOcclusion);
+            let shows_occlusion =
+                matches!(self.model, Model::DiffuseEnvironment | Model::AmbientOcclusion);
             let shows_matt = self.model == Model::DiffuseEnvironment
                 || self.model == Model::Ashikhmin && self.bounces > 0 && self.diffuse.weight > 0.0;
             if shows_matt {
@@ -104,11 +116,20 @@ struct RowShader<'a> {
 
 impl<'a> RowShader<'a> {
     fn new(shading: &'a Shading) -> Self {
-        let samples = if shading.model == Model::Ashikhmin { EnvironmentSamples::new(shading) } else { None };
+        let samples =
+            if shading.model == Model::Ashikhmin { EnvironmentSamples::new(shading) } else { None };
         let lights: Vec<RowLight> = shading.lights.iter().map(Light::row_light).collect();
         let terms = PhongTerms::new(shading, &lights);
-        Self { shading, lights, terms, samples, relief: RowRelief::default(), light: [[0.0; TILE]; 3] }
+        Self {
+            shading,
+            lights,
+            terms,
+            samples,
+            relief: RowRelief::default(),
+            light: [[0.0; TILE]; 3],
+        }
     }
+
     /// Linear light along a row.
     fn light(&mut self, surface_row: &SurfaceRow) -> &Light3 {
         let Self { shading, lights, terms, samples, relief, light } = self;

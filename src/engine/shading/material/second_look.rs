@@ -1,6 +1,6 @@
-//! The second look of a ray: where it meets the surface again it is reflected, or refracted, once more, and what it
-//! sees in the end is the environment (MATH 5). Floor 3. Not here: where it meets the surface (`surface::ray`), the
-//! environment.
+//! The second look of a ray: where it meets the surface again it is reflected, or refracted, once
+//! more, and what it sees in the end is the environment (MATH 5). Floor 3. Not here: where it meets
+//! the surface (`surface::ray`), the environment.
 
 use crate::math::{Vec2, Vec3, vec2, vec3};
 use crate::surface::Surface;
@@ -60,6 +60,7 @@ impl<'s> SecondLook<'s> {
         let map = of_sheet.as_deref().unwrap_or(shaded).ray_map();
         Some(Self { shaded, of_sheet, map, bounces })
     }
+
     /// Where the rays of a pixel begin, with its normal and view.
     pub fn start(&self, x: usize, y: usize, normal: Vec3, view: Vec3) -> RayStart {
         let (px, py) = match self.shaded.sheet_of() {
@@ -67,12 +68,20 @@ impl<'s> SecondLook<'s> {
             None => (x as i32, y as i32),
         };
         let at = vec2(px as f32 + 0.5, py as f32 + 0.5);
-        RayStart { normal, view, at, nearness: self.map.nearness_of(self.shaded.depth(x, y)), side_px: 1.0 }
+        RayStart {
+            normal,
+            view,
+            at,
+            nearness: self.map.nearness_of(self.shaded.depth(x, y)),
+            side_px: 1.0,
+        }
     }
+
     /// The last ray of the way that a ray takes: the one that looks at the environment.
     ///
     /// * `bend`: the ray that leaves where the surface has a normal and is seen from a direction.
-    /// * `meet`: told of every place where the surface is met, with the direction of the ray that meets it.
+    /// * `meet`: told of every place where the surface is met, with the direction of the ray that
+    ///   meets it.
     pub fn follow(
         &self,
         start: RayStart,
@@ -87,8 +96,8 @@ impl<'s> SecondLook<'s> {
         let mut changes = ray.changes;
         // What a pixel shows of the surface, along the view.
         let pixel = side_px * self.map.spanned(nearness);
-        let mut moved =
-            [vec3(pixel, 0.0, 0.0), vec3(0.0, -pixel, 0.0)].map(|step| onto_plane(step, normal, view, GRAZING));
+        let mut moved = [vec3(pixel, 0.0, 0.0), vec3(0.0, -pixel, 0.0)]
+            .map(|step| onto_plane(step, normal, view, GRAZING));
         for _ in 0..self.bounces {
             let Some(hit) = surface.met_by(&self.map, &leaving) else { break };
             let r = leaving.direction;

@@ -18,7 +18,10 @@ pub(super) fn ball() -> Scene {
     });
     let depth = normals.map(|n| 1.0 - n.z.max(0.0).min(1.0));
     let coverage = normals.map(|n| if n == Vec3::ZERO { 0 } else { 255 });
-    Scene { size: SIZE, surface: Some(Arc::new(Surface::new(Maps { normals, depth, coverage }).unwrap())) }
+    Scene {
+        size: SIZE,
+        surface: Some(Arc::new(Surface::new(Maps { normals, depth, coverage }).unwrap())),
+    }
 }
 
 /// The same ball seen from nearby, through a lens of 60°.
@@ -27,17 +30,33 @@ pub(super) fn near_ball() -> Scene {
     Scene { size: SIZE, surface: Some(Arc::new(surface.seen_by(Eye::of_fov(Some(60.0), SIZE)))) }
 }
 
-/// Every fifth pixel of the ball, from afar and from nearby, as the layer shows it and as `expected` says (linear
-/// light), within `bytes`.
-pub(super) fn assert_shows(shading: &Shading, bytes: f32, expected: impl Fn(&Surface, usize, usize) -> Vec3) {
-    [ball(), near_ball()].iter().for_each(|scene| assert_shows_on(scene, shading, bytes, &expected));
+/// Every fifth pixel of the ball, from afar and from nearby, as the layer shows it and as
+/// `expected` says (linear light), within `bytes`.
+pub(super) fn assert_shows(
+    shading: &Shading,
+    bytes: f32,
+    expected: impl Fn(&Surface, usize, usize) -> Vec3,
+) {
+    [ball(), near_ball()]
+        .iter()
+        .for_each(|scene| assert_shows_on(scene, shading, bytes, &expected));
 }
-fn assert_shows_on(scene: &Scene, shading: &Shading, bytes: f32, expected: impl Fn(&Surface, usize, usize) -> Vec3) {
+
+fn assert_shows_on(
+    scene: &Scene,
+    shading: &Shading,
+    bytes: f32,
+    expected: impl Fn(&Surface, usize, usize) -> Vec3,
+) {
     let surface = scene.surface.as_deref().unwrap();
     let mut seen = 0;
     // Normals of contour pixels are those in the middle of their own share.
-    let contours: Vec<_> =
-        surface.contours().pixels().iter().map(|pixel| (pixel.x as usize, pixel.y as usize)).collect();
+    let contours: Vec<_> = surface
+        .contours()
+        .pixels()
+        .iter()
+        .map(|pixel| (pixel.x as usize, pixel.y as usize))
+        .collect();
     for at in TileAt::covering(SIZE.rect()) {
         let Some(tile) = shading.render_tile(scene, at) else { continue };
         for i in (0..TILE * TILE).step_by(5) {
@@ -48,14 +67,19 @@ fn assert_shows_on(scene: &Scene, shading: &Shading, bytes: f32, expected: impl 
                 continue;
             }
             // What faces away from a near eye is not seen.
-            if contours.contains(&(x, y)) || (surface.facing(x, y) < 0.1 && surface.eye() != Eye::Afar) {
+            if contours.contains(&(x, y))
+                || (surface.facing(x, y) < 0.1 && surface.eye() != Eye::Afar)
+            {
                 continue;
             }
             seen += 1;
             for (c, light) in expected(surface, x, y).to_array().into_iter().enumerate() {
                 let expected = srgb::encode(light.max(0.0)).min(1.0) * 255.0;
                 let found = f32::from(found[c]);
-                assert!((found - expected).abs() <= bytes, "({x}, {y}) channel {c}: {found}, not {expected}");
+                assert!(
+                    (found - expected).abs() <= bytes,
+                    "({x}, {y}) channel {c}: {found}, not {expected}"
+                );
             }
         }
     }
@@ -77,7 +101,11 @@ fn direction_at(surface: &Surface, light: &Light, x: usize, y: usize) -> Vec3 {
     match light.kind {
         LightKind::Directional { direction } => direction.normalize(),
         LightKind::Point { position } => {
-            let here = vec3(x as f32 + 0.5, y as f32 + 0.5, -surface.depth(x, y) * surface.depth_range_px());
+            let here = vec3(
+                x as f32 + 0.5,
+                y as f32 + 0.5,
+                -surface.depth(x, y) * surface.depth_range_px(),
+            );
             let to = position - here;
             vec3(to.x, -to.y, to.z).normalize()
         }
@@ -128,23 +156,29 @@ fn every_model_goes_by_its_own_name() {
         assert_eq!(model.name(), name);
     }
 }
+
 #[test]
 fn phong_is_the_sum_of_its_scaled_terms_over_all_lights() {
     let shading = phong();
     assert_shows(&shading, 1.0, |surface, x, y| phong_at(&shading, surface, x, y, 1.0));
 }
+
 #[test]
 fn the_sub_lambertian_term_is_a_power_of_the_matt_one() {
     let shading = Shading { model: Model::SubLambertian, exponent: 0.4, ..phong() };
     assert_shows(&shading, 1.0, |surface, x, y| phong_at(&shading, surface, x, y, 0.4));
 }
+
 /// Ashikhmin and Shirley (2000) at a pixel, in vectors.
 fn ashikhmin_at(shading: &Shading, surface: &Surface, x: usize, y: usize) -> Vec3 {
     // In the frame of the pixel's own view.
     let view = surface.view(x, y);
     let (n, e) = (in_view(view, surface.normal(x, y)), Vec3::Z);
     let features = shading.features.on(surface);
-    let (rd, rs) = (Vec3::from(shading.diffuse.linear()), Vec3::from(shading.specular.linear()).min(Vec3::ONE));
+    let (rd, rs) = (
+        Vec3::from(shading.diffuse.linear()),
+        Vec3::from(shading.specular.linear()).min(Vec3::ONE),
+    );
     let u = (Vec3::X - n.x * n).normalize();
     let v = n.cross(u);
     let mut sum = Vec3::ZERO;
@@ -155,13 +189,15 @@ fn ashikhmin_at(shading: &Shading, surface: &Surface, x: usize, y: usize) -> Vec
         let (n_l, n_h) = (n.dot(l).max(0.0), n.dot(h));
         let lifted = |cosine: f32| 1.0 - (1.0 - cosine / 2.0).powi(5);
         let matt = 28.0 / 23.0 * rd * (1.0 - rs) * lifted(n_l) * lifted(n.z) * n_l;
-        let exponent = (shading.nu * h.dot(u).powi(2) + shading.nv * h.dot(v).powi(2)) / (1.0 - n_h * n_h).max(1e-6);
-        let lobe = ((shading.nu + 1.0) * (shading.nv + 1.0)).sqrt() / 8.0 * n_h.max(0.0).powf(exponent);
+        let exponent = (shading.nu * h.dot(u).powi(2) + shading.nv * h.dot(v).powi(2))
+            / (1.0 - n_h * n_h).max(1e-6);
+        let lobe =
+            ((shading.nu + 1.0) * (shading.nv + 1.0)).sqrt() / 8.0 * n_h.max(0.0).powf(exponent);
         let fresnel = rs + (1.0 - rs) * (1.0 - h.dot(e)).powi(5);
         let glossy = lobe * n_l / (h.dot(e) * n_l.max(n.z)) * fresnel;
         let kappa = features.at(x, y, toward);
-        let scaled =
-            shading.diffuse.scaling.sigma(kappa, n_l) * matt + shading.specular.scaling.sigma(kappa, n_h) * glossy;
+        let scaled = shading.diffuse.scaling.sigma(kappa, n_l) * matt
+            + shading.specular.scaling.sigma(kappa, n_h) * glossy;
         sum += scaled * Vec3::from(light.color.linear()) * light.intensity;
     }
     sum
@@ -179,6 +215,7 @@ fn ashikhmin_is_the_paper_s_two_lobes_each_scaled_by_its_own_reflectance() {
     };
     assert_shows(&shading, 1.0, |surface, x, y| ashikhmin_at(&shading, surface, x, y));
 }
+
 #[test]
 fn a_highlight_stretches_along_the_direction_of_the_smaller_exponent() {
     let light = vec3(0.0, 0.0, 1.0);
@@ -196,6 +233,7 @@ fn seen_nbar(surface: &Surface, x: usize, y: usize) -> crate::math::Vec2 {
     let n = in_view(surface.view(x, y), surface.normal(x, y));
     crate::math::vec2(n.x, -n.y)
 }
+
 /// A sphere that shows red by x and green by y.
 fn painted_sphere(blue: f32) -> LitSphere {
     let color = |i: u32| [(i % 64) as f32 / 64.0, (i / 64) as f32 / 64.0, blue, 1.0];
@@ -214,22 +252,29 @@ fn two_lit_spheres_are_blended_by_curvature_and_scaled_by_their_luminance() {
         sphere_concave: Some(painted_sphere(0.0)),
         ..phong()
     };
-    let [convex, concave] = [&shading.sphere, &shading.sphere_concave].map(|s| s.as_ref().unwrap().light());
+    let [convex, concave] =
+        [&shading.sphere, &shading.sphere_concave].map(|s| s.as_ref().unwrap().light());
     let most = convex.brightest();
     assert!(most > concave.brightest());
     assert_shows(&shading, 1.0, |surface, x, y| {
         let kappa = shading.features.on(surface).at(x, y, Vec3::Z);
-        let at = |sphere: &crate::shading::sphere::SphereLight| Vec3::from(sphere.at(seen_nbar(surface, x, y)));
+        let at = |sphere: &crate::shading::sphere::SphereLight| {
+            Vec3::from(sphere.at(seen_nbar(surface, x, y)))
+        };
         let shown = at(concave).lerp(at(convex), 0.5 + 0.5 * kappa);
         let delta = srgb::luminance(shown.x, shown.y, shown.z) / most;
         0.8 * shown * shading.specular.scaling.sigma(kappa, delta)
     });
 }
+
 #[test]
 fn a_lit_sphere_that_names_no_picture_is_clay() {
     let shading = Shading::new(Model::LitSphere);
-    assert_shows(&shading, 1.0, |surface, x, y| Vec3::from(LitSphere::clay().light().at(seen_nbar(surface, x, y))));
+    assert_shows(&shading, 1.0, |surface, x, y| {
+        Vec3::from(LitSphere::clay().light().at(seen_nbar(surface, x, y)))
+    });
 }
+
 #[test]
 fn without_a_surface_there_is_nothing_to_light() {
     let scene = Scene { size: SIZE, surface: None };
@@ -237,6 +282,7 @@ fn without_a_surface_there_is_nothing_to_light() {
     assert!(phong().render_tile(&ball(), TileAt::new(5, 0)).is_none(), "nor beyond the canvas");
     assert!(phong().render_tile(&ball(), TileAt::new(-1, -1)).is_none());
 }
+
 #[test]
 fn scaling_brightens_ridges_and_darkens_valleys_in_the_light() {
     let scene = ball();
@@ -249,7 +295,8 @@ fn scaling_brightens_ridges_and_darkens_valleys_in_the_light() {
     let scaled = Shading { diffuse: term(Color::WHITE, 0.6, 0.2, 1.0), ..plain.clone() };
     let kappa = plain.features.on(scene.surface.as_deref().unwrap());
     let at = TileAt::new(0, 0);
-    let (plain, scaled) = (plain.render_tile(&scene, at).unwrap(), scaled.render_tile(&scene, at).unwrap());
+    let (plain, scaled) =
+        (plain.render_tile(&scene, at).unwrap(), scaled.render_tile(&scene, at).unwrap());
     let mut told = 0;
     for i in 0..TILE * TILE {
         let kappa = kappa.at(i % TILE, i / TILE, Vec3::Z);

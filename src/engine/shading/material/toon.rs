@@ -9,8 +9,8 @@ use crate::surface::links;
 
 /// Adds every light's terms in `bands` tones to the rows of a tile.
 ///
-/// The edge of a tone is where σρ crosses a multiple of 1 / bands. It is antialiased: the gradient of σρ, from the
-/// neighbours in the tile, gives the share of the pixel on either side.
+/// The edge of a tone is where σρ crosses a multiple of 1 / bands. It is antialiased: the gradient
+/// of σρ, from the neighbours in the tile, gives the share of the pixel on either side.
 pub fn shade_tile(shading: &Shading, rows: &[SurfaceRow], light: &mut [Light3]) {
     let mut lights: Vec<RowLight> = shading.lights.iter().map(Light::row_light).collect();
     let (mut terms, mut relief) = (PhongTerms::new(shading, &lights), RowRelief::default());
@@ -28,12 +28,19 @@ pub fn shade_tile(shading: &Shading, rows: &[SurfaceRow], light: &mut [Light3]) 
 }
 
 /// Adds the tones of one term.
-fn add_tones(rows: &[SurfaceRow], tint: [f32; 3], scaled: &[RowValues], bands: u32, light: &mut [Light3]) {
+fn add_tones(
+    rows: &[SurfaceRow],
+    tint: [f32; 3],
+    scaled: &[RowValues],
+    bands: u32,
+    light: &mut [Light3],
+) {
     for (y, ((surface_row, here), light)) in rows.iter().zip(scaled).zip(light).enumerate() {
         let above = y.checked_sub(1).and_then(|y| scaled.get(y));
         let below = scaled.get(y + 1);
         let linked = inside_links(surface_row, above.is_some(), below.is_some());
-        let tones = tones([above.unwrap_or(here), here, below.unwrap_or(here)], &linked, bands as f32);
+        let tones =
+            tones([above.unwrap_or(here), here, below.unwrap_or(here)], &linked, bands as f32);
         lobes::add(light, tint, &tones);
     }
 }
@@ -54,10 +61,12 @@ fn inside_links(surface_row: &SurfaceRow, has_above: bool, has_below: bool) -> [
     linked
 }
 
-/// The tone of a value in `bands` tones, 0 … 1, filtered over a pixel in which the value changes by `change`.
+/// The tone of a value in `bands` tones, 0 … 1, filtered over a pixel in which the value changes by
+/// `change`.
 ///
-/// floor(v · bands) / (bands − 1), at most 1, is constant except for steps at multiples of 1 / bands; the nearest step
-/// becomes a ramp as wide as the pixel. Where a pixel spans more than a band, the ramps meet: the tones run together.
+/// floor(v · bands) / (bands − 1), at most 1, is constant except for steps at multiples of 1 /
+/// bands; the nearest step becomes a ramp as wide as the pixel. Where a pixel spans more than a
+/// band, the ramps meet: the tones run together.
 ///
 /// * `value`: `≥ 0`; `change`: length of its gradient per pixel; `bands`: `≥ 2`.
 #[inline(always)]
@@ -72,8 +81,8 @@ fn tone(value: f32, change: f32, bands: f32) -> f32 {
 }
 
 crate::widest! {
-    /// The tones of a row, from the values above, here and below; differences are central where both neighbours
-    /// are linked, one-sided where one is.
+    /// The tones of a row, from the values above, here and below; differences are central where
+    /// both neighbours are linked, one-sided where one is.
     fn tones(values: [&RowValues; 3], linked: &[u8; TILE], bands: f32) -> RowValues {
         let [above, here, below] = values;
         // One more pixel at both ends, to which nothing is linked.
@@ -113,8 +122,12 @@ mod tests {
         });
         let depth = normals.map(|n| 1.0 - n.z);
         let coverage = normals.map(|n| if n.length() > 0.0 { 255 } else { 0 });
-        Scene { size: SIZE, surface: Some(Arc::new(Surface::new(Maps { normals, depth, coverage }).unwrap())) }
+        Scene {
+            size: SIZE,
+            surface: Some(Arc::new(Surface::new(Maps { normals, depth, coverage }).unwrap())),
+        }
     }
+
     fn toon(bands: u32) -> Shading {
         let kind = LightKind::Directional { direction: vec3(0.4, 0.5, 0.75) };
         Shading {
@@ -126,33 +139,45 @@ mod tests {
             ..Shading::new(Model::Toon)
         }
     }
+
     /// Red of every covered pixel of the ball.
     fn reds(shading: &Shading) -> Vec<((usize, usize), u8)> {
         let scene = ball();
-        let tiles = TileAt::covering(SIZE.rect()).filter_map(|at| Some((at, shading.render_tile(&scene, at)?)));
+        let tiles = TileAt::covering(SIZE.rect())
+            .filter_map(|at| Some((at, shading.render_tile(&scene, at)?)));
         tiles
             .flat_map(|(at, tile)| {
-                let pixels: Vec<_> = tile.bytes().chunks_exact(4).map(|p| (p[0], p[3])).enumerate().collect();
-                pixels
-                    .into_iter()
-                    .filter(|(_, (_, a))| *a > 0)
-                    .map(move |(i, (r, _))| ((at.rect().x0 as usize + i % TILE, at.rect().y0 as usize + i / TILE), r))
+                let pixels: Vec<_> =
+                    tile.bytes().chunks_exact(4).map(|p| (p[0], p[3])).enumerate().collect();
+                pixels.into_iter().filter(|(_, (_, a))| *a > 0).map(move |(i, (r, _))| {
+                    ((at.rect().x0 as usize + i % TILE, at.rect().y0 as usize + i / TILE), r)
+                })
             })
             .collect()
     }
+
     #[test]
     fn there_are_as_many_tones_as_bands_and_few_pixels_between_them() {
         for bands in [2, 4, 7] {
-            let tone_of =
-                |k: u32| crate::math::srgb::quantise(crate::math::srgb::encode(k as f32 / (bands - 1) as f32));
+            let tone_of = |k: u32| {
+                crate::math::srgb::quantise(crate::math::srgb::encode(
+                    k as f32 / (bands - 1) as f32,
+                ))
+            };
             let tones: BTreeSet<u8> = (0..bands).map(tone_of).collect();
             let reds = reds(&toon(bands));
-            let flat: Vec<u8> = reds.iter().map(|(_, r)| *r).filter(|r| tones.contains(r)).collect();
+            let flat: Vec<u8> =
+                reds.iter().map(|(_, r)| *r).filter(|r| tones.contains(r)).collect();
             assert_eq!(flat.iter().collect::<BTreeSet<_>>().len(), bands as usize);
             let between = reds.len() - flat.len();
-            assert!(between > 20 && between < reds.len() / 6, "{between} of {} for {bands} bands", reds.len());
+            assert!(
+                between > 20 && between < reds.len() / 6,
+                "{between} of {} for {bands} bands",
+                reds.len()
+            );
         }
     }
+
     #[test]
     fn the_edges_of_bands_are_smooth() {
         // Each pixel compared with what 16 × 16 points in it show of the same ball.
@@ -180,6 +205,7 @@ mod tests {
         }
         assert!(worst < 0.06, "{worst}: unfiltered edges are off by up to 0.25");
     }
+
     #[test]
     fn tones_are_found_after_scaling() {
         let plain = toon(4);
@@ -193,6 +219,7 @@ mod tests {
         let flat = scaled.iter().filter(|(_, r)| tones.contains(r)).count();
         assert!(flat > scaled.len() * 7 / 8, "what was scaled is flat all the same");
     }
+
     #[test]
     fn a_tone_is_a_floor_with_its_steps_filtered() {
         for bands in [2.0f32, 4.0, 256.0] {

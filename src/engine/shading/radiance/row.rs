@@ -1,8 +1,8 @@
-//! Scales one row of a tile, fast. Floor 3. The equation is `scaling::sigma`; the tests of `radiance` compare this with
-//! it.
+//! Scales one row of a tile, fast. Floor 3. The equation is `scaling::sigma`; the tests of
+//! `radiance` compare this with it.
 //!
-//! Short loops over the row, each with its result in an array: one long loop per pixel is a single chain of dependent
-//! operations that no processor can overlap (measured: 2.4 times slower).
+//! Short loops over the row, each with its result in an array: one long loop per pixel is a single
+//! chain of dependent operations that no processor can overlap (measured: 2.4 times slower).
 
 use crate::math::{fast, srgb};
 use crate::raster::{TILE, planar::PixelRow};
@@ -30,16 +30,32 @@ pub(super) struct RowScaler {
 impl RowScaler {
     pub fn new(scaling: Scaling, y_star: f32) -> Self {
         let none = [0.0; TILE];
-        Self { scaling, per_y_star: 1.0 / y_star, per_a: none, delta: none, factors: none, roots: none, exact: None }
+        Self {
+            scaling,
+            per_y_star: 1.0 / y_star,
+            per_a: none,
+            delta: none,
+            factors: none,
+            roots: none,
+            exact: None,
+        }
     }
+
     /// For pictures of more than 8 bits: nothing is approximated.
     ///
     /// * `brightest`: above it, encoded, light is clipped; 1 is white.
     pub fn exact(scaling: Scaling, y_star: f32, brightest: f32) -> Self {
         Self { exact: Some(brightest), ..Self::new(scaling, y_star) }
     }
+
     /// One pixel after another, by the definition.
-    fn scale_exactly(&self, brightest: f32, row: &mut PixelRow, kappa: &LuminanceRow, gains: &LuminanceRow) {
+    fn scale_exactly(
+        &self,
+        brightest: f32,
+        row: &mut PixelRow,
+        kappa: &LuminanceRow,
+        gains: &LuminanceRow,
+    ) {
         let PixelRow { rgb, a } = row;
         for x in 0..TILE {
             if a[x] <= 0.0 {
@@ -53,6 +69,7 @@ impl RowScaler {
             }
         }
     }
+
     /// Multiplies the light of each pixel by σ(κ, Y / Y*).
     pub fn apply(&mut self, row: &mut PixelRow, kappa: &LuminanceRow) {
         if let Some(brightest) = self.exact {
@@ -65,8 +82,14 @@ impl RowScaler {
             apply_strong(self, row, kappa, &[1.0; TILE]);
         }
     }
+
     /// Multiplies the light of each pixel by its gain and σ(κ, Y / Y*).
-    pub fn apply_with_gains(&mut self, row: &mut PixelRow, kappa: &LuminanceRow, gains: &LuminanceRow) {
+    pub fn apply_with_gains(
+        &mut self,
+        row: &mut PixelRow,
+        kappa: &LuminanceRow,
+        gains: &LuminanceRow,
+    ) {
         match self.exact {
             Some(brightest) => self.scale_exactly(brightest, row, kappa, gains),
             None => apply_strong(self, row, kappa, gains),
@@ -82,6 +105,7 @@ crate::widest! {
             with.gentle::<false>(row, kappa);
         }
     }
+
     fn apply_strong(with: &mut RowScaler, row: &mut PixelRow, kappa: &LuminanceRow, gains: &LuminanceRow) {
         // A strong γ separates dark tones that an approximate luminance would merge.
         with.find_reflectances::<false>(row, |r, g, b| {
@@ -106,17 +130,24 @@ impl RowScaler {
         self.find_gentle(kappa);
         self.scale::<OPAQUE>(row, srgb::scale_encoded_gently);
     }
+
     #[inline(always)]
-    fn find_reflectances<const OPAQUE: bool>(&mut self, row: &PixelRow, luminance: impl Fn(f32, f32, f32) -> f32) {
+    fn find_reflectances<const OPAQUE: bool>(
+        &mut self,
+        row: &PixelRow,
+        luminance: impl Fn(f32, f32, f32) -> f32,
+    ) {
         for x in 0..TILE {
             let (r, g, b) = (row.rgb[0][x], row.rgb[1][x], row.rgb[2][x]);
             let per_a = if OPAQUE { 1.0 } else { 1.0 / fast::max(row.a[x], f32::MIN_POSITIVE) };
             if !OPAQUE {
                 self.per_a[x] = per_a;
             }
-            self.delta[x] = fast::min(luminance(r * per_a, g * per_a, b * per_a) * self.per_y_star, 1.0);
+            self.delta[x] =
+                fast::min(luminance(r * per_a, g * per_a, b * per_a) * self.per_y_star, 1.0);
         }
     }
+
     #[inline(always)]
     fn find_factors(&mut self, kappa: &LuminanceRow, gains: &LuminanceRow) {
         let scaling = self.scaling;
@@ -124,12 +155,14 @@ impl RowScaler {
             self.factors[x] = gains[x] * scaling.sigma_fast(kappa[x], self.delta[x]);
         }
     }
+
     #[inline(always)]
     fn find_roots(&mut self) {
         for x in 0..TILE {
             self.roots[x] = fast::exp2(fast::log2(self.factors[x]) * (5.0 / 12.0));
         }
     }
+
     /// σ and its root for γ up to 2, without exponentials; relative error below 2e-4.
     ///
     /// With t = tanh(γκ/2), E = (1 − t)/(1 + t), and RS eq. 2 becomes
@@ -152,13 +185,20 @@ impl RowScaler {
         for x in 0..TILE {
             // root^2.4 within 0.2 %: only values on the foot of the curve need it.
             let root = self.roots[x];
-            self.factors[x] = 0.042_410_117 - 0.263_898 * root + (1.006_399 + root * 0.216_649_44) * (root * root);
+            self.factors[x] = 0.042_410_117 - 0.263_898 * root
+                + (1.006_399 + root * 0.216_649_44) * (root * root);
         }
     }
-    /// Straight, scaled, clipped, premultiplied again: the same steps for every tone, so that dark tones cost nothing
-    /// more (with a branch a row for pictures without darks: 2.9 ns a pixel and 5.4 ns with them).
+
+    /// Straight, scaled, clipped, premultiplied again: the same steps for every tone, so that dark
+    /// tones cost nothing more (with a branch a row for pictures without darks: 2.9 ns a pixel and
+    /// 5.4 ns with them).
     #[inline(always)]
-    fn scale<const OPAQUE: bool>(&self, row: &mut PixelRow, scale_encoded: impl Fn(f32, f32, f32) -> f32) {
+    fn scale<const OPAQUE: bool>(
+        &self,
+        row: &mut PixelRow,
+        scale_encoded: impl Fn(f32, f32, f32) -> f32,
+    ) {
         for channel in &mut row.rgb {
             for (x, v) in channel.iter_mut().enumerate() {
                 let (a, per_a) = if OPAQUE { (1.0, 1.0) } else { (row.a[x], self.per_a[x]) };

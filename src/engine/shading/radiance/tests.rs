@@ -9,7 +9,8 @@ const SIZE: Size = Size::new(100, 80);
 /// Waves: ridges and valleys along y.
 fn scene() -> Scene {
     let normals = Plane::from_fn(SIZE, |x, _| vec3((x as f32 * 0.3).sin(), 0.0, 1.0));
-    let maps = Maps { normals, depth: Plane::filled(SIZE, 0.5), coverage: Plane::filled(SIZE, 255) };
+    let maps =
+        Maps { normals, depth: Plane::filled(SIZE, 0.5), coverage: Plane::filled(SIZE, 255) };
     Scene { size: SIZE, surface: Some(Arc::new(Surface::new(maps).unwrap())) }
 }
 
@@ -26,7 +27,8 @@ const BENEATH: BackdropStats = BackdropStats { brightest: 0.8, gain: 1.0 };
 fn every_pixel_is_scaled_as_the_equation_says() {
     let scene = scene();
     for (lambda, gamma) in [(0.0, 1.0), (1.0, 2.0), (-0.5, 5.0)] {
-        let (scaling, features) = (Scaling::new(0.2, gamma), Features { lambda, ..Features::default() });
+        let (scaling, features) =
+            (Scaling::new(0.2, gamma), Features { lambda, ..Features::default() });
         let light = vec3(1.0, 0.2, 0.4);
         let layer = RadianceScaling { scaling, features, light, ..RadianceScaling::default() };
         let features = layer.features.on(scene.surface.as_ref().unwrap());
@@ -51,15 +53,18 @@ fn every_pixel_is_scaled_as_the_equation_says() {
         }
     }
 }
+
 #[test]
 fn ridges_brighten_and_valleys_darken() {
     let scene = scene();
     let mut tile = flat(0.7, 0.7, 0.7, 1.0);
     RadianceScaling::default().apply_tile(&scene, TileAt::new(0, 0), BENEATH, &mut tile);
-    // n_x rises with x through 0 on a ridge (x = 21: 0.3 x = 2π) and falls through 0 in a valley (x = 10.5: π).
+    // n_x rises with x through 0 on a ridge (x = 21: 0.3 x = 2π) and falls through 0 in a valley (x
+    // = 10.5: π).
     let (ridge, valley) = (tile.rows()[9].pixel(21)[0], tile.rows()[9].pixel(10)[0]);
     assert!(ridge > 0.75 && valley < 0.65, "{ridge} {valley}");
 }
+
 #[test]
 fn no_magnitude_changes_no_byte() {
     let layer = RadianceScaling { scaling: Scaling::new(0.2, 0.0), ..RadianceScaling::default() };
@@ -74,6 +79,7 @@ fn no_magnitude_changes_no_byte() {
     tile.to_pixels(&mut after);
     assert_eq!(after[..], pixels[..]);
 }
+
 #[test]
 fn flat_ground_keeps_its_bytes() {
     let maps = Maps {
@@ -92,6 +98,7 @@ fn flat_ground_keeps_its_bytes() {
     RadianceScaling::default().apply_tile(&scene, TileAt::new(0, 0), BENEATH, &mut tile);
     assert!(before.bytes() == tile.quantised().unwrap().bytes());
 }
+
 #[test]
 fn what_is_beyond_the_surface_or_transparent_stays() {
     let mut tile = flat(0.5, 0.5, 0.5, 1.0);
@@ -106,19 +113,22 @@ fn what_is_beyond_the_surface_or_transparent_stays() {
     RadianceScaling::default().apply_tile(&nothing, TileAt::new(0, 0), BENEATH, &mut alone);
     assert_eq!(alone.rows()[0].pixel(0), [0.5, 0.5, 0.5, 1.0]);
 }
+
 /// Of one opaque pixel.
 fn luminance(row: &crate::raster::planar::PixelRow, x: usize) -> f32 {
     let [r, g, b, _] = row.pixel(x).map(srgb::decode);
     srgb::luminance(r, g, b)
 }
+
 #[test]
 fn the_mean_luminance_can_be_kept() {
     let scene = scene();
     let scaling = Scaling::new(0.2, 3.0);
     let layer = RadianceScaling { scaling, keep_mean: true, ..RadianceScaling::default() };
     let at = TileAt::new(0, 0);
-    let mean =
-        |tile: &PlanarTile| tile.rows().iter().map(|r| (0..TILE).map(|x| luminance(r, x)).sum::<f32>()).sum::<f32>();
+    let mean = |tile: &PlanarTile| {
+        tile.rows().iter().map(|r| (0..TILE).map(|x| luminance(r, x)).sum::<f32>()).sum::<f32>()
+    };
     // The bright one is clipped at its ridges.
     for [r, g, b] in [[0.7, 0.6, 0.5], [0.97, 0.95, 0.9]] {
         let before = flat(r, g, b, 1.0);
@@ -132,12 +142,17 @@ fn the_mean_luminance_can_be_kept() {
         assert!((gain - 1.0).abs() > 0.02, "or else the test says nothing: {gain}");
     }
 }
+
 #[test]
 fn senseless_measures_do_no_harm() {
-    for beneath in [f32::NAN, 0.0, f32::INFINITY, 1e-40].map(|v| BackdropStats { brightest: v, gain: 1.0 }) {
+    for beneath in
+        [f32::NAN, 0.0, f32::INFINITY, 1e-40].map(|v| BackdropStats { brightest: v, gain: 1.0 })
+    {
         let mut tile = flat(0.9, 0.1, 0.0, 0.7);
         RadianceScaling::default().apply_tile(&scene(), TileAt::new(0, 0), beneath, &mut tile);
-        assert!(tile.rows().iter().all(|r| r.rgb.iter().flatten().all(|v| (0.0..=0.7001).contains(v))));
+        assert!(
+            tile.rows().iter().all(|r| r.rgb.iter().flatten().all(|v| (0.0..=0.7001).contains(v)))
+        );
     }
     assert_eq!(LightSums::default().gain(GainLadder::whole()), 1.0);
     assert!(LightSums::default().finer(GainLadder::whole()).is_none());

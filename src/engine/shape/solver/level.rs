@@ -4,9 +4,9 @@
 use crate::memory::filled_or_unwind;
 use rayon::prelude::*;
 
-/// A rim is nearer to the middle of a block than to those of its pixels, but less than twice: the block is held by this
-/// share of what holds its pixels there. Measured on discs and ragged stars: 0.75 takes the fewest steps, 0.5 three
-/// times as many.
+/// A rim is nearer to the middle of a block than to those of its pixels, but less than twice: the
+/// block is held by this share of what holds its pixels there. Measured on discs and ragged stars:
+/// 0.75 takes the fewest steps, 0.5 three times as many.
 const HELD_BY_RIM: f32 = 0.75;
 /// Rows that one task works on.
 pub(super) const BAND: usize = 16;
@@ -36,22 +36,25 @@ impl Level {
     pub(super) fn new(w: usize, h: usize, right: Vec<f32>, down: Vec<f32>, held: Vec<f32>) -> Self {
         let mut diagonal = filled_or_unwind(w * h, 0.0);
         let mut inverse = filled_or_unwind(w * h, 0.0);
-        diagonal.par_chunks_mut(w).zip(inverse.par_chunks_mut(w)).enumerate().for_each(|(y, (diagonal, inverse))| {
-            if y == 0 || y + 1 == h {
-                return;
-            }
-            let at = y * w;
-            for x in 1..w - 1 {
-                let i = at + x;
-                let sum = right[i] + down[i] + right[i - 1] + down[i - w] + held[i];
-                diagonal[x] = sum;
-                inverse[x] = if sum > 0.0 { 1.0 / sum } else { 0.0 };
-            }
-        });
+        diagonal.par_chunks_mut(w).zip(inverse.par_chunks_mut(w)).enumerate().for_each(
+            |(y, (diagonal, inverse))| {
+                if y == 0 || y + 1 == h {
+                    return;
+                }
+                let at = y * w;
+                for x in 1..w - 1 {
+                    let i = at + x;
+                    let sum = right[i] + down[i] + right[i - 1] + down[i - w] + held[i];
+                    diagonal[x] = sum;
+                    inverse[x] = if sum > 0.0 { 1.0 / sum } else { 0.0 };
+                }
+            },
+        );
         Self { w, h, right, down, held, diagonal, inverse }
     }
-    /// The grid of 2 × 2 blocks, shifted by a pixel so that its border is empty as well. Springs between blocks are
-    /// those that cross, halved because they are twice as long.
+
+    /// The grid of 2 × 2 blocks, shifted by a pixel so that its border is empty as well. Springs
+    /// between blocks are those that cross, halved because they are twice as long.
     pub(super) fn coarser(&self) -> Self {
         let (w, h) = ((self.w - 1) / 2 + 2, (self.h - 1) / 2 + 2);
         let blocks = |value: &(dyn Fn(usize, usize) -> f32 + Sync)| {
@@ -75,12 +78,15 @@ impl Level {
         let held = blocks(&|x, y| self.held_of_block(x, y));
         Self::new(w, h, right, down, held)
     }
-    /// The value of a pixel, numbered from 1; 0 beyond the grid. The pixels of block x have the numbers 2x and 2x + 1.
+
+    /// The value of a pixel, numbered from 1; 0 beyond the grid. The pixels of block x have the
+    /// numbers 2x and 2x + 1.
     #[inline(always)]
     fn at_number(&self, plane: &[f32], x: usize, y: usize) -> f32 {
         let inside = x > 0 && y > 0 && x <= self.w && y <= self.h;
         if inside { plane[(y - 1) * self.w + x - 1] } else { 0.0 }
     }
+
     /// The spring toward 0 of a block of the coarser grid.
     pub(super) fn held_of_block(&self, x: usize, y: usize) -> f32 {
         let held = |x: usize, y: usize| {
@@ -91,6 +97,7 @@ impl Level {
         };
         in_rows(self.h, 2 * y, |y| in_rows(self.w, 2 * x, |x| held(x, y)))
     }
+
     /// Gives a pixel away from the border another spring toward 0.
     pub(super) fn hold(&mut self, (x, y): (usize, usize), held: f32) {
         let (w, i) = (self.w, y * self.w + x);
@@ -102,20 +109,25 @@ impl Level {
         self.diagonal[i] = sum;
         self.inverse[i] = if sum > 0.0 { 1.0 / sum } else { 0.0 };
     }
+
     pub(super) fn row<'a>(&self, plane: &'a [f32], y: usize) -> &'a [f32] {
         &plane[y * self.w..(y + 1) * self.w]
     }
+
     /// Fills the inner rows of a plane; the function gets each row's number.
     pub(super) fn fill(&self, out: &mut [f32], row: impl Fn(usize, &mut [f32]) + Sync) {
         let (w, h) = (self.w, self.h);
-        out.par_chunks_mut(w * BAND).enumerate().with_min_len(least_bands(w)).for_each(|(band, rows)| {
-            for (y, out) in (band * BAND..).zip(rows.chunks_mut(w)) {
-                if y > 0 && y + 1 < h {
-                    row(y, out);
+        out.par_chunks_mut(w * BAND).enumerate().with_min_len(least_bands(w)).for_each(
+            |(band, rows)| {
+                for (y, out) in (band * BAND..).zip(rows.chunks_mut(w)) {
+                    if y > 0 && y + 1 < h {
+                        row(y, out);
+                    }
                 }
-            }
-        });
+            },
+        );
     }
+
     pub(super) fn springs(&self, y: usize) -> Springs<'_> {
         Springs {
             right: self.row(&self.right, y),
@@ -125,17 +137,22 @@ impl Level {
             inverse: self.row(&self.inverse, y),
         }
     }
+
     /// Three rows of a field around a row.
     pub(super) fn around<'a>(&self, v: &'a [f32], y: usize) -> [&'a [f32]; 3] {
         [self.row(v, y - 1), self.row(v, y), self.row(v, y + 1)]
     }
+
     /// One damped sweep of Jacobi from `v` into `out`.
     pub(super) fn relax(&self, v: &[f32], b: &[f32], step: f32, out: &mut [f32]) {
-        self.fill(out, |y, out| relaxed(self.springs(y), self.around(v, y), self.row(b, y), step, out));
+        self.fill(out, |y, out| {
+            relaxed(self.springs(y), self.around(v, y), self.row(b, y), step, out)
+        });
     }
 }
 
-/// The sum of a value over the two pixels of a block, numbered from 1 as blocks are; none beyond `n`.
+/// The sum of a value over the two pixels of a block, numbered from 1 as blocks are; none beyond
+/// `n`.
 #[inline(always)]
 pub(super) fn in_rows(n: usize, first: usize, value: impl Fn(usize) -> f32) -> f32 {
     let one = |i: usize| if i > 0 && i <= n { value(i) } else { 0.0 };
@@ -166,6 +183,7 @@ crate::widest! {
             out[x] = here[x] + step * ((b[x] + pull) * inverse[x] - here[x]);
         }
     }
+
     /// A v.
     pub(super) fn applied(springs: Springs, v: [&[f32]; 3], out: &mut [f32]) {
         let n = out.len();
@@ -178,6 +196,7 @@ crate::widest! {
             out[x] = diagonal[x] * here[x] - (across + up[x] * above[x] + down[x] * below[x]);
         }
     }
+
     /// b − A v.
     pub(super) fn left_over(springs: Springs, v: [&[f32]; 3], b: &[f32], out: &mut [f32]) {
         applied_into(springs, v, out);
@@ -185,6 +204,7 @@ crate::widest! {
             *o = b - *o;
         }
     }
+
     /// Σ a b in eight lanes.
     pub(super) fn dot(a: &[f32], b: &[f32]) -> f64 {
         let mut sum = 0.0f64;
@@ -201,6 +221,7 @@ crate::widest! {
         }
         sum
     }
+
     /// v += step d.
     pub(super) fn add(v: &mut [f32], step: f32, d: &[f32]) {
         for (v, d) in v.iter_mut().zip(d) {

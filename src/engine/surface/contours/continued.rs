@@ -1,5 +1,5 @@
-//! Maps continued from one side of a contour: by a plane through that side's pixels of the window (MATH 10).
-//! Floor 2.
+//! Maps continued from one side of a contour: by a plane through that side's pixels of the window
+//! (MATH 10). Floor 2.
 
 use super::ContourPixel;
 use super::line::{CONTINUED_WEIGHTS, NEAREST_WEIGHTS, bits};
@@ -31,19 +31,21 @@ impl Continued {
         })?;
         Some(Self { nbar: [x, y], depth })
     }
+
     /// n̄ at a distance from the pixel's centre, px, shortened to the disc where it leaves it.
     pub fn nbar(&self, from_center: Vec2) -> Vec2 {
         let [x, y] = self.nbar.map(|fit| fit.here + fit.slope.dot(from_center));
         within_rim(vec2(x, y))
     }
+
     /// z at a distance from the pixel's centre, `[0, 1]`.
     pub fn depth(&self, from_center: Vec2) -> f32 {
         (self.depth.here + self.depth.slope.dot(from_center)).clamp(0.0, 1.0)
     }
 }
 
-/// Any map of the canvas, continued likewise, at a distance from the middle of what a contour pixel's other population
-/// sees, px.
+/// Any map of the canvas, continued likewise, at a distance from the middle of what a contour
+/// pixel's other population sees, px.
 pub fn plane_of(pixel: &ContourPixel, map: impl Fn(usize, usize) -> f32, from_center: Vec2) -> f32 {
     let ridge = if pixel.others.count_ones() < LEAST_FOR_A_PLANE { f32::MAX } else { RIDGE };
     let fitted = LeastSquaresPlane::weighted(bits(pixel.others), ridge, |i| {

@@ -1,6 +1,6 @@
-//! Contours of a surface whose maps are made larger: which part of a contour pixel lies on which side of its line, and
-//! what that side reads (MATH 10).
-//! Floor 2. Not here: everywhere else, where maps are interpolated (`surface::fit`).
+//! Contours of a surface whose maps are made larger: which part of a contour pixel lies on which
+//! side of its line, and what that side reads (MATH 10). Floor 2. Not here: everywhere else, where
+//! maps are interpolated (`surface::fit`).
 
 use super::continued::{Continued, nz_of, within_rim};
 use super::line::ContourLine;
@@ -28,7 +28,8 @@ struct ContourSide {
 /// A pixel that is cut by a contour, or ends next to one.
 struct DividedPixel {
     x: i32,
-    /// Its own side is the nearer one. None where the whole pixel is on one side, or where none is known.
+    /// Its own side is the nearer one. None where the whole pixel is on one side, or where none is
+    /// known.
     line: Option<ContourLine>,
     /// None where there is no surface.
     own: Option<ContourSide>,
@@ -52,17 +53,21 @@ impl<'m> EnlargedContours<'m> {
             let at = |x: usize| {
                 let contour = known.next_if(|pixel| pixel.x == x as i32);
                 let ends = coverage[x] > 0 && ends_beside(maps.links, x, y);
-                (contour.is_some() || ends).then(|| DividedPixel::new(maps, (x as i32, y as i32), contour))
+                (contour.is_some() || ends)
+                    .then(|| DividedPixel::new(maps, (x as i32, y as i32), contour))
             };
             (0..coverage.len()).filter_map(at).collect()
         });
         Self { maps, rows: rows.collect() }
     }
+
     fn at(&self, x: i32, y: i32) -> Option<&DividedPixel> {
         let row = self.rows.get(y as usize)?;
         row.binary_search_by_key(&x, |pixel| pixel.x).ok().map(|i| &row[i])
     }
-    /// The share of a box that the surface covers, `[0, 1]`: exact on contour pixels whose line is known.
+
+    /// The share of a box that the surface covers, `[0, 1]`: exact on contour pixels whose line is
+    /// known.
     ///
     /// * `low`, `high`: its corners, px of the map, inside it; no side longer than a pixel.
     pub fn coverage(&self, low: Vec2, high: Vec2) -> f32 {
@@ -73,11 +78,13 @@ impl<'m> EnlargedContours<'m> {
                 let (from, to) = (low.max(corner), high.min(corner + 1.0));
                 let sides = (to - from).max(Vec2::ZERO);
                 let middle = (from + to) * 0.5;
-                covered += sides.element_product() * self.covered_part(x, y, middle - corner - 0.5, sides);
+                covered +=
+                    sides.element_product() * self.covered_part(x, y, middle - corner - 0.5, sides);
             }
         }
         (covered / (high - low).element_product().max(1e-12)).clamp(0.0, 1.0)
     }
+
     /// How much of a box within a pixel is covered. `from_center`: of its middle, px.
     fn covered_part(&self, x: i32, y: i32, from_center: Vec2, sides: Vec2) -> f32 {
         let whole = self.maps.coverage.at(x as usize, y as usize);
@@ -90,8 +97,9 @@ impl<'m> EnlargedContours<'m> {
             _ => f32::from(whole) / 255.0 + pixel.shades.dot(from_center),
         }
     }
-    /// The normal (y up) and depth at a point of the map next to a contour, by its side alone; `None` elsewhere, where
-    /// maps are interpolated.
+
+    /// The normal (y up) and depth at a point of the map next to a contour, by its side alone;
+    /// `None` elsewhere, where maps are interpolated.
     pub fn reading(&self, at: Vec2) -> Option<(Vec3, f32)> {
         let (x, y) = (at.x.floor() as i32, at.y.floor() as i32);
         let pixel = self.at(x, y)?;
@@ -107,14 +115,23 @@ impl<'m> EnlargedContours<'m> {
         let back = pixel.line.map_or(Vec2::ZERO, |line| line.toward_near * beyond);
         Some(self.side_reading((x, y), side, from_center + back))
     }
-    /// Interpolated between what a side reads in the four pixels around a point: its own values, and where a pixel
-    /// belongs to another side, its values continued.
-    fn side_reading(&self, (x, y): (i32, i32), side: &ContourSide, from_center: Vec2) -> (Vec3, f32) {
-        let low = from_center.floor().clamp(Vec2::splat(1.0 - REACH as f32), Vec2::splat(REACH as f32 - 1.0));
+
+    /// Interpolated between what a side reads in the four pixels around a point: its own values,
+    /// and where a pixel belongs to another side, its values continued.
+    fn side_reading(
+        &self,
+        (x, y): (i32, i32),
+        side: &ContourSide,
+        from_center: Vec2,
+    ) -> (Vec3, f32) {
+        let low = from_center
+            .floor()
+            .clamp(Vec2::splat(1.0 - REACH as f32), Vec2::splat(REACH as f32 - 1.0));
         let way = from_center - low;
         let (mut nbar, mut depth) = (Vec2::ZERO, 0.0);
         for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-            let weight = if dx == 1 { way.x } else { 1.0 - way.x } * if dy == 1 { way.y } else { 1.0 - way.y };
+            let weight = if dx == 1 { way.x } else { 1.0 - way.x }
+                * if dy == 1 { way.y } else { 1.0 - way.y };
             let (i, j) = (low.x as i32 + dx, low.y as i32 + dy);
             let bit = (j + REACH) * SIDE + i + REACH;
             let (n, z) = if side.members >> bit & 1 == 1 {
@@ -138,20 +155,23 @@ impl DividedPixel {
         let is_shaded = coverage > 0 && coverage < 255;
         let window = PixelWindow::around(maps, x, y);
         let others = contour.map_or(0, |contour| contour.others);
-        let side = |members: u64| Continued::from(&window, members).map(|continued| ContourSide { members, continued });
+        let side = |members: u64| {
+            Continued::from(&window, members).map(|continued| ContourSide { members, continued })
+        };
         let own = if coverage > 0 { window.piece_of_center() & !others | 1 << CENTER } else { 0 };
         let line = match is_shaded {
             true => ContourLine::of_shades(maps.coverage, (x, y)),
             false => contour.and_then(ContourPixel::line),
         };
-        let shades = if is_shaded && line.is_none() { ramp(maps.coverage, (x, y)) } else { Vec2::ZERO };
+        let shades =
+            if is_shaded && line.is_none() { ramp(maps.coverage, (x, y)) } else { Vec2::ZERO };
         Self { x, line, own: side(own), other: side(others), is_shaded, shades }
     }
 }
 
 impl ContourPixel {
-    /// The line between both populations, its own on the nearer side: the share and the middle of what the other one
-    /// sees determine it. `None` where no line was found.
+    /// The line between both populations, its own on the nearer side: the share and the middle of
+    /// what the other one sees determine it. `None` where no line was found.
     fn line(&self) -> Option<ContourLine> {
         let (rest, at) = (1.0 - self.share, self.other_at);
         if at == Vec2::ZERO || rest < 1e-4 {
@@ -184,7 +204,9 @@ impl ContourLine {
 
 /// One of the eight pixels around one is not of the same piece.
 fn ends_beside(of: &Plane<u8>, x: usize, y: usize) -> bool {
-    let has = |dx: i32, dy: i32, link: u8| of.get(x as i32 + dx, y as i32 + dy).is_some_and(|set| set & link != 0);
+    let has = |dx: i32, dy: i32, link: u8| {
+        of.get(x as i32 + dx, y as i32 + dy).is_some_and(|set| set & link != 0)
+    };
     // A corner is linked by either pixel between.
     let corner = |dx: i32, dy: i32, across: u8, down: u8| !has(dx, 0, down) && !has(0, dy, across);
     of.at(x, y) != 15
@@ -194,10 +216,14 @@ fn ends_beside(of: &Plane<u8>, x: usize, y: usize) -> bool {
         || corner(-1, -1, links::LEFT, links::UP)
 }
 
-/// How shades change at a pixel, `[0, 1]` per px, as in a soft ramp: so far that none within it leaves the range.
+/// How shades change at a pixel, `[0, 1]` per px, as in a soft ramp: so far that none within it
+/// leaves the range.
 fn ramp(coverage: &Plane<u8>, (x, y): (i32, i32)) -> Vec2 {
-    let shade = |dx: i32, dy: i32| coverage.get(x + dx, y + dy).map(|shade| f32::from(shade) / 255.0);
-    let half = |before: Option<f32>, after: Option<f32>| before.zip(after).map_or(0.0, |(a, b)| 0.5 * (b - a));
+    let shade =
+        |dx: i32, dy: i32| coverage.get(x + dx, y + dy).map(|shade| f32::from(shade) / 255.0);
+    let half = |before: Option<f32>, after: Option<f32>| {
+        before.zip(after).map_or(0.0, |(a, b)| 0.5 * (b - a))
+    };
     let slope = vec2(half(shade(-1, 0), shade(1, 0)), half(shade(0, -1), shade(0, 1)));
     let here = shade(0, 0).unwrap_or(0.0);
     let (reach, room) = (0.5 * slope.abs().element_sum(), here.min(1.0 - here));
@@ -225,8 +251,8 @@ mod tests {
                     own_turn: Vec2::ZERO,
                 };
                 let found = pixel.line().unwrap();
-                let off =
-                    (found.toward_near - line.toward_near).length() + (found.distance_px - line.distance_px).abs();
+                let off = (found.toward_near - line.toward_near).length()
+                    + (found.distance_px - line.distance_px).abs();
                 assert!(off < 2e-2, "{found:?} for {line:?}");
             }
         }

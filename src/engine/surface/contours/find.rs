@@ -1,5 +1,5 @@
-//! Finds contour pixels, the share of each population, and readings that belong to neither (MATH 10).
-//! Floor 2.
+//! Finds contour pixels, the share of each population, and readings that belong to neither (MATH
+//! 10). Floor 2.
 
 use super::continued::{Continued, nz_of};
 use super::line::{ContourLine, EXPLAINED_PX};
@@ -13,7 +13,8 @@ use rayon::prelude::*;
 /// What was found.
 pub struct Found {
     pub contours: Contours,
-    /// Readings to be put in place of those that belong to neither side, by the index of their pixel.
+    /// Readings to be put in place of those that belong to neither side, by the index of their
+    /// pixel.
     pub amended: Vec<(usize, AmendedReading)>,
 }
 
@@ -27,19 +28,22 @@ pub struct AmendedReading {
 
 /// From this share on a pixel is seen by its own population alone.
 const WHOLLY: f32 = 0.998;
-/// Partly covered pixels for each pixel of a hard rim, from which on coverage gives the outer contours.
+/// Partly covered pixels for each pixel of a hard rim, from which on coverage gives the outer
+/// contours.
 const SOFT_SHARE: f32 = 0.25;
 /// Shades below this leave the pixel's centre uncovered, as a rule.
 const HARDLY_COVERED: u8 = 100;
-/// A normal is mixed of both sides' if it is this far from its own side's toward the other's, and at most this far off
-/// the line between them, as ratios of the distance between both; and if that distance is large enough.
+/// A normal is mixed of both sides' if it is this far from its own side's toward the other's, and
+/// at most this far off the line between them, as ratios of the distance between both; and if that
+/// distance is large enough.
 const MIXED_FROM: f32 = 0.2;
 const MIXED_BESIDE: f32 = 0.25;
 const MIXED_LEAST: f32 = 0.25;
 /// How far the line of a crease may lie on the wrong side of a pixel's centre, px.
 const CREASE_TOLERANCE_PX: f32 = 0.1;
 
-/// Finds the contours of a surface. The same whatever the number of threads: tiles are found one by one.
+/// Finds the contours of a surface. The same whatever the number of threads: tiles are found one by
+/// one.
 pub fn find(maps: &ContourMaps) -> Found {
     let mask = MaskReading { is_soft: is_soft(maps.coverage), holds_means: holds_means(maps) };
     let columns = maps.size.width.div_ceil(TILE as u32) as usize;
@@ -51,7 +55,9 @@ pub fn find(maps: &ContourMaps) -> Found {
             for x in candidates(maps, y) {
                 let examined = Examined::at(maps, mask, x as i32, y as i32);
                 tiles[x / TILE].extend(examined.contour);
-                amended.extend(examined.amended.map(|reading| (y * maps.size.width as usize + x, reading)));
+                amended.extend(
+                    examined.amended.map(|reading| (y * maps.size.width as usize + x, reading)),
+                );
             }
         }
         (tiles, amended)
@@ -69,7 +75,8 @@ pub fn find(maps: &ContourMaps) -> Found {
 struct MaskReading {
     /// It gives the outer contours itself.
     is_soft: bool,
-    /// Partly covered pixels hold means of what is covered, else readings of their centres, if these are covered.
+    /// Partly covered pixels hold means of what is covered, else readings of their centres, if
+    /// these are covered.
     holds_means: bool,
 }
 
@@ -77,7 +84,12 @@ struct MaskReading {
 fn holds_means(maps: &ContourMaps) -> bool {
     let Some(valid) = maps.valid else { return true };
     let counts = (0..maps.coverage.height()).into_par_iter().map(|y| {
-        let hardly = maps.coverage.row(y).iter().zip(valid.row(y)).filter(|(c, _)| (1..HARDLY_COVERED).contains(*c));
+        let hardly = maps
+            .coverage
+            .row(y)
+            .iter()
+            .zip(valid.row(y))
+            .filter(|(c, _)| (1..HARDLY_COVERED).contains(*c));
         hardly.fold((0, 0), |(told, all), (_, &is_told)| (told + usize::from(is_told), all + 1))
     });
     let (told, all) = counts.reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
@@ -96,7 +108,8 @@ fn is_soft(coverage: &Plane<u8>) -> bool {
     partly > 0 && partly as f32 >= SOFT_SHARE * hard as f32
 }
 
-/// The columns of a row at which a contour may be: where a link is missing, or next to covered pixels.
+/// The columns of a row at which a contour may be: where a link is missing, or next to covered
+/// pixels.
 fn candidates(maps: &ContourMaps, y: usize) -> impl Iterator<Item = usize> {
     let (links, coverage) = (maps.links.row(y), maps.coverage.row(y));
     let above = y.checked_sub(1).map(|y| maps.coverage.row(y));
@@ -106,7 +119,10 @@ fn candidates(maps: &ContourMaps, y: usize) -> impl Iterator<Item = usize> {
             return links[x] != 15 || coverage[x] < 255;
         }
         let covered = |row: Option<&[u8]>| row.is_some_and(|row| row[x] > 0);
-        covered(above) || covered(below) || x > 0 && coverage[x - 1] > 0 || coverage.get(x + 1).is_some_and(|&c| c > 0)
+        covered(above)
+            || covered(below)
+            || x > 0 && coverage[x - 1] > 0
+            || coverage.get(x + 1).is_some_and(|&c| c > 0)
     })
 }
 
@@ -161,45 +177,69 @@ impl Examined {
             return between;
         }
         let Some(across) = across(&window, linked, mask.is_soft) else { return Self::default() };
-        let contour = contour_pixel(&window, shared(&window, across), (x, y), (across.own, across.other));
+        let contour =
+            contour_pixel(&window, shared(&window, across), (x, y), (across.own, across.other));
         Self { contour, amended: unmixed(&window, across) }
     }
-    /// A pixel that the mask covers in part: its own population sees the surface in the middle of that part.
-    fn shaded(maps: &ContourMaps, mask: MaskReading, window: &PixelWindow, (x, y): (i32, i32)) -> Self {
+
+    /// A pixel that the mask covers in part: its own population sees the surface in the middle of
+    /// that part.
+    fn shaded(
+        maps: &ContourMaps,
+        mask: MaskReading,
+        window: &PixelWindow,
+        (x, y): (i32, i32),
+    ) -> Self {
         let at = (x as usize, y as usize);
         let share = f32::from(maps.coverage.at(at.0, at.1)) / 255.0;
         let piece = window.piece_of_center() & !(1 << CENTER);
-        // Other partly covered pixels are as doubtful; one that continues no other may hold nothing's depth.
-        let trusted = [piece & window.whole, window.whole, piece].into_iter().find(|&members| members != 0);
+        // Other partly covered pixels are as doubtful; one that continues no other may hold
+        // nothing's depth.
+        let trusted =
+            [piece & window.whole, window.whole, piece].into_iter().find(|&members| members != 0);
         let continued = trusted.and_then(|members| Continued::from(window, members));
         let line = ContourLine::of_shades(maps.coverage, (x, y));
-        let [own_at, other_at] =
-            line.map_or([Vec2::ZERO; 2], |line| [line, line.turned()].map(ContourLine::near_middle));
+        let [own_at, other_at] = line
+            .map_or([Vec2::ZERO; 2], |line| [line, line.turned()].map(ContourLine::near_middle));
         let told = maps.valid.is_none_or(|valid| valid.at(at.0, at.1)).then(|| window.nbar(CENTER));
         // Files hold a normal toward the viewer where there is no surface.
-        let is_mixed = |own: &Continued| told.is_none_or(|told| is_between(told, own.nbar(own_at), Vec2::ZERO));
+        let is_mixed = |own: &Continued| {
+            told.is_none_or(|told| is_between(told, own.nbar(own_at), Vec2::ZERO))
+        };
         let amended = continued.filter(is_mixed).map(|own| own.reading(Vec2::ZERO));
         let is_of_middle = mask.holds_means && amended.is_none();
         let turn = |own: Continued| own.nbar(own_at) - own.nbar(Vec2::ZERO);
         let own_turn = continued.filter(|_| !is_of_middle).map_or(Vec2::ZERO, turn);
-        let contour = ContourPixel { x, y, share, own_sees_surface: true, others: 0, other_at, own_turn };
+        let contour =
+            ContourPixel { x, y, share, own_sees_surface: true, others: 0, other_at, own_turn };
         Self { contour: Some(contour), amended }
     }
+
     /// A pixel without surface next to one.
     fn outside(window: &PixelWindow, (x, y): (i32, i32)) -> Self {
         let seeds = BESIDE.map(|beside| 1u64 << beside.bit & window.covered);
         let pieces = seeds.map(|seed| window.pieces(seed, 0).0);
-        let Some(&other) = pieces.iter().max_by_key(|piece| piece.count_ones()) else { return Self::default() };
+        let Some(&other) = pieces.iter().max_by_key(|piece| piece.count_ones()) else {
+            return Self::default();
+        };
         if other == 0 {
             return Self::default();
         }
         let across = Across { own: window.nothing(), other, is_near: false, is_crease: false };
-        Self { contour: contour_pixel(window, shared(window, across), (x, y), (0, other)), amended: None }
+        Self {
+            contour: contour_pixel(window, shared(window, across), (x, y), (0, other)),
+            amended: None,
+        }
     }
-    /// A pixel that continues none of its neighbours, at a depth between theirs: a renderer mixed both sides in it.
+
+    /// A pixel that continues none of its neighbours, at a depth between theirs: a renderer mixed
+    /// both sides in it.
     fn between(window: &PixelWindow, (x, y): (i32, i32)) -> Option<Self> {
-        let mut beside: Vec<u32> =
-            BESIDE.iter().map(|beside| beside.bit).filter(|&i| window.covered >> i & 1 == 1).collect();
+        let mut beside: Vec<u32> = BESIDE
+            .iter()
+            .map(|beside| beside.bit)
+            .filter(|&i| window.covered >> i & 1 == 1)
+            .collect();
         beside.sort_by(|&a, &b| window.depth(a).total_cmp(&window.depth(b)));
         let (&near, &far) = (beside.first()?, beside.last()?);
         let (front, here, back) = (window.depth(near), window.depth(CENTER), window.depth(far));
@@ -210,7 +250,9 @@ impl Examined {
         let (near, far) = window.pieces(1 << near, 1 << far);
         let (near, far) = (near & !center, far & !center);
         let guess = ContourLine::of_mask(near, window.inside & !center);
-        let line = guess.and_then(|guess| ContourLine::of_normals(window, near, window.inside & !center, guess));
+        let line = guess.and_then(|guess| {
+            ContourLine::of_normals(window, near, window.inside & !center, guess)
+        });
         // Depth is mixed in the same shares.
         let by_depth = (back - here) / (back - front);
         let own_is_near = line.map_or(by_depth, ContourLine::near_share) >= 0.5;
@@ -270,9 +312,11 @@ fn contour_pixel(
 /// How the middle pixel is shared; `None` where no single edge passes.
 fn shared(window: &PixelWindow, across: Across) -> Option<Shared> {
     if across.is_crease {
-        // Noise and detail turn like a crease here and there; an edge of the surface is straight for some pixels.
-        let is_edge =
-            |line: &ContourLine| line.explains(across.own, window.inside, 0.0, CREASE_TOLERANCE_PX, EXPLAINED_PX);
+        // Noise and detail turn like a crease here and there; an edge of the surface is straight
+        // for some pixels.
+        let is_edge = |line: &ContourLine| {
+            line.explains(across.own, window.inside, 0.0, CREASE_TOLERANCE_PX, EXPLAINED_PX)
+        };
         let guess = ContourLine::of_mask(across.own, window.inside).filter(is_edge)?;
         let line = ContourLine::of_depths(window, across.own, across.other).unwrap_or(guess);
         return Some(Shared::by(line.with_center(true), true));
@@ -286,7 +330,10 @@ fn shared(window: &PixelWindow, across: Across) -> Option<Shared> {
 }
 
 /// The middle pixel's own reading, where its normal is mixed of both sides'.
-fn unmixed(window: &PixelWindow, Across { own, other, is_crease, .. }: Across) -> Option<AmendedReading> {
+fn unmixed(
+    window: &PixelWindow,
+    Across { own, other, is_crease, .. }: Across,
+) -> Option<AmendedReading> {
     let rest = own & !(1 << CENTER);
     // Where the surface goes on, what lies between is its own shape.
     if is_crease || other == 0 || rest.count_ones() < 4 {

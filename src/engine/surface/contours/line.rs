@@ -1,6 +1,6 @@
-//! The straight line by which a contour is described within a pixel's window, and the share of the pixel on its nearer
-//! side (MATH 10).
-//! Floor 2. Pure functions of a window. Not here: which pixels are looked at (`find`).
+//! The straight line by which a contour is described within a pixel's window, and the share of the
+//! pixel on its nearer side (MATH 10). Floor 2. Pure functions of a window. Not here: which pixels
+//! are looked at (`find`).
 
 use super::plane::LeastSquaresPlane;
 use super::window::{PIXELS, PixelWindow, offset_of};
@@ -16,13 +16,13 @@ pub struct ContourLine {
     pub toward_near: Vec2,
 }
 
-/// Standard deviations of the windows' Gaussians, px: of the mask's line where it is straight all over the window, and
-/// elsewhere.
+/// Standard deviations of the windows' Gaussians, px: of the mask's line where it is straight all
+/// over the window, and elsewhere.
 const STRAIGHT_SIGMA: f32 = 2.0;
 const MASK_SIGMA: f32 = 1.2;
-/// How far a line may lie on the wrong side of a pixel's centre that it should explain, px; what is added by squared
-/// distance, since contours bend: so far a circle of 25 px is from its tangent; and within what distance of the middle
-/// pixel.
+/// How far a line may lie on the wrong side of a pixel's centre that it should explain, px; what is
+/// added by squared distance, since contours bend: so far a circle of 25 px is from its tangent;
+/// and within what distance of the middle pixel.
 const TOLERANCE_PX: f32 = 0.1;
 const BEND_PER_PX: f32 = 0.02;
 pub const EXPLAINED_PX: f32 = 2.24;
@@ -34,8 +34,9 @@ pub const ALIKE: f32 = 0.7;
 const LEAST_FOR_A_LINE: u32 = 6;
 /// The share of a straight edge's contrast that a mask must have to be taken for one.
 const LEAST_CONTRAST: f32 = 0.5;
-/// A Gaussian mean's distance from ½ is taken this many times: a window of 7 px holds 0.92 of a Gaussian of σ = 2 px.
-/// The narrow one is whole, but it sees few pixels, and drawn to ½ by as much its line is nearer the truth.
+/// A Gaussian mean's distance from ½ is taken this many times: a window of 7 px holds 0.92 of a
+/// Gaussian of σ = 2 px. The narrow one is whole, but it sees few pixels, and drawn to ½ by as much
+/// its line is nearer the truth.
 const WITHIN_WINDOW: f32 = 0.92;
 
 impl ContourLine {
@@ -53,16 +54,19 @@ impl ContourLine {
         let share = share.clamp(0.0, 1.0);
         if d >= 0.0 { share } else { 1.0 - share }
     }
+
     /// The same line with its sides exchanged.
     pub fn turned(self) -> Self {
         Self { distance_px: -self.distance_px, toward_near: -self.toward_near }
     }
+
     /// From the line to a point, px; positive on the nearer side. `from_center`: px.
     pub fn height(self, from_center: Vec2) -> f32 {
         self.distance_px + self.toward_near.dot(from_center)
     }
-    /// The centroid of the unit pixel's area on the nearer side, from the pixel's centre, px; the centre where there is
-    /// no such area.
+
+    /// The centroid of the unit pixel's area on the nearer side, from the pixel's centre, px; the
+    /// centre where there is no such area.
     pub fn near_middle(self) -> Vec2 {
         let corners = [vec2(-0.5, -0.5), vec2(0.5, -0.5), vec2(0.5, 0.5), vec2(-0.5, 0.5)];
         let mut outline: Vec<Vec2> = Vec::with_capacity(5);
@@ -79,26 +83,30 @@ impl ContourLine {
         let (mut area, mut moment) = (0.0, Vec2::ZERO);
         for pair in outline.windows(2).skip(1) {
             let twice = (pair[0] - outline[0]).perp_dot(pair[1] - outline[0]);
-            (area, moment) = (area + twice, moment + twice * (outline[0] + pair[0] + pair[1]) / 3.0);
+            (area, moment) =
+                (area + twice, moment + twice * (outline[0] + pair[0] + pair[1]) / 3.0);
         }
         if area > 1e-6 { moment / area } else { Vec2::ZERO }
     }
-    /// The line that a binary mask of the nearer side gives. Where a line of the wide Gaussian explains all of the
-    /// window, as at a straight edge, it is that one: the more pixels, the finer the line. Where the contour bends, at
-    /// corners and thin strokes, it is that of the narrow one. `None` where the mask is no single edge, such as at a
-    /// thin wire.
+
+    /// The line that a binary mask of the nearer side gives. Where a line of the wide Gaussian
+    /// explains all of the window, as at a straight edge, it is that one: the more pixels, the
+    /// finer the line. Where the contour bends, at corners and thin strokes, it is that of the
+    /// narrow one. `None` where the mask is no single edge, such as at a thin wire.
     ///
     /// * `near`, `known`: bits of the window: on the nearer side; to be counted at all.
     pub fn of_mask(near: u64, known: u64) -> Option<Self> {
         let narrow = Self::of_moments(near, known, MASK_SIGMA, &MASK_WEIGHTS)?;
-        let wide = Self::of_moments(near, known, STRAIGHT_SIGMA, &STRAIGHT_WEIGHTS).filter(|wide| {
-            let is_alike = wide.toward_near.dot(narrow.toward_near) >= ALIKE;
-            is_alike && wide.explains(near, known, 0.0, TOLERANCE_PX, WINDOW_PX)
-        });
+        let wide =
+            Self::of_moments(near, known, STRAIGHT_SIGMA, &STRAIGHT_WEIGHTS).filter(|wide| {
+                let is_alike = wide.toward_near.dot(narrow.toward_near) >= ALIKE;
+                is_alike && wide.explains(near, known, 0.0, TOLERANCE_PX, WINDOW_PX)
+            });
         Some(wide.unwrap_or(narrow))
     }
-    /// A Gaussian mean of a step is Φ(d / σ), so that d = σ Φ⁻¹ of it, from the middle of the known pixels; its
-    /// direction is that of the first moments.
+
+    /// A Gaussian mean of a step is Φ(d / σ), so that d = σ Φ⁻¹ of it, from the middle of the known
+    /// pixels; its direction is that of the first moments.
     ///
     /// * `sigma`: σ of `weights`, px.
     fn of_moments(near: u64, known: u64, sigma: f32, weights: &WindowGaussian) -> Option<Self> {
@@ -116,12 +124,16 @@ impl ContourLine {
         let gradient = (moment - mean * shift) / all;
         let quantile = normal_quantile(0.5 + WITHIN_WINDOW * (mean - 0.5));
         // A step at this distance has first moments of σ φ(d / σ).
-        let expected = sigma * (-0.5 * quantile * quantile).exp() / (2.0 * std::f32::consts::PI).sqrt();
-        let toward_near = gradient.try_normalize().filter(|_| gradient.length() > LEAST_CONTRAST * expected)?;
+        let expected =
+            sigma * (-0.5 * quantile * quantile).exp() / (2.0 * std::f32::consts::PI).sqrt();
+        let toward_near =
+            gradient.try_normalize().filter(|_| gradient.length() > LEAST_CONTRAST * expected)?;
         Some(Self { distance_px: sigma * quantile - toward_near.dot(shift / all), toward_near })
     }
-    /// The line along which two pieces of surface meet at a crease: where planes fitted to their depths are equally
-    /// deep. `None` where it contradicts which pixels show which: coarse depth does not show it.
+
+    /// The line along which two pieces of surface meet at a crease: where planes fitted to their
+    /// depths are equally deep. `None` where it contradicts which pixels show which: coarse depth
+    /// does not show it.
     ///
     /// * `own`, `other`: bits of the window; the nearer side of the line is `own`.
     pub fn of_depths(window: &PixelWindow, own: u64, other: u64) -> Option<Self> {
@@ -137,12 +149,22 @@ impl ContourLine {
             return None;
         }
         let line = Self { distance_px: here / steepness, toward_near: slope / steepness };
-        [line, line.turned()].into_iter().find(|line| line.explains(own, own | other, 0.0, TOLERANCE_PX, EXPLAINED_PX))
+        [line, line.turned()]
+            .into_iter()
+            .find(|line| line.explains(own, own | other, 0.0, TOLERANCE_PX, EXPLAINED_PX))
     }
+
     /// Pixels within `reach_px` of the middle one lie on their side of the line, but for a little.
     ///
     /// * `bend`: the contour's curvature, as far as it is known, per px.
-    pub fn explains(&self, near: u64, known: u64, bend: f32, tolerance_px: f32, reach_px: f32) -> bool {
+    pub fn explains(
+        &self,
+        near: u64,
+        known: u64,
+        bend: f32,
+        tolerance_px: f32,
+        reach_px: f32,
+    ) -> bool {
         bits(known).all(|i| {
             let at = offset_of(i);
             let d = self.distance_to(at, bend);
@@ -151,12 +173,14 @@ impl ContourLine {
             away > reach_px || if near >> i & 1 == 1 { d } else { -d } >= -tolerance
         })
     }
+
     /// The component along the line.
     pub fn along(self, v: Vec2) -> f32 {
         v.dot(self.toward_near.perp())
     }
-    /// The distance of a place from the line, or from a circle that touches it next to the pixel's centre, px; positive
-    /// on the nearer side.
+
+    /// The distance of a place from the line, or from a circle that touches it next to the pixel's
+    /// centre, px; positive on the nearer side.
     ///
     /// * `place`: from the pixel's centre, px.
     /// * `bend`: the circle's curvature, per px; positive where the nearer side is inside.
@@ -165,11 +189,14 @@ impl ContourLine {
         let from_middle = vec2(1.0 - bend * across, bend * along).length();
         (2.0 * across - bend * (across * across + along * along)) / (1.0 + from_middle)
     }
+
     /// The place with that distance from the line itself: moved across it.
     pub fn straightened(self, place: Vec2, bend: f32) -> Vec2 {
         place + (self.distance_to(place, bend) - self.height(place)) * self.toward_near
     }
-    /// The same line, moved so far that the middle pixel's centre lies on the side that it was seen on.
+
+    /// The same line, moved so far that the middle pixel's centre lies on the side that it was seen
+    /// on.
     pub fn with_center(self, is_near: bool) -> Self {
         let d = self.distance_px;
         Self { distance_px: if is_near { d.max(0.0) } else { d.min(0.0) }, ..self }
@@ -185,8 +212,8 @@ pub fn bits(mut set: u64) -> impl Iterator<Item = u32> {
     })
 }
 
-/// Φ⁻¹: the quantile of the standard normal distribution, within 4.5e-4 (Abramowitz and Stegun 1964, 26.2.23).
-/// `p`: in (0, 1).
+/// Φ⁻¹: the quantile of the standard normal distribution, within 4.5e-4 (Abramowitz and Stegun
+/// 1964, 26.2.23). `p`: in (0, 1).
 fn normal_quantile(p: f32) -> f32 {
     let tail = p.min(1.0 - p).max(f32::MIN_POSITIVE);
     let t = (-2.0 * tail.ln()).sqrt();
@@ -211,7 +238,8 @@ fn gaussian(sigma: f32) -> [f32; PIXELS] {
     std::array::from_fn(|i| (-offset_of(i as u32).length_squared() / (2.0 * sigma * sigma)).exp())
 }
 
-static STRAIGHT_WEIGHTS: WindowGaussian = WindowGaussian(LazyLock::new(|| gaussian(STRAIGHT_SIGMA)));
+static STRAIGHT_WEIGHTS: WindowGaussian =
+    WindowGaussian(LazyLock::new(|| gaussian(STRAIGHT_SIGMA)));
 static MASK_WEIGHTS: WindowGaussian = WindowGaussian(LazyLock::new(|| gaussian(MASK_SIGMA)));
 /// For maps that are continued as planes.
 pub static CONTINUED_WEIGHTS: WindowGaussian = WindowGaussian(LazyLock::new(|| gaussian(1.2)));
@@ -226,9 +254,11 @@ mod tests {
     /// The share of 64 × 64 points of a pixel on the nearer side.
     fn counted(line: ContourLine) -> f32 {
         let at = |i: u32| (i as f32 + 0.5) / 64.0 - 0.5;
-        let is_near = |i: u32| line.distance_px + line.toward_near.dot(vec2(at(i % 64), at(i / 64))) > 0.0;
+        let is_near =
+            |i: u32| line.distance_px + line.toward_near.dot(vec2(at(i % 64), at(i / 64))) > 0.0;
         (0..4096).filter(|&i| is_near(i)).count() as f32 / 4096.0
     }
+
     #[test]
     fn the_share_is_the_area_on_the_nearer_side() {
         for turn in 0..24 {
@@ -240,6 +270,7 @@ mod tests {
             }
         }
     }
+
     #[test]
     fn a_straight_edge_is_found_again_in_its_binary_mask() {
         let (mut sum, mut count) = (0.0, 0.0);
@@ -247,7 +278,8 @@ mod tests {
             let toward_near = Vec2::from_angle(turn as f32 * 0.157);
             for step in 0..10 {
                 let true_line = ContourLine { distance_px: step as f32 * 0.05 + 0.02, toward_near };
-                let near = (0..49).filter(|&i| true_line.distance_px + toward_near.dot(offset_of(i)) >= 0.0);
+                let near = (0..49)
+                    .filter(|&i| true_line.distance_px + toward_near.dot(offset_of(i)) >= 0.0);
                 let near = near.fold(0, |set, i| set | 1 << i);
                 let found = ContourLine::of_mask(near, ALL).unwrap();
                 assert!(found.toward_near.dot(toward_near) > 0.93, "{found:?} for {true_line:?}");
@@ -255,27 +287,33 @@ mod tests {
                 count += 1.0;
             }
         }
-        // Without the line the error is 0.25; a binary mask says nothing about an edge along the pixels.
+        // Without the line the error is 0.25; a binary mask says nothing about an edge along the
+        // pixels.
         assert!(sum / count < 0.1, "{}", sum / count);
     }
+
     #[test]
     fn a_line_of_the_whole_window_is_taken_for_straight_edges_alone() {
-        let of =
-            |is_near: &dyn Fn(Vec2) -> bool| (0..49).filter(|&i| is_near(offset_of(i))).fold(0, |set, i| set | 1 << i);
+        let of = |is_near: &dyn Fn(Vec2) -> bool| {
+            (0..49).filter(|&i| is_near(offset_of(i))).fold(0, |set, i| set | 1 << i)
+        };
         let is_narrow = |near: u64| {
-            ContourLine::of_mask(near, ALL) == ContourLine::of_moments(near, ALL, MASK_SIGMA, &MASK_WEIGHTS)
+            ContourLine::of_mask(near, ALL)
+                == ContourLine::of_moments(near, ALL, MASK_SIGMA, &MASK_WEIGHTS)
         };
         let toward = Vec2::from_angle(0.3);
         assert!(!is_narrow(of(&|at| toward.dot(at) > -0.2)), "an edge");
         assert!(is_narrow(of(&|at| (-0.2..2.8).contains(&toward.dot(at)))), "a stroke of 3 px");
         assert!(is_narrow(of(&|at| at.x > -0.5 && at.y > -0.5)), "a corner");
     }
+
     #[test]
     fn a_wire_is_no_edge() {
         let column = |x: u32| (0..7).fold(0u64, |set, y| set | 1 << (y * 7 + x));
         assert!(ContourLine::of_mask(column(3), ALL).is_none());
         assert!(ContourLine::of_mask(column(3) | column(4) | column(5) | column(6), ALL).is_some());
     }
+
     #[test]
     fn quantiles_are_those_of_the_table() {
         for (p, z) in [(0.5, 0.0), (0.841_345, 1.0), (0.022_750, -2.0), (0.999, 3.090_232)] {

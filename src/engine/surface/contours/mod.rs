@@ -1,8 +1,8 @@
-//! Contours: where one piece of the surface ends before another, or before nothing. A pixel there is seen by two
-//! populations: its own, whose readings the maps hold, and the other, for which the maps are continued from its side
-//! (MATH 10).
-//! Floor 2. Here: which pixels these are, the share of each population, and where the other one's readings are kept.
-//! Not here: mixing both (`document::compose`).
+//! Contours: where one piece of the surface ends before another, or before nothing. A pixel there
+//! is seen by two populations: its own, whose readings the maps hold, and the other, for which the
+//! maps are continued from its side (MATH 10). Floor 2. Here: which pixels these are, the share of
+//! each population, and where the other one's readings are kept. Not here: mixing both
+//! (`document::compose`).
 
 mod continued;
 mod enlarged;
@@ -38,22 +38,24 @@ pub struct ContourPixel {
     /// Canvas pixel.
     pub x: i32,
     pub y: i32,
-    /// The share that its own population sees, `[0, 1]`: the one whose readings the maps hold at the pixel, or no
-    /// surface where they hold none.
+    /// The share that its own population sees, `[0, 1]`: the one whose readings the maps hold at
+    /// the pixel, or no surface where they hold none.
     pub share: f32,
     /// Its own population sees a surface.
     own_sees_surface: bool,
-    /// Which pixels of the window around it belong to the other population's piece of surface; none where it sees no
-    /// surface.
+    /// Which pixels of the window around it belong to the other population's piece of surface; none
+    /// where it sees no surface.
     others: u64,
-    /// The middle of what the other population sees, from the pixel's centre, px: what is read for it is read there.
+    /// The middle of what the other population sees, from the pixel's centre, px: what is read for
+    /// it is read there.
     other_at: Vec2,
     /// How n̄ differs in the middle of what its own population sees from the pixel's centre.
     own_turn: Vec2,
 }
 
 impl ContourPixel {
-    /// The unit normal (camera space) in the middle of what the pixel's own population sees, from that at its centre.
+    /// The unit normal (camera space) in the middle of what the pixel's own population sees, from
+    /// that at its centre.
     pub fn own_normal(&self, center: Vec3) -> Vec3 {
         if self.own_turn == Vec2::ZERO || center.z <= 0.0 {
             return center;
@@ -61,14 +63,17 @@ impl ContourPixel {
         let nbar = continued::within_rim(vec2(center.x, -center.y) + self.own_turn);
         vec3(nbar.x, -nbar.y, continued::nz_of(nbar))
     }
+
     /// The other population sees a surface.
     pub fn sees_surface(&self) -> bool {
         self.others != 0
     }
+
     /// Its own population sees a surface: the mask covers the pixel.
     pub fn own_sees_surface(&self) -> bool {
         self.own_sees_surface
     }
+
     /// Both populations see a surface.
     pub fn is_between_parts(&self) -> bool {
         self.own_sees_surface && self.sees_surface()
@@ -121,14 +126,18 @@ impl<'c> TileContours<'c> {
 }
 
 impl Contours {
-    /// The most pixels of a tile whose other population sees a surface; of more, those most evenly shared are taken.
-    /// Their readings fill a tile of the sheet.
+    /// The most pixels of a tile whose other population sees a surface; of more, those most evenly
+    /// shared are taken. Their readings fill a tile of the sheet.
     pub const MOST_SEEN: usize = 1024;
 
     fn of_tiles(size: Size, found: Vec<Vec<ContourPixel>>) -> Self {
         let columns = size.width.div_ceil(crate::raster::TILE as u32) as i32;
-        let mut contours =
-            Self { columns, tiles: Vec::with_capacity(found.len()), pixels: Vec::new(), sheet_rows: Vec::new() };
+        let mut contours = Self {
+            columns,
+            tiles: Vec::with_capacity(found.len()),
+            pixels: Vec::new(),
+            sheet_rows: Vec::new(),
+        };
         for mut tile in found {
             let start = contours.pixels.len();
             sheet::sort(&mut tile);
@@ -142,32 +151,47 @@ impl Contours {
         contours.pixels.shrink_to_fit();
         contours
     }
+
     /// There is none.
     pub fn is_empty(&self) -> bool {
         self.pixels.is_empty()
     }
+
     /// Every contour pixel, tile by tile.
     pub fn pixels(&self) -> &[ContourPixel] {
         &self.pixels
     }
+
     /// Those of a tile of the canvas; `None` where there are none.
     pub fn on(&self, at: TileAt) -> Option<TileContours<'_>> {
         let is_column = (0..self.columns).contains(&at.col) && at.row >= 0;
-        let tile = self.tiles.get((at.row * self.columns + at.col) as usize).filter(|_| is_column)?;
+        let tile =
+            self.tiles.get((at.row * self.columns + at.col) as usize).filter(|_| is_column)?;
         let pixels = &self.pixels[tile.start as usize..tile.end as usize];
         let seen = (tile.seen - tile.start) as usize;
-        (!pixels.is_empty()).then(|| TileContours { pixels, seen, sheet: sheet::rect(tile.sheet_row, seen) })
+        (!pixels.is_empty()).then(|| TileContours {
+            pixels,
+            seen,
+            sheet: sheet::rect(tile.sheet_row, seen),
+        })
     }
+
     /// A pixel of the canvas, if it is one.
     pub fn at(&self, x: i32, y: i32) -> Option<&ContourPixel> {
         self.on(TileAt::of_pixel(x, y))?.in_row(y).find(|pixel| pixel.x == x)
     }
+
     /// The tiles with pixels whose other population sees a surface.
     pub fn seen_tiles(&self) -> impl Iterator<Item = TileAt> + '_ {
         let columns = self.columns.max(1);
         let at = move |i: usize| TileAt::new(i as i32 % columns, i as i32 / columns);
-        self.tiles.iter().enumerate().filter(|(_, tile)| tile.seen > tile.start).map(move |(i, _)| at(i))
+        self.tiles
+            .iter()
+            .enumerate()
+            .filter(|(_, tile)| tile.seen > tile.start)
+            .map(move |(i, _)| at(i))
     }
+
     /// Bytes that they and the other populations' readings take.
     pub fn bytes(&self) -> u64 {
         let pixels = self.pixels.len() * size_of::<ContourPixel>();

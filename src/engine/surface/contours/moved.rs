@@ -11,8 +11,10 @@ use crate::raster::TILE;
 impl Contours {
     /// The same contours where a move takes them, those on a canvas of another size alone.
     pub(in crate::surface) fn moved(&self, by: PixelMove, canvas: Size) -> Self {
-        let (columns, rows) =
-            (canvas.width.div_ceil(TILE as u32) as usize, canvas.height.div_ceil(TILE as u32) as usize);
+        let (columns, rows) = (
+            canvas.width.div_ceil(TILE as u32) as usize,
+            canvas.height.div_ceil(TILE as u32) as usize,
+        );
         let mut tiles: Vec<Vec<ContourPixel>> = vec![Vec::new(); columns * rows];
         for pixel in &self.pixels {
             let (x, y) = by.target(pixel.x, pixel.y);
@@ -25,7 +27,8 @@ impl Contours {
             // What it saw beyond its own edge was cut away.
             let is_blind = others == 0 && pixel.others != 0;
             if canvas.rect().contains(x, y) && !is_blind {
-                let [other_at, own_turn] = [pixel.other_at, pixel.own_turn].map(|v| by.turned_vector(v));
+                let [other_at, own_turn] =
+                    [pixel.other_at, pixel.own_turn].map(|v| by.turned_vector(v));
                 let tile = &mut tiles[y as usize / TILE * columns + x as usize / TILE];
                 tile.push(ContourPixel { x, y, others, other_at, own_turn, ..*pixel });
             }

@@ -14,7 +14,8 @@ pub struct LeastSquaresPlane {
 }
 
 impl LeastSquaresPlane {
-    /// `ridge`: added to both slopes' weights, so that few pixels give a flat plane. `None` without any weight.
+    /// `ridge`: added to both slopes' weights, so that few pixels give a flat plane. `None` without
+    /// any weight.
     pub fn weighted(
         members: impl Iterator<Item = u32>,
         ridge: f32,
@@ -26,6 +27,7 @@ impl LeastSquaresPlane {
         })?;
         Some(plane)
     }
+
     /// The planes of several values that have the same weights.
     pub fn of_each<const N: usize>(
         members: impl Iterator<Item = u32>,
@@ -58,7 +60,11 @@ impl LeastSquaresPlane {
         let det = a * c - b * b;
         Some(of_values.map(|[v, xv, yv]| {
             let (p, q) = (xv - x * v / w, yv - y * v / w);
-            let (sx, sy) = if det > 1e-18 { ((c * p - b * q) / det, (a * q - b * p) / det) } else { (0.0, 0.0) };
+            let (sx, sy) = if det > 1e-18 {
+                ((c * p - b * q) / det, (a * q - b * p) / det)
+            } else {
+                (0.0, 0.0)
+            };
             let here = (v - sx * x - sy * y) / w;
             Self { here: here as f32, slope: vec2(sx as f32, sy as f32) }
         }))
@@ -75,9 +81,15 @@ mod tests {
     fn a_plane_is_fitted_exactly() {
         let value = |i: u32| (1.0, 3.0 + vec2(0.5, -0.25).dot(offset_of(i)));
         let fit = LeastSquaresPlane::weighted(bits(0b1011 << 14), 0.0, value);
-        assert!(fit.is_some_and(|fit| fit.slope.y == 0.0), "one row tells nothing about y: {fit:?}");
+        assert!(
+            fit.is_some_and(|fit| fit.slope.y == 0.0),
+            "one row tells nothing about y: {fit:?}"
+        );
         let fit = LeastSquaresPlane::weighted(bits(ALL & !0xfff), 0.0, value).unwrap();
-        assert!((fit.here - 3.0).abs() < 1e-5 && (fit.slope - vec2(0.5, -0.25)).length() < 1e-5, "{fit:?}");
+        assert!(
+            (fit.here - 3.0).abs() < 1e-5 && (fit.slope - vec2(0.5, -0.25)).length() < 1e-5,
+            "{fit:?}"
+        );
         assert!(LeastSquaresPlane::weighted(bits(0), 1.0, value).is_none());
     }
 }

@@ -1,5 +1,5 @@
-//! The line of a contour that normals give: where those of the nearer piece turn away from the viewer (MATH 10).
-//! Floor 2. Pure functions of a window.
+//! The line of a contour that normals give: where those of the nearer piece turn away from the
+//! viewer (MATH 10). Floor 2. Pure functions of a window.
 
 use super::line::{ALIKE, ContourLine, EXPLAINED_PX, NEAREST_WEIGHTS, bits};
 use super::window::{PIXELS, PixelWindow, offset_of};
@@ -14,7 +14,8 @@ const LEAST_PIXELS_FOR_CHANGE: usize = 7;
 const PASSES: usize = 3;
 /// The sharpest bend of a rim that is believed, per px.
 const SHARPEST_BEND: f32 = 0.3;
-/// Added to the squares of places along the rim, px²: next to nothing, but where they are all the same.
+/// Added to the squares of places along the rim, px²: next to nothing, but where they are all the
+/// same.
 const PLACES_RIDGE: f32 = 1e-4;
 /// Added to the sums that are divided by: next to nothing, but where all pixels lie in a row.
 const PIVOT_RIDGE: f64 = 1e-9;
@@ -25,37 +26,47 @@ const LEAST_NOISE: f64 = 1e-8;
 /// The rim is farther off than is looked, px; or normals do not turn, per px.
 const OUT_OF_REACH_PX: f32 = 2.0;
 const LEVEL: f64 = 1e-5;
-/// How far the line may lie on the wrong side of a pixel's centre, px, and from the mask's own line.
+/// How far the line may lie on the wrong side of a pixel's centre, px, and from the mask's own
+/// line.
 const TOLERANCE_PX: f32 = 0.05;
 const FARTHEST_PX: f32 = 0.7;
 /// The share of the variance of how far normals turn that the distance from the rim must explain.
 const LEAST_EXPLAINED: f32 = 0.985;
 
 impl ContourLine {
-    /// The line that the nearer side's normals give: at a smooth silhouette they turn away from the viewer, n_z = 0.
-    /// `None` where it contradicts the mask, or where normals do not turn evenly: scanned and coarse meshes have
-    /// interpolated ones that never reach the rim.
+    /// The line that the nearer side's normals give: at a smooth silhouette they turn away from the
+    /// viewer, n_z = 0. `None` where it contradicts the mask, or where normals do not turn evenly:
+    /// scanned and coarse meshes have interpolated ones that never reach the rim.
     ///
     /// * `guess`: the mask's own line.
-    pub fn of_normals(window: &PixelWindow, near: u64, known: u64, guess: ContourLine) -> Option<Self> {
+    pub fn of_normals(
+        window: &PixelWindow,
+        near: u64,
+        known: u64,
+        guess: ContourLine,
+    ) -> Option<Self> {
         let normals = PieceNormals::turned_from(window, near, guess);
         if normals.count < LEAST_PIXELS {
             return None;
         }
         let start = FittedRim { line: guess, bend: 0.0, explained: 0.0 };
-        let FittedRim { line, bend, explained } = (0..PASSES).try_fold(start, |fitted, _| normals.rim(fitted.line))?;
-        let in_reach = (-1.2..1.5).contains(&line.distance_px) && line.toward_near.dot(guess.toward_near) >= ALIKE;
+        let FittedRim { line, bend, explained } =
+            (0..PASSES).try_fold(start, |fitted, _| normals.rim(fitted.line))?;
+        let in_reach = (-1.2..1.5).contains(&line.distance_px)
+            && line.toward_near.dot(guess.toward_near) >= ALIKE;
         let agrees = in_reach && line.explains(near, known, bend, TOLERANCE_PX, EXPLAINED_PX);
         if !agrees || explained < LEAST_EXPLAINED {
             return None;
         }
-        let distance_px = line.distance_px.clamp(guess.distance_px - FARTHEST_PX, guess.distance_px + FARTHEST_PX);
+        let distance_px = line
+            .distance_px
+            .clamp(guess.distance_px - FARTHEST_PX, guess.distance_px + FARTHEST_PX);
         Some(Self { distance_px, ..line })
     }
 }
 
-/// The tangent of the rim next to a pixel's centre, its curvature per px, and the share of the variance of f that the
-/// distance from the rim explains.
+/// The tangent of the rim next to a pixel's centre, its curvature per px, and the share of the
+/// variance of f that the distance from the rim explains.
 struct FittedRim {
     line: ContourLine,
     bend: f32,
@@ -99,10 +110,13 @@ impl PieceNormals {
         }
         normals
     }
+
     fn pixels(&self) -> &[PiecePixel] {
         &self.pixels[..self.count]
     }
-    /// Along a rim, n̄ turns with its bend, and off it with its tilt: n̄·v = tilt · n_z + bend · s, by least squares.
+
+    /// Along a rim, n̄ turns with its bend, and off it with its tilt: n̄·v = tilt · n_z + bend · s,
+    /// by least squares.
     fn shape(&self, line: ContourLine) -> RimShape {
         let (mut zz, mut zs, mut ss, mut zn, mut sn) = (0.0, 0.0, PLACES_RIDGE, 0.0, 0.0);
         for pixel in self.pixels() {
@@ -113,10 +127,14 @@ impl PieceNormals {
         }
         let determinant = (zz * ss - zs * zs).max(f32::MIN_POSITIVE);
         let bend = (zz * sn - zs * zn) / determinant;
-        RimShape { tilt: (ss * zn - zs * sn) / determinant, bend: bend.clamp(-SHARPEST_BEND, SHARPEST_BEND) }
+        RimShape {
+            tilt: (ss * zn - zs * sn) / determinant,
+            bend: bend.clamp(-SHARPEST_BEND, SHARPEST_BEND),
+        }
     }
-    /// The rim, from a line near it. On spheres, and on cylinders however they are tilted, the normals' turn
-    /// f = 1 − √(1 − (1 + tilt²) n_z²) grows evenly with the distance from the rim.
+
+    /// The rim, from a line near it. On spheres, and on cylinders however they are tilted, the
+    /// normals' turn f = 1 − √(1 − (1 + tilt²) n_z²) grows evenly with the distance from the rim.
     fn rim(&self, near_it: ContourLine) -> Option<FittedRim> {
         let RimShape { tilt, bend } = self.shape(near_it);
         let mut turns = TurnSums::default();
@@ -131,28 +149,37 @@ impl PieceNormals {
     }
 }
 
-/// Weighted sums over pixels of 1, x, y, f, f², x², xy, xf, xf², y², yf, yf², f², f³ and f⁴: f is how far their normals
-/// have turned from those of the rim, and (x, y) are places at which the rim is straight.
+/// Weighted sums over pixels of 1, x, y, f, f², x², xy, xf, xf², y², yf, yf², f², f³ and f⁴: f is
+/// how far their normals have turned from those of the rim, and (x, y) are places at which the rim
+/// is straight.
 #[derive(Default)]
 struct TurnSums([f64; 15]);
 
 impl TurnSums {
     fn add(&mut self, weight: f32, place: Vec2, f: f32) {
-        let (w, x, y, f) = (f64::from(weight), f64::from(place.x), f64::from(place.y), f64::from(f));
+        let (w, x, y, f) =
+            (f64::from(weight), f64::from(place.x), f64::from(place.y), f64::from(f));
         let g = f * f;
-        let products = [1.0, x, y, f, g, x * x, x * y, x * f, x * g, y * y, y * f, y * g, f * f, f * g, g * g];
+        let products =
+            [1.0, x, y, f, g, x * x, x * y, x * f, x * g, y * y, y * f, y * g, f * f, f * g, g * g];
         for (sum, product) in self.0.iter_mut().zip(&products) {
             *sum += w * product;
         }
     }
-    /// Where f = 0, of f = α d + β f² by least squares, and the share of the variance of f that it explains. d is the
-    /// distance from the rim, β how its roundness changes.
+
+    /// Where f = 0, of f = α d + β f² by least squares, and the share of the variance of f that it
+    /// explains. d is the distance from the rim, β how its roundness changes.
     ///
     /// * `changes`: there are enough pixels to tell β.
     fn rim(self, changes: bool) -> Option<(ContourLine, f32)> {
         let [n, x, y, f, g, xx, xy, xf, xg, yy, yf, yg, ff, fg, gg] = self.0;
-        let mut sums =
-            [[n, x, y, f, g], [x, xx, xy, xf, xg], [y, xy, yy, yf, yg], [f, xf, yf, ff, fg], [g, xg, yg, fg, gg]];
+        let mut sums = [
+            [n, x, y, f, g],
+            [x, xx, xy, xf, xg],
+            [y, xy, yy, yf, yg],
+            [f, xf, yf, ff, fg],
+            [g, xg, yg, fg, gg],
+        ];
         let mut variance = 0.0;
         // What 1, x and y explain is taken from f and f² (Frisch and Waugh 1933).
         for k in 0..3 {
@@ -171,18 +198,23 @@ impl TurnSums {
         let [.., [.., ff, fg], [.., gg]] = sums;
         let noise = (ff - fg * fg / gg.max(LEAST_NOISE)).max(LEAST_NOISE);
         // β, drawn to 0 as far as noise may have made it.
-        let change = if changes && gg > LEAST_NOISE { fg / (gg + noise / CHANGE_VARIANCE) } else { 0.0 };
+        let change =
+            if changes && gg > LEAST_NOISE { fg / (gg + noise / CHANGE_VARIANCE) } else { 0.0 };
         let left = ff - 2.0 * change * fg + change * change * gg;
         let value = |k: usize| sums[k][3] - change * sums[k][4];
         let along_y = value(2) / (sums[2][2] + PIVOT_RIDGE);
         let along_x = (value(1) - sums[1][2] * along_y) / (sums[1][1] + PIVOT_RIDGE);
-        let here = (value(0) - sums[0][1] * along_x - sums[0][2] * along_y) / (sums[0][0] + PIVOT_RIDGE);
+        let here =
+            (value(0) - sums[0][1] * along_x - sums[0][2] * along_y) / (sums[0][0] + PIVOT_RIDGE);
         let steepness = along_x.hypot(along_y);
         if steepness < LEVEL {
             return None;
         }
         let toward_near = DVec2::new(along_x, along_y) / steepness;
-        let line = ContourLine { distance_px: (here / steepness) as f32, toward_near: toward_near.as_vec2() };
+        let line = ContourLine {
+            distance_px: (here / steepness) as f32,
+            toward_near: toward_near.as_vec2(),
+        };
         Some((line, if variance > 0.0 { 1.0 - left / variance } else { 0.0 } as f32))
     }
 }
@@ -198,7 +230,10 @@ mod tests {
     const SIZE: Size = Size::new(SIDE as u32, SIDE as u32);
 
     /// The line that normals give of the pixels that are covered.
-    fn line_of(nbar: [Plane<f32>; 2], is_covered: impl Fn(usize, usize) -> bool + Sync) -> Option<ContourLine> {
+    fn line_of(
+        nbar: [Plane<f32>; 2],
+        is_covered: impl Fn(usize, usize) -> bool + Sync,
+    ) -> Option<ContourLine> {
         let coverage = Plane::from_fn(SIZE, |x, y| if is_covered(x, y) { 255 } else { 0 });
         let (depth, links) = (Plane::filled(SIZE, 0.5), Plane::filled(SIZE, 0));
         let maps = ContourMaps {
@@ -214,7 +249,9 @@ mod tests {
         let guess = ContourLine::of_mask(window.covered, ALL)?;
         ContourLine::of_normals(&window, window.covered, ALL, guess)
     }
-    /// The line that the normals of a cylinder give. `tilt`: that of its axis out of the picture plane.
+
+    /// The line that the normals of a cylinder give. `tilt`: that of its axis out of the picture
+    /// plane.
     ///
     /// * `rim`: one of its two; the other one is beyond its axis.
     fn of_cylinder(rim: ContourLine, radius: f32, tilt: f32) -> Option<ContourLine> {
@@ -231,6 +268,7 @@ mod tests {
         let planes = [0, 1].map(|axis| Plane::from_fn(SIZE, |x, y| nbar(x, y)[axis]));
         line_of(planes, |x, y| across(x, y).abs() < 1.0)
     }
+
     /// The line that the normals of a ball give whose middle lies beyond `rim`.
     fn of_ball(rim: ContourLine, radius: f32) -> Option<ContourLine> {
         let middle = (radius - rim.distance_px) * rim.toward_near;
@@ -238,32 +276,45 @@ mod tests {
         let planes = [0, 1].map(|axis| Plane::from_fn(SIZE, |x, y| nbar(x, y)[axis]));
         line_of(planes, |x, y| nbar(x, y).length() < 1.0)
     }
+
     /// Rims of many directions, on either side of the middle pixel's centre.
     fn rims() -> impl Iterator<Item = ContourLine> {
         (0..24).flat_map(|turn| {
             let toward_near = Vec2::from_angle(turn as f32 * 0.27);
-            (0..9).map(move |step| ContourLine { distance_px: step as f32 * 0.1 - 0.4, toward_near })
+            (0..9)
+                .map(move |step| ContourLine { distance_px: step as f32 * 0.1 - 0.4, toward_near })
         })
     }
+
     fn assert_is(line: Option<ContourLine>, rim: ContourLine, most: f32, what: &str) {
         let line = line.unwrap_or_else(|| panic!("{rim:?}, {what}"));
         let error = (line.near_share() - rim.near_share()).abs();
         assert!(error < most, "{line:?} for {rim:?}, {what}: {error}");
     }
+
     #[test]
     fn the_rim_of_a_limb_is_found_however_thin_and_tilted_it_is() {
         for rim in rims() {
-            for (radius, tilt) in [3.0, 4.0, 8.0, 40.0].into_iter().flat_map(|r| [0.0, -0.7, 1.2].map(|t| (r, t))) {
-                assert_is(of_cylinder(rim, radius, tilt), rim, 0.01, &format!("radius {radius}, tilt {tilt}"));
+            for (radius, tilt) in
+                [3.0, 4.0, 8.0, 40.0].into_iter().flat_map(|r| [0.0, -0.7, 1.2].map(|t| (r, t)))
+            {
+                assert_is(
+                    of_cylinder(rim, radius, tilt),
+                    rim,
+                    0.01,
+                    &format!("radius {radius}, tilt {tilt}"),
+                );
             }
         }
     }
+
     #[test]
     fn the_rim_of_a_ball_is_found_however_small_it_is() {
         for (rim, radius) in rims().flat_map(|rim| [4.0, 8.0, 40.0].map(|radius| (rim, radius))) {
             assert_is(of_ball(rim, radius), rim, 0.02, &format!("radius {radius}"));
         }
     }
+
     #[test]
     fn normals_that_never_turn_away_give_no_line() {
         let level = || Plane::filled(SIZE, 0.3);

@@ -1,10 +1,11 @@
-//! The sheet: a small surface that holds what the other populations read. Renderers read it like any surface.
-//! Floor 2.
+//! The sheet: a small surface that holds what the other populations read. Renderers read it like
+//! any surface. Floor 2.
 //!
-//! Each contour pixel takes 2 × 2 pixels of it: the pixel itself, and the readings one pixel to the right and below,
-//! so that differences to linked neighbours show how its maps change. Four by four of them make a block of 8 × 8; eight
-//! blocks lie side by side. The pixels of a tile of the canvas begin with a block of the first column, and are in the
-//! order of the canvas's blocks, so that a dab leaves out most that it does not reach.
+//! Each contour pixel takes 2 × 2 pixels of it: the pixel itself, and the readings one pixel to the
+//! right and below, so that differences to linked neighbours show how its maps change. Four by four
+//! of them make a block of 8 × 8; eight blocks lie side by side. The pixels of a tile of the canvas
+//! begin with a block of the first column, and are in the order of the canvas's blocks, so that a
+//! dab leaves out most that it does not reach.
 
 use super::continued::{Continued, nz_of};
 use super::line::bits;
@@ -39,7 +40,9 @@ pub(super) fn sort(pixels: &mut Vec<ContourPixel>) {
     let seen = pixels.iter().filter(|pixel| pixel.sees_surface()).count();
     if seen > Contours::MOST_SEEN {
         // The least shared go first.
-        pixels.sort_by(|a, b| a.sees_surface().cmp(&b.sees_surface()).then(a.share.total_cmp(&b.share)));
+        pixels.sort_by(|a, b| {
+            a.sees_surface().cmp(&b.sees_surface()).then(a.share.total_cmp(&b.share))
+        });
         pixels.truncate(pixels.len() - (seen - Contours::MOST_SEEN));
     }
     let block = |v: i32| v / BLOCK as i32;
@@ -58,7 +61,8 @@ pub(super) fn rows(pixels: Range<usize>) -> impl Iterator<Item = Range<u32>> {
 /// The pixels of the sheet that hold so many contour pixels.
 pub(super) fn rect(first_row: u32, seen: usize) -> Rect {
     let (blocks, side) = (seen.div_ceil(IN_BLOCK), BLOCK as i32);
-    let (across, rows) = (blocks.min(SHEET_SIDE / BLOCK) as i32, blocks.div_ceil(SHEET_SIDE / BLOCK) as i32);
+    let (across, rows) =
+        (blocks.min(SHEET_SIDE / BLOCK) as i32, blocks.div_ceil(SHEET_SIDE / BLOCK) as i32);
     let y0 = first_row as i32 * side;
     Rect::new(0, y0, across * side, y0 + rows * side)
 }
@@ -68,7 +72,10 @@ pub(super) fn rect(first_row: u32, seen: usize) -> Rect {
 pub fn place_of(i: usize) -> (usize, usize) {
     let (block, inside) = (i / IN_BLOCK, i % IN_BLOCK);
     let across = SHEET_SIDE / BLOCK;
-    (block % across * BLOCK + inside % (BLOCK / 2) * 2, block / across * BLOCK + inside / (BLOCK / 2) * 2)
+    (
+        block % across * BLOCK + inside % (BLOCK / 2) * 2,
+        block / across * BLOCK + inside / (BLOCK / 2) * 2,
+    )
 }
 
 impl SheetOf {
@@ -79,13 +86,16 @@ impl SheetOf {
     pub fn surface(&self) -> Option<Arc<Surface>> {
         self.surface.upgrade()
     }
+
     /// The size of the canvas.
     pub fn canvas(&self) -> Size {
         self.canvas
     }
+
     pub fn contours(&self) -> &Contours {
         &self.contours
     }
+
     /// The contour pixel that a pixel of the sheet belongs to.
     #[inline(always)]
     pub fn contour_pixel(&self, x: usize, y: usize) -> Option<&ContourPixel> {
@@ -94,14 +104,16 @@ impl SheetOf {
         let i = row.start as usize + x / BLOCK * IN_BLOCK + inside;
         self.contours.pixels[..row.end as usize].get(i)
     }
+
     /// The canvas pixel whose readings a pixel of the sheet holds; any where it holds none.
     #[inline(always)]
     pub fn canvas_pixel(&self, x: i32, y: i32) -> (i32, i32) {
         let Some(pixel) = self.contour_pixel(x as usize, y as usize) else { return (0, 0) };
         (pixel.x + (x & 1), pixel.y + (y & 1))
     }
-    /// The blocks of a tile's part of the sheet that hold readings of pixels in some blocks of the tile, or beside
-    /// them; `None` if there are none.
+
+    /// The blocks of a tile's part of the sheet that hold readings of pixels in some blocks of the
+    /// tile, or beside them; `None` if there are none.
     pub fn blocks_under(&self, at: TileAt, touched: &TileBlocks) -> Option<TileBlocks> {
         let contours = self.contours.on(at)?;
         let wide = |bits: u8| bits | bits << 1 | bits >> 1;
@@ -113,21 +125,26 @@ impl SheetOf {
         let block = |v: i32, from: i32| (v - from) as usize / BLOCK;
         let mut blocks = TileBlocks::default();
         for (i, pixels) in contours.pixels[..contours.seen].chunks(IN_BLOCK).enumerate() {
-            let is_near = |p: &ContourPixel| near[block(p.y, corner.y0)] >> block(p.x, corner.x0) & 1 == 1;
+            let is_near =
+                |p: &ContourPixel| near[block(p.y, corner.y0)] >> block(p.x, corner.x0) & 1 == 1;
             if pixels.iter().any(is_near) {
                 blocks[i / (SHEET_SIDE / BLOCK)] |= 1 << (i % (SHEET_SIDE / BLOCK));
             }
         }
         (blocks != TileBlocks::default()).then_some(blocks)
     }
+
     /// A map of the canvas continued over the sheet: as n̄ is.
     pub fn continued(&self, size: Size, map: impl Fn(usize, usize) -> f32 + Sync) -> Plane<f32> {
         Plane::from_fn(size, |x, y| {
             let step = vec2((x & 1) as f32, (y & 1) as f32);
-            self.contour_pixel(x, y).map_or(0.0, |pixel| super::continued::plane_of(pixel, &map, step))
+            self.contour_pixel(x, y)
+                .map_or(0.0, |pixel| super::continued::plane_of(pixel, &map, step))
         })
     }
-    /// A map over the sheet, from each contour pixel's number and the members of its other population.
+
+    /// A map over the sheet, from each contour pixel's number and the members of its other
+    /// population.
     pub fn map<T: Copy + Send + Sync + Default>(
         &self,
         size: Size,
@@ -147,6 +164,7 @@ impl ContourPixel {
         let (dx, dy) = steps_of(bits(self.others).min_by_key(|&i| away(i))?);
         Some((self.x + dx, self.y + dy))
     }
+
     /// The mean of a map of the canvas over the other population's pixels nearby.
     pub fn other_mean(&self, map: impl Fn(usize, usize) -> f32) -> f32 {
         super::mean_of(self.others, (self.x, self.y), map)
@@ -166,16 +184,24 @@ impl SheetMaps {
     fn empty(size: Size) -> Self {
         let still = || Plane::filled(size, 0.0);
         let (coverage, links) = (Plane::filled(size, 0), Plane::filled(size, 0));
-        Self { nbar: [still(), still()], nz: Plane::filled(size, 1.0), depth: still(), coverage, links }
+        Self {
+            nbar: [still(), still()],
+            nz: Plane::filled(size, 1.0),
+            depth: still(),
+            coverage,
+            links,
+        }
     }
 }
 
 impl Surface {
-    /// What the other populations of contour pixels read; `None` where no pixel has another one on a surface. Cached.
+    /// What the other populations of contour pixels read; `None` where no pixel has another one on
+    /// a surface. Cached.
     pub fn sheet(self: &Arc<Self>) -> Option<Arc<Surface>> {
         let rows = self.contours().sheet_rows.len();
         (rows > 0).then(|| self.derived.sheets.get_or_compute((), 1, |_| self.made_sheet(rows)))
     }
+
     fn made_sheet(self: &Arc<Self>, rows: usize) -> Surface {
         let size = Size::new(SHEET_SIDE as u32, (rows * BLOCK) as u32);
         let mut maps = SheetMaps::empty(size);
@@ -197,11 +223,15 @@ impl Surface {
                     let pixels = &contours.pixels[pixels.start as usize..pixels.end as usize];
                     for (i, pixel) in pixels.iter().enumerate() {
                         let window = PixelWindow::around(read, pixel.x, pixel.y);
-                        let Some(continued) = Continued::from(&window, pixel.others) else { continue };
+                        let Some(continued) = Continued::from(&window, pixel.others) else {
+                            continue;
+                        };
                         let (x, y) = place_of(i);
                         for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-                            let (at, step) =
-                                ((y + dy) * SHEET_SIDE + x + dx, pixel.other_at + vec2(dx as f32, dy as f32));
+                            let (at, step) = (
+                                (y + dy) * SHEET_SIDE + x + dx,
+                                pixel.other_at + vec2(dx as f32, dy as f32),
+                            );
                             let n = continued.nbar(step);
                             (nx[at], ny[at], nz[at]) = (n.x, n.y, nz_of(n));
                             if let Some(normals) = detailed {

@@ -1,6 +1,5 @@
-//! The 7 × 7 pixels around one, as sets of bits: which are covered, which continue each other, and which belong to the
-//! same piece of surface.
-//! Floor 2.
+//! The 7 × 7 pixels around one, as sets of bits: which are covered, which continue each other, and
+//! which belong to the same piece of surface. Floor 2.
 
 use super::maps::ContourMaps;
 use crate::math::{Vec2, vec2};
@@ -63,7 +62,8 @@ pub struct PixelWindow<'m> {
 
 impl<'m> PixelWindow<'m> {
     pub fn around(maps: &'m ContourMaps, x: i32, y: i32) -> Self {
-        let mut window = Self { maps, x, y, inside: 0, covered: 0, whole: 0, rightward: 0, downward: 0 };
+        let mut window =
+            Self { maps, x, y, inside: 0, covered: 0, whole: 0, rightward: 0, downward: 0 };
         let size = maps.size;
         for dy in -REACH..=REACH {
             let row = y + dy;
@@ -92,27 +92,32 @@ impl<'m> PixelWindow<'m> {
         }
         window
     }
+
     /// The surface of the middle pixel goes on across one of its sides, if at a crease.
     pub fn goes_on(&self, link: u8) -> bool {
         self.maps.all_links.at(self.x as usize, self.y as usize) & link != 0
     }
+
     /// The canvas pixel of a bit that is inside.
     pub fn pixel(&self, i: u32) -> (usize, usize) {
         let (dx, dy) = steps_of(i);
         ((self.x + dx) as usize, (self.y + dy) as usize)
     }
+
     /// The canvas pixels without surface.
     pub fn nothing(&self) -> u64 {
         self.inside & !self.covered
     }
+
     /// A set and the neighbours that continue it.
     fn grown(&self, set: u64) -> u64 {
         let along = (set & self.rightward) << 1 | (set >> 1) & self.rightward;
         let across = (set & self.downward) << SIDE | (set >> SIDE) & self.downward;
         set | along | across
     }
-    /// The pieces of surface that two sets of pixels belong to, neither holding a pixel of the other: where they are
-    /// continued by each other further on, each takes what it reaches first.
+
+    /// The pieces of surface that two sets of pixels belong to, neither holding a pixel of the
+    /// other: where they are continued by each other further on, each takes what it reaches first.
     pub fn pieces(&self, mut first: u64, mut second: u64) -> (u64, u64) {
         loop {
             let next = self.grown(first) & !second;
@@ -123,7 +128,9 @@ impl<'m> PixelWindow<'m> {
             (first, second) = (next, other);
         }
     }
-    /// The piece of the middle pixel; of one that continues no other, that of its neighbour nearest in depth.
+
+    /// The piece of the middle pixel; of one that continues no other, that of its neighbour nearest
+    /// in depth.
     pub fn piece_of_center(&self) -> u64 {
         let center = 1 << CENTER;
         let piece = self.pieces(center, 0).0;
@@ -132,16 +139,21 @@ impl<'m> PixelWindow<'m> {
         }
         let away = |i: u32| (self.depth(i) - self.depth(CENTER)).abs();
         let beside = BESIDE.iter().map(|beside| beside.bit).filter(|&i| self.covered >> i & 1 == 1);
-        beside.min_by(|&a, &b| away(a).total_cmp(&away(b))).map_or(center, |i| self.pieces(1 << i, 0).0)
+        beside
+            .min_by(|&a, &b| away(a).total_cmp(&away(b)))
+            .map_or(center, |i| self.pieces(1 << i, 0).0)
     }
+
     pub fn nz_squared(&self, i: u32) -> f32 {
         let n = self.nbar(i);
         (1.0 - n.length_squared()).max(0.0)
     }
+
     pub fn nbar(&self, i: u32) -> Vec2 {
         let (x, y) = self.pixel(i);
         vec2(self.maps.nbar[0].at(x, y), self.maps.nbar[1].at(x, y))
     }
+
     /// z, 0 near … 1 far.
     pub fn depth(&self, i: u32) -> f32 {
         let (x, y) = self.pixel(i);

@@ -1,7 +1,7 @@
-//! Curvature of blurred normals near the ends of a surface. A blur along rows and then columns sees the stairs of a
-//! contour: it ends in blocks and streaks there. Normals that flow to linked neighbours in small steps do not: the heat
-//! equation, whose steps of variance 2 t add up to the Gaussian's, with nothing flowing over an end.
-//! Floor 2.
+//! Curvature of blurred normals near the ends of a surface. A blur along rows and then columns sees
+//! the stairs of a contour: it ends in blocks and streaks there. Normals that flow to linked
+//! neighbours in small steps do not: the heat equation, whose steps of variance 2 t add up to the
+//! Gaussian's, with nothing flowing over an end. Floor 2.
 
 use super::tile_rect::TileRect;
 use super::{CurvatureRims, slope, tensor};
@@ -15,7 +15,8 @@ const WIDEST_PX: f32 = 8.0;
 /// Standard deviations from an end up to which its normals flow, and beyond which they need not.
 const FROM: f32 = 2.0;
 const TO: f32 = 3.0;
-/// Standard deviations from an end beyond which nothing flows: farther pixels have no effect where the flow is used.
+/// Standard deviations from an end beyond which nothing flows: farther pixels have no effect where
+/// the flow is used.
 const FLOWING: f32 = 5.2;
 
 /// The blur near the ends of a surface.
@@ -29,7 +30,8 @@ pub(super) struct EndBlur<'s> {
     rims: &'s CurvatureRims,
 }
 
-/// A part of the canvas: the normals that flow in it, and over which sides. A thread uses one from tile to tile.
+/// A part of the canvas: the normals that flow in it, and over which sides. A thread uses one from
+/// tile to tile.
 #[derive(Default)]
 pub(super) struct FlowRegion {
     x0: usize,
@@ -53,8 +55,15 @@ impl<'s> EndBlur<'s> {
     pub fn new(surface: &'s Surface, rims: &'s CurvatureRims, blur_px: f32) -> Option<Self> {
         let steps = (blur_px * blur_px / (2.0 * FLOW)).round() as usize;
         let is_wanted = steps > 0 && blur_px <= WIDEST_PX && !rims.is_empty();
-        is_wanted.then(|| Self { surface, blur_px, steps, reach: (TO * blur_px).ceil() as usize + 1, rims })
+        is_wanted.then(|| Self {
+            surface,
+            blur_px,
+            steps,
+            reach: (TO * blur_px).ceil() as usize + 1,
+            rims,
+        })
     }
+
     /// Puts the tensor of a tile in place, in a band of rows that begins at the tile's first.
     pub fn fill(&self, tile: TileRect, region: &mut FlowRegion, band: [&mut [f32]; 3]) {
         let size = self.surface.size();
@@ -102,13 +111,16 @@ impl FlowRegion {
             self.right.extend(links[..links.len() - 1].iter().map(|&l| flow(l, links::RIGHT)));
             self.right.push(0.0);
             let is_last = y + 1 == y1;
-            self.down.extend(links.iter().map(|&l| if is_last { 0.0 } else { flow(l, links::DOWN) }));
+            self.down
+                .extend(links.iter().map(|&l| if is_last { 0.0 } else { flow(l, links::DOWN) }));
         }
         rims.distances([x0, y0, x1, y1], &mut self.distance);
     }
+
     fn index(&self, x: usize, y: usize) -> usize {
         (y - self.y0) * self.width + x - self.x0
     }
+
     /// `within`: thirds of a pixel from an end up to which normals flow.
     fn flow(&mut self, steps: usize, within: u16) {
         let Self { width, height, normal, right, down, next, distance, .. } = self;
@@ -129,13 +141,15 @@ impl FlowRegion {
                 for (y, span) in spans.iter().enumerate().filter(|(_, span)| !span.is_empty()) {
                     let up = if y > 0 { &down[row(y - 1)] } else { &nothing[..] };
                     let sides = SideFlows { right: &right[row(y)], up, down: &down[row(y)] };
-                    let rows = [y.saturating_sub(1), y, (y + 1).min(last)].map(|y| &channel[row(y)]);
+                    let rows =
+                        [y.saturating_sub(1), y, (y + 1).min(last)].map(|y| &channel[row(y)]);
                     flow_row(rows, sides, span.clone(), &mut next[row(y)]);
                 }
                 std::mem::swap(channel, next);
             }
         }
     }
+
     /// H of a pixel by differences to linked neighbours in the region.
     fn tensor_at(&self, i: usize) -> [f32; 3] {
         let slope_at = |i: usize| {
@@ -149,7 +163,10 @@ impl FlowRegion {
         };
         let (x, y, l) = (i % self.width, i / self.width, self.links[i]);
         let to = |bit: u8, inside: bool, j: usize| (l & bit != 0 && inside).then_some(j);
-        let across = difference(to(links::LEFT, x > 0, i.wrapping_sub(1)), to(links::RIGHT, x + 1 < self.width, i + 1));
+        let across = difference(
+            to(links::LEFT, x > 0, i.wrapping_sub(1)),
+            to(links::RIGHT, x + 1 < self.width, i + 1),
+        );
         let along = difference(
             to(links::UP, y > 0, i.wrapping_sub(self.width)),
             to(links::DOWN, y + 1 < self.height, i + self.width),
@@ -185,7 +202,8 @@ fn flow_row(rows: [&[f32]; 3], sides: SideFlows, span: Range<usize>, out: &mut [
     if from < to {
         let left = &sides.right[from - 1..to - 1];
         let flows = [&sides.up[from..to], &sides.down[from..to], &sides.right[from..to], left];
-        let beside = [&above[from..to], &below[from..to], &here[from + 1..to + 1], &here[from - 1..to - 1]];
+        let beside =
+            [&above[from..to], &below[from..to], &here[from + 1..to + 1], &here[from - 1..to - 1]];
         flow_inside(flows, beside, &here[from..to], &mut out[from..to]);
     }
 }

@@ -19,7 +19,8 @@ pub struct KappaScale {
     pub share: f32,
 }
 
-/// Isotropic κ of every pixel in steps of 1 / 32,767: a sixth of what its tensor takes, and within 1.6e-5 of it.
+/// Isotropic κ of every pixel in steps of 1 / 32,767: a sixth of what its tensor takes, and within
+/// 1.6e-5 of it.
 pub struct Kappa {
     steps: Plane<i16>,
 }
@@ -41,22 +42,31 @@ impl Kappa {
     pub fn at(&self, x: usize, y: usize) -> f32 {
         f32::from(self.steps.at(x, y)) / STEPS
     }
+
     /// κ along row `y` from column `x0` on, as many as `kappa` holds.
     pub fn row(&self, x0: usize, y: usize, kappa: &mut [f32]) {
         from_steps(self.steps(x0, y, kappa.len()), kappa);
     }
+
     /// A part of a row as it is stored.
     pub fn steps(&self, x0: usize, y: usize, width: usize) -> &[i16] {
         &self.steps.row(y)[x0..x0 + width]
     }
-    fn compute(size: Size, parts: &[(Arc<Curvature>, KappaScale)], recycled: Option<Kappa>) -> Kappa {
-        let mut steps = recycled.map_or_else(|| vec![0; size.area()], |kappa| kappa.steps.into_values());
+
+    fn compute(
+        size: Size,
+        parts: &[(Arc<Curvature>, KappaScale)],
+        recycled: Option<Kappa>,
+    ) -> Kappa {
+        let mut steps =
+            recycled.map_or_else(|| vec![0; size.area()], |kappa| kappa.steps.into_values());
         steps.par_chunks_mut(CHUNK).enumerate().for_each(|(i, steps)| {
             let mut kappa = [0.0; CHUNK];
             let kappa = &mut kappa[..steps.len()];
             for (curvature, scale) in parts {
                 let pixels = i * CHUNK..i * CHUNK + steps.len();
-                let [hxx, hyy] = [&curvature.hxx, &curvature.hyy].map(|plane| &plane.values()[pixels.clone()]);
+                let [hxx, hyy] =
+                    [&curvature.hxx, &curvature.hyy].map(|plane| &plane.values()[pixels.clone()]);
                 add(hxx, hyy, *scale, kappa);
             }
             to_steps(kappa, steps);
@@ -66,13 +76,17 @@ impl Kappa {
 }
 
 impl Surface {
-    /// Isotropic κ: Σ share · tanh(s (k_u + k_v)) (MATH 4). Cached. Call it once before going parallel: threads
-    /// that call it at the same time may each compute it.
+    /// Isotropic κ: Σ share · tanh(s (k_u + k_v)) (MATH 4). Cached. Call it once before going
+    /// parallel: threads that call it at the same time may each compute it.
     pub fn kappa(&self, scales: &[KappaScale]) -> Arc<Kappa> {
-        let key = scales.iter().map(|s| [s.blur_px, s.curvature_scale_px, s.share].map(f32::to_bits)).collect();
+        let key = scales
+            .iter()
+            .map(|s| [s.blur_px, s.curvature_scale_px, s.share].map(f32::to_bits))
+            .collect();
         let keep = (KEPT_PX / self.size().area().max(1)).clamp(2, 8);
         self.derived.kappas.get_or_compute(key, keep, |recycled| {
-            let parts: Vec<_> = scales.iter().map(|&scale| (self.curvature(scale.blur_px), scale)).collect();
+            let parts: Vec<_> =
+                scales.iter().map(|&scale| (self.curvature(scale.blur_px), scale)).collect();
             Kappa::compute(self.size(), &parts, recycled)
         })
     }
@@ -85,6 +99,7 @@ crate::widest! {
             *kappa += share * fast::tanh(curvature_scale_px * (hxx + hyy));
         }
     }
+
     fn to_steps(kappa: &[f32], steps: &mut [i16]) {
         for (step, &kappa) in steps.iter_mut().zip(kappa) {
             // Adding 1.5 · 2²³ leaves the nearest whole number in the low bits; NaN becomes −1.
@@ -92,6 +107,7 @@ crate::widest! {
             *step = whole.to_bits() as i16;
         }
     }
+
     fn from_steps(steps: &[i16], kappa: &mut [f32]) {
         for (kappa, &step) in kappa.iter_mut().zip(steps) {
             *kappa = i32::from(step) as f32 * (1.0 / STEPS);
@@ -108,23 +124,27 @@ mod tests {
     #[test]
     fn it_is_the_weighted_mean_of_the_scales_within_a_step() {
         let size = Size::new(90, 70);
-        let normals = Plane::from_fn(size, |x, y| vec3((x as f32 * 0.2).sin(), (y as f32 * 0.3).cos(), 1.2));
+        let normals =
+            Plane::from_fn(size, |x, y| vec3((x as f32 * 0.2).sin(), (y as f32 * 0.3).cos(), 1.2));
         let coverage = Plane::from_fn(size, |x, _| if x < 80 { 255 } else { 0 });
-        let surface = Surface::new(Maps { normals, depth: Plane::filled(size, 0.5), coverage }).unwrap();
-        let scales = [(0.0, 9.0, 0.75), (1.5, 30.0, 0.25)].map(|(blur_px, curvature_scale_px, share)| KappaScale {
-            blur_px,
-            curvature_scale_px,
-            share,
-        });
+        let surface =
+            Surface::new(Maps { normals, depth: Plane::filled(size, 0.5), coverage }).unwrap();
+        let scales =
+            [(0.0, 9.0, 0.75), (1.5, 30.0, 0.25)].map(|(blur_px, curvature_scale_px, share)| {
+                KappaScale { blur_px, curvature_scale_px, share }
+            });
         let kappa = surface.kappa(&scales);
         let mut row = [0.0; 90];
         for y in [0, 1, 35, 69] {
             kappa.row(0, y, &mut row);
             for (x, in_row) in row.into_iter().enumerate() {
-                let one = |s: &KappaScale| s.share * surface.curvature(s.blur_px).kappa(x, y, s.curvature_scale_px);
+                let one = |s: &KappaScale| {
+                    s.share * surface.curvature(s.blur_px).kappa(x, y, s.curvature_scale_px)
+                };
                 let expected: f32 = scales.iter().map(one).sum();
                 assert!(
-                    (kappa.at(x, y) - expected).abs() < 1.6e-5 && (in_row - kappa.at(x, y)).abs() < 1e-6,
+                    (kappa.at(x, y) - expected).abs() < 1.6e-5
+                        && (in_row - kappa.at(x, y)).abs() < 1e-6,
                     "{x} {y}"
                 );
             }

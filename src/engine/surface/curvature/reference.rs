@@ -1,4 +1,5 @@
-//! The curvature tensor pixel by pixel, as MATH 4 writes it: what the fast version is tested against.
+//! The curvature tensor pixel by pixel, as MATH 4 writes it: what the fast version is tested
+//! against.
 
 use super::{rims, slope, tensor};
 use crate::math::Vec3;
@@ -26,7 +27,8 @@ fn is_at_border(surface: &Surface, (x, y): (usize, usize), bit: u8) -> bool {
     }
 }
 
-/// Σ_k w_k value(k steps away) in two opposite directions, as far as the links go and the last value on.
+/// Σ_k w_k value(k steps away) in two opposite directions, as far as the links go and the last
+/// value on.
 fn along(
     surface: &Surface,
     at: (usize, usize),
@@ -59,19 +61,21 @@ fn slope_at(surface: &Surface, at: (usize, usize), taps: &[f32]) -> (f32, f32) {
     slope(n.x, n.y, n.z)
 }
 
-/// `[h_xx, h_xy, h_yy]` of a pixel; at an end of the surface the mean of nearby ones that have all their neighbours.
+/// `[h_xx, h_xy, h_yy]` of a pixel; at an end of the surface the mean of nearby ones that have all
+/// their neighbours.
 pub fn tensor_at(surface: &Surface, x: usize, y: usize, blur_px: f32) -> [f32; 3] {
     match rims::members(surface, x as i32, y as i32) {
-        Some(members) if members != 0 => {
-            [0, 1, 2].map(|i| mean_of(members, (x as i32, y as i32), |x, y| differenced(surface, x, y, blur_px)[i]))
-        }
+        Some(members) if members != 0 => [0, 1, 2].map(|i| {
+            mean_of(members, (x as i32, y as i32), |x, y| differenced(surface, x, y, blur_px)[i])
+        }),
         _ => differenced(surface, x, y, blur_px),
     }
 }
 
 fn differenced(surface: &Surface, x: usize, y: usize, blur_px: f32) -> [f32; 3] {
     let taps = half_kernel(blur_px);
-    // Central where both neighbours continue the surface, one-sided where one does, none where neither.
+    // Central where both neighbours continue the surface, one-sided where one does, none where
+    // neither.
     let difference = |back: u8, forth: u8| {
         let ends = [back, forth].map(|bit| step(surface, (x, y), bit));
         let steps = ends.iter().flatten().count().max(1) as f32;

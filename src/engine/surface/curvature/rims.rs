@@ -9,8 +9,9 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The pixels at which a neighbour is missing, and which pixels of the window around them their curvature is continued
-/// from. Differences there are one-sided: noisy, and of a normal that is seen edge-on.
+/// The pixels at which a neighbour is missing, and which pixels of the window around them their
+/// curvature is continued from. Differences there are one-sided: noisy, and of a normal that is
+/// seen edge-on.
 pub struct CurvatureRims {
     pixels: Vec<RimPixel>,
 }
@@ -47,21 +48,25 @@ impl CurvatureRims {
             .collect();
         Self { pixels: rows.concat() }
     }
+
     /// There is none.
     pub fn is_empty(&self) -> bool {
         self.pixels.is_empty()
     }
+
     /// Those of some rows.
     fn rows(&self, rows: Range<usize>) -> &[RimPixel] {
         let at = |y: usize| self.pixels.partition_point(|rim| (rim.y as usize) < y);
         &self.pixels[at(rows.start)..at(rows.end)]
     }
+
     /// Whether there are any in a rectangle.
     pub fn are_in(&self, columns: Range<usize>, rows: Range<usize>) -> bool {
         self.rows(rows).iter().any(|rim| columns.contains(&(rim.x as usize)))
     }
-    /// The distance of each pixel of a rectangle (from column and row to column and row) to the nearest in it, in
-    /// thirds of a pixel, steps counting 3 and diagonal ones 4.
+
+    /// The distance of each pixel of a rectangle (from column and row to column and row) to the
+    /// nearest in it, in thirds of a pixel, steps counting 3 and diagonal ones 4.
     pub fn distances(&self, [x0, y0, x1, y1]: [usize; 4], distance: &mut Vec<u16>) {
         let (width, height) = (x1 - x0, y1 - y0);
         distance.clear();
@@ -80,6 +85,7 @@ impl CurvatureRims {
             step_along(row.iter_mut().rev());
         }
     }
+
     /// Puts the means of their members into a map.
     pub fn continue_in(&self, plane: &mut Plane<f32>) {
         let mean = |rim: &RimPixel| mean_of(rim.members, (rim.x, rim.y), |x, y| plane.at(x, y));
@@ -101,7 +107,8 @@ fn step_along<'d>(row: impl Iterator<Item = &'d mut u16>) {
 }
 
 crate::widest! {
-    /// Steps from the row above or below, straight ones of 3 and diagonal ones of 4; no row is empty.
+    /// Steps from the row above or below, straight ones of 3 and diagonal ones of 4; no row is
+    /// empty.
     fn step_from_row(beside: &[u16], row: &mut [u16]) {
         if beside.is_empty() {
             return;
@@ -125,12 +132,15 @@ fn rim(surface: &Surface, x: i32, y: i32) -> Option<RimPixel> {
     members(surface, x, y).map(|members| RimPixel { x, y, members })
 }
 
-/// The pixels around a rim's that belong to its piece and have all their neighbours; `None` for a pixel that is no rim.
+/// The pixels around a rim's that belong to its piece and have all their neighbours; `None` for a
+/// pixel that is no rim.
 pub(super) fn members(surface: &Surface, x: i32, y: i32) -> Option<u64> {
     let whole = |x: i32, y: i32| {
         let links = surface.links_plane().at(x as usize, y as usize);
         let on_canvas = |dx: i32, dy: i32| surface.size().rect().contains(x + dx, y + dy);
-        BESIDE.iter().all(|beside| links & beside.link != 0 || !on_canvas(beside.step.0, beside.step.1))
+        BESIDE
+            .iter()
+            .all(|beside| links & beside.link != 0 || !on_canvas(beside.step.0, beside.step.1))
     };
     if surface.coverage(x as usize, y as usize) == 0 || whole(x, y) {
         return None;

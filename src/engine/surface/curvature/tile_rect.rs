@@ -25,19 +25,29 @@ impl TileRect {
     /// The tiles of the band of rows that starts at `y0`.
     pub fn of_band(size: Size, y0: usize) -> impl Iterator<Item = TileRect> {
         let (width, rows) = (size.width as usize, BAND_ROWS.min(size.height as usize - y0));
-        (0..width).step_by(TILE_COLS).map(move |x0| TileRect { x0, y0, cols: TILE_COLS.min(width - x0), rows })
+        (0..width).step_by(TILE_COLS).map(move |x0| TileRect {
+            x0,
+            y0,
+            cols: TILE_COLS.min(width - x0),
+            rows,
+        })
     }
+
     /// No pixel of the tile is linked to another: there is nothing to difference.
     pub fn is_empty(&self, surface: &Surface) -> bool {
-        (0..self.rows).all(|y| surface.links_plane().row(self.y0 + y)[self.columns()].iter().all(|&l| l == 0))
+        (0..self.rows)
+            .all(|y| surface.links_plane().row(self.y0 + y)[self.columns()].iter().all(|&l| l == 0))
     }
+
     pub fn clear<T: Copy>(&self, band: &mut [T], size: Size, nothing: T) {
         (0..self.rows).for_each(|y| band[y * size.width as usize..][self.columns()].fill(nothing));
     }
+
     /// How many chunks hold the tile and a pixel at both sides.
     pub fn chunks(&self) -> usize {
         (self.cols + 2).div_ceil(LANES)
     }
+
     pub fn columns(&self) -> std::ops::Range<usize> {
         self.x0..self.x0 + self.cols
     }

@@ -1,5 +1,5 @@
-//! The curvature tensor of a whole map, tile by tile: blur, slopes and differences while the tile is in the cache.
-//! Floor 2. The plain version that reads like the paper is `reference`.
+//! The curvature tensor of a whole map, tile by tile: blur, slopes and differences while the tile
+//! is in the cache. Floor 2. The plain version that reads like the paper is `reference`.
 
 use super::ends::{EndBlur, FlowRegion};
 use super::tile_rect::{BAND_ROWS, LANES, STRIDE, TileRect};
@@ -11,14 +11,14 @@ use rayon::prelude::*;
 
 /// Chunks of a row of scratch.
 const CHUNKS: usize = STRIDE / LANES;
-/// From a row of what is blurred down the columns to the next: a power of two would put all rows of a chunk into a few
-/// sets of the first-level cache.
+/// From a row of what is blurred down the columns to the next: a power of two would put all rows of
+/// a chunk into a few sets of the first-level cache.
 const PITCH: usize = STRIDE + 16;
 
 /// Computes H for every pixel. `blur_px`: standard deviation, finite, `≥ 0`.
 ///
-/// `recycled`: planes of the same size that are no longer wanted. At 3840 × 2160, allocating costs as much as the work
-/// itself.
+/// `recycled`: planes of the same size that are no longer wanted. At 3840 × 2160, allocating costs
+/// as much as the work itself.
 pub(super) fn compute(surface: &Surface, blur_px: f32, recycled: Option<Curvature>) -> Curvature {
     let size = surface.size();
     let taps = half_kernel(blur_px);
@@ -35,7 +35,9 @@ pub(super) fn compute(surface: &Surface, blur_px: f32, recycled: Option<Curvatur
         |(scratch, region), (i, (hxx, hxy, hyy))| {
             for tile in TileRect::of_band(size, i * BAND_ROWS) {
                 if tile.is_empty(surface) {
-                    [&mut *hxx, hxy, hyy].into_iter().for_each(|plane| tile.clear(plane, size, 0.0));
+                    [&mut *hxx, hxy, hyy]
+                        .into_iter()
+                        .for_each(|plane| tile.clear(plane, size, 0.0));
                 } else {
                     scratch.tensor_tile(surface, &taps, tile, [&mut *hxx, hxy, hyy]);
                     if let Some(ends) = &ends {
@@ -53,17 +55,21 @@ pub(super) fn compute(surface: &Surface, blur_px: f32, recycled: Option<Curvatur
     Curvature { hxx, hxy, hyy }
 }
 
-/// What one thread reuses from tile to tile. Rows of it hold `STRIDE` pixels and begin one pixel left of the tile.
+/// What one thread reuses from tile to tile. Rows of it hold `STRIDE` pixels and begin one pixel
+/// left of the tile.
 struct TileScratch {
     /// One row of one channel with the kernel's reach at both sides.
     line: Vec<f32>,
-    /// 1 where a pixel of the row is joined to the next; beyond the canvas, where values are 0, it does not matter: 1.
+    /// 1 where a pixel of the row is joined to the next; beyond the canvas, where values are 0, it
+    /// does not matter: 1.
     joined: Vec<f32>,
-    /// Blurred along rows: n̄_x, n̄_y, n_z with the kernel's reach above and below, a row every `PITCH`.
+    /// Blurred along rows: n̄_x, n̄_y, n_z with the kernel's reach above and below, a row every
+    /// `PITCH`.
     across: [Vec<f32>; 3],
     /// 1 where a pixel is joined to the one below; rows as `across`.
     down: Vec<f32>,
-    /// For each chunk of `down`, over how many rows up to and with this one all its pixels are joined downward.
+    /// For each chunk of `down`, over how many rows up to and with this one all its pixels are
+    /// joined downward.
     joined_rows: Vec<[usize; CHUNKS]>,
     /// Slopes, one pixel around the tile.
     slopes: [Vec<f32>; 2],
@@ -82,7 +88,13 @@ impl TileScratch {
         }
     }
 
-    fn tensor_tile(&mut self, surface: &Surface, taps: &[f32], tile: TileRect, mut out: [&mut [f32]; 3]) {
+    fn tensor_tile(
+        &mut self,
+        surface: &Surface,
+        taps: &[f32],
+        tile: TileRect,
+        mut out: [&mut [f32]; 3],
+    ) {
         let reach = taps.len() - 1;
         for row in 0..tile.rows + 2 + 2 * reach {
             self.blur_row(surface, taps, tile, row);
@@ -91,9 +103,12 @@ impl TileScratch {
         for chunk in 0..tile.chunks() {
             // Taps step over the links of the rows from the topmost to the one above the lowest.
             let joined: Vec<bool> = (0..tile.rows + 2)
-                .map(|row| self.joined_rows[(row + 2 * reach).saturating_sub(1)][chunk] >= 2 * reach)
+                .map(|row| {
+                    self.joined_rows[(row + 2 * reach).saturating_sub(1)][chunk] >= 2 * reach
+                })
                 .collect();
-            let columns = ColumnTaps { taps, across: &self.across, down: &self.down, joined: &joined };
+            let columns =
+                ColumnTaps { taps, across: &self.across, down: &self.down, joined: &joined };
             blur_down_to_slopes(columns, chunk * LANES, sx, sy);
         }
         let width = surface.size().width as usize;
@@ -101,8 +116,9 @@ impl TileScratch {
             let links = &surface.links_plane().row(tile.y0 + y)[tile.columns()];
             let from = y * width + tile.x0;
             // The next row lies a map's width away.
-            out.iter()
-                .for_each(|plane| prefetch(plane.get(from + width..from + width + tile.cols).unwrap_or_default()));
+            out.iter().for_each(|plane| {
+                prefetch(plane.get(from + width..from + width + tile.cols).unwrap_or_default())
+            });
             let [hxx, hxy, hyy] = out.each_mut().map(|plane| &mut plane[from..from + tile.cols]);
             let slopes = [&sx[y * STRIDE..(y + 3) * STRIDE], &sy[y * STRIDE..(y + 3) * STRIDE]];
             if all_linked(links) {
@@ -118,7 +134,8 @@ impl TileScratch {
         let reach = taps.len() - 1;
         let at = row * PITCH..row * PITCH + STRIDE;
         let above = if row == 0 { [0; CHUNKS] } else { self.joined_rows[row - 1] };
-        let y = (tile.y0 + row).checked_sub(1 + reach).filter(|&y| y < surface.size().height as usize);
+        let y =
+            (tile.y0 + row).checked_sub(1 + reach).filter(|&y| y < surface.size().height as usize);
         let Some(y) = y else {
             self.across.iter_mut().for_each(|c| c[at.clone()].fill(0.0));
             self.down[at].fill(1.0);
@@ -136,22 +153,29 @@ impl TileScratch {
             let last_row = y + 1 == surface.size().height as usize;
             let bit = |l: u8, bit: u8| f32::from(u8::from(l & bit != 0));
             copy_row(links, first, 1.0, &mut self.joined, |l| bit(l, links::RIGHT));
-            // The canvas's border is no end of the surface: what lies beyond is left out, not repeated.
+            // The canvas's border is no end of the surface: what lies beyond is left out, not
+            // repeated.
             let last = (links.len() as isize - 1 - first) as usize;
             self.joined.get_mut(last).into_iter().for_each(|joined| *joined = 1.0);
             let down = |l: u8| if last_row { 1.0 } else { bit(l, links::DOWN) };
             copy_row(links, first + reach as isize, 1.0, &mut self.down[at.clone()], down);
-            joined_chunks = std::array::from_fn(|i| all_set(&self.joined[i * LANES..(i + 1) * LANES + 2 * reach]));
+            joined_chunks = std::array::from_fn(|i| {
+                all_set(&self.joined[i * LANES..(i + 1) * LANES + 2 * reach])
+            });
             joined_down = std::array::from_fn(|i| all_set(lanes(&self.down, at.start + i * LANES)));
         }
-        self.joined_rows[row] = std::array::from_fn(|i| if joined_down[i] { above[i] + 1 } else { 0 });
+        self.joined_rows[row] =
+            std::array::from_fn(|i| if joined_down[i] { above[i] + 1 } else { 0 });
         let reaching = STRIDE + 2 * reach;
-        let ahead = |y: usize| usize::try_from(first).ok().filter(|_| y < surface.size().height as usize);
+        let ahead =
+            |y: usize| usize::try_from(first).ok().filter(|_| y < surface.size().height as usize);
         for (plane, across) in surface.normal_planes().into_iter().zip(&mut self.across) {
             if let Some(first) = ahead(y + 2) {
                 prefetch(plane.row(y + 2).get(first..first + reaching).unwrap_or_default());
             }
-            let inside = usize::try_from(first).ok().and_then(|first| plane.row(y).get(first..first + reaching));
+            let inside = usize::try_from(first)
+                .ok()
+                .and_then(|first| plane.row(y).get(first..first + reaching));
             let line = inside.unwrap_or_else(|| {
                 copy_row(plane.row(y), first, 0.0, &mut self.line, |v| v);
                 &self.line
@@ -163,7 +187,13 @@ impl TileScratch {
 }
 
 /// Copies `row[first..]` into `out`; what lies beyond the row's ends is `beyond`.
-fn copy_row<T: Copy>(row: &[T], first: isize, beyond: f32, out: &mut [f32], value: impl Fn(T) -> f32) {
+fn copy_row<T: Copy>(
+    row: &[T],
+    first: isize,
+    beyond: f32,
+    out: &mut [f32],
+    value: impl Fn(T) -> f32,
+) {
     let from = first.clamp(0, row.len() as isize);
     let to = (first + out.len() as isize).clamp(from, row.len() as isize);
     let before = ((from - first) as usize).min(out.len());
@@ -199,7 +229,13 @@ fn sum_joined(values: &[f32], center: usize, step: usize, taps: &[f32]) -> [f32;
 
 /// As [`sum_joined`]; beyond a broken link the last value before it is repeated.
 #[inline(always)]
-fn sum_broken(values: &[f32], joined: &[f32], center: usize, step: usize, taps: &[f32]) -> [f32; LANES] {
+fn sum_broken(
+    values: &[f32],
+    joined: &[f32],
+    center: usize,
+    step: usize,
+    taps: &[f32],
+) -> [f32; LANES] {
     let mut sum = *lanes(values, center);
     for v in &mut sum {
         *v *= taps[0];
@@ -242,7 +278,8 @@ crate::widest! {
         joined.iter().fold(true, |all, &j| all & (j != 0.0))
     }
 
-    /// Blurs a row; `line` and `joined` reach beyond it at both sides, `joined_chunks` says where nothing is broken.
+    /// Blurs a row; `line` and `joined` reach beyond it at both sides, `joined_chunks` says where
+    /// nothing is broken.
     fn blur_line(line: &[f32], joined: &[f32], joined_chunks: [bool; CHUNKS], taps: &[f32], out: &mut [f32]) {
         let reach = taps.len() - 1;
         for (chunk, out) in out.chunks_exact_mut(LANES).enumerate() {
@@ -256,8 +293,9 @@ crate::widest! {
         }
     }
 
-    /// Blurs a chunk of all rows down the columns and takes their slopes. A chunk at a time, so that the rows that each
-    /// pixel's taps read are still in the first-level cache from the row above.
+    /// Blurs a chunk of all rows down the columns and takes their slopes. A chunk at a time, so
+    /// that the rows that each pixel's taps read are still in the first-level cache from the row
+    /// above.
     fn blur_down_to_slopes(columns: ColumnTaps, chunk: usize, sx: &mut [f32], sy: &mut [f32]) {
         let ColumnTaps { taps, across, down, joined } = columns;
         let reach = taps.len() - 1;
@@ -292,7 +330,8 @@ crate::widest! {
         }
     }
 
-    /// As [`difference_joined_row`]: central where both neighbours are linked, one-sided where one is.
+    /// As [`difference_joined_row`]: central where both neighbours are linked, one-sided where one
+    /// is.
     fn difference_row(slopes: [&[f32]; 2], links: &[u8], hxx: &mut [f32], hxy: &mut [f32], hyy: &mut [f32]) {
         let n = links.len();
         let (hxx, hxy, hyy) = (&mut hxx[..n], &mut hxy[..n], &mut hyy[..n]);
@@ -316,7 +355,8 @@ crate::widest! {
     }
 }
 
-/// The row above, the row itself and the row below of both slopes, each `n + 2` pixels from one left of the tile.
+/// The row above, the row itself and the row below of both slopes, each `n + 2` pixels from one
+/// left of the tile.
 #[inline(always)]
 fn rows(slopes: [&[f32]; 2], n: usize) -> [[&[f32]; 2]; 3] {
     [0, STRIDE, 2 * STRIDE].map(|r| slopes.map(|s| &s[r..r + n + 2]))

@@ -1,5 +1,6 @@
-//! D over whole rows: the fast twin of `Deformation::at`, in plain loops that the compiler vectorises.
-//! Floor 2. The operator and the number of anchors are dispatched once per row, outside the pixel loops.
+//! D over whole rows: the fast twin of `Deformation::at`, in plain loops that the compiler
+//! vectorises. Floor 2. The operator and the number of anchors are dispatched once per row, outside
+//! the pixel loops.
 
 mod kernels;
 mod rows;
@@ -13,9 +14,9 @@ use crate::surface::Surface;
 use crate::surface::anchor::{Weights, segment_slope};
 use crate::surface::operator::{Operator, first_order, reflection, second_order};
 use kernels::{
-    DepthKernel, KernelSpan, MirrorKernel, NormalKernel, add_mean, coverage_gain, depth_add, depth_one, inverse_powers,
-    inverse_squares, laid_row, mirror_add, mirror_one, mirror_row, nearer, normal_add, normal_one, pulled_row,
-    segment_weights, shifted_row, still_add, still_one,
+    DepthKernel, KernelSpan, MirrorKernel, NormalKernel, add_mean, coverage_gain, depth_add,
+    depth_one, inverse_powers, inverse_squares, laid_row, mirror_add, mirror_one, mirror_row,
+    nearer, normal_add, normal_one, pulled_row, segment_weights, shifted_row, still_add, still_one,
 };
 use std::ops::Range;
 
@@ -70,9 +71,9 @@ pub(super) fn fill(
                 }
             }
             let (out_x, out_y) = (&mut row_x[at..at + n], &mut row_y[at..at + n]);
-            let is_laid = unwrapped
-                .zip(maps)
-                .is_some_and(|((planes, surface), maps)| laid_span(planes, surface, maps, out_x, out_y));
+            let is_laid = unwrapped.zip(maps).is_some_and(|((planes, surface), maps)| {
+                laid_span(planes, surface, maps, out_x, out_y)
+            });
             if !is_laid {
                 let [place_x, place_y] = &mut scratch.place;
                 deformation.place(x, y, &mut place_x[..n], &mut place_y[..n]);
@@ -86,8 +87,15 @@ pub(super) fn fill(
     }
 }
 
-/// D_s over a span that the surface covers wholly; `false` where it does not, and nothing is written.
-fn laid_span(planes: &LaidPlanes, surface: &Surface, at: MapSpan, out_x: &mut [f32], out_y: &mut [f32]) -> bool {
+/// D_s over a span that the surface covers wholly; `false` where it does not, and nothing is
+/// written.
+fn laid_span(
+    planes: &LaidPlanes,
+    surface: &Surface,
+    at: MapSpan,
+    out_x: &mut [f32],
+    out_y: &mut [f32],
+) -> bool {
     if at.of(surface.coverage_plane()).contains(&0) {
         return false;
     }
@@ -121,8 +129,15 @@ fn prefetch_laid(planes: &LaidPlanes, span: MapSpan) {
     }
 }
 
-/// D_s at the pixels of a span that the surface covers, one by one: where objects meet, and at edges.
-fn laid_over(planes: &LaidPlanes, surface: &Surface, at: MapSpan, out_x: &mut [f32], out_y: &mut [f32]) {
+/// D_s at the pixels of a span that the surface covers, one by one: where objects meet, and at
+/// edges.
+fn laid_over(
+    planes: &LaidPlanes,
+    surface: &Surface,
+    at: MapSpan,
+    out_x: &mut [f32],
+    out_y: &mut [f32],
+) {
     for (k, (out_x, out_y)) in out_x.iter_mut().zip(out_y).enumerate() {
         if surface.coverage(at.x + k, at.y) > 0 {
             (*out_x, *out_y) = planes.at(at.x + k, at.y).into();
@@ -214,13 +229,19 @@ impl Kernel {
             _ if deformation.surface.is_none() => Kernel::Still,
             operator if operator.is_identity() => Kernel::Still,
             Operator::None | Operator::Surface { .. } => Kernel::Still,
-            Operator::Depth { gamma } => Kernel::Depth(DepthKernel { rate: first_order::rate(gamma) }),
-            Operator::Normal { alpha, beta, .. } => {
-                Kernel::Normal(NormalKernel { alpha_px: alpha * unit_px, softness: second_order::softness(beta) })
+            Operator::Depth { gamma } => {
+                Kernel::Depth(DepthKernel { rate: first_order::rate(gamma) })
             }
-            Operator::Reflection { alpha, .. } => Kernel::Mirror(MirrorKernel { alpha_px: alpha * unit_px }),
+            Operator::Normal { alpha, beta, .. } => Kernel::Normal(NormalKernel {
+                alpha_px: alpha * unit_px,
+                softness: second_order::softness(beta),
+            }),
+            Operator::Reflection { alpha, .. } => {
+                Kernel::Mirror(MirrorKernel { alpha_px: alpha * unit_px })
+            }
         }
     }
+
     fn pinned(self, &Pin { anchor, map_values }: &Pin) -> FastPin {
         let [a, b] = match self {
             Kernel::Still => [0.0; 2],
@@ -246,6 +267,7 @@ impl<'d> FillPlan<'d> {
             },
         }
     }
+
     /// Prefetches what a span of the maps holds.
     fn prefetch(&self, span: MapSpan) {
         let Some(surface) = self.deformation.surface else { return };
@@ -255,9 +277,12 @@ impl<'d> FillPlan<'d> {
             Kernel::Still => {}
             Kernel::Depth(_) => prefetch(span.of(surface.depth_plane())),
             Kernel::Normal(_) => [nbar_x, nbar_y].into_iter().for_each(|p| prefetch(span.of(p))),
-            Kernel::Mirror(_) => [nbar_x, nbar_y, nz].into_iter().for_each(|p| prefetch(span.of(p))),
+            Kernel::Mirror(_) => {
+                [nbar_x, nbar_y, nz].into_iter().for_each(|p| prefetch(span.of(p)))
+            }
         }
     }
+
     /// 0 outside the surface, 1 + μκ on it; `scratch` as long as the span.
     fn gains<'s>(&self, surface: &Surface, span: MapSpan, scratch: &'s mut [f32]) -> &'s [f32] {
         let coverage = span.of(surface.coverage_plane());
@@ -273,10 +298,18 @@ impl<'d> FillPlan<'d> {
         }
         scratch
     }
+
     /// D over a span whose pixels are placed in the scratch; `maps` is `None` beyond the maps.
-    fn span(&self, maps: Option<MapSpan>, scratch: &mut SpanScratch, out_x: &mut [f32], out_y: &mut [f32]) {
+    fn span(
+        &self,
+        maps: Option<MapSpan>,
+        scratch: &mut SpanScratch,
+        out_x: &mut [f32],
+        out_y: &mut [f32],
+    ) {
         let n = out_x.len();
-        let SpanScratch { place: [x, y], mirrored, gain, weight, weight_sum, nearest, moved } = scratch;
+        let SpanScratch { place: [x, y], mirrored, gain, weight, weight_sum, nearest, moved } =
+            scratch;
         let surface = self.deformation.surface;
         let (mut a, mut b) = (&NOTHING[..n], &NOTHING[..n]);
         let mut gains = &NOTHING[..n];
@@ -319,8 +352,12 @@ impl<'d> FillPlan<'d> {
         for (i, pin) in self.pins.iter().enumerate() {
             match weights {
                 Weights::Shepard { power: 2.0 } => inverse_squares(span, pin, weight, weight_sum),
-                Weights::Shepard { power } => inverse_powers(span, pin, power, &nearest[..n], weight, weight_sum),
-                Weights::Segment => segment_weights(span, &self.pins[0], self.slope, i, weight, weight_sum),
+                Weights::Shepard { power } => {
+                    inverse_powers(span, pin, power, &nearest[..n], weight, weight_sum)
+                }
+                Weights::Segment => {
+                    segment_weights(span, &self.pins[0], self.slope, i, weight, weight_sum)
+                }
             }
             match self.kernel {
                 Kernel::Still => still_add(span, pin, weight, moved_x, moved_y),

@@ -1,9 +1,9 @@
-//! D_s: how the plane of an unwrapped surface is laid under its anchors (MATH 8).
-//! Floor 2. Not here: the unwrapping and how it yields to many anchors (`unwrap`), the operators that are sums over
-//! anchors (`Deformation::at`).
+//! D_s: how the plane of an unwrapped surface is laid under its anchors (MATH 8). Floor 2. Not
+//! here: the unwrapping and how it yields to many anchors (`unwrap`), the operators that are sums
+//! over anchors (`Deformation::at`).
 //!
-//! Each object has a plane of its own: anchors move, and a pair of them turns, the plane of the object that they are
-//! on; the others stay where they are in the picture.
+//! Each object has a plane of its own: anchors move, and a pair of them turns, the plane of the
+//! object that they are on; the others stay where they are in the picture.
 
 use crate::math::{Affine2, Mat2, Rect, Vec2, vec2};
 use crate::raster::Plane;
@@ -27,7 +27,8 @@ pub(super) struct LaidPlanes {
     dab_at: Option<Vec2>,
 }
 
-/// The unwrapped plane under a dab, before it is turned: distances from the dab and lengths of pixels are the same.
+/// The unwrapped plane under a dab, before it is turned: distances from the dab and lengths of
+/// pixels are the same.
 pub struct OwnPlane<'p> {
     pub x: &'p Plane<f32>,
     pub y: &'p Plane<f32>,
@@ -35,7 +36,8 @@ pub struct OwnPlane<'p> {
     pub at: Vec2,
 }
 
-/// How one object's plane is laid: D = linear U + shift, and where its anchors pull it, `pulled` times how it yields.
+/// How one object's plane is laid: D = linear U + shift, and where its anchors pull it, `pulled`
+/// times how it yields.
 pub(super) struct PlaneFit {
     pub object: u32,
     pub linear: Mat2,
@@ -59,11 +61,12 @@ pub(super) const OUT_OF_REACH_PX: f32 = 1e6;
 const MET_PX: f32 = 1e-3;
 
 impl LaidPlanes {
-    /// D(q_i) = s_i at every anchor. Two or more on one object turn its plane as a whole, so that they are met as
-    /// nearly as a turn can; what each still lacks the plane yields, by the equation that unwrapped it.
+    /// D(q_i) = s_i at every anchor. Two or more on one object turn its plane as a whole, so that
+    /// they are met as nearly as a turn can; what each still lacks the plane yields, by the
+    /// equation that unwrapped it.
     ///
-    /// With `Weights::Segment`, the gradient tool's, the plane is scaled as well: its two ends are met exactly, and the
-    /// ramp runs evenly over the surface between them.
+    /// With `Weights::Segment`, the gradient tool's, the plane is scaled as well: its two ends are
+    /// met exactly, and the ramp runs evenly over the surface between them.
     ///
     /// Then the picture is turned, moved and scaled on the bend's pieces.
     pub fn pinned(surface: &Surface, settings: UnwrapSettings, bend: &Bend) -> Self {
@@ -82,14 +85,26 @@ impl LaidPlanes {
             }
         }
         let mut holds = Vec::new();
-        let fits: Vec<PlaneFit> =
-            groups.iter().map(|(object, pins)| PlaneFit::new(*object, pins, bend.weights, &mut holds)).collect();
+        let fits: Vec<PlaneFit> = groups
+            .iter()
+            .map(|(object, pins)| PlaneFit::new(*object, pins, bend.weights, &mut holds))
+            .collect();
         let yields = yields_of(surface, settings, &holds);
-        let mut laid = Self { unwrapping, objects: surface.objects(), fits, yields, is_bounded: false, dab_at: None };
+        let mut laid = Self {
+            unwrapping,
+            objects: surface.objects(),
+            fits,
+            yields,
+            is_bounded: false,
+            dab_at: None,
+        };
         let of_whole = yields_of(pinned, settings, &holds);
-        bend.pieces.iter().for_each(|piece| laid.set_apart(pinned, settings, piece, of_whole.as_deref()));
+        bend.pieces
+            .iter()
+            .for_each(|piece| laid.set_apart(pinned, settings, piece, of_whole.as_deref()));
         laid
     }
+
     /// Turns, moves and scales the picture on the piece that a point lies on.
     fn set_apart(
         &mut self,
@@ -105,16 +120,23 @@ impl LaidPlanes {
         let fit = match self.fits.iter().position(|fit| fit.object == object) {
             Some(known) => &mut self.fits[known],
             None => {
-                self.fits.push(PlaneFit { object, linear: Mat2::IDENTITY, shift: Vec2::ZERO, pulled: None });
+                self.fits.push(PlaneFit {
+                    object,
+                    linear: Mat2::IDENTITY,
+                    shift: Vec2::ZERO,
+                    pulled: None,
+                });
                 let last = self.fits.len() - 1;
                 &mut self.fits[last]
             }
         };
-        let yielded = yields.map_or(Vec2::ZERO, |yields| surface.blended(piece.at, |x, y| yields.at(x, y)));
+        let yielded =
+            yields.map_or(Vec2::ZERO, |yields| surface.blended(piece.at, |x, y| yields.at(x, y)));
         let shown = fit.at(at, yielded);
         let Affine2 { matrix2, .. } = fit.looked_up(piece.looked_up(shown));
         fit.pulled = fit.pulled.map(|pulled| matrix2 * pulled);
     }
+
     /// `D(q) − q_0 = R(q_0)ᵀ (U(q) − U(q_0))`: a decal, upright where it is put down.
     pub fn of_dab(surface: &Surface, settings: UnwrapSettings, at: Vec2) -> Self {
         let unwrapping = surface.unwrapped(settings);
@@ -132,33 +154,47 @@ impl LaidPlanes {
             dab_at: Some(there),
         }
     }
+
     /// The same, laid wherever there is surface: what is not under the anchor stays where it is.
     pub fn unbounded(self) -> Self {
         Self { is_bounded: false, ..self }
     }
+
     /// D(q) at the centre of a pixel that the surface covers.
     pub fn at(&self, x: usize, y: usize) -> Vec2 {
         let (object, u) = (self.objects.labels().at(x, y), self.unwrapping.at(x, y));
         match self.fits.iter().find(|fit| fit.object == object) {
-            Some(fit) => fit.at(u, self.yields.as_ref().map_or(Vec2::ZERO, |yields| yields.at(x, y))),
+            Some(fit) => {
+                fit.at(u, self.yields.as_ref().map_or(Vec2::ZERO, |yields| yields.at(x, y)))
+            }
             None if self.is_bounded => u + OUT_OF_REACH_PX,
             None => u,
         }
     }
-    /// For a dab: its plane itself, over a rectangle and one more pixel around it, if all of that is on its object.
+
+    /// For a dab: its plane itself, over a rectangle and one more pixel around it, if all of that
+    /// is on its object.
     pub fn own(&self, rect: Rect) -> Option<OwnPlane<'_>> {
         let ([fit], Some(at)) = (&self.fits[..], self.dab_at) else { return None };
         let blocks = self.objects.around_blocks();
         let (x0, y0) = (rect.x0.max(0) as usize / BLOCK, rect.y0.max(0) as usize / BLOCK);
         let (x1, y1) = (rect.x1.max(0) as usize, rect.y1.max(0) as usize);
-        let (x1, y1) = (x1.div_ceil(BLOCK).min(blocks.width()), y1.div_ceil(BLOCK).min(blocks.height()));
-        let is_own = |y: usize| blocks.row(y)[x0.min(x1)..x1].iter().all(|object| *object == fit.object);
+        let (x1, y1) =
+            (x1.div_ceil(BLOCK).min(blocks.width()), y1.div_ceil(BLOCK).min(blocks.height()));
+        let is_own =
+            |y: usize| blocks.row(y)[x0.min(x1)..x1].iter().all(|object| *object == fit.object);
         let [x, y] = self.unwrapping.planes();
-        (!rect.is_empty() && fit.object > 0 && (y0..y1).all(is_own)).then_some(OwnPlane { x, y, at })
+        (!rect.is_empty() && fit.object > 0 && (y0..y1).all(is_own)).then_some(OwnPlane {
+            x,
+            y,
+            at,
+        })
     }
+
     pub fn fits(&self) -> &[PlaneFit] {
         &self.fits
     }
+
     /// What is added where no fit is.
     pub fn elsewhere_px(&self) -> f32 {
         if self.is_bounded { OUT_OF_REACH_PX } else { 0.0 }
@@ -166,7 +202,11 @@ impl LaidPlanes {
 }
 
 /// How a surface yields to some holds, if there are any.
-fn yields_of(surface: &Surface, settings: UnwrapSettings, holds: &[PlaneHold]) -> Option<Arc<PlaneYield>> {
+fn yields_of(
+    surface: &Surface,
+    settings: UnwrapSettings,
+    holds: &[PlaneHold],
+) -> Option<Arc<PlaneYield>> {
     (!holds.is_empty()).then(|| surface.plane_yield(settings, holds))
 }
 
@@ -174,13 +214,15 @@ impl PlaneFit {
     /// The rigid part of a fit; where it misses a pin, all of them are held.
     fn new(object: u32, pins: &[PlanePin], weights: Weights, holds: &mut Vec<PlaneHold>) -> Self {
         let n = pins.len().max(1) as f32;
-        let (from, to) = pins.iter().fold((Vec2::ZERO, Vec2::ZERO), |(a, b), pin| (a + pin.at, b + pin.source));
+        let (from, to) =
+            pins.iter().fold((Vec2::ZERO, Vec2::ZERO), |(a, b), pin| (a + pin.at, b + pin.source));
         let (from, to) = (from / n, to / n);
         // The rotation that leaves the least, squared.
         let (mut dot, mut cross, mut spread) = (0.0, 0.0, 0.0);
         for pin in pins {
             let (u, s) = (pin.at - from, pin.source - to);
-            (dot, cross, spread) = (dot + u.dot(s), cross + u.perp_dot(s), spread + u.length_squared());
+            (dot, cross, spread) =
+                (dot + u.dot(s), cross + u.perp_dot(s), spread + u.length_squared());
         }
         let turned = vec2(dot, cross);
         let linear = match weights {
@@ -190,21 +232,26 @@ impl PlaneFit {
         };
         let linear = Mat2::from_cols(linear, linear.perp());
         let shift = to - linear * from;
-        let held = |pin: &PlanePin| PlaneHold { at: pin.on_canvas, lacks: pin.source - (linear * pin.at + shift) };
+        let held = |pin: &PlanePin| PlaneHold {
+            at: pin.on_canvas,
+            lacks: pin.source - (linear * pin.at + shift),
+        };
         let held: Vec<PlaneHold> = pins.iter().map(held).collect();
         // Anchors thrown beyond all reach are met by no plane.
-        let is_pulled =
-            held.iter().any(|hold| hold.lacks.length() >= MET_PX) && held.iter().all(|hold| hold.lacks.is_finite());
+        let is_pulled = held.iter().any(|hold| hold.lacks.length() >= MET_PX)
+            && held.iter().all(|hold| hold.lacks.is_finite());
         if is_pulled {
             holds.extend(held);
         }
         Self { object, linear, shift, pulled: is_pulled.then_some(Mat2::IDENTITY) }
     }
+
     /// Looks a picture up where `look` leads what was looked up before; returns it.
     fn looked_up(&mut self, look: Affine2) -> Affine2 {
         (self.linear, self.shift) = (look.matrix2 * self.linear, look.transform_point2(self.shift));
         look
     }
+
     /// D of a point of the unwrapped plane.
     ///
     /// * `yields`: how it yields there; only where anchors pull.

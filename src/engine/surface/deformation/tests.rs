@@ -11,7 +11,8 @@ use proptest::prelude::*;
 
 const SIZE: Size = Size::new(160, 120);
 
-/// A surface from its height over a point, its slope (∂h/∂x, ∂h/∂y; image axes) and whether it is there at all.
+/// A surface from its height over a point, its slope (∂h/∂x, ∂h/∂y; image axes) and whether it is
+/// there at all.
 fn surface(height: impl Fn(Vec2) -> Option<(f32, Vec2)> + Sync) -> Surface {
     let at = |x: usize, y: usize| height(vec2(x as f32 + 0.5, y as f32 + 0.5));
     let normals = Plane::from_fn(SIZE, |x, y| {
@@ -54,7 +55,12 @@ const OPERATORS: [Operator; 8] = [
 fn bends(operator: Operator) -> [Bend; 4] {
     let dragged = Anchor { at: vec2(100.5, 80.5), source: vec2(90.0, 85.0) };
     let three = vec![Anchor::fixed(vec2(60.5, 40.5)), dragged, Anchor::fixed(vec2(45.0, 70.0))];
-    let bend = |anchors: &[Anchor], weights| Bend { operator, anchors: anchors.to_vec(), weights, ..Bend::default() };
+    let bend = |anchors: &[Anchor], weights| Bend {
+        operator,
+        anchors: anchors.to_vec(),
+        weights,
+        ..Bend::default()
+    };
     [
         bend(&three[1..2], Weights::default()),
         bend(&three, Weights::default()),
@@ -85,9 +91,13 @@ fn rows_hold_what_the_reference_says_inside_the_maps_and_beyond() {
             let deformation = Deformation::new(surface.as_ref(), SIZE, &bend);
             deformation.fill(rect, &mut filled);
             for (i, (&x, &y)) in filled.x.iter().zip(&filled.y).enumerate() {
-                let (px, py) = (rect.x0 + (i % rect.width()) as i32, rect.y0 + (i / rect.width()) as i32);
+                let (px, py) =
+                    (rect.x0 + (i % rect.width()) as i32, rect.y0 + (i / rect.width()) as i32);
                 let reference = deformation.at(px, py);
-                assert!((vec2(x, y) - reference).length() < 1e-4, "{bend:?} at {px}, {py}: {x}, {y} ≠ {reference}");
+                assert!(
+                    (vec2(x, y) - reference).length() < 1e-4,
+                    "{bend:?} at {px}, {py}: {x}, {y} ≠ {reference}"
+                );
             }
         }
     }
@@ -96,7 +106,8 @@ fn rows_hold_what_the_reference_says_inside_the_maps_and_beyond() {
 #[test]
 fn short_rows_hold_the_same_bits_as_whole_ones() {
     let rects = [Rect::new(20, 10, 86, 76), Rect::new(40, 50, 47, 53), Rect::new(-3, 90, 30, 130)];
-    for (operator, surface) in OPERATORS.iter().flat_map(|operator| [(*operator, sphere()), (*operator, paraboloid())])
+    for (operator, surface) in
+        OPERATORS.iter().flat_map(|operator| [(*operator, sphere()), (*operator, paraboloid())])
     {
         let d = Deformation::of_dab(Some(&surface), SIZE, operator, vec2(61.3, 48.9));
         for rect in rects {
@@ -113,6 +124,7 @@ fn short_rows_hold_the_same_bits_as_whole_ones() {
         }
     }
 }
+
 #[test]
 fn the_jacobian_is_the_derivative_of_d() {
     for surface in [sphere(), paraboloid()] {
@@ -120,7 +132,8 @@ fn the_jacobian_is_the_derivative_of_d() {
             let deformation = Deformation::new(Some(&surface), SIZE, &bend);
             for (x, y) in [(70, 50), (80, 90), (110, 45), (52, 61), (99, 70)] {
                 let d = |dx, dy| deformation.at(x + dx, y + dy);
-                let differenced = Mat2::from_cols((d(1, 0) - d(-1, 0)) * 0.5, (d(0, 1) - d(0, -1)) * 0.5);
+                let differenced =
+                    Mat2::from_cols((d(1, 0) - d(-1, 0)) * 0.5, (d(0, 1) - d(0, -1)) * 0.5);
                 let jacobian = deformation.jacobian(x, y);
                 let error = jacobian - differenced;
                 let size = 1.0 + jacobian.x_axis.length() + jacobian.y_axis.length();
@@ -138,9 +151,13 @@ fn the_jacobian_does_not_look_across_the_mask_edge() {
     let deformation = Deformation::new(Some(&surface), SIZE, bend);
     // The last covered pixel of a row: beyond it is the identity, 100 px away.
     let y = 60;
-    let x = (80..SIZE.width as i32).rfind(|&x| surface.coverage(x as usize, y as usize) > 0).unwrap();
+    let x =
+        (80..SIZE.width as i32).rfind(|&x| surface.coverage(x as usize, y as usize) > 0).unwrap();
     let (edge, inside) = (deformation.jacobian(x, y), deformation.jacobian(x - 3, y));
-    assert!((deformation.at(x + 1, y) - deformation.at(x, y)).length() > 20.0, "there is a jump to avoid");
+    assert!(
+        (deformation.at(x + 1, y) - deformation.at(x, y)).length() > 20.0,
+        "there is a jump to avoid"
+    );
     assert!((edge - inside).abs_diff_eq(Mat2::ZERO, 0.3), "{edge} ≠ {inside}");
 }
 
@@ -169,7 +186,9 @@ fn detail_bends_more_where_the_surface_is_convex() {
         anchors: vec![Anchor::fixed(vec2(80.5, 60.5))],
         ..Bend::default()
     };
-    let offset = |detail| Deformation::new(Some(&surface), SIZE, &bend(detail)).at(90, 70) - vec2(90.5, 70.5);
+    let offset = |detail| {
+        Deformation::new(Some(&surface), SIZE, &bend(detail)).at(90, 70) - vec2(90.5, 70.5)
+    };
     let kappa = surface.curvature(DETAIL_BLUR_PX).kappa(90, 70, DETAIL_SCALE_PX);
     assert!(kappa > 0.1, "a ball is convex: {kappa}");
     assert!((offset(2.0) - offset(0.0) * (1.0 + 2.0 * kappa)).length() < 1e-3);
@@ -194,14 +213,19 @@ fn an_anchor_off_the_surface_reads_the_background_and_a_dab_the_nearest_rim() {
     let d = Deformation::new(Some(&surface), SIZE, &bend).at(100, 60) - vec2(100.5, 60.5);
     assert!((d - 160.0 * nbar.length() * nbar).length() < 1e-2, "{d}");
     let rim = nbar - surface.nbar(3, 60);
-    let d = Deformation::of_dab(Some(&surface), SIZE, operator, off).at(100, 60) - vec2(100.5, 60.5);
+    let d =
+        Deformation::of_dab(Some(&surface), SIZE, operator, off).at(100, 60) - vec2(100.5, 60.5);
     assert!((d - 160.0 * rim.length() * rim).length() < 1e-2, "{d}");
 }
 
 #[test]
 fn identity_is_known_without_looking_at_pixels() {
     let surface = sphere();
-    let still = Bend { operator: OPERATORS[0], anchors: vec![Anchor::fixed(vec2(9.0, 9.0))], ..Bend::default() };
+    let still = Bend {
+        operator: OPERATORS[0],
+        anchors: vec![Anchor::fixed(vec2(9.0, 9.0))],
+        ..Bend::default()
+    };
     assert!(!Deformation::new(Some(&surface), SIZE, &still).is_identity());
     assert!(Deformation::new(None, SIZE, &still).is_identity());
     let flat = Bend { operator: Operator::Depth { gamma: 0.0 }, ..still.clone() };
@@ -214,9 +238,11 @@ fn counted_from_another_corner_a_moved_surface_gives_the_same_bits() {
     let (size, by) = (Size::new(90, 70), (17, 9));
     let at = |x: f32, y: f32| vec3((x * 0.11).sin() * 0.4, (y * 0.13).cos() * 0.3, 0.8).normalize();
     let surface = |shift: (i32, i32)| {
-        let normals = Plane::from_fn(size, |x, y| at(x as f32 - shift.0 as f32, y as f32 - shift.1 as f32));
-        let depth =
-            Plane::from_fn(size, |x, y| (x as f32 - shift.0 as f32) * 0.01 + (y as f32 - shift.1 as f32) * 0.004);
+        let normals =
+            Plane::from_fn(size, |x, y| at(x as f32 - shift.0 as f32, y as f32 - shift.1 as f32));
+        let depth = Plane::from_fn(size, |x, y| {
+            (x as f32 - shift.0 as f32) * 0.01 + (y as f32 - shift.1 as f32) * 0.004
+        });
         let mut depth = depth.map(|v| v.max(0.0).min(1.0));
         // The range stays the same.
         depth.set(0, 0, 0.0);
@@ -225,7 +251,10 @@ fn counted_from_another_corner_a_moved_surface_gives_the_same_bits() {
     };
     let bend = |shift: (i32, i32)| {
         let move_by = vec2(shift.0 as f32, shift.1 as f32);
-        let pin = |x: f32, y: f32| Anchor { at: vec2(x, y) + move_by, source: vec2(x + 1.5, y) + move_by };
+        let pin = |x: f32, y: f32| Anchor {
+            at: vec2(x, y) + move_by,
+            source: vec2(x + 1.5, y) + move_by,
+        };
         Bend {
             operator: Operator::Normal { alpha: 0.37, beta: 1.3, detail: 0.0 },
             anchors: vec![pin(20.5, 30.25), pin(44.125, 18.5)],
@@ -239,6 +268,9 @@ fn counted_from_another_corner_a_moved_surface_gives_the_same_bits() {
     moved.fill(Rect::new(5 + by.0, 5 + by.1, 60 + by.0, 50 + by.1), &mut b);
     assert!(a.x == b.x && a.y == b.y);
     assert!(
-        moved.at(30 + by.0, 20 + by.1).distance(Deformation::new(Some(&here), size, &bend((0, 0))).at(30, 20)) < 1e-6
+        moved
+            .at(30 + by.0, 20 + by.1)
+            .distance(Deformation::new(Some(&here), size, &bend((0, 0))).at(30, 20))
+            < 1e-6
     );
 }

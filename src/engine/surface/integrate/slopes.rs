@@ -1,4 +1,5 @@
-//! The steps between neighbouring pixels that normals give: computed pixel by pixel, never stored. Floor 2.
+//! The steps between neighbouring pixels that normals give: computed pixel by pixel, never stored.
+//! Floor 2.
 
 use crate::math::{Vec3, vec2};
 use crate::raster::Plane;
@@ -13,8 +14,8 @@ pub struct Slopes<'a> {
 const STEEPEST: f32 = 0.05;
 
 impl Slopes<'_> {
-    /// Weight and height of the step from a pixel to the one at its right (axis 0) or below (1); nothing where there is
-    /// none.
+    /// Weight and height of the step from a pixel to the one at its right (axis 0) or below (1);
+    /// nothing where there is none.
     #[inline(always)]
     pub fn edge(&self, (x, y): (usize, usize), axis: usize) -> (f32, f32) {
         let b = if axis == 0 { (x + 1, y) } else { (x, y + 1) };
@@ -30,6 +31,7 @@ impl Slopes<'_> {
         let weight = facing.max(STEEPEST).powi(2);
         (weight, along * 0.5 / facing.max(STEEPEST))
     }
+
     /// The right-hand side of the normal equations: what flows out of a pixel.
     pub fn source(&self, x: usize, y: usize) -> f32 {
         let flow = |(weight, slope): (f32, f32)| weight * slope;

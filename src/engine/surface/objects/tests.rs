@@ -4,12 +4,15 @@ use crate::surface::Maps;
 
 const SIZE: Size = Size::new(120, 80);
 
-/// A plate from column 10 on, a disc of 20 px that floats before its middle, and a crumb of 2 × 2 px behind both.
+/// A plate from column 10 on, a disc of 20 px that floats before its middle, and a crumb of 2 × 2
+/// px behind both.
 fn plate_and_disc() -> Arc<Surface> {
     plate_and_disc_of(SIZE)
 }
+
 fn plate_and_disc_of(size: Size) -> Arc<Surface> {
-    let disc = |x: usize, y: usize| vec2(x as f32 + 0.5, y as f32 + 0.5).distance(vec2(60.0, 40.0)) < 20.0;
+    let disc =
+        |x: usize, y: usize| vec2(x as f32 + 0.5, y as f32 + 0.5).distance(vec2(60.0, 40.0)) < 20.0;
     let crumb = |x: usize, y: usize| (100..102).contains(&x) && (60..62).contains(&y);
     let depth = Plane::from_fn(size, |x, y| match (disc(x, y), crumb(x, y)) {
         (true, _) => 0.2,
@@ -28,13 +31,16 @@ fn workers_that_need_the_objects_at_once_never_wait_for_themselves() {
     let look = || {
         for _ in 0..40 {
             let objects = Objects::new(&surface);
-            let count = |_: usize| objects.around_blocks().values().iter().filter(|label| **label > 0).count();
+            let count = |_: usize| {
+                objects.around_blocks().values().iter().filter(|label| **label > 0).count()
+            };
             let counts: Vec<usize> = (0..64).into_par_iter().map(count).collect();
             assert!(counts.iter().all(|count| *count == counts[0]));
         }
     };
     rayon::ThreadPoolBuilder::new().num_threads(4).build().unwrap().install(look);
 }
+
 #[test]
 fn a_disc_before_a_plate_is_an_object_of_its_own_and_a_crumb_is_none() {
     let surface = plate_and_disc();
@@ -49,13 +55,16 @@ fn a_disc_before_a_plate_is_an_object_of_its_own_and_a_crumb_is_none() {
     assert_eq!(objects.rect(disc), Rect::new(40, 20, 80, 60));
     assert_eq!(objects.at(-1, 5), None);
 }
+
 #[test]
 fn a_ramp_as_high_as_a_cliff_tears_nothing() {
     let depth = Plane::from_fn(SIZE, |x, _| x as f32 / 119.0);
     let normal = Vec3::new(-0.6, 0.0, 0.8);
-    let maps = Maps { normals: Plane::filled(SIZE, normal), depth, coverage: Plane::filled(SIZE, 255) };
+    let maps =
+        Maps { normals: Plane::filled(SIZE, normal), depth, coverage: Plane::filled(SIZE, 255) };
     assert_eq!(Surface::new(maps).unwrap().objects().count(), 1);
 }
+
 #[test]
 fn a_mark_is_bounded_to_what_it_begins_on() {
     let surface = plate_and_disc();

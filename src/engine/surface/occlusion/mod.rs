@@ -1,11 +1,11 @@
-//! Ambient occlusion: how much of the hemisphere over each point the surface itself leaves open (RS sec. 5.3.1's A(p)).
-//! Floor 2. It is computed from depth, in pixels. Here: the horizon equations and the cache; `rows` is the fast way
-//! over a map.
+//! Ambient occlusion: how much of the hemisphere over each point the surface itself leaves open (RS
+//! sec. 5.3.1's A(p)). Floor 2. It is computed from depth, in pixels. Here: the horizon equations
+//! and the cache; `rows` is the fast way over a map.
 //!
-//! Along directions all around each pixel the highest horizon is found, and the cosine-weighted light above it is
-//! integrated in closed form (Jiménez et al. 2016, "Practical realtime strategies for accurate indirect occlusion").
-//! Every pixel looks along the same directions at the same distances: there is no noise, and the result does not depend
-//! on threads.
+//! Along directions all around each pixel the highest horizon is found, and the cosine-weighted
+//! light above it is integrated in closed form (Jiménez et al. 2016, "Practical realtime strategies
+//! for accurate indirect occlusion"). Every pixel looks along the same directions at the same
+//! distances: there is no noise, and the result does not depend on threads.
 
 mod rows;
 
@@ -58,18 +58,22 @@ impl HorizonSlices {
             let (sin, cos) = (i as f32 / SLICES as f32 * PI).sin_cos();
             // Neighbouring directions look at different distances, so that an edge casts no echo.
             let phase = (i as f32 * 0.618_034).fract();
-            [way(vec2(cos, sin), radius_px, phase), way(vec2(-cos, -sin), radius_px, (phase + 0.5).fract())]
+            [
+                way(vec2(cos, sin), radius_px, phase),
+                way(vec2(-cos, -sin), radius_px, (phase + 0.5).fract()),
+            ]
         };
         Self { slices: (0..SLICES).map(slice).collect(), radius_px }
     }
+
     /// The largest distance that is read, px.
     fn reach(&self) -> i32 {
         self.radius_px.ceil() as i32 + 1
     }
 }
 
-/// Steps by whole pixels along the nearer axis and interpolates between two pixels across it: jumping from pixel to
-/// pixel would pick the higher neighbour.
+/// Steps by whole pixels along the nearer axis and interpolates between two pixels across it:
+/// jumping from pixel to pixel would pick the higher neighbour.
 fn way(toward: Vec2, radius_px: f32, phase: f32) -> HorizonDirection {
     let is_across = toward.x.abs() >= toward.y.abs();
     let (along, across) = if is_across { (toward.x, toward.y) } else { (toward.y, toward.x) };
@@ -85,18 +89,25 @@ fn way(toward: Vec2, radius_px: f32, phase: f32) -> HorizonDirection {
         let main = along.signum() * count;
         let cliff_px = CLIFF.0 * (distance_px - before) + CLIFF.1;
         let (near, far) = (pixel(main, aside.floor()), pixel(main, aside.floor() + 1.0));
-        steps.push(HorizonStep { near, far, between: aside - aside.floor(), distance_px, cliff_px });
+        steps.push(HorizonStep {
+            near,
+            far,
+            between: aside - aside.floor(),
+            distance_px,
+            cliff_px,
+        });
         before = distance_px;
         count = (count * (1.0 + STRIDE) + phase).floor().max(count + 1.0);
     }
     HorizonDirection { toward, steps }
 }
 
-/// The open part of one slice of the hemisphere, weighted by the cosine to the normal; 1 for a plane that faces the
-/// viewer.
+/// The open part of one slice of the hemisphere, weighted by the cosine to the normal; 1 for a
+/// plane that faces the viewer.
 ///
 /// * `along`, `up`: the normal in the slice, along its direction and to the viewer; not both 0.
-/// * `horizons`: cosines between the view and the horizon in the slice's direction and in the opposite one.
+/// * `horizons`: cosines between the view and the horizon in the slice's direction and in the
+///   opposite one.
 #[inline(always)]
 fn open_part(along: f32, up: f32, horizons: [f32; 2]) -> f32 {
     // ¼ |n| Σ (−cos(2h − γ) + cos γ + 2h sin γ), h the horizon's angle, γ the normal's.
@@ -111,7 +122,8 @@ fn open_part(along: f32, up: f32, horizons: [f32; 2]) -> f32 {
     0.25 * length * (half(horizons[0], 1.0) + half(horizons[1], -1.0))
 }
 
-/// The height between two neighbouring pixels, `t` of the way; across a cliff, the lower one's height.
+/// The height between two neighbouring pixels, `t` of the way; across a cliff, the lower one's
+/// height.
 #[inline(always)]
 fn height_between(near: f32, far: f32, t: f32) -> f32 {
     let mixed = near + (far - near) * t;
@@ -131,14 +143,16 @@ fn excess(above: f32, away: f32, cliffs_px: f32, per_cliff: f32) -> f32 {
     above * sure * fast::max(1.0 - away * away, 0.0) * fast::max(1.0 - cliffs_px * per_cliff, 0.0)
 }
 
-/// The slope of the height (toward the viewer, px a px, image axes) from the depth around a pixel, never across a jump.
+/// The slope of the height (toward the viewer, px a px, image axes) from the depth around a pixel,
+/// never across a jump.
 fn slope(surface: &Surface, x: usize, y: usize) -> Vec2 {
     let links = surface.links_plane();
     let height = |x: usize, y: usize| -surface.depth(x, y) * surface.depth_range_px();
     let here = links.at(x, y);
     // The mean of the steps next to the pixel and, where linked, next to its two neighbours across.
     let mean = |steps: &[Option<f32>]| {
-        let (sum, count) = steps.iter().flatten().fold((0.0, 0.0), |(s, n), step| (s + step, n + 1.0));
+        let (sum, count) =
+            steps.iter().flatten().fold((0.0, 0.0), |(s, n), step| (s + step, n + 1.0));
         if count > 0.0 { sum / count } else { 0.0 }
     };
     let row = |y: usize| {
@@ -153,19 +167,26 @@ fn slope(surface: &Surface, x: usize, y: usize) -> Vec2 {
         let down = (joined & links::DOWN != 0).then(|| height(x, y + 1) - height(x, y));
         [up, down]
     };
-    let if_joined = |bit: u8, steps: &dyn Fn() -> [Option<f32>; 2]| if here & bit != 0 { steps() } else { [None; 2] };
-    let rows = [row(y), if_joined(links::UP, &|| row(y - 1)), if_joined(links::DOWN, &|| row(y + 1))];
-    let columns = [column(x), if_joined(links::LEFT, &|| column(x - 1)), if_joined(links::RIGHT, &|| column(x + 1))];
+    let if_joined = |bit: u8, steps: &dyn Fn() -> [Option<f32>; 2]| {
+        if here & bit != 0 { steps() } else { [None; 2] }
+    };
+    let rows =
+        [row(y), if_joined(links::UP, &|| row(y - 1)), if_joined(links::DOWN, &|| row(y + 1))];
+    let columns = [
+        column(x),
+        if_joined(links::LEFT, &|| column(x - 1)),
+        if_joined(links::RIGHT, &|| column(x + 1)),
+    ];
     vec2(mean(rows.as_flattened()), mean(columns.as_flattened()))
 }
 
 impl Surface {
     /// A(p) of every pixel, `[0, 1]`: 1 where nothing hides the light, 1 off the surface.
     ///
-    /// Occluders count less the farther they are, those `radius_px` away (in the picture and in depth) not at all;
-    /// nor does what floats in front, beyond a depth jump of half the radius. It depends on depth alone: normal layers
-    /// do not change it. For a sheet it is that of the other populations' pixels nearby. Cached; call it once before
-    /// going parallel.
+    /// Occluders count less the farther they are, those `radius_px` away (in the picture and in
+    /// depth) not at all; nor does what floats in front, beyond a depth jump of half the radius. It
+    /// depends on depth alone: normal layers do not change it. For a sheet it is that of the other
+    /// populations' pixels nearby. Cached; call it once before going parallel.
     pub fn occlusion(&self, radius_px: f32) -> Arc<Plane<f32>> {
         const KEPT: usize = 3;
         // NaN.max is the other one.
@@ -188,8 +209,8 @@ impl Surface {
     pub const WIDEST_OCCLUSION_PX: f32 = 1024.0;
 }
 
-/// The tangent plane's horizon on both sides of a slice, as cosines to the view: the higher of what depth and normals
-/// give.
+/// The tangent plane's horizon on both sides of a slice, as cosines to the view: the higher of what
+/// depth and normals give.
 #[inline(always)]
 fn tangents(along_slope: f32, along_normal: f32, up_normal: f32) -> [f32; 2] {
     let told_by_depth = along_slope / (1.0 + along_slope * along_slope).sqrt();

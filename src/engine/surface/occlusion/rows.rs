@@ -1,7 +1,9 @@
-//! Occlusion of a whole map, many pixels of a row at a time: all read at the same offset, so that every read is a plain
-//! load. Floor 2. The equations are in `super`.
+//! Occlusion of a whole map, many pixels of a row at a time: all read at the same offset, so that
+//! every read is a plain load. Floor 2. The equations are in `super`.
 
-use super::{FLOATS, HorizonDirection, HorizonSlices, excess, height_between, open_part, slope, tangents};
+use super::{
+    FLOATS, HorizonDirection, HorizonSlices, excess, height_between, open_part, slope, tangents,
+};
 use crate::math::{Vec2, fast};
 use crate::raster::Plane;
 use crate::surface::{Surface, links};
@@ -29,15 +31,18 @@ impl Heights {
         let margin = ways.reach() as usize;
         let stride = w.next_multiple_of(LANES) + 2 * margin;
         let mut values = vec![NOWHERE; stride * (h + 2 * margin)];
-        values[margin * stride..].par_chunks_mut(stride).enumerate().take(h).for_each(|(y, row)| {
-            for (x, v) in row[margin..margin + w].iter_mut().enumerate() {
-                if surface.coverage(x, y) > 0 {
-                    *v = -surface.depth(x, y) * surface.depth_range_px();
+        values[margin * stride..].par_chunks_mut(stride).enumerate().take(h).for_each(
+            |(y, row)| {
+                for (x, v) in row[margin..margin + w].iter_mut().enumerate() {
+                    if surface.coverage(x, y) > 0 {
+                        *v = -surface.depth(x, y) * surface.depth_range_px();
+                    }
                 }
-            }
-        });
+            },
+        );
         Self { values, stride, margin }
     }
+
     /// The heights of the pixels from (x, y) on, moved by an offset.
     #[inline(always)]
     fn lanes(&self, x: usize, y: usize, (dx, dy): (i32, i32)) -> &[f32] {
@@ -52,33 +57,46 @@ pub(super) fn compute(surface: &Surface, ways: &HorizonSlices) -> Plane<f32> {
     let size = surface.size();
     let heights = Heights::of(surface, ways);
     let mut open = Plane::filled(size, 1.0f32);
-    open.values_mut().par_chunks_mut(size.width.max(1) as usize).enumerate().for_each(|(y, row)| {
-        for (i, out) in row.chunks_mut(LANES).enumerate() {
-            let x0 = i * LANES;
-            if surface.coverage_plane().row(y)[x0..x0 + out.len()].iter().all(|&c| c == 0) {
-                continue;
-            }
-            let mut found = [0.0; LANES];
-            open_lanes(&heights, (x0, y), &LaneSlopes::of(surface, &heights, (x0, y), out.len()), ways, &mut found);
-            for (x, (out, &found)) in out.iter_mut().zip(&found).enumerate() {
-                if surface.coverage(x0 + x, y) > 0 {
-                    *out = found;
+    open.values_mut().par_chunks_mut(size.width.max(1) as usize).enumerate().for_each(
+        |(y, row)| {
+            for (i, out) in row.chunks_mut(LANES).enumerate() {
+                let x0 = i * LANES;
+                if surface.coverage_plane().row(y)[x0..x0 + out.len()].iter().all(|&c| c == 0) {
+                    continue;
+                }
+                let mut found = [0.0; LANES];
+                open_lanes(
+                    &heights,
+                    (x0, y),
+                    &LaneSlopes::of(surface, &heights, (x0, y), out.len()),
+                    ways,
+                    &mut found,
+                );
+                for (x, (out, &found)) in out.iter_mut().zip(&found).enumerate() {
+                    if surface.coverage(x0 + x, y) > 0 {
+                        *out = found;
+                    }
                 }
             }
-        }
-    });
+        },
+    );
     open
 }
 
-/// The open part averaged over five pixels each way, never across a depth jump: the remaining artefacts of depth steps
-/// and few directions are finer than that.
+/// The open part averaged over five pixels each way, never across a depth jump: the remaining
+/// artefacts of depth steps and few directions are finer than that.
 pub(super) fn smoothed(surface: &Surface, open: &Plane<f32>) -> Plane<f32> {
     let across = along_links(surface, open, (links::LEFT, links::RIGHT), (1, 0));
     along_links(surface, &across, (links::UP, links::DOWN), (0, 1))
 }
 
 /// Binomial weights 1 4 6 4 1 along a row or a column, as far as the links reach.
-fn along_links(surface: &Surface, open: &Plane<f32>, (back, forth): (u8, u8), step: (usize, usize)) -> Plane<f32> {
+fn along_links(
+    surface: &Surface,
+    open: &Plane<f32>,
+    (back, forth): (u8, u8),
+    step: (usize, usize),
+) -> Plane<f32> {
     let joined = surface.links_plane();
     Plane::from_fn(open.size(), |x, y| {
         let (mut sum, mut weights) = (6.0 * open.at(x, y), 6.0);
@@ -114,8 +132,10 @@ struct LaneSlopes {
 
 impl LaneSlopes {
     fn of(surface: &Surface, heights: &Heights, (x0, y): (usize, usize), width: usize) -> Self {
-        let mut facing = Self { slope: [[0.0; LANES]; 2], nbar: [[0.0; LANES]; 2], nz: [1.0; LANES] };
-        let [nbar_x, nbar_y, nz] = surface.normal_planes().map(|plane| &plane.row(y)[x0..x0 + width]);
+        let mut facing =
+            Self { slope: [[0.0; LANES]; 2], nbar: [[0.0; LANES]; 2], nz: [1.0; LANES] };
+        let [nbar_x, nbar_y, nz] =
+            surface.normal_planes().map(|plane| &plane.row(y)[x0..x0 + width]);
         facing.nbar[0][..width].copy_from_slice(nbar_x);
         facing.nbar[1][..width].copy_from_slice(nbar_y);
         facing.nz.iter_mut().zip(nz).for_each(|(out, z)| *out = z.max(0.0));
@@ -135,16 +155,20 @@ impl LaneSlopes {
 fn is_whole(surface: &Surface, (x, y): (usize, usize), width: usize) -> bool {
     const INSIDE: u8 = links::LEFT | links::RIGHT | links::UP | links::DOWN;
     let size = surface.size();
-    let is_inside = x > 0 && y > 0 && x + width < size.width as usize && y + 1 < size.height as usize;
+    let is_inside =
+        x > 0 && y > 0 && x + width < size.width as usize && y + 1 < size.height as usize;
     let row = |y: usize| &surface.links_plane().row(y)[x - 1..x + width + 1];
     is_inside
-        && [y - 1, y, y + 1].iter().all(|&y| row(y).iter().fold(u8::MAX, |all, bits| all & bits) & INSIDE == INSIDE)
+        && [y - 1, y, y + 1]
+            .iter()
+            .all(|&y| row(y).iter().fold(u8::MAX, |all, bits| all & bits) & INSIDE == INSIDE)
 }
 
 crate::widest! {
     /// [`slope`] where all pixels around are linked, to the same bits.
     ///
-    /// `rows`: the heights above, here and below, each one px to the left, there and one to the right.
+    /// `rows`: the heights above, here and below, each one px to the left, there and one to the
+    /// right.
     fn slopes_of_whole(rows: [[&[f32]; 3]; 3], out: &mut [Lanes; 2]) {
         let [[a, b, c], [d, e, f], [g, h, k]] = rows.map(|row| row.map(|lanes| &lanes[..LANES]));
         for i in 0..LANES {
@@ -154,6 +178,7 @@ crate::widest! {
             (out[0][i], out[1][i]) = (across / 6.0, along / 6.0);
         }
     }
+
     /// The open part of the hemisphere over each pixel.
     fn open_lanes(heights: &Heights, at: (usize, usize), facing: &LaneSlopes, ways: &HorizonSlices, out: &mut Lanes) {
         let (mut open, mut whole, mut part) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
@@ -195,10 +220,11 @@ fn along(vector: &[Lanes; 2], toward: Vec2, i: usize) -> f32 {
     vector[0][i] * toward.x + vector[1][i] * toward.y
 }
 
-/// How far the highest horizon along a way is above the tangent plane's, in cosines; whether it may do so anywhere.
+/// How far the highest horizon along a way is above the tangent plane's, in cosines; whether it may
+/// do so anywhere.
 ///
-/// Most places lie below the tangent plane, which their rise shows without a root or a division. Only where that of one
-/// of a few neighbours does not, they are looked at.
+/// Most places lie below the tangent plane, which their rise shows without a root or a division.
+/// Only where that of one of a few neighbours does not, they are looked at.
 #[inline(always)]
 fn march(
     heights: &Heights,
@@ -232,12 +258,16 @@ fn march(
                 continue;
             }
             is_hidden = true;
-            let (rise, tangent, cliffs) = (&rise[lanes.clone()], &tangent[lanes.clone()], &cliffs[lanes.clone()]);
+            let (rise, tangent, cliffs) =
+                (&rise[lanes.clone()], &tangent[lanes.clone()], &cliffs[lanes.clone()]);
             let hidden = &mut hidden[lanes];
             for i in 0..TOGETHER {
                 let space_2 = distance_2 + rise[i] * rise[i];
                 let above = rise[i] / space_2.sqrt() - tangent[i];
-                fast::raise(&mut hidden[i], excess(above, space_2 * per_radius_2, cliffs[i], per_cliff));
+                fast::raise(
+                    &mut hidden[i],
+                    excess(above, space_2 * per_radius_2, cliffs[i], per_cliff),
+                );
             }
         }
     }
@@ -247,7 +277,8 @@ fn march(
 /// The rise a px, or a little less, that a cosine to the view means.
 #[inline(always)]
 pub(super) fn steepness(cosine: f32) -> f32 {
-    /// More than the error of rounding. Nothing is taken from level ground: there both are exactly 0.
+    /// More than the error of rounding. Nothing is taken from level ground: there both are exactly
+    /// 0.
     const LESS: f32 = 1e-5;
     let cosine = cosine - LESS * cosine.abs();
     cosine / fast::max(1.0 - cosine * cosine, 0.0).sqrt()
@@ -255,7 +286,12 @@ pub(super) fn steepness(cosine: f32) -> f32 {
 
 /// The slopes of some pixels of a row.
 #[cfg(test)]
-pub(super) fn slopes(surface: &Surface, ways: &HorizonSlices, at: (usize, usize), width: usize) -> Vec<Vec2> {
+pub(super) fn slopes(
+    surface: &Surface,
+    ways: &HorizonSlices,
+    at: (usize, usize),
+    width: usize,
+) -> Vec<Vec2> {
     let [x, y] = LaneSlopes::of(surface, &Heights::of(surface, ways), at, width).slope;
     x.into_iter().zip(y).take(width).map(Vec2::from).collect()
 }

@@ -18,12 +18,16 @@ pub struct OperatorNumber {
 }
 
 /// e^20 is half a thousand million: a stronger bend only loses digits.
-static GAMMA: OperatorNumber = OperatorNumber { key: "gamma", label: "γ", range: 0.0..=20.0, useful: 0.0..=4.0 };
-static ALPHA: OperatorNumber = OperatorNumber { key: "alpha", label: "α", range: -100.0..=100.0, useful: -1.5..=1.5 };
-static BETA: OperatorNumber = OperatorNumber { key: "beta", label: "β", range: 0.0..=50.0, useful: 0.0..=5.0 };
+static GAMMA: OperatorNumber =
+    OperatorNumber { key: "gamma", label: "γ", range: 0.0..=20.0, useful: 0.0..=4.0 };
+static ALPHA: OperatorNumber =
+    OperatorNumber { key: "alpha", label: "α", range: -100.0..=100.0, useful: -1.5..=1.5 };
+static BETA: OperatorNumber =
+    OperatorNumber { key: "beta", label: "β", range: 0.0..=50.0, useful: 0.0..=5.0 };
 static DETAIL: OperatorNumber =
     OperatorNumber { key: "detail", label: "Detail", range: 0.0..=100.0, useful: 0.0..=2.0 };
-static AMOUNT: OperatorNumber = OperatorNumber { key: "amount", label: "Amount", range: 0.0..=2.0, useful: 0.0..=2.0 };
+static AMOUNT: OperatorNumber =
+    OperatorNumber { key: "amount", label: "Amount", range: 0.0..=2.0, useful: 0.0..=2.0 };
 static SMOOTH: OperatorNumber =
     OperatorNumber { key: "smooth", label: "Smooth", range: 0.0..=1000.0, useful: 0.0..=50.0 };
 
@@ -45,41 +49,54 @@ impl Operator {
         match self {
             Operator::None => vec![],
             Operator::Depth { gamma } => vec![(&GAMMA, gamma)],
-            Operator::Normal { alpha, beta, detail } => vec![(&ALPHA, alpha), (&BETA, beta), (&DETAIL, detail)],
+            Operator::Normal { alpha, beta, detail } => {
+                vec![(&ALPHA, alpha), (&BETA, beta), (&DETAIL, detail)]
+            }
             Operator::Reflection { alpha, detail } => vec![(&ALPHA, alpha), (&DETAIL, detail)],
             Operator::Surface { amount, smooth } => vec![(&AMOUNT, amount), (&SMOOTH, smooth)],
         }
     }
+
     /// Its numbers in the order in which they are shown and written.
     pub fn numbers(mut self) -> Vec<(&'static OperatorNumber, f32)> {
         self.slots().into_iter().map(|(number, value)| (number, *value)).collect()
     }
+
     /// The same kind with other numbers; the first refusal ends it.
-    pub fn try_map<E>(mut self, mut to: impl FnMut(&'static OperatorNumber, f32) -> Result<f32, E>) -> Result<Self, E> {
+    pub fn try_map<E>(
+        mut self,
+        mut to: impl FnMut(&'static OperatorNumber, f32) -> Result<f32, E>,
+    ) -> Result<Self, E> {
         for (number, value) in self.slots() {
             *value = to(number, *value)?;
         }
         Ok(self)
     }
+
     /// The same kind with other numbers.
     pub fn map(mut self, mut to: impl FnMut(&'static OperatorNumber, f32) -> f32) -> Self {
         self.slots().into_iter().for_each(|(number, value)| *value = to(number, *value));
         self
     }
+
     /// Its row of the table: its kind with the numbers of the name alone, and the name.
     pub fn row(self) -> (Operator, &'static str) {
         let is_same = |(kind, _): &&(Operator, &str)| kind.is_like(self);
         Self::KINDS.iter().find(is_same).copied().unwrap_or(Self::KINDS[0])
     }
+
     /// Both are of one kind, whatever their numbers.
     pub fn is_like(self, other: Operator) -> bool {
         std::mem::discriminant(&self) == std::mem::discriminant(&other)
     }
+
     /// With the nearest numbers that a document may hold.
     pub fn held(self) -> Self {
         self.map(|number, value| held(value, &number.range))
     }
-    /// The operator with parameters that are finite and not absurd: what is not a number counts as 0.
+
+    /// The operator with parameters that are finite and not absurd: what is not a number counts as
+    /// 0.
     pub fn finite(self) -> Self {
         self.map(|_, v| if v.is_finite() { v.clamp(-MAX_MAGNITUDE, MAX_MAGNITUDE) } else { 0.0 })
     }
@@ -95,11 +112,19 @@ mod tests {
             assert_eq!(operator.row(), (operator, name));
             assert_eq!(operator.held(), operator);
             for (number, value) in operator.numbers() {
-                assert!(number.range.contains(&value) && number.useful.contains(&value), "{name}: {}", number.key);
-                assert!(number.range.contains(number.useful.start()) && number.range.contains(number.useful.end()));
+                assert!(
+                    number.range.contains(&value) && number.useful.contains(&value),
+                    "{name}: {}",
+                    number.key
+                );
+                assert!(
+                    number.range.contains(number.useful.start())
+                        && number.range.contains(number.useful.end())
+                );
             }
         }
     }
+
     #[test]
     fn numbers_are_changed_in_place() {
         let doubled = Operator::Normal { alpha: 0.5, beta: 1.0, detail: 2.0 }

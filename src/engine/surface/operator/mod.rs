@@ -1,7 +1,8 @@
-//! The operators: how far a point of the image moves where the surface is nearer (D_p), turns (D_n) or mirrors (D_r)
-//! relative to an anchor, or where it is on the surface unwrapped (D_s). Floor 2. Pure functions; each is an equation
-//! (docs/EQUATIONS.md). `kinds` is the table of their names and numbers. Not here: reading maps (`Surface`), anchors
-//! and weights (`anchor`), the unwrapping itself (`unwrap`), pixels (`raster`).
+//! The operators: how far a point of the image moves where the surface is nearer (D_p), turns (D_n)
+//! or mirrors (D_r) relative to an anchor, or where it is on the surface unwrapped (D_s). Floor 2.
+//! Pure functions; each is an equation (docs/EQUATIONS.md). `kinds` is the table of their names and
+//! numbers. Not here: reading maps (`Surface`), anchors and weights (`anchor`), the unwrapping
+//! itself (`unwrap`), pixels (`raster`).
 
 pub mod first_order;
 pub mod kinds;
@@ -21,13 +22,15 @@ pub enum Operator {
     None,
     /// First order, by depth, texture-like (SF eq. 13). `gamma ≥ 0`: rate.
     Depth { gamma: f32 },
-    /// Second order, by normals, reflection-like for `alpha > 0`, refraction-like for `alpha < 0` (SF eq. 15).
-    /// `alpha` in canvas lengths *L*; `beta ≥ 0`: rate; `detail ≥ 0`: μ of SF fig. 10.
+    /// Second order, by normals, reflection-like for `alpha > 0`, refraction-like for `alpha < 0`
+    /// (SF eq. 15). `alpha` in canvas lengths *L*; `beta ≥ 0`: rate; `detail ≥ 0`: μ of SF fig. 10.
     Normal { alpha: f32, beta: f32, detail: f32 },
-    /// By the reflected view direction on an angular map (beyond the paper). `alpha` in canvas lengths.
+    /// By the reflected view direction on an angular map (beyond the paper). `alpha` in canvas
+    /// lengths.
     Reflection { alpha: f32, detail: f32 },
-    /// The surface unwrapped: an image lies on it, undistorted as far as can be (MATH 8, beyond the papers). `amount`:
-    /// a, 0 flat … 1 its own metric; `smooth`: blur of the normals beforehand, px.
+    /// The surface unwrapped: an image lies on it, undistorted as far as can be (MATH 8, beyond the
+    /// papers). `amount`: a, 0 flat … 1 its own metric; `smooth`: blur of the normals beforehand,
+    /// px.
     Surface { amount: f32, smooth: f32 },
 }
 
@@ -67,6 +70,7 @@ impl Operator {
             Operator::Surface { amount, .. } => amount == 0.0,
         }
     }
+
     /// μ: how strongly curvature scales the magnitude (SF fig. 10); 0 for operators without it.
     pub fn detail(self) -> f32 {
         match self {
@@ -74,40 +78,62 @@ impl Operator {
             Operator::Normal { detail, .. } | Operator::Reflection { detail, .. } => detail,
         }
     }
-    /// What the surface must be unwrapped with; `None` for operators that only read maps at a pixel and at anchors.
+
+    /// What the surface must be unwrapped with; `None` for operators that only read maps at a pixel
+    /// and at anchors.
     pub fn unwrapping(self) -> Option<UnwrapSettings> {
         match self {
-            Operator::Surface { amount, smooth } if amount > 0.0 => Some(UnwrapSettings { amount, smooth_px: smooth }),
+            Operator::Surface { amount, smooth } if amount > 0.0 => {
+                Some(UnwrapSettings { amount, smooth_px: smooth })
+            }
             _ => None,
         }
     }
-    /// The same bend on a canvas whose length *L* is another: `ratio` of the old one to the new one, lengths in px
-    /// being the same.
+
+    /// The same bend on a canvas whose length *L* is another: `ratio` of the old one to the new
+    /// one, lengths in px being the same.
     pub fn on_canvas_of(self, ratio: f32) -> Self {
         match self {
-            Operator::Normal { alpha, beta, detail } => Operator::Normal { alpha: alpha * ratio, beta, detail }.held(),
-            Operator::Reflection { alpha, detail } => Operator::Reflection { alpha: alpha * ratio, detail }.held(),
+            Operator::Normal { alpha, beta, detail } => {
+                Operator::Normal { alpha: alpha * ratio, beta, detail }.held()
+            }
+            Operator::Reflection { alpha, detail } => {
+                Operator::Reflection { alpha: alpha * ratio, detail }.held()
+            }
             of_px => of_px,
         }
     }
+
     /// On a canvas so many times as large: lengths in px grow with it.
     pub fn scaled(self, by: f32) -> Self {
         match self {
-            Operator::Surface { amount, smooth } => Operator::Surface { amount, smooth: smooth * by }.held(),
+            Operator::Surface { amount, smooth } => {
+                Operator::Surface { amount, smooth: smooth * by }.held()
+            }
             unitless => unitless,
         }
     }
-    /// offsetᵢ(q) of MATH 2, without detail enhancement: how far one anchor moves a point, canvas px.
+
+    /// offsetᵢ(q) of MATH 2, without detail enhancement: how far one anchor moves a point, canvas
+    /// px.
     ///
     /// * `from_anchor`: q − qᵢ, px.
     /// * `here`, `anchor`: the maps at q and at qᵢ.
     /// * `unit_px`: *L*, the longer side of the canvas, px.
     ///
     /// 0 for the operator that unwraps: it is no sum over anchors (`deformation::plane`).
-    pub fn offset(self, from_anchor: Vec2, here: MapValues, anchor: MapValues, unit_px: f32) -> Vec2 {
+    pub fn offset(
+        self,
+        from_anchor: Vec2,
+        here: MapValues,
+        anchor: MapValues,
+        unit_px: f32,
+    ) -> Vec2 {
         match self {
             Operator::None | Operator::Surface { .. } => Vec2::ZERO,
-            Operator::Depth { gamma } => first_order::offset(from_anchor, here.depth - anchor.depth, gamma),
+            Operator::Depth { gamma } => {
+                first_order::offset(from_anchor, here.depth - anchor.depth, gamma)
+            }
             Operator::Normal { alpha, beta, .. } => {
                 unit_px * second_order::offset(here.nbar - anchor.nbar, alpha, beta)
             }
@@ -117,6 +143,7 @@ impl Operator {
             }
         }
     }
+
     /// ∂/∂q of [`Operator::offset`], a plain ratio.
     pub fn offset_jacobian(
         self,
@@ -128,14 +155,19 @@ impl Operator {
     ) -> Mat2 {
         match self {
             Operator::None | Operator::Surface { .. } => Mat2::ZERO,
-            Operator::Depth { gamma } => {
-                first_order::offset_jacobian(from_anchor, here.depth - anchor.depth, slopes.depth, gamma)
-            }
+            Operator::Depth { gamma } => first_order::offset_jacobian(
+                from_anchor,
+                here.depth - anchor.depth,
+                slopes.depth,
+                gamma,
+            ),
             Operator::Normal { alpha, beta, .. } => {
-                second_order::offset_jacobian(here.nbar - anchor.nbar, slopes.nbar, alpha, beta) * unit_px
+                second_order::offset_jacobian(here.nbar - anchor.nbar, slopes.nbar, alpha, beta)
+                    * unit_px
             }
             Operator::Reflection { alpha, .. } => {
-                reflection::mirrored_jacobian(here.nbar, here.nz, slopes.nbar, slopes.nz) * (alpha * unit_px)
+                reflection::mirrored_jacobian(here.nbar, here.nz, slopes.nbar, slopes.nz)
+                    * (alpha * unit_px)
             }
         }
     }

@@ -7,18 +7,25 @@ use crate::surface::Maps;
 
 const SIZE: Size = Size::new(40, 30);
 
-/// A plate whose normals have bumps as fine as its pixels, before a wall, with nothing on the right.
+/// A plate whose normals have bumps as fine as its pixels, before a wall, with nothing on the
+/// right.
 fn bumpy() -> Arc<Surface> {
     let lean = |x: usize, y: usize, k: u32| hash::unit(x as u32, y as u32, k) - 0.5;
     let is_near = |x: usize, y: usize| (8..22).contains(&x) && (6..21).contains(&y);
-    let normals = Plane::from_fn(SIZE, |x, y| vec3(lean(x, y, 1), lean(x, y, 2), 1.0).normalize_or(Vec3::Z));
-    let depth = Plane::from_fn(SIZE, |x, y| if is_near(x, y) { 0.001 * x as f32 } else { 0.9 + 0.002 * y as f32 });
+    let normals =
+        Plane::from_fn(SIZE, |x, y| vec3(lean(x, y, 1), lean(x, y, 2), 1.0).normalize_or(Vec3::Z));
+    let depth =
+        Plane::from_fn(
+            SIZE,
+            |x, y| if is_near(x, y) { 0.001 * x as f32 } else { 0.9 + 0.002 * y as f32 },
+        );
     let coverage = Plane::from_fn(SIZE, |x, _| if x < 33 { 255 } else { 0 });
     let made = Surface::with_depth_range(Maps { normals, depth, coverage }, Some(40.0));
     Arc::new(made.unwrap())
 }
-/// What a point reads by the definition: of the pixels less than one away along both axes those that steps along links
-/// among them reach from the one that holds it, weighed by the tent.
+
+/// What a point reads by the definition: of the pixels less than one away along both axes those
+/// that steps along links among them reach from the one that holds it, weighed by the tent.
 fn told(surface: &Surface, q: Vec2) -> Option<MapValues> {
     let held = (q.x.floor() as i32, q.y.floor() as i32);
     let tent = |(x, y): (i32, i32)| {
@@ -31,9 +38,12 @@ fn told(surface: &Surface, q: Vec2) -> Option<MapValues> {
     while let Some(&(x, y)) = reached.get(next) {
         next += 1;
         let bits = surface.smooth_links_plane().get(x, y).unwrap_or(0);
-        for (bit, to) in
-            [(links::LEFT, (x - 1, y)), (links::RIGHT, (x + 1, y)), (links::UP, (x, y - 1)), (links::DOWN, (x, y + 1))]
-        {
+        for (bit, to) in [
+            (links::LEFT, (x - 1, y)),
+            (links::RIGHT, (x + 1, y)),
+            (links::UP, (x, y - 1)),
+            (links::DOWN, (x, y + 1)),
+        ] {
             if bits & bit != 0 && tent(to) > 0.0 && !reached.contains(&to) {
                 reached.push(to);
             }
@@ -55,11 +65,16 @@ fn the_middle_of_a_pixel_reads_what_the_pixel_holds() {
     let surface = bumpy();
     for (x, y) in (0..30).flat_map(|y| (0..40).map(move |x| (x, y))) {
         let q = vec2(x as f32, y as f32) + 0.5;
-        let held = MapValues { depth: surface.depth(x, y), nbar: surface.nbar(x, y), nz: surface.normal(x, y).z };
+        let held = MapValues {
+            depth: surface.depth(x, y),
+            nbar: surface.nbar(x, y),
+            nz: surface.normal(x, y).z,
+        };
         assert_eq!(surface.near_point(q), held, "{q}");
         assert_eq!(surface.at_point(q), (x < 33).then_some(held), "{q}");
     }
 }
+
 #[test]
 fn points_read_what_the_definition_says() {
     let surface = bumpy();
@@ -69,7 +84,10 @@ fn points_read_what_the_definition_says() {
         let (found, told) = (surface.at_point(q), told(&surface, q));
         match (found, told) {
             (Some(a), Some(b)) => {
-                assert!((a.depth - b.depth).abs() < 1e-5 && a.nbar.distance(b.nbar) < 1e-5, "{q}: {a:?} {b:?}");
+                assert!(
+                    (a.depth - b.depth).abs() < 1e-5 && a.nbar.distance(b.nbar) < 1e-5,
+                    "{q}: {a:?} {b:?}"
+                );
                 assert!((a.nbar.length_squared() + a.nz * a.nz - 1.0).abs() < 1e-5, "{q}: {a:?}");
                 parted += usize::from((0.05..0.89).contains(&a.depth));
             }
@@ -79,6 +97,7 @@ fn points_read_what_the_definition_says() {
     }
     assert_eq!(parted, 0, "between the plate and the wall there is nothing");
 }
+
 #[test]
 fn a_point_that_is_nowhere_reads_something_finite() {
     let surface = bumpy();
@@ -88,6 +107,7 @@ fn a_point_that_is_nowhere_reads_something_finite() {
         assert!(depth.is_finite() && nbar.is_finite() && nz.is_finite(), "{q}");
     }
 }
+
 #[test]
 fn a_surface_of_another_size_reads_points_as_the_document_does() {
     let surface = bumpy();
@@ -100,6 +120,9 @@ fn a_surface_of_another_size_reads_points_as_the_document_does() {
             assert!(apart < 1e-4, "{q} times {factor}: {here:?} {there:?}");
         }
         let own = scaled.blended_at(vec2(12.5, 10.5) * factor).nbar.distance(surface.nbar(12, 10));
-        assert!(factor == 3.0 || own > 1e-3, "times {factor} it would read something else on itself: {own}");
+        assert!(
+            factor == 3.0 || own > 1e-3,
+            "times {factor} it would read something else on itself: {own}"
+        );
     }
 }

@@ -1,5 +1,5 @@
-//! The straight line of the picture that a ray is seen as, in steps of a pixel along the axis it runs along most.
-//! Floor 2.
+//! The straight line of the picture that a ray is seen as, in steps of a pixel along the axis it
+//! runs along most. Floor 2.
 
 use super::{RayMap, SurfaceRay};
 use crate::math::{Size, Vec2, vec2};
@@ -28,8 +28,12 @@ impl RayLine {
         let r = ray.direction;
         let (toward, rise) = match map.near {
             None => (vec2(r.x, -r.y), r.z),
-            // q = c + f b with b = P/Z: db/dt = (r + b r_z) / Z, and of f Z̄/Z the change is r_z f Z̄/Z².
-            Some(near) => (vec2(r.x, -r.y) + near.beside_at(ray.at) * r.z, r.z * ray.nearness / near.focal_px()),
+            // q = c + f b with b = P/Z: db/dt = (r + b r_z) / Z, and of f Z̄/Z the change is r_z f
+            // Z̄/Z².
+            Some(near) => (
+                vec2(r.x, -r.y) + near.beside_at(ray.at) * r.z,
+                r.z * ray.nearness / near.focal_px(),
+            ),
         };
         let seen = toward.length();
         if seen.is_nan() || seen < LEAST_SEEN {
@@ -49,6 +53,7 @@ impl RayLine {
         line.steps = line.steps_within(map);
         Some(line)
     }
+
     fn steps_within(&self, map: &RayMap) -> usize {
         let size = map.nearness.size();
         let side = |at: f32, step: f32, n: u32| match step {
@@ -56,7 +61,11 @@ impl RayLine {
             step if step < 0.0 => at / -step,
             _ => f32::MAX,
         };
-        let in_picture = side(self.from.x, self.step.x, size.width).min(side(self.from.y, self.step.y, size.height));
+        let in_picture = side(self.from.x, self.step.x, size.width).min(side(
+            self.from.y,
+            self.step.y,
+            size.height,
+        ));
         let in_depth = match self.rise {
             rise if rise > 0.0 => (map.nearest - self.start) / rise,
             rise if rise < 0.0 => (self.start - map.farthest + map.thickness) / -rise,
@@ -65,24 +74,29 @@ impl RayLine {
         // NaN and less than 0 become 0.
         in_picture.min(in_depth + 1.0).max(0.0).min(2.0 * size.longer_side()) as usize
     }
+
     /// Canvas px after some steps.
     #[inline(always)]
     pub fn at(&self, steps: f32) -> Vec2 {
         self.from + self.step * steps
     }
+
     #[inline(always)]
     pub fn nearness(&self, steps: f32) -> f32 {
         self.start + self.rise * steps
     }
+
     /// The length of a step in the picture, px.
     pub fn step_px(&self) -> f32 {
         self.step.length()
     }
+
     /// The way in space of some steps, px.
     pub fn length_px(&self, map: &RayMap, steps: f32) -> f32 {
         let seen = steps * self.step_px() / self.seen;
         map.near.map_or(seen, |near| seen * near.focal_px() / self.nearness(steps).max(1e-3))
     }
+
     /// The two pixels across the line between whose centres a point lies.
     #[inline(always)]
     pub fn pixels(&self, at: Vec2, size: Size) -> [(usize, usize); 2] {
@@ -93,13 +107,16 @@ impl RayLine {
             false => [pixel(at.x - 0.5, at.y), pixel(at.x + 0.5, at.y)],
         }
     }
+
     /// How far a point lies from the first of its two pixels to the second, `[0, 1)`.
     #[inline(always)]
     pub fn share(&self, at: Vec2) -> f32 {
         let across = if self.is_across { at.y } else { at.x } - 0.5;
         across - across.floor()
     }
-    /// The first step after the `i`th that may lie beyond the block of so many px that the `i`th lies in.
+
+    /// The first step after the `i`th that may lie beyond the block of so many px that the `i`th
+    /// lies in.
     #[inline(always)]
     pub fn leaves_block(&self, i: usize, side: usize) -> usize {
         let side = side as f32;

@@ -1,8 +1,9 @@
-//! Rays that leave the surface and meet it again: marched through the depth, as far as the picture shows it (MATH 5).
-//! Floor 2. Here: where a ray meets the surface. Not here: what is seen there (`shading`).
+//! Rays that leave the surface and meet it again: marched through the depth, as far as the picture
+//! shows it (MATH 5). Floor 2. Here: where a ray meets the surface. Not here: what is seen there
+//! (`shading`).
 //!
-//! A ray is a straight line of the picture, and how near it is changes linearly along it. It goes pixel by pixel, and
-//! jumps over blocks of pixels that it passes in front of.
+//! A ray is a straight line of the picture, and how near it is changes linearly along it. It goes
+//! pixel by pixel, and jumps over blocks of pixels that it passes in front of.
 
 mod line;
 
@@ -18,9 +19,11 @@ use crate::raster::Plane;
 use line::RayLine;
 use std::sync::Arc;
 
-/// What is met beyond a cliff is so thick, as a share of the longer side: rays deeper behind it pass.
+/// What is met beyond a cliff is so thick, as a share of the longer side: rays deeper behind it
+/// pass.
 const THICKNESS: f32 = 0.02;
-/// A ray meets only what faces it: −n·r is at least this. Along a smooth surface it does not meet its own start.
+/// A ray meets only what faces it: −n·r is at least this. Along a smooth surface it does not meet
+/// its own start.
 const FACING: f32 = 0.02;
 /// Nearness where there is no surface.
 const NOWHERE: f32 = -1e30;
@@ -29,8 +32,8 @@ const BLOCKS: [usize; 3] = [64, 16, 4];
 
 /// What rays are marched through.
 ///
-/// *Nearness* grows toward the eye, px: seen from afar −z Z, minus the depth; seen from near f Z̄/Z, which changes
-/// linearly along straight lines of the picture.
+/// *Nearness* grows toward the eye, px: seen from afar −z Z, minus the depth; seen from near f
+/// Z̄/Z, which changes linearly along straight lines of the picture.
 pub struct RayMap {
     nearness: Plane<f32>,
     /// The greatest nearness in each block and within a pixel of it.
@@ -107,9 +110,11 @@ impl RayMap {
         });
         map.blocks = BLOCKS.map(|side| map.highest(side));
         let known = map.nearness.values().iter().filter(|v| **v > NOWHERE);
-        (map.nearest, map.farthest) = known.fold((NOWHERE, -NOWHERE), |(a, b), v| (a.max(*v), b.min(*v)));
+        (map.nearest, map.farthest) =
+            known.fold((NOWHERE, -NOWHERE), |(a, b), v| (a.max(*v), b.min(*v)));
         map
     }
+
     /// The nearness of a depth, 0 near … 1 far.
     pub fn nearness_of(&self, depth: f32) -> f32 {
         match self.near {
@@ -117,7 +122,9 @@ impl RayMap {
             Some(near) => near.focal_px() / near.farness(depth).max(1e-3),
         }
     }
-    /// How a step in space moves what is seen in the picture, px, at a point of a nearness. The inverse of `spanned`.
+
+    /// How a step in space moves what is seen in the picture, px, at a point of a nearness. The
+    /// inverse of `spanned`.
     pub fn seen_step(&self, at: Vec2, nearness: f32, step: Vec3) -> Vec2 {
         let flat = vec2(step.x, -step.y);
         match self.near {
@@ -125,23 +132,30 @@ impl RayMap {
             Some(near) => (flat + near.beside_at(at) * step.z) * (nearness / near.focal_px()),
         }
     }
+
     /// The px of space that a pixel spans at a nearness, across the view.
     pub fn spanned(&self, nearness: f32) -> f32 {
         self.near.map_or(1.0, |near| near.focal_px() / nearness.max(1e-3))
     }
+
     fn highest(&self, side: usize) -> Plane<f32> {
         let size = self.nearness.size();
         Plane::from_fn(blocks_of(size, side), |col, row| {
             let (x0, y0, n) = ((col * side) as i32, (row * side) as i32, side as i32);
             let block = Rect::new(x0 - 1, y0 - 1, x0 + n + 1, y0 + n + 1).intersect(size.rect());
             let columns = block.x0 as usize..block.x1 as usize;
-            let of_row =
-                |y: i32| self.nearness.row(y as usize)[columns.clone()].iter().copied().fold(NOWHERE, f32::max);
+            let of_row = |y: i32| {
+                self.nearness.row(y as usize)[columns.clone()]
+                    .iter()
+                    .copied()
+                    .fold(NOWHERE, f32::max)
+            };
             (block.y0..block.y1).map(of_row).fold(NOWHERE, f32::max)
         })
     }
-    /// The nearness of the surface at a point of a line: between two pixels across it; across a cliff that of the one
-    /// it lies in.
+
+    /// The nearness of the surface at a point of a line: between two pixels across it; across a
+    /// cliff that of the one it lies in.
     #[inline(always)]
     fn surface_at(&self, line: &RayLine, at: Vec2) -> f32 {
         let [a, b] = line.pixels(at, self.nearness.size()).map(|(x, y)| self.nearness.at(x, y));
@@ -154,8 +168,9 @@ impl RayMap {
             false => a + (b - a) * share,
         }
     }
-    /// The step from which on a line has left the block that it is in after `i` steps, and whether it passes in front
-    /// of all of that block.
+
+    /// The step from which on a line has left the block that it is in after `i` steps, and whether
+    /// it passes in front of all of that block.
     #[inline(always)]
     fn ahead(&self, line: &RayLine, i: usize) -> (usize, bool) {
         let at = line.at(i as f32);
@@ -170,6 +185,7 @@ impl RayMap {
         }
         (next, false)
     }
+
     /// Where a ray meets the surface: steps along its line.
     fn met(&self, line: &RayLine, ray: &SurfaceRay, faces: impl Fn(f32) -> bool) -> Option<f32> {
         let mut place = if ray.inward { RayPlace::Behind } else { RayPlace::Start };
@@ -196,9 +212,16 @@ impl RayMap {
         }
         None
     }
-    /// What happens in the `i`th step, at whose end a line is behind the surface and at whose start it was not, or it
-    /// had not left its start.
-    fn crossing(&self, line: &RayLine, i: usize, place: RayPlace, faces: impl Fn(f32) -> bool) -> Crossing {
+
+    /// What happens in the `i`th step, at whose end a line is behind the surface and at whose start
+    /// it was not, or it had not left its start.
+    fn crossing(
+        &self,
+        line: &RayLine,
+        i: usize,
+        place: RayPlace,
+        faces: impl Fn(f32) -> bool,
+    ) -> Crossing {
         let (before, after) = ((i - 1) as f32, i as f32);
         let surface = |steps: f32| self.surface_at(line, line.at(steps));
         let from = if i == 1 { line.nearness(0.0) } else { surface(before) };
@@ -208,7 +231,8 @@ impl RayMap {
             return Crossing::Passed;
         }
         let (above, below) = (line.nearness(before) - from, to - line.nearness(after));
-        // Across a cliff it is met where it begins; at the start of the ray nothing is crossed cleanly.
+        // Across a cliff it is met where it begins; at the start of the ray nothing is crossed
+        // cleanly.
         let part = above / (above + below).max(f32::MIN_POSITIVE);
         let part = if is_cliff || place == RayPlace::Start { 1.0 } else { part.max(0.0).min(1.0) };
         match faces(before + part) {
@@ -230,17 +254,19 @@ fn blocks_of(size: Size, side: usize) -> Size {
 }
 
 impl Surface {
-    /// What rays are marched through; detail combined onto the surface is not part of it. Cached; call it once before
-    /// going parallel.
+    /// What rays are marched through; detail combined onto the surface is not part of it. Cached;
+    /// call it once before going parallel.
     pub fn ray_map(&self) -> Arc<RayMap> {
         let base = self.base();
         base.derived.ray_maps.get_or_compute((), 1, |_| RayMap::of(base))
     }
-    /// Where a ray meets the surface again, as far as the picture shows it; `None` where it leaves the picture, passes
-    /// behind an object or meets nothing.
+
+    /// Where a ray meets the surface again, as far as the picture shows it; `None` where it leaves
+    /// the picture, passes behind an object or meets nothing.
     ///
-    /// It meets a surface that continues from step to step where it crosses it, and what stands up behind a cliff where
-    /// it is not deeper behind that than a fiftieth of the longer side. What it meets must face it.
+    /// It meets a surface that continues from step to step where it crosses it, and what stands up
+    /// behind a cliff where it is not deeper behind that than a fiftieth of the longer side. What
+    /// it meets must face it.
     ///
     /// * `map`: this surface's [`Surface::ray_map`].
     pub fn met_by(&self, map: &RayMap, ray: &SurfaceRay) -> Option<RayHit> {
@@ -250,19 +276,29 @@ impl Surface {
         let normal_of = |surface: &Surface, steps: f32| {
             let at = line.at(steps.round());
             let [a, b] = line.pixels(at, surface.size());
-            let is_cliff = (map.nearness.at(a.0, a.1) - map.nearness.at(b.0, b.1)).abs() > CLIFF.0 + CLIFF.1;
+            let is_cliff =
+                (map.nearness.at(a.0, a.1) - map.nearness.at(b.0, b.1)).abs() > CLIFF.0 + CLIFF.1;
             let share = if is_cliff { line.share(at).round() } else { line.share(at) };
             surface.normal(a.0, a.1).lerp(surface.normal(b.0, b.1), share).normalize_or(Vec3::Z)
         };
         let steps = map.met(&line, ray, |steps| faces(normal_of(base, steps)))?;
         // Detail may turn a normal away from the ray.
-        let normal = Some(normal_of(self, steps)).filter(|n| faces(*n)).unwrap_or_else(|| normal_of(base, steps));
+        let normal = Some(normal_of(self, steps))
+            .filter(|n| faces(*n))
+            .unwrap_or_else(|| normal_of(base, steps));
         let (at, nearness) = (line.at(steps), line.nearness(steps));
         let (x, y) = self.pixel_of(at);
-        Some(RayHit { at, nearness, normal, changes: self.normal_changes(x, y), length_px: line.length_px(map, steps) })
+        Some(RayHit {
+            at,
+            nearness,
+            normal,
+            changes: self.normal_changes(x, y),
+            length_px: line.length_px(map, steps),
+        })
     }
-    /// How the normal changes from pixel to pixel along x and y (down); differences do not cross depth jumps, creases
-    /// or the mask's edge.
+
+    /// How the normal changes from pixel to pixel along x and y (down); differences do not cross
+    /// depth jumps, creases or the mask's edge.
     fn normal_changes(&self, x: usize, y: usize) -> [Vec3; 2] {
         let joined = self.smooth_links_plane().at(x, y);
         let here = self.normal(x, y);

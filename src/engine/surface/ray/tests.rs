@@ -23,6 +23,7 @@ fn cast(balls: &[Ball], from: Vec3, toward: Vec3) -> Option<(f32, Vec3)> {
     });
     meets.min_by(|a, b| a.0.total_cmp(&b.0))
 }
+
 /// Where the view of a point of the picture begins, and where it goes.
 fn view(eye: Eye, at: Vec2) -> (Vec3, Vec3) {
     let flat = at - SIZE.center();
@@ -31,28 +32,35 @@ fn view(eye: Eye, at: Vec2) -> (Vec3, Vec3) {
         Eye::At { .. } => (Vec3::ZERO, -eye.toward(flat)),
     }
 }
+
 /// What a pixel's centre shows: the place and the normal.
 fn shown(balls: &[Ball], eye: Eye, at: Vec2) -> Option<(Vec3, Vec3)> {
     let (from, toward) = view(eye, at);
     cast(balls, from, toward).map(|(t, n)| (from + toward * t, n))
 }
+
 fn surface(balls: &[Ball], eye: Eye) -> Surface {
     let at = |x: usize, y: usize| shown(balls, eye, vec2(x as f32 + 0.5, y as f32 + 0.5));
     let heights = (0..SIZE.area()).filter_map(|i| at(i % 161, i / 161)).map(|(p, _)| p.z);
     let (low, high) = heights.fold((f32::MAX, f32::MIN), |(a, b), z| (a.min(z), b.max(z)));
     let maps = Maps {
         normals: Plane::from_fn(SIZE, |x, y| at(x, y).map_or(Vec3::ZERO, |s| s.1)),
-        depth: Plane::from_fn(SIZE, |x, y| at(x, y).map_or(f32::NAN, |s| (high - s.0.z) / (high - low))),
+        depth: Plane::from_fn(SIZE, |x, y| {
+            at(x, y).map_or(f32::NAN, |s| (high - s.0.z) / (high - low))
+        }),
         coverage: Plane::from_fn(SIZE, |x, y| if at(x, y).is_some() { 255 } else { 0 }),
     };
     Surface::new(maps).unwrap().seen_by(eye)
 }
+
 /// The ray that a pixel mirrors.
 fn mirrored(surface: &Surface, map: &RayMap, x: usize, y: usize) -> SurfaceRay {
     let (n, v) = (surface.normal(x, y), surface.view(x, y));
-    let (at, nearness) = (vec2(x as f32 + 0.5, y as f32 + 0.5), map.nearness_of(surface.depth(x, y)));
+    let (at, nearness) =
+        (vec2(x as f32 + 0.5, y as f32 + 0.5), map.nearness_of(surface.depth(x, y)));
     SurfaceRay { at, nearness, direction: 2.0 * n.dot(v) * n - v, inward: false }
 }
+
 fn covered(surface: &Surface) -> impl Iterator<Item = (usize, usize)> {
     let at = (0..SIZE.area()).map(|i| (i % 161, i / 161));
     at.filter(|&(x, y)| surface.coverage(x, y) > 0)
@@ -76,18 +84,25 @@ fn rays_between_balls_meet_where_geometry_says() {
             let place = from + ray.direction * t;
             let (view_from, toward) = view(eye, ray.at);
             // Where the eye sees the place that is met, if nothing hides it.
-            let faces_eye = -n.dot(if eye == Eye::Afar { toward } else { (place - view_from).normalize() });
+            let faces_eye =
+                -n.dot(if eye == Eye::Afar { toward } else { (place - view_from).normalize() });
             if faces_eye < 0.3 || n.dot(ray.direction) > -0.15 {
                 continue;
             }
-            let hit = surface.met_by(&map, &ray).unwrap_or_else(|| panic!("{eye:?} ({x}, {y}) meets nothing"));
+            let hit = surface
+                .met_by(&map, &ray)
+                .unwrap_or_else(|| panic!("{eye:?} ({x}, {y}) meets nothing"));
             let seen = match eye {
                 Eye::Afar => place.truncate(),
                 Eye::At { focal_px, .. } => place.truncate() * (focal_px / -place.z),
             };
             let seen = vec2(seen.x, -seen.y) + SIZE.center();
             assert!((hit.at - seen).length() < 1.5, "{eye:?} ({x}, {y}): {}, not {seen}", hit.at);
-            assert!((hit.normal - n).length() < 0.06, "{eye:?} ({x}, {y}): {}, not {n}", hit.normal);
+            assert!(
+                (hit.normal - n).length() < 0.06,
+                "{eye:?} ({x}, {y}): {}, not {n}",
+                hit.normal
+            );
             // Seen from near, lengths are those of the mean distance.
             let of_mean = if eye == Eye::Afar { 1.0 } else { hit.length_px / t };
             assert!(
@@ -100,6 +115,7 @@ fn rays_between_balls_meet_where_geometry_says() {
         assert!(met > 150 && missed < 40, "{eye:?}: {met} met, {missed} should not have");
     }
 }
+
 #[test]
 fn jumping_over_blocks_changes_no_ray() {
     let bumps = |x: f32, y: f32| 9.0 * (x * 0.21).sin() + 11.0 * (y * 0.17 + x * 0.05).cos();
@@ -122,24 +138,32 @@ fn jumping_over_blocks_changes_no_ray() {
                 let mut ray = mirrored(&surface, &map, x, y);
                 let (sin, cos) = (2.1 * turn as f32).sin_cos();
                 let r = ray.direction;
-                ray.direction = vec3(r.x * cos - r.y * sin, r.x * sin + r.y * cos, r.z * (1.0 - 0.4 * turn as f32));
+                ray.direction = vec3(
+                    r.x * cos - r.y * sin,
+                    r.x * sin + r.y * cos,
+                    r.z * (1.0 - 0.4 * turn as f32),
+                );
                 ray.direction = ray.direction.normalize_or(Vec3::Z);
                 ray.inward = turn == 2;
-                let [a, b] = [&*map, &every_pixel].map(|map| surface.met_by(map, &ray).map(|hit| (hit.at, hit.normal)));
+                let [a, b] = [&*map, &every_pixel]
+                    .map(|map| surface.met_by(map, &ray).map(|hit| (hit.at, hit.normal)));
                 assert_eq!(a, b, "({x}, {y}) turn {turn}");
                 met += usize::from(a.is_some());
                 let line = RayLine::of(&map, &ray);
-                jumped += usize::from(line.is_some_and(|line| line.steps > 0 && map.ahead(&line, 1).1));
+                jumped +=
+                    usize::from(line.is_some_and(|line| line.steps > 0 && map.ahead(&line, 1).1));
             }
         }
         assert!(met > 2000 && jumped > 300, "{met} {jumped}");
     }
 }
+
 #[test]
 fn planes_and_single_balls_are_never_met() {
     let ball = surface(&PAIR[..1], Eye::Afar);
     let plane = |slope: Vec2| {
-        let depth = Plane::from_fn(SIZE, |x, y| 0.5 + (x as f32 * slope.x + y as f32 * slope.y) / 2000.0);
+        let depth =
+            Plane::from_fn(SIZE, |x, y| 0.5 + (x as f32 * slope.x + y as f32 * slope.y) / 2000.0);
         // As coarse as a file of bytes has it.
         let depth = depth.map(|z| (z * 255.0).round() / 255.0);
         let normals = Plane::filled(SIZE, vec3(slope.x, -slope.y, 1.0));
@@ -153,6 +177,7 @@ fn planes_and_single_balls_are_never_met() {
         }
     }
 }
+
 #[test]
 fn a_ray_passes_behind_what_floats_in_front_and_meets_what_lies_beyond() {
     // Ground, a slab that floats in front of it, and a slope.
@@ -162,12 +187,15 @@ fn a_ray_passes_behind_what_floats_in_front_and_meets_what_lies_beyond() {
         _ => 0.0,
     };
     let depth = Plane::from_fn(SIZE, |x, _| (90.0 - height(x)) / 90.0);
-    let normals = Plane::from_fn(SIZE, |x, _| if x >= 120 { vec3(-1.0, 0.0, 1.0) } else { Vec3::Z });
-    let surface = Surface::new(Maps { normals, depth, coverage: Plane::filled(SIZE, 255) }).unwrap();
+    let normals =
+        Plane::from_fn(SIZE, |x, _| if x >= 120 { vec3(-1.0, 0.0, 1.0) } else { Vec3::Z });
+    let surface =
+        Surface::new(Maps { normals, depth, coverage: Plane::filled(SIZE, 255) }).unwrap();
     let map = surface.ray_map();
     let nearness = map.nearness_of(surface.depth(20, 70));
     let leaving = |direction: Vec3, inward: bool| {
-        let ray = SurfaceRay { at: vec2(20.5, 70.5), nearness, direction: direction.normalize(), inward };
+        let ray =
+            SurfaceRay { at: vec2(20.5, 70.5), nearness, direction: direction.normalize(), inward };
         surface.met_by(&map, &ray)
     };
     let hit = leaving(vec3(1.0, 0.0, 0.1), false).unwrap();

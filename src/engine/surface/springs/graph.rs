@@ -1,6 +1,6 @@
-//! The coarser levels of springs: unknowns that represent blocks of finer ones, joined by springs in any shape.
-//! Floor 2. Their springs, and the V-cycle below the grid. Not here: which unknowns become one (`merge`), the grid
-//! itself (`springs`).
+//! The coarser levels of springs: unknowns that represent blocks of finer ones, joined by springs
+//! in any shape. Floor 2. Their springs, and the V-cycle below the grid. Not here: which unknowns
+//! become one (`merge`), the grid itself (`springs`).
 
 use super::SpringGrid;
 use super::merge::{children, in_series, is_strong, join, number_rows, numbered, springs_at};
@@ -37,7 +37,8 @@ pub(super) struct GraphScratch {
 const CHUNK: usize = 8192;
 
 impl SpringGraph {
-    /// The first level below a grid, and for each of the grid's unknowns the one that represents it.
+    /// The first level below a grid, and for each of the grid's unknowns the one that represents
+    /// it.
     pub fn of_grid(grid: &SpringGrid) -> (Vec<u32>, Self) {
         let (w, h) = (grid.width(), grid.height());
         let mut parent = filled_or_unwind(w * h, NONE);
@@ -46,8 +47,11 @@ impl SpringGraph {
             return (parent, Self::joined(blocks, |_, _| {}));
         }
         // Each two rows number their unknowns from 0; what precedes them is added afterwards.
-        let counts: Vec<Vec<u32>> =
-            parent.par_chunks_mut(2 * w).enumerate().map(|(y, rows)| number_rows(grid, y, rows)).collect();
+        let counts: Vec<Vec<u32>> = parent
+            .par_chunks_mut(2 * w)
+            .enumerate()
+            .map(|(y, rows)| number_rows(grid, y, rows))
+            .collect();
         let mut before = Vec::with_capacity(counts.len());
         for (y, columns) in counts.iter().enumerate() {
             before.push(blocks.len() as u32);
@@ -58,18 +62,30 @@ impl SpringGraph {
         });
         let of_block = |[x, y]: [u32; 2]| {
             let (x, y) = (2 * x as usize, 2 * y as usize);
-            [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)].into_iter().filter(|&(x, y)| x < w && y < h)
+            [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)]
+                .into_iter()
+                .filter(|&(x, y)| x < w && y < h)
         };
         let graph = Self::joined(blocks.clone(), |unknown, add| {
-            for (x, y) in of_block(blocks[unknown]).filter(|&(x, y)| parent[y * w + x] == unknown as u32) {
+            for (x, y) in
+                of_block(blocks[unknown]).filter(|&(x, y)| parent[y * w + x] == unknown as u32)
+            {
                 let i = y * w + x;
-                springs_at(grid, i).into_iter().filter(|s| s.1 > 0.0).for_each(|(j, s)| add(parent[j], s));
+                springs_at(grid, i)
+                    .into_iter()
+                    .filter(|s| s.1 > 0.0)
+                    .for_each(|(j, s)| add(parent[j], s));
             }
         });
         (parent, graph)
     }
-    /// A graph of unknowns in given blocks; `springs` gives each unknown's finer springs with the unknown at their end.
-    fn joined(blocks: Vec<[u32; 2]>, springs: impl Fn(usize, &mut dyn FnMut(u32, f32)) + Sync) -> Self {
+
+    /// A graph of unknowns in given blocks; `springs` gives each unknown's finer springs with the
+    /// unknown at their end.
+    fn joined(
+        blocks: Vec<[u32; 2]>,
+        springs: impl Fn(usize, &mut dyn FnMut(u32, f32)) + Sync,
+    ) -> Self {
         let chunk = |start: usize| {
             let mut rows: Vec<(u32, f32)> = Vec::new();
             let (mut counts, mut inner) = (Vec::new(), Vec::new());
@@ -93,7 +109,8 @@ impl SpringGraph {
         };
         let starts: Vec<usize> = (0..blocks.len()).step_by(CHUNK).collect();
         let chunks: Vec<_> = starts.into_par_iter().map(chunk).collect();
-        let inner: Vec<f32> = chunks.iter().flat_map(|(_, _, inner)| inner.iter().copied()).collect();
+        let inner: Vec<f32> =
+            chunks.iter().flat_map(|(_, _, inner)| inner.iter().copied()).collect();
         let mut graph = Self {
             starts: Vec::with_capacity(blocks.len() + 1),
             ends: Vec::new(),
@@ -109,7 +126,8 @@ impl SpringGraph {
             for count in counts {
                 let unknown = graph.inverse.len();
                 let row = &mut rows[first..first + count as usize];
-                row.iter_mut().for_each(|(end, s)| *s = in_series(*s, inner[unknown], inner[*end as usize]));
+                row.iter_mut()
+                    .for_each(|(end, s)| *s = in_series(*s, inner[unknown], inner[*end as usize]));
                 let sum: f32 = row.iter().map(|(_, s)| s).sum();
                 graph.inverse.push(if sum > 0.0 { 1.0 / sum } else { 0.0 });
                 graph.ends.extend(row.iter().map(|(end, _)| end));
@@ -120,22 +138,31 @@ impl SpringGraph {
         }
         graph
     }
+
     pub fn len(&self) -> usize {
         self.blocks.len()
     }
+
     /// Bytes that it holds.
     pub fn bytes(&self) -> usize {
-        let springs = size_of_val(&self.starts[..]) + size_of_val(&self.ends[..]) + size_of_val(&self.stiffness[..]);
-        let unknowns = size_of_val(&self.inverse[..]) + size_of_val(&self.blocks[..]) + size_of_val(&self.parent[..]);
+        let springs = size_of_val(&self.starts[..])
+            + size_of_val(&self.ends[..])
+            + size_of_val(&self.stiffness[..]);
+        let unknowns = size_of_val(&self.inverse[..])
+            + size_of_val(&self.blocks[..])
+            + size_of_val(&self.parent[..]);
         springs + unknowns + size_of_val(&self.pieces.0[..])
     }
+
     pub fn parents(&self) -> &[u32] {
         &self.parent
     }
+
     fn springs(&self, i: usize) -> impl Iterator<Item = (u32, f32)> {
         let row = self.starts[i] as usize..self.starts[i + 1] as usize;
         self.ends[row.clone()].iter().copied().zip(self.stiffness[row].iter().copied())
     }
+
     /// The next level; `None` where nothing is left to merge: this one is the last.
     pub fn coarser(&mut self) -> Option<Self> {
         let coarser = if self.len() <= 16 { None } else { self.merged() };
@@ -144,8 +171,10 @@ impl SpringGraph {
         }
         coarser
     }
+
     fn merged(&mut self) -> Option<Self> {
-        let stiffest: Vec<f32> = (0..self.len()).map(|i| self.springs(i).fold(0.0, |m: f32, s| m.max(s.1))).collect();
+        let stiffest: Vec<f32> =
+            (0..self.len()).map(|i| self.springs(i).fold(0.0, |m: f32, s| m.max(s.1))).collect();
         let block = |i: usize| self.blocks[i].map(|v| v / 2);
         let mut first: Vec<u32> = (0..self.len() as u32).collect();
         for i in 0..self.len() {
@@ -171,10 +200,13 @@ impl SpringGraph {
         self.parent = parent;
         Some(graph)
     }
-    /// The number of each unknown's piece on the last level, and the number of pieces that springs join.
+
+    /// The number of each unknown's piece on the last level, and the number of pieces that springs
+    /// join.
     pub fn pieces(&self) -> &(Vec<u32>, usize) {
         &self.pieces
     }
+
     fn found_pieces(&self) -> (Vec<u32>, usize) {
         let mut first: Vec<u32> = (0..self.len() as u32).collect();
         for i in 0..self.len() {
@@ -183,8 +215,9 @@ impl SpringGraph {
         let (labels, roots) = numbered(&mut first);
         (labels, roots.len())
     }
-    /// Subtracts the mean of every piece without a held unknown: no spring opposes what rounding leaves there, and it
-    /// would grow.
+
+    /// Subtracts the mean of every piece without a held unknown: no spring opposes what rounding
+    /// leaves there, and it would grow.
     fn centre(&self, values: &mut [f32], held: &[(u32, f32)]) {
         let (labels, count) = &self.pieces;
         let mut sums = vec![(0.0f32, 0.0f32); *count];
@@ -194,10 +227,13 @@ impl SpringGraph {
             let sum = &mut sums[label as usize];
             *sum = (sum.0 + v, sum.1 + 1.0);
         }
-        for (v, &label) in values.iter_mut().zip(labels).filter(|(_, label)| is_free[**label as usize]) {
+        for (v, &label) in
+            values.iter_mut().zip(labels).filter(|(_, label)| is_free[**label as usize])
+        {
             *v -= sums[label as usize].0 / sums[label as usize].1;
         }
     }
+
     /// One sweep of Jacobi: `v + step ((b + Σ w v) / Σ w − v)`.
     fn relax(&self, held: &[(u32, f32)], b: &[f32], v: &[f32], step: f32, out: &mut [f32]) {
         let one = |(i, out): (usize, &mut f32)| {
@@ -207,11 +243,13 @@ impl SpringGraph {
         self.each(out, one);
         for &(i, stiffness) in held {
             let i = i as usize;
-            let (sum, pull) =
-                self.springs(i).fold((0.0, 0.0), |(sum, pull), (j, s)| (sum + s, pull + s * v[j as usize]));
+            let (sum, pull) = self
+                .springs(i)
+                .fold((0.0, 0.0), |(sum, pull), (j, s)| (sum + s, pull + s * v[j as usize]));
             out[i] = v[i] + step * ((b[i] + pull) / (sum + stiffness) - v[i]);
         }
     }
+
     /// b − A v.
     fn residual(&self, held: &[(u32, f32)], b: &[f32], v: &[f32], out: &mut [f32]) {
         let one = |(i, out): (usize, &mut f32)| {
@@ -220,6 +258,7 @@ impl SpringGraph {
         self.each(out, one);
         held.iter().for_each(|&(i, stiffness)| out[i as usize] -= stiffness * v[i as usize]);
     }
+
     fn each(&self, out: &mut [f32], one: impl Fn((usize, &mut f32)) + Sync) {
         if self.len() <= CHUNK {
             return out.iter_mut().enumerate().for_each(one);
@@ -231,7 +270,12 @@ impl SpringGraph {
 }
 
 /// Adds up what is left of a finer level as the right-hand side of the first graph.
-pub(super) fn gather(parent: &[u32], left: &[f32], levels: &mut [GraphScratch], graphs: &[SpringGraph]) {
+pub(super) fn gather(
+    parent: &[u32],
+    left: &[f32],
+    levels: &mut [GraphScratch],
+    graphs: &[SpringGraph],
+) {
     let Some((level, graph)) = levels.first_mut().zip(graphs.first()) else { return };
     level.b.clear();
     level.b.resize(graph.len(), 0.0);
@@ -251,11 +295,14 @@ pub(super) fn spread(parents: &[u32], coarse: &GraphScratch, fine: &mut [f32]) {
 
 /// One symmetric V-cycle from the first graph down: solves each level's `b` for its `v`.
 pub(super) fn cycle(graphs: &[SpringGraph], levels: &mut [GraphScratch], held: &[Vec<(u32, f32)>]) {
-    let (Some((graph, below)), Some((level, levels))) = (graphs.split_first(), levels.split_first_mut()) else {
+    let (Some((graph, below)), Some((level, levels))) =
+        (graphs.split_first(), levels.split_first_mut())
+    else {
         return;
     };
     let GraphScratch { b, v, twin } = level;
-    let (held, held_below) = held.split_first().map_or((&[][..], held), |(here, below)| (&here[..], below));
+    let (held, held_below) =
+        held.split_first().map_or((&[][..], held), |(here, below)| (&here[..], below));
     v.resize(graph.len(), 0.0);
     twin.resize(graph.len(), 0.0);
     if below.is_empty() {

@@ -1,10 +1,12 @@
-//! Unknowns that are held: each by one more spring to a value of its own, on every level of a solver.
-//! Floor 2. They are few, so that loops over rows ignore them, and what they change is corrected afterwards.
+//! Unknowns that are held: each by one more spring to a value of its own, on every level of a
+//! solver. Floor 2. They are few, so that loops over rows ignore them, and what they change is
+//! corrected afterwards.
 
 use super::{SpringSolver, graph};
 use std::ops::Range;
 
-/// What holds some unknowns: the stiffness at their index, of the grid first, then of each coarser level.
+/// What holds some unknowns: the stiffness at their index, of the grid first, then of each coarser
+/// level.
 #[derive(Default)]
 pub struct PinStiffness {
     grid: Vec<(u32, f32)>,
@@ -19,10 +21,13 @@ impl PinStiffness {
             return;
         }
         let from = self.grid.partition_point(|held| (held.0 as usize) < run.start);
-        for &(i, stiffness) in self.grid[from..].iter().take_while(|held| (held.0 as usize) < run.end) {
+        for &(i, stiffness) in
+            self.grid[from..].iter().take_while(|held| (held.0 as usize) < run.end)
+        {
             visit(i as usize, stiffness);
         }
     }
+
     /// Those of the coarser levels, the finest first.
     pub(super) fn coarser(&self) -> &[Vec<(u32, f32)>] {
         &self.coarser
@@ -30,15 +35,16 @@ impl PinStiffness {
 }
 
 impl SpringSolver {
-    /// What holds the grid's unknowns: their index, ascending, and a stiffness `> 0`. One that no spring joins to
-    /// another is left out.
+    /// What holds the grid's unknowns: their index, ascending, and a stiffness `> 0`. One that no
+    /// spring joins to another is left out.
     pub fn held(&self, mut grid: Vec<(u32, f32)>) -> PinStiffness {
         grid.retain(|(i, _)| self.parent[*i as usize] != graph::NONE);
         let mut coarser: Vec<Vec<(u32, f32)>> = Vec::with_capacity(self.graphs.len());
         let mut parents = &self.parent[..];
         for graph in &self.graphs {
             let finer = coarser.last().unwrap_or(&grid);
-            let mut sums: Vec<(u32, f32)> = finer.iter().map(|(i, s)| (parents[*i as usize], *s)).collect();
+            let mut sums: Vec<(u32, f32)> =
+                finer.iter().map(|(i, s)| (parents[*i as usize], *s)).collect();
             sums.sort_by_key(|held| held.0);
             sums.dedup_by(|next, held| {
                 let is_same = next.0 == held.0;

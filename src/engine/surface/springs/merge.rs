@@ -1,9 +1,10 @@
-//! Which unknowns of a level become one on the next: those of a block of 2 × 2 that strong springs join.
-//! Floor 2. Not here: the levels themselves (`graph`).
+//! Which unknowns of a level become one on the next: those of a block of 2 × 2 that strong springs
+//! join. Floor 2. Not here: the levels themselves (`graph`).
 
 use super::SpringGrid;
 
-/// A spring joins its ends into one coarser unknown if it is at least this share of the stiffest at the slacker end.
+/// A spring joins its ends into one coarser unknown if it is at least this share of the stiffest at
+/// the slacker end.
 const STRONG: f32 = 0.1;
 
 /// `a`, `b`: the stiffest springs at the two ends.
@@ -11,14 +12,16 @@ pub(super) fn is_strong(stiffness: f32, a: f32, b: f32) -> bool {
     stiffness >= STRONG * a.min(b)
 }
 
-/// The stiffness between the middles of two blocks: that of the springs between them in a row with half of each block's
-/// own. For even springs it is half of what lies between; for slack ones between firm blocks all of it.
+/// The stiffness between the middles of two blocks: that of the springs between them in a row with
+/// half of each block's own. For even springs it is half of what lies between; for slack ones
+/// between firm blocks all of it.
 pub(super) fn in_series(between: f32, inner_a: f32, inner_b: f32) -> f32 {
     let yields = |inner: f32| if inner > 0.0 { 0.5 * between / inner } else { 0.0 };
     between / (1.0 + yields(inner_a) + yields(inner_b))
 }
 
-/// The springs of one of a grid's unknowns with the index at their end; stiffness 0 where there is none.
+/// The springs of one of a grid's unknowns with the index at their end; stiffness 0 where there is
+/// none.
 pub(super) fn springs_at(grid: &SpringGrid, i: usize) -> [(usize, f32); 4] {
     let w = grid.width();
     let [right, down] = grid.springs();
@@ -27,7 +30,8 @@ pub(super) fn springs_at(grid: &SpringGrid, i: usize) -> [(usize, f32); 4] {
     [left, (i + 1, right[i]), up, (i + w, down[i])]
 }
 
-/// Numbers the coarser unknowns of two rows from 0 on, left to right, and returns the column of blocks of each.
+/// Numbers the coarser unknowns of two rows from 0 on, left to right, and returns the column of
+/// blocks of each.
 pub(super) fn number_rows(grid: &SpringGrid, y: usize, rows: &mut [u32]) -> Vec<u32> {
     let w = grid.width();
     let [right, down] = grid.springs();
@@ -35,7 +39,9 @@ pub(super) fn number_rows(grid: &SpringGrid, y: usize, rows: &mut [u32]) -> Vec<
     let mut columns = Vec::new();
     for x in (0..w).step_by(2) {
         // The block's pixels: two of the upper row, two of the lower.
-        let inside = |k: usize| (x + k % 2 < w && k / 2 * w + x + k % 2 < rows.len()).then_some(k / 2 * w + x + k % 2);
+        let inside = |k: usize| {
+            (x + k % 2 < w && k / 2 * w + x + k % 2 < rows.len()).then_some(k / 2 * w + x + k % 2)
+        };
         let top: [Option<usize>; 4] = std::array::from_fn(inside);
         let most = top.map(|at| at.map_or(0.0, |at| stiffest(2 * y * w + at)));
         let mut first = [0, 1, 2, 3];
@@ -75,7 +81,8 @@ pub(super) fn join(first: &mut [u32], a: u32, b: u32) {
     first[a.max(b) as usize] = a.min(b);
 }
 
-/// Numbers the trees of a forest in the order of their roots: the number of each node's tree, and the roots.
+/// Numbers the trees of a forest in the order of their roots: the number of each node's tree, and
+/// the roots.
 pub(super) fn numbered(first: &mut [u32]) -> (Vec<u32>, Vec<u32>) {
     let (mut labels, mut roots) = (vec![0; first.len()], Vec::new());
     for i in 0..first.len() as u32 {

@@ -13,10 +13,16 @@ pub(super) struct GridRow<'g> {
 ///
 /// `[above, here, below]`: the values; above and below are empty beyond the grid.
 #[inline(always)]
-fn each(row: GridRow, [above, here, below]: [&[f32]; 3], mut visit: impl FnMut(usize, f32, f32, f32)) {
+fn each(
+    row: GridRow,
+    [above, here, below]: [&[f32]; 3],
+    mut visit: impl FnMut(usize, f32, f32, f32),
+) {
     let n = here.len();
-    // The first and last rows have springs to nowhere, of stiffness 0: any row of the right length will do.
-    let (up, above) = if row.up.len() == n && above.len() == n { (row.up, above) } else { (&ZEROS[..0], here) };
+    // The first and last rows have springs to nowhere, of stiffness 0: any row of the right length
+    // will do.
+    let (up, above) =
+        if row.up.len() == n && above.len() == n { (row.up, above) } else { (&ZEROS[..0], here) };
     let below = if below.len() == n { below } else { here };
     let (right, down) = (&row.right[..n], &row.down[..n]);
     let edge = |x: usize| {
@@ -59,33 +65,39 @@ crate::widest! {
     pub(super) fn start_row(row: GridRow, b: &[f32], step: f32, out: &mut [f32]) {
         each(row, [b, b, b], |x, sum, b, _| out[x] = step * b / sum.max(LEAST));
     }
+
     /// One sweep of Jacobi: `v + step ((b + Σ w v) / Σ w − v)`.
     pub(super) fn relaxed_row(row: GridRow, v: [&[f32]; 3], b: &[f32], step: f32, out: &mut [f32]) {
         let (b, out) = (&b[..v[1].len()], &mut out[..v[1].len()]);
         each(row, v, |x, sum, v, pull| out[x] = v + step * ((b[x] + pull) / sum.max(LEAST) - v));
     }
+
     /// b − A v.
     pub(super) fn residual_row(row: GridRow, v: [&[f32]; 3], b: &[f32], out: &mut [f32]) {
         let (b, out) = (&b[..v[1].len()], &mut out[..v[1].len()]);
         each(row, v, |x, sum, v, pull| out[x] = b[x] - (sum * v - pull));
     }
+
     /// A v.
     pub(super) fn apply_row(row: GridRow, v: [&[f32]; 3], out: &mut [f32]) {
         let out = &mut out[..v[1].len()];
         each(row, v, |x, sum, v, pull| out[x] = sum * v - pull);
     }
+
     /// z + turn · direction, in place.
     pub(super) fn turn(z: &[f32], turn: f32, direction: &mut [f32]) {
         for (d, z) in direction.iter_mut().zip(z) {
             *d = z + turn * *d;
         }
     }
+
     /// v + step · direction, in place.
     pub(super) fn walk(step: f32, direction: &[f32], v: &mut [f32]) {
         for (v, d) in v.iter_mut().zip(direction) {
             *v += step * d;
         }
     }
+
     /// Σ a b: eight sums side by side in f32 over a short run, runs in f64.
     pub(super) fn dot(a: &[f32], b: &[f32]) -> f64 {
         const LANES: usize = 16;

@@ -31,12 +31,14 @@ fn length(v: &[f32]) -> f64 {
 #[test]
 fn a_known_solution_is_found_on_a_ragged_grid_in_few_steps() {
     for (w, h) in [(53, 38), (200, 131), (1, 40), (40, 1), (1, 1)] {
-        let truth: Vec<f32> = (0..w * h).map(|i| ((i % w) as f32 * 0.2).sin() * 5.0 + (i / w) as f32 * 0.3).collect();
+        let truth: Vec<f32> =
+            (0..w * h).map(|i| ((i % w) as f32 * 0.2).sin() * 5.0 + (i / w) as f32 * 0.3).collect();
         let b = applied(&ragged(w, h), &truth);
         let solver = SpringSolver::new(ragged(w, h));
         let mut found = vec![0.0; w * h];
         let steps = solver.solve(&b, &mut found, Effort::EXACT, &mut SolveScratch::default());
-        let off: Vec<f32> = applied(solver.grid(), &found).iter().zip(&b).map(|(a, b)| a - b).collect();
+        let off: Vec<f32> =
+            applied(solver.grid(), &found).iter().zip(&b).map(|(a, b)| a - b).collect();
         assert!(length(&off) <= 3e-5 * length(&b), "{w} × {h}: {} of {}", length(&off), length(&b));
         assert!(steps <= 16, "{w} × {h}: {steps} steps");
     }
@@ -45,7 +47,8 @@ fn a_known_solution_is_found_on_a_ragged_grid_in_few_steps() {
 #[test]
 fn a_good_beginning_saves_steps() {
     let (w, h) = (120, 90);
-    let truth: Vec<f32> = (0..w * h).map(|i| (i % w) as f32 * 0.3 + ((i / w) as f32 * 0.1).cos()).collect();
+    let truth: Vec<f32> =
+        (0..w * h).map(|i| (i % w) as f32 * 0.3 + ((i / w) as f32 * 0.1).cos()).collect();
     let b = applied(&ragged(w, h), &truth);
     let solver = SpringSolver::new(ragged(w, h));
     let mut scratch = SolveScratch::default();

@@ -1,7 +1,10 @@
 //! All blocks of a tile tested at once: the fast version of `SupportBounds::judge`.
 //! Floor 2.
 
-use super::{BLOCK, BlockImage, DabExtent, OperatorBounds, RadialOffset, SupportBounds, TILE_BLOCKS, TileBlocks};
+use super::{
+    BLOCK, BlockImage, DabExtent, OperatorBounds, RadialOffset, SupportBounds, TILE_BLOCKS,
+    TileBlocks,
+};
 use crate::math::{Vec2, vec2};
 use crate::raster::{TILE, TileAt};
 use crate::surface::pyramid::{BlockCover, BlockFigures, DepthSpan, Join, Pyramid, TurnSpan};
@@ -16,14 +19,19 @@ pub struct JudgedBlocks {
     pub pixel: [f32; BLOCKS],
 }
 
-/// What is known of a tile's blocks: some of a block is surface, all of it is, and the ranges of the maps there.
+/// What is known of a tile's blocks: some of a block is surface, all of it is, and the ranges of
+/// the maps there.
 struct BlockRanges<'p, const N: usize> {
     cover: &'p [BlockFigures; 2],
     figures: &'p [BlockFigures; N],
 }
 
 impl<'p, const N: usize> BlockRanges<'p, N> {
-    fn of<T: Join>(at: TileAt, cover: Option<&'p Pyramid<BlockCover>>, map: &'p Pyramid<T>) -> Self {
+    fn of<T: Join>(
+        at: TileAt,
+        cover: Option<&'p Pyramid<BlockCover>>,
+        map: &'p Pyramid<T>,
+    ) -> Self {
         let cover = cover.and_then(|cover| cover.tile(at)).unwrap_or(&[[0.0; BLOCKS]; 2]);
         Self { cover, figures: map.tile(at).unwrap_or(&[[0.0; BLOCKS]; N]) }
     }
@@ -31,7 +39,8 @@ impl<'p, const N: usize> BlockRanges<'p, N> {
 
 /// The blocks of a tile that may be touched.
 pub(super) fn judged(support: &SupportBounds, at: TileAt) -> JudgedBlocks {
-    let corner = vec2((at.col * TILE as i32) as f32, (at.row * TILE as i32) as f32) + 0.5 - support.at;
+    let corner =
+        vec2((at.col * TILE as i32) as f32, (at.row * TILE as i32) as f32) + 0.5 - support.at;
     let (mut touched, mut pixel) = ([0; BLOCKS], [1.0; BLOCKS]);
     let (cover, extent) = (support.cover, support.extent);
     match &support.flow {
@@ -39,11 +48,25 @@ pub(super) fn judged(support: &SupportBounds, at: TileAt) -> JudgedBlocks {
         OperatorBounds::Still => still(corner, extent, &mut touched),
         OperatorBounds::Depth { pyramid, z, rate } => {
             let bend = ScaledBlocks { z: *z, rate: *rate };
-            scaled(BlockRanges::of(at, cover, pyramid), corner, extent, bend, &mut touched, &mut pixel);
+            scaled(
+                BlockRanges::of(at, cover, pyramid),
+                corner,
+                extent,
+                bend,
+                &mut touched,
+                &mut pixel,
+            );
         }
         OperatorBounds::Turn { pyramid, turn, stretch } => {
             let bend = TurnedBlocks { turn: *turn, stretch: *stretch };
-            turned(BlockRanges::of(at, cover, pyramid), corner, extent, bend, &mut touched, &mut pixel);
+            turned(
+                BlockRanges::of(at, cover, pyramid),
+                corner,
+                extent,
+                bend,
+                &mut touched,
+                &mut pixel,
+            );
         }
         OperatorBounds::Unwrapped { surface, unwrapping, at: anchor } => {
             let ranges = BlockRanges::of(at, cover, unwrapping.bounds(surface));
@@ -52,14 +75,15 @@ pub(super) fn judged(support: &SupportBounds, at: TileAt) -> JudgedBlocks {
     }
     let there = support.on_canvas(at);
     let touched = std::array::from_fn(|row| {
-        let bits = (0..TILE_BLOCKS).map(|col| ((touched[row * TILE_BLOCKS + col] & 1) as u8) << col);
+        let bits =
+            (0..TILE_BLOCKS).map(|col| ((touched[row * TILE_BLOCKS + col] & 1) as u8) << col);
         bits.sum::<u8>() & there[row]
     });
     JudgedBlocks { touched, pixel }
 }
 
-/// The centres of a block's first and last pixel relative to the anchor. Blocks that the canvas's edge cuts count
-/// whole.
+/// The centres of a block's first and last pixel relative to the anchor. Blocks that the canvas's
+/// edge cuts count whole.
 #[inline(always)]
 fn corners(corner: Vec2, i: usize) -> (Vec2, Vec2) {
     // Through i32: AVX2 converts no 64-bit integers.
@@ -79,6 +103,7 @@ struct ScaledBlocks {
     z: f32,
     rate: f32,
 }
+
 #[derive(Clone, Copy)]
 struct TurnedBlocks {
     turn: Vec2,
@@ -96,16 +121,31 @@ impl BlockBend<3> for ScaledBlocks {
         flat.scaled(DepthSpan { low, high, slope }, self.z, self.rate)
     }
 }
+
 impl BlockBend<5> for TurnedBlocks {
     #[inline(always)]
-    fn image(self, [x0, y0, x1, y1, slope]: [f32; 5], block: (Vec2, Vec2), _: BlockImage) -> BlockImage {
-        self.stretch.image(TurnSpan { low: vec2(x0, y0), high: vec2(x1, y1), slope }, self.turn, block)
+    fn image(
+        self,
+        [x0, y0, x1, y1, slope]: [f32; 5],
+        block: (Vec2, Vec2),
+        _: BlockImage,
+    ) -> BlockImage {
+        self.stretch.image(
+            TurnSpan { low: vec2(x0, y0), high: vec2(x1, y1), slope },
+            self.turn,
+            block,
+        )
     }
 }
 
 impl BlockBend<5> for LaidBlocks {
     #[inline(always)]
-    fn image(self, [x0, y0, x1, y1, slope]: [f32; 5], _: (Vec2, Vec2), _: BlockImage) -> BlockImage {
+    fn image(
+        self,
+        [x0, y0, x1, y1, slope]: [f32; 5],
+        _: (Vec2, Vec2),
+        _: BlockImage,
+    ) -> BlockImage {
         BlockImage::laid(TurnSpan { low: vec2(x0, y0), high: vec2(x1, y1), slope }, self.at)
     }
 }
@@ -144,6 +184,7 @@ crate::widest! {
             *touched = u32::from(extent.may_hold(BlockImage::flat(low, high)));
         }
     }
+
     fn scaled(
         ranges: BlockRanges<3>,
         corner: Vec2,
@@ -154,6 +195,7 @@ crate::widest! {
     ) {
         each(ranges, corner, extent, bend, touched, pixel);
     }
+
     fn turned(
         ranges: BlockRanges<5>,
         corner: Vec2,
@@ -164,6 +206,7 @@ crate::widest! {
     ) {
         each(ranges, corner, extent, bend, touched, pixel);
     }
+
     fn laid(
         ranges: BlockRanges<5>,
         corner: Vec2,

@@ -1,5 +1,5 @@
-//! What operators make of blocks: where the image of a block lies and how long its pixels are. Floor 2. Interval
-//! arithmetic: never less than D does.
+//! What operators make of blocks: where the image of a block lies and how long its pixels are.
+//! Floor 2. Interval arithmetic: never less than D does.
 
 use crate::math::{Vec2, vec2};
 use crate::surface::Surface;
@@ -48,8 +48,9 @@ impl RadialOffset {
         let curved = |softness| second_order::offset_factor_of_softness(u, self.alpha_px, softness);
         self.softness.map_or(self.alpha_px, curved)
     }
-    /// The range of one component of the offset, exact but for the detail: it grows with the component itself and, in
-    /// magnitude, with the other one, which `across` bounds in magnitude.
+
+    /// The range of one component of the offset, exact but for the detail: it grows with the
+    /// component itself and, in magnitude, with the other one, which `across` bounds in magnitude.
     #[inline(always)]
     fn range(self, (low, high): (f32, f32), across: (f32, f32)) -> (f32, f32) {
         let offset = |v: f32, across: f32| self.factor(vec2(v, across).length()) * v;
@@ -61,11 +62,13 @@ impl RadialOffset {
         let (d, e) = (1.0 - self.detail, 1.0 + self.detail);
         ((least * d).min(least * e), (most * d).max(most * e))
     }
-    /// The most by which the offset changes per change of the normal, up to a relative normal of length u; and, with
-    /// detail, per px by the change of curvature alone.
+
+    /// The most by which the offset changes per change of the normal, up to a relative normal of
+    /// length u; and, with detail, per px by the change of curvature alone.
     #[inline(always)]
     fn steepness(self, u: f32) -> (f32, f32) {
-        let curved = |softness| second_order::offset_factor_slope_of_softness(u, self.alpha_px, softness);
+        let curved =
+            |softness| second_order::offset_factor_slope_of_softness(u, self.alpha_px, softness);
         let slope = self.softness.map_or(0.0, curved);
         let factor = self.factor(u).abs();
         // κ lies in (−1, 1): a difference to one neighbour is below 2 in each direction.
@@ -74,7 +77,8 @@ impl RadialOffset {
     }
 }
 
-/// The image of a block under D: its distances from the anchor and the greatest length of a pixel, px.
+/// The image of a block under D: its distances from the anchor and the greatest length of a pixel,
+/// px.
 #[derive(Clone, Copy)]
 pub(super) struct BlockImage {
     pub near: f32,
@@ -83,19 +87,27 @@ pub(super) struct BlockImage {
 }
 
 impl OperatorBounds<'_> {
-    /// The image of the surface's part of a block whose pixels lie between two corners relative to the anchor.
+    /// The image of the surface's part of a block whose pixels lie between two corners relative to
+    /// the anchor.
     ///
     /// `spread`: how far the map's value at an anchor lies from the one here at most.
-    pub fn image(&self, block: PyramidBlock, (low, high): (Vec2, Vec2), flat: BlockImage, spread: Vec2) -> BlockImage {
-        const ANYWHERE: BlockImage = BlockImage { near: 0.0, far: f32::INFINITY, pixel: f32::INFINITY };
+    pub fn image(
+        &self,
+        block: PyramidBlock,
+        (low, high): (Vec2, Vec2),
+        flat: BlockImage,
+        spread: Vec2,
+    ) -> BlockImage {
+        const ANYWHERE: BlockImage =
+            BlockImage { near: 0.0, far: f32::INFINITY, pixel: f32::INFINITY };
         match self {
             OperatorBounds::Still => flat,
-            OperatorBounds::Depth { pyramid, z, rate } => {
-                pyramid.at(block).map_or(ANYWHERE, |span| flat.scaled(span.spread(spread.x), *z, *rate))
-            }
-            OperatorBounds::Turn { pyramid, turn, stretch } => {
-                pyramid.at(block).map_or(ANYWHERE, |span| stretch.image(span.spread(spread), *turn, (low, high)))
-            }
+            OperatorBounds::Depth { pyramid, z, rate } => pyramid
+                .at(block)
+                .map_or(ANYWHERE, |span| flat.scaled(span.spread(spread.x), *z, *rate)),
+            OperatorBounds::Turn { pyramid, turn, stretch } => pyramid
+                .at(block)
+                .map_or(ANYWHERE, |span| stretch.image(span.spread(spread), *turn, (low, high))),
             OperatorBounds::Unwrapped { surface, unwrapping, at } => {
                 let span = unwrapping.bounds(surface).at(block);
                 span.map_or(ANYWHERE, |span| BlockImage::laid(span.spread(spread), *at))
@@ -108,13 +120,20 @@ impl BlockImage {
     /// Where D is the identity: pixels between two corners relative to the anchor.
     #[inline(always)]
     pub fn flat(low: Vec2, high: Vec2) -> Self {
-        Self { near: distance_to_box(low, high), far: low.abs().max(high.abs()).length(), pixel: 1.0 }
+        Self {
+            near: distance_to_box(low, high),
+            far: low.abs().max(high.abs()).length(),
+            pixel: 1.0,
+        }
     }
-    /// What D_s makes of a block whose points of the unwrapped plane span so much: it turns them about the anchor's.
+
+    /// What D_s makes of a block whose points of the unwrapped plane span so much: it turns them
+    /// about the anchor's.
     #[inline(always)]
     pub fn laid(span: TurnSpan, at: Vec2) -> Self {
         Self { pixel: span.slope, ..Self::flat(span.low - at, span.high - at) }
     }
+
     /// What D_p makes of a flat block whose depths span so much, the anchor's being `z`.
     #[inline(always)]
     pub fn scaled(self, span: DepthSpan, z: f32, rate: f32) -> Self {
@@ -128,7 +147,8 @@ impl BlockImage {
 }
 
 impl RadialOffset {
-    /// What D_n or D_r makes of a block between two corners whose n̄ or r̄ spans so much, the anchor's being `turn`.
+    /// What D_n or D_r makes of a block between two corners whose n̄ or r̄ spans so much, the
+    /// anchor's being `turn`.
     #[inline(always)]
     pub fn image(self, span: TurnSpan, turn: Vec2, (low, high): (Vec2, Vec2)) -> BlockImage {
         let (a, b) = (span.low - turn, span.high - turn);
@@ -155,9 +175,16 @@ impl<'s> OperatorBounds<'s> {
                 rate: first_order::rate(gamma),
             },
             Operator::Normal { alpha, beta, detail } => {
-                let stretch =
-                    RadialOffset { alpha_px: alpha * unit_px, softness: Some(second_order::softness(beta)), detail };
-                OperatorBounds::Turn { pyramid: surface.bounds().nbar(surface), turn: nbar, stretch }
+                let stretch = RadialOffset {
+                    alpha_px: alpha * unit_px,
+                    softness: Some(second_order::softness(beta)),
+                    detail,
+                };
+                OperatorBounds::Turn {
+                    pyramid: surface.bounds().nbar(surface),
+                    turn: nbar,
+                    stretch,
+                }
             }
             Operator::Reflection { alpha, detail } => {
                 let stretch = RadialOffset { alpha_px: alpha * unit_px, softness: None, detail };

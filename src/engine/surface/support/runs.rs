@@ -1,8 +1,10 @@
-//! The tiles of many dabs: those that follow each other closely are sought together, as one dab whose anchor may be
-//! anywhere among theirs. Floor 2. Interval arithmetic goes down from the whole canvas once for all of them; what it
-//! finds is judged for each dab alone.
+//! The tiles of many dabs: those that follow each other closely are sought together, as one dab
+//! whose anchor may be anywhere among theirs. Floor 2. Interval arithmetic goes down from the whole
+//! canvas once for all of them; what it finds is judged for each dab alone.
 
-use super::{BlockOverlap, DabExtent, OperatorBounds, PyramidBlock, ROUNDING_PX, SupportBounds, TILE_LEVEL};
+use super::{
+    BlockOverlap, DabExtent, OperatorBounds, PyramidBlock, ROUNDING_PX, SupportBounds, TILE_LEVEL,
+};
 use crate::math::{Vec2, vec2};
 use crate::raster::TileAt;
 
@@ -11,9 +13,12 @@ const RUN: usize = 32;
 const APART_PX: f32 = 24.0;
 const APART_RADII: f32 = 1.0;
 
-/// Visits every tile of the canvas that each of some dabs may touch, with the dab's number; of a tile in their order.
-pub fn for_each_tile_of<'s, 'b>(dabs: &[&'b SupportBounds<'s>], mut visit: impl FnMut(usize, TileAt))
-where
+/// Visits every tile of the canvas that each of some dabs may touch, with the dab's number; of a
+/// tile in their order.
+pub fn for_each_tile_of<'s, 'b>(
+    dabs: &[&'b SupportBounds<'s>],
+    mut visit: impl FnMut(usize, TileAt),
+) where
     's: 'b,
 {
     let mut start = 0;
@@ -42,19 +47,21 @@ fn run_of(dabs: &[&SupportBounds]) -> usize {
     let is_near = |dab: &&&SupportBounds| {
         (low, high) = (low.min(dab.at), high.max(dab.at));
         // Comparisons that NaN fails.
-        let is_small = (high - low).max_element() < apart && dab.extent.radius_px < 2.0 * first.extent.radius_px;
+        let is_small = (high - low).max_element() < apart
+            && dab.extent.radius_px < 2.0 * first.extent.radius_px;
         is_small && first.flow.is_like(&dab.flow)
     };
     dabs.iter().take(RUN).take_while(is_near).count().max(1)
 }
 
-/// One dab that reaches what any of a run reaches; `None` where their anchors are not finite, or where none needs to
-/// go down from the whole canvas.
+/// One dab that reaches what any of a run reaches; `None` where their anchors are not finite, or
+/// where none needs to go down from the whole canvas.
 fn joined<'s>(dabs: &[&SupportBounds<'s>]) -> Option<SupportBounds<'s>> {
     let first = dabs.first()?;
     let flow = first.flow.at_anchors(dabs.iter().map(|dab| &dab.flow))?;
     let (low, high) = range(dabs.iter().map(|dab| dab.at));
-    let most = |figure: fn(&SupportBounds) -> f32| dabs.iter().map(|dab| figure(dab)).fold(0.0, f32::max);
+    let most =
+        |figure: fn(&SupportBounds) -> f32| dabs.iter().map(|dab| figure(dab)).fold(0.0, f32::max);
     let at = 0.5 * (low + high);
     let extent = DabExtent {
         radius_px: most(|dab| dab.extent.radius_px) + ROUNDING_PX,
@@ -91,6 +98,7 @@ impl<'s> OperatorBounds<'s> {
             _ => false,
         }
     }
+
     /// What the maps hold at its anchor, that of D_p in x.
     fn value(&self) -> Vec2 {
         match self {
@@ -99,7 +107,9 @@ impl<'s> OperatorBounds<'s> {
             Self::Turn { turn: at, .. } | Self::Unwrapped { at, .. } => *at,
         }
     }
-    /// The same operator between the anchors of some, and how far from there their values lie at most.
+
+    /// The same operator between the anchors of some, and how far from there their values lie at
+    /// most.
     fn at_anchors<'a>(&self, others: impl Iterator<Item = &'a Self>) -> Option<(Self, Vec2)>
     where
         's: 'a,
@@ -112,7 +122,9 @@ impl<'s> OperatorBounds<'s> {
         let flow = match self {
             Self::Still => return None,
             Self::Depth { pyramid, rate, .. } => Self::Depth { pyramid, z: middle.x, rate: *rate },
-            Self::Turn { pyramid, stretch, .. } => Self::Turn { pyramid, turn: middle, stretch: *stretch },
+            Self::Turn { pyramid, stretch, .. } => {
+                Self::Turn { pyramid, turn: middle, stretch: *stretch }
+            }
             Self::Unwrapped { surface, unwrapping, .. } => {
                 Self::Unwrapped { surface, unwrapping: unwrapping.clone(), at: middle }
             }

@@ -19,25 +19,27 @@ fn surface(seed: u32) -> Surface {
         let wave = 0.3 + 0.2 * (fx * x as f32).cos() * (fy * y as f32).sin();
         if x as f32 > 150.0 * random(5) { wave + 0.4 } else { wave }
     });
-    let coverage =
-        Plane::from_fn(
-            SIZE,
-            |x, y| {
-                if vec2(x as f32, y as f32).distance(hole) < 20.0 + 30.0 * random(6) { 0u8 } else { 255 }
-            },
-        );
+    let coverage = Plane::from_fn(SIZE, |x, y| {
+        if vec2(x as f32, y as f32).distance(hole) < 20.0 + 30.0 * random(6) { 0u8 } else { 255 }
+    });
     Surface::new(Maps { normals, depth, coverage }).unwrap()
 }
+
 fn operator() -> impl Strategy<Value = Operator> {
     prop_oneof![
         Just(Operator::None),
         (0.0f32..4.0).prop_map(|gamma| Operator::Depth { gamma }),
-        (-2.0f32..2.0, 0.0f32..5.0).prop_map(|(alpha, beta)| Operator::Normal { alpha, beta, detail: 0.0 }),
+        (-2.0f32..2.0, 0.0f32..5.0).prop_map(|(alpha, beta)| Operator::Normal {
+            alpha,
+            beta,
+            detail: 0.0
+        }),
         (-1.0f32..1.0).prop_map(|alpha| Operator::Normal { alpha, beta: 1.0, detail: 1.5 }),
         (-2.0f32..2.0).prop_map(|alpha| Operator::Reflection { alpha, detail: 0.0 }),
         (0.2f32..2.0).prop_map(|amount| Operator::Surface { amount, smooth: 0.0 }),
     ]
 }
+
 /// |∂(|D − q_0|)/∂q| by differences between linked neighbours, as the marks take it.
 fn pixel_length(surface: &Surface, d: &Deformation, at: Vec2, x: i32, y: i32) -> f32 {
     let linked = surface.smooth_links_plane().at(x as usize, y as usize);
@@ -46,10 +48,18 @@ fn pixel_length(surface: &Surface, d: &Deformation, at: Vec2, x: i32, y: i32) ->
         let (l, r) = (i32::from(linked & before != 0), i32::from(linked & after != 0));
         match l + r {
             0 => flat,
-            n => (d.at(x + r * dx, y + r * dy) - d.at(x - l * dx, y - l * dy)).dot(along) / n as f32,
+            n => {
+                (d.at(x + r * dx, y + r * dy) - d.at(x - l * dx, y - l * dy)).dot(along) / n as f32
+            }
         }
     };
-    slope(links::LEFT, links::RIGHT, 1, 0, along.x).hypot(slope(links::UP, links::DOWN, 0, 1, along.y))
+    slope(links::LEFT, links::RIGHT, 1, 0, along.x).hypot(slope(
+        links::UP,
+        links::DOWN,
+        0,
+        1,
+        along.y,
+    ))
 }
 
 proptest! {
@@ -123,12 +133,16 @@ proptest! {
 #[test]
 fn a_flat_dab_reaches_little_more_than_its_disc() {
     let extent = DabExtent { radius_px: 100.0, filter_px: 0.5 };
-    let support = SupportBounds::new(None, Size::new(1000, 700), Operator::None, vec2(500.0, 350.0), extent);
+    let support =
+        SupportBounds::new(None, Size::new(1000, 700), Operator::None, vec2(500.0, 350.0), extent);
     let mut blocks = 0;
-    support.for_each_tile(|tile| blocks += support.blocks(tile).iter().map(|row| row.count_ones()).sum::<u32>());
+    support.for_each_tile(|tile| {
+        blocks += support.blocks(tile).iter().map(|row| row.count_ones()).sum::<u32>()
+    });
     let disc = std::f32::consts::PI * 100.0 * 100.0 / 64.0;
     assert!((blocks as f32) > disc && (blocks as f32) < 1.2 * disc, "{blocks} blocks for {disc}");
 }
+
 #[test]
 fn a_small_highlight_on_a_large_sphere_touches_few_blocks() {
     let size = Size::new(1024, 1024);
@@ -138,22 +152,28 @@ fn a_small_highlight_on_a_large_sphere_touches_few_blocks() {
         vec3(p.x, -p.y, (1.0 - p.length_squared()).max(0.0).sqrt())
     });
     let coverage = Plane::from_fn(size, |x, y| if at(x, y).length() < 1.0 { 255 } else { 0 });
-    let surface = Surface::new(Maps { normals, depth: Plane::filled(size, 0.5), coverage }).unwrap();
+    let surface =
+        Surface::new(Maps { normals, depth: Plane::filled(size, 0.5), coverage }).unwrap();
     let operator = Operator::Normal { alpha: 0.5, beta: 0.0, detail: 0.0 };
     let extent = DabExtent { radius_px: 40.0, filter_px: 0.5 };
     let support = SupportBounds::new(Some(&surface), size, operator, vec2(600.0, 450.0), extent);
     let mut blocks = 0;
-    support.for_each_tile(|tile| blocks += support.blocks(tile).iter().map(|row| row.count_ones()).sum::<u32>());
+    support.for_each_tile(|tile| {
+        blocks += support.blocks(tile).iter().map(|row| row.count_ones()).sum::<u32>()
+    });
     assert!(blocks > 20 && blocks < 130, "{blocks} of 16384 blocks");
 }
+
 #[test]
 fn figures_that_are_not_numbers_reach_everything_rather_than_nothing() {
     let extent = DabExtent { radius_px: f32::NAN, filter_px: 0.5 };
-    let support = SupportBounds::new(None, Size::new(200, 100), Operator::None, vec2(f32::NAN, 3.0), extent);
+    let support =
+        SupportBounds::new(None, Size::new(200, 100), Operator::None, vec2(f32::NAN, 3.0), extent);
     let mut tiles = 0;
     support.for_each_tile(|_| tiles += 1);
     assert_eq!(tiles, 8);
 }
+
 #[test]
 fn what_is_out_of_reach_touches_nothing_and_most_of_a_way_far_off_is() {
     let operator = Operator::Surface { amount: 1.0, smooth: 0.0 };
@@ -166,7 +186,8 @@ fn what_is_out_of_reach_touches_nothing_and_most_of_a_way_far_off_is() {
             let at = 100.0 + far * Vec2::from_angle(6.3 * hash::unit(seed, i, 1));
             if is_out_of_reach(&surface, operator, at, extent) {
                 out += 1;
-                let support = SupportBounds::new(Some(&surface), surface.size(), operator, at, extent);
+                let support =
+                    SupportBounds::new(Some(&surface), surface.size(), operator, at, extent);
                 support.for_each_tile(|tile| panic!("{at} may touch {tile:?}"));
             }
         }

@@ -1,17 +1,20 @@
-//! The surface's own metric, from its normals in the picture: how long a step of a pixel is on the surface.
-//! Floor 2. Pure functions; each is an equation of MATH 8. Not here: solving for the deformation (`steps`).
+//! The surface's own metric, from its normals in the picture: how long a step of a pixel is on the
+//! surface. Floor 2. Pure functions; each is an equation of MATH 8. Not here: solving for the
+//! deformation (`steps`).
 
 use crate::math::{Mat2, Vec2, Vec3, vec2};
 use crate::surface::operator::outer;
 
-/// Below this n_z the surface is seen edge-on: it counts as no steeper, so that no picture is stretched more than five
-/// times.
+/// Below this n_z the surface is seen edge-on: it counts as no steeper, so that no picture is
+/// stretched more than five times.
 pub const STEEPEST_NZ: f32 = 0.2;
 
-/// S(q) of MATH 8: `1 + (n_z^−a − 1) ĝ ĝᵀ`, the symmetric root of the surface's metric in the picture.
+/// S(q) of MATH 8: `1 + (n_z^−a − 1) ĝ ĝᵀ`, the symmetric root of the surface's metric in the
+/// picture.
 ///
-/// A height field with ∇h = −n̄/n_z has the metric 1 + ∇h ∇hᵀ, whose root stretches by √(1 + |∇h|²) = 1/n_z along the
-/// slope ĝ = n̄/|n̄| and not at all across it. Canvas px of the surface per px of the picture.
+/// A height field with ∇h = −n̄/n_z has the metric 1 + ∇h ∇hᵀ, whose root stretches by √(1 + |∇h|²)
+/// = 1/n_z along the slope ĝ = n̄/|n̄| and not at all across it. Canvas px of the surface per px of
+/// the picture.
 ///
 /// * `nbar`, `nz`: a unit normal, image axes; n_z is held ≥ 0.2.
 /// * `amount`: a, `[0, 2]`; 1 is the surface's own metric, 0 flat: the identity.
@@ -20,12 +23,13 @@ pub fn stretch(nbar: Vec2, nz: f32, amount: f32) -> Mat2 {
     Mat2::IDENTITY + outer(along, along) * (nz.max(STEEPEST_NZ).min(1.0).powf(-amount) - 1.0)
 }
 
-/// S(q) of MATH 8 of a surface that is seen from near: the symmetric root of its first fundamental form, to the power
-/// a.
+/// S(q) of MATH 8 of a surface that is seen from near: the symmetric root of its first fundamental
+/// form, to the power a.
 ///
-/// The point seen at q lies at Z (b, 1), b = (q − c)/f. Its normal says how Z grows, ∇Z/Z = g/f with g = n̄/ν and
-/// ν = n_z − n̄·b, so that ∂P/∂q has the metric `(Z/Z̄)² (1 + b gᵀ + g bᵀ + (1 + |b|²) g gᵀ)`, where a px is as long
-/// as on the picture plane at Z̄. With b = 0 it is that of a parallel view.
+/// The point seen at q lies at Z (b, 1), b = (q − c)/f. Its normal says how Z grows, ∇Z/Z = g/f
+/// with g = n̄/ν and ν = n_z − n̄·b, so that ∂P/∂q has the metric `(Z/Z̄)² (1 + b gᵀ + g bᵀ + (1 +
+/// |b|²) g gᵀ)`, where a px is as long as on the picture plane at Z̄. With b = 0 it is that of a
+/// parallel view.
 ///
 /// * `nbar`, `nz`: a unit normal, image axes; ν is held ≥ 0.2 of the length of (b, 1).
 /// * `beside`: b, focal lengths from the point before the eye; image axes.
@@ -34,7 +38,8 @@ pub fn stretch(nbar: Vec2, nz: f32, amount: f32) -> Mat2 {
 pub fn stretch_from_near(nbar: Vec2, nz: f32, beside: Vec2, farness: f32, amount: f32) -> Mat2 {
     let away = 1.0 + beside.length_squared();
     let slope = nbar / facing_from_near(nbar, nz, beside).max(STEEPEST_NZ) / away.sqrt();
-    let metric = Mat2::IDENTITY + outer(beside, slope) + outer(slope, beside) + outer(slope, slope) * away;
+    let metric =
+        Mat2::IDENTITY + outer(beside, slope) + outer(slope, beside) + outer(slope, slope) * away;
     // Its larger axis u, and both eigenvalues.
     let half = 0.5 * vec2(metric.x_axis.x - metric.y_axis.y, 2.0 * metric.x_axis.y);
     let (middle, reach) = (0.5 * (metric.x_axis.x + metric.y_axis.y), half.length());
@@ -54,8 +59,8 @@ pub fn facing_from_near(nbar: Vec2, nz: f32, beside: Vec2) -> f32 {
 
 /// R(q) of MATH 8: the rotation in J S⁻¹, by which the solution turned the surface at a pixel.
 ///
-/// `angle = atan2(M₂₁ − M₁₂, M₁₁ + M₂₂)`, M = J S⁻¹: the rotation nearest to M. The identity where M gives
-/// none.
+/// `angle = atan2(M₂₁ − M₁₂, M₁₁ + M₂₂)`, M = J S⁻¹: the rotation nearest to M. The identity where
+/// M gives none.
 pub fn turn(jacobian: Mat2, stretch: Mat2) -> Mat2 {
     let m = jacobian * stretch.inverse();
     let (cos, sin) = (m.x_axis.x + m.y_axis.y, m.x_axis.y - m.y_axis.x);
@@ -72,9 +77,11 @@ const HOLLOW_RAD: f32 = 15.0 * std::f32::consts::PI / 180.0;
 /// What is left of the pull of the deepest hollows.
 const LEAST_PULL: f32 = 1e-3;
 
-/// c_ij of MATH 8: `max(e^(−(φ/15°)²), 10⁻³)` on hollow links, whose normals turn toward each other by φ; else 1.
+/// c_ij of MATH 8: `max(e^(−(φ/15°)²), 10⁻³)` on hollow links, whose normals turn toward each other
+/// by φ; else 1.
 ///
-/// Where objects touch in a hollow they hardly pull on each other; across raised edges, a cube's, the print goes on.
+/// Where objects touch in a hollow they hardly pull on each other; across raised edges, a cube's,
+/// the print goes on.
 ///
 /// * `a`, `b`: unit normals of two neighbours, camera space.
 /// * `along`: from the first to the second; image axes.
@@ -106,28 +113,43 @@ mod tests {
             assert!((root * root).abs_diff_eq(metric, 1e-4), "{:?} and {metric:?}", root * root);
         }
     }
+
     #[test]
     fn from_near_the_metric_is_that_of_the_points_that_are_seen() {
-        // A plane through (0, 0, 3) with any normal: Z (b, 1) lies on it where Z n·(b, −1) = −3 n_z.
+        // A plane through (0, 0, 3) with any normal: Z (b, 1) lies on it where Z n·(b, −1) = −3
+        // n_z.
         let n = vec3(0.4, -0.25, 0.8).normalize();
         let point = |b: Vec2| vec3(b.x, b.y, 1.0) * (3.0 * n.z / (n.z - n.x * b.x - n.y * b.y));
         for b in [Vec2::ZERO, vec2(0.3, 0.1), vec2(-0.4, 0.35)] {
             let h = 1e-3;
-            let [dx, dy] = [Vec2::X, Vec2::Y].map(|d| (point(b + d * h) - point(b - d * h)) / (2.0 * h));
-            let metric = Mat2::from_cols(vec2(dx.dot(dx), dx.dot(dy)), vec2(dx.dot(dy), dy.dot(dy))) * (1.0 / 9.0);
+            let [dx, dy] =
+                [Vec2::X, Vec2::Y].map(|d| (point(b + d * h) - point(b - d * h)) / (2.0 * h));
+            let metric =
+                Mat2::from_cols(vec2(dx.dot(dx), dx.dot(dy)), vec2(dx.dot(dy), dy.dot(dy)))
+                    * (1.0 / 9.0);
             let root = stretch_from_near(n.truncate(), n.z, b, point(b).z / 3.0, 1.0);
-            assert!((root * root).abs_diff_eq(metric, 3e-3), "{b}: {:?} and {metric:?}", root * root);
+            assert!(
+                (root * root).abs_diff_eq(metric, 3e-3),
+                "{b}: {:?} and {metric:?}",
+                root * root
+            );
             let double = stretch_from_near(n.truncate(), n.z, b, point(b).z / 3.0, 2.0);
             assert!(double.abs_diff_eq(root * root, 1e-4));
         }
         for (x, y) in [(0.3f32, 0.4f32), (-0.7, 0.1), (0.0, 0.0)] {
             let (nbar, nz) = (vec2(x, y), (1.0 - x * x - y * y).sqrt());
             let near = stretch_from_near(nbar, nz, Vec2::ZERO, 1.0, 1.3);
-            assert!(near.abs_diff_eq(stretch(nbar, nz, 1.3), 1e-5), "straight ahead it is the parallel one");
+            assert!(
+                near.abs_diff_eq(stretch(nbar, nz, 1.3), 1e-5),
+                "straight ahead it is the parallel one"
+            );
         }
         let edge_on = stretch_from_near(vec2(1.0, 0.0), -0.3, vec2(0.2, 0.4), 1.0, 1.0);
-        assert!(edge_on.x_axis.is_finite() && edge_on.y_axis.is_finite() && edge_on.determinant() > 0.0);
+        assert!(
+            edge_on.x_axis.is_finite() && edge_on.y_axis.is_finite() && edge_on.determinant() > 0.0
+        );
     }
+
     #[test]
     fn edge_on_it_is_held_and_flat_it_is_the_identity() {
         let steep = stretch(vec2(1.0, 0.0), 0.001, 1.0);
@@ -136,6 +158,7 @@ mod tests {
         assert!((stretch(vec2(0.6, 0.0), 0.8, 2.0).x_axis.x - 1.0 / 0.64).abs() < 1e-5);
         assert!(stretch(vec2(0.6, 0.0), -0.8, 1.0).x_axis.x <= 5.0, "perspective maps lean away");
     }
+
     #[test]
     fn the_rotation_of_a_stretched_turn_is_the_turn() {
         let s = stretch(vec2(0.5, -0.3), (1.0f32 - 0.34).sqrt(), 1.0);
@@ -145,11 +168,14 @@ mod tests {
         }
         assert_eq!(turn(Mat2::ZERO, s), Mat2::IDENTITY);
     }
+
     #[test]
     fn hollows_hardly_pull_and_edges_do() {
-        let leaning = |degrees: f32| vec3(degrees.to_radians().sin(), 0.0, degrees.to_radians().cos());
+        let leaning =
+            |degrees: f32| vec3(degrees.to_radians().sin(), 0.0, degrees.to_radians().cos());
         // The right one leans left: a valley.
-        let valley = |degrees: f32| hollow(leaning(degrees / 2.0), leaning(-degrees / 2.0), Vec2::X);
+        let valley =
+            |degrees: f32| hollow(leaning(degrees / 2.0), leaning(-degrees / 2.0), Vec2::X);
         assert!((valley(15.0) - (-1.0f32).exp()).abs() < 1e-4, "{}", valley(15.0));
         assert!((valley(5.0) - (-1.0f32 / 9.0).exp()).abs() < 1e-4);
         assert_eq!(valley(90.0), 1e-3);

@@ -1,5 +1,5 @@
-//! A surface that is seen from near: how far away its points are against each other, for its metric (MATH 8).
-//! Floor 2. Not here: the equations (`metric`).
+//! A surface that is seen from near: how far away its points are against each other, for its metric
+//! (MATH 8). Floor 2. Not here: the equations (`metric`).
 
 use super::metric;
 use crate::math::{Mat2, Vec2, vec2};
@@ -29,23 +29,27 @@ impl NearView {
         let seen = Self { focal_px, before, at_zero: 1.0, per_depth: 0.0 };
         Some(seen.fitted(surface).unwrap_or(seen))
     }
-    /// With the distances that agree with the normals: where Z = R (ζ + z), R the range of the depth, ∇z =
-    /// (ζ + z) ∇Z/Z, and the normals give ∇Z/Z. Least squares over ζ. `None` where the depth says nothing.
+
+    /// With the distances that agree with the normals: where Z = R (ζ + z), R the range of the
+    /// depth, ∇z = (ζ + z) ∇Z/Z, and the normals give ∇Z/Z. Least squares over ζ. `None` where the
+    /// depth says nothing.
     fn fitted(self, surface: &Surface) -> Option<Self> {
         let (mut told, mut squared, mut sum, mut count) = (0.0f64, 0.0f64, 0.0f64, 0u64);
         let links = surface.links_plane();
         for y in 0..links.height() {
-            for x in
-                (0..links.width()).filter(|&x| links.at(x, y) == links::LEFT | links::RIGHT | links::UP | links::DOWN)
+            for x in (0..links.width())
+                .filter(|&x| links.at(x, y) == links::LEFT | links::RIGHT | links::UP | links::DOWN)
             {
-                let (nbar, nz, beside) = (surface.nbar(x, y), surface.normal(x, y).z, self.beside(x, y));
+                let (nbar, nz, beside) =
+                    (surface.nbar(x, y), surface.normal(x, y).z, self.beside(x, y));
                 let z = surface.depth(x, y);
                 (sum, count) = (sum + f64::from(z), count + 1);
                 let facing = metric::facing_from_near(nbar, nz, beside);
                 if facing < 2.0 * metric::STEEPEST_NZ {
                     continue;
                 }
-                let slope = nbar / (facing * (1.0 + beside.length_squared()).sqrt() * self.focal_px);
+                let slope =
+                    nbar / (facing * (1.0 + beside.length_squared()).sqrt() * self.focal_px);
                 let step = 0.5
                     * vec2(
                         surface.depth(x + 1, y) - surface.depth(x - 1, y),
@@ -55,24 +59,30 @@ impl NearView {
                 squared += f64::from(slope.length_squared());
             }
         }
-        let at_zero = Some(told / squared).filter(|at_zero| at_zero.is_finite() && *at_zero > NEAREST)?.min(FARTHEST);
+        let at_zero = Some(told / squared)
+            .filter(|at_zero| at_zero.is_finite() && *at_zero > NEAREST)?
+            .min(FARTHEST);
         let mean = at_zero + sum / count as f64;
         Some(Self { at_zero: (at_zero / mean) as f32, per_depth: (1.0 / mean) as f32, ..self })
     }
+
     /// b of a pixel's centre: focal lengths from the point before the eye.
     #[inline(always)]
     pub fn beside(&self, x: usize, y: usize) -> Vec2 {
         self.beside_at(vec2(x as f32 + 0.5, y as f32 + 0.5))
     }
+
     /// b of a point of the map, px.
     #[inline(always)]
     pub fn beside_at(&self, q: Vec2) -> Vec2 {
         (q - self.before) / self.focal_px
     }
+
     /// f, px of the map.
     pub fn focal_px(&self) -> f32 {
         self.focal_px
     }
+
     /// Z/Z̄ at a depth.
     #[inline(always)]
     pub fn farness(&self, depth: f32) -> f32 {
@@ -85,6 +95,7 @@ impl Surface {
     pub fn near_view(&self) -> Option<NearView> {
         *crate::memory::once(&self.derived.near_view, || NearView::of(self))
     }
+
     /// S(q) of MATH 8 at a pixel: how long steps of the picture are on the surface, seen as it is.
     ///
     /// * `amount`: a, `[0, 2]`.
@@ -92,9 +103,13 @@ impl Surface {
         let (nbar, nz) = (self.nbar(x, y), self.normal(x, y).z);
         match self.near_view() {
             None => metric::stretch(nbar, nz, amount),
-            Some(near) => {
-                metric::stretch_from_near(nbar, nz, near.beside(x, y), near.farness(self.depth(x, y)), amount)
-            }
+            Some(near) => metric::stretch_from_near(
+                nbar,
+                nz,
+                near.beside(x, y),
+                near.farness(self.depth(x, y)),
+                amount,
+            ),
         }
     }
 }

@@ -1,5 +1,6 @@
-//! The local and the global steps that unwrap a surface: S is turned as the last solution turned it, then solved again
-//! (MATH 8). Floor 2. Here they run over whole rows; `reference` in the tests reads like the equation.
+//! The local and the global steps that unwrap a surface: S is turned as the last solution turned
+//! it, then solved again (MATH 8). Floor 2. Here they run over whole rows; `reference` in the tests
+//! reads like the equation.
 
 use crate::math::Vec2;
 use crate::surface::springs::SpringGrid;
@@ -24,7 +25,12 @@ struct TurnedRow([Vec<f32>; 4]);
 /// t_ij is the column of R S − 1 along the link, averaged over its two ends.
 ///
 /// * `moved`: δ of the last step, whose rotation turns S; `None` at first: R = 1.
-pub(super) fn sources(grid: &SpringGrid, metric: &Metric, moved: Option<[&[f32]; 2]>, out: [&mut [f32]; 2]) {
+pub(super) fn sources(
+    grid: &SpringGrid,
+    metric: &Metric,
+    moved: Option<[&[f32]; 2]>,
+    out: [&mut [f32]; 2],
+) {
     let w = grid.width();
     let [out_x, out_y] = out;
     let bands = out_x.par_chunks_mut(w * BAND).zip(out_y.par_chunks_mut(w * BAND)).enumerate();
@@ -69,13 +75,21 @@ impl<'g> SpringRows<'g> {
     }
 }
 
-fn turned(grid: &SpringGrid, metric: &Metric, moved: Option<[&[f32]; 2]>, y: usize, out: &mut TurnedRow) {
+fn turned(
+    grid: &SpringGrid,
+    metric: &Metric,
+    moved: Option<[&[f32]; 2]>,
+    y: usize,
+    out: &mut TurnedRow,
+) {
     let w = grid.width();
     let at = y * w..(y + 1) * w;
     let s = [&metric.xx[at.clone()], &metric.xy[at.clone()], &metric.yy[at.clone()]];
     let [xx, xy, yx, yy] = &mut out.0;
     let Some(moved) = moved else {
-        [(xx, 0), (xy, 1), (yx, 1), (yy, 2)].into_iter().for_each(|(out, i)| out.copy_from_slice(s[i]));
+        [(xx, 0), (xy, 1), (yx, 1), (yy, 2)]
+            .into_iter()
+            .for_each(|(out, i)| out.copy_from_slice(s[i]));
         return;
     };
     let rows = moved.map(|v| {
@@ -98,7 +112,8 @@ fn turned_at([a, b, c]: [f32; 3], (dx, has_x): (Vec2, f32), (dy, has_y): (Vec2, 
     let cos = jxx * (1.0 + c) - jxy * b - jyx * b + jyy * (1.0 + a);
     let sin = jyx * (1.0 + c) - jyy * b + jxx * b - jxy * (1.0 + a);
     let squared = cos * cos + sin * sin;
-    let (cos, sin) = if squared > 0.0 { (cos / squared.sqrt(), sin / squared.sqrt()) } else { (1.0, 0.0) };
+    let (cos, sin) =
+        if squared > 0.0 { (cos / squared.sqrt(), sin / squared.sqrt()) } else { (1.0, 0.0) };
     [
         cos * (1.0 + a) - sin * b - 1.0,
         cos * b - sin * (1.0 + c),
@@ -136,6 +151,7 @@ crate::widest! {
             one(n - 1, n - 2, n - 1, right[n - 2]);
         }
     }
+
     /// Sets `out` to what the links along a row bring: those at the left, less those at the right.
     fn along_row(springs: SpringRows, t: &[f32], out: &mut [f32]) {
         let n = out.len();
@@ -151,6 +167,7 @@ crate::widest! {
             out[n - 1] = flow(n - 2);
         }
     }
+
     /// Adds what the links down the columns bring.
     fn down_row(springs: SpringRows, t: [&[f32]; 3], out: &mut [f32]) {
         let (n, [above, here, below]) = (out.len(), t);

@@ -4,7 +4,8 @@ use crate::surface::Maps;
 
 const WHOLE: UnwrapSettings = UnwrapSettings { amount: 1.0, smooth_px: 0.0 };
 
-/// A surface whose normal and depth follow from a height in px toward the viewer; `None` is no surface.
+/// A surface whose normal and depth follow from a height in px toward the viewer; `None` is no
+/// surface.
 pub fn of_height(size: Size, height: impl Fn(f32, f32) -> Option<f32> + Sync) -> Surface {
     let at = |x: usize, y: usize| height(x as f32 + 0.5, y as f32 + 0.5);
     let slope = |x: f32, y: f32, dx: f32, dy: f32| {
@@ -18,7 +19,8 @@ pub fn of_height(size: Size, height: impl Fn(f32, f32) -> Option<f32> + Sync) ->
         slopes.map_or(Vec3::ZERO, |(dx, dy)| vec3(-dx, dy, 1.0).normalize_or(Vec3::Z))
     });
     let far = (0..size.area()).filter_map(|i| at(i % size.width as usize, i / size.width as usize));
-    let (low, high) = far.fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), z| (a.min(z), b.max(z)));
+    let (low, high) =
+        far.fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), z| (a.min(z), b.max(z)));
     let range = (high - low).max(1e-3);
     let depth = Plane::from_fn(size, |x, y| at(x, y).map_or(f32::NAN, |z| (high - z) / range));
     let coverage = Plane::from_fn(size, |x, y| if at(x, y).is_some() { 255u8 } else { 0 });
@@ -64,6 +66,7 @@ fn a_tilted_plane_is_isometric() {
     let all = distortions(&surface, &Unwrapping::new(&surface, WHOLE));
     assert!(all[all.len() - 1] < 1.005, "{}", all[all.len() - 1]);
 }
+
 #[test]
 fn a_plane_seen_from_near_is_isometric_in_space() {
     let (size, n) = (Size::new(120, 90), vec3(0.5, -0.35, 0.8).normalize_or(Vec3::Z));
@@ -85,12 +88,22 @@ fn a_plane_seen_from_near_is_isometric_in_space() {
         d.at(a.0, a.1).distance(d.at(b.0, b.1)) / point(a.0, a.1).distance(point(b.0, b.1))
     };
     let one = ratio((20, 20), (100, 70));
-    for (a, b) in [((5, 5), (30, 10)), ((90, 10), (110, 80)), ((10, 80), (60, 45)), ((60, 45), (64, 41))] {
-        assert!((ratio(a, b) / one - 1.0).abs() < 0.01, "{a:?} to {b:?}: {} and {one}", ratio(a, b));
+    for (a, b) in
+        [((5, 5), (30, 10)), ((90, 10), (110, 80)), ((10, 80), (60, 45)), ((60, 45), (64, 41))]
+    {
+        assert!(
+            (ratio(a, b) / one - 1.0).abs() < 0.01,
+            "{a:?} to {b:?}: {} and {one}",
+            ratio(a, b)
+        );
     }
     let mean = all().map(|(x, y)| point(x, y).z).sum::<f32>() / 10_800.0;
-    assert!((one * mean / focal - 1.0).abs() < 0.03, "lengths at the mean depth are as they are seen");
+    assert!(
+        (one * mean / focal - 1.0).abs() < 0.03,
+        "lengths at the mean depth are as they are seen"
+    );
 }
+
 #[test]
 fn a_cylinder_unrolls_to_its_arc_length() {
     let radius = 60.0f32;
@@ -107,6 +120,7 @@ fn a_cylinder_unrolls_to_its_arc_length() {
     }
     assert!((d.at(70, 45).distance(d.at(70, 5)) - 40.0).abs() < 0.1, "along it nothing changes");
 }
+
 #[test]
 fn a_half_sphere_is_as_near_to_isometric_as_can_be() {
     let surface = sphere(Size::new(240, 240), 110.0, 0.1);
@@ -117,11 +131,14 @@ fn a_half_sphere_is_as_near_to_isometric_as_can_be() {
     let flat = Unwrapping::new(&surface, UnwrapSettings { amount: 0.0, ..WHOLE });
     assert!(distortions(&surface, &flat)[all.len() / 2] > 1.3);
 }
+
 #[test]
 fn amount_nothing_is_the_identity_and_more_stretches_more() {
     let surface = sphere(Size::new(80, 80), 35.0, 0.1);
     let flat = Unwrapping::new(&surface, UnwrapSettings { amount: 0.0, ..WHOLE });
-    assert!((0..80).all(|y| (0..80).all(|x| flat.at(x, y) == vec2(x as f32 + 0.5, y as f32 + 0.5))));
+    assert!(
+        (0..80).all(|y| (0..80).all(|x| flat.at(x, y) == vec2(x as f32 + 0.5, y as f32 + 0.5)))
+    );
     let width = |amount| {
         let d = Unwrapping::new(&surface, UnwrapSettings { amount, ..WHOLE });
         d.at(70, 40).x - d.at(10, 40).x
@@ -129,6 +146,7 @@ fn amount_nothing_is_the_identity_and_more_stretches_more() {
     let widths = [0.0, 0.5, 1.0, 2.0].map(width);
     assert!(widths.is_sorted() && widths[3] > widths[2] + 1.0, "{widths:?}");
 }
+
 #[test]
 fn maps_that_are_shifted_by_pixels_shift_their_deformation() {
     let hill = |x: f32, y: f32| 25.0 * (-((x - 40.0).powi(2) + (y - 30.0).powi(2)) / 400.0).exp();
@@ -143,6 +161,7 @@ fn maps_that_are_shifted_by_pixels_shift_their_deformation() {
         assert!(a.distance(b) < 0.02, "{a} and {b}");
     }
 }
+
 #[test]
 fn pieces_have_planes_of_their_own() {
     // A ball before a tilted plate: moving the ball moves its part of D and nothing else's.
@@ -162,6 +181,7 @@ fn pieces_have_planes_of_their_own() {
         assert!((plate(d) / truth - 1.0).abs() < 0.01, "the plate, {} of {truth}", plate(d));
     }
 }
+
 #[test]
 fn the_same_bytes_come_from_any_number_of_threads() {
     let surface = sphere(Size::new(150, 130), 60.0, 0.05);
@@ -172,6 +192,7 @@ fn the_same_bytes_come_from_any_number_of_threads() {
     };
     assert!(solved(1) == solved(2));
 }
+
 #[test]
 fn what_is_given_up_ends_at_once_and_what_is_told_of_is_all_of_it() {
     let surface = sphere(Size::new(80, 80), 35.0, 0.1);
@@ -187,21 +208,26 @@ fn what_is_given_up_ends_at_once_and_what_is_told_of_is_all_of_it() {
     assert_eq!(told.get(), SOLVES as i32 - 100);
     assert!(surface.unwrapped_telling(WHOLE, &|| false).is_some(), "it is there");
 }
+
 #[test]
 fn normals_of_eight_bits_and_no_depth_unwrap_a_sphere_as_well() {
     let (size, whole) = (Size::new(160, 160), sphere(Size::new(160, 160), 70.0, 0.2));
     let coarse = |v: f32| ((v * 0.5 + 0.5) * 255.0).round() / 255.0 * 2.0 - 1.0;
-    let normal = |x: usize, y: usize| vec3(whole.nbar(x, y).x, -whole.nbar(x, y).y, whole.normal(x, y).z);
+    let normal =
+        |x: usize, y: usize| vec3(whole.nbar(x, y).x, -whole.nbar(x, y).y, whole.normal(x, y).z);
     let normals = Plane::from_fn(size, |x, y| normal(x, y).to_array().map(coarse).into());
     let normals = Plane::from_fn(size, |x, y| Vec3::normalize_or(normals.at(x, y), Vec3::Z));
     let inside = Plane::from_fn(size, |x, y| whole.coverage(x, y) > 0);
     let depth = crate::surface::integrate::depth_from_normals(&normals, &inside).unwrap().depth;
-    let surface = Surface::new(Maps { normals, depth, coverage: whole.coverage_plane().clone() }).unwrap();
+    let surface =
+        Surface::new(Maps { normals, depth, coverage: whole.coverage_plane().clone() }).unwrap();
     let [a, b] = [&whole, &surface].map(|surface| Unwrapping::new(surface, WHOLE));
-    let covered = (0..size.area()).map(|i| (i % 160, i / 160)).filter(|&(x, y)| whole.coverage(x, y) > 0);
+    let covered =
+        (0..size.area()).map(|i| (i % 160, i / 160)).filter(|&(x, y)| whole.coverage(x, y) > 0);
     let far = covered.map(|(x, y)| a.at(x, y).distance(b.at(x, y))).fold(0.0, f32::max);
     assert!(far < 1.0, "{far} px from that of exact normals");
 }
+
 #[test]
 fn a_thousand_holes_and_crumbs_leave_it_finite_and_whole() {
     let size = Size::new(200, 160);
@@ -221,6 +247,7 @@ fn a_thousand_holes_and_crumbs_leave_it_finite_and_whole() {
     }
     assert!(farthest < 12.0, "{farthest} px from the whole sphere's");
 }
+
 #[test]
 fn smoothing_takes_fine_relief_out_of_the_metric() {
     let size = Size::new(200, 100);
@@ -234,15 +261,17 @@ fn smoothing_takes_fine_relief_out_of_the_metric() {
     };
     assert!(off(8.0) < 0.02 && off(0.0) > 0.05, "{} and {}", off(8.0), off(0.0));
 }
+
 #[test]
 fn rows_do_as_the_equations_say() {
     let surface = sphere(Size::new(70, 60), 28.0, 0.1);
     let rect = covered(&surface);
     let normals = smooth::normals(&surface, rect, 0.0);
-    let (metric, grid) = (Metric::of(&surface, rect, &normals, 1.0), springs(&surface, rect, &normals));
+    let (metric, grid) =
+        (Metric::of(&surface, rect, &normals, 1.0), springs(&surface, rect, &normals));
     let (w, h) = (rect.width(), rect.height());
-    let moved: [Vec<f32>; 2] =
-        [0, 1].map(|k| (0..w * h).map(|i| (i % w) as f32 * 0.3 * hash::unit(3, i as u32, k)).collect());
+    let moved: [Vec<f32>; 2] = [0, 1]
+        .map(|k| (0..w * h).map(|i| (i % w) as f32 * 0.3 * hash::unit(3, i as u32, k)).collect());
     let (mut bx, mut by) = (vec![0.0; w * h], vec![0.0; w * h]);
     steps::sources(&grid, &metric, Some(moved.each_ref().map(|v| &v[..])), [&mut bx, &mut by]);
     let [right, down] = grid.springs();
@@ -255,20 +284,34 @@ fn rows_do_as_the_equations_say() {
             there.iter().sum::<Vec2>() / there.len().max(1) as f32
         };
         let along = |spring: f32, a: usize, b: usize| (spring > 0.0).then(|| d(b) - d(a));
-        let dx = mean([if x > 0 { along(right[i - 1], i - 1, i) } else { None }, along(right[i], i, i + 1)]);
-        let dy = mean([if y > 0 { along(down[i - w], i - w, i) } else { None }, along(down[i], i, i + w)]);
+        let dx = mean([
+            if x > 0 { along(right[i - 1], i - 1, i) } else { None },
+            along(right[i], i, i + 1),
+        ]);
+        let dy = mean([
+            if y > 0 { along(down[i - w], i - w, i) } else { None },
+            along(down[i], i, i + w),
+        ]);
         let (px, py) = (x + rect.x0 as usize, y + rect.y0 as usize);
         let s = metric::stretch(surface.nbar(px, py), surface.normal(px, py).z, 1.0);
         metric::turn(Mat2::from_cols(dx, dy), s) * s - Mat2::IDENTITY
     };
     for (x, y) in (1..h - 1).flat_map(|y| (1..w - 1).map(move |x| (x, y))) {
         let i = y * w + x;
-        let across = |a: (usize, usize), b: (usize, usize)| 0.5 * (turned(a.0, a.1).x_axis + turned(b.0, b.1).x_axis);
-        let upright = |a: (usize, usize), b: (usize, usize)| 0.5 * (turned(a.0, a.1).y_axis + turned(b.0, b.1).y_axis);
-        let told = right[i - 1] * across((x - 1, y), (x, y)) - right[i] * across((x, y), (x + 1, y))
+        let across = |a: (usize, usize), b: (usize, usize)| {
+            0.5 * (turned(a.0, a.1).x_axis + turned(b.0, b.1).x_axis)
+        };
+        let upright = |a: (usize, usize), b: (usize, usize)| {
+            0.5 * (turned(a.0, a.1).y_axis + turned(b.0, b.1).y_axis)
+        };
+        let told = right[i - 1] * across((x - 1, y), (x, y))
+            - right[i] * across((x, y), (x + 1, y))
             + down[i - w] * upright((x, y - 1), (x, y))
             - down[i] * upright((x, y), (x, y + 1));
         let found = vec2(bx[i], by[i]);
-        assert!(told.distance(found) < 2e-3 * (1.0 + told.length()), "({x}, {y}): {told} and {found}");
+        assert!(
+            told.distance(found) < 2e-3 * (1.0 + told.length()),
+            "({x}, {y}): {told} and {found}"
+        );
     }
 }

@@ -1,5 +1,6 @@
-//! How the plane of a piece yields where several anchors hold it: soft constraints of the equation that unwrapped it
-//! (MATH 8). Floor 2. Not here: its rigid part (`deformation::plane`), the solver (`springs`).
+//! How the plane of a piece yields where several anchors hold it: soft constraints of the equation
+//! that unwrapped it (MATH 8). Floor 2. Not here: its rigid part (`deformation::plane`), the solver
+//! (`springs`).
 
 use super::{UnwrapSettings, covered, place::nearest_covered, smooth, springs};
 use crate::math::{Rect, Vec2};
@@ -42,8 +43,8 @@ pub struct PlaneSprings {
     solver: SpringSolver,
 }
 
-/// An anchor holds a disc of this share of the canvas's longer side, of at least [`LEAST_DISC_PX`], but never more than
-/// half of the way to the next one.
+/// An anchor holds a disc of this share of the canvas's longer side, of at least [`LEAST_DISC_PX`],
+/// but never more than half of the way to the next one.
 const DISC: f32 = 1.0 / 64.0;
 const LEAST_DISC_PX: f32 = 3.0;
 /// κ of MATH 8: how stiffly the middle of a disc is held, against the springs of the surface.
@@ -56,9 +57,11 @@ impl PlaneYield {
     pub fn at(&self, x: usize, y: usize) -> Vec2 {
         Vec2::new(self.planes[0].at(x, y), self.planes[1].at(x, y))
     }
+
     pub fn planes(&self) -> [&Plane<f32>; 2] {
         self.planes.each_ref()
     }
+
     fn solved(surface: &Surface, springs: &PlaneSprings, holds: &[PlaneHold]) -> Self {
         let (size, PlaneSprings { rect, solver }) = (surface.size(), springs);
         let (w, n) = (rect.width(), rect.width() * rect.height());
@@ -100,7 +103,9 @@ fn discs(surface: &Surface, rect: Rect, holds: &[PlaneHold]) -> Vec<HeldDisc> {
     let mut middles: Vec<((usize, usize), f32, Vec2)> = holds
         .iter()
         .zip(distances(holds))
-        .map(|(hold, nearest)| (nearest_covered(surface, hold.at), widest.min(0.5 * nearest).max(1.0), hold.lacks))
+        .map(|(hold, nearest)| {
+            (nearest_covered(surface, hold.at), widest.min(0.5 * nearest).max(1.0), hold.lacks)
+        })
         .collect();
     middles.sort_by_key(|middle| (middle.0.1, middle.0.0));
     let of_pixel = |middles: &[((usize, usize), f32, Vec2)]| {
@@ -109,16 +114,21 @@ fn discs(surface: &Surface, rect: Rect, holds: &[PlaneHold]) -> Vec<HeldDisc> {
         let lacks = middles.iter().map(|middle| middle.2).sum::<Vec2>() / count;
         HeldDisc { pixels: disc(surface, rect, middles[0].0, radius), lacks, count }
     };
-    middles.chunk_by(|a, b| a.0 == b.0).map(of_pixel).filter(|disc| !disc.pixels.is_empty()).collect()
+    middles
+        .chunk_by(|a, b| a.0 == b.0)
+        .map(of_pixel)
+        .filter(|disc| !disc.pixels.is_empty())
+        .collect()
 }
 
-/// The pixels around one, from pixel to pixel along links: not what lies behind a jump. What no spring joins to another
-/// has nothing that could follow it.
+/// The pixels around one, from pixel to pixel along links: not what lies behind a jump. What no
+/// spring joins to another has nothing that could follow it.
 fn disc(surface: &Surface, rect: Rect, middle: (usize, usize), radius: f32) -> Vec<(u32, f32)> {
     let (mut seen, mut next, mut pixels) = (vec![middle], 0, Vec::new());
     while let Some(&(x, y)) = seen.get(next) {
         next += 1;
-        let far = Vec2::new(x as f32 - middle.0 as f32, y as f32 - middle.1 as f32).length_squared();
+        let far =
+            Vec2::new(x as f32 - middle.0 as f32, y as f32 - middle.1 as f32).length_squared();
         let (inside, linked) = (1.0 - far / (radius * radius), surface.links_plane().at(x, y));
         if inside <= 0.0 || linked == 0 || !rect.contains(x as i32, y as i32) {
             continue;
@@ -144,7 +154,10 @@ fn disc(surface: &Surface, rect: Rect, middle: (usize, usize), radius: f32) -> V
 fn pulled_pixels(discs: &[HeldDisc]) -> Vec<(u32, f32, Vec2)> {
     let of_disc = |disc: &HeldDisc| {
         let (lacks, hold) = (disc.lacks, HOLD * disc.count);
-        disc.pixels.iter().map(move |&(i, share)| (i, hold * share, lacks * (hold * share))).collect::<Vec<_>>()
+        disc.pixels
+            .iter()
+            .map(move |&(i, share)| (i, hold * share, lacks * (hold * share)))
+            .collect::<Vec<_>>()
     };
     let mut held: Vec<(u32, f32, Vec2)> = discs.iter().flat_map(of_disc).collect();
     held.sort_by_key(|held| held.0);
@@ -158,7 +171,8 @@ fn pulled_pixels(discs: &[HeldDisc]) -> Vec<(u32, f32, Vec2)> {
     held
 }
 
-/// Brings the middles of discs the last bit to where they should be; discs do not reach each other's.
+/// Brings the middles of discs the last bit to where they should be; discs do not reach each
+/// other's.
 fn meet(discs: &[HeldDisc], axis: usize, moved: &mut [f32]) {
     for disc in discs {
         let lacks = disc.lacks[axis] - moved[disc.pixels[0].0 as usize];
@@ -195,25 +209,34 @@ fn distances(holds: &[PlaneHold]) -> Vec<f32> {
 pub(in crate::surface) type YieldKey = Vec<u32>;
 
 impl Surface {
-    /// How its unwrapped planes yield to anchors, cached; for a sheet that of its surface, continued.
+    /// How its unwrapped planes yield to anchors, cached; for a sheet that of its surface,
+    /// continued.
     ///
     /// * `holds`: at least two of every piece that has any, finite.
     pub fn plane_yield(&self, settings: UnwrapSettings, holds: &[PlaneHold]) -> Arc<PlaneYield> {
         let settings = settings.held(self.size());
-        let bits = |hold: &PlaneHold| [hold.at.x, hold.at.y, hold.lacks.x, hold.lacks.y].map(f32::to_bits);
+        let bits =
+            |hold: &PlaneHold| [hold.at.x, hold.at.y, hold.lacks.x, hold.lacks.y].map(f32::to_bits);
         let key: YieldKey = settings.key().into_iter().chain(holds.iter().flat_map(bits)).collect();
         let keep = self.kept_unwrappings().min(4);
         self.derived.plane_yields.get_or_compute(key, keep, |_| match self.sheet_of() {
             Some(sheet) => {
                 let whole = sheet.surface().map(|surface| surface.plane_yield(settings, holds));
                 let planes = [0, 1].map(|axis| {
-                    sheet.continued(self.size(), |x, y| whole.as_ref().map_or(0.0, |whole| whole.planes[axis].at(x, y)))
+                    sheet.continued(self.size(), |x, y| {
+                        whole.as_ref().map_or(0.0, |whole| whole.planes[axis].at(x, y))
+                    })
                 });
                 PlaneYield { planes }
             }
-            None => PlaneYield::solved(self, &self.plane_springs(settings, self.pulled_rect(holds)), holds),
+            None => PlaneYield::solved(
+                self,
+                &self.plane_springs(settings, self.pulled_rect(holds)),
+                holds,
+            ),
         })
     }
+
     /// Around all that holds can move. Parts may be linked beyond what shows each of them.
     fn pulled_rect(&self, holds: &[PlaneHold]) -> Rect {
         if self.parts_plane().is_some() {
@@ -226,6 +249,7 @@ impl Surface {
         };
         holds.iter().filter_map(object).fold(Rect::EMPTY, Rect::union)
     }
+
     /// The springs of the unwrapping over a rectangle that holds all that is read from it, cached.
     fn plane_springs(&self, settings: UnwrapSettings, rect: Rect) -> Arc<PlaneSprings> {
         self.derived.plane_springs.get_or_compute((settings.key(), rect), 1, |_| {
@@ -253,20 +277,34 @@ mod tests {
         assert!(yields.at(20, 50).length() < 1e-4, "{}", yields.at(20, 50));
         let between = yields.at(80, 50);
         assert!(between.distance(0.5 * pulled.lacks) < 0.35, "half way lies half of it: {between}");
-        let moved = (0..100).flat_map(|y| (0..160).map(move |x| (x, y))).map(|(x, y)| yields.at(x, y).x);
+        let moved =
+            (0..100).flat_map(|y| (0..160).map(move |x| (x, y))).map(|(x, y)| yields.at(x, y).x);
         let (least, most) = moved.fold((f32::INFINITY, 0.0f32), |(a, b), v| (a.min(v), b.max(v)));
-        assert!(least > -0.02 && most < 6.02, "nothing goes beyond either of them: {least} to {most}");
+        assert!(
+            least > -0.02 && most < 6.02,
+            "nothing goes beyond either of them: {least} to {most}"
+        );
     }
+
     #[test]
     fn what_no_anchor_holds_stays_and_what_lies_behind_a_jump_is_not_held() {
         let ball = |x: f32, y: f32| 20.0f32.powi(2) - (x - 60.0).powi(2) - (y - 50.0).powi(2);
         let size = Size::new(160, 100);
-        let surface = of_height(size, |x, y| Some(if ball(x, y) > 4.0 { 300.0 + ball(x, y).sqrt() } else { 0.5 * x }));
+        let surface = of_height(size, |x, y| {
+            Some(if ball(x, y) > 4.0 { 300.0 + ball(x, y).sqrt() } else { 0.5 * x })
+        });
         let at = |x: f32, lacks: Vec2| PlaneHold { at: vec2(x, 50.5), lacks };
-        let yields = surface.plane_yield(SETTINGS, &[at(50.5, vec2(-2.0, 0.0)), at(75.5, vec2(2.0, 0.0))]);
-        assert!((yields.at(75, 50).x - 2.0).abs() < 1e-4 && (yields.at(50, 50).x + 2.0).abs() < 1e-4);
-        assert!((0..100).all(|y| yields.at(120, y) == Vec2::ZERO && yields.at(82, y) == Vec2::ZERO), "the plate");
+        let yields =
+            surface.plane_yield(SETTINGS, &[at(50.5, vec2(-2.0, 0.0)), at(75.5, vec2(2.0, 0.0))]);
+        assert!(
+            (yields.at(75, 50).x - 2.0).abs() < 1e-4 && (yields.at(50, 50).x + 2.0).abs() < 1e-4
+        );
+        assert!(
+            (0..100).all(|y| yields.at(120, y) == Vec2::ZERO && yields.at(82, y) == Vec2::ZERO),
+            "the plate"
+        );
     }
+
     #[test]
     fn anchors_at_one_place_that_disagree_share_it() {
         let surface = of_height(Size::new(64, 64), |x, _| Some(0.2 * x));
@@ -277,15 +315,21 @@ mod tests {
         let plain = PlaneHold { at: vec2(-500.0, 1e6), lacks: Vec2::ONE };
         assert!(surface.plane_yield(SETTINGS, &[plain, plain]).at(0, 63).is_finite());
     }
+
     #[test]
     fn the_same_bytes_come_from_any_number_of_threads() {
         let yields = |threads| {
-            let surface = of_height(Size::new(150, 90), |x, y| Some(8.0 * (0.1 * x).sin() * (0.13 * y).cos()));
+            let surface = of_height(Size::new(150, 90), |x, y| {
+                Some(8.0 * (0.1 * x).sin() * (0.13 * y).cos())
+            });
             let at = |x: f32, lacks: Vec2| PlaneHold { at: vec2(x, 40.5), lacks };
-            let holds = [at(20.5, vec2(3.0, 1.0)), at(90.5, vec2(-1.0, 0.0)), at(130.5, vec2(0.0, 2.0))];
+            let holds =
+                [at(20.5, vec2(3.0, 1.0)), at(90.5, vec2(-1.0, 0.0)), at(130.5, vec2(0.0, 2.0))];
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             let yields = pool.install(|| surface.plane_yield(SETTINGS, &holds));
-            yields.planes().map(|plane| plane.values().iter().map(|v| v.to_bits()).collect::<Vec<u32>>())
+            yields
+                .planes()
+                .map(|plane| plane.values().iter().map(|v| v.to_bits()).collect::<Vec<u32>>())
         };
         assert!(yields(1) == yields(2));
     }

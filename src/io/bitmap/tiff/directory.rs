@@ -1,5 +1,5 @@
-//! The first directory of a TIFF or BigTIFF: where its entries are, and the file with a replaced directory. Floor 5.
-//! Not here: what entries mean (`tiff`); the `tiff` crate reads their values.
+//! The first directory of a TIFF or BigTIFF: where its entries are, and the file with a replaced
+//! directory. Floor 5. Not here: what entries mean (`tiff`); the `tiff` crate reads their values.
 
 /// A directory and how its file writes numbers.
 pub struct Directory {
@@ -25,23 +25,30 @@ impl Directory {
         let it = Self { is_big, ..empty };
         let address = it.number(bytes, it.address_at(), it.address_bytes())?;
         let first = usize::try_from(address).ok()?;
-        let count = usize::try_from(it.number(bytes, first, it.count_bytes())?).ok()?.min(MOST_ENTRIES);
+        let count =
+            usize::try_from(it.number(bytes, first, it.count_bytes())?).ok()?.min(MOST_ENTRIES);
         let start = first.checked_add(it.count_bytes())?;
-        let entries: Vec<usize> = (0..count).map(|i| start.saturating_add(i * it.entry_bytes())).collect();
-        let is_there = |at: &usize| at.checked_add(it.entry_bytes()).is_some_and(|end| end <= bytes.len());
+        let entries: Vec<usize> =
+            (0..count).map(|i| start.saturating_add(i * it.entry_bytes())).collect();
+        let is_there =
+            |at: &usize| at.checked_add(it.entry_bytes()).is_some_and(|end| end <= bytes.len());
         Some(Self { entries: entries.into_iter().take_while(is_there).collect(), ..it })
     }
+
     /// Where the value of a tag is.
     pub fn place(&self, bytes: &[u8], tag: u16) -> Option<usize> {
-        let found = self.entries.iter().find(|at| self.number(bytes, **at, 2) == Some(tag.into()))?;
+        let found =
+            self.entries.iter().find(|at| self.number(bytes, **at, 2) == Some(tag.into()))?;
         Some(found + self.entry_bytes() - self.address_bytes())
     }
+
     /// A number of the file.
     pub fn number(&self, bytes: &[u8], at: usize, length: usize) -> Option<u64> {
         let digits = bytes.get(at..at.checked_add(length)?)?.iter();
         let push = |sum: u64, digit: &u8| sum << 8 | u64::from(*digit);
         Some(if self.is_little { digits.rev().fold(0, push) } else { digits.fold(0, push) })
     }
+
     pub fn digits(&self, value: u64, length: usize) -> Vec<u8> {
         let mut digits = value.to_le_bytes()[..length].to_vec();
         if !self.is_little {
@@ -49,6 +56,7 @@ impl Directory {
         }
         digits
     }
+
     /// The file with some pieces in place of its own.
     ///
     /// * `tags`: those of the pieces' starts and lengths.
@@ -95,9 +103,12 @@ impl Directory {
         }
         out
     }
-    /// Addresses as the value of an entry: a single one itself, several by the place where they were written.
+
+    /// Addresses as the value of an entry: a single one itself, several by the place where they
+    /// were written.
     fn list(&self, out: &mut Vec<u8>, values: &[u64]) -> Vec<u8> {
-        let all: Vec<u8> = values.iter().flat_map(|v| self.digits(*v, self.address_bytes())).collect();
+        let all: Vec<u8> =
+            values.iter().flat_map(|v| self.digits(*v, self.address_bytes())).collect();
         if values.len() == 1 {
             return all;
         }
@@ -105,20 +116,25 @@ impl Directory {
         out.extend(all);
         self.digits(at, self.address_bytes())
     }
+
     fn entry(&self, tag: u16, kind: u16, count: usize, mut value: Vec<u8>) -> Vec<u8> {
         value.resize(self.address_bytes(), 0);
         let head = [self.digits(tag.into(), 2), self.digits(kind.into(), 2)].concat();
         [head, self.digits(count as u64, self.address_bytes()), value].concat()
     }
+
     fn address_at(&self) -> usize {
         self.address_bytes()
     }
+
     fn address_bytes(&self) -> usize {
         if self.is_big { 8 } else { 4 }
     }
+
     fn count_bytes(&self) -> usize {
         if self.is_big { 8 } else { 2 }
     }
+
     fn entry_bytes(&self) -> usize {
         if self.is_big { 20 } else { 12 }
     }

@@ -40,13 +40,16 @@ impl TiffSample for u8 {
     fn inverted(self) -> Self {
         255 - self
     }
+
     fn divided(self, alpha: Self) -> Self {
         let (c, a) = (u32::from(self), u32::from(alpha));
         if a == 0 { 0 } else { ((c * 255 + a / 2) / a).min(255) as u8 }
     }
+
     fn times(self, other: Self) -> Self {
         ((u32::from(self) * u32::from(other) + 127) / 255) as u8
     }
+
     fn index(self) -> usize {
         self.into()
     }
@@ -66,13 +69,16 @@ impl TiffSample for u16 {
     fn inverted(self) -> Self {
         65535 - self
     }
+
     fn divided(self, alpha: Self) -> Self {
         let (c, a) = (u64::from(self), u64::from(alpha));
         if a == 0 { 0 } else { ((c * 65535 + a / 2) / a).min(65535) as u16 }
     }
+
     fn times(self, other: Self) -> Self {
         ((u64::from(self) * u64::from(other) + 32767) / 65535) as u16
     }
+
     fn index(self) -> usize {
         self.into()
     }
@@ -83,21 +89,29 @@ impl TiffSample for f32 {
     fn inverted(self) -> Self {
         1.0 - self
     }
+
     fn divided(self, alpha: Self) -> Self {
         if alpha > 0.0 { self / alpha } else { 0.0 }
     }
+
     fn times(self, other: Self) -> Self {
         self * other
     }
+
     fn index(self) -> usize {
         self.max(0.0) as usize
     }
+
     /// There is no grey of floats: it becomes RGB.
     fn image(size: Size, channels: usize, values: Vec<Self>) -> Option<DynamicImage> {
         let (w, h) = (size.width, size.height);
         let rgb = |grey: &[f32]| [&[grey[0]; 3], &grey[1..]].concat();
         match channels {
-            1 | 2 => Self::image(size, channels + 2, values.chunks_exact(channels).flat_map(rgb).collect()),
+            1 | 2 => Self::image(
+                size,
+                channels + 2,
+                values.chunks_exact(channels).flat_map(rgb).collect(),
+            ),
             3 => ImageBuffer::from_raw(w, h, values).map(DynamicImage::ImageRgb32F),
             _ => ImageBuffer::from_raw(w, h, values).map(DynamicImage::ImageRgba32F),
         }

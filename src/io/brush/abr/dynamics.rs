@@ -1,8 +1,9 @@
-//! What drives a Photoshop brush: shape dynamics, scattering, texture, colour dynamics and transfer. Floor 5. Each has
-//! a switch in the description of the brush. Not here: its tip (`presets`).
+//! What drives a Photoshop brush: shape dynamics, scattering, texture, colour dynamics and
+//! transfer. Floor 5. Each has a switch in the description of the brush. Not here: its tip
+//! (`presets`).
 //!
-//! A control says which input a property follows and how far it falls (“minimum”); a jitter reduces the property at
-//! random, dab by dab.
+//! A control says which input a property follows and how far it falls (“minimum”); a jitter reduces
+//! the property at random, dab by dab.
 
 use crate::brush::TipNames;
 use crate::math::{srgb, vec2};
@@ -15,8 +16,12 @@ use crate::raster::Picture;
 use std::path::Path;
 
 /// Reported when switched on: they have no counterpart here.
-const LEFT_OUT: [(&str, &str); 4] =
-    [("Wtdg", "wet edges"), ("Nose", "noise"), ("useDualBrush", "dual brush"), ("useBrushPose", "brush pose")];
+const LEFT_OUT: [(&str, &str); 4] = [
+    ("Wtdg", "wet edges"),
+    ("Nose", "noise"),
+    ("useDualBrush", "dual brush"),
+    ("useBrushPose", "brush pose"),
+];
 /// Points of a curve that is not straight.
 const POINTS: usize = 9;
 /// Texture blends where white keeps the stroke and black takes it away; others are reported.
@@ -51,9 +56,15 @@ pub struct AbrConversion<'a> {
     pub notes: Vec<String>,
 }
 
-/// A brush with all dynamics of a description. Nothing follows the pressure unless the description says so.
-pub fn carried<'a>(preset: &'a DescriptorObject, brush: Brush, notes: Vec<String>) -> AbrConversion<'a> {
-    let mut carried = AbrConversion { preset, brush: Brush { dynamics: Dynamics::none(), ..brush }, notes };
+/// A brush with all dynamics of a description. Nothing follows the pressure unless the description
+/// says so.
+pub fn carried<'a>(
+    preset: &'a DescriptorObject,
+    brush: Brush,
+    notes: Vec<String>,
+) -> AbrConversion<'a> {
+    let mut carried =
+        AbrConversion { preset, brush: Brush { dynamics: Dynamics::none(), ..brush }, notes };
     if preset.flag("useTipDynamics") {
         carried.shape();
     }
@@ -69,7 +80,8 @@ pub fn carried<'a>(preset: &'a DescriptorObject, brush: Brush, notes: Vec<String
     }
     let nested = preset.object("dualBrush").is_some_and(|dual| dual.flag("useDualBrush"));
     let is_on = |key: &str| preset.flag(key) || (key == "useDualBrush" && nested);
-    let left_out: Vec<&str> = LEFT_OUT.iter().filter(|(key, _)| is_on(key)).map(|(_, word)| *word).collect();
+    let left_out: Vec<&str> =
+        LEFT_OUT.iter().filter(|(key, _)| is_on(key)).map(|(_, word)| *word).collect();
     if !left_out.is_empty() {
         carried.notes.push(format!("{} not taken from Photoshop", left_out.join(", ")));
     }
@@ -88,11 +100,13 @@ impl AbrConversion<'_> {
         let own = self.preset.number(name).filter(|v| *v != 0.0);
         own.or(part.and_then(|part| part.number(in_part))).unwrap_or(0.0)
     }
+
     fn drive(&mut self, property: Property, input: Input, curve: Option<Curve>) {
         if let Some(curve) = curve {
             self.brush.dynamics = self.brush.dynamics.with(property, input, curve);
         }
     }
+
     /// The input of a control; one without a counterpart is reported once.
     fn input(&mut self, part: &DescriptorObject) -> Option<Input> {
         match Control::of(part) {
@@ -107,6 +121,7 @@ impl AbrConversion<'_> {
             }
         }
     }
+
     /// A factor that follows its control from the minimum up, and is taken from at random.
     fn follow(&mut self, property: Property, part: &str, minimum: &str) {
         let Some(object) = self.preset.object(part) else { return };
@@ -119,18 +134,25 @@ impl AbrConversion<'_> {
             self.drive(property, Input::Random, Some(Curve::Share(jitter)));
         }
     }
+
     /// Size, angle and roundness.
     fn shape(&mut self) {
         self.follow(Property::Size, "szVr", "minimumDiameter");
         if let Some(angle) = self.preset.object("angleDynamics") {
             // The direction of the pen's tilt turns the tip.
-            let input = self.input(angle).map(|input| if input == Input::Tilt { Input::TiltDirection } else { input });
+            let input = self
+                .input(angle)
+                .map(|input| if input == Input::Tilt { Input::TiltDirection } else { input });
             if let Some(input) = input {
                 self.drive(Property::Rotation, input, Some(Curve::Share(1.0)));
             }
             let half = 0.5 * share(angle.number("jitter").unwrap_or(0.0));
             if half > 0.0 {
-                self.drive(Property::Rotation, Input::Random, Curve::added(vec![vec2(0.0, -half), vec2(1.0, half)]));
+                self.drive(
+                    Property::Rotation,
+                    Input::Random,
+                    Curve::added(vec![vec2(0.0, -half), vec2(1.0, half)]),
+                );
             }
         }
         if let Some(roundness) = self.preset.object("roundnessDynamics") {
@@ -140,6 +162,7 @@ impl AbrConversion<'_> {
             self.notes.push("its dabs are not mirrored at random".to_owned());
         }
     }
+
     /// A tip that gets flatter: its elongation is one over its roundness, which no line is.
     fn round(&mut self, part: &DescriptorObject) {
         let least = share(self.percent("minimumRoundness", Some(part), "Mnm ")).max(0.05);
@@ -161,6 +184,7 @@ impl AbrConversion<'_> {
             self.drive(Property::Elongation, input, Curve::added((0..POINTS).map(at).collect()));
         }
     }
+
     fn scatter(&mut self) {
         let dynamics = self.preset.object("scatterDynamics");
         let percent = self.preset.number("Scat").filter(|v| *v > 0.0);
@@ -181,6 +205,7 @@ impl AbrConversion<'_> {
             self.notes.push("as many dabs are placed at each point".to_owned());
         }
     }
+
     fn color(&mut self) {
         let percent = |name: &str| share(self.preset.number(name).unwrap_or(0.0));
         let jitter = ColorJitter {
@@ -190,13 +215,15 @@ impl AbrConversion<'_> {
         };
         let is_other = self.preset.number("purity").is_some_and(|v| v != 0.0)
             || self.preset.object("clVr").is_some_and(|part| {
-                part.number("jitter").unwrap_or(0.0) > 0.0 || part.number("bVTy").unwrap_or(0.0) > 0.0
+                part.number("jitter").unwrap_or(0.0) > 0.0
+                    || part.number("bVTy").unwrap_or(0.0) > 0.0
             });
         self.brush.jitter = jitter;
         if is_other {
             self.notes.push("it keeps to the colour in front, as pure as it is".to_owned());
         }
     }
+
     /// The texture that it takes paint away by; its pattern is in the collection.
     pub fn textured(&mut self, file: &Path, patterns: &[PatternResource], tips: &mut TipNames) {
         if !self.preset.flag("useTexture") {
@@ -206,7 +233,9 @@ impl AbrConversion<'_> {
         let pattern = id.and_then(|id| patterns.iter().find(|pattern| pattern.id() == id));
         let inverted = self.preset.flag("InvT");
         let Some(picture) = pattern.and_then(|pattern| grain_picture(pattern, inverted)) else {
-            return self.notes.push("the pattern of its texture is not in the collection".to_owned());
+            return self
+                .notes
+                .push("the pattern of its texture is not in the collection".to_owned());
         };
         let scale = self.preset.number("textureScale").map_or(1.0, |v| v / 100.0);
         let size_px = picture.size.longer_side() * scale;
@@ -220,11 +249,17 @@ impl AbrConversion<'_> {
         });
         let is_set = |name: &str| self.preset.number(name).is_some_and(|v| v != 0.0);
         let blend = self.preset.word("textureBlendMode");
-        if is_set("textureBrightness") || is_set("textureContrast") || blend.is_some_and(|b| !TAKEN_BLENDS.contains(&b))
+        if is_set("textureBrightness")
+            || is_set("textureContrast")
+            || blend.is_some_and(|b| !TAKEN_BLENDS.contains(&b))
         {
             self.notes.push("its texture takes paint away as it is, in proportion".to_owned());
         }
-        if self.preset.object("textureDepthDynamics").is_some_and(|part| !matches!(Control::of(part), Control::Off)) {
+        if self
+            .preset
+            .object("textureDepthDynamics")
+            .is_some_and(|part| !matches!(Control::of(part), Control::Off))
+        {
             self.notes.push("the depth of its texture stays the same".to_owned());
         }
     }
@@ -234,7 +269,9 @@ impl AbrConversion<'_> {
 fn grain_picture(pattern: &PatternResource, inverted: bool) -> Option<Picture> {
     let (size, rgba) = pattern.picture();
     let grey = |[r, g, b, a]: &[u8; 4]| {
-        let v = srgb::quantise((0.299 * f32::from(*r) + 0.587 * f32::from(*g) + 0.114 * f32::from(*b)) / 255.0);
+        let v = srgb::quantise(
+            (0.299 * f32::from(*r) + 0.587 * f32::from(*g) + 0.114 * f32::from(*b)) / 255.0,
+        );
         let v = if inverted { 255 - v } else { v };
         [v, v, v, *a]
     };

@@ -1,5 +1,6 @@
-//! Descriptions of brushes in later versions of Photoshop: names, sizes, spacings, and the tips they are of. Floor
-//! 5. Not here: what drives them (`dynamics`).
+//! Descriptions of brushes in later versions of Photoshop: names, sizes, spacings, and the tips
+//! they are of.
+//! Floor 5. Not here: what drives them (`dynamics`).
 
 use super::dynamics::carried;
 use super::{MOST, SPACING};
@@ -31,8 +32,9 @@ pub fn read(root: &DescriptorObject) -> Vec<AbrPreset<'_>> {
 
 fn said(preset: &DescriptorObject) -> Option<AbrPreset<'_>> {
     let brush = preset.object("Brsh")?;
-    let text =
-        |object: &DescriptorObject, name: &str| object.text(name).map(str::to_owned).filter(|text| !text.is_empty());
+    let text = |object: &DescriptorObject, name: &str| {
+        object.text(name).map(str::to_owned).filter(|text| !text.is_empty())
+    };
     let percent = |name: &str, plain: f32| brush.number(name).map_or(plain, |v| v / 100.0);
     Some(AbrPreset {
         description: preset,
@@ -72,7 +74,11 @@ impl AbrPreset<'_> {
         if is_sampled && ratio < 1.0 {
             notes.push(format!("its tip is squeezed to {:.0} % there", 100.0 * ratio));
         }
-        let name = if self.name.is_empty() { tip.map_or("Brush".into(), |tip| tip.name.clone()) } else { self.name };
+        let name = if self.name.is_empty() {
+            tip.map_or("Brush".into(), |tip| tip.name.clone())
+        } else {
+            self.name
+        };
         let mut carried = carried(self.description, brush, notes);
         carried.textured(pictures.file, pictures.patterns, pictures.tips);
         ImportedBrush { name, brush: carried.brush, notes: carried.notes }

@@ -1,5 +1,5 @@
-//! Krita's sensors: what an option follows, and by which curve. Several multiply, as curves do here.
-//! Floor 5.
+//! Krita's sensors: what an option follows, and by which curve. Several multiply, as curves do
+//! here. Floor 5.
 
 use super::attribute;
 use crate::math::vec2;
@@ -18,7 +18,9 @@ pub fn read(text: &str, notes: &mut Vec<String>) -> Vec<(Input, Curve)> {
             Event::Start(start) | Event::Empty(start) => {
                 is_in_curve = start.local_name().as_ref() == "curve";
                 let is_sensor = matches!(start.local_name().as_ref(), "params" | "ChildSensor");
-                if let Some(id) = attribute(&start, "id").filter(|id| is_sensor && id != "sensorslist") {
+                if let Some(id) =
+                    attribute(&start, "id").filter(|id| is_sensor && id != "sensorslist")
+                {
                     match input(&id) {
                         // Without a curve of its own it is linear.
                         Some(input) => found.push((input, Curve::Share(1.0))),
@@ -62,9 +64,10 @@ fn input(id: &str) -> Option<Input> {
 
 /// `x,y;x,y;`, each from 0 to 1 and rising.
 fn curve(text: &str) -> Option<Curve> {
-    let pairs = text.split(';').filter(|pair| !pair.trim().is_empty()).take(MAX_POINTS).map(|pair| {
-        let mut numbers = pair.split(',').map(super::number);
-        Some(vec2(numbers.next()??, numbers.next()??))
-    });
+    let pairs =
+        text.split(';').filter(|pair| !pair.trim().is_empty()).take(MAX_POINTS).map(|pair| {
+            let mut numbers = pair.split(',').map(super::number);
+            Some(vec2(numbers.next()??, numbers.next()??))
+        });
     Curve::through(pairs.collect::<Option<Vec<_>>>()?)
 }

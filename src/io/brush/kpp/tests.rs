@@ -5,9 +5,11 @@ use crate::paint::dynamics::{DabInputs, Input};
 
 /// A PNG of one pixel with these settings.
 fn kpp(engine: &str, definition: &str, params: &[(&str, &str)]) -> Vec<u8> {
-    let param =
-        |(name, value): &(&str, &str)| format!("<param name=\"{name}\" type=\"string\"><![CDATA[{value}]]></param>");
-    let params: String = params.iter().chain([&("brush_definition", definition)]).map(param).collect();
+    let param = |(name, value): &(&str, &str)| {
+        format!("<param name=\"{name}\" type=\"string\"><![CDATA[{value}]]></param>")
+    };
+    let params: String =
+        params.iter().chain([&("brush_definition", definition)]).map(param).collect();
     let text = format!("<Preset paintopid=\"{engine}\" name=\"b) Basic\">{params}</Preset>");
     let mut out = Vec::new();
     let mut encoder = png::Encoder::new(&mut out, 1, 1);
@@ -42,15 +44,22 @@ fn a_pixel_preset_is_read_with_what_follows_the_pressure() {
         ],
     );
     let ImportedBrush { name, brush, notes } = read_kpp(&bytes).unwrap();
-    assert_eq!((name.as_str(), brush.size, brush.spacing, brush.hardness), ("b) Basic", 40.0, 0.2, 0.6));
+    assert_eq!(
+        (name.as_str(), brush.size, brush.spacing, brush.hardness),
+        ("b) Basic", 40.0, 0.2, 0.6)
+    );
     assert_eq!((brush.opacity, brush.flow), (0.8, 0.5));
     assert!(matches!(brush.tip, Tip::Ellipse { ratio: 0.5 }));
     let light = DabInputs { pressure: 0.25, ..DabInputs::default() };
     assert!((brush.dynamics.value(Property::Size, 1.0, &light) - 0.35).abs() < 1e-5);
     assert_eq!(brush.dynamics.value(Property::Opacity, 1.0, &light), 0.25);
-    assert!(brush.dynamics.curve(Property::Rotation, Input::Random).is_none(), "it is switched off");
+    assert!(
+        brush.dynamics.curve(Property::Rotation, Input::Random).is_none(),
+        "it is switched off"
+    );
     assert_eq!(notes, ["nothing here follows “tangentialpressure”"]);
 }
+
 #[test]
 fn a_smudge_preset_takes_paint_up_and_an_eraser_takes_it_away() {
     let smudge = kpp(
@@ -62,6 +71,7 @@ fn a_smudge_preset_takes_paint_up_and_an_eraser_takes_it_away() {
     assert_eq!((pickup.amount, pickup.length), (0.75, 0.9));
     assert!(read_kpp(&kpp("paintbrush", ROUND, &[("CompositeOp", "erase")])).unwrap().brush.erases);
 }
+
 #[test]
 fn spacing_that_krita_chooses_is_a_root_of_the_size_and_tips_elsewhere_are_told_of() {
     let auto = "<Brush type=\"png_brush\" filename=\"chalk.png\" useAutoSpacing=\"1\" autoSpacingCoeff=\"0.8\"/>";
@@ -69,6 +79,7 @@ fn spacing_that_krita_chooses_is_a_root_of_the_size_and_tips_elsewhere_are_told_
     assert!((brush.spacing - 0.8 / brush.size.sqrt()).abs() < 1e-5);
     assert_eq!(notes, ["its tip “chalk.png” is not in the file; it is round here"]);
 }
+
 #[test]
 fn other_engines_and_other_pictures_are_refused_in_words() {
     let said = |bytes: &[u8]| read_kpp(bytes).map(|_| ()).unwrap_err().to_string();

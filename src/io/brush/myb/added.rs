@@ -19,6 +19,7 @@ pub struct AddedInput {
     /// From left to right.
     pub points: Vec<Vec2>,
 }
+
 impl Added {
     pub fn add(&mut self, row: AddedInput) {
         match self.rows.iter_mut().find(|known| known.input == row.input) {
@@ -26,12 +27,14 @@ impl Added {
             None => self.rows.push(row),
         }
     }
+
     /// Multiplied as a whole.
     pub fn times(mut self, factor: f32) -> Self {
         self.base *= factor;
         self.rows.iter_mut().flat_map(|row| &mut row.points).for_each(|p| p.y *= factor);
         self
     }
+
     /// The base within a range; what it loses is added by a row.
     pub fn within(mut self, least: f32, most: f32) -> Self {
         let base = self.base.max(least).min(most);
@@ -42,22 +45,29 @@ impl Added {
         self.base = base;
         self
     }
+
     /// Its least and its most.
     pub fn range(&self) -> [f32; 2] {
         let ends = |row: &AddedInput| {
             let all = row.points.iter().map(|p| p.y);
             [all.clone().fold(f32::INFINITY, f32::min), all.fold(f32::NEG_INFINITY, f32::max)]
         };
-        self.rows.iter().map(ends).fold([self.base; 2], |sum, [least, most]| [sum[0] + least, sum[1] + most])
+        self.rows
+            .iter()
+            .map(ends)
+            .fold([self.base; 2], |sum, [least, most]| [sum[0] + least, sum[1] + most])
     }
+
     /// The value where all that drives it is halfway.
     pub fn halfway(&self) -> f32 {
         self.base + self.rows.iter().map(AddedInput::halfway).sum::<f32>()
     }
+
     /// The row that changes it most.
     pub fn main_row(&self) -> Option<usize> {
         (0..self.rows.len()).max_by(|&a, &b| self.rows[a].span().total_cmp(&self.rows[b].span()))
     }
+
     /// The value for one place of one input, while all others add nothing.
     pub fn at(&self, row: &AddedInput, x: f32) -> f32 {
         self.base + level(&row.points, x)
@@ -69,28 +79,35 @@ impl AddedInput {
     pub fn at(&self, x: f32) -> f32 {
         level(&self.points, x)
     }
+
     pub fn halfway(&self) -> f32 {
         self.at(0.5)
     }
+
     /// The most that it adds.
     pub fn most(&self) -> f32 {
         self.points.iter().map(|p| p.y).fold(f32::NEG_INFINITY, f32::max)
     }
+
     fn span(&self) -> f32 {
         self.most() - self.points.iter().map(|p| p.y).fold(f32::INFINITY, f32::min)
     }
+
     /// As a curve that adds; `None` if it adds nothing measurable.
     pub fn curve(&self) -> Option<Curve> {
         let points = self.points.iter().map(|p| vec2(p.x, p.y.max(-MOST_ADDED).min(MOST_ADDED)));
         Curve::added(straightened(&points.collect::<Vec<_>>()))
     }
+
     /// As a curve of factors; `value`: what a place makes of the whole, `[0, 1]`.
     pub fn factors(&self, value: impl Fn(f32) -> f32) -> Option<Curve> {
-        let steps = (0..=STEPS).map(|i| i as f32 / STEPS as f32).chain(self.points.iter().map(|p| p.x));
+        let steps =
+            (0..=STEPS).map(|i| i as f32 / STEPS as f32).chain(self.points.iter().map(|p| p.x));
         let mut places: Vec<f32> = steps.collect();
         places.sort_by(f32::total_cmp);
         places.dedup();
-        let points: Vec<Vec2> = places.into_iter().map(|x| vec2(x, value(x).max(0.0).min(1.0))).collect();
+        let points: Vec<Vec2> =
+            places.into_iter().map(|x| vec2(x, value(x).max(0.0).min(1.0))).collect();
         Curve::through(straightened(&points))
     }
 }

@@ -1,5 +1,5 @@
-//! MyPaint's inputs and curves in this program's terms: inputs from 0 to 1, and what is added along them.
-//! Floor 5.
+//! MyPaint's inputs and curves in this program's terms: inputs from 0 to 1, and what is added along
+//! them. Floor 5.
 
 use crate::math::{Vec2, vec2};
 use crate::paint::dynamics::{Input, MAX_POINTS, px_per_sec_of};
@@ -24,9 +24,14 @@ impl Scales {
     /// Which of our inputs is one of theirs, and how it runs.
     pub fn way(&self, input: &str) -> Option<InputMapping> {
         let Scales { radius, gammas, pressure, custom } = *self;
-        let whole = |input, x: [f32; 2]| Some(InputMapping::Runs(input, vec![CurvePiece::straight([0.0, 1.0], x)]));
+        let whole = |input, x: [f32; 2]| {
+            Some(InputMapping::Runs(input, vec![CurvePiece::straight([0.0, 1.0], x)]))
+        };
         let paces = |input, gamma| {
-            Some(InputMapping::Runs(input, vec![CurvePiece { t: [0.0, 1.0], x: Course::Speed { gamma } }]))
+            Some(InputMapping::Runs(
+                input,
+                vec![CurvePiece { t: [0.0, 1.0], x: Course::Speed { gamma } }],
+            ))
         };
         match input {
             "pressure" => whole(Input::Pressure, [0.0, pressure]),
@@ -42,10 +47,12 @@ impl Scales {
             }
             "direction_angle" => whole(Input::Direction, [360.0, 0.0]),
             "tilt_declination" => whole(Input::Tilt, [90.0, 0.0]),
-            // 0 for an upright pen, a quarter turn from where ours leans then; else clockwise from below.
+            // 0 for an upright pen, a quarter turn from where ours leans then; else clockwise from
+            // below.
             "tilt_ascension" => {
                 let upright = CurvePiece::straight([0.0, 0.0], [0.0, 0.0]);
-                let (right, rest) = (CurvePiece::straight([0.0, 0.25], [-90.0, -180.0]), [180.0, -90.0]);
+                let (right, rest) =
+                    (CurvePiece::straight([0.0, 0.25], [-90.0, -180.0]), [180.0, -90.0]);
                 Some(InputMapping::Runs(
                     Input::TiltDirection,
                     vec![upright, right, CurvePiece::straight([0.25, 1.0], rest)],
@@ -86,6 +93,7 @@ impl CurvePiece {
     fn straight(t: [f32; 2], x: [f32; 2]) -> Self {
         Self { t, x: Course::Straight(x) }
     }
+
     /// Theirs at a share of the piece.
     fn at(&self, s: f32) -> f32 {
         match self.x {
@@ -96,6 +104,7 @@ impl CurvePiece {
             }
         }
     }
+
     /// The shares at which a curve through these points is looked at.
     fn shares(&self, points: &[Vec2]) -> Vec<f32> {
         let inner = |x: f32| match self.x {
@@ -110,10 +119,15 @@ impl CurvePiece {
             }
         };
         let steps = if matches!(self.x, Course::Straight(_)) { 1 } else { STEPS };
-        let corners = points.iter().map(|p| inner(p.x)).filter(|s| (0.0..=1.0).contains(s)).take(16);
+        let corners =
+            points.iter().map(|p| inner(p.x)).filter(|s| (0.0..=1.0).contains(s)).take(16);
         // Where two points share a position the curve steps: it is sampled on both sides.
-        let steep = points.windows(2).filter(|pair| pair[0].x == pair[1].x).map(|pair| inner(pair[0].x));
-        let sides = steep.flat_map(|s| [s - BESIDE, s + BESIDE]).filter(|s| (0.0..=1.0).contains(s)).take(16);
+        let steep =
+            points.windows(2).filter(|pair| pair[0].x == pair[1].x).map(|pair| inner(pair[0].x));
+        let sides = steep
+            .flat_map(|s| [s - BESIDE, s + BESIDE])
+            .filter(|s| (0.0..=1.0).contains(s))
+            .take(16);
         let even = (0..=steps).map(|i| i as f32 / steps as f32);
         let mut shares: Vec<f32> = even.chain(corners).chain(sides).collect();
         shares.sort_by(f32::total_cmp);
@@ -141,7 +155,9 @@ pub fn at(points: &[Vec2], x: f32) -> f32 {
     // The piece that contains it: the first whose end is not before it, else the last.
     let i = inner.take_while(|p| x > p.x).count();
     match points.get(i..) {
-        Some(&[from, to, ..]) if to.x > from.x => from.y + (to.y - from.y) * (x - from.x) / (to.x - from.x),
+        Some(&[from, to, ..]) if to.x > from.x => {
+            from.y + (to.y - from.y) * (x - from.x) / (to.x - from.x)
+        }
         Some(&[from, ..]) => from.y,
         _ => 0.0,
     }
@@ -161,7 +177,10 @@ pub fn sampled(pieces: &[CurvePiece], points: &[Vec2]) -> Vec<Vec2> {
     let of_piece = |piece: &CurvePiece| {
         let [from, to] = piece.t;
         let shares = piece.shares(points);
-        shares.into_iter().map(|s| vec2((from + (to - from) * s).max(0.0).min(1.0), at(points, piece.at(s)))).collect()
+        shares
+            .into_iter()
+            .map(|s| vec2((from + (to - from) * s).max(0.0).min(1.0), at(points, piece.at(s))))
+            .collect()
     };
     pieces.iter().flat_map(|piece| -> Vec<Vec2> { of_piece(piece) }).collect()
 }
@@ -174,9 +193,12 @@ pub fn summed(a: &[Vec2], b: &[Vec2]) -> Vec<Vec2> {
     places.into_iter().map(|x| vec2(x, level(a, x) + level(b, x))).collect()
 }
 
-/// Without the points that lie on the line between their neighbours, to a five hundredth of all that the curve spans.
+/// Without the points that lie on the line between their neighbours, to a five hundredth of all
+/// that the curve spans.
 pub fn straightened(points: &[Vec2]) -> Vec<Vec2> {
-    let (least, most) = points.iter().fold((f32::MAX, f32::MIN), |(least, most), p| (least.min(p.y), most.max(p.y)));
+    let (least, most) = points
+        .iter()
+        .fold((f32::MAX, f32::MIN), |(least, most), p| (least.min(p.y), most.max(p.y)));
     let near = 0.002 * (most - least).max(1e-6);
     let mut out: Vec<Vec2> = Vec::new();
     let mut start = 0;
@@ -186,7 +208,8 @@ pub fn straightened(points: &[Vec2]) -> Vec<Vec2> {
         let is_between = i > 0
             && next.is_some_and(|next| {
                 let width = next.x - before.x;
-                let off = |p: &Vec2| before.y + (next.y - before.y) * (p.x - before.x) / width - p.y;
+                let off =
+                    |p: &Vec2| before.y + (next.y - before.y) * (p.x - before.x) / width - p.y;
                 width > 0.0 && points[start + 1..=i].iter().all(|p| off(p).abs() <= near)
             });
         if !is_between {

@@ -16,14 +16,18 @@ pub fn shape(settings: &mut MyPaintSettings, brush: Brush) -> Brush {
     let hardness = hardness(settings, 0.5 * brush.size);
     let brush = Brush { hardness: hardness.base, falloff: Falloff::Peaked, ..brush };
     let brush = with(brush, Property::Hardness, &hardness);
-    let elongation = settings.added("elliptical_dab_ratio", 1.0).within(1.0, 1.0 / *Tip::RATIO.start());
+    let elongation =
+        settings.added("elliptical_dab_ratio", 1.0).within(1.0, 1.0 / *Tip::RATIO.start());
     // Theirs turns clockwise.
     let angle = settings.added("elliptical_dab_angle", 90.0).times(-1.0);
     if elongation.base <= ROUND && elongation.rows.is_empty() {
         return brush;
     }
-    let brush =
-        Brush { tip: Tip::Ellipse { ratio: 1.0 / elongation.base }, rotation: angle.base.rem_euclid(360.0), ..brush };
+    let brush = Brush {
+        tip: Tip::Ellipse { ratio: 1.0 / elongation.base },
+        rotation: angle.base.rem_euclid(360.0),
+        ..brush
+    };
     let brush = with(brush, Property::Elongation, &elongation);
     with(brush, Property::Rotation, &angle.times(1.0 / 360.0))
 }
@@ -45,18 +49,23 @@ fn softened(hardness: Added, rim_px: f32, radius: f32) -> Added {
     Added { base: softer, ..hardness }
 }
 
-/// How much one dab covers: MyPaint's opacity is the stroke's where dabs overlap, to the degree of `opaque_linearize`.
+/// How much one dab covers: MyPaint's opacity is the stroke's where dabs overlap, to the degree of
+/// `opaque_linearize`.
 pub fn flow(settings: &mut MyPaintSettings, brush: Brush) -> Brush {
     let linear = settings.plain("opaque_linearize", 0.9).max(0.0).min(2.0);
-    let per_diameter =
-        2.0 * (settings.base("dabs_per_actual_radius", 2.0) + settings.base("dabs_per_basic_radius", 0.0));
+    let per_diameter = 2.0
+        * (settings.base("dabs_per_actual_radius", 2.0)
+            + settings.base("dabs_per_basic_radius", 0.0));
     let overlap = (1.0 + linear * (per_diameter.max(1.0) - 1.0)).max(1.0).min(100.0);
     let brush = Brush { overlap, ..brush };
     let opaque = settings.added("opaque", 1.0);
     let times = settings.opaque_multiply();
     // The inputs of the one that has more add up; the other multiplies.
-    let (sum, factor) = if opaque.rows.len() < times.rows.len() { (times, opaque) } else { (opaque, times) };
-    let Some(main) = factor.main_row() else { return flows(brush, sum.times(factor.base.max(0.0))) };
+    let (sum, factor) =
+        if opaque.rows.len() < times.rows.len() { (times, opaque) } else { (opaque, times) };
+    let Some(main) = factor.main_row() else {
+        return flows(brush, sum.times(factor.base.max(0.0)));
+    };
     if factor.rows.len() > 1 {
         settings.note("The opacity follows some of several inputs");
     }
@@ -65,7 +74,9 @@ pub fn flow(settings: &mut MyPaintSettings, brush: Brush) -> Brush {
     let most = (rest + row.most()).max(1e-3);
     let brush = flows(brush, sum.times(most));
     match row.factors(|x| (rest + row.at(x)) / most) {
-        Some(curve) => Brush { dynamics: brush.dynamics.with(Property::Flow, row.input, curve), ..brush },
+        Some(curve) => {
+            Brush { dynamics: brush.dynamics.with(Property::Flow, row.input, curve), ..brush }
+        }
         None => brush,
     }
 }
@@ -114,8 +125,14 @@ pub fn paint(settings: &mut MyPaintSettings, brush: Brush) -> Brush {
 }
 
 fn pickup(settings: &mut MyPaintSettings, brush: Brush) -> Brush {
-    const DETAILS: [&str; 6] =
-        ["smudge_length", "smudge_radius_log", "smudge_length_log", "smudge_bucket", "smudge_transparency", "smudge"];
+    const DETAILS: [&str; 6] = [
+        "smudge_length",
+        "smudge_radius_log",
+        "smudge_length_log",
+        "smudge_bucket",
+        "smudge_transparency",
+        "smudge",
+    ];
     let amount = settings.added("smudge", 0.0).within(0.0, 1.0);
     settings.of_no_use(&DETAILS);
     if amount.base == 0.0 && amount.rows.is_empty() {
@@ -126,7 +143,8 @@ fn pickup(settings: &mut MyPaintSettings, brush: Brush) -> Brush {
     for name in ["smudge_length_log", "smudge_bucket", "smudge_transparency"] {
         settings.lost(name, 0.0);
     }
-    let brush = Brush { pickup: Pickup { amount: amount.base, length: length.base, radius }, ..brush };
+    let brush =
+        Brush { pickup: Pickup { amount: amount.base, length: length.base, radius }, ..brush };
     let brush = with(brush, Property::Pickup, &amount);
     with(brush, Property::PickupLength, &length)
 }
@@ -134,8 +152,13 @@ fn pickup(settings: &mut MyPaintSettings, brush: Brush) -> Brush {
 impl MyPaintSettings<'_> {
     /// What `opaque` is multiplied by: the pressure, if the file does not say.
     fn opaque_multiply(&mut self) -> Added {
-        if self.has("opaque_multiply") { self.added("opaque_multiply", 0.0) } else { self.pressure() }
+        if self.has("opaque_multiply") {
+            self.added("opaque_multiply", 0.0)
+        } else {
+            self.pressure()
+        }
     }
+
     /// A setting with no effect here; reported if it has one in MyPaint.
     fn lost(&mut self, name: &'static str, idle: f32) {
         if self.is_driven(name) || self.base(name, idle) != idle {

@@ -1,5 +1,5 @@
-//! How dabs of a MyPaint brush follow the pen: how densely, how far from it, and how the hand is read.
-//! Floor 5.
+//! How dabs of a MyPaint brush follow the pen: how densely, how far from it, and how the hand is
+//! read. Floor 5.
 
 use super::added::Added;
 use super::settings::MyPaintSettings;
@@ -19,9 +19,13 @@ pub fn spacing(settings: &mut MyPaintSettings, lengths: Lengths, brush: Brush) -
     let per_sec = settings.plain("dabs_per_second", 0.0);
     let [least, most] = SPACINGS;
     // No dabs are due at all where a radius has none.
-    let spacing = |dabs: f32| if dabs > 0.0 { (0.5 * lengths.shrunk / dabs).max(least).min(most) } else { most };
-    let rate =
-        Rate { per_diameter: (basic / lengths.diameters()).max(0.0).min(200.0), per_sec: per_sec.max(0.0).min(200.0) };
+    let spacing = |dabs: f32| {
+        if dabs > 0.0 { (0.5 * lengths.shrunk / dabs).max(least).min(most) } else { most }
+    };
+    let rate = Rate {
+        per_diameter: (basic / lengths.diameters()).max(0.0).min(200.0),
+        per_sec: per_sec.max(0.0).min(200.0),
+    };
     let brush = Brush { spacing: spacing(actual.base), rate, ..brush };
     match actual.rows.as_slice() {
         [] => brush,
@@ -32,7 +36,8 @@ pub fn spacing(settings: &mut MyPaintSettings, lengths: Lengths, brush: Brush) -
             let places = (0..=40).map(|i| i as f32 / 40.0);
             let widest = places.map(|x| spacing(actual.at(row, x))).fold(least, f32::max);
             let curve = row.factors(|x| spacing(actual.at(row, x)) / widest);
-            let dynamics = curve.map(|curve| brush.dynamics.with(Property::Spacing, row.input, curve));
+            let dynamics =
+                curve.map(|curve| brush.dynamics.with(Property::Spacing, row.input, curve));
             Brush { spacing: widest, dynamics: dynamics.unwrap_or(brush.dynamics.clone()), ..brush }
         }
     }
@@ -40,10 +45,12 @@ pub fn spacing(settings: &mut MyPaintSettings, lengths: Lengths, brush: Brush) -
 
 /// How far dabs are from the pen, and how their sizes vary.
 pub fn strays(settings: &mut MyPaintSettings, lengths: Lengths, brush: Brush) -> Brush {
-    let scatter = settings.added("offset_by_random", 0.0).times(lengths.diameters()).within(0.0, 10.0);
+    let scatter =
+        settings.added("offset_by_random", 0.0).times(lengths.diameters()).within(0.0, 10.0);
     let brush = Brush { scatter: scatter.base, spread: Spread::Cloud, ..brush };
     let brush = with(brush, Property::Scatter, &scatter);
-    let sizes = settings.added("radius_by_random", 0.0).times(std::f32::consts::LOG2_E).within(0.0, 4.0);
+    let sizes =
+        settings.added("radius_by_random", 0.0).times(std::f32::consts::LOG2_E).within(0.0, 4.0);
     let brush = Brush { size_jitter: sizes.base, ..brush };
     let brush = with(brush, Property::SizeJitter, &sizes);
     let lead = settings.added("offset_by_speed", 0.0).times(0.1).within(-1.0, 1.0);
@@ -125,7 +132,9 @@ pub fn ways(settings: &mut MyPaintSettings, lengths: Lengths, brush: Brush) -> B
     let hand = Hand {
         tremor: (settings.plain("tracking_noise", 0.0) * lengths.diameters()).max(0.0).min(20.0),
         lag_dabs: settings.plain("slow_tracking_per_dab", 0.0).max(0.0).min(100.0),
-        direction_px: ((settings.plain("direction_filter", 2.0) * 0.5).min(20.0).exp() - 1.0).max(0.0).min(1000.0),
+        direction_px: ((settings.plain("direction_filter", 2.0) * 0.5).min(20.0).exp() - 1.0)
+            .max(0.0)
+            .min(1000.0),
         pace_secs: settings.plain("speed1_slowness", 0.04).max(0.0).min(10.0),
         slow_pace_secs: settings.plain("speed2_slowness", 0.8).max(0.0).min(10.0),
         // It comes so far at every dab.
@@ -133,9 +142,10 @@ pub fn ways(settings: &mut MyPaintSettings, lengths: Lengths, brush: Brush) -> B
         ..brush.hand
     };
     let cycle = Cycle {
-        length: (settings.plain("stroke_duration_logarithmic", 4.0).min(20.0).exp() * lengths.diameters())
-            .max(0.01)
-            .min(10_000.0),
+        length: (settings.plain("stroke_duration_logarithmic", 4.0).min(20.0).exp()
+            * lengths.diameters())
+        .max(0.01)
+        .min(10_000.0),
         hold: settings.plain("stroke_holdtime", 0.0).max(0.0).min(Cycle::FOR_EVER),
         pressure: settings.plain("stroke_threshold", 0.0).max(0.0).min(1.0),
     };

@@ -1,5 +1,5 @@
-//! The settings of a MyPaint file, each looked up by name; those that nothing uses are reported. Floor 5. Not here:
-//! what they make of a brush (`dab`, `hand`), how curves run (`curves`).
+//! The settings of a MyPaint file, each looked up by name; those that nothing uses are reported.
+//! Floor 5. Not here: what they make of a brush (`dab`, `hand`), how curves run (`curves`).
 
 use super::added::{Added, AddedInput};
 use super::curves::{InputMapping, Scales, at, curve_of, number, sampled};
@@ -31,7 +31,8 @@ const OF_NO_MATTER: [&str; 9] = [
 
 impl<'a> MyPaintSettings<'a> {
     pub fn new(all: &'a Map<String, Value>) -> Self {
-        let mut settings = Self { all, asked: BTreeSet::new(), notes: Vec::new(), scales: Scales::default() };
+        let mut settings =
+            Self { all, asked: BTreeSet::new(), notes: Vec::new(), scales: Scales::default() };
         let mut base = |name, default| settings.base(name, default);
         settings.scales = Scales {
             radius: base("radius_logarithmic", 2.0),
@@ -41,28 +42,34 @@ impl<'a> MyPaintSettings<'a> {
         };
         settings
     }
+
     pub fn note(&mut self, note: &str) {
         if !self.notes.iter().any(|known| known == note) {
             self.notes.push(note.to_owned());
         }
     }
+
     /// A setting without what drives it; a damaged number is as good as none.
     pub fn base(&mut self, name: &'static str, default: f32) -> f32 {
         self.asked.insert(name);
         self.all.get(name).and_then(|value| number(value.get("base_value")?)).unwrap_or(default)
     }
+
     /// The same without counting it as carried over.
     pub fn reads(&self, name: &str) -> f32 {
         self.all.get(name).and_then(|value| number(value.get("base_value")?)).unwrap_or(0.0)
     }
+
     pub fn has(&self, name: &str) -> bool {
         self.all.contains_key(name)
     }
+
     /// Something drives a setting.
     pub fn is_driven(&self, name: &str) -> bool {
         let inputs = self.all.get(name).and_then(|value| value.get("inputs")?.as_object());
         inputs.into_iter().flatten().any(|(_, points)| curve_of(points).is_some())
     }
+
     /// A setting that nothing can drive here, with its inputs halfway; a drive is reported.
     pub fn plain(&mut self, name: &'static str, default: f32) -> f32 {
         let added = self.added(name, default);
@@ -71,6 +78,7 @@ impl<'a> MyPaintSettings<'a> {
         }
         added.halfway()
     }
+
     /// A setting with all that adds to it. Inputs that never change are part of its base.
     pub fn added(&mut self, name: &'static str, default: f32) -> Added {
         let mut added = Added { base: self.base(name, default), rows: Vec::new() };
@@ -84,19 +92,23 @@ impl<'a> MyPaintSettings<'a> {
                     added.add(AddedInput { input, points: sampled(&pieces, &points) })
                 }
                 None => {
-                    let input: String = input.chars().filter(|c| !c.is_control()).take(60).collect();
+                    let input: String =
+                        input.chars().filter(|c| !c.is_control()).take(60).collect();
                     self.note(&format!("“{name}” does not follow “{input}”"));
                 }
             }
         }
         added
     }
+
     /// What a setting that follows the pressure from 0 adds.
     pub fn pressure(&self) -> Added {
         let points = vec![vec2(0.0, 0.0), vec2(1.0, self.scales.pressure)];
         Added { base: 0.0, rows: vec![AddedInput { input: Input::Pressure, points }] }
     }
-    /// The setting that drives the custom input, as what it adds to our own, which runs from 0 to 1.
+
+    /// The setting that drives the custom input, as what it adds to our own, which runs from 0 to
+    /// 1.
     pub fn custom(&mut self) -> Added {
         if !self.is_driven("custom_input") {
             return Added { base: self.base("custom_input", 0.0), rows: Vec::new() };
@@ -109,6 +121,7 @@ impl<'a> MyPaintSettings<'a> {
         let width = if most > least { most - least } else { 1.0 };
         Added { base: custom.base - least, ..custom }.times(1.0 / width)
     }
+
     /// The notes, and the settings that were not read although they have an effect.
     pub fn into_notes(mut self) -> Vec<String> {
         let all = self.all;
@@ -122,6 +135,7 @@ impl<'a> MyPaintSettings<'a> {
         }
         self.notes
     }
+
     /// Counts settings as carried over: details of another one that is idle or reported already.
     pub fn of_no_use(&mut self, names: &[&'static str]) {
         self.asked.extend(names);
@@ -135,6 +149,7 @@ mod tests {
     fn settings(text: &str) -> Value {
         serde_json::from_str(text).unwrap()
     }
+
     fn added(text: &str, name: &'static str) -> Added {
         let value = settings(text);
         MyPaintSettings::new(value.as_object().unwrap()).added(name, 0.0)
@@ -151,13 +166,15 @@ mod tests {
         assert_eq!(of(Input::Pressure).at(0.25), -0.5);
         assert_eq!(of(Input::Chance).at(0.5), -0.25);
     }
+
     #[test]
     fn a_step_stays_a_step() {
-        let text =
-            r#"{ "a": { "base_value": 0, "inputs": { "pressure": [[0, 0], [0.015, 0], [0.015, 1], [1, 1]] } } }"#;
+        let text = r#"{ "a": { "base_value": 0, "inputs": { "pressure":
+            [[0, 0], [0.015, 0], [0.015, 1], [1, 1]] } } }"#;
         let curve = added(text, "a").rows[0].curve().unwrap();
         assert_eq!([0.01, 0.02, 0.5].map(|x| (curve.at(x) * 100.0).round()), [0.0, 100.0, 100.0]);
     }
+
     #[test]
     fn a_speed_is_the_same_speed_here() {
         let text = r#"{ "a": { "base_value": 0, "inputs": { "speed1": [[0, 0], [4, 4]] } },
@@ -170,6 +187,7 @@ mod tests {
             assert!((ours - theirs).abs() < 0.03, "{px_per_sec}: {ours}, not {theirs}");
         }
     }
+
     #[test]
     fn what_is_known_nowhere_is_told() {
         let value = settings(
@@ -179,11 +197,16 @@ mod tests {
         );
         let mut settings = MyPaintSettings::new(value.as_object().unwrap());
         settings.added("a", 0.0);
-        assert_eq!(settings.into_notes(), ["“a” does not follow “gridmap_x”", "“gloss” has no counterpart"]);
+        assert_eq!(
+            settings.into_notes(),
+            ["“a” does not follow “gridmap_x”", "“gloss” has no counterpart"]
+        );
     }
+
     #[test]
     fn a_tip_that_turns_with_the_stroke_turns_with_it_here() {
-        let text = r#"{ "angle": { "base_value": 0, "inputs": { "direction": [[0, 0], [180, 180]] } } }"#;
+        let text =
+            r#"{ "angle": { "base_value": 0, "inputs": { "direction": [[0, 0], [180, 180]] } } }"#;
         let turned = added(text, "angle").times(-1.0 / 360.0);
         let curve = turned.rows[0].curve().unwrap();
         for t in [0.0f32, 0.1, 0.25, 0.4, 0.6, 0.9] {
@@ -192,6 +215,7 @@ mod tests {
             assert!((off * 2.0 - (off * 2.0).round()).abs() < 0.01, "{t}: {off}");
         }
     }
+
     #[test]
     fn the_custom_input_runs_from_its_least_to_its_most() {
         let value = settings(

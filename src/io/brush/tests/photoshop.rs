@@ -10,7 +10,8 @@ fn tip(width: u32, height: u32, bits: u16, packed: bool, values: &[u8]) -> Vec<u
     if packed {
         let row = width as usize * usize::from(bits / 8);
         // Runs of literals.
-        let rows: Vec<Vec<u8>> = values.chunks(row).map(|r| [&[r.len() as u8 - 1], r].concat()).collect();
+        let rows: Vec<Vec<u8>> =
+            values.chunks(row).map(|r| [&[r.len() as u8 - 1], r].concat()).collect();
         rows.iter().for_each(|r| out.extend((r.len() as u16).to_be_bytes()));
         rows.iter().for_each(|r| out.extend(r));
     } else {
@@ -18,6 +19,7 @@ fn tip(width: u32, height: u32, bits: u16, packed: bool, values: &[u8]) -> Vec<u
     }
     out
 }
+
 /// A collection of version 2: one computed tip, one sampled.
 pub fn old_abr() -> Vec<u8> {
     let numbers = |n: &[u16]| -> Vec<u8> { n.iter().flat_map(|n| n.to_be_bytes()).collect() };
@@ -25,9 +27,12 @@ pub fn old_abr() -> Vec<u8> {
     let name: Vec<u8> = "Chalk\0".encode_utf16().flat_map(u16::to_be_bytes).collect();
     let head = [words(&[0]), numbers(&[15]), words(&[6]), name, vec![1], vec![0; 8]].concat();
     let sampled = [head, tip(3, 2, 8, true, &[0, 50, 100, 150, 200, 255])].concat();
-    let record = |kind: u16, record: Vec<u8>| [numbers(&[kind]), words(&[record.len() as u32]), record].concat();
+    let record = |kind: u16, record: Vec<u8>| {
+        [numbers(&[kind]), words(&[record.len() as u32]), record].concat()
+    };
     [numbers(&[2, 2]), record(1, computed), record(2, sampled)].concat()
 }
+
 /// A collection of version 6 with two sampled tips.
 pub fn new_abr(subversion: u16) -> Vec<u8> {
     let unknown = vec![b'k'; if subversion == 1 { 47 } else { 301 }];
@@ -37,9 +42,13 @@ pub fn new_abr(subversion: u16) -> Vec<u8> {
         [words(&[length as u32]), unknown.clone(), tip, filling].concat()
     };
     let deep: Vec<u8> = [0u16, 257 * 100, 65535].iter().flat_map(|v| v.to_be_bytes()).collect();
-    let tips = [record(tip(4, 3, 8, false, &ramp(12))), record(tip(3, 1, 16, true, &deep))].concat();
-    let block = |key: &[u8; 4], data: &[u8]| [b"8BIM", &key[..], &words(&[data.len() as u32]), data].concat();
-    [&[0, 6][..], &subversion.to_be_bytes(), &block(b"patt", &[1, 2, 3, 4]), &block(b"samp", &tips)].concat()
+    let tips =
+        [record(tip(4, 3, 8, false, &ramp(12))), record(tip(3, 1, 16, true, &deep))].concat();
+    let block = |key: &[u8; 4], data: &[u8]| {
+        [b"8BIM", &key[..], &words(&[data.len() as u32]), data].concat()
+    };
+    [&[0, 6][..], &subversion.to_be_bytes(), &block(b"patt", &[1, 2, 3, 4]), &block(b"samp", &tips)]
+        .concat()
 }
 
 #[test]
@@ -48,7 +57,10 @@ fn photoshop_tips_of_every_version_are_read() {
     assert_eq!(old.len(), 2);
     let round = &old[0].brush;
     assert!(matches!(round.tip, Tip::Ellipse { ratio } if ratio == 0.5));
-    assert_eq!((round.size, round.hardness, round.rotation, round.spacing), (40.0, 0.8, 30.0, 0.25));
+    assert_eq!(
+        (round.size, round.hardness, round.rotation, round.spacing),
+        (40.0, 0.8, 30.0, 0.25)
+    );
     assert_eq!((old[1].name.as_str(), old[1].brush.spacing), ("Chalk", 0.15));
     assert_eq!(texels(&tips(&old[1])[0])[5], [255; 4]);
     for subversion in [1, 2] {
@@ -60,6 +72,7 @@ fn photoshop_tips_of_every_version_are_read() {
         assert_eq!(deep, [0, 100, 255]);
     }
 }
+
 /// The same; a description calls its second tip “Reed”, and there is a computed brush as well.
 pub fn named_abr() -> Vec<u8> {
     let text = |t: &str| {
@@ -72,7 +85,8 @@ pub fn named_abr() -> Vec<u8> {
     };
     let percent = |name, v: f64| named(name, "UntF", [&b"#Prc"[..], &v.to_be_bytes()].concat());
     let object = |values: &[Vec<u8>]| {
-        [text(""), words(&[0]), b"null".to_vec(), words(&[values.len() as u32]), values.concat()].concat()
+        [text(""), words(&[0]), b"null".to_vec(), words(&[values.len() as u32]), values.concat()]
+            .concat()
     };
     let preset = |name: &str, brush: &[Vec<u8>]| {
         let fields = [
@@ -83,7 +97,11 @@ pub fn named_abr() -> Vec<u8> {
         ];
         [b"Objc".to_vec(), object(&fields)].concat()
     };
-    let sampled = [percent("Dmtr", 30.0), percent("Spcn", 40.0), named("sampledData", "TEXT", text("second"))];
+    let sampled = [
+        percent("Dmtr", 30.0),
+        percent("Spcn", 40.0),
+        named("sampledData", "TEXT", text("second")),
+    ];
     let computed = [percent("Dmtr", 12.0), percent("Hrdn", 50.0), percent("Rndn", 100.0)];
     let list = [words(&[2]), preset("Reed", &sampled), preset("Dot", &computed)].concat();
     let description = [words(&[16]), object(&[named("Brsh", "VlLs", list)])].concat();
@@ -95,10 +113,12 @@ pub fn named_abr() -> Vec<u8> {
     bytes[key..key + 7].copy_from_slice(b"\x06second");
     [bytes, b"8BIMdesc".to_vec(), words(&[description.len() as u32]), description].concat()
 }
+
 #[test]
 fn later_photoshop_brushes_have_their_names_sizes_and_spacings() {
     let read = read(Path::new("set.abr"), &named_abr(), &budget()).unwrap();
-    let told: Vec<_> = read.iter().map(|b| (b.name.as_str(), b.brush.size, b.brush.spacing)).collect();
+    let told: Vec<_> =
+        read.iter().map(|b| (b.name.as_str(), b.brush.size, b.brush.spacing)).collect();
     assert_eq!(told, [("Reed", 30.0, 0.4), ("Dot", 12.0, 0.25), ("set 1", 4.0, 0.25)]);
     assert_eq!(texels(&tips(&read[0])[0])[2], [255; 4], "the second tip's");
     assert_eq!(

@@ -32,6 +32,7 @@ impl Write for OpenInode {
         self.memory.state().inodes[self.inode].bytes.extend_from_slice(&bytes[..n]);
         Ok(n)
     }
+
     fn flush(&mut self) -> io::Result<()> {
         Ok(())
     }
@@ -45,6 +46,7 @@ impl FileHandle for OpenInode {
         inode.synced = inode.bytes.clone();
         Ok(())
     }
+
     fn hold(&mut self) -> io::Result<bool> {
         self.memory.turn()?;
         let is_free = self.memory.state().held.insert(self.inode);

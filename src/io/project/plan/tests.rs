@@ -8,17 +8,20 @@ use crate::shading::RadianceScaling;
 fn fill(name: &str) -> Layer {
     Layer::new(name, Content::Fill(Color::BLACK))
 }
+
 fn group(name: &str, pass_through: bool, layers: Vec<Layer>) -> Layer {
     let layers = layers.into_iter().map(Arc::new).collect();
     Layer::new(name, Content::Group(Group { layers, pass_through }))
 }
+
 fn planned(layers: Vec<Layer>) -> String {
     let layers = layers.into_iter().map(Arc::new).collect();
     let document = Document { layers, ..Document::empty(Size::new(8, 8)) };
     text(&plan(&document, FormatSupport::OPENRASTER))
 }
-/// Names; hidden ones behind a minus, clipped ones behind an arrow, composed ones with a star, stacks with what
-/// they hold.
+
+/// Names; hidden ones behind a minus, clipped ones behind an arrow, composed ones with a star,
+/// stacks with what they hold.
 fn text(items: &[PlanItem]) -> String {
     let one = |item: &PlanItem| {
         let what = match &item.shows {
@@ -29,7 +32,11 @@ fn text(items: &[PlanItem]) -> String {
                 format!("{}[{}]", if *isolated { "" } else { "through" }, text(items))
             }
         };
-        let sign = format!("{}{}", if item.visible { "" } else { "-" }, if item.clipped { "^" } else { "" });
+        let sign = format!(
+            "{}{}",
+            if item.visible { "" } else { "-" },
+            if item.clipped { "^" } else { "" }
+        );
         format!("{sign}{}{what}", item.name.replace(" (parts)", "~"))
     };
     items.iter().map(one).collect::<Vec<_>>().join(" ")
@@ -37,9 +44,11 @@ fn text(items: &[PlanItem]) -> String {
 
 #[test]
 fn plain_layers_and_groups_are_shown_as_they_are() {
-    let layers = vec![fill("a"), group("g", false, vec![fill("b")]), group("p", true, vec![fill("c")])];
+    let layers =
+        vec![fill("a"), group("g", false, vec![fill("b")]), group("p", true, vec![fill("c")])];
     assert_eq!(planned(layers), "a g[b] pthrough[c]");
 }
+
 #[test]
 fn clipped_layers_are_composed_and_kept_hidden_beside() {
     let clipped = Layer { clip_below: true, ..fill("c") };
@@ -48,6 +57,7 @@ fn clipped_layers_are_composed_and_kept_hidden_beside() {
     assert_eq!(planned(vec![hidden, clipped.clone()]), "-b -c", "clipped to what is hidden");
     assert_eq!(planned(vec![clipped]), "-c", "clipped to nothing");
 }
+
 #[test]
 fn where_a_format_says_clipping_the_hidden_layers_are_clipped() {
     let planned = |blend, visible| {
@@ -60,6 +70,7 @@ fn where_a_format_says_clipping_the_hidden_layers_are_clipped() {
     assert_eq!(planned(BlendMode::Plus, true), "a -b~[b c] b*2", "a mode without a word");
     assert_eq!(planned(BlendMode::Screen, false), "a b -^c", "nothing is seen that is clipped");
 }
+
 #[test]
 fn layers_that_keep_to_a_soft_edge_stand_in_a_group_whose_mask_it_is() {
     let soft = soft_surface(Size::new(8, 8));
@@ -71,19 +82,34 @@ fn layers_that_keep_to_a_soft_edge_stand_in_a_group_whose_mask_it_is() {
     };
     let stack = || vec![free(), fill("a"), group("g", false, vec![fill("b")]), free(), fill("c")];
     let found = planned(stack(), FormatSupport::PHOTOSHOP);
-    assert_eq!(found, "free On the surfacethrough[a g[b]] free c", "one picture alone brings its own edge");
-    assert_eq!(planned(stack(), FormatSupport::OPENRASTER), "free a g[b] free c", "without masks each brings it");
-    let inner = planned(vec![group("g", false, vec![fill("a"), fill("b"), free()])], FormatSupport::PHOTOSHOP);
+    assert_eq!(
+        found, "free On the surfacethrough[a g[b]] free c",
+        "one picture alone brings its own edge"
+    );
+    assert_eq!(
+        planned(stack(), FormatSupport::OPENRASTER),
+        "free a g[b] free c",
+        "without masks each brings it"
+    );
+    let inner = planned(
+        vec![group("g", false, vec![fill("a"), fill("b"), free()])],
+        FormatSupport::PHOTOSHOP,
+    );
     assert_eq!(inner, "g[On the surfacethrough[a b] free]", "in a group of both kinds");
     let hidden = Layer { visible: false, ..fill("b") };
     assert_eq!(planned(vec![fill("a"), hidden], FormatSupport::PHOTOSHOP), "a -b");
 }
+
 #[test]
 fn an_adjustment_is_composed_with_all_beneath_it_in_its_scope() {
     let adjustment = || Layer::new("r", Content::RadianceScaling(RadianceScaling::default()));
     assert_eq!(planned(vec![fill("a"), adjustment(), fill("b")]), "-r~[a r0] r*2 b");
     let clipped = Layer { clip_below: true, ..fill("c") };
-    assert_eq!(planned(vec![clipped, adjustment()]), "-r~[-c r0] r*1", "clipped to nothing, it is not composed");
+    assert_eq!(
+        planned(vec![clipped, adjustment()]),
+        "-r~[-c r0] r*1",
+        "clipped to nothing, it is not composed"
+    );
     assert_eq!(
         planned(vec![fill("a"), group("g", false, vec![fill("b"), adjustment()])]),
         "a g[-r~[b r0] r*2]",
@@ -92,6 +118,7 @@ fn an_adjustment_is_composed_with_all_beneath_it_in_its_scope() {
     let through = group("g", true, vec![adjustment()]);
     assert_eq!(planned(vec![fill("a"), through]), "-g~[a gthrough[-r~[r0] r*1]] g*2");
 }
+
 #[test]
 fn what_openraster_cannot_blend_is_composed() {
     let exclusion = Layer { blend: BlendMode::Exclusion, ..fill("e") };

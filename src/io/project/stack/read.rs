@@ -1,5 +1,5 @@
-//! Reads `stack.xml`, only as strictly as the layers need: programs add different things of their own.
-//! Floor 5.
+//! Reads `stack.xml`, only as strictly as the layers need: programs add different things of their
+//! own. Floor 5.
 
 use super::KIND;
 use crate::Budget;
@@ -51,8 +51,10 @@ pub enum ElementContent {
 
 /// Reads a `stack.xml`. Elements and attributes beyond OpenRaster's are ignored.
 pub fn read(file: &Path, text: &[u8], budget: &Budget) -> Result<StackXml> {
-    let text = utf8(text).ok_or_else(|| Error::decode(file, "stack.xml is neither UTF-8 nor UTF-16"))?;
-    let mut parser = StackParser { file, budget, xml: Reader::from_str(&text), left: budget.layers };
+    let text =
+        utf8(text).ok_or_else(|| Error::decode(file, "stack.xml is neither UTF-8 nor UTF-16"))?;
+    let mut parser =
+        StackParser { file, budget, xml: Reader::from_str(&text), left: budget.layers };
     parser.image()
 }
 
@@ -65,7 +67,9 @@ fn utf8(text: &[u8]) -> Option<Cow<'_, str>> {
     match text {
         [0xff, 0xfe, ..] => units(u16::from_le_bytes),
         [0xfe, 0xff, ..] => units(u16::from_be_bytes),
-        _ => std::str::from_utf8(text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text)).ok().map(Cow::Borrowed),
+        _ => std::str::from_utf8(text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text))
+            .ok()
+            .map(Cow::Borrowed),
     }
 }
 
@@ -95,20 +99,28 @@ impl<'a> StackParser<'a> {
             }
         }
     }
+
     fn event(&mut self) -> Result<Event<'a>> {
-        self.xml.read_event().map_err(|e| Error::decode(self.file, format!("stack.xml is damaged ({e})")))
+        self.xml
+            .read_event()
+            .map_err(|e| Error::decode(self.file, format!("stack.xml is damaged ({e})")))
     }
+
     fn refused(&self, reason: impl std::fmt::Display) -> Error {
         Error::decode(self.file, format!("stack.xml: {reason}"))
     }
+
     fn size(&self, image: &BytesStart) -> Result<Option<Size>> {
         let attributes = self.attributes(image)?;
-        let side = |name: &str| attributes.number(name).filter(|side| *side >= 1.0).map(|side| side.round() as u64);
+        let side = |name: &str| {
+            attributes.number(name).filter(|side| *side >= 1.0).map(|side| side.round() as u64)
+        };
         match (side("w"), side("h")) {
             (Some(width), Some(height)) => self.budget.size(self.file, width, height).map(Some),
             _ => Ok(None),
         }
     }
+
     /// Everything up to the end of a stack, bottom first.
     fn stack(&mut self, depth: usize) -> Result<Vec<StackElement>> {
         if depth > self.budget.group_depth {
@@ -142,31 +154,40 @@ impl<'a> StackParser<'a> {
         layers.reverse();
         Ok(layers)
     }
+
     fn skip(&mut self, element: &BytesStart) -> Result<()> {
         let damaged = |e| Error::decode(self.file, format!("stack.xml is damaged ({e})"));
         self.xml.read_to_end(element.to_end().to_owned().name()).map(drop).map_err(damaged)
     }
+
     fn attributes(&self, element: &BytesStart) -> Result<XmlAttributes> {
         let mut all = XmlAttributes::default();
         for attribute in element.attributes() {
-            let attribute = attribute.map_err(|e| self.refused(format!("an attribute is damaged ({e})")))?;
-            // Custom entities are not expanded: they could grow without bound or lead to other files.
+            let attribute =
+                attribute.map_err(|e| self.refused(format!("an attribute is damaged ({e})")))?;
+            // Custom entities are not expanded: they could grow without bound or lead to other
+            // files.
             let value = attribute.normalized_value(XmlVersion::Implicit1_0);
             let value = value.map_or_else(|_| attribute.value.as_ref().to_owned(), Cow::into_owned);
             all.0.push((attribute.key.as_ref().to_owned(), value));
         }
         Ok(all)
     }
+
     /// A layer or stack by its attributes, the stack still empty.
     fn element(&mut self, element: &BytesStart) -> Result<StackElement> {
         self.left = self.left.checked_sub(1).ok_or_else(|| {
-            Error::too_large(self.file, format!("stack.xml has more than {} layers", self.budget.layers))
+            Error::too_large(
+                self.file,
+                format!("stack.xml has more than {} layers", self.budget.layers),
+            )
         })?;
         let attributes = self.attributes(element)?;
         let is_stack = element.local_name().as_ref() == "stack";
         let op = attributes.get("composite-op").unwrap_or("svg:src-over");
         let blend = blend(op);
-        let mut layer = Layer::new(attributes.get("name").unwrap_or(""), Content::Group(Default::default()));
+        let mut layer =
+            Layer::new(attributes.get("name").unwrap_or(""), Content::Group(Default::default()));
         layer.visible = attributes.get("visibility") != Some("hidden");
         layer.opacity = attributes.number("opacity").map_or(1.0, |o| o.max(0.0).min(1.0) as f32);
         layer.blend = blend.unwrap_or_default();
@@ -174,9 +195,11 @@ impl<'a> StackParser<'a> {
         if attributes.get("edit-locked") == Some("true") {
             layer.lock = LayerLock::All;
         }
-        let offset = |name: &str| attributes.number(name).unwrap_or(0.0).max(-1e6).min(1e6).round() as i32;
+        let offset =
+            |name: &str| attributes.number(name).unwrap_or(0.0).max(-1e6).min(1e6).round() as i32;
         let shows = if is_stack {
-            // A stack that is not isolated, and has no property that isolates it, blends layer by layer.
+            // A stack that is not isolated, and has no property that isolates it, blends layer by
+            // layer.
             let apart = attributes.get("isolation") == Some("isolate");
             let isolated = apart || layer.opacity < 1.0 || layer.blend != BlendMode::Normal;
             ElementContent::Stack { isolated, layers: Vec::new() }
@@ -199,14 +222,17 @@ fn with_layers(element: StackElement, inner: Vec<StackElement>) -> StackElement 
     StackElement { shows, ..element }
 }
 
-/// The blend mode of a composite operation, in OpenRaster's words or in those of programs that add their own.
+/// The blend mode of a composite operation, in OpenRaster's words or in those of programs that add
+/// their own.
 fn blend(op: &str) -> Option<BlendMode> {
     let plain = op.rsplit(':').next().unwrap_or(op).replace(['_', ' '], "-");
-    BlendMode::from_openraster(op).or_else(|| BlendMode::from_name(&plain)).or(match plain.as_str() {
-        "src-over" | "" => Some(BlendMode::Normal),
-        "add" => Some(BlendMode::LinearDodge),
-        _ => None,
-    })
+    BlendMode::from_openraster(op).or_else(|| BlendMode::from_name(&plain)).or(
+        match plain.as_str() {
+            "src-over" | "" => Some(BlendMode::Normal),
+            "add" => Some(BlendMode::LinearDodge),
+            _ => None,
+        },
+    )
 }
 
 #[derive(Default)]
@@ -216,6 +242,7 @@ impl XmlAttributes {
     fn get(&self, name: &str) -> Option<&str> {
         self.0.iter().find(|(key, _)| key == name).map(|(_, value)| value.as_str())
     }
+
     /// Some programs write whole numbers with a fraction.
     fn number(&self, name: &str) -> Option<f64> {
         self.get(name)?.trim().parse().ok().filter(|number: &f64| number.is_finite())
@@ -229,6 +256,7 @@ mod tests {
     fn parsed(xml: &str) -> Result<StackXml> {
         read(Path::new("a.ora"), xml.as_bytes(), &Budget::default())
     }
+
     fn said(xml: &str) -> String {
         parsed(xml).err().unwrap().to_string()
     }
@@ -246,24 +274,41 @@ mod tests {
             (top.layer.name.as_str(), top.layer.opacity, top.layer.blend),
             ("top & ä", 0.5, BlendMode::Multiply)
         );
-        assert!(matches!(&top.shows, ElementContent::Picture { x: -3, y: 4, src } if src == "data/1.png"));
-        let ElementContent::Stack { isolated: true, layers } = &group.shows else { panic!("isolated") };
+        assert!(
+            matches!(&top.shows, ElementContent::Picture { x: -3, y: 4, src } if src == "data/1.png")
+        );
+        let ElementContent::Stack { isolated: true, layers } = &group.shows else {
+            panic!("isolated")
+        };
         assert!(!layers[0].layer.visible);
     }
+
     #[test]
     fn what_programs_write_differently_is_understood() {
         let body = "w=\"32.0\" h='24'><stack><layer name='&a; ü' x='1.5' composite-op='svg:src-atop'/></stack></image>";
-        let plain = format!("<?xml version='1.0'?><!DOCTYPE image [<!ENTITY a SYSTEM 'file:///b'>]><image {body}");
-        let sixteen = |to: fn(u16) -> [u8; 2]| [0xfeff].into_iter().chain(plain.encode_utf16()).flat_map(to).collect();
+        let plain = format!(
+            "<?xml version='1.0'?><!DOCTYPE image [<!ENTITY a SYSTEM 'file:///b'>]><image {body}"
+        );
+        let sixteen = |to: fn(u16) -> [u8; 2]| {
+            [0xfeff].into_iter().chain(plain.encode_utf16()).flat_map(to).collect()
+        };
         let marked = [b"\xef\xbb\xbf", plain.as_bytes()].concat();
-        for text in [plain.clone().into_bytes(), marked, sixteen(u16::to_le_bytes), sixteen(u16::to_be_bytes)] {
+        for text in [
+            plain.clone().into_bytes(),
+            marked,
+            sixteen(u16::to_le_bytes),
+            sixteen(u16::to_be_bytes),
+        ] {
             let stack = read(Path::new("a.ora"), &text, &Budget::default()).unwrap();
             let layer = &stack.layers[0];
             assert_eq!((stack.size, layer.layer.name.as_str()), (Some(Size::new(32, 24)), "&a; ü"));
-            assert!(layer.is_atop && matches!(layer.shows, ElementContent::Picture { x: 2, y: 0, .. }));
+            assert!(
+                layer.is_atop && matches!(layer.shows, ElementContent::Picture { x: 2, y: 0, .. })
+            );
         }
         assert!(parsed("<image><stack/></image>").unwrap().size.is_none());
     }
+
     #[test]
     fn damaged_deep_and_endless_stacks_get_a_sentence() {
         assert!(said("<image w='1' h='1'><stack><layer").contains("damaged"));
@@ -271,9 +316,11 @@ mod tests {
         assert!(said("<image w='99999' h='1'><stack/></image>").contains("99999"));
         let deep = format!("<image w='1' h='1'><stack>{}", "<stack>".repeat(60));
         assert!(said(&deep).contains("nests more than"));
-        let many = format!("<image w='1' h='1'><stack>{}</stack></image>", "<layer/>".repeat(10_001));
+        let many =
+            format!("<image w='1' h='1'><stack>{}</stack></image>", "<layer/>".repeat(10_001));
         assert!(said(&many).contains("more than 10000 layers"));
     }
+
     #[test]
     fn operations_of_other_programs_are_known_by_their_names() {
         assert_eq!(blend("krita:linear_dodge"), Some(BlendMode::LinearDodge));

@@ -10,17 +10,22 @@ fn tiny() -> Document {
     let mut json = everything_json(12);
     let mut files = files(12);
     files.0.insert("photo.png".into(), png(4, 3, |x, y| [x as u8 * 60, y as u8 * 80, 90, 255]));
-    files.0.insert("paint.png".into(), png(6, 5, |x, y| [200, x as u8 * 40, 10, 100 + y as u8 * 30]));
+    files
+        .0
+        .insert("paint.png".into(), png(6, 5, |x, y| [200, x as u8 * 40, 10, 100 + y as u8 * 30]));
     files.0.insert("tip.png".into(), png(3, 3, |x, _| [x as u8 * 100 + 1; 4].map(|v| v.max(1))));
     json["layers"][1]["x"] = json!(1);
     json["layers"][1]["y"] = json!(2);
     read_recipe(&json, &files)
 }
+
 /// A document's parameters, and a checksum of its picture.
 fn fingerprint(document: &Document) -> (String, u32) {
-    let picture = flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect());
+    let picture =
+        flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect());
     (recipe::write(document).to_string(), crc32fast::hash(&picture))
 }
+
 /// Reads damaged bytes: an error, a note, or the very same document; whether anything came back.
 fn check(bytes: &[u8], whole: &(String, u32), what: &str) -> bool {
     match read(Path::new("a.ora"), bytes, &Budget::default()) {
@@ -32,6 +37,7 @@ fn check(bytes: &[u8], whole: &(String, u32), what: &str) -> bool {
         Ok(_) => true,
     }
 }
+
 fn flip_bits(step: usize) {
     let bytes = written(&tiny());
     assert!(bytes.len() < 20_000, "{}", bytes.len());
@@ -46,6 +52,7 @@ fn flip_bits(step: usize) {
     // Only a name that leads out of the file makes all of it unreadable.
     assert!(came_back * 1000 >= flips * 995, "{came_back} of {flips}");
 }
+
 fn truncate(step: usize) {
     let bytes = written(&tiny());
     let whole = fingerprint(&read_back(&bytes).document);
@@ -60,10 +67,12 @@ fn truncate(step: usize) {
 fn no_flipped_bit_changes_a_project_silently() {
     flip_bits(97);
 }
+
 #[test]
 fn a_project_cut_short_anywhere_gives_what_is_there() {
     truncate(61);
 }
+
 /// *Long*: see docs/PROJECTS.md.
 #[test]
 #[ignore = "minutes; run by name"]
@@ -71,6 +80,7 @@ fn long_every_bit_and_every_length() {
     flip_bits(1);
     truncate(1);
 }
+
 #[test]
 fn a_lost_table_of_contents_loses_nothing() {
     let bytes = written(&tiny());
@@ -120,6 +130,7 @@ mod generated {
             },
         )
     }
+
     fn layers() -> impl Strategy<Value = serde_json::Value> {
         let list = |item| prop::collection::vec(item, 0..4).prop_map(serde_json::Value::from);
         let group = (list(layer().boxed()), any::<bool>(), 0..=4u8).prop_map(|(layers, through, quarters)| {
@@ -127,6 +138,7 @@ mod generated {
         });
         list(prop_oneof![3 => layer(), 1 => group].boxed())
     }
+
     fn document(layers: &serde_json::Value) -> Document {
         let json = json!({ "canvas": { "width": 32, "height": 32 },
             "surface": { "normal": { "file": "maps/n.png" } }, "layers": layers });
@@ -143,6 +155,7 @@ mod generated {
             assert_same(&document, &back.document);
             prop_assert!(written(&back.document) == first);
         }
+
         #[test]
         fn any_document_looks_the_same_to_other_programs(layers in layers()) {
             let document = document(&layers);
@@ -158,8 +171,8 @@ mod generated {
             for (x, y) in (0..32).flat_map(|y| (0..32).map(move |x| (x, y))).filter(|at| !mixed.contains(at)) {
                 let (a, b) = (ours.pixel(x, y), theirs.pixel(x, y));
                 let off = shown(a).into_iter().zip(shown(b)).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-                // Each layer's picture is rounded to bytes once more; saturations of near-greys make most of that, 4.4
-                // in the worst of 30,000 documents.
+                // Each layer's picture is rounded to bytes once more; saturations of near-greys
+                // make most of that, 4.4 in the worst of 30,000 documents.
                 prop_assert!(off <= 6.0, "at {x}, {y}: {a:?} is {b:?} elsewhere");
             }
         }

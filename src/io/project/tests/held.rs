@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::document::{
-    Content, DerivedMask, Group, Layer, LayerMask, LayerTransform, Live, Part, PartKind, StrokeList, TransformShape,
+    Content, DerivedMask, Group, Layer, LayerMask, LayerTransform, Live, Part, PartKind,
+    StrokeList, TransformShape,
 };
 use crate::json;
 use crate::math::vec2;
@@ -14,9 +15,14 @@ use crate::surface::Operator;
 fn fill() -> Layer {
     Layer::new("Fill", Content::Fill(Color { r: 9, g: 90, b: 200, a: 120 }))
 }
+
 fn of(layers: Vec<Layer>) -> Document {
-    Document { layers: layers.into_iter().map(Arc::new).collect(), ..Document::empty(Size::new(48, 40)) }
+    Document {
+        layers: layers.into_iter().map(Arc::new).collect(),
+        ..Document::empty(Size::new(48, 40))
+    }
 }
+
 /// It fits, and comes back equal when saved and opened: nothing became pixels.
 fn comes_back(document: &Document) -> Vec<u8> {
     assert_eq!(document.fits(None), Ok(()));
@@ -26,11 +32,14 @@ fn comes_back(document: &Document) -> Vec<u8> {
     assert!(back.is_whole);
     assert_eq!(document.difference(&back.document), None);
     assert_eq!(
-        super::super::read_back(Path::new("a.ora"), &bytes, document, &Budget::default()).err().map(|e| e.to_string()),
+        super::super::read_back(Path::new("a.ora"), &bytes, document, &Budget::default())
+            .err()
+            .map(|e| e.to_string()),
         None
     );
     bytes
 }
+
 /// A stroke as a pen at 240 Hz draws it.
 fn drawn(count: usize) -> Arc<Stroke> {
     let one = |i: usize| {
@@ -42,6 +51,7 @@ fn drawn(count: usize) -> Arc<Stroke> {
     let brush = Brush { size: 3.0, ..Brush::default() };
     Arc::new(Stroke::new(brush, Operator::None, Color::BLACK, (0..count).map(one).collect()))
 }
+
 fn strokes(strokes: Vec<Arc<Stroke>>) -> Layer {
     Layer::new("Ink", Content::Strokes(Live::new(StrokeList { strokes })))
 }
@@ -55,17 +65,21 @@ fn forty_nested_groups_come_back() {
     comes_back(&of(vec![(0..40).fold(fill(), into)]));
     comes_back(&of(vec![(0..Document::DEEPEST).fold(strokes(vec![drawn(5)]), into)]));
 }
+
 #[test]
 fn two_thousand_and_a_hundred_layers_come_back() {
-    let named = |i: usize| Layer { name: format!("Layer {i}"), opacity: 1.0 / (i + 1) as f32, ..fill() };
+    let named =
+        |i: usize| Layer { name: format!("Layer {i}"), opacity: 1.0 / (i + 1) as f32, ..fill() };
     comes_back(&of((0..2_100).map(named).collect()));
 }
+
 #[test]
 fn a_stroke_of_nine_hundred_thousand_readings_comes_back() {
     let bytes = comes_back(&of(vec![strokes(vec![drawn(900_000), drawn(40)])]));
     let description = entries(&bytes).into_iter().find(|(name, _)| name == DOCUMENT).unwrap().1;
     assert!(description.len() < 12_000_000, "{} bytes", description.len());
 }
+
 #[test]
 fn sculpting_comes_back_whatever_the_number_of_readings() {
     let stroke = |count: usize| SculptStroke {
@@ -76,11 +90,13 @@ fn sculpting_comes_back_whatever_the_number_of_readings() {
         samples: drawn(count).samples().iter().map(|sample| (sample.at, sample.pressure)).collect(),
     };
     let strokes = [1, 2, 32, 33, 200, 5_000].map(stroke).to_vec();
-    let ball = PartKind::Sweep { balls: vec![Ball { at: vec2(24.0, 20.0), radius: 15.0 }], puff: 1.0 };
+    let ball =
+        PartKind::Sweep { balls: vec![Ball { at: vec2(24.0, 20.0), radius: 15.0 }], puff: 1.0 };
     let sculpt = PartKind::Sculpt { on: "ball".into(), strokes };
     let parts = [Part::new("ball", ball), Part::new("sculpt", sculpt)];
     comes_back(&of(vec![fill()]).with_parts(parts.map(Arc::new).to_vec()));
 }
+
 #[test]
 fn factors_of_any_digits_come_back() {
     let noise = |i: u32| f64::from(crate::math::hash::mix(i)) / f64::from(u32::MAX);
@@ -91,6 +107,7 @@ fn factors_of_any_digits_come_back() {
     };
     comes_back(&of((0..500).map(turned).collect()));
 }
+
 #[test]
 fn what_differs_is_called_by_its_name() {
     let told = |change: fn(&mut Layer)| {
@@ -100,10 +117,18 @@ fn what_differs_is_called_by_its_name() {
     };
     let shape = TransformShape::Matrix([1.0, 0.0, 0.0, 1.0, 3.0, 0.0]);
     assert_eq!(told(|layer| layer.opacity = 0.5), "“Fill”: its opacity");
-    assert_eq!(told(|layer| layer.on = Some(crate::document::HomeFrame::canvas())), "“Fill”: its home");
-    let moved = Layer { transform: Some(LayerTransform { shape, filter: Default::default() }), ..fill() };
-    assert_eq!(of(vec![fill()]).difference(&of(vec![moved])).unwrap_or_default(), "“Fill”: its transform");
+    assert_eq!(
+        told(|layer| layer.on = Some(crate::document::HomeFrame::canvas())),
+        "“Fill”: its home"
+    );
+    let moved =
+        Layer { transform: Some(LayerTransform { shape, filter: Default::default() }), ..fill() };
+    assert_eq!(
+        of(vec![fill()]).difference(&of(vec![moved])).unwrap_or_default(),
+        "“Fill”: its transform"
+    );
 }
+
 #[test]
 fn a_mask_that_is_a_step_comes_back() {
     let kinds = [
@@ -114,14 +139,19 @@ fn a_mask_that_is_a_step_comes_back() {
     let masked = |kind| Layer { mask: Some(LayerMask::new(kind)), ..fill() };
     comes_back(&of(kinds.into_iter().map(masked).collect()));
 }
+
 #[test]
 fn a_material_under_an_environment_keeps_its_lamp() {
-    let picture = crate::raster::Picture::srgb8(Size::new(2, 1), vec![[9, 9, 9, 255], [200; 4]]).unwrap();
-    let shading =
-        Shading { environment: Some(Environment::new("sky.png".into(), picture)), ..Shading::new(Model::Ashikhmin) };
+    let picture =
+        crate::raster::Picture::srgb8(Size::new(2, 1), vec![[9, 9, 9, 255], [200; 4]]).unwrap();
+    let shading = Shading {
+        environment: Some(Environment::new("sky.png".into(), picture)),
+        ..Shading::new(Model::Ashikhmin)
+    };
     assert_eq!(shading.lights.len(), 1);
     comes_back(&of(vec![Layer::new("Metal", Content::Shading(Live::new(shading)))]));
 }
+
 #[test]
 fn what_dots_far_apart_take_is_counted_by_the_dots() {
     let dots = |i: i32| {
@@ -129,7 +159,10 @@ fn what_dots_far_apart_take_is_counted_by_the_dots() {
         let dot = |v: u8| crate::raster::Tile::from_bytes(vec![v; 64 * 64 * 4]).map(Arc::new);
         tiles.set(crate::raster::TileAt::new(0, 0), dot(255));
         tiles.set(crate::raster::TileAt::new(30, 30 + i), dot(200));
-        Layer::new("Dots", Content::Pixels(crate::document::PixelLayer { file: String::new(), x: 0, y: 0, tiles }))
+        Layer::new(
+            "Dots",
+            Content::Pixels(crate::document::PixelLayer { file: String::new(), x: 0, y: 0, tiles }),
+        )
     };
     let document = of((0..3).map(dots).collect());
     let bytes = written(&document);
@@ -138,6 +171,7 @@ fn what_dots_far_apart_take_is_counted_by_the_dots() {
     let back = read(Path::new("a.ora"), &bytes, &budget).unwrap();
     assert!(back.is_whole && document.difference(&back.document).is_none(), "{:?}", back.notes);
 }
+
 #[test]
 fn a_description_takes_no_more_values_than_edits_are_held_to() {
     // As many values as a reader counts: each comma, each list, eight for an object.
@@ -152,19 +186,28 @@ fn a_description_takes_no_more_values_than_edits_are_held_to() {
     };
     let lines = |n: usize| strokes((0..n).map(|_| drawn(40)).collect());
     let few = |n: usize| strokes((0..n).map(|_| drawn(20)).collect());
-    let many = [of(vec![lines(400)]), of(vec![few(400)]), of((0..50).map(|_| fill()).collect()), everything(64)];
+    let many = [
+        of(vec![lines(400)]),
+        of(vec![few(400)]),
+        of((0..50).map(|_| fill()).collect()),
+        everything(64),
+    ];
     for document in many {
         let text = String::from_utf8(entries(&written(&document)).remove(1).1).unwrap();
         let value = json::parse(Path::new("d"), text.as_bytes(), &Budget::default()).unwrap();
-        let (layers, strokes) = (document.walk().len(), value.to_string().matches("samples").count());
+        let (layers, strokes) =
+            (document.walk().len(), value.to_string().matches("samples").count());
         assert!(counted(&text) < 200 * layers + 300 * (strokes + 1), "{}", counted(&text));
     }
-    let (few, many) = (counted(&text_of(&of(vec![lines(10)]))), counted(&text_of(&of(vec![lines(110)]))));
+    let (few, many) =
+        (counted(&text_of(&of(vec![lines(10)]))), counted(&text_of(&of(vec![lines(110)]))));
     assert!(many - few <= 100 * 60, "{} values a stroke whose brush stays", (many - few) / 100);
 }
+
 fn text_of(document: &Document) -> String {
     crate::recipe::print(document)
 }
+
 #[test]
 fn a_save_that_would_not_come_back_leaves_the_old_file() {
     let folder = tempfile::tempdir().unwrap();
@@ -179,13 +222,19 @@ fn a_save_that_would_not_come_back_leaves_the_old_file() {
         (Layer { opacity: 1.5, ..fill() }, "opacity: is 1.5; it must be between 0 and 1"),
         (strokes(vec![Arc::new(stroke)]), "“Ink” became pixels"),
     ] {
-        let said = crate::save(&of(vec![bad]), &file, crate::Overwrite::Anything, &Progress::default());
+        let said =
+            crate::save(&of(vec![bad]), &file, crate::Overwrite::Anything, &Progress::default());
         let said = said.err().map(|e| e.to_string()).unwrap_or_default();
         assert!(said.contains("would not come back as it is") && said.contains(why), "{said}");
         assert!(std::fs::read(&file).unwrap() == old, "the old file stays");
-        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "and nothing is left beside it");
+        assert_eq!(
+            std::fs::read_dir(folder.path()).unwrap().count(),
+            1,
+            "and nothing is left beside it"
+        );
     }
 }
+
 #[test]
 fn a_drawing_that_was_scaled_by_odd_sides_is_saved() {
     let folder = tempfile::tempdir().unwrap();

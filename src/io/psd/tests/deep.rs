@@ -1,4 +1,5 @@
-//! Files of 16 and 32 bits a channel: what bytes cannot hold of them is still there when they are open.
+//! Files of 16 and 32 bits a channel: what bytes cannot hold of them is still there when they are
+//! open.
 
 use super::foreign::attack;
 use super::made::*;
@@ -18,33 +19,45 @@ const RECT: Rect = Rect::new(0, 0, SIDE as i32, SIDE as i32);
 fn value(i: usize, c: usize) -> u16 {
     (i * 7 + c * 20_011 + 1) as u16
 }
+
 fn plane(c: usize, stored: impl Fn(u16) -> Vec<u8>) -> Vec<u8> {
     (0..(SIDE * SIDE) as usize).flat_map(|i| stored(value(i, c))).collect()
 }
+
 fn short(v: u16) -> Vec<u8> {
     v.to_be_bytes().to_vec()
 }
+
 /// Linear light whose sRGB is the value.
 fn light(v: u16) -> Vec<u8> {
     srgb::decode(f32::from(v) / 65535.0).to_be_bytes().to_vec()
 }
+
 /// The canvas filled with those values, as a picture alone or with a layer that shows the same.
 fn made(bits: u16, stored: impl Fn(u16) -> Vec<u8>, has_layer: bool) -> Made {
     let planes: Vec<Vec<u8>> = (0..3).map(|c| plane(c, &stored)).collect();
     let channels = planes.iter().zip(0..).map(|(plane, c)| (c, plane.clone())).collect();
     let layer = MadeLayer { channels, ..coloured("soft", SIDE, SIDE, [0; 3]) };
-    Made { bits, merged: planes, layers: has_layer.then(|| vec![layer]), ..plain(SIDE, SIDE, [0; 3]) }
+    Made {
+        bits,
+        merged: planes,
+        layers: has_layer.then(|| vec![layer]),
+        ..plain(SIDE, SIDE, [0; 3])
+    }
 }
+
 fn tiles(document: &Document, layer: usize) -> &TileGrid {
     match &document.layers[layer].content {
         Content::Pixels(pixels) => &pixels.tiles,
         _ => panic!("a paint layer"),
     }
 }
+
 /// The greatest difference of any channel from what was stored.
 fn apart(tiles: &TileGrid) -> u16 {
     let pixels = tiles.to_straight_deep(RECT);
-    let of = |(i, pixel): (usize, &[u16; 4])| (0..3).map(move |c| (i, c, pixel[c])).collect::<Vec<_>>();
+    let of =
+        |(i, pixel): (usize, &[u16; 4])| (0..3).map(move |c| (i, c, pixel[c])).collect::<Vec<_>>();
     pixels.iter().enumerate().flat_map(of).map(|(i, c, v)| v.abs_diff(value(i, c))).max().unwrap()
 }
 
@@ -52,18 +65,23 @@ fn apart(tiles: &TileGrid) -> u16 {
 fn pictures_and_layers_of_more_than_8_bits_become_paint_of_16() {
     for (bits, most, said) in [(16, 0, "are kept here"), (32, 1, "became 16")] {
         for has_layer in [false, true] {
-            let made = if bits == 16 { made(16, short, has_layer) } else { made(32, light, has_layer) };
+            let made =
+                if bits == 16 { made(16, short, has_layer) } else { made(32, light, has_layer) };
             let bytes = made.bytes();
             attack(&bytes);
             let ProjectContents { document, notes, .. } = read_back(&bytes);
             assert_eq!((document.layers.len(), notes.len()), (1, 1), "{bits} bits: {notes:?}");
-            assert!(notes[0].contains(said) && notes[0].contains("8 for other programs"), "{notes:?}");
+            assert!(
+                notes[0].contains(said) && notes[0].contains("8 for other programs"),
+                "{notes:?}"
+            );
             assert!(apart(tiles(&document, 0)) <= most, "{bits} bits, layers: {has_layer}");
         }
     }
     let eight = made(8, |v| vec![(v >> 8) as u8], true);
     assert!(!tiles(&read_back(&eight.bytes()).document, 0).is_deep_in(RECT));
 }
+
 #[test]
 fn grey_and_half_transparent_pixels_keep_16_bits() {
     let mut grey = made(16, short, true);
@@ -79,15 +97,18 @@ fn grey_and_half_transparent_pixels_keep_16_bits() {
         assert!(r == g && g == b && r.abs_diff(value(i, 0)) <= 2, "{r} for {}", value(i, 0));
     }
 }
+
 #[test]
 fn the_file_s_own_picture_keeps_16_bits_where_it_is_shown() {
     let mut made = made(16, short, true);
     made.layers.as_mut().unwrap().push(empty("dark", vec![(b"levl", vec![0; 4])]));
-    made.layers.as_mut().unwrap()[0].channels = (0..3).map(|c| (c, vec![0; (SIDE * SIDE * 2) as usize])).collect();
+    made.layers.as_mut().unwrap()[0].channels =
+        (0..3).map(|c| (c, vec![0; (SIDE * SIDE * 2) as usize])).collect();
     let document = read_back(&made.bytes()).document;
     assert_eq!(document.layers[1].name, "The file's own picture");
     assert_eq!(apart(tiles(&document, 1)), 0);
 }
+
 #[test]
 fn a_wide_profile_is_applied_in_16_bits() {
     let mut made = made(16, short, false);
@@ -98,18 +119,24 @@ fn a_wide_profile_is_applied_in_16_bits() {
     let distinct: std::collections::BTreeSet<u16> = pixels.iter().map(|pixel| pixel[1]).collect();
     assert!(distinct.len() > 4000, "{} levels", distinct.len());
 }
+
 #[test]
 fn short_of_memory_a_file_of_16_bits_is_read_with_8() {
     let (file, bytes) = (Path::new("a.psd"), made(16, short, true).bytes());
     let area = u64::from(SIDE * SIDE);
     let read = |free: u64| {
         let budget = Budget { memory_bytes: free, ..Budget::default() };
-        fitted(file, &budget, |budget| super::super::read(file, &bytes, budget), |read| &read.document)
+        fitted(
+            file,
+            &budget,
+            |budget| super::super::read(file, &bytes, budget),
+            |read| &read.document,
+        )
     };
     let (whole, none) = read(60 * area).unwrap();
     assert_eq!(none, None);
-    // With 8 bits the layer takes 4 a pixel, the picture 4 with planes of 4 and 8, and flattening 4; 16 bits take 12,
-    // 12, 8, 8 and 4.
+    // With 8 bits the layer takes 4 a pixel, the picture 4 with planes of 4 and 8, and flattening
+    // 4; 16 bits take 12, 12, 8, 8 and 4.
     for free in [24 * area, 39 * area] {
         let (rounded, note) = read(free).unwrap();
         assert!(note.is_some_and(|note| note.contains("8 bits a channel")), "{free}");

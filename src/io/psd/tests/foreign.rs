@@ -14,9 +14,12 @@ fn opened(made: &Made) -> ProjectContents {
     attack(&bytes);
     read_back(&bytes)
 }
-/// Each of these files in many damaged versions: read or refused, never a panic, nothing as large as a file claims.
+
+/// Each of these files in many damaged versions: read or refused, never a panic, nothing as large
+/// as a file claims.
 pub fn attack(bytes: &[u8]) {
-    let budget = Budget { area_px: 1 << 18, document_px: 1 << 20, side_px: 2048, ..Budget::default() };
+    let budget =
+        Budget { area_px: 1 << 18, document_px: 1 << 20, side_px: 2048, ..Budget::default() };
     let dice = |i: u32, j: u32| mix(i.wrapping_mul(31).wrapping_add(j)) as usize;
     for i in 0..250 {
         let mut broken = bytes.to_vec();
@@ -27,8 +30,13 @@ pub fn attack(bytes: &[u8]) {
                 0 => broken[at] ^= 1 << (dice(i, 4 * j + 2) % 8),
                 1 => broken[at] = [0, 1, 0x7f, 0x80, 0xff][dice(i, 4 * j + 2) % 5],
                 2 => {
-                    let figure = [0u32, 1, 0x7fff_ffff, 0xffff_ffff, 0x0001_0000][dice(i, 4 * j + 2) % 5];
-                    broken.iter_mut().skip(at).zip(figure.to_be_bytes()).for_each(|(byte, digit)| *byte = digit);
+                    let figure =
+                        [0u32, 1, 0x7fff_ffff, 0xffff_ffff, 0x0001_0000][dice(i, 4 * j + 2) % 5];
+                    broken
+                        .iter_mut()
+                        .skip(at)
+                        .zip(figure.to_be_bytes())
+                        .for_each(|(byte, digit)| *byte = digit);
                 }
                 3 => drop(broken.drain(at..(at + dice(i, 4 * j + 2) % 9).min(broken.len()))),
                 _ => broken.truncate(at.max(30)),
@@ -43,9 +51,11 @@ pub fn attack(bytes: &[u8]) {
         }
     }
 }
+
 fn pixel(document: &Document, x: i32, y: i32) -> [u8; 4] {
     flatten(document, &Progress::default()).unwrap().pixel(x, y)
 }
+
 fn names(document: &Document) -> Vec<(&str, bool)> {
     document.layers.iter().map(|layer| (layer.name.as_str(), layer.visible)).collect()
 }
@@ -54,7 +64,11 @@ const HIDDEN: [(&str, bool); 2] = [("Layers", false), ("The file's own picture",
 #[test]
 fn every_kind_of_colours_opens_from_the_file_s_picture() {
     let float = |v: f32| v.to_be_bytes().to_vec();
-    let table = || (0..3).flat_map(|c| (0..256).map(move |i| if i == 7 { [10, 20, 30][c] } else { 0 })).collect();
+    let table = || {
+        (0..3)
+            .flat_map(|c| (0..256).map(move |i| if i == 7 { [10, 20, 30][c] } else { 0 }))
+            .collect()
+    };
     type Kind = (u16, u16, Vec<u8>, Vec<Vec<u8>>, [u8; 3]);
     let kinds: [Kind; 9] = [
         // The first pixel of eight is white, the others ink.
@@ -74,12 +88,20 @@ fn every_kind_of_colours_opens_from_the_file_s_picture() {
         let [r, g, b, a] = pixel(&back.document, 0, 0);
         let far = [r, g, b].iter().zip(rgb).map(|(v, w)| v.abs_diff(w)).max();
         assert!(far <= Some(1) && a == 255, "mode {mode}, {bits} bits: {:?}", [r, g, b, a]);
-        assert_eq!(back.notes.len(), usize::from(bits > 8 || ![0, 2, 3].contains(&mode)), "{:?}", back.notes);
+        assert_eq!(
+            back.notes.len(),
+            usize::from(bits > 8 || ![0, 2, 3].contains(&mode)),
+            "{:?}",
+            back.notes
+        );
     }
     let odd = Made { mode: 5, ..plain(1, 1, [0; 3]) };
-    let said = super::read(std::path::Path::new("a.psd"), &odd.bytes(), &crate::Budget::default()).err().unwrap();
+    let said = super::read(std::path::Path::new("a.psd"), &odd.bytes(), &crate::Budget::default())
+        .err()
+        .unwrap();
     assert!(said.to_string().contains("unknown kind 5"), "{said}");
 }
+
 #[test]
 fn a_spare_channel_with_a_name_is_no_transparency() {
     let mut made = Made { layers: None, ..plain(1, 1, [9, 9, 9]) };
@@ -88,6 +110,7 @@ fn a_spare_channel_with_a_name_is_no_transparency() {
     made.resources = vec![(1053, vec![0, 0, 0, 5])];
     assert_eq!(pixel(&opened(&made).document, 0, 0), [9, 9, 9, 255]);
 }
+
 #[test]
 fn what_is_left_out_and_missed_brings_the_file_s_own_picture() {
     // An adjustment, a look-up that turns grey 100 into 30.
@@ -98,14 +121,22 @@ fn what_is_left_out_and_missed_brings_the_file_s_own_picture() {
     assert_eq!(names(&back.document), HIDDEN);
     assert_eq!(pixel(&back.document, 1, 1), [30, 30, 30, 255]);
     assert!(back.notes[0].contains("“dark”: its adjustment is left out"), "{:?}", back.notes);
-    assert!(back.notes[1].contains("differ from the file's own picture by 70.0"), "{:?}", back.notes);
+    assert!(
+        back.notes[1].contains("differ from the file's own picture by 70.0"),
+        "{:?}",
+        back.notes
+    );
     // If it changes nothing, the layers stay visible.
     made.merged = vec![vec![100; 16]; 3];
     let back = opened(&made);
-    assert_eq!(names(&back.document), [("ground", true), ("dark", true), ("The file's own picture", false)]);
+    assert_eq!(
+        names(&back.document),
+        [("ground", true), ("dark", true), ("The file's own picture", false)]
+    );
     // If nothing is left out and the pictures agree, there is nothing to add.
     assert_eq!(opened(&plain(4, 4, [100; 3])).notes, [""; 0]);
 }
+
 #[test]
 fn nothing_looks_otherwise_without_a_note() {
     let made = Made { merged: vec![(0..16).collect(); 3], ..plain(4, 4, [100; 3]) };
@@ -113,6 +144,7 @@ fn nothing_looks_otherwise_without_a_note() {
     assert_eq!(names(&back.document), HIDDEN);
     assert!(back.notes.len() == 1 && back.notes[0].contains("differ"), "{:?}", back.notes);
 }
+
 #[test]
 fn knockout_blend_if_and_channels_that_are_left_alone_are_told() {
     let mut layer = coloured("top", 4, 4, [100; 3]);
@@ -128,19 +160,28 @@ fn knockout_blend_if_and_channels_that_are_left_alone_are_told() {
     made.layers.as_mut().unwrap()[0].ranges = [0, 0, 255, 255].repeat(8);
     assert_eq!(opened(&made).notes, [""; 0], "ranges that let everything through");
 }
+
 #[test]
 fn effects_count_where_one_is_switched_on() {
     let effects = |master: bool, shadow: bool| {
         let values = [("masterFXSwitch", flag(master)), ("DrSh", objc(&[("enab", flag(shadow))]))];
         [&[0; 4][..], &descriptor(&values)].concat()
     };
-    for (master, shadow, is_told) in [(true, true, true), (true, false, false), (false, true, false)] {
+    for (master, shadow, is_told) in
+        [(true, true, true), (true, false, false), (false, true, false)]
+    {
         let mut made = plain(4, 4, [100; 3]);
         // The old block repeats them.
-        made.layers.as_mut().unwrap()[0].blocks = vec![(b"lrFX", vec![0; 4]), (b"lfx2", effects(master, shadow))];
-        assert_eq!(opened(&made).notes.iter().any(|note| note.contains("effects")), is_told, "{master} {shadow}");
+        made.layers.as_mut().unwrap()[0].blocks =
+            vec![(b"lrFX", vec![0; 4]), (b"lfx2", effects(master, shadow))];
+        assert_eq!(
+            opened(&made).notes.iter().any(|note| note.contains("effects")),
+            is_told,
+            "{master} {shadow}"
+        );
     }
 }
+
 /// A rectangle's knots, as shares of the canvas: left, top, right, bottom.
 fn rectangle([x0, y0, x1, y1]: [f32; 4]) -> Vec<u8> {
     let mut out = [3u32.to_be_bytes(), [0; 4]].concat();
@@ -153,6 +194,7 @@ fn rectangle([x0, y0, x1, y1]: [f32; 4]) -> Vec<u8> {
     }
     out
 }
+
 #[test]
 fn a_solid_fill_with_a_vector_mask_is_a_fill_with_a_mask() {
     let fill = descriptor(&[("Clr ", rgb([200, 10, 20]))]);
@@ -167,7 +209,10 @@ fn a_solid_fill_with_a_vector_mask_is_a_fill_with_a_mask() {
     let layer = &back.document.layers[1];
     assert!(matches!(layer.content, Content::Fill(Color { r: 200, g: 10, b: 20, a: 255 })));
     assert!(matches!(layer.mask.as_ref().map(|mask| &mask.kind), Some(MaskKind::File { .. })));
-    assert_eq!([pixel(&back.document, 1, 2), pixel(&back.document, 2, 2)], [[200, 10, 20, 255], [100, 100, 100, 255]]);
+    assert_eq!(
+        [pixel(&back.document, 1, 2), pixel(&back.document, 2, 2)],
+        [[200, 10, 20, 255], [100, 100, 100, 255]]
+    );
     // Later versions store its pixels too, which show the mask.
     let mut with_pixels = coloured("shape", 2, 4, [200, 10, 20]);
     with_pixels.channels.push((-1, vec![255; 8]));
@@ -176,13 +221,21 @@ fn a_solid_fill_with_a_vector_mask_is_a_fill_with_a_mask() {
     let back = opened(&made);
     assert_eq!(back.notes, [""; 0]);
     assert!(matches!(back.document.layers[1].content, Content::Fill(_)));
-    assert_eq!([pixel(&back.document, 1, 2), pixel(&back.document, 2, 2)], [[200, 10, 20, 255], [100, 100, 100, 255]]);
+    assert_eq!(
+        [pixel(&back.document, 1, 2), pixel(&back.document, 2, 2)],
+        [[200, 10, 20, 255], [100, 100, 100, 255]]
+    );
 }
+
 #[test]
 fn a_straight_gradient_fill_is_a_gradient_and_others_are_pixels() {
-    let stop = |at: i32, value: u8| objc(&[("Clr ", rgb([value; 3])), ("Lctn", long(at)), ("Mdpn", long(50))]);
+    let stop = |at: i32, value: u8| {
+        objc(&[("Clr ", rgb([value; 3])), ("Lctn", long(at)), ("Mdpn", long(50))])
+    };
     let ramp = objc(&[("Clrs", list(&[stop(0, 0), stop(4096, 255)])), ("Trns", list(&[]))]);
-    let fill = |way: &str| descriptor(&[("Type", choice("GrdT", way)), ("Angl", double(0.0)), ("Grad", ramp.clone())]);
+    let fill = |way: &str| {
+        descriptor(&[("Type", choice("GrdT", way)), ("Angl", double(0.0)), ("Grad", ramp.clone())])
+    };
     let mut made = plain(8, 1, [100; 3]);
     made.merged = vec![(0..8).map(|x| (x * 32 + 16) as u8).collect(); 3];
     made.layers.as_mut().unwrap().push(empty("ramp", vec![(b"GdFl", fill("Lnr "))]));
@@ -192,9 +245,14 @@ fn a_straight_gradient_fill_is_a_gradient_and_others_are_pixels() {
     made.layers.as_mut().unwrap()[1] = empty("ramp", vec![(b"GdFl", fill("Rflc"))]);
     made.merged = vec![[7i32, 5, 3, 1, 1, 3, 5, 7].map(|v| (v * 32) as u8).to_vec(); 3];
     let back = opened(&made);
-    assert!(matches!(&back.notes[..], [note] if note.contains("gradient became pixels")), "{:?}", back.notes);
+    assert!(
+        matches!(&back.notes[..], [note] if note.contains("gradient became pixels")),
+        "{:?}",
+        back.notes
+    );
     assert!(matches!(back.document.layers[1].content, Content::Pixels(_)));
 }
+
 #[test]
 fn a_pattern_fill_is_drawn_from_the_file_s_pattern() {
     let plane = |values: [u8; 2]| {
@@ -206,30 +264,45 @@ fn a_pattern_fill_is_drawn_from_the_file_s_pattern() {
     let rect: Vec<u8> = [0i32, 0, 1, 2].iter().flat_map(|v| v.to_be_bytes()).collect();
     let planes = [plane([10, 40]), plane([20, 50]), plane([30, 60]), vec![0; 8]].concat();
     let body = [&rect[..], &3u32.to_be_bytes(), &planes].concat();
-    let head = [&1u32.to_be_bytes()[..], &3u32.to_be_bytes(), &[0, 1, 0, 2], &[0; 4], b"\x02ab"].concat();
+    let head =
+        [&1u32.to_be_bytes()[..], &3u32.to_be_bytes(), &[0, 1, 0, 2], &[0; 4], b"\x02ab"].concat();
     let one = [&head[..], &3u32.to_be_bytes(), &(body.len() as u32).to_be_bytes(), &body].concat();
     let mut made = plain(4, 1, [100; 3]);
     made.blocks = vec![(b"Patt", [&(one.len() as u32).to_be_bytes()[..], &one].concat())];
-    let fill = |id: &str| descriptor(&[("Ptrn", objc(&[("Idnt", text(id))])), ("Scl ", percent(100.0))]);
+    let fill =
+        |id: &str| descriptor(&[("Ptrn", objc(&[("Idnt", text(id))])), ("Scl ", percent(100.0))]);
     made.layers.as_mut().unwrap().push(empty("tiles", vec![(b"PtFl", fill("ab"))]));
     made.merged = [[10, 40], [20, 50], [30, 60]].map(|pair: [u8; 2]| pair.repeat(2)).to_vec();
     let back = opened(&made);
-    assert!(matches!(&back.notes[..], [note] if note.contains("pattern became pixels")), "{:?}", back.notes);
+    assert!(
+        matches!(&back.notes[..], [note] if note.contains("pattern became pixels")),
+        "{:?}",
+        back.notes
+    );
     assert_eq!(pixel(&back.document, 3, 0), [40, 50, 60, 255]);
     made.layers.as_mut().unwrap()[1] = empty("tiles", vec![(b"PtFl", fill("cd"))]);
     assert!(opened(&made).notes[0].contains("not in the file"));
 }
+
 #[test]
 fn an_artboard_has_its_ground_and_cuts_off_what_lies_beyond() {
     let side = |v: f64| double(v);
-    let rect = objc(&[("Top ", side(0.0)), ("Left", side(0.0)), ("Btom", side(2.0)), ("Rght", side(4.0))]);
+    let rect =
+        objc(&[("Top ", side(0.0)), ("Left", side(0.0)), ("Btom", side(2.0)), ("Rght", side(4.0))]);
     let kind = ("artboardBackgroundType", long(4));
     let board = descriptor(&[("artboardRect", rect), kind, ("Clr ", rgb([1, 2, 3]))]);
     let mut big = coloured("big", 2, 4, [200, 200, 200]);
     big.channels.push((-1, vec![255; 8]));
-    let group = vec![(b"lsct", [1u32.to_be_bytes(), *b"8BIM", *b"pass"].concat()), (b"artb", board)];
-    let layers = vec![empty("</>", vec![(b"lsct", 3u32.to_be_bytes().to_vec())]), big, empty("board", group)];
-    let plane = |inside: u8, ground: u8| [[inside, inside, ground, ground].repeat(2), vec![255; 8]].concat();
+    let group =
+        vec![(b"lsct", [1u32.to_be_bytes(), *b"8BIM", *b"pass"].concat()), (b"artb", board)];
+    let layers = vec![
+        empty("</>", vec![(b"lsct", 3u32.to_be_bytes().to_vec())]),
+        big,
+        empty("board", group),
+    ];
+    let plane = |inside: u8, ground: u8| {
+        [[inside, inside, ground, ground].repeat(2), vec![255; 8]].concat()
+    };
     let merged = vec![plane(200, 1), plane(200, 2), plane(200, 3)];
     let made = Made { layers: Some(layers), merged, ..plain(4, 4, [0; 3]) };
     let back = opened(&made);
@@ -237,6 +310,7 @@ fn an_artboard_has_its_ground_and_cuts_off_what_lies_beyond() {
     let seen = [(0, 0), (3, 1), (0, 3)].map(|(x, y)| pixel(&back.document, x, y));
     assert_eq!(seen, [[200, 200, 200, 255], [1, 2, 3, 255], [0; 4]]);
 }
+
 #[test]
 fn masks_are_switched_off_dense_and_inverted_as_the_file_says() {
     let rect: Vec<u8> = [0i32, 0, 4, 2].iter().flat_map(|v| v.to_be_bytes()).collect();
@@ -248,7 +322,9 @@ fn masks_are_switched_off_dense_and_inverted_as_the_file_says() {
         layer.mask_data = [&rect, tail].concat();
         made.layers.as_mut().unwrap().push(layer);
         let document = opened(&made).document;
-        let Content::Group(group) = &document.layers[0].content else { panic!("the picture is another") };
+        let Content::Group(group) = &document.layers[0].content else {
+            panic!("the picture is another")
+        };
         let layers = Document { layers: group.layers.clone(), ..document.clone() };
         [pixel(&layers, 0, 0)[0], pixel(&layers, 3, 0)[0]]
     };
@@ -259,12 +335,17 @@ fn masks_are_switched_off_dense_and_inverted_as_the_file_says() {
     assert_eq!(masked(&[0, 4, 0, 0]), [0, 200], "inverted");
     assert_eq!(masked(&[0, 16, 1, 128]), [200, 100], "half as dense");
 }
+
 #[test]
 fn kept_selections_open_by_their_names_and_inks_do_not() {
     let text = |name: &str| [&[name.len() as u8], name.as_bytes()].concat();
     let wide = |name: &str| {
         let units = name.encode_utf16().flat_map(u16::to_be_bytes);
-        (name.encode_utf16().count() as u32).to_be_bytes().into_iter().chain(units).collect::<Vec<u8>>()
+        (name.encode_utf16().count() as u32)
+            .to_be_bytes()
+            .into_iter()
+            .chain(units)
+            .collect::<Vec<u8>>()
     };
     let shown = |kind: u8| [&[0; 12][..], &[kind]].concat();
     let mut made = plain(4, 3, [10, 20, 30]);

@@ -1,4 +1,5 @@
-//! Small Photoshop files, laid out byte by byte as the format says, for what our own writer never writes.
+//! Small Photoshop files, laid out byte by byte as the format says, for what our own writer never
+//! writes.
 
 /// A file in the making.
 pub struct Made {
@@ -50,7 +51,13 @@ pub fn plain(width: u32, height: u32, rgb: [u8; 3]) -> Made {
 pub fn coloured(name: &'static str, width: u32, height: u32, rgb: [u8; 3]) -> MadeLayer {
     let area = (width * height) as usize;
     let channels = (0..3).map(|c| (c as i16, vec![rgb[c]; area])).collect();
-    MadeLayer { name, blend: *b"norm", rect: [0, 0, height as i32, width as i32], channels, ..MadeLayer::default() }
+    MadeLayer {
+        name,
+        blend: *b"norm",
+        rect: [0, 0, height as i32, width as i32],
+        channels,
+        ..MadeLayer::default()
+    }
 }
 
 /// A layer without pixels, with blocks.
@@ -61,6 +68,7 @@ pub fn empty(name: &'static str, blocks: Vec<(&'static [u8; 4], Vec<u8>)>) -> Ma
 fn sized(bytes: &[u8]) -> Vec<u8> {
     [&(bytes.len() as u32).to_be_bytes(), bytes].concat()
 }
+
 fn block((key, data): &(&'static [u8; 4], Vec<u8>)) -> Vec<u8> {
     [b"8BIM".as_slice(), *key, &sized(data)].concat()
 }
@@ -103,6 +111,7 @@ impl Made {
         out.extend(self.merged.concat());
         out
     }
+
     fn section(&self) -> Vec<u8> {
         let Some(layers) = &self.layers else { return Vec::new() };
         let mut info = (layers.len() as i16).to_be_bytes().to_vec();
@@ -120,6 +129,7 @@ impl Made {
 pub fn descriptor(values: &[(&str, Vec<u8>)]) -> Vec<u8> {
     [&16u32.to_be_bytes()[..], &object(values)].concat()
 }
+
 /// An object without its kind: no name, a class, its values.
 pub fn object(values: &[(&str, Vec<u8>)]) -> Vec<u8> {
     let mut out = [&[0; 4][..], &[0; 4], b"null", &(values.len() as u32).to_be_bytes()].concat();
@@ -129,35 +139,45 @@ pub fn object(values: &[(&str, Vec<u8>)]) -> Vec<u8> {
     }
     out
 }
+
 fn word(text: &str) -> Vec<u8> {
     let length = if text.len() == 4 { 0 } else { text.len() as u32 };
     [&length.to_be_bytes()[..], text.as_bytes()].concat()
 }
+
 pub fn objc(values: &[(&str, Vec<u8>)]) -> Vec<u8> {
     [b"Objc".as_slice(), &object(values)].concat()
 }
+
 pub fn list(values: &[Vec<u8>]) -> Vec<u8> {
     [b"VlLs".as_slice(), &(values.len() as u32).to_be_bytes(), &values.concat()].concat()
 }
+
 pub fn double(value: f64) -> Vec<u8> {
     [b"doub".as_slice(), &value.to_be_bytes()].concat()
 }
+
 pub fn percent(value: f64) -> Vec<u8> {
     [b"UntF#Prc".as_slice(), &value.to_be_bytes()].concat()
 }
+
 pub fn long(value: i32) -> Vec<u8> {
     [b"long".as_slice(), &value.to_be_bytes()].concat()
 }
+
 pub fn flag(value: bool) -> Vec<u8> {
     [b"bool".as_slice(), &[u8::from(value)]].concat()
 }
+
 pub fn choice(kind: &str, value: &str) -> Vec<u8> {
     [b"enum".to_vec(), word(kind), word(value)].concat()
 }
+
 pub fn text(value: &str) -> Vec<u8> {
     let units: Vec<u8> = value.encode_utf16().flat_map(u16::to_be_bytes).collect();
     [b"TEXT".as_slice(), &(value.len() as u32).to_be_bytes(), &units].concat()
 }
+
 pub fn rgb([r, g, b]: [u8; 3]) -> Vec<u8> {
     objc(&[("Rd  ", double(r.into())), ("Grn ", double(g.into())), ("Bl  ", double(b.into()))])
 }

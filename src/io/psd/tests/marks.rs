@@ -16,6 +16,7 @@ fn marked() -> Document {
     document.guides = Guides { vertical: vec![10.3, -4.0], horizontal: vec![7.5] }.into();
     document
 }
+
 fn labels(document: &Document) -> Vec<LayerLabel> {
     document.layers.iter().map(|layer| layer.label).collect()
 }
@@ -26,6 +27,7 @@ fn our_guides_and_labels_come_back_to_the_last_digit() {
     let back = read_back(&written(&document)).document;
     assert_eq!((labels(&back), &back.guides), (labels(&document), &document.guides));
 }
+
 #[test]
 fn other_programs_find_guides_and_labels() {
     let back = read_back(&without_ours(&written(&marked()))).document;
@@ -36,6 +38,7 @@ fn other_programs_find_guides_and_labels() {
     assert_eq!(labels(&back), expected);
     assert_eq!(*back.guides, Guides { vertical: vec![10.3125, -4.0], horizontal: vec![7.5] });
 }
+
 #[test]
 fn guides_that_another_program_moved_are_believed_and_the_layers_stay_live() {
     let document = Document { guides: marked().guides, ..everything(32) };
@@ -47,6 +50,7 @@ fn guides_that_another_program_moved_are_believed_and_the_layers_stay_live() {
     assert_eq!(back.guides.horizontal, [10.0]);
     assert_same(&document, &Document { guides: document.guides.clone(), ..back });
 }
+
 #[test]
 fn labels_and_guides_of_photoshop_are_read_and_too_many_told() {
     let label = |number: u8| vec![0, number, 0, 0, 0, 0, 0, 0];

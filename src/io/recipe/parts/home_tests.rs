@@ -9,12 +9,15 @@ use std::path::Path;
 
 fn read(value: &Value) -> crate::Result<Document> {
     let (files, budget) = (UserFiles::default(), Budget::default());
-    let source = RecipeSource { file: Path::new("r.json"), files: &files, budget: &budget, onto: None };
+    let source =
+        RecipeSource { file: Path::new("r.json"), files: &files, budget: &budget, onto: None };
     recipe::read_value(value, source)
 }
+
 fn refused(value: &Value) -> String {
     read(value).err().map(|error| error.to_string()).unwrap_or_default()
 }
+
 fn body(more: &Value) -> Value {
     let mut value = json!({
         "format": "rilievo", "version": 2, "canvas": { "width": 48, "height": 40 },
@@ -26,10 +29,12 @@ fn body(more: &Value) -> Value {
     value.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
     value
 }
+
 fn on_parts() -> Value {
     let brush = json!({ "size": 9 });
     let stroke = |more: Value| {
-        let mut stroke = json!({ "brush": brush, "color": "#000000", "samples": [[9, 9], [20, 12]] });
+        let mut stroke =
+            json!({ "brush": brush, "color": "#000000", "samples": [[9, 9], [20, 12]] });
         stroke.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
         stroke
     };
@@ -59,14 +64,21 @@ fn what_lies_on_parts_is_written_as_it_was_read_and_stands_where_they_stand() {
     assert_eq!(document.difference(&again), None);
     assert_eq!(recipe::write(&again), written);
     for (i, name) in ["Base", "Ink", "All"].into_iter().enumerate() {
-        assert_eq!((&written["layers"][i]["name"], &written["layers"][i]["on"]), (&json!(name), &on_parts()[i]["on"]));
+        assert_eq!(
+            (&written["layers"][i]["name"], &written["layers"][i]["on"]),
+            (&json!(name), &on_parts()[i]["on"])
+        );
     }
     assert_eq!(written["layers"][1]["strokes"][1]["on"], "eye");
-    assert_eq!(written["layers"][1]["strokes"][1]["transform"], on_parts()[1]["strokes"][1]["transform"]);
+    assert_eq!(
+        written["layers"][1]["strokes"][1]["transform"],
+        on_parts()[1]["strokes"][1]["transform"]
+    );
     // One that is elsewhere makes a different document.
     let moved = document.with_layer(base.id, |layer| layer.on = None).unwrap();
     assert!(moved.difference(&again).is_some_and(|what| what.contains("home")));
 }
+
 #[test]
 fn a_project_gives_homes_back() {
     let document = read(&body(&json!({ "layers": on_parts() }))).unwrap();
@@ -77,6 +89,7 @@ fn a_project_gives_homes_back() {
     assert_eq!(document.difference(&back.document), None);
     assert_eq!(project::write(file, &back.document, &Progress::default()).unwrap().unwrap(), bytes);
 }
+
 #[test]
 fn a_home_that_is_no_part_is_refused_by_its_path() {
     let says = |layers: Value| refused(&body(&json!({ "layers": layers })));
@@ -88,11 +101,20 @@ fn a_home_that_is_no_part_is_refused_by_its_path() {
         "r.json: layers[0].strokes[0].on: is “nose”; there is no part of that id"
     );
     let quad = json!({ "quad": [[0, 0], [9, 0], [9, 9], [0, 9]] });
-    assert!(strokes(json!({ "on": "eye", "transform": quad })).contains("strokes[0].transform: must be a matrix"));
-    assert!(strokes(json!({ "transform": { "matrix": [1, 0, 0, 1, 2, 2] } })).contains("have their own “on”"));
+    assert!(
+        strokes(json!({ "on": "eye", "transform": quad }))
+            .contains("strokes[0].transform: must be a matrix")
+    );
+    assert!(
+        strokes(json!({ "transform": { "matrix": [1, 0, 0, 1, 2, 2] } }))
+            .contains("have their own “on”")
+    );
     let canvas = json!([{ "id": "canvas", "kind": "sweep", "balls": [[9, 9, 3]] }]);
-    assert!(refused(&body(&json!({ "surface": { "parts": canvas } }))).contains("cannot have the id"));
+    assert!(
+        refused(&body(&json!({ "surface": { "parts": canvas } }))).contains("cannot have the id")
+    );
 }
+
 #[test]
 fn a_layer_on_the_canvas_stays_so_outside_of_groups_too() {
     let plain = json!({ "format": "rilievo", "version": 2, "canvas": { "width": 48, "height": 40 },
@@ -101,12 +123,15 @@ fn a_layer_on_the_canvas_stays_so_outside_of_groups_too() {
     assert!(document.layers[0].on.as_ref().is_some_and(|home| home.is_canvas()));
     assert_eq!(recipe::write(&document), plain);
 }
+
 #[test]
 fn a_part_may_be_made_of_a_selection_in_whatever_order_they_stand() {
-    let part = |id: &str| json!([{ "id": "spot", "kind": "inflate", "outline": { "selection": id } }]);
+    let part =
+        |id: &str| json!([{ "id": "spot", "kind": "inflate", "outline": { "selection": id } }]);
     let region = json!({ "kind": "depth", "at": [24, 20], "tolerance": 0.5 });
-    let with =
-        |id: &str, selections: Value| body(&json!({ "surface": { "parts": part(id) }, "selections": selections }));
+    let with = |id: &str, selections: Value| {
+        body(&json!({ "surface": { "parts": part(id) }, "selections": selections }))
+    };
     // One without bounds covers the canvas.
     let document = read(&with("s1", json!([{ "id": "s1", "name": "Spot" }]))).unwrap();
     let outline = document.parts.list[0].outline().unwrap();
@@ -115,8 +140,12 @@ fn a_part_may_be_made_of_a_selection_in_whatever_order_they_stand() {
     let written = recipe::write(&document);
     assert_eq!(written["surface"]["parts"][0]["outline"], json!({ "selection": "s1" }));
     // Without a name it is kept by its id; one that follows the surface is found on the maps.
-    let unnamed = read(&with("s7", json!([{ "id": "s3" }, { "id": "s7", "mask": region }]))).unwrap();
-    assert_eq!(unnamed.selections.iter().map(|kept| kept.name.as_str()).collect::<Vec<_>>(), ["s7"]);
+    let unnamed =
+        read(&with("s7", json!([{ "id": "s3" }, { "id": "s7", "mask": region }]))).unwrap();
+    assert_eq!(
+        unnamed.selections.iter().map(|kept| kept.name.as_str()).collect::<Vec<_>>(),
+        ["s7"]
+    );
     assert!(unnamed.surface.is_some() && unnamed.fits(None) == Ok(()));
     assert_eq!(
         refused(&with("s2", json!([]))),

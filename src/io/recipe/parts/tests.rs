@@ -9,7 +9,8 @@ use std::path::Path;
 
 fn read(parts: &Value) -> crate::Result<Document> {
     let folder = tempfile::tempdir().unwrap();
-    let mask = image::GrayImage::from_fn(48, 40, |x, y| image::Luma([((x * 9 + y * 5) % 256) as u8]));
+    let mask =
+        image::GrayImage::from_fn(48, 40, |x, y| image::Luma([((x * 9 + y * 5) % 256) as u8]));
     mask.save(folder.path().join("mask.png")).unwrap();
     let normals = image::RgbImage::from_fn(48, 40, |x, y| {
         let (x, y) = ((x as f32 - 24.0) / 40.0, (20.0 - y as f32) / 40.0);
@@ -24,7 +25,8 @@ fn read(parts: &Value) -> crate::Result<Document> {
     });
     let file = folder.path().join("r.json");
     let files = RecipeFolder::beside(&file);
-    let source = RecipeSource { file: &file, files: &files, budget: &Budget::default(), onto: None };
+    let source =
+        RecipeSource { file: &file, files: &files, budget: &Budget::default(), onto: None };
     recipe::read(value.to_string().as_bytes(), source)
 }
 
@@ -78,7 +80,11 @@ fn a_project_gives_parts_back_with_the_same_surface() {
     // Differences are reported.
     let mut other = back.document.parts.list.clone();
     other.pop();
-    assert!(back.document.difference(&back.document.with_parts(other)).is_some_and(|what| what.contains("parts")));
+    assert!(
+        back.document
+            .difference(&back.document.with_parts(other))
+            .is_some_and(|what| what.contains("parts"))
+    );
 }
 
 #[test]
@@ -89,7 +95,9 @@ fn a_place_of_a_colour_is_written_read_and_told_of_when_its_colour_is_gone() {
     assert!(document.parts.lost.is_empty() && document.surface.is_some());
     assert_eq!(recipe::write(&document)["surface"]["parts"][0]["outline"], part[0]["outline"]);
     let file = Path::new("a.ora");
-    let stored = |document: &Document| project::write(file, document, &Progress::default()).unwrap().unwrap();
+    let stored = |document: &Document| {
+        project::write(file, document, &Progress::default()).unwrap().unwrap()
+    };
     let back = project::read(file, &stored(&document), &Budget::default()).unwrap();
     assert!(back.is_whole && back.notes.is_empty(), "{:?}", back.notes);
     assert_eq!(document.difference(&back.document), None);
@@ -97,8 +105,15 @@ fn a_place_of_a_colour_is_written_read_and_told_of_when_its_colour_is_gone() {
     let mut away = part.clone();
     away[0]["outline"]["at"] = json!([300, -50]);
     let back = project::read(file, &stored(&read(&away).unwrap()), &Budget::default()).unwrap();
-    assert!(back.notes.iter().any(|note| note.contains("“eye” takes the area")), "{:?}", back.notes);
-    assert_eq!(recipe::write(&back.document)["surface"]["parts"][0]["outline"]["at"], json!([300, -50]));
+    assert!(
+        back.notes.iter().any(|note| note.contains("“eye” takes the area")),
+        "{:?}",
+        back.notes
+    );
+    assert_eq!(
+        recipe::write(&back.document)["surface"]["parts"][0]["outline"]["at"],
+        json!([300, -50])
+    );
 }
 
 #[test]
@@ -125,9 +140,15 @@ fn what_is_wrong_is_named_with_its_path() {
         "surface.parts[0].pufff: is unknown; did you mean",
     );
     says(json!({ "kind": "inflate" }), "surface.parts[0].outline: is missing");
-    says(json!({ "kind": "inflate", "outline": {} }), "names no layer, file, selection, path or object");
+    says(
+        json!({ "kind": "inflate", "outline": {} }),
+        "names no layer, file, selection, path or object",
+    );
     says(json!({ "kind": "inflate", "outline": { "file": "../mask.png" } }), "is refused");
-    says(json!({ "kind": "inflate", "outline": { "path": [[0, 0], [1, 1e30]] } }), "must be between");
+    says(
+        json!({ "kind": "inflate", "outline": { "path": [[0, 0], [1, 1e30]] } }),
+        "must be between",
+    );
     let nowhere = json!({ "layer": "Flats", "at": [1, 2] });
     says(json!({ "kind": "inflate", "outline": nowhere }), "has a place, but no colour");
     let far = json!({ "layer": "Flats", "color": "#c08040", "at": [1, 1e30] });
@@ -136,12 +157,30 @@ fn what_is_wrong_is_named_with_its_path() {
     says(json!({ "kind": "bevel", "outline": layer, "curve": [[0.5, 0], [0.2, 1]] }), "farther in");
     says(json!({ "kind": "sweep", "balls": [[1, 2, -3]] }), "radius of a ball");
     let light = json!({ "file": "mask.png", "light": [0, 0, 0] });
-    says(json!({ "kind": "profiles", "pictures": [light] }), "it has 1 shadings; there must be 2 to 5");
+    says(
+        json!({ "kind": "profiles", "pictures": [light] }),
+        "it has 1 shadings; there must be 2 to 5",
+    );
     says(json!({ "kind": "profiles", "pictures": [light, light] }), "points nowhere");
-    says(json!({ "kind": "maps", "mask": { "file": "mask.png" } }), "neither a normal map nor a depth map");
+    says(
+        json!({ "kind": "maps", "mask": { "file": "mask.png" } }),
+        "neither a normal map nor a depth map",
+    );
     says(json!({ "kind": "maps", "normal": { "file": "../n.png" } }), "is refused");
-    says(json!({ "kind": "lines", "on": "a", "outline": layer, "form": "edge" }), "must be one of ridge, valley");
-    says(json!({ "kind": "sweep", "balls": [[9, 9, 3]], "matrix": [1, 2, 2, 4, 0, 0] }), "cannot be inverted");
+    says(
+        json!({ "kind": "lines", "on": "a", "outline": layer, "form": "edge" }),
+        "must be one of ridge, valley",
+    );
+    says(
+        json!({ "kind": "sweep", "balls": [[9, 9, 3]], "matrix": [1, 2, 2, 4, 0, 0] }),
+        "cannot be inverted",
+    );
     let twice = json!({ "id": "x", "kind": "sweep", "balls": [[9, 9, 3]] });
-    assert!(read(&json!([twice, twice])).map(|_| ()).unwrap_err().to_string().contains("another part has"));
+    assert!(
+        read(&json!([twice, twice]))
+            .map(|_| ())
+            .unwrap_err()
+            .to_string()
+            .contains("another part has")
+    );
 }

@@ -1,4 +1,5 @@
-//! Writes the parts of a shape. Floor 5. Defaults are left out; those that are in no type come from the reader.
+//! Writes the parts of a shape. Floor 5. Defaults are left out; those that are in no type come from
+//! the reader.
 
 use super::super::selections::id_of_kept;
 use super::super::{samples, surface};
@@ -8,7 +9,8 @@ use crate::document::{Document, SelectionList, SurfaceSource};
 use crate::json::{JsonObject, object};
 use crate::math::{Affine2, Size, Vec2};
 use crate::shape::{
-    Ball, Bevel, BevelCurve, Body, Combine, Detail, LineForm, Lines, Primitive, SculptStroke, SculptTool, Touch,
+    Ball, Bevel, BevelCurve, Body, Combine, Detail, LineForm, Lines, Primitive, SculptStroke,
+    SculptTool, Touch,
 };
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -19,7 +21,8 @@ pub fn write(document: &Document, list: &SelectionList) -> Value {
     document.parts.list.iter().map(one).collect()
 }
 
-/// One part as an edit describes it: as in the list, but with selections by name, and whatever the canvas.
+/// One part as an edit describes it: as in the list, but with selections by name, and whatever the
+/// canvas.
 pub fn write_part(part: &Part) -> Value {
     written(part, None, |name| Some(name.to_owned()))
 }
@@ -58,7 +61,9 @@ fn write_outline(outline: &OutlineSource, selection: impl Fn(&str) -> Option<Str
             out.said("at", color.and_then(|flat| flat.at), object::point);
         }
         OutlineSource::File(file) => out.set("file", file.file.as_str().into()),
-        OutlineSource::Path(points) => out.set("path", points.iter().copied().map(object::point).collect()),
+        OutlineSource::Path(points) => {
+            out.set("path", points.iter().copied().map(object::point).collect())
+        }
         OutlineSource::Selection(name) => out.said("selection", selection(name), Value::from),
         OutlineSource::Object(object) => out.set("object", (*object).into()),
     }
@@ -78,9 +83,14 @@ fn write_kind(out: &mut JsonObject, kind: &PartKind, canvas: Option<Size>) {
             out.number("width", bevel.width, plain.width);
             out.number("height", bevel.height, plain.height);
             match &bevel.curve {
-                BevelCurve::Points(points) => out.set("curve", points.iter().copied().map(object::point).collect()),
+                BevelCurve::Points(points) => {
+                    out.set("curve", points.iter().copied().map(object::point).collect())
+                }
                 named => {
-                    let name = BevelCurve::NAMED.iter().find(|(curve, _)| curve == named).map_or("round", |(_, n)| n);
+                    let name = BevelCurve::NAMED
+                        .iter()
+                        .find(|(curve, _)| curve == named)
+                        .map_or("round", |(_, n)| n);
                     out.text("curve", name, "round");
                 }
             }
@@ -91,7 +101,9 @@ fn write_kind(out: &mut JsonObject, kind: &PartKind, canvas: Option<Size>) {
             out.number("puff", *puff, 1.0);
         }
         PartKind::Sweep { balls, puff } => {
-            let ball = |b: &Ball| [b.at.x, b.at.y, b.radius].into_iter().map(object::number).collect::<Value>();
+            let ball = |b: &Ball| {
+                [b.at.x, b.at.y, b.radius].into_iter().map(object::number).collect::<Value>()
+            };
             out.set("balls", balls.iter().map(ball).collect());
             out.number("puff", *puff, 1.0);
         }
@@ -164,7 +176,8 @@ fn write_stroke(stroke: &SculptStroke) -> Value {
 }
 
 fn write_primitive(out: &mut JsonObject, body: &Primitive) {
-    let name = Body::ALL.iter().find(|(known, _)| *known == body.body).map_or("sphere", |(_, name)| name);
+    let name =
+        Body::ALL.iter().find(|(known, _)| *known == body.body).map_or("sphere", |(_, name)| name);
     out.set("shape", name.into());
     out.set("center", object::point(body.center));
     let plain = Primitive::new(body.body, body.center, body.radius);

@@ -1,4 +1,5 @@
-//! Every preset's strokes on a canvas twice as large, reduced by half, compared with the strokes themselves.
+//! Every preset's strokes on a canvas twice as large, reduced by half, compared with the strokes
+//! themselves.
 
 use super::{BrushPreset, presets};
 use crate::document::{Content, Document, Layer, Live, Progress, StrokeList, flatten};
@@ -37,14 +38,19 @@ fn wave() -> Vec<Sample> {
     let at = |i: usize| {
         let t = i as f32 / 32.0;
         let from_middle = vec2(190.0 * (t - 0.5), -32.0 * (t * TAU).sin());
-        Sample { pressure: (t * PI).sin().max(0.2), time_secs: t, ..Sample::at(SIZE.center() + from_middle) }
+        Sample {
+            pressure: (t * PI).sin().max(0.2),
+            time_secs: t,
+            ..Sample::at(SIZE.center() + from_middle)
+        }
     };
     (0..=32).map(at).collect()
 }
 
 /// RGB of every pixel.
 fn picture(document: &Document) -> Vec<[f32; 3]> {
-    let bytes = flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect());
+    let bytes =
+        flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect());
     bytes.chunks_exact(4).map(|p| [0, 1, 2].map(|c| f32::from(p[c]))).collect()
 }
 
@@ -52,7 +58,8 @@ fn picture(document: &Document) -> Vec<[f32; 3]> {
 fn reduced(picture: &[[f32; 3]], size: Size, by: usize) -> Vec<[f32; 3]> {
     let (width, height) = (size.width as usize / by, size.height as usize / by);
     let mean = |x: usize, y: usize| {
-        let square = (0..by * by).map(|i| picture[(y * by + i / by) * width * by + x * by + i % by]);
+        let square =
+            (0..by * by).map(|i| picture[(y * by + i / by) * width * by + x * by + i % by]);
         square.fold([0.0; 3], |sum, p| [0, 1, 2].map(|c| sum[c] + p[c] / (by * by) as f32))
     };
     (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| mean(x, y)).collect()
@@ -70,13 +77,17 @@ fn apart(a: &[[f32; 3]], b: &[[f32; 3]], ground: Color) -> Vec<f32> {
 
 /// A preset's stroke in its own size, and twice as large and reduced again.
 fn twice(preset: &BrushPreset, surface: Option<Arc<Surface>>) -> Vec<f32> {
-    let dark = u32::from(preset.color.r) + u32::from(preset.color.g) + u32::from(preset.color.b) < 380;
+    let dark =
+        u32::from(preset.color.r) + u32::from(preset.color.g) + u32::from(preset.color.b) < 380;
     let ground = if dark { Color::WHITE } else { Color { r: 40, g: 40, b: 46, a: 255 } };
     let stroke = Stroke::new(preset.brush.clone(), preset.operator, preset.color, wave());
     let strokes = StrokeList { strokes: vec![Arc::new(stroke)] };
     let layers = [
         Layer { clip_to_surface: false, ..Layer::new("ground", Content::Fill(ground)) },
-        Layer { clip_to_surface: false, ..Layer::new("stroke", Content::Strokes(Live::new(strokes))) },
+        Layer {
+            clip_to_surface: false,
+            ..Layer::new("stroke", Content::Strokes(Live::new(strokes)))
+        },
     ];
     let layers = layers.into_iter().map(Arc::new).collect();
     let document = Document { surface, layers, ..Document::empty(SIZE) };
@@ -90,19 +101,27 @@ fn every_preset_paints_the_same_at_twice_the_size() {
     for surface in [None, Some(Arc::new(ball()))] {
         for preset in presets() {
             let apart = twice(&preset, surface.clone());
-            let at = |share: f32| apart.get((apart.len() as f32 * share) as usize).copied().unwrap_or(0.0);
+            let at = |share: f32| {
+                apart.get((apart.len() as f32 * share) as usize).copied().unwrap_or(0.0)
+            };
             let mean = apart.iter().sum::<f32>() / apart.len().max(1) as f32;
             let place = if surface.is_some() { "ball" } else { "flat" };
-            let found = format!("{place} {:20} mean {mean:5.2} p95 {:5.1} p99 {:5.1}", preset.key, at(0.95), at(0.99));
+            let found = format!(
+                "{place} {:20} mean {mean:5.2} p95 {:5.1} p99 {:5.1}",
+                preset.key,
+                at(0.95),
+                at(0.99)
+            );
             println!("{found}");
-            // Before lengths and rims were scaled it was 45. Light along a silhouette is a pixel wide on the ball, and
-            // twice the pixels read other normals there.
+            // Before lengths and rims were scaled it was 45. Light along a silhouette is a pixel
+            // wide on the ball, and twice the pixels read other normals there.
             let most = if place == "ball" && preset.key == "rim-light" { 10.0 } else { 4.0 };
             far.extend((mean > most).then_some(found));
         }
     }
     assert!(far.is_empty(), "{far:#?}");
 }
+
 #[test]
 fn a_length_that_is_not_scaled_shows() {
     // The difference found before grain was scaled.

@@ -1,8 +1,9 @@
 //! Readings of the pen as a text: columns of small differences.
 //! Floor 5.
 //!
-//! The text is base64 (RFC 4648, no padding) of: how many readings there are, as a varint (LEB128); then six columns
-//! (x, y, pressure, tilt x, tilt y, seconds), each a byte that says how it is encoded, and its values:
+//! The text is base64 (RFC 4648, no padding) of: how many readings there are, as a varint (LEB128);
+//! then six columns (x, y, pressure, tilt x, tilt y, seconds), each a byte that says how it is
+//! encoded, and its values:
 //!
 //! | byte | values |
 //! |---|---|
@@ -11,8 +12,8 @@
 //! | 32 more | differences of those differences, for even motion |
 //! | 255 | one value for all: its four bytes, the lowest first |
 //!
-//! Each restores every f32 bit by bit. Readings of a pen are on a grid (`Sample::settled`), so that a step costs a byte
-//! or two; what was turned or calculated is not, and costs three or four.
+//! Each restores every f32 bit by bit. Readings of a pen are on a grid (`Sample::settled`), so that
+//! a step costs a byte or two; what was turned or calculated is not, and costs three or four.
 
 use super::{COLUMNS, numbers, of_numbers};
 use crate::base64;
@@ -119,7 +120,8 @@ pub fn unpack(text: &str, most: usize) -> std::result::Result<Vec<Sample>, Unrea
     let bytes = base64::decode(text).ok_or(Unreadable::Damaged)?;
     let mut rest = &bytes[..];
     let count = take(&mut rest).ok_or(Unreadable::Damaged)?;
-    let count = usize::try_from(count).ok().filter(|count| *count <= most).ok_or(Unreadable::TooMany)?;
+    let count =
+        usize::try_from(count).ok().filter(|count| *count <= most).ok_or(Unreadable::TooMany)?;
     let mut columns: [Vec<f32>; COLUMNS] = Default::default();
     for column in &mut columns {
         *column = take_column(&mut rest, count).ok_or(Unreadable::Damaged)?;

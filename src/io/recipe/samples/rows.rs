@@ -6,9 +6,10 @@ use super::{UNSAID, of_numbers};
 use crate::paint::Sample;
 use std::borrow::Cow;
 
-/// A document's text with lists of readings in today's packed form, each one value: before it is parsed, for as values
-/// a number takes eighty bytes, and many short strokes would hold more of them than a document may. What is not wholly
-/// rows of numbers stays, for the parser to say what is wrong.
+/// A document's text with lists of readings in today's packed form, each one value: before it is
+/// parsed, for as values a number takes eighty bytes, and many short strokes would hold more of
+/// them than a document may. What is not wholly rows of numbers stays, for the parser to say what
+/// is wrong.
 pub fn with_rows_packed(text: &[u8]) -> Cow<'_, [u8]> {
     let mut out = Vec::new();
     let (mut copied, mut at) = (0, 0);
@@ -47,7 +48,11 @@ fn rows_after(text: &[u8], at: &mut usize) -> Option<usize> {
 
 /// Passes one byte by, and spaces before it.
 fn skip(rest: &mut &[u8], byte: u8) -> bool {
-    let after = rest.trim_ascii_start().split_first().filter(|(first, _)| **first == byte).map(|(_, after)| after);
+    let after = rest
+        .trim_ascii_start()
+        .split_first()
+        .filter(|(first, _)| **first == byte)
+        .map(|(_, after)| after);
     *rest = after.unwrap_or(rest);
     after.is_some()
 }
@@ -90,7 +95,8 @@ fn number(rest: &mut &[u8]) -> Option<f32> {
     let is_json = match whole {
         [b'0'] | [b'0', b'.', b'0'..=b'9', ..] | [b'0', b'e' | b'E', ..] => true,
         [b'1'..=b'9', ..] => {
-            !whole.windows(2).any(|w| w[0] == b'.' && !w[1].is_ascii_digit()) && !whole.ends_with(b".")
+            !whole.windows(2).any(|w| w[0] == b'.' && !w[1].is_ascii_digit())
+                && !whole.ends_with(b".")
         }
         _ => false,
     };

@@ -8,12 +8,17 @@ use std::os::unix::fs::{MetadataExt, PermissionsExt, chown, symlink};
 fn folder() -> tempfile::TempDir {
     tempfile::tempdir().unwrap()
 }
+
 fn put(file: &Path, bytes: &[u8], terms: impl Into<Terms>) -> Result<bool> {
     replace(&Disk, file, bytes, &terms.into(), &Progress::default())
 }
+
 fn names(folder: &Path) -> Vec<String> {
-    let mut names: Vec<String> =
-        fs::read_dir(folder).unwrap().flatten().map(|e| e.file_name().to_string_lossy().into_owned()).collect();
+    let mut names: Vec<String> = fs::read_dir(folder)
+        .unwrap()
+        .flatten()
+        .map(|e| e.file_name().to_string_lossy().into_owned())
+        .collect();
     names.sort();
     names
 }
@@ -31,6 +36,7 @@ fn a_link_stays_a_link_and_its_file_keeps_its_permissions() {
     assert_eq!(fs::metadata(&file).unwrap().permissions().mode() & 0o777, 0o600);
     assert_eq!(fs::read(folder.path().join("real.ora~")).unwrap(), OLD);
 }
+
 #[test]
 fn folders_and_links_that_lead_nowhere_are_refused() {
     let folder = folder();
@@ -48,6 +54,7 @@ fn folders_and_links_that_lead_nowhere_are_refused() {
     let said = put(&lost, NEW, Overwrite::Nothing).unwrap_err().to_string();
     assert!(said.contains("its folder cannot be reached"), "{said}");
 }
+
 #[test]
 fn a_source_is_known_behind_links_and_under_a_second_name() {
     let folder = folder();
@@ -55,25 +62,34 @@ fn a_source_is_known_behind_links_and_under_a_second_name() {
     fs::write(at("photo.png"), OLD).unwrap();
     symlink("photo.png", at("soft.png")).unwrap();
     fs::hard_link(at("photo.png"), at("hard.png")).unwrap();
-    let roundabout = folder.path().join("..").join(folder.path().file_name().unwrap()).join("photo.png");
+    let roundabout =
+        folder.path().join("..").join(folder.path().file_name().unwrap()).join("photo.png");
     for file in [at("photo.png"), at("soft.png"), at("hard.png"), roundabout] {
-        let said = put(&file, NEW, Terms::export(Overwrite::Forced, vec![at("photo.png")])).unwrap_err().to_string();
+        let said = put(&file, NEW, Terms::export(Overwrite::Forced, vec![at("photo.png")]))
+            .unwrap_err()
+            .to_string();
         assert!(said.contains("made from it"), "{}: {said}", file.display());
     }
     assert_eq!(fs::read(at("photo.png")).unwrap(), OLD);
 }
+
 #[test]
 fn a_file_set_read_only_stays_as_it_is_and_so_when_it_is_replaced() {
     let folder = folder();
     let file = folder.path().join("a.png");
     fs::write(&file, OLD).unwrap();
     fs::set_permissions(&file, fs::Permissions::from_mode(0o444)).unwrap();
-    let said = put(&file, NEW, Terms::export(Overwrite::Anything, Vec::new())).unwrap_err().to_string();
+    let said =
+        put(&file, NEW, Terms::export(Overwrite::Anything, Vec::new())).unwrap_err().to_string();
     assert!(said.contains("read-only"), "{said}");
     put(&file, NEW, Terms::export(Overwrite::Forced, Vec::new())).unwrap();
     assert_eq!(fs::metadata(&file).unwrap().permissions().mode() & 0o777, 0o444);
-    assert_eq!((fs::read(&file).unwrap(), names(folder.path())), (NEW.to_vec(), vec!["a.png".to_owned()]));
+    assert_eq!(
+        (fs::read(&file).unwrap(), names(folder.path())),
+        (NEW.to_vec(), vec!["a.png".to_owned()])
+    );
 }
+
 #[test]
 fn a_name_of_255_bytes_is_saved_again_and_again() {
     let folder = folder();
@@ -85,6 +101,7 @@ fn a_name_of_255_bytes_is_saved_again_and_again() {
     }
     assert_eq!((fs::read(&file).unwrap(), names(folder.path()).len()), (vec![3; 9], 2));
 }
+
 /// Root saves for somebody else, as with `sudo`.
 #[test]
 fn what_root_saves_stays_its_owners() {
@@ -99,6 +116,7 @@ fn what_root_saves_stays_its_owners() {
     let found = fs::metadata(&file).unwrap();
     assert_eq!((found.uid(), found.gid()), (NOBODY, NOBODY));
 }
+
 #[test]
 fn of_many_that_make_the_same_new_file_at_once_one_does() {
     let folder = folder();
@@ -106,7 +124,8 @@ fn of_many_that_make_the_same_new_file_at_once_one_does() {
         let file = folder.path().join(format!("{round}.png"));
         let made: Vec<u8> = std::thread::scope(|scope| {
             let file = &file;
-            let threads = (0..4u8).map(|i| scope.spawn(move || (i, put(file, &[i; 50], Overwrite::Nothing))));
+            let threads =
+                (0..4u8).map(|i| scope.spawn(move || (i, put(file, &[i; 50], Overwrite::Nothing))));
             let threads: Vec<_> = threads.collect();
             let done = threads.into_iter().map(|thread| thread.join().unwrap());
             done.filter_map(|(i, result)| match result {
@@ -123,13 +142,18 @@ fn of_many_that_make_the_same_new_file_at_once_one_does() {
     }
     assert_eq!(names(folder.path()).len(), 40);
 }
+
 #[test]
 fn saves_and_exports_in_one_folder_do_not_hurt_each_other() {
     let folder = folder();
     let (ora, png) = (folder.path().join("a.ora"), folder.path().join("a.png"));
     std::thread::scope(|scope| {
-        for (file, terms) in [(&ora, Overwrite::Forced.into()), (&png, Terms::export(Overwrite::Forced, Vec::new()))] {
-            scope.spawn(move || (0..100u8).for_each(|i| assert!(put(file, &[i; 3000], terms.clone()).unwrap())));
+        for (file, terms) in
+            [(&ora, Overwrite::Forced.into()), (&png, Terms::export(Overwrite::Forced, Vec::new()))]
+        {
+            scope.spawn(move || {
+                (0..100u8).for_each(|i| assert!(put(file, &[i; 3000], terms.clone()).unwrap()))
+            });
         }
     });
     assert_eq!(names(folder.path()), ["a.ora", "a.ora~", "a.png"]);

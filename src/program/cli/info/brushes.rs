@@ -1,5 +1,5 @@
-//! What `rilievo info` says about brushes of other programs: how they are imported, and what is lost.
-//! Floor 7.
+//! What `rilievo info` says about brushes of other programs: how they are imported, and what is
+//! lost. Floor 7.
 
 use crate::Result;
 use crate::cli::with_advice;
@@ -22,6 +22,7 @@ impl BrushReport {
         let kind = BrushFormat::of(path, bytes)?;
         Some(Self { name: name.to_owned(), kind, read: brush::read(path, bytes, budget) })
     }
+
     pub fn json(&self) -> Value {
         let brushes = match &self.read {
             Ok(brushes) => brushes,
@@ -35,12 +36,18 @@ impl BrushReport {
         };
         json!({ "file": self.name, "kind": self.kind.name(), "brushes": brushes.iter().map(one).collect::<Vec<_>>() })
     }
+
     pub fn text(&self) -> String {
         let brushes = match &self.read {
             Ok(brushes) => brushes,
             Err(e) => return format!("{}\n", with_advice(e)),
         };
-        let mut out = format!("{}: {}, {}\n", self.name, self.kind.name(), counted(brushes.len(), "brush", "brushes"));
+        let mut out = format!(
+            "{}: {}, {}\n",
+            self.name,
+            self.kind.name(),
+            counted(brushes.len(), "brush", "brushes")
+        );
         for ImportedBrush { name, brush, notes } in brushes {
             out += &format!("  {name}: {}\n", looks(brush));
             notes.iter().for_each(|note| out += &format!("    {note}\n"));
@@ -51,9 +58,14 @@ impl BrushReport {
 
 fn looks(brush: &Brush) -> String {
     let drives = brush.dynamics.drives().len();
-    let pictures: Vec<String> = brush.pictures().take(1).map(|p| format!(" of {} px", p.picture.size)).collect();
+    let pictures: Vec<String> =
+        brush.pictures().take(1).map(|p| format!(" of {} px", p.picture.size)).collect();
     let count = brush.pictures().count();
-    let several = if count > 1 { format!(", {}", counted(count, "picture", "pictures")) } else { String::new() };
+    let several = if count > 1 {
+        format!(", {}", counted(count, "picture", "pictures"))
+    } else {
+        String::new()
+    };
     format!(
         "{}{}{several}, {:.4} px across, a dab every {:.0} % of it, {}",
         tip(&brush.tip),

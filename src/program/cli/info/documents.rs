@@ -1,5 +1,5 @@
-//! What `rilievo info` says about documents: their size, their layers, and differences from the saved state.
-//! Floor 7.
+//! What `rilievo info` says about documents: their size, their layers, and differences from the
+//! saved state. Floor 7.
 
 use crate::Result;
 use crate::cli::with_advice;
@@ -38,6 +38,7 @@ impl DocumentReport {
             "notes": opened.notes,
         })
     }
+
     pub fn text(&self) -> String {
         let opened = match &self.opened {
             Ok(opened) => opened,
@@ -59,8 +60,11 @@ impl DocumentReport {
             let hidden = if layer.visible { "" } else { ", hidden" };
             let (blend, percent) = (layer.blend.name(), layer.opacity * 100.0);
             let indent = "  ".repeat(depth + 1);
-            out +=
-                &format!("{indent}“{}”: {}, {blend}, {percent:.0} %{hidden}\n", layer.name, layer.content.kind_name());
+            out += &format!(
+                "{indent}“{}”: {}, {blend}, {percent:.0} %{hidden}\n",
+                layer.name,
+                layer.content.kind_name()
+            );
         }
         opened.notes.iter().for_each(|note| out += &format!("  {note}\n"));
         out

@@ -1,5 +1,6 @@
-//! Actions on the canvas of the document in front: its borders, its size, its orientation. What cannot be done says
-//! why. Floor 6. Not here: what a document becomes (`document::canvas_change`, `document::scale`).
+//! Actions on the canvas of the document in front: its borders, its size, its orientation. What
+//! cannot be done says why. Floor 6. Not here: what a document becomes (`document::canvas_change`,
+//! `document::scale`).
 
 use crate::document::canvas_change::{CanvasAnchor, CanvasChange, CanvasMirror};
 use crate::document::{Document, Progress, flatten};
@@ -44,11 +45,14 @@ impl CanvasAction {
     pub fn apply(&self, session: &mut Session) {
         session.drop_gesture();
         match self {
-            CanvasAction::Frame { frame } => return session.crop = frame.map(near).filter(|frame| !frame.is_empty()),
+            CanvasAction::Frame { frame } => {
+                return session.crop = frame.map(near).filter(|frame| !frame.is_empty());
+            }
             CanvasAction::Aspect { aspect } => {
                 session.crop_aspect = *aspect;
                 let canvas = session.active().map(|tab| tab.document().size);
-                session.crop = session.crop.zip(canvas).map(|(frame, canvas)| aspect.given(frame, canvas));
+                session.crop =
+                    session.crop.zip(canvas).map(|(frame, canvas)| aspect.given(frame, canvas));
                 return;
             }
             _ => session.crop = None,
@@ -64,18 +68,29 @@ impl CanvasAction {
             Err(why) => session.say(&why),
         }
     }
+
     /// What a long step is doing, which the window therefore runs on another thread.
     pub fn takes_long(&self) -> Option<&'static str> {
         matches!(self, CanvasAction::Trim {}).then_some("Trimming the canvas")
     }
+
     /// The step on a document, or why there is none; `None` once it is cancelled.
-    pub fn long_step(&self, document: &Document, progress: &Progress) -> Option<Result<Edit, String>> {
+    pub fn long_step(
+        &self,
+        document: &Document,
+        progress: &Progress,
+    ) -> Option<Result<Edit, String>> {
         let done = self.step(document, progress);
         let edit = done.map(|(label, document)| Edit { label, document, select: Vec::new() });
         (!progress.is_cancelled()).then_some(edit)
     }
+
     /// The step: its name and the resulting document; or why there is none.
-    fn step(&self, document: &Document, progress: &Progress) -> Result<(&'static str, Document), String> {
+    fn step(
+        &self,
+        document: &Document,
+        progress: &Progress,
+    ) -> Result<(&'static str, Document), String> {
         let size = document.size;
         let (label, change) = match self {
             CanvasAction::Crop { to } => ("Crop", cropped(size, *to)?),
@@ -91,7 +106,9 @@ impl CanvasAction {
                     return Err(nothing());
                 }
                 if painted == size.rect() {
-                    return Err("There is nothing to trim: the picture reaches every border.".into());
+                    return Err(
+                        "There is nothing to trim: the picture reaches every border.".into()
+                    );
                 }
                 ("Trim", cropped(size, painted)?)
             }
@@ -105,7 +122,9 @@ impl CanvasAction {
                 if to == size {
                     return Err("The picture has that size already.".into());
                 }
-                let next = document.resampled(to, *filter).map_err(|why| format!("The picture stays as it is: {why}."));
+                let next = document
+                    .resampled(to, *filter)
+                    .map_err(|why| format!("The picture stays as it is: {why}."));
                 return Ok(("Image size", next?));
             }
             CanvasAction::Turn { degrees } => {
@@ -113,8 +132,12 @@ impl CanvasAction {
                 allowed(change.size().width, change.size().height)?;
                 ("Turn canvas", change)
             }
-            CanvasAction::Mirror { mirror } => ("Mirror canvas", CanvasChange::mirrored(size, *mirror)),
-            CanvasAction::Frame { .. } | CanvasAction::Aspect { .. } => return Err("There is no frame.".into()),
+            CanvasAction::Mirror { mirror } => {
+                ("Mirror canvas", CanvasChange::mirrored(size, *mirror))
+            }
+            CanvasAction::Frame { .. } | CanvasAction::Aspect { .. } => {
+                return Err("There is no frame.".into());
+            }
         };
         if change.is_none() {
             return Err("The canvas is like that already.".into());
@@ -136,7 +159,8 @@ fn near(frame: Rect) -> Rect {
 }
 
 fn cropped(from: Size, to: Rect) -> Result<CanvasChange, String> {
-    let change = CanvasChange::crop(from, near(to)).ok_or("The frame holds no pixel of the canvas.")?;
+    let change =
+        CanvasChange::crop(from, near(to)).ok_or("The frame holds no pixel of the canvas.")?;
     allowed(change.size().width, change.size().height)?;
     Ok(change)
 }
@@ -144,5 +168,7 @@ fn cropped(from: Size, to: Rect) -> Result<CanvasChange, String> {
 /// A size that fits this machine's memory.
 fn allowed(width: u32, height: u32) -> Result<Size, String> {
     let budget = Budget::of_this_machine();
-    budget.size(Path::new("canvas"), width.into(), height.into()).map_err(|error| format!("{error}."))
+    budget
+        .size(Path::new("canvas"), width.into(), height.into())
+        .map_err(|error| format!("{error}."))
 }

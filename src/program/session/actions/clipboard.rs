@@ -1,6 +1,6 @@
-//! Cut, copy and paste of what is selected. What is copied stays a layer of its own kind: strokes stay strokes, live
-//! layers live; other programs get its pixels. Floor 6. Not here: the system's clipboard (the window), pictures of
-//! other programs (`pasted`).
+//! Cut, copy and paste of what is selected. What is copied stays a layer of its own kind: strokes
+//! stay strokes, live layers live; other programs get its pixels. Floor 6. Not here: the system's
+//! clipboard (the window), pictures of other programs (`pasted`).
 
 mod pasted;
 
@@ -26,10 +26,11 @@ actions! {
         "paste" Paste {}
         /// As a document of its size.
         "paste new" PasteNew {}
-        /// As an image layer, bent by the current operator and pinned at a canvas point; in the middle of the view
-        /// without one.
+        /// As an image layer, bent by the current operator and pinned at a canvas point; in the
+        /// middle of the view without one.
         "paste image" PasteImage { at: Option<Vec2> }
-        /// A picture of another program, with its middle at a canvas point; in that of the view without one.
+        /// A picture of another program, with its middle at a canvas point; in that of the view
+        /// without one.
         "paste picture" PastePicture { picture: PastedPicture, to: PasteTo, at: Option<Vec2> }
         /// A new layer with what is selected of this one: copied, or taken out of it.
         "layer via" LayerVia { cut: bool }
@@ -54,6 +55,7 @@ impl Copied {
     fn name(&self) -> String {
         self.layers.last().map_or_else(String::new, |layer| layer.name.clone())
     }
+
     /// All of it as paint, with its corner at a pixel.
     fn tiles(&self, x: i32, y: i32) -> TileGrid {
         let (width, height) = (self.rect.width(), self.rect.height());
@@ -70,20 +72,24 @@ impl ClipboardAction {
         match self {
             ClipboardAction::PasteNew {} => return paste_new(session),
             ClipboardAction::PasteImage { at } => return paste_image(session, *at),
-            ClipboardAction::PastePicture { picture, to, at } => return pasted::paste(session, picture, *to, *at),
+            ClipboardAction::PastePicture { picture, to, at } => {
+                return pasted::paste(session, picture, *to, *at);
+            }
             _ => {}
         }
         let copied = session.copied.clone();
         let Some(tab) = session.active_mut() else { return session.say("There is no document.") };
         tab.forget_preview();
         let said = match self {
-            ClipboardAction::Copy { merged } => match copy(tab.document(), &tab.outermost_chosen(), *merged) {
-                Ok(copied) => {
-                    session.copied = Some(copied);
-                    return session.say("Copied.");
+            ClipboardAction::Copy { merged } => {
+                match copy(tab.document(), &tab.outermost_chosen(), *merged) {
+                    Ok(copied) => {
+                        session.copied = Some(copied);
+                        return session.say("Copied.");
+                    }
+                    Err(why) => why,
                 }
-                Err(why) => why,
-            },
+            }
             ClipboardAction::Cut {} => match cut(tab) {
                 Ok(copied) => return session.copied = Some(copied),
                 Err(why) => why,
@@ -121,19 +127,28 @@ fn copy(document: &Document, ids: &[LayerId], merged: bool) -> Result<Copied, &'
     let (layers, tiles) = if merged {
         let tiles = taken(&flatten_to_paint(document, &progress).ok_or(NOTHING_THERE)?, &covered);
         let pixels = PixelLayer { tiles: tiles.clone(), ..PixelLayer::default() };
-        (vec![Layer { clip_to_surface: false, ..Layer::new("Copy", Content::Pixels(pixels)) }], tiles)
+        (
+            vec![Layer { clip_to_surface: false, ..Layer::new("Copy", Content::Pixels(pixels)) }],
+            tiles,
+        )
     } else if let [id] = *ids {
         let copied = document.copied_from(id, &covered).ok_or(NOTHING_THERE)?;
         let look = document.with_layer(id, |layer| {
             (layer.opacity, layer.visible, layer.clip_below) = (1.0, true, false);
         });
-        let painted =
-            look.and_then(|look| flatten_to_paint(&look.with_only(&[id])?, &progress)).ok_or(NOTHING_THERE)?;
+        let painted = look
+            .and_then(|look| flatten_to_paint(&look.with_only(&[id])?, &progress))
+            .ok_or(NOTHING_THERE)?;
         (vec![copied], taken(&painted, &covered))
     } else {
-        let copies: Vec<Layer> = ids.iter().filter_map(|id| document.copied_from(*id, &covered)).collect();
+        let copies: Vec<Layer> =
+            ids.iter().filter_map(|id| document.copied_from(*id, &covered)).collect();
         if copies.is_empty() {
-            return Err(if ids.is_empty() { NO_LAYER } else { "The layers have nothing where you selected." });
+            return Err(if ids.is_empty() {
+                NO_LAYER
+            } else {
+                "The layers have nothing where you selected."
+            });
         }
         let layers = copies.iter().cloned().map(Arc::new).collect();
         let alone = Document { layers, ..document.clone() };
@@ -152,7 +167,11 @@ fn cut(tab: &mut OpenDocument) -> Result<Copied, &'static str> {
     let document = tab.document();
     let ids = tab.outermost_chosen();
     if ids.iter().any(|id| document.layer(*id).is_some_and(|layer| layer.lock != LayerLock::None)) {
-        return Err(if ids.len() > 1 { "One of the layers is locked: unlock it to cut from it." } else { LOCKED });
+        return Err(if ids.len() > 1 {
+            "One of the layers is locked: unlock it to cut from it."
+        } else {
+            LOCKED
+        });
     }
     let copied = copy(document, &ids, false)?;
     let covered = covered(document);
@@ -177,13 +196,14 @@ fn paste(tab: &mut OpenDocument, copied: &Copied) {
     }
 }
 
-/// What was copied as new layers of a document; on a canvas of another size masks become pixels, because a mask has the
-/// size of its canvas.
+/// What was copied as new layers of a document; on a canvas of another size masks become pixels,
+/// because a mask has the size of its canvas.
 fn pasted(copied: &Copied, document: &Document) -> Vec<Layer> {
     let is_plain = |layer: &Layer| layer.mask.is_none() && layer.content.group().is_none();
     if copied.canvas != document.size && !copied.layers.iter().all(is_plain) {
         let Rect { x0, y0, .. } = copied.rect;
-        let content = Content::Pixels(PixelLayer { tiles: copied.tiles(x0, y0), ..PixelLayer::default() });
+        let content =
+            Content::Pixels(PixelLayer { tiles: copied.tiles(x0, y0), ..PixelLayer::default() });
         return vec![Layer::new(copied.name(), content)];
     }
     // Pasted twice, they are other layers.
@@ -196,7 +216,8 @@ fn paste_new(session: &mut Session) {
     };
     let size = Size::new(copied.rect.width() as u32, copied.rect.height() as u32);
     let tiles = copied.tiles(0, 0);
-    let layer = Layer::new(copied.name(), Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }));
+    let layer =
+        Layer::new(copied.name(), Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }));
     let document = Document { layers: vec![Arc::new(layer)], ..Document::empty(size) };
     let name = session.untitled();
     let mut tab = OpenDocument::new(name, document, None);
@@ -210,7 +231,9 @@ fn paste_image(session: &mut Session, at: Option<Vec2>) {
         return session.say(NOTHING_COPIED);
     };
     let size = Size::new(copied.rect.width() as u32, copied.rect.height() as u32);
-    let Some(picture) = Picture::srgb8(size, copied.rgba.as_chunks::<4>().0.to_vec()) else { return };
+    let Some(picture) = Picture::srgb8(size, copied.rgba.as_chunks::<4>().0.to_vec()) else {
+        return;
+    };
     let picture = match &copied.deep {
         Some(deep) => picture.with_deep(deep.to_vec()),
         None => picture,
@@ -219,7 +242,8 @@ fn paste_image(session: &mut Session, at: Option<Vec2>) {
     pasted::paste(session, &pasted, PasteTo::Image, at);
 }
 
-/// Copies what is selected of the layer to a new one above it, and takes it out of this one if it is cut.
+/// Copies what is selected of the layer to a new one above it, and takes it out of this one if it
+/// is cut.
 fn layer_via(tab: &mut OpenDocument, cut: bool) -> Result<(), &'static str> {
     let document = tab.document();
     let id = tab.selected.ok_or(NO_LAYER)?;
@@ -242,7 +266,8 @@ fn layer_via(tab: &mut OpenDocument, cut: bool) -> Result<(), &'static str> {
         false => document.clone(),
     };
     let (new, place) = (layer.id, document.place_of(id).ok_or(NO_LAYER)?);
-    let next = left.with_inserted(layer, LayerSlot { index: place.index + 1, ..place }).ok_or(NO_LAYER)?;
+    let next =
+        left.with_inserted(layer, LayerSlot { index: place.index + 1, ..place }).ok_or(NO_LAYER)?;
     if tab.commit(if cut { "Layer via cut" } else { "Layer via copy" }, next) {
         tab.selected = Some(new);
     }

@@ -1,4 +1,5 @@
-//! Opening and saving documents, and placing pictures in documents. Floor 6. Not here: the formats (`io`).
+//! Opening and saving documents, and placing pictures in documents. Floor 6. Not here: the formats
+//! (`io`).
 
 mod maps;
 
@@ -40,10 +41,11 @@ actions! {
         "save" Save { file: PathBuf }
         /// `bits`: per channel; if absent, the format's default.
         "export" Export { file: PathBuf, background: Option<Color>, quality: u8, bits: Option<u8> }
-        /// The maps of the shape as files whose names begin with this one's, as PNG, or as EXR if it ends in that.
+        /// The maps of the shape as files whose names begin with this one's, as PNG, or as EXR if
+        /// it ends in that.
         "export maps" ExportMaps { file: PathBuf, maps: Vec<ShapeMap>, directx: bool, bits: u8 }
-        /// The painting, or the layer that is seen alone, as it lies in the planes of the unwrapped surface, `scale`
-        /// pixels per pixel of the plane.
+        /// The painting, or the layer that is seen alone, as it lies in the planes of the unwrapped
+        /// surface, `scale` pixels per pixel of the plane.
         "export unwrapped" ExportUnwrapped { file: PathBuf, scale: u32, deep: bool }
         /// A picture of those planes becomes an image layer that lies on the surface.
         "import unwrapped" ImportUnwrapped { file: PathBuf }
@@ -64,7 +66,11 @@ impl FileAction {
         session.drop_gesture();
         match self {
             FileAction::New { width, height, background } => {
-                let size = Budget::of_this_machine().size(Path::new("new"), (*width).into(), (*height).into())?;
+                let size = Budget::of_this_machine().size(
+                    Path::new("new"),
+                    (*width).into(),
+                    (*height).into(),
+                )?;
                 let name = session.untitled();
                 session.add_document(OpenDocument::new(name, empty(size, *background), None));
             }
@@ -73,7 +79,8 @@ impl FileAction {
                 session.adopt(opened);
             }
             FileAction::OpenMaps { normal, depth } => {
-                let opened = storage::open_maps(&storage::maps_of(normal.as_deref(), depth.as_deref()))?;
+                let opened =
+                    storage::open_maps(&storage::maps_of(normal.as_deref(), depth.as_deref()))?;
                 session.adopt(opened);
             }
             FileAction::Place { file, at } => {
@@ -89,23 +96,26 @@ impl FileAction {
                 let document = tab.document().clone();
                 let terms = session.saving(file, unless_forced(session));
                 // Nothing here cancels, so it is saved.
-                if let (Some(stamp), Some(tab)) =
-                    (storage::save(file, &document, terms, &Progress::default())?, session.active_mut())
-                {
+                if let (Some(stamp), Some(tab)) = (
+                    storage::save(file, &document, terms, &Progress::default())?,
+                    session.active_mut(),
+                ) {
                     tab.mark_saved(document, file.clone(), stamp);
                 }
             }
             FileAction::Export { file, background, quality, bits } => {
                 let Some(tab) = session.active() else { return Ok(()) };
                 let (background, quality, bits) = (*background, *quality, *bits);
-                let options = ExportOptions { background, quality, bits, ..ExportOptions::default() };
+                let options =
+                    ExportOptions { background, quality, bits, ..ExportOptions::default() };
                 let terms = Terms::export(unless_forced(session), session.reads());
                 let notes = export(tab.document(), file, &options, terms, &Progress::default())?;
                 session.notes.extend(notes);
             }
             FileAction::ExportMaps { file, maps, directx, bits } => {
                 let Some(tab) = session.active() else { return Ok(()) };
-                let is_exr = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
+                let is_exr =
+                    file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
                 let options = ShapeOptions { is_directx: *directx, is_deep: *bits > 8, is_exr };
                 let terms = Terms::export(unless_forced(session), session.reads());
                 export_maps(tab.document(), file, maps, options, &terms)?;
@@ -158,14 +168,14 @@ pub fn empty(size: Size, background: Option<Color>) -> Document {
     Document { layers: fill.into_iter().collect(), ..Document::empty(size) }
 }
 
-/// What saving and exporting may replace besides the document's own file: nothing, since nobody can be asked, or all if
-/// the user said so beforehand.
+/// What saving and exporting may replace besides the document's own file: nothing, since nobody can
+/// be asked, or all if the user said so beforehand.
 fn unless_forced(session: &Session) -> Overwrite {
     if session.replaces_unasked { Overwrite::Forced } else { Overwrite::Nothing }
 }
 
-/// The flattened picture as a file, or the document as a Photoshop file; none is written if cancelled. Returns what the
-/// format cannot hold.
+/// The flattened picture as a file, or the document as a Photoshop file; none is written if
+/// cancelled. Returns what the format cannot hold.
 pub fn export(
     document: &Document,
     file: &Path,
@@ -191,7 +201,8 @@ pub fn export_maps(
     options: ShapeOptions,
     terms: &Terms,
 ) -> Result<Vec<PathBuf>> {
-    let no_shape = || Error::unsupported(file, "the document has no shape whose maps could be exported");
+    let no_shape =
+        || Error::unsupported(file, "the document has no shape whose maps could be exported");
     let surface = document.surface.as_ref().ok_or_else(no_shape)?;
     ShapeFiles::new(file, maps, options, terms)?.write(surface)
 }

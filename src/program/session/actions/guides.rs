@@ -1,5 +1,5 @@
-//! Setting, pulling out and clearing guides and assistants; what snaps to them and which are shown. Floor 6. Not here:
-//! moving guides on the canvas with the pen (`tools::guides`).
+//! Setting, pulling out and clearing guides and assistants; what snaps to them and which are shown.
+//! Floor 6. Not here: moving guides on the canvas with the pen (`tools::guides`).
 
 use crate::document::{Assistant, AssistantKind, Document, Guides};
 use crate::math::UNIT;
@@ -32,7 +32,8 @@ record!(Assistant { kind, points });
 
 actions! {
     GuideAction {
-        /// Out of a ruler; drags and a release of the pointer follow, and released beyond the canvas it is dropped.
+        /// Out of a ruler; drags and a release of the pointer follow, and released beyond the
+        /// canvas it is dropped.
         "pull" Pull { vertical: bool, pen: PenSample, px_per_pt: f32 }
         /// All of them.
         "set" Set { guides: Guides }
@@ -48,37 +49,50 @@ impl GuideAction {
         session.drop_gesture();
         match self {
             GuideAction::Aids { aids } => {
-                session.aids = ViewAids { grid: aids.grid.held(), magnetism: held(aids.magnetism, &UNIT), ..*aids };
+                session.aids = ViewAids {
+                    grid: aids.grid.held(),
+                    magnetism: held(aids.magnetism, &UNIT),
+                    ..*aids
+                };
             }
             GuideAction::Pull { vertical, pen, px_per_pt } => {
                 // A guide that is pulled out becomes visible.
                 session.aids.guides = true;
-                let Some(tab) = session.active() else { return session.say("There is no document.") };
+                let Some(tab) = session.active() else {
+                    return session.say("There is no document.");
+                };
                 let aids = ViewAids { to_guides: false, ..session.aids };
                 let targets = SnapTargets::of(tab.document(), &aids, &[], *px_per_pt);
                 let start = pull(tab.document(), *vertical, targets, *pen);
                 super::pointer::begin(session, start);
             }
-            GuideAction::Set { guides } => {
-                commit(session, "Guides", |document| Document { guides: Arc::new(guides.clone()), ..document })
-            }
+            GuideAction::Set { guides } => commit(session, "Guides", |document| Document {
+                guides: Arc::new(guides.clone()),
+                ..document
+            }),
             GuideAction::Clear {} => {
                 let is_empty = session.active().is_none_or(|tab| tab.document().guides.is_empty());
                 if is_empty {
                     return session.say("There are no guides.");
                 }
-                commit(session, "Clear guides", |document| Document { guides: Arc::default(), ..document });
+                commit(session, "Clear guides", |document| Document {
+                    guides: Arc::default(),
+                    ..document
+                });
             }
             GuideAction::Assistants { assistants } if assistants.is_empty() => {
-                let is_empty = session.active().is_none_or(|tab| tab.document().assistants.is_empty());
+                let is_empty =
+                    session.active().is_none_or(|tab| tab.document().assistants.is_empty());
                 if is_empty {
                     return session.say("There are no assistants.");
                 }
-                commit(session, "Clear assistants", |document| Document { assistants: Arc::default(), ..document });
+                commit(session, "Clear assistants", |document| Document {
+                    assistants: Arc::default(),
+                    ..document
+                });
             }
-            GuideAction::Assistants { assistants } => commit(session, "Assistants", |document| Document {
-                assistants: Arc::new(assistants.clone()),
-                ..document
+            GuideAction::Assistants { assistants } => commit(session, "Assistants", |document| {
+                Document { assistants: Arc::new(assistants.clone()), ..document }
             }),
         }
     }

@@ -35,13 +35,16 @@ impl ReplayValue for Symmetry {
             Symmetry::Radial(n) => n.into(),
         }
     }
+
     fn read(value: &Value) -> Result<Self, String> {
         match value.as_str() {
             Some("none") => Ok(Symmetry::None),
             Some("vertical") => Ok(Symmetry::Vertical),
             Some("horizontal") => Ok(Symmetry::Horizontal),
             Some("both") => Ok(Symmetry::Both),
-            Some(_) => Err("must be none, vertical, horizontal, both or how many times round".into()),
+            Some(_) => {
+                Err("must be none, vertical, horizontal, both or how many times round".into())
+            }
             None => u32::read(value).map(|n| Symmetry::Radial(n.clamp(2, MOST_ROUND))),
         }
     }
@@ -124,11 +127,17 @@ impl HandAction {
             }
             HandAction::Color { color } => session.color = *color,
             HandAction::SecondColor { color } => session.second_color = *color,
-            HandAction::SwapColors {} => std::mem::swap(&mut session.color, &mut session.second_color),
-            HandAction::DefaultColors {} => (session.color, session.second_color) = (Color::BLACK, Color::WHITE),
+            HandAction::SwapColors {} => {
+                std::mem::swap(&mut session.color, &mut session.second_color)
+            }
+            HandAction::DefaultColors {} => {
+                (session.color, session.second_color) = (Color::BLACK, Color::WHITE)
+            }
             HandAction::Operator { operator } => session.operator = operator.held(),
             HandAction::Symmetry { symmetry } => session.symmetry = *symmetry,
-            HandAction::Axes { center, turn } => session.axes = SymmetryAxes { center: *center, turn: *turn }.held(),
+            HandAction::Axes { center, turn } => {
+                session.axes = SymmetryAxes { center: *center, turn: *turn }.held()
+            }
             HandAction::Fill { fill } => session.fill = *fill,
             HandAction::PressBySpeed { on } => session.presses_by_speed = *on,
             HandAction::Mark { mark: mode } => brush.mode = mode.held(),

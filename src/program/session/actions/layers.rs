@@ -1,5 +1,5 @@
-//! Actions on the layer tree and its layers. Floor 6. Not here: the edits themselves (`document::edit`,
-//! `document::several`), new layers (`new`).
+//! Actions on the layer tree and its layers. Floor 6. Not here: the edits themselves
+//! (`document::edit`, `document::several`), new layers (`new`).
 
 mod flattening;
 mod new;
@@ -9,7 +9,9 @@ mod steps;
 pub use new::NewLayer;
 pub(super) use steps::copied;
 
-use crate::document::{Content, Document, Group, Layer, LayerId, LayerMask, LayerSlot, Live, MaskKind, Progress};
+use crate::document::{
+    Content, Document, Group, Layer, LayerId, LayerMask, LayerSlot, Live, MaskKind, Progress,
+};
 use crate::io::Budget;
 use crate::math::{PlaneMap, Vec2, vec2};
 use crate::paint::{Gradient, GradientStop, ImageFilter};
@@ -26,18 +28,20 @@ use std::sync::Arc;
 use steps::{cleared, duplicated, homed, kept, moves, ungrouped};
 
 actions! {
-    /// `layer` is always the path before the action; if several are possible, the layers of a group among them follow
-    /// it.
+    /// `layer` is always the path before the action; if several are possible, the layers of a group
+    /// among them follow it.
     LayerAction {
         "select" Select { layer: LayerPath }
-        /// These are chosen, the primary one too; `anchor`: where a range begins that is extended later.
+        /// These are chosen, the primary one too; `anchor`: where a range begins that is extended
+        /// later.
         "choose" Choose { layer: LayerPaths, primary: LayerPath, anchor: Option<LayerPath> }
         /// Above the selected layer; into it, if it is a group.
         "add" Add { kind: NewLayer }
         "delete" Delete { layer: LayerPaths }
         /// Copies of several go together above the topmost of them.
         "duplicate" Duplicate { layer: LayerPaths }
-        /// Into a group (or, without one, the document) so that so many layers lie beneath, not counting themselves.
+        /// Into a group (or, without one, the document) so that so many layers lie beneath, not
+        /// counting themselves.
         "move" Move { layer: LayerPaths, group: Option<LayerPath>, index: usize }
         /// One place up (positive) or down among its siblings.
         "nudge" Nudge { layer: LayerPaths, by: i32 }
@@ -49,19 +53,22 @@ actions! {
         "bake" Bake { layer: LayerPaths }
         /// A shading layer of a model, with the material it begins with.
         "add shading" AddShading { model: Model }
-        /// Adds a paintable mask that shows all of the layer, or hides it; an existing mask becomes paintable.
+        /// Adds a paintable mask that shows all of the layer, or hides it; an existing mask becomes
+        /// paintable.
         "paint mask" PaintMask { layer: LayerPath, hides: bool }
         /// Selects whether the brush paints on the mask or on the layer.
         "on mask" OnMask { layer: LayerPath, on: bool }
         /// The layer's transform is applied for good: its frame becomes the canvas.
         "apply transform" ApplyTransform { layer: LayerPaths }
-        /// A grid of points over what the layer shows, which the transform tool drags; an existing one gets new points.
+        /// A grid of points over what the layer shows, which the transform tool drags; an existing
+        /// one gets new points.
         "mesh" Mesh { layer: LayerPaths, columns: usize, rows: usize }
         /// Mirrored about the middle of what they hold: left and right, or up and down.
         "mirror" Mirror { layer: LayerPaths, upright: bool }
         /// Turned about the middle of what they hold, counter-clockwise.
         "turn" Turn { layer: LayerPaths, degrees: f32 }
-        /// What they show is moved by a map of the canvas (a, b, c, d, e, f); shown only, until it is `done`.
+        /// What they show is moved by a map of the canvas (a, b, c, d, e, f); shown only, until it
+        /// is `done`.
         "take along" TakeAlong { layer: LayerPaths, by: [f64; 6], done: bool }
         /// The frame of the chosen layers is turned about this point, by shares of its sides.
         "pivot" Pivot { at: Vec2 }
@@ -72,7 +79,8 @@ actions! {
         "solo" Solo { layer: LayerPath }
         /// A property; shown only, until it is `done`.
         "set" Set { layer: LayerPaths, to: Property, done: bool }
-        /// On a part of the shape by its id, on `canvas`, or on what is around it; it shows where it showed.
+        /// On a part of the shape by its id, on `canvas`, or on what is around it; it shows where
+        /// it showed.
         "home" Home { layer: LayerPaths, part: Option<String> }
         /// The strokes or pixels of a layer are removed, or the selected ones.
         "clear" Clear { layer: LayerPaths }
@@ -89,6 +97,7 @@ impl LayerAction {
         let anchor = anchor.and_then(|id| LayerPath::of(document, id));
         Some(LayerAction::Choose { layer: LayerPaths::of(document, ids), primary, anchor })
     }
+
     pub fn apply(&self, session: &mut Session) {
         let gradient_settings = Gradient {
             from: vec2(0.0, 0.0),
@@ -123,7 +132,10 @@ impl LayerAction {
                 tab.on_mask = false;
             }
             LayerAction::Choose { layer, primary, anchor } => {
-                let (Some(mut ids), Some(primary)) = (layer.find(tab.document()), id(primary)) else { return };
+                let (Some(mut ids), Some(primary)) = (layer.find(tab.document()), id(primary))
+                else {
+                    return;
+                };
                 ids.retain(|id| *id != primary);
                 ids.push(primary);
                 tab.choose_range(ids, anchor.as_ref().and_then(id));
@@ -143,7 +155,8 @@ impl LayerAction {
             _ => {
                 let no_room = || self.no_room(tab.document(), &Budget::of_this_machine());
                 let refusal = self.refusal(tab.document()).map(str::to_owned).or_else(no_room);
-                let edit = if refusal.is_none() { self.edit(tab, &gradient_settings) } else { None };
+                let edit =
+                    if refusal.is_none() { self.edit(tab, &gradient_settings) } else { None };
                 match edit {
                     Some(edit) => {
                         tab.take(edit);
@@ -154,6 +167,7 @@ impl LayerAction {
             }
         }
     }
+
     /// Does an edit that needs no settings on an open document.
     pub(super) fn step_on(&self, tab: &mut OpenDocument) {
         let settings = Gradient {
@@ -169,6 +183,7 @@ impl LayerAction {
             tab.take(edit);
         }
     }
+
     /// The step: its name, the resulting document, and the new selection.
     fn edit(&self, tab: &OpenDocument, gradient_settings: &Gradient) -> Option<Edit> {
         let document = tab.document();
@@ -182,7 +197,10 @@ impl LayerAction {
             }
             LayerAction::AddShading { model } => {
                 let content = Content::Shading(Live::new(Shading::new(*model)));
-                let new = selecting(document, Layer::new(document.free_layer_name(&model_name(*model)), content));
+                let new = selecting(
+                    document,
+                    Layer::new(document.free_layer_name(&model_name(*model)), content),
+                );
                 let id = new.id;
                 ("Add layer", document.with_inserted(new, above(tab))?, vec![id])
             }
@@ -192,7 +210,10 @@ impl LayerAction {
                     Some(mask) => mask.as_picture(&document.scene()),
                     None => {
                         let coverage = Plane::filled(document.size, if *hides { 0 } else { 255 });
-                        LayerMask::new(MaskKind::File { file: String::new(), coverage: Arc::new(coverage) })
+                        LayerMask::new(MaskKind::File {
+                            file: String::new(),
+                            coverage: Arc::new(coverage),
+                        })
                     }
                 };
                 let id = layer.id;
@@ -202,13 +223,18 @@ impl LayerAction {
                 let ids = chosen(layer)?;
                 let place = document.place_of(*ids.first()?)?;
                 let next = document.without_layers(&ids)?;
-                let neighbour = sibling(&next, LayerSlot { index: place.index.saturating_sub(1), ..place });
+                let neighbour =
+                    sibling(&next, LayerSlot { index: place.index.saturating_sub(1), ..place });
                 let label = if ids.len() > 1 { "Delete layers" } else { "Delete layer" };
                 (label, next, neighbour.into_iter().collect())
             }
             LayerAction::Duplicate { layer } => duplicated(document, &chosen(layer)?)?,
             LayerAction::Move { layer: paths, group, index } => {
-                let group = group.as_ref().map(|path| layer(path).map(|layer| layer.id).ok_or(())).transpose().ok()?;
+                let group = group
+                    .as_ref()
+                    .map(|path| layer(path).map(|layer| layer.id).ok_or(()))
+                    .transpose()
+                    .ok()?;
                 let ids = chosen(paths)?;
                 let next = document.with_moved_layers(&ids, LayerSlot { group, index: *index })?;
                 (moves(&ids), next, kept(tab, ids))
@@ -219,19 +245,32 @@ impl LayerAction {
             }
             LayerAction::Mirror { layer, upright } => {
                 let mirror = transform::mirror(*upright);
-                ("Mirror layer", transform::about_middle(document, &chosen(layer)?, mirror)?, Vec::new())
+                (
+                    "Mirror layer",
+                    transform::about_middle(document, &chosen(layer)?, mirror)?,
+                    Vec::new(),
+                )
             }
             LayerAction::Turn { layer, degrees } => {
                 let turn: PlaneMap = transform::turn(f64::from(*degrees))?;
-                ("Turn layer", transform::about_middle(document, &chosen(layer)?, turn)?, Vec::new())
+                (
+                    "Turn layer",
+                    transform::about_middle(document, &chosen(layer)?, turn)?,
+                    Vec::new(),
+                )
             }
             LayerAction::ApplyTransform { layer } => {
                 let applied = |next: Document, id| undisplaced(&next, id, &Progress::default());
-                ("Apply transform", chosen(layer)?.into_iter().try_fold(document.clone(), applied)?, Vec::new())
+                (
+                    "Apply transform",
+                    chosen(layer)?.into_iter().try_fold(document.clone(), applied)?,
+                    Vec::new(),
+                )
             }
             LayerAction::Mesh { layer, columns, rows } => {
                 let ids = chosen(layer)?;
-                let meshed = |next: Document, id| transform::mesh::meshed(&next, id, *columns, *rows);
+                let meshed =
+                    |next: Document, id| transform::mesh::meshed(&next, id, *columns, *rows);
                 ("Mesh", ids.into_iter().try_fold(document.clone(), meshed)?, Vec::new())
             }
             LayerAction::MergeDown { .. } | LayerAction::Flatten {} | LayerAction::Bake { .. } => {
@@ -247,7 +286,9 @@ impl LayerAction {
                 (label, document.with_one_for(&ids, group)?, vec![id])
             }
             LayerAction::Ungroup { layer } => ungrouped(document, &chosen(layer)?)?,
-            LayerAction::Home { layer, part } => homed(document, &layer.find(document)?, part.as_deref()).ok()?,
+            LayerAction::Home { layer, part } => {
+                homed(document, &layer.find(document)?, part.as_deref()).ok()?
+            }
             LayerAction::Clear { layer } => cleared(document, &chosen(layer)?)?,
             LayerAction::Select { .. }
             | LayerAction::Choose { .. }
@@ -278,7 +319,8 @@ fn take_along(session: &mut Session, layers: &LayerPaths, by: [f64; 6], done: bo
     let document = tab.document();
     let ids = layers.find(document).map(|ids| document.outermost(&ids)).unwrap_or_default();
     let map = PlaneMap::affine(by).filter(|_| !ids.is_empty());
-    let next = map.and_then(|map| ids.iter().try_fold(document.clone(), |next, id| mapped(&next, *id, map)));
+    let next = map
+        .and_then(|map| ids.iter().try_fold(document.clone(), |next, id| mapped(&next, *id, map)));
     match next {
         Some(next) if done => drop(tab.commit("Transform", next)),
         Some(next) => tab.show("Transform", next),
@@ -289,7 +331,9 @@ fn take_along(session: &mut Session, layers: &LayerPaths, by: [f64; 6], done: bo
 /// Where a new layer goes: above the selected one; into it, on top, if it is a group.
 pub fn above(tab: &OpenDocument) -> LayerSlot {
     let document = tab.document();
-    let Some(layer) = tab.selected.and_then(|id| document.layer(id)) else { return LayerSlot::top_level(usize::MAX) };
+    let Some(layer) = tab.selected.and_then(|id| document.layer(id)) else {
+        return LayerSlot::top_level(usize::MAX);
+    };
     if layer.content.group().is_some() {
         return LayerSlot::in_group(layer.id, usize::MAX);
     }

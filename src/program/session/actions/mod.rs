@@ -1,5 +1,6 @@
-//! Everything that can be done, as values: the window creates them, a replay reads them, [`Action::apply`] performs
-//! them. Floor 6. There is one small enum per area, with its `apply` in its own file.
+//! Everything that can be done, as values: the window creates them, a replay reads them,
+//! [`Action::apply`] performs them. Floor 6. There is one small enum per area, with its `apply` in
+//! its own file.
 
 pub mod canvas;
 pub mod clipboard;
@@ -45,6 +46,7 @@ macro_rules! rooms {
             /// The words of all rooms.
             pub const ROOMS: &'static [&'static str] = &[$($word),+];
         }
+
         impl ReplayValue for Action {
             fn written(&self) -> Value {
                 let (room, mut value) = match self { $(Action::$room(action) => ($word, action.written())),+ };
@@ -53,6 +55,7 @@ macro_rules! rooms {
                 }
                 value
             }
+
             fn read(value: &Value) -> std::result::Result<Self, String> {
                 Ok(match value.get("in").and_then(Value::as_str) {
                     $(Some($word) => Action::$room(ReplayValue::read(value)?),)+
@@ -60,6 +63,7 @@ macro_rules! rooms {
                 })
             }
         }
+
         #[cfg(test)]
         impl super::tests::stories::Drawn for Action {
             fn drawn(dice: &mut super::tests::stories::Dice) -> Self {
@@ -87,8 +91,8 @@ rooms! {
 }
 
 impl Action {
-    /// Performs it. What cannot be done changes nothing; only files fail. An edit that no file could hold is refused in
-    /// a note.
+    /// Performs it. What cannot be done changes nothing; only files fail. An edit that no file
+    /// could hold is refused in a note.
     pub fn apply(&self, session: &mut Session) -> Result<()> {
         session.settle();
         let mut done = Ok(());

@@ -1,6 +1,7 @@
-//! Actions on the shape of the document in front: its parts, the farthest first. What cannot be done says why. Floor 6.
-//! `new` makes parts, `greys` the pictures for them from layers; `first` gives a drawing its first shape, `list` orders
-//! them, `split` divides them. Not here: parts that the pen changes on the canvas (`tools::shape`).
+//! Actions on the shape of the document in front: its parts, the farthest first. What cannot be
+//! done says why. Floor 6. `new` makes parts, `greys` the pictures for them from layers; `first`
+//! gives a drawing its first shape, `list` orders them, `split` divides them. Not here: parts that
+//! the pen changes on the canvas (`tools::shape`).
 
 pub mod first;
 mod greys;
@@ -40,6 +41,7 @@ impl ReplayValue for PartFor {
             PartFor::Place => PLACES.into(),
         }
     }
+
     fn read(value: &Value) -> Result<Self, String> {
         match value {
             Value::Bool(is_color) => Ok(if *is_color { PartFor::Color } else { PartFor::Layer }),
@@ -56,19 +58,25 @@ impl ReplayValue for InflationPreset {
         let known = Inflation::PRESETS.iter().find(|(preset, _)| *preset == self.0);
         known.map_or(Inflation::PRESETS[0].1, |(_, name)| name).into()
     }
+
     fn read(value: &Value) -> Result<Self, String> {
-        let known = value.as_str().and_then(|word| Inflation::PRESETS.iter().find(|(_, name)| *name == word));
-        known.map(|(preset, _)| InflationPreset(*preset)).ok_or_else(|| format!("is {value}, which is no preset"))
+        let known = value
+            .as_str()
+            .and_then(|word| Inflation::PRESETS.iter().find(|(_, name)| *name == word));
+        known
+            .map(|(preset, _)| InflationPreset(*preset))
+            .ok_or_else(|| format!("is {value}, which is no preset"))
     }
 }
 
 actions! {
     /// `part` is always an id.
     PartAction {
-        /// From the selected layer, the selection or the chosen part, as its kind says; in front of all others.
+        /// From the selected layer, the selection or the chosen part, as its kind says; in front of
+        /// all others.
         "add" Add { kind: NewPart }
-        /// A layer gets a shape: one part from its alpha (`false`), one from each of its flat colours (`true`) or from
-        /// each place of them (`"places"`), and a lit Base.
+        /// A layer gets a shape: one part from its alpha (`false`), one from each of its flat
+        /// colours (`true`) or from each place of them (`"places"`), and a lit Base.
         "shape" Shape { layer: LayerPath, preset: InflationPreset, flats: PartFor }
         /// A part in a new version, as recipes write it; shown only, until it is `done`.
         "set" Set { part: Value, done: bool }
@@ -80,11 +88,12 @@ actions! {
         "duplicate" Duplicate { part: String }
         /// A part of a colour in several places becomes a part for each.
         "split" Split { part: String }
-        /// A drawing becomes a layer for each part that has its outline from it, which goes with the part.
+        /// A drawing becomes a layer for each part that has its outline from it, which goes with
+        /// the part.
         "cut" Cut { layer: LayerPath }
         "select" Select { part: String }
-        /// The whole shape moved by a map of the canvas (a, b, c, d, e, f), with what is painted on it; shown only,
-        /// until it is `done`.
+        /// The whole shape moved by a map of the canvas (a, b, c, d, e, f), with what is painted on
+        /// it; shown only, until it is `done`.
         "take along" TakeAlong { by: [f64; 6], done: bool }
         /// What the tools that touch and sculpt do.
         "settings" Settings { shape: ShapeSettings }
@@ -120,16 +129,23 @@ impl PartAction {
         };
         session.notes.extend(done.err());
     }
+
     /// A description of a long edit.
     pub fn takes_long(&self) -> Option<&'static str> {
         matches!(self, PartAction::Shape { .. }).then_some("Giving it a shape")
     }
+
     /// Performs a long edit on a document, on any thread; `None` for any other.
-    pub fn shaped(&self, document: &Document, progress: &Progress) -> Result<Option<FirstShape>, PartRefusal> {
+    pub fn shaped(
+        &self,
+        document: &Document,
+        progress: &Progress,
+    ) -> Result<Option<FirstShape>, PartRefusal> {
         let PartAction::Shape { layer, preset, flats } = self else { return Ok(None) };
         let layer = layer.find(document).map(|layer| layer.id).ok_or("There is no such layer.")?;
         first::shaped(document, layer, preset.0, *flats, progress).map(Some)
     }
+
     fn step(&self, tab: &mut OpenDocument) -> Result<(), PartRefusal> {
         let document = tab.document();
         let of = |id: &str| document.parts.part(id).cloned().ok_or(NO_PART);
@@ -139,7 +155,11 @@ impl PartAction {
                 let id = part.id.clone();
                 let next = list::with_new(document, part);
                 // What lies on another shows there.
-                let shows = next.parts.part(&id).and_then(|part| part.on().map(str::to_owned)).unwrap_or(id.clone());
+                let shows = next
+                    .parts
+                    .part(&id)
+                    .and_then(|part| part.on().map(str::to_owned))
+                    .unwrap_or(id.clone());
                 if !next.part_areas().iter().any(|(part, _)| part.id == shows) {
                     return Err(kind.why_empty());
                 }
@@ -151,8 +171,12 @@ impl PartAction {
                 }
                 return Ok(());
             }
-            PartAction::Delete { part } => ("Delete part", document.without_part(part).ok_or(NO_PART)?, None),
-            PartAction::Order { part, index } => ("Order parts", list::ordered(document, &of(part)?.id, *index), None),
+            PartAction::Delete { part } => {
+                ("Delete part", document.without_part(part).ok_or(NO_PART)?, None)
+            }
+            PartAction::Order { part, index } => {
+                ("Order parts", list::ordered(document, &of(part)?.id, *index), None)
+            }
             PartAction::Visible { part, on } => {
                 let next = Part { visible: *on, ..Part::clone(&*of(part)?) };
                 (if *on { "Show part" } else { "Hide part" }, document.with_part(next), None)
@@ -166,7 +190,8 @@ impl PartAction {
                 ("Split by place", split::by_place(document, &part)?, Some(part.id.clone()))
             }
             PartAction::Cut { layer } => {
-                let layer = layer.find(document).map(|layer| layer.id).ok_or("There is no such layer.")?;
+                let layer =
+                    layer.find(document).map(|layer| layer.id).ok_or("There is no such layer.")?;
                 let (next, group) = document.cut_by_parts(layer)?;
                 if tab.commit("Cut drawing by parts", next) {
                     tab.selected = Some(group);
@@ -246,7 +271,8 @@ fn label(old: &Part, next: &Part) -> &'static str {
 
 /// An id that no part of a document has: `part-1`, `part-2`, …
 fn free_id(document: &Document, taken: &[Arc<Part>]) -> String {
-    let is_taken = |id: &str| document.parts.part(id).is_some() || taken.iter().any(|part| part.id == id);
+    let is_taken =
+        |id: &str| document.parts.part(id).is_some() || taken.iter().any(|part| part.id == id);
     (1..).map(|i| format!("part-{i}")).find(|id| !is_taken(id)).unwrap_or_default()
 }
 

@@ -1,10 +1,12 @@
-//! Pictures that layers use, chosen from the user's files: read on any thread, then put into the layer. Floor 6. Not
-//! here: reading files (`io`).
+//! Pictures that layers use, chosen from the user's files: read on any thread, then put into the
+//! layer. Floor 6. Not here: reading files (`io`).
 
 use super::placing::{free_file, read_picture};
 use crate::Result;
 use crate::document::source::NormalConvention;
-use crate::document::{Content, DetailSource, Document, LayerId, LayerMask, Live, MaskKind, NormalLayer};
+use crate::document::{
+    Content, DetailSource, Document, LayerId, LayerMask, Live, MaskKind, NormalLayer,
+};
 use crate::io::{Budget, files::read_file, maps::detail, picture};
 use crate::math::{Size, Vec2};
 use crate::paint::{Adjust, PictureSource};
@@ -39,7 +41,12 @@ pub fn read(part: PicturePart, file: &Path) -> Result<ReadPart> {
             (name, PartValue::Mask(mask))
         }
         PicturePart::Detail => {
-            let normals = detail::read(file, &bytes()?, &NormalConvention::default(), &Budget::of_this_machine())?;
+            let normals = detail::read(
+                file,
+                &bytes()?,
+                &NormalConvention::default(),
+                &Budget::of_this_machine(),
+            )?;
             let (name, picture) = read_picture(file)?;
             (name, PartValue::Detail(picture, Arc::new(DetailMap::new(normals))))
         }
@@ -68,13 +75,23 @@ pub fn put(tab: &mut OpenDocument, layer: LayerId, read: ReadPart) {
     }
 }
 
-fn with_mask(document: &Document, layer: LayerId, file: String, coverage: Plane<u8>) -> Option<Document> {
+fn with_mask(
+    document: &Document,
+    layer: LayerId,
+    file: String,
+    coverage: Plane<u8>,
+) -> Option<Document> {
     document.with_layer(layer, |layer| {
         layer.mask = Some(LayerMask::new(MaskKind::File { file, coverage: Arc::new(coverage) }));
     })
 }
 
-fn with_detail(document: &Document, layer: LayerId, picture: PictureSource, map: Arc<DetailMap>) -> Option<Document> {
+fn with_detail(
+    document: &Document,
+    layer: LayerId,
+    picture: PictureSource,
+    map: Arc<DetailMap>,
+) -> Option<Document> {
     let Content::Normals(normals) = &document.layer(layer)?.content else { return None };
     let source = DetailSource::Map { picture, convention: NormalConvention::default(), map };
     let normals = NormalLayer { source, ..normals.clone() };
@@ -98,15 +115,21 @@ fn with_picture(
             let mut shading = live.params().clone();
             match part {
                 PicturePart::Environment => {
-                    let known = shading.environment.as_ref().map(|e| (e.projection, e.rotation, e.exposure));
+                    let known = shading
+                        .environment
+                        .as_ref()
+                        .map(|e| (e.projection, e.rotation, e.exposure));
                     let mut environment = Environment::new(file, picture);
                     if let Some(known) = known {
-                        (environment.projection, environment.rotation, environment.exposure) = known;
+                        (environment.projection, environment.rotation, environment.exposure) =
+                            known;
                     }
                     shading.environment = Some(environment);
                 }
                 PicturePart::Sphere => shading.sphere = Some(LitSphere::new(file, picture)),
-                PicturePart::ConcaveSphere => shading.sphere_concave = Some(LitSphere::new(file, picture)),
+                PicturePart::ConcaveSphere => {
+                    shading.sphere_concave = Some(LitSphere::new(file, picture))
+                }
                 PicturePart::Image | PicturePart::Mask | PicturePart::Detail => return None,
             }
             Content::Shading(Live::new(shading))
@@ -121,7 +144,10 @@ fn fitted(mask: &Plane<u8>, canvas: Size) -> Plane<u8> {
     if mask.size() == canvas {
         return mask.clone();
     }
-    let scale = Vec2::new(mask.width() as f32 / canvas.width as f32, mask.height() as f32 / canvas.height as f32);
+    let scale = Vec2::new(
+        mask.width() as f32 / canvas.width as f32,
+        mask.height() as f32 / canvas.height as f32,
+    );
     let along = |v: usize, scale: f32| ((v as f32 + 0.5) * scale) as i32;
     Plane::from_fn(canvas, |x, y| mask.clamped(along(x, scale.x), along(y, scale.y)))
 }
@@ -134,6 +160,9 @@ mod tests {
     fn a_mask_of_another_size_covers_the_canvas() {
         let mask = Plane::from_values(Size::new(2, 1), vec![10, 200]).unwrap();
         let fitted = fitted(&mask, Size::new(6, 3));
-        assert_eq!((fitted.at(0, 0), fitted.at(2, 2), fitted.at(3, 1), fitted.at(5, 2)), (10, 10, 200, 200));
+        assert_eq!(
+            (fitted.at(0, 0), fitted.at(2, 2), fitted.at(3, 1), fitted.at(5, 2)),
+            (10, 10, 200, 200)
+        );
     }
 }

@@ -1,5 +1,5 @@
-//! Pictures that become image layers: their places, and their names in the document. Floor 6. Not here: pictures of
-//! existing layers (`pictures`).
+//! Pictures that become image layers: their places, and their names in the document. Floor 6. Not
+//! here: pictures of existing layers (`pictures`).
 
 use crate::Result;
 use crate::document::{Content, Document, Layer, Live};
@@ -21,8 +21,8 @@ pub fn read_picture(file: &Path) -> Result<(String, Picture)> {
     Ok((file.file_name().unwrap_or_default().to_string_lossy().into_owned(), picture))
 }
 
-/// A picture becomes an image layer, bent by the current operator (by normals, if that is flat), pinned at `at`. If no
-/// document is open, it becomes one itself.
+/// A picture becomes an image layer, bent by the current operator (by normals, if that is flat),
+/// pinned at `at`. If no document is open, it becomes one itself.
 pub fn place(session: &mut Session, name: &str, picture: Picture, at: Vec2) {
     let operator = match session.operator {
         Operator::None => DROPPED,
@@ -34,7 +34,8 @@ pub fn place(session: &mut Session, name: &str, picture: Picture, at: Vec2) {
     };
     let document = tab.document();
     let operator = if document.surface.is_some() { operator } else { Operator::None };
-    let at = at.clamp(Vec2::ZERO, Vec2::new(document.size.width as f32, document.size.height as f32));
+    let at =
+        at.clamp(Vec2::ZERO, Vec2::new(document.size.width as f32, document.size.height as f32));
     let lies = Lies {
         placement: placement(document, operator, at),
         outside: Outside::Mirror,
@@ -50,8 +51,15 @@ pub(super) struct Lies {
     pub bend: Bend,
 }
 
-/// A picture becomes an image layer above the selected one, and is selected; returns whether it could.
-pub(super) fn add_image(tab: &mut OpenDocument, name: &str, picture: Picture, lies: Lies, label: &str) -> bool {
+/// A picture becomes an image layer above the selected one, and is selected; returns whether it
+/// could.
+pub(super) fn add_image(
+    tab: &mut OpenDocument,
+    name: &str,
+    picture: Picture,
+    lies: Lies,
+    label: &str,
+) -> bool {
     let document = tab.document();
     let Lies { placement, outside, bend } = lies;
     let source = PictureSource::new(free_file(document, name), picture, Adjust::default());
@@ -68,7 +76,8 @@ pub(super) fn add_image(tab: &mut OpenDocument, name: &str, picture: Picture, li
     is_added
 }
 
-/// The place of a picture that is pinned at a point: over the canvas, or over all that a mirror looks up.
+/// The place of a picture that is pinned at a point: over the canvas, or over all that a mirror
+/// looks up.
 fn placement(document: &Document, operator: Operator, at: Vec2) -> Placement {
     match (operator, &document.surface) {
         (Operator::Reflection { alpha, .. }, Some(surface)) => {
@@ -80,21 +89,27 @@ fn placement(document: &Document, operator: Operator, at: Vec2) -> Placement {
     }
 }
 
-/// The operator of a dropped picture if the current one is flat: like a reflection that is still recognisable.
+/// The operator of a dropped picture if the current one is flat: like a reflection that is still
+/// recognisable.
 const DROPPED: Operator = Operator::Normal { alpha: 0.5, beta: 1.5, detail: 0.0 };
 
 /// A picture as a document of its own size.
 pub fn of_picture(name: &str, picture: Picture) -> Document {
     let size = picture.size;
     let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
-    Document { layers: vec![Arc::new(storage::flat_image(&stem, name, picture, size))], ..Document::empty(size) }
+    Document {
+        layers: vec![Arc::new(storage::flat_image(&stem, name, picture, size))],
+        ..Document::empty(size)
+    }
 }
 
 /// A file name that no other picture of the document has.
 pub(super) fn free_file(document: &Document, name: &str) -> String {
-    let taken = |name: &str| document.walk().iter().any(|(_, layer)| layer.content.files().contains(&name));
+    let taken =
+        |name: &str| document.walk().iter().any(|(_, layer)| layer.content.files().contains(&name));
     let path = Path::new(name);
-    let (stem, extension) = (path.file_stem().unwrap_or_default(), path.extension().unwrap_or_default());
+    let (stem, extension) =
+        (path.file_stem().unwrap_or_default(), path.extension().unwrap_or_default());
     let mut free = name.to_owned();
     for i in 2.. {
         if !taken(&free) {

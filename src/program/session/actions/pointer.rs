@@ -11,7 +11,8 @@ use crate::tools::guides::GuideAt;
 use crate::tools::snap::{SnapTargets, ViewAids};
 use crate::tools::unwrapped;
 use crate::tools::{
-    self, BrushTarget, GestureStart, ModifierKeys, Outcome, PenSample, ShapeSettings, ToolContext, ToolKind,
+    self, BrushTarget, GestureStart, ModifierKeys, Outcome, PenSample, ShapeSettings, ToolContext,
+    ToolKind,
 };
 use serde_json::Value;
 
@@ -27,6 +28,7 @@ impl ReplayValue for PenSample {
         }
         list
     }
+
     fn read(value: &Value) -> Result<Self, String> {
         let list = value.as_array().ok_or("must be a list of numbers")?;
         let number = |i: usize, unsaid: f32| list.get(i).map_or(Ok(unsaid), f32::read);
@@ -36,14 +38,18 @@ impl ReplayValue for PenSample {
             tilt: vec2(number(3, 0.0)?, number(4, 0.0)?),
             time_secs: number(5, 0.0)?,
         };
-        Ok(PenSample { sample, keys: list.get(6).map_or(Ok(ModifierKeys::default()), ModifierKeys::read)? })
+        Ok(PenSample {
+            sample,
+            keys: list.get(6).map_or(Ok(ModifierKeys::default()), ModifierKeys::read)?,
+        })
     }
 }
 
 actions! {
     /// Canvas px; while the surface is seen unwrapped, px of its sheet.
     PointerAction {
-        /// `tool`: a held key may select another than the current one. `px_per_pt`: canvas px per screen point.
+        /// `tool`: a held key may select another than the current one. `px_per_pt`: canvas px per
+        /// screen point.
         "press" Press { tool: ToolKind, pen: PenSample, px_per_pt: f32 }
         "drag" Drag { pens: Vec<PenSample> }
         "release" Release {}
@@ -55,7 +61,9 @@ actions! {
 impl PointerAction {
     pub fn apply(&self, session: &mut Session) {
         match self {
-            PointerAction::Press { tool, pen, px_per_pt } => press(session, *tool, *pen, *px_per_pt),
+            PointerAction::Press { tool, pen, px_per_pt } => {
+                press(session, *tool, *pen, *px_per_pt)
+            }
             PointerAction::Drag { pens } => {
                 let Some(gesture) = &mut session.gesture else { return };
                 let outcome = gesture.drag(pens);
@@ -78,7 +86,8 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
     session.drop_gesture();
     let layout = session.active().and_then(OpenDocument::layout);
     if layout.is_some() && !unwrapped::works(tool) {
-        let how = "This tool works in the picture: leave the unwrapped view (View, Unwrapped) to use it.";
+        let how =
+            "This tool works in the picture: leave the unwrapped view (View, Unwrapped) to use it.";
         return session.notes.push(how.into());
     }
     let place = on_canvas(session, pen.place());
@@ -94,7 +103,8 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         tab.hold_frame(carried);
     }
     let Some(tab) = session.active() else { return };
-    let paints = matches!(tool, ToolKind::Brush | ToolKind::Eraser | ToolKind::Fill | ToolKind::Liquify);
+    let paints =
+        matches!(tool, ToolKind::Brush | ToolKind::Eraser | ToolKind::Fill | ToolKind::Liquify);
     if let Some(why) = tab.hidden_beside().filter(|_| paints && !tab.quick_mask) {
         return session.notes.push(why);
     }
@@ -103,7 +113,9 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         Ok(document) => document,
         Err(why) => return session.notes.push(why.into()),
     };
-    let is_line = matches!(tool, ToolKind::Brush | ToolKind::Eraser) && pen.keys.shift && tab.last_end.is_some();
+    let is_line = matches!(tool, ToolKind::Brush | ToolKind::Eraser)
+        && pen.keys.shift
+        && tab.last_end.is_some();
     // Guides and other things to snap to lie in the picture.
     let is_line = is_line && layout.is_none();
     let snap = targets(session, &document, tool, &layers, is_line, px_per_pt);
@@ -111,7 +123,12 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
     let at = if is_line { snap.point(pen.place()).at } else { pen.place() };
     let pen = PenSample { sample: Sample { at, ..pen.sample }, ..pen };
     if let Some(guide) = guide_under(session, &document, tool, pen, px_per_pt) {
-        let to = SnapTargets::of(&document, &ViewAids { to_guides: false, ..session.aids }, &[], px_per_pt);
+        let to = SnapTargets::of(
+            &document,
+            &ViewAids { to_guides: false, ..session.aids },
+            &[],
+            px_per_pt,
+        );
         let (gesture, outcome) = tools::guides::hold(tab.document(), guide, to);
         session.gesture = gesture;
         return take(session, outcome);
@@ -217,7 +234,8 @@ fn guide_under(
 /// How near to a guide the move tool grabs it, screen points.
 const GUIDE_PT: f32 = 4.0;
 
-/// The canvas point under the pen, which may be on the sheet of the unwrapped surface; `None` off its pieces.
+/// The canvas point under the pen, which may be on the sheet of the unwrapped surface; `None` off
+/// its pieces.
 fn on_canvas(session: &Session, pen: Vec2) -> Option<Vec2> {
     let tab = session.active()?;
     match (tab.layout(), &tab.document().surface) {
@@ -226,7 +244,8 @@ fn on_canvas(session: &Session, pen: Vec2) -> Option<Vec2> {
     }
 }
 
-/// The document for a tool that works on the selected layer where it shows: with the layer's transform applied.
+/// The document for a tool that works on the selected layer where it shows: with the layer's
+/// transform applied.
 fn works_in_place(tool: ToolKind, tab: &OpenDocument) -> Result<Document, &'static str> {
     let document = tab.document();
     let is_moved_whole = tool == ToolKind::Move
@@ -259,7 +278,9 @@ fn works_in_place(tool: ToolKind, tab: &OpenDocument) -> Result<Document, &'stat
         return Ok(applied);
     }
     if is_warped {
-        return Err("A mesh or liquify displaces the layer: apply it (Edit, Transform), or remove it, to work on it.");
+        return Err(
+            "A mesh or liquify displaces the layer: apply it (Edit, Transform), or remove it, to work on it.",
+        );
     }
     Err("The layer is skewed by its transform; bake it, or remove the transform, to work on it.")
 }

@@ -1,5 +1,5 @@
-//! Actions on the selection of the document in front. What cannot be done says why. Floor 6. Not here: selections made
-//! by the pen (`tools::select`), cutting and copying (`clipboard`).
+//! Actions on the selection of the document in front. What cannot be done says why. Floor 6. Not
+//! here: selections made by the pen (`tools::select`), cutting and copying (`clipboard`).
 
 use crate::document::Document;
 use crate::math::range::held;
@@ -37,6 +37,7 @@ impl EdgeChange {
             EdgeChange::Feather | EdgeChange::Smooth => edges::SOFTNESS_PX,
         }
     }
+
     fn of(self, grid: &CoverageGrid, px: f32, canvas: crate::math::Rect) -> CoverageGrid {
         let px = held(px, &self.range());
         match self {
@@ -110,14 +111,18 @@ impl SelectionAction {
                 closed.map(|next| ("Select", next)).ok_or("A lasso has three corners at least.")
             }
             SelectionAction::Again {} if tab.document().active_selection.is_none() => match last {
-                Some(last) => Ok(("Select again", Document { active_selection: Some(last), ..tab.document().clone() })),
+                Some(last) => Ok((
+                    "Select again",
+                    Document { active_selection: Some(last), ..tab.document().clone() },
+                )),
                 None => Err("Nothing was selected before."),
             },
             _ => self.step(tab.document()),
         };
         match step {
             Ok((label, next)) => {
-                let is_emptied = next.active_selection.is_none() && !matches!(self, SelectionAction::None {});
+                let is_emptied =
+                    next.active_selection.is_none() && !matches!(self, SelectionAction::None {});
                 let was_active = tab.document().active_selection.is_some();
                 if tab.commit(label, next) && is_emptied && was_active {
                     session.say("Nothing is selected any more.");
@@ -126,12 +131,14 @@ impl SelectionAction {
             Err(why) => session.say(why),
         }
     }
+
     /// The step: its name and the resulting document; or why there is none.
     fn step(&self, document: &Document) -> Result<(&'static str, Document), &'static str> {
         let canvas = document.size.rect();
         let selected = || document.selected().ok_or(NOTHING);
         let with = |coverage: CoverageGrid| document.with_selection(Some(Selection::new(coverage)));
-        let layer = |path: &LayerPath| path.find(document).cloned().ok_or("There is no such layer.");
+        let layer =
+            |path: &LayerPath| path.find(document).cloned().ok_or("There is no such layer.");
         Ok(match self {
             SelectionAction::All {} => ("Select all", with(CoverageGrid::filled(canvas))),
             SelectionAction::None {} => {
@@ -143,7 +150,9 @@ impl SelectionAction {
                 // All of the canvas may be changed, so the inverse is empty.
                 None => return Err("Nothing is selected, so there is nothing to invert."),
             },
-            SelectionAction::Change { change, px } => (change.label(), with(change.of(selected()?, *px, canvas))),
+            SelectionAction::Change { change, px } => {
+                (change.label(), with(change.of(selected()?, *px, canvas)))
+            }
             SelectionAction::Move { by } => {
                 let by = vec2(held(by.x, &COORDINATE), held(by.y, &COORDINATE)).round();
                 ("Move selection", with(selected()?.shifted(by.x as i32, by.y as i32)))
@@ -170,30 +179,39 @@ impl SelectionAction {
                 if layer.mask.is_none() {
                     return Err("The layer has no mask.");
                 }
-                let shown = document.with_transform_applied(layer.id).ok_or("There is no such layer.")?;
+                let shown =
+                    document.with_transform_applied(layer.id).ok_or("There is no such layer.")?;
                 let layer = shown.layer(layer.id).ok_or("There is no such layer.")?;
                 let found = shown.mask_coverage(layer);
                 ("Select mask", document.with_combined(Selection::new(found), *how))
             }
             SelectionAction::ToMask { layer: path } => {
                 let (mask, layer) = (document.selection_as_mask().ok_or(NOTHING)?, layer(path)?);
-                let shown = document.with_transform_applied(layer.id).ok_or("There is no such layer.")?;
+                let shown =
+                    document.with_transform_applied(layer.id).ok_or("There is no such layer.")?;
                 let next = shown.with_layer(layer.id, |layer| layer.mask = Some(mask));
                 ("Mask from selection", next.ok_or("There is no such layer.")?)
             }
-            SelectionAction::Keep { name } => ("Keep selection", document.with_kept_selection(name).ok_or(NOTHING)?),
+            SelectionAction::Keep { name } => {
+                ("Keep selection", document.with_kept_selection(name).ok_or(NOTHING)?)
+            }
             SelectionAction::Take { name, how } => {
                 let kept = document.selections.iter().find(|kept| kept.name == *name);
-                let selection = kept.ok_or("There is no selection of that name.")?.selection.clone();
+                let selection =
+                    kept.ok_or("There is no selection of that name.")?.selection.clone();
                 let next = match how {
                     // The very same selection, so that it is stored once.
-                    SelectionMode::Replace => Document { active_selection: Some(selection), ..document.clone() },
+                    SelectionMode::Replace => {
+                        Document { active_selection: Some(selection), ..document.clone() }
+                    }
                     _ => document.with_combined(Selection::clone(&selection), *how),
                 };
                 ("Select", next)
             }
             SelectionAction::Forget { name } => {
-                let next = document.without_kept_selection(name).ok_or("There is no selection of that name.")?;
+                let next = document
+                    .without_kept_selection(name)
+                    .ok_or("There is no selection of that name.")?;
                 ("Forget selection", next)
             }
             SelectionAction::Again {} => {
@@ -221,7 +239,9 @@ fn told(region: &SurfaceRegion) -> SurfaceRegion {
 fn layer_alpha(document: &Document, layer: &crate::document::Layer) -> CoverageGrid {
     use crate::document::{Content, Progress, flatten_layer};
     // Where it shows.
-    let Some(document) = &document.with_transform_applied(layer.id) else { return CoverageGrid::default() };
+    let Some(document) = &document.with_transform_applied(layer.id) else {
+        return CoverageGrid::default();
+    };
     let Some(layer) = document.layer(layer.id) else { return CoverageGrid::default() };
     if let Content::Pixels(pixels) = &layer.content {
         return CoverageGrid::of_alpha(&pixels.tiles).within(document.size.rect());
@@ -230,5 +250,7 @@ fn layer_alpha(document: &Document, layer: &crate::document::Layer) -> CoverageG
         (layer.opacity, layer.mask, layer.visible, layer.clip_below) = (1.0, None, true, false);
     });
     let painted = bare.and_then(|bare| flatten_layer(&bare, layer.id, &Progress::default()));
-    painted.map_or_else(CoverageGrid::default, |tiles| CoverageGrid::of_alpha(&tiles).within(document.size.rect()))
+    painted.map_or_else(CoverageGrid::default, |tiles| {
+        CoverageGrid::of_alpha(&tiles).within(document.size.rect())
+    })
 }

@@ -1,5 +1,5 @@
-//! Actions on the strokes of stroke layers: selecting, changing, ordering, deleting, baking. Floor 6. Not here: the
-//! edits themselves (`document::strokes`).
+//! Actions on the strokes of stroke layers: selecting, changing, ordering, deleting, baking.
+//! Floor 6. Not here: the edits themselves (`document::strokes`).
 
 use crate::document::{Document, LayerId};
 use crate::math::{Vec2, srgb::Color, vec2};
@@ -24,7 +24,8 @@ actions! {
         "delete" Delete { layer: LayerPath, strokes: Vec<usize> }
         /// To pixels, on a paint layer of their own.
         "bake" Bake { layer: LayerPath, strokes: Vec<usize> }
-        /// On a part of the shape by its id, on `canvas`, or on what the layer lies on; they show where they showed.
+        /// On a part of the shape by its id, on `canvas`, or on what the layer lies on; they show
+        /// where they showed.
         "home" Home { layer: LayerPath, strokes: Vec<usize>, part: Option<String> }
         /// Takes its brush, operator and colour as the current ones.
         "take" Take { layer: LayerPath, stroke: usize }
@@ -75,7 +76,8 @@ impl StrokeAction {
             }
             StrokeAction::Restyle { layer, strokes, to, done } => {
                 let Some(id) = id(layer) else { return };
-                let next = document.with_each_stroke(id, strokes, |stroke| to.given_to(stroke, &current_brush));
+                let next = document
+                    .with_each_stroke(id, strokes, |stroke| to.given_to(stroke, &current_brush));
                 match next {
                     Some(next) if *done => drop(tab.commit("Restyle stroke", next)),
                     Some(next) => tab.show("Restyle stroke", next),
@@ -91,6 +93,7 @@ impl StrokeAction {
             }
         }
     }
+
     /// The step: its name, the resulting document, and the strokes that are selected then.
     fn edit(&self, document: &Document) -> Option<(&'static str, Document, LayerId, Vec<usize>)> {
         let id = |path: &LayerPath| path.find(document).map(|layer| layer.id);
@@ -102,11 +105,17 @@ impl StrokeAction {
             StrokeAction::Order { layer, stroke, to } => {
                 let id = id(layer)?;
                 let next = document.with_reordered_stroke(id, *stroke, *to)?;
-                ("Order strokes", next, id, vec![(*to).min(document.strokes(id).len().saturating_sub(1))])
+                (
+                    "Order strokes",
+                    next,
+                    id,
+                    vec![(*to).min(document.strokes(id).len().saturating_sub(1))],
+                )
             }
             StrokeAction::Duplicate { layer, strokes } => {
                 let id = id(layer)?;
-                let (next, copies) = document.with_copied_strokes(id, strokes, vec2(ASIDE_PX, ASIDE_PX))?;
+                let (next, copies) =
+                    document.with_copied_strokes(id, strokes, vec2(ASIDE_PX, ASIDE_PX))?;
                 ("Duplicate stroke", next, id, copies)
             }
             StrokeAction::Delete { layer, strokes } => {
@@ -123,7 +132,9 @@ impl StrokeAction {
                 let (next, _) = document.with_baked_strokes(id, strokes)?;
                 ("Bake stroke", next, id, Vec::new())
             }
-            StrokeAction::Choose { .. } | StrokeAction::Restyle { .. } | StrokeAction::Take { .. } => return None,
+            StrokeAction::Choose { .. }
+            | StrokeAction::Restyle { .. }
+            | StrokeAction::Take { .. } => return None,
         })
     }
 }

@@ -1,5 +1,5 @@
-//! Pictures of the unwrapped surface: written to a file, and put back on the surface. Floor 6. Not here: drawing them
-//! (`document::view`), the sheet (`surface::unwrap`).
+//! Pictures of the unwrapped surface: written to a file, and put back on the surface. Floor 6. Not
+//! here: drawing them (`document::view`), the sheet (`surface::unwrap`).
 
 use crate::document::view::{UnwrapOptions, placed_over, unwrapped};
 use crate::document::{Document, Highlights, Progress};
@@ -38,7 +38,9 @@ pub fn export(
     if deep.is_some() {
         return target.replace(&encode_deep(file, format, &seen.pixels, seen.size, &written)?);
     }
-    let Some(Texels::Srgb8(texels)) = seen.picture().map(|picture| picture.texels) else { return Ok(()) };
+    let Some(Texels::Srgb8(texels)) = seen.picture().map(|picture| picture.texels) else {
+        return Ok(());
+    };
     let (width, height) = (seen.size.width as usize, seen.size.height as usize);
     let grid = TileGrid::from_straight_rgba(texels.as_flattened(), width, height, 0, 0);
     target.replace(&encode(file, format, &grid, seen.size, &written)?)
@@ -47,17 +49,22 @@ pub fn export(
 /// How far the sides of a picture may differ from the sheet's, as a ratio, without a note.
 const SAME_ASPECT: f32 = 0.005;
 
-/// A picture of the sheet becomes an image layer above the selected one, pixel for pixel where the sheet shows it.
+/// A picture of the sheet becomes an image layer above the selected one, pixel for pixel where the
+/// sheet shows it.
 pub fn place(session: &mut Session, name: &str, picture: Picture) {
     let settings = session.unwrap_settings();
     let Some(tab) = session.active_mut() else { return };
     let document = tab.document();
-    let Some(layout) = document.surface.as_ref().and_then(|surface| surface.plane_layout(settings)) else {
+    let Some(layout) = document.surface.as_ref().and_then(|surface| surface.plane_layout(settings))
+    else {
         return session.notes.push("There is no surface here that could be unwrapped.".into());
     };
     let (sheet, size) = (layout.size(), picture.size);
-    let lies =
-        Lies { placement: placed_over(sheet.rect(), size, document.size), outside: Outside::None, bend: layout.bend() };
+    let lies = Lies {
+        placement: placed_over(sheet.rect(), size, document.size),
+        outside: Outside::None,
+        bend: layout.bend(),
+    };
     if add_image(tab, name, picture, lies, "Import unwrapped") {
         let aspect = |size: crate::math::Size| size.width as f32 / size.height.max(1) as f32;
         if (aspect(size) / aspect(sheet) - 1.0).abs() > SAME_ASPECT {

@@ -20,8 +20,8 @@ actions! {
         /// A view of the surface over the picture, by its name, or none.
         "overlay" Overlay { view: Option<String> }
         "overlay opacity" OverlayOpacity { to: f32 }
-        /// The surface unwrapped instead of the picture, as the current operator says. The pen's points are
-        /// then those of the sheet.
+        /// The surface unwrapped instead of the picture, as the current operator says. The pen's
+        /// points are then those of the sheet.
         "unwrapped" Unwrapped { on: bool }
     }
 }
@@ -35,12 +35,15 @@ impl ViewAction {
             _ => {
                 if let Some(tab) = session.active_mut() {
                     let size = tab.shown_size();
-                    let view = tab.view.unwrap_or_else(|| CanvasView::fitting(size, Vec2::new(800.0, 600.0)));
+                    let view = tab
+                        .view
+                        .unwrap_or_else(|| CanvasView::fitting(size, Vec2::new(800.0, 600.0)));
                     tab.view = Some(self.clamped(view, size));
                 }
             }
         }
     }
+
     fn clamped(&self, view: CanvasView, canvas: crate::math::Size) -> CanvasView {
         match self {
             ViewAction::Pan { by } => view.panned(*by),
@@ -49,11 +52,14 @@ impl ViewAction {
             ViewAction::Turn { by_rad } => view.turned(*by_rad),
             ViewAction::Mirror {} => CanvasView { mirrored: !view.mirrored, ..view },
             ViewAction::Upright {} => CanvasView { turn_rad: 0.0, ..view },
-            ViewAction::Fit { window_pt } => {
-                CanvasView { mirrored: view.mirrored, ..CanvasView::fitting(canvas, window_pt.max(Vec2::ONE)) }
-            }
+            ViewAction::Fit { window_pt } => CanvasView {
+                mirrored: view.mirrored,
+                ..CanvasView::fitting(canvas, window_pt.max(Vec2::ONE))
+            },
             ViewAction::LookAt { center } => CanvasView { center: *center, ..view },
-            ViewAction::Overlay { .. } | ViewAction::OverlayOpacity { .. } | ViewAction::Unwrapped { .. } => view,
+            ViewAction::Overlay { .. }
+            | ViewAction::OverlayOpacity { .. }
+            | ViewAction::Unwrapped { .. } => view,
         }
     }
 }
@@ -62,7 +68,12 @@ fn unwrap(session: &mut Session, on: bool) {
     session.drop_gesture();
     let settings = session.unwrap_settings();
     let Some(tab) = session.active_mut() else { return };
-    let laid = tab.document().surface.as_ref().filter(|_| on).and_then(|surface| surface.plane_layout(settings));
+    let laid = tab
+        .document()
+        .surface
+        .as_ref()
+        .filter(|_| on)
+        .and_then(|surface| surface.plane_layout(settings));
     let is_laid = laid.is_some();
     tab.show_unwrapped(laid.map(|_| settings));
     if on && !is_laid {

@@ -9,21 +9,26 @@ const STORY: &str = r##"{"in":"file","do":"new","width":90,"height":70,"backgrou
 
 /// A program that keeps its logs in a folder and painted a stroke.
 fn painted(folder: &Path) -> Session {
-    let mut session = Session { autosave: Some(Autosave::new(folder.into())), ..Session::default() };
+    let mut session =
+        Session { autosave: Some(Autosave::new(folder.into())), ..Session::default() };
     session.replay(Path::new("story"), STORY).unwrap();
     session.keep();
     session
 }
+
 fn autosave(session: &Session) -> &Autosave {
     session.autosave.as_ref().unwrap()
 }
+
 fn crash(session: Session) {
     autosave(&session).settle();
     drop(session);
 }
+
 fn lost(folder: &Path) -> Vec<recovery::LostSession> {
     Autosave::new(folder.into()).lost().list()
 }
+
 fn files(folder: &Path) -> usize {
     std::fs::read_dir(folder).unwrap().count()
 }
@@ -37,7 +42,8 @@ fn after_a_crash_the_drawing_comes_back_untitled_and_unsaved() {
     crash(session);
     let left = lost(folder.path()).pop().unwrap();
     let mut autosave = Autosave::new(folder.path().into());
-    let RecoveredTab { tab, recovery, .. } = autosave.lost().bring_back(left, &Progress::default()).unwrap().unwrap();
+    let RecoveredTab { tab, recovery, .. } =
+        autosave.lost().bring_back(left, &Progress::default()).unwrap().unwrap();
     assert_eq!((tab.title().as_str(), &tab.file), ("Untitled 1 (recovered)", &None));
     assert!(tab.is_dirty());
     assert_eq!(crate::io::recipe::write(tab.document()), before);
@@ -48,6 +54,7 @@ fn after_a_crash_the_drawing_comes_back_untitled_and_unsaved() {
     drop(autosave);
     assert_eq!(lost(folder.path()).len(), 1);
 }
+
 #[test]
 fn a_program_that_is_just_dying_is_waited_for() {
     let folder = tempfile::tempdir().unwrap();
@@ -55,7 +62,8 @@ fn a_program_that_is_just_dying_is_waited_for() {
     for entry in std::fs::read_dir(folder.path()).unwrap().flatten() {
         // As if another process had written it.
         let extension = entry.path().extension().unwrap().to_owned();
-        std::fs::rename(entry.path(), folder.path().join("0-1-0").with_extension(extension)).unwrap();
+        std::fs::rename(entry.path(), folder.path().join("0-1-0").with_extension(extension))
+            .unwrap();
     }
     let lock = Disk.lock(&folder.path().join("0-1-0.lock")).unwrap().unwrap();
     let dying = std::thread::spawn(move || {
@@ -65,6 +73,7 @@ fn a_program_that_is_just_dying_is_waited_for() {
     assert_eq!(lost(folder.path()).len(), 1);
     dying.join().unwrap();
 }
+
 #[test]
 fn what_is_closed_or_never_was_touched_is_not_offered() {
     let folder = tempfile::tempdir().unwrap();
@@ -75,9 +84,13 @@ fn what_is_closed_or_never_was_touched_is_not_offered() {
     session.replay(Path::new("story"), STORY.lines().next().unwrap()).unwrap();
     session.keep();
     crash(session);
-    assert!(files(folder.path()) > 0 && lost(folder.path()).is_empty(), "a new canvas nobody painted on");
+    assert!(
+        files(folder.path()) > 0 && lost(folder.path()).is_empty(),
+        "a new canvas nobody painted on"
+    );
     assert_eq!(files(folder.path()), 0);
 }
+
 #[test]
 fn what_a_file_holds_is_offered_only_if_the_file_is_another_now() {
     let folder = tempfile::tempdir().unwrap();
@@ -94,9 +107,12 @@ fn what_a_file_holds_is_offered_only_if_the_file_is_another_now() {
         }
         let left = lost(&logs);
         assert_eq!(left.len(), usize::from(is_changed));
-        assert!(left.iter().all(|left| left.title == "a.ora" && left.file.as_deref() == Some(&*file)));
+        assert!(
+            left.iter().all(|left| left.title == "a.ora" && left.file.as_deref() == Some(&*file))
+        );
     }
 }
+
 #[test]
 fn an_edit_after_saving_is_offered() {
     let folder = tempfile::tempdir().unwrap();
@@ -104,11 +120,14 @@ fn an_edit_after_saving_is_offered() {
     let mut session = painted(&logs);
     Action::File(FileAction::Save { file }).apply(&mut session).unwrap();
     session.keep();
-    session.replay(Path::new("story"), &STORY.lines().skip(1).collect::<Vec<_>>().join("\n")).unwrap();
+    session
+        .replay(Path::new("story"), &STORY.lines().skip(1).collect::<Vec<_>>().join("\n"))
+        .unwrap();
     session.keep();
     crash(session);
     assert_eq!(lost(&logs).len(), 1);
 }
+
 #[test]
 fn the_program_ends_as_it_should_and_leaves_only_what_is_unsaved() {
     let folder = tempfile::tempdir().unwrap();
@@ -121,23 +140,31 @@ fn the_program_ends_as_it_should_and_leaves_only_what_is_unsaved() {
     assert_eq!(left.len(), 1);
     assert_eq!(left[0].title, "Untitled 1");
 }
+
 #[test]
 fn a_folder_that_cannot_be_had_is_told_once_and_tried_again() {
     let folder = tempfile::tempdir().unwrap();
     let logs = folder.path().join("logs");
     std::fs::write(&logs, "in the way").unwrap();
     let mut session = painted(&logs);
-    assert!(session.notes.iter().any(|note| note.contains("logs") && note.contains("saved")), "{:?}", session.notes);
+    assert!(
+        session.notes.iter().any(|note| note.contains("logs") && note.contains("saved")),
+        "{:?}",
+        session.notes
+    );
     session.notes.clear();
     session.keep();
     assert!(session.notes.is_empty());
     std::fs::remove_file(&logs).unwrap();
-    session.replay(Path::new("story"), &STORY.lines().skip(1).collect::<Vec<_>>().join("\n")).unwrap();
+    session
+        .replay(Path::new("story"), &STORY.lines().skip(1).collect::<Vec<_>>().join("\n"))
+        .unwrap();
     session.keep();
     assert!(session.notes.is_empty());
     crash(session);
     assert_eq!(lost(&logs).len(), 1);
 }
+
 #[test]
 fn what_was_chosen_and_in_hand_comes_back_with_the_drawing() {
     let folder = tempfile::tempdir().unwrap();
@@ -157,5 +184,8 @@ fn what_was_chosen_and_in_hand_comes_back_with_the_drawing() {
         .unwrap()
         .unwrap();
     let chosen = tab.document().layer(tab.selected.unwrap()).unwrap();
-    assert_eq!((chosen.name.as_str(), tab.on_mask, tool), ("Background", true, Some(ToolKind::Eraser)));
+    assert_eq!(
+        (chosen.name.as_str(), tab.on_mask, tool),
+        ("Background", true, Some(ToolKind::Eraser))
+    );
 }

@@ -1,13 +1,13 @@
-//! Which layers are chosen: one is the primary one, which the brush paints on; what is done to layers is done to all.
-//! Floor 6. The choice is not part of the document: choosing is no step.
+//! Which layers are chosen: one is the primary one, which the brush paints on; what is done to
+//! layers is done to all. Floor 6. The choice is not part of the document: choosing is no step.
 
 use super::OpenDocument;
 use crate::document::{Document, LayerId};
 use crate::math::Vec2;
 use crate::tools::frame::{Framed, KeptFrame, TransformFrame, TransformTarget};
 
-/// The chosen layers. They count as long as the primary one is among them: whatever selects another layer alone drops
-/// the others.
+/// The chosen layers. They count as long as the primary one is among them: whatever selects another
+/// layer alone drops the others.
 #[derive(Clone, Debug, Default)]
 pub struct ChosenLayers {
     ids: Vec<LayerId>,
@@ -22,10 +22,12 @@ impl ChosenLayers {
     pub(super) fn of(ids: Vec<LayerId>) -> Self {
         Self { anchor: ids.last().copied(), ids, frame: KeptFrame::default() }
     }
+
     /// The choice alone.
     pub(super) fn without_frame(&self) -> Self {
         Self { frame: KeptFrame::default(), ids: self.ids.clone(), ..*self }
     }
+
     /// Chooses as another does; what the transform tool keeps stays.
     pub(super) fn choose_as(&mut self, other: Self) {
         (self.ids, self.anchor) = (other.ids, other.anchor);
@@ -36,54 +38,77 @@ impl OpenDocument {
     /// The chosen layers in the order of the tree, bottom first, the primary one among them.
     pub fn chosen_layers(&self) -> Vec<LayerId> {
         let document = self.shown();
-        let Some(primary) = self.selected.filter(|id| document.layer(*id).is_some()) else { return Vec::new() };
+        let Some(primary) = self.selected.filter(|id| document.layer(*id).is_some()) else {
+            return Vec::new();
+        };
         if !self.chosen_layers.ids.contains(&primary) {
             return vec![primary];
         }
         let all = document.walk();
-        all.iter().map(|(_, layer)| layer.id).filter(|id| self.chosen_layers.ids.contains(id)).collect()
+        all.iter()
+            .map(|(_, layer)| layer.id)
+            .filter(|id| self.chosen_layers.ids.contains(id))
+            .collect()
     }
+
     /// Those of them that are in no other one: what is in a chosen group moves with it.
     pub fn outermost_chosen(&self) -> Vec<LayerId> {
         self.shown().outermost(&self.chosen_layers())
     }
+
     pub fn is_chosen(&self, layer: LayerId) -> bool {
-        let also = |primary| self.chosen_layers.ids.contains(&primary) && self.chosen_layers.ids.contains(&layer);
+        let also = |primary| {
+            self.chosen_layers.ids.contains(&primary) && self.chosen_layers.ids.contains(&layer)
+        };
         self.selected == Some(layer) || self.selected.is_some_and(also)
     }
+
     /// The frame of the transform tool around them, or around the shape, as they are shown.
     pub fn frame(&self, carried: TransformTarget) -> Option<TransformFrame> {
         self.frame_in(self.shown(), carried)
     }
+
     /// The same after the last step.
     pub fn frame_before(&self, carried: TransformTarget) -> Option<TransformFrame> {
         self.frame_in(self.document(), carried)
     }
+
     fn frame_in(&self, document: &Document, carried: TransformTarget) -> Option<TransformFrame> {
         let chosen = self.outermost_chosen();
         self.chosen_layers.frame.around(document, Framed::new(carried, document, &chosen))
     }
+
     /// The frame around the chosen layers turns with them from now on.
     pub(in crate::session) fn hold_frame(&mut self, carried: TransformTarget) {
         let (document, layers) = (self.document().clone(), self.outermost_chosen());
         self.chosen_layers.frame.hold(&document, Framed::new(carried, &document, &layers));
     }
-    /// The frame around the chosen layers is turned about this point from now on, by shares of its sides.
+
+    /// The frame around the chosen layers is turned about this point from now on, by shares of its
+    /// sides.
     pub(in crate::session) fn set_pivot(&mut self, carried: TransformTarget, share: Vec2) {
         let (document, layers) = (self.document().clone(), self.outermost_chosen());
-        self.chosen_layers.frame.set_pivot(&document, Framed::new(carried, &document, &layers), share);
+        self.chosen_layers.frame.set_pivot(
+            &document,
+            Framed::new(carried, &document, &layers),
+            share,
+        );
     }
+
     pub(in crate::session) fn kept_frame(&self) -> &KeptFrame {
         &self.chosen_layers.frame
     }
+
     /// Whether more than one layer is chosen.
     pub fn has_several(&self) -> bool {
         self.chosen_layers().len() > 1
     }
+
     /// The start of a range that Shift extends.
     pub fn range_start(&self) -> Option<LayerId> {
         self.chosen_layers.anchor.filter(|id| self.is_chosen(*id)).or(self.selected)
     }
+
     /// Chooses layers; the primary one is the last of them. If none are given, nothing changes.
     pub fn choose_layers(&mut self, ids: Vec<LayerId>) {
         if let Some(primary) = ids.last().copied() {
@@ -91,12 +116,15 @@ impl OpenDocument {
             self.chosen_layers.choose_as(ChosenLayers::of(ids));
         }
     }
+
     /// The same, with the start of the range to extend.
     pub fn choose_range(&mut self, ids: Vec<LayerId>, anchor: Option<LayerId>) {
         self.choose_layers(ids);
         self.chosen_layers.anchor = anchor.or(self.chosen_layers.anchor);
     }
-    /// With a layer added to those chosen, or removed from them, the primary one last. The last one stays.
+
+    /// With a layer added to those chosen, or removed from them, the primary one last. The last one
+    /// stays.
     pub fn toggled(&self, layer: LayerId) -> Vec<LayerId> {
         let mut ids = self.chosen_layers();
         match ids.iter().position(|id| *id == layer) {
@@ -115,7 +143,8 @@ impl OpenDocument {
     }
 }
 
-/// The layers from one to another in the order of the list, the other last. `listed`: in any direction.
+/// The layers from one to another in the order of the list, the other last. `listed`: in any
+/// direction.
 pub fn range(listed: &[LayerId], from: LayerId, to: LayerId) -> Vec<LayerId> {
     let place = |id: LayerId| listed.iter().position(|other| *other == id);
     let (Some(a), Some(b)) = (place(from), place(to)) else { return vec![to] };
@@ -125,8 +154,8 @@ pub fn range(listed: &[LayerId], from: LayerId, to: LayerId) -> Vec<LayerId> {
     ids
 }
 
-/// The layer above (positive) or beneath another one, groups opened and counted after what is in them; at an end the
-/// layer itself.
+/// The layer above (positive) or beneath another one, groups opened and counted after what is in
+/// them; at an end the layer itself.
 pub fn neighbour(document: &Document, layer: LayerId, by: i32) -> LayerId {
     let all: Vec<LayerId> = document.walk().iter().map(|(_, layer)| layer.id).collect();
     let at = all.iter().position(|id| *id == layer).unwrap_or(0);
@@ -143,7 +172,8 @@ mod tests {
 
     fn tab() -> (OpenDocument, Vec<LayerId>) {
         let fill = |i: usize| Arc::new(Layer::new(i.to_string(), Content::Fill(Color::BLACK)));
-        let document = Document { layers: (0..5).map(fill).collect(), ..Document::empty(Size::new(4, 4)) };
+        let document =
+            Document { layers: (0..5).map(fill).collect(), ..Document::empty(Size::new(4, 4)) };
         let ids = document.layers.iter().map(|layer| layer.id).collect();
         (OpenDocument::new("five", document, None), ids)
     }
@@ -159,6 +189,7 @@ mod tests {
         tab.choose_layers(tab.toggled(ids[3]));
         assert_eq!(tab.chosen_layers(), [ids[3]], "one is always chosen");
     }
+
     #[test]
     fn a_range_keeps_its_beginning_while_its_end_moves() {
         let (mut tab, ids) = tab();
@@ -169,6 +200,7 @@ mod tests {
             assert_eq!((tab.chosen_layers(), tab.selected), (ids[chosen].to_vec(), Some(ids[end])));
         }
     }
+
     #[test]
     fn selecting_another_layer_lets_go_of_the_others() {
         let (mut tab, ids) = tab();
@@ -179,6 +211,7 @@ mod tests {
         tab.choose_layers(vec![ids[1]]);
         assert!(!tab.has_several() && !tab.is_chosen(ids[0]));
     }
+
     #[test]
     fn a_layer_that_is_gone_is_chosen_no_more() {
         let (mut tab, ids) = tab();

@@ -14,11 +14,13 @@ impl OpenDocument {
         }
         self.solo.and_then(|id| alone(shown, id)).unwrap_or_else(|| shown.clone())
     }
+
     /// Why paint on the selected layer would not be seen: another layer is shown alone.
     pub fn hidden_beside(&self) -> Option<String> {
         let document = self.document();
         let (alone, selected) = (document.layer(self.solo?)?, document.layer(self.selected?)?);
-        let is_seen = alone.id == selected.id || document.outermost(&[alone.id, selected.id]) == [alone.id];
+        let is_seen =
+            alone.id == selected.id || document.outermost(&[alone.id, selected.id]) == [alone.id];
         let (beside, shown) = (&selected.name, &alone.name);
         (!is_seen).then(|| {
             format!(
@@ -35,7 +37,12 @@ fn under_red(document: &Document) -> Document {
     let kind = MaskKind::File { file: String::new(), coverage };
     let mask = LayerMask { invert: true, ..LayerMask::new(kind) };
     let red = Content::Fill(Color { r: 230, g: 20, b: 20, a: 255 });
-    let sheet = Layer { mask: Some(mask), opacity: 0.5, clip_to_surface: false, ..Layer::new("Quick mask", red) };
+    let sheet = Layer {
+        mask: Some(mask),
+        opacity: 0.5,
+        clip_to_surface: false,
+        ..Layer::new("Quick mask", red)
+    };
     let mut layers = document.layers.clone();
     layers.push(Arc::new(sheet));
     Document { layers, ..document.clone() }

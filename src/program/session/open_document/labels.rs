@@ -7,16 +7,22 @@ use std::sync::Arc;
 /// The label of an edit between two documents.
 pub fn label(name: String, before: &Document, after: &Document) -> EditLabel {
     let (old, new) = (by_id(before), by_id(after));
-    let is_changed = |layer: &&Arc<Layer>| old.get(&layer.id).is_none_or(|known| !Arc::ptr_eq(known, layer));
-    let changed: Vec<LayerId> = new.values().copied().filter(is_changed).map(|layer| layer.id).collect();
+    let is_changed =
+        |layer: &&Arc<Layer>| old.get(&layer.id).is_none_or(|known| !Arc::ptr_eq(known, layer));
+    let changed: Vec<LayerId> =
+        new.values().copied().filter(is_changed).map(|layer| layer.id).collect();
     // A group changes with what is in it.
     let holds = |id: &LayerId| {
         let group = new.get(id).and_then(|layer| layer.content.group());
         group.is_some_and(|group| group.layers.iter().any(|inner| changed.contains(&inner.id)))
     };
     let innermost: Vec<LayerId> = changed.iter().copied().filter(|id| !holds(id)).collect();
-    let apart = |document: &Document, all: &HashMap<LayerId, &Arc<Layer>>, others: &HashMap<LayerId, &Arc<Layer>>| {
-        document.outermost(&all.keys().copied().filter(|id| !others.contains_key(id)).collect::<Vec<_>>())
+    let apart = |document: &Document,
+                 all: &HashMap<LayerId, &Arc<Layer>>,
+                 others: &HashMap<LayerId, &Arc<Layer>>| {
+        document.outermost(
+            &all.keys().copied().filter(|id| !others.contains_key(id)).collect::<Vec<_>>(),
+        )
     };
     let (came, gone) = (apart(after, &new, &old), apart(before, &old, &new));
     let layer = match (&came[..], &gone[..], &innermost[..]) {
@@ -46,8 +52,12 @@ fn by_id(document: &Document) -> HashMap<LayerId, &Arc<Layer>> {
 pub fn sentence(label: &EditLabel) -> String {
     let name = &label.name;
     match &label.layer {
-        Some(LabelledLayer::Changed(layer)) if !name.ends_with("layer") => format!("{name} on “{layer}”"),
-        Some(LabelledLayer::Changed(layer) | LabelledLayer::Listed(layer)) => format!("{name} “{layer}”"),
+        Some(LabelledLayer::Changed(layer)) if !name.ends_with("layer") => {
+            format!("{name} on “{layer}”")
+        }
+        Some(LabelledLayer::Changed(layer) | LabelledLayer::Listed(layer)) => {
+            format!("{name} “{layer}”")
+        }
         None => name.clone(),
     }
 }

@@ -1,6 +1,7 @@
-//! What the next edit of an open document applies to. Floor 6. Every step of the history holds it as it was before and
-//! after the step, so that undo and redo put the user back where the step was made; recovery logs hold the last one.
-//! Not here: the tool in hand, which belongs to all documents and which undo never takes away.
+//! What the next edit of an open document applies to. Floor 6. Every step of the history holds it
+//! as it was before and after the step, so that undo and redo put the user back where the step was
+//! made; recovery logs hold the last one. Not here: the tool in hand, which belongs to all
+//! documents and which undo never takes away.
 
 use super::OpenDocument;
 use super::chosen::ChosenLayers;
@@ -20,7 +21,8 @@ pub struct EditTarget {
     quick_mask: bool,
 }
 
-/// The same by paths, which are valid in another run of the program. Strokes are those of the primary layer.
+/// The same by paths, which are valid in another run of the program. Strokes are those of the
+/// primary layer.
 struct StoredTarget {
     primary: Option<LayerPath>,
     layers: LayerPaths,
@@ -43,6 +45,7 @@ impl OpenDocument {
             quick_mask: self.quick_mask,
         }
     }
+
     /// Goes back to a target; where something of it is gone, another takes its place.
     pub(super) fn aim(&mut self, target: EditTarget) {
         let EditTarget { selected, layers, part, strokes, on_mask, quick_mask } = target;
@@ -51,14 +54,16 @@ impl OpenDocument {
         (self.on_mask, self.quick_mask) = (on_mask, quick_mask);
         self.repair();
     }
-    /// Where the last step left the user is what redo goes back to: called before the target is changed by anything
-    /// but a step.
+
+    /// Where the last step left the user is what redo goes back to: called before the target is
+    /// changed by anything but a step.
     pub(in crate::session) fn settle(&mut self) {
         if !self.history.is_settled() {
             let after = self.target();
             self.history.settle(after);
         }
     }
+
     /// The target for a recovery log.
     pub(in crate::session) fn stored_target(&self) -> Value {
         let document = self.document();
@@ -72,7 +77,9 @@ impl OpenDocument {
         };
         stored.written()
     }
-    /// Goes to a target from a recovery log. One that cannot be read, as of an older log, changes nothing.
+
+    /// Goes to a target from a recovery log. One that cannot be read, as of an older log, changes
+    /// nothing.
     pub(in crate::session) fn aim_as_stored(&mut self, value: &Value) {
         if let Ok(stored) = StoredTarget::read(value) {
             let target = stored.found(self.document());

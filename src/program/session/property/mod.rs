@@ -6,11 +6,14 @@ mod values;
 use super::PicturePart;
 use super::replay::actions;
 use crate::document::{
-    Content, DerivedMask, DetailSource, Layer, LayerLabel, LayerLock, LayerTransform, Live, NormalLayer,
+    Content, DerivedMask, DetailSource, Layer, LayerLabel, LayerLock, LayerTransform, Live,
+    NormalLayer,
 };
 use crate::math::range::{STOPS, held};
 use crate::math::{TURNS, Vec2, Vec3, srgb::Color};
-use crate::paint::{Adjust, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement};
+use crate::paint::{
+    Adjust, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement,
+};
 use crate::raster::{BlendMode, Outside, Resampling};
 use crate::shading::scaling::Reference;
 use crate::shading::{Features, Light, Model, Projection, RadianceScaling, Scaling, Shading, Term};
@@ -40,7 +43,8 @@ actions! {
         "fill" Fill { color: Color }
         "operator" Bend { operator: Operator }
         "anchors" Anchors { anchors: Vec<Anchor> }
-        /// For an image or a gradient on the unwrapped surface: pieces on which it is turned, moved and scaled alone.
+        /// For an image or a gradient on the unwrapped surface: pieces on which it is turned, moved
+        /// and scaled alone.
         "pieces" Pieces { pieces: Vec<PlanePiece> }
         "power" Power { to: f32 }
         "placement" Place { placement: Placement }
@@ -110,24 +114,31 @@ impl Property {
             Property::Adjusted { .. } => "Adjust image",
             Property::Stops { .. } => "Gradient stops",
             Property::Ends { .. } => "Gradient ends",
-            Property::Mask { .. } | Property::MaskInverted { .. } | Property::MaskDisabled { .. } => "Layer mask",
+            Property::Mask { .. }
+            | Property::MaskInverted { .. }
+            | Property::MaskDisabled { .. } => "Layer mask",
             Property::Surrounded { .. } => "Environment",
             Property::Without { .. } => "Remove picture",
             Property::Occlusion { .. } | Property::Bounces { .. } => "Material",
             Property::Grained { .. } => "Detail normals",
             Property::ShadingModel { .. } => "Shading model",
             Property::Lights { .. } => "Lights",
-            Property::Ambient { .. } | Property::Diffuse { .. } | Property::Specular { .. } => "Material",
-            Property::Shininess { .. } | Property::Bands { .. } | Property::Exponent { .. } => "Material",
+            Property::Ambient { .. } | Property::Diffuse { .. } | Property::Specular { .. } => {
+                "Material"
+            }
+            Property::Shininess { .. } | Property::Bands { .. } | Property::Exponent { .. } => {
+                "Material"
+            }
             Property::Anisotropy { .. } | Property::RefractiveIndex { .. } => "Material",
             Property::Features { .. } => "Features",
-            Property::Scaled { .. } | Property::ScalingReference { .. } | Property::KeepMean { .. } => {
-                "Radiance scaling"
-            }
+            Property::Scaled { .. }
+            | Property::ScalingReference { .. }
+            | Property::KeepMean { .. } => "Radiance scaling",
             Property::ScalingLight { .. } => "Radiance scaling",
             Property::Strength { .. } => "Strength",
         }
     }
+
     /// Sets the value of a layer. A layer without the property is left as it is.
     pub fn apply(&self, layer: &mut Layer) {
         match self {
@@ -161,6 +172,7 @@ impl Property {
             _ => self.apply_to_content(&mut layer.content),
         }
     }
+
     fn apply_to_content(&self, content: &mut Content) {
         match content {
             Content::Fill(color) => {
@@ -199,6 +211,7 @@ impl Property {
             Content::Pixels(_) | Content::Strokes(_) => {}
         }
     }
+
     fn image(&self, image: &PlacedImage) -> Option<PlacedImage> {
         let mut next = image.clone();
         match self {
@@ -211,12 +224,14 @@ impl Property {
             Property::Filtered { filter } => next.filter = *filter,
             Property::Adjusted { adjust } => {
                 let source = &image.source;
-                next.source = PictureSource::new(source.file.clone(), source.picture.clone(), *adjust);
+                next.source =
+                    PictureSource::new(source.file.clone(), source.picture.clone(), *adjust);
             }
             _ => return None,
         }
         Some(next)
     }
+
     fn gradient(&self, gradient: &Gradient) -> Option<Gradient> {
         let mut next = gradient.clone();
         match self {
@@ -229,6 +244,7 @@ impl Property {
         }
         Some(next)
     }
+
     fn shading(&self, shading: &Shading) -> Option<Shading> {
         let mut next = shading.clone();
         match self {
@@ -236,7 +252,8 @@ impl Property {
                 // Keeps pictures and lights; the terms become the model's defaults.
                 let fresh = Shading::new(*model);
                 next.model = *model;
-                (next.ambient, next.diffuse, next.specular) = (fresh.ambient, fresh.diffuse, fresh.specular);
+                (next.ambient, next.diffuse, next.specular) =
+                    (fresh.ambient, fresh.diffuse, fresh.specular);
                 if next.lights.is_empty() {
                     next.lights = fresh.lights;
                 }
@@ -246,10 +263,13 @@ impl Property {
             Property::Diffuse { term } => next.diffuse = *term,
             Property::Specular { term } => next.specular = *term,
             Property::Shininess { to } => next.shininess = held(*to, &Shading::SHININESS),
-            Property::Bands { to } => next.bands = (*to).clamp(*Shading::BANDS.start(), *Shading::BANDS.end()),
+            Property::Bands { to } => {
+                next.bands = (*to).clamp(*Shading::BANDS.start(), *Shading::BANDS.end())
+            }
             Property::Exponent { to } => next.exponent = held(*to, &Shading::EXPONENT),
             Property::Anisotropy { nu, nv } => {
-                (next.nu, next.nv) = (held(*nu, &Shading::SHININESS), held(*nv, &Shading::SHININESS));
+                (next.nu, next.nv) =
+                    (held(*nu, &Shading::SHININESS), held(*nv, &Shading::SHININESS));
             }
             Property::RefractiveIndex { to } => next.index = held(*to, &Shading::INDEX),
             Property::Features { features } => next.features = features.clone(),
@@ -260,7 +280,8 @@ impl Property {
             Property::Surrounded { projection, rotation, exposure } => {
                 let environment = next.environment.as_mut()?;
                 environment.projection = *projection;
-                (environment.rotation, environment.exposure) = (held(*rotation, &TURNS), held(*exposure, &STOPS));
+                (environment.rotation, environment.exposure) =
+                    (held(*rotation, &TURNS), held(*exposure, &STOPS));
             }
             Property::Without { part: PicturePart::Environment } => next.environment = None,
             Property::Without { part: PicturePart::Sphere } => next.sphere = None,
@@ -269,6 +290,7 @@ impl Property {
         }
         Some(next)
     }
+
     fn scale(&self, scaling: &mut RadianceScaling) {
         match self {
             Property::Features { features } => scaling.features = features.clone(),

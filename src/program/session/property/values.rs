@@ -27,6 +27,7 @@ impl crate::session::replay::ReplayValue for LayerTransform {
     fn written(&self) -> serde_json::Value {
         transforms::write(self)
     }
+
     fn read(value: &serde_json::Value) -> Result<Self, String> {
         transforms::read(&JsonNode::root(std::path::Path::new("transform"), value), None)
             .map_err(|error| error.to_string())

@@ -8,7 +8,8 @@ pub const DOCUMENTS: [&str; 4] = ["ora", "psd", "psb", "json"];
 /// Extensions of the files that documents are saved to, the first being this program's own.
 pub const SAVED: [&str; 2] = ["ora", "psd"];
 /// Extensions of the files that hold pictures.
-pub const PICTURES: [&str; 10] = ["png", "jpg", "jpeg", "webp", "tif", "tiff", "bmp", "tga", "hdr", "exr"];
+pub const PICTURES: [&str; 10] =
+    ["png", "jpg", "jpeg", "webp", "tif", "tiff", "bmp", "tga", "hdr", "exr"];
 
 pub fn is_document(file: &Path) -> bool {
     ends_in(file, &DOCUMENTS)
@@ -39,8 +40,8 @@ pub fn is_openable(file: &Path) -> bool {
     ends_in(file, &DOCUMENTS) || ends_in(file, &PICTURES)
 }
 
-/// With one of these extensions, else with this one: it is appended, because what follows a name's last point may be
-/// part of the name.
+/// With one of these extensions, else with this one: it is appended, because what follows a name's
+/// last point may be part of the name.
 pub fn with_document_extension(file: PathBuf, extension: &str, extensions: &[&str]) -> PathBuf {
     if ends_in(&file, extensions) { file } else { file.with_added_extension(extension) }
 }
@@ -60,7 +61,9 @@ mod tests {
 
     #[test]
     fn endings_are_added_and_never_take_a_part_of_the_name() {
-        let named = |name: &str| with_document_extension(name.into(), "ora", &SAVED).to_string_lossy().into_owned();
+        let named = |name: &str| {
+            with_document_extension(name.into(), "ora", &SAVED).to_string_lossy().into_owned()
+        };
         for (name, file) in [
             ("robot v1.2", "robot v1.2.ora"),
             ("robot", "robot.ora"),
@@ -74,11 +77,13 @@ mod tests {
             assert_eq!(named(name), file);
         }
         let extensions: Vec<&str> = exported().collect();
-        let exported =
-            |name: &str| with_document_extension(name.into(), "png", &extensions).to_string_lossy().into_owned();
+        let exported = |name: &str| {
+            with_document_extension(name.into(), "png", &extensions).to_string_lossy().into_owned()
+        };
         assert_eq!(exported("final v1.2"), "final v1.2.png");
         assert_eq!((exported("a.jpg"), exported("a.psd")), ("a.jpg".into(), "a.psd".into()));
     }
+
     #[test]
     fn only_what_is_known_to_be_an_ending_is_taken_from_a_name() {
         for (name, stem) in [

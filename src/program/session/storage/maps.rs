@@ -1,5 +1,5 @@
-//! The maps of an object among the user's files: by their contents and their names. Floor 6. Not here: pairs of names
-//! (`io::maps::pairs`).
+//! The maps of an object among the user's files: by their contents and their names. Floor 6. Not
+//! here: pairs of names (`io::maps::pairs`).
 
 use super::FileUse;
 use super::endings::{PICTURES, ends_in};
@@ -32,7 +32,10 @@ pub fn import(source: &SurfaceSource) -> Result<maps::ImportedSurface> {
 }
 
 /// The same, with progress; `None` if cancelled.
-pub fn import_watched(source: &SurfaceSource, progress: &Progress) -> Result<Option<maps::ImportedSurface>> {
+pub fn import_watched(
+    source: &SurfaceSource,
+    progress: &Progress,
+) -> Result<Option<maps::ImportedSurface>> {
     maps::import_watched(source, &UserFiles::default(), &Budget::of_this_machine(), progress)
 }
 
@@ -45,7 +48,8 @@ fn holds_depth(file: &Path) -> bool {
             .is_ok_and(|found| !found.depths.is_empty())
 }
 
-/// The finished picture in the file of the normals, if a renderer put it there, and the name of its layer.
+/// The finished picture in the file of the normals, if a renderer put it there, and the name of its
+/// layer.
 pub fn finished_picture(source: &SurfaceSource) -> Option<(String, Picture)> {
     let map = source.normal.as_ref()?;
     let (file, budget) = (Path::new(&map.file), Budget::of_this_machine());
@@ -53,19 +57,28 @@ pub fn finished_picture(source: &SurfaceSource) -> Option<(String, Picture)> {
     let normals = inspect::describe(file, &bytes, &budget).ok()?.normals;
     let normals = map.channel.as_ref().or(normals.first()).map_or("", String::as_str);
     let (name, picture) = picture::finished(file, &bytes, normals, &budget).ok()??;
-    let name = name.rsplit('.').next().filter(|name| !name.is_empty()).unwrap_or("Picture").to_owned();
+    let name =
+        name.rsplit('.').next().filter(|name| !name.is_empty()).unwrap_or("Picture").to_owned();
     Some((name, picture))
 }
 
-/// The maps that belong to a file by their names, or are in the same EXR: `pot_n.png` brings `pot_depth.exr` and
-/// `pot_mask.png` from its folder.
+/// The maps that belong to a file by their names, or are in the same EXR: `pot_n.png` brings
+/// `pot_depth.exr` and `pot_mask.png` from its folder.
 pub fn maps_beside(file: &Path, kind: FileUse) -> SurfaceSource {
     let part = pairs::part_of(file);
-    let mut source = if kind == FileUse::Depth { maps_of(None, Some(file)) } else { with_own_depth(file) };
+    let mut source =
+        if kind == FileUse::Depth { maps_of(None, Some(file)) } else { with_own_depth(file) };
     let Some((name, _)) = part else { return source };
-    let beside = file.parent().and_then(|folder| std::fs::read_dir(folder).ok()).into_iter().flatten().flatten();
-    let mut others: Vec<PathBuf> =
-        beside.map(|entry| entry.path()).filter(|other| other != file && ends_in(other, &PICTURES)).collect();
+    let beside = file
+        .parent()
+        .and_then(|folder| std::fs::read_dir(folder).ok())
+        .into_iter()
+        .flatten()
+        .flatten();
+    let mut others: Vec<PathBuf> = beside
+        .map(|entry| entry.path())
+        .filter(|other| other != file && ends_in(other, &PICTURES))
+        .collect();
     others.sort_unstable();
     for other in others {
         let text = other.to_string_lossy().into_owned();
@@ -85,17 +98,17 @@ pub fn maps_beside(file: &Path, kind: FileUse) -> SurfaceSource {
     source
 }
 
-/// Files that were opened together, sorted: the maps of each object, and the files that are opened separately, in
-/// order.
+/// Files that were opened together, sorted: the maps of each object, and the files that are opened
+/// separately, in order.
 #[derive(Debug, Default, PartialEq)]
 pub struct SortedFiles {
     pub objects: Vec<SurfaceSource>,
     pub others: Vec<(PathBuf, FileUse)>,
 }
 
-/// Sorts files of known kinds. A normal map, a depth map and a mask that are opened together belong to one object,
-/// whatever their names; a second normal map begins another object. Missing maps are looked for next to each file (see
-/// [`maps_beside`]).
+/// Sorts files of known kinds. A normal map, a depth map and a mask that are opened together belong
+/// to one object, whatever their names; a second normal map begins another object. Missing maps are
+/// looked for next to each file (see [`maps_beside`]).
 pub fn sorted(files: Vec<(PathBuf, FileUse)>) -> SortedFiles {
     let mut sorted = SortedFiles::default();
     let text = |file: &Path| file.to_string_lossy().into_owned();
@@ -103,10 +116,13 @@ pub fn sorted(files: Vec<(PathBuf, FileUse)>) -> SortedFiles {
     let (maps, others): (Vec<_>, Vec<_>) =
         files.into_iter().partition(|(_, kind)| matches!(kind, FileUse::Normals | FileUse::Depth));
     // Normals first: depth joins them.
-    let (normals, depths): (Vec<_>, Vec<_>) = maps.into_iter().partition(|(_, kind)| *kind == FileUse::Normals);
+    let (normals, depths): (Vec<_>, Vec<_>) =
+        maps.into_iter().partition(|(_, kind)| *kind == FileUse::Normals);
     sorted.objects.extend(normals.iter().map(|(file, _)| maps_beside(file, FileUse::Normals)));
     for (file, _) in depths {
-        let is_taken = |source: &SurfaceSource| source.depth.as_ref().is_some_and(|map| map.file == text(&file));
+        let is_taken = |source: &SurfaceSource| {
+            source.depth.as_ref().is_some_and(|map| map.file == text(&file))
+        };
         if sorted.objects.iter().any(is_taken) {
             continue;
         }
@@ -118,7 +134,10 @@ pub fn sorted(files: Vec<(PathBuf, FileUse)>) -> SortedFiles {
     for (file, kind) in others {
         let is_mask = pairs::part_of(&file).is_some_and(|(_, part)| part == MapPart::Mask);
         match sorted.objects.iter_mut().find(|_| is_mask && kind == FileUse::Picture) {
-            Some(source) => source.mask = Some(MaskSource::File { file: text(&file), channel: None, invert: false }),
+            Some(source) => {
+                source.mask =
+                    Some(MaskSource::File { file: text(&file), channel: None, invert: false })
+            }
             None => sorted.others.push((file, kind)),
         }
     }
@@ -131,6 +150,10 @@ pub fn map_files(source: &SurfaceSource) -> Vec<PathBuf> {
         MaskSource::File { file, .. } => Some(file),
         _ => None,
     });
-    let maps = [source.normal.as_ref().map(|map| &map.file), source.depth.as_ref().map(|map| &map.file), mask];
+    let maps = [
+        source.normal.as_ref().map(|map| &map.file),
+        source.depth.as_ref().map(|map| &map.file),
+        mask,
+    ];
     maps.into_iter().flatten().map(PathBuf::from).collect()
 }

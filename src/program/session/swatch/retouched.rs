@@ -13,10 +13,16 @@ use std::sync::Arc;
 /// Bands across the side of the picture.
 const BANDS: f32 = 5.0;
 /// The colours of the bands, one after the other.
-const COLORS: [[u8; 4]; 3] = [[0xc9, 0x65, 0x3f, 255], [0x2f, 0x7f, 0x86, 255], [0xec, 0xe0, 0xc4, 255]];
+const COLORS: [[u8; 4]; 3] =
+    [[0xc9, 0x65, 0x3f, 255], [0x2f, 0x7f, 0x86, 255], [0xec, 0xe0, 0xc4, 255]];
 
 /// The document with the stroke; `None` if the stroke changed nothing.
-pub fn drawn(preset: &BrushPreset, surface: Arc<Surface>, scale: f32, background: Color) -> Option<Document> {
+pub fn drawn(
+    preset: &BrushPreset,
+    surface: Arc<Surface>,
+    scale: f32,
+    background: Color,
+) -> Option<Document> {
     let size = surface.size();
     let side = size.width.min(size.height) as f32;
     let paint = PixelLayer { tiles: bands(size, side), file: String::new(), x: 0, y: 0 };
@@ -35,9 +41,12 @@ pub fn drawn(preset: &BrushPreset, surface: Arc<Surface>, scale: f32, background
         clone_offset: Some(vec2(side / BANDS, 0.0)),
         ..ToolContext::new(&document, &brush)
     };
-    let pens: Vec<PenSample> =
-        wave(size).into_iter().map(|sample| PenSample { sample, keys: ModifierKeys::default() }).collect();
-    let (gesture, _) = brush::press(&context, *pens.first()?, crate::tools::settings::StrokePurpose::Paint);
+    let pens: Vec<PenSample> = wave(size)
+        .into_iter()
+        .map(|sample| PenSample { sample, keys: ModifierKeys::default() })
+        .collect();
+    let (gesture, _) =
+        brush::press(&context, *pens.first()?, crate::tools::settings::StrokePurpose::Paint);
     let mut gesture = gesture?;
     gesture.drag(&pens[1..]);
     match gesture.release() {
@@ -53,7 +62,8 @@ fn bands(size: Size, side: f32) -> TileGrid {
         COLORS[band % COLORS.len()]
     };
     let rows = 0..size.height;
-    let texels = rows.flat_map(|y| (0..size.width).flat_map(move |x| color(vec2(x as f32, y as f32))));
+    let texels =
+        rows.flat_map(|y| (0..size.width).flat_map(move |x| color(vec2(x as f32, y as f32))));
     let texels: Vec<u8> = texels.collect();
     TileGrid::from_straight_rgba(&texels, size.width as usize, size.height as usize, 0, 0)
 }

@@ -8,7 +8,9 @@ fn a_stroke_that_would_not_be_kept_or_seen_names_the_layer_and_what_to_do() {
     let mut session = two_layers();
     act(&mut session, r#"{"in":"layer","do":"group","layer":"2"}"#);
     act(&mut session, r#"{"in":"layer","do":"select","layer":"2.0"}"#);
-    let set = |layer: &str, to: &str| format!(r#"{{"in":"layer","do":"set","layer":"{layer}","to":{to},"done":true}}"#);
+    let set = |layer: &str, to: &str| {
+        format!(r#"{{"in":"layer","do":"set","layer":"{layer}","to":{to},"done":true}}"#)
+    };
     let refused = |session: &mut Session, tool: &str| {
         let before = session.active().unwrap().document().clone();
         act(session, &drawn_with(tool));
@@ -34,8 +36,14 @@ fn a_stroke_that_would_not_be_kept_or_seen_names_the_layer_and_what_to_do() {
     }
     act(&mut session, &set("2.0", r#"{"do":"lock","lock":"none"}"#));
     act(&mut session, r#"{"in":"layer","do":"solo","layer":"1"}"#);
-    assert!(refused(&mut session, "brush").contains("“Paint 2” is hidden, since “Paint” is shown alone"));
+    assert!(
+        refused(&mut session, "brush")
+            .contains("“Paint 2” is hidden, since “Paint” is shown alone")
+    );
     act(&mut session, r#"{"in":"layer","do":"solo","layer":"2"}"#);
     act(&mut session, &drawn_with("brush"));
-    assert!(session.notes.is_empty() && session.active().unwrap().history.done() == Some("Brush stroke"));
+    assert!(
+        session.notes.is_empty()
+            && session.active().unwrap().history.done() == Some("Brush stroke")
+    );
 }

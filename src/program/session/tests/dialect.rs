@@ -1,4 +1,5 @@
-//! Replays and documents have one language: a document writes what an edit sets in the words of the edit.
+//! Replays and documents have one language: a document writes what an edit sets in the words of the
+//! edit.
 
 use super::held::everything;
 use super::*;
@@ -6,22 +7,43 @@ use crate::io::recipe;
 use crate::session::replay::ReplayValue;
 use serde_json::{Value, json};
 
-/// A property that is set on one of the layers of [`everything`], its field that holds the value, and where a document
-/// holds it.
+/// A property that is set on one of the layers of [`everything`], its field that holds the value,
+/// and where a document holds it.
 fn cases() -> Vec<(usize, Value, &'static str, &'static str)> {
-    let light = json!({ "kind": "point", "position": [3, 4.5, 20], "color": "#ffeedd", "intensity": 2 });
+    let light =
+        json!({ "kind": "point", "position": [3, 4.5, 20], "color": "#ffeedd", "intensity": 2 });
     let far = json!({ "kind": "directional", "direction": [1, 0.5, 2] });
     vec![
-        (1, json!({ "do": "operator", "operator": { "kind": "normal", "alpha": 0.25, "beta": 2.5 } }), "operator", ""),
-        (2, json!({ "do": "operator", "operator": { "kind": "depth", "gamma": 0.5 } }), "operator", ""),
+        (
+            1,
+            json!({ "do": "operator", "operator": { "kind": "normal", "alpha": 0.25, "beta": 2.5 } }),
+            "operator",
+            "",
+        ),
+        (
+            2,
+            json!({ "do": "operator", "operator": { "kind": "depth", "gamma": 0.5 } }),
+            "operator",
+            "",
+        ),
         (
             1,
             json!({ "do": "anchors", "anchors": [{ "at": [1, 2], "source": [3.5, 4] }, { "at": [5, 6] }] }),
             "anchors",
             "",
         ),
-        (1, json!({ "do": "pieces", "pieces": [{ "at": [1, 2], "move": [3, 4], "rotation": 30 }] }), "pieces", ""),
-        (2, json!({ "do": "pieces", "pieces": [{ "at": [1, 2], "move": [3, 4], "scale": 2 }] }), "pieces", ""),
+        (
+            1,
+            json!({ "do": "pieces", "pieces": [{ "at": [1, 2], "move": [3, 4], "rotation": 30 }] }),
+            "pieces",
+            "",
+        ),
+        (
+            2,
+            json!({ "do": "pieces", "pieces": [{ "at": [1, 2], "move": [3, 4], "scale": 2 }] }),
+            "pieces",
+            "",
+        ),
         (
             1,
             json!({ "do": "placement", "placement": { "center": [4, 5], "scale": 2, "rotation": 15 } }),
@@ -29,11 +51,31 @@ fn cases() -> Vec<(usize, Value, &'static str, &'static str)> {
             "",
         ),
         (2, json!({ "do": "stops", "stops": [[0, "#102030"], [0.5, "#ffffff80"]] }), "stops", ""),
-        (0, json!({ "do": "mask", "mask": { "kind": "fresnel", "f0": 0.5, "power": 3 } }), "mask", ""),
-        (0, json!({ "do": "mask", "mask": { "kind": "curvature", "scale": 2, "blur": 1, "from": 0.25 } }), "mask", ""),
+        (
+            0,
+            json!({ "do": "mask", "mask": { "kind": "fresnel", "f0": 0.5, "power": 3 } }),
+            "mask",
+            "",
+        ),
+        (
+            0,
+            json!({ "do": "mask", "mask": { "kind": "curvature", "scale": 2, "blur": 1, "from": 0.25 } }),
+            "mask",
+            "",
+        ),
         (0, json!({ "do": "mask", "mask": { "kind": "depth", "from": 1, "to": 0.5 } }), "mask", ""),
-        (0, json!({ "do": "mask", "mask": { "kind": "shine", "at": [5, 6.5], "tolerance": 9 } }), "mask", ""),
-        (0, json!({ "do": "mask", "mask": { "kind": "depth", "at": [5, 6], "softness": 0.5 } }), "mask", ""),
+        (
+            0,
+            json!({ "do": "mask", "mask": { "kind": "shine", "at": [5, 6.5], "tolerance": 9 } }),
+            "mask",
+            "",
+        ),
+        (
+            0,
+            json!({ "do": "mask", "mask": { "kind": "depth", "at": [5, 6], "softness": 0.5 } }),
+            "mask",
+            "",
+        ),
         (4, json!({ "do": "lights", "lights": [light, far] }), "lights", ""),
         (
             4,
@@ -68,7 +110,11 @@ fn what_an_edit_sets_stands_in_a_document_as_the_edit_says_it() {
         let edit = json!({ "in": "layer", "do": "set", "layer": layer.to_string(), "to": to, "done": true });
         session.replay(Path::new("story"), &edit.to_string()).unwrap();
         let said = &to[field];
-        assert_eq!(Action::read(&edit).unwrap().written()["to"][field], *said, "as an action is written");
+        assert_eq!(
+            Action::read(&edit).unwrap().written()["to"][field],
+            *said,
+            "as an action is written"
+        );
         let document = recipe::write(session.active().unwrap().document());
         let written = &document["layers"][layer];
         match place {
@@ -83,6 +129,7 @@ fn what_an_edit_sets_stands_in_a_document_as_the_edit_says_it() {
         }
     }
 }
+
 #[test]
 fn an_edit_out_of_its_range_is_read_and_one_that_is_no_value_is_named() {
     let read = |to: Value| {

@@ -1,5 +1,5 @@
-//! Whatever a panel, an action or a replay can set is saved and opened unchanged, or refused with a reason; nothing
-//! becomes pixels.
+//! Whatever a panel, an action or a replay can set is saved and opened unchanged, or refused with a
+//! reason; nothing becomes pixels.
 
 mod edits;
 
@@ -7,7 +7,9 @@ use super::*;
 use crate::document::{Content, DetailSource, Group, Layer, Live, NormalLayer, StrokeList};
 use crate::io::{Budget, project};
 use crate::math::{Size, vec2};
-use crate::paint::{Adjust, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement};
+use crate::paint::{
+    Adjust, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement,
+};
 use crate::raster::{Outside, Picture, Plane};
 use crate::session::actions::Style;
 use crate::session::property::Property;
@@ -20,9 +22,11 @@ use std::sync::Arc;
 /// One layer of every kind on a dome, by their positions.
 pub(super) fn everything() -> Document {
     let size = Size::new(48, 40);
-    let normals =
-        Plane::from_fn(size, |x, y| vec2(x as f32 / 48.0 - 0.5, 0.5 - y as f32 / 40.0).extend(0.8).normalize());
-    let (depth, coverage) = (Plane::from_fn(size, |x, _| x as f32 / 48.0), Plane::filled(size, 255));
+    let normals = Plane::from_fn(size, |x, y| {
+        vec2(x as f32 / 48.0 - 0.5, 0.5 - y as f32 / 40.0).extend(0.8).normalize()
+    });
+    let (depth, coverage) =
+        (Plane::from_fn(size, |x, _| x as f32 / 48.0), Plane::filled(size, 255));
     let surface = Surface::new(Maps { normals, depth, coverage }).unwrap();
     let picture = Picture::srgb8(Size::new(2, 1), vec![[9, 90, 200, 255], [200; 4]]).unwrap();
     let placement = Placement::covering(size);
@@ -47,8 +51,13 @@ pub(super) fn everything() -> Document {
     let environment = Some(Environment::new("sky.png".into(), picture));
     let shading = Shading { environment, occlusion_radius_px: 4.0, ..Shading::new(Model::Phong) };
     let grain = DetailSource::Grain(NoiseRelief::default());
-    let normals =
-        NormalLayer { source: grain, placement, outside: Outside::Repeat, strength: 0.5, frame: Default::default() };
+    let normals = NormalLayer {
+        source: grain,
+        placement,
+        outside: Outside::Repeat,
+        strength: 0.5,
+        frame: Default::default(),
+    };
     let contents = [
         Content::Fill(Color::BLACK),
         Content::Image(Live::new(image)),
@@ -57,10 +66,18 @@ pub(super) fn everything() -> Document {
         Content::Shading(Live::new(shading)),
         Content::RadianceScaling(RadianceScaling::default()),
         Content::Normals(normals),
-        Content::Pixels(crate::document::PixelLayer { file: String::new(), x: 0, y: 0, tiles: Default::default() }),
+        Content::Pixels(crate::document::PixelLayer {
+            file: String::new(),
+            x: 0,
+            y: 0,
+            tiles: Default::default(),
+        }),
         Content::Group(Group::default()),
     ];
-    let layers = contents.into_iter().map(|content| Arc::new(Layer::new(content.kind_name(), content))).collect();
+    let layers = contents
+        .into_iter()
+        .map(|content| Arc::new(Layer::new(content.kind_name(), content)))
+        .collect();
     Document { surface: Some(Arc::new(surface)), layers, ..Document::empty(size) }
 }
 
@@ -72,14 +89,20 @@ fn edit() -> impl Strategy<Value = String> {
         let mut numbers = numbers.into_iter().cycle();
         let template = match template.starts_with("{\"in\"") {
             true => template.to_owned(),
-            false => format!(r#"{{"in":"layer","do":"set","layer":"{layer}","to":{template},"done":true}}"#),
+            false => format!(
+                r#"{{"in":"layer","do":"set","layer":"{layer}","to":{template},"done":true}}"#
+            ),
         };
         let mut line = String::new();
         for c in template.chars() {
             match c {
                 // A colour also begins with the sign, within its quotes.
-                '#' if !line.ends_with('"') => line += &numbers.next().unwrap_or_default().to_string(),
-                '%' => line += &(numbers.next().unwrap_or_default().abs().min(1e6) as u32).to_string(),
+                '#' if !line.ends_with('"') => {
+                    line += &numbers.next().unwrap_or_default().to_string()
+                }
+                '%' => {
+                    line += &(numbers.next().unwrap_or_default().abs().min(1e6) as u32).to_string()
+                }
                 // A long one takes two lines here, a stroke several.
                 '\n' if !template.contains("pointer") => {}
                 c => line.push(c),
@@ -88,17 +111,24 @@ fn edit() -> impl Strategy<Value = String> {
         line
     })
 }
+
 /// A new property or stroke style must be among the edits.
 #[test]
 fn every_property_and_every_style_of_strokes_is_among_what_is_set() {
-    let is_among = |word: &str, list: &[&str]| list.iter().any(|edit| edit.contains(&format!(r#""do":"{word}""#)));
+    let is_among = |word: &str, list: &[&str]| {
+        list.iter().any(|edit| edit.contains(&format!(r#""do":"{word}""#)))
+    };
     let both: Vec<&str> = PROPERTIES.iter().chain(OTHERS).copied().collect();
-    let missing: Vec<&&str> = Property::WORDS.iter().filter(|word| !is_among(word, &both)).collect();
+    let missing: Vec<&&str> =
+        Property::WORDS.iter().filter(|word| !is_among(word, &both)).collect();
     assert!(missing.is_empty(), "{missing:?}");
-    let restyled: Vec<&str> = OTHERS.iter().copied().filter(|edit| edit.contains("restyle")).collect();
-    let missing: Vec<&&str> = Style::WORDS.iter().filter(|word| !is_among(word, &restyled)).collect();
+    let restyled: Vec<&str> =
+        OTHERS.iter().copied().filter(|edit| edit.contains("restyle")).collect();
+    let missing: Vec<&&str> =
+        Style::WORDS.iter().filter(|word| !is_among(word, &restyled)).collect();
     assert!(missing.is_empty(), "{missing:?}");
 }
+
 fn kinds(document: &Document) -> Vec<&'static str> {
     document.walk().into_iter().map(|(_, layer)| layer.content.kind_name()).collect()
 }
@@ -140,34 +170,49 @@ fn an_edit_that_no_file_could_hold_is_refused_in_words() {
         assert!(is_same(&before, session.active().unwrap().document()), "{line}");
         session.notes.pop().unwrap_or_default()
     };
-    let set =
-        |layer: usize, to: &str| format!(r#"{{"in":"layer","do":"set","layer":"{layer}","to":{to},"done":true}}"#);
+    let set = |layer: usize, to: &str| {
+        format!(r#"{{"in":"layer","do":"set","layer":"{layer}","to":{to},"done":true}}"#)
+    };
     assert_eq!(
         said(&set(1, r#"{"do":"placement","placement":{"center":[1,1],"scale":0,"rotation":0}}"#)),
         "“image”: the scale is 0; it must be between 0.0001 and 10000. Nothing was changed."
     );
     assert!(
-        said(&set(0, r#"{"do":"mask","mask":{"kind":"depth","from":0.5,"to":2}}"#)).contains("must be between 0 and 1")
+        said(&set(0, r#"{"do":"mask","mask":{"kind":"depth","from":0.5,"to":2}}"#))
+            .contains("must be between 0 and 1")
     );
     let long = format!(r#"{{"do":"name","name":"{}"}}"#, "x".repeat(1_001));
     assert!(said(&set(0, &long)).contains("letters of the name would be 1001; there may be 1000"));
 }
+
 #[test]
 fn groups_within_groups_are_refused_when_a_file_could_not_hold_them() {
-    let mut session = told(r##"{"in":"file","do":"new","width":8,"height":8,"background":"#ffffff"}"##);
+    let mut session =
+        told(r##"{"in":"file","do":"new","width":8,"height":8,"background":"#ffffff"}"##);
     for _ in 0..Document::DEEPEST + 3 {
         let path = vec!["0"; 1 + depth(&session)].join(".");
-        session.replay(Path::new("story"), &format!(r#"{{"in":"layer","do":"group","layer":"{path}"}}"#)).unwrap();
+        session
+            .replay(
+                Path::new("story"),
+                &format!(r#"{{"in":"layer","do":"group","layer":"{path}"}}"#),
+            )
+            .unwrap();
     }
     assert_eq!(depth(&session), Document::DEEPEST);
     assert_eq!(session.notes.len(), 3);
-    assert!(session.notes[0].contains("Groups around a layer would be 51; there may be 50"), "{}", session.notes[0]);
+    assert!(
+        session.notes[0].contains("Groups around a layer would be 51; there may be 50"),
+        "{}",
+        session.notes[0]
+    );
 }
+
 /// How many groups are around the deepest layer.
 fn depth(session: &Session) -> usize {
     let document = session.active().unwrap().document();
     document.walk().iter().map(|(path, _)| path.matches('.').count()).max().unwrap_or_default()
 }
+
 #[test]
 fn what_the_hand_draws_lies_on_the_grid_of_files() {
     let mut session = Session::default();

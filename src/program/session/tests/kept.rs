@@ -1,5 +1,6 @@
-//! Seeded stories of transforms, canvases, parts, homes and maps: what stands afterwards is saved, opens as it was, and
-//! shows the same picture. `KEPT_STORIES=5000 cargo test kept::` searches further.
+//! Seeded stories of transforms, canvases, parts, homes and maps: what stands afterwards is saved,
+//! opens as it was, and shows the same picture. `KEPT_STORIES=5000 cargo test kept::` searches
+//! further.
 
 mod lines;
 
@@ -16,16 +17,20 @@ impl Dice {
     fn of(seed: u32) -> Self {
         Self(hash::mix(seed ^ 0x5eed))
     }
+
     pub fn next(&mut self) -> u32 {
         self.0 = hash::mix(self.0.wrapping_add(0x9e37_79b9));
         self.0 >> 4
     }
+
     pub fn below(&mut self, n: usize) -> usize {
         self.next() as usize % n.max(1)
     }
+
     pub fn one<'a, T>(&mut self, of: &'a [T]) -> &'a T {
         &of[self.below(of.len())]
     }
+
     /// In `[low, high]`.
     pub fn number(&mut self, low: f32, high: f32) -> f32 {
         let t = self.next() as f32 / (u32::MAX >> 4) as f32;
@@ -37,7 +42,8 @@ impl Dice {
 fn maps_in(folder: &Path) -> [PathBuf; 3] {
     [(48, 40), (60, 31), (20, 30)].map(|(w, h)| {
         let picture = image::RgbaImage::from_fn(w, h, |x, y| {
-            let (u, v) = ((x as f32 + 0.5) / w as f32 * 2.2 - 1.1, (y as f32 + 0.5) / h as f32 * 2.2 - 1.1);
+            let (u, v) =
+                ((x as f32 + 0.5) / w as f32 * 2.2 - 1.1, (y as f32 + 0.5) / h as f32 * 2.2 - 1.1);
             let z = (1.0 - u * u - v * v).max(0.0).sqrt();
             let byte = |v: f32| (v * 127.5 + 127.5).round() as u8;
             image::Rgba([byte(u), byte(-v), byte(z), if z > 0.0 { 255 } else { 0 }])
@@ -88,7 +94,12 @@ fn changed_by_saving(document: &Document) -> Option<String> {
     };
     let picture = |document: &Document| {
         let flat = flatten(document, &Progress::default()).unwrap();
-        flat.to_straight_rgba(Rect::new(0, 0, document.size.width as i32, document.size.height as i32))
+        flat.to_straight_rgba(Rect::new(
+            0,
+            0,
+            document.size.width as i32,
+            document.size.height as i32,
+        ))
     };
     let (a, b) = (picture(document), picture(&read.document));
     let off = a.iter().zip(&b).filter(|(a, b)| a != b).count();
@@ -136,16 +147,24 @@ fn what_stands_after_any_story_is_saved_and_opens_as_it_was() {
         let mut story = Vec::new();
         for _ in 0..1 + dice.below(9) {
             let line = lines::line(&mut dice, session.active().unwrap().document(), &maps);
-            session.replay(Path::new("story"), &line).unwrap_or_else(|error| panic!("{line}: {error}"));
+            session
+                .replay(Path::new("story"), &line)
+                .unwrap_or_else(|error| panic!("{line}: {error}"));
             story.push(line);
         }
         if let Some(why) = changed_by_saving(session.active().unwrap().document()) {
             let short = shortest(kind, &maps, story, &why);
-            failures.push(format!("story {seed} of kind {kind}: {why}\n    {}", short.join("\n    ")));
+            failures
+                .push(format!("story {seed} of kind {kind}: {why}\n    {}", short.join("\n    ")));
             if failures.len() >= 12 {
                 break;
             }
         }
     }
-    assert!(failures.is_empty(), "{} of {stories} stories:\n{}", failures.len(), failures.join("\n"));
+    assert!(
+        failures.is_empty(),
+        "{} of {stories} stories:\n{}",
+        failures.len(),
+        failures.join("\n")
+    );
 }

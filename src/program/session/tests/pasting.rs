@@ -8,9 +8,11 @@ use crate::session::{CanvasView, storage};
 
 /// A picture whose pixels all differ, without a file.
 fn picture(width: u32, height: u32) -> Picture {
-    let one = |i: u32| [(i % 251) as u8, (i / 251) as u8, 77, if i.is_multiple_of(7) { 90 } else { 255 }];
+    let one =
+        |i: u32| [(i % 251) as u8, (i / 251) as u8, 77, if i.is_multiple_of(7) { 90 } else { 255 }];
     Picture::srgb8(Size::new(width, height), (0..width * height).map(one).collect()).unwrap()
 }
+
 fn pasted(to: PasteTo, at: Option<Vec2>, picture: Picture) -> Action {
     Action::Clipboard(ClipboardAction::PastePicture {
         picture: PastedPicture { name: "Pasted.png".into(), picture },
@@ -18,6 +20,7 @@ fn pasted(to: PasteTo, at: Option<Vec2>, picture: Picture) -> Action {
         at,
     })
 }
+
 #[test]
 fn a_picture_is_pasted_as_flat_paint_at_its_own_size_with_its_middle_at_the_pointer() {
     let mut session = told(PAPER);
@@ -37,10 +40,12 @@ fn a_picture_is_pasted_as_flat_paint_at_its_own_size_with_its_middle_at_the_poin
     session.replay(Path::new("story"), r#"{"in":"edit","do":"walk","steps":-2}"#).unwrap();
     assert_eq!(names(&session), ["Background"]);
 }
+
 #[test]
 fn without_a_pointer_it_goes_to_the_middle_of_the_view_and_what_lies_outside_the_canvas_is_kept() {
     let mut session = told(PAPER);
-    let view = CanvasView { center: Vec2::new(10.0, 140.0), zoom: 2.0, turn_rad: 0.0, mirrored: false };
+    let view =
+        CanvasView { center: Vec2::new(10.0, 140.0), zoom: 2.0, turn_rad: 0.0, mirrored: false };
     session.active_mut().unwrap().view = Some(view);
     pasted(PasteTo::Paint, None, picture(300, 20)).apply(&mut session).unwrap();
     let covered = |session: &Session| {
@@ -50,19 +55,33 @@ fn without_a_pointer_it_goes_to_the_middle_of_the_view_and_what_lies_outside_the
     assert_eq!(covered(&session), Rect::new(-140, 130, 160, 150));
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("wide.ora");
-    storage::save(&file, session.shown().unwrap(), crate::io::Overwrite::Nothing, &Progress::default()).unwrap();
+    storage::save(
+        &file,
+        session.shown().unwrap(),
+        crate::io::Overwrite::Nothing,
+        &Progress::default(),
+    )
+    .unwrap();
     session.adopt(storage::open(&file).unwrap());
     assert_eq!(covered(&session), Rect::new(-140, 130, 160, 150), "saved and opened");
 }
+
 #[test]
 fn it_becomes_an_image_layer_or_a_document_where_that_is_asked_for() {
     let mut session = told(PAPER);
     pasted(PasteTo::Image, None, picture(40, 30)).apply(&mut session).unwrap();
     assert!(matches!(session.layer().unwrap().content, Content::Image(_)));
     pasted(PasteTo::Document, None, picture(40, 30)).apply(&mut session).unwrap();
-    assert_eq!((session.open_documents.len(), session.shown().unwrap().size), (2, Size::new(40, 30)));
-    assert!(matches!(session.layer().unwrap().content, Content::Pixels(_)) && session.active().unwrap().is_dirty());
+    assert_eq!(
+        (session.open_documents.len(), session.shown().unwrap().size),
+        (2, Size::new(40, 30))
+    );
+    assert!(
+        matches!(session.layer().unwrap().content, Content::Pixels(_))
+            && session.active().unwrap().is_dirty()
+    );
 }
+
 #[test]
 fn every_paste_replays_with_the_picture_in_its_line() {
     for to in [PasteTo::Paint, PasteTo::Image, PasteTo::Document] {
@@ -81,6 +100,7 @@ fn every_paste_replays_with_the_picture_in_its_line() {
     let why = told(PAPER).replay(Path::new("story"), broken).unwrap_err().to_string();
     assert!(why.starts_with("story: line 1: “picture”"), "{why}");
 }
+
 #[test]
 fn what_was_copied_here_is_pasted_as_an_image_layer_too() {
     let mut session = told(&format!("{PAPER}{STROKE}"));

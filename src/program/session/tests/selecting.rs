@@ -1,4 +1,5 @@
-//! Selections, written as the lines of a replay: what can be done with them, and what is said if it cannot.
+//! Selections, written as the lines of a replay: what can be done with them, and what is said if it
+//! cannot.
 
 use super::*;
 use crate::raster::CoverageGrid;
@@ -12,9 +13,11 @@ const SQUARE: &str = r#"
 fn story(session: &mut Session, lines: &str) {
     session.replay(Path::new("story"), lines).unwrap_or_else(|e| panic!("{e}"));
 }
+
 fn area(session: &Session) -> f64 {
     session.active().unwrap().document().selected().map_or(0.0, CoverageGrid::area_px)
 }
+
 fn red(session: &Session, x: i32, y: i32) -> bool {
     pixel(session, x, y) == [0xc0, 0x20, 0x10, 255]
 }
@@ -32,14 +35,16 @@ fn a_stroke_keeps_to_the_selection_and_undo_gives_both_back() {
     story(&mut session, r#"{"in":"edit","do":"undo"}"#);
     assert_eq!(area(&session), 0.0);
 }
+
 #[test]
 fn fills_gradients_erasers_and_retouching_keep_to_the_selection() {
     let fill = r#"
 {"in":"layer","do":"add","kind":"paint"}
 {"in":"pointer","do":"press","tool":"fill","pen":[90,70],"px_per_pt":1}
 {"in":"pointer","do":"release"}"#;
-    let mut session =
-        told(&format!("{PAPER}{SQUARE}\n{{\"in\":\"hand\",\"do\":\"color\",\"color\":\"#c02010\"}}{fill}"));
+    let mut session = told(&format!(
+        "{PAPER}{SQUARE}\n{{\"in\":\"hand\",\"do\":\"color\",\"color\":\"#c02010\"}}{fill}"
+    ));
     assert_eq!([59, 60, 119, 120].map(|x| red(&session, x, 70)), [false, true, true, false]);
     let erase = "{\"in\":\"selection\",\"do\":\"change\",\"change\":\"shrink\",\"px\":10}
 {\"in\":\"hand\",\"do\":\"preset\",\"name\":\"hard-round\"}
@@ -70,6 +75,7 @@ fn fills_gradients_erasers_and_retouching_keep_to_the_selection() {
     assert_eq!(paint(after, 66), paint(&before, 66), "beside the selection nothing is blurred");
     assert_ne!(paint(after, 71), paint(&before, 71));
 }
+
 #[test]
 fn cutting_and_pasting_moves_paint_and_keeps_strokes_strokes() {
     let mut session = told(&format!("{PAPER}{STROKE}{SQUARE}"));
@@ -77,7 +83,9 @@ fn cutting_and_pasting_moves_paint_and_keeps_strokes_strokes() {
     assert_eq!([40, 90].map(|x| red(&session, x, 70)), [true, false]);
     story(&mut session, r#"{"in":"clipboard","do":"paste"}"#);
     assert_eq!([40, 62, 90, 150].map(|x| red(&session, x, 70)), [true; 4]);
-    let Content::Strokes(live) = &session.layer().unwrap().content else { panic!("a stroke layer") };
+    let Content::Strokes(live) = &session.layer().unwrap().content else {
+        panic!("a stroke layer")
+    };
     assert_eq!(live.params().strokes.len(), 1);
     story(&mut session, r#"{"in":"clipboard","do":"layer via","cut":false}"#);
     assert_eq!(names(&session), ["Background", "Strokes", "Strokes 2", "Strokes 2 copy"]);
@@ -88,6 +96,7 @@ fn cutting_and_pasting_moves_paint_and_keeps_strokes_strokes() {
     assert_eq!(session.shown().unwrap().size, crate::math::Size::new(60, 50));
     assert_eq!(session.open_documents.len(), 2);
 }
+
 #[test]
 fn what_cannot_be_done_says_why() {
     let mut session = told(PAPER);
@@ -99,7 +108,10 @@ fn what_cannot_be_done_says_why() {
         let told = said(&format!(r#"{{"in":"selection","do":"{line}"}}"#));
         assert!(told.contains("othing"), "{line}: {told}");
     }
-    assert_eq!(said(r#"{"in":"selection","do":"change","change":"grow","px":3}"#), "Nothing is selected.");
+    assert_eq!(
+        said(r#"{"in":"selection","do":"change","change":"grow","px":3}"#),
+        "Nothing is selected."
+    );
     assert_eq!(said(r#"{"in":"clipboard","do":"paste"}"#), "Nothing was copied yet.");
     let region = r#"{"kind":"direction","at":[9,9],"tolerance":15,"softness":0,"contiguous":true}"#;
     let line = format!(r#"{{"in":"selection","do":"region","region":{region},"how":"replace"}}"#);
@@ -109,11 +121,21 @@ fn what_cannot_be_done_says_why() {
         story(&mut session, line);
         session.said.pop().unwrap_or_default()
     };
-    assert_eq!(said(r#"{"in":"clipboard","do":"copy","merged":false}"#), "The layer has nothing where you selected.");
-    assert!(said(r#"{"in":"selection","do":"layer","layer":"1","how":"replace"}"#).contains("empty"));
-    assert!(said(r#"{"in":"selection","do":"mask","layer":"1","how":"replace"}"#).contains("no mask"));
-    assert!(said(r#"{"in":"selection","do":"change","change":"shrink","px":90}"#).contains("any more"));
+    assert_eq!(
+        said(r#"{"in":"clipboard","do":"copy","merged":false}"#),
+        "The layer has nothing where you selected."
+    );
+    assert!(
+        said(r#"{"in":"selection","do":"layer","layer":"1","how":"replace"}"#).contains("empty")
+    );
+    assert!(
+        said(r#"{"in":"selection","do":"mask","layer":"1","how":"replace"}"#).contains("no mask")
+    );
+    assert!(
+        said(r#"{"in":"selection","do":"change","change":"shrink","px":90}"#).contains("any more")
+    );
 }
+
 #[test]
 fn selections_are_kept_taken_inverted_and_let_go_of() {
     let mut session = told(&format!("{PAPER}{SQUARE}"));
@@ -122,7 +144,10 @@ fn selections_are_kept_taken_inverted_and_let_go_of() {
         "{\"in\":\"selection\",\"do\":\"keep\",\"name\":\"Eye\"}\n{\"in\":\"selection\",\"do\":\"invert\"}",
     );
     assert_eq!(area(&session), 200.0 * 150.0 - 3000.0);
-    story(&mut session, "{\"in\":\"selection\",\"do\":\"none\"}\n{\"in\":\"selection\",\"do\":\"again\"}");
+    story(
+        &mut session,
+        "{\"in\":\"selection\",\"do\":\"none\"}\n{\"in\":\"selection\",\"do\":\"again\"}",
+    );
     assert_eq!(area(&session), 27_000.0);
     story(&mut session, r#"{"in":"selection","do":"take","name":"Eye","how":"intersect"}"#);
     assert_eq!((area(&session), session.said.pop().is_some()), (0.0, true));
@@ -134,6 +159,7 @@ fn selections_are_kept_taken_inverted_and_let_go_of() {
     story(&mut session, r#"{"in":"selection","do":"mask","layer":"0","how":"replace"}"#);
     assert_eq!(area(&session), 3000.0);
 }
+
 #[test]
 fn the_brush_paints_on_the_selection_under_a_quick_mask() {
     let mut session = told(&format!("{PAPER}{SQUARE}"));
@@ -147,7 +173,9 @@ fn the_brush_paints_on_the_selection_under_a_quick_mask() {
     assert_eq!(names(&session), ["Background"], "nothing was painted on the picture");
     let grown = area(&session) - 3000.0;
     assert!((grown - 314.0).abs() < 15.0, "{grown}");
-    let shown = |x, y| flatten(&session.active().unwrap().drawn(), &Progress::default()).unwrap().pixel(x, y);
+    let shown = |x, y| {
+        flatten(&session.active().unwrap().drawn(), &Progress::default()).unwrap().pixel(x, y)
+    };
     assert_eq!(shown(20, 20), [255; 4]);
     assert!(shown(150, 20)[1] < 200, "what is not selected is seen under red");
 }

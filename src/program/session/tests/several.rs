@@ -14,16 +14,20 @@ fn five() -> Session {
         {{"in":"layer","do":"choose","layer":["1","3"],"primary":"3","anchor":null}}"#
     ))
 }
+
 fn story(session: &mut Session, lines: &str) {
     session.replay(Path::new("story"), lines).unwrap_or_else(|e| panic!("{e}"));
 }
+
 fn chosen(session: &Session) -> Vec<String> {
     let tab = session.active().unwrap();
     tab.chosen_layers().iter().map(|id| tab.document().layer(*id).unwrap().name.clone()).collect()
 }
+
 fn done(session: &Session) -> &str {
     session.active().unwrap().history.done().unwrap_or_default()
 }
+
 fn steps(session: &Session) -> usize {
     session.active().unwrap().history.past().count()
 }
@@ -39,11 +43,14 @@ fn layers_are_chosen_together_and_one_of_them_is_painted_on() {
     story(&mut session, r#"{"in":"layer","do":"select","layer":"1"}"#);
     assert_eq!(chosen(&session), ["Fill"]);
 }
+
 #[test]
 fn what_is_done_to_several_layers_is_one_step() {
     let mut session = five();
     let before = steps(&session);
-    let set = |to: &str| format!(r#"{{"in":"layer","do":"set","layer":["1","3"],"to":{to},"done":true}}"#);
+    let set = |to: &str| {
+        format!(r#"{{"in":"layer","do":"set","layer":["1","3"],"to":{to},"done":true}}"#)
+    };
     for to in [
         r#"{"do":"opacity","to":0.25}"#,
         r#"{"do":"blend","mode":"multiply"}"#,
@@ -62,19 +69,32 @@ fn what_is_done_to_several_layers_is_one_step() {
     story(&mut session, r#"{"in":"edit","do":"walk","steps":-4}"#);
     assert_eq!(session.active().unwrap().document().layers[3].opacity, 1.0);
 }
+
 #[test]
 fn several_layers_are_grouped_copied_moved_dissolved_and_deleted() {
     let mut session = five();
     story(&mut session, r#"{"in":"layer","do":"duplicate","layer":["1","3"]}"#);
     assert_eq!(names(&session)[3..6], ["Paint", "Fill copy", "Paint copy"]);
-    assert_eq!((chosen(&session), done(&session)), (vec!["Fill copy".into(), "Paint copy".into()], "Duplicate layers"));
+    assert_eq!(
+        (chosen(&session), done(&session)),
+        (vec!["Fill copy".into(), "Paint copy".into()], "Duplicate layers")
+    );
     story(&mut session, r#"{"in":"layer","do":"group","layer":["1","4","5"]}"#);
-    assert_eq!(names(&session)[1..7], ["Gradient", "Paint", "Fill", "Fill copy", "Paint copy", "Group 2"]);
+    assert_eq!(
+        names(&session)[1..7],
+        ["Gradient", "Paint", "Fill", "Fill copy", "Paint copy", "Group 2"]
+    );
     story(&mut session, r#"{"in":"layer","do":"move","layer":["1","2"],"group":"3","index":0}"#);
     assert_eq!(names(&session)[1..4], ["Gradient", "Paint", "Fill"]);
-    assert_eq!((chosen(&session), done(&session)), (vec!["Gradient".into(), "Paint".into()], "Move layers"));
+    assert_eq!(
+        (chosen(&session), done(&session)),
+        (vec!["Gradient".into(), "Paint".into()], "Move layers")
+    );
     story(&mut session, r#"{"in":"layer","do":"ungroup","layer":["1","2"]}"#);
-    assert_eq!(names(&session), ["Background", "Gradient", "Paint", "Fill", "Fill copy", "Paint copy", "Strokes"]);
+    assert_eq!(
+        names(&session),
+        ["Background", "Gradient", "Paint", "Fill", "Fill copy", "Paint copy", "Strokes"]
+    );
     story(&mut session, r#"{"in":"layer","do":"delete","layer":["1","3","6"]}"#);
     assert_eq!(
         (names(&session).join(" "), done(&session)),
@@ -83,19 +103,25 @@ fn several_layers_are_grouped_copied_moved_dissolved_and_deleted() {
     story(&mut session, r#"{"in":"edit","do":"undo"}"#);
     assert_eq!(names(&session).len(), 7);
 }
+
 #[test]
 fn several_layers_merge_into_one_that_looks_the_same() {
     let mut session = five();
     story(&mut session, STROKE);
-    let look = |session: &Session| [(100, 70), (10, 10), (180, 140)].map(|(x, y)| pixel(session, x, y));
+    let look =
+        |session: &Session| [(100, 70), (10, 10), (180, 140)].map(|(x, y)| pixel(session, x, y));
     let (before, count) = (look(&session), steps(&session));
     story(&mut session, r#"{"in":"layer","do":"merge down","layer":["1","2","3"]}"#);
-    assert_eq!((names(&session)[1].as_str(), done(&session), steps(&session)), ("Fill", "Merge layers", count + 1));
+    assert_eq!(
+        (names(&session)[1].as_str(), done(&session), steps(&session)),
+        ("Fill", "Merge layers", count + 1)
+    );
     assert!(matches!(session.layer().unwrap().content, Content::Pixels(_)));
     for (a, b) in look(&session).into_iter().zip(before) {
         assert!(a.iter().zip(b).all(|(a, b)| a.abs_diff(b) <= 1), "{a:?}, not {b:?}");
     }
 }
+
 #[test]
 fn several_layers_are_moved_by_the_tool_and_cut_and_pasted_together() {
     let mut session = told(&format!(
@@ -105,23 +131,37 @@ fn several_layers_are_moved_by_the_tool_and_cut_and_pasted_together() {
         {{"in":"layer","do":"choose","layer":["1","2"],"primary":"2","anchor":null}}"#
     ));
     let red = |session: &Session, y: i32| pixel(session, 100, y) == [0xc0, 0x20, 0x10, 255];
-    let drag = "{\"in\":\"pointer\",\"do\":\"press\",\"tool\":\"move\",\"pen\":[100,70],\"px_per_pt\":1}
+    let drag =
+        "{\"in\":\"pointer\",\"do\":\"press\",\"tool\":\"move\",\"pen\":[100,70],\"px_per_pt\":1}
 {\"in\":\"pointer\",\"do\":\"drag\",\"pens\":[[100,110]]}
 {\"in\":\"pointer\",\"do\":\"release\"}";
     story(&mut session, drag);
-    assert_eq!((done(&session), red(&session, 70), red(&session, 110)), ("Move layers", false, true));
+    assert_eq!(
+        (done(&session), red(&session, 70), red(&session, 110)),
+        ("Move layers", false, true)
+    );
     assert_eq!(chosen(&session), ["Paint", "Strokes"], "both stay chosen");
     story(&mut session, r#"{"in":"clipboard","do":"cut"}"#);
     assert!(!red(&session, 110));
     story(&mut session, r#"{"in":"clipboard","do":"paste"}"#);
-    assert_eq!((red(&session, 110), chosen(&session)), (true, vec!["Paint 2".into(), "Strokes 2".into()]));
+    assert_eq!(
+        (red(&session, 110), chosen(&session)),
+        (true, vec!["Paint 2".into(), "Strokes 2".into()])
+    );
     let tab = session.active().unwrap();
-    let kinds = tab.chosen_layers().into_iter().map(|id| tab.document().layer(id).unwrap().content.kind_name());
+    let kinds = tab
+        .chosen_layers()
+        .into_iter()
+        .map(|id| tab.document().layer(id).unwrap().content.kind_name());
     assert_eq!(kinds.collect::<Vec<_>>(), ["pixels", "strokes"]);
     let turn = r#"{"in":"layer","do":"turn","layer":["3","4"],"degrees":90}"#;
     story(&mut session, turn);
-    assert!((0..150).filter(|y| red(&session, *y)).count() > 60, "a line that stood level stands upright");
+    assert!(
+        (0..150).filter(|y| red(&session, *y)).count() > 60,
+        "a line that stood level stands upright"
+    );
 }
+
 #[test]
 fn where_there_is_nothing_to_act_on_that_is_said() {
     let mut session = five();
@@ -135,7 +175,10 @@ fn where_there_is_nothing_to_act_on_that_is_said() {
         said(r#"{"in":"layer","do":"ungroup","layer":["1","2"]}"#),
         "There is no group among the chosen layers."
     );
-    assert_eq!(said(r#"{"in":"layer","do":"merge down","layer":"0"}"#), "There is no layer beneath to merge with.");
+    assert_eq!(
+        said(r#"{"in":"layer","do":"merge down","layer":"0"}"#),
+        "There is no layer beneath to merge with."
+    );
     assert_eq!(said(r#"{"in":"layer","do":"delete","layer":[]}"#), "Choose a layer first.");
     assert_eq!(said(r#"{"in":"layer","do":"group","layer":["9"]}"#), "Choose a layer first.");
 }

@@ -1,5 +1,5 @@
-//! A drawing with a shape, however it comes in and whatever is done to the layer that outlines it: what is shown, what
-//! is exported, and what is saved are the same picture.
+//! A drawing with a shape, however it comes in and whatever is done to the layer that outlines it:
+//! what is shown, what is exported, and what is saved are the same picture.
 
 use super::*;
 use crate::document::{Document, Progress, flatten};
@@ -32,15 +32,19 @@ fn shaped() -> Session {
     assert_eq!(document_of(&session).parts.list.len(), 2);
     session
 }
+
 fn tell(session: &mut Session, lines: &str) {
     session.replay(Path::new("story"), lines).unwrap_or_else(|e| panic!("{e}"));
 }
+
 fn document_of(session: &Session) -> &Document {
     session.active().unwrap().document()
 }
+
 fn picture(document: &Document) -> Vec<u8> {
     flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect())
 }
+
 fn read_picture(file: &Path) -> Vec<u8> {
     let bytes = std::fs::read(file).unwrap();
     match io::picture::decode(file, &bytes, &Budget::default()).unwrap().texels {
@@ -48,23 +52,42 @@ fn read_picture(file: &Path) -> Vec<u8> {
         _ => panic!("a picture of bytes"),
     }
 }
-/// What is shown of a document, exported, saved for other programs, and seen after it is opened again.
+
+/// What is shown of a document, exported, saved for other programs, and seen after it is opened
+/// again.
 fn everywhere(document: &Document, folder: &Path) -> [Vec<u8>; 4] {
     let at = |name: &str| -> PathBuf { folder.join(name) };
-    let (options, terms) = (io::export::ExportOptions::default(), io::Terms::export(Overwrite::Forced, Vec::new()));
+    let (options, terms) =
+        (io::export::ExportOptions::default(), io::Terms::export(Overwrite::Forced, Vec::new()));
     files::export(document, &at("a.png"), &options, terms, &Progress::default()).unwrap();
-    storage::save(&at("a.ora"), document, Overwrite::Forced, &Progress::default()).unwrap().unwrap();
+    storage::save(&at("a.ora"), document, Overwrite::Forced, &Progress::default())
+        .unwrap()
+        .unwrap();
     let opened = storage::open(&at("a.ora")).unwrap();
     assert!(opened.notes.is_empty(), "{:?}", opened.notes);
-    let merged = opened.tab.first_look.take().expect("a merged picture").to_straight_rgba(document.size.rect());
+    let merged = opened
+        .tab
+        .first_look
+        .take()
+        .expect("a merged picture")
+        .to_straight_rgba(document.size.rect());
     [picture(document), read_picture(&at("a.png")), merged, picture(opened.tab.document())]
 }
+
 fn assert_same_everywhere(document: &Document, what: &str) {
     let folder = tempfile::tempdir().unwrap();
     let [shown, exported, merged, opened] = everywhere(document, folder.path());
-    let differing = |other: &[u8]| shown.chunks(4).zip(other.chunks(4)).filter(|(a, b)| a != b).count();
-    let found = [("exported", differing(&exported)), ("merged", differing(&merged)), ("opened", differing(&opened))];
-    assert!(found.iter().all(|(_, pixels)| *pixels == 0), "{what}: pixels that differ from what is shown: {found:?}");
+    let differing =
+        |other: &[u8]| shown.chunks(4).zip(other.chunks(4)).filter(|(a, b)| a != b).count();
+    let found = [
+        ("exported", differing(&exported)),
+        ("merged", differing(&merged)),
+        ("opened", differing(&opened)),
+    ];
+    assert!(
+        found.iter().all(|(_, pixels)| *pixels == 0),
+        "{what}: pixels that differ from what is shown: {found:?}"
+    );
 }
 
 const LIQUIFY: &str = r##"{"in":"layer","do":"select","layer":"0"}
@@ -142,5 +165,8 @@ fn a_document_whose_shape_is_still_to_be_made_is_shown_exported_and_saved_with_i
     let given_up = Progress::default();
     given_up.cancel();
     let file = folder.path().join("b.ora");
-    assert!(storage::save(&file, &flat, Overwrite::Nothing, &given_up).unwrap().is_none() && !file.exists());
+    assert!(
+        storage::save(&file, &flat, Overwrite::Nothing, &given_up).unwrap().is_none()
+            && !file.exists()
+    );
 }

@@ -11,10 +11,12 @@ const GUIDES: &str = r#"
 fn story(session: &mut Session, lines: &str) {
     session.replay(Path::new("story"), lines).unwrap_or_else(|e| panic!("{e}"));
 }
+
 /// A drag with a tool and one key or none.
 fn drag(tool: &str, from: [f32; 2], to: [f32; 2], key: &str) -> String {
     let keys = |name: &str| name == key;
-    let keys = format!(r#"{{"shift":{},"ctrl":{},"alt":{}}}"#, keys("shift"), keys("ctrl"), keys("alt"));
+    let keys =
+        format!(r#"{{"shift":{},"ctrl":{},"alt":{}}}"#, keys("shift"), keys("ctrl"), keys("alt"));
     let pen = |[x, y]: [f32; 2]| format!("[{x},{y},1,0,0,0,{keys}]");
     format!(
         "{{\"in\":\"pointer\",\"do\":\"press\",\"tool\":\"{tool}\",\"pen\":{},\"px_per_pt\":1}}
@@ -24,9 +26,11 @@ fn drag(tool: &str, from: [f32; 2], to: [f32; 2], key: &str) -> String {
         pen(to)
     )
 }
+
 fn covered(session: &Session) -> Rect {
     session.active().unwrap().document().selected().map(CoverageGrid::covered).unwrap()
 }
+
 fn document(session: &Session) -> &Document {
     session.active().unwrap().document()
 }
@@ -37,7 +41,11 @@ fn selections_gradients_and_layers_go_to_guides_that_they_come_near() {
     story(&mut session, &drag("select rectangle", [77.0, 20.0], [150.0, 66.0], ""));
     assert_eq!(covered(&session), Rect::new(80, 20, 150, 60));
     story(&mut session, &drag("select rectangle", [120.0, 40.0], [118.0, 61.0], ""));
-    assert_eq!(covered(&session), Rect::new(80, 40, 150, 80), "moved: its middle stands at 60, its side at 80");
+    assert_eq!(
+        covered(&session),
+        Rect::new(80, 40, 150, 80),
+        "moved: its middle stands at 60, its side at 80"
+    );
     story(&mut session, "{\"in\":\"selection\",\"do\":\"none\"}");
     story(&mut session, &drag("gradient", [20.0, 57.0], [86.0, 140.0], ""));
     let Content::Gradient(live) = &session.layer().unwrap().content else { panic!("a gradient") };
@@ -51,13 +59,18 @@ fn selections_gradients_and_layers_go_to_guides_that_they_come_near() {
 {"in":"selection","do":"none"}"##;
     story(&mut session, fill);
     story(&mut session, &drag("move", [20.0, 20.0], [75.0, 20.0], ""));
-    let frame = |session: &Session| document(session).frame_box(session.layer().unwrap().id).unwrap();
+    let frame =
+        |session: &Session| document(session).frame_box(session.layer().unwrap().id).unwrap();
     assert_eq!((frame(&session).low.x, frame(&session).high.x), (60.0, 80.0), "its right side");
     story(&mut session, &drag("transform", [80.0, 30.0], [100.0, 66.0], ""));
     let map = document(&session).map_of(session.layer().unwrap().id).unwrap();
     let corner = map.plane.to_canvas(frame(&session).high).unwrap();
-    assert!(corner.distance(vec2(100.0, 60.0)) < 0.01, "the corner goes to the middle and the guide: {corner}");
+    assert!(
+        corner.distance(vec2(100.0, 60.0)) < 0.01,
+        "the corner goes to the middle and the guide: {corner}"
+    );
 }
+
 #[test]
 fn nothing_snaps_once_it_is_put_off_and_lines_with_shift_do_else() {
     let mut session = told(&format!("{PAPER}{GUIDES}{STROKE}"));
@@ -81,6 +94,7 @@ fn nothing_snaps_once_it_is_put_off_and_lines_with_shift_do_else() {
     story(&mut session, &drag("select rectangle", [77.0, 20.0], [150.0, 66.0], ""));
     assert_eq!(covered(&session), Rect::new(77, 20, 150, 66));
 }
+
 #[test]
 fn guides_are_pulled_moved_undone_and_cleared() {
     let mut session = told(PAPER);
@@ -100,6 +114,7 @@ fn guides_are_pulled_moved_undone_and_cleared() {
     story(&mut session, r#"{"in":"guide","do":"assistants","assistants":[]}"#);
     assert_eq!(session.said.pop().as_deref(), Some("There are no assistants."));
 }
+
 #[test]
 fn a_stroke_goes_along_an_assistant_and_the_next_line_begins_at_its_end() {
     let ruler = r#"
@@ -111,5 +126,8 @@ fn a_stroke_goes_along_an_assistant_and_the_next_line_begins_at_its_end() {
     assert!(samples.iter().all(|sample| (sample.at.y - 100.0).abs() < 1e-3), "{samples:?}");
     assert_eq!(session.active().unwrap().last_end.map(|at| at.round()), Some(vec2(150.0, 100.0)));
     let written: Vec<_> = document(&session).assistants.iter().map(ReplayValue::written).collect();
-    assert_eq!(written, [serde_json::json!({ "kind": "line", "points": [[10.0, 100.0], [190.0, 100.0]] })]);
+    assert_eq!(
+        written,
+        [serde_json::json!({ "kind": "line", "points": [[10.0, 100.0], [190.0, 100.0]] })]
+    );
 }

@@ -19,23 +19,29 @@ fn drawn(tool: &str, x: u32) -> String {
         {{"in":"pointer","do":"release"}}"#
     )
 }
+
 fn tell(session: &mut Session, lines: &str) {
     session.replay(Path::new("story"), lines).unwrap_or_else(|e| panic!("{e}"));
 }
+
 fn airbrushed() -> Session {
     let mut session = told(AIR);
     (0..60).for_each(|i| tell(&mut session, &drawn("brush", 60 + i)));
     session
 }
+
 fn paint(session: &Session) -> PixelLayer {
     let layer = session.active().unwrap().document().layers.last().unwrap().clone();
     let Content::Pixels(pixels) = &layer.content else { panic!("paint") };
     pixels.clone()
 }
+
 /// How many values alpha has.
 fn levels(paint: &PixelLayer) -> usize {
-    let all =
-        paint.tiles.iter().flat_map(|(_, tile)| tile.deep_rows().iter().flat_map(|row| row[3]).collect::<Vec<_>>());
+    let all = paint
+        .tiles
+        .iter()
+        .flat_map(|(_, tile)| tile.deep_rows().iter().flat_map(|row| row[3]).collect::<Vec<_>>());
     all.collect::<std::collections::BTreeSet<u16>>().len()
 }
 
@@ -48,34 +54,49 @@ fn an_airbrush_over_many_strokes_is_kept_finely_through_undo_cut_paste_and_mergi
     assert!(levels(&paint(&session)) > 2000);
     tell(&mut session, r#"{"in":"edit","do":"redo"}"#);
     let all = session.active().unwrap().document().clone();
-    for copied in
-        [r#"{"in":"clipboard","do":"copy","merged":false}"#, r#"{"in":"clipboard","do":"copy","merged":true}"#]
-    {
+    for copied in [
+        r#"{"in":"clipboard","do":"copy","merged":false}"#,
+        r#"{"in":"clipboard","do":"copy","merged":true}"#,
+    ] {
         tell(&mut session, &format!("{copied}\n{}", r#"{"in":"clipboard","do":"paste new"}"#));
-        assert!(levels(&paint(&session)) > 2000 || copied.contains("true"), "{copied}: {}", levels(&paint(&session)));
+        assert!(
+            levels(&paint(&session)) > 2000 || copied.contains("true"),
+            "{copied}: {}",
+            levels(&paint(&session))
+        );
         let red = paint(&session).tiles.deep_pixel(90, 75);
         assert!(red.iter().any(|v| v % 257 != 0), "{copied}: {red:?}");
     }
     let mut session = airbrushed();
-    assert!(session.active().unwrap().document().difference(&all).is_none(), "the same strokes, the same paint");
+    assert!(
+        session.active().unwrap().document().difference(&all).is_none(),
+        "the same strokes, the same paint"
+    );
     tell(&mut session, r#"{"in":"layer","do":"merge down","layer":"1"}"#);
     assert!(paint(&session).tiles.deep_pixel(90, 75).iter().any(|v| v % 257 != 0));
 }
+
 #[test]
 fn a_faint_eraser_takes_airbrushed_paint_away_and_what_is_left_is_saved() {
     let mut session = airbrushed();
     let before = paint(&session).tiles.deep_pixel(90, 75)[3];
-    tell(&mut session, r#"{"in":"hand","do":"brush","brush":{"size":120,"hardness":0,"flow":0.001,"erases":true}}"#);
+    tell(
+        &mut session,
+        r#"{"in":"hand","do":"brush","brush":{"size":120,"hardness":0,"flow":0.001,"erases":true}}"#,
+    );
     tell(&mut session, &drawn("eraser", 90));
     let after = paint(&session).tiles.deep_pixel(90, 75)[3];
     assert!(after < before && before - after < 900, "{before} to {after}");
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("a.ora");
     let document = session.active().unwrap().document();
-    crate::session::storage::save(&file, document, Overwrite::Nothing, &Progress::default()).unwrap().unwrap();
+    crate::session::storage::save(&file, document, Overwrite::Nothing, &Progress::default())
+        .unwrap()
+        .unwrap();
     let back = crate::session::storage::open(&file).unwrap();
     assert!(document.difference(back.tab.document()).is_none());
 }
+
 #[test]
 fn baked_soft_strokes_are_as_fine_as_they_were_alive() {
     let mut session = told(&AIR.replace(r#"{"in":"layer","do":"add","kind":"paint"}"#, ""));
@@ -85,6 +106,7 @@ fn baked_soft_strokes_are_as_fine_as_they_were_alive() {
     bake.apply(&mut session).unwrap();
     assert!(levels(&paint(&session)) > 1000, "{} levels", levels(&paint(&session)));
 }
+
 #[test]
 fn a_picture_of_16_bits_keeps_them_when_it_is_opened_or_placed_and_baked() {
     let folder = tempfile::tempdir().unwrap();
@@ -99,23 +121,28 @@ fn a_picture_of_16_bits_keeps_them_when_it_is_opened_or_placed_and_baked() {
     tell(&mut placed, r#"{"in":"layer","do":"bake","layer":"0"}"#);
     for session in [opened, placed] {
         let tiles = paint(&session).tiles;
-        let apart =
-            |(x, y, pixel): (u32, u32, &image::Luma<u16>)| tiles.deep_pixel(x as i32, y as i32)[0].abs_diff(pixel.0[0]);
+        let apart = |(x, y, pixel): (u32, u32, &image::Luma<u16>)| {
+            tiles.deep_pixel(x as i32, y as i32)[0].abs_diff(pixel.0[0])
+        };
         assert!(picture.enumerate_pixels().map(apart).max() <= Some(1));
     }
 }
+
 #[test]
 fn a_photoshop_file_of_16_bits_is_not_saved_over_with_8() {
     let folder = tempfile::tempdir().unwrap();
-    // One pixel without layers: its header, no table, resources or layers, and three plain channels.
+    // One pixel without layers: its header, no table, resources or layers, and three plain
+    // channels.
     let file = |bits: u8, plane: &[u8]| {
-        let head = [&b"8BPS\0\x01\0\0\0\0\0\0\0\x03\0\0\0\x01\0\0\0\x01\0"[..], &[bits, 0, 3]].concat();
+        let head =
+            [&b"8BPS\0\x01\0\0\0\0\0\0\0\x03\0\0\0\x01\0\0\0\x01\0"[..], &[bits, 0, 3]].concat();
         let bytes = [&head, &[0; 14][..], &plane.repeat(3)].concat();
         let file = folder.path().join(format!("{bits}.psd"));
         std::fs::write(&file, bytes).unwrap();
         file
     };
-    let opened = |file: &Path| crate::session::storage::open(file).unwrap_or_else(|e| panic!("{e}"));
+    let opened =
+        |file: &Path| crate::session::storage::open(file).unwrap_or_else(|e| panic!("{e}"));
     let wide = opened(&file(16, &[0x12, 0x34]));
     let Content::Pixels(pixels) = &wide.tab.document().layers[0].content else { panic!("paint") };
     assert_eq!(pixels.tiles.deep_pixel(0, 0), [0x1234, 0x1234, 0x1234, 65535]);

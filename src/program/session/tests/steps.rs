@@ -1,4 +1,5 @@
-//! Any sequence of edits, undone to the start and redone to the end: every document is the same as before.
+//! Any sequence of edits, undone to the start and redone to the end: every document is the same as
+//! before.
 
 use super::*;
 use proptest::prelude::*;
@@ -10,8 +11,16 @@ fn edit() -> impl Strategy<Value = String> {
         prop_oneof![3 => (0..4usize).prop_map(|i| i.to_string()), 1 => nested]
     };
     let kinds = prop::sample::select(vec!["paint", "strokes", "fill", "gradient", "group"]);
-    let plain =
-        prop::sample::select(vec!["delete", "duplicate", "group", "ungroup", "merge down", "bake", "clear", "select"]);
+    let plain = prop::sample::select(vec![
+        "delete",
+        "duplicate",
+        "group",
+        "ungroup",
+        "merge down",
+        "bake",
+        "clear",
+        "select",
+    ]);
     let blend = prop::sample::select(BlendMode::ALL.map(|row| row.1).to_vec());
     prop_oneof![
         3 => kinds.prop_map(|kind| format!(r#"{{"in":"layer","do":"add","kind":"{kind}"}}"#)),
@@ -44,16 +53,22 @@ fn edit() -> impl Strategy<Value = String> {
         4 => (-4..4i32).prop_map(|steps| format!(r#"{{"in":"edit","do":"walk","steps":{steps}}}"#)),
     ]
 }
+
 /// What a document is: its parameters and its picture.
 fn fingerprint(document: &Document) -> (String, u32) {
-    let picture = flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect());
+    let picture =
+        flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect());
     (crate::io::recipe::write(document).to_string(), crc32fast::hash(&picture))
 }
+
 fn document(session: &Session) -> Document {
     session.active().unwrap().document().clone()
 }
+
 fn walk(session: &mut Session, steps: i32) -> (String, u32) {
-    session.replay(Path::new("story"), &format!(r#"{{"in":"edit","do":"walk","steps":{steps}}}"#)).unwrap();
+    session
+        .replay(Path::new("story"), &format!(r#"{{"in":"edit","do":"walk","steps":{steps}}}"#))
+        .unwrap();
     fingerprint(&document(session))
 }
 
@@ -89,6 +104,7 @@ proptest! {
         }
     }
 }
+
 #[test]
 fn a_layer_that_comes_back_is_chosen() {
     let mut session = told(&format!("{PAPER}{STROKE}"));

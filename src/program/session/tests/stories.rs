@@ -1,8 +1,10 @@
-//! Stories that nobody thought of: any actions and tools in any order, drawn from the tables of the program, and what
-//! holds after each of them. Not here: stories that somebody thought of (the other files of `tests`).
+//! Stories that nobody thought of: any actions and tools in any order, drawn from the tables of the
+//! program, and what holds after each of them. Not here: stories that somebody thought of (the
+//! other files of `tests`).
 //!
-//! An action, a property, a tool or a kind of part that is new is drawn at once, or the compiler leads to the table
-//! where it is missing. A story is played by its seed; one that fails is made short and printed as a replay.
+//! An action, a property, a tool or a kind of part that is new is drawn at once, or the compiler
+//! leads to the table where it is missing. A story is played by its seed; one that fails is made
+//! short and printed as a replay.
 
 mod dice;
 mod facts;
@@ -44,7 +46,8 @@ fn played(first: u64, count: u64) -> BTreeMap<String, Fault> {
     for seed in first..first + count {
         let told = story(seed, &folder);
         if let Some(broken) = told.broken {
-            let fault = faults.entry(broken.kind).or_insert(Fault { count: 0, seed, what: broken.what });
+            let fault =
+                faults.entry(broken.kind).or_insert(Fault { count: 0, seed, what: broken.what });
             fault.count += 1;
         }
     }
@@ -65,8 +68,14 @@ fn replay_of(seed: u64) -> PathBuf {
     let Some(broken) = told.broken else { return target };
     let (actions, broken) = shrink::shrunk(told.actions, broken, &folder);
     let lines: Vec<String> = actions.iter().map(|action| action.written().to_string()).collect();
-    let there = |text: &str| text.replace(&*folder.path().to_string_lossy(), &target.to_string_lossy());
-    let text = format!("# {}: {}\n{}\n", broken.kind, broken.what.replace('\n', " "), there(&lines.join("\n")));
+    let there =
+        |text: &str| text.replace(&*folder.path().to_string_lossy(), &target.to_string_lossy());
+    let text = format!(
+        "# {}: {}\n{}\n",
+        broken.kind,
+        broken.what.replace('\n', " "),
+        there(&lines.join("\n"))
+    );
     let file = target.join("story.jsonl");
     std::fs::write(&file, &text).unwrap();
     eprintln!("{}:\n{text}", file.display());
@@ -94,6 +103,7 @@ fn assert_no_faults(first: u64, count: u64) {
 fn whatever_happens_documents_are_kept_undone_and_drawn_the_same() {
     assert_no_faults(0, FEW);
 }
+
 /// `PROPTEST_CASES`: how many; `PROPTEST_RNG_SEED`: where they begin.
 #[test]
 #[ignore = "takes a night"]
@@ -101,6 +111,7 @@ fn whatever_happens_in_a_night_documents_are_kept_undone_and_drawn_the_same() {
     let first = given("PROPTEST_RNG_SEED").unwrap_or_default().wrapping_mul(1_000_000) % (1 << 60);
     assert_no_faults(first, given("PROPTEST_CASES").unwrap_or(MANY));
 }
+
 /// A word that is spelled wrongly would weigh nothing.
 #[test]
 fn the_tables_of_stories_name_words_of_the_program() {
@@ -115,7 +126,9 @@ fn the_tables_of_stories_name_words_of_the_program() {
         ("SelectionAction", actions::SelectionAction::WORDS),
         ("Property", Property::WORDS),
     ];
-    let is_known = |(of, word): &(&str, &str)| words.iter().any(|(known, words)| known == of && words.contains(word));
+    let is_known = |(of, word): &(&str, &str)| {
+        words.iter().any(|(known, words)| known == of && words.contains(word))
+    };
     let unknown: Vec<_> = weights::words().filter(|row| !is_known(row)).collect();
     assert!(unknown.is_empty(), "{unknown:?}");
     assert!(!StrokeAction::WORDS.is_empty());

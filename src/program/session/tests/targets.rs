@@ -1,4 +1,5 @@
-//! Undo and redo put the user back where the step was made: the layers that were chosen, and mask or paint.
+//! Undo and redo put the user back where the step was made: the layers that were chosen, and mask
+//! or paint.
 
 use super::*;
 
@@ -11,15 +12,19 @@ pub(super) fn two_layers() -> Session {
         {{"in":"layer","do":"select","layer":"1"}}"#
     ))
 }
+
 pub(super) fn act(session: &mut Session, lines: &str) {
     session.replay(Path::new("story"), lines).unwrap();
 }
+
 fn undo(session: &mut Session) {
     act(session, r#"{"in":"edit","do":"undo"}"#);
 }
+
 fn redo(session: &mut Session) {
     act(session, r#"{"in":"edit","do":"redo"}"#);
 }
+
 pub(super) fn drawn_with(tool: &str) -> String {
     format!(
         r#"{{"in":"pointer","do":"press","tool":"{tool}","pen":[20,30],"px_per_pt":1}}
@@ -27,6 +32,7 @@ pub(super) fn drawn_with(tool: &str) -> String {
         {{"in":"pointer","do":"release"}}"#
     )
 }
+
 /// The names of the chosen layers, the primary one last.
 fn chosen(session: &Session) -> Vec<String> {
     let tab = session.active().unwrap();
@@ -50,8 +56,13 @@ fn after_an_undone_gradient_the_next_stroke_goes_where_the_last_one_would_have()
     }
     let before = names(&session);
     act(&mut session, &drawn_with("brush"));
-    assert_eq!(names(&session), before, "the stroke is on the layer that was chosen, not on a new one");
+    assert_eq!(
+        names(&session),
+        before,
+        "the stroke is on the layer that was chosen, not on a new one"
+    );
 }
+
 #[test]
 fn redo_chooses_what_was_chosen_right_after_the_step_and_not_what_was_chosen_later() {
     let mut session = two_layers();
@@ -63,10 +74,14 @@ fn redo_chooses_what_was_chosen_right_after_the_step_and_not_what_was_chosen_lat
     redo(&mut session);
     assert_eq!(chosen(&session), ["Paint"]);
 }
+
 #[test]
 fn several_deleted_layers_come_back_chosen_and_a_click_in_the_history_chooses_too() {
     let mut session = two_layers();
-    act(&mut session, r#"{"in":"layer","do":"choose","layer":["1","2"],"primary":"1","anchor":"2"}"#);
+    act(
+        &mut session,
+        r#"{"in":"layer","do":"choose","layer":["1","2"],"primary":"1","anchor":"2"}"#,
+    );
     act(&mut session, r#"{"in":"layer","do":"delete","layer":["1","2"]}"#);
     act(&mut session, &drawn_with("brush"));
     assert_eq!(chosen(&session), ["Strokes"]);
@@ -75,6 +90,7 @@ fn several_deleted_layers_come_back_chosen_and_a_click_in_the_history_chooses_to
     act(&mut session, r#"{"in":"edit","do":"walk","steps":1}"#);
     assert_eq!(chosen(&session), ["Background"]);
 }
+
 #[test]
 fn a_stroke_on_a_mask_is_undone_on_the_mask_and_the_tool_stays_in_hand() {
     let mut session = two_layers();
@@ -95,6 +111,7 @@ fn a_stroke_on_a_mask_is_undone_on_the_mask_and_the_tool_stays_in_hand() {
     assert!(!on_mask(&session), "there is no mask");
     assert_eq!(session.tool, ToolKind::Eraser);
 }
+
 #[test]
 fn chosen_strokes_are_those_that_were_chosen_before_they_were_ordered() {
     let mut session = told(&format!(
@@ -109,17 +126,22 @@ fn chosen_strokes_are_those_that_were_chosen_before_they_were_ordered() {
     redo(&mut session);
     assert_eq!(strokes(&session), [0]);
 }
+
 #[test]
 fn the_history_says_which_layer_a_step_was_done_to() {
     let mut session = two_layers();
     act(&mut session, &drawn_with("brush"));
-    act(&mut session, r#"{"in":"layer","do":"set","layer":"1","to":{"do":"opacity","to":0.5},"done":true}"#);
+    act(
+        &mut session,
+        r#"{"in":"layer","do":"set","layer":"1","to":{"do":"opacity","to":0.5},"done":true}"#,
+    );
     act(&mut session, r#"{"in":"layer","do":"group","layer":["1","2"]}"#);
     act(&mut session, r#"{"in":"layer","do":"select","layer":"1.0"}"#);
     act(&mut session, &drawn_with("brush"));
     act(&mut session, r#"{"in":"layer","do":"delete","layer":"1.1"}"#);
     act(&mut session, r#"{"in":"selection","do":"all"}"#);
-    let said: Vec<String> = session.active().unwrap().history.past_labels().map(labels::sentence).collect();
+    let said: Vec<String> =
+        session.active().unwrap().history.past_labels().map(labels::sentence).collect();
     let expected = [
         "Add layer “Paint”",
         "Add layer “Paint 2”",

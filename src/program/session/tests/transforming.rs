@@ -1,5 +1,5 @@
-//! The transform tool on a shape, written as the lines of a replay: paint that slides over it, and paint that moves
-//! with it.
+//! The transform tool on a shape, written as the lines of a replay: paint that slides over it, and
+//! paint that moves with it.
 
 use super::*;
 
@@ -7,9 +7,11 @@ use super::*;
 fn ball() -> Session {
     told(&format!(r#"{PAPER}{}{STROKE}"#, "\n{\"in\":\"part\",\"do\":\"add\",\"kind\":\"sphere\"}"))
 }
+
 fn story(session: &mut Session, lines: &str) {
     session.replay(Path::new("story"), lines).unwrap_or_else(|e| panic!("{e}"));
 }
+
 fn carry(session: &mut Session, what: &str, from: [i32; 2], to: [i32; 2]) {
     let lines = format!(
         r#"{{"in":"hand","do":"carried","carried":"{what}"}}
@@ -19,10 +21,12 @@ fn carry(session: &mut Session, what: &str, from: [i32; 2], to: [i32; 2]) {
     );
     story(session, &lines);
 }
+
 fn picture(session: &Session) -> Vec<u8> {
     let document = session.active().unwrap().drawn();
     flatten(&document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect())
 }
+
 fn surface(session: &Session) -> Arc<crate::surface::Surface> {
     session.active().unwrap().document().surface.clone().unwrap()
 }
@@ -35,6 +39,7 @@ fn paint_slides_over_a_shape_that_stays() {
     assert!(Arc::ptr_eq(&before, &surface(&session)));
     assert!(session.layer().unwrap().transform.is_some());
 }
+
 #[test]
 fn the_shape_is_moved_with_its_paint_and_comes_back_by_undo() {
     let mut session = ball();
@@ -54,6 +59,7 @@ fn the_shape_is_moved_with_its_paint_and_comes_back_by_undo() {
     story(&mut session, r#"{"in":"edit","do":"redo"}"#);
     assert_eq!(picture(&session), after);
 }
+
 #[test]
 fn the_shape_is_turned_scaled_and_mirrored_by_numbers_and_a_perspective_is_refused() {
     let mut session = ball();
@@ -66,9 +72,14 @@ fn the_shape_is_turned_scaled_and_mirrored_by_numbers_and_a_perspective_is_refus
     assert_eq!(picture(&session), before, "a quarter and back");
     story(&mut session, &by("[0.5,0,0,0.5,50,37.5]"));
     let half = surface(&session);
-    assert_eq!((half.coverage(100, 75), half.coverage(100, 40)), (255, 0), "half as large about the middle");
+    assert_eq!(
+        (half.coverage(100, 75), half.coverage(100, 40)),
+        (255, 0),
+        "half as large about the middle"
+    );
     let steps = session.active().unwrap().history.past().count();
-    let frame = session.active().unwrap().frame(crate::tools::frame::TransformTarget::Shape).unwrap();
+    let frame =
+        session.active().unwrap().frame(crate::tools::frame::TransformTarget::Shape).unwrap();
     let corner = frame.corners[2];
     let keys = r#"{"shift":false,"ctrl":true,"alt":false}"#;
     let pen = format!("[{},{},1,0,0,0,{keys}]", corner.x, corner.y);
@@ -77,8 +88,16 @@ fn the_shape_is_turned_scaled_and_mirrored_by_numbers_and_a_perspective_is_refus
         {{"in":"pointer","do":"press","tool":"transform","pen":{pen},"px_per_pt":0.5}}"#
     );
     story(&mut session, &line);
-    assert!(session.notes.last().is_some_and(|why| why.contains("perspective")), "{:?}", session.notes);
+    assert!(
+        session.notes.last().is_some_and(|why| why.contains("perspective")),
+        "{:?}",
+        session.notes
+    );
     assert_eq!(session.active().unwrap().history.past().count(), steps);
     story(&mut session, &by("[1,0,0,1,9000,0]"));
-    assert!(session.notes.last().is_some_and(|why| why.contains("Nothing of the shape")), "{:?}", session.notes);
+    assert!(
+        session.notes.last().is_some_and(|why| why.contains("Nothing of the shape")),
+        "{:?}",
+        session.notes
+    );
 }

@@ -13,25 +13,30 @@ fn round() -> Session {
     let is_round = |x: usize| lean(x).abs() < 0.95;
     let upright = |x: usize| (1.0 - lean(x) * lean(x)).max(0.0).sqrt();
     let maps = Maps {
-        normals: Plane::from_fn(size, |x, _| if is_round(x) { vec3(lean(x), 0.0, upright(x)) } else { Vec3::Z }),
+        normals: Plane::from_fn(size, |x, _| {
+            if is_round(x) { vec3(lean(x), 0.0, upright(x)) } else { Vec3::Z }
+        }),
         depth: Plane::from_fn(size, |x, _| 1.0 - upright(x)),
         coverage: Plane::from_fn(size, |x, _| if is_round(x) { 255 } else { 0 }),
     };
     let surface = Arc::new(Surface::new(maps).unwrap());
     let texel = |i: u32| {
         let (x, y) = (i % 200, i / 200);
-        let wave = |v: u32, n: f32| (127.5 + 120.0 * (v as f32 * std::f32::consts::TAU / n).sin()) as u8;
+        let wave =
+            |v: u32, n: f32| (127.5 + 120.0 * (v as f32 * std::f32::consts::TAU / n).sin()) as u8;
         [wave(x, 23.0), wave(y, 31.0), wave(x + y, 47.0), 255]
     };
     let bytes: Vec<u8> = (0..200 * 120).flat_map(texel).collect();
     let tiles = crate::raster::TileGrid::from_straight_rgba(&bytes, 200, 120, 0, 0);
     let pixels = crate::document::PixelLayer { file: String::new(), x: 0, y: 0, tiles };
     let layer = Arc::new(Layer::new("painting", Content::Pixels(pixels)));
-    let document = Document { surface: Some(surface), layers: vec![layer], ..Document::empty(size) };
+    let document =
+        Document { surface: Some(surface), layers: vec![layer], ..Document::empty(size) };
     let mut session = Session::default();
     session.add_document(OpenDocument::new("round", document, None));
     session
 }
+
 fn then(session: &mut Session, lines: &str) {
     session.replay(Path::new("story"), lines).unwrap_or_else(|e| panic!("{e}"));
 }
@@ -49,17 +54,22 @@ fn each_of_picture_and_sheet_has_its_own_view_and_the_sheet_its_own_size() {
         &mut session,
         "{\"in\":\"view\",\"do\":\"zoom to\",\"zoom\":3}\n{\"in\":\"view\",\"do\":\"unwrapped\",\"on\":false}",
     );
-    assert_eq!((session.active().unwrap().view, session.active().unwrap().shown_size().width), (picture, 200));
+    assert_eq!(
+        (session.active().unwrap().view, session.active().unwrap().shown_size().width),
+        (picture, 200)
+    );
     then(&mut session, FLAT);
     assert_eq!(session.active().unwrap().view.map(|view| view.zoom), Some(3.0));
 }
+
 #[test]
 fn a_stroke_drawn_on_the_sheet_is_one_step_on_the_form() {
     let mut session = round();
     then(&mut session, FLAT);
     let tab = session.active().unwrap();
     let (layout, surface) = (tab.layout().unwrap(), tab.document().surface.clone().unwrap());
-    let [from, to] = [vec2(40.0, 60.0), vec2(160.0, 60.0)].map(|q| layout.sheet_at(&surface, q).unwrap());
+    let [from, to] =
+        [vec2(40.0, 60.0), vec2(160.0, 60.0)].map(|q| layout.sheet_at(&surface, q).unwrap());
     let hand = r##"{"in":"layer","do":"add","kind":"strokes"}
 {"in":"hand","do":"preset","name":"hard-round"}
 {"in":"hand","do":"size","to":12}
@@ -83,14 +93,23 @@ fn a_stroke_drawn_on_the_sheet_is_one_step_on_the_form() {
     then(&mut session, r#"{"in":"edit","do":"undo"}"#);
     assert_ne!(pixel(&session, 100, 60), [0xc0, 0x20, 0x10, 255]);
 }
+
 #[test]
 fn tools_that_hold_what_lies_in_the_picture_say_so() {
     let mut session = round();
     then(&mut session, FLAT);
-    then(&mut session, r#"{"in":"pointer","do":"press","tool":"transform","pen":[90,60],"px_per_pt":1}"#);
+    then(
+        &mut session,
+        r#"{"in":"pointer","do":"press","tool":"transform","pen":[90,60],"px_per_pt":1}"#,
+    );
     assert!(!session.is_drawing());
-    assert!(session.notes.last().is_some_and(|note| note.contains("unwrapped")), "{:?}", session.notes);
+    assert!(
+        session.notes.last().is_some_and(|note| note.contains("unwrapped")),
+        "{:?}",
+        session.notes
+    );
 }
+
 #[test]
 fn without_a_surface_nothing_is_unwrapped_and_that_is_told() {
     let mut session = told(PAPER);
@@ -98,6 +117,7 @@ fn without_a_surface_nothing_is_unwrapped_and_that_is_told() {
     assert!(session.active().unwrap().unwrapped().is_none());
     assert_eq!(session.notes.len(), 1, "{:?}", session.notes);
 }
+
 #[test]
 fn what_is_exported_unwrapped_and_imported_again_is_the_painting() {
     let folder = tempfile::tempdir().unwrap();
@@ -132,13 +152,21 @@ fn what_is_exported_unwrapped_and_imported_again_is_the_painting() {
         assert!(mean <= 2.0, "{name}: {mean} of 255 in the mean");
     }
 }
+
 #[test]
 fn a_picture_of_other_proportions_is_placed_as_wide_and_that_is_told() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("square.png");
     image::RgbaImage::from_pixel(64, 64, image::Rgba([9, 90, 200, 255])).save(&file).unwrap();
     let mut session = round();
-    then(&mut session, &format!(r#"{{"in":"file","do":"import unwrapped","file":"{}"}}"#, file.display()));
+    then(
+        &mut session,
+        &format!(r#"{{"in":"file","do":"import unwrapped","file":"{}"}}"#, file.display()),
+    );
     assert_eq!(names(&session), ["painting", "square"]);
-    assert!(session.notes.last().is_some_and(|note| note.contains("as wide")), "{:?}", session.notes);
+    assert!(
+        session.notes.last().is_some_and(|note| note.contains("as wide")),
+        "{:?}",
+        session.notes
+    );
 }

@@ -1,15 +1,17 @@
-//! Meshes and liquify, written as the lines of a replay: a photo, a stroke layer and a group are displaced, applied and
-//! undone.
+//! Meshes and liquify, written as the lines of a replay: a photo, a stroke layer and a group are
+//! displaced, applied and undone.
 
 use super::*;
 
 fn story(session: &mut Session, lines: &str) {
     session.replay(Path::new("story"), lines).unwrap_or_else(|e| panic!("{e}"));
 }
+
 fn picture(session: &Session) -> Vec<u8> {
     let document = session.active().unwrap().document();
     flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect())
 }
+
 fn layer(session: &Session) -> Arc<crate::document::Layer> {
     session.layer().unwrap().clone()
 }
@@ -30,7 +32,10 @@ fn a_stroke_layer_is_liquified_live_and_each_stroke_is_a_step() {
     story(&mut session, PUSH);
     let once = picture(&session);
     assert!(once != plain && layer(&session).liquify.is_some());
-    assert!(matches!(&layer(&session).content, crate::document::Content::Strokes(_)), "it stays live");
+    assert!(
+        matches!(&layer(&session).content, crate::document::Content::Strokes(_)),
+        "it stays live"
+    );
     story(&mut session, PUSH);
     assert!(picture(&session) != once);
     story(&mut session, UNDO);
@@ -48,18 +53,25 @@ fn a_stroke_layer_is_liquified_live_and_each_stroke_is_a_step() {
     story(&mut session, STROKE);
     assert!(picture(&session) != once);
 }
+
 #[test]
 fn removed_liquify_leaves_the_layer_as_it_was() {
-    let mut session = told(&format!("{PAPER}\n{{\"in\":\"layer\",\"do\":\"add\",\"kind\":\"paint\"}}{STROKE}"));
+    let mut session =
+        told(&format!("{PAPER}\n{{\"in\":\"layer\",\"do\":\"add\",\"kind\":\"paint\"}}{STROKE}"));
     let plain = picture(&session);
     story(&mut session, PUSH);
     assert!(picture(&session) != plain);
-    story(&mut session, r#"{"in":"layer","do":"set","layer":"1","to":{"do":"without liquify"},"done":true}"#);
+    story(
+        &mut session,
+        r#"{"in":"layer","do":"set","layer":"1","to":{"do":"without liquify"},"done":true}"#,
+    );
     assert!(picture(&session) == plain);
 }
+
 #[test]
 fn a_mesh_is_laid_dragged_applied_and_undone() {
-    let mut session = told(&format!("{PAPER}\n{{\"in\":\"layer\",\"do\":\"add\",\"kind\":\"paint\"}}{STROKE}"));
+    let mut session =
+        told(&format!("{PAPER}\n{{\"in\":\"layer\",\"do\":\"add\",\"kind\":\"paint\"}}{STROKE}"));
     let plain = picture(&session);
     story(&mut session, r#"{"in":"layer","do":"mesh","layer":"1","columns":3,"rows":3}"#);
     assert!(picture(&session) == plain, "an even mesh moves nothing");
@@ -106,7 +118,11 @@ fn a_stroke_on_what_is_displaced_shows_under_the_pen() {
     let strokes = r#"{"in":"layer","do":"add","kind":"strokes"}"#;
     let shows_there = |session: &mut Session, what: &str| {
         let at = blue_dot(session);
-        assert!(at.distance(crate::math::vec2(70.0, 73.0)) < 1.5, "{what}: {at}, {:?}", session.notes);
+        assert!(
+            at.distance(crate::math::vec2(70.0, 73.0)) < 1.5,
+            "{what}: {at}, {:?}",
+            session.notes
+        );
     };
     let mut own = told(&format!("{PAPER}\n{strokes}{STROKE}{PUSH}"));
     shows_there(&mut own, "a stroke layer");
@@ -115,7 +131,9 @@ fn a_stroke_on_what_is_displaced_shows_under_the_pen() {
     let mut around = told(&format!("{PAPER}\n{strokes}{STROKE}\n{group}{PUSH}"));
     story(&mut around, r#"{"in":"layer","do":"select","layer":"1.0"}"#);
     shows_there(&mut around, "a stroke layer in a group");
-    let mut paint = told(&format!("{PAPER}\n{{\"in\":\"layer\",\"do\":\"add\",\"kind\":\"paint\"}}{STROKE}{PUSH}"));
+    let mut paint = told(&format!(
+        "{PAPER}\n{{\"in\":\"layer\",\"do\":\"add\",\"kind\":\"paint\"}}{STROKE}{PUSH}"
+    ));
     shows_there(&mut paint, "a paint layer");
     // A layer of its own above a layer that holds no strokes.
     let fill = r##"{"in":"layer","do":"add","kind":"fill"}"##;

@@ -1,5 +1,5 @@
-//! Strokes along assistants: after the first screen points the path nearest to their direction is chosen, and the whole
-//! stroke follows it. Floor 5.
+//! Strokes along assistants: after the first screen points the path nearest to their direction is
+//! chosen, and the whole stroke follows it. Floor 5.
 
 use crate::document::assistants::AssistantPath;
 use crate::math::Vec2;
@@ -27,7 +27,13 @@ pub fn press_along(context: &ToolContext, pen: PenSample, start: StrokeStart) ->
     let waiting = Waiting { kept: KeptContext::of(context), start, paths, pens: vec![pen] };
     let magnetism = context.aids.magnetism;
     (
-        Some(Box::new(AlongGesture { waiting: Some(waiting), path: None, magnetism, stroke: None, end: None })),
+        Some(Box::new(AlongGesture {
+            waiting: Some(waiting),
+            path: None,
+            magnetism,
+            stroke: None,
+            end: None,
+        })),
         Outcome::Idle,
     )
 }
@@ -51,12 +57,17 @@ struct AlongGesture {
 
 impl AlongGesture {
     fn drawn(&self, pen: &PenSample) -> PenSample {
-        let at = self.path.map_or(pen.place(), |path| pen.place().lerp(path.nearest(pen.place()), self.magnetism));
+        let at = self.path.map_or(pen.place(), |path| {
+            pen.place().lerp(path.nearest(pen.place()), self.magnetism)
+        });
         PenSample { sample: Sample { at, ..pen.sample }, ..*pen }
     }
+
     /// Begins the stroke with all samples so far.
     fn begin(&mut self) -> Outcome {
-        let Some(Waiting { kept, start, pens, .. }) = self.waiting.take() else { return Outcome::Idle };
+        let Some(Waiting { kept, start, pens, .. }) = self.waiting.take() else {
+            return Outcome::Idle;
+        };
         let pens: Vec<PenSample> = pens.iter().map(|pen| self.drawn(pen)).collect();
         self.end = pens.last().map(PenSample::place);
         let Some((first, rest)) = pens.split_first() else { return Outcome::Idle };
@@ -86,17 +97,20 @@ impl Gesture for AlongGesture {
         waiting.pens.extend_from_slice(pens);
         let from = waiting.pens.first().map_or(Vec2::ZERO, PenSample::place);
         let reach_px = CHOICE_PT * waiting.kept.px_per_pt();
-        let Some(to) = pens.iter().map(PenSample::place).find(|at| at.distance(from) >= reach_px) else {
+        let Some(to) = pens.iter().map(PenSample::place).find(|at| at.distance(from) >= reach_px)
+        else {
             return Outcome::Idle;
         };
         self.path = nearest(&waiting.paths, from, to);
         self.begin()
     }
+
     fn release(&mut self) -> Outcome {
         // A dot follows nothing.
         let begun = self.begin();
         self.stroke.take().map_or(begun, |mut stroke| stroke.release())
     }
+
     fn end(&self) -> Option<Vec2> {
         self.end
     }

@@ -8,11 +8,16 @@ use crate::tools::{ModifierKeys, Symmetry, brush};
 
 fn empty() -> Document {
     let strokes = Content::Strokes(Live::new(StrokeList::default()));
-    Document { layers: vec![Arc::new(Layer::new("Strokes", strokes))], ..Document::empty(Size::new(200, 150)) }
+    Document {
+        layers: vec![Arc::new(Layer::new("Strokes", strokes))],
+        ..Document::empty(Size::new(200, 150))
+    }
 }
+
 fn with(kind: AssistantKind, points: &[Vec2]) -> Document {
     Document { assistants: Arc::new(vec![Assistant { kind, points: points.to_vec() }]), ..empty() }
 }
+
 /// A stroke through points with some magnetism; the places of its samples.
 fn stroke(document: &Document, points: &[Vec2], magnetism: f32) -> Vec<Vec2> {
     let hard = Brush { size: 4.0, ..Brush::default() };
@@ -24,11 +29,20 @@ fn stroke(document: &Document, points: &[Vec2], magnetism: f32) -> Vec<Vec2> {
     for point in &points[1..] {
         gesture.drag(&[PenSample::at(*point)]);
     }
-    let Outcome::Commit { document, select, .. } = gesture.release() else { panic!("a stroke is kept") };
+    let Outcome::Commit { document, select, .. } = gesture.release() else {
+        panic!("a stroke is kept")
+    };
     let strokes = document.strokes(select.unwrap());
     strokes[0].samples().iter().map(|sample| sample.at).collect()
 }
-fn dragged(document: &Document, kind: AssistantKind, from: Vec2, to: Vec2, alt: bool) -> Option<Document> {
+
+fn dragged(
+    document: &Document,
+    kind: AssistantKind,
+    from: Vec2,
+    to: Vec2,
+    alt: bool,
+) -> Option<Document> {
     let hard = Brush::default();
     let aids = ViewAids { assistant: kind, snaps: false, ..ViewAids::default() };
     let context = ToolContext { aids, ..ToolContext::new(document, &hard) };
@@ -56,6 +70,7 @@ fn a_stroke_beside_a_line_is_drawn_on_it() {
     let away = [vec2(30.0, 100.0), vec2(60.0, 104.0), vec2(120.0, 101.0)];
     assert_eq!(stroke(&ruled, &away, 1.0), stroke(&empty(), &away, 1.0), "too far away");
 }
+
 #[test]
 fn the_first_points_choose_among_the_lines_of_a_perspective() {
     let perspective = with(AssistantKind::TwoPoint, &[vec2(-400.0, 40.0), vec2(700.0, 40.0)]);
@@ -70,42 +85,62 @@ fn the_first_points_choose_among_the_lines_of_a_perspective() {
         assert!(drawn.iter().all(|at| off(at) < 1e-2), "{to}: {drawn:?}");
     }
 }
+
 #[test]
 fn a_dot_is_a_dot_and_an_ellipse_is_gone_round() {
-    let round = with(AssistantKind::Ellipse, &[vec2(20.0, 75.0), vec2(180.0, 75.0), vec2(100.0, 25.0)]);
+    let round =
+        with(AssistantKind::Ellipse, &[vec2(20.0, 75.0), vec2(180.0, 75.0), vec2(100.0, 25.0)]);
     let dot = stroke(&round, &[vec2(100.0, 28.0), vec2(100.0, 29.0)], 1.0);
     assert_eq!(dot[0], vec2(100.0, 28.0));
-    let drawn = stroke(&round, &[vec2(100.0, 28.0), vec2(130.0, 30.0), vec2(170.0, 60.0), vec2(176.0, 90.0)], 1.0);
+    let drawn = stroke(
+        &round,
+        &[vec2(100.0, 28.0), vec2(130.0, 30.0), vec2(170.0, 60.0), vec2(176.0, 90.0)],
+        1.0,
+    );
     let on = |at: &Vec2| ((at.x - 100.0) / 80.0).powi(2) + ((at.y - 75.0) / 50.0).powi(2);
     assert!(drawn.iter().all(|at| (on(at) - 1.0).abs() < 1e-3), "{drawn:?}");
 }
+
 #[test]
 fn assistants_are_laid_moved_and_taken_away_each_in_one_step() {
     let none = empty();
-    let laid = dragged(&none, AssistantKind::Line, vec2(20.0, 20.0), vec2(90.0, 60.0), false).unwrap();
+    let laid =
+        dragged(&none, AssistantKind::Line, vec2(20.0, 20.0), vec2(90.0, 60.0), false).unwrap();
     assert_eq!(laid.assistants[0].points, [vec2(20.0, 20.0), vec2(90.0, 60.0)]);
-    let moved = dragged(&laid, AssistantKind::Line, vec2(92.0, 61.0), vec2(100.0, 20.0), false).unwrap();
+    let moved =
+        dragged(&laid, AssistantKind::Line, vec2(92.0, 61.0), vec2(100.0, 20.0), false).unwrap();
     assert_eq!(moved.assistants[0].points, [vec2(20.0, 20.0), vec2(100.0, 20.0)]);
-    let gone = dragged(&moved, AssistantKind::Line, vec2(21.0, 20.0), vec2(21.0, 20.0), true).unwrap();
+    let gone =
+        dragged(&moved, AssistantKind::Line, vec2(21.0, 20.0), vec2(21.0, 20.0), true).unwrap();
     assert!(gone.assistants.is_empty());
-    assert!(dragged(&none, AssistantKind::Line, vec2(20.0, 20.0), vec2(21.0, 20.0), false).is_none(), "a click");
-    let point = dragged(&none, AssistantKind::OnePoint, vec2(20.0, 20.0), vec2(21.0, 20.0), false).unwrap();
+    assert!(
+        dragged(&none, AssistantKind::Line, vec2(20.0, 20.0), vec2(21.0, 20.0), false).is_none(),
+        "a click"
+    );
+    let point =
+        dragged(&none, AssistantKind::OnePoint, vec2(20.0, 20.0), vec2(21.0, 20.0), false).unwrap();
     assert_eq!(point.assistants[0].points.len(), 1);
     for (kind, _) in AssistantKind::ALL {
         let laid = dragged(&none, kind, vec2(20.0, 20.0), vec2(90.0, 60.0), false).unwrap();
         assert!(laid.assistants[0].fits().is_ok() && laid.fits(None).is_ok(), "{kind:?}");
     }
 }
+
 #[test]
 fn axes_of_symmetry_are_moved_by_their_middle_and_turned_by_their_end() {
     let (document, soft) = (empty(), Brush::default());
-    let context = ToolContext { symmetry: Symmetry::Vertical, ..ToolContext::new(&document, &soft) };
+    let context =
+        ToolContext { symmetry: Symmetry::Vertical, ..ToolContext::new(&document, &soft) };
     let mut moving = press(&context, PenSample::at(vec2(100.0, 75.0))).0.unwrap();
-    let Outcome::Axes(moved) = moving.drag(&[PenSample::at(vec2(60.0, 50.0))]) else { panic!("moved") };
+    let Outcome::Axes(moved) = moving.drag(&[PenSample::at(vec2(60.0, 50.0))]) else {
+        panic!("moved")
+    };
     assert_eq!(moved.middle(document.size), vec2(60.0, 50.0));
     let end = SymmetryAxes::default().handles(document.size, 1.0)[1];
     let mut turning = press(&context, PenSample::at(end)).0.unwrap();
-    let Outcome::Axes(turned) = turning.drag(&[PenSample::at(vec2(160.0, 75.0))]) else { panic!("turned") };
+    let Outcome::Axes(turned) = turning.drag(&[PenSample::at(vec2(160.0, 75.0))]) else {
+        panic!("turned")
+    };
     let images = Symmetry::Vertical.images_about(document.size, turned);
     let at = images[1].sample(&crate::paint::Sample::at(vec2(30.0, 20.0))).at;
     assert!(at.distance(vec2(30.0, 130.0)) < 1e-2, "{at}: the axis lies level now");

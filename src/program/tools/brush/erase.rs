@@ -27,7 +27,9 @@ impl Gesture for EraseStrokesGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let strokes = &self.list.params().strokes;
         for pen in pens {
-            let touched = (0..strokes.len()).rev().find(|i| !self.gone.contains(i) && is_on(&strokes[*i], pen.place()));
+            let touched = (0..strokes.len())
+                .rev()
+                .find(|i| !self.gone.contains(i) && is_on(&strokes[*i], pen.place()));
             self.gone.extend(touched);
         }
         if self.gone.is_empty() {
@@ -35,6 +37,7 @@ impl Gesture for EraseStrokesGesture {
         }
         self.without().map_or(Outcome::Idle, Outcome::Preview)
     }
+
     fn release(&mut self) -> Outcome {
         match self.without() {
             Some(document) if !self.gone.is_empty() => {
@@ -54,7 +57,11 @@ pub fn is_on(stroke: &Stroke, at: Vec2) -> bool {
     let samples = stroke.samples();
     let near = |a: Vec2, b: Vec2| {
         let along = b - a;
-        let t = if along.length_squared() > 0.0 { (at - a).dot(along) / along.length_squared() } else { 0.0 };
+        let t = if along.length_squared() > 0.0 {
+            (at - a).dot(along) / along.length_squared()
+        } else {
+            0.0
+        };
         at.distance(a + along * t.clamp(0.0, 1.0)) <= radius
     };
     match samples {

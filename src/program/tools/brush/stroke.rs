@@ -1,5 +1,5 @@
-//! A stroke between the pen coming down and lifting, and its mirror images: live on a stroke layer, pixels on a paint
-//! layer. Floor 5.
+//! A stroke between the pen coming down and lifting, and its mirror images: live on a stroke layer,
+//! pixels on a paint layer. Floor 5.
 
 use crate::document::{Content, Document, LayerId, Live, PixelLayer, StrokeList};
 use crate::paint::{Sample, Scene, StabilizedPen, Stroke};
@@ -41,7 +41,9 @@ impl StrokeGesture {
         // What files cannot hold is not drawn.
         samples.truncate(self.room.unwrap_or_default());
         self.room = self.room.map(|room| room - samples.len());
-        let of_image = |image: &SymmetryImage| samples.iter().map(|sample| image.sample(sample).settled()).collect();
+        let of_image = |image: &SymmetryImage| {
+            samples.iter().map(|sample| image.sample(sample).settled()).collect()
+        };
         let samples: Vec<Vec<Sample>> = self.images.iter().map(of_image).collect();
         let tiles = active.draw(&samples);
         if let StrokeTarget::Pixels { shown, .. } = &mut self.target {
@@ -49,11 +51,17 @@ impl StrokeGesture {
         }
         tiles
     }
+
     /// The document with the strokes, of which these tiles changed.
-    fn with(&mut self, strokes: Vec<Stroke>, tiles: Vec<(TileAt, Option<Arc<Tile>>)>) -> Option<Document> {
+    fn with(
+        &mut self,
+        strokes: Vec<Stroke>,
+        tiles: Vec<(TileAt, Option<Arc<Tile>>)>,
+    ) -> Option<Document> {
         let content = match &mut self.target {
             StrokeTarget::Strokes { beneath, shown } => {
-                let strokes = beneath.iter().cloned().chain(strokes.into_iter().map(Arc::new)).collect();
+                let strokes =
+                    beneath.iter().cloned().chain(strokes.into_iter().map(Arc::new)).collect();
                 *shown = shown.with_tiles(StrokeList { strokes }, &self.scene, tiles);
                 Content::Strokes(shown.clone())
             }
@@ -71,7 +79,9 @@ impl Gesture for StrokeGesture {
         match self.room {
             Some(0) => {
                 self.room = None;
-                return Outcome::Refused("A stroke can be no longer than this. Lift the pen to begin another.".into());
+                return Outcome::Refused(
+                    "A stroke can be no longer than this. Lift the pen to begin another.".into(),
+                );
             }
             None => return Outcome::Idle,
             Some(_) => {}
@@ -82,6 +92,7 @@ impl Gesture for StrokeGesture {
         let strokes = self.active.as_ref().map_or(Vec::new(), ActiveWork::strokes);
         self.with(strokes, tiles).map_or(Outcome::Idle, Outcome::Preview)
     }
+
     fn release(&mut self) -> Outcome {
         let rest = self.stabilized.finish().into_iter().collect();
         let tiles = self.draw(rest);
@@ -90,7 +101,9 @@ impl Gesture for StrokeGesture {
         if let StrokeTarget::Strokes { shown, .. } = &self.target {
             // Behind contours strokes are rendered once they are finished.
             let content = Content::Strokes(shown.settled());
-            document = document.with_layer(self.layer, |layer| layer.content = content).unwrap_or(document);
+            document = document
+                .with_layer(self.layer, |layer| layer.content = content)
+                .unwrap_or(document);
         }
         Outcome::Commit { label: self.label.into(), document, select: Some(self.layer) }
     }

@@ -6,10 +6,19 @@ use crate::surface::Operator;
 use crate::tools::{ModifierKeys, Symmetry};
 use std::sync::Arc;
 
-fn context<'a>(document: &'a Document, layer: Option<LayerId>, brush: &'a Brush) -> ToolContext<'a> {
+fn context<'a>(
+    document: &'a Document,
+    layer: Option<LayerId>,
+    brush: &'a Brush,
+) -> ToolContext<'a> {
     ToolContext { layer, ..ToolContext::new(document, brush) }
 }
-fn drawn(context: &ToolContext, purpose: StrokePurpose, points: &[Vec2]) -> (Document, Option<LayerId>) {
+
+fn drawn(
+    context: &ToolContext,
+    purpose: StrokePurpose,
+    points: &[Vec2],
+) -> (Document, Option<LayerId>) {
     let (gesture, _) = press(context, PenSample::at(points[0]), purpose);
     let mut gesture = gesture.unwrap();
     for &point in &points[1..] {
@@ -20,19 +29,27 @@ fn drawn(context: &ToolContext, purpose: StrokePurpose, points: &[Vec2]) -> (Doc
         _ => panic!("a stroke is kept"),
     }
 }
+
 fn paint_layer() -> Document {
     let pixels = PixelLayer { file: String::new(), x: 0, y: 0, tiles: TileGrid::default() };
     let layers = vec![Arc::new(Layer::new("Paint", Content::Pixels(pixels)))];
     Document { layers, ..Document::empty(Size::new(200, 150)) }
 }
+
 fn tiles(document: &Document) -> &TileGrid {
     match &document.layers[0].content {
         Content::Pixels(pixels) => &pixels.tiles,
         _ => panic!("a paint layer"),
     }
 }
-const LINE: [Vec2; 6] =
-    [vec2(20.0, 40.0), vec2(60.0, 52.0), vec2(100.0, 44.0), vec2(140.0, 80.0), vec2(150.0, 120.0), vec2(90.0, 130.0)];
+const LINE: [Vec2; 6] = [
+    vec2(20.0, 40.0),
+    vec2(60.0, 52.0),
+    vec2(100.0, 44.0),
+    vec2(140.0, 80.0),
+    vec2(150.0, 120.0),
+    vec2(90.0, 130.0),
+];
 
 #[test]
 fn the_first_stroke_makes_a_layer_to_hold_it() {
@@ -45,6 +62,7 @@ fn the_first_stroke_makes_a_layer_to_hold_it() {
     let (again, _) = drawn(&context(&document, select, &brush), StrokePurpose::Paint, &LINE);
     assert_eq!(again.layers.len(), 1, "the next one goes to the same layer");
 }
+
 #[test]
 fn pixels_painted_step_by_step_are_those_painted_at_once() {
     let (document, brush) = (paint_layer(), Brush { size: 30.0, ..Brush::default() });
@@ -58,6 +76,7 @@ fn pixels_painted_step_by_step_are_those_painted_at_once() {
         assert!(bytes == whole.map(|tile| tile.bytes().to_vec()), "{at:?}");
     }
 }
+
 #[test]
 fn erasing_takes_out_what_painting_put_in_and_locked_alpha_keeps_the_shape() {
     let brush = Brush { size: 30.0, hardness: 1.0, ..Brush::default() };
@@ -67,90 +86,150 @@ fn erasing_takes_out_what_painting_put_in_and_locked_alpha_keeps_the_shape() {
     assert_eq!(tiles(&painted).pixel(60, 52), [0, 0, 0, 255]);
     let (erased, _) = drawn(&context(&painted, id, &brush), StrokePurpose::Erase, &LINE);
     assert_eq!(tiles(&erased).pixel(60, 52), [0; 4]);
-    let locked = painted.with_layer(painted.layers[0].id, |layer| layer.lock = LayerLock::Alpha).unwrap();
+    let locked =
+        painted.with_layer(painted.layers[0].id, |layer| layer.lock = LayerLock::Alpha).unwrap();
     let wide = Brush { size: 90.0, ..brush };
     let white = ToolContext { color: Color::WHITE, ..context(&locked, id, &wide) };
     let (atop, _) = drawn(&white, StrokePurpose::Paint, &LINE);
     assert_eq!((tiles(&atop).pixel(60, 52), tiles(&atop).pixel(60, 90)), ([255; 4], [0; 4]));
 }
+
 #[test]
 fn a_locked_layer_takes_no_paint() {
     let (document, brush) = (paint_layer(), Brush::default());
     let id = document.layers[0].id;
     let locked = document.with_layer(id, |layer| layer.lock = LayerLock::All).unwrap();
-    assert!(press(&context(&locked, Some(id), &brush), PenSample::at(LINE[0]), StrokePurpose::Paint).0.is_none());
+    assert!(
+        press(&context(&locked, Some(id), &brush), PenSample::at(LINE[0]), StrokePurpose::Paint)
+            .0
+            .is_none()
+    );
 }
+
 #[test]
 fn the_eraser_with_ctrl_takes_whole_strokes_from_a_stroke_layer() {
-    let (empty, brush) = (Document::empty(Size::new(200, 150)), Brush { size: 8.0, ..Brush::default() });
-    let (one, id) = drawn(&context(&empty, None, &brush), StrokePurpose::Paint, &[vec2(10.0, 20.0), vec2(90.0, 20.0)]);
-    let (two, _) = drawn(&context(&one, id, &brush), StrokePurpose::Paint, &[vec2(10.0, 90.0), vec2(90.0, 90.0)]);
-    let ctrl =
-        PenSample { keys: ModifierKeys { ctrl: true, ..ModifierKeys::default() }, ..PenSample::at(vec2(50.0, 91.0)) };
+    let (empty, brush) =
+        (Document::empty(Size::new(200, 150)), Brush { size: 8.0, ..Brush::default() });
+    let (one, id) = drawn(
+        &context(&empty, None, &brush),
+        StrokePurpose::Paint,
+        &[vec2(10.0, 20.0), vec2(90.0, 20.0)],
+    );
+    let (two, _) = drawn(
+        &context(&one, id, &brush),
+        StrokePurpose::Paint,
+        &[vec2(10.0, 90.0), vec2(90.0, 90.0)],
+    );
+    let ctrl = PenSample {
+        keys: ModifierKeys { ctrl: true, ..ModifierKeys::default() },
+        ..PenSample::at(vec2(50.0, 91.0))
+    };
     let (gesture, _) = press(&context(&two, id, &brush), ctrl, StrokePurpose::Erase);
-    let Outcome::Commit { document: left, .. } = gesture.unwrap().release() else { panic!("one is gone") };
+    let Outcome::Commit { document: left, .. } = gesture.unwrap().release() else {
+        panic!("one is gone")
+    };
     let Content::Strokes(list) = &left.layers[0].content else { panic!("a stroke layer") };
     assert_eq!(list.params().strokes.len(), 1);
     assert_eq!(list.params().strokes[0].samples()[0].at.y, 20.0);
 }
+
 #[test]
 fn the_eraser_lays_a_stroke_that_takes_paint_away_where_there_are_strokes() {
-    let (empty, brush) = (Document::empty(Size::new(200, 150)), Brush { size: 8.0, ..Brush::default() });
-    let (one, id) = drawn(&context(&empty, None, &brush), StrokePurpose::Paint, &[vec2(10.0, 20.0), vec2(90.0, 20.0)]);
-    let (cut, _) = drawn(&context(&one, id, &brush), StrokePurpose::Erase, &[vec2(50.0, 5.0), vec2(50.0, 60.0)]);
+    let (empty, brush) =
+        (Document::empty(Size::new(200, 150)), Brush { size: 8.0, ..Brush::default() });
+    let (one, id) = drawn(
+        &context(&empty, None, &brush),
+        StrokePurpose::Paint,
+        &[vec2(10.0, 20.0), vec2(90.0, 20.0)],
+    );
+    let (cut, _) = drawn(
+        &context(&one, id, &brush),
+        StrokePurpose::Erase,
+        &[vec2(50.0, 5.0), vec2(50.0, 60.0)],
+    );
     let Content::Strokes(list) = &cut.layers[0].content else { panic!("a stroke layer") };
-    let erases: Vec<bool> = list.params().strokes.iter().map(|stroke| stroke.brush().erases).collect();
+    let erases: Vec<bool> =
+        list.params().strokes.iter().map(|stroke| stroke.brush().erases).collect();
     assert_eq!(erases, [false, true]);
-    let (none, id) = (one.with_layer(one.layers[0].id, |layer| layer.content = blank()).unwrap(), id.unwrap());
-    assert!(press(&context(&none, Some(id), &brush), PenSample::at(LINE[0]), StrokePurpose::Erase).0.is_none());
+    let (none, id) =
+        (one.with_layer(one.layers[0].id, |layer| layer.content = blank()).unwrap(), id.unwrap());
+    assert!(
+        press(&context(&none, Some(id), &brush), PenSample::at(LINE[0]), StrokePurpose::Erase)
+            .0
+            .is_none()
+    );
 }
+
 fn blank() -> Content {
     Content::Strokes(Live::new(StrokeList::default()))
 }
+
 #[test]
 fn mirror_images_are_strokes_of_their_own() {
     let empty = Document::empty(Size::new(200, 150));
     let brush = Brush { size: 8.0, hardness: 1.0, ..Brush::default() };
     let plain = context(&empty, None, &brush);
     let mirrored = ToolContext { symmetry: Symmetry::Vertical, ..plain };
-    let (document, _) = drawn(&mirrored, StrokePurpose::Paint, &[vec2(20.0, 40.0), vec2(60.0, 90.0)]);
+    let (document, _) =
+        drawn(&mirrored, StrokePurpose::Paint, &[vec2(20.0, 40.0), vec2(60.0, 90.0)]);
     let Content::Strokes(list) = &document.layers[0].content else { panic!("a stroke layer") };
-    let ends: Vec<Vec2> = list.params().strokes.iter().map(|stroke| stroke.samples()[1].at).collect();
+    let ends: Vec<Vec2> =
+        list.params().strokes.iter().map(|stroke| stroke.samples()[1].at).collect();
     assert_eq!(ends, [vec2(60.0, 90.0), vec2(140.0, 90.0)]);
     let on_paint = ToolContext { document: &paint_layer(), layer: None, ..mirrored };
     let id = on_paint.document.layers[0].id;
-    let (painted, _) = drawn(&ToolContext { layer: Some(id), ..on_paint }, StrokePurpose::Paint, &[vec2(20.0, 40.0)]);
+    let (painted, _) = drawn(
+        &ToolContext { layer: Some(id), ..on_paint },
+        StrokePurpose::Paint,
+        &[vec2(20.0, 40.0)],
+    );
     assert_eq!((tiles(&painted).pixel(20, 40)[3], tiles(&painted).pixel(179, 40)[3]), (255, 255));
 }
+
 #[test]
 fn a_calmed_line_is_finished_when_the_pen_lifts() {
     let empty = Document::empty(Size::new(200, 150));
-    let brush = Brush { size: 8.0, stabilizer: Stabilizer::String { length_px: 40.0 }, ..Brush::default() };
-    let (document, _) =
-        drawn(&context(&empty, None, &brush), StrokePurpose::Paint, &[vec2(20.0, 40.0), vec2(120.0, 40.0)]);
+    let brush =
+        Brush { size: 8.0, stabilizer: Stabilizer::String { length_px: 40.0 }, ..Brush::default() };
+    let (document, _) = drawn(
+        &context(&empty, None, &brush),
+        StrokePurpose::Paint,
+        &[vec2(20.0, 40.0), vec2(120.0, 40.0)],
+    );
     let Content::Strokes(list) = &document.layers[0].content else { panic!("a stroke layer") };
     let places: Vec<f32> = list.params().strokes[0].samples().iter().map(|s| s.at.x).collect();
     assert_eq!(places, [20.0, 80.0, 120.0]);
 }
+
 #[test]
 fn an_erasing_brush_takes_nothing_from_paint_whose_alpha_is_locked() {
     let brush = Brush { size: 30.0, hardness: 1.0, ..Brush::default() };
     let document = paint_layer();
     let id = Some(document.layers[0].id);
     let (painted, _) = drawn(&context(&document, id, &brush), StrokePurpose::Paint, &LINE);
-    let locked = painted.with_layer(painted.layers[0].id, |layer| layer.lock = LayerLock::Alpha).unwrap();
+    let locked =
+        painted.with_layer(painted.layers[0].id, |layer| layer.lock = LayerLock::Alpha).unwrap();
     let (erased, _) = drawn(&context(&locked, id, &brush), StrokePurpose::Erase, &LINE);
     assert_eq!(tiles(&erased).pixel(60, 52), [0, 0, 0, 255]);
 }
+
 #[test]
 fn what_is_redrawn_while_drawing_does_not_grow_with_the_stroke() {
     use crate::document::diff::diff;
-    let (empty, brush) = (Document::empty(Size::new(2000, 500)), Brush { size: 20.0, ..Brush::default() });
-    let (gesture, first) =
-        press(&context(&empty, None, &brush), PenSample::at(vec2(20.0, 100.0)), StrokePurpose::Paint);
-    let (mut gesture, Outcome::Preview(mut before)) = (gesture.unwrap(), first) else { panic!("it shows") };
+    let (empty, brush) =
+        (Document::empty(Size::new(2000, 500)), Brush { size: 20.0, ..Brush::default() });
+    let (gesture, first) = press(
+        &context(&empty, None, &brush),
+        PenSample::at(vec2(20.0, 100.0)),
+        StrokePurpose::Paint,
+    );
+    let (mut gesture, Outcome::Preview(mut before)) = (gesture.unwrap(), first) else {
+        panic!("it shows")
+    };
     for i in 1..90 {
-        let Outcome::Preview(next) = gesture.drag(&[PenSample::at(vec2(20.0 + 20.0 * i as f32, 100.0))]) else {
+        let Outcome::Preview(next) =
+            gesture.drag(&[PenSample::at(vec2(20.0 + 20.0 * i as f32, 100.0))])
+        else {
             panic!("it shows")
         };
         let redrawn = diff(&before, &next).len();

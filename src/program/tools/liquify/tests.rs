@@ -15,7 +15,8 @@ fn document() -> Document {
             rgba.extend([(x * 7 % 256) as u8, (y * 5 % 256) as u8, ((x ^ y) % 256) as u8, 255]);
         }
     }
-    let tiles = TileGrid::from_straight_rgba(&rgba, SIZE.width as usize, SIZE.height as usize, 0, 0);
+    let tiles =
+        TileGrid::from_straight_rgba(&rgba, SIZE.width as usize, SIZE.height as usize, 0, 0);
     let paint = Layer::new("paint", Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }));
     Document { layers: vec![Arc::new(paint)], ..Document::empty(SIZE) }
 }
@@ -46,7 +47,9 @@ fn bytes(document: &Document) -> Vec<[u8; 4]> {
 #[test]
 fn a_push_takes_pixels_along_and_leaves_all_far_from_it() {
     let before = document();
-    let after = stroke(&before, settings(LiquifyTool::Push), &[vec2(100.0, 100.0), vec2(116.0, 100.0)]).unwrap();
+    let after =
+        stroke(&before, settings(LiquifyTool::Push), &[vec2(100.0, 100.0), vec2(116.0, 100.0)])
+            .unwrap();
     let (old, new) = (bytes(&before), bytes(&after));
     let at = |x: usize, y: usize| y * SIZE.width as usize + x;
     assert_ne!(old[at(110, 100)], new[at(110, 100)]);
@@ -62,7 +65,9 @@ fn a_push_takes_pixels_along_and_leaves_all_far_from_it() {
 #[test]
 fn what_is_pushed_and_restored_has_its_bytes_again() {
     let before = document();
-    let pushed = stroke(&before, settings(LiquifyTool::Push), &[vec2(100.0, 100.0), vec2(130.0, 90.0)]).unwrap();
+    let pushed =
+        stroke(&before, settings(LiquifyTool::Push), &[vec2(100.0, 100.0), vec2(130.0, 90.0)])
+            .unwrap();
     let restore = LiquifySettings { size: 600.0, ..settings(LiquifyTool::Restore) };
     let mut now = pushed.clone();
     for _ in 0..20 {
@@ -75,10 +80,14 @@ fn what_is_pushed_and_restored_has_its_bytes_again() {
 #[test]
 fn a_group_is_displaced_as_paint_is_and_looks_alike_baked() {
     let before = document();
-    let group = Layer::new("group", Content::Group(Group { layers: before.layers.clone(), pass_through: true }));
+    let group = Layer::new(
+        "group",
+        Content::Group(Group { layers: before.layers.clone(), pass_through: true }),
+    );
     let grouped = Document { layers: vec![Arc::new(group)], ..before.clone() };
     let way = [vec2(100.0, 100.0), vec2(120.0, 110.0)];
-    let [a, b] = [&before, &grouped].map(|document| stroke(document, settings(LiquifyTool::Push), &way).unwrap());
+    let [a, b] = [&before, &grouped]
+        .map(|document| stroke(document, settings(LiquifyTool::Push), &way).unwrap());
     assert!(bytes(&a) == bytes(&b), "both are sampled once, from the same pixels");
     let applied = a.with_transform_applied(a.layers[0].id).unwrap();
     assert!(applied.layers[0].liquify.is_none() && bytes(&applied) == bytes(&a));
@@ -89,7 +98,9 @@ fn what_is_not_selected_stays_as_it_was() {
     let mut before = document();
     let half = CoverageGrid::filled(Rect::new(0, 0, 96, SIZE.height as i32));
     before.active_selection = Some(Arc::new(crate::paint::Selection::new(half)));
-    let after = stroke(&before, settings(LiquifyTool::Grow), &[vec2(100.0, 96.0), vec2(110.0, 96.0)]).unwrap();
+    let after =
+        stroke(&before, settings(LiquifyTool::Grow), &[vec2(100.0, 96.0), vec2(110.0, 96.0)])
+            .unwrap();
     let (old, new) = (bytes(&before), bytes(&after));
     let at = |x: usize, y: usize| y * SIZE.width as usize + x;
     assert_ne!(old[at(86, 90)], new[at(86, 90)]);
@@ -102,30 +113,44 @@ fn what_cannot_be_displaced_says_why() {
     let brush = Brush::default();
     let fill = Layer::new("fill", Content::Fill(Color::BLACK));
     let document = Document { layers: vec![Arc::new(fill)], ..Document::empty(SIZE) };
-    let context = ToolContext { layer: Some(document.layers[0].id), ..ToolContext::new(&document, &brush) };
+    let context =
+        ToolContext { layer: Some(document.layers[0].id), ..ToolContext::new(&document, &brush) };
     let pen = PenSample { keys: ModifierKeys::default(), ..PenSample::at(vec2(9.0, 9.0)) };
     assert!(matches!(press(&context, pen).1, Outcome::Refused(why) if why.contains("one colour")));
     let nothing = ToolContext { layer: None, ..context };
-    assert!(matches!(press(&nothing, pen).1, Outcome::Refused(why) if why.contains("Choose a layer")));
+    assert!(
+        matches!(press(&nothing, pen).1, Outcome::Refused(why) if why.contains("Choose a layer"))
+    );
 }
+
 #[test]
 fn a_stroke_and_its_mirror_image_displace_alike() {
     let (document, brush) = (document(), Brush::default());
     let layer = Some(document.layers[0].id);
     for tool in [LiquifyTool::Push, LiquifyTool::Grow, LiquifyTool::TwirlLeft] {
         let liquify = settings(tool);
-        let context =
-            ToolContext { layer, liquify, symmetry: Symmetry::Vertical, ..ToolContext::new(&document, &brush) };
+        let context = ToolContext {
+            layer,
+            liquify,
+            symmetry: Symmetry::Vertical,
+            ..ToolContext::new(&document, &brush)
+        };
         let (gesture, _) = press(&context, PenSample::at(vec2(60.0, 100.0)));
         let mut gesture = gesture.unwrap();
         gesture.drag(&[PenSample::at(vec2(70.0, 92.0))]);
         let Outcome::Commit { document, .. } = gesture.release() else { panic!("{tool:?}") };
         let lattice = document.layers[0].liquify.clone().unwrap();
         let mut most = 0f32;
-        for (x, y) in (0..128).step_by(5).flat_map(|x| (40..160).step_by(5).map(move |y| (x as f32, y as f32))) {
+        for (x, y) in (0..128)
+            .step_by(5)
+            .flat_map(|x| (40..160).step_by(5).map(move |y| (x as f32, y as f32)))
+        {
             let (left, right) = (lattice.at(vec2(x, y)).by, lattice.at(vec2(256.0 - x, y)).by);
             most = most.max(left.length());
-            assert!((left * vec2(-1.0, 1.0) - right).length() < 0.1, "{tool:?} at {x} {y}: {left} {right}");
+            assert!(
+                (left * vec2(-1.0, 1.0) - right).length() < 0.1,
+                "{tool:?} at {x} {y}: {left} {right}"
+            );
         }
         assert!(most > 1.0, "{tool:?} {most}");
     }

@@ -1,5 +1,6 @@
-//! The lasso, free and of straight sides in one: a drag draws freely and closes when the pen lifts, a click sets a
-//! corner, after which clicks and drags continue until the first corner is clicked, or Enter is pressed. Floor 5.
+//! The lasso, free and of straight sides in one: a drag draws freely and closes when the pen lifts,
+//! a click sets a corner, after which clicks and drags continue until the first corner is clicked,
+//! or Enter is pressed. Floor 5.
 
 use super::{SLOP_PT, combined, step};
 use crate::document::Document;
@@ -22,8 +23,15 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let is_begun = !points.is_empty();
     points.push(at);
     let slop_px = SLOP_PT * context.px_per_pt;
-    let gesture =
-        LassoGesture { document: context.document.clone(), how, points, at, slop_px, is_begun, is_free: false };
+    let gesture = LassoGesture {
+        document: context.document.clone(),
+        how,
+        points,
+        at,
+        slop_px,
+        is_begun,
+        is_free: false,
+    };
     (Some(Box::new(gesture)), Outcome::Idle)
 }
 
@@ -52,12 +60,14 @@ impl Gesture for LassoGesture {
             return Outcome::Idle;
         }
         let room = MOST_CORNERS.saturating_sub(self.points.len());
-        self.points.extend(pens.iter().map(PenSample::place).filter(|at| at.is_finite()).take(room));
+        self.points
+            .extend(pens.iter().map(PenSample::place).filter(|at| at.is_finite()).take(room));
         match self.is_begun {
             true => Outcome::Lasso(self.points.clone()),
             false => Outcome::Preview(selected(&self.document, &self.points, self.how)),
         }
     }
+
     fn release(&mut self) -> Outcome {
         if self.is_free && !self.is_begun {
             return step(selected(&self.document, &self.points, self.how));

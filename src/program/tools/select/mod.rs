@@ -1,6 +1,7 @@
-//! The selection tools: rectangle, ellipse, lasso, wand, and the wand of the surface. Each shows its selection while
-//! the pen moves and keeps it when it lifts. Floor 5. Not here: what selections are (`paint::selection`), combining
-//! them (`document::selections`), commands on the present selection (`session::actions::selection`).
+//! The selection tools: rectangle, ellipse, lasso, wand, and the wand of the surface. Each shows
+//! its selection while the pen moves and keeps it when it lifts. Floor 5. Not here: what selections
+//! are (`paint::selection`), combining them (`document::selections`), commands on the present
+//! selection (`session::actions::selection`).
 
 mod lasso;
 mod shapes;
@@ -23,7 +24,9 @@ const SLOP_PT: f32 = 3.0;
 /// The pen comes down with one of the selection tools.
 pub fn press(kind: ToolKind, context: &ToolContext, pen: PenSample) -> GestureStart {
     match kind {
-        ToolKind::SelectRectangle | ToolKind::SelectEllipse if moves(context, pen) => shapes::moving(context, pen),
+        ToolKind::SelectRectangle | ToolKind::SelectEllipse if moves(context, pen) => {
+            shapes::moving(context, pen)
+        }
         ToolKind::SelectRectangle => shapes::press(context, pen, shapes::SelectionShape::Rectangle),
         ToolKind::SelectEllipse => shapes::press(context, pen, shapes::SelectionShape::Ellipse),
         ToolKind::Lasso => lasso::press(context, pen),

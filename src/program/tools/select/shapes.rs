@@ -1,4 +1,5 @@
-//! Rectangles and ellipses dragged from corner to corner, and the outline of a selection moved. Floor 5.
+//! Rectangles and ellipses dragged from corner to corner, and the outline of a selection moved.
+//! Floor 5.
 
 use super::{SLOP_PT, begin, combined, step};
 use crate::document::Document;
@@ -20,7 +21,10 @@ pub fn press(context: &ToolContext, pen: PenSample, shape: SelectionShape) -> Ge
     let slop_px = SLOP_PT * context.px_per_pt;
     let (snap, lines) = (context.snap.clone(), SnapLines::default());
     let from = snap.point(pen.place()).at;
-    (Some(Box::new(ShapeGesture { document, shape, how, from, to: from, slop_px, snap, lines })), Outcome::Idle)
+    (
+        Some(Box::new(ShapeGesture { document, shape, how, from, to: from, slop_px, snap, lines })),
+        Outcome::Idle,
+    )
 }
 
 struct ShapeGesture {
@@ -39,11 +43,14 @@ impl ShapeGesture {
     fn is_drawn(&self) -> bool {
         (self.to - self.from).abs().max_element() > self.slop_px
     }
+
     fn with(&self) -> Document {
         let canvas = self.document.size.rect();
         let coverage = match self.shape {
             // Along whole pixels, as shown.
-            SelectionShape::Rectangle => shapes::rectangle(self.from.round(), self.to.round(), canvas),
+            SelectionShape::Rectangle => {
+                shapes::rectangle(self.from.round(), self.to.round(), canvas)
+            }
             SelectionShape::Ellipse => shapes::ellipse(self.from, self.to, canvas),
         };
         combined(&self.document, Selection::new(coverage), self.how)
@@ -61,18 +68,22 @@ impl Gesture for ShapeGesture {
         self.to = self.from + if pen.keys.ctrl { even } else { by };
         if self.is_drawn() { Outcome::Preview(self.with()) } else { Outcome::Idle }
     }
+
     fn release(&mut self) -> Outcome {
         if self.is_drawn() {
             return step(self.with());
         }
         // A click outside the selection drops it, which can be undone.
         match self.how == SelectionMode::Replace && self.document.active_selection.is_some() {
-            true => {
-                Outcome::Commit { label: "Deselect".into(), document: self.document.with_selection(None), select: None }
-            }
+            true => Outcome::Commit {
+                label: "Deselect".into(),
+                document: self.document.with_selection(None),
+                select: None,
+            },
             false => Outcome::Cancel,
         }
     }
+
     fn snap_lines(&self) -> SnapLines {
         self.lines
     }
@@ -81,7 +92,16 @@ impl Gesture for ShapeGesture {
 /// Grabs the selection; its pixels stay.
 pub fn moving(context: &ToolContext, pen: PenSample) -> GestureStart {
     let (snap, lines) = (context.snap.clone(), SnapLines::default());
-    begin(MoveOutline { document: context.document.clone(), from: pen.place(), by: Vec2::ZERO, snap, lines }, pen)
+    begin(
+        MoveOutline {
+            document: context.document.clone(),
+            from: pen.place(),
+            by: Vec2::ZERO,
+            snap,
+            lines,
+        },
+        pen,
+    )
 }
 
 struct MoveOutline {
@@ -112,12 +132,16 @@ impl Gesture for MoveOutline {
         self.by = Vec2::new(by(moved.x), by(moved.y));
         self.with().filter(|_| self.by != Vec2::ZERO).map_or(Outcome::Idle, Outcome::Preview)
     }
+
     fn release(&mut self) -> Outcome {
         match self.with().filter(|_| self.by != Vec2::ZERO) {
-            Some(document) => Outcome::Commit { label: "Move selection".into(), document, select: None },
+            Some(document) => {
+                Outcome::Commit { label: "Move selection".into(), document, select: None }
+            }
             None => Outcome::Cancel,
         }
     }
+
     fn snap_lines(&self) -> SnapLines {
         self.lines
     }

@@ -1,6 +1,6 @@
-//! The surface wand: all that faces the same way as the point under the pen, lies as deep, bends as it does, belongs to
-//! its object, would shine with it, or flows along it; a drag to the right or the left changes the tolerance. Floor 5.
-//! Not here: finding it (`surface::region`).
+//! The surface wand: all that faces the same way as the point under the pen, lies as deep, bends as
+//! it does, belongs to its object, would shine with it, or flows along it; a drag to the right or
+//! the left changes the tolerance. Floor 5. Not here: finding it (`surface::region`).
 
 use super::{combined, dragged};
 use crate::document::Document;
@@ -14,12 +14,20 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let Some(surface) = &context.document.surface else {
         return (
             None,
-            Outcome::Refused("There is no surface here to select by. File › New… opens one from its maps.".into()),
+            Outcome::Refused(
+                "There is no surface here to select by. File › New… opens one from its maps."
+                    .into(),
+            ),
         );
     };
     let told = SurfaceRegion { at: pen.place(), ..context.select.region };
     let Some(field) = RegionField::new(surface, told.kind, told.at) else {
-        return (None, Outcome::Refused("Click on the surface: outside it there is nothing to select by.".into()));
+        return (
+            None,
+            Outcome::Refused(
+                "Click on the surface: outside it there is nothing to select by.".into(),
+            ),
+        );
     };
     let mut gesture = RegionGesture {
         document: context.document.clone(),
@@ -51,7 +59,11 @@ impl RegionGesture {
     fn outcome(&self, is_done: bool) -> Outcome {
         let selection = Selection::carried(self.field.region(&self.told), Some(self.told));
         let document = combined(&self.document, selection, self.how);
-        Outcome::Tuned { document, select: SelectSettings { region: self.told, ..self.settings }, is_done }
+        Outcome::Tuned {
+            document,
+            select: SelectSettings { region: self.told, ..self.settings },
+            is_done,
+        }
     }
 }
 
@@ -63,6 +75,7 @@ impl Gesture for RegionGesture {
         self.told.tolerance = dragged(self.begun.tolerance, by_px, self.px_per_pt, &range);
         self.outcome(false)
     }
+
     fn release(&mut self) -> Outcome {
         self.outcome(true)
     }

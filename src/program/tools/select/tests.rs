@@ -9,14 +9,17 @@ use std::sync::Arc;
 
 const SIZE: Size = Size::new(200, 130);
 
-/// Bands of grey that get lighter from left to right, 20 px wide; the sixth is separate from the rest.
+/// Bands of grey that get lighter from left to right, 20 px wide; the sixth is separate from the
+/// rest.
 fn bands() -> Document {
     let grey = |x: usize| (x / 20 * 20) as u8;
-    let rgba: Vec<u8> = (0..200 * 130).flat_map(|i| [grey(i % 200), grey(i % 200), 0, 255]).collect();
+    let rgba: Vec<u8> =
+        (0..200 * 130).flat_map(|i| [grey(i % 200), grey(i % 200), 0, 255]).collect();
     let tiles = TileGrid::from_straight_rgba(&rgba, 200, 130, 0, 0);
     let layer = Layer::new("bands", Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }));
     Document { layers: vec![Arc::new(layer)], ..Document::empty(SIZE) }
 }
+
 /// Drags a tool; returns the resulting document and settings.
 fn dragged_with(
     kind: ToolKind,
@@ -37,9 +40,16 @@ fn dragged_with(
         _ => (None, select),
     }
 }
-fn drawn(kind: ToolKind, document: &Document, keys: ModifierKeys, points: &[Vec2]) -> Option<Document> {
+
+fn drawn(
+    kind: ToolKind,
+    document: &Document,
+    keys: ModifierKeys,
+    points: &[Vec2],
+) -> Option<Document> {
     dragged_with(kind, document, SelectSettings::default(), keys, points).0
 }
+
 fn covered(document: &Document) -> Rect {
     document.selected().map_or(Rect::EMPTY, CoverageGrid::covered)
 }
@@ -52,7 +62,9 @@ fn a_rectangle_is_dragged_along_whole_pixels_and_keys_say_how_it_meets_the_last(
     assert_eq!(covered(&one), Rect::new(20, 30, 81, 90));
     let next = [vec2(60.0, 10.0), vec2(120.0, 60.0)];
     let with = |shift, alt| {
-        let found = drawn(ToolKind::SelectRectangle, &one, ModifierKeys { shift, alt, ctrl: false }, &next).unwrap();
+        let found =
+            drawn(ToolKind::SelectRectangle, &one, ModifierKeys { shift, alt, ctrl: false }, &next)
+                .unwrap();
         let grid = found.selected().unwrap().clone();
         [(30, 70), (70, 40), (100, 20)].map(|(x, y)| grid.at(x, y) == 255)
     };
@@ -61,10 +73,14 @@ fn a_rectangle_is_dragged_along_whole_pixels_and_keys_say_how_it_meets_the_last(
     assert_eq!(with(false, true), [true, false, false]);
     assert_eq!(with(true, true), [false, true, false]);
 }
+
 #[test]
 fn a_drag_within_the_selection_moves_it_and_a_click_beside_it_lets_go() {
-    let one = drawn(ToolKind::SelectRectangle, &bands(), NONE, &[vec2(20.0, 30.0), vec2(80.0, 90.0)]).unwrap();
-    let moved = drawn(ToolKind::SelectRectangle, &one, NONE, &[vec2(50.0, 50.0), vec2(75.4, 39.6)]).unwrap();
+    let one =
+        drawn(ToolKind::SelectRectangle, &bands(), NONE, &[vec2(20.0, 30.0), vec2(80.0, 90.0)])
+            .unwrap();
+    let moved = drawn(ToolKind::SelectRectangle, &one, NONE, &[vec2(50.0, 50.0), vec2(75.4, 39.6)])
+        .unwrap();
     assert_eq!(covered(&moved), Rect::new(45, 20, 105, 80));
     let all = bands().with_selection(Some(Selection::new(CoverageGrid::filled(SIZE.rect()))));
     let drag = [vec2(50.0, 50.0), vec2(75.0, 90.0)];
@@ -73,14 +89,19 @@ fn a_drag_within_the_selection_moves_it_and_a_click_beside_it_lets_go() {
     let click = [vec2(150.0, 100.0), vec2(151.0, 100.0)];
     assert!(drawn(ToolKind::SelectRectangle, &one, NONE, &click).unwrap().selected().is_none());
     let shift = ModifierKeys { shift: true, ..NONE };
-    assert!(drawn(ToolKind::SelectRectangle, &one, shift, &click).is_none(), "adding nothing is no step");
+    assert!(
+        drawn(ToolKind::SelectRectangle, &one, shift, &click).is_none(),
+        "adding nothing is no step"
+    );
 }
+
 #[test]
 fn a_lasso_drawn_freely_closes_when_the_pen_lifts() {
     let points = [vec2(20.0, 20.0), vec2(120.0, 20.0), vec2(120.0, 100.0), vec2(20.0, 100.0)];
     let found = drawn(ToolKind::Lasso, &Document::empty(SIZE), NONE, &points).unwrap();
     assert_eq!(covered(&found), Rect::new(20, 20, 120, 100));
 }
+
 #[test]
 fn a_lasso_of_clicks_goes_on_until_its_first_corner_is_clicked() {
     let (document, brush) = (Document::empty(SIZE), Brush::default());
@@ -93,35 +114,49 @@ fn a_lasso_of_clicks_goes_on_until_its_first_corner_is_clicked() {
     }
     assert_eq!(corners.len(), 3);
     let context = ToolContext { lasso: &corners, ..ToolContext::new(&document, &brush) };
-    let Outcome::Commit { document: found, .. } = press(ToolKind::Lasso, &context, PenSample::at(vec2(22.0, 23.0))).1
+    let Outcome::Commit { document: found, .. } =
+        press(ToolKind::Lasso, &context, PenSample::at(vec2(22.0, 23.0))).1
     else {
         panic!("it is closed")
     };
     assert_eq!(covered(&found), Rect::new(20, 20, 120, 100));
     assert!(closed(&document, &corners[..2], &SelectSettings::default()).is_none());
 }
+
 #[test]
 fn the_wand_selects_what_is_like_a_pixel_and_a_drag_changes_how_like() {
     let document = bands();
     let at = vec2(45.0, 60.0);
     let found = drawn(ToolKind::Wand, &document, NONE, &[at]).unwrap();
-    assert_eq!(covered(&found), Rect::new(20, 0, 80, 130), "a tolerance of 25 bytes takes one more on each side");
+    assert_eq!(
+        covered(&found),
+        Rect::new(20, 0, 80, 130),
+        "a tolerance of 25 bytes takes one more on each side"
+    );
     // 50 of 500 points: a tenth more.
-    let (wider, settings) = dragged_with(ToolKind::Wand, &document, SelectSettings::default(), NONE, &[at, at + 50.0]);
+    let (wider, settings) =
+        dragged_with(ToolKind::Wand, &document, SelectSettings::default(), NONE, &[at, at + 50.0]);
     assert_eq!(covered(&wider.unwrap()), Rect::new(0, 0, 100, 130));
     assert!((settings.wand.tolerance - 0.2).abs() < 1e-6, "it stays for the next one");
     let everywhere = SelectSettings { joined: false, ..SelectSettings::default() };
-    let striped = drawn(ToolKind::SelectRectangle, &document, NONE, &[vec2(0.0, 0.0), vec2(9.0, 9.0)]).unwrap();
+    let striped =
+        drawn(ToolKind::SelectRectangle, &document, NONE, &[vec2(0.0, 0.0), vec2(9.0, 9.0)])
+            .unwrap();
     let (all, _) = dragged_with(ToolKind::Wand, &striped, everywhere, NONE, &[at]);
     assert_eq!(covered(&all.unwrap()), Rect::new(20, 0, 80, 130));
 }
+
 #[test]
 fn the_surface_wand_keeps_what_it_was_told_and_says_why_it_cannot() {
-    let normals = Plane::from_fn(SIZE, |x, _| Vec3::new(if x < 100 { -0.6 } else { 0.6 }, 0.0, 0.8));
-    let maps = Maps { normals, depth: Plane::filled(SIZE, 0.5), coverage: Plane::filled(SIZE, 255) };
-    let roof = Document { surface: Some(Arc::new(Surface::new(maps).unwrap())), ..Document::empty(SIZE) };
+    let normals =
+        Plane::from_fn(SIZE, |x, _| Vec3::new(if x < 100 { -0.6 } else { 0.6 }, 0.0, 0.8));
+    let maps =
+        Maps { normals, depth: Plane::filled(SIZE, 0.5), coverage: Plane::filled(SIZE, 255) };
+    let roof =
+        Document { surface: Some(Arc::new(Surface::new(maps).unwrap())), ..Document::empty(SIZE) };
     let points = [vec2(30.5, 40.5), vec2(55.5, 40.5)];
-    let (found, settings) = dragged_with(ToolKind::SurfaceWand, &roof, SelectSettings::default(), NONE, &points);
+    let (found, settings) =
+        dragged_with(ToolKind::SurfaceWand, &roof, SelectSettings::default(), NONE, &points);
     let found = found.unwrap();
     assert_eq!(covered(&found), Rect::new(0, 0, 100, 130));
     let told = found.active_selection.as_ref().unwrap().made.unwrap();
@@ -138,6 +173,7 @@ fn the_surface_wand_keeps_what_it_was_told_and_says_why_it_cannot() {
     assert!(added.active_selection.as_ref().unwrap().made.is_none(), "two regions are no region");
     assert_eq!(covered(&added), SIZE.rect());
     let (empty, brush) = (Document::empty(SIZE), Brush::default());
-    let said = press(ToolKind::SurfaceWand, &ToolContext::new(&empty, &brush), PenSample::at(points[0])).1;
+    let said =
+        press(ToolKind::SurfaceWand, &ToolContext::new(&empty, &brush), PenSample::at(points[0])).1;
     assert!(matches!(said, Outcome::Refused(why) if why.contains("no surface")));
 }

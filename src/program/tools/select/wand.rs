@@ -1,5 +1,6 @@
-//! The wand: all pixels of a colour like the one under the pen, joined to it or everywhere; a drag to the right or the
-//! left changes the tolerance. Floor 5. Not here: finding the region (`paint::fill`).
+//! The wand: all pixels of a colour like the one under the pen, joined to it or everywhere; a drag
+//! to the right or the left changes the tolerance. Floor 5. Not here: finding the region
+//! (`paint::fill`).
 
 use super::{combined, dragged};
 use crate::document::{Content, Document, PreparedDocument, Progress};
@@ -17,7 +18,9 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     if !pen.place().is_finite() || !document.size.rect().contains(at.x, at.y) {
         return (
             None,
-            Outcome::Refused("Click on the canvas: the wand selects what is like the pixel you click.".into()),
+            Outcome::Refused(
+                "Click on the canvas: the wand selects what is like the pixel you click.".into(),
+            ),
         );
     }
     let picture = match layer_alone(context) {
@@ -61,6 +64,7 @@ impl WandSource {
         let columns = TileAt::of_pixel(canvas.x1 - 1, 0).col + 1;
         Self::Whole { prepared: Box::new(prepared), columns, tiles }
     }
+
     fn tile(&self, at: TileAt) -> Option<Arc<Tile>> {
         match self {
             WandSource::Layer(tiles) => tiles.tile(at).cloned(),
@@ -99,9 +103,14 @@ impl WandGesture {
         self.shown = Some((tolerance, document.clone()));
         Some(document)
     }
+
     fn outcome(&mut self, is_done: bool) -> Outcome {
         let select = self.settings;
-        self.found().map_or(Outcome::Cancel, |document| Outcome::Tuned { document, select, is_done })
+        self.found().map_or(Outcome::Cancel, |document| Outcome::Tuned {
+            document,
+            select,
+            is_done,
+        })
     }
 }
 
@@ -110,9 +119,11 @@ impl Gesture for WandGesture {
         let Some(pen) = pens.last() else { return Outcome::Idle };
         let by_px = pen.place().x - self.from.x;
         let range = SelectSettings::TOLERANCE;
-        self.settings.wand.tolerance = dragged(self.begun.wand.tolerance, by_px, self.px_per_pt, &range);
+        self.settings.wand.tolerance =
+            dragged(self.begun.wand.tolerance, by_px, self.px_per_pt, &range);
         self.outcome(false)
     }
+
     fn release(&mut self) -> Outcome {
         self.outcome(true)
     }

@@ -1,5 +1,5 @@
-//! Tools of the shape: `part` moves its parts, `touch` and `sculpt` change them by hand. Here: the list of parts after
-//! their edits. Floor 5. Not here: what parts are (`document::parts`).
+//! Tools of the shape: `part` moves its parts, `touch` and `sculpt` change them by hand. Here: the
+//! list of parts after their edits. Floor 5. Not here: what parts are (`document::parts`).
 
 pub mod part;
 pub mod sculpt;
@@ -14,7 +14,8 @@ pub fn with_new(document: &Document, part: Part) -> Document {
     document.with_parts(list_with_new(document, part))
 }
 
-/// With a part that the user drags, new or not: its shape is made later or, at the end of the drag, at once.
+/// With a part that the user drags, new or not: its shape is made later or, at the end of the drag,
+/// at once.
 fn with_worked(document: &Document, part: &Part, is_new: bool, is_done: bool) -> Document {
     match (is_new, is_done) {
         (true, true) => with_new(document, part.clone()),
@@ -26,14 +27,19 @@ fn with_worked(document: &Document, part: &Part, is_new: bool, is_done: bool) ->
 
 fn list_with_new(document: &Document, part: Part) -> Vec<Arc<Part>> {
     let mut list = document.parts.list.clone();
-    let beside = part.on().and_then(|on| list.iter().rposition(|other| other.id == on || other.on() == Some(on)));
+    let beside = part
+        .on()
+        .and_then(|on| list.iter().rposition(|other| other.id == on || other.on() == Some(on)));
     list.insert(beside.map_or(list.len(), |at| at + 1), Arc::new(part));
     list
 }
 
 /// An id that no part of a document has: `part-1`, `part-2`, …
 pub fn free_id(document: &Document) -> String {
-    (1..).map(|i| format!("part-{i}")).find(|id| document.parts.part(id).is_none()).unwrap_or_default()
+    (1..)
+        .map(|i| format!("part-{i}"))
+        .find(|id| document.parts.part(id).is_none())
+        .unwrap_or_default()
 }
 
 /// A linear map about a point.

@@ -1,5 +1,5 @@
-//! The shape tool: the part under the pen is chosen and moved; handles around the chosen one scale, turn, puff and tilt
-//! it. Floor 5. Not here: numbers without a handle (the panel).
+//! The shape tool: the part under the pen is chosen and moved; handles around the chosen one scale,
+//! turn, puff and tilt it. Floor 5. Not here: numbers without a handle (the panel).
 
 use super::map_about;
 use crate::document::Document;
@@ -15,7 +15,8 @@ use std::sync::Arc;
 pub struct PartFrame {
     pub low: Vec2,
     pub high: Vec2,
-    /// Canvas px per screen point, by which handles within and above the box keep their distances on the screen.
+    /// Canvas px per screen point, by which handles within and above the box keep their distances
+    /// on the screen.
     pub px_per_pt: f32,
     /// Whether it has a height to drag.
     pub has_puff: bool,
@@ -44,7 +45,8 @@ pub enum PartHandle {
     Body,
 }
 
-/// The distance of the turning handle above the box, and of the handles around the middle from it, points.
+/// The distance of the turning handle above the box, and of the handles around the middle from it,
+/// points.
 const TURN_PT: f32 = 26.0;
 const AROUND_PT: f32 = 34.0;
 /// A smaller box has no room for handles within, points.
@@ -83,6 +85,7 @@ impl PartFrame {
         let is_inflated = matches!(part.kind, PartKind::Inflate { .. });
         Self { low, high, px_per_pt, has_puff: height_of(&part.kind).is_some(), is_inflated }
     }
+
     /// The same, seen through a map of the canvas.
     pub fn through(self, map: Affine2) -> Self {
         let corners = self.corners().map(|corner| map.transform_point2(corner));
@@ -90,39 +93,50 @@ impl PartFrame {
         let high = corners.iter().fold(Vec2::MIN, |a, b| a.max(*b));
         Self { low, high, ..self }
     }
+
     /// Upper left, upper right, lower right, lower left.
     pub fn corners(&self) -> [Vec2; 4] {
         [self.low, vec2(self.high.x, self.low.y), self.high, vec2(self.low.x, self.high.y)]
     }
+
     pub fn middle(&self) -> Vec2 {
         (self.low + self.high) * 0.5
     }
+
     pub fn turn(&self) -> Vec2 {
         vec2(self.middle().x, self.low.y - TURN_PT * self.px_per_pt)
     }
+
     /// The place of the handle of the height, if the part has one and there is room.
     pub fn puff(&self) -> Option<Vec2> {
         (self.has_puff && self.has_room()).then(|| self.middle())
     }
+
     pub fn tilt(&self) -> Option<Vec2> {
         self.around(vec2(0.0, 1.0))
     }
+
     pub fn profile(&self) -> Option<Vec2> {
         self.around(vec2(-1.0, 0.0)).filter(|_| self.is_inflated)
     }
+
     pub fn rim(&self) -> Option<Vec2> {
         self.around(vec2(1.0, 0.0)).filter(|_| self.is_inflated)
     }
+
     pub fn depth(&self) -> Option<Vec2> {
         self.around(vec2(0.0, -1.0))
     }
+
     /// Next to the middle, if there is room.
     fn around(&self, way: Vec2) -> Option<Vec2> {
         self.has_room().then(|| self.middle() + way * (AROUND_PT * self.px_per_pt))
     }
+
     fn has_room(&self) -> bool {
         (self.high - self.low).min_element() >= LEAST_BOX_PT * self.px_per_pt
     }
+
     /// The handle at a canvas point.
     pub fn handle_at(&self, at: Vec2) -> Option<PartHandle> {
         let near = |p: Vec2| p.distance(at) <= GRAB_PT * self.px_per_pt;
@@ -141,7 +155,8 @@ impl PartFrame {
     }
 }
 
-/// The number that is the height of a part, and how much of it a drag over half of the part's smaller side changes.
+/// The number that is the height of a part, and how much of it a drag over half of the part's
+/// smaller side changes.
 fn height_of(kind: &PartKind) -> Option<(f32, f32)> {
     match kind {
         PartKind::Inflate { inflation, .. } => Some((inflation.puff, 1.0)),
@@ -155,7 +170,9 @@ fn with_height(kind: &PartKind, to: f32) -> PartKind {
     let mut kind = kind.clone();
     match &mut kind {
         PartKind::Inflate { inflation, .. } => inflation.puff = held(to, &Inflation::PUFF),
-        PartKind::Lathe { puff, .. } | PartKind::Sweep { puff, .. } => *puff = held(to, &Inflation::PUFF),
+        PartKind::Lathe { puff, .. } | PartKind::Sweep { puff, .. } => {
+            *puff = held(to, &Inflation::PUFF)
+        }
         PartKind::Bevel { bevel, .. } => bevel.height = held(to, &Bevel::HEIGHT),
         _ => {}
     }
@@ -174,7 +191,8 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         Some((part.clone(), PartFrame::of(part, area, context.px_per_pt)))
     };
     let chosen = context.part.and_then(frame_of);
-    let on_handle = chosen.and_then(|(part, frame)| Some((part, frame, frame.handle_at(pen.place())?)));
+    let on_handle =
+        chosen.and_then(|(part, frame)| Some((part, frame, frame.handle_at(pen.place())?)));
     let held = on_handle.or_else(|| {
         let part = crate::document::parts::forms::nearest_at(&areas, pen.place())?;
         let (part, frame) = frame_of(&part.id)?;
@@ -182,7 +200,14 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     });
     let Some((part, frame, handle)) = held else { return (None, Outcome::Idle) };
     let chosen = Outcome::ChosenPart(part.id.clone());
-    let gesture = PartGesture { document: document.clone(), part, frame, handle, from: pen.place(), found: None };
+    let gesture = PartGesture {
+        document: document.clone(),
+        part,
+        frame,
+        handle,
+        from: pen.place(),
+        found: None,
+    };
     (Some(Box::new(gesture)), chosen)
 }
 
@@ -209,12 +234,14 @@ impl PartGesture {
     fn pt(&self, points: f32) -> f32 {
         points * self.frame.px_per_pt.max(1e-6)
     }
+
     fn dragged(&self, pen: &PenSample) -> Option<Part> {
         let (to, part) = (pen.place(), &*self.part);
         let by = to - self.from;
         let mapped = |map: Affine2| {
             let matrix = map * part.matrix;
-            let is_told = matrix.is_finite() && matrix.to_cols_array().iter().all(|v| Part::MATRIX.contains(v));
+            let is_told = matrix.is_finite()
+                && matrix.to_cols_array().iter().all(|v| Part::MATRIX.contains(v));
             is_told.then(|| Part { matrix, ..part.clone() })
         };
         match self.handle {
@@ -229,26 +256,39 @@ impl PartGesture {
             }
             PartHandle::Corner(corner) => {
                 let corners = self.frame.corners();
-                let fixed = if pen.keys.alt { self.frame.middle() } else { corners[(corner + 2) % 4] };
+                let fixed =
+                    if pen.keys.alt { self.frame.middle() } else { corners[(corner + 2) % 4] };
                 let way = corners[corner] - fixed;
                 let scale = (to - fixed).dot(way) / way.length_squared().max(1.0);
-                mapped(map_about(fixed, Mat2::from_diagonal(Vec2::splat(scale.max(0.02).min(50.0)))))
+                mapped(map_about(
+                    fixed,
+                    Mat2::from_diagonal(Vec2::splat(scale.max(0.02).min(50.0))),
+                ))
             }
             PartHandle::Puff => {
                 let (height, per_half) = height_of(&part.kind)?;
                 let half = (0.5 * (self.frame.high - self.frame.low).min_element()).max(1.0);
-                Some(Part { kind: with_height(&part.kind, height - per_half * by.y / half), ..part.clone() })
+                Some(Part {
+                    kind: with_height(&part.kind, height - per_half * by.y / half),
+                    ..part.clone()
+                })
             }
             PartHandle::Profile => inflated(part, |now| {
                 let profile = now.profile + by.x / self.pt(PROFILE_PT);
-                Inflation { profile: (held(profile, &Inflation::PROFILE) * 100.0).round() / 100.0, ..now }
+                Inflation {
+                    profile: (held(profile, &Inflation::PROFILE) * 100.0).round() / 100.0,
+                    ..now
+                }
             }),
             PartHandle::Rim => inflated(part, |now| {
                 let rim_deg = (now.rim_deg - by.y / self.pt(RIM_PT_A_DEGREE)).round();
                 Inflation { rim_deg: held(rim_deg, &Inflation::RIM), ..now }
             }),
             // As the pen moves: a px of height for a px of the canvas.
-            PartHandle::Depth => Some(Part { raise: held((part.raise - by.y).round(), &Part::RAISE), ..part.clone() }),
+            PartHandle::Depth => Some(Part {
+                raise: held((part.raise - by.y).round(), &Part::RAISE),
+                ..part.clone()
+            }),
             PartHandle::Tilt => {
                 // The part faces where the ball goes, so it falls there.
                 let by = by / self.pt(TILT_PT_A_DEGREE);
@@ -271,10 +311,13 @@ fn moved_by(by: Vec2, along_axis: bool) -> Vec2 {
 
 impl Gesture for PartGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
-        let Some(part) = pens.last().and_then(|pen| self.dragged(pen)) else { return Outcome::Idle };
+        let Some(part) = pens.last().and_then(|pen| self.dragged(pen)) else {
+            return Outcome::Idle;
+        };
         self.found = Some(part.clone());
         Outcome::Preview(self.document.with_part_ahead(part))
     }
+
     fn release(&mut self) -> Outcome {
         let label = match self.handle {
             PartHandle::Body => "Move part",

@@ -1,5 +1,5 @@
-//! The sculpting tool: strokes that raise, lower and smooth the part under the pen; they stay strokes. Floor 5. Not
-//! here: what a dab does (`shape::sculpt`).
+//! The sculpting tool: strokes that raise, lower and smooth the part under the pen; they stay
+//! strokes. Floor 5. Not here: what a dab does (`shape::sculpt`).
 
 use super::length_of;
 use super::touch::layer_on;
@@ -7,7 +7,9 @@ use crate::document::Document;
 use crate::document::parts::{Part, PartKind};
 use crate::math::{Affine2, COORDINATE, Vec2};
 use crate::shape::{SculptStroke, SculptTool};
-use crate::tools::{Gesture, GestureStart, ModifierKeys, Outcome, PenSample, ShapeSettings, ToolContext};
+use crate::tools::{
+    Gesture, GestureStart, ModifierKeys, Outcome, PenSample, ShapeSettings, ToolContext,
+};
 
 /// Samples nearer than this add nothing, px.
 const APART_PX: f32 = 0.5;
@@ -15,7 +17,8 @@ const APART_PX: f32 = 0.5;
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let document = context.document;
     let Some(base) = document.part_at(pen.place()) else {
-        let why = "Sculpt on a part: there is none under the pen. Layer › Give it a shape… makes some.";
+        let why =
+            "Sculpt on a part: there is none under the pen. Layer › Give it a shape… makes some.";
         return (None, Outcome::Refused(why.into()));
     };
     let (mut part, is_new) = layer_on(
@@ -33,8 +36,8 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     (Some(Box::new(gesture)), outcome)
 }
 
-/// A stroke without samples, in the frame of the part that it lies on. Ctrl exchanges raising and lowering, Shift
-/// smooths.
+/// A stroke without samples, in the frame of the part that it lies on. Ctrl exchanges raising and
+/// lowering, Shift smooths.
 fn stroke(settings: &ShapeSettings, keys: ModifierKeys, matrix: Affine2) -> SculptStroke {
     let tool = match settings.tool {
         _ if keys.shift => SculptTool::Smooth,
@@ -44,7 +47,8 @@ fn stroke(settings: &ShapeSettings, keys: ModifierKeys, matrix: Affine2) -> Scul
     };
     let length = length_of(matrix);
     let (size, settings) = (settings.size / length, ShapeSettings { tool, ..*settings });
-    let strength = if tool.is_by_height() { settings.strength() / length } else { settings.strength() };
+    let strength =
+        if tool.is_by_height() { settings.strength() / length } else { settings.strength() };
     SculptStroke {
         tool,
         size: size.max(*SculptStroke::SIZE.start()).min(*SculptStroke::SIZE.end()),
@@ -67,6 +71,7 @@ impl SculptGesture {
     fn with(&self, is_done: bool) -> Document {
         super::with_worked(&self.document, &self.part, self.is_new, is_done)
     }
+
     fn samples(&mut self) -> Option<&mut Vec<(Vec2, f32)>> {
         let PartKind::Sculpt { strokes, .. } = &mut self.part.kind else { return None };
         strokes.last_mut().map(|stroke| &mut stroke.samples)
@@ -79,7 +84,8 @@ impl Gesture for SculptGesture {
         let Some(samples) = self.samples() else { return Outcome::Idle };
         let before = samples.len();
         for pen in pens {
-            let (at, pressure) = (back.transform_point2(pen.place()), pen.sample.pressure.max(0.0).min(1.0));
+            let (at, pressure) =
+                (back.transform_point2(pen.place()), pen.sample.pressure.max(0.0).min(1.0));
             let is_new = samples.last().is_none_or(|last| last.0.distance(at) >= APART_PX);
             let is_told = COORDINATE.contains(&at.x) && COORDINATE.contains(&at.y);
             if is_new && is_told && samples.len() < SculptStroke::MOST / 4 {
@@ -88,9 +94,12 @@ impl Gesture for SculptGesture {
         }
         if samples.len() > before { Outcome::Preview(self.with(false)) } else { Outcome::Idle }
     }
+
     fn release(&mut self) -> Outcome {
         match self.samples().is_some_and(|samples| !samples.is_empty()) {
-            true => Outcome::Commit { label: "Sculpt".into(), document: self.with(true), select: None },
+            true => {
+                Outcome::Commit { label: "Sculpt".into(), document: self.with(true), select: None }
+            }
             false => Outcome::Cancel,
         }
     }

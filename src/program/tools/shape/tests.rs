@@ -11,15 +11,21 @@ use crate::tools::{self, ModifierKeys, Outcome, PenSample, ToolContext, ToolKind
 
 /// An inflated square and a ball in front of a corner of it.
 fn scene() -> Document {
-    let square = [(60.0, 60.0), (260.0, 60.0), (260.0, 260.0), (60.0, 260.0)].map(|(x, y)| vec2(x, y));
+    let square =
+        [(60.0, 60.0), (260.0, 60.0), (260.0, 260.0), (60.0, 260.0)].map(|(x, y)| vec2(x, y));
     let outline = crate::document::OutlineSource::Path(square.to_vec());
     let square = Part::new("square", PartKind::Inflate { outline, inflation: Default::default() });
-    let ball = Part::new("ball", PartKind::Primitive(Primitive::new(Body::Sphere, vec2(300.0, 300.0), 60.0)));
+    let ball = Part::new(
+        "ball",
+        PartKind::Primitive(Primitive::new(Body::Sphere, vec2(300.0, 300.0), 60.0)),
+    );
     Document::empty(Size::new(400, 400)).with_parts([square, ball].map(Arc::new).to_vec())
 }
+
 fn pen(x: f32, y: f32, keys: ModifierKeys) -> PenSample {
     PenSample { keys, ..PenSample::at(vec2(x, y)) }
 }
+
 /// A drag with a tool and a part chosen; the outcomes of press and release.
 fn dragged(
     document: &Document,
@@ -37,6 +43,7 @@ fn dragged(
     });
     (first, last)
 }
+
 fn committed(outcome: Option<Outcome>) -> (String, Document) {
     match outcome {
         Some(Outcome::Commit { label, document, .. }) => (label, document),
@@ -48,19 +55,26 @@ const NONE: ModifierKeys = ModifierKeys { shift: false, ctrl: false, alt: false 
 #[test]
 fn the_part_under_the_pen_is_chosen_and_moved_by_whole_pixels_with_its_surface() {
     let document = scene();
-    let (first, last) = dragged(&document, ToolKind::Shape, "square", &[(330.0, 300.0), (340.4, 310.6)], NONE);
+    let (first, last) =
+        dragged(&document, ToolKind::Shape, "square", &[(330.0, 300.0), (340.4, 310.6)], NONE);
     assert!(matches!(first, Outcome::ChosenPart(id) if id == "ball"));
     let (label, moved) = committed(last);
-    assert_eq!((label.as_str(), moved.parts.part("ball").unwrap().matrix.translation), ("Move part", vec2(10.0, 11.0)));
+    assert_eq!(
+        (label.as_str(), moved.parts.part("ball").unwrap().matrix.translation),
+        ("Move part", vec2(10.0, 11.0))
+    );
     let (was, now) = (document.surface.unwrap(), moved.surface.unwrap());
     assert_eq!(was.normal(320, 290), now.normal(330, 301));
 }
+
 #[test]
 fn handles_puff_tilt_scale_and_turn_the_chosen_part() {
     let document = scene();
     let areas = document.part_areas();
     let frame = PartFrame::of(&areas[0].0, &areas[0].1, 1.0);
-    assert!(frame.low.distance(vec2(60.0, 60.0)) < 2.0 && frame.high.distance(vec2(260.0, 260.0)) < 2.0);
+    assert!(
+        frame.low.distance(vec2(60.0, 60.0)) < 2.0 && frame.high.distance(vec2(260.0, 260.0)) < 2.0
+    );
     assert_eq!(frame.handle_at(frame.middle()), Some(PartHandle::Puff));
     let drag = |from: Vec2, by: Vec2| {
         let way = [(from.x, from.y), (from.x + by.x, from.y + by.y)];
@@ -85,8 +99,13 @@ fn handles_puff_tilt_scale_and_turn_the_chosen_part() {
     assert!((part.matrix.matrix2.x_axis.x - 0.5).abs() < 0.01, "{}", part.matrix);
     let turn = frame.turn();
     let (_, part) = drag(turn, frame.middle() + vec2(frame.middle().y - turn.y, 0.0) - turn);
-    assert!(part.matrix.matrix2.x_axis.distance(Vec2::Y) < 1e-3, "a quarter clockwise: {}", part.matrix);
+    assert!(
+        part.matrix.matrix2.x_axis.distance(Vec2::Y) < 1e-3,
+        "a quarter clockwise: {}",
+        part.matrix
+    );
 }
+
 #[test]
 fn touches_are_put_down_along_a_drag_moved_and_taken_away_and_directions_are_taken() {
     let document = scene();
@@ -98,8 +117,12 @@ fn touches_are_put_down_along_a_drag_moved_and_taken_away_and_directions_are_tak
     let (x, y) = (150, 160);
     let wanted = ShapeSettings::default().normal;
     let got = touched.surface.as_ref().unwrap().normal(x, y);
-    assert!(got.dot(wanted) > 0.95 && document.surface.as_ref().unwrap().normal(x, y).dot(wanted) < 0.9, "{got}");
-    let (_, last) = dragged(&touched, ToolKind::Touch, "square", &[(150.0, 160.0), (150.0, 200.0)], NONE);
+    assert!(
+        got.dot(wanted) > 0.95 && document.surface.as_ref().unwrap().normal(x, y).dot(wanted) < 0.9,
+        "{got}"
+    );
+    let (_, last) =
+        dragged(&touched, ToolKind::Touch, "square", &[(150.0, 160.0), (150.0, 200.0)], NONE);
     let (label, moved) = committed(last);
     assert_eq!((label.as_str(), touch::touches(&moved)[1].at), ("Move touch", vec2(150.0, 200.0)));
     let alt = ModifierKeys { alt: true, ..NONE };
@@ -110,6 +133,7 @@ fn touches_are_put_down_along_a_drag_moved_and_taken_away_and_directions_are_tak
     let (first, _) = dragged(&document, ToolKind::Touch, "square", &[(10.0, 10.0)], NONE);
     assert!(matches!(first, Outcome::Refused(why) if why.contains("none under the pen")));
 }
+
 #[test]
 fn sculpting_raises_with_ctrl_lowers_with_shift_smooths_and_strokes_share_a_part() {
     let document = scene();
@@ -127,15 +151,21 @@ fn sculpting_raises_with_ctrl_lowers_with_shift_smooths_and_strokes_share_a_part
     let shift = ModifierKeys { shift: true, ..NONE };
     let (_, smoothed) = committed(dragged(&lowered, ToolKind::Sculpt, "square", &way, shift).1);
     assert_eq!(smoothed.parts.list.len(), 3);
-    let PartKind::Sculpt { strokes, .. } = &smoothed.parts.list[1].kind else { panic!("beside its part") };
+    let PartKind::Sculpt { strokes, .. } = &smoothed.parts.list[1].kind else {
+        panic!("beside its part")
+    };
     let tools: Vec<SculptTool> = strokes.iter().map(|stroke| stroke.tool).collect();
     assert_eq!(tools, [SculptTool::Raise, SculptTool::Lower, SculptTool::Smooth]);
 }
+
 #[test]
 fn what_is_put_on_a_moved_and_turned_part_lies_under_the_pen() {
     let mut document = scene();
     let mut part = Part::clone(document.parts.part("square").unwrap());
-    part.matrix = map_about(vec2(160.0, 160.0), Mat2::from_angle(0.6) * Mat2::from_diagonal(Vec2::splat(0.8)));
+    part.matrix = map_about(
+        vec2(160.0, 160.0),
+        Mat2::from_angle(0.6) * Mat2::from_diagonal(Vec2::splat(0.8)),
+    );
     document = document.with_part(part);
     let (_, last) = dragged(&document, ToolKind::Touch, "square", &[(170.0, 180.0)], NONE);
     let touch = touch::touches(&committed(last).1).remove(0);

@@ -1,5 +1,5 @@
-//! The touch tool: a click or a drag gives the part under the pen a direction there; touches are moved by dragging and
-//! removed with Alt. Floor 5. Not here: how they spread (`shape::touches`).
+//! The touch tool: a click or a drag gives the part under the pen a direction there; touches are
+//! moved by dragging and removed with Alt. Floor 5. Not here: how they spread (`shape::touches`).
 
 use super::{free_id, inverse_direction, on_canvas_direction};
 use crate::document::Document;
@@ -26,7 +26,9 @@ pub struct StandingTouch {
 pub fn touches(document: &Document) -> Vec<StandingTouch> {
     let of = |part: &Arc<Part>| {
         let PartKind::Touches { on, touches } = &part.kind else { return Vec::new() };
-        let Some(base) = document.parts.part(on).filter(|base| base.visible && part.visible) else { return Vec::new() };
+        let Some(base) = document.parts.part(on).filter(|base| base.visible && part.visible) else {
+            return Vec::new();
+        };
         let standing = |(index, touch): (usize, &Touch)| StandingTouch {
             part: part.id.clone(),
             index,
@@ -49,11 +51,17 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let (document, at) = (context.document, pen.place());
     let found = touch_at(document, at, GRAB_PT * context.px_per_pt);
     if pen.keys.alt {
-        return (None, found.map_or_else(|| taken(document, at), |touch| without(document, &touch)));
+        return (
+            None,
+            found.map_or_else(|| taken(document, at), |touch| without(document, &touch)),
+        );
     }
     if let Some(touch) = found {
-        let Some(part) = document.parts.part(&touch.part).cloned() else { return (None, Outcome::Idle) };
-        let moving = MovingTouch { document: document.clone(), part, index: touch.index, moved: None };
+        let Some(part) = document.parts.part(&touch.part).cloned() else {
+            return (None, Outcome::Idle);
+        };
+        let moving =
+            MovingTouch { document: document.clone(), part, index: touch.index, moved: None };
         return (Some(Box::new(moving)), Outcome::Idle);
     }
     let Some(base) = document.part_at(at) else {
@@ -76,7 +84,8 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     };
     // A drag places them far enough apart that each counts.
     let apart_px = (2.0 * settings.radius).max(GRAB_PT * context.px_per_pt);
-    let mut gesture = TouchGesture { document: document.clone(), base, part, is_new, made, apart_px, last: None };
+    let mut gesture =
+        TouchGesture { document: document.clone(), base, part, is_new, made, apart_px, last: None };
     let outcome = gesture.drag(&[pen]);
     (Some(Box::new(gesture)), outcome)
 }
@@ -109,7 +118,9 @@ fn taken(document: &Document, at: Vec2) -> Outcome {
         return Outcome::Refused("There is no surface to take it from.".into());
     };
     match surface.at_point(at) {
-        None => Outcome::Refused("There is no surface under the pen to take a direction from.".into()),
+        None => {
+            Outcome::Refused("There is no surface under the pen to take a direction from.".into())
+        }
         Some(MapValues { nbar, nz, .. }) => Outcome::Direction(vec3(nbar.x, -nbar.y, nz)),
     }
 }
@@ -122,7 +133,11 @@ fn without(document: &Document, touch: &StandingTouch) -> Outcome {
     {
         touches.remove(touch.index);
     }
-    Outcome::Commit { label: "Remove touch".into(), document: document.with_part(next), select: None }
+    Outcome::Commit {
+        label: "Remove touch".into(),
+        document: document.with_part(next),
+        select: None,
+    }
 }
 
 /// Touches being placed.
@@ -164,9 +179,12 @@ impl Gesture for TouchGesture {
         }
         if is_changed { Outcome::Preview(self.with(false)) } else { Outcome::Idle }
     }
+
     fn release(&mut self) -> Outcome {
         match self.last {
-            Some(_) => Outcome::Commit { label: "Touch".into(), document: self.with(true), select: None },
+            Some(_) => {
+                Outcome::Commit { label: "Touch".into(), document: self.with(true), select: None }
+            }
             None => Outcome::Cancel,
         }
     }
@@ -184,7 +202,9 @@ impl Gesture for MovingTouch {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let Some(at) = pens.last().map(PenSample::place) else { return Outcome::Idle };
         let base = self.part.on().and_then(|on| self.document.parts.part(on));
-        let Some(own) = base.map(|base| base.matrix.inverse().transform_point2(at)) else { return Outcome::Idle };
+        let Some(own) = base.map(|base| base.matrix.inverse().transform_point2(at)) else {
+            return Outcome::Idle;
+        };
         let mut next = Part::clone(&self.part);
         let PartKind::Touches { touches, .. } = &mut next.kind else { return Outcome::Idle };
         let Some(touch) = touches.get_mut(self.index) else { return Outcome::Idle };
@@ -195,6 +215,7 @@ impl Gesture for MovingTouch {
         self.moved = Some(next.clone());
         Outcome::Preview(self.document.with_part_ahead(next))
     }
+
     fn release(&mut self) -> Outcome {
         match self.moved.take() {
             Some(part) => {

@@ -1,18 +1,23 @@
-//! A corner of a quadrilateral under the pen: the quadrilateral stays convex. Floor 5. Pure functions.
+//! A corner of a quadrilateral under the pen: the quadrilateral stays convex. Floor 5. Pure
+//! functions.
 
 use crate::math::DVec2;
 
-/// The least distance of a corner from where the quadrilateral would turn concave, as a share of its size.
+/// The least distance of a corner from where the quadrilateral would turn concave, as a share of
+/// its size.
 const MARGIN: f64 = 0.02;
 
-/// The point nearest to `at` with which a quadrilateral is convex, its other corners staying. It moves no farther than
-/// `at` does, so a corner that is dragged along the border glides there.
+/// The point nearest to `at` with which a quadrilateral is convex, its other corners staying. It
+/// moves no farther than `at` does, so a corner that is dragged along the border glides there.
 ///
 /// * `corners`: of a convex quadrilateral, in order.
 /// * `corner`: the number of the one that moves.
 pub fn within_convex(corners: [DVec2; 4], corner: usize, at: DVec2) -> DVec2 {
     let [before, opposite, after] = [3, 2, 1].map(|i| corners[(corner + i) % 4]);
-    let size = (after - before).length().max((opposite - before).length()).max((opposite - after).length());
+    let size = (after - before)
+        .length()
+        .max((opposite - before).length())
+        .max((opposite - after).length());
     // Beyond the diagonal, and between the two sides that meet in the opposite corner.
     let around = if (after - before).perp_dot(opposite - before) >= 0.0 { -1.0 } else { 1.0 };
     let border = |from: DVec2, to: DVec2| {
@@ -20,7 +25,8 @@ pub fn within_convex(corners: [DVec2; 4], corner: usize, at: DVec2) -> DVec2 {
         (normal, normal.dot(from) + MARGIN * size)
     };
     let borders = [border(before, after), border(before, opposite), border(opposite, after)];
-    let is_in = |p: DVec2| borders.iter().all(|(normal, least)| normal.dot(p) >= least - 1e-9 * size);
+    let is_in =
+        |p: DVec2| borders.iter().all(|(normal, least)| normal.dot(p) >= least - 1e-9 * size);
     if is_in(at) || !at.is_finite() {
         return if at.is_finite() { at } else { corners[corner % 4] };
     }
@@ -31,7 +37,8 @@ pub fn within_convex(corners: [DVec2; 4], corner: usize, at: DVec2) -> DVec2 {
         (det.abs() > 1e-12).then(|| DVec2::new(c * b.y - d * a.y, d * a.x - c * b.x) / det)
     });
     let candidates = onto.chain(meets).filter(|p| p.is_finite() && is_in(*p));
-    let nearest = candidates.min_by(|a, b| a.distance_squared(at).total_cmp(&b.distance_squared(at)));
+    let nearest =
+        candidates.min_by(|a, b| a.distance_squared(at).total_cmp(&b.distance_squared(at)));
     nearest.unwrap_or(corners[corner % 4])
 }
 
@@ -41,8 +48,12 @@ mod tests {
     use crate::math::PlaneMap;
     use proptest::prelude::*;
 
-    const SQUARE: [DVec2; 4] =
-        [DVec2::new(0.0, 0.0), DVec2::new(100.0, 0.0), DVec2::new(100.0, 80.0), DVec2::new(0.0, 80.0)];
+    const SQUARE: [DVec2; 4] = [
+        DVec2::new(0.0, 0.0),
+        DVec2::new(100.0, 0.0),
+        DVec2::new(100.0, 80.0),
+        DVec2::new(0.0, 80.0),
+    ];
 
     #[test]
     fn a_corner_goes_where_it_may_and_stays_at_the_border_elsewhere() {

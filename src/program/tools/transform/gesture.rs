@@ -43,22 +43,33 @@ impl TransformGesture {
     fn dragged(&self, pen: &PenSample) -> Option<Dragged> {
         let inner = self.frame.inner;
         match self.handle {
-            FrameHandle::Inside => self.all(&FrameMap::OnCanvas(PlaneMap::translation(self.moved_by(pen)))),
+            FrameHandle::Inside => {
+                self.all(&FrameMap::OnCanvas(PlaneMap::translation(self.moved_by(pen))))
+            }
             FrameHandle::Outside => self.all(&FrameMap::OnCanvas(self.turned_by(pen)?)),
             FrameHandle::Corner(corner) if pen.keys.ctrl => self.distorted(corner, pen.place()),
-            FrameHandle::Edge(edge) if pen.keys.ctrl => self.all(&FrameMap::InFrame(self.skewed(edge, pen.place())?)),
-            FrameHandle::Corner(corner) => {
-                self.all(&FrameMap::InFrame(self.scaled(inner.corners()[corner], [true; 2], pen)?))
+            FrameHandle::Edge(edge) if pen.keys.ctrl => {
+                self.all(&FrameMap::InFrame(self.skewed(edge, pen.place())?))
             }
+            FrameHandle::Corner(corner) => self.all(&FrameMap::InFrame(self.scaled(
+                inner.corners()[corner],
+                [true; 2],
+                pen,
+            )?)),
             FrameHandle::Edge(edge) => {
                 let [a, b] = [edge % 4, (edge + 1) % 4].map(|i| inner.corners()[i]);
                 // The upper and the lower edge are dragged up and down.
                 let along_y = edge.is_multiple_of(2);
-                self.all(&FrameMap::InFrame(self.scaled((a + b) * 0.5, [!along_y, along_y], pen)?))
+                self.all(&FrameMap::InFrame(self.scaled(
+                    (a + b) * 0.5,
+                    [!along_y, along_y],
+                    pen,
+                )?))
             }
             FrameHandle::Pivot => None,
         }
     }
+
     fn all(&self, map: &FrameMap) -> Option<Dragged> {
         let on_canvas = match map {
             FrameMap::OnCanvas(map) => *map,
@@ -70,12 +81,19 @@ impl TransformGesture {
         let layers = self.layers.iter().map(|layer| self.dragged_layer(layer, map, on_canvas));
         layers.collect::<Option<_>>().map(Dragged::Layers)
     }
-    fn dragged_layer(&self, layer: &HeldLayer, map: &FrameMap, on_canvas: PlaneMap) -> Option<LayerPlacement> {
+
+    fn dragged_layer(
+        &self,
+        layer: &HeldLayer,
+        map: &FrameMap,
+        on_canvas: PlaneMap,
+    ) -> Option<LayerPlacement> {
         let on_canvas = FrameMap::OnCanvas(on_canvas);
         // The frame of one layer is its own: numbers stay as exact as possible.
         let map = if self.layers.len() == 1 { map } else { &on_canvas };
         layer.own.then(&layer.map, map, self.document.size)
     }
+
     /// The pen after snapping: with a handle the pen itself snaps, with the inside the frame.
     fn snapped(&mut self, pen: &PenSample) -> PenSample {
         let at = pen.place();
@@ -97,6 +115,7 @@ impl TransformGesture {
         snapped.sample.at = at;
         snapped
     }
+
     fn moved_by(&self, pen: &PenSample) -> Vec2 {
         // Whole pixels, so that paint is not resampled needlessly.
         let by = (pen.place() - self.from).round();
@@ -106,6 +125,7 @@ impl TransformGesture {
             false => by,
         }
     }
+
     fn turned_by(&self, pen: &PenSample) -> Option<PlaneMap> {
         let pivot = self.frame.pivot();
         let (before, after) = (self.from - pivot, pen.place() - pivot);
@@ -114,10 +134,13 @@ impl TransformGesture {
         }
         // Counter-clockwise as seen is clockwise in y-down coordinates.
         let degrees = f64::from(before.to_angle() - after.to_angle()).to_degrees();
-        let degrees = if pen.keys.shift { (degrees / STEP_DEGREES).round() * STEP_DEGREES } else { degrees };
+        let degrees =
+            if pen.keys.shift { (degrees / STEP_DEGREES).round() * STEP_DEGREES } else { degrees };
         Some(PlaneMap::rotation(degrees, pivot))
     }
-    /// A scaling in the frame that moves a handle to the pen. Shift keeps the aspect, Alt the pivot.
+
+    /// A scaling in the frame that moves a handle to the pen. Shift keeps the aspect, Alt the
+    /// pivot.
     fn scaled(&self, handle: Vec2, axes: [bool; 2], pen: &PenSample) -> Option<PlaneMap> {
         let inner = self.frame.inner;
         let center = inner.center();
@@ -129,13 +152,18 @@ impl TransformGesture {
         };
         let mut factors = [ratio(0), ratio(1)];
         if pen.keys.shift {
-            let most = if (factors[0] - 1.0).abs() >= (factors[1] - 1.0).abs() { factors[0] } else { factors[1] };
+            let most = if (factors[0] - 1.0).abs() >= (factors[1] - 1.0).abs() {
+                factors[0]
+            } else {
+                factors[1]
+            };
             factors = [most; 2];
         }
         let [x, y] = factors.map(f64::from);
         let fixed = fixed.as_dvec2();
         PlaneMap::affine([x, 0.0, 0.0, y, fixed.x * (1.0 - x), fixed.y * (1.0 - y)])
     }
+
     /// A shear in the frame that moves an edge along itself.
     fn skewed(&self, edge: usize, at: Vec2) -> Option<PlaneMap> {
         let corners = self.frame.inner.corners().map(|corner| corner.as_dvec2());
@@ -150,8 +178,9 @@ impl TransformGesture {
         let k = by.y / (a.x - opposite.x);
         PlaneMap::affine([1.0, k, 0.0, 1.0, 0.0, -k * opposite.x])
     }
-    /// The result of a perspective that moves one corner to the pen, or as far toward it as possible, and leaves the
-    /// others.
+
+    /// The result of a perspective that moves one corner to the pen, or as far toward it as
+    /// possible, and leaves the others.
     fn distorted(&self, corner: usize, at: Vec2) -> Option<Dragged> {
         let held = self.frame.corners.map(|c| c.as_dvec2());
         let (from, to) = (held[corner], within_convex(held, corner, at.as_dvec2()));
@@ -175,14 +204,16 @@ impl TransformGesture {
             found
         })
     }
+
     fn with(&self, dragged: &Dragged) -> Option<Document> {
         let placed = match dragged {
             Dragged::Shape(map) => return self.document.with_shape_through(map).ok(),
             Dragged::Layers(placed) => placed,
         };
         let all = self.layers.iter().zip(placed);
-        all.into_iter()
-            .try_fold(self.document.clone(), |next, (held, placed)| next.with_layer(held.id, |layer| placed.put(layer)))
+        all.into_iter().try_fold(self.document.clone(), |next, (held, placed)| {
+            next.with_layer(held.id, |layer| placed.put(layer))
+        })
     }
 }
 
@@ -200,6 +231,7 @@ impl Gesture for TransformGesture {
         self.found = Some(found);
         shown.map_or(Outcome::Idle, Outcome::Preview)
     }
+
     fn release(&mut self) -> Outcome {
         let label = match self.handle {
             FrameHandle::Inside if self.of_shape => "Move shape",
@@ -210,7 +242,9 @@ impl Gesture for TransformGesture {
             FrameHandle::Corner(_) | FrameHandle::Edge(_) | FrameHandle::Pivot => "Transform",
         };
         let is_other = |found: &&Dragged| match found {
-            Dragged::Layers(found) => found.iter().zip(&self.layers).any(|(found, held)| *found != held.own),
+            Dragged::Layers(found) => {
+                found.iter().zip(&self.layers).any(|(found, held)| *found != held.own)
+            }
             Dragged::Shape(map) => !map.is_identity_on(self.document.size),
         };
         match self.found.as_ref().filter(is_other).and_then(|found| self.with(found)) {
@@ -218,6 +252,7 @@ impl Gesture for TransformGesture {
             None => Outcome::Cancel,
         }
     }
+
     fn snap_lines(&self) -> SnapLines {
         self.lines
     }

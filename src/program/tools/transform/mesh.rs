@@ -1,13 +1,13 @@
-//! Meshes under the transform tool: points that are dragged, one or those that are chosen. Floor 5. Not here: what
-//! a mesh does (`document::layer`).
+//! Meshes under the transform tool: points that are dragged, one or those that are chosen. Floor 5.
+//! Not here: what a mesh does (`document::layer`).
 
 use crate::document::{Document, Layer, LayerId, LayerTransform, Mesh, MeshFrame, TransformShape};
 use crate::math::{PlaneMap, Vec2, vec2};
 use crate::tools::{GRAB_PT, Gesture, Outcome, PenSample, ToolContext};
 use std::sync::Arc;
 
-/// A layer with a grid of so many points over what it shows; an existing mesh gets new points. `None` for an empty
-/// layer, or if there is no such grid.
+/// A layer with a grid of so many points over what it shows; an existing mesh gets new points.
+/// `None` for an empty layer, or if there is no such grid.
 pub fn meshed(document: &Document, id: LayerId, columns: usize, rows: usize) -> Option<Document> {
     let (layer, map) = (document.layer(id)?, document.map_of(id)?);
     let filter = layer.transform.as_ref().map_or(map.filter, |own| own.filter);
@@ -19,14 +19,23 @@ pub fn meshed(document: &Document, id: LayerId, columns: usize, rows: usize) -> 
         }
         None => {
             let frame = document.frame_box(id)?;
-            let even = Mesh::even(columns, rows, MeshFrame { corner: frame.low, size: frame.high - frame.low })?;
+            let even = Mesh::even(
+                columns,
+                rows,
+                MeshFrame { corner: frame.low, size: frame.high - frame.low },
+            )?;
             even.then(&old.map_or(Some(PlaneMap::IDENTITY), |own| own.map(document.size))?)?
         }
     };
     with_mesh(document, id, mesh, filter)
 }
 
-fn with_mesh(document: &Document, id: LayerId, mesh: Mesh, filter: crate::raster::Resampling) -> Option<Document> {
+fn with_mesh(
+    document: &Document,
+    id: LayerId,
+    mesh: Mesh,
+    filter: crate::raster::Resampling,
+) -> Option<Document> {
     let transform = LayerTransform { shape: TransformShape::Mesh(Arc::new(mesh)), filter };
     document.with_layer(id, |layer| layer.transform = Some(transform))
 }
@@ -39,9 +48,12 @@ pub fn points_of(document: &Document, layer: &Layer) -> Option<(Arc<Mesh>, Vec<V
     Some((mesh.clone(), points))
 }
 
-/// What a press does at the points of the chosen layer's mesh; `None` if it has none. Shift adds a point to those
-/// chosen, or removes it.
-pub(super) fn press(context: &ToolContext, pen: PenSample) -> Option<(Option<Box<dyn Gesture>>, Outcome)> {
+/// What a press does at the points of the chosen layer's mesh; `None` if it has none. Shift adds a
+/// point to those chosen, or removes it.
+pub(super) fn press(
+    context: &ToolContext,
+    pen: PenSample,
+) -> Option<(Option<Box<dyn Gesture>>, Outcome)> {
     let [id] = context.chosen() else { return None };
     let document = context.document;
     let layer = document.layer(*id)?;
@@ -51,7 +63,8 @@ pub(super) fn press(context: &ToolContext, pen: PenSample) -> Option<(Option<Box
     if distance(&nearest) > GRAB_PT * context.px_per_pt {
         return None;
     }
-    let mut chosen: Vec<usize> = context.mesh_points.iter().copied().filter(|k| *k < points.len()).collect();
+    let mut chosen: Vec<usize> =
+        context.mesh_points.iter().copied().filter(|k| *k < points.len()).collect();
     if pen.keys.shift {
         match chosen.iter().position(|k| *k == nearest) {
             Some(place) => drop(chosen.remove(place)),
@@ -99,7 +112,9 @@ impl Gesture for MeshGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let Some(pen) = pens.last() else { return Outcome::Idle };
         let from_canvas = |p: Vec2| self.to_canvas.from_canvas(p).map(|(p, _)| p);
-        let Some((from, to)) = from_canvas(self.from).zip(from_canvas(pen.place())) else { return Outcome::Idle };
+        let Some((from, to)) = from_canvas(self.from).zip(from_canvas(pen.place())) else {
+            return Outcome::Idle;
+        };
         let by = to - from;
         // Shift keeps to one axis.
         self.by = match pen.keys.shift {
@@ -109,6 +124,7 @@ impl Gesture for MeshGesture {
         };
         self.with().map_or(Outcome::Idle, Outcome::Preview)
     }
+
     fn release(&mut self) -> Outcome {
         match self.with().filter(|_| self.by != Vec2::ZERO) {
             Some(document) => Outcome::Commit { label: "Mesh".into(), document, select: None },

@@ -41,26 +41,36 @@ impl FrameNumbers {
         let skew = (along / height.abs()).atan().to_degrees();
         let upright = Self { at: a, width, height, angle, skew, own };
         // Mirrored left and right and not turned, rather than up and down and turned by a half.
-        let turned =
-            Self { width: -width, height: -height, angle: angle - 180.0f64.copysign(angle), skew: -skew, ..upright };
+        let turned = Self {
+            width: -width,
+            height: -height,
+            angle: angle - 180.0f64.copysign(angle),
+            skew: -skew,
+            ..upright
+        };
         let numbers = if height < 0.0 && angle.abs() > 90.0 { turned } else { upright };
         (width > 1e-6 && height.abs() > 1e-6 && own.min_element() > 0.0).then_some(numbers)
     }
+
     /// Its sides as vectors: to the right and down.
     fn sides(&self) -> (DVec2, DVec2) {
         let across = DVec2::from_angle(-self.angle.to_radians());
         let lean = self.skew.to_radians().tan() * self.height.abs();
         (across * self.width, across.perp() * self.height + across * lean)
     }
+
     /// A point by shares of its sides, canvas px.
     fn point(&self, share: Vec2) -> DVec2 {
         let (right, down) = self.sides();
         self.at + right * f64::from(share.x) + down * f64::from(share.y)
     }
-    /// With a point, given as shares of the sides, where another frame has it: sides and angles change about it.
+
+    /// With a point, given as shares of the sides, where another frame has it: sides and angles
+    /// change about it.
     pub fn about(&self, pivot_share: Vec2, other: &Self) -> Self {
         Self { at: self.at + other.point(pivot_share) - self.point(pivot_share), ..*self }
     }
+
     /// The map of the canvas from a frame with other numbers to this one, as a matrix.
     pub fn map_from(&self, other: &Self) -> Option<[f64; 6]> {
         let to_frame = |numbers: &Self| {
@@ -69,8 +79,9 @@ impl FrameNumbers {
         };
         to_frame(other)?.inverse().then(&to_frame(self)?).told_coefficients()
     }
-    /// A layer's own transform under which its frame has these numbers: `None` if that is no map, inner `None` if none
-    /// is left.
+
+    /// A layer's own transform under which its frame has these numbers: `None` if that is no map,
+    /// inner `None` if none is left.
     pub fn transform(&self, document: &Document, layer: LayerId) -> Option<Option<LayerTransform>> {
         let frame = TransformFrame::of(document, layer)?;
         // A mesh has no sides and angles.
@@ -97,13 +108,17 @@ mod tests {
     use std::sync::Arc;
 
     fn document() -> Document {
-        let tiles = TileGrid::from_straight_rgba(&[9, 90, 200, 255].repeat(40 * 20), 40, 20, 40, 30);
-        let paint = Layer::new("paint", Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }));
+        let tiles =
+            TileGrid::from_straight_rgba(&[9, 90, 200, 255].repeat(40 * 20), 40, 20, 40, 30);
+        let paint =
+            Layer::new("paint", Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }));
         Document { layers: vec![Arc::new(paint)], ..Document::empty(Size::new(200, 100)) }
     }
+
     fn numbers(document: &Document) -> FrameNumbers {
         FrameNumbers::of(&TransformFrame::of(document, document.layers[0].id).unwrap()).unwrap()
     }
+
     fn with(document: &Document, numbers: &FrameNumbers) -> Document {
         let id = document.layers[0].id;
         let transform = numbers.transform(document, id).unwrap();
@@ -115,8 +130,14 @@ mod tests {
         let start = numbers(&document());
         assert_eq!((start.at, start.width, start.height), (DVec2::new(40.0, 30.0), 40.0, 20.0));
         assert!(start.angle.abs() < 1e-9 && start.skew.abs() < 1e-9);
-        let wanted =
-            FrameNumbers { at: DVec2::new(12.0, 50.0), width: 60.0, height: 15.0, angle: 30.0, skew: -20.0, ..start };
+        let wanted = FrameNumbers {
+            at: DVec2::new(12.0, 50.0),
+            width: 60.0,
+            height: 15.0,
+            angle: 30.0,
+            skew: -20.0,
+            ..start
+        };
         let found = numbers(&with(&document(), &wanted));
         let off = [
             (found.at - wanted.at).length(),
@@ -129,36 +150,55 @@ mod tests {
         let back = with(&with(&document(), &wanted), &start);
         assert_eq!(back.layers[0].transform, None);
     }
+
     #[test]
     fn what_is_mirrored_has_a_negative_side_and_is_not_turned() {
         let start = numbers(&document());
         for (upright, sides) in [(false, [-40.0, 20.0]), (true, [40.0, -20.0])] {
             let document = document();
-            let mirrored = about_middle(&document, &[document.layers[0].id], mirror(upright)).unwrap();
+            let mirrored =
+                about_middle(&document, &[document.layers[0].id], mirror(upright)).unwrap();
             let found = numbers(&mirrored);
-            assert!((found.width - sides[0]).abs() < 1e-3 && (found.height - sides[1]).abs() < 1e-3, "{found:?}");
+            assert!(
+                (found.width - sides[0]).abs() < 1e-3 && (found.height - sides[1]).abs() < 1e-3,
+                "{found:?}"
+            );
             assert!(found.angle.abs() < 1e-6 && found.angle.is_sign_positive(), "{found:?}");
             let skewed = FrameNumbers { skew: 25.0, angle: 10.0, ..found };
             let again = numbers(&with(&mirrored, &skewed));
-            assert!((again.skew - 25.0).abs() < 1e-2 && (again.angle - 10.0).abs() < 1e-2, "{again:?}");
-            let back = FrameNumbers { width: 40.0, height: 20.0, ..found }.about(Vec2::splat(0.5), &found);
+            assert!(
+                (again.skew - 25.0).abs() < 1e-2 && (again.angle - 10.0).abs() < 1e-2,
+                "{again:?}"
+            );
+            let back =
+                FrameNumbers { width: 40.0, height: 20.0, ..found }.about(Vec2::splat(0.5), &found);
             assert!((numbers(&with(&mirrored, &back)).at - start.at).length() < 1e-3);
         }
     }
+
     #[test]
     fn sides_and_angles_change_about_the_pivot() {
         let start = numbers(&document());
-        for (share, stays) in [(Vec2::splat(0.5), DVec2::new(60.0, 40.0)), (Vec2::X, DVec2::new(80.0, 30.0))] {
+        for (share, stays) in
+            [(Vec2::splat(0.5), DVec2::new(60.0, 40.0)), (Vec2::X, DVec2::new(80.0, 30.0))]
+        {
             let turned = FrameNumbers { angle: 90.0, width: 80.0, ..start }.about(share, &start);
             assert!((turned.point(share) - stays).length() < 1e-9);
             let found = numbers(&with(&document(), &turned));
             assert!((found.point(share) - stays).length() < 1e-3);
         }
     }
+
     #[test]
     fn the_map_from_one_frame_to_another_takes_its_corners_there() {
         let start = numbers(&document());
-        let to = FrameNumbers { at: DVec2::new(3.0, 4.0), width: 10.0, height: -30.0, angle: 40.0, ..start };
+        let to = FrameNumbers {
+            at: DVec2::new(3.0, 4.0),
+            width: 10.0,
+            height: -30.0,
+            angle: 40.0,
+            ..start
+        };
         let map = PlaneMap::affine(to.map_from(&start).unwrap()).unwrap();
         for share in [Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::ONE] {
             let went = map.to_canvas(start.point(share).as_vec2()).unwrap();

@@ -16,7 +16,8 @@ pub struct PivotGesture {
     pub lines: SnapLines,
 }
 
-/// Where a pivot snaps to, with its name in the window: the middle, the corners, the middles of the sides.
+/// Where a pivot snaps to, with its name in the window: the middle, the corners, the middles of the
+/// sides.
 pub const PIVOTS: [(Vec2, &str); 9] = [
     (vec2(0.0, 0.0), "upper left corner"),
     (vec2(0.5, 0.0), "middle above"),
@@ -33,7 +34,8 @@ impl PivotGesture {
     fn share(&mut self, at: Vec2) -> Option<Vec2> {
         self.lines = SnapLines::default();
         let near = |share: &Vec2| self.frame.point(*share).distance(at);
-        let nearest = PIVOTS.iter().map(|(share, _)| *share).min_by(|a, b| near(a).total_cmp(&near(b)));
+        let nearest =
+            PIVOTS.iter().map(|(share, _)| *share).min_by(|a, b| near(a).total_cmp(&near(b)));
         let own = nearest.filter(|share| self.snaps && near(share) <= SNAP_PT * self.px_per_pt);
         own.or_else(|| {
             let found = self.snap.point(at);
@@ -47,9 +49,11 @@ impl Gesture for PivotGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         pens.last().and_then(|pen| self.share(pen.place())).map_or(Outcome::Idle, Outcome::Pivot)
     }
+
     fn release(&mut self) -> Outcome {
         Outcome::Idle
     }
+
     fn snap_lines(&self) -> SnapLines {
         self.lines
     }

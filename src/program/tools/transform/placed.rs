@@ -16,15 +16,18 @@ impl LayerPlacement {
     pub fn of(layer: &Layer) -> Self {
         Self { transform: layer.transform.clone(), liquify: layer.liquify.clone() }
     }
+
     pub fn put(&self, layer: &mut Layer) {
         layer.transform.clone_from(&self.transform);
         layer.liquify.clone_from(&self.liquify);
     }
+
     /// The same with what shows mapped; `None` if that is no map.
     ///
     /// * `whole`: the layer's map.
     pub fn then(&self, whole: &LayerMap, map: &FrameMap, canvas: Size) -> Option<Self> {
-        let own = self.transform.as_ref().map_or(Some(PlaneMap::IDENTITY), |own| own.map(canvas))?;
+        let own =
+            self.transform.as_ref().map_or(Some(PlaneMap::IDENTITY), |own| own.map(canvas))?;
         let plane = match map {
             FrameMap::OnCanvas(map) => taken_along(own, &whole.plane, *map),
             // A mesh is drawn where it shows.
@@ -46,20 +49,26 @@ impl LayerPlacement {
         let liquify = carried.filter(|lattice| !lattice.is_empty()).map(Arc::new);
         Some(Self { transform, liquify })
     }
+
     fn mesh(&self) -> Option<&Arc<Mesh>> {
         self.transform.as_ref().and_then(|own| own.mesh())
     }
 }
 
-/// A layer's own map if what shows is moved by a map of the canvas; `whole`: its own and those of the groups
-/// around it.
+/// A layer's own map if what shows is moved by a map of the canvas; `whole`: its own and those of
+/// the groups around it.
 fn taken_along(own: PlaneMap, whole: &PlaneMap, on_canvas: PlaneMap) -> PlaneMap {
     let around = own.inverse().then(whole);
     own.then(&around).then(&on_canvas).then(&around.inverse())
 }
 
-/// A map as a transform that files can hold, or none if it moves nothing; outer `None` if there is no such transform.
-pub(super) fn said(map: &PlaneMap, filter: Resampling, canvas: Size) -> Option<Option<LayerTransform>> {
+/// A map as a transform that files can hold, or none if it moves nothing; outer `None` if there is
+/// no such transform.
+pub(super) fn said(
+    map: &PlaneMap,
+    filter: Resampling,
+    canvas: Size,
+) -> Option<Option<LayerTransform>> {
     if map.is_identity_on(canvas) {
         return Some(None);
     }

@@ -1,5 +1,7 @@
 use super::*;
-use crate::document::{Content, Group, Layer, LayerLock, LayerTransform, PixelLayer, TransformShape};
+use crate::document::{
+    Content, Group, Layer, LayerLock, LayerTransform, PixelLayer, TransformShape,
+};
 use crate::math::{Size, vec2};
 use crate::paint::Brush;
 use crate::raster::TileGrid;
@@ -13,9 +15,11 @@ fn document() -> Document {
     let paint = Layer::new("paint", Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }));
     Document { layers: vec![Arc::new(paint)], ..Document::empty(Size::new(200, 100)) }
 }
+
 fn pen(at: Vec2, keys: ModifierKeys) -> PenSample {
     PenSample { keys, ..PenSample::at(at) }
 }
+
 fn dragged(document: &Document, from: Vec2, to: Vec2, keys: ModifierKeys) -> Option<Document> {
     let (brush, layer) = (Brush::default(), Some(document.layers[0].id));
     // Zoomed in, so that the handles of the small square lie apart.
@@ -27,9 +31,11 @@ fn dragged(document: &Document, from: Vec2, to: Vec2, keys: ModifierKeys) -> Opt
         _ => None,
     }
 }
+
 fn corners(document: &Document) -> [Vec2; 4] {
     TransformFrame::of(document, document.layers[0].id).unwrap().corners
 }
+
 fn close(a: [Vec2; 4], b: [(f32, f32); 4]) {
     for (a, (x, y)) in a.into_iter().zip(b) {
         assert!(a.distance(vec2(x, y)) < 1e-2, "{a}, not ({x}, {y})");
@@ -41,14 +47,19 @@ const NONE: ModifierKeys = ModifierKeys { shift: false, ctrl: false, alt: false 
 fn the_frame_is_the_box_around_the_paint() {
     close(corners(&document()), [(40.0, 30.0), (80.0, 30.0), (80.0, 50.0), (40.0, 50.0)]);
 }
+
 #[test]
 fn the_inside_moves_by_whole_pixels_and_back_leaves_no_transform() {
     let moved = dragged(&document(), vec2(50.0, 40.0), vec2(57.4, 37.1), NONE).unwrap();
     close(corners(&moved), [(47.0, 27.0), (87.0, 27.0), (87.0, 47.0), (47.0, 47.0)]);
     let back = dragged(&moved, vec2(60.0, 40.0), vec2(53.0, 43.0), NONE).unwrap();
     assert_eq!(back.layers[0].transform, None);
-    assert!(dragged(&document(), vec2(50.0, 40.0), vec2(50.2, 40.0), NONE).is_none(), "nothing was moved");
+    assert!(
+        dragged(&document(), vec2(50.0, 40.0), vec2(50.2, 40.0), NONE).is_none(),
+        "nothing was moved"
+    );
 }
+
 #[test]
 fn a_corner_goes_where_the_pen_goes_and_the_opposite_one_stays() {
     let scaled = dragged(&document(), vec2(80.0, 50.0), vec2(100.0, 70.0), NONE).unwrap();
@@ -60,6 +71,7 @@ fn a_corner_goes_where_the_pen_goes_and_the_opposite_one_stays() {
     let scaled = dragged(&document(), vec2(80.0, 50.0), vec2(120.0, 52.0), kept_aspect).unwrap();
     close(corners(&scaled), [(40.0, 30.0), (120.0, 30.0), (120.0, 70.0), (40.0, 70.0)]);
 }
+
 #[test]
 fn an_edge_stretches_one_side_and_with_ctrl_it_skews() {
     let wider = dragged(&document(), vec2(80.0, 40.0), vec2(120.0, 90.0), NONE).unwrap();
@@ -68,26 +80,42 @@ fn an_edge_stretches_one_side_and_with_ctrl_it_skews() {
     let skewed = dragged(&document(), vec2(60.0, 30.0), vec2(70.0, 30.0), skew).unwrap();
     close(corners(&skewed), [(50.0, 30.0), (90.0, 30.0), (80.0, 50.0), (40.0, 50.0)]);
 }
+
 #[test]
 fn outside_turns_about_the_middle_in_steps_with_shift() {
     // From the right to above: a quarter turn counter-clockwise as seen.
-    let turned = dragged(&document(), vec2(160.0, 40.0), vec2(62.0, -40.0), ModifierKeys { shift: true, ..NONE });
+    let turned = dragged(
+        &document(),
+        vec2(160.0, 40.0),
+        vec2(62.0, -40.0),
+        ModifierKeys { shift: true, ..NONE },
+    );
     close(corners(&turned.unwrap()), [(50.0, 60.0), (50.0, 20.0), (70.0, 20.0), (70.0, 60.0)]);
 }
+
 #[test]
 fn a_corner_with_ctrl_gives_a_perspective_and_no_crossed_one() {
     let distort = ModifierKeys { ctrl: true, ..NONE };
     let distorted = dragged(&document(), vec2(80.0, 50.0), vec2(82.0, 51.0), distort).unwrap();
     close(corners(&distorted), [(40.0, 30.0), (80.0, 30.0), (82.0, 51.0), (40.0, 50.0)]);
-    assert!(matches!(distorted.layers[0].transform.clone().unwrap().shape, TransformShape::Quad(_)));
+    assert!(matches!(
+        distorted.layers[0].transform.clone().unwrap().shape,
+        TransformShape::Quad(_)
+    ));
 }
+
 #[test]
 fn a_corner_dragged_past_the_others_or_the_horizon_stays_as_near_as_it_can() {
     let distort = ModifierKeys { ctrl: true, ..NONE };
-    let corner = |to| corners(&dragged(&document(), vec2(80.0, 50.0), to, distort).expect("it goes on"))[2];
+    let corner =
+        |to| corners(&dragged(&document(), vec2(80.0, 50.0), to, distort).expect("it goes on"))[2];
     let folded = corner(vec2(41.0, 31.0));
-    assert!(folded.distance(vec2(80.0, 50.0)) > 5.0 && folded.y + 0.5 * folded.x > 70.0, "not folded: {folded}");
-    // Directly beneath the upper right corner the far side of the canvas would lie behind the horizon.
+    assert!(
+        folded.distance(vec2(80.0, 50.0)) > 5.0 && folded.y + 0.5 * folded.x > 70.0,
+        "not folded: {folded}"
+    );
+    // Directly beneath the upper right corner the far side of the canvas would lie behind the
+    // horizon.
     for to in [vec2(80.2, 31.0), vec2(-500.0, 4000.0), vec2(1e30, -1e30), vec2(40.0, 30.0)] {
         let at = corner(to);
         assert!(at.is_finite() && at.x > 40.0 && at.y > 30.0, "{to} led to {at}");
@@ -101,13 +129,18 @@ fn a_corner_dragged_past_the_others_or_the_horizon_stays_as_near_as_it_can() {
         last = at;
     }
 }
+
 #[test]
 fn the_pivot_is_dragged_snaps_to_corners_and_is_what_is_turned_and_scaled_about() {
     let document = document();
     let brush = Brush::default();
     let (ids, mut kept) = ([document.layers[0].id], KeptFrame::default());
-    let context =
-        |kept| ToolContext { layer: Some(ids[0]), px_per_pt: 0.3, frame: kept, ..ToolContext::new(&document, &brush) };
+    let context = |kept| ToolContext {
+        layer: Some(ids[0]),
+        px_per_pt: 0.3,
+        frame: kept,
+        ..ToolContext::new(&document, &brush)
+    };
     let pivot_by = |from: Vec2, to: Vec2, keys| {
         let mut gesture = press(&context(KeptFrame::nothing()), pen(from, keys)).0.unwrap();
         match gesture.drag(&[pen(to, keys)]) {
@@ -115,8 +148,16 @@ fn the_pivot_is_dragged_snaps_to_corners_and_is_what_is_turned_and_scaled_about(
             _ => None,
         }
     };
-    assert_eq!(pivot_by(vec2(60.5, 40.0), vec2(41.0, 31.0), NONE), Some(Vec2::ZERO), "the upper left corner");
-    assert_eq!(pivot_by(vec2(60.5, 40.0), vec2(90.0, 70.0), NONE), Some(vec2(1.25, 2.0)), "beyond the frame");
+    assert_eq!(
+        pivot_by(vec2(60.5, 40.0), vec2(41.0, 31.0), NONE),
+        Some(Vec2::ZERO),
+        "the upper left corner"
+    );
+    assert_eq!(
+        pivot_by(vec2(60.5, 40.0), vec2(90.0, 70.0), NONE),
+        Some(vec2(1.25, 2.0)),
+        "beyond the frame"
+    );
     assert_eq!(pivot_by(vec2(50.0, 36.0), vec2(50.0, 35.0), NONE), None, "the inside moves");
     let alt = ModifierKeys { alt: true, ..NONE };
     assert_eq!(pivot_by(vec2(50.0, 36.0), vec2(50.0, 35.0), alt), Some(vec2(0.25, 0.25)));
@@ -134,6 +175,7 @@ fn the_pivot_is_dragged_snaps_to_corners_and_is_what_is_turned_and_scaled_about(
     close(scaled, [(40.0, 30.0), (60.0, 30.0), (60.0, 90.0), (40.0, 90.0)]);
     assert_eq!(kept.around(&document, Framed::Layers(&[LayerId::fresh()])), None);
 }
+
 #[test]
 fn within_a_transformed_group_the_pen_still_leads() {
     let inner = document().layers[0].clone();
@@ -148,8 +190,11 @@ fn within_a_transformed_group_the_pen_still_leads() {
     let document = Document { layers: vec![Arc::new(group)], ..document() };
     let before = TransformFrame::of(&document, id).unwrap();
     let brush = Brush::default();
-    let context = ToolContext { layer: Some(id), px_per_pt: 0.1, ..ToolContext::new(&document, &brush) };
-    for (from, by) in [(before.pivot() + vec2(2.0, 2.0), vec2(10.0, -6.0)), (before.corners[2], vec2(5.0, -4.0))] {
+    let context =
+        ToolContext { layer: Some(id), px_per_pt: 0.1, ..ToolContext::new(&document, &brush) };
+    for (from, by) in
+        [(before.pivot() + vec2(2.0, 2.0), vec2(10.0, -6.0)), (before.corners[2], vec2(5.0, -4.0))]
+    {
         let mut gesture = press(&context, PenSample::at(from)).0.unwrap();
         gesture.drag(&[PenSample::at(from + by)]);
         let Outcome::Commit { document, .. } = gesture.release() else { panic!("moved") };
@@ -162,7 +207,9 @@ fn within_a_transformed_group_the_pen_still_leads() {
 fn two_mirrors_and_four_quarter_turns_leave_no_transform() {
     let document = document();
     let id = document.layers[0].id;
-    for (map, times) in [(mirror(false), 2), (mirror(true), 2), (turn(90.0).unwrap(), 4), (turn(36.0).unwrap(), 10)] {
+    for (map, times) in
+        [(mirror(false), 2), (mirror(true), 2), (turn(90.0).unwrap(), 4), (turn(36.0).unwrap(), 10)]
+    {
         let once = about_middle(&document, &[id], map).unwrap();
         assert!(once.layers[0].transform.is_some());
         let all = (1..times).fold(once, |document, _| about_middle(&document, &[id], map).unwrap());
@@ -179,10 +226,12 @@ fn two() -> Document {
     };
     Document { layers: vec![square("left", 20), square("right", 120)], ..document() }
 }
+
 fn dragged_both(document: &Document, from: Vec2, to: Vec2, keys: ModifierKeys) -> Option<Document> {
     let ids: Vec<LayerId> = document.layers.iter().map(|layer| layer.id).collect();
     let brush = Brush::default();
-    let context = ToolContext { layer: Some(ids[0]), layers: &ids, ..ToolContext::new(document, &brush) };
+    let context =
+        ToolContext { layer: Some(ids[0]), layers: &ids, ..ToolContext::new(document, &brush) };
     let mut gesture = press(&context, PenSample::at(from)).0?;
     gesture.drag(&[PenSample { keys, ..PenSample::at(to) }]);
     match gesture.release() {
@@ -190,6 +239,7 @@ fn dragged_both(document: &Document, from: Vec2, to: Vec2, keys: ModifierKeys) -
         _ => None,
     }
 }
+
 fn corners_of(document: &Document, index: usize) -> [Vec2; 4] {
     TransformFrame::of(document, document.layers[index].id).unwrap().corners
 }
@@ -213,6 +263,7 @@ fn several_layers_have_one_frame_and_each_goes_along_in_its_own() {
     let about = about_middle(&both, &ids, mirror(false)).unwrap();
     close(corners_of(&about, 0), [(140.0, 40.0), (120.0, 40.0), (120.0, 60.0), (140.0, 60.0)]);
 }
+
 #[test]
 fn the_frame_of_several_layers_turns_with_them() {
     let both = two();
@@ -224,15 +275,22 @@ fn the_frame_of_several_layers_turns_with_them() {
     kept.hold(&turned, Framed::Layers(&ids));
     let frame = kept.around(&turned, Framed::Layers(&ids)).unwrap();
     let numbers = FrameNumbers::of(&frame).unwrap();
-    assert!((numbers.angle - 30.0).abs() < 1e-3 && (numbers.width - 120.0).abs() < 1e-3, "{numbers:?}");
+    assert!(
+        (numbers.angle - 30.0).abs() < 1e-3 && (numbers.width - 120.0).abs() < 1e-3,
+        "{numbers:?}"
+    );
     // One of them alone moved: the frame is the box around both again.
     let apart = mapped(&turned, ids[0], PlaneMap::translation(vec2(9.0, 0.0))).unwrap();
-    assert!(FrameNumbers::of(&kept.around(&apart, Framed::Layers(&ids)).unwrap()).unwrap().angle.abs() < 1e-6);
+    assert!(
+        FrameNumbers::of(&kept.around(&apart, Framed::Layers(&ids)).unwrap()).unwrap().angle.abs()
+            < 1e-6
+    );
     let back = FrameNumbers { angle: 0.0, ..numbers }.about(Vec2::splat(0.5), &numbers);
     let by = PlaneMap::affine(back.map_from(&numbers).unwrap()).unwrap();
     let back = ids.iter().fold(turned, |next, id| mapped(&next, *id, by).unwrap());
     assert!(back.layers.iter().all(|layer| layer.transform.is_none()), "nothing is left of it");
 }
+
 #[test]
 fn a_locked_layer_among_several_keeps_all_of_them() {
     let both = two();
@@ -251,13 +309,19 @@ fn the_points_of_a_mesh_are_dragged_one_or_several() {
     assert!(!document.layers[0].is_warped(), "an even mesh moves nothing");
     let brush = Brush::default();
     let drag = |chosen: &[usize], from: Vec2, to: Vec2| {
-        let context = ToolContext { layer: Some(id), mesh_points: chosen, ..ToolContext::new(&document, &brush) };
+        let context = ToolContext {
+            layer: Some(id),
+            mesh_points: chosen,
+            ..ToolContext::new(&document, &brush)
+        };
         let (gesture, outcome) = press(&context, PenSample::at(from));
         assert!(matches!(outcome, Outcome::MeshPoints(_)));
         let mut gesture = gesture.unwrap();
         gesture.drag(&[PenSample::at(to)]);
         match gesture.release() {
-            Outcome::Commit { document, .. } => document.layers[0].transform.as_ref().unwrap().mesh().unwrap().clone(),
+            Outcome::Commit { document, .. } => {
+                document.layers[0].transform.as_ref().unwrap().mesh().unwrap().clone()
+            }
             _ => panic!("nothing was moved"),
         }
     };
@@ -269,8 +333,13 @@ fn the_points_of_a_mesh_are_dragged_one_or_several() {
     assert_eq!([both.points()[4].y, both.points()[5].y, both.points()[3].y], [70.0, 70.0, 60.0]);
     // With Shift points are chosen, and deselected.
     let shift = ModifierKeys { shift: true, ..ModifierKeys::default() };
-    let context = ToolContext { layer: Some(id), mesh_points: &[4], ..ToolContext::new(&document, &brush) };
+    let context =
+        ToolContext { layer: Some(id), mesh_points: &[4], ..ToolContext::new(&document, &brush) };
     let at = |p: Vec2| PenSample { keys: shift, ..PenSample::at(p) };
-    assert!(matches!(press(&context, at(vec2(40.0, 30.0))).1, Outcome::MeshPoints(all) if all == [4, 0]));
-    assert!(matches!(press(&context, at(vec2(100.0, 60.0))).1, Outcome::MeshPoints(all) if all.is_empty()));
+    assert!(
+        matches!(press(&context, at(vec2(40.0, 30.0))).1, Outcome::MeshPoints(all) if all == [4, 0])
+    );
+    assert!(
+        matches!(press(&context, at(vec2(100.0, 60.0))).1, Outcome::MeshPoints(all) if all.is_empty())
+    );
 }

@@ -1,5 +1,5 @@
-//! An image or a gradient on the unwrapped sheet: moved, scaled and turned on one piece of the surface alone. Floor 5.
-//! Not here: what a piece does to its picture (`surface::unwrap`).
+//! An image or a gradient on the unwrapped sheet: moved, scaled and turned on one piece of the
+//! surface alone. Floor 5. Not here: what a piece does to its picture (`surface::unwrap`).
 
 use crate::document::{Content, Document, LayerId, Live};
 use crate::math::{Mat2, Rect, Vec2, vec2};
@@ -8,7 +8,9 @@ use crate::surface::plane_piece::PlanePiece;
 use crate::surface::unwrap::metric::turn;
 use crate::surface::unwrap::{LaidPiece, PlaneLayout};
 use crate::surface::{Bend, Deformation, Surface};
-use crate::tools::{GRAB_PT, Gesture, GestureStart, ModifierKeys, Outcome, PenSample, ToolContext, closed};
+use crate::tools::{
+    GRAB_PT, Gesture, GestureStart, ModifierKeys, Outcome, PenSample, ToolContext, closed,
+};
 
 /// What a drag does to the picture on a piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,7 +47,12 @@ impl PieceFrame {
 }
 
 /// The piece that the pen grabs, by a handle or on it, and what a drag does there.
-pub fn held(layout: &PlaneLayout, at: Vec2, px_per_pt: f32, keys: ModifierKeys) -> Option<(LaidPiece, PieceDrag)> {
+pub fn held(
+    layout: &PlaneLayout,
+    at: Vec2,
+    px_per_pt: f32,
+    keys: ModifierKeys,
+) -> Option<(LaidPiece, PieceDrag)> {
     let is_near = |handle: Vec2| handle.distance(at) <= GRAB_PT * px_per_pt;
     let by_handle = |piece: &LaidPiece| {
         let frame = PieceFrame::of(piece, px_per_pt)?;
@@ -63,7 +70,10 @@ pub fn held(layout: &PlaneLayout, at: Vec2, px_per_pt: f32, keys: ModifierKeys) 
         _ => PieceDrag::Move,
     };
     let pieces = layout.pieces();
-    pieces.iter().find_map(by_handle).or_else(|| pieces.iter().find(inside).map(|piece| (*piece, how)))
+    pieces
+        .iter()
+        .find_map(by_handle)
+        .or_else(|| pieces.iter().find(inside).map(|piece| (*piece, how)))
 }
 
 /// How content that can be moved on one piece is bent.
@@ -82,7 +92,9 @@ fn with_pieces(content: &Content, pieces: Vec<PlanePiece>) -> Content {
             let image = live.params().clone();
             Content::Image(Live::new(PlacedImage { bend: Bend { pieces, ..image.bend }, ..image }))
         }
-        Content::Gradient(live) => Content::Gradient(Live::new(Gradient { pieces, ..live.params().clone() })),
+        Content::Gradient(live) => {
+            Content::Gradient(Live::new(Gradient { pieces, ..live.params().clone() }))
+        }
         other => other.clone(),
     }
 }
@@ -93,20 +105,28 @@ pub fn press(context: &ToolContext, pen: PenSample, layout: &PlaneLayout) -> Ges
     if let Some(why) = layer.and_then(|layer| closed::locked(layer)) {
         return (None, Outcome::Refused(why.into()));
     }
-    let Some((layer, mut bend)) = layer.and_then(|layer| Some((layer, bend_on_pieces(&layer.content)?))) else {
+    let Some((layer, mut bend)) =
+        layer.and_then(|layer| Some((layer, bend_on_pieces(&layer.content)?)))
+    else {
         return (
             None,
-            Outcome::Refused("Select an image or a gradient to move, scale and turn it on one piece".into()),
+            Outcome::Refused(
+                "Select an image or a gradient to move, scale and turn it on one piece".into(),
+            ),
         );
     };
     if bend.operator.unwrapping().is_none() {
-        return (None, Outcome::Refused("Only what is bent by Texture can be moved on one piece".into()));
+        return (
+            None,
+            Outcome::Refused("Only what is bent by Texture can be moved on one piece".into()),
+        );
     }
     let Some(surface) = context.document.surface.clone() else { return (None, Outcome::Idle) };
     let Some((piece, how)) = held(layout, pen.place(), context.px_per_pt, pen.keys) else {
         return (None, Outcome::Idle);
     };
-    let known = bend.pieces.iter().position(|known| layout.object_at(&surface, known.at) == piece.object);
+    let known =
+        bend.pieces.iter().position(|known| layout.object_at(&surface, known.at) == piece.object);
     let index = known.unwrap_or_else(|| {
         bend.pieces.push(PlanePiece::at(layout.middle_of(&surface, &piece)));
         bend.pieces.len() - 1
@@ -115,7 +135,8 @@ pub fn press(context: &ToolContext, pen: PenSample, layout: &PlaneLayout) -> Ges
     let plane_from_sheet = plane_from_sheet(context.document, &surface, &bend, layout, before.at);
     let middle = layout.sheet_at(&surface, before.at).unwrap_or(pen.place());
     let pivot = middle + plane_from_sheet.inverse() * before.moved;
-    let (document, layer, content, from) = (context.document.clone(), layer.id, layer.content.clone(), pen.place());
+    let (document, layer, content, from) =
+        (context.document.clone(), layer.id, layer.content.clone(), pen.place());
     let pieces = bend.pieces;
     let drag = PieceGesture {
         document,
@@ -133,9 +154,15 @@ pub fn press(context: &ToolContext, pen: PenSample, layout: &PlaneLayout) -> Ges
     (Some(Box::new(drag)), Outcome::Idle)
 }
 
-/// How a layer's plane is turned and scaled relative to the sheet, about a point of the canvas, before its pieces are
-/// moved: the ends of a gradient scale its plane.
-fn plane_from_sheet(document: &Document, surface: &Surface, bend: &Bend, layout: &PlaneLayout, at: Vec2) -> Mat2 {
+/// How a layer's plane is turned and scaled relative to the sheet, about a point of the canvas,
+/// before its pieces are moved: the ends of a gradient scale its plane.
+fn plane_from_sheet(
+    document: &Document,
+    surface: &Surface,
+    bend: &Bend,
+    layout: &PlaneLayout,
+    at: Vec2,
+) -> Mat2 {
     let (x, y) = surface.pixel_of(at);
     let still = Bend { pieces: Vec::new(), ..bend.clone() };
     let plane = Deformation::new(Some(surface), document.size, &still).jacobian(x as i32, y as i32);
@@ -168,6 +195,7 @@ impl PieceGesture {
         let content = with_pieces(&self.content, self.pieces.clone());
         self.document.with_layer(self.layer, |layer| layer.content = content)
     }
+
     fn dragged(&self, to: Vec2) -> PlanePiece {
         let (before, after) = (self.from - self.pivot, to - self.pivot);
         match self.how {
@@ -197,6 +225,7 @@ impl Gesture for PieceGesture {
         self.moved = true;
         self.with().map_or(Outcome::Idle, Outcome::Preview)
     }
+
     fn release(&mut self) -> Outcome {
         let label = match self.how {
             PieceDrag::Move => "Move piece",
@@ -204,7 +233,9 @@ impl Gesture for PieceGesture {
             PieceDrag::Turn => "Turn piece",
         };
         match self.with() {
-            Some(document) if self.moved => Outcome::Commit { label: label.into(), document, select: None },
+            Some(document) if self.moved => {
+                Outcome::Commit { label: label.into(), document, select: None }
+            }
             _ => Outcome::Cancel,
         }
     }

@@ -1,5 +1,5 @@
-//! What the move tool would hold, and what it holds: the outline of a stroke, or the bounds of a layer.
-//! Floor 7. Not here: which of them it is (`tools::move_content`).
+//! What the move tool would hold, and what it holds: the outline of a stroke, or the bounds of a
+//! layer. Floor 7. Not here: which of them it is (`tools::move_content`).
 
 use super::{LOOKS, line_through, outlined};
 use crate::document::{Content, Document, Layer, LayerId};
@@ -9,8 +9,8 @@ use crate::tools::frame::TransformFrame;
 use crate::tools::move_content::{MoveTarget, held};
 use eframe::egui::{Id, Painter, Pos2, Shape};
 
-/// For a layer with more strokes only the bounds are shown: finding the stroke under the pointer would take too long at
-/// every move.
+/// For a layer with more strokes only the bounds are shown: finding the stroke under the pointer
+/// would take too long at every move.
 const MOST_STROKES: usize = 400;
 const DASH_PT: f32 = 6.0;
 
@@ -23,10 +23,18 @@ struct Last {
 }
 
 /// `under`: the canvas point under the pointer.
-pub fn draw(painter: &Painter, session: &Session, under: Option<Vec2>, to_screen: &impl Fn(Vec2) -> Pos2) {
+pub fn draw(
+    painter: &Painter,
+    session: &Session,
+    under: Option<Vec2>,
+    to_screen: &impl Fn(Vec2) -> Pos2,
+) {
     let Some((tab, layer)) = session.active().zip(session.layer()) else { return };
     if tab.has_several() {
-        return tab.outermost_chosen().into_iter().for_each(|id| bounds(painter, tab.shown(), id, to_screen));
+        return tab
+            .outermost_chosen()
+            .into_iter()
+            .for_each(|id| bounds(painter, tab.shown(), id, to_screen));
     }
     let id = Id::unique("held by the move tool");
     let last: Option<Last> = painter.ctx().data_mut(|data| data.get_temp(id));
@@ -36,16 +44,21 @@ pub fn draw(painter: &Painter, session: &Session, under: Option<Vec2>, to_screen
         return match last.held {
             MoveTarget::Stroke(index) => {
                 let strokes = tab.shown().strokes_on_canvas(layer.id);
-                strokes.get(index).into_iter().for_each(|stroke| line_through(painter, stroke, to_screen));
+                strokes
+                    .get(index)
+                    .into_iter()
+                    .for_each(|stroke| line_through(painter, stroke, to_screen));
             }
             MoveTarget::Layer => bounds(painter, tab.shown(), layer.id, to_screen),
         };
     }
     let Some(at) = under.map(Vec2::floor) else { return };
-    let whole =
-        painter.ctx().input(|input| input.modifiers.shift) || tab.shown().strokes(layer.id).len() > MOST_STROKES;
+    let whole = painter.ctx().input(|input| input.modifiers.shift)
+        || tab.shown().strokes(layer.id).len() > MOST_STROKES;
     let known = last.filter(|last| last.at == at && !whole).map(|last| last.held);
-    let Some(now) = known.or_else(|| held(tab.shown(), layer, at + vec2(0.5, 0.5), whole)) else { return };
+    let Some(now) = known.or_else(|| held(tab.shown(), layer, at + vec2(0.5, 0.5), whole)) else {
+        return;
+    };
     painter.ctx().data_mut(|data| data.insert_temp(id, Last { layer: layer.id, at, held: now }));
     match now {
         MoveTarget::Stroke(index) => {
@@ -58,7 +71,12 @@ pub fn draw(painter: &Painter, session: &Session, under: Option<Vec2>, to_screen
 }
 
 /// A dashed frame around what a layer holds, in its place; around the canvas if that is unbounded.
-fn bounds(painter: &Painter, document: &Document, layer: LayerId, to_screen: &impl Fn(Vec2) -> Pos2) {
+fn bounds(
+    painter: &Painter,
+    document: &Document,
+    layer: LayerId,
+    to_screen: &impl Fn(Vec2) -> Pos2,
+) {
     let [a, b, c, d] = frame(document, layer).map(to_screen);
     let outline = [a, b, c, d, a];
     let [beneath, light] = LOOKS;
@@ -66,8 +84,8 @@ fn bounds(painter: &Painter, document: &Document, layer: LayerId, to_screen: &im
     painter.extend(Shape::dashed_line(&outline, light, DASH_PT, DASH_PT));
 }
 
-/// Upper left, upper right, lower right, lower left; for an empty layer, and for too many strokes to search at every
-/// move, those of the canvas.
+/// Upper left, upper right, lower right, lower left; for an empty layer, and for too many strokes
+/// to search at every move, those of the canvas.
 fn frame(document: &Document, layer: LayerId) -> [Vec2; 4] {
     let (w, h) = (document.size.width as f32, document.size.height as f32);
     let canvas = [Vec2::ZERO, vec2(w, 0.0), vec2(w, h), vec2(0.0, h)];
@@ -97,7 +115,12 @@ mod tests {
     #[test]
     fn of_strokes_the_frame_is_around_them_and_not_around_the_canvas() {
         let samples = vec![Sample::at(vec2(300.0, 200.0)), Sample::at(vec2(320.0, 210.0))];
-        let stroke = Stroke::new(Brush { size: 10.0, ..Brush::default() }, Operator::None, Color::BLACK, samples);
+        let stroke = Stroke::new(
+            Brush { size: 10.0, ..Brush::default() },
+            Operator::None,
+            Color::BLACK,
+            samples,
+        );
         let of = |strokes: Vec<Arc<Stroke>>| {
             let layer = Layer::new("Ink", Content::Strokes(Live::new(StrokeList { strokes })));
             let layers = vec![Arc::new(layer)];
@@ -107,7 +130,10 @@ mod tests {
         };
         let stroke = Arc::new(stroke);
         let (from, to) = of(vec![stroke.clone()]);
-        assert!(from.cmpge(vec2(192.0, 128.0)).all() && to.cmple(vec2(384.0, 256.0)).all(), "{from} {to}");
+        assert!(
+            from.cmpge(vec2(192.0, 128.0)).all() && to.cmple(vec2(384.0, 256.0)).all(),
+            "{from} {to}"
+        );
         for strokes in [Vec::new(), vec![stroke; MOST_STROKES + 1]] {
             assert_eq!(of(strokes), (Vec2::ZERO, vec2(600.0, 500.0)));
         }

@@ -1,4 +1,5 @@
-//! The frames of pieces on the unwrapped sheet, and the handles of the one under the pointer. Floor 7.
+//! The frames of pieces on the unwrapped sheet, and the handles of the one under the pointer. Floor
+//! 7.
 
 use crate::math::Vec2;
 use crate::session::Session;
@@ -20,15 +21,18 @@ pub fn draw(
     if lies.is_none_or(|bend| bend.operator.unwrapping().is_none()) {
         return;
     }
-    let held = under.and_then(|at| held(layout, at, px_per_pt, ModifierKeys::default())).map(|(piece, _)| piece);
+    let held = under
+        .and_then(|at| held(layout, at, px_per_pt, ModifierKeys::default()))
+        .map(|(piece, _)| piece);
     for piece in layout.pieces() {
         let Some(frame) = PieceFrame::of(piece, px_per_pt) else { continue };
         let corners: Vec<Pos2> = frame.corners.map(to_screen).to_vec();
         let is_held = held.is_some_and(|held| held.object == piece.object);
         let light = if is_held { 230 } else { 90 };
-        for stroke in
-            [Stroke::new(2.4, Color32::from_black_alpha(light / 2)), Stroke::new(1.0, Color32::from_white_alpha(light))]
-        {
+        for stroke in [
+            Stroke::new(2.4, Color32::from_black_alpha(light / 2)),
+            Stroke::new(1.0, Color32::from_white_alpha(light)),
+        ] {
             painter.add(Shape::closed_line(corners.clone(), stroke));
         }
         if !is_held {

@@ -1,5 +1,5 @@
-//! What was found about maps, in the words of the window. Floor 7. The fields themselves are those of recipes, which
-//! the command line prints.
+//! What was found about maps, in the words of the window. Floor 7. The fields themselves are those
+//! of recipes, which the command line prints.
 
 use crate::document::source::{Near, NormalEncoding};
 use crate::io::maps::Finding;
@@ -13,24 +13,30 @@ pub const ENCODINGS: [(NormalEncoding, &str); NormalEncoding::ALL.len()] = [
     (NormalEncoding::Dxt5nm, "two channels, in alpha and green"),
 ];
 /// Which values of a depth map are near, in words.
-pub const NEAR: [(Near, &str); Near::ALL.len()] = [(Near::Auto, "found"), (Near::Low, "dark"), (Near::High, "bright")];
+pub const NEAR: [(Near, &str); Near::ALL.len()] =
+    [(Near::Auto, "found"), (Near::Low, "dark"), (Near::High, "bright")];
 
 /// The name of a choice and what was chosen, in words; a field without words is shown unchanged.
 pub fn told(choice: &Finding) -> (&str, String) {
     let Finding { field, value, .. } = choice;
     let (name, words): (&str, &[(&str, &str)]) = match *field {
         "normal.encoding" => {
-            let words = NormalEncoding::from_name(value).map(|encoding| worded(encoding, &ENCODINGS));
+            let words =
+                NormalEncoding::from_name(value).map(|encoding| worded(encoding, &ENCODINGS));
             return ("Numbers", words.map_or_else(|| value.clone(), str::to_owned));
         }
-        "normal.srgb" => ("Colours", &[("false", "plain numbers"), ("true", "bent by the sRGB curve, bent back")]),
+        "normal.srgb" => (
+            "Colours",
+            &[("false", "plain numbers"), ("true", "bent by the sRGB curve, bent back")],
+        ),
         "normal.channels" => return ("Right, up, forward in", channels(value)),
         "normal.flip_x" => ("Left and right", FLIPPED),
         "normal.flip_y" => ("Up and down", FLIPPED),
         "normal.flip_z" => ("Front and back", FLIPPED),
-        "normal.space" => {
-            ("Directions", &[("camera", "as seen in the picture"), ("world", "of the scene, turned to the view")])
-        }
+        "normal.space" => (
+            "Directions",
+            &[("camera", "as seen in the picture"), ("world", "of the scene, turned to the view")],
+        ),
         "depth.near" => {
             let words = Near::from_name(value).map(|near| worded(near, &NEAR));
             return ("Near is", words.map_or_else(|| value.clone(), str::to_owned));
@@ -76,7 +82,8 @@ mod tests {
     #[test]
     fn every_choice_is_told_in_words() {
         let of = |field, value: &str| {
-            let finding = Finding { field, value: value.into(), confidence: 1.0, how: ChoiceOrigin::Found };
+            let finding =
+                Finding { field, value: value.into(), confidence: 1.0, how: ChoiceOrigin::Found };
             let (name, words) = told(&finding);
             assert!(!name.contains(['.', '_']), "{name}");
             assert!(words != value, "{name}: {words}");
@@ -84,7 +91,10 @@ mod tests {
         NormalEncoding::ALL.iter().for_each(|(_, name)| of("normal.encoding", name));
         NormalSpace::ALL.iter().for_each(|(_, name)| of("normal.space", name));
         DepthEncoding::ALL.iter().for_each(|(_, name)| of("depth.encoding", name));
-        Near::ALL.iter().filter(|(near, _)| *near != Near::Auto).for_each(|(_, name)| of("depth.near", name));
+        Near::ALL
+            .iter()
+            .filter(|(near, _)| *near != Near::Auto)
+            .for_each(|(_, name)| of("depth.near", name));
         for field in ["normal.srgb", "normal.flip_x", "normal.flip_y", "normal.flip_z"] {
             ["true", "false"].iter().for_each(|value| of(field, value));
         }

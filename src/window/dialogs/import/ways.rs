@@ -28,7 +28,8 @@ pub fn lit(surface: &Surface, [flip_x, flip_y]: [bool; 2]) -> Option<Picture> {
     let small = Size::new(size.width.div_ceil(step), size.height.div_ceil(step));
     let light = vec3(-0.5, 0.6, 0.62).normalize();
     let texel = |i: usize| {
-        let (x, y) = (i % small.width as usize * step as usize, i / small.width as usize * step as usize);
+        let (x, y) =
+            (i % small.width as usize * step as usize, i / small.width as usize * step as usize);
         let mut n = surface.normal(x, y);
         n.x = if flip_x { -n.x } else { n.x };
         n.y = if flip_y { -n.y } else { n.y };

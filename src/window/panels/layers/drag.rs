@@ -30,10 +30,14 @@ pub fn show(
         match drop_at(layer, rect, pointer.y) {
             LayerDrop::Above => drop(ui.painter().hline(rect.x_range(), rect.top(), stroke)),
             LayerDrop::Below => drop(ui.painter().hline(rect.x_range(), rect.bottom(), stroke)),
-            LayerDrop::Into => drop(ui.painter().rect_stroke(rect, 4.0, stroke, egui::StrokeKind::Inside)),
+            LayerDrop::Into => {
+                ui.painter().rect_stroke(rect, 4.0, stroke, egui::StrokeKind::Inside);
+            }
         }
     }
-    let Some(held) = response.dnd_release_payload::<LayerId>().map(|row| held(*row)) else { return };
+    let Some(held) = response.dnd_release_payload::<LayerId>().map(|row| held(*row)) else {
+        return;
+    };
     let Some(pointer) = ui.input(|i| i.pointer.interact_pos()) else { return };
     let Some(rest) = document.without_layers(&held) else { return };
     // There is no such place among the dragged rows.

@@ -1,5 +1,5 @@
-//! The field above the layers that shows only those of a name, a kind or a label. Floor 7. Its content belongs to the
-//! window, not to the document.
+//! The field above the layers that shows only those of a name, a kind or a label. Floor 7. Its
+//! content belongs to the window, not to the document.
 
 use super::color_of;
 use crate::document::{Content, Document, Layer, LayerId, LayerLabel};
@@ -24,17 +24,25 @@ impl LayerFilter {
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
+
     fn finds(&self, layer: &Layer) -> bool {
         layer.name.to_lowercase().contains(&self.text.to_lowercase())
             && self.kind.is_none_or(|kind| layer.content.label() == kind)
             && self.label.is_none_or(|label| layer.label == label)
     }
-    /// The rows, the topmost first: the layers found, with the groups around them, or all that no folded group hides.
-    pub fn listed<'d>(&self, document: &'d Document, is_folded: impl Fn(LayerId) -> bool) -> Vec<ListedLayer<'d>> {
+
+    /// The rows, the topmost first: the layers found, with the groups around them, or all that no
+    /// folded group hides.
+    pub fn listed<'d>(
+        &self,
+        document: &'d Document,
+        is_folded: impl Fn(LayerId) -> bool,
+    ) -> Vec<ListedLayer<'d>> {
         let mut rows = Vec::new();
         self.list(&document.layers, 0, &is_folded, &mut rows);
         rows
     }
+
     fn list<'d>(
         &self,
         layers: &'d [Arc<Layer>],
@@ -60,6 +68,7 @@ impl LayerFilter {
 pub fn current(ui: &Ui) -> LayerFilter {
     ui.data(|data| data.get_temp(id()).unwrap_or_default())
 }
+
 fn id() -> Id {
     Id::unique("layer filter")
 }
@@ -68,17 +77,23 @@ fn id() -> Id {
 pub fn show(ui: &mut Ui, document: &Document) {
     let mut filter = current(ui);
     ui.horizontal(|ui| {
-        let field =
-            TextEdit::singleline(&mut filter.text).hint_text("Filter").desired_width(ui.available_width() - 92.0);
+        let field = TextEdit::singleline(&mut filter.text)
+            .hint_text("Filter")
+            .desired_width(ui.available_width() - 92.0);
         let field = ui.add(field);
         named(&field, "Filter layers");
         if field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Escape)) {
             filter = LayerFilter::default();
         }
-        let chosen = filter.kind.map(str::to_owned).or(filter.label.map(|label| label.name().to_owned()));
-        let menu = ui.menu_button(chosen.as_deref().unwrap_or("all kinds"), |ui| kinds(ui, document, &mut filter));
+        let chosen =
+            filter.kind.map(str::to_owned).or(filter.label.map(|label| label.name().to_owned()));
+        let menu = ui.menu_button(chosen.as_deref().unwrap_or("all kinds"), |ui| {
+            kinds(ui, document, &mut filter)
+        });
         menu.response.on_hover_text("Shows only layers of a kind or a label");
-        if !filter.is_empty() && ui.small_button("×").on_hover_text("Shows all layers again (Escape)").clicked() {
+        if !filter.is_empty()
+            && ui.small_button("×").on_hover_text("Shows all layers again (Escape)").clicked()
+        {
             filter = LayerFilter::default();
         }
     });
@@ -88,10 +103,14 @@ pub fn show(ui: &mut Ui, document: &Document) {
 /// Those that the document has.
 fn kinds(ui: &mut Ui, document: &Document, filter: &mut LayerFilter) {
     let all = document.walk();
-    let mut kinds: Vec<&'static str> = all.iter().map(|(_, layer)| label_of(&layer.content)).collect();
+    let mut kinds: Vec<&'static str> =
+        all.iter().map(|(_, layer)| label_of(&layer.content)).collect();
     kinds.sort_unstable();
     kinds.dedup();
-    if ui.add(Button::selectable(filter.kind.is_none() && filter.label.is_none(), "all kinds")).clicked() {
+    if ui
+        .add(Button::selectable(filter.kind.is_none() && filter.label.is_none(), "all kinds"))
+        .clicked()
+    {
         (filter.kind, filter.label) = (None, None);
         ui.close();
     }
@@ -102,7 +121,9 @@ fn kinds(ui: &mut Ui, document: &Document, filter: &mut LayerFilter) {
         }
     }
     for (label, name) in LayerLabel::ALL {
-        let Some(color) = color_of(label).filter(|_| all.iter().any(|(_, layer)| layer.label == label)) else {
+        let Some(color) =
+            color_of(label).filter(|_| all.iter().any(|(_, layer)| layer.label == label))
+        else {
             continue;
         };
         let text = RichText::new(format!("{name} label")).color(color);
@@ -125,20 +146,31 @@ mod tests {
 
     #[test]
     fn layers_are_found_by_name_kind_and_label_with_the_groups_around_them() {
-        let fill = |name: &str, label| Layer { label, ..Layer::new(name, Content::Fill(Color::BLACK)) };
-        let layers = [fill("Ink", LayerLabel::Red), fill("Sky", LayerLabel::None)].map(Arc::new).to_vec();
+        let fill =
+            |name: &str, label| Layer { label, ..Layer::new(name, Content::Fill(Color::BLACK)) };
+        let layers =
+            [fill("Ink", LayerLabel::Red), fill("Sky", LayerLabel::None)].map(Arc::new).to_vec();
         let group = Layer::new("People", Content::Group(Group { layers, pass_through: false }));
         let all = vec![Arc::new(fill("Think", LayerLabel::None)), Arc::new(group)];
         let document = Document { layers: all, ..Document::empty(Size::new(4, 4)) };
         let told = |filter: LayerFilter, folded: bool| {
             let rows = filter.listed(&document, |_| folded);
-            rows.iter().map(|(layer, depth)| format!("{}{}", depth, layer.name)).collect::<Vec<_>>().join(" ")
+            rows.iter()
+                .map(|(layer, depth)| format!("{}{}", depth, layer.name))
+                .collect::<Vec<_>>()
+                .join(" ")
         };
         let plain = LayerFilter::default;
         assert_eq!(told(plain(), false), "0People 1Sky 1Ink 0Think");
         assert_eq!(told(plain(), true), "0People 0Think");
-        assert_eq!(told(LayerFilter { text: "INK".into(), ..plain() }, true), "0People 1Ink 0Think");
-        assert_eq!(told(LayerFilter { label: Some(LayerLabel::Red), ..plain() }, false), "0People 1Ink");
+        assert_eq!(
+            told(LayerFilter { text: "INK".into(), ..plain() }, true),
+            "0People 1Ink 0Think"
+        );
+        assert_eq!(
+            told(LayerFilter { label: Some(LayerLabel::Red), ..plain() }, false),
+            "0People 1Ink"
+        );
         let kind = Some(document.layers[1].content.label());
         assert_eq!(told(LayerFilter { kind, ..plain() }, false), "0People");
     }

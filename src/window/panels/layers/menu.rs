@@ -7,7 +7,13 @@ use crate::session::actions::LayerAction;
 use crate::session::{Action, LayerPath, LayerPaths, Property, Session};
 use eframe::egui::{Button, Id, Ui};
 
-pub fn show(ui: &mut Ui, session: &Session, layer: &Layer, path: &LayerPath, requests: &mut UiRequests) {
+pub fn show(
+    ui: &mut Ui,
+    session: &Session,
+    layer: &Layer,
+    path: &LayerPath,
+    requests: &mut UiRequests,
+) {
     let is_chosen = session.active().is_some_and(|tab| tab.is_chosen(layer.id));
     let paths = if is_chosen { session.layer_paths() } else { path.into() };
     type MenuAction = fn(LayerPaths) -> LayerAction;
@@ -15,13 +21,17 @@ pub fn show(ui: &mut Ui, session: &Session, layer: &Layer, path: &LayerPath, req
         ("Duplicate", |layer| LayerAction::Duplicate { layer }),
         ("Group", |layer| LayerAction::Group { layer }),
         ("Ungroup", |layer| LayerAction::Ungroup { layer }),
-        (if paths.is_several() { "Merge" } else { "Merge down" }, |layer| LayerAction::MergeDown { layer }),
+        (if paths.is_several() { "Merge" } else { "Merge down" }, |layer| LayerAction::MergeDown {
+            layer,
+        }),
         ("Bake", |layer| LayerAction::Bake { layer }),
         ("Clear", |layer| LayerAction::Clear { layer }),
         ("Delete", |layer| LayerAction::Delete { layer }),
     ];
     if ui.button("Rename").clicked() {
-        ui.data_mut(|data| data.insert_temp(Id::unique("renaming layer"), (layer.id, layer.name.clone())));
+        ui.data_mut(|data| {
+            data.insert_temp(Id::unique("renaming layer"), (layer.id, layer.name.clone()))
+        });
         ui.close();
     }
     for (label, make) in entries {

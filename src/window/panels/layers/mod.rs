@@ -1,5 +1,6 @@
-//! The layer list, the topmost first, with controls of the chosen layers above and below. Floor 7. `row` shows one
-//! layer, `drag` handles dragging, `menu` the context menu, `filter` the field that finds layers.
+//! The layer list, the topmost first, with controls of the chosen layers above and below. Floor 7.
+//! `row` shows one layer, `drag` handles dragging, `menu` the context menu, `filter` the field that
+//! finds layers.
 
 mod drag;
 mod filter;
@@ -41,7 +42,12 @@ fn color_of(label: LayerLabel) -> Option<Color32> {
     label.color().map(|color| Color32::from_rgb(color.r, color.g, color.b))
 }
 
-pub fn show(ui: &mut Ui, session: &Session, thumbnails: &mut Thumbnails, requests: &mut UiRequests) {
+pub fn show(
+    ui: &mut Ui,
+    session: &Session,
+    thumbnails: &mut Thumbnails,
+    requests: &mut UiRequests,
+) {
     let Some(document) = session.shown() else {
         ui.weak("No document is open.");
         return;
@@ -50,45 +56,70 @@ pub fn show(ui: &mut Ui, session: &Session, thumbnails: &mut Thumbnails, request
     filter::show(ui, document);
     foot(ui, session, requests);
     let height = ui.available_height();
-    egui::ScrollArea::vertical().id_salt("layers").max_height(height).auto_shrink([false, false]).show(ui, |ui| {
-        ui.spacing_mut().item_spacing.y = 1.0;
-        let rows = filter::current(ui).listed(document, |group| row::is_folded(ui, group));
-        let listed: Vec<LayerId> = rows.iter().map(|(layer, _)| layer.id).collect();
-        for (layer, depth) in &rows {
-            let Some(path) = LayerPath::of(document, layer.id) else { continue };
-            let row = LayerRow { session, document, layer, path, depth: *depth, listed: &listed };
-            row.show(ui, thumbnails, requests);
-        }
-        if document.layers.is_empty() {
-            ui.weak("No layers yet: paint, or drop a picture.");
-        } else if rows.is_empty() {
-            ui.weak("No layer is called so; Escape in the field shows all.");
-        }
-    });
+    egui::ScrollArea::vertical()
+        .id_salt("layers")
+        .max_height(height)
+        .auto_shrink([false, false])
+        .show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 1.0;
+            let rows = filter::current(ui).listed(document, |group| row::is_folded(ui, group));
+            let listed: Vec<LayerId> = rows.iter().map(|(layer, _)| layer.id).collect();
+            for (layer, depth) in &rows {
+                let Some(path) = LayerPath::of(document, layer.id) else { continue };
+                let row =
+                    LayerRow { session, document, layer, path, depth: *depth, listed: &listed };
+                row.show(ui, thumbnails, requests);
+            }
+            if document.layers.is_empty() {
+                ui.weak("No layers yet: paint, or drop a picture.");
+            } else if rows.is_empty() {
+                ui.weak("No layer is called so; Escape in the field shows all.");
+            }
+        });
 }
 
 /// Blend mode and opacity of the chosen layers, showing those of the primary one.
 fn head(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let (Some(layer), Some(path)) = (session.layer(), session.layer_path()) else { return };
-    let chosen = session.active().map(|tab| LayerPaths::of(tab.document(), &tab.chosen_layers())).unwrap_or_default();
+    let chosen = session
+        .active()
+        .map(|tab| LayerPaths::of(tab.document(), &tab.chosen_layers()))
+        .unwrap_or_default();
     ui.horizontal(|ui| {
         if let Some(mode) = choice(ui, "Blend mode", layer.blend, &BlendMode::LABELS) {
             set(requests, &chosen, Property::Blend { mode }, true);
         }
         let number = NumberField::new("Opacity", 0.0..=1.0, "Of the whole layer");
-        if let Some(changed) = number.inline(ui, layer.opacity, (ui.available_width() - 112.0).max(30.0)) {
+        if let Some(changed) =
+            number.inline(ui, layer.opacity, (ui.available_width() - 112.0).max(30.0))
+        {
             set(requests, &chosen, Property::Opacity { to: changed.to }, changed.done);
         }
     });
     ui.horizontal(|ui| {
         let toggles = [
-            (Icon::LockAlpha, "Lock alpha", layer.lock == LayerLock::Alpha, "Paints only where there is paint (/)"),
+            (
+                Icon::LockAlpha,
+                "Lock alpha",
+                layer.lock == LayerLock::Alpha,
+                "Paints only where there is paint (/)",
+            ),
             (Icon::Lock, "Lock layer", layer.lock == LayerLock::All, "No tool changes it"),
-            (Icon::Clip, "Clip to layer below", layer.clip_below, "Paint only where the layer beneath has paint"),
+            (
+                Icon::Clip,
+                "Clip to layer below",
+                layer.clip_below,
+                "Paint only where the layer beneath has paint",
+            ),
         ];
         for (icon, label, is_on, hint) in toggles {
-            if icon_button(ui, icon, label, is_on).on_hover_text(format!("{label}\n{hint}")).clicked() {
-                let lock = |lock: LayerLock| Property::Locked { lock: if is_on { LayerLock::None } else { lock } };
+            if icon_button(ui, icon, label, is_on)
+                .on_hover_text(format!("{label}\n{hint}"))
+                .clicked()
+            {
+                let lock = |lock: LayerLock| Property::Locked {
+                    lock: if is_on { LayerLock::None } else { lock },
+                };
                 let to = match icon {
                     Icon::LockAlpha => lock(LayerLock::Alpha),
                     Icon::Lock => lock(LayerLock::All),
@@ -98,7 +129,10 @@ fn head(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             }
         }
         let is_alone = session.active().is_some_and(|tab| tab.solo == Some(layer.id));
-        if icon_button(ui, Icon::Solo, "Show layer alone", is_alone).on_hover_text("Shows this layer alone").clicked() {
+        if icon_button(ui, Icon::Solo, "Show layer alone", is_alone)
+            .on_hover_text("Shows this layer alone")
+            .clicked()
+        {
             requests.act(Action::Layer(LayerAction::Solo { layer: path }));
         }
     });
@@ -129,7 +163,10 @@ fn foot(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         ];
         for (icon, label, make) in buttons {
             let hint = crate::commands::named(label).map_or(label, |command| command.hint);
-            if icon_button(ui, icon, label, false).on_hover_text(format!("{label}\n{hint}")).clicked() {
+            if icon_button(ui, icon, label, false)
+                .on_hover_text(format!("{label}\n{hint}"))
+                .clicked()
+            {
                 requests.act(Action::Layer(make(session.layer_paths())));
             }
         }

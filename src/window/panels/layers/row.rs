@@ -13,8 +13,8 @@ use crate::theme::ACCENT;
 use crate::thumbnails::Thumbnails;
 use crate::tools::ModifierKeys;
 use eframe::egui::{
-    self, Align2, Color32, Id, Modifiers, Rect, Response, Sense, Stroke, StrokeKind, TextEdit, TextStyle, Ui, pos2,
-    vec2,
+    self, Align2, Color32, Id, Modifiers, Rect, Response, Sense, Stroke, StrokeKind, TextEdit,
+    TextStyle, Ui, pos2, vec2,
 };
 use std::sync::Arc;
 
@@ -56,7 +56,9 @@ impl LayerRow<'_> {
         let response = ui.interact(rect, row_id(layer.id), Sense::click_and_drag());
         let is_selected = tab.is_chosen(layer.id);
         let label = format!("Layer {}{}", layer.name, if is_selected { ", chosen" } else { "" });
-        response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_selected, &label));
+        response.widget_info(|| {
+            egui::WidgetInfo::selected(egui::Role::Button, true, is_selected, &label)
+        });
         let fill = match (is_selected, response.hovered()) {
             (true, _) => ui.visuals().selection.bg_fill,
             (false, true) => ui.visuals().widgets.hovered.weak_bg_fill,
@@ -83,7 +85,8 @@ impl LayerRow<'_> {
         name(&mut inner, session, layer, path, &response, requests);
         drag::show(ui, tab, layer, &response, rect, requests);
         let keys = ui.input(|input| input.modifiers);
-        let is_on_picture = response.interact_pointer_pos().is_some_and(|at| thumbnail.contains(at));
+        let is_on_picture =
+            response.interact_pointer_pos().is_some_and(|at| thumbnail.contains(at));
         if response.clicked() && keys.command && is_on_picture {
             let settings = session.select;
             let how = settings.how(ModifierKeys { shift: keys.shift, ctrl: true, alt: keys.alt });
@@ -96,15 +99,20 @@ impl LayerRow<'_> {
         self.arrows(ui, tab, &response, requests);
         response.context_menu(|ui| menu::show(ui, session, layer, path, requests));
     }
+
     fn choose(&self, ids: &[LayerId], anchor: Option<LayerId>, requests: &mut UiRequests) {
-        requests.actions.extend(LayerAction::choosing(self.document, ids, anchor).map(Action::Layer));
+        requests
+            .actions
+            .extend(LayerAction::choosing(self.document, ids, anchor).map(Action::Layer));
     }
+
     /// Selects a row, or all from it to the start of the range.
     fn extend(&self, tab: &OpenDocument, to: LayerId, extends: bool, requests: &mut UiRequests) {
         let anchor = tab.range_start().filter(|_| extends);
         let ids = anchor.map_or_else(|| vec![to], |anchor| range(self.listed, anchor, to));
         self.choose(&ids, anchor, requests);
     }
+
     /// Arrow keys in a row that has the focus move to the next one; with Shift they add it.
     fn arrows(&self, ui: &Ui, tab: &OpenDocument, row: &Response, requests: &mut UiRequests) {
         if !row.has_focus() {
@@ -112,8 +120,11 @@ impl LayerRow<'_> {
         }
         let filter = egui::EventFilter { vertical_arrows: true, ..Default::default() };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(row.id, filter));
-        let pressed =
-            |key| ui.input_mut(|i| i.consume_key(Modifiers::NONE, key) || i.consume_key(Modifiers::SHIFT, key));
+        let pressed = |key| {
+            ui.input_mut(|i| {
+                i.consume_key(Modifiers::NONE, key) || i.consume_key(Modifiers::SHIFT, key)
+            })
+        };
         let extends = ui.input(|i| i.modifiers.shift);
         let here = self.listed.iter().position(|id| *id == self.layer.id);
         let to = match (pressed(egui::Key::ArrowUp), pressed(egui::Key::ArrowDown)) {
@@ -126,6 +137,7 @@ impl LayerRow<'_> {
             ui.memory_mut(|memory| memory.request_focus(row_id(*to)));
         }
     }
+
     /// The eye, a group's fold, and the sign of being clipped.
     fn switches(&self, ui: &mut Ui, requests: &mut UiRequests) {
         let layer = self.layer;
@@ -135,7 +147,12 @@ impl LayerRow<'_> {
             if ui.input(|input| input.modifiers.alt) {
                 requests.act(Action::Layer(LayerAction::Solo { layer: self.path.clone() }));
             } else {
-                set(requests, &self.path.clone().into(), Property::Visible { on: !layer.visible }, true);
+                set(
+                    requests,
+                    &self.path.clone().into(),
+                    Property::Visible { on: !layer.visible },
+                    true,
+                );
             }
         }
         if layer.content.group().is_some() {
@@ -150,18 +167,25 @@ impl LayerRow<'_> {
             Icon::Clip.draw(ui.painter(), at, ui.visuals().text_color());
         }
     }
+
     /// The mask's thumbnail: a click selects it for painting, with Shift it disables the mask.
     fn mask(&self, ui: &mut Ui, thumbnails: &mut Thumbnails, requests: &mut UiRequests) {
         let Some(mask) = &self.layer.mask else { return };
-        let is_on = self.session.active().is_some_and(|tab| tab.on_mask && tab.selected == Some(self.layer.id));
+        let is_on = self
+            .session
+            .active()
+            .is_some_and(|tab| tab.on_mask && tab.selected == Some(self.layer.id));
         let (rect, response) = ui.allocate_exact_size(vec2(24.0, 24.0), Sense::click());
         let label = format!("Mask of {}", self.layer.name);
-        response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_on, &label));
+        response
+            .widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_on, &label));
         ui.painter().rect_filled(rect, 3.0, Color32::from_gray(0x18));
         match thumbnails.of_mask(ui.ctx(), self.layer) {
             Some((texture, size)) => {
-                let at =
-                    Rect::from_center_size(rect.center(), size * (rect.width() / size.x).min(rect.height() / size.y));
+                let at = Rect::from_center_size(
+                    rect.center(),
+                    size * (rect.width() / size.x).min(rect.height() / size.y),
+                );
                 let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
                 ui.painter().image(texture, at, uv, Color32::WHITE);
             }
@@ -192,7 +216,12 @@ impl LayerRow<'_> {
 }
 
 /// The thumbnail, or the kind's icon until there is one; returns where it is.
-fn picture(ui: &mut Ui, document: &Document, layer: &Arc<Layer>, thumbnails: &mut Thumbnails) -> Rect {
+fn picture(
+    ui: &mut Ui,
+    document: &Document,
+    layer: &Arc<Layer>,
+    thumbnails: &mut Thumbnails,
+) -> Rect {
     let (rect, _) = ui.allocate_exact_size(vec2(30.0, 30.0), Sense::hover());
     let icon = kind_icon(&layer.content);
     ui.painter().rect_filled(rect, 3.0, Color32::from_gray(0x70));
@@ -211,15 +240,26 @@ fn picture(ui: &mut Ui, document: &Document, layer: &Arc<Layer>, thumbnails: &mu
 }
 
 /// The name, or a text field to change it.
-fn name(ui: &mut Ui, session: &Session, layer: &Layer, path: &LayerPath, row: &Response, requests: &mut UiRequests) {
+fn name(
+    ui: &mut Ui,
+    session: &Session,
+    layer: &Layer,
+    path: &LayerPath,
+    row: &Response,
+    requests: &mut UiRequests,
+) {
     let renaming = Id::unique("renaming layer");
-    let typed = ui.data(|data| data.get_temp::<(LayerId, String)>(renaming)).filter(|(id, _)| *id == layer.id);
+    let typed = ui
+        .data(|data| data.get_temp::<(LayerId, String)>(renaming))
+        .filter(|(id, _)| *id == layer.id);
     if let Some((id, mut text)) = typed {
-        let response = ui.add(TextEdit::singleline(&mut text).desired_width(ui.available_width() - 24.0));
+        let response =
+            ui.add(TextEdit::singleline(&mut text).desired_width(ui.available_width() - 24.0));
         crate::widgets::named(&response, "Layer name");
         if response.lost_focus() {
             ui.data_mut(|data| data.remove::<(LayerId, String)>(renaming));
-            let is_kept = !ui.input(|i| i.key_pressed(egui::Key::Escape)) && !text.trim().is_empty();
+            let is_kept =
+                !ui.input(|i| i.key_pressed(egui::Key::Escape)) && !text.trim().is_empty();
             if is_kept && text != layer.name {
                 set(requests, &path.into(), Property::Name { name: text.trim().to_owned() }, true);
             }
@@ -239,7 +279,8 @@ fn name(ui: &mut Ui, session: &Session, layer: &Layer, path: &LayerPath, row: &R
         (layer.lock == LayerLock::Alpha, Icon::LockAlpha),
         (is_alone, Icon::Solo),
     ];
-    let badges: Vec<Icon> = badges.into_iter().filter(|(on, _)| *on).map(|(_, icon)| icon).collect();
+    let badges: Vec<Icon> =
+        badges.into_iter().filter(|(on, _)| *on).map(|(_, icon)| icon).collect();
     let room = at.width() - 6.0 - 17.0 * badges.len() as f32;
     let strong = ui.visuals().strong_text_color();
     let color = if layer.visible { strong } else { ui.visuals().weak_text_color() };
@@ -250,8 +291,16 @@ fn name(ui: &mut Ui, session: &Session, layer: &Layer, path: &LayerPath, row: &R
         TextStyle::Body,
     );
     ui.painter().galley(pos2(at.left() + 3.0, at.top() + 4.0), galley, color);
-    let mode = if layer.blend == BlendMode::Normal { String::new() } else { format!(" · {}", layer.blend.label()) };
-    let opacity = if layer.opacity < 1.0 { format!(" · {:.0} %", layer.opacity * 100.0) } else { String::new() };
+    let mode = if layer.blend == BlendMode::Normal {
+        String::new()
+    } else {
+        format!(" · {}", layer.blend.label())
+    };
+    let opacity = if layer.opacity < 1.0 {
+        format!(" · {:.0} %", layer.opacity * 100.0)
+    } else {
+        String::new()
+    };
     let about = format!("{}{mode}{opacity}", layer.content.label());
     let font = TextStyle::Small.resolve(ui.style());
     ui.painter().text(
@@ -263,6 +312,10 @@ fn name(ui: &mut Ui, session: &Session, layer: &Layer, path: &LayerPath, row: &R
     );
     for (i, icon) in badges.iter().enumerate() {
         let center = pos2(at.right() - 10.0 - 17.0 * i as f32, at.center().y);
-        icon.draw(ui.painter(), Rect::from_center_size(center, vec2(13.0, 13.0)), ui.visuals().text_color());
+        icon.draw(
+            ui.painter(),
+            Rect::from_center_size(center, vec2(13.0, 13.0)),
+            ui.visuals().text_color(),
+        );
     }
 }

@@ -12,22 +12,41 @@ pub(super) struct NumberRow<'a> {
 }
 
 impl NumberRow<'_> {
-    pub(super) fn show<T>(self, ui: &mut Ui, made: impl FnOnce(f32) -> T) -> Option<ValueChange<T>> {
+    pub(super) fn show<T>(
+        self,
+        ui: &mut Ui,
+        made: impl FnOnce(f32) -> T,
+    ) -> Option<ValueChange<T>> {
         self.field.row(ui, self.value).map(|changed| changed.map(made))
     }
 }
 
-pub(super) fn number<'a>(label: &'a str, range: &crate::math::Range, hint: &'a str, value: f32) -> NumberRow<'a> {
+pub(super) fn number<'a>(
+    label: &'a str,
+    range: &crate::math::Range,
+    hint: &'a str,
+    value: f32,
+) -> NumberRow<'a> {
     NumberRow { field: NumberField::new(label, range.clone(), hint), value }
 }
 
 /// Lengths: near 0 they are set more finely.
-pub(super) fn length<'a>(label: &'a str, range: &crate::math::Range, hint: &'a str, value: f32) -> NumberRow<'a> {
+pub(super) fn length<'a>(
+    label: &'a str,
+    range: &crate::math::Range,
+    hint: &'a str,
+    value: f32,
+) -> NumberRow<'a> {
     let row = number(label, range, hint, value);
     NumberRow { field: row.field.pixels().logarithmic(), ..row }
 }
 
-pub(super) fn degrees<'a>(label: &'a str, range: &crate::math::Range, hint: &'a str, value: f32) -> NumberRow<'a> {
+pub(super) fn degrees<'a>(
+    label: &'a str,
+    range: &crate::math::Range,
+    hint: &'a str,
+    value: f32,
+) -> NumberRow<'a> {
     let row = number(label, range, hint, value);
     NumberRow { field: row.field.degrees(), ..row }
 }

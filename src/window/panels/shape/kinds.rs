@@ -1,5 +1,5 @@
-//! The settings of bevels, lines, reliefs and lighting profiles. Floor 7. Not here: the rows of other kinds
-//! (`numbers`).
+//! The settings of bevels, lines, reliefs and lighting profiles. Floor 7. Not here: the rows of
+//! other kinds (`numbers`).
 
 use super::fields::{degrees, length, number};
 use crate::canvas::ball;
@@ -20,9 +20,11 @@ const LIGHT_PT: f32 = 60.0;
 
 pub fn beveled(ui: &mut Ui, now: &Bevel) -> Option<ValueChange<Bevel>> {
     let hint = "How far in from the rim it rises";
-    let width = length("Width", &Bevel::WIDTH, hint, now.width).show(ui, |width| Bevel { width, ..now.clone() });
-    let height = length("Height", &Bevel::HEIGHT, "How high it rises; below 0 it falls", now.height)
-        .show(ui, |height| Bevel { height, ..now.clone() });
+    let width = length("Width", &Bevel::WIDTH, hint, now.width)
+        .show(ui, |width| Bevel { width, ..now.clone() });
+    let height =
+        length("Height", &Bevel::HEIGHT, "How high it rises; below 0 it falls", now.height)
+            .show(ui, |height| Bevel { height, ..now.clone() });
     let mut curves: Vec<(usize, &str)> =
         BevelCurve::NAMED.iter().enumerate().map(|(i, (_, word))| (i, *word)).collect();
     let named = BevelCurve::NAMED.iter().position(|(curve, _)| *curve == now.curve);
@@ -37,7 +39,8 @@ pub fn beveled(ui: &mut Ui, now: &Bevel) -> Option<ValueChange<Bevel>> {
     width.or(height).or(curve).or(bent)
 }
 
-/// The profile from the rim, on the left, inward: a click adds a point, a drag moves one, a right click removes one.
+/// The profile from the rim, on the left, inward: a click adds a point, a drag moves one, a right
+/// click removes one.
 fn profile(ui: &mut Ui, now: &BevelCurve) -> Option<ValueChange<BevelCurve>> {
     let shown = Curve::through(points_of(now))?;
     let changed = curve::show(ui, "Profile of the bevel", &shown, CURVE_PT)?;
@@ -57,7 +60,8 @@ fn points_of(curve: &BevelCurve) -> Vec<Vec2> {
             let at = |i: usize| {
                 // Where such a curve is steep, its points are closer together.
                 let t = i as f32 / (SHOWN_POINTS - 1) as f32;
-                let t = if *round == BevelCurve::Round { t.powi(3) } else { 1.0 - (1.0 - t).powi(3) };
+                let t =
+                    if *round == BevelCurve::Round { t.powi(3) } else { 1.0 - (1.0 - t).powi(3) };
                 held(vec2(t, if t >= 1.0 { 1.0 } else { round.at(t).0 }))
             };
             (0..SHOWN_POINTS).map(at).collect()
@@ -83,14 +87,20 @@ pub fn lines(ui: &mut Ui, now: Lines) -> Option<ValueChange<Lines>> {
     let form = choice_row(ui, "Lines are", now.form, &LineForm::ALL)
         .map(|form| ValueChange { to: Lines { form, ..now }, done: true });
     let hint = "How far the form turns next to a line";
-    let angle = degrees("Angle", &Lines::ANGLE, hint, now.angle_deg).show(ui, |angle_deg| Lines { angle_deg, ..now });
+    let angle = degrees("Angle", &Lines::ANGLE, hint, now.angle_deg)
+        .show(ui, |angle_deg| Lines { angle_deg, ..now });
     let hint = "How far a line is felt; 0: to the rim and to the next lines";
-    let reach = length("Reach", &Lines::REACH, hint, now.reach).show(ui, |reach| Lines { reach, ..now });
+    let reach =
+        length("Reach", &Lines::REACH, hint, now.reach).show(ui, |reach| Lines { reach, ..now });
     ui.weak(match now.form {
         LineForm::Ridge => "The form falls away on both sides of a line.",
         LineForm::Valley => "The form rises on both sides of a line.",
-        LineForm::Over => "The inner side of a line's bend turns away at it, in front of what is behind.",
-        LineForm::Under => "The outer side of a line's bend turns away at it, in front of what is behind.",
+        LineForm::Over => {
+            "The inner side of a line's bend turns away at it, in front of what is behind."
+        }
+        LineForm::Under => {
+            "The outer side of a line's bend turns away at it, in front of what is behind."
+        }
     });
     form.or(angle).or(reach)
 }
@@ -108,7 +118,8 @@ pub fn profiles(ui: &mut Ui, now: &[ProfilePicture]) -> Option<ValueChange<Vec<P
         ui.horizontal(|ui| {
             let label = format!("Light of shading {}", i + 1);
             changed = light(ui, &label, shading.light).map(|to| to.map(with)).or(changed.take());
-            let [right, up] = [shading.light.x, shading.light.y].map(|v| v.max(-1.0).min(1.0).asin().to_degrees());
+            let [right, up] = [shading.light.x, shading.light.y]
+                .map(|v| v.max(-1.0).min(1.0).asin().to_degrees());
             ui.label(format!("Shading {}", i + 1));
             ui.weak(format!("{right:.0}° right, {up:.0}° up"));
         });
@@ -140,10 +151,16 @@ pub fn relief(ui: &mut Ui, now: Detail) -> Option<ValueChange<Detail>> {
         .show(ui, |coarse| Detail { coarse, ..now });
     let fine = length("Fine", &Detail::HEIGHT, "How high the fine detail is", now.fine)
         .show(ui, |fine| Detail { fine, ..now });
-    let radius = length("Radius", &Detail::RADIUS, "What is larger is form, not detail", now.radius)
-        .show(ui, |radius| Detail { radius, ..now });
-    let edge = number("Edge", &Detail::EDGE, "Steps of brightness above this are edges, which stay", now.edge)
-        .show(ui, |edge| Detail { edge, ..now });
+    let radius =
+        length("Radius", &Detail::RADIUS, "What is larger is form, not detail", now.radius)
+            .show(ui, |radius| Detail { radius, ..now });
+    let edge = number(
+        "Edge",
+        &Detail::EDGE,
+        "Steps of brightness above this are edges, which stay",
+        now.edge,
+    )
+    .show(ui, |edge| Detail { edge, ..now });
     coarse.or(fine).or(radius).or(edge)
 }
 
@@ -163,6 +180,7 @@ mod tests {
             }
         }
     }
+
     #[test]
     fn a_curve_of_ones_own_reaches_from_the_rim_to_the_top() {
         let curve = Curve::through(vec![vec2(0.3, 0.2), vec2(0.6, 0.9)]).unwrap();

@@ -1,5 +1,5 @@
-//! The shape: its parts, the nearest on top, with the numbers of the chosen one beneath. Floor 7. `row` shows one part,
-//! `numbers` and `kinds` its settings.
+//! The shape: its parts, the nearest on top, with the numbers of the chosen one beneath. Floor 7.
+//! `row` shows one part, `numbers` and `kinds` its settings.
 
 mod fields;
 mod kinds;
@@ -32,7 +32,12 @@ fn set(requests: &mut UiRequests, changed: ValueChange<Part>) {
     act(requests, PartAction::Set { part: write_part(&changed.to), done: changed.done });
 }
 
-pub fn show(ui: &mut Ui, session: &Session, pictures: &mut PartPictures, requests: &mut UiRequests) {
+pub fn show(
+    ui: &mut Ui,
+    session: &Session,
+    pictures: &mut PartPictures,
+    requests: &mut UiRequests,
+) {
     let Some((tab, document)) = session.active().zip(session.shown()) else {
         ui.weak("No document is open.");
         return;
@@ -43,15 +48,24 @@ pub fn show(ui: &mut Ui, session: &Session, pictures: &mut PartPictures, request
     }
     pictures.follow(ui.ctx(), document);
     let most = (ui.available_height() * LIST_SHARE).max(LEAST_LIST_PT);
-    ScrollArea::vertical().id_salt("parts").max_height(most).auto_shrink([false, true]).show(ui, |ui| {
-        ui.spacing_mut().item_spacing.y = 1.0;
-        for part in forms(document).rev() {
-            row::show(ui, session, document, part, pictures, requests);
-            for upon in document.parts.list.iter().rev().filter(|upon| upon.on() == Some(part.id.as_str())) {
-                row::show(ui, session, document, upon, pictures, requests);
+    ScrollArea::vertical().id_salt("parts").max_height(most).auto_shrink([false, true]).show(
+        ui,
+        |ui| {
+            ui.spacing_mut().item_spacing.y = 1.0;
+            for part in forms(document).rev() {
+                row::show(ui, session, document, part, pictures, requests);
+                for upon in document
+                    .parts
+                    .list
+                    .iter()
+                    .rev()
+                    .filter(|upon| upon.on() == Some(part.id.as_str()))
+                {
+                    row::show(ui, session, document, upon, pictures, requests);
+                }
             }
-        }
-    });
+        },
+    );
     ui.add_space(2.0);
     let Some(part) = tab.chosen_part() else { return };
     ScrollArea::vertical().id_salt("part").auto_shrink([false, false]).show(ui, |ui| {
@@ -68,7 +82,11 @@ fn flats(ui: &mut Ui, document: &Document, part: &Part, requests: &mut UiRequest
     let drawing = document.drawing_to_cut(part).and_then(|id| LayerPath::of(document, id));
     let cut = drawing.map(|layer| PartAction::Cut { layer });
     let buttons = [
-        (split, "Split by place", "Areas of its colour that are apart, such as two eyes, become parts of their own"),
+        (
+            split,
+            "Split by place",
+            "Areas of its colour that are apart, such as two eyes, become parts of their own",
+        ),
         (
             cut,
             "Cut drawing",
@@ -81,7 +99,8 @@ fn flats(ui: &mut Ui, document: &Document, part: &Part, requests: &mut UiRequest
     ui.horizontal(|ui| {
         for (action, label, hint) in buttons {
             // Only what can be done has a button.
-            if let Some(action) = action.filter(|_| ui.button(label).on_hover_text(hint).clicked()) {
+            if let Some(action) = action.filter(|_| ui.button(label).on_hover_text(hint).clicked())
+            {
                 act(requests, action);
             }
         }
@@ -99,7 +118,8 @@ fn head(ui: &mut Ui, session: &Session, document: &Document, requests: &mut UiRe
     ui.horizontal(|ui| {
         ui.menu_button("+ Part", |ui| {
             for command in PARTS {
-                let response = ui.add_enabled((command.can)(session), eframe::egui::Button::new(command.name));
+                let response =
+                    ui.add_enabled((command.can)(session), eframe::egui::Button::new(command.name));
                 if response.on_hover_text(command.hint).clicked() {
                     (command.run)(session, requests);
                     ui.close();
@@ -109,17 +129,23 @@ fn head(ui: &mut Ui, session: &Session, document: &Document, requests: &mut UiRe
         .response
         .on_hover_text("Adds a part in front of all others");
         let Some(part) = session.active().and_then(|tab| tab.chosen_part()) else { return };
-        let siblings: Vec<&Arc<Part>> = document.parts.list.iter().filter(|other| other.on() == part.on()).collect();
+        let siblings: Vec<&Arc<Part>> =
+            document.parts.list.iter().filter(|other| other.on() == part.on()).collect();
         let at = siblings.iter().position(|other| other.id == part.id).unwrap_or(0);
         let order = |index: usize| PartAction::Order { part: part.id.clone(), index };
         let buttons = [
-            (Icon::Duplicate, "Duplicate part", Some(PartAction::Duplicate { part: part.id.clone() })),
+            (
+                Icon::Duplicate,
+                "Duplicate part",
+                Some(PartAction::Duplicate { part: part.id.clone() }),
+            ),
             (Icon::Up, "Bring part forward", (at + 1 < siblings.len()).then(|| order(at + 1))),
             (Icon::Down, "Send part back", at.checked_sub(1).map(order)),
             (Icon::Delete, "Delete part", Some(PartAction::Delete { part: part.id.clone() })),
         ];
         for (icon, label, action) in buttons {
-            let button = ui.add_enabled_ui(action.is_some(), |ui| icon_button(ui, icon, label, false));
+            let button =
+                ui.add_enabled_ui(action.is_some(), |ui| icon_button(ui, icon, label, false));
             if let Some(action) = action.filter(|_| button.inner.on_hover_text(label).clicked()) {
                 act(requests, action);
             }
@@ -133,7 +159,8 @@ fn begin(ui: &mut Ui, document: &Document, requests: &mut UiRequests) {
         Some(_) => "The shape comes from the maps. Parts are in front of it.",
         None => "This drawing has no shape yet: marks stay flat.",
     });
-    let hint = "Inflates what the drawing covers, in one part or a part for each colour, and lights it";
+    let hint =
+        "Inflates what the drawing covers, in one part or a part for each colour, and lights it";
     if ui.button("Give it a shape…").on_hover_text(hint).clicked() {
         requests.request(WindowRequest::ShapeDialog);
     }

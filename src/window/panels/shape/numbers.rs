@@ -12,7 +12,8 @@ use std::path::Path;
 
 /// The rows of a part; a part with other values, if one was changed.
 pub fn show(ui: &mut Ui, part: &Part) -> Option<ValueChange<Part>> {
-    let kind = of_kind(ui, &part.kind).map(|changed| changed.map(|kind| Part { kind, ..part.clone() }));
+    let kind =
+        of_kind(ui, &part.kind).map(|changed| changed.map(|kind| Part { kind, ..part.clone() }));
     if part.on().is_some() {
         return kind;
     }
@@ -42,28 +43,41 @@ fn puff(value: f32) -> NumberRow<'static> {
 
 fn of_kind(ui: &mut Ui, kind: &PartKind) -> Option<ValueChange<PartKind>> {
     match kind {
-        PartKind::Inflate { outline, inflation } => inflated(ui, *inflation)
-            .map(|changed| changed.map(|inflation| PartKind::Inflate { outline: outline.clone(), inflation })),
-        PartKind::Bevel { outline, bevel } => kinds::beveled(ui, bevel)
-            .map(|changed| changed.map(|bevel| PartKind::Bevel { outline: outline.clone(), bevel })),
-        PartKind::Primitive(body) => primitive(ui, body).map(|changed| changed.map(PartKind::Primitive)),
-        PartKind::Lathe { outline, axis, puff: value } => {
-            puff(*value).show(ui, |puff| PartKind::Lathe { outline: outline.clone(), axis: *axis, puff })
+        PartKind::Inflate { outline, inflation } => inflated(ui, *inflation).map(|changed| {
+            changed.map(|inflation| PartKind::Inflate { outline: outline.clone(), inflation })
+        }),
+        PartKind::Bevel { outline, bevel } => kinds::beveled(ui, bevel).map(|changed| {
+            changed.map(|bevel| PartKind::Bevel { outline: outline.clone(), bevel })
+        }),
+        PartKind::Primitive(body) => {
+            primitive(ui, body).map(|changed| changed.map(PartKind::Primitive))
         }
+        PartKind::Lathe { outline, axis, puff: value } => puff(*value)
+            .show(ui, |puff| PartKind::Lathe { outline: outline.clone(), axis: *axis, puff }),
         PartKind::Sweep { balls, puff: value } => {
             ui.weak(format!("{} balls along a stroke", balls.len()));
             puff(*value).show(ui, |puff| PartKind::Sweep { balls: balls.clone(), puff })
         }
-        PartKind::Relief { on, picture, detail } => kinds::relief(ui, *detail)
-            .map(|changed| changed.map(|detail| PartKind::Relief { on: on.clone(), picture: picture.clone(), detail })),
-        PartKind::Lines { on, ink, lines } => kinds::lines(ui, *lines)
-            .map(|changed| changed.map(|lines| PartKind::Lines { on: on.clone(), ink: ink.clone(), lines })),
-        PartKind::Profiles { outline, shadings } => kinds::profiles(ui, shadings)
-            .map(|changed| changed.map(|shadings| PartKind::Profiles { outline: outline.clone(), shadings })),
+        PartKind::Relief { on, picture, detail } => kinds::relief(ui, *detail).map(|changed| {
+            changed.map(|detail| PartKind::Relief {
+                on: on.clone(),
+                picture: picture.clone(),
+                detail,
+            })
+        }),
+        PartKind::Lines { on, ink, lines } => kinds::lines(ui, *lines).map(|changed| {
+            changed.map(|lines| PartKind::Lines { on: on.clone(), ink: ink.clone(), lines })
+        }),
+        PartKind::Profiles { outline, shadings } => kinds::profiles(ui, shadings).map(|changed| {
+            changed.map(|shadings| PartKind::Profiles { outline: outline.clone(), shadings })
+        }),
         PartKind::Maps(maps) => {
             let (normal, depth) = (&maps.source.normal, &maps.source.depth);
             let files = [normal.as_ref().map(|map| &map.file), depth.as_ref().map(|map| &map.file)];
-            let names = files.into_iter().flatten().map(|file| Path::new(file).file_name().unwrap_or_default());
+            let names = files
+                .into_iter()
+                .flatten()
+                .map(|file| Path::new(file).file_name().unwrap_or_default());
             let names: Vec<_> = names.map(|name| name.to_string_lossy()).collect();
             ui.weak(format!("Maps that were made elsewhere: {}", names.join(", ")));
             None
@@ -78,14 +92,18 @@ fn by_hand(ui: &mut Ui, kind: &PartKind) -> Option<ValueChange<PartKind>> {
     match kind {
         PartKind::Touches { touches, .. } => {
             let n = count(touches.len(), "touch").replace("touchs", "touches");
-            ui.weak(format!("{n}. The tool Touch (N) puts them down, moves them and takes them away."));
+            ui.weak(format!(
+                "{n}. The tool Touch (N) puts them down, moves them and takes them away."
+            ));
             None
         }
         PartKind::Sculpt { on, strokes } => {
             ui.weak(format!("{}. The tool Sculpt (U) makes more.", count(strokes.len(), "stroke")));
             let (_, rest) = strokes.split_last()?;
             let made = || PartKind::Sculpt { on: on.clone(), strokes: rest.to_vec() };
-            ui.button("Without the last stroke").clicked().then(|| ValueChange { to: made(), done: true })
+            ui.button("Without the last stroke")
+                .clicked()
+                .then(|| ValueChange { to: made(), done: true })
         }
         _ => None,
     }
@@ -101,7 +119,9 @@ fn inflated(ui: &mut Ui, now: Inflation) -> Option<ValueChange<Inflation>> {
     let profile = number("Pillow – tube", &Inflation::PROFILE, hint, now.profile);
     changed = profile.show(ui, |profile| Inflation { profile, ..now }).or(changed);
     let hint = "How far the rim turns away: at 90° it is a silhouette, less is a low relief";
-    degrees("Rim", &Inflation::RIM, hint, now.rim_deg).show(ui, |rim_deg| Inflation { rim_deg, ..now }).or(changed)
+    degrees("Rim", &Inflation::RIM, hint, now.rim_deg)
+        .show(ui, |rim_deg| Inflation { rim_deg, ..now })
+        .or(changed)
 }
 
 /// One of three numbers: its name, its setter, and its value.
@@ -115,7 +135,9 @@ fn primitive(ui: &mut Ui, now: &Primitive) -> Option<ValueChange<Primitive>> {
     let range = &Primitive::LENGTH;
     if !matches!(now.body, Body::Ellipsoid | Body::Box) {
         let hint = if now.body == Body::Torus { "Of the ring" } else { "Of the body" };
-        changed = length("Radius", range, hint, now.radius).show(ui, |radius| Primitive { radius, ..now }).or(changed);
+        changed = length("Radius", range, hint, now.radius)
+            .show(ui, |radius| Primitive { radius, ..now })
+            .or(changed);
     }
     if matches!(now.body, Body::Cylinder | Body::Cone | Body::Capsule) {
         let row = length("Length", range, "Along its axis", now.length);
@@ -149,7 +171,8 @@ fn primitive(ui: &mut Ui, now: &Primitive) -> Option<ValueChange<Primitive>> {
         for (label, with, value) in turns {
             // The type's range is that of files; in the window one turn is enough.
             let row = degrees(label, &(-180.0..=180.0), "In space, about its middle", value);
-            changed = row.show(ui, |v| Primitive { turn_deg: with(now.turn_deg, v), ..now }).or(changed);
+            changed =
+                row.show(ui, |v| Primitive { turn_deg: with(now.turn_deg, v), ..now }).or(changed);
         }
     }
     changed
@@ -165,10 +188,15 @@ fn stands(ui: &mut Ui, part: &Part) -> Option<ValueChange<Part>> {
         .show(ui, |y| tilted(Vec2 { y, ..tilt }));
     let raise = length("Raise", &Part::RAISE, "Nearer to the viewer than it must be", part.raise)
         .show(ui, |raise| Part { raise, ..part.clone() });
-    let ways: Vec<(usize, &str)> = Combine::ALL.iter().enumerate().map(|(i, (_, word))| (i, *word)).collect();
-    let now = Combine::ALL.iter().position(|(way, _)| way.name() == part.combine.name()).unwrap_or(0);
+    let ways: Vec<(usize, &str)> =
+        Combine::ALL.iter().enumerate().map(|(i, (_, word))| (i, *word)).collect();
+    let now =
+        Combine::ALL.iter().position(|(way, _)| way.name() == part.combine.name()).unwrap_or(0);
     let way = choice_row(ui, "Combine", now, &ways).and_then(|i| Combine::ALL.get(i));
-    let way = way.map(|(combine, _)| ValueChange { to: Part { combine: *combine, ..part.clone() }, done: true });
+    let way = way.map(|(combine, _)| ValueChange {
+        to: Part { combine: *combine, ..part.clone() },
+        done: true,
+    });
     let smooth = match part.combine {
         Combine::Union { smooth } => {
             let hint = "Over how much height the two grow into one";

@@ -1,5 +1,5 @@
-//! A part's row: eye, picture, name and kind; drag it to another place to bring it forward or send it back.
-//! Floor 7.
+//! A part's row: eye, picture, name and kind; drag it to another place to bring it forward or send
+//! it back. Floor 7.
 
 use super::{act, forms, set};
 use crate::document::{Document, Part};
@@ -10,7 +10,9 @@ use crate::session::Session;
 use crate::session::actions::PartAction;
 use crate::theme::ACCENT;
 use crate::widgets::{ValueChange, named, sentence};
-use eframe::egui::{self, Align2, Color32, Id, Rect, Response, Sense, Stroke, TextEdit, TextStyle, Ui, pos2, vec2};
+use eframe::egui::{
+    self, Align2, Color32, Id, Rect, Response, Sense, Stroke, TextEdit, TextStyle, Ui, pos2, vec2,
+};
 use std::sync::Arc;
 
 const ROW_PT: f32 = 34.0;
@@ -28,13 +30,15 @@ pub fn show(
     requests: &mut UiRequests,
 ) {
     let lies_on = part.on().is_some_and(|on| document.parts.part(on).is_some());
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_PT), Sense::click_and_drag());
+    let (rect, response) =
+        ui.allocate_exact_size(vec2(ui.available_width(), ROW_PT), Sense::click_and_drag());
     let is_chosen = session.active().is_some_and(|tab| tab.part.as_ref() == Some(&part.id));
     if is_chosen {
         show_once(ui, &response, &part.id);
     }
     let label = format!("Part {}", part.name);
-    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_chosen, &label));
+    response
+        .widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_chosen, &label));
     let fill = match (is_chosen, response.hovered()) {
         (true, _) => ui.visuals().selection.bg_fill,
         (false, true) => ui.visuals().widgets.hovered.weak_bg_fill,
@@ -46,7 +50,8 @@ pub fn show(
     inner.spacing_mut().item_spacing.x = 3.0;
     inner.add_space(2.0 + if lies_on { INDENT_PT } else { 0.0 });
     let eye = if part.visible { Icon::Shown } else { Icon::Hidden };
-    let eye = sized_button(&mut inner, eye, &format!("Show part {}", part.name), part.visible, 22.0);
+    let eye =
+        sized_button(&mut inner, eye, &format!("Show part {}", part.name), part.visible, 22.0);
     if eye.on_hover_text("Show or hide").clicked() {
         act(requests, PartAction::Visible { part: part.id.clone(), on: !part.visible });
     }
@@ -63,7 +68,8 @@ pub fn show(
     response.on_hover_text("Drag it up to bring it forward; double-click to rename it");
 }
 
-/// Brings a part's row into sight when the part becomes the chosen one, as by a click on the canvas.
+/// Brings a part's row into sight when the part becomes the chosen one, as by a click on the
+/// canvas.
 fn show_once(ui: &Ui, row: &Response, part: &str) {
     let shown = Id::unique("shown part");
     if ui.data(|data| data.get_temp::<String>(shown)).as_deref() != Some(part) {
@@ -78,20 +84,29 @@ fn picture(ui: &mut Ui, part: &Part, pictures: &PartPictures) {
     if let Some((texture, size)) = pictures.picture(part).filter(|_| part.visible) {
         let scale = (rect.width() / size.x).min(rect.height() / size.y);
         let at = Rect::from_center_size(rect.center(), size * scale);
-        ui.painter().image(texture, at, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), Color32::WHITE);
+        ui.painter().image(
+            texture,
+            at,
+            Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)),
+            Color32::WHITE,
+        );
     }
 }
 
 /// The name, or a text field to change it; and the kind.
 fn name(ui: &mut Ui, part: &Part, row: &Response, requests: &mut UiRequests) {
     let renaming = Id::unique("renaming part");
-    let typed = ui.data(|data| data.get_temp::<(String, String)>(renaming)).filter(|(id, _)| *id == part.id);
+    let typed = ui
+        .data(|data| data.get_temp::<(String, String)>(renaming))
+        .filter(|(id, _)| *id == part.id);
     if let Some((id, mut text)) = typed {
-        let response = ui.add(TextEdit::singleline(&mut text).desired_width(ui.available_width() - 8.0));
+        let response =
+            ui.add(TextEdit::singleline(&mut text).desired_width(ui.available_width() - 8.0));
         named(&response, "Part name");
         if response.lost_focus() {
             ui.data_mut(|data| data.remove::<(String, String)>(renaming));
-            let is_kept = !ui.input(|i| i.key_pressed(egui::Key::Escape)) && !text.trim().is_empty();
+            let is_kept =
+                !ui.input(|i| i.key_pressed(egui::Key::Escape)) && !text.trim().is_empty();
             if is_kept && text.trim() != part.name {
                 let to = Part { name: text.trim().to_owned(), ..part.clone() };
                 set(requests, ValueChange { to, done: true });
@@ -123,7 +138,14 @@ fn name(ui: &mut Ui, part: &Part, row: &Response, requests: &mut UiRequests) {
 }
 
 /// The dragged row, and the rows that it can be dropped between.
-fn dragged(ui: &Ui, document: &Document, part: &Part, response: &Response, rect: Rect, requests: &mut UiRequests) {
+fn dragged(
+    ui: &Ui,
+    document: &Document,
+    part: &Part,
+    response: &Response,
+    rect: Rect,
+    requests: &mut UiRequests,
+) {
     response.dnd_set_drag_payload(HeldPart(part.id.clone()));
     let is_above = |y: f32| y < rect.center().y;
     if let Some(held) = response.dnd_hover_payload::<HeldPart>()
@@ -133,10 +155,14 @@ fn dragged(ui: &Ui, document: &Document, part: &Part, response: &Response, rect:
         let y = if is_above(pointer.y) { rect.top() } else { rect.bottom() };
         ui.painter().hline(rect.x_range(), y, Stroke::new(2.0, ACCENT));
     }
-    let Some(held) = response.dnd_release_payload::<HeldPart>().filter(|held| held.0 != part.id) else { return };
+    let Some(held) = response.dnd_release_payload::<HeldPart>().filter(|held| held.0 != part.id)
+    else {
+        return;
+    };
     let Some(pointer) = ui.input(|i| i.pointer.interact_pos()) else { return };
     // How many of the others are behind this one.
-    let behind = forms(document).filter(|other| other.id != held.0).position(|other| other.id == part.id);
+    let behind =
+        forms(document).filter(|other| other.id != held.0).position(|other| other.id == part.id);
     let Some(behind) = behind else { return };
     let index = if is_above(pointer.y) { behind + 1 } else { behind };
     act(requests, PartAction::Order { part: held.0.clone(), index });

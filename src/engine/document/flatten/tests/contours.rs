@@ -1,10 +1,12 @@
-//! Pixels that two populations see: coverage acts once, whatever is stacked; what is behind a contour shows in its
-//! share.
+//! Pixels that two populations see: coverage acts once, whatever is stacked; what is behind a
+//! contour shows in its share.
 
 use super::*;
 use crate::document::{Live, NormalLayer};
 use crate::math::srgb;
-use crate::paint::{Brush, Gradient, GradientStop, ImageFilter, PictureSource, Placement, Sample, Stroke};
+use crate::paint::{
+    Brush, Gradient, GradientStop, ImageFilter, PictureSource, Placement, Sample, Stroke,
+};
 use crate::raster::{Outside, Picture};
 use crate::shading::{Model, RadianceScaling, Scaling, Shading};
 use crate::surface::{DetailMap, Operator};
@@ -15,24 +17,33 @@ fn soft_surface() -> Arc<Surface> {
     let normals = Plane::filled(SIZE, vec3(0.6, 0.0, 0.8));
     Arc::new(Surface::new(Maps { normals, depth: Plane::filled(SIZE, 0.5), coverage }).unwrap())
 }
+
 fn share(x: usize) -> u8 {
     [0, 64, 128, 191, 255][x % 5]
 }
+
 fn on_soft(layers: Vec<Layer>) -> TileGrid {
-    flatten(&Document { surface: Some(soft_surface()), ..document(layers) }, &Progress::default()).unwrap()
+    flatten(&Document { surface: Some(soft_surface()), ..document(layers) }, &Progress::default())
+        .unwrap()
 }
+
 fn unclipped(text: &str) -> Layer {
     with(fill(text), |l| l.clip_to_surface = false)
 }
+
 /// Every pixel of the first columns is `c · covered + (1 − c) · bare`, premultiplied.
 fn assert_shared(found: &TileGrid, covered: [u8; 4], bare: [u8; 4], what: &str) {
     for x in 0..10 {
         let c = f32::from(share(x)) / 255.0;
-        let expected = std::array::from_fn(|i| c * f32::from(covered[i]) + (1.0 - c) * f32::from(bare[i]));
+        let expected =
+            std::array::from_fn(|i| c * f32::from(covered[i]) + (1.0 - c) * f32::from(bare[i]));
         let pixel = found.pixel(x as i32, 7);
         for i in 0..4 {
             let expected: [f32; 4] = expected;
-            assert!((f32::from(pixel[i]) - expected[i]).abs() <= 1.0, "{what}, column {x}: {pixel:?} ≠ {expected:?}");
+            assert!(
+                (f32::from(pixel[i]) - expected[i]).abs() <= 1.0,
+                "{what}, column {x}: {pixel:?} ≠ {expected:?}"
+            );
         }
     }
 }
@@ -44,20 +55,25 @@ fn opaque_fills_cover_as_the_mask_says_however_many_there_are() {
         assert_shared(&p, [255; 4], [0; 4], &format!("{n} fills"));
     }
 }
+
 #[test]
 fn no_outline_shows_whatever_meets_on_the_rim() {
     let white = || fill("#ffffff");
     let mode = |l: Layer, mode| with(l, |l| l.blend = mode);
     let clipped = |l: Layer| with(l, |l| l.clip_below = true);
     let scaling = || {
-        let scaling = RadianceScaling { scaling: Scaling::new(0.2, 0.0), ..RadianceScaling::default() };
+        let scaling =
+            RadianceScaling { scaling: Scaling::new(0.2, 0.0), ..RadianceScaling::default() };
         Layer::new("rs", Content::RadianceScaling(scaling))
     };
     let stacks: Vec<(&str, Vec<Layer>)> = vec![
         ("multiply", vec![white(), mode(white(), BlendMode::Multiply), white()]),
         ("groups", vec![group(vec![white(), group(vec![white()], true)], false), white()]),
         ("clipping", vec![white(), clipped(white()), clipped(group(vec![white()], false))]),
-        ("screen", vec![white(), mode(white(), BlendMode::Screen), mode(white(), BlendMode::Normal)]),
+        (
+            "screen",
+            vec![white(), mode(white(), BlendMode::Screen), mode(white(), BlendMode::Normal)],
+        ),
         ("adjustment", vec![white(), scaling(), white()]),
         ("half", vec![white(), with(white(), |l| l.opacity = 0.5)]),
     ];
@@ -67,24 +83,43 @@ fn no_outline_shows_whatever_meets_on_the_rim() {
         assert_shared(&on_soft(on_white), [255; 4], [255; 4], &format!("{name} on white"));
     }
 }
+
 #[test]
 fn what_is_not_clipped_to_the_surface_stands_in_both() {
-    let stack = vec![unclipped("#204060"), fill("#ff8000"), with(unclipped("#ffffff"), |l| l.opacity = 0.5)];
+    let stack = vec![
+        unclipped("#204060"),
+        fill("#ff8000"),
+        with(unclipped("#ffffff"), |l| l.opacity = 0.5),
+    ];
     let p = on_soft(stack);
     assert_shared(&p, [255, 191, 127, 255], [143, 159, 175, 255], "over and under");
     let paint = with(left_of(50, "#00ff00"), |l| l.clip_to_surface = false);
-    assert_shared(&on_soft(vec![fill("#ff0000"), paint]), [0, 255, 0, 255], [0, 255, 0, 255], "paint");
+    assert_shared(
+        &on_soft(vec![fill("#ff0000"), paint]),
+        [0, 255, 0, 255],
+        [0, 255, 0, 255],
+        "paint",
+    );
 }
+
 #[test]
 fn masks_and_normal_layers_leave_coverage_to_act_once() {
     let detail = Arc::new(DetailMap::new(Plane::filled(Size::new(4, 4), vec3(0.1, 0.0, 1.0))));
     let picture = Picture::srgb8(Size::new(1, 1), vec![[255; 4]]).unwrap();
     let picture = PictureSource::new("d.png".into(), picture, Default::default());
-    let source = crate::document::DetailSource::Map { picture, convention: Default::default(), map: detail };
+    let source =
+        crate::document::DetailSource::Map { picture, convention: Default::default(), map: detail };
     let placement = Placement::covering(SIZE);
-    let normals = NormalLayer { source, placement, outside: Outside::Repeat, strength: 1.0, frame: Default::default() };
+    let normals = NormalLayer {
+        source,
+        placement,
+        outside: Outside::Repeat,
+        strength: 1.0,
+        frame: Default::default(),
+    };
     let normals = Layer::new("cloth", Content::Normals(normals));
-    let masked = with(fill("#ffffff"), |l| l.mask = mask(DerivedMask::Depth { from: 0.0, to: 1.0 }));
+    let masked =
+        with(fill("#ffffff"), |l| l.mask = mask(DerivedMask::Depth { from: 0.0, to: 1.0 }));
     let p = on_soft(vec![normals, masked.clone(), with(masked, |l| l.mask = left_mask())]);
     assert_shared(&p, [255; 4], [0; 4], "masked");
 }
@@ -93,9 +128,11 @@ fn masks_and_normal_layers_leave_coverage_to_act_once() {
 fn plates() -> Arc<Surface> {
     let near = |x: usize| x < 40;
     let normals = Plane::from_fn(SIZE, |x, _| if near(x) { Vec3::Z } else { vec3(0.6, 0.0, 0.8) });
-    let depth = Plane::from_fn(SIZE, |x, _| if near(x) { 0.0 } else { 0.5 + 0.0075 * (x as f32 - 40.0) });
+    let depth =
+        Plane::from_fn(SIZE, |x, _| if near(x) { 0.0 } else { 0.5 + 0.0075 * (x as f32 - 40.0) });
     Arc::new(Surface::new(Maps { normals, depth, coverage: Plane::filled(SIZE, 255) }).unwrap())
 }
+
 #[test]
 fn away_from_contours_every_byte_stays() {
     // The contour lies between columns 39 and 40: only those two are mixed.
@@ -112,17 +149,23 @@ fn away_from_contours_every_byte_stays() {
         assert_eq!(picture.pixel(x, 30), far);
     }
 }
+
 #[test]
 fn live_layers_are_rendered_for_both_sides_alike() {
-    // A straight edge along the pixels' border gives whole shares, so a slanted one is needed: below it the
-    // far plate, above it the near one; along it each pixel holds a mean of both.
+    // A straight edge along the pixels' border gives whole shares, so a slanted one is needed:
+    // below it the far plate, above it the near one; along it each pixel holds a mean of both.
     let near = |x: usize, y: usize| (y as f32 + 0.5) < 20.0 + 0.31 * x as f32;
-    let normals = Plane::from_fn(SIZE, |x, y| if near(x, y) { Vec3::Z } else { vec3(0.0, 0.5, 0.866) });
+    let normals =
+        Plane::from_fn(SIZE, |x, y| if near(x, y) { Vec3::Z } else { vec3(0.0, 0.5, 0.866) });
     let depth = Plane::from_fn(SIZE, |x, y| if near(x, y) { 0.1 } else { 0.6 + 0.0058 * y as f32 });
-    let surface = Arc::new(Surface::new(Maps { normals, depth, coverage: Plane::filled(SIZE, 255) }).unwrap());
+    let surface = Arc::new(
+        Surface::new(Maps { normals, depth, coverage: Plane::filled(SIZE, 255) }).unwrap(),
+    );
     let operator = Operator::Normal { alpha: 0.6, beta: 0.0, detail: 0.0 };
-    let stops =
-        vec![GradientStop { t: 0.0, color: color("#000000") }, GradientStop { t: 1.0, color: color("#ffffff") }];
+    let stops = vec![
+        GradientStop { t: 0.0, color: color("#000000") },
+        GradientStop { t: 1.0, color: color("#ffffff") },
+    ];
     let (from, to) = (crate::math::vec2(50.0, 2.0), crate::math::vec2(50.0, 68.0));
     let gradient = Gradient {
         from,
@@ -136,7 +179,8 @@ fn live_layers_are_rendered_for_both_sides_alike() {
     let brush = Brush { size: 300.0, hardness: 1.0, ..Brush::default() };
     let stroke = |operator| {
         let samples = vec![Sample::at(crate::math::vec2(50.0, 5.0))];
-        let strokes = vec![Arc::new(Stroke::new(brush.clone(), operator, color("#3060c0"), samples))];
+        let strokes =
+            vec![Arc::new(Stroke::new(brush.clone(), operator, color("#3060c0"), samples))];
         Layer::new("s", Content::Strokes(Live::new(crate::document::StrokeList { strokes })))
     };
     let layers = [
@@ -165,13 +209,17 @@ fn live_layers_are_rendered_for_both_sides_alike() {
                 let (own, other) = if is_near { (up, down) } else { (down, up) };
                 let (expected, found) = (pixel.share * own + (1.0 - pixel.share) * other, value(0));
                 let room = 0.02 + 0.06 * (up - down).abs();
-                assert!((found - expected).abs() < room, "{name} at {pixel:?}: {found} ≠ {expected} ({up}, {down})");
+                assert!(
+                    (found - expected).abs() < room,
+                    "{name} at {pixel:?}: {found} ≠ {expected} ({up}, {down})"
+                );
                 mixed += 1;
             }
         }
         assert!(mixed > 50, "{name}: {mixed}");
     }
 }
+
 #[test]
 fn contours_do_not_depend_on_the_number_of_threads() {
     let clay = Layer::new("clay", Content::Shading(Live::new(Shading::new(Model::Phong))));
@@ -183,7 +231,8 @@ fn contours_do_not_depend_on_the_number_of_threads() {
     assert_eq!(bytes(1), bytes(2));
 }
 
-/// A disc that faces the viewer before nothing. `hard`: its mask is binary, else one of 64 samples a pixel.
+/// A disc that faces the viewer before nothing. `hard`: its mask is binary, else one of 64 samples
+/// a pixel.
 fn disc(hard: bool) -> Arc<Surface> {
     let from_rim = |x: f32, y: f32| crate::math::vec2(x - 50.3, y - 34.6).length() - 27.4;
     let part = |i: usize| (i as f32 + 0.5) / 8.0;
@@ -197,16 +246,22 @@ fn disc(hard: bool) -> Arc<Surface> {
     let (normals, depth) = (Plane::filled(SIZE, Vec3::Z), Plane::filled(SIZE, 0.5));
     Arc::new(Surface::new(Maps { normals, depth, coverage }).unwrap())
 }
+
 /// Every rim pixel of a disc: how much of it is covered, and what it shows.
 fn rim(surface: &Arc<Surface>, pixels: impl Fn(i32, i32) -> [f32; 4]) -> Vec<(f32, [f32; 4])> {
-    let covered = |p: &crate::surface::ContourPixel| if p.own_sees_surface() { p.share } else { 1.0 - p.share };
-    let mut rim: Vec<_> = surface.contours().pixels().iter().map(|p| (covered(p), pixels(p.x, p.y))).collect();
+    let covered = |p: &crate::surface::ContourPixel| {
+        if p.own_sees_surface() { p.share } else { 1.0 - p.share }
+    };
+    let mut rim: Vec<_> =
+        surface.contours().pixels().iter().map(|p| (covered(p), pixels(p.x, p.y))).collect();
     rim.sort_by(|a, b| a.0.total_cmp(&b.0));
     rim
 }
+
 #[test]
 fn a_rim_shows_its_coverage_as_an_opacity_wherever_the_pixels_centres_lie() {
-    let on_ground = |layers: Vec<Layer>| std::iter::once(unclipped("#203038")).chain(layers).collect();
+    let on_ground =
+        |layers: Vec<Layer>| std::iter::once(unclipped("#203038")).chain(layers).collect();
     let white = || fill("#e0d0c0");
     let clipped = |l: Layer| with(l, |l| l.clip_below = true);
     let half = |l: Layer| with(l, |l| l.opacity = 0.5);
@@ -216,10 +271,18 @@ fn a_rim_shows_its_coverage_as_an_opacity_wherever_the_pixels_centres_lie() {
         ("half", on_ground(vec![half(white()), half(white())])),
         ("group", on_ground(vec![group(vec![white(), group(vec![white()], true)], false)])),
         ("passing group", on_ground(vec![half(group(vec![white(), half(fill("#ff0000"))], true))])),
-        ("clipping", on_ground(vec![fill("#808080"), clipped(white()), clipped(group(vec![white()], false))])),
+        (
+            "clipping",
+            on_ground(vec![
+                fill("#808080"),
+                clipped(white()),
+                clipped(group(vec![white()], false)),
+            ]),
+        ),
         ("clipped to the ground", on_ground(vec![clipped(white())])),
     ];
-    for (mode, name) in BlendMode::ALL.into_iter().filter(|(mode, _)| *mode != BlendMode::Dissolve) {
+    for (mode, name) in BlendMode::ALL.into_iter().filter(|(mode, _)| *mode != BlendMode::Dissolve)
+    {
         stacks.push((name, on_ground(vec![with(white(), |l| l.blend = mode)])));
     }
     for (name, layers) in stacks {
@@ -231,15 +294,21 @@ fn a_rim_shows_its_coverage_as_an_opacity_wherever_the_pixels_centres_lie() {
             let bytes = |x: i32, y: i32| bytes.pixel(x, y).map(|v| f32::from(v) / 255.0);
             let deep = |x: i32, y: i32| deep[y as usize * SIZE.width as usize + x as usize];
             for (depth, rim) in [("8", rim(&surface, bytes)), ("16", rim(&surface, deep))] {
-                let (bare, whole) =
-                    if depth == "8" { (bytes(1, 1), bytes(50, 34)) } else { (deep(1, 1), deep(50, 34)) };
+                let (bare, whole) = if depth == "8" {
+                    (bytes(1, 1), bytes(50, 34))
+                } else {
+                    (deep(1, 1), deep(50, 34))
+                };
                 let what = format!("{name}, {depth} bits, hard: {hard}");
                 assert!(rim.len() > 100, "{what}: {}", rim.len());
                 for (covered, shown) in &rim {
                     for i in 0..4 {
                         let expected = bare[i] + covered * (whole[i] - bare[i]);
                         let off = (shown[i] - expected).abs();
-                        assert!(off < 1.1 / 255.0, "{what}: {covered} covered shows {shown:?}, not {expected}");
+                        assert!(
+                            off < 1.1 / 255.0,
+                            "{what}: {covered} covered shows {shown:?}, not {expected}"
+                        );
                     }
                 }
                 // Less is never brighter.

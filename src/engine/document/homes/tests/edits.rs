@@ -22,15 +22,19 @@ fn outlines_follow_their_layers_names_and_a_layer_on_its_own_part_inflates_once(
     assert!(Arc::ptr_eq(named.surface.as_ref().unwrap(), b), "it is the same outline");
     assert!(named.with_part_at("body", 0).unwrap().surface.is_some());
 }
+
 #[test]
 fn a_home_that_is_no_part_is_refused_and_lifted_in_another_document() {
     let stray = document(vec![Layer { on: Some(HomeFrame::on("nose")), ..paint() }]);
     assert_eq!(stray.fits(None).unwrap_err(), "“paint”: is on “nose”, and there is no such part.");
     let moved = shifted(&document(vec![on_body(paint())]), BY);
-    let other = Document::empty(SIZE).with_inserted(Layer::clone(&moved.layers[0]), LayerSlot::top_level(0)).unwrap();
+    let other = Document::empty(SIZE)
+        .with_inserted(Layer::clone(&moved.layers[0]), LayerSlot::top_level(0))
+        .unwrap();
     assert!(other.layers[0].on.is_none() && other.fits(None) == Ok(()));
     assert!(other.map_of(other.layers[0].id).unwrap().point(vec2(1.0, 2.0)) == vec2(38.0, 24.0));
 }
+
 #[test]
 fn what_a_moved_part_changes_is_reported() {
     let layers = vec![
@@ -45,18 +49,25 @@ fn what_a_moved_part_changes_is_reported() {
         before.without_part("body").unwrap(),
         shifted(&before, BY).with_transform_applied(id).unwrap(),
     ] {
-        let (old, new) =
-            (flatten(&before, &Progress::default()).unwrap(), flatten(&after, &Progress::default()).unwrap());
+        let (old, new) = (
+            flatten(&before, &Progress::default()).unwrap(),
+            flatten(&after, &Progress::default()).unwrap(),
+        );
         let told = diff(&before, &after);
-        let differs = |at: &TileAt| old.tile(*at).map(|t| t.bytes()) != new.tile(*at).map(|t| t.bytes());
+        let differs =
+            |at: &TileAt| old.tile(*at).map(|t| t.bytes()) != new.tile(*at).map(|t| t.bytes());
         let missed: Vec<TileAt> =
             TileAt::covering(SIZE.rect()).filter(differs).filter(|at| !told.contains(at)).collect();
         assert!(missed.is_empty(), "{missed:?}");
     }
 }
+
 #[test]
 fn on_a_larger_canvas_everything_lies_on_its_part_as_before() {
-    let before = shifted(&document(vec![on_body(strokes("s", &path(), NORMAL)), on_body(gradient())]), (30, 10));
+    let before = shifted(
+        &document(vec![on_body(strokes("s", &path(), NORMAL)), on_body(gradient())]),
+        (30, 10),
+    );
     let twice = before.scaled(2.0).unwrap();
     let id = before.layers[0].id;
     let (a, b) = (before.map_of(id).unwrap(), twice.map_of(id).unwrap());

@@ -10,21 +10,27 @@ impl LayerKind for Color {
     fn name(&self) -> &'static str {
         "fill"
     }
+
     fn label(&self) -> &'static str {
         "Fill"
     }
+
     fn painted(&self, _scene: &Scene, _at: TileAt) -> TileContent {
         TileContent::Solid(self.premultiplied())
     }
+
     fn painted_behind(&self, _scene: &BehindScene) -> TileContent {
         TileContent::Solid(self.premultiplied())
     }
+
     fn scaled(&self, _scale: &CanvasScale) -> Content {
         Content::Fill(*self)
     }
+
     fn goes_with_shape(&self) -> bool {
         false
     }
+
     fn changed_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
         Changed::wholly_if(!matches!(old, Content::Fill(old) if old == self))
     }

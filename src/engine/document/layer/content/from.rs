@@ -46,7 +46,9 @@ impl From<Stroke> for Content {
 /// Strokes that stay editable, the lowest first.
 impl From<Vec<Stroke>> for Content {
     fn from(strokes: Vec<Stroke>) -> Self {
-        Content::Strokes(Live::new(StrokeList { strokes: strokes.into_iter().map(Arc::new).collect() }))
+        Content::Strokes(Live::new(StrokeList {
+            strokes: strokes.into_iter().map(Arc::new).collect(),
+        }))
     }
 }
 

@@ -19,25 +19,32 @@ impl LayerKind for Live<Gradient> {
     fn name(&self) -> &'static str {
         "gradient"
     }
+
     fn label(&self) -> &'static str {
         "Gradient"
     }
+
     fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
         TileContent::of_tile(self.tile(scene, at, || self.params().render_tile(scene, at)))
     }
+
     fn painted_behind(&self, scene: &BehindScene) -> TileContent {
         self.behind(scene, true, |scene, at| self.params().render_tile(scene, at))
     }
+
     fn count(&self, count: &mut MemoryCount, keeps: bool) {
         self.count_rendered(count, keeps);
     }
+
     fn marks(&self) -> Option<&dyn Marks> {
         Some(self.params())
     }
+
     fn warm(&self, scene: &Scene, _: &Progress) {
         let bend = Bend { operator: self.params().operator, ..Bend::default() };
         Deformation::new(scene.surface.as_deref(), scene.size, &bend);
     }
+
     fn scaled(&self, scale: &CanvasScale) -> Content {
         let mut gradient = self.params().clone();
         gradient.from *= scale.per_axis;
@@ -47,6 +54,7 @@ impl LayerKind for Live<Gradient> {
         PlanePiece::go_along(&mut gradient.pieces, |p| p * scale.per_axis, |_| stretch);
         Content::Gradient(Live::new(gradient))
     }
+
     fn drafted(&self) -> Option<Content> {
         // Most ramps are smooth: only stops that lie close together show their pixels meanwhile.
         let gradient = self.params();
@@ -54,19 +62,23 @@ impl LayerKind for Live<Gradient> {
         let at_points = || Gradient { filter: ImageFilter::Bilinear, ..gradient.clone() };
         is_averaged.then(|| Content::Gradient(Live::new(at_points())))
     }
+
     fn moved(&self, by: Vec2) -> Option<Content> {
         let gradient = self.params();
         let (from, to) = (gradient.from + by, gradient.to + by);
         Some(Content::Gradient(Live::new(Gradient { from, to, ..gradient.clone() })))
     }
+
     fn on_canvas(&self, map: &LayerMap, _: Option<(&Content, &Content)>) -> Option<Content> {
         let mut gradient = Gradient { frame: map.plane, ..self.params().clone() };
         PlanePiece::go_along(&mut gradient.pieces, |p| map.point(p), |p| map.stretch_at(p));
         Some(Content::Gradient(Live::new(gradient)))
     }
+
     fn bend(&self) -> Option<Bend> {
         Some(self.params().bend())
     }
+
     fn changed_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
         Changed::of_live(self, if let Content::Gradient(old) = old { Some(old) } else { None })
     }

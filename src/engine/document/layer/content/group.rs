@@ -19,23 +19,31 @@ impl LayerKind for Group {
     fn name(&self) -> &'static str {
         "group"
     }
+
     fn label(&self) -> &'static str {
         "Group"
     }
+
     fn role(&self) -> Role<'_> {
         Role::Groups(self)
     }
+
     fn scaled(&self, scale: &CanvasScale) -> Content {
         Content::Group(Group { layers: scale.layers(&self.layers), ..*self })
     }
+
     fn moved(&self, by: Vec2) -> Option<Content> {
-        let moved = |layer: &Arc<Layer>| Arc::new(Layer { content: layer.content.moved(by), ..Layer::clone(layer) });
+        let moved = |layer: &Arc<Layer>| {
+            Arc::new(Layer { content: layer.content.moved(by), ..Layer::clone(layer) })
+        };
         Some(Content::Group(Group { layers: self.layers.iter().map(moved).collect(), ..*self }))
     }
+
     /// Each of its layers says this itself.
     fn touched(&self, _scene: Option<&Scene>) -> Touched {
         Touched::Nowhere
     }
+
     fn changed_from(&self, _old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
         Changed::Wholly
     }

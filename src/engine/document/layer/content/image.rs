@@ -15,9 +15,11 @@ impl Marks for PlacedImage {
     fn pixels(&self, scene: &Scene, at: TileAt) -> Option<PlanarTile> {
         self.render_pixels(scene, at)
     }
+
     fn texture(&self) -> Option<Arc<DeepTexture>> {
         Some(self.source.deep_texture())
     }
+
     fn texture_bytes(&self) -> u64 {
         // Smaller copies add a third; while it is made, the straight texels are in memory too.
         self.source.picture.size.area() as u64 * 3 * size_of::<[f32; 4]>() as u64
@@ -28,26 +30,33 @@ impl LayerKind for Live<PlacedImage> {
     fn name(&self) -> &'static str {
         "image"
     }
+
     fn label(&self) -> &'static str {
         "Image"
     }
+
     fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
         TileContent::of_tile(self.tile(scene, at, || self.params().render_tile(scene, at)))
     }
+
     fn painted_behind(&self, scene: &BehindScene) -> TileContent {
         self.behind(scene, true, |scene, at| self.params().render_tile(scene, at))
     }
+
     fn count(&self, count: &mut MemoryCount, keeps: bool) {
         self.count_rendered(count, keeps);
         count.add_picture(&self.params().source);
     }
+
     fn marks(&self) -> Option<&dyn Marks> {
         Some(self.params())
     }
+
     fn warm(&self, scene: &Scene, _: &Progress) {
         self.params().source.texture();
         Deformation::new(scene.surface.as_deref(), scene.size, &self.params().bend);
     }
+
     fn scaled(&self, scale: &CanvasScale) -> Content {
         let mut image = self.params().clone();
         image.placement.center *= scale.per_axis;
@@ -55,7 +64,8 @@ impl LayerKind for Live<PlacedImage> {
         image.bend.go_along(|p| p * scale.per_axis, |_| Mat2::from_diagonal(scale.per_axis));
         if image.filter == ImageFilter::Antialias {
             let texture = image.source.texture().size();
-            let texels_per_px = image.placement.texels_from_canvas(scale.to, texture).matrix2.x_axis.length();
+            let texels_per_px =
+                image.placement.texels_from_canvas(scale.to, texture).matrix2.x_axis.length();
             match scale.levels_to_skip(texels_per_px) {
                 0 => {}
                 levels => image.source = image.source.coarser(levels),
@@ -63,6 +73,7 @@ impl LayerKind for Live<PlacedImage> {
         }
         Content::Image(Live::new(image))
     }
+
     fn stretched(&self, scale: &CanvasScale) -> Option<Content> {
         let mut image = self.params().clone();
         image.placement = scale.on_new_canvas(&image.placement, image.source.picture.size);
@@ -70,34 +81,41 @@ impl LayerKind for Live<PlacedImage> {
         image.bend.operator = image.bend.operator.scaled(scale.length).on_canvas_of(longer);
         Some(Content::Image(Live::new(image)))
     }
+
     fn drafted(&self) -> Option<Content> {
         let image = self.params();
         let source = image.source.read_by(TapRule::MOVING);
         let is_averaged = image.filter == ImageFilter::Antialias;
         is_averaged.then(|| Content::Image(Live::new(PlacedImage { source, ..image.clone() })))
     }
+
     fn moved(&self, by: Vec2) -> Option<Content> {
         let image = self.params();
         let placement = Placement { center: image.placement.center + by, ..image.placement };
         Some(Content::Image(Live::new(PlacedImage { placement, ..image.clone() })))
     }
+
     fn on_canvas(&self, map: &LayerMap, _: Option<(&Content, &Content)>) -> Option<Content> {
         let mut image = self.params().clone();
         image.frame = map.plane;
         image.bend.go_along(|p| map.point(p), |p| map.stretch_at(p));
         Some(Content::Image(Live::new(image)))
     }
+
     fn bend(&self) -> Option<Bend> {
         Some(self.params().bend.clone())
     }
+
     fn files(&self) -> Vec<&str> {
         vec![&self.params().source.file]
     }
+
     fn with_files(&self, name: &mut NameFile) -> Result<Option<Content>> {
         let mut image = self.params().clone();
         image.source.file = name(&image.source.file, &image.source.picture)?;
         Ok(Some(Content::Image(Live::new(image))))
     }
+
     fn changed_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
         Changed::of_live(self, if let Content::Image(old) = old { Some(old) } else { None })
     }

@@ -31,8 +31,10 @@ impl PixelLayer {
         let canvas = map.canvas();
         let Rect { x0, y0, x1, y1 } = self.tiles.bounds();
         let corner = |x: i32, y: i32| map.plane.to_canvas(vec2(x as f32, y as f32));
-        let corners: Option<Vec<Vec2>> =
-            [(x0, y0), (x1, y0), (x1, y1), (x0, y1)].map(|(x, y)| corner(x, y)).into_iter().collect();
+        let corners: Option<Vec<Vec2>> = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
+            .map(|(x, y)| corner(x, y))
+            .into_iter()
+            .collect();
         // What crosses the horizon has no bounds.
         let around = corners.map_or(canvas.rect(), |corners| {
             let low = corners.iter().copied().fold(Vec2::INFINITY, Vec2::min).floor();
@@ -49,24 +51,37 @@ impl LayerKind for PixelLayer {
     fn name(&self) -> &'static str {
         "pixels"
     }
+
     fn label(&self) -> &'static str {
         "Paint"
     }
+
     fn count(&self, count: &mut MemoryCount, _keeps: bool) {
         count.add_tiles(&self.tiles);
     }
+
     fn painted(&self, _scene: &Scene, at: TileAt) -> TileContent {
         TileContent::of_tile(self.tiles.tile(at).cloned())
     }
+
     fn painted_behind(&self, scene: &BehindScene) -> TileContent {
         let tile = self.tiles.tile(scene.behind.at);
-        tile.map_or(TileContent::Nothing, |tile| TileContent::Packed(Arc::new(scene.behind.same(tile))))
+        tile.map_or(TileContent::Nothing, |tile| {
+            TileContent::Packed(Arc::new(scene.behind.same(tile)))
+        })
     }
+
     fn scaled(&self, scale: &CanvasScale) -> Content {
         let corner = vec2(self.x as f32, self.y as f32) * scale.per_axis;
         let (x, y) = (corner.x.round() as i32, corner.y.round() as i32);
-        Content::Pixels(PixelLayer { file: self.file.clone(), x, y, tiles: scale.grid(&self.tiles) })
+        Content::Pixels(PixelLayer {
+            file: self.file.clone(),
+            x,
+            y,
+            tiles: scale.grid(&self.tiles),
+        })
     }
+
     fn moved(&self, by: Vec2) -> Option<Content> {
         Some(Content::Pixels(PixelLayer {
             x: self.x.saturating_add(by.x as i32),
@@ -75,6 +90,7 @@ impl LayerKind for PixelLayer {
             file: self.file.clone(),
         }))
     }
+
     fn on_canvas(&self, map: &LayerMap, last: Option<(&Content, &Content)>) -> Option<Content> {
         let canvas = map.canvas();
         let all = || TileAt::covering(canvas.rect());
@@ -95,15 +111,19 @@ impl LayerKind for PixelLayer {
         };
         Some(Content::Pixels(PixelLayer { tiles, ..self.clone() }))
     }
+
     fn emptied(&self) -> Option<Content> {
         Some(Content::Pixels(PixelLayer::default()))
     }
+
     fn files(&self) -> Vec<&str> {
         vec![&self.file]
     }
+
     fn touched(&self, _scene: Option<&Scene>) -> Touched {
         Touched::Tiles(self.tiles.iter().map(|(at, _)| at).collect())
     }
+
     fn changed_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
         match old {
             Content::Pixels(old) => Changed::Tiles(old.tiles.changed_tiles(&self.tiles)),

@@ -17,6 +17,7 @@ impl Marks for Shading {
     fn pixels(&self, scene: &Scene, at: TileAt) -> Option<PlanarTile> {
         self.render_pixels(scene, at)
     }
+
     /// Off the surface it shows nothing.
     fn stay(&self) -> bool {
         false
@@ -27,25 +28,32 @@ impl LayerKind for Live<Shading> {
     fn name(&self) -> &'static str {
         "shading"
     }
+
     fn label(&self) -> &'static str {
         "Shading"
     }
+
     fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
         TileContent::of_tile(self.tile(scene, at, || self.params().render_tile(scene, at)))
     }
+
     fn painted_behind(&self, scene: &BehindScene) -> TileContent {
         // Off the surface it shows nothing.
         self.behind(scene, false, |scene, at| self.params().render_tile(scene, at))
     }
+
     fn count(&self, count: &mut MemoryCount, keeps: bool) {
         self.count_rendered(count, keeps);
     }
+
     fn marks(&self) -> Option<&dyn Marks> {
         Some(self.params())
     }
+
     fn warm(&self, scene: &Scene, _: &Progress) {
         self.params().warm(scene);
     }
+
     fn scaled(&self, scale: &CanvasScale) -> Content {
         let mut shading = self.params().clone();
         scale.features(&mut shading.features);
@@ -57,6 +65,7 @@ impl LayerKind for Live<Shading> {
         }
         Content::Shading(Live::new(shading))
     }
+
     fn on_canvas(&self, map: &LayerMap, _: Option<(&Content, &Content)>) -> Option<Content> {
         let mut shading = self.params().clone();
         for light in &mut shading.lights {
@@ -67,10 +76,13 @@ impl LayerKind for Live<Shading> {
         }
         Some(Content::Shading(Live::new(shading)))
     }
+
     fn files(&self) -> Vec<&str> {
-        let environment = self.params().environment.iter().map(|environment| environment.file.as_str());
+        let environment =
+            self.params().environment.iter().map(|environment| environment.file.as_str());
         environment.chain(spheres(self.params()).map(|sphere| sphere.file.as_str())).collect()
     }
+
     fn with_files(&self, name: &mut NameFile) -> Result<Option<Content>> {
         let mut shading = self.params().clone();
         if let Some(environment) = &mut shading.environment {
@@ -81,14 +93,17 @@ impl LayerKind for Live<Shading> {
         }
         Ok(Some(Content::Shading(Live::new(shading))))
     }
+
     fn lacks(&self) -> Option<(&'static str, String)> {
         let shading = self.params();
         let reason = || format!("is missing; “{}” shows nothing else", shading.model.name());
         shading.lacks_environment().then(|| ("environment", reason()))
     }
+
     fn goes_with_shape(&self) -> bool {
         false
     }
+
     fn changed_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
         Changed::of_live(self, if let Content::Shading(old) = old { Some(old) } else { None })
     }

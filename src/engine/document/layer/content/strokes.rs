@@ -1,7 +1,9 @@
-//! Strokes, kept live. Floor 4. Not here: their rendering (`paint::stroke`), edits of single strokes
-//! (`document::strokes`).
+//! Strokes, kept live. Floor 4. Not here: their rendering (`paint::stroke`), edits of single
+//! strokes (`document::strokes`).
 
-use super::{Behind, BehindScene, CanvasScale, Changed, Content, LayerKind, NameFile, TileContent, Touched};
+use super::{
+    Behind, BehindScene, CanvasScale, Changed, Content, LayerKind, NameFile, TileContent, Touched,
+};
 use crate::Result;
 use crate::document::layer::marks::{Done, Marks};
 use crate::document::{LayerMap, Live, MemoryCount, Progress};
@@ -13,7 +15,8 @@ use crate::surface::{Bend, Deformation};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// The strokes of a stroke layer, in the order they were painted. Shared, so that adding one copies pointers.
+/// The strokes of a stroke layer, in the order they were painted. Shared, so that adding one copies
+/// pointers.
 #[derive(Clone, Default)]
 pub struct StrokeList {
     /// The first one lies lowest.
@@ -24,11 +27,15 @@ impl Marks for StrokeList {
     fn pixels(&self, scene: &Scene, at: TileAt) -> Option<PlanarTile> {
         stroke::render_pixels(&self.strokes, scene, at)
     }
+
     /// Strokes whose dabs are too many to be kept would be laid again for every tile.
     fn together(&self, scene: &Scene, tiles: &[TileAt], progress: &Progress, done: &Done) {
         let is_wanted = || !progress.is_cancelled();
-        let seen: Vec<TileAt> = tiles.iter().copied().filter(|&at| !scene.area(at).is_empty()).collect();
-        if !seen.is_empty() && stroke::are_heavy(&self.strokes, &scene.front(), seen.len(), is_wanted) == Some(true) {
+        let seen: Vec<TileAt> =
+            tiles.iter().copied().filter(|&at| !scene.area(at).is_empty()).collect();
+        if !seen.is_empty()
+            && stroke::are_heavy(&self.strokes, &scene.front(), seen.len(), is_wanted) == Some(true)
+        {
             // Once cancelled, nothing is needed any more.
             let _ = stroke::render_many(&self.strokes, scene, &seen, is_wanted, done);
         }
@@ -39,24 +46,32 @@ impl LayerKind for Live<StrokeList> {
     fn name(&self) -> &'static str {
         "strokes"
     }
+
     fn label(&self) -> &'static str {
         "Strokes"
     }
+
     fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
-        TileContent::of_tile(self.tile(scene, at, || stroke::render_tile(&self.params().strokes, scene, at)))
+        TileContent::of_tile(
+            self.tile(scene, at, || stroke::render_tile(&self.params().strokes, scene, at)),
+        )
     }
-    /// For strokes with too many dabs to cache, the tiles as well: tile by tile, each stroke would be laid again and
-    /// again.
+
+    /// For strokes with too many dabs to cache, the tiles as well: tile by tile, each stroke would
+    /// be laid again and again.
     fn painted_behind(&self, scene: &BehindScene) -> TileContent {
         self.behind(scene, true, |scene, at| stroke::render_tile(&self.params().strokes, scene, at))
     }
+
     fn count(&self, count: &mut MemoryCount, keeps: bool) {
         self.count_rendered(count, keeps);
         self.params().strokes.iter().for_each(|stroke| count.add_stroke(stroke));
     }
+
     fn marks(&self) -> Option<&dyn Marks> {
         Some(self.params())
     }
+
     fn warm(&self, scene: &Scene, progress: &Progress) {
         if scene.sheet().is_some() {
             return self.warm_behind(scene, progress);
@@ -67,19 +82,24 @@ impl LayerKind for Live<StrokeList> {
         }
         let (missing, is_wanted) = (self.missing(scene), || !progress.is_cancelled());
         let strokes = &self.params().strokes;
-        if !missing.is_empty() && stroke::are_heavy(strokes, scene, missing.len(), is_wanted) == Some(true) {
+        if !missing.is_empty()
+            && stroke::are_heavy(strokes, scene, missing.len(), is_wanted) == Some(true)
+        {
             // Once cancelled, they are rendered when needed.
             let _ = stroke::render_tiles(strokes, scene, &missing, is_wanted, |at, tile| {
                 self.tile(scene, at, || tile);
             });
         }
     }
+
     fn scaled(&self, scale: &CanvasScale) -> Content {
         self.with_each(|stroke| Arc::new(scale.stroke(stroke)))
     }
+
     fn moved(&self, by: Vec2) -> Option<Content> {
         Some(self.with_each(|stroke| Arc::new(stroke.moved(by))))
     }
+
     fn on_canvas(&self, map: &LayerMap, last: Option<(&Content, &Content)>) -> Option<Content> {
         // A stroke that was seen before is the very same one again, with its dabs.
         let seen: HashMap<*const Stroke, &Arc<Stroke>> = match last {
@@ -99,16 +119,20 @@ impl LayerKind for Live<StrokeList> {
         let strokes = self.params().strokes.iter().map(&mut on_canvas).collect();
         Some(Content::Strokes(Live::new(StrokeList { strokes })))
     }
+
     fn has_homes(&self) -> bool {
         Live::has_homes(self, |list| list.strokes.iter().any(|stroke| stroke.home().is_some()))
     }
+
     fn emptied(&self) -> Option<Content> {
         Some(Content::Strokes(Live::new(StrokeList::default())))
     }
+
     fn files(&self) -> Vec<&str> {
         let pictures = self.params().strokes.iter().flat_map(|stroke| stroke.brush().pictures());
         pictures.map(|source| source.file.as_str()).collect()
     }
+
     fn with_files(&self, name: &mut NameFile) -> Result<Option<Content>> {
         let mut renamed = |stroke: &Arc<Stroke>| {
             if stroke.brush().pictures().next().is_none() {
@@ -124,15 +148,19 @@ impl LayerKind for Live<StrokeList> {
         let strokes = self.params().strokes.iter().map(&mut renamed).collect::<Result<_>>()?;
         Ok(Some(Content::Strokes(Live::new(StrokeList { strokes }))))
     }
+
     fn touched(&self, scene: Option<&Scene>) -> Touched {
         let strokes = &self.params().strokes;
         match scene {
-            Some(scene) => Touched::Rects(strokes.iter().map(|stroke| stroke.bounds(scene)).collect()),
+            Some(scene) => {
+                Touched::Rects(strokes.iter().map(|stroke| stroke.bounds(scene)).collect())
+            }
             None if strokes.is_empty() => Touched::Nowhere,
             // Bounds hold for one surface.
             None => Touched::Canvas,
         }
     }
+
     /// Where both are rendered, their tiles show it.
     fn changed_from(&self, old: &Content, scene: &dyn Fn() -> Scene) -> Changed {
         let Content::Strokes(old) = old else { return Changed::Wholly };
@@ -142,7 +170,8 @@ impl LayerKind for Live<StrokeList> {
         let scene = scene();
         let (same, canvas) = (old.same_tiles(self, &scene), scene.size.rect());
         let differing = differing(&old.params().strokes, &self.params().strokes);
-        let tiles = differing.flat_map(|stroke| TileAt::covering(stroke.bounds(&scene).intersect(canvas)));
+        let tiles =
+            differing.flat_map(|stroke| TileAt::covering(stroke.bounds(&scene).intersect(canvas)));
         Changed::Tiles(tiles.filter(|&at| !same(at)).collect())
     }
 }
@@ -152,26 +181,35 @@ impl Live<StrokeList> {
     fn warm_behind(&self, sheet: &Scene, progress: &Progress) {
         let (front, is_wanted) = (sheet.front(), || !progress.is_cancelled());
         let (missing, strokes) = (self.missing_behind(&front), &self.params().strokes);
-        if missing.is_empty() || stroke::are_heavy(strokes, &front, missing.len(), is_wanted) != Some(true) {
+        if missing.is_empty()
+            || stroke::are_heavy(strokes, &front, missing.len(), is_wanted) != Some(true)
+        {
             return;
         }
         let Some(of) = sheet.sheet() else { return };
         let _ = stroke::render_tiles(strokes, sheet, &missing, is_wanted, |at, tile| {
             let Some(contours) = of.contours().on(at) else { return };
             self.set_behind(
-                &BehindScene { behind: Behind::new(at, contours), front: &front, sheet: Some(sheet) },
+                &BehindScene {
+                    behind: Behind::new(at, contours),
+                    front: &front,
+                    sheet: Some(sheet),
+                },
                 tile,
             );
         });
     }
+
     fn with_each(&self, change: impl Fn(&Arc<Stroke>) -> Arc<Stroke>) -> Content {
         let strokes = self.params().strokes.iter().map(change).collect();
         Content::Strokes(Live::new(StrokeList { strokes }))
     }
 }
 
-/// Selections that were sampled under a map, by their addresses: those of the strokes, which live on.
-pub(in crate::document) type SeenSelections = Vec<(LayerMap, HashMap<*const Selection, Arc<Selection>>)>;
+/// Selections that were sampled under a map, by their addresses: those of the strokes, which live
+/// on.
+pub(in crate::document) type SeenSelections =
+    Vec<(LayerMap, HashMap<*const Selection, Arc<Selection>>)>;
 
 /// A stroke moved by a map; one that does not move is the very same.
 pub(in crate::document) fn taken_along(
@@ -182,7 +220,8 @@ pub(in crate::document) fn taken_along(
     if map.is_none() {
         return stroke.clone();
     }
-    let mapped = stroke.mapped(&|p| map.plane.to_canvas(p), |p| map.length_at(p), |p| map.turn_at(p));
+    let mapped =
+        stroke.mapped(&|p| map.plane.to_canvas(p), |p| map.length_at(p), |p| map.turn_at(p));
     let Some(own) = stroke.selection() else { return Arc::new(mapped) };
     let place = selections.iter().position(|(known, _)| known == map).unwrap_or_else(|| {
         selections.push((*map, HashMap::new()));
@@ -192,7 +231,8 @@ pub(in crate::document) fn taken_along(
     Arc::new(mapped.within(selection))
 }
 
-/// The selection of a stroke as it lies on the canvas, sampled once for all strokes that share it unmoved.
+/// The selection of a stroke as it lies on the canvas, sampled once for all strokes that share it
+/// unmoved.
 fn selected(
     own: &StrokeSelection,
     map: &LayerMap,
@@ -200,7 +240,8 @@ fn selected(
 ) -> StrokeSelection {
     let warped = || {
         let (canvas, coverage) = (map.canvas(), own.coverage());
-        // There may be some beyond the canvas of its own frame, too; a little more, so that it ends.
+        // There may be some beyond the canvas of its own frame, too; a little more, so that it
+        // ends.
         let rect = coverage.covered().grown(2).intersect(map.plane.source_rect(canvas.rect()));
         if rect.is_empty() {
             return Arc::default();
@@ -216,8 +257,12 @@ fn selected(
     })
 }
 
-/// Strokes are painted in order, so those between a common beginning and a common end may change what they touch.
-fn differing<'s>(old: &'s [Arc<Stroke>], new: &'s [Arc<Stroke>]) -> impl Iterator<Item = &'s Arc<Stroke>> {
+/// Strokes are painted in order, so those between a common beginning and a common end may change
+/// what they touch.
+fn differing<'s>(
+    old: &'s [Arc<Stroke>],
+    new: &'s [Arc<Stroke>],
+) -> impl Iterator<Item = &'s Arc<Stroke>> {
     let same = |(a, b): &(&Arc<Stroke>, &Arc<Stroke>)| Arc::ptr_eq(a, b);
     let start = old.iter().zip(new).take_while(same).count();
     let (old, new) = (&old[start..], &new[start..]);

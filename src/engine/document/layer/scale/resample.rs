@@ -1,4 +1,5 @@
-//! Rows of pixels averaged into rows of another scale: the inner loop of making layers small. Floor 4.
+//! Rows of pixels averaged into rows of another scale: the inner loop of making layers small. Floor
+//! 4.
 
 use super::covered;
 use crate::raster::TILE;
@@ -27,17 +28,20 @@ impl AxisTaps {
         }
         Self { first, end, taps, ends }
     }
+
     /// The first old pixel, and the one after the last.
     pub fn first(&self) -> i32 {
         self.first
     }
+
     pub fn end(&self) -> i32 {
         self.end
     }
 }
 
 crate::widest! {
-    /// Adds a row of old pixels to the sums of the new ones. `row`: from the first old pixel on; `weight`: the row's.
+    /// Adds a row of old pixels to the sums of the new ones. `row`: from the first old pixel on;
+    /// `weight`: the row's.
     pub(super) fn add_row(columns: &AxisTaps, weight: f32, row: &[[f32; 4]], sums: &mut [[f32; 4]; TILE]) {
         let mut start = 0;
         for (sum, &end) in sums.iter_mut().zip(&columns.ends) {
@@ -61,13 +65,16 @@ mod tests {
         for scale in [0.5, 0.25, 0.3, 1.0, 1.7] {
             let columns = AxisTaps::new(-64..0, scale);
             let value = |x: i32, c: usize| ((x * 37 + 11 * c as i32) & 255) as u8;
-            let row: Vec<[f32; 4]> =
-                (columns.first()..columns.end()).map(|x| std::array::from_fn(|c| f32::from(value(x, c)))).collect();
+            let row: Vec<[f32; 4]> = (columns.first()..columns.end())
+                .map(|x| std::array::from_fn(|c| f32::from(value(x, c))))
+                .collect();
             let mut sums = [[1.0; 4]; TILE];
             add_row(&columns, 0.75, &row, &mut sums);
             for (x, sum) in (-64..0).zip(sums) {
                 for (c, found) in sum.into_iter().enumerate() {
-                    let mean = covered(x, scale).iter().fold(1.0, |s, (x, w)| s + w * 0.75 * f32::from(value(*x, c)));
+                    let mean = covered(x, scale)
+                        .iter()
+                        .fold(1.0, |s, (x, w)| s + w * 0.75 * f32::from(value(*x, c)));
                     assert_eq!(found, mean, "scale {scale}, {x}, {c}");
                 }
             }

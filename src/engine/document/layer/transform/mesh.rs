@@ -1,9 +1,10 @@
 //! Meshes: a grid of points over a frame, and where each goes. Floor 4.
 //!
-//! Catmull and Rom's cubic runs between the points in both directions. It passes through the points, so that what is
-//! dragged lies under the pen, and each point moves only what is within two points of it; a B-spline would be calmer,
-//! but would not pass through them. Beyond the frame the border is continued straight. The mesh is inverted once for a
-//! canvas, on a lattice; where it folds over itself, what is later in the order of the points lies on top.
+//! Catmull and Rom's cubic runs between the points in both directions. It passes through the
+//! points, so that what is dragged lies under the pen, and each point moves only what is within two
+//! points of it; a B-spline would be calmer, but would not pass through them. Beyond the frame the
+//! border is continued straight. The mesh is inverted once for a canvas, on a lattice; where it
+//! folds over itself, what is later in the order of the points lies on top.
 
 mod backward;
 
@@ -36,7 +37,8 @@ pub struct MeshFrame {
 
 impl PartialEq for Mesh {
     fn eq(&self, other: &Self) -> bool {
-        (self.columns, self.rows, self.frame) == (other.columns, other.rows, other.frame) && self.points == other.points
+        (self.columns, self.rows, self.frame) == (other.columns, other.rows, other.frame)
+            && self.points == other.points
     }
 }
 
@@ -51,7 +53,8 @@ impl MeshFrame {
 }
 
 impl Mesh {
-    /// Points along a side: two are a frame's corners; among more than 33 the user could not move single points.
+    /// Points along a side: two are a frame's corners; among more than 33 the user could not move
+    /// single points.
     pub const SIDE: RangeInclusive<usize> = 2..=33;
 
     /// `None` for a grid with too few or too many points, or numbers that files cannot hold.
@@ -59,6 +62,7 @@ impl Mesh {
         let mesh = Self { columns, rows, frame, points, backward: Arc::default() };
         mesh.fits().ok().map(|()| mesh)
     }
+
     /// A mesh that leaves everything in place.
     pub fn even(columns: usize, rows: usize, frame: MeshFrame) -> Option<Self> {
         let bare = Self { columns, rows, frame, points: Vec::new(), backward: Arc::default() };
@@ -66,30 +70,37 @@ impl Mesh {
         let places = (0..columns * rows).map(|k| bare.place(k)).collect();
         Self::new(columns, rows, frame, places)
     }
+
     /// Points from left to right.
     pub fn columns(&self) -> usize {
         self.columns
     }
+
     /// Points from top to bottom.
     pub fn rows(&self) -> usize {
         self.rows
     }
+
     /// The rectangle over which its points were spread.
     pub fn frame(&self) -> MeshFrame {
         self.frame
     }
+
     /// Row by row.
     pub fn points(&self) -> &[Vec2] {
         &self.points
     }
+
     /// The place of a point in the frame, by its number.
     fn place(&self, k: usize) -> Vec2 {
         self.frame.corner + vec2((k % self.columns) as f32, (k / self.columns) as f32) * self.cell()
     }
+
     /// The step from one point to the next in the frame.
     fn cell(&self) -> Vec2 {
         self.frame.size / vec2((self.columns - 1) as f32, (self.rows - 1) as f32)
     }
+
     /// Refuses what files cannot hold.
     pub fn fits(&self) -> Result<(), String> {
         for (what, count) in [("columns", self.columns), ("rows", self.rows)] {
@@ -100,30 +111,39 @@ impl Mesh {
         }
         let (found, wanted) = (self.points.len(), self.columns * self.rows);
         if found != wanted {
-            return Err(format!("the mesh has {found} points; {} × {} make {wanted}", self.columns, self.rows));
+            return Err(format!(
+                "the mesh has {found} points; {} × {} make {wanted}",
+                self.columns, self.rows
+            ));
         }
         for v in self.frame.size.to_array() {
             range::within("a side of the mesh's frame", v, &MeshFrame::SIDE_PX)?;
         }
-        let places = self.points.iter().flat_map(|p| p.to_array()).chain(self.frame.corner.to_array());
+        let places =
+            self.points.iter().flat_map(|p| p.to_array()).chain(self.frame.corner.to_array());
         places.into_iter().try_for_each(|v| range::within("a place of the mesh", v, &COORDINATE))
     }
+
     /// The same with the points elsewhere.
     pub fn with_points(&self, points: Vec<Vec2>) -> Option<Self> {
         Self::new(self.columns, self.rows, self.frame, points)
     }
+
     /// The same followed by a map of the plane.
     pub fn then(&self, map: &PlaneMap) -> Option<Self> {
         self.with_points(self.points.iter().map(|p| map.to_canvas(*p)).collect::<Option<_>>()?)
     }
+
     /// The same picture on a canvas `per_axis` times as large.
     pub(in crate::document) fn scaled(&self, per_axis: Vec2) -> Self {
-        let frame = MeshFrame { corner: self.frame.corner * per_axis, size: self.frame.size * per_axis };
+        let frame =
+            MeshFrame { corner: self.frame.corner * per_axis, size: self.frame.size * per_axis };
         let points = self.points.iter().map(|p| *p * per_axis).collect();
         Self { frame, points, backward: Arc::default(), ..self.clone() }
     }
-    /// The same on a plane moved by a map that keeps its frame a rectangle: moves, mirrors, quarter turns. `None` for
-    /// other maps.
+
+    /// The same on a plane moved by a map that keeps its frame a rectangle: moves, mirrors, quarter
+    /// turns. `None` for other maps.
     pub(in crate::document) fn carried(&self, map: &PlaneMap) -> Option<Self> {
         let [a, b, c, d, _, _] = map.coefficients()?;
         let (is_upright, is_turned) = (b == 0.0 && c == 0.0, a == 0.0 && d == 0.0);
@@ -133,7 +153,8 @@ impl Mesh {
         let (low, high) = (self.frame.corner, self.frame.corner + self.frame.size);
         let (p, q) = (map.to_canvas(low)?, map.to_canvas(high)?);
         let frame = MeshFrame { corner: p.min(q), size: (q - p).abs() };
-        let (columns, rows) = if is_turned { (self.rows, self.columns) } else { (self.columns, self.rows) };
+        let (columns, rows) =
+            if is_turned { (self.rows, self.columns) } else { (self.columns, self.rows) };
         let mut points = vec![Vec2::ZERO; self.points.len()];
         let cell = frame.size / vec2((columns - 1) as f32, (rows - 1) as f32);
         for (k, point) in self.points.iter().enumerate() {
@@ -143,16 +164,22 @@ impl Mesh {
         }
         Self::new(columns, rows, frame, points)
     }
+
     /// The affine map that it is, if it is one.
     pub fn as_affine(&self) -> Option<PlaneMap> {
-        let [o, x, y] = [0, self.columns - 1, (self.rows - 1) * self.columns].map(|k| self.points[k].as_dvec2());
-        let (along, down) = ((x - o) / f64::from(self.frame.size.x), (y - o) / f64::from(self.frame.size.y));
+        let [o, x, y] = [0, self.columns - 1, (self.rows - 1) * self.columns]
+            .map(|k| self.points[k].as_dvec2());
+        let (along, down) =
+            ((x - o) / f64::from(self.frame.size.x), (y - o) / f64::from(self.frame.size.y));
         let from = self.frame.corner.as_dvec2();
         let origin = o - along * from.x - down * from.y;
         let map = PlaneMap::affine([along.x, along.y, down.x, down.y, origin.x, origin.y])?;
-        let is_there = |(k, p): (usize, &Vec2)| map.to_canvas(self.place(k)).is_some_and(|q| q.distance(*p) < 1e-3);
+        let is_there = |(k, p): (usize, &Vec2)| {
+            map.to_canvas(self.place(k)).is_some_and(|q| q.distance(*p) < 1e-3)
+        };
         self.points.iter().enumerate().all(is_there).then_some(map)
     }
+
     /// Where a point of the frame goes, and the derivative of that place.
     pub fn at(&self, p: Vec2) -> (Vec2, Mat2) {
         let s = (p - self.frame.corner) / self.cell();
@@ -168,14 +195,19 @@ impl Mesh {
         }
         (q, Mat2::from_cols(right / self.cell().x, down / self.cell().y))
     }
+
     /// A point, or its straight continuation where the grid ends.
     fn extended(&self, column: i32, row: i32) -> Vec2 {
-        let along = |row: usize| beyond(column, self.columns, |i| self.points[row * self.columns + i]);
+        let along =
+            |row: usize| beyond(column, self.columns, |i| self.points[row * self.columns + i]);
         beyond(row, self.rows, along)
     }
-    /// Backward: the displacement from a point near the canvas to the point of the frame that shows there.
+
+    /// Backward: the displacement from a point near the canvas to the point of the frame that shows
+    /// there.
     pub(in crate::document) fn backward(&self, canvas: Size) -> Arc<Lattice> {
-        let (size, known) = self.backward.get_or_init(|| (canvas, Arc::new(Backward::of(self, canvas).lattice())));
+        let (size, known) =
+            self.backward.get_or_init(|| (canvas, Arc::new(Backward::of(self, canvas).lattice())));
         if *size == canvas { known.clone() } else { Arc::new(Backward::of(self, canvas).lattice()) }
     }
 }
@@ -185,7 +217,10 @@ fn beyond(i: i32, count: usize, value: impl Fn(usize) -> Vec2) -> Vec2 {
     let last = count as i32 - 1;
     match i {
         _ if i < 0 => value(0) * (1 - i) as f32 + value(1) * i as f32,
-        _ if i > last => value(last as usize) * (1 + i - last) as f32 - value(last as usize - 1) * (i - last) as f32,
+        _ if i > last => {
+            value(last as usize) * (1 + i - last) as f32
+                - value(last as usize - 1) * (i - last) as f32
+        }
         _ => value(i as usize),
     }
 }

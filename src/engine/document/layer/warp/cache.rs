@@ -1,4 +1,5 @@
-//! What was composed of a warped layer: the tiles that it is sampled from, and those that it shows. Floor 4.
+//! What was composed of a warped layer: the tiles that it is sampled from, and those that it shows.
+//! Floor 4.
 
 use super::LayerWarp;
 use crate::document::layer::content::Content;
@@ -24,6 +25,7 @@ impl Cells {
         let cols = TileAt::covering(canvas).take_while(|at| at.row == 0).count() as i32;
         Self { cols, cells: (0..count).map(|_| OnceLock::new()).collect() }
     }
+
     fn cell(&self, at: TileAt) -> Option<&Cell> {
         let inside = at.col >= 0 && at.row >= 0 && at.col < self.cols;
         inside.then(|| self.cells.get((at.row * self.cols + at.col) as usize)).flatten()
@@ -42,7 +44,11 @@ pub struct WarpTiles {
 
 impl WarpTiles {
     /// What the layer shows on a tile. `None`: it shows itself there.
-    pub fn shown(&self, at: TileAt, compose: &dyn Fn(TileAt) -> Option<Arc<Tile>>) -> Option<Option<Arc<Tile>>> {
+    pub fn shown(
+        &self,
+        at: TileAt,
+        compose: &dyn Fn(TileAt) -> Option<Arc<Tile>>,
+    ) -> Option<Option<Arc<Tile>>> {
         let cell = self.shown.cell(at)?;
         if let Some(known) = cell.get() {
             return Some(known.clone());
@@ -50,13 +56,17 @@ impl WarpTiles {
         let map = self.warp.tile_map(at, &crate::math::PlaneMap::IDENTITY)?;
         Some(once(cell, || self.sampled(at, &map, compose)).clone())
     }
+
     fn sampled(
         &self,
         at: TileAt,
         map: &dyn PixelMap,
         compose: &dyn Fn(TileAt) -> Option<Arc<Tile>>,
     ) -> Option<Arc<Tile>> {
-        let wanted = self.warp.within(map.source_rect(at.rect().intersect(self.canvas))).intersect(self.canvas);
+        let wanted = self
+            .warp
+            .within(map.source_rect(at.rect().intersect(self.canvas)))
+            .intersect(self.canvas);
         let mut grid = TileGrid::default();
         for from in TileAt::covering(wanted) {
             let tile = self.source.cell(from).map(|cell| once(cell, || compose(from)).clone());
@@ -82,19 +92,26 @@ struct Entry {
 }
 
 impl WarpCache {
-    /// The tiles of a layer that shows `content` on a scene. What was composed of the same content is kept; what it
-    /// shows is kept too, where its displacement did not change.
-    pub fn tiles(&self, scene: &Scene, content: &Content, map: &LayerMap, warp: LayerWarp) -> Arc<WarpTiles> {
+    /// The tiles of a layer that shows `content` on a scene. What was composed of the same content
+    /// is kept; what it shows is kept too, where its displacement did not change.
+    pub fn tiles(
+        &self,
+        scene: &Scene,
+        content: &Content,
+        map: &LayerMap,
+        warp: LayerWarp,
+    ) -> Arc<WarpTiles> {
         let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
         let canvas = scene.size.rect();
-        let known = last
-            .as_ref()
-            .filter(|entry| entry.scene.is_same(scene) && entry.map == *map && is_same(&entry.content, content));
+        let known = last.as_ref().filter(|entry| {
+            entry.scene.is_same(scene) && entry.map == *map && is_same(&entry.content, content)
+        });
         let tiles = match known {
             Some(entry) if entry.tiles.warp == warp => return entry.tiles.clone(),
             Some(entry) => {
                 let shown = Cells::new(canvas);
-                if let Some(changed) = LayerWarp::changed_tiles(Some(&entry.tiles.warp), Some(&warp))
+                if let Some(changed) =
+                    LayerWarp::changed_tiles(Some(&entry.tiles.warp), Some(&warp))
                     && entry.tiles.warp.filter == warp.filter
                 {
                     for at in TileAt::covering(canvas).filter(|at| !changed.contains(at)) {
@@ -107,7 +124,12 @@ impl WarpCache {
                 }
                 WarpTiles { warp, canvas, source: entry.tiles.source.clone(), shown }
             }
-            None => WarpTiles { warp, canvas, source: Arc::new(Cells::new(canvas)), shown: Cells::new(canvas) },
+            None => WarpTiles {
+                warp,
+                canvas,
+                source: Arc::new(Cells::new(canvas)),
+                shown: Cells::new(canvas),
+            },
         };
         let tiles = Arc::new(tiles);
         let (scene, content, map) = (scene.clone(), content.clone(), *map);
@@ -120,7 +142,8 @@ impl WarpCache {
 fn is_same(a: &Content, b: &Content) -> bool {
     match (a, b) {
         (Content::Group(a), Content::Group(b)) => {
-            a.layers.len() == b.layers.len() && a.layers.iter().zip(&b.layers).all(|(a, b)| Arc::ptr_eq(a, b))
+            a.layers.len() == b.layers.len()
+                && a.layers.iter().zip(&b.layers).all(|(a, b)| Arc::ptr_eq(a, b))
         }
         _ => a.is_identical(b),
     }

@@ -20,7 +20,10 @@ fn zone_plate() -> TileGrid {
 }
 
 fn paint() -> Layer {
-    Layer::new("paint", Content::Pixels(PixelLayer { tiles: zone_plate(), ..PixelLayer::default() }))
+    Layer::new(
+        "paint",
+        Content::Pixels(PixelLayer { tiles: zone_plate(), ..PixelLayer::default() }),
+    )
 }
 
 fn ramp() -> Layer {
@@ -76,7 +79,10 @@ fn an_even_mesh_changes_no_byte_and_a_moved_one_is_the_matrix() {
         assert!(bytes(&document(meshed(layer(), |_, p| p))) == bytes(&plain));
         let moved = meshed(layer(), |_, p| p + vec2(12.0, -5.0));
         let shape = TransformShape::Matrix([1.0, 0.0, 0.0, 1.0, 12.0, -5.0]);
-        let matrix = Layer { transform: Some(LayerTransform { shape, filter: Resampling::Smooth }), ..layer() };
+        let matrix = Layer {
+            transform: Some(LayerTransform { shape, filter: Resampling::Smooth }),
+            ..layer()
+        };
         assert!(bytes(&document(moved)) == bytes(&document(matrix)));
     }
 }
@@ -102,7 +108,10 @@ fn a_layer_shows_at_q_what_it_showed_at_q_and_u() {
         assert_eq!(pixel(&found, x, y), pixel(&plain, x + 9, y - 4), "{x} {y}");
     }
     // A group shows the same, and a live layer within a byte's step.
-    let group = Layer::new("g", Content::Group(Group { layers: vec![Arc::new(paint())], pass_through: false }));
+    let group = Layer::new(
+        "g",
+        Content::Group(Group { layers: vec![Arc::new(paint())], pass_through: false }),
+    );
     assert!(bytes(&document(liquified(group, |_| vec2(9.0, -4.0)))) == found);
 }
 
@@ -120,7 +129,9 @@ fn mesh_and_liquify_are_one_resampling() {
 #[test]
 fn a_zone_plate_reduced_by_a_mesh_is_its_mean_and_no_moire() {
     // To an eighth: rings finer than a pixel, whose mean is grey.
-    let bend = |k: usize, p: Vec2| vec2(128.0, 96.0) + (p - vec2(128.0, 96.0)) / if k == 5 { 7.9 } else { 8.0 };
+    let bend = |k: usize, p: Vec2| {
+        vec2(128.0, 96.0) + (p - vec2(128.0, 96.0)) / if k == 5 { 7.9 } else { 8.0 }
+    };
     let found = bytes(&document(meshed(paint(), bend)));
     for (x, y) in [(116, 88), (140, 88), (116, 104), (140, 104)] {
         let [r, _, _, a] = pixel(&found, x, y);
@@ -141,7 +152,8 @@ fn only_what_may_look_different_is_redrawn() {
         let mut is_other = false;
         for y in 0..SIZE.height as i32 {
             for x in 0..SIZE.width as i32 {
-                let differs = pixel(&old, x as usize, y as usize) != pixel(&new, x as usize, y as usize);
+                let differs =
+                    pixel(&old, x as usize, y as usize) != pixel(&new, x as usize, y as usize);
                 is_other |= differs;
                 assert!(!differs || tiles.contains(&TileAt::of_pixel(x, y)), "{x} {y}");
             }
@@ -152,16 +164,19 @@ fn only_what_may_look_different_is_redrawn() {
 
 #[test]
 fn paint_in_a_displaced_group_is_redrawn_where_it_shows() {
-    let group = |child: Layer| Content::Group(Group { layers: vec![Arc::new(child)], pass_through: true });
+    let group =
+        |child: Layer| Content::Group(Group { layers: vec![Arc::new(child)], pass_through: true });
     let before = document(liquified(Layer::new("g", group(paint())), |_| vec2(40.0, 0.0)));
     let mut child = Layer::clone(&before.layers[0].content.group().unwrap().layers[0]);
     let Content::Pixels(pixels) = &mut child.content else { unreachable!() };
     pixels.tiles.set(TileAt::new(2, 1), None);
-    let after = before.with_layer(before.layers[0].id, |layer| layer.content = group(child)).unwrap();
+    let after =
+        before.with_layer(before.layers[0].id, |layer| layer.content = group(child)).unwrap();
     let (old, new, tiles) = (bytes(&before), bytes(&after), diff(&before, &after));
     for y in 0..SIZE.height as i32 {
         for x in 0..SIZE.width as i32 {
-            let differs = pixel(&old, x as usize, y as usize) != pixel(&new, x as usize, y as usize);
+            let differs =
+                pixel(&old, x as usize, y as usize) != pixel(&new, x as usize, y as usize);
             assert!(!differs || tiles.contains(&TileAt::of_pixel(x, y)), "{x} {y}");
         }
     }
@@ -184,7 +199,10 @@ fn hostile_meshes_show_something_or_nothing_and_never_end_the_program() {
 
 #[test]
 fn what_is_applied_looks_as_it_did_and_goes_along_with_the_canvas() {
-    let before = document(liquified(meshed(paint(), |k, p| if k == 5 { p + vec2(9.0, 4.0) } else { p }), bump));
+    let before = document(liquified(
+        meshed(paint(), |k, p| if k == 5 { p + vec2(9.0, 4.0) } else { p }),
+        bump,
+    ));
     let applied = before.with_transform_applied(before.layers[0].id).unwrap();
     assert!(!applied.layers[0].is_warped() && applied.layers[0].transform.is_none());
     assert!(bytes(&applied) == bytes(&before));
@@ -196,17 +214,21 @@ fn what_is_applied_looks_as_it_did_and_goes_along_with_the_canvas() {
     let here = bytes(&before);
     for (x, y) in [(100i32, 90i32), (128, 96), (150, 60), (40, 150)] {
         // Counter-clockwise: (x, y) goes to (y, w − 1 − x).
-        let (a, b) = (pixel(&here, x as usize, y as usize), there.pixel(y, SIZE.width as i32 - 1 - x));
+        let (a, b) =
+            (pixel(&here, x as usize, y as usize), there.pixel(y, SIZE.width as i32 - 1 - x));
         assert!(a.iter().zip(b).all(|(a, b)| a.abs_diff(b) <= 12), "{x} {y}: {a:?} {b:?}");
     }
     let twice = before.scaled(2.0).unwrap();
     let liquify = twice.layers[0].liquify.as_ref().unwrap();
-    let (a, b) =
-        (before.layers[0].liquify.as_ref().unwrap().at(vec2(128.0, 96.0)).by, liquify.at(vec2(256.0, 192.0)).by);
+    let (a, b) = (
+        before.layers[0].liquify.as_ref().unwrap().at(vec2(128.0, 96.0)).by,
+        liquify.at(vec2(256.0, 192.0)).by,
+    );
     assert!((a * 2.0 - b).length() < 0.1, "{a} {b}");
 }
 
-/// Along the rim of a ball a displacement of a hundredth of a pixel leaves the rim as smooth as it was.
+/// Along the rim of a ball a displacement of a hundredth of a pixel leaves the rim as smooth as it
+/// was.
 #[test]
 fn a_rim_under_a_displacement_of_nearly_nothing_looks_as_without() {
     use crate::math::vec3;
@@ -214,16 +236,22 @@ fn a_rim_under_a_displacement_of_nearly_nothing_looks_as_without() {
     let at = |x: usize, y: usize| (vec2(x as f32 + 0.5, y as f32 + 0.5) - vec2(128.0, 96.0)) / 70.0;
     let normals = Plane::from_fn(SIZE, |x, y| {
         let q = at(x, y);
-        vec3(q.x, -q.y, (1.0 - q.length_squared()).max(0.0).sqrt()).normalize_or(crate::math::Vec3::Z)
+        vec3(q.x, -q.y, (1.0 - q.length_squared()).max(0.0).sqrt())
+            .normalize_or(crate::math::Vec3::Z)
     });
-    let depth = Plane::from_fn(SIZE, |x, y| 1.0 - (1.0 - at(x, y).length_squared()).max(0.0).sqrt());
+    let depth =
+        Plane::from_fn(SIZE, |x, y| 1.0 - (1.0 - at(x, y).length_squared()).max(0.0).sqrt());
     let coverage = Plane::from_fn(SIZE, |x, y| if at(x, y).length() < 1.0 { 255 } else { 0 });
     let surface = Surface::new(Maps { normals, depth, coverage }).ok().map(Arc::new);
     let on_ball = |layer: Layer| Document { surface: surface.clone(), ..document(layer) };
     for layer in [paint, ramp] {
         let plain = bytes(&on_ball(layer()));
         let found = bytes(&on_ball(liquified(layer(), |_| vec2(1.0 / 64.0, 0.0))));
-        let off = plain.iter().zip(&found).flat_map(|(a, b)| a.iter().zip(b)).map(|(a, b)| a.abs_diff(*b));
+        let off = plain
+            .iter()
+            .zip(&found)
+            .flat_map(|(a, b)| a.iter().zip(b))
+            .map(|(a, b)| a.abs_diff(*b));
         assert!(off.max() <= Some(6), "{}", layer().name);
     }
 }

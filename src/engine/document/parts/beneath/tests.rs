@@ -31,6 +31,7 @@ fn a_colour_goes_on_beneath_nearer_colours_inside_of_it_and_a_hole_stays() {
         assert_eq!((share.at(40, 45), share.at(2, 2)), (0, 0), "a wing at the side, and nothing");
     }
 }
+
 #[test]
 fn what_is_farther_away_shows_through_a_hole() {
     let flats = Flats::of(&drawn(1.0, at), SIZE.rect(), &[]).unwrap();
@@ -38,24 +39,29 @@ fn what_is_farther_away_shows_through_a_hole() {
     let mut share = own.clone();
     fill_beneath(&mut share, &flats, &[color(PUPIL)], &[color(EYE)]);
     assert!(share == own, "the eye's white is behind the body");
-    // A glint that is no part is paint on the eye, and the eye without a part of its own stays a hole.
+    // A glint that is no part is paint on the eye, and the eye without a part of its own stays a
+    // hole.
     fill_beneath(&mut share, &flats, &[color(PUPIL)], &[]);
     assert_eq!(share.at(112, 56), 255);
     let mut share = own.clone();
     fill_beneath(&mut share, &flats, &[color(WING)], &[]);
     assert!(share == own);
 }
+
 #[test]
 fn a_glint_is_no_hole() {
     let glinting = |radius: f32| {
         let glint = |p: Vec2| (p - vec2(80.0, 80.0)).length() < radius;
-        let flats = Flats::of(&drawn(1.0, |p| if glint(p) { EYE } else { at(p) }), SIZE.rect(), &[]).unwrap();
+        let flats =
+            Flats::of(&drawn(1.0, |p| if glint(p) { EYE } else { at(p) }), SIZE.rect(), &[])
+                .unwrap();
         let mut share = flats.share_of(color(BODY), &[]);
         fill_beneath(&mut share, &flats, &[], &[color(EYE)]);
         share.at(80, 80)
     };
     assert_eq!((glinting(1.5), glinting(6.0), glinting(10.0)), (255, 255, 0));
 }
+
 #[test]
 fn a_belly_that_a_wing_hides_in_part_lies_on_the_body() {
     // The eye as a large belly, and a wing across it and out of the body.
@@ -71,9 +77,18 @@ fn a_belly_that_a_wing_hides_in_part_lies_on_the_body() {
         fill_beneath(&mut share, &flats, &nearer, &[]);
         [share.at(115, 84), share.at(98, 84), share.at(20, 84)]
     };
-    assert_eq!(shares(&[EYE, WING]), [255, 0, 0], "on the belly, on the wing before it, on the wing outside");
-    assert_eq!(shares(&[WING, EYE]), [0, 0, 0], "an area before the wing may go on beyond the body");
+    assert_eq!(
+        shares(&[EYE, WING]),
+        [255, 0, 0],
+        "on the belly, on the wing before it, on the wing outside"
+    );
+    assert_eq!(
+        shares(&[WING, EYE]),
+        [0, 0, 0],
+        "an area before the wing may go on beyond the body"
+    );
 }
+
 #[test]
 fn a_face_is_whole_beneath_an_eye_that_is_moved_or_hidden() {
     let tiles = drawn(1.0, at);
@@ -82,7 +97,9 @@ fn a_face_is_whole_beneath_an_eye_that_is_moved_or_hidden() {
     let layers = vec![Arc::new(Layer::new("Flats", Content::Pixels(pixels)))];
     let document = Document { layers, ..Document::empty(SIZE) };
     let is_eye = |part: &Part| {
-        let Some(OutlineSource::Layer { color: Some(flat), .. }) = part.outline() else { return false };
+        let Some(OutlineSource::Layer { color: Some(flat), .. }) = part.outline() else {
+            return false;
+        };
         [EYE, PUPIL].iter().any(|eye| flat.color == color(*eye))
     };
     let with = |edit: &dyn Fn(&mut Part)| {

@@ -1,5 +1,5 @@
-//! Lines between two parts of a drawing go with the nearer one, whose outline they draw: an eye that is moved takes all
-//! of its ring along. Floor 4.
+//! Lines between two parts of a drawing go with the nearer one, whose outline they draw: an eye
+//! that is moved takes all of its ring along. Floor 4.
 
 use super::super::areas::pixels;
 use super::super::ink::half_width;
@@ -9,12 +9,14 @@ use super::owners::{Cut, NO_PART};
 use crate::raster::{Plane, distance};
 use std::collections::VecDeque;
 
-/// A pixel that differs more from the flat colour of its part, in any channel of 8 bits, is of a line or a mark on it.
+/// A pixel that differs more from the flat colour of its part, in any channel of 8 bits, is of a
+/// line or a mark on it.
 const LINE: u8 = 48;
 /// How far beyond such pixels a line fades, px.
 const SOFT: i32 = 2;
 
-/// A channel of the piece in front may be off by this much from what it must add to the one behind, of 255.
+/// A channel of the piece in front may be off by this much from what it must add to the one behind,
+/// of 255.
 const ROUNDING: i32 = 1;
 
 /// The lines of a drawing that are drawn on one part and go with another.
@@ -23,7 +25,8 @@ pub struct CutLines {
     taker: Plane<u16>,
     /// Those of them that are more than a soft border.
     is_ink: Plane<bool>,
-    /// The square of how far the nearest line on any part is, px, up to a little more than [`SOFT`].
+    /// The square of how far the nearest line on any part is, px, up to a little more than
+    /// [`SOFT`].
     away: Plane<u16>,
 }
 
@@ -31,7 +34,10 @@ impl CutLines {
     pub fn of(cut: &Cut) -> Self {
         let size = cut.drawn.size();
         let is_marked = |x: usize, y: usize| {
-            cut.owner.at(x, y).checked_sub(1).is_some_and(|part| is_off_color(cut, part as u16, (x, y)))
+            cut.owner
+                .at(x, y)
+                .checked_sub(1)
+                .is_some_and(|part| is_off_color(cut, part as u16, (x, y)))
         };
         let marks = Plane::from_fn(size, |x, y| u8::from(is_marked(x, y)));
         let away = distance::squared(&marks, SOFT as u16 + 1);
@@ -43,14 +49,17 @@ impl CutLines {
         }
         Self { taker, is_ink, away }
     }
+
     /// The part that takes a pixel of a line that is drawn on a farther one.
     pub fn taker(&self, x: usize, y: usize) -> Option<u16> {
         Some(self.taker.at(x, y)).filter(|part| *part != NO_PART)
     }
+
     /// Whether no line is near enough to shade a pixel.
     pub fn is_far(&self, x: usize, y: usize) -> bool {
         i32::from(self.away.at(x, y)) > SOFT * SOFT
     }
+
     /// What the taker of a pixel adds to the colour behind it: the ink, as much of it as is seen.
     pub fn over(&self, cut: &Cut, (x, y): (usize, usize), behind: Pixel) -> Pixel {
         let drawn = cut.drawn.at(x, y);
@@ -71,14 +80,17 @@ impl Cut {
         let owner = self.owner.at(x, y);
         part != NO_PART && owner > 0 && u32::from(part) + 1 > owner && self.drawn.at(x, y)[3] == 255
     }
-    /// Whether a pixel of a part is of a line between it and a nearer one: of a colour that neither has, and that they
-    /// do not make where they meet.
+
+    /// Whether a pixel of a part is of a line between it and a nearer one: of a colour that neither
+    /// has, and that they do not make where they meet.
     fn is_ink_between(&self, part: u16, (x, y): (usize, usize)) -> bool {
         let color = |of: u32| self.outlines.get(of as usize).and_then(|outline| outline.color);
         let own = self.owner.at(x, y).checked_sub(1).and_then(color);
         let drawn = self.drawn.at(x, y);
         own.zip(color(u32::from(part))).is_some_and(|(own, other)| {
-            away(drawn, own) > LINE && away(drawn, other) > LINE && share_on_the_way(drawn, own, other) == 0
+            away(drawn, own) > LINE
+                && away(drawn, other) > LINE
+                && share_on_the_way(drawn, own, other) == 0
         })
     }
 }
@@ -89,21 +101,26 @@ fn is_off_color(cut: &Cut, part: u16, (x, y): (usize, usize)) -> bool {
     color.is_some_and(|color| away(cut.drawn.at(x, y), color) > LINE)
 }
 
-/// The ink on farther parts along each part, as far from its outline as the part's own side of the line is wide, and a
-/// quarter more.
+/// The ink on farther parts along each part, as far from its outline as the part's own side of the
+/// line is wide, and a quarter more.
 fn taken(cut: &Cut, marks: &Plane<u8>) -> Plane<u16> {
     let size = (cut.drawn.width(), cut.drawn.height());
     let is_marked = |x: usize, y: usize| marks.at(x, y) > 0;
-    let may_take =
-        |part: u16, x: usize, y: usize| is_marked(x, y) && cut.may_take(part, x, y) && cut.is_ink_between(part, (x, y));
+    let may_take = |part: u16, x: usize, y: usize| {
+        is_marked(x, y) && cut.may_take(part, x, y) && cut.is_ink_between(part, (x, y))
+    };
     let seed = |(x, y): (usize, usize)| {
-        let beside = around(x, y, 1).filter_map(|(x, y)| cut.nearest.get(x, y)).map(|[first, _]| first);
+        let beside =
+            around(x, y, 1).filter_map(|(x, y)| cut.nearest.get(x, y)).map(|[first, _]| first);
         let part = beside.filter(|part| *part != NO_PART).max()?;
         may_take(part, x, y).then_some((x, y, part))
     };
-    let seeds: Vec<(usize, usize, u16)> = pixels(size).filter(|(x, y)| is_marked(*x, *y)).filter_map(seed).collect();
+    let seeds: Vec<(usize, usize, u16)> =
+        pixels(size).filter(|(x, y)| is_marked(*x, *y)).filter_map(seed).collect();
     let widest = vec![2 * half_width(cut.drawn.size()); cut.outlines.len()];
-    let is_own_ink = |part: u16, x: usize, y: usize| is_marked(x, y) && cut.owner.at(x, y) == u32::from(part) + 1;
+    let is_own_ink = |part: u16, x: usize, y: usize| {
+        is_marked(x, y) && cut.owner.at(x, y) == u32::from(part) + 1
+    };
     let own_side = walked(cut, &seeds, &widest, is_own_ink);
     let count = |taken: &[(usize, usize, u16)]| {
         let mut counts = vec![0usize; cut.outlines.len()];
@@ -111,7 +128,9 @@ fn taken(cut: &Cut, marks: &Plane<u8>) -> Plane<u16> {
         counts
     };
     // The border runs in the middle of a line: its other side is about as wide, and ends softly.
-    let width = |(own, seeds): (usize, usize)| (5 * own.saturating_sub(seeds)).div_ceil(4 * seeds.max(1)) + 1;
+    let width = |(own, seeds): (usize, usize)| {
+        (5 * own.saturating_sub(seeds)).div_ceil(4 * seeds.max(1)) + 1
+    };
     let widths: Vec<usize> = count(&own_side).into_iter().zip(count(&seeds)).map(width).collect();
     let mut taker = Plane::filled(cut.drawn.size(), NO_PART);
     let found = walked(cut, &seeds, &widths, may_take);
@@ -119,8 +138,8 @@ fn taken(cut: &Cut, marks: &Plane<u8>) -> Plane<u16> {
     taker
 }
 
-/// The pixels that each part reaches from its seeds over those that it may enter, the seeds first; each is reached by
-/// one part. `most_px`: how far each part goes from a seed.
+/// The pixels that each part reaches from its seeds over those that it may enter, the seeds first;
+/// each is reached by one part. `most_px`: how far each part goes from a seed.
 fn walked(
     cut: &Cut,
     seeds: &[(usize, usize, u16)],
@@ -130,7 +149,8 @@ fn walked(
     let mut is_reached = Plane::filled(cut.drawn.size(), false);
     seeds.iter().for_each(|(x, y, _)| is_reached.set(*x, *y, true));
     let mut reached = seeds.to_vec();
-    let mut ahead: VecDeque<_> = seeds.iter().map(|(x, y, part)| ((*x, *y), (*x, *y), *part)).collect();
+    let mut ahead: VecDeque<_> =
+        seeds.iter().map(|(x, y, part)| ((*x, *y), (*x, *y), *part)).collect();
     while let Some((seed, (x, y), part)) = ahead.pop_front() {
         let most = most_px[usize::from(part)].pow(2);
         for (x, y) in around(x, y, 1) {
@@ -150,10 +170,13 @@ fn walked(
 /// The pixels beside what is taken that may be taken as well, and by which part.
 fn soft_border(cut: &Cut, taker: &Plane<u16>) -> Vec<(usize, usize, u16)> {
     let mut border = Vec::new();
-    for (x, y) in pixels((taker.width(), taker.height())).filter(|(x, y)| taker.at(*x, *y) != NO_PART) {
+    for (x, y) in
+        pixels((taker.width(), taker.height())).filter(|(x, y)| taker.at(*x, *y) != NO_PART)
+    {
         let part = taker.at(x, y);
         let free = around(x, y, 1).filter(|(x, y)| taker.get(*x, *y) == Some(NO_PART));
-        let free = free.map(|(x, y)| (x as usize, y as usize)).filter(|(x, y)| cut.may_take(part, *x, *y));
+        let free =
+            free.map(|(x, y)| (x as usize, y as usize)).filter(|(x, y)| cut.may_take(part, *x, *y));
         border.extend(free.map(|(x, y)| (x, y, part)));
     }
     border
@@ -165,13 +188,15 @@ fn around(x: usize, y: usize, reach: i32) -> impl Iterator<Item = (i32, i32)> {
     (-reach..=reach).flat_map(move |dy| (-reach..=reach).map(move |dx| (x + dx, y + dy)))
 }
 
-/// What has to lie with some alpha over an opaque colour, so that a given one is seen. `None` if nothing can.
+/// What has to lie with some alpha over an opaque colour, so that a given one is seen. `None` if
+/// nothing can.
 pub fn added(seen: Pixel, alpha: u8, over: Pixel) -> Option<Pixel> {
     let left = |c: usize| (i32::from(over[c]) * (255 - i32::from(alpha)) + 127) / 255;
     let own = |c: usize| i32::from(seen[c]) - left(c);
     let alpha_range = -ROUNDING..=i32::from(alpha) + ROUNDING;
     (0..3).all(|c| alpha_range.contains(&own(c))).then(|| {
-        let channel = |c: usize| if c == 3 { alpha } else { own(c).clamp(0, i32::from(alpha)) as u8 };
+        let channel =
+            |c: usize| if c == 3 { alpha } else { own(c).clamp(0, i32::from(alpha)) as u8 };
         std::array::from_fn(channel)
     })
 }

@@ -31,11 +31,13 @@ impl Cut {
     pub fn of(tiles: &TileGrid, outlines: Vec<PieceOutline>) -> Self {
         let rect = tiles.bounds();
         let size = Size::new(rect.width() as u32, rect.height() as u32);
-        let drawn = Plane::from_fn(size, |x, y| tiles.pixel(rect.x0 + x as i32, rect.y0 + y as i32));
+        let drawn =
+            Plane::from_fn(size, |x, y| tiles.pixel(rect.x0 + x as i32, rect.y0 + y as i32));
         let (nearest, owner) = (Plane::filled(size, [NO_PART; 2]), Plane::filled(size, 0));
         let mut cut = Self { rect, drawn, outlines, nearest, owner };
         cut.nearest = Plane::from_fn(size, |x, y| {
-            let mut covering = (0..cut.outlines.len() as u16).rev().filter(|part| cut.coverage(*part, x, y) > 0);
+            let mut covering =
+                (0..cut.outlines.len() as u16).rev().filter(|part| cut.coverage(*part, x, y) > 0);
             std::array::from_fn(|_| covering.next().unwrap_or(NO_PART))
         });
         let mut owner = Plane::from_fn(size, |x, y| {
@@ -53,10 +55,14 @@ impl Cut {
         cut.owner = owner;
         cut
     }
+
     /// The share of a pixel that a part covers.
     pub fn coverage(&self, part: u16, x: usize, y: usize) -> u8 {
         let outline = &self.outlines[usize::from(part)].outline;
         let (x0, y0) = outline.corner();
-        outline.coverage().get(x as i32 + self.rect.x0 - x0, y as i32 + self.rect.y0 - y0).unwrap_or(0)
+        outline
+            .coverage()
+            .get(x as i32 + self.rect.x0 - x0, y as i32 + self.rect.y0 - y0)
+            .unwrap_or(0)
     }
 }

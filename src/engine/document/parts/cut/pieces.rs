@@ -29,25 +29,33 @@ impl Cut {
             let piece = over(area, |x, y, i| {
                 let own = own.values()[i];
                 match lines.taker(x, y) {
-                    Some(taker) if taker == part => lines.over(self, (x, y), beneath.at(x, y).color),
+                    Some(taker) if taker == part => {
+                        lines.over(self, (x, y), beneath.at(x, y).color)
+                    }
                     Some(taker) if taker < part => OUT,
                     Some(_) => own,
                     None => self.pixel(part, (x, y), own, beneath.at(x, y)),
                 }
             });
-            for ((x, y), color) in pixels_of(area).zip(own.values()).filter(|(_, color)| color[3] > 0) {
+            for ((x, y), color) in
+                pixels_of(area).zip(own.values()).filter(|(_, color)| color[3] > 0)
+            {
                 beneath.set(x, y, ColorBeneath { color: *color, part });
             }
             pieces.push(self.tiles_of(&piece, area));
         }
         let rest = self.drawn.size().rect();
-        let left = over(rest, |x, y, _| if self.owner.at(x, y) == 0 { self.drawn.at(x, y) } else { OUT });
+        let left =
+            over(rest, |x, y, _| if self.owner.at(x, y) == 0 { self.drawn.at(x, y) } else { OUT });
         (pieces, self.tiles_of(&left, rest))
     }
+
     /// Where each part covers something, or has a pixel.
     fn reached(&self, lines: &CutLines) -> Vec<Rect> {
         let all = self.drawn.size().rect();
-        let covered = |of: &PieceOutline| of.outline.rect().moved(-self.rect.x0, -self.rect.y0).intersect(all);
+        let covered = |of: &PieceOutline| {
+            of.outline.rect().moved(-self.rect.x0, -self.rect.y0).intersect(all)
+        };
         let mut areas: Vec<Rect> = self.outlines.iter().map(covered).collect();
         for (x, y) in pixels_of(all) {
             let own = self.owner.at(x, y).checked_sub(1).map(|part| part as u16);
@@ -61,6 +69,7 @@ impl Cut {
         }
         areas
     }
+
     /// A pixel of a part's piece; `own`: the part's colour there.
     fn pixel(&self, part: u16, (x, y): (usize, usize), own: Pixel, beneath: ColorBeneath) -> Pixel {
         let (drawn, is_own) = (self.drawn.at(x, y), self.owner.at(x, y) == u32::from(part) + 1);
@@ -70,8 +79,14 @@ impl Cut {
             return if is_own { drawn } else { OUT };
         }
         let covered = self.coverage(first, x, y);
-        let behind = if part == first { Some(beneath.color).filter(|_| beneath.part == second) } else { Some(own) };
-        let over = behind.filter(|behind| behind[3] == 255).and_then(|behind| added(drawn, covered, behind));
+        let behind = if part == first {
+            Some(beneath.color).filter(|_| beneath.part == second)
+        } else {
+            Some(own)
+        };
+        let over = behind
+            .filter(|behind| behind[3] == 255)
+            .and_then(|behind| added(drawn, covered, behind));
         match over {
             _ if part != first && part != second => own,
             Some(over) if part == first => over,
@@ -81,8 +96,9 @@ impl Cut {
             None => own,
         }
     }
-    /// The colour of a part wherever it covers something: at its edges that of its nearest pixel that shows nothing
-    /// else, and beneath others that of its nearest one without lines.
+
+    /// The colour of a part wherever it covers something: at its edges that of its nearest pixel
+    /// that shows nothing else, and beneath others that of its nearest one without lines.
     fn own_colors(&self, part: u16, area: Rect, lines: &CutLines) -> Plane<Pixel> {
         let is_pure = |x: usize, y: usize| {
             let is_seen = self.nearest.at(x, y)[0] == part && self.coverage(part, x, y) == 255;
@@ -91,19 +107,30 @@ impl Cut {
         let pure = self.nearest_where(part, area, is_pure);
         let plain = self.nearest_where(part, area, |x, y| is_pure(x, y) && lines.is_far(x, y));
         over(area, |x, y, i| {
-            let (pure, plain, first) = (pure.values()[i], plain.values()[i], self.nearest.at(x, y)[0]);
+            let (pure, plain, first) =
+                (pure.values()[i], plain.values()[i], self.nearest.at(x, y)[0]);
             let is_beneath = first != part && first != NO_PART && self.coverage(first, x, y) == 255;
             if plain[3] > 0 && (is_beneath || lines.taker(x, y).is_some()) { plain } else { pure }
         })
     }
+
     /// The colour of the nearest pixel that counts, wherever a part covers something.
-    fn nearest_where(&self, part: u16, area: Rect, counts: impl Fn(usize, usize) -> bool + Sync) -> Plane<Pixel> {
+    fn nearest_where(
+        &self,
+        part: u16,
+        area: Rect,
+        counts: impl Fn(usize, usize) -> bool + Sync,
+    ) -> Plane<Pixel> {
         let width = self.drawn.width();
-        let mut nearest = over(area, |x, y, _| if counts(x, y) { (y * width + x) as u32 + 1 } else { 0 });
+        let mut nearest =
+            over(area, |x, y, _| if counts(x, y) { (y * width + x) as u32 + 1 } else { 0 });
         let (x0, y0) = (area.x0 as usize, area.y0 as usize);
         spread(&mut nearest, |x, y| self.coverage(part, x + x0, y + y0) > 0);
-        nearest.map(|index| index.checked_sub(1).map_or(OUT, |index| self.drawn.values()[index as usize]))
+        nearest.map(|index| {
+            index.checked_sub(1).map_or(OUT, |index| self.drawn.values()[index as usize])
+        })
     }
+
     /// Premultiplied pixels of an area as tiles of the canvas.
     fn tiles_of(&self, piece: &Plane<Pixel>, area: Rect) -> TileGrid {
         let area = area.moved(self.rect.x0, self.rect.y0);
@@ -111,7 +138,9 @@ impl Cut {
         for at in TileAt::covering(area) {
             let own = at.rect();
             let pixel = |x: i32, y: i32| piece.get(x - area.x0, y - area.y0).unwrap_or(OUT);
-            let bytes = (own.y0..own.y1).flat_map(|y| (own.x0..own.x1).flat_map(move |x| pixel(x, y))).collect();
+            let bytes = (own.y0..own.y1)
+                .flat_map(|y| (own.x0..own.x1).flat_map(move |x| pixel(x, y)))
+                .collect();
             tiles.set(at, Tile::from_pixels(bytes).map(Arc::new));
         }
         tiles

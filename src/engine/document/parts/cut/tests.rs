@@ -5,8 +5,8 @@ use super::super::flats::{PartFor, parts_of_flats};
 use super::super::near::NEAR;
 use super::super::shares::tests::{EYE, PUPIL, SIZE, at, color, drawn};
 use crate::document::{
-    Content, DerivedMask, Document, Group, Inflation, Layer, LayerId, LayerMask, OutlineSource, Part, PixelLayer,
-    Progress, flatten,
+    Content, DerivedMask, Document, Group, Inflation, Layer, LayerId, LayerMask, OutlineSource,
+    Part, PixelLayer, Progress, flatten,
 };
 use crate::math::srgb::Color;
 use crate::math::{Affine2, Size, Vec2, vec2};
@@ -16,25 +16,31 @@ use std::sync::Arc;
 fn shaped(tiles: &TileGrid) -> Document {
     shaped_on(SIZE, tiles)
 }
+
 fn shaped_on(size: Size, tiles: &TileGrid) -> Document {
     let parts = parts_of_flats(tiles, "Drawing", Inflation::default(), PartFor::Color).parts;
     let pixels = PixelLayer { tiles: tiles.clone(), ..PixelLayer::default() };
-    let drawing = Layer { clip_to_surface: false, ..Layer::new("Drawing", Content::Pixels(pixels)) };
+    let drawing =
+        Layer { clip_to_surface: false, ..Layer::new("Drawing", Content::Pixels(pixels)) };
     let document = Document { layers: vec![Arc::new(drawing)], ..Document::empty(size) };
     document.with_parts(parts.into_iter().map(Arc::new).collect())
 }
+
 fn cut(document: &Document) -> Document {
     let (next, group) = document.cut_by_parts(document.layers[0].id).unwrap();
     assert_eq!(next.layers[1].id, group);
     next
 }
+
 fn seen(document: &Document) -> TileGrid {
     flatten(document, &Progress::default()).unwrap()
 }
+
 fn is_eye(part: &Part) -> bool {
     let Some(OutlineSource::Layer { color: Some(flat), .. }) = part.outline() else { return false };
     [EYE, PUPIL].iter().any(|eye| flat.color == color(*eye))
 }
+
 /// With the parts that are meant moved.
 fn moved(document: &Document, by: Vec2, is_meant: impl Fn(&Part) -> bool) -> Document {
     let part = |part: &Arc<Part>| match is_meant(part) {
@@ -43,10 +49,12 @@ fn moved(document: &Document, by: Vec2, is_meant: impl Fn(&Part) -> bool) -> Doc
     };
     document.with_parts(document.parts.list.iter().map(part).collect())
 }
+
 /// The largest difference of a channel between two pixels.
 fn off(a: [u8; 4], b: [u8; 4]) -> i32 {
     a.into_iter().zip(b).map(|(a, b)| i32::from(a.abs_diff(b))).max().unwrap()
 }
+
 /// That of two pictures.
 fn most_off(size: Size, a: &TileGrid, b: &TileGrid) -> i32 {
     let pixels = (0..size.height as i32).flat_map(|y| (0..size.width as i32).map(move |x| (x, y)));
@@ -63,6 +71,7 @@ fn the_pieces_make_the_same_picture() {
         assert!(worst <= 1, "{worst}, edges of {side} px");
     }
 }
+
 #[test]
 fn an_eye_that_is_moved_takes_its_paint_along_and_leaves_a_whole_face() {
     let next = cut(&shaped(&drawn(1.0, at)));
@@ -70,16 +79,21 @@ fn an_eye_that_is_moved_takes_its_paint_along_and_leaves_a_whole_face() {
     let (before, after) = (seen(&next), seen(&after));
     for (x, y) in (50..72).flat_map(|y| (110..131).map(move |x| (x, y))) {
         let is_inside = (vec2(x as f32 + 0.5, y as f32 + 0.5) - vec2(120.0, 60.0)).length() < 11.0;
-        assert!(!is_inside || after.pixel(x - 50, y + 20) == before.pixel(x, y), "({x}, {y}) goes along");
+        assert!(
+            !is_inside || after.pixel(x - 50, y + 20) == before.pixel(x, y),
+            "({x}, {y}) goes along"
+        );
     }
     let body = before.pixel(100, 100);
     for (x, y) in (44..78).flat_map(|y| (104..138).map(move |x| (x, y))) {
-        let is_face = ((vec2(x as f32, y as f32) - vec2(100.0, 80.0)) / vec2(50.0, 43.0)).length() < 1.0;
+        let is_face =
+            ((vec2(x as f32, y as f32) - vec2(100.0, 80.0)) / vec2(50.0, 43.0)).length() < 1.0;
         // So much a pixel of a flat colour may be off it.
         let off = off(after.pixel(x, y), body);
         assert!(!is_face || off <= NEAR, "({x}, {y}): {:?} for {body:?}", after.pixel(x, y));
     }
 }
+
 #[test]
 fn an_inked_eye_takes_its_ring_along_and_leaves_a_face_without_ink() {
     use drawings::{BELLY, HEAD, INK, SIZE, drawn};
@@ -88,7 +102,9 @@ fn an_inked_eye_takes_its_ring_along_and_leaves_a_face_without_ink() {
         let is_brow = (p - vec2(330.0, 138.0)).abs().cmple(vec2(20.0, 2.0)).all();
         match (p.distance(eye), p.distance(face)) {
             (of_eye, _) if of_eye < 28.0 => Some(BELLY),
-            (of_eye, of_face) if of_eye < 32.0 || is_brow || (118.0..122.0).contains(&of_face) => Some(INK),
+            (of_eye, of_face) if of_eye < 32.0 || is_brow || (118.0..122.0).contains(&of_face) => {
+                Some(INK)
+            }
             (_, of_face) => (of_face < 122.0).then_some(HEAD),
         }
     });
@@ -103,7 +119,10 @@ fn an_inked_eye_takes_its_ring_along_and_leaves_a_face_without_ink() {
         let away = (vec2(x as f32, y as f32) + 0.5).distance(eye);
         if away < 38.0 {
             let here = after.pixel(x, y);
-            assert!(off(here, [r, g, b, 255]) <= NEAR, "({x}, {y}), {away} px from the eye's old middle: {here:?}");
+            assert!(
+                off(here, [r, g, b, 255]) <= NEAR,
+                "({x}, {y}), {away} px from the eye's old middle: {here:?}"
+            );
             let (there, was) = (after.pixel(x - 60, y + 50), tiles.pixel(x, y));
             assert!(off(there, was) <= 2, "({x}, {y}) goes along: {there:?} for {was:?}");
         }
@@ -111,6 +130,7 @@ fn an_inked_eye_takes_its_ring_along_and_leaves_a_face_without_ink() {
     // The brow is not of the eye.
     assert_eq!(after.pixel(330, 138), tiles.pixel(330, 138));
 }
+
 #[test]
 fn three_colours_that_meet_in_a_pixel_lose_nothing() {
     let tiles = drawings::drawn(|p| {
@@ -122,6 +142,7 @@ fn three_colours_that_meet_in_a_pixel_lose_nothing() {
     assert_eq!(document.parts.list.len(), 3);
     assert!(most_off(drawings::SIZE, &seen(&document), &seen(&cut(&document))) <= 1);
 }
+
 #[test]
 fn a_part_that_was_moved_before_takes_its_paint_to_where_it_is() {
     let document = shaped(&drawn(1.0, at));
@@ -129,6 +150,7 @@ fn a_part_that_was_moved_before_takes_its_paint_to_where_it_is() {
     let after = cut(&moved(&document, then, is_eye));
     assert_eq!(most_off(SIZE, &seen(&moved(&first, then, is_eye)), &seen(&after)), 0);
 }
+
 #[test]
 fn the_pieces_look_as_the_drawing_did() {
     let document = shaped(&drawn(1.0, at));
@@ -144,6 +166,7 @@ fn the_pieces_look_as_the_drawing_did() {
         assert!(off <= 1, "look {i}: {off}");
     }
 }
+
 #[test]
 fn what_cannot_be_cut_is_told() {
     let document = shaped(&drawn(1.0, at));
@@ -153,7 +176,8 @@ fn what_cannot_be_cut_is_told() {
     assert!(document.cut_by_parts(LayerId::fresh()).is_err());
     let bare = document.with_parts(Vec::new());
     assert!(bare.cut_by_parts(bare.layers[0].id).err().unwrap().contains("outline"));
-    let on = document.with_layer_on(document.layers[0].id, Some(&document.parts.list[0].id)).unwrap();
+    let on =
+        document.with_layer_on(document.layers[0].id, Some(&document.parts.list[0].id)).unwrap();
     assert!(on.cut_by_parts(on.layers[0].id).err().unwrap().contains("already"));
     let refused = |look: &dyn Fn(&mut Layer)| {
         let other = document.with_layer(document.layers[0].id, look).unwrap();
@@ -162,6 +186,7 @@ fn what_cannot_be_cut_is_told() {
     assert!(refused(&|layer| layer.visible = false).contains("hidden"));
     assert!(refused(&|layer| layer.content = Content::Fill(Color::BLACK)).contains("paint layer"));
     let group = Content::Group(Group { layers: document.layers.clone(), pass_through: false });
-    let grouped = Document { layers: vec![Arc::new(Layer::new("Group", group))], ..document.clone() };
+    let grouped =
+        Document { layers: vec![Arc::new(Layer::new("Group", group))], ..document.clone() };
     assert!(grouped.cut_by_parts(document.layers[0].id).err().unwrap().contains("group"));
 }

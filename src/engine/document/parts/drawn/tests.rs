@@ -1,9 +1,11 @@
-//! What outlines a part is what its layer shows: every edit of it gives the surface that a file would be read with.
+//! What outlines a part is what its layer shows: every edit of it gives the surface that a file
+//! would be read with.
 
 use super::*;
 use crate::document::parts::{FlatColor, Inflation, OutlineSource, PartKind};
 use crate::document::{
-    History, LayerMask, Live, MaskKind, Mesh, MeshFrame, PixelLayer, StrokeList, TransformShape, flatten,
+    History, LayerMask, Live, MaskKind, Mesh, MeshFrame, PixelLayer, StrokeList, TransformShape,
+    flatten,
 };
 use crate::math::srgb::Color;
 use crate::math::{Affine2, Rect, Size, Vec2, vec2};
@@ -18,12 +20,14 @@ const GREEN: Color = Color { r: 20, g: 90, b: 40, a: 255 };
 fn discs(name: &str, discs: &[(Vec2, f32, Color)]) -> Layer {
     let mut rgba = vec![0u8; SIZE.area() * 4];
     for (i, pixel) in rgba.as_chunks_mut::<4>().0.iter_mut().enumerate() {
-        let p = vec2((i % SIZE.width as usize) as f32 + 0.5, (i / SIZE.width as usize) as f32 + 0.5);
+        let p =
+            vec2((i % SIZE.width as usize) as f32 + 0.5, (i / SIZE.width as usize) as f32 + 0.5);
         if let Some((.., color)) = discs.iter().rev().find(|(c, r, _)| p.distance(*c) < *r) {
             *pixel = [color.r, color.g, color.b, color.a];
         }
     }
-    let tiles = TileGrid::from_straight_rgba(&rgba, SIZE.width as usize, SIZE.height as usize, 0, 0);
+    let tiles =
+        TileGrid::from_straight_rgba(&rgba, SIZE.width as usize, SIZE.height as usize, 0, 0);
     Layer::new(name, Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }))
 }
 
@@ -43,10 +47,16 @@ fn part(id: &str, outline: OutlineSource) -> Arc<Part> {
 
 /// Parts of two colours of a paint layer, of strokes, and of a group; all layers are in a group.
 fn drawing() -> Document {
-    let flats = discs("Flats", &[(vec2(50.0, 40.0), 24.0, ORANGE), (vec2(110.0, 40.0), 20.0, GREEN)]);
-    let strokes = Layer::new("Strokes", Content::Strokes(Live::new(StrokeList { strokes: vec![stroke(85.0)] })));
-    let inner =
-        vec![discs("Left", &[(vec2(60.0, 100.0), 15.0, ORANGE)]), discs("Right", &[(vec2(80.0, 100.0), 15.0, GREEN)])];
+    let flats =
+        discs("Flats", &[(vec2(50.0, 40.0), 24.0, ORANGE), (vec2(110.0, 40.0), 20.0, GREEN)]);
+    let strokes = Layer::new(
+        "Strokes",
+        Content::Strokes(Live::new(StrokeList { strokes: vec![stroke(85.0)] })),
+    );
+    let inner = vec![
+        discs("Left", &[(vec2(60.0, 100.0), 15.0, ORANGE)]),
+        discs("Right", &[(vec2(80.0, 100.0), 15.0, GREEN)]),
+    ];
     let all = group("All", vec![flats, strokes, group("Pair", inner)]);
     let of = |layer: &str, color: Option<Color>| OutlineSource::Layer {
         layer: layer.into(),
@@ -121,9 +131,13 @@ const EDITS: [LayerEdit; 14] = [
     ("less opacity", |layer| layer.opacity = 0.4),
     ("a mask and liquify", |layer| layer.liquify = lattice(vec2(7.0, -4.0))),
     ("hidden", |layer| layer.visible = false),
-    ("on a part", |layer| layer.on = Some(HomeFrame { matrix: Affine2::IDENTITY, ..HomeFrame::on("orange") })),
+    ("on a part", |layer| {
+        layer.on = Some(HomeFrame { matrix: Affine2::IDENTITY, ..HomeFrame::on("orange") })
+    }),
     ("another name", |layer| layer.name.push_str(" 2")),
-    ("nothing else", |layer| *layer = Layer { id: layer.id, ..Layer::new(layer.name.clone(), layer.content.clone()) }),
+    ("nothing else", |layer| {
+        *layer = Layer { id: layer.id, ..Layer::new(layer.name.clone(), layer.content.clone()) }
+    }),
 ];
 
 #[test]
@@ -137,11 +151,16 @@ fn whatever_changes_what_a_layer_shows_the_surface_is_that_of_the_file() {
             let edited = shaped.with_layer(id, edit).unwrap();
             let before = shaped.surface.clone().unwrap();
             shaped = edited.reshaped();
-            let (now, file) = (shaped.surface.clone().unwrap(), made_anew(&edited).surface.unwrap());
+            let (now, file) =
+                (shaped.surface.clone().unwrap(), made_anew(&edited).surface.unwrap());
             assert!(is_equal(&now, &file), "“{name}” with {what}");
-            // Not shaped means that the surface may be another; it is never another without being told.
+            // Not shaped means that the surface may be another; it is never another without being
+            // told.
             assert!(shaped.is_shaped(), "“{name}” with {what}");
-            assert!(!edited.is_shaped() || is_equal(&before, &now), "“{name}” with {what}: silently another");
+            assert!(
+                !edited.is_shaped() || is_equal(&before, &now),
+                "“{name}” with {what}: silently another"
+            );
             differing += usize::from(!is_equal(&before, &now));
         }
     }
@@ -152,13 +171,20 @@ fn whatever_changes_what_a_layer_shows_the_surface_is_that_of_the_file() {
 fn what_changes_no_outline_makes_nothing_again() {
     let document = drawing();
     let id = document.layer_named("Flats").unwrap().id;
-    for (what, edit) in
-        EDITS.iter().filter(|(what, _)| ["a mask", "less opacity", "hidden", "another name"].contains(what))
+    for (what, edit) in EDITS
+        .iter()
+        .filter(|(what, _)| ["a mask", "less opacity", "hidden", "another name"].contains(what))
     {
         let edited = document.with_layer(id, edit).unwrap();
         // Parts name the layer, so they change with its name.
         assert!(edited.is_shaped() || *what == "another name", "{what}");
-        assert!(Arc::ptr_eq(edited.reshaped().surface.as_ref().unwrap(), document.surface.as_ref().unwrap()), "{what}");
+        assert!(
+            Arc::ptr_eq(
+                edited.reshaped().surface.as_ref().unwrap(),
+                document.surface.as_ref().unwrap()
+            ),
+            "{what}"
+        );
     }
 }
 
@@ -170,7 +196,10 @@ fn a_layer_that_its_part_carries_is_not_moved_twice_where_it_is_bent() {
     let outline = OutlineSource::Layer { layer: "Flats".into(), color: None };
     let mut moved = Part::clone(&part("a", outline));
     let document = flat.with_parts(vec![Arc::new(moved.clone())]);
-    let bent = document.with_layer(id, |layer| layer.liquify = lattice(vec2(-6.0, 0.0))).unwrap().reshaped();
+    let bent = document
+        .with_layer(id, |layer| layer.liquify = lattice(vec2(-6.0, 0.0)))
+        .unwrap()
+        .reshaped();
     let bent = bent.with_layer_on(id, Some("a")).unwrap().reshaped();
     moved.matrix = Affine2::from_translation(vec2(40.0, 20.0));
     let moved = bent.with_part(moved);
@@ -193,7 +222,8 @@ fn a_history_holds_shapes_and_not_what_is_to_become_one() {
     let flat = Document { surface: None, ..document.clone() };
     let mut history = History::new(flat.clone(), 10);
     assert!(!flat.is_shaped() && history.present().is_shaped());
-    let bent = history.present().with_layer(id, |layer| layer.liquify = lattice(vec2(7.0, -4.0))).unwrap();
+    let bent =
+        history.present().with_layer(id, |layer| layer.liquify = lattice(vec2(7.0, -4.0))).unwrap();
     history.commit("Liquify", bent.clone(), ());
     let anew = |document: &Document| made_anew(document).surface.unwrap();
     assert!(is_equal(history.present().surface.as_ref().unwrap(), &anew(&bent)));
@@ -233,5 +263,8 @@ fn one_layer_alone_is_seen_on_the_surface_of_the_whole_drawing() {
     let left = document.layer_named("Left").unwrap().id;
     let alone = document.with_only(&[left]).unwrap();
     assert!(alone.is_shaped());
-    assert!(Arc::ptr_eq(alone.reshaped().surface.as_ref().unwrap(), document.surface.as_ref().unwrap()));
+    assert!(Arc::ptr_eq(
+        alone.reshaped().surface.as_ref().unwrap(),
+        document.surface.as_ref().unwrap()
+    ));
 }

@@ -1,4 +1,5 @@
-//! Drawings as people make them: with ink, shading, specks of compression, and marks too small for parts.
+//! Drawings as people make them: with ink, shading, specks of compression, and marks too small for
+//! parts.
 
 use super::*;
 use crate::document::{Content, Document, Layer, PixelLayer};
@@ -19,7 +20,8 @@ pub fn drawn(at: impl Fn(Vec2) -> Option<[f32; 3]>) -> TileGrid {
         let corner = vec2((i % SIZE.width as usize) as f32, (i / SIZE.width as usize) as f32);
         let mut sum = [0.0f32; 4];
         for k in 0..16 {
-            if let Some(color) = at(corner + vec2((k % 4) as f32 + 0.5, (k / 4) as f32 + 0.5) / 4.0) {
+            if let Some(color) = at(corner + vec2((k % 4) as f32 + 0.5, (k / 4) as f32 + 0.5) / 4.0)
+            {
                 (0..3).for_each(|c| sum[c] += color[c]);
                 sum[3] += 1.0;
             }
@@ -35,7 +37,10 @@ pub fn drawn(at: impl Fn(Vec2) -> Option<[f32; 3]>) -> TileGrid {
 /// Discs (middle, radius, colour), the last in front, each with a line of 4 px around it.
 pub fn inked(discs: &'static [([f32; 2], f32, [f32; 3])]) -> TileGrid {
     drawn(|p| {
-        let front = discs.iter().rev().find(|(middle, radius, _)| p.distance(Vec2::from(*middle)) < radius + 2.0)?;
+        let front = discs
+            .iter()
+            .rev()
+            .find(|(middle, radius, _)| p.distance(Vec2::from(*middle)) < radius + 2.0)?;
         Some(if p.distance(Vec2::from(front.0)) > front.1 - 2.0 { INK } else { front.2 })
     })
 }
@@ -43,12 +48,14 @@ pub fn inked(discs: &'static [([f32; 2], f32, [f32; 3])]) -> TileGrid {
 fn parts(tiles: &TileGrid, each: PartFor) -> FlatParts {
     parts_of_flats(tiles, "Flats", Inflation::default(), each)
 }
+
 fn surface(tiles: &TileGrid, parts: FlatParts) -> Arc<Surface> {
     let pixels = PixelLayer { tiles: tiles.clone(), ..PixelLayer::default() };
     let layers = vec![Arc::new(Layer::new("Flats", Content::Pixels(pixels)))];
     let flat = Document { layers, ..Document::empty(SIZE) };
     flat.with_parts(parts.parts.into_iter().map(Arc::new).collect()).surface.unwrap()
 }
+
 fn colors(parts: &FlatParts) -> Vec<Color> {
     let color = |part: &Part| match part.outline() {
         Some(OutlineSource::Layer { color: Some(flat), .. }) => Some(flat.color),
@@ -56,13 +63,20 @@ fn colors(parts: &FlatParts) -> Vec<Color> {
     };
     parts.parts.iter().filter_map(color).collect()
 }
+
 fn color([r, g, b]: [f32; 3]) -> Color {
     Color { r: r as u8, g: g as u8, b: b as u8, a: 255 }
 }
+
 /// Opaque pixels of the drawing that the surface does not cover wholly.
 fn open(tiles: &TileGrid, surface: &Surface) -> usize {
-    let pixels = (0..SIZE.height as usize).flat_map(|y| (0..SIZE.width as usize).map(move |x| (x, y)));
-    pixels.filter(|(x, y)| tiles.pixel(*x as i32, *y as i32)[3] == 255 && surface.coverage(*x, *y) < 250).count()
+    let pixels =
+        (0..SIZE.height as usize).flat_map(|y| (0..SIZE.width as usize).map(move |x| (x, y)));
+    pixels
+        .filter(|(x, y)| {
+            tiles.pixel(*x as i32, *y as i32)[3] == 255 && surface.coverage(*x, *y) < 250
+        })
+        .count()
 }
 
 #[test]
@@ -77,6 +91,7 @@ fn ink_belongs_to_what_it_runs_along() {
     let of = |x: i32| surface.objects().at(x, 200);
     assert!(of(268) != of(273) && of(268) == of(230) && of(273) == of(360));
 }
+
 #[test]
 fn a_line_keeps_two_places_of_one_colour_apart() {
     let tiles = inked(&[([230.0, 220.0], 120.0, HEAD), ([360.0, 200.0], 90.0, HEAD)]);
@@ -87,6 +102,7 @@ fn a_line_keeps_two_places_of_one_colour_apart() {
     assert_eq!(surface.objects().count(), 2);
     assert!(open(&tiles, &surface) <= 4, "{} pixels", open(&tiles, &surface));
 }
+
 #[test]
 fn a_colour_that_is_shaded_is_one_part_and_two_tones_with_an_edge_are_two() {
     let shaded = drawn(|p| {
@@ -100,6 +116,7 @@ fn a_colour_that_is_shaded_is_one_part_and_two_tones_with_an_edge_are_two() {
     });
     assert_eq!(parts(&two_tones, PartFor::Color).parts.len(), 2);
 }
+
 #[test]
 fn what_is_too_small_for_a_part_is_no_hole() {
     let door = drawn(|p| match p.distance(vec2(320.0, 210.0)) {
@@ -114,6 +131,7 @@ fn what_is_too_small_for_a_part_is_no_hole() {
     let off = |x: usize, y: usize| with.normal(x, y).distance(without.normal(x, y));
     assert!((310..330).all(|x| (200..220).all(|y| off(x, y) < 1e-3)));
 }
+
 #[test]
 fn specks_of_compression_change_no_part() {
     let clean = drawn(|p| match p.distance(vec2(340.0, 220.0)) {
@@ -134,12 +152,14 @@ fn specks_of_compression_change_no_part() {
             (0..3).for_each(|c| pixel[c] = (f32::from(here[c]) + noise(x, y, c)) as u8);
         }
     }
-    let noisy = TileGrid::from_straight_rgba(&rgba, SIZE.width as usize, SIZE.height as usize, 0, 0);
+    let noisy =
+        TileGrid::from_straight_rgba(&rgba, SIZE.width as usize, SIZE.height as usize, 0, 0);
     let made = parts(&noisy, PartFor::Place);
     assert_eq!((made.parts.len(), made.note()), (2, None));
     let surface = surface(&noisy, made);
     assert!(open(&noisy, &surface) <= 4, "{} pixels", open(&noisy, &surface));
 }
+
 #[test]
 fn a_line_that_is_asked_for_is_a_part() {
     let tiles = inked(&[([230.0, 220.0], 120.0, HEAD)]);
@@ -148,15 +168,19 @@ fn a_line_that_is_asked_for_is_a_part() {
     let surface = surface(&tiles, FlatParts::of_one(part));
     assert!(surface.coverage(230, 100) > 250 && surface.coverage(230, 220) == 0);
 }
+
 #[test]
 fn paint_that_is_not_flat_is_told() {
     let cloudy = drawn(|p| {
-        let grain = |c: u32| 120.0 + 100.0 * crate::math::hash::unit(3, (p.x as u32) + 999 * (p.y as u32), c);
+        let grain = |c: u32| {
+            120.0 + 100.0 * crate::math::hash::unit(3, (p.x as u32) + 999 * (p.y as u32), c)
+        };
         (p.distance(vec2(300.0, 200.0)) < 150.0).then(|| [grain(1), grain(2), grain(3)])
     });
     let note = parts(&cloudy, PartFor::Color).note().unwrap();
     assert!(note.starts_with("Only 0 %") && note.contains("one part for all"), "{note}");
 }
+
 #[test]
 fn ink_around_an_eye_is_no_part() {
     let tiles = inked(&[([300.0, 200.0], 120.0, HEAD), ([330.0, 180.0], 30.0, BELLY)]);

@@ -20,7 +20,9 @@ fn tiles(discs: &[([f32; 2], f32, [u8; 3])]) -> TileGrid {
         let mut sum = [0.0f32; 4];
         for k in 0..16 {
             let p = corner + vec2((k % 4) as f32 + 0.5, (k / 4) as f32 + 0.5) / 4.0;
-            if let Some((.., color)) = discs.iter().rev().find(|(c, r, _)| p.distance(Vec2::from(*c)) < *r) {
+            if let Some((.., color)) =
+                discs.iter().rev().find(|(c, r, _)| p.distance(Vec2::from(*c)) < *r)
+            {
                 (0..3).for_each(|c| sum[c] += f32::from(color[c]));
                 sum[3] += 1.0;
             }
@@ -32,14 +34,17 @@ fn tiles(discs: &[([f32; 2], f32, [u8; 3])]) -> TileGrid {
     }
     TileGrid::from_straight_rgba(&rgba, SIZE.width as usize, SIZE.height as usize, 0, 0)
 }
+
 fn content(tiles: TileGrid) -> Content {
     Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles })
 }
+
 fn face(eyes: &[([f32; 2], f32)]) -> TileGrid {
     let mut all = vec![([100.0, 60.0], 55.0, BODY)];
     all.extend(eyes.iter().map(|(at, r)| (*at, *r, EYE)));
     tiles(&all)
 }
+
 /// The same in a corner of a canvas in which areas of 64 px are small.
 fn large(eyes: &[([f32; 2], f32)]) -> TileGrid {
     let mut tiles = face(eyes);
@@ -57,9 +62,11 @@ fn one_eye(at: [f32; 2]) -> Document {
     let layers = vec![Arc::new(Layer::new("Flats", content(face(&EYES))))];
     Document { layers, ..Document::empty(SIZE) }.with_parts(vec![Arc::new(part)])
 }
+
 fn covered(document: &Document, x: usize, y: usize) -> bool {
     document.surface.as_ref().is_some_and(|surface| surface.coverage(x, y) > 0)
 }
+
 fn painted(document: &Document, tiles: TileGrid) -> Document {
     let id = document.layers[0].id;
     document.with_layer(id, |layer| layer.content = content(tiles.clone())).unwrap().reshaped()
@@ -73,11 +80,18 @@ fn two_eyes_become_two_parts_and_the_body_has_no_place() {
     assert_eq!(places.len(), 3);
     assert_eq!(places[0], None, "the body lies behind");
     for (eye, _) in EYES {
-        assert!(places.iter().flatten().any(|at| at.distance(eye.into()) < 1.5), "{eye:?}: {places:?}");
+        assert!(
+            places.iter().flatten().any(|at| at.distance(eye.into()) < 1.5),
+            "{eye:?}: {places:?}"
+        );
     }
-    assert_eq!(parts_of_flats(&tiles, "Flats", Inflation::default(), PartFor::Color).parts.len(), 2);
+    assert_eq!(
+        parts_of_flats(&tiles, "Flats", Inflation::default(), PartFor::Color).parts.len(),
+        2
+    );
     let layers = vec![Arc::new(Layer::new("Flats", content(tiles)))];
-    let shaped = Document { layers, ..Document::empty(SIZE) }.with_parts(parts.into_iter().map(Arc::new).collect());
+    let shaped = Document { layers, ..Document::empty(SIZE) }
+        .with_parts(parts.into_iter().map(Arc::new).collect());
     assert_eq!(shaped.surface.as_ref().unwrap().objects().count(), 3);
     assert!(shaped.parts.lost.is_empty());
 }
@@ -86,12 +100,16 @@ fn two_eyes_become_two_parts_and_the_body_has_no_place() {
 fn a_glint_does_not_bring_the_eye_before_its_pupil() {
     const PUPIL: [u8; 3] = [40, 30, 50];
     let with_glints = |pupil: f32, glint: f32| {
-        let eye = |x: f32| [([x, 50.0], 14.0, EYE), ([x + 2.0, 52.0], pupil, PUPIL), ([x + 1.5, 51.5], glint, EYE)];
-        let discs: Vec<_> = [([100.0, 60.0], 55.0, BODY)].into_iter().chain(eye(75.0)).chain(eye(125.0)).collect();
+        let eye = |x: f32| {
+            [([x, 50.0], 14.0, EYE), ([x + 2.0, 52.0], pupil, PUPIL), ([x + 1.5, 51.5], glint, EYE)]
+        };
+        let discs: Vec<_> =
+            [([100.0, 60.0], 55.0, BODY)].into_iter().chain(eye(75.0)).chain(eye(125.0)).collect();
         tiles(&discs)
     };
     let colors = |each: PartFor, (pupil, glint): (f32, f32), right_of: f32| -> Vec<[u8; 3]> {
-        let parts = parts_of_flats(&with_glints(pupil, glint), "Flats", Inflation::default(), each).parts;
+        let parts =
+            parts_of_flats(&with_glints(pupil, glint), "Flats", Inflation::default(), each).parts;
         let flats = parts.iter().filter_map(|part| match part.outline() {
             Some(OutlineSource::Layer { color, .. }) => *color,
             _ => None,
@@ -100,14 +118,20 @@ fn a_glint_does_not_bring_the_eye_before_its_pupil() {
         here.map(|FlatColor { color, .. }| [color.r, color.g, color.b]).collect()
     };
     assert_eq!(colors(PartFor::Color, (5.0, 2.0), 0.0), [BODY, EYE, PUPIL]);
-    assert_eq!(colors(PartFor::Place, (5.0, 2.0), 100.0), [BODY, EYE, PUPIL], "the glint makes no part");
+    assert_eq!(
+        colors(PartFor::Place, (5.0, 2.0), 100.0),
+        [BODY, EYE, PUPIL],
+        "the glint makes no part"
+    );
     assert_eq!(colors(PartFor::Place, (9.0, 3.0), 100.0), [BODY, EYE, PUPIL, EYE], "it does");
 }
 
 #[test]
 fn a_part_takes_only_the_area_around_its_point() {
     let document = one_eye([82.0, 48.0]);
-    assert!(covered(&document, 80, 50) && !covered(&document, 122, 50) && !covered(&document, 100, 100));
+    assert!(
+        covered(&document, 80, 50) && !covered(&document, 122, 50) && !covered(&document, 100, 100)
+    );
     assert!(document.parts.lost.is_empty());
 }
 
@@ -130,7 +154,8 @@ fn a_narrow_passage_separates_places_and_a_wide_one_joins_them() {
         let mut rgba = vec![0u8; width * 120 * 4];
         for (i, pixel) in rgba.as_chunks_mut::<4>().0.iter_mut().enumerate() {
             let (x, y) = (i % width, i / width);
-            let is_square = (20..80).contains(&y) && ((20..80).contains(&x) || (110..170).contains(&x));
+            let is_square =
+                (20..80).contains(&y) && ((20..80).contains(&x) || (110..170).contains(&x));
             if is_square || ((80..110).contains(&x) && (48..48 + height).contains(&y)) {
                 *pixel = [EYE[0], EYE[1], EYE[2], 255];
             }
@@ -143,7 +168,11 @@ fn a_narrow_passage_separates_places_and_a_wide_one_joins_them() {
         places.large().len()
     };
     assert_eq!([0, 1, 2, 8].map(|height| bridge(height, 300)), [2, 2, 2, 1]);
-    assert_eq!([0, 1, 2, 8].map(|height| bridge(height, 200)), [2, 1, 1, 1], "in pixel art every pixel is meant");
+    assert_eq!(
+        [0, 1, 2, 8].map(|height| bridge(height, 200)),
+        [2, 1, 1, 1],
+        "in pixel art every pixel is meant"
+    );
 }
 
 #[test]
@@ -217,7 +246,12 @@ fn what_is_too_small_for_a_part_is_told() {
     assert_eq!(parts, 2);
     assert!(told.unwrap().starts_with("2 areas are left without a part"));
     assert_eq!(note(PartFor::Color, &specks), (2, None), "they are of the eye's part");
-    assert!(note(PartFor::Color, &specks[..1]).1.unwrap().starts_with("One area is left without a part"));
+    assert!(
+        note(PartFor::Color, &specks[..1])
+            .1
+            .unwrap()
+            .starts_with("One area is left without a part")
+    );
     assert_eq!(note(PartFor::Place, &EYES).1, None);
 }
 
@@ -228,7 +262,10 @@ fn any_point_finds_a_place_or_none() {
     let places = ColorPlaces::of(&flats, Color::parse("#fafafa").unwrap());
     for at in [Vec2::NAN, Vec2::INFINITY, vec2(-1e9, 1e9), vec2(1e30, 0.0)] {
         let found = places.nearest(at);
-        assert!(found.is_none_or(|(place, is_beside)| is_beside && places.pixels(place) > 0), "{at}: {found:?}");
+        assert!(
+            found.is_none_or(|(place, is_beside)| is_beside && places.pixels(place) > 0),
+            "{at}: {found:?}"
+        );
     }
     let none = ColorPlaces::of(&flats, Color::parse("#010203").unwrap());
     assert!(none.large().is_empty() && none.nearest(vec2(3.0, 3.0)).is_none());

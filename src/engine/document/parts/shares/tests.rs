@@ -25,6 +25,7 @@ pub fn at(p: Vec2) -> Pixel {
     ];
     shapes.into_iter().find(|(_, is_in)| *is_in).map_or([0; 4], |(color, _)| color)
 }
+
 /// Each pixel is the mean over a square about it: sides of 1 are anti-aliased, longer ones blurred.
 pub fn drawn(side: f32, at: impl Fn(Vec2) -> Pixel) -> TileGrid {
     const N: usize = 8;
@@ -43,6 +44,7 @@ pub fn drawn(side: f32, at: impl Fn(Vec2) -> Pixel) -> TileGrid {
     }
     TileGrid::from_straight_rgba(&rgba, SIZE.width as usize, SIZE.height as usize, 0, 0)
 }
+
 pub fn color([r, g, b, a]: Pixel) -> Color {
     Color { r, g, b, a }
 }
@@ -63,6 +65,7 @@ fn the_shares_of_a_pixel_add_up_to_what_is_painted_of_it() {
         assert!(wrong <= 6, "{wrong} pixels, edges of {side} px");
     }
 }
+
 #[test]
 fn only_areas_are_colours() {
     // A long straight edge half-way through its pixels is a long row of one mixed colour.
@@ -70,6 +73,7 @@ fn only_areas_are_colours() {
     assert_eq!(Flats::of(&halves, SIZE.rect(), &[]).unwrap().colors().len(), 2);
     assert_eq!(Flats::of(&drawn(2.2, at), SIZE.rect(), &[]).unwrap().colors().len(), 4);
 }
+
 #[test]
 fn a_creature_of_flats_that_touch_has_no_rims_and_no_stray_points() {
     for side in [1.0, 2.2] {
@@ -89,23 +93,29 @@ fn a_creature_of_flats_that_touch_has_no_rims_and_no_stray_points() {
         assert!(open <= 4, "{open} pixels between flats are not covered, edges of {side} px");
     }
 }
+
 #[test]
 fn a_seam_between_two_flats_is_closed_and_a_gap_within_one_stays() {
-    let seam = |p: Vec2| match (p.x * 0.2 + p.y < 80.0, (p.x * 0.2 + p.y - 80.0).abs() < 0.9, p.x > 150.0) {
-        (_, true, false) => [0; 4],
-        (is_above, _, _) if p.x < 150.0 => {
-            if is_above {
-                BODY
-            } else {
-                WING
+    let seam =
+        |p: Vec2| match (p.x * 0.2 + p.y < 80.0, (p.x * 0.2 + p.y - 80.0).abs() < 0.9, p.x > 150.0)
+        {
+            (_, true, false) => [0; 4],
+            (is_above, _, _) if p.x < 150.0 => {
+                if is_above {
+                    BODY
+                } else {
+                    WING
+                }
             }
-        }
-        _ if (p.x - 170.0).abs() < 1.0 => [0; 4],
-        _ => EYE,
-    };
+            _ if (p.x - 170.0).abs() < 1.0 => [0; 4],
+            _ => EYE,
+        };
     let flats = Flats::of(&drawn(1.0, seam), SIZE.rect(), &[]).unwrap();
     let whole = |x: usize, y: usize| {
-        [BODY, WING, EYE].iter().map(|own| u32::from(flats.share_of(color(*own), &[]).at(x, y))).sum::<u32>()
+        [BODY, WING, EYE]
+            .iter()
+            .map(|own| u32::from(flats.share_of(color(*own), &[]).at(x, y)))
+            .sum::<u32>()
     };
     for x in [20, 60, 100, 130] {
         let y = 80 - x / 5;
@@ -113,11 +123,15 @@ fn a_seam_between_two_flats_is_closed_and_a_gap_within_one_stays() {
     }
     assert!((168..172).any(|x| whole(x, 20) < 60), "a gap within one colour is drawn");
 }
+
 #[test]
 fn what_is_behind_goes_on_beneath_the_edge_of_what_lies_over_it() {
     let tiles = drawn(1.0, at);
     let flats = Flats::of(&tiles, SIZE.rect(), &[]).unwrap();
-    let (alone, beneath) = (flats.share_of(color(BODY), &[]), flats.share_of(color(BODY), &[color(EYE), color(PUPIL)]));
+    let (alone, beneath) = (
+        flats.share_of(color(BODY), &[]),
+        flats.share_of(color(BODY), &[color(EYE), color(PUPIL)]),
+    );
     let edge: Vec<usize> = (100..112).filter(|x| (1..255).contains(&alone.at(*x, 66))).collect();
     assert!(!edge.is_empty() && edge.iter().all(|x| beneath.at(*x, 66) == 255), "{edge:?}");
     assert_eq!(beneath.at(120, 60), 0, "not beneath all of it");

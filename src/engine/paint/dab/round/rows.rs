@@ -1,4 +1,5 @@
-//! The round tip's loops over rows of pixels. Floor 3. Not here: how a pixel is classified and covered (`round`).
+//! The round tip's loops over rows of pixels. Floor 3. Not here: how a pixel is classified and
+//! covered (`round`).
 
 use super::{AT_CENTER, BEYOND, CHUNK, RoundTip, RowPaint, RowZones, WITHIN, add_within, zone_of};
 use crate::paint::dab::{DeformationField, PixelSpan, SpanNeighbours};
@@ -24,14 +25,17 @@ pub(in crate::paint::dab) struct BentPart<'p> {
 }
 
 /// The coverage and reach of all pixels of a tile.
-pub(in crate::paint::dab) type TilePlanes<'t> = (&'t mut [f32; TILE_AREA], &'t mut [f32; TILE_AREA]);
+pub(in crate::paint::dab) type TilePlanes<'t> =
+    (&'t mut [f32; TILE_AREA], &'t mut [f32; TILE_AREA]);
 
 crate::widest! {
     /// If D is the identity; (x, y) is the centre of the first pixel.
     pub(in crate::paint::dab) fn flat_row(x: f32, y: f32, tip: &RoundTip, row: &mut RowZones, paint: RowPaint) {
         flat_span(x, y, tip, row, paint);
     }
-    /// The same over all rows of a part of a tile, whose first pixel is `corner`: rows of small dabs are short.
+
+    /// The same over all rows of a part of a tile, whose first pixel is `corner`: rows of small
+    /// dabs are short.
     pub(in crate::paint::dab) fn flat_rows(
         corner: (i32, i32),
         spans: &[PixelSpan],
@@ -44,14 +48,16 @@ crate::widest! {
             flat_span(span.x as f32 + 0.5, span.y as f32 + 0.5, tip, row, paint);
         }
     }
+
     /// Bent: J by differences within each pixel's piece of surface.
     pub(in crate::paint::dab) fn bent_row(d: SpanNeighbours, tip: &RoundTip, row: &mut RowZones, paint: RowPaint) {
         let n = paint.coverage.len().min(TILE);
         judge(d, 0..n, tip, row);
         tip.add(row, 0..n, paint);
     }
-    /// The same over all rows of a part of a tile, to the same bits. Chunks that lie beyond the dab or within its
-    /// hardness by their distance alone are not classified.
+
+    /// The same over all rows of a part of a tile, to the same bits. Chunks that lie beyond the dab
+    /// or within its hardness by their distance alone are not classified.
     pub(in crate::paint::dab) fn bent_rows(
         d: &DeformationField,
         part: BentPart,
@@ -69,7 +75,8 @@ crate::widest! {
     }
 }
 
-/// The squared distances, px, that are surely beyond a dab and within its hardness in each column of a row of blocks.
+/// The squared distances, px, that are surely beyond a dab and within its hardness in each column
+/// of a row of blocks.
 struct SureZones {
     row: Option<usize>,
     beyond: [f32; TILE],
@@ -89,12 +96,18 @@ impl SureZones {
             return;
         }
         self.row = Some(row);
-        let blocks = self.beyond.as_chunks_mut::<BLOCK>().0.iter_mut().zip(self.within.as_chunks_mut::<BLOCK>().0);
+        let blocks = self
+            .beyond
+            .as_chunks_mut::<BLOCK>()
+            .0
+            .iter_mut()
+            .zip(self.within.as_chunks_mut::<BLOCK>().0);
         for ((beyond, within), pixel) in blocks.zip(pixel.iter().skip(row * TILE_BLOCKS)) {
             let (far, near) = tip.sure(*pixel);
             (*beyond, *within) = ([far; BLOCK], [near; BLOCK]);
         }
     }
+
     #[inline(always)]
     fn from(&self, column: usize) -> (&[f32], &[f32]) {
         (&self.beyond[column.min(TILE)..], &self.within[column.min(TILE)..])
@@ -128,7 +141,13 @@ fn flat_span(x: f32, y: f32, tip: &RoundTip, row: &mut RowZones, paint: RowPaint
 }
 
 #[inline(always)]
-fn bent_span(d: SpanNeighbours, sure: (&[f32], &[f32]), tip: &RoundTip, row: &mut RowZones, paint: RowPaint) {
+fn bent_span(
+    d: SpanNeighbours,
+    sure: (&[f32], &[f32]),
+    tip: &RoundTip,
+    row: &mut RowZones,
+    paint: RowPaint,
+) {
     let RowPaint { coverage, reach } = paint;
     let n = coverage.len().min(reach.len()).min(sure.0.len());
     sort(&d.row.0[1..n + 1], &d.row.1[1..n + 1], sure, tip, &mut row.near[..n]);
@@ -164,7 +183,8 @@ fn sort(x: &[f32], y: &[f32], sure: (&[f32], &[f32]), tip: &RoundTip, near: &mut
         let (dx, dy) = (x[i] - tip.at.x, y[i] - tip.at.y);
         let squared = dx * dx + dy * dy;
         // NaN is neither.
-        near[i] = if squared > beyond[i] { BEYOND } else { 0 } | if squared < within[i] { WITHIN } else { 0 };
+        near[i] = if squared > beyond[i] { BEYOND } else { 0 }
+            | if squared < within[i] { WITHIN } else { 0 };
     }
 }
 
@@ -189,13 +209,19 @@ fn are_inside(linked: &[u8]) -> bool {
 
 /// Within one piece of surface: J by central differences.
 #[inline(always)]
-fn judge_inside<'d>(d: SpanNeighbours<'d>, pixels: Range<usize>, tip: &RoundTip, row: &mut RowZones) {
+fn judge_inside<'d>(
+    d: SpanNeighbours<'d>,
+    pixels: Range<usize>,
+    tip: &RoundTip,
+    row: &mut RowZones,
+) {
     let n = pixels.len();
     let around = |row: &'d [f32]| &row[pixels.start..pixels.end + 2];
     let (cx, cy) = (around(d.row.0), around(d.row.1));
     let (ax, ay) = (around(d.above.0), around(d.above.1));
     let (bx, by) = (around(d.below.0), around(d.below.1));
-    let (cx, cy, ax, ay, bx, by) = (&cx[..n + 2], &cy[..n + 2], &ax[..n + 2], &ay[..n + 2], &bx[..n + 2], &by[..n + 2]);
+    let (cx, cy, ax, ay, bx, by) =
+        (&cx[..n + 2], &cy[..n + 2], &ax[..n + 2], &ay[..n + 2], &bx[..n + 2], &by[..n + 2]);
     let (r, toward) = (&mut row.r[pixels.clone()][..n], &mut row.toward[pixels.clone()][..n]);
     let (wide, zones) = (&mut row.wide[pixels.clone()][..n], &mut row.zones[pixels.clone()][..n]);
     for i in 0..n {
@@ -214,23 +240,40 @@ fn judge_rim<'d>(d: SpanNeighbours<'d>, pixels: Range<usize>, tip: &RoundTip, ro
     let (cx, cy) = (around(d.row.0), around(d.row.1));
     let (ax, ay) = (around(d.above.0), around(d.above.1));
     let (bx, by) = (around(d.below.0), around(d.below.1));
-    let (cx, cy, ax, ay, bx, by) = (&cx[..n + 2], &cy[..n + 2], &ax[..n + 2], &ay[..n + 2], &bx[..n + 2], &by[..n + 2]);
+    let (cx, cy, ax, ay, bx, by) =
+        (&cx[..n + 2], &cy[..n + 2], &ax[..n + 2], &ay[..n + 2], &bx[..n + 2], &by[..n + 2]);
     let linked = &d.linked[pixels.clone()][..n];
     let (r, toward) = (&mut row.r[pixels.clone()][..n], &mut row.toward[pixels.clone()][..n]);
     let (wide, zones) = (&mut row.wide[pixels.clone()][..n], &mut row.zones[pixels.clone()][..n]);
     for i in 0..n {
         let (x, y) = (cx[i + 1], cy[i + 1]);
         let has = |bit: u8| linked[i] & bit != 0;
-        let (left, right, up, down) = (has(links::LEFT), has(links::RIGHT), has(links::UP), has(links::DOWN));
-        let across = (slope(left, right, cx[i], x, cx[i + 2], 1.0), slope(left, right, cy[i], y, cy[i + 2], 0.0));
-        let along = (slope(up, down, ax[i + 1], x, bx[i + 1], 0.0), slope(up, down, ay[i + 1], y, by[i + 1], 1.0));
-        (r[i], toward[i], wide[i], zones[i]) = tip.judge((x - tip.at.x, y - tip.at.y), across, along);
+        let (left, right, up, down) =
+            (has(links::LEFT), has(links::RIGHT), has(links::UP), has(links::DOWN));
+        let across = (
+            slope(left, right, cx[i], x, cx[i + 2], 1.0),
+            slope(left, right, cy[i], y, cy[i + 2], 0.0),
+        );
+        let along = (
+            slope(up, down, ax[i + 1], x, bx[i + 1], 0.0),
+            slope(up, down, ay[i + 1], y, by[i + 1], 1.0),
+        );
+        (r[i], toward[i], wide[i], zones[i]) =
+            tip.judge((x - tip.at.x, y - tip.at.y), across, along);
     }
 }
 
-/// The derivative at `here` from its linked neighbours, of two; `flat`, the identity's, without any.
+/// The derivative at `here` from its linked neighbours, of two; `flat`, the identity's, without
+/// any.
 #[inline(always)]
-pub fn slope(has_before: bool, has_after: bool, before: f32, here: f32, after: f32, flat: f32) -> f32 {
+pub fn slope(
+    has_before: bool,
+    has_after: bool,
+    before: f32,
+    here: f32,
+    after: f32,
+    flat: f32,
+) -> f32 {
     let low = if has_before { before } else { here };
     let high = if has_after { after } else { here };
     let mean = if has_before & has_after { 0.5 * (high - low) } else { high - low };

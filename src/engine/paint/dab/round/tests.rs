@@ -1,4 +1,5 @@
-//! All rows of a dab at once compared with row by row, and pixels that count whole with those that may not.
+//! All rows of a dab at once compared with row by row, and pixels that count whole with those that
+//! may not.
 
 use super::*;
 use crate::math::{Size, hash, vec2, vec3};
@@ -14,11 +15,20 @@ const SIZE: Size = Size::new(140, 130);
 
 /// Waves with a hole, and a jump in depth.
 fn scene() -> Scene {
-    let normals = Plane::from_fn(SIZE, |x, y| vec3((0.09 * x as f32).sin(), (0.07 * y as f32).cos(), 1.0).normalize());
-    let depth = Plane::from_fn(SIZE, |x, y| 0.3 + 0.1 * (0.05 * y as f32).sin() + if x > 90 { 0.4 } else { 0.0 });
+    let normals = Plane::from_fn(SIZE, |x, y| {
+        vec3((0.09 * x as f32).sin(), (0.07 * y as f32).cos(), 1.0).normalize()
+    });
+    let depth = Plane::from_fn(SIZE, |x, y| {
+        0.3 + 0.1 * (0.05 * y as f32).sin() + if x > 90 { 0.4 } else { 0.0 }
+    });
     let hole = vec2(50.0, 60.0);
-    let coverage = Plane::from_fn(SIZE, |x, y| if vec2(x as f32, y as f32).distance(hole) < 14.0 { 0u8 } else { 255 });
-    Scene { size: SIZE, surface: Surface::new(Maps { normals, depth, coverage }).ok().map(Arc::new) }
+    let coverage = Plane::from_fn(SIZE, |x, y| {
+        if vec2(x as f32, y as f32).distance(hole) < 14.0 { 0u8 } else { 255 }
+    });
+    Scene {
+        size: SIZE,
+        surface: Surface::new(Maps { normals, depth, coverage }).ok().map(Arc::new),
+    }
 }
 
 fn dab(seed: u32) -> Dab {
@@ -56,7 +66,10 @@ fn row_by_row(placed: &PlacedDab, at: TileAt, [coverage, reach]: &mut [Vec<f32>;
     };
     for span in part.spans() {
         let start = part.start_of(span);
-        let out = RowPaint { coverage: &mut coverage[start..start + span.n], reach: &mut reach[start..start + span.n] };
+        let out = RowPaint {
+            coverage: &mut coverage[start..start + span.n],
+            reach: &mut reach[start..start + span.n],
+        };
         match &field {
             Some(field) => bent_row(field.around(span), &tip, &mut row, out),
             None => flat_row(span.x as f32 + 0.5, span.y as f32 + 0.5, &tip, &mut row, out),
@@ -86,7 +99,9 @@ fn all_rows_at_once_hold_the_bits_of_row_by_row() {
         for seed in 0..90 {
             let dab = Dab { operator, ..dab(seed) };
             let placed = PlacedDab::new(dab, &scene, round_extent(&dab));
-            for ((at, expected), tile) in TileAt::covering(SIZE.rect()).zip(&mut expected).zip(&mut tiles) {
+            for ((at, expected), tile) in
+                TileAt::covering(SIZE.rect()).zip(&mut expected).zip(&mut tiles)
+            {
                 row_by_row(&placed, at, expected, false);
                 placed.add_round(at, tile, &mut scratch);
                 let (coverage, reach) = tile.plain().unwrap();
@@ -101,18 +116,27 @@ fn all_rows_at_once_hold_the_bits_of_row_by_row() {
     }
     assert!(painted > 100_000, "{painted}");
 }
+
 #[test]
 fn the_unwrapped_plane_itself_gives_the_coverage_that_d_gives() {
     // One piece without a hole, as wide as most dabs.
-    let normals = Plane::from_fn(SIZE, |x, y| vec3((0.05 * x as f32).sin(), (0.04 * y as f32).cos(), 1.5).normalize());
-    let maps = Maps { normals, depth: Plane::filled(SIZE, 0.5), coverage: Plane::filled(SIZE, 255) };
+    let normals = Plane::from_fn(SIZE, |x, y| {
+        vec3((0.05 * x as f32).sin(), (0.04 * y as f32).cos(), 1.5).normalize()
+    });
+    let maps =
+        Maps { normals, depth: Plane::filled(SIZE, 0.5), coverage: Plane::filled(SIZE, 255) };
     let scene = Scene { size: SIZE, surface: Surface::new(maps).ok().map(Arc::new) };
     let (mut by_plane, mut off) = (0, 0.0f32);
     for seed in 0..90 {
-        let dab = Dab { operator: Operator::Surface { amount: 1.0, smooth: 0.0 }, ceiling: 1.0, ..dab(seed) };
+        let dab = Dab {
+            operator: Operator::Surface { amount: 1.0, smooth: 0.0 },
+            ceiling: 1.0,
+            ..dab(seed)
+        };
         let placed = PlacedDab::new(dab, &scene, round_extent(&dab));
         for at in TileAt::covering(SIZE.rect()) {
-            by_plane += usize::from(placed.deformation.own_plane(placed.touched(at).area).is_some());
+            by_plane +=
+                usize::from(placed.deformation.own_plane(placed.touched(at).area).is_some());
             let [found, expected] = [false, true].map(|by_d| {
                 let mut planes = [vec![0.0f32; TILE_AREA], vec![0.0f32; TILE_AREA]];
                 row_by_row(&placed, at, &mut planes, by_d);
@@ -125,6 +149,7 @@ fn the_unwrapped_plane_itself_gives_the_coverage_that_d_gives() {
     assert!(by_plane > 50, "{by_plane} parts of tiles");
     assert!(off < 0.2 / 255.0, "{off}");
 }
+
 #[test]
 fn a_pixel_that_counts_whole_takes_the_same_bits_either_way() {
     let tip = RoundTip::new(&Dab { hardness: 0.5, flow: 0.4, ..Dab::plain(vec2(0.0, 0.0), 12.0) });
@@ -137,6 +162,10 @@ fn a_pixel_that_counts_whole_takes_the_same_bits_either_way() {
         let (mut b, mut n) = (a, m);
         tip.raise_share(&mut a, &mut m, r, width, wide - width);
         tip.raise_whole(&mut b, &mut n, r, width, wide - width);
-        assert_eq!([a.to_bits(), m.to_bits()], [b.to_bits(), n.to_bits()], "at {r}, {width} of {wide}");
+        assert_eq!(
+            [a.to_bits(), m.to_bits()],
+            [b.to_bits(), n.to_bits()],
+            "at {r}, {width} of {wide}"
+        );
     }
 }

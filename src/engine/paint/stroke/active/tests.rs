@@ -11,29 +11,41 @@ use proptest::prelude::*;
 const SIZE: Size = Size::new(300, 200);
 
 fn waves() -> Scene {
-    let normals = Plane::from_fn(SIZE, |x, y| vec3((0.05 * x as f32).sin(), (0.07 * y as f32).cos(), 1.0));
+    let normals =
+        Plane::from_fn(SIZE, |x, y| vec3((0.05 * x as f32).sin(), (0.07 * y as f32).cos(), 1.0));
     let depth = Plane::from_fn(SIZE, |x, _| 0.5 + 0.4 * (0.02 * x as f32).sin());
     let maps = Maps { normals, depth, coverage: Plane::filled(SIZE, 255) };
     Scene { size: SIZE, surface: Some(Arc::new(Surface::new(maps).unwrap())) }
 }
+
 fn samples(seed: u32, n: u32) -> Vec<Sample> {
     let random = |i, j| hash::unit(seed, i, j);
     let (mut at, mut time_secs) = (vec2(150.0, 100.0), 0.0);
     (0..n)
         .map(|i| {
-            at = (at + 60.0 * (vec2(random(i, 0), random(i, 1)) - 0.5)).clamp(Vec2::ZERO, vec2(299.0, 199.0));
+            at = (at + 60.0 * (vec2(random(i, 0), random(i, 1)) - 0.5))
+                .clamp(Vec2::ZERO, vec2(299.0, 199.0));
             time_secs += 0.01 * random(i, 2);
             Sample { pressure: random(i, 3), time_secs, ..Sample::at(at) }
         })
         .collect()
 }
+
 fn brushes() -> Vec<Brush> {
     let dynamics = Dynamics::default().with(Property::Size, Input::Speed, Curve::Share(0.8));
-    let grain = BrushGrain { size_px: 9.0, lies: GrainSpace::Surface { gamma: 1.0 }, ..BrushGrain::default() };
+    let grain = BrushGrain {
+        size_px: 9.0,
+        lies: GrainSpace::Surface { gamma: 1.0 },
+        ..BrushGrain::default()
+    };
     let plain = Brush { size: 34.0, dynamics, ..Brush::default() };
     vec![
         plain.clone(),
-        Brush { scatter: 0.6, jitter: ColorJitter { hue_degrees: 90.0, ..ColorJitter::default() }, ..plain.clone() },
+        Brush {
+            scatter: 0.6,
+            jitter: ColorJitter { hue_degrees: 90.0, ..ColorJitter::default() },
+            ..plain.clone()
+        },
         Brush { blend: BlendMode::Multiply, opacity: 0.6, ..plain.clone() },
         Brush { erases: true, ..plain.clone() },
         Brush { grain: Some(grain), tip: Tip::Square { ratio: 0.4 }, ..plain },

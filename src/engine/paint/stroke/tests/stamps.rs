@@ -22,7 +22,8 @@ fn leaf() -> Tip {
 #[test]
 fn a_coloured_stamp_turns_counter_clockwise_and_keeps_its_colours() {
     let brush = Brush { size: 64.0, rotation: 90.0, tip: leaf(), ..Brush::default() };
-    let stroke = Stroke::new(brush, Operator::None, Color::BLACK, vec![Sample::at(vec2(70.0, 70.0))]);
+    let stroke =
+        Stroke::new(brush, Operator::None, Color::BLACK, vec![Sample::at(vec2(70.0, 70.0))]);
     let grid = one(stroke, &flat());
     // The leaf's right half, green, is at the top, as large as the picture: 64 px long, 28 wide.
     assert_eq!(grid.pixel(70, 50), [0, 255, 0, 255]);
@@ -30,6 +31,7 @@ fn a_coloured_stamp_turns_counter_clockwise_and_keeps_its_colours() {
     assert_eq!(grid.pixel(50, 70)[3], 0);
     assert_eq!((grid.pixel(70, 41)[3], grid.pixel(70, 37)[3]), (255, 0));
 }
+
 #[test]
 fn a_bent_stamp_over_tile_borders_equals_the_picture_read_at_d() {
     let operator = Operator::Normal { alpha: 0.5, beta: 1.0, detail: 0.0 };
@@ -39,7 +41,8 @@ fn a_bent_stamp_over_tile_borders_equals_the_picture_read_at_d() {
     let scene = ball();
     let d = Deformation::of_dab(scene.surface.as_deref(), SIZE, operator, at);
     let (mut inside, mut outside) = (0, 0);
-    for (x, y) in (0..SIZE.height as i32).flat_map(|y| (0..SIZE.width as i32).map(move |x| (x, y))) {
+    for (x, y) in (0..SIZE.height as i32).flat_map(|y| (0..SIZE.width as i32).map(move |x| (x, y)))
+    {
         let texel = (d.at(x, y) - at) * 64.0 / 50.0;
         let r = (texel / vec2(30.0, 14.0)).length();
         // Away from the rim and from the seam of the two colours.
@@ -54,6 +57,7 @@ fn a_bent_stamp_over_tile_borders_equals_the_picture_read_at_d() {
     }
     assert!(inside > 100 && outside > 5000, "{inside}, {outside}");
 }
+
 #[test]
 fn a_grey_tip_is_painted_in_the_strokes_colour_and_softness_spreads_it() {
     let picture = Picture::srgb8(Size::new(16, 16), vec![[255, 255, 255, 255]; 256]).unwrap();
@@ -61,7 +65,12 @@ fn a_grey_tip_is_painted_in_the_strokes_colour_and_softness_spreads_it() {
     let painted = |softness: f32| {
         let brush = Brush { size: 32.0, softness, flow: 0.5, tip: tip.clone(), ..Brush::default() };
         one(
-            Stroke::new(brush, Operator::None, Color::parse("#ff8000").unwrap(), vec![Sample::at(vec2(64.0, 64.0))]),
+            Stroke::new(
+                brush,
+                Operator::None,
+                Color::parse("#ff8000").unwrap(),
+                vec![Sample::at(vec2(64.0, 64.0))],
+            ),
             &flat(),
         )
     };

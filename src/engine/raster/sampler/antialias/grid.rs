@@ -8,7 +8,8 @@ use crate::raster::sampler::taps::GROUP;
 /// How closely patches are covered: depends on what a picture is drawn for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TapRule {
-    /// Side of the cell of one tap, in texels of level 0. A picture drawn pixel for pixel (1 texel) does not change.
+    /// Side of the cell of one tap, in texels of level 0. A picture drawn pixel for pixel (1 texel)
+    /// does not change.
     fine_cell: f32,
     /// Most taps a pixel may take, in all.
     most_taps: u32,
@@ -32,8 +33,8 @@ impl Default for TapRule {
     }
 }
 
-/// The same in the other levels, whose texels are means already: there a bilinear tap's variance s²/4 − 1/12 is that of
-/// a box of 1.7 texels.
+/// The same in the other levels, whose texels are means already: there a bilinear tap's variance
+/// s²/4 − 1/12 is that of a box of 1.7 texels.
 pub const COARSE_CELL: f32 = 2.0;
 /// Most taps a pixel may take by any rule.
 pub const MAX_TAPS: u32 = 16;
@@ -59,14 +60,20 @@ impl TapGrid {
         }
         let mut grid = Self { across: coarse[0], along: coarse[1], level: 0 };
         while grid.across * grid.along > most_taps && grid.level < last_level {
-            grid = Self { across: grid.across.div_ceil(2), along: grid.along.div_ceil(2), level: grid.level + 1 };
+            grid = Self {
+                across: grid.across.div_ceil(2),
+                along: grid.along.div_ceil(2),
+                level: grid.level + 1,
+            };
         }
         grid.capped(most_taps)
     }
+
     #[inline(always)]
     pub fn taps(self) -> usize {
         (self.across * self.along) as usize
     }
+
     #[inline(always)]
     fn capped(self, most_taps: u32) -> Self {
         let across = self.across.min(most_taps);
@@ -80,7 +87,8 @@ const MAX_CELLS: f32 = 32768.0;
 /// How many cells of a size a side takes, at least 1.
 #[inline(always)]
 pub fn cells(side: f32, cell: f32) -> u32 {
-    // Adding 2²³ rounds to the nearest integer and leaves it in the low bits; half a cell less than that rounds up.
+    // Adding 2²³ rounds to the nearest integer and leaves it in the low bits; half a cell less than
+    // that rounds up.
     let nearest = (side * (1.0 / cell) + 0.4999).max(1.0).min(MAX_CELLS) + 8_388_608.0;
     nearest.to_bits() - 8_388_608.0f32.to_bits()
 }
@@ -131,26 +139,33 @@ impl CellCounts {
             most_of_groups(&self.coarse, n / GROUP, &mut self.most[1]);
         }
     }
+
     /// No patch takes more than one tap.
     pub fn are_single(&self) -> bool {
         self.largest == [1; 2]
     }
+
     /// The grid of one patch.
     pub fn grid(&self, k: usize, last_level: u32) -> TapGrid {
         let [fine, coarse] = [&self.fine, &self.coarse].map(|cells| [cells[0][k], cells[1][k]]);
         TapGrid::of_cells(fine, coarse, last_level, self.rule.most_taps)
     }
-    /// The grid that holds the largest sides of a group's patches; `None` if it does not suit them all.
+
+    /// The grid that holds the largest sides of a group's patches; `None` if it does not suit them
+    /// all.
     #[inline(always)]
     pub fn shared_grid(&self, group: usize, last_level: u32) -> Option<TapGrid> {
-        let [fine, coarse] = [0, 1].map(|kind| [self.most[kind][0][group], self.most[kind][1][group]]);
+        let [fine, coarse] =
+            [0, 1].map(|kind| [self.most[kind][0][group], self.most[kind][1][group]]);
         let shared = TapGrid::of_cells(fine, coarse, last_level, self.rule.most_taps);
         let alone = if fine[0] * fine[1] <= self.rule.most_taps {
             // All read level 0.
             self.in_all[group] as usize
         } else {
             let mut grids = (GROUP * group..GROUP * (group + 1)).map(|k| self.grid(k, last_level));
-            grids.try_fold(0, |taps, grid| (grid.level == shared.level).then(|| taps + grid.taps()))?
+            grids.try_fold(0, |taps, grid| {
+                (grid.level == shared.level).then(|| taps + grid.taps())
+            })?
         };
         // Half as many taps again cost less than reading the pixels one by one.
         (2 * shared.taps() * GROUP <= 3 * alone).then_some(shared)
@@ -158,8 +173,8 @@ impl CellCounts {
 }
 
 crate::widest! {
-    /// Whether no squared half-edge of a patch is above a limit: undistorted ground, which needs no roots. NaN is above
-    /// it.
+    /// Whether no squared half-edge of a patch is above a limit: undistorted ground, which needs no
+    /// roots. NaN is above it.
     fn are_within(patches: PatchRow, n: usize, limit: f32) -> bool {
         let mut within = 1;
         for [x, y] in patches.edges {
@@ -170,6 +185,7 @@ crate::widest! {
         }
         within == 1
     }
+
     /// A side is twice the longer of its two half-edges.
     fn count_fine(patches: PatchRow, n: usize, cells_of: &mut CellCounts) {
         let fine_cell = cells_of.rule.fine_cell;
@@ -187,6 +203,7 @@ crate::widest! {
             cells_of.largest[side] = largest;
         }
     }
+
     fn count_coarse(sides: &[[f32; SPAN]; 2], n: usize, coarse: &mut [[u32; SPAN]; 2]) {
         for (sides, coarse) in sides.iter().zip(coarse) {
             for (length, cells_of) in sides[..n].iter().zip(&mut coarse[..n]) {
@@ -194,6 +211,7 @@ crate::widest! {
             }
         }
     }
+
     /// The most cells of each of the first `n` groups.
     fn most_of_groups(counts: &[[u32; SPAN]; 2], n: usize, most: &mut [[u32; SPAN / GROUP]; 2]) {
         for (counts, most) in counts.iter().zip(most) {
@@ -202,6 +220,7 @@ crate::widest! {
             }
         }
     }
+
     fn add_up_groups(fine: &[[u32; SPAN]; 2], n: usize, in_all: &mut [u32; SPAN / GROUP]) {
         let groups = fine[0].as_chunks::<GROUP>().0.iter().zip(fine[1].as_chunks::<GROUP>().0);
         for ((across, along), in_all) in groups.zip(&mut in_all[..n]) {

@@ -1,5 +1,5 @@
-//! Positions of a grid's taps in a patch, as tables: computing them with divisions would cost as much as the taps.
-//! Floor 1.
+//! Positions of a grid's taps in a patch, as tables: computing them with divisions would cost as
+//! much as the taps. Floor 1.
 
 use super::grid::{MAX_TAPS, TapGrid};
 
@@ -12,7 +12,8 @@ pub fn of(grid: TapGrid) -> &'static TapLattice {
     &LATTICES[grid.across as usize % (LANES + 1)][grid.along as usize % (LANES + 1)]
 }
 
-/// How far each tap of a grid goes along the left, right, upper and lower half-edge, 0 … 1; row by row.
+/// How far each tap of a grid goes along the left, right, upper and lower half-edge, 0 … 1; row by
+/// row.
 pub type TapLattice = [[f32; LANES]; 4];
 
 /// The lattice of every grid, by taps across and along.
@@ -25,7 +26,8 @@ static LATTICES: [[TapLattice; LANES + 1]; LANES + 1] = {
             let mut i = 0;
             while i < across * along {
                 let (u, v) = (i % across, i / across);
-                let steps = [BEFORE[across][u], AFTER[across][u], BEFORE[along][v], AFTER[along][v]];
+                let steps =
+                    [BEFORE[across][u], AFTER[across][u], BEFORE[along][v], AFTER[along][v]];
                 let mut side = 0;
                 while side < 4 {
                     lattices[across][along][side][i] = steps[side];
@@ -40,8 +42,8 @@ static LATTICES: [[TapLattice; LANES + 1]; LANES + 1] = {
     lattices
 };
 
-/// For a row of n taps, how far each goes along the half-edge before the middle, 0 … 1. A single tap is at the middle
-/// of both half-edges, the mean of a patch whose two sides differ.
+/// For a row of n taps, how far each goes along the half-edge before the middle, 0 … 1. A single
+/// tap is at the middle of both half-edges, the mean of a patch whose two sides differ.
 const BEFORE: [[f32; LANES]; LANES + 1] = steps(-1.0);
 /// The same along the half-edge after the middle.
 const AFTER: [[f32; LANES]; LANES + 1] = steps(1.0);

@@ -1,5 +1,5 @@
-//! Where taps read: the first texel of each tap and the weights of its four, several taps an instruction.
-//! Floor 1. Not here: reading them (`taps`, `wide`).
+//! Where taps read: the first texel of each tap and the weights of its four, several taps an
+//! instruction. Floor 1. Not here: reading them (`taps`, `wide`).
 
 use super::{ONE, TapPositions};
 use crate::raster::Outside;
@@ -35,8 +35,8 @@ fn all_lie(positions: &[f32], low: f32, high: f32) -> bool {
     positions.iter().fold(0, |beyond, &c| beyond | u32::from(!(c >= low && c <= high))) == 0
 }
 
-/// `pair` finds, for a position in a picture of a side, the first texel of the pair around it and how far beyond it
-/// lies.
+/// `pair` finds, for a position in a picture of a side, the first texel of the pair around it and
+/// how far beyond it lies.
 #[inline(always)]
 fn find_folded(
     at: TapPositions,
@@ -47,7 +47,8 @@ fn find_folded(
 ) -> [i32; 2] {
     let (w, h) = (at.level.size.width as i32, at.level.size.height as i32);
     let n = at.x.len();
-    let (x, y, index, across, down) = (&at.x[..n], &at.y[..n], &mut index[..n], &mut across[..n], &mut down[..n]);
+    let (x, y, index, across, down) =
+        (&at.x[..n], &at.y[..n], &mut index[..n], &mut across[..n], &mut down[..n]);
     let (mut least, mut most) = (i32::MAX, i32::MIN);
     for k in 0..n {
         let (column, right) = pair(x[k], w as f32);
@@ -55,12 +56,14 @@ fn find_folded(
         let first = if (row | column) < 0 { -1 } else { row.wrapping_mul(w).wrapping_add(column) };
         (least, most) = (least.min(first), most.max(first));
         let right = integer(right * ONE) as u32;
-        (index[k], across[k], down[k]) = (first, (ONE as u32).wrapping_sub(right) | right << 16, below);
+        (index[k], across[k], down[k]) =
+            (first, (ONE as u32).wrapping_sub(right) | right << 16, below);
     }
     [least, most]
 }
 
-/// The texel at or before a position `u` (in texel centres, `[0, n − 1]`) and how far beyond it `u` lies.
+/// The texel at or before a position `u` (in texel centres, `[0, n − 1]`) and how far beyond it `u`
+/// lies.
 #[inline(always)]
 fn pair(u: f32, n: f32) -> (i32, f32) {
     let first = floor(u).min(n - 2.0);
@@ -103,8 +106,8 @@ fn repeated(c: f32, n: f32) -> f32 {
     c - floor(c / n) * n
 }
 
-/// 1.5 · 2²³: added to a number below 2²² it leaves its nearest integer in the low bits. Rust's own casts saturate,
-/// which keeps LLVM from converting eight at a time.
+/// 1.5 · 2²³: added to a number below 2²² it leaves its nearest integer in the low bits. Rust's own
+/// casts saturate, which keeps LLVM from converting eight at a time.
 const TO_INTEGER: f32 = 12_582_912.0;
 /// Longest side of a level whose texels are found this way.
 const MAX_SIDE: i32 = 1 << 22;
@@ -129,8 +132,10 @@ mod tests {
     #[test]
     fn what_is_mirrored_once_is_mirrored_to_the_bit() {
         for n in [2.0f32, 3.0, 640.0, 1080.0, 4095.0, 1e5] {
-            let near = [-2.0 * n, -n, -0.5, -1e-20, -0.0, 0.0, 0.5, n - 0.5, n, 1.999 * n].into_iter();
-            let around = near.flat_map(|c: f32| [c.next_down(), c, c.next_up()]).filter(|c| *c >= -2.0 * n);
+            let near =
+                [-2.0 * n, -n, -0.5, -1e-20, -0.0, 0.0, 0.5, n - 0.5, n, 1.999 * n].into_iter();
+            let around =
+                near.flat_map(|c: f32| [c.next_down(), c, c.next_up()]).filter(|c| *c >= -2.0 * n);
             let all = around.chain((0..5000).map(|i| (i as f32 * 0.000_799 - 2.0) * n));
             for c in all {
                 let [once, often] = [mirrored_once(c, n), mirrored(c, n)].map(|m| within(m, n));

@@ -4,19 +4,26 @@
 use super::{GROUP, ONE, SHARES, TapGroup, TapPositions, TapRun, Taps};
 use std::arch::x86_64::*;
 
-/// Whether the functions below may run: the processor has AVX2, and every tap's texels are the level's.
+/// Whether the functions below may run: the processor has AVX2, and every tap's texels are the
+/// level's.
 pub fn reads(taps: &Taps, at: TapPositions) -> bool {
     let width = at.level.size.width as usize;
-    let all_within = usize::try_from(taps.range[1]).is_ok_and(|most| most + width + 1 < at.level.texels.len());
+    let all_within =
+        usize::try_from(taps.range[1]).is_ok_and(|most| most + width + 1 < at.level.texels.len());
     all_within && std::arch::is_x86_feature_detected!("avx2")
 }
 
 /// As `Taps::singles`; call only where [`reads`] said so.
 pub fn singles(taps: &Taps, at: TapPositions, out: &mut [[u8; 4]]) {
     assert!(reads(taps, at));
-    // SAFETY: the processor has AVX2, and no index lies beyond `range`, whose texels are in the level.
+    // SAFETY: the processor has AVX2, and no index lies beyond `range`, whose texels are in the
+    // level.
     unsafe {
-        if taps.range[0] < 0 { singles_with::<true>(taps, at, out) } else { singles_with::<false>(taps, at, out) }
+        if taps.range[0] < 0 {
+            singles_with::<true>(taps, at, out)
+        } else {
+            singles_with::<false>(taps, at, out)
+        }
     }
 }
 
@@ -54,10 +61,14 @@ const AHEAD: usize = 16;
 unsafe fn singles_with<const SEAMS: bool>(taps: &Taps, at: TapPositions, out: &mut [[u8; 4]]) {
     let n = out.len().min(taps.index.len());
     let out = &mut out[..n];
-    let (index, across, down) =
-        (taps.index[..n].as_chunks::<4>().0, taps.across[..n].as_chunks::<4>().0, taps.down[..n].as_chunks::<4>().0);
+    let (index, across, down) = (
+        taps.index[..n].as_chunks::<4>().0,
+        taps.across[..n].as_chunks::<4>().0,
+        taps.down[..n].as_chunks::<4>().0,
+    );
     let scale = _mm256_set1_ps(1.0 / ONE);
-    let ahead = taps.index[..n].as_chunks::<4>().0.iter().skip(AHEAD).chain(std::iter::repeat(&[0; 4]));
+    let ahead =
+        taps.index[..n].as_chunks::<4>().0.iter().skip(AHEAD).chain(std::iter::repeat(&[0; 4]));
     for ((((index, across), down), ahead), out) in
         index.iter().zip(across).zip(down).zip(ahead).zip(out.as_chunks_mut::<4>().0)
     {
@@ -76,7 +87,8 @@ unsafe fn singles_with<const SEAMS: bool>(taps: &Taps, at: TapPositions, out: &m
         // Taps 0 2 | 1 3, as words, then as bytes.
         let words = _mm256_packs_epi32(_mm256_cvtps_epi32(first), _mm256_cvtps_epi32(second));
         let bytes = _mm256_packus_epi16(words, words);
-        let bytes = _mm_unpacklo_epi32(_mm256_castsi256_si128(bytes), _mm256_extracti128_si256(bytes, 1));
+        let bytes =
+            _mm_unpacklo_epi32(_mm256_castsi256_si128(bytes), _mm256_extracti128_si256(bytes, 1));
         // SAFETY: sixteen bytes of four pixels.
         unsafe { _mm_storeu_si128(out.as_mut_ptr().cast(), bytes) };
     }
@@ -91,19 +103,28 @@ unsafe fn singles_with<const SEAMS: bool>(taps: &Taps, at: TapPositions, out: &m
 
 /// Eight pixels at a time; seams, if there are any, are computed again.
 #[target_feature(enable = "avx2")]
-unsafe fn group_means_with<const SEAMS: bool>(taps: &Taps, at: TapPositions, groups: &[TapGroup], out: &mut [[u8; 4]]) {
+unsafe fn group_means_with<const SEAMS: bool>(
+    taps: &Taps,
+    at: TapPositions,
+    groups: &[TapGroup],
+    out: &mut [[u8; 4]],
+) {
     let mut first = 0;
     for group in groups {
         let range = first..(first + GROUP * usize::from(group.taps)).min(taps.index.len());
         first = range.end;
-        let Some(out) = out.get_mut(usize::from(group.first)..).and_then(|out| out.first_chunk_mut::<GROUP>()) else {
+        let Some(out) =
+            out.get_mut(usize::from(group.first)..).and_then(|out| out.first_chunk_mut::<GROUP>())
+        else {
             continue;
         };
         let index = taps.index[range.clone()].as_chunks::<GROUP>().0;
         let across = taps.across[range.clone()].as_chunks::<GROUP>().0;
         let down = taps.down[range.clone()].as_chunks::<GROUP>().0;
-        if let Some(ahead) =
-            taps.index.get(range.end + 4 * AHEAD - GROUP..).and_then(|ahead| ahead.first_chunk::<GROUP>())
+        if let Some(ahead) = taps
+            .index
+            .get(range.end + 4 * AHEAD - GROUP..)
+            .and_then(|ahead| ahead.first_chunk::<GROUP>())
         {
             prefetch(at, [ahead[0], ahead[4]]);
         }
@@ -112,7 +133,9 @@ unsafe fn group_means_with<const SEAMS: bool>(taps: &Taps, at: TapPositions, gro
             for (pair, sum) in sums.iter_mut().enumerate() {
                 let (a, b) = (2 * pair, 2 * pair + 1);
                 // SAFETY: the caller's.
-                let rows = unsafe { [rows::<SEAMS>(at, index[a], across[a]), rows::<SEAMS>(at, index[b], across[b])] };
+                let rows = unsafe {
+                    [rows::<SEAMS>(at, index[a], across[a]), rows::<SEAMS>(at, index[b], across[b])]
+                };
                 *sum = _mm256_add_ps(*sum, mix(rows[0], rows[1], [down[a], down[b]]));
             }
         }
@@ -137,7 +160,12 @@ unsafe fn group_means_with<const SEAMS: bool>(taps: &Taps, at: TapPositions, gro
 
 /// Two taps of a pixel at a time.
 #[target_feature(enable = "avx2")]
-unsafe fn means_with<const SEAMS: bool>(taps: &Taps, at: TapPositions, runs: &[TapRun], out: &mut [[u8; 4]]) {
+unsafe fn means_with<const SEAMS: bool>(
+    taps: &Taps,
+    at: TapPositions,
+    runs: &[TapRun],
+    out: &mut [[u8; 4]],
+) {
     let mut first = 0;
     for run in runs {
         let range = first..(first + usize::from(run.count)).min(taps.index.len());
@@ -155,7 +183,9 @@ unsafe fn means_with<const SEAMS: bool>(taps: &Taps, at: TapPositions, runs: &[T
         let (down, last_down) = down.as_chunks::<2>();
         for ((index, across), down) in index.iter().zip(across).zip(down) {
             // SAFETY: the caller's.
-            let rows = unsafe { [rows::<false>(at, index[0], across[0]), rows::<false>(at, index[1], across[1])] };
+            let rows = unsafe {
+                [rows::<false>(at, index[0], across[0]), rows::<false>(at, index[1], across[1])]
+            };
             sums = _mm256_add_ps(sums, mix(rows[0], rows[1], *down));
         }
         if let ([index], [across], [down]) = (last, last_across, last_down) {
@@ -179,8 +209,8 @@ fn prefetch(at: TapPositions, [upper, lower]: [i32; 2]) {
     _mm_prefetch::<_MM_HINT_T0>(texel(lower).wrapping_add(at.level.size.width as usize).cast());
 }
 
-/// The upper pair of a tap's texels mixed, and the lower: four channels each, in `[0, 255 ONE]`. At a seam those of
-/// texel 0.
+/// The upper pair of a tap's texels mixed, and the lower: four channels each, in `[0, 255 ONE]`. At
+/// a seam those of texel 0.
 #[inline]
 #[target_feature(enable = "avx2")]
 unsafe fn rows<const SEAMS: bool>(at: TapPositions, index: i32, across: u32) -> __m256i {
@@ -191,7 +221,8 @@ unsafe fn rows<const SEAMS: bool>(at: TapPositions, index: i32, across: u32) -> 
         let bottom = top.add(at.level.size.width as usize);
         _mm_castpd_si128(_mm_loadh_pd(_mm_castsi128_pd(_mm_loadl_epi64(top.cast())), bottom.cast()))
     };
-    let pairs = _mm_shuffle_epi8(both, _mm_setr_epi8(0, 4, 1, 5, 2, 6, 3, 7, 8, 12, 9, 13, 10, 14, 11, 15));
+    let pairs =
+        _mm_shuffle_epi8(both, _mm_setr_epi8(0, 4, 1, 5, 2, 6, 3, 7, 8, 12, 9, 13, 10, 14, 11, 15));
     _mm256_madd_epi16(_mm256_cvtepu8_epi16(pairs), _mm256_set1_epi32(across as i32))
 }
 

@@ -1,6 +1,7 @@
-//! What the surface adds where glossy rays meet it again: followed from an eighth of the half vectors at each pixel,
-//! others at its neighbours, and shared among these (MATH 5). Floor 3. Not here: the light that
-//! rays see where they meet nothing, which every half vector reads at every pixel.
+//! What the surface adds where glossy rays meet it again: followed from an eighth of the half
+//! vectors at each pixel, others at its neighbours, and shared among these (MATH 5). Floor 3. Not
+//! here: the light that rays see where they meet nothing, which every half vector reads at every
+//! pixel.
 
 use super::{EnvironmentSamples, HALVES, frame, width_rad};
 use crate::math::{Rect, Vec3, vec3};
@@ -13,8 +14,8 @@ use crate::shading::surface_row::{Light3, RowValues, SurfaceRow};
 use crate::surface::view::{from_view, in_view};
 use crate::surface::{Surface, links};
 
-/// Each of two by two pixels has another quarter of the half vectors; from one such square to the next it follows the
-/// one half of them, then the other.
+/// Each of two by two pixels has another quarter of the half vectors; from one such square to the
+/// next it follows the one half of them, then the other.
 const PHASES: usize = 4;
 /// Rays that are followed at a pixel.
 const FOLLOWED: usize = HALVES / PHASES / 2;
@@ -28,7 +29,8 @@ pub struct BouncedLight {
 }
 
 impl EnvironmentSamples {
-    /// Follows the glossy rays of the pixels of a tile and around it; of a sheet, whose pixels are no neighbours, none.
+    /// Follows the glossy rays of the pixels of a tile and around it; of a sheet, whose pixels are
+    /// no neighbours, none.
     pub fn follow_tile(&mut self, shading: &Shading, surface: &Surface, area: Rect) {
         self.bounced = None;
         if surface.sheet_of().is_some() || shading.specular.weight <= 0.0 {
@@ -36,15 +38,18 @@ impl EnvironmentSamples {
         }
         let Some(second) = SecondLook::on(surface, shading.bounces_made()) else { return };
         let rect = area.grown(1).intersect(surface.size().rect());
-        let pixels = (rect.y0..rect.y1).flat_map(|y| (rect.x0..rect.x1).map(move |x| (x as usize, y as usize)));
+        let pixels = (rect.y0..rect.y1)
+            .flat_map(|y| (rect.x0..rect.x1).map(move |x| (x as usize, y as usize)));
         let change = |(x, y)| match surface.coverage(x, y) {
             0 => Vec3::ZERO,
             _ => self.change_at(shading, &second, surface, (x, y)),
         };
         self.bounced = Some(BouncedLight { rect, changes: pixels.map(change).collect() });
     }
-    /// What the rays of one half vector see along a row: the environment, or the surface where they meet it, with both
-    /// terms under the environment alone. Of the surface's own lobe one ray represents all.
+
+    /// What the rays of one half vector see along a row: the environment, or the surface where they
+    /// meet it, with both terms under the environment alone. Of the surface's own lobe one ray
+    /// represents all.
     ///
     /// * `rays`: directions, widths in radians, and weights: those of 0 are not wanted.
     pub fn follow(
@@ -66,7 +71,8 @@ impl EnvironmentSamples {
             let direction = self.bounce(shading, (second, start), l, &mut sample);
             width_rad[x] = sample.width_rad;
             for c in 0..3 {
-                (last[c][x], matt[c][x], kept[c][x]) = (direction[c], sample.matt[c], sample.kept[c]);
+                (last[c][x], matt[c][x], kept[c][x]) =
+                    (direction[c], sample.matt[c], sample.kept[c]);
             }
         }
         self.environment_light.around_row(&last, &width_rad, weight, incoming);
@@ -76,6 +82,7 @@ impl EnvironmentSamples {
             }
         }
     }
+
     /// Follows one ray to the last.
     fn bounce(
         &self,
@@ -91,7 +98,8 @@ impl EnvironmentSamples {
             let facing = -hit.normal.dot(r);
             if shading.diffuse.weight > 0.0 {
                 let light = self.environment_light.matt(hit.normal);
-                sample.matt += sample.kept * rd * (Vec3::ONE - rs) * light * ashikhmin::lifted(facing);
+                sample.matt +=
+                    sample.kept * rd * (Vec3::ONE - rs) * light * ashikhmin::lifted(facing);
             }
             sample.kept *= rs + (Vec3::ONE - rs) * ashikhmin::whiteness(facing);
             sample.width_rad = sample.width_rad.hypot(self.lobe_rad);
@@ -99,8 +107,15 @@ impl EnvironmentSamples {
         });
         last.direction
     }
+
     /// By how much the light of a pixel's own half vectors changes, as if they were all.
-    fn change_at(&self, shading: &Shading, second: &SecondLook, surface: &Surface, (x, y): (usize, usize)) -> Vec3 {
+    fn change_at(
+        &self,
+        shading: &Shading,
+        second: &SecondLook,
+        surface: &Surface,
+        (x, y): (usize, usize),
+    ) -> Vec3 {
         let rs = Vec3::from(shading.specular.linear()).min(Vec3::ONE);
         let (normal, view) = (surface.normal(x, y), surface.view(x, y));
         let start = second.start(x, y, normal, view);
@@ -123,7 +138,8 @@ impl EnvironmentSamples {
             let last = self.bounce(shading, (second, start), l, &mut sample);
             if sample.is_met {
                 let arrives = n_l / n_l.max(n.z).max(1e-3);
-                let seen = sample.matt + sample.kept * self.environment_light.around(last, sample.width_rad);
+                let seen = sample.matt
+                    + sample.kept * self.environment_light.around(last, sample.width_rad);
                 let fresnel = rs + (Vec3::ONE - rs) * ashikhmin::whiteness(h.z);
                 change += fresnel * arrives * (seen - self.environment_light.around(l, width_rad));
             }
@@ -154,8 +170,9 @@ fn phase(x: usize, y: usize) -> usize {
 }
 
 impl BouncedLight {
-    /// The change at a pixel: the mean over the quarters of the half vectors, each as the pixels around it on the same
-    /// piece of surface have it, nearer ones counting twice along either axis.
+    /// The change at a pixel: the mean over the quarters of the half vectors, each as the pixels
+    /// around it on the same piece of surface have it, nearer ones counting twice along either
+    /// axis.
     pub fn at(&self, surface: &Surface, (x, y): (usize, usize)) -> Vec3 {
         let mut quarters = [(Vec3::ZERO, 0.0f32); PHASES];
         let joined = joined(surface, (x, y));
@@ -163,29 +180,37 @@ impl BouncedLight {
             let (dx, dy) = (i as i32 % 3 - 1, i as i32 / 3 - 1);
             let share = ((2 - dx.abs()) * (2 - dy.abs())) as f32;
             let (column, row) = (x as i32 + dx, y as i32 + dy);
-            let place = (row - self.rect.y0) as usize * self.rect.width() + (column - self.rect.x0) as usize;
+            let place = (row - self.rect.y0) as usize * self.rect.width()
+                + (column - self.rect.x0) as usize;
             let (sum, weight) = &mut quarters[phase(column as usize, row as usize)];
             *sum += share * self.changes.get(place).copied().unwrap_or_default();
             *weight += share;
         }
         let known = quarters.into_iter().filter(|(_, weight)| *weight > 0.0);
-        let (sum, count) = known.fold((Vec3::ZERO, 0.0), |(all, n), (sum, weight)| (all + sum / weight, n + 1.0f32));
+        let (sum, count) = known
+            .fold((Vec3::ZERO, 0.0), |(all, n), (sum, weight)| (all + sum / weight, n + 1.0f32));
         sum / count.max(1.0)
     }
 }
 
-/// Which of the nine pixels around one, row by row, links join to it without crossing a contour; itself too.
+/// Which of the nine pixels around one, row by row, links join to it without crossing a contour;
+/// itself too.
 fn joined(surface: &Surface, (x, y): (usize, usize)) -> [bool; 9] {
     let linked = surface.smooth_links_plane();
     let here = linked.at(x, y);
-    if here == 15 && (1..linked.width() - 1).contains(&x) && (1..linked.size().height as usize - 1).contains(&y) {
+    if here == 15
+        && (1..linked.width() - 1).contains(&x)
+        && (1..linked.size().height as usize - 1).contains(&y)
+    {
         let across = links::LEFT | links::RIGHT;
         let rows = [linked.at(x, y - 1), linked.at(x, y + 1)];
         if rows.iter().all(|bits| bits & across == across) {
             return [true; 9];
         }
     }
-    let has = |dx: i32, dy: i32, bit: u8| linked.get(x as i32 + dx, y as i32 + dy).is_some_and(|bits| bits & bit != 0);
+    let has = |dx: i32, dy: i32, bit: u8| {
+        linked.get(x as i32 + dx, y as i32 + dy).is_some_and(|bits| bits & bit != 0)
+    };
     let side = |dx: i32, dy: i32| match (dx, dy) {
         (-1, 0) => here & links::LEFT != 0,
         (1, 0) => here & links::RIGHT != 0,

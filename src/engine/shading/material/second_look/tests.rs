@@ -22,41 +22,53 @@ fn cast(balls: &[(Vec3, f32)], from: Vec3, toward: Vec3) -> Option<(Vec3, Vec3)>
     });
     meets.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, place, normal)| (place, normal))
 }
+
 fn shown(balls: &[(Vec3, f32)], x: usize, y: usize) -> Option<(Vec3, Vec3)> {
     let at = vec2(x as f32 + 0.5, y as f32 + 0.5) - SIZE.center();
     cast(balls, vec3(at.x, -at.y, 400.0), Vec3::NEG_Z)
 }
+
 fn scene(balls: &[(Vec3, f32)]) -> Scene {
     let maps = Maps {
         normals: Plane::from_fn(SIZE, |x, y| shown(balls, x, y).map_or(Vec3::ZERO, |s| s.1)),
-        depth: Plane::from_fn(SIZE, |x, y| shown(balls, x, y).map_or(f32::NAN, |s| (40.0 - s.0.z) / 80.0)),
+        depth: Plane::from_fn(SIZE, |x, y| {
+            shown(balls, x, y).map_or(f32::NAN, |s| (40.0 - s.0.z) / 80.0)
+        }),
         coverage: Plane::from_fn(SIZE, |x, y| if shown(balls, x, y).is_some() { 255 } else { 0 }),
     };
     Scene { size: SIZE, surface: Some(Arc::new(Surface::new(maps).unwrap())) }
 }
+
 /// Light that changes slowly in every direction.
 fn sky(light: impl Fn(Vec3) -> [f32; 3]) -> Option<Environment> {
     let texel = |i: u32| {
-        let e = lat_long_direction(((i % 256) as f32 + 0.5) / 256.0, ((i / 256) as f32 + 0.5) / 128.0);
+        let e =
+            lat_long_direction(((i % 256) as f32 + 0.5) / 256.0, ((i / 256) as f32 + 0.5) / 128.0);
         let [r, g, b] = light(e);
         [r, g, b, 1.0]
     };
-    let picture = Picture::linear(Size::new(256, 128), (0..256 * 128).map(texel).collect()).unwrap();
+    let picture =
+        Picture::linear(Size::new(256, 128), (0..256 * 128).map(texel).collect()).unwrap();
     Some(Environment::new("sky.hdr".into(), picture))
 }
+
 fn slanted(e: Vec3) -> [f32; 3] {
     [0.5 + 0.45 * e.x, 0.5 + 0.45 * e.y, 0.5 + 0.45 * e.z]
 }
+
 fn tiles(shading: &Shading, scene: &Scene) -> Vec<Option<Tile>> {
     TileAt::covering(SIZE.rect()).map(|at| shading.render_tile(scene, at)).collect()
 }
+
 fn bytes(tiles: &[Option<Tile>]) -> Vec<Option<&[u8]>> {
     tiles.iter().map(|tile| tile.as_ref().map(Tile::bytes)).collect()
 }
+
 fn pixel(tiles: &[Option<Tile>], x: usize, y: usize) -> [u8; 4] {
     let tile = tiles[y / TILE * 2 + x / TILE].as_ref().unwrap();
     tile.bytes().as_chunks::<4>().0[y % TILE * TILE + x % TILE]
 }
+
 fn bouncing(model: Model, bounces: u32) -> Shading {
     let mut shading = Shading { bounces, environment: sky(slanted), ..Shading::new(model) };
     if model == Model::Ashikhmin {
@@ -73,7 +85,8 @@ fn a_ball_is_seen_in_the_ball_beside_it() {
     let mut shading = bouncing(Model::Mirror, 1);
     shading.specular = term(gold, 0.9, 0.0, 0.0);
     let tint = Vec3::from(shading.specular.linear());
-    let (once, twice) = (tiles(&Shading { bounces: 0, ..shading.clone() }, &scene), tiles(&shading, &scene));
+    let (once, twice) =
+        (tiles(&Shading { bounces: 0, ..shading.clone() }, &scene), tiles(&shading, &scene));
     let (mut met, mut sum, mut before) = (0.0, 0.0, 0.0);
     for (x, y) in (0..SIZE.area()).map(|i| (i % 128, i / 128)) {
         let Some((place, n)) = shown(&PAIR, x, y) else { continue };
@@ -92,8 +105,14 @@ fn a_ball_is_seen_in_the_ball_beside_it() {
         assert!(off(&twice) < 30.0, "({x}, {y}): {:?} for {expected}", pixel(&twice, x, y));
         (met, sum, before) = (met + 1.0, sum + off(&twice), before + off(&once));
     }
-    assert!(met > 100.0 && sum / met < 5.0 && before / met > 40.0, "{met}: {} {}", sum / met, before / met);
+    assert!(
+        met > 100.0 && sum / met < 5.0 && before / met > 40.0,
+        "{met}: {} {}",
+        sum / met,
+        before / met
+    );
 }
+
 #[test]
 fn a_plane_and_a_lone_ball_stay_as_they_are() {
     let plane = Maps {
@@ -109,6 +128,7 @@ fn a_plane_and_a_lone_ball_stay_as_they_are() {
         }
     }
 }
+
 #[test]
 fn bounces_are_the_same_bytes_on_any_number_of_threads() {
     use rayon::prelude::*;
@@ -117,18 +137,25 @@ fn bounces_are_the_same_bytes_on_any_number_of_threads() {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             let (scene, shading) = (scene(&PAIR), bouncing(model, 3));
             let ats: Vec<TileAt> = TileAt::covering(SIZE.rect()).collect();
-            pool.install(|| ats.par_iter().map(|&at| shading.render_tile(&scene, at)).collect::<Vec<_>>())
+            pool.install(|| {
+                ats.par_iter().map(|&at| shading.render_tile(&scene, at)).collect::<Vec<_>>()
+            })
         };
         let (one, three) = (on(1), on(3));
         assert!(bytes(&one) == bytes(&three), "{}", model.name());
     }
 }
+
 #[test]
 fn where_light_is_the_same_everywhere_a_perfect_mirror_does_not_see_itself() {
     let scene = scene(&PAIR);
-    let even = |bounces: u32| Shading { environment: sky(|_| [0.6; 3]), ..bouncing(Model::Mirror, bounces) };
+    let even = |bounces: u32| Shading {
+        environment: sky(|_| [0.6; 3]),
+        ..bouncing(Model::Mirror, bounces)
+    };
     assert!(bytes(&tiles(&even(0), &scene)) == bytes(&tiles(&even(4), &scene)));
 }
+
 #[test]
 fn a_glossy_ball_takes_the_colour_of_the_one_beside_it() {
     let scene = scene(&PAIR);
@@ -147,6 +174,7 @@ fn a_glossy_ball_takes_the_colour_of_the_one_beside_it() {
     // Its other side sees nothing but the sky.
     assert_eq!(pixel(&plain, 20, 48), pixel(&bounced, 20, 48));
 }
+
 #[test]
 fn behind_contours_rays_begin_where_the_other_population_lies() {
     // One ball before the other: contour pixels between both.
@@ -158,7 +186,9 @@ fn behind_contours_rays_begin_where_the_other_population_lies() {
     let second = SecondLook::on(surface, 2).unwrap();
     let of = sheet.sheet().unwrap();
     let mut seen = 0;
-    for (x, y) in (0..surface.size().area()).map(|i| (i % TILE, i / TILE)).filter(|(x, y)| x % 2 + y % 2 == 0) {
+    for (x, y) in
+        (0..surface.size().area()).map(|i| (i % TILE, i / TILE)).filter(|(x, y)| x % 2 + y % 2 == 0)
+    {
         if surface.coverage(x, y) > 0 {
             let start = second.start(x, y, surface.normal(x, y), Vec3::Z);
             let (px, py) = of.canvas_pixel(x as i32, y as i32);

@@ -1,5 +1,5 @@
-//! Nine spheres before each other and before nothing, drawn exactly: what contours are judged by. The tests of the
-//! whole program read this file too, so it names nothing of the engine.
+//! Nine spheres before each other and before nothing, drawn exactly: what contours are judged by.
+//! The tests of the whole program read this file too, so it names nothing of the engine.
 
 use glam::{Vec3, vec2, vec3};
 

@@ -26,11 +26,13 @@ struct StillKernel;
 pub(super) struct DepthKernel {
     pub(super) rate: f32,
 }
+
 #[derive(Clone, Copy)]
 pub(super) struct NormalKernel {
     pub(super) alpha_px: f32,
     pub(super) softness: f32,
 }
+
 #[derive(Clone, Copy)]
 pub(super) struct MirrorKernel {
     pub(super) alpha_px: f32,
@@ -42,6 +44,7 @@ impl OffsetKernel for StillKernel {
         (0.0, 0.0)
     }
 }
+
 impl OffsetKernel for DepthKernel {
     #[inline(always)]
     fn offset(self, from_x: f32, from_y: f32, z: f32, _: f32, pin: &FastPin) -> (f32, f32) {
@@ -49,14 +52,20 @@ impl OffsetKernel for DepthKernel {
         (f * from_x, f * from_y)
     }
 }
+
 impl OffsetKernel for NormalKernel {
     #[inline(always)]
     fn offset(self, _: f32, _: f32, nbar_x: f32, nbar_y: f32, pin: &FastPin) -> (f32, f32) {
         let (dx, dy) = (nbar_x - pin.a, nbar_y - pin.b);
-        let f = second_order::offset_factor_of_softness((dx * dx + dy * dy).sqrt(), self.alpha_px, self.softness);
+        let f = second_order::offset_factor_of_softness(
+            (dx * dx + dy * dy).sqrt(),
+            self.alpha_px,
+            self.softness,
+        );
         (f * dx, f * dy)
     }
 }
+
 impl OffsetKernel for MirrorKernel {
     #[inline(always)]
     fn offset(self, _: f32, _: f32, mirrored_x: f32, mirrored_y: f32, pin: &FastPin) -> (f32, f32) {
@@ -66,7 +75,13 @@ impl OffsetKernel for MirrorKernel {
 
 /// D with a single anchor, whose weight is 1.
 #[inline(always)]
-fn one(span: KernelSpan, pin: &FastPin, kernel: impl OffsetKernel, out_x: &mut [f32], out_y: &mut [f32]) {
+fn one(
+    span: KernelSpan,
+    pin: &FastPin,
+    kernel: impl OffsetKernel,
+    out_x: &mut [f32],
+    out_y: &mut [f32],
+) {
     let n = out_x.len();
     let (a, b, gain, out_y) = (&span.a[..n], &span.b[..n], &span.gain[..n], &mut out_y[..n]);
     let (x, y) = (&span.x[..n], &span.y[..n]);
@@ -99,7 +114,8 @@ fn add(
     }
 }
 
-/// Squared distance below which a pixel is at an anchor: f32 canvas coordinates cannot resolve smaller ones.
+/// Squared distance below which a pixel is at an anchor: f32 canvas coordinates cannot resolve
+/// smaller ones.
 const AT_ANCHOR: f32 = 1e-12;
 
 #[inline(always)]
@@ -112,6 +128,7 @@ crate::widest! {
     pub(super) fn still_one(span: KernelSpan, pin: &FastPin, out_x: &mut [f32], out_y: &mut [f32]) {
         one(span, pin, StillKernel, out_x, out_y)
     }
+
     pub(super) fn depth_one(
         span: KernelSpan,
         pin: &FastPin,
@@ -121,6 +138,7 @@ crate::widest! {
     ) {
         one(span, pin, kernel, out_x, out_y)
     }
+
     pub(super) fn normal_one(
         span: KernelSpan,
         pin: &FastPin,
@@ -130,6 +148,7 @@ crate::widest! {
     ) {
         one(span, pin, kernel, out_x, out_y)
     }
+
     pub(super) fn mirror_one(
         span: KernelSpan,
         pin: &FastPin,
@@ -139,9 +158,11 @@ crate::widest! {
     ) {
         one(span, pin, kernel, out_x, out_y)
     }
+
     pub(super) fn still_add(span: KernelSpan, pin: &FastPin, weight: &[f32], moved_x: &mut [f32], moved_y: &mut [f32]) {
         add(span, pin, StillKernel, weight, moved_x, moved_y)
     }
+
     pub(super) fn depth_add(
         span: KernelSpan,
         pin: &FastPin,
@@ -152,6 +173,7 @@ crate::widest! {
     ) {
         add(span, pin, kernel, weight, moved_x, moved_y)
     }
+
     pub(super) fn normal_add(
         span: KernelSpan,
         pin: &FastPin,
@@ -162,6 +184,7 @@ crate::widest! {
     ) {
         add(span, pin, kernel, weight, moved_x, moved_y)
     }
+
     pub(super) fn mirror_add(
         span: KernelSpan,
         pin: &FastPin,
@@ -172,12 +195,14 @@ crate::widest! {
     ) {
         add(span, pin, kernel, weight, moved_x, moved_y)
     }
+
     /// 1 on the surface, 0 outside.
     pub(super) fn coverage_gain(coverage: &[u8], gain: &mut [f32]) {
         for (g, &c) in gain.iter_mut().zip(coverage) {
             *g = if c > 0 { 1.0 } else { 0.0 };
         }
     }
+
     /// Shepard's weight at power 2, not yet normalised.
     pub(super) fn inverse_squares(span: KernelSpan, pin: &FastPin, weight: &mut [f32], weight_sum: &mut [f32]) {
         for (k, (w, sum)) in weight.iter_mut().zip(weight_sum).enumerate() {
@@ -185,11 +210,13 @@ crate::widest! {
             *sum += *w;
         }
     }
+
     pub(super) fn nearer(span: KernelSpan, pin: &FastPin, nearest: &mut [f32]) {
         for (k, d) in nearest.iter_mut().enumerate() {
             *d = d.min(distance_squared(span, pin, k).max(AT_ANCHOR));
         }
     }
+
     /// The weight along the segment of anchor `i`, whose first anchor is `first`.
     pub(super) fn segment_weights(
         span: KernelSpan,
@@ -211,6 +238,7 @@ crate::widest! {
             *sum += *w;
         }
     }
+
     /// D = linear U + shift over a row of points of the unwrapped plane.
     pub(super) fn laid_row(u: &[f32], v: &[f32], linear: Mat2, shift: Vec2, out_x: &mut [f32], out_y: &mut [f32]) {
         let n = out_x.len();
@@ -221,7 +249,9 @@ crate::widest! {
             out_y[k] = yx * u[k] + yy * v[k] + shift.y;
         }
     }
-    /// The same of a plane that yields: what it yields is turned and scaled as the plane is, and added.
+
+    /// The same of a plane that yields: what it yields is turned and scaled as the plane is, and
+    /// added.
     pub(super) fn pulled_row(
         uv: [&[f32]; 2],
         by: [&[f32]; 2],
@@ -239,12 +269,14 @@ crate::widest! {
             out_y[k] = (yx * u[k] + yy * v[k] + shift.y) + (pyx * by_x[k] + pyy * by_y[k]);
         }
     }
+
     /// Points of the unwrapped plane where they lie, but for a shift in both directions.
     pub(super) fn shifted_row(u: &[f32], v: &[f32], by: f32, out_x: &mut [f32], out_y: &mut [f32]) {
         for (out, from) in out_x.iter_mut().zip(u).chain(out_y.iter_mut().zip(v)) {
             *out = from + by;
         }
     }
+
     /// D = q + Σ w (…) / Σ w; q where there is no weight at all.
     pub(super) fn add_mean(
         span: KernelSpan,
@@ -263,6 +295,7 @@ crate::widest! {
             out_y[k] = y[k] + moved_y[k] * share;
         }
     }
+
     /// r̄ over a row.
     pub(super) fn mirror_row(nbar_x: &[f32], nbar_y: &[f32], nz: &[f32], out_x: &mut [f32], out_y: &mut [f32]) {
         let n = out_x.len();
@@ -273,7 +306,8 @@ crate::widest! {
     }
 }
 
-/// Shepard's weight at any power, relative to the nearest anchor's. `powf` is a call: this one stays scalar.
+/// Shepard's weight at any power, relative to the nearest anchor's. `powf` is a call: this one
+/// stays scalar.
 pub(super) fn inverse_powers(
     span: KernelSpan,
     pin: &FastPin,
@@ -307,7 +341,8 @@ fn half_plane_angle(y: f32, x: f32) -> f32 {
     if x < 0.0 { std::f32::consts::PI - angle } else { angle }
 }
 
-/// atan(t)/t as a polynomial of t² over [0, 1]: a least-squares fit at Chebyshev nodes, within 3·10⁻⁸.
+/// atan(t)/t as a polynomial of t² over [0, 1]: a least-squares fit at Chebyshev nodes, within
+/// 3·10⁻⁸.
 const ATAN: [f32; 9] = [
     0.999_999_98,
     -0.333_330_67,

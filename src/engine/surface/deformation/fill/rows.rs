@@ -1,6 +1,6 @@
-//! D of one dab over the rows of a part of a tile: most dabs are a few short rows, and what `fill` does for each row of
-//! a larger picture would cost more than its pixels.
-//! Floor 2. The same bits as `fill`, which paints what this one leaves.
+//! D of one dab over the rows of a part of a tile: most dabs are a few short rows, and what `fill`
+//! does for each row of a larger picture would cost more than its pixels. Floor 2. The same bits as
+//! `fill`, which paints what this one leaves.
 
 use super::kernels::{DepthKernel, MirrorKernel, NormalKernel, OffsetKernel, mirrored};
 use super::{FastPin, Kernel, MapSpan};
@@ -9,8 +9,8 @@ use crate::surface::Surface;
 use crate::surface::deformation::{Deformation, LaidPlanes};
 use std::ops::Range;
 
-/// D in some columns of each row of `rect`; `false`, and nothing is written, where that is not one anchor's plain
-/// offset over pixels that the maps hold.
+/// D in some columns of each row of `rect`; `false`, and nothing is written, where that is not one
+/// anchor's plain offset over pixels that the maps hold.
 pub(in crate::surface::deformation) fn fill_dab(
     deformation: &Deformation,
     rect: Rect,
@@ -49,9 +49,13 @@ pub(in crate::surface::deformation) fn fill_dab(
         let [x, y, z] = surface.normal_planes();
         match kernel {
             Kernel::Still => {}
-            Kernel::Depth(k) => depth_row(row, coverage, span.of(surface.depth_plane()), k, out_x, out_y),
+            Kernel::Depth(k) => {
+                depth_row(row, coverage, span.of(surface.depth_plane()), k, out_x, out_y)
+            }
             Kernel::Normal(k) => normal_row(row, coverage, span.of(x), span.of(y), k, out_x, out_y),
-            Kernel::Mirror(k) => mirrored_row(row, coverage, [x, y, z].map(|plane| span.of(plane)), k, out_x, out_y),
+            Kernel::Mirror(k) => {
+                mirrored_row(row, coverage, [x, y, z].map(|plane| span.of(plane)), k, out_x, out_y)
+            }
         }
     }
     true
@@ -95,10 +99,23 @@ fn fill_laid(
         let start = span.x - rect.x0 as usize;
         let (out_x, out_y) = (&mut out_x[start..start + span.n], &mut out_y[start..start + span.n]);
         let first = deformation.centre(span.x as i32, y).into();
-        let row =
-            LaidRow { first, object: fit.object, linear: fit.linear, shift: fit.shift, away: planes.elsewhere_px() };
+        let row = LaidRow {
+            first,
+            object: fit.object,
+            linear: fit.linear,
+            shift: fit.shift,
+            away: planes.elsewhere_px(),
+        };
         let coverage = span.of(surface.coverage_plane());
-        laid_dab_row(row, coverage, span.of(planes.objects.labels()), span.of(u), span.of(v), out_x, out_y);
+        laid_dab_row(
+            row,
+            coverage,
+            span.of(planes.objects.labels()),
+            span.of(u),
+            span.of(v),
+            out_x,
+            out_y,
+        );
     }
     true
 }
@@ -139,7 +156,13 @@ struct DabRow {
 impl DabRow {
     /// D of the `k`th pixel, whose map values are `a` and `b`.
     #[inline(always)]
-    fn d(self, k: usize, coverage: u8, (a, b): (f32, f32), kernel: impl OffsetKernel) -> (f32, f32) {
+    fn d(
+        self,
+        k: usize,
+        coverage: u8,
+        (a, b): (f32, f32),
+        kernel: impl OffsetKernel,
+    ) -> (f32, f32) {
         let pin = self.pin;
         // Through i32: AVX2 converts no 64-bit integers.
         let (x, y) = (self.first.0 + k as i32 as f32, self.first.1);
@@ -173,6 +196,7 @@ crate::widest! {
             out_y[k] = if is_covered { y } else { row.first.1 };
         }
     }
+
     fn depth_row(
         row: DabRow,
         coverage: &[u8],
@@ -187,6 +211,7 @@ crate::widest! {
             (out_x[k], out_y[k]) = row.d(k, coverage[k], (z[k], 0.0), kernel);
         }
     }
+
     fn normal_row(
         row: DabRow,
         coverage: &[u8],
@@ -202,6 +227,7 @@ crate::widest! {
             (out_x[k], out_y[k]) = row.d(k, coverage[k], (x[k], y[k]), kernel);
         }
     }
+
     fn mirrored_row(
         row: DabRow,
         coverage: &[u8],

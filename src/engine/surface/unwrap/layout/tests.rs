@@ -28,17 +28,25 @@ fn every_object_has_a_piece_and_no_two_pieces_meet() {
         }
     }
 }
+
 #[test]
 fn a_canvas_point_is_found_again_from_where_it_lies_on_the_sheet() {
     let surface = scene();
     let layout = PlaneLayout::new(&surface, WHOLE).unwrap();
-    for q in [vec2(60.5, 60.5), vec2(75.2, 48.9), vec2(150.0, 80.0), vec2(20.5, 120.3), vec2(190.0, 20.0)] {
+    for q in [
+        vec2(60.5, 60.5),
+        vec2(75.2, 48.9),
+        vec2(150.0, 80.0),
+        vec2(20.5, 120.3),
+        vec2(190.0, 20.0),
+    ] {
         let p = layout.sheet_at(&surface, q).unwrap();
         let CanvasPlace { at: back, object, .. } = layout.canvas_at(&surface, p).unwrap();
         assert!(back.distance(q) < 0.1, "{q} came back as {back}");
         assert_eq!(object, surface.objects().labels().at(q.x as usize, q.y as usize));
     }
 }
+
 #[test]
 fn the_layout_bends_a_picture_of_the_sheet_onto_the_surface() {
     let surface = scene();
@@ -50,10 +58,12 @@ fn the_layout_bends_a_picture_of_the_sheet_onto_the_surface() {
         assert!(d.at(x, y).distance(p) < 1e-3, "({x}, {y}): {} and {p}", d.at(x, y));
     }
 }
+
 #[test]
 fn beside_a_piece_its_plane_goes_on_and_far_away_there_is_none() {
-    let surface =
-        of_height(Size::new(100, 80), |x, y| (x > 20.0 && x < 80.0 && y > 20.0 && y < 60.0).then_some(0.5 * x));
+    let surface = of_height(Size::new(100, 80), |x, y| {
+        (x > 20.0 && x < 80.0 && y > 20.0 && y < 60.0).then_some(0.5 * x)
+    });
     let layout = PlaneLayout::new(&surface, WHOLE).unwrap();
     let rim = layout.sheet_at(&surface, vec2(21.5, 40.5)).unwrap();
     let q = layout.canvas_at(&surface, rim - vec2(5.0, 0.0)).unwrap().at;

@@ -14,11 +14,13 @@ fn part(control: i32, jitter: f64, least: f64) -> DescriptorValue {
     ];
     Object(DescriptorObject::of(values))
 }
+
 fn told(values: Values) -> (Brush, Vec<String>) {
     let preset = DescriptorObject::of(values);
     let AbrConversion { brush, notes, .. } = carried(&preset, Brush::default(), Vec::new());
     (brush, notes)
 }
+
 fn at(brush: &Brush, property: Property, pressure: f32) -> f32 {
     brush.dynamics.value(property, 1.0, &DabInputs { pressure, ..DabInputs::default() })
 }
@@ -36,12 +38,22 @@ fn shape_and_transfer_follow_the_pen_down_to_their_minimum() {
         ("prVr", part(0, 50.0, 0.0)),
     ]);
     assert_eq!(notes, [""; 0]);
-    assert!((at(&brush, Property::Size, 0.0) - 0.4).abs() < 1e-6 && at(&brush, Property::Size, 1.0) == 1.0);
+    assert!(
+        (at(&brush, Property::Size, 0.0) - 0.4).abs() < 1e-6
+            && at(&brush, Property::Size, 1.0) == 1.0
+    );
     assert!((at(&brush, Property::Opacity, 0.0) - 0.25).abs() < 1e-6);
-    assert_eq!(brush.dynamics.curve(Property::Rotation, Input::Direction), Some(&Curve::Share(1.0)));
+    assert_eq!(
+        brush.dynamics.curve(Property::Rotation, Input::Direction),
+        Some(&Curve::Share(1.0))
+    );
     assert_eq!(brush.dynamics.curve(Property::Flow, Input::Random), Some(&Curve::Share(0.5)));
-    assert!(brush.dynamics.curve(Property::Flow, Input::Pressure).is_none(), "nothing follows it unasked");
+    assert!(
+        brush.dynamics.curve(Property::Flow, Input::Pressure).is_none(),
+        "nothing follows it unasked"
+    );
 }
+
 #[test]
 fn what_is_switched_off_drives_nothing() {
     let (brush, notes) = told(vec![
@@ -53,13 +65,21 @@ fn what_is_switched_off_drives_nothing() {
     ]);
     assert_eq!((brush.dynamics.drives().len(), brush.scatter, notes.len()), (0, 0.0, 0));
 }
+
 #[test]
 fn a_round_tip_gets_as_flat_as_it_is_said_to() {
-    let (brush, _) = told(vec![("useTipDynamics", Flag(true)), ("roundnessDynamics", part(2, 0.0, 25.0))]);
+    let (brush, _) =
+        told(vec![("useTipDynamics", Flag(true)), ("roundnessDynamics", part(2, 0.0, 25.0))]);
     let long = |pressure| at(&brush, Property::Elongation, pressure);
-    assert!((long(0.0) - 4.0).abs() < 1e-5 && (long(1.0) - 1.0).abs() < 1e-5, "{} {}", long(0.0), long(1.0));
+    assert!(
+        (long(0.0) - 4.0).abs() < 1e-5 && (long(1.0) - 1.0).abs() < 1e-5,
+        "{} {}",
+        long(0.0),
+        long(1.0)
+    );
     assert!((long(0.5) - 1.0 / 0.625).abs() < 1e-5);
 }
+
 #[test]
 fn dabs_scatter_by_their_radius_and_stand_closer_where_there_are_several() {
     let (brush, notes) = told(vec![
@@ -68,9 +88,13 @@ fn dabs_scatter_by_their_radius_and_stand_closer_where_there_are_several() {
         ("scatterDynamics", part(3, 200.0, 0.0)),
         ("Cnt ", Number(4.0)),
     ]);
-    assert_eq!((brush.scatter, brush.spacing, notes.len()), (1.0, Brush::default().spacing / 4.0, 0));
+    assert_eq!(
+        (brush.scatter, brush.spacing, notes.len()),
+        (1.0, Brush::default().spacing / 4.0, 0)
+    );
     assert_eq!(brush.dynamics.curve(Property::Scatter, Input::Tilt), Some(&Curve::Share(1.0)));
 }
+
 #[test]
 fn only_what_is_used_and_lost_is_told() {
     let (brush, notes) = told(vec![
@@ -82,9 +106,13 @@ fn only_what_is_used_and_lost_is_told() {
         ("Nose", Flag(false)),
         ("dualBrush", Object(DescriptorObject::of(vec![("useDualBrush", Flag(true))]))),
     ]);
-    assert_eq!(notes, ["nothing here follows fading", "wet edges, dual brush not taken from Photoshop"]);
+    assert_eq!(
+        notes,
+        ["nothing here follows fading", "wet edges, dual brush not taken from Photoshop"]
+    );
     assert_eq!(brush.jitter, ColorJitter { hue_degrees: 90.0, saturation: 0.0, value: 0.0 });
 }
+
 #[test]
 fn a_texture_is_the_collection_s_pattern() {
     let pattern = PatternResource::grey("p", crate::math::Size::new(2, 1), &[0, 200]);

@@ -1,5 +1,6 @@
-//! Pictures of other programs, pasted: as paint at their own size, as an image layer, or as a document. Floor 6. Not
-//! here: the system's clipboard (the window), what was copied in the program itself (`clipboard`).
+//! Pictures of other programs, pasted: as paint at their own size, as an image layer, or as a
+//! document. Floor 6. Not here: the system's clipboard (the window), what was copied in the program
+//! itself (`clipboard`).
 
 use crate::document::{Content, Document, Layer, PixelLayer};
 use crate::io::{Budget, base64, picture, pixels};
@@ -38,7 +39,9 @@ impl PastedPicture {
     fn file(&self) -> Option<Asset> {
         match (&self.picture.encoded, &self.picture.texels) {
             (Some(file), _) => Some(file.clone()),
-            (None, Texels::Srgb8(texels)) => pixels::encode_texels(Path::new("pasted"), texels, self.picture.size).ok(),
+            (None, Texels::Srgb8(texels)) => {
+                pixels::encode_texels(Path::new("pasted"), texels, self.picture.size).ok()
+            }
             (None, Texels::Linear(_)) => None,
         }
     }
@@ -48,6 +51,7 @@ impl ReplayValue for PastedPicture {
     fn written(&self) -> Value {
         json!({ "name": self.name, "file": self.file().map(|file| base64::encode(file.bytes())) })
     }
+
     fn read(value: &Value) -> Result<Self, String> {
         let text = |name: &str| value.get(name).and_then(Value::as_str);
         let (Some(name), Some(file)) = (text("name"), text("file")) else {
@@ -81,7 +85,8 @@ pub(super) fn paste(session: &mut Session, pasted: &PastedPicture, to: PasteTo, 
     }
 }
 
-/// The canvas point in the middle of the window; of the canvas, while the surface is shown unwrapped.
+/// The canvas point in the middle of the window; of the canvas, while the surface is shown
+/// unwrapped.
 fn view_middle(tab: &OpenDocument) -> Vec2 {
     let size = tab.document().size;
     let view = tab.view.filter(|_| tab.unwrapped().is_none());
@@ -98,7 +103,8 @@ fn paint(name: String, tiles: TileGrid) -> Layer {
 /// A document of the picture's size, which is its paint.
 fn open(session: &mut Session, tiles: TileGrid, pasted: &PastedPicture) {
     let layer = paint(stem(&pasted.name), tiles);
-    let document = Document { layers: vec![Arc::new(layer)], ..Document::empty(pasted.picture.size) };
+    let document =
+        Document { layers: vec![Arc::new(layer)], ..Document::empty(pasted.picture.size) };
     let name = session.untitled();
     let mut tab = OpenDocument::new(name, document, None);
     tab.mark_unsaved();

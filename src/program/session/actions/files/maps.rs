@@ -9,9 +9,13 @@ use crate::session::{Session, storage};
 use crate::{Error, Result};
 use std::sync::Arc;
 
-/// Replaces the surface beneath the layers, as a step; it is stretched to the canvas, with a note. Fails if no surface
-/// of the canvas's size can be made of it.
-pub fn replace_maps(session: &mut Session, source: &SurfaceSource, import: maps::ImportedSurface) -> Result<()> {
+/// Replaces the surface beneath the layers, as a step; it is stretched to the canvas, with a note.
+/// Fails if no surface of the canvas's size can be made of it.
+pub fn replace_maps(
+    session: &mut Session,
+    source: &SurfaceSource,
+    import: maps::ImportedSurface,
+) -> Result<()> {
     let maps::ImportedSurface { surface, findings, files } = import;
     let Some(tab) = session.active_mut() else { return Ok(()) };
     let (canvas, found) = (tab.document().size, surface.size());
@@ -21,7 +25,9 @@ pub fn replace_maps(session: &mut Session, source: &SurfaceSource, import: maps:
         notes.extend(is_other.then(|| stretched(found, canvas)));
         is_other.then(|| PlaneMap::scaling(found, canvas))
     });
-    let surface = Arc::new(surface).onto(canvas, map.as_ref()).map_err(|error| Error::unsupported("maps", error))?;
+    let surface = Arc::new(surface)
+        .onto(canvas, map.as_ref())
+        .map_err(|error| Error::unsupported("maps", error))?;
     let next = Document {
         surface_source: Some(Arc::new(source.placed_as(&surface))),
         surface: Some(surface),
@@ -40,17 +46,25 @@ fn stretched(found: Size, canvas: Size) -> String {
     format!("The maps have {found} pixels and were stretched to the canvas, {canvas}.")
 }
 
-/// A part of maps in front of all others, stretched to the canvas, as a step. Fails if no surface of the canvas's size
-/// can be made of them.
-pub fn add_maps(session: &mut Session, source: &SurfaceSource, import: maps::ImportedSurface) -> Result<()> {
+/// A part of maps in front of all others, stretched to the canvas, as a step. Fails if no surface
+/// of the canvas's size can be made of them.
+pub fn add_maps(
+    session: &mut Session,
+    source: &SurfaceSource,
+    import: maps::ImportedSurface,
+) -> Result<()> {
     let maps::ImportedSurface { surface, findings, files } = import;
     let Some(tab) = session.active_mut() else { return Ok(()) };
     let (canvas, found) = (tab.document().size, surface.size());
     let mut notes = findings.notes;
     notes.extend((found != canvas).then(|| stretched(found, canvas)));
-    let surface =
-        Arc::new(surface).onto(canvas, source.map().as_ref()).map_err(|error| Error::unsupported("maps", error))?;
-    parts::new::add_maps(tab, PartMaps { source: Arc::new(source.clone()), files: Arc::new(files), surface });
+    let surface = Arc::new(surface)
+        .onto(canvas, source.map().as_ref())
+        .map_err(|error| Error::unsupported("maps", error))?;
+    parts::new::add_maps(
+        tab,
+        PartMaps { source: Arc::new(source.clone()), files: Arc::new(files), surface },
+    );
     tab.reads.extend(storage::map_files(source));
     session.notes.extend(notes);
     Ok(())

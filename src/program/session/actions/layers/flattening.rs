@@ -1,8 +1,10 @@
-//! Edits that flatten layers: they can take long, so the window runs them on another thread. Floor 6. Not here:
-//! flattening itself (`document::flatten`).
+//! Edits that flatten layers: they can take long, so the window runs them on another thread.
+//! Floor 6. Not here: flattening itself (`document::flatten`).
 
 use super::{LayerAction, sibling};
-use crate::document::{Content, Document, Layer, LayerId, LayerSlot, PixelLayer, Progress, flatten_to_paint};
+use crate::document::{
+    Content, Document, Layer, LayerId, LayerSlot, PixelLayer, Progress, flatten_to_paint,
+};
 use crate::io::Budget;
 use crate::raster::TileGrid;
 use crate::session::open_document::Edit;
@@ -18,6 +20,7 @@ impl LayerAction {
             _ => None,
         }
     }
+
     /// Why a long edit cannot begin: the layers that it paints take more memory than is free.
     pub fn no_room(&self, document: &Document, budget: &Budget) -> Option<String> {
         let what = self.takes_long()?;
@@ -31,20 +34,26 @@ impl LayerAction {
                 };
                 ids.iter().chain(&beneath).filter_map(one).fold(0, u64::saturating_add)
             }
-            LayerAction::Bake { layer } => {
-                document.outermost(&layer.find(document)?).iter().filter_map(one).fold(0, u64::saturating_add)
-            }
+            LayerAction::Bake { layer } => document
+                .outermost(&layer.find(document)?)
+                .iter()
+                .filter_map(one)
+                .fold(0, u64::saturating_add),
             _ => document.painting_bytes(),
         };
         budget.room_for(what, bytes).err().map(|why| format!("{why}."))
     }
-    /// Performs a long edit on a document; `None` for any other edit, if it is impossible, or if it was cancelled.
+
+    /// Performs a long edit on a document; `None` for any other edit, if it is impossible, or if it
+    /// was cancelled.
     pub fn flattened(&self, document: &Document, progress: &Progress) -> Option<Edit> {
         match self {
-            LayerAction::MergeDown { layer } => match &document.outermost(&layer.find(document)?)[..] {
-                [one] if !layer.is_several() => merged(document, *one, progress),
-                several => merged_several(document, several, progress),
-            },
+            LayerAction::MergeDown { layer } => {
+                match &document.outermost(&layer.find(document)?)[..] {
+                    [one] if !layer.is_several() => merged(document, *one, progress),
+                    several => merged_several(document, several, progress),
+                }
+            }
             LayerAction::Bake { layer } => {
                 let ids = document.outermost(&layer.find(document)?);
                 let label = if ids.len() > 1 { "Bake layers" } else { "Bake layer" };
@@ -68,12 +77,14 @@ pub fn painted(name: &str, tiles: TileGrid) -> Layer {
     Layer::new(name, Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }))
 }
 
-/// A live layer or a group as paint: what it shows alone, its opacity, mask and blending left to the layer.
+/// A live layer or a group as paint: what it shows alone, its opacity, mask and blending left to
+/// the layer.
 pub(super) fn baked(document: &Document, layer: &Layer, progress: &Progress) -> Option<Document> {
     let document = &document.with_transform_applied(layer.id)?;
     let mask = document.map_of(layer.id)?.layer_on_canvas(document.layer(layer.id)?).mask.clone();
     let bare = document.with_layer(layer.id, |layer| {
-        (layer.opacity, layer.mask, layer.blend, layer.clip_to_surface) = (1.0, None, Default::default(), false);
+        (layer.opacity, layer.mask, layer.blend, layer.clip_to_surface) =
+            (1.0, None, Default::default(), false);
     })?;
     let tiles = flatten_to_paint(&bare.with_only(&[layer.id])?, progress)?;
     // What was drawn lies on the canvas; the layer's home carries it from there.
@@ -84,8 +95,13 @@ pub(super) fn baked(document: &Document, layer: &Layer, progress: &Progress) -> 
     })
 }
 
-/// With a layer that a mesh or liquify displaces as paint of what it shows, if its kind cannot express that.
-pub(super) fn undisplaced(document: &Document, id: LayerId, progress: &Progress) -> Option<Document> {
+/// With a layer that a mesh or liquify displaces as paint of what it shows, if its kind cannot
+/// express that.
+pub(super) fn undisplaced(
+    document: &Document,
+    id: LayerId,
+    progress: &Progress,
+) -> Option<Document> {
     let next = document.with_transform_applied(id)?;
     let layer = next.layer(id)?;
     if layer.is_warped() { baked(&next, layer, progress) } else { Some(next) }
@@ -105,7 +121,8 @@ fn merged(document: &Document, id: LayerId, progress: &Progress) -> Option<Edit>
     let beneath = layer_beneath(document, layer.id)?;
     let is_group = document.layer(beneath)?.content.group().is_some();
     let is_warped = document.layer(beneath)?.is_warped() && !is_group;
-    let document = &if is_warped { undisplaced(document, beneath, progress)? } else { document.clone() };
+    let document =
+        &if is_warped { undisplaced(document, beneath, progress)? } else { document.clone() };
     let (layer, beneath) = (document.layer(id)?, document.layer(beneath)?.clone());
     // The two alone, in a canvas of their own that sees the same surface.
     // The layers of groups are taken one by one.
@@ -113,7 +130,8 @@ fn merged(document: &Document, id: LayerId, progress: &Progress) -> Option<Edit>
         Some(_) => Some(layer.clone()),
         None => Some(document.map_of(layer.id)?.layer_on_canvas(layer)),
     };
-    let lower = Layer { clip_below: false, blend: Default::default(), ..Layer::clone(&*seen(&beneath)?) };
+    let lower =
+        Layer { clip_below: false, blend: Default::default(), ..Layer::clone(&*seen(&beneath)?) };
     let pair = Document { layers: vec![Arc::new(lower), seen(layer)?], ..document.clone() };
     let tiles = flatten_to_paint(&pair, progress)?;
     let transform = document.transform_to_canvas(beneath.id)?;
@@ -124,18 +142,28 @@ fn merged(document: &Document, id: LayerId, progress: &Progress) -> Option<Edit>
     Some(Edit { label: "Merge down", document, select: vec![beneath.id] })
 }
 
-/// Layers, bottom first, as one paint layer in the place of the topmost of them; it has the name and the blend mode of
-/// the bottom one.
+/// Layers, bottom first, as one paint layer in the place of the topmost of them; it has the name
+/// and the blend mode of the bottom one.
 fn merged_several(document: &Document, ids: &[LayerId], progress: &Progress) -> Option<Edit> {
     let in_place = |next: Document, id: &LayerId| next.with_transform_applied(*id);
     let document = &ids.iter().try_fold(document.clone(), in_place)?;
-    let mut layers: Vec<Arc<Layer>> = ids.iter().map(|id| document.layer(*id).cloned()).collect::<Option<_>>()?;
+    let mut layers: Vec<Arc<Layer>> =
+        ids.iter().map(|id| document.layer(*id).cloned()).collect::<Option<_>>()?;
     let bottom = layers.first()?.clone();
-    layers[0] = Arc::new(Layer { clip_below: false, blend: Default::default(), ..Layer::clone(&bottom) });
+    layers[0] =
+        Arc::new(Layer { clip_below: false, blend: Default::default(), ..Layer::clone(&bottom) });
     let visible = layers.iter().any(|layer| layer.visible);
     let tiles = flatten_to_paint(&Document { layers, ..document.clone() }, progress)?;
-    let Layer { name, blend, blend_linear, clip_below, clip_to_surface, .. } = Layer::clone(&bottom);
-    let one = Layer { visible, blend, blend_linear, clip_below, clip_to_surface, ..painted(&name, tiles) };
+    let Layer { name, blend, blend_linear, clip_below, clip_to_surface, .. } =
+        Layer::clone(&bottom);
+    let one = Layer {
+        visible,
+        blend,
+        blend_linear,
+        clip_below,
+        clip_to_surface,
+        ..painted(&name, tiles)
+    };
     let select = vec![one.id];
     let document = document.with_one_for(ids, one)?;
     Some(Edit { label: "Merge layers", document, select })
@@ -154,8 +182,11 @@ mod tests {
         let document = Document { layers, ..Document::empty(Size::new(1000, 1000)) };
         let top = LayerPaths::of(&document, &[document.layers[2].id]);
         // A picture of bytes and one of 16 bits for each layer that is painted.
-        let no_room = |action: &LayerAction, bytes| action.no_room(&document, &Budget::default().within(bytes));
-        let (bake, merge) = (LayerAction::Bake { layer: top.clone() }, LayerAction::MergeDown { layer: top });
+        let no_room = |action: &LayerAction, bytes| {
+            action.no_room(&document, &Budget::default().within(bytes))
+        };
+        let (bake, merge) =
+            (LayerAction::Bake { layer: top.clone() }, LayerAction::MergeDown { layer: top });
         assert_eq!(no_room(&bake, 16_000_000), None);
         let why = no_room(&bake, 15_000_000).unwrap();
         assert_eq!(why, "Baking the layer takes 16 MB of memory, and 15 MB are free for it.");

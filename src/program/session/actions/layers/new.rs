@@ -1,7 +1,9 @@
 //! New layers of every kind, as they begin.
 //! Floor 6.
 
-use crate::document::{Content, DetailSource, Document, Group, Layer, Live, NormalLayer, PixelLayer, StrokeList};
+use crate::document::{
+    Content, DetailSource, Document, Group, Layer, Live, NormalLayer, PixelLayer, StrokeList,
+};
 use crate::math::vec2;
 use crate::paint::{Gradient, Placement};
 use crate::raster::Outside;
@@ -28,8 +30,10 @@ names!(NewLayer);
 
 /// A new layer that would cover the canvas covers only the selection, by a mask.
 pub(super) fn selecting(document: &Document, layer: Layer) -> Layer {
-    let covers =
-        !matches!(layer.content, Content::Pixels(_) | Content::Strokes(_) | Content::Group(_) | Content::Normals(_));
+    let covers = !matches!(
+        layer.content,
+        Content::Pixels(_) | Content::Strokes(_) | Content::Group(_) | Content::Normals(_)
+    );
     Layer { mask: if covers { document.selection_as_mask() } else { None }, ..layer }
 }
 
@@ -47,16 +51,24 @@ pub(super) fn made(kind: NewLayer, document: &Document, gradient_settings: &Grad
         NewLayer::Strokes => ("Strokes", Content::Strokes(Live::new(StrokeList::default()))),
         NewLayer::Fill => (
             "Fill",
-            Content::Fill(gradient_settings.stops.first().map_or(crate::math::srgb::Color::BLACK, |stop| stop.color)),
+            Content::Fill(
+                gradient_settings
+                    .stops
+                    .first()
+                    .map_or(crate::math::srgb::Color::BLACK, |stop| stop.color),
+            ),
         ),
         NewLayer::Gradient => {
             let middle = size.center();
             let reach = vec2(0.0, 0.35 * size.height as f32);
-            let gradient = Gradient { from: middle - reach, to: middle + reach, ..gradient_settings.clone() };
+            let gradient =
+                Gradient { from: middle - reach, to: middle + reach, ..gradient_settings.clone() };
             ("Gradient", Content::Gradient(Live::new(gradient)))
         }
         NewLayer::Shading => ("Shading", Content::Shading(Live::new(Shading::new(Model::Phong)))),
-        NewLayer::RadianceScaling => ("Radiance scaling", Content::RadianceScaling(RadianceScaling::default())),
+        NewLayer::RadianceScaling => {
+            ("Radiance scaling", Content::RadianceScaling(RadianceScaling::default()))
+        }
         NewLayer::Normals => {
             let normals = NormalLayer {
                 source: DetailSource::Grain(NoiseRelief::default()),

@@ -9,13 +9,17 @@ use crate::session::LayerPaths;
 impl LayerAction {
     /// Why there is nothing to act on, in a sentence for the user.
     pub fn refusal(&self, document: &Document) -> Option<&'static str> {
-        let is_group = |id: &LayerId| document.layer(*id).is_some_and(|layer| layer.content.group().is_some());
+        let is_group =
+            |id: &LayerId| document.layer(*id).is_some_and(|layer| layer.content.group().is_some());
         let is_warped = |id: &LayerId| document.layer(*id).is_some_and(|layer| layer.is_warped());
         let shows = |id: &LayerId| {
             let can = document.layer(*id).is_some_and(|layer| layer.content.can_be_warped());
-            can && document.frame_box(*id).is_some_and(|frame| (frame.high - frame.low).min_element() >= 1.0)
+            can && document
+                .frame_box(*id)
+                .is_some_and(|frame| (frame.high - frame.low).min_element() >= 1.0)
         };
-        let lies_lowest = |id: &LayerId| document.place_of(*id).is_none_or(|place| place.index == 0);
+        let lies_lowest =
+            |id: &LayerId| document.place_of(*id).is_none_or(|place| place.index == 0);
         let chosen = |layer: &LayerPaths| layer.find(document).ok_or("Choose a layer first.");
         let refusal = match self {
             LayerAction::Delete { layer }
@@ -30,20 +34,24 @@ impl LayerAction {
             | LayerAction::Set { layer, .. }
             | LayerAction::TakeAlong { layer, .. }
             | LayerAction::Clear { layer } => chosen(layer).map(drop),
-            LayerAction::Mesh { layer, columns, rows } if [columns, rows].iter().all(|n| Mesh::SIDE.contains(n)) => {
+            LayerAction::Mesh { layer, columns, rows }
+                if [columns, rows].iter().all(|n| Mesh::SIDE.contains(n)) =>
+            {
                 chosen(layer).and_then(|ids| match ids.iter().all(shows) {
                     true => Ok(()),
                     false => Err("The layer holds nothing that a mesh could displace."),
                 })
             }
             LayerAction::Mesh { .. } => Err("A mesh has 2 to 33 points along a side."),
-            LayerAction::Ungroup { layer } => chosen(layer).and_then(|ids| match ids.iter().any(is_group) {
-                true if ids.iter().filter(|id| is_group(id)).any(is_warped) => {
-                    Err("A mesh or liquify displaces the group: apply or remove it first.")
-                }
-                true => Ok(()),
-                false => Err("There is no group among the chosen layers."),
-            }),
+            LayerAction::Ungroup { layer } => {
+                chosen(layer).and_then(|ids| match ids.iter().any(is_group) {
+                    true if ids.iter().filter(|id| is_group(id)).any(is_warped) => {
+                        Err("A mesh or liquify displaces the group: apply or remove it first.")
+                    }
+                    true => Ok(()),
+                    false => Err("There is no group among the chosen layers."),
+                })
+            }
             LayerAction::Home { layer, part } => {
                 chosen(layer).and_then(|ids| homed(document, &ids, part.as_deref()).map(drop))
             }

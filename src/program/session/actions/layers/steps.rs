@@ -35,14 +35,21 @@ pub(super) fn duplicated(document: &Document, ids: &[LayerId]) -> Option<EditSte
 pub(super) fn ungrouped(document: &Document, ids: &[LayerId]) -> Option<EditStep> {
     let (mut next, mut freed) = (document.clone(), Vec::new());
     for id in ids {
-        let Some(group) = next.layer(*id)?.content.group().map(|_| next.with_transform_applied(*id)) else { continue };
+        let Some(group) =
+            next.layer(*id)?.content.group().map(|_| next.with_transform_applied(*id))
+        else {
+            continue;
+        };
         let applied = group?;
         let home = applied.layer(*id)?.on.clone();
         let group = applied.layer(*id)?.content.group()?.clone();
         let place = applied.place_of(*id)?;
         next = applied.without_layer(*id)?;
         for (i, inner) in group.layers.iter().enumerate() {
-            next = next.with_inserted(Layer::clone(inner), LayerSlot { index: place.index + i, ..place })?;
+            next = next.with_inserted(
+                Layer::clone(inner),
+                LayerSlot { index: place.index + i, ..place },
+            )?;
             // What carried the group then carries each of them.
             if let Some(home) = home.as_ref().filter(|_| inner.on.is_none()) {
                 next = next.with_layer_on(inner.id, Some(&home.part)).unwrap_or(next);
@@ -53,8 +60,13 @@ pub(super) fn ungrouped(document: &Document, ids: &[LayerId]) -> Option<EditStep
     Some(("Ungroup", next, freed))
 }
 
-/// Layers on a part of the shape, on the canvas, or on what is around each; or why not, for the user.
-pub(super) fn homed(document: &Document, ids: &[LayerId], part: Option<&str>) -> Result<EditStep, &'static str> {
+/// Layers on a part of the shape, on the canvas, or on what is around each; or why not, for the
+/// user.
+pub(super) fn homed(
+    document: &Document,
+    ids: &[LayerId],
+    part: Option<&str>,
+) -> Result<EditStep, &'static str> {
     if part.is_some_and(|part| document.parts.home(part).is_none()) {
         return Err("There is no such part.");
     }
@@ -64,7 +76,8 @@ pub(super) fn homed(document: &Document, ids: &[LayerId], part: Option<&str>) ->
     next.map(|next| ("Carry with part", next, Vec::new())).ok_or(why)
 }
 
-/// Layers without what is selected, or emptied without a selection; a layer that cannot be cleared stays as it is.
+/// Layers without what is selected, or emptied without a selection; a layer that cannot be cleared
+/// stays as it is.
 pub(super) fn cleared(document: &Document, ids: &[LayerId]) -> Option<EditStep> {
     let (mut next, mut is_any) = (document.clone(), false);
     for id in ids {
@@ -86,7 +99,8 @@ pub(super) fn cleared(document: &Document, ids: &[LayerId]) -> Option<EditStep> 
 pub(in crate::session::actions) fn copied(layer: &Layer, name: &str) -> Layer {
     let mut copy = Layer { id: LayerId::fresh(), name: name.into(), ..layer.clone() };
     if let Some(group) = copy.content.group_mut() {
-        group.layers = group.layers.iter().map(|inner| Arc::new(copied(inner, &inner.name))).collect();
+        group.layers =
+            group.layers.iter().map(|inner| Arc::new(copied(inner, &inner.name))).collect();
     }
     copy
 }

@@ -1,11 +1,14 @@
-//! The first shape of a drawing: a part from its outline, or one from each of its flat colours or places, and a lit
-//! Base, so that the form is seen at once. Floor 6. Not here: what a drawing is (`document::parts::drawing`).
+//! The first shape of a drawing: a part from its outline, or one from each of its flat colours or
+//! places, and a lit Base, so that the form is seen at once. Floor 6. Not here: what a drawing is
+//! (`document::parts::drawing`).
 
 use super::{PartRefusal, free_id, new};
 use crate::document::parts::Part;
 use crate::document::parts::drawing::{DrawingLook, FigureBackground, without_background};
 use crate::document::parts::flats::{FlatParts, PartFor, parts_of_flats};
-use crate::document::{Content, Document, Inflation, Layer, LayerId, LayerSlot, Live, PixelLayer, Progress};
+use crate::document::{
+    Content, Document, Inflation, Layer, LayerId, LayerSlot, Live, PixelLayer, Progress,
+};
 use crate::math::{srgb::Color, vec3};
 use crate::raster::{BlendMode, TileGrid};
 use crate::session::OpenDocument;
@@ -47,9 +50,8 @@ pub fn shaped(
     let look = DrawingLook::of(&tiles, document.size);
     let (document, tiles) = match look.background {
         FigureBackground::Transparent => (document.clone(), tiles),
-        FigureBackground::Flat(color) => {
-            without_flat_background(document, layer, &tiles, color).ok_or("There is no such layer.")?
-        }
+        FigureBackground::Flat(color) => without_flat_background(document, layer, &tiles, color)
+            .ok_or("There is no such layer.")?,
         FigureBackground::Painted => {
             return Err(
                 "This layer is opaque all over and its background has many colours, so it has no outline. Select \
@@ -57,7 +59,9 @@ pub fn shaped(
             );
         }
         FigureBackground::Bare(_) => {
-            return Err("This layer has one colour all over, and no figure large enough on it to have an outline.");
+            return Err(
+                "This layer has one colour all over, and no figure large enough on it to have an outline.",
+            );
         }
         FigureBackground::Empty => return Err("This layer is empty, so it has no outline."),
     };
@@ -66,7 +70,10 @@ pub fn shaped(
     let made = match each {
         PartFor::Color | PartFor::Place => parts_of_flats(&tiles, &name, inflation, each),
         PartFor::Layer => {
-            let part = Part { name: new::free_name(&document, &name), ..Part::of_layer("", &name, inflation) };
+            let part = Part {
+                name: new::free_name(&document, &name),
+                ..Part::of_layer("", &name, inflation)
+            };
             FlatParts::of_one(part)
         }
     };
@@ -76,16 +83,22 @@ pub fn shaped(
         let id = free_id(&document, &list);
         list.push(Arc::new(Part { id, ..part }));
     }
-    let part = list.last().map(|part| part.id.clone()).ok_or("No flat colour of it covers enough to be a part.")?;
+    let part = list
+        .last()
+        .map(|part| part.id.clone())
+        .ok_or("No flat colour of it covers enough to be a part.")?;
     // Its edge is the surface's: clipping as well would make it thinner.
-    let next = document.with_layer(layer, |layer| layer.clip_to_surface = false).unwrap_or(document);
+    let next =
+        document.with_layer(layer, |layer| layer.clip_to_surface = false).unwrap_or(document);
     let base = base(&next);
     let id = base.id;
-    let place =
-        next.place_of(layer).map_or(LayerSlot::top_level(usize::MAX), |at| LayerSlot { index: at.index + 1, ..at });
+    let place = next
+        .place_of(layer)
+        .map_or(LayerSlot::top_level(usize::MAX), |at| LayerSlot { index: at.index + 1, ..at });
     let next = next.with_inserted(base, place).ok_or("There is no such layer.")?;
     let next = next.with_parts_telling(list, progress).ok_or("It was given up.")?;
-    // A drawing that is one part moves with the part; of several parts, each would take a piece of it.
+    // A drawing that is one part moves with the part; of several parts, each would take a piece of
+    // it.
     let next = match each {
         PartFor::Layer => next.with_layer_on(layer, Some(&part)).unwrap_or(next),
         PartFor::Color | PartFor::Place => next,
@@ -100,12 +113,16 @@ pub fn shaped(
 fn named_alone(document: &Document, layer: LayerId) -> Option<Document> {
     let name = &document.layer(layer)?.name;
     let is_alone = document.walk().iter().filter(|(_, other)| other.name == *name).count() == 1;
-    let named = if is_alone && !name.is_empty() { name.clone() } else { document.free_layer_name("Drawing") };
+    let named = if is_alone && !name.is_empty() {
+        name.clone()
+    } else {
+        document.free_layer_name("Drawing")
+    };
     document.with_layer(layer, |layer| layer.name = named)
 }
 
-/// The drawing as paint without its background, and the background as a fill beneath, and the drawing's pixels. The
-/// picture stays the same.
+/// The drawing as paint without its background, and the background as a fill beneath, and the
+/// drawing's pixels. The picture stays the same.
 fn without_flat_background(
     document: &Document,
     layer: LayerId,
@@ -113,7 +130,8 @@ fn without_flat_background(
     color: Color,
 ) -> Option<(Document, TileGrid)> {
     let bare = without_background(tiles, document.size, color);
-    let paint = Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles: bare.clone() });
+    let paint =
+        Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles: bare.clone() });
     let next = document.with_layer(layer, |layer| {
         // The mask and the transform are in the pixels now.
         (layer.content, layer.mask, layer.transform) = (paint, None, None);
@@ -130,9 +148,13 @@ fn without_flat_background(
     Some((next.with_inserted(background, place)?, bare))
 }
 
-/// The layer that shows the form: the drawing in the light of one warm lamp, with cool shadows, multiplied.
+/// The layer that shows the form: the drawing in the light of one warm lamp, with cool shadows,
+/// multiplied.
 fn base(document: &Document) -> Layer {
-    let lamp = Light { kind: LightKind::Directional { direction: vec3(-0.45, 0.55, 0.75) }, ..Light::default() };
+    let lamp = Light {
+        kind: LightKind::Directional { direction: vec3(-0.45, 0.55, 0.75) },
+        ..Light::default()
+    };
     let shading = Shading {
         lights: vec![lamp],
         ambient: Term::plain(Color { r: 0xc8, g: 0xd0, b: 0xff, a: 255 }, 0.38),

@@ -1,5 +1,5 @@
-//! Pictures for parts, taken from layers: light and dark of one as detail, and several as shadings of one drawing.
-//! Floor 6. Not here: what becomes of them (`shape::relief`, `shape::profiles`).
+//! Pictures for parts, taken from layers: light and dark of one as detail, and several as shadings
+//! of one drawing. Floor 6. Not here: what becomes of them (`shape::relief`, `shape::profiles`).
 
 use super::PartRefusal;
 use crate::document::parts::{CoverageFile, Part, ProfilePicture};
@@ -12,10 +12,11 @@ use crate::session::drawing::painted;
 use crate::shape::profiles::MOST_PROFILES;
 use std::sync::Arc;
 
-const PAINTS_NOTHING: PartRefusal = "This layer paints nothing of its own. Select one with light and dark on it.";
+const PAINTS_NOTHING: PartRefusal =
+    "This layer paints nothing of its own. Select one with light and dark on it.";
 
-/// Directions of the lights of hand-made shadings, by the names of their layers; in this order if the names say
-/// nothing.
+/// Directions of the lights of hand-made shadings, by the names of their layers; in this order if
+/// the names say nothing.
 const LIGHTS: [(&[&str], Vec3); MOST_PROFILES] = [
     (&["left"], vec3(-0.7, 0.0, 0.71)),
     (&["right"], vec3(0.7, 0.0, 0.71)),
@@ -34,9 +35,12 @@ pub fn free_files<'a>(document: &Document, stem: &'a str) -> impl Iterator<Item 
     (1..).map(move |i| format!("{stem}-{i}.png")).filter(move |name| !taken.contains(name))
 }
 
-/// Light and dark of a layer, sRGB; where it covers nothing, its mean, so that its edge is no detail.
+/// Light and dark of a layer, sRGB; where it covers nothing, its mean, so that its edge is no
+/// detail.
 pub fn detail(document: &Document, layer: LayerId) -> Result<CoverageFile, PartRefusal> {
-    let tiles = painted(document, layer).filter(|tiles| !tiles.bounds().is_empty()).ok_or(PAINTS_NOTHING)?;
+    let tiles = painted(document, layer)
+        .filter(|tiles| !tiles.bounds().is_empty())
+        .ok_or(PAINTS_NOTHING)?;
     let straight = Plane::from_fn(document.size, |x, y| {
         let [r, g, b, a] = tiles.pixel(x as i32, y as i32);
         let whole = |v: u8| f32::from(v) / f32::from(a.max(1));
@@ -59,9 +63,12 @@ pub fn shadings(tab: &OpenDocument) -> Result<Vec<ProfilePicture>, PartRefusal> 
     let all = document.walk().into_iter().map(|(_, layer)| layer);
     let layers: Vec<&Arc<Layer>> = all.filter(|layer| chosen.contains(&layer.id)).collect();
     if !(2..=MOST_PROFILES).contains(&layers.len()) {
-        return Err("Choose two to five layers with Ctrl, each a shading of the drawing with the light elsewhere.");
+        return Err(
+            "Choose two to five layers with Ctrl, each a shading of the drawing with the light elsewhere.",
+        );
     }
-    let mut lights = lights_of(&layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>()).into_iter();
+    let mut lights =
+        lights_of(&layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>()).into_iter();
     let shading = |(layer, file): (&Arc<Layer>, String)| {
         let tiles: TileGrid = painted(document, layer.id).ok_or(PAINTS_NOTHING)?;
         let coverage = Plane::from_fn(document.size, |x, y| {
@@ -77,8 +84,11 @@ pub fn shadings(tab: &OpenDocument) -> Result<Vec<ProfilePicture>, PartRefusal> 
 /// A light for each name: the one that it names, else the first that no other names.
 fn lights_of(names: &[&str]) -> Vec<Vec3> {
     let says = |name: &str| {
-        let words: Vec<String> = name.to_lowercase().split(|c: char| !c.is_alphabetic()).map(str::to_owned).collect();
-        LIGHTS.iter().position(|(known, _)| known.iter().any(|word| words.iter().any(|own| own == word)))
+        let words: Vec<String> =
+            name.to_lowercase().split(|c: char| !c.is_alphabetic()).map(str::to_owned).collect();
+        LIGHTS
+            .iter()
+            .position(|(known, _)| known.iter().any(|word| words.iter().any(|own| own == word)))
     };
     let said: Vec<Option<usize>> = names.iter().map(|name| says(name)).collect();
     let mut left = (0..LIGHTS.len()).filter(|i| !said.contains(&Some(*i)));

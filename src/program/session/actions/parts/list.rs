@@ -9,14 +9,18 @@ use std::sync::Arc;
 
 pub use crate::tools::shape::with_new;
 
-/// With a part in front of so many others that have a form of their own; a part that lies on another, among those on
-/// the same one.
+/// With a part in front of so many others that have a form of their own; a part that lies on
+/// another, among those on the same one.
 pub fn ordered(document: &Document, id: &str, index: usize) -> Document {
-    let Some(on) = document.parts.part(id).map(|part| part.on().map(str::to_owned)) else { return document.clone() };
+    let Some(on) = document.parts.part(id).map(|part| part.on().map(str::to_owned)) else {
+        return document.clone();
+    };
     let (moved, mut list) = apart(document, id);
-    let mut siblings = list.iter().enumerate().filter(|(_, part)| part.on() == on.as_deref()).map(|(at, _)| at);
+    let mut siblings =
+        list.iter().enumerate().filter(|(_, part)| part.on() == on.as_deref()).map(|(at, _)| at);
     let at = siblings.clone().nth(index);
-    // In front of all: after the last of those that lie on the same part, or, for whole parts, at the end of the list.
+    // In front of all: after the last of those that lie on the same part, or, for whole parts, at
+    // the end of the list.
     let last = on.as_ref().and_then(|_| siblings.next_back()).map(|at| at + 1);
     let at = at.or(last).unwrap_or(list.len());
     list.splice(at..at, moved);
@@ -25,7 +29,9 @@ pub fn ordered(document: &Document, id: &str, index: usize) -> Document {
 
 /// A part with what lies on it, and all others.
 fn apart(document: &Document, id: &str) -> (Vec<Arc<Part>>, Vec<Arc<Part>>) {
-    let goes = |part: &Arc<Part>| part.id == id || document.parts.body_of(&part.id).is_some_and(|body| body.id == id);
+    let goes = |part: &Arc<Part>| {
+        part.id == id || document.parts.body_of(&part.id).is_some_and(|body| body.id == id)
+    };
     document.parts.list.iter().cloned().partition(goes)
 }
 

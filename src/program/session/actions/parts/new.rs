@@ -1,5 +1,5 @@
-//! New parts: from the selected layer, the selection or the chosen stroke, or bodies in the middle of the canvas.
-//! Floor 6.
+//! New parts: from the selected layer, the selection or the chosen stroke, or bodies in the middle
+//! of the canvas. Floor 6.
 
 use super::{PartRefusal, free_id, greys};
 use crate::document::parts::{CoverageFile, OutlineSource, Part, PartKind, PartMaps};
@@ -47,11 +47,15 @@ impl NewPart {
     /// Why no part was made.
     pub(super) fn why_empty(self) -> PartRefusal {
         match self {
-            NewPart::InflateSelection => "The selection covers no pixel fully, so it has no outline.",
+            NewPart::InflateSelection => {
+                "The selection covers no pixel fully, so it has no outline."
+            }
             NewPart::Touches | NewPart::Sculpt | NewPart::Lines | NewPart::Relief => {
                 "The chosen part has no form to put anything on."
             }
-            NewPart::Profiles => "The selected layers are black all over, so they say nothing about the light.",
+            NewPart::Profiles => {
+                "The selected layers are black all over, so they say nothing about the light."
+            }
             _ => "The layer is empty, so it has no outline: paint on it, or select another.",
         }
     }
@@ -68,15 +72,21 @@ pub fn made(kind: NewPart, tab: &OpenDocument) -> Result<Part, PartRefusal> {
         PartKind::Primitive(Primitive::new(body, document.size.center(), radius))
     };
     let made = match kind {
-        NewPart::InflateLayer => PartKind::Inflate { outline: of_layer(tab)?, inflation: Inflation::default() },
+        NewPart::InflateLayer => {
+            PartKind::Inflate { outline: of_layer(tab)?, inflation: Inflation::default() }
+        }
         NewPart::InflateSelection => {
-            let outline = of_selection(document).ok_or("Nothing is selected, so there is nothing to inflate.")?;
+            let outline = of_selection(document)
+                .ok_or("Nothing is selected, so there is nothing to inflate.")?;
             PartKind::Inflate { outline, inflation: Inflation::default() }
         }
         NewPart::Bevel => {
             let outline = of_selection(document).map_or_else(|| of_layer(tab), Ok)?;
             let side = (0.04 * shorter).round().max(2.0);
-            PartKind::Bevel { outline, bevel: Bevel { width: side, height: side, ..Bevel::default() } }
+            PartKind::Bevel {
+                outline,
+                bevel: Bevel { width: side, height: side, ..Bevel::default() },
+            }
         }
         NewPart::Sphere => body(Body::Sphere),
         NewPart::Ellipsoid => body(Body::Ellipsoid),
@@ -86,10 +96,16 @@ pub fn made(kind: NewPart, tab: &OpenDocument) -> Result<Part, PartRefusal> {
         NewPart::Torus => body(Body::Torus),
         NewPart::Box => body(Body::Box),
         NewPart::Lathe => PartKind::Lathe { outline: of_layer(tab)?, axis: None, puff: 1.0 },
-        NewPart::Sweep => PartKind::Sweep { balls: of_stroke(tab).unwrap_or_else(|| tail(document)), puff: 1.0 },
+        NewPart::Sweep => {
+            PartKind::Sweep { balls: of_stroke(tab).unwrap_or_else(|| tail(document)), puff: 1.0 }
+        }
         NewPart::Touches => PartKind::Touches { on: form_of_chosen(tab)?, touches: Vec::new() },
         NewPart::Sculpt => PartKind::Sculpt { on: form_of_chosen(tab)?, strokes: Vec::new() },
-        NewPart::Lines => PartKind::Lines { on: form_of_chosen(tab)?, ink: of_layer(tab)?, lines: Lines::default() },
+        NewPart::Lines => PartKind::Lines {
+            on: form_of_chosen(tab)?,
+            ink: of_layer(tab)?,
+            lines: Lines::default(),
+        },
         NewPart::Relief => {
             let picture = greys::detail(document, selected(tab)?)?;
             PartKind::Relief { on: form_of_chosen(tab)?, picture, detail: Detail::default() }
@@ -97,7 +113,10 @@ pub fn made(kind: NewPart, tab: &OpenDocument) -> Result<Part, PartRefusal> {
         NewPart::Profiles => PartKind::Profiles { outline: None, shadings: greys::shadings(tab)? },
     };
     let name = match (kind, tab.selected.and_then(|id| document.layer(id))) {
-        (NewPart::InflateLayer | NewPart::Lathe | NewPart::Lines | NewPart::Relief, Some(layer)) => layer.name.clone(),
+        (
+            NewPart::InflateLayer | NewPart::Lathe | NewPart::Lines | NewPart::Relief,
+            Some(layer),
+        ) => layer.name.clone(),
         (NewPart::InflateSelection, _) => "Selection".to_owned(),
         _ => kind.label().to_owned(),
     };
@@ -143,7 +162,9 @@ fn of_layer(tab: &OpenDocument) -> Result<OutlineSource, PartRefusal> {
         return Err("This layer paints nothing of its own, so it has no outline. Select another.");
     }
     if document.layer_named(&layer.name).is_none_or(|named| named.id != layer.id) {
-        return Err("Another layer has the same name. Give this one a different name, so that its part can follow it.");
+        return Err(
+            "Another layer has the same name. Give this one a different name, so that its part can follow it.",
+        );
     }
     Ok(OutlineSource::Layer { layer: layer.name.clone(), color: None })
 }
@@ -151,7 +172,10 @@ fn of_layer(tab: &OpenDocument) -> Result<OutlineSource, PartRefusal> {
 /// The selection as a picture of coverage, under a name that no part's picture has.
 fn of_selection(document: &Document) -> Option<OutlineSource> {
     let coverage = Arc::new(document.selected()?.to_plane(document.size.rect()));
-    Some(OutlineSource::File(CoverageFile { file: greys::free_files(document, "outline").next()?, coverage }))
+    Some(OutlineSource::File(CoverageFile {
+        file: greys::free_files(document, "outline").next()?,
+        coverage,
+    }))
 }
 
 /// Balls along the chosen or last stroke of the selected layer.
@@ -178,7 +202,8 @@ fn of_stroke(tab: &OpenDocument) -> Option<Vec<Ball>> {
 /// A tapering S in the middle of the canvas.
 fn tail(document: &Document) -> Vec<Ball> {
     const BALLS: usize = 24;
-    let (middle, shorter) = (document.size.center(), document.size.width.min(document.size.height) as f32);
+    let (middle, shorter) =
+        (document.size.center(), document.size.width.min(document.size.height) as f32);
     let ball = |i: usize| {
         let t = i as f32 / (BALLS - 1) as f32;
         let bend = (t * std::f32::consts::TAU).sin();

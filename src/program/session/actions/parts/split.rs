@@ -8,15 +8,19 @@ use crate::document::parts::places::SplitPlaces;
 use crate::document::parts::{Part, PartKind};
 use std::sync::Arc;
 
-/// The document with a part split. The largest place keeps the part's id and name, and the paint that lies on it;
-/// touches and strokes of sculpting go to the place that they are at, and lines and reliefs to all places.
+/// The document with a part split. The largest place keeps the part's id and name, and the paint
+/// that lies on it; touches and strokes of sculpting go to the place that they are at, and lines
+/// and reliefs to all places.
 pub fn by_place(document: &Document, part: &Part) -> Result<Document, PartRefusal> {
-    let refused = "Only a part that follows a colour of a layer, wherever it is, can be split by place.";
+    let refused =
+        "Only a part that follows a colour of a layer, wherever it is, can be split by place.";
     let places = document.places_of(part).ok_or(refused)?;
     let points = places.points();
     match points.len() {
         0 | 1 => return Err("The colour of this part stands in one place only."),
-        n if n > MOST_COLOURS => return Err("The colour of this part stands in too many places: more than 64."),
+        n if n > MOST_COLOURS => {
+            return Err("The colour of this part stands in too many places: more than 64.");
+        }
         _ => {}
     }
     let upon: Vec<&Arc<Part>> =
@@ -42,7 +46,8 @@ pub fn by_place(document: &Document, part: &Part) -> Result<Document, PartRefusa
     }
     let goes = |other: &Arc<Part>| other.id == part.id || other.on() == Some(part.id.as_str());
     let at = document.parts.list.iter().position(|other| other.id == part.id).unwrap_or(0);
-    let mut list: Vec<Arc<Part>> = document.parts.list[..at].iter().filter(|other| !goes(other)).cloned().collect();
+    let mut list: Vec<Arc<Part>> =
+        document.parts.list[..at].iter().filter(|other| !goes(other)).cloned().collect();
     list.extend(made);
     list.extend(document.parts.list[at..].iter().filter(|other| !goes(other)).cloned());
     Ok(document.with_parts(list))
@@ -57,7 +62,9 @@ fn at_place(part: &Part, places: &SplitPlaces, index: usize) -> Option<Part> {
             !touches.is_empty()
         }
         PartKind::Sculpt { strokes, .. } => {
-            strokes.retain(|stroke| stroke.samples.first().is_some_and(|(at, _)| places.nearest(*at) == index));
+            strokes.retain(|stroke| {
+                stroke.samples.first().is_some_and(|(at, _)| places.nearest(*at) == index)
+            });
             !strokes.is_empty()
         }
         _ => true,

@@ -29,20 +29,25 @@ fn snowman(on_white: bool) -> Document {
     };
     of_picture("snowman.png", Picture::srgb8(size, (0..size.area()).map(texel).collect()).unwrap())
 }
+
 fn opened(document: Document) -> Session {
     let mut session = Session::default();
     session.add_document(OpenDocument::new("snowman.png", document, None));
     session
 }
+
 fn tell(session: &mut Session, line: &str) {
     session.replay(Path::new("story"), line).unwrap_or_else(|error| panic!("{line}: {error}"));
 }
+
 fn shown(session: &Session) -> &Document {
     session.active().unwrap().shown()
 }
+
 fn ids(session: &Session) -> Vec<&str> {
     shown(session).parts.list.iter().map(|part| part.id.as_str()).collect()
 }
+
 fn puff(session: &Session, id: &str) -> f32 {
     match &shown(session).parts.part(id).unwrap().kind {
         PartKind::Inflate { inflation, .. } => inflation.puff,
@@ -56,7 +61,10 @@ fn a_drawing_gets_a_shape_and_a_base_that_is_lit_in_one_step() {
     tell(&mut session, r#"{"in":"part","do":"shape","layer":"0","preset":"pillow","flats":false}"#);
     assert_eq!(session.notes, Vec::<String>::new());
     let document = shown(&session);
-    assert_eq!(document.layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>(), ["snowman", "Base"]);
+    assert_eq!(
+        document.layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>(),
+        ["snowman", "Base"]
+    );
     let surface = document.surface.as_ref().unwrap();
     assert!(surface.normal(48, 84).z > 0.98 && surface.normal(70, 84).x > 0.3);
     let lit = flatten(document, &Progress::default()).unwrap();
@@ -66,6 +74,7 @@ fn a_drawing_gets_a_shape_and_a_base_that_is_lit_in_one_step() {
     tell(&mut session, r#"{"in":"edit","do":"undo"}"#);
     assert!(shown(&session).surface.is_none() && shown(&session).layers.len() == 1);
 }
+
 #[test]
 fn a_drawing_that_is_one_part_goes_where_the_part_goes() {
     let mut session = opened(snowman(false));
@@ -78,10 +87,14 @@ fn a_drawing_that_is_one_part_goes_where_the_part_goes() {
     let after = flatten(shown(&session), &Progress::default()).unwrap();
     for (x, y) in [(48, 36), (40, 30), (60, 90), (30, 100), (48, 84)] {
         let (a, b) = (before.pixel(x, y), after.pixel(x + 6, y - 4));
-        assert!(a[3] == 255 && a.iter().zip(b).all(|(a, b)| a.abs_diff(b) <= 2), "{x} {y}: {a:?} {b:?}");
+        assert!(
+            a[3] == 255 && a.iter().zip(b).all(|(a, b)| a.abs_diff(b) <= 2),
+            "{x} {y}: {a:?} {b:?}"
+        );
     }
     assert_eq!(shown(&session).layers[0].on.as_ref().map(|home| &*home.part), Some("part-1"));
 }
+
 #[test]
 fn a_drag_of_a_number_is_one_step_and_reshapes_meanwhile() {
     let mut session = opened(snowman(false));
@@ -109,9 +122,14 @@ fn a_drag_of_a_number_is_one_step_and_reshapes_meanwhile() {
     tell(&mut session, &part(0.25, true));
     assert_eq!(session.active().unwrap().history.past().count(), steps + 1);
     tell(&mut session, &part(9.0, true));
-    assert!(session.notes[0].contains("puff") && session.notes[0].contains("between 0 and 8"), "{:?}", session.notes);
+    assert!(
+        session.notes[0].contains("puff") && session.notes[0].contains("between 0 and 8"),
+        "{:?}",
+        session.notes
+    );
     assert!(puff(&session, "part-1") == 0.25 && !session.active().unwrap().is_previewing());
 }
+
 #[test]
 fn parts_are_added_ordered_copied_hidden_and_deleted_with_what_lies_on_them() {
     let mut session = opened(snowman(false));
@@ -136,6 +154,7 @@ fn parts_are_added_ordered_copied_hidden_and_deleted_with_what_lies_on_them() {
     assert_eq!(session.notes, ["There is no such part."]);
     assert!(session.active().unwrap().part.is_some());
 }
+
 #[test]
 fn what_has_no_outline_says_so_and_changes_nothing() {
     let mut session = Session::default();
@@ -146,7 +165,10 @@ fn what_has_no_outline_says_so_and_changes_nothing() {
         (r#"{"in":"part","do":"add","kind":"inflate"}"#, "empty"),
         (r#"{"in":"part","do":"add","kind":"inflate selection"}"#, "Nothing is selected"),
         (r#"{"in":"part","do":"add","kind":"sculpt"}"#, "No part is selected"),
-        (r#"{"in":"part","do":"shape","layer":"7","preset":"coin","flats":false}"#, "no such layer"),
+        (
+            r#"{"in":"part","do":"shape","layer":"7","preset":"coin","flats":false}"#,
+            "no such layer",
+        ),
     ] {
         tell(&mut session, line);
         let said = session.notes.pop().unwrap_or_default();
@@ -154,10 +176,12 @@ fn what_has_no_outline_says_so_and_changes_nothing() {
     }
     assert!(shown(&session).parts.is_empty() && shown(&session).surface.is_none());
 }
+
 #[test]
 fn a_selection_is_inflated_and_keeps_its_outline_when_it_is_let_go_of() {
     let mut session = opened(snowman(false));
-    let press = r#"{"in":"pointer","do":"press","tool":"select rectangle","pen":[20,20],"px_per_pt":1}"#;
+    let press =
+        r#"{"in":"pointer","do":"press","tool":"select rectangle","pen":[20,20],"px_per_pt":1}"#;
     tell(&mut session, press);
     tell(&mut session, r#"{"in":"pointer","do":"drag","pens":[[76,108]]}"#);
     tell(&mut session, r#"{"in":"pointer","do":"release"}"#);
@@ -166,6 +190,7 @@ fn a_selection_is_inflated_and_keeps_its_outline_when_it_is_let_go_of() {
     let at = |x: f32, y: f32| shown(&session).part_at(vec2(x, y)).is_some();
     assert!(at(48.0, 64.0) && !at(8.0, 64.0));
 }
+
 #[test]
 fn layers_and_strokes_are_put_on_parts_and_taken_off_where_they_show() {
     let mut session = opened(snowman(false));
@@ -182,7 +207,8 @@ fn layers_and_strokes_are_put_on_parts_and_taken_off_where_they_show() {
         flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect())
     };
     let before = picture(&session);
-    let home = |session: &Session| shown(session).layers[1].on.as_ref().map(|home| home.part.to_string());
+    let home =
+        |session: &Session| shown(session).layers[1].on.as_ref().map(|home| home.part.to_string());
     tell(&mut session, r#"{"in":"layer","do":"home","layer":"1","part":"part-1"}"#);
     assert!(home(&session).as_deref() == Some("part-1") && picture(&session) == before);
     tell(&mut session, r#"{"in":"stroke","do":"home","layer":"1","strokes":[1],"part":"part-2"}"#);
@@ -195,17 +221,23 @@ fn layers_and_strokes_are_put_on_parts_and_taken_off_where_they_show() {
     assert!(picture(&session) == before);
     tell(&mut session, r#"{"in":"stroke","do":"home","layer":"1","strokes":[1],"part":null}"#);
     tell(&mut session, r#"{"in":"layer","do":"home","layer":"1","part":null}"#);
-    assert!(home(&session).is_none() && homes(&session) == [None, None] && picture(&session) == before);
+    assert!(
+        home(&session).is_none() && homes(&session) == [None, None] && picture(&session) == before
+    );
     assert!(session.said.is_empty(), "{:?}", session.said);
     tell(&mut session, r#"{"in":"layer","do":"home","layer":"1","part":"nobody"}"#);
     assert_eq!(session.said, ["There is no such part."]);
 }
+
 #[test]
 fn layers_become_lines_reliefs_and_lighting_profiles() {
     let mut session = opened(snowman(false));
     tell(&mut session, r#"{"in":"part","do":"add","kind":"sphere"}"#);
     tell(&mut session, r#"{"in":"layer","do":"add","kind":"paint"}"#);
-    tell(&mut session, r#"{"in":"pointer","do":"press","tool":"brush","pen":[40,60],"px_per_pt":1}"#);
+    tell(
+        &mut session,
+        r#"{"in":"pointer","do":"press","tool":"brush","pen":[40,60],"px_per_pt":1}"#,
+    );
     tell(&mut session, r#"{"in":"pointer","do":"drag","pens":[[60,64]]}"#);
     tell(&mut session, r#"{"in":"pointer","do":"release"}"#);
     let ball = shown(&session).surface.clone().unwrap();
@@ -215,11 +247,16 @@ fn layers_become_lines_reliefs_and_lighting_profiles() {
     tell(&mut session, r#"{"in":"layer","do":"select","layer":"0"}"#);
     tell(&mut session, r#"{"in":"part","do":"add","kind":"relief"}"#);
     assert_eq!(session.notes, Vec::<String>::new());
-    let kinds = |session: &Session| shown(session).parts.list.iter().map(|p| p.kind.name()).collect::<Vec<_>>();
+    let kinds = |session: &Session| {
+        shown(session).parts.list.iter().map(|p| p.kind.name()).collect::<Vec<_>>()
+    };
     assert_eq!(kinds(&session), ["primitive", "lines", "relief"]);
     tell(&mut session, r#"{"in":"part","do":"add","kind":"profiles"}"#);
     assert!(session.notes.remove(0).contains("two to five layers"));
-    tell(&mut session, r#"{"in":"layer","do":"choose","layer":["0","1"],"primary":"1","anchor":null}"#);
+    tell(
+        &mut session,
+        r#"{"in":"layer","do":"choose","layer":["0","1"],"primary":"1","anchor":null}"#,
+    );
     tell(&mut session, r#"{"in":"part","do":"add","kind":"profiles"}"#);
     assert_eq!((session.notes.clone(), kinds(&session).len()), (Vec::new(), 4));
     let names = shown(&session).parts.list.iter().flat_map(|part| {
@@ -228,6 +265,7 @@ fn layers_become_lines_reliefs_and_lighting_profiles() {
     });
     assert_eq!(names.collect::<Vec<_>>(), ["relief-1.png", "shading-1.png", "shading-2.png"]);
 }
+
 #[test]
 fn maps_become_a_part_that_is_set_without_being_read_again() {
     let folder = tempfile::TempDir::new().unwrap();
@@ -239,7 +277,10 @@ fn maps_become_a_part_that_is_set_without_being_read_again() {
     tell(&mut session, &line.to_string());
     assert_eq!(session.active().unwrap().part.as_deref(), Some("part-1"));
     let part = shown(&session).parts.part("part-1").unwrap().clone();
-    assert!(shown(&session).surface.as_ref().unwrap().normal(10, 60).x < -0.2, "stretched to the canvas");
+    assert!(
+        shown(&session).surface.as_ref().unwrap().normal(10, 60).x < -0.2,
+        "stretched to the canvas"
+    );
     std::fs::remove_file(&file).unwrap();
     let mut raised = crate::io::recipe::parts::write_part(&part);
     raised["raise"] = 20.into();

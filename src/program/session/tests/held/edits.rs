@@ -2,8 +2,8 @@
 
 /// Numbers at and beyond the ends of every range.
 pub const NUMBERS: [f32; 22] = [
-    0.0, -0.0, 1.0, -1.0, 0.5, 0.25, 2.0, 1e-6, 1e-3, 20.0, 60.0, 90.0, 200.0, 300.0, -300.0, 1024.5, 5000.0, 3e4, 1e6,
-    -2e6, 1e30, -1e30,
+    0.0, -0.0, 1.0, -1.0, 0.5, 0.25, 2.0, 1e-6, 1e-3, 20.0, 60.0, 90.0, 200.0, 300.0, -300.0,
+    1024.5, 5000.0, 3e4, 1e6, -2e6, 1e30, -1e30,
 ];
 /// Edits with `#` for a number and `%` for a whole one; the property of a layer, or an action.
 pub const PROPERTIES: &[&str] = &[

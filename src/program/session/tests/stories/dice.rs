@@ -1,14 +1,17 @@
-//! Draws the values of actions: numbers, words, places, layers. What a value is for is known by the action's word and
-//! the field's name. Not here: values that documents hold (`values`), parts (`parts`), the pen (`gestures`).
+//! Draws the values of actions: numbers, words, places, layers. What a value is for is known by the
+//! action's word and the field's name. Not here: values that documents hold (`values`), parts
+//! (`parts`), the pen (`gestures`).
 
 use super::facts::Facts;
 use crate::math::{Vec2, Vec3, srgb::Color, vec2, vec3};
 use crate::session::{LayerPath, LayerPaths};
 use std::path::PathBuf;
 
-/// A value that stories can hold. If the compiler leads you here, add the new type to the story tables: to `values`,
-/// or by `names!`, `record!` or `actions!`.
-#[diagnostic::on_unimplemented(message = "add `{Self}` to the story tables (session/tests/stories/values.rs)")]
+/// A value that stories can hold. If the compiler leads you here, add the new type to the story
+/// tables: to `values`, or by `names!`, `record!` or `actions!`.
+#[diagnostic::on_unimplemented(
+    message = "add `{Self}` to the story tables (session/tests/stories/values.rs)"
+)]
 pub trait Drawn: Sized {
     fn drawn(dice: &mut Dice) -> Self;
 }
@@ -26,8 +29,10 @@ pub struct Dice {
 }
 
 /// Numbers at and beyond the ends of ranges.
-const EDGES: [f32; 16] =
-    [0.0, -0.0, 1.0, -1.0, 0.5, 2.0, 1e-6, 1e-3, 20.0, 90.0, 200.0, 300.0, -300.0, 1024.5, 5000.0, -2e6];
+const EDGES: [f32; 16] = [
+    0.0, -0.0, 1.0, -1.0, 0.5, 2.0, 1e-6, 1e-3, 20.0, 90.0, 200.0, 300.0, -300.0, 1024.5, 5000.0,
+    -2e6,
+];
 
 /// Numbers by action or record, and field; without an action, by the field alone.
 const RANGES: &[(&str, &str, f32, f32)] = &[
@@ -65,6 +70,7 @@ impl Dice {
     pub fn new(seed: u64) -> Self {
         Self { state: seed, facts: Facts::default(), word: "", field: "", kind: "" }
     }
+
     /// The next number of splitmix64.
     pub fn number(&mut self) -> u64 {
         self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -73,24 +79,30 @@ impl Dice {
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         z ^ (z >> 31)
     }
+
     /// `[0, end)`; 0 if that is empty.
     pub fn below(&mut self, end: usize) -> usize {
         (self.number() % end.max(1) as u64) as usize
     }
+
     pub fn is(&mut self, percent: usize) -> bool {
         self.below(100) < percent
     }
+
     pub fn one_of<T: Clone>(&mut self, all: &[T]) -> T {
         all[self.below(all.len())].clone()
     }
+
     pub fn one_or<T: Clone>(&mut self, all: &[T], other: T) -> T {
         if all.is_empty() { other } else { self.one_of(all) }
     }
+
     pub fn within(&mut self, low: f32, high: f32) -> f32 {
         let share = (self.number() >> 40) as f32 / (1u64 << 24) as f32;
         // Files keep some digits; the pen gives few.
         ((low + (high - low) * share) * 64.0).round() / 64.0
     }
+
     /// One by its weight; all weights 0 gives the first.
     pub fn weighed(&mut self, weights: &[u32]) -> usize {
         let mut left = self.below(weights.iter().sum::<u32>() as usize) as u32;
@@ -104,6 +116,7 @@ impl Dice {
             })
             .unwrap_or_default()
     }
+
     /// A place, mostly on the canvas.
     pub fn place(&mut self) -> Vec2 {
         let size = self.facts.size;
@@ -111,6 +124,7 @@ impl Dice {
         let mut along = |side: f32| self.within(-beyond * side, (1.0 + beyond) * side);
         vec2(along(size.x), along(size.y))
     }
+
     /// The value of a field of an action.
     pub fn value<T: Drawn>(&mut self, word: &'static str, field: &'static str) -> T {
         let around = (self.word, self.field);
@@ -119,11 +133,14 @@ impl Dice {
         (self.word, self.field) = around;
         value
     }
+
     /// The position of the next variant among those of an enum of actions.
     pub fn variant(&mut self, words: &[&'static str], of: &'static str) -> usize {
-        let weights: Vec<u32> = words.iter().map(|word| super::weights::weight(of, word, self)).collect();
+        let weights: Vec<u32> =
+            words.iter().map(|word| super::weights::weight(of, word, self)).collect();
         self.weighed(&weights)
     }
+
     /// The same for a choice that may be absent, or a list.
     fn several<T: Drawn>(&mut self, least: usize, most: usize) -> Vec<T> {
         let count = least + self.below(most - least + 1);
@@ -138,6 +155,7 @@ impl Drawn for bool {
         dice.is(percent)
     }
 }
+
 impl Drawn for f32 {
     fn drawn(dice: &mut Dice) -> Self {
         if dice.is(6) {
@@ -152,18 +170,28 @@ impl Drawn for f32 {
         dice.within(0.0, 1.0)
     }
 }
+
 impl Drawn for f64 {
     fn drawn(dice: &mut Dice) -> Self {
         f32::drawn(dice).into()
     }
 }
+
 /// A map of the canvas, near to one that moves nothing.
 impl Drawn for [f64; 6] {
     fn drawn(dice: &mut Dice) -> Self {
         let mut near = |low: f32, high: f32| f64::from(dice.within(low, high));
-        [near(0.6, 1.4), near(-0.4, 0.4), near(-0.4, 0.4), near(0.6, 1.4), near(-20.0, 20.0), near(-20.0, 20.0)]
+        [
+            near(0.6, 1.4),
+            near(-0.4, 0.4),
+            near(-0.4, 0.4),
+            near(0.6, 1.4),
+            near(-20.0, 20.0),
+            near(-20.0, 20.0),
+        ]
     }
 }
+
 impl Drawn for usize {
     fn drawn(dice: &mut Dice) -> Self {
         match dice.field {
@@ -174,6 +202,7 @@ impl Drawn for usize {
         }
     }
 }
+
 impl Drawn for u32 {
     fn drawn(dice: &mut Dice) -> Self {
         let whole = match (dice.word, dice.field) {
@@ -186,6 +215,7 @@ impl Drawn for u32 {
         whole as u32
     }
 }
+
 impl Drawn for i32 {
     fn drawn(dice: &mut Dice) -> Self {
         let size = dice.facts.size;
@@ -197,11 +227,13 @@ impl Drawn for i32 {
         }
     }
 }
+
 impl Drawn for u8 {
     fn drawn(dice: &mut Dice) -> Self {
         if dice.field == "bits" { dice.one_of(&[8, 16]) } else { dice.one_of(&[60, 90, 100]) }
     }
 }
+
 impl Drawn for String {
     fn drawn(dice: &mut Dice) -> Self {
         let facts = &dice.facts;
@@ -216,16 +248,20 @@ impl Drawn for String {
             ("part", 0..10) => "canvas".into(),
             ("part", 10..13) => "part-99".into(),
             _ if !known.is_empty() => dice.one_of(&known),
-            _ => dice.one_of(&["a", "b", "Ink", "é \"<&>'\n", "Strokes", "", "canvas", "part-1"]).into(),
+            _ => dice
+                .one_of(&["a", "b", "Ink", "é \"<&>'\n", "Strokes", "", "canvas", "part-1"])
+                .into(),
         }
     }
 }
+
 impl Drawn for PathBuf {
     fn drawn(dice: &mut Dice) -> Self {
         let chance = dice.number();
         dice.facts.files.drawn(dice.word, dice.field, chance)
     }
 }
+
 impl Drawn for Color {
     fn drawn(dice: &mut Dice) -> Self {
         let [r, g, b, a] = dice.number().to_le_bytes()[..4] else { return Color::BLACK };
@@ -236,6 +272,7 @@ impl Drawn for Color {
         }
     }
 }
+
 impl Drawn for Vec2 {
     fn drawn(dice: &mut Dice) -> Self {
         match (dice.word, dice.field) {
@@ -246,17 +283,20 @@ impl Drawn for Vec2 {
         }
     }
 }
+
 impl Drawn for Vec3 {
     fn drawn(dice: &mut Dice) -> Self {
         vec3(dice.within(-1.0, 1.0), dice.within(-1.0, 1.0), dice.within(-0.2, 1.0))
     }
 }
+
 impl<T: Drawn> Drawn for Vec<T> {
     fn drawn(dice: &mut Dice) -> Self {
         let least = usize::from(matches!(dice.field, "strokes" | "maps" | "stops" | "points"));
         dice.several(least, 3)
     }
 }
+
 impl<T: Drawn> Drawn for Option<T> {
     fn drawn(dice: &mut Dice) -> Self {
         // Maps have normals.
@@ -264,6 +304,7 @@ impl<T: Drawn> Drawn for Option<T> {
         dice.is(percent).then(|| T::drawn(dice))
     }
 }
+
 impl Drawn for LayerPath {
     fn drawn(dice: &mut Dice) -> Self {
         let layers = dice.facts.layers.clone();
@@ -277,6 +318,7 @@ impl Drawn for LayerPath {
         }
     }
 }
+
 impl Drawn for LayerPaths {
     fn drawn(dice: &mut Dice) -> Self {
         match dice.is(75) {

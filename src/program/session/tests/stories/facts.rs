@@ -36,17 +36,23 @@ impl Facts {
         let presets = session.presets.iter().map(|preset| preset.key.clone()).collect();
         let views = SurfaceView::ALL.iter().map(|(_, name)| (*name).to_owned()).collect();
         let (files, documents) = (files.clone(), session.open_documents.len());
-        let none = Facts { size: vec2(90.0, 60.0), presets, views, files, documents, ..Facts::default() };
+        let none =
+            Facts { size: vec2(90.0, 60.0), presets, views, files, documents, ..Facts::default() };
         let Some(tab) = session.active() else { return none };
         let document = tab.document();
         let walk = document.walk();
-        let kinds =
-            walk.iter().filter_map(|(_, layer)| Some((LayerPath::of(document, layer.id)?, layer.content.kind_name())));
+        let kinds = walk.iter().filter_map(|(_, layer)| {
+            Some((LayerPath::of(document, layer.id)?, layer.content.kind_name()))
+        });
         Facts {
             size: vec2(document.size.width as f32, document.size.height as f32),
             layers: kinds.collect(),
             parts: document.parts.list.clone(),
-            strokes: walk.iter().map(|(_, layer)| document.strokes(layer.id).len()).max().unwrap_or_default(),
+            strokes: walk
+                .iter()
+                .map(|(_, layer)| document.strokes(layer.id).len())
+                .max()
+                .unwrap_or_default(),
             names: walk.iter().map(|(_, layer)| layer.name.clone()).collect(),
             ..none
         }
@@ -63,6 +69,7 @@ impl StoryFiles {
     pub fn new(folder: &Path) -> Self {
         Self { folder: folder.into() }
     }
+
     /// The files there, in a fixed order.
     fn there(&self) -> Vec<PathBuf> {
         let entries = std::fs::read_dir(&self.folder).into_iter().flatten().flatten();
@@ -70,11 +77,14 @@ impl StoryFiles {
         files.sort();
         files
     }
+
     /// A file for the field of an action.
     pub fn drawn(&self, word: &str, field: &str, chance: u64) -> PathBuf {
-        let name = |file: &PathBuf| file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let name =
+            |file: &PathBuf| file.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let found = |is_it: &dyn Fn(&str) -> bool| {
-            let all: Vec<PathBuf> = self.there().into_iter().filter(|file| is_it(&name(file))).collect();
+            let all: Vec<PathBuf> =
+                self.there().into_iter().filter(|file| is_it(&name(file))).collect();
             all.get((chance % all.len().max(1) as u64) as usize).cloned().unwrap_or_default()
         };
         let new = |names: &[&str]| self.folder.join(names[(chance % names.len() as u64) as usize]);
@@ -82,12 +92,18 @@ impl StoryFiles {
             (_, "normal") => found(&|name| name.starts_with("normal")),
             (_, "depth") => found(&|name| name.starts_with("depth")),
             ("save", _) => new(&["out-1.ora", "out-2.ora", "out-1.psd"]),
-            ("export", _) => new(&["out.png", "out.jpg", "out.exr", "out.tif", "out.webp", "out-2.psd"]),
+            ("export", _) => {
+                new(&["out.png", "out.jpg", "out.exr", "out.tif", "out.webp", "out-2.psd"])
+            }
             ("export maps", _) => new(&["out-maps.png", "out-maps.exr"]),
             ("export unwrapped", _) => new(&["out-sheet.png", "out-sheet.exr"]),
-            ("open", _) => found(&|name| [".ora", ".psd", ".json", ".png"].iter().any(|end| name.ends_with(end))),
+            ("open", _) => found(&|name| {
+                [".ora", ".psd", ".json", ".png"].iter().any(|end| name.ends_with(end))
+            }),
             ("import brush", _) => found(&|name| name.starts_with("picture")),
-            _ => found(&|name| name.starts_with("picture") || name.starts_with("normal") || name == "grey.png"),
+            _ => found(&|name| {
+                name.starts_with("picture") || name.starts_with("normal") || name == "grey.png"
+            }),
         }
     }
 }

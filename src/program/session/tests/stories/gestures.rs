@@ -19,11 +19,24 @@ impl Drawn for PenSample {
 pub fn gesture(dice: &mut Dice, tool: ToolKind) -> Vec<Action> {
     let size = dice.facts.size;
     let somewhere = dice.place();
-    let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.5, 0.0), (1.0, 0.5), (0.5, 1.1), (0.5, 0.5)];
+    let corners = [
+        (0.0, 0.0),
+        (1.0, 0.0),
+        (1.0, 1.0),
+        (0.0, 1.0),
+        (0.5, 0.0),
+        (1.0, 0.5),
+        (0.5, 1.1),
+        (0.5, 0.5),
+    ];
     let handle = dice.one_of(&corners.map(|(x, y)| vec2(x, y) * size));
     match tool {
-        ToolKind::Brush | ToolKind::Eraser | ToolKind::Sculpt | ToolKind::Liquify => stroke(dice, tool, somewhere),
-        ToolKind::Fill | ToolKind::Eyedropper | ToolKind::Hand | ToolKind::Zoom => click(dice, tool, somewhere),
+        ToolKind::Brush | ToolKind::Eraser | ToolKind::Sculpt | ToolKind::Liquify => {
+            stroke(dice, tool, somewhere)
+        }
+        ToolKind::Fill | ToolKind::Eyedropper | ToolKind::Hand | ToolKind::Zoom => {
+            click(dice, tool, somewhere)
+        }
         ToolKind::Wand | ToolKind::SurfaceWand | ToolKind::Touch => {
             if dice.is(60) {
                 click(dice, tool, somewhere)
@@ -56,7 +69,9 @@ pub fn gesture(dice: &mut Dice, tool: ToolKind) -> Vec<Action> {
                 dice.value("crop", "y1"),
             ];
             let [x0, y0, x1, y1] = frame;
-            actions.push(Action::Canvas(CanvasAction::Crop { to: crate::math::Rect { x0, y0, x1, y1 } }));
+            actions.push(Action::Canvas(CanvasAction::Crop {
+                to: crate::math::Rect { x0, y0, x1, y1 },
+            }));
             actions
         }
         ToolKind::Lasso if dice.is(50) => {
@@ -79,7 +94,8 @@ fn keys(dice: &mut Dice) -> ModifierKeys {
 }
 
 fn press(dice: &mut Dice, tool: ToolKind, at: Vec2, keys: ModifierKeys) -> Action {
-    let pen = PenSample { sample: Sample { pressure: dice.within(0.1, 1.0), ..Sample::at(at) }, keys };
+    let pen =
+        PenSample { sample: Sample { pressure: dice.within(0.1, 1.0), ..Sample::at(at) }, keys };
     let px_per_pt = dice.one_of(&[1.0, 1.0, 0.5, 3.0]);
     Action::Pointer(PointerAction::Press { tool, pen, px_per_pt })
 }
@@ -95,9 +111,17 @@ fn click(dice: &mut Dice, tool: ToolKind, at: Vec2) -> Vec<Action> {
 
 fn drag(dice: &mut Dice, tool: ToolKind, from: Vec2) -> Vec<Action> {
     let keys = keys(dice);
-    let to = if dice.is(50) { dice.place() } else { from + vec2(dice.within(-15.0, 15.0), dice.within(-15.0, 15.0)) };
+    let to = if dice.is(50) {
+        dice.place()
+    } else {
+        from + vec2(dice.within(-15.0, 15.0), dice.within(-15.0, 15.0))
+    };
     let pens = [0.5, 1.0].map(|t| PenSample { sample: Sample::at(from.lerp(to, t)), keys });
-    vec![press(dice, tool, from, keys), Action::Pointer(PointerAction::Drag { pens: pens.to_vec() }), lift(dice)]
+    vec![
+        press(dice, tool, from, keys),
+        Action::Pointer(PointerAction::Drag { pens: pens.to_vec() }),
+        lift(dice),
+    ]
 }
 
 /// A curve of a few samples, or of many as a pen gives them.
@@ -108,15 +132,17 @@ fn stroke(dice: &mut Dice, tool: ToolKind, from: Vec2) -> Vec<Action> {
     let sways = dice.within(0.0, 6.0);
     let sample = |i: usize| {
         let t = (i + 1) as f32 / count as f32;
-        let at = from.lerp(over, t).lerp(over.lerp(to, t), t) + vec2((40.0 * t).sin(), (31.0 * t).cos()) * sways * t;
+        let at = from.lerp(over, t).lerp(over.lerp(to, t), t)
+            + vec2((40.0 * t).sin(), (31.0 * t).cos()) * sways * t;
         let at = (at * 256.0).round() / 256.0;
         let pressure = (0.2 + 0.8 * (6.0 * t).sin().abs()).min(1.0);
         PenSample { sample: Sample { at, pressure, tilt: vec2(10.0 * t, 0.0), time_secs: t }, keys }
     };
     let pens: Vec<PenSample> = (0..count).map(sample).collect();
     // Drags come in batches, a frame's each.
-    let batches =
-        pens.chunks(7 + dice.below(60)).map(|pens| Action::Pointer(PointerAction::Drag { pens: pens.to_vec() }));
+    let batches = pens
+        .chunks(7 + dice.below(60))
+        .map(|pens| Action::Pointer(PointerAction::Drag { pens: pens.to_vec() }));
     let mut actions = vec![press(dice, tool, from, keys)];
     actions.extend(batches);
     actions.push(lift(dice));

@@ -1,4 +1,5 @@
-//! The faults that are known and being mended, so that stories look for others meanwhile. Empty when all is well.
+//! The faults that are known and being mended, so that stories look for others meanwhile. Empty
+//! when all is well.
 
 /// Beginnings of the kinds of faults.
 const FAULTS: &[&str] = &[

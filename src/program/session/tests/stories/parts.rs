@@ -12,13 +12,21 @@ use std::sync::Arc;
 /// Numbers that a part of a kind may have, by their names in files. A new kind belongs here.
 fn numbers(kind: &PartKind) -> &'static [(&'static str, f32, f32)] {
     match kind {
-        PartKind::Inflate { .. } => &[("puff", 0.1, 3.0), ("profile", 0.0, 1.0), ("rim", 10.0, 90.0)],
-        PartKind::Bevel { .. } => &[("width", 1.0, 20.0), ("height", 0.0, 20.0)],
-        PartKind::Primitive(_) => {
-            &[("radius", 4.0, 40.0), ("length", 4.0, 60.0), ("tube", 2.0, 12.0), ("round", 0.0, 1.0)]
+        PartKind::Inflate { .. } => {
+            &[("puff", 0.1, 3.0), ("profile", 0.0, 1.0), ("rim", 10.0, 90.0)]
         }
+        PartKind::Bevel { .. } => &[("width", 1.0, 20.0), ("height", 0.0, 20.0)],
+        PartKind::Primitive(_) => &[
+            ("radius", 4.0, 40.0),
+            ("length", 4.0, 60.0),
+            ("tube", 2.0, 12.0),
+            ("round", 0.0, 1.0),
+        ],
         PartKind::Lathe { .. } | PartKind::Sweep { .. } => &[("puff", 0.2, 2.0)],
-        PartKind::Touches { .. } | PartKind::Sculpt { .. } | PartKind::Maps(_) | PartKind::Profiles { .. } => &[],
+        PartKind::Touches { .. }
+        | PartKind::Sculpt { .. }
+        | PartKind::Maps(_)
+        | PartKind::Profiles { .. } => &[],
         PartKind::Lines { .. } => &[("angle", 5.0, 80.0), ("reach", 1.0, 30.0)],
         PartKind::Relief { .. } => {
             &[("coarse", -4.0, 4.0), ("fine", -4.0, 4.0), ("radius", 1.0, 12.0), ("edge", 0.1, 1.0)]
@@ -26,7 +34,8 @@ fn numbers(kind: &PartKind) -> &'static [(&'static str, f32, f32)] {
     }
 }
 
-/// A part of the document in front in a new version; of a document without parts one that is not there.
+/// A part of the document in front in a new version; of a document without parts one that is not
+/// there.
 pub fn changed(dice: &mut Dice) -> Value {
     if dice.facts.parts.is_empty() {
         return json!({ "id": "part-1", "kind": "primitive", "shape": "cone", "center": [9, 9] });
@@ -57,7 +66,8 @@ pub fn changed(dice: &mut Dice) -> Value {
 
 /// What every part has.
 fn all_have(dice: &mut Dice, value: &mut Value) {
-    let pair = |dice: &mut Dice, most: f32| json!([dice.within(-most, most), dice.within(-most, most)]);
+    let pair =
+        |dice: &mut Dice, most: f32| json!([dice.within(-most, most), dice.within(-most, most)]);
     match dice.below(7) {
         0 => value["combine"] = dice.one_of(&Combine::ALL).1.into(),
         1 => value["tilt"] = pair(dice, 50.0),
@@ -71,7 +81,8 @@ fn all_have(dice: &mut Dice, value: &mut Value) {
 
 /// What only some kinds have.
 fn own(dice: &mut Dice, kind: &PartKind, value: &mut Value) {
-    let turn = json!([dice.within(-90.0, 90.0), dice.within(-90.0, 90.0), dice.within(-90.0, 90.0)]);
+    let turn =
+        json!([dice.within(-90.0, 90.0), dice.within(-90.0, 90.0), dice.within(-90.0, 90.0)]);
     let ids: Vec<String> = dice.facts.parts.iter().map(|part| part.id.clone()).collect();
     match kind {
         PartKind::Bevel { .. } => value["curve"] = dice.one_of(&BevelCurve::NAMED).1.into(),
@@ -79,8 +90,9 @@ fn own(dice: &mut Dice, kind: &PartKind, value: &mut Value) {
         PartKind::Primitive(_) => value["shape"] = dice.one_of(&Body::ALL).1.into(),
         PartKind::Lathe { .. } => value["axis"] = json!([place(dice), place(dice)]),
         PartKind::Sweep { .. } => {
-            let ball =
-                |dice: &mut Dice| json!([dice.within(0.0, 80.0), dice.within(0.0, 60.0), dice.within(1.0, 12.0)]);
+            let ball = |dice: &mut Dice| {
+                json!([dice.within(0.0, 80.0), dice.within(0.0, 60.0), dice.within(1.0, 12.0)])
+            };
             value["balls"] = (0..2 + dice.below(60)).map(|_| ball(dice)).collect();
         }
         PartKind::Touches { .. } => {
@@ -90,7 +102,9 @@ fn own(dice: &mut Dice, kind: &PartKind, value: &mut Value) {
             };
             value["touches"] = (0..1 + dice.below(5)).map(|_| touch(dice)).collect();
         }
-        PartKind::Lines { .. } if dice.is(50) => value["form"] = dice.one_of(&LineForm::ALL).1.into(),
+        PartKind::Lines { .. } if dice.is(50) => {
+            value["form"] = dice.one_of(&LineForm::ALL).1.into()
+        }
         // Also on itself, in a circle, or on what is gone.
         PartKind::Sculpt { .. } | PartKind::Lines { .. } | PartKind::Relief { .. } => {
             value["on"] = dice.one_of(&ids).into();
@@ -124,7 +138,9 @@ fn outline(dice: &mut Dice, known: Option<&OutlineSource>) -> Value {
                 false => json!({ "layer": layer, "color": Color::drawn(dice).written() }),
             }
         }
-        OutlineSource::Path(_) => json!({ "path": (0..3 + dice.below(5)).map(|_| place(dice)).collect::<Vec<_>>() }),
+        OutlineSource::Path(_) => {
+            json!({ "path": (0..3 + dice.below(5)).map(|_| place(dice)).collect::<Vec<_>>() })
+        }
         OutlineSource::Selection(_) => json!({ "selection": dice.one_of(&["a", "b", "sky"]) }),
         OutlineSource::Object(_) => json!({ "object": 1 + dice.below(3) }),
         OutlineSource::File(file) => json!({ "file": file.file }),

@@ -1,5 +1,5 @@
-//! Plays stories: draws what a user does next, performs it, and asks after each step and at the end whether every
-//! promise was kept (`promises`).
+//! Plays stories: draws what a user does next, performs it, and asks after each step and at the end
+//! whether every promise was kept (`promises`).
 
 use super::dice::{Dice, Drawn};
 use super::facts::{Facts, StoryFiles};
@@ -96,11 +96,12 @@ impl Play {
         let session = Session { autosave, replaces_unasked: true, ..Session::default() };
         Self { session, asks, logs, actions: Vec::new(), seen: Vec::new() }
     }
+
     fn perform(&mut self, action: &Action) -> Result<(), Broken> {
         let written = action.written();
         // As a replay gives it; what cannot be read is refused there.
-        let action =
-            Action::read(&written).map_err(|why| Broken::new("a line cannot be read", format!("{written}: {why}")))?;
+        let action = Action::read(&written)
+            .map_err(|why| Broken::new("a line cannot be read", format!("{written}: {why}")))?;
         let before = self.session.active().map(|tab| (tab.key, tab.document().clone()));
         let notes = self.session.notes.len();
         let done = catch_unwind(AssertUnwindSafe(|| action.apply(&mut self.session)));
@@ -120,6 +121,7 @@ impl Play {
         }
         Ok(())
     }
+
     fn end(&mut self) -> Result<(), Broken> {
         // Whoever shows the document keeps what is dragged.
         self.session.drop_gesture();
@@ -131,6 +133,7 @@ impl Play {
         }));
         whole.unwrap_or_else(|panic| Err(Broken::panicked(&*panic)))
     }
+
     /// The same story with one thread gives the same documents.
     fn with_one_thread(&self, now: &[(String, u32)]) -> Result<(), Broken> {
         let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
@@ -143,12 +146,21 @@ impl Play {
         };
         let alone = alone.install(again)?;
         match now.iter().zip(&alone).find(|(a, b)| a != b) {
-            _ if now.len() != alone.len() => Err(Broken::new("one thread and two differ", "other documents".into())),
-            Some((a, b)) if a.0 == b.0 => Err(Broken::new("one thread and two differ in the picture", String::new())),
+            _ if now.len() != alone.len() => {
+                Err(Broken::new("one thread and two differ", "other documents".into()))
+            }
+            Some((a, b)) if a.0 == b.0 => {
+                Err(Broken::new("one thread and two differ in the picture", String::new()))
+            }
             Some((a, b)) => {
                 let at = a.0.bytes().zip(b.0.bytes()).position(|(a, b)| a != b).unwrap_or_default();
-                let about = |text: &str| text.chars().skip(at.saturating_sub(60)).take(120).collect::<String>();
-                Err(Broken::new("one thread and two differ", format!("{} and {}", about(&a.0), about(&b.0))))
+                let about = |text: &str| {
+                    text.chars().skip(at.saturating_sub(60)).take(120).collect::<String>()
+                };
+                Err(Broken::new(
+                    "one thread and two differ",
+                    format!("{} and {}", about(&a.0), about(&b.0)),
+                ))
             }
             None => Ok(()),
         }

@@ -1,5 +1,5 @@
-//! What holds after every story: see `docs/PROJECTS.md`. Each broken promise has a kind, by which stories that fail in
-//! one way are counted and shrunk.
+//! What holds after every story: see `docs/PROJECTS.md`. Each broken promise has a kind, by which
+//! stories that fail in one way are counted and shrunk.
 
 use crate::document::{Document, Progress, flatten, flatten_rounding_once};
 use crate::io::export::ExportOptions;
@@ -23,6 +23,7 @@ impl Broken {
     pub fn new(kind: &str, what: String) -> Self {
         Self { kind: kind.into(), what }
     }
+
     /// One whose kind is also what was said, without numbers and what is in quotes.
     fn said(kind: &str, what: impl ToString) -> Self {
         let what = what.to_string();
@@ -36,6 +37,7 @@ impl Broken {
             .collect();
         Self { kind: format!("{kind}: {plain}"), what }
     }
+
     pub fn panicked(panic: &(dyn Any + Send)) -> Self {
         let text = panic.downcast_ref::<String>().cloned();
         let text = text.or_else(|| panic.downcast_ref::<&str>().map(|text| (*text).to_owned()));
@@ -54,7 +56,9 @@ pub struct Seen {
 impl Seen {
     pub fn now(session: &Session) -> Result<Option<Self>, Broken> {
         let document = session.active().map(|tab| tab.document().clone());
-        document.map(|document| Ok(Self { fingerprint: fingerprint(&document)?, document })).transpose()
+        document
+            .map(|document| Ok(Self { fingerprint: fingerprint(&document)?, document }))
+            .transpose()
     }
 }
 
@@ -62,9 +66,11 @@ impl Seen {
 fn fingerprint(document: &Document) -> Result<(String, u32), Broken> {
     Ok((recipe::write(document).to_string(), crc32fast::hash(&rendered(document)?)))
 }
+
 pub fn fingerprints(session: &Session) -> Result<Vec<(String, u32)>, Broken> {
     session.open_documents.iter().map(|tab| fingerprint(tab.document())).collect()
 }
+
 fn rendered(document: &Document) -> Result<Vec<u8>, Broken> {
     let tiles = flatten(document, &Progress::default());
     let tiles = tiles.ok_or_else(|| Broken::new("not rendered", String::new()))?;
@@ -75,7 +81,9 @@ fn rendered(document: &Document) -> Result<Vec<u8>, Broken> {
 pub fn nothing_changed(session: &Session, before: Option<(usize, Document)>, why: &str) -> Kept {
     let now = session.active().map(|tab| (tab.key, tab.document()));
     match (&before, now) {
-        (Some((key, before)), Some((now_key, now))) if *key == now_key && is_same(before, now) => Ok(()),
+        (Some((key, before)), Some((now_key, now))) if *key == now_key && is_same(before, now) => {
+            Ok(())
+        }
         (None, None) => Ok(()),
         _ => Err(Broken::said("failed, and yet changed", why)),
     }
@@ -85,7 +93,8 @@ pub fn nothing_changed(session: &Session, before: Option<(usize, Document)>, why
 pub fn after_step(session: &Session, before: Option<(usize, Document)>, told: &[String]) -> Kept {
     let Some(tab) = session.active() else { return Ok(()) };
     let refused = told.iter().find(|note| note.ends_with("Nothing was changed."));
-    let is_changed = before.is_some_and(|(key, before)| key == tab.key && !is_same(&before, tab.document()));
+    let is_changed =
+        before.is_some_and(|(key, before)| key == tab.key && !is_same(&before, tab.document()));
     match refused {
         Some(note) if is_changed => return Err(Broken::said("refused, and yet changed", note)),
         _ => {}
@@ -154,10 +163,13 @@ fn steps(tab: &mut OpenDocument, seen: &[Seen]) -> Kept {
 
 /// A document is saved and opened unchanged, by every way out.
 fn is_kept(document: &Document, all_formats: bool) -> Kept {
-    let (file, progress, budget) = (Path::new("a.ora"), Progress::default(), Budget::holding(document));
-    let written = project::write(file, document, &progress).map_err(|error| Broken::said("not saved", error))?;
+    let (file, progress, budget) =
+        (Path::new("a.ora"), Progress::default(), Budget::holding(document));
+    let written = project::write(file, document, &progress)
+        .map_err(|error| Broken::said("not saved", error))?;
     let bytes = written.unwrap_or_default();
-    let read = project::read(file, &bytes, &budget).map_err(|error| Broken::said("not opened", error))?;
+    let read =
+        project::read(file, &bytes, &budget).map_err(|error| Broken::said("not opened", error))?;
     // What it says of itself is no loss.
     let own = document.note_of_lost(None);
     if let Some(note) = read.notes.iter().find(|note| Some(*note) != own.as_ref()) {
@@ -169,8 +181,8 @@ fn is_kept(document: &Document, all_formats: bool) -> Kept {
     let picture = rendered(document)?;
     same_bytes("reopened, another picture", &picture, &rendered(&read.document)?)?;
     same_bytes("the merged picture", &picture, &merged(file, &bytes)?)?;
-    let again =
-        project::write(file, &read.document, &progress).map_err(|error| Broken::said("not saved again", error))?;
+    let again = project::write(file, &read.document, &progress)
+        .map_err(|error| Broken::said("not saved again", error))?;
     if again.is_none_or(|again| again != bytes) {
         return Err(Broken::new("saved again, other bytes", String::new()));
     }
@@ -180,12 +192,15 @@ fn is_kept(document: &Document, all_formats: bool) -> Kept {
 
 /// Pictures of both are the same, and what is shown.
 fn exported(document: &Document, reopened: &Document, picture: &[u8], depths: &[u8]) -> Kept {
-    let (file, progress, budget) = (Path::new("a.png"), Progress::default(), Budget::holding(document));
+    let (file, progress, budget) =
+        (Path::new("a.png"), Progress::default(), Budget::holding(document));
     for &bits in depths {
         let options = ExportOptions { bits: Some(bits), ..ExportOptions::default() };
         let bytes = |document: &Document| {
             let bytes = encode_document(file, document, &options, &budget, &progress);
-            bytes.map_err(|error| Broken::said("not exported", error)).map(Option::unwrap_or_default)
+            bytes
+                .map_err(|error| Broken::said("not exported", error))
+                .map(Option::unwrap_or_default)
         };
         let bytes = [bytes(document)?, bytes(reopened)?];
         if bytes[0] != bytes[1] {
@@ -193,10 +208,16 @@ fn exported(document: &Document, reopened: &Document, picture: &[u8], depths: &[
         }
         if bits == 8 {
             // Where blend modes are steep, exports are rounded once, and the screen layer by layer.
-            let once =
-                || flatten_rounding_once(document, &progress).map(|tiles| tiles.to_straight_rgba(document.size.rect()));
+            let once = || {
+                flatten_rounding_once(document, &progress)
+                    .map(|tiles| tiles.to_straight_rgba(document.size.rect()))
+            };
             let once = document.shows_rounding().then(once).flatten();
-            same_bytes("exported, another picture", once.as_deref().unwrap_or(picture), &decoded(file, &bytes[0])?)?;
+            same_bytes(
+                "exported, another picture",
+                once.as_deref().unwrap_or(picture),
+                &decoded(file, &bytes[0])?,
+            )?;
         }
     }
     Ok(())
@@ -204,10 +225,13 @@ fn exported(document: &Document, reopened: &Document, picture: &[u8], depths: &[
 
 /// Our Photoshop files hold the document as it is.
 fn is_kept_by_photoshop(document: &Document, picture: &[u8]) -> Kept {
-    let (file, progress, budget) = (Path::new("a.psd"), Progress::default(), Budget::holding(document));
-    let written = psd::write(file, document, &progress).map_err(|error| Broken::said("psd: not saved", error))?;
+    let (file, progress, budget) =
+        (Path::new("a.psd"), Progress::default(), Budget::holding(document));
+    let written = psd::write(file, document, &progress)
+        .map_err(|error| Broken::said("psd: not saved", error))?;
     let Some(written) = written else { return Ok(()) };
-    let read = psd::read(file, &written.bytes, &budget).map_err(|error| Broken::said("psd: not opened", error))?;
+    let read = psd::read(file, &written.bytes, &budget)
+        .map_err(|error| Broken::said("psd: not opened", error))?;
     let own = document.note_of_lost(None);
     if let Some(note) = read.notes.iter().find(|note| Some(*note) != own.as_ref()) {
         return Err(Broken::said("psd: opened with a note", note));
@@ -224,14 +248,16 @@ fn merged(file: &Path, bytes: &[u8]) -> Result<Vec<u8>, Broken> {
     let merged = archive.and_then(|archive| archive.bytes("mergedimage.png", u64::MAX));
     decoded(file, &merged.map_err(|error| Broken::said("no merged picture", error))?)
 }
+
 fn decoded(file: &Path, bytes: &[u8]) -> Result<Vec<u8>, Broken> {
-    let picture =
-        picture::decode(file, bytes, &Budget::default()).map_err(|error| Broken::said("not decoded", error))?;
+    let picture = picture::decode(file, bytes, &Budget::default())
+        .map_err(|error| Broken::said("not decoded", error))?;
     match picture.texels {
         Texels::Srgb8(texels) => Ok(texels.as_flattened().to_vec()),
         _ => Err(Broken::new("not decoded as bytes", String::new())),
     }
 }
+
 fn same_bytes(kind: &str, a: &[u8], b: &[u8]) -> Kept {
     let pixels = a.chunks(4).zip(b.chunks(4));
     let differing = pixels.filter(|(a, b)| a != b).count();
@@ -256,12 +282,20 @@ pub fn recovered(session: &mut Session, folder: &Path) -> Kept {
         back.extend(recovered.map(|recovered| recovered.tab.document().clone()));
     }
     for tab in session.open_documents.iter().filter(|tab| tab.is_dirty()) {
-        let differences: Vec<_> = back.iter().map(|document| tab.document().difference(document)).collect();
+        let differences: Vec<_> =
+            back.iter().map(|document| tab.document().difference(document)).collect();
         let Some(index) = differences.iter().position(Option::is_none) else {
             let what = differences.into_iter().flatten().last();
-            return Err(Broken::said("recovered, it differs in", what.unwrap_or_else(|| "everything".into())));
+            return Err(Broken::said(
+                "recovered, it differs in",
+                what.unwrap_or_else(|| "everything".into()),
+            ));
         };
-        same_bytes("recovered, another picture", &rendered(tab.document())?, &rendered(&back[index])?)?;
+        same_bytes(
+            "recovered, another picture",
+            &rendered(tab.document())?,
+            &rendered(&back[index])?,
+        )?;
     }
     Ok(())
 }

@@ -1,4 +1,5 @@
-//! Makes a story that fails as short as it can be: leaves out actions in halves, then one by one, and thins strokes.
+//! Makes a story that fails as short as it can be: leaves out actions in halves, then one by one,
+//! and thins strokes.
 
 use super::play::replayed;
 use super::promises::Broken;
@@ -46,6 +47,7 @@ fn thinned(actions: &[Action], index: usize) -> Option<Vec<Action>> {
         return None;
     }
     let mut thinner = actions.to_vec();
-    thinner[index] = Action::Pointer(PointerAction::Drag { pens: pens.iter().copied().step_by(2).collect() });
+    thinner[index] =
+        Action::Pointer(PointerAction::Drag { pens: pens.iter().copied().step_by(2).collect() });
     Some(thinner)
 }

@@ -3,7 +3,9 @@
 use super::dice::{Dice, Drawn};
 use super::gestures::gesture;
 use crate::math::{Vec2, srgb::Color, vec2};
-use crate::session::actions::{Action, FileAction, HandAction, LayerAction, NewLayer, PartAction, PointerAction};
+use crate::session::actions::{
+    Action, FileAction, HandAction, LayerAction, NewLayer, PartAction, PointerAction,
+};
 use crate::session::actions::{SelectionAction, parts::InflationPreset};
 use crate::session::replay::ReplayValue;
 use crate::session::storage;
@@ -24,9 +26,11 @@ impl StoryFolder {
         let kept = tempfile::tempdir().unwrap();
         Self { path: kept.path().join("story"), _kept: kept }
     }
+
     pub fn path(&self) -> &Path {
         &self.path
     }
+
     /// Empties it, but for the files that every story begins with.
     pub fn begin(&self) {
         drop(std::fs::remove_dir_all(&self.path));
@@ -54,12 +58,20 @@ fn assets() -> &'static [(String, Vec<u8>)] {
         }
         // The recipe as a project and as a Photoshop file.
         let folder = tempfile::tempdir().unwrap();
-        files.iter().for_each(|(name, bytes)| std::fs::write(folder.path().join(name), bytes).unwrap());
+        files
+            .iter()
+            .for_each(|(name, bytes)| std::fs::write(folder.path().join(name), bytes).unwrap());
         let opened = storage::open(&folder.path().join("recipe.json")).unwrap();
         for name in ["own.ora", "own.psd"] {
             let file = folder.path().join(name);
             let terms = crate::io::Overwrite::Nothing;
-            storage::save(&file, opened.tab.document(), terms, &crate::document::Progress::default()).unwrap();
+            storage::save(
+                &file,
+                opened.tab.document(),
+                terms,
+                &crate::document::Progress::default(),
+            )
+            .unwrap();
             files.push((name.into(), std::fs::read(&file).unwrap()));
         }
         files
@@ -71,21 +83,32 @@ fn pictures() -> Vec<(String, Vec<u8>)> {
     let ball = |x: u32, y: u32, scale: f32| {
         let at = vec2(x as f32 + 0.5, y as f32 + 0.5) / scale;
         let of = |middle: Vec2, radius: f32| (at - middle) / radius;
-        let off = [of(vec2(34.0, 36.0), 26.0), of(vec2(72.0, 40.0), 17.0)].into_iter().find(|off| off.length() < 1.0);
+        let off = [of(vec2(34.0, 36.0), 26.0), of(vec2(72.0, 40.0), 17.0)]
+            .into_iter()
+            .find(|off| off.length() < 1.0);
         off.map(|off| off.extend((1.0 - off.length_squared()).sqrt()))
     };
     let byte = |v: f32| (127.5 * (v + 1.0)).round() as u8;
     let normals = |scale: f32| {
         let pixel = |x, y| {
-            ball(x, y, scale).map_or(Rgba([128, 128, 255, 0]), |n| Rgba([byte(n.x), byte(-n.y), byte(n.z), 255]))
+            ball(x, y, scale)
+                .map_or(Rgba([128, 128, 255, 0]), |n| Rgba([byte(n.x), byte(-n.y), byte(n.z), 255]))
         };
-        DynamicImage::ImageRgba8(ImageBuffer::from_fn((96.0 * scale) as u32, (72.0 * scale) as u32, pixel))
+        DynamicImage::ImageRgba8(ImageBuffer::from_fn(
+            (96.0 * scale) as u32,
+            (72.0 * scale) as u32,
+            pixel,
+        ))
     };
-    let depth = ImageBuffer::from_fn(96, 72, |x, y| Luma([ball(x, y, 1.0).map_or(0, |n| (65535.0 * n.z) as u16)]));
-    let picture =
-        ImageBuffer::from_fn(40, 30, |x, y| Rgba([(x * 6) as u8, (y * 8) as u8, (x * y) as u8, (255 - 4 * x) as u8]));
-    let deep =
-        ImageBuffer::from_fn(32, 32, |x, y| Rgb([(x * 2000 + 17) as u16, (y * 2000 + 3) as u16, (x * y * 60) as u16]));
+    let depth = ImageBuffer::from_fn(96, 72, |x, y| {
+        Luma([ball(x, y, 1.0).map_or(0, |n| (65535.0 * n.z) as u16)])
+    });
+    let picture = ImageBuffer::from_fn(40, 30, |x, y| {
+        Rgba([(x * 6) as u8, (y * 8) as u8, (x * y) as u8, (255 - 4 * x) as u8])
+    });
+    let deep = ImageBuffer::from_fn(32, 32, |x, y| {
+        Rgb([(x * 2000 + 17) as u16, (y * 2000 + 3) as u16, (x * y * 60) as u16])
+    });
     let grey = ImageBuffer::from_fn(48, 36, |x, y| Luma([((x * 5) ^ (y * 7)) as u8]));
     let mask = ImageBuffer::from_fn(96, 72, |x, y| Luma([(x * 2 + y) as u8]));
     let all = [
@@ -125,8 +148,15 @@ const RECIPE: &str = r##"{ "format": "rilievo", "version": 1,
 
 /// The actions that a story begins with, by one of the ways in.
 pub fn way_in(dice: &mut Dice) -> Vec<Action> {
-    const WAYS: [fn(&mut Dice) -> Vec<Action>; 7] =
-        [blank, drawing, |d| drawing_with(d, "false"), |d| drawing_with(d, "true"), maps, opened, opened];
+    const WAYS: [fn(&mut Dice) -> Vec<Action>; 7] = [
+        blank,
+        drawing,
+        |d| drawing_with(d, "false"),
+        |d| drawing_with(d, "true"),
+        maps,
+        opened,
+        opened,
+    ];
     let way = dice.one_of(&WAYS);
     way(dice)
 }
@@ -141,9 +171,15 @@ fn blank(dice: &mut Dice) -> Vec<Action> {
 
 /// Ellipses of two colours on a paint layer.
 fn drawing(dice: &mut Dice) -> Vec<Action> {
-    let mut actions = vec![Action::File(FileAction::New { width: 96, height: 72, background: Some(Color::WHITE) })];
+    let mut actions = vec![Action::File(FileAction::New {
+        width: 96,
+        height: 72,
+        background: Some(Color::WHITE),
+    })];
     actions.push(Action::Layer(LayerAction::Add { kind: NewLayer::Paint }));
-    for (color, from, to) in [("#c05030", (12.0, 10.0), (60.0, 62.0)), ("#3060a0", (50.0, 20.0), (84.0, 50.0))] {
+    for (color, from, to) in
+        [("#c05030", (12.0, 10.0), (60.0, 62.0)), ("#3060a0", (50.0, 20.0), (84.0, 50.0))]
+    {
         actions.push(Action::Hand(HandAction::Color { color: Color::parse(color).unwrap() }));
         let pen = |(x, y): (f32, f32)| PenSample::at(vec2(x, y));
         let press = |tool, pen| Action::Pointer(PointerAction::Press { tool, pen, px_per_pt: 1.0 });
@@ -165,7 +201,11 @@ fn drawing_with(dice: &mut Dice, flats: &str) -> Vec<Action> {
     let mut actions = drawing(dice);
     let layer = ReplayValue::read(&"1".into()).unwrap();
     let flats = ReplayValue::read(&serde_json::from_str(flats).unwrap()).unwrap();
-    actions.push(Action::Part(PartAction::Shape { layer, preset: InflationPreset::drawn(dice), flats }));
+    actions.push(Action::Part(PartAction::Shape {
+        layer,
+        preset: InflationPreset::drawn(dice),
+        flats,
+    }));
     actions
 }
 

@@ -1,5 +1,6 @@
-//! Draws the values that documents hold: operators, anchors, lights, masks, transforms, brushes. Each is mostly one
-//! that a file may hold, at times one that it may not, which must then be refused. Not here: parts (`parts`).
+//! Draws the values that documents hold: operators, anchors, lights, masks, transforms, brushes.
+//! Each is mostly one that a file may hold, at times one that it may not, which must then be
+//! refused. Not here: parts (`parts`).
 
 use super::dice::{Dice, Drawn};
 use crate::document::parts::flats::PartFor;
@@ -34,12 +35,14 @@ impl Drawn for Operator {
         kind.map(|number, _| dice.in_range(number.useful.clone(), number.range.clone()))
     }
 }
+
 impl Drawn for Anchor {
     fn drawn(dice: &mut Dice) -> Self {
         let at = dice.place();
         if dice.is(50) { Anchor::fixed(at) } else { Anchor { at, source: dice.place() } }
     }
 }
+
 impl Drawn for PlanePiece {
     fn drawn(dice: &mut Dice) -> Self {
         let (at, moved) = (dice.place(), dice.place() * 0.2);
@@ -47,12 +50,14 @@ impl Drawn for PlanePiece {
         PlanePiece { at, moved, scale, rotation: dice.within(-180.0, 180.0) }
     }
 }
+
 impl Drawn for Placement {
     fn drawn(dice: &mut Dice) -> Self {
         let scale = dice.in_range(0.2..=3.0, 0.01..=40.0);
         Placement { center: dice.place(), scale, rotation: dice.within(-180.0, 180.0) }
     }
 }
+
 impl Drawn for Adjust {
     fn drawn(dice: &mut Dice) -> Self {
         let blur = dice.within(0.0, 3.0);
@@ -68,19 +73,31 @@ impl Drawn for Adjust {
         }
     }
 }
+
 impl Drawn for GradientStop {
     fn drawn(dice: &mut Dice) -> Self {
-        GradientStop { t: dice.in_range(0.0..=1.0, 0.0..=1.0), color: dice.value(dice.word, "color") }
+        GradientStop {
+            t: dice.in_range(0.0..=1.0, 0.0..=1.0),
+            color: dice.value(dice.word, "color"),
+        }
     }
 }
+
 impl Drawn for NoiseRelief {
     fn drawn(dice: &mut Dice) -> Self {
         let size_px = dice.in_range(1.0..=40.0, NoiseRelief::SIZE_PX);
         let (octaves, seed) = (1 + dice.below(6) as u32, dice.below(1000) as u32);
         let roughness = dice.in_range(0.0..=1.0, NoiseRelief::ROUGHNESS);
-        NoiseRelief { size_px, octaves, roughness, stretch: dice.in_range(0.2..=5.0, NoiseRelief::STRETCH), seed }
+        NoiseRelief {
+            size_px,
+            octaves,
+            roughness,
+            stretch: dice.in_range(0.2..=5.0, NoiseRelief::STRETCH),
+            seed,
+        }
     }
 }
+
 impl Drawn for SurfaceRegion {
     fn drawn(dice: &mut Dice) -> Self {
         let kind = dice.one_of(&RegionKind::ALL).0;
@@ -89,36 +106,53 @@ impl Drawn for SurfaceRegion {
         SurfaceRegion { kind, at, tolerance, softness, contiguous: dice.is(50) }
     }
 }
+
 impl Drawn for DerivedMask {
     fn drawn(dice: &mut Dice) -> Self {
         // As many kinds as there are: a new one is told by the compiler.
         let (a, b) = (dice.within(0.0, 1.0), dice.within(0.0, 1.0));
-        match dice.one_of(&[DerivedMask::FRESNEL, DerivedMask::CURVATURE, DerivedMask::RAMP_OF_DEPTH]) {
+        match dice.one_of(&[
+            DerivedMask::FRESNEL,
+            DerivedMask::CURVATURE,
+            DerivedMask::RAMP_OF_DEPTH,
+        ]) {
             _ if dice.is(35) => DerivedMask::Region(SurfaceRegion::drawn(dice)),
             DerivedMask::Fresnel { .. } => DerivedMask::Fresnel { f0: a, power: 8.0 * b },
-            DerivedMask::Curvature { .. } => DerivedMask::Curvature { scale: 1.0 + 6.0 * a, blur: b, from: -b, to: a },
+            DerivedMask::Curvature { .. } => {
+                DerivedMask::Curvature { scale: 1.0 + 6.0 * a, blur: b, from: -b, to: a }
+            }
             DerivedMask::Depth { .. } => DerivedMask::Depth { from: a, to: b },
             DerivedMask::Region(region) => DerivedMask::Region(region),
         }
     }
 }
+
 impl Drawn for Light {
     fn drawn(dice: &mut Dice) -> Self {
         let position = dice.place().extend(dice.within(1.0, 80.0));
         let kind = match Light::default().kind {
             LightKind::Directional { .. } if dice.is(50) => LightKind::Point { position },
-            LightKind::Directional { .. } => LightKind::Directional { direction: dice.value(dice.word, "direction") },
+            LightKind::Directional { .. } => {
+                LightKind::Directional { direction: dice.value(dice.word, "direction") }
+            }
             LightKind::Point { .. } => LightKind::Point { position },
         };
-        Light { kind, color: dice.value(dice.word, "color"), intensity: dice.in_range(0.0..=3.0, Light::INTENSITY) }
+        Light {
+            kind,
+            color: dice.value(dice.word, "color"),
+            intensity: dice.in_range(0.0..=3.0, Light::INTENSITY),
+        }
     }
 }
+
 impl Drawn for Term {
     fn drawn(dice: &mut Dice) -> Self {
-        let (color, weight) = (dice.value(dice.word, "color"), dice.in_range(0.0..=2.0, Term::WEIGHT));
+        let (color, weight) =
+            (dice.value(dice.word, "color"), dice.in_range(0.0..=2.0, Term::WEIGHT));
         Term { color, weight, scaling: Scaling::drawn(dice) }
     }
 }
+
 impl Drawn for Scaling {
     fn drawn(dice: &mut Dice) -> Self {
         let alpha = dice.in_range(0.05..=0.95, Scaling::INVARIANT);
@@ -126,6 +160,7 @@ impl Drawn for Scaling {
         Scaling { alpha, gamma_convex: gamma(), gamma_concave: gamma() }
     }
 }
+
 impl Drawn for Features {
     fn drawn(dice: &mut Dice) -> Self {
         let scale = |dice: &mut Dice| FeatureScale {
@@ -137,11 +172,17 @@ impl Drawn for Features {
         Features { scales, lambda: dice.in_range(-1.0..=1.0, Features::LAMBDA) }
     }
 }
+
 impl Drawn for Reference {
     fn drawn(dice: &mut Dice) -> Self {
-        if dice.is(30) { Reference::Auto } else { Reference::Value(dice.in_range(0.1..=4.0, Reference::VALUE)) }
+        if dice.is(30) {
+            Reference::Auto
+        } else {
+            Reference::Value(dice.in_range(0.1..=4.0, Reference::VALUE))
+        }
     }
 }
+
 impl Drawn for LayerTransform {
     fn drawn(dice: &mut Dice) -> Self {
         let size = dice.facts.size.as_dvec2();
@@ -151,13 +192,14 @@ impl Drawn for LayerTransform {
         };
         let shape = match dice.is(60) {
             true => TransformShape::Matrix(<[f64; 6]>::drawn(dice)),
-            false => {
-                TransformShape::Quad([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| near(dice, x, y)))
-            }
+            false => TransformShape::Quad(
+                [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| near(dice, x, y)),
+            ),
         };
         LayerTransform { shape, filter: Resampling::drawn(dice) }
     }
 }
+
 impl Drawn for BrushMode {
     fn drawn(dice: &mut Dice) -> Self {
         let (aligned, picture) = (dice.is(50), dice.is(50));
@@ -169,22 +211,31 @@ impl Drawn for BrushMode {
         ];
         match dice.one_of(&kinds) {
             // A new kind of mark belongs in the list above.
-            mode @ (BrushMode::Paint | BrushMode::Smudge { .. } | BrushMode::Blur { .. } | BrushMode::Clone { .. }) => {
-                mode
-            }
+            mode @ (BrushMode::Paint
+            | BrushMode::Smudge { .. }
+            | BrushMode::Blur { .. }
+            | BrushMode::Clone { .. }) => mode,
         }
     }
 }
+
 impl Drawn for Symmetry {
     fn drawn(dice: &mut Dice) -> Self {
         let round = Symmetry::Radial(2 + dice.below(5) as u32);
-        match dice.one_of(&[Symmetry::None, Symmetry::Vertical, Symmetry::Horizontal, Symmetry::Both, round]) {
+        match dice.one_of(&[
+            Symmetry::None,
+            Symmetry::Vertical,
+            Symmetry::Horizontal,
+            Symmetry::Both,
+            round,
+        ]) {
             _ if dice.is(50) => Symmetry::None,
             symmetry @ (Symmetry::None | Symmetry::Vertical | Symmetry::Horizontal) => symmetry,
             symmetry @ (Symmetry::Both | Symmetry::Radial(_)) => symmetry,
         }
     }
 }
+
 impl Drawn for PartFor {
     fn drawn(dice: &mut Dice) -> Self {
         match dice.one_of(&[PartFor::Layer, PartFor::Color, PartFor::Place]) {
@@ -192,20 +243,25 @@ impl Drawn for PartFor {
         }
     }
 }
+
 impl Drawn for InflationPreset {
     fn drawn(dice: &mut Dice) -> Self {
         InflationPreset(dice.one_of(&Inflation::PRESETS).0)
     }
 }
+
 /// One of another program, somewhat transparent.
 impl Drawn for PastedPicture {
     fn drawn(dice: &mut Dice) -> Self {
         let size = Size::new(1 + dice.below(60) as u32, 1 + dice.below(50) as u32);
-        let texels = (0..size.area()).map(|_| dice.number().to_le_bytes()).map(|[r, g, b, a, ..]| [r, g, b, a]);
+        let texels = (0..size.area())
+            .map(|_| dice.number().to_le_bytes())
+            .map(|[r, g, b, a, ..]| [r, g, b, a]);
         let picture = Picture::srgb8(size, texels.collect());
         PastedPicture { name: "picture.png".into(), picture: picture.unwrap() }
     }
 }
+
 /// Values with a form of their own in files: a brush, or a part in a new version.
 impl Drawn for Value {
     fn drawn(dice: &mut Dice) -> Self {
@@ -219,7 +275,8 @@ impl Drawn for Value {
 fn brush(dice: &mut Dice) -> Value {
     let share = |dice: &mut Dice| f64::from(dice.within(0.0, 1.0));
     let number = |dice: &mut Dice, high: f32| f64::from(dice.within(0.0, high));
-    let mut brush = json!({ "size": number(dice, 30.0) + 1.0, "hardness": share(dice), "flow": share(dice) });
+    let mut brush =
+        json!({ "size": number(dice, 30.0) + 1.0, "hardness": share(dice), "flow": share(dice) });
     let more = [
         ("scatter", json!(share(dice))),
         ("jitter", json!({ "hue": number(dice, 60.0), "value": share(dice) })),

@@ -53,7 +53,8 @@ const WEIGHTS: &[(&str, &str, u32)] = &[
     ("SelectionAction", "quick mask", 3),
 ];
 
-/// Properties that only some kinds of layers have: the kinds, and the words. Any other property is drawn for all.
+/// Properties that only some kinds of layers have: the kinds, and the words. Any other property is
+/// drawn for all.
 const SUITING: &[(&[&str], &[&str])] = &[
     (&["fill"], &["fill"]),
     (&["group"], &["pass through"]),
@@ -97,8 +98,11 @@ pub fn weight(of: &str, word: &str, dice: &Dice) -> u32 {
     let row = WEIGHTS.iter().find(|(known, known_word, _)| *known == of && *known_word == word);
     row.map_or(USUAL, |(.., weight)| *weight)
 }
-/// The words of the tables above, each with its enum, for the test that they are words of the program.
+
+/// The words of the tables above, each with its enum, for the test that they are words of the
+/// program.
 pub fn words() -> impl Iterator<Item = (&'static str, &'static str)> {
-    let suiting = SUITING.iter().flat_map(|(_, words)| words.iter().map(|word| ("Property", *word)));
+    let suiting =
+        SUITING.iter().flat_map(|(_, words)| words.iter().map(|word| ("Property", *word)));
     WEIGHTS.iter().map(|(of, word, _)| (*of, *word)).chain(suiting)
 }

@@ -9,7 +9,8 @@ use crate::tools::ToolKind;
 use proptest::prelude::*;
 use std::sync::{Arc, LazyLock};
 
-/// The cylinder and the board, with a picture on both, whose plane is turned on the cylinder by its anchors.
+/// The cylinder and the board, with a picture on both, whose plane is turned on the cylinder by its
+/// anchors.
 fn painted() -> Document {
     let document = document();
     let surface = document.surface.clone().unwrap();
@@ -30,26 +31,47 @@ fn painted() -> Document {
         filter: ImageFilter::Antialias,
         frame: Default::default(),
     };
-    Document { layers: vec![Arc::new(Layer::new("print", Content::Image(Live::new(image))))], ..document }
+    Document {
+        layers: vec![Arc::new(Layer::new("print", Content::Image(Live::new(image))))],
+        ..document
+    }
 }
+
 /// Unwrapped once.
 static BARE: LazyLock<Document> = LazyLock::new(document);
 
 /// The same shapes under a ramp between two points of the cylinder.
 fn ramped(from: Vec2, to: Vec2) -> Document {
-    let stops = [(0.0, Color::BLACK), (1.0, Color::WHITE)].map(|(t, color)| GradientStop { t, color }).to_vec();
-    let (operator, filter) = (Operator::Surface { amount: 1.0, smooth: 0.0 }, ImageFilter::Bilinear);
-    let ramp = Gradient { from, to, stops, operator, filter, frame: Default::default(), pieces: Vec::new() };
-    Document { layers: vec![Arc::new(Layer::new("ramp", Content::Gradient(Live::new(ramp))))], ..BARE.clone() }
+    let stops = [(0.0, Color::BLACK), (1.0, Color::WHITE)]
+        .map(|(t, color)| GradientStop { t, color })
+        .to_vec();
+    let (operator, filter) =
+        (Operator::Surface { amount: 1.0, smooth: 0.0 }, ImageFilter::Bilinear);
+    let ramp = Gradient {
+        from,
+        to,
+        stops,
+        operator,
+        filter,
+        frame: Default::default(),
+        pieces: Vec::new(),
+    };
+    Document {
+        layers: vec![Arc::new(Layer::new("ramp", Content::Gradient(Live::new(ramp))))],
+        ..BARE.clone()
+    }
 }
+
 fn shown_at(document: &Document, q: Vec2) -> Vec2 {
     let bend = bend_on_pieces(&document.layers[0].content).unwrap();
     Deformation::new(document.surface.as_deref(), document.size, &bend).at(q.x as i32, q.y as i32)
 }
+
 /// The drawing after a drag from the sheet's point of a canvas point to another, or by some px.
 fn dragged(document: &Document, keys: ModifierKeys, from: Vec2, to: Vec2) -> Document {
     let brush = Brush::default();
-    let context = ToolContext { layer: Some(document.layers[0].id), ..ToolContext::new(document, &brush) };
+    let context =
+        ToolContext { layer: Some(document.layers[0].id), ..ToolContext::new(document, &brush) };
     let pen = PenSample { keys, ..PenSample::at(from) };
     let (gesture, _) = super::super::point(&context, pen, laid(document), ToolKind::Image);
     let mut gesture = gesture.expect("a piece is held");
@@ -71,6 +93,7 @@ fn a_drag_on_the_sheet_takes_the_picture_of_one_piece_along() {
     let board = vec2(250.5, 60.5);
     assert_eq!(shown_at(&before, board), shown_at(&after, board));
 }
+
 #[test]
 fn handles_scale_and_turn_about_the_middle_of_the_piece() {
     let before = painted();
@@ -80,20 +103,37 @@ fn handles_scale_and_turn_about_the_middle_of_the_piece() {
     let middle = layout.middle_of(&surface, &piece);
     let pivot = layout.sheet_at(&surface, middle).unwrap();
     let frame = PieceFrame::of(&piece, 1.0).unwrap();
-    let larger = dragged(&before, ModifierKeys::default(), frame.corners[0], pivot + (frame.corners[0] - pivot) * 2.0);
+    let larger = dragged(
+        &before,
+        ModifierKeys::default(),
+        frame.corners[0],
+        pivot + (frame.corners[0] - pivot) * 2.0,
+    );
     let away = |document: &Document, q: Vec2| shown_at(document, q) - shown_at(document, middle);
     let beside = middle + vec2(20.0, 10.0);
     assert!(away(&larger, beside).distance(0.5 * away(&before, beside)) < 0.1, "twice as large");
-    let turn = Affine2::from_translation(pivot) * Affine2::from_angle(-0.5) * Affine2::from_translation(-pivot);
-    let turned = dragged(&before, ModifierKeys::default(), frame.knob, turn.transform_point2(frame.knob));
+    let turn = Affine2::from_translation(pivot)
+        * Affine2::from_angle(-0.5)
+        * Affine2::from_translation(-pivot);
+    let turned =
+        dragged(&before, ModifierKeys::default(), frame.knob, turn.transform_point2(frame.knob));
     let Content::Image(live) = &turned.layers[0].content else { panic!("an image") };
-    assert!((live.params().bend.pieces[0].rotation - 0.5f32.to_degrees()).abs() < 0.1, "counter-clockwise");
+    assert!(
+        (live.params().bend.pieces[0].rotation - 0.5f32.to_degrees()).abs() < 0.1,
+        "counter-clockwise"
+    );
     assert!((away(&turned, beside).length() / away(&before, beside).length() - 1.0).abs() < 1e-3);
     // A second drag continues from the first.
-    let twice = dragged(&turned, ModifierKeys { ctrl: true, ..Default::default() }, pivot + Vec2::X, pivot + Vec2::Y);
+    let twice = dragged(
+        &turned,
+        ModifierKeys { ctrl: true, ..Default::default() },
+        pivot + Vec2::X,
+        pivot + Vec2::Y,
+    );
     let Content::Image(live) = &twice.layers[0].content else { panic!("an image") };
     assert_eq!(live.params().bend.pieces.len(), 1);
 }
+
 #[test]
 fn other_layers_and_operators_are_refused_in_a_sentence() {
     let flat = document();
@@ -112,7 +152,8 @@ fn other_layers_and_operators_are_refused_in_a_sentence() {
     let Content::Image(live) = &painted.layers[0].content else { panic!("an image") };
     let mut image = live.params().clone();
     image.bend.operator = Operator::Depth { gamma: 1.0 };
-    let bent = painted.with_layer(painted.layers[0].id, |layer| layer.content = Content::Image(Live::new(image)));
+    let bent = painted
+        .with_layer(painted.layers[0].id, |layer| layer.content = Content::Image(Live::new(image)));
     assert!(matches!(outcome(&bent.unwrap()), Outcome::Refused(_)));
 }
 

@@ -31,16 +31,25 @@ impl<'m> Backward<'m> {
         out.lay_pieces();
         out
     }
+
     fn node(&self, k: usize) -> Vec2 {
         let cell = lattice::CELL as i32;
         let (i, j) = ((k % self.across) as i32, (k / self.across) as i32);
         vec2((self.area.x0 + i * cell) as f32, (self.area.y0 + j * cell) as f32)
     }
+
     /// Cuts the frame, with a border, into pieces and lays each where it goes.
     fn lay_pieces(&mut self) {
         let mesh = self.mesh;
-        let longest = mesh.points.chunks(mesh.columns).flat_map(|row| row.windows(2).map(|p| p[0].distance(p[1])));
-        let down = mesh.points.iter().zip(mesh.points.iter().skip(mesh.columns)).map(|(a, b)| a.distance(*b));
+        let longest = mesh
+            .points
+            .chunks(mesh.columns)
+            .flat_map(|row| row.windows(2).map(|p| p[0].distance(p[1])));
+        let down = mesh
+            .points
+            .iter()
+            .zip(mesh.points.iter().skip(mesh.columns))
+            .map(|(a, b)| a.distance(*b));
         let longest = longest.chain(down).fold(1.0, f32::max);
         let patches = ((mesh.columns + 1) * (mesh.rows + 1)) as f32;
         let most = (Self::MOST_PIECES / patches).sqrt();
@@ -52,17 +61,21 @@ impl<'m> Backward<'m> {
         let count = (mesh.frame.size / step).round() + border * 2.0;
         let (columns, rows) = (count.x as usize, count.y as usize);
         let place = |i: usize, j: usize| start + vec2(i as f32, j as f32) * step;
-        let line = |j: usize| -> Vec<Vec2> { (0..=columns).map(|i| mesh.at(place(i, j)).0).collect() };
+        let line =
+            |j: usize| -> Vec<Vec2> { (0..=columns).map(|i| mesh.at(place(i, j)).0).collect() };
         let lines: Vec<Vec<Vec2>> = (0..=rows).into_par_iter().map(line).collect();
         for j in 0..rows {
             for i in 0..columns {
-                let [a, b, c, d] = [lines[j][i], lines[j][i + 1], lines[j + 1][i + 1], lines[j + 1][i]];
-                let [p, q, r, s] = [place(i, j), place(i + 1, j), place(i + 1, j + 1), place(i, j + 1)];
+                let [a, b, c, d] =
+                    [lines[j][i], lines[j][i + 1], lines[j + 1][i + 1], lines[j + 1][i]];
+                let [p, q, r, s] =
+                    [place(i, j), place(i + 1, j), place(i + 1, j + 1), place(i, j + 1)];
                 self.lay([(a, p), (b, q), (c, r)]);
                 self.lay([(a, p), (c, r), (d, s)]);
             }
         }
     }
+
     /// Lays a triangle over the nodes: its corners and their places in the frame.
     fn lay(&mut self, corners: [(Vec2, Vec2); 3]) {
         let [(a, p), (b, q), (c, r)] = corners;
@@ -82,11 +95,13 @@ impl<'m> Backward<'m> {
                 let at = corner + vec2(i as f32, j as f32) * cell;
                 let (v, w) = ((at - a).perp_dot(c - a) / area, (b - a).perp_dot(at - a) / area);
                 if v >= -1e-5 && w >= -1e-5 && v + w <= 1.0 + 1e-5 {
-                    self.found[j as usize * self.across + i as usize] = Some(p + (q - p) * v + (r - p) * w);
+                    self.found[j as usize * self.across + i as usize] =
+                        Some(p + (q - p) * v + (r - p) * w);
                 }
             }
         }
     }
+
     /// A place in the frame, refined by Newton's method.
     fn closer(&self, node: Vec2, p: Vec2) -> Vec2 {
         let (mut best, mut off) = (p, f32::INFINITY);
@@ -107,6 +122,7 @@ impl<'m> Backward<'m> {
         // On another sheet of a fold the result would be far from the pieces.
         if best.distance(p) < self.mesh.cell().length() { best } else { p }
     }
+
     pub(super) fn lattice(&self) -> Lattice {
         let by = |k: usize| self.found[k].map(|p| self.closer(self.node(k), p) - self.node(k));
         let mut by: Vec<Option<Vec2>> = (0..self.found.len()).into_par_iter().map(by).collect();
@@ -121,6 +137,7 @@ impl<'m> Backward<'m> {
         });
         out
     }
+
     /// Nodes that the mesh does not reach have the displacement of those next to them.
     fn continue_from_neighbours(&self, by: &mut [Option<Vec2>]) {
         let rows = by.len() / self.across;

@@ -17,8 +17,12 @@ fn a_mesh_passes_through_its_points_and_an_even_one_moves_nothing() {
     for (k, point) in points.iter().enumerate() {
         assert!(mesh.at(mesh.place(k)).0.distance(*point) < 1e-3, "{k}");
     }
-    assert!(mesh.at(vec2(-50.0, 0.0)).0.distance(vec2(-50.0, 0.0)) < 1e-3, "the border goes on straight");
+    assert!(
+        mesh.at(vec2(-50.0, 0.0)).0.distance(vec2(-50.0, 0.0)) < 1e-3,
+        "the border goes on straight"
+    );
 }
+
 #[test]
 fn backward_finds_what_forward_took() {
     let even = Mesh::even(4, 4, frame()).unwrap();
@@ -34,6 +38,7 @@ fn backward_finds_what_forward_took() {
         assert!(found.distance(p) < 0.1, "{p}: {found}");
     }
 }
+
 #[test]
 fn folded_and_collapsed_meshes_give_numbers() {
     let even = Mesh::even(5, 5, frame()).unwrap();
@@ -48,6 +53,7 @@ fn folded_and_collapsed_meshes_give_numbers() {
         assert!(!backward.is_empty());
     }
 }
+
 #[test]
 fn only_grids_that_files_hold_are_meshes() {
     assert!(Mesh::even(1, 4, frame()).is_none() && Mesh::even(34, 4, frame()).is_none());
@@ -56,6 +62,7 @@ fn only_grids_that_files_hold_are_meshes() {
     assert!(Mesh::new(2, 2, frame(), vec![vec2(f32::NAN, 0.0); 4]).is_none());
     assert!(Mesh::even(2, 2, MeshFrame { size: vec2(0.0, 9.0), ..frame() }).is_none());
 }
+
 #[test]
 fn a_quarter_turn_takes_the_grid_along() {
     let even = Mesh::even(4, 3, frame()).unwrap();

@@ -18,23 +18,36 @@ fn each_flat_colour_becomes_a_part() {
     assert!(head.is_some() && body.is_some() && head != body, "{head:?} {body:?}");
     assert_eq!(at(3.0, 3.0), None);
 }
+
 /// Two discs of one colour, apart from each other.
 fn pair() -> Document {
     let inside = |x: f32, y: f32, cx: f32, r: f32| (x - cx).hypot(y - 40.0) < r;
     let texel = |i: usize| {
         let (x, y) = ((i % 120) as f32 + 0.5, (i / 120) as f32 + 0.5);
-        if inside(x, y, 32.0, 20.0) || inside(x, y, 88.0, 25.0) { [200, 120, 60, 255] } else { [0; 4] }
+        if inside(x, y, 32.0, 20.0) || inside(x, y, 88.0, 25.0) {
+            [200, 120, 60, 255]
+        } else {
+            [0; 4]
+        }
     };
-    of_picture("pair.png", Picture::srgb8(Size::new(120, 80), (0..120 * 80).map(texel).collect()).unwrap())
+    of_picture(
+        "pair.png",
+        Picture::srgb8(Size::new(120, 80), (0..120 * 80).map(texel).collect()).unwrap(),
+    )
 }
+
 #[test]
 fn each_place_of_a_colour_becomes_a_part_at_once() {
     let mut session = opened(pair());
-    tell(&mut session, r#"{"in":"part","do":"shape","layer":"0","preset":"pillow","flats":"places"}"#);
+    tell(
+        &mut session,
+        r#"{"in":"part","do":"shape","layer":"0","preset":"pillow","flats":"places"}"#,
+    );
     assert_eq!(session.notes, Vec::<String>::new());
     assert_eq!(ids(&session), ["part-1", "part-2"]);
     assert!(shown(&session).parts.list.iter().all(|part| part.place().is_some()));
 }
+
 #[test]
 fn a_drawing_that_is_cut_goes_with_its_parts_and_comes_back_by_undo() {
     let mut session = opened(pair());
@@ -43,7 +56,10 @@ fn a_drawing_that_is_cut_goes_with_its_parts_and_comes_back_by_undo() {
     tell(&mut session, r#"{"in":"layer","do":"bake","layer":"0"}"#);
     tell(&mut session, r#"{"in":"part","do":"cut","layer":"0"}"#);
     assert!(session.notes.pop().unwrap().contains("outline"), "it has no part yet");
-    tell(&mut session, r#"{"in":"part","do":"shape","layer":"0","preset":"pillow","flats":"places"}"#);
+    tell(
+        &mut session,
+        r#"{"in":"part","do":"shape","layer":"0","preset":"pillow","flats":"places"}"#,
+    );
     let before = shown(&session).clone();
     tell(&mut session, r#"{"in":"part","do":"cut","layer":"0"}"#);
     assert_eq!(session.notes, Vec::<String>::new());
@@ -53,18 +69,30 @@ fn a_drawing_that_is_cut_goes_with_its_parts_and_comes_back_by_undo() {
     assert_eq!(session.active().unwrap().selected, Some(shown(&session).layers[1].id));
     assert!(!shown(&session).layers[0].visible && shown(&session).parts.list == before.parts.list);
     tell(&mut session, r#"{"in":"edit","do":"undo"}"#);
-    assert!(shown(&session).layers[0].visible && shown(&session).layers.len() == before.layers.len());
+    assert!(
+        shown(&session).layers[0].visible && shown(&session).layers.len() == before.layers.len()
+    );
 }
+
 #[test]
 fn a_part_is_split_by_place_with_its_touches_and_the_user_is_told_of_a_place_that_goes() {
     let mut session = opened(pair());
     tell(&mut session, r#"{"in":"part","do":"shape","layer":"0","preset":"pillow","flats":true}"#);
     assert_eq!(ids(&session), ["part-1"]);
     let touch = |x: i32| format!(r#"{{"at":[{x},40],"normal":[0.5,0,0.8]}}"#);
-    let both = format!(r#"{{"id":"t","kind":"touches","on":"part-1","touches":[{},{}]}}"#, touch(30), touch(85));
+    let both = format!(
+        r#"{{"id":"t","kind":"touches","on":"part-1","touches":[{},{}]}}"#,
+        touch(30),
+        touch(85)
+    );
     let value = serde_json::from_str(&both).unwrap();
-    let read =
-        super::super::read_part(Path::new("t"), &value, shown(&session), &super::super::Budget::default()).unwrap();
+    let read = super::super::read_part(
+        Path::new("t"),
+        &value,
+        shown(&session),
+        &super::super::Budget::default(),
+    )
+    .unwrap();
     let touched = shown(&session).with_part(read);
     assert!(session.active_mut().unwrap().commit("Touch", touched));
     tell(&mut session, r#"{"in":"part","do":"split","part":"part-1"}"#);
@@ -74,7 +102,9 @@ fn a_part_is_split_by_place_with_its_touches_and_the_user_is_told_of_a_place_tha
     let (of_large, of_small) = (list[0].place().unwrap(), list[2].place().unwrap());
     assert!(of_large.x > 80.0 && of_small.x < 40.0, "{of_large} {of_small}");
     for (index, body, x) in [(1, "part-1", 85.0), (3, "part-2", 30.0)] {
-        let PartKind::Touches { on, touches } = &list[index].kind else { panic!("{:?}", list[index]) };
+        let PartKind::Touches { on, touches } = &list[index].kind else {
+            panic!("{:?}", list[index])
+        };
         assert_eq!((on.as_str(), touches.len(), touches[0].at.x), (body, 1, x));
     }
     // It has one place now.
@@ -85,19 +115,24 @@ fn a_part_is_split_by_place_with_its_touches_and_the_user_is_told_of_a_place_tha
     let other = pair();
     let left = |mut tiles: crate::raster::TileGrid| {
         let mut rgba = vec![0u8; 120 * 80 * 4];
-        for (i, pixel) in rgba.as_chunks_mut::<4>().0.iter_mut().enumerate().filter(|(i, _)| i % 120 < 60) {
+        for (i, pixel) in
+            rgba.as_chunks_mut::<4>().0.iter_mut().enumerate().filter(|(i, _)| i % 120 < 60)
+        {
             *pixel = tiles.pixel((i % 120) as i32, (i / 120) as i32);
         }
         tiles = crate::raster::TileGrid::from_straight_rgba(&rgba, 120, 80, 0, 0);
         tiles
     };
     let tiles = left(flatten(&other, &Progress::default()).unwrap());
-    let content = Content::Pixels(crate::document::PixelLayer { file: String::new(), x: 0, y: 0, tiles });
-    let erased = shown(&session).with_layer(layer, |layer| layer.content = content.clone()).unwrap();
+    let content =
+        Content::Pixels(crate::document::PixelLayer { file: String::new(), x: 0, y: 0, tiles });
+    let erased =
+        shown(&session).with_layer(layer, |layer| layer.content = content.clone()).unwrap();
     assert!(session.active_mut().unwrap().commit("Erase", erased));
     session.keep();
     assert!(session.notes.iter().any(|note| note.contains("nearest")), "{:?}", session.notes);
 }
+
 #[test]
 fn a_flat_ground_is_taken_off_and_lies_beneath_and_the_picture_stays() {
     let mut session = opened(snowman(true));
@@ -107,7 +142,10 @@ fn a_flat_ground_is_taken_off_and_lies_beneath_and_the_picture_stays() {
     assert_eq!(names, ["Ground", "snowman", "Base"]);
     assert!(matches!(shown(&session).layers[1].content, Content::Pixels(_)));
     assert_eq!(shown(&session).surface.as_ref().unwrap().coverage(2, 2), 0);
-    tell(&mut session, r#"{"in":"layer","do":"set","layer":"2","to":{"do":"visible","on":false},"done":true}"#);
+    tell(
+        &mut session,
+        r#"{"in":"layer","do":"set","layer":"2","to":{"do":"visible","on":false},"done":true}"#,
+    );
     let after = flatten(shown(&session), &Progress::default()).unwrap();
     for (x, y) in (0..128).flat_map(|y| (0..96).map(move |x| (x, y))) {
         let (a, b) = (before.pixel(x, y), after.pixel(x, y));
