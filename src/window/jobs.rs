@@ -2,7 +2,7 @@
 //! window never waits. Floor 7.
 
 use crate::clipboard::{Clipboard, PastedContent};
-use crate::document::parts::drawing::DrawingLook;
+use crate::document::parts::drawing::DrawingTraits;
 use crate::document::{Document, LayerId, Progress, SurfaceSource};
 use crate::file_purpose::FilePurpose;
 use crate::io::recipe::BrushPreset;
@@ -70,7 +70,7 @@ pub enum JobResult {
     /// Something cannot be done; why.
     Declined(&'static str),
     /// What drawing a tab, by its key, holds.
-    Looked(usize, Option<(LayerId, DrawingLook)>),
+    Looked(usize, Option<(LayerId, DrawingTraits)>),
     /// There is nothing to do; why.
     Said(String),
     /// The flattened picture is in the clipboard as long as this is kept.

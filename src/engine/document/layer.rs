@@ -17,7 +17,7 @@ pub(super) mod transform;
 pub(super) mod warp;
 
 pub use adjustment::{AdjustedPlace, Adjustment, BackdropMeter, Reach};
-pub use cache::{EncodedPixels, LayerCache, LookKind};
+pub use cache::{EncodedPixels, LayerCache, PreviewKind};
 pub use content::{Content, Group, PixelLayer, Role, StrokeList};
 pub use live::Live;
 pub use map::LayerMap;

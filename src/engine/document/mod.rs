@@ -52,7 +52,7 @@ pub use history::{EditLabel, History, LabelledLayer};
 pub use layer::{
     AdjustedPlace, Adjustment, BackdropMeter, Content, DerivedMask, DetailSource, EncodedPixels,
     Group, Layer, LayerCache, LayerId, LayerLabel, LayerLock, LayerMap, LayerMask, LayerTransform,
-    LayerWarp, Live, LookKind, MaskKind, Mesh, MeshFrame, NormalLayer, PixelLayer, Reach, Role,
+    LayerWarp, Live, MaskKind, Mesh, MeshFrame, NormalLayer, PixelLayer, PreviewKind, Reach, Role,
     StrokeList, TransformShape,
 };
 pub use memory_use::{MemoryCount, MemoryUse};

@@ -42,15 +42,15 @@ impl Manifest {
         whole_rims: &BTreeSet<LayerId>,
     ) -> Self {
         let pictures = document.walk().into_iter().filter_map(|(path, layer)| {
-            let (name, look) = shown.get(&layer.id)?;
-            let crc = crc32fast::hash(look.file.bytes());
+            let (name, preview) = shown.get(&layer.id)?;
+            let crc = crc32fast::hash(preview.file.bytes());
             let whole_rim = whole_rims.contains(&layer.id);
             Some(ManifestPicture {
                 layer: path,
                 name: name.clone(),
                 crc,
-                x: look.x,
-                y: look.y,
+                x: preview.x,
+                y: preview.y,
                 whole_rim,
             })
         });

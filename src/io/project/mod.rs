@@ -6,7 +6,7 @@
 //! |---|---|
 //! | `archive`, `packer` | the zip: read within a budget, written the same every time |
 //! | `plan` | what other programs see of a document |
-//! | `look` | those pictures, rendered, encoded and checked (by `pixels`) |
+//! | `layer_preview` | those pictures, rendered, encoded and checked (by `pixels`) |
 //! | `stack` | `stack.xml`, written and read |
 //! | `assets` | maps, sources and tips under their names in the zip |
 //! | `manifest` | which picture belongs to which layer, so that another program's change is detected |
@@ -15,7 +15,7 @@
 pub(super) mod archive;
 pub(super) mod assets;
 mod foreign;
-pub(super) mod look;
+pub(super) mod layer_preview;
 pub(super) mod manifest;
 mod open;
 pub(super) mod packer;
@@ -30,7 +30,7 @@ mod stack;
 mod tests;
 
 pub use archive::Archive;
-pub use look::Cancellable;
+pub use layer_preview::Cancellable;
 pub use open::{ProjectContents, read, read_back};
 
 use super::recipe;
@@ -62,11 +62,16 @@ const THUMBNAIL_PX: u32 = 256;
 /// The same document gives the same bytes, and so does the document read back from them.
 pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancellable<Vec<u8>> {
     let items = plan::plan(document, FormatSupport::OPENRASTER);
-    let paint = look::paint(file, document)?;
-    let Some(looks) = look::render(file, document, &items, progress)? else { return Ok(None) };
+    let paint = layer_preview::encode_paint(file, document)?;
+    let Some(previews) = layer_preview::render(file, document, &items, progress)? else {
+        return Ok(None);
+    };
     let Some(merged) = flatten(document, progress) else { return Ok(None) };
-    let pictures: Vec<(String, EncodedPixels)> =
-        looks.into_iter().enumerate().map(|(i, look)| (format!("data/{i:03}.png"), look)).collect();
+    let pictures: Vec<(String, EncodedPixels)> = previews
+        .into_iter()
+        .enumerate()
+        .map(|(i, preview)| (format!("data/{i:03}.png"), preview))
+        .collect();
     let shown = shown_alone(&items, &pictures);
     let xml = stack::write(document.size, &items, &pictures);
     let mut entries = vec![ZipEntry::text(MIMETYPE, MIME.as_bytes().to_vec())];
@@ -116,7 +121,7 @@ pub fn documents(
     stack: u32,
     whole_rims: &BTreeSet<LayerId>,
 ) -> Result<Vec<ZipEntry>> {
-    let shared = shown.iter().filter(|(id, (_, look))| paint.get(id) == Some(look));
+    let shared = shown.iter().filter(|(id, (_, preview))| paint.get(id) == Some(preview));
     let shared = shared.map(|(id, (name, _))| (*id, name.clone())).collect();
     let mut assets = AssetList::default();
     let renamed =
@@ -166,7 +171,7 @@ fn shown_alone<'a>(
     items: &[PlanItem],
     pictures: &'a [(String, EncodedPixels)],
 ) -> BTreeMap<LayerId, &'a (String, EncodedPixels)> {
-    let shown = look::pictures_of(items).into_iter().zip(pictures);
+    let shown = layer_preview::pictures_of(items).into_iter().zip(pictures);
     let alone = shown.filter_map(|(item, picture)| match &item.shows {
         ItemContent::Layer(layer) | ItemContent::Nothing(layer) => Some((layer.id, picture)),
         _ => None,

@@ -1,7 +1,7 @@
 //! Reads a project: as it was saved, as far as it is intact, or as another program changed it.
 //! Floor 5.
 
-use super::look::{paint, remember};
+use super::layer_preview::{cache_previews, encode_paint};
 use super::manifest::{Manifest, ManifestPicture};
 use super::png_header::png_size;
 use super::reader::ProjectReader;
@@ -61,7 +61,7 @@ pub fn read_back(file: &Path, bytes: &[u8], document: &Document, budget: &Budget
         Err(Error::unsupported(file, format!("the drawing would not come back as it is: {what}")))
     };
     let archive = Archive::open(file, bytes, budget)?;
-    let paint = paint(file, document)?;
+    let paint = encode_paint(file, document)?;
     let known = document.walk().into_iter().filter_map(|(_, layer)| match &layer.content {
         Content::Pixels(pixels) => Some((paint.get(&layer.id)?.clone(), pixels.tiles.clone())),
         _ => None,
@@ -153,7 +153,7 @@ impl ProjectReader<'_> {
         if of_this_program {
             // A Photoshop file, which has no stack.xml, keeps masks beside the pixels of layers.
             let has_masks_in_pixels = self.archive.has(STACK);
-            remember(&document, &looks(&document, intact, has_masks_in_pixels));
+            cache_previews(&document, &previews(&document, intact, has_masks_in_pixels));
         }
         Ok(document)
     }
@@ -230,7 +230,7 @@ fn list_paint(layers: &Value, out: &mut BTreeSet<(String, i32, i32)>) {
 }
 
 /// The pictures by the layers they show, if they show them as they look here.
-fn looks(
+fn previews(
     document: &Document,
     intact: Vec<(ManifestPicture, Asset, Size)>,
     has_masks_in_pixels: bool,

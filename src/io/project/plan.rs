@@ -1,5 +1,5 @@
 //! Plans what other programs see of a document: nested stacks of pictures, as far as the format can
-//! express them. Floor 5. It only lists the pictures; `look` renders them and `stack` writes the
+//! express them. Floor 5. It only lists the pictures; `layer_preview` renders them and `stack` writes the
 //! XML.
 //!
 //! OpenRaster has no masks, no clipping, no adjustments, and not every blend mode; Photoshop's

@@ -1,5 +1,5 @@
 //! `stack.xml` of OpenRaster: written from a plan, and read from any program's file into layers.
-//! Floor 5. `look` and `open` handle the pixels.
+//! Floor 5. `layer_preview` and `open` handle the pixels.
 
 mod read;
 
@@ -14,7 +14,7 @@ use crate::math::Size;
 const NAMESPACE: &str = "xmlns:rilievo=\"urn:rilievo:project\"";
 const KIND: &str = "rilievo:kind";
 
-/// The XML of a plan; `pictures` are those of [`super::look::pictures_of`] with their names, in
+/// The XML of a plan; `pictures` are those of [`super::layer_preview::pictures_of`] with their names, in
 /// that order.
 pub fn write(size: Size, items: &[PlanItem], pictures: &[(String, EncodedPixels)]) -> String {
     let mut xml = format!(

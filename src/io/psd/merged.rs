@@ -1,12 +1,12 @@
 //! The merged picture that a Photoshop file holds for programs that read nothing else. Floor 5. Not
-//! here: its use (`judge`).
+//! here: its use (`compare`).
 
 use super::VERSION_INFO;
+use super::alpha_channels;
 use super::channel::{self, ChannelValue};
 use super::colours::{ColourValue, Colours, Mode, StraightPixels};
 use super::cursor::ByteCursor;
 use super::header::{PsdHeader, resource};
-use super::kept;
 use crate::document::NamedSelection;
 use crate::raster::{CoverageGrid, Plane};
 
@@ -49,7 +49,7 @@ pub fn merged<T: ColourValue>(
         Some(CoverageGrid::from_plane(&Plane::from_values(header.size, bytes)?, 0, 0))
     };
     let channels = planes.split_off(own).into_iter().map_while(coverage).collect();
-    let (selections, inks) = kept::selections(channels, has_alpha, resources);
+    let (selections, inks) = alpha_channels::selections(channels, has_alpha, resources);
     let mut planes = planes.into_iter();
     let mut slots: [Option<Vec<T>>; 4] = [None, None, None, None];
     slots.iter_mut().take(header.colours()).for_each(|slot| *slot = planes.next());
@@ -68,7 +68,7 @@ pub fn merged<T: ColourValue>(
 /// A channel beyond the colours is the transparency of all layers, not a selection that somebody
 /// kept.
 fn has_alpha(resources: ByteCursor, mode: Mode, count: Option<i16>) -> bool {
-    let names = resource(resources, kept::NUMBERS).unwrap_or_default();
+    let names = resource(resources, alpha_channels::NUMBERS).unwrap_or_default();
     let is_named = !names.is_empty() && names.as_chunks::<4>().0.iter().all(|name| *name != [0; 4]);
     mode != Mode::Multichannel && !is_named && count.is_none_or(|count| count < 0)
 }

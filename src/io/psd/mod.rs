@@ -10,32 +10,31 @@
 //! | `parse`, `layers`, `blocks` | a file into its parts, its records and what follows them |
 //! | `masks`, `outline` | masks that are pictures, and those that are paths |
 //! | `fill`, `pattern`, `filled` | what fill layers are filled with, besides the pixels that show it |
-//! | `kept` | selections, the channels besides the colours |
+//! | `alpha_channels` | selections, the channels besides the colours |
 //! | `marks` | guides, and the colours of layers in the list |
 //! | `merged` | the picture that the file holds of all its layers |
 //! | `tree` | records into a document |
-//! | `judge` | whether that looks like the file's own picture, and what is done if it does not |
-//! | `lower` | a document into records |
-//! | `alone` | whether a group can be composed by itself |
-//! | `emit` | records into a file |
+//! | `compare` | whether that looks like the file's own picture, and what is done if it does not |
+//! | `export` | a document into records |
+//! | `isolation` | whether a group can be composed by itself |
+//! | `write` | records into a file |
 //! | `verify` | that file read again and compared |
 //!
 //! Our files hold a private resource with the document itself, so that live layers come back live.
 
-mod alone;
+mod alpha_channels;
 mod blocks;
 pub(super) mod channel;
 mod colours;
+mod compare;
 pub(super) mod cursor;
 pub(super) mod descriptor;
-mod emit;
+mod export;
 mod fill;
 mod filled;
 mod header;
-mod judge;
-mod kept;
+mod isolation;
 mod layers;
-mod lower;
 mod marks;
 mod masks;
 mod merged;
@@ -46,8 +45,9 @@ pub(super) mod pattern;
 mod tests;
 mod tree;
 mod verify;
+mod write;
 
-pub use lower::write;
+pub use export::write;
 pub use tree::read;
 
 use crate::document::{Document, LayerLabel};

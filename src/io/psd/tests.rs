@@ -345,7 +345,8 @@ fn groups_nested_too_deep_are_opened_up_and_many_masks_are_refused() {
         [vec![mark(RecordSection::End); 100], vec![leaf], vec![mark(RecordSection::Group); 100]]
             .concat();
     let size = Size::new(4, 4);
-    let back = read_back(&emit::emit(size, &deep, &[0; 64], (&[], &Guides::default()), &[]));
+    let back =
+        read_back(&write::encode_file(size, &deep, &[0; 64], (&[], &Guides::default()), &[]));
     assert!(back.notes.iter().any(|note| note.contains("nested too deep")), "{:?}", back.notes);
     let depth = |path: &str| path.split('.').count();
     let walk = back.document.walk();
@@ -356,7 +357,7 @@ fn groups_nested_too_deep_are_opened_up_and_many_masks_are_refused() {
     let mask =
         Some(RecordMask { rect: Rect::EMPTY, outside: 9, values: Vec::new(), disabled: false });
     let masked = vec![LayerRecord { mask, ..LayerRecord::default() }; 50];
-    let bytes = emit::emit(size, &masked, &[0; 64], (&[], &Guides::default()), &[]);
+    let bytes = write::encode_file(size, &masked, &[0; 64], (&[], &Guides::default()), &[]);
     let budget = Budget { document_px: 100, ..Budget::default() };
     let said = read(Path::new("a.psd"), &bytes, &budget).err().unwrap().to_string();
     assert!(said.contains("hold more than 100 pixels"), "{said}");

@@ -3,7 +3,7 @@
 
 use super::blocks::ArtboardBackground;
 use super::colours::{Mode, StraightPixels};
-use super::judge::judged;
+use super::compare::check_against_merged;
 use super::parse::{ParsedPsd, parse};
 use super::pattern::PatternResource;
 use super::{LayerRecord, PASS_THROUGH, RecordMask, RecordSection, filled, marks, signature};
@@ -77,8 +77,12 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
         let compared = parsed.held_bytes.saturating_add(document.flattening_bytes());
         budget.room(file, "comparing its layers with its own picture", compared)?;
     }
-    let document =
-        judged(document, parsed.merged.take(), is_less || !damage.is_empty(), &mut notes);
+    let document = check_against_merged(
+        document,
+        parsed.merged.take(),
+        is_less || !damage.is_empty(),
+        &mut notes,
+    );
     Ok(ProjectContents { document, notes, is_whole: damage.is_empty(), picture: None })
 }
 

@@ -112,7 +112,7 @@ mod tests {
     use crate::document::{LayerLabel, Progress, flatten};
     use crate::math::Rect;
     use crate::project::sample::everything;
-    use crate::psd::{emit, kept, lower, marks};
+    use crate::psd::{alpha_channels, export, marks, write};
 
     const FILE: &str = "a.psd";
 
@@ -123,12 +123,13 @@ mod tests {
         change: impl FnOnce(&mut Vec<LayerRecord>, &mut Vec<u8>),
     ) -> String {
         let file = Path::new(FILE);
-        let written = lower::write(file, document, &Progress::default()).unwrap().unwrap().bytes;
+        let written = export::write(file, document, &Progress::default()).unwrap().unwrap().bytes;
         let mut records = parse(file, &written, &Budget::default()).unwrap().records;
         let shown = flatten(document, &Progress::default()).unwrap();
-        let mut merged = emit::on_white(&shown.to_straight_rgba(document.size.rect()));
+        let mut merged = write::on_white(&shown.to_straight_rgba(document.size.rect()));
         change(&mut records, &mut merged);
-        let (selections, guides) = (kept::written(document), marks::written(document));
+        let (selections, guides) =
+            (alpha_channels::of_document(document), marks::written(document));
         let meant = Meant { document, records: &records, merged, selections, guides };
         read_back(file, bytes, meant).err().map(|error| error.to_string()).unwrap_or_default()
     }
@@ -138,7 +139,7 @@ mod tests {
         type Change = fn(&mut Vec<LayerRecord>, &mut Vec<u8>);
         let document = everything(32);
         let bytes =
-            lower::write(Path::new(FILE), &document, &Progress::default()).unwrap().unwrap().bytes;
+            export::write(Path::new(FILE), &document, &Progress::default()).unwrap().unwrap().bytes;
         assert_eq!(said(&bytes, &document, |_, _| ()), "");
         let changes: [(Change, &str); 10] = [
             (|records, _| records[1].name.push('x'), "the name of"),
@@ -168,7 +169,7 @@ mod tests {
     fn nothing_is_called_saved_that_is_cut_short_or_no_longer_live() {
         let document = everything(32);
         let bytes =
-            lower::write(Path::new(FILE), &document, &Progress::default()).unwrap().unwrap().bytes;
+            export::write(Path::new(FILE), &document, &Progress::default()).unwrap().unwrap().bytes;
         for length in [0, 30, bytes.len() / 2, bytes.len() - 1] {
             assert!(
                 said(&bytes[..length], &document, |_, _| ()).contains("would not come back"),
@@ -180,8 +181,9 @@ mod tests {
         let meant = |document| {
             let records = parse(Path::new(FILE), &bytes, &Budget::default()).unwrap().records;
             let shown = flatten(&everything(32), &Progress::default()).unwrap();
-            let merged = emit::on_white(&shown.to_straight_rgba(other.size.rect()));
-            let (selections, guides) = (kept::written(document), marks::written(document));
+            let merged = write::on_white(&shown.to_straight_rgba(other.size.rect()));
+            let (selections, guides) =
+                (alpha_channels::of_document(document), marks::written(document));
             let meant = Meant { document, records: &records, merged, selections, guides };
             read_back(Path::new(FILE), &bytes, meant)
         };

@@ -1,7 +1,7 @@
-//! A layer as a drawing: what it paints by itself, and its look. Floor 6. Not here: what a drawing
+//! A layer as a drawing: what it paints by itself, and its traits. Floor 6. Not here: what a drawing
 //! is (`document::parts::drawing`).
 
-use crate::document::parts::drawing::DrawingLook;
+use crate::document::parts::drawing::DrawingTraits;
 use crate::document::{Document, LayerId, Progress, flatten_layer};
 use crate::raster::TileGrid;
 use std::sync::Arc;
@@ -23,6 +23,6 @@ pub fn painted_telling(
 }
 
 /// What a layer of a document looks like as a drawing.
-pub fn look(document: &Document, layer: LayerId) -> Option<DrawingLook> {
-    Some(DrawingLook::of(&painted(document, layer)?, document.size))
+pub fn traits_of(document: &Document, layer: LayerId) -> Option<DrawingTraits> {
+    Some(DrawingTraits::of(&painted(document, layer)?, document.size))
 }

@@ -6,7 +6,6 @@ pub mod actions;
 pub mod autosave;
 pub mod brushes;
 pub mod drawing;
-pub mod first_look;
 pub mod memory;
 mod open_document;
 mod path;
@@ -14,6 +13,7 @@ mod picture_part;
 pub mod property;
 pub mod replay;
 pub mod storage;
+pub mod stored_preview;
 pub mod swatch;
 pub mod view;
 

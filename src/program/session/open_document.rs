@@ -6,7 +6,7 @@ mod drawn;
 pub mod labels;
 mod target;
 
-use super::first_look::FirstLook;
+use super::stored_preview::StoredPreview;
 use super::view::CanvasView;
 use crate::document::{Document, History, LayerId, MaskKind, Part};
 use crate::io::replace::FileStamp;
@@ -78,7 +78,7 @@ pub struct OpenDocument {
     /// What became of parts in the last edit that the user would not expect, until it is told.
     pub noted: Option<String>,
     /// The picture that its file held of it, until the window shows it.
-    pub first_look: FirstLook,
+    pub stored_preview: StoredPreview,
     /// The chosen strokes, by their positions in the layer.
     chosen: Option<(LayerId, Vec<usize>)>,
 }
@@ -128,7 +128,7 @@ impl OpenDocument {
             clone_source: None,
             refused: None,
             noted: None,
-            first_look: FirstLook::default(),
+            stored_preview: StoredPreview::default(),
             chosen: None,
         }
     }

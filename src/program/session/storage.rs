@@ -12,10 +12,10 @@ pub use maps::{
     SortedFiles, finished_picture, import, import_watched, map_files, maps_beside, maps_of, sorted,
 };
 
-use super::first_look::FirstLook;
+use super::stored_preview::StoredPreview;
 use super::{OpenDocument, drawing};
 use crate::Result;
-use crate::document::parts::drawing::DrawingLook;
+use crate::document::parts::drawing::DrawingTraits;
 use crate::document::source::SurfaceSource;
 use crate::document::{Content, Document, Layer, Live, Progress};
 use crate::io::maps::ImportedSurface;
@@ -49,8 +49,8 @@ pub struct OpenedTab {
     pub tab: OpenDocument,
     /// Sentences about what was found and what could not be kept.
     pub notes: Vec<String>,
-    /// For a picture: its look as a drawing.
-    pub drawing: Option<DrawingLook>,
+    /// For a picture: its traits as a drawing.
+    pub drawing: Option<DrawingTraits>,
 }
 
 /// Recognises a dropped or opened file by its extension, its contents and its name.
@@ -96,9 +96,9 @@ pub fn open(file: &Path) -> Result<OpenedTab> {
             // An incomplete document must not overwrite its file without asking.
             tab.stamp = Some(stamp).filter(|_| is_project && is_whole);
             tab.reads = reads;
-            tab.first_look = FirstLook::of(file, picture.as_ref(), tab.document().size);
+            tab.stored_preview = StoredPreview::of(file, picture.as_ref(), tab.document().size);
             let drawing = match (found, tab.document().layers.as_slice()) {
-                (FileUse::Picture, [layer]) => drawing::look(tab.document(), layer.id),
+                (FileUse::Picture, [layer]) => drawing::traits_of(tab.document(), layer.id),
                 _ => None,
             };
             Ok(OpenedTab { tab, notes, drawing })

@@ -35,7 +35,7 @@ impl Canvas {
             self.picture += 1;
             self.whole.begin(drawn.size);
             self.sheet.begin();
-            if let Some(picture) = tab.first_look.take() {
+            if let Some(picture) = tab.stored_preview.take() {
                 self.whole.show(picture);
             }
             (self.wanted, self.is_draft_in_front, self.draft) = (None, false, TileSheet::default());

@@ -2,7 +2,7 @@
 //! or coin. Floor 7. Not here: what becomes of it (`session::actions::parts::first`).
 
 use super::{DialogAnswer, answers};
-use crate::document::parts::drawing::{DrawingLook, FigureBackground};
+use crate::document::parts::drawing::{DrawingTraits, FigureBackground};
 use crate::document::parts::flats::PartFor;
 use crate::document::{Document, Inflation, LayerId};
 use crate::panels::shape::presets;
@@ -19,7 +19,7 @@ pub struct ShapeDialog {
     tab: usize,
     /// Its drawing, if it has one.
     layer: Option<LayerId>,
-    look: DrawingLook,
+    traits: DrawingTraits,
     preset: Inflation,
     each: PartFor,
     /// The document was opened just now, from a picture.
@@ -28,44 +28,47 @@ pub struct ShapeDialog {
 
 /// The drawing of a document: the selected layer, or the topmost that has an outline. Takes long on
 /// large canvases.
-pub fn looked(document: &Document, selected: Option<LayerId>) -> Option<(LayerId, DrawingLook)> {
+pub fn find_drawing(
+    document: &Document,
+    selected: Option<LayerId>,
+) -> Option<(LayerId, DrawingTraits)> {
     let others = document.walk().into_iter().rev().map(|(_, layer)| layer);
     let others =
         others.filter(|layer| layer.visible && layer.content.paints()).map(|layer| layer.id);
     let mut first = None;
     for id in selected.into_iter().chain(others).take(MOST_LOOKS) {
-        let Some(look) = drawing::look(document, id) else { continue };
-        if look.has_outline() {
-            return Some((id, look));
+        let Some(traits) = drawing::traits_of(document, id) else { continue };
+        if traits.has_outline() {
+            return Some((id, traits));
         }
-        first.get_or_insert((id, look));
+        first.get_or_insert((id, traits));
     }
     first
 }
 
 impl ShapeDialog {
     /// For a document that was opened from a picture, whose only layer is the drawing.
-    pub fn of_picture(tab: &OpenDocument, look: DrawingLook) -> Self {
+    pub fn of_picture(tab: &OpenDocument, traits: DrawingTraits) -> Self {
         let layer = tab.document().layers.last().map(|layer| layer.id);
-        Self { is_first: true, ..Self::new(tab, layer, look) }
+        Self { is_first: true, ..Self::new(tab, layer, traits) }
     }
 
     /// For the drawing that was found in a document.
-    pub fn of(tab: &OpenDocument, found: Option<(LayerId, DrawingLook)>) -> Self {
+    pub fn of(tab: &OpenDocument, found: Option<(LayerId, DrawingTraits)>) -> Self {
         match found {
-            Some((id, look)) => Self::new(tab, Some(id), look),
+            Some((id, traits)) => Self::new(tab, Some(id), traits),
             None => Self::new(
                 tab,
                 None,
-                DrawingLook { background: FigureBackground::Empty, colors: 0, flat_share: 0.0 },
+                DrawingTraits { background: FigureBackground::Empty, colors: 0, flat_share: 0.0 },
             ),
         }
     }
 
-    fn new(tab: &OpenDocument, layer: Option<LayerId>, look: DrawingLook) -> Self {
+    fn new(tab: &OpenDocument, layer: Option<LayerId>, traits: DrawingTraits) -> Self {
         let preset = Inflation::PRESETS[0].0;
-        let each = if look.is_of_flats() { PartFor::Color } else { PartFor::Layer };
-        Self { tab: tab.key, layer, look, preset, each, is_first: false }
+        let each = if traits.is_of_flats() { PartFor::Color } else { PartFor::Layer };
+        Self { tab: tab.key, layer, traits, preset, each, is_first: false }
     }
 
     pub fn show(
@@ -93,21 +96,21 @@ impl ShapeDialog {
              can be changed later, in the panel Shape.",
         );
         ui.radio_value(&mut self.each, PartFor::Layer, "One part");
-        let text = match self.look.colors {
+        let text = match self.traits.colors {
             0 | 1 => "A part for each colour".to_owned(),
             n => format!("A part for each colour ({n})"),
         };
-        ui.add_enabled_ui(self.look.colors > 1, |ui| {
+        ui.add_enabled_ui(self.traits.colors > 1, |ui| {
             ui.radio_value(&mut self.each, PartFor::Color, text)
         });
-        ui.add_enabled_ui(self.look.colors > 0, |ui| {
+        ui.add_enabled_ui(self.traits.colors > 0, |ui| {
             let hint =
                 "Areas of one colour that are apart, such as two eyes, become parts of their own";
             ui.radio_value(&mut self.each, PartFor::Place, "A part for each place")
                 .on_hover_text(hint);
         });
         self.preset = presets(ui, self.preset).unwrap_or(self.preset);
-        if matches!(self.look.background, FigureBackground::Flat(_)) {
+        if matches!(self.traits.background, FigureBackground::Flat(_)) {
             ui.weak("Its one-coloured background becomes a separate layer below.");
         }
         let no = if self.is_first { "Only paint" } else { "Cancel" };
@@ -123,7 +126,7 @@ impl ShapeDialog {
 
     /// Why there is nothing to give a shape to.
     fn refusal(&self) -> Option<&'static str> {
-        match self.look.background {
+        match self.traits.background {
             FigureBackground::Transparent | FigureBackground::Flat(_) if self.layer.is_some() => {
                 None
             }

@@ -6,7 +6,7 @@ use crate::advice::with_advice;
 use crate::clipboard::PastedContent;
 use crate::dialogs::{Dialog, import, losses, path, replace, shape};
 use crate::document::SurfaceSource;
-use crate::document::parts::drawing::DrawingLook;
+use crate::document::parts::drawing::DrawingTraits;
 use crate::file_purpose::FilePurpose;
 use crate::files;
 use crate::io::Overwrite;
@@ -42,7 +42,7 @@ impl MainWindow {
             JobResult::Opened(file, opened) => match *opened {
                 Ok(opened) => {
                     self.recent_is(opened.tab.file.clone());
-                    let drawing = opened.drawing.filter(DrawingLook::has_outline);
+                    let drawing = opened.drawing.filter(DrawingTraits::has_outline);
                     self.session.adopt(opened);
                     if let (Some(look), Some(tab)) = (drawing, self.session.active()) {
                         self.dialogs.push(Dialog::Shape(shape::ShapeDialog::of_picture(tab, look)));

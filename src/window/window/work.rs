@@ -272,7 +272,8 @@ impl MainWindow {
     pub(super) fn look_for_drawing(&mut self) {
         let Some(tab) = self.session.active() else { return };
         let (key, document, selected) = (tab.key, tab.document().clone(), tab.selected);
-        let look = move |_: &Progress| JobResult::Looked(key, shape::looked(&document, selected));
+        let look =
+            move |_: &Progress| JobResult::Looked(key, shape::find_drawing(&document, selected));
         self.jobs.start("Looking at the drawing".into(), JobKind::Looking, look);
     }
 

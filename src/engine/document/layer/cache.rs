@@ -11,8 +11,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 /// Cached values of a layer; shared by its versions.
 #[derive(Clone, Default)]
 pub struct LayerCache {
-    /// The look of the layer alone, as a file stores it.
-    pub look: Memo<LookKind, EncodedPixels>,
+    /// The preview of the layer alone, as a file stores it.
+    pub preview: Memo<PreviewKind, EncodedPixels>,
     /// The pixels of a paint layer, as a project stores them.
     pub pixels: Memo<(), EncodedPixels>,
     /// The layer seen through its transforms.
@@ -27,9 +27,9 @@ pub struct LayerCache {
     pub(in crate::document) gain: Memo<RadianceScaling>,
 }
 
-/// What its look includes of a layer.
+/// What its preview includes of a layer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LookKind {
+pub struct PreviewKind {
     /// Its mask.
     pub masked: bool,
     /// The rim of the surface as if that covered it wholly.

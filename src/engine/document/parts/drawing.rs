@@ -26,7 +26,7 @@ pub enum FigureBackground {
 
 /// What was found about a drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DrawingLook {
+pub struct DrawingTraits {
     /// What is behind the figure.
     pub background: FigureBackground,
     /// Flat colours of the figure that are large enough to be parts.
@@ -58,7 +58,7 @@ impl FigureBackground {
     }
 }
 
-impl DrawingLook {
+impl DrawingTraits {
     /// What is behind the figure of a drawing.
     pub fn of(tiles: &TileGrid, canvas: Size) -> Self {
         let background = FigureBackground::of(tiles, canvas);
@@ -209,13 +209,13 @@ mod tests {
 
     #[test]
     fn a_ground_is_told_from_the_figure_by_alpha_or_by_its_one_colour() {
-        let cut_out = DrawingLook::of(&drawn([255, 255, 255, 0], [200.0, 60.0, 20.0]), CANVAS);
+        let cut_out = DrawingTraits::of(&drawn([255, 255, 255, 0], [200.0, 60.0, 20.0]), CANVAS);
         assert_eq!(
             (cut_out.background, cut_out.is_of_flats()),
             (FigureBackground::Transparent, true)
         );
         let white = Color { r: 255, g: 255, b: 255, a: 255 };
-        let on_white = DrawingLook::of(&drawn([255; 4], [200.0, 60.0, 20.0]), CANVAS);
+        let on_white = DrawingTraits::of(&drawn([255; 4], [200.0, 60.0, 20.0]), CANVAS);
         assert_eq!(
             (on_white.background, on_white.has_outline()),
             (FigureBackground::Flat(white), true)
@@ -225,15 +225,15 @@ mod tests {
         let photo: Vec<u8> = (0..3000u32)
             .flat_map(|i| [noise(i), noise(i + 9000), noise(i + 20_000), 255])
             .collect();
-        let photo = DrawingLook::of(&TileGrid::from_straight_rgba(&photo, 60, 50, 0, 0), CANVAS);
+        let photo = DrawingTraits::of(&TileGrid::from_straight_rgba(&photo, 60, 50, 0, 0), CANVAS);
         assert_eq!((photo.background, photo.is_of_flats()), (FigureBackground::Painted, false));
         assert_eq!(
-            DrawingLook::of(&TileGrid::default(), CANVAS).background,
+            DrawingTraits::of(&TileGrid::default(), CANVAS).background,
             FigureBackground::Empty
         );
         let paper = TileGrid::from_straight_rgba(&[255; 12_000], 60, 50, 0, 0);
         assert_eq!(
-            DrawingLook::of(&paper, CANVAS).background,
+            DrawingTraits::of(&paper, CANVAS).background,
             FigureBackground::Bare(white),
             "paper is no figure"
         );
@@ -246,7 +246,7 @@ mod tests {
             0,
         );
         assert_eq!(
-            DrawingLook::of(&speck, CANVAS).background,
+            DrawingTraits::of(&speck, CANVAS).background,
             FigureBackground::Bare(white),
             "nor is a speck on it"
         );

@@ -67,7 +67,7 @@ fn everywhere(document: &Document, folder: &Path) -> [Vec<u8>; 4] {
     assert!(opened.notes.is_empty(), "{:?}", opened.notes);
     let merged = opened
         .tab
-        .first_look
+        .stored_preview
         .take()
         .expect("a merged picture")
         .to_straight_rgba(document.size.rect());

@@ -4,7 +4,7 @@
 
 use super::{PartRefusal, free_id, new};
 use crate::document::parts::Part;
-use crate::document::parts::drawing::{DrawingLook, FigureBackground, without_background};
+use crate::document::parts::drawing::{DrawingTraits, FigureBackground, without_background};
 use crate::document::parts::flats::{FlatParts, PartFor, parts_of_flats};
 use crate::document::{
     Content, Document, Inflation, Layer, LayerId, LayerSlot, Live, PixelLayer, Progress,
@@ -47,8 +47,8 @@ pub fn shaped(
 ) -> Result<FirstShape, PartRefusal> {
     let tiles = painted_telling(document, layer, progress)
         .ok_or("This layer paints nothing of its own, so it has no outline.")?;
-    let look = DrawingLook::of(&tiles, document.size);
-    let (document, tiles) = match look.background {
+    let traits = DrawingTraits::of(&tiles, document.size);
+    let (document, tiles) = match traits.background {
         FigureBackground::Transparent => (document.clone(), tiles),
         FigureBackground::Flat(color) => without_flat_background(document, layer, &tiles, color)
             .ok_or("There is no such layer.")?,

@@ -5,7 +5,7 @@ use super::channel::pack;
 use super::{
     ICC_PROFILE, LayerRecord, MAGIC, OURS, RESOLUTION, RecordMask, RecordSection, VERSION_INFO,
 };
-use super::{kept, marks};
+use super::{alpha_channels, marks};
 use crate::document::{Guides, LayerLabel, NamedSelection};
 use crate::math::{Rect, Size};
 
@@ -14,7 +14,7 @@ const DOTS_PER_INCH: u32 = 72;
 
 /// The whole file. `merged` is RGBA of the canvas [on white](on_white), `selections` follow it as
 /// channels, `ours` is our own resource.
-pub fn emit(
+pub fn encode_file(
     size: Size,
     records: &[LayerRecord],
     merged: &[u8],
@@ -101,7 +101,7 @@ fn resources(selections: &[NamedSelection], guides: &Guides, ours: &[u8]) -> Vec
     long(&mut version, 1);
     let mut out = Vec::new();
     let profile = crate::srgb_profile::own_srgb();
-    let mut named = kept::resources(selections);
+    let mut named = alpha_channels::resources(selections);
     named.extend(marks::guides_resource(guides));
     let own = [
         (RESOLUTION, &resolution[..]),

@@ -9,9 +9,9 @@ use std::sync::{Mutex, PoisonError};
 
 /// The pixels of that picture, until they are taken.
 #[derive(Default)]
-pub struct FirstLook(Mutex<Option<TileGrid>>);
+pub struct StoredPreview(Mutex<Option<TileGrid>>);
 
-impl FirstLook {
+impl StoredPreview {
     /// From a PNG as large as the canvas; none from any other or a damaged one, or if memory lacks.
     pub fn of(file: &Path, png: Option<&Asset>, canvas: Size) -> Self {
         let read = || {
@@ -46,12 +46,12 @@ mod tests {
         let document = Document { layers, ..Document::empty(Size::new(90, 70)) };
         storage::save(&file, &document, Overwrite::Nothing, &Progress::default()).unwrap();
         let tab = storage::open(&file).unwrap().tab;
-        let picture = tab.first_look.take().expect("the stored picture");
+        let picture = tab.stored_preview.take().expect("the stored picture");
         let painted = flatten(&document, &Progress::default()).unwrap();
         let rect = document.size.rect();
         assert!(picture.to_straight_rgba(rect) == painted.to_straight_rgba(rect));
-        assert!(tab.first_look.take().is_none(), "it is held no longer than it is needed");
-        let of = |size| FirstLook::of(&file, Some(&Asset::from(vec![1, 2, 3])), size).take();
+        assert!(tab.stored_preview.take().is_none(), "it is held no longer than it is needed");
+        let of = |size| StoredPreview::of(&file, Some(&Asset::from(vec![1, 2, 3])), size).take();
         assert!(of(document.size).is_none());
     }
 }

@@ -10,7 +10,7 @@ const NORMAL: [u8; 4] = *b"norm";
 
 /// True if all are blended normally, or are on opaque layers of the same group wherever they paint.
 /// Bottom first.
-pub fn stands_alone(size: Size, records: &[LayerRecord]) -> bool {
+pub fn can_be_isolated(size: Size, records: &[LayerRecord]) -> bool {
     let mut ground = OpaqueGround { size, solid: vec![false; size.area()] };
     let mut rest = records.iter();
     while let Some(record) = rest.next() {
@@ -99,7 +99,7 @@ mod tests {
     }
 
     fn alone(records: &[LayerRecord]) -> bool {
-        stands_alone(Size::new(8, 8), records)
+        can_be_isolated(Size::new(8, 8), records)
     }
 
     #[test]

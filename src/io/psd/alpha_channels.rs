@@ -1,5 +1,5 @@
 //! Selections that a Photoshop file keeps: channels beyond the colours of the merged picture, with
-//! their names. Floor 5. Not here: the channels themselves (`merged`, `emit`).
+//! their names. Floor 5. Not here: the channels themselves (`merged`, `write`).
 
 use super::cursor::{ByteCursor, shown_text};
 use super::header::resource;
@@ -22,7 +22,7 @@ const TRANSPARENCY: &str = "Transparency";
 const MOST: usize = 56 - 4;
 
 /// The selections of a document that a file keeps for other programs, in their order.
-pub fn written(document: &Document) -> Vec<NamedSelection> {
+pub fn of_document(document: &Document) -> Vec<NamedSelection> {
     let canvas = document.size.rect();
     let within = |kept: &NamedSelection| NamedSelection {
         name: kept.name.clone(),

@@ -4,7 +4,7 @@
 use super::plan::{ItemContent, PlanItem};
 use crate::Result;
 use crate::document::{Content, Document, Layer, LayerId, Progress, flatten_layers, flatten_whole};
-use crate::document::{EncodedPixels, LookKind};
+use crate::document::{EncodedPixels, PreviewKind};
 use crate::pixels;
 use crate::raster::{BlendMode, TileGrid};
 use rayon::prelude::*;
@@ -28,8 +28,8 @@ pub fn render(
     let one = |item: &&PlanItem| {
         let encoded = match &item.shows {
             ItemContent::Layer(layer) => {
-                let kind = LookKind { masked: item.mask.is_none(), whole_rim: item.whole_rim };
-                look(file, &seen, layer, kind, progress)?
+                let kind = PreviewKind { masked: item.mask.is_none(), whole_rim: item.whole_rim };
+                render_preview(file, &seen, layer, kind, progress)?
             }
             ItemContent::Composed { document, layers } => {
                 flattened(document, layers, item.whole_rim, progress)
@@ -67,7 +67,7 @@ struct SeenLayers<'d> {
     document: &'d Document,
     /// Those whose frames are not the canvas.
     moved: HashSet<LayerId>,
-    /// What a layer's look depends on besides the scene and the layer itself: normal layers, and
+    /// What a layer's preview depends on besides the scene and the layer itself: normal layers, and
     /// groups that move those within.
     others: Vec<Arc<Layer>>,
 }
@@ -99,13 +99,13 @@ impl<'d> SeenLayers<'d> {
     }
 }
 
-/// The look of a layer alone: wholly opaque, the surface's edge and its mask in its pixels, if
+/// The preview of a layer alone: wholly opaque, the surface's edge and its mask in its pixels, if
 /// requested.
-fn look(
+fn render_preview(
     file: &Path,
     seen: &SeenLayers,
     layer: &Arc<Layer>,
-    kind: LookKind,
+    kind: PreviewKind,
     progress: &Progress,
 ) -> Cancellable<EncodedPixels> {
     let document = seen.document;
@@ -122,13 +122,13 @@ fn look(
         tiles.map(|tiles| pixels::encode(file, &tiles, Some(document.size.rect()))).transpose()
     };
     let mut failed = None;
-    let look = layer.cache.look.get(&document.scene(), &seen.by(layer), &kind, || {
+    let preview = layer.cache.preview.get(&document.scene(), &seen.by(layer), &kind, || {
         render().unwrap_or_else(|error| {
             failed = Some(error);
             None
         })
     });
-    failed.map_or(Ok(look), Err)
+    failed.map_or(Ok(preview), Err)
 }
 
 /// Some layers composed with each other.
@@ -149,20 +149,20 @@ fn is_deep(tiles: &TileGrid) -> bool {
     tiles.is_deep_in(tiles.bounds())
 }
 
-/// Stores the pictures that were read with a document as the looks of its layers, so that saving
+/// Stores the pictures that were read with a document as the previews of its layers, so that saving
 /// copies them.
-pub fn remember(document: &Document, looks: &BTreeMap<LayerId, EncodedPixels>) {
+pub fn cache_previews(document: &Document, previews: &BTreeMap<LayerId, EncodedPixels>) {
     let (scene, seen) = (document.scene(), SeenLayers::of(document));
     for (_, layer) in document.walk() {
-        if let Some(encoded) = looks.get(&layer.id) {
+        if let Some(encoded) = previews.get(&layer.id) {
             let bare = seen.bare(layer, true);
             // Another format rounded what it shows.
             if bare.is_some_and(|tiles| is_deep(tiles) != pixels::is_deep(encoded.file.bytes())) {
                 continue;
             }
-            let kind = LookKind { masked: true, whole_rim: false };
-            layer.cache.look.get(&scene, &seen.by(layer), &kind, || Some(encoded.clone()));
-            // Nothing hides any of its pixels, so they are its look.
+            let kind = PreviewKind { masked: true, whole_rim: false };
+            layer.cache.preview.get(&scene, &seen.by(layer), &kind, || Some(encoded.clone()));
+            // Nothing hides any of its pixels, so they are its preview.
             if bare.is_some() {
                 layer
                     .cache
@@ -174,7 +174,7 @@ pub fn remember(document: &Document, looks: &BTreeMap<LayerId, EncodedPixels>) {
 }
 
 /// All pixels of each paint layer, also those that a mask or the surface's edge hides.
-pub fn paint(file: &Path, document: &Document) -> Result<BTreeMap<LayerId, EncodedPixels>> {
+pub fn encode_paint(file: &Path, document: &Document) -> Result<BTreeMap<LayerId, EncodedPixels>> {
     let layers: Vec<&Arc<Layer>> = document.walk().into_iter().map(|(_, layer)| layer).collect();
     let one = |layer: &&Arc<Layer>| {
         let Content::Pixels(pixels) = &layer.content else { return Ok(None) };

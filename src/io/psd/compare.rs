@@ -55,7 +55,7 @@ impl Difference {
 
 /// The document with the file's own picture if needed; the notes say what was done. `is_less`:
 /// something was left out.
-pub fn judged(
+pub fn check_against_merged(
     document: Document,
     merged: Option<Merged>,
     is_less: bool,
@@ -75,7 +75,7 @@ pub fn judged(
         return document;
     }
     let Some(shown) = flatten(&document, &Progress::default()) else { return document };
-    let difference = compared(document.size, &shown, &merged);
+    let difference = measure_difference(document.size, &shown, &merged);
     if difference.is_alike() {
         if is_less {
             notes.push(format!(
@@ -122,7 +122,7 @@ fn is_blank(rgba: &[u8]) -> bool {
     all(255) || all(0) || pixels.iter().all(|pixel| pixel[3] == 0)
 }
 
-fn compared(size: Size, shown: &TileGrid, merged: &Merged) -> Difference {
+fn measure_difference(size: Size, shown: &TileGrid, merged: &Merged) -> Difference {
     let mut counts = [0; 256];
     for at in TileAt::covering(size.rect()) {
         let inside = at.rect().intersect(size.rect());
@@ -142,7 +142,11 @@ fn compared(size: Size, shown: &TileGrid, merged: &Merged) -> Difference {
                     .get(in_picture..)
                     .and_then(|rest| rest.first_chunk())
                     .copied();
-                counts[usize::from(apart(own, other.unwrap_or([0; 4]), merged.has_alpha))] += 1;
+                counts[usize::from(channel_distance(
+                    own,
+                    other.unwrap_or([0; 4]),
+                    merged.has_alpha,
+                ))] += 1;
             }
         }
     }
@@ -150,7 +154,7 @@ fn compared(size: Size, shown: &TileGrid, merged: &Merged) -> Difference {
 }
 
 /// How far a premultiplied pixel is from a straight one.
-fn apart(own: [u8; 4], straight: [u8; 4], with_alpha: bool) -> u8 {
+fn channel_distance(own: [u8; 4], straight: [u8; 4], with_alpha: bool) -> u8 {
     let alpha = u32::from(straight[3]);
     let on_white = |c: u8| ((u32::from(c) * alpha + 255 * (255 - alpha) + 127) / 255) as u8;
     let colour =
@@ -184,22 +188,22 @@ mod tests {
         })
     }
 
-    fn judged_as(merged: Option<Merged>, is_less: bool) -> (Vec<(String, bool)>, Vec<String>) {
+    fn check_as(merged: Option<Merged>, is_less: bool) -> (Vec<(String, bool)>, Vec<String>) {
         let mut notes = Vec::new();
-        let document = judged(grey(100), merged, is_less, &mut notes);
+        let document = check_against_merged(grey(100), merged, is_less, &mut notes);
         (document.layers.iter().map(|layer| (layer.name.clone(), layer.visible)).collect(), notes)
     }
 
     #[test]
     fn the_file_s_picture_is_shown_where_the_layers_look_otherwise() {
-        let (layers, notes) = judged_as(picture(120), false);
+        let (layers, notes) = check_as(picture(120), false);
         assert_eq!(layers, [(LAYERS.to_owned(), false), (PICTURE.to_owned(), true)]);
         assert!(
             notes.len() == 1 && notes[0].contains("20.4 of 255 on average, 100 at most"),
             "{notes:?}"
         );
-        assert_eq!(judged_as(picture(100), false), (vec![("grey".to_owned(), true)], vec![]));
-        let (layers, notes) = judged_as(picture(100), true);
+        assert_eq!(check_as(picture(100), false), (vec![("grey".to_owned(), true)], vec![]));
+        let (layers, notes) = check_as(picture(100), true);
         assert_eq!(layers, [("grey".to_owned(), true), (PICTURE.to_owned(), false)]);
         assert!(notes[0].contains("is hidden above"), "{notes:?}");
     }
@@ -213,11 +217,11 @@ mod tests {
             (plain(false), true, "saved without a picture"),
             (plain(true), false, "is empty"),
         ] {
-            let (layers, notes) = judged_as(merged, is_less);
+            let (layers, notes) = check_as(merged, is_less);
             assert_eq!(layers, [("grey".to_owned(), true)]);
             assert!(notes.len() == 1 && notes[0].contains(said), "{notes:?}");
         }
-        assert_eq!(judged_as(plain(false), false).1, [""; 0]);
+        assert_eq!(check_as(plain(false), false).1, [""; 0]);
     }
 
     #[test]

@@ -1,11 +1,12 @@
 //! Converts a document to records: what Photoshop can express is kept, the rest becomes pixels; the
-//! document itself is stored with them. Floor 5. `emit` writes the records as bytes, `verify` reads
+//! document itself is stored with them. Floor 5. `write` makes bytes of the records, `verify` reads
 //! them again.
 
-use super::alone::stands_alone;
+use super::isolation::can_be_isolated;
+use super::write::{encode_file, on_white};
 use super::{
-    LayerRecord, MOST_RECORDS, PASS_THROUGH, RecordMask, RecordSection, cursor, emit, kept, marks,
-    signature, verify,
+    LayerRecord, MOST_RECORDS, PASS_THROUGH, RecordMask, RecordSection, alpha_channels, cursor,
+    marks, signature, verify,
 };
 use crate::document::EncodedPixels;
 use crate::document::{
@@ -13,7 +14,7 @@ use crate::document::{
 };
 use crate::math::{Rect, Size};
 use crate::memory;
-use crate::project::look::{self, Cancellable};
+use crate::project::layer_preview::{self, Cancellable};
 use crate::project::plan::{FormatSupport, ItemContent, PlanItem, plan};
 use crate::raster::{BlendMode, TileGrid};
 use crate::{Error, Result};
@@ -46,13 +47,18 @@ pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancellab
         return Err(Error::unsupported(file, reason));
     }
     let items = plan(document, FormatSupport::PHOTOSHOP);
-    let paint = look::paint(file, document)?;
-    let Some(looks) = look::render(file, document, &items, progress)? else { return Ok(None) };
+    let paint = layer_preview::encode_paint(file, document)?;
+    let Some(previews) = layer_preview::render(file, document, &items, progress)? else {
+        return Ok(None);
+    };
     let Some(merged) = flatten(document, progress) else { return Ok(None) };
-    let mut lowering =
-        RecordBuilder { size: document.size, looks: looks.into_iter(), ..RecordBuilder::default() };
-    lowering.items(file, &items)?;
-    let RecordBuilder { records, shown, whole_rims, mut notes, .. } = lowering;
+    let mut builder = RecordBuilder {
+        size: document.size,
+        previews: previews.into_iter(),
+        ..RecordBuilder::default()
+    };
+    builder.items(file, &items)?;
+    let RecordBuilder { records, shown, whole_rims, mut notes, .. } = builder;
     if records.len() > MOST_RECORDS {
         let reason = format!(
             "its layers would be {} for Photoshop, which may be {MOST_RECORDS}",
@@ -66,8 +72,8 @@ pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancellab
         project::documents(file, document, &paint, &shown, signature(&records), &whole_rims)?;
     let ours = project::packed(file, &ours)?;
     let merged = merged.to_straight_rgba(document.size.rect());
-    let merged = emit::on_white(&merged);
-    let selections = kept::written(document);
+    let merged = on_white(&merged);
+    let selections = alpha_channels::of_document(document);
     if selections.len() < document.selections.len() {
         notes.push(
             "selections beyond the first 52, and empty ones, are kept for this program alone"
@@ -75,7 +81,7 @@ pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancellab
         );
     }
     let guides = marks::written(document);
-    let bytes = emit::emit(document.size, &records, &merged, (&selections, &guides), &ours);
+    let bytes = encode_file(document.size, &records, &merged, (&selections, &guides), &ours);
     if bytes.len() > LONGEST_BYTES {
         let reason = format!(
             "a Photoshop file has at most 2 GB, not {}",
@@ -94,8 +100,8 @@ pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancellab
 /// Records in the making.
 struct RecordBuilder {
     size: Size,
-    /// The looks of the plan's pictures, in their order.
-    looks: std::vec::IntoIter<EncodedPixels>,
+    /// The previews of the plan's pictures, in their order.
+    previews: std::vec::IntoIter<EncodedPixels>,
     records: Vec<LayerRecord>,
     /// The records that show a single layer, for the manifest.
     shown: Vec<(LayerId, (String, EncodedPixels))>,
@@ -108,10 +114,10 @@ struct RecordBuilder {
 
 impl Default for RecordBuilder {
     fn default() -> Self {
-        let looks = Vec::new().into_iter();
+        let previews = Vec::new().into_iter();
         Self {
             size: Size::new(1, 1),
-            looks,
+            previews,
             records: Vec::new(),
             shown: Vec::new(),
             whole_rims: BTreeSet::new(),
@@ -140,13 +146,13 @@ impl RecordBuilder {
             self.items(file, items)?;
             self.is_hidden = around;
             let mask = item.mask.as_ref().and_then(|mask| self.mask(mask));
-            let alone =
-                *isolated || (mask.is_some() && stands_alone(self.size, &self.records[first..]));
-            if mask.is_some() && !alone && item.visible && !self.is_hidden {
+            let is_isolated =
+                *isolated || (mask.is_some() && can_be_isolated(self.size, &self.records[first..]));
+            if mask.is_some() && !is_isolated && item.visible && !self.is_hidden {
                 self.notes
                     .push(format!("“{}” passes through, and Krita leaves its mask out", item.name));
             }
-            let blend = if alone { key(item.blend) } else { PASS_THROUGH };
+            let blend = if is_isolated { key(item.blend) } else { PASS_THROUGH };
             self.records.push(LayerRecord {
                 blend,
                 mask,
@@ -157,22 +163,23 @@ impl RecordBuilder {
         }
         let damaged =
             || Error::unsupported(file, "a layer could not be encoded; nothing was saved");
-        let mut look = self.looks.next().ok_or_else(damaged)?;
-        let rgba = pixels::decoded(look.file.bytes()).ok_or_else(damaged)?;
-        if pixels::is_deep(look.file.bytes()) {
+        let mut preview = self.previews.next().ok_or_else(damaged)?;
+        let rgba = pixels::decoded(preview.file.bytes()).ok_or_else(damaged)?;
+        if pixels::is_deep(preview.file.bytes()) {
             // Our part of the file says what the record holds; it has all of the paint, too.
-            look = in_bytes(file, look, &rgba)?;
+            preview = in_bytes(file, preview, &rgba)?;
             self.notes.push(format!(
                 "“{}” has 16 bits per channel here and 8 for other programs",
                 item.name
             ));
         }
         let is_empty = rgba.chunks_exact(4).all(|pixel| pixel[3] == 0);
-        let (x1, y1) = (look.x + look.size.width as i32, look.y + look.size.height as i32);
+        let (x1, y1) =
+            (preview.x + preview.size.width as i32, preview.y + preview.size.height as i32);
         let (rect, rgba) = if is_empty {
             (Rect::EMPTY, Vec::new())
         } else {
-            (Rect::new(look.x, look.y, x1, y1), rgba)
+            (Rect::new(preview.x, preview.y, x1, y1), rgba)
         };
         let mask = item.mask.as_ref().and_then(|mask| self.mask(mask));
         match &item.shows {
@@ -184,7 +191,7 @@ impl RecordBuilder {
                     ));
                 }
                 let name = format!("data/{:03}.png", self.records.len());
-                self.shown.push((layer.id, (name, look)));
+                self.shown.push((layer.id, (name, preview)));
                 if item.whole_rim {
                     self.whole_rims.insert(layer.id);
                 }
@@ -224,12 +231,15 @@ impl RecordBuilder {
     }
 }
 
-/// A look of 16 bits with its values rounded to bytes, for storing where only bytes exist.
-fn in_bytes(file: &Path, look: EncodedPixels, rgba: &[u8]) -> Result<EncodedPixels> {
+/// A preview of 16 bits with its values rounded to bytes, for storing where only bytes exist.
+fn in_bytes(file: &Path, preview: EncodedPixels, rgba: &[u8]) -> Result<EncodedPixels> {
     if rgba.chunks_exact(4).all(|pixel| pixel[3] == 0) {
         return pixels::encode(file, &TileGrid::default(), None);
     }
-    Ok(EncodedPixels { file: pixels::encode_texels(file, rgba.as_chunks().0, look.size)?, ..look })
+    Ok(EncodedPixels {
+        file: pixels::encode_texels(file, rgba.as_chunks().0, preview.size)?,
+        ..preview
+    })
 }
 
 /// Programs that read the format's word for a mode and compute it otherwise, as was measured
