@@ -11,7 +11,7 @@ pub const UNKNOWN_BYTES: u64 = 4 << 30;
 /// Bytes that may be allocated now without evicting anything, minus an eighth that is left to other
 /// programs.
 pub fn free_bytes() -> u64 {
-    let free = told(Path::new("/")).unwrap_or(UNKNOWN_BYTES);
+    let free = least_available(Path::new("/")).unwrap_or(UNKNOWN_BYTES);
     free - free / 8
 }
 
@@ -19,7 +19,7 @@ pub fn free_bytes() -> u64 {
 /// keep less.
 pub fn kept_bytes() -> u64 {
     const MOST: u64 = 64 << 20;
-    MOST.min(told(Path::new("/")).unwrap_or(UNKNOWN_BYTES) / 32)
+    MOST.min(least_available(Path::new("/")).unwrap_or(UNKNOWN_BYTES) / 32)
 }
 
 /// Bytes that the machine has for the program at most: its memory, or the lowest ceiling around the
@@ -40,7 +40,7 @@ fn whole(root: &Path) -> Option<u64> {
 
 /// The least of what each of Linux's accounts leaves; `None` on other systems. `root`: where its
 /// folders hang.
-fn told(root: &Path) -> Option<u64> {
+fn least_available(root: &Path) -> Option<u64> {
     let read = |name: &str| fs::read_to_string(root.join(name)).ok();
     let free = field(&read("proc/meminfo")?, "MemAvailable:")? * 1024;
     let groups = read("proc/self/cgroup").unwrap_or_default();
@@ -133,7 +133,7 @@ mod tests {
             fs::create_dir_all(file.parent().unwrap()).unwrap();
             fs::write(file, text).unwrap();
         }
-        told(root.path())
+        least_available(root.path())
     }
 
     #[test]
@@ -181,7 +181,7 @@ mod tests {
 
     #[test]
     fn a_system_that_tells_nothing_is_taken_for_a_small_one() {
-        assert_eq!(told(Path::new("no such folder")), None);
+        assert_eq!(least_available(Path::new("no such folder")), None);
         assert!(free_bytes() > 0 && kept_bytes() > 0);
     }
 }

@@ -69,7 +69,7 @@ pub fn put(size: Size, rgba: &[u8]) -> Result<Clipboard> {
 }
 
 /// In text fields: turns the keys for cut, copy and paste into their events.
-pub fn hear(ctx: &Context, events: &mut [Event]) {
+pub fn translate_keys(ctx: &Context, events: &mut [Event]) {
     if !ctx.egui_wants_keyboard_input() {
         return;
     }

@@ -17,8 +17,8 @@ use crate::session::actions::parts::FirstShape;
 use crate::session::actions::pictures::ReadPart;
 use crate::session::actions::placing::read_picture;
 use crate::session::actions::{PartAction, PasteTo};
-use crate::session::autosave::RecoveredTab;
-use crate::session::storage::{self, FileUse, OpenedTab, SortedFiles};
+use crate::session::autosave::RecoveredDocument;
+use crate::session::storage::{self, FileUse, LoadedDocument, SortedFiles};
 use crate::session::{Action, Edit};
 use crate::{Error, Result};
 use eframe::egui;
@@ -30,7 +30,7 @@ use std::time::{Duration, Instant};
 /// The result of a job; the window handles it when it arrives.
 pub enum JobResult {
     /// A document, with its file if it has one.
-    Opened(Option<PathBuf>, Box<Result<OpenedTab>>),
+    Opened(Option<PathBuf>, Box<Result<LoadedDocument>>),
     /// Maps of an object: the import dialog shows their conventions first.
     AreMaps(Box<SurfaceSource>),
     /// The file is opened as a document of its own.
@@ -44,16 +44,16 @@ pub enum JobResult {
     /// Drawings that can be recovered.
     Lost(Vec<recovery::LostSession>),
     /// One of them was recovered.
-    Recovered(Box<Result<RecoveredTab>>),
+    Recovered(Box<Result<RecoveredDocument>>),
     /// A picture was read from a file, to become a layer.
     Pictured(PathBuf, String, Picture, PictureUse),
     /// The same, to lie on the unwrapped surface.
     Flat(PathBuf, String, Picture),
-    /// The surface of a tab, by its key, was unwrapped.
+    /// The surface of an open document, by its key, was unwrapped.
     Unwrapped(usize),
-    /// A picture was read for a layer of a tab.
+    /// A picture was read for a layer of an open document.
     Part(Box<PartResult>),
-    /// The document of a tab was saved.
+    /// An open document was saved.
     Saved(Box<Saving>, FileStamp),
     /// It is not yet saved: the user must first know what the format cannot hold.
     Loses(Box<Saving>),
@@ -63,13 +63,13 @@ pub enum JobResult {
     ExportedMaps(Vec<PathBuf>),
     /// Something would be lost that the user was not asked about; why.
     Refused(Pending, String),
-    /// An edit of the document of a tab that took long.
+    /// An edit of an open document that took long.
     Edited(Box<EditResult>),
-    /// A drawing was given a shape: its tab, by its key, the document before, and the action.
+    /// A drawing was given a shape: its open document, by its key, the value before, and the action.
     Shaped(Box<ShapedResult>),
     /// Something cannot be done; why.
     Declined(&'static str),
-    /// What drawing a tab, by its key, holds.
+    /// What drawing an open document, by its key, holds.
     Looked(usize, Option<(LayerId, DrawingTraits)>),
     /// There is nothing to do; why.
     Said(String),
@@ -98,7 +98,7 @@ pub struct MapsRead {
 
 pub struct PartResult {
     /// By its key.
-    pub tab: usize,
+    pub key: usize,
     pub layer: LayerId,
     pub part: PicturePart,
     pub file: PathBuf,
@@ -146,7 +146,7 @@ pub enum PinPosition {
 
 pub struct EditResult {
     /// By its key.
-    pub tab: usize,
+    pub key: usize,
     pub action: Action,
     /// What was edited.
     pub from: Document,
@@ -155,7 +155,7 @@ pub struct EditResult {
 
 pub struct ShapedResult {
     /// By its key.
-    pub tab: usize,
+    pub key: usize,
     pub action: PartAction,
     /// What was given a shape.
     pub from: Document,
@@ -300,7 +300,7 @@ impl Jobs {
     }
 
     /// The current success message.
-    pub fn said(&self) -> Option<&str> {
+    pub fn success_message(&self) -> Option<&str> {
         let (sentence, _) = self.said.as_ref().filter(|(_, since)| since.elapsed() < TOLD)?;
         Some(sentence)
     }
@@ -309,10 +309,10 @@ impl Jobs {
     pub fn finished(&mut self) -> Vec<JobResult> {
         let mut finished = Vec::new();
         for (key, done) in self.done.try_iter() {
-            let given_up =
+            let is_cancelled =
                 self.under_way.iter().any(|job| job.key == key && job.progress.is_cancelled());
             self.under_way.retain(|job| job.key != key);
-            if !given_up || matches!(done, JobResult::Saved(..)) {
+            if !is_cancelled || matches!(done, JobResult::Saved(..)) {
                 finished.push(done);
             }
         }
@@ -320,7 +320,7 @@ impl Jobs {
     }
 
     /// Cancels the jobs of a name: their results are no longer wanted.
-    pub fn give_up(&self, name: &str) {
+    pub fn cancel(&self, name: &str) {
         self.under_way.iter().filter(|job| job.name == name).for_each(|job| job.progress.cancel());
     }
 

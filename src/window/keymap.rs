@@ -43,7 +43,7 @@ impl KeyTarget {
     }
 
     /// Its default keys.
-    fn own(self) -> Vec<KeyboardShortcut> {
+    fn default_keys(self) -> Vec<KeyboardShortcut> {
         match self {
             KeyTarget::Command(command) => command.keys.to_vec(),
             KeyTarget::Tool(tool) => {
@@ -56,7 +56,7 @@ impl KeyTarget {
 
 impl Keymap {
     pub fn of(&self, keyed: KeyTarget) -> Vec<KeyboardShortcut> {
-        self.chosen.get(keyed.name()).cloned().unwrap_or_else(|| keyed.own())
+        self.chosen.get(keyed.name()).cloned().unwrap_or_else(|| keyed.default_keys())
     }
 
     /// The first key of a command, which menus show.
@@ -70,7 +70,7 @@ impl Keymap {
 
     /// Sets the keys; default ones are not stored.
     pub fn set(&mut self, keyed: KeyTarget, keys: Vec<KeyboardShortcut>) {
-        if keys == keyed.own() {
+        if keys == keyed.default_keys() {
             self.chosen.remove(keyed.name());
         } else {
             self.chosen.insert(keyed.name().to_owned(), keys);
@@ -168,7 +168,7 @@ mod tests {
     #[test]
     fn every_key_survives_being_written_and_read() {
         for keyed in KeyTarget::all() {
-            for keys in keyed.own() {
+            for keys in keyed.default_keys() {
                 assert_eq!(read(&written(keys)), Some(keys), "{}", written(keys));
             }
         }

@@ -34,7 +34,7 @@ pub struct PanelLayout {
     /// Which is in front below: the layers or the shape.
     pub below: PanelKind,
     /// Panels in windows of their own.
-    pub apart: Vec<PanelKind>,
+    pub floating: Vec<PanelKind>,
     pub width_pt: f32,
 }
 
@@ -44,7 +44,7 @@ pub enum PanelSide {
     Left,
     Right,
     /// In a window of their own.
-    Apart,
+    Floating,
 }
 
 impl PanelSide {
@@ -55,7 +55,7 @@ impl PanelSide {
 
 /// Each side with its name in settings.
 pub const SIDES: [(PanelSide, &str); 3] =
-    [(PanelSide::Left, "left"), (PanelSide::Right, "right"), (PanelSide::Apart, "apart")];
+    [(PanelSide::Left, "left"), (PanelSide::Right, "right"), (PanelSide::Floating, "apart")];
 
 impl Default for PanelLayout {
     fn default() -> Self {
@@ -64,7 +64,7 @@ impl Default for PanelLayout {
             is_hidden: false,
             front: PanelKind::Color,
             below: PanelKind::Layers,
-            apart: Vec::new(),
+            floating: Vec::new(),
             width_pt: 268.0,
         }
     }

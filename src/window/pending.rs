@@ -11,8 +11,8 @@ use std::path::{Path, PathBuf};
 
 /// A document that is to be saved.
 pub struct Saving {
-    /// Its tab, by its key.
-    pub tab: usize,
+    /// Its open document, by its key.
+    pub key: usize,
     pub file: PathBuf,
     /// What the file will hold.
     pub document: Document,

@@ -8,7 +8,7 @@ use crate::advice::with_advice;
 use crate::document::Progress;
 use crate::io::recovery::LostSession;
 use crate::session::Autosave;
-use crate::session::autosave::RecoveredTab;
+use crate::session::autosave::RecoveredDocument;
 use crate::{Error, Result};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
@@ -53,13 +53,13 @@ impl MainWindow {
         }
     }
 
-    pub(super) fn take_recovered(&mut self, found: Result<RecoveredTab>) {
+    pub(super) fn take_recovered(&mut self, found: Result<RecoveredDocument>) {
         match found {
-            Ok(RecoveredTab { tab, recovery, tool }) => {
+            Ok(RecoveredDocument { open, recovery, tool }) => {
                 if let (Some(autosave), Some(recovery)) = (&mut self.session.autosave, recovery) {
-                    autosave.adopt(&tab, recovery);
+                    autosave.adopt(&open, recovery);
                 }
-                self.session.add_document(tab);
+                self.session.add_document(open);
                 self.session.tool = tool.unwrap_or(self.session.tool);
             }
             Err(error) => self.messages.push(with_advice(&error)),

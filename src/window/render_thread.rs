@@ -165,7 +165,7 @@ fn work(shared: &SharedRequest, sender: &Sender<RenderedTileBatch>, done: &dyn F
     loop {
         if let Some(next) = work.wait(shared)? {
             let picture = next.picture;
-            let refused = work.if_there_is_memory(|work| work.take_up(next)).err();
+            let refused = work.if_there_is_memory(|work| work.begin(next)).err();
             // Nothing differs: the picture is complete already.
             if !work.has_more() {
                 send(RenderedTileBatch { picture, refused, ..work.nothing() })?;
@@ -260,14 +260,14 @@ impl RenderWork {
         readiness
     }
 
-    fn take_up(&mut self, next: RenderRequest) {
+    fn begin(&mut self, next: RenderRequest) {
         if self.wanted.as_ref().is_none_or(|old| old.picture != next.picture) {
             (self.whole, self.draft, self.at_rest) = (RenderPass::default(), None, None);
         } else if let Some(old) = self.wanted.take_if(|old| next.is_dragged && !old.is_dragged) {
             self.draft.iter_mut().for_each(|draft| draft.reduced.keep(&old.document));
             self.at_rest = Some(old.document);
         }
-        self.whole.take_up(next.document.clone());
+        self.whole.begin(next.document.clone());
         self.is_behind = next.document.is_ahead();
         // The first frame of a large canvas is not waited for either.
         let area = next.document.size.area();
@@ -293,7 +293,7 @@ impl RenderWork {
     fn catch_up(&mut self) {
         let Some(wanted) = self.wanted.as_ref().filter(|_| self.is_behind) else { return };
         let begun = Instant::now();
-        self.whole.take_up(wanted.document.reshaped());
+        self.whole.begin(wanted.document.reshaped());
         (self.shaping, self.is_behind) = (begun.elapsed(), false);
     }
 
@@ -312,7 +312,7 @@ impl RenderWork {
         let (Some(draft), Some(wanted)) = (&mut self.draft, &self.wanted) else { return };
         draft.wait_for_surface(&wanted.document);
         match draft.reduced.of(&wanted.document) {
-            Ok(small) => draft.pass.take_up(small),
+            Ok(small) => draft.pass.begin(small),
             // A surface too thin to be scaled down is painted whole.
             Err(_) => (self.draft, self.is_drafting) = (None, false),
         }

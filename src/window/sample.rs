@@ -6,7 +6,7 @@ use crate::math::{Size, Vec2, Vec3, srgb::Color, vec2, vec3};
 use crate::paint::{Gradient, GradientStop, ImageFilter};
 use crate::raster::Plane;
 use crate::session::OpenDocument;
-use crate::session::storage::OpenedTab;
+use crate::session::storage::LoadedDocument;
 use crate::surface::{Maps, Operator, Surface};
 use crate::{Error, Result};
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use std::sync::Arc;
 const SIDE: usize = 640;
 
 /// The sample as a document of its own.
-pub fn open() -> Result<OpenedTab> {
+pub fn open() -> Result<LoadedDocument> {
     let surface = surface().map_err(|error| Error::unsupported("sample", error))?;
     let background = Gradient {
         from: vec2(0.0, 0.0),
@@ -49,8 +49,8 @@ pub fn open() -> Result<OpenedTab> {
         vec![Arc::new(behind), Arc::new(Layer::new("Base", Content::Gradient(Live::new(clay))))];
     let size = Size::new(SIDE as u32, SIDE as u32);
     let document = Document { surface: Some(Arc::new(surface)), layers, ..Document::empty(size) };
-    Ok(OpenedTab {
-        tab: OpenDocument::new("Sample", document, None),
+    Ok(LoadedDocument {
+        open: OpenDocument::new("Sample", document, None),
         notes: Vec::new(),
         drawing: None,
     })
@@ -186,11 +186,11 @@ mod tests {
     #[test]
     fn the_sample_opens_with_a_surface_that_faces_the_viewer_in_its_middle() {
         let opened = open().unwrap();
-        let surface = opened.tab.document().surface.clone().unwrap();
+        let surface = opened.open.document().surface.clone().unwrap();
         let middle = (BALL.0 * SIDE as f32).as_uvec2();
         let n = surface.normal(middle.x as usize, middle.y as usize);
         assert!(n.z > 0.9, "{n}");
-        assert!(!opened.tab.is_dirty(), "there is nothing to save yet");
+        assert!(!opened.open.is_dirty(), "there is nothing to save yet");
     }
 
     #[test]

@@ -65,10 +65,10 @@ impl Settings {
     }
 
     fn to_json(&self) -> Value {
-        let PanelLayout { side, is_hidden, front, below, apart, width_pt } = &self.layout;
+        let PanelLayout { side, is_hidden, front, below, floating, width_pt } = &self.layout;
         let recent: Vec<String> =
             self.recent.iter().map(|file| file.to_string_lossy().into_owned()).collect();
-        let apart: Vec<&str> = apart.iter().map(|front| front.name()).collect();
+        let floating: Vec<&str> = floating.iter().map(|front| front.name()).collect();
         let side = SIDES.iter().find(|(known, _)| known == side).map_or("right", |(_, name)| name);
         json!({
             "recent": recent,
@@ -76,7 +76,7 @@ impl Settings {
             "scale": self.scale,
             "hint done": self.is_hint_done,
             "panels": {
-                "side": side, "hidden": is_hidden, "front": front.name(), "below": below.name(), "apart": apart,
+                "side": side, "hidden": is_hidden, "front": front.name(), "below": below.name(), "apart": floating,
                 "width": width_pt.round(),
             },
             "keys": self.keymap.to_json(),
@@ -111,7 +111,7 @@ impl Settings {
             is_hidden: flag(panels, "hidden"),
             front: PanelKind::from_name(word("front")).unwrap_or(plain.front),
             below: PanelKind::from_name(word("below")).unwrap_or(plain.below),
-            apart: texts(panels.get("apart"))
+            floating: texts(panels.get("apart"))
                 .iter()
                 .filter_map(|name| PanelKind::from_name(name))
                 .collect(),
@@ -243,7 +243,7 @@ mod tests {
             is_hidden: true,
             front: PanelKind::History,
             below: PanelKind::Shape,
-            apart: vec![PanelKind::Navigator],
+            floating: vec![PanelKind::Navigator],
             width_pt: 300.0,
         };
         let aids = ViewAids { rulers: true, locked: true, ..ViewAids::default() };

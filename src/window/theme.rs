@@ -53,14 +53,14 @@ const LIGHT: Greys = Greys {
 
 /// Sets the theme for dark and light.
 pub fn install(ctx: &egui::Context) {
-    ctx.style_mut_of(Theme::Dark, |style| dress(style, Visuals::dark(), &DARK));
-    ctx.style_mut_of(Theme::Light, |style| dress(style, Visuals::light(), &LIGHT));
+    ctx.style_mut_of(Theme::Dark, |style| apply_style(style, Visuals::dark(), &DARK));
+    ctx.style_mut_of(Theme::Light, |style| apply_style(style, Visuals::light(), &LIGHT));
     ctx.set_theme(Theme::Dark);
     // Its zoom keys zoom the picture here.
     ctx.options_mut(|options| options.zoom_with_keyboard = false);
 }
 
-fn dress(style: &mut Style, mut visuals: Visuals, greys: &Greys) {
+fn apply_style(style: &mut Style, mut visuals: Visuals, greys: &Greys) {
     let grey = Color32::from_gray;
     let radius = CornerRadius::same(4);
     visuals.panel_fill = grey(greys.panel);

@@ -71,7 +71,7 @@ fn quitting_asks_for_each_document_with_unsaved_work_and_saves_it_where_it_is_to
     command(&mut harness, "Close");
     harness.get_by_label_contains("Save the changes to “Untitled 1”?");
     press(&mut harness, "Cancel");
-    assert!(session(&harness).active().is_some_and(|tab| tab.is_dirty()));
+    assert!(session(&harness).active().is_some_and(|open| open.is_dirty()));
     command(&mut harness, "Close");
     press(&mut harness, "Save");
     choose(&mut harness, &file);
@@ -176,8 +176,8 @@ fn maps_are_seen_four_ways_and_corrected_before_they_become_a_document() {
         assert!(!shows(&harness, jargon), "{jargon}");
     }
     create(&mut harness);
-    let tab = session(&harness).active().unwrap();
-    let surface = tab.document().surface.clone().unwrap();
+    let open = session(&harness).active().unwrap();
+    let surface = open.document().surface.clone().unwrap();
     assert_eq!((surface.coverage(2, 2), surface.coverage(48, 48)), (0, 255));
     assert!(surface.normal(48, 20).y < 0.0, "the upper half looks down now");
 }

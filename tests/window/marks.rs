@@ -38,9 +38,9 @@ fn a_stroke_is_chosen_in_the_list_ordered_duplicated_and_deleted() {
         steps(&mut harness);
     }
     let heights = |harness: &Story| -> Vec<f32> {
-        let tab = session(harness).active().unwrap();
-        tab.document()
-            .strokes(tab.selected.unwrap())
+        let open = session(harness).active().unwrap();
+        open.document()
+            .strokes(open.selected.unwrap())
             .iter()
             .map(|stroke| stroke.samples()[0].at.y)
             .collect()

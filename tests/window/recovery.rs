@@ -38,9 +38,9 @@ fn after_a_crash_the_window_offers_what_was_unsaved() {
     until(&mut harness, |harness| session(harness).active().is_some());
     assert!(harness.query_by_label("Recover unsaved drawings?").is_none());
     assert_eq!(layers(&harness), ["Background", "Gradient"]);
-    let tab = session(&harness).active().unwrap();
-    assert!(tab.is_dirty() && tab.file.is_none());
-    assert_eq!(tab.title(), "Untitled 1 (recovered)");
+    let open = session(&harness).active().unwrap();
+    assert!(open.is_dirty() && open.file.is_none());
+    assert_eq!(open.title(), "Untitled 1 (recovered)");
 }
 
 /// A blot with a shape, which was painted in a program that crashed.
@@ -64,7 +64,7 @@ fn a_recovered_drawing_has_its_shape_and_keeps_it_when_an_edit_is_undone() {
         flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect())
     };
     let before = picture(crashed.active().unwrap().document());
-    crashed.autosave.as_ref().unwrap().settle();
+    crashed.autosave.as_ref().unwrap().wait_until_written();
     drop(crashed);
     let mut harness = window_recovering(folder.path());
     until(&mut harness, |harness| harness.query_by_label("Recover unsaved drawings?").is_some());

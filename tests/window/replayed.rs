@@ -22,7 +22,7 @@ pub fn project(folder: &Path) -> std::path::PathBuf {
     image::RgbImage::from_fn(256, 192, at).save(&normals).unwrap();
     let opened = storage::open_maps(&storage::maps_of(Some(&normals), None)).unwrap();
     let file = folder.join("wave.ora");
-    storage::save(&file, opened.tab.document(), Overwrite::Nothing, &Progress::default())
+    storage::save(&file, opened.open.document(), Overwrite::Nothing, &Progress::default())
         .unwrap()
         .unwrap();
     file

@@ -17,8 +17,8 @@ fn row(harness: &mut Story, name: &str, modifiers: Modifiers) {
 }
 
 fn chosen(harness: &Story) -> Vec<String> {
-    let tab = session(harness).active().unwrap();
-    tab.chosen_layers().iter().map(|id| tab.document().layer(*id).unwrap().name.clone()).collect()
+    let open = session(harness).active().unwrap();
+    open.chosen_layers().iter().map(|id| open.document().layer(*id).unwrap().name.clone()).collect()
 }
 
 #[test]
@@ -119,8 +119,8 @@ fn an_assistant_is_laid_and_a_stroke_beside_it_is_straight() {
     assert_eq!(assistants.len(), 1);
     press(&mut harness, "Brush");
     drag(&mut harness, vec2(-100.0, 9.0), vec2(80.0, -14.0));
-    let tab = session(&harness).active().unwrap();
-    let strokes = tab.document().strokes(tab.selected.unwrap());
+    let open = session(&harness).active().unwrap();
+    let strokes = open.document().strokes(open.selected.unwrap());
     let on = assistants[0].points[0].y;
     assert!(
         strokes[0].samples().iter().all(|sample| (sample.at.y - on).abs() < 0.05),

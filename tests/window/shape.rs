@@ -114,8 +114,8 @@ fn a_drawing_gets_a_shape_is_puffed_touched_sculpted_painted_saved_and_opened_ag
     stroke(&mut harness, vec2(40.0, 60.0));
     assert_eq!(layers(&harness).len(), 3);
     let (steps_done, document) = {
-        let tab = session(&harness).active().unwrap();
-        (tab.history.past().count(), tab.document().clone())
+        let open = session(&harness).active().unwrap();
+        (open.history.past().count(), open.document().clone())
     };
     // The shape, the puff, the touch, the sculpting, the stroke: one step each.
     assert_eq!(steps_done, 5);

@@ -74,11 +74,11 @@ fn several_layers_are_turned_by_a_number_and_their_frame_turns_along() {
             (now.angle - wanted).abs() < 0.01 && (now.width - before.width).abs() < 0.01,
             "{now:?}"
         );
-        let tab = session(&harness).active().unwrap();
-        let stay = tab
+        let open = session(&harness).active().unwrap();
+        let stay = open
             .chosen_layers()
             .iter()
-            .all(|id| tab.document().layer(*id).unwrap().transform.is_none());
+            .all(|id| open.document().layer(*id).unwrap().transform.is_none());
         assert_eq!(stay, is_back);
     }
 }

@@ -34,15 +34,15 @@ fn the_surface_is_laid_flat_painted_on_and_the_story_replays_to_the_same_bytes()
     key(&mut harness, Modifiers::NONE, Key::B);
     drag(&mut harness, vec2(-90.0, -20.0), vec2(80.0, 40.0));
     {
-        let tab = session(&harness).active().unwrap();
+        let open = session(&harness).active().unwrap();
         let Content::Strokes(live) = &session(&harness).layer().unwrap().content else {
             panic!("a stroke layer")
         };
         let stroke = &live.params().strokes[0];
         assert!(stroke.operator().unwrapping().is_some() && stroke.samples().len() > 20);
-        let canvas = tab.document().size.rect();
+        let canvas = open.document().size.rect();
         assert!(stroke.samples().iter().all(|s| canvas.contains(s.at.x as i32, s.at.y as i32)));
-        assert_eq!(tab.history.done(), Some("Brush stroke"));
+        assert_eq!(open.history.done(), Some("Brush stroke"));
     }
     key(&mut harness, Modifiers::ALT, Key::Num9);
     assert!(!is_unwrapped(&harness));

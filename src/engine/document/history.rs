@@ -74,12 +74,12 @@ impl<T> History<T> {
     }
 
     /// Whether it was said what redo gives back for the last edit.
-    pub fn is_settled(&self) -> bool {
+    pub fn has_target_after(&self) -> bool {
         self.past.last().is_none_or(|step| step.after.is_some())
     }
 
     /// Says what redo gives back for the last edit, unless that was said before.
-    pub fn settle(&mut self, after: T) {
+    pub fn set_target_after(&mut self, after: T) {
         if let Some(step) = self.past.last_mut() {
             step.after.get_or_insert(after);
         }
@@ -186,15 +186,15 @@ mod tests {
             next.layers.push(Arc::new(Layer::new(label, Content::Fill(Color::BLACK))));
             history.commit(label, next, format!("before {label}"));
         }
-        assert!(!history.is_settled());
-        history.settle("after Three".into());
-        assert!(history.is_settled());
+        assert!(!history.has_target_after());
+        history.set_target_after("after Three".into());
+        assert!(history.has_target_after());
         let two = [history.undo().cloned(), history.undo().cloned()];
         assert_eq!(two, [Some("before Three".into()), Some("before Two".into())]);
         assert_eq!((history.done(), history.undone()), (Some("One"), Some("Two")));
         assert_eq!(history.redo(), Some(&"before Two".into()), "nothing was said about after it");
         assert_eq!(history.redo(), Some(&"after Three".into()));
-        history.settle("much later".into());
+        history.set_target_after("much later".into());
         assert_eq!((history.undo().is_some(), history.redo()), (true, Some(&"after Three".into())));
         assert_eq!(history.present().layers.len(), 4);
         history.undo();

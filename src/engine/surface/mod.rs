@@ -5,6 +5,7 @@
 //! the equations, [`anchor`] the points where an image is pinned, and [`deformation`] evaluates
 //! them over tiles.
 
+mod accessors;
 pub mod anchor;
 mod cache;
 pub mod combine;
@@ -30,7 +31,6 @@ mod points;
 mod pyramid;
 pub mod ray;
 pub mod reach;
-mod readings;
 pub mod region;
 pub mod scene;
 mod springs;

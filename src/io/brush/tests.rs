@@ -21,7 +21,7 @@ fn only(file: &str, bytes: &[u8]) -> ImportedBrush {
     brushes.remove(0)
 }
 
-fn said(file: &str, bytes: &[u8]) -> String {
+fn error_of(file: &str, bytes: &[u8]) -> String {
     read(Path::new(file), bytes, &budget()).map(|_| ()).unwrap_err().to_string()
 }
 
@@ -209,8 +209,8 @@ fn a_mypaint_brush_of_an_older_version_is_read_and_of_another_is_named() {
     let old = only("b.myb", b"radius_logarithmic 1.0 | pressure (0.0 0.0), (1.0 1.0)\nversion 2\n");
     let size = driven(&old.brush, Property::Size, old.brush.size, DabInputs::default());
     assert!((size - 2.0 * 2f32.exp()).abs() < 1e-3);
-    assert!(said("b.myb", br#"{ "version": 4, "settings": {} }"#).contains("version 4"));
-    assert!(said("b.myb", br#"{ "version": 3 }"#).contains("no settings"));
+    assert!(error_of("b.myb", br#"{ "version": 4, "settings": {} }"#).contains("version 4"));
+    assert!(error_of("b.myb", br#"{ "version": 3 }"#).contains("no settings"));
 }
 
 #[test]
@@ -228,7 +228,7 @@ fn what_is_no_brush_gets_a_sentence() {
         ("b.abr", &[0, 6, 0, 9], "subversion 9"),
         ("b.abr", &[0, 6, 0, 2], "no sampled tips"),
     ] {
-        assert!(said(file, bytes).contains(part), "{file}: {}", said(file, bytes));
+        assert!(error_of(file, bytes).contains(part), "{file}: {}", error_of(file, bytes));
     }
 }
 

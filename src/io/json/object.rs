@@ -54,7 +54,7 @@ impl JsonObject {
     }
 
     /// Sets a field if there is a value.
-    pub fn said<T>(&mut self, name: &str, value: Option<T>, write: impl Fn(T) -> Value) {
+    pub fn set_some<T>(&mut self, name: &str, value: Option<T>, write: impl Fn(T) -> Value) {
         if let Some(value) = value {
             self.set(name, write(value));
         }

@@ -164,20 +164,24 @@ fn path_of(open: &[OpenBracket]) -> String {
 mod tests {
     use super::*;
 
-    fn said(text: &str) -> String {
+    fn error_of(text: &str) -> String {
         parse(Path::new("r.json"), text.as_bytes(), &Budget::default()).unwrap_err().to_string()
     }
 
     #[test]
     fn syntax_errors_name_line_and_column() {
-        assert!(said("{\n \"a\": ,\n}").contains("line 2 column 7"), "{}", said("{\n \"a\": ,\n}"));
+        assert!(
+            error_of("{\n \"a\": ,\n}").contains("line 2 column 7"),
+            "{}",
+            error_of("{\n \"a\": ,\n}")
+        );
         assert!(parse(Path::new("r.json"), &[b'"', 0xff, b'"'], &Budget::default()).is_err());
     }
 
     #[test]
     fn a_key_given_twice_is_named_by_its_path() {
         assert_eq!(
-            said(r#"{"layers": [1, {"a": {}, "\u0061": 2}]}"#),
+            error_of(r#"{"layers": [1, {"a": {}, "\u0061": 2}]}"#),
             "r.json: layers[1].a: is given twice"
         );
         let apart = r#"{"a": {"x": 1}, "b": [{"x": "{\"x\": 1,"}, {"x": 2}]}"#;
@@ -186,16 +190,16 @@ mod tests {
 
     #[test]
     fn deep_and_crowded_texts_are_refused_before_they_are_parsed() {
-        assert!(said(&"[".repeat(1_000_000)).contains("nested deeper than 120"));
+        assert!(error_of(&"[".repeat(1_000_000)).contains("nested deeper than 120"));
         let crowded = format!("[{}0]", "0,".repeat(5_000_000));
-        assert!(said(&crowded).contains("values"));
-        assert!(said(&format!("[{}0]", "{},".repeat(600_000))).contains("values"));
-        assert!(said(&" ".repeat(257 << 20)).contains("bytes"));
+        assert!(error_of(&crowded).contains("values"));
+        assert!(error_of(&format!("[{}0]", "{},".repeat(600_000))).contains("values"));
+        assert!(error_of(&" ".repeat(257 << 20)).contains("bytes"));
     }
 
     #[test]
     fn numbers_beyond_every_float_are_refused() {
-        assert!(said("1e999").contains("out of range"));
+        assert!(error_of("1e999").contains("out of range"));
     }
 
     #[test]

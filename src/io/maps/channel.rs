@@ -81,23 +81,23 @@ impl Channel {
 pub fn channels(image: DynamicImage) -> Vec<Channel> {
     let size = Size::new(image.width(), image.height());
     match image {
-        DynamicImage::ImageLuma8(v) => apart(size, &v.into_raw(), 1, Channel::Byte),
-        DynamicImage::ImageLumaA8(v) => apart(size, &v.into_raw(), 2, Channel::Byte),
-        DynamicImage::ImageRgb8(v) => apart(size, &v.into_raw(), 3, Channel::Byte),
-        DynamicImage::ImageRgba8(v) => apart(size, &v.into_raw(), 4, Channel::Byte),
-        DynamicImage::ImageLuma16(v) => apart(size, &v.into_raw(), 1, Channel::Word),
-        DynamicImage::ImageLumaA16(v) => apart(size, &v.into_raw(), 2, Channel::Word),
-        DynamicImage::ImageRgb16(v) => apart(size, &v.into_raw(), 3, Channel::Word),
-        DynamicImage::ImageRgba16(v) => apart(size, &v.into_raw(), 4, Channel::Word),
-        DynamicImage::ImageRgb32F(v) => apart(size, &v.into_raw(), 3, Channel::Float),
+        DynamicImage::ImageLuma8(v) => split_channels(size, &v.into_raw(), 1, Channel::Byte),
+        DynamicImage::ImageLumaA8(v) => split_channels(size, &v.into_raw(), 2, Channel::Byte),
+        DynamicImage::ImageRgb8(v) => split_channels(size, &v.into_raw(), 3, Channel::Byte),
+        DynamicImage::ImageRgba8(v) => split_channels(size, &v.into_raw(), 4, Channel::Byte),
+        DynamicImage::ImageLuma16(v) => split_channels(size, &v.into_raw(), 1, Channel::Word),
+        DynamicImage::ImageLumaA16(v) => split_channels(size, &v.into_raw(), 2, Channel::Word),
+        DynamicImage::ImageRgb16(v) => split_channels(size, &v.into_raw(), 3, Channel::Word),
+        DynamicImage::ImageRgba16(v) => split_channels(size, &v.into_raw(), 4, Channel::Word),
+        DynamicImage::ImageRgb32F(v) => split_channels(size, &v.into_raw(), 3, Channel::Float),
         image if image.color().has_alpha() => {
-            apart(size, &image.into_rgba32f().into_raw(), 4, Channel::Float)
+            split_channels(size, &image.into_rgba32f().into_raw(), 4, Channel::Float)
         }
-        image => apart(size, &image.into_rgb32f().into_raw(), 3, Channel::Float),
+        image => split_channels(size, &image.into_rgb32f().into_raw(), 3, Channel::Float),
     }
 }
 
-fn apart<T: Copy + Send + Sync + Default>(
+fn split_channels<T: Copy + Send + Sync + Default>(
     size: Size,
     values: &[T],
     per_pixel: usize,

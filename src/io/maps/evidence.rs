@@ -194,7 +194,7 @@ mod tests {
         })
     }
 
-    fn told(vectors: &Plane<Vec3>, flip_y: bool) -> f32 {
+    fn handedness_of(vectors: &Plane<Vec3>, flip_y: bool) -> f32 {
         let all = ReducedMap::all(vectors, &Plane::filled(vectors.size(), true));
         ReducedMap::handedness(
             &all,
@@ -205,12 +205,13 @@ mod tests {
     #[test]
     fn a_map_in_another_size_tells_the_same() {
         for side in [1024, 512, 300, 128] {
-            let smooth = told(&waves(side, 0.0), false);
+            let smooth = handedness_of(&waves(side, 0.0), false);
             assert!(smooth > 0.95, "{side}: {smooth}");
         }
         for side in [1024, 512] {
             // Noise on every pixel, such as steps and grain, has no preferred curl.
-            let (plain, flipped) = (told(&waves(side, 0.2), false), told(&waves(side, 0.2), true));
+            let (plain, flipped) =
+                (handedness_of(&waves(side, 0.2), false), handedness_of(&waves(side, 0.2), true));
             assert!(plain > 0.3 && flipped < -0.3, "{side}: {plain}, {flipped}");
         }
     }

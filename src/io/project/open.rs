@@ -102,10 +102,10 @@ impl ProjectReader<'_> {
                         return Err(error);
                     }
                     self.lost(format!("{error}; the layers are as Rilievo saved them"));
-                    self.own(value, Some(manifest))
+                    self.read_document(value, Some(manifest))
                 })
             }
-            _ => self.own(value, manifest.as_ref()),
+            _ => self.read_document(value, manifest.as_ref()),
         }
     }
 
@@ -129,7 +129,7 @@ impl ProjectReader<'_> {
     }
 
     /// The document as it was saved, with what another program changed and without what is damaged.
-    fn own(&mut self, mut value: Value, manifest: Option<&Manifest>) -> Result<Document> {
+    fn read_document(&mut self, mut value: Value, manifest: Option<&Manifest>) -> Result<Document> {
         let intact = manifest
             .map(|manifest| repair::check_pictures(self, &mut value, manifest))
             .unwrap_or_default();

@@ -117,7 +117,7 @@ mod tests {
     const FILE: &str = "a.psd";
 
     /// The message if a file was meant to hold something else.
-    fn said(
+    fn message_of(
         bytes: &[u8],
         document: &Document,
         change: impl FnOnce(&mut Vec<LayerRecord>, &mut Vec<u8>),
@@ -140,7 +140,7 @@ mod tests {
         let document = everything(32);
         let bytes =
             export::write(Path::new(FILE), &document, &Progress::default()).unwrap().unwrap().bytes;
-        assert_eq!(said(&bytes, &document, |_, _| ()), "");
+        assert_eq!(message_of(&bytes, &document, |_, _| ()), "");
         let changes: [(Change, &str); 10] = [
             (|records, _| records[1].name.push('x'), "the name of"),
             (|records, _| records[1].opacity ^= 1, "the opacity of"),
@@ -157,7 +157,7 @@ mod tests {
             (|_, merged| merged[0] ^= 1, "the picture of all layers"),
         ];
         for (change, expected) in changes {
-            let said = said(&bytes, &document, change);
+            let said = message_of(&bytes, &document, change);
             assert!(
                 said.contains("would not come back") && said.contains(expected),
                 "{expected}: {said}"
@@ -172,7 +172,7 @@ mod tests {
             export::write(Path::new(FILE), &document, &Progress::default()).unwrap().unwrap().bytes;
         for length in [0, 30, bytes.len() / 2, bytes.len() - 1] {
             assert!(
-                said(&bytes[..length], &document, |_, _| ()).contains("would not come back"),
+                message_of(&bytes[..length], &document, |_, _| ()).contains("would not come back"),
                 "{length}"
             );
         }

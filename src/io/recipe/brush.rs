@@ -270,7 +270,7 @@ fn write_dynamics(dynamics: &Dynamics) -> JsonObject {
                 (Some(added), times) => {
                     let mut both = JsonObject::default();
                     both.set("add", added);
-                    both.said("times", times, |times| times);
+                    both.set_some("times", times, |times| times);
                     inputs.set(name, both.done());
                 }
             }

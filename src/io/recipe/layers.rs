@@ -164,9 +164,9 @@ fn bare(layer: &Layer, canvas: Size) -> JsonObject {
     if let Some(mask) = &layer.mask {
         out.set("mask", masks::write(mask));
     }
-    out.said("transform", layer.transform.as_ref(), transforms::write);
-    out.said("liquify", layer.liquify.as_deref(), liquify::write);
-    out.said("on", layer.on.as_ref(), |home| (*home.part).into());
+    out.set_some("transform", layer.transform.as_ref(), transforms::write);
+    out.set_some("liquify", layer.liquify.as_deref(), liquify::write);
+    out.set_some("on", layer.on.as_ref(), |home| (*home.part).into());
     write_content(&mut out, &layer.content, canvas);
     out
 }

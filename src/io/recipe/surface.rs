@@ -181,14 +181,14 @@ pub fn write(source: &SurfaceSource) -> JsonObject {
             out.object("mask", map);
         }
     }
-    out.said("matrix", source.matrix, |matrix| json!(matrix));
+    out.set_some("matrix", source.matrix, |matrix| json!(matrix));
     out
 }
 
 fn start(file: &str, channel: Option<&str>) -> JsonObject {
     let mut out = JsonObject::default();
     out.set("file", file.into());
-    out.said("channel", channel, Value::from);
+    out.set_some("channel", channel, Value::from);
     out
 }
 
@@ -198,28 +198,28 @@ pub fn write_normal_convention(into: &mut JsonObject, c: &NormalConvention) {
         return into.text("convention", word, "auto");
     }
     let mut out = JsonObject::default();
-    out.said("encoding", c.encoding, |e| e.name().into());
-    out.said("channels", c.channels, |c| NormalConvention::letters(c).into());
+    out.set_some("encoding", c.encoding, |e| e.name().into());
+    out.set_some("channels", c.channels, |c| NormalConvention::letters(c).into());
     for (name, flag) in
         [("srgb", c.srgb), ("flip_x", c.flip_x), ("flip_y", c.flip_y), ("flip_z", c.flip_z)]
     {
-        out.said(name, flag, Value::from);
+        out.set_some(name, flag, Value::from);
     }
-    out.said("space", c.space, |s| s.name().into());
+    out.set_some("space", c.space, |s| s.name().into());
     let row = |row: [f32; 3]| row.into_iter().map(object::number).collect::<Value>();
-    out.said("world_to_camera", c.world_to_camera, |rows| rows.into_iter().map(row).collect());
-    out.said("snap_flat", c.snap_flat, Value::from);
-    out.said("smooth_steps", c.smooth_steps, Value::from);
+    out.set_some("world_to_camera", c.world_to_camera, |rows| rows.into_iter().map(row).collect());
+    out.set_some("snap_flat", c.snap_flat, Value::from);
+    out.set_some("smooth_steps", c.smooth_steps, Value::from);
     into.object("convention", out);
 }
 
 fn write_depth_convention(out: &mut JsonObject, convention: &DepthConvention) {
     out.word("near", &Near::ALL, convention.near, Near::Auto);
-    out.said("encoding", convention.encoding, |e| e.name().into());
-    out.said("fov", convention.fov_degrees, object::number);
+    out.set_some("encoding", convention.encoding, |e| e.name().into());
+    out.set_some("fov", convention.fov_degrees, object::number);
     if !convention.background.is_empty() {
         out.set("background", convention.background.iter().copied().map(object::number).collect());
     }
-    out.said("range_px", convention.range_px, object::number);
-    out.said("smooth_steps", convention.smooth_steps, Value::from);
+    out.set_some("range_px", convention.range_px, object::number);
+    out.set_some("smooth_steps", convention.smooth_steps, Value::from);
 }

@@ -121,7 +121,7 @@ impl RecoveryLog {
 
     /// Waits until everything recorded has reached the system, where a crash or `kill -9` cannot
     /// lose it; no longer than `patience`. Returns whether it has.
-    pub fn settle(&self, patience: Duration) -> bool {
+    pub fn wait_until_written(&self, patience: Duration) -> bool {
         let (done, is_done) = channel();
         self.send(RecoveryTask::Tell(done, false));
         // The worker signals by dropping the sender, which also happens if it ends.

@@ -290,7 +290,7 @@ fn sessions_that_live_are_left_alone_and_those_that_died_come_back() {
         |i, title| RecoveryLog::start(disk(), folder.path(), &dotted(i), title, None).unwrap();
     let (first, second) = (start(1, "one"), start(2, "two"));
     assert!(sessions(&disk(), folder.path()).is_empty(), "both live");
-    assert!(second.settle(Duration::from_secs(60)));
+    assert!(second.wait_until_written(Duration::from_secs(60)));
     second.record(&dotted(5));
     drop(first);
     drop(second);

@@ -38,10 +38,10 @@ pub fn run(args: &ReplayArgs) -> Result<()> {
         if let Some(trouble) = autosave.follow(open_documents, *tool) {
             return Err(Error::unsupported(&args.file, trouble));
         }
-        let now = session.active().map(|tab| tab.document().clone());
+        let now = session.active().map(|open| open.document().clone());
         if last.as_ref().zip(now.as_ref()).is_some_and(|(last, now)| !is_same(last, now)) {
             steps += 1;
-            session.autosave.iter().for_each(Autosave::settle);
+            session.autosave.iter().for_each(Autosave::wait_until_written);
             print(&format!("{steps} steps\n"))?;
         }
         last = now;

@@ -48,16 +48,16 @@ impl FollowedDocument {
     fn begin(
         fs: &Arc<dyn Fs>,
         folder: &Path,
-        tab: &OpenDocument,
+        open: &OpenDocument,
         tool: ToolKind,
     ) -> (Self, Option<String>) {
-        let document = tab.document().clone();
+        let document = open.document().clone();
         let begun = RecoveryLog::start(
             fs.clone(),
             folder,
-            version(tab, tool),
-            &tab.title(),
-            tab.file.as_deref(),
+            version(open, tool),
+            &open.title(),
+            open.file.as_deref(),
         );
         let (recovery, trouble) = match begun {
             Ok(recovery) => (Some(recovery), None),
@@ -67,14 +67,14 @@ impl FollowedDocument {
     }
 
     /// Records changes of the document in the log; returns whether there were any.
-    fn follow(&mut self, tab: &OpenDocument, tool: ToolKind) -> bool {
+    fn follow(&mut self, open: &OpenDocument, tool: ToolKind) -> bool {
         let Some(recovery) = &self.recovery else { return false };
-        let is_edited = !is_same(&self.document, tab.document());
+        let is_edited = !is_same(&self.document, open.document());
         if is_edited {
-            self.document = tab.document().clone();
-            recovery.record(version(tab, tool));
+            self.document = open.document().clone();
+            recovery.record(version(open, tool));
         }
-        let held = (!tab.is_dirty()).then(|| (tab.title(), tab.file.clone(), tab.stamp));
+        let held = (!open.is_dirty()).then(|| (open.title(), open.file.clone(), open.stamp));
         if let Some((title, file, stamp)) = held.as_ref().filter(|_| is_edited || held != self.held)
         {
             recovery.saved(title, file.as_deref(), *stamp);
@@ -99,34 +99,34 @@ impl Autosave {
     /// from `kill -9`.
     pub fn follow(&mut self, open_documents: &[OpenDocument], tool: ToolKind) -> Option<String> {
         let mut trouble = None;
-        for tab in open_documents {
-            let is_edited = match self.followed.get_mut(&tab.key) {
+        for open in open_documents {
+            let is_edited = match self.followed.get_mut(&open.key) {
                 Some(followed)
                     if followed.recovery.is_some()
-                        || is_same(&followed.document, tab.document()) =>
+                        || is_same(&followed.document, open.document()) =>
                 {
-                    followed.follow(tab, tool)
+                    followed.follow(open, tool)
                 }
                 // Not known yet, or edited since its log could not be created: try again.
                 _ => {
                     let (mut followed, why) =
-                        FollowedDocument::begin(&self.fs, &self.folder, tab, tool);
+                        FollowedDocument::begin(&self.fs, &self.folder, open, tool);
                     trouble = trouble.or(why);
-                    followed.follow(tab, tool);
-                    self.followed.insert(tab.key, followed);
+                    followed.follow(open, tool);
+                    self.followed.insert(open.key, followed);
                     false
                 }
             };
             let recovery =
-                self.followed.get(&tab.key).and_then(|followed| followed.recovery.as_ref());
+                self.followed.get(&open.key).and_then(|followed| followed.recovery.as_ref());
             if let Some(recovery) = recovery {
                 if is_edited {
-                    recovery.settle(PATIENCE);
+                    recovery.wait_until_written(PATIENCE);
                 }
                 trouble = trouble.or_else(|| recovery.trouble());
             }
         }
-        let is_open = |key: &usize| open_documents.iter().any(|tab| tab.key == *key);
+        let is_open = |key: &usize| open_documents.iter().any(|open| open.key == *key);
         let closed: Vec<usize> =
             self.followed.keys().copied().filter(|key| !is_open(key)).collect();
         for key in closed {
@@ -139,16 +139,16 @@ impl Autosave {
     }
 
     /// Takes over a document that already has a log, such as a recovered one.
-    pub fn adopt(&mut self, tab: &OpenDocument, recovery: RecoveryLog) {
-        let document = tab.document().clone();
+    pub fn adopt(&mut self, open: &OpenDocument, recovery: RecoveryLog) {
+        let document = open.document().clone();
         self.followed
-            .insert(tab.key, FollowedDocument { recovery: Some(recovery), document, held: None });
+            .insert(open.key, FollowedDocument { recovery: Some(recovery), document, held: None });
     }
 
     /// Waits until all edits are written.
-    pub fn settle(&self) {
+    pub fn wait_until_written(&self) {
         for recovery in self.followed.values().filter_map(|followed| followed.recovery.as_ref()) {
-            while !recovery.settle(Duration::from_secs(1)) {}
+            while !recovery.wait_until_written(Duration::from_secs(1)) {}
         }
     }
 
@@ -156,9 +156,9 @@ impl Autosave {
     /// offered.
     pub fn close(&mut self, open_documents: &[OpenDocument], tool: ToolKind) {
         self.follow(open_documents, tool);
-        for tab in open_documents.iter().filter(|tab| !tab.is_dirty()) {
+        for open in open_documents.iter().filter(|open| !open.is_dirty()) {
             // A log that cannot be deleted is recognised as safe the next time.
-            let _ = self.end(tab.key);
+            let _ = self.end(open.key);
         }
     }
 
@@ -180,17 +180,17 @@ pub struct LostSessions {
 }
 
 /// A recovered document, and its new log.
-pub struct RecoveredTab {
-    pub tab: OpenDocument,
+pub struct RecoveredDocument {
+    pub open: OpenDocument,
     pub recovery: Option<RecoveryLog>,
     /// What the user had in hand.
     pub tool: Option<ToolKind>,
 }
 
 /// What a log holds of an open document.
-fn version(tab: &OpenDocument, tool: ToolKind) -> DrawingVersion {
-    let aside = json!({ "target": tab.stored_target(), "tool": tool.written() });
-    DrawingVersion { document: tab.document().clone(), aside }
+fn version(open: &OpenDocument, tool: ToolKind) -> DrawingVersion {
+    let aside = json!({ "target": open.stored_target(), "tool": tool.written() });
+    DrawingVersion { document: open.document().clone(), aside }
 }
 
 impl LostSessions {
@@ -229,18 +229,18 @@ impl LostSessions {
         &self,
         mut session: recovery::LostSession,
         progress: &Progress,
-    ) -> Result<Option<RecoveredTab>> {
+    ) -> Result<Option<RecoveredDocument>> {
         let Some(recovered) = session.recover(&Budget::of_this_machine(), progress)? else {
             return Ok(None);
         };
         let name = Path::new(&recovered.title).file_stem().unwrap_or_default().to_string_lossy();
         let DrawingVersion { document, aside } = recovered.version;
-        let mut tab = OpenDocument::new(format!("{name} (recovered)"), document, None);
-        tab.mark_unsaved();
-        tab.aim_as_stored(&aside["target"]);
+        let mut open = OpenDocument::new(format!("{name} (recovered)"), document, None);
+        open.mark_unsaved();
+        open.aim_as_stored(&aside["target"]);
         let tool = ToolKind::read(&aside["tool"]).ok();
-        let again = version(&tab, tool.unwrap_or_default());
-        let begun = RecoveryLog::start(self.fs.clone(), &self.folder, again, &tab.title(), None);
+        let again = version(&open, tool.unwrap_or_default());
+        let begun = RecoveryLog::start(self.fs.clone(), &self.folder, again, &open.title(), None);
         let recovery = begun.ok().filter(|recovery| {
             recovery.flush();
             recovery.trouble().is_none()
@@ -249,7 +249,7 @@ impl LostSessions {
             // A log that stays is offered again; nothing is lost.
             let _ = session.discard();
         }
-        Ok(Some(RecoveredTab { tab, recovery, tool }))
+        Ok(Some(RecoveredDocument { open, recovery, tool }))
     }
 }
 

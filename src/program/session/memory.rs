@@ -25,16 +25,16 @@ impl Session {
     /// What there is to count; nothing if no document is open.
     pub fn held_documents(&self) -> Option<HeldDocuments> {
         let front = self.active()?;
-        let others = self.open_documents.iter().filter(|tab| tab.key != front.key);
-        let tabs: Vec<_> = std::iter::once(front).chain(others).collect();
+        let others = self.open_documents.iter().filter(|open| open.key != front.key);
+        let in_order: Vec<_> = std::iter::once(front).chain(others).collect();
         Some(HeldDocuments {
-            presents: tabs.iter().map(|tab| tab.shown().clone()).collect(),
-            pasts: tabs
+            presents: in_order.iter().map(|open| open.shown().clone()).collect(),
+            pasts: in_order
                 .iter()
-                .map(|tab| {
-                    let steps = std::iter::once(tab.document()).chain(tab.history.others());
+                .map(|open| {
+                    let steps = std::iter::once(open.document()).chain(open.history.others());
                     // The history may have dropped what the file holds.
-                    steps.chain([tab.saved()]).cloned().collect()
+                    steps.chain([open.saved()]).cloned().collect()
                 })
                 .collect(),
         })
@@ -103,14 +103,14 @@ mod tests {
         let id = layer.id;
         let document = Document { layers: vec![Arc::new(layer)], ..Document::empty(size) };
         flatten(&document, &Progress::default()).unwrap();
-        let mut tab = OpenDocument::new("ramp", document, None);
+        let mut open = OpenDocument::new("ramp", document, None);
         for i in 1..=times {
             let next =
-                tab.document().with_layer(id, |layer| layer.content = gradient(i as f32)).unwrap();
+                open.document().with_layer(id, |layer| layer.content = gradient(i as f32)).unwrap();
             flatten(&next, &Progress::default()).unwrap();
-            tab.commit("Drag", next);
+            open.commit("Drag", next);
         }
-        session.open_documents.push(tab);
+        session.open_documents.push(open);
         session.current = session.open_documents.len() - 1;
         session
     }
@@ -130,9 +130,9 @@ mod tests {
     #[test]
     fn what_the_file_holds_is_counted_after_the_history_has_dropped_it() {
         let mut session = dragged(5);
-        let tab = &mut session.open_documents[session.current];
-        let last = tab.document().clone();
-        tab.history = History::new(last, 10);
+        let open = &mut session.open_documents[session.current];
+        let last = open.document().clone();
+        open.history = History::new(last, 10);
         assert_eq!(session.held_documents().unwrap().count(u64::MAX).all.kept, 2 * RENDERED);
     }
 
@@ -153,10 +153,10 @@ mod tests {
             "what is shown is kept"
         );
         // It is rendered again to the same picture.
-        let tab = &mut session.open_documents[session.current];
-        tab.history.undo();
-        tab.history.redo();
-        let again = flatten(tab.document(), &Progress::default()).unwrap();
+        let open = &mut session.open_documents[session.current];
+        open.history.undo();
+        open.history.redo();
+        let again = flatten(open.document(), &Progress::default()).unwrap();
         assert!(before.changed_tiles(&again).iter().all(|at| {
             let bytes =
                 |grid: &crate::raster::TileGrid| grid.tile(*at).map(|tile| tile.bytes().to_vec());

@@ -45,7 +45,7 @@ use crate::tools::symmetry::SymmetryAxes;
 use crate::tools::{Gesture, ShapeSettings, Symmetry, ToolKind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use storage::OpenedTab;
+use storage::LoadedDocument;
 
 /// The number of recent colours.
 const RECENT: usize = 16;
@@ -186,20 +186,20 @@ impl Session {
 
     /// The selected layer as shown.
     pub fn layer(&self) -> Option<&Arc<Layer>> {
-        let tab = self.active()?;
-        tab.shown().layer(tab.selected?)
+        let open = self.active()?;
+        open.shown().layer(open.selected?)
     }
 
     /// The path of the selected layer.
     pub fn layer_path(&self) -> Option<LayerPath> {
-        let tab = self.active()?;
-        LayerPath::of(tab.document(), tab.selected?)
+        let open = self.active()?;
+        LayerPath::of(open.document(), open.selected?)
     }
 
     /// The paths of the chosen layers, without those in a group that is chosen.
     pub fn layer_paths(&self) -> LayerPaths {
         let chosen =
-            self.active().map(|tab| LayerPaths::of(tab.document(), &tab.outermost_chosen()));
+            self.active().map(|open| LayerPaths::of(open.document(), &open.outermost_chosen()));
         chosen.unwrap_or_default()
     }
 
@@ -223,26 +223,26 @@ impl Session {
         self.gesture.as_ref().is_some_and(|gesture| gesture.is_guide())
     }
 
-    pub fn add_document(&mut self, tab: OpenDocument) {
+    pub fn add_document(&mut self, open: OpenDocument) {
         self.drop_gesture();
-        self.open_documents.push(tab);
+        self.open_documents.push(open);
         self.current = self.open_documents.len() - 1;
     }
 
     /// A document that was opened elsewhere, perhaps on another thread.
-    pub fn adopt(&mut self, opened: OpenedTab) {
-        let OpenedTab { mut tab, notes, .. } = opened;
-        if tab.file.is_none() && tab.name.is_empty() {
-            tab.name = self.untitled();
+    pub fn adopt(&mut self, opened: LoadedDocument) {
+        let LoadedDocument { mut open, notes, .. } = opened;
+        if open.file.is_none() && open.name.is_empty() {
+            open.name = self.untitled();
         }
-        self.add_document(tab);
+        self.add_document(open);
         self.notes.extend(notes);
     }
 
     /// A file was put into the document in front.
     pub fn note_read(&mut self, file: &Path) {
-        if let Some(tab) = self.active_mut() {
-            tab.reads.push(file.into());
+        if let Some(open) = self.active_mut() {
+            open.reads.push(file.into());
         }
     }
 
@@ -250,7 +250,7 @@ impl Session {
     pub fn reads(&self) -> Vec<PathBuf> {
         self.open_documents
             .iter()
-            .flat_map(|tab| &tab.reads)
+            .flat_map(|open| &open.reads)
             .chain(&self.brush_files)
             .cloned()
             .collect()
@@ -259,18 +259,18 @@ impl Session {
     /// What saving the document in front to a file may replace. `elsewhere`: for a file that is not
     /// its own.
     pub fn saving(&self, file: &Path, elsewhere: Overwrite) -> Terms {
-        let own = self.active().and_then(|tab| Some((tab, tab.file.as_deref()?)));
+        let own = self.active().and_then(|open| Some((open, open.file.as_deref()?)));
         let own = own.filter(|(_, own)| is_same_file(&Disk, own, file));
         let mut reads = self.reads();
         let over = match own {
-            Some((tab, own)) => {
+            Some((open, own)) => {
                 reads.retain(|read| !is_same_file(&Disk, read, own));
                 // A document that was incomplete when opened must not replace its file without
                 // asking.
                 if elsewhere == Overwrite::Forced {
                     elsewhere
                 } else {
-                    tab.stamp.map_or(Overwrite::Nothing, Overwrite::This)
+                    open.stamp.map_or(Overwrite::Nothing, Overwrite::This)
                 }
             }
             None => elsewhere,
@@ -313,9 +313,9 @@ impl Session {
     /// Drops the current gesture and its preview.
     pub fn drop_gesture(&mut self) {
         if self.gesture.take().is_some()
-            && let Some(tab) = self.active_mut()
+            && let Some(open) = self.active_mut()
         {
-            tab.forget_preview();
+            open.forget_preview();
         }
     }
 
@@ -329,13 +329,13 @@ impl Session {
 
     /// The last steps are over: what is chosen now is what redo goes back to. Called before
     /// whatever may choose.
-    fn settle(&mut self) {
-        self.open_documents.iter_mut().for_each(OpenDocument::settle);
+    fn record_targets(&mut self) {
+        self.open_documents.iter_mut().for_each(OpenDocument::record_target);
     }
 
     /// Notes why edits were not kept, and what they did to parts.
     fn tell_refusals(&mut self) {
-        let told = |tab: &mut OpenDocument| [tab.refused.take(), tab.noted.take()];
+        let told = |open: &mut OpenDocument| [open.refused.take(), open.noted.take()];
         self.notes.extend(self.open_documents.iter_mut().flat_map(told).flatten());
     }
 

@@ -33,7 +33,7 @@ pub struct Edit {
 
 /// An open document.
 pub struct OpenDocument {
-    /// Identifies the tab as long as the program runs.
+    /// Identifies it as long as the program runs.
     pub key: usize,
     pub history: History<EditTarget>,
     /// The preview during a gesture: not a step yet.
@@ -213,7 +213,7 @@ impl OpenDocument {
     /// `refused` says why.
     pub fn commit(&mut self, label: impl Into<String>, document: Document) -> bool {
         self.preview = None;
-        self.settle();
+        self.record_target();
         let mut is_kept = true;
         // The layers that parts are made from may have been painted on or bent.
         let document = document.reshaped();
@@ -293,7 +293,7 @@ impl OpenDocument {
     /// after the last one redone.
     pub fn walk(&mut self, steps: i32) {
         self.preview = None;
-        self.settle();
+        self.record_target();
         let mut target = None;
         for _ in 0..steps.unsigned_abs() {
             let gone = if steps < 0 { self.history.undo() } else { self.history.redo() };

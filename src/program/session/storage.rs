@@ -44,9 +44,9 @@ pub enum FileUse {
     Depth,
 }
 
-/// A document that was opened, ready to become a tab.
-pub struct OpenedTab {
-    pub tab: OpenDocument,
+/// A document that was opened, ready to be shown.
+pub struct LoadedDocument {
+    pub open: OpenDocument,
     /// Sentences about what was found and what could not be kept.
     pub notes: Vec<String>,
     /// For a picture: its traits as a drawing.
@@ -77,7 +77,7 @@ pub fn kind_of(file: &Path) -> Result<FileUse> {
 }
 
 /// Opens a document, a map, or a picture as a document of its own.
-pub fn open(file: &Path) -> Result<OpenedTab> {
+pub fn open(file: &Path) -> Result<LoadedDocument> {
     let found = kind_of(file)?;
     match found {
         FileUse::Document | FileUse::Picture => {
@@ -92,16 +92,16 @@ pub fn open(file: &Path) -> Result<OpenedTab> {
                 && notes.is_empty()
                 && is_saved_to(file);
             let is_project = kind == io::open::FileKind::Project || is_taken_over;
-            let mut tab = OpenDocument::new(name, document, is_project.then(|| file.into()));
+            let mut open = OpenDocument::new(name, document, is_project.then(|| file.into()));
             // An incomplete document must not overwrite its file without asking.
-            tab.stamp = Some(stamp).filter(|_| is_project && is_whole);
-            tab.reads = reads;
-            tab.stored_preview = StoredPreview::of(file, picture.as_ref(), tab.document().size);
-            let drawing = match (found, tab.document().layers.as_slice()) {
-                (FileUse::Picture, [layer]) => drawing::traits_of(tab.document(), layer.id),
+            open.stamp = Some(stamp).filter(|_| is_project && is_whole);
+            open.reads = reads;
+            open.stored_preview = StoredPreview::of(file, picture.as_ref(), open.document().size);
+            let drawing = match (found, open.document().layers.as_slice()) {
+                (FileUse::Picture, [layer]) => drawing::traits_of(open.document(), layer.id),
                 _ => None,
             };
-            Ok(OpenedTab { tab, notes, drawing })
+            Ok(LoadedDocument { open, notes, drawing })
         }
         FileUse::Normals => open_maps(&with_own_depth(file)),
         FileUse::Depth => open_maps(&maps_of(None, Some(file))),
@@ -109,12 +109,12 @@ pub fn open(file: &Path) -> Result<OpenedTab> {
 }
 
 /// A new document on a surface, with a plain background to paint on.
-pub fn open_maps(source: &SurfaceSource) -> Result<OpenedTab> {
+pub fn open_maps(source: &SurfaceSource) -> Result<LoadedDocument> {
     Ok(of_import(source, import(source)?))
 }
 
 /// The same with maps that were already read.
-pub fn of_import(source: &SurfaceSource, import: ImportedSurface) -> OpenedTab {
+pub fn of_import(source: &SurfaceSource, import: ImportedSurface) -> LoadedDocument {
     let ImportedSurface { surface, findings, files } = import;
     let size = surface.size();
     let background =
@@ -130,9 +130,9 @@ pub fn of_import(source: &SurfaceSource, import: ImportedSurface) -> OpenedTab {
     let file =
         source.normal.as_ref().map(|map| &map.file).or(source.depth.as_ref().map(|map| &map.file));
     let name = file.map(|file| pairs::object_of(Path::new(file))).unwrap_or_default();
-    let mut tab = OpenDocument::new(name, document, None);
-    tab.reads = map_files(source);
-    OpenedTab { tab, notes: findings.notes, drawing: None }
+    let mut open = OpenDocument::new(name, document, None);
+    open.reads = map_files(source);
+    LoadedDocument { open, notes: findings.notes, drawing: None }
 }
 
 /// A picture that covers the canvas, unbent. `file`: its name in the document.
@@ -150,14 +150,14 @@ pub fn flat_image(name: &str, file: &str, picture: Picture, canvas: Size) -> Lay
 
 /// A picture that covers the canvas, flat, as a layer at the top: one from a renderer, to be
 /// painted over.
-pub fn with_picture(mut opened: OpenedTab, name: &str, picture: Picture) -> OpenedTab {
-    let document = opened.tab.document();
+pub fn with_picture(mut opened: LoadedDocument, name: &str, picture: Picture) -> LoadedDocument {
+    let document = opened.open.document();
     let mut layers = document.layers.clone();
     layers.push(Arc::new(flat_image(name, &format!("{name}.exr"), picture, document.size)));
-    let mut tab =
-        OpenDocument::new(opened.tab.name.clone(), Document { layers, ..document.clone() }, None);
-    tab.reads = std::mem::take(&mut opened.tab.reads);
-    OpenedTab { tab, ..opened }
+    let mut open =
+        OpenDocument::new(opened.open.name.clone(), Document { layers, ..document.clone() }, None);
+    open.reads = std::mem::take(&mut opened.open.reads);
+    LoadedDocument { open, ..opened }
 }
 
 const BACKGROUND: Color = Color { r: 0x26, g: 0x28, b: 0x2c, a: 255 };

@@ -45,12 +45,12 @@ mod tests {
         let layers = vec![Arc::new(Layer::new("sky", fill))];
         let document = Document { layers, ..Document::empty(Size::new(90, 70)) };
         storage::save(&file, &document, Overwrite::Nothing, &Progress::default()).unwrap();
-        let tab = storage::open(&file).unwrap().tab;
-        let picture = tab.stored_preview.take().expect("the stored picture");
+        let open = storage::open(&file).unwrap().open;
+        let picture = open.stored_preview.take().expect("the stored picture");
         let painted = flatten(&document, &Progress::default()).unwrap();
         let rect = document.size.rect();
         assert!(picture.to_straight_rgba(rect) == painted.to_straight_rgba(rect));
-        assert!(tab.stored_preview.take().is_none(), "it is held no longer than it is needed");
+        assert!(open.stored_preview.take().is_none(), "it is held no longer than it is needed");
         let of = |size| StoredPreview::of(&file, Some(&Asset::from(vec![1, 2, 3])), size).take();
         assert!(of(document.size).is_none());
     }

@@ -24,7 +24,7 @@ use super::*;
 use crate::document::{Content, Progress, flatten};
 use crate::raster::BlendMode;
 
-fn told(lines: &str) -> Session {
+fn replay(lines: &str) -> Session {
     let mut session = Session::default();
     session.replay(Path::new("story"), lines).unwrap_or_else(|e| panic!("{e}"));
     session
@@ -56,7 +56,7 @@ const STROKE: &str = r##"
 
 #[test]
 fn a_stroke_on_paper_is_one_named_step_that_can_be_undone() {
-    let mut session = told(&format!("{PAPER}{STROKE}"));
+    let mut session = replay(&format!("{PAPER}{STROKE}"));
     assert_eq!(names(&session), ["Background", "Strokes"]);
     assert_eq!(session.active().unwrap().history.done(), Some("Brush stroke"));
     assert_eq!(pixel(&session, 100, 70), [0xc0, 0x20, 0x10, 255]);
@@ -72,7 +72,7 @@ fn a_stroke_on_paper_is_one_named_step_that_can_be_undone() {
 
 #[test]
 fn a_slider_shows_as_it_moves_and_is_one_step_when_it_is_let_go() {
-    let mut session = told(&format!("{PAPER}{STROKE}"));
+    let mut session = replay(&format!("{PAPER}{STROKE}"));
     let set = |to: f32, done: bool| {
         format!(
             r#"{{"in":"layer","do":"set","layer":"1","to":{{"do":"opacity","to":{to}}},"done":{done}}}"#
@@ -93,7 +93,7 @@ fn a_slider_shows_as_it_moves_and_is_one_step_when_it_is_let_go() {
 
 #[test]
 fn layers_are_made_grouped_moved_and_merged() {
-    let session = told(&format!(
+    let session = replay(&format!(
         r#"{PAPER}{STROKE}
         {{"in":"layer","do":"duplicate","layer":"1"}}
         {{"in":"layer","do":"group","layer":"2"}}
@@ -115,7 +115,7 @@ fn layers_are_made_grouped_moved_and_merged() {
 
 #[test]
 fn baking_changes_what_a_layer_is_and_no_pixel() {
-    let mut session = told(&format!("{PAPER}{STROKE}"));
+    let mut session = replay(&format!("{PAPER}{STROKE}"));
     let before = flatten(session.active().unwrap().document(), &Progress::default()).unwrap();
     let bake = Action::Layer(LayerAction::Bake { layer: session.layer_paths() });
     bake.apply(&mut session).unwrap();
@@ -128,7 +128,7 @@ fn baking_changes_what_a_layer_is_and_no_pixel() {
 
 #[test]
 fn a_layer_alone_hides_the_others_until_it_is_no_longer() {
-    let mut session = told(&format!("{PAPER}{STROKE}"));
+    let mut session = replay(&format!("{PAPER}{STROKE}"));
     let solo = r#"{"in":"layer","do":"solo","layer":"1"}"#;
     session.replay(Path::new("story"), solo).unwrap();
     assert_eq!(
@@ -141,7 +141,7 @@ fn a_layer_alone_hides_the_others_until_it_is_no_longer() {
 
 #[test]
 fn what_cannot_be_done_changes_nothing() {
-    let mut session = told(PAPER);
+    let mut session = replay(PAPER);
     let before = session.active().unwrap().document().clone();
     let hopeless = r#"
         {"in":"layer","do":"delete","layer":"7"}
@@ -174,7 +174,7 @@ fn actions_read_back_as_they_were_written() {
 
 #[test]
 fn strokes_are_chosen_restyled_ordered_copied_and_baked_by_replay() {
-    let mut session = told(&format!(
+    let mut session = replay(&format!(
         r##"{PAPER}{STROKE}
         {{"in":"stroke","do":"duplicate","layer":"1","strokes":[0]}}
         {{"in":"stroke","do":"restyle","layer":"1","strokes":[1],"to":{{"do":"color","color":"#0000ff"}},"done":true}}
@@ -202,7 +202,7 @@ fn strokes_are_chosen_restyled_ordered_copied_and_baked_by_replay() {
 #[test]
 fn a_fill_stops_at_a_stroke_and_is_one_step() {
     let fill = r#"{"tolerance":0.2,"gap_px":0,"grow_px":1,"antialias":true,"layer_alone":false,"bounded":"free"}"#;
-    let session = told(&format!(
+    let session = replay(&format!(
         r##"{PAPER}{STROKE}
         {{"in":"hand","do":"fill","fill":{fill}}}
         {{"in":"hand","do":"color","color":"#00ff00"}}

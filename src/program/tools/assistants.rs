@@ -54,13 +54,13 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     }
     let from = context.snap.point(pen.place()).at;
     let mut all = Vec::clone(&document.assistants);
-    all.push(laid(context.aids.assistant, from, from));
+    all.push(drag_out(context.aids.assistant, from, from));
     let moving = Moving { index: all.len() - 1, handle: None, from, is_new: true };
     begin(context, all, moving)
 }
 
 /// A new assistant dragged from one point to another.
-fn laid(kind: AssistantKind, from: Vec2, to: Vec2) -> Assistant {
+fn drag_out(kind: AssistantKind, from: Vec2, to: Vec2) -> Assistant {
     let (middle, across) = ((from + to) * 0.5, (to - from).perp());
     let points = match kind {
         AssistantKind::Line | AssistantKind::Parallel | AssistantKind::TwoPoint => vec![from, to],
@@ -127,7 +127,7 @@ impl Gesture for AssistantGesture {
         let Some(one) = self.all.get_mut(self.moving.index) else { return Outcome::Idle };
         *one = match self.moving.handle {
             Some(handle) => one.with_handle(handle, found.at),
-            None => laid(one.kind, self.moving.from, found.at),
+            None => drag_out(one.kind, self.moving.from, found.at),
         };
         Outcome::Preview(self.with())
     }

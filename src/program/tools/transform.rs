@@ -19,7 +19,7 @@ use crate::document::{Document, Layer, LayerId};
 use crate::math::{PlaneMap, Vec2};
 use gesture::{HeldLayer, TransformGesture};
 use pivot::PivotGesture;
-use placed::{FrameMap, LayerPlacement, said};
+use placed::{FrameMap, LayerPlacement, to_storable};
 
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let document = context.document;

@@ -97,7 +97,7 @@ impl Ants {
         let selected = session.shown().and_then(|document| document.selected());
         self.follow(selected);
         let Some(grid) = selected else { return };
-        if session.hides_selection || session.active().is_some_and(|tab| tab.quick_mask) {
+        if session.hides_selection || session.active().is_some_and(|open| open.quick_mask) {
             return;
         }
         // Blocks of at least a screen point.

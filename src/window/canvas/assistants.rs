@@ -38,7 +38,7 @@ pub fn draw(
         return;
     }
     let handles = document.assistants.iter().flat_map(|assistant| assistant.points.iter().copied());
-    let zoom = session.active().and_then(|tab| tab.view).map_or(1.0, |view| view.zoom);
+    let zoom = session.active().and_then(|open| open.view).map_or(1.0, |view| view.zoom);
     let axes = session.axes.handles(document.size, 1.0 / zoom);
     let axes = axes.into_iter().filter(|_| session.symmetry != Symmetry::None);
     for at in handles.chain(axes).map(to_screen) {

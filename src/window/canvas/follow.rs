@@ -26,16 +26,16 @@ impl Canvas {
         view: &CanvasView,
         area: egui::Rect,
     ) {
-        let Some(tab) = session.active() else { return };
-        let drawn = tab.drawn();
-        if self.tab != Some(tab.key)
+        let Some(open) = session.active() else { return };
+        let drawn = open.drawn();
+        if self.key != Some(open.key)
             || self.wanted.as_ref().is_some_and(|(old, _)| old.size != drawn.size)
         {
-            self.tab = Some(tab.key);
+            self.key = Some(open.key);
             self.picture += 1;
             self.whole.begin(drawn.size);
             self.sheet.begin();
-            if let Some(picture) = tab.stored_preview.take() {
+            if let Some(picture) = open.stored_preview.take() {
                 self.whole.show(picture);
             }
             (self.wanted, self.is_draft_in_front, self.draft) = (None, false, TileSheet::default());
@@ -47,7 +47,7 @@ impl Canvas {
             .is_some_and(|(old, dragged)| *dragged == is_dragged && looks_same(old, &drawn))
         {
             // Any part of the picture may be in sight on the sheet.
-            let visible = if tab.unwrapped().is_some() {
+            let visible = if open.unwrapped().is_some() {
                 drawn.size.rect()
             } else {
                 visible_rect(view, area)
@@ -72,7 +72,7 @@ impl Canvas {
         for painted in painted {
             (self.took, self.is_busy) = (painted.took, !painted.is_settled);
             if let Some(refused) = painted.refused {
-                self.trouble = Some(Error::out_of_memory(tab.title(), refused));
+                self.trouble = Some(Error::out_of_memory(open.title(), refused));
             }
             let is_draft = painted.is_draft;
             if painted.is_settled {
@@ -133,5 +133,5 @@ fn is_dragged(session: &Session) -> bool {
     let paints =
         matches!(session.tool, ToolKind::Brush | ToolKind::Eraser) || session.tool.selects();
     let paints = session.is_drawing() && paints;
-    !paints && session.active().is_some_and(|tab| tab.is_previewing())
+    !paints && session.active().is_some_and(|open| open.is_previewing())
 }

@@ -13,14 +13,14 @@ const HANDLE_PT: f32 = 9.0;
 
 /// Draws the frame around the chosen layers.
 pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2) {
-    let Some(tab) = session.active() else { return };
-    let chosen = tab.outermost_chosen();
+    let Some(open) = session.active() else { return };
+    let chosen = open.outermost_chosen();
     if session.carried == TransformTarget::Paint
         && let [one] = chosen[..]
         && let Some((mesh, points)) =
-            tab.shown().layer(one).and_then(|layer| mesh::points_of(tab.shown(), layer))
+            open.shown().layer(one).and_then(|layer| mesh::points_of(open.shown(), layer))
     {
-        let Some(map) = tab.shown().map_of(one) else { return };
+        let Some(map) = open.shown().map_of(one) else { return };
         let at = |p: Vec2| to_screen(map.outside_own().to_canvas(mesh.at(p).0).unwrap_or(p));
         grid(painter, &mesh, &at);
         for (k, point) in points.into_iter().enumerate() {
@@ -34,7 +34,7 @@ pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> P
             );
         }
     }
-    let Some(frame) = tab.frame(session.carried) else { return };
+    let Some(frame) = open.frame(session.carried) else { return };
     let corners = frame.corners.map(to_screen);
     let dark = Stroke::new(3.0, Color32::from_black_alpha(110));
     let light = Stroke::new(1.2, Color32::from_rgb(120, 200, 255));

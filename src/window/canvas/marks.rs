@@ -153,7 +153,7 @@ fn clone_source(
     to_screen: &impl Fn(Vec2) -> Pos2,
 ) {
     let BrushMode::Clone { aligned, .. } = session.brush.mode else { return };
-    let Some(source) = session.active().and_then(|tab| tab.clone_source) else { return };
+    let Some(source) = session.active().and_then(|open| open.clone_source) else { return };
     let offset = source.offset.filter(|_| aligned || session.is_drawing());
     let at = to_screen(offset.map_or(source.at, |offset| under + offset));
     for look in [Stroke::new(3.0, Color32::from_black_alpha(140)), Stroke::new(1.2, Color32::WHITE)]
@@ -175,12 +175,12 @@ struct OutlineCache {
 
 /// The selected strokes: their outlines, or the lines through their samples while they move.
 fn chosen(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2) {
-    let Some((tab, layer)) = session.active().zip(session.layer()) else { return };
-    let document = tab.shown();
+    let Some((open, layer)) = session.active().zip(session.layer()) else { return };
+    let document = open.shown();
     let strokes = document.strokes_on_canvas(layer.id);
     let chosen: Vec<&Arc<PaintStroke>> =
-        tab.chosen_strokes().iter().filter_map(|&index| strokes.get(index)).collect();
-    if tab.is_previewing() {
+        open.chosen_strokes().iter().filter_map(|&index| strokes.get(index)).collect();
+    if open.is_previewing() {
         return chosen.into_iter().for_each(|stroke| line_through(painter, stroke, to_screen));
     }
     let scene = document.scene_of(layer.id).unwrap_or_else(|| document.scene());

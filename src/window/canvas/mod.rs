@@ -57,9 +57,9 @@ pub struct Canvas {
     is_draft_in_front: bool,
     /// The picture unwrapped, while that is shown.
     sheet: UnwrappedSheet,
-    /// The tab that is shown, and the last request.
+    /// The open document that is shown, by its key, and the last request.
     picture: u64,
-    tab: Option<usize>,
+    key: Option<usize>,
     wanted: Option<(crate::document::Document, bool)>,
     hand: PointerState,
     checker: Option<TextureHandle>,
@@ -73,7 +73,7 @@ pub struct Canvas {
     small_is_old: bool,
     /// The size of the canvas's area, screen points.
     pub area_pt: Vec2,
-    /// The same when each tab was last shown, by its key.
+    /// The same when each open document was last shown, by its key.
     areas_pt: BTreeMap<usize, Vec2>,
     /// The canvas pixel under the pointer.
     pub under: Option<Vec2>,
@@ -98,7 +98,7 @@ impl Canvas {
             is_draft_in_front: false,
             sheet: UnwrappedSheet::default(),
             picture: 0,
-            tab: None,
+            key: None,
             wanted: None,
             hand: PointerState::default(),
             checker: None,
@@ -135,19 +135,19 @@ impl Canvas {
         self.area_pt = vec2(rect.width(), rect.height());
         let dark = ui.visuals().dark_mode;
         ui.painter().rect_filled(rect, 0.0, theme::SURROUND[usize::from(!dark)]);
-        let Some(tab) = session.active() else { return invite(ui, rect) };
-        let area_before_pt = self.areas_pt.insert(tab.key, self.area_pt).unwrap_or(self.area_pt);
-        let Some(view) = tab.view else {
+        let Some(open) = session.active() else { return invite(ui, rect) };
+        let area_before_pt = self.areas_pt.insert(open.key, self.area_pt).unwrap_or(self.area_pt);
+        let Some(view) = open.view else {
             // The first view shows the whole canvas.
             actions.push(Action::View(ViewAction::Fit { window_pt: self.area_pt }));
             ui.ctx().request_repaint();
             return;
         };
-        let layout = tab.known_layout();
-        if tab.unwrapped().is_some() && layout.is_none() {
-            return said(ui, rect, "Unwrapping the surface…");
+        let layout = open.known_layout();
+        if open.unwrapped().is_some() && layout.is_none() {
+            return show_sentence(ui, rect, "Unwrapping the surface…");
         }
-        let size = tab.shown_size();
+        let size = open.shown_size();
         // A canvas that is wholly visible stays so when the window is resized.
         if area_before_pt != self.area_pt && view == CanvasView::fitting(size, area_before_pt) {
             actions.push(Action::View(ViewAction::Fit { window_pt: self.area_pt }));
@@ -155,9 +155,9 @@ impl Canvas {
         }
         // So it does when its own size changes.
         let last =
-            self.wanted.as_ref().filter(|_| self.tab == Some(tab.key)).map(|(last, _)| last.size);
+            self.wanted.as_ref().filter(|_| self.key == Some(open.key)).map(|(last, _)| last.size);
         if last.is_some_and(|last| {
-            last != tab.document().size && view == CanvasView::fitting(last, self.area_pt)
+            last != open.document().size && view == CanvasView::fitting(last, self.area_pt)
         }) {
             actions.push(Action::View(ViewAction::Fit { window_pt: self.area_pt }));
             ui.ctx().request_repaint();
@@ -168,8 +168,8 @@ impl Canvas {
         self.follow(ui.ctx(), session, &view, rect);
         self.follow_unwrapped(ui.ctx(), layout.as_ref());
         let scale = view.zoom * ui.ctx().pixels_per_point();
-        self.whole.magnify(scale, tab.document().size);
-        self.draft.magnify(scale, tab.document().size);
+        self.whole.magnify(scale, open.document().size);
+        self.draft.magnify(scale, open.document().size);
         self.sheet.shown.magnify(scale, size);
 
         let painter = ui.painter_at(rect);
@@ -183,7 +183,7 @@ impl Canvas {
         };
         in_front.draw(&painter, screen_from_canvas, size);
         if let Some(wobble) = self.wobble.as_mut().filter(|_| layout.is_none()) {
-            if wobble.goes_on(ui, tab.shown()) {
+            if wobble.goes_on(ui, open.shown()) {
                 return wobble.draw(&painter, screen_from_canvas);
             }
             // The event that ended it does nothing else.
@@ -208,7 +208,7 @@ impl Canvas {
             let p = screen_from_canvas.transform_point2(p);
             pos2(p.x, p.y)
         };
-        if let Some((layout, surface)) = layout.as_ref().zip(tab.document().surface.as_ref()) {
+        if let Some((layout, surface)) = layout.as_ref().zip(open.document().surface.as_ref()) {
             self.under = self.under.and_then(|p| Some(layout.canvas_at(surface, p)?.at));
             let on_sheet = OnSheet { layout, surface };
             guides::draw_unwrapped(&painter, session, on_sheet, &to_screen);
@@ -272,10 +272,10 @@ impl Canvas {
             Ok(None) => return,
             Err(error) => return self.trouble = Some(error),
         };
-        let Some(tab) = session.active() else { return };
+        let Some(open) = session.active() else { return };
         let uv = [pos2(0.0, 0.0), pos2(1.0, 0.0), pos2(1.0, 1.0), pos2(0.0, 1.0)];
         let at =
-            corners(tab.document().size.rect()).map(|(x, y)| on_screen(screen_from_canvas, x, y));
+            corners(open.document().size.rect()).map(|(x, y)| on_screen(screen_from_canvas, x, y));
         let corners = [0, 1, 2, 3].map(|i| (at[i], uv[i]));
         painter.add(quad(
             texture,
@@ -315,7 +315,7 @@ fn visible_rect(view: &CanvasView, area: egui::Rect) -> Rect {
 
 /// The text of an empty window.
 fn invite(ui: &Ui, area: egui::Rect) {
-    said(
+    show_sentence(
         ui,
         area,
         "Drop a picture, a normal map or a project here, or open one from the File menu",
@@ -323,7 +323,7 @@ fn invite(ui: &Ui, area: egui::Rect) {
 }
 
 /// A sentence in place of a picture.
-fn said(ui: &Ui, area: egui::Rect, text: &str) {
+fn show_sentence(ui: &Ui, area: egui::Rect, text: &str) {
     let font = egui::TextStyle::Heading.resolve(ui.style());
     ui.painter().text(
         area.center(),

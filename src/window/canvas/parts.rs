@@ -75,7 +75,7 @@ impl PartMarks {
         let level = (1.0 / scale).log2().floor().max(0.0) as u32;
         let chosen = session
             .active()
-            .and_then(|tab| tab.part.as_deref())
+            .and_then(|open| open.part.as_deref())
             .map(|id| on_form(document.parts.part(id), id));
         let area_of = |id: &str| areas.iter().find(|(part, _)| part.id == id);
         let at = under.filter(|_| !session.is_drawing()).and_then(|at| nearest_at(&areas, at));
@@ -98,7 +98,7 @@ impl PartMarks {
             if tool == ToolKind::Shape {
                 let frame = PartFrame::of(part, area, 1.0 / scale).through(map);
                 handles(painter, part, &frame, &to_screen);
-                let told = under.and_then(|at| Some((at, frame.handle_at(at)?.told(part)?)));
+                let told = under.and_then(|at| Some((at, frame.handle_at(at)?.describe(part)?)));
                 if let Some((at, text)) = told {
                     hint(painter, to_screen(at), &text);
                 }

@@ -150,7 +150,7 @@ impl PointerState {
             );
         }
         for event in events {
-            self.pen.hear(&event, ui.ctx().pixels_per_point(), now_secs);
+            self.pen.read_event(&event, ui.ctx().pixels_per_point(), now_secs);
             if let Event::Touch { phase, pos, .. } = &event {
                 self.touched(*phase, ours(*pos), now_secs, &mut listening);
             }
@@ -198,7 +198,7 @@ impl PointerState {
                 _ => {}
             }
         }
-        self.pen.settle();
+        self.pen.end_frame();
         listening.flush();
     }
 

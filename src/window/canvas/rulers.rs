@@ -14,7 +14,7 @@ const MARKS_PT: f32 = 6.0;
 /// The room of rulers at the upper and the left edge, points; they measure the picture, not the
 /// unwrapped sheet.
 pub fn room_pt(session: &Session) -> f32 {
-    let is_picture = session.active().is_some_and(|tab| tab.unwrapped().is_none());
+    let is_picture = session.active().is_some_and(|open| open.unwrapped().is_none());
     if session.aids.rulers && is_picture { RULER_PT } else { 0.0 }
 }
 
@@ -63,7 +63,7 @@ pub fn draw(
     screen_from_canvas: Affine2,
     under: Option<Vec2>,
 ) {
-    let Some(view) = session.active().and_then(|tab| tab.view).filter(|_| room_pt(session) > 0.0)
+    let Some(view) = session.active().and_then(|open| open.view).filter(|_| room_pt(session) > 0.0)
     else {
         return;
     };

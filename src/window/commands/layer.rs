@@ -48,14 +48,17 @@ fn toggle_lock(session: &Session, requests: &mut UiRequests, lock: LayerLock) {
 
 /// Moves to the next layer, or adds it.
 fn step(session: &Session, requests: &mut UiRequests, by: i32, extends: bool) {
-    let Some((tab, primary)) = session.active().and_then(|tab| Some((tab, tab.selected?))) else {
+    let Some((open, primary)) = session.active().and_then(|open| Some((open, open.selected?)))
+    else {
         return;
     };
-    let to = neighbour(tab.document(), primary, by);
-    let anchor = tab.range_start().filter(|_| extends);
-    let listed: Vec<_> = tab.document().walk().iter().map(|(_, layer)| layer.id).collect();
+    let to = neighbour(open.document(), primary, by);
+    let anchor = open.range_start().filter(|_| extends);
+    let listed: Vec<_> = open.document().walk().iter().map(|(_, layer)| layer.id).collect();
     let ids = anchor.map_or_else(|| vec![to], |anchor| range(&listed, anchor, to));
-    requests.actions.extend(LayerAction::choosing(tab.document(), &ids, anchor).map(Action::Layer));
+    requests
+        .actions
+        .extend(LayerAction::choosing(open.document(), &ids, anchor).map(Action::Layer));
 }
 
 /// Whether something is true of the selected layer.
@@ -82,7 +85,7 @@ fn is_locked(session: &Session, lock: LayerLock) -> bool {
 }
 
 fn is_alone(session: &Session) -> bool {
-    session.active().is_some_and(|tab| tab.solo.is_some() && tab.solo == tab.selected)
+    session.active().is_some_and(|open| open.solo.is_some() && open.solo == open.selected)
 }
 
 fn has_mask(session: &Session) -> bool {
@@ -94,7 +97,7 @@ fn mask_is(session: &Session, is: impl FnOnce(&LayerMask) -> bool) -> bool {
 }
 
 fn is_on_mask(session: &Session) -> bool {
-    session.active().is_some_and(|tab| tab.on_mask)
+    session.active().is_some_and(|open| open.on_mask)
 }
 
 pub const COMMANDS: &[MenuCommand] = &[
@@ -143,9 +146,9 @@ pub const COMMANDS: &[MenuCommand] = &[
         "Split part by place",
         &[],
         "Areas of the chosen part's colour that are apart, such as two eyes, become parts of their own",
-        |session| session.active().and_then(|tab| tab.chosen_part()).is_some_and(|part| part.is_of_color()),
+        |session| session.active().and_then(|open| open.chosen_part()).is_some_and(|part| part.is_of_color()),
         |session, requests| {
-            if let Some(part) = session.active().and_then(|tab| tab.chosen_part()) {
+            if let Some(part) = session.active().and_then(|open| open.chosen_part()) {
                 requests.act(Action::Part(PartAction::Split { part: part.id.clone() }));
             }
         },

@@ -89,11 +89,11 @@ pub const COMMANDS: &[MenuCommand] = &[
          shown in red",
         has_document,
         |session, requests| {
-            let on = session.active().is_some_and(|tab| !tab.quick_mask);
+            let on = session.active().is_some_and(|open| !open.quick_mask);
             act(requests, SelectionAction::QuickMask { on });
         },
     )
-    .ticked(|session, _| session.active().is_some_and(|tab| tab.quick_mask)),
+    .ticked(|session, _| session.active().is_some_and(|open| open.quick_mask)),
     LINE,
     row(
         "Keep selection…",

@@ -81,23 +81,24 @@ pub const COMMANDS: &[MenuCommand] = &[
 
 /// There is a transform, and Enter neither closes a lasso nor crops.
 fn is_transformed(session: &Session) -> bool {
-    let Some(tab) = session.active().filter(|_| session.lasso.is_empty() && session.crop.is_none())
+    let Some(open) =
+        session.active().filter(|_| session.lasso.is_empty() && session.crop.is_none())
     else {
         return false;
     };
     // While a brush is current, Enter does not turn live layers into paint.
     let in_hand = matches!(session.tool, ToolKind::Transform | ToolKind::Liquify);
     let is_placed = |id| {
-        let layer = tab.document().layer(id);
+        let layer = open.document().layer(id);
         layer.is_some_and(|layer| layer.transform.is_some() || in_hand && layer.liquify.is_some())
     };
-    tab.chosen_layers().into_iter().any(is_placed)
+    open.chosen_layers().into_iter().any(is_placed)
 }
 
 fn is_liquified(session: &Session) -> bool {
-    let Some(tab) = session.active() else { return false };
-    let has_liquify = |id| tab.document().layer(id).is_some_and(|layer| layer.liquify.is_some());
-    tab.chosen_layers().into_iter().any(has_liquify)
+    let Some(open) = session.active() else { return false };
+    let has_liquify = |id| open.document().layer(id).is_some_and(|layer| layer.liquify.is_some());
+    open.chosen_layers().into_iter().any(has_liquify)
 }
 
 fn mirror(session: &Session, requests: &mut UiRequests, upright: bool) {
@@ -118,8 +119,8 @@ fn turn(session: &Session, requests: &mut UiRequests, degrees: f32) {
 fn shape_by(session: &Session, map: Option<PlaneMap>) -> Option<Action> {
     let takes_shape =
         session.tool == ToolKind::Transform && session.carried == TransformTarget::Shape;
-    let tab = session.active().filter(|_| takes_shape)?;
-    let by = transform::about_shape(tab.document(), map?)?;
+    let open = session.active().filter(|_| takes_shape)?;
+    let by = transform::about_shape(open.document(), map?)?;
     Some(Action::Part(PartAction::TakeAlong { by, done: true }))
 }
 

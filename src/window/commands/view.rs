@@ -28,17 +28,17 @@ fn is_over(session: &Session, name: &str) -> bool {
 }
 
 fn is_unwrapped(session: &Session) -> bool {
-    session.active().is_some_and(|tab| tab.unwrapped().is_some())
+    session.active().is_some_and(|open| open.unwrapped().is_some())
 }
 
 const fn alt(key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(Modifiers::ALT, key)
 }
 
-/// The tab so many to the right of the one in front, around the end.
-fn tab_beside(session: &Session, requests: &mut UiRequests, by: usize) {
+/// Shows the document so many tabs to the right of the one in front, around the end.
+fn show_neighbour(session: &Session, requests: &mut UiRequests, by: usize) {
     let index = (session.current + by) % session.open_documents.len().max(1);
-    requests.act(Action::File(FileAction::Tab { index }));
+    requests.act(Action::File(FileAction::Show { index }));
 }
 const STEP_RAD: f32 = std::f32::consts::PI / 12.0;
 
@@ -92,7 +92,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         has_document,
         |_, requests| view(requests, ViewAction::Mirror {}),
     )
-    .ticked(|session, _| session.active().is_some_and(|tab| tab.view.is_some_and(|view| view.mirrored))),
+    .ticked(|session, _| session.active().is_some_and(|open| open.view.is_some_and(|view| view.mirrored))),
     LINE,
     row(
         "Show normals",
@@ -183,11 +183,11 @@ pub const COMMANDS: &[MenuCommand] = &[
         always,
         |_, requests| requests.request(WindowRequest::PanelsApart),
     )
-    .ticked(|_, layout| layout.side == PanelSide::Apart),
+    .ticked(|_, layout| layout.side == PanelSide::Floating),
     row("Layers in a window", &[], "Moves the layer list to a window of its own, or back", always, |_, requests| {
         requests.request(WindowRequest::Float(PanelKind::Layers))
     })
-    .ticked(|_, layout| layout.apart.contains(&PanelKind::Layers)),
+    .ticked(|_, layout| layout.floating.contains(&PanelKind::Layers)),
     row("Full screen", &[key(Key::F11)], "Or back", always, |_, requests| requests.request(WindowRequest::FullScreen)),
     row(
         "Larger interface",
@@ -218,9 +218,9 @@ pub const COMMANDS: &[MenuCommand] = &[
         &[ctrl(Key::Tab), ctrl_shift(Key::CloseBracket)],
         "The next tab",
         has_document,
-        |session, requests| tab_beside(session, requests, 1),
+        |session, requests| show_neighbour(session, requests, 1),
     ),
     row("Previous document", &[ctrl_shift(Key::Tab)], "The tab before this one", has_document, |session, requests| {
-        tab_beside(session, requests, session.open_documents.len().saturating_sub(1))
+        show_neighbour(session, requests, session.open_documents.len().saturating_sub(1))
     }),
 ];

@@ -15,7 +15,7 @@ use crate::file_purpose::FilePurpose;
 use crate::io::maps;
 use crate::jobs::MapsRead;
 use crate::raster::Picture;
-use crate::session::storage::{self, OpenedTab};
+use crate::session::storage::{self, LoadedDocument};
 use crate::widgets::{choice_row, named, sentence};
 use eframe::egui::{
     self, Color32, Context, RichText, ScrollArea, Sense, StrokeKind, TextureHandle, Ui, pos2, vec2,
@@ -316,7 +316,7 @@ impl ImportDialog {
             ScrollArea::vertical().max_height(150.0).show(ui, |ui| {
                 egui::Grid::new("findings").num_columns(3).striped(true).show(ui, |ui| {
                     for choice in &found.choices {
-                        let (name, words) = findings::told(choice);
+                        let (name, words) = findings::describe(choice);
                         ui.label(name);
                         ui.label(words);
                         ui.weak(format!(
@@ -406,4 +406,4 @@ impl ImportDialog {
 }
 
 /// A document made of maps, boxed: it is large.
-pub type MadeDocument = Box<OpenedTab>;
+pub type MadeDocument = Box<LoadedDocument>;

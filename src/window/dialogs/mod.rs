@@ -102,7 +102,7 @@ impl Dialog {
                 Dialog::New(new) => new.show(ui, requests),
                 Dialog::Edge(edge) => edge.show(ui, requests),
                 Dialog::Keep(keep) => {
-                    let kept = session.active().map_or(&[][..], |tab| &tab.document().selections);
+                    let kept = session.active().map_or(&[][..], |open| &open.document().selections);
                     let names: Vec<String> = kept.iter().map(|kept| kept.name.clone()).collect();
                     keep.show(ui, &names, requests)
                 }

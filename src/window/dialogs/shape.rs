@@ -15,8 +15,8 @@ use eframe::egui::Ui;
 const MOST_LOOKS: usize = 12;
 
 pub struct ShapeDialog {
-    /// The tab, by its key.
-    tab: usize,
+    /// The open document, by its key.
+    key: usize,
     /// Its drawing, if it has one.
     layer: Option<LayerId>,
     traits: DrawingTraits,
@@ -48,27 +48,27 @@ pub fn find_drawing(
 
 impl ShapeDialog {
     /// For a document that was opened from a picture, whose only layer is the drawing.
-    pub fn of_picture(tab: &OpenDocument, traits: DrawingTraits) -> Self {
-        let layer = tab.document().layers.last().map(|layer| layer.id);
-        Self { is_first: true, ..Self::new(tab, layer, traits) }
+    pub fn of_picture(open: &OpenDocument, traits: DrawingTraits) -> Self {
+        let layer = open.document().layers.last().map(|layer| layer.id);
+        Self { is_first: true, ..Self::new(open, layer, traits) }
     }
 
     /// For the drawing that was found in a document.
-    pub fn of(tab: &OpenDocument, found: Option<(LayerId, DrawingTraits)>) -> Self {
+    pub fn of(open: &OpenDocument, found: Option<(LayerId, DrawingTraits)>) -> Self {
         match found {
-            Some((id, traits)) => Self::new(tab, Some(id), traits),
+            Some((id, traits)) => Self::new(open, Some(id), traits),
             None => Self::new(
-                tab,
+                open,
                 None,
                 DrawingTraits { background: FigureBackground::Empty, colors: 0, flat_share: 0.0 },
             ),
         }
     }
 
-    fn new(tab: &OpenDocument, layer: Option<LayerId>, traits: DrawingTraits) -> Self {
+    fn new(open: &OpenDocument, layer: Option<LayerId>, traits: DrawingTraits) -> Self {
         let preset = Inflation::PRESETS[0].0;
         let each = if traits.is_of_flats() { PartFor::Color } else { PartFor::Layer };
-        Self { tab: tab.key, layer, traits, preset, each, is_first: false }
+        Self { key: open.key, layer, traits, preset, each, is_first: false }
     }
 
     pub fn show(
@@ -78,8 +78,8 @@ impl ShapeDialog {
         requests: &mut UiRequests,
     ) -> DialogAnswer {
         ui.set_width(380.0);
-        let tab = session.open_documents.iter().position(|tab| tab.key == self.tab);
-        let Some((index, tab)) = tab.map(|index| (index, &session.open_documents[index])) else {
+        let open = session.open_documents.iter().position(|open| open.key == self.key);
+        let Some((index, open)) = open.map(|index| (index, &session.open_documents[index])) else {
             return DialogAnswer::Close;
         };
         ui.heading(if self.is_first {
@@ -116,7 +116,7 @@ impl ShapeDialog {
         let no = if self.is_first { "Only paint" } else { "Cancel" };
         match answers(ui, "Give it a shape", no, true) {
             Some(true) => {
-                self.ask(index, tab.document(), requests);
+                self.ask(index, open.document(), requests);
                 DialogAnswer::Shaped
             }
             Some(false) => DialogAnswer::Close,
@@ -141,11 +141,11 @@ impl ShapeDialog {
         }
     }
 
-    fn ask(&self, tab: usize, document: &Document, requests: &mut UiRequests) {
+    fn ask(&self, index: usize, document: &Document, requests: &mut UiRequests) {
         let Some(layer) = self.layer.and_then(|layer| LayerPath::of(document, layer)) else {
             return;
         };
-        requests.act(Action::File(crate::session::actions::FileAction::Tab { index: tab }));
+        requests.act(Action::File(crate::session::actions::FileAction::Show { index }));
         let (preset, flats) = (InflationPreset(self.preset), self.each);
         requests.act(Action::Part(PartAction::Shape { layer, preset, flats }));
     }

@@ -7,8 +7,8 @@ use crate::session::Session;
 use eframe::egui::Ui;
 
 pub struct UnsavedDialog {
-    /// The tab with unsaved work.
-    pub tab: usize,
+    /// The place of the open document with unsaved work.
+    pub index: usize,
     pub then: AfterUnsaved,
 }
 
@@ -16,7 +16,7 @@ impl UnsavedDialog {
     pub fn show(&self, ui: &mut Ui, session: &Session) -> DialogAnswer {
         ui.set_width(360.0);
         let title =
-            session.open_documents.get(self.tab).map_or_else(String::new, |tab| tab.title());
+            session.open_documents.get(self.index).map_or_else(String::new, |open| open.title());
         ui.heading(format!("Save the changes to “{title}”?"));
         ui.label("What is not saved is lost when the document is closed.");
         ui.add_space(4.0);

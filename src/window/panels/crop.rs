@@ -15,7 +15,7 @@ const PLACE: std::ops::RangeInclusive<i32> = -65_536..=65_536;
 const SIDE: std::ops::RangeInclusive<i32> = 1..=65_536;
 
 pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    let Some(canvas) = session.active().map(|tab| tab.document().size) else { return };
+    let Some(canvas) = session.active().map(|open| open.document().size) else { return };
     let frame = session.crop.unwrap_or(canvas.rect());
     let (mut x, mut y) = (frame.x0, frame.y0);
     let (mut width, mut height) = (frame.width() as i32, frame.height() as i32);

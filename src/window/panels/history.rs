@@ -6,18 +6,18 @@ use crate::session::{Action, Session, labels};
 use eframe::egui::{self, Button, RichText, Ui};
 
 pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    let Some(tab) = session.active() else {
+    let Some(open) = session.active() else {
         ui.weak("No document is open.");
         return;
     };
-    let done = tab.history.past().len() as i32;
+    let done = open.history.past().len() as i32;
     let opened = std::iter::once(("Opened".to_owned(), -done));
-    let past = tab
+    let past = open
         .history
         .past_labels()
         .enumerate()
         .map(|(i, label)| (labels::sentence(label), i as i32 + 1 - done));
-    let future = tab
+    let future = open
         .history
         .future_labels()
         .enumerate()

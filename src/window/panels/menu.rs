@@ -97,7 +97,7 @@ fn recent_files(ui: &mut Ui, recent: &[PathBuf], requests: &mut UiRequests) {
 
 /// The selections that the document keeps.
 fn kept_selections(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    let kept = session.active().map_or(&[][..], |tab| &tab.document().selections);
+    let kept = session.active().map_or(&[][..], |open| &open.document().selections);
     ui.add_enabled_ui(!kept.is_empty(), |ui| {
         ui.menu_button("Select kept", |ui| {
             for name in kept.iter().map(|kept| kept.name.clone()) {
@@ -115,20 +115,20 @@ fn kept_selections(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
 pub fn tabs(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
-        for (index, tab) in session.open_documents.iter().enumerate() {
+        for (index, open) in session.open_documents.iter().enumerate() {
             let is_front = index == session.current;
-            let title = format!("{}{}", if tab.is_dirty() { "• " } else { "" }, tab.title());
+            let title = format!("{}{}", if open.is_dirty() { "• " } else { "" }, open.title());
             let text = if is_front { RichText::new(title).strong() } else { RichText::new(title) };
-            let path = tab
+            let path = open
                 .file
                 .as_ref()
                 .map_or_else(|| "Not saved yet".to_owned(), |file| file.display().to_string());
             let response = ui.add(Button::selectable(is_front, text)).on_hover_text(path);
             if response.clicked() {
-                requests.act(Action::File(FileAction::Tab { index }));
+                requests.act(Action::File(FileAction::Show { index }));
             }
             let close =
-                sized_button(ui, Icon::Close, &format!("Close {}", tab.title()), false, 18.0);
+                sized_button(ui, Icon::Close, &format!("Close {}", open.title()), false, 18.0);
             if close.clicked() || response.middle_clicked() {
                 requests.request(WindowRequest::Close(index));
             }

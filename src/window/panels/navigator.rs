@@ -11,11 +11,11 @@ use crate::widgets::NumberField;
 use eframe::egui::{self, Color32, Rect, Sense, Shape, Stroke, Ui, pos2};
 
 pub fn show(ui: &mut Ui, session: &Session, canvas: &mut Canvas, requests: &mut UiRequests) {
-    let Some(tab) = session.active() else {
+    let Some(open) = session.active() else {
         ui.weak("No document is open.");
         return;
     };
-    let (size, Some(view)) = (tab.shown_size(), tab.view) else { return };
+    let (size, Some(view)) = (open.shown_size(), open.view) else { return };
     let room = egui::vec2(ui.available_width() - 4.0, 180.0);
     let scale = (room.x / size.width as f32).min(room.y / size.height as f32);
     let side = egui::vec2(size.width as f32, size.height as f32) * scale;

@@ -51,7 +51,7 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         }
     }
     ui.separator();
-    let on_mask = session.active().is_some_and(|tab| tab.on_mask);
+    let on_mask = session.active().is_some_and(|open| open.on_mask);
     if let Some(document) = session.shown() {
         home(ui, document, layer, &mut setter);
     }

@@ -36,15 +36,15 @@ pub fn show(
         if !jobs.under_way.is_empty() {
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(80));
         }
-        let Some(tab) = session.active() else {
+        let Some(open) = session.active() else {
             if !say(ui, jobs) {
                 ui.weak("Open a document, or drop a picture or a normal map on the window");
             }
             return;
         };
-        let document = tab.shown();
+        let document = open.shown();
         let percent =
-            tab.view.map_or(100.0, |view| view.zoom * ui.ctx().pixels_per_point() * 100.0);
+            open.view.map_or(100.0, |view| view.zoom * ui.ctx().pixels_per_point() * 100.0);
         if ui
             .add(Button::new(format!("{percent:.0} %")).frame(false))
             .on_hover_text("Click for actual pixels")
@@ -53,7 +53,7 @@ pub fn show(
             requests.request(WindowRequest::Scale(1.0));
         }
         ui.weak(document.size.to_string());
-        if tab.unwrapped().is_some() {
+        if open.unwrapped().is_some() {
             ui.label("Unwrapped").on_hover_text(
                 "You are painting on the unwrapped surface; View, Unwrapped shows the picture",
             );
@@ -159,7 +159,7 @@ fn memory_menu(
 
 /// The last message, while it is shown; returns whether there is one.
 fn say(ui: &mut Ui, jobs: &Jobs) -> bool {
-    let said = jobs.said();
+    let said = jobs.success_message();
     if let Some(said) = said {
         ui.label(said);
         ui.ctx().request_repaint_after(std::time::Duration::from_secs(1));

@@ -26,7 +26,7 @@ pub fn show(
 ) {
     let n = strokes.len();
     ui.label(format!("{n} {}", if n == 1 { "stroke" } else { "strokes" }));
-    let chosen = session.active().map(|tab| tab.chosen_strokes()).unwrap_or_default();
+    let chosen = session.active().map(|open| open.chosen_strokes()).unwrap_or_default();
     list(ui, layer, strokes, &chosen, requests);
     let Some(first) = chosen.first().and_then(|&index| strokes.get(index)) else {
         ui.weak("Select strokes here or on the canvas with the stroke tool (S).");

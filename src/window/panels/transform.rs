@@ -44,9 +44,9 @@ pub fn ways(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     });
     meshes(ui, session, requests);
     ui.add_space(6.0);
-    let Some(tab) = session.active() else { return };
-    let chosen = tab.outermost_chosen();
-    let transforms = chosen.iter().filter_map(|id| tab.document().layer(*id)?.transform.as_ref());
+    let Some(open) = session.active() else { return };
+    let chosen = open.outermost_chosen();
+    let transforms = chosen.iter().filter_map(|id| open.document().layer(*id)?.transform.as_ref());
     if let Some(transform) = transforms.last() {
         ui.label("Pixels");
         if let Some(filter) =
@@ -60,7 +60,7 @@ pub fn ways(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             }));
         }
     }
-    if let Some(frame) = tab.frame(session.carried) {
+    if let Some(frame) = open.frame(session.carried) {
         ui.label("Pivot");
         let choices = PIVOTS.map(|(share, name)| (Some(share), name));
         let known =
@@ -100,10 +100,10 @@ fn meshes(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
 
 /// The lower row: the frame in numbers; sides and angles change about the pivot.
 pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    let Some(tab) = session.active() else { return };
-    let of_shape = session.carried == TransformTarget::Shape && tab.document().surface.is_some();
-    let locked = |id| tab.document().layer(id).is_none_or(|layer| layer.lock == LayerLock::All);
-    let chosen = tab.outermost_chosen();
+    let Some(open) = session.active() else { return };
+    let of_shape = session.carried == TransformTarget::Shape && open.document().surface.is_some();
+    let locked = |id| open.document().layer(id).is_none_or(|layer| layer.lock == LayerLock::All);
+    let chosen = open.outermost_chosen();
     if chosen.is_empty() && !of_shape {
         return drop(ui.weak("Choose layers to move, scale and turn them"));
     }
@@ -111,7 +111,7 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         return drop(ui.weak("What is locked cannot be transformed"));
     }
     let (Some(frame), Some(before)) =
-        (tab.frame(session.carried), tab.frame_before(session.carried))
+        (open.frame(session.carried), open.frame_before(session.carried))
     else {
         return drop(ui.weak("There is nothing on this layer to transform"));
     };

@@ -29,7 +29,7 @@ impl WindowPen {
     }
 
     /// Takes an event of a frame (`px_per_pt`: px per point) and turns it into reports.
-    pub fn hear(&mut self, event: &Event, px_per_pt: f32, now_secs: f64) {
+    pub fn read_event(&mut self, event: &Event, px_per_pt: f32, now_secs: f64) {
         let phase = match *event {
             Event::Touch { phase, force, .. } => {
                 match phase {
@@ -61,9 +61,9 @@ impl WindowPen {
     }
 
     /// All events of a frame are processed.
-    pub fn settle(&mut self) {
+    pub fn end_frame(&mut self) {
         if let Some(tablet) = &self.tablet {
-            tablet.borrow_mut().settle();
+            tablet.borrow_mut().drop_motions();
         }
     }
 
@@ -117,7 +117,7 @@ mod tests {
 
     fn reports(events: &[Event]) -> Vec<(PenPhase, Option<f32>)> {
         let mut pen = WindowPen::default();
-        events.iter().for_each(|event| pen.hear(event, 1.0, 0.0));
+        events.iter().for_each(|event| pen.read_event(event, 1.0, 0.0));
         std::iter::from_fn(|| pen.next()).map(|report| (report.phase, report.pressure)).collect()
     }
 
@@ -167,8 +167,8 @@ mod tests {
             tablet.borrow_mut().moved(at_px);
             tablet.borrow_mut().axis(2, pressure);
         }
-        pen.hear(&Event::PointerMoved(pos2(33.25 / 1.5, 7.0)), 1.5, 0.0);
-        pen.hear(&Event::PointerMoved(pos2(24.0, 8.0)), 1.5, 0.0);
+        pen.read_event(&Event::PointerMoved(pos2(33.25 / 1.5, 7.0)), 1.5, 0.0);
+        pen.read_event(&Event::PointerMoved(pos2(24.0, 8.0)), 1.5, 0.0);
         let reports: Vec<_> =
             std::iter::from_fn(|| pen.next()).map(|r| (r.pressure, r.is_eraser)).collect();
         assert_eq!(reports, [(Some(0.25), true), (Some(0.5), true)]);
@@ -186,11 +186,11 @@ mod tests {
                 is_eraser: false,
             });
             tablet.borrow_mut().moved([3.0, 4.0]);
-            pen.hear(&Event::PointerMoved(pos2(3.0, 4.0)), 1.0, 0.0);
-            pen.hear(&button(true), 1.0, 0.0);
+            pen.read_event(&Event::PointerMoved(pos2(3.0, 4.0)), 1.0, 0.0);
+            pen.read_event(&button(true), 1.0, 0.0);
             tablet.borrow_mut().follow(PenAxes { device: 8, ..PenAxes::default() });
             tablet.borrow_mut().moved([50.0, 60.0]);
-            pen.hear(&Event::PointerMoved(pos2(50.0, 60.0)), 1.0, 0.0);
+            pen.read_event(&Event::PointerMoved(pos2(50.0, 60.0)), 1.0, 0.0);
             std::iter::from_fn(|| pen.next()).skip(2).map(|r| (r.phase, r.at)).collect::<Vec<_>>()
         };
         let moved = (PenPhase::Move, pos2(50.0, 60.0));

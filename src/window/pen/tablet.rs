@@ -138,7 +138,7 @@ impl Tablet {
     }
 
     /// The window has read all motions.
-    pub fn settle(&mut self) {
+    pub fn drop_motions(&mut self) {
         self.motions.clear();
     }
 }
@@ -205,7 +205,7 @@ mod tests {
         let mut pen = pen();
         (0..10_000).for_each(|i| pen.moved([f64::from(i), 0.0]));
         assert_eq!(pen.motions.len(), MOST_MOTIONS);
-        pen.settle();
+        pen.drop_motions();
         assert_eq!(pen.take([9_999.0, 0.0]), None);
     }
 }

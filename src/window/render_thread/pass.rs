@@ -51,7 +51,7 @@ impl PassBatch {
 }
 
 impl RenderPass {
-    pub fn take_up(&mut self, next: Document) {
+    pub fn begin(&mut self, next: Document) {
         match self.document.as_ref().filter(|old| old.size == next.size) {
             Some(old) => self.dirty.extend(diff(old, &next)),
             None => self.dirty = TileAt::covering(next.size.rect()).collect(),

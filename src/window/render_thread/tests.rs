@@ -31,12 +31,12 @@ fn without_memory_the_picture_waits_and_the_next_one_is_painted_whole() {
         is_dragged: false,
     };
     let mut work = RenderWork::default();
-    work.if_there_is_memory(|work| work.take_up(wanted())).unwrap();
+    work.if_there_is_memory(|work| work.begin(wanted())).unwrap();
     let none: Result<Vec<u8>, _> =
         work.if_there_is_memory(|_| memory::filled_or_unwind(usize::MAX / 2, 0u8));
     assert!(none.is_err() && !work.has_more(), "the thread does not try again at once");
     assert!(work.nothing().is_settled);
-    work.if_there_is_memory(|work| work.take_up(wanted())).unwrap();
+    work.if_there_is_memory(|work| work.begin(wanted())).unwrap();
     let painted = work.if_there_is_memory(RenderWork::paint).unwrap().unwrap();
     assert_eq!((painted.tiles.len(), painted.refused), (4, None));
 }
@@ -112,12 +112,12 @@ fn a_drag_is_shown_in_all_pixels_and_painted_anew_once_the_hand_rests() {
         }
         (is_draft, grid.to_straight_rgba(size.rect()))
     };
-    work.take_up(wanted(&document, false));
+    work.begin(wanted(&document, false));
     paint(&mut work);
-    work.take_up(wanted(&document, true));
+    work.begin(wanted(&document, true));
     let dragged =
         document.with_layer(layers[1].id, |layer| layer.content = photo(size, 3.3)).unwrap();
-    work.take_up(wanted(&dragged, true));
+    work.begin(wanted(&dragged, true));
     // As if whole pixels had been found to take longer than a frame.
     work.begin_draft(1);
     work.is_drafting = true;
@@ -125,7 +125,7 @@ fn a_drag_is_shown_in_all_pixels_and_painted_anew_once_the_hand_rests() {
     let (is_draft, coarse) = paint(&mut work);
     let fine = flatten(&dragged, &Progress::default()).unwrap().to_straight_rgba(size.rect());
     assert!(is_draft == Some(true) && coarse != fine);
-    work.take_up(wanted(&dragged, false));
+    work.begin(wanted(&dragged, false));
     let (is_draft, whole) = paint(&mut work);
     assert!(is_draft == Some(false) && whole == fine);
 }

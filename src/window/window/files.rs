@@ -41,11 +41,12 @@ impl MainWindow {
             }
             JobResult::Opened(file, opened) => match *opened {
                 Ok(opened) => {
-                    self.recent_is(opened.tab.file.clone());
+                    self.recent_is(opened.open.file.clone());
                     let drawing = opened.drawing.filter(DrawingTraits::has_outline);
                     self.session.adopt(opened);
-                    if let (Some(look), Some(tab)) = (drawing, self.session.active()) {
-                        self.dialogs.push(Dialog::Shape(shape::ShapeDialog::of_picture(tab, look)));
+                    if let (Some(look), Some(open)) = (drawing, self.session.active()) {
+                        self.dialogs
+                            .push(Dialog::Shape(shape::ShapeDialog::of_picture(open, look)));
                     }
                     if let Some(file) = file {
                         self.did(|| Action::File(FileAction::Open { file }));
@@ -91,14 +92,14 @@ impl MainWindow {
                 self.session.note_read(&file);
                 self.did(|| Action::File(FileAction::ImportUnwrapped { file }));
             }
-            JobResult::Unwrapped(tab) => self.unwrapped(tab),
+            JobResult::Unwrapped(key) => self.unwrapped(key),
             JobResult::Part(read) => {
-                let PartResult { tab, layer, part, file, read } = *read;
-                if let Some(tab) =
-                    self.session.open_documents.iter_mut().find(|other| other.key == tab)
+                let PartResult { key, layer, part, file, read } = *read;
+                if let Some(open) =
+                    self.session.open_documents.iter_mut().find(|other| other.key == key)
                 {
-                    pictures::put(tab, layer, read);
-                    tab.reads.push(file.clone());
+                    pictures::put(open, layer, read);
+                    open.reads.push(file.clone());
                     self.did(|| Action::File(FileAction::Use { part, file }));
                 }
             }
@@ -118,10 +119,11 @@ impl MainWindow {
             JobResult::Edited(edited) => self.edited(*edited),
             JobResult::Shaped(shaped) => self.shaped(*shaped),
             JobResult::Declined(why) => self.messages.push(why.into()),
-            JobResult::Looked(tab, found) => {
-                if let Some(tab) = self.session.open_documents.iter().find(|other| other.key == tab)
+            JobResult::Looked(key, found) => {
+                if let Some(open) =
+                    self.session.open_documents.iter().find(|other| other.key == key)
                 {
-                    self.dialogs.push(Dialog::Shape(shape::ShapeDialog::of(tab, found)));
+                    self.dialogs.push(Dialog::Shape(shape::ShapeDialog::of(open, found)));
                 }
             }
             JobResult::Said(why) => self.jobs.say(why),
@@ -161,14 +163,14 @@ impl MainWindow {
 
     /// Reads a picture for the selected layer.
     fn read_part(&mut self, part: PicturePart, file: PathBuf) {
-        let Some((tab, layer)) =
-            self.session.active().and_then(|tab| Some((tab.key, tab.selected?)))
+        let Some((key, layer)) =
+            self.session.active().and_then(|open| Some((open.key, open.selected?)))
         else {
             return;
         };
         self.jobs.start(format!("Reading {}", short(&file)), JobKind::Working, move |_| {
             match pictures::read(part, &file) {
-                Ok(read) => JobResult::Part(Box::new(PartResult { tab, layer, part, file, read })),
+                Ok(read) => JobResult::Part(Box::new(PartResult { key, layer, part, file, read })),
                 Err(error) => JobResult::Failed(error),
             }
         });
@@ -255,7 +257,7 @@ impl MainWindow {
 
     /// The proposed name of a file.
     pub(super) fn proposed(&self, purpose: FilePurpose) -> String {
-        let title = self.session.active().map_or_else(String::new, |tab| tab.title());
+        let title = self.session.active().map_or_else(String::new, |open| open.title());
         let stem = storage::without_ending(&title);
         if purpose == FilePurpose::ExportUnwrapped {
             return format!("{stem}-unwrapped.png");
@@ -276,7 +278,7 @@ impl MainWindow {
 
     /// The folder to begin in.
     pub(super) fn folder(&self) -> PathBuf {
-        let beside = self.session.active().and_then(|tab| tab.file.as_deref()).or(self
+        let beside = self.session.active().and_then(|open| open.file.as_deref()).or(self
             .settings
             .recent
             .first()

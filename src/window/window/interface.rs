@@ -13,8 +13,8 @@ const DENSE_PT: f32 = 1800.0;
 
 impl MainWindow {
     /// The stored look, or one that fits the screen.
-    pub(super) fn dress(&mut self, ctx: &egui::Context) {
-        if std::mem::replace(&mut self.is_dressed, true) {
+    pub(super) fn apply_first_scale(&mut self, ctx: &egui::Context) {
+        if std::mem::replace(&mut self.has_first_scale, true) {
             return;
         }
         let screen = ctx.input(|i| i.viewport().monitor_size);
@@ -45,7 +45,7 @@ impl MainWindow {
     fn show_at(&mut self, ctx: &egui::Context, scale: f32) {
         let kept = ctx.zoom_factor() / scale;
         ctx.set_zoom_factor(scale);
-        for view in self.session.open_documents.iter_mut().filter_map(|tab| tab.view.as_mut()) {
+        for view in self.session.open_documents.iter_mut().filter_map(|open| open.view.as_mut()) {
             view.zoom *= kept;
         }
     }

@@ -46,7 +46,7 @@ impl MainWindow {
                 },
             );
             self.side(ui, requests);
-            self.apart(ui.ctx(), requests);
+            self.show_floating(ui.ctx(), requests);
         }
         if !self.session.open_documents.is_empty() && !is_bare {
             Panel::top("tabs")
@@ -68,7 +68,7 @@ impl MainWindow {
         let beside = match side {
             PanelSide::Left => Panel::left("panels left"),
             PanelSide::Right => Panel::right("panels right"),
-            PanelSide::Apart => {
+            PanelSide::Floating => {
                 let window =
                     egui::Window::new("Panels").id(Id::unique("panels apart")).constrain(true);
                 let corner = ui.max_rect().right_top() + egui::vec2(-310.0, 60.0);
@@ -84,10 +84,10 @@ impl MainWindow {
 
     /// The panel in front above, the layers below.
     fn together(&mut self, ui: &mut Ui, requests: &mut UiRequests) {
-        let apart = &self.settings.layout.apart;
+        let floating = &self.settings.layout.floating;
         let strip: Vec<_> = PanelKind::ALL
             .into_iter()
-            .filter(|(front, _)| !front.is_below() && !apart.contains(front))
+            .filter(|(front, _)| !front.is_below() && !floating.contains(front))
             .collect();
         let front = match self.settings.layout.front {
             front if strip.iter().any(|(known, _)| *known == front) => Some(front),
@@ -95,7 +95,7 @@ impl MainWindow {
         };
         let below: Vec<_> = PanelKind::ALL
             .into_iter()
-            .filter(|(panel, _)| panel.is_below() && !apart.contains(panel))
+            .filter(|(panel, _)| panel.is_below() && !floating.contains(panel))
             .collect();
         let has_below = !below.is_empty();
         if let Some(front) = front {
@@ -156,9 +156,9 @@ impl MainWindow {
         let mut gone = None;
         ui.horizontal_wrapped(|ui| {
             for &(choice, name) in strip {
-                let tab = ui.selectable_value(&mut front, choice, name);
-                let tab = tab.on_hover_text("Right-click for a window of its own");
-                tab.context_menu(|ui| {
+                let open = ui.selectable_value(&mut front, choice, name);
+                let open = open.on_hover_text("Right-click for a window of its own");
+                open.context_menu(|ui| {
                     if ui.button("In a window of its own").clicked() {
                         gone = Some(choice);
                         ui.close();
@@ -166,7 +166,7 @@ impl MainWindow {
                 });
             }
         });
-        self.settings.layout.apart.extend(gone);
+        self.settings.layout.floating.extend(gone);
         front
     }
 
@@ -192,8 +192,8 @@ impl MainWindow {
     }
 
     /// The panels in windows of their own; closing one puts it back.
-    fn apart(&mut self, ctx: &egui::Context, requests: &mut UiRequests) {
-        for (i, front) in self.settings.layout.apart.clone().into_iter().enumerate() {
+    fn show_floating(&mut self, ctx: &egui::Context, requests: &mut UiRequests) {
+        for (i, front) in self.settings.layout.floating.clone().into_iter().enumerate() {
             let mut is_open = true;
             // Over the canvas, so that none covers its former place.
             let corner = ctx.content_rect().center()
@@ -212,7 +212,7 @@ impl MainWindow {
             };
             window.show(ctx, area);
             if !is_open {
-                self.settings.layout.apart.retain(|other| *other != front);
+                self.settings.layout.floating.retain(|other| *other != front);
             }
         }
     }

@@ -11,19 +11,19 @@ use eframe::egui::{self, ViewportCommand};
 use std::path::PathBuf;
 
 impl MainWindow {
-    pub(super) fn close(&mut self, ctx: &egui::Context, tab: usize) {
-        if self.session.open_documents.get(tab).is_some_and(|tab| tab.is_dirty()) {
-            self.session.current = tab;
+    pub(super) fn close(&mut self, ctx: &egui::Context, index: usize) {
+        if self.session.open_documents.get(index).is_some_and(|open| open.is_dirty()) {
+            self.session.current = index;
             self.dialogs.push(Dialog::Unsaved(unsaved::UnsavedDialog {
-                tab,
-                then: AfterUnsaved::Close(tab),
+                index,
+                then: AfterUnsaved::Close(index),
             }));
         } else {
-            self.proceed(ctx, AfterUnsaved::Close(tab), false);
+            self.proceed(ctx, AfterUnsaved::Close(index), false);
         }
     }
 
-    /// After the question about unsaved work. `discarding`: the changes of the tab are discarded.
+    /// After the question about unsaved work. `discarding`: the changes of the document are discarded.
     pub(super) fn proceed(&mut self, ctx: &egui::Context, then: AfterUnsaved, discarding: bool) {
         match then {
             AfterUnsaved::Close(index) => self.apply(&Action::File(FileAction::Close { index })),
@@ -41,12 +41,12 @@ impl MainWindow {
         if self.leaving || !ctx.input(|i| i.viewport().close_requested()) {
             return;
         }
-        match self.session.open_documents.iter().position(|tab| tab.is_dirty()) {
-            Some(tab) => {
+        match self.session.open_documents.iter().position(|open| open.is_dirty()) {
+            Some(index) => {
                 ctx.send_viewport_cmd(ViewportCommand::CancelClose);
-                self.session.current = tab;
+                self.session.current = index;
                 self.dialogs.push(Dialog::Unsaved(unsaved::UnsavedDialog {
-                    tab,
+                    index,
                     then: AfterUnsaved::Quit,
                 }));
             }

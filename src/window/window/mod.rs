@@ -64,7 +64,7 @@ pub struct MainWindow {
     /// The purpose of the open system dialog.
     title: String,
     /// Whether the stored theme was applied.
-    is_dressed: bool,
+    has_first_scale: bool,
     /// The user agreed to leave.
     leaving: bool,
     /// What to do once the document is saved, while the user is asked where to.
@@ -113,7 +113,7 @@ impl MainWindow {
             unwrapped: unwrapped::UnwrappedDialog::default(),
             unwrapping: None,
             title: String::new(),
-            is_dressed: false,
+            has_first_scale: false,
             leaving: false,
             after_saving: None,
             memory: MemoryMeter::default(),
@@ -181,7 +181,7 @@ impl MainWindow {
     /// One frame.
     pub fn show(&mut self, ui: &mut Ui) {
         let mut requests = UiRequests::default();
-        self.dress(ui.ctx());
+        self.apply_first_scale(ui.ctx());
         self.finish_jobs(ui.ctx());
         self.tell_troubles();
         self.unwrap_ahead();
@@ -222,7 +222,7 @@ impl MainWindow {
     fn show_dialog(&mut self, ctx: &egui::Context, requests: &mut UiRequests) {
         let Some(dialog) = self.dialogs.last_mut() else { return };
         let size = self.session.shown().map(|document| document.size);
-        let is_flat = self.session.active().is_some_and(|tab| tab.unwrapped().is_some());
+        let is_flat = self.session.active().is_some_and(|open| open.unwrapped().is_some());
         let is_seen = matches!(dialog, Dialog::Export(_)) && !is_flat;
         let preview = size.filter(|_| is_seen).and_then(|size| self.canvas.small(ctx, size));
         let answer = dialog.show(ctx, &self.session, &mut self.settings.keymap, preview, requests);
@@ -248,7 +248,7 @@ impl MainWindow {
                     let picture = storage::finished_picture(&source);
                     JobResult::Read(Box::new(MapsRead { source: *source, found, picture }))
                 };
-                self.jobs.give_up(READING_MAPS);
+                self.jobs.cancel(READING_MAPS);
                 return self.jobs.start(READING_MAPS.into(), JobKind::Working, read);
             }
             // The dialog stays while there are drawings in it.
@@ -256,7 +256,7 @@ impl MainWindow {
             DialogAnswer::Delete(lost) => return self.delete(lost),
             _ => {
                 if let Some(Dialog::Import(_)) = self.dialogs.pop() {
-                    self.jobs.give_up(READING_MAPS);
+                    self.jobs.cancel(READING_MAPS);
                 }
             }
         }
@@ -312,7 +312,7 @@ impl MainWindow {
     fn set_title(&mut self, ctx: &egui::Context) {
         let title = self.session.active().map_or_else(
             || "Rilievo".to_owned(),
-            |tab| format!("{}{} – Rilievo", if tab.is_dirty() { "• " } else { "" }, tab.title()),
+            |open| format!("{}{} – Rilievo", if open.is_dirty() { "• " } else { "" }, open.title()),
         );
         if title != self.title {
             ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
@@ -328,7 +328,7 @@ impl eframe::App for MainWindow {
     }
 
     fn raw_input_hook(&mut self, ctx: &egui::Context, raw: &mut egui::RawInput) {
-        clipboard::hear(ctx, &mut raw.events);
+        clipboard::translate_keys(ctx, &mut raw.events);
     }
 
     fn on_exit(&mut self, _gl: Option<&eframe::glow::Context>) {

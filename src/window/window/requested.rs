@@ -16,7 +16,7 @@ impl MainWindow {
             WindowRequest::OpenMapsDialog => self.dialogs.push(Dialog::Import(Box::default())),
             WindowRequest::ReplaceMapsDialog => {
                 let source =
-                    self.session.active().and_then(|tab| tab.document().surface_source.clone());
+                    self.session.active().and_then(|open| open.document().surface_source.clone());
                 let import = import::ImportDialog::replacing(source.as_deref());
                 self.dialogs.push(Dialog::Import(Box::new(import)));
             }
@@ -45,12 +45,12 @@ impl MainWindow {
             }
             WindowRequest::ExportUnwrapped => self.ask_where(FilePurpose::ExportUnwrapped),
             WindowRequest::Unwrap => self.unwrap_surface(),
-            WindowRequest::Close(tab) => self.close(ctx, tab),
+            WindowRequest::Close(index) => self.close(ctx, index),
             WindowRequest::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
             WindowRequest::CanvasSizeDialog
             | WindowRequest::ImageSizeDialog
             | WindowRequest::TurnDialog => {
-                let size = self.session.active().map(|tab| tab.document().size);
+                let size = self.session.active().map(|open| open.document().size);
                 self.dialogs.extend(size.map(|size| canvas::asked(&ask, size)));
             }
             WindowRequest::EdgeDialog(change) => {
@@ -78,10 +78,14 @@ impl MainWindow {
             }
             WindowRequest::PanelsApart => {
                 let side = &mut self.settings.layout.side;
-                *side = if *side == PanelSide::Apart { PanelSide::Right } else { PanelSide::Apart };
+                *side = if *side == PanelSide::Floating {
+                    PanelSide::Right
+                } else {
+                    PanelSide::Floating
+                };
             }
             WindowRequest::Float(front) => {
-                let apart = &mut self.settings.layout.apart;
+                let apart = &mut self.settings.layout.floating;
                 if apart.contains(&front) {
                     apart.retain(|other| *other != front)
                 } else {

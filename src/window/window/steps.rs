@@ -48,14 +48,14 @@ fn has_bent_stroke(session: &Session) -> bool {
 
 fn has_moved(session: &Session) -> bool {
     let moves = ["Move anchor", "Add anchor", "Move stroke", "Move layer"];
-    session.active().is_some_and(|tab| tab.history.past().any(|label| moves.contains(&label)))
+    session.active().is_some_and(|open| open.history.past().any(|label| moves.contains(&label)))
 }
 
 impl MainWindow {
     /// Shows them until all are completed or they are dismissed.
     pub(super) fn show_steps(&mut self, ui: &mut Ui) {
         let is_over = self.settings.is_hint_done
-            || self.session.active().is_none_or(|tab| tab.document().surface.is_none());
+            || self.session.active().is_none_or(|open| open.document().surface.is_none());
         if is_over || !self.is_first_start {
             return;
         }

@@ -147,7 +147,7 @@ impl MainWindow {
         if self.busy.drops_rest(ctx) {
             return;
         }
-        let front = self.session.active().map(|tab| tab.key);
+        let front = self.session.active().map(|open| open.key);
         if self.jobs.awaits_dialog() {
             self.busy.went_on |= ctx.input(|input| input.pointer.any_pressed());
             if !self.busy.went_on && !ctx.text_edit_focused() {
@@ -185,8 +185,8 @@ impl MainWindow {
         if self.jobs.editing().is_none() || matches!(action, Action::View(_)) {
             return false;
         }
-        if let (Some(tab), false) = (self.session.active(), matches!(action, Action::Pointer(_))) {
-            self.busy.actions.push((action.clone(), tab.key, layers(tab.document())));
+        if let (Some(open), false) = (self.session.active(), matches!(action, Action::Pointer(_))) {
+            self.busy.actions.push((action.clone(), open.key, layers(open.document())));
         }
         true
     }
@@ -198,7 +198,8 @@ impl MainWindow {
         }
         for (action, key, meant) in std::mem::take(&mut self.busy.actions) {
             // Actions name layers by their places.
-            let is_meant = |tab: &OpenDocument| tab.key == key && layers(tab.document()) == meant;
+            let is_meant =
+                |open: &OpenDocument| open.key == key && layers(open.document()) == meant;
             match self.session.active().is_some_and(is_meant) {
                 true => requests.act(action),
                 false => self.jobs.say(

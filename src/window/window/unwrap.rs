@@ -29,8 +29,8 @@ impl MainWindow {
     /// Shows the surface of the document in front unwrapped, at once if it is laid flat already.
     pub(super) fn unwrap_surface(&mut self) {
         let settings = self.session.unwrap_settings();
-        let Some(tab) = self.session.active() else { return };
-        let (key, Some(surface)) = (tab.key, tab.document().surface.clone()) else { return };
+        let Some(open) = self.session.active() else { return };
+        let (key, Some(surface)) = (open.key, open.document().surface.clone()) else { return };
         if surface.known_plane_layout(settings).is_some() {
             return self.unwrapped(key);
         }
@@ -44,9 +44,9 @@ impl MainWindow {
         });
     }
 
-    /// A surface was laid flat; if its tab is still in front, it is shown so.
-    pub(super) fn unwrapped(&mut self, tab: usize) {
-        if self.session.active().is_some_and(|front| front.key == tab) {
+    /// A surface was laid flat; if its document is still in front, it is shown so.
+    pub(super) fn unwrapped(&mut self, key: usize) {
+        if self.session.active().is_some_and(|front| front.key == key) {
             self.apply(&Action::View(ViewAction::Unwrapped { on: true }));
         }
     }
@@ -55,10 +55,10 @@ impl MainWindow {
     /// was replaced, and the one that the current brush prints on. The user does not wait for what
     /// is not needed yet.
     pub(super) fn unwrap_ahead(&mut self) {
-        let Some(tab) = self.session.active() else { return };
-        let Some(surface) = tab.document().surface.clone() else { return };
+        let Some(open) = self.session.active() else { return };
+        let Some(surface) = open.document().surface.clone() else { return };
         let shown =
-            tab.unwrapped().filter(|settings| surface.known_plane_layout(*settings).is_none());
+            open.unwrapped().filter(|settings| surface.known_plane_layout(*settings).is_none());
         let is_shown = shown.is_some();
         let printed = || {
             self.session.operator.unwrapping().filter(|settings| !surface.is_unwrapped(*settings))
@@ -90,7 +90,7 @@ impl MainWindow {
     /// Reads a picture of the surface laid flat.
     pub(super) fn import_unwrapped(&mut self, file: PathBuf) {
         let settings = self.session.unwrap_settings();
-        let surface = self.session.active().and_then(|tab| tab.document().surface.clone());
+        let surface = self.session.active().and_then(|open| open.document().surface.clone());
         self.jobs.start(format!("Reading {}", short(&file)), JobKind::Working, move |_| {
             match read_picture(&file) {
                 Ok((name, picture)) => {

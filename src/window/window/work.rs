@@ -28,11 +28,11 @@ impl MainWindow {
         match self
             .session
             .active()
-            .and_then(|tab| tab.file.clone())
+            .and_then(|open| open.file.clone())
             .filter(|file| storage::is_saved_to(file))
         {
             Some(file) => {
-                let knows_losses = self.session.active().is_some_and(|tab| tab.knows_losses);
+                let knows_losses = self.session.active().is_some_and(|open| open.knows_losses);
                 self.save_to(file, Overwrite::Nothing, knows_losses, then);
             }
             None => self.save_as(then),
@@ -54,12 +54,12 @@ impl MainWindow {
         then: Option<AfterUnsaved>,
     ) {
         self.session.drop_gesture();
-        let Some(tab) = self.session.active() else { return };
-        let (tab, document) = (tab.key, tab.document().clone());
+        let Some(open) = self.session.active() else { return };
+        let (key, document) = (open.key, open.document().clone());
         let knows_losses = knows_losses || storage::holds_everything(&file);
         let terms = self.session.saving(&file, over);
         self.put(Pending::Save(Box::new(Saving {
-            tab,
+            key,
             file,
             document,
             terms,
@@ -92,10 +92,10 @@ impl MainWindow {
     }
 
     pub(super) fn saved(&mut self, ctx: &egui::Context, saving: Saving, stamp: FileStamp) {
-        let Saving { tab, file, document, then, .. } = saving;
-        if let Some(tab) = self.session.open_documents.iter_mut().find(|other| other.key == tab) {
-            tab.mark_saved(document, file.clone(), stamp);
-            tab.knows_losses = true;
+        let Saving { key, file, document, then, .. } = saving;
+        if let Some(open) = self.session.open_documents.iter_mut().find(|other| other.key == key) {
+            open.mark_saved(document, file.clone(), stamp);
+            open.knows_losses = true;
         }
         self.jobs.say(format!("Saved {}", file.display()));
         self.recent_is(Some(file));
@@ -106,8 +106,8 @@ impl MainWindow {
 
     /// `over`: what may be replaced. `is_flat`: as on the unwrapped surface.
     pub(super) fn export_to(&mut self, file: PathBuf, over: Overwrite, is_flat: bool) {
-        let Some(tab) = self.session.active() else { return };
-        let document = if is_flat { tab.drawn() } else { tab.document().clone() };
+        let Some(open) = self.session.active() else { return };
+        let document = if is_flat { open.drawn() } else { open.document().clone() };
         let unwrapped = is_flat.then(|| self.unwrapped.options(self.session.unwrap_settings()));
         let options = ExportOptions {
             background: self.export.background,
@@ -127,7 +127,7 @@ impl MainWindow {
 
     /// Files whose names begin with this one.
     pub(super) fn export_maps_to(&mut self, file: PathBuf) {
-        let Some(document) = self.session.active().map(|tab| tab.document().clone()) else {
+        let Some(document) = self.session.active().map(|open| open.document().clone()) else {
             return;
         };
         let terms = Terms::export(Overwrite::Nothing, self.session.reads());
@@ -192,17 +192,17 @@ impl MainWindow {
         };
         let Some(name) = takes_long else { return false };
         self.session.drop_gesture();
-        let Some(tab) = self.session.active_mut() else { return true };
-        tab.forget_preview();
+        let Some(open) = self.session.active_mut() else { return true };
+        open.forget_preview();
         let refusal = match action {
-            Action::Layer(action) => action.refusal(tab.document()),
+            Action::Layer(action) => action.refusal(open.document()),
             _ => None,
         };
         if let Some(why) = refusal {
             self.session.say(why);
             return true;
         }
-        let (key, from, action) = (tab.key, tab.document().clone(), action.clone());
+        let (key, from, action) = (open.key, open.document().clone(), action.clone());
         self.jobs.start(name.into(), JobKind::Editing, move |progress| {
             let edit = match &action {
                 Action::Layer(action) => match action.no_room(&from, &Budget::of_this_machine()) {
@@ -223,7 +223,7 @@ impl MainWindow {
             };
             match edit {
                 Some(Ok(edit)) => {
-                    JobResult::Edited(Box::new(EditResult { tab: key, action, from, edit }))
+                    JobResult::Edited(Box::new(EditResult { key, action, from, edit }))
                 }
                 Some(Err(why)) => JobResult::Said(why),
                 None => JobResult::Nothing,
@@ -233,16 +233,16 @@ impl MainWindow {
     }
 
     pub(super) fn edited(&mut self, edited: EditResult) {
-        let EditResult { tab, action, from, edit } = edited;
-        let Some(tab) = self.session.open_documents.iter_mut().find(|other| other.key == tab)
+        let EditResult { key, action, from, edit } = edited;
+        let Some(open) = self.session.open_documents.iter_mut().find(|other| other.key == key)
         else {
             return;
         };
         // No other edits are possible meanwhile; an edit that happened anyway must not be lost.
-        if crate::session::is_same(tab.document(), &from) {
-            tab.take(edit);
+        if crate::session::is_same(open.document(), &from) {
+            open.take(edit);
             if matches!(action, Action::Canvas(_)) {
-                forget_places(tab);
+                forget_places(open);
                 self.session.crop = None;
             }
             self.did(|| action);
@@ -253,13 +253,13 @@ impl MainWindow {
     fn begin_shape(&mut self, action: &PartAction) -> bool {
         let Some(name) = action.takes_long() else { return false };
         self.session.drop_gesture();
-        let Some(tab) = self.session.active_mut() else { return true };
-        tab.forget_preview();
-        let (tab, from, action) = (tab.key, tab.document().clone(), action.clone());
+        let Some(open) = self.session.active_mut() else { return true };
+        open.forget_preview();
+        let (key, from, action) = (open.key, open.document().clone(), action.clone());
         self.jobs.start(name.into(), JobKind::Editing, move |progress| {
             match action.shaped(&from, progress) {
                 Ok(Some(shape)) => {
-                    JobResult::Shaped(Box::new(ShapedResult { tab, action, from, shape }))
+                    JobResult::Shaped(Box::new(ShapedResult { key, action, from, shape }))
                 }
                 Ok(None) => JobResult::Nothing,
                 Err(why) => JobResult::Declined(why),
@@ -270,22 +270,22 @@ impl MainWindow {
 
     /// Looks for the drawing that will get a shape; then a dialog asks which.
     pub(super) fn look_for_drawing(&mut self) {
-        let Some(tab) = self.session.active() else { return };
-        let (key, document, selected) = (tab.key, tab.document().clone(), tab.selected);
+        let Some(open) = self.session.active() else { return };
+        let (key, document, selected) = (open.key, open.document().clone(), open.selected);
         let look =
             move |_: &Progress| JobResult::Looked(key, shape::find_drawing(&document, selected));
         self.jobs.start("Looking at the drawing".into(), JobKind::Looking, look);
     }
 
     pub(super) fn shaped(&mut self, shaped: ShapedResult) {
-        let ShapedResult { tab, action, from, shape } = shaped;
-        let Some(tab) = self.session.open_documents.iter_mut().find(|other| other.key == tab)
+        let ShapedResult { key, action, from, shape } = shaped;
+        let Some(open) = self.session.open_documents.iter_mut().find(|other| other.key == key)
         else {
             return;
         };
         // As for other long edits.
-        if crate::session::is_same(tab.document(), &from) {
-            shape.put(tab);
+        if crate::session::is_same(open.document(), &from) {
+            shape.put(open);
             self.did(|| Action::Part(action));
         }
     }

@@ -27,10 +27,10 @@ pub struct AbrPreset<'a> {
 
 /// The brushes that a description of a collection names, in its order.
 pub fn read(root: &DescriptorObject) -> Vec<AbrPreset<'_>> {
-    root.objects("Brsh").filter_map(said).take(MOST).collect()
+    root.objects("Brsh").filter_map(read_preset).take(MOST).collect()
 }
 
-fn said(preset: &DescriptorObject) -> Option<AbrPreset<'_>> {
+fn read_preset(preset: &DescriptorObject) -> Option<AbrPreset<'_>> {
     let brush = preset.object("Brsh")?;
     let text = |object: &DescriptorObject, name: &str| {
         object.text(name).map(str::to_owned).filter(|text| !text.is_empty())

@@ -257,7 +257,7 @@ mod tests {
         read(Path::new("a.ora"), xml.as_bytes(), &Budget::default())
     }
 
-    fn said(xml: &str) -> String {
+    fn error_of(xml: &str) -> String {
         parsed(xml).err().unwrap().to_string()
     }
 
@@ -311,14 +311,14 @@ mod tests {
 
     #[test]
     fn damaged_deep_and_endless_stacks_get_a_sentence() {
-        assert!(said("<image w='1' h='1'><stack><layer").contains("damaged"));
-        assert!(said("<image w='1' h='1'>").contains("no <stack>"));
-        assert!(said("<image w='99999' h='1'><stack/></image>").contains("99999"));
+        assert!(error_of("<image w='1' h='1'><stack><layer").contains("damaged"));
+        assert!(error_of("<image w='1' h='1'>").contains("no <stack>"));
+        assert!(error_of("<image w='99999' h='1'><stack/></image>").contains("99999"));
         let deep = format!("<image w='1' h='1'><stack>{}", "<stack>".repeat(60));
-        assert!(said(&deep).contains("nests more than"));
+        assert!(error_of(&deep).contains("nests more than"));
         let many =
             format!("<image w='1' h='1'><stack>{}</stack></image>", "<layer/>".repeat(10_001));
-        assert!(said(&many).contains("more than 10000 layers"));
+        assert!(error_of(&many).contains("more than 10000 layers"));
     }
 
     #[test]

@@ -34,7 +34,7 @@ fn light(v: u16) -> Vec<u8> {
 }
 
 /// The canvas filled with those values, as a picture alone or with a layer that shows the same.
-fn made(bits: u16, stored: impl Fn(u16) -> Vec<u8>, has_layer: bool) -> Made {
+fn file_of(bits: u16, stored: impl Fn(u16) -> Vec<u8>, has_layer: bool) -> Made {
     let planes: Vec<Vec<u8>> = (0..3).map(|c| plane(c, &stored)).collect();
     let channels = planes.iter().zip(0..).map(|(plane, c)| (c, plane.clone())).collect();
     let layer = MadeLayer { channels, ..coloured("soft", SIDE, SIDE, [0; 3]) };
@@ -54,7 +54,7 @@ fn tiles(document: &Document, layer: usize) -> &TileGrid {
 }
 
 /// The greatest difference of any channel from what was stored.
-fn apart(tiles: &TileGrid) -> u16 {
+fn greatest_difference(tiles: &TileGrid) -> u16 {
     let pixels = tiles.to_straight_deep(RECT);
     let of =
         |(i, pixel): (usize, &[u16; 4])| (0..3).map(move |c| (i, c, pixel[c])).collect::<Vec<_>>();
@@ -65,8 +65,11 @@ fn apart(tiles: &TileGrid) -> u16 {
 fn pictures_and_layers_of_more_than_8_bits_become_paint_of_16() {
     for (bits, most, said) in [(16, 0, "are kept here"), (32, 1, "became 16")] {
         for has_layer in [false, true] {
-            let made =
-                if bits == 16 { made(16, short, has_layer) } else { made(32, light, has_layer) };
+            let made = if bits == 16 {
+                file_of(16, short, has_layer)
+            } else {
+                file_of(32, light, has_layer)
+            };
             let bytes = made.bytes();
             attack(&bytes);
             let ProjectContents { document, notes, .. } = read_back(&bytes);
@@ -75,16 +78,19 @@ fn pictures_and_layers_of_more_than_8_bits_become_paint_of_16() {
                 notes[0].contains(said) && notes[0].contains("8 for other programs"),
                 "{notes:?}"
             );
-            assert!(apart(tiles(&document, 0)) <= most, "{bits} bits, layers: {has_layer}");
+            assert!(
+                greatest_difference(tiles(&document, 0)) <= most,
+                "{bits} bits, layers: {has_layer}"
+            );
         }
     }
-    let eight = made(8, |v| vec![(v >> 8) as u8], true);
+    let eight = file_of(8, |v| vec![(v >> 8) as u8], true);
     assert!(!tiles(&read_back(&eight.bytes()).document, 0).is_deep_in(RECT));
 }
 
 #[test]
 fn grey_and_half_transparent_pixels_keep_16_bits() {
-    let mut grey = made(16, short, true);
+    let mut grey = file_of(16, short, true);
     (grey.mode, grey.merged) = (1, vec![plane(0, short)]);
     let layer = &mut grey.layers.as_mut().unwrap()[0];
     layer.channels = vec![(0, plane(0, short)), (-1, plane(1, |v| short(v | 0x4000)))];
@@ -100,29 +106,29 @@ fn grey_and_half_transparent_pixels_keep_16_bits() {
 
 #[test]
 fn the_file_s_own_picture_keeps_16_bits_where_it_is_shown() {
-    let mut made = made(16, short, true);
+    let mut made = file_of(16, short, true);
     made.layers.as_mut().unwrap().push(empty("dark", vec![(b"levl", vec![0; 4])]));
     made.layers.as_mut().unwrap()[0].channels =
         (0..3).map(|c| (c, vec![0; (SIDE * SIDE * 2) as usize])).collect();
     let document = read_back(&made.bytes()).document;
     assert_eq!(document.layers[1].name, "The file's own picture");
-    assert_eq!(apart(tiles(&document, 1)), 0);
+    assert_eq!(greatest_difference(tiles(&document, 1)), 0);
 }
 
 #[test]
 fn a_wide_profile_is_applied_in_16_bits() {
-    let mut made = made(16, short, false);
+    let mut made = file_of(16, short, false);
     made.resources = vec![(1039, moxcms::ColorProfile::new_display_p3().encode().unwrap())];
     let document = read_back(&made.bytes()).document;
     let pixels = tiles(&document, 0).to_straight_deep(RECT);
-    assert!(apart(tiles(&document, 0)) > 1000, "sRGB is narrower");
+    assert!(greatest_difference(tiles(&document, 0)) > 1000, "sRGB is narrower");
     let distinct: std::collections::BTreeSet<u16> = pixels.iter().map(|pixel| pixel[1]).collect();
     assert!(distinct.len() > 4000, "{} levels", distinct.len());
 }
 
 #[test]
 fn short_of_memory_a_file_of_16_bits_is_read_with_8() {
-    let (file, bytes) = (Path::new("a.psd"), made(16, short, true).bytes());
+    let (file, bytes) = (Path::new("a.psd"), file_of(16, short, true).bytes());
     let area = u64::from(SIDE * SIDE);
     let read = |free: u64| {
         let budget = Budget { memory_bytes: free, ..Budget::default() };

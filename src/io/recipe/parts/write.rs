@@ -57,14 +57,14 @@ fn write_outline(outline: &OutlineSource, selection: impl Fn(&str) -> Option<Str
     match outline {
         OutlineSource::Layer { layer, color } => {
             out.set("layer", layer.as_str().into());
-            out.said("color", color.map(|flat| flat.color), object::color);
-            out.said("at", color.and_then(|flat| flat.at), object::point);
+            out.set_some("color", color.map(|flat| flat.color), object::color);
+            out.set_some("at", color.and_then(|flat| flat.at), object::point);
         }
         OutlineSource::File(file) => out.set("file", file.file.as_str().into()),
         OutlineSource::Path(points) => {
             out.set("path", points.iter().copied().map(object::point).collect())
         }
-        OutlineSource::Selection(name) => out.said("selection", selection(name), Value::from),
+        OutlineSource::Selection(name) => out.set_some("selection", selection(name), Value::from),
         OutlineSource::Object(object) => out.set("object", (*object).into()),
     }
     out.done()
@@ -97,7 +97,7 @@ fn write_kind(out: &mut JsonObject, kind: &PartKind, canvas: Option<Size>) {
         }
         PartKind::Primitive(body) => write_primitive(out, body),
         PartKind::Lathe { axis, puff, .. } => {
-            out.said("axis", *axis, |axis| axis.into_iter().map(object::point).collect());
+            out.set_some("axis", *axis, |axis| axis.into_iter().map(object::point).collect());
             out.number("puff", *puff, 1.0);
         }
         PartKind::Sweep { balls, puff } => {
@@ -160,7 +160,7 @@ pub fn write_maps(out: &mut JsonObject, maps: &PartMaps, canvas: Option<Size>) {
         let mut frame = JsonObject::default();
         frame.set("width", size.width.into());
         frame.set("height", size.height.into());
-        frame.said("matrix", maps.source.matrix, |matrix| json!(matrix));
+        frame.set_some("matrix", maps.source.matrix, |matrix| json!(matrix));
         out.set("frame", frame.done());
     }
 }

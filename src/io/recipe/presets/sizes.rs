@@ -66,7 +66,7 @@ fn reduced(picture: &[[f32; 3]], size: Size, by: usize) -> Vec<[f32; 3]> {
 }
 
 /// How far two pictures are apart where one of them is painted, sorted.
-fn apart(a: &[[f32; 3]], b: &[[f32; 3]], ground: Color) -> Vec<f32> {
+fn sorted_differences(a: &[[f32; 3]], b: &[[f32; 3]], ground: Color) -> Vec<f32> {
     let ground = [ground.r, ground.g, ground.b].map(f32::from);
     let far = |a: &[f32; 3], b: &[f32; 3]| (0..3).map(|c| (a[c] - b[c]).abs()).fold(0.0, f32::max);
     let painted = a.iter().zip(b).filter(|(a, b)| far(a, &ground).max(far(b, &ground)) > 2.0);
@@ -92,7 +92,7 @@ fn twice(preset: &BrushPreset, surface: Option<Arc<Surface>>) -> Vec<f32> {
     let layers = layers.into_iter().map(Arc::new).collect();
     let document = Document { surface, layers, ..Document::empty(SIZE) };
     let double = document.scaled(2.0).unwrap();
-    apart(&picture(&document), &reduced(&picture(&double), double.size, 2), ground)
+    sorted_differences(&picture(&document), &reduced(&picture(&double), double.size, 2), ground)
 }
 
 #[test]

@@ -50,19 +50,19 @@ impl CanvasAction {
             }
             CanvasAction::Aspect { aspect } => {
                 session.crop_aspect = *aspect;
-                let canvas = session.active().map(|tab| tab.document().size);
+                let canvas = session.active().map(|open| open.document().size);
                 session.crop =
                     session.crop.zip(canvas).map(|(frame, canvas)| aspect.given(frame, canvas));
                 return;
             }
             _ => session.crop = None,
         }
-        let Some(tab) = session.active_mut() else { return session.say("There is no document.") };
-        tab.forget_preview();
-        match self.step(tab.document(), &Progress::default()) {
+        let Some(open) = session.active_mut() else { return session.say("There is no document.") };
+        open.forget_preview();
+        match self.step(open.document(), &Progress::default()) {
             Ok((label, next)) => {
-                if tab.commit(label, next) {
-                    forget_places(tab);
+                if open.commit(label, next) {
+                    forget_places(open);
                 }
             }
             Err(why) => session.say(&why),
@@ -147,8 +147,8 @@ impl CanvasAction {
 }
 
 /// Places on the old canvas mean nothing on another one.
-pub fn forget_places(tab: &mut OpenDocument) {
-    (tab.last_end, tab.clone_source, tab.last_selection) = (None, None, None);
+pub fn forget_places(open: &mut OpenDocument) {
+    (open.last_end, open.clone_source, open.last_selection) = (None, None, None);
 }
 
 /// A frame within the range of pixels.

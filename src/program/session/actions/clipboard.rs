@@ -78,11 +78,11 @@ impl ClipboardAction {
             _ => {}
         }
         let copied = session.copied.clone();
-        let Some(tab) = session.active_mut() else { return session.say("There is no document.") };
-        tab.forget_preview();
+        let Some(open) = session.active_mut() else { return session.say("There is no document.") };
+        open.forget_preview();
         let said = match self {
             ClipboardAction::Copy { merged } => {
-                match copy(tab.document(), &tab.outermost_chosen(), *merged) {
+                match copy(open.document(), &open.outermost_chosen(), *merged) {
                     Ok(copied) => {
                         session.copied = Some(copied);
                         return session.say("Copied.");
@@ -90,15 +90,15 @@ impl ClipboardAction {
                     Err(why) => why,
                 }
             }
-            ClipboardAction::Cut {} => match cut(tab) {
+            ClipboardAction::Cut {} => match cut(open) {
                 Ok(copied) => return session.copied = Some(copied),
                 Err(why) => why,
             },
             ClipboardAction::Paste {} => match copied {
-                Some(copied) => return paste(tab, &copied),
+                Some(copied) => return paste(open, &copied),
                 None => NOTHING_COPIED,
             },
-            ClipboardAction::LayerVia { cut } => match layer_via(tab, *cut) {
+            ClipboardAction::LayerVia { cut } => match layer_via(open, *cut) {
                 Ok(()) => return,
                 Err(why) => why,
             },
@@ -163,9 +163,9 @@ fn copy(document: &Document, ids: &[LayerId], merged: bool) -> Result<Copied, &'
     Ok(Copied { layers, canvas: document.size, rect, rgba, deep })
 }
 
-fn cut(tab: &mut OpenDocument) -> Result<Copied, &'static str> {
-    let document = tab.document();
-    let ids = tab.outermost_chosen();
+fn cut(open: &mut OpenDocument) -> Result<Copied, &'static str> {
+    let document = open.document();
+    let ids = open.outermost_chosen();
     if ids.iter().any(|id| document.layer(*id).is_some_and(|layer| layer.lock != LayerLock::None)) {
         return Err(if ids.len() > 1 {
             "One of the layers is locked: unlock it to cut from it."
@@ -177,13 +177,13 @@ fn cut(tab: &mut OpenDocument) -> Result<Copied, &'static str> {
     let covered = covered(document);
     let cleared = |next: Document, id: &LayerId| next.with_cleared(*id, &covered);
     let next = ids.iter().try_fold(document.clone(), cleared).ok_or(LOCKED)?;
-    tab.commit("Cut", next);
+    open.commit("Cut", next);
     Ok(copied)
 }
 
-fn paste(tab: &mut OpenDocument, copied: &Copied) {
-    let slot = above(tab);
-    let (mut next, mut ids) = (tab.document().clone(), Vec::new());
+fn paste(open: &mut OpenDocument, copied: &Copied) {
+    let slot = above(open);
+    let (mut next, mut ids) = (open.document().clone(), Vec::new());
     for (i, layer) in pasted(copied, &next).into_iter().enumerate() {
         let layer = Layer { name: next.free_layer_name(&layer.name), ..layer };
         let slot = LayerSlot { index: slot.index.saturating_add(i), ..slot };
@@ -191,8 +191,8 @@ fn paste(tab: &mut OpenDocument, copied: &Copied) {
         let Some(with) = next.with_inserted(layer, slot) else { return };
         next = with;
     }
-    if tab.commit("Paste", next) {
-        tab.choose_layers(ids);
+    if open.commit("Paste", next) {
+        open.choose_layers(ids);
     }
 }
 
@@ -220,9 +220,9 @@ fn paste_new(session: &mut Session) {
         Layer::new(copied.name(), Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }));
     let document = Document { layers: vec![Arc::new(layer)], ..Document::empty(size) };
     let name = session.untitled();
-    let mut tab = OpenDocument::new(name, document, None);
-    tab.mark_unsaved();
-    session.add_document(tab);
+    let mut open = OpenDocument::new(name, document, None);
+    open.mark_unsaved();
+    session.add_document(open);
 }
 
 /// What was copied here, as the picture that other programs get.
@@ -244,9 +244,9 @@ fn paste_image(session: &mut Session, at: Option<Vec2>) {
 
 /// Copies what is selected of the layer to a new one above it, and takes it out of this one if it
 /// is cut.
-fn layer_via(tab: &mut OpenDocument, cut: bool) -> Result<(), &'static str> {
-    let document = tab.document();
-    let id = tab.selected.ok_or(NO_LAYER)?;
+fn layer_via(open: &mut OpenDocument, cut: bool) -> Result<(), &'static str> {
+    let document = open.document();
+    let id = open.selected.ok_or(NO_LAYER)?;
     let old = document.layer(id).ok_or(NO_LAYER)?;
     if cut && old.lock != LayerLock::None {
         return Err(LOCKED);
@@ -255,8 +255,8 @@ fn layer_via(tab: &mut OpenDocument, cut: bool) -> Result<(), &'static str> {
         if cut {
             return Err("Nothing is selected.");
         }
-        let layer = crate::session::LayerPaths::of(document, &tab.outermost_chosen());
-        LayerAction::Duplicate { layer }.step_on(tab);
+        let layer = crate::session::LayerPaths::of(document, &open.outermost_chosen());
+        LayerAction::Duplicate { layer }.step_on(open);
         return Ok(());
     };
     let mut layer = document.copied_from(id, selected).ok_or(NOTHING_THERE)?;
@@ -268,8 +268,8 @@ fn layer_via(tab: &mut OpenDocument, cut: bool) -> Result<(), &'static str> {
     let (new, place) = (layer.id, document.place_of(id).ok_or(NO_LAYER)?);
     let next =
         left.with_inserted(layer, LayerSlot { index: place.index + 1, ..place }).ok_or(NO_LAYER)?;
-    if tab.commit(if cut { "Layer via cut" } else { "Layer via copy" }, next) {
-        tab.selected = Some(new);
+    if open.commit(if cut { "Layer via cut" } else { "Layer via copy" }, next) {
+        open.selected = Some(new);
     }
     Ok(())
 }

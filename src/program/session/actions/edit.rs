@@ -22,8 +22,8 @@ impl EditAction {
             EditAction::Redo {} => 1,
             EditAction::Walk { steps } => *steps,
         };
-        if let Some(tab) = session.active_mut() {
-            tab.walk(steps);
+        if let Some(open) = session.active_mut() {
+            open.walk(steps);
         }
     }
 }

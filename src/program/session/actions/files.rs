@@ -55,7 +55,7 @@ actions! {
         "replace maps" ReplaceMaps { normal: Option<PathBuf>, depth: Option<PathBuf> }
         /// A part of these maps, in front of all others.
         "add maps" AddMaps { normal: Option<PathBuf>, depth: Option<PathBuf> }
-        "tab" Tab { index: usize }
+        "tab" Show { index: usize }
         /// Whether saved or not.
         "close" Close { index: usize }
     }
@@ -92,41 +92,41 @@ impl FileAction {
             FileAction::KeepBrush { name } => brushes::keep(session, name)?,
             FileAction::RemoveBrush { name } => brushes::remove(session, name)?,
             FileAction::Save { file } => {
-                let Some(tab) = session.active() else { return Ok(()) };
-                let document = tab.document().clone();
+                let Some(open) = session.active() else { return Ok(()) };
+                let document = open.document().clone();
                 let terms = session.saving(file, unless_forced(session));
                 // Nothing here cancels, so it is saved.
-                if let (Some(stamp), Some(tab)) = (
+                if let (Some(stamp), Some(open)) = (
                     storage::save(file, &document, terms, &Progress::default())?,
                     session.active_mut(),
                 ) {
-                    tab.mark_saved(document, file.clone(), stamp);
+                    open.mark_saved(document, file.clone(), stamp);
                 }
             }
             FileAction::Export { file, background, quality, bits } => {
-                let Some(tab) = session.active() else { return Ok(()) };
+                let Some(open) = session.active() else { return Ok(()) };
                 let (background, quality, bits) = (*background, *quality, *bits);
                 let options =
                     ExportOptions { background, quality, bits, ..ExportOptions::default() };
                 let terms = Terms::export(unless_forced(session), session.reads());
-                let notes = export(tab.document(), file, &options, terms, &Progress::default())?;
+                let notes = export(open.document(), file, &options, terms, &Progress::default())?;
                 session.notes.extend(notes);
             }
             FileAction::ExportMaps { file, maps, directx, bits } => {
-                let Some(tab) = session.active() else { return Ok(()) };
+                let Some(open) = session.active() else { return Ok(()) };
                 let is_exr =
                     file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
                 let options = ShapeOptions { is_directx: *directx, is_deep: *bits > 8, is_exr };
                 let terms = Terms::export(unless_forced(session), session.reads());
-                export_maps(tab.document(), file, maps, options, &terms)?;
+                export_maps(open.document(), file, maps, options, &terms)?;
             }
             FileAction::ExportUnwrapped { file, scale, deep } => {
-                let Some(tab) = session.active() else { return Ok(()) };
+                let Some(open) = session.active() else { return Ok(()) };
                 let settings = session.unwrap_settings();
                 let deep = deep.then_some(Highlights::Clipped);
                 let options = UnwrapOptions { scale: *scale, settings, deep };
                 let terms = Terms::export(unless_forced(session), session.reads());
-                unwrapped::export(&tab.drawn(), file, options, terms, &Progress::default())?;
+                unwrapped::export(&open.drawn(), file, options, terms, &Progress::default())?;
             }
             FileAction::ImportUnwrapped { file } => {
                 let (name, picture) = read_picture(file)?;
@@ -135,11 +135,11 @@ impl FileAction {
             }
             FileAction::Use { part, file } => {
                 let read = pictures::read(*part, file)?;
-                if let Some(tab) = session.active_mut()
-                    && let Some(layer) = tab.selected
+                if let Some(open) = session.active_mut()
+                    && let Some(layer) = open.selected
                 {
-                    pictures::put(tab, layer, read);
-                    tab.reads.push(file.clone());
+                    pictures::put(open, layer, read);
+                    open.reads.push(file.clone());
                 }
             }
             FileAction::ReplaceMaps { normal, depth } => {
@@ -152,7 +152,7 @@ impl FileAction {
                 let import = storage::import(&source)?;
                 add_maps(session, &source, import)?;
             }
-            FileAction::Tab { index } => {
+            FileAction::Show { index } => {
                 session.crop = None;
                 session.current = (*index).min(session.open_documents.len().saturating_sub(1));
             }

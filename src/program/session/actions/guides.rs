@@ -58,12 +58,12 @@ impl GuideAction {
             GuideAction::Pull { vertical, pen, px_per_pt } => {
                 // A guide that is pulled out becomes visible.
                 session.aids.guides = true;
-                let Some(tab) = session.active() else {
+                let Some(open) = session.active() else {
                     return session.say("There is no document.");
                 };
                 let aids = ViewAids { to_guides: false, ..session.aids };
-                let targets = SnapTargets::of(tab.document(), &aids, &[], *px_per_pt);
-                let start = pull(tab.document(), *vertical, targets, *pen);
+                let targets = SnapTargets::of(open.document(), &aids, &[], *px_per_pt);
+                let start = pull(open.document(), *vertical, targets, *pen);
                 super::pointer::begin(session, start);
             }
             GuideAction::Set { guides } => commit(session, "Guides", |document| Document {
@@ -71,7 +71,8 @@ impl GuideAction {
                 ..document
             }),
             GuideAction::Clear {} => {
-                let is_empty = session.active().is_none_or(|tab| tab.document().guides.is_empty());
+                let is_empty =
+                    session.active().is_none_or(|open| open.document().guides.is_empty());
                 if is_empty {
                     return session.say("There are no guides.");
                 }
@@ -82,7 +83,7 @@ impl GuideAction {
             }
             GuideAction::Assistants { assistants } if assistants.is_empty() => {
                 let is_empty =
-                    session.active().is_none_or(|tab| tab.document().assistants.is_empty());
+                    session.active().is_none_or(|open| open.document().assistants.is_empty());
                 if is_empty {
                     return session.say("There are no assistants.");
                 }
@@ -99,8 +100,8 @@ impl GuideAction {
 }
 
 fn commit(session: &mut Session, label: &str, change: impl FnOnce(Document) -> Document) {
-    if let Some(tab) = session.active_mut() {
-        let document = change(tab.document().clone());
-        tab.commit(label, document);
+    if let Some(open) = session.active_mut() {
+        let document = change(open.document().clone());
+        open.commit(label, document);
     }
 }

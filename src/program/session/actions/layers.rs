@@ -23,7 +23,7 @@ use crate::shading::{Model, Shading};
 use crate::tools::frame::TransformTarget;
 use crate::tools::transform::{self, mapped};
 use flattening::undisplaced;
-use new::{made, model_name, selecting};
+use new::{make_layer, model_name, selecting};
 use std::sync::Arc;
 use steps::{cleared, duplicated, homed, kept, moves, ungrouped};
 
@@ -113,54 +113,54 @@ impl LayerAction {
         };
         session.drop_gesture();
         let carried = session.carried;
-        let Some(tab) = session.active_mut() else { return };
+        let Some(open) = session.active_mut() else { return };
         if let LayerAction::Set { layer, to, done } = self {
-            if let Some(why) = self.refusal(tab.document()) {
-                tab.forget_preview();
+            if let Some(why) = self.refusal(open.document()) {
+                open.forget_preview();
                 return session.say(why);
             }
-            return set(tab, layer, to, *done);
+            return set(open, layer, to, *done);
         }
         if let LayerAction::TakeAlong { layer, by, done } = self {
             return take_along(session, layer, *by, *done);
         }
-        tab.forget_preview();
-        let id = |path: &LayerPath| path.find(tab.document()).map(|layer| layer.id);
+        open.forget_preview();
+        let id = |path: &LayerPath| path.find(open.document()).map(|layer| layer.id);
         match self {
             LayerAction::Select { layer } => {
-                tab.choose_layers(id(layer).into_iter().collect());
-                tab.on_mask = false;
+                open.choose_layers(id(layer).into_iter().collect());
+                open.on_mask = false;
             }
             LayerAction::Choose { layer, primary, anchor } => {
-                let (Some(mut ids), Some(primary)) = (layer.find(tab.document()), id(primary))
+                let (Some(mut ids), Some(primary)) = (layer.find(open.document()), id(primary))
                 else {
                     return;
                 };
                 ids.retain(|id| *id != primary);
                 ids.push(primary);
-                tab.choose_range(ids, anchor.as_ref().and_then(id));
-                tab.on_mask = false;
+                open.choose_range(ids, anchor.as_ref().and_then(id));
+                open.on_mask = false;
             }
             LayerAction::OnMask { layer, on } => {
-                tab.choose_layers(id(layer).into_iter().collect());
-                tab.on_mask = *on;
+                open.choose_layers(id(layer).into_iter().collect());
+                open.on_mask = *on;
                 // Only if there is one to paint on.
-                tab.repair();
+                open.repair();
             }
-            LayerAction::Pivot { at } => tab.set_pivot(carried, *at),
+            LayerAction::Pivot { at } => open.set_pivot(carried, *at),
             LayerAction::Solo { layer } => {
                 let id = id(layer);
-                tab.solo = if tab.solo == id { None } else { id };
+                open.solo = if open.solo == id { None } else { id };
             }
             _ => {
-                let no_room = || self.no_room(tab.document(), &Budget::of_this_machine());
-                let refusal = self.refusal(tab.document()).map(str::to_owned).or_else(no_room);
+                let no_room = || self.no_room(open.document(), &Budget::of_this_machine());
+                let refusal = self.refusal(open.document()).map(str::to_owned).or_else(no_room);
                 let edit =
-                    if refusal.is_none() { self.edit(tab, &gradient_settings) } else { None };
+                    if refusal.is_none() { self.edit(open, &gradient_settings) } else { None };
                 match edit {
                     Some(edit) => {
-                        tab.take(edit);
-                        tab.on_mask = matches!(self, LayerAction::PaintMask { .. });
+                        open.take(edit);
+                        open.on_mask = matches!(self, LayerAction::PaintMask { .. });
                     }
                     None => session.said.extend(refusal),
                 }
@@ -169,7 +169,7 @@ impl LayerAction {
     }
 
     /// Does an edit that needs no settings on an open document.
-    pub(super) fn step_on(&self, tab: &mut OpenDocument) {
+    pub(super) fn step_on(&self, open: &mut OpenDocument) {
         let settings = Gradient {
             from: vec2(0.0, 0.0),
             to: vec2(1.0, 1.0),
@@ -179,21 +179,21 @@ impl LayerAction {
             filter: ImageFilter::Antialias,
             pieces: Vec::new(),
         };
-        if let Some(edit) = self.edit(tab, &settings) {
-            tab.take(edit);
+        if let Some(edit) = self.edit(open, &settings) {
+            open.take(edit);
         }
     }
 
     /// The step: its name, the resulting document, and the new selection.
-    fn edit(&self, tab: &OpenDocument, gradient_settings: &Gradient) -> Option<Edit> {
-        let document = tab.document();
+    fn edit(&self, open: &OpenDocument, gradient_settings: &Gradient) -> Option<Edit> {
+        let document = open.document();
         let layer = |path: &LayerPath| path.find(document).cloned();
         let chosen = |layer: &LayerPaths| layer.find(document).map(|ids| document.outermost(&ids));
         let (label, document, select) = match self {
             LayerAction::Add { kind } => {
-                let new = selecting(document, made(*kind, document, gradient_settings));
+                let new = selecting(document, make_layer(*kind, document, gradient_settings));
                 let id = new.id;
-                ("Add layer", document.with_inserted(new, above(tab))?, vec![id])
+                ("Add layer", document.with_inserted(new, above(open))?, vec![id])
             }
             LayerAction::AddShading { model } => {
                 let content = Content::Shading(Live::new(Shading::new(*model)));
@@ -202,7 +202,7 @@ impl LayerAction {
                     Layer::new(document.free_layer_name(&model_name(*model)), content),
                 );
                 let id = new.id;
-                ("Add layer", document.with_inserted(new, above(tab))?, vec![id])
+                ("Add layer", document.with_inserted(new, above(open))?, vec![id])
             }
             LayerAction::PaintMask { layer: path, hides } => {
                 let layer = layer(path)?;
@@ -237,11 +237,11 @@ impl LayerAction {
                     .ok()?;
                 let ids = chosen(paths)?;
                 let next = document.with_moved_layers(&ids, LayerSlot { group, index: *index })?;
-                (moves(&ids), next, kept(tab, ids))
+                (moves(&ids), next, kept(open, ids))
             }
             LayerAction::Nudge { layer, by } => {
                 let ids = chosen(layer)?;
-                (moves(&ids), document.with_nudged_layers(&ids, *by)?, kept(tab, ids))
+                (moves(&ids), document.with_nudged_layers(&ids, *by)?, kept(open, ids))
             }
             LayerAction::Mirror { layer, upright } => {
                 let mirror = transform::mirror(*upright);
@@ -302,36 +302,36 @@ impl LayerAction {
     }
 }
 
-fn set(tab: &mut OpenDocument, layers: &LayerPaths, to: &Property, done: bool) {
-    let Some(ids) = layers.find(tab.document()) else { return tab.forget_preview() };
-    let Some(document) = tab.document().with_layers(&ids, |layer| to.apply(layer)) else { return };
+fn set(open: &mut OpenDocument, layers: &LayerPaths, to: &Property, done: bool) {
+    let Some(ids) = layers.find(open.document()) else { return open.forget_preview() };
+    let Some(document) = open.document().with_layers(&ids, |layer| to.apply(layer)) else { return };
     if done {
-        tab.commit(to.label(), document);
+        open.commit(to.label(), document);
     } else {
-        tab.show(to.label(), document);
+        open.show(to.label(), document);
     }
 }
 
 /// The document with what layers show moved by a map of the canvas: a step, or a preview of one.
 fn take_along(session: &mut Session, layers: &LayerPaths, by: [f64; 6], done: bool) {
-    let Some(tab) = session.active_mut() else { return };
-    tab.hold_frame(TransformTarget::Paint);
-    let document = tab.document();
+    let Some(open) = session.active_mut() else { return };
+    open.hold_frame(TransformTarget::Paint);
+    let document = open.document();
     let ids = layers.find(document).map(|ids| document.outermost(&ids)).unwrap_or_default();
     let map = PlaneMap::affine(by).filter(|_| !ids.is_empty());
     let next = map
         .and_then(|map| ids.iter().try_fold(document.clone(), |next, id| mapped(&next, *id, map)));
     match next {
-        Some(next) if done => drop(tab.commit("Transform", next)),
-        Some(next) => tab.show("Transform", next),
-        None => tab.forget_preview(),
+        Some(next) if done => drop(open.commit("Transform", next)),
+        Some(next) => open.show("Transform", next),
+        None => open.forget_preview(),
     }
 }
 
 /// Where a new layer goes: above the selected one; into it, on top, if it is a group.
-pub fn above(tab: &OpenDocument) -> LayerSlot {
-    let document = tab.document();
-    let Some(layer) = tab.selected.and_then(|id| document.layer(id)) else {
+pub fn above(open: &OpenDocument) -> LayerSlot {
+    let document = open.document();
+    let Some(layer) = open.selected.and_then(|id| document.layer(id)) else {
         return LayerSlot::top_level(usize::MAX);
     };
     if layer.content.group().is_some() {

@@ -94,7 +94,7 @@ impl Action {
     /// Performs it. What cannot be done changes nothing; only files fail. An edit that no file
     /// could hold is refused in a note.
     pub fn apply(&self, session: &mut Session) -> Result<()> {
-        session.settle();
+        session.record_targets();
         let mut done = Ok(());
         match self {
             Action::Canvas(action) => action.apply(session),

@@ -111,20 +111,20 @@ impl PartAction {
             return;
         }
         session.drop_gesture();
-        let Some(tab) = session.active_mut() else { return session.say("There is no document.") };
+        let Some(open) = session.active_mut() else { return session.say("There is no document.") };
         let done = match self {
-            PartAction::Set { part, done } => set(tab, part, *done),
-            PartAction::TakeAlong { by, done } => take_along(tab, *by, *done),
-            PartAction::Select { part } => match tab.document().parts.part(part) {
+            PartAction::Set { part, done } => set(open, part, *done),
+            PartAction::TakeAlong { by, done } => take_along(open, *by, *done),
+            PartAction::Select { part } => match open.document().parts.part(part) {
                 Some(_) => {
-                    tab.part = Some(part.clone());
+                    open.part = Some(part.clone());
                     Ok(())
                 }
                 None => Err(NO_PART.into()),
             },
             _ => {
-                tab.forget_preview();
-                self.step(tab).map_err(str::to_owned)
+                open.forget_preview();
+                self.step(open).map_err(str::to_owned)
             }
         };
         session.notes.extend(done.err());
@@ -146,12 +146,12 @@ impl PartAction {
         first::shaped(document, layer, preset.0, *flats, progress).map(Some)
     }
 
-    fn step(&self, tab: &mut OpenDocument) -> Result<(), PartRefusal> {
-        let document = tab.document();
+    fn step(&self, open: &mut OpenDocument) -> Result<(), PartRefusal> {
+        let document = open.document();
         let of = |id: &str| document.parts.part(id).cloned().ok_or(NO_PART);
         let (label, next, chosen) = match self {
             PartAction::Add { kind } => {
-                let part = new::made(*kind, tab)?;
+                let part = new::make_part(*kind, open)?;
                 let id = part.id.clone();
                 let next = list::with_new(document, part);
                 // What lies on another shows there.
@@ -167,7 +167,7 @@ impl PartAction {
             }
             PartAction::Shape { .. } => {
                 if let Some(shaped) = self.shaped(document, &Progress::default())? {
-                    shaped.put(tab);
+                    shaped.put(open);
                 }
                 return Ok(());
             }
@@ -193,8 +193,8 @@ impl PartAction {
                 let layer =
                     layer.find(document).map(|layer| layer.id).ok_or("There is no such layer.")?;
                 let (next, group) = document.cut_by_parts(layer)?;
-                if tab.commit("Cut drawing by parts", next) {
-                    tab.selected = Some(group);
+                if open.commit("Cut drawing by parts", next) {
+                    open.selected = Some(group);
                 }
                 return Ok(());
             }
@@ -203,48 +203,48 @@ impl PartAction {
             | PartAction::Select { .. }
             | PartAction::Settings { .. } => return Ok(()),
         };
-        if tab.commit(label, next) {
-            tab.part = chosen.or(tab.part.take());
-            tab.repair();
+        if open.commit(label, next) {
+            open.part = chosen.or(open.part.take());
+            open.repair();
         }
         Ok(())
     }
 }
 
 /// The document with its shape moved by a map of the canvas: a step, or a preview of one.
-fn take_along(tab: &mut OpenDocument, by: [f64; 6], done: bool) -> Result<(), String> {
+fn take_along(open: &mut OpenDocument, by: [f64; 6], done: bool) -> Result<(), String> {
     let map = PlaneMap::affine(by).ok_or("A shape cannot be made without area.")?;
-    let next = tab.document().with_shape_through(&map).inspect_err(|_| tab.forget_preview())?;
+    let next = open.document().with_shape_through(&map).inspect_err(|_| open.forget_preview())?;
     match done {
-        true => drop(tab.commit("Transform shape", next)),
-        false => tab.show("Transform shape", next),
+        true => drop(open.commit("Transform shape", next)),
+        false => open.show("Transform shape", next),
     }
     Ok(())
 }
 
 /// A part of the document in a new version.
-fn set(tab: &mut OpenDocument, value: &Value, done: bool) -> Result<(), String> {
-    let document = tab.document();
+fn set(open: &mut OpenDocument, value: &Value, done: bool) -> Result<(), String> {
+    let document = open.document();
     let read = read_part(Path::new("part"), value, document, &Budget::holding(document));
     let next = match read {
         Ok(next) => next,
         Err(error) => {
-            tab.forget_preview();
+            open.forget_preview();
             return Err(error.to_string());
         }
     };
     let Some(old) = document.parts.part(&next.id) else {
-        tab.forget_preview();
+        open.forget_preview();
         return Err(NO_PART.into());
     };
     let label = label(old, &next);
     if done {
         let next = document.with_part(next);
-        tab.commit(label, next);
+        open.commit(label, next);
     } else {
         // A drag must not wait: whoever shows the document makes its shape.
         let next = document.with_part_ahead(next);
-        tab.show(label, next);
+        open.show(label, next);
     }
     Ok(())
 }

@@ -59,9 +59,9 @@ pub fn read(part: PicturePart, file: &Path) -> Result<ReadPart> {
 }
 
 /// Puts a part into a layer, as a step. A layer without such a part is left as it is.
-pub fn put(tab: &mut OpenDocument, layer: LayerId, read: ReadPart) {
+pub fn put(open: &mut OpenDocument, layer: LayerId, read: ReadPart) {
     let ReadPart { part, name, what } = read;
-    let document = tab.document();
+    let document = open.document();
     let (file, canvas) = (free_file(document, &name), document.size);
     let next = match what {
         PartValue::Mask(mask) => with_mask(document, layer, file, fitted(&mask, canvas)),
@@ -71,7 +71,7 @@ pub fn put(tab: &mut OpenDocument, layer: LayerId, read: ReadPart) {
         PartValue::Picture(picture) => with_picture(document, layer, part, file, picture),
     };
     if let Some(next) = next {
-        tab.commit(part.step(), next);
+        open.commit(part.step(), next);
     }
 }
 

@@ -28,11 +28,11 @@ pub fn place(session: &mut Session, name: &str, picture: Picture, at: Vec2) {
         Operator::None => DROPPED,
         operator => operator,
     };
-    let Some(tab) = session.active_mut() else {
-        let tab = OpenDocument::new(name, of_picture(name, picture), None);
-        return session.add_document(tab);
+    let Some(open) = session.active_mut() else {
+        let open = OpenDocument::new(name, of_picture(name, picture), None);
+        return session.add_document(open);
     };
-    let document = tab.document();
+    let document = open.document();
     let operator = if document.surface.is_some() { operator } else { Operator::None };
     let at =
         at.clamp(Vec2::ZERO, Vec2::new(document.size.width as f32, document.size.height as f32));
@@ -41,7 +41,7 @@ pub fn place(session: &mut Session, name: &str, picture: Picture, at: Vec2) {
         outside: Outside::Mirror,
         bend: Bend { operator, anchors: vec![Anchor::fixed(at)], ..Bend::default() },
     };
-    add_image(tab, name, picture, lies, "Place image");
+    add_image(open, name, picture, lies, "Place image");
 }
 
 /// How a picture lies on the canvas.
@@ -54,13 +54,13 @@ pub(super) struct Lies {
 /// A picture becomes an image layer above the selected one, and is selected; returns whether it
 /// could.
 pub(super) fn add_image(
-    tab: &mut OpenDocument,
+    open: &mut OpenDocument,
     name: &str,
     picture: Picture,
     lies: Lies,
     label: &str,
 ) -> bool {
-    let document = tab.document();
+    let document = open.document();
     let Lies { placement, outside, bend } = lies;
     let source = PictureSource::new(free_file(document, name), picture, Adjust::default());
     let filter = ImageFilter::Antialias;
@@ -68,10 +68,10 @@ pub(super) fn add_image(
     let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
     let layer = Layer::new(document.free_layer_name(&stem), Content::Image(Live::new(image)));
     let id = layer.id;
-    let next = document.with_inserted(layer, above(tab));
-    let is_added = next.is_some_and(|next| tab.commit(label, next));
+    let next = document.with_inserted(layer, above(open));
+    let is_added = next.is_some_and(|next| open.commit(label, next));
     if is_added {
-        tab.selected = Some(id);
+        open.selected = Some(id);
     }
     is_added
 }

@@ -94,28 +94,28 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
     let clones = matches!(tool, ToolKind::Brush) && !pen.keys.alt;
     let clone_offset = match session.brush.mode {
         BrushMode::Clone { aligned, .. } if clones => {
-            session.active_mut().zip(place).and_then(|(tab, at)| tab.begin_clone(at, aligned))
+            session.active_mut().zip(place).and_then(|(open, at)| open.begin_clone(at, aligned))
         }
         _ => None,
     };
     let carried = session.carried;
-    if let Some(tab) = session.active_mut().filter(|_| tool == ToolKind::Transform) {
-        tab.hold_frame(carried);
+    if let Some(open) = session.active_mut().filter(|_| tool == ToolKind::Transform) {
+        open.hold_frame(carried);
     }
-    let Some(tab) = session.active() else { return };
+    let Some(open) = session.active() else { return };
     let paints =
         matches!(tool, ToolKind::Brush | ToolKind::Eraser | ToolKind::Fill | ToolKind::Liquify);
-    if let Some(why) = tab.hidden_beside().filter(|_| paints && !tab.quick_mask) {
+    if let Some(why) = open.hidden_beside().filter(|_| paints && !open.quick_mask) {
         return session.notes.push(why);
     }
-    let (strokes, layers) = (tab.chosen_strokes(), tab.outermost_chosen());
-    let document = match works_in_place(tool, tab) {
+    let (strokes, layers) = (open.chosen_strokes(), open.outermost_chosen());
+    let document = match works_in_place(tool, open) {
         Ok(document) => document,
         Err(why) => return session.notes.push(why.into()),
     };
     let is_line = matches!(tool, ToolKind::Brush | ToolKind::Eraser)
         && pen.keys.shift
-        && tab.last_end.is_some();
+        && open.last_end.is_some();
     // Guides and other things to snap to lie in the picture.
     let is_line = is_line && layout.is_none();
     let snap = targets(session, &document, tool, &layers, is_line, px_per_pt);
@@ -129,32 +129,32 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
             &[],
             px_per_pt,
         );
-        let (gesture, outcome) = tools::guides::hold(tab.document(), guide, to);
+        let (gesture, outcome) = tools::guides::hold(open.document(), guide, to);
         session.gesture = gesture;
         return take(session, outcome);
     }
     let context = ToolContext {
         document: &document,
-        layer: tab.selected,
+        layer: open.selected,
         layers: &layers,
         brush: &session.brush,
-        target: brush_target(tab),
+        target: brush_target(open),
         color: session.color,
         second_color: session.second_color,
         operator: session.operator,
         px_per_pt,
-        last_end: tab.last_end,
+        last_end: open.last_end,
         symmetry: session.symmetry,
         axes: session.axes,
         fill: session.fill,
         select: session.select,
         shape: session.shape,
         liquify: session.liquify,
-        part: tab.part.as_deref(),
+        part: open.part.as_deref(),
         lasso: &session.lasso,
         crop: session.crop,
         crop_aspect: session.crop_aspect,
-        frame: tab.kept_frame(),
+        frame: open.kept_frame(),
         carried,
         strokes: &strokes,
         mesh_points: &session.mesh_points,
@@ -195,8 +195,8 @@ fn targets(
 }
 
 /// What brush and eraser change.
-fn brush_target(tab: &OpenDocument) -> BrushTarget {
-    match (tab.quick_mask, tab.on_mask) {
+fn brush_target(open: &OpenDocument) -> BrushTarget {
+    match (open.quick_mask, open.on_mask) {
         (true, _) => BrushTarget::Selection,
         (false, true) => BrushTarget::Mask,
         (false, false) => BrushTarget::Layer,
@@ -237,8 +237,8 @@ const GUIDE_PT: f32 = 4.0;
 /// The canvas point under the pen, which may be on the sheet of the unwrapped surface; `None` off
 /// its pieces.
 fn on_canvas(session: &Session, pen: Vec2) -> Option<Vec2> {
-    let tab = session.active()?;
-    match (tab.layout(), &tab.document().surface) {
+    let open = session.active()?;
+    match (open.layout(), &open.document().surface) {
         (Some(layout), Some(surface)) => Some(layout.canvas_at(surface, pen)?.at),
         _ => Some(pen),
     }
@@ -246,11 +246,11 @@ fn on_canvas(session: &Session, pen: Vec2) -> Option<Vec2> {
 
 /// The document for a tool that works on the selected layer where it shows: with the layer's
 /// transform applied.
-fn works_in_place(tool: ToolKind, tab: &OpenDocument) -> Result<Document, &'static str> {
-    let document = tab.document();
+fn works_in_place(tool: ToolKind, open: &OpenDocument) -> Result<Document, &'static str> {
+    let document = open.document();
     let is_moved_whole = tool == ToolKind::Move
-        && (tab.has_several()
-            || tab
+        && (open.has_several()
+            || open
                 .selected
                 .and_then(|id| document.layer(id))
                 .is_some_and(|layer| !matches!(layer.content, Content::Strokes(_))));
@@ -267,7 +267,7 @@ fn works_in_place(tool: ToolKind, tab: &OpenDocument) -> Result<Document, &'stat
                 | ToolKind::Crop
                 | ToolKind::Assistants
         );
-    let Some(layer) = tab.selected.filter(|_| !looks_only) else { return Ok(document.clone()) };
+    let Some(layer) = open.selected.filter(|_| !looks_only) else { return Ok(document.clone()) };
     let Some(applied) = document.with_transform_applied(layer) else { return Ok(document.clone()) };
     let is_in_place = applied.map_of(layer).is_none_or(|map| map.is_none());
     let is_group = applied.layer(layer).is_some_and(|layer| layer.content.group().is_some());
@@ -288,44 +288,44 @@ fn works_in_place(tool: ToolKind, tab: &OpenDocument) -> Result<Document, &'stat
 fn take(session: &mut Session, outcome: Outcome) {
     let end = session.last_pen;
     let carried = session.carried;
-    let Some(tab) = session.active_mut() else { return };
+    let Some(open) = session.active_mut() else { return };
     match outcome {
         Outcome::Idle => {}
-        Outcome::Preview(document) => tab.show("", document),
+        Outcome::Preview(document) => open.show("", document),
         Outcome::Commit { label, document, select } => {
-            if tab.commit(label, document) {
-                tab.selected = select.or(tab.selected);
-                tab.last_end = end;
+            if open.commit(label, document) {
+                open.selected = select.or(open.selected);
+                open.last_end = end;
             }
             session.lasso.clear();
         }
         Outcome::Tuned { document, select, is_done } => {
             match is_done {
-                true => drop(tab.commit("Select", document)),
-                false => tab.show("", document),
+                true => drop(open.commit("Select", document)),
+                false => open.show("", document),
             }
             session.select = select;
         }
         Outcome::Lasso(corners) => {
-            tab.forget_preview();
+            open.forget_preview();
             session.lasso = corners;
         }
-        Outcome::ChosenPart(part) => tab.part = Some(part),
+        Outcome::ChosenPart(part) => open.part = Some(part),
         Outcome::Direction(normal) => {
             session.shape = ShapeSettings { normal, ..session.shape }.held();
         }
         Outcome::Frame(frame) => session.crop = Some(frame),
-        Outcome::CloneFrom(at) => tab.clone_source = Some(CloneSource { at, offset: None }),
+        Outcome::CloneFrom(at) => open.clone_source = Some(CloneSource { at, offset: None }),
         Outcome::Refused(why) => session.notes.push(why.into_owned()),
         Outcome::Chosen(strokes) => {
-            if let Some(layer) = tab.selected {
-                tab.choose_strokes(layer, strokes);
+            if let Some(layer) = open.selected {
+                open.choose_strokes(layer, strokes);
             }
         }
-        Outcome::Pivot(share) => tab.set_pivot(carried, share),
+        Outcome::Pivot(share) => open.set_pivot(carried, share),
         Outcome::MeshPoints(points) => session.mesh_points = points,
         Outcome::Axes(axes) => session.axes = axes,
         Outcome::Picked(color) => session.color = color,
-        Outcome::Cancel => tab.forget_preview(),
+        Outcome::Cancel => open.forget_preview(),
     }
 }

@@ -92,39 +92,40 @@ impl SelectionAction {
         match self {
             SelectionAction::Hide { on } => return session.hides_selection = *on,
             SelectionAction::Settings { select } => {
-                return session.select = SelectSettings { region: told(&select.region), ..*select };
+                return session.select =
+                    SelectSettings { region: clamp_to_ranges(&select.region), ..*select };
             }
             SelectionAction::DropLasso {} => return session.lasso.clear(),
             _ => session.drop_gesture(),
         }
         let (lasso, settings) = (std::mem::take(&mut session.lasso), session.select);
-        let Some(tab) = session.active_mut() else { return session.say("There is no document.") };
-        tab.forget_preview();
+        let Some(open) = session.active_mut() else { return session.say("There is no document.") };
+        open.forget_preview();
         if let SelectionAction::QuickMask { on } = self {
-            tab.quick_mask = *on;
+            open.quick_mask = *on;
             return;
         }
-        let last = tab.last_selection.clone();
+        let last = open.last_selection.clone();
         let step = match self {
             SelectionAction::CloseLasso {} => {
-                let closed = select::closed(tab.document(), &lasso, &settings);
+                let closed = select::closed(open.document(), &lasso, &settings);
                 closed.map(|next| ("Select", next)).ok_or("A lasso has three corners at least.")
             }
-            SelectionAction::Again {} if tab.document().active_selection.is_none() => match last {
+            SelectionAction::Again {} if open.document().active_selection.is_none() => match last {
                 Some(last) => Ok((
                     "Select again",
-                    Document { active_selection: Some(last), ..tab.document().clone() },
+                    Document { active_selection: Some(last), ..open.document().clone() },
                 )),
                 None => Err("Nothing was selected before."),
             },
-            _ => self.step(tab.document()),
+            _ => self.step(open.document()),
         };
         match step {
             Ok((label, next)) => {
                 let is_emptied =
                     next.active_selection.is_none() && !matches!(self, SelectionAction::None {});
-                let was_active = tab.document().active_selection.is_some();
-                if tab.commit(label, next) && is_emptied && was_active {
+                let was_active = open.document().active_selection.is_some();
+                if open.commit(label, next) && is_emptied && was_active {
                     session.say("Nothing is selected any more.");
                 }
             }
@@ -161,7 +162,7 @@ impl SelectionAction {
                 if document.surface.is_none() {
                     return Err("There is no surface to select by.");
                 }
-                let found = Selection::of_region(told(region), &document.scene());
+                let found = Selection::of_region(clamp_to_ranges(region), &document.scene());
                 if found.is_empty() {
                     return Err("That point is not on the surface.");
                 }
@@ -227,7 +228,7 @@ impl SelectionAction {
 }
 
 /// A region whose numbers are those that a document may hold.
-fn told(region: &SurfaceRegion) -> SurfaceRegion {
+fn clamp_to_ranges(region: &SurfaceRegion) -> SurfaceRegion {
     SurfaceRegion {
         tolerance: held(region.tolerance, &region.kind.tolerances()),
         softness: held(region.softness, &SurfaceRegion::SOFTNESS),

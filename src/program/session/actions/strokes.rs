@@ -56,15 +56,15 @@ impl StrokeAction {
     pub fn apply(&self, session: &mut Session) {
         session.drop_gesture();
         let current_brush = session.brush.clone();
-        let Some(tab) = session.active_mut() else { return };
-        tab.forget_preview();
-        let document = tab.document();
+        let Some(open) = session.active_mut() else { return };
+        open.forget_preview();
+        let document = open.document();
         let id = |path: &LayerPath| path.find(document).map(|layer| layer.id);
         match self {
             StrokeAction::Choose { layer, strokes } => {
                 if let Some(id) = id(layer) {
-                    tab.selected = Some(id);
-                    tab.choose_strokes(id, strokes.clone());
+                    open.selected = Some(id);
+                    open.choose_strokes(id, strokes.clone());
                 }
             }
             StrokeAction::Take { layer, stroke } => {
@@ -79,16 +79,16 @@ impl StrokeAction {
                 let next = document
                     .with_each_stroke(id, strokes, |stroke| to.given_to(stroke, &current_brush));
                 match next {
-                    Some(next) if *done => drop(tab.commit("Restyle stroke", next)),
-                    Some(next) => tab.show("Restyle stroke", next),
+                    Some(next) if *done => drop(open.commit("Restyle stroke", next)),
+                    Some(next) => open.show("Restyle stroke", next),
                     None => {}
                 }
             }
             _ => {
                 if let Some((label, next, layer, chosen)) = self.edit(document)
-                    && tab.commit(label, next)
+                    && open.commit(label, next)
                 {
-                    tab.choose_strokes(layer, chosen);
+                    open.choose_strokes(layer, chosen);
                 }
             }
         }

@@ -53,8 +53,8 @@ const SAME_ASPECT: f32 = 0.005;
 /// sheet shows it.
 pub fn place(session: &mut Session, name: &str, picture: Picture) {
     let settings = session.unwrap_settings();
-    let Some(tab) = session.active_mut() else { return };
-    let document = tab.document();
+    let Some(open) = session.active_mut() else { return };
+    let document = open.document();
     let Some(layout) = document.surface.as_ref().and_then(|surface| surface.plane_layout(settings))
     else {
         return session.notes.push("There is no surface here that could be unwrapped.".into());
@@ -65,7 +65,7 @@ pub fn place(session: &mut Session, name: &str, picture: Picture) {
         outside: Outside::None,
         bend: layout.bend(),
     };
-    if add_image(tab, name, picture, lies, "Import unwrapped") {
+    if add_image(open, name, picture, lies, "Import unwrapped") {
         let aspect = |size: crate::math::Size| size.width as f32 / size.height.max(1) as f32;
         if (aspect(size) / aspect(sheet) - 1.0).abs() > SAME_ASPECT {
             session.notes.push(format!(

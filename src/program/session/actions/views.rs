@@ -33,12 +33,12 @@ impl ViewAction {
             ViewAction::OverlayOpacity { to } => session.overlay_opacity = to.max(0.0).min(1.0),
             ViewAction::Unwrapped { on } => unwrap(session, *on),
             _ => {
-                if let Some(tab) = session.active_mut() {
-                    let size = tab.shown_size();
-                    let view = tab
+                if let Some(open) = session.active_mut() {
+                    let size = open.shown_size();
+                    let view = open
                         .view
                         .unwrap_or_else(|| CanvasView::fitting(size, Vec2::new(800.0, 600.0)));
-                    tab.view = Some(self.clamped(view, size));
+                    open.view = Some(self.clamped(view, size));
                 }
             }
         }
@@ -67,15 +67,15 @@ impl ViewAction {
 fn unwrap(session: &mut Session, on: bool) {
     session.drop_gesture();
     let settings = session.unwrap_settings();
-    let Some(tab) = session.active_mut() else { return };
-    let laid = tab
+    let Some(open) = session.active_mut() else { return };
+    let laid = open
         .document()
         .surface
         .as_ref()
         .filter(|_| on)
         .and_then(|surface| surface.plane_layout(settings));
     let is_laid = laid.is_some();
-    tab.show_unwrapped(laid.map(|_| settings));
+    open.show_unwrapped(laid.map(|_| settings));
     if on && !is_laid {
         session.notes.push("There is no surface here that could be unwrapped.".into());
     }

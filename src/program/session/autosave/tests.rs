@@ -21,7 +21,7 @@ fn autosave(session: &Session) -> &Autosave {
 }
 
 fn crash(session: Session) {
-    autosave(&session).settle();
+    autosave(&session).wait_until_written();
     drop(session);
 }
 
@@ -42,13 +42,13 @@ fn after_a_crash_the_drawing_comes_back_untitled_and_unsaved() {
     crash(session);
     let left = lost(folder.path()).pop().unwrap();
     let mut autosave = Autosave::new(folder.path().into());
-    let RecoveredTab { tab, recovery, .. } =
+    let RecoveredDocument { open, recovery, .. } =
         autosave.lost().bring_back(left, &Progress::default()).unwrap().unwrap();
-    assert_eq!((tab.title().as_str(), &tab.file), ("Untitled 1 (recovered)", &None));
-    assert!(tab.is_dirty());
-    assert_eq!(crate::io::recipe::write(tab.document()), before);
-    autosave.adopt(&tab, recovery.unwrap());
-    assert!(autosave.follow(std::slice::from_ref(&tab), ToolKind::Brush).is_none());
+    assert_eq!((open.title().as_str(), &open.file), ("Untitled 1 (recovered)", &None));
+    assert!(open.is_dirty());
+    assert_eq!(crate::io::recipe::write(open.document()), before);
+    autosave.adopt(&open, recovery.unwrap());
+    assert!(autosave.follow(std::slice::from_ref(&open), ToolKind::Brush).is_none());
     assert!(lost(folder.path()).is_empty(), "now it lives here");
     // A second crash loses nothing either.
     drop(autosave);
@@ -178,14 +178,14 @@ fn what_was_chosen_and_in_hand_comes_back_with_the_drawing() {
     session.replay(Path::new("story"), story).unwrap();
     session.keep();
     crash(session);
-    let RecoveredTab { tab, tool, .. } = Autosave::new(folder.path().into())
+    let RecoveredDocument { open, tool, .. } = Autosave::new(folder.path().into())
         .lost()
         .bring_back(lost(folder.path()).pop().unwrap(), &Progress::default())
         .unwrap()
         .unwrap();
-    let chosen = tab.document().layer(tab.selected.unwrap()).unwrap();
+    let chosen = open.document().layer(open.selected.unwrap()).unwrap();
     assert_eq!(
-        (chosen.name.as_str(), tab.on_mask, tool),
+        (chosen.name.as_str(), open.on_mask, tool),
         ("Background", true, Some(ToolKind::Eraser))
     );
 }

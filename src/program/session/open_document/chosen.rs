@@ -170,7 +170,7 @@ mod tests {
     use crate::math::{Size, srgb::Color};
     use std::sync::Arc;
 
-    fn tab() -> (OpenDocument, Vec<LayerId>) {
+    fn open() -> (OpenDocument, Vec<LayerId>) {
         let fill = |i: usize| Arc::new(Layer::new(i.to_string(), Content::Fill(Color::BLACK)));
         let document =
             Document { layers: (0..5).map(fill).collect(), ..Document::empty(Size::new(4, 4)) };
@@ -180,46 +180,49 @@ mod tests {
 
     #[test]
     fn a_click_with_ctrl_adds_a_layer_and_a_second_takes_it_away() {
-        let (mut tab, ids) = tab();
-        tab.choose_layers(vec![ids[1]]);
-        tab.choose_layers(tab.toggled(ids[3]));
-        assert_eq!((tab.chosen_layers(), tab.selected), (vec![ids[1], ids[3]], Some(ids[3])));
-        tab.choose_layers(tab.toggled(ids[1]));
-        assert_eq!((tab.chosen_layers(), tab.selected), (vec![ids[3]], Some(ids[3])));
-        tab.choose_layers(tab.toggled(ids[3]));
-        assert_eq!(tab.chosen_layers(), [ids[3]], "one is always chosen");
+        let (mut open, ids) = open();
+        open.choose_layers(vec![ids[1]]);
+        open.choose_layers(open.toggled(ids[3]));
+        assert_eq!((open.chosen_layers(), open.selected), (vec![ids[1], ids[3]], Some(ids[3])));
+        open.choose_layers(open.toggled(ids[1]));
+        assert_eq!((open.chosen_layers(), open.selected), (vec![ids[3]], Some(ids[3])));
+        open.choose_layers(open.toggled(ids[3]));
+        assert_eq!(open.chosen_layers(), [ids[3]], "one is always chosen");
     }
 
     #[test]
     fn a_range_keeps_its_beginning_while_its_end_moves() {
-        let (mut tab, ids) = tab();
-        tab.choose_layers(vec![ids[2]]);
+        let (mut open, ids) = open();
+        open.choose_layers(vec![ids[2]]);
         for (end, chosen) in [(4, 2..5), (1, 1..3), (2, 2..3)] {
-            let start = tab.range_start().unwrap();
-            tab.choose_range(range(&ids, start, ids[end]), Some(start));
-            assert_eq!((tab.chosen_layers(), tab.selected), (ids[chosen].to_vec(), Some(ids[end])));
+            let start = open.range_start().unwrap();
+            open.choose_range(range(&ids, start, ids[end]), Some(start));
+            assert_eq!(
+                (open.chosen_layers(), open.selected),
+                (ids[chosen].to_vec(), Some(ids[end]))
+            );
         }
     }
 
     #[test]
     fn selecting_another_layer_lets_go_of_the_others() {
-        let (mut tab, ids) = tab();
-        tab.choose_layers(ids.clone());
-        assert!(tab.has_several() && tab.is_chosen(ids[0]));
-        tab.selected = Some(LayerId::fresh());
-        tab.repair();
-        tab.choose_layers(vec![ids[1]]);
-        assert!(!tab.has_several() && !tab.is_chosen(ids[0]));
+        let (mut open, ids) = open();
+        open.choose_layers(ids.clone());
+        assert!(open.has_several() && open.is_chosen(ids[0]));
+        open.selected = Some(LayerId::fresh());
+        open.repair();
+        open.choose_layers(vec![ids[1]]);
+        assert!(!open.has_several() && !open.is_chosen(ids[0]));
     }
 
     #[test]
     fn a_layer_that_is_gone_is_chosen_no_more() {
-        let (mut tab, ids) = tab();
-        tab.choose_layers(vec![ids[0], ids[1], ids[2]]);
-        let next = tab.document().without_layer(ids[1]).unwrap();
-        tab.commit("Delete layer", next);
-        assert_eq!(tab.chosen_layers(), [ids[0], ids[2]]);
-        assert_eq!(neighbour(tab.document(), ids[2], -1), ids[0]);
-        assert_eq!(neighbour(tab.document(), ids[4], 1), ids[4]);
+        let (mut open, ids) = open();
+        open.choose_layers(vec![ids[0], ids[1], ids[2]]);
+        let next = open.document().without_layer(ids[1]).unwrap();
+        open.commit("Delete layer", next);
+        assert_eq!(open.chosen_layers(), [ids[0], ids[2]]);
+        assert_eq!(neighbour(open.document(), ids[2], -1), ids[0]);
+        assert_eq!(neighbour(open.document(), ids[4], 1), ids[4]);
     }
 }

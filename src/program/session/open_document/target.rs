@@ -57,10 +57,10 @@ impl OpenDocument {
 
     /// Where the last step left the user is what redo goes back to: called before the target is
     /// changed by anything but a step.
-    pub(in crate::session) fn settle(&mut self) {
-        if !self.history.is_settled() {
+    pub(in crate::session) fn record_target(&mut self) {
+        if !self.history.has_target_after() {
             let after = self.target();
-            self.history.settle(after);
+            self.history.set_target_after(after);
         }
     }
 

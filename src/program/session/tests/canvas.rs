@@ -23,7 +23,7 @@ fn is_red(session: &Session, x: i32, y: i32) -> bool {
 
 #[test]
 fn a_crop_to_the_selection_is_one_step_that_undo_takes_back_whole() {
-    let mut session = told(&format!("{PAPER}{STROKE}{SQUARE}"));
+    let mut session = replay(&format!("{PAPER}{STROKE}{SQUARE}"));
     story(&mut session, r#"{"in":"canvas","do":"crop to selection"}"#);
     assert_eq!(size(&session), Size::new(60, 50));
     assert!(is_red(&session, 30, 21), "the stroke is where it was on the picture");
@@ -51,7 +51,7 @@ fn the_crop_tool_s_frame_is_dragged_beyond_the_canvas_and_applied_or_given_up() 
 {\"in\":\"pointer\",\"do\":\"press\",\"tool\":\"crop\",\"pen\":[40,30],\"px_per_pt\":1}
 {\"in\":\"pointer\",\"do\":\"drag\",\"pens\":[[260,200]]}
 {\"in\":\"pointer\",\"do\":\"release\"}";
-    let mut session = told(&format!("{PAPER}{STROKE}{drag}"));
+    let mut session = replay(&format!("{PAPER}{STROKE}{drag}"));
     let frame = session.crop.unwrap();
     assert_eq!((frame.x0, frame.y0, frame.x1, frame.y1), (40, 30, 260, 200));
     assert_eq!(
@@ -75,7 +75,7 @@ fn the_crop_tool_s_frame_is_dragged_beyond_the_canvas_and_applied_or_given_up() 
 
 #[test]
 fn turns_and_mirrors_take_the_picture_along() {
-    let mut session = told(&format!("{PAPER}{STROKE}"));
+    let mut session = replay(&format!("{PAPER}{STROKE}"));
     story(&mut session, r#"{"in":"canvas","do":"turn","degrees":90}"#);
     assert_eq!(size(&session), Size::new(150, 200));
     assert!(is_red(&session, 72, 140), "what was on the left is at the bottom");
@@ -94,7 +94,7 @@ fn turns_and_mirrors_take_the_picture_along() {
 
 #[test]
 fn what_cannot_be_done_says_why() {
-    let mut session = told(PAPER);
+    let mut session = replay(PAPER);
     for (line, why) in [
         (r#"{"in":"canvas","do":"crop to selection"}"#, "Nothing is selected"),
         (r#"{"in":"canvas","do":"trim"}"#, "nothing to trim"),

@@ -188,7 +188,7 @@ fn an_edit_that_no_file_could_hold_is_refused_in_words() {
 #[test]
 fn groups_within_groups_are_refused_when_a_file_could_not_hold_them() {
     let mut session =
-        told(r##"{"in":"file","do":"new","width":8,"height":8,"background":"#ffffff"}"##);
+        replay(r##"{"in":"file","do":"new","width":8,"height":8,"background":"#ffffff"}"##);
     for _ in 0..Document::DEEPEST + 3 {
         let path = vec!["0"; 1 + depth(&session)].join(".");
         session

@@ -63,9 +63,9 @@ fn begun(kind: usize, maps: &[PathBuf; 3]) -> Session {
         1 => {
             let open = serde_json::json!({ "in": "file", "do": "open maps", "normal": maps[0], "depth": null });
             session.replay(Path::new("story"), &open.to_string()).unwrap();
-            let tab = session.active_mut().unwrap();
-            let next = Document { layers: all.layers, ..tab.document().clone() };
-            assert!(tab.commit("Layers", next));
+            let open = session.active_mut().unwrap();
+            let next = Document { layers: all.layers, ..open.document().clone() };
+            assert!(open.commit("Layers", next));
         }
         _ => {
             session.add_document(OpenDocument::new("parts", all, None));

@@ -23,7 +23,7 @@ fn pasted(to: PasteTo, at: Option<Vec2>, picture: Picture) -> Action {
 
 #[test]
 fn a_picture_is_pasted_as_flat_paint_at_its_own_size_with_its_middle_at_the_pointer() {
-    let mut session = told(PAPER);
+    let mut session = replay(PAPER);
     let given = picture(40, 30);
     pasted(PasteTo::Paint, Some(Vec2::new(60.0, 50.0)), given.clone()).apply(&mut session).unwrap();
     let layer = session.layer().unwrap();
@@ -43,7 +43,7 @@ fn a_picture_is_pasted_as_flat_paint_at_its_own_size_with_its_middle_at_the_poin
 
 #[test]
 fn without_a_pointer_it_goes_to_the_middle_of_the_view_and_what_lies_outside_the_canvas_is_kept() {
-    let mut session = told(PAPER);
+    let mut session = replay(PAPER);
     let view =
         CanvasView { center: Vec2::new(10.0, 140.0), zoom: 2.0, turn_rad: 0.0, mirrored: false };
     session.active_mut().unwrap().view = Some(view);
@@ -68,7 +68,7 @@ fn without_a_pointer_it_goes_to_the_middle_of_the_view_and_what_lies_outside_the
 
 #[test]
 fn it_becomes_an_image_layer_or_a_document_where_that_is_asked_for() {
-    let mut session = told(PAPER);
+    let mut session = replay(PAPER);
     pasted(PasteTo::Image, None, picture(40, 30)).apply(&mut session).unwrap();
     assert!(matches!(session.layer().unwrap().content, Content::Image(_)));
     pasted(PasteTo::Document, None, picture(40, 30)).apply(&mut session).unwrap();
@@ -86,9 +86,9 @@ fn it_becomes_an_image_layer_or_a_document_where_that_is_asked_for() {
 fn every_paste_replays_with_the_picture_in_its_line() {
     for to in [PasteTo::Paint, PasteTo::Image, PasteTo::Document] {
         let action = pasted(to, Some(Vec2::new(20.0, 30.0)), picture(40, 30));
-        let mut first = told(PAPER);
+        let mut first = replay(PAPER);
         action.apply(&mut first).unwrap();
-        let mut second = told(PAPER);
+        let mut second = replay(PAPER);
         second.replay(Path::new("story"), &action.written().to_string()).unwrap();
         let seen = |session: &Session| {
             let document = session.shown().unwrap();
@@ -97,13 +97,13 @@ fn every_paste_replays_with_the_picture_in_its_line() {
         assert!(seen(&first) == seen(&second) && names(&first) == names(&second), "{}", to.name());
     }
     let broken = r#"{"in":"clipboard","do":"paste picture","picture":{"name":"a.png","file":"AAAA"},"to":"paint"}"#;
-    let why = told(PAPER).replay(Path::new("story"), broken).unwrap_err().to_string();
+    let why = replay(PAPER).replay(Path::new("story"), broken).unwrap_err().to_string();
     assert!(why.starts_with("story: line 1: “picture”"), "{why}");
 }
 
 #[test]
 fn what_was_copied_here_is_pasted_as_an_image_layer_too() {
-    let mut session = told(&format!("{PAPER}{STROKE}"));
+    let mut session = replay(&format!("{PAPER}{STROKE}"));
     let act = |session: &mut Session, line: &str| session.replay(Path::new("story"), line).unwrap();
     act(&mut session, r#"{"in":"clipboard","do":"paste image","at":null}"#);
     assert_eq!(session.said.pop().as_deref(), Some("Nothing was copied yet."));

@@ -24,7 +24,7 @@ fn red(session: &Session, x: i32, y: i32) -> bool {
 
 #[test]
 fn a_stroke_keeps_to_the_selection_and_undo_gives_both_back() {
-    let mut session = told(&format!("{PAPER}{SQUARE}{STROKE}"));
+    let mut session = replay(&format!("{PAPER}{SQUARE}{STROKE}"));
     assert_eq!([50, 62, 118, 125].map(|x| red(&session, x, 70)), [false, true, true, false]);
     let steps: Vec<_> = session.active().unwrap().history.past().collect();
     assert_eq!(steps, ["Select", "Brush stroke"]);
@@ -42,7 +42,7 @@ fn fills_gradients_erasers_and_retouching_keep_to_the_selection() {
 {"in":"layer","do":"add","kind":"paint"}
 {"in":"pointer","do":"press","tool":"fill","pen":[90,70],"px_per_pt":1}
 {"in":"pointer","do":"release"}"#;
-    let mut session = told(&format!(
+    let mut session = replay(&format!(
         "{PAPER}{SQUARE}\n{{\"in\":\"hand\",\"do\":\"color\",\"color\":\"#c02010\"}}{fill}"
     ));
     assert_eq!([59, 60, 119, 120].map(|x| red(&session, x, 70)), [false, true, true, false]);
@@ -78,7 +78,7 @@ fn fills_gradients_erasers_and_retouching_keep_to_the_selection() {
 
 #[test]
 fn cutting_and_pasting_moves_paint_and_keeps_strokes_strokes() {
-    let mut session = told(&format!("{PAPER}{STROKE}{SQUARE}"));
+    let mut session = replay(&format!("{PAPER}{STROKE}{SQUARE}"));
     story(&mut session, r#"{"in":"clipboard","do":"cut"}"#);
     assert_eq!([40, 90].map(|x| red(&session, x, 70)), [true, false]);
     story(&mut session, r#"{"in":"clipboard","do":"paste"}"#);
@@ -99,7 +99,7 @@ fn cutting_and_pasting_moves_paint_and_keeps_strokes_strokes() {
 
 #[test]
 fn what_cannot_be_done_says_why() {
-    let mut session = told(PAPER);
+    let mut session = replay(PAPER);
     let mut said = |line: &str| {
         story(&mut session, line);
         session.said.pop().unwrap_or_default()
@@ -138,7 +138,7 @@ fn what_cannot_be_done_says_why() {
 
 #[test]
 fn selections_are_kept_taken_inverted_and_let_go_of() {
-    let mut session = told(&format!("{PAPER}{SQUARE}"));
+    let mut session = replay(&format!("{PAPER}{SQUARE}"));
     story(
         &mut session,
         "{\"in\":\"selection\",\"do\":\"keep\",\"name\":\"Eye\"}\n{\"in\":\"selection\",\"do\":\"invert\"}",
@@ -162,7 +162,7 @@ fn selections_are_kept_taken_inverted_and_let_go_of() {
 
 #[test]
 fn the_brush_paints_on_the_selection_under_a_quick_mask() {
-    let mut session = told(&format!("{PAPER}{SQUARE}"));
+    let mut session = replay(&format!("{PAPER}{SQUARE}"));
     let paint = "{\"in\":\"selection\",\"do\":\"quick mask\",\"on\":true}
 {\"in\":\"hand\",\"do\":\"preset\",\"name\":\"hard-round\"}
 {\"in\":\"hand\",\"do\":\"size\",\"to\":20}

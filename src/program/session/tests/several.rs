@@ -4,7 +4,7 @@ use super::*;
 
 /// Four fills above the paper, the topmost one alone in a group.
 fn five() -> Session {
-    told(&format!(
+    replay(&format!(
         r#"{PAPER}
         {{"in":"layer","do":"add","kind":"fill"}}
         {{"in":"layer","do":"add","kind":"gradient"}}
@@ -20,8 +20,8 @@ fn story(session: &mut Session, lines: &str) {
 }
 
 fn chosen(session: &Session) -> Vec<String> {
-    let tab = session.active().unwrap();
-    tab.chosen_layers().iter().map(|id| tab.document().layer(*id).unwrap().name.clone()).collect()
+    let open = session.active().unwrap();
+    open.chosen_layers().iter().map(|id| open.document().layer(*id).unwrap().name.clone()).collect()
 }
 
 fn done(session: &Session) -> &str {
@@ -124,7 +124,7 @@ fn several_layers_merge_into_one_that_looks_the_same() {
 
 #[test]
 fn several_layers_are_moved_by_the_tool_and_cut_and_pasted_together() {
-    let mut session = told(&format!(
+    let mut session = replay(&format!(
         r#"{PAPER}
         {{"in":"layer","do":"add","kind":"paint"}}{STROKE}
         {{"in":"layer","do":"add","kind":"strokes"}}{STROKE}
@@ -148,11 +148,11 @@ fn several_layers_are_moved_by_the_tool_and_cut_and_pasted_together() {
         (red(&session, 110), chosen(&session)),
         (true, vec!["Paint 2".into(), "Strokes 2".into()])
     );
-    let tab = session.active().unwrap();
-    let kinds = tab
+    let open = session.active().unwrap();
+    let kinds = open
         .chosen_layers()
         .into_iter()
-        .map(|id| tab.document().layer(id).unwrap().content.kind_name());
+        .map(|id| open.document().layer(id).unwrap().content.kind_name());
     assert_eq!(kinds.collect::<Vec<_>>(), ["pixels", "strokes"]);
     let turn = r#"{"in":"layer","do":"turn","layer":["3","4"],"degrees":90}"#;
     story(&mut session, turn);

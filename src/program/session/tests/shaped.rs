@@ -5,7 +5,7 @@ use super::*;
 use crate::document::{Document, Progress, flatten};
 use crate::io::{self, Budget, Overwrite};
 use crate::raster::{TileGrid, picture::Texels};
-use crate::session::autosave::{Autosave, RecoveredTab};
+use crate::session::autosave::{Autosave, RecoveredDocument};
 use crate::session::{OpenDocument, actions::files, storage};
 use std::path::PathBuf;
 
@@ -66,12 +66,12 @@ fn everywhere(document: &Document, folder: &Path) -> [Vec<u8>; 4] {
     let opened = storage::open(&at("a.ora")).unwrap();
     assert!(opened.notes.is_empty(), "{:?}", opened.notes);
     let merged = opened
-        .tab
+        .open
         .stored_preview
         .take()
         .expect("a merged picture")
         .to_straight_rgba(document.size.rect());
-    [picture(document), read_picture(&at("a.png")), merged, picture(opened.tab.document())]
+    [picture(document), read_picture(&at("a.png")), merged, picture(opened.open.document())]
 }
 
 fn assert_same_everywhere(document: &Document, what: &str) {
@@ -119,13 +119,14 @@ fn after_a_crash_a_drawing_has_its_shape() {
     tell(&mut session, LIQUIFY);
     session.keep();
     let before = picture(document_of(&session));
-    session.autosave.as_ref().unwrap().settle();
+    session.autosave.as_ref().unwrap().wait_until_written();
     drop(session);
     let lost = Autosave::new(folder.path().into()).lost();
     let left = lost.list().pop().unwrap();
-    let RecoveredTab { tab, .. } = lost.bring_back(left, &Progress::default()).unwrap().unwrap();
+    let RecoveredDocument { open, .. } =
+        lost.bring_back(left, &Progress::default()).unwrap().unwrap();
     let mut session = Session::default();
-    session.add_document(tab);
+    session.add_document(open);
     assert!(before == picture(document_of(&session)));
     assert_same_everywhere(document_of(&session), "recovered");
     tell(&mut session, r##"{"in":"layer","do":"add","kind":"gradient"}"##);
@@ -139,7 +140,7 @@ fn a_recovery_that_is_cancelled_is_offered_again() {
     let mut session = shaped();
     session.autosave = Some(Autosave::new(folder.path().into()));
     session.keep();
-    session.autosave.as_ref().unwrap().settle();
+    session.autosave.as_ref().unwrap().wait_until_written();
     drop(session);
     let lost = Autosave::new(folder.path().into()).lost();
     let given_up = Progress::default();
@@ -155,8 +156,8 @@ fn a_document_whose_shape_is_still_to_be_made_is_shown_exported_and_saved_with_i
     let document = document_of(&session);
     let flat = Document { surface: None, ..document.clone() };
     assert!(picture(&flat) != picture(document) && !flat.is_shaped());
-    let tab = OpenDocument::new("came in flat", flat.clone(), None);
-    assert!(tab.document().is_shaped() && !tab.is_dirty());
+    let open = OpenDocument::new("came in flat", flat.clone(), None);
+    assert!(open.document().is_shaped() && !open.is_dirty());
     let folder = tempfile::tempdir().unwrap();
     let [_, exported, merged, opened] = everywhere(&flat, folder.path());
     let shown = picture(document);

@@ -37,7 +37,7 @@ fn document(session: &Session) -> &Document {
 
 #[test]
 fn selections_gradients_and_layers_go_to_guides_that_they_come_near() {
-    let mut session = told(&format!("{PAPER}{GUIDES}"));
+    let mut session = replay(&format!("{PAPER}{GUIDES}"));
     story(&mut session, &drag("select rectangle", [77.0, 20.0], [150.0, 66.0], ""));
     assert_eq!(covered(&session), Rect::new(80, 20, 150, 60));
     story(&mut session, &drag("select rectangle", [120.0, 40.0], [118.0, 61.0], ""));
@@ -73,7 +73,7 @@ fn selections_gradients_and_layers_go_to_guides_that_they_come_near() {
 
 #[test]
 fn nothing_snaps_once_it_is_put_off_and_lines_with_shift_do_else() {
-    let mut session = told(&format!("{PAPER}{GUIDES}{STROKE}"));
+    let mut session = replay(&format!("{PAPER}{GUIDES}{STROKE}"));
     story(&mut session, &drag("brush", [84.0, 100.0], [84.0, 100.0], "shift"));
     let ends = |session: &Session| {
         let layer = session.layer().unwrap().id;
@@ -97,7 +97,7 @@ fn nothing_snaps_once_it_is_put_off_and_lines_with_shift_do_else() {
 
 #[test]
 fn guides_are_pulled_moved_undone_and_cleared() {
-    let mut session = told(PAPER);
+    let mut session = replay(PAPER);
     let pull = "{\"in\":\"guide\",\"do\":\"pull\",\"vertical\":true,\"pen\":[0,9],\"px_per_pt\":1}
 {\"in\":\"pointer\",\"do\":\"drag\",\"pens\":[[33.3,20]]}
 {\"in\":\"pointer\",\"do\":\"release\"}";
@@ -119,7 +119,7 @@ fn guides_are_pulled_moved_undone_and_cleared() {
 fn a_stroke_goes_along_an_assistant_and_the_next_line_begins_at_its_end() {
     let ruler = r#"
 {"in":"guide","do":"assistants","assistants":[{"kind":"line","points":[[10,100],[190,100]]}]}"#;
-    let mut session = told(&format!("{PAPER}{STROKE}{ruler}"));
+    let mut session = replay(&format!("{PAPER}{STROKE}{ruler}"));
     story(&mut session, &drag("brush", [30.0, 110.0], [150.0, 93.0], ""));
     let layer = session.layer().unwrap().id;
     let samples = document(&session).strokes(layer)[1].samples().to_vec();

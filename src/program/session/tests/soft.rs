@@ -25,7 +25,7 @@ fn tell(session: &mut Session, lines: &str) {
 }
 
 fn airbrushed() -> Session {
-    let mut session = told(AIR);
+    let mut session = replay(AIR);
     (0..60).for_each(|i| tell(&mut session, &drawn("brush", 60 + i)));
     session
 }
@@ -94,12 +94,12 @@ fn a_faint_eraser_takes_airbrushed_paint_away_and_what_is_left_is_saved() {
         .unwrap()
         .unwrap();
     let back = crate::session::storage::open(&file).unwrap();
-    assert!(document.difference(back.tab.document()).is_none());
+    assert!(document.difference(back.open.document()).is_none());
 }
 
 #[test]
 fn baked_soft_strokes_are_as_fine_as_they_were_alive() {
-    let mut session = told(&AIR.replace(r#"{"in":"layer","do":"add","kind":"paint"}"#, ""));
+    let mut session = replay(&AIR.replace(r#"{"in":"layer","do":"add","kind":"paint"}"#, ""));
     (0..6).for_each(|i| tell(&mut session, &drawn("brush", 60 + i)));
     assert!(matches!(session.active().unwrap().document().layers[1].content, Content::Strokes(_)));
     let bake = Action::Layer(LayerAction::Bake { layer: session.layer_paths() });
@@ -115,8 +115,9 @@ fn a_picture_of_16_bits_keeps_them_when_it_is_opened_or_placed_and_baked() {
     let file = folder.path().join("noise.png");
     image::DynamicImage::ImageLuma16(picture.clone()).save(&file).unwrap();
     let named = file.to_string_lossy().replace('\\', "/");
-    let opened = told(&format!(r#"{{"in":"file","do":"open","file":"{named}"}}"#));
-    let mut placed = told(r#"{"in":"file","do":"new","width":200,"height":150,"background":null}"#);
+    let opened = replay(&format!(r#"{{"in":"file","do":"open","file":"{named}"}}"#));
+    let mut placed =
+        replay(r#"{"in":"file","do":"new","width":200,"height":150,"background":null}"#);
     tell(&mut placed, &format!(r#"{{"in":"file","do":"place","file":"{named}","at":[100,75]}}"#));
     tell(&mut placed, r#"{"in":"layer","do":"bake","layer":"0"}"#);
     for session in [opened, placed] {
@@ -144,10 +145,10 @@ fn a_photoshop_file_of_16_bits_is_not_saved_over_with_8() {
     let opened =
         |file: &Path| crate::session::storage::open(file).unwrap_or_else(|e| panic!("{e}"));
     let wide = opened(&file(16, &[0x12, 0x34]));
-    let Content::Pixels(pixels) = &wide.tab.document().layers[0].content else { panic!("paint") };
+    let Content::Pixels(pixels) = &wide.open.document().layers[0].content else { panic!("paint") };
     assert_eq!(pixels.tiles.deep_pixel(0, 0), [0x1234, 0x1234, 0x1234, 65535]);
     assert!(wide.notes[0].contains("8 for other programs"), "{:?}", wide.notes);
-    assert_eq!(wide.tab.file, None);
+    assert_eq!(wide.open.file, None);
     let narrow = opened(&file(8, &[0x12]));
-    assert!(narrow.notes.is_empty() && narrow.tab.file.is_some());
+    assert!(narrow.notes.is_empty() && narrow.open.file.is_some());
 }

@@ -78,7 +78,7 @@ proptest! {
     fn undone_to_the_start_and_made_again_every_document_is_the_one_that_was(
         edits in prop::collection::vec(edit(), 1..20)
     ) {
-        let mut session = told(r##"{"in":"file","do":"new","width":60,"height":40,"background":"#ffffff"}"##);
+        let mut session = replay(r##"{"in":"file","do":"new","width":60,"height":40,"background":"#ffffff"}"##);
         // The entries of the history, and the document's position in it.
         let (mut known, mut at) = (vec![fingerprint(&document(&session))], 0usize);
         for line in &edits {
@@ -107,7 +107,7 @@ proptest! {
 
 #[test]
 fn a_layer_that_comes_back_is_chosen() {
-    let mut session = told(&format!("{PAPER}{STROKE}"));
+    let mut session = replay(&format!("{PAPER}{STROKE}"));
     let chosen = |session: &Session| session.layer().map(|layer| layer.name.clone());
     let step = |session: &mut Session, what: &str| {
         session.replay(Path::new("story"), &format!(r#"{{"in":"edit","do":"{what}"}}"#)).unwrap();

@@ -5,7 +5,7 @@ use super::*;
 
 /// A paper with two paint layers; the lower one, of the name `Paint`, is chosen.
 pub(super) fn two_layers() -> Session {
-    told(&format!(
+    replay(&format!(
         r#"{PAPER}
         {{"in":"layer","do":"add","kind":"paint"}}
         {{"in":"layer","do":"add","kind":"paint"}}
@@ -35,10 +35,10 @@ pub(super) fn drawn_with(tool: &str) -> String {
 
 /// The names of the chosen layers, the primary one last.
 fn chosen(session: &Session) -> Vec<String> {
-    let tab = session.active().unwrap();
-    let mut ids = tab.chosen_layers();
-    ids.sort_by_key(|id| tab.selected == Some(*id));
-    ids.iter().map(|id| tab.document().layer(*id).unwrap().name.clone()).collect()
+    let open = session.active().unwrap();
+    let mut ids = open.chosen_layers();
+    ids.sort_by_key(|id| open.selected == Some(*id));
+    ids.iter().map(|id| open.document().layer(*id).unwrap().name.clone()).collect()
 }
 
 #[test]
@@ -114,7 +114,7 @@ fn a_stroke_on_a_mask_is_undone_on_the_mask_and_the_tool_stays_in_hand() {
 
 #[test]
 fn chosen_strokes_are_those_that_were_chosen_before_they_were_ordered() {
-    let mut session = told(&format!(
+    let mut session = replay(&format!(
         r#"{PAPER}{STROKE}
         {{"in":"stroke","do":"duplicate","layer":"1","strokes":[0]}}
         {{"in":"stroke","do":"order","layer":"1","stroke":1,"to":0}}"#

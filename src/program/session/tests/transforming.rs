@@ -5,7 +5,10 @@ use super::*;
 
 /// A stroke over a ball.
 fn ball() -> Session {
-    told(&format!(r#"{PAPER}{}{STROKE}"#, "\n{\"in\":\"part\",\"do\":\"add\",\"kind\":\"sphere\"}"))
+    replay(&format!(
+        r#"{PAPER}{}{STROKE}"#,
+        "\n{\"in\":\"part\",\"do\":\"add\",\"kind\":\"sphere\"}"
+    ))
 }
 
 fn story(session: &mut Session, lines: &str) {

@@ -48,8 +48,8 @@ fn each_of_picture_and_sheet_has_its_own_view_and_the_sheet_its_own_size() {
     then(&mut session, r#"{"in":"view","do":"fit","window_pt":[400,300]}"#);
     let picture = session.active().unwrap().view;
     then(&mut session, FLAT);
-    let tab = session.active().unwrap();
-    assert!(tab.view.is_none() && tab.shown_size().width > 220, "{}", tab.shown_size());
+    let open = session.active().unwrap();
+    assert!(open.view.is_none() && open.shown_size().width > 220, "{}", open.shown_size());
     then(
         &mut session,
         "{\"in\":\"view\",\"do\":\"zoom to\",\"zoom\":3}\n{\"in\":\"view\",\"do\":\"unwrapped\",\"on\":false}",
@@ -66,8 +66,8 @@ fn each_of_picture_and_sheet_has_its_own_view_and_the_sheet_its_own_size() {
 fn a_stroke_drawn_on_the_sheet_is_one_step_on_the_form() {
     let mut session = round();
     then(&mut session, FLAT);
-    let tab = session.active().unwrap();
-    let (layout, surface) = (tab.layout().unwrap(), tab.document().surface.clone().unwrap());
+    let open = session.active().unwrap();
+    let (layout, surface) = (open.layout().unwrap(), open.document().surface.clone().unwrap());
     let [from, to] =
         [vec2(40.0, 60.0), vec2(160.0, 60.0)].map(|q| layout.sheet_at(&surface, q).unwrap());
     let hand = r##"{"in":"layer","do":"add","kind":"strokes"}
@@ -112,7 +112,7 @@ fn tools_that_hold_what_lies_in_the_picture_say_so() {
 
 #[test]
 fn without_a_surface_nothing_is_unwrapped_and_that_is_told() {
-    let mut session = told(PAPER);
+    let mut session = replay(PAPER);
     then(&mut session, FLAT);
     assert!(session.active().unwrap().unwrapped().is_none());
     assert_eq!(session.notes.len(), 1, "{:?}", session.notes);

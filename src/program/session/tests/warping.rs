@@ -27,7 +27,7 @@ const UNDO: &str = r#"{"in":"edit","do":"undo"}"#;
 #[test]
 fn a_stroke_layer_is_liquified_live_and_each_stroke_is_a_step() {
     let strokes = r#"{"in":"layer","do":"add","kind":"strokes"}"#;
-    let mut session = told(&format!("{PAPER}\n{strokes}{STROKE}"));
+    let mut session = replay(&format!("{PAPER}\n{strokes}{STROKE}"));
     let plain = picture(&session);
     story(&mut session, PUSH);
     let once = picture(&session);
@@ -45,7 +45,7 @@ fn a_stroke_layer_is_liquified_live_and_each_stroke_is_a_step() {
     // Done again, and recorded lines give the same bytes.
     story(&mut session, r#"{"in":"edit","do":"redo"}"#);
     assert!(picture(&session) == once);
-    let again = told(&format!("{PAPER}\n{strokes}{STROKE}{PUSH}"));
+    let again = replay(&format!("{PAPER}\n{strokes}{STROKE}{PUSH}"));
     assert!(picture(&again) == once);
     // Applied, it is paint that looks the same, and takes paint.
     story(&mut session, r#"{"in":"layer","do":"apply transform","layer":"1"}"#);
@@ -57,7 +57,7 @@ fn a_stroke_layer_is_liquified_live_and_each_stroke_is_a_step() {
 #[test]
 fn removed_liquify_leaves_the_layer_as_it_was() {
     let mut session =
-        told(&format!("{PAPER}\n{{\"in\":\"layer\",\"do\":\"add\",\"kind\":\"paint\"}}{STROKE}"));
+        replay(&format!("{PAPER}\n{{\"in\":\"layer\",\"do\":\"add\",\"kind\":\"paint\"}}{STROKE}"));
     let plain = picture(&session);
     story(&mut session, PUSH);
     assert!(picture(&session) != plain);
@@ -71,7 +71,7 @@ fn removed_liquify_leaves_the_layer_as_it_was() {
 #[test]
 fn a_mesh_is_laid_dragged_applied_and_undone() {
     let mut session =
-        told(&format!("{PAPER}\n{{\"in\":\"layer\",\"do\":\"add\",\"kind\":\"paint\"}}{STROKE}"));
+        replay(&format!("{PAPER}\n{{\"in\":\"layer\",\"do\":\"add\",\"kind\":\"paint\"}}{STROKE}"));
     let plain = picture(&session);
     story(&mut session, r#"{"in":"layer","do":"mesh","layer":"1","columns":3,"rows":3}"#);
     assert!(picture(&session) == plain, "an even mesh moves nothing");
@@ -124,19 +124,19 @@ fn a_stroke_on_what_is_displaced_shows_under_the_pen() {
             session.notes
         );
     };
-    let mut own = told(&format!("{PAPER}\n{strokes}{STROKE}{PUSH}"));
+    let mut own = replay(&format!("{PAPER}\n{strokes}{STROKE}{PUSH}"));
     shows_there(&mut own, "a stroke layer");
     assert!(layer(&own).is_warped(), "it stays live");
     let group = r#"{"in":"layer","do":"group","layer":"1"}"#;
-    let mut around = told(&format!("{PAPER}\n{strokes}{STROKE}\n{group}{PUSH}"));
+    let mut around = replay(&format!("{PAPER}\n{strokes}{STROKE}\n{group}{PUSH}"));
     story(&mut around, r#"{"in":"layer","do":"select","layer":"1.0"}"#);
     shows_there(&mut around, "a stroke layer in a group");
-    let mut paint = told(&format!(
+    let mut paint = replay(&format!(
         "{PAPER}\n{{\"in\":\"layer\",\"do\":\"add\",\"kind\":\"paint\"}}{STROKE}{PUSH}"
     ));
     shows_there(&mut paint, "a paint layer");
     // A layer of its own above a layer that holds no strokes.
     let fill = r##"{"in":"layer","do":"add","kind":"fill"}"##;
-    let mut above = told(&format!("{PAPER}\n{strokes}{STROKE}\n{group}{PUSH}\n{fill}"));
+    let mut above = replay(&format!("{PAPER}\n{strokes}{STROKE}\n{group}{PUSH}\n{fill}"));
     shows_there(&mut above, "above a fill");
 }

@@ -62,7 +62,7 @@ const STEP_DEGREES: f32 = 15.0;
 
 impl PartHandle {
     /// The text shown while it is dragged: what it changes, and its value.
-    pub fn told(self, part: &Part) -> Option<String> {
+    pub fn describe(self, part: &Part) -> Option<String> {
         let inflation = match &part.kind {
             PartKind::Inflate { inflation, .. } => Some(*inflation),
             _ => None,

@@ -89,7 +89,7 @@ fn handles_puff_tilt_scale_and_turn_the_chosen_part() {
     let (label, part) = drag(frame.profile().unwrap(), vec2(60.0, 3.0));
     let PartKind::Inflate { inflation, .. } = &part.kind else { panic!("{}", part.kind.name()) };
     assert!(label == "Pillow – tube" && inflation.profile == 0.5, "{}", inflation.profile);
-    assert_eq!(PartHandle::Profile.told(&part).as_deref(), Some("Pillow – tube 0.50"));
+    assert_eq!(PartHandle::Profile.describe(&part).as_deref(), Some("Pillow – tube 0.50"));
     let (label, part) = drag(frame.rim().unwrap(), vec2(0.0, 60.0));
     let PartKind::Inflate { inflation, .. } = &part.kind else { panic!("{}", part.kind.name()) };
     assert!(label == "Turn rim" && inflation.rim_deg == 50.0, "{}", inflation.rim_deg);

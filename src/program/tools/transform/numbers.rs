@@ -1,7 +1,7 @@
 //! The frame of the transform tool in numbers, to be read and typed.
 //! Floor 5.
 
-use super::said;
+use super::to_storable;
 use crate::document::{Document, LayerId, LayerTransform};
 use crate::math::{DVec2, PlaneMap, Vec2};
 use crate::tools::frame::TransformFrame;
@@ -94,7 +94,7 @@ impl FrameNumbers {
         let from_low = PlaneMap::affine([x.x, x.y, y.x, y.y, self.at.x, self.at.y])?;
         let whole = PlaneMap::affine([1.0, 0.0, 0.0, 1.0, -low.x, -low.y])?.then(&from_low);
         let filter = own.map_or(frame.filter, |own| own.filter);
-        said(&whole.then(&around.inverse()), filter, document.size)
+        to_storable(&whole.then(&around.inverse()), filter, document.size)
     }
 }
 

@@ -42,7 +42,7 @@ impl LayerPlacement {
                 let shape = TransformShape::Mesh(Arc::new(mesh.then(&outer)?));
                 Some(LayerTransform { shape, filter })
             }
-            None => said(&plane, filter, canvas)?,
+            None => to_storable(&plane, filter, canvas)?,
         };
         let within = canvas.rect().grown(canvas.longer_side() as i32);
         let carried = self.liquify.as_ref().map(|lattice| lattice.carried(&outer, within));
@@ -64,7 +64,7 @@ fn taken_along(own: PlaneMap, whole: &PlaneMap, on_canvas: PlaneMap) -> PlaneMap
 
 /// A map as a transform that files can hold, or none if it moves nothing; outer `None` if there is
 /// no such transform.
-pub(super) fn said(
+pub(super) fn to_storable(
     map: &PlaneMap,
     filter: Resampling,
     canvas: Size,

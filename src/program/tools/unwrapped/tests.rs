@@ -28,7 +28,7 @@ pub fn document() -> Document {
     Document { surface: Some(surface.clone()), ..Document::empty(surface.size()) }
 }
 
-pub fn laid(document: &Document) -> Arc<PlaneLayout> {
+pub fn layout_of(document: &Document) -> Arc<PlaneLayout> {
     document
         .surface
         .as_ref()
@@ -41,7 +41,7 @@ const BRUSH: StrokeStart = |context, pen| crate::tools::press(ToolKind::Brush, c
 /// The strokes that result when the pen goes along these points of the sheet.
 fn drawn(document: &Document, brush: &Brush, points: &[Vec2]) -> Vec<Arc<Stroke>> {
     let context = ToolContext::new(document, brush);
-    let (gesture, _) = paint(&context, PenSample::at(points[0]), laid(document), BRUSH);
+    let (gesture, _) = paint(&context, PenSample::at(points[0]), layout_of(document), BRUSH);
     let mut gesture = gesture.unwrap();
     points[1..].iter().for_each(|point| drop(gesture.drag(&[PenSample::at(*point)])));
     match gesture.release() {
@@ -51,7 +51,7 @@ fn drawn(document: &Document, brush: &Brush, points: &[Vec2]) -> Vec<Arc<Stroke>
 }
 
 fn on_sheet(document: &Document, x: f32, y: f32) -> Vec2 {
-    laid(document).sheet_at(document.surface.as_ref().unwrap(), vec2(x, y)).unwrap()
+    layout_of(document).sheet_at(document.surface.as_ref().unwrap(), vec2(x, y)).unwrap()
 }
 
 #[test]
@@ -110,7 +110,7 @@ fn shift_joins_the_last_end_by_a_line_that_is_straight_on_the_sheet() {
     let keys = ModifierKeys { shift: true, ..ModifierKeys::default() };
     let to = on_sheet(&document, 160.0, 90.0);
     let (gesture, _) =
-        paint(&context, PenSample { keys, ..PenSample::at(to) }, laid(&document), BRUSH);
+        paint(&context, PenSample { keys, ..PenSample::at(to) }, layout_of(&document), BRUSH);
     let Outcome::Commit { document, select, .. } = gesture.unwrap().release() else {
         panic!("it is kept")
     };
@@ -136,7 +136,7 @@ fn tools_that_point_get_the_canvas_under_the_pen() {
     let brush = Brush::default();
     let context = ToolContext::new(&document, &brush);
     let picked =
-        |p: Vec2| point(&context, PenSample::at(p), laid(&document), ToolKind::Eyedropper).1;
+        |p: Vec2| point(&context, PenSample::at(p), layout_of(&document), ToolKind::Eyedropper).1;
     assert!(
         matches!(picked(on_sheet(&document, 150.0, 70.0)), Outcome::Picked(color) if color.r == 200)
     );
@@ -149,7 +149,7 @@ fn tools_that_point_get_the_canvas_under_the_pen() {
 #[test]
 fn the_pen_leans_on_the_canvas_as_it_does_on_the_sheet() {
     let document = document();
-    let sheet = Sheet { layout: laid(&document), surface: document.surface.clone().unwrap() };
+    let sheet = Sheet { layout: layout_of(&document), surface: document.surface.clone().unwrap() };
     let at = on_sheet(&document, 130.0, 60.0);
     let pen = PenSample {
         sample: Sample { tilt: vec2(30.0, 10.0), ..Sample::at(at) },

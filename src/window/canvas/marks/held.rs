@@ -29,44 +29,44 @@ pub fn draw(
     under: Option<Vec2>,
     to_screen: &impl Fn(Vec2) -> Pos2,
 ) {
-    let Some((tab, layer)) = session.active().zip(session.layer()) else { return };
-    if tab.has_several() {
-        return tab
+    let Some((open, layer)) = session.active().zip(session.layer()) else { return };
+    if open.has_several() {
+        return open
             .outermost_chosen()
             .into_iter()
-            .for_each(|id| bounds(painter, tab.shown(), id, to_screen));
+            .for_each(|id| bounds(painter, open.shown(), id, to_screen));
     }
     let id = Id::unique("held by the move tool");
     let last: Option<Last> = painter.ctx().data_mut(|data| data.get_temp(id));
     let last = last.filter(|last| last.layer == layer.id);
-    if tab.is_previewing() {
+    if open.is_previewing() {
         let Some(last) = last else { return };
         return match last.held {
             MoveTarget::Stroke(index) => {
-                let strokes = tab.shown().strokes_on_canvas(layer.id);
+                let strokes = open.shown().strokes_on_canvas(layer.id);
                 strokes
                     .get(index)
                     .into_iter()
                     .for_each(|stroke| line_through(painter, stroke, to_screen));
             }
-            MoveTarget::Layer => bounds(painter, tab.shown(), layer.id, to_screen),
+            MoveTarget::Layer => bounds(painter, open.shown(), layer.id, to_screen),
         };
     }
     let Some(at) = under.map(Vec2::floor) else { return };
     let whole = painter.ctx().input(|input| input.modifiers.shift)
-        || tab.shown().strokes(layer.id).len() > MOST_STROKES;
+        || open.shown().strokes(layer.id).len() > MOST_STROKES;
     let known = last.filter(|last| last.at == at && !whole).map(|last| last.held);
-    let Some(now) = known.or_else(|| held(tab.shown(), layer, at + vec2(0.5, 0.5), whole)) else {
+    let Some(now) = known.or_else(|| held(open.shown(), layer, at + vec2(0.5, 0.5), whole)) else {
         return;
     };
     painter.ctx().data_mut(|data| data.insert_temp(id, Last { layer: layer.id, at, held: now }));
     match now {
         MoveTarget::Stroke(index) => {
-            let scene = tab.shown().scene_of(layer.id).unwrap_or_else(|| tab.shown().scene());
-            let strokes = tab.shown().strokes_on_canvas(layer.id);
+            let scene = open.shown().scene_of(layer.id).unwrap_or_else(|| open.shown().scene());
+            let strokes = open.shown().strokes_on_canvas(layer.id);
             outlined(painter, strokes.get(index).into_iter().collect(), &scene, to_screen);
         }
-        MoveTarget::Layer => bounds(painter, tab.shown(), layer.id, to_screen),
+        MoveTarget::Layer => bounds(painter, open.shown(), layer.id, to_screen),
     }
 }
 

@@ -17,7 +17,7 @@ pub const NEAR: [(Near, &str); Near::ALL.len()] =
     [(Near::Auto, "found"), (Near::Low, "dark"), (Near::High, "bright")];
 
 /// The name of a choice and what was chosen, in words; a field without words is shown unchanged.
-pub fn told(choice: &Finding) -> (&str, String) {
+pub fn describe(choice: &Finding) -> (&str, String) {
     let Finding { field, value, .. } = choice;
     let (name, words): (&str, &[(&str, &str)]) = match *field {
         "normal.encoding" => {
@@ -84,7 +84,7 @@ mod tests {
         let of = |field, value: &str| {
             let finding =
                 Finding { field, value: value.into(), confidence: 1.0, how: ChoiceOrigin::Found };
-            let (name, words) = told(&finding);
+            let (name, words) = describe(&finding);
             assert!(!name.contains(['.', '_']), "{name}");
             assert!(words != value, "{name}: {words}");
         };

@@ -12,15 +12,15 @@ use std::sync::Arc;
 /// The dragged row, and the rows it can be dropped between or into.
 pub fn show(
     ui: &Ui,
-    tab: &OpenDocument,
+    open: &OpenDocument,
     layer: &Arc<Layer>,
     response: &Response,
     rect: Rect,
     requests: &mut UiRequests,
 ) {
-    let document = tab.shown();
+    let document = open.shown();
     // All chosen rows move with a chosen one.
-    let held = |id: LayerId| if tab.is_chosen(id) { tab.outermost_chosen() } else { vec![id] };
+    let held = |id: LayerId| if open.is_chosen(id) { open.outermost_chosen() } else { vec![id] };
     response.dnd_set_drag_payload(layer.id);
     if let Some(row) = response.dnd_hover_payload::<LayerId>()
         && !held(*row).contains(&layer.id)

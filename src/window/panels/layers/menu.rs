@@ -14,7 +14,7 @@ pub fn show(
     path: &LayerPath,
     requests: &mut UiRequests,
 ) {
-    let is_chosen = session.active().is_some_and(|tab| tab.is_chosen(layer.id));
+    let is_chosen = session.active().is_some_and(|open| open.is_chosen(layer.id));
     let paths = if is_chosen { session.layer_paths() } else { path.into() };
     type MenuAction = fn(LayerPaths) -> LayerAction;
     let entries: [(&str, MenuAction); 7] = [

@@ -83,7 +83,7 @@ fn head(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let (Some(layer), Some(path)) = (session.layer(), session.layer_path()) else { return };
     let chosen = session
         .active()
-        .map(|tab| LayerPaths::of(tab.document(), &tab.chosen_layers()))
+        .map(|open| LayerPaths::of(open.document(), &open.chosen_layers()))
         .unwrap_or_default();
     ui.horizontal(|ui| {
         if let Some(mode) = choice(ui, "Blend mode", layer.blend, &BlendMode::LABELS) {
@@ -128,7 +128,7 @@ fn head(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
                 set(requests, &chosen, to, true);
             }
         }
-        let is_alone = session.active().is_some_and(|tab| tab.solo == Some(layer.id));
+        let is_alone = session.active().is_some_and(|open| open.solo == Some(layer.id));
         if icon_button(ui, Icon::Solo, "Show layer alone", is_alone)
             .on_hover_text("Shows this layer alone")
             .clicked()

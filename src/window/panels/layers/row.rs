@@ -51,10 +51,10 @@ pub fn is_folded(ui: &Ui, layer: LayerId) -> bool {
 impl LayerRow<'_> {
     pub fn show(&self, ui: &mut Ui, thumbnails: &mut Thumbnails, requests: &mut UiRequests) {
         let LayerRow { session, document, layer, path, depth, .. } = self;
-        let Some(tab) = session.active() else { return };
+        let Some(open) = session.active() else { return };
         let (_, rect) = ui.allocate_space(vec2(ui.available_width(), ROW_PT));
         let response = ui.interact(rect, row_id(layer.id), Sense::click_and_drag());
-        let is_selected = tab.is_chosen(layer.id);
+        let is_selected = open.is_chosen(layer.id);
         let label = format!("Layer {}{}", layer.name, if is_selected { ", chosen" } else { "" });
         response.widget_info(|| {
             egui::WidgetInfo::selected(egui::Role::Button, true, is_selected, &label)
@@ -68,7 +68,7 @@ impl LayerRow<'_> {
         if let Some(color) = color_of(layer.label) {
             ui.painter().rect_filled(rect.with_max_x(rect.left() + LABEL_PT), 2.0, color);
         }
-        if tab.has_several() && tab.selected == Some(layer.id) {
+        if open.has_several() && open.selected == Some(layer.id) {
             // The brush paints on this one.
             ui.painter().rect_stroke(rect, 4.0, Stroke::new(1.4, ACCENT), StrokeKind::Inside);
         }
@@ -83,7 +83,7 @@ impl LayerRow<'_> {
         let thumbnail = picture(&mut inner, document, layer, thumbnails);
         self.mask(&mut inner, thumbnails, requests);
         name(&mut inner, session, layer, path, &response, requests);
-        drag::show(ui, tab, layer, &response, rect, requests);
+        drag::show(ui, open, layer, &response, rect, requests);
         let keys = ui.input(|input| input.modifiers);
         let is_on_picture =
             response.interact_pointer_pos().is_some_and(|at| thumbnail.contains(at));
@@ -92,11 +92,11 @@ impl LayerRow<'_> {
             let how = settings.how(ModifierKeys { shift: keys.shift, ctrl: true, alt: keys.alt });
             requests.act(Action::Selection(SelectionAction::Layer { layer: path.clone(), how }));
         } else if response.clicked() && keys.command {
-            self.choose(&tab.toggled(layer.id), None, requests);
+            self.choose(&open.toggled(layer.id), None, requests);
         } else if response.clicked() {
-            self.extend(tab, layer.id, keys.shift, requests);
+            self.extend(open, layer.id, keys.shift, requests);
         }
-        self.arrows(ui, tab, &response, requests);
+        self.arrows(ui, open, &response, requests);
         response.context_menu(|ui| menu::show(ui, session, layer, path, requests));
     }
 
@@ -107,14 +107,14 @@ impl LayerRow<'_> {
     }
 
     /// Selects a row, or all from it to the start of the range.
-    fn extend(&self, tab: &OpenDocument, to: LayerId, extends: bool, requests: &mut UiRequests) {
-        let anchor = tab.range_start().filter(|_| extends);
+    fn extend(&self, open: &OpenDocument, to: LayerId, extends: bool, requests: &mut UiRequests) {
+        let anchor = open.range_start().filter(|_| extends);
         let ids = anchor.map_or_else(|| vec![to], |anchor| range(self.listed, anchor, to));
         self.choose(&ids, anchor, requests);
     }
 
     /// Arrow keys in a row that has the focus move to the next one; with Shift they add it.
-    fn arrows(&self, ui: &Ui, tab: &OpenDocument, row: &Response, requests: &mut UiRequests) {
+    fn arrows(&self, ui: &Ui, open: &OpenDocument, row: &Response, requests: &mut UiRequests) {
         if !row.has_focus() {
             return;
         }
@@ -133,7 +133,7 @@ impl LayerRow<'_> {
             _ => None,
         };
         if let Some(to) = to.and_then(|at| self.listed.get(at)) {
-            self.extend(tab, *to, extends, requests);
+            self.extend(open, *to, extends, requests);
             ui.memory_mut(|memory| memory.request_focus(row_id(*to)));
         }
     }
@@ -174,7 +174,7 @@ impl LayerRow<'_> {
         let is_on = self
             .session
             .active()
-            .is_some_and(|tab| tab.on_mask && tab.selected == Some(self.layer.id));
+            .is_some_and(|open| open.on_mask && open.selected == Some(self.layer.id));
         let (rect, response) = ui.allocate_exact_size(vec2(24.0, 24.0), Sense::click());
         let label = format!("Mask of {}", self.layer.name);
         response
@@ -273,7 +273,7 @@ fn name(
         ui.data_mut(|data| data.insert_temp(renaming, (layer.id, layer.name.clone())));
     }
     let at = ui.available_rect_before_wrap();
-    let is_alone = session.active().is_some_and(|tab| tab.solo == Some(layer.id));
+    let is_alone = session.active().is_some_and(|open| open.solo == Some(layer.id));
     let badges = [
         (layer.lock == LayerLock::All, Icon::Lock),
         (layer.lock == LayerLock::Alpha, Icon::LockAlpha),

@@ -38,7 +38,7 @@ pub fn show(
     pictures: &mut PartPictures,
     requests: &mut UiRequests,
 ) {
-    let Some((tab, document)) = session.active().zip(session.shown()) else {
+    let Some((open, document)) = session.active().zip(session.shown()) else {
         ui.weak("No document is open.");
         return;
     };
@@ -67,7 +67,7 @@ pub fn show(
         },
     );
     ui.add_space(2.0);
-    let Some(part) = tab.chosen_part() else { return };
+    let Some(part) = open.chosen_part() else { return };
     ScrollArea::vertical().id_salt("part").auto_shrink([false, false]).show(ui, |ui| {
         flats(ui, document, part, requests);
         if let Some(changed) = numbers::show(ui, part) {
@@ -128,7 +128,7 @@ fn head(ui: &mut Ui, session: &Session, document: &Document, requests: &mut UiRe
         })
         .response
         .on_hover_text("Adds a part in front of all others");
-        let Some(part) = session.active().and_then(|tab| tab.chosen_part()) else { return };
+        let Some(part) = session.active().and_then(|open| open.chosen_part()) else { return };
         let siblings: Vec<&Arc<Part>> =
             document.parts.list.iter().filter(|other| other.on() == part.on()).collect();
         let at = siblings.iter().position(|other| other.id == part.id).unwrap_or(0);

@@ -32,7 +32,7 @@ pub fn show(
     let lies_on = part.on().is_some_and(|on| document.parts.part(on).is_some());
     let (rect, response) =
         ui.allocate_exact_size(vec2(ui.available_width(), ROW_PT), Sense::click_and_drag());
-    let is_chosen = session.active().is_some_and(|tab| tab.part.as_ref() == Some(&part.id));
+    let is_chosen = session.active().is_some_and(|open| open.part.as_ref() == Some(&part.id));
     if is_chosen {
         show_once(ui, &response, &part.id);
     }

@@ -15,7 +15,7 @@ fn part(control: i32, jitter: f64, least: f64) -> DescriptorValue {
     Object(DescriptorObject::of(values))
 }
 
-fn told(values: Values) -> (Brush, Vec<String>) {
+fn convert(values: Values) -> (Brush, Vec<String>) {
     let preset = DescriptorObject::of(values);
     let AbrConversion { brush, notes, .. } = carried(&preset, Brush::default(), Vec::new());
     (brush, notes)
@@ -27,7 +27,7 @@ fn at(brush: &Brush, property: Property, pressure: f32) -> f32 {
 
 #[test]
 fn shape_and_transfer_follow_the_pen_down_to_their_minimum() {
-    let (brush, notes) = told(vec![
+    let (brush, notes) = convert(vec![
         ("useTipDynamics", Flag(true)),
         // The part says 0 where the brush says more.
         ("minimumDiameter", Number(40.0)),
@@ -56,7 +56,7 @@ fn shape_and_transfer_follow_the_pen_down_to_their_minimum() {
 
 #[test]
 fn what_is_switched_off_drives_nothing() {
-    let (brush, notes) = told(vec![
+    let (brush, notes) = convert(vec![
         ("useTipDynamics", Flag(false)),
         ("szVr", part(2, 90.0, 0.0)),
         ("useScatter", Flag(false)),
@@ -69,7 +69,7 @@ fn what_is_switched_off_drives_nothing() {
 #[test]
 fn a_round_tip_gets_as_flat_as_it_is_said_to() {
     let (brush, _) =
-        told(vec![("useTipDynamics", Flag(true)), ("roundnessDynamics", part(2, 0.0, 25.0))]);
+        convert(vec![("useTipDynamics", Flag(true)), ("roundnessDynamics", part(2, 0.0, 25.0))]);
     let long = |pressure| at(&brush, Property::Elongation, pressure);
     assert!(
         (long(0.0) - 4.0).abs() < 1e-5 && (long(1.0) - 1.0).abs() < 1e-5,
@@ -82,7 +82,7 @@ fn a_round_tip_gets_as_flat_as_it_is_said_to() {
 
 #[test]
 fn dabs_scatter_by_their_radius_and_stand_closer_where_there_are_several() {
-    let (brush, notes) = told(vec![
+    let (brush, notes) = convert(vec![
         ("useScatter", Flag(true)),
         ("bothAxes", Flag(true)),
         ("scatterDynamics", part(3, 200.0, 0.0)),
@@ -97,7 +97,7 @@ fn dabs_scatter_by_their_radius_and_stand_closer_where_there_are_several() {
 
 #[test]
 fn only_what_is_used_and_lost_is_told() {
-    let (brush, notes) = told(vec![
+    let (brush, notes) = convert(vec![
         ("useTipDynamics", Flag(true)),
         ("szVr", part(1, 0.0, 0.0)),
         ("useColorDynamics", Flag(true)),

@@ -65,10 +65,10 @@ impl ReplayValue for PastedPicture {
 
 /// Pastes a picture with its middle at a canvas point. Without a point: the middle of the view.
 pub(super) fn paste(session: &mut Session, pasted: &PastedPicture, to: PasteTo, at: Option<Vec2>) {
-    let Some(tab) = session.active_mut().filter(|_| to != PasteTo::Document) else {
+    let Some(open) = session.active_mut().filter(|_| to != PasteTo::Document) else {
         return open(session, picture::to_tiles(&pasted.picture, 0, 0), pasted);
     };
-    let at = at.unwrap_or_else(|| view_middle(tab));
+    let at = at.unwrap_or_else(|| view_middle(open));
     let at = Vec2::new(held(at.x, &COORDINATE), held(at.y, &COORDINATE));
     if to == PasteTo::Image {
         return place(session, &pasted.name, pasted.picture.clone(), at);
@@ -76,20 +76,20 @@ pub(super) fn paste(session: &mut Session, pasted: &PastedPicture, to: PasteTo, 
     let size = pasted.picture.size;
     let corner = (at - Vec2::new(size.width as f32, size.height as f32) / 2.0).round();
     let tiles = picture::to_tiles(&pasted.picture, corner.x as i32, corner.y as i32);
-    let layer = paint(tab.document().free_layer_name(&stem(&pasted.name)), tiles);
+    let layer = paint(open.document().free_layer_name(&stem(&pasted.name)), tiles);
     let id = layer.id;
-    if let Some(next) = tab.document().with_inserted(layer, above(tab))
-        && tab.commit("Paste", next)
+    if let Some(next) = open.document().with_inserted(layer, above(open))
+        && open.commit("Paste", next)
     {
-        tab.choose_layers(vec![id]);
+        open.choose_layers(vec![id]);
     }
 }
 
 /// The canvas point in the middle of the window; of the canvas, while the surface is shown
 /// unwrapped.
-fn view_middle(tab: &OpenDocument) -> Vec2 {
-    let size = tab.document().size;
-    let view = tab.view.filter(|_| tab.unwrapped().is_none());
+fn view_middle(open: &OpenDocument) -> Vec2 {
+    let size = open.document().size;
+    let view = open.view.filter(|_| open.unwrapped().is_none());
     let side = Vec2::new(size.width as f32, size.height as f32);
     view.map_or(size.center(), |view| view.center.max(Vec2::ZERO).min(side))
 }
@@ -106,9 +106,9 @@ fn open(session: &mut Session, tiles: TileGrid, pasted: &PastedPicture) {
     let document =
         Document { layers: vec![Arc::new(layer)], ..Document::empty(pasted.picture.size) };
     let name = session.untitled();
-    let mut tab = OpenDocument::new(name, document, None);
-    tab.mark_unsaved();
-    session.add_document(tab);
+    let mut open = OpenDocument::new(name, document, None);
+    open.mark_unsaved();
+    session.add_document(open);
 }
 
 /// The name of a layer: that of a file without its ending.

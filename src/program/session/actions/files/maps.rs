@@ -17,8 +17,8 @@ pub fn replace_maps(
     import: maps::ImportedSurface,
 ) -> Result<()> {
     let maps::ImportedSurface { surface, findings, files } = import;
-    let Some(tab) = session.active_mut() else { return Ok(()) };
-    let (canvas, found) = (tab.document().size, surface.size());
+    let Some(open) = session.active_mut() else { return Ok(()) };
+    let (canvas, found) = (open.document().size, surface.size());
     let mut notes = findings.notes;
     let map = source.map().or_else(|| {
         let is_other = found != canvas;
@@ -32,11 +32,11 @@ pub fn replace_maps(
         surface_source: Some(Arc::new(source.placed_as(&surface))),
         surface: Some(surface),
         surface_files: Arc::new(files),
-        ..tab.document().clone()
+        ..open.document().clone()
     };
     let maps = next.surface.clone();
-    if tab.commit("Replace maps", next.with_maps(maps).with_selections_found()) {
-        tab.reads.extend(storage::map_files(source));
+    if open.commit("Replace maps", next.with_maps(maps).with_selections_found()) {
+        open.reads.extend(storage::map_files(source));
         session.notes.extend(notes);
     }
     Ok(())
@@ -54,18 +54,18 @@ pub fn add_maps(
     import: maps::ImportedSurface,
 ) -> Result<()> {
     let maps::ImportedSurface { surface, findings, files } = import;
-    let Some(tab) = session.active_mut() else { return Ok(()) };
-    let (canvas, found) = (tab.document().size, surface.size());
+    let Some(open) = session.active_mut() else { return Ok(()) };
+    let (canvas, found) = (open.document().size, surface.size());
     let mut notes = findings.notes;
     notes.extend((found != canvas).then(|| stretched(found, canvas)));
     let surface = Arc::new(surface)
         .onto(canvas, source.map().as_ref())
         .map_err(|error| Error::unsupported("maps", error))?;
     parts::new::add_maps(
-        tab,
+        open,
         PartMaps { source: Arc::new(source.clone()), files: Arc::new(files), surface },
     );
-    tab.reads.extend(storage::map_files(source));
+    open.reads.extend(storage::map_files(source));
     session.notes.extend(notes);
     Ok(())
 }

@@ -44,7 +44,11 @@ pub(super) fn model_name(model: Model) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-pub(super) fn made(kind: NewLayer, document: &Document, gradient_settings: &Gradient) -> Layer {
+pub(super) fn make_layer(
+    kind: NewLayer,
+    document: &Document,
+    gradient_settings: &Gradient,
+) -> Layer {
     let size = document.size;
     let (name, content) = match kind {
         NewLayer::Paint => ("Paint", Content::Pixels(PixelLayer::default())),

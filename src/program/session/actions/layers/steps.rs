@@ -12,8 +12,8 @@ pub(super) fn moves(ids: &[LayerId]) -> &'static str {
 }
 
 /// What was moved is chosen; if it was already, the primary one stays the same.
-pub(super) fn kept(tab: &OpenDocument, ids: Vec<LayerId>) -> Vec<LayerId> {
-    if tab.outermost_chosen() == ids { Vec::new() } else { ids }
+pub(super) fn kept(open: &OpenDocument, ids: Vec<LayerId>) -> Vec<LayerId> {
+    if open.outermost_chosen() == ids { Vec::new() } else { ids }
 }
 
 /// Copies above the topmost layer.

@@ -29,10 +29,10 @@ pub struct FirstShape {
 
 impl FirstShape {
     /// Into an open document, as one step.
-    pub fn put(self, tab: &mut OpenDocument) {
-        if tab.commit("Give it a shape", self.document) {
-            (tab.part, tab.selected) = (Some(self.part), Some(self.base));
-            tab.noted = self.note.or(tab.noted.take());
+    pub fn put(self, open: &mut OpenDocument) {
+        if open.commit("Give it a shape", self.document) {
+            (open.part, open.selected) = (Some(self.part), Some(self.base));
+            open.noted = self.note.or(open.noted.take());
         }
     }
 }

@@ -58,8 +58,8 @@ pub fn detail(document: &Document, layer: LayerId) -> Result<CoverageFile, PartR
 }
 
 /// The chosen layers as shadings, the lowest first.
-pub fn shadings(tab: &OpenDocument) -> Result<Vec<ProfilePicture>, PartRefusal> {
-    let (document, chosen) = (tab.document(), tab.chosen_layers());
+pub fn shadings(open: &OpenDocument) -> Result<Vec<ProfilePicture>, PartRefusal> {
+    let (document, chosen) = (open.document(), open.chosen_layers());
     let all = document.walk().into_iter().map(|(_, layer)| layer);
     let layers: Vec<&Arc<Layer>> = all.filter(|layer| chosen.contains(&layer.id)).collect();
     if !(2..=MOST_PROFILES).contains(&layers.len()) {

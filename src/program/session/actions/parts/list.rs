@@ -15,7 +15,7 @@ pub fn ordered(document: &Document, id: &str, index: usize) -> Document {
     let Some(on) = document.parts.part(id).map(|part| part.on().map(str::to_owned)) else {
         return document.clone();
     };
-    let (moved, mut list) = apart(document, id);
+    let (moved, mut list) = partition_by_part(document, id);
     let mut siblings =
         list.iter().enumerate().filter(|(_, part)| part.on() == on.as_deref()).map(|(at, _)| at);
     let at = siblings.clone().nth(index);
@@ -28,7 +28,7 @@ pub fn ordered(document: &Document, id: &str, index: usize) -> Document {
 }
 
 /// A part with what lies on it, and all others.
-fn apart(document: &Document, id: &str) -> (Vec<Arc<Part>>, Vec<Arc<Part>>) {
+fn partition_by_part(document: &Document, id: &str) -> (Vec<Arc<Part>>, Vec<Arc<Part>>) {
     let goes = |part: &Arc<Part>| {
         part.id == id || document.parts.body_of(&part.id).is_some_and(|body| body.id == id)
     };
@@ -37,7 +37,7 @@ fn apart(document: &Document, id: &str) -> (Vec<Arc<Part>>, Vec<Arc<Part>>) {
 
 /// With a copy of a part and of what lies on it, right before it; and the copy's id.
 pub fn duplicated(document: &Document, part: &Part) -> (Document, String) {
-    let (own, _) = apart(document, &part.id);
+    let (own, _) = partition_by_part(document, &part.id);
     let id = free_id(document, &[]);
     let copy = Part { id: id.clone(), name: format!("{} copy", part.name), ..part.clone() };
     let mut copies = vec![Arc::new(copy)];

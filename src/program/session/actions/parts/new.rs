@@ -64,8 +64,8 @@ impl NewPart {
 names!(NewPart);
 
 /// A part as it is first made.
-pub fn made(kind: NewPart, tab: &OpenDocument) -> Result<Part, PartRefusal> {
-    let document = tab.document();
+pub fn make_part(kind: NewPart, open: &OpenDocument) -> Result<Part, PartRefusal> {
+    let document = open.document();
     let shorter = document.size.width.min(document.size.height) as f32;
     let body = |body| {
         let radius = (0.25 * shorter).round().max(1.0);
@@ -73,7 +73,7 @@ pub fn made(kind: NewPart, tab: &OpenDocument) -> Result<Part, PartRefusal> {
     };
     let made = match kind {
         NewPart::InflateLayer => {
-            PartKind::Inflate { outline: of_layer(tab)?, inflation: Inflation::default() }
+            PartKind::Inflate { outline: of_layer(open)?, inflation: Inflation::default() }
         }
         NewPart::InflateSelection => {
             let outline = of_selection(document)
@@ -81,7 +81,7 @@ pub fn made(kind: NewPart, tab: &OpenDocument) -> Result<Part, PartRefusal> {
             PartKind::Inflate { outline, inflation: Inflation::default() }
         }
         NewPart::Bevel => {
-            let outline = of_selection(document).map_or_else(|| of_layer(tab), Ok)?;
+            let outline = of_selection(document).map_or_else(|| of_layer(open), Ok)?;
             let side = (0.04 * shorter).round().max(2.0);
             PartKind::Bevel {
                 outline,
@@ -95,24 +95,24 @@ pub fn made(kind: NewPart, tab: &OpenDocument) -> Result<Part, PartRefusal> {
         NewPart::Capsule => body(Body::Capsule),
         NewPart::Torus => body(Body::Torus),
         NewPart::Box => body(Body::Box),
-        NewPart::Lathe => PartKind::Lathe { outline: of_layer(tab)?, axis: None, puff: 1.0 },
+        NewPart::Lathe => PartKind::Lathe { outline: of_layer(open)?, axis: None, puff: 1.0 },
         NewPart::Sweep => {
-            PartKind::Sweep { balls: of_stroke(tab).unwrap_or_else(|| tail(document)), puff: 1.0 }
+            PartKind::Sweep { balls: of_stroke(open).unwrap_or_else(|| tail(document)), puff: 1.0 }
         }
-        NewPart::Touches => PartKind::Touches { on: form_of_chosen(tab)?, touches: Vec::new() },
-        NewPart::Sculpt => PartKind::Sculpt { on: form_of_chosen(tab)?, strokes: Vec::new() },
+        NewPart::Touches => PartKind::Touches { on: form_of_chosen(open)?, touches: Vec::new() },
+        NewPart::Sculpt => PartKind::Sculpt { on: form_of_chosen(open)?, strokes: Vec::new() },
         NewPart::Lines => PartKind::Lines {
-            on: form_of_chosen(tab)?,
-            ink: of_layer(tab)?,
+            on: form_of_chosen(open)?,
+            ink: of_layer(open)?,
             lines: Lines::default(),
         },
         NewPart::Relief => {
-            let picture = greys::detail(document, selected(tab)?)?;
-            PartKind::Relief { on: form_of_chosen(tab)?, picture, detail: Detail::default() }
+            let picture = greys::detail(document, selected(open)?)?;
+            PartKind::Relief { on: form_of_chosen(open)?, picture, detail: Detail::default() }
         }
-        NewPart::Profiles => PartKind::Profiles { outline: None, shadings: greys::shadings(tab)? },
+        NewPart::Profiles => PartKind::Profiles { outline: None, shadings: greys::shadings(open)? },
     };
-    let name = match (kind, tab.selected.and_then(|id| document.layer(id))) {
+    let name = match (kind, open.selected.and_then(|id| document.layer(id))) {
         (
             NewPart::InflateLayer | NewPart::Lathe | NewPart::Lines | NewPart::Relief,
             Some(layer),
@@ -124,13 +124,13 @@ pub fn made(kind: NewPart, tab: &OpenDocument) -> Result<Part, PartRefusal> {
 }
 
 /// A part of maps in front of all others, as a step.
-pub fn add_maps(tab: &mut OpenDocument, maps: PartMaps) {
-    let document = tab.document();
+pub fn add_maps(open: &mut OpenDocument, maps: PartMaps) {
+    let document = open.document();
     let part = Part::new(free_id(document, &[]), PartKind::Maps(maps));
     let part = Part { name: free_name(document, "Maps"), ..part };
     let id = part.id.clone();
-    if tab.commit("Add part", document.with_part(part)) {
-        tab.part = Some(id);
+    if open.commit("Add part", document.with_part(part)) {
+        open.part = Some(id);
     }
 }
 
@@ -143,21 +143,21 @@ pub fn free_name(document: &Document, base: &str) -> String {
 }
 
 /// The chosen part, or the one that it lies on.
-fn form_of_chosen(tab: &OpenDocument) -> Result<String, PartRefusal> {
-    let part = tab.part.as_deref().and_then(|id| tab.document().parts.part(id));
+fn form_of_chosen(open: &OpenDocument) -> Result<String, PartRefusal> {
+    let part = open.part.as_deref().and_then(|id| open.document().parts.part(id));
     let part = part.ok_or("No part is selected. Add one first, or give the drawing a shape.")?;
     Ok(part.on().unwrap_or(&part.id).to_owned())
 }
 
 const NO_LAYER: PartRefusal = "No layer is selected.";
 
-fn selected(tab: &OpenDocument) -> Result<LayerId, PartRefusal> {
-    tab.selected.ok_or(NO_LAYER)
+fn selected(open: &OpenDocument) -> Result<LayerId, PartRefusal> {
+    open.selected.ok_or(NO_LAYER)
 }
 
-fn of_layer(tab: &OpenDocument) -> Result<OutlineSource, PartRefusal> {
-    let document = tab.document();
-    let layer = document.layer(selected(tab)?).ok_or(NO_LAYER)?;
+fn of_layer(open: &OpenDocument) -> Result<OutlineSource, PartRefusal> {
+    let document = open.document();
+    let layer = document.layer(selected(open)?).ok_or(NO_LAYER)?;
     if !layer.content.paints() {
         return Err("This layer paints nothing of its own, so it has no outline. Select another.");
     }
@@ -179,9 +179,9 @@ fn of_selection(document: &Document) -> Option<OutlineSource> {
 }
 
 /// Balls along the chosen or last stroke of the selected layer.
-fn of_stroke(tab: &OpenDocument) -> Option<Vec<Ball>> {
-    let strokes = tab.document().strokes(tab.selected?);
-    let stroke = match tab.chosen_strokes().last() {
+fn of_stroke(open: &OpenDocument) -> Option<Vec<Ball>> {
+    let strokes = open.document().strokes(open.selected?);
+    let stroke = match open.chosen_strokes().last() {
         Some(&index) => strokes.get(index)?,
         None => strokes.last()?,
     };

@@ -84,7 +84,8 @@ pub fn line(dice: &mut Dice, document: &Document, maps: &[PathBuf; 3]) -> String
     let pool: Vec<&str> =
         CANVAS.iter().chain(CANVAS).chain(LAYER).chain(PART).chain(OTHER).copied().collect();
     let what = *dice.one(&pool);
-    let paths: Vec<String> = document.walk().into_iter().map(|(path, _)| told(&path)).collect();
+    let paths: Vec<String> =
+        document.walk().into_iter().map(|(path, _)| as_replayed(&path)).collect();
     let layer = if paths.is_empty() { "0".to_owned() } else { dice.one(&paths).clone() };
     let other = if paths.is_empty() { "0".to_owned() } else { dice.one(&paths).clone() };
     let ids: Vec<String> = document.parts.list.iter().map(|part| part.id.clone()).collect();
@@ -266,6 +267,6 @@ fn stroke(dice: &mut Dice, tool: &str, w: f32, h: f32) -> String {
 }
 
 /// `layers[1].layers[0]` as replays say it: `1.0`.
-fn told(path: &str) -> String {
+fn as_replayed(path: &str) -> String {
     path.replace("layers[", "").replace(']', "")
 }

@@ -38,8 +38,8 @@ impl Facts {
         let (files, documents) = (files.clone(), session.open_documents.len());
         let none =
             Facts { size: vec2(90.0, 60.0), presets, views, files, documents, ..Facts::default() };
-        let Some(tab) = session.active() else { return none };
-        let document = tab.document();
+        let Some(open) = session.active() else { return none };
+        let document = open.document();
         let walk = document.walk();
         let kinds = walk.iter().filter_map(|(_, layer)| {
             Some((LayerPath::of(document, layer.id)?, layer.content.kind_name()))

@@ -46,7 +46,7 @@ pub fn changed(dice: &mut Dice) -> Value {
     for _ in 0..1 + dice.below(2) {
         match dice.below(6) {
             0 => all_have(dice, &mut value),
-            1 => own(dice, &part.kind, &mut value),
+            1 => draw_fields_of_kind(dice, &part.kind, &mut value),
             2 => {
                 let outline = |dice: &mut Dice| outline(dice, part.outline());
                 let drawn = part.outline().map(|_| outline(dice));
@@ -80,7 +80,7 @@ fn all_have(dice: &mut Dice, value: &mut Value) {
 }
 
 /// What only some kinds have.
-fn own(dice: &mut Dice, kind: &PartKind, value: &mut Value) {
+fn draw_fields_of_kind(dice: &mut Dice, kind: &PartKind, value: &mut Value) {
     let turn =
         json!([dice.within(-90.0, 90.0), dice.within(-90.0, 90.0), dice.within(-90.0, 90.0)]);
     let ids: Vec<String> = dice.facts.parts.iter().map(|part| part.id.clone()).collect();

@@ -102,7 +102,7 @@ impl Play {
         // As a replay gives it; what cannot be read is refused there.
         let action = Action::read(&written)
             .map_err(|why| Broken::new("a line cannot be read", format!("{written}: {why}")))?;
-        let before = self.session.active().map(|tab| (tab.key, tab.document().clone()));
+        let before = self.session.active().map(|open| (open.key, open.document().clone()));
         let notes = self.session.notes.len();
         let done = catch_unwind(AssertUnwindSafe(|| action.apply(&mut self.session)));
         self.actions.push(action);

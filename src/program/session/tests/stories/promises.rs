@@ -25,7 +25,7 @@ impl Broken {
     }
 
     /// One whose kind is also what was said, without numbers and what is in quotes.
-    fn said(kind: &str, what: impl ToString) -> Self {
+    fn from_message(kind: &str, what: impl ToString) -> Self {
         let what = what.to_string();
         let mut is_quoted = false;
         let plain: String = what
@@ -41,7 +41,7 @@ impl Broken {
     pub fn panicked(panic: &(dyn Any + Send)) -> Self {
         let text = panic.downcast_ref::<String>().cloned();
         let text = text.or_else(|| panic.downcast_ref::<&str>().map(|text| (*text).to_owned()));
-        Self::said("panic", text.unwrap_or_else(|| "without words".into()))
+        Self::from_message("panic", text.unwrap_or_else(|| "without words".into()))
     }
 }
 
@@ -55,7 +55,7 @@ pub struct Seen {
 
 impl Seen {
     pub fn now(session: &Session) -> Result<Option<Self>, Broken> {
-        let document = session.active().map(|tab| tab.document().clone());
+        let document = session.active().map(|open| open.document().clone());
         document
             .map(|document| Ok(Self { fingerprint: fingerprint(&document)?, document }))
             .transpose()
@@ -68,7 +68,7 @@ fn fingerprint(document: &Document) -> Result<(String, u32), Broken> {
 }
 
 pub fn fingerprints(session: &Session) -> Result<Vec<(String, u32)>, Broken> {
-    session.open_documents.iter().map(|tab| fingerprint(tab.document())).collect()
+    session.open_documents.iter().map(|open| fingerprint(open.document())).collect()
 }
 
 fn rendered(document: &Document) -> Result<Vec<u8>, Broken> {
@@ -79,28 +79,32 @@ fn rendered(document: &Document) -> Result<Vec<u8>, Broken> {
 
 /// An action that failed changed nothing.
 pub fn nothing_changed(session: &Session, before: Option<(usize, Document)>, why: &str) -> Kept {
-    let now = session.active().map(|tab| (tab.key, tab.document()));
+    let now = session.active().map(|open| (open.key, open.document()));
     match (&before, now) {
         (Some((key, before)), Some((now_key, now))) if *key == now_key && is_same(before, now) => {
             Ok(())
         }
         (None, None) => Ok(()),
-        _ => Err(Broken::said("failed, and yet changed", why)),
+        _ => Err(Broken::from_message("failed, and yet changed", why)),
     }
 }
 
 /// What an edit accepted, files can hold; what was refused changed nothing.
 pub fn after_step(session: &Session, before: Option<(usize, Document)>, told: &[String]) -> Kept {
-    let Some(tab) = session.active() else { return Ok(()) };
+    let Some(open) = session.active() else { return Ok(()) };
     let refused = told.iter().find(|note| note.ends_with("Nothing was changed."));
     let is_changed =
-        before.is_some_and(|(key, before)| key == tab.key && !is_same(&before, tab.document()));
+        before.is_some_and(|(key, before)| key == open.key && !is_same(&before, open.document()));
     match refused {
-        Some(note) if is_changed => return Err(Broken::said("refused, and yet changed", note)),
+        Some(note) if is_changed => {
+            return Err(Broken::from_message("refused, and yet changed", note));
+        }
         _ => {}
     }
     if is_changed {
-        tab.document().fits(None).map_err(|why| Broken::said("accepted, and does not fit", why))
+        open.document()
+            .fits(None)
+            .map_err(|why| Broken::from_message("accepted, and does not fit", why))
     } else {
         Ok(())
     }
@@ -109,8 +113,8 @@ pub fn after_step(session: &Session, before: Option<(usize, Document)>, told: &[
 /// Everything that holds at the end of a story.
 pub fn at_end(session: &mut Session, seen: &[Seen], all_formats: bool) -> Kept {
     let before = fingerprints(session)?;
-    for tab in &session.open_documents {
-        is_kept(tab.document(), all_formats)?;
+    for open in &session.open_documents {
+        is_kept(open.document(), all_formats)?;
     }
     // What is kept for speed goes, and comes again.
     if let Some(held) = session.held_documents() {
@@ -123,39 +127,39 @@ pub fn at_end(session: &mut Session, seen: &[Seen], all_formats: bool) -> Kept {
     if fingerprints(session)? != before {
         return Err(Broken::new("without what was kept for speed, another picture", String::new()));
     }
-    session.open_documents.iter_mut().try_for_each(|tab| steps(tab, seen))
+    session.open_documents.iter_mut().try_for_each(|open| steps(open, seen))
 }
 
 /// Steps that are undone: each is drawn anew.
 const STEPS: usize = 4;
 
 /// Undone and made again, every document is the one that was.
-fn steps(tab: &mut OpenDocument, seen: &[Seen]) -> Kept {
-    let last = tab.document().clone();
-    let ahead = tab.history.future_labels().len() as i32;
-    tab.walk(ahead);
+fn steps(open: &mut OpenDocument, seen: &[Seen]) -> Kept {
+    let last = open.document().clone();
+    let ahead = open.history.future_labels().len() as i32;
+    open.walk(ahead);
     let mut known = Vec::new();
     loop {
-        let now = fingerprint(tab.document())?;
-        let was = seen.iter().find(|seen| is_same(&seen.document, tab.document()));
+        let now = fingerprint(open.document())?;
+        let was = seen.iter().find(|seen| is_same(&seen.document, open.document()));
         if let Some(was) = was.filter(|was| was.fingerprint != now) {
             let what = if was.fingerprint.0 == now.0 { "the picture" } else { "what it is" };
             return Err(Broken::new("undone, another document", what.into()));
         }
         known.push(now);
-        if tab.history.past().next().is_none() || known.len() > STEPS {
+        if open.history.past().next().is_none() || known.len() > STEPS {
             break;
         }
-        tab.walk(-1);
+        open.walk(-1);
     }
     for was in known.iter().rev().skip(1) {
-        tab.walk(1);
-        if fingerprint(tab.document())? != *was {
+        open.walk(1);
+        if fingerprint(open.document())? != *was {
             return Err(Broken::new("redone, another document", String::new()));
         }
     }
-    tab.walk(-ahead);
-    match is_same(&last, tab.document()) {
+    open.walk(-ahead);
+    match is_same(&last, open.document()) {
         true => Ok(()),
         false => Err(Broken::new("walked, another document", String::new())),
     }
@@ -166,23 +170,23 @@ fn is_kept(document: &Document, all_formats: bool) -> Kept {
     let (file, progress, budget) =
         (Path::new("a.ora"), Progress::default(), Budget::holding(document));
     let written = project::write(file, document, &progress)
-        .map_err(|error| Broken::said("not saved", error))?;
+        .map_err(|error| Broken::from_message("not saved", error))?;
     let bytes = written.unwrap_or_default();
-    let read =
-        project::read(file, &bytes, &budget).map_err(|error| Broken::said("not opened", error))?;
+    let read = project::read(file, &bytes, &budget)
+        .map_err(|error| Broken::from_message("not opened", error))?;
     // What it says of itself is no loss.
     let own = document.note_of_lost(None);
     if let Some(note) = read.notes.iter().find(|note| Some(*note) != own.as_ref()) {
-        return Err(Broken::said("opened with a note", note));
+        return Err(Broken::from_message("opened with a note", note));
     }
     if let Some(what) = document.difference(&read.document) {
-        return Err(Broken::said("reopened, it differs in", what));
+        return Err(Broken::from_message("reopened, it differs in", what));
     }
     let picture = rendered(document)?;
     same_bytes("reopened, another picture", &picture, &rendered(&read.document)?)?;
     same_bytes("the merged picture", &picture, &merged(file, &bytes)?)?;
     let again = project::write(file, &read.document, &progress)
-        .map_err(|error| Broken::said("not saved again", error))?;
+        .map_err(|error| Broken::from_message("not saved again", error))?;
     if again.is_none_or(|again| again != bytes) {
         return Err(Broken::new("saved again, other bytes", String::new()));
     }
@@ -199,7 +203,7 @@ fn exported(document: &Document, reopened: &Document, picture: &[u8], depths: &[
         let bytes = |document: &Document| {
             let bytes = encode_document(file, document, &options, &budget, &progress);
             bytes
-                .map_err(|error| Broken::said("not exported", error))
+                .map_err(|error| Broken::from_message("not exported", error))
                 .map(Option::unwrap_or_default)
         };
         let bytes = [bytes(document)?, bytes(reopened)?];
@@ -228,16 +232,16 @@ fn is_kept_by_photoshop(document: &Document, picture: &[u8]) -> Kept {
     let (file, progress, budget) =
         (Path::new("a.psd"), Progress::default(), Budget::holding(document));
     let written = psd::write(file, document, &progress)
-        .map_err(|error| Broken::said("psd: not saved", error))?;
+        .map_err(|error| Broken::from_message("psd: not saved", error))?;
     let Some(written) = written else { return Ok(()) };
     let read = psd::read(file, &written.bytes, &budget)
-        .map_err(|error| Broken::said("psd: not opened", error))?;
+        .map_err(|error| Broken::from_message("psd: not opened", error))?;
     let own = document.note_of_lost(None);
     if let Some(note) = read.notes.iter().find(|note| Some(*note) != own.as_ref()) {
-        return Err(Broken::said("psd: opened with a note", note));
+        return Err(Broken::from_message("psd: opened with a note", note));
     }
     if let Some(what) = document.difference(&read.document) {
-        return Err(Broken::said("psd: reopened, it differs in", what));
+        return Err(Broken::from_message("psd: reopened, it differs in", what));
     }
     same_bytes("psd: reopened, another picture", picture, &rendered(&read.document)?)
 }
@@ -246,12 +250,12 @@ fn is_kept_by_photoshop(document: &Document, picture: &[u8]) -> Kept {
 fn merged(file: &Path, bytes: &[u8]) -> Result<Vec<u8>, Broken> {
     let archive = Archive::open(file, bytes, &Budget::default());
     let merged = archive.and_then(|archive| archive.bytes("mergedimage.png", u64::MAX));
-    decoded(file, &merged.map_err(|error| Broken::said("no merged picture", error))?)
+    decoded(file, &merged.map_err(|error| Broken::from_message("no merged picture", error))?)
 }
 
 fn decoded(file: &Path, bytes: &[u8]) -> Result<Vec<u8>, Broken> {
     let picture = picture::decode(file, bytes, &Budget::default())
-        .map_err(|error| Broken::said("not decoded", error))?;
+        .map_err(|error| Broken::from_message("not decoded", error))?;
     match picture.texels {
         Texels::Srgb8(texels) => Ok(texels.as_flattened().to_vec()),
         _ => Err(Broken::new("not decoded as bytes", String::new())),
@@ -272,28 +276,28 @@ fn same_bytes(kind: &str, a: &[u8], b: &[u8]) -> Kept {
 pub fn recovered(session: &mut Session, folder: &Path) -> Kept {
     session.keep();
     let Some(autosave) = session.autosave.take() else { return Ok(()) };
-    autosave.settle();
+    autosave.wait_until_written();
     drop(autosave);
     let lost = Autosave::new(folder.into()).lost();
     let mut back = Vec::new();
     for left in lost.list() {
         let recovered = lost.bring_back(left, &Progress::default());
-        let recovered = recovered.map_err(|error| Broken::said("not recovered", error))?;
-        back.extend(recovered.map(|recovered| recovered.tab.document().clone()));
+        let recovered = recovered.map_err(|error| Broken::from_message("not recovered", error))?;
+        back.extend(recovered.map(|recovered| recovered.open.document().clone()));
     }
-    for tab in session.open_documents.iter().filter(|tab| tab.is_dirty()) {
+    for open in session.open_documents.iter().filter(|open| open.is_dirty()) {
         let differences: Vec<_> =
-            back.iter().map(|document| tab.document().difference(document)).collect();
+            back.iter().map(|document| open.document().difference(document)).collect();
         let Some(index) = differences.iter().position(Option::is_none) else {
             let what = differences.into_iter().flatten().last();
-            return Err(Broken::said(
+            return Err(Broken::from_message(
                 "recovered, it differs in",
                 what.unwrap_or_else(|| "everything".into()),
             ));
         };
         same_bytes(
             "recovered, another picture",
-            &rendered(tab.document())?,
+            &rendered(open.document())?,
             &rendered(&back[index])?,
         )?;
     }

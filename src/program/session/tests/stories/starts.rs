@@ -67,7 +67,7 @@ fn assets() -> &'static [(String, Vec<u8>)] {
             let terms = crate::io::Overwrite::Nothing;
             storage::save(
                 &file,
-                opened.tab.document(),
+                opened.open.document(),
                 terms,
                 &crate::document::Progress::default(),
             )

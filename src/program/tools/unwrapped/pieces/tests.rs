@@ -1,4 +1,4 @@
-use super::super::tests::{document, laid};
+use super::super::tests::{document, layout_of};
 use super::*;
 use crate::document::Layer;
 use crate::math::{Affine2, srgb::Color};
@@ -14,7 +14,7 @@ use std::sync::{Arc, LazyLock};
 fn painted() -> Document {
     let document = document();
     let surface = document.surface.clone().unwrap();
-    let plain = laid(&document);
+    let plain = layout_of(&document);
     let [a, b] = [vec2(80.5, 40.5), vec2(120.5, 40.5)];
     let [u, v] = [a, b].map(|q| plain.sheet_at(&surface, q).unwrap());
     let pins = [Anchor { at: a, source: u }, Anchor { at: b, source: u + (v - u).perp() }];
@@ -73,7 +73,7 @@ fn dragged(document: &Document, keys: ModifierKeys, from: Vec2, to: Vec2) -> Doc
     let context =
         ToolContext { layer: Some(document.layers[0].id), ..ToolContext::new(document, &brush) };
     let pen = PenSample { keys, ..PenSample::at(from) };
-    let (gesture, _) = super::super::point(&context, pen, laid(document), ToolKind::Image);
+    let (gesture, _) = super::super::point(&context, pen, layout_of(document), ToolKind::Image);
     let mut gesture = gesture.expect("a piece is held");
     gesture.drag(&[PenSample { keys, ..PenSample::at(to) }]);
     let Outcome::Commit { document, .. } = gesture.release() else { panic!("a step") };
@@ -83,7 +83,7 @@ fn dragged(document: &Document, keys: ModifierKeys, from: Vec2, to: Vec2) -> Doc
 #[test]
 fn a_drag_on_the_sheet_takes_the_picture_of_one_piece_along() {
     let before = painted();
-    let layout = laid(&before);
+    let layout = layout_of(&before);
     let surface = before.surface.clone().unwrap();
     let on_sheet = |x: f32, y: f32| layout.sheet_at(&surface, vec2(x, y)).unwrap();
     let (from, to) = (on_sheet(90.5, 60.5), on_sheet(110.5, 75.5));
@@ -97,7 +97,7 @@ fn a_drag_on_the_sheet_takes_the_picture_of_one_piece_along() {
 #[test]
 fn handles_scale_and_turn_about_the_middle_of_the_piece() {
     let before = painted();
-    let layout = laid(&before);
+    let layout = layout_of(&before);
     let surface = before.surface.clone().unwrap();
     let piece = layout.pieces()[0];
     let middle = layout.middle_of(&surface, &piece);
@@ -143,7 +143,7 @@ fn other_layers_and_operators_are_refused_in_a_sentence() {
         press(
             &ToolContext { layer, ..ToolContext::new(document, &brush) },
             PenSample::at(vec2(60.0, 60.0)),
-            &laid(document),
+            &layout_of(document),
         )
         .1
     };
@@ -165,7 +165,7 @@ proptest! {
         shift in any::<bool>(),
     ) {
         let before = ramped(vec2(from_x, y), vec2(to_x, 110.0 - y));
-        let (layout, surface) = (laid(&before), before.surface.clone().unwrap());
+        let (layout, surface) = (layout_of(&before), before.surface.clone().unwrap());
         // Where pixels are, so that what is shown under the pen is known exactly.
         let center = |x: f32, y: f32| vec2(x.floor() + 0.5, y.floor() + 0.5);
         let (pen, goal) = (center(pen_x, pen_y), center(goal_x, goal_y));
