@@ -17,8 +17,8 @@ use crate::session::actions::parts::FirstShape;
 use crate::session::actions::pictures::ReadPart;
 use crate::session::actions::placing::read_picture;
 use crate::session::actions::{PartAction, PasteTo};
-use crate::session::autosave::RecoveredDocument;
-use crate::session::storage::{self, FileUse, LoadedDocument, SortedFiles};
+use crate::session::autosave::RestoredDocument;
+use crate::session::storage::{self, FileUse, OpenedFile, SortedFiles};
 use crate::session::{Action, Edit};
 use crate::{Error, Result};
 use eframe::egui;
@@ -30,7 +30,7 @@ use std::time::{Duration, Instant};
 /// The result of a job; the window handles it when it arrives.
 pub enum JobResult {
     /// A document, with its file if it has one.
-    Opened(Option<PathBuf>, Box<Result<LoadedDocument>>),
+    Opened(Option<PathBuf>, Box<Result<OpenedFile>>),
     /// Maps of an object: the import dialog shows their conventions first.
     AreMaps(Box<SurfaceSource>),
     /// The file is opened as a document of its own.
@@ -44,7 +44,7 @@ pub enum JobResult {
     /// Drawings that can be recovered.
     Lost(Vec<recovery::LostSession>),
     /// One of them was recovered.
-    Recovered(Box<Result<RecoveredDocument>>),
+    Recovered(Box<Result<RestoredDocument>>),
     /// A picture was read from a file, to become a layer.
     Pictured(PathBuf, String, Picture, PictureUse),
     /// The same, to lie on the unwrapped surface.

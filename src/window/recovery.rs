@@ -8,7 +8,7 @@ use crate::advice::with_advice;
 use crate::document::Progress;
 use crate::io::recovery::LostSession;
 use crate::session::Autosave;
-use crate::session::autosave::RecoveredDocument;
+use crate::session::autosave::RestoredDocument;
 use crate::{Error, Result};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
@@ -53,9 +53,9 @@ impl MainWindow {
         }
     }
 
-    pub(super) fn take_recovered(&mut self, found: Result<RecoveredDocument>) {
+    pub(super) fn take_recovered(&mut self, found: Result<RestoredDocument>) {
         match found {
-            Ok(RecoveredDocument { open, recovery, tool }) => {
+            Ok(RestoredDocument { open, recovery, tool }) => {
                 if let (Some(autosave), Some(recovery)) = (&mut self.session.autosave, recovery) {
                     autosave.adopt(&open, recovery);
                 }

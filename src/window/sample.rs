@@ -6,7 +6,7 @@ use crate::math::{Size, Vec2, Vec3, srgb::Color, vec2, vec3};
 use crate::paint::{Gradient, GradientStop, ImageFilter};
 use crate::raster::Plane;
 use crate::session::OpenDocument;
-use crate::session::storage::LoadedDocument;
+use crate::session::storage::OpenedFile;
 use crate::surface::{Maps, Operator, Surface};
 use crate::{Error, Result};
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use std::sync::Arc;
 const SIDE: usize = 640;
 
 /// The sample as a document of its own.
-pub fn open() -> Result<LoadedDocument> {
+pub fn open() -> Result<OpenedFile> {
     let surface = surface().map_err(|error| Error::unsupported("sample", error))?;
     let background = Gradient {
         from: vec2(0.0, 0.0),
@@ -49,7 +49,7 @@ pub fn open() -> Result<LoadedDocument> {
         vec![Arc::new(behind), Arc::new(Layer::new("Base", Content::Gradient(Live::new(clay))))];
     let size = Size::new(SIDE as u32, SIDE as u32);
     let document = Document { surface: Some(Arc::new(surface)), layers, ..Document::empty(size) };
-    Ok(LoadedDocument {
+    Ok(OpenedFile {
         open: OpenDocument::new("Sample", document, None),
         notes: Vec::new(),
         drawing: None,

@@ -180,7 +180,7 @@ pub struct LostSessions {
 }
 
 /// A recovered document, and its new log.
-pub struct RecoveredDocument {
+pub struct RestoredDocument {
     pub open: OpenDocument,
     pub recovery: Option<RecoveryLog>,
     /// What the user had in hand.
@@ -229,7 +229,7 @@ impl LostSessions {
         &self,
         mut session: recovery::LostSession,
         progress: &Progress,
-    ) -> Result<Option<RecoveredDocument>> {
+    ) -> Result<Option<RestoredDocument>> {
         let Some(recovered) = session.recover(&Budget::of_this_machine(), progress)? else {
             return Ok(None);
         };
@@ -249,7 +249,7 @@ impl LostSessions {
             // A log that stays is offered again; nothing is lost.
             let _ = session.discard();
         }
-        Ok(Some(RecoveredDocument { open, recovery, tool }))
+        Ok(Some(RestoredDocument { open, recovery, tool }))
     }
 }
 

@@ -45,7 +45,7 @@ use crate::tools::symmetry::SymmetryAxes;
 use crate::tools::{Gesture, ShapeSettings, Symmetry, ToolKind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use storage::LoadedDocument;
+use storage::OpenedFile;
 
 /// The number of recent colours.
 const RECENT: usize = 16;
@@ -230,8 +230,8 @@ impl Session {
     }
 
     /// A document that was opened elsewhere, perhaps on another thread.
-    pub fn adopt(&mut self, opened: LoadedDocument) {
-        let LoadedDocument { mut open, notes, .. } = opened;
+    pub fn adopt(&mut self, opened: OpenedFile) {
+        let OpenedFile { mut open, notes, .. } = opened;
         if open.file.is_none() && open.name.is_empty() {
             open.name = self.untitled();
         }

@@ -45,7 +45,7 @@ pub enum FileUse {
 }
 
 /// A document that was opened, ready to be shown.
-pub struct LoadedDocument {
+pub struct OpenedFile {
     pub open: OpenDocument,
     /// Sentences about what was found and what could not be kept.
     pub notes: Vec<String>,
@@ -77,7 +77,7 @@ pub fn kind_of(file: &Path) -> Result<FileUse> {
 }
 
 /// Opens a document, a map, or a picture as a document of its own.
-pub fn open(file: &Path) -> Result<LoadedDocument> {
+pub fn open(file: &Path) -> Result<OpenedFile> {
     let found = kind_of(file)?;
     match found {
         FileUse::Document | FileUse::Picture => {
@@ -101,7 +101,7 @@ pub fn open(file: &Path) -> Result<LoadedDocument> {
                 (FileUse::Picture, [layer]) => drawing::traits_of(open.document(), layer.id),
                 _ => None,
             };
-            Ok(LoadedDocument { open, notes, drawing })
+            Ok(OpenedFile { open, notes, drawing })
         }
         FileUse::Normals => open_maps(&with_own_depth(file)),
         FileUse::Depth => open_maps(&maps_of(None, Some(file))),
@@ -109,12 +109,12 @@ pub fn open(file: &Path) -> Result<LoadedDocument> {
 }
 
 /// A new document on a surface, with a plain background to paint on.
-pub fn open_maps(source: &SurfaceSource) -> Result<LoadedDocument> {
+pub fn open_maps(source: &SurfaceSource) -> Result<OpenedFile> {
     Ok(of_import(source, import(source)?))
 }
 
 /// The same with maps that were already read.
-pub fn of_import(source: &SurfaceSource, import: ImportedSurface) -> LoadedDocument {
+pub fn of_import(source: &SurfaceSource, import: ImportedSurface) -> OpenedFile {
     let ImportedSurface { surface, findings, files } = import;
     let size = surface.size();
     let background =
@@ -132,7 +132,7 @@ pub fn of_import(source: &SurfaceSource, import: ImportedSurface) -> LoadedDocum
     let name = file.map(|file| pairs::object_of(Path::new(file))).unwrap_or_default();
     let mut open = OpenDocument::new(name, document, None);
     open.reads = map_files(source);
-    LoadedDocument { open, notes: findings.notes, drawing: None }
+    OpenedFile { open, notes: findings.notes, drawing: None }
 }
 
 /// A picture that covers the canvas, unbent. `file`: its name in the document.
@@ -150,14 +150,14 @@ pub fn flat_image(name: &str, file: &str, picture: Picture, canvas: Size) -> Lay
 
 /// A picture that covers the canvas, flat, as a layer at the top: one from a renderer, to be
 /// painted over.
-pub fn with_picture(mut opened: LoadedDocument, name: &str, picture: Picture) -> LoadedDocument {
+pub fn with_picture(mut opened: OpenedFile, name: &str, picture: Picture) -> OpenedFile {
     let document = opened.open.document();
     let mut layers = document.layers.clone();
     layers.push(Arc::new(flat_image(name, &format!("{name}.exr"), picture, document.size)));
     let mut open =
         OpenDocument::new(opened.open.name.clone(), Document { layers, ..document.clone() }, None);
     open.reads = std::mem::take(&mut opened.open.reads);
-    LoadedDocument { open, ..opened }
+    OpenedFile { open, ..opened }
 }
 
 const BACKGROUND: Color = Color { r: 0x26, g: 0x28, b: 0x2c, a: 255 };

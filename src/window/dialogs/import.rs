@@ -15,7 +15,7 @@ use crate::file_purpose::FilePurpose;
 use crate::io::maps;
 use crate::jobs::MapsRead;
 use crate::raster::Picture;
-use crate::session::storage::{self, LoadedDocument};
+use crate::session::storage::{self, OpenedFile};
 use crate::widgets::{choice_row, named, sentence};
 use eframe::egui::{
     self, Color32, Context, RichText, ScrollArea, Sense, StrokeKind, TextureHandle, Ui, pos2, vec2,
@@ -406,4 +406,4 @@ impl ImportDialog {
 }
 
 /// A document made of maps, boxed: it is large.
-pub type MadeDocument = Box<LoadedDocument>;
+pub type MadeDocument = Box<OpenedFile>;

@@ -42,7 +42,7 @@ fn after_a_crash_the_drawing_comes_back_untitled_and_unsaved() {
     crash(session);
     let left = lost(folder.path()).pop().unwrap();
     let mut autosave = Autosave::new(folder.path().into());
-    let RecoveredDocument { open, recovery, .. } =
+    let RestoredDocument { open, recovery, .. } =
         autosave.lost().bring_back(left, &Progress::default()).unwrap().unwrap();
     assert_eq!((open.title().as_str(), &open.file), ("Untitled 1 (recovered)", &None));
     assert!(open.is_dirty());
@@ -178,7 +178,7 @@ fn what_was_chosen_and_in_hand_comes_back_with_the_drawing() {
     session.replay(Path::new("story"), story).unwrap();
     session.keep();
     crash(session);
-    let RecoveredDocument { open, tool, .. } = Autosave::new(folder.path().into())
+    let RestoredDocument { open, tool, .. } = Autosave::new(folder.path().into())
         .lost()
         .bring_back(lost(folder.path()).pop().unwrap(), &Progress::default())
         .unwrap()

@@ -5,7 +5,7 @@ use super::*;
 use crate::document::{Document, Progress, flatten};
 use crate::io::{self, Budget, Overwrite};
 use crate::raster::{TileGrid, picture::Texels};
-use crate::session::autosave::{Autosave, RecoveredDocument};
+use crate::session::autosave::{Autosave, RestoredDocument};
 use crate::session::{OpenDocument, actions::files, storage};
 use std::path::PathBuf;
 
@@ -123,7 +123,7 @@ fn after_a_crash_a_drawing_has_its_shape() {
     drop(session);
     let lost = Autosave::new(folder.path().into()).lost();
     let left = lost.list().pop().unwrap();
-    let RecoveredDocument { open, .. } =
+    let RestoredDocument { open, .. } =
         lost.bring_back(left, &Progress::default()).unwrap().unwrap();
     let mut session = Session::default();
     session.add_document(open);
