@@ -3,7 +3,7 @@
 use super::{Story, command, drag, key, press, session, steps, window};
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
-use rilievo_program::tools::transform::FrameNumbers;
+use rilievo_program::tools::transform::GizmoNumbers;
 
 /// A paint layer with a stroke on it, and the transform tool in hand.
 fn painted() -> Story {
@@ -16,9 +16,11 @@ fn painted() -> Story {
     harness
 }
 
-fn numbers(harness: &Story) -> FrameNumbers {
-    FrameNumbers::of(&session(harness).active().unwrap().frame(session(harness).carried).unwrap())
-        .unwrap()
+fn numbers(harness: &Story) -> GizmoNumbers {
+    GizmoNumbers::of(
+        &session(harness).active().unwrap().gizmo(session(harness).transform_target).unwrap(),
+    )
+    .unwrap()
 }
 
 #[test]

@@ -38,7 +38,7 @@ use crate::paint::{Brush, Fill, LiquifySettings};
 use crate::surface::Operator;
 use crate::surface::operator::UnwrapSettings;
 use crate::tools::SelectSettings;
-use crate::tools::frame::TransformTarget;
+use crate::tools::gizmo::TransformTarget;
 use crate::tools::settings::CropAspect;
 use crate::tools::snap::{SnapLines, ViewAids};
 use crate::tools::symmetry::SymmetryAxes;
@@ -72,7 +72,7 @@ pub struct Session {
     /// The place of its axes.
     pub axes: SymmetryAxes,
     /// What the transform tool moves.
-    pub carried: TransformTarget,
+    pub transform_target: TransformTarget,
     /// The settings of the fill tool.
     pub fill: Fill,
     /// The settings of the selection tools.
@@ -87,7 +87,7 @@ pub struct Session {
     pub mesh_points: Vec<usize>,
     /// The corners of the unfinished lasso.
     pub lasso: Vec<Vec2>,
-    /// The frame of the crop tool, canvas px.
+    /// The area that the crop tool cuts out, canvas px.
     pub crop: Option<Rect>,
     /// The aspect that it keeps.
     pub crop_aspect: CropAspect,
@@ -136,7 +136,7 @@ impl Default for Session {
             operator: Operator::None,
             symmetry: Symmetry::None,
             axes: SymmetryAxes::default(),
-            carried: TransformTarget::default(),
+            transform_target: TransformTarget::default(),
             fill: Fill::default(),
             select: SelectSettings::default(),
             aids: ViewAids::default(),

@@ -1,6 +1,6 @@
 //! What tools get when the pen comes down. Floor 5.
 
-use super::frame::{KeptFrame, TransformTarget};
+use super::gizmo::{GizmoMemory, TransformTarget};
 use super::settings::{BrushTarget, CropAspect, SelectSettings, ShapeSettings};
 use super::snap::{SnapTargets, ViewAids};
 use super::symmetry::{Symmetry, SymmetryAxes};
@@ -43,13 +43,13 @@ pub struct ToolContext<'a> {
     pub part: Option<&'a str>,
     /// The corners of the unfinished lasso.
     pub lasso: &'a [Vec2],
-    /// The frame of the crop tool, and the aspect that it keeps.
+    /// The area that the crop tool cuts out, and the aspect that it keeps.
     pub crop: Option<Rect>,
     pub crop_aspect: CropAspect,
     /// What the transform tool keeps about the chosen layers.
-    pub frame: &'a KeptFrame,
+    pub gizmo: &'a GizmoMemory,
     /// What it moves.
-    pub carried: TransformTarget,
+    pub transform_target: TransformTarget,
     /// The strokes of the selected layer that are chosen.
     pub strokes: &'a [usize],
     /// The points of the selected layer's mesh that are chosen.
@@ -87,8 +87,8 @@ impl<'a> ToolContext<'a> {
             lasso: &[],
             crop: None,
             crop_aspect: CropAspect::Free,
-            frame: KeptFrame::nothing(),
-            carried: TransformTarget::Paint,
+            gizmo: GizmoMemory::nothing(),
+            transform_target: TransformTarget::Paint,
             strokes: &[],
             mesh_points: &[],
             axes: SymmetryAxes::default(),
@@ -200,8 +200,8 @@ impl KeptContext {
             lasso: &self.lasso,
             crop: None,
             crop_aspect: CropAspect::Free,
-            frame: KeptFrame::nothing(),
-            carried: TransformTarget::Paint,
+            gizmo: GizmoMemory::nothing(),
+            transform_target: TransformTarget::Paint,
             strokes: &self.strokes,
             mesh_points: &[],
             snap: &self.snap,

@@ -1,48 +1,48 @@
-//! The crop tool: a frame that is dragged over the canvas, or beyond it, until it is applied or
+//! The crop tool: an area that is dragged over the canvas, or beyond it, until it is applied or
 //! cancelled. Floor 5. Not here: what a document becomes within it (`document::canvas_change`).
 
-use super::frame::FrameHandle;
+use super::gizmo::TransformHandle;
 use super::snap::{SnapLines, SnapTargets};
 use super::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext};
 use crate::math::range::held;
 use crate::math::{COORDINATE, Rect, Vec2, vec2};
 
-/// The corners of a frame: upper left, upper right, lower right, lower left.
-pub fn corners(frame: Rect) -> [Vec2; 4] {
-    let [x0, y0, x1, y1] = [frame.x0, frame.y0, frame.x1, frame.y1].map(|v| v as f32);
+/// The corners of an area: upper left, upper right, lower right, lower left.
+pub fn corners(area: Rect) -> [Vec2; 4] {
+    let [x0, y0, x1, y1] = [area.x0, area.y0, area.x1, area.y1].map(|v| v as f32);
     [vec2(x0, y0), vec2(x1, y0), vec2(x1, y1), vec2(x0, y1)]
 }
 
 /// The middle of the side from a corner to the next.
-pub fn edge(frame: Rect, index: usize) -> Vec2 {
-    let corners = corners(frame);
+pub fn edge(area: Rect, index: usize) -> Vec2 {
+    let corners = corners(area);
     (corners[index % 4] + corners[(index + 1) % 4]) * 0.5
 }
 
-/// The handle of a frame at a point; `grab_px`: the distance that counts as near.
-pub fn handle_at(frame: Rect, at: Vec2, grab_px: f32) -> FrameHandle {
+/// The handle of an area at a point; `grab_px`: the distance that counts as near.
+pub fn handle_at(area: Rect, at: Vec2, grab_px: f32) -> TransformHandle {
     let near = |p: Vec2| p.distance(at) <= grab_px;
-    let corners = corners(frame);
+    let corners = corners(area);
     if let Some(corner) = (0..4).find(|&i| near(corners[i])) {
-        return FrameHandle::Corner(corner);
+        return TransformHandle::Corner(corner);
     }
-    if let Some(side) = (0..4).find(|&i| near(edge(frame, i))) {
-        return FrameHandle::Edge(side);
+    if let Some(side) = (0..4).find(|&i| near(edge(area, i))) {
+        return TransformHandle::Edge(side);
     }
     let inside = at.x >= corners[0].x
         && at.x <= corners[2].x
         && at.y >= corners[0].y
         && at.y <= corners[2].y;
-    if inside { FrameHandle::Inside } else { FrameHandle::Outside }
+    if inside { TransformHandle::Inside } else { TransformHandle::Outside }
 }
 
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let at = pen.place();
     let handle = context
         .crop
-        .map_or(FrameHandle::Outside, |frame| handle_at(frame, at, GRAB_PT * context.px_per_pt));
+        .map_or(TransformHandle::Outside, |area| handle_at(area, at, GRAB_PT * context.px_per_pt));
     let gesture = CropGesture {
-        frame: context.crop,
+        area: context.crop,
         handle,
         from: at,
         slop_px: SLOP_PT * context.px_per_pt,
@@ -54,13 +54,13 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     (Some(Box::new(gesture)), Outcome::Idle)
 }
 
-/// A pen that moves less than this, screen points, draws no new frame.
+/// A pen that moves less than this, screen points, draws no new area.
 const SLOP_PT: f32 = 4.0;
 
 struct CropGesture {
     /// Before the drag.
-    frame: Option<Rect>,
-    handle: FrameHandle,
+    area: Option<Rect>,
+    handle: TransformHandle,
     from: Vec2,
     slop_px: f32,
     is_begun: bool,
@@ -70,21 +70,21 @@ struct CropGesture {
 }
 
 impl CropGesture {
-    /// The frame with the held handle at the pen; Shift keeps its aspect.
+    /// The area with the held handle at the pen; Shift keeps its aspect.
     fn dragged(&self, pen: &PenSample) -> Rect {
         let at = pen.place();
-        let Some(frame) = self.frame.filter(|_| self.handle != FrameHandle::Outside) else {
+        let Some(area) = self.area.filter(|_| self.handle != TransformHandle::Outside) else {
             let ratio = self.ratio.or(pen.keys.shift.then_some(1.0));
             return between(self.from, at, ratio);
         };
         let ratio =
-            self.ratio.or(pen.keys.shift.then(|| frame.width() as f32 / frame.height() as f32));
+            self.ratio.or(pen.keys.shift.then(|| area.width() as f32 / area.height() as f32));
         match self.handle {
-            FrameHandle::Corner(corner) => between(corners(frame)[(corner + 2) % 4], at, ratio),
-            FrameHandle::Edge(side) => with_side(frame, side, at, ratio),
-            FrameHandle::Inside | FrameHandle::Outside | FrameHandle::Pivot => {
+            TransformHandle::Corner(corner) => between(corners(area)[(corner + 2) % 4], at, ratio),
+            TransformHandle::Edge(side) => with_side(area, side, at, ratio),
+            TransformHandle::Inside | TransformHandle::Outside | TransformHandle::Pivot => {
                 let by = place(at - self.from);
-                Rect::new(frame.x0 + by.0, frame.y0 + by.1, frame.x1 + by.0, frame.y1 + by.1)
+                Rect::new(area.x0 + by.0, area.y0 + by.1, area.x1 + by.0, area.y1 + by.1)
             }
         }
     }
@@ -95,7 +95,7 @@ fn place(at: Vec2) -> (i32, i32) {
     (held(at.x, &COORDINATE).round() as i32, held(at.y, &COORDINATE).round() as i32)
 }
 
-/// The frame from a fixed corner to the pen, at least a pixel; with an aspect it is as large as the
+/// The area from a fixed corner to the pen, at least a pixel; with an aspect it is as large as the
 /// farther side needs.
 fn between(fixed: Vec2, at: Vec2, ratio: Option<f32>) -> Rect {
     let by = at - fixed;
@@ -110,9 +110,9 @@ fn between(fixed: Vec2, at: Vec2, ratio: Option<f32>) -> Rect {
     Rect::new(x0, y0, x1, y1)
 }
 
-/// A frame with one side at the pen; with an aspect it grows about its middle along that side.
-fn with_side(frame: Rect, side: usize, at: Vec2, ratio: Option<f32>) -> Rect {
-    let [top_left, _, bottom_right, _] = corners(frame);
+/// An area with one side at the pen; with an aspect it grows about its middle along that side.
+fn with_side(area: Rect, side: usize, at: Vec2, ratio: Option<f32>) -> Rect {
+    let [top_left, _, bottom_right, _] = corners(area);
     let (mut low, mut high) = (top_left, bottom_right);
     match side {
         0 => low.y = at.y,
@@ -137,18 +137,18 @@ fn with_side(frame: Rect, side: usize, at: Vec2, ratio: Option<f32>) -> Rect {
 impl Gesture for CropGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let Some(pen) = pens.last() else { return Outcome::Idle };
-        self.is_begun |=
-            pen.place().distance(self.from) > self.slop_px || self.handle != FrameHandle::Outside;
+        self.is_begun |= pen.place().distance(self.from) > self.slop_px
+            || self.handle != TransformHandle::Outside;
         if !self.is_begun {
             return Outcome::Idle;
         }
         let mut snapped = *pen;
         self.lines = SnapLines::default();
-        if self.handle != FrameHandle::Inside {
+        if self.handle != TransformHandle::Inside {
             let found = self.snap.point(pen.place());
             (snapped.sample.at, self.lines) = (found.at, found.lines);
         }
-        Outcome::Frame(self.dragged(&snapped))
+        Outcome::CropArea(self.dragged(&snapped))
     }
 
     fn release(&mut self) -> Outcome {
@@ -168,14 +168,14 @@ mod tests {
     use crate::paint::Brush;
     use crate::tools::settings::CropAspect;
 
-    /// The frame after a drag; `None` if it was left unchanged.
+    /// The area after a drag; `None` if it was left unchanged.
     fn dragged(crop: Option<Rect>, aspect: CropAspect, from: Vec2, to: Vec2) -> Option<Rect> {
         let (document, brush) = (Document::empty(Size::new(200, 100)), Brush::default());
         let context =
             ToolContext { crop, crop_aspect: aspect, ..ToolContext::new(&document, &brush) };
         let mut gesture = press(&context, PenSample::at(from)).0.unwrap();
         match gesture.drag(&[PenSample::at(to)]) {
-            Outcome::Frame(frame) => Some(frame),
+            Outcome::CropArea(area) => Some(area),
             _ => None,
         }
     }
@@ -211,9 +211,9 @@ mod tests {
         {
             for from in [vec2(50.0, 20.0), vec2(150.0, 80.0), vec2(100.0, 20.0), vec2(150.0, 50.0)]
             {
-                let frame = dragged(Some(FRAME), aspect, from, from + vec2(17.0, -31.0)).unwrap();
-                let off = (frame.width() as f32 - ratio * frame.height() as f32).abs();
-                assert!(off <= 0.5 + 0.5 * ratio, "{aspect:?} {from}: {frame:?}");
+                let area = dragged(Some(FRAME), aspect, from, from + vec2(17.0, -31.0)).unwrap();
+                let off = (area.width() as f32 - ratio * area.height() as f32).abs();
+                assert!(off <= 0.5 + 0.5 * ratio, "{aspect:?} {from}: {area:?}");
             }
         }
         assert_eq!(CropAspect::Square.given(FRAME, Size::new(9, 9)), Rect::new(50, 0, 150, 100));
@@ -221,7 +221,7 @@ mod tests {
 
     #[test]
     fn what_is_no_place_is_held() {
-        let frame = dragged(None, CropAspect::Free, vec2(0.0, 0.0), vec2(f32::MAX, f32::NAN));
-        assert!(frame.is_none_or(|frame| frame.x1 <= 1_000_001 && frame.height() >= 1));
+        let area = dragged(None, CropAspect::Free, vec2(0.0, 0.0), vec2(f32::MAX, f32::NAN));
+        assert!(area.is_none_or(|area| area.x1 <= 1_000_001 && area.height() >= 1));
     }
 }

@@ -35,13 +35,13 @@ pub enum Outcome {
     ChosenPart(String),
     /// Touches give this direction from now on.
     Direction(Vec3),
-    /// The crop tool's frame from now on.
-    Frame(Rect),
+    /// The area that the crop tool cuts out, from now on.
+    CropArea(Rect),
     /// Clone brushes copy from here from now on.
     CloneFrom(Vec2),
     /// Nothing was started; the reason is to be shown.
     Refused(Cow<'static, str>),
-    /// The frame of the chosen layers is turned about this point, by shares of its sides, from now
+    /// The gizmo of the chosen layers is turned about this point, by shares of its sides, from now
     /// on.
     Pivot(Vec2),
     /// These points of the layer's mesh are chosen from now on.

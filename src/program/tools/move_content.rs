@@ -1,7 +1,7 @@
 //! The move tool: moves a layer, or one stroke of a stroke layer, on the canvas.
 //! Floor 5.
 
-use super::frame::TransformFrame;
+use super::gizmo::TransformGizmo;
 use super::snap::{SnapLines, SnapTargets};
 use super::transform;
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext, closed};
@@ -67,7 +67,7 @@ struct MoveGesture {
     from: Vec2,
     by: Vec2,
     /// The box around what is moved, if anything can snap.
-    frame: Option<[Vec2; 2]>,
+    gizmo: Option<[Vec2; 2]>,
     snap: SnapTargets,
     lines: SnapLines,
 }
@@ -81,12 +81,12 @@ impl MoveGesture {
     ) -> Self {
         let (document, snap) = (context.document.clone(), context.snap.clone());
         let snaps = stroke.is_none() && !snap.is_empty();
-        let frame = snaps
-            .then(|| TransformFrame::around(&document, &layers))
+        let gizmo = snaps
+            .then(|| TransformGizmo::around(&document, &layers))
             .flatten()
-            .map(|frame| frame.bounds());
+            .map(|gizmo| gizmo.bounds());
         let (from, by, lines) = (pen.place(), Vec2::ZERO, SnapLines::default());
-        Self { document, layers, stroke, from, by, frame, snap, lines }
+        Self { document, layers, stroke, from, by, gizmo, snap, lines }
     }
 
     fn with(&self) -> Option<Document> {
@@ -113,7 +113,7 @@ impl Gesture for MoveGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let Some(pen) = pens.last() else { return Outcome::Idle };
         let mut by = pen.place() - self.from;
-        if let Some([low, high]) = self.frame {
+        if let Some([low, high]) = self.gizmo {
             let shift = self.snap.shift(low + by, high + by);
             (by, self.lines) = (by + shift.at, shift.lines);
         }

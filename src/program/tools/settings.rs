@@ -1,5 +1,5 @@
 //! The settings of the tools. Floor 5. Not here: those of the brush (`paint`), snapping (`snap`),
-//! what a frame moves (`frame`).
+//! what the transform tool moves (`gizmo`).
 
 use super::pen::ModifierKeys;
 use crate::math::range::held;
@@ -132,7 +132,7 @@ impl ShapeSettings {
 }
 
 rilievo_engine::named! {
-    /// The aspect that a frame keeps.
+    /// The aspect that the crop area keeps.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
     pub enum CropAspect {
         #[default]
@@ -159,11 +159,11 @@ impl CropAspect {
         }
     }
 
-    /// A frame with this aspect about the middle of another one, with its width.
-    pub fn given(self, frame: Rect, canvas: Size) -> Rect {
-        let Some(ratio) = self.ratio(canvas) else { return frame };
-        let height = (frame.width() as f32 / ratio).round().max(1.0) as i32;
-        let top = frame.y0 + (frame.height() as i32 - height).div_euclid(2);
-        Rect::new(frame.x0, top, frame.x1, top + height)
+    /// An area with this aspect about the middle of another one, with its width.
+    pub fn given(self, area: Rect, canvas: Size) -> Rect {
+        let Some(ratio) = self.ratio(canvas) else { return area };
+        let height = (area.width() as f32 / ratio).round().max(1.0) as i32;
+        let top = area.y0 + (area.height() as i32 - height).div_euclid(2);
+        Rect::new(area.x0, top, area.x1, top + height)
     }
 }

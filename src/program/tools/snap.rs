@@ -2,7 +2,7 @@
 //! of layers when near. Floor 5. Pure functions. Not here: which tools snap (their files), what is
 //! drawn (the window).
 
-use super::frame::TransformFrame;
+use super::gizmo::TransformGizmo;
 use crate::document::{AssistantKind, Content, Document, LayerId};
 use crate::math::range::{Range, held};
 use crate::math::{COORDINATE, Vec2, vec2};
@@ -154,10 +154,10 @@ impl SnapTargets {
                     Content::Strokes(live) => live.params().strokes.len() <= MOST_STROKES,
                     _ => false,
                 };
-                if let Some(frame) =
-                    has_end.then(|| TransformFrame::of(document, layer.id)).flatten()
+                if let Some(gizmo) =
+                    has_end.then(|| TransformGizmo::of(document, layer.id)).flatten()
                 {
-                    let [a, b, c, d] = frame.corners;
+                    let [a, b, c, d] = gizmo.corners;
                     edges(a.min(b).min(c).min(d), a.max(b).max(c).max(d));
                 }
             }

@@ -1,4 +1,4 @@
-//! The transform tool: a frame with handles around the chosen layers and groups, which stay live
+//! The transform tool: a gizmo with handles around the chosen layers and groups, which stay live
 //! until it is applied. Floor 5. Not here: what a layer becomes under its transform
 //! (`document::layer`).
 
@@ -9,22 +9,22 @@ mod numbers;
 mod pivot;
 mod placed;
 
-pub use numbers::FrameNumbers;
+pub use numbers::GizmoNumbers;
 pub use pivot::PIVOTS;
 
-use super::frame::{FrameHandle, Framed, TransformFrame};
+use super::gizmo::{GizmoContent, TransformGizmo, TransformHandle};
 use super::snap::SnapLines;
 use super::{GestureStart, Outcome, PenSample, ToolContext, closed};
 use crate::document::{Document, Layer, LayerId};
 use crate::math::{PlaneMap, Vec2};
 use gesture::{HeldLayer, TransformGesture};
 use pivot::PivotGesture;
-use placed::{FrameMap, LayerPlacement, to_storable};
+use placed::{DragMap, LayerPlacement, to_storable};
 
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let document = context.document;
-    let framed = Framed::new(context.carried, document, context.chosen());
-    let of_shape = framed == Framed::Shape;
+    let content = GizmoContent::new(context.transform_target, document, context.chosen());
+    let of_shape = content == GizmoContent::Shape;
     let chosen = if of_shape { &[] } else { context.chosen() };
     let layers: Vec<&Layer> =
         chosen.iter().filter_map(|id| document.layer(*id)).map(|l| &**l).collect();
@@ -37,20 +37,20 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     if !of_shape && let Some(begun) = mesh::press(context, pen) {
         return begun;
     }
-    let Some(frame) = context.frame.around(document, framed) else {
+    let Some(gizmo) = context.gizmo.around(document, content) else {
         return (
             None,
             Outcome::Refused("The layer is empty: there is nothing to transform.".into()),
         );
     };
-    let handle = frame.handle_at(pen.place(), context.px_per_pt, pen.keys.alt);
-    if handle == FrameHandle::Pivot {
+    let handle = gizmo.handle_at(pen.place(), context.px_per_pt, pen.keys.alt);
+    if handle == TransformHandle::Pivot {
         let (snap, snaps, px_per_pt) =
             (context.snap.clone(), context.aids.snaps, context.px_per_pt);
-        let gesture = PivotGesture { frame, snap, snaps, px_per_pt, lines: SnapLines::default() };
+        let gesture = PivotGesture { gizmo, snap, snaps, px_per_pt, lines: SnapLines::default() };
         return (Some(Box::new(gesture)), Outcome::Idle);
     }
-    if of_shape && pen.keys.ctrl && matches!(handle, FrameHandle::Corner(_)) {
+    if of_shape && pen.keys.ctrl && matches!(handle, TransformHandle::Corner(_)) {
         return (
             None,
             Outcome::Refused(
@@ -72,7 +72,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         document,
         layers,
         of_shape,
-        frame,
+        gizmo,
         handle,
         from,
         found: None,
@@ -96,7 +96,7 @@ pub fn turn(degrees: f64) -> Option<PlaneMap> {
 /// Layers with what they show mapped about its middle. `None` for empty layers, or where that
 /// cannot be expressed.
 pub fn about_middle(document: &Document, layers: &[LayerId], map: PlaneMap) -> Option<Document> {
-    let pivot = TransformFrame::around(document, layers)?.pivot();
+    let pivot = TransformGizmo::around(document, layers)?.pivot();
     // A middle between pixels along only one axis would move pixels by halves when they are turned.
     let pivot = if map.coefficients().is_some_and(|c| c[1] != 0.0) { pivot.round() } else { pivot };
     let on_canvas = PlaneMap::translation(-pivot).then(&map).then(&PlaneMap::translation(pivot));
@@ -105,7 +105,7 @@ pub fn about_middle(document: &Document, layers: &[LayerId], map: PlaneMap) -> O
 
 /// A map about the middle of the shape as a matrix on the canvas. `None` if there is no shape.
 pub fn about_shape(document: &Document, map: PlaneMap) -> Option<[f64; 6]> {
-    let [low, high] = TransformFrame::of_shape(document)?.bounds();
+    let [low, high] = TransformGizmo::of_shape(document)?.bounds();
     let middle = (low + high) * 0.5;
     let pivot =
         if map.coefficients().is_some_and(|c| c[1] != 0.0) { middle.round() } else { middle };
@@ -115,7 +115,7 @@ pub fn about_shape(document: &Document, map: PlaneMap) -> Option<[f64; 6]> {
 /// A layer with what it shows moved by a map of the canvas; `None` where that cannot be expressed.
 pub fn mapped(document: &Document, layer: LayerId, on_canvas: PlaneMap) -> Option<Document> {
     let (own, whole) = (LayerPlacement::of(document.layer(layer)?), document.map_of(layer)?);
-    let next = own.then(&whole, &FrameMap::OnCanvas(on_canvas), document.size)?;
+    let next = own.then(&whole, &DragMap::OnCanvas(on_canvas), document.size)?;
     document.with_layer(layer, |layer| next.put(layer))
 }
 

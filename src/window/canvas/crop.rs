@@ -1,4 +1,4 @@
-//! The frame of the crop tool on the picture: dark outside, thirds inside, handles; and its keys.
+//! The area of the crop tool on the picture: dark outside, thirds inside, handles; and its keys.
 //! Floor 7. Not here: what a drag of it does (`tools::crop`).
 
 use crate::math::{Rect, Vec2, vec2};
@@ -10,10 +10,10 @@ use eframe::egui::{self, Color32, Painter, Pos2, Shape, Stroke, StrokeKind, Ui};
 /// Side of a handle, points.
 const HANDLE_PT: f32 = 9.0;
 
-/// Draws the frame, if there is one.
+/// Draws the area, if there is one.
 pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2) {
-    let Some(frame) = session.crop else { return };
-    let corners = crop::corners(frame);
+    let Some(area) = session.crop else { return };
+    let corners = crop::corners(area);
     outside(painter, session, corners, to_screen);
     let seen = corners.map(to_screen);
     let look = |width: f32, color: Color32| Stroke::new(width, color);
@@ -27,7 +27,7 @@ pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> P
     for line in [look(3.0, Color32::from_black_alpha(110)), look(1.2, Color32::WHITE)] {
         painter.add(Shape::closed_line(seen.to_vec(), line));
     }
-    for handle in seen.into_iter().chain((0..4).map(|i| to_screen(crop::edge(frame, i)))) {
+    for handle in seen.into_iter().chain((0..4).map(|i| to_screen(crop::edge(area, i)))) {
         let square = egui::Rect::from_center_size(handle, egui::vec2(HANDLE_PT, HANDLE_PT));
         painter.rect_filled(square, 1.0, Color32::WHITE);
         painter.rect_stroke(
@@ -39,21 +39,21 @@ pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> P
     }
 }
 
-/// Darkens the canvas outside the frame: four pieces around it, however the view is turned.
+/// Darkens the canvas outside the area: four pieces around it, however the view is turned.
 fn outside(
     painter: &Painter,
     session: &Session,
-    frame: [Vec2; 4],
+    area: [Vec2; 4],
     to_screen: &impl Fn(Vec2) -> Pos2,
 ) {
     let Some(document) = session.shown() else { return };
     let canvas = crop::corners(document.size.rect());
-    let (low, high) = (canvas[0].min(frame[0]), canvas[2].max(frame[2]));
+    let (low, high) = (canvas[0].min(area[0]), canvas[2].max(area[2]));
     let pieces = [
-        [low, vec2(high.x, frame[0].y)],
-        [vec2(low.x, frame[2].y), high],
-        [vec2(low.x, frame[0].y), vec2(frame[0].x, frame[2].y)],
-        [vec2(frame[2].x, frame[0].y), vec2(high.x, frame[2].y)],
+        [low, vec2(high.x, area[0].y)],
+        [vec2(low.x, area[2].y), high],
+        [vec2(low.x, area[0].y), vec2(area[0].x, area[2].y)],
+        [vec2(area[2].x, area[0].y), vec2(high.x, area[2].y)],
     ];
     for [a, b] in pieces.into_iter().filter(|[a, b]| b.x > a.x && b.y > a.y) {
         let corners = [a, vec2(b.x, a.y), b, vec2(a.x, b.y)].map(to_screen);
@@ -65,20 +65,20 @@ fn outside(
     }
 }
 
-/// Enter crops to the frame, Escape cancels.
+/// Enter crops to the area, Escape cancels.
 pub fn keys(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
-    let Some(frame) = session.crop.filter(|_| session.tool == ToolKind::Crop) else { return };
+    let Some(area) = session.crop.filter(|_| session.tool == ToolKind::Crop) else { return };
     if session.is_drawing() || ui.ctx().egui_wants_keyboard_input() {
         return;
     }
     if ui.input(|input| input.key_pressed(egui::Key::Enter)) {
-        actions.push(apply(frame));
+        actions.push(apply(area));
     } else if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
-        actions.push(Action::Canvas(CanvasAction::Frame { frame: None }));
+        actions.push(Action::Canvas(CanvasAction::CropArea { frame: None }));
     }
 }
 
-/// Crops to a frame.
-pub fn apply(frame: Rect) -> Action {
-    Action::Canvas(CanvasAction::Crop { to: frame })
+/// Crops to an area.
+pub fn apply(area: Rect) -> Action {
+    Action::Canvas(CanvasAction::Crop { to: area })
 }

@@ -34,7 +34,7 @@ pub fn draw(
         axes(painter, session, &to_screen);
     }
     if tool == ToolKind::Transform {
-        super::frame::draw(painter, session, &to_screen);
+        super::gizmo::draw(painter, session, &to_screen);
     }
     super::assistants::draw(painter, session, &to_screen, tool == ToolKind::Assistants);
     if tool == ToolKind::Crop {

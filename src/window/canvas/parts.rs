@@ -11,7 +11,7 @@ use crate::raster::coverage::contour::{self, Run};
 use crate::session::Session;
 use crate::theme::ACCENT;
 use crate::tools::ToolKind;
-use crate::tools::shape::part::PartFrame;
+use crate::tools::shape::part::PartGizmo;
 use crate::tools::shape::touch::touches;
 use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, pos2};
 use std::sync::Arc;
@@ -96,9 +96,9 @@ impl PartMarks {
             let moved = |p: Vec2| to_screen(map.transform_point2(p));
             outline(painter, self.chosen.runs(area, level), &moved, look);
             if tool == ToolKind::Shape {
-                let frame = PartFrame::of(part, area, 1.0 / scale).through(map);
-                handles(painter, part, &frame, &to_screen);
-                let told = under.and_then(|at| Some((at, frame.handle_at(at)?.describe(part)?)));
+                let gizmo = PartGizmo::of(part, area, 1.0 / scale).through(map);
+                handles(painter, part, &gizmo, &to_screen);
+                let told = under.and_then(|at| Some((at, gizmo.handle_at(at)?.describe(part)?)));
                 if let Some((at, text)) = told {
                     hint(painter, to_screen(at), &text);
                 }
@@ -145,8 +145,8 @@ fn outline(painter: &Painter, runs: &[Run], to_screen: &impl Fn(Vec2) -> Pos2, l
 }
 
 /// The box with its corners, the handle that turns, the one of the height and the ball that tilts.
-fn handles(painter: &Painter, part: &Part, frame: &PartFrame, to_screen: &impl Fn(Vec2) -> Pos2) {
-    let corners = frame.corners().map(to_screen);
+fn handles(painter: &Painter, part: &Part, gizmo: &PartGizmo, to_screen: &impl Fn(Vec2) -> Pos2) {
+    let corners = gizmo.corners().map(to_screen);
     let closed = [0, 1, 2, 3, 0].map(|i| corners[i]);
     painter.extend(Shape::dashed_line(
         &closed,
@@ -154,7 +154,7 @@ fn handles(painter: &Painter, part: &Part, frame: &PartFrame, to_screen: &impl F
         5.0,
         4.0,
     ));
-    let (top, turn) = (to_screen(vec2(frame.middle().x, frame.low.y)), to_screen(frame.turn()));
+    let (top, turn) = (to_screen(vec2(gizmo.middle().x, gizmo.low.y)), to_screen(gizmo.turn()));
     painter.line_segment([top, turn], Stroke::new(1.0, Color32::from_white_alpha(170)));
     painter.circle(turn, 0.55 * HANDLE_PT, Color32::WHITE, Stroke::new(1.2, DARK));
     for at in corners {
@@ -162,7 +162,7 @@ fn handles(painter: &Painter, part: &Part, frame: &PartFrame, to_screen: &impl F
         painter.rect_filled(handle, 1.0, Color32::WHITE);
         painter.rect_stroke(handle, 1.0, Stroke::new(1.2, DARK), StrokeKind::Outside);
     }
-    if let Some(at) = frame.puff().map(to_screen) {
+    if let Some(at) = gizmo.puff().map(to_screen) {
         // An arrow with two heads: up and down.
         let (r, h) = (5.0, 11.0);
         let up = vec![pos2(at.x - r, at.y - 3.0), pos2(at.x, at.y - h), pos2(at.x + r, at.y - 3.0)];
@@ -172,8 +172,8 @@ fn handles(painter: &Painter, part: &Part, frame: &PartFrame, to_screen: &impl F
             painter.add(Shape::convex_polygon(points, Color32::WHITE, Stroke::new(1.2, DARK)));
         }
     }
-    inflation_handles(painter, frame, to_screen);
-    if let Some(at) = frame.depth().map(to_screen) {
+    inflation_handles(painter, gizmo, to_screen);
+    if let Some(at) = gizmo.depth().map(to_screen) {
         // A small sheet in front of a larger one.
         for (by, side) in [(-2.0, 10.0), (2.0, 8.0)] {
             let center = at + eframe::egui::vec2(by, by);
@@ -181,7 +181,7 @@ fn handles(painter: &Painter, part: &Part, frame: &PartFrame, to_screen: &impl F
             painter.rect(sheet, 1.5, Color32::WHITE, Stroke::new(1.2, DARK), StrokeKind::Outside);
         }
     }
-    if let Some(at) = frame.tilt().map(to_screen) {
+    if let Some(at) = gizmo.tilt().map(to_screen) {
         let tilt = part.tilt_deg;
         // The way it faces: the surface falls there.
         let slope = vec2(tilt.x.to_radians().tan(), tilt.y.to_radians().tan());
@@ -190,12 +190,12 @@ fn handles(painter: &Painter, part: &Part, frame: &PartFrame, to_screen: &impl F
 }
 
 /// The handles of the profile, a cushion, and of the rim, a quarter of a circle.
-fn inflation_handles(painter: &Painter, frame: &PartFrame, to_screen: &impl Fn(Vec2) -> Pos2) {
-    if let Some(at) = frame.profile().map(to_screen) {
+fn inflation_handles(painter: &Painter, gizmo: &PartGizmo, to_screen: &impl Fn(Vec2) -> Pos2) {
+    if let Some(at) = gizmo.profile().map(to_screen) {
         let cushion = Rect::from_center_size(at, eframe::egui::vec2(16.0, 8.0));
         painter.rect(cushion, 4.0, Color32::WHITE, Stroke::new(1.2, DARK), StrokeKind::Outside);
     }
-    if let Some(at) = frame.rim().map(to_screen) {
+    if let Some(at) = gizmo.rim().map(to_screen) {
         let arc = |i: usize| {
             let angle = std::f32::consts::FRAC_PI_2 * i as f32 / 8.0;
             at + eframe::egui::vec2(6.0 - 12.0 * angle.cos(), 6.0 - 12.0 * angle.sin())

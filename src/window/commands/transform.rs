@@ -7,7 +7,7 @@ use crate::requests::UiRequests;
 use crate::session::actions::{LayerAction, PartAction};
 use crate::session::{Action, LayerPaths, Property, Session};
 use crate::tools::ToolKind;
-use crate::tools::frame::TransformTarget;
+use crate::tools::gizmo::TransformTarget;
 use crate::tools::transform;
 use eframe::egui::Key;
 
@@ -118,7 +118,7 @@ fn turn(session: &Session, requests: &mut UiRequests, degrees: f32) {
 /// The shape mapped about its middle, while the transform tool moves it.
 fn shape_by(session: &Session, map: Option<PlaneMap>) -> Option<Action> {
     let takes_shape =
-        session.tool == ToolKind::Transform && session.carried == TransformTarget::Shape;
+        session.tool == ToolKind::Transform && session.transform_target == TransformTarget::Shape;
     let open = session.active().filter(|_| takes_shape)?;
     let by = transform::about_shape(open.document(), map?)?;
     Some(Action::Part(PartAction::TakeAlong { by, done: true }))

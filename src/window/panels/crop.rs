@@ -1,4 +1,4 @@
-//! The options of the crop tool: its frame in numbers, the aspect that it keeps, and its commands.
+//! The options of the crop tool: its area in numbers, the aspect that it keeps, and its commands.
 //! Floor 7.
 
 use crate::canvas::crop;
@@ -16,9 +16,9 @@ const SIDE: std::ops::RangeInclusive<i32> = 1..=65_536;
 
 pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let Some(canvas) = session.active().map(|open| open.document().size) else { return };
-    let frame = session.crop.unwrap_or(canvas.rect());
-    let (mut x, mut y) = (frame.x0, frame.y0);
-    let (mut width, mut height) = (frame.width() as i32, frame.height() as i32);
+    let area = session.crop.unwrap_or(canvas.rect());
+    let (mut x, mut y) = (area.x0, area.y0);
+    let (mut width, mut height) = (area.width() as i32, area.height() as i32);
     let number = |ui: &mut Ui, label: &str, value: &mut i32, range| {
         let label = ui.label(label);
         ui.add(DragValue::new(value).range(range).speed(1.0).suffix(" px"))
@@ -38,8 +38,8 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         }
     }
     if is_other || wider || taller {
-        let frame = Some(Rect::new(x, y, x + width, y + height));
-        requests.act(Action::Canvas(CanvasAction::Frame { frame }));
+        let area = Some(Rect::new(x, y, x + width, y + height));
+        requests.act(Action::Canvas(CanvasAction::CropArea { frame: area }));
     }
     ui.add_space(6.0);
     if let Some(aspect) =
@@ -50,10 +50,10 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     ui.add_space(6.0);
     let crops = ui.add_enabled(session.crop.is_some(), Button::new("Crop to frame"));
     if crops.on_hover_text("The canvas becomes the frame (Enter)").clicked() {
-        requests.act(crop::apply(frame));
+        requests.act(crop::apply(area));
     }
     let drops = ui.add_enabled(session.crop.is_some(), Button::new("Give up"));
     if drops.on_hover_text("Removes the frame (Escape)").clicked() {
-        requests.act(Action::Canvas(CanvasAction::Frame { frame: None }));
+        requests.act(Action::Canvas(CanvasAction::CropArea { frame: None }));
     }
 }

@@ -1,4 +1,4 @@
-//! The navigator: the whole picture with a frame around the visible part; a click moves the view
+//! The navigator: the whole picture with an outline around the visible part; a click moves the view
 //! there. Floor 7.
 
 use crate::canvas::Canvas;
@@ -37,15 +37,15 @@ pub fn show(ui: &mut Ui, session: &Session, canvas: &mut Canvas, requests: &mut 
             let p: Vec2 = inverse.transform_point2(vec2(x, y) * half) * scale;
             rect.min + egui::vec2(p.x, p.y)
         };
-        let frame = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
-        // If everything is visible, there is no frame.
-        if !Rect::from_points(&frame).contains_rect(rect.shrink(1.0)) {
+        let outline = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+        // If everything is visible, there is no outline.
+        if !Rect::from_points(&outline).contains_rect(rect.shrink(1.0)) {
             let painter = ui.painter_at(rect);
             painter.add(Shape::closed_line(
-                frame.to_vec(),
+                outline.to_vec(),
                 Stroke::new(3.0, Color32::from_black_alpha(120)),
             ));
-            painter.add(Shape::closed_line(frame.to_vec(), Stroke::new(1.4, Color32::WHITE)));
+            painter.add(Shape::closed_line(outline.to_vec(), Stroke::new(1.4, Color32::WHITE)));
         }
         if let Some(pos) =
             response.interact_pointer_pos().filter(|_| response.is_pointer_button_down_on())

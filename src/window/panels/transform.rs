@@ -1,4 +1,4 @@
-//! The options of the transform tool: its commands, how pixels are sampled, and its frame in
+//! The options of the transform tool: its commands, how pixels are sampled, and its gizmo in
 //! numbers. Floor 7.
 
 use crate::commands::{MenuCommand, TRANSFORMS};
@@ -8,8 +8,8 @@ use crate::raster::Resampling;
 use crate::requests::UiRequests;
 use crate::session::actions::{HandAction, LayerAction, PartAction};
 use crate::session::{Action, Property, Session};
-use crate::tools::frame::TransformTarget;
-use crate::tools::transform::{FrameNumbers, PIVOTS};
+use crate::tools::gizmo::TransformTarget;
+use crate::tools::transform::{GizmoNumbers, PIVOTS};
 use crate::widgets::{choice, named};
 use eframe::egui::{Button, DragValue, Ui};
 use std::ops::RangeInclusive;
@@ -17,10 +17,10 @@ use std::ops::RangeInclusive;
 /// The upper row: commands, sampling, pivot.
 pub fn ways(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     if session.shown().is_some_and(|document| document.surface.is_some())
-        && let Some(carried) =
-            choice(ui, "What is transformed", session.carried, &TransformTarget::LABELS)
+        && let Some(target) =
+            choice(ui, "What is transformed", session.transform_target, &TransformTarget::LABELS)
     {
-        requests.act(Action::Hand(HandAction::Carried { carried }));
+        requests.act(Action::Hand(HandAction::TransformTarget { carried: target }));
     }
     let mut commands = TRANSFORMS.split(MenuCommand::is_line);
     for command in commands.next().unwrap_or_default() {
@@ -60,11 +60,11 @@ pub fn ways(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             }));
         }
     }
-    if let Some(frame) = open.frame(session.carried) {
+    if let Some(gizmo) = open.gizmo(session.transform_target) {
         ui.label("Pivot");
         let choices = PIVOTS.map(|(share, name)| (Some(share), name));
         let known =
-            PIVOTS.iter().map(|(share, _)| *share).find(|share| *share == frame.pivot_share);
+            PIVOTS.iter().map(|(share, _)| *share).find(|share| *share == gizmo.pivot_share);
         let mut all: Vec<(Option<Vec2>, &str)> = choices.into();
         all.extend(known.is_none().then_some((None, "set by hand")));
         if let Some(Some(at)) = choice(ui, "Pivot", known, &all) {
@@ -98,10 +98,11 @@ fn meshes(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     menu.response.on_hover_text(hint);
 }
 
-/// The lower row: the frame in numbers; sides and angles change about the pivot.
+/// The lower row: the gizmo in numbers; sides and angles change about the pivot.
 pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let Some(open) = session.active() else { return };
-    let of_shape = session.carried == TransformTarget::Shape && open.document().surface.is_some();
+    let of_shape =
+        session.transform_target == TransformTarget::Shape && open.document().surface.is_some();
     let locked = |id| open.document().layer(id).is_none_or(|layer| layer.lock == LayerLock::All);
     let chosen = open.outermost_chosen();
     if chosen.is_empty() && !of_shape {
@@ -110,18 +111,18 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     if !of_shape && chosen.iter().any(|id| locked(*id)) {
         return drop(ui.weak("What is locked cannot be transformed"));
     }
-    let (Some(frame), Some(before)) =
-        (open.frame(session.carried), open.frame_before(session.carried))
+    let (Some(gizmo), Some(before)) =
+        (open.gizmo(session.transform_target), open.gizmo_before(session.transform_target))
     else {
         return drop(ui.weak("There is nothing on this layer to transform"));
     };
-    let (Some(was), Some(before)) = (FrameNumbers::of(&frame), FrameNumbers::of(&before)) else {
+    let (Some(was), Some(before)) = (GizmoNumbers::of(&gizmo), GizmoNumbers::of(&before)) else {
         return drop(ui.weak(
             "In perspective: drag its corners with Ctrl, or remove the transform for numbers",
         ));
     };
     let Some(edited) = numbers(ui, was) else { return };
-    let to = if edited.keeps_pivot { edited.to.about(frame.pivot_share, &was) } else { edited.to };
+    let to = if edited.keeps_pivot { edited.to.about(gizmo.pivot_share, &was) } else { edited.to };
     let layer = session.layer_paths();
     if let Some(by) = to.map_from(&before) {
         let done = edited.done;
@@ -134,13 +135,13 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
 
 /// Typed or dragged numbers.
 struct EditedNumbers {
-    to: FrameNumbers,
+    to: GizmoNumbers,
     /// They change about the pivot.
     keeps_pivot: bool,
     done: bool,
 }
 
-fn numbers(ui: &mut Ui, was: FrameNumbers) -> Option<EditedNumbers> {
+fn numbers(ui: &mut Ui, was: GizmoNumbers) -> Option<EditedNumbers> {
     let mut to = was;
     let (mut moved, mut changed, mut done) = (false, false, false);
     let mut number =
@@ -157,20 +158,20 @@ fn numbers(ui: &mut Ui, was: FrameNumbers) -> Option<EditedNumbers> {
             done |= response.changed() && !response.dragged() || response.drag_stopped();
             response.changed() || response.drag_stopped()
         };
-    moved |= number(ui, "X", &mut to.at.x, FrameNumbers::SIDE, " px");
-    moved |= number(ui, "Y", &mut to.at.y, FrameNumbers::SIDE, " px");
+    moved |= number(ui, "X", &mut to.at.x, GizmoNumbers::SIDE, " px");
+    moved |= number(ui, "Y", &mut to.at.y, GizmoNumbers::SIDE, " px");
     ui.add_space(4.0);
     let mut percent = [100.0 * to.width / to.own.x, 100.0 * to.height / to.own.y];
-    changed |= number(ui, "Width", &mut to.width, FrameNumbers::SIDE, " px");
+    changed |= number(ui, "Width", &mut to.width, GizmoNumbers::SIDE, " px");
     if number(ui, "Width in %", &mut percent[0], -10_000.0..=10_000.0, " %") {
         (to.width, changed) = (percent[0] * to.own.x / 100.0, true);
     }
-    changed |= number(ui, "Height", &mut to.height, FrameNumbers::SIDE, " px");
+    changed |= number(ui, "Height", &mut to.height, GizmoNumbers::SIDE, " px");
     if number(ui, "Height in %", &mut percent[1], -10_000.0..=10_000.0, " %") {
         (to.height, changed) = (percent[1] * to.own.y / 100.0, true);
     }
     ui.add_space(4.0);
     changed |= number(ui, "Angle", &mut to.angle, -360.0..=360.0, "°");
-    changed |= number(ui, "Skew", &mut to.skew, FrameNumbers::SKEW, "°");
+    changed |= number(ui, "Skew", &mut to.skew, GizmoNumbers::SKEW, "°");
     (moved || changed).then_some(EditedNumbers { to, keeps_pivot: changed, done })
 }

@@ -20,7 +20,7 @@ names!(CanvasMirror);
 names!(Resampling);
 
 actions! {
-    /// All except the frame are steps that can be undone. Paint beyond the canvas is kept.
+    /// All except the area of the crop tool are steps that can be undone. Paint beyond the canvas is kept.
     CanvasAction {
         /// To a rectangle, which may reach beyond the canvas.
         "crop" Crop { to: Rect }
@@ -34,8 +34,8 @@ actions! {
         /// Degrees, counter-clockwise.
         "turn" Turn { degrees: f32 }
         "mirror" Mirror { mirror: CanvasMirror }
-        /// The frame of the crop tool, or none.
-        "frame" Frame { frame: Option<Rect> }
+        /// The area that the crop tool cuts out, or none.
+        "frame" CropArea { frame: Option<Rect> }
         /// The aspect that it keeps.
         "aspect" Aspect { aspect: CropAspect }
     }
@@ -45,14 +45,14 @@ impl CanvasAction {
     pub fn apply(&self, session: &mut Session) {
         session.drop_gesture();
         match self {
-            CanvasAction::Frame { frame } => {
-                return session.crop = frame.map(near).filter(|frame| !frame.is_empty());
+            CanvasAction::CropArea { frame: area } => {
+                return session.crop = area.map(near).filter(|area| !area.is_empty());
             }
             CanvasAction::Aspect { aspect } => {
                 session.crop_aspect = *aspect;
                 let canvas = session.active().map(|open| open.document().size);
                 session.crop =
-                    session.crop.zip(canvas).map(|(frame, canvas)| aspect.given(frame, canvas));
+                    session.crop.zip(canvas).map(|(area, canvas)| aspect.given(area, canvas));
                 return;
             }
             _ => session.crop = None,
@@ -135,7 +135,7 @@ impl CanvasAction {
             CanvasAction::Mirror { mirror } => {
                 ("Mirror canvas", CanvasChange::mirrored(size, *mirror))
             }
-            CanvasAction::Frame { .. } | CanvasAction::Aspect { .. } => {
+            CanvasAction::CropArea { .. } | CanvasAction::Aspect { .. } => {
                 return Err("There is no frame.".into());
             }
         };
@@ -151,10 +151,10 @@ pub fn forget_places(open: &mut OpenDocument) {
     (open.last_end, open.clone_source, open.last_selection) = (None, None, None);
 }
 
-/// A frame within the range of pixels.
-fn near(frame: Rect) -> Rect {
+/// An area within the range of pixels.
+fn near(area: Rect) -> Rect {
     const FAR: i32 = 1_000_000;
-    let [x0, y0, x1, y1] = [frame.x0, frame.y0, frame.x1, frame.y1].map(|v| v.clamp(-FAR, FAR));
+    let [x0, y0, x1, y1] = [area.x0, area.y0, area.x1, area.y1].map(|v| v.clamp(-FAR, FAR));
     Rect::new(x0, y0, x1, y1)
 }
 

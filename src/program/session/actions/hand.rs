@@ -10,7 +10,7 @@ use crate::session::Session;
 use crate::session::replay::{ReplayValue, actions, as_in_recipes, names, record};
 use crate::shape::SculptStroke;
 use crate::surface::{Operator, PaintLimit};
-use crate::tools::frame::TransformTarget;
+use crate::tools::gizmo::TransformTarget;
 use crate::tools::symmetry::{MOST_ROUND, SymmetryAxes};
 use crate::tools::{Symmetry, ToolKind};
 use serde_json::Value;
@@ -83,7 +83,7 @@ actions! {
         /// Whether the brush paints, smudges, blurs or clones.
         "mark" Mark { mark: BrushMode }
         /// What the transform tool moves.
-        "carried" Carried { carried: TransformTarget }
+        "carried" TransformTarget { carried: TransformTarget }
         /// Where the brush may paint.
         "bounded" Bounded { bounded: PaintLimit }
         /// How far from the pen its marks may land, in diameters; 0 is anywhere.
@@ -141,7 +141,7 @@ impl HandAction {
             HandAction::Fill { fill } => session.fill = *fill,
             HandAction::PressBySpeed { on } => session.presses_by_speed = *on,
             HandAction::Mark { mark: mode } => brush.mode = mode.held(),
-            HandAction::Carried { carried } => session.carried = *carried,
+            HandAction::TransformTarget { carried } => session.transform_target = *carried,
             HandAction::Bounded { bounded } => brush.bounded = *bounded,
             HandAction::Reach { to } => BrushNumber::Reach.set(brush, *to),
         }

@@ -20,7 +20,7 @@ use crate::session::open_document::Edit;
 use crate::session::replay::actions;
 use crate::session::{LayerPath, LayerPaths, OpenDocument, Property, Session};
 use crate::shading::{Model, Shading};
-use crate::tools::frame::TransformTarget;
+use crate::tools::gizmo::TransformTarget;
 use crate::tools::transform::{self, mapped};
 use flattening::undisplaced;
 use new::{make_layer, model_name, selecting};
@@ -70,7 +70,7 @@ actions! {
         /// What they show is moved by a map of the canvas (a, b, c, d, e, f); shown only, until it
         /// is `done`.
         "take along" TakeAlong { layer: LayerPaths, by: [f64; 6], done: bool }
-        /// The frame of the chosen layers is turned about this point, by shares of its sides.
+        /// The gizmo of the chosen layers is turned about this point, by shares of its sides.
         "pivot" Pivot { at: Vec2 }
         /// Into a group of their own, in the place of the topmost.
         "group" Group { layer: LayerPaths }
@@ -112,7 +112,7 @@ impl LayerAction {
             pieces: Vec::new(),
         };
         session.drop_gesture();
-        let carried = session.carried;
+        let target = session.transform_target;
         let Some(open) = session.active_mut() else { return };
         if let LayerAction::Set { layer, to, done } = self {
             if let Some(why) = self.refusal(open.document()) {
@@ -147,7 +147,7 @@ impl LayerAction {
                 // Only if there is one to paint on.
                 open.repair();
             }
-            LayerAction::Pivot { at } => open.set_pivot(carried, *at),
+            LayerAction::Pivot { at } => open.set_pivot(target, *at),
             LayerAction::Solo { layer } => {
                 let id = id(layer);
                 open.solo = if open.solo == id { None } else { id };
@@ -315,7 +315,7 @@ fn set(open: &mut OpenDocument, layers: &LayerPaths, to: &Property, done: bool) 
 /// The document with what layers show moved by a map of the canvas: a step, or a preview of one.
 fn take_along(session: &mut Session, layers: &LayerPaths, by: [f64; 6], done: bool) {
     let Some(open) = session.active_mut() else { return };
-    open.hold_frame(TransformTarget::Paint);
+    open.hold_gizmo(TransformTarget::Paint);
     let document = open.document();
     let ids = layers.find(document).map(|ids| document.outermost(&ids)).unwrap_or_default();
     let map = PlaneMap::affine(by).filter(|_| !ids.is_empty());

@@ -98,9 +98,9 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         }
         _ => None,
     };
-    let carried = session.carried;
+    let target = session.transform_target;
     if let Some(open) = session.active_mut().filter(|_| tool == ToolKind::Transform) {
-        open.hold_frame(carried);
+        open.hold_gizmo(target);
     }
     let Some(open) = session.active() else { return };
     let paints =
@@ -154,8 +154,8 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         lasso: &session.lasso,
         crop: session.crop,
         crop_aspect: session.crop_aspect,
-        frame: open.kept_frame(),
-        carried,
+        gizmo: open.gizmo_memory(),
+        transform_target: target,
         strokes: &strokes,
         mesh_points: &session.mesh_points,
         snap: &snap,
@@ -287,7 +287,7 @@ fn works_in_place(tool: ToolKind, open: &OpenDocument) -> Result<Document, &'sta
 
 fn take(session: &mut Session, outcome: Outcome) {
     let end = session.last_pen;
-    let carried = session.carried;
+    let target = session.transform_target;
     let Some(open) = session.active_mut() else { return };
     match outcome {
         Outcome::Idle => {}
@@ -314,7 +314,7 @@ fn take(session: &mut Session, outcome: Outcome) {
         Outcome::Direction(normal) => {
             session.shape = ShapeSettings { normal, ..session.shape }.held();
         }
-        Outcome::Frame(frame) => session.crop = Some(frame),
+        Outcome::CropArea(area) => session.crop = Some(area),
         Outcome::CloneFrom(at) => open.clone_source = Some(CloneSource { at, offset: None }),
         Outcome::Refused(why) => session.notes.push(why.into_owned()),
         Outcome::Chosen(strokes) => {
@@ -322,7 +322,7 @@ fn take(session: &mut Session, outcome: Outcome) {
                 open.choose_strokes(layer, strokes);
             }
         }
-        Outcome::Pivot(share) => open.set_pivot(carried, share),
+        Outcome::Pivot(share) => open.set_pivot(target, share),
         Outcome::MeshPoints(points) => session.mesh_points = points,
         Outcome::Axes(axes) => session.axes = axes,
         Outcome::Picked(color) => session.color = color,

@@ -4,7 +4,7 @@
 use super::OpenDocument;
 use crate::document::{Document, LayerId};
 use crate::math::Vec2;
-use crate::tools::frame::{Framed, KeptFrame, TransformFrame, TransformTarget};
+use crate::tools::gizmo::{GizmoContent, GizmoMemory, TransformGizmo, TransformTarget};
 
 /// The chosen layers. They count as long as the primary one is among them: whatever selects another
 /// layer alone drops the others.
@@ -14,18 +14,18 @@ pub struct ChosenLayers {
     /// The start of a range that Shift extends.
     anchor: Option<LayerId>,
     /// What the transform tool keeps about them.
-    frame: KeptFrame,
+    gizmo: GizmoMemory,
 }
 
 impl ChosenLayers {
     /// These, the primary one last.
     pub(super) fn of(ids: Vec<LayerId>) -> Self {
-        Self { anchor: ids.last().copied(), ids, frame: KeptFrame::default() }
+        Self { anchor: ids.last().copied(), ids, gizmo: GizmoMemory::default() }
     }
 
     /// The choice alone.
-    pub(super) fn without_frame(&self) -> Self {
-        Self { frame: KeptFrame::default(), ids: self.ids.clone(), ..*self }
+    pub(super) fn without_gizmo(&self) -> Self {
+        Self { gizmo: GizmoMemory::default(), ids: self.ids.clone(), ..*self }
     }
 
     /// Chooses as another does; what the transform tool keeps stays.
@@ -63,40 +63,40 @@ impl OpenDocument {
         self.selected == Some(layer) || self.selected.is_some_and(also)
     }
 
-    /// The frame of the transform tool around them, or around the shape, as they are shown.
-    pub fn frame(&self, carried: TransformTarget) -> Option<TransformFrame> {
-        self.frame_in(self.shown(), carried)
+    /// The gizmo of the transform tool around them, or around the shape, as they are shown.
+    pub fn gizmo(&self, target: TransformTarget) -> Option<TransformGizmo> {
+        self.gizmo_in(self.shown(), target)
     }
 
     /// The same after the last step.
-    pub fn frame_before(&self, carried: TransformTarget) -> Option<TransformFrame> {
-        self.frame_in(self.document(), carried)
+    pub fn gizmo_before(&self, target: TransformTarget) -> Option<TransformGizmo> {
+        self.gizmo_in(self.document(), target)
     }
 
-    fn frame_in(&self, document: &Document, carried: TransformTarget) -> Option<TransformFrame> {
+    fn gizmo_in(&self, document: &Document, target: TransformTarget) -> Option<TransformGizmo> {
         let chosen = self.outermost_chosen();
-        self.chosen_layers.frame.around(document, Framed::new(carried, document, &chosen))
+        self.chosen_layers.gizmo.around(document, GizmoContent::new(target, document, &chosen))
     }
 
-    /// The frame around the chosen layers turns with them from now on.
-    pub(in crate::session) fn hold_frame(&mut self, carried: TransformTarget) {
+    /// The gizmo around the chosen layers turns with them from now on.
+    pub(in crate::session) fn hold_gizmo(&mut self, target: TransformTarget) {
         let (document, layers) = (self.document().clone(), self.outermost_chosen());
-        self.chosen_layers.frame.hold(&document, Framed::new(carried, &document, &layers));
+        self.chosen_layers.gizmo.hold(&document, GizmoContent::new(target, &document, &layers));
     }
 
-    /// The frame around the chosen layers is turned about this point from now on, by shares of its
+    /// The gizmo around the chosen layers is turned about this point from now on, by shares of its
     /// sides.
-    pub(in crate::session) fn set_pivot(&mut self, carried: TransformTarget, share: Vec2) {
+    pub(in crate::session) fn set_pivot(&mut self, target: TransformTarget, share: Vec2) {
         let (document, layers) = (self.document().clone(), self.outermost_chosen());
-        self.chosen_layers.frame.set_pivot(
+        self.chosen_layers.gizmo.set_pivot(
             &document,
-            Framed::new(carried, &document, &layers),
+            GizmoContent::new(target, &document, &layers),
             share,
         );
     }
 
-    pub(in crate::session) fn kept_frame(&self) -> &KeptFrame {
-        &self.chosen_layers.frame
+    pub(in crate::session) fn gizmo_memory(&self) -> &GizmoMemory {
+        &self.chosen_layers.gizmo
     }
 
     /// Whether more than one layer is chosen.

@@ -38,7 +38,7 @@ impl OpenDocument {
     pub(super) fn target(&self) -> EditTarget {
         EditTarget {
             selected: self.selected,
-            layers: self.chosen_layers.without_frame(),
+            layers: self.chosen_layers.without_gizmo(),
             part: self.part.clone(),
             strokes: self.chosen.clone(),
             on_mask: self.on_mask,

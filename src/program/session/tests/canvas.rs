@@ -65,7 +65,7 @@ fn the_crop_tool_s_frame_is_dragged_beyond_the_canvas_and_applied_or_given_up() 
     story(&mut session, click);
     assert_eq!(session.crop, Some(frame), "a click beside it does nothing");
     story(&mut session, r#"{"in":"canvas","do":"aspect","aspect":"1:1"}"#);
-    assert_eq!(session.crop.map(|frame| (frame.width(), frame.height())), Some((220, 220)));
+    assert_eq!(session.crop.map(|area| (area.width(), area.height())), Some((220, 220)));
     story(&mut session, r#"{"in":"canvas","do":"frame","frame":null}"#);
     assert_eq!((session.crop, size(&session)), (None, Size::new(200, 150)));
     story(&mut session, r#"{"in":"canvas","do":"crop","to":{"x0":40,"y0":30,"x1":260,"y1":200}}"#);

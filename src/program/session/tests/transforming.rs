@@ -82,7 +82,7 @@ fn the_shape_is_turned_scaled_and_mirrored_by_numbers_and_a_perspective_is_refus
     );
     let steps = session.active().unwrap().history.past().count();
     let frame =
-        session.active().unwrap().frame(crate::tools::frame::TransformTarget::Shape).unwrap();
+        session.active().unwrap().gizmo(crate::tools::gizmo::TransformTarget::Shape).unwrap();
     let corner = frame.corners[2];
     let keys = r#"{"shift":false,"ctrl":true,"alt":false}"#;
     let pen = format!("[{},{},1,0,0,0,{keys}]", corner.x, corner.y);

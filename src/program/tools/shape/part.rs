@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 /// The box around what a part covers, with its handles; canvas px.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PartFrame {
+pub struct PartGizmo {
     pub low: Vec2,
     pub high: Vec2,
     /// Canvas px per screen point, by which handles within and above the box keep their distances
@@ -78,7 +78,7 @@ impl PartHandle {
     }
 }
 
-impl PartFrame {
+impl PartGizmo {
     /// For a part by what its form covers.
     pub fn of(part: &Part, area: &FormArea, px_per_pt: f32) -> Self {
         let (low, high) = area.covered();
@@ -186,24 +186,24 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         let why = "There is no part here. Layer › Give it a shape… makes some, or the panel Shape adds one.";
         return (None, Outcome::Refused(why.into()));
     }
-    let frame_of = |id: &str| {
+    let gizmo_of = |id: &str| {
         let (part, area) = areas.iter().find(|(part, _)| part.id == id)?;
-        Some((part.clone(), PartFrame::of(part, area, context.px_per_pt)))
+        Some((part.clone(), PartGizmo::of(part, area, context.px_per_pt)))
     };
-    let chosen = context.part.and_then(frame_of);
+    let chosen = context.part.and_then(gizmo_of);
     let on_handle =
-        chosen.and_then(|(part, frame)| Some((part, frame, frame.handle_at(pen.place())?)));
+        chosen.and_then(|(part, gizmo)| Some((part, gizmo, gizmo.handle_at(pen.place())?)));
     let held = on_handle.or_else(|| {
         let part = crate::document::parts::forms::nearest_at(&areas, pen.place())?;
-        let (part, frame) = frame_of(&part.id)?;
-        Some((part, frame, PartHandle::Body))
+        let (part, gizmo) = gizmo_of(&part.id)?;
+        Some((part, gizmo, PartHandle::Body))
     });
-    let Some((part, frame, handle)) = held else { return (None, Outcome::Idle) };
+    let Some((part, gizmo, handle)) = held else { return (None, Outcome::Idle) };
     let chosen = Outcome::ChosenPart(part.id.clone());
     let gesture = PartGesture {
         document: document.clone(),
         part,
-        frame,
+        gizmo,
         handle,
         from: pen.place(),
         found: None,
@@ -215,7 +215,7 @@ struct PartGesture {
     document: Document,
     /// Before the drag.
     part: Arc<Part>,
-    frame: PartFrame,
+    gizmo: PartGizmo,
     handle: PartHandle,
     from: Vec2,
     /// As it was last dragged.
@@ -232,7 +232,7 @@ fn inflated(part: &Part, to: impl Fn(Inflation) -> Inflation) -> Option<Part> {
 impl PartGesture {
     /// Points of the screen in canvas px.
     fn pt(&self, points: f32) -> f32 {
-        points * self.frame.px_per_pt.max(1e-6)
+        points * self.gizmo.px_per_pt.max(1e-6)
     }
 
     fn dragged(&self, pen: &PenSample) -> Option<Part> {
@@ -247,7 +247,7 @@ impl PartGesture {
         match self.handle {
             PartHandle::Body => mapped(Affine2::from_translation(moved_by(by, pen.keys.shift))),
             PartHandle::Turn => {
-                let middle = self.frame.middle();
+                let middle = self.gizmo.middle();
                 let (before, after) = (self.from - middle, to - middle);
                 let degrees = (after.to_angle() - before.to_angle()).to_degrees();
                 let step = |v: f32| (v / STEP_DEGREES).round() * STEP_DEGREES;
@@ -255,9 +255,9 @@ impl PartGesture {
                 mapped(map_about(middle, Mat2::from_angle(degrees.to_radians())))
             }
             PartHandle::Corner(corner) => {
-                let corners = self.frame.corners();
+                let corners = self.gizmo.corners();
                 let fixed =
-                    if pen.keys.alt { self.frame.middle() } else { corners[(corner + 2) % 4] };
+                    if pen.keys.alt { self.gizmo.middle() } else { corners[(corner + 2) % 4] };
                 let way = corners[corner] - fixed;
                 let scale = (to - fixed).dot(way) / way.length_squared().max(1.0);
                 mapped(map_about(
@@ -267,7 +267,7 @@ impl PartGesture {
             }
             PartHandle::Puff => {
                 let (height, per_half) = height_of(&part.kind)?;
-                let half = (0.5 * (self.frame.high - self.frame.low).min_element()).max(1.0);
+                let half = (0.5 * (self.gizmo.high - self.gizmo.low).min_element()).max(1.0);
                 Some(Part {
                     kind: with_height(&part.kind, height - per_half * by.y / half),
                     ..part.clone()

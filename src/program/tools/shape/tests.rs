@@ -1,6 +1,6 @@
 //! Parts moved, touched and sculpted by a pen.
 
-use super::part::{PartFrame, PartHandle};
+use super::part::{PartGizmo, PartHandle};
 use super::*;
 use crate::document::parts::PartKind;
 use crate::math::Size;
@@ -71,34 +71,34 @@ fn the_part_under_the_pen_is_chosen_and_moved_by_whole_pixels_with_its_surface()
 fn handles_puff_tilt_scale_and_turn_the_chosen_part() {
     let document = scene();
     let areas = document.part_areas();
-    let frame = PartFrame::of(&areas[0].0, &areas[0].1, 1.0);
+    let gizmo = PartGizmo::of(&areas[0].0, &areas[0].1, 1.0);
     assert!(
-        frame.low.distance(vec2(60.0, 60.0)) < 2.0 && frame.high.distance(vec2(260.0, 260.0)) < 2.0
+        gizmo.low.distance(vec2(60.0, 60.0)) < 2.0 && gizmo.high.distance(vec2(260.0, 260.0)) < 2.0
     );
-    assert_eq!(frame.handle_at(frame.middle()), Some(PartHandle::Puff));
+    assert_eq!(gizmo.handle_at(gizmo.middle()), Some(PartHandle::Puff));
     let drag = |from: Vec2, by: Vec2| {
         let way = [(from.x, from.y), (from.x + by.x, from.y + by.y)];
         let (label, next) = committed(dragged(&document, ToolKind::Shape, "square", &way, NONE).1);
         (label, Part::clone(next.parts.part("square").unwrap()))
     };
-    let (label, part) = drag(frame.middle(), vec2(0.0, -100.0));
+    let (label, part) = drag(gizmo.middle(), vec2(0.0, -100.0));
     let PartKind::Inflate { inflation, .. } = &part.kind else { panic!("{}", part.kind.name()) };
     assert!(label == "Puff part" && (inflation.puff - 2.0).abs() < 0.05, "{}", inflation.puff);
-    let (_, part) = drag(frame.tilt().unwrap(), vec2(20.0, -40.0));
+    let (_, part) = drag(gizmo.tilt().unwrap(), vec2(20.0, -40.0));
     assert_eq!(part.tilt_deg, vec2(-10.0, 20.0), "it faces where the ball goes");
-    let (label, part) = drag(frame.profile().unwrap(), vec2(60.0, 3.0));
+    let (label, part) = drag(gizmo.profile().unwrap(), vec2(60.0, 3.0));
     let PartKind::Inflate { inflation, .. } = &part.kind else { panic!("{}", part.kind.name()) };
     assert!(label == "Pillow – tube" && inflation.profile == 0.5, "{}", inflation.profile);
     assert_eq!(PartHandle::Profile.describe(&part).as_deref(), Some("Pillow – tube 0.50"));
-    let (label, part) = drag(frame.rim().unwrap(), vec2(0.0, 60.0));
+    let (label, part) = drag(gizmo.rim().unwrap(), vec2(0.0, 60.0));
     let PartKind::Inflate { inflation, .. } = &part.kind else { panic!("{}", part.kind.name()) };
     assert!(label == "Turn rim" && inflation.rim_deg == 50.0, "{}", inflation.rim_deg);
-    let (label, part) = drag(frame.depth().unwrap(), vec2(8.0, -25.0));
+    let (label, part) = drag(gizmo.depth().unwrap(), vec2(8.0, -25.0));
     assert_eq!((label.as_str(), part.raise), ("Raise part", 25.0));
-    let (_, part) = drag(frame.high, vec2(-100.0, -100.0));
+    let (_, part) = drag(gizmo.high, vec2(-100.0, -100.0));
     assert!((part.matrix.matrix2.x_axis.x - 0.5).abs() < 0.01, "{}", part.matrix);
-    let turn = frame.turn();
-    let (_, part) = drag(turn, frame.middle() + vec2(frame.middle().y - turn.y, 0.0) - turn);
+    let turn = gizmo.turn();
+    let (_, part) = drag(turn, gizmo.middle() + vec2(gizmo.middle().y - turn.y, 0.0) - turn);
     assert!(
         part.matrix.matrix2.x_axis.distance(Vec2::Y) < 1e-3,
         "a quarter clockwise: {}",

@@ -1,11 +1,11 @@
-//! The frame under the pen: what a drag of each handle does to all layers in it. Floor 5.
+//! The gizmo under the pen: what a drag of each handle does to all layers in it. Floor 5.
 
 use super::corner::within_convex;
-use super::placed::{FrameMap, LayerPlacement};
+use super::placed::{DragMap, LayerPlacement};
 use crate::document::FrameBox;
 use crate::document::{Document, LayerId, LayerMap};
 use crate::math::{PlaneMap, Vec2, vec2};
-use crate::tools::frame::{FrameHandle, TransformFrame};
+use crate::tools::gizmo::{TransformGizmo, TransformHandle};
 use crate::tools::snap::{SnapLines, SnapTargets};
 use crate::tools::{Gesture, Outcome, PenSample};
 
@@ -21,8 +21,8 @@ pub struct TransformGesture {
     /// None, if the shape is dragged.
     pub layers: Vec<HeldLayer>,
     pub of_shape: bool,
-    pub frame: TransformFrame,
-    pub handle: FrameHandle,
+    pub gizmo: TransformGizmo,
+    pub handle: TransformHandle,
     pub from: Vec2,
     /// As it was last dragged.
     pub found: Option<Dragged>,
@@ -41,39 +41,33 @@ pub enum Dragged {
 impl TransformGesture {
     /// The result with the handle at the pen; `None` if that is no map for one of them.
     fn dragged(&self, pen: &PenSample) -> Option<Dragged> {
-        let inner = self.frame.inner;
+        let inner = self.gizmo.inner;
         match self.handle {
-            FrameHandle::Inside => {
-                self.all(&FrameMap::OnCanvas(PlaneMap::translation(self.moved_by(pen))))
+            TransformHandle::Inside => {
+                self.all(&DragMap::OnCanvas(PlaneMap::translation(self.moved_by(pen))))
             }
-            FrameHandle::Outside => self.all(&FrameMap::OnCanvas(self.turned_by(pen)?)),
-            FrameHandle::Corner(corner) if pen.keys.ctrl => self.distorted(corner, pen.place()),
-            FrameHandle::Edge(edge) if pen.keys.ctrl => {
-                self.all(&FrameMap::InFrame(self.skewed(edge, pen.place())?))
+            TransformHandle::Outside => self.all(&DragMap::OnCanvas(self.turned_by(pen)?)),
+            TransformHandle::Corner(corner) if pen.keys.ctrl => self.distorted(corner, pen.place()),
+            TransformHandle::Edge(edge) if pen.keys.ctrl => {
+                self.all(&DragMap::Local(self.skewed(edge, pen.place())?))
             }
-            FrameHandle::Corner(corner) => self.all(&FrameMap::InFrame(self.scaled(
-                inner.corners()[corner],
-                [true; 2],
-                pen,
-            )?)),
-            FrameHandle::Edge(edge) => {
+            TransformHandle::Corner(corner) => {
+                self.all(&DragMap::Local(self.scaled(inner.corners()[corner], [true; 2], pen)?))
+            }
+            TransformHandle::Edge(edge) => {
                 let [a, b] = [edge % 4, (edge + 1) % 4].map(|i| inner.corners()[i]);
                 // The upper and the lower edge are dragged up and down.
                 let along_y = edge.is_multiple_of(2);
-                self.all(&FrameMap::InFrame(self.scaled(
-                    (a + b) * 0.5,
-                    [!along_y, along_y],
-                    pen,
-                )?))
+                self.all(&DragMap::Local(self.scaled((a + b) * 0.5, [!along_y, along_y], pen)?))
             }
-            FrameHandle::Pivot => None,
+            TransformHandle::Pivot => None,
         }
     }
 
-    fn all(&self, map: &FrameMap) -> Option<Dragged> {
+    fn all(&self, map: &DragMap) -> Option<Dragged> {
         let on_canvas = match map {
-            FrameMap::OnCanvas(map) => *map,
-            FrameMap::InFrame(map) => self.frame.plane.inverse().then(map).then(&self.frame.plane),
+            DragMap::OnCanvas(map) => *map,
+            DragMap::Local(map) => self.gizmo.plane.inverse().then(map).then(&self.gizmo.plane),
         };
         if self.of_shape {
             return on_canvas.coefficients().map(|_| Dragged::Shape(on_canvas));
@@ -85,30 +79,30 @@ impl TransformGesture {
     fn dragged_layer(
         &self,
         layer: &HeldLayer,
-        map: &FrameMap,
+        map: &DragMap,
         on_canvas: PlaneMap,
     ) -> Option<LayerPlacement> {
-        let on_canvas = FrameMap::OnCanvas(on_canvas);
-        // The frame of one layer is its own: numbers stay as exact as possible.
+        let on_canvas = DragMap::OnCanvas(on_canvas);
+        // The gizmo of one layer is its own: numbers stay as exact as possible.
         let map = if self.layers.len() == 1 { map } else { &on_canvas };
         layer.own.then(&layer.map, map, self.document.size)
     }
 
-    /// The pen after snapping: with a handle the pen itself snaps, with the inside the frame.
+    /// The pen after snapping: with a handle the pen itself snaps, with the inside the gizmo.
     fn snapped(&mut self, pen: &PenSample) -> PenSample {
         let at = pen.place();
         let (at, lines) = match self.handle {
-            FrameHandle::Inside => {
+            TransformHandle::Inside => {
                 let by = at - self.from;
-                let [low, high] = self.frame.bounds().map(|corner| corner + by);
+                let [low, high] = self.gizmo.bounds().map(|corner| corner + by);
                 let shift = self.snap.shift(low, high);
                 (at + shift.at, shift.lines)
             }
-            FrameHandle::Corner(_) | FrameHandle::Edge(_) => {
+            TransformHandle::Corner(_) | TransformHandle::Edge(_) => {
                 let found = self.snap.point(at);
                 (found.at, found.lines)
             }
-            FrameHandle::Outside | FrameHandle::Pivot => (at, SnapLines::default()),
+            TransformHandle::Outside | TransformHandle::Pivot => (at, SnapLines::default()),
         };
         self.lines = lines;
         let mut snapped = *pen;
@@ -127,7 +121,7 @@ impl TransformGesture {
     }
 
     fn turned_by(&self, pen: &PenSample) -> Option<PlaneMap> {
-        let pivot = self.frame.pivot();
+        let pivot = self.gizmo.pivot();
         let (before, after) = (self.from - pivot, pen.place() - pivot);
         if before.length() < 1.0 || after.length() < 1.0 {
             return None;
@@ -139,13 +133,13 @@ impl TransformGesture {
         Some(PlaneMap::rotation(degrees, pivot))
     }
 
-    /// A scaling in the frame that moves a handle to the pen. Shift keeps the aspect, Alt the
+    /// A scaling in the gizmo that moves a handle to the pen. Shift keeps the aspect, Alt the
     /// pivot.
     fn scaled(&self, handle: Vec2, axes: [bool; 2], pen: &PenSample) -> Option<PlaneMap> {
-        let inner = self.frame.inner;
+        let inner = self.gizmo.inner;
         let center = inner.center();
-        let fixed = if pen.keys.alt { self.frame.inner_pivot() } else { center * 2.0 - handle };
-        let (to, _) = self.frame.plane.from_canvas(pen.place())?;
+        let fixed = if pen.keys.alt { self.gizmo.inner_pivot() } else { center * 2.0 - handle };
+        let (to, _) = self.gizmo.plane.from_canvas(pen.place())?;
         let ratio = |k: usize| {
             let long = handle[k] - fixed[k];
             if axes[k] && long.abs() > 1e-3 { (to[k] - fixed[k]) / long } else { 1.0 }
@@ -164,12 +158,12 @@ impl TransformGesture {
         PlaneMap::affine([x, 0.0, 0.0, y, fixed.x * (1.0 - x), fixed.y * (1.0 - y)])
     }
 
-    /// A shear in the frame that moves an edge along itself.
+    /// A shear in the gizmo that moves an edge along itself.
     fn skewed(&self, edge: usize, at: Vec2) -> Option<PlaneMap> {
-        let corners = self.frame.inner.corners().map(|corner| corner.as_dvec2());
+        let corners = self.gizmo.inner.corners().map(|corner| corner.as_dvec2());
         let (a, opposite) = (corners[edge % 4], corners[(edge + 2) % 4]);
-        let (to, _) = self.frame.plane.from_canvas(at)?;
-        let (from, _) = self.frame.plane.from_canvas(self.from)?;
+        let (to, _) = self.gizmo.plane.from_canvas(at)?;
+        let (from, _) = self.gizmo.plane.from_canvas(self.from)?;
         let by = (to - from).as_dvec2();
         if edge.is_multiple_of(2) {
             let k = by.x / (a.y - opposite.y);
@@ -182,16 +176,16 @@ impl TransformGesture {
     /// The result of a perspective that moves one corner to the pen, or as far toward it as
     /// possible, and leaves the others.
     fn distorted(&self, corner: usize, at: Vec2) -> Option<Dragged> {
-        let held = self.frame.corners.map(|c| c.as_dvec2());
+        let held = self.gizmo.corners.map(|c| c.as_dvec2());
         let (from, to) = (held[corner], within_convex(held, corner, at.as_dvec2()));
-        let FrameBox { low, high } = self.frame.inner;
+        let FrameBox { low, high } = self.gizmo.inner;
         let at_share = |share: f64| {
             let mut corners = held;
             corners[corner] = from.lerp(to, share);
             let whole = PlaneMap::rect_to_quad(low.as_dvec2(), high.as_dvec2(), corners)?;
-            self.all(&FrameMap::OnCanvas(self.frame.plane.inverse().then(&whole)))
+            self.all(&DragMap::OnCanvas(self.gizmo.plane.inverse().then(&whole)))
         };
-        // The horizon of a convex frame may still cross the canvas, which files cannot hold.
+        // The horizon of a convex gizmo may still cross the canvas, which files cannot hold.
         at_share(1.0).or_else(|| {
             let (mut low, mut high, mut found) = (0.0, 1.0, None);
             for _ in 0..HALVINGS {
@@ -234,12 +228,14 @@ impl Gesture for TransformGesture {
 
     fn release(&mut self) -> Outcome {
         let label = match self.handle {
-            FrameHandle::Inside if self.of_shape => "Move shape",
-            FrameHandle::Outside if self.of_shape => "Turn shape",
+            TransformHandle::Inside if self.of_shape => "Move shape",
+            TransformHandle::Outside if self.of_shape => "Turn shape",
             _ if self.of_shape => "Transform shape",
-            FrameHandle::Inside => "Move",
-            FrameHandle::Outside => "Turn",
-            FrameHandle::Corner(_) | FrameHandle::Edge(_) | FrameHandle::Pivot => "Transform",
+            TransformHandle::Inside => "Move",
+            TransformHandle::Outside => "Turn",
+            TransformHandle::Corner(_) | TransformHandle::Edge(_) | TransformHandle::Pivot => {
+                "Transform"
+            }
         };
         let is_other = |found: &&Dragged| match found {
             Dragged::Layers(found) => {

@@ -1,17 +1,17 @@
-//! The frame of the transform tool in numbers, to be read and typed.
+//! The gizmo of the transform tool in numbers, to be read and typed.
 //! Floor 5.
 
 use super::to_storable;
 use crate::document::{Document, LayerId, LayerTransform};
 use crate::math::{DVec2, PlaneMap, Vec2};
-use crate::tools::frame::TransformFrame;
+use crate::tools::gizmo::TransformGizmo;
 
-/// The numbers of a frame without perspective.
+/// The numbers of a gizmo without perspective.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FrameNumbers {
+pub struct GizmoNumbers {
     /// Its upper left corner, canvas px.
     pub at: DVec2,
-    /// Sides, px; one of them is negative in a mirrored frame.
+    /// Sides, px; one of them is negative in a mirrored gizmo.
     pub width: f64,
     pub height: f64,
     /// Degrees, counter-clockwise as seen.
@@ -22,20 +22,20 @@ pub struct FrameNumbers {
     pub own: DVec2,
 }
 
-impl FrameNumbers {
+impl GizmoNumbers {
     /// The least and greatest that can be typed.
     pub const SIDE: std::ops::RangeInclusive<f64> = -65_536.0..=65_536.0;
     pub const SKEW: std::ops::RangeInclusive<f64> = -85.0..=85.0;
 
-    /// `None` for a frame in perspective, and for one without area.
-    pub fn of(frame: &TransformFrame) -> Option<Self> {
-        frame.plane.coefficients()?;
-        let [a, b, _, d] = frame.corners.map(|corner| corner.as_dvec2());
+    /// `None` for a gizmo in perspective, and for one without area.
+    pub fn of(gizmo: &TransformGizmo) -> Option<Self> {
+        gizmo.plane.coefficients()?;
+        let [a, b, _, d] = gizmo.corners.map(|corner| corner.as_dvec2());
         let (right, down) = (b - a, d - a);
         let width = right.length();
         let across = right / width;
         let (along, height) = (across.dot(down), across.perp_dot(down));
-        let own = (frame.inner.high - frame.inner.low).as_dvec2();
+        let own = (gizmo.inner.high - gizmo.inner.low).as_dvec2();
         // No angle is −0.
         let angle = 0.0 - across.y.atan2(across.x).to_degrees();
         let skew = (along / height.abs()).atan().to_degrees();
@@ -65,13 +65,13 @@ impl FrameNumbers {
         self.at + right * f64::from(share.x) + down * f64::from(share.y)
     }
 
-    /// With a point, given as shares of the sides, where another frame has it: sides and angles
+    /// With a point, given as shares of the sides, where another gizmo has it: sides and angles
     /// change about it.
     pub fn about(&self, pivot_share: Vec2, other: &Self) -> Self {
         Self { at: self.at + other.point(pivot_share) - self.point(pivot_share), ..*self }
     }
 
-    /// The map of the canvas from a frame with other numbers to this one, as a matrix.
+    /// The map of the canvas from a gizmo with other numbers to this one, as a matrix.
     pub fn map_from(&self, other: &Self) -> Option<[f64; 6]> {
         let to_frame = |numbers: &Self| {
             let (x, y) = numbers.sides();
@@ -80,20 +80,20 @@ impl FrameNumbers {
         to_frame(other)?.inverse().then(&to_frame(self)?).told_coefficients()
     }
 
-    /// A layer's own transform under which its frame has these numbers: `None` if that is no map,
+    /// A layer's own transform under which its gizmo has these numbers: `None` if that is no map,
     /// inner `None` if none is left.
     pub fn transform(&self, document: &Document, layer: LayerId) -> Option<Option<LayerTransform>> {
-        let frame = TransformFrame::of(document, layer)?;
+        let gizmo = TransformGizmo::of(document, layer)?;
         // A mesh has no sides and angles.
         let own = document.layer(layer)?.transform.as_ref().filter(|own| own.mesh().is_none());
         let plane = own.map_or(Some(PlaneMap::IDENTITY), |own| own.map(document.size))?;
-        let around = plane.inverse().then(&frame.plane);
-        let low = frame.inner.low.as_dvec2();
+        let around = plane.inverse().then(&gizmo.plane);
+        let low = gizmo.inner.low.as_dvec2();
         let (right, down) = self.sides();
         let (x, y) = (right / self.own.x, down / self.own.y);
         let from_low = PlaneMap::affine([x.x, x.y, y.x, y.y, self.at.x, self.at.y])?;
         let whole = PlaneMap::affine([1.0, 0.0, 0.0, 1.0, -low.x, -low.y])?.then(&from_low);
-        let filter = own.map_or(frame.filter, |own| own.filter);
+        let filter = own.map_or(gizmo.filter, |own| own.filter);
         to_storable(&whole.then(&around.inverse()), filter, document.size)
     }
 }
@@ -115,11 +115,11 @@ mod tests {
         Document { layers: vec![Arc::new(paint)], ..Document::empty(Size::new(200, 100)) }
     }
 
-    fn numbers(document: &Document) -> FrameNumbers {
-        FrameNumbers::of(&TransformFrame::of(document, document.layers[0].id).unwrap()).unwrap()
+    fn numbers(document: &Document) -> GizmoNumbers {
+        GizmoNumbers::of(&TransformGizmo::of(document, document.layers[0].id).unwrap()).unwrap()
     }
 
-    fn with(document: &Document, numbers: &FrameNumbers) -> Document {
+    fn with(document: &Document, numbers: &GizmoNumbers) -> Document {
         let id = document.layers[0].id;
         let transform = numbers.transform(document, id).unwrap();
         document.with_layer(id, |layer| layer.transform = transform).unwrap()
@@ -130,7 +130,7 @@ mod tests {
         let start = numbers(&document());
         assert_eq!((start.at, start.width, start.height), (DVec2::new(40.0, 30.0), 40.0, 20.0));
         assert!(start.angle.abs() < 1e-9 && start.skew.abs() < 1e-9);
-        let wanted = FrameNumbers {
+        let wanted = GizmoNumbers {
             at: DVec2::new(12.0, 50.0),
             width: 60.0,
             height: 15.0,
@@ -164,14 +164,14 @@ mod tests {
                 "{found:?}"
             );
             assert!(found.angle.abs() < 1e-6 && found.angle.is_sign_positive(), "{found:?}");
-            let skewed = FrameNumbers { skew: 25.0, angle: 10.0, ..found };
+            let skewed = GizmoNumbers { skew: 25.0, angle: 10.0, ..found };
             let again = numbers(&with(&mirrored, &skewed));
             assert!(
                 (again.skew - 25.0).abs() < 1e-2 && (again.angle - 10.0).abs() < 1e-2,
                 "{again:?}"
             );
             let back =
-                FrameNumbers { width: 40.0, height: 20.0, ..found }.about(Vec2::splat(0.5), &found);
+                GizmoNumbers { width: 40.0, height: 20.0, ..found }.about(Vec2::splat(0.5), &found);
             assert!((numbers(&with(&mirrored, &back)).at - start.at).length() < 1e-3);
         }
     }
@@ -182,7 +182,7 @@ mod tests {
         for (share, stays) in
             [(Vec2::splat(0.5), DVec2::new(60.0, 40.0)), (Vec2::X, DVec2::new(80.0, 30.0))]
         {
-            let turned = FrameNumbers { angle: 90.0, width: 80.0, ..start }.about(share, &start);
+            let turned = GizmoNumbers { angle: 90.0, width: 80.0, ..start }.about(share, &start);
             assert!((turned.point(share) - stays).length() < 1e-9);
             let found = numbers(&with(&document(), &turned));
             assert!((found.point(share) - stays).length() < 1e-3);
@@ -192,7 +192,7 @@ mod tests {
     #[test]
     fn the_map_from_one_frame_to_another_takes_its_corners_there() {
         let start = numbers(&document());
-        let to = FrameNumbers {
+        let to = GizmoNumbers {
             at: DVec2::new(3.0, 4.0),
             width: 10.0,
             height: -30.0,

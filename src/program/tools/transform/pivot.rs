@@ -1,16 +1,16 @@
-//! The pivot of a frame between the pen coming down and lifting.
+//! The pivot of a gizmo between the pen coming down and lifting.
 //! Floor 5.
 
 use crate::math::{Vec2, vec2};
-use crate::tools::frame::{MIDDLE, TransformFrame};
+use crate::tools::gizmo::{MIDDLE, TransformGizmo};
 use crate::tools::snap::{SNAP_PT, SnapLines, SnapTargets};
 use crate::tools::{Gesture, Outcome, PenSample};
 
 pub struct PivotGesture {
-    pub frame: TransformFrame,
-    /// Guides and other lines; those of the frame itself come first.
+    pub gizmo: TransformGizmo,
+    /// Guides and other lines; those of the gizmo itself come first.
     pub snap: SnapTargets,
-    /// Whether it snaps to the frame.
+    /// Whether it snaps to the gizmo.
     pub snaps: bool,
     pub px_per_pt: f32,
     pub lines: SnapLines,
@@ -33,14 +33,14 @@ pub const PIVOTS: [(Vec2, &str); 9] = [
 impl PivotGesture {
     fn share(&mut self, at: Vec2) -> Option<Vec2> {
         self.lines = SnapLines::default();
-        let near = |share: &Vec2| self.frame.point(*share).distance(at);
+        let near = |share: &Vec2| self.gizmo.point(*share).distance(at);
         let nearest =
             PIVOTS.iter().map(|(share, _)| *share).min_by(|a, b| near(a).total_cmp(&near(b)));
         let own = nearest.filter(|share| self.snaps && near(share) <= SNAP_PT * self.px_per_pt);
         own.or_else(|| {
             let found = self.snap.point(at);
             self.lines = found.lines;
-            self.frame.share_of(found.at)
+            self.gizmo.share_of(found.at)
         })
     }
 }

@@ -1,4 +1,4 @@
-//! The places of layers, before and after a drag of their frame. Floor 5.
+//! The places of layers, before and after a drag of their gizmo. Floor 5.
 
 use crate::document::{Layer, LayerMap, LayerTransform, Mesh, TransformShape};
 use crate::math::{PlaneMap, Size};
@@ -25,14 +25,14 @@ impl LayerPlacement {
     /// The same with what shows mapped; `None` if that is no map.
     ///
     /// * `whole`: the layer's map.
-    pub fn then(&self, whole: &LayerMap, map: &FrameMap, canvas: Size) -> Option<Self> {
+    pub fn then(&self, whole: &LayerMap, map: &DragMap, canvas: Size) -> Option<Self> {
         let own =
             self.transform.as_ref().map_or(Some(PlaneMap::IDENTITY), |own| own.map(canvas))?;
         let plane = match map {
-            FrameMap::OnCanvas(map) => taken_along(own, &whole.plane, *map),
+            DragMap::OnCanvas(map) => taken_along(own, &whole.plane, *map),
             // A mesh is drawn where it shows.
-            FrameMap::InFrame(map) if self.mesh().is_some() => own.then(map),
-            FrameMap::InFrame(map) => map.then(&own),
+            DragMap::Local(map) if self.mesh().is_some() => own.then(map),
+            DragMap::Local(map) => map.then(&own),
         };
         // The same in the list that holds the layer.
         let outer = own.inverse().then(&plane);
@@ -76,9 +76,9 @@ pub(super) fn to_storable(
     transform.fits().ok().map(|()| Some(transform))
 }
 
-/// What a drag does to all that is in the frame.
-pub(super) enum FrameMap {
+/// What a drag does to all that is in the gizmo.
+pub(super) enum DragMap {
     OnCanvas(PlaneMap),
-    /// Before the frame's own map.
-    InFrame(PlaneMap),
+    /// Before the gizmo's own map.
+    Local(PlaneMap),
 }

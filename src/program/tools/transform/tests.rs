@@ -6,7 +6,7 @@ use crate::math::{Size, vec2};
 use crate::paint::Brush;
 use crate::raster::TileGrid;
 use crate::tools::ModifierKeys;
-use crate::tools::frame::KeptFrame;
+use crate::tools::gizmo::GizmoMemory;
 use std::sync::Arc;
 
 /// A square of paint from (40, 30) to (80, 50).
@@ -33,7 +33,7 @@ fn dragged(document: &Document, from: Vec2, to: Vec2, keys: ModifierKeys) -> Opt
 }
 
 fn corners(document: &Document) -> [Vec2; 4] {
-    TransformFrame::of(document, document.layers[0].id).unwrap().corners
+    TransformGizmo::of(document, document.layers[0].id).unwrap().corners
 }
 
 fn close(a: [Vec2; 4], b: [(f32, f32); 4]) {
@@ -134,15 +134,15 @@ fn a_corner_dragged_past_the_others_or_the_horizon_stays_as_near_as_it_can() {
 fn the_pivot_is_dragged_snaps_to_corners_and_is_what_is_turned_and_scaled_about() {
     let document = document();
     let brush = Brush::default();
-    let (ids, mut kept) = ([document.layers[0].id], KeptFrame::default());
+    let (ids, mut kept) = ([document.layers[0].id], GizmoMemory::default());
     let context = |kept| ToolContext {
         layer: Some(ids[0]),
         px_per_pt: 0.3,
-        frame: kept,
+        gizmo: kept,
         ..ToolContext::new(&document, &brush)
     };
     let pivot_by = |from: Vec2, to: Vec2, keys| {
-        let mut gesture = press(&context(KeptFrame::nothing()), pen(from, keys)).0.unwrap();
+        let mut gesture = press(&context(GizmoMemory::nothing()), pen(from, keys)).0.unwrap();
         match gesture.drag(&[pen(to, keys)]) {
             Outcome::Pivot(share) => Some(share),
             _ => None,
@@ -156,12 +156,12 @@ fn the_pivot_is_dragged_snaps_to_corners_and_is_what_is_turned_and_scaled_about(
     assert_eq!(
         pivot_by(vec2(60.5, 40.0), vec2(90.0, 70.0), NONE),
         Some(vec2(1.25, 2.0)),
-        "beyond the frame"
+        "beyond the gizmo"
     );
     assert_eq!(pivot_by(vec2(50.0, 36.0), vec2(50.0, 35.0), NONE), None, "the inside moves");
     let alt = ModifierKeys { alt: true, ..NONE };
     assert_eq!(pivot_by(vec2(50.0, 36.0), vec2(50.0, 35.0), alt), Some(vec2(0.25, 0.25)));
-    kept.set_pivot(&document, Framed::Layers(&ids), Vec2::ZERO);
+    kept.set_pivot(&document, GizmoContent::Layers(&ids), Vec2::ZERO);
     let done = |from: Vec2, to: Vec2, keys| {
         let mut gesture = press(&context(&kept), pen(from, keys)).0.unwrap();
         gesture.drag(&[pen(to, keys)]);
@@ -173,7 +173,7 @@ fn the_pivot_is_dragged_snaps_to_corners_and_is_what_is_turned_and_scaled_about(
     close(turned, [(40.0, 30.0), (40.0, -10.0), (60.0, -10.0), (60.0, 30.0)]);
     let scaled = done(vec2(80.0, 50.0), vec2(60.0, 90.0), alt);
     close(scaled, [(40.0, 30.0), (60.0, 30.0), (60.0, 90.0), (40.0, 90.0)]);
-    assert_eq!(kept.around(&document, Framed::Layers(&[LayerId::fresh()])), None);
+    assert_eq!(kept.around(&document, GizmoContent::Layers(&[LayerId::fresh()])), None);
 }
 
 #[test]
@@ -188,7 +188,7 @@ fn within_a_transformed_group_the_pen_still_leads() {
         ..Layer::new("g", Content::Group(Group { layers: vec![inner], pass_through: false }))
     };
     let document = Document { layers: vec![Arc::new(group)], ..document() };
-    let before = TransformFrame::of(&document, id).unwrap();
+    let before = TransformGizmo::of(&document, id).unwrap();
     let brush = Brush::default();
     let context =
         ToolContext { layer: Some(id), px_per_pt: 0.1, ..ToolContext::new(&document, &brush) };
@@ -198,7 +198,7 @@ fn within_a_transformed_group_the_pen_still_leads() {
         let mut gesture = press(&context, PenSample::at(from)).0.unwrap();
         gesture.drag(&[PenSample::at(from + by)]);
         let Outcome::Commit { document, .. } = gesture.release() else { panic!("moved") };
-        let after = TransformFrame::of(&document, id).unwrap();
+        let after = TransformGizmo::of(&document, id).unwrap();
         assert!(after.corners[2].distance(before.corners[2] + by) < 1e-2, "{:?}", after.corners);
     }
 }
@@ -241,15 +241,15 @@ fn dragged_both(document: &Document, from: Vec2, to: Vec2, keys: ModifierKeys) -
 }
 
 fn corners_of(document: &Document, index: usize) -> [Vec2; 4] {
-    TransformFrame::of(document, document.layers[index].id).unwrap().corners
+    TransformGizmo::of(document, document.layers[index].id).unwrap().corners
 }
 
 #[test]
 fn several_layers_have_one_frame_and_each_goes_along_in_its_own() {
     let both = two();
     let ids: Vec<LayerId> = both.layers.iter().map(|layer| layer.id).collect();
-    let frame = TransformFrame::around(&both, &ids).unwrap();
-    close(frame.corners, [(20.0, 40.0), (140.0, 40.0), (140.0, 60.0), (20.0, 60.0)]);
+    let gizmo = TransformGizmo::around(&both, &ids).unwrap();
+    close(gizmo.corners, [(20.0, 40.0), (140.0, 40.0), (140.0, 60.0), (20.0, 60.0)]);
     // The lower right corner: half as wide, twice as high.
     let scaled = dragged_both(&both, vec2(140.0, 60.0), vec2(80.0, 80.0), NONE).unwrap();
     close(corners_of(&scaled, 0), [(20.0, 40.0), (30.0, 40.0), (30.0, 80.0), (20.0, 80.0)]);
@@ -268,24 +268,27 @@ fn several_layers_have_one_frame_and_each_goes_along_in_its_own() {
 fn the_frame_of_several_layers_turns_with_them() {
     let both = two();
     let ids: Vec<LayerId> = both.layers.iter().map(|layer| layer.id).collect();
-    let mut kept = KeptFrame::default();
-    kept.hold(&both, Framed::Layers(&ids));
+    let mut kept = GizmoMemory::default();
+    kept.hold(&both, GizmoContent::Layers(&ids));
     let turn = PlaneMap::rotation(30.0, vec2(80.0, 50.0));
     let turned = ids.iter().fold(both.clone(), |next, id| mapped(&next, *id, turn).unwrap());
-    kept.hold(&turned, Framed::Layers(&ids));
-    let frame = kept.around(&turned, Framed::Layers(&ids)).unwrap();
-    let numbers = FrameNumbers::of(&frame).unwrap();
+    kept.hold(&turned, GizmoContent::Layers(&ids));
+    let gizmo = kept.around(&turned, GizmoContent::Layers(&ids)).unwrap();
+    let numbers = GizmoNumbers::of(&gizmo).unwrap();
     assert!(
         (numbers.angle - 30.0).abs() < 1e-3 && (numbers.width - 120.0).abs() < 1e-3,
         "{numbers:?}"
     );
-    // One of them alone moved: the frame is the box around both again.
+    // One of them alone moved: the gizmo is the box around both again.
     let apart = mapped(&turned, ids[0], PlaneMap::translation(vec2(9.0, 0.0))).unwrap();
     assert!(
-        FrameNumbers::of(&kept.around(&apart, Framed::Layers(&ids)).unwrap()).unwrap().angle.abs()
+        GizmoNumbers::of(&kept.around(&apart, GizmoContent::Layers(&ids)).unwrap())
+            .unwrap()
+            .angle
+            .abs()
             < 1e-6
     );
-    let back = FrameNumbers { angle: 0.0, ..numbers }.about(Vec2::splat(0.5), &numbers);
+    let back = GizmoNumbers { angle: 0.0, ..numbers }.about(Vec2::splat(0.5), &numbers);
     let by = PlaneMap::affine(back.map_from(&numbers).unwrap()).unwrap();
     let back = ids.iter().fold(turned, |next, id| mapped(&next, *id, by).unwrap());
     assert!(back.layers.iter().all(|layer| layer.transform.is_none()), "nothing is left of it");

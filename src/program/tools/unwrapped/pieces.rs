@@ -22,7 +22,7 @@ pub enum PieceDrag {
 
 /// The handles of a piece, px of the sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PieceFrame {
+pub struct PieceGizmo {
     /// Those that scale, clockwise from the upper left.
     pub corners: [Vec2; 4],
     /// The one that turns.
@@ -31,10 +31,10 @@ pub struct PieceFrame {
 
 /// The distance of the knob above its piece, screen pt.
 const KNOB_PT: f32 = 22.0;
-/// Pieces smaller than this have no frame, px.
+/// Pieces smaller than this have no gizmo, px.
 const LEAST_PX: usize = 24;
 
-impl PieceFrame {
+impl PieceGizmo {
     /// `None` for a crumb.
     pub fn of(piece: &LaidPiece, px_per_pt: f32) -> Option<Self> {
         let Rect { x0, y0, x1, y1 } = piece.rect;
@@ -55,10 +55,10 @@ pub fn held(
 ) -> Option<(LaidPiece, PieceDrag)> {
     let is_near = |handle: Vec2| handle.distance(at) <= GRAB_PT * px_per_pt;
     let by_handle = |piece: &LaidPiece| {
-        let frame = PieceFrame::of(piece, px_per_pt)?;
-        let how = match frame.corners.into_iter().any(is_near) {
+        let gizmo = PieceGizmo::of(piece, px_per_pt)?;
+        let how = match gizmo.corners.into_iter().any(is_near) {
             true => PieceDrag::Scale,
-            false if is_near(frame.knob) => PieceDrag::Turn,
+            false if is_near(gizmo.knob) => PieceDrag::Turn,
             false => return None,
         };
         Some((*piece, how))

@@ -5,7 +5,7 @@ use super::{LOOKS, line_through, outlined};
 use crate::document::{Content, Document, Layer, LayerId};
 use crate::math::{Vec2, vec2};
 use crate::session::Session;
-use crate::tools::frame::TransformFrame;
+use crate::tools::gizmo::TransformGizmo;
 use crate::tools::move_content::{MoveTarget, held};
 use eframe::egui::{Id, Painter, Pos2, Shape};
 
@@ -70,14 +70,14 @@ pub fn draw(
     }
 }
 
-/// A dashed frame around what a layer holds, in its place; around the canvas if that is unbounded.
+/// A dashed outline around what a layer holds, in its place; around the canvas if that is unbounded.
 fn bounds(
     painter: &Painter,
     document: &Document,
     layer: LayerId,
     to_screen: &impl Fn(Vec2) -> Pos2,
 ) {
-    let [a, b, c, d] = frame(document, layer).map(to_screen);
+    let [a, b, c, d] = outline_of(document, layer).map(to_screen);
     let outline = [a, b, c, d, a];
     let [beneath, light] = LOOKS;
     painter.add(Shape::line(outline.to_vec(), beneath));
@@ -86,12 +86,12 @@ fn bounds(
 
 /// Upper left, upper right, lower right, lower left; for an empty layer, and for too many strokes
 /// to search at every move, those of the canvas.
-fn frame(document: &Document, layer: LayerId) -> [Vec2; 4] {
+fn outline_of(document: &Document, layer: LayerId) -> [Vec2; 4] {
     let (w, h) = (document.size.width as f32, document.size.height as f32);
     let canvas = [Vec2::ZERO, vec2(w, 0.0), vec2(w, h), vec2(0.0, h)];
     let is_quick = document.layer(layer).is_some_and(|layer| strokes_of(layer) <= MOST_STROKES);
-    let known = is_quick.then(|| TransformFrame::of(document, layer)).flatten();
-    known.map_or(canvas, |frame| frame.corners)
+    let known = is_quick.then(|| TransformGizmo::of(document, layer)).flatten();
+    known.map_or(canvas, |gizmo| gizmo.corners)
 }
 
 /// The strokes of a layer and of all in it.
@@ -125,7 +125,7 @@ mod tests {
             let layer = Layer::new("Ink", Content::Strokes(Live::new(StrokeList { strokes })));
             let layers = vec![Arc::new(layer)];
             let document = Document { layers, ..Document::empty(Size::new(600, 500)) };
-            let [from, _, to, _] = frame(&document, document.layers[0].id);
+            let [from, _, to, _] = gizmo(&document, document.layers[0].id);
             (from, to)
         };
         let stroke = Arc::new(stroke);

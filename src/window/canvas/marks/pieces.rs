@@ -1,11 +1,11 @@
-//! The frames of pieces on the unwrapped sheet, and the handles of the one under the pointer. Floor
+//! The gizmos of pieces on the unwrapped sheet, and the handles of the one under the pointer. Floor
 //! 7.
 
 use crate::math::Vec2;
 use crate::session::Session;
 use crate::surface::unwrap::PlaneLayout;
 use crate::tools::ModifierKeys;
-use crate::tools::unwrapped::pieces::{PieceFrame, bend_on_pieces, held};
+use crate::tools::unwrapped::pieces::{PieceGizmo, bend_on_pieces, held};
 use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, vec2};
 
 /// Draws them while an image or a gradient lies on the pieces; `under`: on the sheet.
@@ -25,8 +25,8 @@ pub fn draw(
         .and_then(|at| held(layout, at, px_per_pt, ModifierKeys::default()))
         .map(|(piece, _)| piece);
     for piece in layout.pieces() {
-        let Some(frame) = PieceFrame::of(piece, px_per_pt) else { continue };
-        let corners: Vec<Pos2> = frame.corners.map(to_screen).to_vec();
+        let Some(gizmo) = PieceGizmo::of(piece, px_per_pt) else { continue };
+        let corners: Vec<Pos2> = gizmo.corners.map(to_screen).to_vec();
         let is_held = held.is_some_and(|held| held.object == piece.object);
         let light = if is_held { 230 } else { 90 };
         for stroke in [
@@ -38,7 +38,7 @@ pub fn draw(
         if !is_held {
             continue;
         }
-        let (knob, top) = (to_screen(frame.knob), corners[0] + 0.5 * (corners[1] - corners[0]));
+        let (knob, top) = (to_screen(gizmo.knob), corners[0] + 0.5 * (corners[1] - corners[0]));
         painter.line_segment([top, knob], Stroke::new(1.0, Color32::from_white_alpha(light)));
         painter.circle(knob, 4.5, Color32::WHITE, Stroke::new(1.2, Color32::from_black_alpha(170)));
         for corner in corners {

@@ -102,12 +102,12 @@ fn handles_scale_and_turn_about_the_middle_of_the_piece() {
     let piece = layout.pieces()[0];
     let middle = layout.middle_of(&surface, &piece);
     let pivot = layout.sheet_at(&surface, middle).unwrap();
-    let frame = PieceFrame::of(&piece, 1.0).unwrap();
+    let gizmo = PieceGizmo::of(&piece, 1.0).unwrap();
     let larger = dragged(
         &before,
         ModifierKeys::default(),
-        frame.corners[0],
-        pivot + (frame.corners[0] - pivot) * 2.0,
+        gizmo.corners[0],
+        pivot + (gizmo.corners[0] - pivot) * 2.0,
     );
     let away = |document: &Document, q: Vec2| shown_at(document, q) - shown_at(document, middle);
     let beside = middle + vec2(20.0, 10.0);
@@ -116,7 +116,7 @@ fn handles_scale_and_turn_about_the_middle_of_the_piece() {
         * Affine2::from_angle(-0.5)
         * Affine2::from_translation(-pivot);
     let turned =
-        dragged(&before, ModifierKeys::default(), frame.knob, turn.transform_point2(frame.knob));
+        dragged(&before, ModifierKeys::default(), gizmo.knob, turn.transform_point2(gizmo.knob));
     let Content::Image(live) = &turned.layers[0].content else { panic!("an image") };
     assert!(
         (live.params().bend.pieces[0].rotation - 0.5f32.to_degrees()).abs() < 0.1,

@@ -1,4 +1,4 @@
-//! The frame of the transform tool and its handles: a box around the chosen layers, its place on
+//! The gizmo of the transform tool and its handles: a box around the chosen layers, its place on
 //! the canvas, and its pivot. Floor 5.
 
 use super::pen::GRAB_PT;
@@ -8,9 +8,9 @@ use crate::math::{PlaneMap, Vec2};
 use crate::raster::Resampling;
 use std::sync::Arc;
 
-/// The frame of a layer, or of several, on the canvas.
+/// The gizmo of a layer, or of several, on the canvas.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TransformFrame {
+pub struct TransformGizmo {
     /// In the layer's own frame; that of several is the canvas at the time when they were first
     /// held.
     pub inner: FrameBox,
@@ -36,52 +36,52 @@ rilievo_engine::named! {
     }
 }
 
-/// What a frame is around.
+/// What a gizmo is around.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Framed<'a> {
+pub enum GizmoContent<'a> {
     Layers(&'a [LayerId]),
     Shape,
 }
 
-impl<'a> Framed<'a> {
+impl<'a> GizmoContent<'a> {
     /// The shape, if that is to be moved and there is one; else the chosen layers.
-    pub fn new(carried: TransformTarget, document: &Document, chosen: &'a [LayerId]) -> Self {
-        match carried {
-            TransformTarget::Shape if document.surface.is_some() => Framed::Shape,
-            _ => Framed::Layers(chosen),
+    pub fn new(target: TransformTarget, document: &Document, chosen: &'a [LayerId]) -> Self {
+        match target {
+            TransformTarget::Shape if document.surface.is_some() => GizmoContent::Shape,
+            _ => GizmoContent::Layers(chosen),
         }
     }
 
     fn layers(self) -> &'a [LayerId] {
         match self {
-            Framed::Layers(layers) => layers,
-            Framed::Shape => &[],
+            GizmoContent::Layers(layers) => layers,
+            GizmoContent::Shape => &[],
         }
     }
 }
 
-/// What the pen holds of a frame.
+/// What the pen holds of a gizmo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FrameHandle {
+pub enum TransformHandle {
     /// By its number among the corners.
     Corner(usize),
     /// Between a corner and the next.
     Edge(usize),
-    /// The pivot: the point that the frame is turned about.
+    /// The pivot: the point that the gizmo is turned about.
     Pivot,
     Inside,
-    /// Anywhere else: the frame is turned about its pivot.
+    /// Anywhere else: the gizmo is turned about its pivot.
     Outside,
 }
 
 /// The pivot is grabbed from nearer than other handles, screen points: around it the inside is
 /// dragged.
 const PIVOT_GRAB_PT: f32 = 6.0;
-/// The pivot of a frame whose shorter side is less than this, screen points, is only grabbed with
+/// The pivot of a gizmo whose shorter side is less than this, screen points, is only grabbed with
 /// Alt.
 const PIVOT_ROOM_PT: f32 = 56.0;
 
-impl TransformFrame {
+impl TransformGizmo {
     /// `None` where a corner lies beyond the horizon.
     fn new(inner: FrameBox, plane: PlaneMap, filter: Resampling) -> Option<Self> {
         let [a, b, c, d] = inner.corners().map(|corner| plane.to_canvas(corner));
@@ -104,15 +104,15 @@ impl TransformFrame {
         if let [layer] = layers {
             return Self::of(document, *layer);
         }
-        let frames = layers.iter().filter_map(|layer| Self::of(document, *layer));
-        let corners: Vec<Vec2> = frames.flat_map(|frame| frame.corners).collect();
+        let gizmos = layers.iter().filter_map(|layer| Self::of(document, *layer));
+        let corners: Vec<Vec2> = gizmos.flat_map(|gizmo| gizmo.corners).collect();
         let low = corners.iter().copied().reduce(Vec2::min)?;
         let high = corners.iter().copied().reduce(Vec2::max)?;
         let filter = document.map_of(*layers.first()?)?.filter;
         Self::new(FrameBox { low, high }, PlaneMap::IDENTITY, filter)
     }
 
-    /// Around the shape: for maps the frame that turned with them, for parts a box on the canvas.
+    /// Around the shape: for maps the gizmo that turned with them, for parts a box on the canvas.
     pub fn of_shape(document: &Document) -> Option<Self> {
         let surface = document.surface.as_ref()?;
         let origin = surface.origin();
@@ -137,7 +137,7 @@ impl TransformFrame {
         (self.corners[index % 4] + self.corners[(index + 1) % 4]) * 0.5
     }
 
-    /// A point of the frame by shares of its sides, canvas px.
+    /// A point of the gizmo by shares of its sides, canvas px.
     pub fn point(&self, share: Vec2) -> Vec2 {
         let FrameBox { low, high } = self.inner;
         let middle = || self.corners.iter().sum::<Vec2>() * 0.25;
@@ -149,12 +149,12 @@ impl TransformFrame {
         self.point(self.pivot_share)
     }
 
-    /// The same in the frame's own px.
+    /// The same in the gizmo's own px.
     pub fn inner_pivot(&self) -> Vec2 {
         self.inner.low + self.pivot_share * (self.inner.high - self.inner.low)
     }
 
-    /// A canvas point as shares of its sides; `None` beyond the horizon, and for a frame without
+    /// A canvas point as shares of its sides; `None` beyond the horizon, and for a gizmo without
     /// area.
     pub fn share_of(&self, at: Vec2) -> Option<Vec2> {
         let (inner, _) = self.plane.from_canvas(at)?;
@@ -164,48 +164,48 @@ impl TransformFrame {
 
     /// What lies at a canvas point; `px_per_pt`: canvas px per screen point. With `alt` the inside
     /// is the pivot.
-    pub fn handle_at(&self, at: Vec2, px_per_pt: f32, alt: bool) -> FrameHandle {
+    pub fn handle_at(&self, at: Vec2, px_per_pt: f32, alt: bool) -> TransformHandle {
         let near = |p: Vec2, pt: f32| p.distance(at) <= pt * px_per_pt;
         if let Some(corner) = (0..4).find(|&i| near(self.corners[i], GRAB_PT)) {
-            return FrameHandle::Corner(corner);
+            return TransformHandle::Corner(corner);
         }
         if let Some(edge) = (0..4).find(|&i| near(self.edge(i), GRAB_PT)) {
-            return FrameHandle::Edge(edge);
+            return TransformHandle::Edge(edge);
         }
         let side = |i: usize| self.corners[(i + 1) % 4].distance(self.corners[i]);
         let is_roomy = side(0).min(side(1)) >= PIVOT_ROOM_PT * px_per_pt;
         if is_roomy && near(self.pivot(), PIVOT_GRAB_PT) {
-            return FrameHandle::Pivot;
+            return TransformHandle::Pivot;
         }
         let sides = (0..4)
             .map(|i| (self.corners[(i + 1) % 4] - self.corners[i]).perp_dot(at - self.corners[i]));
         let sides: Vec<f32> = sides.collect();
         let inside = sides.iter().all(|s| *s >= 0.0) || sides.iter().all(|s| *s <= 0.0);
         match inside {
-            true if alt => FrameHandle::Pivot,
-            true => FrameHandle::Inside,
-            false => FrameHandle::Outside,
+            true if alt => TransformHandle::Pivot,
+            true => TransformHandle::Inside,
+            false => TransformHandle::Outside,
         }
     }
 }
 
-/// The first pivot of a frame.
+/// The first pivot of a gizmo.
 pub const MIDDLE: Vec2 = Vec2::splat(0.5);
 
-/// What the transform tool keeps about the layers in its frame until others are chosen: the pivot,
-/// and for several layers their first box, so that their frame turns with them.
+/// What the transform tool keeps about the layers in its gizmo until others are chosen: the pivot,
+/// and for several layers their first box, so that their gizmo turns with them.
 #[derive(Clone, Debug)]
-pub struct KeptFrame {
+pub struct GizmoMemory {
     /// None: for the shape.
     layers: Vec<LayerId>,
     of_shape: bool,
     pivot_share: Vec2,
     /// Around all of them at first.
-    first: Option<FirstFrame>,
+    first: Option<FirstPlacement>,
 }
 
 #[derive(Clone, Debug)]
-struct FirstFrame {
+struct FirstPlacement {
     inner: FrameBox,
     /// Each layer's own box then, and its map to the canvas.
     each: Vec<Option<PlacedBox>>,
@@ -215,65 +215,65 @@ struct FirstFrame {
 type PlacedBox = (FrameBox, LayerMap);
 
 /// Nothing is kept.
-static NOTHING: KeptFrame =
-    KeptFrame { layers: Vec::new(), of_shape: false, pivot_share: MIDDLE, first: None };
+static NOTHING: GizmoMemory =
+    GizmoMemory { layers: Vec::new(), of_shape: false, pivot_share: MIDDLE, first: None };
 
-impl Default for KeptFrame {
+impl Default for GizmoMemory {
     fn default() -> Self {
         NOTHING.clone()
     }
 }
 
-impl KeptFrame {
+impl GizmoMemory {
     pub fn nothing() -> &'static Self {
         &NOTHING
     }
 
-    fn is_of(&self, framed: Framed) -> bool {
-        self.of_shape == (framed == Framed::Shape) && self.layers == framed.layers()
+    fn is_of(&self, content: GizmoContent) -> bool {
+        self.of_shape == (content == GizmoContent::Shape) && self.layers == content.layers()
     }
 
     /// What is kept about these layers in their places: for others than the last, everything is
     /// new.
-    pub fn hold(&mut self, document: &Document, framed: Framed) {
-        let layers = framed.layers();
-        if !self.is_of(framed) {
+    pub fn hold(&mut self, document: &Document, content: GizmoContent) {
+        let layers = content.layers();
+        if !self.is_of(content) {
             *self = Self {
                 layers: layers.to_vec(),
-                of_shape: framed == Framed::Shape,
+                of_shape: content == GizmoContent::Shape,
                 ..Self::default()
             };
         }
         if layers.len() > 1 && self.taken_along(document).is_none() {
-            let inner = TransformFrame::around(document, layers).map(|frame| frame.inner);
-            self.first = inner.map(|inner| FirstFrame { inner, each: each(document, layers) });
+            let inner = TransformGizmo::around(document, layers).map(|gizmo| gizmo.inner);
+            self.first = inner.map(|inner| FirstPlacement { inner, each: each(document, layers) });
         }
     }
 
-    /// The frame around layers or the shape, with what is kept if they are the same ones.
-    pub fn around(&self, document: &Document, framed: Framed) -> Option<TransformFrame> {
-        let known = Some(self).filter(|kept| kept.is_of(framed));
-        let layers = framed.layers();
+    /// The gizmo around layers or the shape, with what is kept if they are the same ones.
+    pub fn around(&self, document: &Document, content: GizmoContent) -> Option<TransformGizmo> {
+        let known = Some(self).filter(|kept| kept.is_of(content));
+        let layers = content.layers();
         let turned =
             known.and_then(|kept| Some((kept.first.as_ref()?.inner, kept.taken_along(document)?)));
-        let plain = || match framed {
-            Framed::Layers(layers) => TransformFrame::around(document, layers),
-            Framed::Shape => TransformFrame::of_shape(document),
+        let plain = || match content {
+            GizmoContent::Layers(layers) => TransformGizmo::around(document, layers),
+            GizmoContent::Shape => TransformGizmo::of_shape(document),
         };
-        let frame = match turned {
+        let gizmo = match turned {
             Some((inner, plane)) => {
                 let filter = document.map_of(*layers.first()?)?.filter;
-                TransformFrame::new(inner, plane, filter).or_else(plain)
+                TransformGizmo::new(inner, plane, filter).or_else(plain)
             }
             None => plain(),
         };
         let pivot_share = known.map_or(MIDDLE, |kept| kept.pivot_share);
-        frame.map(|frame| TransformFrame { pivot_share, ..frame })
+        gizmo.map(|gizmo| TransformGizmo { pivot_share, ..gizmo })
     }
 
-    /// The pivot of some layers from now on, as shares of the sides of their frame.
-    pub fn set_pivot(&mut self, document: &Document, framed: Framed, share: Vec2) {
-        self.hold(document, framed);
+    /// The pivot of some layers from now on, as shares of the sides of their gizmo.
+    pub fn set_pivot(&mut self, document: &Document, content: GizmoContent, share: Vec2) {
+        self.hold(document, content);
         if share.is_finite() {
             self.pivot_share = share.clamp(-FARTHEST_PIVOT, FARTHEST_PIVOT);
         }
@@ -297,7 +297,7 @@ impl KeptFrame {
     }
 }
 
-/// The greatest distance of a pivot from a frame, in sides of the frame.
+/// The greatest distance of a pivot from a gizmo, in sides of the gizmo.
 const FARTHEST_PIVOT: Vec2 = Vec2::splat(100.0);
 
 fn each(document: &Document, layers: &[LayerId]) -> Vec<Option<PlacedBox>> {

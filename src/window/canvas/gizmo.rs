@@ -1,21 +1,21 @@
-//! The frame of the transform tool on the picture. Floor 7. Not here: what a drag of it does
+//! The gizmo of the transform tool on the picture. Floor 7. Not here: what a drag of it does
 //! (`tools::transform`).
 
 use crate::document::Mesh;
 use crate::math::Vec2;
 use crate::session::Session;
-use crate::tools::frame::TransformTarget;
+use crate::tools::gizmo::TransformTarget;
 use crate::tools::transform::mesh;
 use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, vec2};
 
 /// Side of a handle, points.
 const HANDLE_PT: f32 = 9.0;
 
-/// Draws the frame around the chosen layers.
+/// Draws the gizmo around the chosen layers.
 pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2) {
     let Some(open) = session.active() else { return };
     let chosen = open.outermost_chosen();
-    if session.carried == TransformTarget::Paint
+    if session.transform_target == TransformTarget::Paint
         && let [one] = chosen[..]
         && let Some((mesh, points)) =
             open.shown().layer(one).and_then(|layer| mesh::points_of(open.shown(), layer))
@@ -34,21 +34,21 @@ pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> P
             );
         }
     }
-    let Some(frame) = open.frame(session.carried) else { return };
-    let corners = frame.corners.map(to_screen);
+    let Some(gizmo) = open.gizmo(session.transform_target) else { return };
+    let corners = gizmo.corners.map(to_screen);
     let dark = Stroke::new(3.0, Color32::from_black_alpha(110));
     let light = Stroke::new(1.2, Color32::from_rgb(120, 200, 255));
     for look in [dark, light] {
         painter.add(Shape::closed_line(corners.to_vec(), look));
     }
-    let pivot = to_screen(frame.pivot());
+    let pivot = to_screen(gizmo.pivot());
     for look in [dark, light] {
         painter.circle_stroke(pivot, 5.0, look);
         for arm in [vec2(8.0, 0.0), vec2(0.0, 8.0)] {
             painter.line_segment([pivot - arm, pivot + arm], look);
         }
     }
-    let edges = (0..4).map(|i| to_screen(frame.edge(i)));
+    let edges = (0..4).map(|i| to_screen(gizmo.edge(i)));
     for at in corners.into_iter().chain(edges) {
         let handle = Rect::from_center_size(at, vec2(HANDLE_PT, HANDLE_PT));
         painter.rect_filled(handle, 1.0, Color32::WHITE);
