@@ -125,7 +125,7 @@ mod tests {
             let layer = Layer::new("Ink", Content::Strokes(Live::new(StrokeList { strokes })));
             let layers = vec![Arc::new(layer)];
             let document = Document { layers, ..Document::empty(Size::new(600, 500)) };
-            let [from, _, to, _] = gizmo(&document, document.layers[0].id);
+            let [from, _, to, _] = outline_of(&document, document.layers[0].id);
             (from, to)
         };
         let stroke = Arc::new(stroke);
