@@ -17,7 +17,7 @@ use rilievo::surface::Scene;
 use rilievo::{Color, Content, Document, Layer, Maps, Operator, Progress, Size, Surface, TileGrid};
 use rilievo_engine::math::hash;
 use rilievo_engine::paint::stroke;
-use rilievo_program::tools::{self, Outcome, PenSample, ToolContext, ToolKind};
+use rilievo_program::tools::{self, Outcome, PenSample, ToolContext, ToolKind, ToolSettings};
 use std::process::Command;
 use std::sync::{Arc, LazyLock};
 use std::time::Instant;
@@ -208,8 +208,9 @@ fn on_wave(i: usize) -> PenSample {
 /// ms from a frame's events to its flattened tiles: painted, found, made ready, flattened.
 fn frame_times(document: &Document, layer: usize, operator: Operator) -> Vec<[f64; 4]> {
     let brush = Brush { size: 128.0, ..Brush::default() };
+    let tools = ToolSettings { operator, ..ToolSettings::with_brush(brush) };
     let layer = Some(document.layers[layer].id);
-    let context = ToolContext { layer, operator, ..ToolContext::new(document, &brush) };
+    let context = ToolContext { layer, ..ToolContext::new(document, &tools) };
     let (gesture, _) = tools::press(ToolKind::Brush, &context, on_wave(0));
     let mut gesture = gesture.expect("the layer takes paint");
     let progress = Progress::default();

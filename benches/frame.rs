@@ -20,7 +20,7 @@ use rilievo::{
 use rilievo_engine::document::DocumentReducer;
 use rilievo_engine::math::hash;
 use rilievo_engine::paint::LiquifySettings;
-use rilievo_program::tools::{PenSample, ToolContext, ToolKind};
+use rilievo_program::tools::{PenSample, ToolContext, ToolKind, ToolSettings};
 use std::sync::Arc;
 use std::time::Instant;
 use timing::{frames, on_wave, row};
@@ -117,9 +117,10 @@ fn photo_painted(size: Size) -> Document {
 /// ms from a frame's events (16 samples, 2 px apart) of liquify, 200 px wide, to its flattened
 /// tiles.
 fn liquified(document: &Document) -> Vec<f64> {
-    let (brush, layer) = (Brush::default(), Some(document.layers[1].id));
     let liquify = LiquifySettings { size: 200.0, ..LiquifySettings::default() };
-    let context = ToolContext { layer, liquify, ..ToolContext::new(document, &brush) };
+    let tools = ToolSettings { liquify, ..ToolSettings::default() };
+    let layer = Some(document.layers[1].id);
+    let context = ToolContext { layer, ..ToolContext::new(document, &tools) };
     frames(ToolKind::Liquify, &context, |i| PenSample::at(vec2(300.0 + 2.0 * i as f32, 500.0)), 30)
 }
 
@@ -175,8 +176,9 @@ fn strokes() -> Vec<f64> {
         ..Document::empty(SQUARE)
     };
     let brush = Brush { size: 128.0, ..Brush::default() };
+    let tools = ToolSettings { operator: D_N, ..ToolSettings::with_brush(brush) };
     let layer = Some(document.layers[5].id);
-    let context = ToolContext { layer, operator: D_N, ..ToolContext::new(&document, &brush) };
+    let context = ToolContext { layer, ..ToolContext::new(&document, &tools) };
     frames(ToolKind::Brush, &context, on_wave, 44)
 }
 

@@ -18,7 +18,7 @@ use rilievo::{
 use rilievo_engine::math::hash;
 use rilievo_program::session::actions::{Action, LayerAction, NewLayer};
 use rilievo_program::session::{OpenDocument, Session};
-use rilievo_program::tools::{ToolContext, ToolKind};
+use rilievo_program::tools::{ToolContext, ToolKind, ToolSettings};
 use std::sync::Arc;
 use std::time::Instant;
 use timing::{on_wave, row};
@@ -90,8 +90,8 @@ fn brushes() -> Vec<(&'static str, Brush)> {
 fn frames(document: &Document, brush: &Brush, operator: Operator) -> Vec<f64> {
     let layer = Some(document.layers[5].id);
     let clone_offset = Some(vec2(-300.0, 40.0));
-    let context =
-        ToolContext { layer, operator, clone_offset, ..ToolContext::new(document, brush) };
+    let tools = ToolSettings { operator, ..ToolSettings::with_brush(brush.clone()) };
+    let context = ToolContext { layer, clone_offset, ..ToolContext::new(document, &tools) };
     timing::frames(ToolKind::Brush, &context, on_wave, 40)
 }
 

@@ -78,7 +78,7 @@ pub fn whose(session: &Session) -> (OperatorOwner, Operator) {
     let operator = bent.map(|bend| bend.operator);
     match (operator, session.layer_path()) {
         (Some(operator), Some(path)) => (OperatorOwner::Layer(path), operator),
-        _ => (OperatorOwner::Hand, session.operator),
+        _ => (OperatorOwner::Hand, session.tools.operator),
     }
 }
 

@@ -34,16 +34,16 @@ fn a_preset_goes_to_hand_and_its_parts_can_be_changed() {
     press(&mut harness, "Brush in hand");
     tap(&mut harness, "Tip");
     pick(&mut harness, "Shape", "Bristles");
-    assert!(matches!(session(&harness).brush.tip, Tip::Bristles(_)));
-    assert!(session(&harness).brush.grain.is_some(), "the rest of the gouache stays");
+    assert!(matches!(session(&harness).tools.brush.tip, Tip::Bristles(_)));
+    assert!(session(&harness).tools.brush.grain.is_some(), "the rest of the gouache stays");
     tap(&mut harness, "Stroke");
     pick(&mut harness, "Stabiliser", "Pulled string");
-    assert!(matches!(session(&harness).brush.stabilizer, Stabilizer::String { .. }));
+    assert!(matches!(session(&harness).tools.brush.stabilizer, Stabilizer::String { .. }));
     tap(&mut harness, "Erases");
-    assert!(session(&harness).brush.erases);
+    assert!(session(&harness).tools.brush.erases);
     tap(&mut harness, "Grain");
     pick(&mut harness, "Pattern", "None");
-    assert!(session(&harness).brush.grain.is_none());
+    assert!(session(&harness).tools.brush.grain.is_none());
 }
 
 #[test]
@@ -54,7 +54,7 @@ fn a_property_follows_what_it_is_told_to_by_a_curve_that_a_hand_bends() {
     for label in ["Remove Size by pressure", "Remove Opacity by pressure"] {
         tap(&mut harness, label);
     }
-    let brush = &session(&harness).brush;
+    let brush = &session(&harness).tools.brush;
     assert!(brush.dynamics.curve(Property::Opacity, Input::Pressure).is_none());
     assert!(brush.dynamics.curve(Property::Flow, Input::Pressure).is_some());
     harness.get_by_label("Curve of flow by pressure").scroll_to_me();
@@ -67,8 +67,13 @@ fn a_property_follows_what_it_is_told_to_by_a_curve_that_a_hand_bends() {
     steps(&mut harness);
     harness.drop_at(middle + vec2(0.0, -20.0));
     steps(&mut harness);
-    let curve =
-        session(&harness).brush.dynamics.curve(Property::Flow, Input::Pressure).unwrap().clone();
+    let curve = session(&harness)
+        .tools
+        .brush
+        .dynamics
+        .curve(Property::Flow, Input::Pressure)
+        .unwrap()
+        .clone();
     assert!(curve.at(0.5) > 0.6, "a point was added and drawn up: {}", curve.at(0.5));
 }
 

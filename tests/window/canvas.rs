@@ -16,11 +16,11 @@ fn a_frame_is_dragged_given_up_by_escape_and_applied_by_enter() {
     key(&mut harness, Modifiers::NONE, Key::C);
     assert_eq!(session(&harness).tool, ToolKind::Crop);
     drag(&mut harness, vec2(-80.0, -60.0), vec2(80.0, 60.0));
-    let frame = session(&harness).crop.expect("a frame");
+    let frame = session(&harness).tools.crop.area.expect("a frame");
     drag(&mut harness, vec2(120.0, 100.0), vec2(120.0, 100.0));
-    assert_eq!(session(&harness).crop, Some(frame), "a click beside it does nothing");
+    assert_eq!(session(&harness).tools.crop.area, Some(frame), "a click beside it does nothing");
     key(&mut harness, Modifiers::NONE, Key::Escape);
-    assert_eq!((session(&harness).crop, size(&harness)), (None, Size::new(1024, 1024)));
+    assert_eq!((session(&harness).tools.crop.area, size(&harness)), (None, Size::new(1024, 1024)));
     drag(&mut harness, vec2(-80.0, -60.0), vec2(80.0, 60.0));
     key(&mut harness, Modifiers::NONE, Key::Enter);
     assert_eq!(size(&harness), Size::new(frame.width() as u32, frame.height() as u32));

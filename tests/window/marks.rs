@@ -78,7 +78,7 @@ fn the_fill_tool_shows_its_options_and_fills() {
     assert_ne!(harness.query_all_by_label("Close gaps").count(), 0);
     harness.get_by_label("This layer only").click();
     steps(&mut harness);
-    assert!(session(&harness).fill.layer_alone);
+    assert!(session(&harness).tools.fill.layer_alone);
     let canvas = harness.get_by_label("Canvas").rect();
     harness.drag_at(canvas.center());
     steps(&mut harness);
@@ -98,7 +98,7 @@ fn the_brush_is_made_to_smudge_and_says_what_it_needs() {
     steps(&mut harness);
     harness.get_by_label("Smudge").click();
     steps(&mut harness);
-    assert!(session(&harness).brush.mode.is_retouching());
+    assert!(session(&harness).tools.brush.mode.is_retouching());
     assert_ne!(harness.query_all_by_label("Length").count(), 0);
     let canvas = harness.get_by_label("Canvas").rect();
     harness.drag_at(canvas.center());
@@ -134,7 +134,7 @@ fn touch(finger: u64, phase: TouchPhase, pos: Pos2) -> Event {
 fn keys_that_other_painting_programs_taught_do_the_same_here() {
     let mut harness = window();
     let (size, view) = (
-        |harness: &Story| session(harness).brush.size,
+        |harness: &Story| session(harness).tools.brush.size,
         |harness: &Story| session(harness).active().unwrap().view.unwrap(),
     );
     let before = size(&harness);

@@ -95,13 +95,13 @@ fn colours_are_typed_in_hex_and_numbers_and_remembered_once_painted_with() {
     harness.get_by_label("Hex colour").type_text("#3366cc");
     steps(&mut harness);
     key(&mut harness, Modifiers::NONE, Key::Enter);
-    let color = session(&harness).color;
+    let color = session(&harness).tools.color;
     assert_eq!([color.r, color.g, color.b], [0x33, 0x66, 0xcc]);
     assert!(harness.query_by_label("Recent colour 1").is_none());
     super::stroke(&mut harness, eframe::egui::vec2(30.0, 0.0));
     key(&mut harness, Modifiers::NONE, Key::D);
     press(&mut harness, "Recent colour 1");
-    assert_eq!(session(&harness).color, color);
+    assert_eq!(session(&harness).tools.color, color);
 }
 
 #[test]

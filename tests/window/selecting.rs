@@ -57,12 +57,12 @@ fn a_lasso_of_clicks_is_closed_by_enter_and_given_up_by_escape() {
     let corners = [vec2(-80.0, -60.0), vec2(80.0, -60.0), vec2(80.0, 60.0)];
     let set = |harness: &mut Story| corners.iter().for_each(|&at| drag(harness, at, at));
     set(&mut harness);
-    assert_eq!(session(&harness).lasso.len(), 3);
+    assert_eq!(session(&harness).tools.lasso.len(), 3);
     key(&mut harness, Modifiers::NONE, Key::Escape);
-    assert!(session(&harness).lasso.is_empty() && area(&harness) == 0.0);
+    assert!(session(&harness).tools.lasso.is_empty() && area(&harness) == 0.0);
     set(&mut harness);
     key(&mut harness, Modifiers::NONE, Key::Enter);
-    assert!(area(&harness) > 1000.0 && session(&harness).lasso.is_empty());
+    assert!(area(&harness) > 1000.0 && session(&harness).tools.lasso.is_empty());
 }
 
 #[test]

@@ -106,7 +106,7 @@ fn guides_are_pulled_out_of_a_ruler_and_dragged_back() {
     assert!(guides(&harness).is_empty());
     command(&mut harness, "Grid and snapping…");
     click(&mut harness, "To layers");
-    assert!(session(&harness).aids.to_layers);
+    assert!(session(&harness).tools.aids.to_layers);
     press(&mut harness, "Close");
 }
 

@@ -18,7 +18,7 @@ fn painted() -> Story {
 
 fn numbers(harness: &Story) -> GizmoNumbers {
     GizmoNumbers::of(
-        &session(harness).active().unwrap().gizmo(session(harness).transform_target).unwrap(),
+        &session(harness).active().unwrap().gizmo(session(harness).tools.transform.target).unwrap(),
     )
     .unwrap()
 }

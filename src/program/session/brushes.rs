@@ -71,7 +71,8 @@ pub fn keep(session: &mut Session, name: &str) -> Result<()> {
     let name: String = name.trim().chars().filter(|c| !c.is_control()).take(80).collect();
     let name = if name.is_empty() { "My brush".to_owned() } else { name };
     let key = Some(plain(&name)).filter(|key| !key.is_empty()).unwrap_or_else(|| "brush".into());
-    let (brush, color, operator) = (session.brush.clone(), session.color, session.operator);
+    let (brush, color, operator) =
+        (session.tools.brush.clone(), session.tools.color, session.tools.operator);
     let preset = BrushPreset {
         key,
         name,
@@ -215,12 +216,12 @@ mod tests {
                 .apply(&mut session)
                 .unwrap();
             assert_eq!(session.preset, key);
-            assert!(matches!(session.brush.tip, Tip::Picture(_)));
+            assert!(matches!(session.tools.brush.tip, Tip::Picture(_)));
         }
         assert_eq!(session.presets.len(), known + 2);
         Action::Hand(HandAction::Preset { name: "ink".into() }).apply(&mut session).unwrap();
         Action::Hand(HandAction::Preset { name: "pen".into() }).apply(&mut session).unwrap();
-        assert_eq!((session.preset.as_str(), session.brush.spacing), ("pen", 0.4));
+        assert_eq!((session.preset.as_str(), session.tools.brush.spacing), ("pen", 0.4));
     }
 
     #[test]
@@ -241,7 +242,7 @@ mod tests {
         std::fs::write(&file, gbr()).unwrap();
         let mut session = Session { brush_folder: Some(own.clone()), ..Session::default() };
         import(&mut session, &file).unwrap();
-        session.brush.spacing = 0.7;
+        session.tools.brush.spacing = 0.7;
         Action::File(FileAction::KeepBrush { name: " Wide pen ".into() })
             .apply(&mut session)
             .unwrap();
@@ -271,7 +272,7 @@ mod tests {
         image::RgbaImage::from_pixel(20, 30, image::Rgba([9, 200, 9, 128])).save(&file).unwrap();
         let mut session = Session::default();
         import(&mut session, &file).unwrap();
-        assert_eq!((session.preset.as_str(), session.brush.size), ("leaf-3", 30.0));
+        assert_eq!((session.preset.as_str(), session.tools.brush.size), ("leaf-3", 30.0));
         std::fs::write(folder.path().join("broken.json"), "{").unwrap();
         let (presets, notes) = kept(folder.path());
         assert!(
@@ -292,15 +293,15 @@ mod tests {
         std::fs::write(&file, gbr()).unwrap();
         let mut session = Session::default();
         import(&mut session, &file).unwrap();
-        let scattered = Brush { scatter: 2.0, ..session.brush.clone() };
+        let scattered = Brush { scatter: 2.0, ..session.tools.brush.clone() };
         Action::Hand(HandAction::Brush { brush: written_brush(&scattered) })
             .apply(&mut session)
             .unwrap();
-        assert_eq!((session.brush.scatter, session.brush.spacing), (2.0, 0.4));
-        assert!(matches!(session.brush.tip, Tip::Picture(_)));
+        assert_eq!((session.tools.brush.scatter, session.tools.brush.spacing), (2.0, 0.4));
+        assert!(matches!(session.tools.brush.tip, Tip::Picture(_)));
         let unknown = serde_json::json!({ "tip": { "file": "else.png" } });
         Action::Hand(HandAction::Brush { brush: unknown }).apply(&mut session).unwrap();
         assert!(session.notes[0].contains("tip.file: is “else.png”"), "{:?}", session.notes);
-        assert_eq!(session.brush.scatter, 2.0);
+        assert_eq!(session.tools.brush.scatter, 2.0);
     }
 }

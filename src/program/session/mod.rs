@@ -33,16 +33,11 @@ use crate::io::fs::Disk;
 use crate::io::recipe::{BrushPreset, presets};
 use crate::io::replace::is_same_file;
 use crate::io::{Overwrite, Terms};
-use crate::math::{Rect, Vec2, srgb::Color};
-use crate::paint::{Brush, Fill, LiquifySettings};
+use crate::math::{Vec2, srgb::Color};
 use crate::surface::Operator;
 use crate::surface::operator::UnwrapSettings;
-use crate::tools::SelectSettings;
-use crate::tools::gizmo::TransformTarget;
-use crate::tools::settings::CropAspect;
 use crate::tools::snap::{SnapLines, ViewAids};
-use crate::tools::symmetry::SymmetryAxes;
-use crate::tools::{Gesture, ShapeSettings, Symmetry, ToolKind};
+use crate::tools::{Gesture, ToolKind, ToolSettings};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use storage::OpenedFile;
@@ -60,47 +55,20 @@ pub struct Session {
     pub presets: Vec<BrushPreset>,
     /// The key of the current brush among them.
     pub preset: String,
-    pub brush: Brush,
-    pub color: Color,
-    pub second_color: Color,
+    /// The settings of the tools, the current brush among them.
+    pub tools: ToolSettings,
     /// The last colours painted with, newest first.
     pub recent_colors: Vec<Color>,
-    /// How new marks follow the surface.
-    pub operator: Operator,
-    /// How strokes repeat.
-    pub symmetry: Symmetry,
-    /// The place of its axes.
-    pub axes: SymmetryAxes,
-    /// What the transform tool moves.
-    pub transform_target: TransformTarget,
-    /// The settings of the fill tool.
-    pub fill: Fill,
-    /// The settings of the selection tools.
-    pub select: SelectSettings,
-    /// What the pen snaps to, and what is shown of it.
-    pub aids: ViewAids,
-    /// The settings of the tools that touch and sculpt the shape.
-    pub shape: ShapeSettings,
-    /// The settings of the liquify tool.
-    pub liquify: LiquifySettings,
-    /// The points of the selected layer's mesh that are chosen.
-    pub mesh_points: Vec<usize>,
-    /// The corners of the unfinished lasso.
-    pub lasso: Vec<Vec2>,
-    /// The area that the crop tool cuts out, canvas px.
-    pub crop: Option<Rect>,
-    /// The aspect that it keeps.
-    pub crop_aspect: CropAspect,
     /// The outline of the selection is not drawn.
     pub hides_selection: bool,
     /// What was copied last.
     pub copied: Option<Copied>,
-    /// Whether a mouse, which has no pressure, presses less the faster it moves.
-    pub presses_by_speed: bool,
     /// A view of the surface shown over the picture, by its name.
     pub overlay: Option<String>,
     pub overlay_opacity: f32,
     gesture: Option<Box<dyn Gesture>>,
+    /// Whether that draws a stroke, and where its end is.
+    draws_stroke: bool,
     last_pen: Option<Vec2>,
     /// The recovery logs of the open documents, where they are kept.
     pub autosave: Option<Autosave>,
@@ -129,29 +97,14 @@ impl Default for Session {
             tool: ToolKind::default(),
             presets,
             preset: preset.into(),
-            brush: brush.unwrap_or_default(),
-            color: Color::BLACK,
-            second_color: Color::WHITE,
+            tools: ToolSettings::with_brush(brush.unwrap_or_default()),
             recent_colors: Vec::new(),
-            operator: Operator::None,
-            symmetry: Symmetry::None,
-            axes: SymmetryAxes::default(),
-            transform_target: TransformTarget::default(),
-            fill: Fill::default(),
-            select: SelectSettings::default(),
-            aids: ViewAids::default(),
-            shape: ShapeSettings::default(),
-            liquify: LiquifySettings::default(),
-            mesh_points: Vec::new(),
-            lasso: Vec::new(),
-            crop: None,
-            crop_aspect: CropAspect::Free,
             hides_selection: false,
             copied: None,
-            presses_by_speed: false,
             overlay: None,
             overlay_opacity: 0.85,
             gesture: None,
+            draws_stroke: false,
             last_pen: None,
             autosave: None,
             brush_folder: None,
@@ -167,7 +120,7 @@ impl Default for Session {
 impl Session {
     /// The same with other settings of what is shown and snapped to.
     pub fn with_aids(self, aids: ViewAids) -> Self {
-        Self { aids, ..self }
+        Self { tools: ToolSettings { aids, ..self.tools }, ..self }
     }
 
     /// The document in front.
@@ -205,7 +158,7 @@ impl Session {
 
     /// How surfaces are unwrapped: as the current operator says, else by default.
     pub fn unwrap_settings(&self) -> UnwrapSettings {
-        self.operator.unwrapping().unwrap_or(UnwrapSettings { amount: 1.0, smooth_px: 0.0 })
+        self.tools.operator.unwrapping().unwrap_or(UnwrapSettings { amount: 1.0, smooth_px: 0.0 })
     }
 
     /// Whether a tool is between press and release.
@@ -298,9 +251,9 @@ impl Session {
     pub fn take_preset(&mut self, key: &str) {
         let Some(preset) = self.presets.iter().find(|preset| preset.key == key) else { return };
         if preset.operator != Operator::None {
-            self.operator = preset.operator;
+            self.tools.operator = preset.operator;
         }
-        self.brush = preset.brush.clone();
+        self.tools.brush = preset.brush.clone();
         self.preset = preset.key.clone();
         self.tool = ToolKind::Brush;
     }
@@ -321,7 +274,7 @@ impl Session {
 
     /// Moves the current colour to the front of the recent ones.
     fn remember_color(&mut self) {
-        let color = self.color;
+        let color = self.tools.color;
         self.recent_colors.retain(|known| *known != color);
         self.recent_colors.insert(0, color);
         self.recent_colors.truncate(RECENT);

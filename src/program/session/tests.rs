@@ -67,7 +67,7 @@ fn a_stroke_on_paper_is_one_named_step_that_can_be_undone() {
         !session.active().unwrap().is_dirty(),
         "back to what was opened, there is nothing to save"
     );
-    assert_eq!(session.recent_colors, [session.color]);
+    assert_eq!(session.recent_colors, [session.tools.color]);
 }
 
 #[test]
@@ -194,7 +194,7 @@ fn strokes_are_chosen_restyled_ordered_copied_and_baked_by_replay() {
         {"in":"stroke","do":"delete","layer":"2","strokes":[0]}
         {"in":"stroke","do":"delete","layer":"2","strokes":[7]}"#;
     session.replay(Path::new("story"), rest).unwrap();
-    assert_eq!(session.color.to_string(), "#0000ff");
+    assert_eq!(session.tools.color.to_string(), "#0000ff");
     assert_eq!(names(&session), ["Background", "Strokes baked", "Strokes"]);
     assert_eq!((pixel(&session, 100, 70), pixel(&session, 112, 123)), ([255; 4], [0, 0, 255, 255]));
 }
@@ -216,4 +216,21 @@ fn a_fill_stops_at_a_stroke_and_is_one_step() {
         ([0, 255, 0, 255], [0xc0, 0x20, 0x10, 255])
     );
     assert_eq!(pixel(&session, 5, 140), [0, 255, 0, 255], "around the stroke's ends");
+}
+
+#[test]
+fn a_line_begins_where_the_last_stroke_ended_whatever_other_tool_was_used_since() {
+    let line = r#"
+        {"in":"pointer","do":"press","tool":"brush","pen":[20,20],"px_per_pt":1}
+        {"in":"pointer","do":"release"}
+        {"in":"pointer","do":"press","tool":"select rectangle","pen":[60,50],"px_per_pt":1}
+        {"in":"pointer","do":"drag","pens":[[150,120]]}
+        {"in":"pointer","do":"release"}
+        {"in":"pointer","do":"press","tool":"brush","pen":PEN,"px_per_pt":1}
+        {"in":"pointer","do":"release"}"#;
+    let shifted = r#"[40,20,1,0,0,0,{"shift":true,"ctrl":false,"alt":false}]"#;
+    let session = replay(&format!("{PAPER}{}", line.replace("PEN", shifted)));
+    let document = session.active().unwrap().document();
+    let strokes = document.strokes(session.active().unwrap().selected.unwrap());
+    assert_eq!(strokes[1].samples()[0].at, crate::math::vec2(20.0, 20.0));
 }

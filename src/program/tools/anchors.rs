@@ -217,10 +217,11 @@ impl Gesture for AnchorGesture {
 mod tests {
     use super::*;
     use crate::math::{Size, srgb::Color, vec2};
-    use crate::paint::{Adjust, Brush, ImageFilter, PictureSource, Placement};
+    use crate::paint::{Adjust, ImageFilter, PictureSource, Placement};
     use crate::raster::{Outside, Picture};
     use crate::surface::{Bend, Operator};
     use crate::tools::ModifierKeys;
+    use crate::tools::ToolSettings;
 
     fn document(anchors: Vec<Anchor>) -> Document {
         let size = Size::new(100, 80);
@@ -243,8 +244,8 @@ mod tests {
         from: Vec2,
         to: Vec2,
     ) -> Option<Vec<Anchor>> {
-        let (brush, layer) = (Brush::default(), Some(document.layers[0].id));
-        let context = ToolContext { layer, ..ToolContext::new(document, &brush) };
+        let (tools, layer) = (ToolSettings::default(), Some(document.layers[0].id));
+        let context = ToolContext { layer, ..ToolContext::new(document, &tools) };
         let (gesture, begun) = press(&context, PenSample { keys, ..PenSample::at(from) });
         let outcome = match gesture {
             Some(mut gesture) => {
@@ -272,9 +273,9 @@ mod tests {
             layers: vec![Arc::new(Layer::new("a", Content::Fill(Color::BLACK)))],
             ..document(vec![])
         };
-        let brush = Brush::default();
+        let tools = ToolSettings::default();
         let layer = Some(document.layers[0].id);
-        let context = ToolContext { layer, ..ToolContext::new(&document, &brush) };
+        let context = ToolContext { layer, ..ToolContext::new(&document, &tools) };
         assert!(matches!(press(&context, PenSample::at(vec2(30.0, 30.0))).1, Outcome::Refused(_)));
     }
 

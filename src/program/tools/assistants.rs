@@ -40,10 +40,13 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         let moving = Moving { index, handle: Some(handle), from: pen.place(), is_new: false };
         return begin(context, Vec::clone(&document.assistants), moving);
     }
-    if let Some(handle) =
-        context.axes.handle_at(context.symmetry, document.size, pen.place(), context.px_per_pt)
-    {
-        let (canvas, axes) = (document.size, context.axes);
+    if let Some(handle) = context.tools.symmetry.axes.handle_at(
+        context.tools.symmetry.kind,
+        document.size,
+        pen.place(),
+        context.px_per_pt,
+    ) {
+        let (canvas, axes) = (document.size, context.tools.symmetry.axes);
         return (Some(Box::new(AxisGesture { handle, axes, canvas })), Outcome::Idle);
     }
     if document.assistants.len() >= Assistant::MOST {
@@ -54,7 +57,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     }
     let from = context.snap.point(pen.place()).at;
     let mut all = Vec::clone(&document.assistants);
-    all.push(drag_out(context.aids.assistant, from, from));
+    all.push(drag_out(context.tools.aids.assistant, from, from));
     let moving = Moving { index: all.len() - 1, handle: None, from, is_new: true };
     begin(context, all, moving)
 }
@@ -161,11 +164,12 @@ impl Gesture for AxisGesture {
             return Outcome::Idle;
         };
         self.axes = self.axes.dragged(self.handle, self.canvas, pen.place(), pen.keys.shift);
-        Outcome::Axes(self.axes)
+        self.release()
     }
 
     fn release(&mut self) -> Outcome {
-        Outcome::Axes(self.axes)
+        let axes = self.axes;
+        Outcome::set(move |tools| tools.symmetry.axes = axes)
     }
 }
 

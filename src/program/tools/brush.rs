@@ -7,8 +7,8 @@ mod stroke;
 pub use erase::is_on;
 
 use super::closed;
+use super::purpose::StrokePurpose;
 use super::retouch::{self, ActiveWork};
-use super::settings::StrokePurpose;
 use super::symmetry::SymmetryImage;
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
 use crate::document::{
@@ -60,7 +60,7 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
         _ => return (None, Outcome::Idle),
     };
     let is_eraser = purpose == StrokePurpose::Erase;
-    let mut brush = context.brush.clone();
+    let mut brush = context.tools.brush.clone();
     if is_eraser {
         brush.mode = BrushMode::Paint;
     }
@@ -70,10 +70,11 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
         // The same samples give the same seed, so a repeated stroke is identical.
         brush.seed = hash::mix(pen.place().x.to_bits() ^ hash::mix(pen.place().y.to_bits()));
     }
-    let color = if is_eraser { Color { a: 255, ..context.color } } else { context.color };
-    let images = context.symmetry.images_about(document.size, context.axes);
+    let color =
+        if is_eraser { Color { a: 255, ..context.tools.color } } else { context.tools.color };
+    let images = context.tools.symmetry.images(document.size);
     let like = |image: &SymmetryImage| {
-        Stroke::new(image.brush(&brush), context.operator, color, Vec::new())
+        Stroke::new(image.brush(&brush), context.tools.operator, color, Vec::new())
             .within(context.document.stroke_selection())
     };
     let strokes: Vec<Stroke> = images.iter().map(like).collect();
@@ -87,7 +88,7 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
         active: Some(work.unwrap_or_else(|| {
             ActiveWork::Strokes(ActiveStrokes::new(&strokes, backdrop, &scene))
         })),
-        stabilized: StabilizedPen::of_brush(&brush, context.operator, &scene),
+        stabilized: StabilizedPen::of_brush(&brush, context.tools.operator, &scene),
         room: Some(Stroke::MOST_SAMPLES),
         label: if is_eraser { "Erase" } else { "Brush stroke" },
         document,

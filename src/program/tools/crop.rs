@@ -5,7 +5,52 @@ use super::gizmo::TransformHandle;
 use super::snap::{SnapLines, SnapTargets};
 use super::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext};
 use crate::math::range::held;
-use crate::math::{COORDINATE, Rect, Vec2, vec2};
+use crate::math::{COORDINATE, Rect, Size, Vec2, vec2};
+
+/// The settings of the crop tool.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct CropSettings {
+    /// What it cuts out, canvas px.
+    pub area: Option<Rect>,
+    pub aspect: CropAspect,
+}
+
+rilievo_engine::named! {
+    /// The aspect that the crop area keeps.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+    pub enum CropAspect {
+        #[default]
+        Free = "free" => "Free",
+        /// The canvas's own.
+        Canvas = "canvas" => "As it is",
+        Square = "1:1" => "1 : 1",
+        FourToThree = "4:3" => "4 : 3",
+        SixteenToNine = "16:9" => "16 : 9",
+        ThreeToTwo = "3:2" => "3 : 2",
+    }
+}
+
+impl CropAspect {
+    /// Width by height.
+    pub fn ratio(self, canvas: Size) -> Option<f32> {
+        match self {
+            CropAspect::Free => None,
+            CropAspect::Canvas => Some(canvas.width as f32 / canvas.height as f32),
+            CropAspect::Square => Some(1.0),
+            CropAspect::FourToThree => Some(4.0 / 3.0),
+            CropAspect::SixteenToNine => Some(16.0 / 9.0),
+            CropAspect::ThreeToTwo => Some(1.5),
+        }
+    }
+
+    /// An area with this aspect about the middle of another one, with its width.
+    pub fn given(self, area: Rect, canvas: Size) -> Rect {
+        let Some(ratio) = self.ratio(canvas) else { return area };
+        let height = (area.width() as f32 / ratio).round().max(1.0) as i32;
+        let top = area.y0 + (area.height() as i32 - height).div_euclid(2);
+        Rect::new(area.x0, top, area.x1, top + height)
+    }
+}
 
 /// The corners of an area: upper left, upper right, lower right, lower left.
 pub fn corners(area: Rect) -> [Vec2; 4] {
@@ -38,16 +83,17 @@ pub fn handle_at(area: Rect, at: Vec2, grab_px: f32) -> TransformHandle {
 
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let at = pen.place();
-    let handle = context
-        .crop
-        .map_or(TransformHandle::Outside, |area| handle_at(area, at, GRAB_PT * context.px_per_pt));
+    let handle =
+        context.tools.crop.area.map_or(TransformHandle::Outside, |area| {
+            handle_at(area, at, GRAB_PT * context.px_per_pt)
+        });
     let gesture = CropGesture {
-        area: context.crop,
+        area: context.tools.crop.area,
         handle,
         from: at,
         slop_px: SLOP_PT * context.px_per_pt,
         is_begun: false,
-        ratio: context.crop_aspect.ratio(context.document.size),
+        ratio: context.tools.crop.aspect.ratio(context.document.size),
         snap: context.snap.clone(),
         lines: SnapLines::default(),
     };
@@ -148,7 +194,8 @@ impl Gesture for CropGesture {
             let found = self.snap.point(pen.place());
             (snapped.sample.at, self.lines) = (found.at, found.lines);
         }
-        Outcome::CropArea(self.dragged(&snapped))
+        let area = self.dragged(&snapped);
+        Outcome::set(move |tools| tools.crop.area = Some(area))
     }
 
     fn release(&mut self) -> Outcome {
@@ -165,19 +212,15 @@ mod tests {
     use super::*;
     use crate::document::Document;
     use crate::math::Size;
-    use crate::paint::Brush;
-    use crate::tools::settings::CropAspect;
+    use crate::tools::ToolSettings;
 
     /// The area after a drag; `None` if it was left unchanged.
-    fn dragged(crop: Option<Rect>, aspect: CropAspect, from: Vec2, to: Vec2) -> Option<Rect> {
-        let (document, brush) = (Document::empty(Size::new(200, 100)), Brush::default());
-        let context =
-            ToolContext { crop, crop_aspect: aspect, ..ToolContext::new(&document, &brush) };
-        let mut gesture = press(&context, PenSample::at(from)).0.unwrap();
-        match gesture.drag(&[PenSample::at(to)]) {
-            Outcome::CropArea(area) => Some(area),
-            _ => None,
-        }
+    fn dragged(area: Option<Rect>, aspect: CropAspect, from: Vec2, to: Vec2) -> Option<Rect> {
+        let document = Document::empty(Size::new(200, 100));
+        let tools = ToolSettings { crop: CropSettings { area, aspect }, ..ToolSettings::default() };
+        let mut gesture =
+            press(&ToolContext::new(&document, &tools), PenSample::at(from)).0.unwrap();
+        gesture.drag(&[PenSample::at(to)]).settings().crop.area
     }
     const FRAME: Rect = Rect { x0: 50, y0: 20, x1: 150, y1: 80 };
 

@@ -2,7 +2,7 @@
 //! the pen, so that the paint appears there. Floor 5. Not here: the displacement itself
 //! (`document::layer::warp`).
 
-use super::settings::{BrushTarget, StrokePurpose};
+use super::purpose::{BrushTarget, StrokePurpose};
 use super::snap::SnapLines;
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext, stroke_in_place};
 use crate::document::{Content, LayerWarp};

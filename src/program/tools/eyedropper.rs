@@ -20,7 +20,7 @@ struct EyedropperGesture {
 impl Gesture for EyedropperGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let color = pens.last().and_then(|pen| color_at(&self.document, pen.place()));
-        color.map_or(Outcome::Idle, Outcome::Picked)
+        color.map_or(Outcome::Idle, |color| Outcome::set(move |tools| tools.color = color))
     }
 
     fn release(&mut self) -> Outcome {

@@ -34,15 +34,18 @@ fn filled(context: &ToolContext, pen: PenSample) -> Option<Outcome> {
     let (document, id) = fillable(context)?;
     let layer = document.layer(id)?;
     let Content::Pixels(pixels) = &layer.content else { return None };
-    let part = context.fill.bounded.from(document.surface.as_ref(), pen.place());
-    let filled = if context.fill.layer_alone {
-        context.fill.from(pen.place(), document.size, &part, |at| pixels.tiles.tile(at).cloned())
+    let part = context.tools.fill.bounded.from(document.surface.as_ref(), pen.place());
+    let filled = if context.tools.fill.layer_alone {
+        context
+            .tools
+            .fill
+            .from(pen.place(), document.size, &part, |at| pixels.tiles.tile(at).cloned())
     } else {
         let picture = PreparedDocument::new(context.document, &Progress::default())?;
-        context.fill.from(pen.place(), document.size, &part, |at| picture.flatten_tile(at))
+        context.tools.fill.from(pen.place(), document.size, &part, |at| picture.flatten_tile(at))
     }?;
     let mix = Mix { atop: layer.lock == LayerLock::Alpha, ..Mix::default() };
-    let tiles = painted(&pixels.tiles, &filled, document.selected(), context.color, mix);
+    let tiles = painted(&pixels.tiles, &filled, document.selected(), context.tools.color, mix);
     let next = PixelLayer { file: String::new(), tiles, ..pixels.clone() };
     let document = document.with_layer(id, |layer| layer.content = Content::Pixels(next))?;
     Some(Outcome::Commit { label: "Fill".into(), document, select: Some(id) })
@@ -113,8 +116,9 @@ fn tile(
 mod tests {
     use super::*;
     use crate::math::{Size, Vec2, vec2};
-    use crate::paint::{Brush, Fill};
+    use crate::paint::Fill;
     use crate::surface::PaintLimit;
+    use crate::tools::ToolSettings;
 
     const BLUE: Color = Color { r: 0, g: 0, b: 255, a: 255 };
 
@@ -131,13 +135,9 @@ mod tests {
     }
 
     fn click(document: &Document, layer: usize, fill: Fill, at: Vec2) -> Option<Document> {
-        let (brush, white) = (Brush::default(), Color::WHITE);
-        let context = ToolContext {
-            layer: Some(document.layers[layer].id),
-            color: white,
-            fill,
-            ..ToolContext::new(document, &brush)
-        };
+        let tools = ToolSettings { color: Color::WHITE, fill, ..ToolSettings::default() };
+        let layer = Some(document.layers[layer].id);
+        let context = ToolContext { layer, ..ToolContext::new(document, &tools) };
         match press(&context, PenSample::at(at)).1 {
             Outcome::Commit { document, .. } => Some(document),
             _ => None,

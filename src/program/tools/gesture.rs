@@ -1,12 +1,11 @@
 //! What tools return: a gesture between the pen coming down and lifting, and the outcome of each of
 //! its events. Floor 5.
 
+use super::ToolSettings;
 use super::pen::PenSample;
-use super::settings::SelectSettings;
 use super::snap::SnapLines;
-use super::symmetry::SymmetryAxes;
 use crate::document::{Document, LayerId};
-use crate::math::{Rect, Vec2, Vec3, srgb::Color};
+use crate::math::Vec2;
 use std::borrow::Cow;
 
 /// What a tool returns for an event of the pen.
@@ -21,37 +20,61 @@ pub enum Outcome {
         /// The layer to select from now on.
         select: Option<LayerId>,
     },
-    /// A selection made with settings that the pen changed: a preview, or a finished step.
-    Tuned {
-        document: Document,
-        select: SelectSettings,
-        is_done: bool,
-    },
-    /// The corners of an unfinished lasso.
-    Lasso(Vec<Vec2>),
-    /// These strokes of the selected layer are chosen from now on.
-    Chosen(Vec<usize>),
-    /// This part of the shape is chosen from now on.
-    ChosenPart(String),
-    /// Touches give this direction from now on.
-    Direction(Vec3),
-    /// The area that the crop tool cuts out, from now on.
-    CropArea(Rect),
-    /// Clone brushes copy from here from now on.
-    CloneFrom(Vec2),
+    /// Settings of the tools change; then the other outcome.
+    Settings(SettingsChange, Box<Outcome>),
+    /// Something of the document is chosen from now on.
+    Choose(DocumentChoice),
     /// Nothing was started; the reason is to be shown.
     Refused(Cow<'static, str>),
-    /// The gizmo of the chosen layers is turned about this point, by shares of its sides, from now
-    /// on.
-    Pivot(Vec2),
-    /// These points of the layer's mesh are chosen from now on.
-    MeshPoints(Vec<usize>),
-    /// The axes of symmetry are here from now on.
-    Axes(SymmetryAxes),
-    /// A colour was picked.
-    Picked(Color),
     /// The preview is to be dropped.
     Cancel,
+}
+
+/// A change of settings that a tool makes: the pen dragged a tolerance, or picked a colour.
+pub type SettingsChange = Box<dyn FnOnce(&mut ToolSettings) + Send>;
+
+/// What is chosen in a document besides its layers.
+#[derive(Clone, Debug, PartialEq)]
+pub enum DocumentChoice {
+    /// Strokes of the selected layer.
+    Strokes(Vec<usize>),
+    /// A part of the shape, by its id.
+    Part(String),
+    /// The point that the gizmo of the chosen layers is turned about, by shares of its sides.
+    Pivot(Vec2),
+    /// Where clone brushes copy from, canvas px.
+    CloneSource(Vec2),
+}
+
+impl Outcome {
+    /// Settings change, and nothing else.
+    pub fn set(change: impl FnOnce(&mut ToolSettings) + Send + 'static) -> Self {
+        Outcome::Idle.with_settings(change)
+    }
+
+    /// The same after a change of settings.
+    pub fn with_settings(self, change: impl FnOnce(&mut ToolSettings) + Send + 'static) -> Self {
+        Outcome::Settings(Box::new(change), Box::new(self))
+    }
+
+    /// Changes the settings that it changes; what remains of it.
+    pub fn apply_settings(self, tools: &mut ToolSettings) -> Self {
+        match self {
+            Outcome::Settings(change, then) => {
+                change(tools);
+                then.apply_settings(tools)
+            }
+            other => other,
+        }
+    }
+
+    /// The first settings with what it changes.
+    #[cfg(test)]
+    pub fn settings(self) -> ToolSettings {
+        let mut tools = ToolSettings::default();
+        self.apply_settings(&mut tools);
+        tools
+    }
 }
 
 /// A tool between the pen coming down and lifting. It holds a clone of the document it began with,

@@ -33,15 +33,15 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         }
     }
     let stops = vec![
-        GradientStop { t: 0.0, color: context.color },
-        GradientStop { t: 1.0, color: context.second_color },
+        GradientStop { t: 0.0, color: context.tools.color },
+        GradientStop { t: 1.0, color: context.tools.second_color },
     ];
     let from = context.snap.point(at).at;
     let gradient = Gradient {
         from,
         to: from,
         stops,
-        operator: context.operator,
+        operator: context.tools.operator,
         filter: ImageFilter::Antialias,
         frame: Default::default(),
         pieces: Vec::new(),
@@ -192,12 +192,12 @@ impl Gesture for GradientEndGesture {
 mod tests {
     use super::*;
     use crate::math::{Size, vec2};
-    use crate::paint::Brush;
+    use crate::tools::ToolSettings;
 
     #[test]
     fn a_drag_lays_a_gradient_and_a_second_one_moves_its_end() {
-        let (empty, brush) = (Document::empty(Size::new(100, 100)), Brush::default());
-        let context = ToolContext::new(&empty, &brush);
+        let (empty, tools) = (Document::empty(Size::new(100, 100)), ToolSettings::default());
+        let context = ToolContext::new(&empty, &tools);
         let drag = |context: &ToolContext, from: Vec2, to: Vec2| {
             let mut gesture = press(context, PenSample::at(from)).0.unwrap();
             gesture.drag(&[PenSample::at(to)]);

@@ -28,7 +28,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         return (None, why.map_or(Outcome::Idle, |why| Outcome::Refused(why.into())));
     };
     // Ctrl reverses what a tool does, Shift smooths.
-    let tool = match context.liquify.tool {
+    let tool = match context.tools.liquify.tool {
         _ if pen.keys.shift => LiquifyTool::Smooth,
         LiquifyTool::Grow if pen.keys.ctrl => LiquifyTool::Shrink,
         LiquifyTool::Shrink if pen.keys.ctrl => LiquifyTool::Grow,
@@ -37,7 +37,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         _ if pen.keys.ctrl => LiquifyTool::Restore,
         tool => tool,
     };
-    let settings = LiquifySettings { tool, ..context.liquify };
+    let settings = LiquifySettings { tool, ..context.tools.liquify };
     let selection = document.active_selection.as_ref().map(|selection| selection.coverage.clone());
     let of_image = |image: SymmetryImage| {
         let tool = if image.is_mirrored() { tool.mirrored() } else { tool };
@@ -53,7 +53,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
             ),
         )
     };
-    let images = context.symmetry.images_about(document.size, context.axes);
+    let images = context.tools.symmetry.images(document.size);
     let strokes: Vec<(SymmetryImage, LiquifyStroke)> = images.into_iter().map(of_image).collect();
     let old = layer.liquify.clone();
     let mut lattice = old.as_deref().cloned().unwrap_or_default();

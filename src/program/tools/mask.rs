@@ -4,8 +4,8 @@
 
 use super::brush;
 use super::closed;
-use super::settings::StrokePurpose;
-use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
+use super::purpose::StrokePurpose;
+use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext, ToolSettings};
 use crate::document::{Content, Document, Layer, LayerId, LayerMask, MaskKind, PixelLayer};
 use crate::math::srgb::{Color, luminance, quantise};
 use crate::paint::Selection;
@@ -58,15 +58,17 @@ fn painted(
     mask: Arc<Plane<u8>>,
     sees: Document,
 ) -> GestureStart {
-    let Color { r, g, b, a } = context.color;
+    let Color { r, g, b, a } = context.tools.color;
     let [r, g, b] = [r, g, b].map(|v| f32::from(v) / 255.0);
     let grey = quantise(luminance(r, g, b));
     let shown = greys(&mask);
     let pixels = PixelLayer { file: String::new(), x: 0, y: 0, tiles: shown.clone() };
     let sheet = Layer::new("mask", Content::Pixels(pixels));
+    let color = Color { r: grey, g: grey, b: grey, a };
+    let tools = ToolSettings { color, ..context.tools.clone() };
     let on_sheet = ToolContext {
         layer: Some(sheet.id),
-        color: Color { r: grey, g: grey, b: grey, a },
+        tools: &tools,
         document: &Document { layers: vec![Arc::new(sheet)], ..sees },
         ..*context
     };
@@ -213,9 +215,10 @@ mod tests {
     }
 
     fn drawn(document: &Document, color: Color, purpose: StrokePurpose) -> Document {
-        let (brush, layer) =
-            (Brush { size: 20.0, hardness: 1.0, ..Brush::default() }, Some(document.layers[0].id));
-        let context = ToolContext { layer, color, ..ToolContext::new(document, &brush) };
+        let brush = Brush { size: 20.0, hardness: 1.0, ..Brush::default() };
+        let tools = ToolSettings { color, ..ToolSettings::with_brush(brush) };
+        let layer = Some(document.layers[0].id);
+        let context = ToolContext { layer, ..ToolContext::new(document, &tools) };
         let mut gesture = press(&context, PenSample::at(vec2(40.0, 40.0)), purpose).0.unwrap();
         gesture.drag(&[PenSample::at(vec2(90.0, 40.0))]);
         gesture.drag(&[PenSample::at(vec2(120.0, 40.0))]);
@@ -258,9 +261,9 @@ mod tests {
     fn a_layer_without_such_a_mask_takes_no_paint() {
         let mut document = masked(0);
         document.layers = vec![Arc::new(Layer { mask: None, ..Layer::clone(&document.layers[0]) })];
-        let brush = Brush::default();
+        let tools = ToolSettings::default();
         let layer = Some(document.layers[0].id);
-        let context = ToolContext { layer, ..ToolContext::new(&document, &brush) };
+        let context = ToolContext { layer, ..ToolContext::new(&document, &tools) };
         assert!(press(&context, PenSample::at(vec2(9.0, 9.0)), StrokePurpose::Paint).0.is_none());
     }
 }

@@ -1,12 +1,12 @@
 //! Floor 5: tools. A tool turns the pen's events on the canvas into documents: a preview while the
-//! pen moves, and a result when it lifts. Each tool is a file and a row of [`ToolKind`] (`kinds`).
+//! pen moves, and a result when it lifts. Each tool is a file and a row of [`ToolKind`] (`kinds`); one
+//! that has settings keeps them in its file, and is a row of [`ToolSettings`].
 //! Not here: the current tool and the history (`session`), screen coordinates (`window`).
 
 pub mod anchors;
 pub mod assistants;
 pub mod brush;
 mod closed;
-mod context;
 pub mod crop;
 mod displaced;
 pub mod eyedropper;
@@ -16,6 +16,7 @@ pub mod gizmo;
 pub mod gradient;
 pub mod guides;
 pub mod image;
+mod kept_context;
 mod kinds;
 pub mod lights;
 pub mod liquify;
@@ -23,9 +24,9 @@ pub mod mask;
 pub mod move_content;
 pub mod outline;
 mod pen;
+pub mod purpose;
 mod retouch;
 pub mod select;
-pub mod settings;
 pub mod shape;
 pub mod snap;
 pub mod strokes;
@@ -33,14 +34,133 @@ pub mod symmetry;
 pub mod transform;
 pub mod unwrapped;
 
-pub use context::ToolContext;
-pub use gesture::{Gesture, GestureStart, Outcome};
+pub use gesture::{DocumentChoice, Gesture, GestureStart, Outcome, SettingsChange};
 pub use kinds::ToolKind;
 pub use pen::{GRAB_PT, ModifierKeys, PenSample};
-pub use settings::{BrushTarget, SelectSettings, ShapeSettings};
+pub use purpose::BrushTarget;
+pub use select::SelectSettings;
+pub use shape::ShapeSettings;
 pub use symmetry::Symmetry;
 
-use settings::StrokePurpose;
+use crate::document::{Document, LayerId};
+use crate::math::{Vec2, srgb::Color};
+use crate::paint::{Brush, Fill, LiquifySettings};
+use crate::surface::Operator;
+use crop::CropSettings;
+use gizmo::GizmoMemory;
+use purpose::StrokePurpose;
+use snap::{SnapTargets, ViewAids};
+use symmetry::SymmetrySettings;
+use transform::TransformSettings;
+
+/// Everything a tool works with, as it is when the pen comes down.
+#[derive(Clone, Copy)]
+pub struct ToolContext<'a> {
+    pub document: &'a Document,
+    /// The settings of the tools.
+    pub tools: &'a ToolSettings,
+    /// The selected layer.
+    pub layer: Option<LayerId>,
+    /// All chosen layers, those in a chosen group left out, bottom first; tools that make no marks
+    /// work on all of them.
+    pub layers: &'a [LayerId],
+    /// The strokes of the selected layer that are chosen.
+    pub strokes: &'a [usize],
+    /// The chosen part of the shape, by its id.
+    pub part: Option<&'a str>,
+    /// What brush and eraser change.
+    pub target: BrushTarget,
+    /// Canvas px per screen point, for hit tests.
+    pub px_per_pt: f32,
+    /// Where the last stroke ended.
+    pub last_end: Option<Vec2>,
+    /// What the transform tool keeps about the chosen layers.
+    pub gizmo: &'a GizmoMemory,
+    /// What the pen snaps to.
+    pub snap: &'a SnapTargets,
+    /// From a pixel to the one that a clone brush copies onto it, px; `None` before it was set.
+    pub clone_offset: Option<Vec2>,
+}
+
+impl<'a> ToolContext<'a> {
+    /// The initial context: no layer, one pixel per point.
+    pub fn new(document: &'a Document, tools: &'a ToolSettings) -> Self {
+        Self {
+            document,
+            tools,
+            layer: None,
+            layers: &[],
+            strokes: &[],
+            part: None,
+            target: BrushTarget::Layer,
+            px_per_pt: 1.0,
+            last_end: None,
+            gizmo: GizmoMemory::nothing(),
+            snap: SnapTargets::none(),
+            clone_offset: None,
+        }
+    }
+
+    /// The chosen layers: if none are given, the selected one.
+    pub fn chosen(&self) -> &[LayerId] {
+        if self.layers.is_empty() { self.layer.as_slice() } else { self.layers }
+    }
+}
+
+/// The settings of all tools. The session holds them, tools read them when the pen comes down, and
+/// change them with [`Outcome::Settings`].
+#[derive(Clone)]
+pub struct ToolSettings {
+    /// Brush and eraser.
+    pub brush: Brush,
+    /// Whether a mouse, which has no pressure, presses less the faster it moves.
+    pub presses_by_speed: bool,
+    /// The foreground and the background colour.
+    pub color: Color,
+    pub second_color: Color,
+    /// How new marks follow the surface.
+    pub operator: Operator,
+    /// How strokes repeat.
+    pub symmetry: SymmetrySettings,
+    pub fill: Fill,
+    pub select: SelectSettings,
+    /// The corners of the unfinished lasso.
+    pub lasso: Vec<Vec2>,
+    pub shape: ShapeSettings,
+    pub liquify: LiquifySettings,
+    pub transform: TransformSettings,
+    pub crop: CropSettings,
+    /// What the pen snaps to and draws along, and what is shown of it.
+    pub aids: ViewAids,
+}
+
+impl Default for ToolSettings {
+    fn default() -> Self {
+        Self::with_brush(Brush::default())
+    }
+}
+
+impl ToolSettings {
+    /// The first settings: black and white, no operator, and a brush.
+    pub fn with_brush(brush: Brush) -> Self {
+        Self {
+            brush,
+            presses_by_speed: false,
+            color: Color::BLACK,
+            second_color: Color::WHITE,
+            operator: Operator::None,
+            symmetry: SymmetrySettings::default(),
+            fill: Fill::default(),
+            select: SelectSettings::default(),
+            lasso: Vec::new(),
+            shape: ShapeSettings::default(),
+            liquify: LiquifySettings::default(),
+            transform: TransformSettings::default(),
+            crop: CropSettings::default(),
+            aids: ViewAids::default(),
+        }
+    }
+}
 
 /// The pen comes down. Hand and zoom do not concern documents: they start no gesture.
 pub fn press(kind: ToolKind, context: &ToolContext, pen: PenSample) -> GestureStart {

@@ -155,11 +155,12 @@ mod tests {
     use crate::paint::{Brush, Sample, Stroke};
     use crate::raster::TileGrid;
     use crate::surface::Operator;
+    use crate::tools::ToolSettings;
     use std::sync::Arc;
 
     fn dragged(document: &Document, from: Vec2, to: Vec2) -> Document {
-        let (brush, layer) = (Brush::default(), Some(document.layers[0].id));
-        let context = ToolContext { layer, ..ToolContext::new(document, &brush) };
+        let (tools, layer) = (ToolSettings::default(), Some(document.layers[0].id));
+        let context = ToolContext { layer, ..ToolContext::new(document, &tools) };
         let mut gesture = press(&context, PenSample::at(from)).0.unwrap();
         gesture.drag(&[PenSample::at(to)]);
         match gesture.release() {

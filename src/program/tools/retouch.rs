@@ -2,9 +2,9 @@
 //! and what it holds. Floor 5. Not here: what it does to pixels (`paint::retouch`), samples from
 //! the pen (`brush`).
 
-use super::settings::StrokePurpose;
+use super::purpose::StrokePurpose;
 use super::symmetry::SymmetryImage;
-use super::{Outcome, PenSample, ToolContext};
+use super::{DocumentChoice, Outcome, PenSample, ToolContext};
 use crate::document::{Content, Layer, Progress, flatten};
 use crate::math::Vec2;
 use crate::paint::{ActiveRetouching, ActiveStrokes, BrushMode, Sample, Scene, Stroke};
@@ -49,12 +49,12 @@ pub(super) fn refused(
     pen: PenSample,
     purpose: StrokePurpose,
 ) -> Option<Outcome> {
-    let mode = context.brush.mode;
-    if purpose != StrokePurpose::Paint || !context.brush.needs_paint() {
+    let mode = context.tools.brush.mode;
+    if purpose != StrokePurpose::Paint || !context.tools.brush.needs_paint() {
         return None;
     }
     if mode.is_clone() && pen.keys.alt {
-        return Some(Outcome::CloneFrom(pen.place()));
+        return Some(Outcome::Choose(DocumentChoice::CloneSource(pen.place())));
     }
     let layer = context.layer.and_then(|id| context.document.layer(id));
     if !layer.is_some_and(|layer| matches!(layer.content, Content::Pixels(_))) {
@@ -107,6 +107,7 @@ mod tests {
     use crate::document::{Document, PixelLayer};
     use crate::math::{Size, srgb::Color, vec2};
     use crate::paint::{Brush, Pickup};
+    use crate::tools::ToolSettings;
     use crate::tools::{ModifierKeys, Symmetry, ToolKind, press};
 
     /// A red square at the left of a paint layer, over a blue ground.
@@ -119,8 +120,9 @@ mod tests {
         Document { layers, ..Document::empty(Size::new(200, 120)) }
     }
 
-    fn brush(mode: BrushMode) -> Brush {
-        Brush { size: 20.0, hardness: 1.0, mode, ..Brush::default() }
+    fn with_mode(mode: BrushMode) -> ToolSettings {
+        let brush = Brush { size: 20.0, hardness: 1.0, mode, ..Brush::default() };
+        ToolSettings::with_brush(brush)
     }
 
     /// The paint layer after a stroke.
@@ -132,15 +134,15 @@ mod tests {
         pixels.tiles.clone()
     }
 
-    fn on_paint<'a>(document: &'a Document, brush: &'a Brush) -> ToolContext<'a> {
-        ToolContext { layer: Some(document.layers[1].id), ..ToolContext::new(document, brush) }
+    fn on_paint<'a>(document: &'a Document, tools: &'a ToolSettings) -> ToolContext<'a> {
+        ToolContext { layer: Some(document.layers[1].id), ..ToolContext::new(document, tools) }
     }
 
     #[test]
     fn a_smudge_drags_the_layers_paint_and_its_mirror_image() {
-        let (document, brush) = (document(), brush(BrushMode::Smudge { length: 1.0 }));
-        let context = ToolContext { symmetry: Symmetry::Vertical, ..on_paint(&document, &brush) };
-        let tiles = drawn(&context, vec2(50.0, 60.0), vec2(90.0, 60.0));
+        let (document, mut tools) = (document(), with_mode(BrushMode::Smudge { length: 1.0 }));
+        tools.symmetry.kind = Symmetry::Vertical;
+        let tiles = drawn(&on_paint(&document, &tools), vec2(50.0, 60.0), vec2(90.0, 60.0));
         assert!(tiles.pixel(80, 60)[3] > 200 && tiles.pixel(80, 80)[3] == 0);
         // The image drags transparency onto transparency, from the right.
         assert_eq!(tiles.pixel(120, 60), [0; 4]);
@@ -150,10 +152,10 @@ mod tests {
     fn a_clone_copies_the_layer_or_the_picture_from_so_far_away() {
         let document = document();
         for (picture, outside) in [(false, [0; 4]), (true, [0, 0, 255, 255])] {
-            let brush = brush(BrushMode::Clone { aligned: true, picture });
+            let tools = with_mode(BrushMode::Clone { aligned: true, picture });
             let context = ToolContext {
                 clone_offset: Some(vec2(-100.0, 0.0)),
-                ..on_paint(&document, &brush)
+                ..on_paint(&document, &tools)
             };
             let tiles = drawn(&context, vec2(140.0, 60.0), vec2(175.0, 60.0));
             assert_eq!((tiles.pixel(140, 60), tiles.pixel(175, 60)), ([255, 0, 0, 255], outside));
@@ -163,7 +165,7 @@ mod tests {
     #[test]
     fn what_cannot_begin_says_why_and_alt_sets_the_source() {
         let document = document();
-        let clone = brush(BrushMode::Clone { aligned: true, picture: false });
+        let clone = with_mode(BrushMode::Clone { aligned: true, picture: false });
         let begun = |context: &ToolContext, keys: ModifierKeys| {
             let pen = PenSample { keys, ..PenSample::at(vec2(30.0, 50.0)) };
             press(ToolKind::Brush, context, pen).1
@@ -173,7 +175,9 @@ mod tests {
             matches!(begun(&plain, ModifierKeys::default()), Outcome::Refused(why) if why.contains("Alt-click"))
         );
         let alt = ModifierKeys { alt: true, ..ModifierKeys::default() };
-        assert!(matches!(begun(&plain, alt), Outcome::CloneFrom(at) if at == vec2(30.0, 50.0)));
+        assert!(
+            matches!(begun(&plain, alt), Outcome::Choose(DocumentChoice::CloneSource(at)) if at == vec2(30.0, 50.0))
+        );
         let on_fill = ToolContext { layer: Some(document.layers[0].id), ..plain };
         assert!(
             matches!(begun(&on_fill, ModifierKeys::default()), Outcome::Refused(why) if why.contains("paint layers"))
@@ -190,16 +194,17 @@ mod tests {
         };
         let green = Color { r: 0, g: 255, b: 0, a: 255 };
         let drawn_with = |brush: &Brush| {
-            let context = ToolContext { color: green, ..on_paint(&document, brush) };
-            drawn(&context, vec2(40.0, 60.0), vec2(100.0, 60.0)).pixel(90, 60)
+            let tools = ToolSettings { color: green, ..ToolSettings::with_brush(brush.clone()) };
+            drawn(&on_paint(&document, &tools), vec2(40.0, 60.0), vec2(100.0, 60.0)).pixel(90, 60)
         };
         assert_eq!(drawn_with(&plain), [0, 255, 0, 255]);
         let [r, g, _, a] = drawn_with(&mixing(0.5));
         assert!(r > 20 && g > 100 && a > 150, "red and green: {r} {g} {a}");
         let smearing = mixing(1.0);
         assert_eq!(drawn_with(&smearing)[1], 0, "nothing of its own");
+        let tools = ToolSettings::with_brush(smearing);
         let on_fill =
-            ToolContext { layer: Some(document.layers[0].id), ..on_paint(&document, &smearing) };
+            ToolContext { layer: Some(document.layers[0].id), ..on_paint(&document, &tools) };
         let (_, outcome) = press(ToolKind::Brush, &on_fill, PenSample::at(vec2(30.0, 50.0)));
         assert!(matches!(outcome, Outcome::Refused(why) if why.contains("picks up")));
     }

@@ -1,7 +1,7 @@
 //! The stroke tool: selects strokes of a stroke layer on the canvas and moves them along the
 //! surface. Floor 5. The session keeps the selection. Not here: the edits (`document::strokes`).
 
-use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext, closed};
+use super::{DocumentChoice, Gesture, GestureStart, Outcome, PenSample, ToolContext, closed};
 use crate::document::{Content, Document, LayerId};
 use crate::math::Vec2;
 use crate::paint::picking;
@@ -23,7 +23,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let scene = context.document.scene_of(layer.id).unwrap_or_else(|| context.document.scene());
     let Some(hit) = picking::topmost_at(strokes, &scene, pen.place()) else {
         let kept = if pen.keys.shift { context.strokes.to_vec() } else { Vec::new() };
-        return (None, Outcome::Chosen(kept));
+        return (None, Outcome::Choose(DocumentChoice::Strokes(kept)));
     };
     let was_chosen = context.strokes.contains(&hit);
     let chosen: Vec<usize> = match (pen.keys.shift, was_chosen) {
@@ -41,7 +41,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         slop_px: SLOP_PT * context.px_per_pt,
         moves: false,
     };
-    (Some(Box::new(moving)), Outcome::Chosen(chosen))
+    (Some(Box::new(moving)), Outcome::Choose(DocumentChoice::Strokes(chosen)))
 }
 
 /// Movements smaller than this are ignored, screen points: a hand trembles while it selects.
@@ -90,6 +90,7 @@ mod tests {
     use crate::paint::{Brush, Sample, Stroke};
     use crate::surface::Operator;
     use crate::tools::ModifierKeys;
+    use crate::tools::ToolSettings;
     use std::sync::Arc;
 
     /// Lines at y = 20, 60 and 100.
@@ -115,12 +116,15 @@ mod tests {
         from: Vec2,
         to: Vec2,
     ) -> (Option<Vec<usize>>, Option<Vec<f32>>) {
-        let (document, brush) = (document(), Brush::default());
+        let (document, tools) = (document(), ToolSettings::default());
         let layer = Some(document.layers[0].id);
-        let context = ToolContext { layer, strokes, ..ToolContext::new(&document, &brush) };
+        let context = ToolContext { layer, strokes, ..ToolContext::new(&document, &tools) };
         let keys = ModifierKeys { shift, ..ModifierKeys::default() };
         let (gesture, begun) = press(&context, PenSample { keys, ..PenSample::at(from) });
-        let chosen = if let Outcome::Chosen(chosen) = begun { Some(chosen) } else { None };
+        let chosen = match begun {
+            Outcome::Choose(DocumentChoice::Strokes(chosen)) => Some(chosen),
+            _ => None,
+        };
         let moved = gesture.and_then(|mut gesture| {
             gesture.drag(&[PenSample { keys, ..PenSample::at(to) }]);
             match gesture.release() {

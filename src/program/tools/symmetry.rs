@@ -32,6 +32,20 @@ pub struct SymmetryAxes {
     pub turn: f32,
 }
 
+/// How strokes repeat, and about what.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct SymmetrySettings {
+    pub kind: Symmetry,
+    pub axes: SymmetryAxes,
+}
+
+impl SymmetrySettings {
+    /// The images of a stroke, the stroke itself first.
+    pub fn images(&self, canvas: Size) -> Vec<SymmetryImage> {
+        self.kind.images_about(canvas, self.axes)
+    }
+}
+
 /// What the user drags.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AxisHandle {

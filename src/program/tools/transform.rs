@@ -12,7 +12,7 @@ mod placed;
 pub use numbers::GizmoNumbers;
 pub use pivot::PIVOTS;
 
-use super::gizmo::{GizmoContent, TransformGizmo, TransformHandle};
+use super::gizmo::{GizmoContent, TransformGizmo, TransformHandle, TransformTarget};
 use super::snap::SnapLines;
 use super::{GestureStart, Outcome, PenSample, ToolContext, closed};
 use crate::document::{Document, Layer, LayerId};
@@ -21,9 +21,18 @@ use gesture::{HeldLayer, TransformGesture};
 use pivot::PivotGesture;
 use placed::{DragMap, LayerPlacement, to_storable};
 
+/// The settings of the transform tool.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct TransformSettings {
+    /// What it moves.
+    pub target: TransformTarget,
+    /// The points of the selected layer's mesh that are chosen.
+    pub mesh_points: Vec<usize>,
+}
+
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let document = context.document;
-    let content = GizmoContent::new(context.transform_target, document, context.chosen());
+    let content = GizmoContent::new(context.tools.transform.target, document, context.chosen());
     let of_shape = content == GizmoContent::Shape;
     let chosen = if of_shape { &[] } else { context.chosen() };
     let layers: Vec<&Layer> =
@@ -46,7 +55,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let handle = gizmo.handle_at(pen.place(), context.px_per_pt, pen.keys.alt);
     if handle == TransformHandle::Pivot {
         let (snap, snaps, px_per_pt) =
-            (context.snap.clone(), context.aids.snaps, context.px_per_pt);
+            (context.snap.clone(), context.tools.aids.snaps, context.px_per_pt);
         let gesture = PivotGesture { gizmo, snap, snaps, px_per_pt, lines: SnapLines::default() };
         return (Some(Box::new(gesture)), Outcome::Idle);
     }

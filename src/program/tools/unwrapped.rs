@@ -5,8 +5,8 @@
 pub mod pieces;
 
 use super::assistants::StrokeStart;
-use super::context::KeptContext;
-use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext, ToolKind};
+use super::kept_context::KeptContext;
+use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext, ToolKind, ToolSettings};
 use crate::document::{Document, LayerId};
 use crate::math::Vec2;
 use crate::paint::{Brush, Measure, Sample, StabilizedPen, Stabilizer};
@@ -47,11 +47,12 @@ pub fn paint(
     let brush = Brush {
         stabilizer: Stabilizer::None,
         spacing_on: Measure::Surface,
-        ..context.brush.clone()
+        ..context.tools.brush.clone()
     };
     // The line that Shift draws is drawn on the sheet.
-    let hand =
-        ToolContext { brush: &brush, operator: layout.bend().operator, last_end: None, ..*context };
+    let operator = layout.bend().operator;
+    let tools = ToolSettings { brush, operator, ..context.tools.clone() };
+    let hand = ToolContext { tools: &tools, last_end: None, ..*context };
     let sheet = Sheet { layout, surface };
     let lead = context
         .last_end
@@ -63,7 +64,7 @@ pub fn paint(
         layer: context.layer,
         hand: KeptContext::of(&hand),
         start,
-        stabilized: StabilizedPen::new(context.brush.stabilizer),
+        stabilized: StabilizedPen::new(context.tools.brush.stabilizer),
         last: None,
         active: None,
         is_refused: false,

@@ -12,7 +12,7 @@ const HANDLE_PT: f32 = 9.0;
 
 /// Draws the area, if there is one.
 pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2) {
-    let Some(area) = session.crop else { return };
+    let Some(area) = session.tools.crop.area else { return };
     let corners = crop::corners(area);
     outside(painter, session, corners, to_screen);
     let seen = corners.map(to_screen);
@@ -67,7 +67,9 @@ fn outside(
 
 /// Enter crops to the area, Escape cancels.
 pub fn keys(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
-    let Some(area) = session.crop.filter(|_| session.tool == ToolKind::Crop) else { return };
+    let Some(area) = session.tools.crop.area.filter(|_| session.tool == ToolKind::Crop) else {
+        return;
+    };
     if session.is_drawing() || ui.ctx().egui_wants_keyboard_input() {
         return;
     }

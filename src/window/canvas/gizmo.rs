@@ -15,7 +15,7 @@ const HANDLE_PT: f32 = 9.0;
 pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2) {
     let Some(open) = session.active() else { return };
     let chosen = open.outermost_chosen();
-    if session.transform_target == TransformTarget::Paint
+    if session.tools.transform.target == TransformTarget::Paint
         && let [one] = chosen[..]
         && let Some((mesh, points)) =
             open.shown().layer(one).and_then(|layer| mesh::points_of(open.shown(), layer))
@@ -24,7 +24,7 @@ pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> P
         let at = |p: Vec2| to_screen(map.outside_own().to_canvas(mesh.at(p).0).unwrap_or(p));
         grid(painter, &mesh, &at);
         for (k, point) in points.into_iter().enumerate() {
-            let is_chosen = session.mesh_points.contains(&k);
+            let is_chosen = session.tools.transform.mesh_points.contains(&k);
             let color = if is_chosen { Color32::from_rgb(255, 200, 80) } else { Color32::WHITE };
             painter.circle(
                 to_screen(point),
@@ -34,7 +34,7 @@ pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> P
             );
         }
     }
-    let Some(gizmo) = open.gizmo(session.transform_target) else { return };
+    let Some(gizmo) = open.gizmo(session.tools.transform.target) else { return };
     let corners = gizmo.corners.map(to_screen);
     let dark = Stroke::new(3.0, Color32::from_black_alpha(110));
     let light = Stroke::new(1.2, Color32::from_rgb(120, 200, 255));

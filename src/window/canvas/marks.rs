@@ -43,8 +43,9 @@ pub fn draw(
     if tool == ToolKind::Strokes {
         chosen(painter, session, &to_screen);
     }
-    if tool == ToolKind::Lasso && !session.lasso.is_empty() {
-        let line: Vec<Pos2> = session.lasso.iter().copied().chain(under).map(to_screen).collect();
+    if tool == ToolKind::Lasso && !session.tools.lasso.is_empty() {
+        let line: Vec<Pos2> =
+            session.tools.lasso.iter().copied().chain(under).map(to_screen).collect();
         painter.circle_filled(line[0], 4.0, Color32::from_black_alpha(160));
         painter.circle_filled(line[0], 2.6, Color32::WHITE);
         for stroke in
@@ -59,16 +60,21 @@ pub fn draw(
     let (Some(at), Some(document)) = (under, session.shown()) else { return };
     match tool {
         ToolKind::Brush | ToolKind::Eraser => {
-            let radius = (0.5 * session.brush.size).max(0.5);
-            let reach_px = 2.0 * radius * session.brush.reach;
-            let lines = outline::outline(document, session.operator, at, radius, reach_px);
+            let radius = (0.5 * session.tools.brush.size).max(0.5);
+            let reach_px = 2.0 * radius * session.tools.brush.reach;
+            let lines = outline::outline(document, session.tools.operator, at, radius, reach_px);
             footprint(painter, lines, at, &to_screen);
             if tool == ToolKind::Brush {
                 clone_source(painter, session, at, &to_screen);
             }
         }
         ToolKind::Liquify => {
-            footprint(painter, outline::circle(at, 0.5 * session.liquify.size), at, &to_screen);
+            footprint(
+                painter,
+                outline::circle(at, 0.5 * session.tools.liquify.size),
+                at,
+                &to_screen,
+            );
         }
         ToolKind::Eyedropper => picked(painter, session, to_screen(at)),
         _ => {}
@@ -98,7 +104,7 @@ pub fn draw_unwrapped(
         ToolKind::Brush | ToolKind::Eraser => {
             footprint(
                 painter,
-                outline::circle(at, (0.5 * session.brush.size).max(0.5)),
+                outline::circle(at, (0.5 * session.tools.brush.size).max(0.5)),
                 at,
                 &to_screen,
             );
@@ -130,14 +136,15 @@ fn footprint(
 
 /// The current colour, around the point where another is picked.
 fn picked(painter: &Painter, session: &Session, at: Pos2) {
-    painter.circle_stroke(at, 14.0, Stroke::new(4.0, color32(session.color)));
+    painter.circle_stroke(at, 14.0, Stroke::new(4.0, color32(session.tools.color)));
     painter.circle_stroke(at, 16.5, Stroke::new(1.0, Color32::from_black_alpha(160)));
 }
 
 /// The axes of symmetry.
 fn axes(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2) {
     let Some(document) = session.shown() else { return };
-    for axis in session.symmetry.lines_about(document.size, session.axes) {
+    for axis in session.tools.symmetry.kind.lines_about(document.size, session.tools.symmetry.axes)
+    {
         let ends = axis.map(to_screen);
         painter.line_segment(ends, Stroke::new(2.2, Color32::from_black_alpha(70)));
         let dashes = Stroke::new(1.0, Color32::from_rgb(120, 200, 255));
@@ -152,7 +159,7 @@ fn clone_source(
     under: Vec2,
     to_screen: &impl Fn(Vec2) -> Pos2,
 ) {
-    let BrushMode::Clone { aligned, .. } = session.brush.mode else { return };
+    let BrushMode::Clone { aligned, .. } = session.tools.brush.mode else { return };
     let Some(source) = session.active().and_then(|open| open.clone_source) else { return };
     let offset = source.offset.filter(|_| aligned || session.is_drawing());
     let at = to_screen(offset.map_or(source.at, |offset| under + offset));

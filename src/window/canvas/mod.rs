@@ -287,7 +287,10 @@ impl Canvas {
 
 /// Enter closes a lasso of clicks, Escape cancels it.
 fn lasso_keys(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
-    if session.lasso.is_empty() || session.is_drawing() || ui.ctx().egui_wants_keyboard_input() {
+    if session.tools.lasso.is_empty()
+        || session.is_drawing()
+        || ui.ctx().egui_wants_keyboard_input()
+    {
         return;
     }
     if ui.input(|input| input.key_pressed(egui::Key::Enter)) {

@@ -108,8 +108,8 @@ impl PartMarks {
             arrows(painter, session, &to_screen, screen_from_canvas);
         }
         if let Some(at) = under.filter(|_| tool == ToolKind::Sculpt) {
-            let radius = 0.5 * session.shape.size * scale;
-            let inner = radius * session.shape.hardness;
+            let radius = 0.5 * session.tools.shape.size * scale;
+            let inner = radius * session.tools.shape.hardness;
             for (width, color) in [(2.4, DARK), (1.1, Color32::WHITE)] {
                 painter.circle_stroke(to_screen(at), radius, Stroke::new(width, color));
             }

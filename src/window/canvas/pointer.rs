@@ -89,7 +89,7 @@ impl PointerState {
     /// The current tool, or the one selected by a held key.
     pub fn tool(&self, session: &Session) -> ToolKind {
         // Alt sets the source point of a clone brush.
-        let clones = session.tool == ToolKind::Brush && session.brush.mode.is_clone();
+        let clones = session.tool == ToolKind::Brush && session.tools.brush.mode.is_clone();
         let paints = matches!(session.tool, ToolKind::Brush | ToolKind::Gradient) && !clones;
         match self.holding {
             PointerGesture::Nothing if self.space => ToolKind::Hand,
@@ -240,13 +240,13 @@ impl PointerState {
         self.holding = match (button, tool) {
             (PointerButton::Middle, _) => PointerGesture::Panning,
             (PointerButton::Secondary, ToolKind::Sculpt) => {
-                PointerGesture::Sizing { from: pos, size: session.shape.size }
+                PointerGesture::Sizing { from: pos, size: session.tools.shape.size }
             }
             (PointerButton::Secondary, ToolKind::Liquify) => {
-                PointerGesture::Sizing { from: pos, size: session.liquify.size }
+                PointerGesture::Sizing { from: pos, size: session.tools.liquify.size }
             }
             (PointerButton::Secondary, _) if is_brush => {
-                PointerGesture::Sizing { from: pos, size: session.brush.size }
+                PointerGesture::Sizing { from: pos, size: session.tools.brush.size }
             }
             (PointerButton::Primary, ToolKind::Hand) if self.space && self.keys.command => {
                 PointerGesture::Zooming { about: pos, moved: false }
@@ -257,7 +257,8 @@ impl PointerState {
                 PointerGesture::Zooming { about: pos, moved: false }
             }
             (PointerButton::Primary, _) => {
-                let Some((watch, reading)) = ReportFilter::begin(report, session.presses_by_speed)
+                let Some((watch, reading)) =
+                    ReportFilter::begin(report, session.tools.presses_by_speed)
                 else {
                     return;
                 };

@@ -15,7 +15,7 @@ const MARKS_PT: f32 = 6.0;
 /// unwrapped sheet.
 pub fn room_pt(session: &Session) -> f32 {
     let is_picture = session.active().is_some_and(|open| open.unwrapped().is_none());
-    if session.aids.rulers && is_picture { RULER_PT } else { 0.0 }
+    if session.tools.aids.rulers && is_picture { RULER_PT } else { 0.0 }
 }
 
 /// Whether a point of the window lies on a ruler at the canvas's area.

@@ -10,7 +10,7 @@ use eframe::egui::Key;
 
 /// Changes one of the settings.
 fn set(session: &Session, requests: &mut UiRequests, change: impl FnOnce(&mut ViewAids)) {
-    let mut aids = session.aids;
+    let mut aids = session.tools.aids;
     change(&mut aids);
     requests.act(Action::Guide(GuideAction::Aids { aids }));
 }
@@ -23,7 +23,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         always,
         |session, requests| set(session, requests, |aids| aids.rulers ^= true),
     )
-    .ticked(|session, _| session.aids.rulers),
+    .ticked(|session, _| session.tools.aids.rulers),
     row(
         "Show guides",
         &[ctrl(Key::Semicolon)],
@@ -31,7 +31,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         always,
         |session, requests| set(session, requests, |aids| aids.guides ^= true),
     )
-    .ticked(|session, _| session.aids.guides),
+    .ticked(|session, _| session.tools.aids.guides),
     row(
         "Lock guides",
         &[ctrl_alt(Key::Semicolon)],
@@ -39,7 +39,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         always,
         |session, requests| set(session, requests, |aids| aids.locked ^= true),
     )
-    .ticked(|session, _| session.aids.locked),
+    .ticked(|session, _| session.tools.aids.locked),
     row("Clear guides", &[], "Removes all guides", has_document, |_, requests| {
         requests.act(Action::Guide(GuideAction::Clear {}))
     }),
@@ -51,7 +51,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         always,
         |session, requests| set(session, requests, |aids| aids.grid_shown ^= true),
     )
-    .ticked(|session, _| session.aids.grid_shown),
+    .ticked(|session, _| session.tools.aids.grid_shown),
     row(
         "Grid and snapping…",
         &[],
@@ -66,7 +66,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         always,
         |session, requests| set(session, requests, |aids| aids.snaps ^= true),
     )
-    .ticked(|session, _| session.aids.snaps),
+    .ticked(|session, _| session.tools.aids.snaps),
     LINE,
     row(
         "Draw along assistants",
@@ -79,7 +79,7 @@ pub const COMMANDS: &[MenuCommand] = &[
             })
         },
     )
-    .ticked(|session, _| session.aids.magnetism > 0.0),
+    .ticked(|session, _| session.tools.aids.magnetism > 0.0),
     row("Clear assistants", &[], "Removes all assistants", has_document, |_, requests| {
         requests.act(Action::Guide(GuideAction::Assistants { assistants: Vec::new() }))
     }),

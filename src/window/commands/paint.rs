@@ -15,9 +15,9 @@ fn hand(requests: &mut UiRequests, action: HandAction) {
 
 fn resize(session: &Session, requests: &mut UiRequests, factor: f32) {
     let size = match session.tool {
-        ToolKind::Sculpt => session.shape.size,
-        ToolKind::Liquify => session.liquify.size,
-        _ => session.brush.size,
+        ToolKind::Sculpt => session.tools.shape.size,
+        ToolKind::Liquify => session.tools.liquify.size,
+        _ => session.tools.brush.size,
     };
     let to = if factor > 1.0 {
         (size * factor).max(size + 1.0)
@@ -48,7 +48,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         "A sharper rim",
         always,
         |session, requests| {
-            hand(requests, HandAction::Hardness { to: session.brush.hardness + 0.1 })
+            hand(requests, HandAction::Hardness { to: session.tools.brush.hardness + 0.1 })
         },
     ),
     row(
@@ -57,7 +57,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         "A smoother rim",
         always,
         |session, requests| {
-            hand(requests, HandAction::Hardness { to: session.brush.hardness - 0.1 })
+            hand(requests, HandAction::Hardness { to: session.tools.brush.hardness - 0.1 })
         },
     ),
     LINE,

@@ -81,8 +81,9 @@ pub const COMMANDS: &[MenuCommand] = &[
 
 /// There is a transform, and Enter neither closes a lasso nor crops.
 fn is_transformed(session: &Session) -> bool {
-    let Some(open) =
-        session.active().filter(|_| session.lasso.is_empty() && session.crop.is_none())
+    let Some(open) = session
+        .active()
+        .filter(|_| session.tools.lasso.is_empty() && session.tools.crop.area.is_none())
     else {
         return false;
     };
@@ -117,8 +118,8 @@ fn turn(session: &Session, requests: &mut UiRequests, degrees: f32) {
 
 /// The shape mapped about its middle, while the transform tool moves it.
 fn shape_by(session: &Session, map: Option<PlaneMap>) -> Option<Action> {
-    let takes_shape =
-        session.tool == ToolKind::Transform && session.transform_target == TransformTarget::Shape;
+    let takes_shape = session.tool == ToolKind::Transform
+        && session.tools.transform.target == TransformTarget::Shape;
     let open = session.active().filter(|_| takes_shape)?;
     let by = transform::about_shape(open.document(), map?)?;
     Some(Action::Part(PartAction::TakeAlong { by, done: true }))

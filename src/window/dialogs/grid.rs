@@ -11,7 +11,7 @@ use eframe::egui::{DragValue, Key, Ui};
 pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) -> DialogAnswer {
     ui.set_width(320.0);
     ui.heading("Grid and snapping");
-    let mut aids = session.aids;
+    let mut aids = session.tools.aids;
     grid(ui, &mut aids.grid);
     ui.separator();
     for (label, hint, get) in CHOICES {
@@ -19,7 +19,7 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) -> Dialog
             *get(&mut aids) = on;
         }
     }
-    if aids != session.aids {
+    if aids != session.tools.aids {
         requests.act(Action::Guide(GuideAction::Aids { aids }));
     }
     // Enter in a number sets it, and with it the grid is done.

@@ -32,7 +32,7 @@ const KINDS: [(AssistantKind, &str, &str); 6] = [
 ];
 
 pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    let aids = session.aids;
+    let aids = session.tools.aids;
     let mut set = |aids: ViewAids| requests.act(Action::Guide(GuideAction::Aids { aids }));
     for (assistant, label, hint) in KINDS {
         if ui
@@ -49,7 +49,7 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     if let Some(changed) = magnetism.inline(ui, aids.magnetism, 80.0) {
         set(ViewAids { magnetism: changed.to, ..aids });
     }
-    if session.symmetry != Symmetry::None && ui.button("Axes to the middle").clicked() {
+    if session.tools.symmetry.kind != Symmetry::None && ui.button("Axes to the middle").clicked() {
         requests.act(Action::Hand(HandAction::Axes { center: None, turn: 0.0 }));
     }
 }

@@ -18,7 +18,7 @@ use eframe::egui::{self, Ui};
 
 /// The sections of the brush editor that can be unfolded.
 pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    let brush = &session.brush;
+    let brush = &session.tools.brush;
     let mut changed = None;
     let mut part = |ui: &mut Ui, label: &str, show: fn(&mut Ui, &Brush) -> Option<Brush>| {
         let header = egui::CollapsingHeader::new(label).id_salt(("brush", label));

@@ -27,7 +27,7 @@ const KINDS: [(BrushModeChoice, &str); 4] = [
 
 /// In a bar.
 pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    let mode = session.brush.mode;
+    let mode = session.tools.brush.mode;
     let mut give = |mode: Option<BrushMode>| {
         requests.actions.extend(mode.map(|mode| Action::Hand(HandAction::Mark { mark: mode })))
     };
@@ -78,10 +78,10 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let hint = "How far from the pen a bent mark may land, in diameters; 0 is anywhere. The cursor shows it";
     let reach = NumberField::new("Reach", 0.0..=20.0, hint).decimals(1).inline(
         ui,
-        session.brush.reach,
+        session.tools.brush.reach,
         60.0,
     );
     requests.actions.extend(reach.map(|c| Action::Hand(HandAction::Reach { to: c.to })));
-    let bounded = choice(ui, "Brush where", session.brush.bounded, &BOUNDS);
+    let bounded = choice(ui, "Brush where", session.tools.brush.bounded, &BOUNDS);
     requests.actions.extend(bounded.map(|bounded| Action::Hand(HandAction::Bounded { bounded })));
 }

@@ -160,7 +160,7 @@ fn preset(ui: &mut Ui, preset: &BrushPreset, is_on: bool, swatches: &mut Swatche
 }
 
 fn numbers(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    let brush = &session.brush;
+    let brush = &session.tools.brush;
     let mut push = |action: Option<HandAction>| requests.actions.extend(action.map(Action::Hand));
     let size = NumberField::new("Size", Brush::HAND_SIZE, "Diameter of a dab").px();
     push(size.row(ui, brush.size).map(|c| HandAction::Size { to: c.to }));

@@ -10,7 +10,7 @@ use crate::widgets::{NumberField, ValueChange, named, swatch};
 use eframe::egui::{self, Color32, Id, Mesh, Rect, Sense, Shape, Stroke, TextEdit, Ui, pos2, vec2};
 
 pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    if let Some(changed) = picker(ui, "Colour in hand", session.color) {
+    if let Some(changed) = picker(ui, "Colour in hand", session.tools.color) {
         requests.act(Action::Hand(HandAction::Color { color: changed.to }));
     }
     let recent = session.recent_colors.iter().enumerate();
@@ -30,7 +30,7 @@ pub fn strip(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     /// As many as a narrow panel has room for.
     const RECENT: usize = 8;
     ui.horizontal(|ui| {
-        if let Some(changed) = button(ui, "Changes the current colour", session.color) {
+        if let Some(changed) = button(ui, "Changes the current colour", session.tools.color) {
             requests.act(Action::Hand(HandAction::Color { color: changed.to }));
         }
         ui.spacing_mut().item_spacing.x = 3.0;

@@ -6,7 +6,7 @@ use crate::math::Rect;
 use crate::requests::UiRequests;
 use crate::session::actions::CanvasAction;
 use crate::session::{Action, Session};
-use crate::tools::settings::CropAspect;
+use crate::tools::crop::CropAspect;
 use crate::widgets::choice;
 use eframe::egui::{Button, DragValue, Ui};
 
@@ -16,7 +16,7 @@ const SIDE: std::ops::RangeInclusive<i32> = 1..=65_536;
 
 pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let Some(canvas) = session.active().map(|open| open.document().size) else { return };
-    let area = session.crop.unwrap_or(canvas.rect());
+    let area = session.tools.crop.area.unwrap_or(canvas.rect());
     let (mut x, mut y) = (area.x0, area.y0);
     let (mut width, mut height) = (area.width() as i32, area.height() as i32);
     let number = |ui: &mut Ui, label: &str, value: &mut i32, range| {
@@ -29,7 +29,7 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     is_other |= number(ui, "Y", &mut y, PLACE);
     let wider = number(ui, "Width", &mut width, SIDE);
     let taller = number(ui, "Height", &mut height, SIDE);
-    if let Some(ratio) = session.crop_aspect.ratio(canvas) {
+    if let Some(ratio) = session.tools.crop.aspect.ratio(canvas) {
         let round = |v: f32| (v.round() as i32).clamp(*SIDE.start(), *SIDE.end());
         match (wider, taller) {
             (true, _) => height = round(width as f32 / ratio),
@@ -43,16 +43,16 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     }
     ui.add_space(6.0);
     if let Some(aspect) =
-        choice(ui, "Aspect of the frame", session.crop_aspect, &CropAspect::LABELS)
+        choice(ui, "Aspect of the frame", session.tools.crop.aspect, &CropAspect::LABELS)
     {
         requests.act(Action::Canvas(CanvasAction::Aspect { aspect }));
     }
     ui.add_space(6.0);
-    let crops = ui.add_enabled(session.crop.is_some(), Button::new("Crop to frame"));
+    let crops = ui.add_enabled(session.tools.crop.area.is_some(), Button::new("Crop to frame"));
     if crops.on_hover_text("The canvas becomes the frame (Enter)").clicked() {
         requests.act(crop::apply(area));
     }
-    let drops = ui.add_enabled(session.crop.is_some(), Button::new("Give up"));
+    let drops = ui.add_enabled(session.tools.crop.area.is_some(), Button::new("Give up"));
     if drops.on_hover_text("Removes the frame (Escape)").clicked() {
         requests.act(Action::Canvas(CanvasAction::CropArea { frame: None }));
     }

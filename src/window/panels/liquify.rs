@@ -10,7 +10,7 @@ use crate::widgets::{NumberField, sentence};
 use eframe::egui::{Button, Ui};
 
 pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    let (now, mut to) = (session.liquify, None);
+    let (now, mut to) = (session.tools.liquify, None);
     for (tool, label) in LiquifyTool::LABELS {
         let button = Button::selectable(now.tool == tool, sentence(label));
         if ui.add(button).on_hover_text(tool.hint()).clicked() {

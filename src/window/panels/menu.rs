@@ -102,7 +102,7 @@ fn kept_selections(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         ui.menu_button("Select kept", |ui| {
             for name in kept.iter().map(|kept| kept.name.clone()) {
                 if ui.button(&name).clicked() {
-                    let how = session.select.combine;
+                    let how = session.tools.select.combine;
                     requests.act(Action::Selection(SelectionAction::Take { name, how }));
                     ui.close();
                 }

@@ -86,11 +86,11 @@ fn bending(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
 /// The options of the current tool.
 fn of_tool(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     match session.tool {
-        ToolKind::Fill => fill::options(ui, session.fill, requests),
+        ToolKind::Fill => fill::options(ui, session.tools.fill, requests),
         ToolKind::Brush | ToolKind::Eraser => {
             brush(ui, session, requests);
             symmetry(ui, session, requests);
-            let mut by_speed = session.presses_by_speed;
+            let mut by_speed = session.tools.presses_by_speed;
             let hint = "A mouse, or a finger without pressure, presses less the faster it moves";
             if ui.checkbox(&mut by_speed, "Speed presses").on_hover_text(hint).changed() {
                 requests.act(Action::Hand(HandAction::PressBySpeed { on: by_speed }));
@@ -121,11 +121,13 @@ fn symmetry(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         (Symmetry::Radial(6), "6 times round"),
         (Symmetry::Radial(8), "8 times round"),
     ];
-    let known =
-        CHOICES.iter().find(|(choice, _)| *choice == session.symmetry).map(|(_, label)| *label);
+    let known = CHOICES
+        .iter()
+        .find(|(choice, _)| *choice == session.tools.symmetry.kind)
+        .map(|(_, label)| *label);
     let menu = ui.menu_button(known.unwrap_or("Symmetry"), |ui| {
         for (choice, label) in CHOICES {
-            if ui.selectable_label(choice == session.symmetry, label).clicked() {
+            if ui.selectable_label(choice == session.tools.symmetry.kind, label).clicked() {
                 requests.act(Action::Hand(HandAction::Symmetry { symmetry: choice }));
                 ui.close();
             }
@@ -163,7 +165,7 @@ fn numbers_by(
 }
 
 fn brush(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    let brush = &session.brush;
+    let brush = &session.tools.brush;
     let mut push = |action: Option<HandAction>| requests.actions.extend(action.map(Action::Hand));
     let size = NumberField::new(
         "Size",

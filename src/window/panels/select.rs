@@ -32,7 +32,7 @@ pub const KINDS: [(RegionKind, &str); 6] = [
 ];
 
 pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    let select = session.select;
+    let select = session.tools.select;
     let mut push = |to: Option<SelectSettings>| {
         requests
             .actions

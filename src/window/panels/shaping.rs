@@ -20,7 +20,7 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         }
         return;
     }
-    let now = session.shape;
+    let now = session.tools.shape;
     let to = match session.tool {
         ToolKind::Touch => touching(ui, now),
         ToolKind::Sculpt => sculpting(ui, now),

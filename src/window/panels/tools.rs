@@ -76,8 +76,8 @@ fn button(
 
 fn colours(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     ui.add_space(4.0);
-    swatch(ui, "First colour", session.color, vec2(32.0, 26.0));
-    if swatch(ui, "Second colour", session.second_color, vec2(32.0, 16.0)).clicked() {
+    swatch(ui, "First colour", session.tools.color, vec2(32.0, 26.0));
+    if swatch(ui, "Second colour", session.tools.second_color, vec2(32.0, 16.0)).clicked() {
         requests.act(Action::Hand(HandAction::SwapColors {}));
     }
     if icon_button(ui, Icon::Swap, "Swap colours", false)

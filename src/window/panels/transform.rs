@@ -17,8 +17,12 @@ use std::ops::RangeInclusive;
 /// The upper row: commands, sampling, pivot.
 pub fn ways(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     if session.shown().is_some_and(|document| document.surface.is_some())
-        && let Some(target) =
-            choice(ui, "What is transformed", session.transform_target, &TransformTarget::LABELS)
+        && let Some(target) = choice(
+            ui,
+            "What is transformed",
+            session.tools.transform.target,
+            &TransformTarget::LABELS,
+        )
     {
         requests.act(Action::Hand(HandAction::TransformTarget { carried: target }));
     }
@@ -60,7 +64,7 @@ pub fn ways(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             }));
         }
     }
-    if let Some(gizmo) = open.gizmo(session.transform_target) {
+    if let Some(gizmo) = open.gizmo(session.tools.transform.target) {
         ui.label("Pivot");
         let choices = PIVOTS.map(|(share, name)| (Some(share), name));
         let known =
@@ -101,8 +105,8 @@ fn meshes(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
 /// The lower row: the gizmo in numbers; sides and angles change about the pivot.
 pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let Some(open) = session.active() else { return };
-    let of_shape =
-        session.transform_target == TransformTarget::Shape && open.document().surface.is_some();
+    let of_shape = session.tools.transform.target == TransformTarget::Shape
+        && open.document().surface.is_some();
     let locked = |id| open.document().layer(id).is_none_or(|layer| layer.lock == LayerLock::All);
     let chosen = open.outermost_chosen();
     if chosen.is_empty() && !of_shape {
@@ -111,9 +115,10 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     if !of_shape && chosen.iter().any(|id| locked(*id)) {
         return drop(ui.weak("What is locked cannot be transformed"));
     }
-    let (Some(gizmo), Some(before)) =
-        (open.gizmo(session.transform_target), open.gizmo_before(session.transform_target))
-    else {
+    let (Some(gizmo), Some(before)) = (
+        open.gizmo(session.tools.transform.target),
+        open.gizmo_before(session.tools.transform.target),
+    ) else {
         return drop(ui.weak("There is nothing on this layer to transform"));
     };
     let (Some(was), Some(before)) = (GizmoNumbers::of(&gizmo), GizmoNumbers::of(&before)) else {

@@ -138,8 +138,8 @@ impl MainWindow {
     /// A window that records its actions, see [`MainWindow::recorded`].
     pub fn recording(self) -> Self {
         // Snapping settings were stored, and are no action of this window.
-        let aids = Action::Guide(GuideAction::Aids { aids: self.session.aids });
-        let is_plain = self.session.aids == ViewAids::default();
+        let aids = Action::Guide(GuideAction::Aids { aids: self.session.tools.aids });
+        let is_plain = self.session.tools.aids == ViewAids::default();
         Self { recorded: Some(Some(aids).filter(|_| !is_plain).into_iter().collect()), ..self }
     }
 
@@ -198,7 +198,7 @@ impl MainWindow {
         self.expect_dialog(dialogs);
         self.session.keep();
         self.set_title(ui.ctx());
-        self.settings.aids = self.session.aids;
+        self.settings.aids = self.session.tools.aids;
         self.keeper.keep(&self.settings);
     }
 

@@ -61,7 +61,11 @@ impl MainWindow {
             open.unwrapped().filter(|settings| surface.known_plane_layout(*settings).is_none());
         let is_shown = shown.is_some();
         let printed = || {
-            self.session.operator.unwrapping().filter(|settings| !surface.is_unwrapped(*settings))
+            self.session
+                .tools
+                .operator
+                .unwrapping()
+                .filter(|settings| !surface.is_unwrapped(*settings))
         };
         let Some(settings) = shown.or_else(printed) else { return };
         if self.jobs.under_way.iter().any(|job| job.name == UNWRAPPING) {

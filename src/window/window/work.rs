@@ -243,7 +243,7 @@ impl MainWindow {
             open.take(edit);
             if matches!(action, Action::Canvas(_)) {
                 forget_places(open);
-                self.session.crop = None;
+                self.session.tools.crop.area = None;
             }
             self.did(|| action);
         }

@@ -10,7 +10,7 @@ use crate::raster::{CoverageGrid, Resampling};
 use crate::session::open_document::Edit;
 use crate::session::replay::{actions, names, record};
 use crate::session::{OpenDocument, Session};
-use crate::tools::settings::CropAspect;
+use crate::tools::crop::CropAspect;
 use std::path::Path;
 
 names!(CropAspect);
@@ -46,16 +46,20 @@ impl CanvasAction {
         session.drop_gesture();
         match self {
             CanvasAction::CropArea { frame: area } => {
-                return session.crop = area.map(near).filter(|area| !area.is_empty());
+                return session.tools.crop.area = area.map(near).filter(|area| !area.is_empty());
             }
             CanvasAction::Aspect { aspect } => {
-                session.crop_aspect = *aspect;
+                session.tools.crop.aspect = *aspect;
                 let canvas = session.active().map(|open| open.document().size);
-                session.crop =
-                    session.crop.zip(canvas).map(|(area, canvas)| aspect.given(area, canvas));
+                session.tools.crop.area = session
+                    .tools
+                    .crop
+                    .area
+                    .zip(canvas)
+                    .map(|(area, canvas)| aspect.given(area, canvas));
                 return;
             }
-            _ => session.crop = None,
+            _ => session.tools.crop.area = None,
         }
         let Some(open) = session.active_mut() else { return session.say("There is no document.") };
         open.forget_preview();

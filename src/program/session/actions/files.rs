@@ -153,7 +153,7 @@ impl FileAction {
                 add_maps(session, &source, import)?;
             }
             FileAction::Show { index } => {
-                session.crop = None;
+                session.tools.crop.area = None;
                 session.current = (*index).min(session.open_documents.len().saturating_sub(1));
             }
             FileAction::Close { index } => session.close_document(*index),

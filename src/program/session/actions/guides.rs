@@ -49,7 +49,7 @@ impl GuideAction {
         session.drop_gesture();
         match self {
             GuideAction::Aids { aids } => {
-                session.aids = ViewAids {
+                session.tools.aids = ViewAids {
                     grid: aids.grid.held(),
                     magnetism: held(aids.magnetism, &UNIT),
                     ..*aids
@@ -57,11 +57,11 @@ impl GuideAction {
             }
             GuideAction::Pull { vertical, pen, px_per_pt } => {
                 // A guide that is pulled out becomes visible.
-                session.aids.guides = true;
+                session.tools.aids.guides = true;
                 let Some(open) = session.active() else {
                     return session.say("There is no document.");
                 };
-                let aids = ViewAids { to_guides: false, ..session.aids };
+                let aids = ViewAids { to_guides: false, ..session.tools.aids };
                 let targets = SnapTargets::of(open.document(), &aids, &[], *px_per_pt);
                 let start = pull(open.document(), *vertical, targets, *pen);
                 super::pointer::begin(session, start);

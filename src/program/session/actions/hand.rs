@@ -93,13 +93,13 @@ actions! {
 
 impl HandAction {
     pub fn apply(&self, session: &mut Session) {
-        let brush = &mut session.brush;
+        let brush = &mut session.tools.brush;
         match self {
             HandAction::Tool { tool } => {
                 session.drop_gesture();
-                session.lasso.clear();
-                session.mesh_points.clear();
-                session.crop = None;
+                session.tools.lasso.clear();
+                session.tools.transform.mesh_points.clear();
+                session.tools.crop.area = None;
                 session.tool = *tool;
             }
             HandAction::Preset { name } => session.take_preset(name),
@@ -108,12 +108,12 @@ impl HandAction {
                 Err(error) => session.notes.push(error.to_string()),
             },
             HandAction::Size { to } if session.tool == ToolKind::Sculpt => {
-                session.shape.size = held(*to, &SculptStroke::SIZE);
+                session.tools.shape.size = held(*to, &SculptStroke::SIZE);
             }
             HandAction::Size { to } if session.tool == ToolKind::Liquify => {
-                session.liquify.size = held(*to, &LiquifySettings::SIZE);
+                session.tools.liquify.size = held(*to, &LiquifySettings::SIZE);
             }
-            HandAction::Liquify { liquify } => session.liquify = liquify.held(),
+            HandAction::Liquify { liquify } => session.tools.liquify = liquify.held(),
             HandAction::Size { to } => BrushNumber::Size.set(brush, *to),
             HandAction::Hardness { to } => BrushNumber::Hardness.set(brush, *to),
             HandAction::Opacity { to } => BrushNumber::Opacity.set(brush, *to),
@@ -125,23 +125,23 @@ impl HandAction {
                 let dynamics = brush.dynamics.with_pressure(Property::Size, *size);
                 brush.dynamics = dynamics.with_pressure(Property::Flow, *flow);
             }
-            HandAction::Color { color } => session.color = *color,
-            HandAction::SecondColor { color } => session.second_color = *color,
+            HandAction::Color { color } => session.tools.color = *color,
+            HandAction::SecondColor { color } => session.tools.second_color = *color,
             HandAction::SwapColors {} => {
-                std::mem::swap(&mut session.color, &mut session.second_color)
+                std::mem::swap(&mut session.tools.color, &mut session.tools.second_color)
             }
             HandAction::DefaultColors {} => {
-                (session.color, session.second_color) = (Color::BLACK, Color::WHITE)
+                (session.tools.color, session.tools.second_color) = (Color::BLACK, Color::WHITE)
             }
-            HandAction::Operator { operator } => session.operator = operator.held(),
-            HandAction::Symmetry { symmetry } => session.symmetry = *symmetry,
+            HandAction::Operator { operator } => session.tools.operator = operator.held(),
+            HandAction::Symmetry { symmetry } => session.tools.symmetry.kind = *symmetry,
             HandAction::Axes { center, turn } => {
-                session.axes = SymmetryAxes { center: *center, turn: *turn }.held()
+                session.tools.symmetry.axes = SymmetryAxes { center: *center, turn: *turn }.held()
             }
-            HandAction::Fill { fill } => session.fill = *fill,
-            HandAction::PressBySpeed { on } => session.presses_by_speed = *on,
+            HandAction::Fill { fill } => session.tools.fill = *fill,
+            HandAction::PressBySpeed { on } => session.tools.presses_by_speed = *on,
             HandAction::Mark { mark: mode } => brush.mode = mode.held(),
-            HandAction::TransformTarget { carried } => session.transform_target = *carried,
+            HandAction::TransformTarget { carried } => session.tools.transform.target = *carried,
             HandAction::Bounded { bounded } => brush.bounded = *bounded,
             HandAction::Reach { to } => BrushNumber::Reach.set(brush, *to),
         }

@@ -103,16 +103,16 @@ impl LayerAction {
             from: vec2(0.0, 0.0),
             to: vec2(1.0, 1.0),
             stops: vec![
-                GradientStop { t: 0.0, color: session.color },
-                GradientStop { t: 1.0, color: session.second_color },
+                GradientStop { t: 0.0, color: session.tools.color },
+                GradientStop { t: 1.0, color: session.tools.second_color },
             ],
-            operator: session.operator,
+            operator: session.tools.operator,
             filter: ImageFilter::Antialias,
             frame: Default::default(),
             pieces: Vec::new(),
         };
         session.drop_gesture();
-        let target = session.transform_target;
+        let target = session.tools.transform.target;
         let Some(open) = session.active_mut() else { return };
         if let LayerAction::Set { layer, to, done } = self {
             if let Some(why) = self.refusal(open.document()) {

@@ -107,7 +107,7 @@ const NO_PART: PartRefusal = "There is no such part.";
 impl PartAction {
     pub fn apply(&self, session: &mut Session) {
         if let PartAction::Settings { shape } = self {
-            session.shape = shape.held();
+            session.tools.shape = shape.held();
             return;
         }
         session.drop_gesture();

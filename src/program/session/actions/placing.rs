@@ -24,7 +24,7 @@ pub fn read_picture(file: &Path) -> Result<(String, Picture)> {
 /// A picture becomes an image layer, bent by the current operator (by normals, if that is flat),
 /// pinned at `at`. If no document is open, it becomes one itself.
 pub fn place(session: &mut Session, name: &str, picture: Picture, at: Vec2) {
-    let operator = match session.operator {
+    let operator = match session.tools.operator {
         Operator::None => DROPPED,
         operator => operator,
     };

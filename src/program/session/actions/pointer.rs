@@ -11,7 +11,7 @@ use crate::tools::guides::GuideAt;
 use crate::tools::snap::{SnapTargets, ViewAids};
 use crate::tools::unwrapped;
 use crate::tools::{
-    self, BrushTarget, GestureStart, ModifierKeys, Outcome, PenSample, ShapeSettings, ToolContext,
+    self, BrushTarget, DocumentChoice, GestureStart, ModifierKeys, Outcome, PenSample, ToolContext,
     ToolKind,
 };
 use serde_json::Value;
@@ -92,13 +92,13 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
     }
     let place = on_canvas(session, pen.place());
     let clones = matches!(tool, ToolKind::Brush) && !pen.keys.alt;
-    let clone_offset = match session.brush.mode {
+    let clone_offset = match session.tools.brush.mode {
         BrushMode::Clone { aligned, .. } if clones => {
             session.active_mut().zip(place).and_then(|(open, at)| open.begin_clone(at, aligned))
         }
         _ => None,
     };
-    let target = session.transform_target;
+    let target = session.tools.transform.target;
     if let Some(open) = session.active_mut().filter(|_| tool == ToolKind::Transform) {
         open.hold_gizmo(target);
     }
@@ -125,42 +125,25 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
     if let Some(guide) = guide_under(session, &document, tool, pen, px_per_pt) {
         let to = SnapTargets::of(
             &document,
-            &ViewAids { to_guides: false, ..session.aids },
+            &ViewAids { to_guides: false, ..session.tools.aids },
             &[],
             px_per_pt,
         );
         let (gesture, outcome) = tools::guides::hold(open.document(), guide, to);
-        session.gesture = gesture;
-        return take(session, outcome);
+        return begin(session, (gesture, outcome));
     }
     let context = ToolContext {
-        document: &document,
         layer: open.selected,
         layers: &layers,
-        brush: &session.brush,
+        strokes: &strokes,
+        part: open.part.as_deref(),
         target: brush_target(open),
-        color: session.color,
-        second_color: session.second_color,
-        operator: session.operator,
         px_per_pt,
         last_end: open.last_end,
-        symmetry: session.symmetry,
-        axes: session.axes,
-        fill: session.fill,
-        select: session.select,
-        shape: session.shape,
-        liquify: session.liquify,
-        part: open.part.as_deref(),
-        lasso: &session.lasso,
-        crop: session.crop,
-        crop_aspect: session.crop_aspect,
         gizmo: open.gizmo_memory(),
-        transform_target: target,
-        strokes: &strokes,
-        mesh_points: &session.mesh_points,
         snap: &snap,
-        aids: session.aids,
         clone_offset,
+        ..ToolContext::new(&document, &session.tools)
     };
     let (gesture, outcome) = match (layout, stroke_start(tool)) {
         (Some(layout), Some(start)) => unwrapped::paint(&context, pen, layout, start),
@@ -170,7 +153,7 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         (None, Some(start)) => tools::assistants::press_along(&context, pen, start),
         (None, None) => tools::press(tool, &context, pen),
     };
-    session.gesture = gesture;
+    (session.gesture, session.draws_stroke) = (gesture, stroke_start(tool).is_some());
     session.last_pen = place.or(session.last_pen);
     if matches!(tool, ToolKind::Brush | ToolKind::Fill | ToolKind::Gradient) {
         session.remember_color();
@@ -189,7 +172,7 @@ fn targets(
 ) -> SnapTargets {
     let moving = if matches!(tool, ToolKind::Move | ToolKind::Transform) { chosen } else { &[] };
     match is_line || tool.snaps() {
-        true => SnapTargets::of(document, &session.aids, moving, px_per_pt),
+        true => SnapTargets::of(document, &session.tools.aids, moving, px_per_pt),
         false => SnapTargets::default(),
     }
 }
@@ -214,7 +197,7 @@ fn stroke_start(tool: ToolKind) -> Option<StrokeStart> {
 
 /// A gesture that was not begun by a press of the pen on the canvas.
 pub(super) fn begin(session: &mut Session, (gesture, outcome): GestureStart) {
-    session.gesture = gesture;
+    (session.gesture, session.draws_stroke) = (gesture, false);
     take(session, outcome);
 }
 
@@ -226,7 +209,7 @@ fn guide_under(
     pen: PenSample,
     px_per_pt: f32,
 ) -> Option<GuideAt> {
-    let can = tool == ToolKind::Move && session.aids.guides && !session.aids.locked;
+    let can = tool == ToolKind::Move && session.tools.aids.guides && !session.tools.aids.locked;
     let near_px = GUIDE_PT * px_per_pt;
     can.then(|| tools::guides::guide_at(&document.guides, pen.place(), near_px)).flatten()
 }
@@ -286,46 +269,38 @@ fn works_in_place(tool: ToolKind, open: &OpenDocument) -> Result<Document, &'sta
 }
 
 fn take(session: &mut Session, outcome: Outcome) {
-    let end = session.last_pen;
-    let target = session.transform_target;
+    let outcome = outcome.apply_settings(&mut session.tools);
+    let stroke_end = session.last_pen.filter(|_| session.draws_stroke);
     let Some(open) = session.active_mut() else { return };
     match outcome {
-        Outcome::Idle => {}
+        Outcome::Idle | Outcome::Settings(..) => {}
         Outcome::Preview(document) => open.show("", document),
         Outcome::Commit { label, document, select } => {
             if open.commit(label, document) {
                 open.selected = select.or(open.selected);
-                open.last_end = end;
+                open.last_end = stroke_end.or(open.last_end);
             }
-            session.lasso.clear();
+            session.tools.lasso.clear();
         }
-        Outcome::Tuned { document, select, is_done } => {
-            match is_done {
-                true => drop(open.commit("Select", document)),
-                false => open.show("", document),
-            }
-            session.select = select;
-        }
-        Outcome::Lasso(corners) => {
-            open.forget_preview();
-            session.lasso = corners;
-        }
-        Outcome::ChosenPart(part) => open.part = Some(part),
-        Outcome::Direction(normal) => {
-            session.shape = ShapeSettings { normal, ..session.shape }.held();
-        }
-        Outcome::CropArea(area) => session.crop = Some(area),
-        Outcome::CloneFrom(at) => open.clone_source = Some(CloneSource { at, offset: None }),
+        Outcome::Choose(choice) => choose(session, choice),
         Outcome::Refused(why) => session.notes.push(why.into_owned()),
-        Outcome::Chosen(strokes) => {
+        Outcome::Cancel => open.forget_preview(),
+    }
+}
+
+fn choose(session: &mut Session, choice: DocumentChoice) {
+    let target = session.tools.transform.target;
+    let Some(open) = session.active_mut() else { return };
+    match choice {
+        DocumentChoice::Strokes(strokes) => {
             if let Some(layer) = open.selected {
                 open.choose_strokes(layer, strokes);
             }
         }
-        Outcome::Pivot(share) => open.set_pivot(target, share),
-        Outcome::MeshPoints(points) => session.mesh_points = points,
-        Outcome::Axes(axes) => session.axes = axes,
-        Outcome::Picked(color) => session.color = color,
-        Outcome::Cancel => open.forget_preview(),
+        DocumentChoice::Part(part) => open.part = Some(part),
+        DocumentChoice::Pivot(share) => open.set_pivot(target, share),
+        DocumentChoice::CloneSource(at) => {
+            open.clone_source = Some(CloneSource { at, offset: None });
+        }
     }
 }

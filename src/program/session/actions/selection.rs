@@ -92,13 +92,13 @@ impl SelectionAction {
         match self {
             SelectionAction::Hide { on } => return session.hides_selection = *on,
             SelectionAction::Settings { select } => {
-                return session.select =
+                return session.tools.select =
                     SelectSettings { region: clamp_to_ranges(&select.region), ..*select };
             }
-            SelectionAction::DropLasso {} => return session.lasso.clear(),
+            SelectionAction::DropLasso {} => return session.tools.lasso.clear(),
             _ => session.drop_gesture(),
         }
-        let (lasso, settings) = (std::mem::take(&mut session.lasso), session.select);
+        let (lasso, settings) = (std::mem::take(&mut session.tools.lasso), session.tools.select);
         let Some(open) = session.active_mut() else { return session.say("There is no document.") };
         open.forget_preview();
         if let SelectionAction::QuickMask { on } = self {

@@ -55,7 +55,7 @@ const ASIDE_PX: f32 = 12.0;
 impl StrokeAction {
     pub fn apply(&self, session: &mut Session) {
         session.drop_gesture();
-        let current_brush = session.brush.clone();
+        let current_brush = session.tools.brush.clone();
         let Some(open) = session.active_mut() else { return };
         open.forget_preview();
         let document = open.document();
@@ -70,8 +70,9 @@ impl StrokeAction {
             StrokeAction::Take { layer, stroke } => {
                 let stroke = id(layer).and_then(|id| document.strokes(id).get(*stroke).cloned());
                 if let Some(stroke) = stroke {
-                    (session.brush, session.operator) = (stroke.brush().clone(), stroke.operator());
-                    session.color = stroke.color();
+                    (session.tools.brush, session.tools.operator) =
+                        (stroke.brush().clone(), stroke.operator());
+                    session.tools.color = stroke.color();
                 }
             }
             StrokeAction::Restyle { layer, strokes, to, done } => {

@@ -7,7 +7,7 @@ use crate::io::recipe::BrushPreset;
 use crate::math::{Size, Vec2, srgb::Color, vec2};
 use crate::raster::TileGrid;
 use crate::surface::Surface;
-use crate::tools::{ModifierKeys, Outcome, PenSample, ToolContext, brush};
+use crate::tools::{ModifierKeys, Outcome, PenSample, ToolContext, ToolSettings, brush};
 use std::sync::Arc;
 
 /// Bands across the side of the picture.
@@ -34,19 +34,19 @@ pub fn drawn(
     let layers = layers.into_iter().map(Arc::new).collect();
     let document = Document { surface: Some(surface), layers, ..Document::empty(size) };
     let brush = scaled(&preset.brush, scale, side);
+    let tools = ToolSettings { operator: preset.operator, ..ToolSettings::with_brush(brush) };
     let context = ToolContext {
         layer: Some(layer),
-        operator: preset.operator,
         // From the neighbouring band.
         clone_offset: Some(vec2(side / BANDS, 0.0)),
-        ..ToolContext::new(&document, &brush)
+        ..ToolContext::new(&document, &tools)
     };
     let pens: Vec<PenSample> = wave(size)
         .into_iter()
         .map(|sample| PenSample { sample, keys: ModifierKeys::default() })
         .collect();
     let (gesture, _) =
-        brush::press(&context, *pens.first()?, crate::tools::settings::StrokePurpose::Paint);
+        brush::press(&context, *pens.first()?, crate::tools::purpose::StrokePurpose::Paint);
     let mut gesture = gesture?;
     gesture.drag(&pens[1..]);
     match gesture.release() {

@@ -52,7 +52,7 @@ fn the_crop_tool_s_frame_is_dragged_beyond_the_canvas_and_applied_or_given_up() 
 {\"in\":\"pointer\",\"do\":\"drag\",\"pens\":[[260,200]]}
 {\"in\":\"pointer\",\"do\":\"release\"}";
     let mut session = replay(&format!("{PAPER}{STROKE}{drag}"));
-    let frame = session.crop.unwrap();
+    let frame = session.tools.crop.area.unwrap();
     assert_eq!((frame.x0, frame.y0, frame.x1, frame.y1), (40, 30, 260, 200));
     assert_eq!(
         session.active().unwrap().history.done(),
@@ -63,11 +63,11 @@ fn the_crop_tool_s_frame_is_dragged_beyond_the_canvas_and_applied_or_given_up() 
 {\"in\":\"pointer\",\"do\":\"press\",\"tool\":\"crop\",\"pen\":[10,10],\"px_per_pt\":1}
 {\"in\":\"pointer\",\"do\":\"release\"}";
     story(&mut session, click);
-    assert_eq!(session.crop, Some(frame), "a click beside it does nothing");
+    assert_eq!(session.tools.crop.area, Some(frame), "a click beside it does nothing");
     story(&mut session, r#"{"in":"canvas","do":"aspect","aspect":"1:1"}"#);
-    assert_eq!(session.crop.map(|area| (area.width(), area.height())), Some((220, 220)));
+    assert_eq!(session.tools.crop.area.map(|area| (area.width(), area.height())), Some((220, 220)));
     story(&mut session, r#"{"in":"canvas","do":"frame","frame":null}"#);
-    assert_eq!((session.crop, size(&session)), (None, Size::new(200, 150)));
+    assert_eq!((session.tools.crop.area, size(&session)), (None, Size::new(200, 150)));
     story(&mut session, r#"{"in":"canvas","do":"crop","to":{"x0":40,"y0":30,"x1":260,"y1":200}}"#);
     assert_eq!(size(&session), Size::new(220, 170));
     assert!(is_red(&session, 60, 40) && pixel(&session, 215, 165) == [255; 4], "the fill goes on");

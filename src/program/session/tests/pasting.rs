@@ -1,7 +1,7 @@
 //! Pictures of other programs, pasted: every way is a line that replays, saves and can be undone.
 
 use super::*;
-use crate::math::Size;
+use crate::math::{Rect, Size};
 use crate::raster::Picture;
 use crate::session::actions::{ClipboardAction, PasteTo, PastedPicture};
 use crate::session::{CanvasView, storage};

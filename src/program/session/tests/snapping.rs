@@ -88,7 +88,7 @@ fn nothing_snaps_once_it_is_put_off_and_lines_with_shift_do_else() {
         "{}",
         ends(&session)
     );
-    let mut aids = session.aids;
+    let mut aids = session.tools.aids;
     aids.snaps = false;
     Action::Guide(super::super::actions::GuideAction::Aids { aids }).apply(&mut session).unwrap();
     story(&mut session, &drag("select rectangle", [77.0, 20.0], [150.0, 66.0], ""));

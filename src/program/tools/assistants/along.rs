@@ -4,7 +4,7 @@
 use crate::document::assistants::AssistantPath;
 use crate::math::Vec2;
 use crate::paint::Sample;
-use crate::tools::context::KeptContext;
+use crate::tools::kept_context::KeptContext;
 use crate::tools::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
 
 /// How far the pen goes until the path is chosen, screen points.
@@ -18,14 +18,14 @@ pub type StrokeStart = fn(&ToolContext, PenSample) -> GestureStart;
 /// The pen comes down: the stroke follows an assistant if there is one, else it begins at once.
 pub fn press_along(context: &ToolContext, pen: PenSample, start: StrokeStart) -> GestureStart {
     let near_px = NEAR_PT * context.px_per_pt;
-    let is_on = context.aids.magnetism > 0.0 && pen.place().is_finite();
+    let is_on = context.tools.aids.magnetism > 0.0 && pen.place().is_finite();
     let all = context.document.assistants.iter().filter(|_| is_on);
     let paths: Vec<AssistantPath> = all.flat_map(|one| one.paths(pen.place(), near_px)).collect();
     if paths.is_empty() {
         return start(context, pen);
     }
     let waiting = Waiting { kept: KeptContext::of(context), start, paths, pens: vec![pen] };
-    let magnetism = context.aids.magnetism;
+    let magnetism = context.tools.aids.magnetism;
     (
         Some(Box::new(AlongGesture {
             waiting: Some(waiting),

@@ -2,7 +2,8 @@ use super::*;
 use crate::document::{Content, Layer, Live, StrokeList};
 use crate::math::{Size, vec2};
 use crate::paint::Brush;
-use crate::tools::settings::StrokePurpose;
+use crate::tools::ToolSettings;
+use crate::tools::purpose::StrokePurpose;
 use crate::tools::snap::ViewAids;
 use crate::tools::{ModifierKeys, Symmetry, brush};
 
@@ -22,8 +23,9 @@ fn with(kind: AssistantKind, points: &[Vec2]) -> Document {
 fn stroke(document: &Document, points: &[Vec2], magnetism: f32) -> Vec<Vec2> {
     let hard = Brush { size: 4.0, ..Brush::default() };
     let aids = ViewAids { magnetism, ..ViewAids::default() };
+    let tools = ToolSettings { aids, ..ToolSettings::with_brush(hard) };
     let layer = Some(document.layers[0].id);
-    let context = ToolContext { layer, aids, ..ToolContext::new(document, &hard) };
+    let context = ToolContext { layer, ..ToolContext::new(document, &tools) };
     let start = |context: &ToolContext, pen| brush::press(context, pen, StrokePurpose::Paint);
     let mut gesture = press_along(&context, PenSample::at(points[0]), start).0.unwrap();
     for point in &points[1..] {
@@ -43,9 +45,9 @@ fn dragged(
     to: Vec2,
     alt: bool,
 ) -> Option<Document> {
-    let hard = Brush::default();
     let aids = ViewAids { assistant: kind, snaps: false, ..ViewAids::default() };
-    let context = ToolContext { aids, ..ToolContext::new(document, &hard) };
+    let tools = ToolSettings { aids, ..ToolSettings::default() };
+    let context = ToolContext::new(document, &tools);
     let keys = ModifierKeys { alt, ..ModifierKeys::default() };
     let committed = |outcome| match outcome {
         Outcome::Commit { document, .. } => Some(document),
@@ -128,19 +130,15 @@ fn assistants_are_laid_moved_and_taken_away_each_in_one_step() {
 
 #[test]
 fn axes_of_symmetry_are_moved_by_their_middle_and_turned_by_their_end() {
-    let (document, soft) = (empty(), Brush::default());
-    let context =
-        ToolContext { symmetry: Symmetry::Vertical, ..ToolContext::new(&document, &soft) };
+    let (document, mut tools) = (empty(), ToolSettings::default());
+    tools.symmetry.kind = Symmetry::Vertical;
+    let context = ToolContext::new(&document, &tools);
     let mut moving = press(&context, PenSample::at(vec2(100.0, 75.0))).0.unwrap();
-    let Outcome::Axes(moved) = moving.drag(&[PenSample::at(vec2(60.0, 50.0))]) else {
-        panic!("moved")
-    };
+    let moved = moving.drag(&[PenSample::at(vec2(60.0, 50.0))]).settings().symmetry.axes;
     assert_eq!(moved.middle(document.size), vec2(60.0, 50.0));
     let end = SymmetryAxes::default().handles(document.size, 1.0)[1];
     let mut turning = press(&context, PenSample::at(end)).0.unwrap();
-    let Outcome::Axes(turned) = turning.drag(&[PenSample::at(vec2(160.0, 75.0))]) else {
-        panic!("turned")
-    };
+    let turned = turning.drag(&[PenSample::at(vec2(160.0, 75.0))]).settings().symmetry.axes;
     let images = Symmetry::Vertical.images_about(document.size, turned);
     let at = images[1].sample(&crate::paint::Sample::at(vec2(30.0, 20.0))).at;
     assert!(at.distance(vec2(30.0, 130.0)) < 1e-2, "{at}: the axis lies level now");

@@ -3,15 +3,16 @@ use crate::math::{Size, Vec2, vec2};
 use crate::paint::{Brush, Stabilizer};
 use crate::raster::TileGrid;
 use crate::surface::Operator;
+use crate::tools::ToolSettings;
 use crate::tools::{ModifierKeys, Symmetry};
 use std::sync::Arc;
 
 fn context<'a>(
     document: &'a Document,
     layer: Option<LayerId>,
-    brush: &'a Brush,
+    tools: &'a ToolSettings,
 ) -> ToolContext<'a> {
-    ToolContext { layer, ..ToolContext::new(document, brush) }
+    ToolContext { layer, ..ToolContext::new(document, tools) }
 }
 
 fn drawn(
@@ -54,20 +55,22 @@ const LINE: [Vec2; 6] = [
 #[test]
 fn the_first_stroke_makes_a_layer_to_hold_it() {
     let (empty, brush) = (Document::empty(Size::new(200, 150)), Brush::default());
-    let (document, select) = drawn(&context(&empty, None, &brush), StrokePurpose::Paint, &LINE);
+    let tools = ToolSettings::with_brush(brush);
+    let (document, select) = drawn(&context(&empty, None, &tools), StrokePurpose::Paint, &LINE);
     assert_eq!(document.layers.len(), 1);
     assert_eq!(select, Some(document.layers[0].id));
     let Content::Strokes(list) = &document.layers[0].content else { panic!("a stroke layer") };
     assert_eq!(list.params().strokes[0].samples().len(), LINE.len());
-    let (again, _) = drawn(&context(&document, select, &brush), StrokePurpose::Paint, &LINE);
+    let (again, _) = drawn(&context(&document, select, &tools), StrokePurpose::Paint, &LINE);
     assert_eq!(again.layers.len(), 1, "the next one goes to the same layer");
 }
 
 #[test]
 fn pixels_painted_step_by_step_are_those_painted_at_once() {
     let (document, brush) = (paint_layer(), Brush { size: 30.0, ..Brush::default() });
+    let tools = ToolSettings::with_brush(brush.clone());
     let id = Some(document.layers[0].id);
-    let (steps, _) = drawn(&context(&document, id, &brush), StrokePurpose::Paint, &LINE);
+    let (steps, _) = drawn(&context(&document, id, &tools), StrokePurpose::Paint, &LINE);
     let stroke = Stroke::new(brush, Operator::None, Color::BLACK, LINE.map(Sample::at).to_vec());
     let scene = document.scene();
     for at in TileAt::covering(scene.size.rect()) {
@@ -80,27 +83,29 @@ fn pixels_painted_step_by_step_are_those_painted_at_once() {
 #[test]
 fn erasing_takes_out_what_painting_put_in_and_locked_alpha_keeps_the_shape() {
     let brush = Brush { size: 30.0, hardness: 1.0, ..Brush::default() };
+    let tools = ToolSettings::with_brush(brush);
     let document = paint_layer();
     let id = Some(document.layers[0].id);
-    let (painted, _) = drawn(&context(&document, id, &brush), StrokePurpose::Paint, &LINE);
+    let (painted, _) = drawn(&context(&document, id, &tools), StrokePurpose::Paint, &LINE);
     assert_eq!(tiles(&painted).pixel(60, 52), [0, 0, 0, 255]);
-    let (erased, _) = drawn(&context(&painted, id, &brush), StrokePurpose::Erase, &LINE);
+    let (erased, _) = drawn(&context(&painted, id, &tools), StrokePurpose::Erase, &LINE);
     assert_eq!(tiles(&erased).pixel(60, 52), [0; 4]);
     let locked =
         painted.with_layer(painted.layers[0].id, |layer| layer.lock = LayerLock::Alpha).unwrap();
-    let wide = Brush { size: 90.0, ..brush };
-    let white = ToolContext { color: Color::WHITE, ..context(&locked, id, &wide) };
-    let (atop, _) = drawn(&white, StrokePurpose::Paint, &LINE);
+    let wide = Brush { size: 90.0, ..tools.brush.clone() };
+    let white = ToolSettings { color: Color::WHITE, ..ToolSettings::with_brush(wide) };
+    let (atop, _) = drawn(&context(&locked, id, &white), StrokePurpose::Paint, &LINE);
     assert_eq!((tiles(&atop).pixel(60, 52), tiles(&atop).pixel(60, 90)), ([255; 4], [0; 4]));
 }
 
 #[test]
 fn a_locked_layer_takes_no_paint() {
     let (document, brush) = (paint_layer(), Brush::default());
+    let tools = ToolSettings::with_brush(brush);
     let id = document.layers[0].id;
     let locked = document.with_layer(id, |layer| layer.lock = LayerLock::All).unwrap();
     assert!(
-        press(&context(&locked, Some(id), &brush), PenSample::at(LINE[0]), StrokePurpose::Paint)
+        press(&context(&locked, Some(id), &tools), PenSample::at(LINE[0]), StrokePurpose::Paint)
             .0
             .is_none()
     );
@@ -110,13 +115,14 @@ fn a_locked_layer_takes_no_paint() {
 fn the_eraser_with_ctrl_takes_whole_strokes_from_a_stroke_layer() {
     let (empty, brush) =
         (Document::empty(Size::new(200, 150)), Brush { size: 8.0, ..Brush::default() });
+    let tools = ToolSettings::with_brush(brush);
     let (one, id) = drawn(
-        &context(&empty, None, &brush),
+        &context(&empty, None, &tools),
         StrokePurpose::Paint,
         &[vec2(10.0, 20.0), vec2(90.0, 20.0)],
     );
     let (two, _) = drawn(
-        &context(&one, id, &brush),
+        &context(&one, id, &tools),
         StrokePurpose::Paint,
         &[vec2(10.0, 90.0), vec2(90.0, 90.0)],
     );
@@ -124,7 +130,7 @@ fn the_eraser_with_ctrl_takes_whole_strokes_from_a_stroke_layer() {
         keys: ModifierKeys { ctrl: true, ..ModifierKeys::default() },
         ..PenSample::at(vec2(50.0, 91.0))
     };
-    let (gesture, _) = press(&context(&two, id, &brush), ctrl, StrokePurpose::Erase);
+    let (gesture, _) = press(&context(&two, id, &tools), ctrl, StrokePurpose::Erase);
     let Outcome::Commit { document: left, .. } = gesture.unwrap().release() else {
         panic!("one is gone")
     };
@@ -137,13 +143,14 @@ fn the_eraser_with_ctrl_takes_whole_strokes_from_a_stroke_layer() {
 fn the_eraser_lays_a_stroke_that_takes_paint_away_where_there_are_strokes() {
     let (empty, brush) =
         (Document::empty(Size::new(200, 150)), Brush { size: 8.0, ..Brush::default() });
+    let tools = ToolSettings::with_brush(brush);
     let (one, id) = drawn(
-        &context(&empty, None, &brush),
+        &context(&empty, None, &tools),
         StrokePurpose::Paint,
         &[vec2(10.0, 20.0), vec2(90.0, 20.0)],
     );
     let (cut, _) = drawn(
-        &context(&one, id, &brush),
+        &context(&one, id, &tools),
         StrokePurpose::Erase,
         &[vec2(50.0, 5.0), vec2(50.0, 60.0)],
     );
@@ -154,7 +161,7 @@ fn the_eraser_lays_a_stroke_that_takes_paint_away_where_there_are_strokes() {
     let (none, id) =
         (one.with_layer(one.layers[0].id, |layer| layer.content = blank()).unwrap(), id.unwrap());
     assert!(
-        press(&context(&none, Some(id), &brush), PenSample::at(LINE[0]), StrokePurpose::Erase)
+        press(&context(&none, Some(id), &tools), PenSample::at(LINE[0]), StrokePurpose::Erase)
             .0
             .is_none()
     );
@@ -168,8 +175,9 @@ fn blank() -> Content {
 fn mirror_images_are_strokes_of_their_own() {
     let empty = Document::empty(Size::new(200, 150));
     let brush = Brush { size: 8.0, hardness: 1.0, ..Brush::default() };
-    let plain = context(&empty, None, &brush);
-    let mirrored = ToolContext { symmetry: Symmetry::Vertical, ..plain };
+    let mut tools = ToolSettings::with_brush(brush);
+    tools.symmetry.kind = Symmetry::Vertical;
+    let mirrored = context(&empty, None, &tools);
     let (document, _) =
         drawn(&mirrored, StrokePurpose::Paint, &[vec2(20.0, 40.0), vec2(60.0, 90.0)]);
     let Content::Strokes(list) = &document.layers[0].content else { panic!("a stroke layer") };
@@ -191,8 +199,9 @@ fn a_calmed_line_is_finished_when_the_pen_lifts() {
     let empty = Document::empty(Size::new(200, 150));
     let brush =
         Brush { size: 8.0, stabilizer: Stabilizer::String { length_px: 40.0 }, ..Brush::default() };
+    let tools = ToolSettings::with_brush(brush);
     let (document, _) = drawn(
-        &context(&empty, None, &brush),
+        &context(&empty, None, &tools),
         StrokePurpose::Paint,
         &[vec2(20.0, 40.0), vec2(120.0, 40.0)],
     );
@@ -204,12 +213,13 @@ fn a_calmed_line_is_finished_when_the_pen_lifts() {
 #[test]
 fn an_erasing_brush_takes_nothing_from_paint_whose_alpha_is_locked() {
     let brush = Brush { size: 30.0, hardness: 1.0, ..Brush::default() };
+    let tools = ToolSettings::with_brush(brush);
     let document = paint_layer();
     let id = Some(document.layers[0].id);
-    let (painted, _) = drawn(&context(&document, id, &brush), StrokePurpose::Paint, &LINE);
+    let (painted, _) = drawn(&context(&document, id, &tools), StrokePurpose::Paint, &LINE);
     let locked =
         painted.with_layer(painted.layers[0].id, |layer| layer.lock = LayerLock::Alpha).unwrap();
-    let (erased, _) = drawn(&context(&locked, id, &brush), StrokePurpose::Erase, &LINE);
+    let (erased, _) = drawn(&context(&locked, id, &tools), StrokePurpose::Erase, &LINE);
     assert_eq!(tiles(&erased).pixel(60, 52), [0, 0, 0, 255]);
 }
 
@@ -218,8 +228,9 @@ fn what_is_redrawn_while_drawing_does_not_grow_with_the_stroke() {
     use crate::document::diff::diff;
     let (empty, brush) =
         (Document::empty(Size::new(2000, 500)), Brush { size: 20.0, ..Brush::default() });
+    let tools = ToolSettings::with_brush(brush);
     let (gesture, first) = press(
-        &context(&empty, None, &brush),
+        &context(&empty, None, &tools),
         PenSample::at(vec2(20.0, 100.0)),
         StrokePurpose::Paint,
     );

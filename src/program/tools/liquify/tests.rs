@@ -1,8 +1,9 @@
 use super::*;
 use crate::document::{Group, Layer, PixelLayer, Progress, flatten};
 use crate::math::{Rect, Size, Vec2, srgb::Color, vec2};
-use crate::paint::{Brush, LiquifySettings};
+use crate::paint::LiquifySettings;
 use crate::raster::{CoverageGrid, TileAt, TileGrid};
+use crate::tools::ToolSettings;
 use crate::tools::{ModifierKeys, Symmetry};
 
 const SIZE: Size = Size::new(256, 192);
@@ -26,9 +27,9 @@ fn settings(tool: LiquifyTool) -> LiquifySettings {
 }
 
 fn stroke(document: &Document, settings: LiquifySettings, way: &[Vec2]) -> Option<Document> {
-    let brush = Brush::default();
+    let tools = ToolSettings { liquify: settings, ..ToolSettings::default() };
     let layer = Some(document.layers[0].id);
-    let context = ToolContext { layer, liquify: settings, ..ToolContext::new(document, &brush) };
+    let context = ToolContext { layer, ..ToolContext::new(document, &tools) };
     let (gesture, _) = press(&context, PenSample::at(way[0]));
     let mut gesture = gesture?;
     way[1..].iter().for_each(|at| drop(gesture.drag(&[PenSample::at(*at)])));
@@ -110,11 +111,11 @@ fn what_is_not_selected_stays_as_it_was() {
 
 #[test]
 fn what_cannot_be_displaced_says_why() {
-    let brush = Brush::default();
+    let tools = ToolSettings::default();
     let fill = Layer::new("fill", Content::Fill(Color::BLACK));
     let document = Document { layers: vec![Arc::new(fill)], ..Document::empty(SIZE) };
     let context =
-        ToolContext { layer: Some(document.layers[0].id), ..ToolContext::new(&document, &brush) };
+        ToolContext { layer: Some(document.layers[0].id), ..ToolContext::new(&document, &tools) };
     let pen = PenSample { keys: ModifierKeys::default(), ..PenSample::at(vec2(9.0, 9.0)) };
     assert!(matches!(press(&context, pen).1, Outcome::Refused(why) if why.contains("one colour")));
     let nothing = ToolContext { layer: None, ..context };
@@ -125,16 +126,12 @@ fn what_cannot_be_displaced_says_why() {
 
 #[test]
 fn a_stroke_and_its_mirror_image_displace_alike() {
-    let (document, brush) = (document(), Brush::default());
+    let document = document();
     let layer = Some(document.layers[0].id);
     for tool in [LiquifyTool::Push, LiquifyTool::Grow, LiquifyTool::TwirlLeft] {
-        let liquify = settings(tool);
-        let context = ToolContext {
-            layer,
-            liquify,
-            symmetry: Symmetry::Vertical,
-            ..ToolContext::new(&document, &brush)
-        };
+        let mut tools = ToolSettings { liquify: settings(tool), ..ToolSettings::default() };
+        tools.symmetry.kind = Symmetry::Vertical;
+        let context = ToolContext { layer, ..ToolContext::new(&document, &tools) };
         let (gesture, _) = press(&context, PenSample::at(vec2(60.0, 100.0)));
         let mut gesture = gesture.unwrap();
         gesture.drag(&[PenSample::at(vec2(70.0, 92.0))]);

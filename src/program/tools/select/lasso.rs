@@ -14,8 +14,8 @@ const MOST_CORNERS: usize = 100_000;
 
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let at = pen.place();
-    let mut points = context.lasso.to_vec();
-    let how = context.select.how(pen.keys);
+    let mut points = context.tools.lasso.to_vec();
+    let how = context.tools.select.how(pen.keys);
     let closes = points.len() >= 3 && points[0].distance(at) <= GRAB_PT * context.px_per_pt;
     if closes {
         return (None, step(selected(context.document, &points, how)));
@@ -63,7 +63,7 @@ impl Gesture for LassoGesture {
         self.points
             .extend(pens.iter().map(PenSample::place).filter(|at| at.is_finite()).take(room));
         match self.is_begun {
-            true => Outcome::Lasso(self.points.clone()),
+            true => corners(self.points.clone()),
             false => Outcome::Preview(selected(&self.document, &self.points, self.how)),
         }
     }
@@ -72,6 +72,11 @@ impl Gesture for LassoGesture {
         if self.is_free && !self.is_begun {
             return step(selected(&self.document, &self.points, self.how));
         }
-        Outcome::Lasso(std::mem::take(&mut self.points))
+        corners(std::mem::take(&mut self.points))
     }
+}
+
+/// The corners of a lasso that goes on.
+fn corners(points: Vec<Vec2>) -> Outcome {
+    Outcome::Cancel.with_settings(move |tools| tools.lasso = points)
 }

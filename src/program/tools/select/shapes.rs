@@ -17,7 +17,7 @@ pub enum SelectionShape {
 }
 
 pub fn press(context: &ToolContext, pen: PenSample, shape: SelectionShape) -> GestureStart {
-    let (document, how) = (context.document.clone(), context.select.how(pen.keys));
+    let (document, how) = (context.document.clone(), context.tools.select.how(pen.keys));
     let slop_px = SLOP_PT * context.px_per_pt;
     let (snap, lines) = (context.snap.clone(), SnapLines::default());
     let from = snap.point(pen.place()).at;

@@ -2,7 +2,7 @@
 //! it does, belongs to its object, would shine with it, or flows along it; a drag to the right or
 //! the left changes the tolerance. Floor 5. Not here: finding it (`surface::region`).
 
-use super::{combined, dragged};
+use super::{combined, dragged, tuned};
 use crate::document::Document;
 use crate::math::Vec2;
 use crate::paint::Selection;
@@ -20,7 +20,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
             ),
         );
     };
-    let told = SurfaceRegion { at: pen.place(), ..context.select.region };
+    let told = SurfaceRegion { at: pen.place(), ..context.tools.select.region };
     let Some(field) = RegionField::new(surface, told.kind, told.at) else {
         return (
             None,
@@ -31,12 +31,12 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     };
     let mut gesture = RegionGesture {
         document: context.document.clone(),
-        how: context.select.how(pen.keys),
+        how: context.tools.select.how(pen.keys),
         field,
         from: pen.place(),
         begun: told,
         told,
-        settings: context.select,
+        settings: context.tools.select,
         px_per_pt: context.px_per_pt,
     };
     let outcome = gesture.drag(&[pen]);
@@ -59,11 +59,8 @@ impl RegionGesture {
     fn outcome(&self, is_done: bool) -> Outcome {
         let selection = Selection::carried(self.field.region(&self.told), Some(self.told));
         let document = combined(&self.document, selection, self.how);
-        Outcome::Tuned {
-            document,
-            select: SelectSettings { region: self.told, ..self.settings },
-            is_done,
-        }
+        let select = SelectSettings { region: self.told, ..self.settings };
+        tuned(document, select, is_done)
     }
 }
 

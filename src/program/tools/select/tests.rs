@@ -1,10 +1,10 @@
 use super::*;
 use crate::document::{Content, Layer, PixelLayer};
 use crate::math::{Rect, Size, Vec3, vec2};
-use crate::paint::Brush;
 use crate::raster::{CoverageGrid, Plane, TileGrid};
 use crate::surface::{Maps, Surface};
 use crate::tools::ModifierKeys;
+use crate::tools::ToolSettings;
 use std::sync::Arc;
 
 const SIZE: Size = Size::new(200, 130);
@@ -28,15 +28,14 @@ fn dragged_with(
     keys: ModifierKeys,
     points: &[Vec2],
 ) -> (Option<Document>, SelectSettings) {
-    let brush = Brush::default();
-    let context = ToolContext { select, ..ToolContext::new(document, &brush) };
+    let mut tools = ToolSettings { select, ..ToolSettings::default() };
+    let context = ToolContext::new(document, &tools);
     let pen = |at: Vec2| PenSample { keys, ..PenSample::at(at) };
     let (gesture, _) = press(kind, &context, pen(points[0]));
     let Some(mut gesture) = gesture else { return (None, select) };
     points[1..].iter().for_each(|&at| drop(gesture.drag(&[pen(at)])));
-    match gesture.release() {
-        Outcome::Commit { document, .. } => (Some(document), select),
-        Outcome::Tuned { document, select, is_done: true } => (Some(document), select),
+    match gesture.release().apply_settings(&mut tools) {
+        Outcome::Commit { document, .. } => (Some(document), tools.select),
         _ => (None, select),
     }
 }
@@ -104,23 +103,22 @@ fn a_lasso_drawn_freely_closes_when_the_pen_lifts() {
 
 #[test]
 fn a_lasso_of_clicks_goes_on_until_its_first_corner_is_clicked() {
-    let (document, brush) = (Document::empty(SIZE), Brush::default());
-    let mut corners: Vec<Vec2> = Vec::new();
+    let (document, mut tools) = (Document::empty(SIZE), ToolSettings::default());
     for at in [vec2(20.0, 20.0), vec2(120.0, 20.0), vec2(120.0, 100.0)] {
-        let context = ToolContext { lasso: &corners, ..ToolContext::new(&document, &brush) };
+        let context = ToolContext::new(&document, &tools);
         let mut gesture = press(ToolKind::Lasso, &context, PenSample::at(at)).0.unwrap();
-        let Outcome::Lasso(next) = gesture.release() else { panic!("it goes on") };
-        corners = next;
+        let outcome = gesture.release().apply_settings(&mut tools);
+        assert!(matches!(outcome, Outcome::Cancel), "it goes on");
     }
-    assert_eq!(corners.len(), 3);
-    let context = ToolContext { lasso: &corners, ..ToolContext::new(&document, &brush) };
+    assert_eq!(tools.lasso.len(), 3);
+    let context = ToolContext::new(&document, &tools);
     let Outcome::Commit { document: found, .. } =
         press(ToolKind::Lasso, &context, PenSample::at(vec2(22.0, 23.0))).1
     else {
         panic!("it is closed")
     };
     assert_eq!(covered(&found), Rect::new(20, 20, 120, 100));
-    assert!(closed(&document, &corners[..2], &SelectSettings::default()).is_none());
+    assert!(closed(&document, &tools.lasso[..2], &SelectSettings::default()).is_none());
 }
 
 #[test]
@@ -172,8 +170,8 @@ fn the_surface_wand_keeps_what_it_was_told_and_says_why_it_cannot() {
     let added = added.0.unwrap();
     assert!(added.active_selection.as_ref().unwrap().made.is_none(), "two regions are no region");
     assert_eq!(covered(&added), SIZE.rect());
-    let (empty, brush) = (Document::empty(SIZE), Brush::default());
+    let (empty, tools) = (Document::empty(SIZE), ToolSettings::default());
     let said =
-        press(ToolKind::SurfaceWand, &ToolContext::new(&empty, &brush), PenSample::at(points[0])).1;
+        press(ToolKind::SurfaceWand, &ToolContext::new(&empty, &tools), PenSample::at(points[0])).1;
     assert!(matches!(said, Outcome::Refused(why) if why.contains("no surface")));
 }

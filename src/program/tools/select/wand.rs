@@ -2,7 +2,7 @@
 //! to the right or the left changes the tolerance. Floor 5. Not here: finding the region
 //! (`paint::fill`).
 
-use super::{combined, dragged};
+use super::{combined, dragged, tuned};
 use crate::document::{Content, Document, PreparedDocument, Progress};
 use crate::math::{Rect, Vec2};
 use crate::paint::{Fill, Selection};
@@ -13,7 +13,7 @@ use crate::tools::{Gesture, GestureStart, Outcome, PenSample, SelectSettings, To
 use std::sync::{Arc, OnceLock};
 
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
-    let (settings, document) = (context.select, context.document);
+    let (settings, document) = (context.tools.select, context.document);
     let at = pen.place().floor().as_ivec2();
     if !pen.place().is_finite() || !document.size.rect().contains(at.x, at.y) {
         return (
@@ -106,11 +106,7 @@ impl WandGesture {
 
     fn outcome(&mut self, is_done: bool) -> Outcome {
         let select = self.settings;
-        self.found().map_or(Outcome::Cancel, |document| Outcome::Tuned {
-            document,
-            select,
-            is_done,
-        })
+        self.found().map_or(Outcome::Cancel, |document| tuned(document, select, is_done))
     }
 }
 

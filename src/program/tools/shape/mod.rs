@@ -6,8 +6,69 @@ pub mod sculpt;
 pub mod touch;
 
 use crate::document::{Document, Part};
+use crate::math::range::held;
 use crate::math::{Affine2, Mat2, Vec2, Vec3, vec2, vec3};
+use crate::shape::{SculptStroke, SculptTool, Touch};
 use std::sync::Arc;
+
+/// The settings of the tools that touch and sculpt.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapeSettings {
+    /// What the sculpting tool does.
+    pub tool: SculptTool,
+    /// Diameter of a dab, px.
+    pub size: f32,
+    /// The part of the dab with full strength.
+    pub hardness: f32,
+    /// How far a dab raises or lowers, px.
+    pub height: f32,
+    /// How far a dab that smooths, flattens, pinches or scrapes goes: the share of the way.
+    pub share: f32,
+    /// The direction that a touch gives to the surface; unit, camera space (y up).
+    pub normal: Vec3,
+    /// The radius of a touch, px.
+    pub radius: f32,
+    /// How far a touch reaches, px; 0: to the rim and the next touches.
+    pub reach: f32,
+}
+
+impl Default for ShapeSettings {
+    fn default() -> Self {
+        Self {
+            tool: SculptTool::Raise,
+            size: 60.0,
+            hardness: 0.3,
+            height: 1.0,
+            share: 0.3,
+            normal: vec3(-0.4, 0.5, 0.768),
+            radius: 8.0,
+            reach: 0.0,
+        }
+    }
+}
+
+impl ShapeSettings {
+    /// The same with numbers that a part may hold.
+    pub fn held(&self) -> Self {
+        let normal =
+            vec3(self.normal.x, self.normal.y, self.normal.z.max(0.0)).normalize_or(Vec3::Z);
+        Self {
+            tool: self.tool,
+            size: held(self.size, &SculptStroke::SIZE),
+            hardness: held(self.hardness, &SculptStroke::HARDNESS),
+            height: held(self.height, &SculptStroke::STRENGTH),
+            share: held(self.share, &crate::math::UNIT),
+            normal,
+            radius: held(self.radius, &Touch::RADIUS),
+            reach: held(self.reach, &Touch::REACH),
+        }
+    }
+
+    /// The strength of a dab of the current tool.
+    pub fn strength(&self) -> f32 {
+        if self.tool.is_by_height() { self.height } else { self.share }
+    }
+}
 
 /// With one more part: in front of all others, or of all that lies on the same part.
 pub fn with_new(document: &Document, part: Part) -> Document {

@@ -7,7 +7,9 @@ use crate::document::parts::{FormArea, Inflation, Part, PartKind};
 use crate::math::range::held;
 use crate::math::{Affine2, Mat2, Vec2, vec2};
 use crate::shape::Bevel;
-use crate::tools::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext};
+use crate::tools::{
+    DocumentChoice, GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext,
+};
 use std::sync::Arc;
 
 /// The box around what a part covers, with its handles; canvas px.
@@ -199,7 +201,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         Some((part, gizmo, PartHandle::Body))
     });
     let Some((part, gizmo, handle)) = held else { return (None, Outcome::Idle) };
-    let chosen = Outcome::ChosenPart(part.id.clone());
+    let chosen = Outcome::Choose(DocumentChoice::Part(part.id.clone()));
     let gesture = PartGesture {
         document: document.clone(),
         part,

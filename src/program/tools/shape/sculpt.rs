@@ -28,7 +28,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         || ("Sculpt", PartKind::Sculpt { on: base.id.clone(), strokes: Vec::new() }),
     );
     if let PartKind::Sculpt { strokes, .. } = &mut part.kind {
-        strokes.push(stroke(&context.shape, pen.keys, base.matrix));
+        strokes.push(stroke(&context.tools.shape, pen.keys, base.matrix));
     }
     let back = base.matrix.inverse();
     let mut gesture = SculptGesture { document: document.clone(), part, is_new, back };

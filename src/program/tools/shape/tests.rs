@@ -4,10 +4,11 @@ use super::part::{PartGizmo, PartHandle};
 use super::*;
 use crate::document::parts::PartKind;
 use crate::math::Size;
-use crate::paint::Brush;
 use crate::shape::{Body, Primitive, SculptTool};
 use crate::tools::ShapeSettings;
-use crate::tools::{self, ModifierKeys, Outcome, PenSample, ToolContext, ToolKind};
+use crate::tools::{
+    DocumentChoice, ModifierKeys, Outcome, PenSample, ToolContext, ToolKind, ToolSettings,
+};
 
 /// An inflated square and a ball in front of a corner of it.
 fn scene() -> Document {
@@ -34,9 +35,9 @@ fn dragged(
     way: &[(f32, f32)],
     keys: ModifierKeys,
 ) -> (Outcome, Option<Outcome>) {
-    let brush = Brush::default();
-    let context = ToolContext { part: Some(part), ..ToolContext::new(document, &brush) };
-    let (gesture, first) = tools::press(tool, &context, pen(way[0].0, way[0].1, keys));
+    let tools = ToolSettings::default();
+    let context = ToolContext { part: Some(part), ..ToolContext::new(document, &tools) };
+    let (gesture, first) = crate::tools::press(tool, &context, pen(way[0].0, way[0].1, keys));
     let last = gesture.map(|mut gesture| {
         way[1..].iter().for_each(|at| drop(gesture.drag(&[pen(at.0, at.1, keys)])));
         gesture.release()
@@ -57,7 +58,7 @@ fn the_part_under_the_pen_is_chosen_and_moved_by_whole_pixels_with_its_surface()
     let document = scene();
     let (first, last) =
         dragged(&document, ToolKind::Shape, "square", &[(330.0, 300.0), (340.4, 310.6)], NONE);
-    assert!(matches!(first, Outcome::ChosenPart(id) if id == "ball"));
+    assert!(matches!(first, Outcome::Choose(DocumentChoice::Part(id)) if id == "ball"));
     let (label, moved) = committed(last);
     assert_eq!(
         (label.as_str(), moved.parts.part("ball").unwrap().matrix.translation),
@@ -129,7 +130,7 @@ fn touches_are_put_down_along_a_drag_moved_and_taken_away_and_directions_are_tak
     let (first, _) = dragged(&touched, ToolKind::Touch, "square", &[(200.0, 160.0)], alt);
     assert_eq!(touch::touches(&committed(Some(first)).1).len(), 2);
     let (first, _) = dragged(&document, ToolKind::Touch, "square", &[(330.0, 300.0)], alt);
-    assert!(matches!(first, Outcome::Direction(n) if n.x > 0.3));
+    assert!(first.settings().shape.normal.x > 0.3);
     let (first, _) = dragged(&document, ToolKind::Touch, "square", &[(10.0, 10.0)], NONE);
     assert!(matches!(first, Outcome::Refused(why) if why.contains("none under the pen")));
 }

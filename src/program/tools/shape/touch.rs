@@ -7,7 +7,9 @@ use crate::document::parts::{Part, PartKind};
 use crate::math::{COORDINATE, Vec2, Vec3, vec3};
 use crate::shape::Touch;
 use crate::surface::operator::MapValues;
-use crate::tools::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext};
+use crate::tools::{
+    GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ShapeSettings, ToolContext,
+};
 use std::sync::Arc;
 
 /// A touch with its place on the canvas.
@@ -68,7 +70,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         let why = "Touch a part: there is none under the pen. Layer › Give it a shape… makes some.";
         return (None, Outcome::Refused(why.into()));
     };
-    let settings = context.shape;
+    let settings = context.tools.shape;
     let (part, is_new) = layer_on(
         document,
         &base,
@@ -121,7 +123,12 @@ fn taken(document: &Document, at: Vec2) -> Outcome {
         None => {
             Outcome::Refused("There is no surface under the pen to take a direction from.".into())
         }
-        Some(MapValues { nbar, nz, .. }) => Outcome::Direction(vec3(nbar.x, -nbar.y, nz)),
+        Some(MapValues { nbar, nz, .. }) => {
+            let normal = vec3(nbar.x, -nbar.y, nz);
+            Outcome::set(move |tools| {
+                tools.shape = ShapeSettings { normal, ..tools.shape }.held();
+            })
+        }
     }
 }
 

@@ -64,13 +64,13 @@ pub(super) fn press(
         return None;
     }
     let mut chosen: Vec<usize> =
-        context.mesh_points.iter().copied().filter(|k| *k < points.len()).collect();
+        context.tools.transform.mesh_points.iter().copied().filter(|k| *k < points.len()).collect();
     if pen.keys.shift {
         match chosen.iter().position(|k| *k == nearest) {
             Some(place) => drop(chosen.remove(place)),
             None => chosen.push(nearest),
         }
-        return Some((None, Outcome::MeshPoints(chosen)));
+        return Some((None, choose_points(chosen)));
     }
     if !chosen.contains(&nearest) {
         chosen = vec![nearest];
@@ -85,7 +85,11 @@ pub(super) fn press(
         from: pen.place(),
         by: Vec2::ZERO,
     };
-    Some((Some(Box::new(gesture)), Outcome::MeshPoints(chosen)))
+    Some((Some(Box::new(gesture)), choose_points(chosen)))
+}
+
+fn choose_points(points: Vec<usize>) -> Outcome {
+    Outcome::set(move |tools| tools.transform.mesh_points = points)
 }
 
 struct MeshGesture {

@@ -4,7 +4,7 @@
 use crate::math::{Vec2, vec2};
 use crate::tools::gizmo::{MIDDLE, TransformGizmo};
 use crate::tools::snap::{SNAP_PT, SnapLines, SnapTargets};
-use crate::tools::{Gesture, Outcome, PenSample};
+use crate::tools::{DocumentChoice, Gesture, Outcome, PenSample};
 
 pub struct PivotGesture {
     pub gizmo: TransformGizmo,
@@ -47,7 +47,8 @@ impl PivotGesture {
 
 impl Gesture for PivotGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
-        pens.last().and_then(|pen| self.share(pen.place())).map_or(Outcome::Idle, Outcome::Pivot)
+        let share = pens.last().and_then(|pen| self.share(pen.place()));
+        share.map_or(Outcome::Idle, |share| Outcome::Choose(DocumentChoice::Pivot(share)))
     }
 
     fn release(&mut self) -> Outcome {

@@ -3,10 +3,10 @@ use crate::document::{
     Content, Group, Layer, LayerLock, LayerTransform, PixelLayer, TransformShape,
 };
 use crate::math::{Size, vec2};
-use crate::paint::Brush;
 use crate::raster::TileGrid;
 use crate::tools::ModifierKeys;
 use crate::tools::gizmo::GizmoMemory;
+use crate::tools::{DocumentChoice, ToolSettings};
 use std::sync::Arc;
 
 /// A square of paint from (40, 30) to (80, 50).
@@ -21,9 +21,9 @@ fn pen(at: Vec2, keys: ModifierKeys) -> PenSample {
 }
 
 fn dragged(document: &Document, from: Vec2, to: Vec2, keys: ModifierKeys) -> Option<Document> {
-    let (brush, layer) = (Brush::default(), Some(document.layers[0].id));
+    let (tools, layer) = (ToolSettings::default(), Some(document.layers[0].id));
     // Zoomed in, so that the handles of the small square lie apart.
-    let context = ToolContext { layer, px_per_pt: 0.3, ..ToolContext::new(document, &brush) };
+    let context = ToolContext { layer, px_per_pt: 0.3, ..ToolContext::new(document, &tools) };
     let mut gesture = press(&context, pen(from, keys)).0?;
     gesture.drag(&[pen(to, keys)]);
     match gesture.release() {
@@ -133,18 +133,18 @@ fn a_corner_dragged_past_the_others_or_the_horizon_stays_as_near_as_it_can() {
 #[test]
 fn the_pivot_is_dragged_snaps_to_corners_and_is_what_is_turned_and_scaled_about() {
     let document = document();
-    let brush = Brush::default();
+    let tools = ToolSettings::default();
     let (ids, mut kept) = ([document.layers[0].id], GizmoMemory::default());
     let context = |kept| ToolContext {
         layer: Some(ids[0]),
         px_per_pt: 0.3,
         gizmo: kept,
-        ..ToolContext::new(&document, &brush)
+        ..ToolContext::new(&document, &tools)
     };
     let pivot_by = |from: Vec2, to: Vec2, keys| {
         let mut gesture = press(&context(GizmoMemory::nothing()), pen(from, keys)).0.unwrap();
         match gesture.drag(&[pen(to, keys)]) {
-            Outcome::Pivot(share) => Some(share),
+            Outcome::Choose(DocumentChoice::Pivot(share)) => Some(share),
             _ => None,
         }
     };
@@ -189,9 +189,9 @@ fn within_a_transformed_group_the_pen_still_leads() {
     };
     let document = Document { layers: vec![Arc::new(group)], ..document() };
     let before = TransformGizmo::of(&document, id).unwrap();
-    let brush = Brush::default();
+    let tools = ToolSettings::default();
     let context =
-        ToolContext { layer: Some(id), px_per_pt: 0.1, ..ToolContext::new(&document, &brush) };
+        ToolContext { layer: Some(id), px_per_pt: 0.1, ..ToolContext::new(&document, &tools) };
     for (from, by) in
         [(before.pivot() + vec2(2.0, 2.0), vec2(10.0, -6.0)), (before.corners[2], vec2(5.0, -4.0))]
     {
@@ -229,9 +229,9 @@ fn two() -> Document {
 
 fn dragged_both(document: &Document, from: Vec2, to: Vec2, keys: ModifierKeys) -> Option<Document> {
     let ids: Vec<LayerId> = document.layers.iter().map(|layer| layer.id).collect();
-    let brush = Brush::default();
+    let tools = ToolSettings::default();
     let context =
-        ToolContext { layer: Some(ids[0]), layers: &ids, ..ToolContext::new(document, &brush) };
+        ToolContext { layer: Some(ids[0]), layers: &ids, ..ToolContext::new(document, &tools) };
     let mut gesture = press(&context, PenSample::at(from)).0?;
     gesture.drag(&[PenSample { keys, ..PenSample::at(to) }]);
     match gesture.release() {
@@ -310,15 +310,16 @@ fn the_points_of_a_mesh_are_dragged_one_or_several() {
     let id = plain.layers[0].id;
     let document = mesh::meshed(&plain, id, 3, 3).unwrap();
     assert!(!document.layers[0].is_warped(), "an even mesh moves nothing");
-    let brush = Brush::default();
+    let with_points = |chosen: &[usize]| {
+        let mut tools = ToolSettings::default();
+        tools.transform.mesh_points = chosen.to_vec();
+        tools
+    };
     let drag = |chosen: &[usize], from: Vec2, to: Vec2| {
-        let context = ToolContext {
-            layer: Some(id),
-            mesh_points: chosen,
-            ..ToolContext::new(&document, &brush)
-        };
+        let tools = with_points(chosen);
+        let context = ToolContext { layer: Some(id), ..ToolContext::new(&document, &tools) };
         let (gesture, outcome) = press(&context, PenSample::at(from));
-        assert!(matches!(outcome, Outcome::MeshPoints(_)));
+        assert!(!outcome.settings().transform.mesh_points.is_empty());
         let mut gesture = gesture.unwrap();
         gesture.drag(&[PenSample::at(to)]);
         match gesture.release() {
@@ -336,13 +337,14 @@ fn the_points_of_a_mesh_are_dragged_one_or_several() {
     assert_eq!([both.points()[4].y, both.points()[5].y, both.points()[3].y], [70.0, 70.0, 60.0]);
     // With Shift points are chosen, and deselected.
     let shift = ModifierKeys { shift: true, ..ModifierKeys::default() };
-    let context =
-        ToolContext { layer: Some(id), mesh_points: &[4], ..ToolContext::new(&document, &brush) };
-    let at = |p: Vec2| PenSample { keys: shift, ..PenSample::at(p) };
-    assert!(
-        matches!(press(&context, at(vec2(40.0, 30.0))).1, Outcome::MeshPoints(all) if all == [4, 0])
-    );
-    assert!(
-        matches!(press(&context, at(vec2(100.0, 60.0))).1, Outcome::MeshPoints(all) if all.is_empty())
-    );
+    let tools = with_points(&[4]);
+    let context = ToolContext { layer: Some(id), ..ToolContext::new(&document, &tools) };
+    let chosen_at = |p: Vec2| {
+        let pen = PenSample { keys: shift, ..PenSample::at(p) };
+        let mut tools = tools.clone();
+        press(&context, pen).1.apply_settings(&mut tools);
+        tools.transform.mesh_points
+    };
+    assert_eq!(chosen_at(vec2(40.0, 30.0)), [4, 0]);
+    assert_eq!(chosen_at(vec2(100.0, 60.0)), [0; 0]);
 }

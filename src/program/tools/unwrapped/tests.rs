@@ -40,7 +40,8 @@ const BRUSH: StrokeStart = |context, pen| crate::tools::press(ToolKind::Brush, c
 
 /// The strokes that result when the pen goes along these points of the sheet.
 fn drawn(document: &Document, brush: &Brush, points: &[Vec2]) -> Vec<Arc<Stroke>> {
-    let context = ToolContext::new(document, brush);
+    let tools = ToolSettings::with_brush(brush.clone());
+    let context = ToolContext::new(document, &tools);
     let (gesture, _) = paint(&context, PenSample::at(points[0]), layout_of(document), BRUSH);
     let mut gesture = gesture.unwrap();
     points[1..].iter().for_each(|point| drop(gesture.drag(&[PenSample::at(*point)])));
@@ -104,9 +105,9 @@ fn the_hand_is_calmed_on_the_sheet() {
 
 #[test]
 fn shift_joins_the_last_end_by_a_line_that_is_straight_on_the_sheet() {
-    let (document, brush) = (document(), Brush::default());
+    let (document, tools) = (document(), ToolSettings::default());
     let context =
-        ToolContext { last_end: Some(vec2(40.0, 30.0)), ..ToolContext::new(&document, &brush) };
+        ToolContext { last_end: Some(vec2(40.0, 30.0)), ..ToolContext::new(&document, &tools) };
     let keys = ModifierKeys { shift: true, ..ModifierKeys::default() };
     let to = on_sheet(&document, 160.0, 90.0);
     let (gesture, _) =
@@ -133,13 +134,11 @@ fn tools_that_point_get_the_canvas_under_the_pen() {
         crate::document::Content::Fill(Color { r: 200, g: 9, b: 9, a: 255 }),
     );
     let document = Document { layers: vec![Arc::new(red)], ..document };
-    let brush = Brush::default();
-    let context = ToolContext::new(&document, &brush);
+    let tools = ToolSettings::default();
+    let context = ToolContext::new(&document, &tools);
     let picked =
         |p: Vec2| point(&context, PenSample::at(p), layout_of(&document), ToolKind::Eyedropper).1;
-    assert!(
-        matches!(picked(on_sheet(&document, 150.0, 70.0)), Outcome::Picked(color) if color.r == 200)
-    );
+    assert_eq!(picked(on_sheet(&document, 150.0, 70.0)).settings().color.r, 200);
     assert!(
         matches!(picked(vec2(-90.0, -90.0)), Outcome::Idle),
         "beside all pieces there is nothing"

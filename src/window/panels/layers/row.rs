@@ -88,7 +88,7 @@ impl LayerRow<'_> {
         let is_on_picture =
             response.interact_pointer_pos().is_some_and(|at| thumbnail.contains(at));
         if response.clicked() && keys.command && is_on_picture {
-            let settings = session.select;
+            let settings = session.tools.select;
             let how = settings.how(ModifierKeys { shift: keys.shift, ctrl: true, alt: keys.alt });
             requests.act(Action::Selection(SelectionAction::Layer { layer: path.clone(), how }));
         } else if response.clicked() && keys.command {

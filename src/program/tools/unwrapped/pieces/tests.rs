@@ -2,10 +2,11 @@ use super::super::tests::{document, layout_of};
 use super::*;
 use crate::document::Layer;
 use crate::math::{Affine2, srgb::Color};
-use crate::paint::{Adjust, Brush, GradientStop, ImageFilter, PictureSource, Placement};
+use crate::paint::{Adjust, GradientStop, ImageFilter, PictureSource, Placement};
 use crate::raster::{Outside, Picture};
 use crate::surface::{Anchor, Operator};
 use crate::tools::ToolKind;
+use crate::tools::ToolSettings;
 use proptest::prelude::*;
 use std::sync::{Arc, LazyLock};
 
@@ -69,9 +70,9 @@ fn shown_at(document: &Document, q: Vec2) -> Vec2 {
 
 /// The drawing after a drag from the sheet's point of a canvas point to another, or by some px.
 fn dragged(document: &Document, keys: ModifierKeys, from: Vec2, to: Vec2) -> Document {
-    let brush = Brush::default();
+    let tools = ToolSettings::default();
     let context =
-        ToolContext { layer: Some(document.layers[0].id), ..ToolContext::new(document, &brush) };
+        ToolContext { layer: Some(document.layers[0].id), ..ToolContext::new(document, &tools) };
     let pen = PenSample { keys, ..PenSample::at(from) };
     let (gesture, _) = super::super::point(&context, pen, layout_of(document), ToolKind::Image);
     let mut gesture = gesture.expect("a piece is held");
@@ -137,11 +138,11 @@ fn handles_scale_and_turn_about_the_middle_of_the_piece() {
 #[test]
 fn other_layers_and_operators_are_refused_in_a_sentence() {
     let flat = document();
-    let brush = Brush::default();
+    let tools = ToolSettings::default();
     let outcome = |document: &Document| {
         let layer = document.layers.first().map(|layer| layer.id);
         press(
-            &ToolContext { layer, ..ToolContext::new(document, &brush) },
+            &ToolContext { layer, ..ToolContext::new(document, &tools) },
             PenSample::at(vec2(60.0, 60.0)),
             &layout_of(document),
         )
