@@ -38,6 +38,18 @@ pub struct PanelLayout {
     pub width_pt: f32,
 }
 
+impl PanelLayout {
+    /// Brings a panel into sight where it is; one in a window of its own is in sight.
+    pub fn show(&mut self, panel: PanelKind) {
+        self.is_hidden = false;
+        if panel.is_below() {
+            self.below = panel;
+        } else {
+            self.front = panel;
+        }
+    }
+}
+
 /// On which side of the canvas.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PanelSide {

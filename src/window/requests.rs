@@ -78,7 +78,11 @@ pub enum WindowRequest {
     PanelsApart,
     /// A panel into a window of its own, or back.
     Float(PanelKind),
-    ToggleTheme,
+    /// Brings a panel to the front, where it is.
+    ShowPanel(PanelKind),
+    /// Shows the settings of the brush in hand in the panel of brushes.
+    EditBrush,
+    NextLook,
     ResizeInterface {
         is_larger: bool,
     },

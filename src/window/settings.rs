@@ -6,6 +6,7 @@ use super::jobs;
 use super::keymap::Keymap;
 use super::panel_layout::PanelKind;
 use super::panel_layout::{PanelLayout, SIDES};
+use super::theme::Look;
 use super::usage::{KEPT_SHARE, USUAL_KEPT_SHARE};
 use crate::document::Progress;
 use crate::io::fs::Disk;
@@ -29,7 +30,7 @@ const PAUSE: Duration = Duration::from_secs(2);
 pub struct Settings {
     /// Newest first.
     pub recent: Vec<PathBuf>,
-    pub is_light: bool,
+    pub look: Look,
     /// The scale of the interface, if it was chosen.
     pub scale: Option<f32>,
     pub layout: PanelLayout,
@@ -46,7 +47,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             recent: Vec::new(),
-            is_light: false,
+            look: Look::default(),
             scale: None,
             layout: PanelLayout::default(),
             keymap: Keymap::default(),
@@ -72,7 +73,7 @@ impl Settings {
         let side = SIDES.iter().find(|(known, _)| known == side).map_or("right", |(_, name)| name);
         json!({
             "recent": recent,
-            "light": self.is_light,
+            "look": self.look.name(),
             "scale": self.scale,
             "hint done": self.is_hint_done,
             "panels": {
@@ -125,13 +126,17 @@ impl Settings {
             .and_then(Value::as_f64)
             .map(|scale| (scale as f32).max(0.5).min(4.0));
         let aids = value.get("aids").and_then(|aids| ViewAids::read(aids).ok()).unwrap_or_default();
-        let (is_light, is_hint_done) = (flag(value, "light"), flag(value, "hint done"));
+        // Before there were three looks, a flag said whether it is the light one.
+        let old = if flag(value, "light") { Look::Light } else { Look::default() };
+        let look =
+            value.get("look").and_then(Value::as_str).and_then(Look::from_name).unwrap_or(old);
+        let is_hint_done = flag(value, "hint done");
         let share = value
             .get("kept share")
             .and_then(Value::as_f64)
             .map_or(USUAL_KEPT_SHARE, |share| share as f32);
         let kept_share = share.max(*KEPT_SHARE.start()).min(*KEPT_SHARE.end());
-        Self { recent, is_light, scale, layout, keymap, is_hint_done, aids, kept_share }
+        Self { recent, look, scale, layout, keymap, is_hint_done, aids, kept_share }
     }
 
     /// Reads a settings file; a missing one counts as empty. Fails if it is not JSON or cannot be
@@ -248,7 +253,7 @@ mod tests {
         };
         let aids = ViewAids { rulers: true, locked: true, ..ViewAids::default() };
         let mut settings =
-            Settings { is_light: true, layout, is_hint_done: true, aids, ..Settings::default() };
+            Settings { look: Look::Grey, layout, is_hint_done: true, aids, ..Settings::default() };
         (0..20).for_each(|i| settings.recent_is(PathBuf::from(format!("{i}.ora"))));
         settings.write(&file).unwrap();
         let read = Settings::read(&file).unwrap();

@@ -5,8 +5,6 @@ use eframe::egui::{self, Color32, CornerRadius, Stroke, Style, TextStyle, Theme,
 
 /// What is selected or held.
 pub const ACCENT: Color32 = Color32::from_rgb(0x4d, 0x9d, 0xe0);
-/// What surrounds the canvas.
-pub const SURROUND: [Color32; 2] = [Color32::from_gray(0x1e), Color32::from_gray(0xa8)];
 /// The squares behind what is transparent.
 pub const CHECKER: [Color32; 2] = [Color32::from_gray(0x9a), Color32::from_gray(0x7e)];
 
@@ -15,8 +13,68 @@ pub fn color32(color: crate::math::srgb::Color) -> Color32 {
     Color32::from_rgba_unmultiplied(color.r, color.g, color.b, color.a)
 }
 
-/// Greys from the deepest to the text.
+/// The looks of the window.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Look {
+    #[default]
+    Dark,
+    /// Middle grey, for judging colours.
+    Grey,
+    Light,
+}
+
+impl Look {
+    /// With the names that settings store.
+    pub const ALL: [(Self, &'static str); 3] =
+        [(Self::Dark, "dark"), (Self::Grey, "grey"), (Self::Light, "light")];
+
+    pub fn name(self) -> &'static str {
+        Self::ALL[self as usize].1
+    }
+
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(_, known)| *known == name).map(|(look, _)| *look)
+    }
+
+    /// The one after it, around the end.
+    pub fn next(self) -> Self {
+        Self::ALL[(self as usize + 1) % Self::ALL.len()].0
+    }
+
+    fn greys(self) -> &'static Greys {
+        match self {
+            Self::Dark => &DARK,
+            Self::Grey => &GREY,
+            Self::Light => &LIGHT,
+        }
+    }
+
+    /// The look that is shown.
+    fn of(visuals: &Visuals) -> Self {
+        let is_shown = |look: Self| visuals.panel_fill == Color32::from_gray(look.greys().panel);
+        Self::ALL.into_iter().map(|(look, _)| look).find(|look| is_shown(*look)).unwrap_or_default()
+    }
+
+    /// Shows the window so.
+    pub fn show(self, ctx: &egui::Context) {
+        // The toolkit has two themes; grey takes the place of the dark one.
+        let (theme, visuals) = match self {
+            Self::Dark | Self::Grey => (Theme::Dark, Visuals::dark()),
+            Self::Light => (Theme::Light, Visuals::light()),
+        };
+        ctx.style_mut_of(theme, |style| apply_style(style, visuals, self.greys()));
+        ctx.set_theme(theme);
+    }
+}
+
+/// What surrounds the canvas.
+pub fn surround(visuals: &Visuals) -> Color32 {
+    Color32::from_gray(Look::of(visuals).greys().surround)
+}
+
+/// Shades of grey, from the deepest ground to the text. `weak`: hints and what is said about a row.
 struct Greys {
+    surround: u8,
     deepest: u8,
     panel: u8,
     window: u8,
@@ -24,11 +82,17 @@ struct Greys {
     hovered: u8,
     pressed: u8,
     line: u8,
+    /// The outline of an empty box or ring to tick.
+    outline: u8,
+    weak: u8,
     text: u8,
     strong: u8,
+    /// How much of the accent the ground of what is selected takes.
+    selected: f32,
 }
 
 const DARK: Greys = Greys {
+    surround: 0x1e,
     deepest: 0x1a,
     panel: 0x2b,
     window: 0x2f,
@@ -36,10 +100,29 @@ const DARK: Greys = Greys {
     hovered: 0x47,
     pressed: 0x52,
     line: 0x1f,
-    text: 0xc8,
-    strong: 0xf2,
+    outline: 0x82,
+    weak: 0xa4,
+    text: 0xd0,
+    strong: 0xf4,
+    selected: 0.5,
+};
+const GREY: Greys = Greys {
+    surround: 0x77,
+    deepest: 0x3c,
+    panel: 0x4c,
+    window: 0x50,
+    idle: 0x58,
+    hovered: 0x60,
+    pressed: 0x66,
+    line: 0x38,
+    outline: 0xa4,
+    weak: 0xc4,
+    text: 0xe8,
+    strong: 0xff,
+    selected: 0.35,
 };
 const LIGHT: Greys = Greys {
+    surround: 0xa8,
     deepest: 0xf6,
     panel: 0xdc,
     window: 0xe4,
@@ -47,17 +130,53 @@ const LIGHT: Greys = Greys {
     hovered: 0xc0,
     pressed: 0xb2,
     line: 0xb4,
+    outline: 0x76,
+    weak: 0x58,
     text: 0x2c,
     strong: 0x08,
+    selected: 0.55,
 };
 
-/// Sets the theme for dark and light.
+/// Sets the theme of the first start.
 pub fn install(ctx: &egui::Context) {
-    ctx.style_mut_of(Theme::Dark, |style| apply_style(style, Visuals::dark(), &DARK));
-    ctx.style_mut_of(Theme::Light, |style| apply_style(style, Visuals::light(), &LIGHT));
-    ctx.set_theme(Theme::Dark);
+    Look::default().show(ctx);
     // Its zoom keys zoom the picture here.
     ctx.options_mut(|options| options.zoom_with_keyboard = false);
+}
+
+/// Errors, warnings and links on dark grounds, and on light ones.
+type SignalColors = (Color32, Color32, Color32);
+const WARM: SignalColors = (
+    Color32::from_rgb(0xff, 0xb0, 0xa4),
+    Color32::from_rgb(0xff, 0xc0, 0x60),
+    Color32::from_rgb(0xa8, 0xd4, 0xff),
+);
+const COLD: SignalColors = (
+    Color32::from_rgb(0xa8, 0x10, 0x10),
+    Color32::from_rgb(0x76, 0x42, 0x00),
+    Color32::from_rgb(0x08, 0x4a, 0x96),
+);
+
+/// `share` of `over` on `ground`, as the screen mixes them.
+fn mix(ground: Color32, over: Color32, share: f32) -> Color32 {
+    let one = |a: u8, b: u8| (f32::from(a) + (f32::from(b) - f32::from(a)) * share).round() as u8;
+    Color32::from_rgb(
+        one(ground.r(), over.r()),
+        one(ground.g(), over.g()),
+        one(ground.b(), over.b()),
+    )
+}
+
+/// A box or a ring to tick has an outline while it is empty, unlike buttons.
+pub fn outline(ui: &mut egui::Ui) {
+    let grey = Color32::from_gray(Look::of(ui.visuals()).greys().outline);
+    ui.visuals_mut().widgets.inactive.bg_stroke = Stroke::new(1.0, grey);
+}
+
+/// On the ground of a selected row, hints are as strong as its name: fainter ones are not legible.
+pub fn strengthen_hints(ui: &mut egui::Ui) {
+    let strong = ui.visuals().strong_text_color();
+    ui.visuals_mut().weak_text_color = Some(strong);
 }
 
 fn apply_style(style: &mut Style, mut visuals: Visuals, greys: &Greys) {
@@ -68,7 +187,8 @@ fn apply_style(style: &mut Style, mut visuals: Visuals, greys: &Greys) {
     visuals.window_stroke = Stroke::new(1.0, grey(greys.line));
     visuals.extreme_bg_color = grey(greys.deepest);
     visuals.faint_bg_color = grey(greys.panel.saturating_add(4));
-    visuals.selection.bg_fill = ACCENT.gamma_multiply(0.55);
+    visuals.weak_text_color = Some(grey(greys.weak));
+    visuals.selection.bg_fill = mix(grey(greys.panel), ACCENT, greys.selected);
     visuals.selection.stroke = Stroke::new(1.0, grey(greys.strong));
     visuals.window_corner_radius = CornerRadius::same(8);
     visuals.menu_corner_radius = CornerRadius::same(6);
@@ -86,6 +206,9 @@ fn apply_style(style: &mut Style, mut visuals: Visuals, greys: &Greys) {
         widget.corner_radius = radius;
         widget.expansion = 0.0;
     }
+    let alarm = if greys.text > 0x80 { &WARM } else { &COLD };
+    (visuals.error_fg_color, visuals.warn_fg_color, visuals.hyperlink_color) = *alarm;
+    let widgets = &mut visuals.widgets;
     widgets.noninteractive.bg_stroke = Stroke::new(1.0, grey(greys.line));
     style.visuals = visuals;
     // A drag that misses a slider would select the text next to it.
@@ -104,6 +227,83 @@ fn apply_style(style: &mut Style, mut visuals: Visuals, greys: &Greys) {
     ] {
         if let Some(font) = style.text_styles.get_mut(&kind) {
             font.size = size;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::srgb;
+
+    fn luminance(color: Color32) -> f32 {
+        let [r, g, b] = [color.r(), color.g(), color.b()].map(srgb::decode_u8);
+        srgb::luminance(r, g, b)
+    }
+
+    /// The ratio of WCAG 2: (the lighter + 0.05) / (the darker + 0.05).
+    fn contrast(a: Color32, b: Color32) -> f32 {
+        let (a, b) = (luminance(a) + 0.05, luminance(b) + 0.05);
+        a.max(b) / a.min(b)
+    }
+
+    /// Every pair of text and ground that the window shows, by its name.
+    fn pairs(visuals: &Visuals) -> Vec<(&'static str, Color32, Color32)> {
+        let (panel, window) = (visuals.panel_fill, visuals.window_fill);
+        let (text, weak) = (visuals.text_color(), visuals.weak_text_color());
+        let strong = visuals.strong_text_color();
+        let grounds = [("panel", panel), ("window", window), ("row", visuals.faint_bg_color)];
+        let mut found = Vec::new();
+        for (_, ground) in grounds {
+            found.push(("text", text, ground));
+            found.push(("hint", weak, ground));
+            found.push(("strong", strong, ground));
+            found.push(("error", visuals.error_fg_color, ground));
+            found.push(("warning", visuals.warn_fg_color, ground));
+            found.push(("link", visuals.hyperlink_color, ground));
+        }
+        found.push(("text typed", text, visuals.extreme_bg_color));
+        found.push(("hint in a field", weak, visuals.extreme_bg_color));
+        found.push(("a selected row's name", strong, visuals.selection.bg_fill));
+        found.push(("a selected row", visuals.selection.stroke.color, visuals.selection.bg_fill));
+        let widgets = &visuals.widgets;
+        let states = [&widgets.inactive, &widgets.hovered, &widgets.active, &widgets.open];
+        found.extend(states.map(|state| ("button", state.text_color(), state.weak_bg_fill)));
+        found
+    }
+
+    #[test]
+    fn all_text_has_a_contrast_of_four_and_a_half_in_every_look() {
+        for (look, name) in Look::ALL {
+            let ctx = egui::Context::default();
+            look.show(&ctx);
+            let visuals = ctx.global_style().visuals.clone();
+            for (what, text, ground) in pairs(&visuals) {
+                let found = contrast(text, ground);
+                assert!(found >= 4.5, "{name}: {what} {text:?} on {ground:?}: {found:.2}");
+            }
+        }
+    }
+
+    /// WCAG 2 asks for 3 where a shape says what a control is.
+    #[test]
+    fn the_outline_of_an_empty_box_is_seen() {
+        for (look, name) in Look::ALL {
+            let greys = look.greys();
+            for ground in [greys.panel, greys.window] {
+                let found = contrast(Color32::from_gray(greys.outline), Color32::from_gray(ground));
+                assert!(found >= 3.0, "{name}: {found:.2}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_look_is_known_by_its_name_and_by_what_is_shown() {
+        for (look, name) in Look::ALL {
+            assert_eq!((Look::from_name(name), look.name()), (Some(look), name));
+            let ctx = egui::Context::default();
+            look.show(&ctx);
+            assert_eq!(Look::of(&ctx.global_style().visuals), look);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The window's own widgets: each has a name that a screen reader and a test can find, and
 //! distinguishes dragging from its end. Floor 7.
 
-use super::theme::color32;
+use super::theme::{color32, outline};
 use crate::math::srgb::Color;
 use eframe::egui::{
     self, Align, DragValue, Layout, ProgressBar, Response, RichText, ScrollArea, Slider,
@@ -213,7 +213,30 @@ pub fn sentence(word: &str) -> String {
 
 pub fn check(ui: &mut Ui, label: &str, hint: &str, on: bool) -> Option<bool> {
     let mut to = on;
-    ui.checkbox(&mut to, label).on_hover_text(hint).changed().then_some(to)
+    check_box(ui, &mut to, label).on_hover_text(hint).changed().then_some(to)
+}
+
+/// A box to tick, whose outline is seen while it is empty.
+pub fn check_box(ui: &mut Ui, on: &mut bool, label: impl Into<String>) -> Response {
+    outlined(ui, |ui| ui.checkbox(on, label.into()))
+}
+
+/// One of several choices, as a ring to fill.
+pub fn radio<T: PartialEq>(
+    ui: &mut Ui,
+    current: &mut T,
+    choice: T,
+    label: impl Into<String>,
+) -> Response {
+    outlined(ui, |ui| ui.radio_value(current, choice, label.into()))
+}
+
+fn outlined(ui: &mut Ui, show: impl FnOnce(&mut Ui) -> Response) -> Response {
+    let before = ui.visuals().widgets.inactive.bg_stroke;
+    outline(ui);
+    let response = show(ui);
+    ui.visuals_mut().widgets.inactive.bg_stroke = before;
+    response
 }
 
 /// A list in a dialog, as tall as its content, up to `most_pt` and the room in the window.

@@ -133,8 +133,7 @@ impl Canvas {
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Canvas"));
         self.area_pt = vec2(rect.width(), rect.height());
-        let dark = ui.visuals().dark_mode;
-        ui.painter().rect_filled(rect, 0.0, theme::SURROUND[usize::from(!dark)]);
+        ui.painter().rect_filled(rect, 0.0, theme::surround(ui.visuals()));
         let Some(open) = session.active() else { return invite(ui, rect) };
         let area_before_pt = self.areas_pt.insert(open.key, self.area_pt).unwrap_or(self.area_pt);
         let Some(view) = open.view else {

@@ -203,13 +203,13 @@ pub const COMMANDS: &[MenuCommand] = &[
         always,
         |_, requests| requests.request(WindowRequest::ResizeInterface { is_larger: false }),
     ),
-    row("Light or dark", &[], "The other of the two themes", always, |_, requests| {
-        requests.request(WindowRequest::ToggleTheme)
+    row("Dark, grey or light", &[], "The next look of the window; grey is for judging colours", always, |_, requests| {
+        requests.request(WindowRequest::NextLook)
     }),
     row(
         "Command palette…",
         &[ctrl_shift(Key::P), ctrl(Key::K)],
-        "Finds any command by its name",
+        "Finds any command, tool, panel or setting, also by its name in other programs",
         always,
         |_, requests| requests.request(WindowRequest::Palette),
     ),

@@ -8,7 +8,7 @@ use crate::raster::Resampling;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::Action;
 use crate::session::actions::CanvasAction;
-use crate::widgets::{begin_with, choice};
+use crate::widgets::{begin_with, check_box, choice};
 use eframe::egui::{Button, DragValue, Grid, Ui};
 
 /// A side in the dialogs, px: as for new documents.
@@ -71,7 +71,7 @@ impl CanvasSides {
         });
         let hint = "Changing one side changes the other";
         let locked =
-            ui.checkbox(&mut self.keeps_aspect, "Keep the aspect").on_hover_text(hint).changed();
+            check_box(ui, &mut self.keeps_aspect, "Keep the aspect").on_hover_text(hint).changed();
         if self.keeps_aspect && (wider || locked) {
             self.height = held(self.width as f32 * h / w);
         } else if self.keeps_aspect && taller {

@@ -7,6 +7,7 @@ use crate::math::{Size, srgb::Color};
 use crate::requests::WindowRequest;
 use crate::session::Session;
 use crate::theme;
+use crate::widgets::{check_box, radio};
 use eframe::egui::{
     Color32, Rect, Role, Sense, Slider, TextureId, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
@@ -54,12 +55,12 @@ impl ExportDialog {
             ui.weak(format!("{} pixels", document.size));
         }
         for (extension, about) in FORMATS {
-            ui.radio_value(&mut self.extension, extension, about);
+            radio(ui, &mut self.extension, extension, about);
         }
         self.depth(ui);
         let mut opaque = self.background.is_some() || self.extension == "jpg";
         let can_choose = !["jpg", "psd"].contains(&self.extension);
-        ui.add_enabled_ui(can_choose, |ui| ui.checkbox(&mut opaque, "Lay it on white"));
+        ui.add_enabled_ui(can_choose, |ui| check_box(ui, &mut opaque, "Lay it on white"));
         self.background = opaque.then_some(Color::WHITE);
         ui.add_enabled_ui(self.extension == "jpg", |ui| {
             ui.add(Slider::new(&mut self.quality, 1..=100).text("Quality"));

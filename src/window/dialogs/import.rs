@@ -16,7 +16,7 @@ use crate::io::maps;
 use crate::jobs::MapsRead;
 use crate::raster::Picture;
 use crate::session::storage::{self, OpenedFile};
-use crate::widgets::{choice_row, named, sentence};
+use crate::widgets::{check_box, choice_row, named, sentence};
 use eframe::egui::{
     self, Color32, Context, RichText, ScrollArea, Sense, StrokeKind, TextureHandle, Ui, pos2, vec2,
 };
@@ -200,13 +200,13 @@ impl ImportDialog {
                 ui.visuals().warn_fg_color,
                 "This does not look like a normal map: its colours are not directions.",
             );
-            ui.checkbox(&mut self.is_sure, "Use it as a normal map anyway");
+            check_box(ui, &mut self.is_sure, "Use it as a normal map anyway");
         }
         if let Some((name, _)) = &self.picture
             && self.becomes == MapsBecome::Document
         {
             let text = format!("Begin with the picture in the file, “{name}”");
-            ui.checkbox(&mut self.takes_picture, text);
+            check_box(ui, &mut self.takes_picture, text);
         }
         let is_ready =
             !self.is_reading && matches!(self.found, Some(Ok(_))) && (!is_doubtful || self.is_sure);

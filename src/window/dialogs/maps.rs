@@ -5,6 +5,7 @@ use super::{DialogAnswer, buttons};
 use crate::io::export::shape::{ShapeMap, ShapeOptions};
 use crate::requests::WindowRequest;
 use crate::session::Session;
+use crate::widgets::{check_box, radio};
 use eframe::egui::Ui;
 
 /// The choices, kept for the next time.
@@ -42,22 +43,22 @@ impl MapsDialog {
         };
         ui.weak(format!("{} pixels; the coverage is kept as alpha", surface.size()));
         for ((map, suffix), on) in ShapeMap::ALL.into_iter().zip(&mut self.chosen) {
-            ui.checkbox(on, format!("{} ({suffix})", label(map)));
+            check_box(ui, on, format!("{} ({suffix})", label(map)));
         }
         let options = &mut self.options;
         ui.horizontal(|ui| {
             ui.label("Green points");
-            ui.radio_value(&mut options.is_directx, false, "up (OpenGL)");
-            ui.radio_value(&mut options.is_directx, true, "down (DirectX)");
+            radio(ui, &mut options.is_directx, false, "up (OpenGL)");
+            radio(ui, &mut options.is_directx, true, "down (DirectX)");
         });
         ui.horizontal(|ui| {
-            ui.radio_value(&mut options.is_exr, false, "PNG");
-            ui.radio_value(&mut options.is_exr, true, "EXR of 32 bits");
+            radio(ui, &mut options.is_exr, false, "PNG");
+            radio(ui, &mut options.is_exr, true, "EXR of 32 bits");
         });
         ui.add_enabled_ui(!options.is_exr, |ui| {
             ui.horizontal(|ui| {
-                ui.radio_value(&mut options.is_deep, true, "16 bits");
-                ui.radio_value(&mut options.is_deep, false, "8 bits");
+                radio(ui, &mut options.is_deep, true, "16 bits");
+                radio(ui, &mut options.is_deep, false, "8 bits");
             });
         });
         match buttons(ui, "Export…", self.chosen.contains(&true)) {

@@ -6,7 +6,7 @@ use crate::math::srgb::Color;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::Action;
 use crate::session::actions::FileAction;
-use crate::widgets::begin_with;
+use crate::widgets::{begin_with, radio};
 use eframe::egui::{DragValue, Ui};
 
 pub struct NewDialog {
@@ -73,7 +73,7 @@ impl NewDialog {
                 (CanvasBackground::Dark, "Dark"),
                 (CanvasBackground::Transparent, "Transparent"),
             ] {
-                ui.radio_value(&mut self.background, choice, name);
+                radio(ui, &mut self.background, choice, name);
             }
         });
         match buttons(ui, "Create", true) {

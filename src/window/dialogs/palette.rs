@@ -1,18 +1,22 @@
-//! The command palette: every command by a few letters of its name.
-//! Floor 7.
+//! The command palette: every command, tool, panel and setting by a few letters of its name, or of
+//! its name in other programs. Floor 7.
+
+mod find;
 
 use super::DialogAnswer;
-use crate::commands::{self, MenuCommand};
-use crate::keymap::{Keymap, shown};
+use crate::keymap::{KeyTarget, Keymap, shown};
+use crate::panel_layout::PanelKind;
 use crate::requests::{UiRequests, WindowRequest};
-use crate::session::Session;
+use crate::session::actions::HandAction;
+use crate::session::{Action, Session};
 use crate::widgets::{list, named};
 use eframe::egui::{Button, Key, TextEdit, Ui};
+use find::PaletteEntry;
 
 #[derive(Default)]
 pub struct CommandPalette {
     typed: String,
-    /// The index among the matching commands.
+    /// The index among what fits.
     at: usize,
 }
 
@@ -27,7 +31,7 @@ impl CommandPalette {
         ui.set_width(420.0);
         let field = ui.add(
             TextEdit::singleline(&mut self.typed)
-                .hint_text("Type a command")
+                .hint_text("Command, tool or setting")
                 .desired_width(f32::INFINITY),
         );
         named(&field, "Command");
@@ -35,11 +39,7 @@ impl CommandPalette {
         if field.changed() {
             self.at = 0;
         }
-        let mut found: Vec<&'static MenuCommand> =
-            commands::all().filter(|command| matches(command.name, &self.typed)).collect();
-        // Commands that begin with it come first; otherwise in the order of the menus.
-        let typed = self.typed.trim().to_lowercase();
-        found.sort_by_key(|command| !command.name.to_lowercase().starts_with(&typed));
+        let found = find::found(&self.typed);
         let (up, down, enter) = ui.input(|i| {
             (i.key_pressed(Key::ArrowUp), i.key_pressed(Key::ArrowDown), i.key_pressed(Key::Enter))
         });
@@ -52,40 +52,56 @@ impl CommandPalette {
         self.at = self.at.min(found.len().saturating_sub(1));
         let mut chosen = enter.then(|| found.get(self.at)).flatten().copied();
         if found.is_empty() {
-            ui.weak(format!("No command is called “{}”", self.typed.trim()));
+            ui.weak(format!("Nothing is called “{}”", self.typed.trim()));
         }
         list(ui, 360.0).auto_shrink([false, true]).show(ui, |ui| {
-            for (i, command) in found.iter().enumerate() {
-                let mut button = Button::selectable(i == self.at, command.name);
-                if let Some(keys) = keymap.first(command) {
-                    button = button.shortcut_text(shown(ui.ctx(), keys));
-                }
-                let response =
-                    ui.add_enabled((command.can)(session), button.min_size([400.0, 0.0].into()));
+            for (i, entry) in found.iter().enumerate() {
+                let response = row(ui, session, keymap, *entry, i == self.at);
                 if (up || down) && i == self.at {
                     response.scroll_to_me(None);
                 }
-                if response.on_hover_text(command.hint).clicked() {
-                    chosen = Some(command);
+                if response.on_hover_text(entry.hint()).clicked() {
+                    chosen = Some(*entry);
                 }
             }
         });
-        match chosen {
-            Some(command) if (command.can)(session) => {
-                (command.run)(session, requests);
-                DialogAnswer::Close
-            }
-            Some(command) => {
-                requests.request(WindowRequest::Say(command.refusal(session)));
-                DialogAnswer::Close
-            }
-            None => DialogAnswer::Open,
-        }
+        let Some(entry) = chosen else { return DialogAnswer::Open };
+        run(entry, session, requests);
+        DialogAnswer::Close
     }
 }
 
-/// Whether every typed word is in the name.
-fn matches(name: &str, typed: &str) -> bool {
-    let name = name.to_lowercase();
-    typed.to_lowercase().split_whitespace().all(|word| name.contains(word))
+fn row(
+    ui: &mut Ui,
+    session: &Session,
+    keymap: &Keymap,
+    entry: PaletteEntry,
+    is_next: bool,
+) -> eframe::egui::Response {
+    let (keys, can) = match entry {
+        PaletteEntry::Command(command) => (keymap.first(command), (command.can)(session)),
+        PaletteEntry::Tool(tool) => (keymap.of(KeyTarget::Tool(tool)).first().copied(), true),
+        PaletteEntry::Panel(_) | PaletteEntry::Setting(..) => (None, true),
+    };
+    let keys = keys.map(|keys| shown(ui.ctx(), keys)).unwrap_or_default();
+    let beside = [entry.kind(), &keys].join("  ");
+    let button = Button::selectable(is_next, entry.name()).shortcut_text(beside.trim());
+    ui.add_enabled(can, button.min_size([400.0, 0.0].into()))
+}
+
+fn run(entry: PaletteEntry, session: &Session, requests: &mut UiRequests) {
+    match entry {
+        PaletteEntry::Command(command) if (command.can)(session) => {
+            (command.run)(session, requests)
+        }
+        PaletteEntry::Command(command) => {
+            requests.request(WindowRequest::Say(command.refusal(session)))
+        }
+        PaletteEntry::Tool(tool) => requests.act(Action::Hand(HandAction::Tool { tool })),
+        PaletteEntry::Panel(panel) => requests.request(WindowRequest::ShowPanel(panel)),
+        PaletteEntry::Setting(..) => {
+            requests.request(WindowRequest::EditBrush);
+            requests.request(WindowRequest::ShowPanel(PanelKind::Brushes));
+        }
+    }
 }

@@ -9,6 +9,7 @@ use crate::panels::shape::presets;
 use crate::requests::UiRequests;
 use crate::session::actions::parts::{InflationPreset, PartAction};
 use crate::session::{Action, LayerPath, OpenDocument, Session, drawing};
+use crate::widgets::radio;
 use eframe::egui::Ui;
 
 /// How many layers are searched for a drawing.
@@ -95,19 +96,18 @@ impl ShapeDialog {
             "With a shape, light falls on the drawing, and strokes, gradients and photos bend over it. Every number \
              can be changed later, in the panel Shape.",
         );
-        ui.radio_value(&mut self.each, PartFor::Layer, "One part");
+        radio(ui, &mut self.each, PartFor::Layer, "One part");
         let text = match self.traits.colors {
             0 | 1 => "A part for each colour".to_owned(),
             n => format!("A part for each colour ({n})"),
         };
         ui.add_enabled_ui(self.traits.colors > 1, |ui| {
-            ui.radio_value(&mut self.each, PartFor::Color, text)
+            radio(ui, &mut self.each, PartFor::Color, text)
         });
         ui.add_enabled_ui(self.traits.colors > 0, |ui| {
             let hint =
                 "Areas of one colour that are apart, such as two eyes, become parts of their own";
-            ui.radio_value(&mut self.each, PartFor::Place, "A part for each place")
-                .on_hover_text(hint);
+            radio(ui, &mut self.each, PartFor::Place, "A part for each place").on_hover_text(hint);
         });
         self.preset = presets(ui, self.preset).unwrap_or(self.preset);
         if matches!(self.traits.background, FigureBackground::Flat(_)) {

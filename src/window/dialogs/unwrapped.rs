@@ -6,6 +6,7 @@ use crate::document::view::UnwrapOptions;
 use crate::requests::WindowRequest;
 use crate::session::Session;
 use crate::surface::operator::UnwrapSettings;
+use crate::widgets::{check_box, radio};
 use eframe::egui::Ui;
 
 /// The choices, kept for the next time.
@@ -40,9 +41,9 @@ impl UnwrappedDialog {
                 1 => "As large as on the surface".to_owned(),
                 more => format!("{more} pixels to one of the surface: keeps fine strokes sharp"),
             };
-            ui.radio_value(&mut self.scale, scale, about);
+            radio(ui, &mut self.scale, scale, about);
         }
-        ui.checkbox(&mut self.is_deep, "16 bits a channel");
+        check_box(ui, &mut self.is_deep, "16 bits a channel");
         match buttons(ui, "Export…", session.shown().is_some()) {
             Some(true) => DialogAnswer::Ask(WindowRequest::ExportUnwrapped),
             Some(false) => DialogAnswer::Close,

@@ -18,7 +18,7 @@ use eframe::egui::{
 
 pub fn show(ui: &mut Ui, session: &Session, swatches: &mut Swatches, requests: &mut UiRequests) {
     colors::strip(ui, session, requests);
-    let id = Id::unique("brush in hand");
+    let id = edits_id();
     let mut edits = ui.data(|data| data.get_temp::<bool>(id)).unwrap_or_default();
     ui.horizontal(|ui| {
         ui.selectable_value(&mut edits, false, "Presets").on_hover_text("Brushes to choose from");
@@ -33,6 +33,16 @@ pub fn show(ui: &mut Ui, session: &Session, swatches: &mut Swatches, requests: &
     } else {
         presets(ui, session, swatches, requests);
     }
+}
+
+/// Where it is kept whether the brush in hand is edited, not chosen.
+fn edits_id() -> Id {
+    Id::unique("brush in hand")
+}
+
+/// Shows the settings of the brush in hand from now on.
+pub fn edit(ctx: &egui::Context) {
+    ctx.data_mut(|data| data.insert_temp(edits_id(), true));
 }
 
 fn presets(ui: &mut Ui, session: &Session, swatches: &mut Swatches, requests: &mut UiRequests) {

@@ -6,7 +6,7 @@ use crate::paint::{LiquifySettings, LiquifyTool};
 use crate::requests::UiRequests;
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
-use crate::widgets::{NumberField, sentence};
+use crate::widgets::{NumberField, check_box, sentence};
 use eframe::egui::{Button, Ui};
 
 pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
@@ -34,11 +34,11 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         .or(to);
     let mut next = now;
     let hint = "Nothing but the object under the first dab is displaced";
-    if ui.checkbox(&mut next.one_object, "Keep to one object").on_hover_text(hint).changed() {
+    if check_box(ui, &mut next.one_object, "Keep to one object").on_hover_text(hint).changed() {
         to = Some(LiquifySettings { one_object: next.one_object, ..now });
     }
     let hint = "Measures dabs and their movement along the surface: less where it turns away";
-    if ui.checkbox(&mut next.foreshortened, "Foreshortened").on_hover_text(hint).changed() {
+    if check_box(ui, &mut next.foreshortened, "Foreshortened").on_hover_text(hint).changed() {
         to = Some(LiquifySettings { foreshortened: next.foreshortened, ..now });
     }
     if let Some(command) = TRANSFORMS.iter().find(|command| command.name == REMOVE_LIQUIFY) {

@@ -1,10 +1,10 @@
-//! The look of the window: light or dark, and the size of its controls. Floor 7. Not here: the
+//! The look of the window: dark, grey or light, and the size of its controls. Floor 7. Not here: the
 //! colours (`theme`).
 
 use super::MainWindow;
 use crate::session::Action;
 use crate::session::actions::ViewAction;
-use eframe::egui::{self, Theme};
+use eframe::egui;
 
 /// Sizes of the interface to choose from; 1 is the system's.
 const SCALES: [f32; 10] = [0.75, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0];
@@ -22,9 +22,9 @@ impl MainWindow {
         self.show_at(ctx, self.settings.scale.unwrap_or(fitting));
     }
 
-    pub(super) fn toggle_theme(&mut self, ctx: &egui::Context) {
-        self.settings.is_light = !self.settings.is_light;
-        ctx.set_theme(if self.settings.is_light { Theme::Light } else { Theme::Dark });
+    pub(super) fn show_next_look(&mut self, ctx: &egui::Context) {
+        self.settings.look = self.settings.look.next();
+        self.settings.look.show(ctx);
     }
 
     /// Selects and stores the next larger or smaller size.

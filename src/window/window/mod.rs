@@ -94,7 +94,7 @@ impl MainWindow {
     /// A window with the settings of a file, which it updates.
     pub fn remembering(ctx: &egui::Context, file: Option<PathBuf>) -> Self {
         let (settings, keeper, trouble) = SettingsFile::new(file);
-        ctx.set_theme(if settings.is_light { egui::Theme::Light } else { egui::Theme::Dark });
+        settings.look.show(ctx);
         Self {
             session: Session::default().with_aids(settings.aids),
             canvas: Canvas::new(ctx),

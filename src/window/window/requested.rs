@@ -92,7 +92,9 @@ impl MainWindow {
                     apart.push(front)
                 }
             }
-            WindowRequest::ToggleTheme => self.toggle_theme(ctx),
+            WindowRequest::ShowPanel(panel) => self.settings.layout.show(panel),
+            WindowRequest::EditBrush => crate::panels::brushes::edit(ctx),
+            WindowRequest::NextLook => self.show_next_look(ctx),
             WindowRequest::ResizeInterface { is_larger } => self.resize_interface(ctx, is_larger),
             WindowRequest::Scale(scale) => self.scale(ctx, scale),
             WindowRequest::FullScreen => {

@@ -9,7 +9,7 @@ use crate::requests::UiRequests;
 use crate::session::actions::{LayerAction, SelectionAction};
 use crate::session::chosen::range;
 use crate::session::{Action, LayerPath, OpenDocument, Property, Session};
-use crate::theme::ACCENT;
+use crate::theme::{ACCENT, strengthen_hints};
 use crate::thumbnails::Thumbnails;
 use crate::tools::ModifierKeys;
 use eframe::egui::{
@@ -78,6 +78,9 @@ impl LayerRow<'_> {
         let layout = egui::Layout::left_to_right(egui::Align::Center);
         let mut inner = ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(layout));
         inner.spacing_mut().item_spacing.x = 3.0;
+        if is_selected {
+            strengthen_hints(&mut inner);
+        }
         inner.add_space(2.0 + LABEL_PT + *depth as f32 * INDENT_PT);
         self.switches(&mut inner, requests);
         let thumbnail = picture(&mut inner, document, layer, thumbnails);

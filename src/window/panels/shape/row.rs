@@ -9,6 +9,7 @@ use crate::requests::UiRequests;
 use crate::session::Session;
 use crate::session::actions::PartAction;
 use crate::theme::ACCENT;
+use crate::theme::strengthen_hints;
 use crate::widgets::{ValueChange, named, sentence};
 use eframe::egui::{
     self, Align2, Color32, Id, Rect, Response, Sense, Stroke, TextEdit, TextStyle, Ui, pos2, vec2,
@@ -48,6 +49,9 @@ pub fn show(
     let layout = egui::Layout::left_to_right(egui::Align::Center);
     let mut inner = ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(layout));
     inner.spacing_mut().item_spacing.x = 3.0;
+    if is_chosen {
+        strengthen_hints(&mut inner);
+    }
     inner.add_space(2.0 + if lies_on { INDENT_PT } else { 0.0 });
     let eye = if part.visible { Icon::Shown } else { Icon::Hidden };
     let eye =

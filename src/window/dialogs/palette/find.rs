@@ -1,0 +1,191 @@
+//! What the command palette finds, and by which words: commands, tools, panels and settings of the
+//! brush, by their names here or by what other programs call them. Floor 7.
+//! Not here: the dialog (the module above).
+
+use crate::commands::{self, MenuCommand};
+use crate::paint::settings::SETTINGS;
+use crate::panel_layout::PanelKind;
+use crate::tools::ToolKind;
+
+/// Something that the palette can do.
+#[derive(Clone, Copy)]
+pub enum PaletteEntry {
+    Command(&'static MenuCommand),
+    Tool(ToolKind),
+    Panel(PanelKind),
+    /// A setting of the brush: its name and what it does.
+    Setting(&'static str, &'static str),
+}
+
+/// Settings of the brush that are not in the table of its dynamics.
+const BRUSH: [(&str, &str); 8] = [
+    ("Size", "The diameter of the brush"),
+    ("Hardness", "How sharp the rim of a dab is"),
+    ("Opacity", "How much a whole stroke covers"),
+    ("Flow", "How much each dab covers"),
+    ("Spacing", "The distance between dabs"),
+    ("Grain", "The paper or pattern that the brush paints on"),
+    ("Dynamics", "What pressure, tilt and speed change"),
+    ("Stabiliser", "How smooth the line becomes while you draw"),
+];
+
+/// Words of other programs and of everyday speech, and the words here that they mean.
+const SYNONYMS: [(&str, &[&str]); 48] = [
+    ("flip", &["mirror"]),
+    ("reflect", &["mirror", "reflection"]),
+    ("rotate", &["turn", "upright"]),
+    ("resize", &["image size", "canvas size", "transform"]),
+    ("resolution", &["image size"]),
+    ("scale", &["image size", "transform", "larger interface"]),
+    ("skew", &["transform"]),
+    ("distort", &["transform", "liquify"]),
+    ("perspective", &["transform", "assistants"]),
+    ("warp", &["liquify", "transform"]),
+    ("smudge", &["brushes", "liquify"]),
+    ("blur", &["brushes", "feather"]),
+    ("stabilizer", &["stabiliser"]),
+    ("stabilisation", &["stabiliser"]),
+    ("stabilization", &["stabiliser"]),
+    ("smoothing", &["stabiliser", "steadiness"]),
+    ("streamline", &["stabiliser"]),
+    ("pressure", &["dynamics"]),
+    ("texture", &["grain", "operator: texture"]),
+    ("scatter", &["offset"]),
+    ("jitter", &["size ±", "tremor", "offset"]),
+    ("bucket", &["fill"]),
+    ("color", &["colour", "swap colours", "default colours"]),
+    ("hue", &["hue", "colour"]),
+    ("saturation", &["saturation", "colour"]),
+    ("picker", &["colour"]),
+    ("eyedropper", &["colour"]),
+    ("swatches", &["colour"]),
+    ("magic", &["wand"]),
+    ("marquee", &["select rectangle", "select ellipse"]),
+    ("unselect", &["deselect"]),
+    ("marching", &["hide outline of selection"]),
+    ("expand", &["grow selection"]),
+    ("contract", &["shrink selection"]),
+    ("inverse", &["invert"]),
+    ("rasterise", &["bake layer"]),
+    ("rasterize", &["bake layer"]),
+    ("folder", &["group"]),
+    ("isolate", &["show layer alone"]),
+    ("solo", &["show layer alone"]),
+    ("clipping", &["clip to layer below"]),
+    ("ruler", &["rulers", "guides", "assistants"]),
+    ("symmetry", &["assistants"]),
+    ("inflate", &["give it a shape"]),
+    ("3d", &["give it a shape", "open maps"]),
+    ("theme", &["dark, grey or light"]),
+    ("preferences", &["keyboard shortcuts", "larger interface", "dark, grey or light"]),
+    ("hotkeys", &["keyboard shortcuts"]),
+];
+
+impl PaletteEntry {
+    /// Everything there is, in the order of the menus.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let settings = SETTINGS.iter().map(|setting| (setting.label, setting.hint));
+        commands::all()
+            .map(Self::Command)
+            .chain(ToolKind::ALL.into_iter().map(|(tool, _)| Self::Tool(tool)))
+            .chain(PanelKind::ALL.into_iter().map(|(panel, _)| Self::Panel(panel)))
+            .chain(BRUSH.into_iter().chain(settings).map(|(name, hint)| Self::Setting(name, hint)))
+    }
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Command(command) => command.name,
+            Self::Tool(tool) => tool.label(),
+            Self::Panel(panel) => panel.name(),
+            Self::Setting(name, _) => name,
+        }
+    }
+
+    /// What it is, where the name does not say so.
+    pub fn kind(self) -> &'static str {
+        match self {
+            Self::Command(_) => "",
+            Self::Tool(_) => "tool",
+            Self::Panel(_) => "panel",
+            Self::Setting(..) => "brush",
+        }
+    }
+
+    pub fn hint(self) -> &'static str {
+        match self {
+            Self::Command(command) => command.hint,
+            Self::Tool(tool) => tool.hint(),
+            Self::Panel(_) => "Brings this panel to the front",
+            Self::Setting(_, hint) => hint,
+        }
+    }
+
+    /// How well it fits what was typed, smaller is better: its name begins so, every word is in
+    /// its name, or words of other programs mean it. `typed` is in lower case.
+    fn rank(self, typed: &str) -> Option<u8> {
+        let name = self.name().to_lowercase();
+        if name.starts_with(typed) {
+            return Some(0);
+        }
+        let is_in = |word: &str| name.contains(word) || self.kind() == word;
+        if typed.split_whitespace().all(is_in) {
+            return Some(1);
+        }
+        let is_meant = |word: &str| is_in(word) || meanings(word).any(|own| name.contains(own));
+        typed.split_whitespace().all(is_meant).then_some(2)
+    }
+}
+
+/// What a word that begins so means here. Fewer than three letters mean nothing yet.
+fn meanings(word: &str) -> impl Iterator<Item = &'static str> {
+    let begins =
+        move |row: &&(&str, &[&str])| word == row.0 || word.len() >= 3 && row.0.starts_with(word);
+    SYNONYMS.iter().filter(begins).flat_map(|(_, own)| *own).copied()
+}
+
+/// What fits the typed words: names that begin with them first, then names that hold them, then
+/// what they mean; otherwise in the order of the menus.
+pub fn found(typed: &str) -> Vec<PaletteEntry> {
+    let typed = typed.trim().to_lowercase();
+    let rank = |entry: PaletteEntry| entry.rank(&typed).map(|rank| (rank, entry));
+    let mut found: Vec<(u8, PaletteEntry)> = PaletteEntry::all().filter_map(rank).collect();
+    found.sort_by_key(|(rank, _)| *rank);
+    found.into_iter().map(|(_, entry)| entry).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(typed: &str) -> Vec<&'static str> {
+        found(typed).into_iter().map(PaletteEntry::name).collect()
+    }
+
+    #[test]
+    fn every_synonym_finds_something_that_is_there() {
+        for (word, meant) in SYNONYMS {
+            for own in meant {
+                let is_there = PaletteEntry::all().any(|e| e.name().to_lowercase().contains(own));
+                assert!(is_there || *own == "hue" || *own == "saturation", "{word}: no “{own}”");
+            }
+            assert!(!names(word).is_empty(), "{word} finds nothing");
+        }
+    }
+
+    #[test]
+    fn words_of_other_programs_find_what_is_called_otherwise_here() {
+        assert!(names("flip").contains(&"Mirror canvas left and right"));
+        assert!(names("rotate canvas").contains(&"Turn canvas…"), "{:?}", names("rotate canvas"));
+        assert_eq!(names("stabilizer"), ["Stabiliser"]);
+        assert_eq!(names("magic wand"), ["Wand", "Surface wand"]);
+        assert!(names("hue").contains(&"Colour"));
+    }
+
+    #[test]
+    fn names_that_begin_so_come_first() {
+        assert_eq!(names("lasso")[0], "Lasso");
+        assert_eq!(names("crop")[0], "Crop to selection");
+        assert_eq!(names("crop tool"), ["Crop"]);
+        assert!(found("no such thing").is_empty());
+    }
+}
