@@ -110,10 +110,10 @@ pub mod paint {
     #[doc(inline)]
     pub use rilievo_engine::paint::{
         ActiveRetouching, ActiveStrokes, Adjust, Backdrop, Brush, BrushMode, ColorJitter, Curve,
-        Cycle, DabInputs, Drive, Dynamics, Falloff, Fill, Gradient, GradientStop, Hand, HomeFrame,
-        ImageFilter, Input, Measure, Offset, Pickup, PictureSource, PlacedImage, Placement,
+        Cycle, DabInputs, DistanceMetric, Drive, Dynamics, Falloff, Fill, Gradient, GradientStop,
+        HomeFrame, ImageFilter, Input, Offset, Pickup, PictureSource, PlacedImage, Placement,
         Property, Rate, Sample, Selection, Spread, StabilizedPen, Stabilizer, Stroke, StrokeFrame,
-        StrokeHome, StrokeSelection, Tip,
+        StrokeHome, StrokeSelection, StylusFilter, Tip,
         grain::{BrushGrain, GrainSource, GrainSpace},
         tip::{Bristles, Hose, Noise},
     };

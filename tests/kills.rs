@@ -295,7 +295,7 @@ fn steps(story: &str) -> Vec<(String, u32)> {
         last = Some(now);
         Ok(())
     };
-    Session::default().replay_telling(Path::new("story"), story, tell).unwrap();
+    Session::default().replay_with_progress(Path::new("story"), story, tell).unwrap();
     steps
 }
 

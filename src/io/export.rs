@@ -147,7 +147,7 @@ impl OutputFile {
         budget: &Budget,
         progress: &Progress,
     ) -> Result<()> {
-        let Some(document) = document.reshaped_telling(progress) else { return Ok(()) };
+        let Some(document) = document.reshaped_with_progress(progress) else { return Ok(()) };
         let bytes = deep::encode_document(&self.named, &document, options, budget, progress)?;
         bytes.map_or(Ok(()), |bytes| self.replace(&bytes))
     }

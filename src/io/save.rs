@@ -36,7 +36,7 @@ pub fn encode(
     progress: &Progress,
 ) -> Result<Option<EncodedDocument>> {
     in_own_threads(file, || {
-        let Some(document) = &document.reshaped_telling(progress) else { return Ok(None) };
+        let Some(document) = &document.reshaped_with_progress(progress) else { return Ok(None) };
         match Output::of(file) {
             Ok(Output::Psd) => {
                 let written = psd::write(file, document, progress)?;

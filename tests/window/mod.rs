@@ -1,10 +1,10 @@
 //! The window, driven by the names of its controls, with no display and no graphics card.
 
+mod brush_options;
 mod brushes;
 mod busy;
 mod canvas;
 mod documents;
-mod habits;
 mod layers;
 mod light;
 mod marks;

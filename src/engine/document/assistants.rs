@@ -148,7 +148,7 @@ impl Assistant {
     }
 
     /// After a map of the canvas; `None` where a handle lies beyond its horizon.
-    pub fn through(&self, map: &PlaneMap) -> Option<Self> {
+    pub fn transformed(&self, map: &PlaneMap) -> Option<Self> {
         let points: Option<Vec<Vec2>> =
             self.points.iter().map(|point| map.to_canvas(*point)).collect();
         Some(Self { kind: self.kind, points: points? }).filter(|next| next.fits().is_ok())
@@ -319,8 +319,9 @@ mod tests {
     #[test]
     fn assistants_turn_with_the_canvas() {
         let map = PlaneMap::rotation(90.0, vec2(50.0, 50.0));
-        let turned =
-            of(AssistantKind::Line, &[vec2(50.0, 0.0), vec2(50.0, 40.0)]).through(&map).unwrap();
+        let turned = of(AssistantKind::Line, &[vec2(50.0, 0.0), vec2(50.0, 40.0)])
+            .transformed(&map)
+            .unwrap();
         assert!(turned.points[0].distance(vec2(0.0, 50.0)) < 1e-3, "{turned:?}");
         assert!(of(AssistantKind::OnePoint, &[vec2(f32::NAN, 0.0)]).fits().is_err());
         assert!(of(AssistantKind::OnePoint, &[Vec2::ZERO; 2]).fits().is_err());

@@ -193,7 +193,7 @@ impl Document {
         // What lies on parts is carried as it shows, and put on them again at their new places.
         let lifted = self.lifted_off(|_| true);
         let layers = layers::Carrier { change, selections: &carried }.layers(&lifted.layers)?;
-        let maps = self.maps_surface().map(|maps| maps.through(change.to, &change.map));
+        let maps = self.maps_surface().map(|maps| maps.transformed(change.to, &change.map));
         let maps = maps.transpose().map_err(|error| match error {
             SurfaceError::Empty => NOTHING_LEFT.to_owned(),
             other => format!("The surface stays where it is: {other}."),
@@ -221,9 +221,9 @@ impl Document {
                 .as_ref()
                 .map(|own| carried.of(own))
                 .filter(shows),
-            guides: Arc::new(self.guides.through(&change.map)),
+            guides: Arc::new(self.guides.transformed(&change.map)),
             assistants: Arc::new(
-                self.assistants.iter().filter_map(|own| own.through(&change.map)).collect(),
+                self.assistants.iter().filter_map(|own| own.transformed(&change.map)).collect(),
             ),
         };
         let next = if parts.is_empty() { bare } else { bare.with_parts(parts).with_homes_of(self) };

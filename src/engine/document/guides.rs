@@ -32,7 +32,7 @@ impl Guides {
 
     /// The same lines after a map of the canvas. One that is then neither upright nor level is left
     /// out.
-    pub fn through(&self, map: &PlaneMap) -> Self {
+    pub fn transformed(&self, map: &PlaneMap) -> Self {
         /// Far enough apart to see how a line leans, px.
         const SPAN: f32 = 1024.0;
         let mut out = Self::default();
@@ -76,17 +76,17 @@ mod tests {
     fn guides_turn_with_the_canvas_and_those_that_lean_then_go() {
         // A canvas of 100 × 60 turned to the left is 60 × 100.
         let quarter = PlaneMap::affine([0.0, -1.0, 1.0, 0.0, 0.0, 100.0]).unwrap();
-        let turned = guides().through(&quarter);
+        let turned = guides().transformed(&quarter);
         assert_eq!(turned, Guides { vertical: vec![7.0], horizontal: vec![90.0, 59.5] });
         let four = (1..4).fold(turned, |guides, i| {
             let side = if i % 2 == 1 { 60.0 } else { 100.0 };
-            guides.through(&PlaneMap::affine([0.0, -1.0, 1.0, 0.0, 0.0, side]).unwrap())
+            guides.transformed(&PlaneMap::affine([0.0, -1.0, 1.0, 0.0, 0.0, side]).unwrap())
         });
         assert_eq!(four, guides());
         let mirrored =
-            guides().through(&PlaneMap::affine([-1.0, 0.0, 0.0, 1.0, 100.0, 0.0]).unwrap());
+            guides().transformed(&PlaneMap::affine([-1.0, 0.0, 0.0, 1.0, 100.0, 0.0]).unwrap());
         assert_eq!(mirrored, Guides { vertical: vec![90.0, 59.5], horizontal: vec![7.0] });
-        assert!(guides().through(&PlaneMap::rotation(30.0, Vec2::ZERO)).is_empty());
+        assert!(guides().transformed(&PlaneMap::rotation(30.0, Vec2::ZERO)).is_empty());
     }
 
     #[test]

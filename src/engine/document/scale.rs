@@ -51,7 +51,8 @@ impl Document {
     /// thinner than the new pixels.
     pub fn resampled(&self, to: Size, filter: Resampling) -> Result<Document, SurfaceError> {
         let Some(scale) = CanvasScale::onto(self.size, to, filter) else { return Ok(self.clone()) };
-        let maps = self.maps_surface().map(|maps| maps.through(to, &scale.map())).transpose()?;
+        let maps =
+            self.maps_surface().map(|maps| maps.transformed(to, &scale.map())).transpose()?;
         let source = self.surface_source.as_ref().zip(maps.as_ref());
         let scaled = Document {
             size: to,

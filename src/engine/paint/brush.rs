@@ -1,9 +1,11 @@
 //! A brush: the footprint of one dab and how dabs follow each other. Floor 3. Not here: how pen and
 //! surface drive it (`dynamics`), the dabs themselves (`dab_walker`).
 
+use super::brush_options::{
+    Cycle, DistanceMetric, Falloff, Offset, Pickup, Rate, Spread, StylusFilter,
+};
 use super::dynamics::{Dynamics, Input, Property};
 use super::grain::{BrushGrain, GrainSource};
-use super::habits::{Cycle, Falloff, Hand, Measure, Offset, Pickup, Rate, Spread};
 use super::image::PictureSource;
 use super::tip::{Bristles, Hose, Noise};
 use crate::math::{Mat2, Range, UNIT, Vec2, range::held};
@@ -26,7 +28,7 @@ pub struct Brush {
     /// the stroke.
     pub spacing: f32,
     /// What that distance, the cycle and the input distance are measured on.
-    pub spacing_on: Measure,
+    pub spacing_on: DistanceMetric,
     /// How many dabs overlap, `≥ 1`: each adds 1 − (1 − flow)^(1/overlap), so that together they
     /// reach the flow.
     pub overlap: f32,
@@ -75,9 +77,9 @@ pub struct Brush {
     /// use this.
     pub stabilizer: Stabilizer,
     /// What its lengths are measured on.
-    pub stabilizer_on: Measure,
+    pub stabilizer_on: DistanceMetric,
     /// How the hand's movement becomes readings and dabs.
-    pub hand: Hand,
+    pub stylus: StylusFilter,
     /// What drives [`Input::Cycle`].
     pub cycle: Cycle,
     /// What follows pen and surface, and how.
@@ -299,7 +301,7 @@ impl Default for Brush {
             opacity: 1.0,
             flow: 1.0,
             spacing: 0.1,
-            spacing_on: Measure::default(),
+            spacing_on: DistanceMetric::default(),
             overlap: 1.0,
             falloff: Falloff::default(),
             rate: Rate::default(),
@@ -321,8 +323,8 @@ impl Default for Brush {
             tip: Tip::Round,
             grain: None,
             stabilizer: Stabilizer::None,
-            stabilizer_on: Measure::default(),
-            hand: Hand::default(),
+            stabilizer_on: DistanceMetric::default(),
+            stylus: StylusFilter::default(),
             cycle: Cycle::default(),
             dynamics: Dynamics::default(),
             seed: 0,
@@ -342,7 +344,7 @@ impl Brush {
     pub fn is_random(&self) -> bool {
         let ColorJitter { hue_degrees, saturation, value } = self.jitter;
         let strays =
-            [self.scatter, self.hand.tremor, self.size_jitter, hue_degrees, saturation, value];
+            [self.scatter, self.stylus.tremor, self.size_jitter, hue_degrees, saturation, value];
         let adds =
             [Property::Scatter, Property::SizeJitter].into_iter().any(|p| self.dynamics.drive(p));
         let follows =

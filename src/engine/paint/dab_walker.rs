@@ -1,10 +1,10 @@
 //! From the pen's samples to dabs: a smooth curve walked at even steps of arc length, sample by
 //! sample as they come. Floor 3. `walk` says where dabs are due, `rules` sets their properties,
-//! `hand` says how the pen is read. Not here: the curve (`curve`), what a dab looks like
+//! `stylus` says how the pen is read. Not here: the curve (`curve`), what a dab looks like
 //! (`profile`, `stamp`), where it lands (`dab`).
 
-mod hand;
 mod rules;
+mod stylus;
 mod walk;
 
 use super::brush::Brush;
@@ -15,8 +15,8 @@ use super::sample::Sample;
 use super::scene::Scene;
 use crate::math::{Vec2, srgb::Color};
 use crate::surface::Operator;
-use hand::{CurvePoint, Speeds, Tremor};
 use rules::DabRules;
+use stylus::{CurvePoint, Speeds, Tremor};
 use walk::Walk;
 
 /// Farther from the canvas's corner than any canvas extends: such samples come from a broken pen.
@@ -103,7 +103,7 @@ impl DabWalker {
         Self {
             rules: DabRules::new(brush, operator, color, scene),
             places: Vec::with_capacity(4),
-            speeds: Speeds::new(&brush.hand),
+            speeds: Speeds::new(&brush.stylus),
             tremor: Tremor::new(brush),
             walk: None,
         }

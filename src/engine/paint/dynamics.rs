@@ -48,7 +48,7 @@ crate::named! {
         Offset = "offset",
         /// A curve's 1 is a full turn counter-clockwise.
         OffsetTurn = "offset-turn",
-        /// See [`super::Hand`]; added seconds.
+        /// See [`super::StylusFilter`]; added seconds.
         Lead = "lead",
         /// See [`super::Pickup`].
         Pickup = "pickup",
@@ -93,9 +93,9 @@ crate::named! {
         /// From the map: 0 near, 1 far. 1 off the surface.
         Depth = "depth",
         /// The speed in canvas px a second on a logarithmic scale, see [`pace_of`], averaged over
-        /// [`super::Hand::pace_secs`].
+        /// [`super::StylusFilter::pace_secs`].
         Pace = "pace",
-        /// The same, averaged over [`super::Hand::slow_pace_secs`].
+        /// The same, averaged over [`super::StylusFilter::slow_pace_secs`].
         SlowPace = "slow-pace",
         /// Random for every dab, the same for all its properties, uniformly distributed.
         Chance = "chance",

@@ -3,6 +3,7 @@
 
 pub mod adjust;
 pub mod brush;
+pub mod brush_options;
 mod curve;
 mod dab;
 mod dab_walker;
@@ -10,11 +11,9 @@ pub mod dynamics;
 pub mod fill;
 pub mod gradient;
 pub mod grain;
-pub mod habits;
 pub mod home;
 pub mod image;
 pub mod liquify;
-mod measure;
 mod patches;
 pub mod pattern;
 mod peaked;
@@ -33,15 +32,18 @@ pub mod stabilizer;
 mod stamp;
 pub mod stroke;
 mod stroke_tile;
+mod surface_metric;
 mod tint;
 pub mod tip;
 
 pub use adjust::Adjust;
 pub use brush::{Brush, BrushMode, ColorJitter, Stabilizer, StrokeFrame, Tip};
+pub use brush_options::{
+    Cycle, DistanceMetric, Falloff, Offset, Pickup, Rate, Spread, StylusFilter,
+};
 pub use dynamics::{Curve, DabInputs, Drive, Dynamics, Input, Property};
 pub use fill::Fill;
 pub use gradient::{Gradient, GradientStop};
-pub use habits::{Cycle, Falloff, Hand, Measure, Offset, Pickup, Rate, Spread};
 pub use home::{HomeFrame, StrokeHome};
 pub use image::{PictureSource, PlacedImage, Placement};
 pub use liquify::{LiquifySettings, LiquifyStroke, LiquifyTool};

@@ -2,10 +2,10 @@
 //! is painted on its tiles. Floor 3.
 
 use super::brush::{Brush, Tip};
+use super::brush_options::Falloff;
 use super::dab::{DabScratch, Footprint, PlacedDab, SoftenedStamps, TipShape, round_extent};
 use super::dab_walker::Dab;
 use super::dynamics::Property;
-use super::habits::Falloff;
 use super::image::PictureSource;
 use super::scene::Scene;
 use super::stroke_tile::StrokeTile;

@@ -12,8 +12,8 @@
 //! rises within less than a pixel.
 
 use super::brush::{Brush, Tip};
+use super::brush_options::Falloff;
 use super::dynamics::Property;
-use super::habits::Falloff;
 use super::profile::RoundProfile;
 use crate::memory::made_once;
 use std::sync::{Arc, Mutex};
@@ -92,7 +92,7 @@ impl RimTable {
             Tip::Square { .. } => true,
             Tip::Picture(_) | Tip::Hose(_) => return None,
         };
-        let strays = [brush.scatter, brush.size_jitter, brush.offset.amount, brush.hand.tremor];
+        let strays = [brush.scatter, brush.size_jitter, brush.offset.amount, brush.stylus.tremor];
         let driven = [
             Property::Hardness,
             Property::Softness,

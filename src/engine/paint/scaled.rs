@@ -2,8 +2,8 @@
 //! type names all its fields here, so that a new one has to say whether it is a length.
 
 use super::brush::{Brush, Stabilizer};
+use super::brush_options::StylusFilter;
 use super::grain::BrushGrain;
-use super::habits::Hand;
 
 impl Brush {
     /// The same brush for a canvas `factor` times as large, `factor > 0` and finite: its strokes,
@@ -37,7 +37,16 @@ impl Brush {
             ..
         } = *self;
         let Self {
-            bounded, reach, mode, pickup, stabilizer, stabilizer_on, hand, cycle, seed, ..
+            bounded,
+            reach,
+            mode,
+            pickup,
+            stabilizer,
+            stabilizer_on,
+            stylus,
+            cycle,
+            seed,
+            ..
         } = *self;
         Self {
             size: size * factor,
@@ -68,7 +77,7 @@ impl Brush {
             grain: self.grain.as_ref().map(|grain| grain.scaled(factor)),
             stabilizer: stabilizer.scaled(factor),
             stabilizer_on,
-            hand: hand.scaled(factor),
+            stylus: stylus.scaled(factor),
             cycle,
             dynamics: self.dynamics.clone(),
             seed,
@@ -94,7 +103,7 @@ impl Stabilizer {
     }
 }
 
-impl Hand {
+impl StylusFilter {
     /// For a canvas `factor > 0` times as large.
     pub fn scaled(self, factor: f32) -> Self {
         let Self {

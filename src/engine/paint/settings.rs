@@ -1,6 +1,6 @@
-//! The numbers of a brush that a user sets: the range and field of each, and for habits the name
-//! and label, defined once for documents and for the window. Floor 3. Not here: what habits mean
-//! (`habits`).
+//! The numbers of a brush that a user sets: the range and field of each, and for options the name
+//! and label, defined once for documents and for the window. Floor 3. Not here: what options mean
+//! (`brush_options`).
 
 use super::brush::Brush;
 use crate::math::{Range, TURNS, UNIT, range::held};
@@ -49,7 +49,7 @@ impl BrushNumber {
     }
 }
 
-/// One number of a brush's habits.
+/// One number of a brush's options.
 pub struct Setting {
     /// The object of a brush that holds it in documents; empty: the brush itself.
     pub group: &'static str,
@@ -83,7 +83,7 @@ pub const GROUPS: [&str; 6] = ["", "rate", "offset", "hand", "cycle", "pickup"];
 
 macro_rules! settings {
     ($($group:literal $name:literal $($field:ident).+ in $range:expr, $label:literal, $hint:literal;)*) => {
-        /// Every number of these habits.
+        /// Every number of these options.
         pub const SETTINGS: [Setting; [$($name),*].len()] = [$(Setting {
             group: $group,
             name: $name,
@@ -109,21 +109,21 @@ settings! {
         "How far from the stroke dabs are placed, in diameters";
     "offset" "turn" offset.turn_degrees in -360.0..=360.0, "Offset turn",
         "In which direction dabs are placed from the stroke, degrees counter-clockwise";
-    "hand" "tremor" hand.tremor in 0.0..=20.0, "Tremor",
+    "hand" "tremor" stylus.tremor in 0.0..=20.0, "Tremor",
         "How far the hand shakes, in diameters";
-    "hand" "lag" hand.lag_dabs in 0.0..=100.0, "Lag",
+    "hand" "lag" stylus.lag_dabs in 0.0..=100.0, "Lag",
         "How many dabs the stroke lags behind the pen";
-    "hand" "lead" hand.lead_secs in -1.0..=1.0, "Lead",
+    "hand" "lead" stylus.lead_secs in -1.0..=1.0, "Lead",
         "Dabs are placed where the pen would be so many seconds later";
-    "hand" "direction" hand.direction_px in 0.0..=1000.0, "Steadiness",
+    "hand" "direction" stylus.direction_px in 0.0..=1000.0, "Steadiness",
         "The distance in pixels over which the stroke's direction is averaged";
-    "hand" "pace" hand.pace_secs in 0.0..=10.0, "Pace over",
+    "hand" "pace" stylus.pace_secs in 0.0..=10.0, "Pace over",
         "Seconds over which the pace is averaged";
-    "hand" "slow_pace" hand.slow_pace_secs in 0.0..=10.0, "Slow pace over",
+    "hand" "slow_pace" stylus.slow_pace_secs in 0.0..=10.0, "Slow pace over",
         "Seconds over which the slow pace is averaged";
-    "hand" "pace_pixel" hand.pace_px in 0.001..=1000.0, "Pace pixel",
+    "hand" "pace_pixel" stylus.pace_px in 0.001..=1000.0, "Pace pixel",
         "How many pixels count as one where the hand's pace is read";
-    "hand" "custom" hand.custom_dabs in 0.0..=1000.0, "Custom over",
+    "hand" "custom" stylus.custom_dabs in 0.0..=1000.0, "Custom over",
         "Dabs over which the custom input is averaged";
     "cycle" "length" cycle.length in 0.01..=10_000.0, "Cycle",
         "How far the cycle takes to rise, in diameters";

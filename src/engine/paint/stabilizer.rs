@@ -2,9 +2,9 @@
 //! line when the pen lifts. Floor 3.
 
 use super::brush::{Brush, Stabilizer};
-use super::habits::Measure;
-use super::measure::SurfaceMeasure;
+use super::brush_options::DistanceMetric;
 use super::sample::Sample;
+use super::surface_metric::SurfaceMetric;
 use crate::math::Vec2;
 use crate::surface::{Operator, Scene};
 
@@ -26,7 +26,7 @@ const MOST_PULLS: f32 = 4096.0;
 pub struct StabilizedPen {
     stabilizer: Stabilizer,
     /// The surface that lengths are measured on; absent: the canvas.
-    measured: Option<SurfaceMeasure>,
+    measured: Option<SurfaceMetric>,
     /// The end of the line, and the last sample of the pen.
     line: Option<(Vec2, Sample)>,
 }
@@ -39,8 +39,8 @@ impl StabilizedPen {
 
     /// The stabiliser of a brush, with lengths in px of what the brush measures them on.
     pub fn of_brush(brush: &Brush, operator: Operator, scene: &Scene) -> Self {
-        let measured =
-            SurfaceMeasure::of(scene, operator).filter(|_| brush.stabilizer_on == Measure::Surface);
+        let measured = SurfaceMetric::of(scene, operator)
+            .filter(|_| brush.stabilizer_on == DistanceMetric::Surface);
         Self { measured, ..Self::new(brush.stabilizer) }
     }
 
@@ -229,15 +229,15 @@ mod tests {
             (vec2(20.0, 4.0) + way).distance(ends.last().unwrap().at)
         };
         for (stabilizer, trails) in [(CALM[0], 19.576), (CALM[1], 20.0)] {
-            let across = drawn(stabilizer, Measure::Surface, vec2(0.0, 32.0));
-            let along = drawn(stabilizer, Measure::Surface, vec2(300.0, 0.0));
+            let across = drawn(stabilizer, DistanceMetric::Surface, vec2(0.0, 32.0));
+            let along = drawn(stabilizer, DistanceMetric::Surface, vec2(300.0, 0.0));
             assert!(
                 (along - trails / 5.0f32.sqrt()).abs() < 0.02 * trails,
                 "{stabilizer:?}: {along}"
             );
-            let seen = drawn(stabilizer, Measure::Canvas, vec2(300.0, 0.0));
+            let seen = drawn(stabilizer, DistanceMetric::Canvas, vec2(300.0, 0.0));
             assert!((seen - trails).abs() < 0.02 * trails, "{stabilizer:?}: {seen}");
-            let flat = drawn(stabilizer, Measure::Canvas, vec2(0.0, 32.0));
+            let flat = drawn(stabilizer, DistanceMetric::Canvas, vec2(0.0, 32.0));
             assert!(
                 (across - flat).abs() < 0.01,
                 "across the slope nothing is longer: {across} and {flat}"

@@ -4,7 +4,7 @@
 use super::Form;
 use crate::math::{Range, Size, Vec3, vec3};
 use crate::raster::Plane;
-use crate::surface::{KnownNearest, Maps, Surface, SurfaceError};
+use crate::surface::{Maps, NearestCache, Surface, SurfaceError};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -230,7 +230,7 @@ impl Relief {
     /// that is covered.
     ///
     /// * `known`: from the previous surface, so that the same need not be found again.
-    pub fn into_surface(self, known: &mut KnownNearest) -> Result<Surface, SurfaceError> {
+    pub fn into_surface(self, known: &mut NearestCache) -> Result<Surface, SurfaceError> {
         let Self { height, normals, coverage, ids, piece_of } = self;
         let covered = height.values().par_iter().zip(coverage.values()).filter(|(_, c)| **c > 0);
         let wider = |(a, b): (f32, f32), (c, d): (f32, f32)| (a.min(c), b.max(d));
@@ -346,7 +346,7 @@ mod tests {
                 assert!(relief.height.at(x, y) > alone.height.at(x, y), "({x}, {y})");
             }
         }
-        let surface = relief.into_surface(&mut KnownNearest::default()).unwrap();
+        let surface = relief.into_surface(&mut NearestCache::default()).unwrap();
         assert_eq!(surface.objects().count(), 2);
         let object = |x, y| surface.objects().at(x, y);
         assert_ne!(object(60, 60), object(120, 60));

@@ -6,11 +6,11 @@ use crate::math::{Rect, Vec2, Vec3, vec2};
 use crate::raster::Plane;
 use crate::surface::integrate::{Slopes, depth_from_normals};
 
-/// Heights of which each begins at the last ones, with the springs of the first normals.
+/// Heights of which each begins at the last ones, with the couplings of the first normals.
 pub struct Following {
     solver: Solver,
     /// To the right and down.
-    springs: Plane<Vec2>,
+    couplings: Plane<Vec2>,
     /// Away from the viewer, px; each piece about some depth of its own.
     heights: Vec<f32>,
 }
@@ -21,28 +21,28 @@ impl Following {
     pub fn of(normals: &Plane<Vec3>, inside: &Plane<bool>) -> Option<Self> {
         let found = depth_from_normals(normals, inside)?;
         let slopes = Slopes { normals, inside };
-        let springs = Plane::from_fn(inside.size(), |x, y| {
+        let couplings = Plane::from_fn(inside.size(), |x, y| {
             vec2(slopes.edge((x, y), 0).0, slopes.edge((x, y), 1).0)
         });
-        let solver = Solver::of_springs(
-            springs.map(|s| s.x),
-            springs.map(|s| s.y),
+        let solver = Solver::of_couplings(
+            couplings.map(|s| s.x),
+            couplings.map(|s| s.y),
             Plane::filled(inside.size(), 0.0),
         );
         let heights =
             found.depth.map(|z| if z.is_finite() { z * found.range_px } else { 0.0 }).into_values();
-        Some(Self { solver, springs, heights })
+        Some(Self { solver, couplings, heights })
     }
 
     /// The heights near those of other normals over the same pixels, px away from the viewer.
     pub fn go_on(&mut self, normals: &Plane<Vec3>, inside: &Plane<bool>, near: Rect) -> &[f32] {
         let slopes = Slopes { normals, inside };
-        // The flow along its own springs, from the new slopes.
+        // The flow along its own couplings, from the new slopes.
         let flow = Plane::from_fn(inside.size(), |x, y| {
-            let springs = self.springs.at(x, y);
+            let couplings = self.couplings.at(x, y);
             let along =
-                |axis: usize| if springs[axis] > 0.0 { slopes.edge((x, y), axis).1 } else { 0.0 };
-            if springs == Vec2::ZERO { Vec2::ZERO } else { springs * vec2(along(0), along(1)) }
+                |axis: usize| if couplings[axis] > 0.0 { slopes.edge((x, y), axis).1 } else { 0.0 };
+            if couplings == Vec2::ZERO { Vec2::ZERO } else { couplings * vec2(along(0), along(1)) }
         });
         let source = Plane::from_fn(inside.size(), |x, y| {
             let here = flow.at(x, y);

@@ -99,7 +99,7 @@ impl Form {
     /// Slopes s become k A^−T s and heights k z, with k = √|det A|, like those of an object that is
     /// turned and scaled with its picture (MATH 1). Between pixels normals and heights are those of
     /// the covered ones.
-    pub fn through(&self, map: Affine2, most_px: usize) -> Option<Self> {
+    pub fn transformed(&self, map: Affine2, most_px: usize) -> Option<Self> {
         let area = map.matrix2.determinant().abs();
         if !map.is_finite() || area < 1e-6 {
             return None;

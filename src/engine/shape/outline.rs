@@ -6,7 +6,7 @@ use crate::math::{Affine2, Rect, Size, Vec2, vec2};
 use crate::raster::Plane;
 use std::sync::Arc;
 
-/// The least distance of the rim from the centre of a pixel, px: a smaller one would make springs
+/// The least distance of the rim from the centre of a pixel, px: a smaller one would make couplings
 /// too stiff to solve.
 const LEAST_CROSSING: f32 = 0.02;
 
@@ -152,7 +152,7 @@ impl Outline {
     ///
     /// Moves by whole pixels copy. Otherwise coverage is read between pixels, and its former
     /// steepness restored.
-    pub fn through(&self, map: Affine2, most_px: usize) -> Option<Self> {
+    pub fn transformed(&self, map: Affine2, most_px: usize) -> Option<Self> {
         if !map.is_finite() || map.matrix2.determinant().abs() < 1e-6 {
             return None;
         }
@@ -268,14 +268,15 @@ mod tests {
         let coverage =
             Plane::from_fn(Size::new(40, 30), |x, y| if x > 3 && y > 5 { 255 } else { 90 });
         let outline = Outline::new((0, 0), &coverage).unwrap();
-        let moved = outline.through(Affine2::from_translation(vec2(7.0, -3.0)), 1 << 20).unwrap();
+        let moved =
+            outline.transformed(Affine2::from_translation(vec2(7.0, -3.0)), 1 << 20).unwrap();
         assert_eq!(moved, outline.moved((7, -3)));
         let square = Outline::new((0, 0), &Plane::filled(Size::new(40, 40), 255)).unwrap();
-        let turned = square.through(Affine2::from_angle(0.6), 1 << 20).unwrap();
+        let turned = square.transformed(Affine2::from_angle(0.6), 1 << 20).unwrap();
         let area =
             |o: &Outline| o.coverage().values().iter().map(|c| f64::from(*c)).sum::<f64>() / 255.0;
         assert!((area(&turned) / area(&square) - 1.0).abs() < 0.01, "{}", area(&turned));
-        assert!(square.through(Affine2::from_scale(vec2(1.0, 0.0)), 1 << 20).is_none());
-        assert!(square.through(Affine2::from_scale(vec2(1e4, 1e4)), 1 << 20).is_none());
+        assert!(square.transformed(Affine2::from_scale(vec2(1.0, 0.0)), 1 << 20).is_none());
+        assert!(square.transformed(Affine2::from_scale(vec2(1e4, 1e4)), 1 << 20).is_none());
     }
 }

@@ -56,7 +56,7 @@ impl<'a> OutlineRim<'a> {
         }
     }
 
-    /// The springs of −∇²v + s v: 1 between inside pixels, 1/θ toward the rim (Gibou et al. 2002,
+    /// The couplings of −∇²v + s v: 1 between inside pixels, 1/θ toward the rim (Gibou et al. 2002,
     /// symmetric), and `s`, px⁻², `≥ 0`.
     pub fn equation(&self, screen: impl Fn(usize, usize) -> f32 + Sync) -> Equation {
         let (inside, size) = (self.outline.inside(), self.outline.size());
@@ -64,7 +64,7 @@ impl<'a> OutlineRim<'a> {
         Equation { solver: Solver::new(inside, held) }
     }
 
-    /// The spring of a pixel toward 0.
+    /// The coupling of a pixel toward 0.
     fn held(&self, (x, y): (usize, usize), screen: &impl Fn(usize, usize) -> f32) -> f32 {
         let inside = self.outline.inside();
         if !inside.at(x, y) {

@@ -1,6 +1,6 @@
 //! Poisson equations over outlines: conjugate gradients, preconditioned by one multigrid V-cycle,
-//! starting from the solution of the coarser grid. Floor 3. Springs are mostly 1 or 0 here. Not
-//! here: exact solutions with springs of any stiffness (`surface`). Sums are formed band by band
+//! starting from the solution of the coarser grid. Floor 3. Couplings are mostly 1 or 0 here. Not
+//! here: exact solutions with couplings of any stiffness (`surface`). Sums are formed band by band
 //! and added in order, so that the bits do not depend on the number of threads.
 
 mod level;
@@ -23,10 +23,10 @@ pub struct Solver {
 }
 
 impl Solver {
-    /// −∇²v + held · v over the pixels where `inside` holds: springs of 1 between them.
+    /// −∇²v + held · v over the pixels where `inside` holds: couplings of 1 between them.
     ///
     /// * `inside`: its border holds no pixel.
-    /// * `held`: the spring of each pixel toward 0, `≥ 0`: rims, screening. 0 outside.
+    /// * `held`: the coupling of each pixel toward 0, `≥ 0`: rims, screening. 0 outside.
     pub fn new(inside: &Plane<bool>, held: Plane<f32>) -> Self {
         let Size { width, height } = inside.size();
         let (w, h) = (width as usize, height as usize);
@@ -37,11 +37,11 @@ impl Solver {
         let down = Plane::from_fn(inside.size(), |x, y| {
             linked(inside.at(x, y), y + 1 < h && inside.at(x, y + 1))
         });
-        Self::of_springs(right, down, held)
+        Self::of_couplings(right, down, held)
     }
 
-    /// The same with springs of any stiffness to the right and down, none of them at the border.
-    pub fn of_springs(right: Plane<f32>, down: Plane<f32>, held: Plane<f32>) -> Self {
+    /// The same with couplings of any stiffness to the right and down, none of them at the border.
+    pub fn of_couplings(right: Plane<f32>, down: Plane<f32>, held: Plane<f32>) -> Self {
         let (w, h) = (held.width(), held.height());
         let mut levels =
             vec![Level::new(w, h, right.into_values(), down.into_values(), held.into_values())];
@@ -52,7 +52,7 @@ impl Solver {
         Self { levels }
     }
 
-    /// Gives some pixels another spring toward 0: as if the solver had been made with it.
+    /// Gives some pixels another coupling toward 0: as if the solver had been made with it.
     pub fn hold(&mut self, pixels: &[(usize, usize)], held: impl Fn(usize, usize) -> f32) {
         let mut changed = pixels.to_vec();
         for &(x, y) in &changed {
@@ -81,7 +81,7 @@ impl Solver {
         self.settle(b, &mut v, near, 30);
         if let Some(below) = self.levels.get(1) {
             grid.fill(&mut other, |y, out| {
-                left_over(grid.springs(y), grid.around(&v, y), grid.row(b, y), out)
+                left_over(grid.couplings(y), grid.around(&v, y), grid.row(b, y), out)
             });
             let mut rest = filled_or_unwind(below.w * below.h, 0.0);
             restrict(grid, below, &other, &mut rest);
@@ -133,7 +133,7 @@ impl Solver {
         let buffer = || filled_or_unwind(b.len(), 0.0);
         let mut residual = buffer();
         grid.fill(&mut residual, |y, out| {
-            left_over(grid.springs(y), grid.around(&v, y), grid.row(b, y), out)
+            left_over(grid.couplings(y), grid.around(&v, y), grid.row(b, y), out)
         });
         let goal = dots(w, b, b) * goal;
         let (mut direction, mut pulled, mut rz_before) = (buffer(), buffer(), 0.0);
@@ -152,7 +152,7 @@ impl Solver {
             });
             scratch.keep(z);
             grid.fill(&mut pulled, |y, out| {
-                applied(grid.springs(y), grid.around(&direction, y), out)
+                applied(grid.couplings(y), grid.around(&direction, y), out)
             });
             let energy = dots(w, &direction, &pulled);
             if energy.is_nan() || energy <= 0.0 || rz <= 0.0 {
@@ -183,7 +183,7 @@ impl Solver {
         grid.fill(&mut v, |y, out| between_blocks(grid, below, &coarse, y, out));
         let mut left = filled_or_unwind(b.len(), 0.0);
         grid.fill(&mut left, |y, out| {
-            left_over(grid.springs(y), grid.around(&v, y), grid.row(b, y), out)
+            left_over(grid.couplings(y), grid.around(&v, y), grid.row(b, y), out)
         });
         let z = self.cycle(at, &left, &mut scratch);
         add(&mut v, 1.0, &z);
@@ -213,7 +213,7 @@ impl Solver {
             }
             Some(below) => {
                 grid.fill(&mut twin, |y, out| {
-                    left_over(grid.springs(y), grid.around(&v, y), grid.row(b, y), out)
+                    left_over(grid.couplings(y), grid.around(&v, y), grid.row(b, y), out)
                 });
                 let mut rest = scratch.take(below.w * below.h);
                 restrict(grid, below, &twin, &mut rest);

@@ -336,7 +336,7 @@ fn thousands_of_holes_combs_and_specks_make_a_form_without_nan() {
             let mut relief = Relief::empty(size);
             relief.add(&form, Combine::Over, 1);
             let surface = relief
-                .into_surface(&mut crate::surface::KnownNearest::default())
+                .into_surface(&mut crate::surface::NearestCache::default())
                 .unwrap_or_else(|error| panic!("{name}: {error}"));
             assert!(
                 surface.depth_plane().values().iter().all(|z| (0.0..=1.0).contains(z)),

@@ -10,9 +10,9 @@ use crate::raster::Plane;
 use crate::surface::integrate::depth_from_normals;
 use rayon::prelude::*;
 
-/// How firmly a touch holds, relative to the springs between pixels, which are 1.
+/// How firmly a touch holds, relative to the couplings between pixels, which are 1.
 const FIRM: f32 = 1e3;
-/// The squared residual, relative to the right-hand side, which the firm springs dominate: a ten
+/// The squared residual, relative to the right-hand side, which the firm couplings dominate: a ten
 /// thousandth of the residual at the start.
 const GOAL: f64 = 1e-14;
 

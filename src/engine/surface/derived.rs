@@ -9,7 +9,9 @@ use super::objects::Objects;
 use super::pyramid::MapPyramids;
 use super::ray::RayMap;
 use super::region::SurfaceRegion;
-use super::unwrap::{NearView, PlaneLayout, PlaneSprings, PlaneYield, Unwrapping, YieldKey};
+use super::unwrap::{
+    DisplacementKey, PerspectiveView, PlaneDisplacement, PlaneLayout, PlaneSolver, Unwrapping,
+};
 use crate::math::Rect;
 use crate::raster::{CoverageGrid, Plane};
 use std::sync::{Arc, OnceLock};
@@ -55,12 +57,12 @@ caches! {
     unwrappings: RecentCache<[u32; 2], Unwrapping>,
     /// The planes side by side, by the key of their unwrapping; `None` where they do not fit.
     plane_layouts: RecentCache<[u32; 2], Option<Arc<PlaneLayout>>>,
-    /// How planes yield to anchors.
-    plane_yields: RecentCache<YieldKey, PlaneYield>,
+    /// How planes are displaced by anchors.
+    plane_displacements: RecentCache<DisplacementKey, PlaneDisplacement>,
     /// By the key of the unwrapping, and the rectangle that they span.
-    plane_springs: RecentCache<([u32; 2], Rect), PlaneSprings>,
+    plane_solver: RecentCache<([u32; 2], Rect), PlaneSolver>,
     /// The perspective near the surface; `None` where it was seen from afar.
-    near_view: OnceLock<Option<NearView>>,
+    perspective_view: OnceLock<Option<PerspectiveView>>,
     /// Ranges of the maps in blocks.
     bounds: MapPyramids,
     /// The pieces of the surface.

@@ -5,7 +5,7 @@
 
 mod slopes;
 
-use super::springs::{Effort, GoOn, SpringGrid, SpringSolver};
+use super::poisson::{Effort, GoOn, PoissonGrid, PoissonSolver};
 use crate::math::Vec3;
 use crate::memory::filled_or_unwind;
 use crate::raster::Plane;
@@ -52,14 +52,14 @@ pub fn depth_from_normals_while(
     Some(IntegratedDepth { depth, range_px })
 }
 
-fn solver(slopes: &Slopes) -> SpringSolver {
+fn solver(slopes: &Slopes) -> PoissonSolver {
     let size = slopes.inside.size();
     let right = Plane::from_fn(size, |x, y| slopes.edge((x, y), 0).0).into_values();
     let down = Plane::from_fn(size, |x, y| slopes.edge((x, y), 1).0).into_values();
-    SpringSolver::new(SpringGrid::new(slopes.inside.width(), right, down))
+    PoissonSolver::new(PoissonGrid::new(slopes.inside.width(), right, down))
 }
 
-fn heights(solver: &SpringSolver, slopes: &Slopes, go_on: GoOn) -> Vec<f32> {
+fn heights(solver: &PoissonSolver, slopes: &Slopes, go_on: GoOn) -> Vec<f32> {
     let size = slopes.inside.size();
     let source = Plane::from_fn(size, |x, y| slopes.source(x, y));
     let mut heights = filled_or_unwind(size.area(), 0.0);

@@ -19,23 +19,23 @@ pub mod differentiate;
 pub mod fit;
 pub mod flow;
 pub mod grain;
-pub mod grow;
 pub mod integrate;
 pub mod links;
 mod maps;
+pub mod nearest_feature;
 pub mod objects;
 mod occlusion;
 pub mod operator;
 pub mod plane_piece;
 mod points;
+mod poisson;
 mod pyramid;
 pub mod ray;
 pub mod reach;
 pub mod region;
 pub mod scene;
-mod springs;
 pub mod support;
-pub mod through;
+pub mod transformed;
 pub mod unwrap;
 pub mod view;
 
@@ -46,7 +46,7 @@ pub use curvature::Curvature;
 pub use deformation::Deformation;
 pub use flow::{FlowField, StructureTensor};
 pub use grain::NoiseRelief;
-pub use grow::KnownNearest;
+pub use nearest_feature::NearestCache;
 pub use objects::{Objects, PaintLimit};
 pub use operator::Operator;
 pub use reach::DabReach;
@@ -60,7 +60,7 @@ use derived::DerivedCaches;
 use points::PointSource;
 use rayon::prelude::*;
 use std::sync::Arc;
-use through::Origin;
+use transformed::Origin;
 use view::Eye;
 
 /// What a surface is made from. At least one of normals and depth must be there; the importer
@@ -154,13 +154,13 @@ impl Surface {
 
     /// The same of maps whose depth range is known, px.
     fn with_depth_range(maps: Maps, range_px: Option<f32>) -> Result<Self, SurfaceError> {
-        Self::made(maps, range_px, &mut KnownNearest::default())
+        Self::made(maps, range_px, &mut NearestCache::default())
     }
 
     fn made(
         maps: Maps,
         range_px: Option<f32>,
-        known: &mut KnownNearest,
+        known: &mut NearestCache,
     ) -> Result<Self, SurfaceError> {
         let Maps { mut normals, mut depth, mut coverage } = maps;
         let size = normals.size();
@@ -178,11 +178,11 @@ impl Surface {
         });
         // A partly covered pixel at the rim without a normal takes its neighbour's; further inside
         // it is a hole.
-        grow::punch_holes(&mut coverage, &valid);
+        nearest_feature::punch_holes(&mut coverage, &valid);
         if valid.values().iter().any(|valid| !valid) {
             let nearest = known.take(&valid).ok_or(SurfaceError::Empty)?;
-            grow::fill(&mut normals, &nearest);
-            grow::fill(&mut depth, &nearest);
+            nearest_feature::fill(&mut normals, &nearest);
+            nearest_feature::fill(&mut depth, &nearest);
             known.keep(&valid, nearest);
         }
         let depth = depth.updated(|_, _, z| z.clamp(0.0, 1.0));
@@ -231,7 +231,7 @@ impl Surface {
         maps: Maps,
         parts: Plane<u32>,
         piece_of: &[u32],
-        known: &mut KnownNearest,
+        known: &mut NearestCache,
     ) -> Result<Self, SurfaceError> {
         let mut surface = Self::made(maps, None, known)?;
         if parts.size() != surface.size {

@@ -1,30 +1,30 @@
 //! A surface unwrapped: a map of it onto a plane that changes lengths as little as can be, from its
 //! normals (MATH 8). Floor 2. `metric` holds the equations, `steps` the local and global steps over
-//! rows, `smooth` the blur before them. Not here: the linear systems (`springs`), anchors, and how
+//! rows, `smooth` the blur before them. Not here: the linear systems (`couplings`), anchors, and how
 //! marks use the plane (`deformation`).
 
+mod constrained;
 mod layout;
 pub mod metric;
-mod near;
+mod perspective;
 mod place;
 mod seen;
 mod settle;
 mod smooth;
 mod steps;
-mod yields;
 
+pub(super) use constrained::DisplacementKey;
+pub use constrained::{PlaneConstraint, PlaneDisplacement, PlaneSolver};
 pub use layout::{CanvasPlace, LaidPiece, PlaneLayout};
-pub use near::NearView;
+pub use perspective::PerspectiveView;
 pub use place::PlanePlace;
 pub use seen::PlaneView;
-pub(super) use yields::YieldKey;
-pub use yields::{PlaneHold, PlaneSprings, PlaneYield};
 
 use super::cache::HeapSize;
 use super::contours::SheetOf;
 use super::operator::UnwrapSettings;
+use super::poisson::{Effort, GoOn, PoissonGrid, PoissonSolver, SolveScratch};
 use super::pyramid::{Pyramid, TurnSpan};
-use super::springs::{Effort, GoOn, SolveScratch, SpringGrid, SpringSolver};
 use super::{Surface, links};
 use crate::math::{Rect, Size, Vec2, vec2};
 use crate::memory::filled_or_unwind;
@@ -62,11 +62,11 @@ pub const SOLVES: u64 = (TURNS as u64 + 1) * 2;
 
 impl Unwrapping {
     pub fn new(surface: &Surface, settings: UnwrapSettings) -> Self {
-        Self::telling(surface, settings, &|| true).expect("nobody gives it up")
+        Self::with_progress(surface, settings, &|| true).expect("nobody gives it up")
     }
 
     /// The same, calling `go_on` after each solve: `None` if it says no.
-    pub fn telling(surface: &Surface, settings: UnwrapSettings, go_on: GoOn) -> Option<Self> {
+    pub fn with_progress(surface: &Surface, settings: UnwrapSettings, go_on: GoOn) -> Option<Self> {
         let size = surface.size();
         let mut planes = [
             Plane::from_fn(size, |x, _| x as f32 + 0.5),
@@ -144,7 +144,7 @@ fn solved(
 ) -> Option<[Vec<f32>; 2]> {
     let normals = smooth::normals(surface, rect, settings.smooth_px);
     let metric = Metric::of(surface, rect, &normals, settings.amount);
-    let solver = SpringSolver::new(springs(surface, rect, &normals));
+    let solver = PoissonSolver::new(couplings(surface, rect, &normals));
     drop(normals);
     let n = rect.width() * rect.height();
     let mut moved = [filled_or_unwind(n, 0.0), filled_or_unwind(n, 0.0)];
@@ -171,14 +171,14 @@ impl Metric {
     /// S − 1 over a rectangle of a surface whose normals there are these.
     fn of(surface: &Surface, rect: Rect, normals: &smooth::Normals, amount: f32) -> Self {
         let [nx, ny, nz] = &normals.0;
-        let (w, near) = (rect.width(), surface.near_view());
+        let (w, near) = (rect.width(), surface.perspective_view());
         let entries = |(i, (nx, (ny, nz))): (usize, (&f32, (&f32, &f32)))| {
             let (nbar, nz) = (vec2(*nx, *ny), *nz);
             let s = match near {
                 None => metric::stretch(nbar, nz, amount),
                 Some(near) => {
                     let (x, y) = (rect.x0 as usize + i % w, rect.y0 as usize + i / w);
-                    metric::stretch_from_near(
+                    metric::stretch_in_perspective(
                         nbar,
                         nz,
                         near.beside(x, y),
@@ -195,17 +195,17 @@ impl Metric {
     }
 }
 
-/// The links of MATH 8 as springs: `w = the mean of n_z × c_ij`, nothing across depth jumps and the
+/// The links of MATH 8 as couplings: `w = the mean of n_z × c_ij`, nothing across depth jumps and the
 /// mask's edge.
-fn springs(surface: &Surface, rect: Rect, normals: &smooth::Normals) -> SpringGrid {
+fn couplings(surface: &Surface, rect: Rect, normals: &smooth::Normals) -> PoissonGrid {
     let (w, n) = (rect.width(), rect.width() * rect.height());
     let [nx, ny, nz] = &normals.0;
     let normal = |i: usize| crate::math::vec3(nx[i], -ny[i], nz[i]);
-    let near = surface.near_view();
+    let near = surface.perspective_view();
     let facing = |i: usize| {
         let facing = near.map_or(nz[i], |near| {
             let (x, y) = (rect.x0 as usize + i % w, rect.y0 as usize + i / w);
-            metric::facing_from_near(vec2(nx[i], ny[i]), nz[i], near.beside(x, y))
+            metric::facing_in_perspective(vec2(nx[i], ny[i]), nz[i], near.beside(x, y))
         });
         facing.max(metric::STEEPEST_NZ).min(1.0)
     };
@@ -213,18 +213,19 @@ fn springs(surface: &Surface, rect: Rect, normals: &smooth::Normals) -> SpringGr
         let mut plane = filled_or_unwind(n, 0.0f32);
         plane.par_chunks_mut(w).enumerate().for_each(|(y, row)| {
             let linked = surface.links_plane().row(y + rect.y0 as usize);
-            for (x, (spring, linked)) in row.iter_mut().zip(&linked[rect.x0 as usize..]).enumerate()
+            for (x, (coupling, linked)) in
+                row.iter_mut().zip(&linked[rect.x0 as usize..]).enumerate()
             {
                 let i = y * w + x;
                 if linked & bit != 0 && i + step < n {
                     let hollow = metric::hollow(normal(i), normal(i + step), along);
-                    *spring = 0.5 * (facing(i) + facing(i + step)) * hollow;
+                    *coupling = 0.5 * (facing(i) + facing(i + step)) * hollow;
                 }
             }
         });
         plane
     };
-    SpringGrid::new(w, plane(links::RIGHT, 1, Vec2::X), plane(links::DOWN, w, Vec2::Y))
+    PoissonGrid::new(w, plane(links::RIGHT, 1, Vec2::X), plane(links::DOWN, w, Vec2::Y))
 }
 
 /// Pixels of all unwrappings kept, 8 bytes each.
@@ -246,7 +247,7 @@ impl Surface {
 
     /// The same, calling `go_on` after each solve: `None` if it says no. It is not called for what
     /// is cached.
-    pub fn unwrapped_telling(
+    pub fn unwrapped_with_progress(
         &self,
         settings: UnwrapSettings,
         go_on: GoOn,
@@ -255,7 +256,7 @@ impl Surface {
             return Some(self.unwrapped(settings));
         }
         let settings = settings.held(self.size());
-        let unwrapped = Unwrapping::telling(self, settings, go_on)?;
+        let unwrapped = Unwrapping::with_progress(self, settings, go_on)?;
         Some(self.derived.unwrappings.get_or_compute(
             settings.key(),
             self.kept_unwrappings(),

@@ -76,7 +76,7 @@ impl Surface {
     /// The same surface seen by another eye.
     pub fn seen_by(mut self, eye: Eye) -> Self {
         self.eye = eye;
-        self.derived.near_view = Default::default();
+        self.derived.perspective_view = Default::default();
         self.derived.ray_maps.clear();
         self
     }

@@ -1,15 +1,15 @@
 //! MyPaint's brushes: settings, each a base value and curves over what the hand does that add to
 //! it. JSON of version 3, and the text of versions 1 and 2 (`old`). Floor 5. `settings` are what a
 //! file says, `curves` how inputs run here, `dab` what a dab looks like and `small` how large it
-//! is, `hand` how dabs follow the pen.
+//! is, `stylus` how dabs follow the pen.
 
 mod added;
 mod curves;
 mod dab;
-mod hand;
 mod old;
 mod settings;
 mod small;
+mod stylus;
 
 use super::ImportedBrush;
 use crate::Budget;
@@ -88,10 +88,10 @@ fn brush(settings: &mut MyPaintSettings) -> Brush {
     let brush = with(with(brush, Property::Size, &doublings), Property::Custom, &custom);
     let brush = dab::shape(settings, brush);
     let brush = dab::paint(settings, brush);
-    let brush = hand::spacing(settings, lengths, brush);
+    let brush = stylus::spacing(settings, lengths, brush);
     let brush = dab::flow(settings, brush);
-    let brush = hand::strays(settings, lengths, brush);
-    hand::ways(settings, lengths, brush)
+    let brush = stylus::strays(settings, lengths, brush);
+    stylus::ways(settings, lengths, brush)
 }
 
 /// With the rows of a setting.

@@ -22,7 +22,7 @@ pub fn encode(
     budget: &Budget,
     progress: &Progress,
 ) -> Cancellable<Vec<u8>> {
-    let Some(document) = document.reshaped_telling(progress) else { return Ok(None) };
+    let Some(document) = document.reshaped_with_progress(progress) else { return Ok(None) };
     let size = document.size;
     let seen = |document: &Document| flattened(file, document, Highlights::Kept, budget, progress);
     let mut channels = Vec::new();

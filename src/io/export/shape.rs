@@ -204,7 +204,7 @@ mod tests {
         let mut relief = Relief::empty(Size::new(64, 48));
         let form = Primitive::new(Body::Sphere, vec2(32.0, 24.0), 20.0).form(1 << 16).unwrap();
         relief.add(&form, Combine::Over, 7);
-        relief.into_surface(&mut crate::surface::KnownNearest::default()).unwrap()
+        relief.into_surface(&mut crate::surface::NearestCache::default()).unwrap()
     }
 
     fn written(map: ShapeMap, is_directx: bool, is_deep: bool) -> image::DynamicImage {

@@ -301,7 +301,7 @@ fn maps_that_were_turned_come_back_as_their_files_and_a_matrix() {
         "nothing of it where it is not used"
     );
     let turn = PlaneMap::rotation(30.0, plain.size.center());
-    let surface = plain.surface.as_ref().unwrap().through(plain.size, &turn).unwrap();
+    let surface = plain.surface.as_ref().unwrap().transformed(plain.size, &turn).unwrap();
     let source = SurfaceSource {
         matrix: turn.told_coefficients(),
         ..SurfaceSource::clone(plain.surface_source.as_ref().unwrap())

@@ -1,7 +1,7 @@
 //! The settings of a brush. Read and written.
 //! Floor 5. Not here: strokes and presets (`strokes`).
 
-use super::habits;
+use super::brush_options;
 use super::tips;
 use super::value::RecipeValue;
 use crate::Result;
@@ -43,7 +43,7 @@ pub fn settings(fields: &mut Fields, base: Brush) -> Result<Brush> {
         seed: fields.get("seed").map_or(Ok(base.seed), |node| seed(&node))?,
         ..base
     };
-    habits::read(fields, brush)
+    brush_options::read(fields, brush)
 }
 
 /// `{ "turn": 0, "mirrored": false }`: how symmetry turned the stroke, degrees counter-clockwise as
@@ -246,7 +246,7 @@ pub fn write_brush(brush: &Brush) -> JsonObject {
         }
         Stabilizer::Lag { secs } => out.set("stabilizer", json!({ "lag": object::number(secs) })),
     }
-    habits::write(&mut out, brush);
+    brush_options::write(&mut out, brush);
     out.object("dynamics", write_dynamics(&brush.dynamics));
     if brush.seed != plain.seed {
         out.set("seed", brush.seed.into());

@@ -24,8 +24,8 @@
 //! | `value` | the trait of values that replays write as recipes do |
 
 mod brush;
+mod brush_options;
 mod guides;
-mod habits;
 mod images;
 mod layers;
 mod light;

@@ -2,7 +2,7 @@
 //! Floor 5. Not here: what selections and guides need (`selections`, `guides`).
 
 use crate::document::{Content, Document, Layer, LayerLabel};
-use crate::paint::Measure;
+use crate::paint::DistanceMetric;
 use crate::paint::grain::GrainSpace;
 use crate::surface::Operator;
 
@@ -25,7 +25,7 @@ pub fn unwraps(document: &Document) -> bool {
         Content::Strokes(live) => live.params().strokes.iter().any(|stroke| {
             let (brush, grain) = (stroke.brush(), stroke.brush().grain.as_ref());
             is_print(stroke.operator())
-                || [brush.spacing_on, brush.stabilizer_on].contains(&Measure::Surface)
+                || [brush.spacing_on, brush.stabilizer_on].contains(&DistanceMetric::Surface)
                 || grain.is_some_and(|grain| grain.lies == GrainSpace::Unwrapped)
         }),
         Content::Shading(live) => live.params().bounces > 0,

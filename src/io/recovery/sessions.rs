@@ -98,7 +98,7 @@ pub fn read(
     let version = last.version(file, budget)?;
     let version =
         version.ok_or_else(|| Error::decode(file, "it holds no whole version of the drawing"))?;
-    let Some(document) = version.document.reshaped_telling(progress) else { return Ok(None) };
+    let Some(document) = version.document.reshaped_with_progress(progress) else { return Ok(None) };
     let (title, _) = named(&last.head.unwrap_or_default());
     Ok(Some(RecoveredDocument {
         version: DrawingVersion { document, ..version },

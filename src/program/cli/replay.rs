@@ -31,7 +31,7 @@ pub fn run(args: &ReplayArgs) -> Result<()> {
     session.replaces_unasked = args.force.or(Overwrite::Nothing) == Overwrite::Forced;
     session.autosave = args.recover_in.clone().map(Autosave::new);
     let (mut steps, mut last) = (0, None);
-    session.replay_telling(&args.file, &text, |session| {
+    session.replay_with_progress(&args.file, &text, |session| {
         let Session { autosave: Some(autosave), open_documents, tool, .. } = session else {
             return Ok(());
         };

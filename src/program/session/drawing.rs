@@ -8,11 +8,11 @@ use std::sync::Arc;
 
 /// What a layer paints on the canvas, without any surface.
 pub fn painted(document: &Document, layer: LayerId) -> Option<TileGrid> {
-    painted_telling(document, layer, &Progress::default())
+    painted_with_progress(document, layer, &Progress::default())
 }
 
 /// The same; `None` also if cancelled.
-pub fn painted_telling(
+pub fn painted_with_progress(
     document: &Document,
     layer: LayerId,
     progress: &Progress,

@@ -312,11 +312,11 @@ impl Session {
     /// Performs the actions of a replay file line by line; stops with an error at the first that
     /// fails.
     pub fn replay(&mut self, file: &Path, text: &str) -> Result<()> {
-        self.replay_telling(file, text, |_| Ok(()))
+        self.replay_with_progress(file, text, |_| Ok(()))
     }
 
     /// The same, and calls back after each line.
-    pub fn replay_telling(
+    pub fn replay_with_progress(
         &mut self,
         file: &Path,
         text: &str,

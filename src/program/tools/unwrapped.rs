@@ -9,7 +9,7 @@ use super::kept_context::KeptContext;
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext, ToolKind, ToolSettings};
 use crate::document::{Document, LayerId};
 use crate::math::Vec2;
-use crate::paint::{Brush, Measure, Sample, StabilizedPen, Stabilizer};
+use crate::paint::{Brush, DistanceMetric, Sample, StabilizedPen, Stabilizer};
 use crate::surface::Surface;
 use crate::surface::unwrap::{CanvasPlace, PlaneLayout};
 use std::sync::Arc;
@@ -46,7 +46,7 @@ pub fn paint(
     let Some(surface) = context.document.surface.clone() else { return (None, Outcome::Idle) };
     let brush = Brush {
         stabilizer: Stabilizer::None,
-        spacing_on: Measure::Surface,
+        spacing_on: DistanceMetric::Surface,
         ..context.tools.brush.clone()
     };
     // The line that Shift draws is drawn on the sheet.

@@ -96,7 +96,7 @@ impl PartMarks {
             let moved = |p: Vec2| to_screen(map.transform_point2(p));
             outline(painter, self.chosen.runs(area, level), &moved, look);
             if tool == ToolKind::Shape {
-                let gizmo = PartGizmo::of(part, area, 1.0 / scale).through(map);
+                let gizmo = PartGizmo::of(part, area, 1.0 / scale).transformed(map);
                 handles(painter, part, &gizmo, &to_screen);
                 let told = under.and_then(|at| Some((at, gizmo.handle_at(at)?.describe(part)?)));
                 if let Some((at, text)) = told {

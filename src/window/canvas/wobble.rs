@@ -1,9 +1,9 @@
 //! The picture swaying by its depth, so that the relief shows, until a key or a click. Floor 7. Not
-//! here: the picture seen from aside (`document::view::sway`).
+//! here: the picture seen from aside (`document::view::wobble`).
 
 use super::blocks::{corners, on_screen, quad};
 use crate::document::Document;
-use crate::document::view::sway::SwayScene;
+use crate::document::view::wobble::WobbleScene;
 use crate::math::Affine2;
 use crate::raster::TileGrid;
 use crate::session::looks_same;
@@ -21,7 +21,7 @@ const LONGEST: u32 = 900;
 /// The picture that sways.
 pub struct Wobble {
     of: Document,
-    scene: SwayScene,
+    scene: WobbleScene,
     since_secs: f64,
     texture: Option<TextureHandle>,
 }
@@ -29,7 +29,7 @@ pub struct Wobble {
 impl Wobble {
     /// `flat`: the finished picture. `None` if there is no depth.
     pub fn new(ctx: &Context, document: &Document, flat: &TileGrid) -> Option<Self> {
-        let scene = SwayScene::new(flat, document.surface.as_ref()?, LONGEST);
+        let scene = WobbleScene::new(flat, document.surface.as_ref()?, LONGEST);
         let since_secs = ctx.input(|input| input.time);
         Some(Self { of: document.clone(), scene, since_secs, texture: None })
     }

@@ -3,8 +3,8 @@
 
 use super::curve;
 use crate::io::recipe::written_brush;
+use crate::paint::brush_options::{Bearing, DistanceMetric, Falloff, Spread};
 use crate::paint::grain::{BrushGrain, GrainSource, GrainSpace};
-use crate::paint::habits::{Bearing, Falloff, Measure, Spread};
 use crate::paint::pattern::Pattern;
 use crate::paint::settings::SETTINGS;
 use crate::paint::tip::{Bristles, Noise};
@@ -270,7 +270,7 @@ fn stroke(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     let has_length =
         matches!(brush.stabilizer, Stabilizer::Average { .. } | Stabilizer::String { .. });
     let measured = has_length
-        .then(|| choice_row(ui, "Smooth on", brush.stabilizer_on, &Measure::ALL))
+        .then(|| choice_row(ui, "Smooth on", brush.stabilizer_on, &DistanceMetric::ALL))
         .flatten();
     let calmed = chosen.or(amount).map(|stabilizer| Brush { stabilizer, ..brush.clone() });
     let calmed = calmed.or(measured.map(|stabilizer_on| Brush { stabilizer_on, ..brush.clone() }));
@@ -307,7 +307,7 @@ fn habits(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     let chosen = choice_row(ui, "Scatter as", to.spread, &Spread::ALL);
     took(chosen.is_some());
     to.spread = chosen.unwrap_or(to.spread);
-    let chosen = choice_row(ui, "Spacing on", to.spacing_on, &Measure::ALL);
+    let chosen = choice_row(ui, "Spacing on", to.spacing_on, &DistanceMetric::ALL);
     took(chosen.is_some());
     to.spacing_on = chosen.unwrap_or(to.spacing_on);
     let chosen = choice_row(ui, "Falls off", to.falloff, &Falloff::ALL);

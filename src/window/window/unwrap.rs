@@ -35,7 +35,7 @@ impl MainWindow {
             return self.unwrapped(key);
         }
         self.jobs.start(UNWRAPPING.into(), JobKind::Working, move |progress| {
-            match surface.unwrapped_telling(settings, &|| is_to_go_on(progress)) {
+            match surface.unwrapped_with_progress(settings, &|| is_to_go_on(progress)) {
                 Some(_) => surface
                     .plane_layout(settings)
                     .map_or(JobResult::Nothing, |_| JobResult::Unwrapped(key)),
@@ -83,7 +83,7 @@ impl MainWindow {
         }
         self.unwrapping = Some((surface.clone(), settings));
         self.jobs.start(UNWRAPPING.into(), JobKind::Working, move |progress| {
-            let unwrapped = surface.unwrapped_telling(settings, &|| is_to_go_on(progress));
+            let unwrapped = surface.unwrapped_with_progress(settings, &|| is_to_go_on(progress));
             if is_shown && unwrapped.is_some() {
                 surface.plane_layout(settings);
             }

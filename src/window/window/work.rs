@@ -215,7 +215,7 @@ impl MainWindow {
             // What follows from it is made here, where it can be cancelled, and not when the edit
             // is kept.
             let shaped = |edit: Edit| {
-                Some(Edit { document: edit.document.reshaped_telling(progress)?, ..edit })
+                Some(Edit { document: edit.document.reshaped_with_progress(progress)?, ..edit })
             };
             let edit = match edit {
                 Some(Ok(edit)) => shaped(edit).map(Ok),

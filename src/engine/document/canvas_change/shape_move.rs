@@ -56,7 +56,7 @@ impl Document {
         let around = LayerMap::none(self.size);
         let layers = carried(&lifted.layers, &around, map)
             .ok_or("A layer cannot follow the shape there.")?;
-        let maps = self.maps_surface().map(|maps| maps.through(self.size, map)).transpose();
+        let maps = self.maps_surface().map(|maps| maps.transformed(self.size, map)).transpose();
         let maps = maps.map_err(|error| match error {
             SurfaceError::Empty => "Nothing of the shape would be left on the canvas.".to_owned(),
             other => format!("The shape stays where it is: {other}."),

@@ -43,7 +43,7 @@ const EDGE_PX: i32 = 3;
 
 /// An outline in its place.
 #[derive(Clone)]
-pub struct StandingOutline {
+pub struct PlacedOutline {
     /// Without its whole px.
     pub outline: Arc<Outline>,
     /// Those.
@@ -54,22 +54,22 @@ pub struct StandingOutline {
 
 /// The parts, by their ids, whose outlines are not of the area that was meant.
 pub fn lost<'a>(
-    outlines: impl Iterator<Item = (&'a Arc<Part>, &'a Option<StandingOutline>)>,
+    outlines: impl Iterator<Item = (&'a Arc<Part>, &'a Option<PlacedOutline>)>,
 ) -> Vec<String> {
-    let of_lost = |(part, outline): (&Arc<Part>, &Option<StandingOutline>)| {
+    let of_lost = |(part, outline): (&Arc<Part>, &Option<PlacedOutline>)| {
         outline.as_ref().is_some_and(|outline| outline.is_lost).then(|| part.id.clone())
     };
     outlines.filter_map(of_lost).collect()
 }
 
 /// The very same outline in the same place.
-impl PartialEq for StandingOutline {
+impl PartialEq for PlacedOutline {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.outline, &other.outline) && self.moved == other.moved
     }
 }
 
-impl StandingOutline {
+impl PlacedOutline {
     fn corner(&self) -> (i32, i32) {
         let (x, y) = self.outline.corner();
         (x.saturating_add(self.moved.0), y.saturating_add(self.moved.1))
@@ -81,15 +81,15 @@ impl StandingOutline {
     }
 
     /// Those of some outlines whose planes overlap this one's, relative to this one.
-    pub fn met_by(&self, others: &[Option<StandingOutline>]) -> Vec<StandingOutline> {
+    pub fn met_by(&self, others: &[Option<PlacedOutline>]) -> Vec<PlacedOutline> {
         let met =
             others.iter().flatten().filter(|other| !other.rect().intersect(self.rect()).is_empty());
-        let beside = |other: &StandingOutline| {
+        let beside = |other: &PlacedOutline| {
             let moved = (
                 other.moved.0.saturating_sub(self.moved.0),
                 other.moved.1.saturating_sub(self.moved.1),
             );
-            StandingOutline { outline: other.outline.clone(), moved, is_lost: other.is_lost }
+            PlacedOutline { outline: other.outline.clone(), moved, is_lost: other.is_lost }
         };
         met.map(beside).collect()
     }
@@ -98,12 +98,12 @@ impl StandingOutline {
 /// Where the rim of an outline is no silhouette: outside pixels in which a part in front begins.
 /// `None` where there are none. A rim hidden under such a part stays a silhouette: what is inside
 /// it is covered as well.
-pub fn joined(own: &Outline, met: &[StandingOutline]) -> Option<Plane<bool>> {
+pub fn joined(own: &Outline, met: &[PlacedOutline]) -> Option<Plane<bool>> {
     if met.is_empty() {
         return None;
     }
     let (corner, inside) = (own.corner(), own.inside());
-    let covers = |other: &StandingOutline, x: i32, y: i32| {
+    let covers = |other: &PlacedOutline, x: i32, y: i32| {
         let (ox, oy) = other.corner();
         other.outline.inside().get(x + corner.0 - ox, y + corner.1 - oy).unwrap_or(false)
     };
@@ -111,7 +111,7 @@ pub fn joined(own: &Outline, met: &[StandingOutline]) -> Option<Plane<bool>> {
         let (x, y) = (x as i32, y as i32);
         // What lies behind continues beneath the edge of what lies over it, as far as that edge is
         // blurred.
-        let begins = |other: &StandingOutline| {
+        let begins = |other: &PlacedOutline| {
             let is_in = |x: i32, y: i32| inside.get(x, y).unwrap_or(false);
             let opens = |(dx, dy): (i32, i32)| {
                 let mut way =
@@ -170,7 +170,7 @@ pub fn of_surface(surface: &Surface) -> Form {
 
 /// A form of maps, moved by a matrix; `None` where nothing of it is left.
 pub fn of_maps(maps: &PartMaps, still: Affine2, most_px: usize) -> Option<Form> {
-    of_surface(&maps.surface).through(still, most_px)
+    of_surface(&maps.surface).transformed(still, most_px)
 }
 
 /// A form of hand-made shadings over an outline, both on the canvas, moved by a matrix.
@@ -189,5 +189,5 @@ pub fn of_profiles(
         ShadedDrawing { grey, light: shading.light.normalize_or(Vec3::Z) }
     };
     let all: Vec<ShadedDrawing> = shadings.iter().map(profile).collect();
-    profiles::formed(&all, outline)?.through(still, most_px)
+    profiles::formed(&all, outline)?.transformed(still, most_px)
 }

@@ -2,11 +2,11 @@
 //! again. Floor 4. Not here: how one kind of part is made (`make`), what is kept (`made`), how
 //! forms are combined (`whole`).
 
-use super::body::{SolvedOutline, StandingOutline, joined, lost};
-use super::made::{MadePart, NewForm, Stages};
+use super::body::{PlacedOutline, SolvedOutline, joined, lost};
+use super::form_cache::{MadePart, NewForm, Stages};
+use super::modifiers::{ResumePoint, with_lines, with_modifier};
 use super::outlines::OutlineKey;
 use super::unchanged::{apart, same_inks, same_kind, same_list, same_shape};
-use super::upon::{Came, changed, lined};
 use super::whole::Whole;
 use super::{Part, PartKind, Parts};
 use crate::document::{Document, Progress};
@@ -18,12 +18,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 const MOST_KEPT_PX: usize = 1 << 24;
 
 impl Document {
-    /// As [`Document::reshaped_telling`], made even if nothing changed: then what is known costs
+    /// As [`Document::reshaped_with_progress`], made even if nothing changed: then what is known costs
     /// nothing.
     pub(super) fn derived(&self, progress: &Progress) -> Option<Document> {
         let shown = || self.parts.list.iter().filter(|part| part.visible && part.on().is_none());
         progress.add_total(shown().count() as u64);
-        let outlines = self.standing_outlines(&shown().collect::<Vec<_>>());
+        let outlines = self.placed_outlines(&shown().collect::<Vec<_>>());
         // They are large, and needed for outlines alone.
         self.parts.forget_drawn();
         let mut whole = Whole::new(self);
@@ -47,7 +47,7 @@ impl Document {
     }
 
     /// The visible parts that lie on another.
-    pub(super) fn upon(&self, part: &Part) -> Vec<Arc<Part>> {
+    pub(super) fn modifiers_of(&self, part: &Part) -> Vec<Arc<Part>> {
         self.parts
             .list
             .iter()
@@ -64,16 +64,16 @@ impl Document {
     fn made_now(
         &self,
         part: &Arc<Part>,
-        standing: Option<StandingOutline>,
-        in_front: &[Option<StandingOutline>],
+        standing: Option<PlacedOutline>,
+        in_front: &[Option<PlacedOutline>],
     ) -> Option<(MadePart, Option<Arc<Form>>)> {
         let cache = &self.parts.cache;
-        let upon = self.upon(part);
+        let modifiers = self.modifiers_of(part);
         let known = cache.known(&part.id);
         let is_edited = known.is_some();
         let source = OutlineKey::of_part(self, part)?;
         let inks: Vec<OutlineKey> =
-            upon.iter().filter_map(|part| OutlineKey::of_part(self, part)?).collect();
+            modifiers.iter().filter_map(|part| OutlineKey::of_part(self, part)?).collect();
         let (still, moved) = apart(part.matrix);
         let is_unchanged = |made: &MadePart| match (&made.source, &source) {
             (Some(a), Some(b)) => a.is_same(b),
@@ -109,7 +109,7 @@ impl Document {
         let is_lost = standing.as_ref().is_some_and(|own| own.is_lost);
         if let Some(made) = known.as_ref().filter(|made| {
             same_shape(&made.part, part)
-                && same_list(&made.upon, &upon)
+                && same_list(&made.modifiers, &modifiers)
                 && same_inks(&made.inks, &inks)
         }) {
             if made.moved == moved && Arc::ptr_eq(&made.part, part) && is_unchanged(made) {
@@ -137,34 +137,34 @@ impl Document {
             }
         };
         // What lies beneath the last part on it is mostly known: the user works on the last.
-        let last = upon.len().saturating_sub(1);
+        let last = modifiers.len().saturating_sub(1);
         let stages = kept.and_then(|kept| kept.stages.clone());
         let beneath = known.zip(stages).and_then(|(made, stages)| {
-            let as_many =
-                made.upon.len() == upon.len() && same_list(&made.upon[..last], &upon[..last]);
+            let as_many = made.modifiers.len() == modifiers.len()
+                && same_list(&made.modifiers[..last], &modifiers[..last]);
             let is_same =
                 as_many && Arc::ptr_eq(&stages.plain, &plain) && same_inks(&made.inks, &inks);
-            let came =
-                std::mem::take(&mut *made.came.lock().unwrap_or_else(PoisonError::into_inner));
-            is_same.then_some((stages.before_last, came))
+            let resume =
+                std::mem::take(&mut *made.resume.lock().unwrap_or_else(PoisonError::into_inner));
+            is_same.then_some((stages.before_last, resume))
         });
         let is_small = plain.height.size().area() <= MOST_KEPT_PX;
-        let nowhere = || Came::nowhere(is_small && cache.is_draft);
-        let (before_last, mut came) = beneath.unwrap_or_else(|| {
-            (self.with_all_upon(plain.clone(), &body, &upon[..last], still), nowhere())
+        let nowhere = || ResumePoint::nowhere(is_small && cache.is_draft);
+        let (before_last, mut resume) = beneath.unwrap_or_else(|| {
+            (self.with_modifiers(plain.clone(), &body, &modifiers[..last], still), nowhere())
         });
-        let form = match upon.last() {
-            Some(other) => self.with_upon(&before_last, &body, other, still, &mut came),
+        let form = match modifiers.last() {
+            Some(other) => self.with_modifier_of(&before_last, &body, other, still, &mut resume),
             None => Form::clone(&before_last),
         };
         let form = Arc::new(in_place(form, part, moved));
         let stages = is_small.then_some(Stages { plain, before_last });
-        let came = if is_small { came } else { Came::default() };
+        let resume = if is_small { resume } else { ResumePoint::default() };
         let new = NewForm { body, stages, form: form.clone() };
-        let (area, part, came) = (new.area(), part.clone(), Arc::new(Mutex::new(came)));
+        let (area, part, resume) = (new.area(), part.clone(), Arc::new(Mutex::new(resume)));
         let mut made = MadePart {
             part,
-            upon,
+            modifiers,
             inks,
             source,
             outline,
@@ -173,7 +173,7 @@ impl Document {
             moved,
             area,
             kept: None,
-            came,
+            resume,
         };
         cache.remember_form(&mut made, new, is_edited);
         Some((made, Some(form)))
@@ -186,42 +186,42 @@ impl Document {
         let free = own.and_then(|own| joined(own, &made.met)).map(Arc::new);
         let (body, plain) =
             self.made(part, (made.outline.clone(), made.source.as_ref()), free, still, None)?;
-        let form = self.with_all_upon(Arc::new(plain), &body, &made.upon, still);
+        let form = self.with_modifiers(Arc::new(plain), &body, &made.modifiers, still);
         drop(body);
         Some(Arc::new(in_place(Arc::unwrap_or_clone(form), part, moved)))
     }
 
     /// A form changed by some parts that lie on it.
-    fn with_all_upon(
+    fn with_modifiers(
         &self,
         form: Arc<Form>,
         body: &SolvedOutline,
-        upon: &[Arc<Part>],
+        modifiers: &[Arc<Part>],
         still: Affine2,
     ) -> Arc<Form> {
         let on = |form: Arc<Form>, other: &Arc<Part>| {
-            Arc::new(self.with_upon(&form, body, other, still, &mut Came::default()))
+            Arc::new(self.with_modifier_of(&form, body, other, still, &mut ResumePoint::default()))
         };
-        upon.iter().fold(form, on)
+        modifiers.iter().fold(form, on)
     }
 
     /// A form changed by one more part that lies on it.
-    fn with_upon(
+    fn with_modifier_of(
         &self,
         form: &Form,
         body: &SolvedOutline,
         other: &Part,
         still: Affine2,
-        came: &mut Came,
+        resume: &mut ResumePoint,
     ) -> Form {
         let PartKind::Lines { lines, .. } = &other.kind else {
-            return changed(form, &body.outline, other, still, came);
+            return with_modifier(form, &body.outline, other, still, resume);
         };
         let ink = OutlineKey::of_part(self, other)
             .flatten()
             .and_then(|ink| ink.outline(self, self.most_px()));
-        let ink = ink.and_then(|ink| ink.through(still, self.most_px()));
-        ink.map_or_else(|| form.clone(), |ink| lined(form, &body.outline, &ink, *lines))
+        let ink = ink.and_then(|ink| ink.transformed(still, self.most_px()));
+        ink.map_or_else(|| form.clone(), |ink| with_lines(form, &body.outline, &ink, *lines))
     }
 
     /// The area that a part may take: four canvases, so that one that reaches beyond the canvas

@@ -1,8 +1,8 @@
 //! What a drawing is before it has a shape: whether its background is transparent or of one colour,
 //! and whether it has flat colours. Floor 4. Not here: which parts are made of it (`flats`).
 
+use super::color_distance::{is_near, share_on_the_way};
 use super::flats::LEAST_FLAT;
-use super::near::{is_near, share_on_the_way};
 use super::shares::{Flats, bytes};
 use crate::math::srgb::Color;
 use crate::math::{Rect, Size};

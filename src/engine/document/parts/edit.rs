@@ -19,12 +19,12 @@ impl Document {
     }
 
     /// The same, a step for each part; `None` if cancelled.
-    pub fn with_parts_telling(
+    pub fn with_parts_with_progress(
         &self,
         list: Vec<Arc<Part>>,
         progress: &Progress,
     ) -> Option<Document> {
-        self.with_list(list).reshaped_telling(progress)
+        self.with_list(list).reshaped_with_progress(progress)
     }
 
     /// With other parts, but not yet with their surface.

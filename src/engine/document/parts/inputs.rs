@@ -46,11 +46,11 @@ impl Document {
     /// every document that was read is so.
     pub fn reshaped(&self) -> Document {
         // Nobody cancels it, so it is complete.
-        self.reshaped_telling(&Progress::default()).unwrap_or_else(|| self.clone())
+        self.reshaped_with_progress(&Progress::default()).unwrap_or_else(|| self.clone())
     }
 
     /// The same, a step for each part; `None` if cancelled.
-    pub fn reshaped_telling(&self, progress: &Progress) -> Option<Document> {
+    pub fn reshaped_with_progress(&self, progress: &Progress) -> Option<Document> {
         let placed = self.with_homes_placed();
         if placed.is_shaped() {
             return Some(placed.with_selections_found());

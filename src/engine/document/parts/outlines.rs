@@ -3,7 +3,7 @@
 
 use super::beneath::fill_beneath;
 use super::drawn::{DrawnLayer, is_same_paint};
-use super::known::KnownFlats;
+use super::flats_cache::CachedFlats;
 use super::places::SplitPlaces;
 use super::shares::Flats;
 use super::{CoverageFile, FlatColor, OutlineSource, Part, PartKind, Parts};
@@ -56,7 +56,7 @@ impl FlatArea {
 
     /// The share of each pixel that it takes, and whether its place has its colour no longer, so
     /// that this is the nearest one; `corner`: of the flats. `None` where the colour is nowhere.
-    fn share(&self, known: &KnownFlats, corner: Vec2) -> Option<(Plane<u8>, bool)> {
+    fn share(&self, known: &CachedFlats, corner: Vec2) -> Option<(Plane<u8>, bool)> {
         let flats = &known.flats;
         let mut share = flats.share_of(self.flat.color, &self.over);
         let mut is_lost = false;

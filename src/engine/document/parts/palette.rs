@@ -2,7 +2,7 @@
 //! in it is an edge. Floor 4. Not here: which share of a pixel a colour takes (`shares`).
 
 use super::areas::LEAST_SEEN;
-use super::near::{away, is_near};
+use super::color_distance::{color_distance, is_near};
 use super::picture::{FlatPicture, Pixel};
 use crate::raster::Plane;
 use rayon::prelude::*;
@@ -120,7 +120,7 @@ fn shades(pixels: &Plane<Pixel>, is_flat: &Plane<bool>, asked: &[Pixel]) -> Vec<
 /// The colour nearest to a pixel of those that are near at all.
 pub fn nearest(colors: impl Iterator<Item = Pixel>, pixel: Pixel) -> Option<usize> {
     let near = colors.enumerate().filter(|(_, color)| is_near(*color, pixel));
-    near.min_by_key(|(i, color)| (away(*color, pixel), *i)).map(|(i, _)| i)
+    near.min_by_key(|(i, color)| (color_distance(*color, pixel), *i)).map(|(i, _)| i)
 }
 
 fn shade_of_each(
@@ -167,7 +167,7 @@ fn joined(
         let beside = borders.iter().filter_map(|((a, b), border)| {
             let (a, b) = (usize::from(*a), usize::from(*b));
             let other = if a == shade { b } else { a };
-            let is_mingled = away(shades[a].0, shades[b].0) <= MINGLED
+            let is_mingled = color_distance(shades[a].0, shades[b].0) <= MINGLED
                 && border.beside as f32 >= LEAST_MINGLED * shades[shade].1 as f32;
             ((a == shade || b == shade) && other < shade && is_mingled)
                 .then_some((border.beside, other))
@@ -223,7 +223,7 @@ fn borders(pixels: &Plane<Pixel>, of: &Plane<u16>) -> ShadeBorders {
                 let border = borders.entry(pair).or_default();
                 border.across += 1;
                 border.soft +=
-                    usize::from((0..ACROSS).all(|k| away(at(k), at(k + 1)) <= SOFT_STEP));
+                    usize::from((0..ACROSS).all(|k| color_distance(at(k), at(k + 1)) <= SOFT_STEP));
             }
         }
         borders

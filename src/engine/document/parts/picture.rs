@@ -1,7 +1,7 @@
 //! A picture of flats as it was painted: its flat areas, and between which of them each mixed pixel
 //! lies. Floor 4.
 
-use super::near::{NEAR, is_near, share_on_the_way};
+use super::color_distance::{NEAR, is_near, share_on_the_way};
 use crate::math::{Rect, Size};
 use crate::raster::{Plane, TileGrid};
 use rayon::prelude::*;

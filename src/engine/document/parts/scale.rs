@@ -90,7 +90,9 @@ impl PartMaps {
         let frame = Size::new(side(width, scale.x), side(height, scale.y));
         let map = PlaneMap::affine([scale.x.into(), 0.0, 0.0, scale.y.into(), 0.0, 0.0])
             .unwrap_or_default();
-        self.surface.through(frame, &map).map_or_else(|_| self.clone(), |surface| self.on(surface))
+        self.surface
+            .transformed(frame, &map)
+            .map_or_else(|_| self.clone(), |surface| self.on(surface))
     }
 
     /// These maps as another surface made of them.

@@ -85,11 +85,13 @@ impl Document {
                 PILLOW_BYTES if px > HALVED_PX && nearest == Some(&part.id) => HALVED_BYTES,
                 bytes => bytes,
             };
-            let upon =
+            let modifiers =
                 list.iter().filter(|other| other.visible && other.on() == Some(part.id.as_str()));
-            let upon =
-                upon.map(|other| making_bytes(&other.kind) + 2 * FORM_BYTES).max().unwrap_or(0);
-            most = most.max(px * (FORM_BYTES + making.max(upon)));
+            let modifiers = modifiers
+                .map(|other| making_bytes(&other.kind) + 2 * FORM_BYTES)
+                .max()
+                .unwrap_or(0);
+            most = most.max(px * (FORM_BYTES + making.max(modifiers)));
             forms = forms.saturating_add(px * 2 * FORM_BYTES);
             if let Some(source) = part.outline() {
                 outlines = outlines.saturating_add(px * OUTLINE_BYTES);

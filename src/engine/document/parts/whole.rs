@@ -2,7 +2,7 @@
 //! nothing is combined again. Floor 4.
 
 use super::body::of_surface;
-use super::made::{FormArea, MadePart, MadeSurface};
+use super::form_cache::{FormArea, MadePart, MadeSurface};
 use super::unchanged::same_surface;
 use crate::document::Document;
 use crate::shape::{Combine, Form, Relief};

@@ -5,9 +5,9 @@ mod flows;
 mod maps;
 mod scaling;
 mod sheet;
-pub mod sway;
 mod unwrapped;
 mod weights;
+pub mod wobble;
 
 pub use sheet::sheet;
 pub use unwrapped::{UnwrapOptions, UnwrappedPicture, placed_over, unwrapped};

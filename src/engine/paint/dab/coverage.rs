@@ -7,7 +7,7 @@ use super::shape::{self, TipShape};
 use super::softened::SoftenedStamps;
 use super::{DabScratch, DeformationField, PixelSpan, PlacedDab, SpanNeighbours, TouchedBlocks};
 use crate::math::{Affine2, Mat2, Rect};
-use crate::paint::habits::Falloff;
+use crate::paint::brush_options::Falloff;
 use crate::paint::image::transform;
 use crate::paint::stamp::TipStamp;
 use crate::paint::stroke_tile::{CoveredRow, StrokeTile};

@@ -5,8 +5,8 @@
 use super::round::slope;
 use crate::math::{Affine2, Mat2, Vec2};
 use crate::paint::brush::Tip;
+use crate::paint::brush_options::Falloff;
 use crate::paint::dab_walker::Dab;
-use crate::paint::habits::Falloff;
 use crate::paint::peaked::PeakedProfile;
 use crate::paint::profile::{Profile, RoundProfile};
 use crate::paint::rim::Rim;

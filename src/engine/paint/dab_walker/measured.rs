@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::math::{Size, Vec3, vec2, vec3};
-use crate::paint::Measure;
+use crate::paint::DistanceMetric;
 use crate::raster::Plane;
 use crate::surface::{Maps, Surface};
 use std::sync::Arc;
@@ -17,7 +17,7 @@ fn leaning(slope: impl Fn(f32) -> f32 + Sync) -> Scene {
     Scene { size, surface: Some(Arc::new(Surface::new(maps).unwrap())) }
 }
 
-fn dabs_of(scene: &Scene, spacing_on: Measure, ends: [Vec2; 2]) -> Vec<Dab> {
+fn dabs_of(scene: &Scene, spacing_on: DistanceMetric, ends: [Vec2; 2]) -> Vec<Dab> {
     let brush = Brush { size: 20.0, spacing: 0.25, spacing_on, ..Brush::default() };
     dabs(&brush, Operator::None, Color::BLACK, &ends.map(Sample::at), scene)
 }
@@ -32,13 +32,13 @@ fn ways(dabs: &[Dab], length: impl Fn(Vec2, Vec2) -> f32) -> (f32, f32) {
 fn on_a_tilted_plane_dabs_stand_as_far_apart_as_their_spacing_is_on_it() {
     let scene = leaning(|_| 1.5);
     for to in [vec2(280.0, 20.0), vec2(20.0, 90.0), vec2(200.0, 90.0)] {
-        let dabs = dabs_of(&scene, Measure::Surface, [vec2(20.0, 20.0), to]);
+        let dabs = dabs_of(&scene, DistanceMetric::Surface, [vec2(20.0, 20.0), to]);
         let (least, most) =
             ways(&dabs, |a, b| ((b - a) * vec2((1.0f32 + 2.25).sqrt(), 1.0)).length());
         assert!(least > 4.9 && most < 5.1, "to {to}: {least} to {most} px of 5");
     }
     let (least, most) = ways(
-        &dabs_of(&scene, Measure::Canvas, [vec2(20.0, 20.0), vec2(280.0, 20.0)]),
+        &dabs_of(&scene, DistanceMetric::Canvas, [vec2(20.0, 20.0), vec2(280.0, 20.0)]),
         Vec2::distance,
     );
     assert!((least - 5.0).abs() < 1e-2 && (most - 5.0).abs() < 1e-2, "as seen: {least} to {most}");
@@ -48,19 +48,23 @@ fn on_a_tilted_plane_dabs_stand_as_far_apart_as_their_spacing_is_on_it() {
 fn round_a_cylinder_dabs_stand_evenly_along_its_arc() {
     let lean = |x: f32| ((x - 150.0) / 140.0).clamp(-0.95, 0.95);
     let scene = leaning(|x| -lean(x) / (1.0 - lean(x) * lean(x)).sqrt());
-    let dabs = dabs_of(&scene, Measure::Surface, [vec2(25.0, 50.0), vec2(275.0, 50.0)]);
+    let dabs = dabs_of(&scene, DistanceMetric::Surface, [vec2(25.0, 50.0), vec2(275.0, 50.0)]);
     let arc = |p: Vec2| 140.0 * lean(p.x).asin();
     let (least, most) = ways(&dabs, |a, b| arc(b) - arc(a));
     assert!(least > 4.9 && most < 5.1, "{least} to {most} px of 5");
-    let seen = dabs_of(&scene, Measure::Canvas, [vec2(25.0, 50.0), vec2(275.0, 50.0)]);
+    let seen = dabs_of(&scene, DistanceMetric::Canvas, [vec2(25.0, 50.0), vec2(275.0, 50.0)]);
     assert!(dabs.len() > seen.len() + 10, "{} and {}", dabs.len(), seen.len());
 }
 
 #[test]
 fn how_densely_a_line_is_sampled_changes_nothing_on_the_surface_either() {
     let scene = leaning(|x| 1.5 * (x * 0.05).sin());
-    let brush =
-        Brush { size: 20.0, spacing: 0.25, spacing_on: Measure::Surface, ..Brush::default() };
+    let brush = Brush {
+        size: 20.0,
+        spacing: 0.25,
+        spacing_on: DistanceMetric::Surface,
+        ..Brush::default()
+    };
     let line = |n: usize| -> Vec<Sample> {
         (0..n)
             .map(|i| {
@@ -79,7 +83,7 @@ fn how_densely_a_line_is_sampled_changes_nothing_on_the_surface_either() {
 #[test]
 fn a_pen_from_beyond_all_canvases_ends() {
     let scene = leaning(|_| 1.0);
-    let far = dabs_of(&scene, Measure::Surface, [vec2(-9e5, 50.0), vec2(9e5, 50.0)]);
+    let far = dabs_of(&scene, DistanceMetric::Surface, [vec2(-9e5, 50.0), vec2(9e5, 50.0)]);
     assert!(
         far.len() <= (super::walk::MAX_STEPS + 2) as usize && far.len() > 1000,
         "{}",

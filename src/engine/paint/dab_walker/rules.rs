@@ -1,17 +1,17 @@
 //! The rules for the dabs of a stroke: the brush, driven by the readings at each dab. Floor 3. Not
 //! here: where they are placed (`walk`).
 
-use super::hand::{CurvePoint, gauss};
+use super::stylus::{CurvePoint, gauss};
 use super::{Dab, FAR_PX};
 use crate::math::{Mat2, Rect, Vec2, hash, srgb::Color, vec2, vec3};
 use crate::paint::brush::{Brush, Tip};
+use crate::paint::brush_options::{Bearing, DistanceMetric, Spread};
 use crate::paint::dynamics::{
     DabInputs, FAR_DIAMETERS, FAST_LENGTHS_PER_SEC, Input, Property, pace_of, turns_of,
 };
-use crate::paint::habits::{Bearing, Measure, Spread};
-use crate::paint::measure::SurfaceMeasure;
 use crate::paint::rim::{Rim, RimTable};
 use crate::paint::scene::Scene;
+use crate::paint::surface_metric::SurfaceMetric;
 use crate::paint::tint;
 use crate::surface::{Curvature, Operator};
 use std::f32::consts::TAU;
@@ -51,7 +51,7 @@ pub(super) struct DabRules {
     /// Whether anything follows the readings of [`PEN`], which take arc tangents and logarithms.
     reads_pen: bool,
     /// If paths are measured on the surface.
-    measured: Option<SurfaceMeasure>,
+    measured: Option<SurfaceMetric>,
     varies_in_color: bool,
     rims: Option<Arc<RimTable>>,
 }
@@ -96,8 +96,8 @@ impl Due {
 impl DabRules {
     pub fn new(brush: &Brush, operator: Operator, color: Color, scene: &Scene) -> Self {
         let follows = |input| brush.dynamics.follow(input);
-        let measured =
-            SurfaceMeasure::of(scene, operator).filter(|_| brush.spacing_on == Measure::Surface);
+        let measured = SurfaceMetric::of(scene, operator)
+            .filter(|_| brush.spacing_on == DistanceMetric::Surface);
         let curvature = scene.surface.as_ref().filter(|_| follows(Input::Curvature));
         Self {
             brush: brush.clone(),
@@ -166,7 +166,7 @@ impl DabRules {
         let Moment { place, direction, .. } = *moment;
         let in_frame = |v: Vec2| self.facing.transpose() * v;
         let [pace, slow_pace] =
-            place.paces.map(|px_per_sec| pace_of(px_per_sec / self.brush.hand.pace_px));
+            place.paces.map(|px_per_sec| pace_of(px_per_sec / self.brush.stylus.pace_px));
         DabInputs {
             tilt_direction: turns_of(in_frame(place.tilt)),
             direction: turns_of(in_frame(direction)),
@@ -301,7 +301,7 @@ impl DabRules {
     }
 
     fn lead(&self, moment: &Moment, inputs: &DabInputs) -> Vec2 {
-        let secs = self.value(Property::Lead, self.brush.hand.lead_secs, inputs);
+        let secs = self.value(Property::Lead, self.brush.stylus.lead_secs, inputs);
         if secs == 0.0 {
             Vec2::ZERO
         } else {

@@ -4,7 +4,7 @@ use super::walk::MAX_STEPS;
 use super::*;
 use crate::math::vec2;
 use crate::math::{Size, vec3};
-use crate::paint::habits::{Bearing, Cycle, Hand, Offset, Rate};
+use crate::paint::brush_options::{Bearing, Cycle, Offset, Rate, StylusFilter};
 use crate::paint::{ColorJitter, Curve, Dynamics, Input, Property, Tip};
 use crate::raster::Plane;
 use crate::surface::{Maps, Surface};
@@ -402,13 +402,13 @@ fn what_drives_the_custom_input_drives_what_follows_it_a_dab_later() {
 
 #[test]
 fn dabs_lag_behind_the_pen_and_lead_it() {
-    let hand = |hand: Hand| dabs(&Brush { hand, ..brush(20.0) }, &steady(300));
+    let stylus = |stylus: StylusFilter| dabs(&Brush { stylus, ..brush(20.0) }, &steady(300));
     let at = |dabs: &[Dab]| dabs.iter().map(|dab| dab.at.x).fold(0.0, f32::max);
-    let plain = at(&hand(Hand::default()));
-    let lagging = at(&hand(Hand { lag_dabs: 4.0, ..Hand::default() }));
+    let plain = at(&stylus(StylusFilter::default()));
+    let lagging = at(&stylus(StylusFilter { lag_dabs: 4.0, ..StylusFilter::default() }));
     // Steps of 5 px, of which e^(−1/4) is left each time.
     assert!((plain - lagging - 5.0 / (0.25f32.exp() - 1.0)).abs() < 0.5, "{lagging}");
-    let leading = at(&hand(Hand { lead_secs: 0.2, ..Hand::default() }));
+    let leading = at(&stylus(StylusFilter { lead_secs: 0.2, ..StylusFilter::default() }));
     assert!((leading - plain - 20.0).abs() < 0.5, "{leading}");
 }
 

@@ -1,11 +1,11 @@
 //! Along the curve of a stroke: where dabs are due. Floor 3. Not here: their properties there
 //! (`rules`).
 
-use super::hand::{CurvePoint, settled};
 use super::rules::{DabRules, Due, Moment};
+use super::stylus::{CurvePoint, settled};
 use super::{CurveSegment, Dab};
 use crate::math::Vec2;
-use crate::paint::habits::Cycle;
+use crate::paint::brush_options::Cycle;
 
 /// A dab due this soon after the end of a piece of the curve is placed on its end: sums of lengths
 /// are rounded.
@@ -62,7 +62,7 @@ impl Walk {
 
     /// A dab at a point; the next one is due a step farther.
     fn stand(&mut self, place: CurvePoint, rules: &DabRules, dabs: &mut Vec<Dab>) {
-        let lag = settled(1.0, rules.brush.hand.lag_dabs);
+        let lag = settled(1.0, rules.brush.stylus.lag_dabs);
         let at = self.lagging.map_or(place.at, |last| last.lerp(place.at, lag));
         let at = if lag < 1.0 { at } else { place.at };
         self.lagging = Some(at);
@@ -77,7 +77,7 @@ impl Walk {
         let inputs = rules.inputs(&moment);
         dabs.extend(rules.dab(&moment, inputs));
         let custom = rules.custom(&inputs);
-        let share = settled(1.0, rules.brush.hand.custom_dabs);
+        let share = settled(1.0, rules.brush.stylus.custom_dabs);
         self.custom = Some(self.custom.map_or(custom, |before| before + (custom - before) * share));
         self.due = rules.due(&inputs);
         self.left = 1.0;
@@ -199,7 +199,7 @@ impl Walk {
     fn go(&mut self, place: &CurvePoint, way: Vec2, [px, measured_px]: [f64; 2], rules: &DabRules) {
         let ahead = way.normalize_or_zero();
         self.direction +=
-            (ahead - self.direction) * settled(px as f32, rules.brush.hand.direction_px);
+            (ahead - self.direction) * settled(px as f32, rules.brush.stylus.direction_px);
         self.travelled_px += measured_px;
         self.turn_cycle(place, measured_px as f32, rules);
     }

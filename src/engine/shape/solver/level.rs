@@ -1,4 +1,4 @@
-//! One grid of the solver: its springs, and what is done row by row with planes over it.
+//! One grid of the solver: its couplings, and what is done row by row with planes over it.
 //! Floor 3.
 
 use crate::memory::filled_or_unwind;
@@ -22,12 +22,12 @@ pub(super) fn least_bands(w: usize) -> usize {
 pub(super) struct Level {
     pub w: usize,
     pub h: usize,
-    /// The spring of each pixel to the next in its row, and its column.
+    /// The coupling of each pixel to the next in its row, and its column.
     pub right: Vec<f32>,
     pub down: Vec<f32>,
-    /// Springs toward 0.
+    /// Couplings toward 0.
     pub held: Vec<f32>,
-    /// Sum of all springs at a pixel, and its inverse; 0 where there is no unknown.
+    /// Sum of all couplings at a pixel, and its inverse; 0 where there is no unknown.
     pub diagonal: Vec<f32>,
     pub inverse: Vec<f32>,
 }
@@ -53,7 +53,7 @@ impl Level {
         Self { w, h, right, down, held, diagonal, inverse }
     }
 
-    /// The grid of 2 × 2 blocks, shifted by a pixel so that its border is empty as well. Springs
+    /// The grid of 2 × 2 blocks, shifted by a pixel so that its border is empty as well. Couplings
     /// between blocks are those that cross, halved because they are twice as long.
     pub(super) fn coarser(&self) -> Self {
         let (w, h) = ((self.w - 1) / 2 + 2, (self.h - 1) / 2 + 2);
@@ -87,7 +87,7 @@ impl Level {
         if inside { plane[(y - 1) * self.w + x - 1] } else { 0.0 }
     }
 
-    /// The spring toward 0 of a block of the coarser grid.
+    /// The coupling toward 0 of a block of the coarser grid.
     pub(super) fn held_of_block(&self, x: usize, y: usize) -> f32 {
         let held = |x: usize, y: usize| {
             let held = self.at_number(&self.held, x, y);
@@ -98,7 +98,7 @@ impl Level {
         in_rows(self.h, 2 * y, |y| in_rows(self.w, 2 * x, |x| held(x, y)))
     }
 
-    /// Gives a pixel away from the border another spring toward 0.
+    /// Gives a pixel away from the border another coupling toward 0.
     pub(super) fn hold(&mut self, (x, y): (usize, usize), held: f32) {
         let (w, i) = (self.w, y * self.w + x);
         if x == 0 || y == 0 || x + 1 >= w || y + 1 >= self.h {
@@ -128,8 +128,8 @@ impl Level {
         );
     }
 
-    pub(super) fn springs(&self, y: usize) -> Springs<'_> {
-        Springs {
+    pub(super) fn couplings(&self, y: usize) -> Couplings<'_> {
+        Couplings {
             right: self.row(&self.right, y),
             up: self.row(&self.down, y - 1),
             down: self.row(&self.down, y),
@@ -146,7 +146,7 @@ impl Level {
     /// One damped sweep of Jacobi from `v` into `out`.
     pub(super) fn relax(&self, v: &[f32], b: &[f32], step: f32, out: &mut [f32]) {
         self.fill(out, |y, out| {
-            relaxed(self.springs(y), self.around(v, y), self.row(b, y), step, out)
+            relaxed(self.couplings(y), self.around(v, y), self.row(b, y), step, out)
         });
     }
 }
@@ -159,9 +159,9 @@ pub(super) fn in_rows(n: usize, first: usize, value: impl Fn(usize) -> f32) -> f
     one(first) + one(first + 1)
 }
 
-/// The springs of one row of pixels.
+/// The couplings of one row of pixels.
 #[derive(Clone, Copy)]
-pub(super) struct Springs<'a> {
+pub(super) struct Couplings<'a> {
     right: &'a [f32],
     up: &'a [f32],
     down: &'a [f32],
@@ -171,9 +171,9 @@ pub(super) struct Springs<'a> {
 
 crate::widest! {
     /// v + step (D⁻¹ (b + pull) − v).
-    pub(super) fn relaxed(springs: Springs, v: [&[f32]; 3], b: &[f32], step: f32, out: &mut [f32]) {
+    pub(super) fn relaxed(couplings: Couplings, v: [&[f32]; 3], b: &[f32], step: f32, out: &mut [f32]) {
         let n = out.len();
-        let Springs { right, up, down, inverse, .. } = springs;
+        let Couplings { right, up, down, inverse, .. } = couplings;
         let [above, here, below] = v;
         let (right, up, down, inverse) = (&right[..n], &up[..n], &down[..n], &inverse[..n]);
         let (above, here, below, b) = (&above[..n], &here[..n], &below[..n], &b[..n]);
@@ -185,9 +185,9 @@ crate::widest! {
     }
 
     /// A v.
-    pub(super) fn applied(springs: Springs, v: [&[f32]; 3], out: &mut [f32]) {
+    pub(super) fn applied(couplings: Couplings, v: [&[f32]; 3], out: &mut [f32]) {
         let n = out.len();
-        let Springs { right, up, down, diagonal, .. } = springs;
+        let Couplings { right, up, down, diagonal, .. } = couplings;
         let [above, here, below] = v;
         let (right, up, down, diagonal) = (&right[..n], &up[..n], &down[..n], &diagonal[..n]);
         let (above, here, below) = (&above[..n], &here[..n], &below[..n]);
@@ -198,8 +198,8 @@ crate::widest! {
     }
 
     /// b − A v.
-    pub(super) fn left_over(springs: Springs, v: [&[f32]; 3], b: &[f32], out: &mut [f32]) {
-        applied_into(springs, v, out);
+    pub(super) fn left_over(couplings: Couplings, v: [&[f32]; 3], b: &[f32], out: &mut [f32]) {
+        applied_into(couplings, v, out);
         for (o, b) in out.iter_mut().zip(b) {
             *o = b - *o;
         }
@@ -232,13 +232,13 @@ crate::widest! {
 
 /// The body of [`applied`] for callers that are already inside `widest!`.
 #[inline(always)]
-pub(super) fn applied_into(springs: Springs, v: [&[f32]; 3], out: &mut [f32]) {
+pub(super) fn applied_into(couplings: Couplings, v: [&[f32]; 3], out: &mut [f32]) {
     let n = out.len();
     let [above, here, below] = v;
     for x in 1..n - 1 {
-        let across = springs.right[x - 1] * here[x - 1] + springs.right[x] * here[x + 1];
-        let pull = across + springs.up[x] * above[x] + springs.down[x] * below[x];
-        out[x] = springs.diagonal[x] * here[x] - pull;
+        let across = couplings.right[x - 1] * here[x - 1] + couplings.right[x] * here[x + 1];
+        let pull = across + couplings.up[x] * above[x] + couplings.down[x] * below[x];
+        out[x] = couplings.diagonal[x] * here[x] - pull;
     }
 }
 

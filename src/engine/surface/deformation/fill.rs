@@ -104,9 +104,9 @@ fn laid_span(
     // Without an early end the loop is vectorised.
     let one = objects.iter().fold(0, |differs, object| differs | (object ^ objects[0])) == 0;
     match planes.fits().iter().find(|fit| fit.object == objects[0]).filter(|_| one) {
-        Some(fit) => match fit.pulled.zip(planes.yields.as_ref()) {
-            Some((pulled, yields)) => {
-                let by = yields.planes().map(|plane| at.of(plane));
+        Some(fit) => match fit.pulled.zip(planes.displacement.as_ref()) {
+            Some((pulled, displacement)) => {
+                let by = displacement.planes().map(|plane| at.of(plane));
                 pulled_row([u, v], by, (fit.linear, fit.shift, pulled), out_x, out_y);
             }
             None => laid_row(u, v, fit.linear, fit.shift, out_x, out_y),
@@ -124,8 +124,8 @@ fn laid_span(
 fn prefetch_laid(planes: &LaidPlanes, span: MapSpan) {
     planes.unwrapping.planes().into_iter().for_each(|plane| prefetch(span.of(plane)));
     prefetch(span.of(planes.objects.labels()));
-    if let Some(yields) = &planes.yields {
-        yields.planes().into_iter().for_each(|plane| prefetch(span.of(plane)));
+    if let Some(displacement) = &planes.displacement {
+        displacement.planes().into_iter().for_each(|plane| prefetch(span.of(plane)));
     }
 }
 

@@ -1,5 +1,5 @@
 //! D_s: how the plane of an unwrapped surface is laid under its anchors (MATH 8). Floor 2. Not
-//! here: the unwrapping and how it yields to many anchors (`unwrap`), the operators that are sums
+//! here: the unwrapping and its displacement by many anchors (`unwrap`), the operators that are sums
 //! over anchors (`Deformation::at`).
 //!
 //! Each object has a plane of its own: anchors move, and a pair of them turns, the plane of the
@@ -10,7 +10,7 @@ use crate::raster::Plane;
 use crate::surface::operator::UnwrapSettings;
 use crate::surface::plane_piece::PlanePiece;
 use crate::surface::pyramid::BLOCK;
-use crate::surface::unwrap::{PlaneHold, PlanePlace, PlaneYield, Unwrapping};
+use crate::surface::unwrap::{PlaneConstraint, PlaneDisplacement, PlanePlace, Unwrapping};
 use crate::surface::{Bend, Objects, Surface, Weights};
 use std::sync::Arc;
 
@@ -19,8 +19,8 @@ pub(super) struct LaidPlanes {
     pub unwrapping: Arc<Unwrapping>,
     pub objects: Arc<Objects>,
     fits: Vec<PlaneFit>,
-    /// How planes yield where a rigid fit misses anchors.
-    pub yields: Option<Arc<PlaneYield>>,
+    /// How planes are displaced where a rigid fit misses anchors.
+    pub displacement: Option<Arc<PlaneDisplacement>>,
     /// What is not laid lies out of reach: a dab paints on the object under it alone.
     is_bounded: bool,
     /// Where the anchor of a dab lies in the unwrapped plane.
@@ -37,7 +37,7 @@ pub struct OwnPlane<'p> {
 }
 
 /// How one object's plane is laid: D = linear U + shift, and where its anchors pull it, `pulled`
-/// times how it yields.
+/// times its displacement.
 pub(super) struct PlaneFit {
     pub object: u32,
     pub linear: Mat2,
@@ -62,8 +62,8 @@ const MET_PX: f32 = 1e-3;
 
 impl LaidPlanes {
     /// D(q_i) = s_i at every anchor. Two or more on one object turn its plane as a whole, so that
-    /// they are met as nearly as a turn can; what each still lacks the plane yields, by the
-    /// equation that unwrapped it.
+    /// they are met as nearly as a turn can; what each still lacks is a constraint on the plane's
+    /// displacement, by the equation that unwrapped it.
     ///
     /// With `Weights::Segment`, the gradient tool's, the plane is scaled as well: its two ends are
     /// met exactly, and the ramp runs evenly over the surface between them.
@@ -84,21 +84,21 @@ impl LaidPlanes {
                 None => groups.push((object, vec![pin])),
             }
         }
-        let mut holds = Vec::new();
+        let mut constraints = Vec::new();
         let fits: Vec<PlaneFit> = groups
             .iter()
-            .map(|(object, pins)| PlaneFit::new(*object, pins, bend.weights, &mut holds))
+            .map(|(object, pins)| PlaneFit::new(*object, pins, bend.weights, &mut constraints))
             .collect();
-        let yields = yields_of(surface, settings, &holds);
+        let displacement = displacement_of(surface, settings, &constraints);
         let mut laid = Self {
             unwrapping,
             objects: surface.objects(),
             fits,
-            yields,
+            displacement,
             is_bounded: false,
             dab_at: None,
         };
-        let of_whole = yields_of(pinned, settings, &holds);
+        let of_whole = displacement_of(pinned, settings, &constraints);
         bend.pieces
             .iter()
             .for_each(|piece| laid.set_apart(pinned, settings, piece, of_whole.as_deref()));
@@ -111,7 +111,7 @@ impl LaidPlanes {
         surface: &Surface,
         settings: UnwrapSettings,
         piece: &PlanePiece,
-        yields: Option<&PlaneYield>,
+        displacement: Option<&PlaneDisplacement>,
     ) {
         if piece.is_still() || !piece.at.is_finite() {
             return;
@@ -130,9 +130,10 @@ impl LaidPlanes {
                 &mut self.fits[last]
             }
         };
-        let yielded =
-            yields.map_or(Vec2::ZERO, |yields| surface.blended(piece.at, |x, y| yields.at(x, y)));
-        let shown = fit.at(at, yielded);
+        let displaced = displacement.map_or(Vec2::ZERO, |displacement| {
+            surface.blended(piece.at, |x, y| displacement.at(x, y))
+        });
+        let shown = fit.at(at, displaced);
         let Affine2 { matrix2, .. } = fit.looked_up(piece.looked_up(shown));
         fit.pulled = fit.pulled.map(|pulled| matrix2 * pulled);
     }
@@ -149,7 +150,7 @@ impl LaidPlanes {
             unwrapping,
             objects: surface.objects(),
             fits: vec![fit],
-            yields: None,
+            displacement: None,
             is_bounded: true,
             dab_at: Some(there),
         }
@@ -164,9 +165,10 @@ impl LaidPlanes {
     pub fn at(&self, x: usize, y: usize) -> Vec2 {
         let (object, u) = (self.objects.labels().at(x, y), self.unwrapping.at(x, y));
         match self.fits.iter().find(|fit| fit.object == object) {
-            Some(fit) => {
-                fit.at(u, self.yields.as_ref().map_or(Vec2::ZERO, |yields| yields.at(x, y)))
-            }
+            Some(fit) => fit.at(
+                u,
+                self.displacement.as_ref().map_or(Vec2::ZERO, |displacement| displacement.at(x, y)),
+            ),
             None if self.is_bounded => u + OUT_OF_REACH_PX,
             None => u,
         }
@@ -201,18 +203,23 @@ impl LaidPlanes {
     }
 }
 
-/// How a surface yields to some holds, if there are any.
-fn yields_of(
+/// The displacement of a surface's planes under some constraints, if there are any.
+fn displacement_of(
     surface: &Surface,
     settings: UnwrapSettings,
-    holds: &[PlaneHold],
-) -> Option<Arc<PlaneYield>> {
-    (!holds.is_empty()).then(|| surface.plane_yield(settings, holds))
+    constraints: &[PlaneConstraint],
+) -> Option<Arc<PlaneDisplacement>> {
+    (!constraints.is_empty()).then(|| surface.plane_displacement(settings, constraints))
 }
 
 impl PlaneFit {
     /// The rigid part of a fit; where it misses a pin, all of them are held.
-    fn new(object: u32, pins: &[PlanePin], weights: Weights, holds: &mut Vec<PlaneHold>) -> Self {
+    fn new(
+        object: u32,
+        pins: &[PlanePin],
+        weights: Weights,
+        constraints: &mut Vec<PlaneConstraint>,
+    ) -> Self {
         let n = pins.len().max(1) as f32;
         let (from, to) =
             pins.iter().fold((Vec2::ZERO, Vec2::ZERO), |(a, b), pin| (a + pin.at, b + pin.source));
@@ -232,16 +239,16 @@ impl PlaneFit {
         };
         let linear = Mat2::from_cols(linear, linear.perp());
         let shift = to - linear * from;
-        let held = |pin: &PlanePin| PlaneHold {
+        let held = |pin: &PlanePin| PlaneConstraint {
             at: pin.on_canvas,
-            lacks: pin.source - (linear * pin.at + shift),
+            displacement: pin.source - (linear * pin.at + shift),
         };
-        let held: Vec<PlaneHold> = pins.iter().map(held).collect();
+        let held: Vec<PlaneConstraint> = pins.iter().map(held).collect();
         // Anchors thrown beyond all reach are met by no plane.
-        let is_pulled = held.iter().any(|hold| hold.lacks.length() >= MET_PX)
-            && held.iter().all(|hold| hold.lacks.is_finite());
+        let is_pulled = held.iter().any(|constraint| constraint.displacement.length() >= MET_PX)
+            && held.iter().all(|constraint| constraint.displacement.is_finite());
         if is_pulled {
-            holds.extend(held);
+            constraints.extend(held);
         }
         Self { object, linear, shift, pulled: is_pulled.then_some(Mat2::IDENTITY) }
     }
@@ -254,10 +261,10 @@ impl PlaneFit {
 
     /// D of a point of the unwrapped plane.
     ///
-    /// * `yields`: how it yields there; only where anchors pull.
+    /// * `displacement`: of the plane there; only where anchors pull.
     #[inline(always)]
-    pub fn at(&self, u: Vec2, yields: Vec2) -> Vec2 {
+    pub fn at(&self, u: Vec2, displacement: Vec2) -> Vec2 {
         let laid = self.linear * u + self.shift;
-        self.pulled.map_or(laid, |pulled| laid + pulled * yields)
+        self.pulled.map_or(laid, |pulled| laid + pulled * displacement)
     }
 }

@@ -12,7 +12,7 @@ mod tests;
 
 use super::cache::HeapSize;
 use super::occlusion::CLIFF;
-use super::unwrap::NearView;
+use super::unwrap::PerspectiveView;
 use super::{Surface, links};
 use crate::math::{Rect, Size, Vec2, Vec3, vec2};
 use crate::raster::Plane;
@@ -42,7 +42,7 @@ pub struct RayMap {
     farthest: f32,
     thickness: f32,
     depth_range_px: f32,
-    near: Option<NearView>,
+    near: Option<PerspectiveView>,
 }
 
 /// A ray that leaves the surface.
@@ -102,7 +102,7 @@ impl RayMap {
             farthest: -NOWHERE,
             thickness: THICKNESS * size.longer_side(),
             depth_range_px: surface.depth_range_px(),
-            near: surface.near_view(),
+            near: surface.perspective_view(),
         };
         map.nearness = Plane::from_fn(size, |x, y| match surface.coverage(x, y) {
             0 => NOWHERE,

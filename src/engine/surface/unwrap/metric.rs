@@ -35,9 +35,15 @@ pub fn stretch(nbar: Vec2, nz: f32, amount: f32) -> Mat2 {
 /// * `beside`: b, focal lengths from the point before the eye; image axes.
 /// * `farness`: Z/Z̄, `> 0`.
 /// * `amount`: a, as in [`stretch`].
-pub fn stretch_from_near(nbar: Vec2, nz: f32, beside: Vec2, farness: f32, amount: f32) -> Mat2 {
+pub fn stretch_in_perspective(
+    nbar: Vec2,
+    nz: f32,
+    beside: Vec2,
+    farness: f32,
+    amount: f32,
+) -> Mat2 {
     let away = 1.0 + beside.length_squared();
-    let slope = nbar / facing_from_near(nbar, nz, beside).max(STEEPEST_NZ) / away.sqrt();
+    let slope = nbar / facing_in_perspective(nbar, nz, beside).max(STEEPEST_NZ) / away.sqrt();
     let metric =
         Mat2::IDENTITY + outer(beside, slope) + outer(slope, beside) + outer(slope, slope) * away;
     // Its larger axis u, and both eigenvalues.
@@ -51,9 +57,9 @@ pub fn stretch_from_near(nbar: Vec2, nz: f32, beside: Vec2, farness: f32, amount
     (Mat2::IDENTITY * least + along * (most - least)) * farness.powf(amount)
 }
 
-/// n·v of a surface that is seen from near: ν over the length of (b, 1); see [`stretch_from_near`].
+/// n·v of a surface that is seen from near: ν over the length of (b, 1); see [`stretch_in_perspective`].
 #[inline(always)]
-pub fn facing_from_near(nbar: Vec2, nz: f32, beside: Vec2) -> f32 {
+pub fn facing_in_perspective(nbar: Vec2, nz: f32, beside: Vec2) -> f32 {
     (nz - nbar.dot(beside)) / (1.0 + beside.length_squared()).sqrt()
 }
 
@@ -127,24 +133,24 @@ mod tests {
             let metric =
                 Mat2::from_cols(vec2(dx.dot(dx), dx.dot(dy)), vec2(dx.dot(dy), dy.dot(dy)))
                     * (1.0 / 9.0);
-            let root = stretch_from_near(n.truncate(), n.z, b, point(b).z / 3.0, 1.0);
+            let root = stretch_in_perspective(n.truncate(), n.z, b, point(b).z / 3.0, 1.0);
             assert!(
                 (root * root).abs_diff_eq(metric, 3e-3),
                 "{b}: {:?} and {metric:?}",
                 root * root
             );
-            let double = stretch_from_near(n.truncate(), n.z, b, point(b).z / 3.0, 2.0);
+            let double = stretch_in_perspective(n.truncate(), n.z, b, point(b).z / 3.0, 2.0);
             assert!(double.abs_diff_eq(root * root, 1e-4));
         }
         for (x, y) in [(0.3f32, 0.4f32), (-0.7, 0.1), (0.0, 0.0)] {
             let (nbar, nz) = (vec2(x, y), (1.0 - x * x - y * y).sqrt());
-            let near = stretch_from_near(nbar, nz, Vec2::ZERO, 1.0, 1.3);
+            let near = stretch_in_perspective(nbar, nz, Vec2::ZERO, 1.0, 1.3);
             assert!(
                 near.abs_diff_eq(stretch(nbar, nz, 1.3), 1e-5),
                 "straight ahead it is the parallel one"
             );
         }
-        let edge_on = stretch_from_near(vec2(1.0, 0.0), -0.3, vec2(0.2, 0.4), 1.0, 1.0);
+        let edge_on = stretch_in_perspective(vec2(1.0, 0.0), -0.3, vec2(0.2, 0.4), 1.0, 1.0);
         assert!(
             edge_on.x_axis.is_finite() && edge_on.y_axis.is_finite() && edge_on.determinant() > 0.0
         );

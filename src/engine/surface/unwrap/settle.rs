@@ -8,7 +8,7 @@ use rayon::prelude::*;
 /// Pieces smaller than this many pixels are crumbs of a ragged edge or a speckled mask: they lie as
 /// their neighbours do.
 const CRUMB_PX: usize = 64;
-/// The number of a pixel that no spring joins to any other.
+/// The number of a pixel that no coupling joins to any other.
 const NONE: u32 = u32::MAX;
 
 /// Shifts each piece so that it stays where it is in the picture in the mean; crumbs lie as what is

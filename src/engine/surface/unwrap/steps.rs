@@ -3,7 +3,7 @@
 //! reads like the equation.
 
 use crate::math::Vec2;
-use crate::surface::springs::SpringGrid;
+use crate::surface::poisson::PoissonGrid;
 use rayon::prelude::*;
 
 /// S − 1 of every pixel of a grid: the entries xx, xy and yy.
@@ -26,7 +26,7 @@ struct TurnedRow([Vec<f32>; 4]);
 ///
 /// * `moved`: δ of the last step, whose rotation turns S; `None` at first: R = 1.
 pub(super) fn sources(
-    grid: &SpringGrid,
+    grid: &PoissonGrid,
     metric: &Metric,
     moved: Option<[&[f32]; 2]>,
     out: [&mut [f32]; 2],
@@ -44,39 +44,39 @@ pub(super) fn sources(
         turned(grid, metric, moved, first, &mut here);
         let rows = out_x.chunks_mut(w).zip(out_y.chunks_mut(w));
         for (y, (out_x, out_y)) in (first..).zip(rows) {
-            if (y + 1) * w < grid.springs()[0].len() {
+            if (y + 1) * w < grid.couplings()[0].len() {
                 turned(grid, metric, moved, y + 1, &mut below);
             }
-            let springs = SpringRows::of(grid, y);
+            let couplings = CouplingRows::of(grid, y);
             let [xx, xy, yx, yy] = &here.0;
-            along_row(springs, xx, out_x);
-            along_row(springs, yx, out_y);
-            down_row(springs, [&above.0[1], xy, &below.0[1]], out_x);
-            down_row(springs, [&above.0[3], yy, &below.0[3]], out_y);
+            along_row(couplings, xx, out_x);
+            along_row(couplings, yx, out_y);
+            down_row(couplings, [&above.0[1], xy, &below.0[1]], out_x);
+            down_row(couplings, [&above.0[3], yy, &below.0[3]], out_y);
             std::mem::swap(&mut above, &mut here);
             std::mem::swap(&mut here, &mut below);
         }
     });
 }
 
-/// The springs that begin or end in a row of pixels; `up` is empty in the first.
+/// The couplings that begin or end in a row of pixels; `up` is empty in the first.
 #[derive(Clone, Copy)]
-struct SpringRows<'g> {
+struct CouplingRows<'g> {
     right: &'g [f32],
     up: &'g [f32],
     down: &'g [f32],
 }
 
-impl<'g> SpringRows<'g> {
-    fn of(grid: &'g SpringGrid, y: usize) -> Self {
-        let (w, [right, down]) = (grid.width(), grid.springs());
+impl<'g> CouplingRows<'g> {
+    fn of(grid: &'g PoissonGrid, y: usize) -> Self {
+        let (w, [right, down]) = (grid.width(), grid.couplings());
         let up = if y == 0 { &[][..] } else { &down[(y - 1) * w..y * w] };
         Self { right: &right[y * w..(y + 1) * w], up, down: &down[y * w..(y + 1) * w] }
     }
 }
 
 fn turned(
-    grid: &SpringGrid,
+    grid: &PoissonGrid,
     metric: &Metric,
     moved: Option<[&[f32]; 2]>,
     y: usize,
@@ -97,9 +97,9 @@ fn turned(
         [row(y.max(1) - 1), row(y), row(y + 1)]
     });
     let none = vec![0.0; if y == 0 { w } else { 0 }];
-    let springs = SpringRows::of(grid, y);
-    let springs = SpringRows { up: if y == 0 { &none } else { springs.up }, ..springs };
-    turned_row(springs, s, rows, [xx, xy, yx, yy]);
+    let couplings = CouplingRows::of(grid, y);
+    let couplings = CouplingRows { up: if y == 0 { &none } else { couplings.up }, ..couplings };
+    turned_row(couplings, s, rows, [xx, xy, yx, yy]);
 }
 
 /// The local step at one pixel: R S − 1.
@@ -124,14 +124,14 @@ fn turned_at([a, b, c]: [f32; 3], (dx, has_x): (Vec2, f32), (dy, has_y): (Vec2, 
 
 crate::widest! {
     /// The local step over a row; δ as rows above, here and below, x and y.
-    fn turned_row(springs: SpringRows, s: [&[f32]; 3], moved: [[&[f32]; 3]; 2], out: [&mut [f32]; 4]) {
+    fn turned_row(couplings: CouplingRows, s: [&[f32]; 3], moved: [[&[f32]; 3]; 2], out: [&mut [f32]; 4]) {
         let n = s[0].len();
         let [a, b, c] = s.map(|s| &s[..n]);
-        let (right, up, down) = (&springs.right[..n], &springs.up[..n], &springs.down[..n]);
+        let (right, up, down) = (&couplings.right[..n], &couplings.up[..n], &couplings.down[..n]);
         let [[above_x, x, below_x], [above_y, y, below_y]] = moved.map(|rows| rows.map(|row| &row[..n]));
         let [xx, xy, yx, yy] = out;
         let (xx, xy, yx, yy) = (&mut xx[..n], &mut xy[..n], &mut yx[..n], &mut yy[..n]);
-        let is = |spring: f32| if spring > 0.0 { 1.0f32 } else { 0.0 };
+        let is = |coupling: f32| if coupling > 0.0 { 1.0f32 } else { 0.0 };
         let mut one = |i: usize, before: usize, after: usize, left: f32| {
             let (l, r, u, d) = (is(left), is(right[i]), is(up[i]), is(down[i]));
             let half = |n: f32| if n > 1.5 { 0.5f32 } else { 1.0 };
@@ -153,9 +153,9 @@ crate::widest! {
     }
 
     /// Sets `out` to what the links along a row bring: those at the left, less those at the right.
-    fn along_row(springs: SpringRows, t: &[f32], out: &mut [f32]) {
+    fn along_row(couplings: CouplingRows, t: &[f32], out: &mut [f32]) {
         let n = out.len();
-        let (right, t) = (&springs.right[..n], &t[..n]);
+        let (right, t) = (&couplings.right[..n], &t[..n]);
         let flow = |i: usize| if i + 1 < n { right[i] * 0.5 * (t[i] + t[i + 1]) } else { 0.0 };
         if n > 0 {
             out[0] = -flow(0);
@@ -169,13 +169,13 @@ crate::widest! {
     }
 
     /// Adds what the links down the columns bring.
-    fn down_row(springs: SpringRows, t: [&[f32]; 3], out: &mut [f32]) {
+    fn down_row(couplings: CouplingRows, t: [&[f32]; 3], out: &mut [f32]) {
         let (n, [above, here, below]) = (out.len(), t);
-        let (down, above, here, below) = (&springs.down[..n], &above[..n], &here[..n], &below[..n]);
+        let (down, above, here, below) = (&couplings.down[..n], &above[..n], &here[..n], &below[..n]);
         for i in 0..n {
             out[i] -= down[i] * 0.5 * (here[i] + below[i]);
         }
-        for (i, up) in springs.up.iter().enumerate() {
+        for (i, up) in couplings.up.iter().enumerate() {
             out[i] += up * 0.5 * (above[i] + here[i]);
         }
     }

@@ -201,12 +201,16 @@ fn what_is_given_up_ends_at_once_and_what_is_told_of_is_all_of_it() {
         told.set(told.get() + 1);
         told.get() < 3
     };
-    assert!(surface.unwrapped_telling(WHOLE, &count).is_none() && !surface.is_unwrapped(WHOLE));
+    assert!(
+        surface.unwrapped_with_progress(WHOLE, &count).is_none() && !surface.is_unwrapped(WHOLE)
+    );
     assert_eq!(told.get(), 3);
     told.set(-100);
-    assert!(surface.unwrapped_telling(WHOLE, &count).is_some() && surface.is_unwrapped(WHOLE));
+    assert!(
+        surface.unwrapped_with_progress(WHOLE, &count).is_some() && surface.is_unwrapped(WHOLE)
+    );
     assert_eq!(told.get(), SOLVES as i32 - 100);
-    assert!(surface.unwrapped_telling(WHOLE, &|| false).is_some(), "it is there");
+    assert!(surface.unwrapped_with_progress(WHOLE, &|| false).is_some(), "it is there");
 }
 
 #[test]
@@ -268,13 +272,13 @@ fn rows_do_as_the_equations_say() {
     let rect = covered(&surface);
     let normals = smooth::normals(&surface, rect, 0.0);
     let (metric, grid) =
-        (Metric::of(&surface, rect, &normals, 1.0), springs(&surface, rect, &normals));
+        (Metric::of(&surface, rect, &normals, 1.0), couplings(&surface, rect, &normals));
     let (w, h) = (rect.width(), rect.height());
     let moved: [Vec<f32>; 2] = [0, 1]
         .map(|k| (0..w * h).map(|i| (i % w) as f32 * 0.3 * hash::unit(3, i as u32, k)).collect());
     let (mut bx, mut by) = (vec![0.0; w * h], vec![0.0; w * h]);
     steps::sources(&grid, &metric, Some(moved.each_ref().map(|v| &v[..])), [&mut bx, &mut by]);
-    let [right, down] = grid.springs();
+    let [right, down] = grid.couplings();
     // R S − 1 at a pixel, J from the means of the one-sided differences.
     let turned = |x: usize, y: usize| {
         let i = y * w + x;
@@ -283,7 +287,7 @@ fn rows_do_as_the_equations_say() {
             let there: Vec<Vec2> = sides.into_iter().flatten().collect();
             there.iter().sum::<Vec2>() / there.len().max(1) as f32
         };
-        let along = |spring: f32, a: usize, b: usize| (spring > 0.0).then(|| d(b) - d(a));
+        let along = |coupling: f32, a: usize, b: usize| (coupling > 0.0).then(|| d(b) - d(a));
         let dx = mean([
             if x > 0 { along(right[i - 1], i - 1, i) } else { None },
             along(right[i], i, i + 1),

@@ -1,5 +1,5 @@
 //! The settings of a MyPaint file, each looked up by name; those that nothing uses are reported.
-//! Floor 5. Not here: what they make of a brush (`dab`, `hand`), how curves run (`curves`).
+//! Floor 5. Not here: what they make of a brush (`dab`, `stylus`), how curves run (`curves`).
 
 use super::added::{Added, AddedInput};
 use super::curves::{InputMapping, Scales, at, curve_of, number, sampled};

@@ -89,7 +89,7 @@ impl PartGizmo {
     }
 
     /// The same, seen through a map of the canvas.
-    pub fn through(self, map: Affine2) -> Self {
+    pub fn transformed(self, map: Affine2) -> Self {
         let corners = self.corners().map(|corner| map.transform_point2(corner));
         let low = corners.iter().fold(Vec2::MAX, |a, b| a.min(*b));
         let high = corners.iter().fold(Vec2::MIN, |a, b| a.max(*b));

@@ -2,8 +2,8 @@
 //! that is moved takes all of its ring along. Floor 4.
 
 use super::super::areas::pixels;
+use super::super::color_distance::{color_distance, share_on_the_way};
 use super::super::ink::half_width;
-use super::super::near::{away, share_on_the_way};
 use super::super::picture::Pixel;
 use super::owners::{Cut, NO_PART};
 use crate::raster::{Plane, distance};
@@ -67,7 +67,9 @@ impl CutLines {
             return drawn;
         }
         let ink = around(x, y, SOFT).filter(|(x, y)| self.is_ink.get(*x, *y) == Some(true));
-        let ink = ink.filter_map(|(x, y)| cut.drawn.get(x, y)).max_by_key(|ink| away(*ink, behind));
+        let ink = ink
+            .filter_map(|(x, y)| cut.drawn.get(x, y))
+            .max_by_key(|ink| color_distance(*ink, behind));
         let share = ink.map_or(0, |ink| share_on_the_way(drawn, behind, ink));
         let least = share.max(cut.coverage(self.taker.at(x, y), x, y));
         (least..=255).find_map(|alpha| added(drawn, alpha, behind)).unwrap_or(drawn)
@@ -88,8 +90,8 @@ impl Cut {
         let own = self.owner.at(x, y).checked_sub(1).and_then(color);
         let drawn = self.drawn.at(x, y);
         own.zip(color(u32::from(part))).is_some_and(|(own, other)| {
-            away(drawn, own) > LINE
-                && away(drawn, other) > LINE
+            color_distance(drawn, own) > LINE
+                && color_distance(drawn, other) > LINE
                 && share_on_the_way(drawn, own, other) == 0
         })
     }
@@ -98,7 +100,7 @@ impl Cut {
 /// Whether the drawing shows something else on a part than its flat colour.
 fn is_off_color(cut: &Cut, part: u16, (x, y): (usize, usize)) -> bool {
     let color = cut.outlines[usize::from(part)].color;
-    color.is_some_and(|color| away(cut.drawn.at(x, y), color) > LINE)
+    color.is_some_and(|color| color_distance(cut.drawn.at(x, y), color) > LINE)
 }
 
 /// The ink on farther parts along each part, as far from its outline as the part's own side of the

@@ -1,8 +1,8 @@
 //! Pieces make the same picture, and go with their parts.
 
+use super::super::color_distance::NEAR;
 use super::super::flats::tests as drawings;
 use super::super::flats::{PartFor, parts_of_flats};
-use super::super::near::NEAR;
 use super::super::shares::tests::{EYE, PUPIL, SIZE, at, color, drawn};
 use crate::document::{
     Content, DerivedMask, Document, Group, Inflation, Layer, LayerId, LayerMask, OutlineSource,

@@ -250,7 +250,7 @@ crate::widest! {
         }
     }
 
-    /// The same of a plane that yields: what it yields is turned and scaled as the plane is, and
+    /// The same of a displaced plane: its displacement is turned and scaled as the plane is, and
     /// added.
     pub(super) fn pulled_row(
         uv: [&[f32]; 2],

@@ -12,7 +12,7 @@ use crate::document::{
 use crate::math::{srgb::Color, vec3};
 use crate::raster::{BlendMode, TileGrid};
 use crate::session::OpenDocument;
-use crate::session::drawing::painted_telling;
+use crate::session::drawing::painted_with_progress;
 use crate::shading::{Light, LightKind, Model, Shading, Term};
 use std::sync::Arc;
 
@@ -45,7 +45,7 @@ pub fn shaped(
     each: PartFor,
     progress: &Progress,
 ) -> Result<FirstShape, PartRefusal> {
-    let tiles = painted_telling(document, layer, progress)
+    let tiles = painted_with_progress(document, layer, progress)
         .ok_or("This layer paints nothing of its own, so it has no outline.")?;
     let traits = DrawingTraits::of(&tiles, document.size);
     let (document, tiles) = match traits.background {
@@ -96,7 +96,7 @@ pub fn shaped(
         .place_of(layer)
         .map_or(LayerSlot::top_level(usize::MAX), |at| LayerSlot { index: at.index + 1, ..at });
     let next = next.with_inserted(base, place).ok_or("There is no such layer.")?;
-    let next = next.with_parts_telling(list, progress).ok_or("It was given up.")?;
+    let next = next.with_parts_with_progress(list, progress).ok_or("It was given up.")?;
     // A drawing that is one part moves with the part; of several parts, each would take a piece of
     // it.
     let next = match each {

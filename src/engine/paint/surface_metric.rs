@@ -6,13 +6,13 @@ use std::sync::Arc;
 
 /// The surface that paths are measured on.
 #[derive(Clone)]
-pub struct SurfaceMeasure {
+pub struct SurfaceMetric {
     surface: Arc<Surface>,
     /// a of MATH 8: that of the unwrapping if marks are printed by one, else 1.
     amount: f32,
 }
 
-impl SurfaceMeasure {
+impl SurfaceMetric {
     /// `None` if there is no surface.
     pub fn of(scene: &Scene, operator: Operator) -> Option<Self> {
         let amount = operator.unwrapping().map_or(1.0, |settings| settings.amount);

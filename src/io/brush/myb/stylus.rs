@@ -5,9 +5,9 @@ use super::added::Added;
 use super::settings::MyPaintSettings;
 use super::{Lengths, with};
 use crate::paint::brush::Stabilizer;
+use crate::paint::brush_options::Bearing;
 use crate::paint::dynamics::Property;
-use crate::paint::habits::Bearing;
-use crate::paint::{Brush, Cycle, Hand, Offset, Rate, Spread};
+use crate::paint::{Brush, Cycle, Offset, Rate, Spread, StylusFilter};
 
 /// Spacings that a brush can have here.
 const SPACINGS: [f32; 2] = [0.01, 100.0];
@@ -54,7 +54,7 @@ pub fn strays(settings: &mut MyPaintSettings, lengths: Lengths, brush: Brush) ->
     let brush = Brush { size_jitter: sizes.base, ..brush };
     let brush = with(brush, Property::SizeJitter, &sizes);
     let lead = settings.added("offset_by_speed", 0.0).times(0.1).within(-1.0, 1.0);
-    let brush = Brush { hand: Hand { lead_secs: lead.base, ..brush.hand }, ..brush };
+    let brush = Brush { stylus: StylusFilter { lead_secs: lead.base, ..brush.stylus }, ..brush };
     settings.of_no_use(&["offset_by_speed_slowness"]);
     let brush = with(brush, Property::Lead, &lead);
     offset(settings, lengths, brush)
@@ -129,7 +129,7 @@ pub fn ways(settings: &mut MyPaintSettings, lengths: Lengths, brush: Brush) -> B
         slow if slow > 0.0 => Stabilizer::Lag { secs: (slow / 100.0).min(10.0) },
         _ => Stabilizer::None,
     };
-    let hand = Hand {
+    let stylus = StylusFilter {
         tremor: (settings.plain("tracking_noise", 0.0) * lengths.diameters()).max(0.0).min(20.0),
         lag_dabs: settings.plain("slow_tracking_per_dab", 0.0).max(0.0).min(100.0),
         direction_px: ((settings.plain("direction_filter", 2.0) * 0.5).min(20.0).exp() - 1.0)
@@ -139,7 +139,7 @@ pub fn ways(settings: &mut MyPaintSettings, lengths: Lengths, brush: Brush) -> B
         slow_pace_secs: settings.plain("speed2_slowness", 0.8).max(0.0).min(10.0),
         // It comes so far at every dab.
         custom_dabs: (10.0 * settings.plain("custom_input_slowness", 0.0)).max(0.0).min(1000.0),
-        ..brush.hand
+        ..brush.stylus
     };
     let cycle = Cycle {
         length: (settings.plain("stroke_duration_logarithmic", 4.0).min(20.0).exp()
@@ -149,5 +149,5 @@ pub fn ways(settings: &mut MyPaintSettings, lengths: Lengths, brush: Brush) -> B
         hold: settings.plain("stroke_holdtime", 0.0).max(0.0).min(Cycle::FOR_EVER),
         pressure: settings.plain("stroke_threshold", 0.0).max(0.0).min(1.0),
     };
-    Brush { stabilizer, hand, cycle, ..brush }
+    Brush { stabilizer, stylus, cycle, ..brush }
 }

@@ -1,7 +1,7 @@
 //! The loops of the solver over a row of the grid, in plain loops that the compiler vectorises.
-//! Floor 2. Their twin that reads like the equation is `SpringGrid::pull`.
+//! Floor 2. Their twin that reads like the equation is `PoissonGrid::pull`.
 
-/// The springs of a row of unknowns: to the right, up (none in the first row) and down.
+/// The couplings of a row of unknowns: to the right, up (none in the first row) and down.
 #[derive(Clone, Copy)]
 pub(super) struct GridRow<'g> {
     pub right: &'g [f32],
@@ -19,7 +19,7 @@ fn each(
     mut visit: impl FnMut(usize, f32, f32, f32),
 ) {
     let n = here.len();
-    // The first and last rows have springs to nowhere, of stiffness 0: any row of the right length
+    // The first and last rows have couplings to nowhere, of stiffness 0: any row of the right length
     // will do.
     let (up, above) =
         if row.up.len() == n && above.len() == n { (row.up, above) } else { (&ZEROS[..0], here) };

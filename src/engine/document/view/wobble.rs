@@ -8,7 +8,7 @@ use crate::surface::Surface;
 use rayon::prelude::*;
 
 /// A picture with its heights, as large as a screen needs.
-pub struct SwayScene {
+pub struct WobbleScene {
     size: Size,
     /// Premultiplied.
     pixels: Plane<[u8; 4]>,
@@ -20,7 +20,7 @@ pub struct SwayScene {
 /// piece.
 const JUMP: f32 = 3.0;
 
-impl SwayScene {
+impl WobbleScene {
     /// * `flat`: the finished picture of the canvas, of the surface's size.
     /// * `longest`: the most px that a side may have.
     pub fn new(flat: &TileGrid, surface: &Surface, longest: u32) -> Self {
@@ -103,12 +103,12 @@ mod tests {
     use crate::shape::{Body, Combine, Primitive, Relief};
 
     /// A red ball on a blue ground.
-    fn scene() -> SwayScene {
+    fn scene() -> WobbleScene {
         let size = Size::new(96, 80);
         let mut relief = Relief::empty(size);
         let form = Primitive::new(Body::Sphere, vec2(48.0, 40.0), 24.0).form(1 << 16).unwrap();
         relief.add(&form, Combine::Over, 1);
-        let surface = relief.into_surface(&mut crate::surface::KnownNearest::default()).unwrap();
+        let surface = relief.into_surface(&mut crate::surface::NearestCache::default()).unwrap();
         let pixel = |i: usize| {
             let (x, y) = ((i % 96) as f32 - 47.5, (i / 96) as f32 - 39.5);
             if x.hypot(y) < 24.0 {
@@ -118,7 +118,7 @@ mod tests {
             }
         };
         let rgba: Vec<u8> = (0..size.area()).flat_map(pixel).collect();
-        SwayScene::new(&TileGrid::from_straight_rgba(&rgba, 96, 80, 0, 0), &surface, 96)
+        WobbleScene::new(&TileGrid::from_straight_rgba(&rgba, 96, 80, 0, 0), &surface, 96)
     }
 
     #[test]

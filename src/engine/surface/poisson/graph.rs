@@ -1,21 +1,21 @@
-//! The coarser levels of springs: unknowns that represent blocks of finer ones, joined by springs
-//! in any shape. Floor 2. Their springs, and the V-cycle below the grid. Not here: which unknowns
-//! become one (`merge`), the grid itself (`springs`).
+//! The coarser levels of couplings: unknowns that represent blocks of finer ones, joined by couplings
+//! in any shape. Floor 2. Their couplings, and the V-cycle below the grid. Not here: which unknowns
+//! become one (`merge`), the grid itself (`couplings`).
 
-use super::SpringGrid;
-use super::merge::{children, in_series, is_strong, join, number_rows, numbered, springs_at};
+use super::PoissonGrid;
+use super::merge::{children, couplings_at, in_series, is_strong, join, number_rows, numbered};
 use crate::memory::filled_or_unwind;
 use rayon::prelude::*;
 
 /// No unknown of a coarser level.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// Unknowns and their springs, those of unknown i at `starts[i]..starts[i + 1]`.
-pub(super) struct SpringGraph {
+/// Unknowns and their couplings, those of unknown i at `starts[i]..starts[i + 1]`.
+pub(super) struct PoissonGraph {
     starts: Vec<u32>,
     ends: Vec<u32>,
     stiffness: Vec<f32>,
-    /// 1 / Σ w; 0 without springs.
+    /// 1 / Σ w; 0 without couplings.
     inverse: Vec<f32>,
     /// The block of the grid that each unknown lies in.
     blocks: Vec<[u32; 2]>,
@@ -36,10 +36,10 @@ pub(super) struct GraphScratch {
 /// Unknowns that one task works on; fewer are not worth a task.
 const CHUNK: usize = 8192;
 
-impl SpringGraph {
+impl PoissonGraph {
     /// The first level below a grid, and for each of the grid's unknowns the one that represents
     /// it.
-    pub fn of_grid(grid: &SpringGrid) -> (Vec<u32>, Self) {
+    pub fn of_grid(grid: &PoissonGrid) -> (Vec<u32>, Self) {
         let (w, h) = (grid.width(), grid.height());
         let mut parent = filled_or_unwind(w * h, NONE);
         let mut blocks: Vec<[u32; 2]> = Vec::new();
@@ -71,7 +71,7 @@ impl SpringGraph {
                 of_block(blocks[unknown]).filter(|&(x, y)| parent[y * w + x] == unknown as u32)
             {
                 let i = y * w + x;
-                springs_at(grid, i)
+                couplings_at(grid, i)
                     .into_iter()
                     .filter(|s| s.1 > 0.0)
                     .for_each(|(j, s)| add(parent[j], s));
@@ -80,18 +80,18 @@ impl SpringGraph {
         (parent, graph)
     }
 
-    /// A graph of unknowns in given blocks; `springs` gives each unknown's finer springs with the
+    /// A graph of unknowns in given blocks; `couplings` gives each unknown's finer couplings with the
     /// unknown at their end.
     fn joined(
         blocks: Vec<[u32; 2]>,
-        springs: impl Fn(usize, &mut dyn FnMut(u32, f32)) + Sync,
+        couplings: impl Fn(usize, &mut dyn FnMut(u32, f32)) + Sync,
     ) -> Self {
         let chunk = |start: usize| {
             let mut rows: Vec<(u32, f32)> = Vec::new();
             let (mut counts, mut inner) = (Vec::new(), Vec::new());
             for unknown in start..(start + CHUNK).min(blocks.len()) {
                 let (first, mut within) = (rows.len(), 0.0);
-                springs(unknown, &mut |end, stiffness| {
+                couplings(unknown, &mut |end, stiffness| {
                     if end == unknown as u32 {
                         within += stiffness;
                         return;
@@ -145,20 +145,20 @@ impl SpringGraph {
 
     /// Bytes that it holds.
     pub fn bytes(&self) -> usize {
-        let springs = size_of_val(&self.starts[..])
+        let couplings = size_of_val(&self.starts[..])
             + size_of_val(&self.ends[..])
             + size_of_val(&self.stiffness[..]);
         let unknowns = size_of_val(&self.inverse[..])
             + size_of_val(&self.blocks[..])
             + size_of_val(&self.parent[..]);
-        springs + unknowns + size_of_val(&self.pieces.0[..])
+        couplings + unknowns + size_of_val(&self.pieces.0[..])
     }
 
     pub fn parents(&self) -> &[u32] {
         &self.parent
     }
 
-    fn springs(&self, i: usize) -> impl Iterator<Item = (u32, f32)> {
+    fn couplings(&self, i: usize) -> impl Iterator<Item = (u32, f32)> {
         let row = self.starts[i] as usize..self.starts[i + 1] as usize;
         self.ends[row.clone()].iter().copied().zip(self.stiffness[row].iter().copied())
     }
@@ -174,11 +174,11 @@ impl SpringGraph {
 
     fn merged(&mut self) -> Option<Self> {
         let stiffest: Vec<f32> =
-            (0..self.len()).map(|i| self.springs(i).fold(0.0, |m: f32, s| m.max(s.1))).collect();
+            (0..self.len()).map(|i| self.couplings(i).fold(0.0, |m: f32, s| m.max(s.1))).collect();
         let block = |i: usize| self.blocks[i].map(|v| v / 2);
         let mut first: Vec<u32> = (0..self.len() as u32).collect();
         for i in 0..self.len() {
-            for (j, stiffness) in self.springs(i) {
+            for (j, stiffness) in self.couplings(i) {
                 let j = j as usize;
                 if j > i && block(i) == block(j) && is_strong(stiffness, stiffest[i], stiffest[j]) {
                     join(&mut first, i as u32, j as u32);
@@ -194,14 +194,14 @@ impl SpringGraph {
         let blocks = roots.iter().map(|&root| block(root as usize)).collect();
         let graph = Self::joined(blocks, |unknown, add| {
             for &child in children.of(unknown) {
-                self.springs(child as usize).for_each(|(end, s)| add(parent[end as usize], s));
+                self.couplings(child as usize).for_each(|(end, s)| add(parent[end as usize], s));
             }
         });
         self.parent = parent;
         Some(graph)
     }
 
-    /// The number of each unknown's piece on the last level, and the number of pieces that springs
+    /// The number of each unknown's piece on the last level, and the number of pieces that couplings
     /// join.
     pub fn pieces(&self) -> &(Vec<u32>, usize) {
         &self.pieces
@@ -210,19 +210,19 @@ impl SpringGraph {
     fn found_pieces(&self) -> (Vec<u32>, usize) {
         let mut first: Vec<u32> = (0..self.len() as u32).collect();
         for i in 0..self.len() {
-            self.springs(i).for_each(|(j, _)| join(&mut first, i as u32, j));
+            self.couplings(i).for_each(|(j, _)| join(&mut first, i as u32, j));
         }
         let (labels, roots) = numbered(&mut first);
         (labels, roots.len())
     }
 
-    /// Subtracts the mean of every piece without a held unknown: no spring opposes what rounding
+    /// Subtracts the mean of every piece without a constrained unknown: no coupling opposes what rounding
     /// leaves there, and it would grow.
-    fn centre(&self, values: &mut [f32], held: &[(u32, f32)]) {
+    fn centre(&self, values: &mut [f32], constraints: &[(u32, f32)]) {
         let (labels, count) = &self.pieces;
         let mut sums = vec![(0.0f32, 0.0f32); *count];
         let mut is_free = vec![true; *count];
-        held.iter().for_each(|(i, _)| is_free[labels[*i as usize] as usize] = false);
+        constraints.iter().for_each(|(i, _)| is_free[labels[*i as usize] as usize] = false);
         for (v, &label) in values.iter().zip(labels) {
             let sum = &mut sums[label as usize];
             *sum = (sum.0 + v, sum.1 + 1.0);
@@ -235,28 +235,28 @@ impl SpringGraph {
     }
 
     /// One sweep of Jacobi: `v + step ((b + Σ w v) / Σ w − v)`.
-    fn relax(&self, held: &[(u32, f32)], b: &[f32], v: &[f32], step: f32, out: &mut [f32]) {
+    fn relax(&self, constraints: &[(u32, f32)], b: &[f32], v: &[f32], step: f32, out: &mut [f32]) {
         let one = |(i, out): (usize, &mut f32)| {
-            let pull: f32 = self.springs(i).map(|(j, s)| s * v[j as usize]).sum();
+            let pull: f32 = self.couplings(i).map(|(j, s)| s * v[j as usize]).sum();
             *out = v[i] + step * ((b[i] + pull) * self.inverse[i] - v[i]);
         };
         self.each(out, one);
-        for &(i, stiffness) in held {
+        for &(i, stiffness) in constraints {
             let i = i as usize;
             let (sum, pull) = self
-                .springs(i)
+                .couplings(i)
                 .fold((0.0, 0.0), |(sum, pull), (j, s)| (sum + s, pull + s * v[j as usize]));
             out[i] = v[i] + step * ((b[i] + pull) / (sum + stiffness) - v[i]);
         }
     }
 
     /// b − A v.
-    fn residual(&self, held: &[(u32, f32)], b: &[f32], v: &[f32], out: &mut [f32]) {
+    fn residual(&self, constraints: &[(u32, f32)], b: &[f32], v: &[f32], out: &mut [f32]) {
         let one = |(i, out): (usize, &mut f32)| {
-            *out = b[i] - self.springs(i).map(|(j, s)| s * (v[i] - v[j as usize])).sum::<f32>();
+            *out = b[i] - self.couplings(i).map(|(j, s)| s * (v[i] - v[j as usize])).sum::<f32>();
         };
         self.each(out, one);
-        held.iter().for_each(|&(i, stiffness)| out[i as usize] -= stiffness * v[i as usize]);
+        constraints.iter().for_each(|&(i, stiffness)| out[i as usize] -= stiffness * v[i as usize]);
     }
 
     fn each(&self, out: &mut [f32], one: impl Fn((usize, &mut f32)) + Sync) {
@@ -274,7 +274,7 @@ pub(super) fn gather(
     parent: &[u32],
     left: &[f32],
     levels: &mut [GraphScratch],
-    graphs: &[SpringGraph],
+    graphs: &[PoissonGraph],
 ) {
     let Some((level, graph)) = levels.first_mut().zip(graphs.first()) else { return };
     level.b.clear();
@@ -294,39 +294,44 @@ pub(super) fn spread(parents: &[u32], coarse: &GraphScratch, fine: &mut [f32]) {
 }
 
 /// One symmetric V-cycle from the first graph down: solves each level's `b` for its `v`.
-pub(super) fn cycle(graphs: &[SpringGraph], levels: &mut [GraphScratch], held: &[Vec<(u32, f32)>]) {
+pub(super) fn cycle(
+    graphs: &[PoissonGraph],
+    levels: &mut [GraphScratch],
+    constraints: &[Vec<(u32, f32)>],
+) {
     let (Some((graph, below)), Some((level, levels))) =
         (graphs.split_first(), levels.split_first_mut())
     else {
         return;
     };
     let GraphScratch { b, v, twin } = level;
-    let (held, held_below) =
-        held.split_first().map_or((&[][..], held), |(here, below)| (&here[..], below));
+    let (constraints, held_below) = constraints
+        .split_first()
+        .map_or((&[][..], constraints), |(here, below)| (&here[..], below));
     v.resize(graph.len(), 0.0);
     twin.resize(graph.len(), 0.0);
     if below.is_empty() {
-        graph.centre(b, held);
+        graph.centre(b, constraints);
     }
     graph.each(twin, |(i, out)| *out = super::STEPS[0] * b[i] * graph.inverse[i]);
-    for &(i, stiffness) in held {
-        let sum: f32 = graph.springs(i as usize).map(|spring| spring.1).sum();
+    for &(i, stiffness) in constraints {
+        let sum: f32 = graph.couplings(i as usize).map(|coupling| coupling.1).sum();
         twin[i as usize] = super::STEPS[0] * b[i as usize] / (sum + stiffness);
     }
-    graph.relax(held, b, twin, super::STEPS[1], v);
+    graph.relax(constraints, b, twin, super::STEPS[1], v);
     if below.is_empty() {
-        // Few unknowns, or many that hardly any spring joins.
+        // Few unknowns, or many that hardly any coupling joins.
         for _ in 0..20 {
-            graph.relax(held, b, v, super::STEPS[0], twin);
-            graph.relax(held, b, twin, super::STEPS[1], v);
+            graph.relax(constraints, b, v, super::STEPS[0], twin);
+            graph.relax(constraints, b, twin, super::STEPS[1], v);
         }
-        graph.centre(v, held);
+        graph.centre(v, constraints);
         return;
     }
-    graph.residual(held, b, v, twin);
+    graph.residual(constraints, b, v, twin);
     gather(&graph.parent, twin, levels, below);
     cycle(below, levels, held_below);
     spread(&graph.parent, &levels[0], v);
-    graph.relax(held, b, v, super::STEPS[0], twin);
-    graph.relax(held, b, twin, super::STEPS[1], v);
+    graph.relax(constraints, b, v, super::STEPS[0], twin);
+    graph.relax(constraints, b, twin, super::STEPS[1], v);
 }

@@ -1,30 +1,30 @@
-//! Which unknowns of a level become one on the next: those of a block of 2 × 2 that strong springs
+//! Which unknowns of a level become one on the next: those of a block of 2 × 2 that strong couplings
 //! join. Floor 2. Not here: the levels themselves (`graph`).
 
-use super::SpringGrid;
+use super::PoissonGrid;
 
-/// A spring joins its ends into one coarser unknown if it is at least this share of the stiffest at
+/// A coupling joins its ends into one coarser unknown if it is at least this share of the stiffest at
 /// the slacker end.
 const STRONG: f32 = 0.1;
 
-/// `a`, `b`: the stiffest springs at the two ends.
+/// `a`, `b`: the stiffest couplings at the two ends.
 pub(super) fn is_strong(stiffness: f32, a: f32, b: f32) -> bool {
     stiffness >= STRONG * a.min(b)
 }
 
-/// The stiffness between the middles of two blocks: that of the springs between them in a row with
-/// half of each block's own. For even springs it is half of what lies between; for slack ones
+/// The stiffness between the middles of two blocks: that of the couplings between them in a row with
+/// half of each block's own. For even couplings it is half of what lies between; for slack ones
 /// between firm blocks all of it.
 pub(super) fn in_series(between: f32, inner_a: f32, inner_b: f32) -> f32 {
-    let yields = |inner: f32| if inner > 0.0 { 0.5 * between / inner } else { 0.0 };
-    between / (1.0 + yields(inner_a) + yields(inner_b))
+    let slack = |inner: f32| if inner > 0.0 { 0.5 * between / inner } else { 0.0 };
+    between / (1.0 + slack(inner_a) + slack(inner_b))
 }
 
-/// The springs of one of a grid's unknowns with the index at their end; stiffness 0 where there is
+/// The couplings of one of a grid's unknowns with the index at their end; stiffness 0 where there is
 /// none.
-pub(super) fn springs_at(grid: &SpringGrid, i: usize) -> [(usize, f32); 4] {
+pub(super) fn couplings_at(grid: &PoissonGrid, i: usize) -> [(usize, f32); 4] {
     let w = grid.width();
-    let [right, down] = grid.springs();
+    let [right, down] = grid.couplings();
     let left = if !i.is_multiple_of(w) { (i - 1, right[i - 1]) } else { (i, 0.0) };
     let up = if i >= w { (i - w, down[i - w]) } else { (i, 0.0) };
     [left, (i + 1, right[i]), up, (i + w, down[i])]
@@ -32,10 +32,10 @@ pub(super) fn springs_at(grid: &SpringGrid, i: usize) -> [(usize, f32); 4] {
 
 /// Numbers the coarser unknowns of two rows from 0 on, left to right, and returns the column of
 /// blocks of each.
-pub(super) fn number_rows(grid: &SpringGrid, y: usize, rows: &mut [u32]) -> Vec<u32> {
+pub(super) fn number_rows(grid: &PoissonGrid, y: usize, rows: &mut [u32]) -> Vec<u32> {
     let w = grid.width();
-    let [right, down] = grid.springs();
-    let stiffest = |i: usize| springs_at(grid, i).into_iter().fold(0.0, |m: f32, s| m.max(s.1));
+    let [right, down] = grid.couplings();
+    let stiffest = |i: usize| couplings_at(grid, i).into_iter().fold(0.0, |m: f32, s| m.max(s.1));
     let mut columns = Vec::new();
     for x in (0..w).step_by(2) {
         // The block's pixels: two of the upper row, two of the lower.
@@ -45,9 +45,9 @@ pub(super) fn number_rows(grid: &SpringGrid, y: usize, rows: &mut [u32]) -> Vec<
         let top: [Option<usize>; 4] = std::array::from_fn(inside);
         let most = top.map(|at| at.map_or(0.0, |at| stiffest(2 * y * w + at)));
         let mut first = [0, 1, 2, 3];
-        for (a, b, springs) in [(0, 1, right), (2, 3, right), (0, 2, down), (1, 3, down)] {
+        for (a, b, couplings) in [(0, 1, right), (2, 3, right), (0, 2, down), (1, 3, down)] {
             let Some((at, _)) = top[a].zip(top[b]) else { continue };
-            let stiffness = springs[2 * y * w + at];
+            let stiffness = couplings[2 * y * w + at];
             if stiffness > 0.0 && is_strong(stiffness, most[a], most[b]) {
                 let (from, to) = (first[a].max(first[b]), first[a].min(first[b]));
                 first.iter_mut().filter(|f| **f == from).for_each(|f| *f = to);

@@ -1,19 +1,20 @@
-//! A brush's habits: the numbers of [`SETTINGS`], and the other choices. Read and written. Floor 5.
-//! Not here: ranges and defaults (`paint::habits`).
+//! A brush's options: the numbers of [`SETTINGS`], and the other choices. Read and written. Floor 5.
+//! Not here: ranges and defaults (`paint::brush_options`).
 
 use crate::Result;
 use crate::json::{Fields, JsonObject};
-use crate::paint::habits::Bearing;
+use crate::paint::brush_options::Bearing;
 use crate::paint::settings::{GROUPS, SETTINGS};
-use crate::paint::{Brush, Falloff, Measure, Offset, Spread};
+use crate::paint::{Brush, DistanceMetric, Falloff, Offset, Spread};
 
 /// What is absent stays as it is in `base`.
 pub fn read(fields: &mut Fields, base: Brush) -> Result<Brush> {
     let mut brush = base;
     brush.falloff = fields.one_of("falloff", &Falloff::ALL, brush.falloff)?;
     brush.spread = fields.one_of("spread", &Spread::ALL, brush.spread)?;
-    brush.spacing_on = fields.one_of("spacing_on", &Measure::ALL, brush.spacing_on)?;
-    brush.stabilizer_on = fields.one_of("stabilizer_on", &Measure::ALL, brush.stabilizer_on)?;
+    brush.spacing_on = fields.one_of("spacing_on", &DistanceMetric::ALL, brush.spacing_on)?;
+    brush.stabilizer_on =
+        fields.one_of("stabilizer_on", &DistanceMetric::ALL, brush.stabilizer_on)?;
     for group in GROUPS {
         if group.is_empty() {
             numbers(fields, group, &mut brush)?;
@@ -41,8 +42,8 @@ fn numbers(fields: &mut Fields, group: &str, brush: &mut Brush) -> Result<()> {
 pub fn write(out: &mut JsonObject, brush: &Brush) {
     out.word("falloff", &Falloff::ALL, brush.falloff, Falloff::default());
     out.word("spread", &Spread::ALL, brush.spread, Spread::default());
-    out.word("spacing_on", &Measure::ALL, brush.spacing_on, Measure::default());
-    out.word("stabilizer_on", &Measure::ALL, brush.stabilizer_on, Measure::default());
+    out.word("spacing_on", &DistanceMetric::ALL, brush.spacing_on, DistanceMetric::default());
+    out.word("stabilizer_on", &DistanceMetric::ALL, brush.stabilizer_on, DistanceMetric::default());
     for group in GROUPS {
         let mut own = JsonObject::default();
         let numbers = if group.is_empty() { &mut *out } else { &mut own };

@@ -8,7 +8,7 @@ use crate::surface::{Surface, links};
 
 /// The eye before a surface, and how far from it the depths are.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NearView {
+pub struct PerspectiveView {
     focal_px: f32,
     /// The point before the eye, map px.
     before: Vec2,
@@ -21,7 +21,7 @@ pub struct NearView {
 const NEAREST: f64 = 0.02;
 const FARTHEST: f64 = 1e4;
 
-impl NearView {
+impl PerspectiveView {
     /// `None` for a surface that is seen from afar.
     pub fn of(surface: &Surface) -> Option<Self> {
         let Eye::At { focal_px, beside } = surface.eye() else { return None };
@@ -44,7 +44,7 @@ impl NearView {
                     (surface.nbar(x, y), surface.normal(x, y).z, self.beside(x, y));
                 let z = surface.depth(x, y);
                 (sum, count) = (sum + f64::from(z), count + 1);
-                let facing = metric::facing_from_near(nbar, nz, beside);
+                let facing = metric::facing_in_perspective(nbar, nz, beside);
                 if facing < 2.0 * metric::STEEPEST_NZ {
                     continue;
                 }
@@ -92,8 +92,8 @@ impl NearView {
 
 impl Surface {
     /// From where it is seen, if that is near: with the distances from its depth and its normals.
-    pub fn near_view(&self) -> Option<NearView> {
-        *crate::memory::once(&self.derived.near_view, || NearView::of(self))
+    pub fn perspective_view(&self) -> Option<PerspectiveView> {
+        *crate::memory::once(&self.derived.perspective_view, || PerspectiveView::of(self))
     }
 
     /// S(q) of MATH 8 at a pixel: how long steps of the picture are on the surface, seen as it is.
@@ -101,9 +101,9 @@ impl Surface {
     /// * `amount`: a, `[0, 2]`.
     pub fn stretch(&self, x: usize, y: usize, amount: f32) -> Mat2 {
         let (nbar, nz) = (self.nbar(x, y), self.normal(x, y).z);
-        match self.near_view() {
+        match self.perspective_view() {
             None => metric::stretch(nbar, nz, amount),
-            Some(near) => metric::stretch_from_near(
+            Some(near) => metric::stretch_in_perspective(
                 nbar,
                 nz,
                 near.beside(x, y),

@@ -68,7 +68,7 @@ fn a_turned_map_s_normals_are_those_of_the_turned_object() {
         let shift = PlaneMap::translation(vec2(if mirror { 160.0 } else { 20.0 }, 30.0));
         let map = flip.then(&turn).then(&shift);
         let canvas = Size::new(200, 180);
-        let found = egg.through(canvas, &map).unwrap();
+        let found = egg.transformed(canvas, &map).unwrap();
         let affine = map.as_affine().unwrap();
         let expected = ellipsoid(
             canvas,
@@ -87,7 +87,7 @@ fn a_turned_map_s_normals_are_those_of_the_turned_object() {
 #[test]
 fn a_stretched_object_leans_as_its_slopes_say() {
     let stretch = PlaneMap::affine([1.5, 0.0, 0.0, 0.8, 0.0, 0.0]).unwrap();
-    let found = egg().through(Size::new(240, 96), &stretch).unwrap();
+    let found = egg().transformed(Size::new(240, 96), &stretch).unwrap();
     let k = (1.5f32 * 0.8).sqrt();
     for (x, y) in [(30, 50), (85, 50), (70, 30), (40, 70)] {
         let before = egg().normal(x, y);
@@ -112,28 +112,28 @@ fn four_quarter_turns_and_two_mirrors_give_every_value_back() {
     let mut here = start.clone();
     for _ in 0..4 {
         let size = here.size();
-        here = bare(here.through(Size::new(size.height, size.width), &turn(size)).unwrap());
+        here = bare(here.transformed(Size::new(size.height, size.width), &turn(size)).unwrap());
     }
     assert!(values(&here) == values(&start));
     let mirror = PlaneMap::affine([-1.0, 0.0, 0.0, 1.0, 160.0, 0.0]).unwrap();
-    let once = bare(start.through(SIZE, &mirror).unwrap());
+    let once = bare(start.transformed(SIZE, &mirror).unwrap());
     assert!(values(&once) != values(&start));
     assert_eq!(once.normal(20, 30), start.normal(139, 30) * vec3(-1.0, 1.0, 1.0));
-    assert!(values(&bare(once.through(SIZE, &mirror).unwrap())) == values(&start));
+    assert!(values(&bare(once.transformed(SIZE, &mirror).unwrap())) == values(&start));
     let shift = |x: f32, y: f32| PlaneMap::translation(vec2(x, y));
-    let there = bare(start.through(Size::new(180, 140), &shift(7.0, 9.0)).unwrap());
-    assert!(values(&there.through(SIZE, &shift(-7.0, -9.0)).unwrap()) == values(&start));
+    let there = bare(start.transformed(Size::new(180, 140), &shift(7.0, 9.0)).unwrap());
+    assert!(values(&there.transformed(SIZE, &shift(-7.0, -9.0)).unwrap()) == values(&start));
 }
 
 #[test]
 fn a_surface_that_comes_round_is_the_very_one_it_was() {
     let start = egg();
     let turn = PlaneMap::rotation(10.0, SIZE.center());
-    let round = (0..36).fold(start.clone(), |surface, _| surface.through(SIZE, &turn).unwrap());
+    let round = (0..36).fold(start.clone(), |surface, _| surface.transformed(SIZE, &turn).unwrap());
     assert!(Arc::ptr_eq(&round, &start));
     let small =
-        start.through(Size::new(40, 40), &PlaneMap::translation(vec2(-40.0, -30.0))).unwrap();
-    let whole = small.through(SIZE, &PlaneMap::translation(vec2(40.0, 30.0))).unwrap();
+        start.transformed(Size::new(40, 40), &PlaneMap::translation(vec2(-40.0, -30.0))).unwrap();
+    let whole = small.transformed(SIZE, &PlaneMap::translation(vec2(40.0, 30.0))).unwrap();
     assert!(Arc::ptr_eq(&whole, &start), "what a crop took away is there again");
 }
 
@@ -155,10 +155,11 @@ fn fitted_maps_lie_where_their_map_says() {
 fn the_eye_stays_before_what_it_was_before() {
     let seen =
         Arc::new(Arc::try_unwrap(egg()).ok().unwrap().seen_by(Eye::of_fov(Some(60.0), SIZE)));
-    let cut = seen.through(Size::new(50, 60), &PlaneMap::translation(vec2(-20.0, -10.0))).unwrap();
+    let cut =
+        seen.transformed(Size::new(50, 60), &PlaneMap::translation(vec2(-20.0, -10.0))).unwrap();
     assert!((cut.view(10, 10) - seen.view(30, 20)).length() < 1e-6);
     let turn = PlaneMap::affine([0.0, -1.0, 1.0, 0.0, 0.0, 160.0]).unwrap();
-    let turned = seen.through(Size::new(120, 160), &turn).unwrap();
+    let turned = seen.transformed(Size::new(120, 160), &turn).unwrap();
     let (before, after) = (seen.view(100, 20), turned.view(20, 59));
     assert!((after - vec3(-before.y, before.x, before.z)).length() < 1e-6, "{before} {after}");
     assert!((turned.facing(20, 59) - seen.facing(100, 20)).abs() < 1e-6);
@@ -167,10 +168,10 @@ fn the_eye_stays_before_what_it_was_before() {
 
 #[test]
 fn nothing_left_and_a_perspective_are_refused() {
-    let away = egg().through(SIZE, &PlaneMap::translation(vec2(500.0, 0.0)));
+    let away = egg().transformed(SIZE, &PlaneMap::translation(vec2(500.0, 0.0)));
     assert_eq!(away.err(), Some(SurfaceError::Empty));
     let corners =
         [(0.0, 0.0), (160.0, 20.0), (150.0, 100.0), (0.0, 120.0)].map(|(x, y)| glam::dvec2(x, y));
     let quad = PlaneMap::quad(SIZE, corners).unwrap();
-    assert_eq!(egg().through(SIZE, &quad).err(), Some(SurfaceError::Perspective));
+    assert_eq!(egg().transformed(SIZE, &quad).err(), Some(SurfaceError::Perspective));
 }

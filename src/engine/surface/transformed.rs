@@ -5,7 +5,7 @@
 //! once.
 
 use super::view::Eye;
-use super::{Maps, Surface, SurfaceError, grow, links};
+use super::{Maps, Surface, SurfaceError, links, nearest_feature};
 use crate::math::plane_map::PixelMove;
 use crate::math::{Mat2, PlaneMap, Size, Vec2, Vec3, vec2, vec3};
 use crate::raster::Plane;
@@ -20,7 +20,7 @@ pub struct Origin {
 }
 
 impl Surface {
-    /// What this surface was made of by [`Surface::through`] and [`Surface::onto`], the whole way;
+    /// What this surface was made of by [`Surface::transformed`] and [`Surface::onto`], the whole way;
     /// itself, if it was not.
     pub fn origin(self: &Arc<Self>) -> Origin {
         let own = || Origin { surface: self.clone(), map: PlaneMap::IDENTITY };
@@ -73,7 +73,7 @@ impl Surface {
     /// surface was first made of. MATH 1.
     ///
     /// Fails where nothing of the surface is left, and for a perspective.
-    pub fn through(
+    pub fn transformed(
         self: &Arc<Self>,
         canvas: Size,
         map: &PlaneMap,
@@ -95,10 +95,11 @@ impl Surface {
             return Err(SurfaceError::Empty);
         }
         // Beyond the map its border goes on.
-        let nearest = if held.values().contains(&false) { grow::nearest(&held) } else { None };
+        let nearest =
+            if held.values().contains(&false) { nearest_feature::nearest(&held) } else { None };
         let filled = |mut plane: Plane<f32>| {
             if let Some(nearest) = &nearest {
-                grow::fill(&mut plane, nearest);
+                nearest_feature::fill(&mut plane, nearest);
             }
             plane
         };
@@ -130,7 +131,7 @@ impl Surface {
             Arc::new(Plane::from_fn(canvas, |x, y| source(x, y).map_or(0, |(x, y)| parts.at(x, y))))
         });
         let matrix = Mat2::from_cols(as_vec(by.right), as_vec(by.down));
-        Ok(next.seen_by(self.eye_through(canvas, 1.0, |p| matrix * p + as_vec(by.origin))))
+        Ok(next.seen_by(self.transformed_eye(canvas, 1.0, |p| matrix * p + as_vec(by.origin))))
     }
 
     /// Every pixel as the mean of what it shows.
@@ -157,11 +158,11 @@ impl Surface {
                 parts.get(at.x as i32, at.y as i32).unwrap_or(0)
             }))
         });
-        let eye = self.eye_through(canvas, scale, |p| affine.transform_point2(p));
+        let eye = self.transformed_eye(canvas, scale, |p| affine.transform_point2(p));
         Ok(made.seen_by(eye))
     }
 
-    fn eye_through(&self, canvas: Size, scale: f32, map: impl Fn(Vec2) -> Vec2) -> Eye {
+    fn transformed_eye(&self, canvas: Size, scale: f32, map: impl Fn(Vec2) -> Vec2) -> Eye {
         self.eye().moved(scale, |beside| map(self.size().center() + beside) - canvas.center())
     }
 }

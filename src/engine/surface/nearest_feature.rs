@@ -75,9 +75,9 @@ pub fn nearest(valid: &Plane<bool>) -> Option<Plane<u32>> {
 /// The nearest valid pixels that were found last: maps made one after another are mostly valid in
 /// the same ones.
 #[derive(Default)]
-pub struct KnownNearest(Option<(Plane<bool>, Plane<u32>)>);
+pub struct NearestCache(Option<(Plane<bool>, Plane<u32>)>);
 
-impl KnownNearest {
+impl NearestCache {
     /// Nothing is kept for larger maps: it takes 5 bytes a pixel.
     const MOST_PX: usize = 1 << 22;
 
@@ -172,7 +172,7 @@ mod tests {
                 hash::unit(seed, x as u32, y as u32) < 0.1
             })
         };
-        let mut known = KnownNearest::default();
+        let mut known = NearestCache::default();
         for seed in [1, 1, 2, 1] {
             let found = known.take(&valid(seed)).unwrap();
             assert!(found == nearest(&valid(seed)).unwrap(), "{seed}");

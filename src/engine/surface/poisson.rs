@@ -1,40 +1,40 @@
 //! Weighted Laplace equations on a grid of any shape: conjugate gradients, preconditioned by one
 //! multigrid V-cycle. Floor 2. Sums are formed row by row and added in order, so that the bits do
 //! not depend on the number of threads. `rows` holds the loops over the grid, `graph` the coarser
-//! levels, `merge` which unknowns these join. Not here: what the springs mean (`integrate`,
+//! levels, `merge` which unknowns these join. Not here: what the couplings mean (`integrate`,
 //! `unwrap`).
 //!
 //! Coarser levels are graphs, not grids: the pixels of a block of 2 × 2 become one unknown only
-//! where strong springs join them. So no level mixes what a cut or a row of weak springs separates,
+//! where strong couplings join them. So no level mixes what a cut or a row of weak couplings separates,
 //! and cuts cost no convergence.
 
+mod constraints;
 mod graph;
-mod held;
 mod merge;
 mod rows;
 
 use crate::memory::filled_or_unwind;
-use graph::SpringGraph;
-pub use held::PinStiffness;
+pub use constraints::SoftConstraints;
+use graph::PoissonGraph;
 use rayon::prelude::*;
 use rows::{GridRow, relaxed_row, residual_row, start_row};
 
-/// A grid of unknowns with springs to the right and down; no spring, no coupling.
-pub struct SpringGrid {
+/// A grid of unknowns with couplings to the right and down; 0 where two are not coupled.
+pub struct PoissonGrid {
     w: usize,
     right: Vec<f32>,
     down: Vec<f32>,
 }
 
-impl SpringGrid {
-    /// `right` and `down`: the stiffness, `≥ 0`, of the spring from each unknown to the next in its
-    /// row and its column, `w` a row. Springs that would leave the grid are dropped.
+impl PoissonGrid {
+    /// `right` and `down`: the stiffness, `≥ 0`, of the coupling from each unknown to the next in its
+    /// row and its column, `w` a row. Couplings that would leave the grid are dropped.
     pub fn new(w: usize, mut right: Vec<f32>, mut down: Vec<f32>) -> Self {
         right
             .iter_mut()
             .skip(w.saturating_sub(1))
             .step_by(w.max(1))
-            .for_each(|spring| *spring = 0.0);
+            .for_each(|coupling| *coupling = 0.0);
         let last = down.len().saturating_sub(w);
         down[last..].fill(0.0);
         Self { w, right, down }
@@ -44,8 +44,8 @@ impl SpringGrid {
         self.w
     }
 
-    /// The springs from each unknown to the right, and down.
-    pub fn springs(&self) -> [&[f32]; 2] {
+    /// The couplings from each unknown to the right, and down.
+    pub fn couplings(&self) -> [&[f32]; 2] {
         [&self.right, &self.down]
     }
 
@@ -53,7 +53,7 @@ impl SpringGrid {
         self.right.len() / self.w.max(1)
     }
 
-    /// The springs of a row of unknowns.
+    /// The couplings of a row of unknowns.
     fn row(&self, y: usize) -> GridRow<'_> {
         let at = y * self.w..(y + 1) * self.w;
         let up = if y == 0 { &[][..] } else { &self.down[at.start - self.w..at.start] };
@@ -81,13 +81,13 @@ const STEPS: [f32; 2] = [0.561_7, 1.389_5];
 /// Steps without a smaller residual after which f32 is too coarse to go on.
 const PATIENCE: usize = 3;
 
-/// Springs with all their coarser levels, ready to be solved for many right-hand sides.
-pub struct SpringSolver {
-    grid: SpringGrid,
+/// Couplings with all their coarser levels, ready to be solved for many right-hand sides.
+pub struct PoissonSolver {
+    grid: PoissonGrid,
     /// For each unknown of the grid, its unknown on the first coarser level; [`graph::NONE`]
-    /// without springs.
+    /// without couplings.
     parent: Vec<u32>,
-    graphs: Vec<SpringGraph>,
+    graphs: Vec<PoissonGraph>,
 }
 
 /// Buffers of a solve, used again for the next.
@@ -116,11 +116,11 @@ impl Effort {
     pub const EXACT: Self = Self { goal: 1e-5, most_steps: 60 };
 }
 
-impl SpringSolver {
-    pub fn new(grid: SpringGrid) -> Self {
-        let (parent, first) = SpringGraph::of_grid(&grid);
+impl PoissonSolver {
+    pub fn new(grid: PoissonGrid) -> Self {
+        let (parent, first) = PoissonGraph::of_grid(&grid);
         let mut graphs = vec![first];
-        while let Some(coarser) = graphs.last_mut().and_then(SpringGraph::coarser) {
+        while let Some(coarser) = graphs.last_mut().and_then(PoissonGraph::coarser) {
             graphs.push(coarser);
         }
         Self { grid, parent, graphs }
@@ -128,17 +128,17 @@ impl SpringSolver {
 
     /// Bytes that it holds.
     pub fn bytes(&self) -> u64 {
-        let [right, down] = self.grid.springs();
-        let levels: usize = self.graphs.iter().map(SpringGraph::bytes).sum();
+        let [right, down] = self.grid.couplings();
+        let levels: usize = self.graphs.iter().map(PoissonGraph::bytes).sum();
         (size_of_val(right) + size_of_val(down) + size_of_val(&self.parent[..]) + levels) as u64
     }
 
-    pub fn grid(&self) -> &SpringGrid {
+    pub fn grid(&self) -> &PoissonGrid {
         &self.grid
     }
 
-    /// For each unknown the number of its piece (unknowns that springs join); [`u32::MAX`] without
-    /// springs. And the number of pieces.
+    /// For each unknown the number of its piece (unknowns that couplings join); [`u32::MAX`] without
+    /// couplings. And the number of pieces.
     pub fn pieces(&self) -> (Vec<u32>, usize) {
         let Some((last, finer)) = self.graphs.split_last() else { return (Vec::new(), 0) };
         let (mut labels, count) = last.pieces().clone();
@@ -160,32 +160,32 @@ impl SpringSolver {
         effort: Effort,
         scratch: &mut SolveScratch,
     ) -> usize {
-        self.solve_held(&PinStiffness::default(), b, v, effort, scratch)
+        self.solve_constrained(&SoftConstraints::default(), b, v, effort, scratch)
     }
 
     /// The same, but `go_on` is called before each step; once it returns false, the result is of no
     /// use.
     pub fn solve_while(&self, b: &[f32], v: &mut [f32], effort: Effort, go_on: GoOn) -> usize {
-        self.steps(&PinStiffness::default(), b, v, effort, &mut SolveScratch::default(), go_on)
+        self.steps(&SoftConstraints::default(), b, v, effort, &mut SolveScratch::default(), go_on)
     }
 
-    /// The same with some unknowns held: (A + K) v = b, K the stiffness of what holds them.
+    /// The same with some unknowns constrained: (A + K) v = b, K the stiffness of what holds them.
     ///
-    /// * `b`: adds up to 0 over every piece without a held unknown.
-    pub fn solve_held(
+    /// * `b`: adds up to 0 over every piece without a constrained unknown.
+    pub fn solve_constrained(
         &self,
-        held: &PinStiffness,
+        constraints: &SoftConstraints,
         b: &[f32],
         v: &mut [f32],
         effort: Effort,
         scratch: &mut SolveScratch,
     ) -> usize {
-        self.steps(held, b, v, effort, scratch, &|| true)
+        self.steps(constraints, b, v, effort, scratch, &|| true)
     }
 
     fn steps(
         &self,
-        held: &PinStiffness,
+        constraints: &SoftConstraints,
         b: &[f32],
         v: &mut [f32],
         effort: Effort,
@@ -201,7 +201,7 @@ impl SpringSolver {
         }
         levels.resize_with(self.graphs.len(), Default::default);
         let goal = self.dot(b, b) * effort.goal * effort.goal;
-        let mut left = self.residual(held, v, b, residual);
+        let mut left = self.residual(constraints, v, b, residual);
         let (mut rz_before, mut least, mut least_at) = (0.0, left, 0);
         for step in 0..effort.most_steps {
             if left < least {
@@ -210,10 +210,10 @@ impl SpringSolver {
             if left.is_nan() || left <= goal || step > least_at + PATIENCE || !go_on() {
                 return step;
             }
-            self.cycle(held, residual, z, levels);
+            self.cycle(constraints, residual, z, levels);
             let rz = self.dot(residual, &z[0]);
             let turn = if step == 0 { 0.0 } else { (rz / rz_before) as f32 };
-            let energy = self.turned(held, &z[0], turn, direction, pulled);
+            let energy = self.turned(constraints, &z[0], turn, direction, pulled);
             if energy.is_nan() || energy <= 0.0 || rz <= 0.0 {
                 return step;
             }
@@ -232,12 +232,19 @@ impl SpringSolver {
     }
 
     /// `out` = b − A v; returns its length, squared.
-    fn residual(&self, held: &PinStiffness, v: &[f32], b: &[f32], out: &mut [f32]) -> f64 {
+    fn residual(
+        &self,
+        constraints: &SoftConstraints,
+        v: &[f32],
+        b: &[f32],
+        out: &mut [f32],
+    ) -> f64 {
         let w = self.grid.w;
         let bands = out.par_chunks_mut(w * BAND).enumerate().map(|(band, out)| {
             for (y, out) in (band * BAND..).zip(out.chunks_mut(w)) {
                 residual_row(self.grid.row(y), around(v, w, y), &b[y * w..(y + 1) * w], out);
-                held.each_in(y * w..(y + 1) * w, |i, stiffness| out[i - y * w] -= stiffness * v[i]);
+                constraints
+                    .each_in(y * w..(y + 1) * w, |i, stiffness| out[i - y * w] -= stiffness * v[i]);
             }
             rows::dot(out, out)
         });
@@ -247,7 +254,7 @@ impl SpringSolver {
     /// `direction` = z + turn · direction and `pulled` = A direction; returns the two's product.
     fn turned(
         &self,
-        held: &PinStiffness,
+        constraints: &SoftConstraints,
         z: &[f32],
         turn: f32,
         direction: &mut [f32],
@@ -263,7 +270,7 @@ impl SpringSolver {
             let mut sum = 0.0;
             for (y, out) in (band * BAND..).zip(out.chunks_mut(w)) {
                 rows::apply_row(self.grid.row(y), around(direction, w, y), out);
-                held.each_in(y * w..(y + 1) * w, |i, stiffness| {
+                constraints.each_in(y * w..(y + 1) * w, |i, stiffness| {
                     out[i - y * w] += stiffness * direction[i]
                 });
                 sum += rows::dot(&direction[y * w..(y + 1) * w], out);
@@ -296,7 +303,7 @@ impl SpringSolver {
     /// One symmetric V-cycle: `z[0]` becomes an approximate solution of A z = b.
     fn cycle(
         &self,
-        held: &PinStiffness,
+        constraints: &SoftConstraints,
         b: &[f32],
         [z, twin]: &mut [Vec<f32>; 2],
         levels: &mut [graph::GraphScratch],
@@ -316,7 +323,7 @@ impl SpringSolver {
                     step,
                     out,
                 );
-                held.each_in(y * w..(y + 1) * w, |i, stiffness| {
+                constraints.each_in(y * w..(y + 1) * w, |i, stiffness| {
                     let (sum, pull) = self.grid.pull(from, i);
                     out[i - y * w] = from[i] + step * ((b[i] + pull) / (sum + stiffness) - from[i]);
                 });
@@ -324,14 +331,14 @@ impl SpringSolver {
         };
         rows_of(twin, &|y, out| {
             start_row(self.grid.row(y), &b[y * w..(y + 1) * w], STEPS[0], out);
-            held.each_in(y * w..(y + 1) * w, |i, stiffness| {
+            constraints.each_in(y * w..(y + 1) * w, |i, stiffness| {
                 out[i - y * w] = STEPS[0] * b[i] / (self.grid.pull(b, i).0 + stiffness);
             });
         });
         relax(STEPS[1], twin, z);
-        self.residual(held, z, b, twin);
+        self.residual(constraints, z, b, twin);
         graph::gather(&self.parent, twin, levels, &self.graphs);
-        graph::cycle(&self.graphs, levels, held.coarser());
+        graph::cycle(&self.graphs, levels, constraints.coarser());
         if let Some(coarse) = levels.first() {
             let parents = self.parent.par_chunks(w * BAND);
             z.par_chunks_mut(w * BAND)

@@ -3,7 +3,7 @@
 
 use crate::math::{Vec2, hash};
 use crate::paint::brush::Brush;
-use crate::paint::habits::Hand;
+use crate::paint::brush_options::StylusFilter;
 
 /// Within this time a speed covers two thirds of the way to a new one: single readings of a pen
 /// jump.
@@ -60,8 +60,8 @@ pub(super) struct Speeds {
 }
 
 impl Speeds {
-    pub fn new(hand: &Hand) -> Self {
-        let over_secs = [hand.pace_secs, hand.slow_pace_secs];
+    pub fn new(stylus: &StylusFilter) -> Self {
+        let over_secs = [stylus.pace_secs, stylus.slow_pace_secs];
         Self { px_per_sec: None, paces: [0.0; 2], over_secs, at_secs: f32::MIN, since_px: 0.0 }
     }
 
@@ -127,7 +127,7 @@ pub(super) struct Tremor {
 
 impl Tremor {
     pub fn new(brush: &Brush) -> Self {
-        let deviation_px = brush.hand.tremor * brush.size;
+        let deviation_px = brush.stylus.tremor * brush.size;
         // Comparisons that NaN fails.
         let deviation_px =
             if deviation_px > 1e-3 && deviation_px < super::FAR_PX { deviation_px } else { 0.0 };
@@ -174,8 +174,11 @@ mod tests {
 
     #[test]
     fn a_hand_that_shakes_is_read_once_in_half_its_tremor() {
-        let brush =
-            Brush { size: 40.0, hand: Hand { tremor: 0.5, ..Hand::default() }, ..Brush::default() };
+        let brush = Brush {
+            size: 40.0,
+            stylus: StylusFilter { tremor: 0.5, ..StylusFilter::default() },
+            ..Brush::default()
+        };
         let mut tremor = Tremor::new(&brush);
         let read: Vec<Vec2> =
             (0..=1000).filter_map(|x| tremor.shaken(vec2(x as f32, 0.0))).collect();

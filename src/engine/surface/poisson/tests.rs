@@ -1,22 +1,22 @@
 use super::*;
 use crate::math::hash;
 
-/// A ragged disc and a band that touches it along a row of slack springs.
-fn ragged(w: usize, h: usize) -> SpringGrid {
+/// A ragged disc and a band that touches it along a row of slack couplings.
+fn ragged(w: usize, h: usize) -> PoissonGrid {
     let held = |x: usize, y: usize| {
         let (dx, dy) = (x as f32 / w as f32 - 0.5, y as f32 / h as f32 - 0.5);
         dx.hypot(dy) < 0.45 && !(x * 7 + y * 13).is_multiple_of(41) || y < 4
     };
-    let spring = |x: usize, y: usize, dx: usize, dy: usize| {
+    let coupling = |x: usize, y: usize, dx: usize, dy: usize| {
         let there = x + dx < w && y + dy < h && held(x, y) && held(x + dx, y + dy);
         let slack = if dx == 1 && x == w / 2 || dy == 1 && y == h / 3 { 1e-3 } else { 1.0 };
         if there { slack * (0.2 + 0.8 * hash::unit(5, x as u32, y as u32)) } else { 0.0 }
     };
-    let plane = |dx, dy| (0..w * h).map(|i| spring(i % w, i / w, dx, dy)).collect();
-    SpringGrid::new(w, plane(1, 0), plane(0, 1))
+    let plane = |dx, dy| (0..w * h).map(|i| coupling(i % w, i / w, dx, dy)).collect();
+    PoissonGrid::new(w, plane(1, 0), plane(0, 1))
 }
 
-fn applied(grid: &SpringGrid, v: &[f32]) -> Vec<f32> {
+fn applied(grid: &PoissonGrid, v: &[f32]) -> Vec<f32> {
     let force = |i: usize| {
         let (sum, pull) = grid.pull(v, i);
         sum * v[i] - pull
@@ -34,7 +34,7 @@ fn a_known_solution_is_found_on_a_ragged_grid_in_few_steps() {
         let truth: Vec<f32> =
             (0..w * h).map(|i| ((i % w) as f32 * 0.2).sin() * 5.0 + (i / w) as f32 * 0.3).collect();
         let b = applied(&ragged(w, h), &truth);
-        let solver = SpringSolver::new(ragged(w, h));
+        let solver = PoissonSolver::new(ragged(w, h));
         let mut found = vec![0.0; w * h];
         let steps = solver.solve(&b, &mut found, Effort::EXACT, &mut SolveScratch::default());
         let off: Vec<f32> =
@@ -50,7 +50,7 @@ fn a_good_beginning_saves_steps() {
     let truth: Vec<f32> =
         (0..w * h).map(|i| (i % w) as f32 * 0.3 + ((i / w) as f32 * 0.1).cos()).collect();
     let b = applied(&ragged(w, h), &truth);
-    let solver = SpringSolver::new(ragged(w, h));
+    let solver = PoissonSolver::new(ragged(w, h));
     let mut scratch = SolveScratch::default();
     let cold = solver.solve(&b, &mut vec![0.0; w * h], Effort::EXACT, &mut scratch);
     let warm = solver.solve(&b, &mut truth.clone(), Effort::EXACT, &mut scratch);
@@ -83,13 +83,14 @@ fn pieces_are_what_springs_hold_together() {
     // Two islands of 3 × 3 in a sea, and a lone pixel.
     let held = |x: usize, y: usize| y < 3 && (x < 3 || (5..8).contains(&x)) || (x, y) == (4, 8);
     let plane = |dx: usize, dy: usize| {
-        let spring = |i: usize| {
+        let coupling = |i: usize| {
             let (x, y) = (i % 12, i / 12);
             if x + dx < 12 && held(x, y) && held(x + dx, y + dy) { 1.0 } else { 0.0 }
         };
-        (0..120).map(spring).collect::<Vec<f32>>()
+        (0..120).map(coupling).collect::<Vec<f32>>()
     };
-    let (labels, count) = SpringSolver::new(SpringGrid::new(12, plane(1, 0), plane(0, 1))).pieces();
+    let (labels, count) =
+        PoissonSolver::new(PoissonGrid::new(12, plane(1, 0), plane(0, 1))).pieces();
     assert_eq!(count, 2);
     for (i, label) in labels.iter().enumerate() {
         let (x, y) = (i % 12, i / 12);

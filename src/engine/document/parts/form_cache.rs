@@ -3,18 +3,18 @@
 //! here: what is made again (`derive`).
 
 use super::Part;
-use super::body::{SolvedOutline, StandingOutline};
+use super::body::{PlacedOutline, SolvedOutline};
 use super::drawn::LastDrawn;
-use super::known::LastFlats;
+use super::flats_cache::FlatsCache;
+use super::modifiers::ResumePoint;
 use super::outlines::OutlineKey;
 use super::unchanged::{apart, same_list};
-use super::upon::Came;
 use crate::document::Document;
 use crate::math::{Rect, Size, Vec2};
 use crate::memory::{CacheReservation, FORMS};
 use crate::raster::{CoverageGrid, Plane};
 use crate::shape::{Combine, Form, Outline};
-use crate::surface::{KnownNearest, Surface};
+use crate::surface::{NearestCache, Surface};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// What was made of parts, by their ids; shared by all versions of a document.
@@ -23,7 +23,7 @@ pub struct PartCache {
     /// The result is shown only for a moment, so solving may begin from the last result.
     pub is_draft: bool,
     made: Arc<Mutex<Vec<MadePart>>>,
-    pub(super) flats: Arc<LastFlats>,
+    pub(super) flats: Arc<FlatsCache>,
     pub(super) drawn: Arc<LastDrawn>,
     /// The last surface, and what it was made of.
     pub(super) whole: Arc<Mutex<Option<MadeSurface>>>,
@@ -85,7 +85,7 @@ pub struct MadeSurface {
     pub maps: Option<Arc<Surface>>,
     pub size: Size,
     pub surface: Option<Arc<Surface>>,
-    pub nearest: KnownNearest,
+    pub nearest: NearestCache,
 }
 
 /// A part as it was made last.
@@ -93,13 +93,13 @@ pub struct MadeSurface {
 pub struct MadePart {
     pub part: Arc<Part>,
     /// The parts that lie on it.
-    pub upon: Vec<Arc<Part>>,
+    pub modifiers: Vec<Arc<Part>>,
     /// What the lines among them are made of.
     pub inks: Vec<OutlineKey>,
     pub source: Option<OutlineKey>,
     /// Its outline, if it is made of one, and the parts in front, at which its rim may be free.
     pub outline: Option<Arc<Outline>>,
-    pub met: Vec<StandingOutline>,
+    pub met: Vec<PlacedOutline>,
     /// Its place no longer has its colour.
     pub is_lost: bool,
     /// How far the form was moved from the outline's place, whole px.
@@ -107,7 +107,7 @@ pub struct MadePart {
     pub area: Arc<FormArea>,
     pub kept: Option<Arc<KeptForm>>,
     /// How far the last part on it came.
-    pub came: Arc<Mutex<Came>>,
+    pub resume: Arc<Mutex<ResumePoint>>,
 }
 
 /// A form, and what it was made through.
@@ -261,7 +261,7 @@ impl Document {
     /// was changed since.
     pub(super) fn made_area(&self, part: &Arc<Part>) -> Option<Arc<FormArea>> {
         let made = self.parts.cache.known(&part.id)?;
-        (Arc::ptr_eq(&made.part, part) && same_list(&made.upon, &self.upon(part)))
+        (Arc::ptr_eq(&made.part, part) && same_list(&made.modifiers, &self.modifiers_of(part)))
             .then_some(made.area)
     }
 

@@ -8,7 +8,7 @@ pub fn is_near(pixel: [u8; 4], color: [u8; 4]) -> bool {
 }
 
 /// How far two colours are apart: the largest difference of a channel.
-pub fn away(a: [u8; 4], b: [u8; 4]) -> u8 {
+pub fn color_distance(a: [u8; 4], b: [u8; 4]) -> u8 {
     a.iter().zip(b).map(|(a, b)| a.abs_diff(b)).max().unwrap_or(0)
 }
 

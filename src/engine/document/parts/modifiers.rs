@@ -8,11 +8,11 @@ use crate::raster::Plane;
 use crate::shape::{Form, Lines, Outline, Sculpting, Touch, Touching, lines, relief, touches};
 
 /// A form with ink as lines on it.
-pub fn lined(form: &Form, outline: &Outline, ink: &Outline, lines: Lines) -> Form {
+pub fn with_lines(form: &Form, outline: &Outline, ink: &Outline, lines: Lines) -> Form {
     if form.height.size() != outline.size() {
         let cut = cut_to(form, outline);
         return if cut.height.size() == outline.size() {
-            lined(&cut, outline, ink, lines)
+            with_lines(&cut, outline, ink, lines)
         } else {
             form.clone()
         };
@@ -26,13 +26,13 @@ pub fn lined(form: &Form, outline: &Outline, ink: &Outline, lines: Lines) -> For
 
 /// How far the work on a form came.
 #[derive(Default)]
-pub struct Came {
+pub struct ResumePoint {
     pub sculpting: Option<Sculpting>,
     /// In drafts only.
     pub touching: Option<Touching>,
 }
 
-impl Came {
+impl ResumePoint {
     /// Nowhere yet.
     pub fn nowhere(is_draft: bool) -> Self {
         Self { sculpting: None, touching: is_draft.then(Touching::default) }
@@ -42,20 +42,20 @@ impl Came {
 /// A form changed by another part. Its marks lie in the frame of the part that they are on.
 ///
 /// * `came`: how far it came on this very form, and then on the new one.
-pub fn changed(
+pub fn with_modifier(
     form: &Form,
     outline: &Outline,
     part: &Part,
     still: Affine2,
-    came: &mut Came,
+    resume: &mut ResumePoint,
 ) -> Form {
-    let known = came.sculpting.take();
+    let known = resume.sculpting.take();
     if form.height.size() != outline.size() {
         // A primitive's planes reach beyond its outline; cut to it they fit.
         let cut = cut_to(form, outline);
         let fits = cut.height.size() == outline.size();
         return if fits {
-            changed(&cut, outline, part, still, &mut Came::default())
+            with_modifier(&cut, outline, part, still, &mut ResumePoint::default())
         } else {
             form.clone()
         };
@@ -69,7 +69,7 @@ pub fn changed(
                 reach: touch.reach * length,
                 normal: turned(touch.normal, still),
             });
-            touches::touched(form, outline, &through.collect::<Vec<_>>(), came.touching.as_mut())
+            touches::touched(form, outline, &through.collect::<Vec<_>>(), resume.touching.as_mut())
         }
         PartKind::Sculpt { strokes, .. } => {
             let length = still.matrix2.determinant().abs().sqrt();
@@ -86,7 +86,7 @@ pub fn changed(
                 .unwrap_or_else(|| Sculpting::of(form));
             let made = made.go_on(form, &through);
             let form = form.clone().with_added(made.layer());
-            came.sculpting = Some(made);
+            resume.sculpting = Some(made);
             form
         }
         PartKind::Relief { picture, detail, .. } => {

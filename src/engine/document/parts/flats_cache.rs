@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 const MOST_KEPT_PX: usize = 1 << 25;
 
 /// The flats of one picture.
-pub struct KnownFlats {
+pub struct CachedFlats {
     pub flats: Flats,
     tiles: TileGrid,
     asked: Vec<Color>,
@@ -21,13 +21,13 @@ pub struct KnownFlats {
 
 /// The last that were asked for.
 #[derive(Default)]
-pub struct LastFlats(Mutex<Option<Arc<KnownFlats>>>);
+pub struct FlatsCache(Mutex<Option<Arc<CachedFlats>>>);
 
 fn lock<T>(value: &Mutex<T>) -> MutexGuard<'_, T> {
     value.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-impl KnownFlats {
+impl CachedFlats {
     /// The places of a colour.
     pub fn places_of(&self, color: Color) -> Arc<ColorPlaces> {
         let known = lock(&self.places)
@@ -52,7 +52,7 @@ impl KnownFlats {
 impl Parts {
     /// The flats of a picture, `None` if it is empty; `asked`: colours that are looked for however
     /// small their areas are.
-    pub(super) fn flats_of(&self, tiles: &TileGrid, asked: &[Color]) -> Option<Arc<KnownFlats>> {
+    pub(super) fn flats_of(&self, tiles: &TileGrid, asked: &[Color]) -> Option<Arc<CachedFlats>> {
         let last = &self.cache.flats.0;
         let known =
             lock(last).clone().filter(|known| known.tiles.ptr_eq(tiles) && known.asked == asked);
@@ -60,7 +60,7 @@ impl Parts {
             // What is no longer needed is let go of first.
             *lock(last) = None;
             let flats = Flats::of(tiles, tiles.bounds(), asked)?;
-            let known = KnownFlats {
+            let known = CachedFlats {
                 flats,
                 tiles: tiles.clone(),
                 asked: asked.to_vec(),

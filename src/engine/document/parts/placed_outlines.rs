@@ -1,7 +1,7 @@
 //! Outlines of parts in their places, found once and known while what they are made of is the same.
 //! Floor 4. Not here: what they are made of (`outlines`).
 
-use super::body::StandingOutline;
+use super::body::PlacedOutline;
 use super::outlines::OutlineKey;
 use super::unchanged::apart;
 use super::{OutlineSource, Part};
@@ -19,16 +19,16 @@ const MOST_AT_ONCE_PX: usize = 1 << 24;
 /// A part, and the room for its outline.
 struct Sought<'a> {
     part: &'a Arc<Part>,
-    found: &'a mut Option<StandingOutline>,
+    found: &'a mut Option<PlacedOutline>,
 }
 
 impl Document {
     /// The outlines of parts in their places, side by side: but one after the other where parts are
     /// of one colour, whose places are found once, and after the first, which finds what all share.
-    pub(super) fn standing_outlines(&self, parts: &[&Arc<Part>]) -> Vec<Option<StandingOutline>> {
-        let mut found: Vec<Option<StandingOutline>> = vec![None; parts.len()];
+    pub(super) fn placed_outlines(&self, parts: &[&Arc<Part>]) -> Vec<Option<PlacedOutline>> {
+        let mut found: Vec<Option<PlacedOutline>> = vec![None; parts.len()];
         let Some((first, rest)) = found.split_first_mut() else { return found };
-        *first = self.standing_outline(parts[0]);
+        *first = self.placed_outline(parts[0]);
         let color = |part: &Part| match part.outline() {
             Some(OutlineSource::Layer { color: Some(flat), .. }) => Some(flat.color),
             _ => None,
@@ -42,9 +42,7 @@ impl Document {
             }
         }
         let find = |(_, group): (Option<Color>, Vec<Sought>)| {
-            group
-                .into_iter()
-                .for_each(|Sought { part, found }| *found = self.standing_outline(part));
+            group.into_iter().for_each(|Sought { part, found }| *found = self.placed_outline(part));
         };
         match self.size.area() <= MOST_AT_ONCE_PX {
             true => groups.into_par_iter().for_each(find),
@@ -65,19 +63,19 @@ impl Document {
     }
 
     /// The outline of a part in its place; `None` if it has none.
-    fn standing_outline(&self, part: &Arc<Part>) -> Option<StandingOutline> {
+    fn placed_outline(&self, part: &Arc<Part>) -> Option<PlacedOutline> {
         let source = OutlineKey::of_part(self, part)??;
         let (still, moved) = apart(part.matrix);
         let (outline, is_lost) = match self.known_outline(part, &source) {
             Some(known) => known,
             None => {
                 let (outline, is_lost) = source.placed_outline(self, self.most_px())?;
-                let outline = outline.through(still, self.most_px())?;
+                let outline = outline.transformed(still, self.most_px())?;
                 // Most strokes on a drawing change few of its outlines.
                 let same = self.last_outline(part).filter(|last| **last == outline);
                 (same.unwrap_or_else(|| Arc::new(outline)), is_lost)
             }
         };
-        Some(StandingOutline { outline, moved, is_lost })
+        Some(PlacedOutline { outline, moved, is_lost })
     }
 }

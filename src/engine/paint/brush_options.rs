@@ -1,4 +1,4 @@
-//! A brush's habits apart from its dab: dabs by time, scatter and offset, how the hand is read, and
+//! The options of a brush apart from its dab: dabs by time, scatter and offset, how the hand is read, and
 //! paint that is picked up. Floor 3. Not here: the table of their numbers (`settings`), how they
 //! are used (`dab_walker`, `retouch`).
 
@@ -31,7 +31,7 @@ crate::named! {
 crate::named! {
     /// What the path between a stroke's dabs, and that of a smoothed hand, is measured on.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-    pub enum Measure {
+    pub enum DistanceMetric {
         /// On the canvas, as seen.
         #[default]
         Canvas = "canvas",
@@ -78,7 +78,7 @@ crate::named! {
 
 /// How the hand's movement becomes readings and dabs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hand {
+pub struct StylusFilter {
     /// Standard deviation of the positions where the pen is read, diameters of the brush.
     pub tremor: f32,
     /// Each dab moves 1 − e^(−1/lag) of the way from the last one to the pen.
@@ -97,7 +97,7 @@ pub struct Hand {
     pub custom_dabs: f32,
 }
 
-impl Default for Hand {
+impl Default for StylusFilter {
     fn default() -> Self {
         Self {
             tremor: 0.0,
