@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// The allocator has no room for a buffer of so many bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no memory for {} more", spoken(*.bytes))]
+#[error("there is no memory for {} more", bytes_text(*.bytes))]
 pub struct OutOfMemory {
     pub bytes: u64,
 }
@@ -53,7 +53,7 @@ pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, OutOfMemory> {
 }
 
 /// Bytes as people read them: “312 MB”, “1.4 GB”.
-pub fn spoken(bytes: u64) -> String {
+pub fn bytes_text(bytes: u64) -> String {
     let mb = bytes as f64 / 1e6;
     if mb < 1000.0 { format!("{mb:.0} MB") } else { format!("{:.1} GB", mb / 1000.0) }
 }
@@ -176,9 +176,9 @@ mod tests {
     }
 
     #[test]
-    fn bytes_are_spoken() {
+    fn bytes_are_written_in_the_unit_they_fill() {
         assert_eq!(
-            [312_000_000, 900_000_000, 1_440_000_000].map(spoken),
+            [312_000_000, 900_000_000, 1_440_000_000].map(bytes_text),
             ["312 MB", "900 MB", "1.4 GB"]
         );
     }

@@ -5,7 +5,7 @@
 
 use crate::document::{Content, Document, Part, PartKind};
 use crate::math::Size;
-use crate::memory::spoken;
+use crate::memory::bytes_text;
 use crate::paint::Stroke;
 use crate::raster::{Picture, Tile};
 use crate::surface::Bend;
@@ -146,7 +146,7 @@ impl Budget {
     /// The same for work that belongs to no file; fails with a sentence without its full stop.
     pub fn room_for(&self, what: &str, bytes: u64) -> Result<(), String> {
         if bytes > self.memory_bytes {
-            let (asked, there) = (spoken(bytes), spoken(self.memory_bytes));
+            let (asked, there) = (bytes_text(bytes), bytes_text(self.memory_bytes));
             return Err(format!("{what} takes {asked} of memory, and {there} are free for it"));
         }
         Ok(())

@@ -1,7 +1,7 @@
 //! Applies transforms for good: the frames of a layer become the canvas, so that tools can work on
 //! it as it shows. Floor 4.
 
-use super::homes::{kept, transform_of};
+use super::homes::{preserve_look, transform_of};
 use super::layer::on_canvas::seen;
 use super::{
     Content, Document, Group, Layer, LayerId, LayerMap, LayerTransform, Live, NormalLayer,
@@ -93,7 +93,7 @@ fn handed_down(group: &Arc<Layer>, around: &LayerMap) -> Option<Layer> {
     let now = around.within(&bare);
     let inner = group.content.group()?.layers.iter();
     let inner: Option<Vec<Arc<Layer>>> =
-        inner.map(|layer| kept(layer, (&was, &now), &|home| Some(home.clone()))).collect();
+        inner.map(|layer| preserve_look(layer, (&was, &now), &|home| Some(home.clone()))).collect();
     // Its mask is transformed once.
     let mask = seen(group, &was).mask.clone();
     let content = Content::Group(Group { layers: inner?, ..group.content.group()?.clone() });

@@ -186,7 +186,7 @@ impl Composer<'_> {
             }
         }
         match node.has_deep_paint(at) {
-            true => pixels.kept_after(true),
+            true => pixels.to_tile(true),
             false => pixels.quantised(),
         }
         .map(Arc::new)

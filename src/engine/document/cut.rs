@@ -31,7 +31,7 @@ impl Document {
         match &old.content {
             Content::Pixels(pixels) => {
                 let tiles = changed(&pixels.tiles, covered, |tile, covered| {
-                    kept(tile, covered, |c| 255 - c)
+                    multiply_tile(tile, covered, |c| 255 - c)
                 });
                 let next = PixelLayer { file: String::new(), tiles, ..pixels.clone() };
                 shown.with_layer(layer, |layer| layer.content = Content::Pixels(next))
@@ -69,7 +69,7 @@ impl Document {
             Layer { id: LayerId::fresh(), cache: Default::default(), ..Layer::clone(old) };
         match &old.content {
             Content::Pixels(pixels) => {
-                let tiles = taken(&pixels.tiles, covered);
+                let tiles = multiply(&pixels.tiles, covered);
                 tiles.iter().next()?;
                 next.content =
                     Content::Pixels(PixelLayer { file: String::new(), tiles, ..pixels.clone() });
@@ -113,12 +113,14 @@ impl Document {
 }
 
 /// Pixels times their coverage.
-pub fn taken(tiles: &TileGrid, covered: &CoverageGrid) -> TileGrid {
+pub fn multiply(tiles: &TileGrid, covered: &CoverageGrid) -> TileGrid {
     let mut out = TileGrid::for_rect(tiles.bounds().intersect(covered.bounds()));
     let both: Vec<_> =
         tiles.iter().filter_map(|(at, tile)| Some((at, tile, covered.tile(at)?))).collect();
-    let made: Vec<_> =
-        both.par_iter().map(|(at, tile, covered)| (*at, kept(tile, covered, |c| c))).collect();
+    let made: Vec<_> = both
+        .par_iter()
+        .map(|(at, tile, covered)| (*at, multiply_tile(tile, covered, |c| c)))
+        .collect();
     made.into_iter().for_each(|(at, tile)| out.set(at, tile));
     out
 }
@@ -139,7 +141,11 @@ fn changed(
 }
 
 /// A tile with each pixel times a share of its coverage.
-fn kept(tile: &Arc<Tile>, covered: &CoverageTile, share: impl Fn(u8) -> u8) -> Option<Arc<Tile>> {
+fn multiply_tile(
+    tile: &Arc<Tile>,
+    covered: &CoverageTile,
+    share: impl Fn(u8) -> u8,
+) -> Option<Arc<Tile>> {
     if covered.is_whole() {
         return if share(255) == 255 { Some(tile.clone()) } else { None };
     }

@@ -79,7 +79,7 @@ fn flatten_in_floats(
 }
 
 /// Flattens the whole document to what a paint layer holds: composed without rounding live layers,
-/// with 16 bits where it is soft ([`PlanarTile::kept`]), and where placed pictures of more than 8
+/// with 16 bits where it is soft ([`PlanarTile::to_tile_over`]), and where placed pictures of more than 8
 /// are seen. `None` if cancelled.
 pub fn flatten_to_paint(document: &Document, progress: &Progress) -> Option<TileGrid> {
     let prepared = PreparedDocument::new(document, progress)?;
@@ -195,7 +195,7 @@ impl PreparedDocument {
             || self.stack.iter().any(|node| node.has_deep_paint(at) || node.shows_deep_picture(at));
         let soft = || {
             self.compose_tile(at, Some(deep))
-                .kept_after(was_deep())
+                .to_tile(was_deep())
                 .filter(Tile::is_deep)
                 .map(Arc::new)
         };

@@ -55,7 +55,8 @@ impl Document {
             None => None,
         };
         let around = self.map_around(id)?;
-        let layer = kept_on(self.layer(id)?, on, (&around, &around), &|home| Some(home.clone()))?;
+        let layer =
+            preserve_look_on(self.layer(id)?, on, (&around, &around), &|home| Some(home.clone()))?;
         self.with_layer(id, |old| *old = Layer::clone(&layer))
     }
 
@@ -128,7 +129,7 @@ impl Document {
         let rehome =
             |home: &HomeFrame| (home.is_canvas() || !is_gone(&home.part)).then(|| home.clone());
         let lifted = |layer: &Arc<Layer>| {
-            kept(layer, (&none, &none), &rehome).unwrap_or_else(|| bare(layer, &rehome))
+            preserve_look(layer, (&none, &none), &rehome).unwrap_or_else(|| bare(layer, &rehome))
         };
         Document { layers: self.layers.iter().map(lifted).collect(), ..self.clone() }
     }
@@ -227,16 +228,16 @@ fn placed(layers: &[Arc<Layer>], parts: &Parts) -> Option<Vec<Arc<Layer>>> {
 
 /// A layer that shows what it showed though what is around it was `old` and is `new`; the same
 /// value if nothing in it has to change. `None` where that cannot be expressed.
-pub(in crate::document) fn kept(
+pub(in crate::document) fn preserve_look(
     layer: &Arc<Layer>,
     (old, new): (&LayerMap, &LayerMap),
     rehome: &Rehome,
 ) -> Option<Arc<Layer>> {
-    kept_on(layer, layer.on.as_ref().and_then(rehome), (old, new), rehome)
+    preserve_look_on(layer, layer.on.as_ref().and_then(rehome), (old, new), rehome)
 }
 
 /// The same on another home.
-fn kept_on(
+fn preserve_look_on(
     layer: &Arc<Layer>,
     on: Option<HomeFrame>,
     (old, new): (&LayerMap, &LayerMap),
@@ -259,8 +260,11 @@ fn kept_on(
     let now = new.within(&next);
     let content = match &layer.content {
         Content::Group(group) => {
-            let layers: Option<Vec<_>> =
-                group.layers.iter().map(|layer| kept(layer, (&was, &now), rehome)).collect();
+            let layers: Option<Vec<_>> = group
+                .layers
+                .iter()
+                .map(|layer| preserve_look(layer, (&was, &now), rehome))
+                .collect();
             let layers = layers?;
             let is_same = layers.iter().zip(&group.layers).all(|(a, b)| Arc::ptr_eq(a, b));
             (!is_same).then(|| Content::Group(Group { layers, ..group.clone() }))

@@ -118,7 +118,7 @@ mod tests {
     }
 
     /// Groups with what is in them: `ag(bh(c))de`.
-    fn told(document: &Document) -> String {
+    fn tree_text(document: &Document) -> String {
         fn tell(layers: &[Arc<Layer>]) -> String {
             let one = |layer: &Arc<Layer>| match layer.content.group() {
                 Some(group) => format!("{}({})", layer.name, tell(&group.layers)),
@@ -134,7 +134,7 @@ mod tests {
         let document = document();
         let outer = document.outermost(&ids(&document, "ecga"));
         assert_eq!(outer, ids(&document, "age"), "bottom first, without c");
-        assert_eq!(told(&document.without_layers(&ids(&document, "gcd")).unwrap()), "ae");
+        assert_eq!(tree_text(&document.without_layers(&ids(&document, "gcd")).unwrap()), "ae");
     }
 
     #[test]
@@ -142,7 +142,7 @@ mod tests {
         let document = document();
         let h = document.layer_named("h").unwrap().id;
         let moved = |names: &str, place| {
-            document.with_moved_layers(&ids(&document, names), place).map(|d| told(&d))
+            document.with_moved_layers(&ids(&document, names), place).map(|d| tree_text(&d))
         };
         assert_eq!(moved("ea", LayerSlot::in_group(h, 0)).as_deref(), Some("g(bh(aec))d"));
         assert_eq!(moved("cd", LayerSlot::top_level(0)).as_deref(), Some("cdag(bh())e"));
@@ -154,7 +154,7 @@ mod tests {
     fn several_layers_are_nudged_and_stop_at_the_end_in_order() {
         let document = document();
         let nudged = |names: &str, by| {
-            told(&document.with_nudged_layers(&ids(&document, names), by).unwrap())
+            tree_text(&document.with_nudged_layers(&ids(&document, names), by).unwrap())
         };
         assert_eq!(nudged("ad", 1), "g(bh(c))aed");
         assert_eq!(nudged("de", 1), "ag(bh(c))de", "there is nowhere to go");
@@ -166,7 +166,7 @@ mod tests {
     fn one_layer_takes_the_place_of_several_where_the_topmost_stood() {
         let document = document();
         let with = |names: &str| {
-            document.with_one_for(&ids(&document, names), fill("x")).map(|d| told(&d))
+            document.with_one_for(&ids(&document, names), fill("x")).map(|d| tree_text(&d))
         };
         assert_eq!(with("ad").as_deref(), Some("g(bh(c))xe"));
         assert_eq!(with("ab").as_deref(), Some("g(xh(c))de"));

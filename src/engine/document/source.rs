@@ -37,7 +37,7 @@ impl SurfaceSource {
         let origin = surface.origin();
         let (maps, canvas) = (origin.surface.size(), surface.size());
         let is_fitted = origin.map.is_same_on(&Surface::fit_map(maps, canvas), maps);
-        let matrix = if is_fitted { None } else { origin.map.told_coefficients() };
+        let matrix = if is_fitted { None } else { origin.map.coefficients_as_written() };
         SurfaceSource { matrix, ..self.clone() }
     }
 

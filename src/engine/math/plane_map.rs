@@ -130,8 +130,8 @@ impl PlaneMap {
     }
 
     /// The same to fifteen digits: short in a file, and without what composing maps rounded.
-    pub fn told_coefficients(&self) -> Option<[f64; 6]> {
-        Some(self.coefficients()?.map(told))
+    pub fn coefficients_as_written(&self) -> Option<[f64; 6]> {
+        Some(self.coefficients()?.map(round_as_written))
     }
 
     /// The same without a perspective; `None` if it has one.
@@ -274,7 +274,7 @@ pub fn orthogonal(matrix: Mat2) -> Mat2 {
 }
 
 /// A number to fifteen digits, and no more than fifteen after the point.
-pub fn told(v: f64) -> f64 {
+pub fn round_as_written(v: f64) -> f64 {
     let text = if v.abs() < 1.0 { format!("{v:.15}") } else { format!("{v:.14e}") };
     // −0 becomes 0.
     text.parse().unwrap_or(v) + 0.0

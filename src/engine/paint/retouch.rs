@@ -189,7 +189,7 @@ impl RetouchStroke {
             BrushMode::Paint if self.brush.erases => Some([0.0; 4]),
             BrushMode::Paint => Some(pickup::mixed(
                 &self.brush,
-                self.own(&dab),
+                self.brush_color(&dab),
                 &dab,
                 &mut progress.held,
                 retouched,
@@ -235,7 +235,7 @@ impl RetouchStroke {
     }
 
     /// The brush's own colour, which varies only after mixing.
-    fn own(&self, dab: &Dab) -> Color {
+    fn brush_color(&self, dab: &Dab) -> Color {
         if tint::varies(&self.brush) { self.color } else { dab.color }
     }
 

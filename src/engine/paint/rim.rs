@@ -111,12 +111,12 @@ impl RimTable {
         let (hardness, softness) = (unit(brush.hardness), unit(brush.softness));
         let key = [u32::from(is_square), hardness.to_bits(), softness.to_bits(), step.to_bits()];
         Some(made_once(&MADE, KEPT, key, || {
-            Self::made(is_square, RoundProfile::new(hardness, softness), step)
+            Self::integrate(is_square, RoundProfile::new(hardness, softness), step)
         }))
     }
 
     /// `step`: between dabs, radii.
-    fn made(is_square: bool, profile: RoundProfile, step: f32) -> Self {
+    fn integrate(is_square: bool, profile: RoundProfile, step: f32) -> Self {
         let outer = profile.outer_radius();
         let coverage = |r: f32| profile.mean(r, 0.0).max(0.0).min(0.9999);
         let depth = |j: usize| outer * (j as f32 / (DEPTHS - 1) as f32).powi(3);

@@ -106,7 +106,7 @@ impl Stroke {
     /// The pixels that the stroke can touch on a canvas, in whole tiles; never fewer.
     pub fn bounds(&self, scene: &Scene) -> Rect {
         let known = self
-            .found()
+            .lock_cache()
             .bounds
             .as_ref()
             .filter(|(on, _)| on.is_same(scene))
@@ -130,20 +130,23 @@ impl Stroke {
 
     /// The stroke's dabs on a canvas, computed again if they were not cached.
     fn stroke_dabs(&self, scene: &Scene) -> Arc<StrokeDabs> {
-        if let Some((stroke_dabs, _)) =
-            self.found().stroke_dabs.as_ref().filter(|(stroke_dabs, _)| stroke_dabs.is_on(scene))
+        if let Some((stroke_dabs, _)) = self
+            .lock_cache()
+            .stroke_dabs
+            .as_ref()
+            .filter(|(stroke_dabs, _)| stroke_dabs.is_on(scene))
         {
             return stroke_dabs.clone();
         }
         // Without the lock: two threads may both compute them; the results are equal.
         let stroke_dabs = Arc::new(StrokeDabs::of(self, scene));
-        self.found().keep(&stroke_dabs);
+        self.lock_cache().keep(&stroke_dabs);
         stroke_dabs
     }
 
     /// Where it lies, if that is known already.
     fn known_support(&self, scene: &Scene) -> Option<Arc<TileReach>> {
-        self.found().support.clone().filter(|support| support.is_on(scene))
+        self.lock_cache().support.clone().filter(|support| support.is_on(scene))
     }
 
     /// Roughly the most dabs it can have, without placing them: at the densest possible spacing.
@@ -160,10 +163,13 @@ impl Stroke {
 
     /// Whether its dabs on a canvas are cached.
     fn is_laid(&self, scene: &Scene) -> bool {
-        self.found().stroke_dabs.as_ref().is_some_and(|(stroke_dabs, _)| stroke_dabs.is_on(scene))
+        self.lock_cache()
+            .stroke_dabs
+            .as_ref()
+            .is_some_and(|(stroke_dabs, _)| stroke_dabs.is_on(scene))
     }
 
-    fn found(&self) -> MutexGuard<'_, StrokeCache> {
+    fn lock_cache(&self) -> MutexGuard<'_, StrokeCache> {
         self.found.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -60,7 +60,7 @@ impl Picture {
     /// `None` unless there is one texel per pixel and at least one pixel.
     pub fn srgb8(size: Size, texels: Vec<[u8; 4]>) -> Option<Self> {
         (size.area() > 0 && texels.len() == size.area())
-            .then(|| Self::made(size, Texels::Srgb8(texels.into())))
+            .then(|| Self::of_texels(size, Texels::Srgb8(texels.into())))
     }
 
     /// As [`Picture::srgb8`]; NaN and negative light become 0, infinite light the largest half
@@ -74,10 +74,10 @@ impl Picture {
             *a = a.max(0.0).min(1.0);
         }
         (size.area() > 0 && texels.len() == size.area())
-            .then(|| Self::made(size, Texels::Linear(texels.into())))
+            .then(|| Self::of_texels(size, Texels::Linear(texels.into())))
     }
 
-    fn made(size: Size, texels: Texels) -> Self {
+    fn of_texels(size: Size, texels: Texels) -> Self {
         Self { size, texels, deep: None, encoded: None }
     }
 

@@ -113,12 +113,12 @@ impl PlanarTile {
     /// As a paint layer keeps it, painted on `was`: rounded to 16 bits if it is soft
     /// ([`deep::is_soft`]) or had them before, else to bytes. `None` if the tile is wholly
     /// transparent.
-    pub fn kept(&self, was: Option<&Tile>) -> Option<Tile> {
-        self.kept_after(was.is_some_and(Tile::is_deep))
+    pub fn to_tile_over(&self, was: Option<&Tile>) -> Option<Tile> {
+        self.to_tile(was.is_some_and(Tile::is_deep))
     }
 
     /// The same; `was_deep`: the pixels contain paint of 16 bits.
-    pub fn kept_after(&self, was_deep: bool) -> Option<Tile> {
+    pub fn to_tile(&self, was_deep: bool) -> Option<Tile> {
         let put = |y: usize, deep: &mut DeepRow| {
             let PixelRow { rgb: [r, g, b], a } = &self.rows[y];
             deep::quantise_row([r, g, b, a], deep);

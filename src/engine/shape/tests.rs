@@ -109,7 +109,12 @@ fn normal_at(form: &Form, p: Vec2) -> Vec3 {
 
 /// How far the normals of one form are from those of another, seen through a map of the canvas and
 /// a turn; mean, px within 2 px of the rim left out.
-fn apart(a: &Form, b: &Form, b_from_a: impl Fn(Vec2) -> Vec2, turn_rad: f32) -> f32 {
+fn normal_difference_deg(
+    a: &Form,
+    b: &Form,
+    b_from_a: impl Fn(Vec2) -> Vec2,
+    turn_rad: f32,
+) -> f32 {
     let deep = |x: i32, y: i32| {
         let r = 2;
         (-r..=r).all(|dy| (-r..=r).all(|dx| a.coverage.get(x + dx, y + dy) == Some(255)))
@@ -137,7 +142,8 @@ fn a_tube_over_the_outline_of_a_capsule_a_cone_or_a_ball_is_nearly_that_body() {
         let form = |h: &Plane<f32>| {
             Form::of_squares(&outline, h, &OutlineRim::silhouette(&outline), SILHOUETTE)
         };
-        let off = apart(&form(&tube(&outline, None, None)), &form(&squares), |p| p, 0.0);
+        let off =
+            normal_difference_deg(&form(&tube(&outline, None, None)), &form(&squares), |p| p, 0.0);
         println!("{name}: {off:.3}°");
         assert!(off < 0.45, "{name}: {off}°");
     }
@@ -153,14 +159,14 @@ fn turning_shifting_and_scaling_an_outline_does_so_to_its_normals() {
     let tubes = |o: &Outline| {
         Form::of_squares(o, &tube(o, None, None), &OutlineRim::silhouette(o), SILHOUETTE)
     };
-    let by_turn = apart(&pillow(&still), &pillow(&turned), map, turn);
-    let by_scale = apart(&pillow(&small), &pillow(&large), |p| p * 4.0, 0.0);
-    let of_tubes = apart(&tubes(&still), &tubes(&turned), map, turn);
+    let by_turn = normal_difference_deg(&pillow(&still), &pillow(&turned), map, turn);
+    let by_scale = normal_difference_deg(&pillow(&small), &pillow(&large), |p| p * 4.0, 0.0);
+    let of_tubes = normal_difference_deg(&tubes(&still), &tubes(&turned), map, turn);
     println!(
         "turned and shifted {by_turn:.3}° (tubes {of_tubes:.3}°), four times as large {by_scale:.3}°"
     );
     assert!(by_turn < 0.3 && by_scale < 0.3, "{by_turn}° turned, {by_scale}° scaled");
-    let tubes_by_scale = apart(&tubes(&small), &tubes(&large), |p| p * 4.0, 0.0);
+    let tubes_by_scale = normal_difference_deg(&tubes(&small), &tubes(&large), |p| p * 4.0, 0.0);
     assert!(
         of_tubes < 0.3 && tubes_by_scale < 0.3,
         "tubes {of_tubes}° turned, {tubes_by_scale}° scaled"

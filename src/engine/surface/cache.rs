@@ -32,7 +32,7 @@ impl<K: PartialEq, V> RecentCache<K, V> {
     }
 
     /// The value of a key, if it is held.
-    pub fn known(&self, key: &K) -> Option<Arc<V>> {
+    pub fn get(&self, key: &K) -> Option<Arc<V>> {
         self.lock().iter().find(|(known, _)| known == key).map(|(_, value)| value.clone())
     }
 

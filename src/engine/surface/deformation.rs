@@ -65,7 +65,7 @@ impl<'a> Deformation<'a> {
     pub fn new(surface: Option<&'a Surface>, size: Size, bend: &Bend) -> Self {
         let deformation =
             Self::pinned(surface, size, (bend.operator, bend.weights, &bend.anchors), at_anchor);
-        deformation.laid(|surface, settings, anchors| {
+        deformation.with_planes(|surface, settings, anchors| {
             LaidPlanes::pinned(
                 surface,
                 settings,
@@ -81,7 +81,7 @@ impl<'a> Deformation<'a> {
         let pinned = [Anchor::fixed(at)];
         let anchors = if surface.is_none() || operator.is_identity() { &[][..] } else { &pinned };
         Self::pinned(surface, size, (operator, Weights::default(), anchors), Surface::near_point)
-            .laid(|surface, settings, anchors| {
+            .with_planes(|surface, settings, anchors| {
                 LaidPlanes::of_dab(surface, settings, anchors.first().map_or(at, |a| a.at))
             })
     }
@@ -99,7 +99,10 @@ impl<'a> Deformation<'a> {
 
     /// With the planes of the unwrapped surface laid under the anchors, where the operator needs
     /// them.
-    fn laid(self, lay: impl FnOnce(&'a Surface, UnwrapSettings, &[Anchor]) -> LaidPlanes) -> Self {
+    fn with_planes(
+        self,
+        lay: impl FnOnce(&'a Surface, UnwrapSettings, &[Anchor]) -> LaidPlanes,
+    ) -> Self {
         let planes = self.surface.zip(self.operator.unwrapping());
         let planes = planes.map(|(surface, settings)| lay(surface, settings, &self.anchors()));
         Self { planes, ..self }
@@ -275,7 +278,7 @@ impl<'a> Deformation<'a> {
         if self.sheet().is_some() || self.is_limited(rect.grown(1)) {
             return None;
         }
-        planes.own(rect)
+        planes.plane_over(rect)
     }
 
     /// Whether a reach changes D anywhere in a rectangle.

@@ -127,7 +127,7 @@ pub struct Surface {
 
 /// n̄_x, n̄_y and n_z of normals. These are freed from their end on as they are taken apart, so
 /// that both are never whole in memory.
-fn apart(normals: Plane<Vec3>) -> [Plane<f32>; 3] {
+fn split_normals(normals: Plane<Vec3>) -> [Plane<f32>; 3] {
     const AT_A_TIME: usize = 1 << 22;
     let size = normals.size();
     let mut planes = [(); 3].map(|()| Plane::filled(size, 0.0));
@@ -154,10 +154,10 @@ impl Surface {
 
     /// The same of maps whose depth range is known, px.
     fn with_depth_range(maps: Maps, range_px: Option<f32>) -> Result<Self, SurfaceError> {
-        Self::made(maps, range_px, &mut NearestCache::default())
+        Self::build(maps, range_px, &mut NearestCache::default())
     }
 
-    fn made(
+    fn build(
         maps: Maps,
         range_px: Option<f32>,
         known: &mut NearestCache,
@@ -186,7 +186,7 @@ impl Surface {
             known.keep(&valid, nearest);
         }
         let depth = depth.updated(|_, _, z| z.clamp(0.0, 1.0));
-        let [nbar_x, nbar_y, nz] = apart(normals);
+        let [nbar_x, nbar_y, nz] = split_normals(normals);
         let estimated = || links::depth_range_px(&nbar_x, &nbar_y, &nz, &depth, &coverage);
         let depth_range_px = range_px.unwrap_or_else(estimated);
         let links = links::find(&nbar_x, &nbar_y, &nz, &depth, &coverage, depth_range_px);
@@ -233,7 +233,7 @@ impl Surface {
         piece_of: &[u32],
         known: &mut NearestCache,
     ) -> Result<Self, SurfaceError> {
-        let mut surface = Self::made(maps, None, known)?;
+        let mut surface = Self::build(maps, None, known)?;
         if parts.size() != surface.size {
             return Err(SurfaceError::SizesDiffer {
                 normals: surface.size,

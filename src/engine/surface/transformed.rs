@@ -46,7 +46,7 @@ impl Surface {
         let fit = Self::fit_map(self.size(), canvas);
         // To the last digit of what files hold, so that the same surface is read back.
         let map = map
-            .map_or(Some(fit), |map| PlaneMap::affine(map.told_coefficients()?))
+            .map_or(Some(fit), |map| PlaneMap::affine(map.coefficients_as_written()?))
             .ok_or(SurfaceError::Perspective)?;
         let by = map.pixel_move_on(if self.size().area() > canvas.area() {
             self.size()

@@ -266,7 +266,7 @@ impl Surface {
 
     /// Whether it is unwrapped with these settings already.
     pub fn is_unwrapped(&self, settings: UnwrapSettings) -> bool {
-        self.derived.unwrappings.known(&settings.held(self.size()).key()).is_some()
+        self.derived.unwrappings.get(&settings.held(self.size()).key()).is_some()
     }
 
     fn kept_unwrappings(&self) -> usize {

@@ -303,7 +303,7 @@ fn maps_that_were_turned_come_back_as_their_files_and_a_matrix() {
     let turn = PlaneMap::rotation(30.0, plain.size.center());
     let surface = plain.surface.as_ref().unwrap().transformed(plain.size, &turn).unwrap();
     let source = SurfaceSource {
-        matrix: turn.told_coefficients(),
+        matrix: turn.coefficients_as_written(),
         ..SurfaceSource::clone(plain.surface_source.as_ref().unwrap())
     };
     let document = Document {

@@ -85,7 +85,7 @@ pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancellab
     if bytes.len() > LONGEST_BYTES {
         let reason = format!(
             "a Photoshop file has at most 2 GB, not {}",
-            memory::spoken(bytes.len() as u64)
+            memory::bytes_text(bytes.len() as u64)
         );
         return Err(Error::unsupported(file, reason));
     }

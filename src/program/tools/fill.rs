@@ -109,7 +109,7 @@ fn tile(
     let base = base.map(|tile| &**tile);
     let mut pixels = PlanarTile::of_tile(base);
     pixels.blend(mix, TilePaint::Solid(color.premultiplied()), &coverage);
-    pixels.kept(base).map(Arc::new)
+    pixels.to_tile_over(base).map(Arc::new)
 }
 
 #[cfg(test)]

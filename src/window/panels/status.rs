@@ -5,7 +5,7 @@ use crate::canvas::Canvas;
 use crate::document::MemoryUse;
 use crate::jobs::{JobKind, Jobs, RunningJob};
 use crate::math::Vec2;
-use crate::memory::spoken;
+use crate::memory::bytes_text;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::Session;
 use crate::session::memory::DocumentMemory;
@@ -116,7 +116,7 @@ fn memory_menu(
     requests: &mut UiRequests,
 ) {
     let MemoryUse { painted, pictures, maps, kept } = used.front;
-    let text = RichText::new(spoken(used.front.total())).weak();
+    let text = RichText::new(bytes_text(used.front.total())).weak();
     let button = ui.menu_button(text, |ui| {
         ui.set_width(300.0);
         let rows = [
@@ -131,7 +131,7 @@ fn memory_menu(
             let rows = rows.into_iter().chain((others > 0).then_some(("Other documents", others))).chain(program);
             for (name, bytes) in rows {
                 ui.label(name);
-                ui.label(spoken(bytes));
+                ui.label(bytes_text(bytes));
                 ui.end_row();
             }
         });
@@ -143,15 +143,15 @@ fn memory_menu(
         if let Some(change) = field.row(ui, (kept_share * 100.0).round()) {
             requests.request(WindowRequest::KeptShare(change.map(|percent| percent / 100.0).to));
         }
-        let (ceiling, machine) = (spoken(memory.ceiling(kept_share)), spoken(memory.machine_bytes()));
+        let (ceiling, machine) = (bytes_text(memory.ceiling(kept_share)), bytes_text(memory.machine_bytes()));
         ui.weak(format!("{ceiling} of {machine} for speed alone, in all documents"));
     });
     let about = format!(
         "Memory of this document: {} painted, {} of pictures, {} of maps, {} kept for speed. Click for more",
-        spoken(painted),
-        spoken(pictures),
-        spoken(maps),
-        spoken(kept)
+        bytes_text(painted),
+        bytes_text(pictures),
+        bytes_text(maps),
+        bytes_text(kept)
     );
     named(&button.response, "Memory of this document");
     button.response.on_hover_text(about);

@@ -126,7 +126,7 @@ fn path() -> [Vec2; 3] {
 
 /// How far two pictures differ if the second shows the first moved: the greatest difference of any
 /// byte and the number of different pixels, first where the surface is whole, then on contours.
-fn apart(before: &Document, after: &Document, by: (i32, i32)) -> [(u8, usize); 2] {
+fn picture_difference(before: &Document, after: &Document, by: (i32, i32)) -> [(u8, usize); 2] {
     let (old, new) = (picture(before), picture(after));
     let contours: std::collections::BTreeSet<(i32, i32)> = match &before.surface {
         Some(surface) => surface.contours().pixels().iter().map(|p| (p.x, p.y)).collect(),
@@ -154,7 +154,7 @@ fn assert_moved(
     name: &str,
     wrong: &mut Vec<String>,
 ) {
-    let found = apart(before, after, by);
+    let found = picture_difference(before, after, by);
     // Round tips are computed eight pixels of a tile at a time, no more precisely than a byte
     // shows.
     let most = if name.contains("strokes") && by.0 % 64 != 0 { (1, 200) } else { (0, 0) };

@@ -244,14 +244,17 @@ impl<T> Live<T> {
 
     /// Takes in what was rendered behind the contours of a tile.
     pub(in crate::document) fn set_behind(&self, scene: &BehindScene, on_sheet: Option<Tile>) {
-        let bare =
-            if scene.behind.has_bare() { self.known(scene.front, scene.behind.at) } else { None };
+        let bare = if scene.behind.has_bare() {
+            self.rendered_tile(scene.front, scene.behind.at)
+        } else {
+            None
+        };
         let packed =
             BehindPixels::Packed(Arc::new(scene.behind.packed(on_sheet.as_ref(), bare.as_deref())));
         self.cells(scene.front).behind_cell(scene.behind.at).map(|cell| cell.set(packed));
     }
 
-    fn known(&self, scene: &Scene, at: TileAt) -> Option<Arc<Tile>> {
+    fn rendered_tile(&self, scene: &Scene, at: TileAt) -> Option<Arc<Tile>> {
         self.cells(scene).cell(at)?.get().cloned().flatten()
     }
 

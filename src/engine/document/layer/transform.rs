@@ -3,7 +3,7 @@
 
 pub(super) mod mesh;
 
-use crate::math::plane_map::told;
+use crate::math::plane_map::round_as_written;
 use crate::math::{COORDINATE, DVec2, PlaneMap, Size, Vec2, range, vec2};
 use crate::raster::Resampling;
 use mesh::Mesh;
@@ -75,16 +75,16 @@ impl LayerTransform {
     /// A map of the plane as a transform; `None` for a perspective whose horizon crosses the
     /// canvas.
     pub fn of_map(map: &PlaneMap, filter: Resampling, canvas: Size) -> Option<Self> {
-        if let Some(coefficients) = map.told_coefficients() {
+        if let Some(coefficients) = map.coefficients_as_written() {
             return Some(LayerTransform { shape: TransformShape::Matrix(coefficients), filter });
         }
         let (w, h) = (canvas.width as f32, canvas.height as f32);
         let corners = [vec2(0.0, 0.0), vec2(w, 0.0), vec2(w, h), vec2(0.0, h)]
             .map(|corner| map.to_canvas(corner));
         let [Some(a), Some(b), Some(c), Some(d)] = corners else { return None };
-        let shape = TransformShape::Quad(
-            [a, b, c, d].map(|corner| DVec2::new(told(corner.x.into()), told(corner.y.into()))),
-        );
+        let shape = TransformShape::Quad([a, b, c, d].map(|corner| {
+            DVec2::new(round_as_written(corner.x.into()), round_as_written(corner.y.into()))
+        }));
         let transform = LayerTransform { shape, filter };
         transform.map(canvas).map(|_| transform)
     }

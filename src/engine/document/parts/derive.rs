@@ -6,7 +6,7 @@ use super::body::{PlacedOutline, SolvedOutline, joined, lost};
 use super::form_cache::{MadePart, NewForm, Stages};
 use super::modifiers::{ResumePoint, with_lines, with_modifier};
 use super::outlines::OutlineKey;
-use super::unchanged::{apart, same_inks, same_kind, same_list, same_shape};
+use super::unchanged::{same_inks, same_kind, same_list, same_shape, split_whole_px};
 use super::whole::Whole;
 use super::{Part, PartKind, Parts};
 use crate::document::{Document, Progress};
@@ -69,12 +69,12 @@ impl Document {
     ) -> Option<(MadePart, Option<Arc<Form>>)> {
         let cache = &self.parts.cache;
         let modifiers = self.modifiers_of(part);
-        let known = cache.known(&part.id);
+        let known = cache.get(&part.id);
         let is_edited = known.is_some();
         let source = OutlineKey::of_part(self, part)?;
         let inks: Vec<OutlineKey> =
             modifiers.iter().filter_map(|part| OutlineKey::of_part(self, part)?).collect();
-        let (still, moved) = apart(part.matrix);
+        let (still, moved) = split_whole_px(part.matrix);
         let is_unchanged = |made: &MadePart| match (&made.source, &source) {
             (Some(a), Some(b)) => a.is_same(b),
             (a, b) => a.is_none() && b.is_none(),
@@ -86,7 +86,7 @@ impl Document {
                 && both.is_some_and(|(a, b)| Arc::ptr_eq(a, b))
         };
         let same_source = |made: &MadePart| is_unchanged(made) || same_outline(made);
-        let same_place = |made: &MadePart| apart(made.part.matrix).0 == still;
+        let same_place = |made: &MadePart| split_whole_px(made.part.matrix).0 == still;
         let known = known.filter(|made| same_source(made) && same_place(made));
         // Only what is inflated has a rim that can be free.
         let own = standing.as_ref().filter(|_| matches!(part.kind, PartKind::Inflate { .. }));
@@ -132,7 +132,7 @@ impl Document {
             None => {
                 let body = kept.as_ref().map(|kept| kept.body.clone());
                 let (body, form) =
-                    self.made(part, (outline.clone(), source.as_ref()), free, still, body)?;
+                    self.solve_form(part, (outline.clone(), source.as_ref()), free, still, body)?;
                 (body, Arc::new(form))
             }
         };
@@ -181,11 +181,11 @@ impl Document {
 
     /// The form of a part that was made before and not kept.
     pub(super) fn remade(&self, made: &MadePart) -> Option<Arc<Form>> {
-        let (part, (still, moved)) = (&made.part, apart(made.part.matrix));
+        let (part, (still, moved)) = (&made.part, split_whole_px(made.part.matrix));
         let own = made.outline.as_ref().filter(|_| matches!(part.kind, PartKind::Inflate { .. }));
         let free = own.and_then(|own| joined(own, &made.met)).map(Arc::new);
         let (body, plain) =
-            self.made(part, (made.outline.clone(), made.source.as_ref()), free, still, None)?;
+            self.solve_form(part, (made.outline.clone(), made.source.as_ref()), free, still, None)?;
         let form = self.with_modifiers(Arc::new(plain), &body, &made.modifiers, still);
         drop(body);
         Some(Arc::new(in_place(Arc::unwrap_or_clone(form), part, moved)))

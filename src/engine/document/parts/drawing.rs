@@ -141,7 +141,7 @@ pub fn without_background(tiles: &TileGrid, canvas: Size, background: Color) -> 
         for (x, y) in around {
             is_edge |= open.get(x, y).unwrap_or(false);
             let pixel = tiles.pixel(x, y);
-            if apart(pixel, color) > apart(other, color) {
+            if squared_difference(pixel, color) > squared_difference(other, color) {
                 other = pixel;
             }
         }
@@ -154,7 +154,7 @@ pub fn without_background(tiles: &TileGrid, canvas: Size, background: Color) -> 
     TileGrid::from_straight_rgba(&straight, width, height, 0, 0)
 }
 
-fn apart(a: [u8; 4], b: [u8; 4]) -> i32 {
+fn squared_difference(a: [u8; 4], b: [u8; 4]) -> i32 {
     a.iter().zip(b).map(|(a, b)| (i32::from(*a) - i32::from(b)).pow(2)).sum()
 }
 

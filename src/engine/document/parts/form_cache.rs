@@ -8,7 +8,7 @@ use super::drawn::LastDrawn;
 use super::flats_cache::FlatsCache;
 use super::modifiers::ResumePoint;
 use super::outlines::OutlineKey;
-use super::unchanged::{apart, same_list};
+use super::unchanged::{same_list, split_whole_px};
 use crate::document::Document;
 use crate::math::{Rect, Size, Vec2};
 use crate::memory::{CacheReservation, FORMS};
@@ -193,7 +193,7 @@ impl PartCache {
         self.made.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    pub fn known(&self, id: &str) -> Option<MadePart> {
+    pub fn get(&self, id: &str) -> Option<MadePart> {
         self.lock().iter().find(|made| made.part.id == id).cloned()
     }
 
@@ -238,29 +238,27 @@ impl Document {
         part: &Part,
         source: &OutlineKey,
     ) -> Option<(Arc<Outline>, bool)> {
-        let made = self
-            .parts
-            .cache
-            .known(&part.id)
-            .filter(|made| apart(made.part.matrix).0 == apart(part.matrix).0)?;
+        let made =
+            self.parts.cache.get(&part.id).filter(|made| {
+                split_whole_px(made.part.matrix).0 == split_whole_px(part.matrix).0
+            })?;
         let is_same = made.source.as_ref().is_some_and(|known| known.is_same(source));
         made.outline.filter(|_| is_same).map(|outline| (outline, made.is_lost))
     }
 
     /// The outline of a part that was found last and not moved since, whatever it was made of.
     pub(super) fn last_outline(&self, part: &Part) -> Option<Arc<Outline>> {
-        let made = self
-            .parts
-            .cache
-            .known(&part.id)
-            .filter(|made| apart(made.part.matrix).0 == apart(part.matrix).0)?;
+        let made =
+            self.parts.cache.get(&part.id).filter(|made| {
+                split_whole_px(made.part.matrix).0 == split_whole_px(part.matrix).0
+            })?;
         made.outline
     }
 
     /// Where the form of a part lies that was made last, if neither the part nor what lies on it
     /// was changed since.
     pub(super) fn made_area(&self, part: &Arc<Part>) -> Option<Arc<FormArea>> {
-        let made = self.parts.cache.known(&part.id)?;
+        let made = self.parts.cache.get(&part.id)?;
         (Arc::ptr_eq(&made.part, part) && same_list(&made.modifiers, &self.modifiers_of(part)))
             .then_some(made.area)
     }
@@ -268,12 +266,12 @@ impl Document {
     /// Where the form of a part lies that was made last, whatever changed in the part since, and
     /// the part as it was then.
     pub(super) fn last_area(&self, id: &str) -> Option<(Arc<Part>, Arc<FormArea>)> {
-        self.parts.cache.known(id).map(|made| (made.part, made.area))
+        self.parts.cache.get(id).map(|made| (made.part, made.area))
     }
 
     /// The form of a part as it was made last; made again if it was not kept.
     pub fn form_of(&self, id: &str) -> Option<Arc<Form>> {
-        let made = self.parts.cache.known(id)?;
+        let made = self.parts.cache.get(id)?;
         made.form().or_else(|| self.remade(&made))
     }
 }

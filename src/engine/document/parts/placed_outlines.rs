@@ -3,7 +3,7 @@
 
 use super::body::PlacedOutline;
 use super::outlines::OutlineKey;
-use super::unchanged::apart;
+use super::unchanged::split_whole_px;
 use super::{OutlineSource, Part};
 use crate::document::Document;
 use crate::math::Affine2;
@@ -54,8 +54,9 @@ impl Document {
     /// The outline of a part before it was moved; `None` if it has none.
     pub(super) fn own_outline(&self, part: &Part) -> Option<Arc<Outline>> {
         let source = OutlineKey::of_part(self, part)??;
-        let known =
-            self.known_outline(part, &source).filter(|_| apart(part.matrix).0 == Affine2::IDENTITY);
+        let known = self
+            .known_outline(part, &source)
+            .filter(|_| split_whole_px(part.matrix).0 == Affine2::IDENTITY);
         match known {
             Some((outline, _)) => Some(outline),
             None => source.outline(self, usize::MAX).map(Arc::new),
@@ -65,7 +66,7 @@ impl Document {
     /// The outline of a part in its place; `None` if it has none.
     fn placed_outline(&self, part: &Arc<Part>) -> Option<PlacedOutline> {
         let source = OutlineKey::of_part(self, part)??;
-        let (still, moved) = apart(part.matrix);
+        let (still, moved) = split_whole_px(part.matrix);
         let (outline, is_lost) = match self.known_outline(part, &source) {
             Some(known) => known,
             None => {

@@ -75,7 +75,7 @@ impl Flats {
         if !picture.is_pixel_art {
             take_out_specks(&mut owner, &mut colors);
         }
-        let is_kept = kept(&colors, least_area(owner.size()));
+        let is_kept = choose_flats(&colors, least_area(owner.size()));
         let is_seen = |i: usize| colors[i].pixels >= LEAST_SEEN && !is_line[i];
         let left_out = (0..colors.len()).filter(|i| !is_kept[*i] && is_seen(*i)).count();
         owner = renumbered(owner, &is_kept);
@@ -259,7 +259,7 @@ fn take_out_specks(owner: &mut Plane<u16>, colors: &mut [PaletteColor]) {
 }
 
 /// Which colours are asked for, or large enough to be parts.
-fn kept(colors: &[PaletteColor], least: usize) -> Vec<bool> {
+fn choose_flats(colors: &[PaletteColor], least: usize) -> Vec<bool> {
     let mut found: Vec<usize> =
         (0..colors.len()).filter(|i| !colors[*i].is_asked && colors[*i].pixels >= least).collect();
     found.sort_by_key(|i| (std::cmp::Reverse(colors[*i].pixels), *i));

@@ -12,7 +12,7 @@ use std::sync::Arc;
 impl Document {
     /// A part made again, except known fields of its body; without what lies on it, not leaned and
     /// not yet moved by whole px.
-    pub(super) fn made(
+    pub(super) fn solve_form(
         &self,
         part: &Part,
         (own, source): (Option<Arc<Outline>>, Option<&OutlineKey>),

@@ -7,7 +7,7 @@ use crate::surface::Surface;
 use std::sync::Arc;
 
 /// The matrix without its whole px, and these.
-pub fn apart(matrix: Affine2) -> (Affine2, (i32, i32)) {
+pub fn split_whole_px(matrix: Affine2) -> (Affine2, (i32, i32)) {
     let whole = matrix.translation.floor();
     let still = Affine2 { translation: matrix.translation - whole, ..matrix };
     (still, (whole.x as i32, whole.y as i32))

@@ -1,7 +1,7 @@
 //! How much memory it takes to make the surface of parts, estimated before it begins. Floor 4. An
 //! upper bound. Not here: how much memory there is (floors above).
 
-use super::unchanged::apart;
+use super::unchanged::split_whole_px;
 use super::{OutlineSource, Part, PartKind};
 use crate::document::{Content, Document};
 use crate::math::{Affine2, Rect, Size, Vec2, vec2};
@@ -66,7 +66,7 @@ fn around(points: impl Iterator<Item = (Vec2, f32)>) -> Sides {
 }
 
 /// The box around a box that is seen through a map.
-fn through(map: Affine2, [w, h]: Sides) -> Sides {
+fn transformed_sides(map: Affine2, [w, h]: Sides) -> Sides {
     let [a, b, c, d] = map.matrix2.to_cols_array().map(|v| f64::from(v.abs()));
     [a * w + c * h, b * w + d * h]
 }
@@ -126,7 +126,9 @@ impl Document {
             }
             _ => part.outline().and_then(|source| self.outline_sides(source)),
         };
-        own.map_or(0, |sides| self.within_reach(through(apart(part.matrix).0, sides)))
+        own.map_or(0, |sides| {
+            self.within_reach(transformed_sides(split_whole_px(part.matrix).0, sides))
+        })
     }
 
     fn within_reach(&self, [w, h]: Sides) -> u64 {

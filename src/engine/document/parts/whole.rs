@@ -70,7 +70,7 @@ impl<'d> Whole<'d> {
         let cache = &self.document.parts.cache;
         for made in std::mem::take(&mut self.added) {
             let known =
-                cache.known(&made.part.id).filter(|known| Arc::ptr_eq(&known.area, &made.area));
+                cache.get(&made.part.id).filter(|known| Arc::ptr_eq(&known.area, &made.area));
             self.put(&made, known.and_then(|known| known.form()));
             self.added.push(made);
         }

@@ -80,7 +80,7 @@ mod tests {
     }
 
     /// The greatest difference between the tiles of bytes and those of floats, in bytes.
-    fn apart(image: &PlacedImage, scene: &Scene) -> f32 {
+    fn greatest_difference(image: &PlacedImage, scene: &Scene) -> f32 {
         let mut farthest = 0.0f32;
         for at in TileAt::covering(scene.size.rect()) {
             let (bytes, deep) =
@@ -127,7 +127,7 @@ mod tests {
                     anchors: vec![Anchor::fixed(vec2(30.5, 20.5))],
                     ..Bend::default()
                 };
-                let apart = apart(&image, &scene);
+                let apart = greatest_difference(&image, &scene);
                 // Half a step for the result, for the texels, and for the level that was halved.
                 assert!(apart < 1.6, "{filter:?} {operator:?}: {apart}");
             }

@@ -80,7 +80,7 @@ fn touch(area: Rect) -> TileDab {
 }
 
 /// The position that a colour of [`places`] encodes.
-fn told(color: [f32; 4]) -> Vec2 {
+fn encoded_place(color: [f32; 4]) -> Vec2 {
     vec2(color[0], color[1]) * 255.0 + 0.5
 }
 
@@ -123,7 +123,7 @@ fn what_a_smudge_drags_lies_at_the_same_place_of_the_image_plane_under_both_dabs
     let mut farthest: f32 = 0.0;
     for (i, color) in colors.into_iter().enumerate() {
         let q = vec2((70 + i as i32 % 30) as f32 + 0.5, (64 + i as i32 / 30) as f32 + 0.5);
-        let p = told(color);
+        let p = encoded_place(color);
         let (there, here) = (bent(p, before.at) - before.at, bent(q, now.at) - now.at);
         assert!(there.distance(here) < 0.12, "{q} takes {p}: {there} is not {here}");
         farthest = farthest.max((q - p - vec2(4.0, 2.0)).length());
@@ -154,7 +154,11 @@ fn a_clone_copies_whole_pixels_as_they_are_and_bends_what_it_copies_over_a_surfa
     for (i, color) in colors.into_iter().enumerate() {
         let q = vec2((70 + i as i32 % 30) as f32 + 0.5, (64 + i as i32 / 30) as f32 + 0.5);
         let expected = bent(q, center.at) + offset;
-        assert!(told(color).distance(expected) < 0.1, "{q}: {} is not {expected}", told(color));
+        assert!(
+            encoded_place(color).distance(expected) < 0.1,
+            "{q}: {} is not {expected}",
+            encoded_place(color)
+        );
     }
 }
 

@@ -241,7 +241,7 @@ impl ActiveStrokes {
                     );
                 }
             }
-            (*at, backdrop.kept(*at, &pixels).map(Arc::new))
+            (*at, backdrop.to_tile(*at, &pixels).map(Arc::new))
         };
         let painted = active_tiles.par_iter_mut().map_init(DabScratch::default, paint).collect();
         tiles.extend(active_tiles);
@@ -261,11 +261,11 @@ impl ActiveStrokes {
 }
 
 impl Backdrop {
-    /// A painted tile as the layer holds it: paint as [`PlanarTile::kept`], what is rendered from
+    /// A painted tile as the layer holds it: paint as [`PlanarTile::to_tile`], what is rendered from
     /// strokes in bytes.
-    fn kept(&self, at: TileAt, pixels: &PlanarTile) -> Option<Tile> {
+    fn to_tile(&self, at: TileAt, pixels: &PlanarTile) -> Option<Tile> {
         match self {
-            Backdrop::Pixels(grid) => pixels.kept(grid.tile(at).map(|tile| &**tile)),
+            Backdrop::Pixels(grid) => pixels.to_tile_over(grid.tile(at).map(|tile| &**tile)),
             Backdrop::Strokes(_) => pixels.quantised(),
         }
     }

@@ -73,7 +73,7 @@ pub fn render_many(
         for batch in batches(strokes, |stroke| stroke.most_dabs(&front)) {
             is_wanted().then_some(())?;
             let laid: Vec<Option<Arc<StrokeDabs>>> =
-                batch.par_iter().map(|stroke| laid(stroke, &front, part)).collect();
+                batch.par_iter().map(|stroke| place_dabs(stroke, &front, part)).collect();
             for (i, stroke_dabs) in laid.iter().enumerate() {
                 for place in stroke_dabs
                     .iter()
@@ -97,7 +97,7 @@ pub fn render_many(
 }
 
 /// The dabs of a stroke; `None` if it is known to touch none of the tiles.
-fn laid(stroke: &Stroke, front: &Scene, tiles: &[TileAt]) -> Option<Arc<StrokeDabs>> {
+fn place_dabs(stroke: &Stroke, front: &Scene, tiles: &[TileAt]) -> Option<Arc<StrokeDabs>> {
     let misses = |support: Arc<TileReach>| !tiles.iter().any(|&at| support.touches(at));
     (!stroke.known_support(front).is_some_and(misses)).then(|| stroke.stroke_dabs(front))
 }

@@ -249,7 +249,7 @@ fn coverage_is_opacity_times_mask_for_every_kind_of_paint() {
     let color = [0.5, 0.25, 0.0, 0.5];
     let tile = PlanarTile::from_pixels(&one_pixel(color));
     let bytes = tile.quantised().unwrap();
-    let deep = tile.kept(None).unwrap();
+    let deep = tile.to_tile_over(None).unwrap();
     let coverage = TileCoverage::uniform(0.5).times(|x, _| if x < 32 { 1.0 } else { 0.5 });
     for paint in [
         TilePaint::Solid(color),
@@ -289,7 +289,10 @@ fn paint_of_16_bits_blends_as_the_floats_that_it_holds() {
         })
     };
     assert!(same(&PlanarTile::of_tile(Some(&tile)), &floats));
-    assert!(floats.kept(Some(&tile)).unwrap().is_same(&tile), "what is loaded is kept as it was");
+    assert!(
+        floats.to_tile_over(Some(&tile)).unwrap().is_same(&tile),
+        "what is loaded is kept as it was"
+    );
     let masked = TileCoverage::uniform(0.7).times(|x, y| (x * y) as f32 / 4096.0);
     for (mode, _) in BlendMode::ALL {
         for coverage in [&TileCoverage::FULL, &TileCoverage::uniform(0.3), &masked] {

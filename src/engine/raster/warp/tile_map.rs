@@ -94,7 +94,12 @@ impl PixelMap for TileMap {
         let [a, b, c, d] = &points.jacobian;
         let within = from..from + count;
         let [a, b, c, d] = [a, b, c, d].map(|row| &row[within.clone()]);
-        known(&points.x[within.clone()], &points.y[within], [a, b, c, d], &mut row.shows[..count]);
+        mark_known(
+            &points.x[within.clone()],
+            &points.y[within],
+            [a, b, c, d],
+            &mut row.shows[..count],
+        );
     }
 
     fn pixel_move(&self) -> Option<PixelMove> {
@@ -171,7 +176,7 @@ crate::widest! {
     }
 
     /// As [`TilePoints::is_known`], of a row.
-    fn known(x: &[f32], y: &[f32], jacobian: [&[f32]; 4], out: &mut [bool]) {
+    fn mark_known(x: &[f32], y: &[f32], jacobian: [&[f32]; 4], out: &mut [bool]) {
         let n = out.len();
         let (x, y, [a, b, c, d]) = (&x[..n], &y[..n], jacobian.map(|row| &row[..n]));
         for k in 0..n {

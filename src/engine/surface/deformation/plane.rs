@@ -176,7 +176,7 @@ impl LaidPlanes {
 
     /// For a dab: its plane itself, over a rectangle and one more pixel around it, if all of that
     /// is on its object.
-    pub fn own(&self, rect: Rect) -> Option<OwnPlane<'_>> {
+    pub fn plane_over(&self, rect: Rect) -> Option<OwnPlane<'_>> {
         let ([fit], Some(at)) = (&self.fits[..], self.dab_at) else { return None };
         let blocks = self.objects.around_blocks();
         let (x0, y0) = (rect.x0.max(0) as usize / BLOCK, rect.y0.max(0) as usize / BLOCK);

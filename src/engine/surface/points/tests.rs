@@ -26,7 +26,7 @@ fn bumpy() -> Arc<Surface> {
 
 /// What a point reads by the definition: of the pixels less than one away along both axes those
 /// that steps along links among them reach from the one that holds it, weighed by the tent.
-fn told(surface: &Surface, q: Vec2) -> Option<MapValues> {
+fn read_by_definition(surface: &Surface, q: Vec2) -> Option<MapValues> {
     let held = (q.x.floor() as i32, q.y.floor() as i32);
     let tent = |(x, y): (i32, i32)| {
         let away = (vec2(x as f32, y as f32) + 0.5 - q).abs();
@@ -81,7 +81,7 @@ fn points_read_what_the_definition_says() {
     let mut parted = 0;
     for i in 0..4000 {
         let q = vec2(40.0 * hash::unit(i, 0, 7), 30.0 * hash::unit(i, 1, 7));
-        let (found, told) = (surface.at_point(q), told(&surface, q));
+        let (found, told) = (surface.at_point(q), read_by_definition(&surface, q));
         match (found, told) {
             (Some(a), Some(b)) => {
                 assert!(

@@ -187,7 +187,12 @@ impl RayMap {
     }
 
     /// Where a ray meets the surface: steps along its line.
-    fn met(&self, line: &RayLine, ray: &SurfaceRay, faces: impl Fn(f32) -> bool) -> Option<f32> {
+    fn first_hit(
+        &self,
+        line: &RayLine,
+        ray: &SurfaceRay,
+        faces: impl Fn(f32) -> bool,
+    ) -> Option<f32> {
         let mut place = if ray.inward { RayPlace::Behind } else { RayPlace::Start };
         let (mut i, mut checked) = (1, 0);
         while i <= line.steps {
@@ -281,7 +286,7 @@ impl Surface {
             let share = if is_cliff { line.share(at).round() } else { line.share(at) };
             surface.normal(a.0, a.1).lerp(surface.normal(b.0, b.1), share).normalize_or(Vec3::Z)
         };
-        let steps = map.met(&line, ray, |steps| faces(normal_of(base, steps)))?;
+        let steps = map.first_hit(&line, ray, |steps| faces(normal_of(base, steps)))?;
         // Detail may turn a normal away from the ray.
         let normal = Some(normal_of(self, steps))
             .filter(|n| faces(*n))

@@ -70,7 +70,7 @@ pub(super) fn judged(support: &SupportBounds, at: TileAt) -> JudgedBlocks {
         }
         OperatorBounds::Unwrapped { surface, unwrapping, at: anchor } => {
             let ranges = BlockRanges::of(at, cover, unwrapping.bounds(surface));
-            laid(ranges, corner, extent, LaidBlocks { at: *anchor }, &mut touched, &mut pixel);
+            unwrapped(ranges, corner, extent, LaidBlocks { at: *anchor }, &mut touched, &mut pixel);
         }
     }
     let there = support.on_canvas(at);
@@ -146,7 +146,7 @@ impl BlockBend<5> for LaidBlocks {
         _: (Vec2, Vec2),
         _: BlockImage,
     ) -> BlockImage {
-        BlockImage::laid(TurnSpan { low: vec2(x0, y0), high: vec2(x1, y1), slope }, self.at)
+        BlockImage::unwrapped(TurnSpan { low: vec2(x0, y0), high: vec2(x1, y1), slope }, self.at)
     }
 }
 
@@ -207,7 +207,7 @@ crate::widest! {
         each(ranges, corner, extent, bend, touched, pixel);
     }
 
-    fn laid(
+    fn unwrapped(
         ranges: BlockRanges<5>,
         corner: Vec2,
         extent: DabExtent,

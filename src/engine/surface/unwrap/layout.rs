@@ -254,7 +254,7 @@ impl Surface {
     pub fn known_plane_layout(&self, settings: UnwrapSettings) -> Option<Arc<PlaneLayout>> {
         self.derived
             .plane_layouts
-            .known(&settings.held(self.size()).key())
+            .get(&settings.held(self.size()).key())
             .and_then(|laid| Option::clone(&laid))
     }
 }

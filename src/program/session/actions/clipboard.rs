@@ -7,7 +7,7 @@ mod pasted;
 pub use pasted::{PasteTo, PastedPicture};
 
 use super::layers::{LayerAction, above};
-use crate::document::cut::taken;
+use crate::document::cut::multiply;
 use crate::document::{
     Content, Document, Layer, LayerId, LayerLock, LayerSlot, PixelLayer, Progress, flatten_to_paint,
 };
@@ -125,7 +125,8 @@ fn covered(document: &Document) -> CoverageGrid {
 fn copy(document: &Document, ids: &[LayerId], merged: bool) -> Result<Copied, &'static str> {
     let (covered, progress) = (covered(document), Progress::default());
     let (layers, tiles) = if merged {
-        let tiles = taken(&flatten_to_paint(document, &progress).ok_or(NOTHING_THERE)?, &covered);
+        let tiles =
+            multiply(&flatten_to_paint(document, &progress).ok_or(NOTHING_THERE)?, &covered);
         let pixels = PixelLayer { tiles: tiles.clone(), ..PixelLayer::default() };
         (
             vec![Layer { clip_to_surface: false, ..Layer::new("Copy", Content::Pixels(pixels)) }],
@@ -139,7 +140,7 @@ fn copy(document: &Document, ids: &[LayerId], merged: bool) -> Result<Copied, &'
         let painted = look
             .and_then(|look| flatten_to_paint(&look.with_only(&[id])?, &progress))
             .ok_or(NOTHING_THERE)?;
-        (vec![copied], taken(&painted, &covered))
+        (vec![copied], multiply(&painted, &covered))
     } else {
         let copies: Vec<Layer> =
             ids.iter().filter_map(|id| document.copied_from(*id, &covered)).collect();
@@ -152,7 +153,7 @@ fn copy(document: &Document, ids: &[LayerId], merged: bool) -> Result<Copied, &'
         }
         let layers = copies.iter().cloned().map(Arc::new).collect();
         let alone = Document { layers, ..document.clone() };
-        (copies, taken(&flatten_to_paint(&alone, &progress).ok_or(NOTHING_THERE)?, &covered))
+        (copies, multiply(&flatten_to_paint(&alone, &progress).ok_or(NOTHING_THERE)?, &covered))
     };
     let rect = CoverageGrid::of_alpha(&tiles).covered().intersect(document.size.rect());
     if rect.is_empty() && merged {

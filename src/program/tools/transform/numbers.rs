@@ -77,7 +77,7 @@ impl GizmoNumbers {
             let (x, y) = numbers.sides();
             PlaneMap::affine([x.x, x.y, y.x, y.y, numbers.at.x, numbers.at.y])
         };
-        to_frame(other)?.inverse().then(&to_frame(self)?).told_coefficients()
+        to_frame(other)?.inverse().then(&to_frame(self)?).coefficients_as_written()
     }
 
     /// A layer's own transform under which its gizmo has these numbers: `None` if that is no map,

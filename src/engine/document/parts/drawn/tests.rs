@@ -74,14 +74,14 @@ fn drawing() -> Document {
 /// The same as a file would be read: nothing is known of what was made before.
 fn made_anew(document: &Document) -> Document {
     let (surface, list) = (document.maps_surface().cloned(), document.parts.list.clone());
-    let layers = document.layers.iter().map(forgotten).collect();
+    let layers = document.layers.iter().map(without_cache).collect();
     Document { surface, parts: Arc::default(), layers, ..document.clone() }.with_parts(list)
 }
 
-fn forgotten(layer: &Arc<Layer>) -> Arc<Layer> {
+fn without_cache(layer: &Arc<Layer>) -> Arc<Layer> {
     let mut next = Layer { cache: LayerCache::default(), ..Layer::clone(layer) };
     match &mut next.content {
-        Content::Group(group) => group.layers = group.layers.iter().map(forgotten).collect(),
+        Content::Group(group) => group.layers = group.layers.iter().map(without_cache).collect(),
         Content::Strokes(live) => *live = Live::new(live.params().clone()),
         _ => {}
     }
