@@ -44,7 +44,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
     }
     let document = reading.document()?;
     let ProjectReader { mut notes, is_whole, .. } = reading;
-    notes.extend(document.note_of_lost(None).into_iter().chain(document.note_of_astray()));
+    notes.extend(document.notes_of_parts());
     // Without it the layers are painted before anything is seen.
     let picture =
         archive.has(MERGED).then(|| archive.bytes(MERGED, budget.file_bytes).ok()).flatten();

@@ -37,12 +37,18 @@ pub fn read_back(file: &Path, bytes: &[u8], meant: Meant) -> Result<()> {
         return lost(what);
     }
     let Some(ours) = parsed.ours else { return lost("what is live in it is missing".into()) };
-    match restored(file, ours, &parsed.records, &budget) {
-        Err(error) => lost(error.to_string()),
-        Ok(None) => lost("its layers are taken for another program's".into()),
-        Ok(Some(read)) if !read.notes.is_empty() => lost(read.notes.join("; ")),
-        Ok(Some(read)) => meant.document.difference(&read.document).map_or(Ok(()), lost),
+    let mut read = match restored(file, ours, &parsed.records, &budget) {
+        Err(error) => return lost(error.to_string()),
+        Ok(None) => return lost("its layers are taken for another program's".into()),
+        Ok(Some(read)) => read,
+    };
+    // What is said about the document itself was true before.
+    let own = meant.document.notes_of_parts();
+    read.notes.retain(|note| !own.contains(note));
+    if !read.notes.is_empty() {
+        return lost(read.notes.join("; "));
     }
+    meant.document.difference(&read.document).map_or(Ok(()), lost)
 }
 
 /// What other programs would see differently from what was meant.
@@ -111,8 +117,9 @@ mod tests {
     use super::*;
     use crate::document::{LayerLabel, Progress, flatten};
     use crate::math::Rect;
-    use crate::project::sample::everything;
+    use crate::project::sample::{everything, everything_json, files, read};
     use crate::psd::{alpha_channels, export, marks, write};
+    use serde_json::json;
 
     const FILE: &str = "a.psd";
 
@@ -163,6 +170,17 @@ mod tests {
                 "{expected}: {said}"
             );
         }
+    }
+
+    #[test]
+    fn what_is_said_about_the_document_itself_is_no_reason_not_to_save_it() {
+        let mut json = everything_json(32);
+        let astray = json!({ "id": "b", "kind": "sculpt", "on": "gone", "strokes": [] });
+        json["surface"]["parts"] = json!([astray]);
+        let document = read(&json, &files(32));
+        assert_eq!(document.notes_of_parts().len(), 1);
+        let written = export::write(Path::new(FILE), &document, &Progress::default());
+        assert!(written.unwrap().is_some());
     }
 
     #[test]

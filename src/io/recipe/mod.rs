@@ -204,8 +204,8 @@ fn read_parts(
         }
     };
     document.active_selection = document.active_selection.filter(|found| !found.is_empty());
-    let of_parts = document.note_of_lost(None).into_iter().chain(document.note_of_astray());
-    Ok((document, reader.notes.into_iter().chain(of_parts).collect()))
+    let notes = [reader.notes, document.notes_of_parts()].concat();
+    Ok((document, notes))
 }
 
 fn check_version(root: &mut Fields) -> Result<()> {

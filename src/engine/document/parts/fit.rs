@@ -41,6 +41,12 @@ impl Document {
 }
 
 impl Document {
+    /// What is said about the parts of a document whenever it is read: those whose place is lost,
+    /// and those that lie on none.
+    pub fn notes_of_parts(&self) -> Vec<String> {
+        self.note_of_lost(None).into_iter().chain(self.note_of_astray()).collect()
+    }
+
     /// A sentence about the parts that lie on none with a form of its own, so that they change
     /// nothing.
     pub fn note_of_astray(&self) -> Option<String> {

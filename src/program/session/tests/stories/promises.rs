@@ -175,8 +175,8 @@ fn is_kept(document: &Document, all_formats: bool) -> Kept {
     let read = project::read(file, &bytes, &budget)
         .map_err(|error| Broken::from_message("not opened", error))?;
     // What it says of itself is no loss.
-    let own = document.note_of_lost(None);
-    if let Some(note) = read.notes.iter().find(|note| Some(*note) != own.as_ref()) {
+    let own = document.notes_of_parts();
+    if let Some(note) = read.notes.iter().find(|note| !own.contains(note)) {
         return Err(Broken::from_message("opened with a note", note));
     }
     if let Some(what) = document.difference(&read.document) {
@@ -236,8 +236,8 @@ fn is_kept_by_photoshop(document: &Document, picture: &[u8]) -> Kept {
     let Some(written) = written else { return Ok(()) };
     let read = psd::read(file, &written.bytes, &budget)
         .map_err(|error| Broken::from_message("psd: not opened", error))?;
-    let own = document.note_of_lost(None);
-    if let Some(note) = read.notes.iter().find(|note| Some(*note) != own.as_ref()) {
+    let own = document.notes_of_parts();
+    if let Some(note) = read.notes.iter().find(|note| !own.contains(note)) {
         return Err(Broken::from_message("psd: opened with a note", note));
     }
     if let Some(what) = document.difference(&read.document) {
