@@ -12,7 +12,8 @@ pub use painted::painted;
 pub use passes::{LightLayer, layers};
 
 use super::bitmap::Bitmap;
-use super::{Budget, bitmap, exr::ExrFile};
+use super::exr::{self, ExrFile};
+use super::{Budget, bitmap, pixels};
 use crate::math::{Size, srgb};
 use crate::raster::picture::Texels;
 use crate::raster::{Asset, Picture, Plane, TileGrid, tile};
@@ -37,6 +38,19 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
         picture_of(file, upright(file, bytes, budget)?, budget)
     }?;
     Ok(Picture { encoded: Some(Asset::from(bytes.to_vec())), ..picture })
+}
+
+/// A picture as a file, without loss, and the extension of its format: a PNG of 8
+/// or 16 bits, or an EXR of light.
+///
+/// * `file`: for messages.
+pub fn encode(file: &Path, picture: &Picture) -> Result<(Asset, &'static str)> {
+    let size = picture.size;
+    match (&picture.texels, &picture.deep) {
+        (Texels::Srgb8(_), Some(deep)) => Ok((pixels::encode_deep(file, deep, size)?, "png")),
+        (Texels::Srgb8(texels), None) => Ok((pixels::encode_texels(file, texels, size)?, "png")),
+        (Texels::Linear(light), _) => Ok((exr::encode_light(file, size, light)?.into(), "exr")),
+    }
 }
 
 /// A decoded file in its upright position.
@@ -65,9 +79,7 @@ fn picture_of(file: &Path, bitmap: Bitmap, budget: &Budget) -> Result<Picture> {
             )?;
             let profiled = bitmap.icc.as_deref().and_then(|icc| through_profile(image, icc));
             let plain = || bitmap.image.into_rgba16().into_raw().as_chunks().0.to_vec();
-            let deep = profiled.unwrap_or_else(plain);
-            Picture::srgb8(size, deep.iter().map(|t| t.map(byte)).collect())
-                .map(|picture| picture.with_deep(deep))
+            Picture::srgb16(size, profiled.unwrap_or_else(plain))
         }
         image => {
             let profiled = bitmap.icc.as_deref().and_then(|icc| through_profile(image, icc));

@@ -95,6 +95,15 @@ pub fn encode_texels(file: &Path, texels: &[[u8; 4]], size: Size) -> Result<Asse
     checked(file, || [Cow::Borrowed(texels.as_flattened())].into_iter(), size, PngKind::RGBA8)
 }
 
+/// The same with 16 bits a channel.
+pub fn encode_deep(file: &Path, texels: &[[u16; 4]], size: Size) -> Result<Asset> {
+    let bytes = |rows: &[[u16; 4]]| -> Cow<[u8]> {
+        rows.as_flattened().iter().flat_map(|v| v.to_be_bytes()).collect()
+    };
+    let rows = || texels.chunks(size.width as usize).map(bytes);
+    checked(file, rows, size, PngKind::RGBA16)
+}
+
 /// Of a chunk of packed pixels.
 const CHUNK_BYTES: usize = 1 << 20;
 /// What a PNG takes besides its pixels.

@@ -2,6 +2,7 @@
 //! Floor 1. Reading files is `io::picture`'s work.
 
 use super::Asset;
+use super::tile::deep::byte_of;
 use crate::math::{Size, srgb};
 use std::sync::Arc;
 
@@ -63,6 +64,12 @@ impl Picture {
             .then(|| Self::of_texels(size, Texels::Srgb8(texels.into())))
     }
 
+    /// As [`Picture::srgb8`], of 16 bits a channel: its bytes are these, rounded.
+    pub fn srgb16(size: Size, deep: Vec<[u16; 4]>) -> Option<Self> {
+        let bytes = deep.iter().map(|texel| texel.map(byte_of)).collect();
+        Some(Self { deep: Some(deep.into()), ..Self::srgb8(size, bytes)? })
+    }
+
     /// As [`Picture::srgb8`]; NaN and negative light become 0, infinite light the largest half
     /// float.
     pub fn linear(size: Size, mut texels: Vec<[f32; 4]>) -> Option<Self> {
@@ -79,13 +86,6 @@ impl Picture {
 
     fn of_texels(size: Size, texels: Texels) -> Self {
         Self { size, texels, deep: None, encoded: None }
-    }
-
-    /// The same picture with every texel also in 16 bits; only bytes if the number of texels
-    /// differs.
-    pub fn with_deep(self, deep: Vec<[u16; 4]>) -> Self {
-        let fits = matches!(self.texels, Texels::Srgb8(_)) && deep.len() == self.size.area();
-        Self { deep: fits.then(|| deep.into()), ..self }
     }
 
     /// It holds more than 8 bits a channel.

@@ -3,12 +3,11 @@
 use crate::document::Progress;
 use crate::fs::Disk;
 use crate::paint::PictureSource;
-use crate::pixels;
+use crate::picture;
 use crate::raster::Asset;
-use crate::raster::picture::Texels;
 use crate::recipe::{BrushPreset, write_preset};
 use crate::replace::{Terms, check, replace};
-use crate::{Error, Result, exr};
+use crate::{Error, Result};
 use std::path::{Path, PathBuf};
 
 /// A preset as files, not written yet.
@@ -25,7 +24,7 @@ pub fn encode(file: &Path, preset: &BrushPreset) -> Result<Encoded> {
     let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let mut files: Vec<(PathBuf, Asset)> = Vec::new();
     let brush = preset.brush.with_pictures(|source| {
-        let (bytes, extension) = encoded(file, source)?;
+        let (bytes, extension) = picture::encode(file, &source.picture)?;
         let number = files.len() + 1;
         let name = if number == 1 {
             format!("{stem}.{extension}")
@@ -80,17 +79,4 @@ pub fn remove(file: &Path, preset: &BrushPreset) -> Result<()> {
         }
     }
     Ok(())
-}
-
-/// Without loss: bytes as PNG, light as EXR.
-fn encoded(file: &Path, source: &PictureSource) -> Result<(Asset, &'static str)> {
-    let picture = &source.picture;
-    match &picture.texels {
-        Texels::Srgb8(texels) => {
-            pixels::encode_texels(file, texels, picture.size).map(|png| (png, "png"))
-        }
-        Texels::Linear(texels) => {
-            exr::encode_light(file, picture.size, texels).map(|exr| (exr.into(), "exr"))
-        }
-    }
 }

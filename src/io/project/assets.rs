@@ -13,11 +13,10 @@ use crate::document::{
 use crate::exr;
 use crate::math::Rect;
 use crate::paint::Selection;
-use crate::pixels;
-use crate::raster::picture::Texels;
 use crate::raster::{Asset, Picture, Plane};
 use crate::recipe;
 use crate::surface::Surface;
+use crate::{picture, pixels};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
@@ -40,7 +39,7 @@ pub struct AssetList {
 /// encoded once.
 #[derive(Default)]
 pub struct MadeFiles {
-    pictures: BTreeMap<usize, (Picture, Asset)>,
+    pictures: BTreeMap<usize, (Picture, (Asset, &'static str))>,
     masks: BTreeMap<usize, (Arc<Plane<u8>>, Asset)>,
     selections: BTreeMap<usize, (Arc<Selection>, Asset)>,
     /// The maps and the mask of a surface.
@@ -205,11 +204,7 @@ impl AssetList {
         if let Some(asset) = &picture.encoded {
             return Ok(self.add(name, asset.clone()));
         }
-        let extension = match &picture.texels {
-            Texels::Srgb8(_) => "png",
-            Texels::Linear(_) => "exr",
-        };
-        let asset = self.made.picture(file, picture)?;
+        let (asset, extension) = self.made.picture(file, picture)?;
         Ok(self.add(&name_with_extension(name, "picture", extension), asset))
     }
 
@@ -262,21 +257,14 @@ fn files_of_mut(source: &mut SurfaceSource) -> impl Iterator<Item = &mut String>
 }
 
 impl MadeFiles {
-    /// Without loss: bytes as PNG, light as EXR of 32 bits.
-    fn picture(&mut self, file: &Path, picture: &Picture) -> Result<Asset> {
-        let key = match &picture.texels {
-            Texels::Srgb8(texels) => texels.as_ptr() as usize,
-            Texels::Linear(texels) => texels.as_ptr() as usize,
-        };
-        if let Some((_, known)) = self.pictures.get(&key) {
+    /// Its file, and the extension of that.
+    fn picture(&mut self, file: &Path, picture: &Picture) -> Result<(Asset, &'static str)> {
+        if let Some((_, known)) = self.pictures.get(&picture.place()) {
             return Ok(known.clone());
         }
-        let asset = match &picture.texels {
-            Texels::Srgb8(texels) => pixels::encode_texels(file, texels, picture.size)?,
-            Texels::Linear(texels) => exr::encode_light(file, picture.size, texels)?.into(),
-        };
-        self.pictures.insert(key, (picture.clone(), asset.clone()));
-        Ok(asset)
+        let made = picture::encode(file, picture)?;
+        self.pictures.insert(picture.place(), (picture.clone(), made.clone()));
+        Ok(made)
     }
 
     fn mask(&mut self, file: &Path, coverage: &Arc<Plane<u8>>) -> Result<Asset> {

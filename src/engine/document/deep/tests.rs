@@ -255,7 +255,7 @@ fn a_placed_picture_of_more_than_8_bits_becomes_paint_of_16_even_if_nothing_is_s
     let bytes =
         Picture::srgb8(size, deep.iter().map(|t| t.map(|v| (v / 257) as u8)).collect()).unwrap();
     let light = deep.iter().map(|t| t.map(|v| srgb::decode(f32::from(v) / 65535.0))).collect();
-    let wide = bytes.clone().with_deep(deep.clone());
+    let wide = Picture::srgb16(size, deep.clone()).unwrap();
     for (picture, is_deep) in
         [(wide, true), (Picture::linear(size, light).unwrap(), true), (bytes.clone(), false)]
     {

@@ -139,9 +139,8 @@ mod tests {
         let size = Size::new(64, 64);
         let scene = Scene { size, surface: None };
         let deep = |i: usize| (i * 16) as u16;
-        let texels = (0..64 * 64).map(|i| [(deep(i) >> 8) as u8, 0, 0, 255]).collect();
-        let picture = Picture::srgb8(size, texels).unwrap();
-        let picture = picture.with_deep((0..64 * 64).map(|i| [deep(i), 0, 0, 65535]).collect());
+        let texels = (0..64 * 64).map(|i| [deep(i), 0, 0, 65535]).collect();
+        let picture = Picture::srgb16(size, texels).unwrap();
         let tile = placed(picture, size).render_pixels(&scene, TileAt::new(0, 0)).unwrap();
         assert_eq!(tile.rows()[40].pixel(11)[0], f32::from(deep(40 * 64 + 11)) / 65535.0);
         let sun = Picture::linear(size, vec![[9.0, 1.0, 0.0, 1.0]; 64 * 64]).unwrap();

@@ -232,13 +232,11 @@ fn paste_image(session: &mut Session, at: Option<Vec2>) {
         return session.say(NOTHING_COPIED);
     };
     let size = Size::new(copied.rect.width() as u32, copied.rect.height() as u32);
-    let Some(picture) = Picture::srgb8(size, copied.rgba.as_chunks::<4>().0.to_vec()) else {
-        return;
-    };
     let picture = match &copied.deep {
-        Some(deep) => picture.with_deep(deep.to_vec()),
-        None => picture,
+        Some(deep) => Picture::srgb16(size, deep.to_vec()),
+        None => Picture::srgb8(size, copied.rgba.as_chunks::<4>().0.to_vec()),
     };
+    let Some(picture) = picture else { return };
     let pasted = PastedPicture { name: format!("{}.png", copied.name()), picture };
     pasted::paste(session, &pasted, PasteTo::Image, at);
 }

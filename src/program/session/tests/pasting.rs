@@ -111,3 +111,20 @@ fn what_was_copied_here_is_pasted_as_an_image_layer_too() {
     act(&mut session, r#"{"in":"clipboard","do":"paste image","at":[50,60]}"#);
     assert!(matches!(session.layer().unwrap().content, Content::Image(_)));
 }
+
+#[test]
+fn soft_paint_that_is_pasted_as_an_image_layer_is_saved_with_its_16_bits() {
+    let mut session = replay(PAPER);
+    let value = |i: u16| [i * 11, 65535 - i * 7, i, 65535 - i * 3];
+    let soft = Picture::srgb16(Size::new(40, 30), (0..1200).map(value).collect()).unwrap();
+    pasted(PasteTo::Paint, Some(Vec2::new(60.0, 50.0)), soft).apply(&mut session).unwrap();
+    let act = |session: &mut Session, line: &str| session.replay(Path::new("story"), line).unwrap();
+    act(&mut session, r#"{"in":"clipboard","do":"copy","merged":false}"#);
+    act(&mut session, r#"{"in":"clipboard","do":"paste image","at":[50,60]}"#);
+    let folder = tempfile::tempdir().unwrap();
+    let (file, document) = (folder.path().join("soft.ora"), session.shown().unwrap().clone());
+    let overwrite = crate::io::Overwrite::Nothing;
+    storage::save(&file, &document, overwrite, &Progress::default()).unwrap();
+    session.adopt(storage::open(&file).unwrap());
+    assert_eq!(document.difference(session.shown().unwrap()), None);
+}

@@ -3,10 +3,9 @@
 //! itself (`clipboard`).
 
 use crate::document::{Content, Document, Layer, PixelLayer};
-use crate::io::{Budget, base64, picture, pixels};
+use crate::io::{Budget, base64, picture};
 use crate::math::range::held;
 use crate::math::{COORDINATE, Vec2};
-use crate::raster::picture::Texels;
 use crate::raster::{Asset, Picture, TileGrid};
 use crate::session::actions::layers::above;
 use crate::session::actions::placing::place;
@@ -37,13 +36,8 @@ pub struct PastedPicture {
 impl PastedPicture {
     /// The bytes of its file, or of one made now.
     fn file(&self) -> Option<Asset> {
-        match (&self.picture.encoded, &self.picture.texels) {
-            (Some(file), _) => Some(file.clone()),
-            (None, Texels::Srgb8(texels)) => {
-                pixels::encode_texels(Path::new("pasted"), texels, self.picture.size).ok()
-            }
-            (None, Texels::Linear(_)) => None,
-        }
+        let made = || Some(picture::encode(Path::new("pasted"), &self.picture).ok()?.0);
+        self.picture.encoded.clone().or_else(made)
     }
 }
 
