@@ -2,7 +2,7 @@
 //! Floor 7.
 
 use super::file_purpose::FilePurpose;
-use super::jobs::{JobKind, JobResult, Jobs};
+use super::jobs::{JobKind, JobResult, JobWindow, Jobs};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -18,21 +18,21 @@ pub enum FileAnswer {
     Nowhere,
 }
 
-/// Asks with the system's dialog, on another thread. [`JobResult::Chosen`] with `None` means that
-/// there is none, or that the window should show its own (`by_itself`).
-pub fn request(jobs: &mut Jobs, purpose: FilePurpose, name: &str, by_itself: bool) {
+/// Asks with the system's dialog, on another thread, and does something with the answer.
+/// [`FileAnswer::Nowhere`] means that there is none, or that the window should show its own
+/// (`by_itself`).
+pub fn request<W: JobWindow>(
+    jobs: &mut Jobs<W>,
+    purpose: FilePurpose,
+    name: &str,
+    by_itself: bool,
+    then: impl FnOnce(&mut W, FileAnswer) + Send + 'static,
+) {
     let name = name.to_owned();
     jobs.start(purpose.title().into(), JobKind::Asking, move |_| {
-        match answer(purpose, &name, by_itself) {
-            FileAnswer::File(file) => JobResult::Chosen(purpose, Some(file)),
-            FileAnswer::Cancelled => JobResult::Nothing,
-            FileAnswer::Nowhere => JobResult::Chosen(purpose, None),
-        }
+        let answer = if by_itself { FileAnswer::Nowhere } else { system_dialog(purpose, &name) };
+        JobResult::then(|window, _| then(window, answer))
     });
-}
-
-fn answer(purpose: FilePurpose, name: &str, by_itself: bool) -> FileAnswer {
-    if by_itself { FileAnswer::Nowhere } else { system_dialog(purpose, name) }
 }
 
 fn system_dialog(purpose: FilePurpose, name: &str) -> FileAnswer {

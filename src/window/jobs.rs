@@ -1,121 +1,79 @@
 //! Long work: each job runs on its own thread, with a progress bar and a cancel button, so that the
 //! window never waits. Floor 7.
 
-use crate::clipboard::{Clipboard, PastedContent};
-use crate::document::parts::drawing::DrawingTraits;
-use crate::document::{Document, LayerId, Progress, SurfaceSource};
-use crate::file_purpose::FilePurpose;
-use crate::io::recipe::BrushPreset;
-use crate::io::replace::FileStamp;
-use crate::io::{maps, recovery};
+use crate::document::Progress;
 use crate::math::Vec2;
 use crate::memory;
-use crate::pending::{Pending, Saving};
-use crate::raster::Picture;
-use crate::session::PicturePart;
-use crate::session::actions::parts::FirstShape;
-use crate::session::actions::pictures::ReadPart;
-use crate::session::actions::placing::read_picture;
-use crate::session::actions::{PartAction, PasteTo};
-use crate::session::autosave::RestoredDocument;
-use crate::session::storage::{self, FileUse, OpenedFile, SortedFiles};
-use crate::session::{Action, Edit};
+use crate::session::actions::PasteTo;
 use crate::{Error, Result};
 use eframe::egui;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
-/// The result of a job; the window handles it when it arrives.
-pub enum JobResult {
-    /// A document, with its file if it has one.
-    Opened(Option<PathBuf>, Box<Result<OpenedFile>>),
-    /// Maps of an object: the import dialog shows their conventions first.
-    AreMaps(Box<SurfaceSource>),
-    /// The file is opened as a document of its own.
-    IsDocument(PathBuf),
-    /// The file is read to become a layer.
-    IsPicture(PathBuf, PictureUse),
-    /// Several results.
-    Several(Vec<JobResult>),
-    /// Maps were read, for the import dialog.
-    Read(Box<MapsRead>),
-    /// Drawings that can be recovered.
-    Lost(Vec<recovery::LostSession>),
-    /// One of them was recovered.
-    Recovered(Box<Result<RestoredDocument>>),
-    /// A picture was read from a file, to become a layer.
-    Pictured(PathBuf, String, Picture, PictureUse),
-    /// The same, to lie on the unwrapped surface.
-    Flat(PathBuf, String, Picture),
-    /// The surface of an open document, by its key, was unwrapped.
-    Unwrapped(usize),
-    /// A picture was read for a layer of an open document.
-    Part(Box<PartResult>),
-    /// An open document was saved.
-    Saved(Box<Saving>, FileStamp),
-    /// It is not yet saved: the user must first know what the format cannot hold.
-    Loses(Box<Saving>),
-    /// Something was exported; what the format cannot hold.
-    Exported(PathBuf, Vec<String>),
-    /// Maps of the shape were exported.
-    ExportedMaps(Vec<PathBuf>),
-    /// Something would be lost that the user was not asked about; why.
-    Refused(Pending, String),
-    /// An edit of an open document that took long.
-    Edited(Box<EditResult>),
-    /// A drawing was given a shape: its open document, by its key, the value before, and the action.
-    Shaped(Box<ShapedResult>),
-    /// Something cannot be done; why.
-    Declined(&'static str),
-    /// What drawing an open document, by its key, holds.
-    Looked(usize, Option<(LayerId, DrawingTraits)>),
-    /// There is nothing to do; why.
-    Said(String),
-    /// The flattened picture is in the clipboard as long as this is kept.
-    Copied(Clipboard),
-    Pasted(PastedContent, PastePlace),
-    /// What was copied in this window is to be pasted.
-    PastedOwn(PastePlace),
-    /// The user's own brushes, and the errors of unreadable ones.
-    Brushes(Vec<BrushPreset>, Vec<String>),
-    /// Nothing to do, as after a cancelled job.
-    Nothing,
-    Failed(Error),
-    /// The result of a file dialog; `None` if the system has no dialog.
-    Chosen(FilePurpose, Option<PathBuf>),
-}
-
-/// Maps as they were read.
-pub struct MapsRead {
-    /// What was requested: a dialog that wants other maps by now ignores it.
-    pub source: SurfaceSource,
-    pub found: Result<maps::ImportedSurface>,
-    /// The finished picture that the same file holds, and the name of its layer.
-    pub picture: Option<(String, Picture)>,
-}
-
-pub struct PartResult {
-    /// By its key.
-    pub key: usize,
-    pub layer: LayerId,
-    pub part: PicturePart,
-    pub file: PathBuf,
-    pub read: ReadPart,
-}
-
-impl JobResult {
+/// The result of a job: what is done with it in the window `W`, as soon as it may be.
+pub struct JobResult<W> {
+    then: Option<Continuation<W>>,
     /// Whether something comes in front that nobody waits for: a document, or a dialog about one.
-    pub fn comes_in_front(&self) -> bool {
-        match self {
-            JobResult::Several(several) => several.iter().any(JobResult::comes_in_front),
-            JobResult::Opened(..)
-            | JobResult::AreMaps(_)
-            | JobResult::Lost(_)
-            | JobResult::Recovered(_)
-            | JobResult::Looked(..) => true,
-            _ => false,
+    pub comes_in_front: bool,
+    /// Whether it counts even if the job was cancelled meanwhile: a file is written already.
+    is_final: bool,
+}
+
+type Continuation<W> = Box<dyn FnOnce(&mut W, &egui::Context) + Send>;
+
+/// A window that jobs report errors to.
+pub trait JobWindow: 'static {
+    fn show_error(&mut self, error: &Error);
+}
+
+impl<W: JobWindow> JobResult<W> {
+    /// Nothing to do, as after a cancelled job.
+    pub fn nothing() -> Self {
+        Self { then: None, comes_in_front: false, is_final: false }
+    }
+
+    pub fn then(then: impl FnOnce(&mut W, &egui::Context) + Send + 'static) -> Self {
+        Self { then: Some(Box::new(then)), ..Self::nothing() }
+    }
+
+    pub fn failed(error: Error) -> Self {
+        Self::then(move |window, _| window.show_error(&error))
+    }
+
+    /// What is done with a success; an error is shown.
+    pub fn of<T: Send + 'static>(
+        found: Result<T>,
+        then: impl FnOnce(&mut W, T) + Send + 'static,
+    ) -> Self {
+        match found {
+            Ok(found) => Self::then(move |window, _| then(window, found)),
+            Err(error) => Self::failed(error),
+        }
+    }
+
+    /// All of them, in this order.
+    pub fn all(several: Vec<Self>) -> Self {
+        let comes_in_front = several.iter().any(|result| result.comes_in_front);
+        let run = |window: &mut W, ctx: &egui::Context| {
+            several.into_iter().for_each(|result| result.finish(window, ctx));
+        };
+        Self { comes_in_front, ..Self::then(run) }
+    }
+
+    pub fn in_front(self) -> Self {
+        Self { comes_in_front: true, ..self }
+    }
+
+    pub fn even_if_cancelled(self) -> Self {
+        Self { is_final: true, ..self }
+    }
+
+    /// Does it.
+    pub fn finish(self, window: &mut W, ctx: &egui::Context) {
+        if let Some(then) = self.then {
+            then(window, ctx);
         }
     }
 }
@@ -142,24 +100,6 @@ pub enum PinPosition {
     Middle,
     /// Under the pointer, if that is on the canvas.
     Pointer,
-}
-
-pub struct EditResult {
-    /// By its key.
-    pub key: usize,
-    pub action: Action,
-    /// What was edited.
-    pub from: Document,
-    pub edit: Edit,
-}
-
-pub struct ShapedResult {
-    /// By its key.
-    pub key: usize,
-    pub action: PartAction,
-    /// What was given a shape.
-    pub from: Document,
-    pub shape: FirstShape,
 }
 
 /// What the user can do while a job runs.
@@ -208,16 +148,16 @@ impl RunningJob {
 }
 
 /// The running jobs.
-pub struct Jobs {
-    sender: Sender<(usize, JobResult)>,
-    done: Receiver<(usize, JobResult)>,
+pub struct Jobs<W> {
+    sender: Sender<(usize, JobResult<W>)>,
+    done: Receiver<(usize, JobResult<W>)>,
     ctx: egui::Context,
     next: usize,
     pub under_way: Vec<RunningJob>,
     said: Option<(String, Instant)>,
 }
 
-impl Jobs {
+impl<W: JobWindow> Jobs<W> {
     pub fn new(ctx: &egui::Context) -> Self {
         let (sender, done) = channel();
         Self { sender, done, ctx: ctx.clone(), next: 0, under_way: Vec::new(), said: None }
@@ -228,7 +168,7 @@ impl Jobs {
         &mut self,
         name: String,
         kind: JobKind,
-        work: impl FnOnce(&Progress) -> JobResult + Send + 'static,
+        work: impl FnOnce(&Progress) -> JobResult<W> + Send + 'static,
     ) {
         let key = self.next;
         self.next += 1;
@@ -238,60 +178,16 @@ impl Jobs {
         let run = move || {
             let done = memory::caught(|| work(&watched));
             let done = done
-                .unwrap_or_else(|refused| JobResult::Failed(Error::out_of_memory(&named, refused)));
+                .unwrap_or_else(|refused| JobResult::failed(Error::out_of_memory(&named, refused)));
             // The window may be closed by then.
             let _ = sender.send((key, done));
             ctx.request_repaint();
         };
         if let Err(error) = spawn(&name, run) {
             // This end of the channel is held here.
-            let _ = self.sender.send((key, JobResult::Failed(error)));
+            let _ = self.sender.send((key, JobResult::failed(error)));
         }
         self.under_way.push(RunningJob { key, name, progress, kind, since: Instant::now() });
-    }
-
-    /// Opens files that came together. `use_of`: what becomes of pictures; absent: they open as
-    /// documents.
-    pub fn open(&mut self, files: Vec<PathBuf>, use_of: Option<PictureUse>) {
-        let name = match &files[..] {
-            [file] => format!("Opening {}", short(file)),
-            files => format!("Opening {} files", files.len()),
-        };
-        self.start(name, JobKind::Working, move |_| {
-            let (mut known, mut done) = (Vec::new(), Vec::new());
-            for file in files {
-                match storage::kind_of(&file) {
-                    Ok(kind) => known.push((file, kind)),
-                    Err(error) => done.push(JobResult::Failed(error)),
-                }
-            }
-            let SortedFiles { objects, others } = storage::sorted(known);
-            done.extend(objects.into_iter().map(|source| JobResult::AreMaps(Box::new(source))));
-            done.extend(others.into_iter().map(|(file, kind)| {
-                match use_of.filter(|_| kind == FileUse::Picture) {
-                    Some(use_of) => JobResult::IsPicture(file, use_of),
-                    None => JobResult::IsDocument(file),
-                }
-            }));
-            JobResult::Several(done)
-        });
-    }
-
-    pub fn read_document(&mut self, file: PathBuf) {
-        let name = format!("Opening {}", short(&file));
-        self.start(name, JobKind::Working, move |_| {
-            let opened = storage::open(&file);
-            JobResult::Opened(Some(file), Box::new(opened))
-        });
-    }
-
-    pub fn read_picture(&mut self, file: PathBuf, use_of: PictureUse) {
-        self.start(format!("Reading {}", short(&file)), JobKind::Working, move |_| {
-            match read_picture(&file) {
-                Ok((name, picture)) => JobResult::Pictured(file, name, picture, use_of),
-                Err(error) => JobResult::Failed(error),
-            }
-        });
     }
 
     /// Shows a success message for a while.
@@ -306,13 +202,13 @@ impl Jobs {
     }
 
     /// The results since the last call. Cancelled jobs have none, unless they were already done.
-    pub fn finished(&mut self) -> Vec<JobResult> {
+    pub fn finished(&mut self) -> Vec<JobResult<W>> {
         let mut finished = Vec::new();
         for (key, done) in self.done.try_iter() {
             let is_cancelled =
                 self.under_way.iter().any(|job| job.key == key && job.progress.is_cancelled());
             self.under_way.retain(|job| job.key != key);
-            if !is_cancelled || matches!(done, JobResult::Saved(..)) {
+            if !is_cancelled || done.is_final {
                 finished.push(done);
             }
         }

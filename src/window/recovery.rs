@@ -4,12 +4,12 @@
 use super::MainWindow;
 use super::dialogs::{Dialog, recovery};
 use super::jobs::{JobKind, JobResult};
+use crate::Error;
 use crate::advice::with_advice;
 use crate::document::Progress;
 use crate::io::recovery::LostSession;
 use crate::session::Autosave;
 use crate::session::autosave::RestoredDocument;
-use crate::{Error, Result};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 
@@ -24,11 +24,14 @@ impl MainWindow {
         self.jobs.start(
             "Looking for unsaved drawings".into(),
             JobKind::Working,
-            move |_: &Progress| JobResult::Lost(look()),
+            move |_: &Progress| {
+                let lost = look();
+                JobResult::then(|window: &mut Self, _| window.offer(lost)).in_front()
+            },
         );
     }
 
-    pub(super) fn offer(&mut self, lost: Vec<LostSession>) {
+    fn offer(&mut self, lost: Vec<LostSession>) {
         if !lost.is_empty() {
             self.dialogs.push(Dialog::Recovery(recovery::RecoveryDialog::new(lost)));
         }
@@ -45,25 +48,21 @@ impl MainWindow {
                 move |progress: &Progress| {
                     let found = catch_unwind(AssertUnwindSafe(|| bring.bring_back(one, progress)));
                     match found.unwrap_or_else(|_| Err(broken(&title))).transpose() {
-                        Some(found) => JobResult::Recovered(Box::new(found)),
-                        None => JobResult::Nothing,
+                        Some(found) => JobResult::of(found, Self::take_recovered).in_front(),
+                        None => JobResult::nothing(),
                     }
                 },
             );
         }
     }
 
-    pub(super) fn take_recovered(&mut self, found: Result<RestoredDocument>) {
-        match found {
-            Ok(RestoredDocument { open, recovery, tool }) => {
-                if let (Some(autosave), Some(recovery)) = (&mut self.session.autosave, recovery) {
-                    autosave.adopt(&open, recovery);
-                }
-                self.session.add_document(open);
-                self.session.tool = tool.unwrap_or(self.session.tool);
-            }
-            Err(error) => self.messages.push(with_advice(&error)),
+    fn take_recovered(&mut self, found: RestoredDocument) {
+        let RestoredDocument { open, recovery, tool } = found;
+        if let (Some(autosave), Some(recovery)) = (&mut self.session.autosave, recovery) {
+            autosave.adopt(&open, recovery);
         }
+        self.session.add_document(open);
+        self.session.tool = tool.unwrap_or(self.session.tool);
     }
 
     pub(super) fn delete(&mut self, lost: LostSession) {

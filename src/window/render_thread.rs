@@ -135,6 +135,18 @@ fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// Which picture is painted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+enum RenderPhase {
+    /// The whole one, or a draft once that is found to take too long for a drag.
+    #[default]
+    Whole,
+    /// The draft, which shows a drag.
+    Draft,
+    /// The whole one, however long that takes: the user paused a drag.
+    Paused,
+}
+
 /// The current work of the thread.
 #[derive(Default)]
 struct RenderWork {
@@ -143,12 +155,9 @@ struct RenderWork {
     draft: Option<DraftRender>,
     /// What was shown before the drag began.
     at_rest: Option<Document>,
-    /// Whether the drag is shown by the draft.
-    is_drafting: bool,
-    /// Whether the user paused: then the document is painted in full, however long that takes.
-    is_resting: bool,
-    /// Whether the reduced document is ready for a drag.
-    is_prepared: bool,
+    phase: RenderPhase,
+    /// How far the reduced document is ready for a drag.
+    readiness: Readiness,
     /// The whole picture still needs the surface of dragged parts, and how long that took last.
     is_behind: bool,
     shaping: Duration,
@@ -185,7 +194,8 @@ fn work(shared: &SharedRequest, sender: &Sender<RenderedTileBatch>, done: &dyn F
             let is_settled = painted.is_settled;
             send(painted)?;
             let newer = lock(&shared.wanted).is_some();
-            if (newer && (is_settled || begun.elapsed() > PASS)) || (work.is_drafting && is_settled)
+            if (newer && (is_settled || begun.elapsed() > PASS))
+                || (work.is_drafting() && is_settled)
             {
                 break;
             }
@@ -203,7 +213,7 @@ impl RenderWork {
         let done = memory::caught(|| step(self));
         if done.is_err() {
             (self.whole, self.draft) = (RenderPass::default(), None);
-            (self.is_drafting, self.is_resting, self.is_prepared) = (false, false, true);
+            (self.phase, self.readiness) = (RenderPhase::Whole, Readiness::Ready);
         }
         done
     }
@@ -217,10 +227,11 @@ impl RenderWork {
             if *lock(&shared.closed) {
                 return None;
             }
-            if wanted.is_some() || (!self.is_drafting && self.has_more()) {
+            if wanted.is_some() || (!self.is_drafting() && self.has_more()) {
                 return Some(wanted.take());
             }
-            let rest = if self.is_drafting { Some(REST) } else { self.is_slow().then_some(pause) };
+            let rest =
+                if self.is_drafting() { Some(REST) } else { self.is_slow().then_some(pause) };
             let Some(rest) = rest else {
                 wanted = shared.wake.wait(wanted).unwrap_or_else(PoisonError::into_inner);
                 continue;
@@ -228,12 +239,13 @@ impl RenderWork {
             let (next, waited) =
                 shared.wake.wait_timeout(wanted, rest).unwrap_or_else(PoisonError::into_inner);
             wanted = next;
-            if self.is_drafting {
-                (self.is_drafting, self.is_resting) = (!waited.timed_out(), waited.timed_out());
+            if waited.timed_out() && self.is_drafting() {
+                self.phase = RenderPhase::Paused;
             } else if waited.timed_out() {
                 drop(wanted);
                 // If there is no memory to prepare a drag, the drag itself will report it.
-                let waits = matches!(self.if_there_is_memory(Self::prepare), Ok(Readiness::Waits));
+                let is_prepared = self.if_there_is_memory(Self::prepare).is_ok();
+                let waits = is_prepared && self.readiness == Readiness::Waits;
                 // The next part at once.
                 pause = if waits { LOOK } else { Duration::ZERO };
                 wanted = lock(&shared.wanted);
@@ -243,21 +255,19 @@ impl RenderWork {
 
     /// A drag will need a smaller picture, and some of it is still to be made.
     fn is_slow(&self) -> bool {
-        !self.is_prepared && self.whole.slowest() > FINE
+        self.readiness != Readiness::Ready && self.whole.slowest() > FINE
     }
 
     /// Scales down some of the document before a drag needs it: all of a large one would delay the
     /// first frame.
-    fn prepare(&mut self) -> Readiness {
+    fn prepare(&mut self) {
         let step = step_for(self.whole.slowest());
-        let readiness = match &self.wanted {
+        self.readiness = match &self.wanted {
             Some(wanted) => {
                 self.draft.get_or_insert_with(|| DraftRender::new(step)).prepare(&wanted.document)
             }
             None => Readiness::Ready,
         };
-        self.is_prepared = matches!(readiness, Readiness::Ready);
-        readiness
     }
 
     fn begin(&mut self, next: RenderRequest) {
@@ -282,10 +292,11 @@ impl RenderWork {
             .draft
             .as_ref()
             .is_none_or(|draft| draft.is_unused() || draft.would_be_quick_in_whole_pixels());
-        self.is_drafting = next.is_dragged && (is_slow || !was_quick);
-        (self.wanted, self.is_resting, self.is_prepared) = (Some(next), false, false);
-        if self.is_drafting {
-            self.redraft();
+        let drafts = next.is_dragged && (is_slow || !was_quick);
+        (self.wanted, self.readiness) = (Some(next), Readiness::NotYet);
+        self.phase = RenderPhase::Whole;
+        if drafts {
+            self.show_draft();
         }
     }
 
@@ -303,8 +314,13 @@ impl RenderWork {
         self.draft = Some(draft);
     }
 
-    /// Passes the requested document to the draft.
-    fn redraft(&mut self) {
+    fn is_drafting(&self) -> bool {
+        self.phase == RenderPhase::Draft
+    }
+
+    /// Passes the requested document to the draft, which is painted from now on.
+    fn show_draft(&mut self) {
+        self.phase = RenderPhase::Draft;
         if let Some(draft) = self.draft.as_ref().filter(|draft| draft.is_slow()) {
             let step = draft.step * 2;
             self.begin_draft(step);
@@ -314,13 +330,13 @@ impl RenderWork {
         match draft.reduced.of(&wanted.document) {
             Ok(small) => draft.pass.begin(small),
             // A surface too thin to be scaled down is painted whole.
-            Err(_) => (self.draft, self.is_drafting) = (None, false),
+            Err(_) => (self.draft, self.phase) = (None, RenderPhase::Whole),
         }
     }
 
     fn has_more(&self) -> bool {
         match &self.draft {
-            Some(draft) if self.is_drafting => draft.pass.has_more(),
+            Some(draft) if self.is_drafting() => draft.pass.has_more(),
             _ => self.is_behind || self.whole.has_more(),
         }
     }
@@ -328,7 +344,7 @@ impl RenderWork {
     fn nothing(&self) -> RenderedTileBatch {
         let size = self.wanted.as_ref().map_or(Size::new(0, 0), |wanted| wanted.document.size);
         let (is_draft, size) = match &self.draft {
-            Some(draft) if self.is_drafting => (true, draft.pass.size().unwrap_or(size)),
+            Some(draft) if self.is_drafting() => (true, draft.pass.size().unwrap_or(size)),
             _ => (false, size),
         };
         let (tiles, took) = (Vec::new(), Duration::ZERO);
@@ -347,14 +363,15 @@ impl RenderWork {
     fn paint(&mut self) -> Option<RenderedTileBatch> {
         let wanted = self.wanted.as_ref()?;
         let (picture, is_dragged, visible) = (wanted.picture, wanted.is_dragged, wanted.visible);
-        if let Some(draft) = self.draft.as_mut().filter(|_| self.is_drafting) {
+        let is_drafting = self.is_drafting();
+        if let Some(draft) = self.draft.as_mut().filter(|_| is_drafting) {
             let done = draft.pass.paint(draft.in_sight(visible), BATCH)?;
             let size = draft.pass.size()?;
             return Some(RenderedTileBatch { is_draft: true, ..done.painted(picture, size) });
         }
         self.catch_up();
         let done = self.whole.paint(visible, if is_dragged { FEW } else { BATCH })?;
-        if is_dragged && !self.is_resting && !done.is_settled && done.took > FINE {
+        if is_dragged && self.phase == RenderPhase::Whole && !done.is_settled && done.took > FINE {
             let step = step_for(done.took.mul_f32(done.share_left() + 1.0));
             // A prepared one will do if it is small enough, unless all pixels can be shown.
             let does = |draft: &DraftRender| {
@@ -363,8 +380,7 @@ impl RenderWork {
             if !self.draft.as_ref().is_some_and(does) {
                 self.begin_draft(step);
             }
-            self.is_drafting = true;
-            self.redraft();
+            self.show_draft();
         }
         let size = wanted_size(self.wanted.as_ref());
         Some(done.painted(picture, size))

@@ -5,16 +5,41 @@ use crate::document::Progress;
 use crate::io::fs::Disk;
 use crate::io::replace::{FileStamp, check};
 use crate::io::save::encode;
-use crate::jobs::JobResult;
 use crate::pending::{Exporting, ExportingMaps, Pending, Saving};
 use crate::session::actions::files::{export, export_maps};
 use crate::session::actions::unwrapped;
 use crate::{Error, Result};
+use std::path::PathBuf;
+
+/// How saving or exporting ended.
+pub enum WriteResult {
+    Saved(Box<Saving>, FileStamp),
+    /// It is not yet saved: the user must first know what the format cannot hold.
+    Loses(Box<Saving>),
+    /// What the format cannot hold.
+    Exported(PathBuf, Vec<String>),
+    ExportedMaps(Vec<PathBuf>),
+    /// Something would be lost that the user was not asked about; why.
+    Refused(Pending, String),
+    Cancelled,
+    Failed(Error),
+}
+
+impl Pending {
+    /// Writes it.
+    pub fn run(self, progress: &Progress) -> WriteResult {
+        match self {
+            Pending::Save(saving) => saving.run(progress),
+            Pending::Export(exporting) => exporting.run(progress),
+            Pending::Maps(exporting) => exporting.run(),
+        }
+    }
+}
 
 impl ExportingMaps {
-    pub fn run(self) -> JobResult {
+    fn run(self) -> WriteResult {
         match export_maps(&self.document, &self.file, &self.maps, self.options, &self.terms) {
-            Ok(files) => JobResult::ExportedMaps(files),
+            Ok(files) => WriteResult::ExportedMaps(files),
             Err(error) => refused(error, || Pending::Maps(Box::new(self))),
         }
     }
@@ -25,15 +50,15 @@ enum SaveStep {
     Saved(FileStamp),
     /// The user must be told first what is lost.
     Loses,
-    GivenUp,
+    Cancelled,
 }
 
 impl Saving {
-    pub fn run(mut self, progress: &Progress) -> JobResult {
+    fn run(mut self, progress: &Progress) -> WriteResult {
         match self.attempt(progress) {
-            Ok(SaveStep::Saved(stamp)) => JobResult::Saved(Box::new(self), stamp),
-            Ok(SaveStep::Loses) => JobResult::Loses(Box::new(self)),
-            Ok(SaveStep::GivenUp) => JobResult::Nothing,
+            Ok(SaveStep::Saved(stamp)) => WriteResult::Saved(Box::new(self), stamp),
+            Ok(SaveStep::Loses) => WriteResult::Loses(Box::new(self)),
+            Ok(SaveStep::Cancelled) => WriteResult::Cancelled,
             Err(error) => refused(error, || Pending::Save(Box::new(self))),
         }
     }
@@ -45,18 +70,18 @@ impl Saving {
             Some(encoded) => Some(encoded),
             None => encode(&self.document, &self.file, progress)?,
         };
-        let Some(encoded) = encoded else { return Ok(SaveStep::GivenUp) };
+        let Some(encoded) = encoded else { return Ok(SaveStep::Cancelled) };
         let encoded = self.encoded.insert(encoded);
         if !self.knows_losses {
             return Ok(SaveStep::Loses);
         }
         let saved = encoded.save(&self.file, &self.terms, progress)?;
-        Ok(saved.map_or(SaveStep::GivenUp, |saved| SaveStep::Saved(saved.stamp)))
+        Ok(saved.map_or(SaveStep::Cancelled, |saved| SaveStep::Saved(saved.stamp)))
     }
 }
 
 impl Exporting {
-    pub fn run(self, progress: &Progress) -> JobResult {
+    fn run(self, progress: &Progress) -> WriteResult {
         let terms = self.terms.clone();
         let written = match self.unwrapped {
             Some(options) => {
@@ -66,17 +91,17 @@ impl Exporting {
             None => export(&self.document, &self.file, &self.options, terms, progress),
         };
         match written {
-            Ok(_) if progress.is_cancelled() => JobResult::Nothing,
-            Ok(notes) => JobResult::Exported(self.file, notes),
+            Ok(_) if progress.is_cancelled() => WriteResult::Cancelled,
+            Ok(notes) => WriteResult::Exported(self.file, notes),
             Err(error) => refused(error, || Pending::Export(Box::new(self))),
         }
     }
 }
 
 /// What the user may overrule is asked; all else is an error.
-fn refused(error: Error, pending: impl FnOnce() -> Pending) -> JobResult {
+fn refused(error: Error, pending: impl FnOnce() -> Pending) -> WriteResult {
     match error {
-        Error::Changed { reason, .. } => JobResult::Refused(pending(), reason),
-        error => JobResult::Failed(error),
+        Error::Changed { reason, .. } => WriteResult::Refused(pending(), reason),
+        error => WriteResult::Failed(error),
     }
 }

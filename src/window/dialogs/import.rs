@@ -12,8 +12,7 @@ use crate::canvas::loaded;
 use crate::document::SurfaceSource;
 use crate::document::source::{MapSource, MaskSource, Near, NormalEncoding};
 use crate::file_purpose::FilePurpose;
-use crate::io::maps;
-use crate::jobs::MapsRead;
+use crate::io::maps::{self, ImportedSurface};
 use crate::raster::Picture;
 use crate::session::storage::{self, OpenedFile};
 use crate::widgets::{check_box, choice_row, named, sentence};
@@ -406,4 +405,13 @@ impl ImportDialog {
 }
 
 /// A document made of maps, boxed: it is large.
+/// Maps as they were read.
+pub struct MapsRead {
+    /// What was requested: a dialog that wants other maps by now ignores it.
+    pub source: SurfaceSource,
+    pub found: Result<ImportedSurface>,
+    /// The finished picture that the same file holds, and the name of its layer.
+    pub picture: Option<(String, Picture)>,
+}
+
 pub type MadeDocument = Box<OpenedFile>;

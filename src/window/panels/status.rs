@@ -3,7 +3,7 @@
 
 use crate::canvas::Canvas;
 use crate::document::MemoryUse;
-use crate::jobs::{JobKind, Jobs, RunningJob};
+use crate::jobs::{JobKind, JobWindow, Jobs, RunningJob};
 use crate::math::Vec2;
 use crate::memory::bytes_text;
 use crate::requests::{UiRequests, WindowRequest};
@@ -13,11 +13,11 @@ use crate::usage::{KEPT_SHARE, MemoryMeter};
 use crate::widgets::{NumberField, bar, named};
 use eframe::egui::{self, Button, RichText, Ui};
 
-pub fn show(
+pub fn show<W: JobWindow>(
     ui: &mut Ui,
     session: &Session,
     canvas: &Canvas,
-    jobs: &Jobs,
+    jobs: &Jobs<W>,
     (memory, kept_share): (&mut MemoryMeter, f32),
     requests: &mut UiRequests,
 ) {
@@ -158,7 +158,7 @@ fn memory_menu(
 }
 
 /// The last message, while it is shown; returns whether there is one.
-fn say(ui: &mut Ui, jobs: &Jobs) -> bool {
+fn say<W: JobWindow>(ui: &mut Ui, jobs: &Jobs<W>) -> bool {
     let said = jobs.success_message();
     if let Some(said) = said {
         ui.label(said);

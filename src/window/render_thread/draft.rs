@@ -18,9 +18,11 @@ pub struct DraftRender {
 }
 
 /// How far a document is ready for a drag.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Readiness {
     Ready,
     /// There is more to do at once.
+    #[default]
     NotYet,
     /// Another thread works on the rest.
     Waits,

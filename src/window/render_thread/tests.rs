@@ -120,8 +120,7 @@ fn a_drag_is_shown_in_all_pixels_and_painted_anew_once_the_hand_rests() {
     work.begin(wanted(&dragged, true));
     // As if whole pixels had been found to take longer than a frame.
     work.begin_draft(1);
-    work.is_drafting = true;
-    work.redraft();
+    work.show_draft();
     let (is_draft, coarse) = paint(&mut work);
     let fine = flatten(&dragged, &Progress::default()).unwrap().to_straight_rgba(size.rect());
     assert!(is_draft == Some(true) && coarse != fine);

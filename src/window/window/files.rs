@@ -3,24 +3,23 @@
 
 use super::MainWindow;
 use crate::advice::with_advice;
-use crate::clipboard::PastedContent;
-use crate::dialogs::{Dialog, import, losses, path, replace, shape};
+use crate::dialogs::{Dialog, import, path, shape};
 use crate::document::SurfaceSource;
 use crate::document::parts::drawing::DrawingTraits;
 use crate::file_purpose::FilePurpose;
-use crate::files;
+use crate::files::{self, FileAnswer};
 use crate::io::Overwrite;
 use crate::io::maps::ImportedSurface;
-use crate::jobs::{JobKind, JobResult, PartResult, PastePlace, PictureUse, PinPosition, short};
+use crate::jobs::{JobKind, JobResult, PastePlace, PictureUse, PinPosition, short};
 use crate::math::Vec2;
 use crate::raster::Picture;
 use crate::session::Action;
 use crate::session::PicturePart;
 use crate::session::actions::pictures;
-use crate::session::actions::placing::place;
-use crate::session::actions::unwrapped;
-use crate::session::actions::{ClipboardAction, FileAction, PasteTo, PastedPicture};
-use crate::session::{Session, brushes, storage};
+use crate::session::actions::placing::{place, read_picture};
+use crate::session::actions::{ClipboardAction, FileAction, PastedPicture};
+use crate::session::storage::{self, FileUse, OpenedFile, SortedFiles};
+use crate::session::{Session, brushes};
 use eframe::egui;
 use std::path::{Path, PathBuf};
 
@@ -30,125 +29,97 @@ type GiveMaps = fn(&mut Session, &SurfaceSource, ImportedSurface) -> crate::Resu
 impl MainWindow {
     pub(super) fn finish_jobs(&mut self, ctx: &egui::Context) {
         for done in self.results(ctx) {
-            self.finish(ctx, done);
+            done.finish(self, ctx);
         }
     }
 
-    fn finish(&mut self, ctx: &egui::Context, done: JobResult) {
-        match done {
-            JobResult::Several(several) => {
-                several.into_iter().for_each(|done| self.finish(ctx, done))
-            }
-            JobResult::Opened(file, opened) => match *opened {
-                Ok(opened) => {
-                    self.recent_is(opened.open.file.clone());
-                    let drawing = opened.drawing.filter(DrawingTraits::has_outline);
-                    self.session.adopt(opened);
-                    if let (Some(look), Some(open)) = (drawing, self.session.active()) {
-                        self.dialogs
-                            .push(Dialog::Shape(shape::ShapeDialog::of_picture(open, look)));
-                    }
-                    if let Some(file) = file {
-                        self.did(|| Action::File(FileAction::Open { file }));
-                    }
-                    self.tell_notes();
-                }
-                Err(error) => self.messages.push(with_advice(&error)),
-            },
-            JobResult::IsDocument(file) => self.jobs.read_document(file),
-            JobResult::IsPicture(file, use_of) => self.jobs.read_picture(file, use_of),
-            JobResult::AreMaps(source) => {
-                self.dialogs.push(Dialog::Import(Box::new(import::ImportDialog::of(*source))))
-            }
-            JobResult::Read(read) => {
-                if let Some(import) = self.import() {
-                    import.take(ctx, *read);
+    /// Opens files that came together. `use_of`: what becomes of pictures; absent: they open as
+    /// documents.
+    pub(super) fn open_files(&mut self, files: Vec<PathBuf>, use_of: Option<PictureUse>) {
+        let name = match &files[..] {
+            [file] => format!("Opening {}", short(file)),
+            files => format!("Opening {} files", files.len()),
+        };
+        self.jobs.start(name, JobKind::Working, move |_| {
+            let (mut known, mut done) = (Vec::new(), Vec::new());
+            for file in files {
+                match storage::kind_of(&file) {
+                    Ok(kind) => known.push((file, kind)),
+                    Err(error) => done.push(JobResult::failed(error)),
                 }
             }
-            JobResult::Chosen(purpose, Some(file)) => self.chosen(purpose, file),
-            JobResult::Chosen(purpose, None) => {
+            let SortedFiles { objects, others } = storage::sorted(known);
+            // Of maps the import dialog shows the conventions first.
+            done.extend(objects.into_iter().map(|source| {
+                let dialog = import::ImportDialog::of(source);
+                JobResult::then(|window: &mut Self, _| {
+                    window.dialogs.push(Dialog::Import(Box::new(dialog)));
+                })
+                .in_front()
+            }));
+            done.extend(others.into_iter().map(|(file, kind)| {
+                let use_of = use_of.filter(|_| kind == FileUse::Picture);
+                JobResult::then(move |window: &mut Self, _| match use_of {
+                    Some(use_of) => window.read_layer(file, use_of),
+                    None => window.read_document(file),
+                })
+            }));
+            JobResult::all(done)
+        });
+    }
+
+    fn read_document(&mut self, file: PathBuf) {
+        let name = format!("Opening {}", short(&file));
+        self.jobs.start(name, JobKind::Working, move |_| {
+            let opened = storage::open(&file);
+            JobResult::of(opened, |window: &mut Self, opened| window.opened(Some(file), opened))
+                .in_front()
+        });
+    }
+
+    /// A document was opened, from a file if it has one.
+    pub(super) fn opened(&mut self, file: Option<PathBuf>, opened: OpenedFile) {
+        self.recent_is(opened.open.file.clone());
+        let drawing = opened.drawing.filter(DrawingTraits::has_outline);
+        self.session.adopt(opened);
+        if let (Some(traits), Some(open)) = (drawing, self.session.active()) {
+            self.dialogs.push(Dialog::Shape(shape::ShapeDialog::of_picture(open, traits)));
+        }
+        if let Some(file) = file {
+            self.did(|| Action::File(FileAction::Open { file }));
+        }
+        self.tell_notes();
+    }
+
+    /// Reads a picture that becomes a layer.
+    fn read_layer(&mut self, file: PathBuf, use_of: PictureUse) {
+        self.jobs.start(format!("Reading {}", short(&file)), JobKind::Working, move |_| {
+            let read = read_picture(&file);
+            JobResult::of(read, move |window: &mut Self, (name, picture)| match use_of {
+                PictureUse::Pasted(place) => {
+                    window.pasted(PastedPicture { name, picture }, place);
+                    window.session.note_read(&file);
+                }
+                PictureUse::Placed(at) => {
+                    let at = window.pictured(&name, picture, at);
+                    window.session.note_read(&file);
+                    window.did(|| Action::File(FileAction::Place { file, at }));
+                }
+            })
+        });
+    }
+
+    /// What the user chose in the system's dialog for files.
+    fn answered(&mut self, purpose: FilePurpose, answer: FileAnswer) {
+        match answer {
+            FileAnswer::File(file) => self.chosen(purpose, file),
+            FileAnswer::Cancelled => {}
+            FileAnswer::Nowhere => {
                 let folder = self.folder();
                 let name = if purpose.is_saving() { self.proposed(purpose) } else { String::new() };
                 let dialog = path::PathDialog::new(purpose, folder, &name, self.export.extension);
                 self.dialogs.push(Dialog::Path(dialog));
             }
-            JobResult::Lost(lost) => self.offer(lost),
-            JobResult::Recovered(found) => self.take_recovered(*found),
-            JobResult::Brushes(presets, notes) => {
-                brushes::adopt(&mut self.session, presets);
-                self.messages.extend(notes);
-            }
-            JobResult::Pictured(file, name, picture, PictureUse::Pasted(place)) => {
-                self.pasted(PastedPicture { name, picture }, place);
-                self.session.note_read(&file);
-            }
-            JobResult::Pictured(file, name, picture, PictureUse::Placed(at)) => {
-                let at = self.pictured(&name, picture, at);
-                self.session.note_read(&file);
-                self.did(|| Action::File(FileAction::Place { file, at }));
-            }
-            JobResult::Flat(file, name, picture) => {
-                unwrapped::place(&mut self.session, &name, picture);
-                self.session.note_read(&file);
-                self.did(|| Action::File(FileAction::ImportUnwrapped { file }));
-            }
-            JobResult::Unwrapped(key) => self.unwrapped(key),
-            JobResult::Part(read) => {
-                let PartResult { key, layer, part, file, read } = *read;
-                if let Some(open) =
-                    self.session.open_documents.iter_mut().find(|other| other.key == key)
-                {
-                    pictures::put(open, layer, read);
-                    open.reads.push(file.clone());
-                    self.did(|| Action::File(FileAction::Use { part, file }));
-                }
-            }
-            JobResult::Saved(saving, stamp) => self.saved(ctx, *saving, stamp),
-            JobResult::Loses(saving) => {
-                self.dialogs.push(Dialog::Losses(losses::Losses::new(saving)))
-            }
-            JobResult::Exported(file, notes) => self.exported(&file, notes),
-            JobResult::ExportedMaps(files) => {
-                let folder = files.first().and_then(|file| file.parent()).unwrap_or(Path::new(""));
-                let names: Vec<String> = files.iter().map(|file| short(file)).collect();
-                self.jobs.say(format!("Exported {} to {}", names.join(", "), folder.display()));
-            }
-            JobResult::Refused(pending, reason) => {
-                self.dialogs.push(Dialog::Replace(replace::Replace::new(pending, reason)));
-            }
-            JobResult::Edited(edited) => self.edited(*edited),
-            JobResult::Shaped(shaped) => self.shaped(*shaped),
-            JobResult::Declined(why) => self.messages.push(why.into()),
-            JobResult::Looked(key, found) => {
-                if let Some(open) =
-                    self.session.open_documents.iter().find(|other| other.key == key)
-                {
-                    self.dialogs.push(Dialog::Shape(shape::ShapeDialog::of(open, found)));
-                }
-            }
-            JobResult::Said(why) => self.jobs.say(why),
-            JobResult::Pasted(PastedContent::Picture(picture), place) => {
-                self.pasted(picture, place)
-            }
-            JobResult::Pasted(PastedContent::Files(files), place) => match place.to {
-                PasteTo::Document => self.jobs.open(files, None),
-                PasteTo::Paint | PasteTo::Image => {
-                    self.take_files(files, PictureUse::Pasted(place))
-                }
-            },
-            JobResult::PastedOwn(PastePlace { to, at }) => {
-                self.apply(&Action::Clipboard(match to {
-                    PasteTo::Paint => ClipboardAction::Paste {},
-                    PasteTo::Image => ClipboardAction::PasteImage { at },
-                    PasteTo::Document => ClipboardAction::PasteNew {},
-                }))
-            }
-            JobResult::Copied(clipboard) => {
-                self.clipboard = Some(clipboard);
-                self.jobs.say("The picture is in the clipboard".into());
-            }
-            JobResult::Failed(error) => self.messages.push(with_advice(&error)),
-            JobResult::Nothing => {}
         }
     }
 
@@ -157,7 +128,10 @@ impl MainWindow {
         self.session.brush_folder = Some(folder.clone());
         self.jobs.start("Reading brushes".into(), JobKind::Working, move |_| {
             let (presets, notes) = brushes::kept(&folder);
-            JobResult::Brushes(presets, notes)
+            JobResult::then(|window: &mut Self, _| {
+                brushes::adopt(&mut window.session, presets);
+                window.messages.extend(notes);
+            })
         });
     }
 
@@ -169,10 +143,14 @@ impl MainWindow {
             return;
         };
         self.jobs.start(format!("Reading {}", short(&file)), JobKind::Working, move |_| {
-            match pictures::read(part, &file) {
-                Ok(read) => JobResult::Part(Box::new(PartResult { key, layer, part, file, read })),
-                Err(error) => JobResult::Failed(error),
-            }
+            let read = pictures::read(part, &file);
+            JobResult::of(read, move |window: &mut Self, read| {
+                let all = &mut window.session.open_documents;
+                let Some(open) = all.iter_mut().find(|other| other.key == key) else { return };
+                pictures::put(open, layer, read);
+                open.reads.push(file.clone());
+                window.did(|| Action::File(FileAction::Use { part, file }));
+            })
         });
     }
 
@@ -186,16 +164,16 @@ impl MainWindow {
     }
 
     /// A picture of another program is pasted.
-    fn pasted(&mut self, picture: PastedPicture, PastePlace { to, at }: PastePlace) {
+    pub(super) fn pasted(&mut self, picture: PastedPicture, PastePlace { to, at }: PastePlace) {
         self.apply(&Action::Clipboard(ClipboardAction::PastePicture { picture, to, at }));
     }
 
     /// A file was chosen in a dialog.
     pub(super) fn chosen(&mut self, purpose: FilePurpose, file: PathBuf) {
         match purpose {
-            FilePurpose::Open => self.jobs.open(vec![file], None),
+            FilePurpose::Open => self.open_files(vec![file], None),
             FilePurpose::Place => {
-                self.jobs.read_picture(file, PictureUse::Placed(PinPosition::Middle));
+                self.read_layer(file, PictureUse::Placed(PinPosition::Middle));
             }
             FilePurpose::ImportUnwrapped => self.import_unwrapped(file),
             FilePurpose::Brush => {
@@ -252,7 +230,8 @@ impl MainWindow {
     }
 
     pub(super) fn ask_for(&mut self, purpose: FilePurpose, name: &str) {
-        files::request(&mut self.jobs, purpose, name, self.asks_itself);
+        let then = move |window: &mut Self, answer| window.answered(purpose, answer);
+        files::request(&mut self.jobs, purpose, name, self.asks_itself, then);
     }
 
     /// The proposed name of a file.

@@ -65,6 +65,6 @@ impl MainWindow {
 
     /// Opens files; pictures become layers of the document in front, if there is one.
     pub(super) fn take_files(&mut self, files: Vec<PathBuf>, use_of: PictureUse) {
-        self.jobs.open(files, self.session.active().map(|_| use_of));
+        self.open_files(files, self.session.active().map(|_| use_of));
     }
 }

@@ -14,8 +14,9 @@ mod work;
 
 use super::canvas::Canvas;
 use super::clipboard::{self, Clipboard, ClipboardSource};
+use super::dialogs::import::MapsRead;
 use super::dialogs::{Dialog, DialogAnswer, export, maps, unwrapped};
-use super::jobs::{JobKind, JobResult, Jobs, MapsRead};
+use super::jobs::{JobKind, JobResult, JobWindow, Jobs};
 use super::panel_layout::PanelKind;
 use super::pen::SharedTablet;
 use super::pending::{AfterUnsaved, Pending, Saving};
@@ -24,6 +25,7 @@ use super::sample;
 use super::settings::{Settings, SettingsFile};
 use super::swatches::Swatches;
 use super::thumbnails::Thumbnails;
+use crate::Error;
 use crate::advice::with_advice;
 use crate::document::Progress;
 use crate::session::actions::{self, GuideAction};
@@ -43,7 +45,7 @@ pub struct MainWindow {
     canvas: Canvas,
     thumbnails: Thumbnails,
     swatches: Swatches,
-    pub(super) jobs: Jobs,
+    pub(super) jobs: Jobs<MainWindow>,
     /// The last one is shown.
     pub(super) dialogs: Vec<Dialog>,
     /// Messages that stay until they are closed.
@@ -84,6 +86,12 @@ pub struct MainWindow {
 
 /// The name of the job that reads maps for their dialog.
 const READING_MAPS: &str = "Reading maps";
+
+impl JobWindow for MainWindow {
+    fn show_error(&mut self, error: &Error) {
+        self.messages.push(with_advice(error));
+    }
+}
 
 impl MainWindow {
     /// A window without stored settings.
@@ -168,13 +176,14 @@ impl MainWindow {
             self.open_sample();
         }
         if !files.is_empty() {
-            self.jobs.open(files, None);
+            self.open_files(files, None);
         }
     }
 
     fn open_sample(&mut self) {
         self.jobs.start("Opening the sample".into(), JobKind::Working, |_| {
-            JobResult::Opened(None, Box::new(sample::open()))
+            JobResult::of(sample::open(), |window: &mut Self, opened| window.opened(None, opened))
+                .in_front()
         });
     }
 
@@ -242,11 +251,16 @@ impl MainWindow {
                 let read = move |progress: &Progress| {
                     let found = match storage::import_watched(&source, progress) {
                         Ok(Some(found)) => Ok(found),
-                        Ok(None) => return JobResult::Nothing,
+                        Ok(None) => return JobResult::nothing(),
                         Err(error) => Err(error),
                     };
                     let picture = storage::finished_picture(&source);
-                    JobResult::Read(Box::new(MapsRead { source: *source, found, picture }))
+                    let read = MapsRead { source: *source, found, picture };
+                    JobResult::then(|window: &mut Self, ctx| {
+                        if let Some(import) = window.import() {
+                            import.take(ctx, read);
+                        }
+                    })
                 };
                 self.jobs.cancel(READING_MAPS);
                 return self.jobs.start(READING_MAPS.into(), JobKind::Working, read);

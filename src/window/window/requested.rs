@@ -26,7 +26,7 @@ impl MainWindow {
             WindowRequest::ShapeDialog => self.look_for_drawing(),
             WindowRequest::Choose(purpose) => self.ask_for(purpose, ""),
             WindowRequest::PlaceDialog => self.ask_for(FilePurpose::Place, ""),
-            WindowRequest::Open(file) => self.jobs.open(vec![file], None),
+            WindowRequest::Open(file) => self.open_files(vec![file], None),
             WindowRequest::OpenSample => self.open_sample(),
             WindowRequest::Save => self.save(None),
             WindowRequest::SaveAs => self.save_as(None),

@@ -40,7 +40,7 @@ pub(super) struct BusyInput {
     /// goes nowhere.
     gone_until: Option<f64>,
     /// What came while a text was being typed.
-    results: Vec<JobResult>,
+    results: Vec<JobResult<MainWindow>>,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -217,11 +217,11 @@ impl MainWindow {
 
     /// The results of jobs that may be shown now: while a text is being typed in a panel, nothing
     /// comes in front of it.
-    pub(super) fn results(&mut self, ctx: &Context) -> Vec<JobResult> {
+    pub(super) fn results(&mut self, ctx: &Context) -> Vec<JobResult<Self>> {
         let mut results = std::mem::take(&mut self.busy.results);
         results.extend(self.jobs.finished());
         if ctx.text_edit_focused() && self.dialogs.is_empty() {
-            let (later, now) = results.into_iter().partition(JobResult::comes_in_front);
+            let (later, now) = results.into_iter().partition(|result| result.comes_in_front);
             self.busy.results = later;
             return now;
         }

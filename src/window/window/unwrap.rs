@@ -5,8 +5,8 @@ use super::MainWindow;
 use crate::document::Progress;
 use crate::jobs::{JobKind, JobResult, short};
 use crate::session::Action;
-use crate::session::actions::ViewAction;
 use crate::session::actions::placing::read_picture;
+use crate::session::actions::{FileAction, ViewAction, unwrapped};
 use crate::surface::Surface;
 use crate::surface::operator::UnwrapSettings;
 use crate::surface::unwrap::SOLVES;
@@ -35,11 +35,10 @@ impl MainWindow {
             return self.unwrapped(key);
         }
         self.jobs.start(UNWRAPPING.into(), JobKind::Working, move |progress| {
-            match surface.unwrapped_with_progress(settings, &|| is_to_go_on(progress)) {
-                Some(_) => surface
-                    .plane_layout(settings)
-                    .map_or(JobResult::Nothing, |_| JobResult::Unwrapped(key)),
-                None => JobResult::Nothing,
+            let unwrapped = surface.unwrapped_with_progress(settings, &|| is_to_go_on(progress));
+            match unwrapped.and_then(|_| surface.plane_layout(settings)) {
+                Some(_) => JobResult::then(move |window: &mut Self, _| window.unwrapped(key)),
+                None => JobResult::nothing(),
             }
         });
     }
@@ -87,7 +86,7 @@ impl MainWindow {
             if is_shown && unwrapped.is_some() {
                 surface.plane_layout(settings);
             }
-            JobResult::Nothing
+            JobResult::nothing()
         });
     }
 
@@ -96,14 +95,16 @@ impl MainWindow {
         let settings = self.session.unwrap_settings();
         let surface = self.session.active().and_then(|open| open.document().surface.clone());
         self.jobs.start(format!("Reading {}", short(&file)), JobKind::Working, move |_| {
-            match read_picture(&file) {
-                Ok((name, picture)) => {
-                    // The window must not wait for it.
-                    surface.and_then(|surface| surface.plane_layout(settings));
-                    JobResult::Flat(file, name, picture)
-                }
-                Err(error) => JobResult::Failed(error),
+            let read = read_picture(&file);
+            if read.is_ok() {
+                // The window must not wait for it.
+                surface.and_then(|surface| surface.plane_layout(settings));
             }
+            JobResult::of(read, |window: &mut Self, (name, picture)| {
+                unwrapped::place(&mut window.session, &name, picture);
+                window.session.note_read(&file);
+                window.did(|| Action::File(FileAction::ImportUnwrapped { file }));
+            })
         });
     }
 }

@@ -1,21 +1,23 @@
 //! Long work of the window: saving, exporting, flattening edits. It is started here. Not here:
-//! handling the results (`files`). Floor 7.
+//! opening files (`files`). Floor 7.
 
 use super::MainWindow;
 use crate::clipboard::{self, PastedContent};
-use crate::dialogs::shape;
-use crate::document::Progress;
+use crate::dialogs::{Dialog, losses, replace, shape};
+use crate::document::{Document, Progress};
 use crate::file_purpose::FilePurpose;
 use crate::io::export::ExportOptions;
 use crate::io::replace::FileStamp;
 use crate::io::{Budget, Overwrite, Terms};
-use crate::jobs::{EditResult, JobKind, JobResult, PastePlace, ShapedResult, short};
+use crate::jobs::{JobKind, JobResult, JobWindow, PastePlace, PictureUse, short};
 use crate::math::Size;
 use crate::pending::{AfterUnsaved, Exporting, ExportingMaps, Pending, Saving};
 use crate::raster::Picture;
 use crate::raster::picture::Texels;
+use crate::saving::WriteResult;
 use crate::session::actions::canvas::forget_places;
-use crate::session::actions::{PartAction, PasteTo};
+use crate::session::actions::parts::FirstShape;
+use crate::session::actions::{ClipboardAction, PartAction, PasteTo};
 use crate::session::{Action, Edit, storage};
 use crate::widgets::bar;
 use eframe::egui::{self, Modal};
@@ -72,26 +74,43 @@ impl MainWindow {
     /// Writes it, on a thread.
     pub(super) fn put(&mut self, pending: Pending) {
         let name = short(pending.file());
-        match pending {
-            Pending::Save(saving) => {
-                self.jobs.start(format!("Saving {name}"), JobKind::Working, move |progress| {
-                    saving.run(progress)
-                });
+        let name = match &pending {
+            Pending::Save(_) => format!("Saving {name}"),
+            Pending::Maps(_) => format!("Exporting maps {name}"),
+            Pending::Export(_) => format!("Exporting {name}"),
+        };
+        self.jobs.start(name, JobKind::Working, move |progress| {
+            let result = pending.run(progress);
+            let is_saved = matches!(result, WriteResult::Saved(..));
+            let done = JobResult::then(|window: &mut Self, ctx| window.written(ctx, result));
+            if is_saved { done.even_if_cancelled() } else { done }
+        });
+    }
+
+    fn written(&mut self, ctx: &egui::Context, result: WriteResult) {
+        match result {
+            WriteResult::Saved(saving, stamp) => self.saved(ctx, *saving, stamp),
+            WriteResult::Loses(saving) => {
+                self.dialogs.push(Dialog::Losses(losses::Losses::new(saving)));
             }
-            Pending::Maps(exporting) => {
-                self.jobs.start(format!("Exporting maps {name}"), JobKind::Working, move |_| {
-                    exporting.run()
-                });
+            WriteResult::Exported(file, notes) => {
+                self.jobs.say(format!("Exported {}", file.display()));
+                self.messages.extend(notes);
             }
-            Pending::Export(exporting) => {
-                self.jobs.start(format!("Exporting {name}"), JobKind::Working, move |progress| {
-                    exporting.run(progress)
-                });
+            WriteResult::ExportedMaps(files) => {
+                let folder = files.first().and_then(|file| file.parent()).unwrap_or(Path::new(""));
+                let names: Vec<String> = files.iter().map(|file| short(file)).collect();
+                self.jobs.say(format!("Exported {} to {}", names.join(", "), folder.display()));
             }
+            WriteResult::Refused(pending, reason) => {
+                self.dialogs.push(Dialog::Replace(replace::Replace::new(pending, reason)));
+            }
+            WriteResult::Cancelled => {}
+            WriteResult::Failed(error) => self.show_error(&error),
         }
     }
 
-    pub(super) fn saved(&mut self, ctx: &egui::Context, saving: Saving, stamp: FileStamp) {
+    fn saved(&mut self, ctx: &egui::Context, saving: Saving, stamp: FileStamp) {
         let Saving { key, file, document, then, .. } = saving;
         if let Some(open) = self.session.open_documents.iter_mut().find(|other| other.key == key) {
             open.mark_saved(document, file.clone(), stamp);
@@ -141,11 +160,6 @@ impl MainWindow {
         self.put(Pending::Maps(Box::new(ExportingMaps { document, file, maps, options, terms })));
     }
 
-    pub(super) fn exported(&mut self, file: &Path, notes: Vec<String>) {
-        self.jobs.say(format!("Exported {}", file.display()));
-        self.messages.extend(notes);
-    }
-
     /// Puts what was copied last into the system's clipboard, for other programs.
     pub(super) fn hand_out(&mut self) {
         let Some(copied) = self.session.copied.as_ref().filter(|copied| !copied.rect.is_empty())
@@ -159,8 +173,12 @@ impl MainWindow {
         let rgba = copied.rgba.clone();
         self.handed_out = Some(rgba.clone());
         // Without a clipboard it can still be pasted here.
-        let put = move |_: &Progress| {
-            clipboard::put(size, &rgba).map_or(JobResult::Nothing, JobResult::Copied)
+        let put = move |_: &Progress| match clipboard::put(size, &rgba) {
+            Ok(clipboard) => JobResult::then(|window: &mut Self, _| {
+                window.clipboard = Some(clipboard);
+                window.jobs.say("The picture is in the clipboard".into());
+            }),
+            Err(_) => JobResult::nothing(),
         };
         self.jobs.start("Copying".into(), JobKind::Working, put);
     }
@@ -170,14 +188,34 @@ impl MainWindow {
     pub(super) fn paste(&mut self, to: PasteTo) {
         let own = self.session.copied.as_ref().map(|copied| copied.rgba.clone());
         let (place, read) = (PastePlace { to, at: self.canvas.under }, self.clipboard_source);
+        let paste_own = move |window: &mut Self, _: &egui::Context| window.paste_own(place);
         self.jobs.start("Pasting".into(), JobKind::Working, move |_| match (read(), own) {
             (Ok(PastedContent::Picture(pasted)), Some(own)) if is_own(&pasted.picture, &own) => {
-                JobResult::PastedOwn(place)
+                JobResult::then(paste_own)
             }
-            (Ok(pasted), _) => JobResult::Pasted(pasted, place),
-            (Err(_), Some(_)) => JobResult::PastedOwn(place),
-            (Err(error), None) => JobResult::Failed(error),
+            (Ok(PastedContent::Picture(picture)), _) => {
+                JobResult::then(move |window: &mut Self, _| window.pasted(picture, place))
+            }
+            (Ok(PastedContent::Files(files)), _) => {
+                JobResult::then(move |window: &mut Self, _| match place.to {
+                    PasteTo::Document => window.open_files(files, None),
+                    PasteTo::Paint | PasteTo::Image => {
+                        window.take_files(files, PictureUse::Pasted(place));
+                    }
+                })
+            }
+            (Err(_), Some(_)) => JobResult::then(paste_own),
+            (Err(error), None) => JobResult::failed(error),
         });
+    }
+
+    /// Pastes what was copied in this window.
+    fn paste_own(&mut self, PastePlace { to, at }: PastePlace) {
+        self.apply(&Action::Clipboard(match to {
+            PasteTo::Paint => ClipboardAction::Paste {},
+            PasteTo::Image => ClipboardAction::PasteImage { at },
+            PasteTo::Document => ClipboardAction::PasteNew {},
+        }));
     }
 
     /// Whether an action takes long and was therefore started on a thread.
@@ -222,24 +260,24 @@ impl MainWindow {
                 other => other,
             };
             match edit {
-                Some(Ok(edit)) => {
-                    JobResult::Edited(Box::new(EditResult { key, action, from, edit }))
-                }
-                Some(Err(why)) => JobResult::Said(why),
-                None => JobResult::Nothing,
+                Some(Ok(edit)) => JobResult::then(move |window: &mut Self, _| {
+                    window.edited(key, action, &from, edit);
+                }),
+                Some(Err(why)) => JobResult::then(|window: &mut Self, _| window.jobs.say(why)),
+                None => JobResult::nothing(),
             }
         });
         true
     }
 
-    pub(super) fn edited(&mut self, edited: EditResult) {
-        let EditResult { key, action, from, edit } = edited;
+    /// An edit of a document, by its key, that took long. `from`: what was edited.
+    fn edited(&mut self, key: usize, action: Action, from: &Document, edit: Edit) {
         let Some(open) = self.session.open_documents.iter_mut().find(|other| other.key == key)
         else {
             return;
         };
         // No other edits are possible meanwhile; an edit that happened anyway must not be lost.
-        if crate::session::is_same(open.document(), &from) {
+        if crate::session::is_same(open.document(), from) {
             open.take(edit);
             if matches!(action, Action::Canvas(_)) {
                 forget_places(open);
@@ -258,11 +296,13 @@ impl MainWindow {
         let (key, from, action) = (open.key, open.document().clone(), action.clone());
         self.jobs.start(name.into(), JobKind::Editing, move |progress| {
             match action.shaped(&from, progress) {
-                Ok(Some(shape)) => {
-                    JobResult::Shaped(Box::new(ShapedResult { key, action, from, shape }))
+                Ok(Some(shape)) => JobResult::then(move |window: &mut Self, _| {
+                    window.shaped(key, action, &from, shape);
+                }),
+                Ok(None) => JobResult::nothing(),
+                Err(why) => {
+                    JobResult::then(|window: &mut Self, _| window.messages.push(why.into()))
                 }
-                Ok(None) => JobResult::Nothing,
-                Err(why) => JobResult::Declined(why),
             }
         });
         true
@@ -272,19 +312,27 @@ impl MainWindow {
     pub(super) fn look_for_drawing(&mut self) {
         let Some(open) = self.session.active() else { return };
         let (key, document, selected) = (open.key, open.document().clone(), open.selected);
-        let look =
-            move |_: &Progress| JobResult::Looked(key, shape::find_drawing(&document, selected));
+        let look = move |_: &Progress| {
+            let found = shape::find_drawing(&document, selected);
+            JobResult::then(move |window: &mut Self, _| {
+                let all = &window.session.open_documents;
+                if let Some(open) = all.iter().find(|other| other.key == key) {
+                    window.dialogs.push(Dialog::Shape(shape::ShapeDialog::of(open, found)));
+                }
+            })
+            .in_front()
+        };
         self.jobs.start("Looking at the drawing".into(), JobKind::Looking, look);
     }
 
-    pub(super) fn shaped(&mut self, shaped: ShapedResult) {
-        let ShapedResult { key, action, from, shape } = shaped;
+    /// A drawing was given a shape. `from`: the document before.
+    fn shaped(&mut self, key: usize, action: PartAction, from: &Document, shape: FirstShape) {
         let Some(open) = self.session.open_documents.iter_mut().find(|other| other.key == key)
         else {
             return;
         };
         // As for other long edits.
-        if crate::session::is_same(open.document(), &from) {
+        if crate::session::is_same(open.document(), from) {
             shape.put(open);
             self.did(|| Action::Part(action));
         }
