@@ -22,36 +22,40 @@ pub const OPERATORS: [OfferedOperator; 5] = [FLAT, TEXTURE, DEPTH_TEXTURE, SHADI
 pub const FLAT: OfferedOperator = OfferedOperator {
     label: "Flat",
     begins: Operator::None,
-    hint: "Marks stay flat on the canvas",
+    hint: "Marks stay flat on the canvas, as in any painting program",
 };
 pub const TEXTURE: OfferedOperator = OfferedOperator {
-    label: "Texture",
+    label: "Wrap",
     begins: Operator::Surface { amount: 1.0, smooth: 0.0 },
-    hint: "Marks follow the surface like a print, at the same size everywhere",
+    hint: "Marks are wrapped around the surface like a print, at the same size everywhere (D_s)",
 };
 pub const DEPTH_TEXTURE: OfferedOperator = OfferedOperator {
-    label: "Depth texture",
+    label: "Near and far",
     begins: Operator::Depth { gamma: 1.0 },
-    hint: "Marks follow the depth around their anchor: larger where the surface is nearer, smaller where it is farther",
+    hint: "Marks are larger where the surface is nearer than their anchor, smaller where it is farther (D_p)",
 };
 pub const SHADING: OfferedOperator = OfferedOperator {
-    label: "Shading",
+    label: "Gloss",
     begins: Operator::Normal { alpha: 0.5, beta: 1.5, detail: 0.0 },
-    hint: "Marks follow the normals, like shading and highlights: mirror for α above 0, glass below",
+    hint: "Marks follow the directions of the surface, as highlights do: chrome for a \
+           strength above 0, glass below (D_n)",
 };
 pub const REFLECTION: OfferedOperator = OfferedOperator {
-    label: "Reflection",
+    label: "True mirror",
     begins: Operator::Reflection { alpha: 1.0, detail: 0.0 },
-    hint: "Marks follow the mirrored view, like an image in polished metal",
+    hint: "Marks follow the mirrored view, like an image in polished metal (D_r)",
 };
 
 /// What a number of an operator does, by its name in documents.
 pub fn hint_of(key: &str) -> &'static str {
     match key {
-        "alpha" => "Strength: a mirror above 0, flat at 0, glass below",
-        "beta" => "How much more the middle of the surface bends than its rim",
+        "alpha" => "A mirror above 0, flat at 0, glass below (α of the paper)",
+        "beta" => {
+            "How soon it is as strong as it gets: 0 bends most at the edges of the form, more \
+             bends its middle too (β of the paper)"
+        }
         "detail" => "How much small bumps bend the image beyond the large form",
-        "gamma" => "How strongly the texture follows the depth",
+        "gamma" => "How strongly the image follows the depth (γ of the paper)",
         "amount" => {
             "How far the surface is unwrapped: 0 is flat, 1 as long as the surface is, 2 exaggerates it"
         }

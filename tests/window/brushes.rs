@@ -50,7 +50,7 @@ fn a_preset_goes_to_hand_and_its_parts_can_be_changed() {
 fn a_property_follows_what_it_is_told_to_by_a_curve_that_a_hand_bends() {
     let mut harness = editor();
     // The other parts stay closed, so that the curves are seen.
-    tap(&mut harness, "What follows what");
+    tap(&mut harness, "Dynamics");
     for label in ["Remove Size by pressure", "Remove Opacity by pressure"] {
         tap(&mut harness, label);
     }

@@ -24,7 +24,7 @@ fn layers_are_added_hidden_and_deleted_by_their_buttons() {
 fn layers_are_merged_baked_and_flattened_beside_the_window() {
     let mut harness = window();
     command(&mut harness, "New gradient layer");
-    command(&mut harness, "Bake layer");
+    command(&mut harness, "Turn layer into pixels");
     until(&mut harness, |harness| {
         matches!(session(harness).layer().unwrap().content, Content::Pixels(_))
     });

@@ -110,7 +110,7 @@ fn what_a_small_window_cuts_off_the_options_comes_by_the_wheel() {
     press(&mut harness, "Brush");
     harness.set_size(vec2(1024.0, 700.0));
     steps(&mut harness);
-    let ends = |harness: &Story| harness.get_by_label("Speed presses").rect().right();
+    let ends = |harness: &Story| harness.get_by_label("Pressure from speed").rect().right();
     assert!(ends(&harness) > 1016.0, "{}", ends(&harness));
     harness.hover_at(pos2(600.0, 68.0));
     steps(&mut harness);

@@ -69,7 +69,7 @@ fn a_story_of_photo_strokes_moves_and_masks_replays_to_the_same_bytes() {
     until(&mut harness, |harness| layers(harness).contains(&"photo".to_owned()));
     // The photo becomes a reflection, and one of its anchors is moved.
     key(&mut harness, Modifiers::NONE, Key::A);
-    slide(&mut harness, "α", 18.0);
+    slide(&mut harness, "Strength", 18.0);
     drag(&mut harness, vec2(0.0, 0.0), vec2(60.0, 25.0));
     // Highlights that cling, one of them moved.
     key(&mut harness, Modifiers::NONE, Key::B);
@@ -89,7 +89,7 @@ fn a_story_of_photo_strokes_moves_and_masks_replays_to_the_same_bytes() {
     click(&mut harness, "+ Add");
     click(&mut harness, "Gradient layer");
     slide(&mut harness, "Opacity", -14.0);
-    command(&mut harness, "Bake layer");
+    command(&mut harness, "Turn layer into pixels");
     until(&mut harness, |harness| {
         matches!(session(harness).layer().unwrap().content, rilievo::Content::Pixels(_))
     });

@@ -317,7 +317,7 @@ fn a_layer_is_carried_by_a_part_that_is_chosen_in_its_properties() {
     command(&mut harness, "Sphere");
     command(&mut harness, "New paint layer");
     press(&mut harness, "Properties");
-    harness.get_by_role_and_label(Role::ComboBox, "Lies on").click_accesskit();
+    harness.get_by_role_and_label(Role::ComboBox, "Attached to").click_accesskit();
     steps(&mut harness);
     harness.get_by_label("Sphere").click_accesskit();
     steps(&mut harness);

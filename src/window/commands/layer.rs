@@ -253,7 +253,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         |session, requests| with_chosen(session, requests, |layer| LayerAction::MergeDown { layer }),
     ),
     row(
-        "Bake layer",
+        "Turn layer into pixels",
         &[ctrl_shift(Key::B)],
         "Turns a live layer into paint: it keeps its look and no longer follows the surface",
         is_live,

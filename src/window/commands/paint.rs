@@ -72,36 +72,24 @@ pub const COMMANDS: &[MenuCommand] = &[
         hand(requests, HandAction::DefaultColors {})
     }),
     LINE,
-    row("Operator: flat", &[key(Key::F1)], operators::FLAT.hint, always, |session, requests| {
+    row("Bend: flat", &[key(Key::F1)], operators::FLAT.hint, always, |session, requests| {
         operators::give(session, requests, operators::FLAT.begins)
     })
     .ticked(|session, _| operators::has(session, operators::FLAT.begins)),
-    row(
-        "Operator: texture",
-        &[key(Key::F2)],
-        operators::TEXTURE.hint,
-        always,
-        |session, requests| operators::give(session, requests, operators::TEXTURE.begins),
-    )
+    row("Bend: wrap", &[key(Key::F2)], operators::TEXTURE.hint, always, |session, requests| {
+        operators::give(session, requests, operators::TEXTURE.begins)
+    })
     .ticked(|session, _| operators::has(session, operators::TEXTURE.begins)),
-    row(
-        "Operator: depth texture",
-        &[],
-        operators::DEPTH_TEXTURE.hint,
-        always,
-        |session, requests| operators::give(session, requests, operators::DEPTH_TEXTURE.begins),
-    )
+    row("Bend: near and far", &[], operators::DEPTH_TEXTURE.hint, always, |session, requests| {
+        operators::give(session, requests, operators::DEPTH_TEXTURE.begins)
+    })
     .ticked(|session, _| operators::has(session, operators::DEPTH_TEXTURE.begins)),
-    row(
-        "Operator: shading",
-        &[key(Key::F3)],
-        operators::SHADING.hint,
-        always,
-        |session, requests| operators::give(session, requests, operators::SHADING.begins),
-    )
+    row("Bend: gloss", &[key(Key::F3)], operators::SHADING.hint, always, |session, requests| {
+        operators::give(session, requests, operators::SHADING.begins)
+    })
     .ticked(|session, _| operators::has(session, operators::SHADING.begins)),
     row(
-        "Operator: reflection",
+        "Bend: true mirror",
         &[key(Key::F4)],
         operators::REFLECTION.hint,
         always,

@@ -29,7 +29,7 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     part(ui, "Grain", grain);
     part(ui, "Stroke", stroke);
     part(ui, "Mixing and habits", habits);
-    part(ui, "What follows what", dynamics);
+    part(ui, "Dynamics", dynamics);
     if let Some(brush) = changed {
         requests.act(Action::Hand(HandAction::Brush { brush: written_brush(&brush) }));
     }

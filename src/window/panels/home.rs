@@ -29,7 +29,7 @@ pub fn choice(
         own.map(|home| &*home.part).filter(|part| around != CANVAS || *part != HomeFrame::CANVAS);
     // What lies on touches or sculpting is carried by the part beneath these.
     let body = now.map(|part| document.parts.body_of(part).map_or(part, |body| body.id.as_str()));
-    choice_row(ui, "Lies on", body, &choices).map(|part| part.map(str::to_owned))
+    choice_row(ui, "Attached to", body, &choices).map(|part| part.map(str::to_owned))
 }
 
 /// The name of the canvas.

@@ -92,7 +92,7 @@ fn of_tool(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             symmetry(ui, session, requests);
             let mut by_speed = session.tools.presses_by_speed;
             let hint = "A mouse, or a finger without pressure, presses less the faster it moves";
-            if check_box(ui, &mut by_speed, "Speed presses").on_hover_text(hint).changed() {
+            if check_box(ui, &mut by_speed, "Pressure from speed").on_hover_text(hint).changed() {
                 requests.act(Action::Hand(HandAction::PressBySpeed { on: by_speed }));
             }
         }

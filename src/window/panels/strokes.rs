@@ -125,8 +125,11 @@ fn buttons(
         {
             act(StrokeAction::Duplicate { layer: layer(), strokes: strokes() });
         }
-        let hint = "Bake: turns them into pixels on a paint layer of their own";
-        if icon_button(ui, Icon::Bake, "Bake strokes", false).on_hover_text(hint).clicked() {
+        let hint = "Turns them into pixels on a paint layer of their own";
+        if icon_button(ui, Icon::Bake, "Turn strokes into pixels", false)
+            .on_hover_text(hint)
+            .clicked()
+        {
             act(StrokeAction::Bake { layer: layer(), strokes: strokes() });
         }
         if icon_button(ui, Icon::Delete, "Delete strokes", false).on_hover_text("Delete").clicked()

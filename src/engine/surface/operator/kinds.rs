@@ -19,11 +19,11 @@ pub struct OperatorNumber {
 
 /// e^20 is half a thousand million: a stronger bend only loses digits.
 static GAMMA: OperatorNumber =
-    OperatorNumber { key: "gamma", label: "γ", range: 0.0..=20.0, useful: 0.0..=4.0 };
+    OperatorNumber { key: "gamma", label: "Strength", range: 0.0..=20.0, useful: 0.0..=4.0 };
 static ALPHA: OperatorNumber =
-    OperatorNumber { key: "alpha", label: "α", range: -100.0..=100.0, useful: -1.5..=1.5 };
+    OperatorNumber { key: "alpha", label: "Strength", range: -100.0..=100.0, useful: -1.5..=1.5 };
 static BETA: OperatorNumber =
-    OperatorNumber { key: "beta", label: "β", range: 0.0..=50.0, useful: 0.0..=5.0 };
+    OperatorNumber { key: "beta", label: "Edge", range: 0.0..=50.0, useful: 0.0..=5.0 };
 static DETAIL: OperatorNumber =
     OperatorNumber { key: "detail", label: "Detail", range: 0.0..=100.0, useful: 0.0..=2.0 };
 static AMOUNT: OperatorNumber =

@@ -131,7 +131,7 @@ impl StrokeAction {
             StrokeAction::Bake { layer, strokes } => {
                 let id = id(layer)?;
                 let (next, _) = document.with_baked_strokes(id, strokes)?;
-                ("Bake stroke", next, id, Vec::new())
+                ("Turn stroke into pixels", next, id, Vec::new())
             }
             StrokeAction::Choose { .. }
             | StrokeAction::Restyle { .. }

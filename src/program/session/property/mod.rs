@@ -104,7 +104,7 @@ impl Property {
             Property::Unliquified {} => "Remove liquify",
             Property::PassThrough { .. } => "Pass through",
             Property::Fill { .. } => "Fill colour",
-            Property::Bend { .. } => "Operator",
+            Property::Bend { .. } => "Bend",
             Property::Anchors { .. } => "Anchors",
             Property::Pieces { .. } => "Pieces",
             Property::Power { .. } => "Anchor weights",

@@ -30,9 +30,9 @@ const BRUSH: [(&str, &str); 8] = [
 ];
 
 /// Words of other programs and of everyday speech, and the words here that they mean.
-const SYNONYMS: [(&str, &[&str]); 48] = [
+const SYNONYMS: [(&str, &[&str]); 53] = [
     ("flip", &["mirror"]),
-    ("reflect", &["mirror", "reflection"]),
+    ("reflect", &["mirror"]),
     ("rotate", &["turn", "upright"]),
     ("resize", &["image size", "canvas size", "transform"]),
     ("resolution", &["image size"]),
@@ -49,7 +49,7 @@ const SYNONYMS: [(&str, &[&str]); 48] = [
     ("smoothing", &["stabiliser", "steadiness"]),
     ("streamline", &["stabiliser"]),
     ("pressure", &["dynamics"]),
-    ("texture", &["grain", "operator: texture"]),
+    ("texture", &["grain", "bend: wrap"]),
     ("scatter", &["offset"]),
     ("jitter", &["size ±", "tremor", "offset"]),
     ("bucket", &["fill"]),
@@ -66,8 +66,13 @@ const SYNONYMS: [(&str, &[&str]); 48] = [
     ("expand", &["grow selection"]),
     ("contract", &["shrink selection"]),
     ("inverse", &["invert"]),
-    ("rasterise", &["bake layer"]),
-    ("rasterize", &["bake layer"]),
+    ("rasterise", &["into pixels"]),
+    ("rasterize", &["into pixels"]),
+    ("bake", &["into pixels"]),
+    ("operator", &["bend"]),
+    ("chrome", &["bend: gloss"]),
+    ("highlight", &["bend: gloss"]),
+    ("print", &["bend: wrap"]),
     ("folder", &["group"]),
     ("isolate", &["show layer alone"]),
     ("solo", &["show layer alone"]),

@@ -24,7 +24,7 @@ pub fn show(
         (if paths.is_several() { "Merge" } else { "Merge down" }, |layer| LayerAction::MergeDown {
             layer,
         }),
-        ("Bake", |layer| LayerAction::Bake { layer }),
+        ("Turn into pixels", |layer| LayerAction::Bake { layer }),
         ("Clear", |layer| LayerAction::Clear { layer }),
         ("Delete", |layer| LayerAction::Delete { layer }),
     ];

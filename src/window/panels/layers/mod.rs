@@ -158,7 +158,7 @@ fn foot(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             (Icon::Up, "Move layer up", |layer| LayerAction::Nudge { layer, by: 1 }),
             (Icon::Down, "Move layer down", |layer| LayerAction::Nudge { layer, by: -1 }),
             (Icon::Merge, "Merge down", |layer| LayerAction::MergeDown { layer }),
-            (Icon::Bake, "Bake layer", |layer| LayerAction::Bake { layer }),
+            (Icon::Bake, "Turn layer into pixels", |layer| LayerAction::Bake { layer }),
             (Icon::Delete, "Delete layer", |layer| LayerAction::Delete { layer }),
         ];
         for (icon, label, make) in buttons {

@@ -182,9 +182,14 @@ fn primitive(ui: &mut Ui, now: &Primitive) -> Option<ValueChange<Primitive>> {
 fn stands(ui: &mut Ui, part: &Part) -> Option<ValueChange<Part>> {
     let tilted = |tilt_deg: Vec2| Part { tilt_deg, ..part.clone() };
     let tilt = part.tilt_deg;
-    let right = degrees("Tilt right", &Part::TILT, "Leans up toward the right", tilt.x)
-        .show(ui, |x| tilted(Vec2 { x, ..tilt }));
-    let down = degrees("Tilt down", &Part::TILT, "Leans up toward the bottom", tilt.y)
+    let right = degrees(
+        "Face left",
+        &Part::TILT,
+        "Turns it to the left: its right side comes nearer",
+        tilt.x,
+    )
+    .show(ui, |x| tilted(Vec2 { x, ..tilt }));
+    let down = degrees("Face up", &Part::TILT, "Turns it up: its lower side comes nearer", tilt.y)
         .show(ui, |y| tilted(Vec2 { y, ..tilt }));
     let raise = length("Raise", &Part::RAISE, "Nearer to the viewer than it must be", part.raise)
         .show(ui, |raise| Part { raise, ..part.clone() });

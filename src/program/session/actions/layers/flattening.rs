@@ -56,7 +56,11 @@ impl LayerAction {
             }
             LayerAction::Bake { layer } => {
                 let ids = document.outermost(&layer.find(document)?);
-                let label = if ids.len() > 1 { "Bake layers" } else { "Bake layer" };
+                let label = if ids.len() > 1 {
+                    "Turn layers into pixels"
+                } else {
+                    "Turn layer into pixels"
+                };
                 let baked = |next: Document, id| baked(&next, next.layer(id)?, progress);
                 let document = ids.into_iter().try_fold(document.clone(), baked)?;
                 Some(Edit { label, document, select: Vec::new() })
