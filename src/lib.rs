@@ -135,7 +135,7 @@ pub mod shape {
         CoverageFile, FlatColor, Inflation, OutlineSource, Part, PartKind, PartMaps, Parts,
         ProfilePicture,
         drawing::{FigureBackground, without_background},
-        flats::{FlatParts, PartFor, parts_of_flats},
+        from_flats::{FlatParts, PartFor, parts_of_flats},
     };
     #[doc(inline)]
     pub use rilievo_engine::shape::{

@@ -27,3 +27,4 @@ mod shape;
 mod view;
 #[cfg(feature = "window-tests")]
 mod window;
+mod words;

@@ -1,18 +1,17 @@
 //! The fill: the pixels joined to one by colours like its own, with small gaps in their border
-//! closed and its edge smoothed. Floor 3. `flood` finds the joined pixels; `gaps` excludes those
-//! that are only reached through a gap. Here: the settings and the edge. Not here: the picture that
+//! closed and its edge smoothed. Floor 3. `flood` finds the joined pixels; `raster::gaps`
+//! excludes those that are only reached through a gap. Here: the settings and the edge. Not here: the picture that
 //! is read, and what is done with the pixels (`tools::fill`).
 
 mod flood;
-mod gaps;
-
-pub use gaps::rooms;
 
 #[cfg(test)]
 mod tests;
 
 use crate::math::{Rect, Size, Vec2};
 use crate::raster::coverage::{CoverageGrid, edges};
+pub use crate::raster::gaps::WIDEST_GAP_PX;
+use crate::raster::gaps::{self, PixelSet};
 use crate::raster::{Plane, TILE, Tile, TileAt};
 use crate::surface::objects::{CanvasPart, PaintLimit};
 use std::sync::Arc;
@@ -49,8 +48,7 @@ impl Default for Fill {
     }
 }
 
-/// The widest gap that can be closed, and the farthest that an edge can move, px.
-pub const WIDEST_GAP_PX: f32 = 64.0;
+/// The farthest that an edge can move, px.
 pub const FARTHEST_GROWTH_PX: f32 = 32.0;
 
 /// What a fill covers.
@@ -158,28 +156,4 @@ fn limited(found: &CoverageGrid, part: &CanvasPart) -> CoverageGrid {
             *to = (f32::from(*share) * part.coverage(corner.x0 + x, corner.y0 + y)).round() as u8;
         }
     })
-}
-
-/// Some pixels of the canvas: 1 in a plane that covers a rectangle of it.
-struct PixelSet {
-    rect: Rect,
-    pixels: Plane<u8>,
-}
-
-impl PixelSet {
-    /// The same pixels in another rectangle.
-    fn within(self, rect: Rect) -> PixelSet {
-        if rect == self.rect {
-            return self;
-        }
-        let mut pixels = Plane::filled(Size::new(rect.width() as u32, rect.height() as u32), 0u8);
-        let both = rect.intersect(self.rect);
-        for y in both.y0..both.y1 {
-            let from =
-                &self.pixels.row((y - self.rect.y0) as usize)[(both.x0 - self.rect.x0) as usize..];
-            let to = &mut pixels.row_mut((y - rect.y0) as usize)[(both.x0 - rect.x0) as usize..];
-            to[..both.width()].copy_from_slice(&from[..both.width()]);
-        }
-        PixelSet { rect, pixels }
-    }
 }

@@ -8,6 +8,7 @@ pub mod blur;
 pub mod coverage;
 pub mod distance;
 pub mod flood;
+pub mod gaps;
 pub mod grid;
 pub mod lattice;
 pub mod line_integral;

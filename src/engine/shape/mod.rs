@@ -3,11 +3,12 @@
 //!
 //! [`Outline`] is what is known about a drawing, [`Form`] what is made of it: pillows (`inflate`),
 //! tubes, bevels, primitives, lathes, sweeps. `touches`, `sculpt`, `relief` and `lines` change an
-//! existing form. Not here: where outlines come from and how parts are kept (`document::parts`),
-//! files (`io`).
+//! existing form. `flats` reads drawings in flat colours, whose areas are outlines. Not here: where
+//! outlines come from and how parts are kept (`document::parts`), files (`io`).
 
 pub mod bevel;
 pub mod combine;
+pub mod flats;
 mod following;
 pub mod form;
 pub mod inflate;

@@ -7,9 +7,9 @@ mod constrained;
 mod layout;
 pub mod metric;
 mod perspective;
+mod piece_shifts;
 mod place;
 mod seen;
-mod settle;
 mod smooth;
 mod steps;
 
@@ -163,7 +163,7 @@ fn solved(
     }
     let pieces = solver.pieces();
     drop((solver, scratch, sources, metric));
-    settle::settle(surface, rect, &mut moved, pieces);
+    piece_shifts::shift_pieces(surface, rect, &mut moved, pieces);
     Some(moved)
 }
 

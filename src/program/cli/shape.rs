@@ -5,7 +5,7 @@ use super::force::Force;
 use super::told::tell;
 use super::{LimitArgs, values};
 use crate::document::parts::drawing::{FigureBackground, without_background};
-use crate::document::parts::flats::{self, FlatParts, PartFor};
+use crate::document::parts::from_flats::{self, FlatParts, PartFor};
 use crate::document::parts::{Inflation, Part};
 use crate::document::{Content, Document, Layer, PixelLayer};
 use crate::io::export::shape::{ShapeFiles, ShapeMap, ShapeOptions};
@@ -153,7 +153,7 @@ fn shaped(args: &ShapeArgs) -> Result<(Document, Option<String>)> {
                 FigureBackground::Painted => flats,
                 _ => figure(file, flats, size)?,
             };
-            let parts = flats::parts_of_flats(&flats, "Flats", inflation, each);
+            let parts = from_flats::parts_of_flats(&flats, "Flats", inflation, each);
             if parts.parts.is_empty() {
                 return Err(Error::unsupported(
                     file,

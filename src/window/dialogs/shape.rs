@@ -3,7 +3,7 @@
 
 use super::{DialogAnswer, answers};
 use crate::document::parts::drawing::{DrawingTraits, FigureBackground};
-use crate::document::parts::flats::PartFor;
+use crate::document::parts::from_flats::PartFor;
 use crate::document::{Document, Inflation, LayerId};
 use crate::panels::shape::presets;
 use crate::requests::UiRequests;

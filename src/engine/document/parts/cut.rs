@@ -8,10 +8,10 @@ mod lines;
 mod owners;
 mod pieces;
 
-use super::shares::bytes;
 use super::{OutlineSource, Part};
 use crate::document::{Content, Document, Group, Layer, LayerId, LayerSlot, PixelLayer};
 use crate::raster::TileGrid;
+use crate::shape::flats::shares::bytes;
 use owners::{Cut, PieceOutline};
 use std::sync::Arc;
 

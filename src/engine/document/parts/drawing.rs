@@ -1,13 +1,13 @@
 //! What a drawing is before it has a shape: whether its background is transparent or of one colour,
 //! and whether it has flat colours. Floor 4. Not here: which parts are made of it (`flats`).
 
-use super::color_distance::{is_near, share_on_the_way};
-use super::flats::LEAST_FLAT;
-use super::shares::{Flats, bytes};
+use super::from_flats::LEAST_FLAT;
 use crate::math::srgb::Color;
 use crate::math::{Rect, Size};
 use crate::raster::grid::unpremultiply;
 use crate::raster::{Plane, TileGrid};
+use crate::shape::flats::color_distance::{is_near, share_on_the_way};
+use crate::shape::flats::shares::{Flats, bytes};
 
 /// What lies around the figure.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,10 +2,10 @@
 //! one picture. Floor 4.
 
 use super::Parts;
-use super::places::ColorPlaces;
-use super::shares::Flats;
 use crate::math::srgb::Color;
 use crate::raster::TileGrid;
+use crate::shape::flats::places::ColorPlaces;
+use crate::shape::flats::shares::Flats;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Places of more pixels together than this are not kept.

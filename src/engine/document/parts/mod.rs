@@ -2,46 +2,33 @@
 //! surface follows. Floor 4. Not here: what each kind of part computes (`shape`).
 //!
 //! `part` is one of them and `edit` changes the list. `derive` makes the surface again where it
-//! changed; it uses `standing` for outlines in their places, `make` and `body` for one form, `upon`
-//! for what is on a form, `whole` for all together, `made` for what is kept, and `unchanged` to
+//! changed; it uses `placed_outlines`, `solve_form` and `body` for one form, `modifiers` for what
+//! is on a form, `whole` for all together, `form_cache` for what is kept, and `unchanged` to
 //! compare versions. `inputs` says whether a surface is still the right one, `weight` what memory
 //! it takes. `outlines` finds outlines, `drawn` what layers draw for them; `drawing` says what can
-//! be made of a layer, and `flats` makes parts of one in flat colours, for which `order` finds who
-//! lies in front; `cut` makes a drawing go with its parts. `forms` has the forms that were made,
-//! `scale` changes the canvas, and `fit` holds parts to what files can hold.
-//!
-//! `shares` says what each pixel of flats is of: `picture` reads its areas and mixed pixels,
-//! `palette` finds its colours, `ink` takes lines out, and `complete` gives what is left to the
-//! areas beside it. `places` tells the areas of one colour apart, `beneath` continues them under
-//! nearer ones, `known` keeps what was found, and `areas` has walks over pixels.
+//! be made of a layer, and `from_flats` makes parts of one in flat colours (`shape::flats`), for
+//! which `order` finds who lies in front; `cut` makes a drawing go with its parts. `forms` has the
+//! forms that were made, `flats_cache` what was found in flats, `scale` changes the canvas, and
+//! `fit` holds parts to what files can hold.
 
-mod areas;
-mod beneath;
 mod body;
-mod color_distance;
-mod complete;
 mod cut;
 mod derive;
 pub mod drawing;
 mod drawn;
 mod edit;
 mod fit;
-pub mod flats;
 mod flats_cache;
 mod form_cache;
 pub mod forms;
-mod ink;
+pub mod from_flats;
 mod inputs;
 mod modifiers;
 mod order;
 mod outlines;
-mod palette;
 mod part;
-mod picture;
 mod placed_outlines;
-pub mod places;
 mod scale;
-mod shares;
 mod solve_form;
 mod unchanged;
 mod weight;

@@ -1,9 +1,9 @@
 //! The order of areas by depth, from who interrupts whose outline. Floor 4. Not here: which areas
 //! there are (`flats`).
 
-use super::palette::NOTHING;
 use crate::math::Size;
 use crate::raster::Plane;
+use crate::shape::flats::palette::NOTHING;
 
 /// How far around a common border areas are compared, as a share of the longer side.
 const LOOKED_AROUND: f32 = 0.02;

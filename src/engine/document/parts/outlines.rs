@@ -1,11 +1,8 @@
 //! The outlines that parts name: of layers, colours, pictures, paths and objects.
 //! Floor 4.
 
-use super::beneath::fill_beneath;
 use super::drawn::{DrawnLayer, is_same_paint};
 use super::flats_cache::CachedFlats;
-use super::places::SplitPlaces;
-use super::shares::Flats;
 use super::{CoverageFile, FlatColor, OutlineSource, Part, PartKind, Parts};
 use crate::document::Document;
 use crate::math::srgb::Color;
@@ -13,6 +10,9 @@ use crate::math::{Rect, Size, Vec2, vec2};
 use crate::paint::{Scene, Selection};
 use crate::raster::{CoverageGrid, Plane, TileGrid};
 use crate::shape::Outline;
+use crate::shape::flats::beneath::fill_beneath;
+use crate::shape::flats::places::SplitPlaces;
+use crate::shape::flats::shares::Flats;
 use crate::surface::Surface;
 use crate::surface::region::SurfaceRegion;
 use std::sync::Arc;

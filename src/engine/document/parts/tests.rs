@@ -123,9 +123,13 @@ fn colours_become_parts_and_what_bulges_into_another_lies_in_front() {
         ],
     );
     let Content::Pixels(pixels) = &flats.content else { panic!("paint") };
-    let parts =
-        flats::parts_of_flats(&pixels.tiles, "Flats", Inflation::default(), flats::PartFor::Color)
-            .parts;
+    let parts = from_flats::parts_of_flats(
+        &pixels.tiles,
+        "Flats",
+        Inflation::default(),
+        from_flats::PartFor::Color,
+    )
+    .parts;
     let colors: Vec<String> = parts
         .iter()
         .map(|part| match part.outline() {

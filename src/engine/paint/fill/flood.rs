@@ -1,10 +1,10 @@
 //! Which pixels are joined to one by colours like its own, over their four neighbours. Floor 3.
 //! Finds which pixels may be filled, a row of a tile at a time; `raster::flood` spreads.
 
-use super::PixelSet;
 use crate::math::Size;
 use crate::raster::bits::{TileBits, bits_of, bytes_of};
 use crate::raster::flood::{Flooded, OpenTile};
+use crate::raster::gaps::PixelSet;
 use crate::raster::{CoverageGrid, CoverageTile, Plane, TILE, Tile, TileAt};
 use crate::surface::objects::CanvasPart;
 use std::sync::Arc;

@@ -12,7 +12,7 @@ mod split;
 pub use first::FirstShape;
 pub use new::NewPart;
 
-use crate::document::parts::{Part, flats::PartFor};
+use crate::document::parts::{Part, from_flats::PartFor};
 use crate::document::{Document, Inflation, Progress};
 use crate::io::Budget;
 use crate::io::recipe::parts::read_part;

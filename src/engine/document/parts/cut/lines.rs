@@ -1,12 +1,12 @@
 //! Lines between two parts of a drawing go with the nearer one, whose outline they draw: an eye
 //! that is moved takes all of its ring along. Floor 4.
 
-use super::super::areas::pixels;
-use super::super::color_distance::{color_distance, share_on_the_way};
-use super::super::ink::half_width;
-use super::super::picture::Pixel;
 use super::owners::{Cut, NO_PART};
 use crate::raster::{Plane, distance};
+use crate::shape::flats::areas::pixels;
+use crate::shape::flats::color_distance::{color_distance, share_on_the_way};
+use crate::shape::flats::ink::half_width;
+use crate::shape::flats::picture::Pixel;
 use std::collections::VecDeque;
 
 /// A pixel that differs more from the flat colour of its part, in any channel of 8 bits, is of a

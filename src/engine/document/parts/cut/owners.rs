@@ -1,10 +1,10 @@
 //! Which part each pixel of a drawing belongs to. Floor 4.
 
-use super::super::areas::spread;
-use super::super::picture::{MOSTLY, Pixel};
 use crate::math::{Rect, Size};
 use crate::raster::{Plane, TileGrid};
 use crate::shape::Outline;
+use crate::shape::flats::areas::spread;
+use crate::shape::flats::picture::{MOSTLY, Pixel};
 use std::sync::Arc;
 
 /// No part.

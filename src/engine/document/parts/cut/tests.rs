@@ -1,9 +1,8 @@
 //! Pieces make the same picture, and go with their parts.
 
-use super::super::color_distance::NEAR;
-use super::super::flats::tests as drawings;
-use super::super::flats::{PartFor, parts_of_flats};
-use super::super::shares::tests::{EYE, PUPIL, SIZE, at, color, drawn};
+use super::super::from_flats::tests as drawings;
+use super::super::from_flats::tests::shares::{EYE, PUPIL, SIZE, at, color, drawn};
+use super::super::from_flats::{PartFor, parts_of_flats};
 use crate::document::{
     Content, DerivedMask, Document, Group, Inflation, Layer, LayerId, LayerMask, OutlineSource,
     Part, PixelLayer, Progress, flatten,
@@ -11,6 +10,7 @@ use crate::document::{
 use crate::math::srgb::Color;
 use crate::math::{Affine2, Size, Vec2, vec2};
 use crate::raster::{BlendMode, TileGrid};
+use crate::shape::flats::color_distance::NEAR;
 use std::sync::Arc;
 
 fn shaped(tiles: &TileGrid) -> Document {

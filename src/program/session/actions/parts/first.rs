@@ -5,7 +5,7 @@
 use super::{PartRefusal, free_id, new};
 use crate::document::parts::Part;
 use crate::document::parts::drawing::{DrawingTraits, FigureBackground, without_background};
-use crate::document::parts::flats::{FlatParts, PartFor, parts_of_flats};
+use crate::document::parts::from_flats::{FlatParts, PartFor, parts_of_flats};
 use crate::document::{
     Content, Document, Inflation, Layer, LayerId, LayerSlot, Live, PixelLayer, Progress,
 };

@@ -1,11 +1,11 @@
 //! One part of a colour that stands in several places becomes a part for each place.
-//! Floor 6. Not here: where the places are (`document::parts::places`).
+//! Floor 6. Not here: where the places are (`shape::flats::places`).
 
 use super::{PartRefusal, free_id};
 use crate::document::Document;
-use crate::document::parts::flats::MOST_COLOURS;
-use crate::document::parts::places::SplitPlaces;
+use crate::document::parts::from_flats::MOST_COLOURS;
 use crate::document::parts::{Part, PartKind};
+use crate::shape::flats::places::SplitPlaces;
 use std::sync::Arc;
 
 /// The document with a part split. The largest place keeps the part's id and name, and the paint

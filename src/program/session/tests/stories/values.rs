@@ -3,7 +3,7 @@
 //! refused. Not here: parts (`parts`).
 
 use super::dice::{Dice, Drawn};
-use crate::document::parts::flats::PartFor;
+use crate::document::parts::from_flats::PartFor;
 use crate::document::{DerivedMask, Inflation, LayerTransform, TransformShape};
 use crate::io::recipe::value::RecipeValue;
 use crate::math::{DVec2, Range, Size};

@@ -1,6 +1,10 @@
 //! Drawings as people make them: with ink, shading, specks of compression, and marks too small for
 //! parts.
 
+mod beneath;
+mod places;
+pub mod shares;
+
 use super::*;
 use crate::document::{Content, Document, Layer, PixelLayer};
 use crate::math::srgb::Color;

@@ -1,5 +1,5 @@
 //! What a flat colour covers unseen: its area goes on beneath nearer colours, as a face does
-//! beneath its eyes. Floor 4. Not here: which share of a visible pixel a colour takes (`shares`).
+//! beneath its eyes. Floor 3. Not here: which share of a visible pixel a colour takes (`shares`).
 
 use super::areas::{self, around_all, beside, least_area, over, pixels, walk};
 use super::shares::{FlatOwner, Flats, MOSTLY, REACH};
@@ -182,6 +182,3 @@ fn fill_mixed_around(share: &mut Plane<u8>, x: usize, y: usize) {
         }
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,4 +1,4 @@
-//! When two colours are one flat, and how far between two colours a mixed one lies. Floor 4.
+//! When two colours are one flat, and how far between two colours a mixed one lies. Floor 3.
 
 /// Colours nearer than this, in any channel of 8 bits, are one flat.
 pub const NEAR: i32 = 8;

@@ -1,11 +1,13 @@
 //! Areas of one colour are told apart, and parts follow theirs.
 
-use super::super::flats::{PartFor, parts_of_flats};
-use super::super::{FlatColor, Inflation, OutlineSource, Part, PartKind};
-use super::*;
+use crate::document::parts::from_flats::{PartFor, parts_of_flats};
+use crate::document::parts::{FlatColor, Inflation, OutlineSource, Part, PartKind};
 use crate::document::{CanvasChange, Content, Document, Layer, LayerTransform, PixelLayer};
-use crate::math::{Affine2, PlaneMap};
+use crate::math::srgb::Color;
+use crate::math::{Affine2, PlaneMap, Rect, Size, Vec2, vec2};
 use crate::raster::{Resampling, TileGrid};
+use crate::shape::flats::places::*;
+use crate::shape::flats::shares::Flats;
 use std::sync::Arc;
 
 const SIZE: Size = Size::new(200, 120);

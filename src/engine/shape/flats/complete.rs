@@ -1,5 +1,5 @@
 //! What is painted and of no flat colour, such as lines and specks, is given to the areas beside
-//! it. Floor 4.
+//! it. Floor 3.
 
 use super::areas::{pixels, spread};
 use super::palette::NOTHING;

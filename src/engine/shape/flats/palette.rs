@@ -1,5 +1,5 @@
 //! The colours of flats: one is all that an area shows, also where it is shaded, as long as nothing
-//! in it is an edge. Floor 4. Not here: which share of a pixel a colour takes (`shares`).
+//! in it is an edge. Floor 3. Not here: which share of a pixel a colour takes (`shares`).
 
 use super::areas::LEAST_SEEN;
 use super::color_distance::{color_distance, is_near};

@@ -1,11 +1,13 @@
 //! A colour goes on beneath what nearer parts cover inside of it, and holes stay.
 
-use super::super::flats::{PartFor, parts_of_flats};
-use super::super::shares::Pixel;
-use super::super::shares::tests::{BODY, EYE, PUPIL, SIZE, WING, at, color, drawn};
-use super::*;
+use super::shares::{BODY, EYE, PUPIL, SIZE, WING, at, color, drawn};
+use crate::document::parts::from_flats::{PartFor, parts_of_flats};
 use crate::document::{Content, Document, Inflation, Layer, OutlineSource, Part, PixelLayer};
+use crate::math::srgb::Color;
 use crate::math::{Affine2, Vec2, vec2};
+use crate::shape::flats::beneath::*;
+use crate::shape::flats::shares::Flats;
+use crate::shape::flats::shares::Pixel;
 use std::sync::Arc;
 
 /// A body of four flats around its eye, and a hole through it in which something stands.

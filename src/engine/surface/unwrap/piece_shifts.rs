@@ -16,7 +16,7 @@ const NONE: u32 = u32::MAX;
 ///
 /// * `moved`: δ = D − q over `rect`, x and y.
 /// * `pieces`: the number of each pixel's piece, [`u32::MAX`] for none, and how many there are.
-pub(super) fn settle(
+pub(super) fn shift_pieces(
     surface: &Surface,
     rect: Rect,
     moved: &mut [Vec<f32>; 2],

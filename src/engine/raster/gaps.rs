@@ -1,24 +1,49 @@
 //! Gap closing: removes what a fill reached only through a narrow passage, up to the narrowest
-//! point of the passage. Floor 3.
+//! point of the passage. Floor 1.
 //!
 //! Every pixel inside has a distance to the border. Rooms are hills of that distance, passages
 //! between them are saddles; a watershed (Vincent and Soille 1991, by a union of pixels in falling
 //! order) assigns each pixel to the hill it lies on. Two hills are one room unless the saddle
 //! between them is a gap: low enough, and clearly lower than both tops.
 
-use super::PixelSet;
-use crate::math::Size;
-use crate::raster::{Plane, distance};
+use super::{Plane, distance};
+use crate::math::{Rect, Size};
 use rayon::prelude::*;
 
+/// The widest gap that can be closed, px.
+pub const WIDEST_GAP_PX: f32 = 64.0;
 /// How much lower than both tops a saddle must be to be a gap, px: more than the roughness of a
 /// straight corridor drawn in pixels.
 const CLEARLY_PX: f32 = 1.0;
 /// Levels of distance to a pixel.
 const LEVELS_PER_PX: f32 = 4.0;
 
+/// Some pixels of the canvas: 1 in a plane that covers a rectangle of it.
+pub struct PixelSet {
+    pub rect: Rect,
+    pub pixels: Plane<u8>,
+}
+
+impl PixelSet {
+    /// The same pixels in another rectangle.
+    pub fn within(self, rect: Rect) -> PixelSet {
+        if rect == self.rect {
+            return self;
+        }
+        let mut pixels = Plane::filled(Size::new(rect.width() as u32, rect.height() as u32), 0u8);
+        let both = rect.intersect(self.rect);
+        for y in both.y0..both.y1 {
+            let from =
+                &self.pixels.row((y - self.rect.y0) as usize)[(both.x0 - self.rect.x0) as usize..];
+            let to = &mut pixels.row_mut((y - rect.y0) as usize)[(both.x0 - rect.x0) as usize..];
+            to[..both.width()].copy_from_slice(&from[..both.width()]);
+        }
+        PixelSet { rect, pixels }
+    }
+}
+
 /// The room that contains `start`, of what was joined to it.
-pub(super) fn closed(inside: PixelSet, start: (i32, i32), canvas: Size, gap_px: f32) -> PixelSet {
+pub fn closed(inside: PixelSet, start: (i32, i32), canvas: Size, gap_px: f32) -> PixelSet {
     // From the middle of a gap w px wide to the centre of the border's nearest pixel: at most (w +
     // 1)/2. Tops are capped at the height that makes a saddle of that distance a gap.
     let top_px = 0.5 * (gap_px + 1.0) + CLEARLY_PX;
@@ -50,7 +75,7 @@ pub(super) fn closed(inside: PixelSet, start: (i32, i32), canvas: Size, gap_px: 
 /// The rooms of some pixels, numbered from 1 in the order of their first pixels; 0 outside.
 /// Passages up to `gap_px` wide divide them; the border of the plane is a wall.
 pub fn rooms(inside: &Plane<bool>, gap_px: f32) -> Plane<u32> {
-    let top_px = 0.5 * (gap_px.max(0.0).min(super::WIDEST_GAP_PX) + 1.0) + CLEARLY_PX;
+    let top_px = 0.5 * (gap_px.max(0.0).min(WIDEST_GAP_PX) + 1.0) + CLEARLY_PX;
     let limit = top_px.ceil() as u16;
     let size = inside.size();
     // One pixel around it is the wall.

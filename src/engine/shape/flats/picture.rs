@@ -1,5 +1,5 @@
 //! A picture of flats as it was painted: its flat areas, and between which of them each mixed pixel
-//! lies. Floor 4.
+//! lies. Floor 3.
 
 use super::color_distance::{NEAR, is_near, share_on_the_way};
 use crate::math::{Rect, Size};

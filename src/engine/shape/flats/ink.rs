@@ -1,5 +1,5 @@
 //! Lines of a drawing that separate its areas, such as ink: they belong to what they run along.
-//! Floor 4. Not here: which of two areas takes a pixel of a line (`complete`).
+//! Floor 3. Not here: which of two areas takes a pixel of a line (`complete`).
 
 use super::areas::{beside, least_area, over, pixels, walk};
 use super::palette::{NONE, NOTHING};

@@ -1,10 +1,11 @@
 //! Shares of mixed pixels add up, and leave no rims.
 
-use super::*;
-use crate::document::parts::flats::{PartFor, parts_of_flats};
+use crate::document::parts::from_flats::{PartFor, parts_of_flats};
 use crate::document::{Content, Document, Inflation, Layer, PixelLayer};
-use crate::math::Size;
-use crate::math::{Vec2, vec2};
+use crate::math::srgb::Color;
+use crate::math::{Size, Vec2, vec2};
+use crate::raster::TileGrid;
+use crate::shape::flats::shares::*;
 use std::sync::Arc;
 
 pub const SIZE: Size = Size::new(200, 160);

@@ -1,12 +1,12 @@
 //! The places of a flat colour: its areas that nothing joins, or only a passage too narrow to be
-//! meant. Floor 4. Not here: which share of a pixel a colour takes (`shares`), the gap closing
+//! meant. Floor 3. Not here: which share of a pixel a colour takes (`shares`), the gap closing
 //! (`paint::fill`).
 
 use super::areas::{LEAST_SEEN, around_all, least_area, over, spread};
 use super::shares::{Flats, MOSTLY};
 use crate::math::srgb::Color;
 use crate::math::{Rect, Size, Vec2, vec2};
-use crate::paint::fill::rooms;
+use crate::raster::gaps::rooms;
 use crate::raster::{Plane, distance};
 
 /// How far around a colour pixels are looked at, px: what lies over its edge belongs to its places.
@@ -197,6 +197,3 @@ fn areas(labels: &Plane<u32>) -> Vec<(Rect, usize)> {
     }
     areas
 }
-
-#[cfg(test)]
-mod tests;

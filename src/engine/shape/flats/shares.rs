@@ -1,6 +1,6 @@
 //! Which share of each pixel a flat colour takes: all of a pixel in a flat area, and a part of
 //! those that were mixed at edges between two areas. Shares add up to the whole pixel, so that
-//! areas that touch leave no rim between them. Floor 4. Not here: which colours are parts
+//! areas that touch leave no rim between them. Floor 3. Not here: which colours are parts
 //! (`flats`).
 
 use super::areas::{LEAST_SEEN, beside, least_area, pixels, walk};
@@ -281,6 +281,3 @@ fn renumbered(owner: Plane<u16>, is_kept: &[bool]) -> Plane<u16> {
 pub fn bytes(color: Color) -> Pixel {
     color.premultiplied().map(|v| (v * 255.0).round() as u8)
 }
-
-#[cfg(test)]
-pub mod tests;

@@ -2,16 +2,16 @@
 //! interrupts whose outline. Floor 4. Not here: what the colours are (`palette`, `shares`), and
 //! their order (`order`).
 
-use super::areas::{LEAST_SHARE, spread};
 use super::order::farthest_first;
-use super::palette::NOTHING;
-use super::places::ColorPlaces;
-use super::shares::Flats;
 use super::{FlatColor, Inflation, OutlineSource, Part, PartKind};
 use crate::math::{Rect, vec2};
 use crate::raster::{Plane, TileGrid};
+use crate::shape::flats::areas::{LEAST_SHARE, spread};
+use crate::shape::flats::palette::NOTHING;
+use crate::shape::flats::places::ColorPlaces;
+use crate::shape::flats::shares::Flats;
 
-pub use super::shares::MOST_COLOURS;
+pub use crate::shape::flats::shares::MOST_COLOURS;
 
 /// From this share of a figure in flat areas on, its colours are worth a part each: shaded paint
 /// has few pixels of any one colour.

@@ -1,4 +1,4 @@
-//! Areas of pixels: the smallest that count, and walks over them, side by side. Floor 4.
+//! Areas of pixels: the smallest that count, and walks over them, side by side. Floor 3.
 
 use crate::math::{Rect, Size};
 use crate::raster::Plane;

@@ -1,0 +1,17 @@
+//! Flats: drawings in flat colours, which areas they have, and whose pixels are whose. Floor 3. Not
+//! here: how parts are made of them (`document::parts::from_flats`).
+//!
+//! `shares` says what each pixel is of: `picture` reads areas and mixed pixels, `palette` finds the
+//! colours, `ink` takes lines out, and `complete` gives what is left to the areas beside it.
+//! `places` tells the areas of one colour apart, `beneath` continues them under nearer ones;
+//! `areas` has walks over pixels, and `color_distance` says which colours are one.
+
+pub mod areas;
+pub mod beneath;
+pub mod color_distance;
+mod complete;
+pub mod ink;
+pub mod palette;
+pub mod picture;
+pub mod places;
+pub mod shares;

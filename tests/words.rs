@@ -1,0 +1,117 @@
+//! Words that name nothing: functions are verbs and modules are nouns of the field (docs/STYLE.md).
+//! Names that were replaced are listed here, so that they do not come back. The list only grows.
+
+use super::lines::files;
+use std::fs;
+use std::path::Path;
+
+/// What a name can be of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Named {
+    Function,
+    Module,
+}
+
+/// Names that say nothing about what they name, what they are of, and what to write instead.
+const REPLACED: &[(&str, Named, &str)] = &[
+    ("apart", Named::Function, "split_…, or what differs: …_difference"),
+    ("borne", Named::Function, "a verb"),
+    ("brought", Named::Function, "a verb"),
+    ("came", Named::Function, "resume"),
+    ("forgotten", Named::Function, "without_…"),
+    ("goes", Named::Function, "moves_with_…"),
+    ("heard", Named::Function, "a verb"),
+    ("known", Named::Function, "get, or what is cached"),
+    ("laid", Named::Function, "place_…, with_…"),
+    ("lent", Named::Function, "a verb"),
+    ("let_go", Named::Function, "clear"),
+    ("made", Named::Function, "a verb: build, solve_…, of_…"),
+    ("met", Named::Function, "first_hit, or what is met"),
+    ("own", Named::Function, "what is owned"),
+    ("said", Named::Function, "the text that it returns: …_text"),
+    ("sought", Named::Function, "find_…"),
+    ("told", Named::Function, "the text that it returns, or how it is written"),
+    ("upon", Named::Function, "modifiers_of"),
+    ("alone", Named::Module, "isolation"),
+    ("came", Named::Module, "resume point"),
+    ("dress", Named::Module, "what it does"),
+    ("grow", Named::Module, "nearest_feature"),
+    ("habits", Named::Module, "brush_options"),
+    ("hear", Named::Module, "what it does"),
+    ("judge", Named::Module, "compare"),
+    ("laid", Named::Module, "what lies there"),
+    ("look", Named::Module, "layer_preview"),
+    ("near", Named::Module, "perspective, color_distance"),
+    ("readings", Named::Module, "accessors"),
+    ("springs", Named::Module, "poisson"),
+    ("standing", Named::Module, "placed_outlines"),
+    ("sway", Named::Module, "wobble"),
+    ("through", Named::Module, "transformed"),
+    ("upon", Named::Module, "modifiers"),
+    ("yields", Named::Module, "constrained"),
+];
+
+/// What a suffix of functions was replaced by.
+const SUFFIXES: &[(&str, &str)] = &[("_telling", "_with_progress")];
+
+/// The functions and modules that a text defines.
+fn defined(text: &str) -> Vec<(Named, &str)> {
+    text.lines().filter_map(definition).collect()
+}
+
+/// What a line defines.
+fn definition(line: &str) -> Option<(Named, &str)> {
+    let words: Vec<&str> = line.split("//").next()?.split_whitespace().collect();
+    let (at, what) = words.iter().enumerate().find_map(|(i, word)| match *word {
+        "fn" => Some((i, Named::Function)),
+        "mod" => Some((i, Named::Module)),
+        _ => None,
+    })?;
+    let is_front = |word: &&str| {
+        word.starts_with("pub")
+            || ["const", "unsafe", "in", "extern"].contains(word)
+            || word.ends_with(')')
+    };
+    if !words[..at].iter().all(is_front) {
+        return None;
+    }
+    let name = words.get(at + 1)?.split(|c: char| !(c.is_alphanumeric() || c == '_')).next()?;
+    Some((what, name))
+}
+
+/// What a name is to be replaced by, if it is one of those.
+fn replacement(what: Named, name: &str) -> Option<&'static str> {
+    let whole = REPLACED.iter().find(|row| (row.0, row.1) == (name, what)).map(|row| row.2);
+    let ends = |row: &&(&str, &str)| what == Named::Function && name.ends_with(row.0);
+    whole.or_else(|| SUFFIXES.iter().find(ends).map(|row| row.1))
+}
+
+#[test]
+fn names_that_were_replaced_do_not_come_back() {
+    let mut wrong = Vec::new();
+    let mut count = 0;
+    for path in files("src", "rs") {
+        let text = fs::read_to_string(&path).unwrap();
+        let place =
+            path.strip_prefix(Path::new(env!("CARGO_MANIFEST_DIR"))).unwrap().display().to_string();
+        for (what, name) in defined(&text) {
+            count += 1;
+            if let Some(instead) = replacement(what, name) {
+                wrong.push(format!("{place}: {what:?} {name}: write {instead}"));
+            }
+        }
+    }
+    assert!(count > 6000, "only {count} names were found");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn names_are_found_however_they_are_written() {
+    let text = "mod a;\npub(in crate::b) mod c {\n    pub const fn d() {}\n    // fn e() {}\n    fn f<T>() {}\n}\n\
+                let g = \"fn h\";\nfn drawn_telling() {}\n";
+    let names: Vec<&str> = defined(text).into_iter().map(|(_, name)| name).collect();
+    assert_eq!(names, ["a", "c", "d", "f", "drawn_telling"]);
+    assert_eq!(replacement(Named::Function, "drawn_telling"), Some("_with_progress"));
+    assert_eq!(replacement(Named::Module, "sway"), Some("wobble"));
+    assert_eq!(replacement(Named::Function, "sway"), None);
+}
