@@ -1,10 +1,17 @@
-//! Decodes raster files within a budget: PNG, JPEG, WebP, TIFF, BMP, TGA and Radiance HDR.
-//! Floor 5. Not here: what the numbers mean (`picture`, `maps`), EXR (`exr`).
+//! Decodes raster files within a budget: PNG, JPEG, WebP, TIFF, BMP, TGA, Radiance HDR, GIF, QOI
+//! and Netpbm. Floor 5. Not here: what the numbers mean (`picture`, `maps`), EXR (`exr`).
 
+mod gif;
 mod passes;
+mod pnm;
+mod qoi;
+mod tga;
 mod tiff;
+mod unread;
+mod upright;
 mod weight;
 
+pub use upright::png_exif;
 pub use weight::has_png_profile;
 
 use super::Budget;
@@ -26,11 +33,11 @@ pub struct Bitmap {
     pub warning: Option<&'static str>,
 }
 
-const READABLE: &str = "PNG, JPEG, WebP, TIFF, BMP, TGA, HDR or EXR";
+const READABLE: &str = "PNG, JPEG, WebP, TIFF, BMP, TGA, GIF, QOI, PNM, HDR or EXR";
 
 /// The formats of this module; the flag says whether a file of a few bytes may hold any number of
 /// pixels.
-const FORMATS: [(ImageFormat, &str, bool); 7] = [
+const FORMATS: [(ImageFormat, &str, bool); 10] = [
     (ImageFormat::Png, "PNG", false),
     (ImageFormat::Jpeg, "JPEG", false),
     (ImageFormat::WebP, "WebP", true),
@@ -38,6 +45,9 @@ const FORMATS: [(ImageFormat, &str, bool); 7] = [
     (ImageFormat::Bmp, "BMP", false),
     (ImageFormat::Tga, "TGA", false),
     (ImageFormat::Hdr, "HDR", false),
+    (ImageFormat::Gif, "GIF", false),
+    (ImageFormat::Qoi, "QOI", false),
+    (ImageFormat::Pnm, "PNM", false),
 ];
 
 /// Decodes a file by its first bytes; TGA, which has no signature, by its name.
@@ -65,14 +75,21 @@ fn decode_as(
     (format, name, unbounded): (ImageFormat, &'static str, bool),
 ) -> Result<Bitmap> {
     if format == ImageFormat::Jpeg && !ends(bytes) {
-        return Err(Error::decode(
-            file,
-            "the JPEG data ends before its end marker; the file is cut short",
-        ));
+        return cut_jpeg(file, bytes, budget);
+    }
+    if format == ImageFormat::Hdr
+        && let Some((usual, orientation)) = upright::radiance(bytes)
+    {
+        let read = decode_as(file, &usual, budget, (format, name, unbounded))?;
+        return Ok(Bitmap { orientation, ..read });
     }
     let decoded = catch_unwind(AssertUnwindSafe(|| {
-        if format == ImageFormat::Tiff {
-            return tiff::decode(file, bytes, budget);
+        match format {
+            ImageFormat::Tiff => return tiff::decode(file, bytes, budget),
+            ImageFormat::Gif => return gif::decode(file, bytes, budget),
+            ImageFormat::Qoi => return qoi::decode(file, bytes, budget),
+            ImageFormat::Pnm => return pnm::decode(file, bytes, budget),
+            _ => {}
         }
         let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
         reader.limits(limits(format, bytes, budget));
@@ -97,8 +114,14 @@ fn decode_as(
         let is_lost = icc.is_none() && format == ImageFormat::Png && weight::has_png_profile(bytes);
         let warning = is_lost
             .then_some("its colour profile is damaged or unpacks without end, and was left out");
-        let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
+        let exif = decoder.exif_metadata().ok().flatten();
+        let turned = exif.as_deref().and_then(upright::of_exif).or_else(|| {
+            let exif = upright::png_exif(bytes).filter(|_| format == ImageFormat::Png)?;
+            upright::of_exif(exif)
+        });
+        let orientation = turned.unwrap_or(Orientation::NoTransforms);
         let image = DynamicImage::from_decoder(decoder).map_err(|e| failure(file, name, &e))?;
+        let image = if format == ImageFormat::Tga { tga::with_alpha(bytes, image) } else { image };
         Ok(Bitmap { image, icc, orientation, format: name, warning })
     }));
     decoded.unwrap_or_else(|_| Err(Error::decode(file, format!("the {name} data is damaged"))))
@@ -109,9 +132,15 @@ fn sniff(file: &Path, bytes: &[u8]) -> Result<(ImageFormat, &'static str, bool)>
         return Err(Error::decode(file, "the file is empty"));
     }
     let is_tga = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("tga"));
+    // A TGA may begin like an icon.
+    if let Some(reason) = unread::reason(file, bytes).filter(|_| !is_tga) {
+        return Err(Error::unsupported(file, reason));
+    }
+    let is_float_map = bytes.starts_with(b"PF\n") || bytes.starts_with(b"Pf\n");
     let is_big_tiff = bytes.starts_with(b"II+\0") || bytes.starts_with(b"MM\0+");
     let found = match image::guess_format(bytes) {
         _ if is_big_tiff => ImageFormat::Tiff,
+        _ if is_float_map => ImageFormat::Pnm,
         Ok(format) => format,
         Err(_) if is_tga => ImageFormat::Tga,
         Err(_) => {
@@ -157,6 +186,26 @@ fn room(file: &Path, size: Size, decoded_bytes: u64, budget: &Budget) -> Result<
         &format!("a picture of {size} pixels"),
         decoded_bytes.saturating_add(handed_on),
     )
+}
+
+/// What there is of a JPEG without its end marker: as far as its pixels go.
+fn cut_jpeg(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
+    let jpeg = (ImageFormat::Jpeg, "JPEG", false);
+    // Half a marker would swallow the one that is put after it.
+    let bytes = bytes.strip_suffix(&[0xff]).unwrap_or(bytes);
+    let has_scan = passes::work(bytes).passes > 0;
+    let read = has_scan.then(|| decode_as(file, &[bytes, &[0xff, 0xd9]].concat(), budget, jpeg));
+    match read {
+        Some(Ok(bitmap)) => Ok(Bitmap {
+            warning: Some("the JPEG has no end marker; it is shown as far as it goes"),
+            ..bitmap
+        }),
+        Some(Err(error @ Error::TooLarge { .. })) => Err(error),
+        _ => Err(Error::decode(
+            file,
+            "the JPEG data ends before its end marker; the file is cut short",
+        )),
+    }
 }
 
 /// Whether a JPEG's last scan is followed by its end marker.

@@ -119,6 +119,7 @@ fn single(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContents>
         let painted = picture::painted(file, bytes, 0, 0, budget)?;
         stored.push(picture::LightLayer { name: String::new(), painted, is_whole: true });
     }
+    let warning = stored[0].painted.warning;
     let size = stored[0].painted.size;
     let layer = |stored: picture::LightLayer| {
         let tiles = stored.painted.tiles;
@@ -136,7 +137,7 @@ fn single(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContents>
             "an EXR does not say in which order its layers are; they are in the order of the file",
         ),
     };
-    let notes = notes.map(str::to_owned).into_iter().collect();
+    let notes = notes.into_iter().chain(warning).map(str::to_owned).collect();
     let document = Document { layers, ..Document::empty(size) };
     Ok(ProjectContents { document, notes, is_whole: true, picture: None })
 }

@@ -22,7 +22,7 @@ use image::DynamicImage;
 use moxcms::{ColorProfile, DataColorSpace, Layout, TransformOptions};
 use std::path::Path;
 
-/// Decodes PNG, JPEG, WebP, TIFF, BMP, TGA, HDR or EXR, distinguished by their first bytes.
+/// Decodes any format of `bitmap`, or EXR, distinguished by their first bytes.
 ///
 /// * `file`: for messages (and for TGA, which only its name identifies).
 ///

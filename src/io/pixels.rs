@@ -19,6 +19,8 @@ pub struct Painted {
     /// Of the whole picture, transparent parts included.
     pub size: Size,
     pub tiles: TileGrid,
+    /// A defect of the file that could be worked around, as a sentence.
+    pub warning: Option<&'static str>,
 }
 
 /// The tight rectangle around what is not transparent, as a PNG; one transparent pixel if all is
@@ -209,7 +211,7 @@ pub fn decode_tiles(bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Option<Pai
     let info = reader.info();
     let is_srgb =
         !bitmap::has_png_profile(bytes) || info.icc_profile.as_deref().is_some_and(is_own_srgb);
-    let is_bare = info.exif_metadata.is_none() && info.animation_control.is_none() && is_srgb;
+    let is_bare = bitmap::png_exif(bytes).is_none() && info.animation_control.is_none() && is_srgb;
     let size = budget.size(Path::new(""), info.width.into(), info.height.into()).ok()?;
     let (color, depth) = reader.output_color_type();
     let is_deep = depth == png::BitDepth::Sixteen;
@@ -259,7 +261,7 @@ pub fn decode_tiles(bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Option<Pai
         top = next;
     }
     reader.finish().ok()?;
-    Some(Painted { size, tiles })
+    Some(Painted { size, tiles, warning: None })
 }
 
 /// A row of a PNG's samples as straight RGBA; `None` of one that still numbers colours. `whole`:

@@ -22,20 +22,22 @@ pub fn painted(file: &Path, bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Re
         return Ok(painted);
     }
     let bitmap = super::upright(file, bytes, budget)?;
+    let warning = bitmap.warning;
     let gathered = GatheredTiles::new(
         file,
         budget,
         Size::new(bitmap.image.width(), bitmap.image.height()),
         [x, y],
     );
-    match &bitmap.image {
-        image if super::is_sixteen_bits(image) => gathered.of_sixteen_bits(&bitmap),
-        image if super::is_light(image) => gathered.of_floats(&bitmap),
+    let painted = match &bitmap.image {
+        image if super::is_sixteen_bits(image) => gathered.of_sixteen_bits(&bitmap)?,
+        image if super::is_light(image) => gathered.of_floats(&bitmap)?,
         _ => {
             let picture = super::picture_of(file, bitmap, budget)?;
-            Ok(Painted { size: picture.size, tiles: super::to_tiles(&picture, x, y) })
+            Painted { size: picture.size, tiles: super::to_tiles(&picture, x, y), warning: None }
         }
-    }
+    };
+    Ok(Painted { warning, ..painted })
 }
 
 /// A layer of an EXR.
@@ -100,7 +102,7 @@ impl<'a> GatheredTiles<'a> {
     }
 
     fn done(self) -> Painted {
-        Painted { size: self.size, tiles: self.tiles }
+        Painted { size: self.size, tiles: self.tiles, warning: None }
     }
 
     /// Integers of 16 bits, through their profile if there is one.

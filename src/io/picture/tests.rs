@@ -120,11 +120,22 @@ fn what_is_no_picture_gets_a_sentence() {
         ("empty.png", b"", "is empty"),
         ("text.png", b"hello, world", "does not begin like"),
         ("bomb.png", &bomb, "bomb.png"),
-        ("cut.jpg", &cut[..cut.len() - 2], "cut short"),
+        ("cut.jpg", &cut[..cut.len() / 4], "cut short"),
     ];
     for (name, bytes, part) in cases {
         let said = decode(Path::new(name), bytes, &Budget::default()).unwrap_err().to_string();
         assert!(said.contains(part), "{said}");
+    }
+}
+
+#[test]
+fn a_jpeg_without_its_end_is_shown_as_far_as_it_goes() {
+    let whole = encoded(&opaque(), ImageFormat::Jpeg);
+    let scan = whole.windows(2).rposition(|pair| pair == [0xff, 0xda]).unwrap();
+    for cut in [whole.len() - 1, whole.len() - 2, (scan + whole.len()) / 2] {
+        let read = painted(Path::new("a.jpg"), &whole[..cut], 0, 0, &Budget::default()).unwrap();
+        assert_eq!(read.size, Size::new(9, 5));
+        assert!(read.warning.unwrap_or_default().contains("no end marker"), "cut at {cut}");
     }
 }
 

@@ -155,9 +155,11 @@ impl PictureCache {
         if !self.tiles.contains_key(&key) {
             // Another layer may show the same file.
             let painted = match self.pictures.get(name.text()?) {
-                Some(picture) => {
-                    Painted { size: picture.size, tiles: picture::to_tiles(picture, x, y) }
-                }
+                Some(picture) => Painted {
+                    size: picture.size,
+                    tiles: picture::to_tiles(picture, x, y),
+                    warning: None,
+                },
                 None => {
                     let (bytes, path) = (bytes(source, name)?, source.files.path(name.text()?));
                     picture::painted(&path, &bytes, x, y, source.budget)

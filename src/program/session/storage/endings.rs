@@ -8,8 +8,10 @@ pub const DOCUMENTS: [&str; 4] = ["ora", "psd", "psb", "json"];
 /// Extensions of the files that documents are saved to, the first being this program's own.
 pub const SAVED: [&str; 2] = ["ora", "psd"];
 /// Extensions of the files that hold pictures.
-pub const PICTURES: [&str; 10] =
-    ["png", "jpg", "jpeg", "webp", "tif", "tiff", "bmp", "tga", "hdr", "exr"];
+pub const PICTURES: [&str; 18] = [
+    "png", "jpg", "jpeg", "webp", "tif", "tiff", "bmp", "tga", "hdr", "exr", "gif", "qoi", "pnm",
+    "pbm", "pgm", "ppm", "pam", "pfm",
+];
 
 pub fn is_document(file: &Path) -> bool {
     ends_in(file, &DOCUMENTS)
