@@ -14,6 +14,7 @@ const VALUES: [u8; 256] = {
     values
 };
 
+/// The text of some bytes, padded.
 pub fn encode(bytes: &[u8]) -> String {
     let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
     for chunk in bytes.chunks(3) {

@@ -25,9 +25,13 @@ use std::{
 
 /// A decoded file, with its colour profile and orientation, both not yet applied.
 pub struct Bitmap {
+    /// The pixels, as they are stored.
     pub image: DynamicImage,
+    /// The colour profile, if the file has one.
     pub icc: Option<Vec<u8>>,
+    /// How the picture is to be turned to be seen upright.
     pub orientation: Orientation,
+    /// The name of the format, for messages.
     pub format: &'static str,
     /// A defect that could be worked around, as a sentence.
     pub warning: Option<&'static str>,

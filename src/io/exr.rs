@@ -44,6 +44,7 @@ pub struct ExrFile<'a> {
 }
 
 impl<'a> ExrFile<'a> {
+    /// Whether a file is an OpenEXR file, by its first bytes.
     pub fn is_exr(bytes: &[u8]) -> bool {
         bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01])
     }
@@ -71,6 +72,7 @@ impl<'a> ExrFile<'a> {
         self.size
     }
 
+    /// The channels of all parts.
     pub fn channels(&self) -> &[ExrChannel] {
         &self.channels
     }

@@ -21,6 +21,7 @@ pub struct ExrLayer {
 pub struct FileDescription {
     /// `PNG`, `EXR`, …
     pub format: &'static str,
+    /// The size of the picture.
     pub size: Size,
     /// For pictures: `r`, `g`, `b`, `a`, or `y` if grey. For EXR: the channels' whole names.
     pub channels: Vec<String>,
@@ -28,9 +29,11 @@ pub struct FileDescription {
     pub bits: u8,
     /// EXR only: its layers, and what its pixels are compressed with.
     pub layers: Vec<ExrLayer>,
+    /// How it is packed, if the format has several ways.
     pub compression: Option<String>,
     /// EXR only: layers that fit as normals and as depth, the likeliest first.
     pub normals: Vec<String>,
+    /// The depth of each channel.
     pub depths: Vec<String>,
     /// No two colour channels differ.
     pub is_grey: bool,

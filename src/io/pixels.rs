@@ -18,6 +18,7 @@ use std::path::Path;
 pub struct Painted {
     /// Of the whole picture, transparent parts included.
     pub size: Size,
+    /// The pixels.
     pub tiles: TileGrid,
     /// A defect of the file that could be worked around, as a sentence.
     pub warning: Option<&'static str>,

@@ -16,6 +16,7 @@ use std::path::{Path, PathBuf};
 
 /// The content of the clipboard to paste.
 pub enum PastedContent {
+    /// A picture that was copied in another program.
     Picture(PastedPicture),
     /// Copied in a file manager.
     Files(Vec<PathBuf>),

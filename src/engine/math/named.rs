@@ -46,14 +46,23 @@ macro_rules! named {
     };
     ($(#[$meta:meta])* $vis:vis enum $type:ident { $($(#[$row:meta])* $choice:ident = $name:literal),+ $(,)? }) => {
         $(#[$meta])*
-        $vis enum $type { $($(#[$row])* $choice),+ }
+        $vis enum $type {
+            $(
+                $(#[$row])*
+                #[doc = ""]
+                #[doc = concat!("`", $name, "` in files.")]
+                $choice
+            ),+
+        }
         impl $type {
             /// Every choice with its name.
             pub const ALL: [($type, &'static str); [$($name),+].len()] = [$(($type::$choice, $name)),+];
+            /// Its name in files.
             pub const fn name(self) -> &'static str {
                 match self { $($type::$choice => $name),+ }
             }
 
+            /// The choice of a name; `None` if there is none of it.
             pub fn from_name(name: &str) -> Option<Self> {
                 Self::ALL.iter().find(|(_, known)| *known == name).map(|(choice, _)| *choice)
             }

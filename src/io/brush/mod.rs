@@ -36,6 +36,7 @@ use std::path::Path;
 pub struct ImportedBrush {
     /// Its name there; not empty.
     pub name: String,
+    /// The brush, as close as it gets.
     pub brush: Brush,
     /// Sentences about what could not be carried over, without full stops.
     pub notes: Vec<String>,
@@ -44,11 +45,17 @@ pub struct ImportedBrush {
 /// The format of a brush file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BrushFormat {
+    /// `.gbr`: one picture.
     GimpBrush,
+    /// `.gih`: several pictures, of which each dab uses one.
     GimpHose,
+    /// `.vbr`: a shape with numbers.
     GimpParametric,
+    /// `.kpp`: a preset.
     Krita,
+    /// `.myb`: a preset.
     MyPaint,
+    /// `.abr`: a collection of brushes.
     Photoshop,
 }
 

@@ -22,6 +22,7 @@ pub trait Fs: Send + Sync {
     fn rename(&self, from: &Path, to: &Path) -> io::Result<()>;
     /// A second name for the same file; fails where `to` exists.
     fn link(&self, from: &Path, to: &Path) -> io::Result<()>;
+    /// Removes a file or a link.
     fn remove(&self, path: &Path) -> io::Result<()>;
     /// Returns once the folder's entries are on the disk.
     fn sync_dir(&self, folder: &Path) -> io::Result<()>;
@@ -47,6 +48,7 @@ pub trait Fs: Send + Sync {
     fn token(&self) -> u64;
     /// Holds a file for as long as the lock and the process live; `None` where another holds it.
     fn lock(&self, path: &Path) -> io::Result<Option<Box<dyn FileLock>>>;
+    /// Waits, before something is tried again.
     fn pause(&self, time: Duration);
 }
 
@@ -66,8 +68,11 @@ pub trait FileLock: Send {}
 /// What is at a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EntryKind {
+    /// A file.
     File,
+    /// A folder.
     Folder,
+    /// A symbolic link.
     Link,
     /// A pipe, a device.
     Other,
@@ -76,6 +81,8 @@ pub enum EntryKind {
 /// Identity of a file, whatever its names are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Identity {
+    /// The device that it is on.
     pub device: u64,
+    /// Its number there.
     pub number: u64,
 }

@@ -22,6 +22,7 @@ pub struct JsonNode<'a> {
 }
 
 impl<'a> JsonNode<'a> {
+    /// The outermost value of a file.
     pub fn root(file: &'a Path, value: &'a Value) -> Self {
         Self { file, path: String::new(), value, ranged: true }
     }
@@ -32,6 +33,7 @@ impl<'a> JsonNode<'a> {
         Self { file: Path::new(""), path: String::new(), value, ranged: false }
     }
 
+    /// Whether a number is expected within a range.
     pub fn is_ranged(&self) -> bool {
         self.ranged
     }
@@ -45,6 +47,7 @@ impl<'a> JsonNode<'a> {
         &self.path
     }
 
+    /// The value itself.
     pub fn value(&self) -> &'a Value {
         self.value
     }
@@ -130,6 +133,7 @@ impl<'a> JsonNode<'a> {
         self.list(most)?.iter().map(|item| item.number(range.clone())).collect()
     }
 
+    /// A number within a range.
     pub fn number(&self, range: RangeInclusive<f32>) -> Result<f32> {
         let number = self.value.as_f64().ok_or_else(|| self.wrong_kind("a number"))?;
         let (low, high) = (*range.start(), *range.end());
@@ -145,6 +149,7 @@ impl<'a> JsonNode<'a> {
         self.number(range).map(|rounded| self.value.as_f64().unwrap_or(f64::from(rounded)))
     }
 
+    /// A whole number within a range.
     pub fn integer(&self, range: RangeInclusive<i64>) -> Result<i64> {
         let number = self.value.as_f64().ok_or_else(|| self.wrong_kind("a whole number"))?;
         // 12.0 is a whole number too: other programs write it so.
@@ -166,10 +171,12 @@ impl<'a> JsonNode<'a> {
         })
     }
 
+    /// True or false.
     pub fn boolean(&self) -> Result<bool> {
         self.value.as_bool().ok_or_else(|| self.wrong_kind("true or false"))
     }
 
+    /// A text.
     pub fn text(&self) -> Result<&'a str> {
         self.value.as_str().ok_or_else(|| self.wrong_kind("a text"))
     }
@@ -179,10 +186,12 @@ impl<'a> JsonNode<'a> {
         self.numbers(2, 2, COORDINATE).map(|v| vec2(v[0], v[1]))
     }
 
+    /// Three numbers within a range.
     pub fn vector(&self, range: RangeInclusive<f32>) -> Result<Vec3> {
         self.numbers(3, 3, range).map(|v| vec3(v[0], v[1], v[2]))
     }
 
+    /// A colour such as `#c08060`.
     pub fn color(&self) -> Result<Color> {
         let text = self.text()?;
         Color::parse(text).ok_or_else(|| {
@@ -231,6 +240,7 @@ impl<'a> Fields<'a> {
         JsonNode { path: below(&self.node.path, name), value, ..self.node }
     }
 
+    /// A number within a range, or the default where it is absent.
     pub fn number(
         &mut self,
         name: &'static str,
@@ -240,18 +250,22 @@ impl<'a> Fields<'a> {
         self.get(name).map_or(Ok(default), |node| node.number(range))
     }
 
+    /// True or false, or the default where it is absent.
     pub fn boolean(&mut self, name: &'static str, default: bool) -> Result<bool> {
         self.get(name).map_or(Ok(default), |node| node.boolean())
     }
 
+    /// A colour, or the default where it is absent.
     pub fn color(&mut self, name: &'static str, default: Color) -> Result<Color> {
         self.get(name).map_or(Ok(default), |node| node.color())
     }
 
+    /// A point, or the default where it is absent.
     pub fn point(&mut self, name: &'static str, default: Vec2) -> Result<Vec2> {
         self.get(name).map_or(Ok(default), |node| node.point())
     }
 
+    /// A word of a table, or the default where it is absent.
     pub fn one_of<T: Copy>(
         &mut self,
         name: &'static str,

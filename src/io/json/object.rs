@@ -9,6 +9,7 @@ use serde_json::{Map, Value};
 pub struct JsonObject(Map<String, Value>);
 
 impl JsonObject {
+    /// Sets a field.
     pub fn set(&mut self, name: &str, value: Value) {
         self.0.insert(name.to_owned(), value);
     }
@@ -20,18 +21,21 @@ impl JsonObject {
         }
     }
 
+    /// Sets a field unless it is the default.
     pub fn flag(&mut self, name: &str, value: bool, default: bool) {
         if value != default {
             self.set(name, value.into());
         }
     }
 
+    /// The same for a text.
     pub fn text(&mut self, name: &str, value: &str, default: &str) {
         if value != default {
             self.set(name, value.into());
         }
     }
 
+    /// The same for a colour.
     pub fn color(&mut self, name: &str, value: Color, default: Color) {
         if value != default {
             self.set(name, color(value));
@@ -67,14 +71,17 @@ impl JsonObject {
         }
     }
 
+    /// The fields in their order.
     pub fn fields(&self) -> &Map<String, Value> {
         &self.0
     }
 
+    /// Whether nothing was set.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
+    /// The object as a value.
     pub fn done(self) -> Value {
         Value::Object(self.0)
     }
@@ -89,14 +96,17 @@ pub fn number(value: f32) -> Value {
     value.to_string().parse::<f64>().map_or(Value::Null, Value::from)
 }
 
+/// A point as a list.
 pub fn point(p: Vec2) -> Value {
     Value::Array(vec![number(p.x), number(p.y)])
 }
 
+/// A vector as a list.
 pub fn vector(v: Vec3) -> Value {
     Value::Array(vec![number(v.x), number(v.y), number(v.z)])
 }
 
+/// A colour as a text.
 pub fn color(c: Color) -> Value {
     c.to_string().into()
 }

@@ -22,22 +22,26 @@ impl Printer {
         self.text
     }
 
+    /// Begins an object, as a field of the one around it if it has a key.
     pub fn open_object(&mut self, key: Option<&str>) {
         self.begin(key);
         self.text.push('{');
         self.open.push(false);
     }
 
+    /// Begins a list, in the same way.
     pub fn open_list(&mut self, key: Option<&str>) {
         self.begin(key);
         self.text.push('[');
         self.open.push(false);
     }
 
+    /// Ends the object.
     pub fn close_object(&mut self) {
         self.close('}');
     }
 
+    /// Ends the list.
     pub fn close_list(&mut self) {
         self.close(']');
     }

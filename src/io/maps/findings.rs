@@ -19,6 +19,7 @@ pub enum ChoiceOrigin {
 }
 
 impl ChoiceOrigin {
+    /// Its word in files and in `info`.
     pub fn name(self) -> &'static str {
         match self {
             ChoiceOrigin::Given => "given",
@@ -31,16 +32,20 @@ impl ChoiceOrigin {
 /// One choice: `normal.flip_y` is `true`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
+    /// The path of the field that was chosen.
     pub field: &'static str,
+    /// What was chosen, as files write it.
     pub value: String,
     /// 0 a guess … 1 certain.
     pub confidence: f32,
+    /// Where the choice comes from.
     pub how: ChoiceOrigin,
 }
 
 /// Everything found while maps were read.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Findings {
+    /// All choices, in the order they were made.
     pub choices: Vec<Finding>,
     /// Sentences for people: what was derived, filled, clipped or looks odd.
     pub notes: Vec<String>,
@@ -66,10 +71,12 @@ impl Findings {
         self.length_error > MOST_LENGTH_ERROR
     }
 
+    /// Adds a sentence for the user.
     pub fn note(&mut self, sentence: impl Into<String>) {
         self.notes.push(sentence.into());
     }
 
+    /// Adds a choice that the file or the user made.
     pub fn given(&mut self, field: &'static str, value: impl ToString) {
         self.choices.push(Finding {
             field,
@@ -79,6 +86,7 @@ impl Findings {
         });
     }
 
+    /// Adds a choice that was detected.
     pub fn found(&mut self, field: &'static str, value: impl ToString, confidence: f32) {
         let confidence = confidence.max(0.0).min(1.0);
         self.choices.push(Finding {
@@ -89,6 +97,7 @@ impl Findings {
         });
     }
 
+    /// Adds a choice that was made for want of evidence.
     pub fn assumed(&mut self, field: &'static str, value: impl ToString, confidence: f32) {
         let confidence = confidence.max(0.0).min(1.0);
         self.choices.push(Finding {

@@ -9,8 +9,11 @@ use std::path::Path;
 /// Which map a file is read for: it decides which EXR layer is looked for.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum MapRole {
+    /// A normal map.
     Normals,
+    /// A depth map.
     Depth,
+    /// A mask.
     Mask,
 }
 

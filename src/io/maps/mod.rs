@@ -44,7 +44,9 @@ use understood::LoadedMaps;
 
 /// A surface and how its maps were interpreted.
 pub struct ImportedSurface {
+    /// The maps in the one convention.
     pub surface: Surface,
+    /// What was detected on the way.
     pub findings: Findings,
     /// The files that were read, by their names in the source: a project keeps their bytes.
     pub files: BTreeMap<String, Asset>,

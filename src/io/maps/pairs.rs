@@ -6,8 +6,11 @@ use std::path::{Path, PathBuf};
 /// The kind of map that a file name indicates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum MapPart {
+    /// Normals.
     Normal,
+    /// Depth.
     Depth,
+    /// Coverage.
     Mask,
 }
 
@@ -32,8 +35,11 @@ const SUFFIXES: [(&str, MapPart); 13] = [
 pub struct MapSet {
     /// The name without its ending.
     pub name: String,
+    /// The normal map.
     pub normal: Option<PathBuf>,
+    /// The depth map.
     pub depth: Option<PathBuf>,
+    /// The mask.
     pub mask: Option<PathBuf>,
 }
 

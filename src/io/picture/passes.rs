@@ -13,6 +13,7 @@ use std::path::Path;
 pub struct LightLayer {
     /// Empty for the channels without a layer.
     pub name: String,
+    /// The pixels.
     pub painted: Painted,
     /// Whether it is the picture to show; usually it combines all the others.
     pub is_whole: bool,

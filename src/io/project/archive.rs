@@ -30,6 +30,7 @@ pub struct Archive<'a> {
 }
 
 impl<'a> Archive<'a> {
+    /// Whether a file is a zip, by its first bytes.
     pub fn is_zip(bytes: &[u8]) -> bool {
         bytes.starts_with(&LOCAL_HEADER)
     }
@@ -67,6 +68,7 @@ impl<'a> Archive<'a> {
         self.listed.keys().chain(self.found.keys()).map(String::as_str).collect()
     }
 
+    /// Whether there is an entry of this name.
     pub fn has(&self, name: &str) -> bool {
         self.listed.contains_key(name) || self.found.contains_key(name)
     }

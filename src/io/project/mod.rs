@@ -50,6 +50,7 @@ use std::path::Path;
 const MIMETYPE: &str = "mimetype";
 const MIME: &str = "image/openraster";
 const DOCUMENT: &str = "rilievo/document.json";
+/// The entry that lists which picture shows which layer.
 pub const MANIFEST: &str = "rilievo/manifest.json";
 const STACK: &str = "stack.xml";
 const MERGED: &str = "mergedimage.png";

@@ -94,6 +94,7 @@ impl RecordMask {
         RecordMask { rect: size.rect(), outside: 0, values, disabled: false }
     }
 
+    /// The coverage at a canvas pixel.
     pub fn at(&self, x: i32, y: i32) -> u8 {
         if !self.rect.contains(x, y) {
             return self.outside;
@@ -117,6 +118,7 @@ impl RecordMask {
         })
     }
 
+    /// The coverage of the whole canvas.
     pub fn plane(&self, size: Size) -> Plane<u8> {
         Plane::from_fn(size, |x, y| self.at(x as i32, y as i32))
     }

@@ -73,21 +73,33 @@ const PASS_THROUGH: [u8; 4] = *b"pass";
 /// A layer as stored in the file; groups are records too, around those of their layers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LayerRecord {
+    /// The layer's name.
     pub name: String,
+    /// The canvas pixels that it holds.
     pub rect: Rect,
+    /// The key of its blend mode.
     pub blend: [u8; 4],
+    /// 255 is opaque.
     pub opacity: u8,
     /// Of its pixels alone, not of its effects.
     pub fill_opacity: u8,
+    /// It is clipped to the layer below.
     pub clipped: bool,
+    /// It is shown.
     pub visible: bool,
+    /// Its transparency is locked.
     pub lock_alpha: bool,
+    /// All of it is locked.
     pub lock_all: bool,
     /// As in the format.
     pub label: LayerLabel,
+    /// Whether it is a layer, or the beginning or the end of a group.
     pub section: RecordSection,
+    /// Its mask that is a picture.
     pub mask: Option<RecordMask>,
+    /// Its masks that are paths.
     pub outline: Option<VectorPaths>,
+    /// What it is filled with.
     pub fill: Option<LayerFill>,
     /// It is an artboard.
     pub ground: Option<ArtboardBackground>,
@@ -110,12 +122,14 @@ pub struct LayerRecord {
 }
 
 impl LayerRecord {
+    /// Notes that a feature was left out, and that the picture may differ.
     pub fn leave_out(&mut self, what: &'static str) {
         if !self.lost.contains(&what) {
             self.lost.push(what);
         }
     }
 
+    /// Notes what was changed without changing the picture.
     pub fn tell(&mut self, what: &'static str) {
         if !self.told.contains(&what) {
             self.told.push(what);
@@ -157,17 +171,22 @@ impl Default for LayerRecord {
 /// The role of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecordSection {
+    /// A layer with pixels.
     Layer,
     /// The bottom of a group; its layers follow, then its [`RecordSection::Group`].
     End,
+    /// The beginning of a group in the file's order from above.
     Group,
 }
 
 /// A layer's mask: coverage in its rectangle, and everywhere else.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordMask {
+    /// The canvas pixels that it holds.
     pub rect: Rect,
+    /// Its value outside of these.
     pub outside: u8,
+    /// Its values, row by row.
     pub values: Vec<u8>,
     /// Put aside.
     pub disabled: bool,

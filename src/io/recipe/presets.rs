@@ -22,11 +22,13 @@ pub struct BrushPreset {
     pub key: String,
     /// Its name in the window.
     pub name: String,
+    /// Where it is in the list.
     pub group: PresetGroup,
     /// One sentence.
     pub about: String,
     /// The colour it is shown in; choosing it changes no colour.
     pub color: Color,
+    /// The brush itself.
     pub brush: Brush,
     /// The operator that it is meant for.
     pub operator: Operator,

@@ -97,6 +97,7 @@ fn corners(node: &JsonNode) -> Result<[DVec2; 4]> {
         .map_err(|_| node.refused(format!("has {} points; it must have 4", items.len())))
 }
 
+/// A transform as recipes write it.
 pub fn write(transform: &LayerTransform) -> Value {
     let mut out = JsonObject::default();
     match &transform.shape {

@@ -7,7 +7,9 @@ use serde_json::Value;
 
 /// A value with a form of its own in JSON.
 pub trait RecipeValue: Sized {
+    /// The value as recipes write it.
     fn to_json(&self) -> Value;
+    /// Reads it; fails with a sentence that names the field.
     fn from_json(node: &JsonNode) -> Result<Self>;
 
     /// Reads a value that is not from a file, its numbers in their ranges or not; a refusal is the

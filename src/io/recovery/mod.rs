@@ -52,6 +52,7 @@ pub struct RecoveryLog {
 /// A version of a drawing for its log.
 #[derive(Clone)]
 pub struct DrawingVersion {
+    /// The drawing.
     pub document: Document,
     /// What the program wants to know of this version besides the document; small.
     pub aside: Value,

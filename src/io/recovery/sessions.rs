@@ -32,7 +32,9 @@ pub struct LostSession {
 
 /// A drawing brought back. It has no name: saving asks for one.
 pub struct RecoveredDocument {
+    /// Its last version.
     pub version: DrawingVersion,
+    /// Its name for the user.
     pub title: String,
     /// Versions in the log, the first being the drawing as it was opened.
     pub versions: usize,

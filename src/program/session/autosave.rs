@@ -181,7 +181,9 @@ pub struct LostSessions {
 
 /// A recovered document, and its new log.
 pub struct RestoredDocument {
+    /// The document, open again.
     pub open: OpenDocument,
+    /// Its own recovery log, if one could be made.
     pub recovery: Option<RecoveryLog>,
     /// What the user had in hand.
     pub tool: Option<ToolKind>,

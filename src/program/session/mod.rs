@@ -47,9 +47,11 @@ const RECENT: usize = 16;
 
 /// Everything except the window.
 pub struct Session {
+    /// The open documents, in the order of their tabs.
     pub open_documents: Vec<OpenDocument>,
     /// The index of the one in front.
     pub current: usize,
+    /// The current tool.
     pub tool: ToolKind,
     /// The available brushes: the program's own, then imported ones; each key is unique.
     pub presets: Vec<BrushPreset>,
@@ -65,6 +67,7 @@ pub struct Session {
     pub copied: Option<Copied>,
     /// A view of the surface shown over the picture, by its name.
     pub overlay: Option<String>,
+    /// How opaque that view is.
     pub overlay_opacity: f32,
     gesture: Option<Box<dyn Gesture>>,
     /// Whether that draws a stroke, and where its end is.
@@ -128,6 +131,7 @@ impl Session {
         self.open_documents.get(self.current)
     }
 
+    /// The document in front, to be changed.
     pub fn active_mut(&mut self) -> Option<&mut OpenDocument> {
         self.open_documents.get_mut(self.current)
     }
@@ -176,6 +180,7 @@ impl Session {
         self.gesture.as_ref().is_some_and(|gesture| gesture.is_guide())
     }
 
+    /// Adds an open document, in front of the others.
     pub fn add_document(&mut self, open: OpenDocument) {
         self.drop_gesture();
         self.open_documents.push(open);
@@ -231,6 +236,7 @@ impl Session {
         Terms { reads, ..over.into() }
     }
 
+    /// Closes the document at an index.
     pub fn close_document(&mut self, index: usize) {
         if index < self.open_documents.len() {
             self.open_documents.remove(index);

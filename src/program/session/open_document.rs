@@ -25,7 +25,9 @@ const STEPS: usize = 200;
 
 /// A step: its name, the resulting document, and the new selection.
 pub struct Edit {
+    /// What the history calls it.
     pub label: &'static str,
+    /// The document after it.
     pub document: Document,
     /// Chosen from now on, the primary one last; none: unchanged.
     pub select: Vec<LayerId>,
@@ -35,6 +37,7 @@ pub struct Edit {
 pub struct OpenDocument {
     /// Identifies it as long as the program runs.
     pub key: usize,
+    /// The steps, and what was being edited before and after each.
     pub history: History<EditTarget>,
     /// The preview during a gesture: not a step yet.
     preview: Option<Preview>,
@@ -98,6 +101,7 @@ struct Preview {
 }
 
 impl OpenDocument {
+    /// A document that was just opened, from a file if it has one.
     pub fn new(name: impl Into<String>, document: Document, file: Option<PathBuf>) -> Self {
         static NEXT: AtomicUsize = AtomicUsize::new(0);
         // What follows from it is there before anything is done with it, wherever it comes from.
@@ -187,6 +191,7 @@ impl OpenDocument {
         &self.saved
     }
 
+    /// It is now the same as in a file.
     pub fn mark_saved(&mut self, document: Document, file: PathBuf, stamp: FileStamp) {
         self.saved = document;
         // The file that it was saved to before is now like any other.
@@ -200,6 +205,7 @@ impl OpenDocument {
         self.saved = Document::empty(self.document().size);
     }
 
+    /// Whether something is shown that is not a step yet.
     pub fn is_previewing(&self) -> bool {
         self.preview.is_some()
     }
@@ -283,6 +289,7 @@ impl OpenDocument {
         source.offset
     }
 
+    /// Chooses strokes of a layer.
     pub fn choose_strokes(&mut self, layer: LayerId, mut strokes: Vec<usize>) {
         strokes.sort_unstable();
         strokes.dedup();

@@ -55,6 +55,7 @@ impl LayerPaths {
         found.filter(|found| !found.is_empty())
     }
 
+    /// Whether it names more than one layer.
     pub fn is_several(&self) -> bool {
         self.0.len() > 1
     }

@@ -9,7 +9,9 @@ use std::path::{Path, PathBuf};
 
 /// A value of an action's field. Reading fails with the reason, for a sentence that names the line.
 pub trait ReplayValue: Sized {
+    /// The value in a line of JSON.
     fn written(&self) -> Value;
+    /// Reads it; fails with what it must be.
     fn read(value: &Value) -> std::result::Result<Self, String>;
 }
 
@@ -173,6 +175,8 @@ macro_rules! actions {
     }) => {
         $(#[$meta])*
         #[derive(Clone)]
+        // An action is its word with its fields; those that do not explain themselves have a doc.
+        #[allow(missing_docs)]
         pub enum $name { $($(#[$about])* $variant { $($field: $ty),* }),+ }
         impl $name {
             /// The words of all of them.

@@ -35,6 +35,7 @@ use std::sync::Arc;
 /// What a file can be used for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileUse {
+    /// A document.
     Document,
     /// To paint with.
     Picture,
@@ -46,6 +47,7 @@ pub enum FileUse {
 
 /// A document that was opened, ready to be shown.
 pub struct OpenedFile {
+    /// The document, open.
     pub open: OpenDocument,
     /// Sentences about what was found and what could not be kept.
     pub notes: Vec<String>,

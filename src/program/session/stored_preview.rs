@@ -23,6 +23,7 @@ impl StoredPreview {
         Self(Mutex::new(read()))
     }
 
+    /// The pixels, once.
     pub fn take(&self) -> Option<TileGrid> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
     }

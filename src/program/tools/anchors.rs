@@ -41,6 +41,7 @@ pub fn handle_at(layer: &Layer, canvas: Size, at: Vec2, px_per_pt: f32) -> Optio
         .map(|(i, _)| i)
 }
 
+/// The pen comes down with the tool.
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let Some(layer) = context.layer.and_then(|id| context.document.layer(id)) else {
         return (None, Outcome::Idle);

@@ -12,6 +12,7 @@ use crate::math::{COORDINATE, Rect, Size, Vec2, vec2};
 pub struct CropSettings {
     /// What it cuts out, canvas px.
     pub area: Option<Rect>,
+    /// The aspect that it keeps.
     pub aspect: CropAspect,
 }
 
@@ -81,6 +82,7 @@ pub fn handle_at(area: Rect, at: Vec2, grab_px: f32) -> TransformHandle {
     if inside { TransformHandle::Inside } else { TransformHandle::Outside }
 }
 
+/// The pen comes down with the tool.
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let at = pen.place();
     let handle =

@@ -7,6 +7,7 @@ use crate::math::{Vec2, srgb::Color};
 use crate::raster::grid::unpremultiply;
 use crate::raster::{TILE, TileAt};
 
+/// The pen comes down with the tool.
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let mut picking = EyedropperGesture { document: context.document.clone() };
     let outcome = picking.drag(&[pen]);

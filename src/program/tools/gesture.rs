@@ -10,12 +10,15 @@ use std::borrow::Cow;
 
 /// What a tool returns for an event of the pen.
 pub enum Outcome {
+    /// Nothing changes.
     Idle,
     /// A preview until the next outcome.
     Preview(Document),
     /// A finished step with this name.
     Commit {
+        /// What the history calls it.
         label: String,
+        /// The document after it.
         document: Document,
         /// The layer to select from now on.
         select: Option<LayerId>,
@@ -82,6 +85,7 @@ impl Outcome {
 pub trait Gesture: Send {
     /// The pen's samples since the last call, in order.
     fn drag(&mut self, pens: &[PenSample]) -> Outcome;
+    /// The pen lifts.
     fn release(&mut self) -> Outcome;
     /// The lines that it snapped to, to be shown.
     fn snap_lines(&self) -> SnapLines {

@@ -39,7 +39,9 @@ rilievo_engine::named! {
 /// What a gizmo is around.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GizmoContent<'a> {
+    /// These layers.
     Layers(&'a [LayerId]),
+    /// The whole shape.
     Shape,
 }
 
@@ -69,6 +71,7 @@ pub enum TransformHandle {
     Edge(usize),
     /// The pivot: the point that the gizmo is turned about.
     Pivot,
+    /// The inside, by which all of it is moved.
     Inside,
     /// Anywhere else: the gizmo is turned about its pivot.
     Outside,
@@ -225,6 +228,7 @@ impl Default for GizmoMemory {
 }
 
 impl GizmoMemory {
+    /// The memory of nothing, to be borrowed.
     pub fn nothing() -> &'static Self {
         &NOTHING
     }

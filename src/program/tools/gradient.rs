@@ -10,10 +10,13 @@ use crate::paint::{Gradient, GradientStop, ImageFilter};
 /// Which end of a gradient.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GradientEnd {
+    /// The beginning.
     From,
+    /// The end.
     To,
 }
 
+/// The pen comes down with the tool.
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let at = pen.place();
     let selected = context.layer.and_then(|id| context.document.layer(id));

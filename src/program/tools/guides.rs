@@ -10,7 +10,9 @@ use std::sync::Arc;
 /// One of the guides of a document.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GuideAt {
+    /// Whether it is an upright one.
     pub is_vertical: bool,
+    /// Its number among those.
     pub index: usize,
 }
 

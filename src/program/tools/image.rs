@@ -6,6 +6,7 @@ use crate::document::{Content, Document, LayerId, Live};
 use crate::math::Vec2;
 use crate::paint::{PlacedImage, Placement};
 
+/// The pen comes down with the tool.
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let layer = context.layer.and_then(|id| context.document.layer(id));
     let Some((layer, Content::Image(live))) = layer.map(|layer| (layer, &layer.content)) else {

@@ -42,10 +42,15 @@ fn dragged(light: Light, to: Vec2, canvas: Size) -> Light {
 
 /// A light being dragged.
 pub struct LightGesture {
+    /// The document before the drag.
     pub document: Document,
+    /// The shading layer.
     pub layer: LayerId,
+    /// Its parameters.
     pub shading: Shading,
+    /// The number of the light among its lights.
     pub index: usize,
+    /// Whether the light has been moved.
     pub moved: bool,
 }
 

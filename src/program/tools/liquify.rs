@@ -8,6 +8,7 @@ use crate::paint::{LiquifySettings, LiquifyStroke, LiquifyTool};
 use crate::raster::Lattice;
 use std::sync::Arc;
 
+/// The pen comes down with the tool.
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let document = context.document;
     let Some(layer) = context.layer.and_then(|id| document.layer(id)) else {

@@ -56,6 +56,7 @@ use transform::TransformSettings;
 /// Everything a tool works with, as it is when the pen comes down.
 #[derive(Clone, Copy)]
 pub struct ToolContext<'a> {
+    /// The document in front.
     pub document: &'a Document,
     /// The settings of the tools.
     pub tools: &'a ToolSettings,
@@ -117,18 +118,25 @@ pub struct ToolSettings {
     pub presses_by_speed: bool,
     /// The foreground and the background colour.
     pub color: Color,
+    /// The background colour.
     pub second_color: Color,
     /// How new marks follow the surface.
     pub operator: Operator,
     /// How strokes repeat.
     pub symmetry: SymmetrySettings,
+    /// The fill tool.
     pub fill: Fill,
+    /// The selection tools.
     pub select: SelectSettings,
     /// The corners of the unfinished lasso.
     pub lasso: Vec<Vec2>,
+    /// The tools that touch and sculpt the shape.
     pub shape: ShapeSettings,
+    /// The liquify tool.
     pub liquify: LiquifySettings,
+    /// The transform tool.
     pub transform: TransformSettings,
+    /// The crop tool.
     pub crop: CropSettings,
     /// What the pen snaps to and draws along, and what is shown of it.
     pub aids: ViewAids,

@@ -9,6 +9,7 @@ use crate::document::{Content, Document, Layer, LayerId, LayerLock};
 use crate::math::{PlaneMap, Vec2};
 use crate::paint::picking;
 
+/// The pen comes down with the tool.
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     if let several @ [_, _, ..] = context.chosen() {
         return press_several(context, several, pen);
@@ -40,6 +41,7 @@ fn press_several(context: &ToolContext, layers: &[LayerId], pen: PenSample) -> G
 pub enum MoveTarget {
     /// One stroke of the layer.
     Stroke(usize),
+    /// The whole layer.
     Layer,
 }
 

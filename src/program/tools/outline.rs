@@ -139,6 +139,7 @@ fn cell(corners: &[(Vec2, f32); 4], lines: &mut Vec<[Vec2; 2]>) {
     }
 }
 
+/// A circle, as segments.
 pub fn circle(at: Vec2, radius_px: f32) -> Vec<[Vec2; 2]> {
     const SIDES: usize = 64;
     let on = |i: usize| {

@@ -10,16 +10,20 @@ pub const GRAB_PT: f32 = 10.0;
 /// One sample of the pen with the modifier keys held.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PenSample {
+    /// Where the pen is, and how it is held.
     pub sample: Sample,
+    /// The modifier keys that are held.
     pub keys: ModifierKeys,
 }
 
 /// The modifier keys, by their names on most keyboards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct ModifierKeys {
+    /// Shift.
     pub shift: bool,
     /// Ctrl, or Command.
     pub ctrl: bool,
+    /// Alt.
     pub alt: bool,
 }
 
@@ -29,6 +33,7 @@ impl PenSample {
         Self { sample: Sample::at(at), keys: ModifierKeys::default() }
     }
 
+    /// The canvas point under the pen.
     pub fn place(&self) -> Vec2 {
         self.sample.at
     }

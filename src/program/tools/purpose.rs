@@ -15,6 +15,8 @@ pub enum BrushTarget {
 /// The purpose of a stroke.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StrokePurpose {
+    /// It adds paint.
     Paint,
+    /// It takes paint away.
     Erase,
 }

@@ -18,10 +18,13 @@ pub struct ViewAids {
     pub locked: bool,
     /// The grid is shown.
     pub grid_shown: bool,
+    /// The grid, and what is shown of it.
     pub grid: CanvasGrid,
     /// Whether anything snaps at all.
     pub snaps: bool,
+    /// The pen snaps to guides.
     pub to_guides: bool,
+    /// The pen snaps to the grid.
     pub to_grid: bool,
     /// Its edges and its middle.
     pub to_canvas: bool,
@@ -45,7 +48,9 @@ pub struct CanvasGrid {
 }
 
 impl CanvasGrid {
+    /// The range of the spacing, px.
     pub const SPACING: Range = 2.0..=10_000.0;
+    /// The range of the subdivisions.
     pub const SUBDIVISIONS: std::ops::RangeInclusive<u32> = 1..=16;
 
     /// With its numbers within their ranges.
@@ -102,14 +107,18 @@ pub struct SnapTargets {
 /// The place of a point after snapping.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Snapped {
+    /// The point after snapping.
     pub at: Vec2,
+    /// The lines that it snapped to.
     pub lines: SnapLines,
 }
 
 /// The lines that something snapped to: an upright one by its x, a level one by its y.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SnapLines {
+    /// An upright line.
     pub x: Option<f32>,
+    /// A level line.
     pub y: Option<f32>,
 }
 
@@ -166,6 +175,7 @@ impl SnapTargets {
         targets
     }
 
+    /// Whether there is nothing to snap to.
     pub fn is_empty(&self) -> bool {
         self.grid.is_none() && self.lines.iter().all(Vec::is_empty)
     }

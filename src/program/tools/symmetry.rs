@@ -8,6 +8,7 @@ use crate::paint::{Brush, Sample, StrokeFrame};
 /// How strokes repeat about a point, by default the middle of the canvas.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Symmetry {
+    /// They do not.
     #[default]
     None,
     /// Left and right of an upright axis.
@@ -35,7 +36,9 @@ pub struct SymmetryAxes {
 /// How strokes repeat, and about what.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct SymmetrySettings {
+    /// How they repeat.
     pub kind: Symmetry,
+    /// The axes that they repeat about.
     pub axes: SymmetryAxes,
 }
 
@@ -49,6 +52,7 @@ impl SymmetrySettings {
 /// What the user drags.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AxisHandle {
+    /// The point where the axes meet.
     Middle,
     /// At the upper end of the upright axis.
     End,
@@ -60,6 +64,7 @@ const HANDLE_PT: f32 = 90.0;
 const STEP_DEGREES: f32 = 15.0;
 
 impl SymmetryAxes {
+    /// The point where the axes meet; by default the middle of the canvas.
     pub fn middle(&self, canvas: Size) -> Vec2 {
         self.center.unwrap_or(canvas.center())
     }
@@ -193,6 +198,7 @@ impl SymmetryImage {
         self.turn.determinant() < 0.0
     }
 
+    /// A sample of the stroke as one of the image.
     pub fn sample(&self, sample: &Sample) -> Sample {
         let at = self.center + self.turn * (sample.at - self.center);
         // The stroke itself, to the bit.

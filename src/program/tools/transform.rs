@@ -30,6 +30,7 @@ pub struct TransformSettings {
     pub mesh_points: Vec<usize>,
 }
 
+/// The pen comes down with the tool.
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let document = context.document;
     let content = GizmoContent::new(context.tools.transform.target, document, context.chosen());

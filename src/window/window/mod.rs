@@ -41,6 +41,7 @@ use std::sync::Arc;
 
 /// The program's one window.
 pub struct MainWindow {
+    /// The program behind the window.
     pub session: Session,
     canvas: Canvas,
     thumbnails: Thumbnails,

@@ -42,6 +42,7 @@ actions! {
 }
 
 impl CanvasAction {
+    /// Performs it.
     pub fn apply(&self, session: &mut Session) {
         session.drop_gesture();
         match self {

@@ -45,6 +45,7 @@ pub struct Copied {
     canvas: Size,
     /// The same for other programs: straight RGBA, with its place.
     pub rect: Rect,
+    /// Straight RGBA.
     pub rgba: Arc<Vec<u8>>,
     /// The same with 16 bits, if some of it has them.
     deep: Option<Arc<Vec<[u16; 4]>>>,
@@ -67,6 +68,7 @@ impl Copied {
 }
 
 impl ClipboardAction {
+    /// Performs it.
     pub fn apply(&self, session: &mut Session) {
         session.drop_gesture();
         match self {

@@ -15,6 +15,7 @@ actions! {
 }
 
 impl EditAction {
+    /// Performs it.
     pub fn apply(&self, session: &mut Session) {
         session.drop_gesture();
         let steps = match self {

@@ -62,6 +62,7 @@ actions! {
 }
 
 impl FileAction {
+    /// Performs it.
     pub fn apply(&self, session: &mut Session) -> Result<()> {
         session.drop_gesture();
         match self {

@@ -45,6 +45,7 @@ actions! {
 }
 
 impl GuideAction {
+    /// Performs it.
     pub fn apply(&self, session: &mut Session) {
         session.drop_gesture();
         match self {

@@ -92,6 +92,7 @@ actions! {
 }
 
 impl HandAction {
+    /// Performs it.
     pub fn apply(&self, session: &mut Session) {
         let brush = &mut session.tools.brush;
         match self {

@@ -98,6 +98,7 @@ impl LayerAction {
         Some(LayerAction::Choose { layer: LayerPaths::of(document, ids), primary, anchor })
     }
 
+    /// Performs it.
     pub fn apply(&self, session: &mut Session) {
         let gradient_settings = Gradient {
             from: vec2(0.0, 0.0),

@@ -41,7 +41,12 @@ macro_rules! rooms {
     ($($word:literal $room:ident($action:ty)),+ $(,)?) => {
         /// One action.
         #[derive(Clone)]
-        pub enum Action { $($room($action)),+ }
+        pub enum Action {
+            $(
+                #[doc = concat!("`", $word, "` in replays.")]
+                $room($action)
+            ),+
+        }
         impl Action {
             /// The words of all rooms.
             pub const ROOMS: &'static [&'static str] = &[$($word),+];
@@ -93,6 +98,7 @@ rooms! {
 impl Action {
     /// Performs it. What cannot be done changes nothing; only files fail. An edit that no file
     /// could hold is refused in a note.
+    /// Performs it.
     pub fn apply(&self, session: &mut Session) -> Result<()> {
         session.record_targets();
         let mut done = Ok(());

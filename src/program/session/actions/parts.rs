@@ -105,6 +105,7 @@ type PartRefusal = &'static str;
 const NO_PART: PartRefusal = "There is no such part.";
 
 impl PartAction {
+    /// Performs it.
     pub fn apply(&self, session: &mut Session) {
         if let PartAction::Settings { shape } = self {
             session.tools.shape = shape.held();

@@ -59,6 +59,7 @@ actions! {
 }
 
 impl PointerAction {
+    /// Performs it.
     pub fn apply(&self, session: &mut Session) {
         match self {
             PointerAction::Press { tool, pen, px_per_pt } => {

@@ -88,6 +88,7 @@ actions! {
 const NOTHING: &str = "Nothing is selected.";
 
 impl SelectionAction {
+    /// Performs it.
     pub fn apply(&self, session: &mut Session) {
         match self {
             SelectionAction::Hide { on } => return session.hides_selection = *on,

@@ -53,6 +53,7 @@ actions! {
 const ASIDE_PX: f32 = 12.0;
 
 impl StrokeAction {
+    /// Performs it.
     pub fn apply(&self, session: &mut Session) {
         session.drop_gesture();
         let current_brush = session.tools.brush.clone();

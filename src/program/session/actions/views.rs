@@ -27,6 +27,7 @@ actions! {
 }
 
 impl ViewAction {
+    /// Performs it.
     pub fn apply(&self, session: &mut Session) {
         match self {
             ViewAction::Overlay { view } => session.overlay.clone_from(view),

@@ -56,6 +56,7 @@ impl OpenDocument {
         self.shown().outermost(&self.chosen_layers())
     }
 
+    /// Whether a layer is among the chosen ones.
     pub fn is_chosen(&self, layer: LayerId) -> bool {
         let also = |primary| {
             self.chosen_layers.ids.contains(&primary) && self.chosen_layers.ids.contains(&layer)

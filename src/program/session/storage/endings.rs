@@ -13,6 +13,7 @@ pub const PICTURES: [&str; 18] = [
     "pbm", "pgm", "ppm", "pam", "pfm",
 ];
 
+/// Whether a file is a document by the ending of its name.
 pub fn is_document(file: &Path) -> bool {
     ends_in(file, &DOCUMENTS)
 }

@@ -102,7 +102,9 @@ pub fn maps_beside(file: &Path, kind: FileUse) -> SurfaceSource {
 /// separately, in order.
 #[derive(Debug, Default, PartialEq)]
 pub struct SortedFiles {
+    /// Maps, those of one object together.
     pub objects: Vec<SurfaceSource>,
+    /// All other files.
     pub others: Vec<(PathBuf, FileUse)>,
 }
 

@@ -15,7 +15,9 @@ use std::sync::Arc;
 /// The box around what a part covers, with its handles; canvas px.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PartGizmo {
+    /// The upper left corner.
     pub low: Vec2,
+    /// The lower right corner.
     pub high: Vec2,
     /// Canvas px per screen point, by which handles within and above the box keep their distances
     /// on the screen.
@@ -101,10 +103,12 @@ impl PartGizmo {
         [self.low, vec2(self.high.x, self.low.y), self.high, vec2(self.low.x, self.high.y)]
     }
 
+    /// The middle of the box, the handle for the height.
     pub fn middle(&self) -> Vec2 {
         (self.low + self.high) * 0.5
     }
 
+    /// The handle that turns the part.
     pub fn turn(&self) -> Vec2 {
         vec2(self.middle().x, self.low.y - TURN_PT * self.px_per_pt)
     }
@@ -114,18 +118,22 @@ impl PartGizmo {
         (self.has_puff && self.has_room()).then(|| self.middle())
     }
 
+    /// The handle that tilts it, if there is room.
     pub fn tilt(&self) -> Option<Vec2> {
         self.around(vec2(0.0, 1.0))
     }
 
+    /// The handle for its profile, if it is inflated.
     pub fn profile(&self) -> Option<Vec2> {
         self.around(vec2(-1.0, 0.0)).filter(|_| self.is_inflated)
     }
 
+    /// The handle for its rim, if it is inflated.
     pub fn rim(&self) -> Option<Vec2> {
         self.around(vec2(1.0, 0.0)).filter(|_| self.is_inflated)
     }
 
+    /// The handle for its depth, if there is room.
     pub fn depth(&self) -> Option<Vec2> {
         self.around(vec2(0.0, -1.0))
     }
@@ -181,6 +189,7 @@ fn with_height(kind: &PartKind, to: f32) -> PartKind {
     kind
 }
 
+/// The pen comes down with the tool.
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let document = context.document;
     let areas = document.part_areas();

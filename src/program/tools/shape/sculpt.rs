@@ -14,6 +14,7 @@ use crate::tools::{
 /// Samples nearer than this add nothing, px.
 const APART_PX: f32 = 0.5;
 
+/// The pen comes down with the tool.
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let document = context.document;
     let Some(base) = document.part_at(pen.place()) else {

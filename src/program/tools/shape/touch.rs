@@ -17,6 +17,7 @@ use std::sync::Arc;
 pub struct StandingTouch {
     /// The part that holds it, and its place there.
     pub part: String,
+    /// Its number among the touches of the part.
     pub index: usize,
     /// Canvas px.
     pub at: Vec2,
@@ -49,6 +50,7 @@ fn touch_at(document: &Document, at: Vec2, grab_px: f32) -> Option<StandingTouch
     near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, touch)| touch)
 }
 
+/// The pen comes down with the tool.
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let (document, at) = (context.document, pen.place());
     let found = touch_at(document, at, GRAB_PT * context.px_per_pt);

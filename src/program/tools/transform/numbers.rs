@@ -13,6 +13,7 @@ pub struct GizmoNumbers {
     pub at: DVec2,
     /// Sides, px; one of them is negative in a mirrored gizmo.
     pub width: f64,
+    /// The height, px; see `width`.
     pub height: f64,
     /// Degrees, counter-clockwise as seen.
     pub angle: f64,
@@ -25,6 +26,7 @@ pub struct GizmoNumbers {
 impl GizmoNumbers {
     /// The least and greatest that can be typed.
     pub const SIDE: std::ops::RangeInclusive<f64> = -65_536.0..=65_536.0;
+    /// The least and greatest skew that can be typed.
     pub const SKEW: std::ops::RangeInclusive<f64> = -85.0..=85.0;
 
     /// `None` for a gizmo in perspective, and for one without area.

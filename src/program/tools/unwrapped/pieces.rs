@@ -15,8 +15,11 @@ use crate::tools::{
 /// What a drag does to the picture on a piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PieceDrag {
+    /// It is moved.
     Move,
+    /// It is scaled about what is under its middle.
     Scale,
+    /// It is turned about that.
     Turn,
 }
 

@@ -29,7 +29,9 @@ names!(PasteTo);
 /// A picture with the name of its file, or one like a file's. A replay holds the whole file.
 #[derive(Clone)]
 pub struct PastedPicture {
+    /// The name of its layer.
     pub name: String,
+    /// The picture itself.
     pub picture: Picture,
 }
 

@@ -18,6 +18,7 @@ use std::sync::Arc;
 
 /// A document whose drawing has a shape.
 pub struct FirstShape {
+    /// The document with its shape.
     pub document: Document,
     /// The nearest of the new parts.
     pub part: String,
