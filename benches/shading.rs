@@ -12,8 +12,10 @@ use rilievo::shading::{
 };
 use rilievo::surface::Scene;
 use rilievo::{Content, Document, Layer, Maps, Progress, Size, Surface, TileGrid};
+use rilievo_engine::document::DocumentReducer;
 use rilievo_engine::raster::planar::PixelRow;
 use rilievo_engine::shading::radiance::BackdropStats;
+use rilievo_engine::surface::shadow::{LampPlace, ShadowLamp};
 use std::sync::Arc;
 
 fn main() {
@@ -252,6 +254,60 @@ fn rendered_on(bencher: Bencher, run: Run, scene: &Scene, shading: &Shading) {
         pool.install(|| {
             ats.par_iter().for_each(|&at| drop(divan::black_box(shading.render_tile(scene, at))))
         });
+    });
+}
+
+const HD: (u32, u32) = (1920, 1080);
+
+/// A document of one colour under the painter's light.
+fn painted(scene: &Scene, angle: f32) -> Document {
+    let mut shading = Shading::new(Model::Painter);
+    shading.painter.beneath = true;
+    let kind = LightKind::Directional { direction: vec3(angle.cos(), angle.sin(), 0.75) };
+    shading.lights = vec![Light { kind, ..Light::default() }];
+    let layers = [
+        Layer::new("flat", Content::Fill(rilievo::Color::rgb(200, 120, 60))),
+        Layer::new("light", Content::Shading(Live::new(shading))),
+    ];
+    let layers = layers.map(Arc::new).into();
+    Document { surface: scene.surface.clone(), layers, ..Document::empty(scene.size) }
+}
+
+/// The painter's light on 1080p with balls, two threads: the whole picture from nothing, with a lamp
+/// that moved, and the same while it is dragged.
+#[divan::bench(args = ["from nothing", "another lamp", "dragged"], sample_count = 20, sample_size = 1)]
+fn painters_light(bencher: Bencher, what: &str) {
+    let (pool, mut step) = (pool(2), 0u32);
+    let kept = balls(HD);
+    let draw = |scene: &Scene, angle: f32| {
+        let document = painted(scene, angle);
+        let document = match what {
+            "dragged" => DocumentReducer::new(1.0).of(&document).expect("of its own size"),
+            _ => document,
+        };
+        pool.install(|| rilievo::flatten(&document, &Progress::default())).expect("not cancelled")
+    };
+    draw(&kept, 0.1);
+    bencher
+        .counter(area((HD, 2)))
+        .with_inputs(|| if what == "from nothing" { balls(HD) } else { kept.clone() })
+        .bench_local_values(|scene| {
+            step += 1;
+            draw(&scene, 0.2 + 0.05 * step as f32)
+        });
+}
+
+/// The shadow of one lamp on the same.
+#[divan::bench(args = [6, 16, 32], sample_count = 20, sample_size = 1)]
+fn shadow_of_a_lamp(bencher: Bencher, rays: u32) {
+    let (pool, scene, mut step) = (pool(2), balls(HD), 0u32);
+    let surface = scene.surface.as_deref().expect("a surface");
+    bencher.counter(area((HD, 2))).bench_local(|| {
+        step += 1;
+        let angle = 0.05 * step as f32;
+        let place = LampPlace::Afar(vec3(angle.cos(), angle.sin(), 0.75));
+        let lamp = ShadowLamp { place, radius: 0.13, reach_px: 220.0, rays };
+        pool.install(|| surface.shadow(&lamp, 1))
     });
 }
 

@@ -123,8 +123,8 @@ pub mod paint {
 pub mod shading {
     #[doc(inline)]
     pub use rilievo_engine::shading::{
-        Environment, FeatureScale, Features, Light, LightKind, LitSphere, Model, Projection,
-        RadianceScaling, Reference, Scaling, Shading, Term,
+        Environment, FeatureScale, Features, Light, LightKind, LightSetting, LitSphere, Model,
+        Mood, Painter, Projection, RadianceScaling, Reference, Scaling, Shading, Shadows, Term,
     };
 }
 

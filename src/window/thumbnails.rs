@@ -4,6 +4,7 @@
 use super::jobs;
 use crate::Error;
 use crate::document::{Document, Layer, LayerId, LayerMask, MaskKind, Progress, flatten_layer};
+use crate::mood_pictures::MoodPictures;
 use crate::part_pictures::PartPictures;
 use crate::raster::{Plane, TileGrid};
 use crate::surface::Surface;
@@ -40,6 +41,8 @@ pub struct Thumbnails {
     masks: HashMap<LayerId, (Weak<Plane<u8>>, bool, TextureHandle)>,
     /// Of the parts of the shape.
     pub parts: PartPictures,
+    /// Of the moods.
+    pub moods: MoodPictures,
     /// Errors to report once.
     pub trouble: Option<Error>,
 }
@@ -74,6 +77,7 @@ impl Thumbnails {
             ordered: HashMap::new(),
             masks: HashMap::new(),
             parts: PartPictures::default(),
+            moods: MoodPictures::default(),
             trouble,
         }
     }

@@ -87,6 +87,14 @@ fn every_refusal_names_file_and_field() {
             said_of(json!({ "kind": "shading", "lights": [{ "direction": [0, 0, 0] }] })),
             "layers[0].lights[0].direction: has no length",
         ),
+        (
+            said_of(json!({ "kind": "shading", "shadows": { "on": true, "softness": -1 } })),
+            "layers[0].shadows.softness: is -1; it must be between 0 and 1",
+        ),
+        (
+            said_of(json!({ "kind": "shading", "model": "painter", "painter": { "glow": 1 } })),
+            "layers[0].painter.glow",
+        ),
         (said(&json!({ "layers": [] })), "canvas: is missing, and there is no normal or depth map"),
         (said(&json!({ "canvas": { "width": 0, "height": 4 } })), "canvas.width: is 0"),
         (

@@ -10,6 +10,8 @@ fn every_shading_model_is_made_from_the_menu_and_shows_its_properties() {
     press(&mut harness, "Properties");
     for (name, shows) in [
         ("New Phong layer", "Add light at a point"),
+        ("New painter's light layer", "Turning edge"),
+        ("New painter's light layer", "Mood: Sunset"),
         ("New toon layer", "Tones"),
         ("New sub-Lambertian layer", "Flatness"),
         ("New Ashikhmin layer", "Choose environment"),

@@ -318,8 +318,13 @@ fn adjust_behind(
     let surface = scene.sheet.and_then(|sheet| sheet.surface.as_deref());
     let places: Vec<Option<(usize, usize)>> =
         (0..scene.behind.rows() * TILE).map(|place| scene.behind.sheet_pixel(place)).collect();
+    let mut canvas = vec![None; places.len()];
+    for (place, pixel) in scene.behind.places() {
+        canvas[place] = usize::try_from(pixel.x).ok().zip(usize::try_from(pixel.y).ok());
+    }
+    let front = scene.front.surface.as_deref();
     adjustment.adjust(
-        &AdjustedPlace::Packed { surface, places: &places },
+        &AdjustedPlace::Packed { surface, front, places: &places, canvas: &canvas },
         beneath,
         exactness,
         pixels,

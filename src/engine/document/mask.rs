@@ -81,7 +81,8 @@ pub(super) fn is_whole_behind(node: &PreparedLayer, behind: &Behind) -> bool {
 /// painted already.
 pub(super) fn clip(node: &PreparedLayer) -> Option<&Surface> {
     let paints = matches!(node.layer.content.role(), Role::Paints | Role::Shapes(_));
-    node.scene.surface.as_deref().filter(|_| paints && node.layer.clip_to_surface)
+    let clips = node.layer.clip_to_surface && !node.layer.content.shows_off_surface();
+    node.scene.surface.as_deref().filter(|_| paints && clips)
 }
 
 /// How much of a tile a surface covers.

@@ -5,8 +5,10 @@ use super::surface_row::{LightDirection, RowValues, SurfaceRow};
 use crate::math::{Range, Vec3, fast, srgb::Color, vec3};
 use crate::raster::TILE;
 use crate::surface::contours::SheetOf;
+use crate::surface::shadow::ShareMap;
+use std::sync::Arc;
 
-/// One light. It casts no shadows and does not weaken with distance.
+/// One light. It does not weaken with distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
     /// Where it is.
@@ -51,6 +53,17 @@ pub struct RowLight {
     /// Colour × intensity, linear.
     pub radiance: [f32; 3],
     stands: RowLightPosition,
+    /// What is seen of it, if it casts shadows.
+    pub shadow: Option<RowShadow>,
+}
+
+/// A light's shadow along a row.
+pub struct RowShadow {
+    map: Arc<ShareMap>,
+    /// The share of the light that is seen, `[0, 1]`.
+    pub seen: RowValues,
+    /// The light that is left where none is seen, a channel each.
+    pub left: [f32; 3],
 }
 
 enum RowLightPosition {
@@ -68,6 +81,7 @@ impl RowLight {
             direction: l.to_array().map(|v| [v; TILE]),
             radiance,
             stands: RowLightPosition::Afar(l),
+            shadow: None,
         }
     }
 
@@ -76,11 +90,15 @@ impl RowLight {
             direction: [[0.0; TILE], [0.0; TILE], [1.0; TILE]],
             radiance,
             stands: RowLightPosition::At(position),
+            shadow: None,
         }
     }
 
     /// Moves on to a row.
     pub fn turn(&mut self, surface_row: &SurfaceRow) {
+        if let Some(RowShadow { map, seen, .. }) = &mut self.shadow {
+            map.read(surface_row.x0, surface_row.y, &mut seen[..surface_row.width]);
+        }
         let RowLightPosition::At(position) = self.stands else { return };
         let (surface, columns) =
             (surface_row.surface, surface_row.x0..surface_row.x0 + surface_row.width);
@@ -122,6 +140,14 @@ impl RowLight {
             RowLightPosition::Afar(l) => LightDirection::One(l),
             RowLightPosition::At(_) => LightDirection::Each(&self.direction[0], &self.direction[1]),
         }
+    }
+}
+
+impl RowLight {
+    /// The same, casting a shadow.
+    pub fn with_shadow(mut self, map: Arc<ShareMap>, left: [f32; 3]) -> Self {
+        self.shadow = Some(RowShadow { map, seen: [1.0; TILE], left });
+        self
     }
 }
 

@@ -9,6 +9,7 @@ use super::objects::Objects;
 use super::pyramid::MapPyramids;
 use super::ray::RayMap;
 use super::region::SurfaceRegion;
+use super::shadow::{ContactShade, HeightMaps, ShadowKey, ShareMap};
 use super::unwrap::{
     DisplacementKey, PerspectiveView, PlaneDisplacement, PlaneLayout, PlaneSolver, Unwrapping,
 };
@@ -49,6 +50,12 @@ caches! {
     kappas: RecentCache<Vec<[u32; 3]>, Kappa>,
     /// By radius, as bits.
     occlusions: RecentCache<u32, Plane<f32>>,
+    /// Heights toward the viewer, as shadows read them.
+    heights: RecentCache<(), HeightMaps>,
+    /// What each pixel sees of a lamp.
+    shadows: RecentCache<ShadowKey, ShareMap>,
+    /// By the largest size, as bits.
+    contacts: RecentCache<u32, ContactShade>,
     /// What rays are marched through.
     ray_maps: RecentCache<(), RayMap>,
     /// Coverage of selections by the surface.

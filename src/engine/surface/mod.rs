@@ -34,6 +34,7 @@ pub mod ray;
 pub mod reach;
 pub mod region;
 pub mod scene;
+pub mod shadow;
 pub mod support;
 pub mod transformed;
 pub mod unwrap;

@@ -17,7 +17,7 @@
 //!   opacity) is composed with all that lies beneath it in its scope.
 
 use crate::document::{
-    Content, Document, Group, Layer, LayerId, LayerLabel, LayerLock, LayerMask, MaskKind, Role,
+    Document, Group, Layer, LayerId, LayerLabel, LayerLock, LayerMask, MaskKind, Role,
 };
 use crate::raster::{BlendMode, Plane};
 use crate::surface::Surface;
@@ -256,7 +256,7 @@ impl Planner<'_> {
     fn says_how_it_meets(&self, layer: &Layer) -> bool {
         !layer.blend_linear
             && (self.words.says)(layer.blend)
-            && !matches!(layer.content, Content::RadianceScaling(_))
+            && !matches!(layer.content.role(), Role::Adjusts(_))
     }
 }
 
@@ -264,7 +264,7 @@ impl Planner<'_> {
 fn keep_to_surface(layers: &[Arc<Layer>]) -> bool {
     layers.iter().all(|layer| match layer.content.role() {
         Role::Groups(group) => keep_to_surface(&group.layers),
-        Role::Paints => layer.clip_to_surface,
+        Role::Paints => layer.clip_to_surface && !layer.content.shows_off_surface(),
         Role::Adjusts(_) | Role::Shapes(_) => true,
     })
 }

@@ -5,7 +5,10 @@ use super::value::RecipeValue;
 use crate::Result;
 use crate::json::{Fields, JsonNode, JsonObject, object};
 use crate::math::{COORDINATE, Vec3, srgb::Color};
-use crate::shading::{FeatureScale, Features, Light, LightKind, Reference, Scaling, Term};
+use crate::shading::{
+    FeatureScale, Features, Light, LightKind, LightSetting, Painter, Reference, Scaling, Shadows,
+    Term,
+};
 use serde_json::Value;
 
 /// A term with no fields given.
@@ -87,6 +90,26 @@ impl RecipeValue for Features {
 
     fn from_json(node: &JsonNode) -> Result<Self> {
         of_object(node, features)
+    }
+}
+
+impl RecipeValue for Shadows {
+    fn to_json(&self) -> Value {
+        write_shadows(self, &Shadows::DEFAULT).done()
+    }
+
+    fn from_json(node: &JsonNode) -> Result<Self> {
+        shadows(node, Shadows::DEFAULT)
+    }
+}
+
+impl RecipeValue for Painter {
+    fn to_json(&self) -> Value {
+        write_painter(self, &Painter::DEFAULT).done()
+    }
+
+    fn from_json(node: &JsonNode) -> Result<Self> {
+        painter(node, Painter::DEFAULT)
     }
 }
 
@@ -181,6 +204,67 @@ pub fn term(fields: &mut Fields, base: Term) -> Result<Term> {
         .get("scaling")
         .map_or(Ok(base.scaling), |node| of_object(&node, |f| scaling(f, base.scaling)))?;
     Ok(Term { color, weight, scaling })
+}
+
+/// The numbers of a table, each in its range.
+fn settings<T>(fields: &mut Fields, table: &'static [LightSetting<T>], mut all: T) -> Result<T> {
+    for setting in table {
+        let to = fields.number(setting.name, (setting.get)(&all), setting.range.clone())?;
+        (setting.set)(&mut all, to);
+    }
+    Ok(all)
+}
+
+fn write_settings<T>(out: &mut JsonObject, table: &'static [LightSetting<T>], all: &T, base: &T) {
+    for setting in table {
+        out.number(setting.name, (setting.get)(all), (setting.get)(base));
+    }
+}
+
+/// Fields that are not given are those of `base`.
+pub fn shadows(node: &JsonNode, base: Shadows) -> Result<Shadows> {
+    of_object(node, |fields| {
+        let numbers = settings(fields, Shadows::SETTINGS, base)?;
+        Ok(Shadows {
+            on: fields.boolean("on", base.on)?,
+            color: fields.color("color", base.color)?,
+            rays: fields.get("rays").map_or(Ok(base.rays), |node| node.whole(Shadows::RAYS))?,
+            ..numbers
+        })
+    })
+}
+
+pub fn write_shadows(shadows: &Shadows, base: &Shadows) -> JsonObject {
+    let mut out = JsonObject::default();
+    out.flag("on", shadows.on, base.on);
+    write_settings(&mut out, Shadows::SETTINGS, shadows, base);
+    out.color("color", shadows.color, base.color);
+    out.number("rays", shadows.rays as f32, base.rays as f32);
+    out
+}
+
+/// Fields that are not given are those of `base`.
+pub fn painter(node: &JsonNode, base: Painter) -> Result<Painter> {
+    of_object(node, |fields| {
+        let numbers = settings(fields, Painter::SETTINGS, base)?;
+        Ok(Painter {
+            beneath: fields.boolean("beneath", base.beneath)?,
+            fill_color: fields.color("fill_color", base.fill_color)?,
+            bounce_color: fields.color("bounce_color", base.bounce_color)?,
+            rim_color: fields.color("rim_color", base.rim_color)?,
+            ..numbers
+        })
+    })
+}
+
+pub fn write_painter(painter: &Painter, base: &Painter) -> JsonObject {
+    let mut out = JsonObject::default();
+    out.flag("beneath", painter.beneath, base.beneath);
+    write_settings(&mut out, Painter::SETTINGS, painter, base);
+    out.color("fill_color", painter.fill_color, base.fill_color);
+    out.color("bounce_color", painter.bounce_color, base.bounce_color);
+    out.color("rim_color", painter.rim_color, base.rim_color);
+    out
 }
 
 /// A direction of any length but 0.

@@ -56,6 +56,14 @@ impl LayerReader<'_> {
             bounces: fields
                 .get("bounces")
                 .map_or(Ok(base.bounces), |node| node.whole(Shading::BOUNCES))?,
+            shadows: match fields.get("shadows") {
+                Some(node) => light::shadows(&node, base.shadows)?,
+                None => base.shadows,
+            },
+            painter: match fields.get("painter") {
+                Some(node) => light::painter(&node, base.painter)?,
+                None => base.painter,
+            },
         })
     }
 
@@ -161,6 +169,8 @@ pub fn write(out: &mut JsonObject, shading: &Shading) {
     out.number("index", shading.index, base.index);
     out.number("occlusion_radius", shading.occlusion_radius_px, base.occlusion_radius_px);
     out.number("bounces", shading.bounces as f32, base.bounces as f32);
+    out.object("shadows", light::write_shadows(&shading.shadows, &base.shadows));
+    out.object("painter", light::write_painter(&shading.painter, &base.painter));
 }
 
 pub fn write_radiance_scaling(out: &mut JsonObject, scaling: &RadianceScaling) {

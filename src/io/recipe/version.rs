@@ -4,6 +4,7 @@
 use crate::document::{Content, Document, Layer, LayerLabel};
 use crate::paint::DistanceMetric;
 use crate::paint::grain::GrainSpace;
+use crate::shading::Model;
 use crate::surface::Operator;
 
 /// The newest schema this program reads. A document that needs nothing newer is written as the
@@ -28,7 +29,10 @@ pub fn unwraps(document: &Document) -> bool {
                 || [brush.spacing_on, brush.stabilizer_on].contains(&DistanceMetric::Surface)
                 || grain.is_some_and(|grain| grain.lies == GrainSpace::Unwrapped)
         }),
-        Content::Shading(live) => live.params().bounces > 0,
+        Content::Shading(live) => {
+            let shading = live.params();
+            shading.bounces > 0 || shading.model == Model::Painter || shading.shadows.on
+        }
         _ => false,
     };
     document.walk().iter().any(|(_, layer)| is_new(layer))

@@ -23,6 +23,7 @@ use super::replay::ReplayValue;
 use super::*;
 use crate::document::{Content, Progress, flatten};
 use crate::raster::BlendMode;
+use crate::shading::Mood;
 
 fn replay(lines: &str) -> Session {
     let mut session = Session::default();
@@ -89,6 +90,23 @@ fn a_slider_shows_as_it_moves_and_is_one_step_when_it_is_let_go() {
         ["Brush stroke", "Opacity"]
     );
     assert_eq!(session.active().unwrap().document().layers[1].opacity, 0.5);
+}
+
+#[test]
+fn new_light_suits_what_is_painted() {
+    let session = replay(&format!(
+        r#"{PAPER}{STROKE}
+        {{"in":"layer","do":"add shading","model":"toon"}}
+        {{"in":"layer","do":"add shading","model":"painter"}}
+        {{"in":"layer","do":"set","layer":"3","to":{{"do":"mood","mood":"moon"}},"done":true}}"#
+    ));
+    let layers = &session.active().unwrap().document().layers;
+    assert_eq!(layers[2].blend, BlendMode::Multiply, "toon darkens what it is laid on");
+    let Content::Shading(light) = &layers[3].content else { panic!("no light") };
+    assert_eq!(layers[3].name, "Painter's light");
+    assert!(light.params().lights_beneath(), "there is paint beneath");
+    let is_in = |mood: Mood| mood.is_of(light.params());
+    assert!(is_in(Mood::Moon) && !is_in(Mood::Studio));
 }
 
 #[test]

@@ -12,12 +12,23 @@ fn add(requests: &mut UiRequests, model: Model) {
 }
 
 pub const COMMANDS: &[MenuCommand] = &[
+    row(
+        "New painter's light layer",
+        &[],
+        "Key, fill, bounce, rim and cast shadows on the picture beneath",
+        has_document,
+        |_, requests| add(requests, Model::Painter),
+    ),
     row("New Phong layer", &[], "Matt and glossy under lights", has_document, |_, requests| {
         add(requests, Model::Phong)
     }),
-    row("New toon layer", &[], "The same in flat bands", has_document, |_, requests| {
-        add(requests, Model::Toon)
-    }),
+    row(
+        "New toon layer",
+        &[],
+        "The same in flat bands, multiplied",
+        has_document,
+        |_, requests| add(requests, Model::Toon),
+    ),
     row(
         "New sub-Lambertian layer",
         &[],

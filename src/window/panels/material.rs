@@ -1,9 +1,10 @@
 //! Properties of shading layers and of radiance scaling: model, terms, lights, features.
 //! Floor 7.
 
-use super::colors;
 use super::setter::LayerSetter;
+use super::{colors, painter};
 use crate::math::{Vec2, Vec3, vec2, vec3};
+use crate::mood_pictures::MoodPictures;
 use crate::session::PicturePart;
 use crate::session::Property;
 use crate::shading::{
@@ -14,15 +15,32 @@ use crate::widgets::{NumberField, ValueChange, check, choice_row, title};
 use eframe::egui::{self, Color32, Sense, Shape, Stroke, Ui};
 
 /// `canvas`: its sides, px.
-pub fn shading(ui: &mut Ui, shading: &Shading, canvas: Vec2, setter: &mut LayerSetter) {
+pub fn shading(
+    ui: &mut Ui,
+    shading: &Shading,
+    canvas: Vec2,
+    moods: &MoodPictures,
+    setter: &mut LayerSetter,
+) {
     if let Some(model) = choice_row(ui, "Model", shading.model, &Model::ALL) {
         setter.set(Property::ShadingModel { model }, true);
     }
-    term(ui, "Ambient", shading.ambient, setter, |term| Property::Ambient { term });
-    term(ui, "Diffuse", shading.diffuse, setter, |term| Property::Diffuse { term });
-    term(ui, "Specular", shading.specular, setter, |term| Property::Specular { term });
+    let is_painter = shading.model == Model::Painter;
+    if is_painter {
+        painter::moods(ui, shading, moods, setter);
+    }
+    let words = match is_painter {
+        true => ["Soft light", "Key", "Shine"],
+        false => ["Ambient", "Diffuse", "Specular"],
+    };
+    term(ui, words[0], shading.ambient, setter, |term| Property::Ambient { term });
+    term(ui, words[1], shading.diffuse, setter, |term| Property::Diffuse { term });
+    term(ui, words[2], shading.specular, setter, |term| Property::Specular { term });
+    if is_painter {
+        painter::terms(ui, shading.painter, setter);
+    }
     match shading.model {
-        Model::Phong | Model::Toon => {
+        Model::Phong | Model::Toon | Model::Painter => {
             let number = NumberField::new("Shininess", 1.0..=400.0, "How small the highlight is")
                 .logarithmic()
                 .decimals(0);
@@ -84,10 +102,9 @@ pub fn shading(ui: &mut Ui, shading: &Shading, canvas: Vec2, setter: &mut LayerS
         );
     }
     pictures(ui, shading, setter);
-    if !shading.model.needs_environment()
-        && !matches!(shading.model, Model::LitSphere | Model::AmbientOcclusion)
-    {
+    if shading.model.has_lamps() {
         lights(ui, &shading.lights, canvas, setter);
+        painter::shadows(ui, shading.shadows, setter);
     }
     features(ui, &shading.features, setter);
 }

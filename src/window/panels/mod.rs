@@ -18,6 +18,7 @@ pub mod material;
 pub mod menu;
 pub mod navigator;
 pub mod options;
+mod painter;
 pub mod properties;
 mod select;
 mod setter;

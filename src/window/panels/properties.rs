@@ -5,6 +5,7 @@ use super::setter::LayerSetter;
 use super::{colors, home, mask, material, options, strokes};
 use crate::document::{Content, DetailSource, Document, Layer, NormalLayer};
 use crate::math::{Vec2, vec2};
+use crate::mood_pictures::MoodPictures;
 use crate::operators::{OPERATORS, OfferedOperator};
 use crate::paint::{Adjust, Gradient, GradientStop, ImageFilter, PlacedImage, Placement};
 use crate::raster::Outside;
@@ -12,11 +13,12 @@ use crate::requests::UiRequests;
 use crate::session::PicturePart;
 use crate::session::actions::LayerAction;
 use crate::session::{Property, Session};
+use crate::shading::Model;
 use crate::surface::{NoiseRelief, Weights};
 use crate::widgets::{NumberField, check, choice_row, title};
 use eframe::egui::Ui;
 
-pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
+pub fn show(ui: &mut Ui, session: &Session, moods: &mut MoodPictures, requests: &mut UiRequests) {
     let (Some(layer), Some(path)) = (session.layer(), session.layer_path()) else {
         ui.weak("No layer is selected.");
         return;
@@ -38,7 +40,10 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         Content::Gradient(live) => gradient(ui, live.params(), &mut setter),
         Content::Shading(live) => {
             let canvas = session.shown().map_or(Vec2::ONE, |document| 2.0 * document.size.center());
-            material::shading(ui, live.params(), canvas, &mut setter);
+            if let (Model::Painter, Some(document)) = (live.params().model, session.shown()) {
+                moods.follow(ui.ctx(), document, layer);
+            }
+            material::shading(ui, live.params(), canvas, moods, &mut setter);
         }
         Content::RadianceScaling(scaling) => material::radiance_scaling(ui, scaling, &mut setter),
         Content::Normals(normals) => normal_layer(ui, normals, &mut setter),

@@ -176,7 +176,9 @@ impl MainWindow {
             PanelKind::Brushes => {
                 panels::brushes::show(ui, &self.session, &mut self.swatches, requests)
             }
-            PanelKind::Properties => panels::properties::show(ui, &self.session, requests),
+            PanelKind::Properties => {
+                panels::properties::show(ui, &self.session, &mut self.thumbnails.moods, requests)
+            }
             PanelKind::Surface => panels::surface::show(ui, &self.session, requests),
             PanelKind::History => panels::history::show(ui, &self.session, requests),
             PanelKind::Navigator => {

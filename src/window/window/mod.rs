@@ -214,8 +214,12 @@ impl MainWindow {
 
     /// Collects the errors of the window's threads.
     fn tell_troubles(&mut self) {
-        let troubles =
-            [&mut self.canvas.trouble, &mut self.thumbnails.trouble, &mut self.swatches.trouble];
+        let troubles = [
+            &mut self.canvas.trouble,
+            &mut self.thumbnails.trouble,
+            &mut self.thumbnails.moods.trouble,
+            &mut self.swatches.trouble,
+        ];
         self.messages
             .extend(troubles.into_iter().filter_map(Option::take).map(|error| with_advice(&error)));
     }

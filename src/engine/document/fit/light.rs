@@ -5,8 +5,8 @@ use super::Fit;
 use crate::math::range::{STOPS, at_most, within};
 use crate::math::{COORDINATE, TURNS};
 use crate::shading::{
-    Environment, FeatureScale, Features, Light, LightKind, RadianceScaling, Reference, Scaling,
-    Shading, Term,
+    Environment, FeatureScale, Features, Light, LightKind, LightSetting, Painter, RadianceScaling,
+    Reference, Scaling, Shading, Shadows, Term,
 };
 
 /// The most values that things take in a description.
@@ -31,6 +31,12 @@ pub fn shading(shading: &Shading) -> Fit {
     within("the highlight along x", shading.nu, &Shading::SHININESS)?;
     within("the highlight along y", shading.nv, &Shading::SHININESS)?;
     within("the refractive index", shading.index, &Shading::INDEX)?;
+    settings(&shading.painter, Painter::SETTINGS)?;
+    settings(&shading.shadows, Shadows::SETTINGS)?;
+    if !Shadows::RAYS.contains(&shading.shadows.rays) {
+        let (rays, most) = (shading.shadows.rays, Shadows::RAYS.end());
+        return Err(format!("the rays to a lamp are {rays}; there may be 1 to {most}"));
+    }
     within("the reach of occlusion", shading.occlusion_radius_px, &Shading::OCCLUSION_RADIUS_PX)?;
     if !Shading::BOUNCES.contains(&shading.bounces) {
         return Err(format!(
@@ -40,6 +46,10 @@ pub fn shading(shading: &Shading) -> Fit {
         ));
     }
     shading.environment.as_ref().map_or(Ok(()), environment)
+}
+
+fn settings<T>(all: &T, table: &'static [LightSetting<T>]) -> Fit {
+    table.iter().try_for_each(|setting| within(setting.label, (setting.get)(all), &setting.range))
 }
 
 fn environment(environment: &Environment) -> Fit {

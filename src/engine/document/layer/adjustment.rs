@@ -53,7 +53,14 @@ pub enum Reach {
 pub enum AdjustedPlace<'a> {
     /// A tile of the canvas.
     Tile { scene: &'a Scene, at: TileAt },
-    /// Rows of pixels as the other populations of contour pixels see them: for each its place on
-    /// the surface that is seen there, or that it is off it.
-    Packed { surface: Option<&'a Surface>, places: &'a [Option<(usize, usize)>] },
+    /// Rows of pixels as the other populations of contour pixels see them.
+    Packed {
+        /// What they see, and the surface of the canvas.
+        surface: Option<&'a Surface>,
+        front: Option<&'a Surface>,
+        /// For each pixel its place on the surface that it sees, or that it is off it.
+        places: &'a [Option<(usize, usize)>],
+        /// For each pixel that of the canvas; `None` for those that fill a row.
+        canvas: &'a [Option<(usize, usize)>],
+    },
 }

@@ -138,6 +138,11 @@ trait LayerKind {
         true
     }
 
+    /// Whether it shows something where no surface is, even if it is clipped to the surface.
+    fn shows_off_surface(&self) -> bool {
+        false
+    }
+
     /// Whether marks of it have homes of their own.
     fn has_homes(&self) -> bool {
         false
@@ -256,6 +261,11 @@ impl Content {
     /// It moves with the shape that it lies on.
     pub(in crate::document) fn goes_with_shape(&self) -> bool {
         self.kind().goes_with_shape()
+    }
+
+    /// It shows something where no surface is, even if it is clipped to the surface.
+    pub fn shows_off_surface(&self) -> bool {
+        self.kind().shows_off_surface()
     }
 
     /// The group that it is, if it is one.

@@ -63,6 +63,11 @@ impl CanvasScale {
         Self { is_draft: true, ..self }
     }
 
+    /// Whether it is for a document that is seen for a moment only.
+    pub fn is_draft(&self) -> bool {
+        self.is_draft
+    }
+
     /// The placement of a picture of a given size, the same on the new canvas except for the
     /// aspect.
     pub fn on_new_canvas(&self, placement: &Placement, picture: Size) -> Placement {

@@ -52,7 +52,7 @@ pub fn add_matt(
         relief.turn(surface_row, lit.toward());
         lobes::scale(&mut rho, diffuse.scaling, relief.exponentials(diffuse.scaling), &delta);
     }
-    lobes::add(light, lobes::tint(kept, lit.radiance), &rho);
+    lobes::add_lit(light, lobes::tint(kept, lit.radiance), &rho, lit);
 }
 
 fn add_glossy(
@@ -77,9 +77,9 @@ fn add_glossy(
     }
     // R_s + (1 − R_s) f = R_s + f (1 − R_s): a coloured part and a whiter one.
     let rs = mirrored_color(shading);
-    lobes::add(light, lobes::tint(rs, lit.radiance), &row.rho);
+    lobes::add_lit(light, lobes::tint(rs, lit.radiance), &row.rho, lit);
     row.rho.iter_mut().zip(&row.white).for_each(|(rho, f)| *rho *= f);
-    lobes::add(light, lobes::tint(rs.map(|c| 1.0 - c), lit.radiance), &row.rho);
+    lobes::add_lit(light, lobes::tint(rs.map(|c| 1.0 - c), lit.radiance), &row.rho, lit);
 }
 
 /// Light from one direction.

@@ -3,6 +3,7 @@
 
 use crate::math::fast;
 use crate::raster::TILE;
+use crate::shading::light::RowLight;
 use crate::shading::scaling::Scaling;
 use crate::shading::surface_row::{Light3, RowValues};
 
@@ -29,7 +30,42 @@ pub fn add_incoming(
     }
 }
 
+/// Adds ρ tint to the light of a row, where a light is seen, and what its shadow leaves of it where
+/// it is not.
+pub fn add_lit(light: &mut Light3, tint: [f32; 3], rho: &RowValues, lit: &RowLight) {
+    match &lit.shadow {
+        Some(shadow) => add_lit_by(light, tint, rho, lit, &shadow.seen),
+        None => add(light, tint, rho),
+    }
+}
+
+/// The same of pixels that lie anywhere: `share` of the light is seen by each.
+pub fn add_lit_by(
+    light: &mut Light3,
+    tint: [f32; 3],
+    rho: &RowValues,
+    lit: &RowLight,
+    share: &RowValues,
+) {
+    let Some(shadow) = &lit.shadow else { return add(light, tint, rho) };
+    let (mut seen, mut hidden) = (*rho, *rho);
+    part(&mut seen, &mut hidden, share);
+    add(light, tint, &seen);
+    if shadow.left != [0.0; 3] {
+        add(light, self::tint(tint, shadow.left), &hidden);
+    }
+}
+
 crate::widest! {
+    /// Parts ρ, which both hold, by a share.
+    pub fn part(seen: &mut RowValues, hidden: &mut RowValues, share: &RowValues) {
+        for ((seen, hidden), share) in seen.iter_mut().zip(hidden).zip(share) {
+            let whole = *seen;
+            *seen = whole * share;
+            *hidden = whole - *seen;
+        }
+    }
+
     /// ρ ← σ(κ, δ) ρ of each pixel; `exponentials`: E of κ.
     pub fn scale(rho: &mut RowValues, scaling: Scaling, exponentials: &RowValues, delta: &RowValues) {
         for (x, rho) in rho.iter_mut().enumerate() {

@@ -3,10 +3,12 @@
 
 mod ashikhmin;
 mod ashikhmin_environment;
+mod beneath;
 mod hemisphere;
 mod lit_sphere;
 mod lobes;
 mod mirror;
+mod painter;
 mod phong;
 mod render;
 mod second_look;
@@ -15,11 +17,14 @@ mod toon;
 use super::{
     environment::Environment,
     features::Features,
-    light::Light,
+    light::{Light, LightKind, RowLight},
+    painter::Painter,
     scaling::{Reference, Scaling},
+    shadow::Shadows,
     sphere::LitSphere,
 };
-use crate::math::{Range, UNIT, srgb::Color};
+use crate::math::{Range, Size, UNIT, srgb::Color, vec3};
+use crate::surface::Surface;
 
 crate::named! {
     /// How a material reflects light.
@@ -40,6 +45,8 @@ crate::named! {
         LitSphere = "lit-sphere",
         Mirror = "mirror",
         Refraction = "refraction",
+        /// As a painter would light it: key, fill, bounce, turning edge, rim, shine.
+        Painter = "painter",
     }
 }
 
@@ -47,6 +54,11 @@ impl Model {
     /// Whether it is lit by an environment alone: lights have no effect.
     pub fn needs_environment(self) -> bool {
         matches!(self, Model::DiffuseEnvironment | Model::Mirror | Model::Refraction)
+    }
+
+    /// Whether lights have an effect on it.
+    pub fn has_lamps(self) -> bool {
+        !self.needs_environment() && !matches!(self, Model::LitSphere | Model::AmbientOcclusion)
     }
 
     /// Whether its rays can meet the surface itself before they reach the environment.
@@ -130,6 +142,10 @@ pub struct Shading {
     /// How often a ray that meets the surface itself is sent on before it looks at the environment:
     /// inter-reflection. 0: never, each ray looks at the environment at once.
     pub bounces: u32,
+    /// Shadows that the lights cast.
+    pub shadows: Shadows,
+    /// The painter's light.
+    pub painter: Painter,
 }
 
 impl Shading {
@@ -175,14 +191,28 @@ impl Shading {
             Model::LitSphere | Model::Mirror | Model::Refraction => {
                 (Term::NONE, Term::NONE, Term::plain(Color::WHITE, 1.0))
             }
+            Model::Painter => (
+                Term::plain(Color::WHITE, 1.0),
+                Term { weight: 1.0, ..clay },
+                Term::plain(Color::WHITE, 0.1),
+            ),
+        };
+        let is_painter = model == Model::Painter;
+        let lamp = match is_painter {
+            // Of the mood “studio”.
+            true => Light {
+                kind: LightKind::Directional { direction: vec3(-0.52, 0.62, 0.59) },
+                ..Light::default()
+            },
+            false => Light::default(),
         };
         Self {
             model,
-            lights: vec![Light::default()],
+            lights: vec![lamp],
             ambient,
             diffuse,
             specular,
-            shininess: 40.0,
+            shininess: if is_painter { 28.0 } else { 40.0 },
             features: Features::default(),
             reference: Reference::Auto,
             bands: 4,
@@ -195,7 +225,67 @@ impl Shading {
             index: 1.5,
             occlusion_radius_px: 48.0,
             bounces: 0,
+            shadows: Shadows { on: is_painter, ..Shadows::DEFAULT },
+            painter: Painter::DEFAULT,
         }
+    }
+
+    /// The same, with lengths that suit a canvas.
+    pub fn fitting(model: Model, canvas: Size) -> Self {
+        /// The side of the canvas that the default lengths are for, px.
+        const SIDE_PX: f32 = 1200.0;
+        let (mut shading, ratio) = (Self::new(model), canvas.longer_side() / SIDE_PX);
+        let fit = |v: f32, least: f32| (v * ratio).round().clamp(least, 1000.0);
+        shading.shadows.reach = fit(Shadows::DEFAULT.reach, 8.0);
+        shading.painter.contact_size = fit(Painter::DEFAULT.contact_size, 4.0);
+        shading
+    }
+
+    /// Whether it lights the picture beneath it in place of a colour of its own.
+    pub fn lights_beneath(&self) -> bool {
+        self.model == Model::Painter && self.painter.beneath
+    }
+
+    /// Whether it shows something off the surface: a shadow on the page.
+    pub fn shows_ground(&self) -> bool {
+        self.model.has_lamps() && self.shadows.shade_ground() && !self.lights.is_empty()
+    }
+
+    /// The same for a moment while the user drags, cheaper to render; `None` if it is the same then.
+    pub fn drafted(&self) -> Option<Self> {
+        let shadows = self.shadows.drafted();
+        let is_other = self.model.has_lamps() && self.shadows.act() && shadows != self.shadows;
+        is_other.then(|| Self { shadows, ..self.clone() })
+    }
+
+    /// With its lengths on a canvas `factor` times as large.
+    pub fn scaled(&self, factor: f32) -> Self {
+        let mut next = self.clone();
+        next.occlusion_radius_px *= factor;
+        next.shadows.reach *= factor;
+        next.painter.contact_size *= factor;
+        next
+    }
+
+    /// What its shadows keep of each pixel, bytes.
+    pub fn shadow_bytes(&self) -> u64 {
+        let lamps = match self.model.has_lamps() && self.shadows.act() {
+            true => self.lights.len().min(Shadows::MOST_LAMPS),
+            false => 0,
+        };
+        let contact = usize::from(self.model == Model::Painter);
+        ((lamps + contact) * Surface::SHADOW_BYTES) as u64
+    }
+
+    /// Its lights with their shadows, as seen from the rows of a tile of a surface.
+    fn row_lights(&self, surface: &Surface) -> Vec<RowLight> {
+        let maps = self.shadows.maps(surface, &self.lights);
+        let (mut maps, left) = (maps.into_iter(), self.shadows.left());
+        let row_light = |light: &Light| match maps.next() {
+            Some(map) => light.row_light().with_shadow(map, left),
+            None => light.row_light(),
+        };
+        self.lights.iter().map(row_light).collect()
     }
 }
 

@@ -7,7 +7,7 @@ use crate::shading::light::RowLight;
 use crate::shading::surface_row::{Light3, LightDirection, RowRelief, RowValues, SurfaceRow};
 
 /// A material's terms along a row: the ambient one, and two for every light; those of weight 0 are
-/// left out.
+/// left out. A term of a light that casts a shadow is followed by what the shadow leaves of it.
 ///
 /// `L′ = Σ_j Σ_lights σ_j(κ, δ_j) ρ_j L` with δ_j = ρ_j; ρ_a = 1 has no light of its own: scaled,
 /// it is mean-curvature shading, e^(γκ).
@@ -27,6 +27,8 @@ enum Lobe {
     Ambient,
     Matt(usize),
     Glossy(usize),
+    /// What the shadow of the light of the term before leaves of it.
+    Shadowed(usize),
 }
 
 impl PhongTerms {
@@ -34,10 +36,12 @@ impl PhongTerms {
     pub fn new(shading: &Shading, lights: &[RowLight]) -> Self {
         let ambient = [(Lobe::Ambient, &shading.ambient, [1.0; 3])];
         let lit = lights.iter().enumerate().flat_map(|(i, light)| {
-            [
-                (Lobe::Matt(i), &shading.diffuse, light.radiance),
-                (Lobe::Glossy(i), &shading.specular, light.radiance),
-            ]
+            let left = light.shadow.as_ref().map(|shadow| lobes::tint(light.radiance, shadow.left));
+            let terms = [(Lobe::Matt(i), &shading.diffuse), (Lobe::Glossy(i), &shading.specular)];
+            terms.into_iter().flat_map(move |(lobe, term)| {
+                let shadowed = left.map(|left| (Lobe::Shadowed(i), term, left));
+                [Some((lobe, term, light.radiance)), shadowed].into_iter().flatten()
+            })
         });
         let (lobes, tints): (Vec<_>, Vec<_>) = ambient
             .into_iter()
@@ -58,15 +62,28 @@ impl PhongTerms {
         lights: &[RowLight],
         relief: &mut RowRelief,
     ) {
-        for (lobe, rho) in self.lobes.iter().zip(&mut self.scaled) {
-            let (term, toward) = match *lobe {
+        let exponent = self.exponent;
+        for at in 0..self.lobes.len() {
+            if let Lobe::Shadowed(i) = self.lobes[at] {
+                let (before, after) = self.scaled.split_at_mut(at);
+                if let (Some(rho), Some(left), Some(shadow)) =
+                    (before.last_mut(), after.first_mut(), &lights[i].shadow)
+                {
+                    left.copy_from_slice(rho);
+                    lobes::part(rho, left, &shadow.seen);
+                }
+                continue;
+            }
+            let rho = &mut self.scaled[at];
+            let (term, toward) = match self.lobes[at] {
+                Lobe::Shadowed(_) => continue,
                 Lobe::Ambient => {
                     rho.fill(1.0);
                     (&shading.ambient, LightDirection::VIEWER)
                 }
                 Lobe::Matt(i) => {
                     lobes::lambert(&surface_row.normal, &lights[i].direction, rho);
-                    if let Some(zeta) = self.exponent {
+                    if let Some(zeta) = exponent {
                         lobes::flatten(rho, zeta);
                     }
                     (&shading.diffuse, lights[i].toward())

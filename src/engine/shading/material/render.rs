@@ -3,15 +3,15 @@
 
 use super::{
     Model, Shading, ashikhmin, ashikhmin_environment::EnvironmentSamples, hemisphere, lit_sphere,
-    mirror, phong::PhongTerms, second_look::SecondLook, toon,
+    mirror, painter::PainterTerms, phong::PhongTerms, second_look::SecondLook, toon,
 };
 use crate::math::{fast, srgb};
 use crate::raster::planar::{BRIGHTEST, PixelRow};
 use crate::raster::{PlanarTile, TILE, Tile, TileAt, tile::TILE_AREA};
 use crate::shading::environment::Environment;
-use crate::shading::light::{Light, RowLight};
+use crate::shading::light::RowLight;
 use crate::shading::surface_row::{Light3, RowRelief, SurfaceRow};
-use crate::surface::Scene;
+use crate::surface::{Scene, Surface};
 
 impl Shading {
     /// One tile of the material on a scene, opaque wherever there is any surface; `None` where
@@ -22,7 +22,18 @@ impl Shading {
     pub fn render_tile(&self, scene: &Scene, at: TileAt) -> Option<Tile> {
         let mut bytes = vec![0; 4 * TILE_AREA];
         let rows = bytes.as_chunks_mut::<{ 4 * TILE }>().0;
-        self.shade_rows(scene, at, |y, light, coverage| show(light, coverage, &mut rows[y]))?;
+        let shaded =
+            self.shade_rows(scene, at, |y, light, coverage| show(light, coverage, &mut rows[y]));
+        if self.shows_ground() {
+            self.ground_pixels(scene, at, |y, x, share| {
+                let color = [self.shadows.color.r, self.shadows.color.g, self.shadows.color.b];
+                let pixel = &mut rows[y][4 * x..4 * x + 4];
+                let premultiplied = color.map(|c| srgb::quantise(f32::from(c) / 255.0 * share));
+                pixel[..3].copy_from_slice(&premultiplied);
+                pixel[3] = srgb::quantise(share);
+            });
+        }
+        shaded?;
         Tile::from_pixels(bytes)
     }
 
@@ -38,7 +49,33 @@ impl Shading {
                 a[x] = 1.0;
             }
         })?;
+        if self.shows_ground() {
+            let color = self.shadows.color.to_f32();
+            self.ground_pixels(scene, at, |y, x, share| {
+                let PixelRow { rgb, a } = &mut pixels.rows_mut()[y];
+                rgb.iter_mut().zip(color).for_each(|(channel, color)| channel[x] = color * share);
+                a[x] = share;
+            });
+        }
         Some(pixels)
+    }
+
+    /// Passes on the opacity of the shadow on the page at each pixel of a tile off the surface: row,
+    /// column and share.
+    fn ground_pixels(&self, scene: &Scene, at: TileAt, mut tell: impl FnMut(usize, usize, f32)) {
+        let Some(surface) = scene.surface.as_deref().filter(|surface| surface.sheet_of().is_none())
+        else {
+            return;
+        };
+        let (inside, maps) = (scene.area(at), self.ground_maps(surface));
+        for (row, y) in (inside.y0..inside.y1).enumerate() {
+            for (column, x) in (inside.x0..inside.x1).enumerate() {
+                let pixel = (x as usize, y as usize);
+                if surface.coverage(pixel.0, pixel.1) == 0 {
+                    tell(row, column, self.shadows.ground_at(&maps, &self.lights, pixel));
+                }
+            }
+        }
     }
 
     /// Passes on the linear light of each wanted row of a tile, and the surface's coverage of it;
@@ -64,7 +101,7 @@ impl Shading {
             shaded.for_each(|(row, (surface_row, light))| tell(row, light, surface_row.coverage()));
         } else if !inside.is_empty() {
             let mut surface_row = surface_row(inside.y0);
-            let mut worker = RowShader::new(self);
+            let mut worker = RowShader::new(self, surface);
             if let Some(samples) = &mut worker.samples {
                 samples.follow_tile(self, surface, inside);
             }
@@ -92,6 +129,12 @@ impl Shading {
                 environment_light.map(|s| s.brightest_matt());
             }
             SecondLook::on(surface, self.bounces_made());
+            if self.model.has_lamps() {
+                self.shadows.maps(surface, &self.lights);
+            }
+            if self.model == Model::Painter {
+                surface.contact(self.painter.contact_size);
+            }
             if shows_occlusion && self.occlusion_radius_px > 0.0 {
                 surface.occlusion(self.occlusion_radius_px);
             }
@@ -108,6 +151,8 @@ struct RowShader<'a> {
     lights: Vec<RowLight>,
     /// For Phong and similar models.
     terms: PhongTerms,
+    /// For the painter's light.
+    painter: Option<PainterTerms>,
     /// For an Ashikhmin material in an environment.
     samples: Option<EnvironmentSamples>,
     relief: RowRelief,
@@ -115,13 +160,16 @@ struct RowShader<'a> {
 }
 
 impl<'a> RowShader<'a> {
-    fn new(shading: &'a Shading) -> Self {
+    fn new(shading: &'a Shading, surface: &Surface) -> Self {
         let samples =
             if shading.model == Model::Ashikhmin { EnvironmentSamples::new(shading) } else { None };
-        let lights: Vec<RowLight> = shading.lights.iter().map(Light::row_light).collect();
+        let lights = shading.row_lights(surface);
         let terms = PhongTerms::new(shading, &lights);
+        let painter =
+            (shading.model == Model::Painter).then(|| PainterTerms::new(shading, surface));
         Self {
             shading,
+            painter,
             lights,
             terms,
             samples,
@@ -132,7 +180,7 @@ impl<'a> RowShader<'a> {
 
     /// Linear light along a row.
     fn light(&mut self, surface_row: &SurfaceRow) -> &Light3 {
-        let Self { shading, lights, terms, samples, relief, light } = self;
+        let Self { shading, lights, terms, painter, samples, relief, light } = self;
         relief.leave_row();
         lights.iter_mut().for_each(|lit| lit.turn(surface_row));
         *light = [[0.0; TILE]; 3];
@@ -151,6 +199,13 @@ impl<'a> RowShader<'a> {
             Model::Mirror | Model::Refraction => mirror::shade(shading, surface_row, light),
             Model::DiffuseEnvironment => hemisphere::diffuse(shading, surface_row, light),
             Model::AmbientOcclusion => hemisphere::occlusion(shading, surface_row, light),
+            Model::Painter => {
+                if let Some(painter) = painter {
+                    painter.read(surface_row, lights, 0);
+                    let own = shading.diffuse.color.linear();
+                    painter.shade(shading, lights, &own.map(|c| [c; TILE]), light);
+                }
+            }
             // Toon filters across rows: `render_tile` draws whole tiles.
             Model::Toon => {}
         }

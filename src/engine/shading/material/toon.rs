@@ -3,7 +3,6 @@
 use super::{Shading, lobes, phong::PhongTerms};
 use crate::math::fast;
 use crate::raster::TILE;
-use crate::shading::light::{Light, RowLight};
 use crate::shading::surface_row::{Light3, RowRelief, RowValues, SurfaceRow};
 use crate::surface::links;
 
@@ -12,7 +11,8 @@ use crate::surface::links;
 /// The edge of a tone is where σρ crosses a multiple of 1 / bands. It is antialiased: the gradient
 /// of σρ, from the neighbours in the tile, gives the share of the pixel on either side.
 pub fn shade_tile(shading: &Shading, rows: &[SurfaceRow], light: &mut [Light3]) {
-    let mut lights: Vec<RowLight> = shading.lights.iter().map(Light::row_light).collect();
+    let Some(first) = rows.first() else { return };
+    let mut lights = shading.row_lights(first.surface);
     let (mut terms, mut relief) = (PhongTerms::new(shading, &lights), RowRelief::default());
     // σρ over the tile, term by term.
     let mut scaled: Vec<Vec<RowValues>> = vec![Vec::with_capacity(rows.len()); terms.tints.len()];

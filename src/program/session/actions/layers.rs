@@ -10,7 +10,7 @@ pub use new::NewLayer;
 pub(super) use steps::copied;
 
 use crate::document::{
-    Content, Document, Group, Layer, LayerId, LayerMask, LayerSlot, Live, MaskKind, Progress,
+    Content, Document, Group, Layer, LayerId, LayerMask, LayerSlot, MaskKind, Progress,
 };
 use crate::io::Budget;
 use crate::math::{PlaneMap, Vec2, vec2};
@@ -19,11 +19,11 @@ use crate::raster::Plane;
 use crate::session::open_document::Edit;
 use crate::session::replay::actions;
 use crate::session::{LayerPath, LayerPaths, OpenDocument, Property, Session};
-use crate::shading::{Model, Shading};
+use crate::shading::Model;
 use crate::tools::gizmo::TransformTarget;
 use crate::tools::transform::{self, mapped};
 use flattening::undisplaced;
-use new::{make_layer, model_name, selecting};
+use new::{lit_layer, make_layer, selecting};
 use std::sync::Arc;
 use steps::{cleared, duplicated, homed, kept, moves, ungrouped};
 
@@ -197,11 +197,7 @@ impl LayerAction {
                 ("Add layer", document.with_inserted(new, above(open))?, vec![id])
             }
             LayerAction::AddShading { model } => {
-                let content = Content::Shading(Live::new(Shading::new(*model)));
-                let new = selecting(
-                    document,
-                    Layer::new(document.free_layer_name(&model_name(*model)), content),
-                );
+                let new = selecting(document, lit_layer(*model, document));
                 let id = new.id;
                 ("Add layer", document.with_inserted(new, above(open))?, vec![id])
             }

@@ -16,7 +16,10 @@ use crate::paint::{
 };
 use crate::raster::{BlendMode, Outside, Resampling};
 use crate::shading::scaling::Reference;
-use crate::shading::{Features, Light, Model, Projection, RadianceScaling, Scaling, Shading, Term};
+use crate::shading::{
+    Features, Light, Model, Mood, Painter, Projection, RadianceScaling, Scaling, Shading, Shadows,
+    Term,
+};
 use crate::surface::plane_piece::PlanePiece;
 use crate::surface::{Anchor, NoiseRelief, Operator, Weights};
 use values::set_mask;
@@ -78,6 +81,10 @@ actions! {
         "exponent" Exponent { to: f32 }
         "anisotropy" Anisotropy { nu: f32, nv: f32 }
         "index" RefractiveIndex { to: f32 }
+        "shadows" Shadowed { shadows: Shadows }
+        "painter" Painted { painter: Painter }
+        /// Lamps, shadows and painter's light of a mood.
+        "mood" InMood { mood: Mood }
         "features" Features { features: Features }
         "scaling" Scaled { scaling: Scaling }
         "scaling light" ScalingLight { light: Vec3 }
@@ -130,6 +137,9 @@ impl Property {
                 "Material"
             }
             Property::Anisotropy { .. } | Property::RefractiveIndex { .. } => "Material",
+            Property::Shadowed { .. } => "Shadows",
+            Property::Painted { .. } => "Painter's light",
+            Property::InMood { .. } => "Mood",
             Property::Features { .. } => "Features",
             Property::Scaled { .. }
             | Property::ScalingReference { .. }
@@ -254,6 +264,7 @@ impl Property {
                 next.model = *model;
                 (next.ambient, next.diffuse, next.specular) =
                     (fresh.ambient, fresh.diffuse, fresh.specular);
+                next.shadows.on |= fresh.shadows.on;
                 if next.lights.is_empty() {
                     next.lights = fresh.lights;
                 }
@@ -272,6 +283,9 @@ impl Property {
                     (held(*nu, &Shading::SHININESS), held(*nv, &Shading::SHININESS));
             }
             Property::RefractiveIndex { to } => next.index = held(*to, &Shading::INDEX),
+            Property::Shadowed { shadows } => next.shadows = *shadows,
+            Property::Painted { painter } => next.painter = *painter,
+            Property::InMood { mood } => next = mood.on(shading),
             Property::Features { features } => next.features = features.clone(),
             Property::Occlusion { to } => {
                 next.occlusion_radius_px = held(*to, &Shading::OCCLUSION_RADIUS_PX);

@@ -8,7 +8,7 @@ use crate::paint::{Adjust, GradientStop, ImageFilter, Placement};
 use crate::raster::{BlendMode, Outside};
 use crate::session::replay::{as_in_recipes, names};
 use crate::shading::scaling::Reference;
-use crate::shading::{Features, Light, Model, Projection, Scaling, Term};
+use crate::shading::{Features, Light, Model, Mood, Painter, Projection, Scaling, Shadows, Term};
 use crate::surface::plane_piece::PlanePiece;
 use crate::surface::{Anchor, NoiseRelief, Operator};
 
@@ -19,8 +19,10 @@ names!(ImageFilter);
 names!(Outside);
 names!(Model);
 names!(Projection);
+names!(Mood);
 as_in_recipes!(Operator, Anchor, PlanePiece, Placement, Adjust, GradientStop);
 as_in_recipes!(NoiseRelief, DerivedMask, Light, Term, Scaling, Features, Reference);
+as_in_recipes!(Shadows, Painter);
 
 /// As documents write it.
 impl crate::session::replay::ReplayValue for LayerTransform {

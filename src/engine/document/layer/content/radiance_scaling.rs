@@ -70,10 +70,10 @@ impl Adjustment for RadianceScaling {
             AdjustedPlace::Tile { scene, at } => {
                 self.apply_at(scene, at, beneath, exactness, pixels)
             }
-            AdjustedPlace::Packed { surface: Some(surface), places } => {
+            AdjustedPlace::Packed { surface: Some(surface), places, .. } => {
                 self.apply_packed(surface, places, beneath, exactness, pixels);
             }
-            AdjustedPlace::Packed { surface: None, .. } => (),
+            AdjustedPlace::Packed { surface: None, .. } => {}
         }
     }
 }

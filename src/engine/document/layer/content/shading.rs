@@ -1,11 +1,13 @@
 //! A material under light, kept live. Floor 4. Not here: its rendering (`shading::material`).
 
-use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, NameFile, TileContent};
+use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, NameFile, Role, TileContent};
 use crate::Result;
+use crate::document::layer::adjustment::{AdjustedPlace, Adjustment};
 use crate::document::layer::marks::Marks;
 use crate::document::{LayerMap, Live, MemoryCount, Progress};
 use crate::paint::Scene;
 use crate::raster::{PlanarTile, TileAt};
+use crate::shading::radiance::{BackdropStats, Exactness};
 use crate::shading::{LightKind, LitSphere, Shading};
 
 /// The lit spheres of a material.
@@ -24,6 +26,24 @@ impl Marks for Shading {
     }
 }
 
+/// A painter's light on what lies beneath.
+impl Adjustment for Shading {
+    fn adjust(
+        &self,
+        place: &AdjustedPlace,
+        _: BackdropStats,
+        exactness: Exactness,
+        pixels: &mut PlanarTile,
+    ) {
+        match *place {
+            AdjustedPlace::Tile { scene, at } => self.light_tile(scene, at, exactness, pixels),
+            AdjustedPlace::Packed { surface, front, places, canvas } => {
+                self.light_packed([surface, front], places, canvas, exactness, pixels);
+            }
+        }
+    }
+}
+
 impl LayerKind for Live<Shading> {
     fn name(&self) -> &'static str {
         "shading"
@@ -33,11 +53,21 @@ impl LayerKind for Live<Shading> {
         "Shading"
     }
 
+    fn role(&self) -> Role<'_> {
+        if self.params().lights_beneath() { Role::Adjusts(self.params()) } else { Role::Paints }
+    }
+
     fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
+        if self.params().lights_beneath() {
+            return TileContent::Nothing;
+        }
         TileContent::of_tile(self.tile(scene, at, || self.params().render_tile(scene, at)))
     }
 
     fn painted_behind(&self, scene: &BehindScene) -> TileContent {
+        if self.params().lights_beneath() {
+            return TileContent::Nothing;
+        }
         // Off the surface it shows nothing.
         self.behind(scene, false, |scene, at| self.params().render_tile(scene, at))
     }
@@ -47,7 +77,15 @@ impl LayerKind for Live<Shading> {
     }
 
     fn marks(&self) -> Option<&dyn Marks> {
-        Some(self.params())
+        (!self.params().lights_beneath()).then_some(self.params() as &dyn Marks)
+    }
+
+    fn shows_off_surface(&self) -> bool {
+        self.params().shows_ground()
+    }
+
+    fn drafted(&self) -> Option<Content> {
+        Some(Content::Shading(Live::new(self.params().drafted()?)))
     }
 
     fn warm(&self, scene: &Scene, _: &Progress) {
@@ -55,9 +93,11 @@ impl LayerKind for Live<Shading> {
     }
 
     fn scaled(&self, scale: &CanvasScale) -> Content {
-        let mut shading = self.params().clone();
+        let mut shading = self.params().scaled(scale.length);
+        if let (true, Some(drafted)) = (scale.is_draft(), shading.drafted()) {
+            shading = drafted;
+        }
         scale.features(&mut shading.features);
-        shading.occlusion_radius_px *= scale.length;
         for light in &mut shading.lights {
             if let LightKind::Point { position } = &mut light.kind {
                 *position *= scale.per_axis.extend(scale.length);

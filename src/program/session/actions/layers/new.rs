@@ -6,7 +6,7 @@ use crate::document::{
 };
 use crate::math::vec2;
 use crate::paint::{Gradient, Placement};
-use crate::raster::Outside;
+use crate::raster::{BlendMode, Outside};
 use crate::session::replay::names;
 use crate::shading::{Model, RadianceScaling, Shading};
 use crate::surface::NoiseRelief;
@@ -37,9 +37,25 @@ pub(super) fn selecting(document: &Document, layer: Layer) -> Layer {
     Layer { mask: if covers { document.selection_as_mask() } else { None }, ..layer }
 }
 
+/// A shading layer of a model. The painter's light is on the picture beneath, if there is one; toon
+/// darkens it.
+pub(super) fn lit_layer(model: Model, document: &Document) -> Layer {
+    let mut shading = Shading::fitting(model, document.size);
+    let is_painted =
+        document.walk().iter().any(|(_, layer)| layer.visible && layer.content.paints());
+    shading.painter.beneath = model == Model::Painter && is_painted;
+    let name = document.free_layer_name(&model_name(model));
+    let mut layer = Layer::new(name, Content::Shading(Live::new(shading)));
+    if model == Model::Toon {
+        layer.blend = BlendMode::Multiply;
+    }
+    layer
+}
+
 /// “ambient-occlusion” as the name of a layer.
-pub(super) fn model_name(model: Model) -> String {
-    let spaced = model.name().replace('-', " ");
+fn model_name(model: Model) -> String {
+    let word = if model == Model::Painter { "painter's light" } else { model.name() };
+    let spaced = word.replace('-', " ");
     let mut letters = spaced.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }

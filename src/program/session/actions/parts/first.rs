@@ -9,11 +9,11 @@ use crate::document::parts::from_flats::{FlatParts, PartFor, parts_of_flats};
 use crate::document::{
     Content, Document, Inflation, Layer, LayerId, LayerSlot, Live, PixelLayer, Progress,
 };
-use crate::math::{srgb::Color, vec3};
-use crate::raster::{BlendMode, TileGrid};
+use crate::math::srgb::Color;
+use crate::raster::TileGrid;
 use crate::session::OpenDocument;
 use crate::session::drawing::painted_with_progress;
-use crate::shading::{Light, LightKind, Model, Shading, Term};
+use crate::shading::{Model, Shading};
 use std::sync::Arc;
 
 /// A document whose drawing has a shape.
@@ -149,20 +149,10 @@ fn without_flat_background(
     Some((next.with_inserted(background, place)?, bare))
 }
 
-/// The layer that shows the form: the drawing in the light of one warm lamp, with cool shadows,
-/// multiplied.
+/// The layer that shows the form: a painter's light on the drawing.
 fn base(document: &Document) -> Layer {
-    let lamp = Light {
-        kind: LightKind::Directional { direction: vec3(-0.45, 0.55, 0.75) },
-        ..Light::default()
-    };
-    let shading = Shading {
-        lights: vec![lamp],
-        ambient: Term::plain(Color { r: 0xc8, g: 0xd0, b: 0xff, a: 255 }, 0.38),
-        diffuse: Term::plain(Color { r: 0xff, g: 0xf4, b: 0xe4, a: 255 }, 0.8),
-        specular: Term::NONE,
-        ..Shading::new(Model::Phong)
-    };
+    let mut shading = Shading::fitting(Model::Painter, document.size);
+    shading.painter.beneath = true;
     let content = Content::Shading(Live::new(shading));
-    Layer { blend: BlendMode::Multiply, ..Layer::new(document.free_layer_name("Base"), content) }
+    Layer::new(document.free_layer_name("Base"), content)
 }

@@ -11,7 +11,10 @@ use crate::paint::{Adjust, BrushMode, GradientStop, Placement};
 use crate::raster::{Picture, Resampling};
 use crate::session::actions::clipboard::PastedPicture;
 use crate::session::actions::parts::InflationPreset;
-use crate::shading::{FeatureScale, Features, Light, LightKind, Reference, Scaling, Term};
+use crate::shading::{
+    FeatureScale, Features, Light, LightKind, LightSetting, Painter, Reference, Scaling, Shadows,
+    Term,
+};
 use crate::surface::plane_piece::PlanePiece;
 use crate::surface::region::{RegionKind, SurfaceRegion};
 use crate::surface::{Anchor, NoiseRelief, Operator};
@@ -150,6 +153,30 @@ impl Drawn for Term {
         let (color, weight) =
             (dice.value(dice.word, "color"), dice.in_range(0.0..=2.0, Term::WEIGHT));
         Term { color, weight, scaling: Scaling::drawn(dice) }
+    }
+}
+
+/// Every number of a table, somewhere in its range.
+fn settings<T>(dice: &mut Dice, table: &'static [LightSetting<T>], mut all: T) -> T {
+    for setting in table.iter().filter(|_| dice.is(40)).collect::<Vec<_>>() {
+        let (low, high) = (*setting.range.start(), setting.range.end().min(60.0));
+        (setting.set)(&mut all, dice.within(low, high));
+    }
+    all
+}
+
+impl Drawn for Shadows {
+    fn drawn(dice: &mut Dice) -> Self {
+        let numbers = settings(dice, Shadows::SETTINGS, Shadows::DEFAULT);
+        let rays = 1 + dice.below(8) as u32;
+        Shadows { on: dice.is(80), color: dice.value(dice.word, "color"), rays, ..numbers }
+    }
+}
+
+impl Drawn for Painter {
+    fn drawn(dice: &mut Dice) -> Self {
+        let numbers = settings(dice, Painter::SETTINGS, Painter::DEFAULT);
+        Painter { beneath: dice.is(50), fill_color: dice.value(dice.word, "color"), ..numbers }
     }
 }
 

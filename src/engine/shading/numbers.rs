@@ -1,0 +1,69 @@
+//! Tables of numbers: name, words, range and default of each in one place, next to its type, which
+//! readers, writers, checks, sliders and replays ask. Floor 3.
+
+use crate::math::Range;
+
+/// One number of a group of settings.
+pub struct LightSetting<T> {
+    /// Its name in documents.
+    pub name: &'static str,
+    /// Its name in the window.
+    pub label: &'static str,
+    /// What it does.
+    pub hint: &'static str,
+    /// What it may be.
+    pub range: Range,
+    /// Reads it.
+    pub get: fn(&T) -> f32,
+    /// Sets it; the caller keeps to the range.
+    pub set: fn(&mut T, f32),
+}
+
+impl<T> LightSetting<T> {
+    /// Sets it to the nearest number that it may be; what is not finite leaves it as it is.
+    pub fn put(&self, settings: &mut T, to: f32) {
+        if to.is_finite() {
+            (self.set)(settings, to.max(*self.range.start()).min(*self.range.end()));
+        }
+    }
+}
+
+/// Declares a struct of numbers with their table, `SETTINGS`, and their defaults; after `and`,
+/// fields of other types.
+macro_rules! settings {
+    (
+        $(#[$meta:meta])*
+        $vis:vis struct $type:ident {
+            $($(#[doc = $doc:literal])+ $name:ident: $label:literal, $hint:literal, $range:expr, $default:expr;)+
+            and $($(#[doc = $other_doc:literal])+ $other:ident: $other_type:ty = $other_default:expr;)*
+        }
+    ) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        $vis struct $type {
+            $($(#[doc = $doc])+ pub $name: f32,)+
+            $($(#[doc = $other_doc])+ pub $other: $other_type,)*
+        }
+
+        impl $type {
+            /// Its numbers.
+            pub const SETTINGS: &[$crate::shading::LightSetting<$type>] = &[$($crate::shading::LightSetting {
+                name: stringify!($name),
+                label: $label,
+                hint: $hint,
+                range: $range,
+                get: |all| all.$name,
+                set: |all, to| all.$name = to,
+            },)+];
+            /// As it begins.
+            pub const DEFAULT: Self = Self { $($name: $default,)+ $($other: $other_default,)* };
+        }
+
+        impl Default for $type {
+            fn default() -> Self {
+                Self::DEFAULT
+            }
+        }
+    };
+}
+pub(crate) use settings;

@@ -1,0 +1,307 @@
+//! Cast shadows: how much of a lamp's disc each point of the surface sees. Floor 2. It is computed
+//! from depth, in pixels (MATH 5). Here: lamps, their rays, the equation and the cache; `sweep` is
+//! the fast way over a map, `contact` the shade of what stands higher nearby. Not here: what
+//! shadows look like (`shading::shadow`).
+
+mod contact;
+mod point;
+mod share;
+mod sweep;
+
+#[cfg(test)]
+mod tests;
+
+pub use contact::ContactShade;
+pub use share::ShareMap;
+
+use super::Surface;
+use super::cache::HeapSize;
+use crate::math::{Vec2, Vec3, fast, vec2, vec3};
+use crate::raster::Plane;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// A lamp that shadows are cast by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShadowLamp {
+    /// Where it is.
+    pub place: LampPlace,
+    /// The radius of its disc as a share of its distance, `≥ 0`: how soft its shadows are.
+    pub radius: f32,
+    /// How far away what throws a shadow may be, px in the picture; it fades from half of that on.
+    pub reach_px: f32,
+    /// How many rays go to its disc.
+    pub rays: u32,
+}
+
+/// The position of a lamp.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LampPlace {
+    /// Infinitely far: toward it, camera space (y up).
+    Afar(Vec3),
+    /// At a point of the canvas (px, y down) and a height above the surface's nearest point, px.
+    At(Vec3),
+}
+
+/// The most rays of one lamp.
+pub const MOST_RAYS: u32 = 64;
+/// The golden angle, rad: the turn from one ray of the spiral to the next.
+const TURN_RAD: f32 = 2.399_963;
+/// Of rays that rise less a px, and of those that rise more, px: nothing is low, and nothing high
+/// enough.
+const RISE: (f32, f32) = (0.02, 20.0);
+/// Bumps up to this height throw no shadow close by, px: the steps of coarse depth do not.
+const BUMP_PX: f32 = 1.0;
+/// Up to this distance, px.
+const BUMP_REACH_PX: f32 = 24.0;
+/// The radius of the part of a disc that one of n rays stands for is the disc's times this / √n.
+const BETWEEN_RAYS: f32 = 0.9;
+
+/// One ray from the surface to a point of a lamp's disc.
+#[derive(Clone, Copy, Debug)]
+struct LampRay {
+    aim: Aim,
+    /// How far away what it meets may be, px.
+    reach_px: f32,
+    /// The half-width of the part of the disc that it stands for, as a share of the distance.
+    spread: f32,
+}
+
+/// Where a ray goes.
+#[derive(Clone, Copy, Debug)]
+enum Aim {
+    /// The way in the picture, unit, image axes, and the px that it rises for each of it.
+    Along { way: Vec2, rise: f32 },
+    /// Place in the picture, px between pixel centres, and height, px.
+    To(Vec3),
+}
+
+impl ShadowLamp {
+    /// Its rays: a fixed spiral over its disc. Each has a reach of its own, from half the lamp's
+    /// on, in an order that has nothing to do with the spiral, so that shadows fade with distance.
+    ///
+    /// * `heights`: the surface's range of heights, px.
+    fn rays(&self, heights: f32) -> Vec<LampRay> {
+        let count = self.rays.clamp(1, MOST_RAYS);
+        let ray = |k: u32| {
+            let out = self.radius * ((k as f32 + 0.5) / count as f32).sqrt();
+            let (sin, cos) = (k as f32 * TURN_RAD).sin_cos();
+            let share = 0.5 + 0.5 * ((k as f32 + 0.5) * 0.618_034).fract();
+            let spread = BETWEEN_RAYS * self.radius / (count as f32).sqrt();
+            let aim = self.aim(vec2(cos, sin) * out, heights)?;
+            Some(LampRay { aim, reach_px: share * self.reach_px, spread })
+        };
+        (0..count).filter_map(ray).collect()
+    }
+
+    /// The aim of the ray to a point of the disc; `None` for one that meets nothing.
+    ///
+    /// * `out`: from the middle of the disc, as a share of the distance.
+    fn aim(&self, out: Vec2, heights: f32) -> Option<Aim> {
+        match self.place {
+            LampPlace::Afar(direction) => {
+                let l = direction.normalize_or(Vec3::Z);
+                // A basis across ℓ that turns smoothly with it (Frisvad 2012), but for lamps right
+                // behind the picture.
+                let below = 1.0 / (1.0 + l.z).max(1e-3);
+                let u = vec3(1.0 - l.x * l.x * below, -l.x * l.y * below, -l.x);
+                let v = vec3(-l.x * l.y * below, 1.0 - l.y * l.y * below, -l.y);
+                let d = (l + u * out.x + v * out.y).normalize_or(Vec3::Z);
+                let (way, flat) = (vec2(d.x, -d.y), vec2(d.x, d.y).length());
+                let rise = (d.z / flat.max(1e-6)).max(RISE.0);
+                (rise < RISE.1).then(|| Aim::Along { way: way / flat, rise })
+            }
+            LampPlace::At(at) => {
+                // The disc lies level, as large as it is seen from the middle of the heights.
+                let size = (at.z + 0.5 * heights).max(0.0);
+                let at = vec3(at.x - 0.5, at.y - 0.5, at.z + heights);
+                Some(Aim::To(at + (out * size).extend(0.0)))
+            }
+        }
+    }
+
+    /// What tells it from others.
+    fn key(&self) -> ShadowKey {
+        let (kind, v) = match self.place {
+            LampPlace::Afar(v) => (0, v),
+            LampPlace::At(v) => (1, v),
+        };
+        let bits = [v.x, v.y, v.z, self.radius, self.reach_px].map(f32::to_bits);
+        ShadowKey { kind, bits, rays: self.rays }
+    }
+}
+
+/// What tells a lamp from others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::surface) struct ShadowKey {
+    kind: u8,
+    bits: [u32; 5],
+    rays: u32,
+}
+
+/// How much of a ray is hidden, `[0, 1]`, by what stands highest above it.
+///
+/// * `above_px`: by how much, px.
+/// * `distance_px`: its distance in the picture.
+/// * `rise`: of the ray, px a px.
+/// * `spread`: of the ray.
+#[inline(always)]
+fn hidden(above_px: f32, distance_px: f32, rise: f32, spread: f32) -> f32 {
+    let width = width_at(distance_px, rise, spread);
+    // A level surface does not hide itself, however low the lamp stands.
+    let bump = BUMP_PX * fast::max(1.0 - distance_px * (1.0 / BUMP_REACH_PX), 0.0);
+    let bias = fast::max(bump, 0.5 * width - rise * distance_px);
+    fast::min(fast::max((above_px - bias) / width + 0.5, 0.0), 1.0)
+}
+
+/// How much of what stands so far away counts: all up to half of the reach, nothing from there on.
+#[inline(always)]
+fn fade(distance_px: f32, reach_px: f32) -> f32 {
+    fast::min(fast::max(2.0 - distance_px * (2.0 / reach_px), 0.0), 1.0)
+}
+
+/// How high a ray is, px: as the part of the disc that it stands for, and a pixel at least.
+#[inline(always)]
+fn width_at(distance_px: f32, rise: f32, spread: f32) -> f32 {
+    1.0 + 2.0 * spread * (1.0 + rise * rise) * distance_px
+}
+
+/// The share of a lamp that is seen where `hidden` of it is, `[0, 1]`: smoothly from the one to the
+/// other.
+#[inline(always)]
+fn seen(hidden: f32) -> f32 {
+    let t = 1.0 - hidden;
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// Heights toward the viewer, px: 0 at the surface's farthest point, and off it, where the page is.
+pub(in crate::surface) struct HeightMaps {
+    /// As the picture lies.
+    upright: Plane<f32>,
+    /// Columns as rows.
+    turned: Plane<f32>,
+    highest: f32,
+}
+
+impl HeightMaps {
+    fn of(surface: &Surface) -> Self {
+        let range = surface.depth_range_px();
+        let height = |x: usize, y: usize| match surface.coverage(x, y) {
+            0 => 0.0,
+            _ => (1.0 - surface.depth(x, y)) * range,
+        };
+        let upright = Plane::from_fn(surface.size(), height);
+        let turned = sweep::turned(&upright);
+        Self { upright, turned, highest: range }
+    }
+
+    /// h between pixels, `x` and `y` between their centres; 0 beyond the picture. Along a row or a
+    /// column it is linear.
+    #[cfg(test)]
+    fn between(&self, x: f32, y: f32) -> f32 {
+        let at = |x: i32, y: i32| self.upright.get(x, y).unwrap_or(0.0);
+        let (x0, y0) = (x.floor(), y.floor());
+        let (fx, fy) = (x - x0, y - y0);
+        let (x0, y0) = (x0 as i32, y0 as i32);
+        let row = |y: i32| at(x0, y) + (at(x0 + 1, y) - at(x0, y)) * fx;
+        row(y0) + (row(y0 + 1) - row(y0)) * fy
+    }
+
+    /// The share of a lamp that a pixel sees: the equation, one step a row (or a column) after
+    /// another. `sweep` finds the same for all pixels.
+    #[cfg(test)]
+    fn seen_from(&self, (x, y): (usize, usize), lamp: &ShadowLamp) -> f32 {
+        let rays = lamp.rays(self.highest);
+        let q = vec2(x as f32, y as f32);
+        let of_ray = |ray: &LampRay| {
+            let h = self.upright.at(x, y);
+            let (way, rise, farthest) = match ray.aim {
+                Aim::Along { way, rise } => (way, rise, f32::MAX),
+                Aim::To(lamp) => {
+                    let flat = lamp.truncate() - q;
+                    let length = flat.length().max(1e-3);
+                    (flat / length, (lamp.z - h) / length, length)
+                }
+            };
+            let step = 1.0 / way.abs().max_element();
+            // What is near, and what is far: near, low things hide as well as far, high ones.
+            let mut highest = [(f32::MIN, 0.0); 2];
+            let count = (ray.reach_px / step).max(1.0) as i32;
+            for t in (1..=count).map(|i| i as f32 * step).take_while(|t| *t < farthest) {
+                let at = q + way * t;
+                // Rays to a point draw together on their way to it.
+                let nearer = if farthest < f32::MAX { farthest / (farthest - t) } else { 1.0 };
+                let rises = (self.between(at.x, at.y) - h - rise * t) * nearer;
+                let highest = &mut highest[usize::from(t > 0.5 * ray.reach_px)];
+                if rises > highest.0 {
+                    *highest = (rises, t);
+                }
+            }
+            let [near, far] =
+                highest.map(|(above, t)| hidden(above, t, rise.max(RISE.0), ray.spread));
+            near.max(far * fade(highest[1].1, ray.reach_px))
+        };
+        let count = lamp.rays.clamp(1, MOST_RAYS);
+        seen(rays.iter().map(of_ray).sum::<f32>() / count as f32)
+    }
+}
+
+impl HeapSize for HeightMaps {
+    fn heap_bytes(&self) -> u64 {
+        self.upright.heap_bytes() + self.turned.heap_bytes()
+    }
+}
+
+impl Surface {
+    /// What [`Surface::shadow`] and [`Surface::contact`] keep of each pixel, bytes; of a shadow for
+    /// each lamp.
+    pub const SHADOW_BYTES: usize = 2 * size_of::<f32>();
+
+    fn heights(&self) -> Arc<HeightMaps> {
+        self.derived.heights.get_or_compute((), 1, |_| HeightMaps::of(self))
+    }
+
+    /// The share of a lamp that every pixel sees, off the surface every pixel of the page. It
+    /// depends on depth alone: normal layers do not change it. For a sheet it is that of the other
+    /// populations' pixels nearby. Cached; call it once before going parallel.
+    ///
+    /// * `keep`: how many shadows are held, the last ones.
+    pub fn shadow(&self, lamp: &ShadowLamp, keep: usize) -> Arc<ShareMap> {
+        if let Some(sheet) = self.sheet_of() {
+            return self.derived.shadows.get_or_compute(lamp.key(), keep, |_| {
+                let seen = sheet.surface().map(|surface| surface.shadow(lamp, keep));
+                let of = |x: usize, y: usize| seen.as_ref().map_or(1.0, |seen| seen.at(x, y));
+                ShareMap::from_plane(sheet.map(self.size(), |pixel| pixel.other_mean(of)), 1.0)
+            });
+        }
+        let base = self.base();
+        base.derived
+            .shadows
+            .get_or_compute(lamp.key(), keep, |_| ShareMap::of_lamp(&base.heights(), lamp))
+    }
+}
+
+impl ShareMap {
+    /// Of every pixel under a lamp: rays are counted in whole numbers, so that their order does not
+    /// matter.
+    fn of_lamp(heights: &HeightMaps, lamp: &ShadowLamp) -> Self {
+        let rays = lamp.rays(heights.highest);
+        let count = lamp.rays.clamp(1, MOST_RAYS);
+        let each = rays.len().div_ceil(rayon::current_num_threads()).max(1);
+        let counted = rays
+            .par_chunks(each)
+            .map(|rays| {
+                let mut counts = sweep::HiddenCounts::new(heights.upright.size());
+                rays.iter().for_each(|ray| match ray.aim {
+                    Aim::Along { .. } => sweep::add(heights, ray, &mut counts),
+                    Aim::To(_) => point::add(heights, ray, &mut counts),
+                });
+                counts
+            })
+            .reduce_with(sweep::HiddenCounts::plus);
+        match counted {
+            Some(counts) => counts.seen(count),
+            None => Self::full(heights.upright.size()),
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! Properties of the painter's light, its moods, and the shadows of every model with lamps. Floor
+//! 7.
+
+use super::colors;
+use super::setter::LayerSetter;
+use crate::math::srgb::Color;
+use crate::mood_pictures::MoodPictures;
+use crate::session::Property;
+use crate::shading::{LightSetting, Mood, Painter, Shading, Shadows};
+use crate::widgets::{NumberField, check, named, title};
+use eframe::egui::{self, Ui};
+
+/// A row for each number of a table.
+fn settings<T: Copy + 'static>(
+    ui: &mut Ui,
+    table: &'static [LightSetting<T>],
+    all: T,
+    setter: &mut LayerSetter,
+    put: fn(T) -> Property,
+) {
+    for setting in table {
+        let number = NumberField::new(setting.label, setting.range.clone(), setting.hint);
+        let changed = number.row(ui, (setting.get)(&all));
+        setter.take(changed.map(|c| {
+            c.map(|to| {
+                let mut next = all;
+                setting.put(&mut next, to);
+                put(next)
+            })
+        }));
+    }
+}
+
+/// The moods, each as the drawing looks in it.
+pub fn moods(ui: &mut Ui, shading: &Shading, pictures: &MoodPictures, setter: &mut LayerSetter) {
+    title(ui, "Moods");
+    ui.horizontal_wrapped(|ui| {
+        for (mood, _) in Mood::ALL {
+            let is_on = mood.is_of(shading);
+            let text = egui::RichText::new(mood.label()).small();
+            let button = match pictures.picture(mood) {
+                Some((texture, size)) => {
+                    let shown = size * (64.0 / size.max_elem().max(1.0));
+                    egui::Button::image_and_text(
+                        egui::load::SizedTexture::new(texture, shown),
+                        text,
+                    )
+                }
+                None => egui::Button::new(text),
+            };
+            let response = ui.add(button.selected(is_on)).on_hover_text("Lamps, shadows and all");
+            named(&response, &format!("Mood: {}", mood.label()));
+            if response.clicked() && !is_on {
+                setter.set(Property::InMood { mood }, true);
+            }
+        }
+    });
+}
+
+/// The painter's own terms.
+pub fn terms(ui: &mut Ui, painter: Painter, setter: &mut LayerSetter) {
+    let hint = "Light the picture beneath, not a colour of its own";
+    if let Some(beneath) = check(ui, "Light what is beneath", hint, painter.beneath) {
+        setter.set(Property::Painted { painter: Painter { beneath, ..painter } }, true);
+    }
+    settings(ui, Painter::SETTINGS, painter, setter, |painter| Property::Painted { painter });
+    let colors: [(&str, Color, fn(&mut Painter) -> &mut Color); 3] = [
+        ("Fill colour", painter.fill_color, |p| &mut p.fill_color),
+        ("Bounce colour", painter.bounce_color, |p| &mut p.bounce_color),
+        ("Rim colour", painter.rim_color, |p| &mut p.rim_color),
+    ];
+    ui.horizontal(|ui| {
+        for (label, color, of) in colors {
+            let changed = colors::button(ui, label, color);
+            setter.take(changed.map(|c| {
+                c.map(|color| {
+                    let mut painter = painter;
+                    *of(&mut painter) = color;
+                    Property::Painted { painter }
+                })
+            }));
+        }
+    });
+}
+
+/// The shadows that lamps cast.
+pub fn shadows(ui: &mut Ui, shadows: Shadows, setter: &mut LayerSetter) {
+    title(ui, "Shadows");
+    let hint = "Parts throw shadows on what lies behind them";
+    if let Some(on) = check(ui, "Cast shadows", hint, shadows.on) {
+        setter.set(Property::Shadowed { shadows: Shadows { on, ..shadows } }, true);
+    }
+    if !shadows.on {
+        return;
+    }
+    settings(ui, Shadows::SETTINGS, shadows, setter, |shadows| Property::Shadowed { shadows });
+    let changed = colors::button(ui, "Shadow colour", shadows.color);
+    setter.take(
+        changed
+            .map(|c| c.map(|color| Property::Shadowed { shadows: Shadows { color, ..shadows } })),
+    );
+}
