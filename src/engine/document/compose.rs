@@ -1,9 +1,9 @@
 //! Composes one tile of a document: its layers from bottom to top, in f32. By the same rules it
-//! composes what the other populations of its contour pixels see (`behind`). Floor 4. `prepare`
+//! composes what the other populations of its contour pixels see (`far_side`). Floor 4. `prepare`
 //! selects the layers, `content` renders them, `raster::blend` mixes the pixels.
 
-use super::behind::{Behind, BehindScene};
 use super::deep::DeepTiles;
+use super::far_side::{FarScene, FarTile};
 use super::layer::adjustment::{AdjustedPlace, Adjustment};
 use super::layer::tile_content::TileContent;
 use super::prepare::{PreparedDocument, PreparedLayer};
@@ -21,7 +21,7 @@ pub(super) struct Composer<'a> {
     pub prepared: &'a PreparedDocument,
     pub at: TileAt,
     /// The pixels to compose, if not the tile's.
-    pub behind: Option<Behind<'a>>,
+    pub far: Option<FarTile<'a>>,
     /// The adjustment to end at, if this is to measure what lies beneath one.
     pub sought: Option<usize>,
     /// The pixels of live layers, if not the bytes that they are rendered to.
@@ -52,8 +52,8 @@ impl Composer<'_> {
     /// Composes one layer, with those clipped to it, onto a tile. `atop`: it is itself clipped to
     /// what is there.
     fn node(&self, node: &PreparedLayer, onto: &mut PlanarTile, atop: bool) -> ComposeFlow {
-        let coverage = match &self.behind {
-            Some(behind) => mask::coverage_behind(node, behind),
+        let coverage = match &self.far {
+            Some(far) => mask::coverage_on_far_side(node, far),
             None => mask::coverage(node, self.at),
         };
         if coverage.is_none() && !self.is_sought_in(node) {
@@ -108,12 +108,11 @@ impl Composer<'_> {
 
     /// As many transparent pixels as are composed.
     pub fn blank(&self) -> PlanarTile {
-        self.behind
-            .map_or_else(PlanarTile::transparent, |behind| PlanarTile::of_rows(behind.rows()))
+        self.far.map_or_else(PlanarTile::transparent, |far| PlanarTile::of_rows(far.rows()))
     }
 
     fn blend(&self, onto: &mut PlanarTile, mix: Mix, paint: TilePaint, coverage: &TileCoverage) {
-        let Some(behind) = self.behind.filter(|_| mix.mode == BlendMode::Dissolve) else {
+        let Some(far) = self.far.filter(|_| mix.mode == BlendMode::Dissolve) else {
             return match self.deep {
                 Some(_) => onto.blend_bright(mix, paint, coverage),
                 None => onto.blend(mix, paint, coverage),
@@ -123,7 +122,7 @@ impl Composer<'_> {
         // or empty stay so.
         let mut dissolved = self.blank();
         dissolved.blend(Mix::default(), paint, coverage);
-        behind.dissolve(&mut dissolved);
+        far.dissolve(&mut dissolved);
         onto.blend(mix, TilePaint::Planar(&dissolved), &TileCoverage::FULL);
     }
 
@@ -151,17 +150,16 @@ impl Composer<'_> {
     fn displaced(&self, node: &PreparedLayer) -> Option<TileContent> {
         let shown = node.warp.as_ref()?.shown(self.at, &|at| self.in_place(node, at))?;
         let Some(tile) = shown else { return Some(TileContent::Nothing) };
-        Some(match self.behind {
-            Some(behind) => TileContent::Packed(Arc::new(behind.same(&tile))),
+        Some(match self.far {
+            Some(far) => TileContent::Packed(Arc::new(far.same(&tile))),
             None => TileContent::Tile(tile),
         })
     }
 
     /// A tile of a layer alone, undisplaced: its contours mixed, not yet clipped to the surface.
     fn in_place(&self, node: &PreparedLayer, at: TileAt) -> Option<Arc<Tile>> {
-        let composed = |behind: Option<Behind>| {
-            let composer =
-                Composer { prepared: self.prepared, at, behind, sought: None, deep: None };
+        let composed = |far: Option<FarTile>| {
+            let composer = Composer { prepared: self.prepared, at, far, sought: None, deep: None };
             let mut pixels = composer.blank();
             match node.layer.content.role() {
                 Role::Groups(_) => drop(composer.stack(&node.children, &mut pixels)),
@@ -176,13 +174,13 @@ impl Composer<'_> {
         let mut pixels = composed(None);
         if let Some(contours) = self.prepared.contours.as_ref().and_then(|contours| contours.on(at))
         {
-            let behind = Behind::new(at, contours);
-            let other = composed(Some(behind));
+            let far = FarTile::new(at, contours);
+            let other = composed(Some(far));
             match mask::clip(node) {
                 // The surface cuts what is shown, so that all of a rim's pixel is the surface's
                 // here.
-                Some(_) => behind.take_surface_into(&other, &mut pixels),
-                None => behind.mix_into(&other, &mut pixels, 1.0),
+                Some(_) => far.take_surface_into(&other, &mut pixels),
+                None => far.mix_into(&other, &mut pixels, 1.0),
             }
         }
         match node.has_deep_paint(at) {
@@ -194,10 +192,10 @@ impl Composer<'_> {
 
     fn painted_in_place(&self, node: &PreparedLayer) -> TileContent {
         if let (Some(deep), Some(marks)) = (self.deep, node.layer.content.marks()) {
-            return deep.content(node, marks, self.at, self.behind);
+            return deep.content(node, marks, self.at, self.far);
         }
-        match self.behind {
-            Some(behind) => node.layer.content.painted_behind(&node.seen_behind(behind)),
+        match self.far {
+            Some(far) => node.layer.content.painted_far_side(&node.far_scene(far)),
             None => node.layer.content.painted(&node.scene, self.at),
         }
     }
@@ -240,9 +238,9 @@ impl Composer<'_> {
             return ComposeFlow::Continue(());
         };
         let exactness = self.deep.map_or(Exactness::Fast, DeepTiles::exactness);
-        let apply = |pixels: &mut PlanarTile| match &self.behind {
-            Some(behind) => {
-                adjust_behind(adjustment, &node.seen_behind(*behind), beneath, exactness, pixels)
+        let apply = |pixels: &mut PlanarTile| match &self.far {
+            Some(far) => {
+                adjust_far_side(adjustment, &node.far_scene(*far), beneath, exactness, pixels)
             }
             None => {
                 let place = AdjustedPlace::Tile { scene: &node.scene, at: self.at };
@@ -270,8 +268,8 @@ impl Composer<'_> {
         let may_hide =
             layer.blend == BlendMode::Normal && layer.opacity >= 1.0 && layer.mask.is_none();
         // Groups and adjustments are never known to hide before they are composed.
-        let is_whole = || match &self.behind {
-            Some(behind) => mask::is_whole_behind(node, behind),
+        let is_whole = || match &self.far {
+            Some(far) => mask::is_whole_on_far_side(node, far),
             None => mask::is_whole_on_surface(node, self.at),
         };
         // In floats a layer is rendered once, for what it shows.
@@ -302,24 +300,24 @@ impl PreparedLayer {
         own || self.children.iter().chain(&self.clipped).any(|node| node.shows_deep_picture(at))
     }
 
-    fn seen_behind<'s>(&'s self, behind: Behind<'s>) -> BehindScene<'s> {
-        BehindScene { behind, front: &self.scene, sheet: self.behind.as_ref() }
+    fn far_scene<'s>(&'s self, tile: FarTile<'s>) -> FarScene<'s> {
+        FarScene { tile, front: &self.scene, far: self.far.as_ref() }
     }
 }
 
 /// An adjustment of what the other populations see.
-fn adjust_behind(
+fn adjust_far_side(
     adjustment: &dyn Adjustment,
-    scene: &BehindScene,
+    scene: &FarScene,
     beneath: BackdropStats,
     exactness: Exactness,
     pixels: &mut PlanarTile,
 ) {
-    let surface = scene.sheet.and_then(|sheet| sheet.surface.as_deref());
+    let surface = scene.far.and_then(|far| far.surface.as_deref());
     let places: Vec<Option<(usize, usize)>> =
-        (0..scene.behind.rows() * TILE).map(|place| scene.behind.sheet_pixel(place)).collect();
+        (0..scene.tile.rows() * TILE).map(|place| scene.tile.far_pixel(place)).collect();
     let mut canvas = vec![None; places.len()];
-    for (place, pixel) in scene.behind.places() {
+    for (place, pixel) in scene.tile.places() {
         canvas[place] = usize::try_from(pixel.x).ok().zip(usize::try_from(pixel.y).ok());
     }
     let front = scene.front.surface.as_deref();

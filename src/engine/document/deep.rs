@@ -2,7 +2,7 @@
 //! more than 8 bits. Floor 4. Not here: rendering marks (`paint`, `shading`), composing layers
 //! (`compose`).
 
-use super::behind::Behind;
+use super::far_side::FarTile;
 use super::layer::marks::Marks;
 use super::layer::tile_content::TileContent;
 use super::prepare::{PreparedDocument, PreparedLayer};
@@ -54,9 +54,22 @@ pub(super) struct DeepTiles {
     highlights: Highlights,
     /// Kept, so that each is made once.
     _textures: Vec<Arc<DeepTexture>>,
-    /// Tiles that were rendered together, by layer and place; `true` for those behind contours,
-    /// else on the canvas.
-    together: HashMap<(LayerId, TileAt, bool), Option<PlanarTile>>,
+    /// Tiles that were rendered together.
+    together: HashMap<TileKey, Option<PlanarTile>>,
+}
+
+/// Of which layer a tile is, where, and on which side of contours.
+#[derive(PartialEq, Eq, Hash)]
+struct TileKey {
+    layer: LayerId,
+    at: TileAt,
+    is_far_side: bool,
+}
+
+impl TileKey {
+    fn of(node: &PreparedLayer, at: TileAt, scene: &Scene) -> Self {
+        Self { layer: node.layer.id, at, is_far_side: scene.as_far_side().is_some() }
+    }
 }
 
 impl DeepTiles {
@@ -79,13 +92,10 @@ impl DeepTiles {
         let found = Mutex::new(HashMap::new());
         for_each(&prepared.stack, &mut |node| {
             let Some(marks) = node.layer.content.marks() else { return };
-            for scene in std::iter::once(&node.scene).chain(&node.behind) {
-                let (id, is_behind) = (node.layer.id, scene.sheet().is_some());
+            for scene in std::iter::once(&node.scene).chain(&node.far) {
+                let key = |at| TileKey::of(node, at, scene);
                 let done = |at, tile| {
-                    found
-                        .lock()
-                        .unwrap_or_else(PoisonError::into_inner)
-                        .insert((id, at, is_behind), tile);
+                    found.lock().unwrap_or_else(PoisonError::into_inner).insert(key(at), tile);
                 };
                 marks.together(scene, tiles, progress, &done);
             }
@@ -99,23 +109,18 @@ impl DeepTiles {
         node: &PreparedLayer,
         marks: &dyn Marks,
         at: TileAt,
-        behind: Option<Behind>,
+        far: Option<FarTile>,
     ) -> TileContent {
-        let pixels = |scene: &Scene| match self.together.get(&(
-            node.layer.id,
-            at,
-            scene.sheet().is_some(),
-        )) {
+        let pixels = |scene: &Scene| match self.together.get(&TileKey::of(node, at, scene)) {
             Some(known) => known.clone(),
             None => marks.pixels(scene, at),
         };
-        let found = match behind {
+        let found = match far {
             None => pixels(&node.scene),
-            Some(behind) => {
-                let on_sheet = node.behind.as_ref().and_then(pixels);
-                let bare =
-                    if marks.stay() && behind.has_bare() { pixels(&node.scene) } else { None };
-                Some(behind.packed_deep(on_sheet.as_ref(), bare.as_ref()))
+            Some(far) => {
+                let on_far_side = node.far.as_ref().and_then(pixels);
+                let bare = if marks.stay() && far.has_bare() { pixels(&node.scene) } else { None };
+                Some(far.packed_deep(on_far_side.as_ref(), bare.as_ref()))
             }
         };
         let Some(mut found) = found else { return TileContent::Nothing };

@@ -2,9 +2,9 @@
 //! once. Floor 4. Tiles are independent, so they are composed in parallel, and the bytes do not
 //! depend on the number of threads.
 
-use super::behind::Behind;
 use super::compose::Composer;
 use super::deep::{DeepTiles, Highlights};
+use super::far_side::FarTile;
 use super::progress::in_parallel;
 use super::{Content, Document, Group, Layer, LayerId, PreparedDocument, Progress};
 use crate::memory::filled_or_unwind;
@@ -183,8 +183,7 @@ impl PreparedDocument {
         if self.contours.as_ref().is_some_and(|contours| contours.on(at).is_some()) {
             return None;
         }
-        Composer { prepared: self, at, behind: None, sought: None, deep: None }
-            .only_tile(&self.stack)
+        Composer { prepared: self, at, far: None, sought: None, deep: None }.only_tile(&self.stack)
     }
 
     /// A tile as a paint layer holds it: as it shows, but with 16 bits where it is soft, or shows a
@@ -204,21 +203,19 @@ impl PreparedDocument {
 
     fn compose_tile(&self, at: TileAt, deep: Option<&DeepTiles>) -> PlanarTile {
         // No adjustment is sought, so composing runs to its end.
-        let composed = |behind: Option<Behind>| {
-            let composer = Composer { prepared: self, at, behind, sought: None, deep };
+        let composed = |far: Option<FarTile>| {
+            let composer = Composer { prepared: self, at, far, sought: None, deep };
             let mut pixels = composer.blank();
             let _ = composer.stack(&self.stack, &mut pixels);
             pixels
         };
         let mut pixels = composed(None);
         if let Some(contours) = self.contours.as_ref().and_then(|contours| contours.on(at)) {
-            let behind = Behind::new(at, contours);
-            let other = composed(Some(behind));
+            let far = FarTile::new(at, contours);
+            let other = composed(Some(far));
             match self.whole_rims {
-                false => {
-                    behind.mix_into(&other, &mut pixels, deep.map_or(1.0, DeepTiles::brightest))
-                }
-                true => behind.take_surface_into(&other, &mut pixels),
+                false => far.mix_into(&other, &mut pixels, deep.map_or(1.0, DeepTiles::brightest)),
+                true => far.take_surface_into(&other, &mut pixels),
             }
         }
         pixels

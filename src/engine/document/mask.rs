@@ -1,7 +1,7 @@
 //! What a layer's mask covers, tile by tile.
 //! Floor 4. Not here: what masks there are (`layer::mask`).
 
-use super::behind::Behind;
+use super::far_side::FarTile;
 use super::layer::mask::tile_pixels;
 use super::prepare::PreparedLayer;
 use super::{DerivedMask, MaskKind, Role};
@@ -10,7 +10,7 @@ use crate::surface::{ContourPixel, Surface};
 
 /// The coverage of a layer in each pixel of a tile: its opacity, its mask, and the surface if it is
 /// clipped to it. A pixel that the surface covers in part counts as covered: what is clipped to the
-/// surface is missing in the rest of the pixel (`behind`), so that coverage acts once.
+/// surface is missing in the rest of the pixel (`far_side`), so that coverage acts once.
 pub(super) fn coverage(node: &PreparedLayer, at: TileAt) -> TileCoverage {
     let coverage = TileCoverage::uniform(node.layer.opacity);
     let coverage = match clip(node) {
@@ -39,11 +39,11 @@ pub(super) fn is_whole_on_surface(node: &PreparedLayer, at: TileAt) -> bool {
 }
 
 /// The same for the other populations of a tile's contour pixels.
-pub(super) fn coverage_behind(node: &PreparedLayer, behind: &Behind) -> TileCoverage {
+pub(super) fn coverage_on_far_side(node: &PreparedLayer, far: &FarTile) -> TileCoverage {
     let mut coverage = TileCoverage::uniform(node.layer.opacity);
-    if clip(node).is_some() && behind.has_bare() {
+    if clip(node).is_some() && far.has_bare() {
         coverage = coverage
-            .times_values(behind.values(|_, pixel| if pixel.sees_surface() { 1.0 } else { 0.0 }));
+            .times_values(far.values(|_, pixel| if pixel.sees_surface() { 1.0 } else { 0.0 }));
     }
     let Some(mask) = node.layer.mask.as_ref().filter(|mask| mask.acts_on(&node.scene)) else {
         return coverage;
@@ -58,22 +58,21 @@ pub(super) fn coverage_behind(node: &PreparedLayer, behind: &Behind) -> TileCove
             true => pixel.other_mean(|x, y| way(grid.at(x as i32, y as i32))),
             false => way(grid.at(pixel.x, pixel.y)),
         };
-        return coverage.times_values(behind.values(value));
+        return coverage.times_values(far.values(value));
     }
-    let value = |place: usize, pixel: &ContourPixel| match (behind.sheet_pixel(place), &node.behind)
-    {
+    let value = |place: usize, pixel: &ContourPixel| match (far.far_pixel(place), &node.far) {
         // A picture lies on the canvas.
-        (Some((x, y)), Some(sheet)) if !matches!(mask.kind, MaskKind::File { .. }) => {
-            mask.at(sheet, node.behind_curvature.as_deref(), x as i32, y as i32)
+        (Some((x, y)), Some(far)) if !matches!(mask.kind, MaskKind::File { .. }) => {
+            mask.at(far, node.far_curvature.as_deref(), x as i32, y as i32)
         }
         _ => mask.at(&node.scene, node.curvature.as_deref(), pixel.x, pixel.y),
     };
-    coverage.times_values(behind.values(value))
+    coverage.times_values(far.values(value))
 }
 
 /// The surface does not cut the node behind the contours of a tile.
-pub(super) fn is_whole_behind(node: &PreparedLayer, behind: &Behind) -> bool {
-    clip(node).is_none() || !behind.has_bare()
+pub(super) fn is_whole_on_far_side(node: &PreparedLayer, far: &FarTile) -> bool {
+    clip(node).is_none() || !far.has_bare()
 }
 
 /// The surface that a layer is clipped to, if any. A group is not clipped, because its layers are

@@ -3,7 +3,6 @@
 
 mod apply_transform;
 pub mod assistants;
-mod behind;
 pub mod canvas_change;
 mod compose;
 pub mod conventions;
@@ -12,6 +11,7 @@ pub mod cut;
 mod deep;
 pub mod diff;
 pub mod edit;
+mod far_side;
 mod fit;
 pub mod flatten;
 mod frame_box;

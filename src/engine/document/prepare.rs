@@ -38,8 +38,8 @@ pub(super) struct PreparedLayer {
     /// For a mask derived from it.
     pub curvature: Option<Arc<Curvature>>,
     /// What it sees behind contours.
-    pub behind: Option<Scene>,
-    pub behind_curvature: Option<Arc<Curvature>>,
+    pub far: Option<Scene>,
+    pub far_curvature: Option<Arc<Curvature>>,
     /// What it shows, if it is a live layer or a group that is displaced.
     pub warp: Option<Arc<WarpTiles>>,
     /// For a group: its layers, bottom first.
@@ -173,9 +173,9 @@ impl StackBuilder<'_> {
             _ => Vec::new(),
         };
         layer.content.warm(&visible_scene, self.progress);
-        let behind = visible_scene.behind();
-        if let Some(behind) = &behind {
-            layer.content.warm(behind, self.progress);
+        let far = visible_scene.far_side();
+        if let Some(far) = &far {
+            layer.content.warm(far, self.progress);
         }
         if let Role::Adjusts(_) = layer.content.role() {
             let (layer, beneath) = (layer.clone(), scope.beneath.gathered());
@@ -189,8 +189,8 @@ impl StackBuilder<'_> {
         let curvature_on = |scene: &Scene| layer.mask.as_ref()?.curvature_on(scene);
         PreparedLayer {
             curvature: curvature_on(&visible_scene),
-            behind_curvature: behind.as_ref().and_then(curvature_on),
-            behind,
+            far_curvature: far.as_ref().and_then(curvature_on),
+            far,
             warp: warp.map(|warp| {
                 layer.cache.warped.tiles(&visible_scene, &layer.content, &within.map, warp)
             }),

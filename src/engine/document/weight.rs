@@ -35,7 +35,7 @@ impl Document {
     pub fn flattening_bytes(&self) -> u64 {
         let area = self.size.area() as u64;
         let of_all = area * TILE_BYTES + of_layers(&self.layers, self.size.rect(), area);
-        of_all + self.surface.as_ref().map_or(0, |surface| self.behind_bytes(surface.contours()))
+        of_all + self.surface.as_ref().map_or(0, |surface| self.far_side_bytes(surface.contours()))
     }
 
     /// Bytes that [`flatten_to_paint`](super::flatten_to_paint) takes at most: as flattening, with
@@ -46,7 +46,7 @@ impl Document {
 
     /// What the other populations of contour pixels take: their readings, and the pixels of live
     /// layers, in whole rows of a tile's width.
-    fn behind_bytes(&self, contours: &Contours) -> u64 {
+    fn far_side_bytes(&self, contours: &Contours) -> u64 {
         let is_live = |layer: &Layer| {
             layer.visible
                 && !matches!(

@@ -39,8 +39,8 @@ pub struct PlacedDab<'s> {
     /// `None` where D is the identity.
     bent_over: Option<&'s Surface>,
     support: SupportBounds<'s>,
-    /// On a sheet: its blocks that the dab may touch.
-    sheet_blocks: TileBlocks,
+    /// On a far side: its blocks that the dab may touch.
+    far_blocks: Option<TileBlocks>,
 }
 
 /// Half a pixel's width on either side: the box of the round tip's filter.
@@ -85,35 +85,28 @@ impl<'s> PlacedDab<'s> {
         if surface.is_some_and(|surface| is_out_of_reach(surface, dab.operator, dab.at, extent)) {
             let deformation = Deformation::of_dab(None, scene.size, Operator::None, dab.at);
             let support = SupportBounds::nowhere(scene.size, dab.at, extent);
-            return Self {
-                dab,
-                scene,
-                deformation,
-                bent_over: None,
-                support,
-                sheet_blocks: TileBlocks::default(),
-            };
+            return Self { dab, scene, deformation, bent_over: None, support, far_blocks: None };
         }
         let reach = DabReach::new(dab.at, dab.reach_px, PUSH_RADII * dab.radius);
         let deformation =
             Deformation::of_dab(surface, scene.size, dab.operator, dab.at).within(reach);
-        // The pixels of a sheet lie where D says, even if it is the identity.
-        let is_sheet = scene.sheet().is_some();
-        let bent_over = surface.filter(|_| is_sheet || !deformation.is_identity());
-        let bounding = surface.filter(|_| !is_sheet);
+        // The pixels of a far side lie where D says, even if it is the identity.
+        let far_blocks = scene.as_far_side().map(|_| TileBlocks::default());
+        let bent_over = surface.filter(|_| far_blocks.is_some() || !deformation.is_identity());
+        let bounding = surface.filter(|_| far_blocks.is_none());
         let support =
             SupportBounds::new(bounding, scene.size, dab.operator, dab.at, extent).within(reach);
-        Self { dab, scene, deformation, bent_over, support, sheet_blocks: TileBlocks::default() }
+        Self { dab, scene, deformation, bent_over, support, far_blocks }
     }
 
-    /// The same, painted on those blocks of a sheet.
-    pub fn on_blocks(self, sheet_blocks: TileBlocks) -> Self {
-        Self { sheet_blocks, ..self }
+    /// The same, painted on those blocks of a far side.
+    pub fn on_blocks(self, far_blocks: TileBlocks) -> Self {
+        Self { far_blocks: Some(far_blocks), ..self }
     }
 
     /// The blocks that the dab may touch, among the pixels that represent a tile.
     fn touched(&self, at: TileAt) -> TouchedBlocks {
-        if self.scene.sheet().is_none() {
+        let Some(blocks) = self.far_blocks else {
             let tile = at.rect();
             let Some(judged) = self.support.judged(at) else { return TouchedBlocks::none(tile) };
             let area = touched(&judged.touched, tile).intersect(self.scene.size.rect());
@@ -121,11 +114,11 @@ impl<'s> PlacedDab<'s> {
             let pixel =
                 if self.deformation.is_limited(area.grown(1)) { ANY_LENGTH } else { judged.pixel };
             return TouchedBlocks { tile, blocks: judged.touched, area, step: 1, pixel };
-        }
+        };
         let whole = self.scene.area(at);
         let tile = Rect::new(0, whole.y0, TILE as i32, whole.y0 + TILE as i32);
-        let area = touched(&self.sheet_blocks, tile).intersect(whole);
-        TouchedBlocks { tile, blocks: self.sheet_blocks, area, step: 2, pixel: ANY_LENGTH }
+        let area = touched(&blocks, tile).intersect(whole);
+        TouchedBlocks { tile, blocks, area, step: self.scene.row_step(), pixel: ANY_LENGTH }
     }
 
     pub fn dab(&self) -> &Dab {
@@ -269,7 +262,7 @@ impl PixelSpan {
     }
 }
 
-/// The part of a tile that a dab may touch, or of what represents one on a sheet.
+/// The part of a tile that a dab may touch, or of what represents one on a far side.
 #[derive(Clone, Copy)]
 struct TouchedBlocks {
     /// The pixels of the tile.

@@ -205,7 +205,7 @@ impl Stroke {
             },
         };
         let mut stroke_tile = stroke_dabs.stroke_tile(stroke_dabs.grain(scene, at));
-        match scene.sheet() {
+        match scene.as_far_side() {
             None => {
                 for dab in stroke_dabs.on_tile(at) {
                     stroke_dabs.add(&stroke_dabs.place(*dab, scene), at, &mut stroke_tile, scratch);
@@ -215,17 +215,17 @@ impl Stroke {
                     stroke_tile.select(&selected);
                 }
             }
-            Some(sheet) => {
+            Some(far) => {
                 // Which dabs are near is known for the canvas only.
                 let front = scene.front();
                 for dab in stroke_dabs.on_tile(at) {
-                    let near = sheet
-                        .blocks_under(at, &stroke_dabs.place(*dab, &front).support().blocks(at));
+                    let near =
+                        far.blocks_under(at, &stroke_dabs.place(*dab, &front).support().blocks(at));
                     let Some(blocks) = near else { continue };
                     let placed = stroke_dabs.place(*dab, scene).on_blocks(blocks);
                     stroke_dabs.add(&placed, at, &mut stroke_tile, scratch);
                 }
-                stroke_tile.limit_on_sheet(&self.part(&front), selected.as_deref(), sheet, at);
+                stroke_tile.limit_far_side(&self.part(&front), selected.as_deref(), far, at);
             }
         }
         stroke_tile.blend_over(pixels, at, self.manner());

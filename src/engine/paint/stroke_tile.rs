@@ -12,7 +12,7 @@ use crate::raster::tile::TILE_AREA;
 use crate::raster::{
     BlendMode, CoverageTile, Mix, PlanarTile, TILE, TileAt, TileCoverage, TilePaint,
 };
-use crate::surface::contours::{SheetOf, place_of};
+use crate::surface::contours::{FarSide, place_of};
 use crate::surface::objects::CanvasPart;
 use rows::{
     add_alpha, add_colors, add_covered, add_stamped, keep, lay_colors, lay_coverage, take_out_row,
@@ -24,14 +24,14 @@ use std::sync::Arc;
 pub struct StrokeTile {
     /// What the grain leaves of each pixel.
     grain: Option<Arc<GrainTile>>,
-    sheet: PaintSheet,
+    light: PaintPlanes,
     /// Under grain each pixel has two parts, a lighter and a darker one: the second.
-    dark: Option<PaintSheet>,
+    dark: Option<PaintPlanes>,
 }
 
 /// Paint on one part of each pixel.
 #[derive(Clone)]
-struct PaintSheet {
+struct PaintPlanes {
     paint: Paint,
     /// M: the share of each pixel that the dabs have reached (`rim`).
     reach: Box<[f32; TILE_AREA]>,
@@ -86,7 +86,7 @@ impl StrokeBlend {
     }
 }
 
-impl PaintSheet {
+impl PaintPlanes {
     fn new(paint: Paint) -> Self {
         Self { paint, reach: Box::new([0.0; TILE_AREA]) }
     }
@@ -155,19 +155,19 @@ impl StrokeTile {
     }
 
     fn of(paint: Paint) -> Self {
-        Self { grain: None, sheet: PaintSheet::new(paint), dark: None }
+        Self { grain: None, light: PaintPlanes::new(paint), dark: None }
     }
 
     /// The same, empty, under grain.
     pub fn under(self, grain: Arc<GrainTile>) -> Self {
-        Self { grain: Some(grain), dark: Some(self.sheet.clone()), ..self }
+        Self { grain: Some(grain), dark: Some(self.light.clone()), ..self }
     }
 
     /// Coverage and reach of every pixel, row by row, for a tile of one colour without grain.
     pub fn plain(&mut self) -> Option<(&mut [f32; TILE_AREA], &mut [f32; TILE_AREA])> {
-        match &mut self.sheet.paint {
+        match &mut self.light.paint {
             Paint::OneColor(coverage) if self.grain.is_none() => {
-                Some((coverage, &mut self.sheet.reach))
+                Some((coverage, &mut self.light.reach))
             }
             _ => None,
         }
@@ -176,7 +176,7 @@ impl StrokeTile {
     /// Coverage of every pixel, row by row, if it has one colour.
     pub fn coverage(&mut self) -> Option<&mut [f32; TILE_AREA]> {
         self.join();
-        match &mut self.sheet.paint {
+        match &mut self.light.paint {
             Paint::OneColor(coverage) => Some(coverage),
             Paint::Colors(_) => None,
         }
@@ -185,8 +185,8 @@ impl StrokeTile {
     /// Merges the two parts of each pixel: nothing more can be painted.
     fn join(&mut self) {
         let Some((grain, mut dark)) = self.grain.take().zip(self.dark.take()) else { return };
-        let is_one_color = matches!(self.sheet.paint, Paint::OneColor(_));
-        for (i, (light, dark)) in self.sheet.planes().into_iter().zip(dark.planes()).enumerate() {
+        let is_one_color = matches!(self.light.paint, Paint::OneColor(_));
+        for (i, (light, dark)) in self.light.planes().into_iter().zip(dark.planes()).enumerate() {
             // Four planes a row for a tile of colours, one plane for a tile of one colour.
             let shares =
                 if is_one_color { &grain.share[..] } else { &grain.share[i / 4 * TILE..][..TILE] };
@@ -202,13 +202,13 @@ impl StrokeTile {
     /// ceiling: see [`raise`].
     pub fn cover(&mut self, start: usize, row: CoveredRow, paint: DabPaint) {
         let Some((grain, dark)) = self.grain.as_deref().zip(self.dark.as_mut()) else {
-            return self.sheet.cover(start, row, paint);
+            return self.light.cover(start, row, paint);
         };
         let mut part = [0.0; TILE];
-        for (sheet, factors) in [(&mut self.sheet, &grain.light), (dark, &grain.dark)] {
+        for (planes, factors) in [(&mut self.light, &grain.light), (dark, &grain.dark)] {
             let left = part.iter_mut().zip(row.coverage).zip(&factors[start..]);
             left.for_each(|((part, covered), factor)| *part = covered * factor);
-            sheet.cover(
+            planes.cover(
                 start,
                 CoveredRow { coverage: &part[..row.coverage.len().min(TILE)], ..row },
                 paint,
@@ -220,14 +220,14 @@ impl StrokeTile {
     /// [`StrokeTile::cover`] does.
     pub fn stamp(&mut self, start: usize, stamped: &[[u8; 4]], paint: DabPaint) {
         let Some((grain, dark)) = self.grain.as_deref().zip(self.dark.as_mut()) else {
-            return self.sheet.stamp(start, stamped, paint);
+            return self.light.stamp(start, stamped, paint);
         };
         let mut part = [[0; 4]; TILE];
-        for (sheet, factors) in [(&mut self.sheet, &grain.light), (dark, &grain.dark)] {
+        for (planes, factors) in [(&mut self.light, &grain.light), (dark, &grain.dark)] {
             for ((part, texel), factor) in part.iter_mut().zip(stamped).zip(&factors[start..]) {
                 *part = texel.map(|v| (f32::from(v) * factor + 0.5) as u8);
             }
-            sheet.stamp(start, &part[..stamped.len().min(TILE)], paint);
+            planes.stamp(start, &part[..stamped.len().min(TILE)], paint);
         }
     }
 
@@ -245,16 +245,16 @@ impl StrokeTile {
         }
     }
 
-    /// The same on what represents a tile on a sheet: there the other population's piece of surface
+    /// The same on what represents a tile on a far side: there the other population's piece of surface
     /// counts. `selected`: for the tile.
-    pub fn limit_on_sheet(
+    pub fn limit_far_side(
         &mut self,
         part: &CanvasPart,
         selected: Option<&CoverageTile>,
-        sheet: &SheetOf,
+        far: &FarSide,
         at: TileAt,
     ) {
-        let Some(contours) = sheet.contours().on(at) else { return };
+        let Some(contours) = far.contours().on(at) else { return };
         let corner = at.rect();
         for (i, pixel) in contours.pixels[..contours.seen].iter().enumerate() {
             if !part.is_whole() {
@@ -268,7 +268,7 @@ impl StrokeTile {
     }
 
     fn lower(&mut self, (x, y): (usize, usize), share: f32) {
-        match &mut self.sheet.paint {
+        match &mut self.light.paint {
             Paint::OneColor(coverage) => coverage[y * TILE + x] *= share,
             Paint::Colors(tile) => {
                 let row = &mut tile.rows_mut()[y];
@@ -284,7 +284,7 @@ impl StrokeTile {
         }
         self.join();
         let shares = selected.bytes().as_chunks::<TILE>().0;
-        match &mut self.sheet.paint {
+        match &mut self.light.paint {
             Paint::OneColor(coverage) => {
                 coverage
                     .as_chunks_mut::<TILE>()
@@ -321,7 +321,7 @@ impl StrokeTile {
 
     /// Source over. For stamps only the colour's alpha counts.
     fn blend_over_normal(&self, pixels: &mut PlanarTile, color: Color, opacity: f32) {
-        match &self.sheet.paint {
+        match &self.light.paint {
             Paint::OneColor(coverage) => {
                 let color = color.premultiplied().map(|c| c * opacity);
                 for (coverage, row) in coverage.as_chunks::<TILE>().0.iter().zip(pixels.rows_mut())
@@ -340,7 +340,7 @@ impl StrokeTile {
 
     /// Destination out.
     fn erase_from(&self, pixels: &mut PlanarTile, opacity: f32) {
-        match &self.sheet.paint {
+        match &self.light.paint {
             Paint::OneColor(coverage) => {
                 for (coverage, row) in coverage.as_chunks::<TILE>().0.iter().zip(pixels.rows_mut())
                 {

@@ -4,7 +4,7 @@
 use super::surface_row::{LightDirection, RowValues, SurfaceRow};
 use crate::math::{Range, Vec3, fast, srgb::Color, vec3};
 use crate::raster::TILE;
-use crate::surface::contours::SheetOf;
+use crate::surface::contours::FarSide;
 use crate::surface::shadow::ShareMap;
 use std::sync::Arc;
 
@@ -110,17 +110,17 @@ impl RowLight {
             position.z,
         );
         let depth = &surface.depth_plane().row(surface_row.y)[columns];
-        if let Some(sheet) = surface.sheet_of() {
-            return self.turn_on_sheet(surface_row, sheet, position);
+        if let Some(far) = surface.as_far_side() {
+            return self.turn_far_side(surface_row, far, position);
         }
         turn_to_point(first, surface.depth_range_px(), depth, &mut self.direction);
     }
 
-    /// As `turn`, for a row of a sheet: its pixels lie anywhere on the canvas.
-    fn turn_on_sheet(&mut self, surface_row: &SurfaceRow, sheet: &SheetOf, position: Vec3) {
+    /// As `turn`, for a row of a far side: its pixels lie anywhere on the canvas.
+    fn turn_far_side(&mut self, surface_row: &SurfaceRow, far: &FarSide, position: Vec3) {
         let SurfaceRow { surface, x0, y, width, .. } = *surface_row;
         for x in 0..width {
-            let (px, py) = sheet.canvas_pixel((x0 + x) as i32, y as i32);
+            let (px, py) = far.canvas_pixel((x0 + x) as i32, y as i32);
             let first =
                 vec3(position.x - (px as f32 + 0.5), py as f32 + 0.5 - position.y, position.z);
             let mut direction = [[0.0; TILE]; 3];

@@ -25,14 +25,14 @@ impl Surface {
         shares
     }
 
-    /// What this is the sheet of: its pixels are readings of other populations, not pixels of the
-    /// canvas.
-    pub fn sheet_of(&self) -> Option<&SheetOf> {
-        self.sheet_of.as_ref()
+    /// What this is the far side of, if it is one: its pixels are readings of other populations, not
+    /// pixels of the canvas.
+    pub fn as_far_side(&self) -> Option<&FarSide> {
+        self.far_side_of.as_ref()
     }
 
-    pub(in crate::surface) fn sheet_normals(&self) -> Option<&Plane<Vec3>> {
-        self.sheet_normals.as_ref()
+    pub(in crate::surface) fn far_normals(&self) -> Option<&Plane<Vec3>> {
+        self.far_normals.as_ref()
     }
 
     /// Of its maps, px.

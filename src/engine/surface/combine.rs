@@ -145,16 +145,15 @@ impl super::Surface {
         };
         let normals = Plane::from_fn(self.size(), |x, y| combined(self.normal(x, y), x, y));
         let canvas = self.size().rect();
-        let of_sheet = self.sheet().map(|sheet| {
-            Plane::from_fn(sheet.size(), |x, y| {
-                let at = sheet.sheet_of().map(|sheet| sheet.canvas_pixel(x as i32, y as i32));
-                let base = sheet.normal(x, y);
-                let (x, y) = at.unwrap_or_default();
+        let of_far_side = self.far_side().map(|far| {
+            Plane::from_fn(far.size(), |x, y| {
+                let base = far.normal(x, y);
+                let (x, y) = far.canvas_pixel(x as i32, y as i32);
                 // The reading next to a pixel at the border lies beyond the canvas.
                 combined(base, x.min(canvas.x1 - 1) as usize, y.min(canvas.y1 - 1) as usize)
             })
         });
-        self.with_normals(&normals, of_sheet)
+        self.with_normals(&normals, of_far_side)
     }
 }
 

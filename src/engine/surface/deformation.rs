@@ -6,7 +6,6 @@
 mod fill;
 mod plane;
 
-use super::contours::SheetOf;
 pub use super::deformed_rect::DeformedRect;
 use super::differentiate::DifferencePairs;
 use super::operator::{MapSlopes, MapValues, Operator, UnwrapSettings, outer};
@@ -54,7 +53,7 @@ pub const DETAIL_SCALE_PX: f32 = 4.0;
 pub const DETAIL_BLUR_PX: f32 = 1.0;
 
 impl<'a> Deformation<'a> {
-    /// Reads the maps at the anchors, for a sheet those of its surface; an anchor off the surface
+    /// Reads the maps at the anchors, for a far side those of the surface in front; an anchor off the surface
     /// reads the background: facing the viewer, farthest.
     ///
     /// * `surface`: of the canvas's size; without one only moved anchors move anything.
@@ -115,9 +114,9 @@ impl<'a> Deformation<'a> {
         read: impl Fn(&Surface, Vec2) -> MapValues,
     ) -> Self {
         let near = |p: Vec2| p.clamp(Vec2::splat(-FARTHEST_PX), Vec2::splat(FARTHEST_PX));
-        // A sheet holds readings of single pixels; anchors are on its surface.
-        let whole = surface.and_then(Surface::sheet_of).and_then(|sheet| sheet.surface());
-        let pinned = whole.as_deref().or(surface);
+        // A far side holds readings of single pixels; anchors are on the surface in front.
+        let front = surface.and_then(Surface::front);
+        let pinned = front.as_deref().or(surface);
         let pins = anchors
             .iter()
             .filter(|a| a.at.is_finite() && a.source.is_finite())
@@ -275,7 +274,7 @@ impl<'a> Deformation<'a> {
     /// over a rectangle and one more pixel around it.
     pub fn own_plane(&self, rect: Rect) -> Option<OwnPlane<'_>> {
         let planes = self.planes.as_ref()?;
-        if self.sheet().is_some() || self.is_limited(rect.grown(1)) {
+        if self.is_on_far_side() || self.is_limited(rect.grown(1)) {
             return None;
         }
         planes.plane_over(rect)
@@ -283,19 +282,20 @@ impl<'a> Deformation<'a> {
 
     /// Whether a reach changes D anywhere in a rectangle.
     pub fn is_limited(&self, rect: Rect) -> bool {
-        self.reach.is_some_and(|reach| self.sheet().is_some() || reach.is_near(rect))
+        self.reach.is_some_and(|reach| self.is_on_far_side() || reach.is_near(rect))
     }
 
-    fn sheet(&self) -> Option<&'a SheetOf> {
-        self.surface.and_then(Surface::sheet_of)
+    /// Its pixels lie anywhere on the canvas, not in rows.
+    fn is_on_far_side(&self) -> bool {
+        self.surface.is_some_and(|surface| surface.as_far_side().is_some())
     }
 
-    /// The centres q of a row's pixels from column `x` on, canvas px; for a sheet, of its readings.
+    /// The centres q of a row's pixels from column `x` on, canvas px; for a far side, of its readings.
     fn place(&self, x: i32, y: i32, q_x: &mut [f32], q_y: &mut [f32]) {
-        match self.sheet() {
-            Some(sheet) if y >= 0 => {
+        match self.surface.filter(|_| self.is_on_far_side()) {
+            Some(far) if y >= 0 => {
                 for (x, (q_x, q_y)) in (x..).zip(q_x.iter_mut().zip(q_y)) {
-                    let (x, y) = sheet.canvas_pixel(x.max(0), y);
+                    let (x, y) = far.canvas_pixel(x.max(0), y);
                     (*q_x, *q_y) = self.centre(x, y).into();
                 }
             }

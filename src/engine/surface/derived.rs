@@ -75,7 +75,7 @@ caches! {
     /// The pieces of the surface.
     objects: RecentCache<(), Objects>,
     /// What the other populations of contour pixels read.
-    sheets: RecentCache<(), Surface>,
+    far_sides: RecentCache<(), Surface>,
 }
 
 impl Surface {

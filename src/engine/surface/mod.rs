@@ -56,7 +56,7 @@ pub use support::SupportBounds;
 
 use crate::math::{Size, Vec2, Vec3, srgb::quantise, vec2, vec3};
 use crate::raster::Plane;
-use contours::{ContourMaps, Found, SheetOf};
+use contours::{ContourMaps, FarSide, Found};
 use derived::DerivedCaches;
 use points::PointSource;
 use rayon::prelude::*;
@@ -117,9 +117,9 @@ pub struct Surface {
     /// The pixels that two populations see.
     contours: Arc<Contours>,
     /// Their normals, where detail was combined onto them.
-    sheet_normals: Option<Plane<Vec3>>,
-    /// The surface that this one is the sheet of, if it is one.
-    sheet_of: Option<SheetOf>,
+    far_normals: Option<Plane<Vec3>>,
+    /// The surface that this one is the far side of, if it is one.
+    far_side_of: Option<FarSide>,
     /// What this one was seen through a map of, if it was.
     origin: Option<Origin>,
     /// Where its points are read, if not on itself.
@@ -215,8 +215,8 @@ impl Surface {
             base: None,
             parts: None,
             contours: Arc::default(),
-            sheet_normals: None,
-            sheet_of: None,
+            far_normals: None,
+            far_side_of: None,
             origin: None,
             points: None,
         }
@@ -302,26 +302,26 @@ impl Surface {
         })
     }
 
-    /// The sheet of a surface from its planes.
-    fn sheet_of_planes(
+    /// The far side of a surface from its planes.
+    fn far_side_of_planes(
         &self,
         reading: [Plane<f32>; 4],
         bytes: [Plane<u8>; 2],
-        of: SheetOf,
+        of: FarSide,
     ) -> Self {
         Self {
             eye: self.eye,
-            sheet_of: Some(of),
+            far_side_of: Some(of),
             ..Self::of_planes(reading, bytes, self.depth_range_px)
         }
     }
 
     /// The same surface with other unit normals (y up), one for each pixel, and for each of its
-    /// sheet; what depends on depth alone is shared.
+    /// far side; what depends on depth alone is shared.
     fn with_normals(
         self: &Arc<Self>,
         normals: &Plane<Vec3>,
-        of_sheet: Option<Plane<Vec3>>,
+        of_far_side: Option<Plane<Vec3>>,
     ) -> Self {
         let reading =
             [normals.map(|n| n.x), normals.map(|n| -n.y), normals.map(|n| n.z), self.depth.clone()];
@@ -331,7 +331,7 @@ impl Surface {
             contours: self.contours.clone(),
             smooth_links: self.smooth_links.clone(),
             parts: self.parts.clone(),
-            sheet_normals: of_sheet,
+            far_normals: of_far_side,
             ..Self::of_planes(
                 reading,
                 [self.coverage.clone(), self.links.clone()],

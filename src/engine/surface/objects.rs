@@ -32,16 +32,22 @@ impl Objects {
     /// Splits a surface: pixels belong to one object if they show the same part, or, where no parts
     /// are known, if a path of linked neighbours joins them.
     fn new(surface: &Surface) -> Self {
-        if let Some(sheet) = surface.sheet_of() {
-            // Those of the other populations: nobody needs to know where they lie.
-            let whole = sheet.surface().map(|whole| whole.objects());
-            let label =
-                |x: usize, y: usize| whole.as_ref().map_or(0, |whole| whole.labels.at(x, y));
-            let of = |pixel: &ContourPixel| {
-                pixel.nearest_other().map_or(0, |(x, y)| label(x as usize, y as usize))
-            };
-            return Self::of_labels(sheet.map(surface.size(), of), Vec::new());
-        }
+        surface.on_either_side(
+            || Self::in_front(surface),
+            |far, front| {
+                // Those of the other populations: nobody needs to know where they lie.
+                let whole = front.map(Surface::objects);
+                let label =
+                    |x: usize, y: usize| whole.as_ref().map_or(0, |whole| whole.labels.at(x, y));
+                let of = |pixel: &ContourPixel| {
+                    pixel.nearest_other().map_or(0, |(x, y)| label(x as usize, y as usize))
+                };
+                Self::of_labels(far.map(surface.size(), of), Vec::new())
+            },
+        )
+    }
+
+    fn in_front(surface: &Surface) -> Self {
         if let Some(parts) = surface.parts_plane() {
             return Self::of_parts(surface, parts);
         }

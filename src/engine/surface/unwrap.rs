@@ -1,6 +1,6 @@
 //! A surface unwrapped: a map of it onto a plane that changes lengths as little as can be, from its
 //! normals (MATH 8). Floor 2. `metric` holds the equations, `steps` the local and global steps over
-//! rows, `smooth` the blur before them. Not here: the linear systems (`couplings`), anchors, and how
+//! rows, `smooth` the blur before them. Not here: the linear systems (`poisson`), anchors, and how
 //! marks use the plane (`deformation`).
 
 mod constrained;
@@ -21,7 +21,7 @@ pub use place::PlanePlace;
 pub use seen::PlaneView;
 
 use super::cache::HeapSize;
-use super::contours::SheetOf;
+use super::contours::FarSide;
 use super::operator::UnwrapSettings;
 use super::poisson::{Effort, GoOn, PoissonGrid, PoissonSolver, SolveScratch};
 use super::pyramid::{Pyramid, TurnSpan};
@@ -92,10 +92,15 @@ impl Unwrapping {
     }
 
     /// What the other populations of contour pixels lie on.
-    fn on_sheet(size: Size, sheet: &SheetOf, settings: UnwrapSettings) -> Self {
-        let whole = sheet.surface().map(|surface| surface.unwrapped(settings));
+    fn on_far_side(
+        size: Size,
+        far: &FarSide,
+        front: Option<&Surface>,
+        settings: UnwrapSettings,
+    ) -> Self {
+        let whole = front.map(|front| front.unwrapped(settings));
         let [x, y] = [0, 1].map(|axis| {
-            sheet.continued(size, |x, y| {
+            far.continued(size, |x, y| {
                 whole.as_ref().map_or(0.0, |whole| whole.planes()[axis].at(x, y))
             })
         });
@@ -233,15 +238,15 @@ const KEPT_PX: usize = 32 << 20;
 
 impl Surface {
     /// The surface unwrapped, cached. Call it once before going parallel: threads that call it at
-    /// the same time may each compute it. Settings that are not finite count as 0. For a sheet it
-    /// is that of its surface, continued.
+    /// the same time may each compute it. Settings that are not finite count as 0. For a far side
+    /// it is that of the surface in front, continued.
     pub fn unwrapped(&self, settings: UnwrapSettings) -> Arc<Unwrapping> {
         let settings = settings.held(self.size());
         self.derived.unwrappings.get_or_compute(settings.key(), self.kept_unwrappings(), |_| {
-            match self.sheet_of() {
-                Some(sheet) => Unwrapping::on_sheet(self.size(), sheet, settings),
-                None => Unwrapping::new(self, settings),
-            }
+            self.on_either_side(
+                || Unwrapping::new(self, settings),
+                |far, front| Unwrapping::on_far_side(self.size(), far, front, settings),
+            )
         })
     }
 
@@ -252,11 +257,14 @@ impl Surface {
         settings: UnwrapSettings,
         go_on: GoOn,
     ) -> Option<Arc<Unwrapping>> {
-        if self.is_unwrapped(settings) || self.sheet_of().is_some() {
+        if self.is_unwrapped(settings) {
             return Some(self.unwrapped(settings));
         }
         let settings = settings.held(self.size());
-        let unwrapped = Unwrapping::with_progress(self, settings, go_on)?;
+        let unwrapped = self.on_either_side(
+            || Unwrapping::with_progress(self, settings, go_on),
+            |far, front| Some(Unwrapping::on_far_side(self.size(), far, front, settings)),
+        )?;
         Some(self.derived.unwrappings.get_or_compute(
             settings.key(),
             self.kept_unwrappings(),

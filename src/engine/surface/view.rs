@@ -88,10 +88,7 @@ impl Surface {
     /// v of a pixel: the unit vector toward the eye, camera space (y up).
     #[inline(always)]
     pub fn view(&self, x: usize, y: usize) -> Vec3 {
-        let (at, size) = match self.sheet_of() {
-            Some(sheet) => (sheet.canvas_pixel(x as i32, y as i32), sheet.canvas()),
-            None => ((x as i32, y as i32), self.size()),
-        };
+        let (at, size) = (self.canvas_pixel(x as i32, y as i32), self.canvas_size());
         self.eye.toward(Vec2::new(at.0 as f32 + 0.5, at.1 as f32 + 0.5) - size.center())
     }
 

@@ -222,7 +222,7 @@ fn tiles_rendered_together_are_taken_and_those_of_other_places_are_rendered() {
     let (known, other) = (TileAt::new(0, 0), TileAt::new(1, 1));
     let mut red = PlanarTile::transparent();
     red.rows_mut()[3].set(4, [1.0, 0.0, 0.0, 1.0]);
-    deep.together.insert((node.layer.id, known, false), Some(red));
+    deep.together.insert(TileKey::of(node, known, &node.scene), Some(red));
     let pixel = |at, x: usize, y: usize| match deep.content(
         node,
         node.layer.content.marks().unwrap(),

@@ -298,7 +298,7 @@ fn what_an_opaque_layer_hides_is_never_asked_for() {
     let composer = Composer {
         prepared: &prepared,
         at: TileAt::new(0, 0),
-        behind: None,
+        far: None,
         sought: None,
         deep: None,
     };

@@ -26,7 +26,7 @@ use super::scale::CanvasScale;
 use super::tile_content::TileContent;
 use crate::Result;
 use crate::document::Progress;
-use crate::document::behind::{Behind, BehindScene};
+use crate::document::far_side::{FarScene, FarTile};
 use crate::document::memory_use::MemoryCount;
 use crate::math::{Rect, Vec2, srgb::Color};
 use crate::paint::{Gradient, PlacedImage, Scene};
@@ -95,7 +95,7 @@ trait LayerKind {
     }
 
     /// What the other populations of a tile's contour pixels see of it.
-    fn painted_behind(&self, _scene: &BehindScene) -> TileContent {
+    fn painted_far_side(&self, _scene: &FarScene) -> TileContent {
         TileContent::Nothing
     }
 
@@ -334,8 +334,8 @@ impl Content {
         self.kind().painted(scene, at)
     }
 
-    pub(in crate::document) fn painted_behind(&self, scene: &BehindScene) -> TileContent {
-        self.kind().painted_behind(scene)
+    pub(in crate::document) fn painted_far_side(&self, scene: &FarScene) -> TileContent {
+        self.kind().painted_far_side(scene)
     }
 
     /// What it is rendered from without rounding to bytes; `None` for what is not live.

@@ -2,7 +2,7 @@
 //! changes. Floor 4. Not here: rendering marks (`paint`, `shading`).
 
 use super::tile_content::TileContent;
-use crate::document::behind::{BehindPixels, BehindScene};
+use crate::document::far_side::{FarPixels, FarScene};
 use crate::document::memory_use::MemoryCount;
 use crate::math::Rect;
 use crate::memory::once;
@@ -33,7 +33,7 @@ struct TileCells {
     rows: i32,
     cells: Vec<OnceLock<Option<Arc<Tile>>>>,
     /// What the other populations of contour pixels see.
-    behind: Vec<OnceLock<BehindPixels>>,
+    far: Vec<OnceLock<FarPixels>>,
 }
 
 impl TileCells {
@@ -42,12 +42,12 @@ impl TileCells {
         let (cols, rows) = (side(scene.size.width), side(scene.size.height));
         // Only where there are contours.
         let contours = scene.surface.as_ref().filter(|surface| !surface.contours().is_empty());
-        let behind = contours.map_or(0, |_| cols * rows);
+        let far = contours.map_or(0, |_| cols * rows);
         Self {
             cols,
             rows,
             cells: (0..cols * rows).map(|_| OnceLock::new()).collect(),
-            behind: (0..behind).map(|_| OnceLock::new()).collect(),
+            far: (0..far).map(|_| OnceLock::new()).collect(),
         }
     }
 
@@ -60,8 +60,8 @@ impl TileCells {
         self.cells.get(self.index(at)?)
     }
 
-    fn behind_cell(&self, at: TileAt) -> Option<&OnceLock<BehindPixels>> {
-        self.behind.get(self.index(at)?)
+    fn far_cell(&self, at: TileAt) -> Option<&OnceLock<FarPixels>> {
+        self.far.get(self.index(at)?)
     }
 }
 
@@ -117,7 +117,7 @@ impl<T> Live<T> {
                     let _ = to.set(from.clone());
                 }
                 if let (Some(from), Some(to)) =
-                    (old.behind_cell(at).and_then(OnceLock::get), cells.behind_cell(at))
+                    (old.far_cell(at).and_then(OnceLock::get), cells.far_cell(at))
                 {
                     let _ = to.set(from.clone());
                 }
@@ -140,11 +140,11 @@ impl<T> Live<T> {
         let (old, cells) = (self.cells(scene), TileCells::for_scene(scene));
         for (at, tile) in tiles {
             cells.cell(at).map(|cell| cell.set(tile));
-            cells.behind_cell(at).map(|cell| cell.set(BehindPixels::Same));
+            cells.far_cell(at).map(|cell| cell.set(FarPixels::Same));
         }
-        for (to, from) in cells.behind.iter().zip(&old.behind) {
-            if let (None, Some(behind)) = (to.get(), from.get()) {
-                let _ = to.set(behind.clone());
+        for (to, from) in cells.far.iter().zip(&old.far) {
+            if let (None, Some(far)) = (to.get(), from.get()) {
+                let _ = to.set(far.clone());
             }
         }
         for (to, from) in cells.cells.iter().zip(&old.cells) {
@@ -165,11 +165,11 @@ impl<T> Live<T> {
         if let Some((scene, old)) = self.lock().clone() {
             let mut cells = TileCells::for_scene(&scene);
             cells.cells.clone_from(&old.cells);
-            let known = |cell: &OnceLock<BehindPixels>| match cell.get() {
-                Some(BehindPixels::Packed(packed)) => BehindPixels::Packed(packed.clone()).into(),
+            let known = |cell: &OnceLock<FarPixels>| match cell.get() {
+                Some(FarPixels::Packed(packed)) => FarPixels::Packed(packed.clone()).into(),
                 _ => OnceLock::new(),
             };
-            cells.behind = old.behind.iter().map(known).collect();
+            cells.far = old.far.iter().map(known).collect();
             *next.lock() = Some((scene, Arc::new(cells)));
         }
         next
@@ -192,16 +192,15 @@ impl<T> Live<T> {
             else {
                 return false;
             };
-            let behind = |cells: &TileCells| cells.behind_cell(at).and_then(OnceLock::get).cloned();
-            let same_behind = match (behind(a), behind(b)) {
+            let far = |cells: &TileCells| cells.far_cell(at).and_then(OnceLock::get).cloned();
+            let is_same_far_side = match (far(a), far(b)) {
                 (Some(a), Some(b)) => a.is_same(&b),
                 // Both are yet to be rendered, or one only counts as the same as its tile.
-                (a, b) => !matches!(
-                    (a, b),
-                    (Some(BehindPixels::Same), None) | (None, Some(BehindPixels::Same))
-                ),
+                (a, b) => {
+                    !matches!((a, b), (Some(FarPixels::Same), None) | (None, Some(FarPixels::Same)))
+                }
             };
-            same_behind && tile(a).is_some_and(|tile_a| Some(tile_a) == tile(b))
+            is_same_far_side && tile(a).is_some_and(|tile_a| Some(tile_a) == tile(b))
         }
     }
 
@@ -220,38 +219,38 @@ impl<T> Live<T> {
     /// if it is not cached.
     ///
     /// * `stays`: where they see no surface the tile's own pixels stay; else there are none.
-    pub(in crate::document) fn behind(
+    pub(in crate::document) fn far_side(
         &self,
-        scene: &BehindScene,
+        scene: &FarScene,
         stays: bool,
         render: impl Fn(&Scene, TileAt) -> Option<Tile>,
     ) -> TileContent {
-        let (behind, cells) = (scene.behind, self.cells(scene.front));
-        let own = || self.tile(scene.front, behind.at, || render(scene.front, behind.at));
-        let Some(cell) = cells.behind_cell(behind.at) else { return TileContent::Nothing };
+        let (far_tile, cells) = (scene.tile, self.cells(scene.front));
+        let own = || self.tile(scene.front, far_tile.at, || render(scene.front, far_tile.at));
+        let Some(cell) = cells.far_cell(far_tile.at) else { return TileContent::Nothing };
         let packed = || {
-            let on_sheet = scene.sheet.and_then(|sheet| render(sheet, behind.at));
-            let bare = if stays && behind.has_bare() { own() } else { None };
-            BehindPixels::Packed(Arc::new(behind.packed(on_sheet.as_ref(), bare.as_deref())))
+            let on_far_side = scene.far.and_then(|far| render(far, far_tile.at));
+            let bare = if stays && far_tile.has_bare() { own() } else { None };
+            FarPixels::Packed(Arc::new(far_tile.packed(on_far_side.as_ref(), bare.as_deref())))
         };
         match once(cell, packed) {
-            BehindPixels::Packed(packed) => TileContent::Packed(packed.clone()),
-            BehindPixels::Same => own().map_or(TileContent::Nothing, |tile| {
-                TileContent::Packed(Arc::new(behind.same(&tile)))
+            FarPixels::Packed(packed) => TileContent::Packed(packed.clone()),
+            FarPixels::Same => own().map_or(TileContent::Nothing, |tile| {
+                TileContent::Packed(Arc::new(far_tile.same(&tile)))
             }),
         }
     }
 
     /// Takes in what was rendered behind the contours of a tile.
-    pub(in crate::document) fn set_behind(&self, scene: &BehindScene, on_sheet: Option<Tile>) {
-        let bare = if scene.behind.has_bare() {
-            self.rendered_tile(scene.front, scene.behind.at)
+    pub(in crate::document) fn set_far_side(&self, scene: &FarScene, on_far_side: Option<Tile>) {
+        let bare = if scene.tile.has_bare() {
+            self.rendered_tile(scene.front, scene.tile.at)
         } else {
             None
         };
         let packed =
-            BehindPixels::Packed(Arc::new(scene.behind.packed(on_sheet.as_ref(), bare.as_deref())));
-        self.cells(scene.front).behind_cell(scene.behind.at).map(|cell| cell.set(packed));
+            FarPixels::Packed(Arc::new(scene.tile.packed(on_far_side.as_ref(), bare.as_deref())));
+        self.cells(scene.front).far_cell(scene.tile.at).map(|cell| cell.set(packed));
     }
 
     fn rendered_tile(&self, scene: &Scene, at: TileAt) -> Option<Arc<Tile>> {
@@ -260,11 +259,10 @@ impl<T> Live<T> {
 
     /// The tiles of the canvas that were not rendered behind their contours, of those with a
     /// surface there.
-    pub fn missing_behind(&self, scene: &Scene) -> Vec<TileAt> {
+    pub fn missing_far_sides(&self, scene: &Scene) -> Vec<TileAt> {
         let (cells, contours) =
             (self.cells(scene), scene.surface.as_ref().map(|surface| surface.contours().clone()));
-        let is_missing =
-            |at: &TileAt| cells.behind_cell(*at).is_some_and(|cell| cell.get().is_none());
+        let is_missing = |at: &TileAt| cells.far_cell(*at).is_some_and(|cell| cell.get().is_none());
         contours.map_or(Vec::new(), |contours| contours.seen_tiles().filter(is_missing).collect())
     }
 
@@ -290,8 +288,8 @@ impl<T> Live<T> {
                 count.add_kept(tile.held_bytes());
             }
         }
-        for behind in cells.behind.iter().filter_map(OnceLock::get) {
-            if let BehindPixels::Packed(packed) = behind
+        for far in cells.far.iter().filter_map(OnceLock::get) {
+            if let FarPixels::Packed(packed) = far
                 && count.is_new(packed)
             {
                 count.add_kept(packed.held_bytes());

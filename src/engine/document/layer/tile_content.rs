@@ -1,7 +1,7 @@
 //! The pixels of a layer in one tile, in the form that its kind has. Floor 4. Not here: composing
 //! layers (`compose`).
 
-use crate::document::behind::PackedTile;
+use crate::document::far_side::PackedTile;
 use crate::raster::{PlanarTile, Tile, TilePaint};
 use std::sync::Arc;
 

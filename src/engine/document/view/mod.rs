@@ -1,15 +1,15 @@
 //! Views: pictures of a document's maps and of what is derived from them. Floor 4. Not here: the
 //! maps and flows themselves (`surface`), files (`io`), the command (`cli::view`).
 
+mod contact_sheet;
 mod flows;
 mod maps;
 mod scaling;
-mod sheet;
 mod unwrapped;
 mod weights;
 pub mod wobble;
 
-pub use sheet::sheet;
+pub use contact_sheet::sheet;
 pub use unwrapped::{UnwrapOptions, UnwrappedPicture, placed_over, unwrapped};
 pub use weights::color_of as anchor_color;
 

@@ -94,7 +94,7 @@ impl StrokeDabs {
         }
     }
 
-    /// What the grain leaves of each pixel of a tile, or of what represents it on a sheet.
+    /// What the grain leaves of each pixel of a tile, or of what represents it on a far side.
     pub fn grain(&self, scene: &Scene, at: TileAt) -> Option<Arc<GrainTile>> {
         self.grain.as_ref().map(|grain| grain.tile(scene, at).into())
     }

@@ -94,7 +94,7 @@ impl EnvironmentSamples {
         let [mut h_e, mut weight, mut width_rad] = [[0.0; TILE]; 3];
         find_frames(normal, &mut u, &mut v);
         relief.turn(surface_row, LightDirection::VIEWER);
-        // Pixels of a sheet follow all of their rays themselves.
+        // Pixels of a far side follow all of their rays themselves.
         let bounces = if self.bounced.is_some() { 0 } else { shading.bounces_made() };
         let second = SecondLook::on(surface_row.surface, bounces);
         let [mut weights, mut scaled] = [[0.0; TILE]; 2];

@@ -63,7 +63,8 @@ impl Shading {
     /// Passes on the opacity of the shadow on the page at each pixel of a tile off the surface: row,
     /// column and share.
     fn ground_pixels(&self, scene: &Scene, at: TileAt, mut tell: impl FnMut(usize, usize, f32)) {
-        let Some(surface) = scene.surface.as_deref().filter(|surface| surface.sheet_of().is_none())
+        let Some(surface) =
+            scene.surface.as_deref().filter(|surface| surface.as_far_side().is_none())
         else {
             return;
         };
@@ -105,7 +106,7 @@ impl Shading {
             if let Some(samples) = &mut worker.samples {
                 samples.follow_tile(self, surface, inside);
             }
-            let looked_at = if scene.sheet().is_some() { 2 } else { 1 };
+            let looked_at = scene.row_step();
             for (row, y) in rows.step_by(looked_at) {
                 surface_row.move_to(y as usize);
                 if surface_row.coverage().iter().any(|&c| c > 0) {

@@ -4,6 +4,7 @@
 
 use crate::math::{Vec2, Vec3, vec2, vec3};
 use crate::surface::Surface;
+use crate::surface::contours::FrontSurface;
 use crate::surface::ray::{RayHit, RayMap, SurfaceRay};
 use std::sync::Arc;
 
@@ -39,10 +40,9 @@ impl RayStart {
 
 /// Follows rays over the surface that they leave.
 pub struct SecondLook<'s> {
-    /// Whose pixels are shaded: the surface itself, or its sheet.
+    /// Whose pixels are shaded: the surface of the canvas, or its far side.
     shaded: &'s Surface,
-    /// The surface of the canvas, of a sheet.
-    of_sheet: Option<Arc<Surface>>,
+    front: FrontSurface<'s>,
     map: Arc<RayMap>,
     bounces: u32,
 }
@@ -53,20 +53,14 @@ impl<'s> SecondLook<'s> {
         if bounces == 0 {
             return None;
         }
-        let of_sheet = match shaded.sheet_of() {
-            Some(sheet) => Some(sheet.surface()?),
-            None => None,
-        };
-        let map = of_sheet.as_deref().unwrap_or(shaded).ray_map();
-        Some(Self { shaded, of_sheet, map, bounces })
+        let front = shaded.front()?;
+        let map = front.ray_map();
+        Some(Self { shaded, front, map, bounces })
     }
 
     /// Where the rays of a pixel begin, with its normal and view.
     pub fn start(&self, x: usize, y: usize, normal: Vec3, view: Vec3) -> RayStart {
-        let (px, py) = match self.shaded.sheet_of() {
-            Some(sheet) => sheet.canvas_pixel(x as i32, y as i32),
-            None => (x as i32, y as i32),
-        };
+        let (px, py) = self.shaded.canvas_pixel(x as i32, y as i32);
         let at = vec2(px as f32 + 0.5, py as f32 + 0.5);
         RayStart {
             normal,
@@ -89,7 +83,6 @@ impl<'s> SecondLook<'s> {
         bend: impl Fn(Vec3, Vec3) -> Vec3,
         mut meet: impl FnMut(&RayHit, Vec3),
     ) -> PixelRay {
-        let surface = self.of_sheet.as_deref().unwrap_or(self.shaded);
         let RayStart { normal, view, at, nearness, side_px } = start;
         let inward = ray.direction.dot(normal) < 0.0;
         let mut leaving = SurfaceRay { at, nearness, direction: ray.direction, inward };
@@ -99,7 +92,7 @@ impl<'s> SecondLook<'s> {
         let mut moved = [vec3(pixel, 0.0, 0.0), vec3(0.0, -pixel, 0.0)]
             .map(|step| onto_plane(step, normal, view, GRAZING));
         for _ in 0..self.bounces {
-            let Some(hit) = surface.met_by(&self.map, &leaving) else { break };
+            let Some(hit) = self.front.met_by(&self.map, &leaving) else { break };
             let r = leaving.direction;
             meet(&hit, r);
             let next = bend(hit.normal, -r);

@@ -4,8 +4,10 @@
 //! each population, and where the other one's readings are kept. Not here: mixing both
 //! (`document::compose`).
 
+mod both_sides;
 mod continued;
 mod enlarged;
+mod far_side;
 mod find;
 mod line;
 mod maps;
@@ -13,13 +15,13 @@ mod moved;
 mod plane;
 mod rim;
 mod shades;
-mod sheet;
 mod window;
 
 #[cfg(test)]
 mod tests;
 
-pub use sheet::{SheetOf, place_of};
+pub use both_sides::FrontSurface;
+pub use far_side::{FarSide, place_of};
 
 use crate::math::{Rect, Size, Vec2, Vec3, vec2, vec3};
 use crate::raster::TileAt;
@@ -88,8 +90,8 @@ pub struct Contours {
     /// Row by row.
     tiles: Vec<TilePixels>,
     pixels: Vec<ContourPixel>,
-    /// Tiles, by their number, of the blocks of rows of the sheet.
-    sheet_rows: Vec<Range<u32>>,
+    /// Tiles, by their number, of the blocks of rows of the far side.
+    far_rows: Vec<Range<u32>>,
 }
 
 /// Where a tile's pixels lie among all: those whose other population sees a surface first.
@@ -98,8 +100,8 @@ struct TilePixels {
     start: u32,
     seen: u32,
     end: u32,
-    /// The first block of rows of the sheet.
-    sheet_row: u32,
+    /// The first block of rows of the far side.
+    far_row: u32,
 }
 
 /// The contour pixels of one tile.
@@ -109,15 +111,15 @@ pub struct TileContours<'c> {
     pub pixels: &'c [ContourPixel],
     /// How many those are.
     pub seen: usize,
-    /// Where their readings are on the sheet.
-    pub sheet: Rect,
+    /// Where their readings are on the far side.
+    pub far: Rect,
 }
 
 impl<'c> TileContours<'c> {
     /// Those in a row of the canvas, in any order.
     pub fn in_row(self, y: i32) -> impl Iterator<Item = &'c ContourPixel> {
         let (seen, bare) = self.pixels.split_at(self.seen);
-        let block = |v: i32| v / sheet::BLOCK as i32;
+        let block = |v: i32| v / far_side::BLOCK as i32;
         let from = seen.partition_point(|p| block(p.y) < block(y));
         let beside = seen[from..].iter().take_while(move |p| block(p.y) == block(y));
         let first = bare.partition_point(|p| p.y < y);
@@ -127,7 +129,7 @@ impl<'c> TileContours<'c> {
 
 impl Contours {
     /// The most pixels of a tile whose other population sees a surface; of more, those most evenly
-    /// shared are taken. Their readings fill a tile of the sheet.
+    /// shared are taken. Their readings fill a tile of the far side.
     pub const MOST_SEEN: usize = 1024;
 
     fn of_tiles(size: Size, found: Vec<Vec<ContourPixel>>) -> Self {
@@ -136,17 +138,17 @@ impl Contours {
             columns,
             tiles: Vec::with_capacity(found.len()),
             pixels: Vec::new(),
-            sheet_rows: Vec::new(),
+            far_rows: Vec::new(),
         };
         for mut tile in found {
             let start = contours.pixels.len();
-            sheet::sort(&mut tile);
+            far_side::sort(&mut tile);
             let seen = tile.partition_point(ContourPixel::sees_surface);
-            let sheet_row = contours.sheet_rows.len() as u32;
+            let far_row = contours.far_rows.len() as u32;
             contours.pixels.extend(&tile);
-            contours.sheet_rows.extend(sheet::rows(start..start + seen));
+            contours.far_rows.extend(far_side::rows(start..start + seen));
             let [start, seen, end] = [start, start + seen, contours.pixels.len()].map(|i| i as u32);
-            contours.tiles.push(TilePixels { start, seen, end, sheet_row });
+            contours.tiles.push(TilePixels { start, seen, end, far_row });
         }
         contours.pixels.shrink_to_fit();
         contours
@@ -172,7 +174,7 @@ impl Contours {
         (!pixels.is_empty()).then(|| TileContours {
             pixels,
             seen,
-            sheet: sheet::rect(tile.sheet_row, seen),
+            far: far_side::rect(tile.far_row, seen),
         })
     }
 
@@ -195,6 +197,6 @@ impl Contours {
     /// Bytes that they and the other populations' readings take.
     pub fn bytes(&self) -> u64 {
         let pixels = self.pixels.len() * size_of::<ContourPixel>();
-        (pixels + self.sheet_rows.len() * sheet::SHEET_SIDE * sheet::BLOCK * SheetOf::BYTES) as u64
+        (pixels + self.far_rows.len() * far_side::COLUMNS * far_side::BLOCK * FarSide::BYTES) as u64
     }
 }

@@ -81,7 +81,7 @@ fn reference(x: usize, y: usize) -> (f32, bool) {
 
 /// Mean error on contour pixels of one sample, and of two populations.
 fn errors(surface: &Arc<Surface>) -> [f32; 2] {
-    let sheet = surface.sheet().unwrap();
+    let far = surface.far_side().unwrap();
     let mut mixed = Plane::from_fn(SIZE, |x, y| {
         shaded((surface.coverage(x, y) > 0).then(|| surface.normal(x, y)))
     });
@@ -92,12 +92,12 @@ fn errors(surface: &Arc<Surface>) -> [f32; 2] {
             let other = (i < contours.seen).then(|| {
                 let place = place_of(i);
                 let (sx, sy) =
-                    (contours.sheet.x0 as usize + place.0, contours.sheet.y0 as usize + place.1);
+                    (contours.far.x0 as usize + place.0, contours.far.y0 as usize + place.1);
                 assert_eq!(
-                    sheet.sheet_of().unwrap().canvas_pixel(sx as i32, sy as i32),
+                    far.as_far_side().unwrap().canvas_pixel(sx as i32, sy as i32),
                     (pixel.x, pixel.y)
                 );
-                sheet.normal(sx, sy)
+                far.normal(sx, sy)
             });
             mixed.set(x, y, pixel.share * mixed.at(x, y) + (1.0 - pixel.share) * shaded(other));
         }

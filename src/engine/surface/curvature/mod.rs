@@ -16,7 +16,7 @@ pub use rims::CurvatureRims;
 
 use super::Surface;
 use super::cache::HeapSize;
-use super::contours::SheetOf;
+use super::contours::FarSide;
 use crate::math::{Vec2, Vec3, vec2};
 use crate::raster::Plane;
 use std::sync::Arc;
@@ -109,25 +109,27 @@ impl Surface {
     /// The curvature of the surface, its normals blurred first by a Gaussian of standard deviation
     /// `blur_px` (0: not at all).
     ///
-    /// Neither the blur nor the differences cross the mask's edge or a depth jump. For a sheet it
+    /// Neither the blur nor the differences cross the mask's edge or a depth jump. For a far side it
     /// is that of the other populations' pixels nearby. Cached. Call it once before going parallel:
     /// threads that call it at the same time may each compute it.
     pub fn curvature(&self, blur_px: f32) -> Arc<Curvature> {
         // `max` first: NaN.max(0) is 0. Half the canvas flattens whatever is on it.
         let blur_px = blur_px.max(0.0).min(0.5 * self.size().longer_side());
         let keep = (KEPT_PX / self.size().area().max(1)).clamp(2, 8);
-        let compute = |recycled| match self.sheet_of() {
-            Some(sheet) => self.of_sheet(sheet, blur_px),
-            None => tiles::compute(self, blur_px, recycled),
+        let compute = |recycled| {
+            self.on_either_side(
+                || tiles::compute(self, blur_px, recycled),
+                |far, front| self.on_far_side(far, front, blur_px),
+            )
         };
         self.derived.curvatures.get_or_compute(blur_px.to_bits(), keep, compute)
     }
 
-    fn of_sheet(&self, sheet: &SheetOf, blur_px: f32) -> Curvature {
-        let whole = sheet.surface().map(|surface| surface.curvature(blur_px));
+    fn on_far_side(&self, far: &FarSide, front: Option<&Surface>, blur_px: f32) -> Curvature {
+        let whole = front.map(|front| front.curvature(blur_px));
         let [hxx, hxy, hyy] = [0, 1, 2].map(|i| {
             let of = |x: usize, y: usize| whole.as_ref().map_or(0.0, |whole| whole.tensor(x, y)[i]);
-            sheet.map(self.size(), |pixel| pixel.other_mean(of))
+            far.map(self.size(), |pixel| pixel.other_mean(of))
         });
         Curvature { hxx, hxy, hyy }
     }

@@ -71,9 +71,9 @@ impl LaidPlanes {
     /// Then the picture is turned, moved and scaled on the bend's pieces.
     pub fn pinned(surface: &Surface, settings: UnwrapSettings, bend: &Bend) -> Self {
         let unwrapping = surface.unwrapped(settings);
-        // Anchors are on the surface, also for a sheet.
-        let whole = surface.sheet_of().and_then(|sheet| sheet.surface());
-        let pinned = whole.as_deref().unwrap_or(surface);
+        // Anchors are on the surface in front, also for a far side.
+        let front = surface.front();
+        let pinned = front.as_deref().unwrap_or(surface);
         let laid = pinned.unwrapped(settings);
         let mut groups: Vec<(u32, Vec<PlanePin>)> = Vec::new();
         for anchor in &bend.anchors {
@@ -141,8 +141,8 @@ impl LaidPlanes {
     /// `D(q) − q_0 = R(q_0)ᵀ (U(q) − U(q_0))`: a decal, upright where it is put down.
     pub fn of_dab(surface: &Surface, settings: UnwrapSettings, at: Vec2) -> Self {
         let unwrapping = surface.unwrapped(settings);
-        let whole = surface.sheet_of().and_then(|sheet| sheet.surface());
-        let pinned = whole.as_deref().unwrap_or(surface);
+        let front = surface.front();
+        let pinned = front.as_deref().unwrap_or(surface);
         let PlanePlace { object, at: there, turn } = pinned.unwrapped(settings).place(pinned, at);
         let linear = turn.transpose();
         let fit = PlaneFit { object, linear, shift: at - linear * there, pulled: None };

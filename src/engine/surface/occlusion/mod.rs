@@ -185,24 +185,26 @@ impl Surface {
     ///
     /// Occluders count less the farther they are, those `radius_px` away (in the picture and in
     /// depth) not at all; nor does what floats in front, beyond a depth jump of half the radius. It
-    /// depends on depth alone: normal layers do not change it. For a sheet it is that of the other
+    /// depends on depth alone: normal layers do not change it. For a far side it is that of the other
     /// populations' pixels nearby. Cached; call it once before going parallel.
     pub fn occlusion(&self, radius_px: f32) -> Arc<Plane<f32>> {
         const KEPT: usize = 3;
         // NaN.max is the other one.
         let radius_px = radius_px.max(1.0).min(Self::WIDEST_OCCLUSION_PX);
-        if let Some(sheet) = self.sheet_of() {
-            return self.derived.occlusions.get_or_compute(radius_px.to_bits(), KEPT, |_| {
-                let open = sheet.surface().map(|surface| surface.occlusion(radius_px));
-                let of = |x: usize, y: usize| open.as_ref().map_or(1.0, |open| open.at(x, y));
-                sheet.map(self.size(), |pixel| pixel.other_mean(of))
-            });
-        }
         // Detail combined onto the surface casts no shade.
         let base = self.base();
         base.derived.occlusions.get_or_compute(radius_px.to_bits(), KEPT, |_| {
-            let open = rows::compute(base, &HorizonSlices::new(radius_px));
-            rows::smoothed(base, &open)
+            self.on_either_side(
+                || {
+                    let open = rows::compute(base, &HorizonSlices::new(radius_px));
+                    rows::smoothed(base, &open)
+                },
+                |far, front| {
+                    let open = front.map(|front| front.occlusion(radius_px));
+                    let of = |x: usize, y: usize| open.as_ref().map_or(1.0, |open| open.at(x, y));
+                    far.map(self.size(), |pixel| pixel.other_mean(of))
+                },
+            )
         })
     }
     /// The widest radius of occlusion, px.

@@ -10,6 +10,7 @@ use crate::math::{Size, fast};
 use crate::raster::{Plane, blur};
 use crate::surface::Surface;
 use crate::surface::cache::HeapSize;
+use crate::surface::contours::FarSide;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -140,22 +141,22 @@ fn add(h: &[f32], blurred: &[f32], per_px: f32, higher: &mut [f32], lower: Optio
 
 impl Surface {
     /// How the surroundings of each pixel stand to it, up to a size in px. Cached; call it once
-    /// before going parallel. For a sheet it is that of the other populations' pixels nearby.
+    /// before going parallel. For a far side it is that of the other populations' pixels nearby.
     pub fn contact(&self, largest_px: f32) -> Arc<ContactShade> {
         const KEPT: usize = 2;
         let key = largest_px.to_bits();
-        if let Some(sheet) = self.sheet_of() {
-            return self.derived.contacts.get_or_compute(key, KEPT, |_| {
-                let of = sheet.surface().map(|surface| surface.contact(largest_px));
-                let mean = |map: fn(&ContactShade) -> &ShareMap| {
-                    let read = |x: usize, y: usize| of.as_ref().map_or(0.0, |of| map(of).at(x, y));
-                    let plane = sheet.map(self.size(), |pixel| pixel.other_mean(read));
-                    ShareMap::from_plane(plane, MOST)
-                };
-                ContactShade { higher: mean(|of| &of.higher), lower: mean(|of| &of.lower) }
-            });
-        }
         let base = self.base();
-        base.derived.contacts.get_or_compute(key, KEPT, |_| ContactShade::of(base, largest_px))
+        let on_far_side = |far: &FarSide, front: Option<&Surface>| {
+            let of = front.map(|front| front.contact(largest_px));
+            let mean = |map: fn(&ContactShade) -> &ShareMap| {
+                let read = |x: usize, y: usize| of.as_ref().map_or(0.0, |of| map(of).at(x, y));
+                let plane = far.map(self.size(), |pixel| pixel.other_mean(read));
+                ShareMap::from_plane(plane, MOST)
+            };
+            ContactShade { higher: mean(|of| &of.higher), lower: mean(|of| &of.lower) }
+        };
+        base.derived.contacts.get_or_compute(key, KEPT, |_| {
+            self.on_either_side(|| ContactShade::of(base, largest_px), on_far_side)
+        })
     }
 }

@@ -16,6 +16,7 @@ pub use share::ShareMap;
 
 use super::Surface;
 use super::cache::HeapSize;
+use super::contours::FarSide;
 use crate::math::{Vec2, Vec3, fast, vec2, vec3};
 use crate::raster::Plane;
 use rayon::prelude::*;
@@ -262,22 +263,20 @@ impl Surface {
     }
 
     /// The share of a lamp that every pixel sees, off the surface every pixel of the page. It
-    /// depends on depth alone: normal layers do not change it. For a sheet it is that of the other
+    /// depends on depth alone: normal layers do not change it. For a far side it is that of the other
     /// populations' pixels nearby. Cached; call it once before going parallel.
     ///
     /// * `keep`: how many shadows are held, the last ones.
     pub fn shadow(&self, lamp: &ShadowLamp, keep: usize) -> Arc<ShareMap> {
-        if let Some(sheet) = self.sheet_of() {
-            return self.derived.shadows.get_or_compute(lamp.key(), keep, |_| {
-                let seen = sheet.surface().map(|surface| surface.shadow(lamp, keep));
-                let of = |x: usize, y: usize| seen.as_ref().map_or(1.0, |seen| seen.at(x, y));
-                ShareMap::from_plane(sheet.map(self.size(), |pixel| pixel.other_mean(of)), 1.0)
-            });
-        }
         let base = self.base();
-        base.derived
-            .shadows
-            .get_or_compute(lamp.key(), keep, |_| ShareMap::of_lamp(&base.heights(), lamp))
+        let on_far_side = |far: &FarSide, front: Option<&Surface>| {
+            let seen = front.map(|front| front.shadow(lamp, keep));
+            let of = |x: usize, y: usize| seen.as_ref().map_or(1.0, |seen| seen.at(x, y));
+            ShareMap::from_plane(far.map(self.size(), |pixel| pixel.other_mean(of)), 1.0)
+        };
+        base.derived.shadows.get_or_compute(lamp.key(), keep, |_| {
+            self.on_either_side(|| ShareMap::of_lamp(&base.heights(), lamp), on_far_side)
+        })
     }
 }
 

@@ -213,8 +213,8 @@ fn distances(constraints: &[PlaneConstraint]) -> Vec<f32> {
 pub(in crate::surface) type DisplacementKey = Vec<u32>;
 
 impl Surface {
-    /// The displacement of its unwrapped planes under constraints, cached; for a sheet that of its surface,
-    /// continued.
+    /// The displacement of its unwrapped planes under constraints, cached; for a far side that of
+    /// the surface in front, continued.
     ///
     /// * `constraints`: at least two of every piece that has any, finite.
     pub fn plane_displacement(
@@ -230,23 +230,20 @@ impl Surface {
         let key: DisplacementKey =
             settings.key().into_iter().chain(constraints.iter().flat_map(bits)).collect();
         let keep = self.kept_unwrappings().min(4);
-        self.derived.plane_displacements.get_or_compute(key, keep, |_| match self.sheet_of() {
-            Some(sheet) => {
-                let whole = sheet
-                    .surface()
-                    .map(|surface| surface.plane_displacement(settings, constraints));
+        self.derived.plane_displacements.get_or_compute(key, keep, |_| {
+            let solved = || {
+                let solver = self.plane_solver(settings, self.pulled_rect(constraints));
+                PlaneDisplacement::solved(self, &solver, constraints)
+            };
+            self.on_either_side(solved, |far, front| {
+                let whole = front.map(|front| front.plane_displacement(settings, constraints));
                 let planes = [0, 1].map(|axis| {
-                    sheet.continued(self.size(), |x, y| {
+                    far.continued(self.size(), |x, y| {
                         whole.as_ref().map_or(0.0, |whole| whole.planes[axis].at(x, y))
                     })
                 });
                 PlaneDisplacement { planes }
-            }
-            None => PlaneDisplacement::solved(
-                self,
-                &self.plane_solver(settings, self.pulled_rect(constraints)),
-                constraints,
-            ),
+            })
         })
     }
 

@@ -1,7 +1,7 @@
 //! A fill: one colour everywhere.
 //! Floor 4.
 
-use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, TileContent};
+use super::{CanvasScale, Changed, Content, FarScene, LayerKind, TileContent};
 use crate::math::srgb::Color;
 use crate::paint::Scene;
 use crate::raster::TileAt;
@@ -19,7 +19,7 @@ impl LayerKind for Color {
         TileContent::Solid(self.premultiplied())
     }
 
-    fn painted_behind(&self, _scene: &BehindScene) -> TileContent {
+    fn painted_far_side(&self, _scene: &FarScene) -> TileContent {
         TileContent::Solid(self.premultiplied())
     }
 

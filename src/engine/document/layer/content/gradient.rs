@@ -1,6 +1,6 @@
 //! A gradient, kept live. Floor 4. Not here: its rendering (`paint::gradient`).
 
-use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, TileContent};
+use super::{CanvasScale, Changed, Content, FarScene, LayerKind, TileContent};
 use crate::document::layer::marks::Marks;
 use crate::document::{LayerMap, Live, MemoryCount, Progress};
 use crate::math::{Mat2, Vec2};
@@ -28,8 +28,8 @@ impl LayerKind for Live<Gradient> {
         TileContent::of_tile(self.tile(scene, at, || self.params().render_tile(scene, at)))
     }
 
-    fn painted_behind(&self, scene: &BehindScene) -> TileContent {
-        self.behind(scene, true, |scene, at| self.params().render_tile(scene, at))
+    fn painted_far_side(&self, scene: &FarScene) -> TileContent {
+        self.far_side(scene, true, |scene, at| self.params().render_tile(scene, at))
     }
 
     fn count(&self, count: &mut MemoryCount, keeps: bool) {

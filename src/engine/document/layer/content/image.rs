@@ -1,6 +1,6 @@
 //! A placed image, kept live. Floor 4. Not here: its rendering (`paint::image`).
 
-use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, NameFile, TileContent};
+use super::{CanvasScale, Changed, Content, FarScene, LayerKind, NameFile, TileContent};
 use crate::Result;
 use crate::document::layer::marks::Marks;
 use crate::document::{LayerMap, Live, MemoryCount, Progress};
@@ -39,8 +39,8 @@ impl LayerKind for Live<PlacedImage> {
         TileContent::of_tile(self.tile(scene, at, || self.params().render_tile(scene, at)))
     }
 
-    fn painted_behind(&self, scene: &BehindScene) -> TileContent {
-        self.behind(scene, true, |scene, at| self.params().render_tile(scene, at))
+    fn painted_far_side(&self, scene: &FarScene) -> TileContent {
+        self.far_side(scene, true, |scene, at| self.params().render_tile(scene, at))
     }
 
     fn count(&self, count: &mut MemoryCount, keeps: bool) {

@@ -1,7 +1,7 @@
 //! A paint layer: pixels, and where they came from.
 //! Floor 4.
 
-use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, TileContent, Touched};
+use super::{CanvasScale, Changed, Content, FarScene, LayerKind, TileContent, Touched};
 use crate::document::{LayerMap, MemoryCount};
 use crate::math::{Rect, Vec2, vec2};
 use crate::paint::Scene;
@@ -64,10 +64,10 @@ impl LayerKind for PixelLayer {
         TileContent::of_tile(self.tiles.tile(at).cloned())
     }
 
-    fn painted_behind(&self, scene: &BehindScene) -> TileContent {
-        let tile = self.tiles.tile(scene.behind.at);
+    fn painted_far_side(&self, scene: &FarScene) -> TileContent {
+        let tile = self.tiles.tile(scene.tile.at);
         tile.map_or(TileContent::Nothing, |tile| {
-            TileContent::Packed(Arc::new(scene.behind.same(tile)))
+            TileContent::Packed(Arc::new(scene.tile.same(tile)))
         })
     }
 

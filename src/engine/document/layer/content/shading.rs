@@ -1,6 +1,6 @@
 //! A material under light, kept live. Floor 4. Not here: its rendering (`shading::material`).
 
-use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, NameFile, Role, TileContent};
+use super::{CanvasScale, Changed, Content, FarScene, LayerKind, NameFile, Role, TileContent};
 use crate::Result;
 use crate::document::layer::adjustment::{AdjustedPlace, Adjustment};
 use crate::document::layer::marks::Marks;
@@ -64,12 +64,12 @@ impl LayerKind for Live<Shading> {
         TileContent::of_tile(self.tile(scene, at, || self.params().render_tile(scene, at)))
     }
 
-    fn painted_behind(&self, scene: &BehindScene) -> TileContent {
+    fn painted_far_side(&self, scene: &FarScene) -> TileContent {
         if self.params().lights_beneath() {
             return TileContent::Nothing;
         }
         // Off the surface it shows nothing.
-        self.behind(scene, false, |scene, at| self.params().render_tile(scene, at))
+        self.far_side(scene, false, |scene, at| self.params().render_tile(scene, at))
     }
 
     fn count(&self, count: &mut MemoryCount, keeps: bool) {

@@ -2,7 +2,7 @@
 //! strokes (`document::strokes`).
 
 use super::{
-    Behind, BehindScene, CanvasScale, Changed, Content, LayerKind, NameFile, TileContent, Touched,
+    CanvasScale, Changed, Content, FarScene, FarTile, LayerKind, NameFile, TileContent, Touched,
 };
 use crate::Result;
 use crate::document::layer::marks::{Done, Marks};
@@ -59,8 +59,10 @@ impl LayerKind for Live<StrokeList> {
 
     /// For strokes with too many dabs to cache, the tiles as well: tile by tile, each stroke would
     /// be laid again and again.
-    fn painted_behind(&self, scene: &BehindScene) -> TileContent {
-        self.behind(scene, true, |scene, at| stroke::render_tile(&self.params().strokes, scene, at))
+    fn painted_far_side(&self, scene: &FarScene) -> TileContent {
+        self.far_side(scene, true, |scene, at| {
+            stroke::render_tile(&self.params().strokes, scene, at)
+        })
     }
 
     fn count(&self, count: &mut MemoryCount, keeps: bool) {
@@ -73,8 +75,8 @@ impl LayerKind for Live<StrokeList> {
     }
 
     fn warm(&self, scene: &Scene, progress: &Progress) {
-        if scene.sheet().is_some() {
-            return self.warm_behind(scene, progress);
+        if scene.as_far_side().is_some() {
+            return self.warm_far_side(scene, progress);
         }
         for stroke in &self.params().strokes {
             let bend = Bend { operator: stroke.operator(), ..Bend::default() };
@@ -178,23 +180,19 @@ impl LayerKind for Live<StrokeList> {
 
 impl Live<StrokeList> {
     /// As `warm`, for what is seen behind contours on a sheet.
-    fn warm_behind(&self, sheet: &Scene, progress: &Progress) {
-        let (front, is_wanted) = (sheet.front(), || !progress.is_cancelled());
-        let (missing, strokes) = (self.missing_behind(&front), &self.params().strokes);
+    fn warm_far_side(&self, far: &Scene, progress: &Progress) {
+        let (front, is_wanted) = (far.front(), || !progress.is_cancelled());
+        let (missing, strokes) = (self.missing_far_sides(&front), &self.params().strokes);
         if missing.is_empty()
             || stroke::are_heavy(strokes, &front, missing.len(), is_wanted) != Some(true)
         {
             return;
         }
-        let Some(of) = sheet.sheet() else { return };
-        let _ = stroke::render_tiles(strokes, sheet, &missing, is_wanted, |at, tile| {
-            let Some(contours) = of.contours().on(at) else { return };
-            self.set_behind(
-                &BehindScene {
-                    behind: Behind::new(at, contours),
-                    front: &front,
-                    sheet: Some(sheet),
-                },
+        let Some(surface) = &front.surface else { return };
+        let _ = stroke::render_tiles(strokes, far, &missing, is_wanted, |at, tile| {
+            let Some(contours) = surface.contours().on(at) else { return };
+            self.set_far_side(
+                &FarScene { tile: FarTile::new(at, contours), front: &front, far: Some(far) },
                 tile,
             );
         });

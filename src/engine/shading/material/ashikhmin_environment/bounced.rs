@@ -29,11 +29,11 @@ pub struct BouncedLight {
 }
 
 impl EnvironmentSamples {
-    /// Follows the glossy rays of the pixels of a tile and around it; of a sheet, whose pixels are
+    /// Follows the glossy rays of the pixels of a tile and around it; of a far side, whose pixels are
     /// no neighbours, none.
     pub fn follow_tile(&mut self, shading: &Shading, surface: &Surface, area: Rect) {
         self.bounced = None;
-        if surface.sheet_of().is_some() || shading.specular.weight <= 0.0 {
+        if surface.as_far_side().is_some() || shading.specular.weight <= 0.0 {
             return;
         }
         let Some(second) = SecondLook::on(surface, shading.bounces_made()) else { return };

@@ -180,11 +180,11 @@ fn behind_contours_rays_begin_where_the_other_population_lies() {
     // One ball before the other: contour pixels between both.
     let balls = [(vec3(-14.0, 2.0, 14.0), 26.0), (vec3(16.0, -2.0, -10.0), 28.0)];
     let scene = scene(&balls);
-    let sheet = scene.behind().unwrap();
+    let far = scene.far_side().unwrap();
     let shading = bouncing(Model::Mirror, 2);
-    let surface = sheet.surface.as_deref().unwrap();
+    let surface = far.surface.as_deref().unwrap();
     let second = SecondLook::on(surface, 2).unwrap();
-    let of = sheet.sheet().unwrap();
+    let of = far.as_far_side().unwrap();
     let mut seen = 0;
     for (x, y) in
         (0..surface.size().area()).map(|i| (i % TILE, i / TILE)).filter(|(x, y)| x % 2 + y % 2 == 0)
@@ -200,6 +200,6 @@ fn behind_contours_rays_begin_where_the_other_population_lies() {
     }
     assert!(seen > 20, "{seen}");
     let at = TileAt::new(0, 0);
-    let pixels = |bounces: u32| Shading { bounces, ..shading.clone() }.render_tile(&sheet, at);
+    let pixels = |bounces: u32| Shading { bounces, ..shading.clone() }.render_tile(&far, at);
     assert!(pixels(2).is_some() && pixels(0).is_some());
 }

@@ -19,7 +19,7 @@ pub(in crate::surface::deformation) fn fill_dab(
     out_y: &mut [f32],
 ) -> bool {
     let (Some(surface), [pin]) = (deformation.surface, &deformation.pins[..]) else { return false };
-    let is_plain = deformation.curvature.is_none() && deformation.sheet().is_none();
+    let is_plain = deformation.curvature.is_none() && !deformation.is_on_far_side();
     let kernel = Kernel::of(deformation);
     let is_held = rect.intersect(surface.size().rect()) == rect && !rect.is_empty();
     if !is_plain || !is_held {

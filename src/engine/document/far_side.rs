@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// The other populations of one tile. Rows of those that see a surface come first; rows of those
 /// that see none follow.
 #[derive(Clone, Copy)]
-pub struct Behind<'c> {
+pub struct FarTile<'c> {
     pub at: TileAt,
     contours: TileContours<'c>,
 }
@@ -32,14 +32,14 @@ enum PackedPixels {
 
 /// What a layer sees behind a contour, and before it.
 #[derive(Clone, Copy)]
-pub struct BehindScene<'s> {
-    pub behind: Behind<'s>,
+pub struct FarScene<'s> {
+    pub tile: FarTile<'s>,
     pub front: &'s Scene,
     /// `None` where no other population sees a surface.
-    pub sheet: Option<&'s Scene>,
+    pub far: Option<&'s Scene>,
 }
 
-impl<'c> Behind<'c> {
+impl<'c> FarTile<'c> {
     pub fn new(at: TileAt, contours: TileContours<'c>) -> Self {
         Self { at, contours }
     }
@@ -61,9 +61,9 @@ impl<'c> Behind<'c> {
     }
 
     /// The pixel of the sheet for a place; `None` where no surface is seen.
-    pub fn sheet_pixel(&self, place: usize) -> Option<(usize, usize)> {
+    pub fn far_pixel(&self, place: usize) -> Option<(usize, usize)> {
         let (x, y) = (place < self.contours.seen).then(|| place_of(place))?;
-        Some((self.contours.sheet.x0 as usize + x, self.contours.sheet.y0 as usize + y))
+        Some((self.contours.far.x0 as usize + x, self.contours.far.y0 as usize + y))
     }
 
     /// Some other population sees no surface.
@@ -80,13 +80,13 @@ impl<'c> Behind<'c> {
 
     /// Packs pixels: those rendered on the sheet and, where no surface is seen, those of the tile
     /// itself.
-    pub fn packed(&self, on_sheet: Option<&Tile>, bare: Option<&Tile>) -> PackedTile {
+    pub fn packed(&self, on_far_side: Option<&Tile>, bare: Option<&Tile>) -> PackedTile {
         let corner = self.at.rect();
         self.gathered(|place, pixel| {
             let (tile, x, y) = match place < self.contours.seen {
                 true => {
                     let (x, y) = place_of(place);
-                    (on_sheet, x, y)
+                    (on_far_side, x, y)
                 }
                 false => (bare, (pixel.x - corner.x0) as usize, (pixel.y - corner.y0) as usize),
             };
@@ -97,7 +97,7 @@ impl<'c> Behind<'c> {
     /// The same for pixels that are not rounded to bytes.
     pub fn packed_deep(
         &self,
-        on_sheet: Option<&PlanarTile>,
+        on_far_side: Option<&PlanarTile>,
         bare: Option<&PlanarTile>,
     ) -> PlanarTile {
         let (mut packed, corner) = (PlanarTile::of_rows(self.rows()), self.at.rect());
@@ -105,7 +105,7 @@ impl<'c> Behind<'c> {
             let (tile, x, y) = match place < self.contours.seen {
                 true => {
                     let (x, y) = place_of(place);
-                    (on_sheet, x, y)
+                    (on_far_side, x, y)
                 }
                 false => (bare, (contour.x - corner.x0) as usize, (contour.y - corner.y0) as usize),
             };
@@ -178,8 +178,8 @@ impl<'c> Behind<'c> {
     }
 }
 
-impl Behind<'_> {
-    /// As [`Behind::mix_into`], but where one population alone sees a surface the pixel is wholly
+impl FarTile<'_> {
+    /// As [`FarTile::mix_into`], but where one population alone sees a surface the pixel is wholly
     /// that one's.
     pub fn take_surface_into(&self, other: &PlanarTile, own: &mut PlanarTile) {
         let corner = self.at.rect();
@@ -243,13 +243,13 @@ impl PackedTile {
 
 /// What is known about a live layer behind the contours of a tile.
 #[derive(Clone)]
-pub enum BehindPixels {
+pub enum FarPixels {
     /// The same as the tile itself: for strokes that are still being drawn.
     Same,
     Packed(Arc<PackedTile>),
 }
 
-impl BehindPixels {
+impl FarPixels {
     /// Known to be the same pixels.
     pub fn is_same(&self, other: &Self) -> bool {
         match (self, other) {

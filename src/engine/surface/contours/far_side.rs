@@ -1,5 +1,5 @@
-//! The sheet: a small surface that holds what the other populations read. Renderers read it like
-//! any surface. Floor 2.
+//! The far side of a surface: a small one that holds what the other populations read. Renderers read
+//! it like any surface. Floor 2. Not here: what both sides answer alike (`both_sides`).
 //!
 //! Each contour pixel takes 2 × 2 pixels of it: the pixel itself, and the readings one pixel to the
 //! right and below, so that differences to linked neighbours show how its maps change. Four by four
@@ -21,21 +21,21 @@ use std::sync::{Arc, Weak};
 
 /// Side of a block, px.
 pub const BLOCK: usize = pyramid::BLOCK;
-/// Columns of the sheet, as many as of a tile.
-pub const SHEET_SIDE: usize = TILE;
+/// Columns of a far side, as many as of a tile.
+pub const COLUMNS: usize = TILE;
 /// Contour pixels of a block, and of a row of blocks.
 const IN_BLOCK: usize = BLOCK * BLOCK / 4;
-const IN_ROW: usize = IN_BLOCK * SHEET_SIDE / BLOCK;
+const IN_ROW: usize = IN_BLOCK * COLUMNS / BLOCK;
 
-/// What a sheet belongs to.
-pub struct SheetOf {
-    /// It holds the sheet, so the sheet must not hold it.
+/// What a far side belongs to.
+pub struct FarSide {
+    /// It holds its far side, so that must not hold it.
     surface: Weak<Surface>,
     canvas: Size,
     contours: Arc<Contours>,
 }
 
-/// Brings a tile's pixels into the order of the sheet, and leaves out what does not fit.
+/// Brings a tile's pixels into the order of the far side, and leaves out what does not fit.
 pub(super) fn sort(pixels: &mut Vec<ContourPixel>) {
     let seen = pixels.iter().filter(|pixel| pixel.sees_surface()).count();
     if seen > Contours::MOST_SEEN {
@@ -58,28 +58,28 @@ pub(super) fn rows(pixels: Range<usize>) -> impl Iterator<Item = Range<u32>> {
     pixels.step_by(IN_ROW).map(move |start| start as u32..(start + IN_ROW).min(end) as u32)
 }
 
-/// The pixels of the sheet that hold so many contour pixels.
+/// The pixels of the far side that hold so many contour pixels.
 pub(super) fn rect(first_row: u32, seen: usize) -> Rect {
     let (blocks, side) = (seen.div_ceil(IN_BLOCK), BLOCK as i32);
     let (across, rows) =
-        (blocks.min(SHEET_SIDE / BLOCK) as i32, blocks.div_ceil(SHEET_SIDE / BLOCK) as i32);
+        (blocks.min(COLUMNS / BLOCK) as i32, blocks.div_ceil(COLUMNS / BLOCK) as i32);
     let y0 = first_row as i32 * side;
     Rect::new(0, y0, across * side, y0 + rows * side)
 }
 
-/// Where the `i`th contour pixel of a tile lies in its part of the sheet.
+/// Where the `i`th contour pixel of a tile lies in its part of the far side.
 #[inline(always)]
 pub fn place_of(i: usize) -> (usize, usize) {
     let (block, inside) = (i / IN_BLOCK, i % IN_BLOCK);
-    let across = SHEET_SIDE / BLOCK;
+    let across = COLUMNS / BLOCK;
     (
         block % across * BLOCK + inside % (BLOCK / 2) * 2,
         block / across * BLOCK + inside / (BLOCK / 2) * 2,
     )
 }
 
-impl SheetOf {
-    /// Bytes that one pixel of a sheet takes.
+impl FarSide {
+    /// Bytes that one pixel of a far side takes.
     pub const BYTES: usize = 18;
 
     /// The surface whose contours they are; `None` once nobody holds it any more.
@@ -96,23 +96,23 @@ impl SheetOf {
         &self.contours
     }
 
-    /// The contour pixel that a pixel of the sheet belongs to.
+    /// The contour pixel that a pixel of the far side belongs to.
     #[inline(always)]
     pub fn contour_pixel(&self, x: usize, y: usize) -> Option<&ContourPixel> {
-        let row = self.contours.sheet_rows.get(y / BLOCK)?;
+        let row = self.contours.far_rows.get(y / BLOCK)?;
         let inside = (y % BLOCK / 2) * (BLOCK / 2) + x % BLOCK / 2;
         let i = row.start as usize + x / BLOCK * IN_BLOCK + inside;
         self.contours.pixels[..row.end as usize].get(i)
     }
 
-    /// The canvas pixel whose readings a pixel of the sheet holds; any where it holds none.
+    /// The canvas pixel whose readings a pixel of the far side holds; any where it holds none.
     #[inline(always)]
     pub fn canvas_pixel(&self, x: i32, y: i32) -> (i32, i32) {
         let Some(pixel) = self.contour_pixel(x as usize, y as usize) else { return (0, 0) };
         (pixel.x + (x & 1), pixel.y + (y & 1))
     }
 
-    /// The blocks of a tile's part of the sheet that hold readings of pixels in some blocks of the
+    /// The blocks of a tile's part of the far side that hold readings of pixels in some blocks of the
     /// tile, or beside them; `None` if there are none.
     pub fn blocks_under(&self, at: TileAt, touched: &TileBlocks) -> Option<TileBlocks> {
         let contours = self.contours.on(at)?;
@@ -128,13 +128,13 @@ impl SheetOf {
             let is_near =
                 |p: &ContourPixel| near[block(p.y, corner.y0)] >> block(p.x, corner.x0) & 1 == 1;
             if pixels.iter().any(is_near) {
-                blocks[i / (SHEET_SIDE / BLOCK)] |= 1 << (i % (SHEET_SIDE / BLOCK));
+                blocks[i / (COLUMNS / BLOCK)] |= 1 << (i % (COLUMNS / BLOCK));
             }
         }
         (blocks != TileBlocks::default()).then_some(blocks)
     }
 
-    /// A map of the canvas continued over the sheet: as n̄ is.
+    /// A map of the canvas continued over the far side: as n̄ is.
     pub fn continued(&self, size: Size, map: impl Fn(usize, usize) -> f32 + Sync) -> Plane<f32> {
         Plane::from_fn(size, |x, y| {
             let step = vec2((x & 1) as f32, (y & 1) as f32);
@@ -143,7 +143,7 @@ impl SheetOf {
         })
     }
 
-    /// A map over the sheet, from each contour pixel's number and the members of its other
+    /// A map over the far side, from each contour pixel's number and the members of its other
     /// population.
     pub fn map<T: Copy + Send + Sync + Default>(
         &self,
@@ -171,8 +171,8 @@ impl ContourPixel {
     }
 }
 
-/// Readings of a sheet, as planes.
-struct SheetMaps {
+/// Readings of a far side, as planes.
+struct FarMaps {
     nbar: [Plane<f32>; 2],
     nz: Plane<f32>,
     depth: Plane<f32>,
@@ -180,7 +180,7 @@ struct SheetMaps {
     links: Plane<u8>,
 }
 
-impl SheetMaps {
+impl FarMaps {
     fn empty(size: Size) -> Self {
         let still = || Plane::filled(size, 0.0);
         let (coverage, links) = (Plane::filled(size, 0), Plane::filled(size, 0));
@@ -197,17 +197,18 @@ impl SheetMaps {
 impl Surface {
     /// What the other populations of contour pixels read; `None` where no pixel has another one on
     /// a surface. Cached.
-    pub fn sheet(self: &Arc<Self>) -> Option<Arc<Surface>> {
-        let rows = self.contours().sheet_rows.len();
-        (rows > 0).then(|| self.derived.sheets.get_or_compute((), 1, |_| self.made_sheet(rows)))
+    pub fn far_side(self: &Arc<Self>) -> Option<Arc<Surface>> {
+        let rows = self.contours().far_rows.len();
+        (rows > 0)
+            .then(|| self.derived.far_sides.get_or_compute((), 1, |_| self.build_far_side(rows)))
     }
 
-    fn made_sheet(self: &Arc<Self>, rows: usize) -> Surface {
-        let size = Size::new(SHEET_SIDE as u32, (rows * BLOCK) as u32);
-        let mut maps = SheetMaps::empty(size);
+    fn build_far_side(self: &Arc<Self>, rows: usize) -> Surface {
+        let size = Size::new(COLUMNS as u32, (rows * BLOCK) as u32);
+        let mut maps = FarMaps::empty(size);
         let contours = self.contours().clone();
-        let band = BLOCK * SHEET_SIDE;
-        let SheetMaps { nbar: [nx, ny], nz, depth, coverage, links } = &mut maps;
+        let band = BLOCK * COLUMNS;
+        let FarMaps { nbar: [nx, ny], nz, depth, coverage, links } = &mut maps;
         let planes = (
             nx.values_mut().par_chunks_mut(band),
             ny.values_mut().par_chunks_mut(band),
@@ -216,9 +217,9 @@ impl Surface {
             coverage.values_mut().par_chunks_mut(band),
             links.values_mut().par_chunks_mut(band),
         );
-        let detailed = self.sheet_normals();
+        let detailed = self.far_normals();
         self.with_contour_maps(None, |read| {
-            planes.into_par_iter().zip(&contours.sheet_rows).enumerate().for_each(
+            planes.into_par_iter().zip(&contours.far_rows).enumerate().for_each(
                 |(row, ((nx, ny, nz, depth, coverage, links), pixels))| {
                     let pixels = &contours.pixels[pixels.start as usize..pixels.end as usize];
                     for (i, pixel) in pixels.iter().enumerate() {
@@ -229,7 +230,7 @@ impl Surface {
                         let (x, y) = place_of(i);
                         for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
                             let (at, step) = (
-                                (y + dy) * SHEET_SIDE + x + dx,
+                                (y + dy) * COLUMNS + x + dx,
                                 pixel.other_at + vec2(dx as f32, dy as f32),
                             );
                             let n = continued.nbar(step);
@@ -240,13 +241,13 @@ impl Surface {
                             }
                             (depth[at], coverage[at]) = (continued.depth(step), 255);
                         }
-                        links[y * SHEET_SIDE + x] = links::RIGHT | links::DOWN;
+                        links[y * COLUMNS + x] = links::RIGHT | links::DOWN;
                     }
                 },
             );
         });
-        let sheet_of = SheetOf { surface: Arc::downgrade(self), canvas: self.size(), contours };
-        let SheetMaps { nbar: [nbar_x, nbar_y], nz, depth, coverage, links } = maps;
-        self.sheet_of_planes([nbar_x, nbar_y, nz, depth], [coverage, links], sheet_of)
+        let far_side = FarSide { surface: Arc::downgrade(self), canvas: self.size(), contours };
+        let FarMaps { nbar: [nbar_x, nbar_y], nz, depth, coverage, links } = maps;
+        self.far_side_of_planes([nbar_x, nbar_y, nz, depth], [coverage, links], far_side)
     }
 }
