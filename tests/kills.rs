@@ -247,17 +247,8 @@ fn story() -> String {
 /// A blot with a shape and a lit base above it: by turns it is painted on, which changes its
 /// outline, and bent, and now and then that is undone.
 fn shaped_story() -> String {
-    let mut story = String::from(
-        r##"{"in":"file","do":"new","width":180,"height":140,"background":"#ffffff"}
-{"in":"layer","do":"add","kind":"paint"}
-{"in":"hand","do":"preset","name":"hard-round"}
-{"in":"hand","do":"size","to":50}
-{"in":"pointer","do":"press","tool":"brush","pen":[60,60],"px_per_pt":1}
-{"in":"pointer","do":"drag","pens":[[110,80]]}
-{"in":"pointer","do":"release"}
-{"in":"part","do":"shape","layer":"1","preset":"pillow","flats":false}
-{"in":"hand","do":"size","to":24}"##,
-    );
+    let size = r#"{"in":"hand","do":"size","to":24}"#;
+    let mut story = format!("{}\n{size}", crate::shape::SHAPED_BLOT);
     for i in 0..STROKES / 2 {
         let [x, y, z] = [1, 2, 3].map(|k| 20 + mix(i * 3 + k) % 110);
         let tool = if i % 3 == 1 { "liquify" } else { "brush" };

@@ -4,6 +4,16 @@
 use crate::cli::{Desk, PHOTO, refused, rilievo, said};
 use std::process::Output;
 
+/// The story of a blot that is given a shape.
+pub const SHAPED_BLOT: &str = r##"{"in":"file","do":"new","width":180,"height":140,"background":"#ffffff"}
+{"in":"layer","do":"add","kind":"paint"}
+{"in":"hand","do":"preset","name":"hard-round"}
+{"in":"hand","do":"size","to":50}
+{"in":"pointer","do":"press","tool":"brush","pen":[60,60],"px_per_pt":1}
+{"in":"pointer","do":"drag","pens":[[110,80]]}
+{"in":"pointer","do":"release"}
+{"in":"part","do":"shape","layer":"1","preset":"pillow","flats":false}"##;
+
 /// `rilievo shape FILE -o maps …`
 fn shape(desk: &Desk, file: &str, more: &[&str]) -> Output {
     let mut command = rilievo(&["shape"]);

@@ -26,9 +26,7 @@ fn closing_with_unsaved_work_asks_first() {
 fn what_cannot_be_opened_is_told_in_a_sentence_that_stays() {
     let mut harness = window();
     harness.state_mut().as_mut().unwrap().begin(vec![PathBuf::from("no such picture.png")]);
-    std::thread::sleep(std::time::Duration::from_millis(300));
-    steps(&mut harness);
-    harness.get_by_label_contains("no such picture.png");
+    until(&mut harness, |harness| harness.query_by_label_contains("no such picture.png").is_some());
     click(&mut harness, "Dismiss");
     assert!(harness.query_by_label_contains("no such picture.png").is_none());
 }

@@ -70,7 +70,8 @@ fn click(harness: &mut Story, label: &str) {
     steps(harness);
 }
 
-/// Steps until something is so, as other threads come to it.
+/// Steps until something is so, which other threads may have to do first.
+#[track_caller]
 fn until(harness: &mut Story, is_so: impl Fn(&Story) -> bool) {
     for _ in 0..600 {
         harness.step();
@@ -79,7 +80,7 @@ fn until(harness: &mut Story, is_so: impl Fn(&Story) -> bool) {
         }
         std::thread::sleep(std::time::Duration::from_millis(20));
     }
-    panic!("it never came to that");
+    panic!("what is waited for did not happen in 12 seconds");
 }
 
 /// By its whole name.

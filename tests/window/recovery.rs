@@ -43,22 +43,12 @@ fn after_a_crash_the_window_offers_what_was_unsaved() {
     assert_eq!(open.title(), "Untitled 1 (recovered)");
 }
 
-/// A blot with a shape, which was painted in a program that crashed.
-const SHAPED: &str = r##"{"in":"file","do":"new","width":180,"height":140,"background":"#ffffff"}
-{"in":"layer","do":"add","kind":"paint"}
-{"in":"hand","do":"preset","name":"hard-round"}
-{"in":"hand","do":"size","to":50}
-{"in":"pointer","do":"press","tool":"brush","pen":[60,60],"px_per_pt":1}
-{"in":"pointer","do":"drag","pens":[[110,80]]}
-{"in":"pointer","do":"release"}
-{"in":"part","do":"shape","layer":"1","preset":"pillow","flats":false}"##;
-
 #[test]
 fn a_recovered_drawing_has_its_shape_and_keeps_it_when_an_edit_is_undone() {
     let folder = tempfile::tempdir().unwrap();
     let mut crashed = Session::default();
     crashed.autosave = Some(Autosave::new(folder.path().into()));
-    crashed.replay(Path::new("story"), SHAPED).unwrap();
+    crashed.replay(Path::new("story"), crate::shape::SHAPED_BLOT).unwrap();
     crashed.keep();
     let picture = |document: &Document| {
         flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect())
