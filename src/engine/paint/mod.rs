@@ -2,6 +2,7 @@
 //! (*what*: tip, ramp, image), evaluated over tiles. This module does not know the layer tree.
 
 pub mod adjust;
+pub mod adjustment;
 pub mod brush;
 pub mod brush_options;
 mod curve;
@@ -37,6 +38,7 @@ mod tint;
 pub mod tip;
 
 pub use adjust::Adjust;
+pub use adjustment::{ColorAdjustment, LiveAdjustment};
 pub use brush::{Brush, BrushMode, ColorJitter, Stabilizer, StrokeFrame, Tip};
 pub use brush_options::{
     Cycle, DistanceMetric, Falloff, Offset, Pickup, Rate, Spread, StylusFilter,

@@ -1,0 +1,54 @@
+//! A colour for each luminosity. Floor 3.
+
+use super::hsl;
+use super::parameters::{ParameterVisitor, Parameters, named};
+use crate::math::srgb::Color;
+use crate::paint::{GradientStop, ramp::Ramp};
+
+/// The ramp's colour at the luminosity of each pixel; where the ramp is transparent, the pixel as
+/// it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GradientMap {
+    pub stops: Vec<GradientStop>,
+    pub reverse: bool,
+}
+
+impl Default for GradientMap {
+    fn default() -> Self {
+        Self { stops: black_to_white(), reverse: false }
+    }
+}
+
+pub fn black_to_white() -> Vec<GradientStop> {
+    [(0.0, Color::BLACK), (1.0, Color::WHITE)].map(|(t, color)| GradientStop { t, color }).to_vec()
+}
+
+impl GradientMap {
+    /// Colours of the ramp that are looked up: more than 16 bits of luminosity tell apart on it.
+    const COLORS: usize = 4096;
+
+    pub fn color(&self) -> impl Fn([f32; 3]) -> [f32; 3] + use<> {
+        let ramp = Ramp::new(&self.stops);
+        let at = |i: usize| {
+            let t = i as f32 / (Self::COLORS - 1) as f32;
+            let t = if self.reverse { 1.0 - t } else { t };
+            ramp.as_ref().map_or([t, t, t, 1.0], |ramp| ramp.at(t))
+        };
+        let colors: Vec<[f32; 4]> = (0..Self::COLORS).map(at).collect();
+        move |rgb| {
+            let place = hsl::luminosity(rgb).max(0.0).min(1.0) * (Self::COLORS - 1) as f32;
+            let i = (place as usize).min(Self::COLORS - 2);
+            let (share, low, high) = (place - i as f32, colors[i], colors[i + 1]);
+            let mapped = |c: usize| low[c] + (high[c] - low[c]) * share;
+            std::array::from_fn(|c| mapped(c) + (1.0 - mapped(3)) * rgb[c])
+        }
+    }
+}
+
+impl Parameters for GradientMap {
+    fn visit(&mut self, v: &mut dyn ParameterVisitor) {
+        v.stops(named("stops", "Stops", "From the darkest to the brightest"), &mut self.stops);
+        let hint = "The first colour is for the brightest";
+        v.flag(named("reverse", "Reverse", hint), false, &mut self.reverse);
+    }
+}

@@ -1,0 +1,170 @@
+//! Hue, saturation and lightness, of all colours and of ranges of hues; or everything in one hue.
+//! Floor 3.
+
+use super::hsl;
+use super::parameters::{NumberParameter, ParameterName, ParameterVisitor, Parameters, named};
+
+/// What is added to hue, saturation and lightness.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct HslShift {
+    /// Degrees, `[−180, 180]`.
+    pub hue: f32,
+    /// `[−100, 100]`.
+    pub saturation: f32,
+    /// `[−100, 100]`.
+    pub lightness: f32,
+}
+
+impl Parameters for HslShift {
+    fn visit(&mut self, v: &mut dyn ParameterVisitor) {
+        let number = |key, label, most| NumberParameter::around(named(key, label, ""), most);
+        v.number(number("hue", "Hue", 180.0), &mut self.hue);
+        v.number(number("saturation", "Saturation", 100.0), &mut self.saturation);
+        v.number(number("lightness", "Lightness", 100.0), &mut self.lightness);
+    }
+}
+
+/// A range of hues: wholly from the second angle to the third, fading to the first and fourth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HueRange {
+    /// Degrees, going up, past 360 where they go on beyond red.
+    pub angles: [f32; 4],
+    pub shift: HslShift,
+}
+
+impl HueRange {
+    /// How much of a hue (degrees) is in the range: a trapezoid over its angles.
+    #[inline(always)]
+    pub fn weight(&self, degrees: f32) -> f32 {
+        let [first, from, to, last] = self.angles;
+        let turn = |angle: f32| (angle - first).rem_euclid(360.0);
+        let (at, from, to, last) = (turn(degrees), turn(from), turn(to), turn(last));
+        if at < from {
+            at / from
+        } else if at <= to {
+            1.0
+        } else if at <= last {
+            (last - at) / (last - to).max(1e-6)
+        } else {
+            0.0
+        }
+    }
+}
+
+/// The ranges, as in Photoshop.
+pub const HUE_RANGES: [(ParameterName, [f32; 4]); 6] = [
+    (named("reds", "Reds", ""), [315.0, 345.0, 15.0, 45.0]),
+    (named("yellows", "Yellows", ""), [15.0, 45.0, 75.0, 105.0]),
+    (named("greens", "Greens", ""), [75.0, 105.0, 135.0, 165.0]),
+    (named("cyans", "Cyans", ""), [135.0, 165.0, 195.0, 225.0]),
+    (named("blues", "Blues", ""), [195.0, 225.0, 255.0, 285.0]),
+    (named("magentas", "Magentas", ""), [255.0, 285.0, 315.0, 345.0]),
+];
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HueSaturation {
+    pub master: HslShift,
+    pub ranges: [HueRange; 6],
+    /// Everything gets the hue, saturation and lightness of `tint`.
+    pub colorize: bool,
+    pub tint: HslShift,
+}
+
+impl Default for HueSaturation {
+    fn default() -> Self {
+        Self {
+            master: HslShift::default(),
+            ranges: HUE_RANGES.map(|(_, angles)| HueRange { angles, shift: HslShift::default() }),
+            colorize: false,
+            tint: HslShift { hue: 0.0, saturation: 25.0, lightness: 0.0 },
+        }
+    }
+}
+
+/// Toward white above 0, toward black below.
+#[inline(always)]
+fn lighter(x: f32, by: f32) -> f32 {
+    if by > 0.0 { x + (1.0 - x) * by } else { x * (1.0 + by) }
+}
+
+/// S / (1 − s) above 0, S (1 + s) below.
+#[inline(always)]
+fn more_saturated(saturation: f32, by: f32) -> f32 {
+    let changed =
+        if by > 0.0 { saturation / (1.0 - by).max(0.01) } else { saturation * (1.0 + by) };
+    changed.max(0.0).min(1.0)
+}
+
+impl HueSaturation {
+    /// Lightness of all first, then what ranges darken or lighten, then hue and saturation.
+    pub fn color(&self) -> impl Fn([f32; 3]) -> [f32; 3] + use<> {
+        let changes = |range: &HueRange| range.shift != HslShift::default();
+        let used: Vec<HueRange> = self.ranges.iter().copied().filter(changes).collect();
+        let Self { master, colorize, tint, .. } = *self;
+        move |rgb| {
+            if colorize {
+                let [.., lightness] = hsl::of_rgb(rgb);
+                let lightness = lighter(lightness, tint.lightness / 100.0);
+                return hsl::to_rgb([tint.hue / 60.0, tint.saturation.max(0.0) / 100.0, lightness]);
+            }
+            let rgb = rgb.map(|v| lighter(v, master.lightness / 100.0));
+            let mut of_ranges = HslShift::default();
+            if !used.is_empty() {
+                let degrees = 60.0 * hsl::hue(rgb);
+                for range in &used {
+                    let weight = range.weight(degrees);
+                    of_ranges.hue += weight * range.shift.hue;
+                    of_ranges.saturation += weight * range.shift.saturation;
+                    of_ranges.lightness += weight * range.shift.lightness;
+                }
+            }
+            let rgb = range_lighter(rgb, (of_ranges.lightness / 100.0).max(-1.0).min(1.0));
+            let [hue, saturation, lightness] = hsl::of_rgb(rgb);
+            let saturation = more_saturated(saturation, master.saturation / 100.0);
+            let by = (of_ranges.saturation / 100.0).max(-1.0).min(1.0);
+            let saturation = more_saturated(saturation, by);
+            hsl::to_rgb([hue + (master.hue + of_ranges.hue) / 60.0, saturation, lightness])
+        }
+    }
+}
+
+/// The lightness of a range moves a colour along the side of the cone of values: its greatest
+/// channel stays where it becomes lighter, and its least where it becomes darker.
+#[inline(always)]
+fn range_lighter(rgb: [f32; 3], by: f32) -> [f32; 3] {
+    let (low, high) = hsl::extent(rgb);
+    if by >= 0.0 { rgb.map(|v| v + (high - v) * by) } else { rgb.map(|v| v + (v - low) * by) }
+}
+
+impl Parameters for HueSaturation {
+    fn visit(&mut self, v: &mut dyn ParameterVisitor) {
+        self.master.visit(v);
+        let hint = "Give everything one hue";
+        v.flag(named("colorize", "Colourise", hint), false, &mut self.colorize);
+        let hint = "The hue, saturation and lightness of what is colourised";
+        v.group(named("tint", "Colourised", hint), &mut |v| {
+            let number = NumberParameter::whole;
+            v.number(number(named("hue", "Hue", ""), 0.0, 360.0, 0.0), &mut self.tint.hue);
+            let saturation = number(named("saturation", "Saturation", ""), 0.0, 100.0, 25.0);
+            v.number(saturation, &mut self.tint.saturation);
+            let lightness = NumberParameter::around(named("lightness", "Lightness", ""), 100.0);
+            v.number(lightness, &mut self.tint.lightness);
+        });
+        for ((name, angles), range) in HUE_RANGES.into_iter().zip(&mut self.ranges) {
+            v.group(name, &mut |v| {
+                range.shift.visit(v);
+                const ANGLES: [ParameterName; 4] = [
+                    named("fade_from", "Fades from", "Degrees of the colour circle"),
+                    named("from", "From", "Degrees of the colour circle"),
+                    named("to", "To", "Degrees of the colour circle"),
+                    named("fade_to", "Fades to", "Degrees of the colour circle"),
+                ];
+                for ((name, angle), default) in
+                    ANGLES.into_iter().zip(&mut range.angles).zip(angles)
+                {
+                    v.number(NumberParameter::whole(name, 0.0, 360.0, default), angle);
+                }
+            });
+        }
+    }
+}

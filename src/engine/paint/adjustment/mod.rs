@@ -1,0 +1,144 @@
+//! Adjustments of colours, as photographs are edited: levels, curves, hue and saturation and their
+//! like. Floor 3. A pixel depends on the pixel alone, alpha stays, and values beyond white become
+//! white. Not here: the layers that hold them (`document`), adjustments of placed pictures
+//! (`adjust`).
+//!
+//! | file | |
+//! |---|---|
+//! | `parameters` | how their parameters are named, read, written and set |
+//! | `tones`, `curve` | those of each channel by itself |
+//! | `hue_saturation`, `mixing`, `hsl` | those that weigh channels against each other |
+//! | `gradient_map`, `lookup` | those that look colours up |
+//! | `rows` | what they do to rows of pixels |
+
+mod curve;
+mod gradient_map;
+mod hsl;
+mod hue_saturation;
+mod lookup;
+mod mixing;
+mod parameters;
+mod rows;
+mod tones;
+
+pub use curve::{ToneCurve, ToneSpline};
+pub use gradient_map::GradientMap;
+pub use hue_saturation::{HslShift, HueRange, HueSaturation};
+pub use lookup::{ColorLookup, ColorTable};
+pub use mixing::{
+    BlackWhite, ChannelMixer, ColorBalance, PhotoFilter, SelectiveColor, Threshold, Vibrance,
+};
+pub use parameters::{NumberParameter, ParameterName, ParameterVisitor};
+pub use rows::LiveAdjustment;
+pub use tones::{BrightnessContrast, Curves, Exposure, Invert, Levels, LevelsRange, Posterise};
+
+use parameters::{Holder, Parameters};
+
+/// Declares the enum of adjustments with the table of their names.
+macro_rules! adjustments {
+    ($($(#[$meta:meta])* $kind:ident = $name:literal => ($label:literal, $hint:literal),)+) => {
+        /// An adjustment with its parameters.
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum ColorAdjustment {
+            $($(#[$meta])* $kind($kind),)+
+        }
+
+        impl ColorAdjustment {
+            /// How many kinds there are.
+            pub const COUNT: usize = [$($name),+].len();
+
+            /// One of each kind as it begins, in the order in which they are offered.
+            pub fn all() -> [Self; Self::COUNT] {
+                [$(Self::$kind($kind::default())),+]
+            }
+
+            /// Its name in documents.
+            pub fn name(&self) -> &'static str {
+                match self { $(Self::$kind(_) => $name),+ }
+            }
+
+            /// Its name in the window.
+            pub fn label(&self) -> &'static str {
+                match self { $(Self::$kind(_) => $label),+ }
+            }
+
+            /// What it does, for tooltips.
+            pub fn hint(&self) -> &'static str {
+                match self { $(Self::$kind(_) => $hint),+ }
+            }
+
+            fn parameters(&mut self) -> &mut dyn Parameters {
+                match self { $(Self::$kind(own) => own),+ }
+            }
+        }
+    };
+}
+
+adjustments! {
+    BrightnessContrast = "brightness-contrast"
+        => ("Brightness/contrast", "Brighter or darker, with more or less contrast"),
+    Levels = "levels" => ("Levels", "What becomes black and what white, and the mid-tones between"),
+    Curves = "curves" => ("Curves", "Each tone by a curve, of all channels or of one"),
+    Exposure = "exposure" => ("Exposure", "More or less light, in stops"),
+    Vibrance = "vibrance" => ("Vibrance", "More saturation where there is little"),
+    HueSaturation = "hue-saturation"
+        => ("Hue/saturation", "Hue, saturation and lightness, of all colours or of a range; or one hue"),
+    ColorBalance = "color-balance"
+        => ("Colour balance", "Warmer or cooler, in shadows, mid-tones and highlights"),
+    BlackWhite = "black-white" => ("Black & white", "Greys, by how bright each hue shall be"),
+    PhotoFilter = "photo-filter" => ("Photo filter", "A coloured glass in front of the picture"),
+    ChannelMixer = "channel-mixer" => ("Channel mixer", "Each channel as a sum of all three"),
+    ColorLookup = "color-lookup" => ("Colour look-up", "The colours of a .cube file"),
+    Invert = "invert" => ("Invert", "Light becomes dark, and each colour its complement"),
+    Posterise = "posterise" => ("Posterise", "A few tones of each channel"),
+    Threshold = "threshold" => ("Threshold", "Black and white, without anything between"),
+    GradientMap = "gradient-map" => ("Gradient map", "A colour of a gradient for each brightness"),
+    SelectiveColor = "selective-color"
+        => ("Selective colour", "Cyan, magenta, yellow and black for each range of colours"),
+}
+
+impl ColorAdjustment {
+    /// As it begins, by its name in documents.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::all().into_iter().find(|adjustment| adjustment.name() == name)
+    }
+
+    /// Shows its parameters to a visitor, which may change them.
+    pub fn visit(&mut self, visitor: &mut dyn ParameterVisitor) {
+        self.parameters().visit(visitor);
+    }
+
+    /// With the nearest numbers that a document may hold.
+    pub fn held(mut self) -> Self {
+        self.visit(&mut Holder);
+        self
+    }
+
+    /// A straight encoded colour, adjusted: what each kind says, without tables. Each channel in
+    /// `[0, 1]`, never NaN.
+    pub fn color(&self, rgb: [f32; 3]) -> [f32; 3] {
+        let rgb = rgb.map(|v| v.max(0.0).min(1.0));
+        let out: [f32; 3] = match self {
+            Self::Levels(own) => std::array::from_fn(|c| own.tone(c, rgb[c])),
+            Self::Curves(own) => std::array::from_fn(|c| own.tone(c)(rgb[c])),
+            Self::BrightnessContrast(own) => rgb.map(own.tone()),
+            Self::Exposure(own) => rgb.map(|v| own.tone(v)),
+            Self::Invert(_) => rgb.map(Invert::tone),
+            Self::Posterise(own) => rgb.map(|v| own.tone(v)),
+            Self::HueSaturation(own) => own.color()(rgb),
+            Self::ColorBalance(own) => own.color(rgb),
+            Self::Vibrance(own) => own.color(rgb),
+            Self::PhotoFilter(own) => own.color(rgb),
+            Self::ChannelMixer(own) => own.color(rgb),
+            Self::BlackWhite(own) => own.color(rgb),
+            Self::SelectiveColor(own) => own.color(rgb),
+            Self::Threshold(own) => own.color(rgb),
+            Self::GradientMap(own) => own.color()(rgb),
+            Self::ColorLookup(own) => own.table.as_ref().map_or(rgb, |table| table.color(rgb)),
+        };
+        out.map(|v| v.max(0.0).min(1.0))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,113 @@
+//! What adjustments are set by: each visits its parameters with their names, ranges and defaults,
+//! so that readers, writers, panels, checks and stories need no list of their own. Floor 3.
+
+use super::{ColorTable, ToneCurve};
+use crate::math::srgb::Color;
+use crate::math::{Range, range::held};
+use crate::paint::GradientStop;
+
+/// What a parameter is called.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParameterName {
+    /// In documents.
+    pub key: &'static str,
+    /// In the window.
+    pub label: &'static str,
+    /// What it does; empty where the label says it.
+    pub hint: &'static str,
+}
+
+/// The name of a parameter.
+pub(super) const fn named(
+    key: &'static str,
+    label: &'static str,
+    hint: &'static str,
+) -> ParameterName {
+    ParameterName { key, label, hint }
+}
+
+/// A number and what it may be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NumberParameter {
+    pub name: ParameterName,
+    pub least: f32,
+    pub most: f32,
+    /// What it is where nothing is said.
+    pub default: f32,
+    /// Decimals that matter.
+    pub decimals: usize,
+}
+
+impl NumberParameter {
+    /// A whole number around 0.
+    pub(super) const fn around(name: ParameterName, most: f32) -> Self {
+        Self { name, least: -most, most, default: 0.0, decimals: 0 }
+    }
+
+    /// A whole number from `least` to `most`.
+    pub(super) const fn whole(name: ParameterName, least: f32, most: f32, default: f32) -> Self {
+        Self { name, least, most, default, decimals: 0 }
+    }
+
+    /// The same with decimals.
+    pub(super) const fn decimals(self, decimals: usize) -> Self {
+        Self { decimals, ..self }
+    }
+
+    pub fn range(&self) -> Range {
+        self.least..=self.most
+    }
+}
+
+/// Reads or changes the parameters of an adjustment, in the order in which they are shown.
+pub trait ParameterVisitor {
+    fn number(&mut self, parameter: NumberParameter, value: &mut f32);
+    fn flag(&mut self, name: ParameterName, default: bool, value: &mut bool);
+    fn color(&mut self, name: ParameterName, default: Color, value: &mut Color);
+    /// Points of a curve through (0, 0) and (255, 255), where nothing is said.
+    fn curve(&mut self, name: ParameterName, value: &mut ToneCurve);
+    /// From black to white where nothing is said.
+    fn stops(&mut self, name: ParameterName, value: &mut Vec<GradientStop>);
+    /// None where nothing is said.
+    fn table(&mut self, name: ParameterName, value: &mut Option<ColorTable>);
+    /// Parameters that belong together.
+    fn group(&mut self, name: ParameterName, inside: &mut dyn FnMut(&mut dyn ParameterVisitor));
+}
+
+/// An adjustment, by its parameters and what it does to colours.
+pub(super) trait Parameters {
+    /// Shows its parameters to a visitor, which may change them.
+    fn visit(&mut self, visitor: &mut dyn ParameterVisitor);
+}
+
+/// Brings every number into its range.
+pub(super) struct Holder;
+
+impl ParameterVisitor for Holder {
+    fn number(&mut self, parameter: NumberParameter, value: &mut f32) {
+        *value = held(*value, &parameter.range());
+    }
+
+    fn flag(&mut self, _: ParameterName, _: bool, _: &mut bool) {}
+
+    fn color(&mut self, _: ParameterName, _: Color, _: &mut Color) {}
+
+    fn curve(&mut self, _: ParameterName, value: &mut ToneCurve) {
+        *value = ToneCurve::new(value.points().to_vec());
+    }
+
+    fn stops(&mut self, _: ParameterName, value: &mut Vec<GradientStop>) {
+        value.iter_mut().for_each(|stop| stop.t = held(stop.t, &crate::math::UNIT));
+        value.sort_by(|a, b| a.t.total_cmp(&b.t));
+        value.truncate(crate::paint::Gradient::MOST_STOPS);
+        if value.is_empty() {
+            *value = super::gradient_map::black_to_white();
+        }
+    }
+
+    fn table(&mut self, _: ParameterName, _: &mut Option<ColorTable>) {}
+
+    fn group(&mut self, _: ParameterName, inside: &mut dyn FnMut(&mut dyn ParameterVisitor)) {
+        inside(self);
+    }
+}
