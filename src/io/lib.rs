@@ -7,6 +7,7 @@ pub mod base64;
 pub mod bitmap;
 pub mod brush;
 pub mod budget;
+pub mod cube;
 pub mod deep_paint;
 pub mod export;
 pub mod exr;

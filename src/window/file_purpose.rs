@@ -13,6 +13,8 @@ pub enum FilePurpose {
     Place,
     ImportUnwrapped,
     Brush,
+    /// A table of colours.
+    ColorTable,
     NormalMap,
     DepthMap,
     MaskMap,
@@ -38,6 +40,7 @@ impl FilePurpose {
             FilePurpose::Place => "Place an image",
             FilePurpose::ImportUnwrapped => "Import a picture of the unwrapped surface",
             FilePurpose::Brush => "Import a brush",
+            FilePurpose::ColorTable => "Colour look-up table",
             FilePurpose::NormalMap => "Normal map",
             FilePurpose::DepthMap => "Depth map",
             FilePurpose::MaskMap => "Mask",
@@ -69,6 +72,7 @@ impl FilePurpose {
                 ("Pictures and maps", pictures()),
             ],
             FilePurpose::Brush => vec![("Brushes", EXTENSIONS.to_vec())],
+            FilePurpose::ColorTable => vec![("Tables", vec!["cube"])],
             FilePurpose::Place
             | FilePurpose::ImportUnwrapped
             | FilePurpose::NormalMap

@@ -3,6 +3,7 @@
 
 use super::file_purpose::FilePurpose;
 use super::panel_layout::PanelKind;
+use crate::paint::ColorAdjustment;
 use crate::session::Action;
 use crate::session::actions::{EdgeChange, PasteTo};
 use std::path::PathBuf;
@@ -63,6 +64,8 @@ pub enum WindowRequest {
     /// Asks first if there is unsaved work.
     Close(usize),
     Quit,
+    /// For the paint of the chosen layers.
+    AdjustDialog(Box<ColorAdjustment>),
     EdgeDialog(EdgeChange),
     KeepDialog,
     GridDialog,

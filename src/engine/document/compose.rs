@@ -7,7 +7,7 @@ use super::far_side::{FarScene, FarTile};
 use super::layer::adjustment::{AdjustedPlace, Adjustment};
 use super::layer::tile_content::TileContent;
 use super::prepare::{PreparedDocument, PreparedLayer};
-use super::{Content, Role, mask};
+use super::{Content, Layer, Role, mask};
 use crate::raster::{BlendMode, Mix, PlanarTile, TILE, Tile, TileAt, TileCoverage, TilePaint};
 use crate::shading::radiance::{BackdropStats, Exactness};
 use std::ops::ControlFlow;
@@ -247,14 +247,23 @@ impl Composer<'_> {
                 adjustment.adjust(&place, beneath, exactness, pixels);
             }
         };
-        if coverage.is_full() && node.clipped.is_empty() {
+        let Layer { blend, blend_linear: linear, .. } = *node.layer;
+        let is_plain = blend == BlendMode::Normal && !linear;
+        if is_plain && coverage.is_full() && node.clipped.is_empty() {
             apply(onto);
             return ComposeFlow::Continue(());
         }
         let mut after = onto.clone();
         apply(&mut after);
         self.clipped(node, &mut after)?;
-        onto.mix_toward(&after, coverage);
+        if is_plain {
+            onto.mix_toward(&after, coverage);
+            return ComposeFlow::Continue(());
+        }
+        // The changed colours are blended with those before, wherever these are; alpha stays.
+        after.make_opaque();
+        let mix = Mix { mode: blend, linear, atop: true, ..Mix::default() }.on(self.at);
+        self.blend(onto, mix, TilePaint::Planar(&after), coverage);
         ComposeFlow::Continue(())
     }
 

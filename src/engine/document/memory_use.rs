@@ -1,7 +1,7 @@
 //! The memory that documents use, counted value by value.
 //! Floor 4. Not here: which values there are (their owners, `count_memory`).
 
-use crate::paint::{PictureSource, Selection, Stroke};
+use crate::paint::{LiveAdjustment, PictureSource, Selection, Stroke};
 use crate::raster::{CoverageGrid, TileGrid};
 use crate::surface::Surface;
 use std::collections::HashSet;
@@ -80,6 +80,12 @@ impl MemoryCount {
     /// Tiles that a layer was rendered to.
     pub(in crate::document) fn add_kept(&mut self, bytes: u64) {
         self.used.kept += bytes;
+    }
+
+    pub(in crate::document) fn add_adjustment(&mut self, adjustment: &LiveAdjustment) {
+        if self.seen.insert(adjustment.place()) {
+            self.used.kept += adjustment.kept_bytes();
+        }
     }
 
     pub(in crate::document) fn add_stroke(&mut self, stroke: &Arc<Stroke>) {

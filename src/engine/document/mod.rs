@@ -1,6 +1,7 @@
 //! Floor 4: the document is a value. It is cheap to clone and never changed while shared: an edit
 //! is a new document, undo is a list of them, and what differs by pointer must be redrawn.
 
+mod adjusted;
 mod apply_transform;
 pub mod assistants;
 pub mod canvas_change;
@@ -16,6 +17,7 @@ mod fit;
 pub mod flatten;
 mod frame_box;
 pub mod guides;
+mod histogram;
 pub mod history;
 mod homes;
 mod layer;
@@ -48,6 +50,7 @@ pub use flatten::{
 };
 pub use frame_box::FrameBox;
 pub use guides::Guides;
+pub use histogram::Histogram;
 pub use history::{EditLabel, History, LabelledLayer};
 pub use layer::{
     AdjustedPlace, Adjustment, BackdropMeter, Content, DerivedMask, DetailSource, EncodedPixels,

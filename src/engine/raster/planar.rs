@@ -82,6 +82,18 @@ impl PlanarTile {
         }
     }
 
+    /// Gives every pixel that is there its straight colour, wholly opaque.
+    pub fn make_opaque(&mut self) {
+        for PixelRow { rgb, a } in &mut self.rows {
+            for channel in rgb {
+                for (v, &a) in channel.iter_mut().zip(a.iter()).filter(|(_, a)| **a > 0.0) {
+                    *v = (*v / a).min(BRIGHTEST);
+                }
+            }
+            a.iter_mut().filter(|a| **a > 0.0).for_each(|a| *a = 1.0);
+        }
+    }
+
     /// Writes every pixel out.
     pub fn to_pixels(&self, pixels: &mut TileF32) {
         for (row, pixels) in self.rows.iter().zip(pixels.chunks_exact_mut(TILE)) {

@@ -49,13 +49,23 @@ pub struct FormatSupport {
     pub masks: bool,
     /// Whether it has a name for a blend mode that other programs read as we do.
     pub says: fn(BlendMode) -> bool,
+    /// Whether it has a word for an adjustment of what lies beneath.
+    pub adjusts: fn(&Content) -> bool,
 }
 
 impl FormatSupport {
-    pub const OPENRASTER: FormatSupport =
-        FormatSupport { clipping: false, masks: false, says: BlendMode::is_said_by_openraster };
-    pub const PHOTOSHOP: FormatSupport =
-        FormatSupport { clipping: true, masks: true, says: BlendMode::is_said_by_photoshop };
+    pub const OPENRASTER: FormatSupport = FormatSupport {
+        clipping: false,
+        masks: false,
+        says: BlendMode::is_said_by_openraster,
+        adjusts: |_| false,
+    };
+    pub const PHOTOSHOP: FormatSupport = FormatSupport {
+        clipping: true,
+        masks: true,
+        says: BlendMode::is_said_by_photoshop,
+        adjusts: |content| matches!(content, Content::Adjustment(live) if live.params().is_said_by_photoshop()),
+    };
 }
 
 pub enum ItemContent {
@@ -243,7 +253,7 @@ impl Planner<'_> {
         }
         let clips = rest.iter().any(|layer| layer.clip_below && layer.visible);
         match base.content.role() {
-            Role::Adjusts(_) => true,
+            Role::Adjusts(_) => clips || !self.says_adjustment(base),
             Role::Shapes(_) => false,
             Role::Groups(group) if group.pass_through && !clips => {
                 let is_faded = base.opacity < 1.0 || base.mask.is_some();
@@ -253,10 +263,20 @@ impl Planner<'_> {
         }
     }
 
+    /// Whether the format can express an adjustment, with its mask, on all that lies beneath it.
+    fn says_adjustment(&self, layer: &Layer) -> bool {
+        let is_cut = layer.clip_to_surface && self.document.surface.is_some();
+        (self.words.adjusts)(&layer.content)
+            && !is_cut
+            && !layer.blend_linear
+            && (self.words.says)(layer.blend)
+            && layer.mask.as_ref().is_none_or(|mask| self.has_word_for(mask))
+    }
+
     fn says_how_it_meets(&self, layer: &Layer) -> bool {
         !layer.blend_linear
             && (self.words.says)(layer.blend)
-            && !matches!(layer.content.role(), Role::Adjusts(_))
+            && (!matches!(layer.content.role(), Role::Adjusts(_)) || self.says_adjustment(layer))
     }
 }
 
@@ -265,7 +285,8 @@ fn keep_to_surface(layers: &[Arc<Layer>]) -> bool {
     layers.iter().all(|layer| match layer.content.role() {
         Role::Groups(group) => keep_to_surface(&group.layers),
         Role::Paints => layer.clip_to_surface && !layer.content.shows_off_surface(),
-        Role::Adjusts(_) | Role::Shapes(_) => true,
+        Role::Adjusts(_) => layer.clip_to_surface,
+        Role::Shapes(_) => true,
     })
 }
 

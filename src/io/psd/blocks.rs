@@ -5,15 +5,10 @@ use super::colours::Colours;
 use super::cursor::ByteCursor;
 use super::descriptor::{self, DescriptorObject};
 use super::outline::VectorPaths;
-use super::{LayerRecord, RecordSection, fill, marks};
+use super::{LayerRecord, RecordSection, adjustments, fill, marks};
 use crate::math::Rect;
 use crate::math::srgb::Color;
-
-/// Blocks of a layer that say what is left out, or what only its pixels show.
-const ADJUSTMENTS: [[u8; 4]; 17] = [
-    *b"levl", *b"curv", *b"brit", *b"hue2", *b"hue ", *b"blnc", *b"blwh", *b"phfl", *b"mixr",
-    *b"clrL", *b"nvrt", *b"post", *b"thrs", *b"selc", *b"grdm", *b"expA", *b"vibA",
-];
+use crate::paint::ColorAdjustment;
 
 /// The ground of an artboard, which also cuts off what is beyond it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,7 +65,24 @@ pub fn take(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor, colour
         b"SoLd" | b"SoLE" | b"PlLd" | b"plLd" => record.tell("its smart object became pixels"),
         b"lfx2" | b"lmfx" | b"lrFX" => effects(record, key, data),
         b"vstk" => stroked(record, &mut data),
-        key if ADJUSTMENTS.contains(key) => record.leave_out("its adjustment is left out"),
+        &adjustments::NEWER => {
+            // Only brightness and contrast have newer numbers.
+            let is_other = record
+                .adjustment
+                .as_ref()
+                .is_some_and(|old| !matches!(old, ColorAdjustment::BrightnessContrast(_)));
+            if let Some(newer) = adjustments::newer_brightness(&mut data).filter(|_| !is_other) {
+                record.adjustment = Some(newer);
+            }
+        }
+        // The newer numbers may have come before the old ones.
+        b"brit" if record.adjustment.is_some() => {}
+        key if adjustments::KEYS.contains(key) => {
+            record.adjustment = adjustments::read(*key, &mut data, colours);
+            if record.adjustment.is_none() {
+                record.leave_out("its adjustment is left out");
+            }
+        }
         _ => blending(record, key, data),
     }
 }

@@ -100,6 +100,12 @@ impl ColourValue for u16 {
 }
 
 impl Colours<'_> {
+    /// Of a mode, without profile or table.
+    pub fn of_mode(mode: Mode) -> Self {
+        let channels = usize::from(mode.channels());
+        Self { mode, channels, is_light: false, table: &[], nothing: None, icc: None }
+    }
+
     /// As [`to_srgb`](Self::to_srgb), of RGB and grey, in 16 bits.
     fn to_srgb_deep(
         self,

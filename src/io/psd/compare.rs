@@ -6,6 +6,7 @@
 //!
 //! * alike, and nothing left out: the layers alone;
 //! * alike, though something was left out: the file's picture is hidden above them;
+//! * nearly alike, and nothing but adjustments can be the reason: the same, with a note;
 //! * unlike: the file's picture is shown, and the layers are hidden beneath it, in a group.
 
 use super::filled;
@@ -20,6 +21,9 @@ use std::sync::Arc;
 /// hundredth of the pixels.
 const ALIKE_MEAN: f64 = 1.0;
 const ALIKE_P99: usize = 8;
+/// Those of pictures that are near enough for live adjustments, whose formulas are fitted.
+const NEAR_MEAN: f64 = 3.0;
+const NEAR_P99: usize = 16;
 /// Names of what is added.
 const PICTURE: &str = "The file's own picture";
 const LAYERS: &str = "Layers";
@@ -35,6 +39,10 @@ struct Difference {
 impl Difference {
     fn is_alike(self) -> bool {
         self.mean <= ALIKE_MEAN && self.p99 <= ALIKE_P99
+    }
+
+    fn is_near(self) -> bool {
+        self.mean <= NEAR_MEAN && self.p99 <= NEAR_P99
     }
 
     /// How many pixels differ by how much.
@@ -87,6 +95,13 @@ pub fn check_against_merged(
         return document;
     }
     let Difference { mean, most, .. } = difference;
+    if difference.is_near() && !is_less && has_adjustments(&document) {
+        notes.push(format!(
+            "its adjustments differ from the file's own picture by {mean:.1} of 255 on average, {most} at most; \
+             that is hidden above them as “{PICTURE}”"
+        ));
+        return with_picture(document, &merged, false);
+    }
     if is_blank(&merged.pixels.rgba) {
         notes
             .push("the file's own picture is empty, so it was not compared with the layers".into());
@@ -103,6 +118,10 @@ pub fn check_against_merged(
         ..Layer::new(LAYERS, Content::Group(group))
     };
     with_picture(Document { layers: vec![Arc::new(layers)], ..document }, &merged, true)
+}
+
+fn has_adjustments(document: &Document) -> bool {
+    document.walk().iter().any(|(_, layer)| matches!(layer.content, Content::Adjustment(_)))
 }
 
 fn with_picture(mut document: Document, merged: &Merged, visible: bool) -> Document {

@@ -18,6 +18,7 @@ pub enum DescriptorValue {
     List(Vec<DescriptorValue>),
     /// One of some named choices.
     Word(Vec<u8>),
+    Bytes(Vec<u8>),
     /// A kind that is not read.
     Else,
 }
@@ -58,6 +59,13 @@ impl DescriptorObject {
     pub fn text(&self, name: &str) -> Option<&str> {
         match self.get(name)? {
             DescriptorValue::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+
+    pub fn bytes(&self, name: &str) -> Option<&[u8]> {
+        match self.get(name)? {
+            DescriptorValue::Bytes(bytes) => Some(bytes),
             _ => None,
         }
     }
@@ -168,7 +176,8 @@ fn value(cursor: &mut ByteCursor, deeper: u32, left: &mut u32) -> Option<Descrip
             cursor.take(8)?;
             DescriptorValue::Else
         }
-        b"tdta" | b"alis" | b"Pth " => {
+        b"tdta" => DescriptorValue::Bytes(cursor.section(false)?.rest().to_vec()),
+        b"alis" | b"Pth " => {
             cursor.section(false)?;
             DescriptorValue::Else
         }

@@ -5,8 +5,8 @@
 use super::isolation::can_be_isolated;
 use super::write::{encode_file, on_white};
 use super::{
-    LayerRecord, MOST_RECORDS, PASS_THROUGH, RecordMask, RecordSection, alpha_channels, cursor,
-    marks, signature, verify,
+    LayerRecord, MOST_RECORDS, PASS_THROUGH, RecordMask, RecordSection, adjustments,
+    alpha_channels, cursor, marks, signature, verify,
 };
 use crate::document::EncodedPixels;
 use crate::document::{
@@ -182,9 +182,13 @@ impl RecordBuilder {
             (Rect::new(preview.x, preview.y, x1, y1), rgba)
         };
         let mask = item.mask.as_ref().and_then(|mask| self.mask(mask));
+        let adjustment = match &item.shows {
+            ItemContent::Nothing(layer) => adjustments::as_read(&layer.content),
+            _ => None,
+        };
         match &item.shows {
             ItemContent::Layer(layer) | ItemContent::Nothing(layer) => {
-                if !matches!(layer.content, Content::Pixels(_)) {
+                if !matches!(layer.content, Content::Pixels(_)) && adjustment.is_none() {
                     self.notes.push(format!(
                         "“{}” is live here and pixels for other programs",
                         item.name
@@ -200,7 +204,7 @@ impl RecordBuilder {
                 .notes
                 .push(format!("“{}” is composed of several layers for other programs", item.name)),
         }
-        self.records.push(LayerRecord { rect, rgba, mask, ..record(item) });
+        self.records.push(LayerRecord { rect, rgba, mask, adjustment, ..record(item) });
         Ok(())
     }
 

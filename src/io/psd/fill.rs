@@ -85,18 +85,7 @@ pub fn colour(said: &DescriptorObject, colours: &Colours) -> Option<Color> {
     let all = |names: [&str; 3]| {
         Some([said.number(names[0])?, said.number(names[1])?, said.number(names[2])?])
     };
-    let in_mode = |mode: Mode, values: [u8; 4]| {
-        let channels = usize::from(mode.channels());
-        let own = Colours {
-            mode,
-            channels,
-            icc: colours.icc.filter(|_| colours.mode == mode),
-            ..*colours
-        };
-        let planes = values.map(|v| Some(vec![v]));
-        let rgba = own.to_srgb(Size::new(1, 1), &planes, None);
-        Color { r: rgba[0], g: rgba[1], b: rgba[2], a: 255 }
-    };
+    let in_mode = |mode: Mode, values: [u8; 4]| in_mode(mode, values, colours);
     if let Some(rgb) = all(["Rd  ", "Grn ", "Bl  "]) {
         let [r, g, b] = rgb.map(|v| byte(v, 255.0));
         return Some(in_mode(Mode::Rgb, [r, g, b, 0]));
@@ -109,14 +98,36 @@ pub fn colour(said: &DescriptorObject, colours: &Colours) -> Option<Color> {
         let [c, m, y] = cmy.map(|ink| byte(100.0 - ink, 100.0));
         return Some(in_mode(Mode::Cmyk, [c, m, y, byte(100.0 - k, 100.0)]));
     }
-    if let Some([l, a, b]) = all(["Lmnc", "A   ", "B   "]) {
-        return Some(in_mode(
-            Mode::Lab,
-            [byte(l, 100.0), byte(a + 128.0, 255.0), byte(b + 128.0, 255.0), 0],
-        ));
+    if let Some(lab) = all(["Lmnc", "A   ", "B   "]) {
+        return Some(lab_colour(lab, colours));
     }
     let grey = byte(100.0 - said.number("Gry ")?, 100.0);
     Some(in_mode(Mode::Grey, [grey, 0, 0, 0]))
+}
+
+/// A colour of one mode, of a file in perhaps another.
+fn in_mode(mode: Mode, values: [u8; 4], colours: &Colours) -> Color {
+    let channels = usize::from(mode.channels());
+    let icc = colours.icc.filter(|_| colours.mode == mode);
+    let own = Colours { mode, channels, icc, ..*colours };
+    let planes = values.map(|v| Some(vec![v]));
+    let rgba = own.to_srgb(Size::new(1, 1), &planes, None);
+    Color { r: rgba[0], g: rgba[1], b: rgba[2], a: 255 }
+}
+
+/// A colour of Lab, L to 100.
+pub fn lab_colour([l, a, b]: [f32; 3], colours: &Colours) -> Color {
+    let byte = |v: f32, full: f32| srgb::quantise(v / full);
+    let values = [byte(l, 100.0), byte(a + 128.0, 255.0), byte(b + 128.0, 255.0), 0];
+    in_mode(Mode::Lab, values, colours)
+}
+
+/// A colour of CIE XYZ relative to D50.
+pub fn xyz_colour([x, y, z]: [f32; 3], colours: &Colours) -> Color {
+    // The white point of D50, and CIE's curve of lightness.
+    let f = |v: f32| if v > 0.008_856 { v.cbrt() } else { 7.787 * v + 16.0 / 116.0 };
+    let [fx, fy, fz] = [f(x / 0.9642), f(y), f(z / 0.8249)];
+    lab_colour([116.0 * fy - 16.0, 500.0 * (fx - fy), 200.0 * (fy - fz)], colours)
 }
 
 /// Hue in degrees, saturation and brightness as shares.
@@ -154,10 +165,10 @@ fn gradient(said: &DescriptorObject, colours: &Colours) -> Option<GradientFill> 
 
 /// A value at a place of a ramp, and where the middle between it and the next lies.
 #[derive(Clone, Copy)]
-struct Mark<T> {
-    t: f32,
-    middle: f32,
-    value: T,
+pub struct Mark<T> {
+    pub t: f32,
+    pub middle: f32,
+    pub value: T,
 }
 
 /// The ramp's colours and opacities as stops of colours with alpha; `None` of noise.
@@ -177,6 +188,14 @@ fn stops(ramp: &DescriptorObject, colours: &Colours) -> Option<Vec<GradientStop>
         let (t, middle) = place(object)?;
         opacities.push(Mark { t, middle, value: [share(object, "Opct", 1.0)] });
     }
+    self::ramp(inks, opacities)
+}
+
+/// Colours and opacities as stops of colours with alpha; `None` without a colour.
+pub fn ramp(
+    mut inks: Vec<Mark<[f32; 3]>>,
+    mut opacities: Vec<Mark<[f32; 1]>>,
+) -> Option<Vec<GradientStop>> {
     inks.sort_by(|a, b| a.t.total_cmp(&b.t));
     opacities.sort_by(|a, b| a.t.total_cmp(&b.t));
     inks.first()?;

@@ -9,6 +9,7 @@
 //! | `colours` | what planes mean, as sRGB |
 //! | `parse`, `layers`, `blocks` | a file into its parts, its records and what follows them |
 //! | `masks`, `outline` | masks that are pictures, and those that are paths |
+//! | `adjustments` | what adjustment layers do |
 //! | `fill`, `pattern`, `filled` | what fill layers are filled with, besides the pixels that show it |
 //! | `alpha_channels` | selections, the channels besides the colours |
 //! | `marks` | guides, and the colours of layers in the list |
@@ -22,6 +23,7 @@
 //!
 //! Our files hold a private resource with the document itself, so that live layers come back live.
 
+mod adjustments;
 mod alpha_channels;
 mod blocks;
 pub(super) mod channel;
@@ -52,6 +54,7 @@ pub use tree::read;
 
 use crate::document::{Document, LayerLabel};
 use crate::math::Rect;
+use crate::paint::ColorAdjustment;
 use blocks::ArtboardBackground;
 use fill::LayerFill;
 use outline::VectorPaths;
@@ -101,6 +104,8 @@ pub struct LayerRecord {
     pub outline: Option<VectorPaths>,
     /// What it is filled with.
     pub fill: Option<LayerFill>,
+    /// It adjusts what is beneath it.
+    pub adjustment: Option<ColorAdjustment>,
     /// It is an artboard.
     pub ground: Option<ArtboardBackground>,
     /// Whether any of its effects is switched on, where it has some.
@@ -155,6 +160,7 @@ impl Default for LayerRecord {
             mask: None,
             outline: None,
             fill: None,
+            adjustment: None,
             ground: None,
             effects: None,
             is_shape: false,
@@ -201,6 +207,9 @@ fn signature(records: &[LayerRecord]) -> u32 {
             format!("{:?}{:?}{:?}{}{flags:?}{:?}", r.name, r.rect, r.blend, r.opacity, r.section)
                 .as_bytes(),
         );
+        if let Some(adjustment) = &r.adjustment {
+            hasher.update(format!("{adjustment:?}").as_bytes());
+        }
         if let Some(mask) = &r.mask {
             hasher.update(format!("{:?}{}", mask.rect, mask.outside).as_bytes());
             hasher.update(&mask.values);

@@ -1,3 +1,4 @@
+mod adjusted;
 mod deep;
 mod foreign;
 mod made;

@@ -44,35 +44,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
         }
     }
     notes.extend(colour_notes(&parsed));
-    let size = parsed.header.size;
-    let kept =
-        parsed.merged.as_mut().map(|merged| (std::mem::take(&mut merged.selections), merged.inks));
-    let kept = kept.unwrap_or_default();
-    if parsed.records.is_empty() {
-        flattened(&mut parsed);
-    }
-    // One level is kept for the group that the layers may be hidden in.
-    let deepest = budget.group_depth.saturating_sub(1);
-    let mut builder = TreeBuilder {
-        size,
-        deepest,
-        patterns: &parsed.patterns,
-        open: vec![Vec::new()],
-        is_less: false,
-        notes,
-    };
-    std::mem::take(&mut parsed.records).into_iter().for_each(|record| builder.add(record));
-    let (layers, is_less, mut notes) = builder.done();
-    let (selections, inks) = kept;
-    if inks > 0 {
-        notes.push("inks in addition to its colours are left out".into());
-    }
-    let (guides, lost) = parsed.guides;
-    if lost > 0 {
-        notes
-            .push(format!("{lost} of its guides are left out: they are too many, or too far away"));
-    }
-    let document = Document { layers, selections, guides: guides.into(), ..Document::empty(size) };
+    let (document, is_less) = built(&mut parsed, budget, &mut notes);
     if parsed.merged.is_some() {
         let compared = parsed.held_bytes.saturating_add(document.flattening_bytes());
         budget.room(file, "comparing its layers with its own picture", compared)?;
@@ -84,6 +56,45 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
         &mut notes,
     );
     Ok(ProjectContents { document, notes, is_whole: damage.is_empty(), picture: None })
+}
+
+/// The document that a file's records say, and whether something was left out.
+pub(super) fn built(
+    parsed: &mut ParsedPsd,
+    budget: &Budget,
+    notes: &mut Vec<String>,
+) -> (Document, bool) {
+    let size = parsed.header.size;
+    let kept =
+        parsed.merged.as_mut().map(|merged| (std::mem::take(&mut merged.selections), merged.inks));
+    let kept = kept.unwrap_or_default();
+    if parsed.records.is_empty() {
+        flattened(parsed);
+    }
+    // One level is kept for the group that the layers may be hidden in.
+    let deepest = budget.group_depth.saturating_sub(1);
+    let mut builder = TreeBuilder {
+        size,
+        deepest,
+        patterns: &parsed.patterns,
+        open: vec![Vec::new()],
+        is_less: false,
+        notes: std::mem::take(notes),
+    };
+    std::mem::take(&mut parsed.records).into_iter().for_each(|record| builder.add(record));
+    let (layers, is_less, told) = builder.done();
+    *notes = told;
+    let (selections, inks) = kept;
+    if inks > 0 {
+        notes.push("inks in addition to its colours are left out".into());
+    }
+    let (guides, lost) = parsed.guides.clone();
+    if lost > 0 {
+        notes
+            .push(format!("{lost} of its guides are left out: they are too many, or too far away"));
+    }
+    let document = Document { layers, selections, guides: guides.into(), ..Document::empty(size) };
+    (document, is_less)
 }
 
 /// Ours keep their places to the last digit, unless another program moved them.
@@ -213,7 +224,10 @@ impl TreeBuilder<'_> {
                 self.layer(record, Content::Group(group))
             }
             RecordSection::Layer => {
-                let content = filled::content(&mut record, self.size, self.patterns);
+                let content = match record.adjustment.take() {
+                    Some(adjustment) => adjustment.into(),
+                    None => filled::content(&mut record, self.size, self.patterns),
+                };
                 self.layer(record, content)
             }
         };

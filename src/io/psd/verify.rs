@@ -106,6 +106,7 @@ fn differing_field(read: &LayerRecord, meant: &LayerRecord) -> Option<&'static s
         ),
         ((read.lock_alpha, read.lock_all) == (meant.lock_alpha, meant.lock_all), "the lock"),
         (read.label == meant.label, "the label"),
+        (read.adjustment == meant.adjustment, "the adjustment"),
         // Effects, fills, outlines: none is written.
         (read == meant, "something that was not put there"),
     ];

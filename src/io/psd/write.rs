@@ -5,7 +5,7 @@ use super::channel::pack;
 use super::{
     ICC_PROFILE, LayerRecord, MAGIC, OURS, RESOLUTION, RecordMask, RecordSection, VERSION_INFO,
 };
-use super::{alpha_channels, marks};
+use super::{adjustments, alpha_channels, marks};
 use crate::document::{Guides, LayerLabel, NamedSelection};
 use crate::math::{Rect, Size};
 
@@ -207,6 +207,9 @@ fn header(out: &mut Vec<u8>, record: &LayerRecord, channels: &[(i16, Vec<u8>)], 
     }
     if record.label != LayerLabel::None {
         block(&mut extra, b"lclr", &marks::label_block(record.label));
+    }
+    for (key, data) in record.adjustment.iter().flat_map(adjustments::blocks) {
+        block(&mut extra, &key, &data);
     }
     let kind: u32 = match record.section {
         RecordSection::Layer => 0,

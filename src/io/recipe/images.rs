@@ -245,7 +245,8 @@ fn weights(node: &JsonNode) -> Result<Weights> {
     Ok(Weights::Shepard { power })
 }
 
-fn stops(node: &JsonNode) -> Result<Vec<GradientStop>> {
+/// The stops of a ramp, each at or above the one before.
+pub fn stops(node: &JsonNode) -> Result<Vec<GradientStop>> {
     let items = node.list(Gradient::MOST_STOPS)?;
     if items.is_empty() {
         return Err(node.refused("is empty; a gradient needs at least one stop"));

@@ -2,6 +2,7 @@
 //! Floor 5.
 
 use super::LayerReader;
+use super::value::RecipeValue;
 use super::{images, liquify, masks, normals, shading, strokes, transforms};
 use crate::document::{
     Content, Group, HomeFrame, Layer, LayerLabel, LayerLock, Live, PixelLayer, SelectionList,
@@ -9,6 +10,7 @@ use crate::document::{
 use crate::json::{Fields, JsonNode, JsonObject, Printer, object};
 use crate::math::Size;
 use crate::math::srgb::Color;
+use crate::paint::ColorAdjustment;
 use crate::raster::{BlendMode, TileGrid};
 use crate::{Error, Result};
 use serde_json::Value;
@@ -22,7 +24,7 @@ const BLEND_SPACES: [(bool, &str); 2] = [(false, "srgb"), (true, "linear")];
 type ReadContent = fn(&mut LayerReader<'_>, &mut Fields<'_>, usize) -> Result<Content>;
 
 /// Every kind of layer as it is read, with its name in documents ([`Content::kind_name`]).
-const KINDS: [(ReadContent, &str); 9] = [
+const KINDS: [(ReadContent, &str); 10] = [
     (|_, fields, _| Ok(Content::Fill(fields.color("color", Color::BLACK)?)), "fill"),
     (|reader, fields, _| Ok(Content::Pixels(reader.pixels(fields)?)), "pixels"),
     (|reader, fields, _| Ok(Content::Image(Live::new(reader.image(fields)?))), "image"),
@@ -32,6 +34,10 @@ const KINDS: [(ReadContent, &str); 9] = [
     (
         |_, fields, _| Ok(Content::RadianceScaling(shading::radiance_scaling(fields)?)),
         "radiance-scaling",
+    ),
+    (
+        |_, fields, _| Ok(ColorAdjustment::from_json(&fields.required("adjust")?)?.into()),
+        "adjustment",
     ),
     (|reader, fields, _| Ok(Content::Normals(reader.normals(fields)?)), "normals"),
     (|reader, fields, depth| Ok(Content::Group(reader.group(fields, depth)?)), "group"),
@@ -184,6 +190,7 @@ fn write_content(out: &mut JsonObject, content: &Content, canvas: Size) {
         Content::Strokes(_) => {}
         Content::Shading(live) => shading::write(out, live.params()),
         Content::RadianceScaling(scaling) => shading::write_radiance_scaling(out, scaling),
+        Content::Adjustment(live) => out.set("adjust", live.params().to_json()),
         Content::Normals(layer) => normals::write(out, layer, canvas),
         Content::Group(group) => out.flag("pass_through", group.pass_through, false),
     }

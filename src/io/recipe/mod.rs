@@ -23,6 +23,7 @@
 //! | `version` | which version a document needs |
 //! | `value` | the trait of values that replays write as recipes do |
 
+mod adjustments;
 mod brush;
 mod brush_options;
 mod guides;

@@ -47,6 +47,7 @@ pub fn needs_second_version(document: &Document) -> bool {
             || layer.transform.is_some()
             || layer.liquify.is_some()
             || layer.label != LayerLabel::None
+            || matches!(layer.content, Content::Adjustment(_))
     };
     has_matrix
         || !document.parts.is_empty()

@@ -145,6 +145,42 @@ fn baking_changes_what_a_layer_is_and_no_pixel() {
 }
 
 #[test]
+fn adjusted_paint_is_shown_then_kept_as_one_step_or_forgotten() {
+    let mut session = replay(&format!(
+        r#"{PAPER}{STROKE}
+        {{"in":"layer","do":"bake","layer":"1"}}
+        {{"in":"layer","do":"adjust","layer":"1","adjustment":{{"kind":"invert"}},"done":false}}"#
+    ));
+    let (red, inverted) = ([0xc0, 0x20, 0x10, 255], [0x3f, 0xdf, 0xef, 255]);
+    let kept = |session: &Session| {
+        let document = session.active().unwrap().document();
+        flatten(document, &Progress::default()).unwrap().pixel(100, 70)
+    };
+    assert_eq!((pixel(&session, 100, 70), kept(&session)), (inverted, red));
+    let forget = r#"{"in":"layer","do":"unadjust"}"#;
+    session.replay(Path::new("story"), forget).unwrap();
+    assert_eq!(shown(&session), red);
+    let keep =
+        r#"{"in":"layer","do":"adjust","layer":"1","adjustment":{"kind":"invert"},"done":true}"#;
+    session.replay(Path::new("story"), keep).unwrap();
+    assert_eq!(kept(&session), inverted);
+    session.replay(Path::new("story"), r#"{"in":"edit","do":"undo"}"#).unwrap();
+    assert_eq!(pixel(&session, 100, 70), red);
+}
+
+#[test]
+fn an_adjustment_layer_changes_what_is_beneath_it_and_the_selection_masks_it() {
+    let mut session = replay(&format!(
+        r#"{PAPER}{STROKE}
+        {{"in":"layer","do":"add adjustment","adjustment":{{"kind":"threshold","level":100}}}}"#
+    ));
+    assert_eq!((pixel(&session, 100, 70), pixel(&session, 5, 5)), ([0, 0, 0, 255], [255; 4]));
+    let set = r#"{"in":"layer","do":"set","layer":"2","to":{"do":"adjustment","to":{"kind":"invert"}},"done":true}"#;
+    session.replay(Path::new("story"), set).unwrap();
+    assert_eq!(pixel(&session, 5, 5), [0, 0, 0, 255]);
+}
+
+#[test]
 fn a_layer_alone_hides_the_others_until_it_is_no_longer() {
     let mut session = replay(&format!("{PAPER}{STROKE}"));
     let solo = r#"{"in":"layer","do":"solo","layer":"1"}"#;

@@ -68,7 +68,10 @@ fn layer_is(session: &Session, is: impl FnOnce(&Layer) -> bool) -> bool {
 
 fn is_live(session: &Session) -> bool {
     layer_is(session, |layer| {
-        !matches!(layer.content, Content::Pixels(_) | Content::RadianceScaling(_))
+        !matches!(
+            layer.content,
+            Content::Pixels(_) | Content::RadianceScaling(_) | Content::Adjustment(_)
+        )
     })
 }
 

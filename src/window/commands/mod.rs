@@ -1,6 +1,7 @@
 //! The commands of the menus: one row per command, with its keys. Menus, keyboard, palette and the
 //! list of shortcuts are made from the same rows. Floor 7.
 
+mod adjustments;
 mod edit;
 mod file;
 mod guides;
@@ -30,6 +31,10 @@ pub const MENUS: [(&str, &[MenuCommand]); 8] = [
 ];
 /// A menu within Layer.
 pub const SHADING: &[MenuCommand] = shading::COMMANDS;
+/// A menu within Layer.
+pub const ADJUSTMENT_LAYERS: &[MenuCommand] = adjustments::LAYERS;
+/// A menu within Image.
+pub const ADJUSTMENTS: &[MenuCommand] = adjustments::PAINT;
 /// A menu within View.
 pub const GUIDES: &[MenuCommand] = guides::COMMANDS;
 /// A menu within Layer.
@@ -47,6 +52,8 @@ pub fn all() -> impl Iterator<Item = &'static MenuCommand> {
         .chain(PARTS)
         .chain(TRANSFORMS)
         .chain(GUIDES)
+        .chain(ADJUSTMENT_LAYERS)
+        .chain(ADJUSTMENTS)
         .filter(|command| !command.is_line())
 }
 

@@ -1,6 +1,7 @@
 //! Dialogs: one at a time, over the window. Each is a struct that holds the input and a function
 //! that shows it. Floor 7.
 
+pub mod adjust;
 pub mod canvas;
 pub mod edge;
 pub mod export;
@@ -33,6 +34,7 @@ use std::path::PathBuf;
 /// The dialog that is open.
 pub enum Dialog {
     New(new::NewDialog),
+    Adjust(Box<adjust::AdjustDialog>),
     Edge(edge::EdgeDialog),
     Keep(edge::KeepDialog),
     Grid,
@@ -96,10 +98,18 @@ impl Dialog {
         preview: Option<egui::TextureId>,
         requests: &mut UiRequests,
     ) -> DialogAnswer {
-        let modal = Modal::new(Id::unique("dialog")).show(ctx, |ui| {
+        let mut modal = Modal::new(Id::unique("dialog"));
+        if let Dialog::Adjust(_) = self {
+            // Beside the picture, which shows what it does.
+            let beside = Modal::default_area(Id::unique("dialog"))
+                .anchor(egui::Align2::RIGHT_TOP, egui::vec2(-24.0, 72.0));
+            modal = modal.area(beside).backdrop_color(egui::Color32::TRANSPARENT);
+        }
+        let modal = modal.show(ctx, |ui| {
             ui.spacing_mut().item_spacing.y = 7.0;
             match self {
                 Dialog::New(new) => new.show(ui, requests),
+                Dialog::Adjust(adjust) => adjust.show(ui, requests),
                 Dialog::Edge(edge) => edge.show(ui, requests),
                 Dialog::Keep(keep) => {
                     let kept = session.active().map_or(&[][..], |open| &open.document().selections);
@@ -125,11 +135,15 @@ impl Dialog {
                 Dialog::About => help::about(ui),
             }
         });
-        if modal.should_close() && matches!(modal.inner, DialogAnswer::Open) {
+        let answer = if modal.should_close() && matches!(modal.inner, DialogAnswer::Open) {
             DialogAnswer::Close
         } else {
             modal.inner
+        };
+        if let (Dialog::Adjust(adjust), DialogAnswer::Close) = (&*self, &answer) {
+            adjust.forget(requests);
         }
+        answer
     }
 }
 

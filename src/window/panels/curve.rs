@@ -45,91 +45,132 @@ fn span_of(curve: &Curve) -> f32 {
 
 /// Shows a curve and bends it: a click adds a point, a drag moves one, a right click removes one.
 pub fn show(ui: &mut Ui, label: &str, curve: &Curve, height_pt: f32) -> Option<ValueChange<Curve>> {
-    let (rect, response) = ui
-        .allocate_exact_size(egui::vec2(ui.available_width(), height_pt), Sense::click_and_drag());
-    named(&response, label);
-    let inner = rect.shrink(5.0);
-    let on_screen =
-        |p: Vec2| pos2(inner.left() + p.x * inner.width(), inner.bottom() - p.y * inner.height());
-    let in_square = |p: Pos2| {
-        let p = vec2((p.x - inner.left()) / inner.width(), (inner.bottom() - p.y) / inner.height());
-        p.max(Vec2::ZERO).min(Vec2::ONE)
-    };
     // The square keeps its extent during a drag.
-    let spanned = response.id.with("span");
-    let span = ui.data(|data| data.get_temp::<f32>(spanned)).filter(|_| response.dragged());
+    let spanned = ui.scope_id().with((label, "span"));
+    let is_held = ui.input(|i| i.pointer.any_down());
+    let span = ui.data(|data| data.get_temp::<f32>(spanned)).filter(|_| is_held);
     let span = span.unwrap_or_else(|| span_of(curve));
     ui.data_mut(|data| data.insert_temp(spanned, span));
-    let mut points = points(curve, span);
-    paint(ui, rect, inner, &points, on_screen);
-    let held = response.id.with("held");
-    let nearest = |at: Pos2, points: &[Vec2]| {
-        let distances = points.iter().map(|p| on_screen(*p).distance(at));
-        let (i, distance) = distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
-        (distance < NEAR_PT).then_some(i)
+    let square = CurveSquare {
+        label,
+        height_pt,
+        most: MAX_POINTS,
+        least: 1,
+        behind: &|_, _| {},
+        line: &|points| points.to_vec(),
     };
-    let at = response.interact_pointer_pos();
-    if response.secondary_clicked() {
-        let gone = at.and_then(|at| nearest(at, &points)).filter(|_| points.len() > 1)?;
-        points.remove(gone);
-        return through(curve, points, span).map(|to| ValueChange { to, done: true });
+    let changed = square.show(ui, points(curve, span))?;
+    through(curve, changed.to, span).map(|to| ValueChange { to, done: changed.done })
+}
+
+/// A square in which points are added, moved and removed.
+pub struct CurveSquare<'a> {
+    pub label: &'a str,
+    pub height_pt: f32,
+    /// Points that there may be.
+    pub least: usize,
+    pub most: usize,
+    /// Paints what lies behind the curve.
+    pub behind: &'a dyn Fn(&egui::Painter, Rect),
+    /// The line through the points, level beyond its ends.
+    pub line: &'a dyn Fn(&[Vec2]) -> Vec<Vec2>,
+}
+
+impl CurveSquare<'_> {
+    /// Shows points of the unit square, in rising order; the changed ones.
+    pub fn show(&self, ui: &mut Ui, mut points: Vec<Vec2>) -> Option<ValueChange<Vec<Vec2>>> {
+        let size = egui::vec2(ui.available_width(), self.height_pt);
+        let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+        named(&response, self.label);
+        let inner = rect.shrink(5.0);
+        let on_screen = |p: Vec2| {
+            pos2(inner.left() + p.x * inner.width(), inner.bottom() - p.y * inner.height())
+        };
+        let in_square = |p: Pos2| {
+            let p =
+                vec2((p.x - inner.left()) / inner.width(), (inner.bottom() - p.y) / inner.height());
+            p.max(Vec2::ZERO).min(Vec2::ONE)
+        };
+        self.paint(ui, rect, inner, &points, on_screen);
+        let held = response.id.with("held");
+        let nearest = |at: Pos2, points: &[Vec2]| {
+            let distances = points.iter().map(|p| on_screen(*p).distance(at));
+            let (i, distance) = distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
+            (distance < NEAR_PT).then_some(i)
+        };
+        let at = response.interact_pointer_pos();
+        if response.secondary_clicked() {
+            let can = points.len() > self.least;
+            let gone = at.and_then(|at| nearest(at, &points)).filter(|_| can)?;
+            points.remove(gone);
+            return Some(ValueChange { to: points, done: true });
+        }
+        if response.drag_stopped() {
+            return Some(ValueChange { to: points, done: true });
+        }
+        if response.drag_started() || response.clicked() {
+            let at = ui.input(|i| i.pointer.press_origin()).or(at)?;
+            let i = nearest(at, &points).or_else(|| add(&mut points, in_square(at), self.most));
+            ui.data_mut(|data| data.insert_temp(held, i));
+        }
+        let moves = response.dragged() || response.clicked();
+        let i = ui
+            .data(|data| data.get_temp::<Option<usize>>(held))
+            .flatten()
+            .filter(|i| moves && *i < points.len())?;
+        let to = in_square(at?);
+        // A point stays between its neighbours.
+        let least = i.checked_sub(1).map_or(0.0, |before| points[before].x + self.apart());
+        let most = points.get(i + 1).map_or(1.0, |after| after.x - self.apart());
+        points[i] = vec2(to.x.min(most).max(least), to.y);
+        Some(ValueChange { to: points, done: response.clicked() })
     }
-    if response.drag_stopped() {
-        return Some(ValueChange { to: curve.clone(), done: true });
+
+    /// How far points stay from each other: those of tones by a byte, so that none is lost.
+    fn apart(&self) -> f32 {
+        if self.least > 1 { APART } else { 0.0 }
     }
-    if response.drag_started() || response.clicked() {
-        let at = ui.input(|i| i.pointer.press_origin()).or(at)?;
-        let i = nearest(at, &points).or_else(|| add(&mut points, in_square(at)));
-        ui.data_mut(|data| data.insert_temp(held, i));
+
+    fn paint(
+        &self,
+        ui: &Ui,
+        rect: Rect,
+        inner: Rect,
+        points: &[Vec2],
+        on_screen: impl Fn(Vec2) -> Pos2,
+    ) {
+        let painter = ui.painter();
+        let visuals = ui.visuals();
+        let rim = visuals.widgets.noninteractive.bg_stroke;
+        painter.rect(rect, 3.0, visuals.extreme_bg_color, rim, StrokeKind::Inside);
+        (self.behind)(painter, inner);
+        let faint = Stroke::new(1.0, rim.color);
+        for quarter in [0.25, 0.5, 0.75] {
+            painter.vline(inner.left() + quarter * inner.width(), inner.y_range(), faint);
+            painter.hline(inner.x_range(), inner.top() + quarter * inner.height(), faint);
+        }
+        let line = (self.line)(points);
+        // Level beyond the first and the last.
+        let first = line.first().map(|p| vec2(0.0, p.y));
+        let last = line.last().map(|p| vec2(1.0, p.y));
+        let line: Vec<Pos2> =
+            first.into_iter().chain(line.iter().copied()).chain(last).map(&on_screen).collect();
+        painter.line(line, Stroke::new(1.5, ACCENT));
+        for point in points {
+            painter.circle(on_screen(*point), 3.5, visuals.window_fill, Stroke::new(1.5, ACCENT));
+        }
     }
-    let moves = response.dragged() || response.clicked();
-    let i = ui
-        .data(|data| data.get_temp::<Option<usize>>(held))
-        .flatten()
-        .filter(|i| moves && *i < points.len())?;
-    let to = in_square(at?);
-    // A point stays between its neighbours.
-    let least = i.checked_sub(1).map_or(0.0, |before| points[before].x);
-    let most = points.get(i + 1).map_or(1.0, |after| after.x);
-    points[i] = vec2(to.x.max(least).min(most), to.y);
-    through(curve, points, span).map(|to| ValueChange { to, done: response.clicked() })
 }
 
 /// Adds a point in its place; returns its index.
-fn add(points: &mut Vec<Vec2>, point: Vec2) -> Option<usize> {
+fn add(points: &mut Vec<Vec2>, point: Vec2, most: usize) -> Option<usize> {
     let is_taken = points.iter().any(|p| (p.x - point.x).abs() < APART);
-    if is_taken || points.len() >= MAX_POINTS {
+    if is_taken || points.len() >= most {
         return None;
     }
     let i = points.partition_point(|p| p.x < point.x);
     points.insert(i, point);
     Some(i)
-}
-
-fn paint(ui: &Ui, rect: Rect, inner: Rect, points: &[Vec2], on_screen: impl Fn(Vec2) -> Pos2) {
-    let painter = ui.painter();
-    let visuals = ui.visuals();
-    painter.rect(
-        rect,
-        3.0,
-        visuals.extreme_bg_color,
-        visuals.widgets.noninteractive.bg_stroke,
-        StrokeKind::Inside,
-    );
-    let faint = Stroke::new(1.0, visuals.widgets.noninteractive.bg_stroke.color);
-    for quarter in [0.25, 0.5, 0.75] {
-        painter.vline(inner.left() + quarter * inner.width(), inner.y_range(), faint);
-        painter.hline(inner.x_range(), inner.top() + quarter * inner.height(), faint);
-    }
-    // Level beyond the first and the last.
-    let first = points.first().map(|p| vec2(0.0, p.y));
-    let last = points.last().map(|p| vec2(1.0, p.y));
-    let line: Vec<Pos2> =
-        first.into_iter().chain(points.iter().copied()).chain(last).map(&on_screen).collect();
-    painter.line(line, Stroke::new(1.5, ACCENT));
-    for point in points {
-        painter.circle(on_screen(*point), 3.5, visuals.window_fill, Stroke::new(1.5, ACCENT));
-    }
 }
 
 #[cfg(test)]
@@ -140,8 +181,8 @@ mod tests {
     fn a_point_is_added_in_its_place_and_never_above_another() {
         let mut line = points(&Curve::Share(1.0), 1.0);
         assert_eq!(line, [vec2(0.0, 0.0), vec2(1.0, 1.0)]);
-        assert_eq!(add(&mut line, vec2(0.4, 0.9)), Some(1));
-        assert_eq!(add(&mut line, vec2(0.405, 0.1)), None);
+        assert_eq!(add(&mut line, vec2(0.4, 0.9), 9), Some(1));
+        assert_eq!(add(&mut line, vec2(0.405, 0.1), 9), None);
         assert!(Curve::through(line).is_some());
     }
 

@@ -1,7 +1,9 @@
 //! The menu bar and the documents' tabs.
 //! Floor 7.
 
-use crate::commands::{GUIDES, MENUS, MenuCommand, PARTS, SHADING, TRANSFORMS};
+use crate::commands::{
+    ADJUSTMENT_LAYERS, ADJUSTMENTS, GUIDES, MENUS, MenuCommand, PARTS, SHADING, TRANSFORMS,
+};
 use crate::icons::{Icon, sized_button};
 use crate::keymap::shown;
 use crate::requests::{UiRequests, WindowRequest};
@@ -32,6 +34,18 @@ pub fn show(ui: &mut Ui, session: &Session, settings: &Settings, requests: &mut 
                                         });
                                     }))
                                 }
+                                "New radiance scaling" => {
+                                    drop(ui.menu_button("New adjustment layer", |ui| {
+                                        ADJUSTMENT_LAYERS.iter().for_each(|command| {
+                                            entry(ui, session, settings, command, requests)
+                                        });
+                                    }))
+                                }
+                                "Image size…" => drop(ui.menu_button("Adjust", |ui| {
+                                    ADJUSTMENTS.iter().for_each(|command| {
+                                        entry(ui, session, settings, command, requests)
+                                    });
+                                })),
                                 "Give it a shape…" => drop(ui.menu_button("New part", |ui| {
                                     PARTS.iter().for_each(|command| {
                                         entry(ui, session, settings, command, requests)

@@ -1,6 +1,7 @@
 //! Panels: functions `(ui, &session, &mut requests)`. egui stores the state of a panel itself (an
 //! open row, a text being typed). Floor 7.
 
+pub mod adjustment;
 mod assistants;
 mod brush;
 pub mod brush_mode;
@@ -20,6 +21,7 @@ pub mod navigator;
 pub mod options;
 mod painter;
 pub mod properties;
+mod ramp;
 mod select;
 mod setter;
 pub mod shape;

@@ -2,21 +2,23 @@
 //! materials and lights (`material`).
 
 use super::setter::LayerSetter;
-use super::{colors, home, mask, material, options, strokes};
-use crate::document::{Content, DetailSource, Document, Layer, NormalLayer};
+use super::{adjustment, colors, home, mask, material, options, ramp, strokes};
+use crate::document::{Content, DetailSource, Document, Histogram, Layer, NormalLayer, Progress};
+use crate::file_purpose::FilePurpose;
 use crate::math::{Vec2, vec2};
 use crate::mood_pictures::MoodPictures;
 use crate::operators::{OPERATORS, OfferedOperator};
-use crate::paint::{Adjust, Gradient, GradientStop, ImageFilter, PlacedImage, Placement};
+use crate::paint::{Adjust, Gradient, ImageFilter, PlacedImage, Placement};
 use crate::raster::Outside;
-use crate::requests::UiRequests;
+use crate::requests::{UiRequests, WindowRequest};
 use crate::session::PicturePart;
 use crate::session::actions::LayerAction;
 use crate::session::{Property, Session};
 use crate::shading::Model;
 use crate::surface::{NoiseRelief, Weights};
 use crate::widgets::{NumberField, check, choice_row, title};
-use eframe::egui::Ui;
+use eframe::egui::{Id, Ui};
+use std::sync::Arc;
 
 pub fn show(ui: &mut Ui, session: &Session, moods: &mut MoodPictures, requests: &mut UiRequests) {
     let (Some(layer), Some(path)) = (session.layer(), session.layer_path()) else {
@@ -46,6 +48,14 @@ pub fn show(ui: &mut Ui, session: &Session, moods: &mut MoodPictures, requests: 
             material::shading(ui, live.params(), canvas, moods, &mut setter);
         }
         Content::RadianceScaling(scaling) => material::radiance_scaling(ui, scaling, &mut setter),
+        Content::Adjustment(live) => {
+            let histogram = beneath(ui, session, layer);
+            let answer = adjustment::show(ui, live.params(), histogram.as_deref());
+            setter.take(answer.changed.map(|c| c.map(|to| Property::Adjustment { to })));
+            if answer.asks_for_table {
+                setter.requests.request(WindowRequest::Choose(FilePurpose::ColorTable));
+            }
+        }
         Content::Normals(normals) => normal_layer(ui, normals, &mut setter),
         Content::Group(group) => {
             let hint =
@@ -61,6 +71,26 @@ pub fn show(ui: &mut Ui, session: &Session, moods: &mut MoodPictures, requests: 
         home(ui, document, layer, &mut setter);
     }
     common(ui, layer, has_surface, on_mask, &mut setter);
+}
+
+/// The tones beneath an adjustment, counted again when other layers change.
+fn beneath(ui: &Ui, session: &Session, layer: &Layer) -> Option<Arc<Histogram>> {
+    let document = session.active()?.document();
+    let other = |(_, other): &(_, &Arc<Layer>)| {
+        // A group is another one whenever what is in it changes.
+        other.id != layer.id && other.content.group().is_none()
+    };
+    let others: Vec<_> =
+        document.walk().iter().filter(|found| other(found)).map(|(_, l)| Arc::as_ptr(l)).collect();
+    let key = Id::unique((layer.id, others));
+    let kept = Id::unique("histogram beneath");
+    let last = ui.data(|data| data.get_temp::<(Id, Option<Arc<Histogram>>)>(kept));
+    if let Some((_, found)) = last.filter(|(known, _)| *known == key) {
+        return found;
+    }
+    let found = Histogram::beneath(document, layer.id, &Progress::default()).map(Arc::new);
+    ui.data_mut(|data| data.insert_temp(kept, (key, found.clone())));
+    found
 }
 
 /// Which part carries the layer.
@@ -241,41 +271,9 @@ fn adjust(ui: &mut Ui, adjust: Adjust, setter: &mut LayerSetter) {
 fn gradient(ui: &mut Ui, gradient: &Gradient, setter: &mut LayerSetter) {
     operator(ui, gradient.operator, setter);
     title(ui, "Stops");
-    let with = |i: usize, stop: GradientStop| {
-        let mut stops = gradient.stops.clone();
-        if let Some(slot) = stops.get_mut(i) {
-            *slot = stop;
-        }
-        stops.sort_by(|a, b| a.t.total_cmp(&b.t));
-        Property::Stops { stops }
-    };
-    let mut gone = None;
-    for (i, stop) in gradient.stops.iter().enumerate() {
-        ui.horizontal(|ui| {
-            let color = colors::button(ui, &format!("Colour of stop {}", i + 1), stop.color);
-            setter.take(color.map(|c| c.map(|color| with(i, GradientStop { color, ..*stop }))));
-            let place = format!("Place of stop {}", i + 1);
-            let t = NumberField::new(&place, 0.0..=1.0, "0 at the first end, 1 at the second")
-                .field(ui, stop.t);
-            setter.take(t.map(|c| c.map(|t| with(i, GradientStop { t, ..*stop }))));
-            if gradient.stops.len() > 1 && ui.small_button("Remove").clicked() {
-                gone = Some(i);
-            }
-        });
-    }
-    if let Some(i) = gone {
-        let mut stops = gradient.stops.clone();
-        stops.remove(i);
-        setter.set(Property::Stops { stops }, true);
-    }
+    let changed = ramp::show(ui, &gradient.stops);
+    setter.take(changed.map(|c| c.map(|stops| Property::Stops { stops })));
     ui.horizontal(|ui| {
-        if ui.button("Add stop").clicked() {
-            let mut stops = gradient.stops.clone();
-            let color = stops.last().map_or(crate::math::srgb::Color::WHITE, |stop| stop.color);
-            stops.push(GradientStop { t: 0.5, color });
-            stops.sort_by(|a, b| a.t.total_cmp(&b.t));
-            setter.set(Property::Stops { stops }, true);
-        }
         if ui.button("Swap ends").clicked() {
             setter.set(Property::Ends { from: gradient.to, to: gradient.from }, true);
         }

@@ -8,18 +8,19 @@ use crate::document::SurfaceSource;
 use crate::document::parts::drawing::DrawingTraits;
 use crate::file_purpose::FilePurpose;
 use crate::files::{self, FileAnswer};
-use crate::io::Overwrite;
 use crate::io::maps::ImportedSurface;
+use crate::io::{Budget, Overwrite};
 use crate::jobs::{JobKind, JobResult, PastePlace, PictureUse, PinPosition, short};
 use crate::math::Vec2;
+use crate::paint::ColorAdjustment;
+use crate::paint::adjustment::ColorLookup;
 use crate::raster::Picture;
-use crate::session::Action;
-use crate::session::PicturePart;
+use crate::session::actions::LayerAction;
 use crate::session::actions::pictures;
 use crate::session::actions::placing::{place, read_picture};
 use crate::session::actions::{ClipboardAction, FileAction, PastedPicture};
 use crate::session::storage::{self, FileUse, OpenedFile, SortedFiles};
-use crate::session::{Session, brushes};
+use crate::session::{Action, PicturePart, Property, Session, brushes};
 use eframe::egui;
 use std::path::{Path, PathBuf};
 
@@ -168,6 +169,23 @@ impl MainWindow {
         self.apply(&Action::Clipboard(ClipboardAction::PastePicture { picture, to, at }));
     }
 
+    /// A table of colours for the dialog that is open, or for the chosen adjustment layers.
+    fn read_color_table(&mut self, file: &Path) {
+        let budget = Budget::of_this_machine();
+        let read = crate::io::files::read_file(file, budget.json_bytes);
+        let table = match read.and_then(|bytes| crate::io::cube::parse(file, &bytes)) {
+            Ok(table) => table,
+            Err(error) => return self.messages.push(with_advice(&error)),
+        };
+        let to = ColorAdjustment::ColorLookup(ColorLookup { table: Some(table) });
+        if let Some(Dialog::Adjust(adjust)) = self.dialogs.last_mut() {
+            return adjust.take_table(to);
+        }
+        let layer = self.session.layer_paths();
+        let to = Property::Adjustment { to };
+        self.apply(&Action::Layer(LayerAction::Set { layer, to, done: true }));
+    }
+
     /// A file was chosen in a dialog.
     pub(super) fn chosen(&mut self, purpose: FilePurpose, file: PathBuf) {
         match purpose {
@@ -180,6 +198,7 @@ impl MainWindow {
                 self.apply(&Action::File(FileAction::ImportBrush { file }));
             }
             FilePurpose::Part(part) => self.read_part(part, file),
+            FilePurpose::ColorTable => self.read_color_table(&file),
             FilePurpose::NormalMap | FilePurpose::DepthMap | FilePurpose::MaskMap => {
                 if let Some(import) = self.import() {
                     import.take_file(purpose, file);

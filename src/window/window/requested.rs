@@ -2,7 +2,7 @@
 //! interface. Floor 7.
 
 use super::MainWindow;
-use crate::dialogs::{Dialog, canvas, edge, import, new, palette, shortcuts};
+use crate::dialogs::{Dialog, adjust, canvas, edge, import, new, palette, shortcuts};
 use crate::file_purpose::FilePurpose;
 use crate::panel_layout::PanelSide;
 use crate::requests::WindowRequest;
@@ -52,6 +52,10 @@ impl MainWindow {
             | WindowRequest::TurnDialog => {
                 let size = self.session.active().map(|open| open.document().size);
                 self.dialogs.extend(size.map(|size| canvas::asked(&ask, size)));
+            }
+            WindowRequest::AdjustDialog(adjustment) => {
+                let dialog = adjust::AdjustDialog::new(*adjustment, &self.session);
+                self.dialogs.push(Dialog::Adjust(Box::new(dialog)));
             }
             WindowRequest::EdgeDialog(change) => {
                 self.dialogs.push(Dialog::Edge(edge::EdgeDialog::new(change)))

@@ -148,7 +148,9 @@ impl Carrier<'_> {
 
     fn content(&self, content: &Content, frame: &PlaneMap) -> Result<Content, String> {
         Ok(match content {
-            Content::Fill(_) | Content::RadianceScaling(_) => content.clone(),
+            Content::Fill(_) | Content::RadianceScaling(_) | Content::Adjustment(_) => {
+                content.clone()
+            }
             Content::Pixels(pixels) => Content::Pixels(self.pixels(pixels, frame)),
             Content::Image(live) => Content::Image(Live::new(self.image(live.params(), frame))),
             Content::Gradient(live) => {

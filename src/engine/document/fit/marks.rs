@@ -4,12 +4,13 @@
 use super::Fit;
 use crate::math::range::{STOPS, at_most, within};
 use crate::math::{COORDINATE, TURNS, UNIT, Vec2};
+use crate::paint::adjustment::ToneCurve;
 use crate::paint::grain::{BrushGrain, GrainSpace};
 use crate::paint::settings::SETTINGS;
 use crate::paint::tip::{Bristles, Hose, Noise};
 use crate::paint::{
-    Adjust, Brush, BrushMode, ColorJitter, Gradient, PlacedImage, Placement, Sample, Stabilizer,
-    Stroke, StrokeSelection, Tip,
+    Adjust, Brush, BrushMode, ColorAdjustment, ColorJitter, Gradient, PlacedImage, Placement,
+    Sample, Stabilizer, Stroke, StrokeSelection, Tip,
 };
 use crate::surface::plane_piece::PlanePiece;
 use crate::surface::{Bend, Operator, Weights};
@@ -21,6 +22,15 @@ pub const A_STOP: usize = 4;
 const A_STROKE: usize = 60;
 /// Without its curves and pictures.
 const A_BRUSH: usize = 480;
+
+/// The most values that the lists of an adjustment take.
+pub fn adjustment_values(adjustment: &ColorAdjustment) -> usize {
+    match adjustment {
+        ColorAdjustment::GradientMap(map) => A_STOP * map.stops.len(),
+        ColorAdjustment::Curves(_) => A_STOP * 4 * ToneCurve::MOST_POINTS,
+        _ => 0,
+    }
+}
 
 /// The samples of strokes, and the values that they take.
 pub fn measured(strokes: &[Arc<Stroke>]) -> (usize, usize) {

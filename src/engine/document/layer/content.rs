@@ -2,6 +2,7 @@
 //! file that implements `LayerKind`, so that composing, walking and comparing layers name no kinds.
 //! Not here: rendering marks (`paint`, `shading`).
 
+mod adjustment;
 mod fill;
 mod from;
 mod gradient;
@@ -29,7 +30,7 @@ use crate::document::Progress;
 use crate::document::far_side::{FarScene, FarTile};
 use crate::document::memory_use::MemoryCount;
 use crate::math::{Rect, Vec2, srgb::Color};
-use crate::paint::{Gradient, PlacedImage, Scene};
+use crate::paint::{Gradient, LiveAdjustment, PlacedImage, Scene};
 use crate::raster::{Picture, TileAt};
 use crate::shading::{RadianceScaling, Shading};
 use crate::surface::Bend;
@@ -55,6 +56,8 @@ pub enum Content {
     Shading(Live<Shading>),
     /// What lies beneath, brighter or darker by the curvature.
     RadianceScaling(RadianceScaling),
+    /// What lies beneath, its colours adjusted.
+    Adjustment(LiveAdjustment),
     /// Detail for the surface that layers above see.
     Normals(NormalLayer),
     /// Layers.
@@ -222,6 +225,7 @@ impl Content {
             Content::Strokes(strokes) => strokes,
             Content::Shading(shading) => shading,
             Content::RadianceScaling(scaling) => scaling,
+            Content::Adjustment(adjustment) => adjustment,
             Content::Normals(normals) => normals,
             Content::Group(group) => group,
         }
@@ -374,6 +378,7 @@ impl Content {
             (Content::Normals(a), Content::Normals(b)) => a == b,
             (Content::Fill(a), Content::Fill(b)) => a == b,
             (Content::RadianceScaling(a), Content::RadianceScaling(b)) => a == b,
+            (Content::Adjustment(a), Content::Adjustment(b)) => a == b,
             _ => false,
         }
     }

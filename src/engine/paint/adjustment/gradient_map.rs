@@ -1,8 +1,7 @@
 //! A colour for each luminosity. Floor 3.
 
 use super::hsl;
-use super::parameters::{ParameterVisitor, Parameters, named};
-use crate::math::srgb::Color;
+use super::parameters::{ParameterVisitor, Parameters, black_to_white, named};
 use crate::paint::{GradientStop, ramp::Ramp};
 
 /// The ramp's colour at the luminosity of each pixel; where the ramp is transparent, the pixel as
@@ -17,10 +16,6 @@ impl Default for GradientMap {
     fn default() -> Self {
         Self { stops: black_to_white(), reverse: false }
     }
-}
-
-pub fn black_to_white() -> Vec<GradientStop> {
-    [(0.0, Color::BLACK), (1.0, Color::WHITE)].map(|(t, color)| GradientStop { t, color }).to_vec()
 }
 
 impl GradientMap {

@@ -87,15 +87,16 @@ fn lighter(x: f32, by: f32) -> f32 {
     if by > 0.0 { x + (1.0 - x) * by } else { x * (1.0 + by) }
 }
 
-/// S / (1 − s) above 0, S (1 + s) below.
+/// The factor of the saturation: 1 / (1 − s) above 0, 1 + s below.
 #[inline(always)]
-fn more_saturated(saturation: f32, by: f32) -> f32 {
-    let changed =
-        if by > 0.0 { saturation / (1.0 - by).max(0.01) } else { saturation * (1.0 + by) };
-    changed.max(0.0).min(1.0)
+fn saturation_factor(by: f32) -> f32 {
+    if by > 0.0 { 1.0 / (1.0 - by).max(0.01) } else { 1.0 + by }
 }
 
 impl HueSaturation {
+    /// The key of what everything is colourised with.
+    pub const TINT: &'static str = "tint";
+
     /// Lightness of all first, then what ranges darken or lighten, then hue and saturation.
     pub fn color(&self) -> impl Fn([f32; 3]) -> [f32; 3] + use<> {
         let changes = |range: &HueRange| range.shift != HslShift::default();
@@ -108,22 +109,24 @@ impl HueSaturation {
                 return hsl::to_rgb([tint.hue / 60.0, tint.saturation.max(0.0) / 100.0, lightness]);
             }
             let rgb = rgb.map(|v| lighter(v, master.lightness / 100.0));
-            let mut of_ranges = HslShift::default();
+            let (mut turned, mut lightness_by, mut factor) = (0.0, 0.0, 1.0f32);
             if !used.is_empty() {
                 let degrees = 60.0 * hsl::hue(rgb);
                 for range in &used {
                     let weight = range.weight(degrees);
-                    of_ranges.hue += weight * range.shift.hue;
-                    of_ranges.saturation += weight * range.shift.saturation;
-                    of_ranges.lightness += weight * range.shift.lightness;
+                    turned += weight * range.shift.hue;
+                    lightness_by += weight * range.shift.lightness / 100.0;
+                    // Factors add up, which was found on pictures that Photoshop made: S 0.10 with
+                    // +89 and −92 in one range becomes 0.80, 0.10 (9.1 + 0.08 − 1).
+                    let own = saturation_factor(range.shift.saturation / 100.0);
+                    factor = (factor + weight * (own - 1.0)).max(0.0);
                 }
             }
-            let rgb = range_lighter(rgb, (of_ranges.lightness / 100.0).max(-1.0).min(1.0));
+            let rgb = range_lighter(rgb, lightness_by.max(-1.0).min(1.0));
             let [hue, saturation, lightness] = hsl::of_rgb(rgb);
-            let saturation = more_saturated(saturation, master.saturation / 100.0);
-            let by = (of_ranges.saturation / 100.0).max(-1.0).min(1.0);
-            let saturation = more_saturated(saturation, by);
-            hsl::to_rgb([hue + (master.hue + of_ranges.hue) / 60.0, saturation, lightness])
+            let saturation = saturation * saturation_factor(master.saturation / 100.0);
+            let saturation = (saturation.min(1.0) * factor).min(1.0);
+            hsl::to_rgb([hue + (master.hue + turned) / 60.0, saturation, lightness])
         }
     }
 }
@@ -142,7 +145,7 @@ impl Parameters for HueSaturation {
         let hint = "Give everything one hue";
         v.flag(named("colorize", "Colourise", hint), false, &mut self.colorize);
         let hint = "The hue, saturation and lightness of what is colourised";
-        v.group(named("tint", "Colourised", hint), &mut |v| {
+        v.group(named(Self::TINT, "Colourised", hint), &mut |v| {
             let number = NumberParameter::whole;
             v.number(number(named("hue", "Hue", ""), 0.0, 360.0, 0.0), &mut self.tint.hue);
             let saturation = number(named("saturation", "Saturation", ""), 0.0, 100.0, 25.0);

@@ -63,9 +63,9 @@ impl Parameters for ColorBalance {
             named("highlights", "Highlights", ""),
         ];
         const AXES: [ParameterName; 3] = [
-            named("red", "Cyan – red", ""),
-            named("green", "Magenta – green", ""),
-            named("blue", "Yellow – blue", ""),
+            named("red", "Red", "Below 0 cyan"),
+            named("green", "Green", "Below 0 magenta"),
+            named("blue", "Blue", "Below 0 yellow"),
         ];
         // Most is done to mid-tones, so these are offered first.
         for i in [1, 0, 2] {
@@ -384,7 +384,7 @@ impl Threshold {
 
 impl Parameters for Threshold {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
-        let name = named("level", "Threshold level", "Luminosities from this become white");
+        let name = named("level", "Level", "Luminosities from this become white");
         v.number(NumberParameter::whole(name, 1.0, 255.0, 128.0), &mut self.level);
     }
 }

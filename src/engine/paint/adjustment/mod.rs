@@ -8,7 +8,7 @@
 //! | `parameters` | how their parameters are named, read, written and set |
 //! | `tones`, `curve` | those of each channel by itself |
 //! | `hue_saturation`, `mixing`, `hsl` | those that weigh channels against each other |
-//! | `gradient_map`, `lookup` | those that look colours up |
+//! | `gradient_map`, `lookup`, `table` | those that look colours up |
 //! | `rows` | what they do to rows of pixels |
 
 mod curve;
@@ -19,17 +19,19 @@ mod lookup;
 mod mixing;
 mod parameters;
 mod rows;
+mod table;
 mod tones;
 
 pub use curve::{ToneCurve, ToneSpline};
 pub use gradient_map::GradientMap;
 pub use hue_saturation::{HslShift, HueRange, HueSaturation};
-pub use lookup::{ColorLookup, ColorTable};
+pub use lookup::ColorLookup;
 pub use mixing::{
     BlackWhite, ChannelMixer, ColorBalance, PhotoFilter, SelectiveColor, Threshold, Vibrance,
 };
 pub use parameters::{NumberParameter, ParameterName, ParameterVisitor};
 pub use rows::LiveAdjustment;
+pub use table::ColorTable;
 pub use tones::{BrightnessContrast, Curves, Exposure, Invert, Levels, LevelsRange, Posterise};
 
 use parameters::{Holder, Parameters};
@@ -101,6 +103,11 @@ impl ColorAdjustment {
     /// As it begins, by its name in documents.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::all().into_iter().find(|adjustment| adjustment.name() == name)
+    }
+
+    /// Whether Photoshop's format has a word for it: of a table it wants a profile too.
+    pub fn is_said_by_photoshop(&self) -> bool {
+        !matches!(self, Self::ColorLookup(_))
     }
 
     /// Shows its parameters to a visitor, which may change them.

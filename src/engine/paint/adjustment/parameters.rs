@@ -1,7 +1,8 @@
 //! What adjustments are set by: each visits its parameters with their names, ranges and defaults,
 //! so that readers, writers, panels, checks and stories need no list of their own. Floor 3.
 
-use super::{ColorTable, ToneCurve};
+use super::curve::ToneCurve;
+use super::table::ColorTable;
 use crate::math::srgb::Color;
 use crate::math::{Range, range::held};
 use crate::paint::GradientStop;
@@ -59,6 +60,11 @@ impl NumberParameter {
     }
 }
 
+/// The ramp where nothing is said.
+pub(super) fn black_to_white() -> Vec<GradientStop> {
+    [(0.0, Color::BLACK), (1.0, Color::WHITE)].map(|(t, color)| GradientStop { t, color }).to_vec()
+}
+
 /// Reads or changes the parameters of an adjustment, in the order in which they are shown.
 pub trait ParameterVisitor {
     fn number(&mut self, parameter: NumberParameter, value: &mut f32);
@@ -101,7 +107,7 @@ impl ParameterVisitor for Holder {
         value.sort_by(|a, b| a.t.total_cmp(&b.t));
         value.truncate(crate::paint::Gradient::MOST_STOPS);
         if value.is_empty() {
-            *value = super::gradient_map::black_to_white();
+            *value = black_to_white();
         }
     }
 

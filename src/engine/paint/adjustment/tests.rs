@@ -198,6 +198,12 @@ fn hues_turn_and_greys_stay() {
     assert_eq!(bytes(reds.color()([0.8, 0.2, 0.2])), [128; 3], "a red becomes grey");
     assert_eq!(bytes(reds.color()([0.2, 0.8, 0.2])), [51, 204, 51], "a green stays");
     assert!((reds.ranges[0].weight(330.0) - 0.5).abs() < 1e-6);
+    // Two ranges with the same hues: their factors, 2 and 1/2, add up to 3/2.
+    let mut twice = HueSaturation::default();
+    twice.ranges[0].shift.saturation = 50.0;
+    twice.ranges[1] = twice.ranges[0];
+    twice.ranges[1].shift.saturation = -50.0;
+    assert_eq!(bytes(twice.color()([0.6, 0.4, 0.4])), [166, 89, 89]);
 }
 
 #[test]

@@ -1,8 +1,7 @@
 //! Adjustments that change each channel by itself: levels, curves, brightness and contrast,
 //! exposure, inversion, posterising. Floor 3. Values are straight and sRGB-encoded, in `[0, 1]`.
 
-use super::ToneCurve;
-use super::curve::ToneSpline;
+use super::curve::{ToneCurve, ToneSpline};
 use super::parameters::{NumberParameter, ParameterName, ParameterVisitor, Parameters, named};
 
 /// The three channels and all of them together.
@@ -218,7 +217,7 @@ impl Parameters for Exposure {
         let hint = "Added to the light: below 0 shadows become black";
         v.number(number("offset", "Offset", hint, -0.5, 0.5, 0.0, 4), &mut self.offset);
         let hint = "Above 1 mid-tones become brighter";
-        v.number(number("gamma", "Gamma correction", hint, 0.01, 9.99, 1.0, 2), &mut self.gamma);
+        v.number(number("gamma", "Gamma", hint, 0.01, 9.99, 1.0, 2), &mut self.gamma);
     }
 }
 

@@ -14,7 +14,7 @@ use crate::document::{
 };
 use crate::io::Budget;
 use crate::math::{PlaneMap, Vec2, vec2};
-use crate::paint::{Gradient, GradientStop, ImageFilter};
+use crate::paint::{ColorAdjustment, Gradient, GradientStop, ImageFilter, LiveAdjustment};
 use crate::raster::Plane;
 use crate::session::open_document::Edit;
 use crate::session::replay::actions;
@@ -25,7 +25,7 @@ use crate::tools::transform::{self, mapped};
 use flattening::undisplaced;
 use new::{lit_layer, make_layer, selecting};
 use std::sync::Arc;
-use steps::{cleared, duplicated, homed, kept, moves, ungrouped};
+use steps::{EditStep, cleared, duplicated, homed, kept, moves, ungrouped};
 
 actions! {
     /// `layer` is always the path before the action; if several are possible, the layers of a group
@@ -53,6 +53,13 @@ actions! {
         "bake" Bake { layer: LayerPaths }
         /// A shading layer of a model, with the material it begins with.
         "add shading" AddShading { model: Model }
+        /// A layer that adjusts the colours beneath it.
+        "add adjustment" AddAdjustment { adjustment: ColorAdjustment }
+        /// The paint of layers is adjusted for good, within the selection; shown only, until it is
+        /// `done`.
+        "adjust" Adjust { layer: LayerPaths, adjustment: ColorAdjustment, done: bool }
+        /// Forgets what is only shown.
+        "unadjust" Unadjust {}
         /// Adds a paintable mask that shows all of the layer, or hides it; an existing mask becomes
         /// paintable.
         "paint mask" PaintMask { layer: LayerPath, hides: bool }
@@ -122,6 +129,9 @@ impl LayerAction {
             }
             return set(open, layer, to, *done);
         }
+        if let LayerAction::Adjust { layer, adjustment, done } = self {
+            return adjust(session, layer, adjustment, *done);
+        }
         if let LayerAction::TakeAlong { layer, by, done } = self {
             return take_along(session, layer, *by, *done);
         }
@@ -149,6 +159,7 @@ impl LayerAction {
                 open.repair();
             }
             LayerAction::Pivot { at } => open.set_pivot(target, *at),
+            LayerAction::Unadjust {} => {}
             LayerAction::Solo { layer } => {
                 let id = id(layer);
                 open.solo = if open.solo == id { None } else { id };
@@ -196,10 +207,10 @@ impl LayerAction {
                 let id = new.id;
                 ("Add layer", document.with_inserted(new, above(open))?, vec![id])
             }
-            LayerAction::AddShading { model } => {
-                let new = selecting(document, lit_layer(*model, document));
-                let id = new.id;
-                ("Add layer", document.with_inserted(new, above(open))?, vec![id])
+            LayerAction::AddShading { model } => added(open, lit_layer(*model, document))?,
+            LayerAction::AddAdjustment { adjustment } => {
+                let name = document.free_layer_name(adjustment.label());
+                added(open, Layer::new(name, adjustment.clone()))?
             }
             LayerAction::PaintMask { layer: path, hides } => {
                 let layer = layer(path)?;
@@ -291,12 +302,22 @@ impl LayerAction {
             | LayerAction::Choose { .. }
             | LayerAction::Solo { .. }
             | LayerAction::OnMask { .. }
+            | LayerAction::Adjust { .. }
+            | LayerAction::Unadjust {}
             | LayerAction::TakeAlong { .. }
             | LayerAction::Pivot { .. }
             | LayerAction::Set { .. } => return None,
         };
         Some(Edit { label, document, select })
     }
+}
+
+/// A new layer above the selected one, masked by the selection.
+fn added(open: &OpenDocument, new: Layer) -> Option<EditStep> {
+    let document = open.document();
+    let new = selecting(document, new);
+    let id = new.id;
+    Some(("Add layer", document.with_inserted(new, above(open))?, vec![id]))
 }
 
 fn set(open: &mut OpenDocument, layers: &LayerPaths, to: &Property, done: bool) {
@@ -306,6 +327,28 @@ fn set(open: &mut OpenDocument, layers: &LayerPaths, to: &Property, done: bool) 
         open.commit(to.label(), document);
     } else {
         open.show(to.label(), document);
+    }
+}
+
+/// The paint of layers adjusted: a step, or a preview of one. Layers that are no paint, or locked,
+/// stay as they are.
+fn adjust(session: &mut Session, layers: &LayerPaths, by: &ColorAdjustment, done: bool) {
+    let Some(open) = session.active_mut() else { return };
+    let document = open.document();
+    let (mut next, mut is_any) = (document.clone(), false);
+    let live = LiveAdjustment::new(by.clone());
+    for id in layers.find(document).unwrap_or_default() {
+        if let Some(adjusted) = next.with_paint_adjusted(id, &live) {
+            (next, is_any) = (adjusted, true);
+        }
+    }
+    match (is_any, done) {
+        (true, true) => drop(open.commit(by.label(), next)),
+        (true, false) => open.show(by.label(), next),
+        (false, _) => {
+            open.forget_preview();
+            session.say("Choose a paint layer that is not locked, or add an adjustment layer.");
+        }
     }
 }
 

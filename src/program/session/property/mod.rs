@@ -12,7 +12,8 @@ use crate::document::{
 use crate::math::range::{STOPS, held};
 use crate::math::{TURNS, Vec2, Vec3, srgb::Color};
 use crate::paint::{
-    Adjust, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement,
+    Adjust, ColorAdjustment, Gradient, GradientStop, ImageFilter, LiveAdjustment, PictureSource,
+    PlacedImage, Placement,
 };
 use crate::raster::{BlendMode, Outside, Resampling};
 use crate::shading::scaling::Reference;
@@ -91,6 +92,8 @@ actions! {
         "reference" ScalingReference { reference: Reference }
         "keep mean" KeepMean { on: bool }
         "strength" Strength { to: f32 }
+        /// What an adjustment layer does.
+        "adjustment" Adjustment { to: ColorAdjustment }
     }
 }
 
@@ -146,6 +149,7 @@ impl Property {
             | Property::KeepMean { .. } => "Radiance scaling",
             Property::ScalingLight { .. } => "Radiance scaling",
             Property::Strength { .. } => "Strength",
+            Property::Adjustment { to } => to.label(),
         }
     }
 
@@ -218,6 +222,11 @@ impl Property {
                 }
             }
             Content::RadianceScaling(scaling) => self.scale(scaling),
+            Content::Adjustment(live) => {
+                if let Property::Adjustment { to } = self {
+                    *live = LiveAdjustment::new(to.clone());
+                }
+            }
             Content::Pixels(_) | Content::Strokes(_) => {}
         }
     }

@@ -4,7 +4,7 @@
 use crate::document::{DerivedMask, Layer, LayerLabel, LayerLock, LayerMask, LayerTransform};
 use crate::io::json::JsonNode;
 use crate::io::recipe::transforms;
-use crate::paint::{Adjust, GradientStop, ImageFilter, Placement};
+use crate::paint::{Adjust, ColorAdjustment, GradientStop, ImageFilter, Placement};
 use crate::raster::{BlendMode, Outside};
 use crate::session::replay::{as_in_recipes, names};
 use crate::shading::scaling::Reference;
@@ -21,6 +21,7 @@ names!(Model);
 names!(Projection);
 names!(Mood);
 as_in_recipes!(Operator, Anchor, PlanePiece, Placement, Adjust, GradientStop);
+as_in_recipes!(ColorAdjustment);
 as_in_recipes!(NoiseRelief, DerivedMask, Light, Term, Scaling, Features, Reference);
 as_in_recipes!(Shadows, Painter);
 

@@ -8,7 +8,8 @@ use crate::document::{Content, DetailSource, Group, Layer, Live, NormalLayer, St
 use crate::io::{Budget, project};
 use crate::math::{Size, vec2};
 use crate::paint::{
-    Adjust, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement,
+    Adjust, ColorAdjustment, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage,
+    Placement,
 };
 use crate::raster::{Outside, Picture, Plane};
 use crate::session::actions::Style;
@@ -65,6 +66,7 @@ pub(super) fn everything() -> Document {
         Content::Strokes(Live::new(StrokeList::default())),
         Content::Shading(Live::new(shading)),
         Content::RadianceScaling(RadianceScaling::default()),
+        ColorAdjustment::all()[0].clone().into(),
         Content::Normals(normals),
         Content::Pixels(crate::document::PixelLayer {
             file: String::new(),

@@ -28,6 +28,7 @@ pub fn kind_icon(content: &Content) -> Icon {
         Content::Strokes(_) => Icon::Tool(ToolKind::Strokes),
         Content::Shading(_) => Icon::Shading,
         Content::RadianceScaling(_) => Icon::Scaling,
+        Content::Adjustment(_) => Icon::Adjustment,
         Content::Normals(_) => Icon::Normals,
         Content::Group(_) => Icon::Group,
     }

@@ -3,7 +3,7 @@
 use super::{Content, Group, NormalLayer, PixelLayer, StrokeList};
 use crate::document::Live;
 use crate::math::srgb::Color;
-use crate::paint::{Gradient, PlacedImage, Stroke};
+use crate::paint::{ColorAdjustment, Gradient, LiveAdjustment, PlacedImage, Stroke};
 use crate::raster::TileGrid;
 use crate::shading::{RadianceScaling, Shading};
 use std::sync::Arc;
@@ -63,6 +63,13 @@ impl From<Shading> for Content {
 impl From<RadianceScaling> for Content {
     fn from(scaling: RadianceScaling) -> Self {
         Content::RadianceScaling(scaling)
+    }
+}
+
+/// What lies beneath, its colours adjusted.
+impl From<ColorAdjustment> for Content {
+    fn from(adjustment: ColorAdjustment) -> Self {
+        Content::Adjustment(LiveAdjustment::new(adjustment))
     }
 }
 

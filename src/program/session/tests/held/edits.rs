@@ -55,6 +55,8 @@ pub const PROPERTIES: &[&str] = &[
     r#"{"do":"scaling","scaling":{"alpha":#,"gamma_convex":#,"gamma_concave":#}}"#,
     r#"{"do":"reference","reference":#}"#,
     r#"{"do":"strength","to":#}"#,
+    r#"{"do":"adjustment","to":{"kind":"levels","red":{"black":#,"gamma":#,"out_white":#}}}"#,
+    r#"{"do":"adjustment","to":{"kind":"channel-mixer","grey":{"red":#},"monochrome":true}}"#,
     r#"{"do":"sampling","filter":"nearest"}"#,
     r#"{"do":"without liquify"}"#,
     r#"{"do":"mask disabled","on":true}"#,

@@ -6,8 +6,12 @@ use super::dice::{Dice, Drawn};
 use crate::document::parts::from_flats::PartFor;
 use crate::document::{DerivedMask, Inflation, LayerTransform, TransformShape};
 use crate::io::recipe::value::RecipeValue;
+use crate::math::srgb::Color;
 use crate::math::{DVec2, Range, Size};
-use crate::paint::{Adjust, BrushMode, GradientStop, Placement};
+use crate::paint::adjustment::{
+    ColorTable, NumberParameter, ParameterName, ParameterVisitor, ToneCurve,
+};
+use crate::paint::{Adjust, BrushMode, ColorAdjustment, GradientStop, Placement};
 use crate::raster::{Picture, Resampling};
 use crate::session::actions::clipboard::PastedPicture;
 use crate::session::actions::parts::InflationPreset;
@@ -83,6 +87,60 @@ impl Drawn for GradientStop {
             t: dice.in_range(0.0..=1.0, 0.0..=1.0),
             color: dice.value(dice.word, "color"),
         }
+    }
+}
+
+/// Each parameter with a chance, mostly near where it begins.
+impl Drawn for ColorAdjustment {
+    fn drawn(dice: &mut Dice) -> Self {
+        let mut adjustment = dice.one_of(&ColorAdjustment::all());
+        adjustment.visit(&mut ParameterDice(dice));
+        adjustment
+    }
+}
+
+struct ParameterDice<'a>(&'a mut Dice);
+
+impl ParameterVisitor for ParameterDice<'_> {
+    fn number(&mut self, parameter: NumberParameter, value: &mut f32) {
+        let NumberParameter { least, most, default, .. } = parameter;
+        if self.0.is(30) {
+            let span = 0.3 * (most - least);
+            let useful = (default - span).max(least)..=(default + span).min(most);
+            *value = self.0.in_range(useful, least..=most);
+        }
+    }
+
+    fn flag(&mut self, _: ParameterName, _: bool, value: &mut bool) {
+        *value = self.0.is(50);
+    }
+
+    fn color(&mut self, _: ParameterName, _: Color, value: &mut Color) {
+        *value = self.0.value(self.0.word, "color");
+    }
+
+    fn curve(&mut self, _: ParameterName, value: &mut ToneCurve) {
+        let mut point = || [self.0.within(0.0, 255.0), self.0.within(0.0, 255.0)];
+        let points = (0..4).map(|_| point()).collect();
+        if self.0.is(50) {
+            *value = ToneCurve::new(points);
+        }
+    }
+
+    fn stops(&mut self, _: ParameterName, value: &mut Vec<GradientStop>) {
+        *value = (0..1 + self.0.below(4)).map(|_| GradientStop::drawn(self.0)).collect();
+        value.sort_by(|a, b| a.t.total_cmp(&b.t));
+    }
+
+    fn table(&mut self, _: ParameterName, value: &mut Option<ColorTable>) {
+        let (side, is_separate) = (2 + self.0.below(3), self.0.is(30));
+        let entries = ColorTable::entries(side, is_separate).unwrap_or_default();
+        let values = (0..3 * entries).map(|_| self.0.number() as u16).collect();
+        *value = ColorTable::new("drawn", side, is_separate, values);
+    }
+
+    fn group(&mut self, _: ParameterName, inside: &mut dyn FnMut(&mut dyn ParameterVisitor)) {
+        inside(self);
     }
 }
 

@@ -63,6 +63,7 @@ const SUITING: &[(&[&str], &[&str])] = &[
     (&["image", "normals"], &["placement", "outside"]),
     (&["gradient"], &["stops", "ends"]),
     (&["normals"], &["grain", "strength"]),
+    (&["adjustment"], &["adjustment"]),
     (&["shading", "radiance-scaling"], &["features"]),
     (&["radiance-scaling"], &["scaling", "scaling light", "reference", "keep mean"]),
     (

@@ -1,0 +1,96 @@
+//! Adjustments: new layers, and the same done to paint. Floor 7.
+
+use super::row::{MenuCommand, ctrl, has_document, row};
+use crate::document::Content;
+use crate::paint::ColorAdjustment;
+use crate::requests::{UiRequests, WindowRequest};
+use crate::session::actions::LayerAction;
+use crate::session::{Action, Session};
+use eframe::egui::{Key, KeyboardShortcut};
+
+fn add(requests: &mut UiRequests, name: &str) {
+    let adjustment = ColorAdjustment::from_name(name);
+    let add = |adjustment| Action::Layer(LayerAction::AddAdjustment { adjustment });
+    requests.actions.extend(adjustment.map(add));
+}
+
+/// At once if there is nothing to set, else by a dialog.
+fn adjust(session: &Session, requests: &mut UiRequests, name: &str) {
+    match ColorAdjustment::from_name(name) {
+        Some(adjustment @ ColorAdjustment::Invert(_)) => {
+            let layer = session.layer_paths();
+            let act = LayerAction::Adjust { layer, adjustment, done: true };
+            requests.act(Action::Layer(act));
+        }
+        Some(adjustment) => requests.request(WindowRequest::AdjustDialog(Box::new(adjustment))),
+        None => {}
+    }
+}
+
+fn has_paint(session: &Session) -> bool {
+    session.layer().is_some_and(|layer| matches!(layer.content, Content::Pixels(_)))
+}
+
+const NO_KEYS: &[KeyboardShortcut] = &[];
+
+/// Declares both menus: the name in documents, of the layer's command, of the command on paint, its
+/// keys, and what it does.
+macro_rules! commands {
+    ($($name:literal, $layer:literal, $paint:literal, $keys:expr, $hint:literal;)+) => {
+        pub const LAYERS: &[MenuCommand] = &[$(
+            row($layer, NO_KEYS, $hint, has_document, |_, requests| add(requests, $name)),
+        )+];
+        pub const PAINT: &[MenuCommand] = &[$(
+            row($paint, $keys, $hint, has_paint, |session, requests| adjust(session, requests, $name)),
+        )+];
+    };
+}
+
+commands! {
+    "brightness-contrast", "New brightness/contrast layer", "Brightness/contrast…", NO_KEYS,
+        "Brighter or darker, with more or less contrast";
+    "levels", "New levels layer", "Levels…", &[ctrl(Key::L)],
+        "What becomes black and what white, and the mid-tones between";
+    "curves", "New curves layer", "Curves…", &[ctrl(Key::M)],
+        "Each tone by a curve, of all channels or of one";
+    "exposure", "New exposure layer", "Exposure…", NO_KEYS, "More or less light, in stops";
+    "vibrance", "New vibrance layer", "Vibrance…", NO_KEYS, "More saturation where there is little";
+    "hue-saturation", "New hue/saturation layer", "Hue/saturation…", &[ctrl(Key::U)],
+        "Hue, saturation and lightness, of all colours or of a range; or one hue";
+    "color-balance", "New colour balance layer", "Colour balance…", &[ctrl(Key::B)],
+        "Warmer or cooler, in shadows, mid-tones and highlights";
+    "black-white", "New black & white layer", "Black & white…", NO_KEYS,
+        "Greys, by how bright each hue shall be";
+    "photo-filter", "New photo filter layer", "Photo filter…", NO_KEYS,
+        "A coloured glass in front of the picture";
+    "channel-mixer", "New channel mixer layer", "Channel mixer…", NO_KEYS,
+        "Each channel as a sum of all three";
+    "color-lookup", "New colour look-up layer", "Colour look-up…", NO_KEYS,
+        "The colours of a .cube file";
+    "invert", "New invert layer", "Invert colours", &[ctrl(Key::I)],
+        "Light becomes dark, and each colour its complement";
+    "posterise", "New posterise layer", "Posterise…", NO_KEYS, "A few tones of each channel";
+    "threshold", "New threshold layer", "Threshold…", NO_KEYS,
+        "Black and white, without anything between";
+    "gradient-map", "New gradient map layer", "Gradient map…", NO_KEYS,
+        "A colour of a gradient for each brightness";
+    "selective-color", "New selective colour layer", "Selective colour…", NO_KEYS,
+        "Cyan, magenta, yellow and black for each range of colours";
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_adjustment_has_its_commands_in_order() {
+        let all = ColorAdjustment::all();
+        assert_eq!((LAYERS.len(), PAINT.len()), (all.len(), all.len()));
+        for ((adjustment, layer), paint) in all.iter().zip(LAYERS).zip(PAINT) {
+            assert_eq!((layer.hint, paint.hint), (adjustment.hint(), adjustment.hint()));
+            let label = adjustment.label();
+            assert_eq!(layer.name, format!("New {} layer", label.to_lowercase()));
+            assert!(paint.name.starts_with(label), "{}", paint.name);
+        }
+    }
+}
