@@ -6,6 +6,7 @@ use super::facts::{Facts, StoryFiles};
 use super::gestures;
 use super::promises::{self, Broken};
 use super::starts::{self, StoryFolder};
+use crate::document::{Progress, flatten, flatten_to_paint};
 use crate::session::actions::Action;
 use crate::session::replay::ReplayValue;
 use crate::session::{Autosave, Session};
@@ -27,7 +28,7 @@ struct Asks {
     threads: bool,
     /// A crash.
     recovery: bool,
-    /// Photoshop files, and pictures of 16 bits.
+    /// Photoshop files, pictures of 16 bits, and the same story with a picture after each step.
     formats: bool,
 }
 
@@ -129,40 +130,61 @@ impl Play {
             let now = promises::fingerprints(&self.session)?;
             promises::at_end(&mut self.session, &self.seen, self.asks.formats)?;
             promises::recovered(&mut self.session, &self.logs)?;
-            if self.asks.threads { self.with_one_thread(&now) } else { Ok(()) }
+            if self.asks.formats {
+                same("exported between steps", &now, &again(&self.actions, export)?)?;
+            }
+            if self.asks.threads {
+                let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+                let actions = &self.actions;
+                let alone = alone.install(|| again(actions, |_| ()))?;
+                same("one thread and two differ", &now, &alone)?;
+            }
+            Ok(())
         }));
         whole.unwrap_or_else(|panic| Err(Broken::panicked(&*panic)))
     }
+}
 
-    /// The same story with one thread gives the same documents.
-    fn with_one_thread(&self, now: &[(String, u32)]) -> Result<(), Broken> {
-        let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-        let actions = &self.actions;
-        let again = || {
-            let mut session = Session { replaces_unasked: true, ..Session::default() };
-            actions.iter().for_each(|action| drop(action.apply(&mut session)));
-            session.drop_gesture();
-            promises::fingerprints(&session)
-        };
-        let alone = alone.install(again)?;
-        match now.iter().zip(&alone).find(|(a, b)| a != b) {
-            _ if now.len() != alone.len() => {
-                Err(Broken::new("one thread and two differ", "other documents".into()))
-            }
-            Some((a, b)) if a.0 == b.0 => {
-                Err(Broken::new("one thread and two differ in the picture", String::new()))
-            }
-            Some((a, b)) => {
-                let at = a.0.bytes().zip(b.0.bytes()).position(|(a, b)| a != b).unwrap_or_default();
-                let about = |text: &str| {
-                    text.chars().skip(at.saturating_sub(60)).take(120).collect::<String>()
-                };
-                Err(Broken::new(
-                    "one thread and two differ",
-                    format!("{} and {}", about(&a.0), about(&b.0)),
-                ))
-            }
-            None => Ok(()),
+/// The documents that the same story makes once more.
+///
+/// * `between`: what is done after each step.
+fn again(actions: &[Action], between: impl Fn(&Session)) -> Result<Fingerprints, Broken> {
+    let mut session = Session { replaces_unasked: true, ..Session::default() };
+    for action in actions {
+        drop(action.apply(&mut session));
+        between(&session);
+    }
+    session.drop_gesture();
+    promises::fingerprints(&session)
+}
+
+/// What each open document is.
+type Fingerprints = Vec<(String, u32)>;
+
+/// A picture of the document in front, of 8 or of 16 bits.
+fn export(session: &Session) {
+    let Some(open) = session.active() else { return };
+    let (document, progress) = (open.document(), Progress::default());
+    if open.history.past().count().is_multiple_of(2) {
+        drop(flatten_to_paint(document, &progress));
+    } else {
+        drop(flatten(document, &progress));
+    }
+}
+
+/// A story gave the same documents twice.
+fn same(kind: &str, now: &[(String, u32)], again: &[(String, u32)]) -> Result<(), Broken> {
+    match now.iter().zip(again).find(|(a, b)| a != b) {
+        _ if now.len() != again.len() => Err(Broken::new(kind, "other documents".into())),
+        Some((a, b)) if a.0 == b.0 => {
+            Err(Broken::new(&format!("{kind} in the picture"), String::new()))
         }
+        Some((a, b)) => {
+            let at = a.0.bytes().zip(b.0.bytes()).position(|(a, b)| a != b).unwrap_or_default();
+            let about =
+                |text: &str| text.chars().skip(at.saturating_sub(60)).take(120).collect::<String>();
+            Err(Broken::new(kind, format!("{} and {}", about(&a.0), about(&b.0))))
+        }
+        None => Ok(()),
     }
 }

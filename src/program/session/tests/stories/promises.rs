@@ -1,12 +1,13 @@
 //! What holds after every story: see `docs/PROJECTS.md`. Each broken promise has a kind, by which
 //! stories that fail in one way are counted and shrunk.
 
-use crate::document::{Document, Progress, flatten, flatten_rounding_once};
+use crate::document::{Document, MemoryUse, Progress, flatten, flatten_rounding_once};
 use crate::io::export::ExportOptions;
 use crate::io::export::deep::encode_document;
 use crate::io::project::{self, Archive};
 use crate::io::{Budget, picture, psd, recipe};
 use crate::raster::picture::Texels;
+use crate::session::memory::HeldDocuments;
 use crate::session::{Autosave, OpenDocument, Session, is_same};
 use std::any::Any;
 use std::path::Path;
@@ -118,6 +119,7 @@ pub fn at_end(session: &mut Session, seen: &[Seen], all_formats: bool) -> Kept {
     }
     // What is kept for speed goes, and comes again.
     if let Some(held) = session.held_documents() {
+        is_below_ceiling(session, &held)?;
         let kept = held.count(0).all.kept;
         let again = session.held_documents().map(|held| held.count(u64::MAX).all.kept);
         if again != Some(kept) {
@@ -128,6 +130,20 @@ pub fn at_end(session: &mut Session, seen: &[Seen], all_formats: bool) -> Kept {
         return Err(Broken::new("without what was kept for speed, another picture", String::new()));
     }
     session.open_documents.iter_mut().try_for_each(|open| steps(open, seen))
+}
+
+/// Beyond what is shown, no more is kept for speed than the ceiling and one more step.
+fn is_below_ceiling(session: &Session, held: &HeldDocuments) -> Kept {
+    let kept = |document: &Document| MemoryUse::of(document).kept;
+    let shown: u64 = session.open_documents.iter().map(|open| kept(open.shown())).sum();
+    let steps = session.open_documents.iter().flat_map(|open| open.history.others());
+    let largest = steps.map(kept).max().unwrap_or_default();
+    let ceiling = held.count(u64::MAX).all.kept / 2;
+    let now = held.count(ceiling).all.kept;
+    match now <= ceiling.max(shown).saturating_add(largest) {
+        true => Ok(()),
+        false => Err(Broken::new("memory", format!("{now} bytes are kept, beyond {ceiling}"))),
+    }
 }
 
 /// Steps that are undone: each is drawn anew.
