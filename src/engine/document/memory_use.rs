@@ -1,6 +1,7 @@
 //! The memory that documents use, counted value by value.
 //! Floor 4. Not here: which values there are (their owners, `count_memory`).
 
+use super::Document;
 use crate::paint::{LiveAdjustment, PictureSource, Selection, Stroke};
 use crate::raster::{CoverageGrid, TileGrid};
 use crate::surface::Surface;
@@ -21,6 +22,13 @@ pub struct MemoryUse {
 }
 
 impl MemoryUse {
+    /// Of one document alone, with all that it keeps.
+    pub fn of(document: &Document) -> Self {
+        let mut count = MemoryCount::default();
+        count.add(document, true);
+        count.used()
+    }
+
     pub fn total(self) -> u64 {
         self.painted + self.pictures + self.maps + self.kept
     }

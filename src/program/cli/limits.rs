@@ -1,7 +1,7 @@
 //! Options for limits and threads, common to all subcommands.
 //! Floor 7.
 
-use crate::document::Document;
+use crate::document::{Document, MemoryUse};
 use crate::io::{Budget, machine::free_bytes};
 use crate::{Error, Result};
 use std::path::Path;
@@ -51,7 +51,10 @@ impl LimitArgs {
     /// Checks, before painting a document, that its memory is available.
     pub fn room_to_paint(&self, file: &Path, document: &Document) -> Result<()> {
         let what = format!("painting {} pixels", document.size);
-        self.budget().room(file, &what, document.flattening_bytes())
+        let painting = document.flattening_bytes();
+        // What is free was asked for after the document was read; a given ceiling is for both.
+        let held = self.max_memory.map_or(0, |_| MemoryUse::of(document).total());
+        self.budget().room(file, &what, painting.saturating_add(held))
     }
 
     /// Does the work with the requested number of threads.
@@ -65,6 +68,31 @@ impl LimitArgs {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::{Size, Vec3};
+    use crate::raster::Plane;
+    use crate::surface::{Maps, Surface};
+    use std::sync::Arc;
+
+    #[test]
+    fn a_given_ceiling_is_for_the_document_and_for_painting_it() {
+        let size = Size::new(512, 512);
+        let depth = Plane::filled(size, 0.0);
+        let (normals, coverage) = (Plane::filled(size, Vec3::Z), Plane::filled(size, 255));
+        let surface = Surface::new(Maps { normals, depth, coverage }).unwrap();
+        let document = Document { surface: Some(Arc::new(surface)), ..Document::empty(size) };
+        let (held, painting) = (MemoryUse::of(&document).total(), document.flattening_bytes());
+        assert!(held > 512 * 512 * 16, "the maps of the surface: {held}");
+        let is_room = |bytes: u64| {
+            let limits = LimitArgs { max_memory: Some(bytes), ..limits() };
+            limits.room_to_paint(Path::new("a"), &document).is_ok()
+        };
+        assert!(is_room(2 * (held + painting)) && !is_room(painting + held / 2));
+    }
+
+    /// None given.
+    fn limits() -> LimitArgs {
+        LimitArgs { max_side: None, max_pixels: None, max_memory: None, threads: None }
+    }
 
     #[test]
     fn sizes_are_read_with_their_units() {
