@@ -101,28 +101,31 @@ impl WarpCache {
         map: &LayerMap,
         warp: LayerWarp,
     ) -> Arc<WarpTiles> {
-        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
         let canvas = scene.size.rect();
-        let known = last.as_ref().filter(|entry| {
-            entry.scene.is_same(scene) && entry.map == *map && is_same(&entry.content, content)
-        });
+        // The lock is not held while tiles are compared.
+        let known = {
+            let last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+            let same = last.as_ref().filter(|entry| {
+                entry.scene.is_same(scene) && entry.map == *map && is_same(&entry.content, content)
+            });
+            same.map(|entry| entry.tiles.clone())
+        };
         let tiles = match known {
-            Some(entry) if entry.tiles.warp == warp => return entry.tiles.clone(),
-            Some(entry) => {
+            Some(known) if known.warp == warp => return known,
+            Some(known) => {
                 let shown = Cells::new(canvas);
-                if let Some(changed) =
-                    LayerWarp::changed_tiles(Some(&entry.tiles.warp), Some(&warp))
-                    && entry.tiles.warp.filter == warp.filter
+                if let Some(changed) = LayerWarp::changed_tiles(Some(&known.warp), Some(&warp))
+                    && known.warp.filter == warp.filter
                 {
                     for at in TileAt::covering(canvas).filter(|at| !changed.contains(at)) {
-                        if let (Some(to), Some(from)) = (shown.cell(at), entry.tiles.shown.cell(at))
+                        if let (Some(to), Some(from)) = (shown.cell(at), known.shown.cell(at))
                             && let Some(tile) = from.get()
                         {
                             let _ = to.set(tile.clone());
                         }
                     }
                 }
-                WarpTiles { warp, canvas, source: entry.tiles.source.clone(), shown }
+                WarpTiles { warp, canvas, source: known.source.clone(), shown }
             }
             None => WarpTiles {
                 warp,
@@ -133,7 +136,10 @@ impl WarpCache {
         };
         let tiles = Arc::new(tiles);
         let (scene, content, map) = (scene.clone(), content.clone(), *map);
-        *last = Some(Entry { scene, content, map, tiles: tiles.clone() });
+        let entry = Entry { scene, content, map, tiles: tiles.clone() };
+        // What was known before is freed after the lock.
+        let before = self.last.lock().unwrap_or_else(PoisonError::into_inner).replace(entry);
+        drop(before);
         tiles
     }
 }
