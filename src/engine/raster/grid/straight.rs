@@ -132,14 +132,21 @@ crate::widest! {
     /// Premultiplied bytes to straight bytes, rounded to nearest; transparent pixels become
     /// transparent black.
     pub fn unpremultiply(premultiplied: &[u8], straight: &mut [u8]) {
-        let (premultiplied, straight) = (premultiplied.as_chunks::<4>().0, straight.as_chunks_mut::<4>().0);
-        for (p, s) in premultiplied.iter().zip(straight) {
+        let pixels = premultiplied.as_chunks::<4>().0;
+        // Most paint is opaque, where both are the same.
+        if pixels.iter().fold(255, |least, p| p[3].min(least)) == 255 {
+            straight[..premultiplied.len()].copy_from_slice(premultiplied);
+            return;
+        }
+        for (p, s) in pixels.iter().zip(straight.as_chunks_mut::<4>().0) {
             let a = i32::from(p[3]);
             // For numbers below 2¹⁶ a rounded-down f32 quotient is the integer quotient.
             let over = a.max(1) as f32;
-            let color = [p[0], p[1], p[2]].map(|c| ((i32::from(c) * 255 + a / 2) as f32 / over) as i32);
             let held = if a == 0 { 0 } else { 255 };
-            *s = [color[0].min(held) as u8, color[1].min(held) as u8, color[2].min(held) as u8, p[3]];
+            for c in 0..3 {
+                s[c] = (((i32::from(p[c]) * 255 + a / 2) as f32 / over) as i32).min(held) as u8;
+            }
+            s[3] = p[3];
         }
     }
 }
@@ -182,6 +189,10 @@ mod tests {
             }
             assert_eq!((p[3], s[3]), (of[3], of[3]));
         }
+        let opaque: Vec<u8> = (0..=255).flat_map(|c| [c, 255 - c, c / 2, 255]).collect();
+        let mut straight = vec![0; opaque.len()];
+        unpremultiply(&opaque, &mut straight);
+        assert_eq!(straight, opaque);
     }
 
     #[test]
