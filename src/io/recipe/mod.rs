@@ -110,7 +110,11 @@ pub fn read(text: &[u8], source: RecipeSource) -> Result<Document> {
 
 /// The same, with what was found in its maps and could not be carried over, a sentence each.
 pub fn read_noting(text: &[u8], source: RecipeSource) -> Result<(Document, Vec<String>)> {
-    read_parts(&parse(source.file, text, source.budget)?, source, TileGrids::new())
+    let (document, notes) =
+        read_unshaped(&parse(source.file, text, source.budget)?, source, TileGrids::new())?;
+    let document = shaped(document);
+    let notes = [notes, document.notes_of_parts()].concat();
+    Ok((document, notes))
 }
 
 /// Reads a document from JSON that is parsed already.
@@ -121,10 +125,19 @@ pub fn read_value(value: &Value, source: RecipeSource) -> Result<Document> {
 /// As [`read_value`], with the pixels of some paint layers known already; they were within the
 /// budget.
 pub fn read_with_tiles(value: &Value, source: RecipeSource, tiles: TileGrids) -> Result<Document> {
-    read_parts(value, source, tiles).map(|(document, _)| document)
+    read_unshaped(value, source, tiles).map(|(document, _)| shaped(document))
 }
 
-fn read_parts(
+/// With the surface that its parts make, and what is selected of it.
+fn shaped(document: Document) -> Document {
+    let document = document.reshaped();
+    let active_selection = document.active_selection.clone().filter(|found| !found.is_empty());
+    Document { active_selection, ..document }
+}
+
+/// A document whose surface is still that of its maps alone, for those who put pixels into its
+/// layers before it is reshaped; with notes.
+pub fn read_unshaped(
     value: &Value,
     source: RecipeSource,
     tiles: TileGrids,
@@ -190,7 +203,7 @@ fn read_parts(
         guides: Arc::new(guides),
         assistants: Arc::new(assistants),
     };
-    let mut document = match source.onto {
+    let document = match source.onto {
         _ if parts.is_empty() => bare,
         // Another object takes the place of the document's own, parts and all.
         Some(_) => bare.off_parts(parts),
@@ -201,12 +214,10 @@ fn read_parts(
                 &parts,
                 reader.pictures.used_bytes(),
             )?;
-            bare.with_parts(parts).with_selections_found()
+            bare.with_parts_unshaped(parts)
         }
     };
-    document.active_selection = document.active_selection.filter(|found| !found.is_empty());
-    let notes = [reader.notes, document.notes_of_parts()].concat();
-    Ok((document, notes))
+    Ok((document, reader.notes))
 }
 
 fn check_version(root: &mut Fields) -> Result<()> {

@@ -9,7 +9,7 @@ use crate::paint::Stroke;
 use crate::pixels;
 use crate::project::assets::{AssetList, MadeFiles, StoredPixels};
 use crate::raster::{Asset, TILE, Tile, TileAt, TileGrid};
-use crate::recipe::{self, RecipeSource};
+use crate::recipe::{self, RecipeSource, TileGrids};
 use crate::{Budget, Files, picture};
 use crate::{Error, Result};
 use serde_json::{Map, Value, json};
@@ -206,7 +206,8 @@ impl<'a> LastState<'a> {
         last
     }
 
-    /// The drawing; `None` where the log holds none.
+    /// The drawing, to be reshaped: parts are made from the pixels that are put into its layers
+    /// here. `None` where the log holds none.
     pub fn version(&self, file: &Path, budget: &Budget) -> Result<Option<DrawingVersion>> {
         let Some(state) = self.state else { return Ok(None) };
         let mut state = crate::json::parse(file, state, budget)?;
@@ -214,10 +215,8 @@ impl<'a> LastState<'a> {
         self.fill_in(file, budget, &mut state["document"], ("", &mut tiles))?;
         let document = state["document"].take();
         let blobs = BlobFiles { file, names: &state["files"], last: self };
-        let mut document = recipe::read_value(
-            &document,
-            RecipeSource { file, files: &blobs, budget, onto: None },
-        )?;
+        let source = RecipeSource { file, files: &blobs, budget, onto: None };
+        let (mut document, _) = recipe::read_unshaped(&document, source, TileGrids::new())?;
         for (path, grid) in tiles {
             let id = document
                 .walk()

@@ -122,6 +122,32 @@ fn selections_come_back_with_the_strokes_in_them_and_selecting_writes_no_stroke_
 }
 
 #[test]
+fn what_is_selected_of_a_part_comes_back_though_the_part_is_made_of_paint() {
+    use crate::document::parts::{Inflation, OutlineSource, Part, PartKind};
+    use crate::paint::Selection;
+    use crate::surface::region::{RegionKind, SurfaceRegion};
+    let fs = MemoryFs::with(&[("/r/other", b"")]);
+    let tiles = TileGrid::from_straight_rgba(&[[9, 90, 9, 255]; 40 * 40].concat(), 40, 40, 5, 5);
+    let ink = PixelLayer { file: String::new(), x: 0, y: 0, tiles };
+    let layers = vec![Arc::new(Layer::new("Ink", Content::Pixels(ink)))];
+    let outline = OutlineSource::Layer { layer: "Ink".into(), color: None };
+    let inflation = Inflation::default();
+    let part = Part::new("part-1", PartKind::Inflate { outline, inflation });
+    let document = Document { layers, ..Document::empty(Size::new(50, 50)) };
+    let document = document.with_parts(vec![Arc::new(part)]);
+    let region = SurfaceRegion::new(RegionKind::Depth, crate::math::vec2(25.0, 25.0));
+    let selection = Selection::of_region(region, &document.scene());
+    assert!(!selection.is_empty());
+    let document = document.with_selection(Some(selection));
+    journal(&fs).record(&document).unwrap();
+    let log = fs.file(LOG).unwrap();
+    let back =
+        super::sessions::read(Path::new(LOG), &log, &Budget::default(), &Progress::default());
+    let back = back.unwrap().unwrap().version.document;
+    assert_eq!(document.difference(&back), None);
+}
+
+#[test]
 fn a_log_of_an_older_version_with_a_number_a_value_opens() {
     let fs = MemoryFs::with(&[("/r/other", b"")]);
     let mut journal = journal(&fs);

@@ -15,7 +15,7 @@ impl Document {
     /// With other parts, and the surface that follows from them. What lies on parts that go stays
     /// where it shows.
     pub fn with_parts(&self, list: Vec<Arc<Part>>) -> Document {
-        self.with_list(list).reshaped()
+        self.with_parts_unshaped(list).reshaped()
     }
 
     /// The same, a step for each part; `None` if cancelled.
@@ -24,11 +24,11 @@ impl Document {
         list: Vec<Arc<Part>>,
         progress: &Progress,
     ) -> Option<Document> {
-        self.with_list(list).reshaped_with_progress(progress)
+        self.with_parts_unshaped(list).reshaped_with_progress(progress)
     }
 
-    /// With other parts, but not yet with their surface.
-    fn with_list(&self, list: Vec<Arc<Part>>) -> Document {
+    /// With other parts, but not yet with their surface: for [`Document::reshaped`].
+    pub fn with_parts_unshaped(&self, list: Vec<Arc<Part>>) -> Document {
         let maps = self.maps_surface().cloned();
         let stays = |id: &str| list.iter().any(|part| part.id == id);
         let goes = |part: &Arc<Part>| !stays(&part.id);
@@ -63,7 +63,7 @@ impl Document {
     /// With other parts while the user drags: what lies on parts follows at once, the surface stays
     /// that of the parts before until [`Document::reshaped`], which takes too long for a drag.
     pub fn with_parts_ahead(&self, list: Vec<Arc<Part>>) -> Document {
-        let next = self.with_list(list);
+        let next = self.with_parts_unshaped(list);
         if next.parts.is_empty() {
             return next;
         }

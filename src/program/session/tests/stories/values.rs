@@ -281,7 +281,15 @@ impl Drawn for LayerTransform {
                 [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| near(dice, x, y)),
             ),
         };
-        LayerTransform { shape, filter: Resampling::drawn(dice) }
+        let drawn = LayerTransform { shape, filter: Resampling::drawn(dice) };
+        // On a tiny canvas its corners may pass each other.
+        match drawn.fits() {
+            Ok(()) => drawn,
+            Err(_) => LayerTransform {
+                shape: TransformShape::Matrix([1.0, 0.0, 0.0, 1.0, 0.0, 0.0]),
+                ..drawn
+            },
+        }
     }
 }
 
