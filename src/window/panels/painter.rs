@@ -10,6 +10,9 @@ use crate::shading::{LightSetting, Mood, Painter, Shading, Shadows};
 use crate::widgets::{NumberField, check, named, title};
 use eframe::egui::{self, Ui};
 
+/// One of the colours of the light.
+type ColorOf = fn(&mut Painter) -> &mut Color;
+
 /// A row for each number of a table.
 fn settings<T: Copy + 'static>(
     ui: &mut Ui,
@@ -64,7 +67,7 @@ pub fn terms(ui: &mut Ui, painter: Painter, setter: &mut LayerSetter) {
         setter.set(Property::Painted { painter: Painter { beneath, ..painter } }, true);
     }
     settings(ui, Painter::SETTINGS, painter, setter, |painter| Property::Painted { painter });
-    let colors: [(&str, Color, fn(&mut Painter) -> &mut Color); 3] = [
+    let colors: [(&str, Color, ColorOf); 3] = [
         ("Fill colour", painter.fill_color, |p| &mut p.fill_color),
         ("Bounce colour", painter.bounce_color, |p| &mut p.bounce_color),
         ("Rim colour", painter.rim_color, |p| &mut p.rim_color),

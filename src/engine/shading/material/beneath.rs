@@ -173,21 +173,20 @@ fn encode_exactly(light: &Light3, covered: &[bool; TILE], brightest: f32, row: &
 crate::widest! {
     /// Premultiplied sRGB to the linear light of the colour.
     fn decode_row(row: &PixelRow, albedo: &mut Light3) {
-        for c in 0..3 {
-            for x in 0..TILE {
-                let per_a = 1.0 / fast::max(row.a[x], f32::MIN_POSITIVE);
-                let v = fast::min(fast::max(row.rgb[c][x] * per_a, 0.0), 1.0);
-                albedo[c][x] = srgb::decode_fast(v);
+        for (channel, albedo) in row.rgb.iter().zip(albedo) {
+            for ((value, a), out) in channel.iter().zip(&row.a).zip(albedo) {
+                let per_a = 1.0 / fast::max(*a, f32::MIN_POSITIVE);
+                *out = srgb::decode_fast(fast::min(fast::max(value * per_a, 0.0), 1.0));
             }
         }
     }
 
     /// Linear light to premultiplied sRGB, clipped, where the surface is.
     fn encode_row(light: &Light3, covered: &[bool; TILE], row: &mut PixelRow) {
-        for c in 0..3 {
+        for (channel, light) in row.rgb.iter_mut().zip(light) {
             for x in 0..TILE {
-                let v = srgb::encode_fast(fast::min(fast::max(light[c][x], 0.0), 1.0)) * row.a[x];
-                row.rgb[c][x] = if covered[x] { v } else { row.rgb[c][x] };
+                let v = srgb::encode_fast(fast::min(fast::max(light[x], 0.0), 1.0)) * row.a[x];
+                channel[x] = if covered[x] { v } else { channel[x] };
             }
         }
     }

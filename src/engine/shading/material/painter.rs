@@ -229,12 +229,12 @@ crate::widest! {
         of: &EvenLight,
         even: &mut Light3,
     ) {
-        for c in 0..3 {
+        for (c, even) in even.iter_mut().enumerate() {
             for x in 0..TILE {
                 let up = 0.5 + 0.5 * normal[1][x];
                 let down = fast::max(-normal[1][x], 0.0);
                 let light = up * of.fill[c] + down * of.bounce[c] + of.around[c];
-                even[c][x] = open[x] * scale[x] * light;
+                even[x] = open[x] * scale[x] * light;
             }
         }
     }

@@ -225,10 +225,10 @@ impl Highest {
 
     #[inline(always)]
     fn take(&mut self, heights: &LineValues, row: f32) {
-        for i in 0..LANES {
-            let higher = heights[i] > self.height[i];
-            self.height[i] = if higher { heights[i] } else { self.height[i] };
-            self.row[i] = if higher { row } else { self.row[i] };
+        for ((height, at), new) in self.height.iter_mut().zip(&mut self.row).zip(heights) {
+            let higher = *new > *height;
+            *height = if higher { *new } else { *height };
+            *at = if higher { row } else { *at };
         }
     }
 }
@@ -312,14 +312,14 @@ fn add_row(
 ) {
     let (turn, gain, between) = at;
     let mut own = [0.0; BETWEEN];
-    for i in 0..BETWEEN {
-        own[i] = h[i + 1] + gain;
+    for (own, h) in own.iter_mut().zip(&h[1..]) {
+        *own = h + gain;
     }
     // Most rows lie in the light.
     let mut counts = [0; 2];
     for (count, highest) in counts.iter_mut().zip(highest) {
-        for i in 0..BETWEEN {
-            let over = fast::max(highest.height[i], highest.height[i + 1]) - own[i];
+        for (i, own) in own.iter().enumerate() {
+            let over = fast::max(highest.height[i], highest.height[i + 1]) - own;
             *count += u32::from(over > lines.least_above);
         }
     }

@@ -157,7 +157,7 @@ fn a_level_plane_casts_nothing_on_itself_under_any_lamp() {
     let surface = surface_of(Size::new(120, 90), 60.0, |_, _| 20.0);
     for z in [1.0, 0.5, 0.2, 0.05] {
         for turn in 0..12 {
-            let (sin, cos) = (turn as f32 * 0.5236).sin_cos();
+            let (sin, cos) = (turn as f32 * std::f32::consts::FRAC_PI_6).sin_cos();
             let shadow = surface.shadow(&lamp(LampPlace::Afar(vec3(cos, sin, z))), 1);
             let least = (0..90).map(|y| shadow.at(60, y)).fold(1.0, f32::min);
             assert!(least > 0.98, "{z} {turn}: {least}");
