@@ -10,6 +10,7 @@ pub mod range;
 pub mod rect;
 pub mod simd;
 pub mod srgb;
+pub mod union_find;
 
 pub use glam::{Affine2, DVec2, Mat2, Mat3, Vec2, Vec3, Vec3A, Vec4, vec2, vec3};
 pub use plane_map::PlaneMap;

@@ -5,6 +5,7 @@ pub mod asset;
 pub mod bits;
 pub mod blend;
 pub mod blur;
+pub mod border;
 pub mod coverage;
 pub mod distance;
 pub mod flood;

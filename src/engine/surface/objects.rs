@@ -4,7 +4,7 @@
 use super::cache::HeapSize;
 use super::pyramid::BLOCK;
 use super::{ContourPixel, Surface, links};
-use crate::math::{Rect, Size, Vec2};
+use crate::math::{Rect, Size, Vec2, union_find};
 use crate::memory::once;
 use crate::raster::Plane;
 use std::collections::BTreeMap;
@@ -148,21 +148,13 @@ impl PieceForest {
     }
 
     /// The first pixel of a pixel's piece.
-    fn first(&mut self, mut i: usize) -> usize {
-        while self.parent[i] as usize != i {
-            // Halving the path keeps it short.
-            self.parent[i] = self.parent[self.parent[i] as usize];
-            i = self.parent[i] as usize;
-        }
-        i
+    fn first(&mut self, i: usize) -> usize {
+        union_find::first_of(&mut self.parent, i as u32) as usize
     }
 
     fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.first(a), self.first(b));
-        if a != b {
-            let (first, later) = (a.min(b), a.max(b));
-            self.parent[later] = first as u32;
-            self.area[first] += self.area[later];
+        if let (first, Some(later)) = union_find::join(&mut self.parent, a as u32, b as u32) {
+            self.area[first as usize] += self.area[later as usize];
         }
     }
 

@@ -2,8 +2,8 @@
 //! that renderers write there. Floor 5.
 
 use super::stored::StoredMap;
-use crate::math::{Size, Vec3};
-use crate::raster::Plane;
+use crate::math::Vec3;
+use crate::raster::{Plane, border};
 use std::collections::HashMap;
 
 /// The one texel that fills the outside: outside the mask if there is one, else along the border.
@@ -20,7 +20,7 @@ pub fn constant(stored: &StoredMap, coverage: Option<&Plane<u8>>) -> Option<[f32
                 .collect()
         }
         None => {
-            let all = border(size);
+            let all = border::outermost(size);
             let step = (all.len() / 50_000).max(1);
             all.into_iter().step_by(step).collect()
         }
@@ -32,16 +32,6 @@ pub fn constant(stored: &StoredMap, coverage: Option<&Plane<u8>>) -> Option<[f32
     }
     let (texel, count) = counts.into_iter().max_by_key(|&(texel, count)| (count, texel))?;
     (count * 3 >= outside.len() && count > 1).then(|| texel.map(f32::from_bits))
-}
-
-/// Indices of the outermost pixels.
-fn border(size: Size) -> Vec<usize> {
-    let (w, h) = (size.width as usize, size.height as usize);
-    if w < 3 || h < 3 {
-        return (0..w * h).collect();
-    }
-    let rows = (0..w).chain((h - 1) * w..h * w);
-    rows.chain((1..h - 1).flat_map(|y| [y * w, y * w + w - 1])).collect()
 }
 
 /// Whether two numbers are equal up to lossy compression.
@@ -66,43 +56,6 @@ impl FilledEdge {
         }
         Some(Self { texel, holds })
     }
-}
-
-/// Pixels joined to the border through pixels that `is` accepts (four neighbours).
-pub fn joined_to_border(size: Size, is: impl Fn(usize) -> bool) -> Plane<bool> {
-    let (w, h) = (size.width as usize, size.height as usize);
-    let mut found = Plane::filled(size, false);
-    // No file has more pixels than 32 bits count.
-    let mut front: Vec<u32> =
-        border(size).into_iter().filter(|&i| is(i)).map(|i| i as u32).collect();
-    front.iter().for_each(|&i| found.values_mut()[i as usize] = true);
-    // Ring after ring, so that only two rings are in memory.
-    while !front.is_empty() {
-        let mut next = Vec::new();
-        let mut visit = |j: usize| {
-            if !found.values()[j] && is(j) {
-                found.values_mut()[j] = true;
-                next.push(j as u32);
-            }
-        };
-        for i in front.into_iter().map(|i| i as usize) {
-            let (x, y) = (i % w, i / w);
-            if x > 0 {
-                visit(i - 1);
-            }
-            if x + 1 < w {
-                visit(i + 1);
-            }
-            if y > 0 {
-                visit(i - w);
-            }
-            if y + 1 < h {
-                visit(i + w);
-            }
-        }
-        front = next;
-    }
-    found
 }
 
 /// Whether a decoded vector cannot be a normal: not finite, nearly zero, or far too long (black or

@@ -1,6 +1,6 @@
 //! Which pixels are surface: by the given mask, the alpha of the files, or the numbers. Floor 5.
 
-use super::background::{self, FilledEdge};
+use super::background::FilledEdge;
 use super::encoding;
 use super::findings::Findings;
 use super::layers::MapRole;
@@ -8,7 +8,7 @@ use super::overrides::ConventionOverrides;
 use super::stored::{self, StoredMap};
 use crate::document::source::{MaskSource, SurfaceSource};
 use crate::math::{Vec3, srgb};
-use crate::raster::Plane;
+use crate::raster::{Plane, border};
 use crate::{Budget, Error, Files, Result, picture};
 
 /// The mask that the document names, and its name for messages; `maps` are its normals and its
@@ -61,7 +61,7 @@ const SHARE_OF_ONE_DEPTH: f32 = 0.5;
 fn not_flat(normal: &StoredMap, depth: Option<&StoredMap>) -> Plane<u8> {
     let holds_edge = |map: &StoredMap| FilledEdge::of(map, None).map(|edge| edge.holds);
     let Some(flat) = holds_edge(normal) else { return Plane::filled(normal.size, 255) };
-    let outside = background::joined_to_border(normal.size, |i| flat.values()[i]);
+    let outside = border::joined_to_border(normal.size, |i| flat.values()[i]);
     let far = depth.filter(|depth| depth.size == normal.size).and_then(holds_edge);
     let count = |is: &dyn Fn(usize) -> bool| {
         (0..normal.size.area()).filter(|&i| outside.values()[i] && is(i)).count()

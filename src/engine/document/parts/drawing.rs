@@ -5,7 +5,7 @@ use super::from_flats::LEAST_FLAT;
 use crate::math::srgb::Color;
 use crate::math::{Rect, Size};
 use crate::raster::grid::unpremultiply;
-use crate::raster::{Plane, TileGrid};
+use crate::raster::{Plane, TileGrid, border};
 use crate::shape::flats::color_distance::{is_near, share_on_the_way};
 use crate::shape::flats::shares::{Flats, bytes};
 
@@ -127,9 +127,10 @@ fn flat_ground(tiles: &TileGrid, canvas: Size) -> Option<Color> {
 /// them.
 pub fn without_background(tiles: &TileGrid, canvas: Size, background: Color) -> TileGrid {
     let color = bytes(background);
-    let open = joined_to_border(&Plane::from_fn(canvas, |x, y| {
-        is_near(tiles.pixel(x as i32, y as i32), color)
-    }));
+    let side = canvas.width as usize;
+    let open = border::joined_to_border(canvas, |i| {
+        is_near(tiles.pixel((i % side) as i32, (i / side) as i32), color)
+    });
     let pixel = |x: usize, y: usize| {
         let (x, y) = (x as i32, y as i32);
         let here = tiles.pixel(x, y);
@@ -163,21 +164,6 @@ fn unmixed(pixel: [u8; 4], of: [u8; 4], share: u8) -> [u8; 4] {
     let part = |c: usize| (f32::from(of[c]) * f32::from(share) / 255.0).round() as u8;
     let alpha = pixel[3].saturating_sub(part(3));
     std::array::from_fn(|c| pixel[c].saturating_sub(part(c)).min(alpha))
-}
-
-/// The pixels of a set that are joined to the border by others of it, side by side.
-fn joined_to_border(set: &Plane<bool>) -> Plane<bool> {
-    let (w, h) = (set.width() as i32, set.height() as i32);
-    let mut found = Plane::filled(set.size(), false);
-    let mut ahead: Vec<(i32, i32)> = (0..w).flat_map(|x| [(x, 0), (x, h - 1)]).collect();
-    ahead.extend((0..h).flat_map(|y| [(0, y), (w - 1, y)]));
-    while let Some((x, y)) = ahead.pop() {
-        if set.get(x, y) == Some(true) && !found.at(x as usize, y as usize) {
-            found.set(x as usize, y as usize, true);
-            ahead.extend([(x + 1, y), (x - 1, y), (x, y + 1), (x, y - 1)]);
-        }
-    }
-    found
 }
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
 //! The coarser levels of couplings: unknowns that represent blocks of finer ones, joined by couplings
 //! in any shape. Floor 2. Their couplings, and the V-cycle below the grid. Not here: which unknowns
-//! become one (`merge`), the grid itself (`couplings`).
+//! become one (`merge`), the grid itself (`poisson`).
 
 use super::PoissonGrid;
-use super::merge::{children, couplings_at, in_series, is_strong, join, number_rows, numbered};
+use super::merge::{children, couplings_at, in_series, is_strong, number_rows, numbered};
+use crate::math::union_find;
 use crate::memory::filled_or_unwind;
 use rayon::prelude::*;
 
@@ -181,7 +182,7 @@ impl PoissonGraph {
             for (j, stiffness) in self.couplings(i) {
                 let j = j as usize;
                 if j > i && block(i) == block(j) && is_strong(stiffness, stiffest[i], stiffest[j]) {
-                    join(&mut first, i as u32, j as u32);
+                    union_find::join(&mut first, i as u32, j as u32);
                 }
             }
         }
@@ -210,7 +211,9 @@ impl PoissonGraph {
     fn found_pieces(&self) -> (Vec<u32>, usize) {
         let mut first: Vec<u32> = (0..self.len() as u32).collect();
         for i in 0..self.len() {
-            self.couplings(i).for_each(|(j, _)| join(&mut first, i as u32, j));
+            self.couplings(i).for_each(|(j, _)| {
+                union_find::join(&mut first, i as u32, j);
+            });
         }
         let (labels, roots) = numbered(&mut first);
         (labels, roots.len())

@@ -2,6 +2,7 @@
 //! join. Floor 2. Not here: the levels themselves (`graph`).
 
 use super::PoissonGrid;
+use crate::math::union_find::first_of;
 
 /// A coupling joins its ends into one coarser unknown if it is at least this share of the stiffest at
 /// the slacker end.
@@ -67,26 +68,12 @@ pub(super) fn number_rows(grid: &PoissonGrid, y: usize, rows: &mut [u32]) -> Vec
     columns
 }
 
-fn root(first: &mut [u32], mut i: u32) -> u32 {
-    while first[i as usize] != i {
-        // Halving the path keeps it short.
-        first[i as usize] = first[first[i as usize] as usize];
-        i = first[i as usize];
-    }
-    i
-}
-
-pub(super) fn join(first: &mut [u32], a: u32, b: u32) {
-    let (a, b) = (root(first, a), root(first, b));
-    first[a.max(b) as usize] = a.min(b);
-}
-
 /// Numbers the trees of a forest in the order of their roots: the number of each node's tree, and
 /// the roots.
 pub(super) fn numbered(first: &mut [u32]) -> (Vec<u32>, Vec<u32>) {
     let (mut labels, mut roots) = (vec![0; first.len()], Vec::new());
     for i in 0..first.len() as u32 {
-        let root = root(first, i);
+        let root = first_of(first, i);
         if root == i {
             labels[i as usize] = roots.len() as u32;
             roots.push(i);
