@@ -17,7 +17,7 @@
 //!   opacity) is composed with all that lies beneath it in its scope.
 
 use crate::document::{
-    Document, Group, Layer, LayerId, LayerLabel, LayerLock, LayerMask, MaskKind, Role,
+    Content, Document, Group, Layer, LayerId, LayerLabel, LayerLock, LayerMask, MaskKind, Role,
 };
 use crate::raster::{BlendMode, Plane};
 use crate::surface::Surface;

@@ -1,7 +1,6 @@
 //! Plans as text: which items other programs see, hidden ones, clipped ones and stacks.
 
 use super::*;
-use crate::document::Content;
 use crate::math::{Size, srgb::Color};
 use crate::project::sample::soft_surface;
 use crate::shading::RadianceScaling;
