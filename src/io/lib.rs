@@ -3,10 +3,12 @@
 
 #![cfg_attr(not(test), warn(missing_docs))]
 
+mod aseprite;
 pub mod base64;
 pub mod bitmap;
 pub mod brush;
 pub mod budget;
+mod clip;
 pub mod cube;
 pub mod deep_paint;
 pub mod export;

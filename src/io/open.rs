@@ -7,10 +7,10 @@ use super::files::{RecipeFolder, TrackedFiles, read_file};
 use super::project::{self, Archive, ProjectContents};
 use super::recipe::{self, RecipeSource};
 use super::replace::FileStamp;
-use super::{Budget, deep_paint, json, picture, psd};
-use crate::Result;
+use super::{Budget, aseprite, clip, deep_paint, json, picture, psd};
 use crate::document::{Content, Document, Layer, PixelLayer};
 use crate::raster::Asset;
+use crate::{Error, Result};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -110,8 +110,20 @@ pub fn open(file: &Path, budget: &Budget) -> Result<OpenedDocument> {
     })
 }
 
-/// A picture as a document of its size; an EXR of several layers with all of them.
+/// A picture as a document of its size; an EXR or a sprite of several layers with all of them.
 fn single(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContents> {
+    if aseprite::is_aseprite(bytes) {
+        return aseprite::read(file, bytes, budget);
+    }
+    if clip::is_clip(bytes) {
+        let none = "a Clip Studio drawing without a picture of itself; save it as PSD there";
+        let preview = clip::preview(bytes).ok_or_else(|| Error::unsupported(file, none))?;
+        let mut shown = single(file, &preview, budget)?;
+        let note = "it is a Clip Studio drawing, of which the picture within is shown; for its \
+                    layers, save it as PSD there";
+        shown.notes.push(note.to_owned());
+        return Ok(ProjectContents { is_whole: false, ..shown });
+    }
     let name = file.file_stem().unwrap_or_default().to_string_lossy();
     let mut stored = picture::layers(file, bytes, budget)?;
     let (several, has_whole) = (!stored.is_empty(), stored.iter().any(|layer| layer.is_whole));

@@ -8,7 +8,7 @@ const AS_LAYERS: &str = "save it as PSD or OpenRaster, or as PNG";
 const RAW: (&str, &str) = ("a raw photo of a camera", "develop it and save it as TIFF or JPEG");
 
 /// Kinds of files by the bytes at a place.
-const SIGNATURES: [(usize, &[u8], &str, &str); 53] = [
+const SIGNATURES: [(usize, &[u8], &str, &str); 55] = [
     (4, b"ftypavif", "an AVIF picture", AS_PICTURE),
     (4, b"ftypavis", "an AVIF picture", AS_PICTURE),
     (4, b"ftyphei", "a HEIC picture", AS_PICTURE),
@@ -33,6 +33,8 @@ const SIGNATURES: [(usize, &[u8], &str, &str); 53] = [
     (0, b"\0MRM", RAW.0, RAW.1),
     (0, b"gimp xcf", "a GIMP drawing", "save it as PSD or OpenRaster in GIMP"),
     (0, b"\0\xffKA", "a drawing of Affinity", "export it as PSD or PNG"),
+    (0, b"CSFCHUNK", "a Clip Studio drawing", "open it, or save it as PSD or PNG"),
+    (4, b"\xe0\xa5", "an Aseprite drawing", "open it, or save it as PNG"),
     (0, b"SAI-CANVAS", "a drawing of SAI", "save it as PSD in SAI"),
     (0, b"mdipack", "a drawing of MediBang or FireAlpaca", "save it as PSD or PNG"),
     (0, b"PDN3", "a drawing of Paint.NET", AS_LAYERS),

@@ -155,6 +155,12 @@ impl Files for Archive<'_> {
     }
 }
 
+/// Why an entry may not have this name. A colon names no drive here, and Krita calls folders by the
+/// names of pictures.
+fn refusal(name: &str) -> Option<&'static str> {
+    files::refusal(&name.replace(':', "_"))
+}
+
 /// The table of contents.
 fn list(
     file: &Path,
@@ -179,7 +185,7 @@ fn list(
             .name()
             .map_err(|_| Error::decode(file, "the name of an entry is not UTF-8"))?
             .into_owned();
-        if let Some(reason) = files::refusal(&name) {
+        if let Some(reason) = refusal(&name) {
             return Err(Error::unsupported(
                 file,
                 format!("the entry “{name}” is refused: {reason}"),
@@ -211,7 +217,7 @@ fn scan(file: &Path, bytes: &[u8], budget: &Budget) -> Result<BTreeMap<String, u
             at += 1;
             continue;
         };
-        if files::refusal(&name).is_none() && !name.ends_with('/') {
+        if refusal(&name).is_none() && !name.ends_with('/') {
             found.entry(name).or_insert(at);
         }
         if found.len() > budget.entries {

@@ -158,6 +158,19 @@ pub fn leftovers(reading: &mut ProjectReader, error: Error) -> Result<Document> 
     Ok(Document { layers, ..Document::empty(size) })
 }
 
+/// The picture that another program put beside what it alone reads.
+pub fn shown(reading: &mut ProjectReader, entry: &str, sentence: &str) -> Result<Document> {
+    let bytes = reading.archive.bytes(entry, reading.budget.file_bytes)?;
+    let path = reading.archive_path(entry);
+    let painted = picture::painted(&path, &bytes, 0, 0, reading.budget)?;
+    reading.lost(sentence);
+    let name = reading.file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let tiles = painted.tiles;
+    let content = Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles });
+    let layer = Layer { clip_to_surface: false, ..Layer::new(name, content) };
+    Ok(Document { layers: vec![Arc::new(layer)], ..Document::empty(painted.size) })
+}
+
 /// What we saved, for layers that are unchanged.
 struct SavedState<'a> {
     value: Value,
@@ -261,7 +274,7 @@ impl ForeignReader<'_, '_> {
 
 /// Makes one base of the layers beneath an “atop” layer, so that it can be clipped: the layers
 /// themselves if only the lowest is not clipped, else a group of them.
-fn as_one_base(layers: Vec<Arc<Layer>>) -> Vec<Arc<Layer>> {
+pub fn as_one_base(layers: Vec<Arc<Layer>>) -> Vec<Arc<Layer>> {
     let is_set_apart =
         |layer: &Layer| !matches!(&layer.content, Content::Group(group) if group.pass_through);
     let is_base = |(i, layer): (usize, &Arc<Layer>)| {

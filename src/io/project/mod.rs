@@ -11,10 +11,12 @@
 //! | `assets` | maps, sources and tips under their names in the zip |
 //! | `manifest` | which picture belongs to which layer, so that another program's change is detected |
 //! | `open`, `repair`, `foreign` | reading: our own, damaged, other programs' |
+//! | `krita` | Krita's own files, which are zips of another kind |
 
 pub(super) mod archive;
 pub(super) mod assets;
 mod foreign;
+mod krita;
 pub(super) mod layer_preview;
 pub(super) mod manifest;
 mod open;

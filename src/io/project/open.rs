@@ -5,7 +5,7 @@ use super::layer_preview::{cache_previews, encode_paint};
 use super::manifest::{Manifest, ManifestPicture};
 use super::png_header::png_size;
 use super::reader::ProjectReader;
-use super::{Archive, DOCUMENT, MANIFEST, MERGED, STACK, foreign, repair, stack};
+use super::{Archive, DOCUMENT, MANIFEST, MERGED, STACK, foreign, krita, repair, stack};
 use crate::document::EncodedPixels;
 use crate::document::{Content, Document, Layer, LayerId};
 use crate::math::Size;
@@ -19,6 +19,11 @@ use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
+
+/// The picture that a drawing of Procreate holds of itself.
+const PROCREATE_PREVIEW: &str = "QuickLook/Thumbnail.png";
+const PROCREATE_NOTE: &str = "it is a Procreate drawing, of which the small picture within is shown; \
+     for its layers, share it as PSD in Procreate";
 
 /// The result of reading a project.
 pub struct ProjectContents {
@@ -199,6 +204,16 @@ impl ProjectReader<'_> {
         let layers = match stack {
             Some(Ok(text)) => stack::read(self.file, &text, self.budget),
             Some(Err(error)) => Err(error),
+            None if self.archive.has(krita::MAINDOC) => {
+                let read = krita::document(self);
+                return read.or_else(|error| match self.fits_if_rounded(&error) {
+                    true => Err(error),
+                    false => foreign::leftovers(self, error),
+                });
+            }
+            None if self.archive.has(PROCREATE_PREVIEW) => {
+                return foreign::shown(self, PROCREATE_PREVIEW, PROCREATE_NOTE);
+            }
             None => Err(Error::decode(
                 self.file,
                 "it is no OpenRaster file: there is no stack.xml in it",

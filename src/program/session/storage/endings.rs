@@ -4,7 +4,8 @@ use crate::io::export::ExportFormat;
 use std::path::{Path, PathBuf};
 
 /// Extensions of the files that hold documents.
-pub const DOCUMENTS: [&str; 4] = ["ora", "psd", "psb", "json"];
+pub const DOCUMENTS: [&str; 10] =
+    ["ora", "psd", "psb", "json", "kra", "krz", "ase", "aseprite", "clip", "procreate"];
 /// Extensions of the files that documents are saved to, the first being this program's own.
 pub const SAVED: [&str; 2] = ["ora", "psd"];
 /// Extensions of the files that hold pictures.
