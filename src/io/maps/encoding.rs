@@ -37,6 +37,11 @@ fn rebuilt(x: f32, y: f32) -> Vec3 {
     vec3(x, y, (1.0 - x * x - y * y).max(0.0).sqrt())
 }
 
+/// How many times better than its rivals `full-z` has to fit. Maps of games are unsigned. Averaging
+/// and compression shorten their normals, to 0.96 in a mipmap, and the larger z of `full-z` makes up
+/// for half of that and more. A map that is `full-z` fits it ten times better, unless it is flat.
+const FULL_Z_WEIGHT: f32 = 4.0;
+
 /// Chooses the decoding that fits the sampled texels; what the convention fixes is kept.
 pub fn choose(
     stored: &StoredMap,
@@ -58,7 +63,8 @@ pub fn choose(
         None if shape.least >= -0.02 && shape.most <= 1.02 => vec![false, true],
         None => vec![false],
     };
-    let mut scored: Vec<(f32, TexelReading)> = Vec::new();
+    // Weighted error, error, reading.
+    let mut scored: Vec<(f32, f32, TexelReading)> = Vec::new();
     for &encoding in &encodings {
         for &srgb in &curves {
             let reading = TexelReading { encoding, srgb, signed_pair };
@@ -68,16 +74,18 @@ pub fn choose(
             if rebuilt && srgb && overrides.srgb.is_none() {
                 continue;
             }
-            scored.push((length_error(&reading, &texels), reading));
+            let error = length_error(&reading, &texels);
+            let weight = if encoding == NormalEncoding::FullZ { FULL_Z_WEIGHT } else { 1.0 };
+            scored.push((weight * error, error, reading));
         }
     }
     scored.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let Some(&(error, reading)) = scored.first() else {
+    let Some(&(weighted, error, reading)) = scored.first() else {
         return Err(Error::decode(&stored.file, "no encoding of normals fits these numbers"));
     };
     // A rival counts only where it decodes the numbers differently.
     let rival = scored.iter().skip(1).map(|s| s.0).next();
-    let confidence = rival.map_or(0.95, |r| 1.0 - error / r.max(1e-6));
+    let confidence = rival.map_or(0.95, |r| 1.0 - weighted / r.max(1e-6));
     report(overrides, &reading, confidence, error, findings);
     Ok(reading)
 }
@@ -200,4 +208,82 @@ pub fn holds_x_in_alpha(stored: &StoredMap) -> bool {
     let texels: Vec<[f32; 4]> =
         (0..stored.size.area()).step_by(step).map(|i| stored.texel(i)).collect();
     TexelStats::of(stored, &texels).is_dxt5nm()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::source::{MapSource, SurfaceSource};
+    use crate::{Budget, Files, maps};
+    use image::{ImageFormat, Rgb, RgbImage};
+    use std::path::PathBuf;
+
+    const SIDE: u32 = 128;
+
+    struct OneMap(Vec<u8>);
+
+    impl Files for OneMap {
+        fn read(&self, _: &str, _: &Budget) -> Result<Vec<u8>> {
+            Ok(self.0.clone())
+        }
+
+        fn path(&self, name: &str) -> PathBuf {
+            name.into()
+        }
+    }
+
+    /// The normal of waves of some lengths, as steep as that.
+    fn wave(x: f32, y: f32, steep: f32) -> Vec3 {
+        let slope = |k: f32| {
+            let (u, v) = ((k * (x + 0.3 * y)).cos(), 0.6 * (k * (0.7 * y - 0.4 * x)).cos());
+            (u - 0.4 * v, 0.3 * u + 0.7 * v)
+        };
+        let all = [0.05, 0.17, 0.41].map(slope);
+        let (p, q) = all.iter().fold((0.0, 0.0), |(p, q), (a, b)| (p + a, q + b));
+        vec3(-p * steep, -q * steep, 1.0).normalize_or_zero()
+    }
+
+    /// The mean of the normals of a block of fine relief, as in a mipmap.
+    fn mean(x: f32, y: f32, steep: f32) -> Vec3 {
+        let grain = |i: u32| {
+            let random = |c: u32| crate::math::hash::unit(x as u32 * 16 + i, y as u32, c) - 0.5;
+            vec3(random(0), random(1), 0.0) * 0.9
+        };
+        let fine = |i: u32| (wave(x, y, steep) + grain(i)).normalize_or_zero();
+        (0..16).map(fine).sum::<Vec3>() / 16.0
+    }
+
+    fn found(stored: impl Fn(f32, f32) -> Vec3) -> NormalEncoding {
+        let texel = |x: u32, y: u32| {
+            let v = stored(x as f32, y as f32);
+            Rgb([v.x, v.y, v.z].map(|v| (v.max(0.0).min(1.0) * 255.0).round() as u8))
+        };
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        let image = RgbImage::from_fn(SIDE, SIDE, texel);
+        image.write_to(&mut bytes, ImageFormat::Png).unwrap();
+        let map = MapSource { file: "n.png".into(), ..MapSource::default() };
+        let source = SurfaceSource { normal: Some(map), ..SurfaceSource::default() };
+        let read = maps::import(&source, &OneMap(bytes.into_inner()), &Budget::default()).unwrap();
+        read.findings.normal.unwrap().encoding.unwrap()
+    }
+
+    #[test]
+    fn averaged_and_noisy_maps_of_games_are_unsigned_and_full_z_is_still_found() {
+        let half = vec3(0.5, 0.5, 0.5);
+        for steep in [0.15, 0.3, 0.6, 1.0] {
+            let unsigned = |n: Vec3| n * 0.5 + half;
+            let noise = |x: f32, y: f32| {
+                let of = |c: u32| crate::math::hash::unit(x as u32, y as u32, c) - 0.5;
+                vec3(of(3), of(4), of(5)) * (12.0 / 255.0)
+            };
+            let full = |n: Vec3| vec3(n.x * 0.5 + 0.5, n.y * 0.5 + 0.5, n.z);
+            let plain = found(|x, y| unsigned(wave(x, y, steep)));
+            let averaged = found(|x, y| unsigned(mean(x, y, steep)));
+            let short = found(|x, y| unsigned(wave(x, y, steep) * 0.96));
+            let noisy = found(|x, y| unsigned(wave(x, y, steep)) + noise(x, y));
+            let found = [plain, averaged, short, noisy, found(|x, y| full(wave(x, y, steep)))];
+            use NormalEncoding::{FullZ, Unsigned};
+            assert_eq!(found, [Unsigned, Unsigned, Unsigned, Unsigned, FullZ], "steep {steep}");
+        }
+    }
 }
