@@ -120,14 +120,14 @@ impl CurveSquare<'_> {
             .filter(|i| moves && *i < points.len())?;
         let to = in_square(at?);
         // A point stays between its neighbours.
-        let least = i.checked_sub(1).map_or(0.0, |before| points[before].x + self.apart());
-        let most = points.get(i + 1).map_or(1.0, |after| after.x - self.apart());
+        let least = i.checked_sub(1).map_or(0.0, |before| points[before].x + self.least_distance());
+        let most = points.get(i + 1).map_or(1.0, |after| after.x - self.least_distance());
         points[i] = vec2(to.x.min(most).max(least), to.y);
         Some(ValueChange { to: points, done: response.clicked() })
     }
 
     /// How far points stay from each other: those of tones by a byte, so that none is lost.
-    fn apart(&self) -> f32 {
+    fn least_distance(&self) -> f32 {
         if self.least > 1 { APART } else { 0.0 }
     }
 
