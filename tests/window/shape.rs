@@ -79,7 +79,7 @@ fn a_drawing_gets_a_shape_is_puffed_touched_sculpted_painted_saved_and_opened_ag
     let made = parts(&harness);
     assert_eq!(made.len(), 2);
     // The panel with the parts is in front, one of them chosen.
-    harness.get_by_label("Part Part 2");
+    harness.get_by_label("Part Orange");
     assert!(harness.query_all_by_label("Pillow – tube").next().is_some());
     steps(&mut harness);
 

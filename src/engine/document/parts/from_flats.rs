@@ -4,8 +4,10 @@
 
 use super::order::farthest_first;
 use super::{FlatColor, Inflation, OutlineSource, Part, PartKind};
+use crate::math::srgb::Color;
 use crate::math::{Rect, vec2};
 use crate::raster::{Plane, TileGrid};
+use crate::shape::flats::area_names::area_names;
 use crate::shape::flats::areas::{LEAST_SHARE, spread};
 use crate::shape::flats::palette::NOTHING;
 use crate::shape::flats::places::ColorPlaces;
@@ -87,11 +89,13 @@ pub fn parts_of_flats(
         }
     };
     let order = farthest_first(&labels, of.len());
+    let colors: Vec<Color> = of.iter().map(|flat| flat.color).collect();
+    let names = area_names(&colors, &labels);
     let part = |(place, index): (usize, usize)| {
         let outline = OutlineSource::Layer { layer: layer.into(), color: Some(of[index]) };
         let id = format!("part-{}", place + 1);
         Part {
-            name: format!("Part {}", place + 1),
+            name: names[index].clone(),
             ..Part::new(id, PartKind::Inflate { outline, inflation })
         }
     };

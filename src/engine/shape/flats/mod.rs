@@ -3,9 +3,11 @@
 //!
 //! `shares` says what each pixel is of: `picture` reads areas and mixed pixels, `palette` finds the
 //! colours, `ink` takes lines out, and `complete` gives what is left to the areas beside it.
-//! `places` tells the areas of one colour apart, `beneath` continues them under nearer ones;
-//! `areas` has walks over pixels, and `color_distance` says which colours are one.
+//! `places` tells the areas of one colour apart, `beneath` continues them under nearer ones, and
+//! `area_names` names them; `areas` has walks over pixels, and `color_distance` says which colours
+//! are one.
 
+pub mod area_names;
 pub mod areas;
 pub mod beneath;
 pub mod color_distance;

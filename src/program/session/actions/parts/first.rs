@@ -82,7 +82,8 @@ pub fn shaped(
     let mut list = document.parts.list.clone();
     for part in made.parts {
         let id = free_id(&document, &list);
-        list.push(Arc::new(Part { id, ..part }));
+        let name = new::free_name(&document, &part.name);
+        list.push(Arc::new(Part { id, name, ..part }));
     }
     let part = list
         .last()
