@@ -12,12 +12,15 @@ use super::retouch::{self, ActiveWork};
 use super::symmetry::SymmetryImage;
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
 use crate::document::{
-    Content, Document, Layer, LayerId, LayerLock, LayerSlot, Live, PixelLayer, StrokeList,
+    Content, Document, Layer, LayerId, LayerLock, LayerSlot, Live, OutlineSource, Part, PixelLayer,
+    StrokeList,
 };
-use crate::math::{hash, srgb::Color};
+use crate::math::{Vec2, hash, srgb::Color};
 use crate::paint::{ActiveStrokes, Backdrop, BrushMode, Sample, StabilizedPen, Stroke};
 use crate::raster::TileAt;
+use crate::surface::{PaintLimit, Surface};
 use erase::EraseStrokesGesture;
+use std::sync::Arc;
 use stroke::{StrokeGesture, StrokeTarget};
 
 /// The pen comes down with the brush. A selected layer that cannot hold strokes gets a stroke layer
@@ -61,6 +64,9 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
     };
     let is_eraser = purpose == StrokePurpose::Erase;
     let mut brush = context.tools.brush.clone();
+    if !context.tools.crosses_parts && begins_on_part(&document, layer, pen.place()) {
+        brush.bounded = PaintLimit::Object;
+    }
     if is_eraser {
         brush.mode = BrushMode::Paint;
     }
@@ -98,6 +104,19 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
         images,
     };
     begin(painting, pen)
+}
+
+/// Whether a mark on a layer begins on a part, and is no drawing from which parts have outlines:
+/// on that a mark may go beyond them, to change them.
+fn begins_on_part(document: &Document, layer: &Layer, at: Vec2) -> bool {
+    let is_outline = |part: &Arc<Part>| match part.outline() {
+        Some(OutlineSource::Layer { layer: of, .. }) => *of == layer.name,
+        _ => false,
+    };
+    let is_drawing = document.parts.list.iter().any(is_outline);
+    let pixel = at.floor().as_ivec2();
+    let has_part = |surface: &Arc<Surface>| surface.objects().at(pixel.x, pixel.y).is_some();
+    !document.parts.is_empty() && !is_drawing && document.surface.as_ref().is_some_and(has_part)
 }
 
 fn begin(mut gesture: impl Gesture + 'static, pen: PenSample) -> GestureStart {

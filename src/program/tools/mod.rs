@@ -122,6 +122,8 @@ pub struct ToolSettings {
     pub second_color: Color,
     /// How new marks follow the surface.
     pub operator: Operator,
+    /// Whether a stroke that begins on a part of the shape may go on to others.
+    pub crosses_parts: bool,
     /// How strokes repeat.
     pub symmetry: SymmetrySettings,
     /// The fill tool.
@@ -157,6 +159,7 @@ impl ToolSettings {
             color: Color::BLACK,
             second_color: Color::WHITE,
             operator: Operator::None,
+            crosses_parts: false,
             symmetry: SymmetrySettings::default(),
             fill: Fill::default(),
             select: SelectSettings::default(),

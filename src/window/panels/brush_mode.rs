@@ -82,6 +82,12 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         60.0,
     );
     requests.actions.extend(reach.map(|c| Action::Hand(HandAction::Reach { to: c.to })));
+    if session.shown().is_some_and(|document| !document.parts.is_empty()) {
+        let hint = "A stroke that begins on a part of the shape stays on it";
+        let on = check(ui, "This part only", hint, !session.tools.crosses_parts);
+        let across = on.map(|on| Action::Hand(HandAction::AcrossParts { on: !on }));
+        requests.actions.extend(across);
+    }
     let bounded = choice(ui, "Brush where", session.tools.brush.bounded, &BOUNDS);
     requests.actions.extend(bounded.map(|bounded| Action::Hand(HandAction::Bounded { bounded })));
 }

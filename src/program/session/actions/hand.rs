@@ -12,7 +12,7 @@ use crate::shape::SculptStroke;
 use crate::surface::{Operator, PaintLimit};
 use crate::tools::gizmo::TransformTarget;
 use crate::tools::symmetry::{MOST_ROUND, SymmetryAxes};
-use crate::tools::{Symmetry, ToolKind};
+use crate::tools::{ShapeSettings, Symmetry, ToolKind};
 use serde_json::Value;
 
 names!(ToolKind);
@@ -86,6 +86,8 @@ actions! {
         "carried" TransformTarget { carried: TransformTarget }
         /// Where the brush may paint.
         "bounded" Bounded { bounded: PaintLimit }
+        /// Whether a stroke that begins on a part may go on to others.
+        "across parts" AcrossParts { on: bool }
         /// How far from the pen its marks may land, in diameters; 0 is anywhere.
         "reach" Reach { to: f32 }
     }
@@ -98,6 +100,10 @@ impl HandAction {
         match self {
             HandAction::Tool { tool } => {
                 session.drop_gesture();
+                let is_first = session.tools.shape == ShapeSettings::default();
+                if let Some(document) = session.shown().filter(|_| is_first) {
+                    session.tools.shape = ShapeSettings::for_canvas(document.size);
+                }
                 session.tools.lasso.clear();
                 session.tools.transform.mesh_points.clear();
                 session.tools.crop.area = None;
@@ -144,6 +150,7 @@ impl HandAction {
             HandAction::Mark { mark: mode } => brush.mode = mode.held(),
             HandAction::TransformTarget { carried } => session.tools.transform.target = *carried,
             HandAction::Bounded { bounded } => brush.bounded = *bounded,
+            HandAction::AcrossParts { on } => session.tools.crosses_parts = *on,
             HandAction::Reach { to } => BrushNumber::Reach.set(brush, *to),
         }
     }

@@ -7,7 +7,7 @@ pub mod touch;
 
 use crate::document::{Document, Part};
 use crate::math::range::held;
-use crate::math::{Affine2, Mat2, Vec2, Vec3, vec2, vec3};
+use crate::math::{Affine2, Mat2, Size, Vec2, Vec3, vec2, vec3};
 use crate::shape::{SculptStroke, SculptTool, Touch};
 use std::sync::Arc;
 
@@ -48,6 +48,21 @@ impl Default for ShapeSettings {
 }
 
 impl ShapeSettings {
+    /// The longer side of a canvas up to which the first settings are large enough, px.
+    const LARGE_PX: f32 = 600.0;
+
+    /// The first settings on a canvas: as large, and as high, for the picture on any of them.
+    pub fn for_canvas(canvas: Size) -> Self {
+        let (first, scale) = (Self::default(), (canvas.longer_side() / Self::LARGE_PX).max(1.0));
+        Self {
+            size: (first.size * scale).round(),
+            height: first.height * scale,
+            radius: (first.radius * scale).round(),
+            ..first
+        }
+        .held()
+    }
+
     /// The same with numbers that a part may hold.
     pub fn held(&self) -> Self {
         let normal =

@@ -1,5 +1,6 @@
 //! Stories of parts, replayed.
 
+mod across;
 mod flats;
 
 use crate::document::parts::PartKind;

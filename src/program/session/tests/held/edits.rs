@@ -100,6 +100,7 @@ pub const OTHERS: &[&str] = &[
     r#"{"in":"hand","do":"flow","to":#}"#,
     r#"{"in":"hand","do":"reach","to":#}"#,
     r#"{"in":"hand","do":"bounded","bounded":"surface"}"#,
+    r#"{"in":"hand","do":"across parts","on":true}"#,
     r##"{"in":"hand","do":"color","color":"#31415926"}"##,
     r#"{"in":"hand","do":"rotation","to":#}"#,
     r#"{"in":"hand","do":"softness","to":#}"#,
