@@ -134,7 +134,7 @@ fn the_interface_is_made_larger_and_the_picture_stays_as_it_is() {
 #[test]
 fn the_palette_puts_what_begins_with_the_words_first() {
     let mut harness = window();
-    command(&mut harness, "operator: shading");
+    command(&mut harness, "bend: gloss");
     assert!(matches!(session(&harness).tools.operator, rilievo::Operator::Normal { .. }));
     command(&mut harness, "lock");
     assert_eq!(

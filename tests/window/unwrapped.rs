@@ -59,7 +59,7 @@ fn the_surface_is_laid_flat_painted_on_and_the_story_replays_to_the_same_bytes()
 fn a_gradient_is_moved_on_one_piece_of_the_sheet_and_the_story_replays() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = opened(folder.path());
-    command(&mut harness, "operator: texture");
+    command(&mut harness, "bend: wrap");
     key(&mut harness, Modifiers::NONE, Key::G);
     drag(&mut harness, vec2(-60.0, -20.0), vec2(70.0, 30.0));
     key(&mut harness, Modifiers::ALT, Key::Num9);
