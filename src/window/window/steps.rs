@@ -18,7 +18,7 @@ const STEPS: [HintStep; 3] = [
     ),
     (
         "Paint highlights",
-        "Brush (B), operator Shading (F3): strokes follow the form",
+        "Brush (B), Gloss (F3): strokes follow the form",
         has_bent_stroke,
     ),
     (

@@ -94,7 +94,7 @@ fn cases() -> Vec<(usize, Value, &'static str, &'static str)> {
         (5, json!({ "do": "scaling", "scaling": { "alpha": 0.5, "gamma": 3 } }), "scaling", "/"),
         (5, json!({ "do": "reference", "reference": 0.75 }), "reference", ""),
         (
-            6,
+            7,
             json!({ "do": "grain", "grain": { "size": 9, "octaves": 2, "stretch": 3, "seed": 7 } }),
             "grain",
             "/source/noise",

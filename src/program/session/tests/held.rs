@@ -87,7 +87,7 @@ pub(super) fn everything() -> Document {
 fn edit() -> impl Strategy<Value = String> {
     let numbers = prop::collection::vec(prop::sample::select(NUMBERS.to_vec()), 8);
     let all: Vec<&str> = PROPERTIES.iter().chain(OTHERS).copied().collect();
-    (prop::sample::select(all), 0..9usize, numbers).prop_map(|(template, layer, numbers)| {
+    (prop::sample::select(all), 0..10usize, numbers).prop_map(|(template, layer, numbers)| {
         let mut numbers = numbers.into_iter().cycle();
         let template = match template.starts_with("{\"in\"") {
             true => template.to_owned(),
