@@ -16,11 +16,7 @@ const STEPS: [HintStep; 3] = [
         "It bends over it like a reflection. Or File, Place image…",
         has_image,
     ),
-    (
-        "Paint highlights",
-        "Brush (B), Gloss (F3): strokes follow the form",
-        has_bent_stroke,
-    ),
+    ("Paint highlights", "Brush (B), Gloss (F3): strokes follow the form", has_bent_stroke),
     (
         "Move what you made",
         "Anchors (A) move the photo along the surface, Move (V) a stroke",
