@@ -47,7 +47,7 @@ struct HistoryStep<T> {
     label: EditLabel,
     document: Document,
     before: T,
-    /// `None` until [`History::settle`].
+    /// `None` until [`History::set_target_after`].
     after: Option<T>,
 }
 
