@@ -1,8 +1,7 @@
 //! Paints a stroke on waves: its dabs follow the slopes. The layer keeps the stroke, so it can be
 //! changed afterwards.
 //!
-//! `cargo run --example paint_stroke -- [PICTURE]`; without an argument, to the folder for
-//! temporary files.
+//! `cargo run --example paint_stroke -- [PICTURE]`, without it to the folder for temporary files.
 
 use rilievo::math::vec2;
 use rilievo::paint::{Brush, Sample, Stroke};
@@ -24,8 +23,7 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// What the pen reported: a wavy line across the canvas at a height, pressed harder toward its
-/// middle.
+/// What the pen reported: a wavy line at a height, pressed harder toward its middle.
 fn pen(y: f32) -> Vec<Sample> {
     let sample = |i: usize| {
         let t = i as f32 / 120.0;

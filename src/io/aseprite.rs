@@ -176,6 +176,11 @@ impl Sprite<'_> {
             BlendMode::Normal
         });
         let is_reference = flags & 0x40 != 0;
+        if is_reference {
+            self.notes.push(format!(
+                "“{name}” is a reference, which is not part of the picture; it is hidden"
+            ));
+        }
         let layer = Layer {
             visible: flags & 1 == 1 && !is_reference,
             opacity: if has_opacity { f32::from(opacity) / 255.0 } else { 1.0 },
@@ -190,7 +195,14 @@ impl Sprite<'_> {
     fn cel(&mut self, chunk: &mut LittleEndian) -> Option<Result<()>> {
         let index = usize::from(chunk.u16()?);
         let (x, y, opacity, kind) = (chunk.i16()?, chunk.i16()?, chunk.u8()?, chunk.u16()?);
-        chunk.take(7)?;
+        let order = chunk.i16()?;
+        chunk.take(5)?;
+        if order != 0 {
+            let name = &self.layers.get(index)?.layer.name;
+            self.notes.push(format!(
+                "“{name}” is moved up or down in this frame alone; it is in its own place"
+            ));
+        }
         if !matches!(kind, 0 | 2) {
             return Some(Ok(()));
         }
@@ -206,7 +218,8 @@ impl Sprite<'_> {
             return Some(Err(Error::too_large(self.file, reason)));
         }
         let stored = size.area() * self.bytes_a_pixel;
-        let asked = stored as u64 + 8 * size.area() as u64;
+        // Its tiles stay, so those of the layers before it are asked for again.
+        let asked = stored as u64 + 4 * size.area() as u64 + 4 * self.used_px;
         if let Err(error) = self.budget.room(self.file, "what its layers hold", asked) {
             return Some(Err(error));
         }
@@ -416,6 +429,21 @@ mod tests {
         let row = [1, 2, 3].map(|x| pixel(layer, x, 0));
         assert_eq!(row, [[9, 8, 7, 255], [0; 4], [5, 6, 7, 255]]);
         assert_eq!(contents.notes, ["of its 5 frames the first is shown"]);
+    }
+
+    #[test]
+    fn references_and_places_of_one_frame_are_named() {
+        let mut moved = cel(0, [0, 0], 255, [1, 1], &[10, 20, 30, 255]);
+        moved[6 + 9] = 2;
+        let chunks = [layer(1, 0, 0, 0, 255, "a"), layer(0x41, 0, 0, 0, 255, "photo"), moved];
+        let contents = opened(&sprite(32, 1, &chunks));
+        assert_eq!(
+            contents.document.layers.iter().map(|l| l.visible).collect::<Vec<_>>(),
+            [true, false]
+        );
+        let [reference, place] = &contents.notes[..] else { panic!("{:?}", contents.notes) };
+        assert!(reference.contains("“photo” is a reference"), "{reference}");
+        assert!(place.contains("“a” is moved up or down in this frame"), "{place}");
     }
 
     #[test]

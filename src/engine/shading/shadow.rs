@@ -38,12 +38,12 @@ impl Shadows {
     pub const MOST_LAMPS: usize = 8;
 
     /// Whether something is to be computed.
-    pub fn act(&self) -> bool {
+    pub fn has_effect(&self) -> bool {
         self.on && (self.strength > 0.0 || self.ground > 0.0)
     }
 
     /// Whether the page around the figure is shaded.
-    pub fn shade_ground(&self) -> bool {
+    pub fn has_ground(&self) -> bool {
         self.on && self.ground > 0.0
     }
 
@@ -59,7 +59,7 @@ impl Shadows {
 
     /// What every pixel sees of each lamp; none for those that cast no shadow.
     pub fn maps(&self, surface: &Surface, lights: &[Light]) -> Vec<Arc<ShareMap>> {
-        if !self.act() {
+        if !self.has_effect() {
             return Vec::new();
         }
         // Those at rest and those that are dragged.

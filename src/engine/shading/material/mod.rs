@@ -248,13 +248,14 @@ impl Shading {
 
     /// Whether it shows something off the surface: a shadow on the page.
     pub fn shows_ground(&self) -> bool {
-        self.model.has_lamps() && self.shadows.shade_ground() && !self.lights.is_empty()
+        self.model.has_lamps() && self.shadows.has_ground() && !self.lights.is_empty()
     }
 
     /// The same for a moment while the user drags, cheaper to render; `None` if it is the same then.
     pub fn drafted(&self) -> Option<Self> {
         let shadows = self.shadows.drafted();
-        let is_other = self.model.has_lamps() && self.shadows.act() && shadows != self.shadows;
+        let is_other =
+            self.model.has_lamps() && self.shadows.has_effect() && shadows != self.shadows;
         is_other.then(|| Self { shadows, ..self.clone() })
     }
 
@@ -269,7 +270,7 @@ impl Shading {
 
     /// What its shadows keep of each pixel, bytes.
     pub fn shadow_bytes(&self) -> u64 {
-        let lamps = match self.model.has_lamps() && self.shadows.act() {
+        let lamps = match self.model.has_lamps() && self.shadows.has_effect() {
             true => self.lights.len().min(Shadows::MOST_LAMPS),
             false => 0,
         };
