@@ -104,9 +104,7 @@ pub fn all() -> Vec<Case> {
     let mut all = Vec::new();
     all.extend(BlendMode::ALL.iter().map(|(_, name)| blend(name)));
     all.extend(operators());
-    // The painter's light is held by its pictures of the gallery.
-    let small = Model::ALL.iter().filter(|(model, _)| *model != Model::Painter);
-    all.extend(small.map(|(_, name)| shading(name)));
+    all.extend(Model::ALL.iter().map(|(_, name)| shading(name)));
     all.push(scaling());
     all.push(normals());
     all.extend(masks());
