@@ -149,12 +149,12 @@ fn meanings(word: &str) -> impl Iterator<Item = &'static str> {
 }
 
 /// What fits the typed words: names that begin with them first, then names that hold them, then
-/// what they mean; otherwise in the order of the menus.
-pub fn found(typed: &str) -> Vec<PaletteEntry> {
+/// what they mean. Of equals, what can be done now is first; otherwise in the order of the menus.
+pub fn found(typed: &str, can: impl Fn(PaletteEntry) -> bool) -> Vec<PaletteEntry> {
     let typed = typed.trim().to_lowercase();
     let rank = |entry: PaletteEntry| entry.rank(&typed).map(|rank| (rank, entry));
     let mut found: Vec<(u8, PaletteEntry)> = PaletteEntry::all().filter_map(rank).collect();
-    found.sort_by_key(|(rank, _)| *rank);
+    found.sort_by_key(|(rank, entry)| (*rank, !can(*entry)));
     found.into_iter().map(|(_, entry)| entry).collect()
 }
 
@@ -163,7 +163,7 @@ mod tests {
     use super::*;
 
     fn names(typed: &str) -> Vec<&'static str> {
-        found(typed).into_iter().map(PaletteEntry::name).collect()
+        found(typed, |_| true).into_iter().map(PaletteEntry::name).collect()
     }
 
     #[test]
@@ -191,6 +191,13 @@ mod tests {
         assert_eq!(names("lasso")[0], "Lasso");
         assert_eq!(names("crop")[0], "Crop to selection");
         assert_eq!(names("crop tool"), ["Crop"]);
-        assert!(found("no such thing").is_empty());
+        assert!(found("no such thing", |_| true).is_empty());
+    }
+
+    #[test]
+    fn what_can_be_done_now_comes_first() {
+        let is_a_tool = |entry: PaletteEntry| matches!(entry, PaletteEntry::Tool(_));
+        let found = found("crop", is_a_tool);
+        assert_eq!((found[0].name(), found[0].kind()), ("Crop", "tool"));
     }
 }
