@@ -185,7 +185,7 @@ fn five_layers_in_linear_light(bencher: Bencher) {
 fn one_tile_of_20_layers(bencher: Bencher) {
     let prepared =
         PreparedDocument::new(&document(LAYERS, BlendMode::Normal), &Progress::default())
-            .expect("not cancelled");
+            .expect("not canceled");
     bencher
         .counter(ItemsCount::new(64 * 64 * LAYERS))
         .bench_local(|| prepared.flatten_tile(TileAt::new(3, 3)));

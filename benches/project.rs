@@ -61,7 +61,7 @@ fn document() -> Document {
 fn written(document: &Document) -> Vec<u8> {
     project::write(Path::new("a.ora"), document, &Progress::default())
         .expect("a project")
-        .expect("not cancelled")
+        .expect("not canceled")
 }
 
 static PROJECT: LazyLock<Vec<u8>> = LazyLock::new(|| written(&document()));

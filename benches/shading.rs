@@ -285,7 +285,7 @@ fn painters_light(bencher: Bencher, what: &str) {
             "dragged" => DocumentReducer::new(1.0).of(&document).expect("of its own size"),
             _ => document,
         };
-        pool.install(|| rilievo::flatten(&document, &Progress::default())).expect("not cancelled")
+        pool.install(|| rilievo::flatten(&document, &Progress::default())).expect("not canceled")
     };
     draw(&kept, 0.1);
     bencher
@@ -322,7 +322,7 @@ fn drag_on_1024_by_768(bencher: Bencher, what: &str) {
     let pool = pool(2);
     let mut document = lit_document(what);
     let mut shown =
-        pool.install(|| rilievo::flatten(&document, &Progress::default())).expect("not cancelled");
+        pool.install(|| rilievo::flatten(&document, &Progress::default())).expect("not canceled");
     let mut step = 0;
     bencher.counter(area((SMALL, 2))).bench_local(|| {
         step += 1;
@@ -334,8 +334,8 @@ fn drag_on_1024_by_768(bencher: Bencher, what: &str) {
 
 fn redrawn(old: &Document, new: &Document, shown: &TileGrid) -> TileGrid {
     let changed: Vec<TileAt> = diff(old, new).into_iter().collect();
-    let prepared = PreparedDocument::new(new, &Progress::default()).expect("not cancelled");
-    prepared.flatten_tiles(shown, &changed, &Progress::default()).expect("not cancelled")
+    let prepared = PreparedDocument::new(new, &Progress::default()).expect("not canceled");
+    prepared.flatten_tiles(shown, &changed, &Progress::default()).expect("not canceled")
 }
 
 /// A lit surface with radiance scaling over it.

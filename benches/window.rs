@@ -124,7 +124,7 @@ mod x11 {
         let file = folder.join("layers.ora");
         std::fs::write(
             &file,
-            project::write(&file, &document, &Progress::default())?.ok_or("cancelled")?,
+            project::write(&file, &document, &Progress::default())?.ok_or("canceled")?,
         )?;
         Ok(file)
     }

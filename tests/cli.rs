@@ -352,7 +352,7 @@ fn a_part_whose_place_has_another_colour_is_told_when_it_is_rendered() {
         let output = desk.render("out.png", &["--force"]);
         assert!(output.status.success(), "{}", said(&output));
         assert_eq!(
-            said(&output).contains("“Eye” takes the area of its colour that is nearest"),
+            said(&output).contains("“Eye” takes the area of its color that is nearest"),
             is_lost,
             "{cx}"
         );

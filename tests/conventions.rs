@@ -71,7 +71,7 @@ const NORMALS: [(&str, Encode, [f32; 4], u8, f64); 15] = [
     ),
     ("shortened at the rim", |n| shortened(n), [0.5, 0.5, 0.5, 1.0], 16, 0.05),
     ("black outside", |n| encode(n.x, n.y, n.z), [0.0, 0.0, 0.0, 1.0], 8, 0.25),
-    ("grey outside", |n| encode(n.x, n.y, n.z), [0.501_96, 0.501_96, 0.501_96, 1.0], 8, 0.25),
+    ("gray outside", |n| encode(n.x, n.y, n.z), [0.501_96, 0.501_96, 0.501_96, 1.0], 8, 0.25),
     ("clear outside", |n| encode(n.x, n.y, n.z), [0.0, 0.0, 0.0, 0.0], 8, 0.25),
 ];
 
@@ -382,8 +382,8 @@ fn maps_that_do_not_fit_get_a_sentence() {
             source(map("s.png"), map("g.png"), false),
             "differ in size: s.png has 48 × 48 pixels, g.png has 96 × 96",
         ),
-        (source(map("g.png"), None, false), "g.png: cannot be read: the picture is grey"),
-        (source(None, map("n.png"), false), "n.png: cannot be read: the picture is coloured"),
+        (source(map("g.png"), None, false), "g.png: cannot be read: the picture is gray"),
+        (source(None, map("n.png"), false), "n.png: cannot be read: the picture is colored"),
         (source(None, map("e.exr"), false), "no surface at all"),
         (source(map("e.exr"), None, false), "no layer of this EXR looks like normals"),
         (source(map("lost.png"), None, false), "lost.png"),

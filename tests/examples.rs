@@ -39,7 +39,7 @@ fn a_gradient_is_bent_over_a_ball() {
     // canvas.
     let along: std::collections::HashSet<[i32; 3]> =
         (0..120).map(|i| rgb(&picture, 160 + i, 280 - i / 3)).collect();
-    assert!(along.len() > 40, "{} colours", along.len());
+    assert!(along.len() > 40, "{} colors", along.len());
 }
 
 #[test]

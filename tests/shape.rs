@@ -52,7 +52,7 @@ fn a_shape_has_a_part_for_each_colour_or_place_and_tells_what_has_none() {
         let known: std::collections::BTreeSet<u16> = ids.pixels().map(|id| id.0[0]).collect();
         (known.len() - 1, said(&output))
     };
-    assert_eq!(parts(&[], "colours"), (2, String::new()));
+    assert_eq!(parts(&[], "colors"), (2, String::new()));
     let (count, told) = parts(&["--places"], "places");
     assert_eq!(count, 3);
     assert!(told.contains("face.png: One area is left without a part"), "{told}");
@@ -73,7 +73,7 @@ fn a_drawing_of_one_colour_or_of_nothing_is_refused_for_what_it_is() {
         let file = format!("{name}.png");
         image::RgbaImage::from_pixel(64, 48, image::Rgba(color)).save(desk.path(&file)).unwrap();
         let why = if color[3] == 255 {
-            "it has one colour all over"
+            "it has one color all over"
         } else {
             "nothing in it is opaque enough"
         };

@@ -43,7 +43,7 @@ pub fn parse(file: &Path, bytes: &[u8]) -> Result<ColorTable> {
             _ => {
                 let Some((.., entries)) = size else {
                     return Err(refused(format!(
-                        "line {number}: there are colours before the size"
+                        "line {number}: there are colors before the size"
                     )));
                 };
                 let colour: Option<Vec<u16>> = line.split_whitespace().map(entry).collect();
@@ -52,7 +52,7 @@ pub fn parse(file: &Path, bytes: &[u8]) -> Result<ColorTable> {
                     return Err(refused(format!("line {number}: is not three numbers")));
                 };
                 if values.len() == 3 * entries {
-                    return Err(refused(format!("it has more than {entries} colours")));
+                    return Err(refused(format!("it has more than {entries} colors")));
                 }
                 values.extend(colour);
             }
@@ -66,7 +66,7 @@ pub fn parse(file: &Path, bytes: &[u8]) -> Result<ColorTable> {
         title = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     }
     ColorTable::new(&title, side, is_separate, values)
-        .ok_or_else(|| refused(format!("it has {found} colours; its size asks for {entries}")))
+        .ok_or_else(|| refused(format!("it has {found} colors; its size asks for {entries}")))
 }
 
 /// A number as 16 bits.
@@ -100,10 +100,10 @@ mod tests {
             ("LUT_3D_SIZE 99999999", "from 2 to"),
             ("LUT_3D_SIZE 2\n0 0", "line 2: is not three numbers"),
             ("LUT_3D_SIZE 2\n0 0 NaN", "line 2: is not three numbers"),
-            ("LUT_3D_SIZE 2\n0 0 0", "has 1 colours; its size asks for 8"),
-            ("0 0 0", "line 1: there are colours before the size"),
+            ("LUT_3D_SIZE 2\n0 0 0", "has 1 colors; its size asks for 8"),
+            ("0 0 0", "line 1: there are colors before the size"),
             ("LUT_1D_SIZE 2\nDOMAIN_MIN -1 0 0", "line 2: a domain"),
-            ("LUT_1D_SIZE 2\n0 0 0\n0 0 0\n0 0 0", "more than 2 colours"),
+            ("LUT_1D_SIZE 2\n0 0 0\n0 0 0\n0 0 0", "more than 2 colors"),
         ] {
             let said = read(text).unwrap_err().to_string();
             assert!(said.contains(why), "{text}: {said}");

@@ -40,7 +40,7 @@ impl FilePurpose {
             FilePurpose::Place => "Place an image",
             FilePurpose::ImportUnwrapped => "Import a picture of the unwrapped surface",
             FilePurpose::Brush => "Import a brush",
-            FilePurpose::ColorTable => "Colour look-up table",
+            FilePurpose::ColorTable => "Color look-up table",
             FilePurpose::NormalMap => "Normal map",
             FilePurpose::DepthMap => "Depth map",
             FilePurpose::MaskMap => "Mask",

@@ -5,7 +5,7 @@ rilievo_engine::named! {
     /// A panel that can be next to the canvas or in a window of its own.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum PanelKind {
-        Color = "Colour",
+        Color = "Color",
         Brushes = "Brushes",
         Properties = "Properties",
         Surface = "Surface",

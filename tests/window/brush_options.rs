@@ -27,8 +27,8 @@ fn what_was_chosen_is_there_the_next_time() {
     let folder = tempfile::tempdir().unwrap();
     let settings = folder.path().join("settings.json");
     let mut harness = window_at(1.0, Some(settings.clone()));
-    command(&mut harness, "Dark, grey or light");
-    command(&mut harness, "Dark, grey or light");
+    command(&mut harness, "Dark, gray or light");
+    command(&mut harness, "Dark, gray or light");
     command(&mut harness, "Panels on the other side");
     command(&mut harness, "Layers in a window");
     press(&mut harness, "History");

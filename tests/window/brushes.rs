@@ -37,7 +37,7 @@ fn a_preset_goes_to_hand_and_its_parts_can_be_changed() {
     assert!(matches!(session(&harness).tools.brush.tip, Tip::Bristles(_)));
     assert!(session(&harness).tools.brush.grain.is_some(), "the rest of the gouache stays");
     tap(&mut harness, "Stroke");
-    pick(&mut harness, "Stabiliser", "Pulled string");
+    pick(&mut harness, "Stabilizer", "Pulled string");
     assert!(matches!(session(&harness).tools.brush.stabilizer, Stabilizer::String { .. }));
     tap(&mut harness, "Erases");
     assert!(session(&harness).tools.brush.erases);

@@ -50,7 +50,7 @@ fn a_mask_is_made_painted_on_inverted_put_aside_and_deleted() {
         session(&harness).active().unwrap().on_mask
             && coverage(&harness).values().iter().all(|&v| v == 0)
     );
-    command(&mut harness, "Swap colours");
+    command(&mut harness, "Swap colors");
     stroke(&mut harness, vec2(60.0, 10.0));
     assert!(coverage(&harness).values().iter().any(|&v| v > 100), "white paint shows");
     assert_eq!(layers(&harness), ["Background"], "the stroke went to the mask");

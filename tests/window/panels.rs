@@ -6,7 +6,7 @@ use eframe::egui::{
 };
 use egui_kittest::kittest::Queryable;
 
-const PANELS: [&str; 6] = ["Colour", "Brushes", "Properties", "Surface", "History", "Navigator"];
+const PANELS: [&str; 6] = ["Color", "Brushes", "Properties", "Surface", "History", "Navigator"];
 
 #[test]
 fn every_panel_shows_every_kind_of_layer() {
@@ -90,17 +90,17 @@ fn a_click_in_the_history_goes_there_and_one_in_the_navigator_looks_there() {
 #[test]
 fn colours_are_typed_in_hex_and_numbers_and_remembered_once_painted_with() {
     let mut harness = window();
-    press(&mut harness, "Hex colour");
+    press(&mut harness, "Hex color");
     key(&mut harness, Modifiers::COMMAND, Key::A);
-    harness.get_by_label("Hex colour").type_text("#3366cc");
+    harness.get_by_label("Hex color").type_text("#3366cc");
     steps(&mut harness);
     key(&mut harness, Modifiers::NONE, Key::Enter);
     let color = session(&harness).tools.color;
     assert_eq!([color.r, color.g, color.b], [0x33, 0x66, 0xcc]);
-    assert!(harness.query_by_label("Recent colour 1").is_none());
+    assert!(harness.query_by_label("Recent color 1").is_none());
     super::stroke(&mut harness, eframe::egui::vec2(30.0, 0.0));
     key(&mut harness, Modifiers::NONE, Key::D);
-    press(&mut harness, "Recent colour 1");
+    press(&mut harness, "Recent color 1");
     assert_eq!(session(&harness).tools.color, color);
 }
 

@@ -73,7 +73,7 @@ fn a_drawing_gets_a_shape_is_puffed_touched_sculpted_painted_saved_and_opened_ag
     let folder = TempDir::new().unwrap();
     let mut harness = opening(&drawing(&folder));
     asked(&mut harness);
-    harness.get_by_label("A part for each colour (2)");
+    harness.get_by_label("A part for each color (2)");
     give(&mut harness);
     assert_eq!(layers(&harness), ["creature", "Base"]);
     let made = parts(&harness);
@@ -156,10 +156,10 @@ fn flats_become_a_part_for_each_place_or_a_part_is_split_by_place() {
     asked(&mut harness);
     press(&mut harness, "One part");
     give(&mut harness);
-    assert!(harness.query_by_label("Split by place").is_none(), "it is of no colour");
+    assert!(harness.query_by_label("Split by place").is_none(), "it is of no color");
     let mut harness = opening(&file);
     asked(&mut harness);
-    harness.get_by_label_contains("A part for each colour").click();
+    harness.get_by_label_contains("A part for each color").click();
     steps(&mut harness);
     give(&mut harness);
     assert_eq!((parts(&harness).len(), places(&harness)), (2, 0));

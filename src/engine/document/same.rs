@@ -208,7 +208,7 @@ fn same_mask(a: Option<&LayerMask>, b: Option<&LayerMask>) -> bool {
 /// What differs in two layers' contents; `None` if nothing does.
 fn content(a: &Content, b: &Content) -> Option<&'static str> {
     let (what, is_same) = match (a, b) {
-        (Content::Fill(a), Content::Fill(b)) => ("colour", a == b),
+        (Content::Fill(a), Content::Fill(b)) => ("color", a == b),
         (Content::Pixels(a), Content::Pixels(b)) => ("pixels", same_pixels(&a.tiles, &b.tiles)),
         (Content::Image(a), Content::Image(b)) => {
             ("picture or how it lies", a.ptr_eq(b) || a.params() == b.params())

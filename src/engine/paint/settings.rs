@@ -132,7 +132,7 @@ settings! {
     "cycle" "pressure" cycle.pressure in 0.0..=1.0, "Cycle pressure",
         "The pressure that the cycle begins at";
     "pickup" "amount" pickup.amount in 0.0..=1.0, "Picks up",
-        "How much of its paint the brush takes from a paint layer instead of its own colour";
+        "How much of its paint the brush takes from a paint layer instead of its own color";
     "pickup" "length" pickup.length in 0.0..=1.0, "Carries",
         "How much of the picked-up paint is left one dab later";
     "pickup" "radius" pickup.radius in 0.05..=20.0, "Reaches",

@@ -10,7 +10,7 @@ settings! {
         /// w: how far the key reaches beyond the terminator.
         wrap: "Soft edge", "How far the lamp's light reaches around the form", 0.0..=1.0, 0.12;
         /// Of the key: 1 is lamplight, 0 the lamp's own colour, negative cool.
-        warmth: "Key warmth", "1 is warm lamplight, 0 the lamp's own colour, −1 cool", -4.0..=4.0, 1.0;
+        warmth: "Key warmth", "1 is warm lamplight, 0 the lamp's own color, −1 cool", -4.0..=4.0, 1.0;
         /// Cool light from above.
         fill: "Fill", "Cool light from above", 0.0..=10.0, 1.0;
         /// Warm light from below.
@@ -18,7 +18,7 @@ settings! {
         /// Light from everywhere.
         around: "Around", "Light from everywhere", 0.0..=10.0, 1.0;
         /// Saturation where the form turns from the light.
-        edge: "Turning edge", "Richer colour where the form turns from light to shade", 0.0..=3.0, 1.0;
+        edge: "Turning edge", "Richer color where the form turns from light to shade", 0.0..=3.0, 1.0;
         /// Light from behind, along the figure's edge.
         rim: "Rim", "Light from behind that parts the figure from its ground", 0.0..=20.0, 1.0;
         /// Shade where the surroundings stand higher.

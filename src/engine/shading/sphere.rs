@@ -156,7 +156,7 @@ fn clay() -> Picture {
         [byte(1.0), byte(0.97), byte(0.93), 255]
     };
     let texels = (0..SIDE * SIDE).map(|i| color(i % SIDE, i / SIDE)).collect();
-    Picture::srgb8(Size::new(SIDE, SIDE), texels).expect("one colour for each of the pixels")
+    Picture::srgb8(Size::new(SIDE, SIDE), texels).expect("one color for each of the pixels")
 }
 
 #[cfg(test)]

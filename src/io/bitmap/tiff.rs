@@ -69,10 +69,10 @@ enum AlphaKind {
 pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
     let entry = photometric(bytes);
     let entry = entry.ok_or_else(|| {
-        Error::decode(file, "the TIFF does not tell its colours; it is damaged or cut short")
+        Error::decode(file, "the TIFF does not tell its colors; it is damaged or cut short")
     })?;
     let meaning = ColorModel::of(entry.value);
-    let others = "its colours are neither grey, indexed, RGB, YCbCr nor CMYK";
+    let others = "its colors are neither gray, indexed, RGB, YCbCr nor CMYK";
     let meaning = meaning.ok_or_else(|| Error::unsupported(file, others))?;
     // The crate reads palettes and white-is-zero with alpha as plain grey. Their meaning is
     // restored here.
@@ -283,7 +283,7 @@ impl TiffLayout {
                 T::image(self.size, channels, self.straight(pixels))
             }
         }
-        .ok_or("this TIFF stores its colours in a way that is not read")
+        .ok_or("this TIFF stores its colors in a way that is not read")
     }
 
     fn channels(&self) -> usize {

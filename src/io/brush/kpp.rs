@@ -59,7 +59,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ImportedBrush>
         other => {
             let other = text_of(other.as_bytes());
             let reason = format!(
-                "Krita's brush engine “{other}”; pixel, colour smudge and clone presets are read"
+                "Krita's brush engine “{other}”; pixel, color smudge and clone presets are read"
             );
             return Err(Error::unsupported(file, reason));
         }

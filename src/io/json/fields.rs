@@ -194,9 +194,8 @@ impl<'a> JsonNode<'a> {
     /// A colour such as `#c08060`.
     pub fn color(&self) -> Result<Color> {
         let text = self.text()?;
-        Color::parse(text).ok_or_else(|| {
-            self.refused(format!("is “{text}”; a colour reads #rrggbb or #rrggbbaa"))
-        })
+        Color::parse(text)
+            .ok_or_else(|| self.refused(format!("is “{text}”; a color reads #rrggbb or #rrggbbaa")))
     }
 
     /// One of the names of a table.

@@ -33,7 +33,7 @@ pub fn read(
     findings: &mut Findings,
 ) -> Result<RawDepth> {
     if stored.colours() >= 3 && !stored.is_grey(if stored.lossy { 0.05 } else { 0.004 }) {
-        let reason = "the picture is coloured; depth is one grey channel (name one with “channel”)";
+        let reason = "the picture is colored; depth is one gray channel (name one with “channel”)";
         return Err(Error::decode(&stored.file, reason));
     }
     let channel = &stored.channels[0];

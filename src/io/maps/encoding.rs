@@ -111,7 +111,7 @@ fn report(
     findings.length_error = error;
     if findings.is_doubtful() {
         findings.note(format!(
-            "the normals are not of length 1 (off by {error:.2} on average); they were renormalised"
+            "the normals are not of length 1 (off by {error:.2} on average); they were renormalized"
         ));
     }
 }
@@ -185,7 +185,7 @@ fn refuse_grey(stored: &StoredMap, overrides: &NormalConvention, shape: &TexelSt
     // A picture of one value is a flat map or no map at all.
     let varies = shape.spread[..3].iter().any(|&s| s > 0.02);
     if stored.colours() == 1 || (shape.grey && varies && !told_pair && !shape.is_dxt5nm()) {
-        let reason = "the picture is grey; a normal map has at least two different channels (is it the depth map?)";
+        let reason = "the picture is gray; a normal map has at least two different channels (is it the depth map?)";
         return Err(Error::decode(&stored.file, reason));
     }
     Ok(())

@@ -145,7 +145,7 @@ impl KritaReader<'_, '_> {
         let Some(format) = PixelFormat::of(space, node.text("profile")) else {
             let name = node.text("name");
             self.reading.lost(format!(
-                "“{name}” is lost: its colours are {space}; RGB and grey of 8 to 32 bits are read"
+                "“{name}” is lost: its colors are {space}; RGB and gray of 8 to 32 bits are read"
             ));
             return Ok(layer);
         };

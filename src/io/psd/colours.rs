@@ -344,7 +344,7 @@ mod tests {
         let table =
             Colours { table: &[9, 8, 7, 6, 5, 4], nothing: Some(1), ..colours(Mode::Indexed, 1) };
         assert_eq!(one(&table, [0; 4]), [9, 7, 5, 200]);
-        assert_eq!(one(&table, [1; 4])[3], 0, "the colour that stands for nothing");
+        assert_eq!(one(&table, [1; 4])[3], 0, "the color that stands for nothing");
         assert_eq!(one(&table, [2; 4])[..3], [0; 3], "beyond the table");
     }
 

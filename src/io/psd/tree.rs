@@ -86,7 +86,7 @@ pub(super) fn built(
     *notes = told;
     let (selections, inks) = kept;
     if inks > 0 {
-        notes.push("inks in addition to its colours are left out".into());
+        notes.push("inks in addition to its colors are left out".into());
     }
     let (guides, lost) = parsed.guides.clone();
     if lost > 0 {
@@ -110,12 +110,12 @@ fn with_guides_of(document: Document, found: Guides) -> Document {
 fn colour_notes(parsed: &ParsedPsd) -> Option<String> {
     let header = &parsed.header;
     let what = match header.mode {
-        Mode::Cmyk => "its CMYK colours became sRGB; layers blend in those",
-        Mode::Lab => "its Lab colours became sRGB; layers blend in those",
+        Mode::Cmyk => "its CMYK colors became sRGB; layers blend in those",
+        Mode::Lab => "its Lab colors became sRGB; layers blend in those",
         Mode::Multichannel => {
             "its inks were taken for cyan, magenta, yellow and black; others are left out"
         }
-        Mode::Duotone => "its inks are left out: it became grey",
+        Mode::Duotone => "its inks are left out: it became gray",
         _ if header.is_deep && header.bits == 32 => {
             "its 32 bits a channel became 16, and values brighter than white are lost; a Photoshop file that is saved \
              here has 8 for other programs"

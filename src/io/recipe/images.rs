@@ -175,7 +175,7 @@ impl RecipeValue for GradientStop {
 
     fn from_json(node: &JsonNode) -> Result<Self> {
         let [t, color] = &node.list(2)?[..] else {
-            return Err(node.refused("must be [t, colour]"));
+            return Err(node.refused("must be [t, color]"));
         };
         Ok(GradientStop { t: t.number(UNIT)?, color: color.color()? })
     }

@@ -45,7 +45,7 @@ pub struct ConvertArgs {
     #[arg(long, value_name = "N", value_parser = dots_per_inch)]
     dpi: Option<f32>,
     /// What shows where a picture is transparent, as #rrggbb
-    #[arg(long, value_name = "COLOUR", value_parser = values::color)]
+    #[arg(long, value_name = "COLOR", value_parser = values::color)]
     background: Option<Color>,
     /// Quality of a JPEG, 1 to 100
     #[arg(long, value_name = "N", default_value_t = ExportOptions::default().quality,

@@ -50,7 +50,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "NAME")]
     layer: Option<String>,
     /// What shows where the picture is transparent, as #rrggbb
-    #[arg(long, value_name = "COLOUR", value_parser = values::color)]
+    #[arg(long, value_name = "COLOR", value_parser = values::color)]
     background: Option<Color>,
     /// Quality of a JPEG, 1 to 100
     #[arg(long, value_name = "N", default_value_t = ExportOptions::default().quality,

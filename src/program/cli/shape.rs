@@ -157,7 +157,7 @@ fn shaped(args: &ShapeArgs) -> Result<(Document, Option<String>)> {
             if parts.parts.is_empty() {
                 return Err(Error::unsupported(
                     file,
-                    "no flat colour in it covers enough to be a part",
+                    "no flat color in it covers enough to be a part",
                 ));
             }
             (parts, vec![layer("Flats", flats), layer("Drawing", drawing)])
@@ -194,7 +194,7 @@ fn figure(file: &Path, drawing: TileGrid, size: Size) -> Result<TileGrid> {
         )),
         FigureBackground::Bare(_) => Err(Error::unsupported(
             file,
-            "it has one colour all over, so there is no figure in it to have a shape",
+            "it has one color all over, so there is no figure in it to have a shape",
         )),
         FigureBackground::Empty => {
             Err(Error::unsupported(file, "nothing in it is opaque enough to have a shape"))

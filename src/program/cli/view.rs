@@ -57,7 +57,7 @@ pub struct ViewArgs {
     #[arg(long, value_name = "PX", default_value_t = ViewOptions::default().blur_px, value_parser = not_negative)]
     blur: f32,
     /// What shows off the surface, as #rrggbb; a JPEG needs it
-    #[arg(long, value_name = "COLOUR", value_parser = super::values::color)]
+    #[arg(long, value_name = "COLOR", value_parser = super::values::color)]
     background: Option<Color>,
     #[command(flatten)]
     force: Force,

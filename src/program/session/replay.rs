@@ -118,7 +118,7 @@ impl ReplayValue for Color {
         value
             .as_str()
             .and_then(Color::parse)
-            .ok_or_else(|| "must be a colour such as #c08060".into())
+            .ok_or_else(|| "must be a color such as #c08060".into())
     }
 }
 

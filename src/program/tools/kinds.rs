@@ -21,7 +21,7 @@ rilievo_engine::named! {
         ),
         Gradient = "gradient" => (
             "Gradient",
-            "Drag to create a gradient from the first colour to the second, or drag an end of the selected one",
+            "Drag to create a gradient from the first color to the second, or drag an end of the selected one",
         ),
         Image = "image" => (
             "Image",
@@ -90,7 +90,7 @@ rilievo_engine::named! {
             "Surface wand",
             "Click the surface to select all that faces the same way; drag right or left for tolerance",
         ),
-        Eyedropper = "eyedropper" => ("Eyedropper", "Take a colour from the picture"),
+        Eyedropper = "eyedropper" => ("Eyedropper", "Take a color from the picture"),
         Hand = "hand" => ("Hand", "Drag the view"),
         Zoom = "zoom" => ("Zoom", "Click to zoom in, Alt-click to zoom out"),
     }

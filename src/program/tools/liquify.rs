@@ -18,7 +18,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         return (None, Outcome::Refused(why.into()));
     }
     let why = match &layer.content {
-        Content::Fill(_) => Some("A layer of one colour looks the same when it is displaced."),
+        Content::Fill(_) => Some("A layer of one color looks the same when it is displaced."),
         content if !content.can_be_warped() => {
             Some("This layer shows nothing of its own that could be displaced.")
         }

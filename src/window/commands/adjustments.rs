@@ -56,26 +56,26 @@ commands! {
     "exposure", "New exposure layer", "Exposure…", NO_KEYS, "More or less light, in stops";
     "vibrance", "New vibrance layer", "Vibrance…", NO_KEYS, "More saturation where there is little";
     "hue-saturation", "New hue/saturation layer", "Hue/saturation…", &[ctrl(Key::U)],
-        "Hue, saturation and lightness, of all colours or of a range; or one hue";
-    "color-balance", "New colour balance layer", "Colour balance…", &[ctrl(Key::B)],
+        "Hue, saturation and lightness, of all colors or of a range; or one hue";
+    "color-balance", "New color balance layer", "Color balance…", &[ctrl(Key::B)],
         "Warmer or cooler, in shadows, mid-tones and highlights";
     "black-white", "New black & white layer", "Black & white…", NO_KEYS,
-        "Greys, by how bright each hue shall be";
+        "Grays, by how bright each hue shall be";
     "photo-filter", "New photo filter layer", "Photo filter…", NO_KEYS,
-        "A coloured glass in front of the picture";
+        "A colored glass in front of the picture";
     "channel-mixer", "New channel mixer layer", "Channel mixer…", NO_KEYS,
         "Each channel as a sum of all three";
-    "color-lookup", "New colour look-up layer", "Colour look-up…", NO_KEYS,
-        "The colours of a .cube file";
-    "invert", "New invert layer", "Invert colours", &[ctrl(Key::I)],
-        "Light becomes dark, and each colour its complement";
-    "posterise", "New posterise layer", "Posterise…", NO_KEYS, "A few tones of each channel";
+    "color-lookup", "New color look-up layer", "Color look-up…", NO_KEYS,
+        "The colors of a .cube file";
+    "invert", "New invert layer", "Invert colors", &[ctrl(Key::I)],
+        "Light becomes dark, and each color its complement";
+    "posterise", "New posterize layer", "Posterize…", NO_KEYS, "A few tones of each channel";
     "threshold", "New threshold layer", "Threshold…", NO_KEYS,
         "Black and white, without anything between";
     "gradient-map", "New gradient map layer", "Gradient map…", NO_KEYS,
-        "A colour of a gradient for each brightness";
-    "selective-color", "New selective colour layer", "Selective colour…", NO_KEYS,
-        "Cyan, magenta, yellow and black for each range of colours";
+        "A color of a gradient for each brightness";
+    "selective-color", "New selective color layer", "Selective color…", NO_KEYS,
+        "Cyan, magenta, yellow and black for each range of colors";
 }
 
 #[cfg(test)]

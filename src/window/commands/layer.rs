@@ -118,11 +118,11 @@ pub const COMMANDS: &[MenuCommand] = &[
         has_document,
         |_, requests| add(requests, NewLayer::Strokes),
     ),
-    row("New fill layer", &[], "A layer of one colour", has_document, |_, requests| add(requests, NewLayer::Fill)),
+    row("New fill layer", &[], "A layer of one color", has_document, |_, requests| add(requests, NewLayer::Fill)),
     row(
         "New gradient layer",
         &[],
-        "A gradient from the first to the second colour, bent by the current operator",
+        "A gradient from the first to the second color, bent by the current operator",
         has_document,
         |_, requests| add(requests, NewLayer::Gradient),
     ),
@@ -141,14 +141,14 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Give it a shape…",
         &[],
-        "Makes a lit shape from the drawing, in one part or a part for each colour, to paint on",
+        "Makes a lit shape from the drawing, in one part or a part for each color, to paint on",
         has_document,
         |_, requests| requests.request(WindowRequest::ShapeDialog),
     ),
     row(
         "Split part by place",
         &[],
-        "Areas of the chosen part's colour that are apart, such as two eyes, become parts of their own",
+        "Areas of the chosen part's color that are apart, such as two eyes, become parts of their own",
         |session| session.active().and_then(|open| open.chosen_part()).is_some_and(|part| part.is_of_color()),
         |session, requests| {
             if let Some(part) = session.active().and_then(|open| open.chosen_part()) {

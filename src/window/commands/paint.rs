@@ -62,13 +62,13 @@ pub const COMMANDS: &[MenuCommand] = &[
     ),
     LINE,
     row(
-        "Swap colours",
+        "Swap colors",
         &[key(Key::X)],
-        "Exchanges the first and the second colour",
+        "Exchanges the first and the second color",
         always,
         |_, requests| hand(requests, HandAction::SwapColors {}),
     ),
-    row("Default colours", &[key(Key::D)], "Sets black and white", always, |_, requests| {
+    row("Default colors", &[key(Key::D)], "Sets black and white", always, |_, requests| {
         hand(requests, HandAction::DefaultColors {})
     }),
     LINE,

@@ -46,7 +46,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "New lit-sphere layer",
         &[],
-        "A painted ball gives the colour of every normal",
+        "A painted ball gives the color of every normal",
         has_document,
         |_, requests| add(requests, Model::LitSphere),
     ),

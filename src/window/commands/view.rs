@@ -203,7 +203,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         always,
         |_, requests| requests.request(WindowRequest::ResizeInterface { is_larger: false }),
     ),
-    row("Dark, grey or light", &[], "The next look of the window; grey is for judging colours", always, |_, requests| {
+    row("Dark, gray or light", &[], "The next look of the window; gray is for judging colors", always, |_, requests| {
         requests.request(WindowRequest::NextLook)
     }),
     row(

@@ -197,7 +197,7 @@ impl ImportDialog {
         if is_doubtful {
             ui.colored_label(
                 ui.visuals().warn_fg_color,
-                "This does not look like a normal map: its colours are not directions.",
+                "This does not look like a normal map: its colors are not directions.",
             );
             check_box(ui, &mut self.is_sure, "Use it as a normal map anyway");
         }

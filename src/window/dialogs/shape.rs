@@ -98,20 +98,20 @@ impl ShapeDialog {
         );
         radio(ui, &mut self.each, PartFor::Layer, "One part");
         let text = match self.traits.colors {
-            0 | 1 => "A part for each colour".to_owned(),
-            n => format!("A part for each colour ({n})"),
+            0 | 1 => "A part for each color".to_owned(),
+            n => format!("A part for each color ({n})"),
         };
         ui.add_enabled_ui(self.traits.colors > 1, |ui| {
             radio(ui, &mut self.each, PartFor::Color, text)
         });
         ui.add_enabled_ui(self.traits.colors > 0, |ui| {
             let hint =
-                "Areas of one colour that are apart, such as two eyes, become parts of their own";
+                "Areas of one color that are apart, such as two eyes, become parts of their own";
             radio(ui, &mut self.each, PartFor::Place, "A part for each place").on_hover_text(hint);
         });
         self.preset = presets(ui, self.preset).unwrap_or(self.preset);
         if matches!(self.traits.background, FigureBackground::Flat(_)) {
-            ui.weak("Its one-coloured background becomes a separate layer below.");
+            ui.weak("Its one-colored background becomes a separate layer below.");
         }
         let no = if self.is_first { "Only paint" } else { "Cancel" };
         match answers(ui, "Give it a shape", no, true) {
@@ -131,7 +131,7 @@ impl ShapeDialog {
                 None
             }
             FigureBackground::Painted => Some(
-                "No layer has an outline: this one is opaque all over, and its background has many colours. Select the \
+                "No layer has an outline: this one is opaque all over, and its background has many colors. Select the \
                  figure (W or L), then Layer, New part, Inflate selection.",
             ),
             _ => Some(

@@ -23,7 +23,7 @@ pub const ON_CANVAS: [(&str, &str); 12] = [
     ("Pan with the wheel", "Shift or Alt and the wheel"),
     ("Brush size", "Drag with the right button"),
     ("Straight line", "Shift and click with the brush"),
-    ("Take a colour", "Alt and click with the brush"),
+    ("Take a color", "Alt and click with the brush"),
     ("Content under an anchor", "Ctrl and drag with the anchor tool"),
     ("Re-pin an anchor", "Shift and drag with the anchor tool"),
     ("Remove an anchor", "Alt and click with the anchor tool"),

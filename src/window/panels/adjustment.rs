@@ -35,7 +35,7 @@ pub fn show(
     if let ColorAdjustment::HueSaturation(_) = next {
         groups.retain(|name| (name.key == HueSaturation::TINT) == tinted);
         if !tinted {
-            groups.insert(0, ParameterName { key: "", label: "All colours", hint: "" });
+            groups.insert(0, ParameterName { key: "", label: "All colors", hint: "" });
         }
     }
     ui.push_id(adjustment.name(), |ui| {
@@ -191,7 +191,7 @@ impl ParameterVisitor for ParameterRows<'_> {
                     let sides = if table.is_separate() { "1D" } else { "3D" };
                     ui.weak(format!("{} · {} · {sides}", table.title(), table.side()))
                 }
-                None => ui.weak("No table yet: colours stay as they are"),
+                None => ui.weak("No table yet: colors stay as they are"),
             };
             self.asks_for_table |= ui.button("Choose .cube file…").clicked();
         });

@@ -25,7 +25,7 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         changed = header.show(ui, |ui| show(ui, brush)).body_returned.flatten().or(changed.take());
     };
     part(ui, "Tip", tip);
-    part(ui, "Spread and colour", spread);
+    part(ui, "Spread and color", spread);
     part(ui, "Grain", grain);
     part(ui, "Stroke", stroke);
     part(ui, "Mixing and habits", habits);
@@ -236,7 +236,7 @@ fn stroke(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
         Stabilizer::String { .. } => StabilizerChoice::String,
         Stabilizer::Lag { .. } => StabilizerChoice::Lag,
     };
-    let chosen = choice_row(ui, "Stabiliser", kind, &CALMINGS).map(|kind| match kind {
+    let chosen = choice_row(ui, "Stabilizer", kind, &CALMINGS).map(|kind| match kind {
         StabilizerChoice::None => Stabilizer::None,
         StabilizerChoice::Average => Stabilizer::Average { weight: 0.7 },
         StabilizerChoice::String => Stabilizer::String { length_px: 30.0 },

@@ -10,14 +10,14 @@ use crate::widgets::{NumberField, ValueChange, named, swatch};
 use eframe::egui::{self, Color32, Id, Mesh, Rect, Sense, Shape, Stroke, TextEdit, Ui, pos2, vec2};
 
 pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    if let Some(changed) = picker(ui, "Colour in hand", session.tools.color) {
+    if let Some(changed) = picker(ui, "Color in hand", session.tools.color) {
         requests.act(Action::Hand(HandAction::Color { color: changed.to }));
     }
     let recent = session.recent_colors.iter().enumerate();
     swatches(
         ui,
         "Recent",
-        recent.map(|(i, &color)| (format!("Recent colour {}", i + 1), color)),
+        recent.map(|(i, &color)| (format!("Recent color {}", i + 1), color)),
         requests,
     );
     let palette =
@@ -30,12 +30,12 @@ pub fn strip(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     /// As many as a narrow panel has room for.
     const RECENT: usize = 8;
     ui.horizontal(|ui| {
-        if let Some(changed) = button(ui, "Changes the current colour", session.tools.color) {
+        if let Some(changed) = button(ui, "Changes the current color", session.tools.color) {
             requests.act(Action::Hand(HandAction::Color { color: changed.to }));
         }
         ui.spacing_mut().item_spacing.x = 3.0;
         for (i, &color) in session.recent_colors.iter().take(RECENT).enumerate() {
-            if swatch(ui, &format!("Paint with recent colour {}", i + 1), color, vec2(18.0, 18.0))
+            if swatch(ui, &format!("Paint with recent color {}", i + 1), color, vec2(18.0, 18.0))
                 .clicked()
             {
                 requests.act(Action::Hand(HandAction::Color { color }));
@@ -263,11 +263,11 @@ fn picked(response: &egui::Response, rect: Rect) -> Option<ValueChange<[f32; 2]>
 
 /// `#rrggbb`, read when the field is left.
 fn hex(ui: &mut Ui, color: Color) -> Option<Color> {
-    let id = Id::unique("hex colour");
+    let id = Id::unique("hex color");
     let shown = Color { a: 255, ..color }.to_string();
     let mut text = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_else(|| shown.clone());
     let response = ui.add(TextEdit::singleline(&mut text).desired_width(74.0).char_limit(9));
-    named(&response, "Hex colour");
+    named(&response, "Hex color");
     if response.has_focus() {
         ui.data_mut(|data| data.insert_temp(id, text));
         return None;

@@ -25,7 +25,7 @@ pub fn options(ui: &mut Ui, fill: Fill, requests: &mut UiRequests) {
     let tolerance = NumberField::new(
         "Tolerance",
         0.0..=1.0,
-        "How different a colour may be from the one you click",
+        "How different a color may be from the one you click",
     );
     push(tolerance.inline(ui, fill.tolerance, 60.0).map(|c| Fill { tolerance: c.to, ..fill }));
     let gap = NumberField::new(

@@ -142,7 +142,7 @@ fn pictures(ui: &mut Ui, shading: &Shading, setter: &mut LayerSetter) {
             ui,
             PicturePart::Sphere,
             shading.sphere.as_ref().map(|sphere| &*sphere.file),
-            "Grey clay",
+            "Gray clay",
         );
         picture(
             ui,
@@ -172,7 +172,7 @@ fn surroundings(ui: &mut Ui, environment: &Environment, setter: &mut LayerSetter
 
 fn term(ui: &mut Ui, label: &str, term: Term, setter: &mut LayerSetter, put: fn(Term) -> Property) {
     ui.horizontal(|ui| {
-        let color = colors::button(ui, &format!("{label} colour"), term.color);
+        let color = colors::button(ui, &format!("{label} color"), term.color);
         setter.take(color.map(|c| c.map(|color| put(Term { color, ..term }))));
         let weight = NumberField::new(label, 0.0..=2.0, "Weight of the term; 0 turns it off")
             .row(ui, term.weight);
@@ -214,7 +214,7 @@ fn lights(ui: &mut Ui, lights: &[Light], canvas: Vec2, setter: &mut LayerSetter)
             ui.vertical(|ui| {
                 ui.horizontal(|ui| {
                     let color =
-                        colors::button(ui, &format!("Colour of light {}", i + 1), light.color);
+                        colors::button(ui, &format!("Color of light {}", i + 1), light.color);
                     setter.take(color.map(|c| c.map(|color| with(i, Light { color, ..*light }))));
                     if lights.len() > 1 && ui.small_button("Remove").clicked() {
                         let mut left = lights.to_vec();

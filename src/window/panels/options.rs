@@ -39,7 +39,7 @@ fn row(ui: &mut Ui, name: &str, show: impl FnOnce(&mut Ui)) {
 /// The operator and its numbers.
 fn bending(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     if session.tool == ToolKind::Fill {
-        return drop(ui.weak("Fills are not bent: they colour the pixels that they cover"));
+        return drop(ui.weak("Fills are not bent: they color the pixels that they cover"));
     }
     if session.tool.shapes() {
         return drop(ui.weak(

@@ -62,15 +62,15 @@ pub fn moods(ui: &mut Ui, shading: &Shading, pictures: &MoodPictures, setter: &m
 
 /// The painter's own terms.
 pub fn terms(ui: &mut Ui, painter: Painter, setter: &mut LayerSetter) {
-    let hint = "Light the picture beneath, not a colour of its own";
+    let hint = "Light the picture beneath, not a color of its own";
     if let Some(beneath) = check(ui, "Light what is beneath", hint, painter.beneath) {
         setter.set(Property::Painted { painter: Painter { beneath, ..painter } }, true);
     }
     settings(ui, Painter::SETTINGS, painter, setter, |painter| Property::Painted { painter });
     let colors: [(&str, Color, ColorOf); 3] = [
-        ("Fill colour", painter.fill_color, |p| &mut p.fill_color),
-        ("Bounce colour", painter.bounce_color, |p| &mut p.bounce_color),
-        ("Rim colour", painter.rim_color, |p| &mut p.rim_color),
+        ("Fill color", painter.fill_color, |p| &mut p.fill_color),
+        ("Bounce color", painter.bounce_color, |p| &mut p.bounce_color),
+        ("Rim color", painter.rim_color, |p| &mut p.rim_color),
     ];
     ui.horizontal(|ui| {
         for (label, color, of) in colors {
@@ -97,7 +97,7 @@ pub fn shadows(ui: &mut Ui, shadows: Shadows, setter: &mut LayerSetter) {
         return;
     }
     settings(ui, Shadows::SETTINGS, shadows, setter, |shadows| Property::Shadowed { shadows });
-    let changed = colors::button(ui, "Shadow colour", shadows.color);
+    let changed = colors::button(ui, "Shadow color", shadows.color);
     setter.take(
         changed
             .map(|c| c.map(|color| Property::Shadowed { shadows: Shadows { color, ..shadows } })),

@@ -29,7 +29,7 @@ pub fn show(ui: &mut Ui, session: &Session, moods: &mut MoodPictures, requests: 
     let has_surface = session.shown().is_some_and(|document| document.surface.is_some());
     match &layer.content {
         Content::Fill(color) => {
-            let changed = colors::picker(ui, "Fill colour", *color);
+            let changed = colors::picker(ui, "Fill color", *color);
             setter.take(changed.map(|c| c.map(|color| Property::Fill { color })));
         }
         Content::Pixels(_) => {
@@ -219,12 +219,12 @@ fn placement(ui: &mut Ui, placement: Placement, setter: &mut LayerSetter) {
         c.map(|rotation| Property::Place { placement: Placement { rotation, ..placement } })
     }));
     ui.horizontal(|ui| {
-        crate::widgets::name(ui, "Centre");
+        crate::widgets::name(ui, "Center");
         let at = placement.center;
-        let x = NumberField::new("Centre x", -20000.0..=20000.0, "Canvas px")
+        let x = NumberField::new("Center x", -20000.0..=20000.0, "Canvas px")
             .decimals(0)
             .field(ui, at.x);
-        let y = NumberField::new("Centre y", -20000.0..=20000.0, "Canvas px")
+        let y = NumberField::new("Center y", -20000.0..=20000.0, "Canvas px")
             .decimals(0)
             .field(ui, at.y);
         let center = x.map(|c| c.map(|x| vec2(x, at.y))).or(y.map(|c| c.map(|y| vec2(at.x, y))));

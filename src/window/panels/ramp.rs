@@ -18,7 +18,7 @@ pub fn show(ui: &mut Ui, stops: &[GradientStop]) -> Option<ValueChange<Vec<Gradi
     let mut changed = None;
     for (i, stop) in stops.iter().enumerate() {
         ui.horizontal(|ui| {
-            let color = colors::button(ui, &format!("Colour of stop {}", i + 1), stop.color);
+            let color = colors::button(ui, &format!("Color of stop {}", i + 1), stop.color);
             let color = color.map(|c| c.map(|color| with(i, GradientStop { color, ..*stop })));
             let place = format!("Place of stop {}", i + 1);
             let t = NumberField::new(&place, 0.0..=1.0, "0 at the first end, 1 at the second")

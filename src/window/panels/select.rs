@@ -57,7 +57,7 @@ fn wand(ui: &mut Ui, select: SelectSettings) -> Option<SelectSettings> {
     let fill = select.wand;
     let mut set =
         |wand: Option<Fill>| to = wand.map(|wand| SelectSettings { wand, ..select }).or(to);
-    let hint = "How different a colour may be from the one you click; a drag to the right or left changes it too";
+    let hint = "How different a color may be from the one you click; a drag to the right or left changes it too";
     let tolerance = NumberField::new("Tolerance", SelectSettings::TOLERANCE, hint);
     set(tolerance.inline(ui, fill.tolerance, 60.0).map(|c| Fill { tolerance: c.to, ..fill }));
     let gap = NumberField::new(
@@ -79,7 +79,7 @@ fn wand(ui: &mut Ui, select: SelectSettings) -> Option<SelectSettings> {
     let joined = check(
         ui,
         "Joined",
-        "Only what is joined to the pixel; else all of its colour, everywhere",
+        "Only what is joined to the pixel; else all of its color, everywhere",
         select.joined,
     );
     joined.map(|joined| SelectSettings { joined, ..select }).or(to)

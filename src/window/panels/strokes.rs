@@ -65,7 +65,7 @@ fn list(
             ui.horizontal(|ui| {
                 swatch(
                     ui,
-                    &format!("Colour of stroke {}", index + 1),
+                    &format!("Color of stroke {}", index + 1),
                     stroke.color(),
                     vec2(18.0, height - 4.0),
                 );
@@ -111,7 +111,7 @@ fn buttons(
             if stroke > 0 && icon_button(ui, Icon::Down, "Stroke down", false).clicked() {
                 act(StrokeAction::Order { layer: layer(), stroke, to: stroke - 1 });
             }
-            let hint = "Takes over its brush, operator and colour";
+            let hint = "Takes over its brush, operator and color";
             if icon_button(ui, Icon::Tool(ToolKind::Eyedropper), "Take its brush", false)
                 .on_hover_text(hint)
                 .clicked()
@@ -182,6 +182,6 @@ fn styles(ui: &mut Ui, stroke: &Stroke, mut set: impl FnMut(Style, bool)) {
     });
     let numbers = options::number_rows(ui, stroke.operator());
     give(numbers.map(|c| c.map(|operator| Style::Operator { operator })));
-    let color = colors::picker(ui, "Stroke colour", stroke.color());
+    let color = colors::picker(ui, "Stroke color", stroke.color());
     give(color.map(|c| c.map(|color| Style::Color { color })));
 }

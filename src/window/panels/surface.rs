@@ -83,7 +83,7 @@ fn about(view: SurfaceView) -> &'static str {
         SurfaceView::Normals => "Red to the right, green up, blue toward you",
         SurfaceView::Depth => "Black near, white far",
         SurfaceView::Mask => "White where the surface is",
-        SurfaceView::Objects => "A colour for each object, separated by depth jumps",
+        SurfaceView::Objects => "A color for each object, separated by depth jumps",
         SurfaceView::Curvature => "Convex blue, concave red, flat yellow",
         SurfaceView::CurvatureGrey => "Convex light, concave dark",
         SurfaceView::Directions => "Lines along the direction that curves most",

@@ -21,7 +21,7 @@ const GAP_PT: f32 = 2.0;
 const COLOURS_PT: f32 = 124.0;
 
 pub fn show(ui: &mut Ui, session: &Session, keymap: &Keymap, requests: &mut UiRequests) {
-    let beneath = Panel::bottom("current colours")
+    let beneath = Panel::bottom("current colors")
         .resizable(false)
         .show_separator_line(false)
         .frame(Frame::NONE);
@@ -76,17 +76,15 @@ fn button(
 
 fn colours(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     ui.add_space(4.0);
-    swatch(ui, "First colour", session.tools.color, vec2(32.0, 26.0));
-    if swatch(ui, "Second colour", session.tools.second_color, vec2(32.0, 16.0)).clicked() {
+    swatch(ui, "First color", session.tools.color, vec2(32.0, 26.0));
+    if swatch(ui, "Second color", session.tools.second_color, vec2(32.0, 16.0)).clicked() {
         requests.act(Action::Hand(HandAction::SwapColors {}));
     }
-    if icon_button(ui, Icon::Swap, "Swap colours", false)
-        .on_hover_text("Swap colours (X)")
-        .clicked()
+    if icon_button(ui, Icon::Swap, "Swap colors", false).on_hover_text("Swap colors (X)").clicked()
     {
         requests.act(Action::Hand(HandAction::SwapColors {}));
     }
-    if icon_button(ui, Icon::Reset, "Default colours", false)
+    if icon_button(ui, Icon::Reset, "Default colors", false)
         .on_hover_text("Black and white (D)")
         .clicked()
     {

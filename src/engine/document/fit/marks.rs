@@ -111,12 +111,12 @@ pub fn brush(brush: &Brush) -> Fit {
     match brush.stabilizer {
         Stabilizer::None => Ok(()),
         Stabilizer::Average { weight } => {
-            within("the weight of the stabiliser", weight, &Stabilizer::WEIGHT)
+            within("the weight of the stabilizer", weight, &Stabilizer::WEIGHT)
         }
         Stabilizer::String { length_px } => {
-            within("the string of the stabiliser", length_px, &Stabilizer::LENGTH_PX)
+            within("the string of the stabilizer", length_px, &Stabilizer::LENGTH_PX)
         }
-        Stabilizer::Lag { secs } => within("the lag of the stabiliser", secs, &Stabilizer::SECS),
+        Stabilizer::Lag { secs } => within("the lag of the stabilizer", secs, &Stabilizer::SECS),
     }?;
     for setting in &SETTINGS {
         within(&format!("“{}” of the brush", setting.label), setting.of(brush), &setting.range)?;
@@ -235,7 +235,7 @@ pub fn gradient(gradient: &Gradient) -> Fit {
 }
 
 pub fn placement(placement: &Placement) -> Fit {
-    point("the centre", placement.center)?;
+    point("the center", placement.center)?;
     within("the scale", placement.scale, &Placement::SCALE)?;
     within("the rotation", placement.rotation, &TURNS)
 }

@@ -145,7 +145,7 @@ impl OutlineSource {
                 at_most("letters of the layer's name", layer.chars().count(), Part::LONGEST_NAME)?;
                 color
                     .and_then(|flat| flat.at)
-                    .map_or(Ok(()), |at| place("the place of a colour", at))
+                    .map_or(Ok(()), |at| place("the place of a color", at))
             }
             OutlineSource::Selection(name) => at_most(
                 "letters of the selection's name",

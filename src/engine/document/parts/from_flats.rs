@@ -53,7 +53,7 @@ impl FlatParts {
         if self.flat_share < LEAST_FLAT {
             let share = (self.flat_share * 100.0).floor();
             return Some(format!(
-                "Only {share} % of it is in flat colours, so the parts follow these alone: one part for all of it may \
+                "Only {share} % of it is in flat colors, so the parts follow these alone: one part for all of it may \
                  be better."
             ));
         }

@@ -137,12 +137,12 @@ impl Document {
         let names: Vec<String> =
             self.parts.lost.iter().filter(|id| !known(id)).filter_map(part).collect();
         let is = if names.len() == 1 {
-            "takes the area of its colour that is"
+            "takes the area of its color that is"
         } else {
-            "take the areas of their colours that are"
+            "take the areas of their colors that are"
         };
         (!names.is_empty()).then(|| {
-            format!("{} {is} nearest: the place it had has another colour now.", names.join(", "))
+            format!("{} {is} nearest: the place it had has another color now.", names.join(", "))
         })
     }
 

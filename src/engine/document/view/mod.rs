@@ -92,7 +92,7 @@ impl Default for ViewOptions {
 pub enum ViewUnavailable {
     #[error("the document has no surface to show")]
     NoSurface,
-    #[error("no two neighbouring pixels of the surface are in the plane")]
+    #[error("no two neighboring pixels of the surface are in the plane")]
     NothingUnwrapped,
     #[error("there is no memory for the picture")]
     NoMemory,
@@ -179,8 +179,7 @@ fn painted(
         let [r, g, b] = color(x, y).map(quantise);
         [r, g, b, coverage.map_or(255, |s| s.coverage(x, y))]
     });
-    Picture::srgb8(size, texels.into_values())
-        .expect("a canvas has pixels, and each got its colour")
+    Picture::srgb8(size, texels.into_values()).expect("a canvas has pixels, and each got its color")
 }
 
 #[cfg(test)]

@@ -43,7 +43,7 @@ impl GradientMap {
 impl Parameters for GradientMap {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
         v.stops(named("stops", "Stops", "From the darkest to the brightest"), &mut self.stops);
-        let hint = "The first colour is for the brightest";
+        let hint = "The first color is for the brightest";
         v.flag(named("reverse", "Reverse", hint), false, &mut self.reverse);
     }
 }

@@ -143,9 +143,9 @@ impl Parameters for HueSaturation {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
         self.master.visit(v);
         let hint = "Give everything one hue";
-        v.flag(named("colorize", "Colourise", hint), false, &mut self.colorize);
-        let hint = "The hue, saturation and lightness of what is colourised";
-        v.group(named(Self::TINT, "Colourised", hint), &mut |v| {
+        v.flag(named("colorize", "Colorize", hint), false, &mut self.colorize);
+        let hint = "The hue, saturation and lightness of what is colorized";
+        v.group(named(Self::TINT, "Colorized", hint), &mut |v| {
             let number = NumberParameter::whole;
             v.number(number(named("hue", "Hue", ""), 0.0, 360.0, 0.0), &mut self.tint.hue);
             let saturation = number(named("saturation", "Saturation", ""), 0.0, 100.0, 25.0);
@@ -157,10 +157,10 @@ impl Parameters for HueSaturation {
             v.group(name, &mut |v| {
                 range.shift.visit(v);
                 const ANGLES: [ParameterName; 4] = [
-                    named("fade_from", "Fades from", "Degrees of the colour circle"),
-                    named("from", "From", "Degrees of the colour circle"),
-                    named("to", "To", "Degrees of the colour circle"),
-                    named("fade_to", "Fades to", "Degrees of the colour circle"),
+                    named("fade_from", "Fades from", "Degrees of the color circle"),
+                    named("from", "From", "Degrees of the color circle"),
+                    named("to", "To", "Degrees of the color circle"),
+                    named("fade_to", "Fades to", "Degrees of the color circle"),
                 ];
                 for ((name, angle), default) in
                     ANGLES.into_iter().zip(&mut range.angles).zip(angles)

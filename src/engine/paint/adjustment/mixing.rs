@@ -108,7 +108,7 @@ impl Vibrance {
 
 impl Parameters for Vibrance {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
-        let hint = "Saturation, most for colours that have little of it";
+        let hint = "Saturation, most for colors that have little of it";
         let number = |name| NumberParameter::around(name, 100.0);
         v.number(number(named("vibrance", "Vibrance", hint)), &mut self.vibrance);
         v.number(number(named("saturation", "Saturation", "")), &mut self.saturation);
@@ -153,7 +153,7 @@ impl PhotoFilter {
 
 impl Parameters for PhotoFilter {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
-        v.color(named("color", "Colour", "Colour of the filter"), Self::WARMING, &mut self.color);
+        v.color(named("color", "Color", "Color of the filter"), Self::WARMING, &mut self.color);
         let density =
             NumberParameter::whole(named("density", "Density", "Percent"), 1.0, 100.0, 25.0);
         v.number(density, &mut self.density);
@@ -213,8 +213,8 @@ impl Parameters for ChannelMixer {
         for ((name, shares), defaults) in CHANNELS.into_iter().zip(&mut self.outputs).zip(UNMIXED) {
             output(name, defaults, shares);
         }
-        output(named("grey", "Grey", "Used if it is monochrome"), GREY, &mut self.grey);
-        v.flag(named("monochrome", "Monochrome", "Greys"), false, &mut self.monochrome);
+        output(named("grey", "Gray", "Used if it is monochrome"), GREY, &mut self.grey);
+        v.flag(named("monochrome", "Monochrome", "Grays"), false, &mut self.monochrome);
     }
 }
 
@@ -281,8 +281,8 @@ impl Parameters for BlackWhite {
         {
             v.number(NumberParameter::whole(name, -200.0, 300.0, default), value);
         }
-        v.flag(named("tint", "Tint", "Give the greys a colour"), false, &mut self.is_tinted);
-        v.color(named("color", "Colour of the tint", ""), Self::TINT, &mut self.color);
+        v.flag(named("tint", "Tint", "Give the grays a color"), false, &mut self.is_tinted);
+        v.color(named("color", "Color of the tint", ""), Self::TINT, &mut self.color);
     }
 }
 
@@ -356,7 +356,7 @@ impl Parameters for SelectiveColor {
                 }
             });
         }
-        let hint = "Percent of all ink, not of the ink that a colour has";
+        let hint = "Percent of all ink, not of the ink that a color has";
         v.flag(named("absolute", "Absolute", hint), false, &mut self.absolute);
     }
 }

@@ -84,19 +84,19 @@ adjustments! {
     Exposure = "exposure" => ("Exposure", "More or less light, in stops"),
     Vibrance = "vibrance" => ("Vibrance", "More saturation where there is little"),
     HueSaturation = "hue-saturation"
-        => ("Hue/saturation", "Hue, saturation and lightness, of all colours or of a range; or one hue"),
+        => ("Hue/saturation", "Hue, saturation and lightness, of all colors or of a range; or one hue"),
     ColorBalance = "color-balance"
-        => ("Colour balance", "Warmer or cooler, in shadows, mid-tones and highlights"),
-    BlackWhite = "black-white" => ("Black & white", "Greys, by how bright each hue shall be"),
-    PhotoFilter = "photo-filter" => ("Photo filter", "A coloured glass in front of the picture"),
+        => ("Color balance", "Warmer or cooler, in shadows, mid-tones and highlights"),
+    BlackWhite = "black-white" => ("Black & white", "Grays, by how bright each hue shall be"),
+    PhotoFilter = "photo-filter" => ("Photo filter", "A colored glass in front of the picture"),
     ChannelMixer = "channel-mixer" => ("Channel mixer", "Each channel as a sum of all three"),
-    ColorLookup = "color-lookup" => ("Colour look-up", "The colours of a .cube file"),
-    Invert = "invert" => ("Invert", "Light becomes dark, and each colour its complement"),
-    Posterise = "posterise" => ("Posterise", "A few tones of each channel"),
+    ColorLookup = "color-lookup" => ("Color look-up", "The colors of a .cube file"),
+    Invert = "invert" => ("Invert", "Light becomes dark, and each color its complement"),
+    Posterise = "posterise" => ("Posterize", "A few tones of each channel"),
     Threshold = "threshold" => ("Threshold", "Black and white, without anything between"),
-    GradientMap = "gradient-map" => ("Gradient map", "A colour of a gradient for each brightness"),
+    GradientMap = "gradient-map" => ("Gradient map", "A color of a gradient for each brightness"),
     SelectiveColor = "selective-color"
-        => ("Selective colour", "Cyan, magenta, yellow and black for each range of colours"),
+        => ("Selective color", "Cyan, magenta, yellow and black for each range of colors"),
 }
 
 impl ColorAdjustment {

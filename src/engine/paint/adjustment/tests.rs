@@ -195,7 +195,7 @@ fn hues_turn_and_greys_stay() {
     assert_eq!(bytes(turned.color()([0.4; 3])), [102; 3]);
     let mut reds = HueSaturation::default();
     reds.ranges[0].shift.saturation = -100.0;
-    assert_eq!(bytes(reds.color()([0.8, 0.2, 0.2])), [128; 3], "a red becomes grey");
+    assert_eq!(bytes(reds.color()([0.8, 0.2, 0.2])), [128; 3], "a red becomes gray");
     assert_eq!(bytes(reds.color()([0.2, 0.8, 0.2])), [51, 204, 51], "a green stays");
     assert!((reds.ranges[0].weight(330.0) - 0.5).abs() < 1e-6);
     // Two ranges with the same hues: their factors, 2 and 1/2, add up to 3/2.

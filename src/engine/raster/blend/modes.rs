@@ -17,15 +17,15 @@ macro_rules! blend_modes {
             Overlay,      "overlay",       "Overlay",        "svg:overlay",         b"over", separable(overlay);
             Darken,       "darken",        "Darken",         "svg:darken",          b"dark", separable(darken);
             Lighten,      "lighten",       "Lighten",        "svg:lighten",         b"lite", separable(lighten);
-            ColorDodge,   "color-dodge",   "Colour dodge",   "svg:color-dodge",     b"div ", separable(color_dodge);
-            ColorBurn,    "color-burn",    "Colour burn",    "svg:color-burn",      b"idiv", separable(color_burn);
+            ColorDodge,   "color-dodge",   "Color dodge",   "svg:color-dodge",     b"div ", separable(color_dodge);
+            ColorBurn,    "color-burn",    "Color burn",    "svg:color-burn",      b"idiv", separable(color_burn);
             HardLight,    "hard-light",    "Hard light",     "svg:hard-light",      b"hLit", separable(hard_light);
             SoftLight,    "soft-light",    "Soft light",     "svg:soft-light",      b"sLit", separable(soft_light);
             Difference,   "difference",    "Difference",     "svg:difference",      b"diff", separable(difference);
             Exclusion,    "exclusion",     "Exclusion",      "krita:exclusion",     b"smud", separable(exclusion);
             Hue,          "hue",           "Hue",            "svg:hue",             b"hue ", non_separable(hue);
             Saturation,   "saturation",    "Saturation",     "svg:saturation",      b"sat ", non_separable(saturation);
-            Color,        "color",         "Colour",         "svg:color",           b"colr", non_separable(color);
+            Color,        "color",         "Color",         "svg:color",           b"colr", non_separable(color);
             Luminosity,   "luminosity",    "Luminosity",     "svg:luminosity",      b"lum ", non_separable(luminosity);
             /// Sums the premultiplied values, clamped at 1.
             Plus,         "plus",          "Plus",           "svg:plus",            b"plus", sum(plus);
@@ -35,8 +35,8 @@ macro_rules! blend_modes {
             VividLight,   "vivid-light",   "Vivid light",    "krita:vivid_light",   b"vLit", separable(vivid_light);
             PinLight,     "pin-light",     "Pin light",      "krita:pin_light",     b"pLit", separable(pin_light);
             HardMix,      "hard-mix",      "Hard mix",       "krita:hard mix",      b"hMix", separable(hard_mix);
-            DarkerColor,  "darker-color",  "Darker colour",  "krita:darker color",  b"dkCl", non_separable(darker);
-            LighterColor, "lighter-color", "Lighter colour", "krita:lighter color", b"lgCl", non_separable(lighter);
+            DarkerColor,  "darker-color",  "Darker color",  "krita:darker color",  b"dkCl", non_separable(darker);
+            LighterColor, "lighter-color", "Lighter color", "krita:lighter color", b"lgCl", non_separable(lighter);
             Subtract,     "subtract",      "Subtract",       "krita:subtract",      b"fsub", separable(subtract);
             Divide,       "divide",        "Divide",         "krita:divide",        b"fdiv", separable(divide);
             /// Each pixel wholly or not at all, by noise fixed to the canvas, with its alpha as the

@@ -32,9 +32,9 @@ pub fn color_name(color: Color) -> String {
     if chroma < LEAST_CHROMA {
         let grey = match light {
             l if l < 0.15 => "black",
-            l if l < 0.4 => "dark grey",
-            l if l < 0.65 => "grey",
-            l if l < 0.88 => "light grey",
+            l if l < 0.4 => "dark gray",
+            l if l < 0.65 => "gray",
+            l if l < 0.88 => "light gray",
             _ => "white",
         };
         return grey.to_owned();
@@ -148,7 +148,7 @@ mod tests {
         let known = [
             (rgb(255, 255, 255), "white"),
             (rgb(20, 20, 22), "black"),
-            (rgb(128, 130, 128), "grey"),
+            (rgb(128, 130, 128), "gray"),
             (rgb(230, 40, 30), "red"),
             (rgb(226, 117, 45), "orange"),
             (rgb(90, 50, 35), "brown"),

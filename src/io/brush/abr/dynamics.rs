@@ -220,7 +220,7 @@ impl AbrConversion<'_> {
             });
         self.brush.jitter = jitter;
         if is_other {
-            self.notes.push("it keeps to the colour in front, as pure as it is".to_owned());
+            self.notes.push("it keeps to the color in front, as pure as it is".to_owned());
         }
     }
 

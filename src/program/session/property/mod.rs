@@ -113,7 +113,7 @@ impl Property {
             Property::Transformed { .. } | Property::Sampled { .. } => "Transform",
             Property::Unliquified {} => "Remove liquify",
             Property::PassThrough { .. } => "Pass through",
-            Property::Fill { .. } => "Fill colour",
+            Property::Fill { .. } => "Fill color",
             Property::Bend { .. } => "Bend",
             Property::Anchors { .. } => "Anchors",
             Property::Pieces { .. } => "Pieces",

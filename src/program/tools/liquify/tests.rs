@@ -117,7 +117,7 @@ fn what_cannot_be_displaced_says_why() {
     let context =
         ToolContext { layer: Some(document.layers[0].id), ..ToolContext::new(&document, &tools) };
     let pen = PenSample { keys: ModifierKeys::default(), ..PenSample::at(vec2(9.0, 9.0)) };
-    assert!(matches!(press(&context, pen).1, Outcome::Refused(why) if why.contains("one colour")));
+    assert!(matches!(press(&context, pen).1, Outcome::Refused(why) if why.contains("one color")));
     let nothing = ToolContext { layer: None, ..context };
     assert!(
         matches!(press(&nothing, pen).1, Outcome::Refused(why) if why.contains("Choose a layer"))

@@ -25,10 +25,9 @@ pub fn describe(choice: &Finding) -> (&str, String) {
                 NormalEncoding::from_name(value).map(|encoding| worded(encoding, &ENCODINGS));
             return ("Numbers", words.map_or_else(|| value.clone(), str::to_owned));
         }
-        "normal.srgb" => (
-            "Colours",
-            &[("false", "plain numbers"), ("true", "bent by the sRGB curve, bent back")],
-        ),
+        "normal.srgb" => {
+            ("Colors", &[("false", "plain numbers"), ("true", "bent by the sRGB curve, bent back")])
+        }
         "normal.channels" => return ("Right, up, forward in", channels(value)),
         "normal.flip_x" => ("Left and right", FLIPPED),
         "normal.flip_y" => ("Up and down", FLIPPED),

@@ -26,11 +26,11 @@ const BRUSH: [(&str, &str); 8] = [
     ("Spacing", "The distance between dabs"),
     ("Grain", "The paper or pattern that the brush paints on"),
     ("Dynamics", "What pressure, tilt and speed change"),
-    ("Stabiliser", "How smooth the line becomes while you draw"),
+    ("Stabilizer", "How smooth the line becomes while you draw"),
 ];
 
 /// Words of other programs and of everyday speech, and the words here that they mean.
-const SYNONYMS: [(&str, &[&str]); 53] = [
+const SYNONYMS: [(&str, &[&str]); 54] = [
     ("flip", &["mirror"]),
     ("reflect", &["mirror"]),
     ("rotate", &["turn", "upright"]),
@@ -43,22 +43,23 @@ const SYNONYMS: [(&str, &[&str]); 53] = [
     ("warp", &["liquify", "transform"]),
     ("smudge", &["brushes", "liquify"]),
     ("blur", &["brushes", "feather"]),
-    ("stabilizer", &["stabiliser"]),
-    ("stabilisation", &["stabiliser"]),
-    ("stabilization", &["stabiliser"]),
-    ("smoothing", &["stabiliser", "steadiness"]),
-    ("streamline", &["stabiliser"]),
+    ("stabiliser", &["stabilizer"]),
+    ("stabilisation", &["stabilizer"]),
+    ("stabilization", &["stabilizer"]),
+    ("smoothing", &["stabilizer", "steadiness"]),
+    ("streamline", &["stabilizer"]),
     ("pressure", &["dynamics"]),
     ("texture", &["grain", "bend: wrap"]),
     ("scatter", &["offset"]),
     ("jitter", &["size ±", "tremor", "offset"]),
     ("bucket", &["fill"]),
-    ("color", &["colour", "swap colours", "default colours"]),
-    ("hue", &["hue", "colour"]),
-    ("saturation", &["saturation", "colour"]),
-    ("picker", &["colour"]),
-    ("eyedropper", &["colour"]),
-    ("swatches", &["colour"]),
+    ("colour", &["color", "swap colors", "default colors"]),
+    ("grey", &["gray"]),
+    ("hue", &["hue", "color"]),
+    ("saturation", &["saturation", "color"]),
+    ("picker", &["color"]),
+    ("eyedropper", &["color"]),
+    ("swatches", &["color"]),
     ("magic", &["wand"]),
     ("marquee", &["select rectangle", "select ellipse"]),
     ("unselect", &["deselect"]),
@@ -81,8 +82,8 @@ const SYNONYMS: [(&str, &[&str]); 53] = [
     ("symmetry", &["assistants"]),
     ("inflate", &["give it a shape"]),
     ("3d", &["give it a shape", "open maps"]),
-    ("theme", &["dark, grey or light"]),
-    ("preferences", &["keyboard shortcuts", "larger interface", "dark, grey or light"]),
+    ("theme", &["dark, gray or light"]),
+    ("preferences", &["keyboard shortcuts", "larger interface", "dark, gray or light"]),
     ("hotkeys", &["keyboard shortcuts"]),
 ];
 
@@ -181,9 +182,9 @@ mod tests {
     fn words_of_other_programs_find_what_is_called_otherwise_here() {
         assert!(names("flip").contains(&"Mirror canvas left and right"));
         assert!(names("rotate canvas").contains(&"Turn canvas…"), "{:?}", names("rotate canvas"));
-        assert_eq!(names("stabilizer"), ["Stabiliser"]);
+        assert_eq!(names("stabiliser"), ["Stabilizer"]);
         assert_eq!(names("magic wand"), ["Wand", "Surface wand"]);
-        assert!(names("hue").contains(&"Colour"));
+        assert!(names("hue").contains(&"Color"));
     }
 
     #[test]

@@ -85,7 +85,7 @@ fn flats(ui: &mut Ui, document: &Document, part: &Part, requests: &mut UiRequest
         (
             split,
             "Split by place",
-            "Areas of its colour that are apart, such as two eyes, become parts of their own",
+            "Areas of its color that are apart, such as two eyes, become parts of their own",
         ),
         (
             cut,
@@ -160,7 +160,7 @@ fn begin(ui: &mut Ui, document: &Document, requests: &mut UiRequests) {
         None => "This drawing has no shape yet: marks stay flat.",
     });
     let hint =
-        "Inflates what the drawing covers, in one part or a part for each colour, and lights it";
+        "Inflates what the drawing covers, in one part or a part for each color, and lights it";
     if ui.button("Give it a shape…").on_hover_text(hint).clicked() {
         requests.request(WindowRequest::ShapeDialog);
     }

@@ -22,7 +22,7 @@ pub fn show(ui: &mut Ui, part: &Part) -> Option<ValueChange<Part>> {
         OutlineSource::Layer { layer, color: None } => format!("Follows the layer “{layer}”"),
         OutlineSource::Layer { layer, color: Some(flat) } => {
             let one = if flat.at.is_some() { "one place of " } else { "" };
-            format!("Follows {one}the colour {} of “{layer}”", flat.color)
+            format!("Follows {one}the color {} of “{layer}”", flat.color)
         }
         OutlineSource::Object(object) => format!("Follows object {object} of the maps"),
         _ => "Uses the outline that was selected".to_owned(),

@@ -55,13 +55,13 @@ pub fn shaped(
             .ok_or("There is no such layer.")?,
         FigureBackground::Painted => {
             return Err(
-                "This layer is opaque all over and its background has many colours, so it has no outline. Select \
+                "This layer is opaque all over and its background has many colors, so it has no outline. Select \
                         the figure, and inflate the selection.",
             );
         }
         FigureBackground::Bare(_) => {
             return Err(
-                "This layer has one colour all over, and no figure large enough on it to have an outline.",
+                "This layer has one color all over, and no figure large enough on it to have an outline.",
             );
         }
         FigureBackground::Empty => return Err("This layer is empty, so it has no outline."),
@@ -88,7 +88,7 @@ pub fn shaped(
     let part = list
         .last()
         .map(|part| part.id.clone())
-        .ok_or("No flat colour of it covers enough to be a part.")?;
+        .ok_or("No flat color of it covers enough to be a part.")?;
     // Its edge is the surface's: clipping as well would make it thinner.
     let next =
         document.with_layer(layer, |layer| layer.clip_to_surface = false).unwrap_or(document);

@@ -38,7 +38,7 @@ rilievo_engine::named! {
         ),
         Profiles = "profiles" => (
             "Lighting profiles",
-            "From two to five selected layers: one drawing shaded by hand in greys, each lit from another side"
+            "From two to five selected layers: one drawing shaded by hand in grays, each lit from another side"
         ),
     }
 }

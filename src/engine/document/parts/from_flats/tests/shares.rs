@@ -122,7 +122,7 @@ fn a_seam_between_two_flats_is_closed_and_a_gap_within_one_stays() {
         let y = 80 - x / 5;
         assert!((y - 3..y + 3).all(|y| whole(x, y) >= 250), "{x}");
     }
-    assert!((168..172).any(|x| whole(x, 20) < 60), "a gap within one colour is drawn");
+    assert!((168..172).any(|x| whole(x, 20) < 60), "a gap within one color is drawn");
 }
 
 #[test]
