@@ -23,6 +23,7 @@ mod names;
 mod overwriting;
 mod performance;
 mod recipe;
+mod scripting;
 mod shape;
 mod view;
 #[cfg(feature = "window-tests")]
