@@ -8,6 +8,7 @@
 //! | `plan` | what other programs see of a document |
 //! | `layer_preview` | those pictures, rendered, encoded and checked (by `pixels`) |
 //! | `stack` | `stack.xml`, written and read |
+//! | `thumbnail` | the small picture that file managers show |
 //! | `assets` | maps, sources and tips under their names in the zip |
 //! | `manifest` | which picture belongs to which layer, so that another program's change is detected |
 //! | `open`, `repair`, `foreign` | reading: our own, damaged, other programs' |
@@ -30,15 +31,16 @@ pub(super) mod sample;
 mod stack;
 #[cfg(test)]
 mod tests;
+mod thumbnail;
 
 pub use archive::Archive;
 pub use layer_preview::Cancellable;
 pub use open::{ProjectContents, read, read_back};
+pub use thumbnail::{SmallPicture, stored_thumbnail};
 
 use super::recipe;
 use crate::document::EncodedPixels;
 use crate::document::{Document, LayerId, Progress, flatten};
-use crate::math::Size;
 use crate::pixels;
 use crate::raster::Asset;
 use crate::{Error, Result};
@@ -56,9 +58,6 @@ const DOCUMENT: &str = "rilievo/document.json";
 pub const MANIFEST: &str = "rilievo/manifest.json";
 const STACK: &str = "stack.xml";
 const MERGED: &str = "mergedimage.png";
-const THUMBNAIL: &str = "Thumbnails/thumbnail.png";
-/// Longest side of the thumbnail, px, as OpenRaster wants it.
-const THUMBNAIL_PX: u32 = 256;
 
 /// The bytes of a project; `None` if cancelled. `file` is for messages.
 ///
@@ -85,9 +84,14 @@ pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancellab
     let layers = pictures.iter().map(|(name, picture)| ZipEntry::bytes(name, picture.file.clone()));
     entries.splice(4..4, layers);
     let whole = merged.to_straight_rgba(document.size.rect());
-    let (small, size) = thumbnail(&whole, document.size);
-    for (name, rgba, size) in [(MERGED, &whole, document.size), (THUMBNAIL, &small, size)] {
-        entries.push(ZipEntry::bytes(name, pixels::encode_texels(file, rgba.as_chunks().0, size)?));
+    let mut picture = |name, rgba: &[u8], size| -> Result<()> {
+        let png = pixels::encode_texels(file, rgba.as_chunks().0, size)?;
+        entries.push(ZipEntry::bytes(name, png));
+        Ok(())
+    };
+    picture(MERGED, &whole, document.size)?;
+    if let Some(small) = SmallPicture::of(whole, document.size, thumbnail::STORED_PX) {
+        picture(thumbnail::ENTRY, &small.rgba, small.size)?;
     }
     packed(file, &entries).map(Some)
 }
@@ -152,21 +156,6 @@ pub fn packed(file: &Path, entries: &[ZipEntry]) -> Result<Vec<u8>> {
         packer.finish()
     };
     pack().map_err(|e| Error::unsupported(file, format!("the project cannot be packed ({e})")))
-}
-
-/// A small version of straight pixels; of a small picture, the picture itself.
-fn thumbnail(rgba: &[u8], size: Size) -> (Vec<u8>, Size) {
-    let longer = size.width.max(size.height);
-    let Some(picture) = image::RgbaImage::from_raw(size.width, size.height, rgba.to_vec()) else {
-        return (vec![0; 4], Size::new(1, 1));
-    };
-    if longer <= THUMBNAIL_PX {
-        return (picture.into_raw(), size);
-    }
-    let side =
-        |n: u32| ((u64::from(n) * u64::from(THUMBNAIL_PX) / u64::from(longer)) as u32).max(1);
-    let size = Size::new(side(size.width), side(size.height));
-    (image::imageops::thumbnail(&picture, size.width, size.height).into_raw(), size)
 }
 
 /// The pictures that show one layer alone, with their names.

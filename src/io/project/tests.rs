@@ -6,7 +6,7 @@ use super::sample::{assert_same, deep_tiles, everything, png, softly_painted};
 use super::*;
 use crate::Budget;
 use crate::document::{Content, Layer, MaskKind, SurfaceSource};
-use crate::math::{PlaneMap, srgb::Color};
+use crate::math::{PlaneMap, Size, srgb::Color};
 use crate::raster::Plane;
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -137,7 +137,7 @@ fn it_is_a_valid_openraster_file() {
     assert_eq!(&bytes[30..54], b"mimetypeimage/openraster", "first, and stored");
     let names: Vec<String> = entries(&bytes).into_iter().map(|(name, _)| name).collect();
     assert_eq!(names[..4], [MIMETYPE, DOCUMENT, MANIFEST, STACK]);
-    assert_eq!(names[names.len() - 2..], [MERGED, THUMBNAIL]);
+    assert_eq!(names[names.len() - 2..], [MERGED, thumbnail::ENTRY]);
     let xml = entries(&bytes).into_iter().find(|(name, _)| name == STACK).unwrap().1;
     let xml = String::from_utf8(xml).unwrap();
     for name in names.iter().filter(|name| name.starts_with("data/")) {

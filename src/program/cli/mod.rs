@@ -10,12 +10,14 @@ mod crash;
 mod force;
 mod info;
 pub mod limits;
+mod manual;
 mod open;
 mod painted;
 mod progress;
 mod render;
 mod replay;
 mod shape;
+mod thumbnail;
 mod told;
 mod values;
 mod view;
@@ -45,10 +47,12 @@ enum CliCommand {
     Brush(brush::BrushArgs),
     Convert(convert::ConvertArgs),
     Info(info::InfoArgs),
+    Manual(manual::ManualArgs),
     Open(open::OpenArgs),
     Render(render::RenderArgs),
     Replay(replay::ReplayArgs),
     Shape(shape::ShapeArgs),
+    Thumbnail(thumbnail::ThumbnailArgs),
     View(view::ViewArgs),
 }
 
@@ -96,10 +100,12 @@ fn dispatched(command: Option<CliCommand>, window: Option<OpenWindow>) -> Result
         Some(CliCommand::Brush(args)) => brush::run(&args),
         Some(CliCommand::Convert(args)) => convert::run(&args),
         Some(CliCommand::Info(args)) => info::run(&args),
+        Some(CliCommand::Manual(args)) => manual::run(&args),
         Some(CliCommand::Open(args)) => open::run(args, window),
         Some(CliCommand::Render(args)) => render::run(&args),
         Some(CliCommand::Replay(args)) => replay::run(&args),
         Some(CliCommand::Shape(args)) => shape::run(&args),
+        Some(CliCommand::Thumbnail(args)) => thumbnail::run(&args),
         Some(CliCommand::View(args)) => view::run(&args),
         None => print(&Arguments::command().render_help().to_string()),
     }
