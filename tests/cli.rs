@@ -174,7 +174,7 @@ fn a_painting_goes_onto_another_object_fitted_to_its_canvas() {
     assert_eq!((alpha(8, 20), alpha(15, 20), alpha(48, 20), alpha(55, 20)), (0, 255, 255, 0));
     refused(
         &desk.render("elsewhere/other.png", &["--normal", other.to_str().unwrap()]),
-        &["an open document is made from it"],
+        &["an open document was made from it"],
     );
 }
 
@@ -212,7 +212,7 @@ fn what_is_refused_is_named_and_nothing_is_written() {
         ),
         (PHOTO, "c.gif", vec!["c.gif", ".png, .exr, .jpg"]),
         (PHOTO, "no/c.png", vec!["no/c.png", "no folder"]),
-        (PHOTO, "photo.png", vec!["photo.png", "an open document is made from it"]),
+        (PHOTO, "photo.png", vec!["photo.png", "an open document was made from it"]),
         (PHOTO, "c.jpg", vec!["c.jpg", "--background"]),
     ];
     for (recipe, out, words) in cases {

@@ -105,7 +105,7 @@ fn the_input_is_never_written_over_and_says_why() {
     for to in ["a.ora", "./a.ora"] {
         assert!(
             said(folder.path(), &["convert", "a.ora", to])
-                .contains("an open document is made from it")
+                .contains("an open document was made from it")
         );
     }
     assert!(said(folder.path(), &["convert", "a.ora", "a.gif"]).contains(".png"));

@@ -69,7 +69,7 @@ fn no_command_writes_over_what_its_document_reads_not_even_with_force() {
                 refused(
                     folder.path(),
                     &[command, force].concat(),
-                    "an open document is made from it",
+                    "an open document was made from it",
                 );
             }
             let story = format!(
@@ -81,7 +81,7 @@ fn no_command_writes_over_what_its_document_reads_not_even_with_force() {
             refused(
                 folder.path(),
                 &[&["replay", "story"][..], force].concat(),
-                "an open document is made from it",
+                "an open document was made from it",
             );
             fs::remove_file(story_file).unwrap();
         }
@@ -177,17 +177,17 @@ fn a_brush_does_not_take_the_place_of_its_own_tip() {
     refused(
         folder.path(),
         &["brush", "leaf.json", "tip.json", "--force"],
-        "an open document is made from it",
+        "an open document was made from it",
     );
     refused(
         folder.path(),
         &["brush", "leaf.json", "tip.png", "--force"],
-        "an open document is made from it",
+        "an open document was made from it",
     );
     refused(
         folder.path(),
         &["brush", "leaf.json", "leaf.json", "--force"],
-        "an open document is made from it",
+        "an open document was made from it",
     );
     assert_eq!(bytes(folder.path()), before);
     done(folder.path(), &["brush", "leaf.json", "copy.json"]);
@@ -199,7 +199,7 @@ fn links_that_lead_nowhere_and_read_only_files_stay_what_they_are() {
     use std::os::unix::fs::{PermissionsExt, symlink};
     let folder = folder();
     symlink("nowhere.png", folder.path().join("link.png")).unwrap();
-    refused(folder.path(), &["convert", "r.json", "link.png", "--force"], "leads nowhere");
+    refused(folder.path(), &["convert", "r.json", "link.png", "--force"], "broken link");
     assert!(fs::symlink_metadata(folder.path().join("link.png")).unwrap().is_symlink());
     for to in ["kept.png", "kept.ora"] {
         let file = folder.path().join(to);

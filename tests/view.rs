@@ -147,7 +147,7 @@ fn what_cannot_be_shown_is_refused_in_a_sentence() {
     refused(&show(&["ball_n.png", "ball_n.png"], &[]), &["same kind"]);
     refused(
         &desk.view(&MAPS, "ball_n.png", &["--show", "normals"]),
-        &["ball_n.png", "an open document is made from it"],
+        &["ball_n.png", "an open document was made from it"],
     );
     assert_eq!(show(&MAPS, &["--show", "everything"]).status.code(), Some(2));
     assert_eq!(show(&MAPS, &["--blur", "-1"]).status.code(), Some(2));

@@ -35,7 +35,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
     if !matches!(bits, 8 | 16 | 32) {
         return Err(Error::decode(
             file,
-            format!("its pixels have {bits} bits; 8, 16 or 32 are known"),
+            format!("its pixels have {bits} bits; 8, 16 and 32 are supported"),
         ));
     }
     let mut sprite = Sprite {
@@ -53,7 +53,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
     let mut frame = LittleEndian { rest: bytes.get(HEADER..).unwrap_or_default() };
     sprite.frame(&mut frame).ok_or_else(damaged)??;
     if frames > 1 {
-        sprite.notes.push(format!("of its {frames} frames the first is shown"));
+        sprite.notes.push(format!("only the first of its {frames} frames is shown"));
     }
     let mut rows = sprite.layers.into_iter().peekable();
     let layers = nested(&mut rows, 0, budget.group_depth);
@@ -167,12 +167,12 @@ impl Sprite<'_> {
             false => empty(),
         };
         if kind > 1 {
-            self.notes.push(format!("“{name}” is a map of tiles, which is not read"));
+            self.notes.push(format!("“{name}” is a tilemap, which is not supported"));
         }
         let is_blended = !is_group || self.groups_are_blended;
         let has_opacity = if is_group { self.groups_are_blended } else { self.layers_have_opacity };
         let blend = blend_mode(mode).unwrap_or_else(|| {
-            self.notes.push(format!("the blend mode of “{name}” is not known; it blends normally"));
+            self.notes.push(format!("the blend mode of “{name}” is unknown; it blends normally"));
             BlendMode::Normal
         });
         let is_reference = flags & 0x40 != 0;
@@ -200,7 +200,7 @@ impl Sprite<'_> {
         if order != 0 {
             let name = &self.layers.get(index)?.layer.name;
             self.notes.push(format!(
-                "“{name}” is moved up or down in this frame alone; it is in its own place"
+                "“{name}” is moved up or down in this frame only; it is in its usual place"
             ));
         }
         if !matches!(kind, 0 | 2) {
@@ -428,7 +428,7 @@ mod tests {
         let layer = &contents.document.layers[0];
         let row = [1, 2, 3].map(|x| pixel(layer, x, 0));
         assert_eq!(row, [[9, 8, 7, 255], [0; 4], [5, 6, 7, 255]]);
-        assert_eq!(contents.notes, ["of its 5 frames the first is shown"]);
+        assert_eq!(contents.notes, ["only the first of its 5 frames is shown"]);
     }
 
     #[test]

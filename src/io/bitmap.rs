@@ -116,8 +116,8 @@ fn decode_as(
         room(file, size, decoder.total_bytes(), budget)?;
         let icc = decoder.icc_profile().ok().flatten();
         let is_lost = icc.is_none() && format == ImageFormat::Png && weight::has_png_profile(bytes);
-        let warning = is_lost
-            .then_some("its color profile is damaged or unpacks without end, and was left out");
+        let warning =
+            is_lost.then_some("its color profile is damaged or too large, and was left out");
         let exif = decoder.exif_metadata().ok().flatten();
         let turned = exif.as_deref().and_then(upright::of_exif).or_else(|| {
             let exif = upright::png_exif(bytes).filter(|_| format == ImageFormat::Png)?;

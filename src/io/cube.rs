@@ -59,7 +59,7 @@ pub fn parse(file: &Path, bytes: &[u8]) -> Result<ColorTable> {
         }
     }
     let Some((side, is_separate, entries)) = size else {
-        return Err(refused("it says no size (LUT_3D_SIZE or LUT_1D_SIZE)".into()));
+        return Err(refused("it has no size (LUT_3D_SIZE or LUT_1D_SIZE)".into()));
     };
     let found = values.len() / 3;
     if title.is_empty() {
@@ -96,7 +96,7 @@ mod tests {
     #[test]
     fn what_is_no_table_is_refused_with_the_reason() {
         for (text, why) in [
-            ("", "says no size"),
+            ("", "has no size"),
             ("LUT_3D_SIZE 99999999", "from 2 to"),
             ("LUT_3D_SIZE 2\n0 0", "line 2: is not three numbers"),
             ("LUT_3D_SIZE 2\n0 0 NaN", "line 2: is not three numbers"),

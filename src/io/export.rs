@@ -60,7 +60,7 @@ impl ExportFormat {
             let known: Vec<String> = depths.iter().map(u8::to_string).collect();
             Error::unsupported(
                 file,
-                format!("such a file has {} bits a channel, not {bits}", known.join(" or ")),
+                format!("this format has {} bits a channel, not {bits}", known.join(" or ")),
             )
         })
     }
@@ -73,7 +73,7 @@ impl ExportFormat {
             let known: Vec<_> = Self::ALL.iter().map(|(_, known)| format!(".{known}")).collect();
             Error::unsupported(
                 file,
-                format!("a picture is written to a file that ends in {}", known.join(", ")),
+                format!("the name of a picture must end in {}", known.join(", ")),
             )
         })
     }
@@ -189,7 +189,7 @@ pub fn encode(
 ) -> Result<Vec<u8>> {
     let rect = options.crop.map_or(canvas.rect(), |crop| crop.intersect(canvas.rect()));
     if rect.is_empty() {
-        return Err(Error::unsupported(file, "the part to be written holds no pixels"));
+        return Err(Error::unsupported(file, "the part to write has no pixels"));
     }
     let canvas = Size::new(rect.width() as u32, rect.height() as u32);
     let straight = |rect: Rect| {

@@ -242,7 +242,7 @@ fn guarded<T>(file: &Path, what: &str, step: impl FnOnce() -> exr::error::Result
             Err(Error::unsupported(file, format!("EXR: {reason}")))
         }
         Ok(Err(exr::error::Error::Invalid(reason))) if reason.contains("compression attribute") => {
-            Err(Error::unsupported(file, "the EXR is compressed in a way that is not known here"))
+            Err(Error::unsupported(file, "the compression of the EXR is not supported"))
         }
         Ok(Err(error)) => {
             Err(Error::decode(file, format!("the EXR {what} is damaged or cut short ({error})")))

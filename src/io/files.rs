@@ -45,7 +45,7 @@ pub fn refusal(name: &str) -> Option<&'static str> {
         return Some("the name is absolute; it must be relative to the document");
     }
     if name.split('/').any(|part| part == "..") {
-        return Some("the name climbs out with “..”; it must stay below the document's folder");
+        return Some("the name contains “..”; it must stay in the document's folder");
     }
     None
 }
@@ -80,7 +80,7 @@ impl Files for RecipeFolder {
             if found.is_symlink() {
                 return Err(Error::unsupported(
                     &path,
-                    "it is a link, which could lead out of the document's folder",
+                    "it is a link, which could point outside the document's folder",
                 ));
             }
         }

@@ -116,11 +116,11 @@ fn single(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContents>
         return aseprite::read(file, bytes, budget);
     }
     if clip::is_clip(bytes) {
-        let none = "a Clip Studio drawing without a picture of itself; save it as PSD there";
+        let none = "a Clip Studio drawing without a preview; save it as PSD in Clip Studio";
         let preview = clip::preview(bytes).ok_or_else(|| Error::unsupported(file, none))?;
         let mut shown = single(file, &preview, budget)?;
-        let note = "it is a Clip Studio drawing, of which the picture within is shown; for its \
-                    layers, save it as PSD there";
+        let note = "it is a Clip Studio drawing, shown by its preview; for its layers, save it as \
+                    PSD in Clip Studio";
         shown.notes.push(note.to_owned());
         return Ok(ProjectContents { is_whole: false, ..shown });
     }
@@ -143,11 +143,11 @@ fn single(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContents>
     let notes = match (several, has_whole) {
         (false, _) => None,
         (true, true) => {
-            Some("its other layers are hidden, since the file holds the whole picture too")
+            Some("its other layers are hidden, since the file also holds the whole picture")
         }
-        (true, false) => Some(
-            "an EXR does not say in which order its layers are; they are in the order of the file",
-        ),
+        (true, false) => {
+            Some("the layers are in the order of the file, since an EXR has no order of layers")
+        }
     };
     let notes = notes.into_iter().chain(warning).map(str::to_owned).collect();
     let document = Document { layers, ..Document::empty(size) };

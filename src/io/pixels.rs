@@ -130,7 +130,7 @@ fn checked<'v, S: Iterator<Item = Cow<'v, [u8]>>>(
     if !comes_back(&bytes, strips()) {
         return Err(Error::unsupported(
             file,
-            "a picture did not come back as it was written; nothing was saved",
+            "a picture could not be read back correctly; nothing was saved",
         ));
     }
     Ok(bytes.into())

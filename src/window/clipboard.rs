@@ -41,7 +41,7 @@ pub fn pasted() -> Result<PastedContent> {
         let size = Size::new(image.width as u32, image.height as u32);
         let picture = Picture::srgb8(size, image.bytes.as_chunks::<4>().0.to_vec());
         let picture =
-            picture.ok_or_else(|| Error::unsupported("clipboard", "its picture is broken"))?;
+            picture.ok_or_else(|| Error::unsupported("clipboard", "its picture is damaged"))?;
         return Ok(PastedContent::Picture(PastedPicture { name: "Pasted.png".into(), picture }));
     }
     let files = clipboard.get().file_list().ok().filter(|files| !files.is_empty());

@@ -51,8 +51,8 @@ pub fn hint_of(key: &str) -> &'static str {
     match key {
         "alpha" => "A mirror above 0, flat at 0, glass below (α of the paper)",
         "beta" => {
-            "How soon it is as strong as it gets: 0 bends most at the edges of the form, more \
-             bends its middle too (β of the paper)"
+            "How soon the bend reaches its full strength: 0 bends most at the edges of the form, \
+             more bends its middle too (β of the paper)"
         }
         "detail" => "How much small bumps bend the image beyond the large form",
         "gamma" => "How strongly the image follows the depth (γ of the paper)",

@@ -82,8 +82,5 @@ impl MainWindow {
 }
 
 fn broken(title: &str) -> Error {
-    Error::decode(
-        title,
-        "its recovery log is damaged in an unexpected way; it was left where it is",
-    )
+    Error::decode(title, "its recovery log is damaged in an unexpected way; it was not deleted")
 }

@@ -115,7 +115,7 @@ fn the_keys_of_krita_do_what_they_do_there_and_say_so_where_they_cannot() {
     (0..3).for_each(|_| key(&mut harness, shift, Key::Delete));
     assert_eq!(layers(&harness).len(), 0);
     key(&mut harness, ctrl, Key::J);
-    harness.get_by_label("Layer via copy: no layer is chosen.");
+    harness.get_by_label("Layer via copy: no layer is selected.");
 }
 
 #[test]

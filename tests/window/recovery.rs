@@ -33,7 +33,7 @@ fn after_a_crash_the_window_offers_what_was_unsaved() {
     let mut harness = window_recovering(folder.path());
     until(&mut harness, |harness| harness.query_by_label("Recover unsaved drawings?").is_some());
     harness.get_by_label("Recover Unnamed").click();
-    until(&mut harness, |harness| harness.query_by_label_contains("no whole version").is_some());
+    until(&mut harness, |harness| harness.query_by_label_contains("no complete version").is_some());
     harness.get_by_label("Recover all").click();
     until(&mut harness, |harness| session(harness).active().is_some());
     assert!(harness.query_by_label("Recover unsaved drawings?").is_none());

@@ -82,7 +82,7 @@ impl Document {
     fn homes_fit(&self) -> Result<(), String> {
         let known = |home: &HomeFrame| match home.part() {
             Some(id) if self.parts.part(id).is_none() => {
-                Err(format!("is on “{id}”, and there is no such part"))
+                Err(format!("is attached to “{id}”, but there is no such part"))
             }
             _ => Ok(()),
         };
@@ -186,7 +186,7 @@ impl Total {
         if self.values > Document::MOST_VALUES {
             let what = "strokes, anchors, lights and parts";
             return Err(format!(
-                "The drawing would hold more {what} than a file can hold: bake some"
+                "The drawing would have more {what} than a file can hold: turn some into pixels"
             ));
         }
         Ok(())
@@ -201,9 +201,7 @@ fn layer_fits(layer: &Layer, was: Option<&Layer>, canvas: Size) -> Fit {
     layer.mask.as_ref().map_or(Ok(()), |mask| mask_fits(mask, canvas))?;
     layer.transform.as_ref().map_or(Ok(()), |transform| transform.fits())?;
     if layer.is_warped() && !layer.content.can_be_warped() {
-        return Err(
-            "shows nothing of its own, so that no mesh and no liquify can displace it".into()
-        );
+        return Err("shows nothing of its own, so a mesh or liquify cannot displace it".into());
     }
     match &layer.content {
         // The numbers of an adjustment are held where it is made.

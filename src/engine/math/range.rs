@@ -37,6 +37,6 @@ pub fn at_most(what: &str, count: usize, most: usize) -> Result<(), String> {
     if count <= most {
         Ok(())
     } else {
-        Err(format!("{what} would be {count}; there may be {most}"))
+        Err(format!("{what} would be {count}; at most {most} are allowed"))
     }
 }

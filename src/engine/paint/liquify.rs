@@ -16,13 +16,15 @@ crate::named! {
         /// Moves them with the pen.
         #[default]
         Push = "push" => ("push", "Drags what is under the pen (Ctrl restores)"),
-        Grow = "grow" => ("grow", "Makes it larger about the middle of the dab (Ctrl shrinks)"),
-        Shrink = "shrink" => ("shrink", "Makes it smaller (Ctrl grows)"),
-        TwirlLeft = "twirl left" => ("twirl left", "Turns it counter-clockwise (Ctrl: clockwise)"),
-        TwirlRight = "twirl right" => ("twirl right", "Turns it clockwise (Ctrl: counter-clockwise)"),
+        Grow = "grow" => ("grow", "Enlarges what is under the dab (Ctrl shrinks)"),
+        Shrink = "shrink" => ("shrink", "Shrinks what is under the dab (Ctrl enlarges)"),
+        TwirlLeft = "twirl left" => ("twirl left", "Turns what is under the dab counter-clockwise \
+                                                    (Ctrl: clockwise)"),
+        TwirlRight = "twirl right" => ("twirl right", "Turns what is under the dab clockwise \
+                                                       (Ctrl: counter-clockwise)"),
         /// Evens out their displacement.
-        Smooth = "smooth" => ("smooth", "Evens out how it is displaced (Shift with any tool)"),
-        Restore = "restore" => ("restore", "Takes it back to where it was"),
+        Smooth = "smooth" => ("smooth", "Evens out the displacement (Shift with any tool)"),
+        Restore = "restore" => ("restore", "Removes the displacement"),
     }
 }
 

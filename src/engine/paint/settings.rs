@@ -100,21 +100,21 @@ settings! {
     "" "overlap" overlap in 1.0..=100.0, "Overlap",
         "How many overlapping dabs add up to the flow";
     "" "size_jitter" size_jitter in 0.0..=4.0, "Size ±",
-        "How far a dab's size may be from the brush's, in doublings";
+        "How much the size of dabs varies, in doublings";
     "rate" "per_diameter" rate.per_diameter in 0.0..=200.0, "Dabs a diameter",
-        "Dabs in addition to those of the spacing, per diameter of the brush";
+        "Additional dabs per diameter of the brush";
     "rate" "per_sec" rate.per_sec in 0.0..=200.0, "Dabs a second",
         "Dabs per second, even while the pen rests";
     "offset" "amount" offset.amount in -10.0..=10.0, "Offset",
         "How far from the stroke dabs are placed, in diameters";
     "offset" "turn" offset.turn_degrees in -360.0..=360.0, "Offset turn",
-        "In which direction dabs are placed from the stroke, degrees counter-clockwise";
+        "Direction of dabs from the stroke, degrees counter-clockwise";
     "hand" "tremor" stylus.tremor in 0.0..=20.0, "Tremor",
         "How far the hand shakes, in diameters";
     "hand" "lag" stylus.lag_dabs in 0.0..=100.0, "Lag",
         "How many dabs the stroke lags behind the pen";
     "hand" "lead" stylus.lead_secs in -1.0..=1.0, "Lead",
-        "Dabs are placed where the pen would be so many seconds later";
+        "Places dabs where the pen would be this many seconds later";
     "hand" "direction" stylus.direction_px in 0.0..=1000.0, "Steadiness",
         "The distance in pixels over which the stroke's direction is averaged";
     "hand" "pace" stylus.pace_secs in 0.0..=10.0, "Pace over",
@@ -122,19 +122,19 @@ settings! {
     "hand" "slow_pace" stylus.slow_pace_secs in 0.0..=10.0, "Slow pace over",
         "Seconds over which the slow pace is averaged";
     "hand" "pace_pixel" stylus.pace_px in 0.001..=1000.0, "Pace pixel",
-        "How many pixels count as one where the hand's pace is read";
+        "How many pixels count as one when the pace of the hand is measured";
     "hand" "custom" stylus.custom_dabs in 0.0..=1000.0, "Custom over",
         "Dabs over which the custom input is averaged";
     "cycle" "length" cycle.length in 0.01..=10_000.0, "Cycle",
-        "How far the cycle takes to rise, in diameters";
+        "Path length over which the cycle rises, in diameters";
     "cycle" "hold" cycle.hold in 0.0..=10.0, "Cycle hold",
-        "How long the cycle stays at 1, relative to its length; 10 is for ever";
+        "How long the cycle stays at 1, relative to its length; 10 is forever";
     "cycle" "pressure" cycle.pressure in 0.0..=1.0, "Cycle pressure",
-        "The pressure that the cycle begins at";
+        "The pressure at which the cycle begins";
     "pickup" "amount" pickup.amount in 0.0..=1.0, "Picks up",
         "How much of its paint the brush takes from a paint layer instead of its own color";
     "pickup" "length" pickup.length in 0.0..=1.0, "Carries",
-        "How much of the picked-up paint is left one dab later";
+        "How much of the picked-up paint is left after one dab";
     "pickup" "radius" pickup.radius in 0.05..=20.0, "Reaches",
         "The radius that paint is picked up from, relative to the dab's";
 }

@@ -14,19 +14,19 @@ settings! {
         /// Cool light from above.
         fill: "Fill", "Cool light from above", 0.0..=10.0, 1.0;
         /// Warm light from below.
-        bounce: "Bounce", "Warm light from below, thrown back by the ground", 0.0..=10.0, 1.0;
+        bounce: "Bounce", "Warm light from below, bounced by the ground", 0.0..=10.0, 1.0;
         /// Light from everywhere.
         around: "Around", "Light from everywhere", 0.0..=10.0, 1.0;
         /// Saturation where the form turns from the light.
         edge: "Turning edge", "Richer color where the form turns from light to shade", 0.0..=3.0, 1.0;
         /// Light from behind, along the figure's edge.
-        rim: "Rim", "Light from behind that parts the figure from its ground", 0.0..=20.0, 1.0;
+        rim: "Rim", "Light from behind that separates the figure from the background", 0.0..=20.0, 1.0;
         /// Shade where the surroundings stand higher.
-        contact: "Contact shade", "Shade where parts sit on each other", 0.0..=5.0, 1.0;
+        contact: "Contact shade", "Shade where parts touch", 0.0..=5.0, 1.0;
         /// The size of the largest surroundings that shade, px.
         contact_size: "Contact size", "How far contact shade reaches, px", 4.0..=1000.0, 45.0;
         /// What contact shade leaves of the light at least.
-        contact_floor: "Contact floor", "How much light contact shade leaves at least", 0.0..=1.0, 0.35;
+        contact_floor: "Contact floor", "The least light that contact shade leaves", 0.0..=1.0, 0.35;
         /// Factor of all light.
         exposure: "Exposure", "Factor of all light", 0.0..=8.0, 1.0;
         and

@@ -14,9 +14,9 @@ settings! {
         /// The share of a lamp's light that its shadow takes away.
         strength: "Shadow", "How dark shadows are", 0.0..=1.0, 0.88;
         /// The radius of a lamp as a share of its distance.
-        softness: "Shadow softness", "How large the lamp is: its shadows grow softer with distance", 0.0..=1.0, 0.13;
+        softness: "Shadow softness", "How large the lamp is: shadows become softer with distance", 0.0..=1.0, 0.13;
         /// How far shadows are thrown in the picture, px; they fade from half of that on.
-        reach: "Shadow length", "How far shadows reach, px; they fade from half of that on", 1.0..=2000.0, 220.0;
+        reach: "Shadow length", "How far shadows reach, px; they fade in the second half", 1.0..=2000.0, 220.0;
         /// Opacity of the shadow on the page beneath the surface.
         ground: "Ground shadow", "Shadow on the page around the figure", 0.0..=1.0, 0.0;
         and

@@ -87,7 +87,7 @@ pub enum SurfaceError {
     #[error("there is no surface at all: every pixel is background")]
     Empty,
     /// A map in perspective was requested.
-    #[error("a surface cannot be seen in a perspective")]
+    #[error("a surface cannot be put in perspective")]
     Perspective,
 }
 

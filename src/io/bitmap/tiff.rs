@@ -69,7 +69,7 @@ enum AlphaKind {
 pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
     let entry = photometric(bytes);
     let entry = entry.ok_or_else(|| {
-        Error::decode(file, "the TIFF does not tell its colors; it is damaged or cut short")
+        Error::decode(file, "the TIFF does not say which colors it has; it is damaged or cut short")
     })?;
     let meaning = ColorModel::of(entry.value);
     let others = "its colors are neither gray, indexed, RGB, YCbCr nor CMYK";
@@ -244,7 +244,7 @@ impl TiffLayout {
             F16(v) => self.picture(v.into_iter().map(f32::from).collect()),
             F32(v) => self.picture(v),
             F64(v) => self.picture(v.into_iter().map(|v| v as f32).collect()),
-            _ => Err("the samples of this TIFF have a sign; those of a picture have none"),
+            _ => Err("the samples of this TIFF are signed; those of a picture are not"),
         }
     }
 
@@ -283,7 +283,7 @@ impl TiffLayout {
                 T::image(self.size, channels, self.straight(pixels))
             }
         }
-        .ok_or("this TIFF stores its colors in a way that is not read")
+        .ok_or("this TIFF stores its colors in a way that is not supported")
     }
 
     fn channels(&self) -> usize {

@@ -109,7 +109,7 @@ pub fn reason(file: &Path, bytes: &[u8]) -> Option<String> {
             false if has(b"<html") || has(b"<!DOCTYPE html") || has(b"<!doctype html") => {
                 said(("a web page, not a picture", "save the picture that it shows"))
             }
-            false => said(("a text, not a picture", "open pictures, PSD or OpenRaster files")),
+            false => said(("a text file, not a picture", "open pictures, PSD or OpenRaster files")),
         };
     }
     None

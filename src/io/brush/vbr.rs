@@ -29,7 +29,7 @@ impl<'a> VbrLines<'a> {
     fn number(&mut self, what: &str) -> Result<f32> {
         let text = self.next(what)?;
         let number = text.parse().ok().filter(|v: &f32| v.is_finite());
-        number.ok_or_else(|| Error::decode(self.file, format!("its {what} is no number")))
+        number.ok_or_else(|| Error::decode(self.file, format!("its {what} is not a number")))
     }
 }
 
@@ -117,6 +117,6 @@ mod tests {
         let said = |text: &str| read_text(text).map(|_| ()).unwrap_err().to_string();
         assert!(said("GIMP-VBR\n2.0\nx\n").contains("version 2.0"));
         assert!(said("GIMP-VBR\n1.0\nx\n25\n").contains("radius is missing"));
-        assert!(said("GIMP-VBR\n1.0\nx\nnan\n4\n1\n1\n0\n").contains("spacing is no number"));
+        assert!(said("GIMP-VBR\n1.0\nx\nnan\n4\n1\n1\n0\n").contains("spacing is not a number"));
     }
 }

@@ -75,7 +75,7 @@ pub fn encode(
 ) -> Result<Vec<u8>> {
     let rect = options.crop.map_or(canvas.rect(), |crop| crop.intersect(canvas.rect()));
     if rect.is_empty() || pixels.len() != canvas.area() {
-        return Err(Error::unsupported(file, "the part to be written holds no pixels"));
+        return Err(Error::unsupported(file, "the part to write has no pixels"));
     }
     let size = Size::new(rect.width() as u32, rect.height() as u32);
     let rows =

@@ -194,8 +194,12 @@ impl<'a> JsonNode<'a> {
     /// A colour such as `#c08060`.
     pub fn color(&self) -> Result<Color> {
         let text = self.text()?;
-        Color::parse(text)
-            .ok_or_else(|| self.refused(format!("is “{text}”; a color reads #rrggbb or #rrggbbaa")))
+        Color::parse(text).ok_or_else(|| {
+            self.refused(format!(
+                "is “{text}”; a color is written #rrggbb or \
+                                                 #rrggbbaa"
+            ))
+        })
     }
 
     /// One of the names of a table.
@@ -285,7 +289,7 @@ impl<'a> Fields<'a> {
             self.known.iter().filter(|known| differences(known, name) <= 1 + known.len() / 4);
         let reason = match near.min_by_key(|known| differences(known, name)) {
             Some(known) => format!("is unknown; did you mean “{known}”?"),
-            None => format!("is unknown; known here are {}", self.known.join(", ")),
+            None => format!("is unknown; the known ones are {}", self.known.join(", ")),
         };
         Err(self.below(name, value).refused(reason))
     }

@@ -28,10 +28,7 @@ fn parsed<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<(&'a str,
         return Err(Error::too_large(file, reason));
     }
     if is_utf16(bytes) {
-        return Err(Error::decode(
-            file,
-            "it is a text in UTF-16; JSON is written in UTF-8: save it as that",
-        ));
+        return Err(Error::decode(file, "it is UTF-16 text; save it as UTF-8"));
     }
     let text = std::str::from_utf8(bytes).map_err(|e| {
         Error::decode(file, format!("it is not UTF-8 text (at byte {})", e.valid_up_to()))

@@ -63,7 +63,7 @@ pub fn read(
         )
     })?;
     for s in &sentinels {
-        findings.note(format!("{s} is no depth but background"));
+        findings.note(format!("{s} counts as background, not as depth"));
     }
     let area = stored.size.area();
     let infinite = (0..area).into_par_iter().any(|i| channel.at(i) >= FAR_AWAY);

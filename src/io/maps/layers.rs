@@ -207,7 +207,7 @@ fn missing(file: &Path, exr: &ExrFile, told: &str) -> Error {
     Error::invalid(
         file,
         "channel",
-        format!("this EXR has no layer “{told}” that fits; it has {}", listing(exr)),
+        format!("this EXR has no suitable layer “{told}”; it has {}", listing(exr)),
     )
 }
 

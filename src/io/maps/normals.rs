@@ -80,9 +80,7 @@ fn smooth_if_asked<'a>(
     let (Some(true), Some(step)) = (overrides.smooth_steps, stored.step) else {
         return (stored, None);
     };
-    findings.note(
-        "the steps of the normals' numbers were smoothed, each within the half step it stands for",
-    );
+    findings.note("the steps of the normals were smoothed, within half a step");
     let smooth = |c: &Channel| Channel::Float(steps::smooth(&c.map(|v| v), step, inside));
     let channels = stored.channels.iter().map(smooth).collect();
     let copy = StoredMap {
@@ -216,7 +214,7 @@ fn space(
     if let Some(rows) = overrides.world_to_camera {
         findings.given("normal.space", "world");
         return world::orthonormal(world::from_rows(rows)).or_else(|| {
-            findings.note("normal.world_to_camera is no rotation; it was ignored");
+            findings.note("normal.world_to_camera is not a rotation; it was ignored");
             None
         });
     }
@@ -239,7 +237,7 @@ fn space(
         && (wanted || named || share + 0.01 < away.min(toward))
     {
         findings.found("normal.space", "world", if share < 0.02 { 0.98 } else { 0.6 });
-        findings.note("the normals were turned by the file's worldToCamera");
+        findings.note("the normals were rotated by the file's worldToCamera");
         return Some(matrix);
     }
     let planar =
@@ -263,7 +261,8 @@ fn space(
         let matrix = upright(found.matrix, by_rim.as_ref());
         findings.found("normal.space", "world", (found.fit * 2.0 - 1.0).max(0.1));
         findings.note(format!(
-            "the normals are the world's; the rotation to the camera ({:.0}°) was found from the depth map",
+            "the normals are in world space; the rotation to the camera ({:.0}°) was found from \
+             the depth map",
             angle(matrix)
         ));
         return Some(matrix);
@@ -271,8 +270,8 @@ fn space(
     if let Some(found) = by_rim.filter(|r| r.fit > 0.7 && sound(r)) {
         findings.found("normal.space", "world", 0.5 * found.fit);
         findings.note(
-            "the normals are in world space; the rotation was found from the silhouette alone. \
-             A depth map or the camera's matrix would give a better one",
+            "the normals are in world space; the rotation was estimated from the silhouette. A \
+             depth map or the camera's matrix would give a better one",
         );
         return Some(found.matrix);
     }

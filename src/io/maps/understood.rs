@@ -226,7 +226,10 @@ impl UnderstoodMaps {
         let (normals, depth) = match (normals, normalised) {
             (Some(normals), Some(n)) => (normals, n.depth),
             (Some(normals), None) => {
-                findings.note("depth was made from the normals; a true depth map is better at occluding contours");
+                findings.note(
+                    "depth was derived from the normals; a depth map is better at \
+                               occluding contours",
+                );
                 let go_on = || !progress.is_cancelled();
                 let depth =
                     integrate::depth_from_normals_while(&normals, &inside, &go_on).map(|i| i.depth);
@@ -237,8 +240,10 @@ impl UnderstoodMaps {
                     .depth
                     .range_px
                     .unwrap_or_else(|| depth_range_px(&n, &inside, fov_degrees));
-                findings
-                    .note(format!("normals were made from depth, taken to be {range_px:.0} pixels deep (“range_px”)"));
+                findings.note(format!(
+                    "normals were derived from the depth, which is assumed to be \
+                                   {range_px:.0} pixels deep (“range_px”)"
+                ));
                 (differentiate::normals_from_depth(&n.depth, range_px), n.depth)
             }
             (None, None) => (Plane::filled(size, Vec3::ZERO), nothing()),

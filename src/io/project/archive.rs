@@ -197,7 +197,7 @@ fn list(
         if !folded.insert(name.to_lowercase()) {
             return Err(Error::decode(
                 file,
-                format!("two entries are called “{name}” but for capitals"),
+                format!("two entries are called “{name}”, apart from capitals"),
             ));
         }
         listed.insert(name, index);
@@ -304,9 +304,9 @@ mod tests {
     #[test]
     fn names_that_lead_out_and_twins_are_refused() {
         for (names, part) in [
-            (["../a", "b"], "climbs out"),
+            (["../a", "b"], "contains “..”"),
             (["/a", "b"], "absolute"),
-            (["a", "A"], "but for capitals"),
+            (["a", "A"], "apart from capitals"),
         ] {
             let mut packer = ZipPacker::default();
             names.iter().for_each(|name| packer.store(name, b"x").unwrap());

@@ -71,10 +71,10 @@ impl KritaReader<'_, '_> {
                     "clonelayer" => "a clone layer",
                     "filelayer" => "a file layer",
                     "shapelayer" => "a vector layer",
-                    _ => "of a kind that is not known",
+                    _ => "of an unknown kind",
                 };
                 let advice = "convert it to a paint layer in Krita";
-                self.reading.lost(format!("“{name}” is {what}, which is not read; {advice}"));
+                self.reading.lost(format!("“{name}” is {what}, which is not supported; {advice}"));
                 return Ok(None);
             }
         };
@@ -145,7 +145,8 @@ impl KritaReader<'_, '_> {
         let Some(format) = PixelFormat::of(space, node.text("profile")) else {
             let name = node.text("name");
             self.reading.lost(format!(
-                "“{name}” is lost: its colors are {space}; RGB and gray of 8 to 32 bits are read"
+                "“{name}” is lost: its colors are {space}; RGB and gray of 8 to 32 bits are \
+                 supported"
             ));
             return Ok(layer);
         };
@@ -174,7 +175,7 @@ impl KritaReader<'_, '_> {
                 if !matches!(kind, "selectionmask" | "decoratorlayer") {
                     let (mask, layer) = (mask.text("name"), node.text("name"));
                     self.reading
-                        .lost(format!("the mask “{mask}” of “{layer}” is not read ({kind})"));
+                        .lost(format!("the mask “{mask}” of “{layer}” is not supported ({kind})"));
                 }
                 continue;
             }

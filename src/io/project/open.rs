@@ -22,8 +22,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The picture that a drawing of Procreate holds of itself.
 const PROCREATE_PREVIEW: &str = "QuickLook/Thumbnail.png";
-const PROCREATE_NOTE: &str = "it is a Procreate drawing, of which the small picture within is shown; \
-     for its layers, share it as PSD in Procreate";
+const PROCREATE_NOTE: &str = "it is a Procreate drawing, shown by its small preview; for its \
+                              layers, share it as PSD in Procreate";
 
 /// The result of reading a project.
 pub struct ProjectContents {
@@ -63,7 +63,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
 /// with a sentence that says what would not come back.
 pub fn read_back(file: &Path, bytes: &[u8], document: &Document, budget: &Budget) -> Result<()> {
     let lost = |what: String| {
-        Err(Error::unsupported(file, format!("the drawing would not come back as it is: {what}")))
+        Err(Error::unsupported(file, format!("the drawing would not open as it is: {what}")))
     };
     let archive = Archive::open(file, bytes, budget)?;
     let paint = encode_paint(file, document)?;
@@ -214,10 +214,9 @@ impl ProjectReader<'_> {
             None if self.archive.has(PROCREATE_PREVIEW) => {
                 return foreign::shown(self, PROCREATE_PREVIEW, PROCREATE_NOTE);
             }
-            None => Err(Error::decode(
-                self.file,
-                "it is no OpenRaster file: there is no stack.xml in it",
-            )),
+            None => {
+                Err(Error::decode(self.file, "it is not an OpenRaster file: it has no stack.xml"))
+            }
         };
         match layers {
             Ok(layers) => foreign::document(self, layers),

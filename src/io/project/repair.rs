@@ -38,8 +38,7 @@ pub fn check_pictures(
             // Missing pixels of a paint layer are noticed when the document is read.
             Err(_) if is_paint => {}
             Err(_) => reading.note(format!(
-                "the picture of “{name}” for other programs is lost; saving makes it \
-                                            again"
+                "the picture of “{name}” for other programs is lost; saving restores it"
             )),
         }
     }

@@ -133,7 +133,7 @@ fn blending(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor) {
         }
         b"clbl" if data.u8() == Some(0) => {
             record.leave_out(
-                "elsewhere the layers clipped to it are blended with what is beneath it",
+                "in other programs the layers clipped to it are blended with what is beneath it",
             );
         }
         b"brst" if !data.rest().is_empty() => {
@@ -141,7 +141,8 @@ fn blending(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor) {
         }
         b"tsly" if data.u8() == Some(0) => {
             record.leave_out(
-                "elsewhere its effects and the layers clipped to it ignore its transparency",
+                "in other programs its effects and the layers clipped to it ignore its \
+                 transparency",
             );
         }
         _ => {}

@@ -76,7 +76,7 @@ pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancellab
     let selections = alpha_channels::of_document(document);
     if selections.len() < document.selections.len() {
         notes.push(
-            "selections beyond the first 52, and empty ones, are kept for this program alone"
+            "selections beyond the first 52, and empty ones, are stored for this program only"
                 .into(),
         );
     }
@@ -150,7 +150,7 @@ impl RecordBuilder {
                 *isolated || (mask.is_some() && can_be_isolated(self.size, &self.records[first..]));
             if mask.is_some() && !is_isolated && item.visible && !self.is_hidden {
                 self.notes
-                    .push(format!("“{}” passes through, and Krita leaves its mask out", item.name));
+                    .push(format!("“{}” passes through, and Krita ignores its mask", item.name));
             }
             let blend = if is_isolated { key(item.blend) } else { PASS_THROUGH };
             self.records.push(LayerRecord {

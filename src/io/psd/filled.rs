@@ -56,7 +56,7 @@ fn drawn(
                     pixels(drawn, size.rect())
                 }
                 None => {
-                    record.leave_out("its pattern is not in the file, or cannot be read");
+                    record.leave_out("its pattern is not in the file, or is damaged");
                     pixels(Vec::new(), Rect::EMPTY)
                 }
             }

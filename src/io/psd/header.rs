@@ -65,7 +65,7 @@ pub fn header(file: &Path, rest: &mut ByteCursor, budget: &Budget) -> Result<Psd
         return Err(Error::decode(file, "it does not begin like a Photoshop file"));
     }
     let size = budget.size(file, width.into(), height.into())?;
-    let unknown = || Error::unsupported(file, format!("its colors are of the unknown kind {mode}"));
+    let unknown = || Error::unsupported(file, format!("its color mode {mode} is unknown"));
     let mode = Mode::of(mode).ok_or_else(unknown)?;
     if ![8, 16, 32].contains(&bits) && (bits, mode) != (1, Mode::Bitmap) {
         return Err(Error::unsupported(

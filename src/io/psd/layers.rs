@@ -115,8 +115,7 @@ impl<'a> RecordReader<'a> {
         // Blending ranges from black to white of this layer and those beneath, for all channels and
         // each: everything passes.
         if ranges.rest().chunks(4).any(|range| range != [0, 0, 255, 255]) {
-            record
-                .leave_out("it is blended only where its “blend if” lets it be, which is left out");
+            record.leave_out("its “blend if” is left out");
         }
         while let Some((key, data)) = block(&mut extra, large) {
             blocks::take(&mut record, key, data, self.colours);

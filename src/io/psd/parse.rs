@@ -70,9 +70,8 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
     let has_room = budget.room(file, "its layers, its picture and its selections", with_channels);
     let has_room = if header.is_deep { has_room.map(|()| true)? } else { has_room.is_ok() };
     if !has_room {
-        damage.push(
-            "the selections that it keeps are left out: there is too little memory for them".into(),
-        );
+        damage
+            .push("its named selections are left out: there is too little memory for them".into());
     }
     let merged = match (is_there, header.is_deep) {
         (false, _) => None,

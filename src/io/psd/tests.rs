@@ -182,7 +182,7 @@ fn layers_that_blend_with_what_lies_beneath_the_surface_pass_through_its_edge_an
         "surface": { "normal": { "file": "maps/n.png" }, "mask": { "file": "edge.png" } } });
     let document = read_recipe(&recipe, &files);
     let file = write(Path::new("a.psd"), &document, &Progress::default()).unwrap().unwrap();
-    let said = "“On the surface” passes through, and Krita leaves its mask out";
+    let said = "“On the surface” passes through, and Krita ignores its mask";
     assert!(file.notes.iter().any(|note| note == said), "{:?}", file.notes);
     let seen = read_back(&without_ours(&file.bytes)).document;
     assert!(worst(&document, &seen) <= 2, "{} of 255", worst(&document, &seen));

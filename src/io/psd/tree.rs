@@ -90,8 +90,10 @@ pub(super) fn built(
     }
     let (guides, lost) = parsed.guides.clone();
     if lost > 0 {
-        notes
-            .push(format!("{lost} of its guides are left out: they are too many, or too far away"));
+        notes.push(format!(
+            "{lost} of its guides are left out: there are too many, or they are too \
+                           far away"
+        ));
     }
     let document = Document { layers, selections, guides: guides.into(), ..Document::empty(size) };
     (document, is_less)
@@ -113,7 +115,7 @@ fn colour_notes(parsed: &ParsedPsd) -> Option<String> {
         Mode::Cmyk => "its CMYK colors became sRGB; layers blend in those",
         Mode::Lab => "its Lab colors became sRGB; layers blend in those",
         Mode::Multichannel => {
-            "its inks were taken for cyan, magenta, yellow and black; others are left out"
+            "its inks were read as cyan, magenta, yellow and black; others are left out"
         }
         Mode::Duotone => "its inks are left out: it became gray",
         _ if header.is_deep && header.bits == 32 => {
@@ -274,7 +276,7 @@ impl TreeBuilder<'_> {
             self.is_less = true;
         }
         if known == Some(BlendMode::Dissolve) && record.visible {
-            record.tell("it dissolves in another pattern than elsewhere");
+            record.tell("it dissolves in a different pattern than in other programs");
         }
         self.is_less |= !record.lost.is_empty();
         for what in record.lost.iter().chain(&record.told) {

@@ -23,7 +23,7 @@ pub struct Meant<'a> {
 /// Fails with a sentence that says what would not come back: to other programs, or here.
 pub fn read_back(file: &Path, bytes: &[u8], meant: Meant) -> Result<()> {
     let lost = |what: String| {
-        Err(Error::unsupported(file, format!("the drawing would not come back as it is: {what}")))
+        Err(Error::unsupported(file, format!("the drawing would not open as it is: {what}")))
     };
     let budget = Budget::holding(meant.document);
     let mut parsed = match parse(file, bytes, &budget) {
@@ -39,7 +39,7 @@ pub fn read_back(file: &Path, bytes: &[u8], meant: Meant) -> Result<()> {
     let Some(ours) = parsed.ours else { return lost("what is live in it is missing".into()) };
     let mut read = match restored(file, ours, &parsed.records, &budget) {
         Err(error) => return lost(error.to_string()),
-        Ok(None) => return lost("its layers are taken for another program's".into()),
+        Ok(None) => return lost("its layers are not recognized as this program's".into()),
         Ok(Some(read)) => read,
     };
     // What is said about the document itself was true before.
@@ -167,7 +167,7 @@ mod tests {
         for (change, expected) in changes {
             let said = message_of(&bytes, &document, change);
             assert!(
-                said.contains("would not come back") && said.contains(expected),
+                said.contains("would not open as it is") && said.contains(expected),
                 "{expected}: {said}"
             );
         }
@@ -191,7 +191,8 @@ mod tests {
             export::write(Path::new(FILE), &document, &Progress::default()).unwrap().unwrap().bytes;
         for length in [0, 30, bytes.len() / 2, bytes.len() - 1] {
             assert!(
-                message_of(&bytes[..length], &document, |_, _| ()).contains("would not come back"),
+                message_of(&bytes[..length], &document, |_, _| ())
+                    .contains("would not open as it is"),
                 "{length}"
             );
         }

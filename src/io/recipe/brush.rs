@@ -138,10 +138,7 @@ fn stabilizer(node: &JsonNode) -> Result<Stabilizer> {
         (None, Some(length_px), None) => Ok(Stabilizer::String { length_px }),
         (None, None, Some(secs)) => Ok(Stabilizer::Lag { secs }),
         (None, None, None) => Ok(Stabilizer::None),
-        _ => {
-            Err(node
-                .refused("is several of an average, a string and a lag; it must be one of them"))
-        }
+        _ => Err(node.refused("has more than one of average, string and lag; it must have one")),
     }
 }
 
@@ -196,7 +193,7 @@ fn curve(node: &JsonNode) -> Result<Curve> {
     }
     let curve = Curve::through(points(node, UNIT)?);
     curve.ok_or_else(|| {
-        node.refused("is no curve; it must have points whose first numbers do not fall")
+        node.refused("is not a curve; the first numbers of its points must not fall")
     })
 }
 
@@ -334,11 +331,11 @@ mod tests {
         says(json!({ "dynamics": { "sise": {} } }), "did you mean “size”?");
         says(
             json!({ "dynamics": { "size": { "tilt": [[1, 0], [0, 1]] } } }),
-            "dynamics.size.tilt: is no curve",
+            "dynamics.size.tilt: is not a curve",
         );
-        says(json!({ "dynamics": { "size": { "tilt": [] } } }), "is no curve");
+        says(json!({ "dynamics": { "size": { "tilt": [] } } }), "is not a curve");
         says(json!({ "dynamics": { "size": { "tilt": [[0, 2]] } } }), "must be between 0 and 1");
-        says(json!({ "stabilizer": { "string": 3, "average": 0.5 } }), "must be one of them");
+        says(json!({ "stabilizer": { "string": 3, "average": 0.5 } }), "it must have one");
         says(json!({ "bounded": "objects" }), "must be one of free, surface, object");
         says(json!({ "mark": { "kind": "blur", "length": 1 } }), "length");
         says(json!({ "seed": -1 }), "seed: is -1");

@@ -77,7 +77,7 @@ impl LayerReader<'_> {
         let is_warped =
             liquify.is_some() || transform.as_ref().is_some_and(|own| own.mesh().is_some());
         if is_warped && !layer.content.can_be_warped() {
-            let why = "shows nothing of its own, so that no mesh and no liquify can displace it";
+            let why = "shows nothing of its own, so a mesh or liquify cannot displace it";
             return Err(warped.as_ref().unwrap_or(node).refused(why));
         }
         let layer = Layer { visible, opacity, blend, blend_linear, clip_below, lock, ..layer };
@@ -88,7 +88,7 @@ impl LayerReader<'_> {
     pub fn home(&self, node: &JsonNode) -> Result<HomeFrame> {
         let id = node.text()?;
         if id != HomeFrame::CANVAS && !self.homes.iter().any(|known| known == id) {
-            return Err(node.refused(format!("is “{id}”; there is no part of that id")));
+            return Err(node.refused(format!("is “{id}”; there is no part with that id")));
         }
         Ok(HomeFrame::on(id))
     }

@@ -271,7 +271,7 @@ pub fn write_painter(painter: &Painter, base: &Painter) -> JsonObject {
 pub fn direction(node: &JsonNode) -> Result<Vec3> {
     let v = node.vector(-1e6..=1e6)?;
     if node.is_ranged() && !Light::points(v) {
-        return Err(node.refused("has no length, so it points nowhere"));
+        return Err(node.refused("has no length, so it has no direction"));
     }
     Ok(v)
 }

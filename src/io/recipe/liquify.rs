@@ -34,7 +34,9 @@ pub fn read(node: &JsonNode) -> Result<Option<Arc<Lattice>>> {
 
 fn place(node: &JsonNode) -> Result<TileAt> {
     let items = node.list(2)?;
-    let [column, row] = &items[..] else { return Err(node.refused("is no place [column, row]")) };
+    let [column, row] = &items[..] else {
+        return Err(node.refused("is not a place [column, row]"));
+    };
     let far = i64::from(Lattice::FARTHEST_BLOCK);
     Ok(TileAt::new(column.integer(-far..=far)? as i32, row.integer(-far..=far)? as i32))
 }

@@ -226,7 +226,7 @@ fn check_version(root: &mut Fields) -> Result<()> {
     let number = version.integer(1..=i64::MAX)?;
     if number > VERSION {
         let reason =
-            format!("is {number}; this program reads up to {VERSION}, a newer one is needed");
+            format!("is {number}; this program reads up to {VERSION}, so a newer one is needed");
         return Err(version.refused(reason));
     }
     Ok(())

@@ -280,7 +280,7 @@ impl LayerReader<'_> {
         let color = fields.get("color").map(|node| node.color()).transpose()?;
         let at = fields.get("at").map(|node| node.point()).transpose()?;
         if at.is_some() && color.is_none() {
-            return Err(node.refused("has a place, but no color that is sought there"));
+            return Err(node.refused("has a place (“at”), but no color"));
         }
         let color = color.map(|color| FlatColor { color, at });
         let source = if let Some(layer) = fields.get("layer") {
@@ -298,7 +298,7 @@ impl LayerReader<'_> {
             return Err(node.refused("names no layer, file, selection, path or object"));
         };
         if color.is_some() && !matches!(source, OutlineSource::Layer { .. }) {
-            return Err(node.refused("has a color, but only a layer has colors"));
+            return Err(node.refused("has a color, but no layer"));
         }
         fields.finish()?;
         Ok(source)

@@ -129,7 +129,7 @@ impl PictureCache {
         self.searched_px += canvas.area() as u64;
         if self.searched_px > source.budget.region_px {
             let reason = format!(
-                "its selections by the surface look through more than {} px",
+                "its selections by the surface cover more than {} px",
                 source.budget.region_px
             );
             return Err(Error::too_large(source.file, reason));

@@ -63,7 +63,7 @@ impl LayerReader<'_> {
     pub fn selection_of(&self, node: &JsonNode) -> Result<Arc<Selection>> {
         let id = node.text()?;
         let known = self.selections.get(id).map(|(selection, _)| selection.clone());
-        known.ok_or_else(|| node.refused(format!("is “{id}”; there is no selection of that id")))
+        known.ok_or_else(|| node.refused(format!("is “{id}”; there is no selection with that id")))
     }
 
     /// The kept selection that an outline names, by its id or, in an edit, by its name; one that
@@ -72,7 +72,7 @@ impl LayerReader<'_> {
         let id = node.text()?;
         match self.selections.get(id) {
             Some((_, name)) => Ok(name.clone().unwrap_or_else(|| id.to_owned())),
-            None => Err(node.refused(format!("is “{id}”; there is no selection of that id"))),
+            None => Err(node.refused(format!("is “{id}”; there is no selection with that id"))),
         }
     }
 
@@ -325,7 +325,7 @@ mod tests {
         let stroke = json!({ "selection": "s9" });
         assert_eq!(
             said(json!({ "layers": [{ "kind": "strokes", "strokes": [stroke] }] })),
-            "r.json: layers[0].strokes[0].selection: is “s9”; there is no selection of that id"
+            "r.json: layers[0].strokes[0].selection: is “s9”; there is no selection with that id"
         );
         let mask = json!({ "kind": "direction", "at": [1, 1], "tolerance": 200 });
         let list = json!([{ "id": "a", "mask": mask }]);

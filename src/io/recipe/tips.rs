@@ -124,7 +124,7 @@ fn grain(node: &JsonNode, picture: &mut PictureReader) -> Result<BrushGrain> {
     let levels = fields.get("levels").map_or(Ok(plain.levels), |node| {
         let levels = node.numbers(2, 2, BrushGrain::LEVEL)?;
         if levels[0] >= levels[1] {
-            return Err(node.refused("must hold the lower level first"));
+            return Err(node.refused("must have the lower level first"));
         }
         Ok([levels[0], levels[1]])
     })?;
@@ -280,7 +280,7 @@ mod tests {
         says(json!({ "tip": { "kind": "hose", "files": [] } }), "tip.files: is empty");
         says(
             json!({ "grain": { "levels": [0.5, 0.5] } }),
-            "grain.levels: must hold the lower level first",
+            "grain.levels: must have the lower level first",
         );
         says(json!({ "grain": { "lies": "floor" } }), "must be one of canvas, surface");
     }

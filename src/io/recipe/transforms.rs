@@ -59,7 +59,7 @@ fn mesh_of(node: &JsonNode, canvas: Option<Size>) -> Result<Mesh> {
         (Some(node), _) => {
             let items = node.list(4)?;
             let [x, y, w, h] = &items[..] else {
-                return Err(node.refused("is no frame [x, y, width, height]"));
+                return Err(node.refused("is not a frame [x, y, width, height]"));
             };
             let side = |node: &JsonNode| node.number(MeshFrame::SIDE_PX);
             let corner = vec2(x.number(COORDINATE)?, y.number(COORDINATE)?);
@@ -76,7 +76,7 @@ fn mesh_of(node: &JsonNode, canvas: Option<Size>) -> Result<Mesh> {
     }
     let point = |node: &JsonNode| -> Result<_> {
         let items = node.list(2)?;
-        let [x, y] = &items[..] else { return Err(node.refused("is no point [x, y]")) };
+        let [x, y] = &items[..] else { return Err(node.refused("is not a point [x, y]")) };
         Ok(vec2(x.number(COORDINATE)?, y.number(COORDINATE)?))
     };
     let points = items.iter().map(point).collect::<Result<_>>()?;
@@ -87,7 +87,7 @@ fn mesh_of(node: &JsonNode, canvas: Option<Size>) -> Result<Mesh> {
 fn corners(node: &JsonNode) -> Result<[DVec2; 4]> {
     let corner = |node: &JsonNode| -> Result<DVec2> {
         let items = node.list(2)?;
-        let [x, y] = &items[..] else { return Err(node.refused("is no point [x, y]")) };
+        let [x, y] = &items[..] else { return Err(node.refused("is not a point [x, y]")) };
         Ok(DVec2::new(x.exact_number(COORDINATE)?, y.exact_number(COORDINATE)?))
     };
     let items = node.list(4)?;
@@ -150,7 +150,7 @@ mod tests {
             (r#"{"matrix":[1,0,0,1,0]}"#, "has 5 numbers; it must have 6"),
             (r#"{"matrix":[1,2,2,4,0,0]}"#, "cannot be inverted"),
             (r#"{"matrix":[1,0,0,1,1e9,0]}"#, "must be between"),
-            (r#"{"quad":[[0,0],[9,9],[9,0],[0,9]]}"#, "no convex quadrilateral"),
+            (r#"{"quad":[[0,0],[9,9],[9,0],[0,9]]}"#, "not a convex quadrilateral"),
             (r#"{"quad":[[0,0],[9,0],[9,9],[0,9]],"matrix":[1,0,0,1,0,0]}"#, "has both"),
             (r#"{"mesh":{"columns":1,"rows":2,"points":[]}}"#, "mesh.columns"),
             (r#"{"mesh":{"columns":2,"rows":34,"points":[]}}"#, "mesh.rows"),

@@ -98,8 +98,8 @@ pub fn read(
 ) -> Cancellable<RecoveredDocument> {
     let last = LastState::of(log);
     let version = last.version(file, budget)?;
-    let version =
-        version.ok_or_else(|| Error::decode(file, "it holds no whole version of the drawing"))?;
+    let version = version
+        .ok_or_else(|| Error::decode(file, "it holds no complete version of the drawing"))?;
     let Some(document) = version.document.reshaped_with_progress(progress) else { return Ok(None) };
     let (title, _) = named(&last.head.unwrap_or_default());
     Ok(Some(RecoveredDocument {

@@ -153,7 +153,11 @@ impl StateWriter<'_> {
             Some((key, _)) => *key,
             None => {
                 if self.given_up.load(Ordering::Relaxed) {
-                    return Err(Error::unsupported(self.file, "the drawing was closed meanwhile"));
+                    return Err(Error::unsupported(
+                        self.file,
+                        "the drawing was closed in the \
+                                                              meantime",
+                    ));
                 }
                 let key = self.known.next;
                 self.known.next += 1;

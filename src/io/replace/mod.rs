@@ -120,7 +120,7 @@ impl ReplaceJob<'_> {
         let target = self.target()?;
         self.allowed(&target)?;
         sweep(self.fs, folder_of(&target));
-        let failed = |e| self.failed("it could not be written there; choose another place", e);
+        let failed = |e| self.failed("it could not be written there; choose another folder", e);
         let mut part = PartFile::create(self.fs, folder_of(&target)).map_err(failed)?;
         let placed = self.write_part(&mut part, &target).and_then(|is_written| {
             if is_written {
@@ -141,7 +141,7 @@ impl ReplaceJob<'_> {
     fn write_part(&self, part: &mut PartFile, target: &Path) -> Result<bool> {
         let chunks = self.bytes.len().div_ceil(CHUNK) as u64;
         self.progress.add_total(2 * chunks);
-        let failed = |e| self.failed("it could not be written there; choose another place", e);
+        let failed = |e| self.failed("it could not be written there; choose another folder", e);
         if self.fs.found(target).map_err(failed)?.is_some() {
             // Before there is anything to read in it. A disk without owners and permissions must
             // not keep anybody from saving.
@@ -161,9 +161,9 @@ impl ReplaceJob<'_> {
     /// The written file is read back.
     fn compare(&self, part: &Path) -> Result<bool> {
         let failed =
-            |e| self.failed("what was written could not be read back; choose another place", e);
+            |e| self.failed("what was written could not be read back; choose another folder", e);
         let differs =
-            || failed(io::Error::new(ErrorKind::InvalidData, "the disk gave back other bytes"));
+            || failed(io::Error::new(ErrorKind::InvalidData, "the disk returned different bytes"));
         let mut handle = self.fs.open(part).map_err(failed)?;
         let mut buffer = vec![0; CHUNK];
         let mut rest = self.bytes;
@@ -243,10 +243,7 @@ impl ReplaceJob<'_> {
         match self.fs.sync_dir(folder_of(target)) {
             // Some disks cannot; they have no later moment either.
             Err(e) if !matches!(e.kind(), ErrorKind::InvalidInput | ErrorKind::Unsupported) => {
-                Err(self.failed(
-                    "the file was written, but whether it stays after a power cut is unknown",
-                    e,
-                ))
+                Err(self.failed("the file was written, but may be lost in a power cut", e))
             }
             _ => Ok(()),
         }

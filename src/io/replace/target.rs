@@ -37,8 +37,7 @@ impl ReplaceJob<'_> {
         match self.fs.found(self.named).map_err(io)? {
             Some(EntryKind::File) | Some(EntryKind::Link) => {
                 let target = self.fs.resolve(self.named);
-                let target =
-                    target.map_err(|e| self.failed("it is a link that leads nowhere", e))?;
+                let target = target.map_err(|e| self.failed("it is a broken link", e))?;
                 match self.fs.found(&target).map_err(io)? {
                     Some(EntryKind::File) => Ok(target),
                     _ => Err(irregular()),
@@ -74,7 +73,7 @@ impl ReplaceJob<'_> {
         if self.is_read(target)? {
             return Err(Error::unsupported(
                 self.named,
-                "an open document is made from it; write to another file",
+                "an open document was made from it; write to another file",
             ));
         }
         let changed =
@@ -87,17 +86,13 @@ impl ReplaceJob<'_> {
             }
             Overwrite::This(_) | Overwrite::Anything => {}
         }
-        if self.fs.is_read_only(target).map_err(io)? {
-            changed("it is set read-only")
-        } else {
-            Ok(())
-        }
+        if self.fs.is_read_only(target).map_err(io)? { changed("it is read-only") } else { Ok(()) }
     }
 
     pub(super) fn taken(&self) -> Error {
         Error::Changed {
             file: self.named.into(),
-            reason: "there is a file of this name already".into(),
+            reason: "a file of this name already exists".into(),
         }
     }
 

@@ -26,7 +26,7 @@ pub fn caught(work: impl FnOnce() -> Result<()>) -> std::result::Result<(), Stri
         Err(_) => {
             let what =
                 LAST.lock().unwrap_or_else(PoisonError::into_inner).take().unwrap_or_default();
-            Err(format!("internal error: {what}; this is a defect of Rilievo, please report it"))
+            Err(format!("internal error: {what}; this is a bug in Rilievo, please report it"))
         }
     }
 }

@@ -189,8 +189,8 @@ fn figure(file: &Path, drawing: TileGrid, size: Size) -> Result<TileGrid> {
         FigureBackground::Flat(ground) => Ok(without_background(&drawing, size, ground)),
         FigureBackground::Painted => Err(Error::unsupported(
             file,
-            "it is opaque everywhere, so it has no outline; give it a transparent ground, or name its flats \
-             with --flats",
+            "it is opaque everywhere, so it has no outline; give it a transparent background, or \
+             name its flats with --flats",
         )),
         FigureBackground::Bare(_) => Err(Error::unsupported(
             file,

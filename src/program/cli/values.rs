@@ -20,5 +20,5 @@ pub fn scale(text: &str) -> std::result::Result<f32, String> {
 }
 
 pub fn color(text: &str) -> std::result::Result<Color, String> {
-    Color::parse(text).ok_or_else(|| "a color reads #rrggbb or #rrggbbaa".to_owned())
+    Color::parse(text).ok_or_else(|| "a color is written #rrggbb or #rrggbbaa".to_owned())
 }

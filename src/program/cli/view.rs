@@ -253,7 +253,8 @@ fn sources(args: &ViewArgs, files: &mut UserFiles) -> Result<Vec<SurfaceSource>>
             // A single picture counts as a normal map, the most common kind.
             None if args.files.len() == 1 => 0,
             None => {
-                let reason = "its name does not say what it is; use --normal, --depth or --mask";
+                let reason = "its name does not tell which map it is; use --normal, --depth or \
+                              --mask";
                 return Err(Error::invalid(file, "FILES", reason));
             }
         };

@@ -134,7 +134,7 @@ impl Autosave {
         }
         let is_new = trouble != self.told;
         self.told.clone_from(&trouble);
-        let sentence = |why| format!("Not safe from a crash until it is saved: {why}");
+        let sentence = |why| format!("Not protected from a crash until it is saved: {why}");
         trouble.filter(|_| is_new).map(sentence)
     }
 

@@ -142,9 +142,9 @@ pub fn adopt(session: &mut Session, presets: Vec<BrushPreset>) {
             session.presets.push(preset);
         } else {
             let key = &preset.key;
-            session.notes.push(format!(
-                "{key}.json: a brush is called so already; the file wants another name."
-            ));
+            session
+                .notes
+                .push(format!("{key}.json: a brush already has this name; rename the file."));
         }
     }
 }

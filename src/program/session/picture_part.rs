@@ -12,7 +12,7 @@ rilievo_engine::named! {
         Environment = "environment" => "Environment",
         /// The lit sphere; for convex features if there is a concave one.
         Sphere = "sphere" => "Lit sphere",
-        ConcaveSphere = "concave sphere" => "Lit sphere of hollows",
+        ConcaveSphere = "concave sphere" => "Lit sphere for hollows",
         /// The normals of a normal layer.
         Detail = "detail" => "Detail normals",
     }

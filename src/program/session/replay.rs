@@ -84,7 +84,7 @@ impl ReplayValue for String {
     }
 
     fn read(value: &Value) -> std::result::Result<Self, String> {
-        value.as_str().map(Into::into).ok_or_else(|| "must be a text".into())
+        value.as_str().map(Into::into).ok_or_else(|| "must be text".into())
     }
 }
 

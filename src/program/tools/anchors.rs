@@ -100,12 +100,15 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
             )
         }
         (Content::Image(_) | Content::Gradient(_), None) => (None, Outcome::Idle),
-        (Content::Strokes(_), _) => {
-            (None, Outcome::Refused("Strokes have no anchors: the Strokes tool moves them".into()))
-        }
+        (Content::Strokes(_), _) => (
+            None,
+            Outcome::Refused("Strokes have no anchors. Move them with the Strokes tool".into()),
+        ),
         _ => (
             None,
-            Outcome::Refused("This layer has no anchors: images, gradients and lights do".into()),
+            Outcome::Refused(
+                "This layer has no anchors. Images, gradients and lights have them".into(),
+            ),
         ),
     }
 }

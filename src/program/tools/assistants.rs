@@ -52,7 +52,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     if document.assistants.len() >= Assistant::MOST {
         return (
             None,
-            Outcome::Refused("There are as many assistants as a document holds.".into()),
+            Outcome::Refused("The document has the maximum number of assistants.".into()),
         );
     }
     let from = context.snap.point(pen.place()).at;

@@ -9,7 +9,7 @@ pub fn locked(layer: &Layer) -> Option<String> {
     let is_locked = layer.lock == LayerLock::All;
     is_locked.then(|| {
         format!(
-            "“{}” is locked. Unlock it (Layer, Lock layer), or choose another layer.",
+            "“{}” is locked. Unlock it (Layer, Lock layer), or select another layer.",
             layer.name
         )
     })
@@ -25,7 +25,7 @@ pub fn hidden(document: &Document, id: LayerId) -> Option<String> {
     let layer = document.layer(id)?;
     if !layer.visible {
         return Some(format!(
-            "“{}” is hidden. Show it (Layer, Show or hide layer), or choose another layer.",
+            "“{}” is hidden. Show it (Layer, Show or hide layer), or select another layer.",
             layer.name
         ));
     }
@@ -40,7 +40,8 @@ pub fn hidden_around(document: &Document, id: LayerId) -> Option<String> {
         if !group.visible {
             let (inner, outer) = (&layer.name, &group.name);
             return Some(format!(
-                "“{inner}” is in the hidden group “{outer}”. Show the group, or choose another layer."
+                "“{inner}” is in the hidden group “{outer}”. Show the group, or select another \
+                 layer."
             ));
         }
         around = document.place_of(group.id)?.group;

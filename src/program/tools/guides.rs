@@ -52,7 +52,7 @@ pub fn pull(
     pen: PenSample,
 ) -> GestureStart {
     if document.guides.vertical.len().max(document.guides.horizontal.len()) >= Guides::MOST {
-        return (None, Outcome::Refused("There are as many guides as a document holds.".into()));
+        return (None, Outcome::Refused("The document has the maximum number of guides.".into()));
     }
     let rest = Guides::clone(&document.guides);
     let mut gesture = GuideGesture::new(document, rest, is_vertical, targets, false);

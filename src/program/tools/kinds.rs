@@ -38,13 +38,14 @@ rilievo_engine::named! {
         ),
         Transform = "transform" => (
             "Transform",
-            "Drag corners, edges, the inside to move, the outside to turn. Shift keeps aspect or steps, Alt the \
-             middle, Ctrl skews and distorts; Enter applies it",
+            "Drag corners or edges to scale, the inside to move, the outside to turn. Shift keeps \
+             the aspect or turns in steps, Alt keeps the middle, Ctrl skews and distorts; Enter \
+             applies it",
         ),
         Liquify = "liquify" => (
             "Liquify",
-            "Push, swell, twirl what the layer or group shows; it stays live. Ctrl turns a dab about (push: \
-             restores), Shift smooths",
+            "Push, enlarge or twirl what the layer or group shows; it stays live. Ctrl inverts a \
+             dab (push: restores), Shift smooths",
         ),
         Assistants = "assistants" => (
             "Assistants",
@@ -53,8 +54,8 @@ rilievo_engine::named! {
         ),
         Crop = "crop" => (
             "Crop",
-            "Drag a frame, also beyond the canvas, and its handles; Shift keeps the aspect. Enter crops, Escape \
-             cancels",
+            "Drag a frame, which may extend beyond the canvas, or its handles; Shift keeps the \
+             aspect. Enter crops, Escape cancels",
         ),
         Strokes = "strokes" => (
             "Strokes",
@@ -62,7 +63,8 @@ rilievo_engine::named! {
         ),
         Shape = "shape" => (
             "Shape",
-            "Click chooses a part of the shape, a drag moves it; handles scale, turn, puff (middle) and tilt it",
+            "Click to select a part of the shape, drag to move it; handles scale, turn, puff \
+             (middle) and tilt it",
         ),
         Touch = "touch" => (
             "Touch",
@@ -84,11 +86,12 @@ rilievo_engine::named! {
         ),
         Wand = "wand" => (
             "Wand",
-            "Click to select what is like a pixel; drag right or left for more or less tolerance",
+            "Click to select similar pixels; drag right or left for more or less tolerance",
         ),
         SurfaceWand = "surface wand" => (
             "Surface wand",
-            "Click the surface to select all that faces the same way; drag right or left for tolerance",
+            "Click the surface to select everything that faces the same way; drag right or left \
+             for more or less tolerance",
         ),
         Eyedropper = "eyedropper" => ("Eyedropper", "Take a color from the picture"),
         Hand = "hand" => ("Hand", "Drag the view"),

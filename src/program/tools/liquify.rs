@@ -12,7 +12,7 @@ use std::sync::Arc;
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let document = context.document;
     let Some(layer) = context.layer.and_then(|id| document.layer(id)) else {
-        return (None, Outcome::Refused("Choose a layer or a group to liquify.".into()));
+        return (None, Outcome::Refused("Select a layer or a group to liquify.".into()));
     };
     if let Some(why) = closed::unpaintable(document, layer) {
         return (None, Outcome::Refused(why.into()));

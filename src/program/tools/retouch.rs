@@ -59,10 +59,12 @@ pub(super) fn refused(
     let layer = context.layer.and_then(|id| context.document.layer(id));
     if !layer.is_some_and(|layer| matches!(layer.content, Content::Pixels(_))) {
         return Some(Outcome::Refused(if mode.is_retouching() {
-            "Smudge, blur and clone work on paint layers. Select one, or bake this layer.".into()
+            "Smudge, blur and clone work on paint layers. Select one, or turn this layer into \
+             pixels."
+                .into()
         } else {
-            "This brush paints with paint that it picks up, which only paint layers have. Select one, or bake this \
-             layer."
+            "This brush picks up paint, which only paint layers have. Select one, or turn this \
+             layer into pixels."
                 .into()
         }));
     }

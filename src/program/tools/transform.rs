@@ -39,7 +39,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let layers: Vec<&Layer> =
         chosen.iter().filter_map(|id| document.layer(*id)).map(|l| &**l).collect();
     if layers.is_empty() && !of_shape {
-        return (None, Outcome::Refused("Choose a layer first.".into()));
+        return (None, Outcome::Refused("Select a layer first.".into()));
     }
     if let Some(why) = layers.iter().find_map(|layer| closed::locked(layer)) {
         return (None, Outcome::Refused(why.into()));
@@ -64,7 +64,8 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         return (
             None,
             Outcome::Refused(
-                "A shape has no perspective: its depth would not fit. Drag its sides.".into(),
+                "A shape cannot be put in perspective: its depth would not fit. Drag its sides."
+                    .into(),
             ),
         );
     }

@@ -60,7 +60,7 @@ commands! {
     "color-balance", "New color balance layer", "Color balance…", &[ctrl(Key::B)],
         "Warmer or cooler, in shadows, mid-tones and highlights";
     "black-white", "New black & white layer", "Black & white…", NO_KEYS,
-        "Grays, by how bright each hue shall be";
+        "Grays, with a brightness for each hue";
     "photo-filter", "New photo filter layer", "Photo filter…", NO_KEYS,
         "A colored glass in front of the picture";
     "channel-mixer", "New channel mixer layer", "Channel mixer…", NO_KEYS,
@@ -71,7 +71,7 @@ commands! {
         "Light becomes dark, and each color its complement";
     "posterise", "New posterize layer", "Posterize…", NO_KEYS, "A few tones of each channel";
     "threshold", "New threshold layer", "Threshold…", NO_KEYS,
-        "Black and white, without anything between";
+        "Black and white only";
     "gradient-map", "New gradient map layer", "Gradient map…", NO_KEYS,
         "A color of a gradient for each brightness";
     "selective-color", "New selective color layer", "Selective color…", NO_KEYS,

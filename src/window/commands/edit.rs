@@ -29,29 +29,29 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Cut",
         &[ctrl(Key::X)],
-        "Takes what is selected out of the layer, to be pasted",
+        "Removes the selected area from the layer and copies it",
         always,
         |_, requests| requests.act(Action::Clipboard(ClipboardAction::Cut {})),
     ),
     row(
         "Copy",
         &[ctrl(Key::C)],
-        "Copies what is selected of the layer; strokes stay strokes",
+        "Copies the selected area of the layer; strokes stay strokes",
         always,
         |_, requests| requests.act(Action::Clipboard(ClipboardAction::Copy { merged: false })),
     ),
     row(
         "Copy merged picture",
         &[ctrl_shift(Key::C)],
-        "Copies all that shows where you selected",
+        "Copies everything visible in the selected area",
         always,
         |_, requests| requests.act(Action::Clipboard(ClipboardAction::Copy { merged: true })),
     ),
     row(
         "Paste",
         &[ctrl(Key::V)],
-        "Pastes what was copied where it was, as a layer; a picture of another program as paint, at its own size, at \
-         the pointer",
+        "Pastes what was copied in place, as a layer; a picture from another program as paint, at \
+         its own size, at the pointer",
         always,
         |_, requests| requests.request(WindowRequest::Paste(PasteTo::Paint)),
     ),
@@ -65,7 +65,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Paste as new document",
         &[ctrl_shift(Key::V)],
-        "A document as large as what was copied, which is its layer",
+        "Makes a document of what was copied, in its size",
         always,
         |_, requests| requests.request(WindowRequest::Paste(PasteTo::Document)),
     ),
@@ -73,14 +73,16 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Transform",
         &[ctrl(Key::T)],
-        "A frame around the chosen layers and groups: move, scale, turn, skew and distort it, live",
+        "A frame around the selected layers and groups: move, scale, turn, skew and distort them, \
+         live",
         has_layer,
         |_, requests| requests.act(Action::Hand(HandAction::Tool { tool: ToolKind::Transform })),
     ),
     row(
         "Clear layer",
         &[key(Key::Delete)],
-        "Removes the paint or the strokes of the chosen layers where you selected; without a selection all of them",
+        "Removes the paint or strokes of the selected layers in the selected area; without a \
+         selection, all of them",
         has_document,
         |session, requests| {
             requests.act(Action::Layer(LayerAction::Clear { layer: session.layer_paths() }))

@@ -26,7 +26,8 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Open maps…",
         &[ctrl_shift(Key::O)],
-        "A canvas on the normal and depth maps of an object, with their conventions to check and correct",
+        "A canvas on the normal and depth maps of an object; check and correct their conventions \
+         first",
         always,
         |_, requests| requests.request(WindowRequest::OpenMapsDialog),
     ),
@@ -41,7 +42,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Save as…",
         &[ctrl_shift(Key::S)],
-        "Saves to another file, which the document belongs to from then on",
+        "Saves to another file, which the document then belongs to",
         has_document,
         |_, requests| requests.request(WindowRequest::SaveAs),
     ),

@@ -55,14 +55,14 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Grid and snapping…",
         &[],
-        "Spacing of the grid, and what the pen snaps to",
+        "Spacing of the grid, and what you snap to",
         always,
         |_, requests| requests.request(WindowRequest::GridDialog),
     ),
     row(
         "Snap",
         &[ctrl_shift(Key::Semicolon)],
-        "Dragged things snap to guides, the grid, edges and middles within eight points",
+        "What you drag snaps to guides, the grid, edges and middles within eight points",
         always,
         |session, requests| set(session, requests, |aids| aids.snaps ^= true),
     )
@@ -71,7 +71,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Draw along assistants",
         &[ctrl_shift(Key::L)],
-        "Strokes follow the lines of assistants, or nothing",
+        "Strokes follow the lines of assistants",
         always,
         |session, requests| {
             set(session, requests, |aids| {

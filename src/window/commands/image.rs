@@ -26,7 +26,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Canvas size…",
         &[ctrl_alt(Key::C)],
-        "Moves the borders; the picture stays as large as it is",
+        "Moves the borders; the picture keeps its size",
         has_document,
         |_, requests| requests.request(WindowRequest::CanvasSizeDialog),
     ),
@@ -41,21 +41,22 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Turn canvas left",
         &[],
-        "By a quarter, counter-clockwise, with everything on it: the shape and its lights too",
+        "A quarter turn counter-clockwise, with everything on the canvas: the shape and its lights \
+         too",
         always,
         |_, requests| act(requests, CanvasAction::Turn { degrees: 90.0 }),
     ),
     row(
         "Turn canvas right",
         &[],
-        "By a quarter, clockwise, with everything on it",
+        "A quarter turn clockwise, with everything on the canvas",
         always,
         |_, requests| act(requests, CanvasAction::Turn { degrees: -90.0 }),
     ),
     row(
         "Turn canvas upside down",
         &[],
-        "By a half, with everything on it",
+        "A half turn, with everything on the canvas",
         always,
         |_, requests| act(requests, CanvasAction::Turn { degrees: 180.0 }),
     ),
@@ -70,14 +71,14 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Mirror canvas left and right",
         &[],
-        "The picture itself, and not the view, with everything on it",
+        "Mirrors the picture, not the view, with everything on the canvas",
         always,
         |_, requests| act(requests, CanvasAction::Mirror { mirror: CanvasMirror::LeftRight }),
     ),
     row(
         "Mirror canvas up and down",
         &[],
-        "The picture itself, with everything on it",
+        "Mirrors the picture, with everything on the canvas",
         always,
         |_, requests| act(requests, CanvasAction::Mirror { mirror: CanvasMirror::UpDown }),
     ),

@@ -107,14 +107,14 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "New paint layer",
         &[key(Key::Insert), ctrl_shift(Key::N)],
-        "Pixels; strokes on it cannot be moved later, but it can be erased",
+        "A layer of pixels: strokes on it cannot be moved later",
         has_document,
         |_, requests| add(requests, NewLayer::Paint),
     ),
     row(
         "New stroke layer",
         &[],
-        "Strokes stay editable: each can be moved along the surface later",
+        "A layer of strokes: each can be moved along the surface later",
         has_document,
         |_, requests| add(requests, NewLayer::Strokes),
     ),
@@ -148,7 +148,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Split part by place",
         &[],
-        "Areas of the chosen part's color that are apart, such as two eyes, become parts of their own",
+        "Separate areas of the selected part's color, such as two eyes, become separate parts",
         |session| session.active().and_then(|open| open.chosen_part()).is_some_and(|part| part.is_of_color()),
         |session, requests| {
             if let Some(part) = session.active().and_then(|open| open.chosen_part()) {
@@ -159,7 +159,8 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Cut drawing by parts",
         &[],
-        "A layer for each part that was made from the selected one, so that a part that is moved takes its paint along",
+        "Divides the selected layer into a layer for each part, so that a part moves with its \
+         paint",
         has_layer,
         |session, requests| {
             let cut = session.layer_path().map(|layer| Action::Part(PartAction::Cut { layer }));
@@ -181,27 +182,27 @@ pub const COMMANDS: &[MenuCommand] = &[
         has_layer,
         |_, requests| requests.act(Action::Clipboard(ClipboardAction::LayerVia { cut: true })),
     ),
-    row("Duplicate layer", &[], "Copies of the chosen layers above them", has_document, |session, requests| {
+    row("Duplicate layer", &[], "Copies the selected layers, above them", has_document, |session, requests| {
         with_chosen(session, requests, |layer| LayerAction::Duplicate { layer })
     }),
     row(
         "Delete layer",
         &[shift(Key::Delete)],
-        "The chosen layers and what is in them",
+        "Deletes the selected layers and what is in them",
         has_document,
         |session, requests| with_chosen(session, requests, |layer| LayerAction::Delete { layer }),
     ),
     row(
         "Group layer",
         &[ctrl(Key::G)],
-        "Puts the chosen layers into a new group",
+        "Puts the selected layers into a new group",
         has_document,
         |session, requests| with_chosen(session, requests, |layer| LayerAction::Group { layer }),
     ),
     row(
         "Ungroup",
         &[ctrl_shift(Key::G)],
-        "Takes the layers out of the chosen groups",
+        "Takes the layers out of the selected groups",
         has_document,
         |session, requests| with_chosen(session, requests, |layer| LayerAction::Ungroup { layer }),
     ),
@@ -236,14 +237,14 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Choose up to layer above",
         &[shift(Key::PageUp)],
-        "Extends the chosen layers upward",
+        "Extends the selection of layers upward",
         has_layer,
         |session, requests| step(session, requests, 1, true),
     ),
     row(
         "Choose down to layer below",
         &[shift(Key::PageDown)],
-        "Extends the chosen layers downward",
+        "Extends the selection of layers downward",
         has_layer,
         |session, requests| step(session, requests, -1, true),
     ),
@@ -306,7 +307,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         set(session, requests, Property::Visible { on: !is_shown(session) });
     })
     .ticked(|session, _| is_shown(session)),
-    row("Show layer alone", &[], "Hides all other layers until it is chosen again", has_layer, |session, requests| {
+    row("Show layer alone", &[], "Hides all other layers, or shows them again", has_layer, |session, requests| {
         with_selected(session, requests, |layer| LayerAction::Solo { layer })
     })
     .ticked(|session, _| is_alone(session)),
@@ -326,7 +327,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         |session, requests| toggle_lock(session, requests, LayerLock::Alpha),
     )
     .ticked(|session, _| is_locked(session, LayerLock::Alpha)),
-    row("Lock layer", &[], "No tool changes it", has_layer, |session, requests| {
+    row("Lock layer", &[], "No tool can change it", has_layer, |session, requests| {
         toggle_lock(session, requests, LayerLock::All)
     })
     .ticked(|session, _| is_locked(session, LayerLock::All)),

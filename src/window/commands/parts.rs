@@ -16,15 +16,10 @@ macro_rules! commands {
     }),+, $other] };
 }
 
-const MAPS: MenuCommand = row(
-    "Maps…",
-    &[],
-    "Normals and depths that were made elsewhere, as a part",
-    has_document,
-    |_, requests| {
+const MAPS: MenuCommand =
+    row("Maps…", &[], "Normals and depth from files, as a part", has_document, |_, requests| {
         requests.request(WindowRequest::PartMapsDialog);
-    },
-);
+    });
 
 pub const COMMANDS: &[MenuCommand] =
     commands!(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16; MAPS);

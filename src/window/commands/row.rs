@@ -41,8 +41,8 @@ impl MenuCommand {
     pub fn refusal(&self, session: &Session) -> String {
         let why = match (session.active(), session.layer()) {
             (None, _) => "there is no document",
-            (_, None) => "no layer is chosen",
-            _ => "there is nothing here to do it to",
+            (_, None) => "no layer is selected",
+            _ => "there is nothing here to apply it to",
         };
         format!("{}: {why}.", self.name)
     }

@@ -32,14 +32,14 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Deselect",
         &[ctrl(Key::D), ctrl_shift(Key::A)],
-        "Lets go of the selection: everything can be painted on",
+        "Drops the selection: everything can be painted on",
         always,
         |_, requests| act(requests, SelectionAction::None {}),
     ),
     row(
         "Select again",
         &[ctrl_shift(Key::D)],
-        "Takes back the selection that was let go of last",
+        "Restores the last selection that was dropped",
         always,
         |_, requests| act(requests, SelectionAction::Again {}),
     ),
@@ -57,7 +57,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     LINE,
     row("Grow selection…", &[], "Moves the edge outward", has_document, |_, r| ask(r, EdgeChange::Grow)),
     row("Shrink selection…", &[], "Moves the edge inward", has_document, |_, r| ask(r, EdgeChange::Shrink)),
-    row("Border of selection…", &[], "Selects a band about the edge", has_document, |_, r| {
+    row("Border of selection…", &[], "Selects a band along the edge", has_document, |_, r| {
         ask(r, EdgeChange::Border)
     }),
     row("Feather selection…", &[], "Makes the edge soft", has_document, |_, r| ask(r, EdgeChange::Feather)),

@@ -22,13 +22,9 @@ pub const COMMANDS: &[MenuCommand] = &[
     row("New Phong layer", &[], "Matt and glossy under lights", has_document, |_, requests| {
         add(requests, Model::Phong)
     }),
-    row(
-        "New toon layer",
-        &[],
-        "The same in flat bands, multiplied",
-        has_document,
-        |_, requests| add(requests, Model::Toon),
-    ),
+    row("New toon layer", &[], "Phong in flat bands, multiplied", has_document, |_, requests| {
+        add(requests, Model::Toon)
+    }),
     row(
         "New sub-Lambertian layer",
         &[],

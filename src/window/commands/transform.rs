@@ -17,7 +17,8 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Apply transform",
         &[key(Key::Enter)],
-        "The layer stays as it shows: its pixels are sampled for good, strokes and placements take new numbers",
+        "Makes the transform permanent: pixels are resampled, strokes and placements get new \
+         coordinates",
         is_transformed,
         |session, requests| {
             with_chosen(session, requests, |layer| LayerAction::ApplyTransform { layer })
@@ -39,28 +40,28 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Mirror left and right",
         &[],
-        "Mirrors the chosen layers about their middle",
+        "Mirrors the selected layers about their middle",
         has_layer,
         |session, requests| mirror(session, requests, false),
     ),
     row(
         "Mirror up and down",
         &[],
-        "Mirrors the chosen layers about their middle",
+        "Mirrors the selected layers about their middle",
         has_layer,
         |session, requests| mirror(session, requests, true),
     ),
     row(
         "Turn layer left",
         &[],
-        "Turns the chosen layers by a quarter, counter-clockwise",
+        "Turns the selected layers by a quarter, counter-clockwise",
         has_layer,
         |session, requests| turn(session, requests, 90.0),
     ),
     row(
         "Turn layer right",
         &[],
-        "Turns the chosen layers by a quarter, clockwise",
+        "Turns the selected layers by a quarter, clockwise",
         has_layer,
         |session, requests| turn(session, requests, -90.0),
     ),
@@ -68,7 +69,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         REMOVE_LIQUIFY,
         &[],
-        "The layer shows itself as it was before it was liquified",
+        "Shows the layer as it was before it was liquified",
         is_liquified,
         |session, requests| {
             with_chosen(session, requests, |layer| {

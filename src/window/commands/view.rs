@@ -82,7 +82,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         has_document,
         |_, requests| view(requests, ViewAction::Turn { by_rad: -STEP_RAD }),
     ),
-    row("Upright", &[key(Key::Num5)], "Turn the canvas back", has_document, |_, requests| {
+    row("Upright", &[key(Key::Num5)], "Turns the view back", has_document, |_, requests| {
         view(requests, ViewAction::Upright {})
     }),
     row(
@@ -125,7 +125,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Show lit ball",
         &[alt(Key::Num5)],
-        "The surface and a ball under one light: if they agree, the maps are the right way round",
+        "The surface and a ball under one light: if they agree, the maps are read correctly",
         has_surface,
         |session, requests| overlay(session, requests, "lit"),
     )
@@ -156,7 +156,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Unwrapped",
         &[alt(Key::Num9)],
-        "The surface unwrapped, to paint on: what you draw straight here bends around the form",
+        "Shows the surface laid flat, to paint on: a straight line here bends around the form",
         has_surface,
         |session, requests| match is_unwrapped(session) {
             true => view(requests, ViewAction::Unwrapped { on: false }),
@@ -168,7 +168,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Hide panels",
         &[key(Key::Tab)],
-        "Shows only the canvas, in full screen without the menus, or all again",
+        "Shows only the canvas (in full screen without the menus), or everything again",
         always,
         |_, requests| requests.request(WindowRequest::TogglePanels),
     )
@@ -203,7 +203,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         always,
         |_, requests| requests.request(WindowRequest::ResizeInterface { is_larger: false }),
     ),
-    row("Dark, gray or light", &[], "The next look of the window; gray is for judging colors", always, |_, requests| {
+    row("Dark, gray or light", &[], "The next theme of the window; gray is for judging colors", always, |_, requests| {
         requests.request(WindowRequest::NextLook)
     }),
     row(

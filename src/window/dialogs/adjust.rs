@@ -24,7 +24,7 @@ impl AdjustDialog {
     pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
         ui.set_width(300.0);
         ui.heading(self.adjustment.label());
-        ui.weak("The paint of the chosen layers, within the selection");
+        ui.weak("The paint of the selected layers, within the selection");
         let answer = adjustment::show(ui, &self.adjustment, None);
         if answer.asks_for_table {
             requests.request(WindowRequest::Choose(FilePurpose::ColorTable));

@@ -60,7 +60,7 @@ impl CanvasSides {
                 let share =
                     DragValue::new(&mut percent[i]).range(0.1..=10_000.0).speed(0.5).suffix(" %");
                 let share =
-                    ui.add(share).on_hover_text(format!("{name} as a share of what it was"));
+                    ui.add(share).on_hover_text(format!("{name}, relative to the present size"));
                 if share.changed() {
                     *side = held([w, h][i] * percent[i] / 100.0);
                     is_other = true;
@@ -187,7 +187,9 @@ impl TurnDialog {
     pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
         ui.set_width(360.0);
         ui.heading("Turn canvas");
-        ui.weak("Counter-clockwise. Paint turns by its transform, so that it can be turned back without a loss.");
+        ui.weak(
+            "Counter-clockwise. Paint gets a transform, so it can be turned back without loss.",
+        );
         ui.horizontal(|ui| {
             let label = ui.label("Angle");
             let angle =

@@ -58,7 +58,8 @@ impl KeepDialog {
         ui.set_width(320.0);
         ui.heading("Keep selection");
         ui.weak(
-            "Under a name, with the document. A name that is there already gets the new selection.",
+            "Saved under a name with the document. If the name is taken, its selection is \
+             replaced.",
         );
         ui.horizontal(|ui| {
             let label = ui.label("Name of selection");

@@ -34,9 +34,9 @@ type Choice = fn(&mut ViewAids) -> &mut bool;
 
 const CHOICES: [(&str, &str, Choice); 6] = [
     ("Show grid", "Lines at equal distances over the picture", |aids| &mut aids.grid_shown),
-    ("Snap", "Dragged things snap to lines within eight points", |aids| &mut aids.snaps),
-    ("To guides", "As long as they are shown", |aids| &mut aids.to_guides),
-    ("To the grid", "As long as it is shown", |aids| &mut aids.to_grid),
+    ("Snap", "What you drag snaps to lines within eight points", |aids| &mut aids.snaps),
+    ("To guides", "While they are shown", |aids| &mut aids.to_guides),
+    ("To the grid", "While it is shown", |aids| &mut aids.to_grid),
     ("To the canvas", "Its edges and its middle", |aids| &mut aids.to_canvas),
     ("To layers", "The edges and middles of what other layers hold", |aids| &mut aids.to_layers),
 ];

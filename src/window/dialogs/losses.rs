@@ -21,7 +21,10 @@ impl Losses {
         ui.set_width(420.0);
         ui.heading("Save as a Photoshop file?");
         ui.label("Other programs show live layers as pixels. A project (.ora) keeps everything.");
-        ui.label("When you open it here again, everything is live, unless another program saved the file in between.");
+        ui.label(
+            "When you open it here again, everything is live, unless another program has \
+                  saved the file.",
+        );
         let notes = saving.encoded.iter().flat_map(|encoded| &encoded.notes);
         list(ui, 160.0).show(ui, |ui| notes.for_each(|note| drop(ui.label(note))));
         match buttons(ui, "Save", true) {

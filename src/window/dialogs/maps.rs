@@ -38,7 +38,7 @@ impl MapsDialog {
         ui.set_width(340.0);
         ui.heading("Export maps of the shape");
         let Some(surface) = session.shown().and_then(|document| document.surface.as_ref()) else {
-            ui.label("This document has no shape. Layer › Give it a shape… makes one.");
+            ui.label("This document has no shape. Make one (Layer, Give it a shape…).");
             return super::close(ui);
         };
         ui.weak(format!("{} pixels; the coverage is kept as alpha", surface.size()));

@@ -52,7 +52,7 @@ impl CommandPalette {
         self.at = self.at.min(found.len().saturating_sub(1));
         let mut chosen = enter.then(|| found.get(self.at)).flatten().copied();
         if found.is_empty() {
-            ui.weak(format!("Nothing is called “{}”", self.typed.trim()));
+            ui.weak(format!("Nothing found for “{}”", self.typed.trim()));
         }
         list(ui, 360.0).auto_shrink([false, true]).show(ui, |ui| {
             for (i, entry) in found.iter().enumerate() {

@@ -105,8 +105,7 @@ impl ShapeDialog {
             radio(ui, &mut self.each, PartFor::Color, text)
         });
         ui.add_enabled_ui(self.traits.colors > 0, |ui| {
-            let hint =
-                "Areas of one color that are apart, such as two eyes, become parts of their own";
+            let hint = "Separate areas of one color, such as two eyes, become separate parts";
             radio(ui, &mut self.each, PartFor::Place, "A part for each place").on_hover_text(hint);
         });
         self.preset = presets(ui, self.preset).unwrap_or(self.preset);
@@ -135,8 +134,8 @@ impl ShapeDialog {
                  figure (W or L), then Layer, New part, Inflate selection.",
             ),
             _ => Some(
-                "There is no drawing yet: a shape is made of what a layer covers. Paint a figure on a layer without \
-                 a background, or begin with a body: Layer, New part, Sphere.",
+                "There is no drawing yet. A shape is made from what a layer covers: paint a figure \
+                 on a layer without a background, or begin with a body (Layer, New part, Sphere).",
             ),
         }
     }

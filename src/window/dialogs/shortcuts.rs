@@ -28,7 +28,7 @@ pub const ON_CANVAS: [(&str, &str); 12] = [
     ("Re-pin an anchor", "Shift and drag with the anchor tool"),
     ("Remove an anchor", "Alt and click with the anchor tool"),
     ("Scale, turn an image", "Shift, Ctrl and drag with the image tool"),
-    ("Give a stroke up", "Escape"),
+    ("Cancel a stroke", "Escape"),
 ];
 
 impl ShortcutsDialog {

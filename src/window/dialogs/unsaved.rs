@@ -18,7 +18,7 @@ impl UnsavedDialog {
         let title =
             session.open_documents.get(self.index).map_or_else(String::new, |open| open.title());
         ui.heading(format!("Save the changes to “{title}”?"));
-        ui.label("What is not saved is lost when the document is closed.");
+        ui.label("Unsaved changes are lost when the document is closed.");
         ui.add_space(4.0);
         ui.horizontal(|ui| match (ui.button("Do not save").clicked(), buttons(ui, "Save", true)) {
             (true, _) => DialogAnswer::Discard(self.then),

@@ -17,7 +17,7 @@ const KINDS: [(AssistantKind, &str, &str); 6] = [
     (
         AssistantKind::OnePoint,
         "1-point perspective",
-        "Click the vanishing point; level and upright lines go too",
+        "Click the vanishing point; level and upright lines are followed too",
     ),
     (
         AssistantKind::TwoPoint,
@@ -44,7 +44,7 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         }
     }
     ui.add_space(6.0);
-    let hint = "How strongly strokes are drawn to assistants: 0 not at all, 1 fully";
+    let hint = "How strongly strokes follow assistants: 0 not at all, 1 fully";
     let magnetism = NumberField::new("Magnetism", crate::math::UNIT, hint);
     if let Some(changed) = magnetism.inline(ui, aids.magnetism, 80.0) {
         set(ViewAids { magnetism: changed.to, ..aids });

@@ -174,7 +174,7 @@ fn grain(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     );
     number(
         ui,
-        NumberField::new("Strength", 0.0..=1.0, "How much paint its valleys lose"),
+        NumberField::new("Strength", 0.0..=1.0, "How much paint the valleys lose"),
         &mut to.strength,
     );
     number(
@@ -248,7 +248,7 @@ fn stroke(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
             let number = NumberField::new(
                 "Weight",
                 0.0..=0.98,
-                "Share of the past that is left after ten pixels",
+                "How much of the earlier path still counts after ten pixels",
             );
             number.row(ui, weight).map(|c| Stabilizer::Average { weight: c.to })
         }
@@ -278,8 +278,12 @@ fn stroke(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
         .map(|blend| Brush { blend, ..brush.clone() });
     let erases = check(ui, "Erases", "The stroke erases", brush.erases);
     let erases = erases.map(|erases| Brush { erases, ..brush.clone() });
-    let keeps =
-        check(ui, "Keeps alpha", "The stroke shows only where there is paint", brush.keeps_alpha);
+    let keeps = check(
+        ui,
+        "Keeps alpha",
+        "The stroke is visible only where there is paint",
+        brush.keeps_alpha,
+    );
     let keeps = keeps.map(|keeps_alpha| Brush { keeps_alpha, ..brush.clone() });
     calmed.or(blended).or(erases).or(keeps)
 }

@@ -25,15 +25,14 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     );
     to =
         field.px().inline(ui, now.size, 70.0).map(|c| LiquifySettings { size: c.to, ..now }).or(to);
-    let hint =
-        "How much a dab does; a push at 1 goes as far as the pen. Lighter pressure does less";
+    let hint = "Strength of a dab; a push at 1 goes as far as the pen. Lighter pressure does less";
     let field = NumberField::new("Strength", LiquifySettings::STRENGTH, hint);
     to = field
         .inline(ui, now.strength, 60.0)
         .map(|c| LiquifySettings { strength: c.to, ..now })
         .or(to);
     let mut next = now;
-    let hint = "Nothing but the object under the first dab is displaced";
+    let hint = "Only the object under the first dab is displaced";
     if check_box(ui, &mut next.one_object, "Keep to one object").on_hover_text(hint).changed() {
         to = Some(LiquifySettings { one_object: next.one_object, ..now });
     }

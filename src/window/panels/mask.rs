@@ -93,7 +93,7 @@ pub fn show(ui: &mut Ui, layer: &Layer, on_mask: bool, setter: &mut LayerSetter)
         setter.set(Property::MaskInverted { on }, true);
     }
     if let Some(on) =
-        check(ui, "Use mask", "If off, the layer is shown without its mask", !mask.disabled)
+        check(ui, "Use mask", "Turn off to show the layer without its mask", !mask.disabled)
     {
         setter.set(Property::MaskDisabled { on: !on }, true);
     }

@@ -92,7 +92,8 @@ pub fn shading(
         );
     }
     if shading.model.bounces() {
-        let hint = "How often rays that meet the surface itself are sent on; 0 looks at the environment at once";
+        let hint = "How often rays that meet the surface are reflected again; 0 shows the \
+                    environment only";
         let most = *Shading::BOUNCES.end() as f32;
         let number = NumberField::new("Bounces", 0.0..=most, hint).decimals(0);
         setter.take(
@@ -320,7 +321,7 @@ fn features(ui: &mut Ui, features: &Features, setter: &mut LayerSetter) {
     let changed =
         NumberField::new("Blur", 0.0..=20.0, "Blur of the normals, px").row(ui, scale.blur_px);
     setter.take(changed.map(|c| c.map(|blur_px| with(FeatureScale { blur_px, ..scale }))));
-    let hint = "0 all features, 1 those along the light, −1 those across it";
+    let hint = "0: all features, 1: those along the light, −1: those across it";
     let changed = NumberField::new("Direction", -1.0..=1.0, hint).row(ui, features.lambda);
     setter.take(changed.map(|c| {
         c.map(|lambda| Property::Features { features: Features { lambda, ..features.clone() } })
@@ -348,7 +349,7 @@ pub fn radiance_scaling(ui: &mut Ui, scaling: &RadianceScaling, setter: &mut Lay
     }
     features(ui, &scaling.features, setter);
     if scaling.features.lambda != 0.0 {
-        title(ui, "Light that the direction refers to");
+        title(ui, "The light that the direction refers to");
         let changed = ball(ui, "Direction of the light", scaling.light);
         setter.take(changed.map(|c| c.map(|light| Property::ScalingLight { light })));
     }

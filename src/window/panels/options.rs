@@ -76,7 +76,8 @@ fn bending(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let has_surface = session.shown().is_none_or(|document| document.surface.is_some());
     if !has_surface && operator != Operator::None {
         ui.colored_label(ui.visuals().warn_fg_color, "No surface here: marks stay flat");
-        let hint = "Makes a shape of what the drawing covers, so that marks bend over it and light falls on it";
+        let hint = "Makes a shape from what the drawing covers, so that marks bend over it and \
+                    light falls on it";
         if ui.button("Give it a shape…").on_hover_text(hint).clicked() {
             requests.request(WindowRequest::ShapeDialog);
         }
@@ -91,7 +92,7 @@ fn of_tool(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             brush(ui, session, requests);
             symmetry(ui, session, requests);
             let mut by_speed = session.tools.presses_by_speed;
-            let hint = "A mouse, or a finger without pressure, presses less the faster it moves";
+            let hint = "A mouse, or a finger without pressure, presses less when it moves faster";
             if check_box(ui, &mut by_speed, "Pressure from speed").on_hover_text(hint).changed() {
                 requests.act(Action::Hand(HandAction::PressBySpeed { on: by_speed }));
             }

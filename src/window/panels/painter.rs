@@ -89,7 +89,7 @@ pub fn terms(ui: &mut Ui, painter: Painter, setter: &mut LayerSetter) {
 /// The shadows that lamps cast.
 pub fn shadows(ui: &mut Ui, shadows: Shadows, setter: &mut LayerSetter) {
     title(ui, "Shadows");
-    let hint = "Parts throw shadows on what lies behind them";
+    let hint = "Parts cast shadows on what lies behind them";
     if let Some(on) = check(ui, "Cast shadows", hint, shadows.on) {
         setter.set(Property::Shadowed { shadows: Shadows { on, ..shadows } }, true);
     }

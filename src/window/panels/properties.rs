@@ -141,7 +141,7 @@ fn image(ui: &mut Ui, image: &PlacedImage, setter: &mut LayerSetter) {
         let number = NumberField::new(
             "Sharpness",
             0.5..=8.0,
-            "How sharply the influence of the anchors is separated",
+            "How sharply the anchors divide the layer between them",
         );
         setter.take(number.row(ui, power).map(|c| c.map(|to| Property::Power { to })));
     }

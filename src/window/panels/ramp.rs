@@ -20,7 +20,7 @@ pub fn show(ui: &mut Ui, stops: &[GradientStop]) -> Option<ValueChange<Vec<Gradi
         ui.horizontal(|ui| {
             let color = colors::button(ui, &format!("Color of stop {}", i + 1), stop.color);
             let color = color.map(|c| c.map(|color| with(i, GradientStop { color, ..*stop })));
-            let place = format!("Place of stop {}", i + 1);
+            let place = format!("Position of stop {}", i + 1);
             let t = NumberField::new(&place, 0.0..=1.0, "0 at the first end, 1 at the second")
                 .field(ui, stop.t);
             let t = t.map(|c| c.map(|t| with(i, GradientStop { t, ..*stop })));

@@ -15,9 +15,9 @@ use eframe::egui::{Button, Ui};
 
 /// How a new selection is combined with the last, with labels and hints.
 const WAYS: [(SelectionMode, &str, &str); 4] = [
-    (SelectionMode::Replace, "New", "A new selection takes the place of the last"),
-    (SelectionMode::Add, "Add", "A new selection is added to the last (Shift)"),
-    (SelectionMode::TakeAway, "Take away", "A new selection is subtracted from the last (Alt)"),
+    (SelectionMode::Replace, "New", "A new selection replaces the last one"),
+    (SelectionMode::Add, "Add", "A new selection is added to the last one (Shift)"),
+    (SelectionMode::TakeAway, "Take away", "A new selection is subtracted from the last one (Alt)"),
     (SelectionMode::Intersect, "Intersect", "Only what is in both stays selected (Shift with Alt)"),
 ];
 
@@ -79,7 +79,7 @@ fn wand(ui: &mut Ui, select: SelectSettings) -> Option<SelectSettings> {
     let joined = check(
         ui,
         "Joined",
-        "Only what is joined to the pixel; else all of its color, everywhere",
+        "Only what is connected to the pixel; otherwise its color everywhere",
         select.joined,
     );
     joined.map(|joined| SelectSettings { joined, ..select }).or(to)
@@ -98,7 +98,7 @@ fn region(ui: &mut Ui, region: SurfaceRegion, select: SelectSettings) -> Option<
         set(softness()
             .inline(ui, region.softness, 60.0)
             .map(|c| SurfaceRegion { softness: c.to, ..region }));
-        let hint = "Only what is joined to the point; depth jumps part what they cross";
+        let hint = "Only what is connected to the point; depth jumps separate pieces";
         set(check(ui, "Joined", hint, region.contiguous)
             .map(|contiguous| SurfaceRegion { contiguous, ..region }));
     }

@@ -60,7 +60,8 @@ fn touching(ui: &mut Ui, now: ShapeSettings) -> Option<ShapeSettings> {
         to = Some(ShapeSettings { normal, ..now });
     }
     response.on_hover_text(
-        "The way that touches turn the surface: drag the ball. Alt-click takes it from the surface",
+        "The direction that touches give to the surface: drag the ball. Alt-click takes it from \
+         the surface",
     );
     let [right, up] = leaning(now.normal);
     let number = |label, hint| NumberField::new(label, -88.0..=88.0, hint).degrees();
@@ -77,7 +78,7 @@ fn touching(ui: &mut Ui, now: ShapeSettings) -> Option<ShapeSettings> {
     ui.add_space(6.0);
     let field = NumberField::new("Size", Touch::RADIUS, "Radius of a touch").px();
     to = field.inline(ui, now.radius, 70.0).map(|c| ShapeSettings { radius: c.to, ..now }).or(to);
-    let hint = "How far a touch is felt; 0: to the rim of the part and to the next touches";
+    let hint = "How far a touch reaches; 0: to the rim of the part and to the next touches";
     let field = NumberField::new("Reach", Touch::REACH, hint).px();
     field.inline(ui, now.reach, 70.0).map(|c| ShapeSettings { reach: c.to, ..now }).or(to)
 }
@@ -129,11 +130,11 @@ fn about(tool: SculptTool) -> &'static str {
     match tool {
         SculptTool::Raise => "Builds the surface up (Ctrl lowers)",
         SculptTool::Lower => "Digs into it (Ctrl raises)",
-        SculptTool::Smooth => "Toward the mean of what is around (Shift with any tool)",
+        SculptTool::Smooth => "Toward the mean of the surroundings (Shift with any tool)",
         SculptTool::Flatten => "Toward the plane under the first dab",
         SculptTool::Crease => "A sharp line inward",
-        SculptTool::Pinch => "Draws heights together toward the middle",
-        SculptTool::Scrape => "Lowers only what stands out",
+        SculptTool::Pinch => "Pulls heights together toward the middle",
+        SculptTool::Scrape => "Lowers only what sticks out",
     }
 }
 

@@ -127,8 +127,11 @@ fn memory_menu(
         ];
         egui::Grid::new("memory").num_columns(2).show(ui, |ui| {
             let others = used.all.total() - used.front.total();
-            let program = memory.bytes().map(|bytes| ("The program in all", bytes));
-            let rows = rows.into_iter().chain((others > 0).then_some(("Other documents", others))).chain(program);
+            let program = memory.bytes().map(|bytes| ("The whole program", bytes));
+            let rows = rows
+                .into_iter()
+                .chain((others > 0).then_some(("Other documents", others)))
+                .chain(program);
             for (name, bytes) in rows {
                 ui.label(name);
                 ui.label(bytes_text(bytes));
@@ -137,17 +140,19 @@ fn memory_menu(
         });
         ui.separator();
         let percent = *KEPT_SHARE.start() * 100.0..=*KEPT_SHARE.end() * 100.0;
-        let hint = "Beyond this share of the machine's memory old steps of the history let go of what they were \
-                    rendered to; undone, they are rendered again";
+        let hint = "Share of the machine's memory. Beyond it, old steps of the history drop their \
+                    rendered pictures, which are rendered again on undo";
         let field = NumberField::new("Keep at most", percent, hint).percent();
         if let Some(change) = field.row(ui, (kept_share * 100.0).round()) {
             requests.request(WindowRequest::KeptShare(change.map(|percent| percent / 100.0).to));
         }
-        let (ceiling, machine) = (bytes_text(memory.ceiling(kept_share)), bytes_text(memory.machine_bytes()));
-        ui.weak(format!("{ceiling} of {machine} for speed alone, in all documents"));
+        let (ceiling, machine) =
+            (bytes_text(memory.ceiling(kept_share)), bytes_text(memory.machine_bytes()));
+        ui.weak(format!("{ceiling} of {machine} for caches, in all documents"));
     });
     let about = format!(
-        "Memory of this document: {} painted, {} of pictures, {} of maps, {} kept for speed. Click for more",
+        "Memory of this document: {} painted, {} of pictures, {} of maps, {} of caches. Click for \
+         more",
         bytes_text(painted),
         bytes_text(pictures),
         bytes_text(maps),

@@ -67,8 +67,8 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     }
     ui.weak(format!("{} pixels, {:.0} px deep", surface.size(), surface.depth_range_px()));
     ui.horizontal_wrapped(|ui| {
-        let hint =
-            "Live layers bend over the new shape: a painting on another object, or in another pose";
+        let hint = "Live layers bend over the new shape: the same painting on another object or in \
+             another pose";
         if ui.button("Replace maps…").on_hover_text(hint).clicked() {
             requests.request(WindowRequest::ReplaceMapsDialog);
         }
@@ -90,17 +90,18 @@ fn about(view: SurfaceView) -> &'static str {
         SurfaceView::Weights => "How the anchors of the selected layer share the surface",
         SurfaceView::FlowDepth => "How a texture on the surface is compressed",
         SurfaceView::FlowNormals => "How a reflection is compressed",
-        SurfaceView::Unwrapped => "The painting in the plane of the unwrapped surface",
+        SurfaceView::Unwrapped => "The painting on the unwrapped surface",
         SurfaceView::FlowOperator => "How the selected layer's operator compresses its image",
         SurfaceView::Scaling => {
-            "Radiance scaling: how much light of each brightness is raised on convex and lowered on concave parts"
+            "Radiance scaling: how much light of each brightness is raised on convex parts and \
+             lowered on concave ones"
         }
         SurfaceView::Clay => "Unpainted, in even light: the form alone",
         SurfaceView::Contours => {
             "Lines of equal depth, as on a map: where they are close the surface is steep"
         }
         SurfaceView::Lit => {
-            "The surface and a ball under one light: if they agree, the maps are the right way round"
+            "The surface and a ball under one light: if they agree, the maps are read correctly"
         }
     }
 }

@@ -98,7 +98,8 @@ fn meshes(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             }
         }
     });
-    let hint = "Lays a grid over the layer whose points are dragged; Shift chooses several. Enter applies it";
+    let hint = "Lays a grid over the layer: drag its points; Shift selects several. Enter applies \
+                it";
     menu.response.on_hover_text(hint);
 }
 
@@ -110,10 +111,10 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let locked = |id| open.document().layer(id).is_none_or(|layer| layer.lock == LayerLock::All);
     let chosen = open.outermost_chosen();
     if chosen.is_empty() && !of_shape {
-        return drop(ui.weak("Choose layers to move, scale and turn them"));
+        return drop(ui.weak("Select layers to move, scale and turn them"));
     }
     if !of_shape && chosen.iter().any(|id| locked(*id)) {
-        return drop(ui.weak("What is locked cannot be transformed"));
+        return drop(ui.weak("Locked layers cannot be transformed"));
     }
     let (Some(gizmo), Some(before)) = (
         open.gizmo(session.tools.transform.target),
@@ -123,7 +124,7 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     };
     let (Some(was), Some(before)) = (GizmoNumbers::of(&gizmo), GizmoNumbers::of(&before)) else {
         return drop(ui.weak(
-            "In perspective: drag its corners with Ctrl, or remove the transform for numbers",
+            "In perspective: drag the corners with Ctrl, or remove the transform to type numbers",
         ));
     };
     let Some(edited) = numbers(ui, was) else { return };

@@ -203,7 +203,8 @@ impl MainWindow {
             match self.session.active().is_some_and(is_meant) {
                 true => requests.act(action),
                 false => self.jobs.say(
-                    "What was set meanwhile was not done, since the layers are others now.".into(),
+                    "A setting from the meantime was dropped, since the layers have changed."
+                        .into(),
                 ),
             }
         }

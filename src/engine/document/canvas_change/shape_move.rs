@@ -58,8 +58,8 @@ impl Document {
             .ok_or("A layer cannot follow the shape there.")?;
         let maps = self.maps_surface().map(|maps| maps.transformed(self.size, map)).transpose();
         let maps = maps.map_err(|error| match error {
-            SurfaceError::Empty => "Nothing of the shape would be left on the canvas.".to_owned(),
-            other => format!("The shape stays where it is: {other}."),
+            SurfaceError::Empty => "No part of the shape would be left on the canvas.".to_owned(),
+            other => format!("The shape cannot be moved: {other}."),
         })?;
         let source = self.surface_source.as_ref().zip(maps.as_ref());
         let source: Option<SurfaceSource> = source.map(|(source, maps)| source.placed_as(maps));
@@ -93,7 +93,7 @@ impl Document {
         let parts: Vec<Arc<Part>> = parts;
         let next = if parts.is_empty() { bare } else { bare.with_parts(parts).with_homes_of(self) };
         if next.surface.is_none() {
-            return Err("Nothing of the shape would be left on the canvas.".into());
+            return Err("No part of the shape would be left on the canvas.".into());
         }
         Ok(next.with_selections_found())
     }
@@ -258,7 +258,7 @@ mod tests {
         let start = on_dome();
         let away = PlaneMap::translation(vec2(5000.0, 0.0));
         assert!(
-            start.with_shape_through(&away).is_err_and(|why| why.contains("Nothing of the shape"))
+            start.with_shape_through(&away).is_err_and(|why| why.contains("No part of the shape"))
         );
         assert!(
             under(paint())

@@ -61,7 +61,13 @@ pub fn radiance_scaling(radiance: &RadianceScaling) -> Fit {
     scaling(&radiance.scaling)?;
     features(&radiance.features)?;
     reference(radiance.reference)?;
-    if Light::points(radiance.light) { Ok(()) } else { Err("the light points nowhere".into()) }
+    if Light::points(radiance.light) {
+        Ok(())
+    } else {
+        Err("the direction of the light has no \
+                                                            length"
+            .into())
+    }
 }
 
 fn scaling(scaling: &Scaling) -> Fit {
@@ -99,7 +105,7 @@ fn light(light: &Light) -> Fit {
     within("the intensity of a light", light.intensity, &Light::INTENSITY)?;
     match light.kind {
         LightKind::Directional { direction } if Light::points(direction) => Ok(()),
-        LightKind::Directional { .. } => Err("a light points nowhere".into()),
+        LightKind::Directional { .. } => Err("the direction of a light has no length".into()),
         LightKind::Point { position } => position
             .to_array()
             .iter()

@@ -70,7 +70,7 @@ pub fn strokes(old: &[Arc<Stroke>], new: &[Arc<Stroke>]) -> Fit {
 
 fn stroke(stroke: &Stroke) -> Fit {
     if stroke.brush().mode.is_retouching() {
-        return Err("smudge, blur and clone make no strokes of a stroke layer".into());
+        return Err("smudge, blur and clone do not work on stroke layers".into());
     }
     at_most("readings of the pen", stroke.samples().len(), Stroke::MOST_SAMPLES)?;
     brush(stroke.brush())?;
@@ -202,7 +202,7 @@ pub fn image(image: &PlacedImage) -> Fit {
         Weights::Shepard { power } => {
             within("the sharpness of the anchors", power, &Weights::POWER)
         }
-        Weights::Segment => Err("the anchors of an image share by their distances".into()),
+        Weights::Segment => Err("the anchors of an image are weighted by distance".into()),
     }
 }
 

@@ -44,7 +44,7 @@ pub fn fit(document: &Document, before: Option<&Document>) -> Fit {
             letters.map_err(|why| format!("{why}."))?;
             if name.is_empty() || !names.insert(name) {
                 return Err(format!(
-                    "Two selections would be called “{name}”, or one nothing at all."
+                    "Two selections would be called “{name}”, or one would have no name."
                 ));
             }
         }

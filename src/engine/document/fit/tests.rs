@@ -98,7 +98,10 @@ fn pixels_that_no_one_picture_holds_are_refused() {
 fn too_many_layers_groups_and_strokes_are_refused() {
     let crowd = |n: usize| of((0..n).map(|_| fill()).collect());
     assert!(crowd(2_100).fits(None).is_ok());
-    assert_eq!(crowd(10_001).fits(None), Err("Layers would be 10001; there may be 10000.".into()));
+    assert_eq!(
+        crowd(10_001).fits(None),
+        Err("Layers would be 10001; at most 10000 are allowed.".into())
+    );
     let nested = |n: usize| {
         let into = |inner: Layer, _| {
             Layer::new(
@@ -116,7 +119,7 @@ fn too_many_layers_groups_and_strokes_are_refused() {
         of(vec![Layer::new("Ink", Content::Strokes(Live::new(list)))])
             .fits(None)
             .unwrap_err()
-            .contains("bake some")
+            .contains("turn some into pixels")
     );
 }
 
@@ -172,7 +175,7 @@ fn what_lies_on_itself_in_a_circle_or_on_no_part_is_refused_where_it_is_put_ther
     assert_eq!(with(vec![on("a", "ball"), on("b", "a")]).fits(None), Ok(()));
     for (parts, why) in [
         (vec![on("a", "a")], "“a” lies on itself"),
-        (vec![on("a", "nose")], "“a” lies on “nose”, and there is no such part"),
+        (vec![on("a", "nose")], "“a” lies on “nose”, but there is no such part"),
         (
             vec![on("a", "b"), on("b", "a")],
             "“a” lies on “b”, which lies on no part with a form of its own",

@@ -60,13 +60,13 @@ impl LayerTransform {
                 [*e, *f].into_iter().try_for_each(place)?;
                 self.map(Size::new(1, 1))
                     .map(|_| ())
-                    .ok_or_else(|| "cannot be inverted: it leaves no area".into())
+                    .ok_or_else(|| "cannot be inverted: it has no area".into())
             }
             TransformShape::Quad(corners) => {
                 corners.iter().flat_map(|corner| corner.to_array()).try_for_each(place)?;
                 self.map(Size::new(1, 1))
                     .map(|_| ())
-                    .ok_or_else(|| "is no convex quadrilateral".into())
+                    .ok_or_else(|| "is not a convex quadrilateral".into())
             }
             TransformShape::Mesh(mesh) => mesh.fits(),
         }

@@ -39,7 +39,7 @@ impl Document {
         };
         let drawn = drawn.filter(|tiles| !tiles.bounds().is_empty());
         let (Some(drawn), false) = (drawn, of_it.is_empty()) else {
-            return Err("No part has its outline from this layer.");
+            return Err("No part was made from this layer.");
         };
         let (parts, outlines): (Vec<&Arc<Part>>, Vec<PieceOutline>) = of_it.into_iter().unzip();
         let (pieces, rest) = Cut::of(&drawn, outlines).pieces();
@@ -91,14 +91,17 @@ impl Document {
         let is_grouped = !self.layers.iter().any(|layer| layer.id == drawing.id);
         match () {
             _ if self.home_of(drawing.id).is_some() => {
-                Err("This layer lies on a part already, and goes with it.")
+                Err("This layer is already attached to a part and moves with it.")
             }
-            _ if !is_paint => Err("Only a paint layer can be cut: bake this one first."),
-            _ if is_grouped => Err("This layer is in a group: take it out first."),
+            _ if !is_paint => {
+                Err("Only a paint layer can be cut. Turn this one into pixels first \
+                                   (Layer, Turn layer into pixels).")
+            }
+            _ if is_grouped => Err("This layer is in a group. Move it out first."),
             _ if drawing.mask.is_some() && drawing.transform.is_some() => {
-                Err("This layer has a mask and a transform: apply the transform first.")
+                Err("This layer has a mask and a transform. Apply the transform first.")
             }
-            _ if !drawing.visible => Err("This layer is hidden: show it first."),
+            _ if !drawing.visible => Err("This layer is hidden. Show it first."),
             _ => Ok(()),
         }
     }

@@ -22,7 +22,7 @@ impl Document {
             let shown: String = part.name.chars().take(60).collect();
             part.fits().map_err(|why| format!("“{shown}”: {why}."))?;
             if self.parts.list[..i].iter().any(|other| other.id == part.id) {
-                return Err(format!("“{shown}”: another part has the id “{}” as well.", part.id));
+                return Err(format!("“{shown}”: another part also has the id “{}”.", part.id));
             }
             let lay = before.and_then(|before| before.parts.part(&part.id)).map(|part| part.on());
             if lay != Some(part.on()) {
@@ -32,7 +32,7 @@ impl Document {
                 && !self.selections.iter().any(|kept| kept.name == *name)
             {
                 return Err(format!(
-                    "“{shown}”: its outline is the selection “{name}”, which is not kept."
+                    "“{shown}”: its outline is the selection “{name}”, which no longer exists."
                 ));
             }
         }
@@ -65,7 +65,7 @@ impl Parts {
             return Some("lies on itself".into());
         }
         if self.part(on).is_none() {
-            return Some(format!("lies on “{on}”, and there is no such part"));
+            return Some(format!("lies on “{on}”, but there is no such part"));
         }
         let body = self.body_of(on)?;
         body.on()
@@ -125,7 +125,7 @@ impl Part {
             .iter()
             .try_for_each(|v| within("the matrix", *v, &Self::MATRIX))?;
         if PlaneMap::affine(self.matrix.to_cols_array().map(f64::from)).is_none() {
-            return Err("the matrix cannot be inverted: it leaves no area".into());
+            return Err("the matrix cannot be inverted: it has no area".into());
         }
         if let Some(outline) = self.outline() {
             outline.fits()?;
@@ -247,7 +247,13 @@ impl PartKind {
                         .to_array()
                         .iter()
                         .try_for_each(|v| within("a light", *v, &ProfilePicture::LIGHT))?;
-                    if Light::points(light) { Ok(()) } else { Err("a light points nowhere".into()) }
+                    if Light::points(light) {
+                        Ok(())
+                    } else {
+                        Err("the direction of a light has no \
+                                                                   length"
+                            .into())
+                    }
                 })
             }
             PartKind::Maps(maps) => maps.source.fits(),

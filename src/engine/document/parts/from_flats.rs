@@ -64,8 +64,8 @@ impl FlatParts {
         };
         let least = LEAST_SHARE * 100.0;
         Some(format!(
-            "{areas} left without a part: a part covers at least {least} % of the picture, and at most {MOST_COLOURS} \
-             are made."
+            "{areas} left without a part: a part covers at least {least} % of the picture, and \
+             there are at most {MOST_COLOURS} parts."
         ))
     }
 }

@@ -142,7 +142,7 @@ impl Document {
             "take the areas of their colors that are"
         };
         (!names.is_empty()).then(|| {
-            format!("{} {is} nearest: the place it had has another color now.", names.join(", "))
+            format!("{} {is} nearest: its former place has another color now.", names.join(", "))
         })
     }
 

@@ -356,7 +356,7 @@ impl Parameters for SelectiveColor {
                 }
             });
         }
-        let hint = "Percent of all ink, not of the ink that a color has";
+        let hint = "Percent of all ink, not of the color's own ink";
         v.flag(named("absolute", "Absolute", hint), false, &mut self.absolute);
     }
 }

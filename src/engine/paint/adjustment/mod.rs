@@ -87,13 +87,13 @@ adjustments! {
         => ("Hue/saturation", "Hue, saturation and lightness, of all colors or of a range; or one hue"),
     ColorBalance = "color-balance"
         => ("Color balance", "Warmer or cooler, in shadows, mid-tones and highlights"),
-    BlackWhite = "black-white" => ("Black & white", "Grays, by how bright each hue shall be"),
+    BlackWhite = "black-white" => ("Black & white", "Grays, with a brightness for each hue"),
     PhotoFilter = "photo-filter" => ("Photo filter", "A colored glass in front of the picture"),
     ChannelMixer = "channel-mixer" => ("Channel mixer", "Each channel as a sum of all three"),
     ColorLookup = "color-lookup" => ("Color look-up", "The colors of a .cube file"),
     Invert = "invert" => ("Invert", "Light becomes dark, and each color its complement"),
     Posterise = "posterise" => ("Posterize", "A few tones of each channel"),
-    Threshold = "threshold" => ("Threshold", "Black and white, without anything between"),
+    Threshold = "threshold" => ("Threshold", "Black and white only"),
     GradientMap = "gradient-map" => ("Gradient map", "A color of a gradient for each brightness"),
     SelectiveColor = "selective-color"
         => ("Selective color", "Cyan, magenta, yellow and black for each range of colors"),

@@ -115,7 +115,7 @@ fn what_has_signs_or_is_cut_short_gets_a_sentence() {
     let said = |bytes: &[u8]| {
         decode(Path::new("a.tif"), bytes, &Budget::default()).err().unwrap().to_string()
     };
-    assert!(said(&signed).contains("have a sign"));
+    assert!(said(&signed).contains("are signed"));
     let tags: &[(u16, &[u16])] =
         &[(PHOTOMETRIC, &[1]), (BITS, &[32]), (SAMPLES, &[1]), (FORMAT, FLOATS)];
     assert!(said(&file(false, [200, 100], tags, &[0; 8])).contains("a.tif"));
@@ -233,7 +233,7 @@ fn a_fax_of_group_3_is_read_with_and_without_its_first_mark_and_from_either_end_
         &file(false, [8, 2], &in_two_dimensions, &marked),
         &Budget::default(),
     );
-    assert!(said.err().unwrap().to_string().contains("fax of group 3 in two dimensions"));
+    assert!(said.err().unwrap().to_string().contains("two-dimensional group 3 fax"));
 }
 
 #[test]

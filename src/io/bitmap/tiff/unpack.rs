@@ -36,7 +36,7 @@ pub fn readable(
         FAX3 if options & 1 == 1 => {
             return Err(Error::unsupported(
                 file,
-                "TIFF: fax of group 3 in two dimensions; save it as group 4 or LZW",
+                "two-dimensional group 3 fax in a TIFF; save it as group 4 or LZW",
             ));
         }
         FAX3 => PLAIN,
@@ -48,7 +48,7 @@ pub fn readable(
     let in_tiles = directory.place(bytes, Tag::TileOffsets.to_u16()).is_some();
     let tags = if in_tiles { TILES } else { STRIPS };
     let mut list = |tag| decoder.get_tag_u64_vec(tag);
-    let failed = |_| Error::decode(file, "the TIFF does not tell where its pieces are");
+    let failed = |_| Error::decode(file, "the TIFF does not say where its pieces are");
     let (starts, lengths) = (list(tags[0]).map_err(failed)?, list(tags[1]).map_err(failed)?);
     let piece = Piece::of(decoder);
     budget.room(

@@ -56,8 +56,7 @@ pub fn check(
     }
     let most = most_visits(budget);
     if visits > most {
-        let reason =
-            format!("the JPEGs within the TIFF go over {visits} pixels; {most} are allowed");
+        let reason = format!("the JPEGs in the TIFF visit {visits} pixels; {most} are allowed");
         return Err(Error::too_large(file, reason).with_remedy(Remedy::MorePixels));
     }
     Ok(())

@@ -83,7 +83,7 @@ pub fn carried<'a>(
     let left_out: Vec<&str> =
         LEFT_OUT.iter().filter(|(key, _)| is_on(key)).map(|(_, word)| *word).collect();
     if !left_out.is_empty() {
-        carried.notes.push(format!("{} not taken from Photoshop", left_out.join(", ")));
+        carried.notes.push(format!("{} not imported from Photoshop", left_out.join(", ")));
     }
     carried
 }

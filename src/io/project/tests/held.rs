@@ -225,7 +225,7 @@ fn a_save_that_would_not_come_back_leaves_the_old_file() {
         let said =
             crate::save(&of(vec![bad]), &file, crate::Overwrite::Anything, &Progress::default());
         let said = said.err().map(|e| e.to_string()).unwrap_or_default();
-        assert!(said.contains("would not come back as it is") && said.contains(why), "{said}");
+        assert!(said.contains("would not open as it is") && said.contains(why), "{said}");
         assert!(std::fs::read(&file).unwrap() == old, "the old file stays");
         assert_eq!(
             std::fs::read_dir(folder.path()).unwrap().count(),

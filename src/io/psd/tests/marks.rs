@@ -67,7 +67,10 @@ fn labels_and_guides_of_photoshop_are_read_and_too_many_told() {
     let found = read(guides);
     assert_eq!(labels(&found.document), [LayerLabel::Purple]);
     assert_eq!(*found.document.guides, Guides { vertical: vec![2.0], horizontal: vec![1.5] });
-    assert_eq!(found.notes, ["1 of its guides are left out: they are too many, or too far away"]);
+    assert_eq!(
+        found.notes,
+        ["1 of its guides are left out: there are too many, or they are too far away"]
+    );
     // A count that the file does not hold, and another version.
     assert_eq!(read([head(u32::MAX), guide(32, 1)].concat()).document.guides.horizontal, [1.0]);
     assert!(read([2u32, 0, 0, 1].map(u32::to_be_bytes).concat()).document.guides.is_empty());

@@ -149,7 +149,7 @@ fn a_part_may_be_made_of_a_selection_in_whatever_order_they_stand() {
     assert!(unnamed.surface.is_some() && unnamed.fits(None) == Ok(()));
     assert_eq!(
         refused(&with("s2", json!([]))),
-        "r.json: surface.parts[0].outline.selection: is “s2”; there is no selection of that id"
+        "r.json: surface.parts[0].outline.selection: is “s2”; there is no selection with that id"
     );
     // It stays linked, and is a picture once the selection is gone.
     let gone = document.without_kept_selection("Spot").unwrap();

@@ -150,7 +150,7 @@ fn what_is_wrong_is_named_with_its_path() {
         "must be between",
     );
     let nowhere = json!({ "layer": "Flats", "at": [1, 2] });
-    says(json!({ "kind": "inflate", "outline": nowhere }), "has a place, but no color");
+    says(json!({ "kind": "inflate", "outline": nowhere }), "but no color");
     let far = json!({ "layer": "Flats", "color": "#c08040", "at": [1, 1e30] });
     says(json!({ "kind": "inflate", "outline": far }), "surface.parts[0].outline.at");
     says(json!({ "kind": "balloon" }), "must be one of inflate, bevel, primitive");
@@ -161,7 +161,7 @@ fn what_is_wrong_is_named_with_its_path() {
         json!({ "kind": "profiles", "pictures": [light] }),
         "it has 1 shadings; there must be 2 to 5",
     );
-    says(json!({ "kind": "profiles", "pictures": [light, light] }), "points nowhere");
+    says(json!({ "kind": "profiles", "pictures": [light, light] }), "no direction");
     says(
         json!({ "kind": "maps", "mask": { "file": "mask.png" } }),
         "neither a normal map nor a depth map",

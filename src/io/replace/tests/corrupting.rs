@@ -113,7 +113,7 @@ fn a_disk_that_gives_back_other_bytes_is_caught_before_anything_is_replaced() {
         &Progress::default(),
     )
     .unwrap_err();
-    assert!(said.to_string().contains("other bytes"), "{said}");
+    assert!(said.to_string().contains("different bytes"), "{said}");
     assert_eq!((fs.file(FILE).unwrap(), fs.names().len()), (OLD.to_vec(), 2));
     // The proof can fail: the same without reading back reports nothing, and the drawing is broken.
     let careless = CorruptingFs(disk());

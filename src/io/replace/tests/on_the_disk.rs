@@ -44,7 +44,7 @@ fn folders_and_links_that_lead_nowhere_are_refused() {
     symlink("nowhere", &link).unwrap();
     for keeps_previous in [false, true] {
         let terms = Terms { over: Overwrite::Forced, keeps_previous, reads: Vec::new() };
-        for (file, part) in [(link.as_path(), "leads nowhere"), (folder.path(), "is a folder")] {
+        for (file, part) in [(link.as_path(), "broken link"), (folder.path(), "is a folder")] {
             let said = put(file, NEW, terms.clone()).unwrap_err().to_string();
             assert!(said.contains(part), "{said}");
         }

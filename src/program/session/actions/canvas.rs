@@ -104,7 +104,7 @@ impl CanvasAction {
                 ("Crop to selection", cropped(size, selected.intersect(size.rect()))?)
             }
             CanvasAction::Trim {} => {
-                let nothing = || "Nothing is painted: there is nothing to trim to.".to_owned();
+                let nothing = || "There is no paint to trim to.".to_owned();
                 let painted = flatten(document, progress).ok_or_else(nothing)?;
                 let painted = CoverageGrid::of_alpha(&painted).covered().intersect(size.rect());
                 if painted.is_empty() {
@@ -125,11 +125,11 @@ impl CanvasAction {
             CanvasAction::Scale { width, height, filter } => {
                 let to = allowed(*width, *height)?;
                 if to == size {
-                    return Err("The picture has that size already.".into());
+                    return Err("The picture already has that size.".into());
                 }
                 let next = document
                     .resampled(to, *filter)
-                    .map_err(|why| format!("The picture stays as it is: {why}."));
+                    .map_err(|why| format!("The picture was not changed: {why}."));
                 return Ok(("Image size", next?));
             }
             CanvasAction::Turn { degrees } => {
@@ -145,7 +145,7 @@ impl CanvasAction {
             }
         };
         if change.is_none() {
-            return Err("The canvas is like that already.".into());
+            return Err("The canvas would stay the same.".into());
         }
         Ok((label, document.on_other_canvas(&change)?))
     }
@@ -165,7 +165,7 @@ fn near(area: Rect) -> Rect {
 
 fn cropped(from: Size, to: Rect) -> Result<CanvasChange, String> {
     let change =
-        CanvasChange::crop(from, near(to)).ok_or("The frame holds no pixel of the canvas.")?;
+        CanvasChange::crop(from, near(to)).ok_or("The frame contains no pixel of the canvas.")?;
     allowed(change.size().width, change.size().height)?;
     Ok(change)
 }

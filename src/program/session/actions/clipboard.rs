@@ -114,10 +114,10 @@ impl ClipboardAction {
     }
 }
 
-const NOTHING_COPIED: &str = "Nothing was copied yet.";
-const NO_LAYER: &str = "Choose a layer first.";
+const NOTHING_COPIED: &str = "Nothing has been copied yet.";
+const NO_LAYER: &str = "Select a layer first.";
 const NOTHING_THERE: &str = "The layer has nothing where you selected.";
-const LOCKED: &str = "The layer is locked: unlock it to cut from it.";
+const LOCKED: &str = "The layer is locked. Unlock it to cut from it.";
 
 /// What is selected, or all of the canvas.
 fn covered(document: &Document) -> CoverageGrid {
@@ -159,7 +159,7 @@ fn copy(document: &Document, ids: &[LayerId], merged: bool) -> Result<Copied, &'
     };
     let rect = CoverageGrid::of_alpha(&tiles).covered().intersect(document.size.rect());
     if rect.is_empty() && merged {
-        return Err("Nothing shows where you selected.");
+        return Err("Nothing is visible where you selected.");
     }
     let rgba = Arc::new(tiles.to_straight_rgba(rect));
     let deep = tiles.is_deep_in(rect).then(|| Arc::new(tiles.to_straight_deep(rect)));
@@ -171,7 +171,7 @@ fn cut(open: &mut OpenDocument) -> Result<Copied, &'static str> {
     let ids = open.outermost_chosen();
     if ids.iter().any(|id| document.layer(*id).is_some_and(|layer| layer.lock != LayerLock::None)) {
         return Err(if ids.len() > 1 {
-            "One of the layers is locked: unlock it to cut from it."
+            "One of the layers is locked. Unlock it to cut from it."
         } else {
             LOCKED
         });

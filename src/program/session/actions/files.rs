@@ -203,7 +203,7 @@ pub fn export_maps(
     terms: &Terms,
 ) -> Result<Vec<PathBuf>> {
     let no_shape =
-        || Error::unsupported(file, "the document has no shape whose maps could be exported");
+        || Error::unsupported(file, "the document has no shape, so it has no maps to export");
     let surface = document.surface.as_ref().ok_or_else(no_shape)?;
     ShapeFiles::new(file, maps, options, terms)?.write(surface)
 }

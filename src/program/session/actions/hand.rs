@@ -42,9 +42,7 @@ impl ReplayValue for Symmetry {
             Some("vertical") => Ok(Symmetry::Vertical),
             Some("horizontal") => Ok(Symmetry::Horizontal),
             Some("both") => Ok(Symmetry::Both),
-            Some(_) => {
-                Err("must be none, vertical, horizontal, both or how many times round".into())
-            }
+            Some(_) => Err("must be none, vertical, horizontal, both or a number of turns".into()),
             None => u32::read(value).map(|n| Symmetry::Radial(n.clamp(2, MOST_ROUND))),
         }
     }

@@ -347,7 +347,7 @@ fn adjust(session: &mut Session, layers: &LayerPaths, by: &ColorAdjustment, done
         (true, false) => open.show(by.label(), next),
         (false, _) => {
             open.forget_preview();
-            session.say("Choose a paint layer that is not locked, or add an adjustment layer.");
+            session.say("Select a paint layer that is not locked, or add an adjustment layer.");
         }
     }
 }

@@ -65,7 +65,7 @@ impl ReplayValue for InflationPreset {
             .and_then(|word| Inflation::PRESETS.iter().find(|(_, name)| *name == word));
         known
             .map(|(preset, _)| InflationPreset(*preset))
-            .ok_or_else(|| format!("is {value}, which is no preset"))
+            .ok_or_else(|| format!("is {value}, which is not a preset"))
     }
 }
 
@@ -214,7 +214,7 @@ impl PartAction {
 
 /// The document with its shape moved by a map of the canvas: a step, or a preview of one.
 fn take_along(open: &mut OpenDocument, by: [f64; 6], done: bool) -> Result<(), String> {
-    let map = PlaneMap::affine(by).ok_or("A shape cannot be made without area.")?;
+    let map = PlaneMap::affine(by).ok_or("A shape needs an area.")?;
     let next = open.document().with_shape_through(&map).inspect_err(|_| open.forget_preview())?;
     match done {
         true => drop(open.commit("Transform shape", next)),

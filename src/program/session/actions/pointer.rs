@@ -263,10 +263,12 @@ fn works_in_place(tool: ToolKind, open: &OpenDocument) -> Result<Document, &'sta
     }
     if is_warped {
         return Err(
-            "A mesh or liquify displaces the layer: apply it (Edit, Transform), or remove it, to work on it.",
+            "A mesh or liquify displaces the layer. Apply or remove it (Edit, Transform layer) to \
+             work on the layer.",
         );
     }
-    Err("The layer is skewed by its transform; bake it, or remove the transform, to work on it.")
+    Err("The layer is skewed by its transform. Apply or remove the transform (Edit, Transform \
+         layer) to work on the layer.")
 }
 
 fn take(session: &mut Session, outcome: Outcome) {

@@ -110,7 +110,7 @@ impl SelectionAction {
         let step = match self {
             SelectionAction::CloseLasso {} => {
                 let closed = select::closed(open.document(), &lasso, &settings);
-                closed.map(|next| ("Select", next)).ok_or("A lasso has three corners at least.")
+                closed.map(|next| ("Select", next)).ok_or("A lasso needs at least three corners.")
             }
             SelectionAction::Again {} if open.document().active_selection.is_none() => match last {
                 Some(last) => Ok((
@@ -127,7 +127,7 @@ impl SelectionAction {
                     next.active_selection.is_none() && !matches!(self, SelectionAction::None {});
                 let was_active = open.document().active_selection.is_some();
                 if open.commit(label, next) && is_emptied && was_active {
-                    session.say("Nothing is selected any more.");
+                    session.say("Nothing is selected anymore.");
                 }
             }
             Err(why) => session.say(why),
@@ -200,7 +200,7 @@ impl SelectionAction {
             SelectionAction::Take { name, how } => {
                 let kept = document.selections.iter().find(|kept| kept.name == *name);
                 let selection =
-                    kept.ok_or("There is no selection of that name.")?.selection.clone();
+                    kept.ok_or("There is no selection with that name.")?.selection.clone();
                 let next = match how {
                     // The very same selection, so that it is stored once.
                     SelectionMode::Replace => {
@@ -213,11 +213,12 @@ impl SelectionAction {
             SelectionAction::Forget { name } => {
                 let next = document
                     .without_kept_selection(name)
-                    .ok_or("There is no selection of that name.")?;
+                    .ok_or("There is no selection with that name.")?;
                 ("Forget selection", next)
             }
             SelectionAction::Again {} => {
-                return Err("Something is selected. Select again takes back what was let go of.");
+                return Err("Something is selected. “Select again” restores the last selection \
+                            after it was dropped.");
             }
             SelectionAction::CloseLasso {}
             | SelectionAction::DropLasso {}

@@ -57,7 +57,7 @@ pub fn place(session: &mut Session, name: &str, picture: Picture) {
     let document = open.document();
     let Some(layout) = document.surface.as_ref().and_then(|surface| surface.plane_layout(settings))
     else {
-        return session.notes.push("There is no surface here that could be unwrapped.".into());
+        return session.notes.push("There is no surface to unwrap.".into());
     };
     let (sheet, size) = (layout.size(), picture.size);
     let lies = Lies {
@@ -69,7 +69,8 @@ pub fn place(session: &mut Session, name: &str, picture: Picture) {
         let aspect = |size: crate::math::Size| size.width as f32 / size.height.max(1) as f32;
         if (aspect(size) / aspect(sheet) - 1.0).abs() > SAME_ASPECT {
             session.notes.push(format!(
-                "The picture has {size} pixels, the unwrapped surface {sheet}: it is as wide, but not as high."
+                "The picture has {size} pixels, the unwrapped surface {sheet}: the width matches, \
+                 the height does not."
             ));
         }
     }

@@ -78,6 +78,6 @@ fn unwrap(session: &mut Session, on: bool) {
     let is_laid = laid.is_some();
     open.show_unwrapped(laid.map(|_| settings));
     if on && !is_laid {
-        session.notes.push("There is no surface here that could be unwrapped.".into());
+        session.notes.push("There is no surface to unwrap.".into());
     }
 }

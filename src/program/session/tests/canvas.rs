@@ -98,11 +98,11 @@ fn what_cannot_be_done_says_why() {
     for (line, why) in [
         (r#"{"in":"canvas","do":"crop to selection"}"#, "Nothing is selected"),
         (r#"{"in":"canvas","do":"trim"}"#, "nothing to trim"),
-        (r#"{"in":"canvas","do":"turn","degrees":360}"#, "like that already"),
+        (r#"{"in":"canvas","do":"turn","degrees":360}"#, "stay the same"),
         (r#"{"in":"canvas","do":"size","width":0,"height":5,"anchor":"center"}"#, "0"),
         (
             r#"{"in":"canvas","do":"scale","width":200,"height":150,"filter":"smooth"}"#,
-            "that size already",
+            "already has that size",
         ),
         (
             r#"{"in":"canvas","do":"size","width":4000000000,"height":4000000000,"anchor":"top"}"#,

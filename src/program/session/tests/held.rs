@@ -184,7 +184,10 @@ fn an_edit_that_no_file_could_hold_is_refused_in_words() {
             .contains("must be between 0 and 1")
     );
     let long = format!(r#"{{"do":"name","name":"{}"}}"#, "x".repeat(1_001));
-    assert!(said(&set(0, &long)).contains("letters of the name would be 1001; there may be 1000"));
+    assert!(
+        said(&set(0, &long))
+            .contains("letters of the name would be 1001; at most 1000 are allowed")
+    );
 }
 
 #[test]
@@ -203,7 +206,7 @@ fn groups_within_groups_are_refused_when_a_file_could_not_hold_them() {
     assert_eq!(depth(&session), Document::DEEPEST);
     assert_eq!(session.notes.len(), 3);
     assert!(
-        session.notes[0].contains("Groups around a layer would be 51; there may be 50"),
+        session.notes[0].contains("Groups around a layer would be 51; at most 50 are allowed"),
         "{}",
         session.notes[0]
     );

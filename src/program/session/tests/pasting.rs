@@ -106,7 +106,7 @@ fn what_was_copied_here_is_pasted_as_an_image_layer_too() {
     let mut session = replay(&format!("{PAPER}{STROKE}"));
     let act = |session: &mut Session, line: &str| session.replay(Path::new("story"), line).unwrap();
     act(&mut session, r#"{"in":"clipboard","do":"paste image","at":null}"#);
-    assert_eq!(session.said.pop().as_deref(), Some("Nothing was copied yet."));
+    assert_eq!(session.said.pop().as_deref(), Some("Nothing has been copied yet."));
     act(&mut session, r#"{"in":"clipboard","do":"copy","merged":false}"#);
     act(&mut session, r#"{"in":"clipboard","do":"paste image","at":[50,60]}"#);
     assert!(matches!(session.layer().unwrap().content, Content::Image(_)));

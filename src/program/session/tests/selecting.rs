@@ -112,7 +112,7 @@ fn what_cannot_be_done_says_why() {
         said(r#"{"in":"selection","do":"change","change":"grow","px":3}"#),
         "Nothing is selected."
     );
-    assert_eq!(said(r#"{"in":"clipboard","do":"paste"}"#), "Nothing was copied yet.");
+    assert_eq!(said(r#"{"in":"clipboard","do":"paste"}"#), "Nothing has been copied yet.");
     let region = r#"{"kind":"direction","at":[9,9],"tolerance":15,"softness":0,"contiguous":true}"#;
     let line = format!(r#"{{"in":"selection","do":"region","region":{region},"how":"replace"}}"#);
     assert_eq!(said(&line), "There is no surface to select by.");
@@ -132,7 +132,7 @@ fn what_cannot_be_done_says_why() {
         said(r#"{"in":"selection","do":"mask","layer":"1","how":"replace"}"#).contains("no mask")
     );
     assert!(
-        said(r#"{"in":"selection","do":"change","change":"shrink","px":90}"#).contains("any more")
+        said(r#"{"in":"selection","do":"change","change":"shrink","px":90}"#).contains("anymore")
     );
 }
 

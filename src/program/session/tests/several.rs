@@ -173,12 +173,12 @@ fn where_there_is_nothing_to_act_on_that_is_said() {
     };
     assert_eq!(
         said(r#"{"in":"layer","do":"ungroup","layer":["1","2"]}"#),
-        "There is no group among the chosen layers."
+        "There is no group among the selected layers."
     );
     assert_eq!(
         said(r#"{"in":"layer","do":"merge down","layer":"0"}"#),
         "There is no layer beneath to merge with."
     );
-    assert_eq!(said(r#"{"in":"layer","do":"delete","layer":[]}"#), "Choose a layer first.");
-    assert_eq!(said(r#"{"in":"layer","do":"group","layer":["9"]}"#), "Choose a layer first.");
+    assert_eq!(said(r#"{"in":"layer","do":"delete","layer":[]}"#), "Select a layer first.");
+    assert_eq!(said(r#"{"in":"layer","do":"group","layer":["9"]}"#), "Select a layer first.");
 }

@@ -99,7 +99,7 @@ fn the_shape_is_turned_scaled_and_mirrored_by_numbers_and_a_perspective_is_refus
     assert_eq!(session.active().unwrap().history.past().count(), steps);
     story(&mut session, &by("[1,0,0,1,9000,0]"));
     assert!(
-        session.notes.last().is_some_and(|why| why.contains("Nothing of the shape")),
+        session.notes.last().is_some_and(|why| why.contains("No part of the shape")),
         "{:?}",
         session.notes
     );

@@ -165,7 +165,7 @@ fn a_picture_of_other_proportions_is_placed_as_wide_and_that_is_told() {
     );
     assert_eq!(names(&session), ["painting", "square"]);
     assert!(
-        session.notes.last().is_some_and(|note| note.contains("as wide")),
+        session.notes.last().is_some_and(|note| note.contains("the width matches")),
         "{:?}",
         session.notes
     );

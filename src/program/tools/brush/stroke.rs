@@ -80,7 +80,7 @@ impl Gesture for StrokeGesture {
             Some(0) => {
                 self.room = None;
                 return Outcome::Refused(
-                    "A stroke can be no longer than this. Lift the pen to begin another.".into(),
+                    "A stroke cannot be longer. Lift the pen to begin another.".into(),
                 );
             }
             None => return Outcome::Idle,

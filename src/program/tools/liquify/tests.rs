@@ -120,7 +120,7 @@ fn what_cannot_be_displaced_says_why() {
     assert!(matches!(press(&context, pen).1, Outcome::Refused(why) if why.contains("one color")));
     let nothing = ToolContext { layer: None, ..context };
     assert!(
-        matches!(press(&nothing, pen).1, Outcome::Refused(why) if why.contains("Choose a layer"))
+        matches!(press(&nothing, pen).1, Outcome::Refused(why) if why.contains("Select a layer"))
     );
 }
 

@@ -15,8 +15,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         return (
             None,
             Outcome::Refused(
-                "There is no surface here to select by. File › New… opens one from its maps."
-                    .into(),
+                "There is no surface to select by. Open its maps (File, Open maps…).".into(),
             ),
         );
     };

@@ -194,7 +194,8 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let document = context.document;
     let areas = document.part_areas();
     if areas.is_empty() {
-        let why = "There is no part here. Layer › Give it a shape… makes some, or the panel Shape adds one.";
+        let why = "There is no part here. Make some (Layer, Give it a shape…), or add one in the \
+                   panel Shape.";
         return (None, Outcome::Refused(why.into()));
     }
     let gizmo_of = |id: &str| {

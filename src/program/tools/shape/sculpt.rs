@@ -18,8 +18,7 @@ const APART_PX: f32 = 0.5;
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let document = context.document;
     let Some(base) = document.part_at(pen.place()) else {
-        let why =
-            "Sculpt on a part: there is none under the pen. Layer › Give it a shape… makes some.";
+        let why = "There is no part under the pen to sculpt. Make some (Layer, Give it a shape…).";
         return (None, Outcome::Refused(why.into()));
     };
     let (mut part, is_new) = layer_on(

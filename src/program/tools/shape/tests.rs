@@ -132,7 +132,7 @@ fn touches_are_put_down_along_a_drag_moved_and_taken_away_and_directions_are_tak
     let (first, _) = dragged(&document, ToolKind::Touch, "square", &[(330.0, 300.0)], alt);
     assert!(first.settings().shape.normal.x > 0.3);
     let (first, _) = dragged(&document, ToolKind::Touch, "square", &[(10.0, 10.0)], NONE);
-    assert!(matches!(first, Outcome::Refused(why) if why.contains("none under the pen")));
+    assert!(matches!(first, Outcome::Refused(why) if why.contains("no part under the pen")));
 }
 
 #[test]

@@ -69,7 +69,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         return (Some(Box::new(moving)), Outcome::Idle);
     }
     let Some(base) = document.part_at(at) else {
-        let why = "Touch a part: there is none under the pen. Layer › Give it a shape… makes some.";
+        let why = "There is no part under the pen to touch. Make some (Layer, Give it a shape…).";
         return (None, Outcome::Refused(why.into()));
     };
     let settings = context.tools.shape;
@@ -119,7 +119,7 @@ pub(super) fn layer_on(
 /// The direction of the surface at a point.
 fn taken(document: &Document, at: Vec2) -> Outcome {
     let Some(surface) = &document.surface else {
-        return Outcome::Refused("There is no surface to take it from.".into());
+        return Outcome::Refused("There is no surface to take the direction from.".into());
     };
     match surface.at_point(at) {
         None => {

@@ -121,7 +121,7 @@ pub fn press(context: &ToolContext, pen: PenSample, layout: &PlaneLayout) -> Ges
     if bend.operator.unwrapping().is_none() {
         return (
             None,
-            Outcome::Refused("Only what is bent by Texture can be moved on one piece".into()),
+            Outcome::Refused("Only what is bent by Wrap can be moved on one piece".into()),
         );
     }
     let Some(surface) = context.document.surface.clone() else { return (None, Outcome::Idle) };

@@ -9,7 +9,7 @@ pub const ENCODINGS: [(NormalEncoding, &str); NormalEncoding::ALL.len()] = [
     (NormalEncoding::Unsigned, "0 to 1 stands for −1 to 1"),
     (NormalEncoding::Signed, "−1 to 1, as they are"),
     (NormalEncoding::FullZ, "0 to 1; forward is never below 0"),
-    (NormalEncoding::TwoChannel, "two channels, forward found from them"),
+    (NormalEncoding::TwoChannel, "two channels, forward computed"),
     (NormalEncoding::Dxt5nm, "two channels, in alpha and green"),
 ];
 /// Which values of a depth map are near, in words.
@@ -25,16 +25,17 @@ pub fn describe(choice: &Finding) -> (&str, String) {
                 NormalEncoding::from_name(value).map(|encoding| worded(encoding, &ENCODINGS));
             return ("Numbers", words.map_or_else(|| value.clone(), str::to_owned));
         }
-        "normal.srgb" => {
-            ("Colors", &[("false", "plain numbers"), ("true", "bent by the sRGB curve, bent back")])
-        }
+        "normal.srgb" => (
+            "Colors",
+            &[("false", "plain numbers"), ("true", "encoded by the sRGB curve, decoded")],
+        ),
         "normal.channels" => return ("Right, up, forward in", channels(value)),
         "normal.flip_x" => ("Left and right", FLIPPED),
         "normal.flip_y" => ("Up and down", FLIPPED),
         "normal.flip_z" => ("Front and back", FLIPPED),
         "normal.space" => (
             "Directions",
-            &[("camera", "as seen in the picture"), ("world", "of the scene, turned to the view")],
+            &[("camera", "as seen in the picture"), ("world", "of the scene, rotated to the view")],
         ),
         "depth.near" => {
             let words = Near::from_name(value).map(|near| worded(near, &NEAR));

@@ -74,7 +74,7 @@ pub fn show(
             if document.layers.is_empty() {
                 ui.weak("No layers yet: paint, or drop a picture.");
             } else if rows.is_empty() {
-                ui.weak("No layer is called so; Escape in the field shows all.");
+                ui.weak("No layer has this name. Press Escape in the field to show all.");
             }
         });
 }
@@ -105,7 +105,7 @@ fn head(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
                 layer.lock == LayerLock::Alpha,
                 "Paints only where there is paint (/)",
             ),
-            (Icon::Lock, "Lock layer", layer.lock == LayerLock::All, "No tool changes it"),
+            (Icon::Lock, "Lock layer", layer.lock == LayerLock::All, "No tool can change it"),
             (
                 Icon::Clip,
                 "Clip to layer below",

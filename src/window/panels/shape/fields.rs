@@ -69,7 +69,7 @@ fn about(preset: &str) -> &'static str {
     match preset {
         "pillow" => "Round, as a cloth filled with air",
         "tube" => "Limbs as deep as they are wide",
-        "relief" => "Half as high, its rim not quite a silhouette",
+        "relief" => "Half as high, with a rim that is not quite a silhouette",
         _ => "Nearly flat, with a rim that can be seen",
     }
 }

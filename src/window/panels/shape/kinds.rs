@@ -89,7 +89,7 @@ pub fn lines(ui: &mut Ui, now: Lines) -> Option<ValueChange<Lines>> {
     let hint = "How far the form turns next to a line";
     let angle = degrees("Angle", &Lines::ANGLE, hint, now.angle_deg)
         .show(ui, |angle_deg| Lines { angle_deg, ..now });
-    let hint = "How far a line is felt; 0: to the rim and to the next lines";
+    let hint = "How far a line reaches; 0: to the rim and to the next lines";
     let reach =
         length("Reach", &Lines::REACH, hint, now.reach).show(ui, |reach| Lines { reach, ..now });
     ui.weak(match now.form {
@@ -151,13 +151,17 @@ pub fn relief(ui: &mut Ui, now: Detail) -> Option<ValueChange<Detail>> {
         .show(ui, |coarse| Detail { coarse, ..now });
     let fine = length("Fine", &Detail::HEIGHT, "How high the fine detail is", now.fine)
         .show(ui, |fine| Detail { fine, ..now });
-    let radius =
-        length("Radius", &Detail::RADIUS, "What is larger is form, not detail", now.radius)
-            .show(ui, |radius| Detail { radius, ..now });
+    let radius = length(
+        "Radius",
+        &Detail::RADIUS,
+        "Larger features count as form, not as detail",
+        now.radius,
+    )
+    .show(ui, |radius| Detail { radius, ..now });
     let edge = number(
         "Edge",
         &Detail::EDGE,
-        "Steps of brightness above this are edges, which stay",
+        "Larger steps of brightness are edges, which are kept",
         now.edge,
     )
     .show(ui, |edge| Detail { edge, ..now });

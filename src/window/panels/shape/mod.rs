@@ -85,12 +85,12 @@ fn flats(ui: &mut Ui, document: &Document, part: &Part, requests: &mut UiRequest
         (
             split,
             "Split by place",
-            "Areas of its color that are apart, such as two eyes, become parts of their own",
+            "Separate areas of its color, such as two eyes, become separate parts",
         ),
         (
             cut,
             "Cut drawing",
-            "The drawing becomes a layer for each of its parts, so that a part that is moved takes its paint along",
+            "Divides the drawing into a layer for each part, so that a part moves with its paint",
         ),
     ];
     if buttons.iter().all(|(action, ..)| action.is_none()) {

@@ -92,13 +92,11 @@ fn by_hand(ui: &mut Ui, kind: &PartKind) -> Option<ValueChange<PartKind>> {
     match kind {
         PartKind::Touches { touches, .. } => {
             let n = count(touches.len(), "touch").replace("touchs", "touches");
-            ui.weak(format!(
-                "{n}. The tool Touch (N) puts them down, moves them and takes them away."
-            ));
+            ui.weak(format!("{n}. The tool Touch (N) adds, moves and removes them."));
             None
         }
         PartKind::Sculpt { on, strokes } => {
-            ui.weak(format!("{}. The tool Sculpt (U) makes more.", count(strokes.len(), "stroke")));
+            ui.weak(format!("{}. The tool Sculpt (U) adds more.", count(strokes.len(), "stroke")));
             let (_, rest) = strokes.split_last()?;
             let made = || PartKind::Sculpt { on: on.clone(), strokes: rest.to_vec() };
             ui.button("Without the last stroke")
@@ -144,7 +142,7 @@ fn primitive(ui: &mut Ui, now: &Primitive) -> Option<ValueChange<Primitive>> {
         changed = row.show(ui, |length| Primitive { length, ..now }).or(changed);
     }
     if now.body == Body::Torus {
-        let row = length("Tube", range, "Radius of what goes round the ring", now.tube);
+        let row = length("Tube", range, "Radius of the ring's tube", now.tube);
         changed = row.show(ui, |tube| Primitive { tube, ..now }).or(changed);
     }
     if matches!(now.body, Body::Ellipsoid | Body::Box) {
@@ -191,7 +189,7 @@ fn stands(ui: &mut Ui, part: &Part) -> Option<ValueChange<Part>> {
     .show(ui, |x| tilted(Vec2 { x, ..tilt }));
     let down = degrees("Face up", &Part::TILT, "Turns it up: its lower side comes nearer", tilt.y)
         .show(ui, |y| tilted(Vec2 { y, ..tilt }));
-    let raise = length("Raise", &Part::RAISE, "Nearer to the viewer than it must be", part.raise)
+    let raise = length("Raise", &Part::RAISE, "Additional distance toward the viewer", part.raise)
         .show(ui, |raise| Part { raise, ..part.clone() });
     let ways: Vec<(usize, &str)> =
         Combine::ALL.iter().enumerate().map(|(i, (_, word))| (i, *word)).collect();
@@ -204,7 +202,7 @@ fn stands(ui: &mut Ui, part: &Part) -> Option<ValueChange<Part>> {
     });
     let smooth = match part.combine {
         Combine::Union { smooth } => {
-            let hint = "Over how much height the two grow into one";
+            let hint = "Over how much height the two merge";
             length("Smooth", &Combine::SMOOTH, hint, smooth)
                 .show(ui, |smooth| Part { combine: Combine::Union { smooth }, ..part.clone() })
         }
@@ -216,7 +214,7 @@ fn stands(ui: &mut Ui, part: &Part) -> Option<ValueChange<Part>> {
     } else {
         ui.horizontal(|ui| {
             name(ui, "Moved");
-            let hint = "Where its outline was drawn, not turned and not scaled";
+            let hint = "Back to where its outline was drawn, not turned and not scaled";
             let clicked = ui.button("Put it back").on_hover_text(hint).clicked();
             let to = || Part { matrix: crate::math::Affine2::IDENTITY, ..part.clone() };
             clicked.then(|| ValueChange { to: to(), done: true })

@@ -108,7 +108,7 @@ fn only_what_is_used_and_lost_is_told() {
     ]);
     assert_eq!(
         notes,
-        ["nothing here follows fading", "wet edges, dual brush not taken from Photoshop"]
+        ["nothing here follows fading", "wet edges, dual brush not imported from Photoshop"]
     );
     assert_eq!(brush.jitter, ColorJitter { hue_degrees: 90.0, saturation: 0.0, value: 0.0 });
 }

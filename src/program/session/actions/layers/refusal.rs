@@ -20,7 +20,7 @@ impl LayerAction {
         };
         let lies_lowest =
             |id: &LayerId| document.place_of(*id).is_none_or(|place| place.index == 0);
-        let chosen = |layer: &LayerPaths| layer.find(document).ok_or("Choose a layer first.");
+        let chosen = |layer: &LayerPaths| layer.find(document).ok_or("Select a layer first.");
         let refusal = match self {
             LayerAction::Delete { layer }
             | LayerAction::Duplicate { layer }
@@ -49,7 +49,7 @@ impl LayerAction {
                         Err("A mesh or liquify displaces the group: apply or remove it first.")
                     }
                     true => Ok(()),
-                    false => Err("There is no group among the chosen layers."),
+                    false => Err("There is no group among the selected layers."),
                 })
             }
             LayerAction::Home { layer, part } => {

@@ -72,7 +72,7 @@ pub(super) fn homed(
     }
     let on = |next: Document, id: &LayerId| next.with_layer_on(*id, part);
     let next = ids.iter().try_fold(document.clone(), on);
-    let why = "This layer is bent as no part can carry it. Apply its transform first.";
+    let why = "This layer has a transform that cannot follow a part. Apply the transform first.";
     next.map(|next| ("Carry with part", next, Vec::new())).ok_or(why)
 }
 

@@ -47,7 +47,7 @@ pub fn shaped(
     progress: &Progress,
 ) -> Result<FirstShape, PartRefusal> {
     let tiles = painted_with_progress(document, layer, progress)
-        .ok_or("This layer paints nothing of its own, so it has no outline.")?;
+        .ok_or("This layer has no paint of its own, so it has no outline.")?;
     let traits = DrawingTraits::of(&tiles, document.size);
     let (document, tiles) = match traits.background {
         FigureBackground::Transparent => (document.clone(), tiles),
@@ -98,7 +98,7 @@ pub fn shaped(
         .place_of(layer)
         .map_or(LayerSlot::top_level(usize::MAX), |at| LayerSlot { index: at.index + 1, ..at });
     let next = next.with_inserted(base, place).ok_or("There is no such layer.")?;
-    let next = next.with_parts_with_progress(list, progress).ok_or("It was given up.")?;
+    let next = next.with_parts_with_progress(list, progress).ok_or("It was canceled.")?;
     // A drawing that is one part moves with the part; of several parts, each would take a piece of
     // it.
     let next = match each {

@@ -13,7 +13,7 @@ use crate::shape::profiles::MOST_PROFILES;
 use std::sync::Arc;
 
 const PAINTS_NOTHING: PartRefusal =
-    "This layer paints nothing of its own. Select one with light and dark on it.";
+    "This layer has no paint of its own. Select one with light and dark on it.";
 
 /// Directions of the lights of hand-made shadings, by the names of their layers; in this order if
 /// the names say nothing.
@@ -64,7 +64,8 @@ pub fn shadings(open: &OpenDocument) -> Result<Vec<ProfilePicture>, PartRefusal>
     let layers: Vec<&Arc<Layer>> = all.filter(|layer| chosen.contains(&layer.id)).collect();
     if !(2..=MOST_PROFILES).contains(&layers.len()) {
         return Err(
-            "Choose two to five layers with Ctrl, each a shading of the drawing with the light elsewhere.",
+            "Select two to five layers with Ctrl, each a shading of the drawing with the light \
+             from another side.",
         );
     }
     let mut lights =

@@ -26,15 +26,16 @@ rilievo_engine::named! {
         Box = "box" => ("Box", "A block with round edges"),
         Lathe = "lathe" => ("Lathe", "What the selected layer covers, turned about its axis: vases, bottles"),
         Sweep = "sweep" => ("Sweep", "A tube along the selected stroke, as wide as the pen pressed: tails, tentacles"),
-        Touches = "touches" => ("Touches", "Normals put down by hand on the chosen part"),
-        Sculpt = "sculpt" => ("Sculpt", "Heights sculpted by hand on the chosen part"),
+        Touches = "touches" => ("Touches", "Normals set by hand on the selected part"),
+        Sculpt = "sculpt" => ("Sculpt", "Heights sculpted by hand on the selected part"),
         Lines = "lines" => (
             "Lines as form",
-            "Ink of the selected layer turns the chosen part: folds, creases, chins"
+            "Ink of the selected layer turns the selected part: folds, creases, chins"
         ),
         Relief = "relief" => (
             "Relief of this layer",
-            "Light and dark of the selected layer as detail on the chosen part: scales, bark, cloth"
+            "Light and dark of the selected layer as detail on the selected part: scales, bark, \
+             cloth"
         ),
         Profiles = "profiles" => (
             "Lighting profiles",
@@ -51,7 +52,7 @@ impl NewPart {
                 "The selection covers no pixel fully, so it has no outline."
             }
             NewPart::Touches | NewPart::Sculpt | NewPart::Lines | NewPart::Relief => {
-                "The chosen part has no form to put anything on."
+                "The selected part has no form to work on."
             }
             NewPart::Profiles => {
                 "The selected layers are black all over, so they say nothing about the light."
@@ -159,7 +160,7 @@ fn of_layer(open: &OpenDocument) -> Result<OutlineSource, PartRefusal> {
     let document = open.document();
     let layer = document.layer(selected(open)?).ok_or(NO_LAYER)?;
     if !layer.content.paints() {
-        return Err("This layer paints nothing of its own, so it has no outline. Select another.");
+        return Err("This layer has no paint of its own, so it has no outline. Select another.");
     }
     if document.layer_named(&layer.name).is_none_or(|named| named.id != layer.id) {
         return Err(

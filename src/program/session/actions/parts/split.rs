@@ -12,14 +12,13 @@ use std::sync::Arc;
 /// that lies on it; touches and strokes of sculpting go to the place that they are at, and lines
 /// and reliefs to all places.
 pub fn by_place(document: &Document, part: &Part) -> Result<Document, PartRefusal> {
-    let refused =
-        "Only a part that follows a color of a layer, wherever it is, can be split by place.";
+    let refused = "Only a part that follows a color of a layer everywhere can be split by place.";
     let places = document.places_of(part).ok_or(refused)?;
     let points = places.points();
     match points.len() {
-        0 | 1 => return Err("The color of this part stands in one place only."),
+        0 | 1 => return Err("The color of this part is in one place only."),
         n if n > MOST_COLOURS => {
-            return Err("The color of this part stands in too many places: more than 64.");
+            return Err("The color of this part is in too many places: more than 64.");
         }
         _ => {}
     }

@@ -109,7 +109,7 @@ fn a_part_is_split_by_place_with_its_touches_and_the_user_is_told_of_a_place_tha
     }
     // It has one place now.
     tell(&mut session, r#"{"in":"part","do":"split","part":"part-1"}"#);
-    assert!(session.notes.pop().unwrap().contains("wherever it is"));
+    assert!(session.notes.pop().unwrap().contains("everywhere"));
     // The larger disc is erased: its part takes the nearest area of the colour.
     let layer = shown(&session).layers[0].id;
     let other = pair();
