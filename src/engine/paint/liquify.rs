@@ -19,9 +19,9 @@ crate::named! {
         Grow = "grow" => ("grow", "Enlarges what is under the dab (Ctrl shrinks)"),
         Shrink = "shrink" => ("shrink", "Shrinks what is under the dab (Ctrl enlarges)"),
         TwirlLeft = "twirl left" => ("twirl left", "Turns what is under the dab counter-clockwise \
-                                                    (Ctrl: clockwise)"),
+             (Ctrl: clockwise)"),
         TwirlRight = "twirl right" => ("twirl right", "Turns what is under the dab clockwise \
-                                                       (Ctrl: counter-clockwise)"),
+             (Ctrl: counter-clockwise)"),
         /// Evens out their displacement.
         Smooth = "smooth" => ("smooth", "Evens out the displacement (Shift with any tool)"),
         Restore = "restore" => ("restore", "Removes the displacement"),

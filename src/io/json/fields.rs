@@ -195,10 +195,7 @@ impl<'a> JsonNode<'a> {
     pub fn color(&self) -> Result<Color> {
         let text = self.text()?;
         Color::parse(text).ok_or_else(|| {
-            self.refused(format!(
-                "is “{text}”; a color is written #rrggbb or \
-                                                 #rrggbbaa"
-            ))
+            self.refused(format!("is “{text}”; a color is written #rrggbb or #rrggbbaa"))
         })
     }
 

@@ -241,8 +241,8 @@ impl UnderstoodMaps {
                     .range_px
                     .unwrap_or_else(|| depth_range_px(&n, &inside, fov_degrees));
                 findings.note(format!(
-                    "normals were derived from the depth, which is assumed to be \
-                                   {range_px:.0} pixels deep (“range_px”)"
+                    "normals were derived from the depth, which is assumed to be {range_px:.0} \
+                     pixels deep (“range_px”)"
                 ));
                 (differentiate::normals_from_depth(&n.depth, range_px), n.depth)
             }

@@ -23,7 +23,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// The picture that a drawing of Procreate holds of itself.
 const PROCREATE_PREVIEW: &str = "QuickLook/Thumbnail.png";
 const PROCREATE_NOTE: &str = "it is a Procreate drawing, shown by its small preview; for its \
-                              layers, share it as PSD in Procreate";
+     layers, share it as PSD in Procreate";
 
 /// The result of reading a project.
 pub struct ProjectContents {

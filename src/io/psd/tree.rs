@@ -91,8 +91,7 @@ pub(super) fn built(
     let (guides, lost) = parsed.guides.clone();
     if lost > 0 {
         notes.push(format!(
-            "{lost} of its guides are left out: there are too many, or they are too \
-                           far away"
+            "{lost} of its guides are left out: there are too many, or they are too far away"
         ));
     }
     let document = Document { layers, selections, guides: guides.into(), ..Document::empty(size) };

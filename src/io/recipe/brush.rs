@@ -176,8 +176,8 @@ fn curves(node: &JsonNode) -> Result<[Option<Curve>; 2]> {
     let added = fields.get("add").map(|node| {
         let refused = || {
             node.refused(
-                "is not a curve; the first numbers of its points must be between 0 and 1 and must not \
-                             fall",
+                "is not a curve; the first numbers of its points must be between 0 and 1 and must \
+                 not fall",
             )
         };
         Curve::added(points(&node, -MOST_ADDED..=MOST_ADDED)?).ok_or_else(refused)

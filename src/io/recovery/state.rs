@@ -155,8 +155,7 @@ impl StateWriter<'_> {
                 if self.given_up.load(Ordering::Relaxed) {
                     return Err(Error::unsupported(
                         self.file,
-                        "the drawing was closed in the \
-                                                              meantime",
+                        "the drawing was closed in the meantime",
                     ));
                 }
                 let key = self.known.next;

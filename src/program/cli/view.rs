@@ -254,7 +254,7 @@ fn sources(args: &ViewArgs, files: &mut UserFiles) -> Result<Vec<SurfaceSource>>
             None if args.files.len() == 1 => 0,
             None => {
                 let reason = "its name does not tell which map it is; use --normal, --depth or \
-                              --mask";
+                     --mask";
                 return Err(Error::invalid(file, "FILES", reason));
             }
         };

@@ -64,9 +64,7 @@ pub fn radiance_scaling(radiance: &RadianceScaling) -> Fit {
     if Light::points(radiance.light) {
         Ok(())
     } else {
-        Err("the direction of the light has no \
-                                                            length"
-            .into())
+        Err("the direction of the light has no length".into())
     }
 }
 

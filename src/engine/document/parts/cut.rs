@@ -94,8 +94,8 @@ impl Document {
                 Err("This layer is already attached to a part and moves with it.")
             }
             _ if !is_paint => {
-                Err("Only a paint layer can be cut. Turn this one into pixels first \
-                                   (Layer, Turn layer into pixels).")
+                Err("Only a paint layer can be cut. Turn this one into pixels first (Layer, Turn \
+                     layer into pixels).")
             }
             _ if is_grouped => Err("This layer is in a group. Move it out first."),
             _ if drawing.mask.is_some() && drawing.transform.is_some() => {

@@ -250,9 +250,7 @@ impl PartKind {
                     if Light::points(light) {
                         Ok(())
                     } else {
-                        Err("the direction of a light has no \
-                                                                   length"
-                            .into())
+                        Err("the direction of a light has no length".into())
                     }
                 })
             }

@@ -161,7 +161,7 @@ fn what_is_wrong_is_named_with_its_path() {
         json!({ "kind": "profiles", "pictures": [light] }),
         "it has 1 shadings; there must be 2 to 5",
     );
-    says(json!({ "kind": "profiles", "pictures": [light, light] }), "no direction");
+    says(json!({ "kind": "profiles", "pictures": [light, light] }), "has no length");
     says(
         json!({ "kind": "maps", "mask": { "file": "mask.png" } }),
         "neither a normal map nor a depth map",
