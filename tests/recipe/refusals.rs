@@ -28,7 +28,7 @@ fn every_refusal_names_file_and_field() {
         (said_of(json!({})), "layers[0].kind: is missing"),
         (
             said_of(json!({ "kind": "fill", "color": "red" })),
-            "layers[0].color: is “red”; a color reads #rrggbb",
+            "layers[0].color: is “red”; a color is written #rrggbb",
         ),
         (
             said_of(json!({ "kind": "fill", "opacity": 1.5 })),

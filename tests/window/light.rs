@@ -15,7 +15,7 @@ fn every_shading_model_is_made_from_the_menu_and_shows_its_properties() {
         ("New toon layer", "Tones"),
         ("New sub-Lambertian layer", "Flatness"),
         ("New Ashikhmin layer", "Choose environment"),
-        ("New lit-sphere layer", "Choose lit sphere of hollows"),
+        ("New lit-sphere layer", "Choose lit sphere for hollows"),
         ("New mirror layer", "Choose environment"),
         ("New mirror layer", "Bounces"),
         ("New glass layer", "Index"),

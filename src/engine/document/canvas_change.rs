@@ -196,7 +196,7 @@ impl Document {
         let maps = self.maps_surface().map(|maps| maps.transformed(change.to, &change.map));
         let maps = maps.transpose().map_err(|error| match error {
             SurfaceError::Empty => NOTHING_LEFT.to_owned(),
-            other => format!("The surface stays where it is: {other}."),
+            other => format!("The surface cannot be moved: {other}."),
         })?;
         let source = self.surface_source.as_ref().zip(maps.as_ref());
         let kept = |kept: &NamedSelection| NamedSelection {

@@ -326,7 +326,7 @@ mod tests {
         let value = json!({ "zebra": 1 });
         let mut fields = root(&value);
         fields.boolean("visible", true).unwrap();
-        assert!(fields.finish().unwrap_err().to_string().contains("known here are visible"));
+        assert!(fields.finish().unwrap_err().to_string().contains("the known ones are visible"));
     }
 
     #[test]

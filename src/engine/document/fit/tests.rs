@@ -206,5 +206,5 @@ fn what_parts_take_of_a_description_is_counted() {
         Document { parts: Arc::new(Parts::new(list)), ..of(vec![fill()]) }
     };
     assert_eq!(with(4).fits(None), Ok(()));
-    assert!(with(12).fits(None).unwrap_err().contains("parts than a file can hold: bake"));
+    assert!(with(12).fits(None).unwrap_err().contains("parts than a file can hold: turn some"));
 }

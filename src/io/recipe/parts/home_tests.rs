@@ -94,11 +94,14 @@ fn a_project_gives_homes_back() {
 fn a_home_that_is_no_part_is_refused_by_its_path() {
     let says = |layers: Value| refused(&body(&json!({ "layers": layers })));
     let fill = json!({ "kind": "fill", "on": "nose" });
-    assert_eq!(says(json!([fill])), "r.json: layers[0].on: is “nose”; there is no part of that id");
+    assert_eq!(
+        says(json!([fill])),
+        "r.json: layers[0].on: is “nose”; there is no part with that id"
+    );
     let strokes = |stroke: Value| says(json!([{ "kind": "strokes", "strokes": [stroke] }]));
     assert_eq!(
         strokes(json!({ "on": "nose" })),
-        "r.json: layers[0].strokes[0].on: is “nose”; there is no part of that id"
+        "r.json: layers[0].strokes[0].on: is “nose”; there is no part with that id"
     );
     let quad = json!({ "quad": [[0, 0], [9, 0], [9, 9], [0, 9]] });
     assert!(
