@@ -67,7 +67,7 @@ impl FilePurpose {
         let pictures = || PICTURES.to_vec();
         match self {
             FilePurpose::Open => vec![
-                ("Everything that opens", [DOCUMENTS.to_vec(), pictures()].concat()),
+                ("All supported files", [DOCUMENTS.to_vec(), pictures()].concat()),
                 ("Documents", DOCUMENTS.to_vec()),
                 ("Pictures and maps", pictures()),
             ],

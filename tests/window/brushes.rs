@@ -9,7 +9,7 @@ use rilievo::paint::{Input, Property, Stabilizer, Tip};
 fn editor() -> Story {
     let mut harness = window();
     press(&mut harness, "Brushes");
-    press(&mut harness, "Brush in hand");
+    press(&mut harness, "Current brush");
     harness
 }
 
@@ -31,7 +31,7 @@ fn a_preset_goes_to_hand_and_its_parts_can_be_changed() {
     press(&mut harness, "Brushes");
     tap(&mut harness, "Brush Gouache");
     assert_eq!(session(&harness).preset, "gouache");
-    press(&mut harness, "Brush in hand");
+    press(&mut harness, "Current brush");
     tap(&mut harness, "Tip");
     pick(&mut harness, "Shape", "Bristles");
     assert!(matches!(session(&harness).tools.brush.tip, Tip::Bristles(_)));

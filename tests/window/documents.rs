@@ -168,7 +168,7 @@ fn maps_are_seen_four_ways_and_corrected_before_they_become_a_document() {
     });
     let all = ["As it is", "Flip red", "Flip green", "Flip both"];
     assert_eq!(all.map(|name| chosen(&harness, name)), [false, false, true, false]);
-    press(&mut harness, "What was found");
+    press(&mut harness, "Detected");
     until(&mut harness, |harness| shows(harness, "plain numbers"));
     for jargon in ["normal.srgb", "normal.encoding", "depth.near", "false", "full-z"] {
         assert!(!shows(&harness, jargon), "{jargon}");

@@ -43,7 +43,7 @@ fn buttons_and_keys_say_how_a_selection_meets_the_last() {
     press(&mut harness, "Add");
     drag(&mut harness, vec2(20.0, -50.0), vec2(120.0, 50.0));
     assert!((area(&harness) - 2.0 * one).abs() < 0.03 * one);
-    press(&mut harness, "Take away");
+    press(&mut harness, "Subtract");
     drag(&mut harness, vec2(20.0, -60.0), vec2(130.0, 60.0));
     assert!((area(&harness) - one).abs() < 0.03 * one);
     command(&mut harness, "Select all");

@@ -131,11 +131,11 @@ settings! {
         "How long the cycle stays at 1, relative to its length; 10 is forever";
     "cycle" "pressure" cycle.pressure in 0.0..=1.0, "Cycle pressure",
         "The pressure at which the cycle begins";
-    "pickup" "amount" pickup.amount in 0.0..=1.0, "Picks up",
+    "pickup" "amount" pickup.amount in 0.0..=1.0, "Pickup",
         "How much of its paint the brush takes from a paint layer instead of its own color";
-    "pickup" "length" pickup.length in 0.0..=1.0, "Carries",
+    "pickup" "length" pickup.length in 0.0..=1.0, "Pickup length",
         "How much of the picked-up paint is left after one dab";
-    "pickup" "radius" pickup.radius in 0.05..=20.0, "Reaches",
+    "pickup" "radius" pickup.radius in 0.05..=20.0, "Pickup radius",
         "The radius that paint is picked up from, relative to the dab's";
 }
 
@@ -172,7 +172,7 @@ mod tests {
     fn what_cannot_be_becomes_what_can() {
         let mut brush = Brush::default();
         for (to, is) in [(f32::NAN, 0.0), (-3.0, 0.0), (7.0, 1.0)] {
-            let setting = SETTINGS.iter().find(|setting| setting.label == "Picks up").unwrap();
+            let setting = SETTINGS.iter().find(|setting| setting.label == "Pickup").unwrap();
             setting.set(&mut brush, to);
             assert_eq!(brush.pickup.amount, is);
         }

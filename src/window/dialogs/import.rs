@@ -311,7 +311,7 @@ impl ImportDialog {
             surface.size(),
             surface.depth_range_px()
         ));
-        ui.collapsing("What was found", |ui| {
+        ui.collapsing("Detected", |ui| {
             ScrollArea::vertical().max_height(150.0).show(ui, |ui| {
                 egui::Grid::new("findings").num_columns(3).striped(true).show(ui, |ui| {
                     for choice in &found.choices {

@@ -37,7 +37,7 @@ impl RecoveryDialog {
                     if ui.button(format!("Recover {title}")).clicked() {
                         recover = Some(i);
                     }
-                    let word = if *is_asked { "Delete for good" } else { "Delete…" };
+                    let word = if *is_asked { "Delete permanently" } else { "Delete…" };
                     if ui.button(word).clicked() {
                         delete = Some(i).filter(|_| *is_asked);
                         *is_asked = true;
@@ -77,7 +77,7 @@ fn first((lost, _): (LostSession, bool)) -> LostSession {
 /// When the session began, its file, and a warning if recovery failed before.
 fn described(lost: &LostSession) -> String {
     let age = lost.begun().and_then(|begun| SystemTime::now().duration_since(begun).ok());
-    let begun = age.map(|age| format!("Begun {} ago", spoken(age)));
+    let begun = age.map(|age| format!("Started {} ago", spoken(age)));
     let place = lost
         .file
         .as_ref()

@@ -137,7 +137,7 @@ impl ShortcutsDialog {
                 keymap.take(keys, keyed);
                 self.conflict = None;
             }
-            if ui.button("Leave it").clicked() {
+            if ui.button("Keep it").clicked() {
                 self.conflict = None;
             }
         });

@@ -28,7 +28,7 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     part(ui, "Spread and color", spread);
     part(ui, "Grain", grain);
     part(ui, "Stroke", stroke);
-    part(ui, "Mixing and habits", habits);
+    part(ui, "Mixing and stylus", habits);
     part(ui, "Dynamics", dynamics);
     if let Some(brush) = changed {
         requests.act(Action::Hand(HandAction::Brush { brush: written_brush(&brush) }));
@@ -305,16 +305,16 @@ fn habits(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     took(chosen.is_some());
     to.offset.from = chosen.unwrap_or(to.offset.from);
     let chosen =
-        check(ui, "Sides take turns", "Every other dab is on the other side", to.offset.alternates);
+        check(ui, "Alternate sides", "Every other dab is on the other side", to.offset.alternates);
     took(chosen.is_some());
     to.offset.alternates = chosen.unwrap_or(to.offset.alternates);
-    let chosen = choice_row(ui, "Scatter as", to.spread, &Spread::ALL);
+    let chosen = choice_row(ui, "Scatter shape", to.spread, &Spread::ALL);
     took(chosen.is_some());
     to.spread = chosen.unwrap_or(to.spread);
     let chosen = choice_row(ui, "Spacing on", to.spacing_on, &DistanceMetric::ALL);
     took(chosen.is_some());
     to.spacing_on = chosen.unwrap_or(to.spacing_on);
-    let chosen = choice_row(ui, "Falls off", to.falloff, &Falloff::ALL);
+    let chosen = choice_row(ui, "Falloff", to.falloff, &Falloff::ALL);
     took(chosen.is_some());
     to.falloff = chosen.unwrap_or(to.falloff);
     changed.then_some(to)

@@ -88,6 +88,6 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         let across = on.map(|on| Action::Hand(HandAction::AcrossParts { on: !on }));
         requests.actions.extend(across);
     }
-    let bounded = choice(ui, "Brush where", session.tools.brush.bounded, &BOUNDS);
+    let bounded = choice(ui, "Brush limit", session.tools.brush.bounded, &BOUNDS);
     requests.actions.extend(bounded.map(|bounded| Action::Hand(HandAction::Bounded { bounded })));
 }

@@ -22,7 +22,7 @@ pub fn show(ui: &mut Ui, session: &Session, swatches: &mut Swatches, requests: &
     let mut edits = ui.data(|data| data.get_temp::<bool>(id)).unwrap_or_default();
     ui.horizontal(|ui| {
         ui.selectable_value(&mut edits, false, "Presets").on_hover_text("Brushes to choose from");
-        ui.selectable_value(&mut edits, true, "Brush in hand")
+        ui.selectable_value(&mut edits, true, "Current brush")
             .on_hover_text("Settings of the current brush");
     });
     ui.data_mut(|data| data.insert_temp(id, edits));

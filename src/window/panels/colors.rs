@@ -10,7 +10,7 @@ use crate::widgets::{NumberField, ValueChange, named, swatch};
 use eframe::egui::{self, Color32, Id, Mesh, Rect, Sense, Shape, Stroke, TextEdit, Ui, pos2, vec2};
 
 pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    if let Some(changed) = picker(ui, "Color in hand", session.tools.color) {
+    if let Some(changed) = picker(ui, "Current color", session.tools.color) {
         requests.act(Action::Hand(HandAction::Color { color: changed.to }));
     }
     let recent = session.recent_colors.iter().enumerate();

@@ -52,7 +52,7 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     if crops.on_hover_text("The canvas becomes the frame (Enter)").clicked() {
         requests.act(crop::apply(area));
     }
-    let drops = ui.add_enabled(session.tools.crop.area.is_some(), Button::new("Give up"));
+    let drops = ui.add_enabled(session.tools.crop.area.is_some(), Button::new("Discard"));
     if drops.on_hover_text("Removes the frame (Escape)").clicked() {
         requests.act(Action::Canvas(CanvasAction::CropArea { frame: None }));
     }

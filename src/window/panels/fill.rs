@@ -49,5 +49,5 @@ pub fn options(ui: &mut Ui, fill: Fill, requests: &mut UiRequests) {
         check(ui, "This layer only", hint, fill.layer_alone)
             .map(|layer_alone| Fill { layer_alone, ..fill }),
     );
-    push(choice(ui, "Fill where", fill.bounded, &BOUNDS).map(|bounded| Fill { bounded, ..fill }));
+    push(choice(ui, "Fill limit", fill.bounded, &BOUNDS).map(|bounded| Fill { bounded, ..fill }));
 }

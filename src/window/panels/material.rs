@@ -156,7 +156,7 @@ fn pictures(ui: &mut Ui, shading: &Shading, setter: &mut LayerSetter) {
 
 fn surroundings(ui: &mut Ui, environment: &Environment, setter: &mut LayerSetter) {
     let Environment { projection, rotation, exposure, .. } = *environment;
-    if let Some(projection) = choice_row(ui, "Lies as", projection, &Projection::ALL) {
+    if let Some(projection) = choice_row(ui, "Projection", projection, &Projection::ALL) {
         setter.set(Property::Surrounded { projection, rotation, exposure }, true);
     }
     let turn = NumberField::new("Turn", -180.0..=180.0, "About the vertical axis")
@@ -340,7 +340,7 @@ pub fn radiance_scaling(ui: &mut Ui, scaling: &RadianceScaling, setter: &mut Lay
     let with = |gamma_concave| Property::Scaled { scaling: Scaling { gamma_concave, ..now } };
     setter.take(concave.map(|c| c.map(with)));
     let hint = "Light of this brightness stays as it is (α)";
-    let alpha = NumberField::new("Still tone", 0.02..=0.98, hint).row(ui, now.alpha);
+    let alpha = NumberField::new("Unchanged tone", 0.02..=0.98, hint).row(ui, now.alpha);
     setter
         .take(alpha.map(|c| c.map(|alpha| Property::Scaled { scaling: Scaling { alpha, ..now } })));
     let hint = "Keep the mean brightness over the surface";

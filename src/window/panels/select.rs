@@ -17,7 +17,7 @@ use eframe::egui::{Button, Ui};
 const WAYS: [(SelectionMode, &str, &str); 4] = [
     (SelectionMode::Replace, "New", "A new selection replaces the last one"),
     (SelectionMode::Add, "Add", "A new selection is added to the last one (Shift)"),
-    (SelectionMode::TakeAway, "Take away", "A new selection is subtracted from the last one (Alt)"),
+    (SelectionMode::TakeAway, "Subtract", "A new selection is subtracted from the last one (Alt)"),
     (SelectionMode::Intersect, "Intersect", "Only what is in both stays selected (Shift with Alt)"),
 ];
 
@@ -75,7 +75,7 @@ fn wand(ui: &mut Ui, select: SelectSettings) -> Option<SelectSettings> {
     let hint = "Reads the selected layer alone, not the whole picture";
     set(check(ui, "This layer only", hint, fill.layer_alone)
         .map(|layer_alone| Fill { layer_alone, ..fill }));
-    set(choice(ui, "Select where", fill.bounded, &BOUNDS).map(|bounded| Fill { bounded, ..fill }));
+    set(choice(ui, "Wand limit", fill.bounded, &BOUNDS).map(|bounded| Fill { bounded, ..fill }));
     let joined = check(
         ui,
         "Joined",

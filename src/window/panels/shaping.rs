@@ -122,7 +122,7 @@ fn sculpting(ui: &mut Ui, now: ShapeSettings) -> Option<ShapeSettings> {
             field.inline(ui, now.share, 60.0).map(|c| ShapeSettings { share: c.to, ..now })
         }
     };
-    ui.weak("Pressure weakens it");
+    ui.weak("Weaker with less pressure");
     changed.or(to)
 }
 

@@ -28,7 +28,7 @@ pub fn show<W: JobWindow>(
         for job in jobs.under_way.iter().filter(|job| is_shown(job)) {
             ui.label(job.title());
             bar(ui, job.share(), 90.0);
-            if ui.small_button("Cancel").on_hover_text(format!("Give up: {}", job.name)).clicked() {
+            if ui.small_button("Cancel").on_hover_text(format!("Cancel: {}", job.name)).clicked() {
                 job.progress.cancel();
             }
             ui.separator();
@@ -121,9 +121,9 @@ fn memory_menu(
         ui.set_width(300.0);
         let rows = [
             ("Painted, with its history", painted),
-            ("Pictures placed", pictures),
+            ("Placed pictures", pictures),
             ("Maps of the shape", maps),
-            ("Kept for speed", kept),
+            ("Caches", kept),
         ];
         egui::Grid::new("memory").num_columns(2).show(ui, |ui| {
             let others = used.all.total() - used.front.total();
@@ -142,7 +142,7 @@ fn memory_menu(
         let percent = *KEPT_SHARE.start() * 100.0..=*KEPT_SHARE.end() * 100.0;
         let hint = "Share of the machine's memory. Beyond it, old steps of the history drop their \
                     rendered pictures, which are rendered again on undo";
-        let field = NumberField::new("Keep at most", percent, hint).percent();
+        let field = NumberField::new("Cache limit", percent, hint).percent();
         if let Some(change) = field.row(ui, (kept_share * 100.0).round()) {
             requests.request(WindowRequest::KeptShare(change.map(|percent| percent / 100.0).to));
         }

@@ -112,7 +112,7 @@ fn buttons(
                 act(StrokeAction::Order { layer: layer(), stroke, to: stroke - 1 });
             }
             let hint = "Takes over its brush, operator and color";
-            if icon_button(ui, Icon::Tool(ToolKind::Eyedropper), "Take its brush", false)
+            if icon_button(ui, Icon::Tool(ToolKind::Eyedropper), "Use its brush", false)
                 .on_hover_text(hint)
                 .clicked()
             {
@@ -143,7 +143,7 @@ fn buttons(
             to: Style::Brush {},
             done: true,
         };
-        if icon_button(ui, Icon::Tool(ToolKind::Brush), "Give brush in hand", false)
+        if icon_button(ui, Icon::Tool(ToolKind::Brush), "Apply current brush", false)
             .on_hover_text(hint)
             .clicked()
         {

@@ -17,8 +17,7 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         if ui.button("Give it a shape…").on_hover_text("Of what the drawing covers").clicked() {
             requests.request(WindowRequest::ShapeDialog);
         }
-        if ui.button("Give it maps…").on_hover_text("Normals, depth or both, from files").clicked()
-        {
+        if ui.button("Add maps…").on_hover_text("Normals, depth or both, from files").clicked() {
             requests.request(WindowRequest::ReplaceMapsDialog);
         }
         return;

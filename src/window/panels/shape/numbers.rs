@@ -162,9 +162,9 @@ fn primitive(ui: &mut Ui, now: &Primitive) -> Option<ValueChange<Primitive>> {
     }
     if now.body != Body::Sphere {
         let turns: [AxisRow; 3] = [
-            ("Turn over", |turn, x| Vec3 { x, ..turn }, now.turn_deg.x),
-            ("Turn aside", |turn, y| Vec3 { y, ..turn }, now.turn_deg.y),
-            ("Turn round", |turn, z| Vec3 { z, ..turn }, now.turn_deg.z),
+            ("Turn about x", |turn, x| Vec3 { x, ..turn }, now.turn_deg.x),
+            ("Turn about y", |turn, y| Vec3 { y, ..turn }, now.turn_deg.y),
+            ("Turn about z", |turn, z| Vec3 { z, ..turn }, now.turn_deg.z),
         ];
         for (label, with, value) in turns {
             // The type's range is that of files; in the window one turn is enough.
@@ -215,7 +215,7 @@ fn stands(ui: &mut Ui, part: &Part) -> Option<ValueChange<Part>> {
         ui.horizontal(|ui| {
             name(ui, "Moved");
             let hint = "Back to where its outline was drawn, not turned and not scaled";
-            let clicked = ui.button("Put it back").on_hover_text(hint).clicked();
+            let clicked = ui.button("Reset position").on_hover_text(hint).clicked();
             let to = || Part { matrix: crate::math::Affine2::IDENTITY, ..part.clone() };
             clicked.then(|| ValueChange { to: to(), done: true })
         })
