@@ -1,4 +1,4 @@
-//! Bends a colour ramp over a surface that is computed here: a knobbly ball becomes metal.
+//! Bends a color ramp over a surface that is computed here: a knobbly ball becomes metal.
 //!
 //! `cargo run --example bend_gradient -- [PICTURE]`; without an argument, to the folder for
 //! temporary files.
@@ -36,7 +36,7 @@ pub fn bend(picture: &Path) -> Result<()> {
     // `Maps`.
     let surface = Surface::new(Maps::from_normals(Plane::from_fn(Size::new(512, 512), normal)))?;
 
-    // A ramp between two points of the canvas. Both are anchors: there the colours stay where they
+    // A ramp between two points of the canvas. Both are anchors: there the colors stay where they
     // are, and elsewhere the operator moves them as far as the surface turns away from its
     // direction at the anchors.
     let sky = [

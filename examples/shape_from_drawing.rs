@@ -1,4 +1,4 @@
-//! Gives a drawing in flat colours a shape: each colour becomes a part, which is inflated and lit.
+//! Gives a drawing in flat colors a shape: each color becomes a part, which is inflated and lit.
 //!
 //! `cargo run --example shape_from_drawing -- [PICTURE]`; without an argument, to the folder for
 //! temporary files.
@@ -20,7 +20,7 @@ fn main() -> rilievo::Result<()> {
     Ok(())
 }
 
-/// A bird of four flat colours on a transparent ground, as straight RGBA.
+/// A bird of four flat colors on a transparent ground, as straight RGBA.
 fn drawing() -> TileGrid {
     let ellipses = [
         (vec2(230.0, 230.0), vec2(170.0, 130.0), Color::rgb(222, 126, 60)),
@@ -42,7 +42,7 @@ fn drawing() -> TileGrid {
 /// Writes the picture.
 pub fn shape(picture: &Path) -> rilievo::Result<()> {
     let flats = drawing();
-    // A part for each colour, in the order in which they lie on each other. Parts stay linked to
+    // A part for each color, in the order in which they lie on each other. Parts stay linked to
     // the layer by its name: if it is painted on, the shape follows.
     let found = parts_of_flats(&flats, "Drawing", Inflation::default(), PartFor::Color);
     let parts = found.parts.into_iter().map(|part| Arc::new(Part { raise: 4.0, ..part }));

@@ -1,8 +1,8 @@
 //! Rilievo as a library: paint over normal and depth maps without the window.
 //!
-//! A [`Document`] is a canvas, the [`Surface`] that is painted on, and layers. It is read from a
-//! recipe or a project file, or built in code; [`render`] makes the picture. Values are cheap to
-//! clone and never change while shared.
+//! A [`Document`] is a canvas, a [`Surface`] to paint on, and layers. Read it from a recipe or a
+//! project file, or build it in code; [`render`] makes the picture. Values are cheap to clone and
+//! never change while they are shared.
 //!
 //! Make a surface from a normal map in memory, bend a gradient over it, and keep the picture:
 //!
@@ -80,11 +80,11 @@
 //! | [`shape`] | shapes for drawings that have no maps: parts, and what they are made of |
 //! | [`document`] | documents and layers, and rendering them |
 //! | [`raster`] | pixels: tiles, planes, pictures, blend modes |
-//! | [`math`] | vectors, sizes, rectangles, colours |
+//! | [`math`] | vectors, sizes, rectangles, colors |
 //! | [`files`] | recipes, projects, pictures and maps on the disk, and the limits that readers respect |
 //!
 //! Coordinates are canvas pixels, x to the right and y down; the middle of the first pixel is (0.5,
-//! 0.5). Normals are in camera space, y up. Colours are sRGB, and pixels of a picture are
+//! 0.5). Normals are in camera space, y up. Colors are sRGB, and pixels of a picture are
 //! premultiplied. Angles are in degrees, counter-clockwise as seen, where a name does not say
 //! otherwise.
 //!
@@ -155,7 +155,7 @@ pub mod document {
     };
 }
 
-/// Pixels: tiles of a layer, planes of a map, pictures of a file, and how colours are blended.
+/// Pixels: tiles of a layer, planes of a map, pictures of a file, and how colors are blended.
 pub mod raster {
     #[doc(inline)]
     pub use rilievo_engine::raster::{
@@ -164,7 +164,7 @@ pub mod raster {
     };
 }
 
-/// Numbers: vectors, sizes, rectangles, maps of the plane and colours.
+/// Numbers: vectors, sizes, rectangles, maps of the plane and colors.
 pub mod math {
     #[doc(inline)]
     pub use rilievo_engine::math::{
@@ -201,9 +201,9 @@ pub use rilievo_engine::{Error, Remedy, Result};
 /// The whole picture of a document: premultiplied sRGB in tiles, the pixels of the canvas and no
 /// others.
 ///
-/// A surface that the document's parts no longer make is made first. It uses all cores. Work that
-/// is watched or cancelled calls [`flatten()`] with a [`Progress`] of its own.
+/// If the document's parts have changed, its surface is computed first. Uses all cores. To show
+/// progress or to cancel, call [`flatten()`] with a [`Progress`].
 pub fn render(document: &Document) -> TileGrid {
-    // None only where the work was cancelled, and nobody can.
+    // None only where the work was canceled, and nobody can.
     flatten(&document.reshaped(), &Progress::default()).unwrap_or_default()
 }

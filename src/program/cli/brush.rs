@@ -14,15 +14,14 @@ use std::path::{Path, PathBuf};
 
 /// Convert brushes of GIMP, MyPaint and Photoshop, or show what a brush paints
 ///
-/// FROM is a .gbr, .gih, .myb or .abr, a preset's .json, or the name of a brush that comes with the
-/// program.
+/// FROM is a brush file of another program, a preset (.json), or the key of a built-in brush.
 #[derive(clap::Args)]
 pub struct BrushArgs {
     /// The brush, or the collection of brushes, to read
     #[arg(value_name = "FROM")]
     from: PathBuf,
-    /// A .json to write the brush to, with its pictures next to it; or a .png of a stroke over a
-    /// ball. Each brush of a collection goes to a numbered file of its own
+    /// A .json to write the brush to, with its pictures next to it, or a .png to show a stroke over
+    /// a ball. Each brush of a collection gets a numbered file
     #[arg(value_name = "TO")]
     to: PathBuf,
     /// Side of the picture, in pixels

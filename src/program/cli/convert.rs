@@ -16,35 +16,34 @@ use std::path::{Path, PathBuf};
 
 /// Convert between projects, Photoshop files, recipes and pictures
 ///
-/// Files that are read are never written over: neither FROM nor any picture, map or tip that it
-/// names. Another file is replaced only with --force; the previous version of a project is kept as
-/// TO~.
+/// FROM and the pictures, maps and tips that it names are never overwritten. Other files are
+/// replaced only with --force; the previous version of a project is kept as TO~.
 #[derive(clap::Args)]
 pub struct ConvertArgs {
     /// What to read: .ora, .psd, .json, or a picture
     #[arg(value_name = "FROM")]
     from: PathBuf,
-    /// What to write: .ora, .psd, or a picture (.png, .exr, .jpg, .webp, .tif) of all that is
-    /// visible
+    /// What to write: .ora, .psd, or a picture of everything visible (.png, .exr, .jpg, .webp,
+    /// .tif)
     #[arg(value_name = "TO")]
     to: PathBuf,
     /// Size of the result relative to the canvas
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = values::scale)]
     scale: f32,
-    /// Only the part of a picture that the surface covers
+    /// Crop a picture to the surface
     #[arg(long)]
     crop_to_surface: bool,
-    /// Each layer to a picture of its own, its number and name added to TO; of an .exr: each layer
-    /// to channels of its own
+    /// Write each layer to its own picture, with its number and name added to TO; in an .exr, to
+    /// its own channels
     #[arg(long)]
     layers: bool,
     /// Bits per channel: 8 or 16 for a .png or .tif (default 8), 16 or 32 for an .exr (default 16)
     #[arg(long, value_name = "N", value_parser = values::depth)]
     bits: Option<u8>,
-    /// Dots per inch that a .png says it is printed at
+    /// Print resolution stored in a .png, in dots per inch
     #[arg(long, value_name = "N", value_parser = dots_per_inch)]
     dpi: Option<f32>,
-    /// What shows where a picture is transparent, as #rrggbb
+    /// Background behind transparent parts, as #rrggbb
     #[arg(long, value_name = "COLOR", value_parser = values::color)]
     background: Option<Color>,
     /// Quality of a JPEG, 1 to 100

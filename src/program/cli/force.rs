@@ -8,8 +8,8 @@ use std::path::PathBuf;
 /// Whether existing files may be replaced.
 #[derive(clap::Args, Clone, Copy)]
 pub struct Force {
-    /// Replace existing files, read-only ones too; files that the command reads are never written
-    /// over
+    /// Replace existing files, also read-only ones; files that the command reads are never
+    /// overwritten
     #[arg(long)]
     force: bool,
 }

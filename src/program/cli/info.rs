@@ -41,8 +41,7 @@ use documents::DocumentReport;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
-/// Describe files: documents with their layers, pictures and how they would be read as normal and
-/// depth maps
+/// Describe files: documents with their layers, and pictures with how they would be read as maps
 #[derive(clap::Args)]
 pub struct InfoArgs {
     /// Projects, recipes, normal maps, depth maps, masks, EXR files, pictures

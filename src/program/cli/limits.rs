@@ -9,16 +9,16 @@ use std::path::Path;
 /// How much a command may use.
 #[derive(clap::Args)]
 pub struct LimitArgs {
-    /// Longest side of any picture, in pixels
+    /// Maximum side of a picture, in pixels
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     max_side: Option<u32>,
-    /// Pixels of any picture
+    /// Maximum number of pixels of a picture
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000_000_000))]
     max_pixels: Option<u64>,
-    /// Memory that reading and painting may take, such as 800M or 6G; by default, what is free
+    /// Maximum memory for reading and painting, such as 800M or 6G; by default, the free memory
     #[arg(long, value_name = "SIZE", value_parser = bytes)]
     max_memory: Option<u64>,
-    /// Threads to work with; the result is the same with any number
+    /// Number of threads; the result does not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 }

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 /// and PowerShell. Files of these names in FOLDER are replaced.
 #[derive(clap::Args)]
 pub struct ManualArgs {
-    /// Where to write them; it is made if it is missing
+    /// The folder to write them to; created if it does not exist
     #[arg(value_name = "FOLDER")]
     folder: PathBuf,
 }

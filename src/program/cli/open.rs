@@ -5,7 +5,7 @@ use super::OpenWindow;
 use crate::{Error, Result};
 use std::path::PathBuf;
 
-/// Open the window; giving only files, or nothing, does the same
+/// Open the window; the same as giving only files, or nothing
 #[derive(clap::Args)]
 pub struct OpenArgs {
     /// Projects, recipes, pictures, normal or depth maps

@@ -24,7 +24,7 @@ pub struct RenderArgs {
     /// The project (.ora), or the recipe: a JSON file, next to the files that it names
     #[arg(value_name = "DOC")]
     document: PathBuf,
-    /// Where the picture goes: .png, .exr, .jpg, .webp or .tif; an existing one is replaced only
+    /// The picture to write: .png, .exr, .jpg, .webp or .tif; an existing file is replaced only
     /// with --force
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
@@ -34,10 +34,10 @@ pub struct RenderArgs {
     /// Put the painting on another object: its depth map
     #[arg(long, value_name = "FILE")]
     depth: Option<PathBuf>,
-    /// What its normals mean: auto (detected), opengl (green up) or directx (green down)
+    /// Convention of its normals: auto (detected), opengl (green up) or directx (green down)
     #[arg(long, value_name = "WORD", default_value = "auto", requires = "normal", value_parser = convention)]
     convention: NormalConvention,
-    /// Which numbers of its depth are nearer: auto (detected), low or high
+    /// Which end of its depth is near: auto (detected), low or high
     #[arg(long, value_name = "END", default_value = "auto", requires = "depth", value_parser = near)]
     near: Near,
     /// The other object's mask
@@ -46,10 +46,10 @@ pub struct RenderArgs {
     /// Size of the picture relative to the canvas
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = values::scale)]
     scale: f32,
-    /// Only the layer of this name
+    /// Render only the layer with this name
     #[arg(long, value_name = "NAME")]
     layer: Option<String>,
-    /// What shows where the picture is transparent, as #rrggbb
+    /// Background behind transparent parts, as #rrggbb
     #[arg(long, value_name = "COLOR", value_parser = values::color)]
     background: Option<Color>,
     /// Quality of a JPEG, 1 to 100
@@ -77,7 +77,7 @@ fn near(word: &str) -> std::result::Result<Near, String> {
 }
 
 pub fn run(args: &RenderArgs) -> Result<()> {
-    // A misspelt extension is reported before the work, not after it.
+    // A misspelled extension is reported before the work, not after it.
     ExportFormat::of(&args.output)?.bits(&args.output, args.bits)?;
     args.limits.install(|| {
         let LoadedDocument { document, notes, reads } = load(args)?;

@@ -9,15 +9,13 @@ use crate::session::{Autosave, Session, is_same};
 use crate::{Error, Result};
 use std::path::PathBuf;
 
-/// Perform a replay file line by line: the same actions as in the window, with file names as the
-/// replay gives them
+/// Run a script: a file of actions, one JSON object per line, as docs/SCRIPTING.md describes
 #[derive(clap::Args)]
 pub struct ReplayArgs {
-    /// The replay: one JSON object per line
+    /// The script
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Keep recovery logs in this folder as the window does, and print every step once it is in its
-    /// log
+    /// Keep recovery logs in this folder as the window does, and print every step once it is logged
     #[arg(long, value_name = "FOLDER")]
     recover_in: Option<PathBuf>,
     #[command(flatten)]

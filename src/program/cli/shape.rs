@@ -20,43 +20,43 @@ use std::sync::Arc;
 
 /// Make normals, depth and parts for a drawing that has no maps
 ///
-/// The drawing's alpha is its outline; a ground of one colour all around is left out. With --flats
-/// each flat colour is a part of its own, and parts that interrupt the outline of others lie in
-/// front of them. FOLDER gets DRAWING_n (normals), _d (depth, near is 0), _h (height), _mask and
-/// _id (the number of the part).
+/// The drawing's alpha is its outline; a background of one color is left out. With --flats each
+/// flat color becomes a part, and parts that interrupt the outline of others lie in front of them.
+/// FOLDER gets DRAWING_n (normals), _d (depth, near is 0), _h (height), _mask and _id (the number
+/// of the part).
 #[derive(clap::Args)]
 pub struct ShapeArgs {
-    /// The drawing, on a ground that is transparent or of one colour
+    /// The drawing, on a background that is transparent or of one color
     #[arg(value_name = "DRAWING")]
     drawing: PathBuf,
-    /// A picture of the same size with a flat colour for each part
+    /// A picture of the same size with a flat color for each part
     #[arg(long, value_name = "FILE")]
     flats: Option<PathBuf>,
-    /// A part for each place of a colour: areas that are apart from each other, such as two eyes
+    /// A part for each separate area of a color, such as two eyes
     #[arg(long, requires = "flats")]
     places: bool,
-    /// Where the maps go; created if it does not exist
+    /// The folder to write the maps to; created if it does not exist
     #[arg(short, long, value_name = "FOLDER")]
     output: PathBuf,
     /// How parts are rounded
     #[arg(long, value_name = "PRESET", default_value = "pillow", value_parser = presets())]
     preset: Inflation,
-    /// Factor of the height, instead of the preset's
+    /// Height factor, instead of the preset's
     #[arg(long, value_name = "FACTOR", value_parser = puff)]
     puff: Option<f32>,
-    /// 0 a pillow to 1 a tube, instead of the preset's
+    /// 0 (pillow) to 1 (tube), instead of the preset's
     #[arg(long, value_name = "SHARE", value_parser = profile)]
     profile: Option<f32>,
-    /// Degrees that the rim turns, 90 for a silhouette, instead of the preset's
+    /// Angle of the rim in degrees (90 is a silhouette), instead of the preset's
     #[arg(long, value_name = "DEGREES", value_parser = rim)]
     rim: Option<f32>,
-    /// Where green points in the normals: up (opengl) or down (directx)
+    /// Direction of green in the normals: up (opengl) or down (directx)
     #[arg(long, value_name = "WORD", default_value = "opengl", value_parser = ["opengl", "directx"])]
     convention: String,
     /// Bits per channel of a PNG: 8 or 16
     #[arg(long, value_name = "N", default_value_t = 16, value_parser = values::bits)]
     bits: u8,
-    /// The kind of file: png, or exr with 32 bits per channel
+    /// File format: png, or exr with 32 bits per channel
     #[arg(long, value_name = "FORMAT", default_value = "png", value_parser = ["png", "exr"])]
     format: String,
     #[command(flatten)]
@@ -116,7 +116,7 @@ pub fn run(args: &ShapeArgs) -> Result<()> {
     })
 }
 
-/// The drawing as a document with parts, and what is told about colours without one.
+/// The drawing as a document with parts, and what is told about colors without one.
 fn shaped(args: &ShapeArgs) -> Result<(Document, Option<String>)> {
     let budget = args.limits.budget();
     let inflation = Inflation {

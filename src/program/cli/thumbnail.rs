@@ -13,7 +13,7 @@ use std::path::PathBuf;
 
 /// Write a small picture of a file, as file managers show it
 ///
-/// A project holds one already, so that nothing is painted unless SIDE is larger than 256.
+/// A project contains one, so nothing is painted unless SIDE is larger than 256.
 #[derive(clap::Args)]
 pub struct ThumbnailArgs {
     /// What to show: .ora, .psd, .json, or a picture
@@ -22,7 +22,7 @@ pub struct ThumbnailArgs {
     /// The PNG to write
     #[arg(value_name = "TO")]
     to: PathBuf,
-    /// The longer side of the picture, px
+    /// Longer side of the picture, in pixels
     #[arg(short, long, value_name = "SIDE", default_value_t = 256,
           value_parser = clap::value_parser!(u32).range(i64::from(*SIDES_PX.start())..=i64::from(*SIDES_PX.end())))]
     size: u32,

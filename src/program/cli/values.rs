@@ -1,4 +1,4 @@
-//! Values that several commands take: factors, bits and colours.
+//! Values that several commands take: factors, bits and colors.
 //! Floor 7.
 
 use crate::math::srgb::Color;

@@ -23,18 +23,18 @@ use std::sync::Arc;
 /// Show maps, curvature, weights and flows as pictures
 #[derive(clap::Args)]
 pub struct ViewArgs {
-    /// A recipe, or normal, depth and mask maps recognised by their names (pot_n.png,
+    /// A recipe, or normal, depth and mask maps recognized by their names (pot_n.png,
     /// pot_depth.exr, pot_mask.png)
     #[arg(value_name = "FILES")]
     files: Vec<PathBuf>,
     /// What to show; “sheet” shows all views side by side
     #[arg(long, value_name = "VIEW", default_value = "sheet", value_parser = shown())]
     show: ShowArg,
-    /// Where the picture goes; a folder gets one picture for every view
+    /// The picture to write; a folder gets one picture for each view
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// The layer whose anchors or operator are shown, else the topmost that has any; with
-    /// “unwrapped”, the layer that is shown, else the whole painting
+    /// The layer whose anchors or operator are shown (by default the topmost that has any); with
+    /// “unwrapped”, the layer that is shown (by default the whole painting)
     #[arg(long, value_name = "NAME")]
     layer: Option<String>,
     /// The normal map, whatever its name
@@ -46,17 +46,17 @@ pub struct ViewArgs {
     /// The mask, whatever its name
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
-    /// With “unwrapped”: pixels of the picture along one of the plane
+    /// With “unwrapped”: pixels of the picture per pixel of the surface
     #[arg(long, value_name = "FACTOR", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=4))]
     scale: u32,
-    /// Curvature scale in pixels: a larger one shows curvature as stronger
+    /// Curvature scale in pixels: larger values show stronger curvature
     #[arg(long, value_name = "PX", value_parser = not_negative,
           default_value_t = ViewOptions::default().curvature_scale_px)]
     curvature_scale: f32,
     /// Blur of normals and flows, standard deviation in pixels
     #[arg(long, value_name = "PX", default_value_t = ViewOptions::default().blur_px, value_parser = not_negative)]
     blur: f32,
-    /// What shows off the surface, as #rrggbb; a JPEG needs it
+    /// Background outside the surface, as #rrggbb; required for a JPEG
     #[arg(long, value_name = "COLOR", value_parser = super::values::color)]
     background: Option<Color>,
     #[command(flatten)]
