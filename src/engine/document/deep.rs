@@ -58,17 +58,18 @@ pub(super) struct DeepTiles {
     together: HashMap<TileKey, Option<PlanarTile>>,
 }
 
-/// Of which layer a tile is, where, and on which side of contours.
+/// Of which layer a tile is, where, and on which surface, by its address.
 #[derive(PartialEq, Eq, Hash)]
 struct TileKey {
     layer: LayerId,
     at: TileAt,
-    is_far_side: bool,
+    surface: Option<usize>,
 }
 
 impl TileKey {
     fn of(node: &PreparedLayer, at: TileAt, scene: &Scene) -> Self {
-        Self { layer: node.layer.id, at, is_far_side: scene.as_far_side().is_some() }
+        let surface = scene.surface.as_ref().map(|surface| Arc::as_ptr(surface).addr());
+        Self { layer: node.layer.id, at, surface }
     }
 }
 

@@ -175,7 +175,7 @@ impl StackBuilder<'_> {
         layer.content.warm(&visible_scene, self.progress);
         let far = visible_scene.far_side();
         if let Some(far) = &far {
-            layer.content.warm(far, self.progress);
+            layer.content.warm_far_side(far, self.progress);
         }
         if let Role::Adjusts(_) = layer.content.role() {
             let (layer, beneath) = (layer.clone(), scope.beneath.gathered());

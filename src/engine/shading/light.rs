@@ -4,7 +4,6 @@
 use super::surface_row::{LightDirection, RowValues, SurfaceRow};
 use crate::math::{Range, Vec3, fast, srgb::Color, vec3};
 use crate::raster::TILE;
-use crate::surface::contours::FarSide;
 use crate::surface::shadow::ShareMap;
 use std::sync::Arc;
 
@@ -100,37 +99,15 @@ impl RowLight {
             map.read(surface_row.x0, surface_row.y, &mut seen[..surface_row.width]);
         }
         let RowLightPosition::At(position) = self.stands else { return };
-        let (surface, columns) =
-            (surface_row.surface, surface_row.x0..surface_row.x0 + surface_row.width);
-        // The first pixel from the light, x right, y up; heights are counted from the surface's
-        // nearest point.
-        let first = vec3(
-            position.x - (surface_row.x0 as f32 + 0.5),
-            surface_row.y as f32 + 0.5 - position.y,
-            position.z,
-        );
-        let depth = &surface.depth_plane().row(surface_row.y)[columns];
-        if let Some(far) = surface.as_far_side() {
-            return self.turn_far_side(surface_row, far, position);
-        }
-        turn_to_point(first, surface.depth_range_px(), depth, &mut self.direction);
-    }
-
-    /// As `turn`, for a row of a far side: its pixels lie anywhere on the canvas.
-    fn turn_far_side(&mut self, surface_row: &SurfaceRow, far: &FarSide, position: Vec3) {
         let SurfaceRow { surface, x0, y, width, .. } = *surface_row;
-        for x in 0..width {
-            let (px, py) = far.canvas_pixel((x0 + x) as i32, y as i32);
+        let (depth, range) = (surface.depth_plane().row(y), surface.depth_range_px());
+        for (columns, (px, py)) in surface.canvas_runs(x0..x0 + width, y as i32) {
+            // The first pixel from the light, x right, y up; heights are counted from the surface's
+            // nearest point.
             let first =
                 vec3(position.x - (px as f32 + 0.5), py as f32 + 0.5 - position.y, position.z);
-            let mut direction = [[0.0; TILE]; 3];
-            turn_to_point(
-                first,
-                surface.depth_range_px(),
-                &[surface.depth(x0 + x, y)],
-                &mut direction,
-            );
-            self.direction.iter_mut().zip(direction).for_each(|(to, from)| to[x] = from[0]);
+            let direction = self.direction.each_mut().map(|d| &mut d[columns.start - x0..]);
+            turn_to_point(first, range, &depth[columns], direction);
         }
     }
 
@@ -165,7 +142,7 @@ impl Light {
 crate::widest! {
     /// ℓ of each pixel of a row: toward a point at `from_first` from the first pixel as if that
     /// were at height 0; the surface recedes from there by its depth.
-    fn turn_to_point(from_first: Vec3, depth_range_px: f32, depth: &[f32], direction: &mut [RowValues; 3]) {
+    fn turn_to_point(from_first: Vec3, depth_range_px: f32, depth: &[f32], direction: [&mut [f32]; 3]) {
         let [lx, ly, lz] = direction;
         for (x, (&depth, ((lx, ly), lz))) in depth.iter().zip(lx.iter_mut().zip(ly).zip(lz)).enumerate() {
             let (right, up) = (from_first.x - x as i32 as f32, from_first.y);

@@ -110,6 +110,12 @@ trait LayerKind {
     /// Computes now what many tiles would otherwise compute at the same time.
     /// Ends soon once it is cancelled.
     fn warm(&self, _scene: &Scene, _progress: &Progress) {}
+
+    /// The same for what is seen behind contours.
+    fn warm_far_side(&self, far: &Scene, progress: &Progress) {
+        self.warm(far, progress);
+    }
+
     /// On a canvas of another size.
     fn scaled(&self, scale: &CanvasScale) -> Content;
     /// The same on a canvas of another aspect, where that stretches it more than its numbers can
@@ -349,6 +355,10 @@ impl Content {
 
     pub(in crate::document) fn warm(&self, scene: &Scene, progress: &Progress) {
         self.kind().warm(scene, progress);
+    }
+
+    pub(in crate::document) fn warm_far_side(&self, far: &Scene, progress: &Progress) {
+        self.kind().warm_far_side(far, progress);
     }
 
     pub(in crate::document) fn scaled(&self, scale: &CanvasScale) -> Content {

@@ -63,11 +63,7 @@ impl Shading {
     /// Passes on the opacity of the shadow on the page at each pixel of a tile off the surface: row,
     /// column and share.
     fn ground_pixels(&self, scene: &Scene, at: TileAt, mut tell: impl FnMut(usize, usize, f32)) {
-        let Some(surface) =
-            scene.surface.as_deref().filter(|surface| surface.as_far_side().is_none())
-        else {
-            return;
-        };
+        let Some(surface) = scene.surface.as_deref().and_then(Surface::on_canvas) else { return };
         let (inside, maps) = (scene.area(at), self.ground_maps(surface));
         for (row, y) in (inside.y0..inside.y1).enumerate() {
             for (column, x) in (inside.x0..inside.x1).enumerate() {

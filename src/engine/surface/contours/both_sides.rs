@@ -1,14 +1,15 @@
 //! Both sides of contours as one: what surfaces and scenes answer alike, whether their pixels are
-//! those of the canvas or readings of the far side. Floor 2. Four operations hold the difference:
-//! where a pixel lies on the canvas, how rows step, which surface is in front, and a map that is
-//! computed in front and read on the far side. Not here: the readings themselves (`far_side`).
+//! those of the canvas or readings of the far side. Floor 2. Five operations hold the difference:
+//! where a pixel lies on the canvas, which pixels of a row are neighbours there, how rows step,
+//! which surface is in front, and a map that is computed in front and read on the far side. Not
+//! here: the readings themselves (`far_side`).
 
 use super::FarSide;
 use crate::math::{Rect, Size};
 use crate::raster::TileAt;
 use crate::surface::Surface;
 use crate::surface::scene::Scene;
-use std::ops::Deref;
+use std::ops::{Deref, Range};
 use std::sync::Arc;
 
 /// The surface of the canvas.
@@ -36,6 +37,30 @@ impl Surface {
             Some(far) => far.canvas_pixel(x, y),
             None => (x, y),
         }
+    }
+
+    /// A row's pixels, in runs that are neighbours on the canvas: the columns of each, and the canvas
+    /// pixel of its first. In front the row is one run; on a far side each pixel is one.
+    #[inline(always)]
+    pub fn canvas_runs(
+        &self,
+        columns: Range<usize>,
+        y: i32,
+    ) -> impl Iterator<Item = (Range<usize>, (i32, i32))> {
+        let step = match self.as_far_side() {
+            Some(_) => 1,
+            None => columns.len().max(1),
+        };
+        columns
+            .clone()
+            .step_by(step)
+            .map(move |x| (x..(x + step).min(columns.end), self.canvas_pixel(x as i32, y)))
+    }
+
+    /// The same surface where its pixels are those of the canvas, so that pixels side by side see
+    /// neighbouring places; `None` for a far side.
+    pub fn on_canvas(&self) -> Option<&Self> {
+        self.as_far_side().is_none().then_some(self)
     }
 
     /// The size of the canvas, px.

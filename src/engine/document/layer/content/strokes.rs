@@ -75,9 +75,6 @@ impl LayerKind for Live<StrokeList> {
     }
 
     fn warm(&self, scene: &Scene, progress: &Progress) {
-        if scene.as_far_side().is_some() {
-            return self.warm_far_side(scene, progress);
-        }
         for stroke in &self.params().strokes {
             let bend = Bend { operator: stroke.operator(), ..Bend::default() };
             Deformation::new(scene.surface.as_deref(), scene.size, &bend);
@@ -92,6 +89,24 @@ impl LayerKind for Live<StrokeList> {
                 self.tile(scene, at, || tile);
             });
         }
+    }
+
+    fn warm_far_side(&self, far: &Scene, progress: &Progress) {
+        let (front, is_wanted) = (far.front(), || !progress.is_cancelled());
+        let (missing, strokes) = (self.missing_far_sides(&front), &self.params().strokes);
+        if missing.is_empty()
+            || stroke::are_heavy(strokes, &front, missing.len(), is_wanted) != Some(true)
+        {
+            return;
+        }
+        let Some(surface) = &front.surface else { return };
+        let _ = stroke::render_tiles(strokes, far, &missing, is_wanted, |at, tile| {
+            let Some(contours) = surface.contours().on(at) else { return };
+            self.set_far_side(
+                &FarScene { tile: FarTile::new(at, contours), front: &front, far: Some(far) },
+                tile,
+            );
+        });
     }
 
     fn scaled(&self, scale: &CanvasScale) -> Content {
@@ -179,25 +194,6 @@ impl LayerKind for Live<StrokeList> {
 }
 
 impl Live<StrokeList> {
-    /// As `warm`, for what is seen behind contours on a sheet.
-    fn warm_far_side(&self, far: &Scene, progress: &Progress) {
-        let (front, is_wanted) = (far.front(), || !progress.is_cancelled());
-        let (missing, strokes) = (self.missing_far_sides(&front), &self.params().strokes);
-        if missing.is_empty()
-            || stroke::are_heavy(strokes, &front, missing.len(), is_wanted) != Some(true)
-        {
-            return;
-        }
-        let Some(surface) = &front.surface else { return };
-        let _ = stroke::render_tiles(strokes, far, &missing, is_wanted, |at, tile| {
-            let Some(contours) = surface.contours().on(at) else { return };
-            self.set_far_side(
-                &FarScene { tile: FarTile::new(at, contours), front: &front, far: Some(far) },
-                tile,
-            );
-        });
-    }
-
     fn with_each(&self, change: impl Fn(&Arc<Stroke>) -> Arc<Stroke>) -> Content {
         let strokes = self.params().strokes.iter().map(change).collect();
         Content::Strokes(Live::new(StrokeList { strokes }))

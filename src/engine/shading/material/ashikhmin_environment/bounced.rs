@@ -33,9 +33,9 @@ impl EnvironmentSamples {
     /// no neighbours, none.
     pub fn follow_tile(&mut self, shading: &Shading, surface: &Surface, area: Rect) {
         self.bounced = None;
-        if surface.as_far_side().is_some() || shading.specular.weight <= 0.0 {
+        let Some(surface) = surface.on_canvas().filter(|_| shading.specular.weight > 0.0) else {
             return;
-        }
+        };
         let Some(second) = SecondLook::on(surface, shading.bounces_made()) else { return };
         let rect = area.grown(1).intersect(surface.size().rect());
         let pixels = (rect.y0..rect.y1)
